@@ -1,0 +1,3 @@
+//! The program `brushwork`.
+
+fn main() {}
