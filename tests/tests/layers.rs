@@ -1,0 +1,166 @@
+//! Keeps the layers: which crate may know which, and what may not be found where.
+//!
+//! The rules are those of `ARCHITECTURE.md`; a new arrow is written down in both places.
+
+use std::collections::BTreeSet;
+
+use brushwork_tests::rust_source::{code_lines, without_tests};
+use brushwork_tests::workspace::{self, DependencyKind, Member, Metadata};
+
+/// The arrows that ship: a crate and the crates of this workspace it may use.
+const ARROWS: [(&str, &[&str]); 5] = [
+    ("brushwork", &["brushwork-link", "brushwork-protocol", "brushwork-sim"]),
+    ("brushwork-link", &["brushwork-protocol"]),
+    ("brushwork-sim", &["brushwork-protocol"]),
+    ("brushwork-protocol", &[]),
+    ("brushwork-tests", &["brushwork", "brushwork-link", "brushwork-protocol", "brushwork-sim"]),
+];
+
+/// Arrows for tests alone: the client is tried against the simulated controller.
+const TEST_ARROWS: [(&str, &[&str]); 1] = [("brushwork-link", &["brushwork-sim"])];
+
+/// Crates from outside that one crate of ours may use, by the start of their name.
+const KEPT_TO: [(&str, &[&str]); 6] = [
+    ("egui", &["brushwork"]),
+    ("eframe", &["brushwork"]),
+    ("winit", &["brushwork"]),
+    ("rfd", &["brushwork"]),
+    ("clap", &["brushwork"]),
+    ("serialport", &["brushwork-link"]),
+];
+
+/// Crates that would need a system package to build; they may be nowhere in the lock file's graph.
+const NOWHERE: [&str; 4] = ["libudev-sys", "openssl-sys", "gtk-sys", "glib-sys"];
+
+/// What the pure parts may not touch: clocks, files, sockets, threads, processes, the terminal.
+const IMPURE: [&str; 9] = [
+    "std::fs",
+    "std::net",
+    "std::thread",
+    "std::process",
+    "std::env",
+    "Instant",
+    "SystemTime",
+    "crossbeam_channel",
+    "std::sync::mpsc",
+];
+
+/// The pure parts: a source folder and the modules in it that are the named exception.
+const PURE: [(&str, &[&str]); 2] = [("device/protocol/src", &[]), ("device/sim/src", &["server"])];
+
+fn allowed(table: &[(&str, &[&'static str])], name: &str) -> BTreeSet<&'static str> {
+    table.iter().filter(|(from, _)| *from == name).flat_map(|(_, to)| to.iter().copied()).collect()
+}
+
+fn ours<'a>(member: &'a Member, metadata: &'a Metadata) -> impl Iterator<Item = (&'a str, DependencyKind)> {
+    member
+        .dependencies
+        .iter()
+        .filter(|line| metadata.members.iter().any(|other| other.name == line.name))
+        .map(|line| (line.name.as_str(), line.kind))
+}
+
+#[test]
+fn crates_know_only_the_crates_below_them() {
+    let metadata = Metadata::load();
+    for member in &metadata.members {
+        assert!(
+            ARROWS.iter().any(|(name, _)| *name == member.name),
+            "{} is not in the table of arrows: give it its line here and in ARCHITECTURE.md",
+            member.name
+        );
+        for (target, kind) in ours(member, &metadata) {
+            let mut may = allowed(&ARROWS, &member.name);
+            if kind == DependencyKind::Dev {
+                may.extend(allowed(&TEST_ARROWS, &member.name));
+            }
+            assert!(may.contains(target), "{} may not depend on {target} ({kind:?})", member.name);
+        }
+    }
+}
+
+#[test]
+fn the_window_toolkit_and_the_serial_port_are_each_known_to_one_crate() {
+    let metadata = Metadata::load();
+    for member in &metadata.members {
+        for line in &member.dependencies {
+            for (start, owners) in KEPT_TO {
+                let is_kept = line.name == start || line.name.starts_with(&format!("{start}_"));
+                assert!(
+                    !is_kept || owners.contains(&member.name.as_str()),
+                    "{} depends on {}, which is for {owners:?} alone",
+                    member.name,
+                    line.name
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn nothing_needs_a_system_package_to_build() {
+    let metadata = Metadata::load();
+    for name in NOWHERE {
+        assert!(metadata.outsiders.iter().all(|outsider| outsider.name != name), "{name} is in the graph");
+    }
+}
+
+#[test]
+fn codecs_and_the_core_of_the_simulator_have_no_clock_and_do_no_io() {
+    let mut faults = Vec::new();
+    for path in workspace::rust_files() {
+        if !is_pure(&path) {
+            continue;
+        }
+        let source = workspace::read(&path);
+        for (index, line) in code_lines(without_tests(&source)).iter().enumerate() {
+            for word in IMPURE.iter().filter(|word| line.contains(**word)) {
+                faults.push(format!("{path}:{}: {word}", index + 1));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "pure code reaches outside:\n{}", faults.join("\n"));
+}
+
+fn is_pure(path: &str) -> bool {
+    PURE.iter().any(|(folder, exceptions)| {
+        path.strip_prefix(folder).and_then(|rest| rest.strip_prefix('/')).is_some_and(|rest| {
+            let module = rest.split('/').next().unwrap_or(rest).trim_end_matches(".rs");
+            !exceptions.contains(&module)
+        })
+    })
+}
+
+#[test]
+fn every_queue_has_a_bound_and_every_thread_a_name() {
+    const BANNED: [&str; 4] = ["unbounded()", "unbounded::<", "mpsc::channel(", "thread::spawn("];
+    let mut faults = Vec::new();
+    for path in workspace::rust_files() {
+        for (index, line) in code_lines(&workspace::read(&path)).iter().enumerate() {
+            for word in BANNED.iter().filter(|word| line.contains(**word)) {
+                faults.push(format!("{path}:{}: {word}", index + 1));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn every_crate_takes_the_lints_and_the_versions_of_the_workspace() {
+    for member in Metadata::load().members {
+        let manifest = workspace::read(&format!("{}/Cargo.toml", member.folder));
+        assert!(manifest.contains("[lints]\nworkspace = true"), "{} has lints of its own", member.name);
+        let mut in_dependencies = false;
+        for line in manifest.lines() {
+            if line.starts_with('[') {
+                in_dependencies = line.ends_with("dependencies]");
+            } else if in_dependencies && line.contains('=') {
+                assert!(
+                    line.contains("workspace"),
+                    "{}: the version of `{line}` belongs in the root",
+                    member.name
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! Keeps the house rules that neither rustfmt nor clippy can see.
+
+use brushwork_tests::rust_source::{Function, functions, without_tests};
+use brushwork_tests::workspace;
+
+/// A longer file says why in a line that starts with this.
+const REASON_FOR_LENGTH: &str = "//! Long because";
+
+/// No file is longer without a written reason.
+const MAX_FILE_LINES: usize = 1_200;
+
+/// No function is longer.
+const MAX_FUNCTION_LINES: usize = 120;
+
+fn sources() -> impl Iterator<Item = (String, String)> {
+    workspace::rust_files().into_iter().map(|path| {
+        let source = workspace::read(&path);
+        (path, source)
+    })
+}
+
+fn assert_none(what: &str, faults: &[String]) {
+    assert!(faults.is_empty(), "{what}:\n{}", faults.join("\n"));
+}
+
+#[test]
+fn every_file_opens_by_saying_what_it_is_for() {
+    let faults: Vec<String> =
+        sources().filter(|(_, source)| !source.starts_with("//! ")).map(|(path, _)| path).collect();
+    assert_none("no `//!` in the first line", &faults);
+}
+
+#[test]
+fn no_file_is_long_without_a_reason() {
+    let faults: Vec<String> = sources()
+        .filter(|(_, source)| source.lines().count() > MAX_FILE_LINES && !source.contains(REASON_FOR_LENGTH))
+        .map(|(path, source)| format!("{path}: {} lines", source.lines().count()))
+        .collect();
+    assert_none("longer than 1,200 lines", &faults);
+}
+
+#[test]
+fn no_function_is_longer_than_a_screen_and_a_half() {
+    let mut faults = Vec::new();
+    for (path, source) in sources() {
+        for function in functions(&source) {
+            if function.length_lines > MAX_FUNCTION_LINES {
+                faults.push(format!(
+                    "{path}:{}: {} has {}",
+                    function.line, function.name, function.length_lines
+                ));
+            }
+        }
+    }
+    assert_none("functions of more than 120 lines", &faults);
+}
+
+#[test]
+fn the_tree_as_a_whole_stays_readable() {
+    let mut file_lines = Vec::new();
+    let mut plain = Vec::new();
+    let mut drawing = Vec::new();
+    for (path, source) in sources().filter(|(path, _)| path.contains("/src/")) {
+        file_lines.push(source.lines().count());
+        let (ui, other): (Vec<Function>, Vec<Function>) =
+            functions(without_tests(&source)).into_iter().partition(|f| draws(&path, f));
+        plain.extend(other.iter().map(|function| function.length_lines));
+        drawing.extend(ui.iter().map(|function| function.length_lines));
+    }
+    let figures = format!(
+        "files: median {}, p90 {}; functions: median {}, p90 {}; `_ui` functions: p90 {}",
+        percentile(&mut file_lines, 50),
+        percentile(&mut file_lines, 90),
+        percentile(&mut plain, 50),
+        percentile(&mut plain, 90),
+        percentile(&mut drawing, 90),
+    );
+    println!("{figures}");
+    assert!(percentile(&mut file_lines, 50) <= 300 && percentile(&mut file_lines, 90) <= 700, "{figures}");
+    assert!(percentile(&mut plain, 50) <= 12 && percentile(&mut plain, 90) <= 40, "{figures}");
+    assert!(percentile(&mut drawing, 90) <= 60, "{figures}");
+}
+
+fn draws(path: &str, function: &Function) -> bool {
+    path.starts_with("app/") && (function.name.ends_with("_ui") || function.name == "ui")
+}
+
+fn percentile(values: &mut [usize], percent: usize) -> usize {
+    values.sort_unstable();
+    let last = values.len().saturating_sub(1);
+    values.get(last * percent / 100).copied().unwrap_or(0)
+}
+
+#[test]
+fn every_promise_has_an_owner_and_no_test_is_switched_off() {
+    let promises = ["TO", "FIX"].map(|start| format!("{start}{}", if start == "TO" { "DO" } else { "ME" }));
+    let switched_off = format!("#[{}", "ignore");
+    let mut faults = Vec::new();
+    for (path, source) in sources() {
+        for (index, line) in source.lines().enumerate() {
+            let unowned = promises.iter().any(|word| {
+                line.find(word.as_str()).is_some_and(|at| !line[at + word.len()..].starts_with('('))
+            });
+            if unowned || line.trim_start().starts_with(&switched_off) {
+                faults.push(format!("{path}:{}: {}", index + 1, line.trim()));
+            }
+        }
+    }
+    assert_none("without an owner, or switched off", &faults);
+}
+
+#[test]
+fn no_file_names_a_folder_of_somebodys_machine() {
+    let folders = ["home", "root", "Users", "work"].map(|name| format!("/{name}/"));
+    let mut faults = Vec::new();
+    for path in workspace::text_files() {
+        for (index, line) in workspace::read(&path).lines().enumerate() {
+            let starts =
+                |at: usize| !line[..at].ends_with(|c: char| c.is_alphanumeric() || "._-)}\"'".contains(c));
+            if folders.iter().any(|folder| line.find(folder.as_str()).is_some_and(starts)) {
+                faults.push(format!("{path}:{}: {}", index + 1, line.trim()));
+            }
+        }
+    }
+    assert_none("a path that exists on one machine only", &faults);
+}
