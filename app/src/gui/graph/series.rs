@@ -1,0 +1,251 @@
+//! One channel's values: a ring with a pyramid of minima and maxima above it.
+//!
+//! The ring keeps every value that was read. Level `n` of the pyramid holds one [`Extrema`] for each block of
+//! 16ⁿ rows, so the extrema of any stretch of rows cost a few dozen steps, however long the stretch is.
+//! Times are kept once for all channels, in [`super::history`]. What is drawn of this is decided in [`super::trace`].
+
+use std::ops::Range;
+
+/// A value that was not read in its row. The line passes over it.
+pub const NOT_READ: f64 = f64::NAN;
+
+/// A row where data was lost. The line breaks here.
+pub const GAP: f64 = f64::from_bits(0x7ff8_0000_0067_6170);
+
+/// Rows per block of the first level; each level has blocks this many times as long as the one below.
+const FACTOR: u64 = 16;
+const LEVELS: u32 = 3;
+
+/// Rows in a block of the highest level. The capacity of a [`Series`] is a multiple of this.
+pub const LONGEST_BLOCK: u64 = FACTOR.pow(LEVELS);
+
+/// Whether `value` marks lost data rather than a value that was simply not read.
+pub fn is_gap(value: f64) -> bool {
+    value.to_bits() == GAP.to_bits()
+}
+
+/// The least and greatest value of a stretch of rows, and whether data was lost inside it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extrema {
+    pub min: f64,
+    pub max: f64,
+    pub gap: bool,
+}
+
+impl Extrema {
+    pub const NONE: Self = Self { min: f64::INFINITY, max: f64::NEG_INFINITY, gap: false };
+
+    /// No value was read in the stretch.
+    pub fn is_empty(&self) -> bool {
+        self.min > self.max
+    }
+
+    fn add(&mut self, value: f64) {
+        // `min` and `max` pass over NaN, which covers both marks.
+        self.min = self.min.min(value);
+        self.max = self.max.max(value);
+        self.gap |= is_gap(value);
+    }
+
+    fn merge(&mut self, other: &Self) {
+        self.min = self.min.min(other.min);
+        self.max = self.max.max(other.max);
+        self.gap |= other.gap;
+    }
+}
+
+/// A ring of `f64` that grows to its capacity and then overwrites its oldest rows.
+///
+/// Rows are numbered from the first one ever pushed; the caller keeps the count.
+#[derive(Clone, Debug)]
+pub struct Ring<T> {
+    items: Vec<T>,
+    capacity: u64,
+}
+
+impl<T: Copy> Ring<T> {
+    /// A ring grows in this many steps: a short history stays small, and a long one is never doubled.
+    const GROWTH_STEPS: u64 = 64;
+
+    pub fn new(capacity: u64) -> Self {
+        Self { items: Vec::new(), capacity }
+    }
+
+    pub fn get(&self, row: u64) -> T {
+        self.items[(row % self.capacity) as usize]
+    }
+
+    /// Writes `row`, which is either the next one ever or one still kept.
+    pub fn set(&mut self, row: u64, item: T) {
+        let slot = (row % self.capacity) as usize;
+        if slot < self.items.len() {
+            self.items[slot] = item;
+        } else {
+            if self.items.len() == self.items.capacity() {
+                let step = self.capacity.div_ceil(Self::GROWTH_STEPS);
+                self.items.reserve_exact((self.capacity - slot as u64).min(step) as usize);
+            }
+            self.items.push(item);
+        }
+    }
+
+    pub fn bytes(&self) -> usize {
+        self.items.capacity() * size_of::<T>()
+    }
+}
+
+/// The values of one channel.
+#[derive(Clone, Debug)]
+pub struct Series {
+    values: Ring<f64>,
+    levels: Vec<Ring<Extrema>>,
+}
+
+impl Series {
+    /// `capacity` is a multiple of [`LONGEST_BLOCK`].
+    pub fn new(capacity: u64) -> Self {
+        debug_assert_eq!(capacity % LONGEST_BLOCK, 0);
+        let levels = (1..=LEVELS).map(|level| Ring::new(capacity / FACTOR.pow(level))).collect();
+        Self { values: Ring::new(capacity), levels }
+    }
+
+    /// Writes the next row. An infinite value counts as not read.
+    pub fn push(&mut self, row: u64, value: f64) {
+        let value = if value.is_infinite() { NOT_READ } else { value };
+        self.values.set(row, value);
+        let mut block_rows = 1;
+        for level in &mut self.levels {
+            block_rows *= FACTOR;
+            let block = row / block_rows;
+            let starts_here = row.is_multiple_of(block_rows);
+            let mut extrema = if starts_here { Extrema::NONE } else { level.get(block) };
+            extrema.add(value);
+            level.set(block, extrema);
+        }
+    }
+
+    /// The value of a row still kept: a number, [`NOT_READ`] or [`GAP`].
+    pub fn value(&self, row: u64) -> f64 {
+        self.values.get(row)
+    }
+
+    /// Extrema of `rows`, all of them still kept.
+    ///
+    /// A block is used only when `rows` covers it whole, so neither the newest block (still filling) nor the
+    /// oldest (partly overwritten) can leak rows that are outside.
+    pub fn extrema(&self, rows: Range<u64>) -> Extrema {
+        let mut found = Extrema::NONE;
+        let mut row = rows.start;
+        while row < rows.end {
+            let level = self.longest_level_at(row, rows.end);
+            match level {
+                0 => found.add(self.values.get(row)),
+                _ => found.merge(&self.levels[level as usize - 1].get(row / FACTOR.pow(level))),
+            }
+            row += FACTOR.pow(level);
+        }
+        found
+    }
+
+    /// The newest number at or before `row`, at most `reach` rows back; none if data was lost in between.
+    pub fn last_number(&self, rows: Range<u64>) -> Option<(u64, f64)> {
+        let mut back = rows.rev().map(|row| (row, self.value(row)));
+        back.find(|(_, value)| !value.is_nan() || is_gap(*value)).filter(|(_, value)| !value.is_nan())
+    }
+
+    /// The oldest number in `rows`; none if data was lost before it.
+    pub fn first_number(&self, rows: Range<u64>) -> Option<(u64, f64)> {
+        let mut ahead = rows.map(|row| (row, self.value(row)));
+        ahead.find(|(_, value)| !value.is_nan() || is_gap(*value)).filter(|(_, value)| !value.is_nan())
+    }
+
+    pub fn bytes(&self) -> usize {
+        self.values.bytes() + self.levels.iter().map(Ring::bytes).sum::<usize>()
+    }
+
+    fn longest_level_at(&self, row: u64, end: u64) -> u32 {
+        let mut level = 0;
+        while level < LEVELS {
+            let rows = FACTOR.pow(level + 1);
+            if !row.is_multiple_of(rows) || row + rows > end {
+                break;
+            }
+            level += 1;
+        }
+        level
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn brute(values: &[f64], rows: Range<u64>) -> Extrema {
+        let mut found = Extrema::NONE;
+        values[rows.start as usize..rows.end as usize].iter().for_each(|value| found.add(*value));
+        found
+    }
+
+    fn any_value() -> impl Strategy<Value = f64> {
+        prop_oneof![8 => -1e9..1e9f64, 1 => Just(NOT_READ), 1 => Just(GAP)]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+        #[test]
+        fn extrema_of_any_stretch_equal_a_plain_walk(
+            values in prop::collection::vec(any_value(), 1..6000),
+            skip in 0u64..5000,
+            cuts in prop::collection::vec((0.0..1.0f64, 0.0..1.0f64), 20),
+        ) {
+            // Rows before `skip` were overwritten long ago: the ring has gone round at least once.
+            let capacity = 2 * LONGEST_BLOCK;
+            let mut series = Series::new(capacity);
+            let all: Vec<f64> = (0..skip).map(|row| -(row as f64)).chain(values).collect();
+            for (row, value) in all.iter().enumerate() {
+                series.push(row as u64, *value);
+            }
+            let end = all.len() as u64;
+            let kept = end.saturating_sub(capacity)..end;
+            for (a, b) in cuts {
+                let span = (kept.end - kept.start) as f64;
+                let (a, b) = ((a * span) as u64 + kept.start, (b * span) as u64 + kept.start);
+                let rows = a.min(b)..a.max(b) + 1;
+                prop_assert_eq!(series.extrema(rows.clone()), brute(&all, rows));
+            }
+        }
+    }
+
+    #[test]
+    fn a_single_spike_in_a_long_stretch_is_found() {
+        let mut series = Series::new(16 * LONGEST_BLOCK);
+        for row in 0..50_000 {
+            series.push(row, if row == 31_234 { 9.0 } else { 0.5 });
+        }
+        assert_eq!(series.extrema(0..50_000), Extrema { min: 0.5, max: 9.0, gap: false });
+        assert_eq!(series.extrema(31_235..50_000).max, 0.5);
+    }
+
+    #[test]
+    fn a_gap_is_told_apart_from_a_value_that_was_not_read() {
+        let mut series = Series::new(LONGEST_BLOCK);
+        for (row, value) in [1.0, NOT_READ, 3.0, GAP, NOT_READ].into_iter().enumerate() {
+            series.push(row as u64, value);
+        }
+        assert_eq!(series.extrema(0..3), Extrema { min: 1.0, max: 3.0, gap: false });
+        assert!(series.extrema(2..4).gap);
+        assert!(series.extrema(4..5).is_empty());
+        assert_eq!(series.last_number(0..3), Some((2, 3.0)));
+        assert_eq!(series.last_number(0..5), None);
+        assert_eq!(series.first_number(1..3), Some((2, 3.0)));
+    }
+
+    #[test]
+    fn an_infinite_value_counts_as_not_read() {
+        let mut series = Series::new(LONGEST_BLOCK);
+        series.push(0, f64::INFINITY);
+        assert_eq!(series.extrema(0..1), Extrema::NONE);
+    }
+}
