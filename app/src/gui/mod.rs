@@ -1,4 +1,7 @@
 //! The window.
-#![allow(missing_docs, reason = "the window is no library: only the program and its own tests see these items")]
+#![allow(
+    missing_docs,
+    reason = "the window is no library: only the program and its own tests see these items"
+)]
 
 pub mod graph;
