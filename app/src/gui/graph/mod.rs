@@ -8,4 +8,4 @@ pub mod series;
 pub mod trace;
 
 pub use history::History;
-pub use trace::{Columns, Trace, View, trace};
+pub use trace::{Columns, Trace, View};

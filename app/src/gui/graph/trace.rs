@@ -67,6 +67,35 @@ pub struct Trace {
 }
 
 impl Trace {
+    /// The lines of one channel in the columns of a view.
+    pub fn of(history: &History, channel: usize, columns: &Columns) -> Self {
+        let series = history.channel(channel);
+        let mut trace = Self::default();
+        if let Some((row, value)) = series.last_number(columns.before()) {
+            trace.point(history.time_s(row), value);
+        }
+        for (column, bounds) in columns.bounds.windows(2).enumerate() {
+            let rows = bounds[0]..bounds[1];
+            if rows.end - rows.start <= 2 {
+                rows.for_each(|row| trace.sample(history.time_s(row), series.value(row)));
+            } else {
+                let extrema = series.extrema(rows);
+                if !extrema.is_empty() {
+                    trace.point(columns.middle_s(column), extrema.min);
+                    trace.point(columns.middle_s(column), extrema.max);
+                }
+                if extrema.gap {
+                    trace.break_line();
+                }
+            }
+        }
+        if let Some((row, value)) = series.first_number(columns.after()) {
+            trace.point(history.time_s(row), value);
+        }
+        trace.lines.retain(|line| !line.is_empty());
+        trace
+    }
+
     /// Points of all lines together.
     pub fn points(&self) -> usize {
         self.lines.iter().map(Vec::len).sum()
@@ -79,47 +108,18 @@ impl Trace {
         }
     }
 
+    fn sample(&mut self, time_s: f64, value: f64) {
+        if is_gap(value) {
+            self.break_line();
+        } else if !value.is_nan() {
+            self.point(time_s, value);
+        }
+    }
+
     fn break_line(&mut self) {
         if self.lines.last().is_some_and(|line| !line.is_empty()) {
             self.lines.push(Vec::new());
         }
-    }
-}
-
-/// The lines of one channel.
-pub fn trace(history: &History, channel: usize, columns: &Columns) -> Trace {
-    let series = history.channel(channel);
-    let mut trace = Trace::default();
-    if let Some((row, value)) = series.last_number(columns.before()) {
-        trace.point(history.time_s(row), value);
-    }
-    for (column, bounds) in columns.bounds.windows(2).enumerate() {
-        let rows = bounds[0]..bounds[1];
-        if rows.end - rows.start <= 2 {
-            rows.for_each(|row| sample(&mut trace, history.time_s(row), series.value(row)));
-        } else {
-            let extrema = series.extrema(rows);
-            if !extrema.is_empty() {
-                trace.point(columns.middle_s(column), extrema.min);
-                trace.point(columns.middle_s(column), extrema.max);
-            }
-            if extrema.gap {
-                trace.break_line();
-            }
-        }
-    }
-    if let Some((row, value)) = series.first_number(columns.after()) {
-        trace.point(history.time_s(row), value);
-    }
-    trace.lines.retain(|line| !line.is_empty());
-    trace
-}
-
-fn sample(trace: &mut Trace, time_s: f64, value: f64) {
-    if is_gap(value) {
-        trace.break_line();
-    } else if !value.is_nan() {
-        trace.point(time_s, value);
     }
 }
 
@@ -169,7 +169,7 @@ mod tests {
             let (history, timed) = filled(&samples);
             let end = timed[timed.len() - 1].0;
             let view = View { start_s: from.min(to) * end, end_s: from.max(to) * end + 0.01, columns };
-            let trace = trace(&history, 0, &Columns::new(&history, &view));
+            let trace = Trace::of(&history, 0, &Columns::new(&history, &view));
             prop_assert!(trace.points() <= 2 * (columns + 1) + 2);
             let column_s = (view.end_s - view.start_s) / columns as f64;
             for (time_s, value) in timed {
@@ -185,7 +185,7 @@ mod tests {
         fn every_point_drawn_is_a_value_that_was_read(samples in samples(), columns in 1usize..200) {
             let (history, timed) = filled(&samples);
             let view = View { start_s: 0.0, end_s: timed[timed.len() - 1].0, columns };
-            let trace = trace(&history, 0, &Columns::new(&history, &view));
+            let trace = Trace::of(&history, 0, &Columns::new(&history, &view));
             for point in trace.lines.iter().flatten() {
                 prop_assert!(timed.iter().any(|(_, value)| *value == point[1]));
             }
@@ -198,7 +198,7 @@ mod tests {
             history.push(row as f64, &[*value]);
         }
         let view = View { start_s: 0.0, end_s: values.len() as f64, columns };
-        trace(&history, 0, &Columns::new(&history, &view))
+        Trace::of(&history, 0, &Columns::new(&history, &view))
     }
 
     #[test]
@@ -214,7 +214,7 @@ mod tests {
             history.push(f64::from(row), &[f64::from(row)]);
         }
         let view = View { start_s: 4.2, end_s: 4.8, columns: 100 };
-        let trace = trace(&history, 0, &Columns::new(&history, &view));
+        let trace = Trace::of(&history, 0, &Columns::new(&history, &view));
         assert_eq!(trace.lines, [vec![[4.0, 4.0], [5.0, 5.0]]]);
     }
 
@@ -226,7 +226,7 @@ mod tests {
         }
         let lines = |start_s: f64| {
             let view = View { start_s, end_s: start_s + 60.0, columns: 200 };
-            trace(&history, 0, &Columns::new(&history, &view)).lines[0].clone()
+            Trace::of(&history, 0, &Columns::new(&history, &view)).lines[0].clone()
         };
         let (before, after) = (lines(10.0), lines(10.1));
         assert_eq!(before[10..300], after[10..300]);
@@ -236,8 +236,8 @@ mod tests {
     fn an_empty_history_and_an_empty_view_draw_nothing() {
         let history = History::new(1, 100);
         let view = View { start_s: 0.0, end_s: 0.0, columns: 0 };
-        assert_eq!(trace(&history, 0, &Columns::new(&history, &view)), Trace::default());
+        assert_eq!(Trace::of(&history, 0, &Columns::new(&history, &view)), Trace::default());
         let view = View { start_s: -10.0, end_s: 0.0, columns: 10 };
-        assert_eq!(trace(&history, 0, &Columns::new(&history, &view)), Trace::default());
+        assert_eq!(Trace::of(&history, 0, &Columns::new(&history, &view)), Trace::default());
     }
 }
