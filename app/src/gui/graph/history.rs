@@ -1,7 +1,7 @@
 //! What was sampled since the link was opened: one row per sample, one [`Series`] per channel.
 //!
-//! Rows carry one time for all channels. A sample may leave channels out ([`NOT_READ`]); lost data is a row of
-//! [`GAP`]. The history keeps the newest [`Capacity`] of rows and knows nothing of pixels.
+//! Rows carry one time for all channels. A sample may leave channels out ([`super::series::NOT_READ`]); lost data is a row of
+//! [`GAP`]. The history keeps the newest rows, up to its capacity, and knows nothing of pixels.
 
 use std::ops::Range;
 

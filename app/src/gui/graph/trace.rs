@@ -60,7 +60,7 @@ impl Columns {
     }
 }
 
-/// Unbroken lines of `[time_s, value]`; between two of them data was lost.
+/// Unbroken lines, each point a time in seconds and a value; between two of them data was lost.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trace {
     pub lines: Vec<Vec<[f64; 2]>>,
