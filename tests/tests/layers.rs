@@ -8,20 +8,22 @@ use brushwork_tests::rust_source::{code_lines, without_tests};
 use brushwork_tests::workspace::{self, DependencyKind, Member, Metadata};
 
 /// The arrows that ship: a crate and the crates of this workspace it may use.
-const ARROWS: [(&str, &[&str]); 5] = [
+const ARROWS: [(&str, &[&str]); 6] = [
     ("brushwork", &["brushwork-link", "brushwork-protocol", "brushwork-sim"]),
+    ("brushwork-raster", &[]),
     ("brushwork-link", &["brushwork-protocol"]),
     ("brushwork-sim", &["brushwork-protocol"]),
     ("brushwork-protocol", &[]),
     ("brushwork-tests", &["brushwork", "brushwork-link", "brushwork-protocol", "brushwork-sim"]),
 ];
 
-/// Arrows for tests alone: the client is tried against the simulated controller.
-const TEST_ARROWS: [(&str, &[&str]); 1] = [("brushwork-link", &["brushwork-sim"])];
+/// Arrows for tests alone: the client is tried against the simulated controller, the window against its picture.
+const TEST_ARROWS: [(&str, &[&str]); 2] =
+    [("brushwork-link", &["brushwork-sim"]), ("brushwork", &["brushwork-raster"])];
 
 /// Crates from outside that one crate of ours may use, by the start of their name.
 const KEPT_TO: [(&str, &[&str]); 6] = [
-    ("egui", &["brushwork"]),
+    ("egui", &["brushwork", "brushwork-raster"]),
     ("eframe", &["brushwork"]),
     ("winit", &["brushwork"]),
     ("rfd", &["brushwork"]),
