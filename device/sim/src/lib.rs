@@ -2,3 +2,5 @@
 
 pub mod bridge;
 pub mod motion;
+pub mod settings;
+pub mod signals;
