@@ -5,3 +5,5 @@
 )]
 
 pub mod graph;
+pub mod theme;
+pub mod widgets;

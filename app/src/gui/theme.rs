@@ -1,0 +1,277 @@
+//! Colours, text sizes and spacing, in one place.
+//!
+//! Every colour of the window stands in a [`Palette`]. Status colours mean the same everywhere (green fine, yellow
+//! warning, red error) and are never the only sign: a word or a shape goes with each.
+
+use egui::{Color32, CornerRadius, FontFamily, FontId, Stroke, Style, TextStyle, Theme, Ui, Visuals, vec2};
+
+/// The window's colours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Palette {
+    /// Behind everything, and behind the graph.
+    pub ground: Color32,
+    /// Side, top and bottom panels.
+    pub panel: Color32,
+    /// Groups, lamps and fields that lie on a panel.
+    pub raised: Color32,
+    /// Separators and outlines.
+    pub line: Color32,
+    pub text: Color32,
+    /// Labels and units: there when looked for.
+    pub weak_text: Color32,
+    /// What was chosen, what has focus.
+    pub accent: Color32,
+    pub on_accent: Color32,
+    pub ok: Color32,
+    pub warning: Color32,
+    pub error: Color32,
+    /// The Stop button, and nothing else.
+    pub stop: Color32,
+    pub on_stop: Color32,
+    /// Lines of the graph; M1 in the first of each pair, M2 in the second.
+    pub traces: [Color32; 24],
+}
+
+const fn hex(rgb: u32) -> Color32 {
+    Color32::from_rgb((rgb >> 16) as u8, (rgb >> 8) as u8, rgb as u8)
+}
+
+const DARK: Palette = Palette {
+    ground: hex(0x17_19_1d),
+    panel: hex(0x1f_22_27),
+    raised: hex(0x2a_2e_35),
+    line: hex(0x3a_40_49),
+    text: hex(0xdf_e3_e9),
+    weak_text: hex(0x97_a1_ae),
+    accent: hex(0x4a_9d_f0),
+    on_accent: hex(0x0b_17_24),
+    ok: hex(0x45_c0_6b),
+    warning: hex(0xf0_b9_29),
+    error: hex(0xff_5d_57),
+    stop: hex(0xd4_2c_2c),
+    on_stop: Color32::WHITE,
+    traces: DARK_TRACES,
+};
+
+const LIGHT: Palette = Palette {
+    ground: hex(0xff_ff_ff),
+    panel: hex(0xf2_f4_f7),
+    raised: hex(0xe2_e6_ec),
+    line: hex(0xc3_ca_d4),
+    text: hex(0x1a_1f_27),
+    weak_text: hex(0x55_60_6e),
+    accent: hex(0x15_66_c0),
+    on_accent: Color32::WHITE,
+    ok: hex(0x17_86_3d),
+    warning: hex(0xa8_6a_00),
+    error: hex(0xc4_1c_1c),
+    stop: hex(0xc9_1f_1f),
+    on_stop: Color32::WHITE,
+    traces: LIGHT_TRACES,
+};
+
+/// Pairs of related hues: two motors of one quantity can be told apart and still belong together.
+const DARK_TRACES: [Color32; 24] = [
+    hex(0xf5_f5_f5),
+    hex(0xa9_b4_c2),
+    hex(0xff_c1_4d),
+    hex(0xff_8a_3d),
+    hex(0x5a_b8_ff),
+    hex(0x7c_88_ff),
+    hex(0x5f_dd_8a),
+    hex(0x1f_b5_a8),
+    hex(0xff_7a_9c),
+    hex(0xd9_6b_f2),
+    hex(0xd2_e0_4f),
+    hex(0x9f_8a_5c),
+    hex(0x8c_e8_e8),
+    hex(0xc8_a8_ff),
+    hex(0xff_a6_8c),
+    hex(0xc0_5a_5a),
+    hex(0x8f_b3_66),
+    hex(0x66_94_b3),
+    hex(0xb3_66_8f),
+    hex(0x80_80_b8),
+    hex(0xe0_c8_a0),
+    hex(0xa0_c8_e0),
+    hex(0xc8_e0_a0),
+    hex(0xe0_a0_c8),
+];
+
+const LIGHT_TRACES: [Color32; 24] = [
+    hex(0x22_22_22),
+    hex(0x77_80_8c),
+    hex(0xc9_82_00),
+    hex(0xd9_4f_04),
+    hex(0x0b_72_c9),
+    hex(0x45_4f_d8),
+    hex(0x12_8a_43),
+    hex(0x00_7f_76),
+    hex(0xd0_21_5a),
+    hex(0xa0_25_c0),
+    hex(0x7a_86_00),
+    hex(0x7a_5c_20),
+    hex(0x00_8a_9c),
+    hex(0x76_45_d0),
+    hex(0xc2_55_34),
+    hex(0x8f_2a_2a),
+    hex(0x4d_7a_1f),
+    hex(0x2a_5f_85),
+    hex(0x8a_2f_60),
+    hex(0x4a_4a_90),
+    hex(0x8a_6a_30),
+    hex(0x30_6a_8a),
+    hex(0x5a_7a_30),
+    hex(0x8a_30_6a),
+];
+
+impl Palette {
+    pub const fn of_theme(theme: Theme) -> &'static Self {
+        match theme {
+            Theme::Dark => &DARK,
+            Theme::Light => &LIGHT,
+        }
+    }
+
+    /// The palette `ui` is drawn with.
+    pub fn of(ui: &Ui) -> &'static Self {
+        if ui.visuals().dark_mode { &DARK } else { &LIGHT }
+    }
+}
+
+/// The name of the text style for live figures.
+pub fn figures() -> TextStyle {
+    TextStyle::Name("figures".into())
+}
+
+/// Sets both themes of `ctx`; which one is shown is [`egui::ThemePreference`]'s business.
+pub fn install(ctx: &egui::Context) {
+    for theme in [Theme::Dark, Theme::Light] {
+        ctx.style_mut_of(theme, |style| set(style, theme));
+    }
+}
+
+/// Cheaper drawing for software rendering: hard edges and no dithering.
+pub fn draw_plainly(ctx: &egui::Context, plainly: bool) {
+    ctx.tessellation_options_mut(|options| options.feathering = !plainly);
+}
+
+fn set(style: &mut Style, theme: Theme) {
+    let sizes = [
+        (TextStyle::Small, 11.0, FontFamily::Proportional),
+        (TextStyle::Body, 13.5, FontFamily::Proportional),
+        (TextStyle::Button, 13.5, FontFamily::Proportional),
+        (TextStyle::Heading, 18.0, FontFamily::Proportional),
+        (TextStyle::Monospace, 12.5, FontFamily::Monospace),
+        (figures(), 14.0, FontFamily::Monospace),
+    ];
+    style.text_styles = sizes.map(|(name, size, family)| (name, FontId::new(size, family))).into();
+    style.drag_value_text_style = figures();
+    style.spacing.item_spacing = vec2(8.0, 6.0);
+    style.spacing.button_padding = vec2(10.0, 4.0);
+    style.spacing.interact_size = vec2(40.0, 24.0);
+    style.spacing.icon_width = 16.0;
+    style.animation_time = 0.0;
+    style.visuals = visuals(theme);
+}
+
+fn visuals(theme: Theme) -> Visuals {
+    let palette = Palette::of_theme(theme);
+    let mut visuals = theme.default_visuals();
+    visuals.panel_fill = palette.panel;
+    visuals.window_fill = palette.panel;
+    visuals.window_stroke = Stroke::new(1.0, palette.line);
+    visuals.extreme_bg_color = palette.ground;
+    visuals.faint_bg_color = palette.raised;
+    visuals.weak_text_color = Some(palette.weak_text);
+    visuals.warn_fg_color = palette.warning;
+    visuals.error_fg_color = palette.error;
+    visuals.hyperlink_color = palette.accent;
+    visuals.selection.bg_fill = palette.accent;
+    visuals.selection.stroke = Stroke::new(1.0, palette.on_accent);
+    visuals.window_corner_radius = CornerRadius::same(6);
+    visuals.menu_corner_radius = CornerRadius::same(6);
+    let widgets = &mut visuals.widgets;
+    let all = [
+        &mut widgets.noninteractive,
+        &mut widgets.inactive,
+        &mut widgets.hovered,
+        &mut widgets.active,
+        &mut widgets.open,
+    ];
+    for widget in all {
+        widget.corner_radius = CornerRadius::same(4);
+        widget.fg_stroke = Stroke::new(1.0, palette.text);
+        widget.bg_stroke = Stroke::new(1.0, palette.line);
+        widget.bg_fill = palette.raised;
+        widget.weak_bg_fill = palette.raised;
+        widget.expansion = 0.0;
+    }
+    widgets.hovered.weak_bg_fill = palette.line;
+    widgets.hovered.bg_fill = palette.line;
+    widgets.hovered.bg_stroke = Stroke::new(1.0, palette.weak_text);
+    widgets.active.weak_bg_fill = palette.line;
+    widgets.active.bg_fill = palette.line;
+    // The ring round what has keyboard focus.
+    widgets.active.bg_stroke = Stroke::new(2.0, palette.accent);
+    widgets.open.bg_stroke = Stroke::new(1.0, palette.accent);
+    visuals
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Relative luminance, WCAG 2.
+    fn luminance(color: Color32) -> f64 {
+        let linear = |part: u8| {
+            let part = f64::from(part) / 255.0;
+            if part <= 0.040_45 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
+        };
+        0.2126 * linear(color.r()) + 0.7152 * linear(color.g()) + 0.0722 * linear(color.b())
+    }
+
+    fn contrast(a: Color32, b: Color32) -> f64 {
+        let (a, b) = (luminance(a), luminance(b));
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    #[test]
+    fn text_has_the_contrast_that_accessibility_rules_ask_for() {
+        for palette in [&DARK, &LIGHT] {
+            for back in [palette.ground, palette.panel, palette.raised] {
+                assert!(contrast(palette.text, back) >= 7.0, "text {:?} on {back:?}", palette.text);
+                assert!(contrast(palette.weak_text, back) >= 4.5, "weak {:?} on {back:?}", palette.weak_text);
+            }
+            assert!(contrast(palette.on_stop, palette.stop) >= 4.5);
+            assert!(contrast(palette.on_accent, palette.accent) >= 4.5);
+        }
+    }
+
+    #[test]
+    fn lamps_and_traces_stand_out_from_what_is_behind_them() {
+        for palette in [&DARK, &LIGHT] {
+            for color in [palette.ok, palette.warning, palette.error] {
+                for back in [palette.ground, palette.panel, palette.raised] {
+                    assert!(contrast(color, back) >= 3.0, "{color:?} on {back:?}");
+                }
+            }
+            for color in palette.traces {
+                assert!(
+                    contrast(color, palette.ground) >= 3.0,
+                    "{color:?}: {}",
+                    contrast(color, palette.ground)
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn no_two_traces_have_the_same_colour() {
+        for palette in [&DARK, &LIGHT] {
+            for (index, color) in palette.traces.iter().enumerate() {
+                assert!(!palette.traces[..index].contains(color), "{color:?} twice");
+            }
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! Widgets of our own: each draws one thing and knows nothing of controllers.
+
+pub mod lamp;
+pub mod numeric;
+pub mod readout;
+pub mod setpoint;
+pub mod stop;
+pub mod text_field;
+
+pub use lamp::LampState;
