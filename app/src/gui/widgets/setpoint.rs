@@ -63,9 +63,7 @@ impl Setpoint<'_> {
     fn rail_ui(&self, ui: &mut Ui, width: f32, value: &mut f64) -> Response {
         let (rect, response) = ui.allocate_exact_size(vec2(width, HEIGHT), Sense::click_and_drag());
         let rail = Rect::from_center_size(rect.center(), vec2(rect.width() - 2.0 * HANDLE_RADIUS, 6.0));
-        if let Some(pointer) =
-            response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on())
-        {
+        if let Some(pointer) = response.interact_pointer_pos() {
             response.request_focus();
             *value = self.value_at(pointer.x, &rail);
         }

@@ -1,0 +1,4 @@
+//! What the window's tests share.
+#![allow(dead_code, reason = "each test file uses its own part of this")]
+
+pub mod cpu;
