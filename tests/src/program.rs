@@ -1,0 +1,187 @@
+//! A program under test as a child process: started, watched line by line, signalled, and never left behind.
+//!
+//! Used for the built `brushwork` and for the foreign clients. Waiting always has a limit.
+
+use std::io::{BufRead, BufReader, Read, Write};
+use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// Lines that may wait unread before the child has to.
+const QUEUE_LINES: usize = 10_000;
+
+/// A running child whose output is read by two threads; killed when dropped.
+pub struct Program {
+    child: Child,
+    stdin: Option<ChildStdin>,
+    stdout: Receiver<String>,
+    stderr: Receiver<String>,
+    seen: Vec<String>,
+}
+
+/// How a program ended and what it had printed.
+#[derive(Debug)]
+pub struct Ending {
+    /// Exit code or signal.
+    pub status: ExitStatus,
+    /// Every line of standard output.
+    pub stdout: Vec<String>,
+    /// Every line of standard error.
+    pub stderr: Vec<String>,
+}
+
+impl Program {
+    /// Starts `executable` with its three streams connected to the test.
+    #[must_use]
+    pub fn start<S: AsRef<str>>(executable: &str, arguments: &[S]) -> Self {
+        let mut command = Command::new(executable);
+        command.args(arguments.iter().map(AsRef::as_ref));
+        Self::spawn(command)
+    }
+
+    /// Starts a prepared command with its three streams connected to the test.
+    #[must_use]
+    pub fn spawn(mut command: Command) -> Self {
+        let mut child = command
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap_or_else(|error| panic!("{command:?}: {error}"));
+        let stdin = child.stdin.take();
+        let stdout = read_lines("stdout", child.stdout.take().expect("stdout is piped"));
+        let stderr = read_lines("stderr", child.stderr.take().expect("stderr is piped"));
+        Self { child, stdin, stdout, stderr, seen: Vec::new() }
+    }
+
+    /// The next line of standard output, or none when the program closed it.
+    ///
+    /// # Panics
+    /// When nothing comes within `limit`.
+    pub fn next_line(&mut self, limit: Duration) -> Option<String> {
+        match self.stdout.recv_timeout(limit) {
+            Ok(line) => {
+                self.seen.push(line.clone());
+                Some(line)
+            }
+            Err(RecvTimeoutError::Disconnected) => None,
+            Err(RecvTimeoutError::Timeout) => {
+                panic!(
+                    "no line within {limit:?}; before: {:#?}; stderr: {:#?}",
+                    self.seen,
+                    drain(&self.stderr)
+                )
+            }
+        }
+    }
+
+    /// Reads on until a line of standard output contains `words`, and returns it.
+    ///
+    /// # Panics
+    /// When the program closes its output or `limit` passes first.
+    pub fn wait_for(&mut self, words: &str, limit: Duration) -> String {
+        let deadline = Instant::now() + limit;
+        loop {
+            let left = deadline.saturating_duration_since(Instant::now());
+            match self.next_line(left) {
+                Some(line) if line.contains(words) => return line,
+                Some(_) => {}
+                None => panic!(
+                    "ended without `{words}`; printed {:#?}; stderr: {:#?}",
+                    self.seen,
+                    drain(&self.stderr)
+                ),
+            }
+        }
+    }
+
+    /// Writes one line to standard input.
+    ///
+    /// # Panics
+    /// When the program no longer reads.
+    pub fn say(&mut self, line: &str) {
+        let stdin = self.stdin.as_mut().expect("stdin is open until the program is waited for");
+        writeln!(stdin, "{line}").and_then(|()| stdin.flush()).expect("the program reads its input");
+    }
+
+    /// Sends a signal by its short name: `INT`, `TERM`, `HUP`, `KILL`.
+    pub fn signal(&self, name: &str) {
+        let status = Command::new("kill").arg(format!("-{name}")).arg(self.child.id().to_string()).status();
+        assert!(status.is_ok_and(|status| status.success()), "kill -{name} {} failed", self.child.id());
+    }
+
+    /// The process number.
+    #[must_use]
+    pub fn id(&self) -> u32 {
+        self.child.id()
+    }
+
+    /// Whether the program is still running.
+    pub fn is_running(&mut self) -> bool {
+        matches!(self.child.try_wait(), Ok(None))
+    }
+
+    /// Waits for the end.
+    ///
+    /// # Panics
+    /// When the program is still running after `limit`; it is killed then.
+    pub fn finish(mut self, limit: Duration) -> Ending {
+        self.stdin = None;
+        let deadline = Instant::now() + limit;
+        loop {
+            if let Ok(Some(status)) = self.child.try_wait() {
+                let mut stdout = std::mem::take(&mut self.seen);
+                stdout.extend(drain_to_end(&self.stdout));
+                return Ending { status, stdout, stderr: drain_to_end(&self.stderr) };
+            }
+            assert!(
+                Instant::now() < deadline,
+                "still running after {limit:?}; printed {:#?}; stderr {:#?}",
+                self.seen,
+                drain(&self.stderr)
+            );
+            thread::sleep(Duration::from_millis(5));
+        }
+    }
+}
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        if self.is_running() {
+            self.child.kill().ok();
+            self.child.wait().ok();
+        }
+    }
+}
+
+fn read_lines(name: &str, stream: impl Read + Send + 'static) -> Receiver<String> {
+    let (sender, receiver) = sync_channel(QUEUE_LINES);
+    thread::Builder::new()
+        .name(format!("read {name}"))
+        .spawn(move || forward_lines(stream, &sender))
+        .expect("a test may start a thread");
+    receiver
+}
+
+fn forward_lines(stream: impl Read, sender: &SyncSender<String>) {
+    for line in BufReader::new(stream).lines() {
+        let Ok(line) = line else { return };
+        if sender.send(line).is_err() {
+            return;
+        }
+    }
+}
+
+fn drain(lines: &Receiver<String>) -> Vec<String> {
+    lines.try_iter().collect()
+}
+
+/// What is left when the program has ended; a grandchild that holds the pipe open must not hang the test.
+fn drain_to_end(lines: &Receiver<String>) -> Vec<String> {
+    let mut left = Vec::new();
+    while let Ok(line) = lines.recv_timeout(Duration::from_secs(1)) {
+        left.push(line);
+    }
+    left
+}
