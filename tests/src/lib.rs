@@ -5,4 +5,5 @@
 
 pub mod program;
 pub mod rust_source;
+pub mod truth;
 pub mod workspace;
