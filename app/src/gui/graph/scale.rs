@@ -1,0 +1,135 @@
+//! A channel's own vertical scale: eight divisions between round numbers.
+//!
+//! A scale grows by itself when a value does not fit and shrinks only when asked to fit, so that a live picture
+//! does not jump. It grows to the next round number: 1, 2 or 5 times a power of ten.
+
+/// Horizontal lines of the grid, less one.
+pub const DIVISIONS: usize = 8;
+
+/// What the bottom and the top of the graph stand for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    pub low: f64,
+    pub high: f64,
+}
+
+impl Scale {
+    /// From `-reach` to `reach`, for values with a sign.
+    pub const fn around_zero(reach: f64) -> Self {
+        Self { low: -reach, high: reach }
+    }
+
+    /// From zero to `reach`.
+    pub const fn from_zero(reach: f64) -> Self {
+        Self { low: 0.0, high: reach }
+    }
+
+    /// Grows until `value` fits.
+    pub fn include(&mut self, value: f64) {
+        if !value.is_finite() || (self.low..=self.high).contains(&value) {
+            return;
+        }
+        let around_zero = self.low == -self.high;
+        if around_zero {
+            *self = Self::around_zero(round_up(value.abs()));
+        } else if self.low == 0.0 && value > 0.0 {
+            self.high = round_up(value);
+        } else {
+            *self = Self::fitting(self.low.min(value), self.high.max(value), 0.0);
+        }
+    }
+
+    /// The tightest scale that holds `min` and `max` in round divisions, none smaller than `least_division`.
+    pub fn fitting(min: f64, max: f64, least_division: f64) -> Self {
+        let divisions = DIVISIONS as f64;
+        // Far from zero a division also has to be more than the rounding of the figures themselves.
+        let least = least_division.max(max.abs().max(min.abs()) * 1e-9);
+        let mut division = round_up(((max - min) / divisions).max(least));
+        loop {
+            let low = (min / division).floor() * division;
+            let spare = ((low + division * divisions - max) / division).floor();
+            if spare >= 0.0 || !division.is_finite() {
+                let low = low - (spare / 2.0).floor() * division;
+                return Self { low, high: low + division * divisions };
+            }
+            division = round_up(division * 1.01);
+        }
+    }
+
+    /// Where `value` lies: 0 at the bottom, 1 at the top.
+    pub fn part(&self, value: f64) -> f64 {
+        (value - self.low) / (self.high - self.low)
+    }
+
+    /// The value at `part` of the height.
+    pub fn value(&self, part: f64) -> f64 {
+        self.low + part * (self.high - self.low)
+    }
+
+    /// Digits after the point that the labels of the divisions need.
+    pub fn decimals(&self) -> usize {
+        let division = (self.high - self.low).abs() / DIVISIONS as f64;
+        let is_whole = |digits: usize| {
+            let shifted = division * 10f64.powi(digits as i32);
+            (shifted - shifted.round()).abs() < 1e-6 * shifted.max(1.0)
+        };
+        (0..5).find(|digits| is_whole(*digits)).unwrap_or(5)
+    }
+}
+
+/// The next 1, 2 or 5 times a power of ten that is at least `value`.
+fn round_up(value: f64) -> f64 {
+    let power = 10f64.powf(value.log10().floor());
+    let steps = [1.0, 2.0, 5.0, 10.0].into_iter().map(|step| step * power);
+    steps.into_iter().find(|step| *step >= value * (1.0 - 1e-9)).unwrap_or(10.0 * power)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn a_scale_grows_to_the_next_round_number_and_does_not_shrink() {
+        let mut scale = Scale::around_zero(1000.0);
+        scale.include(-1234.0);
+        assert_eq!(scale, Scale::around_zero(2000.0));
+        scale.include(3.0);
+        assert_eq!(scale, Scale::around_zero(2000.0));
+        let mut volts = Scale::from_zero(20.0);
+        volts.include(24.1);
+        assert_eq!(volts, Scale::from_zero(50.0));
+    }
+
+    #[test]
+    fn a_value_below_zero_on_a_scale_from_zero_still_fits() {
+        let mut amps = Scale::from_zero(10.0);
+        amps.include(-3.0);
+        assert!(amps.low <= -3.0 && amps.high >= 10.0, "{amps:?}");
+    }
+
+    #[test]
+    fn labels_have_the_digits_they_need_and_no_more() {
+        assert_eq!(Scale::around_zero(100.0).decimals(), 0);
+        assert_eq!(Scale::from_zero(1.0).decimals(), 3);
+        assert_eq!(Scale::from_zero(20.0).decimals(), 1);
+    }
+
+    proptest! {
+        #[test]
+        fn fitting_holds_both_ends_in_eight_round_divisions(a in -1e7..1e7f64, b in -1e7..1e7f64) {
+            let (min, max) = (a.min(b), a.max(b));
+            let scale = Scale::fitting(min, max, 0.001);
+            prop_assert!(scale.low <= min && max <= scale.high, "{scale:?} for {min}..{max}");
+            let division = (scale.high - scale.low) / DIVISIONS as f64;
+            prop_assert!((round_up(division) / division - 1.0).abs() < 1e-6, "{division}");
+        }
+
+        #[test]
+        fn a_flat_line_gets_a_scale_too(value in -1e6..1e6f64) {
+            let scale = Scale::fitting(value, value, 0.001);
+            prop_assert!(scale.low <= value && value <= scale.high && scale.low < scale.high);
+        }
+    }
+}
