@@ -1,7 +1,9 @@
+//! Simulated motor controllers and the machines they drive: deterministic, with their own clock, free of IO at the core.
 //! See `ARCHITECTURE.md`.
 
 pub mod bridge;
 pub mod motion;
+pub mod plant;
 pub mod priority;
 pub mod settings;
 pub mod signals;

@@ -1,0 +1,43 @@
+//! The machine a controller drives: motors, gears, loads, encoders, the supply and the board's temperature.
+//!
+//! Everything here is in SI units and advances by the step it is told; there is no clock, no IO and no firmware. What a person
+//! can do to the machine while it runs (load, faults, switches) stands in [`crate::world`].
+//!
+//! Each stretch of motion is linear between two events (a shaft that sticks, teeth that meet, a travel stop), so each step uses
+//! the exact solution of the linear equations over the step, and only friction and the events are treated step by step. That
+//! makes the step stable for any winding, inertia or spring, and cheap enough for two axes at many hundred times real time.
+
+mod axis;
+mod board;
+mod encoder;
+mod friction;
+mod linear;
+mod noise;
+mod params;
+mod rigid;
+mod supply;
+mod travel;
+mod two_mass;
+
+pub use axis::{Axis, AxisPower, AxisTruth};
+pub use board::{Board, BoardParams};
+pub use encoder::{ABSOLUTE_FULL_SCALE_VOLTS, ABSOLUTE_MAX_COUNTS, EncoderReading};
+pub use params::{
+    AxisParams, CouplingParams, CurrentSensorParams, Datasheet, EncoderKind, EncoderParams, FrictionParams,
+    GearParams, LoadParams, MotorParams, ParamsError, ShaftSide, StopKind, TravelParams,
+};
+pub use supply::{BrakeResistorParams, ClampDrive, Supply, SupplyParams};
+
+/// Longest step of the plant in seconds. A control tick is cut into equal steps no longer than this: ten at 300 Hz, five at
+/// 625 Hz. Electrical and mechanical motion is exact at any step; this one is set by how finely friction, teeth and stops are
+/// to be followed.
+pub const MAX_STEP_S: f64 = 1.0 / 3000.0;
+
+/// How many equal steps of at most [`MAX_STEP_S`] cover `dt_s`, and how long each is. A stretch of no length takes no step.
+pub(crate) fn substeps(dt_s: f64) -> (usize, f64) {
+    if dt_s.is_nan() || dt_s <= 0.0 {
+        return (0, 0.0);
+    }
+    let steps = (dt_s / MAX_STEP_S - 1e-6).ceil().max(1.0);
+    (steps as usize, dt_s / steps)
+}

@@ -1,0 +1,174 @@
+//! What a person, a panel, a fault script or a test can do to a world.
+
+use super::World;
+use super::pins::{PinSignal, SwitchKind};
+use brushwork_protocol::packet_serial::Motor;
+use serde::{Deserialize, Serialize};
+
+/// One thing done to the world.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "action", rename_all = "snake_case", deny_unknown_fields)]
+pub enum WorldAction {
+    /// Torque that pulls an output shaft towards lower positions.
+    SetLoadTorque {
+        /// Whose shaft.
+        motor: Motor,
+        /// Torque; negative pulls upwards.
+        newton_metres: f64,
+    },
+    /// Main voltage without load.
+    SetBatteryVolts {
+        /// Voltage, 0 or more.
+        volts: f64,
+    },
+    /// Resistance of battery and leads; a high one makes the voltage sag under load.
+    SetBatteryOhms {
+        /// Resistance, 0 or more.
+        ohms: f64,
+    },
+    /// Whether the main supply takes regenerated current: a battery does, most power supplies do not.
+    SetBatterySinks {
+        /// Takes it.
+        can_sink: bool,
+    },
+    /// The main battery's contactor. The logic stays alive where a logic battery is connected.
+    ConnectBattery {
+        /// Closed.
+        connected: bool,
+    },
+    /// Logic voltage; 0 means none connected.
+    SetLogicVolts {
+        /// Voltage, 0 or more.
+        volts: f64,
+    },
+    /// What is connected to an input pin.
+    SetPin {
+        /// The pin, counted from 0.
+        pin: usize,
+        /// What is on it.
+        signal: PinSignal,
+    },
+    /// Holds a limit or home switch closed, or lets it follow the axis again.
+    HoldSwitch {
+        /// Whose switch.
+        motor: Motor,
+        /// Which switch.
+        switch: SwitchKind,
+        /// Held closed.
+        closed: bool,
+    },
+    /// The E-stop button.
+    EStop {
+        /// Pressed.
+        pressed: bool,
+    },
+    /// Encoder leads A and B changed round.
+    ReverseEncoder {
+        /// Whose encoder.
+        motor: Motor,
+        /// Changed round.
+        on: bool,
+    },
+    /// Encoder plug out.
+    LoseEncoder {
+        /// Whose encoder.
+        motor: Motor,
+        /// Out.
+        on: bool,
+    },
+    /// Noise on an encoder.
+    SetEncoderNoise {
+        /// Whose encoder.
+        motor: Motor,
+        /// Standard deviation of each reading; 0 for none.
+        counts: f64,
+    },
+    /// The two encoder plugs changed round.
+    SwapEncoders {
+        /// Changed round.
+        on: bool,
+    },
+    /// The motor shaft held fast.
+    LockShaft {
+        /// Whose shaft.
+        motor: Motor,
+        /// Held.
+        on: bool,
+    },
+    /// A motor lead off.
+    OpenLead {
+        /// Whose lead.
+        motor: Motor,
+        /// Off.
+        on: bool,
+    },
+    /// Motor leads changed round.
+    ReverseLeads {
+        /// Whose leads.
+        motor: Motor,
+        /// Changed round.
+        on: bool,
+    },
+    /// Holds the board at a temperature.
+    SetBoardCelsius {
+        /// The temperature; `None` lets the board follow its losses again.
+        celsius: Option<f64>,
+    },
+    /// Power of the whole unit, main and logic.
+    Power {
+        /// On.
+        on: bool,
+    },
+    /// The cable between unit and host.
+    Unplug {
+        /// Out.
+        unplugged: bool,
+    },
+    /// A setting of the controller that has no public wire form. The world passes it by; the controller takes it.
+    SetHidden {
+        /// The setting's key, as in the settings table.
+        key: String,
+        /// Its raw value.
+        value: i64,
+    },
+}
+
+impl World {
+    /// Does one thing to the world. Figures that make no sense (negative resistance, not a number) are taken as 0.
+    pub fn apply(&mut self, action: &WorldAction) {
+        match *action {
+            WorldAction::SetLoadTorque { motor, newton_metres } => {
+                self.axes[motor.index()].set_load_torque(finite(newton_metres));
+            }
+            WorldAction::SetBatteryVolts { volts } => {
+                self.supply.params.open_circuit_volts = finite(volts).max(0.0);
+            }
+            WorldAction::SetBatteryOhms { ohms } => self.supply.params.internal_ohms = finite(ohms).max(0.0),
+            WorldAction::SetBatterySinks { can_sink } => self.supply.params.can_sink = can_sink,
+            WorldAction::ConnectBattery { connected } => self.supply.connected = connected,
+            WorldAction::SetLogicVolts { volts } => {
+                self.supply.params.logic_volts = finite(volts).max(0.0);
+            }
+            WorldAction::SetPin { pin, signal } => self.pins.set(pin, signal),
+            WorldAction::HoldSwitch { motor, switch, closed } => self.pins.hold(motor, switch, closed),
+            WorldAction::EStop { pressed } => self.estop_pressed = pressed,
+            WorldAction::ReverseEncoder { motor, on } => self.axes[motor.index()].reverse_encoder(on),
+            WorldAction::LoseEncoder { motor, on } => self.axes[motor.index()].lose_encoder(on),
+            WorldAction::SetEncoderNoise { motor, counts } => {
+                self.axes[motor.index()].set_encoder_noise(finite(counts).max(0.0));
+            }
+            WorldAction::SwapEncoders { on } => self.encoders_swapped = on,
+            WorldAction::LockShaft { motor, on } => self.axes[motor.index()].lock_shaft(on),
+            WorldAction::OpenLead { motor, on } => self.axes[motor.index()].open_lead(on),
+            WorldAction::ReverseLeads { motor, on } => self.axes[motor.index()].reverse_leads(on),
+            WorldAction::SetBoardCelsius { celsius } => self.board.force_celsius(celsius.map(finite)),
+            WorldAction::Power { on } => self.powered = on,
+            WorldAction::Unplug { unplugged } => self.plugged = !unplugged,
+            WorldAction::SetHidden { .. } => {}
+        }
+    }
+}
+
+fn finite(figure: f64) -> f64 {
+    if figure.is_finite() { figure } else { 0.0 }
+}

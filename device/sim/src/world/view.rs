@@ -1,0 +1,103 @@
+//! A snapshot of a world, for a panel and for tests that compare what the controller says with what is so.
+
+use super::World;
+use super::pins::{PinSignal, SwitchKind};
+use crate::bridge::BridgeOutput;
+use crate::plant::AxisTruth;
+use brushwork_protocol::packet_serial::Motor;
+use serde::Serialize;
+use std::time::Duration;
+
+/// A world at one moment.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WorldView {
+    /// The machine's time.
+    pub now: Duration,
+    /// Whether the unit has power.
+    pub powered: bool,
+    /// Whether the cable to the host is in.
+    pub plugged: bool,
+    /// Whether the E-stop is pressed.
+    pub estop_pressed: bool,
+    /// Both axes.
+    pub axes: [AxisView; 2],
+    /// Whether the encoder plugs are changed round.
+    pub encoders_swapped: bool,
+    /// Voltage across the main terminals.
+    pub bus_volts: f64,
+    /// Main voltage without load.
+    pub battery_volts: f64,
+    /// Resistance of battery and leads.
+    pub battery_ohms: f64,
+    /// Current out of the battery; negative while it is charged.
+    pub battery_amps: f64,
+    /// Whether the battery takes current back.
+    pub battery_sinks: bool,
+    /// Whether the main battery is connected.
+    pub battery_connected: bool,
+    /// Logic voltage; 0 where none is connected.
+    pub logic_volts: f64,
+    /// Energy the motors have given back to the link so far.
+    pub regenerated_joules: f64,
+    /// Whether there is a brake resistor.
+    pub has_brake_resistor: bool,
+    /// Whether the brake resistor is across the link.
+    pub clamp_closed: bool,
+    /// Temperature at the two sensors.
+    pub board_celsius: [f64; 2],
+    /// What is on each input pin, switches included.
+    pub pins: Vec<PinSignal>,
+}
+
+/// One axis at one moment.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct AxisView {
+    /// Motion, current and faults.
+    pub truth: AxisTruth,
+    /// What the bridge does.
+    pub output: BridgeOutput,
+    /// What the axis' own encoder would read without noise, wherever it is plugged in.
+    pub encoder_counts: i64,
+    /// Which switches are closed: forward, backward, home.
+    pub switches_closed: [bool; 3],
+}
+
+impl World {
+    /// A snapshot; `now` is the time it is said to be from. Looking changes nothing, not even the noise.
+    pub fn view(&self, now: Duration) -> WorldView {
+        let positions = self.axes.each_ref().map(|axis| axis.state().load_radians);
+        let pins = (0..self.pins.signals().len())
+            .map(|pin| self.pins.signal(pin, positions, self.estop_pressed))
+            .collect();
+        WorldView {
+            now,
+            powered: self.powered,
+            plugged: self.plugged,
+            estop_pressed: self.estop_pressed,
+            axes: Motor::BOTH.map(|motor| self.axis_view(motor)),
+            encoders_swapped: self.encoders_swapped,
+            bus_volts: self.supply.bus_volts(),
+            battery_volts: self.supply.params.open_circuit_volts,
+            battery_ohms: self.supply.params.internal_ohms,
+            battery_amps: self.supply.battery_amps(),
+            battery_sinks: self.supply.params.can_sink,
+            battery_connected: self.supply.connected,
+            logic_volts: self.supply.params.logic_volts,
+            regenerated_joules: self.supply.regenerated_joules(),
+            has_brake_resistor: self.supply.params.brake_resistor.is_some(),
+            clamp_closed: self.supply.clamp_closed(),
+            board_celsius: self.board.celsius(),
+            pins,
+        }
+    }
+
+    fn axis_view(&self, motor: Motor) -> AxisView {
+        let axis = &self.axes[motor.index()];
+        AxisView {
+            truth: axis.state(),
+            output: self.outputs[motor.index()],
+            encoder_counts: axis.quiet_encoder().counts,
+            switches_closed: SwitchKind::ALL.map(|kind| self.switch_closed(motor, kind)),
+        }
+    }
+}
