@@ -8,3 +8,4 @@ pub mod priority;
 pub mod settings;
 pub mod signals;
 pub mod supervision;
+pub mod world;

@@ -165,7 +165,6 @@ impl Rigid {
 
     fn stop_at_end(&mut self) {
         if let Some(load_radians) = self.travel.beyond_hard_stop(self.load_radians()) {
-            // The product may round to just inside the stop; the shaft then touches it again within a step.
             self.motor_radians = load_radians * self.ratio;
             self.motor_radians_per_second = 0.0;
         }

@@ -2,6 +2,9 @@
 
 use super::params::{StopKind, TravelParams};
 
+/// A shaft this close to a hard stop rests on it; covers the rounding between motor and output angles.
+const TOUCH_RADIANS: f64 = 1e-9;
+
 /// The stops of one axis, or none.
 #[derive(Clone, Copy, Debug)]
 pub struct Travel(Option<TravelParams>);
@@ -15,7 +18,7 @@ impl Travel {
     pub fn on_hard_stop(&self, radians: f64) -> (bool, bool) {
         match self.0 {
             Some(TravelParams { lower_radians, upper_radians, stop: StopKind::Hard }) => {
-                (radians <= lower_radians, radians >= upper_radians)
+                (radians <= lower_radians + TOUCH_RADIANS, radians >= upper_radians - TOUCH_RADIANS)
             }
             _ => (false, false),
         }

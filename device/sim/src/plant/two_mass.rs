@@ -38,6 +38,7 @@ struct State {
     motor_speed: f64,
     load_speed: f64,
     motor_radians: f64,
+    load_radians: f64,
     /// Angle of the gear output ahead of the load.
     twist: f64,
     last_motor_newton_metres: f64,
@@ -122,7 +123,7 @@ impl TwoMass {
     }
 
     pub fn load_radians(&self) -> f64 {
-        self.load_angle(&self.state)
+        self.state.load_radians
     }
 
     pub fn load_radians_per_second(&self) -> f64 {
@@ -180,10 +181,9 @@ impl TwoMass {
             push.motor_newton_metres,
             push.load_newton_metres,
         ];
-        let load_radians = self.load_angle(&s);
         let free_load = dot(&map.load_speed, &x);
-        x[6] += self.travel.spring_torque(load_radians, free_load, map.load_speed[6], maps.dt_s);
-        let (held, rests) = self.hold(&s, load_radians, map, &x, push.locked);
+        x[6] += self.travel.spring_torque(s.load_radians, free_load, map.load_speed[6], maps.dt_s);
+        let (held, rests) = self.hold(&s, map, &x, push.locked);
         x[5] += held[0];
         x[6] += held[1];
         let motor_stays = rests[0] && s.motor_speed == 0.0;
@@ -199,28 +199,27 @@ impl TwoMass {
             motor_speed: if rests[0] { 0.0 } else { dot(&map.motor_speed, &x) },
             load_speed: if rests[1] { 0.0 } else { dot(&map.load_speed, &x) },
             motor_radians: s.motor_radians + turned,
+            load_radians: if load_stays {
+                s.load_radians
+            } else {
+                s.load_radians + turned / self.ratio - (twist - s.twist)
+            },
             twist,
             last_motor_newton_metres: x[5],
             last_load_newton_metres: x[6],
         };
-        if let Some(inside) = self.travel.beyond_hard_stop(self.load_angle(&next)) {
+        if let Some(inside) = self.travel.beyond_hard_stop(next.load_radians) {
+            next.load_radians = inside;
             next.twist = next.motor_radians / self.ratio - inside;
             next.load_speed = 0.0;
         }
         (next, dot(&map.coulombs, &x))
     }
 
-    fn hold(
-        &self,
-        s: &State,
-        load_radians: f64,
-        map: &StepMap,
-        x: &[f64; 7],
-        locked: bool,
-    ) -> ([f64; 2], [bool; 2]) {
+    fn hold(&self, s: &State, map: &StepMap, x: &[f64; 7], locked: bool) -> ([f64; 2], [bool; 2]) {
         let free = [dot(&map.motor_speed, x), dot(&map.load_speed, x)];
         let gain = [[map.motor_speed[5], map.motor_speed[6]], [map.load_speed[5], map.load_speed[6]]];
-        let (lower, upper) = self.travel.on_hard_stop(load_radians);
+        let (lower, upper) = self.travel.on_hard_stop(s.load_radians);
         let motor =
             if locked { (Bounds::LOCKED, Bounds::LOCKED) } else { self.motor_friction.bounds(s.motor_speed) };
         let load = self.load_friction.bounds(s.load_speed);
@@ -248,10 +247,6 @@ impl TwoMass {
         side(before) != side(after)
     }
 
-    fn load_angle(&self, s: &State) -> f64 {
-        s.motor_radians / self.ratio - s.twist
-    }
-
     fn learn(&mut self, dt_s: f64) {
         if self.whole.dt_s != dt_s {
             self.whole = self.model.maps(dt_s);
@@ -266,6 +261,7 @@ impl State {
         motor_speed: 0.0,
         load_speed: 0.0,
         motor_radians: 0.0,
+        load_radians: 0.0,
         twist: 0.0,
         last_motor_newton_metres: 0.0,
         last_load_newton_metres: 0.0,

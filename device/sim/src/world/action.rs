@@ -1,8 +1,8 @@
 //! What a person, a panel, a fault script or a test can do to a world.
 
+use super::Motor;
 use super::World;
 use super::pins::{PinSignal, SwitchKind};
-use brushwork_protocol::packet_serial::Motor;
 use serde::{Deserialize, Serialize};
 
 /// One thing done to the world.

@@ -5,10 +5,12 @@
 //! [`WorldAction`]s and looks at it through [`WorldView`]s. It knows nothing of bytes and settings.
 
 mod action;
+mod motor;
 mod pins;
 mod view;
 
 pub use action::WorldAction;
+pub use motor::Motor;
 pub use pins::{PinSignal, PinState, SWITCH_OPEN_VOLTS, SwitchKind, SwitchWiring, Wiring};
 pub use view::{AxisView, WorldView};
 
@@ -17,7 +19,6 @@ use crate::plant::{
     Axis, AxisParams, AxisTruth, Board, BoardParams, ClampDrive, EncoderReading, ParamsError, Supply,
     SupplyParams, substeps,
 };
-use brushwork_protocol::packet_serial::Motor;
 use pins::Pins;
 use serde::{Deserialize, Serialize};
 

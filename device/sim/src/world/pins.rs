@@ -1,7 +1,7 @@
 //! What is connected to the input pins: voltages, pulses, encoders, limit switches and the E-stop button.
 
+use super::Motor;
 use crate::plant::{EncoderKind, EncoderReading};
-use brushwork_protocol::packet_serial::Motor;
 use serde::{Deserialize, Serialize};
 
 /// Voltage of a pin whose switch is open: switches close to ground against a pull-up (MCP manual 1.5.5).

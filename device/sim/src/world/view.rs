@@ -1,10 +1,10 @@
 //! A snapshot of a world, for a panel and for tests that compare what the controller says with what is so.
 
+use super::Motor;
 use super::World;
 use super::pins::{PinSignal, SwitchKind};
 use crate::bridge::BridgeOutput;
 use crate::plant::AxisTruth;
-use brushwork_protocol::packet_serial::Motor;
 use serde::Serialize;
 use std::time::Duration;
 
