@@ -1,4 +1,13 @@
-//! See `ARCHITECTURE.md`.
+//! Pure codecs of the motor controllers' serial protocols: bytes in, values out, and back.
+//!
+//! Each protocol family is one module. A codec here knows both directions, since the simulated controllers read
+//! what the client writes. There is no port, no thread and no clock in this crate: where time matters (the 10 ms
+//! gap of packet serial) it comes in as a [`std::time::Duration`] since an epoch of the caller.
+//!
+//! Units stand in names (`_counts`, `_volts`, `_amps`). A value as it lies on the wire is called *raw*; the factor
+//! that turns it into a physical one stands in [`packet_serial::scale`] and nowhere else.
 
 pub mod codes;
+pub mod crc;
 pub mod models;
+pub mod packet_serial;

@@ -1,0 +1,30 @@
+//! Packet serial, the binary protocol of the MCP and RoboClaw controllers (MCP manual 2.2 to 2.4).
+//!
+//! A packet is an address byte (0x80 to 0x87), a command byte, arguments and, for writes, a CRC. A write is answered
+//! with one byte 0xFF; a read with its data and a CRC over address, command, arguments and data; anything wrong with
+//! silence. Replies have no length field: what a reply holds follows from the command and from the [`Generation`] of
+//! the firmware. All of that is data, in the one table [`COMMANDS`]; encoding, decoding, the simulator's acceptance,
+//! the traffic decoder and the reference page read it.
+//!
+//! Start at [`Command`] and [`Form`], then [`Request`] and [`parse_reply`] (a client) or [`encode_reply`]
+//! (a controller).
+
+mod command;
+mod encode;
+mod field;
+mod identity;
+pub mod number;
+mod parse;
+mod request;
+pub mod scale;
+mod table;
+mod value;
+
+pub use command::{ClientUse, Command, Direction, Effect, Form, Reply, Simulated};
+pub use encode::{ACK, EncodeError, encode_ack, encode_reply, encode_reply_named};
+pub use field::{Field, Kind, Unit};
+pub use identity::{Address, Generation, InvalidAddress, InvalidGeneration, Motor};
+pub use parse::{ReplyProgress, parse_reply};
+pub use request::Request;
+pub use table::{COMMANDS, lookup, lookup_key};
+pub use value::{Record, Value, Values};
