@@ -1,1 +1,12 @@
-//! See `ARCHITECTURE.md`.
+//! Everything between a port and a typed controller: transports, requests with deadlines, and the device thread.
+//!
+//! Units stand in names; times are durations since the epoch of the [`Clock`] in use. There is no window here
+//! and no simulator. See `ARCHITECTURE.md`.
+
+pub mod clock;
+pub mod failure;
+pub mod transport;
+
+pub use clock::{Clock, SystemClock, VirtualClock};
+pub use failure::Failure;
+pub use transport::{ConnectTarget, Stream, Transport, TransportError};

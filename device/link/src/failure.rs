@@ -1,0 +1,68 @@
+//! A failure as it is shown to the user: what was tried, on what, what came back, what to do.
+//!
+//! The typed errors of the layers below stay what programs match on; this is their last form.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// One failure as a sentence, kept in its parts so that a window can lay them out.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Failure {
+    /// What was tried, as a bare verb phrase: "read the firmware version".
+    pub tried: String,
+    /// On what: "0x80 at /dev/ttyACM0". Empty when the phrase says it already.
+    pub on: String,
+    /// What came back, without a full stop: "no answer within 60 ms (3 tries)".
+    pub came_back: String,
+    /// What to do, a sentence without its full stop. Empty when there is nothing to do.
+    pub mend: String,
+}
+
+impl Failure {
+    /// A failure from its four parts.
+    pub fn new(
+        tried: impl Into<String>,
+        on: impl Into<String>,
+        came_back: impl fmt::Display,
+        mend: impl Into<String>,
+    ) -> Self {
+        Self { tried: tried.into(), on: on.into(), came_back: came_back.to_string(), mend: mend.into() }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Could not {}", self.tried)?;
+        if !self.on.is_empty() {
+            write!(f, " on {}", self.on)?;
+        }
+        write!(f, ": {}.", self.came_back)?;
+        if !self.mend.is_empty() {
+            write!(f, " {}.", self.mend)?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Failure {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failure_reads_as_a_sentence_with_all_four_parts() {
+        let failure =
+            Failure::new("read the status", "0x80 at COM3", "no answer within 60 ms", "Check the wiring");
+        assert_eq!(
+            failure.to_string(),
+            "Could not read the status on 0x80 at COM3: no answer within 60 ms. Check the wiring."
+        );
+    }
+
+    #[test]
+    fn parts_that_are_empty_leave_no_trace() {
+        let failure = Failure::new("list the serial ports", "", "permission denied", "");
+        assert_eq!(failure.to_string(), "Could not list the serial ports: permission denied.");
+    }
+}

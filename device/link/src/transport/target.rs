@@ -1,0 +1,345 @@
+//! What the user types to say where a controller is, and the sentences for when it cannot be opened.
+//!
+//! `/dev/ttyACM0`, `COM3`, `tcp:host:port` and `sim:mcp266`; serial ports take options behind a comma:
+//! `/dev/ttyUSB0,baud=115200,stream=ttl1`. Any other text is taken as the path of a serial port, so that
+//! links, pseudo-terminals and names this program has never heard of work too.
+
+use super::{SerialTransport, TcpTransport, Transport};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::str::FromStr;
+
+/// Baud rate of a serial port when none is given: the default of the family (public clients, 2015-2025).
+pub const DEFAULT_BAUD: u32 = 38_400;
+
+/// One of the controller's serial streams, as commands 145 and 146 count them (MCP manual 2.3.1, command 145).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Stream {
+    /// The USB connector.
+    Usb,
+    /// RS-232, UART0.
+    Rs232,
+    /// TTL, UART1.
+    Ttl1,
+    /// TTL, UART2.
+    Ttl2,
+    /// TTL, UART3.
+    Ttl3,
+}
+
+impl Stream {
+    /// All of them in the order of their index.
+    pub const ALL: [Self; 5] = [Self::Usb, Self::Rs232, Self::Ttl1, Self::Ttl2, Self::Ttl3];
+
+    /// Index in the records of commands 145 and 146.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self as usize
+    }
+
+    /// Name on the command line and in files: "usb", "rs232", "ttl1".
+    #[must_use]
+    pub fn key(self) -> &'static str {
+        ["usb", "rs232", "ttl1", "ttl2", "ttl3"][self.index()]
+    }
+
+    /// Name for people, as Ion Studio writes it.
+    #[must_use]
+    pub fn label(self) -> &'static str {
+        ["USB", "RS232 UART0", "TTL UART1", "TTL UART2", "TTL UART3"][self.index()]
+    }
+}
+
+impl fmt::Display for Stream {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.label())
+    }
+}
+
+impl FromStr for Stream {
+    type Err = TargetError;
+
+    fn from_str(text: &str) -> Result<Self, TargetError> {
+        Self::ALL
+            .into_iter()
+            .find(|stream| stream.key().eq_ignore_ascii_case(text))
+            .ok_or_else(|| TargetError::Stream { given: text.to_owned() })
+    }
+}
+
+/// Where a controller is to be found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ConnectTarget {
+    /// A serial port or pseudo-terminal.
+    Serial {
+        /// Path or COM name, as typed.
+        path: String,
+        /// Baud rate; over USB the controller ignores it.
+        baud: u32,
+        /// Which of the controller's streams the port is wired to, when the user said so.
+        stream: Option<Stream>,
+    },
+    /// A TCP server.
+    Tcp {
+        /// "host:port".
+        address: String,
+        /// Which of the controller's streams the server is wired to, when the user said so.
+        stream: Option<Stream>,
+    },
+    /// A simulated controller in this program; the text says which and is read by the application.
+    Sim(String),
+}
+
+impl ConnectTarget {
+    /// Opens a serial port or a TCP connection. A simulated controller is started by the application.
+    pub fn open(&self) -> Result<Box<dyn Transport>, OpenError> {
+        match self {
+            Self::Serial { path, baud, .. } => Ok(Box::new(SerialTransport::open(path, *baud)?)),
+            Self::Tcp { address, .. } => match TcpTransport::connect(address) {
+                Ok(transport) => Ok(Box::new(transport)),
+                Err(source) => Err(OpenError::Tcp { address: address.clone(), source }),
+            },
+            Self::Sim(_) => Err(OpenError::SimulatedElsewhere),
+        }
+    }
+
+    /// The stream the user named.
+    #[must_use]
+    pub fn stream(&self) -> Option<Stream> {
+        match self {
+            Self::Serial { stream, .. } | Self::Tcp { stream, .. } => *stream,
+            Self::Sim(_) => None,
+        }
+    }
+}
+
+impl FromStr for ConnectTarget {
+    type Err = TargetError;
+
+    fn from_str(text: &str) -> Result<Self, TargetError> {
+        let text = text.trim();
+        if text.is_empty() {
+            return Err(TargetError::Empty);
+        }
+        if let Some(rest) = strip_scheme(text, "sim:") {
+            return Ok(Self::Sim(rest.to_owned()));
+        }
+        let (place, options) = split_options(text)?;
+        match strip_scheme(place, "tcp:") {
+            Some(address) => parse_tcp(address, options),
+            None => Ok(Self::Serial {
+                path: place.to_owned(),
+                baud: options.baud.unwrap_or(DEFAULT_BAUD),
+                stream: options.stream,
+            }),
+        }
+    }
+}
+
+impl fmt::Display for ConnectTarget {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Serial { path, baud, .. } => {
+                f.write_str(path)?;
+                if *baud != DEFAULT_BAUD {
+                    write!(f, ",baud={baud}")?;
+                }
+            }
+            Self::Tcp { address, .. } => write!(f, "tcp:{address}")?,
+            Self::Sim(what) => write!(f, "sim:{what}")?,
+        }
+        self.stream().map_or(Ok(()), |stream| write!(f, ",stream={}", stream.key()))
+    }
+}
+
+/// Text that names no target.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TargetError {
+    /// Nothing was typed.
+    #[error("no port was named. Give a path such as /dev/ttyACM0 or COM3, tcp:host:port, or sim:mcp266")]
+    Empty,
+    /// "tcp:" without host or port.
+    #[error("\"{given}\" is no TCP address. Write tcp:host:port, for example tcp:127.0.0.1:5000")]
+    TcpAddress {
+        /// What stood behind "tcp:".
+        given: String,
+    },
+    /// A baud rate out of range.
+    #[error("\"{given}\" is no baud rate. Packet serial takes 300 to 1000000")]
+    Baud {
+        /// What was given.
+        given: String,
+    },
+    /// An unknown stream.
+    #[error("\"{given}\" is no stream of the controller. Use usb, rs232, ttl1, ttl2 or ttl3")]
+    Stream {
+        /// What was given.
+        given: String,
+    },
+}
+
+/// Why a target could not be opened; each says how to mend it.
+#[derive(Debug, thiserror::Error)]
+pub enum OpenError {
+    /// The user may not open the device.
+    #[error("Could not open {path}: permission denied. {mend}")]
+    Permission {
+        /// The device.
+        path: String,
+        /// Which group to join and how.
+        mend: String,
+    },
+    /// Another program holds the port.
+    #[error(
+        "Could not open {path}: {holder} is using it. Close that program (or its connection) and try again."
+    )]
+    Busy {
+        /// The device.
+        path: String,
+        /// The program and its process number where they can be found out, else "another program".
+        holder: String,
+    },
+    /// There is no such device.
+    #[error(
+        "Could not open {path}: there is no such port. Check the cable and the name; `brushwork list` shows the ports that are there."
+    )]
+    NotFound {
+        /// The path as typed.
+        path: String,
+    },
+    /// The path is a file of another kind.
+    #[error(
+        "Could not open {path}: it is not a serial port ({detail}). Give the path of a serial port or pseudo-terminal."
+    )]
+    NotASerialPort {
+        /// The path as typed.
+        path: String,
+        /// What the operating system said.
+        detail: String,
+    },
+    /// Any other refusal by the system.
+    #[error(
+        "Could not open {path} at {baud} baud: {detail}. Check that the port takes this baud rate, unplug the adapter and plug it in again."
+    )]
+    Port {
+        /// The path as typed.
+        path: String,
+        /// The baud rate asked for.
+        baud: u32,
+        /// What the operating system said.
+        detail: String,
+    },
+    /// The TCP connection was not made.
+    #[error(
+        "Could not connect to tcp:{address}: {source}. Check that the server runs and that host and port are right."
+    )]
+    Tcp {
+        /// "host:port".
+        address: String,
+        /// The operating system's error.
+        source: std::io::Error,
+    },
+    /// A simulated controller was asked of this crate.
+    #[error(
+        "Could not open the simulated controller here: the application starts it. Open it from the device list."
+    )]
+    SimulatedElsewhere,
+}
+
+/// The options behind the commas.
+#[derive(Default)]
+struct Options {
+    baud: Option<u32>,
+    stream: Option<Stream>,
+}
+
+/// Takes known options off the end; a comma before anything else belongs to the path.
+fn split_options(text: &str) -> Result<(&str, Options), TargetError> {
+    let mut options = Options::default();
+    let mut place = text;
+    while let Some((before, last)) = place.rsplit_once(',') {
+        if let Some(given) = last.strip_prefix("baud=") {
+            options.baud = Some(parse_baud(given)?);
+        } else if let Some(given) = last.strip_prefix("stream=") {
+            options.stream = Some(given.parse()?);
+        } else {
+            break;
+        }
+        place = before;
+    }
+    if place.is_empty() { Err(TargetError::Empty) } else { Ok((place, options)) }
+}
+
+fn parse_baud(given: &str) -> Result<u32, TargetError> {
+    given
+        .parse()
+        .ok()
+        .filter(|baud| (300..=1_000_000).contains(baud))
+        .ok_or_else(|| TargetError::Baud { given: given.to_owned() })
+}
+
+fn parse_tcp(address: &str, options: Options) -> Result<ConnectTarget, TargetError> {
+    let named = address
+        .rsplit_once(':')
+        .is_some_and(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok_and(|port| port != 0));
+    if !named {
+        return Err(TargetError::TcpAddress { given: address.to_owned() });
+    }
+    Ok(ConnectTarget::Tcp { address: address.to_owned(), stream: options.stream })
+}
+
+/// Strips "tcp:" or "sim:" in either case. One letter before the colon would be a Windows drive, so the
+/// schemes are longer.
+fn strip_scheme<'a>(text: &'a str, scheme: &str) -> Option<&'a str> {
+    let head = text.get(..scheme.len())?;
+    head.eq_ignore_ascii_case(scheme).then(|| &text[scheme.len()..])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn serial(path: &str, baud: u32, stream: Option<Stream>) -> ConnectTarget {
+        ConnectTarget::Serial { path: path.to_owned(), baud, stream }
+    }
+
+    #[test]
+    fn every_form_of_target_is_understood() {
+        let cases = [
+            ("/dev/ttyACM0", serial("/dev/ttyACM0", 38_400, None)),
+            ("COM3", serial("COM3", 38_400, None)),
+            (r"\\.\COM12,baud=9600", serial(r"\\.\COM12", 9_600, None)),
+            ("/dev/ttyUSB0,baud=115200,stream=ttl1", serial("/dev/ttyUSB0", 115_200, Some(Stream::Ttl1))),
+            ("my,odd,link", serial("my,odd,link", 38_400, None)),
+            ("tcp:127.0.0.1:5000", ConnectTarget::Tcp { address: "127.0.0.1:5000".into(), stream: None }),
+            (
+                "TCP:[::1]:5000,stream=rs232",
+                ConnectTarget::Tcp { address: "[::1]:5000".into(), stream: Some(Stream::Rs232) },
+            ),
+            ("sim:mcp266,generation=4", ConnectTarget::Sim("mcp266,generation=4".into())),
+        ];
+        for (text, target) in cases {
+            assert_eq!(text.parse::<ConnectTarget>().unwrap(), target, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_target_prints_as_it_is_typed() {
+        for text in ["/dev/ttyACM0", "COM3,baud=9600,stream=usb", "tcp:[::1]:5000,stream=ttl3", "sim:mcp266"]
+        {
+            assert_eq!(text.parse::<ConnectTarget>().unwrap().to_string(), text);
+        }
+    }
+
+    #[test]
+    fn a_bad_target_says_what_would_be_good() {
+        let sentence = |text: &str| text.parse::<ConnectTarget>().unwrap_err().to_string();
+        assert!(sentence("  ").contains("/dev/ttyACM0"));
+        assert!(sentence(",baud=9600").contains("no port was named"));
+        assert!(sentence("tcp:host").contains("tcp:host:port"));
+        assert!(sentence("tcp::80").contains("tcp:host:port"));
+        assert!(sentence("COM3,baud=12").contains("300 to 1000000"));
+        assert!(sentence("COM3,stream=can").contains("rs232"));
+    }
+}
