@@ -4,9 +4,14 @@
 //! and no simulator. See `ARCHITECTURE.md`.
 
 pub mod clock;
+pub mod device;
+pub mod exchange;
 pub mod failure;
 pub mod transport;
+pub mod wire;
 
 pub use clock::{Clock, SystemClock, VirtualClock};
+pub use exchange::{ExchangeError, Interruption, LinkStatistics};
 pub use failure::Failure;
 pub use transport::{ConnectTarget, Stream, Transport, TransportError};
+pub use wire::Wire;

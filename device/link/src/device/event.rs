@@ -1,0 +1,131 @@
+//! What the device thread tells: one closed list.
+
+use super::channel::Sample;
+use super::drive::ArmScope;
+use super::identity::Identity;
+use super::job::JobReport;
+use super::status::StatusReport;
+use super::stop::StopReport;
+use crate::exchange::{LinkStatistics, Traffic};
+use crate::failure::Failure;
+use crate::transport::Stream;
+use brushwork_protocol::packet_serial::Values;
+use std::fmt;
+use std::time::Duration;
+
+/// Something that happened on a link.
+#[derive(Debug)]
+pub enum Event {
+    /// A unit answered and was identified. One for each unit of the link, then [`Event::Selected`].
+    Connected(Identity),
+    /// The unit that requests speak of from now on.
+    Selected {
+        /// Its address.
+        address: u8,
+        /// Which of its streams the port is, where that is known; else the user must be asked before arming.
+        stream: Option<Stream>,
+    },
+    /// One sweep's readings. When nobody takes events, the oldest waiting samples go first and are counted in
+    /// [`LinkStatistics::dropped_samples`].
+    Sample(Box<Sample>),
+    /// The status word: when it changed, and once a second.
+    Status(StatusReport),
+    /// Motors may be moved.
+    Armed {
+        /// The unit.
+        address: u8,
+        /// What was armed.
+        scope: ArmScope,
+        /// After how much silence the controller stops the motors by itself.
+        controller_timeout: Option<Duration>,
+    },
+    /// Motors may no longer be moved; they are being stopped.
+    Disarmed(DisarmReason),
+    /// Arming was refused: every reason, each with its cure.
+    ArmRefused {
+        /// What was asked.
+        scope: ArmScope,
+        /// At least one.
+        reasons: Vec<Failure>,
+    },
+    /// A stop was carried out, and this is what became of it.
+    Stopped(StopReport),
+    /// The answer to [`Request::Transact`](super::Request::Transact).
+    Transacted {
+        /// The request's.
+        id: u64,
+        /// The values, or why there are none.
+        result: Result<Values, Failure>,
+    },
+    /// A job began.
+    JobStarted {
+        /// Its name.
+        name: String,
+    },
+    /// A job tells how far it is.
+    JobProgress {
+        /// 0 to 1, where the job can tell.
+        fraction: Option<f32>,
+        /// What it does at the moment.
+        text: String,
+    },
+    /// A job ended.
+    JobEnded(JobReport),
+    /// The link's figures, twice a second.
+    Link(LinkStatistics),
+    /// What went over the wire, while that was asked for.
+    Traffic {
+        /// The bytes.
+        traffic: Traffic,
+        /// What they mean.
+        text: String,
+    },
+    /// Something did not work; the link goes on.
+    Failure(Failure),
+    /// The link is gone. Nothing follows; only the user connects again.
+    Lost(Failure),
+    /// The link was closed as asked. Nothing follows.
+    Closed,
+}
+
+/// Why motors may no longer be moved.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum DisarmReason {
+    /// It was asked for.
+    Asked,
+    /// Stop was pressed.
+    Stop,
+    /// Nobody renewed the motion in time.
+    DeadMan,
+    /// The controller reports a fault.
+    Fault(String),
+    /// Another screen was armed.
+    ScopeChange,
+    /// Another unit was selected.
+    Selection,
+    /// A command went unconfirmed, so that nobody knows what the motors do.
+    NoAnswer,
+    /// The job that moved the motors ended.
+    JobEnded,
+    /// The link was lost.
+    LinkLost,
+    /// The link is being closed.
+    Closing,
+}
+
+impl fmt::Display for DisarmReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Asked => f.write_str("Disarmed"),
+            Self::Stop => f.write_str("Disarmed: Stop was pressed"),
+            Self::DeadMan => f.write_str("Disarmed: the window did not renew the motion within 250 ms"),
+            Self::Fault(what) => write!(f, "Disarmed: the controller reports {what}"),
+            Self::ScopeChange => f.write_str("Disarmed: another screen was opened"),
+            Self::Selection => f.write_str("Disarmed: another unit was selected"),
+            Self::NoAnswer => f.write_str("Disarmed: the controller did not confirm a command"),
+            Self::JobEnded => f.write_str("Disarmed: the job that moved the motors has ended"),
+            Self::LinkLost => f.write_str("Disarmed: the link was lost"),
+            Self::Closing => f.write_str("Disarmed: the link is being closed"),
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! What a job holds of the device thread: the wire to the selected unit, progress, and the question whether to go on.
+
+use super::channel::Sample;
+use crate::exchange::{ExchangeError, Interruption, Reply};
+use crate::wire::Wire;
+use brushwork_protocol::packet_serial::{Address, Generation, Value, Values};
+use std::time::Duration;
+
+/// What the device thread does for a job.
+pub(super) trait JobHost {
+    fn transact(&mut self, command: u8, values: Vec<Value>) -> Result<Reply, ExchangeError>;
+    fn sleep(&mut self, time: Duration) -> Result<(), ExchangeError>;
+    fn interruption(&self) -> Option<Interruption>;
+    fn progress(&mut self, fraction: Option<f32>, text: &str);
+    fn sample(&mut self, sample: Sample);
+    fn set_polling(&mut self, on: bool);
+    fn address(&self) -> Address;
+    fn generation(&self) -> Generation;
+    fn is_simulated(&self) -> bool;
+    fn now(&self) -> Duration;
+    fn port(&self) -> String;
+}
+
+/// The device thread, as a job sees it. Use it as a [`Wire`].
+pub struct JobContext<'a> {
+    host: &'a mut dyn JobHost,
+}
+
+impl<'a> JobContext<'a> {
+    pub(super) fn new(host: &'a mut dyn JobHost) -> Self {
+        Self { host }
+    }
+
+    /// Tells how far the job is: 0 to 1 where it knows, and what it does at the moment.
+    pub fn progress(&mut self, fraction: Option<f32>, text: &str) {
+        self.host.progress(fraction, text);
+    }
+
+    /// Why the job should end now, if it should. Asked between exchanges by work that computes for long.
+    #[must_use]
+    pub fn interruption(&self) -> Option<Interruption> {
+        self.host.interruption()
+    }
+
+    /// As [`Wire::transact`], with the host times of the exchange: for experiments.
+    pub fn transact_timed(&mut self, command: u8, values: &[i64]) -> Result<Reply, ExchangeError> {
+        self.host.transact(command, values.iter().map(|&value| Value::Int(value)).collect())
+    }
+
+    /// Shows the window a reading that the job made itself.
+    pub fn sample(&mut self, sample: Sample) {
+        self.host.sample(sample);
+    }
+
+    /// Whether the thread goes on reading signals between the job's exchanges, as it does at first. An experiment that
+    /// needs even spacing, or a save that restarts the unit, switches it off.
+    pub fn set_polling(&mut self, on: bool) {
+        self.host.set_polling(on);
+    }
+}
+
+impl Wire for JobContext<'_> {
+    fn transact_values(&mut self, command: u8, values: Vec<Value>) -> Result<Values, ExchangeError> {
+        self.host.transact(command, values).map(|reply| reply.values)
+    }
+
+    fn address(&self) -> Address {
+        self.host.address()
+    }
+
+    fn generation(&self) -> Generation {
+        self.host.generation()
+    }
+
+    fn is_simulated(&self) -> bool {
+        self.host.is_simulated()
+    }
+
+    fn now(&self) -> Duration {
+        self.host.now()
+    }
+
+    fn sleep(&mut self, time: Duration) -> Result<(), ExchangeError> {
+        self.host.sleep(time)
+    }
+
+    fn port(&self) -> String {
+        self.host.port()
+    }
+}

@@ -1,0 +1,31 @@
+//! The device thread: it owns a link and everything that may move a motor over it.
+//!
+//! The window asks ([`Request`]) and is told ([`Event`]); neither ever waits for the other. Between any two exchanges, and
+//! while waiting for a reply, the thread looks at the Stop flag first. Motion needs arming, dies unless it is renewed, and
+//! is ended on every way out of a job and of the thread itself.
+
+mod channel;
+mod drive;
+mod event;
+mod handle;
+mod identity;
+pub mod job;
+mod job_context;
+mod options;
+mod outbox;
+mod request;
+mod signals;
+mod status;
+mod stop;
+
+pub use channel::{Channel, Sample};
+pub use drive::{ArmScope, Drive, DriveCommand};
+pub use event::{DisarmReason, Event};
+pub use handle::{DeviceHandle, Stopper};
+pub use identity::Identity;
+pub use job::{FnJob, Job, JobContext, JobEnding, JobOutput, JobReport};
+pub use options::{Addresses, DeviceOptions};
+pub use request::{PollRate, Request, RequestRefused};
+pub use signals::MOTION_LIFE;
+pub use status::{Condition, Severity, StatusReport};
+pub use stop::{StopReport, UnitStop};

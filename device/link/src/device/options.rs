@@ -1,0 +1,44 @@
+//! How a link is opened.
+
+use super::request::PollRate;
+use crate::transport::Stream;
+
+/// Which units of a bus to look for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Addresses {
+    /// All that the family has, 0x80 to 0x87.
+    #[default]
+    Scan,
+    /// This one alone.
+    Only(u8),
+}
+
+/// What the device thread is told when it starts.
+#[derive(Clone, Debug)]
+pub struct DeviceOptions {
+    /// Which units to look for.
+    pub addresses: Addresses,
+    /// Which of the controller's streams the port is wired to; `None` when nobody knows yet.
+    pub stream: Option<Stream>,
+    /// Whether the controller is simulated in this program: guesses about the wire may then be sent.
+    pub simulated: bool,
+    /// How often the signals are read at first.
+    pub poll: PollRate,
+    /// Events that the channel to the window holds.
+    pub event_capacity: usize,
+    /// Requests that may wait.
+    pub request_capacity: usize,
+}
+
+impl Default for DeviceOptions {
+    fn default() -> Self {
+        Self {
+            addresses: Addresses::Scan,
+            stream: None,
+            simulated: false,
+            poll: PollRate::DEFAULT,
+            event_capacity: 1024,
+            request_capacity: 64,
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! What a window or a command line asks of the device thread.
+
+use super::drive::{ArmScope, Drive};
+use super::job::Job;
+use crate::transport::Stream;
+use brushwork_protocol::packet_serial::{Motor, Value};
+use std::time::Duration;
+
+/// How often the signals are read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PollRate {
+    /// Not at all, except while something is armed.
+    Off,
+    /// One sweep in each such time.
+    Every(Duration),
+    /// As fast as the link allows.
+    Fastest,
+}
+
+impl PollRate {
+    /// The rate of Ion Studio: ten sweeps a second.
+    pub const DEFAULT: Self = Self::Every(Duration::from_millis(100));
+}
+
+impl Default for PollRate {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// A request to the device thread. All but [`Request::Select`] speak of the selected unit.
+#[derive(Debug)]
+pub enum Request {
+    /// Makes the unit at this address the one that the other requests speak of. Disarms.
+    Select(u8),
+    /// Sets how often the signals are read.
+    Poll(PollRate),
+    /// Says which of the controller's streams this port is wired to, where the device name does not tell.
+    SetStream(Stream),
+    /// Switches [`Event::Traffic`](super::Event::Traffic) on or off.
+    Trace(bool),
+    /// Asks for permission to move motors. Answered by [`Event::Armed`](super::Event::Armed) or
+    /// [`Event::ArmRefused`](super::Event::ArmRefused).
+    Arm(ArmScope),
+    /// Stops the motors and takes the permission back. Overtakes what is queued.
+    Disarm,
+    /// Moves motors; needs arming. A command that waited longer than a motion may live unrenewed is not sent.
+    Drive(Drive),
+    /// Sets an encoder's count.
+    SetEncoder {
+        /// Which.
+        motor: Motor,
+        /// The new count.
+        counts: i32,
+    },
+    /// Sets both encoders' counts to zero.
+    ZeroEncoders,
+    /// Resets an E-stop, where the controller lets software do that.
+    ResetEStop,
+    /// Starts the stored script; needs [`ArmScope::Script`] or [`ArmScope::CommandLine`].
+    StartScript,
+    /// Stops the running script.
+    StopScript,
+    /// Sends one command of the protocol. Answered by [`Event::Transacted`](super::Event::Transacted).
+    Transact {
+        /// Comes back with the answer.
+        id: u64,
+        /// The command byte.
+        command: u8,
+        /// Raw values in wire order.
+        values: Vec<Value>,
+    },
+    /// Runs long work. Answered by [`Event::JobStarted`](super::Event::JobStarted) and what follows it.
+    Job(Box<dyn Job>),
+    /// Ends the running job at its next exchange. Overtakes what is queued.
+    CancelJob,
+    /// Stops what this program has set in motion and closes the link. Overtakes what is queued.
+    Disconnect,
+}
+
+/// Why a request was not even queued.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RequestRefused {
+    /// The queue is full: a job runs, or the link is slow.
+    #[error(
+        "the controller is busy: {waiting} requests are waiting already. Wait for the running job or cancel it."
+    )]
+    Busy {
+        /// Requests in the queue.
+        waiting: usize,
+    },
+    /// The link is closed or lost.
+    #[error("the link is closed. Connect again.")]
+    Closed,
+}

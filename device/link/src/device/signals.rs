@@ -1,0 +1,297 @@
+//! What reaches the device thread without waiting in its queue: Stop, renewal, disarm, cancel, close.
+//!
+//! All of it is atomic, so that a window, a signal handler and a frozen queue make no difference. [`Guard`] is the
+//! thread's own view of it: what may break into an exchange at a given moment.
+
+use crate::clock::{Clock, nanoseconds};
+use crate::exchange::{Interruption, Watch};
+use crossbeam_channel::{Receiver, Sender, bounded};
+use std::cell::Cell;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::Duration;
+
+/// How long a motion command lives unless the window renews it.
+pub const MOTION_LIFE: Duration = Duration::from_millis(250);
+
+/// The flags of one link, shared by its handle and its thread.
+pub struct Signals {
+    clock: Arc<dyn Clock>,
+    stops: AtomicU64,
+    stopped_at: AtomicU64,
+    renewed_at: AtomicU64,
+    disarms: AtomicU64,
+    cancels: AtomicU64,
+    closing: AtomicBool,
+    wake: Sender<()>,
+}
+
+impl Signals {
+    /// Flags at rest, and the channel that wakes an idle thread.
+    pub fn new(clock: Arc<dyn Clock>) -> (Arc<Self>, Receiver<()>) {
+        let (wake, woken) = bounded(1);
+        let signals = Self {
+            clock,
+            stops: AtomicU64::new(0),
+            stopped_at: AtomicU64::new(0),
+            renewed_at: AtomicU64::new(0),
+            disarms: AtomicU64::new(0),
+            cancels: AtomicU64::new(0),
+            closing: AtomicBool::new(false),
+            wake,
+        };
+        (Arc::new(signals), woken)
+    }
+
+    /// Asks for a stop; the first of several not yet served keeps its time.
+    pub fn stop(&self) {
+        self.stopped_at.store(nanoseconds(self.clock.now()), Ordering::SeqCst);
+        self.stops.fetch_add(1, Ordering::SeqCst);
+        self.wake();
+    }
+
+    /// Renews motion.
+    pub fn renew(&self) {
+        self.renewed_at.fetch_max(nanoseconds(self.clock.now()), Ordering::SeqCst);
+    }
+
+    /// Asks for disarming.
+    pub fn disarm(&self) {
+        self.disarms.fetch_add(1, Ordering::SeqCst);
+        self.wake();
+    }
+
+    /// Asks the running job to end.
+    pub fn cancel(&self) {
+        self.cancels.fetch_add(1, Ordering::SeqCst);
+        self.wake();
+    }
+
+    /// Asks the thread to close the link.
+    pub fn close(&self) {
+        self.closing.store(true, Ordering::SeqCst);
+        self.wake();
+    }
+
+    /// Wakes the thread when it is idle. A full channel means that it will wake anyway.
+    pub fn wake(&self) {
+        let _ = self.wake.try_send(());
+    }
+
+    /// How many stops have been asked for.
+    pub fn stops(&self) -> u64 {
+        self.stops.load(Ordering::SeqCst)
+    }
+
+    /// How often disarming was asked for.
+    pub fn disarms(&self) -> u64 {
+        self.disarms.load(Ordering::SeqCst)
+    }
+
+    /// When the last stop was asked for.
+    pub fn stopped_at(&self) -> Duration {
+        Duration::from_nanos(self.stopped_at.load(Ordering::SeqCst))
+    }
+
+    /// The clock that stamps them.
+    pub fn clock(&self) -> &Arc<dyn Clock> {
+        &self.clock
+    }
+}
+
+/// The device thread's view of the signals.
+pub struct Guard {
+    signals: Arc<Signals>,
+    stops_served: Cell<u64>,
+    disarms_served: Cell<u64>,
+    cancels_served: Cell<u64>,
+    armed: Cell<bool>,
+    /// Set while a motion command may be in effect: the moment it was asked for.
+    motion_since: Cell<Option<Duration>>,
+    job_until: Cell<Option<Duration>>,
+    only_stop: Cell<bool>,
+}
+
+impl Guard {
+    /// A guard that has served everything asked for so far.
+    pub fn new(signals: Arc<Signals>) -> Self {
+        Self {
+            stops_served: Cell::new(0),
+            disarms_served: Cell::new(0),
+            cancels_served: Cell::new(0),
+            armed: Cell::new(false),
+            motion_since: Cell::new(None),
+            job_until: Cell::new(None),
+            only_stop: Cell::new(false),
+            signals,
+        }
+    }
+
+    /// Takes note of a motion command that is about to be written, asked for at `asked_at`.
+    pub fn motion_begins(&self, asked_at: Duration) {
+        let since = self.motion_since.get().map_or(asked_at, |since| since.max(asked_at));
+        self.motion_since.set(Some(since));
+    }
+
+    /// Whether a motion command may be in effect.
+    pub fn is_moving(&self) -> bool {
+        self.motion_since.get().is_some()
+    }
+
+    /// The motors were stopped.
+    pub fn motion_ends(&self) {
+        self.motion_since.set(None);
+    }
+
+    /// When the motion dies unless it is renewed.
+    pub fn motion_dies_at(&self) -> Option<Duration> {
+        let renewed_at = Duration::from_nanos(self.signals.renewed_at.load(Ordering::SeqCst));
+        self.motion_since.get().map(|since| since.max(renewed_at) + MOTION_LIFE)
+    }
+
+    /// Something was armed or disarmed. Disarm requests from before arming do not count.
+    pub fn set_armed(&self, armed: bool) {
+        self.armed.set(armed);
+        self.disarms_served.set(self.signals.disarms());
+    }
+
+    /// The stop asked for has been served.
+    pub fn stop_served(&self, stops: u64) {
+        self.stops_served.set(stops);
+    }
+
+    /// Begins a job that must end by `until`; `None` ends it.
+    pub fn set_job(&self, until: Option<Duration>) {
+        self.job_until.set(until);
+        self.cancels_served.set(self.signals.cancels.load(Ordering::SeqCst));
+    }
+
+    /// While set, only a new Stop breaks in: the motors are being stopped.
+    pub fn set_only_stop(&self, only_stop: bool) {
+        self.only_stop.set(only_stop);
+    }
+
+    /// Whether a stop waits to be served.
+    pub fn stop_waits(&self) -> bool {
+        self.signals.stops() != self.stops_served.get()
+    }
+
+    /// Whether the link is to be closed.
+    pub fn is_closing(&self) -> bool {
+        self.signals.closing.load(Ordering::SeqCst)
+    }
+
+    fn disarm_waits(&self) -> bool {
+        self.armed.get() && self.signals.disarms() != self.disarms_served.get()
+    }
+
+    fn job_ends(&self, now: Duration) -> Option<Interruption> {
+        let until = self.job_until.get()?;
+        if self.signals.cancels.load(Ordering::SeqCst) != self.cancels_served.get() {
+            return Some(Interruption::Cancelled);
+        }
+        (now >= until).then_some(Interruption::TimeLimit)
+    }
+}
+
+impl Watch for Guard {
+    fn interruption(&self, now: Duration) -> Option<Interruption> {
+        if self.stop_waits() {
+            return Some(Interruption::Stop);
+        }
+        if self.only_stop.get() {
+            return None;
+        }
+        if self.motion_dies_at().is_some_and(|dies_at| now >= dies_at) {
+            return Some(Interruption::DeadMan);
+        }
+        if self.is_closing() {
+            return Some(Interruption::Closing);
+        }
+        if self.disarm_waits() {
+            return Some(Interruption::Disarm);
+        }
+        self.job_ends(now)
+    }
+
+    fn next(&self) -> Option<Duration> {
+        if self.only_stop.get() {
+            return None;
+        }
+        [self.motion_dies_at(), self.job_until.get()].into_iter().flatten().min()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clock::VirtualClock;
+
+    fn guard() -> (VirtualClock, Arc<Signals>, Guard) {
+        let clock = VirtualClock::new();
+        let (signals, _) = Signals::new(Arc::new(clock.clone()));
+        let guard = Guard::new(signals.clone());
+        (clock, signals, guard)
+    }
+
+    #[test]
+    fn stop_comes_before_everything_else() {
+        let (clock, signals, guard) = guard();
+        guard.set_armed(true);
+        guard.set_job(Some(Duration::ZERO));
+        signals.close();
+        signals.disarm();
+        signals.stop();
+        assert_eq!(guard.interruption(clock.now()), Some(Interruption::Stop));
+        guard.stop_served(signals.stops());
+        assert_eq!(guard.interruption(clock.now()), Some(Interruption::Closing));
+    }
+
+    #[test]
+    fn motion_lives_exactly_its_life_beyond_the_last_renewal() {
+        let (clock, signals, guard) = guard();
+        let ms = Duration::from_millis;
+        guard.motion_begins(ms(0));
+        clock.advance_to(ms(100));
+        signals.renew();
+        assert_eq!(guard.next(), Some(ms(350)));
+        assert_eq!(guard.interruption(ms(349)), None);
+        assert_eq!(guard.interruption(ms(350)), Some(Interruption::DeadMan));
+        guard.motion_ends();
+        assert_eq!(guard.interruption(ms(350)), None);
+    }
+
+    #[test]
+    fn a_disarm_asked_for_before_arming_does_not_disarm() {
+        let (clock, signals, guard) = guard();
+        signals.disarm();
+        guard.set_armed(true);
+        assert_eq!(guard.interruption(clock.now()), None);
+        signals.disarm();
+        assert_eq!(guard.interruption(clock.now()), Some(Interruption::Disarm));
+    }
+
+    #[test]
+    fn a_job_ends_by_its_limit_or_by_a_cancel_of_its_own_time() {
+        let (_, signals, guard) = guard();
+        let ms = Duration::from_millis;
+        signals.cancel();
+        guard.set_job(Some(ms(500)));
+        assert_eq!(guard.interruption(ms(499)), None, "an earlier cancel was for another job");
+        assert_eq!(guard.interruption(ms(500)), Some(Interruption::TimeLimit));
+        signals.cancel();
+        assert_eq!(guard.interruption(ms(1)), Some(Interruption::Cancelled));
+    }
+
+    #[test]
+    fn while_motors_are_being_stopped_only_a_new_stop_breaks_in() {
+        let (clock, signals, guard) = guard();
+        guard.motion_begins(Duration::ZERO);
+        guard.set_only_stop(true);
+        signals.close();
+        clock.advance(Duration::from_secs(1));
+        assert_eq!(guard.interruption(clock.now()), None);
+        signals.stop();
+        assert_eq!(guard.interruption(clock.now()), Some(Interruption::Stop));
+    }
+}

@@ -1,0 +1,46 @@
+//! What became of a stop.
+
+use crate::failure::Failure;
+use std::time::Duration;
+
+/// A stop, from the key to the controllers' answers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StopReport {
+    /// When it was asked for.
+    pub requested_at: Duration,
+    /// When its bytes had been handed to the port, before any answer was waited for.
+    pub written_at: Duration,
+    /// When the last controller had answered or had been given up.
+    pub ended_at: Duration,
+    /// One for each unit of the link.
+    pub units: Vec<UnitStop>,
+}
+
+/// What one unit made of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnitStop {
+    /// Its address.
+    pub address: u8,
+    /// Whether it confirmed duty 0 on its motors.
+    pub confirmed: bool,
+    /// Whether its motion buffers are empty by its own account; `None` if it does not tell.
+    pub buffers_empty: Option<bool>,
+    /// What can still drive a motor now: input pins and scripts, each as a sentence.
+    pub still_driven_by: Vec<String>,
+    /// What went wrong.
+    pub failures: Vec<Failure>,
+}
+
+impl StopReport {
+    /// Time from the request to the bytes on the wire.
+    #[must_use]
+    pub fn latency(&self) -> Duration {
+        self.written_at.saturating_sub(self.requested_at)
+    }
+
+    /// Whether every unit confirmed.
+    #[must_use]
+    pub fn confirmed(&self) -> bool {
+        self.units.iter().all(|unit| unit.confirmed)
+    }
+}

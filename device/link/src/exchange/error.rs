@@ -1,0 +1,196 @@
+//! Why an exchange with a controller gave no result. The link's own failures and the controller's refusals stay apart.
+
+use super::watch::Interruption;
+use crate::failure::Failure;
+use crate::transport::TransportError;
+use brushwork_protocol::packet_serial::{EncodeError, Generation};
+use std::time::Duration;
+
+/// Why a request has no reply that could be used.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum ExchangeError {
+    /// No complete reply came in time.
+    #[error("no answer within {} ms ({tries}){}", waited.as_millis(), Heard(*heard))]
+    TimedOut {
+        /// How long the last try waited.
+        waited: Duration,
+        /// Requests sent.
+        tries: Tries,
+        /// Bytes that did come in the last try.
+        heard: usize,
+    },
+    /// The reply's checksum was wrong.
+    #[error("the checksum of the reply was {got:04X} instead of {expected:04X} ({tries})")]
+    BadCrc {
+        /// CRC of what was received.
+        expected: u16,
+        /// CRC that was received.
+        got: u16,
+        /// Requests sent.
+        tries: Tries,
+    },
+    /// Something else than 0xFF came where an acknowledgement was due.
+    #[error("0x{got:02X} came back instead of the acknowledgement 0xFF ({tries})")]
+    BadAcknowledgement {
+        /// The byte received.
+        got: u8,
+        /// Requests sent.
+        tries: Tries,
+    },
+    /// The reply has a form that this command does not have.
+    #[error("the reply makes no sense: {what} ({tries})")]
+    Malformed {
+        /// What is wrong with it.
+        what: String,
+        /// Requests sent.
+        tries: Tries,
+    },
+    /// The request was sent once, was not confirmed, and must not be sent twice.
+    #[error(
+        "{cause}; the command may have been carried out, and was not sent again since that could do it twice"
+    )]
+    MayHaveRun {
+        /// What went wrong.
+        #[source]
+        cause: Box<ExchangeError>,
+    },
+    /// Something more urgent came first.
+    #[error("{cause}")]
+    Interrupted {
+        /// What it was.
+        cause: Interruption,
+    },
+    /// The request can move a motor and nothing is armed that allows it.
+    #[error("the motors are not armed for \"{command}\"")]
+    NotArmed {
+        /// The command's title.
+        command: String,
+    },
+    /// The layout of the command is a guess, and guesses are sent to simulated controllers only.
+    #[error("\"{command}\" is not sent to a real controller: {why}")]
+    Unproven {
+        /// The command's title.
+        command: String,
+        /// What is not known.
+        why: String,
+    },
+    /// This firmware does not have the command.
+    #[error("firmware of {generation} has no command {command}")]
+    Unsupported {
+        /// The command's number or title.
+        command: String,
+        /// The generation that was detected.
+        generation: Generation,
+    },
+    /// The values do not fit the command.
+    #[error("the values do not fit the command")]
+    Encode {
+        /// Which value and why.
+        #[source]
+        source: EncodeError,
+    },
+    /// The link is lost.
+    #[error("the link is lost")]
+    Transport {
+        /// What the port said.
+        #[from]
+        source: TransportError,
+    },
+}
+
+impl ExchangeError {
+    /// Whether the link itself is gone, so that nothing more can be asked.
+    #[must_use]
+    pub fn is_link_lost(&self) -> bool {
+        match self {
+            Self::Transport { .. } => true,
+            Self::MayHaveRun { cause } => cause.is_link_lost(),
+            _ => false,
+        }
+    }
+
+    /// Whether the controller was asked and gave no usable answer, as a unit does that lacks the command.
+    #[must_use]
+    pub fn is_no_answer(&self) -> bool {
+        match self {
+            Self::TimedOut { .. } => true,
+            Self::MayHaveRun { cause } => cause.is_no_answer(),
+            _ => false,
+        }
+    }
+
+    /// What came first, if the exchange was cut short.
+    #[must_use]
+    pub fn interruption(&self) -> Option<Interruption> {
+        match self {
+            Self::Interrupted { cause } => Some(*cause),
+            Self::MayHaveRun { cause } => cause.interruption(),
+            _ => None,
+        }
+    }
+
+    /// The error with its causes in one line.
+    #[must_use]
+    pub fn full(&self) -> String {
+        match self {
+            Self::Transport { source } => format!("{self}: {}", source.full()),
+            Self::Encode { source } => format!("{self}: {source}"),
+            Self::MayHaveRun { cause } if cause.is_link_lost() => format!("{}; {MAY_HAVE_RUN}", cause.full()),
+            _ => self.to_string(),
+        }
+    }
+
+    /// What the user can do about it.
+    #[must_use]
+    pub fn mend(&self) -> &'static str {
+        match self {
+            Self::TimedOut { heard: 0, .. } => {
+                "Check the controller's power, the wiring, the baud rate and the address"
+            }
+            Self::TimedOut { .. }
+            | Self::BadCrc { .. }
+            | Self::BadAcknowledgement { .. }
+            | Self::Malformed { .. } => {
+                "Check the baud rate, the wiring and ground, and that no two units share an address"
+            }
+            Self::MayHaveRun { .. } => "Look where the motor stands before you send it again",
+            Self::Interrupted { .. } => "Try again when you are ready",
+            Self::NotArmed { .. } => "Arm the motors on this screen first",
+            Self::Unproven { .. } => "Try it on a simulated controller",
+            Self::Unsupported { .. } => "Do without it, or check the firmware's version",
+            Self::Encode { .. } => "Use a value in range",
+            Self::Transport { .. } => "Check the cable and connect again",
+        }
+    }
+
+    /// The failure for the user, with what was tried and on what.
+    #[must_use]
+    pub fn failure(&self, tried: impl Into<String>, on: impl Into<String>) -> Failure {
+        Failure::new(tried, on, self.full(), self.mend())
+    }
+}
+
+const MAY_HAVE_RUN: &str = "the command may have been carried out";
+
+/// How often a request was sent; prints as "1 try" or "3 tries".
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tries(pub u32);
+
+impl std::fmt::Display for Tries {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} {}", self.0, if self.0 == 1 { "try" } else { "tries" })
+    }
+}
+
+/// What is said about bytes that were not enough for a reply.
+struct Heard(usize);
+
+impl std::fmt::Display for Heard {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.0 {
+            0 => Ok(()),
+            1 => f.write_str(", only one byte came"),
+            count => write!(f, ", only {count} bytes came"),
+        }
+    }
+}

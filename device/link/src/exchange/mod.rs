@@ -1,0 +1,327 @@
+//! One request and its reply over a transport: deadlines, the 10 ms recovery, retries, statistics.
+//!
+//! This layer knows neither commands nor motors: a request is bytes, and whoever sends it judges the reply. What the
+//! bytes of packet serial mean is added in [`packet`].
+
+pub mod error;
+pub mod packet;
+pub mod statistics;
+pub mod trace;
+pub mod watch;
+
+pub use error::{ExchangeError, Tries};
+pub use packet::{PacketWire, Reply};
+pub use statistics::{Counters, LinkStatistics};
+pub use trace::Traffic;
+pub use watch::{Interruption, Unwatched, Watch};
+
+use crate::clock::Clock;
+use crate::transport::Transport;
+use std::sync::Arc;
+use std::time::Duration;
+use trace::Trace;
+
+/// A controller forgets an unfinished packet after this long without a byte (MCP manual 2.2.4: "more than 10 ms").
+pub const PACKET_GAP: Duration = Duration::from_millis(10);
+/// How long the line must be quiet after a fault before it is used again: the gap and some for the clocks of both ends.
+pub const RECOVERY: Duration = Duration::from_millis(12);
+/// Noise that never ends is not waited out for longer than this.
+const RECOVERY_LIMIT: Duration = Duration::from_millis(500);
+/// A request is sent again at most this often (public clients, 2015-2025: two or three tries).
+pub const RETRIES: u32 = 2;
+/// Waiting for bytes is cut into slices of this, so that a Stop is seen in time.
+const SLICE: Duration = Duration::from_millis(1);
+
+/// A request as bytes, with what is needed to wait for its reply.
+#[derive(Clone, Copy, Debug)]
+pub struct Outgoing<'a> {
+    /// The bytes.
+    pub bytes: &'a [u8],
+    /// Length of the shortest reply.
+    pub reply_length: usize,
+    /// Time the controller may take beyond the link's own latency, for work such as erasing.
+    pub patience: Duration,
+    /// How often it may be sent again after a fault.
+    pub retries: u32,
+    /// Whether it does something that must not be done twice. Such a request goes out once, and a failure after that
+    /// says that it may have been carried out.
+    pub once: bool,
+}
+
+/// What the judge of a reply says about the bytes so far.
+#[derive(Clone, Debug)]
+pub enum Judgement {
+    /// At least this many more bytes are needed.
+    More(usize),
+    /// Complete; this many bytes belong to it.
+    Good(usize),
+    /// It cannot become a good one.
+    Bad(Fault),
+}
+
+/// What is wrong with a reply.
+#[derive(Clone, Debug)]
+pub enum Fault {
+    /// The CRC does not fit.
+    Crc {
+        /// CRC of what was received.
+        expected: u16,
+        /// CRC that was received.
+        got: u16,
+    },
+    /// An acknowledgement was due.
+    Acknowledgement(u8),
+    /// Anything else.
+    Malformed(String),
+}
+
+/// Host times of one exchange.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Span {
+    /// When the request was written.
+    pub requested_at: Duration,
+    /// When the reply was complete.
+    pub replied_at: Duration,
+}
+
+/// A transport with everything that makes exchanges over it dependable.
+pub struct Exchange {
+    transport: Box<dyn Transport>,
+    clock: Arc<dyn Clock>,
+    counters: Counters,
+    trace: Trace,
+    received: Vec<u8>,
+    /// Something may still be on its way that answers nothing any more.
+    unsettled: bool,
+    /// Whether the request of the present attempt went out.
+    sent: bool,
+    last_reply_at: Duration,
+}
+
+impl Exchange {
+    /// Exchanges over `transport`, timed by `clock`.
+    #[must_use]
+    pub fn new(transport: Box<dyn Transport>, clock: Arc<dyn Clock>) -> Self {
+        let now = clock.now();
+        Self {
+            transport,
+            clock,
+            counters: Counters::new(now),
+            trace: Trace::default(),
+            received: Vec::new(),
+            unsettled: false,
+            sent: false,
+            last_reply_at: now,
+        }
+    }
+
+    /// Sends a request and waits for its reply; sends it again after a fault as often as it may.
+    ///
+    /// `judge` sees all bytes received so far and decides when the reply is complete.
+    pub fn exchange(
+        &mut self,
+        request: &Outgoing<'_>,
+        watch: &dyn Watch,
+        judge: &mut dyn FnMut(&[u8]) -> Judgement,
+    ) -> Result<Span, ExchangeError> {
+        let mut tries = 0;
+        loop {
+            tries += 1;
+            let error = match self.attempt(request, watch, judge, Tries(tries)) {
+                Ok(span) => return Ok(span),
+                Err(error) => error,
+            };
+            let final_word = error.is_link_lost() || error.interruption().is_some();
+            if request.once && self.sent {
+                return Err(ExchangeError::MayHaveRun { cause: Box::new(error) });
+            }
+            if final_word || request.once || tries > request.retries {
+                return Err(error);
+            }
+            self.counters.totals.retries += 1;
+        }
+    }
+
+    /// Writes bytes at once, whatever else is going on, and expects nothing. The line is unsettled afterwards.
+    pub fn write_now(&mut self, bytes: &[u8]) -> Result<Duration, ExchangeError> {
+        self.unsettled = true;
+        self.write(bytes)?;
+        Ok(self.clock.now())
+    }
+
+    /// Waits until the line has been quiet for [`RECOVERY`], throwing away what comes.
+    pub fn settle(&mut self, watch: &dyn Watch) -> Result<(), ExchangeError> {
+        let begun_at = self.clock.now();
+        let mut quiet_since = begun_at;
+        let mut buffer = [0; 512];
+        loop {
+            let now = self.clock.now();
+            self.look(watch, now)?;
+            let quiet_until = quiet_since + RECOVERY;
+            if now >= quiet_until || now >= begun_at + RECOVERY_LIMIT {
+                self.unsettled = false;
+                return Ok(());
+            }
+            let count = self.transport.read(&mut buffer, self.slice(watch, now, quiet_until))?;
+            if count > 0 {
+                quiet_since = self.clock.now();
+                self.stray(&buffer[..count], quiet_since);
+            }
+        }
+    }
+
+    /// Waits for `time`, or until something more urgent comes.
+    pub fn wait(&mut self, time: Duration, watch: &dyn Watch) -> Result<(), ExchangeError> {
+        let until = self.clock.now() + time;
+        loop {
+            let now = self.clock.now();
+            self.look(watch, now)?;
+            if now >= until {
+                return Ok(());
+            }
+            self.clock.sleep(self.slice(watch, now, until));
+        }
+    }
+
+    /// The link's figures now.
+    pub fn statistics(&mut self) -> LinkStatistics {
+        self.counters.at(self.clock.now())
+    }
+
+    /// Switches the recording of traffic on or off.
+    pub fn switch_trace(&mut self, on: bool) {
+        self.trace.switch(on);
+    }
+
+    /// Takes the traffic recorded since the last call.
+    pub fn take_traffic(&mut self) -> impl Iterator<Item = Traffic> + '_ {
+        self.trace.take()
+    }
+
+    /// When the last good reply was complete, or when the link was opened.
+    #[must_use]
+    pub fn last_reply_at(&self) -> Duration {
+        self.last_reply_at
+    }
+
+    /// The clock in use.
+    #[must_use]
+    pub fn clock(&self) -> &Arc<dyn Clock> {
+        &self.clock
+    }
+
+    /// The port as a person would name it.
+    #[must_use]
+    pub fn port(&self) -> String {
+        self.transport.describe()
+    }
+
+    // -----------------------------------------------------------------------------------------
+
+    /// One request and one wait for its reply.
+    fn attempt(
+        &mut self,
+        request: &Outgoing<'_>,
+        watch: &dyn Watch,
+        judge: &mut dyn FnMut(&[u8]) -> Judgement,
+        tries: Tries,
+    ) -> Result<Span, ExchangeError> {
+        self.received.clear();
+        self.sent = false;
+        self.look(watch, self.clock.now())?;
+        if self.unsettled {
+            self.settle(watch)?;
+        }
+        self.counters.totals.stray_bytes += self.transport.discard_input()? as u64;
+        let requested_at = self.clock.now();
+        self.unsettled = true;
+        self.write(request.bytes)?;
+        self.sent = true;
+        let replied_at = self.receive(request, watch, judge, requested_at, tries)?;
+        self.unsettled = false;
+        self.last_reply_at = replied_at;
+        self.counters.replied(requested_at, replied_at);
+        Ok(Span { requested_at, replied_at })
+    }
+
+    fn receive(
+        &mut self,
+        request: &Outgoing<'_>,
+        watch: &dyn Watch,
+        judge: &mut dyn FnMut(&[u8]) -> Judgement,
+        requested_at: Duration,
+        tries: Tries,
+    ) -> Result<Duration, ExchangeError> {
+        let mut buffer = [0; 1024];
+        let mut deadline = requested_at + self.allowance(request, request.bytes.len() + request.reply_length);
+        loop {
+            let now = self.clock.now();
+            self.look(watch, now)?;
+            if now >= deadline {
+                self.counters.totals.timeouts += 1;
+                let waited = now.saturating_sub(requested_at);
+                return Err(ExchangeError::TimedOut { waited, tries, heard: self.received.len() });
+            }
+            let count = self.transport.read(&mut buffer, self.slice(watch, now, deadline))?;
+            if count == 0 {
+                continue;
+            }
+            let now = self.clock.now();
+            self.counters.read(count);
+            self.trace.record(now, false, &buffer[..count]);
+            self.received.extend_from_slice(&buffer[..count]);
+            match judge(&self.received) {
+                Judgement::Good(used) => {
+                    self.counters.totals.stray_bytes += self.received.len().saturating_sub(used) as u64;
+                    return Ok(now);
+                }
+                Judgement::More(missing) => deadline = deadline.max(now + self.allowance(request, missing)),
+                Judgement::Bad(fault) => {
+                    self.counters.totals.crc_errors += 1;
+                    return Err(fault.error(tries));
+                }
+            }
+        }
+    }
+
+    /// How long `bytes` bytes may take: their time on the wire, the link's latency and the controller's work.
+    fn allowance(&self, request: &Outgoing<'_>, bytes: usize) -> Duration {
+        let bytes = u32::try_from(bytes).unwrap_or(u32::MAX);
+        let on_the_wire = self.transport.byte_time().unwrap_or_default().saturating_mul(bytes);
+        on_the_wire + self.transport.latency() + request.patience
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> Result<(), ExchangeError> {
+        self.transport.write(bytes)?;
+        self.counters.wrote(bytes.len());
+        self.trace.record(self.clock.now(), true, bytes);
+        Ok(())
+    }
+
+    fn stray(&mut self, bytes: &[u8], now: Duration) {
+        self.counters.read(bytes.len());
+        self.counters.totals.stray_bytes += bytes.len() as u64;
+        self.trace.record(now, false, bytes);
+    }
+
+    /// Lets something more urgent break in.
+    fn look(&self, watch: &dyn Watch, now: Duration) -> Result<(), ExchangeError> {
+        watch.interruption(now).map_or(Ok(()), |cause| Err(ExchangeError::Interrupted { cause }))
+    }
+
+    /// How long to wait now: to `until`, but no longer than a slice nor past the watch's next moment.
+    fn slice(&self, watch: &dyn Watch, now: Duration, until: Duration) -> Duration {
+        let until = watch.next().map_or(until, |next| until.min(next.max(now)));
+        until.saturating_sub(now).min(SLICE)
+    }
+}
+
+impl Fault {
+    fn error(self, tries: Tries) -> ExchangeError {
+        match self {
+            Self::Crc { expected, got } => ExchangeError::BadCrc { expected, got, tries },
+            Self::Acknowledgement(got) => ExchangeError::BadAcknowledgement { got, tries },
+            Self::Malformed(what) => ExchangeError::Malformed { what, tries },
+        }
+    }
+}

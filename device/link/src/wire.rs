@@ -1,0 +1,51 @@
+//! What settings code and jobs see of a controller: commands to one unit, and the time.
+
+use crate::exchange::ExchangeError;
+use brushwork_protocol::packet_serial::{Address, Generation, Request, Value, Values};
+use std::time::Duration;
+
+/// Packet serial to one unit. Behind it stand deadlines, retries, the Stop flag and the arming rule.
+///
+/// After an error whose [`ExchangeError::interruption`] is set every further call fails the same way: whoever holds the
+/// wire should return.
+pub trait Wire {
+    /// Sends a command with its values in wire order (constants such as keys may be left out) and returns the reply's
+    /// values, none for an acknowledgement.
+    fn transact_values(&mut self, command: u8, values: Vec<Value>) -> Result<Values, ExchangeError>;
+
+    /// The unit's address.
+    fn address(&self) -> Address;
+
+    /// The generation of the unit's firmware.
+    fn generation(&self) -> Generation;
+
+    /// Whether the unit is simulated in this program, so that guesses about the wire may be sent to it.
+    fn is_simulated(&self) -> bool;
+
+    /// Time since the clock's epoch.
+    fn now(&self) -> Duration;
+
+    /// Waits; ends early, with an error, when something more urgent comes.
+    fn sleep(&mut self, time: Duration) -> Result<(), ExchangeError>;
+
+    /// The port as a person would name it.
+    fn port(&self) -> String;
+
+    /// Sends a command whose values are all numbers, raw and in wire order.
+    fn transact(&mut self, command: u8, values: &[i64]) -> Result<Values, ExchangeError> {
+        self.transact_values(command, values.iter().map(|&value| Value::Int(value)).collect())
+    }
+
+    /// Sends a command whose raw numbers are given by field name, put in the order of this generation's layout; names
+    /// that the layout lacks are left out.
+    fn transact_named(&mut self, command: u8, named: &[(&str, i64)]) -> Result<Values, ExchangeError> {
+        let request = Request::named(self.address(), command, self.generation(), named)
+            .map_err(|source| ExchangeError::Encode { source })?;
+        self.transact_values(command, request.values)
+    }
+
+    /// The unit and its port, for sentences: "0x80 at /dev/ttyACM0".
+    fn describe(&self) -> String {
+        format!("{} at {}", self.address(), self.port())
+    }
+}
