@@ -4,6 +4,8 @@
 //! while waiting for a reply, the thread looks at the Stop flag first. Motion needs arming, dies unless it is renewed, and
 //! is ended on every way out of a job and of the thread itself.
 
+#![allow(dead_code, reason = "the thread itself follows")]
+
 mod channel;
 mod drive;
 mod event;

@@ -113,7 +113,9 @@ mod tests {
     }
 
     fn sample(sequence: u64) -> Event {
-        Event::Sample(Box::new(Sample { sequence, ..Sample::new(0x80) }))
+        let mut sample = Sample::new(0x80);
+        sample.sequence = sequence;
+        Event::Sample(Box::new(sample))
     }
 
     #[test]

@@ -127,7 +127,7 @@ impl FromStr for ConnectTarget {
         }
         let (place, options) = split_options(text)?;
         match strip_scheme(place, "tcp:") {
-            Some(address) => parse_tcp(address, options),
+            Some(address) => parse_tcp(address, &options),
             None => Ok(Self::Serial {
                 path: place.to_owned(),
                 baud: options.baud.unwrap_or(DEFAULT_BAUD),
@@ -279,7 +279,7 @@ fn parse_baud(given: &str) -> Result<u32, TargetError> {
         .ok_or_else(|| TargetError::Baud { given: given.to_owned() })
 }
 
-fn parse_tcp(address: &str, options: Options) -> Result<ConnectTarget, TargetError> {
+fn parse_tcp(address: &str, options: &Options) -> Result<ConnectTarget, TargetError> {
     let named = address
         .rsplit_once(':')
         .is_some_and(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok_and(|port| port != 0));
