@@ -4,6 +4,7 @@
 pub mod bridge;
 pub mod motion;
 pub mod plant;
+pub mod presets;
 pub mod priority;
 pub mod settings;
 pub mod signals;
