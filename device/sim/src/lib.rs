@@ -2,6 +2,7 @@
 //! See `ARCHITECTURE.md`.
 
 pub mod bridge;
+pub mod machine;
 pub mod motion;
 pub mod plant;
 pub mod presets;

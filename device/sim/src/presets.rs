@@ -9,14 +9,14 @@ use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
 
 /// Name of the preset that drives both channels of a controller when none is named.
-pub const DEFAULT_PRESET: &str = "small-gearmotor";
+pub const DEFAULT: &str = "small-gearmotor";
 
 /// One ready-made axis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Preset {
     /// Name in command lines: lower case with hyphens, the same as the file's.
-    pub name: String,
+    pub key: String,
     /// Name in lists.
     pub title: String,
     /// One or two sentences: what it is and what is special about it.
@@ -43,16 +43,6 @@ pub struct StatedFigures {
     pub counts_per_second: [f64; 2],
 }
 
-/// No preset has this name.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no preset \"{name}\": take one of {known}")]
-pub struct UnknownPreset {
-    /// What was asked for.
-    pub name: String,
-    /// All names, separated by commas.
-    pub known: String,
-}
-
 static PRESETS: LazyLock<Vec<Preset>> = LazyLock::new(|| {
     const FILES: [&str; 8] = [
         include_str!("../../../assets/presets/small-gearmotor.json"),
@@ -75,12 +65,14 @@ pub fn presets() -> &'static [Preset] {
     &PRESETS
 }
 
-/// The preset of this name, whatever its case.
-pub fn preset(name: &str) -> Result<&'static Preset, UnknownPreset> {
-    presets().iter().find(|preset| preset.name.eq_ignore_ascii_case(name)).ok_or_else(|| UnknownPreset {
-        name: name.to_owned(),
-        known: presets().iter().map(|preset| preset.name.as_str()).collect::<Vec<_>>().join(", "),
-    })
+/// The preset whose key is `key`, whatever its case.
+pub fn lookup(key: &str) -> Option<&'static Preset> {
+    presets().iter().find(|preset| preset.key.eq_ignore_ascii_case(key))
+}
+
+/// The keys of all presets, in order.
+pub fn keys() -> Vec<&'static str> {
+    presets().iter().map(|preset| preset.key.as_str()).collect()
 }
 
 /// A world with one preset on each channel, on the supply of the first, with nothing wired to its `pins` input pins.

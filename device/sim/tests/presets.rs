@@ -2,7 +2,7 @@
 
 use brushwork_sim::bridge::BridgeOutput;
 use brushwork_sim::plant::{EncoderKind, StopKind};
-use brushwork_sim::presets::{DEFAULT_PRESET, Preset, preset, presets, world_of};
+use brushwork_sim::presets::{self, Preset, keys, lookup, presets, world_of};
 use brushwork_sim::world::{Motor, World, WorldAction};
 use std::f64::consts::TAU;
 
@@ -21,21 +21,21 @@ fn speed(world: &World) -> f64 {
 }
 
 fn assert_within(got: f64, range: [f64; 2], what: &str, preset: &Preset) {
-    assert!(got >= range[0] && got <= range[1], "{} of {}: {got} is not in {range:?}", what, preset.name);
+    assert!(got >= range[0] && got <= range[1], "{} of {}: {got} is not in {range:?}", what, preset.key);
 }
 
 #[test]
 fn there_are_at_least_six_presets_each_with_its_file_name_and_a_description() {
     assert!(presets().len() >= 6);
     for preset in presets() {
-        let file = format!("{}/../../assets/presets/{}.json", env!("CARGO_MANIFEST_DIR"), preset.name);
+        let file = format!("{}/../../assets/presets/{}.json", env!("CARGO_MANIFEST_DIR"), preset.key);
         assert!(std::path::Path::new(&file).is_file(), "{file}");
         assert!(preset.description.ends_with('.') && !preset.title.is_empty());
         preset.axis.validate().expect("a preset is valid");
     }
     let files = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/presets"));
     assert_eq!(files.expect("the folder is there").count(), presets().len(), "each file is built in");
-    assert_eq!(presets()[0].name, DEFAULT_PRESET);
+    assert_eq!(presets()[0].key, presets::DEFAULT);
 }
 
 #[test]
@@ -62,7 +62,7 @@ fn each_preset_reaches_its_speed_in_its_time() {
             world.advance(REVERSE, settle_s);
             speed(&world)
         };
-        assert!((back + top).abs() < 0.02 * top, "{} is as fast backwards: {back}", preset.name);
+        assert!((back + top).abs() < 0.02 * top, "{} is as fast backwards: {back}", preset.key);
     }
 }
 
@@ -83,15 +83,15 @@ fn each_preset_starts_at_a_small_duty_and_rests_without_any() {
     for preset in presets() {
         let mut world = free_world(preset);
         world.advance([BridgeOutput::Duty(0.2), BridgeOutput::Coast], 1.0);
-        assert!(speed(&world) > 0.0, "{} does not start at 20 % duty", preset.name);
+        assert!(speed(&world) > 0.0, "{} does not start at 20 % duty", preset.key);
         world.advance([BridgeOutput::Brake, BridgeOutput::Coast], 20.0);
-        assert_eq!(speed(&world), 0.0, "{} does not come to rest", preset.name);
+        assert_eq!(speed(&world), 0.0, "{} does not come to rest", preset.key);
     }
 }
 
 #[test]
 fn the_linear_actuator_runs_to_its_ends_and_its_potentiometer_tells_where_it_is() {
-    let actuator = preset("linear-actuator").expect("it is built in");
+    let actuator = lookup("linear-actuator").expect("it is built in");
     let travel = actuator.axis.load.travel.expect("it has end stops");
     assert_eq!(travel.stop, StopKind::Hard);
     let mut quiet = world_of(actuator, actuator, 0);
@@ -108,8 +108,8 @@ fn the_linear_actuator_runs_to_its_ends_and_its_potentiometer_tells_where_it_is(
 }
 
 #[test]
-fn a_name_that_is_no_preset_is_refused_with_those_that_are() {
-    assert_eq!(preset("Flywheel").map(|preset| preset.name.as_str()), Ok("flywheel"));
-    let refusal = preset("hamster-wheel").expect_err("there is none").to_string();
-    assert!(refusal.starts_with("there is no preset \"hamster-wheel\": take one of small-gearmotor, "));
+fn presets_are_found_by_key_whatever_its_case() {
+    assert_eq!(lookup("Flywheel").map(|preset| preset.key.as_str()), Some("flywheel"));
+    assert!(lookup("hamster-wheel").is_none());
+    assert_eq!(keys().len(), presets().len());
 }

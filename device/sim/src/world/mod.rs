@@ -5,12 +5,11 @@
 //! [`WorldAction`]s and looks at it through [`WorldView`]s. It knows nothing of bytes and settings.
 
 mod action;
-mod motor;
 mod pins;
 mod view;
 
 pub use action::WorldAction;
-pub use motor::Motor;
+pub use brushwork_protocol::packet_serial::Motor;
 pub use pins::{PinSignal, PinState, SWITCH_OPEN_VOLTS, SwitchKind, SwitchWiring, Wiring};
 pub use view::{AxisView, WorldView};
 
