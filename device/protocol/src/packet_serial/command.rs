@@ -248,7 +248,6 @@ impl Command {
 
     /// Every layout of arguments that a controller may meet after this command byte in a request of `direction`, those
     /// of other generations too.
-    #[allow(dead_code, reason = "read by the framer")]
     pub(super) fn payloads(&self, direction: Direction) -> impl Iterator<Item = &'static [Field]> + use<> {
         let also = if direction == Direction::Write { self.also_accepted } else { &[] };
         let forms = self.forms.iter().filter(move |form| form.direction == direction);

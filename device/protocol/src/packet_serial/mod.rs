@@ -6,12 +6,13 @@
 //! the firmware. All of that is data, in the one table [`COMMANDS`]; encoding, decoding, the simulator's acceptance,
 //! the traffic decoder and the reference page read it.
 //!
-//! Start at [`Command`] and [`Form`], then [`Request`] and [`parse_reply`] (a client) or [`encode_reply`]
-//! (a controller).
+//! Start at [`Command`] and [`Form`], then [`Request`] and [`parse_reply`] (a client) or [`RequestFramer`] and
+//! [`encode_reply`] (a controller).
 
 mod command;
 mod encode;
 mod field;
+mod framer;
 mod identity;
 pub mod number;
 mod parse;
@@ -23,6 +24,9 @@ mod value;
 pub use command::{ClientUse, Command, Direction, Effect, Form, Reply, Simulated};
 pub use encode::{ACK, EncodeError, encode_ack, encode_reply, encode_reply_named};
 pub use field::{Field, Kind, Unit};
+pub use framer::{
+    DiscardReason, Discarded, Framed, FramerEvent, LONGEST_REQUEST, PACKET_GAP, RawBytes, RequestFramer,
+};
 pub use identity::{Address, Generation, InvalidAddress, InvalidGeneration, Motor};
 pub use parse::{ReplyProgress, parse_reply};
 pub use request::Request;

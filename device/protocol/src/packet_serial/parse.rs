@@ -65,7 +65,6 @@ pub fn parse_reply(request: &Request, generation: Generation, bytes: &[u8]) -> R
 }
 
 /// The values of a payload that has the layout `fields`, whose width is fixed; `None` if it is shorter.
-#[allow(dead_code, reason = "read by the framer")]
 pub(super) fn parse_payload(fields: &'static [Field], payload: &[u8]) -> Option<Values> {
     match take_all(fields, payload, 0) {
         Taken::Values(values, _) => Some(Values::new(fields, values)),
@@ -208,7 +207,6 @@ fn content(run: &[u8]) -> &[u8] {
 }
 
 /// The CRC at the end of a packet and the one that its bytes have; `None` if it is shorter than a CRC.
-#[allow(dead_code, reason = "read by the framer")]
 pub(super) fn packet_crc(packet: &[u8]) -> Option<(u16, u16)> {
     let (body, crc) = packet.split_last_chunk::<2>()?;
     Some((u16::from_be_bytes(*crc), crc16_xmodem(body)))
