@@ -18,6 +18,7 @@ pub mod number;
 mod parse;
 mod request;
 pub mod scale;
+pub mod status;
 mod table;
 mod value;
 

@@ -1,0 +1,600 @@
+//! The status word of commands 90 and 73: which bit means what.
+//!
+//! Generations 1 and 2 send two bytes, 3 and 4 send four, and the bits mean different things, not only more of them
+//! (MCP manual command 90; public clients and the RoboClaw manual of 2018). Everything that knows a condition uses
+//! [`Condition`], whatever the generation; one table says where each lies. The script register SYSSTATUS of the manual
+//! has yet another order and is not this word.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use super::identity::Generation;
+
+/// What a status word can say about a unit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Condition {
+    /// The emergency stop is pressed or not yet reset.
+    EStop,
+    /// The board is too hot; the motors are stopped.
+    Temperature1Error,
+    /// The second sensor is too hot; the motors are stopped.
+    Temperature2Error,
+    /// The main battery is over its limit.
+    MainBatteryHighError,
+    /// The main battery is under its limit (generation 4).
+    MainBatteryLowError,
+    /// The main battery was over its limit and is not yet far enough below (generation 4).
+    MainBatteryHighHysteresis,
+    /// The logic battery is over its limit.
+    LogicBatteryHighError,
+    /// The logic battery is under its limit.
+    LogicBatteryLowError,
+    /// The bridge of motor 1 reports a fault.
+    M1DriverFault,
+    /// The bridge of motor 2 reports a fault.
+    M2DriverFault,
+    /// Motor 1 was stopped by its speed error limit.
+    M1SpeedError,
+    /// Motor 2 was stopped by its speed error limit.
+    M2SpeedError,
+    /// Motor 1 was stopped by its position error limit.
+    M1PositionError,
+    /// Motor 2 was stopped by its position error limit.
+    M2PositionError,
+    /// Motor 1 was stopped by its current.
+    M1CurrentError,
+    /// Motor 2 was stopped by its current.
+    M2CurrentError,
+    /// Motor 1 is at its current limit.
+    M1OverCurrentWarning,
+    /// Motor 2 is at its current limit.
+    M2OverCurrentWarning,
+    /// The main battery is near its upper limit.
+    MainBatteryHighWarning,
+    /// The main battery is near its lower limit.
+    MainBatteryLowWarning,
+    /// The board is hot; output is reduced.
+    Temperature1Warning,
+    /// The second sensor is hot; output is reduced.
+    Temperature2Warning,
+    /// A speed error is near its limit (generation 3).
+    SpeedLimitWarning,
+    /// A position error is near its limit (generation 3).
+    PositionLimitWarning,
+    /// Motor 1's speed error is near its limit (generation 4).
+    M1SpeedWarning,
+    /// Motor 2's speed error is near its limit (generation 4).
+    M2SpeedWarning,
+    /// Motor 1's position error is near its limit (generation 4).
+    M1PositionWarning,
+    /// Motor 2's position error is near its limit (generation 4).
+    M2PositionWarning,
+    /// Something is wrong on the CAN bus (generation 4).
+    CanWarning,
+    /// Something was wrong at start-up (generation 4).
+    BootWarning,
+    /// Motor 1 gives back more current than its limit (generation 4).
+    M1OverRegenerationWarning,
+    /// Motor 2 gives back more current than its limit (generation 4).
+    M2OverRegenerationWarning,
+    /// Motor 1's home input is active (generations 1 and 2, RoboClaw).
+    M1Home,
+    /// Motor 2's home input is active (generations 1 and 2, RoboClaw).
+    M2Home,
+    /// Pin S4 is active: home, limit or stop (generations 3 and 4).
+    S4Signal,
+    /// Pin S5 is active: home, limit or stop (generations 3 and 4).
+    S5Signal,
+}
+
+/// How grave a condition is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Severity {
+    /// A state that is neither good nor bad, such as a home switch.
+    Signal,
+    /// The unit goes on, perhaps with less output.
+    Warning,
+    /// The unit has stopped one motor or both.
+    Error,
+}
+
+/// The thirteen lamps of the vendor's program (MCP manual 1.2.2), in its order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Lamp {
+    /// Current of motor 1.
+    M1OverCurrent,
+    /// Current of motor 2.
+    M2OverCurrent,
+    /// Main battery over its limit.
+    MainBatteryHigh,
+    /// Main battery under its limit.
+    MainBatteryLow,
+    /// Logic battery over its limit.
+    LogicBatteryHigh,
+    /// Logic battery under its limit.
+    LogicBatteryLow,
+    /// Board temperature.
+    Temperature1,
+    /// Second temperature.
+    Temperature2,
+    /// Bridge of motor 1.
+    M1DriverFault,
+    /// Bridge of motor 2.
+    M2DriverFault,
+    /// Emergency stop.
+    EStop,
+    /// Home input of motor 1.
+    M1Home,
+    /// Home input of motor 2.
+    M2Home,
+}
+
+/// A row of the table of conditions.
+#[derive(Debug, Clone, Copy)]
+pub struct ConditionRow {
+    /// The condition.
+    pub condition: Condition,
+    /// What people call it.
+    pub title: &'static str,
+    /// How grave it is.
+    pub severity: Severity,
+    /// The lamp that shows it, if one does.
+    pub lamp: Option<Lamp>,
+    /// Its bit in generations 1 to 4, as a mask; 0 where the generation has none.
+    pub masks: [u32; 4],
+}
+
+/// A set of conditions.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
+pub struct Conditions(u64);
+
+/// The conditions of a status word. Bits that mean nothing in `generation` are left out; see [`unknown_bits`].
+pub fn decode(word: u32, generation: Generation) -> Conditions {
+    let rows = CONDITIONS.iter().filter(|row| word & row.mask(generation) != 0);
+    rows.map(|row| row.condition).collect()
+}
+
+/// The status word that says these conditions. Those that have no bit in `generation` are left out.
+pub fn encode(conditions: Conditions, generation: Generation) -> u32 {
+    conditions.iter().fold(0, |word, condition| word | condition.row().mask(generation))
+}
+
+/// The bits of a status word that mean nothing in `generation`.
+pub fn unknown_bits(word: u32, generation: Generation) -> u32 {
+    let known = CONDITIONS.iter().fold(0, |known, row| known | row.mask(generation));
+    word & !known
+}
+
+impl ConditionRow {
+    /// Its bit in `generation`, as a mask; 0 if it has none.
+    pub const fn mask(&self, generation: Generation) -> u32 {
+        self.masks[generation.number() as usize - 1]
+    }
+}
+
+impl Condition {
+    /// Its row in the table.
+    pub const fn row(self) -> &'static ConditionRow {
+        &CONDITIONS[self as usize]
+    }
+
+    /// What people call it.
+    pub const fn title(self) -> &'static str {
+        self.row().title
+    }
+
+    /// How grave it is.
+    pub const fn severity(self) -> Severity {
+        self.row().severity
+    }
+
+    /// The lamp that shows it, if one does.
+    pub const fn lamp(self) -> Option<Lamp> {
+        self.row().lamp
+    }
+}
+
+impl fmt::Display for Condition {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.title())
+    }
+}
+
+impl Lamp {
+    /// All thirteen, in order.
+    pub const ALL: [Self; 13] = [
+        Self::M1OverCurrent,
+        Self::M2OverCurrent,
+        Self::MainBatteryHigh,
+        Self::MainBatteryLow,
+        Self::LogicBatteryHigh,
+        Self::LogicBatteryLow,
+        Self::Temperature1,
+        Self::Temperature2,
+        Self::M1DriverFault,
+        Self::M2DriverFault,
+        Self::EStop,
+        Self::M1Home,
+        Self::M2Home,
+    ];
+
+    /// The four letters of the vendor's program.
+    pub const fn abbreviation(self) -> &'static str {
+        match self {
+            Self::M1OverCurrent => "M1OC",
+            Self::M2OverCurrent => "M2OC",
+            Self::MainBatteryHigh => "MBHI",
+            Self::MainBatteryLow => "MBLO",
+            Self::LogicBatteryHigh => "LBHI",
+            Self::LogicBatteryLow => "LBLO",
+            Self::Temperature1 => "TMP1",
+            Self::Temperature2 => "TMP2",
+            Self::M1DriverFault => "M1DF",
+            Self::M2DriverFault => "M2DF",
+            Self::EStop => "ESTP",
+            Self::M1Home => "M1HM",
+            Self::M2Home => "M2HM",
+        }
+    }
+
+    /// In full.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::M1OverCurrent => "M1 over-current",
+            Self::M2OverCurrent => "M2 over-current",
+            Self::MainBatteryHigh => "Main battery high",
+            Self::MainBatteryLow => "Main battery low",
+            Self::LogicBatteryHigh => "Logic battery high",
+            Self::LogicBatteryLow => "Logic battery low",
+            Self::Temperature1 => "Temperature 1",
+            Self::Temperature2 => "Temperature 2",
+            Self::M1DriverFault => "M1 driver fault",
+            Self::M2DriverFault => "M2 driver fault",
+            Self::EStop => "E-Stop",
+            Self::M1Home => "M1 home",
+            Self::M2Home => "M2 home",
+        }
+    }
+
+    /// The gravest of the conditions that light it; `None` if it is dark.
+    pub fn lit_by(self, conditions: Conditions) -> Option<Severity> {
+        conditions.iter().filter(|condition| condition.lamp() == Some(self)).map(Condition::severity).max()
+    }
+}
+
+impl Conditions {
+    /// None at all.
+    pub const NONE: Self = Self(0);
+
+    /// Whether there is none.
+    pub const fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// Whether it is among them.
+    pub const fn contains(self, condition: Condition) -> bool {
+        self.0 & Self::bit(condition) != 0
+    }
+
+    /// Adds it.
+    pub const fn insert(&mut self, condition: Condition) {
+        self.0 |= Self::bit(condition);
+    }
+
+    /// Takes it out.
+    pub const fn remove(&mut self, condition: Condition) {
+        self.0 &= !Self::bit(condition);
+    }
+
+    /// Adds or takes it out.
+    pub const fn set(&mut self, condition: Condition, present: bool) {
+        if present {
+            self.insert(condition);
+        } else {
+            self.remove(condition);
+        }
+    }
+
+    /// Those in either.
+    #[must_use]
+    pub const fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Those that a status word of `generation` can say.
+    #[must_use]
+    pub fn known_to(self, generation: Generation) -> Self {
+        self.iter().filter(|condition| condition.row().mask(generation) != 0).collect()
+    }
+
+    /// Each, in the order of the table.
+    pub fn iter(self) -> impl Iterator<Item = Condition> {
+        CONDITIONS.iter().map(|row| row.condition).filter(move |&condition| self.contains(condition))
+    }
+
+    /// The gravest; `None` if there is none.
+    pub fn severity(self) -> Option<Severity> {
+        self.iter().map(Condition::severity).max()
+    }
+
+    const fn bit(condition: Condition) -> u64 {
+        1 << condition as u32
+    }
+}
+
+impl FromIterator<Condition> for Conditions {
+    fn from_iter<I: IntoIterator<Item = Condition>>(conditions: I) -> Self {
+        let mut all = Self::NONE;
+        for condition in conditions {
+            all.insert(condition);
+        }
+        all
+    }
+}
+
+impl fmt::Display for Conditions {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.is_empty() {
+            return f.write_str("normal");
+        }
+        for (index, condition) in self.iter().enumerate() {
+            f.write_str(if index == 0 { "" } else { ", " })?;
+            f.write_str(condition.title())?;
+        }
+        Ok(())
+    }
+}
+
+/// Every condition in the order of [`Condition`]. Bits of generations 1 and 2: MCP manual command 90, with those of the
+/// RoboClaw in the gaps. Of 3 and 4: public clients and the RoboClaw manual of 2018, with those of 2025 in the gaps.
+pub static CONDITIONS: [ConditionRow; 36] = {
+    use Condition as C;
+    use Lamp as L;
+    use Severity::{Error, Signal, Warning};
+    [
+        row(C::EStop, "E-Stop", Error, Some(L::EStop), [0x0004, 0x0004, 0x0001, 0x0001]),
+        row(
+            C::Temperature1Error,
+            "Temperature error",
+            Error,
+            Some(L::Temperature1),
+            [0x0008, 0x0008, 0x0002, 0x0002],
+        ),
+        row(
+            C::Temperature2Error,
+            "Temperature 2 error",
+            Error,
+            Some(L::Temperature2),
+            [0x0010, 0x0010, 0x0004, 0x0004],
+        ),
+        row(
+            C::MainBatteryHighError,
+            "Main battery high error",
+            Error,
+            Some(L::MainBatteryHigh),
+            [0x0020, 0x0020, 0x0008, 0x0008],
+        ),
+        row(
+            C::MainBatteryLowError,
+            "Main battery low error",
+            Error,
+            Some(L::MainBatteryLow),
+            [0, 0, 0, 0x4000],
+        ),
+        row(
+            C::MainBatteryHighHysteresis,
+            "Main battery high hysteresis",
+            Error,
+            Some(L::MainBatteryHigh),
+            [0, 0, 0, 0x8000],
+        ),
+        row(
+            C::LogicBatteryHighError,
+            "Logic battery high error",
+            Error,
+            Some(L::LogicBatteryHigh),
+            [0x0040, 0x0040, 0x0010, 0x0010],
+        ),
+        row(
+            C::LogicBatteryLowError,
+            "Logic battery low error",
+            Error,
+            Some(L::LogicBatteryLow),
+            [0x0080, 0x0080, 0x0020, 0x0020],
+        ),
+        row(
+            C::M1DriverFault,
+            "M1 driver fault",
+            Error,
+            Some(L::M1DriverFault),
+            [0x0100, 0x0100, 0x0040, 0x0040],
+        ),
+        row(
+            C::M2DriverFault,
+            "M2 driver fault",
+            Error,
+            Some(L::M2DriverFault),
+            [0x0200, 0x0200, 0x0080, 0x0080],
+        ),
+        row(C::M1SpeedError, "M1 speed error", Error, None, [0, 0, 0x0100, 0x0100]),
+        row(C::M2SpeedError, "M2 speed error", Error, None, [0, 0, 0x0200, 0x0200]),
+        row(C::M1PositionError, "M1 position error", Error, None, [0, 0, 0x0400, 0x0400]),
+        row(C::M2PositionError, "M2 position error", Error, None, [0, 0, 0x0800, 0x0800]),
+        row(C::M1CurrentError, "M1 current error", Error, Some(L::M1OverCurrent), [0, 0, 0x1000, 0x1000]),
+        row(C::M2CurrentError, "M2 current error", Error, Some(L::M2OverCurrent), [0, 0, 0x2000, 0x2000]),
+        row(
+            C::M1OverCurrentWarning,
+            "M1 over-current warning",
+            Warning,
+            Some(L::M1OverCurrent),
+            [0x0001, 0x0001, 0x0001_0000, 0x0001_0000],
+        ),
+        row(
+            C::M2OverCurrentWarning,
+            "M2 over-current warning",
+            Warning,
+            Some(L::M2OverCurrent),
+            [0x0002, 0x0002, 0x0002_0000, 0x0002_0000],
+        ),
+        row(
+            C::MainBatteryHighWarning,
+            "Main battery high warning",
+            Warning,
+            Some(L::MainBatteryHigh),
+            [0x0400, 0x0400, 0x0004_0000, 0x0004_0000],
+        ),
+        row(
+            C::MainBatteryLowWarning,
+            "Main battery low warning",
+            Warning,
+            Some(L::MainBatteryLow),
+            [0x0800, 0x0800, 0x0008_0000, 0x0008_0000],
+        ),
+        row(
+            C::Temperature1Warning,
+            "Temperature warning",
+            Warning,
+            Some(L::Temperature1),
+            [0x1000, 0x1000, 0x0010_0000, 0x0010_0000],
+        ),
+        row(
+            C::Temperature2Warning,
+            "Temperature 2 warning",
+            Warning,
+            Some(L::Temperature2),
+            [0x2000, 0x2000, 0x0020_0000, 0x0020_0000],
+        ),
+        row(C::SpeedLimitWarning, "Speed limit warning", Warning, None, [0, 0, 0x0100_0000, 0]),
+        row(C::PositionLimitWarning, "Position limit warning", Warning, None, [0, 0, 0x0200_0000, 0]),
+        row(C::M1SpeedWarning, "M1 speed warning", Warning, None, [0, 0, 0, 0x0100_0000]),
+        row(C::M2SpeedWarning, "M2 speed warning", Warning, None, [0, 0, 0, 0x0200_0000]),
+        row(C::M1PositionWarning, "M1 position warning", Warning, None, [0, 0, 0, 0x0400_0000]),
+        row(C::M2PositionWarning, "M2 position warning", Warning, None, [0, 0, 0, 0x0800_0000]),
+        row(C::CanWarning, "CAN warning", Warning, None, [0, 0, 0, 0x1000_0000]),
+        row(C::BootWarning, "Boot warning", Warning, None, [0, 0, 0, 0x2000_0000]),
+        row(
+            C::M1OverRegenerationWarning,
+            "M1 over-regeneration warning",
+            Warning,
+            None,
+            [0, 0, 0, 0x4000_0000],
+        ),
+        row(
+            C::M2OverRegenerationWarning,
+            "M2 over-regeneration warning",
+            Warning,
+            None,
+            [0, 0, 0, 0x8000_0000],
+        ),
+        row(C::M1Home, "M1 home", Signal, Some(L::M1Home), [0x4000, 0x4000, 0, 0]),
+        row(C::M2Home, "M2 home", Signal, Some(L::M2Home), [0x8000, 0x8000, 0, 0]),
+        row(C::S4Signal, "S4 signal", Signal, Some(L::M1Home), [0, 0, 0x0040_0000, 0x0040_0000]),
+        row(C::S5Signal, "S5 signal", Signal, Some(L::M2Home), [0, 0, 0x0080_0000, 0x0080_0000]),
+    ]
+};
+
+const fn row(
+    condition: Condition,
+    title: &'static str,
+    severity: Severity,
+    lamp: Option<Lamp>,
+    masks: [u32; 4],
+) -> ConditionRow {
+    ConditionRow { condition, title, severity, lamp, masks }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_is_in_the_order_of_the_conditions() {
+        for (index, row) in CONDITIONS.iter().enumerate() {
+            assert_eq!(row.condition as usize, index);
+            assert_eq!(row.condition.title(), row.title);
+        }
+    }
+
+    #[test]
+    fn no_two_conditions_share_a_bit_and_each_has_one() {
+        for generation in Generation::ALL {
+            let mut seen = 0;
+            for row in &CONDITIONS {
+                let mask = row.mask(generation);
+                assert!(mask.count_ones() <= 1 && mask & seen == 0, "{}", row.title);
+                seen |= mask;
+            }
+            assert!(generation > Generation::Gen2 || seen <= 0xFFFF);
+        }
+        assert!(CONDITIONS.iter().all(|row| row.masks.iter().any(|&mask| mask != 0)));
+    }
+
+    #[test]
+    fn words_of_the_manual_read_as_the_manual_says() {
+        let words = [
+            (0x0000, ""),
+            (0x0001, "M1 over-current warning"),
+            (0x0002, "M2 over-current warning"),
+            (0x0004, "E-Stop"),
+            (0x0008, "Temperature error"),
+            (0x0010, "Temperature 2 error"),
+            (0x0020, "Main battery high error"),
+            (0x0040, "Logic battery high error"),
+            (0x0080, "Logic battery low error"),
+            (0x0400, "Main battery high warning"),
+            (0x0800, "Main battery low warning"),
+            (0x1000, "Temperature warning"),
+            (0x2000, "Temperature 2 warning"),
+        ];
+        for (word, title) in words {
+            let titles: Vec<&str> = decode(word, Generation::Gen1).iter().map(Condition::title).collect();
+            assert_eq!(titles.join(", "), title);
+        }
+    }
+
+    #[test]
+    fn the_same_bit_means_another_thing_in_a_later_generation() {
+        let at = |word, generation| decode(word, generation).to_string();
+        assert_eq!(at(0x0001, Generation::Gen2), "M1 over-current warning");
+        assert_eq!(at(0x0001, Generation::Gen3), "E-Stop");
+        assert_eq!(at(0x0008, Generation::Gen4), "Main battery high error");
+        assert_eq!(at(0x4000, Generation::Gen1), "M1 home");
+        assert_eq!(at(0x4000, Generation::Gen3), "normal");
+        assert_eq!(at(0x4000, Generation::Gen4), "Main battery low error");
+        assert_eq!(at(0x0100_0000, Generation::Gen3), "Speed limit warning");
+        assert_eq!(at(0x0100_0000, Generation::Gen4), "M1 speed warning");
+        assert_eq!(unknown_bits(0x4001, Generation::Gen3), 0x4000);
+        assert_eq!(unknown_bits(0xFFFF_FFFF, Generation::Gen4), 0);
+    }
+
+    #[test]
+    fn a_word_survives_decoding_and_encoding_in_every_generation() {
+        for generation in Generation::ALL {
+            for bit in 0..32 {
+                let word = 1 << bit;
+                let back = encode(decode(word, generation), generation);
+                assert_eq!(back, word & !unknown_bits(word, generation));
+            }
+            let all: Conditions = CONDITIONS.iter().map(|row| row.condition).collect();
+            let known = all.known_to(generation);
+            assert_eq!(decode(encode(all, generation), generation), known);
+        }
+    }
+
+    #[test]
+    fn lamps_show_the_gravest_of_their_conditions() {
+        let conditions: Conditions =
+            [Condition::Temperature1Warning, Condition::Temperature1Error].into_iter().collect();
+        assert_eq!(Lamp::Temperature1.lit_by(conditions), Some(Severity::Error));
+        assert_eq!(Lamp::Temperature2.lit_by(conditions), None);
+        assert_eq!(conditions.severity(), Some(Severity::Error));
+        for lamp in Lamp::ALL {
+            assert_eq!(lamp.abbreviation().len(), 4);
+            assert!(CONDITIONS.iter().any(|row| row.lamp == Some(lamp)), "{}", lamp.title());
+        }
+    }
+}
