@@ -7,6 +7,7 @@ pub mod clock;
 pub mod device;
 pub mod exchange;
 pub mod failure;
+pub mod settings;
 pub mod transport;
 pub mod wire;
 

@@ -1,0 +1,26 @@
+//! The settings of a controller: one table, and everything that reads it.
+//!
+//! [`SettingsTable`] says for one controller which settings there are, in which unit and range, which command carries each
+//! and what it means; nothing else repeats a range. [`SettingsImage`] holds values; [`Copies`] tells RAM, EEPROM and
+//! profile apart. Motion, status and the script are not settings.
+
+mod image;
+mod kind;
+mod mcp;
+mod profile;
+mod reference;
+mod row;
+mod table;
+mod template;
+mod value;
+
+pub use image::{Copies, Copy, Difference, SettingsImage, changes, diff};
+pub use kind::{Coding, Kind};
+pub use profile::{FORMAT, Problem, Profile, ProfileError, ProfileFileError, SCHEMA, replace_file};
+pub use reference::{ReferenceForm, ReferenceRow, reference, reference_text};
+pub use row::{Access, Bits, Bound, Carrier, Group, Instance, Place, Range, Row, Sink, Source};
+pub use table::{SettingsTable, Subject};
+pub use value::SettingValue;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,123 @@
+//! A profile: the settings of one controller in a file, with what is needed to judge whether they fit another one.
+//!
+//! The form is JSON with a schema number; each value carries its unit. Reading takes all or nothing: every fault is told
+//! with its place, and nothing is half taken over. The date comes from outside, there is no clock here.
+
+mod error;
+mod file;
+mod json;
+mod parse;
+
+use brushwork_protocol::models::Model;
+use brushwork_protocol::packet_serial::{Address, Generation};
+
+use super::image::{SettingsImage, changes};
+use super::table::{SettingsTable, Subject};
+
+pub use error::{Problem, ProfileError, ProfileFileError};
+pub use file::replace_file;
+
+/// The schema this program writes, and the newest it reads.
+pub const SCHEMA: u64 = 1;
+/// What the "format" member of a profile says.
+pub const FORMAT: &str = "brushwork-settings";
+
+/// The settings of one controller, to be kept in a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Profile {
+    /// The controller they were read from: model, generation, numbers of pins, streams and outputs.
+    pub subject: Subject,
+    /// The reply to command 21, without the line end: "MCP266 2x60A v1.0.0".
+    pub firmware: String,
+    /// The packet serial address they were read at.
+    pub address: Address,
+    /// When they were read, as the caller writes dates; ISO 8601 is advised.
+    pub date: String,
+    /// The values, by key.
+    pub settings: SettingsImage,
+}
+
+/// Whether faults are refused or mended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Strictness {
+    /// Any fault refuses the profile.
+    Refuse,
+    /// Faults of single settings are mended, each with a warning; others still refuse it.
+    Repair,
+}
+
+impl Profile {
+    /// The profile in `text`. Refuses anything that is not exactly right, with every fault it found.
+    pub fn parse(text: &str) -> Result<Self, ProfileError> {
+        parse::parse(text, Strictness::Refuse).map(|(profile, _)| profile)
+    }
+
+    /// The profile in `text` with settings that are unknown, of a wrong type or out of range left out or moved into range,
+    /// and a sentence for each. What is wrong with the file as a whole still refuses it.
+    pub fn parse_repairing(text: &str) -> Result<(Self, Vec<Problem>), ProfileError> {
+        parse::parse(text, Strictness::Repair)
+    }
+
+    /// The profile as text: one line per setting, in screen order.
+    pub fn to_json(&self) -> String {
+        json::write(self)
+    }
+
+    /// The table of the controller the profile was read from.
+    pub fn table(&self) -> SettingsTable {
+        SettingsTable::new(self.subject)
+    }
+
+    /// The changes that bring a controller to this profile. Refuses, with every reason, when the profile was made for
+    /// another model or generation, or holds what that controller does not have or allow.
+    pub fn changes_for(
+        &self,
+        table: &SettingsTable,
+        ram: &SettingsImage,
+    ) -> Result<SettingsImage, ProfileError> {
+        let mut problems = self.misfits(table.subject());
+        for (key, value) in self.settings.iter() {
+            match table.row(key) {
+                None => problems.push(Problem::at_key(key, "The connected controller has no such setting.")),
+                Some(row) if ram.get(key) != Some(value) => {
+                    problems.extend(row.check(value).err().map(|why| Problem::at_key(key, why)));
+                }
+                Some(_) => {}
+            }
+        }
+        if problems.is_empty() {
+            Ok(changes(table, ram, &self.settings))
+        } else {
+            Err(ProfileError { problems })
+        }
+    }
+
+    /// Why the profile is not for that controller as a whole.
+    fn misfits(&self, other: &Subject) -> Vec<Problem> {
+        let mut problems = Vec::new();
+        if self.subject.model != other.model {
+            problems.push(Problem::at_key("model", model_misfit(self.subject.model, other.model)));
+        }
+        if self.subject.generation != other.generation {
+            problems.push(Problem::at_key(
+                "generation",
+                generation_misfit(self.subject.generation, other.generation),
+            ));
+        }
+        problems
+    }
+}
+
+fn model_misfit(profile: &Model, connected: &Model) -> String {
+    format!(
+        "The profile was made for the {} ({}), the connected controller is the {} ({}).",
+        profile.name,
+        profile.rating(),
+        connected.name,
+        connected.rating()
+    )
+}
+
+fn generation_misfit(profile: Generation, connected: Generation) -> String {
+    format!("The profile was made for firmware {profile}, the connected controller has {connected}.")
+}

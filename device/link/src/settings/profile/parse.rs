@@ -1,0 +1,338 @@
+//! Reading the text of a profile: first the file as a whole, then each setting against the table it was made with.
+
+use std::collections::HashSet;
+
+use brushwork_protocol::models::{self, Model};
+use brushwork_protocol::packet_serial::{Address, Generation};
+
+use super::super::image::SettingsImage;
+use super::super::kind::Kind;
+use super::super::row::Row;
+use super::super::table::{SettingsTable, Subject};
+use super::super::value::SettingValue;
+use super::error::{Problem, ProfileError};
+use super::json::{Node, quote};
+use super::{FORMAT, Profile, SCHEMA, Strictness};
+
+/// More pins, streams or outputs than any controller has; a larger number is a fault of the file.
+const MOST_PINS: i64 = 32;
+
+/// The profile in `text`, and what was mended on the way.
+pub(super) fn parse(text: &str, strictness: Strictness) -> Result<(Profile, Vec<Problem>), ProfileError> {
+    let root: Node = serde_json::from_str(text).map_err(|error| not_json(&error))?;
+    let Node::Object(members) = root else {
+        return Err(whole("The file holds no JSON object, so it is no settings profile."));
+    };
+    let mut reader = Reader { text, problems: Vec::new(), warnings: Vec::new(), strictness };
+    reader.check_format(&members)?;
+    reader.check_members(&members);
+    let profile = reader.profile(&members);
+    match profile {
+        Some(profile) if reader.problems.is_empty() => Ok((profile, reader.warnings)),
+        _ => Err(ProfileError { problems: reader.problems }),
+    }
+}
+
+const MEMBERS: [&str; 11] = [
+    "format",
+    "schema",
+    "model",
+    "firmware",
+    "generation",
+    "address",
+    "date",
+    "pins",
+    "streams",
+    "douts",
+    "settings",
+];
+
+struct Reader<'t> {
+    text: &'t str,
+    problems: Vec<Problem>,
+    warnings: Vec<Problem>,
+    strictness: Strictness,
+}
+
+type Members = [(String, Node)];
+
+impl Reader<'_> {
+    /// Whether this is a profile at all, and one whose schema we know: nothing else is worth saying otherwise.
+    fn check_format(&mut self, members: &Members) -> Result<(), ProfileError> {
+        match find(members, "format") {
+            Some(Node::Text(format)) if format == FORMAT => {}
+            _ => {
+                return Err(whole(format!(
+                    "This is no settings profile: it does not say \"format\": \"{FORMAT}\"."
+                )));
+            }
+        }
+        match find(members, "schema") {
+            Some(Node::Int(schema)) if u64::try_from(*schema).is_ok_and(|schema| (1..=SCHEMA).contains(&schema)) => {
+                Ok(())
+            }
+            Some(Node::Int(schema)) if *schema > 0 => Err(self.refusal(
+                "schema",
+                format!("The profile has schema {schema}, this program reads up to {SCHEMA}. A newer program wrote it."),
+            )),
+            other => Err(self.refusal("schema", expected("a schema number from 1", other))),
+        }
+    }
+
+    fn check_members(&mut self, members: &Members) {
+        let mut seen = HashSet::new();
+        for (name, _) in members {
+            if !MEMBERS.contains(&name.as_str()) {
+                self.problem(name, "A profile has no such member.");
+            }
+            if !seen.insert(name) {
+                self.problem(name, "The member stands twice.");
+            }
+        }
+    }
+
+    fn profile(&mut self, members: &Members) -> Option<Profile> {
+        let model = self.model(members);
+        let generation = self.generation(members);
+        let address = self.address(members);
+        let firmware = self.string(members, "firmware");
+        let date = self.string(members, "date");
+        let [pins, streams, douts] = ["pins", "streams", "douts"].map(|name| self.count(members, name));
+        let subject =
+            Subject { model: model?, generation: generation?, pins: pins?, streams: streams?, douts: douts? };
+        let settings = self.settings(members, &SettingsTable::new(subject))?;
+        Some(Profile { subject, firmware: firmware?, address: address?, date: date?, settings })
+    }
+
+    fn model(&mut self, members: &Members) -> Option<&'static Model> {
+        let key = self.string(members, "model")?;
+        let model = models::lookup(&key);
+        if model.is_none() {
+            let known: Vec<&str> = models::MODELS.iter().map(|model| model.key).collect();
+            self.problem(
+                "model",
+                format!("{} is no known model; known are {}.", quote(&key), known.join(", ")),
+            );
+        }
+        model
+    }
+
+    fn generation(&mut self, members: &Members) -> Option<Generation> {
+        let number = self.int(members, "generation")?;
+        let generation = u8::try_from(number).ok().and_then(Generation::from_number);
+        if generation.is_none() {
+            self.problem("generation", format!("{number} is no firmware generation; there are 1 to 4."));
+        }
+        generation
+    }
+
+    fn address(&mut self, members: &Members) -> Option<Address> {
+        let text = self.string(members, "address")?;
+        let byte = text.strip_prefix("0x").and_then(|hex| u8::from_str_radix(hex, 16).ok());
+        let address = byte.and_then(Address::new);
+        if address.is_none() {
+            self.problem("address", format!("{} is no address; there are 0x80 to 0x87.", quote(&text)));
+        }
+        address
+    }
+
+    fn count(&mut self, members: &Members, name: &str) -> Option<usize> {
+        let number = self.int(members, name)?;
+        if !(0..=MOST_PINS).contains(&number) {
+            self.problem(name, format!("{number} is not from 0 to {MOST_PINS}."));
+            return None;
+        }
+        usize::try_from(number).ok()
+    }
+
+    fn string(&mut self, members: &Members, name: &str) -> Option<String> {
+        match find(members, name) {
+            Some(Node::Text(text)) => Some(text.clone()),
+            other => {
+                self.problem(name, expected("a text", other));
+                None
+            }
+        }
+    }
+
+    fn int(&mut self, members: &Members, name: &str) -> Option<i64> {
+        match find(members, name) {
+            Some(Node::Int(number)) => Some(*number),
+            other => {
+                self.problem(name, expected("a whole number", other));
+                None
+            }
+        }
+    }
+
+    fn settings(&mut self, members: &Members, table: &SettingsTable) -> Option<SettingsImage> {
+        let Some(Node::Object(entries)) = find(members, "settings") else {
+            self.problem("settings", expected("an object", find(members, "settings")));
+            return None;
+        };
+        let mut image = SettingsImage::default();
+        for (key, node) in entries {
+            if image.get(key).is_some() {
+                self.problem(&setting_path(key), "The setting stands twice.");
+                continue;
+            }
+            match table.row(key) {
+                Some(row) => {
+                    if let Some(value) = self.setting(row, node) {
+                        image.set(key, value);
+                    }
+                }
+                None => self.minor(&setting_path(key), unknown_setting(table.subject())),
+            }
+        }
+        Some(image)
+    }
+
+    /// One setting: its form, its unit, its kind, its range.
+    fn setting(&mut self, row: &Row, node: &Node) -> Option<SettingValue> {
+        let path = setting_path(&row.key);
+        let value = match read_entry(row, node) {
+            Ok(value) => value,
+            Err(why) => {
+                self.minor(&path, why);
+                return None;
+            }
+        };
+        // A code that no list names may stand in a controller, so it may stand in a profile too.
+        if matches!(value, SettingValue::UnknownCode(_)) {
+            return Some(value);
+        }
+        match (row.repair(value), self.strictness) {
+            ((value, None), _) => Some(value),
+            ((value, Some(why)), Strictness::Repair) => {
+                self.minor(&path, why);
+                Some(value)
+            }
+            ((_, Some(_)), Strictness::Refuse) => {
+                self.minor(&path, row.check(value).err().unwrap_or_default());
+                None
+            }
+        }
+    }
+
+    /// A fault of one setting: a refusal, or a warning when faults are mended.
+    fn minor(&mut self, path: &str, sentence: impl Into<String>) {
+        let problem = self.located(path, sentence);
+        match self.strictness {
+            Strictness::Refuse => self.problems.push(problem),
+            Strictness::Repair => self.warnings.push(problem),
+        }
+    }
+
+    fn problem(&mut self, path: &str, sentence: impl Into<String>) {
+        let problem = self.located(path, sentence);
+        self.problems.push(problem);
+    }
+
+    fn refusal(&self, path: &str, sentence: impl Into<String>) -> ProfileError {
+        ProfileError { problems: vec![self.located(path, sentence)] }
+    }
+
+    /// A problem with the line and column where the member's name first stands as a name.
+    fn located(&self, path: &str, sentence: impl Into<String>) -> Problem {
+        let name = quote(path.strip_prefix(SETTING_PREFIX).unwrap_or(path));
+        let is_name = |at: &usize| self.text[at + name.len()..].trim_start().starts_with(':');
+        let offset = self.text.match_indices(&name).map(|(at, _)| at).find(is_name);
+        let position = offset.map(|at| position(self.text, at));
+        Problem { path: path.to_owned(), position, sentence: sentence.into() }
+    }
+}
+
+const SETTING_PREFIX: &str = "settings.";
+
+fn setting_path(key: &str) -> String {
+    format!("{SETTING_PREFIX}{key}")
+}
+
+fn unknown_setting(subject: &Subject) -> String {
+    format!("The {} with firmware {} has no such setting.", subject.model.name, subject.generation)
+}
+
+/// The value of `{ "value": ..., "unit": ... }` or `{ "code": ... }`, not yet checked against the range.
+fn read_entry(row: &Row, node: &Node) -> Result<SettingValue, String> {
+    let Node::Object(members) = node else {
+        return Err(expected("an object with a \"value\"", Some(node)));
+    };
+    if let Some((name, _)) =
+        members.iter().find(|(name, _)| !matches!(name.as_str(), "value" | "unit" | "code"))
+    {
+        return Err(format!("A setting has no member {}.", quote(name)));
+    }
+    if let (Some(Node::Int(raw)), Kind::Choice(_)) = (find(members, "code"), row.kind) {
+        return Ok(row.decode(*raw));
+    }
+    check_unit(row, find(members, "unit"))?;
+    read_value(row, find(members, "value"))
+}
+
+fn check_unit(row: &Row, unit: Option<&Node>) -> Result<(), String> {
+    let wanted = row.unit.symbol();
+    match unit {
+        None if wanted.is_empty() => Ok(()),
+        Some(Node::Text(unit)) if unit == wanted => Ok(()),
+        None => Err(format!("The unit is missing; it has to be {}.", quote(wanted))),
+        Some(Node::Text(unit)) if wanted.is_empty() => {
+            Err(format!("The unit is {}; there has to be none.", quote(unit)))
+        }
+        Some(Node::Text(unit)) => {
+            Err(format!("The unit is {}; it has to be {}.", quote(unit), quote(wanted)))
+        }
+        Some(other) => Err(expected("a text as unit", Some(other))),
+    }
+}
+
+fn read_value(row: &Row, value: Option<&Node>) -> Result<SettingValue, String> {
+    match (row.kind, value) {
+        (Kind::Bool, Some(Node::Bool(on))) => Ok(SettingValue::Bool(*on)),
+        (Kind::Int, Some(Node::Int(number))) => Ok(SettingValue::Int(*number)),
+        (Kind::Fixed { .. }, Some(Node::Int(number))) => Ok(SettingValue::Number(*number as f64)),
+        (Kind::Fixed { .. }, Some(Node::Float(number))) => Ok(SettingValue::Number(*number)),
+        (Kind::Choice(codes), Some(Node::Text(key))) => match codes.iter().find(|code| code.key == key) {
+            Some(code) => Ok(SettingValue::Choice(code.key)),
+            None => {
+                let keys: Vec<&str> = codes.iter().map(|code| code.key).collect();
+                Err(format!("{} is none of {}.", quote(key), keys.join(", ")))
+            }
+        },
+        (Kind::Bool, other) => Err(expected("true or false", other)),
+        (Kind::Int, other) => Err(expected("a whole number", other)),
+        (Kind::Fixed { .. }, other) => Err(expected("a number", other)),
+        (Kind::Choice(_), other) => Err(expected("a text", other)),
+    }
+}
+
+fn find<'m>(members: &'m Members, name: &str) -> Option<&'m Node> {
+    members.iter().find(|(member, _)| member == name).map(|(_, node)| node)
+}
+
+fn expected(what: &str, got: Option<&Node>) -> String {
+    match got {
+        Some(node) => format!("Expected {what}, got {}.", node.kind()),
+        None => format!("Expected {what}, and there is nothing."),
+    }
+}
+
+fn whole(sentence: impl Into<String>) -> ProfileError {
+    ProfileError { problems: vec![Problem::at_key("", sentence)] }
+}
+
+fn not_json(error: &serde_json::Error) -> ProfileError {
+    let full = error.to_string();
+    let what = full.split(" at line ").next().unwrap_or(&full);
+    let position = (error.line() > 0).then(|| (error.line(), error.column()));
+    ProfileError {
+        problems: vec![Problem { path: String::new(), position, sentence: format!("Not JSON: {what}.") }],
+    }
+}
+
+/// Line and column, both from 1, of a byte of `text`.
+fn position(text: &str, at: usize) -> (usize, usize) {
+    let before = &text[..at];
+    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    (before.matches('\n').count() + 1, text[line_start..at].chars().count() + 1)
+}

@@ -1,0 +1,437 @@
+//! One setting of one controller: where it stands, what it may be, what it means.
+//!
+//! Rows are made by [`SettingsTable`](super::SettingsTable) from templates; this file is what everybody else reads.
+
+use std::fmt;
+
+use brushwork_protocol::packet_serial::Unit;
+use serde::Serialize;
+
+use super::kind::{Coding, Kind};
+use super::value::{Notation, SettingValue};
+
+/// One setting of one controller.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// Stable dotted name: "motor1.velocity.p", "pin.3.deadband".
+    pub key: String,
+    /// The key before its numbers are filled in: "motor{n}.velocity.p"; the same for all rows of a repeated group.
+    pub pattern: &'static str,
+    /// Name within its group: "Velocity P".
+    pub label: &'static str,
+    /// The part of the settings it belongs to.
+    pub group: Group,
+    /// Which motor, pin, stream or output it belongs to, if any.
+    pub instance: Option<Instance>,
+    /// What its value looks like.
+    pub kind: Kind,
+    /// The unit of its value.
+    pub unit: Unit,
+    /// How the value stands in its wire field.
+    pub coding: Coding,
+    /// The lowest and highest value allowed. Unbounded for yes or no and for choices.
+    pub range: Range,
+    /// The value after "restore defaults".
+    pub default: SettingValue,
+    /// Whether the default is our assumption rather than a statement of the manual.
+    pub default_assumed: bool,
+    /// The commands and fields that carry it, or why there are none.
+    pub carrier: Carrier,
+    /// Whether, and where, it may be written.
+    pub access: Access,
+    /// A sentence or two for a newcomer, with the manual section.
+    pub help: &'static str,
+    /// The printed name of the model the row was made for.
+    pub model: &'static str,
+}
+
+/// A part of the settings, in the order in which screens show them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Group {
+    /// Address, mixing, E-Stop, PWM mode.
+    Unit,
+    /// Battery voltage windows.
+    VoltageLimits,
+    /// Current limits per motor.
+    CurrentLimits,
+    /// Which input commands the motors.
+    PriorityLevels,
+    /// Running a script after power up.
+    Scripting,
+    /// Which pin is the encoder of a motor.
+    Encoders,
+    /// Inductance, resistance, acceleration and idle behaviour of a motor.
+    Motor,
+    /// Velocity gains and top speed.
+    Velocity,
+    /// Position gains and travel.
+    Position,
+    /// Speed and position error limits.
+    ErrorLimits,
+    /// Homing.
+    Homing,
+    /// Input pins.
+    Pins,
+    /// Serial ports.
+    Streams,
+    /// CAN and I2C buses.
+    Buses,
+    /// Digital outputs.
+    Outputs,
+    /// What only RoboClaw boards have.
+    RoboClaw,
+}
+
+impl Group {
+    /// Every group, in screen order.
+    pub const ALL: [Self; 16] = [
+        Self::Unit,
+        Self::VoltageLimits,
+        Self::CurrentLimits,
+        Self::PriorityLevels,
+        Self::Scripting,
+        Self::Encoders,
+        Self::Motor,
+        Self::Velocity,
+        Self::Position,
+        Self::ErrorLimits,
+        Self::Homing,
+        Self::Pins,
+        Self::Streams,
+        Self::Buses,
+        Self::Outputs,
+        Self::RoboClaw,
+    ];
+
+    /// The group's heading.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Unit => "Unit settings",
+            Self::VoltageLimits => "Voltage limits",
+            Self::CurrentLimits => "Current limits",
+            Self::PriorityLevels => "Priority levels",
+            Self::Scripting => "Scripting",
+            Self::Encoders => "Encoders",
+            Self::Motor => "Motor",
+            Self::Velocity => "Velocity",
+            Self::Position => "Position",
+            Self::ErrorLimits => "Error limits",
+            Self::Homing => "Homing",
+            Self::Pins => "Pins",
+            Self::Streams => "Serial ports",
+            Self::Buses => "CAN and I2C",
+            Self::Outputs => "Digital outputs",
+            Self::RoboClaw => "RoboClaw",
+        }
+    }
+}
+
+/// Which of several alike things a row belongs to.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Instance {
+    /// Counted from 1; also the number in the key where the key has one.
+    pub number: usize,
+    /// What to call it: "Motor 1", "DIN3/AN3/P3", "TTL UART1", "DOUT2".
+    pub name: String,
+}
+
+/// The lowest and highest value of a row, in its unit, both allowed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Range {
+    /// Lowest value.
+    pub min: f64,
+    /// Highest value.
+    pub max: f64,
+    /// Where the bounds come from.
+    pub bound: Bound,
+}
+
+/// Where the bounds of a range come from; refusals name it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Bound {
+    /// The ratings of the connected model.
+    Model,
+    /// The manual, or the width of the wire field.
+    Field,
+    /// There are no bounds.
+    Unbounded,
+}
+
+impl Range {
+    /// No bounds: yes or no, and choices.
+    pub const UNBOUNDED: Self = Self { min: f64::NEG_INFINITY, max: f64::INFINITY, bound: Bound::Unbounded };
+}
+
+/// What carries a setting between client and controller.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Carrier {
+    /// Packet serial commands.
+    Wire {
+        /// Where it is read.
+        read: Source,
+        /// Where it is written.
+        write: Option<Sink>,
+    },
+    /// Nothing public. A simulated controller still has it, under the row's key.
+    NoWireForm {
+        /// Why, as a sentence.
+        reason: &'static str,
+    },
+}
+
+/// Where a setting is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// A field of a command's reply.
+    Reply {
+        /// Command number.
+        command: u8,
+        /// The field, or its bits.
+        place: Place,
+        /// Which record of a counted reply, from 0.
+        record: Option<usize>,
+    },
+    /// The address the link speaks to; generation 1 has no command that returns it.
+    LinkAddress,
+}
+
+/// Where a setting is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sink {
+    /// Command number.
+    pub command: u8,
+    /// The field, or its bits.
+    pub place: Place,
+    /// The value of the request's first field when the command names a pin, stream or output by index.
+    pub index: Option<u8>,
+}
+
+/// A field of a request or reply, by its name in the protocol table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// Field name.
+    pub field: &'static str,
+    /// The bits of the field, when it shares the field with others.
+    pub bits: Option<Bits>,
+}
+
+/// Some neighbouring bits of a field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bits {
+    /// The lowest bit, from 0.
+    pub shift: u8,
+    /// How many bits.
+    pub width: u8,
+}
+
+impl Bits {
+    /// The bits' own number within `word`.
+    pub fn extract(self, word: i64) -> i64 {
+        (word >> self.shift) & self.low_mask()
+    }
+
+    /// `word` with these bits set to `value`.
+    pub fn insert(self, word: i64, value: i64) -> i64 {
+        (word & !(self.low_mask() << self.shift)) | ((value & self.low_mask()) << self.shift)
+    }
+
+    fn low_mask(self) -> i64 {
+        (1 << self.width) - 1
+    }
+}
+
+/// Whether a row may be written, and where.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Access {
+    /// On every controller that has the row.
+    ReadWrite,
+    /// Nowhere.
+    ReadOnly {
+        /// Why, as a sentence.
+        reason: &'static str,
+    },
+    /// On simulated controllers only, since the wire form, or the meaning of its numbers, is a guess.
+    SimulatedOnly {
+        /// Why, as a sentence.
+        reason: &'static str,
+    },
+}
+
+impl Row {
+    /// The row's full name: "Motor 1 velocity P", "DIN3/AN3/P3 deadband".
+    pub fn title(&self) -> String {
+        match &self.instance {
+            Some(instance) => format!("{}: {}", instance.name, lower_first(self.label)),
+            None => self.label.to_owned(),
+        }
+    }
+
+    /// Why the row cannot be written on this controller; `None` when it can.
+    pub fn locked(&self, simulated: bool) -> Option<&'static str> {
+        match self.access {
+            Access::ReadWrite => None,
+            Access::SimulatedOnly { .. } if simulated => None,
+            Access::ReadOnly { reason } | Access::SimulatedOnly { reason } => Some(reason),
+        }
+    }
+
+    /// Whether packet serial carries the row.
+    pub fn has_wire_form(&self) -> bool {
+        matches!(self.carrier, Carrier::Wire { .. })
+    }
+
+    /// The command and field that write the row, if any.
+    pub fn sink(&self) -> Option<Sink> {
+        match self.carrier {
+            Carrier::Wire { write, .. } => write,
+            Carrier::NoWireForm { .. } => None,
+        }
+    }
+
+    /// The value as text with its unit: "24.0 V".
+    pub fn format(&self, value: SettingValue) -> String {
+        self.notation().format(value)
+    }
+
+    /// The value as text without its unit: "24.0".
+    pub fn format_bare(&self, value: SettingValue) -> String {
+        self.notation().format_bare(value)
+    }
+
+    /// The value that `text` stands for, rounded to the row's step. Refuses, in a sentence, what is no such value or out of range.
+    pub fn parse(&self, text: &str) -> Result<SettingValue, String> {
+        let value = self.notation().parse(text).map_err(|why| format!("{}: {why}", self.title()))?;
+        self.check(value)?;
+        Ok(value)
+    }
+
+    /// Refuses, in a sentence, a value of another kind or outside the row's range.
+    pub fn check(&self, value: SettingValue) -> Result<(), String> {
+        if let SettingValue::UnknownCode(raw) = value {
+            return Err(format!(
+                "{}: {raw} is none of the values known for it, so it is not written.",
+                self.title()
+            ));
+        }
+        if self.coding.encode(self.kind, value).is_none() {
+            return Err(format!("{}: {} is not a {}.", self.title(), self.format(value), self.kind.name()));
+        }
+        match self.crossed_bound(value) {
+            None => Ok(()),
+            Some((side, bound)) => Err(format!(
+                "{} {} is {side} {}.",
+                self.title(),
+                self.format(value),
+                self.bound_text(side, bound)
+            )),
+        }
+    }
+
+    /// The value rounded to the row's step and moved into its range, with a sentence for each thing that had to change.
+    /// A value of another kind becomes the default.
+    pub fn repair(&self, value: SettingValue) -> (SettingValue, Option<String>) {
+        match self.check(value) {
+            Ok(()) => (self.settle(value), None),
+            Err(why) => {
+                let repaired = match self.crossed_bound(value) {
+                    Some((_, bound)) => self.numeric(bound),
+                    None => self.default,
+                };
+                (repaired, Some(format!("{why} {} is used instead.", self.format(repaired))))
+            }
+        }
+    }
+
+    /// The value rounded to the row's step.
+    pub fn settle(&self, value: SettingValue) -> SettingValue {
+        match self.coding.encode(self.kind, value) {
+            Some(raw) => self.coding.decode(self.kind, raw),
+            None => value,
+        }
+    }
+
+    /// The value of a wire number.
+    pub fn decode(&self, raw: i64) -> SettingValue {
+        self.coding.decode(self.kind, raw)
+    }
+
+    /// The wire number of a value; `None` when it is of another kind.
+    pub fn encode(&self, value: SettingValue) -> Option<i64> {
+        self.coding.encode(self.kind, value)
+    }
+
+    /// The row's range as text: "10.0 V to 60.0 V"; empty for yes or no and for choices.
+    pub fn range_text(&self) -> String {
+        if self.range.bound == Bound::Unbounded {
+            return String::new();
+        }
+        let (min, max) = (self.numeric(self.range.min), self.numeric(self.range.max));
+        format!("{} to {}", self.format(min), self.format(max))
+    }
+
+    pub(super) fn notation(&self) -> Notation {
+        Notation { kind: self.kind, coding: self.coding, unit: self.unit }
+    }
+
+    fn crossed_bound(&self, value: SettingValue) -> Option<(Side, f64)> {
+        let number = match (self.kind, value) {
+            (Kind::Int, SettingValue::Int(number)) => number as f64,
+            // Compared by step, so that a bound written as 60.0 and a reading of 60.00 agree.
+            (Kind::Fixed { .. }, SettingValue::Number(number)) => {
+                self.coding.to_physical(self.coding.to_raw(number))
+            }
+            _ => return None,
+        };
+        if number > self.range.max {
+            Some((Side::Above, self.range.max))
+        } else if number < self.range.min {
+            Some((Side::Below, self.range.min))
+        } else {
+            None
+        }
+    }
+
+    fn bound_text(&self, side: Side, bound: f64) -> String {
+        let bound = self.format(self.numeric(bound));
+        match (self.range.bound, side) {
+            (Bound::Model, _) => format!("the {}'s {bound}", self.model),
+            (_, Side::Above) => format!("the highest value, {bound}"),
+            (_, Side::Below) => format!("the lowest value, {bound}"),
+        }
+    }
+
+    fn numeric(&self, number: f64) -> SettingValue {
+        match self.kind {
+            Kind::Int => SettingValue::Int(number as i64),
+            _ => self.settle(SettingValue::Number(number)),
+        }
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Side {
+    Above,
+    Below,
+}
+
+impl fmt::Display for Side {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Above => "above",
+            Self::Below => "below",
+        })
+    }
+}
+
+/// "Velocity P" within a sentence; "QPPS" and "L" keep their capitals.
+fn lower_first(label: &str) -> String {
+    let mut letters = label.chars();
+    match (letters.next(), letters.next()) {
+        (Some(first), Some(second)) if second.is_lowercase() => {
+            first.to_lowercase().chain(label.chars().skip(1)).collect()
+        }
+        _ => label.to_owned(),
+    }
+}

@@ -1,0 +1,23 @@
+//! Tests of the settings over several files of the module: the table against the protocol, values, profiles.
+
+mod consistency;
+mod profile;
+mod values;
+
+use brushwork_protocol::models;
+use brushwork_protocol::packet_serial::Generation;
+
+use super::{SettingsTable, Subject};
+
+/// The table of one model and generation.
+fn table(model: &str, generation: Generation) -> SettingsTable {
+    let model = models::lookup(model).expect("the tests name models of the list");
+    SettingsTable::new(Subject::new(model, generation))
+}
+
+/// The tables of every model in every generation.
+fn every_table() -> impl Iterator<Item = SettingsTable> {
+    models::MODELS.iter().flat_map(|model| {
+        Generation::ALL.map(|generation| SettingsTable::new(Subject::new(model, generation)))
+    })
+}

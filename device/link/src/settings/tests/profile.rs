@@ -1,0 +1,274 @@
+//! Profiles: a round trip, and everything that can be wrong with one.
+
+use brushwork_protocol::models;
+use brushwork_protocol::packet_serial::{Address, Generation};
+
+use super::super::{Profile, SettingValue, SettingsTable, Subject, diff};
+use super::table;
+
+fn profile(model: &str, generation: Generation) -> Profile {
+    let subject = Subject::new(models::lookup(model).expect("a model of the list"), generation);
+    Profile {
+        subject,
+        firmware: "MCP266 2x60A v1.0.0".to_owned(),
+        address: Address::DEFAULT,
+        date: "2026-01-05T10:00:00Z".to_owned(),
+        settings: SettingsTable::new(subject).default_image(),
+    }
+}
+
+/// A valid profile with two settings, as text.
+const SMALL: &str = r#"{
+  "format": "brushwork-settings",
+  "schema": 1,
+  "model": "mcp266",
+  "firmware": "MCP266 2x60A v1.0.0",
+  "generation": 1,
+  "address": "0x80",
+  "date": "2026-01-05",
+  "pins": 10,
+  "streams": 5,
+  "douts": 2,
+  "settings": {
+    "unit.mixing": { "value": true },
+    "limits.main_battery.max_volts": { "value": 24.3, "unit": "V" }
+  }
+}
+"#;
+
+#[test]
+fn a_profile_survives_the_way_to_text_and_back() {
+    for model in ["mcp233", "mcp266", "mcp2166", "roboclaw-2x7a"] {
+        for generation in Generation::ALL {
+            let mut profile = profile(model, generation);
+            if profile.settings.get("dout.1.action").is_some() {
+                profile.settings.set("dout.1.action", SettingValue::UnknownCode(99));
+            }
+            profile.firmware = "strange \"name\"\\ \u{1F600}\u{0}".to_owned();
+            let text = profile.to_json();
+            assert_eq!(Profile::parse(&text).as_ref(), Ok(&profile), "{model} {generation}");
+            assert_eq!(Profile::parse(&text).map(|read| read.to_json()), Ok(text));
+        }
+    }
+}
+
+#[test]
+fn a_profile_is_json_with_one_line_per_setting_and_its_unit() {
+    let text = profile("mcp266", Generation::Gen1).to_json();
+    assert!(serde_json::from_str::<serde_json::Value>(&text).is_ok());
+    assert!(
+        text.contains("\n    \"limits.main_battery.max_volts\": { \"value\": 60.0, \"unit\": \"V\" },\n"),
+        "{text}"
+    );
+    assert!(text.contains("\n    \"motor1.velocity.i\": { \"value\": 0.500 },\n"), "{text}");
+    assert!(text.contains("\n    \"unit.estop_reset\": { \"value\": \"hardware\" },\n"), "{text}");
+}
+
+#[test]
+fn the_small_profile_is_right() {
+    let profile = Profile::parse(SMALL).expect("it is right");
+    assert_eq!(profile.settings.len(), 2);
+    assert_eq!(profile.settings.get("limits.main_battery.max_volts"), Some(SettingValue::Number(24.3)));
+    assert_eq!(profile.subject.model.key, "mcp266");
+}
+
+/// The small profile with one text replaced by another.
+fn broken(from: &str, to: &str) -> Vec<String> {
+    assert!(SMALL.contains(from), "{from}");
+    let error = Profile::parse(&SMALL.replacen(from, to, 1)).expect_err("it is broken");
+    error.problems.iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn each_fault_is_told_with_its_place() {
+    for (from, to, expected) in [
+        ("\"schema\": 1,", "\"schema\": 1", "line 4, column 3: Not JSON: expected `,` or `}`."),
+        ("}\n}", "}", "line 16, column 0: Not JSON: EOF while parsing an object."),
+        (
+            "brushwork-settings",
+            "other",
+            "This is no settings profile: it does not say \"format\": \"brushwork-settings\".",
+        ),
+        (
+            "\"schema\": 1",
+            "\"schema\": 2",
+            "schema (line 3, column 3): The profile has schema 2, this program reads up to 1. A newer program wrote it.",
+        ),
+        (
+            "\"schema\": 1",
+            "\"schema\": \"1\"",
+            "schema (line 3, column 3): Expected a schema number from 1, got a text.",
+        ),
+        (
+            "\"generation\": 1",
+            "\"generation\": 7",
+            "generation (line 6, column 3): 7 is no firmware generation; there are 1 to 4.",
+        ),
+        ("0x80", "0x90", "address (line 7, column 3): \"0x90\" is no address; there are 0x80 to 0x87."),
+        ("\"pins\": 10", "\"pins\": 1000000", "pins (line 9, column 3): 1000000 is not from 0 to 32."),
+        ("\"date\"", "\"data\"", "data (line 8, column 3): A profile has no such member."),
+        (
+            "unit.mixing",
+            "unit.mixxing",
+            "settings.unit.mixxing (line 13, column 5): The MCP266 with firmware generation 1 has no such setting.",
+        ),
+        ("true", "1", "settings.unit.mixing (line 13, column 5): Expected true or false, got a number."),
+        (
+            "\"V\"",
+            "\"mV\"",
+            "settings.limits.main_battery.max_volts (line 14, column 5): The unit is \"mV\"; it has to be \"V\".",
+        ),
+        (
+            ", \"unit\": \"V\"",
+            "",
+            "settings.limits.main_battery.max_volts (line 14, column 5): The unit is missing; it has to be \"V\".",
+        ),
+        (
+            "24.3",
+            "80",
+            "settings.limits.main_battery.max_volts (line 14, column 5): Main battery maximum 80.0 V is above the MCP266's 60.0 V.",
+        ),
+        (
+            "24.3",
+            "\"24.3\"",
+            "settings.limits.main_battery.max_volts (line 14, column 5): Expected a number, got a text.",
+        ),
+        (
+            "{ \"value\": true }",
+            "true",
+            "settings.unit.mixing (line 13, column 5): Expected an object with a \"value\", got true or false.",
+        ),
+        (
+            "{ \"value\": true }",
+            "{ \"value\": true, \"valeu\": 1 }",
+            "settings.unit.mixing (line 13, column 5): A setting has no member \"valeu\".",
+        ),
+    ] {
+        let told = broken(from, to);
+        assert!(told.iter().any(|problem| problem == expected), "{from} -> {to}: {told:#?}");
+    }
+    assert_eq!(
+        broken("mcp266", "mcp999"),
+        [
+            "model (line 4, column 3): \"mcp999\" is no known model; known are mcp233, mcp236, mcp263, mcp266, mcp2126, mcp2128, \
+          mcp2163, mcp2166, mcp2168, mcp2206, roboclaw-2x7a."
+        ]
+    );
+    assert_eq!(
+        broken(
+            "\"limits.main_battery.max_volts\": { \"value\": 24.3, \"unit\": \"V\" }",
+            "\"unit.mixing\": { \"value\": false }"
+        ),
+        ["settings.unit.mixing (line 13, column 5): The setting stands twice."]
+    );
+}
+
+#[test]
+fn several_faults_are_told_at_once() {
+    let text = SMALL
+        .replace("24.3", "99")
+        .replace("true", "\"yes\"")
+        .replace("\"generation\": 1", "\"generation\": 1,\n\"x\": 1");
+    let error = Profile::parse(&text).expect_err("it is broken");
+    assert_eq!(error.problems.len(), 3, "{error}");
+}
+
+#[test]
+fn what_is_no_profile_at_all_is_refused_without_panic() {
+    for text in [
+        "",
+        "null",
+        "[]",
+        "3",
+        "\"x\"",
+        "{}",
+        "{\"format\": 1}",
+        "\u{feff}{}",
+        "{\"format\":\"brushwork-settings\"}",
+    ] {
+        assert!(Profile::parse(text).is_err(), "{text}");
+    }
+    let deep = "[".repeat(100_000);
+    assert!(Profile::parse(&deep).is_err());
+}
+
+#[test]
+fn every_prefix_of_a_profile_is_refused_without_panic() {
+    let whole = SMALL.trim_end();
+    for end in (0..whole.len()).filter(|end| whole.is_char_boundary(*end)) {
+        assert!(Profile::parse(&whole[..end]).is_err(), "{end}");
+    }
+}
+
+#[test]
+fn single_faults_can_be_mended_with_a_warning_each() {
+    let text = SMALL.replace("24.3", "80").replace("unit.mixing", "unit.mixxing");
+    let (profile, warnings) = Profile::parse_repairing(&text).expect("the file as a whole is right");
+    assert_eq!(profile.settings.len(), 1);
+    assert_eq!(profile.settings.get("limits.main_battery.max_volts"), Some(SettingValue::Number(60.0)));
+    let told: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        told,
+        [
+            "settings.unit.mixxing (line 13, column 5): The MCP266 with firmware generation 1 has no such setting.",
+            "settings.limits.main_battery.max_volts (line 14, column 5): Main battery maximum 80.0 V is above the MCP266's \
+             60.0 V. 60.0 V is used instead.",
+        ]
+    );
+}
+
+#[test]
+fn a_profile_of_another_model_or_generation_changes_nothing() {
+    let stored = profile("mcp266", Generation::Gen1);
+    let here = table("mcp233", Generation::Gen3);
+    let error = stored.changes_for(&here, &here.default_image()).expect_err("it does not fit");
+    let told = error.to_string();
+    assert!(told.contains(
+        "model: The profile was made for the MCP266 (2x60A), the connected controller is the MCP233 (2x30A)."
+    ));
+    assert!(told.contains("generation: The profile was made for firmware generation 1, the connected controller has generation 3."));
+    assert!(told.contains("unit.pwm_mode: The connected controller has no such setting."));
+    assert!(told.contains(
+        "motor1.current.max_amps: Motor 1: maximum current 60.00 A is above the MCP233's 30.00 A."
+    ));
+}
+
+#[test]
+fn a_profile_gives_exactly_the_changes_it_asks_for() {
+    let stored = Profile::parse(SMALL).expect("it is right");
+    let here = table("mcp266", Generation::Gen1);
+    let ram = here.default_image();
+    let changes = stored.changes_for(&here, &ram).expect("it fits");
+    let keys: Vec<&str> = changes.iter().map(|(key, _)| key).collect();
+    assert_eq!(keys, ["limits.main_battery.max_volts", "unit.mixing"]);
+    let mut after = ram.clone();
+    after.merge(&changes);
+    let told: Vec<String> = diff(&here, &ram, &after)
+        .iter()
+        .map(|change| change.describe(here.row(&change.key).expect("a row")))
+        .collect();
+    assert_eq!(told, ["Control mixing: no -> yes", "Main battery maximum: 60.0 V -> 24.3 V"]);
+}
+
+#[test]
+fn a_file_is_replaced_whole_or_not_at_all() {
+    let folder = tempfile::tempdir().expect("a folder for the test");
+    let path = folder.path().join("cart.json");
+    let first = profile("mcp266", Generation::Gen1);
+    first.save(&path).expect("the folder is writable");
+    let mut second = first.clone();
+    second.settings.set("unit.mixing", SettingValue::Bool(true));
+    second.save(&path).expect("the folder is writable");
+    assert_eq!(Profile::load(&path).expect("it was just written"), second);
+    let names: Vec<_> = std::fs::read_dir(folder.path()).expect("it exists").collect();
+    assert_eq!(names.len(), 1, "no temporary file stays: {names:?}");
+
+    let lost = folder.path().join("no such folder").join("cart.json");
+    let told = first.save(&lost).expect_err("there is no such folder").to_string();
+    assert!(
+        told.starts_with("Writing the profile ") && told.ends_with("A file of that name is unchanged."),
+        "{told}"
+    );
+    let told = Profile::load(&lost).expect_err("there is no such file").to_string();
+    assert!(told.starts_with("Reading the profile "), "{told}");
+}
