@@ -3,6 +3,7 @@
 //! The tests themselves are in `tests/tests`. Nothing here knows the window or the protocol; a test that needs
 //! a controller brings one up through `brushwork-sim`.
 
+pub mod foreign;
 pub mod program;
 pub mod rust_source;
 pub mod truth;
