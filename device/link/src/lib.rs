@@ -15,4 +15,4 @@ pub use clock::{Clock, SystemClock, VirtualClock};
 pub use exchange::{ExchangeError, Interruption, LinkStatistics};
 pub use failure::Failure;
 pub use transport::{ConnectTarget, Stream, Transport, TransportError};
-pub use wire::Wire;
+pub use wire::{HiddenSettings, Wire};

@@ -2,6 +2,7 @@
 
 use crate::exchange::ExchangeError;
 use brushwork_protocol::packet_serial::{Address, Generation, Request, Value, Values};
+use std::fmt;
 use std::time::Duration;
 
 /// Packet serial to one unit. Behind it stand deadlines, retries, the Stop flag and the arming rule.
@@ -44,8 +45,34 @@ pub trait Wire {
         self.transact_values(command, request.values)
     }
 
+    /// Speaks to another address from now on: the unit has just been given it. `false` when this wire cannot follow.
+    fn set_address(&mut self, _address: Address) -> bool {
+        false
+    }
+
+    /// What a simulated controller lets its owner set past the wire; `None` on everything else.
+    fn hidden_settings(&self) -> Option<&dyn HiddenSettings> {
+        None
+    }
+
+    /// Tells whoever waits how far the work is.
+    fn report_progress(&mut self, _done: usize, _of: usize, _what: &str) {}
+
+    /// Whether others may speak to the unit between this wire's exchanges. They may not while the unit restarts.
+    fn set_quiet(&mut self, _quiet: bool) {}
+
     /// The unit and its port, for sentences: "0x80 at /dev/ttyACM0".
     fn describe(&self) -> String {
         format!("{} at {}", self.address(), self.port())
     }
+}
+
+/// Settings that no public command carries, as far as a simulated controller has them: read and set past the wire, in its
+/// own world. A real controller has no such thing, so a guess cannot reach one.
+pub trait HiddenSettings: fmt::Debug + Send + Sync {
+    /// The raw value behind a key of the settings table; `None` if the unit has no such setting.
+    fn get(&self, address: Address, key: &str) -> Option<i64>;
+
+    /// Sets it; an error is a sentence.
+    fn set(&self, address: Address, key: &str, raw: i64) -> Result<(), String>;
 }

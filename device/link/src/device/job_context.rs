@@ -2,7 +2,7 @@
 
 use super::channel::Sample;
 use crate::exchange::{ExchangeError, Interruption, Reply};
-use crate::wire::Wire;
+use crate::wire::{HiddenSettings, Wire};
 use brushwork_protocol::packet_serial::{Address, Generation, Value, Values};
 use std::time::Duration;
 
@@ -19,6 +19,8 @@ pub(super) trait JobHost {
     fn is_simulated(&self) -> bool;
     fn now(&self) -> Duration;
     fn port(&self) -> String;
+    fn set_address(&mut self, address: Address) -> bool;
+    fn hidden_settings(&self) -> Option<&dyn HiddenSettings>;
 }
 
 /// The device thread, as a job sees it. Use it as a [`Wire`].
@@ -86,5 +88,22 @@ impl Wire for JobContext<'_> {
 
     fn port(&self) -> String {
         self.host.port()
+    }
+
+    fn set_address(&mut self, address: Address) -> bool {
+        self.host.set_address(address)
+    }
+
+    fn hidden_settings(&self) -> Option<&dyn HiddenSettings> {
+        self.host.hidden_settings()
+    }
+
+    fn report_progress(&mut self, done: usize, of: usize, what: &str) {
+        let fraction = if of == 0 { None } else { Some(done as f32 / of as f32) };
+        self.host.progress(fraction, what);
+    }
+
+    fn set_quiet(&mut self, quiet: bool) {
+        self.host.set_polling(!quiet);
     }
 }

@@ -2,6 +2,8 @@
 
 use super::request::PollRate;
 use crate::transport::Stream;
+use crate::wire::HiddenSettings;
+use std::sync::Arc;
 
 /// Which units of a bus to look for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -22,6 +24,8 @@ pub struct DeviceOptions {
     pub stream: Option<Stream>,
     /// Whether the controller is simulated in this program: guesses about the wire may then be sent.
     pub simulated: bool,
+    /// The simulated controller's settings that have no wire form; `None` on everything else.
+    pub hidden: Option<Arc<dyn HiddenSettings>>,
     /// How often the signals are read at first.
     pub poll: PollRate,
     /// Events that the channel to the window holds.
@@ -36,6 +40,7 @@ impl Default for DeviceOptions {
             addresses: Addresses::Scan,
             stream: None,
             simulated: false,
+            hidden: None,
             poll: PollRate::DEFAULT,
             event_capacity: 1024,
             request_capacity: 64,

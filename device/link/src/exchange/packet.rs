@@ -139,6 +139,11 @@ impl Wire for PacketWire {
     fn port(&self) -> String {
         self.exchange.port()
     }
+
+    fn set_address(&mut self, address: Address) -> bool {
+        self.address = address;
+        true
+    }
 }
 
 /// Length of the shortest reply whose length depends on its content: a count and a CRC.
