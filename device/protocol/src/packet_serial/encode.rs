@@ -30,7 +30,7 @@ pub enum EncodeError {
         generation: Generation,
     },
     /// Too few or too many values.
-    #[error("command {command} takes {expected} values, not {got}")]
+    #[error("wrong number of values for command {command}: {got} given, {expected} expected")]
     WrongCount {
         /// The number.
         command: u8,

@@ -74,6 +74,8 @@ pub enum Unit {
     None,
     /// A set of bits, shown in hexadecimal.
     Bits,
+    /// The bits of [`status`](super::status), whose meaning depends on the generation.
+    Status,
     /// A controller gain.
     Gain,
     /// Percent.
@@ -212,7 +214,7 @@ impl Unit {
     /// The symbol behind a number; empty for plain numbers, gains and bits.
     pub const fn symbol(self) -> &'static str {
         match self {
-            Self::None | Self::Bits | Self::Gain => "",
+            Self::None | Self::Bits | Self::Status | Self::Gain => "",
             Self::Percent => "%",
             Self::PercentPerSecond => "%/s",
             Self::Counts => "counts",

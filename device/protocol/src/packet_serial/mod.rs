@@ -10,12 +10,14 @@
 //! [`encode_reply`] (a controller).
 
 mod command;
+mod describe;
 mod encode;
 mod field;
 mod framer;
 mod identity;
 pub mod number;
 mod parse;
+pub mod reference;
 mod request;
 pub mod scale;
 pub mod status;
@@ -23,6 +25,10 @@ mod table;
 mod value;
 
 pub use command::{ClientUse, Command, Direction, Effect, Form, Reply, Simulated};
+pub use describe::{
+    describe_discarded, describe_event, describe_framed, describe_reply, describe_request, describe_value,
+    describe_values, hex, label,
+};
 pub use encode::{ACK, EncodeError, encode_ack, encode_reply, encode_reply_named};
 pub use field::{Field, Kind, Unit};
 pub use framer::{

@@ -78,25 +78,17 @@ pub(super) const ROWS: &[Command] = &[
     )
     .note("Only on units with a second sensor."),
     Command::new(number::READ_STATUS, "read_status", "read status", MANUAL_ADVANCED, STATUS)
-        .note("The bits mean different things in two bytes and in four; see the module status."),
+        .note("The bits mean different things in two bytes and in four; see the table of status bits."),
 ];
 
 const STATUS: &[Form] = forms![
-    read(
-        G1,
-        G2,
-        fields![Field::new("status", Kind::U16, "state of the unit, see the module status").unit(Unit::Bits)]
-    ),
-    read(
-        G3,
-        G4,
-        fields![Field::new("status", Kind::U32, "state of the unit, see the module status").unit(Unit::Bits)]
-    ),
+    read(G1, G2, fields![Field::new("status", Kind::U16, "state of the unit").unit(Unit::Status)]),
+    read(G3, G4, fields![Field::new("status", Kind::U32, "state of the unit").unit(Unit::Status)]),
 ];
 
 const ALL_STATUS: &[Field] = fields![
     Field::new("tick", Kind::U32, "running time of the unit"),
-    Field::new("status", Kind::U32, "as command 90").unit(Unit::Bits),
+    Field::new("status", Kind::U32, "as command 90").unit(Unit::Status),
     celsius("temperature_1"),
     celsius("temperature_2"),
     volts("main_battery"),
