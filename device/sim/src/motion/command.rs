@@ -170,6 +170,13 @@ pub struct Conditions {
     pub current_limit_share: f64,
 }
 
+impl Conditions {
+    /// Whether a limit is in the way of a signed duty or speed.
+    pub(crate) fn bars(&self, signed: f64) -> bool {
+        self.forward_limit && signed > 0.0 || self.backward_limit && signed < 0.0
+    }
+}
+
 impl Default for Conditions {
     fn default() -> Self {
         Conditions {

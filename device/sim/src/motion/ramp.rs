@@ -26,6 +26,9 @@ impl Rates {
 }
 
 impl Ramp {
+    /// Bound of the scaled value, far above any speed and far below overflow.
+    const LARGEST: f64 = 1e17;
+
     pub fn new(rate_hz: u32) -> Self {
         Ramp { rate_hz: i64::from(rate_hz.max(1)), scaled: 0 }
     }
@@ -73,7 +76,7 @@ impl Ramp {
     }
 
     fn scaled_from(&self, value: f64) -> i64 {
-        (value * self.rate_hz as f64).round() as i64
+        (value * self.rate_hz as f64).round().clamp(-Self::LARGEST, Self::LARGEST) as i64
     }
 }
 

@@ -82,10 +82,8 @@ impl Channel {
     }
 
     fn advance_duty(&mut self, goal_raw: i32, rates: Rates, conditions: &Conditions) {
-        let barred =
-            |duty: f64| conditions.forward_limit && duty > 0.0 || conditions.backward_limit && duty < 0.0;
-        let goal = if barred(f64::from(goal_raw)) { 0.0 } else { f64::from(goal_raw) };
-        if barred(self.duty.value()) {
+        let goal = if conditions.bars(f64::from(goal_raw)) { 0.0 } else { f64::from(goal_raw) };
+        if conditions.bars(self.duty.value()) {
             self.duty.approach(0.0, FASTEST);
         } else {
             self.duty.approach(goal, rates);
@@ -204,9 +202,9 @@ impl Channel {
         conditions: &Conditions,
         settings: &MotionSettings,
     ) -> Demand {
-        let setpoint = self.speed.value();
-        if conditions.forward_limit && setpoint > 0.0 || conditions.backward_limit && setpoint < 0.0 {
+        if conditions.bars(self.speed.value()) {
             self.speed.set(0.0);
+            return self.brake_at_limit();
         }
         let setpoint = self.speed.value();
         let measured = self.encoder.estimate(&self.law);
@@ -230,12 +228,24 @@ impl Channel {
         self.errors.speed_exceeded = limit > 0.0 && self.mode.is_ramped() && error.abs() > limit;
     }
 
+    /// Duty to 0 at the highest rate, and there it stays: a loop that goes on would creep about the limit.
+    fn brake_at_limit(&mut self) -> Demand {
+        self.velocity.reset();
+        let applied = self.stage.output().duty();
+        let step = self.fastest_duty_step();
+        Demand::Duty(applied - applied.clamp(-step, step))
+    }
+
+    fn fastest_duty_step(&self) -> f64 {
+        f64::from(MAX_DUTY_ACCELERATION) / f64::from(DUTY_ACCELERATION_PER_S) * self.law.tick_s()
+    }
+
     /// What the current limit and the travel limits leave, lowest and highest duty. A limit in the way of a running
     /// motor takes its duty to 0 at the highest rate.
     fn duty_bounds(&self, conditions: &Conditions) -> (f64, f64) {
         let (mut lowest, mut highest) = self.stage.bounds();
         let applied = self.stage.output().duty();
-        let step = f64::from(MAX_DUTY_ACCELERATION) / f64::from(DUTY_ACCELERATION_PER_S) * self.law.tick_s();
+        let step = self.fastest_duty_step();
         if conditions.forward_limit {
             highest = highest.min((applied - step).max(0.0));
         }
