@@ -4,6 +4,7 @@
 //! checked only for consistency with the documented facts named beside it. A tuner must not trust any one of these laws, so that
 //! all of them can be chosen; [`ControlLaw::default`] is the one place that says which the simulator uses unless told otherwise.
 
+use brushwork_protocol::packet_serial::scale;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
@@ -142,7 +143,7 @@ impl Default for ControlLaw {
         ControlLaw {
             rate_hz: 300,
             gain_timing: GainTiming::PerTick,
-            position_gain_scale: 1024.0,
+            position_gain_scale: scale::POSITION_GAIN,
             feed_forward: true,
             velocity_estimate: VelocityEstimate::LastTick,
             derivative_of: DerivativeOf::Error,

@@ -32,4 +32,4 @@ pub use law::{
 };
 pub use mixing::{Mixer, mixed_duties, seven_bit_backward, seven_bit_centered, seven_bit_forward};
 pub use relay::Oscillation;
-pub use settings::{DUTY_ACCELERATION_PER_S, FULL_DUTY_RAW, Gains, MAX_DUTY_ACCELERATION, MotionSettings};
+pub use settings::{FULL_DUTY_RAW, Gains, MAX_DUTY_ACCELERATION, MotionSettings};

@@ -6,6 +6,9 @@ use super::{BridgeOverride, ControlLaw, MotionSettings};
 use crate::bridge::BridgeOutput;
 use std::f64::consts::TAU;
 
+/// Shorter steps are rounding errors of whoever divides a tick.
+const SHORTEST_STEP_S: f64 = 1e-9;
+
 /// What the loops ask of the output stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Demand {
@@ -98,7 +101,10 @@ impl OutputStage {
         self.limiter.limiting
     }
 
+    /// Goes on by `dt_s` with the current measured at its end. A step of no length takes over a new demand, while limit and
+    /// torque loop wait.
     pub fn step(&mut self, amps: f64, bus_volts: f64, dt_s: f64) -> BridgeOutput {
+        let dt_s = if dt_s < SHORTEST_STEP_S { 0.0 } else { dt_s };
         self.output = match (self.bridge, self.demand) {
             (BridgeOverride::Brake, _) => BridgeOutput::Brake,
             (BridgeOverride::Freewheel, _) | (_, Demand::Coast) => BridgeOutput::Coast,

@@ -1,17 +1,12 @@
 //! The settings of one channel as the loops use them: raw wire values, scaled here and nowhere else in this module.
 
 use super::ControlLaw;
+use brushwork_protocol::packet_serial::scale;
 
 /// Raw duty of 100 %; 0 to 32767 (MCP manual, command 32).
-pub const FULL_DUTY_RAW: i32 = 32_767;
-/// Raw duty acceleration of 100 % per second (MCP manual, command 52).
-pub const DUTY_ACCELERATION_PER_S: i32 = 32_768;
+pub const FULL_DUTY_RAW: i32 = scale::FULL_DUTY_RAW as i32;
 /// Highest raw duty acceleration: 100 % to -100 % in 100 ms (MCP manual, command 52).
-pub const MAX_DUTY_ACCELERATION: u32 = 655_359;
-
-const VELOCITY_GAIN_SCALE: f64 = 65_536.0;
-const LR_SCALE: f64 = 16_777_216.0;
-const CURRENT_UNIT_AMPS: f64 = 0.01;
+pub const MAX_DUTY_ACCELERATION: u32 = scale::MAX_DUTY_ACCEL_RAW as u32;
 
 /// Settings of one channel, raw as they travel on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -146,26 +141,26 @@ impl MotionSettings {
     /// Speed of position commands that carry none, counts/s.
     #[must_use]
     pub fn default_speed(&self) -> u32 {
-        scaled_share(self.qpps, u64::from(self.default_speed_raw))
+        scaled_share(self.qpps, u32::from(self.default_speed_raw), scale::DEFAULT_SPEED_RAW)
     }
 
     /// Acceleration of position commands that carry none, counts/s^2. Assumed: the default duty acceleration as a share of
     /// QPPS per second.
     #[must_use]
     pub fn default_acceleration(&self) -> u32 {
-        scaled_share(self.qpps, u64::from(self.default_accel_raw))
+        scaled_share(self.qpps, self.default_accel_raw, scale::DUTY_ACCEL_RAW_PER_SECOND)
     }
 
     /// Like [`MotionSettings::default_acceleration`] from the default deceleration, counts/s^2.
     #[must_use]
     pub fn default_deceleration(&self) -> u32 {
-        scaled_share(self.qpps, u64::from(self.default_decel_raw))
+        scaled_share(self.qpps, self.default_decel_raw, scale::DUTY_ACCEL_RAW_PER_SECOND)
     }
 
     /// Highest driving current, A; `None` = no limit.
     #[must_use]
     pub fn max_current_amps(&self) -> Option<f64> {
-        (self.max_current_raw != 0).then(|| f64::from(self.max_current_raw) * CURRENT_UNIT_AMPS)
+        (self.max_current_raw != 0).then(|| f64::from(self.max_current_raw) * scale::CURRENT_AMPS)
     }
 
     /// Highest braking current as a magnitude, A; `None` = no limit.
@@ -174,25 +169,25 @@ impl MotionSettings {
         if self.min_current_raw == 0 {
             return self.max_current_amps();
         }
-        Some(f64::from(self.min_current_raw.unsigned_abs()) * CURRENT_UNIT_AMPS)
+        Some(f64::from(self.min_current_raw.unsigned_abs()) * scale::CURRENT_AMPS)
     }
 
     /// Motor inductance, H.
     #[must_use]
     pub fn inductance_henries(&self) -> f64 {
-        f64::from(self.inductance_raw) / LR_SCALE
+        f64::from(self.inductance_raw) / scale::INDUCTANCE_RESISTANCE
     }
 
     /// Motor resistance, ohm.
     #[must_use]
     pub fn resistance_ohms(&self) -> f64 {
-        f64::from(self.resistance_raw) / LR_SCALE
+        f64::from(self.resistance_raw) / scale::INDUCTANCE_RESISTANCE
     }
 
     /// Gains of the velocity loop; counts/s in, counts/s out.
     #[must_use]
     pub fn velocity_gains(&self) -> Gains {
-        scaled_gains([self.velocity_p_raw, self.velocity_i_raw, self.velocity_d_raw], VELOCITY_GAIN_SCALE)
+        scaled_gains([self.velocity_p_raw, self.velocity_i_raw, self.velocity_d_raw], scale::VELOCITY_GAIN)
     }
 
     /// Gains of the position loop; counts in, counts/s out.
@@ -202,9 +197,9 @@ impl MotionSettings {
     }
 }
 
-fn scaled_share(whole: u32, share_raw: u64) -> u32 {
-    let scaled = u64::from(whole) * share_raw / u64::from(DUTY_ACCELERATION_PER_S.unsigned_abs());
-    u32::try_from(scaled).unwrap_or(u32::MAX)
+fn scaled_share(whole: u32, share_raw: u32, full_raw: f64) -> u32 {
+    // The cast saturates.
+    (f64::from(whole) * f64::from(share_raw) / full_raw) as u32
 }
 
 fn scaled_gains(raw: [u32; 3], scale: f64) -> Gains {

@@ -6,8 +6,7 @@ use super::super::pid::{PositionBounds, VelocityStep};
 use super::super::ramp::{Rates, stopping_speed};
 use super::super::relay::{RelayStep, RelayTest};
 use super::super::{
-    Conditions, DUTY_ACCELERATION_PER_S, DistanceEnd, FULL_DUTY_RAW, MAX_DUTY_ACCELERATION, MotionSettings,
-    PositionForm, RelayOn,
+    Conditions, DistanceEnd, FULL_DUTY_RAW, MAX_DUTY_ACCELERATION, MotionSettings, PositionForm, RelayOn,
 };
 use super::mode::{DistanceRun, FASTEST, Mode, PositionRun};
 use super::{Channel, HomeOutcome, LoopErrors};
@@ -237,7 +236,7 @@ impl Channel {
     }
 
     fn fastest_duty_step(&self) -> f64 {
-        f64::from(MAX_DUTY_ACCELERATION) / f64::from(DUTY_ACCELERATION_PER_S) * self.law.tick_s()
+        f64::from(MAX_DUTY_ACCELERATION) / f64::from(FULL_DUTY_RAW) * self.law.tick_s()
     }
 
     /// What the current limit and the travel limits leave, lowest and highest duty. A limit in the way of a running
