@@ -2,8 +2,10 @@
 //! See `ARCHITECTURE.md`.
 
 pub mod bridge;
+pub mod faults;
 pub mod machine;
 pub mod motion;
+pub mod pacing;
 pub mod plant;
 pub mod presets;
 pub mod priority;

@@ -1,8 +1,8 @@
 //! What a person, a panel, a fault script or a test can do to a world.
 
 use super::Motor;
-use super::World;
 use super::pins::{PinSignal, SwitchKind};
+use super::{World, WorldView};
 use serde::{Deserialize, Serialize};
 
 /// One thing done to the world.
@@ -166,6 +166,41 @@ impl World {
             WorldAction::Unplug { unplugged } => self.plugged = !unplugged,
             WorldAction::SetHidden { .. } => {}
         }
+    }
+}
+
+impl WorldAction {
+    /// The action that takes this one back in a world that looked like `before`; none where there is nothing to take back.
+    pub fn undo(&self, before: &WorldView) -> Option<Self> {
+        let truth = |motor: Motor| before.axes[motor.index()].truth;
+        Some(match *self {
+            Self::SetLoadTorque { motor, .. } => {
+                Self::SetLoadTorque { motor, newton_metres: truth(motor).load_newton_metres }
+            }
+            Self::SetBatteryVolts { .. } => Self::SetBatteryVolts { volts: before.battery_volts },
+            Self::SetBatteryOhms { .. } => Self::SetBatteryOhms { ohms: before.battery_ohms },
+            Self::SetBatterySinks { .. } => Self::SetBatterySinks { can_sink: before.battery_sinks },
+            Self::ConnectBattery { .. } => Self::ConnectBattery { connected: before.battery_connected },
+            Self::SetLogicVolts { .. } => Self::SetLogicVolts { volts: before.logic_volts },
+            Self::SetPin { pin, .. } => Self::SetPin { pin, signal: PinSignal::Open },
+            Self::HoldSwitch { motor, switch, .. } => Self::HoldSwitch { motor, switch, closed: false },
+            Self::EStop { .. } => Self::EStop { pressed: before.estop_pressed },
+            Self::ReverseEncoder { motor, .. } => {
+                Self::ReverseEncoder { motor, on: truth(motor).encoder_reversed }
+            }
+            Self::LoseEncoder { motor, .. } => Self::LoseEncoder { motor, on: truth(motor).encoder_lost },
+            Self::SetEncoderNoise { motor, .. } => {
+                Self::SetEncoderNoise { motor, counts: truth(motor).encoder_noise_counts }
+            }
+            Self::SwapEncoders { .. } => Self::SwapEncoders { on: before.encoders_swapped },
+            Self::LockShaft { motor, .. } => Self::LockShaft { motor, on: truth(motor).shaft_locked },
+            Self::OpenLead { motor, .. } => Self::OpenLead { motor, on: truth(motor).lead_open },
+            Self::ReverseLeads { motor, .. } => Self::ReverseLeads { motor, on: truth(motor).leads_reversed },
+            Self::SetBoardCelsius { .. } => Self::SetBoardCelsius { celsius: None },
+            Self::Power { .. } => Self::Power { on: before.powered },
+            Self::Unplug { .. } => Self::Unplug { unplugged: !before.plugged },
+            Self::SetHidden { .. } => return None,
+        })
     }
 }
 

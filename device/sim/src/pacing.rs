@@ -1,0 +1,159 @@
+//! Bytes at the baud rate: a wrapper that lets each byte of a machine take its time on the wire, both ways.
+//!
+//! It has no clock of its own: like any machine it is advanced, and it hands each byte on at the very moment at which its last
+//! bit is through. A reply leaves as one write when its last byte would have arrived at the host.
+
+use crate::machine::{Machine, StreamIndex};
+use crate::world::{WorldAction, WorldView};
+use std::collections::VecDeque;
+use std::time::Duration;
+
+/// Bits a byte takes on the wire: start, eight data bits, stop.
+pub const BITS_PER_BYTE: u32 = 10;
+
+/// Least time from the last bit of a request to the first bit of its reply on a paced line. Assumed: a tenth of a millisecond
+/// of work; a controller that waits longer by itself (1 ms at 38400 and slower, MCP manual 2.2) is not made slower still.
+pub const TURNAROUND: Duration = Duration::from_micros(100);
+
+/// Time one byte takes at a rate.
+pub fn byte_time(bits_per_second: u32) -> Duration {
+    Duration::from_nanos(u64::from(BITS_PER_BYTE) * 1_000_000_000 / u64::from(bits_per_second.max(1)))
+}
+
+/// A machine behind lines of limited speed.
+#[derive(Debug)]
+pub struct Paced<M> {
+    inner: M,
+    enabled: bool,
+    lines: [Line; StreamIndex::ALL.len()],
+}
+
+#[derive(Debug, Default)]
+struct Line {
+    /// Bytes on their way to the machine, each with the time its last bit arrives.
+    requests: VecDeque<(Duration, u8)>,
+    last_request_byte_at: Option<Duration>,
+    /// Replies on their way to the host, each with the time its last bit arrives.
+    replies: VecDeque<(Duration, Vec<u8>)>,
+    last_reply_byte_at: Duration,
+}
+
+impl<M: Machine> Paced<M> {
+    /// `enabled` false lets everything through at once.
+    pub fn new(inner: M, enabled: bool) -> Self {
+        Self { inner, enabled, lines: Default::default() }
+    }
+
+    /// The machine behind the lines.
+    pub fn inner_mut(&mut self) -> &mut M {
+        &mut self.inner
+    }
+
+    /// Takes away what is on its way on all lines, as when the host's cable is pulled or its program closes the port.
+    pub fn clear(&mut self) {
+        self.lines = Default::default();
+    }
+
+    /// The next moment after `now` at which something happens on a line or the machine says something.
+    fn next_event(&self) -> Option<Duration> {
+        let on_lines = self.lines.iter().filter_map(|line| line.requests.front().map(|(at, _)| *at)).min();
+        earliest(on_lines, self.inner.next_output_at().filter(|at| *at > self.inner.now()))
+    }
+
+    /// Hands over the bytes that have arrived and takes up what the machine answers.
+    fn exchange(&mut self) {
+        let now = self.inner.now();
+        for stream in StreamIndex::ALL {
+            let line = &mut self.lines[stream.index()];
+            while line.requests.front().is_some_and(|(at, _)| *at <= now) {
+                if let Some((at, byte)) = line.requests.pop_front() {
+                    line.last_request_byte_at = Some(at);
+                    self.inner.receive(stream, &[byte]);
+                }
+            }
+            let byte_time = byte_time(self.inner.bits_per_second(stream));
+            while let Some(reply) = self.inner.take_output(stream) {
+                let turned = line.last_request_byte_at.map_or(now, |at| now.max(at + TURNAROUND));
+                let starts = turned.max(line.last_reply_byte_at);
+                line.last_reply_byte_at = starts + byte_time * reply.len() as u32;
+                line.replies.push_back((line.last_reply_byte_at, reply));
+            }
+        }
+    }
+}
+
+impl<M: Machine> Machine for Paced<M> {
+    fn now(&self) -> Duration {
+        self.inner.now()
+    }
+
+    fn receive(&mut self, stream: StreamIndex, bytes: &[u8]) {
+        if !self.enabled {
+            return self.inner.receive(stream, bytes);
+        }
+        let byte_time = byte_time(self.inner.bits_per_second(stream));
+        let line = &mut self.lines[stream.index()];
+        let mut at = line.requests.back().map_or(self.inner.now(), |(at, _)| *at);
+        for byte in bytes {
+            at += byte_time;
+            line.requests.push_back((at, *byte));
+        }
+    }
+
+    fn advance(&mut self, to: Duration) {
+        if !self.enabled {
+            return self.inner.advance(to);
+        }
+        self.exchange();
+        while let Some(at) = self.next_event().filter(|at| *at <= to) {
+            self.inner.advance(at);
+            self.exchange();
+        }
+        self.inner.advance(to);
+        self.exchange();
+    }
+
+    fn next_output_at(&self) -> Option<Duration> {
+        if !self.enabled {
+            return self.inner.next_output_at();
+        }
+        let replies = self.lines.iter().filter_map(|line| line.replies.front().map(|(at, _)| *at)).min();
+        earliest(replies, self.next_event())
+    }
+
+    fn take_output(&mut self, stream: StreamIndex) -> Option<Vec<u8>> {
+        if !self.enabled {
+            return self.inner.take_output(stream);
+        }
+        let now = self.inner.now();
+        let replies = &mut self.lines[stream.index()].replies;
+        replies.pop_front_if(|(at, _)| *at <= now).map(|(_, reply)| reply)
+    }
+
+    fn bits_per_second(&self, stream: StreamIndex) -> u32 {
+        self.inner.bits_per_second(stream)
+    }
+
+    fn units(&self) -> usize {
+        self.inner.units()
+    }
+
+    fn apply(&mut self, unit: usize, action: &WorldAction) {
+        self.inner.apply(unit, action);
+    }
+
+    fn views(&self) -> Vec<WorldView> {
+        self.inner.views()
+    }
+
+    fn plugged(&self) -> bool {
+        self.inner.plugged()
+    }
+}
+
+fn earliest(a: Option<Duration>, b: Option<Duration>) -> Option<Duration> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(a.min(b)),
+        (one, other) => one.or(other),
+    }
+}
