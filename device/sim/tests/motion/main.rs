@@ -5,6 +5,7 @@ mod closed_loop;
 mod inputs;
 mod laws;
 mod open_loop;
+mod plant;
 mod position;
 mod relay;
 mod rig;
