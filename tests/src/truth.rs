@@ -18,7 +18,7 @@ pub fn settings(settings: &Settings) -> Value {
         "script_autorun_ms": unit.script_autorun_ms,
         "can_node_id": unit.can_node_id,
         "config_word": unit.config_word,
-        "serial_number": serial_number(unit.serial_number_length, &unit.serial_number),
+        "serial_number": unit.serial_number,
         "main_min_tenths": battery.main_min_tenths,
         "main_max_tenths": battery.main_max_tenths,
         "main_auto_offset_tenths": battery.main_auto_offset_tenths,
@@ -34,12 +34,6 @@ pub fn settings(settings: &Settings) -> Value {
         "pin_functions": settings.roboclaw.pin_functions,
         "control_inputs": settings.roboclaw.inputs.iter().flat_map(control_input).collect::<Vec<u32>>(),
     })
-}
-
-/// The text of a serial number in the one-byte encoding of generation 4.
-fn serial_number(length: u8, bytes: &[u8; 36]) -> String {
-    let text = &bytes[..usize::from(length).min(bytes.len())];
-    text.iter().map(|byte| char::from(*byte)).collect()
 }
 
 fn motor(registers: &MotorRegisters) -> Value {

@@ -2,6 +2,7 @@
 //! See `ARCHITECTURE.md`.
 
 pub mod bridge;
+pub mod controller;
 pub mod faults;
 pub mod machine;
 pub mod motion;

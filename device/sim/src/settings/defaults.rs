@@ -6,7 +6,7 @@ use super::{
 };
 use crate::motion::MotionSettings;
 use brushwork_protocol::codes::ENCODER_PIN_NONE;
-use brushwork_protocol::models::{Family, Model};
+use brushwork_protocol::models::{Family, Model, Pin};
 
 /// Logic battery limits on the settings screens (MCP manual 1.2.10).
 const LOGIC_MIN_TENTHS: u16 = 80;
@@ -20,6 +20,9 @@ const ROBOCLAW_RATE_BPS: u32 = 38_400;
 /// CANopen bit rate (MCP manual 1.9.4) and I2C bit rate (1.9.6).
 const CAN_RATE_BPS: u32 = 250_000;
 const I2C_RATE_BPS: u32 = 100_000;
+/// Stream types of command 145.
+const STREAM_PACKET_SERIAL: u8 = 1;
+const STREAM_DISABLED: u8 = 2;
 /// Signal type "encoder".
 const KIND_ENCODER: u8 = 3;
 
@@ -62,7 +65,8 @@ impl Settings {
                     ..SignalSettings::default()
                 })
                 .collect(),
-            streams: std::array::from_fn(|_| StreamSettings {
+            streams: std::array::from_fn(|index| StreamSettings {
+                kind: if shares_encoder_pins(model, index) { STREAM_DISABLED } else { STREAM_PACKET_SERIAL },
                 rate_bps: match model.family {
                     Family::Mcp => MCP_RATE_BPS,
                     Family::RoboClaw => ROBOCLAW_RATE_BPS,
@@ -88,8 +92,7 @@ impl Default for UnitSettings {
             script_autorun_ms: 0,
             can_node_id: 1,
             config_word: 0,
-            serial_number_length: 0,
-            serial_number: [0; 36],
+            serial_number: String::new(),
             bridged: false,
             can_rate_bps: CAN_RATE_BPS,
             i2c_rate_bps: I2C_RATE_BPS,
@@ -149,6 +152,14 @@ fn default_encoder(model: &Model, motor_number: u8) -> u8 {
         Family::RoboClaw => 0,
         Family::Mcp => own.and_then(|index| u8::try_from(index).ok()).unwrap_or(ENCODER_PIN_NONE as u8),
     }
+}
+
+/// Whether a stream's lines are encoder pins. Assumed: such a UART is off when the unit leaves the factory, since otherwise the
+/// encoder would not count (MCP manual 1.9.7).
+fn shares_encoder_pins(model: &Model, stream: usize) -> bool {
+    let is_shared =
+        |pin: &Pin| pin.uart().map(usize::from) == stream.checked_sub(1) && pin.encoder_channel().is_some();
+    stream > 0 && model.pins.iter().any(is_shared)
 }
 
 fn tenths_of(value: f64) -> u16 {

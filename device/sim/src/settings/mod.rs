@@ -64,10 +64,8 @@ pub struct UnitSettings {
     pub can_node_id: u8,
     /// RoboClaw configuration word (command 98).
     pub config_word: u16,
-    /// Serial number as set by command 96: the length byte as sent and the 36 bytes.
-    pub serial_number_length: u8,
-    /// The 36 bytes of command 96, in the encoding of the generation.
-    pub serial_number: [u8; 36],
+    /// Serial number (command 96), at most 36 characters.
+    pub serial_number: String,
     /// Both bridges drive one motor (MCP manual 1.8). Has no public wire form.
     pub bridged: bool,
     /// Bit rate of the CAN port. Has no public wire form.
@@ -174,7 +172,7 @@ pub struct StreamSettings {
 }
 
 /// One control input of commands 76 and 77.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ControlInput {
     /// Reverse dead band.
     pub reverse_deadband: u8,
@@ -201,6 +199,8 @@ pub struct RoboclawSettings {
     pub inputs: [ControlInput; 2],
     /// Modes of CTRL1 and CTRL2 (command 100 in generations 2 and 3).
     pub control_modes: [u8; 2],
+    /// Duties of CTRL1 and CTRL2 (commands 102 and 103 in generations 2 and 3).
+    pub control_duties: [u16; 2],
     /// Four limits of command 117.
     pub control_limits: [u16; 4],
 }

@@ -9,6 +9,9 @@ use crate::motion::MotionSettings;
 /// First bytes of a valid image; anything else reads as an empty EEPROM, which loads the defaults.
 const MAGIC: u32 = 0x4d43_5031;
 
+/// Room for a text: a serial number of 36 letters, or of 18 that take three bytes each.
+const TEXT_BYTES: usize = 54;
+
 /// Settings as bytes, in the order in which the EEPROM holds them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image(pub Vec<u8>);
@@ -70,6 +73,17 @@ pub trait Visitor {
         let mut raw = [u8::from(*field)];
         self.bytes(&mut raw);
         *field = raw[0] != 0;
+    }
+
+    /// Text in a place of fixed size; what does not fit is cut off.
+    fn text(&mut self, field: &mut String) {
+        let mut raw = [0; TEXT_BYTES];
+        for (to, from) in raw.iter_mut().zip(field.bytes()) {
+            *to = from;
+        }
+        self.bytes(&mut raw);
+        let end = raw.iter().position(|byte| *byte == 0).unwrap_or(raw.len());
+        *field = String::from_utf8_lossy(&raw[..end]).into_owned();
     }
 
     /// Two bytes.
@@ -148,8 +162,7 @@ impl Persist for UnitSettings {
         visitor.u32(&mut self.script_autorun_ms);
         visitor.u8(&mut self.can_node_id);
         visitor.u16(&mut self.config_word);
-        visitor.u8(&mut self.serial_number_length);
-        visitor.bytes(&mut self.serial_number);
+        visitor.text(&mut self.serial_number);
         visitor.flag(&mut self.bridged);
         visitor.u32(&mut self.can_rate_bps);
         visitor.u32(&mut self.i2c_rate_bps);
@@ -250,6 +263,9 @@ impl Persist for RoboclawSettings {
             input.visit(visitor);
         }
         visitor.bytes(&mut self.control_modes);
+        for duty in &mut self.control_duties {
+            visitor.u16(duty);
+        }
         for limit in &mut self.control_limits {
             visitor.u16(limit);
         }

@@ -11,7 +11,7 @@ fn mcp266() -> &'static Model {
 fn changed() -> Settings {
     let mut settings = Settings::factory(mcp266(), 0x83);
     settings.unit.mixed = 1;
-    settings.unit.serial_number[..3].copy_from_slice(b"A17");
+    settings.unit.serial_number = "A17 \u{e9}".to_owned();
     settings.battery.main_offset_tenths = -4;
     settings.motors[1].motion.position_min_counts = -90_000;
     settings.outputs[1].inverted = true;

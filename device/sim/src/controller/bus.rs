@@ -1,0 +1,123 @@
+//! Several controllers on one wire.
+
+use super::Controller;
+use crate::machine::{Machine, StreamIndex};
+use crate::world::{WorldAction, WorldView};
+use std::time::Duration;
+
+/// Controllers that share the wire of one stream: each hears everything, each answers to its own address.
+///
+/// Time is common. Two units with one address both answer, one after the other.
+#[derive(Clone, Debug)]
+pub struct Bus {
+    units: Vec<Controller>,
+    stream: StreamIndex,
+}
+
+/// Why controllers cannot be put on one wire.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum BusError {
+    /// A wire without a controller.
+    #[error("a bus needs at least one controller")]
+    Empty,
+    /// USB and RS-232 connect two ends.
+    #[error("{} connects one controller only: put several on ttl1, ttl2 or ttl3", .0.key())]
+    NotABus(StreamIndex),
+}
+
+impl Bus {
+    /// One controller on a stream.
+    pub fn single(unit: Controller, stream: StreamIndex) -> Self {
+        Self { units: vec![unit], stream }
+    }
+
+    /// Controllers on one wire.
+    ///
+    /// # Errors
+    /// If there is none, or several on a stream that connects two ends only.
+    pub fn new(units: Vec<Controller>, stream: StreamIndex) -> Result<Self, BusError> {
+        match units.len() {
+            0 => Err(BusError::Empty),
+            1 => Ok(Self { units, stream }),
+            _ if matches!(stream, StreamIndex::Usb | StreamIndex::Uart0) => Err(BusError::NotABus(stream)),
+            _ => Ok(Self { units, stream }),
+        }
+    }
+
+    /// The stream the wire is on.
+    pub fn stream(&self) -> StreamIndex {
+        self.stream
+    }
+
+    /// The units.
+    pub fn controllers(&self) -> &[Controller] {
+        &self.units
+    }
+
+    /// The units, to do something to them.
+    pub fn controllers_mut(&mut self) -> &mut [Controller] {
+        &mut self.units
+    }
+
+    /// Sends bytes now and gives back what has come within `timeout`, as soon as the first reply is there: a client that waits.
+    pub fn exchange(&mut self, bytes: &[u8], timeout: Duration) -> Vec<u8> {
+        let deadline = self.now() + timeout;
+        self.receive(self.stream, bytes);
+        match self.next_output_at() {
+            Some(at) if at <= deadline => {
+                self.advance(at);
+                self.take_output(self.stream).unwrap_or_default()
+            }
+            _ => {
+                self.advance(deadline);
+                Vec::new()
+            }
+        }
+    }
+}
+
+impl Machine for Bus {
+    fn now(&self) -> Duration {
+        self.units.first().map_or(Duration::ZERO, Controller::now)
+    }
+
+    fn receive(&mut self, stream: StreamIndex, bytes: &[u8]) {
+        if self.plugged() {
+            self.units.iter_mut().for_each(|unit| unit.receive(stream, bytes));
+        }
+    }
+
+    fn advance(&mut self, to: Duration) {
+        self.units.iter_mut().for_each(|unit| unit.advance(to));
+    }
+
+    fn next_output_at(&self) -> Option<Duration> {
+        self.units.iter().filter_map(Controller::next_output_at).min()
+    }
+
+    fn take_output(&mut self, stream: StreamIndex) -> Option<Vec<u8>> {
+        self.units.iter_mut().find_map(|unit| unit.take_output(stream))
+    }
+
+    fn bits_per_second(&self, stream: StreamIndex) -> u32 {
+        self.units.first().map_or(0, |unit| unit.bits_per_second(stream))
+    }
+
+    fn units(&self) -> usize {
+        self.units.len()
+    }
+
+    fn apply(&mut self, unit: usize, action: &WorldAction) {
+        if let Some(unit) = self.units.get_mut(unit) {
+            Machine::apply(unit, 0, action);
+        }
+    }
+
+    fn views(&self) -> Vec<WorldView> {
+        self.units.iter().map(Controller::view).collect()
+    }
+
+    fn plugged(&self) -> bool {
+        self.units.iter().all(Controller::plugged)
+    }
+}

@@ -1,0 +1,81 @@
+//! What a simulated controller is made of.
+
+use crate::motion::ControlLaw;
+use crate::presets;
+use crate::settings::Settings;
+use crate::world::WorldParams;
+use brushwork_protocol::models::{self, Family, Model};
+use brushwork_protocol::packet_serial::{Address, Generation};
+
+/// Everything that makes one simulated controller and its machine.
+#[derive(Clone, Debug)]
+pub struct ControllerConfig {
+    /// Which board it is.
+    pub model: &'static Model,
+    /// Which widths and commands its firmware has.
+    pub generation: Generation,
+    /// Its packet serial address when it leaves the factory.
+    pub address: Address,
+    /// What it drives and what feeds it. [`WorldParams::pins`] is set to the model's.
+    pub world: WorldParams,
+    /// The form of its control loops.
+    pub law: ControlLaw,
+    /// Seed of all noise; 0 for none.
+    pub seed: u64,
+    /// What its EEPROM holds at first; `None` for factory settings.
+    pub settings: Option<Settings>,
+    /// Details in which firmware versions differ.
+    pub options: FirmwareOptions,
+}
+
+/// Details in which firmware versions differ within a generation.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FirmwareOptions {
+    /// Version number in the reply to command 21, without the "v"; `None` for the one the sources show for the model.
+    pub version: Option<String>,
+    /// Whether commands 0 to 13 are acknowledged. RoboClaw firmware from 4.3.6 on drives and says nothing (public clients,
+    /// 2015-2025).
+    pub acknowledges_legacy: bool,
+}
+
+impl Default for ControllerConfig {
+    /// An MCP266 of generation 1 at 0x80 with two small gearmotors, without noise.
+    fn default() -> Self {
+        let model = models::lookup("mcp266").expect("the model table has it, a test there says so");
+        Self::of(model)
+    }
+}
+
+impl ControllerConfig {
+    /// A controller of generation 1 at 0x80 with the default preset on both channels, without noise.
+    pub fn of(model: &'static Model) -> Self {
+        let axis = presets::lookup(presets::DEFAULT).expect("the default preset is built in");
+        Self {
+            model,
+            generation: Generation::Gen1,
+            address: Address::DEFAULT,
+            world: presets::world_of(axis, axis, model.pins.len()),
+            law: ControlLaw::default(),
+            seed: 0,
+            settings: None,
+            options: FirmwareOptions::default(),
+        }
+    }
+}
+
+impl Default for FirmwareOptions {
+    fn default() -> Self {
+        Self { version: None, acknowledges_legacy: true }
+    }
+}
+
+impl FirmwareOptions {
+    /// The text of command 21 without its end mark.
+    pub(super) fn version_text(&self, model: &Model) -> String {
+        let shown = match model.family {
+            Family::Mcp => "1.0.0",
+            Family::RoboClaw => "4.2.8",
+        };
+        format!("{} v{}", model.title, self.version.as_deref().unwrap_or(shown))
+    }
+}

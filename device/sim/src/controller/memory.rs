@@ -1,0 +1,27 @@
+//! What a unit keeps without power: the EEPROM and the script memory.
+
+use super::script::ScriptMemory;
+use crate::settings::{Eeprom, Image, Settings, Shape};
+use brushwork_protocol::models::Model;
+use brushwork_protocol::packet_serial::Address;
+
+/// Non-volatile memories.
+#[derive(Clone, Debug)]
+pub(super) struct Memory {
+    pub eeprom: Eeprom,
+    pub script: ScriptMemory,
+}
+
+impl Memory {
+    /// A unit as it leaves the factory, with these settings stored.
+    pub fn holding(settings: &Settings) -> Self {
+        Self { eeprom: Eeprom::holding(&Image::of(settings)), script: ScriptMemory::default() }
+    }
+
+    /// The stored settings, or factory settings where nothing valid is stored.
+    pub fn load(&self, model: &Model, address: Address) -> Settings {
+        let factory = Settings::factory(model, address.get());
+        let stored = self.eeprom.image().settings(Shape::of(model), factory.clone());
+        stored.unwrap_or(factory)
+    }
+}

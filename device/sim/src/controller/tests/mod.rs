@@ -1,0 +1,5 @@
+//! Conversations with a simulated controller in virtual time.
+
+mod conversation;
+mod every_command;
+mod support;
