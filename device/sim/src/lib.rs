@@ -10,6 +10,7 @@ pub mod pacing;
 pub mod plant;
 pub mod presets;
 pub mod priority;
+pub mod server;
 pub mod settings;
 pub mod signals;
 pub mod supervision;

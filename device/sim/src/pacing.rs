@@ -118,7 +118,10 @@ impl<M: Machine> Machine for Paced<M> {
             return self.inner.next_output_at();
         }
         let replies = self.lines.iter().filter_map(|line| line.replies.front().map(|(at, _)| *at)).min();
-        earliest(replies, self.next_event())
+        // A byte on its way, or an answer about to begin, is no reply before one more byte has passed.
+        let fastest = StreamIndex::ALL.map(|stream| byte_time(self.inner.bits_per_second(stream)));
+        let soonest = fastest.into_iter().min().unwrap_or_default();
+        earliest(replies, self.next_event().map(|at| at + soonest))
     }
 
     fn take_output(&mut self, stream: StreamIndex) -> Option<Vec<u8>> {

@@ -10,6 +10,7 @@ use std::time::Duration;
 
 pub const USB: StreamIndex = StreamIndex::Usb;
 
+#[derive(Debug)]
 pub struct Parrot {
     pub now: Duration,
     pub turnaround: Duration,

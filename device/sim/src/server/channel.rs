@@ -1,0 +1,75 @@
+//! The endpoint inside the program: a pair of bounded channels.
+
+use super::error::ServerError;
+use super::line::{Heard, Line};
+use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
+use std::thread;
+use std::time::Duration;
+
+/// Writes of either side that may wait to be read.
+const CAPACITY: usize = 256;
+
+/// The client's two ends of an in-process line. Each message is one write. When the controller is unplugged both ends are
+/// disconnected.
+#[derive(Debug)]
+pub struct ChannelEnds {
+    /// Bytes to the controller.
+    pub to_controller: Sender<Vec<u8>>,
+    /// Bytes from the controller.
+    pub from_controller: Receiver<Vec<u8>>,
+}
+
+/// The controller's side.
+#[derive(Debug, Default)]
+pub struct ChannelLine {
+    client: Option<Client>,
+}
+
+#[derive(Debug)]
+struct Client {
+    requests: Receiver<Vec<u8>>,
+    replies: Sender<Vec<u8>>,
+}
+
+impl Line for ChannelLine {
+    fn receive(&mut self, bytes: &mut Vec<u8>, timeout: Duration) -> Heard {
+        let Some(Client { requests, .. }) = &self.client else {
+            thread::sleep(timeout);
+            return Heard::Line;
+        };
+        match requests.recv_timeout(timeout) {
+            Ok(first) => {
+                bytes.extend(first);
+                bytes.extend(requests.try_iter().flatten());
+                Heard::Line
+            }
+            Err(RecvTimeoutError::Timeout) => Heard::Line,
+            Err(RecvTimeoutError::Disconnected) => {
+                self.client = None;
+                Heard::ClientLeft
+            }
+        }
+    }
+
+    fn send(&mut self, reply: &[u8]) {
+        if let Some(Client { replies, .. }) = &self.client {
+            // A full channel belongs to a client that does not read: the bytes are lost, as on any port.
+            let _ = replies.try_send(reply.to_vec());
+        }
+    }
+
+    fn unplug(&mut self) {
+        self.client = None;
+    }
+
+    fn plug_in(&mut self) -> Result<(), ServerError> {
+        Ok(())
+    }
+
+    fn new_channel(&mut self) -> Option<ChannelEnds> {
+        let (to_controller, requests) = bounded(CAPACITY);
+        let (replies, from_controller) = bounded(CAPACITY);
+        self.client = Some(Client { requests, replies });
+        Some(ChannelEnds { to_controller, from_controller })
+    }
+}
