@@ -231,5 +231,8 @@ fn speed_errors_count_only_under_an_acceleration_and_a_limit() {
         let _ = rig.command(MotionCommand::SafeStop);
         rig.tick();
         assert_eq!(rig.channel.errors().speed_counts_per_s, 0, "no loop, no error");
+        assert_eq!(rig.channel.errors().speed_exceeded, expected, "a stop leaves the reason to be read");
+        let _ = rig.command(MotionCommand::Duty { duty_raw: 100, acceleration_raw: None });
+        assert!(!rig.channel.errors().speed_exceeded);
     }
 }

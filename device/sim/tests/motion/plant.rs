@@ -46,12 +46,17 @@ impl Axis {
             current_amps: self.world.measured_amps(Motor::M1),
             bus_volts: self.world.bus_volts(),
         };
-        self.channel.tick(&measured, &Conditions::default(), &self.settings);
+        let decided = self.channel.tick(&measured, &Conditions::default(), &self.settings);
         let (channel, peak_amps) = (&mut self.channel, &mut self.peak_amps);
+        let mut is_first = true;
         self.world.advance_with(ControlLaw::default().tick_s(), |motor, sense| match motor {
             Motor::M1 => {
                 *peak_amps = peak_amps.max(sense.amps.abs());
-                channel.refine(sense.amps, sense.bus_volts, sense.step_s)
+                if std::mem::take(&mut is_first) {
+                    decided
+                } else {
+                    channel.refine(sense.amps, sense.bus_volts, sense.step_s)
+                }
             }
             Motor::M2 => BridgeOutput::Coast,
         });

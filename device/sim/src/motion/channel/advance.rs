@@ -9,12 +9,12 @@ use super::super::{
     Conditions, DistanceEnd, FULL_DUTY_RAW, MAX_DUTY_ACCELERATION, MotionSettings, PositionForm, RelayOn,
 };
 use super::mode::{DistanceRun, FASTEST, Mode, PositionRun};
-use super::{Channel, HomeOutcome, LoopErrors};
+use super::{Channel, HomeOutcome};
 
 impl Channel {
     /// Advances the running command by one tick.
     pub(super) fn advance(&mut self, conditions: &Conditions, settings: &MotionSettings) -> Demand {
-        self.errors = LoopErrors::default();
+        self.errors.clear_deviations();
         self.finish_and_start_moves(settings);
         match self.mode {
             Mode::Coast => Demand::Coast,
@@ -191,7 +191,7 @@ impl Channel {
     fn note_position_error(&mut self, error: f64, run: &PositionRun, settings: &MotionSettings) {
         self.errors.position_counts = error.round() as i32;
         let limit = f64::from(settings.position_error_limit);
-        self.errors.position_exceeded = limit > 0.0 && run.is_ramped() && error.abs() > limit;
+        self.errors.position_exceeded |= limit > 0.0 && run.is_ramped() && error.abs() > limit;
     }
 
     /// Duty from the speed setpoint. `simple` gives the setpoint's share of QPPS and nothing else (MCP manual 2.4.7).
@@ -224,7 +224,7 @@ impl Channel {
     fn note_speed_error(&mut self, error: f64, settings: &MotionSettings) {
         self.errors.speed_counts_per_s = error.round() as i32;
         let limit = f64::from(settings.speed_error_limit);
-        self.errors.speed_exceeded = limit > 0.0 && self.mode.is_ramped() && error.abs() > limit;
+        self.errors.speed_exceeded |= limit > 0.0 && self.mode.is_ramped() && error.abs() > limit;
     }
 
     /// Duty to 0 at the highest rate, and there it stays: a loop that goes on would creep about the limit.

@@ -46,7 +46,8 @@ pub struct Channel {
     home_outcome: Option<HomeOutcome>,
 }
 
-/// Deviations of the loops from their setpoints; 0 while a loop does not run.
+/// Deviations of the loops from their setpoints; 0 while a loop does not run. That a limit was exceeded stays noted until the
+/// channel is told to move again (assumed).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LoopErrors {
     /// Speed setpoint less measured speed, counts/s (command 111).
@@ -54,11 +55,18 @@ pub struct LoopErrors {
     /// Position setpoint less measured position, counts (command 114). In a move with acceleration and deceleration the
     /// setpoint is the point of its profile, otherwise the target.
     pub position_counts: i32,
-    /// The speed error is beyond its limit. Assumed: looked at only in commands with an acceleration, as the
-    /// position limit is.
+    /// The speed error went beyond its limit. Assumed: looked at only in commands with an acceleration, as the position
+    /// limit is.
     pub speed_exceeded: bool,
-    /// The position error is beyond its limit, in a move with acceleration and deceleration (vendor forum).
+    /// The position error went beyond its limit, in a move with acceleration and deceleration (vendor forum).
     pub position_exceeded: bool,
+}
+
+impl LoopErrors {
+    fn clear_deviations(&mut self) {
+        self.speed_counts_per_s = 0;
+        self.position_counts = 0;
+    }
 }
 
 /// How homing ended.
@@ -134,6 +142,9 @@ impl Channel {
     pub fn command(&mut self, command: MotionCommand, settings: &MotionSettings) -> Outcome {
         if self.held && !matches!(command, MotionCommand::SafeStop | MotionCommand::Coast) {
             return Outcome::Refused(Refusal::Held);
+        }
+        if !matches!(command, MotionCommand::SafeStop | MotionCommand::Coast) {
+            self.errors = LoopErrors::default();
         }
         match command {
             MotionCommand::Distance(distance, buffering) => {
@@ -428,7 +439,7 @@ impl Channel {
         self.speed.set(self.encoder.estimate(&self.law));
         self.velocity.reset();
         self.position.reset();
-        self.errors = LoopErrors::default();
+        self.errors.clear_deviations();
         self.delay = DelayLine::new();
         Demand::Duty(0.0)
     }
