@@ -4,23 +4,34 @@
 //! and what it means; nothing else repeats a range. [`SettingsImage`] holds values; [`Copies`] tells RAM, EEPROM and
 //! profile apart. Motion, status and the script are not settings.
 
+mod check;
 mod image;
 mod kind;
 mod mcp;
+mod memory;
+mod plan;
 mod profile;
+mod read;
 mod reference;
 mod row;
 mod table;
 mod template;
 mod value;
+mod write;
 
 pub use image::{Copies, Copy, Difference, SettingsImage, changes, diff};
 pub use kind::{Coding, Kind};
-pub use profile::{FORMAT, Problem, Profile, ProfileError, ProfileFileError, SCHEMA, replace_file};
+pub use memory::{DefaultsReport, SaveReport, SaveVerdict, reload, restore_defaults, save_eeprom};
+pub use plan::{Plan, Refusal, Stage, Step, WriteOptions, plan};
+pub use profile::{
+    FORMAT, Problem, Profile, ProfileChanges, ProfileError, ProfileFileError, SCHEMA, replace_file,
+};
+pub use read::{ReadFailure, ReadReport, read_all};
 pub use reference::{ReferenceForm, ReferenceRow, reference, reference_text};
 pub use row::{Access, Bits, Bound, Carrier, Group, Instance, Place, Range, Row, Sink, Source};
 pub use table::{SettingsTable, Subject};
 pub use value::SettingValue;
+pub use write::{RowOutcome, RowState, WriteError, WriteReport, write};
 
 #[cfg(test)]
 mod tests;

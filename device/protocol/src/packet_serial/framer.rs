@@ -11,8 +11,9 @@
 //!    what follows it are dropped until nothing has come for more than 10 ms.
 //!
 //! Packets of all eight addresses are framed: a unit on a bus must follow the traffic of its neighbours to find its own.
-//! One ambiguity is left: a neighbour's packet header can equal the CRC that rule 2 waits for (for example 83 4D after a
-//! read 86 12). It is then swallowed, and answered when it is repeated. No CRC equals a header of the same address.
+//! Two ambiguities are left. By rule 3 a long write is cut short when its first bytes happen to have the CRC of a shorter
+//! one: one in 65536. By rule 2 a packet of a neighbour is swallowed when its header equals the CRC that is waited for
+//! (83 4D after a read 86 12, for example), and answered when it is repeated; no CRC equals a header of its own address.
 
 use std::fmt;
 use std::ops::Deref;

@@ -37,6 +37,15 @@ pub struct Profile {
     pub settings: SettingsImage,
 }
 
+/// What a profile asks of a controller.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProfileChanges {
+    /// The values that differ and can be written.
+    pub wanted: SettingsImage,
+    /// Those that differ and cannot be written on this controller, a sentence each.
+    pub left_out: Vec<String>,
+}
+
 /// Whether faults are refused or mended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Strictness {
@@ -68,25 +77,36 @@ impl Profile {
         SettingsTable::new(self.subject)
     }
 
-    /// The changes that bring a controller to this profile. Refuses, with every reason, when the profile was made for
-    /// another model or generation, or holds what that controller does not have or allow.
+    /// What brings a controller to this profile. Refuses, with every reason, when the profile was made for another model or
+    /// generation, or holds what that controller does not have or allow.
     pub fn changes_for(
         &self,
         table: &SettingsTable,
         ram: &SettingsImage,
-    ) -> Result<SettingsImage, ProfileError> {
+        simulated: bool,
+    ) -> Result<ProfileChanges, ProfileError> {
         let mut problems = self.misfits(table.subject());
+        let mut left_out = Vec::new();
+        let mut wanted = changes(table, ram, &self.settings);
         for (key, value) in self.settings.iter() {
             match table.row(key) {
                 None => problems.push(Problem::at_key(key, "The connected controller has no such setting.")),
-                Some(row) if ram.get(key) != Some(value) => {
-                    problems.extend(row.check(value).err().map(|why| Problem::at_key(key, why)));
-                }
-                Some(_) => {}
+                Some(_) if wanted.get(key).is_none() => {}
+                Some(row) => match row.locked(simulated) {
+                    Some(reason) => {
+                        left_out.push(format!(
+                            "{}: {} is not written. {reason}",
+                            row.title(),
+                            row.format(value)
+                        ));
+                        wanted.remove(key);
+                    }
+                    None => problems.extend(row.check(value).err().map(|why| Problem::at_key(key, why))),
+                },
             }
         }
         if problems.is_empty() {
-            Ok(changes(table, ram, &self.settings))
+            Ok(ProfileChanges { wanted, left_out })
         } else {
             Err(ProfileError { problems })
         }

@@ -221,7 +221,7 @@ fn single_faults_can_be_mended_with_a_warning_each() {
 fn a_profile_of_another_model_or_generation_changes_nothing() {
     let stored = profile("mcp266", Generation::Gen1);
     let here = table("mcp233", Generation::Gen3);
-    let error = stored.changes_for(&here, &here.default_image()).expect_err("it does not fit");
+    let error = stored.changes_for(&here, &here.default_image(), false).expect_err("it does not fit");
     let told = error.to_string();
     assert!(told.contains(
         "model: The profile was made for the MCP266 (2x60A), the connected controller is the MCP233 (2x30A)."
@@ -238,7 +238,7 @@ fn a_profile_gives_exactly_the_changes_it_asks_for() {
     let stored = Profile::parse(SMALL).expect("it is right");
     let here = table("mcp266", Generation::Gen1);
     let ram = here.default_image();
-    let changes = stored.changes_for(&here, &ram).expect("it fits");
+    let changes = stored.changes_for(&here, &ram, false).expect("it fits").wanted;
     let keys: Vec<&str> = changes.iter().map(|(key, _)| key).collect();
     assert_eq!(keys, ["limits.main_battery.max_volts", "unit.mixing"]);
     let mut after = ram.clone();
@@ -248,6 +248,21 @@ fn a_profile_gives_exactly_the_changes_it_asks_for() {
         .map(|change| change.describe(here.row(&change.key).expect("a row")))
         .collect();
     assert_eq!(told, ["Control mixing: no -> yes", "Main battery maximum: 60.0 V -> 24.3 V"]);
+}
+
+#[test]
+fn what_a_real_controller_cannot_be_told_is_left_out_with_the_reason() {
+    let mut stored = profile("mcp266", Generation::Gen1);
+    stored.settings.set("unit.bridge_channels", SettingValue::Bool(true));
+    stored.settings.set("unit.mixing", SettingValue::Bool(true));
+    let here = table("mcp266", Generation::Gen1);
+    let ram = here.default_image();
+    let real = stored.changes_for(&here, &ram, false).expect("it fits");
+    assert_eq!(real.wanted.iter().map(|(key, _)| key).collect::<Vec<_>>(), ["unit.mixing"]);
+    assert_eq!(real.left_out.len(), 1);
+    assert!(real.left_out[0].starts_with("Bridge channels: yes is not written. No packet serial command"));
+    let simulated = stored.changes_for(&here, &ram, true).expect("it fits");
+    assert_eq!((simulated.wanted.len(), simulated.left_out.len()), (2, 0));
 }
 
 #[test]

@@ -1,0 +1,93 @@
+//! Settings judged together: pairs that contradict each other, and changes that can set a motor in motion.
+
+use super::image::SettingsImage;
+use super::plan::Refusal;
+use super::table::SettingsTable;
+use super::value::SettingValue;
+
+/// Rows of which the first must not be above the second.
+const ORDERED_PAIRS: &[(&str, &str)] = &[
+    ("limits.main_battery.min_volts", "limits.main_battery.max_volts"),
+    ("limits.logic_battery.min_volts", "limits.logic_battery.max_volts"),
+    ("motor1.position.min", "motor1.position.max"),
+    ("motor2.position.min", "motor2.position.max"),
+];
+
+/// A script autorun delay below this switches autorun off (MCP manual 2.3.1, command 246).
+const SHORTEST_AUTORUN_MS: i64 = 100;
+
+/// Pairs that `after` holds the wrong way round, if `changes` touches them.
+pub(super) fn refused_pairs(
+    table: &SettingsTable,
+    after: &SettingsImage,
+    changes: &SettingsImage,
+) -> Vec<Refusal> {
+    let refusal = |(low, high): &(&str, &str)| {
+        let touched = [low, high].into_iter().find(|key| changes.get(key).is_some())?;
+        let (low_row, high_row) = (table.row(low)?, table.row(high)?);
+        let (low, high) = (after.get(low)?, after.get(high)?);
+        is_above(low, high).then(|| Refusal {
+            key: (*touched).to_owned(),
+            sentence: format!(
+                "{} {} would be above {} {}.",
+                low_row.title(),
+                low_row.format(low),
+                high_row.title(),
+                high_row.format(high)
+            ),
+        })
+    };
+    ORDERED_PAIRS.iter().filter_map(refusal).collect()
+}
+
+/// What `changes` lets happen by itself: an input that commands a motor, a script that starts at power up.
+pub(super) fn dangers(table: &SettingsTable, after: &SettingsImage, changes: &SettingsImage) -> Vec<String> {
+    let mut dangers = Vec::new();
+    for pin in 1..=table.subject().pins {
+        dangers.extend(input_danger(table, after, changes, pin));
+    }
+    if let (Some(SettingValue::Int(delay)), Some(_)) =
+        (after.get("script.autorun_delay"), changes.get("script.autorun_delay"))
+        && delay >= SHORTEST_AUTORUN_MS
+    {
+        dangers
+            .push(format!("A stored script starts {delay} ms after each power up and can move the motors."));
+    }
+    dangers
+}
+
+/// Whether a pin begins to command motors: it has a target, its kind of input is in a priority level, and one of the two
+/// is new.
+fn input_danger(
+    table: &SettingsTable,
+    after: &SettingsImage,
+    changes: &SettingsImage,
+    pin: usize,
+) -> Option<String> {
+    let key = |field: &str| format!("pin.{pin}.{field}");
+    let choice = |key: &str| match after.get(key) {
+        Some(SettingValue::Choice(choice)) => Some(choice),
+        _ => None,
+    };
+    let (kind, target) = (choice(&key("type"))?, choice(&key("target"))?);
+    let level = (1..=3).find(|level| choice(&format!("priority.{level}")) == Some(kind))?;
+    let level_key = format!("priority.{level}");
+    let is_new = [key("type"), key("target"), level_key].iter().any(|key| changes.get(key).is_some());
+    if target == "none" || !is_new {
+        return None;
+    }
+    let target_row = table.row(&key("target"))?;
+    Some(format!(
+        "{} commands {} as soon as this is written, since {kind} inputs are at priority level {level}: the motor can start.",
+        table.subject().pin_name(pin - 1),
+        target_row.format(SettingValue::Choice(target)).to_lowercase()
+    ))
+}
+
+fn is_above(low: SettingValue, high: SettingValue) -> bool {
+    match (low, high) {
+        (SettingValue::Int(low), SettingValue::Int(high)) => low > high,
+        (SettingValue::Number(low), SettingValue::Number(high)) => low > high,
+        _ => false,
+    }
+}

@@ -1,0 +1,243 @@
+//! Reading settings from a controller: each command once, whatever fails told and kept apart.
+
+use std::collections::BTreeMap;
+
+use brushwork_protocol::models::Family;
+use brushwork_protocol::packet_serial::{Values, lookup, number};
+use serde::Serialize;
+
+use super::image::SettingsImage;
+use super::row::{Carrier, Place, Row, Source};
+use super::table::{SettingsTable, Subject};
+use crate::exchange::ExchangeError;
+use crate::failure::Failure;
+use crate::wire::Wire;
+
+/// After this many commands in a row without any answer, and none answered before, the controller counts as not there.
+const SILENT_COMMANDS: usize = 3;
+
+/// What reading gave.
+#[derive(Clone, Debug)]
+pub struct ReadReport {
+    /// The table of the controller, with as many pins, streams and outputs as it says it has.
+    pub table: SettingsTable,
+    /// The values read.
+    pub image: SettingsImage,
+    /// What could not be read.
+    pub failures: Vec<ReadFailure>,
+    /// Commands sent.
+    pub transactions: usize,
+}
+
+/// A command that gave nothing, or not all.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ReadFailure {
+    /// The command.
+    pub command: u8,
+    /// The rows that have no value for it.
+    pub keys: Vec<String>,
+    /// What was tried and what came back.
+    pub failure: Failure,
+}
+
+/// Reads every setting of a controller with as few commands as there are replies to read. What one command fails to
+/// give is in the report; an error means that there is no controller to read from, or that something more urgent came.
+pub fn read_all(wire: &mut dyn Wire, subject: Subject) -> Result<ReadReport, Failure> {
+    let mut reader = Reader::new(wire);
+    let subject = reader.count(subject).map_err(|error| reader.gave_up(&error))?;
+    let table = SettingsTable::new(subject);
+    let commands = read_commands(table.rows());
+    reader.read_commands(&commands).map_err(|error| reader.gave_up(&error))?;
+    let (image, failures) = reader.collect(table.rows());
+    Ok(ReadReport { image, failures, transactions: reader.transactions, table })
+}
+
+/// The values of some rows, read anew, and what failed.
+pub(super) struct Reading {
+    pub(super) image: SettingsImage,
+    pub(super) failures: Vec<ReadFailure>,
+    pub(super) transactions: usize,
+}
+
+/// Reads the given rows.
+pub(super) fn read_rows(wire: &mut dyn Wire, rows: &[&Row]) -> Result<Reading, ExchangeError> {
+    let mut reader = Reader::new(wire);
+    reader.read_commands(&read_commands(rows.iter().copied()))?;
+    let (image, failures) = reader.collect(rows.iter().copied());
+    Ok(Reading { image, failures, transactions: reader.transactions })
+}
+
+/// The commands that read these rows, each once, in the order of the rows.
+pub(super) fn read_commands<'r>(rows: impl IntoIterator<Item = &'r Row>) -> Vec<u8> {
+    let mut commands = Vec::new();
+    for row in rows {
+        if let Carrier::Wire { read: Source::Reply { command, .. }, .. } = row.carrier
+            && !commands.contains(&command)
+        {
+            commands.push(command);
+        }
+    }
+    commands
+}
+
+/// Whether nothing further can be asked on this wire.
+pub(super) fn is_final(error: &ExchangeError) -> bool {
+    error.is_link_lost() || error.interruption().is_some()
+}
+
+/// Whether a command that failed may have reached the unit.
+pub(super) fn went_out(error: &ExchangeError) -> bool {
+    !matches!(
+        error,
+        ExchangeError::NotArmed { .. }
+            | ExchangeError::Unproven { .. }
+            | ExchangeError::Unsupported { .. }
+            | ExchangeError::Encode { .. }
+            | ExchangeError::Interrupted { .. }
+    )
+}
+
+/// Replies by command, each read once.
+struct Reader<'w> {
+    wire: &'w mut dyn Wire,
+    replies: BTreeMap<u8, Result<Values, ExchangeError>>,
+    transactions: usize,
+}
+
+impl<'w> Reader<'w> {
+    fn new(wire: &'w mut dyn Wire) -> Self {
+        Self { wire, replies: BTreeMap::new(), transactions: 0 }
+    }
+
+    /// The subject with the numbers of pins, streams and outputs that the unit returns; where it does not answer, those
+    /// of its model stay.
+    fn count(&mut self, mut subject: Subject) -> Result<Subject, ExchangeError> {
+        if subject.model.family == Family::Mcp {
+            let lists = [number::READ_SIGNALS, number::READ_STREAMS, number::READ_DOUT_ACTIONS];
+            self.read_commands(&lists)?;
+            let count = |command: u8, listed: usize| match self.replies.get(&command) {
+                Some(Ok(values)) => values.records().count(),
+                _ => listed,
+            };
+            subject.pins = count(number::READ_SIGNALS, subject.pins);
+            subject.streams = count(number::READ_STREAMS, subject.streams);
+            subject.douts = count(number::READ_DOUT_ACTIONS, subject.douts);
+        }
+        Ok(subject)
+    }
+
+    fn read_commands(&mut self, commands: &[u8]) -> Result<(), ExchangeError> {
+        for (index, command) in commands.iter().enumerate() {
+            if !self.replies.contains_key(command) {
+                self.wire.report_progress(index, commands.len(), title(*command));
+                self.read_command(*command)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn read_command(&mut self, command: u8) -> Result<(), ExchangeError> {
+        self.transactions += 1;
+        let reply = self.wire.transact(command, &[]);
+        if let Err(error) = &reply
+            && (is_final(error) || self.nobody_there(error))
+        {
+            return Err(error.clone());
+        }
+        self.replies.insert(command, reply);
+        Ok(())
+    }
+
+    /// Whether this is one silence too many.
+    fn nobody_there(&self, error: &ExchangeError) -> bool {
+        let silent = self.replies.values().all(|reply| matches!(reply, Err(error) if error.is_no_answer()));
+        error.is_no_answer() && silent && self.replies.len() + 1 >= SILENT_COMMANDS
+    }
+
+    /// The values of the rows, and what has none.
+    fn collect<'r>(&self, rows: impl IntoIterator<Item = &'r Row>) -> (SettingsImage, Vec<ReadFailure>) {
+        let mut image = SettingsImage::default();
+        let mut failures = Failures { on: self.wire.describe(), list: Vec::new() };
+        for row in rows {
+            match row.carrier {
+                Carrier::Wire { read: Source::LinkAddress, .. } => {
+                    image.set(&row.key, row.decode(i64::from(self.wire.address().get())));
+                }
+                Carrier::Wire { read: Source::Reply { command, place, record }, .. } => {
+                    match self.replies.get(&command) {
+                        Some(Ok(values)) => match raw_of(values, place, record) {
+                            Some(raw) => image.set(&row.key, row.decode(raw)),
+                            None => failures.incomplete(command, row),
+                        },
+                        Some(Err(error)) => failures.no_reply(command, row, error),
+                        None => failures.incomplete(command, row),
+                    }
+                }
+                Carrier::NoWireForm { .. } => {
+                    let hidden = self.wire.hidden_settings();
+                    if let Some(raw) = hidden.and_then(|hidden| hidden.get(self.wire.address(), &row.key)) {
+                        image.set(&row.key, row.decode(raw));
+                    }
+                }
+            }
+        }
+        (image, failures.list)
+    }
+
+    fn gave_up(&self, error: &ExchangeError) -> Failure {
+        error.failure("read the settings", self.wire.describe())
+    }
+}
+
+/// The failures so far, one for each command.
+struct Failures {
+    on: String,
+    list: Vec<ReadFailure>,
+}
+
+impl Failures {
+    fn no_reply(&mut self, command: u8, row: &Row, error: &ExchangeError) {
+        let failure = || error.failure(format!("{} ({command})", title(command)), &self.on);
+        let failure = if self.knows(command) { None } else { Some(failure()) };
+        self.add(command, row, failure);
+    }
+
+    fn incomplete(&mut self, command: u8, row: &Row) {
+        let failure = (!self.knows(command)).then(|| {
+            Failure::new(
+                format!("{} ({command})", title(command)),
+                &self.on,
+                "the reply does not hold everything that this generation returns",
+                "Check which firmware the controller has",
+            )
+        });
+        self.add(command, row, failure);
+    }
+
+    fn knows(&self, command: u8) -> bool {
+        self.list.iter().any(|known| known.command == command)
+    }
+
+    fn add(&mut self, command: u8, row: &Row, failure: Option<Failure>) {
+        if let Some(failure) = failure {
+            self.list.push(ReadFailure { command, keys: Vec::new(), failure });
+        }
+        if let Some(known) = self.list.iter_mut().find(|known| known.command == command) {
+            known.keys.push(row.key.clone());
+        }
+    }
+}
+
+/// The raw number of a field, or of its bits, in a reply.
+fn raw_of(values: &Values, place: Place, record: Option<usize>) -> Option<i64> {
+    let word = match record {
+        Some(index) => values.records().nth(index)?.try_int(place.field)?,
+        None => values.try_int(place.field)?,
+    };
+    Some(place.bits.map_or(word, |bits| bits.extract(word)))
+}
+
+/// What a command does, for progress and sentences: "read M1 velocity PID".
+pub(super) fn title(command: u8) -> &'static str {
+    lookup(command).map_or("an unknown command", |command| command.title)
+}

@@ -1,0 +1,398 @@
+//! Writing changes: read what shares a command, plan, send, read back, and name what did not take.
+//!
+//! Until the first command is sent everything that is wrong refuses the whole. From then on there is always a report that
+//! says of each row what is known.
+
+use serde::Serialize;
+use thiserror::Error;
+
+use super::image::{SettingsImage, changes};
+use super::plan::{Plan, Refusal, Stage, Step, WriteOptions, plan, rows_involved};
+use super::read::{ReadFailure, is_final, read_rows, went_out};
+use super::row::Row;
+use super::table::SettingsTable;
+use super::value::SettingValue;
+use crate::exchange::ExchangeError;
+use crate::failure::Failure;
+use crate::wire::Wire;
+use brushwork_protocol::packet_serial::{Address, number};
+
+/// Why nothing was written.
+#[derive(Clone, Debug, Error)]
+pub enum WriteError {
+    /// Some values cannot be written.
+    #[error("Nothing was written:{}", sentences(refusals))]
+    Refused {
+        /// Each of them, with the reason.
+        refusals: Vec<Refusal>,
+    },
+    /// The values that share a command with the changes could not be read first.
+    #[error("Nothing was written. {failure}")]
+    NotRead {
+        /// What was tried and what came back.
+        failure: Failure,
+    },
+}
+
+fn sentences(refusals: &[Refusal]) -> String {
+    refusals.iter().map(|refusal| format!("\n{}", refusal.sentence)).collect()
+}
+
+/// What became of each change.
+#[derive(Clone, Debug, Serialize)]
+pub struct WriteReport {
+    /// Every row that was to be changed, in screen order.
+    pub rows: Vec<RowOutcome>,
+    /// What the user should know, a sentence each.
+    pub warnings: Vec<String>,
+    /// Why writing ended early, if it did.
+    pub ended_early: Option<Failure>,
+    /// Where the controller answers now.
+    pub address: Address,
+    /// Commands sent, reads included.
+    pub transactions: usize,
+}
+
+/// What became of one change.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RowOutcome {
+    /// The row.
+    pub key: String,
+    /// Its value before, if it could be read.
+    pub before: Option<SettingValue>,
+    /// The value wanted.
+    pub wanted: SettingValue,
+    /// The value read back, if it could be.
+    pub found: Option<SettingValue>,
+    /// What that means.
+    pub state: RowState,
+}
+
+/// What is known of a change.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RowState {
+    /// Read back as wanted.
+    Taken,
+    /// Read back, and not as wanted; with what was wrong with the command, if anything was.
+    DidNotTake {
+        /// What came back when it was written; empty when it was acknowledged.
+        why: String,
+    },
+    /// Not sent; the controller holds the old value.
+    NotSent {
+        /// Why, as a sentence.
+        why: String,
+    },
+    /// Sent, and not read back.
+    Unverified {
+        /// Why, as a sentence.
+        why: String,
+    },
+}
+
+impl WriteReport {
+    /// Whether every row was read back as wanted.
+    pub fn is_complete(&self) -> bool {
+        self.rows.iter().all(|row| row.state == RowState::Taken)
+    }
+
+    /// The rows that are not known to hold what was wanted.
+    pub fn did_not_take(&self) -> impl Iterator<Item = &RowOutcome> {
+        self.rows.iter().filter(|row| row.state != RowState::Taken)
+    }
+
+    /// A sentence for each row that is not known to hold what was wanted.
+    pub fn sentences(&self, table: &SettingsTable) -> Vec<String> {
+        self.did_not_take().filter_map(|outcome| Some(outcome.sentence(table.row(&outcome.key)?))).collect()
+    }
+
+    /// What the controller holds as far as this write knows: `ram` with what was read back.
+    pub fn merge_into(&self, ram: &mut SettingsImage) {
+        for row in &self.rows {
+            match (row.found, &row.state) {
+                (Some(found), _) => ram.set(&row.key, found),
+                (None, RowState::NotSent { .. }) => {}
+                (None, _) => ram.remove(&row.key),
+            }
+        }
+    }
+}
+
+impl RowOutcome {
+    fn sentence(&self, row: &Row) -> String {
+        let (title, wanted) = (row.title(), row.format(self.wanted));
+        let found = self.found.map_or_else(|| "unknown".to_owned(), |found| row.format(found));
+        match &self.state {
+            RowState::Taken => format!("{title} is {wanted}."),
+            RowState::DidNotTake { why } if why.is_empty() => {
+                format!(
+                    "{title} was to be {wanted} and is {found}: the controller acknowledged it and did not take it."
+                )
+            }
+            RowState::DidNotTake { why } => format!("{title} was to be {wanted} and is {found}. {why}"),
+            RowState::NotSent { why } => format!("{title} was to be {wanted} and was not sent. {why}"),
+            RowState::Unverified { why } => format!("{title} was set to {wanted} and not read back. {why}"),
+        }
+    }
+}
+
+/// Writes `wanted` values; those that the controller holds already are not sent. See the module's own words.
+pub fn write(
+    wire: &mut dyn Wire,
+    table: &SettingsTable,
+    wanted: &SettingsImage,
+    options: WriteOptions,
+) -> Result<WriteReport, WriteError> {
+    let options = WriteOptions { simulated: options.simulated && wire.is_simulated(), ..options };
+    let keys: Vec<&str> = wanted.iter().map(|(key, _)| key).collect();
+    let involved = rows_involved(table, &keys);
+    let before = read_rows(wire, &involved).map_err(|error| WriteError::NotRead {
+        failure: error.failure("read the settings first", wire.describe()),
+    })?;
+    let settled: SettingsImage =
+        wanted.iter().map(|(key, value)| (key.to_owned(), settle(table, key, value))).collect();
+    let changes = changes_of(table, &before.image, &settled);
+    let plan = plan(table, &before.image, &changes, options)
+        .map_err(|refusals| WriteError::Refused { refusals: with_causes(refusals, &before.failures) })?;
+    let mut writer = Writer {
+        wire,
+        table,
+        before: before.image,
+        wanted: settled,
+        changes,
+        involved,
+        faults: Vec::new(),
+        sent: Vec::new(),
+        ended: None,
+        transactions: before.transactions,
+    };
+    writer.run(&plan);
+    Ok(writer.report(plan))
+}
+
+/// The refusals, and what could not be read, which may be why.
+fn with_causes(mut refusals: Vec<Refusal>, failures: &[ReadFailure]) -> Vec<Refusal> {
+    refusals.extend(failures.iter().map(|unread| Refusal {
+        key: unread.keys.first().cloned().unwrap_or_default(),
+        sentence: unread.failure.to_string(),
+    }));
+    refusals
+}
+
+fn settle(table: &SettingsTable, key: &str, value: SettingValue) -> SettingValue {
+    table.row(key).map_or(value, |row| row.settle(value))
+}
+
+/// What differs, unknown keys included so that the plan refuses them.
+fn changes_of(table: &SettingsTable, before: &SettingsImage, wanted: &SettingsImage) -> SettingsImage {
+    let mut changed = changes(table, before, wanted);
+    for (key, value) in wanted.iter().filter(|(key, _)| table.row(key).is_none()) {
+        changed.set(key, value);
+    }
+    changed
+}
+
+struct Writer<'w> {
+    wire: &'w mut dyn Wire,
+    table: &'w SettingsTable,
+    before: SettingsImage,
+    wanted: SettingsImage,
+    changes: SettingsImage,
+    involved: Vec<&'w Row>,
+    /// Rows whose command was answered by something other than an acknowledgement, with the sentence.
+    faults: Vec<(String, String)>,
+    /// Rows whose command was sent.
+    sent: Vec<String>,
+    /// Why no further command is sent.
+    ended: Option<Failure>,
+    transactions: usize,
+}
+
+/// What was found when reading back.
+#[derive(Default)]
+struct ReadBack {
+    image: SettingsImage,
+    /// Why rows are missing from the image.
+    why: Option<String>,
+}
+
+impl Writer<'_> {
+    fn run(&mut self, plan: &Plan) {
+        for (key, raw) in &plan.hidden {
+            self.set_hidden(key, *raw);
+        }
+        let of = plan.steps.len();
+        for (done, step) in plan.steps.iter().enumerate().filter(|(_, step)| step.stage < Stage::Address) {
+            self.wire.report_progress(done, of, &step.title());
+            self.send(step);
+        }
+    }
+
+    fn set_hidden(&mut self, key: &str, raw: i64) {
+        let address = self.wire.address();
+        let done = match self.wire.hidden_settings() {
+            Some(hidden) => hidden.set(address, key, raw),
+            None => Err("This controller does not let its hidden settings be set.".to_owned()),
+        };
+        self.sent.push(key.to_owned());
+        if let Err(why) = done {
+            self.faults.push((key.to_owned(), why));
+        }
+    }
+
+    fn send(&mut self, step: &Step) {
+        if self.ended.is_some() {
+            return;
+        }
+        self.transactions += 1;
+        let reply = self.wire.transact_named(step.command, &step.arguments);
+        if reply.as_ref().err().is_none_or(went_out) {
+            self.sent.extend(step.keys.iter().cloned());
+        }
+        if let Err(error) = reply {
+            self.note_fault(step, &error);
+        }
+    }
+
+    /// A command that failed: its rows are told; the rest goes on only if the controller still answers.
+    fn note_fault(&mut self, step: &Step, error: &ExchangeError) {
+        let failure = error.failure(format!("write {}", step.title()), self.wire.describe());
+        self.faults.extend(step.keys.iter().map(|key| (key.clone(), failure.to_string())));
+        if is_final(error) || (step.stage < Stage::Address && !self.still_answers()) {
+            self.ended = Some(failure);
+        }
+    }
+
+    fn still_answers(&mut self) -> bool {
+        self.transactions += 1;
+        self.wire.transact(number::READ_VERSION, &[]).is_ok()
+    }
+
+    fn report(mut self, plan: Plan) -> WriteReport {
+        let mut found = self.read_back();
+        let mut warnings = plan.warnings;
+        warnings.extend(self.disturbed_neighbours(&found.image));
+        for step in plan.steps.iter().filter(|step| step.stage >= Stage::Address) {
+            self.send_departing(step, &mut found, &mut warnings);
+        }
+        let rows = self.table.rows().iter().filter_map(|row| self.outcome(row, &found)).collect();
+        WriteReport {
+            rows,
+            warnings,
+            ended_early: self.ended,
+            address: self.wire.address(),
+            transactions: self.transactions,
+        }
+    }
+
+    /// Rows that nobody wanted changed and that came back changed.
+    fn disturbed_neighbours(&self, found: &SettingsImage) -> Vec<String> {
+        let disturbed = |row: &&Row| {
+            let (before, now) = (self.before.get(&row.key)?, found.get(&row.key)?);
+            (self.wanted.get(&row.key).is_none() && now != before).then(|| {
+                let (before, now) = (row.format(before), row.format(now));
+                format!("{} changed from {before} to {now}, which was not asked for.", row.title())
+            })
+        };
+        self.involved.iter().filter_map(disturbed).collect()
+    }
+
+    /// Reads every row of the commands again, wanted or not.
+    fn read_back(&mut self) -> ReadBack {
+        if let Some(failure) = &self.ended
+            && self.sent.is_empty()
+        {
+            return ReadBack { image: SettingsImage::default(), why: Some(failure.to_string()) };
+        }
+        match read_rows(self.wire, &self.involved) {
+            Ok(reading) => {
+                self.transactions += reading.transactions;
+                let why = reading.failures.first().map(|failure| failure.failure.to_string());
+                ReadBack { image: reading.image, why }
+            }
+            Err(error) => {
+                let failure = error.failure("read the settings back", self.wire.describe());
+                let why = Some(failure.to_string());
+                self.ended.get_or_insert(failure);
+                ReadBack { image: SettingsImage::default(), why }
+            }
+        }
+    }
+
+    /// A step that changes the way to the controller: sent, followed if the wire can follow, and read back where it leads.
+    fn send_departing(&mut self, step: &Step, found: &mut ReadBack, warnings: &mut Vec<String>) {
+        if self.ended.is_some() {
+            return;
+        }
+        self.send(step);
+        for key in &step.keys {
+            found.image.remove(key);
+        }
+        if step.stage == Stage::Address && self.sent_any(step) && !self.follow(step, warnings) {
+            found.why = Some("The controller answers neither to its old nor to its new address.".to_owned());
+            return;
+        }
+        let rows: Vec<&Row> = step.keys.iter().filter_map(|key| self.table.row(key)).collect();
+        match read_rows(self.wire, &rows) {
+            Ok(reading) => {
+                self.transactions += reading.transactions;
+                found.image.merge(&reading.image);
+                let why = reading.failures.first().map(|failure| failure.failure.to_string());
+                found.why = found.why.take().or(why);
+            }
+            Err(error) => {
+                let failure = error.failure("read the settings back", self.wire.describe());
+                found.why.get_or_insert(failure.to_string());
+                self.ended.get_or_insert(failure);
+            }
+        }
+    }
+
+    /// Speaks to the unit's new address, or to the old one if it does not answer there. `false` if it answers to neither.
+    fn follow(&mut self, step: &Step, warnings: &mut Vec<String>) -> bool {
+        let old = self.wire.address();
+        let argument = step.arguments.iter().find(|(name, _)| *name == "address").map(|(_, value)| *value);
+        let Some(new) = argument.and_then(|byte| u8::try_from(byte).ok()).and_then(Address::new) else {
+            return true;
+        };
+        if !self.wire.set_address(new) {
+            warnings.push(format!("The controller is at {new} now; connect to it there."));
+            return false;
+        }
+        self.still_answers() || (self.wire.set_address(old) && self.still_answers())
+    }
+
+    fn sent_any(&self, step: &Step) -> bool {
+        step.keys.iter().any(|key| self.sent.contains(key))
+    }
+
+    fn outcome(&self, row: &Row, found: &ReadBack) -> Option<RowOutcome> {
+        let wanted = self.wanted.get(&row.key)?;
+        let before = self.before.get(&row.key);
+        let was_sent = self.sent.contains(&row.key);
+        let to_change = self.changes.get(&row.key).is_some();
+        let read = found.image.get(&row.key);
+        let state = match read {
+            _ if !to_change => RowState::Taken,
+            Some(read) if row.encode(read) == row.encode(wanted) => RowState::Taken,
+            _ if !was_sent => RowState::NotSent { why: self.why_not_sent(&row.key) },
+            Some(_) => RowState::DidNotTake { why: self.fault_of(&row.key) },
+            None => RowState::Unverified { why: found.why.clone().unwrap_or_default() },
+        };
+        let found = if to_change { read } else { before };
+        Some(RowOutcome { key: row.key.clone(), before, wanted, found, state })
+    }
+
+    fn fault_of(&self, key: &str) -> String {
+        self.faults.iter().find(|(faulty, _)| faulty == key).map_or_else(String::new, |(_, why)| why.clone())
+    }
+
+    fn why_not_sent(&self, key: &str) -> String {
+        match (self.fault_of(key), &self.ended) {
+            (fault, _) if !fault.is_empty() => fault,
+            (_, Some(failure)) => failure.to_string(),
+            _ => String::new(),
+        }
+    }
+}
