@@ -85,7 +85,7 @@ pub(super) fn is_final(error: &ExchangeError) -> bool {
     error.is_link_lost() || error.interruption().is_some()
 }
 
-/// Whether a command that failed may have reached the unit.
+/// Whether a command that failed may have reached the unit. An interruption may come after it went out, so it counts.
 pub(super) fn went_out(error: &ExchangeError) -> bool {
     !matches!(
         error,
@@ -93,7 +93,6 @@ pub(super) fn went_out(error: &ExchangeError) -> bool {
             | ExchangeError::Unproven { .. }
             | ExchangeError::Unsupported { .. }
             | ExchangeError::Encode { .. }
-            | ExchangeError::Interrupted { .. }
     )
 }
 

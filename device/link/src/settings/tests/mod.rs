@@ -1,8 +1,12 @@
 //! Tests of the settings over several files of the module: the table against the protocol, values, profiles.
 
 mod consistency;
+mod fake;
+mod memory;
+mod plan;
 mod profile;
 mod values;
+mod writing;
 
 use brushwork_protocol::models;
 use brushwork_protocol::packet_serial::Generation;
