@@ -192,7 +192,8 @@ impl Controller {
     }
 
     fn run_tick(&mut self, at: Duration) {
-        let dt_s = (at - self.law.tick_at(self.ticks)).as_secs_f64();
+        // Always the same length, so that the machine's step is worked out once; ticks in whole nanoseconds differ by one.
+        let dt_s = self.law.tick_s();
         self.ticks += 1;
         self.now = self.now.max(at);
         match &mut self.firmware {
