@@ -85,6 +85,7 @@ pub trait Machine: Send {
     /// The worlds of all units as they are now.
     fn views(&self) -> Vec<WorldView>;
 
-    /// Whether the host's cable is in: false as soon as one unit is unplugged, since they share the wire.
+    /// Whether anything is at the other end of the host's cable: false once every unit is unplugged. A unit unplugged from a wire
+    /// that others share hears nothing and says nothing.
     fn plugged(&self) -> bool;
 }

@@ -1,7 +1,8 @@
 //! Bytes at the baud rate: a wrapper that lets each byte of a machine take its time on the wire, both ways.
 //!
 //! It has no clock of its own: like any machine it is advanced, and it hands each byte on at the very moment at which its last
-//! bit is through. A reply leaves as one write when its last byte would have arrived at the host.
+//! bit is through. A reply leaves as one write when its last byte would have arrived at the host. The machine's own turnaround is
+//! the time between the last bit of a request and the first of its reply.
 
 use crate::machine::{Machine, StreamIndex};
 use crate::world::{WorldAction, WorldView};
@@ -10,10 +11,6 @@ use std::time::Duration;
 
 /// Bits a byte takes on the wire: start, eight data bits, stop.
 pub const BITS_PER_BYTE: u32 = 10;
-
-/// Least time from the last bit of a request to the first bit of its reply on a paced line. Assumed: a tenth of a millisecond
-/// of work; a controller that waits longer by itself (1 ms at 38400 and slower, MCP manual 2.2) is not made slower still.
-pub const TURNAROUND: Duration = Duration::from_micros(100);
 
 /// Time one byte takes at a rate.
 pub fn byte_time(bits_per_second: u32) -> Duration {
@@ -32,7 +29,6 @@ pub struct Paced<M> {
 struct Line {
     /// Bytes on their way to the machine, each with the time its last bit arrives.
     requests: VecDeque<(Duration, u8)>,
-    last_request_byte_at: Option<Duration>,
     /// Replies on their way to the host, each with the time its last bit arrives.
     replies: VecDeque<(Duration, Vec<u8>)>,
     last_reply_byte_at: Duration,
@@ -65,16 +61,12 @@ impl<M: Machine> Paced<M> {
         let now = self.inner.now();
         for stream in StreamIndex::ALL {
             let line = &mut self.lines[stream.index()];
-            while line.requests.front().is_some_and(|(at, _)| *at <= now) {
-                if let Some((at, byte)) = line.requests.pop_front() {
-                    line.last_request_byte_at = Some(at);
-                    self.inner.receive(stream, &[byte]);
-                }
+            while let Some((_, byte)) = line.requests.pop_front_if(|(at, _)| *at <= now) {
+                self.inner.receive(stream, &[byte]);
             }
             let byte_time = byte_time(self.inner.bits_per_second(stream));
             while let Some(reply) = self.inner.take_output(stream) {
-                let turned = line.last_request_byte_at.map_or(now, |at| now.max(at + TURNAROUND));
-                let starts = turned.max(line.last_reply_byte_at);
+                let starts = now.max(line.last_reply_byte_at);
                 line.last_reply_byte_at = starts + byte_time * reply.len() as u32;
                 line.replies.push_back((line.last_reply_byte_at, reply));
             }

@@ -82,9 +82,7 @@ impl Machine for Bus {
     }
 
     fn receive(&mut self, stream: StreamIndex, bytes: &[u8]) {
-        if self.plugged() {
-            self.units.iter_mut().for_each(|unit| unit.receive(stream, bytes));
-        }
+        self.units.iter_mut().for_each(|unit| unit.receive(stream, bytes));
     }
 
     fn advance(&mut self, to: Duration) {
@@ -118,6 +116,6 @@ impl Machine for Bus {
     }
 
     fn plugged(&self) -> bool {
-        self.units.iter().all(Controller::plugged)
+        self.units.iter().any(Controller::plugged)
     }
 }

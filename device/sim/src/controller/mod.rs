@@ -140,6 +140,9 @@ impl Controller {
         }
         self.world.apply(action);
         self.follow_power();
+        if !self.world.plugged() {
+            self.ports.iter_mut().for_each(Port::reset);
+        }
         Ok(())
     }
 
