@@ -96,6 +96,11 @@ impl OutputStage {
         (self.limiter.lowest, self.limiter.highest)
     }
 
+    /// Whether the demand is a current.
+    pub fn drives_current(&self) -> bool {
+        matches!(self.demand, Demand::Current(_))
+    }
+
     /// Whether the current limit holds the output back.
     pub fn is_limiting(&self) -> bool {
         self.limiter.limiting

@@ -13,6 +13,7 @@ struct Axis {
     world: World,
     channel: Channel,
     settings: MotionSettings,
+    conditions: Conditions,
     peak_amps: f64,
     was_limited: bool,
 }
@@ -31,6 +32,7 @@ impl Axis {
             world,
             channel: Channel::new(&ControlLaw::default()),
             settings,
+            conditions: Conditions::default(),
             peak_amps: 0.0,
             was_limited: false,
         }
@@ -46,7 +48,7 @@ impl Axis {
             current_amps: self.world.measured_amps(Motor::M1),
             bus_volts: self.world.bus_volts(),
         };
-        let decided = self.channel.tick(&measured, &Conditions::default(), &self.settings);
+        let decided = self.channel.tick(&measured, &self.conditions, &self.settings);
         let (channel, peak_amps) = (&mut self.channel, &mut self.peak_amps);
         let mut is_first = true;
         self.world.advance_with(ControlLaw::default().tick_s(), |motor, sense| match motor {
@@ -135,15 +137,25 @@ fn the_current_limit_holds_while_a_motor_starts_at_full_duty() {
     }
 }
 
-#[test]
-fn torque_mode_puts_the_asked_current_through_a_locked_motor_and_a_turning_one() {
+/// A large gearmotor in torque mode, full duty 60 A.
+fn torque_axis() -> Axis {
     let preset = presets::lookup("large-gearmotor").expect("a preset of that name");
     let mut axis = Axis::new(preset, 60.0);
     axis.settings.resistance_raw = (preset.axis.motor.armature_ohms * 16_777_216.0) as u32;
     axis.settings.inductance_raw = (preset.axis.motor.armature_henries * 16_777_216.0) as u32;
+    axis
+}
+
+/// A quarter of the maximum current.
+fn quarter_torque() -> MotionCommand {
+    MotionCommand::Duty { duty_raw: 8_192, acceleration_raw: Some(655_359) }
+}
+
+#[test]
+fn torque_mode_puts_the_asked_current_through_a_locked_motor_and_a_turning_one() {
+    let mut axis = torque_axis();
     axis.world.apply(&WorldAction::LockShaft { motor: Motor::M1, on: true });
-    // A quarter of 60 A.
-    axis.command(MotionCommand::Duty { duty_raw: 8_192, acceleration_raw: Some(655_359) });
+    axis.command(quarter_torque());
     axis.run_s(0.5);
     let amps = axis.world.truth(Motor::M1).amps;
     assert!((amps - 15.0).abs() < 0.3, "locked: {amps} A");
@@ -152,4 +164,26 @@ fn torque_mode_puts_the_asked_current_through_a_locked_motor_and_a_turning_one()
     let amps = axis.world.truth(Motor::M1).amps;
     assert!(axis.channel.speeds().raw > 3_000, "it turns");
     assert!((amps - 15.0).abs() < 0.8, "turning: {amps} A");
+}
+
+#[test]
+fn in_torque_mode_a_duty_of_zero_coasts_and_a_stop_or_a_limit_brakes() {
+    let speed_after = |end: fn(&mut Axis)| {
+        let mut axis = torque_axis();
+        axis.command(quarter_torque());
+        axis.run_s(0.5);
+        let before = axis.channel.speeds().raw;
+        assert!(before > 20_000, "{before}");
+        end(&mut axis);
+        axis.run_s(0.4);
+        f64::from(axis.channel.speeds().raw) / f64::from(before)
+    };
+    let coasted = speed_after(|axis| {
+        axis.command(MotionCommand::Duty { duty_raw: 0, acceleration_raw: Some(655_359) });
+    });
+    let stopped = speed_after(|axis| axis.command(MotionCommand::SafeStop));
+    let limited = speed_after(|axis| axis.conditions.forward_limit = true);
+    assert!(coasted > 0.5, "{coasted}");
+    assert!(stopped < 0.1, "{stopped}");
+    assert!(limited < 0.1, "{limited}");
 }

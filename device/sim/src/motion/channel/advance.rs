@@ -18,14 +18,18 @@ impl Channel {
         self.finish_and_start_moves(settings);
         match self.mode {
             Mode::Coast => Demand::Coast,
+            Mode::Stop => {
+                self.advance_duty(0, FASTEST, conditions);
+                self.voltage_demand(settings)
+            }
             Mode::Duty { goal_raw, rates } => {
                 let goal_raw = if conditions.reverse { -goal_raw } else { goal_raw };
                 self.advance_duty(goal_raw, rates, conditions);
-                self.duty_demand(settings)
+                self.torque_or_voltage_demand(goal_raw, conditions, settings)
             }
             Mode::Home { goal_raw, rates, ticks_left } => {
                 self.advance_homing(goal_raw, rates, ticks_left, conditions);
-                self.duty_demand(settings)
+                self.torque_or_voltage_demand(goal_raw, conditions, settings)
             }
             Mode::Relay(test) => self.advance_relay(test, conditions),
             Mode::Speed { goal, acceleration } => {
@@ -101,17 +105,29 @@ impl Channel {
         }
     }
 
-    /// What the ramped duty asks for: a duty, a current in torque mode, an open bridge when idle for long enough.
-    /// Assumed: full duty in torque mode is the maximum current.
-    fn duty_demand(&self, settings: &MotionSettings) -> Demand {
-        let share = self.duty.value() / f64::from(FULL_DUTY_RAW);
+    /// What the ramped duty asks for in torque mode: a current, of which full duty is the maximum (assumed). A limit in the
+    /// way brakes the motor, since no current would let it run on.
+    fn torque_or_voltage_demand(
+        &self,
+        goal_raw: i32,
+        conditions: &Conditions,
+        settings: &MotionSettings,
+    ) -> Demand {
+        let braking = matches!(self.mode, Mode::Stop) || conditions.bars(f64::from(goal_raw));
+        match settings.max_current_amps() {
+            Some(max_amps) if settings.torque_mode() && !braking => {
+                Demand::Current(self.duty.value() / f64::from(FULL_DUTY_RAW) * max_amps)
+            }
+            _ => self.voltage_demand(settings),
+        }
+    }
+
+    /// What the ramped duty asks for as a voltage; an open bridge when idle for long enough.
+    fn voltage_demand(&self, settings: &MotionSettings) -> Demand {
         if self.is_idle_for_freewheel(settings) {
             return Demand::Coast;
         }
-        match settings.max_current_amps() {
-            Some(max_amps) if settings.torque_mode() => Demand::Current(share * max_amps),
-            _ => Demand::Duty(share),
-        }
+        Demand::Duty(self.duty.value() / f64::from(FULL_DUTY_RAW))
     }
 
     fn is_idle_for_freewheel(&self, settings: &MotionSettings) -> bool {

@@ -114,7 +114,7 @@ impl Channel {
         Channel {
             law,
             encoder: EncoderChannel::new(&law),
-            mode: Mode::stopped(),
+            mode: Mode::Stop,
             queue: CommandQueue::new(),
             buffered: false,
             held: false,
@@ -376,9 +376,7 @@ impl Channel {
                 }
             }
             MotionCommand::Coast => Mode::Coast,
-            MotionCommand::SafeStop | MotionCommand::Distance(..) | MotionCommand::Position(..) => {
-                Mode::stopped()
-            }
+            MotionCommand::SafeStop | MotionCommand::Distance(..) | MotionCommand::Position(..) => Mode::Stop,
         };
         self.begin(mode);
     }
@@ -395,7 +393,7 @@ impl Channel {
     /// Duty 0 at the highest rate, nothing buffered.
     fn stop(&mut self) {
         self.drop_buffer();
-        self.begin(Mode::stopped());
+        self.begin(Mode::Stop);
     }
 
     fn drop_buffer(&mut self) {
@@ -410,7 +408,10 @@ impl Channel {
             self.velocity.reset();
             self.position.reset();
         }
-        if !mode.is_closed() && !matches!(self.mode, Mode::Duty { .. } | Mode::Home { .. }) {
+        // The ramp of a torque stands for a current, and a stop ramps the voltage.
+        let from_torque = matches!(mode, Mode::Stop) && self.stage.drives_current();
+        let has_ramp = matches!(self.mode, Mode::Stop | Mode::Duty { .. } | Mode::Home { .. });
+        if !mode.is_closed() && (!has_ramp || from_torque) {
             self.duty.set(self.stage.output().duty() * f64::from(FULL_DUTY_RAW));
         }
         if !matches!(mode, Mode::Position(_)) {
@@ -425,7 +426,7 @@ impl Channel {
         if conditions.off {
             self.drop_buffer();
             self.begin(Mode::Coast);
-        } else if conditions.safe_stop && !self.mode.is_stopped() {
+        } else if conditions.safe_stop && !matches!(self.mode, Mode::Stop) {
             self.stop();
         }
     }

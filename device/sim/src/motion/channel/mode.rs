@@ -16,23 +16,27 @@ pub(super) const FASTEST: Rates =
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Mode {
     Coast,
-    Duty { goal_raw: i32, rates: Rates },
-    Speed { goal: i32, acceleration: Option<u32> },
+    /// Duty to 0 at the highest rate, and the motor braked there, in torque mode too.
+    Stop,
+    Duty {
+        goal_raw: i32,
+        rates: Rates,
+    },
+    Speed {
+        goal: i32,
+        acceleration: Option<u32>,
+    },
     Distance(DistanceRun),
     Position(PositionRun),
     Relay(RelayTest),
-    Home { goal_raw: i32, rates: Rates, ticks_left: u64 },
+    Home {
+        goal_raw: i32,
+        rates: Rates,
+        ticks_left: u64,
+    },
 }
 
 impl Mode {
-    pub fn stopped() -> Self {
-        Mode::Duty { goal_raw: 0, rates: FASTEST }
-    }
-
-    pub fn is_stopped(&self) -> bool {
-        matches!(self, Mode::Duty { goal_raw: 0, rates } if *rates == FASTEST)
-    }
-
     /// Whether the velocity loop runs.
     pub fn is_closed(&self) -> bool {
         matches!(self, Mode::Speed { .. } | Mode::Distance(_) | Mode::Position(_))
@@ -50,7 +54,7 @@ impl Mode {
 
     pub fn describe(&self, raw_counts: i64, state: &mut ChannelState) {
         match self {
-            Mode::Coast | Mode::Relay(_) => {}
+            Mode::Coast | Mode::Stop | Mode::Relay(_) => {}
             Mode::Duty { goal_raw, rates } | Mode::Home { goal_raw, rates, .. } => {
                 state.target_duty_raw = *goal_raw;
                 state.acceleration = rates.rising.unwrap_or(0);
