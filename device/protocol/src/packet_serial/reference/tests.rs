@@ -31,7 +31,7 @@ fn a_section_says_widths_units_and_traps() {
   - max (max): u16; 1 raw = 0.1 V; voltage in tenths of a volt
   - auto_offset (auto offset): u8; 1 raw = 0.1 V; automatic offset in tenths of a volt
 
-Source: MCP manual 2.3.1.
+Source: MCP manual 2.3.1. The simulated controller only stores the automatic offset of generation 4.
 ";
     assert_eq!(section, expected);
 }

@@ -42,7 +42,7 @@ pub(super) const ROWS: &[Command] = &[
         CLIENTS,
         forms![write(G4, G4, Effect::Bus, MESSAGE)],
     )
-    .simulated(Simulated::Inert("accepted; there is no bus to carry the message")),
+    .simulated(LOOP_BACK),
     Command::new(
         number::GET_CAN_PACKET,
         "get_can_packet",
@@ -50,7 +50,7 @@ pub(super) const ROWS: &[Command] = &[
         CLIENTS,
         forms![read(G4, G4, RECEIVED)],
     )
-    .simulated(QUIET_BUS)
+    .simulated(LOOP_BACK)
     .note("In the vendor's C++ library of 2025 a reply that does not start with 0xFF ends after that byte."),
     Command::new(
         number::WRITE_CAN_DICTIONARY,
@@ -62,7 +62,7 @@ pub(super) const ROWS: &[Command] = &[
                 .assumed(CONTRADICT)
         ],
     )
-    .simulated(QUIET_BUS)
+    .simulated(DICTIONARY)
     .client(NEVER)
     .note("The vendor's C++ library of 2025 expects no acknowledgement before the result."),
     Command::new(
@@ -72,14 +72,18 @@ pub(super) const ROWS: &[Command] = &[
         CLIENTS,
         forms![read_at(G4, G4, ENTRY, READ_ENTRY).assumed(CONTRADICT)],
     )
-    .simulated(QUIET_BUS)
+    .simulated(DICTIONARY)
     .client(NEVER)
     .note("The vendor's C++ library of 2025 appends a CRC and starts the reply's CRC anew."),
 ];
 
 const NO_BUS: Simulated = Simulated::StoredOnly("there is no simulated CAN bus");
-const QUIET_BUS: Simulated =
-    Simulated::Inert("answered in the layout of the Python library, as on a bus without traffic");
+const QUIET_BUS: Simulated = Simulated::Inert("the simulated port is in loop-back and has no errors");
+const LOOP_BACK: Simulated =
+    Simulated::StoredOnly("there is no simulated CAN bus: what is sent is what is received next");
+const DICTIONARY: Simulated = Simulated::StoredOnly(
+    "the dictionary keeps what is written to it; objects from 0x2000 on read as the command of that number",
+);
 const CONTRADICT: &str = "the vendor's Python and C++ libraries of 2025 contradict each other";
 const NEVER: ClientUse = ClientUse::Never(CONTRADICT);
 

@@ -42,15 +42,15 @@ pub(super) const ROWS: &[Command] = &[
         "configuration word",
         forms![write(G1, G4, Effect::Setting, fields![CONFIG])],
     )
-    .simulated(Simulated::StoredOnly("a RoboClaw word; the MCP has 139 to 145 for what it says"))
+    .simulated(Simulated::StoredOnly("a RoboClaw word, of which only the address acts; the MCP has 139 to 145 for what it says"))
     .client(ClientUse::Superseded("the MCP has 139 to 147 for what it says"))
     .note("Writing it can move the unit to another address at once."),
     late(number::READ_CONFIG, "read_config", "read configuration word", forms![read(G1, G4, fields![CONFIG])])
-        .simulated(Simulated::StoredOnly("a RoboClaw word; the MCP has 139 to 145 for what it says")),
+        .simulated(Simulated::StoredOnly("a RoboClaw word, of which only the address acts; the MCP has 139 to 145 for what it says")),
     late(number::READ_VOLTS, "read_volts", "read voltages", VOLTS)
-        .note("A factory test in generation 1, the CTRL modes in 2 and 3."),
+        .note("A factory test in generation 1, the CTRL modes in 2 and 3, which the simulated controller only stores."),
     late(number::READ_TEMPERATURES, "read_temperatures", "read temperatures", TEMPERATURES)
-        .note("A factory test in generation 1, the CTRL modes in 2 and 3."),
+        .note("A factory test in generation 1, the CTRL modes in 2 and 3, which the simulated controller only stores."),
     late(number::SET_AUX_DUTIES, "set_aux_duties", "auxiliary duties", SET_AUX)
         .simulated(CTRL_PINS)
         .note("Sets the duty of the first CTRL pin in generations 2 and 3."),
@@ -58,8 +58,8 @@ pub(super) const ROWS: &[Command] = &[
     late(number::SET_HOMING_M1, "set_homing_m1", "M1 homing", SET_HOMING).simulated(HOMING),
     late(number::SET_HOMING_M2, "set_homing_m2", "M2 homing", SET_HOMING).simulated(HOMING),
     late(number::READ_HOMING, "read_homing", "read homing", READ_HOMING).simulated(HOMING),
-    manual(number::SET_PWM_MODE, "set_pwm_mode", "PWM mode", SET_PWM),
-    manual(number::READ_PWM_MODE, "read_pwm_mode", "read PWM mode", READ_PWM),
+    manual(number::SET_PWM_MODE, "set_pwm_mode", "PWM mode", SET_PWM).simulated(NO_RIPPLE),
+    manual(number::READ_PWM_MODE, "read_pwm_mode", "read PWM mode", READ_PWM).simulated(NO_RIPPLE),
     late(
         number::SET_PWM_IDLE,
         "set_pwm_idle",
@@ -90,6 +90,8 @@ pub(super) const ROWS: &[Command] = &[
 
 const LABEL: Simulated = Simulated::StoredOnly("a label that nothing else depends on");
 const CTRL_PINS: Simulated = Simulated::StoredOnly("the simulated models have no CTRL or auxiliary pins");
+const NO_RIPPLE: Simulated =
+    Simulated::StoredOnly("the simulated bridge has no ripple: both modes give the same mean voltage");
 const HOMING: Simulated =
     Simulated::StoredOnly("homing is a function of RoboClaw pins, which are not simulated");
 

@@ -97,7 +97,7 @@ pub(super) const ROWS: &[Command] = &[
             read(G4, G4, fields![byte("status_m1", STATUS), byte("status_m2", STATUS)]),
         ],
     )
-    .note("Generations 2 and 3 set the duty of the second CTRL pin with this number."),
+    .note("Generations 2 and 3 set the duty of the second CTRL pin with this number; the simulated controller only stores it."),
     Command::new(
         number::READ_SPEEDS,
         "read_speeds",

@@ -6,7 +6,8 @@ use super::super::{number, scale};
 use super::{CLIENTS, G1, G3, G4, MANUAL_ADVANCED, fields, forms, read, write};
 
 pub(super) const ROWS: &[Command] = &[
-    manual(number::SET_MAIN_VOLTAGES, "set_main_voltages", "main voltage limits", SET_MAIN),
+    manual(number::SET_MAIN_VOLTAGES, "set_main_voltages", "main voltage limits", SET_MAIN)
+        .note("The simulated controller only stores the automatic offset of generation 4."),
     manual(number::SET_LOGIC_VOLTAGES, "set_logic_voltages", "logic voltage limits", SET_LOGIC),
     manual(number::READ_MAIN_VOLTAGES, "read_main_voltages", "read main voltage limits", READ_MAIN),
     manual(number::READ_LOGIC_VOLTAGES, "read_logic_voltages", "read logic voltage limits", READ_LOGIC),
@@ -70,13 +71,15 @@ pub(super) const ROWS: &[Command] = &[
         "set_voltage_offsets",
         "voltage offsets",
         forms![write(G3, G4, Effect::Setting, fields![offset("main"), offset("logic")])],
-    ),
+    )
+    .simulated(TRUE_METERS),
     late(
         number::READ_VOLTAGE_OFFSETS,
         "read_voltage_offsets",
         "read voltage offsets",
         forms![read(G3, G4, fields![offset("main"), offset("logic")])],
-    ),
+    )
+    .simulated(TRUE_METERS),
     late(
         number::SET_CONTROL_LIMITS,
         "set_control_limits",
@@ -113,6 +116,8 @@ pub(super) const ROWS: &[Command] = &[
 
 const CONTROL_INPUTS: Simulated =
     Simulated::StoredOnly("the simulated inputs are those of the MCP, set by 143");
+const TRUE_METERS: Simulated =
+    Simulated::StoredOnly("the simulated meters read true, so that there is nothing to correct");
 const BLANKING: &str =
     "The RoboClaw manual of 2018 calls the number current blanking, with two values of two bytes.";
 
