@@ -5,7 +5,7 @@ mod support;
 use brushwork_sim::faults::{Fault, Faulty};
 use brushwork_sim::machine::Machine;
 use brushwork_sim::pacing::Paced;
-use brushwork_sim::world::{Motor, WorldAction};
+use brushwork_sim::world::{Motor, PinSignal, SwitchKind, WorldAction};
 use std::time::Duration;
 use support::{Parrot, USB, exchange};
 
@@ -132,6 +132,18 @@ fn a_pulled_cable_carries_nothing_until_it_is_back() {
 }
 
 #[test]
+fn a_tripped_limit_switch_pulls_its_pin_to_ground_and_is_gone_afterwards() {
+    let mut machine = faulty(&["plant:limit-switch=backward@10ms..20ms,motor=2,pin=3"], 1);
+    let pin = |machine: &Faulty<Parrot>| machine.views()[0].pins[2];
+    assert_eq!(pin(&machine), PinSignal::Open);
+    machine.advance(Duration::from_millis(15));
+    assert_eq!(pin(&machine), PinSignal::Volts { volts: 0.0 });
+    assert_eq!(machine.views()[0].axes[1].switches_closed, [false, true, false]);
+    machine.advance(Duration::from_millis(25));
+    assert_eq!(pin(&machine), PinSignal::Open);
+}
+
+#[test]
 fn every_action_can_be_undone() {
     let machine = faulty(&[], 1);
     let view = machine.views().remove(0);
@@ -143,6 +155,9 @@ fn every_action_can_be_undone() {
         WorldAction::SetBatterySinks { can_sink: false },
         WorldAction::ConnectBattery { connected: false },
         WorldAction::SetLogicVolts { volts: 5.0 },
+        WorldAction::WireSwitch { motor, switch: SwitchKind::Home, pin: Some(1), trips_at_radians: None },
+        WorldAction::HoldSwitch { motor, switch: SwitchKind::Home, closed: true },
+        WorldAction::SetPin { pin: 0, signal: PinSignal::Pulse { microseconds: 1500.0 } },
         WorldAction::EStop { pressed: true },
         WorldAction::ReverseEncoder { motor, on },
         WorldAction::LoseEncoder { motor, on },

@@ -55,8 +55,8 @@ pub enum FaultEffect {
     },
     /// All bytes are lost.
     Mute,
-    /// Something done to the world, and undone at the end.
-    World(WorldAction),
+    /// Things done to the world one after the other, and undone at the end.
+    World(Vec<WorldAction>),
 }
 
 /// Which bytes a fault meets.

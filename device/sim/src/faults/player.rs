@@ -38,8 +38,8 @@ struct Deed {
 
 #[derive(Debug)]
 enum Act {
-    Begin { action: WorldAction, until: Option<Duration> },
-    End { undo: WorldAction },
+    Begin { actions: Vec<WorldAction>, until: Option<Duration> },
+    End { undo: Vec<WorldAction> },
 }
 
 impl<M: Machine> Faulty<M> {
@@ -95,15 +95,19 @@ impl<M: Machine> Faulty<M> {
 
     fn act(&mut self, deed: Deed) {
         match deed.act {
-            Act::Begin { action, until } => {
-                let undo = self.inner.views().get(deed.unit).and_then(|view| action.undo(view));
-                self.inner.apply(deed.unit, &action);
-                if let (Some(at), Some(undo)) = (until, undo) {
+            Act::Begin { actions, until } => {
+                let mut undo = Vec::new();
+                for action in actions {
+                    undo.extend(self.inner.views().get(deed.unit).and_then(|view| action.undo(view)));
+                    self.inner.apply(deed.unit, &action);
+                }
+                undo.reverse();
+                if let Some(at) = until {
                     let place = self.deeds.partition_point(|later| later.at <= at);
                     self.deeds.insert(place, Deed { at, unit: deed.unit, act: Act::End { undo } });
                 }
             }
-            Act::End { undo } => self.inner.apply(deed.unit, &undo),
+            Act::End { undo } => undo.iter().for_each(|action| self.inner.apply(deed.unit, action)),
         }
     }
 }
@@ -218,8 +222,8 @@ struct Hit {
 
 impl Deed {
     fn of(fault: Fault) -> Option<Self> {
-        let FaultEffect::World(action) = fault.effect else { return None };
-        Some(Self { at: fault.from, unit: fault.unit, act: Act::Begin { action, until: fault.until } })
+        let FaultEffect::World(actions) = fault.effect else { return None };
+        Some(Self { at: fault.from, unit: fault.unit, act: Act::Begin { actions, until: fault.until } })
     }
 }
 

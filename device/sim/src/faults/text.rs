@@ -20,10 +20,11 @@ On the wire (dir=in or dir=out for one direction only; in is towards the control
 In the machine (motor=1 or motor=2, else motor 1; unit=N for the Nth unit of a bus, else the first):
   plant:locked-shaft        plant:open-lead           plant:reversed-leads
   plant:reversed-encoder    plant:lost-encoder        plant:noisy-encoder=COUNTS
-  plant:swapped-encoders    plant:load-torque=NM      plant:limit-switch=forward|backward|home
-  plant:battery=VOLTS       plant:battery-ohms=OHMS   plant:battery-off
-  plant:power-supply        plant:logic=VOLTS         plant:hot-board=CELSIUS
-  plant:e-stop              plant:power-loss          plant:pin-volts=VOLTS,pin=N
+  plant:swapped-encoders    plant:load-torque=NM      plant:battery=VOLTS
+  plant:battery-ohms=OHMS   plant:battery-off         plant:power-supply
+  plant:logic=VOLTS         plant:hot-board=CELSIUS   plant:e-stop
+  plant:power-loss          plant:pin-volts=VOLTS,pin=N
+  plant:limit-switch=forward|backward|home,pin=N      (wires the switch to that pin)
 
 Without FROM a fault is there from the start, without TO it stays. Times: 2s, 2.5s, 500ms, 100us, 1min.";
 
@@ -48,6 +49,9 @@ pub enum FaultProblem {
     /// A value is missing.
     #[error("{0} needs a value, as in {1}")]
     MissingValue(String, &'static str),
+    /// A key is missing.
+    #[error("{0} needs {1} too")]
+    MissingKey(String, &'static str),
     /// A value where none belongs.
     #[error("{0} takes no value")]
     NeedlessValue(String),
@@ -140,6 +144,7 @@ impl<'a> Parts<'a> {
             "delay" => "dir and share",
             "unplug" => "unit",
             "plant:pin-volts" => "pin and unit",
+            "plant:limit-switch" => "motor and pin and unit",
             _ if name.starts_with("plant:") => "motor and unit",
             _ => "dir",
         };
@@ -170,8 +175,9 @@ impl<'a> Parts<'a> {
                 FaultEffect::Delay { by: self.need("delay=5ms")?.time()?, share: self.share.unwrap_or(1.0) }
             }
             "mute" => self.bare(FaultEffect::Mute)?,
-            "unplug" => self.bare(FaultEffect::World(WorldAction::Unplug { unplugged: true }))?,
-            _ => FaultEffect::World(self.plant_action()?),
+            "unplug" => self.bare(FaultEffect::World(vec![WorldAction::Unplug { unplugged: true }]))?,
+            "plant:limit-switch" => FaultEffect::World(self.limit_switch()?),
+            _ => FaultEffect::World(vec![self.plant_action()?]),
         };
         Ok(Fault {
             effect,
@@ -208,17 +214,30 @@ impl<'a> Parts<'a> {
             "battery-ohms" => Ok(WorldAction::SetBatteryOhms { ohms: number("plant:battery-ohms=0.5")? }),
             "logic" => Ok(WorldAction::SetLogicVolts { volts: number("plant:logic=7")? }),
             "hot-board" => Ok(WorldAction::SetBoardCelsius { celsius: Some(number("plant:hot-board=90")?) }),
-            "limit-switch" => {
-                let switch = self.need("plant:limit-switch=forward")?.switch()?;
-                Ok(WorldAction::HoldSwitch { motor, switch, closed: true })
-            }
             "pin-volts" => {
                 let volts = number("plant:pin-volts=2.5,pin=1")?;
-                let pin = self.pin.ok_or_else(|| self.missing("plant:pin-volts=2.5,pin=1"))?;
+                let pin = self.need_pin("pin=1")?;
                 Ok(WorldAction::SetPin { pin, signal: PinSignal::Volts { volts } })
             }
             _ => Err(self.unknown()),
         }
+    }
+
+    /// A switch means nothing to the controller before it is wired to a pin.
+    fn limit_switch(&self) -> Parsed<Vec<WorldAction>> {
+        let (motor, switch) = (self.motor, self.need("plant:limit-switch=forward,pin=1")?.switch()?);
+        let pin = Some(self.need_pin("pin=1")?);
+        Ok(vec![
+            WorldAction::WireSwitch { motor, switch, pin, trips_at_radians: None },
+            WorldAction::HoldSwitch { motor, switch, closed: true },
+        ])
+    }
+
+    fn need_pin(&self, example: &'static str) -> Parsed<usize> {
+        self.pin.ok_or_else(|| {
+            let end = self.value.map_or(self.name.end(), Piece::end);
+            (end, FaultProblem::MissingKey(self.name.text.to_owned(), example))
+        })
     }
 
     fn need(&self, example: &'static str) -> Parsed<Piece<'a>> {
@@ -373,7 +392,7 @@ mod tests {
         assert_eq!(delay.effect, FaultEffect::Delay { by: Duration::from_millis(5), share: 0.1 });
         assert_eq!((delay.from, delay.until), (Duration::from_secs(60), None));
         let unplug = fault("unplug@300ms,unit=2");
-        assert_eq!(unplug.effect, FaultEffect::World(WorldAction::Unplug { unplugged: true }));
+        assert_eq!(unplug.effect, FaultEffect::World(vec![WorldAction::Unplug { unplugged: true }]));
         assert_eq!((unplug.unit, unplug.from), (1, Duration::from_millis(300)));
     }
 
@@ -381,12 +400,15 @@ mod tests {
     fn faults_in_the_machine_are_read_with_their_motor() {
         let locked = fault("plant:locked-shaft@4s,motor=2");
         let action = WorldAction::LockShaft { motor: Motor::M2, on: true };
-        assert_eq!(locked.effect, FaultEffect::World(action));
+        assert_eq!(locked.effect, FaultEffect::World(vec![action]));
         let hot = fault("plant:hot-board=90");
-        assert_eq!(hot.effect, FaultEffect::World(WorldAction::SetBoardCelsius { celsius: Some(90.0) }));
+        assert_eq!(
+            hot.effect,
+            FaultEffect::World(vec![WorldAction::SetBoardCelsius { celsius: Some(90.0) }])
+        );
         let pin = fault("plant:pin-volts=2.5,pin=3");
         let action = WorldAction::SetPin { pin: 2, signal: PinSignal::Volts { volts: 2.5 } };
-        assert_eq!(pin.effect, FaultEffect::World(action));
+        assert_eq!(pin.effect, FaultEffect::World(vec![action]));
     }
 
     #[test]
@@ -443,6 +465,10 @@ mod tests {
             "fault \"drop=0.1,motor=1\", column 10: drop has no \"motor\"; it may have dir"
         );
         assert_eq!(refusal("plant:battery=x"), "fault \"plant:battery=x\", column 15: \"x\" is no number");
+        assert_eq!(
+            refusal("plant:limit-switch=home@1s"),
+            "fault \"plant:limit-switch=home@1s\", column 24: plant:limit-switch needs pin=1 too"
+        );
         assert!(refusal("").contains("there is no fault \"\""));
         assert!(refusal("delay=é@1s").contains("column 7"), "{}", refusal("delay=é@1s"));
     }

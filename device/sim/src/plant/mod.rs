@@ -33,6 +33,12 @@ pub use supply::{BrakeResistorParams, ClampDrive, Supply, SupplyParams};
 /// to be followed.
 pub const MAX_STEP_S: f64 = 1.0 / 3000.0;
 
+/// Whether a step is so nearly as long as another that the solution for one serves for both: times are kept in whole nanoseconds,
+/// so ticks of one rate differ by that much.
+fn same_step(a_s: f64, b_s: f64) -> bool {
+    (a_s - b_s).abs() <= 1e-5 * b_s
+}
+
 /// How many equal steps of at most [`MAX_STEP_S`] cover `dt_s`, and how long each is. A stretch of no length takes no step.
 pub(crate) fn substeps(dt_s: f64) -> (usize, f64) {
     if dt_s.is_nan() || dt_s <= 0.0 {

@@ -3,6 +3,7 @@
 use super::friction::{DryFriction, hold_one};
 use super::linear::{dot, exponential};
 use super::params::AxisParams;
+use super::same_step;
 use super::travel::Travel;
 
 /// What acts on an axis over one step.
@@ -171,7 +172,7 @@ impl Rigid {
     }
 
     fn learn(&mut self, dt_s: f64) {
-        if self.maps.dt_s != dt_s {
+        if !same_step(self.maps.dt_s, dt_s) {
             self.maps = self.model.maps(dt_s);
         }
     }

@@ -9,6 +9,7 @@ use super::friction::{Bounds, DryFriction, hold_two};
 use super::linear::{dot, exponential};
 use super::params::{AxisParams, CouplingParams};
 use super::rigid::{Push, Winding, effective_henries};
+use super::same_step;
 use super::travel::Travel;
 
 /// Assumed: the resonance of motor and load through the teeth where a gear has backlash and no coupling is given.
@@ -248,7 +249,7 @@ impl TwoMass {
     }
 
     fn learn(&mut self, dt_s: f64) {
-        if self.whole.dt_s != dt_s {
+        if !same_step(self.whole.dt_s, dt_s) {
             self.whole = self.model.maps(dt_s);
             self.part = self.model.maps(dt_s / f64::from(EVENT_PARTS));
         }

@@ -57,6 +57,17 @@ pub enum WorldAction {
         /// Held closed.
         closed: bool,
     },
+    /// Wires a limit or home switch to a pin, closing to ground, or takes it away.
+    WireSwitch {
+        /// Whose switch.
+        motor: Motor,
+        /// Which switch.
+        switch: SwitchKind,
+        /// The pin, counted from 0; none takes the switch away.
+        pin: Option<usize>,
+        /// Where the output shaft closes it, as in [`super::SwitchWiring`].
+        trips_at_radians: Option<f64>,
+    },
     /// The E-stop button.
     EStop {
         /// Pressed.
@@ -151,6 +162,9 @@ impl World {
             }
             WorldAction::SetPin { pin, signal } => self.pins.set(pin, signal),
             WorldAction::HoldSwitch { motor, switch, closed } => self.pins.hold(motor, switch, closed),
+            WorldAction::WireSwitch { motor, switch, pin, trips_at_radians } => {
+                self.pins.wire(motor, switch, pin, trips_at_radians.map(finite));
+            }
             WorldAction::EStop { pressed } => self.estop_pressed = pressed,
             WorldAction::ReverseEncoder { motor, on } => self.axes[motor.index()].reverse_encoder(on),
             WorldAction::LoseEncoder { motor, on } => self.axes[motor.index()].lose_encoder(on),
@@ -184,6 +198,15 @@ impl WorldAction {
             Self::SetLogicVolts { .. } => Self::SetLogicVolts { volts: before.logic_volts },
             Self::SetPin { pin, .. } => Self::SetPin { pin, signal: PinSignal::Open },
             Self::HoldSwitch { motor, switch, .. } => Self::HoldSwitch { motor, switch, closed: false },
+            Self::WireSwitch { motor, switch, .. } => {
+                let wired = before.wiring.switch(motor, switch);
+                Self::WireSwitch {
+                    motor,
+                    switch,
+                    pin: wired.map(|wired| wired.pin),
+                    trips_at_radians: wired.and_then(|wired| wired.trips_at_radians),
+                }
+            }
             Self::EStop { .. } => Self::EStop { pressed: before.estop_pressed },
             Self::ReverseEncoder { motor, .. } => {
                 Self::ReverseEncoder { motor, on: truth(motor).encoder_reversed }

@@ -47,7 +47,7 @@ pub enum PinState {
     Counts(i64),
 }
 
-/// What is wired to which pin, for good.
+/// What is wired to which pin.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Wiring {
@@ -110,6 +110,13 @@ impl SwitchKind {
     pub const ALL: [Self; 3] = [Self::Forward, Self::Backward, Self::Home];
 }
 
+impl Wiring {
+    /// How a switch is wired, where it is.
+    pub fn switch(&self, motor: Motor, switch: SwitchKind) -> Option<&SwitchWiring> {
+        self.switches.iter().find(|wired| wired.motor == motor && wired.switch == switch)
+    }
+}
+
 impl Pins {
     pub fn new(count: usize, wiring: Wiring) -> Self {
         Self { wiring, signals: vec![PinSignal::Open; count], held: Vec::new() }
@@ -122,6 +129,23 @@ impl Pins {
     pub fn set(&mut self, pin: usize, signal: PinSignal) {
         if let Some(place) = self.signals.get_mut(pin) {
             *place = signal;
+        }
+    }
+
+    pub fn wiring(&self) -> &Wiring {
+        &self.wiring
+    }
+
+    pub fn wire(
+        &mut self,
+        motor: Motor,
+        switch: SwitchKind,
+        pin: Option<usize>,
+        trips_at_radians: Option<f64>,
+    ) {
+        self.wiring.switches.retain(|wired| (wired.motor, wired.switch) != (motor, switch));
+        if let Some(pin) = pin {
+            self.wiring.switches.push(SwitchWiring { motor, switch, pin, trips_at_radians });
         }
     }
 
@@ -159,11 +183,6 @@ impl Pins {
                 SwitchKind::Backward | SwitchKind::Home => load_radians <= at,
             })
         };
-        self.held.contains(&(motor, switch))
-            || self
-                .wiring
-                .switches
-                .iter()
-                .any(|wired| wired.motor == motor && wired.switch == switch && tripped(wired))
+        self.held.contains(&(motor, switch)) || self.wiring.switch(motor, switch).is_some_and(tripped)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Motor;
 use super::World;
-use super::pins::{PinSignal, SwitchKind};
+use super::pins::{PinSignal, SwitchKind, Wiring};
 use crate::bridge::BridgeOutput;
 use crate::plant::AxisTruth;
 use serde::Serialize;
@@ -47,6 +47,8 @@ pub struct WorldView {
     pub board_celsius: [f64; 2],
     /// What is on each input pin, switches included.
     pub pins: Vec<PinSignal>,
+    /// Which switches and buttons are wired to which pins.
+    pub wiring: Wiring,
 }
 
 /// One axis at one moment.
@@ -88,6 +90,7 @@ impl World {
             clamp_closed: self.supply.clamp_closed(),
             board_celsius: self.board.celsius(),
             pins,
+            wiring: self.pins.wiring().clone(),
         }
     }
 
