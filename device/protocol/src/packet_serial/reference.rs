@@ -7,7 +7,6 @@ mod text;
 use serde::Serialize;
 
 use super::command::{ClientUse, Command, Direction, Effect, Form, Reply, Simulated};
-use super::describe;
 use super::field::{Field, Kind, Unit};
 use super::identity::Generation;
 use super::status::{CONDITIONS, Lamp, Severity};
@@ -288,7 +287,8 @@ fn field_words(field: &Field) -> String {
     parts.extend(field.raw_range.map(|(low, high)| format!("{low} to {high}")));
     parts.extend(Some(code_words(field)).filter(|words| !words.is_empty()));
     parts.push(field.doc.to_owned());
-    format!("{} ({}): {}", field.name, describe::label(field), parts.join("; "))
+    let label = if field.label.is_empty() { String::new() } else { format!(" ({})", field.label) };
+    format!("{}{label}: {}", field.name, parts.join("; "))
 }
 
 #[cfg(test)]

@@ -24,12 +24,12 @@ fn a_section_says_widths_units_and_traps() {
 ### 57 main voltage limits (set_main_voltages)
 
 - generation 1 to 3, write: [min u16, max u16] -> 0xFF.
-  - min (min): u16; 1 raw = 0.1 V; voltage in tenths of a volt
-  - max (max): u16; 1 raw = 0.1 V; voltage in tenths of a volt
+  - min: u16; 1 raw = 0.1 V; voltage in tenths of a volt
+  - max: u16; 1 raw = 0.1 V; voltage in tenths of a volt
 - generation 4, write: [min u16, max u16, auto_offset u8] -> 0xFF.
-  - min (min): u16; 1 raw = 0.1 V; voltage in tenths of a volt
-  - max (max): u16; 1 raw = 0.1 V; voltage in tenths of a volt
-  - auto_offset (auto offset): u8; 1 raw = 0.1 V; automatic offset in tenths of a volt
+  - min: u16; 1 raw = 0.1 V; voltage in tenths of a volt
+  - max: u16; 1 raw = 0.1 V; voltage in tenths of a volt
+  - auto_offset: u8; 1 raw = 0.1 V; automatic offset in tenths of a volt
 
 Source: MCP manual 2.3.1. The simulated controller only stores the automatic offset of generation 4.
 ";

@@ -151,18 +151,23 @@ fn status_table(page: &mut String) {
 fn exceptions(page: &mut String) {
     heading(page, "Stored or without effect in the simulated controller");
     line(page, "");
-    list(page, |command| simulated(command.simulated));
+    list(page, |command| match command.simulated {
+        Simulated::Acts => None,
+        Simulated::StoredOnly(why) => Some(format!("stored and returned only; {why}.")),
+        Simulated::Inert(why) => Some(format!("no effect; {why}.")),
+        Simulated::Silent(why) => Some(format!("not answered; {why}.")),
+    });
     heading(page, "Never sent by this program");
     line(page, "");
     list(page, |command| match command.client {
-        ClientUse::Never(_) => client(command.client),
+        ClientUse::Never(why) => Some(format!("{why}.")),
         ClientUse::Sends | ClientUse::Superseded(_) => None,
     });
     heading(page, "Never sent to a controller that is not simulated");
     line(page, "");
     list(page, |command| {
         let guessed = command.forms.iter().find(|form| form.assumed.is_some())?;
-        Some(format!("Generation {}: {}.", generations(guessed), guessed.assumed?))
+        Some(format!("in generation {}: {}.", generations(guessed), guessed.assumed?))
     });
 }
 
