@@ -7,4 +7,5 @@ pub mod foreign;
 pub mod program;
 pub mod rust_source;
 pub mod truth;
+pub mod virtual_line;
 pub mod workspace;

@@ -57,6 +57,15 @@ impl Model {
     pub fn rating(&self) -> &'static str {
         self.title.rsplit(' ').next().unwrap_or(self.title)
     }
+
+    /// Whether a stream (by the index of command 145) shares its lines with an encoder. Such a UART keeps the encoder from
+    /// counting while it is in use (MCP manual 1.9.7). Assumed: it is disabled when the unit leaves the factory.
+    pub fn stream_shares_encoder(&self, stream: usize) -> bool {
+        let shares = |pin: &Pin| {
+            pin.encoder_channel().is_some() && pin.uart().is_some_and(|uart| usize::from(uart) + 1 == stream)
+        };
+        self.pins.iter().any(shares)
+    }
 }
 
 /// One input pin, named after the functions that share it.
@@ -293,6 +302,17 @@ mod tests {
         let plain = Pin { label: "DIN5/TX2" };
         assert!(!plain.is_analog() && !plain.is_pulse());
         assert_eq!(plain.encoder_channel(), None);
+    }
+
+    #[test]
+    fn the_uart_on_encoder_pins_is_known() {
+        let shared = |key: &str| {
+            let model = lookup(key).expect("the model is in the list");
+            (0..5).filter(|stream| model.stream_shares_encoder(*stream)).collect::<Vec<_>>()
+        };
+        assert_eq!(shared("mcp233"), [3], "TX2 and RX2 are ENC1A and ENC1B");
+        assert_eq!(shared("mcp266"), [0; 0]);
+        assert_eq!(shared("mcp2166"), [3]);
     }
 
     #[test]

@@ -5,11 +5,12 @@
 
 use super::watch::{Unwatched, Watch};
 use super::{Exchange, ExchangeError, Fault, Judgement, Outgoing, RETRIES, Span};
-use crate::wire::Wire;
+use crate::wire::{HiddenSettings, Wire};
 use brushwork_protocol::packet_serial::{
     Address, ClientUse, Command, Direction, Effect, Form, Generation, Reply as ReplyForm, ReplyProgress,
     Request, Value, Values, parse_reply,
 };
+use std::sync::Arc;
 use std::time::Duration;
 
 /// Extra time for commands that write or restore memory before they answer. Assumed: the time of a save is not public;
@@ -93,13 +94,21 @@ pub struct PacketWire {
     address: Address,
     generation: Generation,
     simulated: bool,
+    hidden: Option<Arc<dyn HiddenSettings>>,
 }
 
 impl PacketWire {
     /// Speaks to the unit at `address`, whose firmware is of `generation`.
     #[must_use]
     pub fn new(exchange: Exchange, address: Address, generation: Generation, simulated: bool) -> Self {
-        Self { exchange, address, generation, simulated }
+        Self { exchange, address, generation, simulated, hidden: None }
+    }
+
+    /// The same with the settings that a simulated controller has past the wire.
+    #[must_use]
+    pub fn with_hidden(mut self, hidden: Arc<dyn HiddenSettings>) -> Self {
+        self.hidden = Some(hidden);
+        self
     }
 
     /// The exchange underneath, for its statistics.
@@ -143,6 +152,10 @@ impl Wire for PacketWire {
     fn set_address(&mut self, address: Address) -> bool {
         self.address = address;
         true
+    }
+
+    fn hidden_settings(&self) -> Option<&dyn HiddenSettings> {
+        self.hidden.as_deref()
     }
 }
 

@@ -265,7 +265,12 @@ fn await_unit(wire: &mut dyn Wire, tried: &str) -> Result<(), Failure> {
         }
         if wire.now() >= end {
             let waited = format!("no answer for {} s afterwards", RESTART_LIMIT.as_secs());
-            return Err(Failure::new(tried, wire.describe(), waited, "Check its power and connect again"));
+            return Err(Failure::new(
+                tried,
+                wire.describe(),
+                waited,
+                "Check its power; if it was given another address and that was not saved, look for it at the old one",
+            ));
         }
         wire.sleep(ASK_AGAIN).map_err(|error| describe(&error, wire))?;
     }

@@ -26,7 +26,7 @@ pub struct WriteOptions {
 /// The commands that bring about some changes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Plan {
-    /// Settings that are set past the wire of a simulated controller: key and raw value. They come first.
+    /// Settings that are set past the wire of a simulated controller: key and raw value.
     pub hidden: Vec<(String, i64)>,
     /// The commands, in the order in which they are sent.
     pub steps: Vec<Step>,

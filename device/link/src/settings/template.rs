@@ -172,6 +172,8 @@ pub(super) enum DefaultValue {
     PinType,
     /// The pin that carries phase A of the motor's own encoder.
     EncoderPin,
+    /// "disabled" for a stream that shares its lines with an encoder, else "packet_serial".
+    StreamType,
 }
 
 /// The wire form of a template in a range of generations.
@@ -451,6 +453,10 @@ impl Template {
                 Some(pin) if pin.encoder_channel().is_some() => "encoder",
                 _ => "none",
             }),
+            DefaultValue::StreamType if subject.model.stream_shares_encoder(index) => {
+                SettingValue::Choice("disabled")
+            }
+            DefaultValue::StreamType => SettingValue::Choice("packet_serial"),
             DefaultValue::EncoderPin => SettingValue::Int(subject.encoder_pin(index)),
         }
     }

@@ -219,17 +219,21 @@ struct ReadBack {
 
 impl Writer<'_> {
     fn run(&mut self, plan: &Plan) {
-        for (key, raw) in &plan.hidden {
-            self.set_hidden(key, *raw);
-        }
         let of = plan.steps.len();
         for (done, step) in plan.steps.iter().enumerate().filter(|(_, step)| step.stage < Stage::Address) {
             self.wire.report_progress(done, of, &step.title());
             self.send(step);
         }
+        // After the pins: a pin type that is sent ends a digital mode.
+        for (key, raw) in &plan.hidden {
+            self.set_hidden(key, *raw);
+        }
     }
 
     fn set_hidden(&mut self, key: &str, raw: i64) {
+        if self.ended.is_some() {
+            return;
+        }
         let address = self.wire.address();
         let done = match self.wire.hidden_settings() {
             Some(hidden) => hidden.set(address, key, raw),

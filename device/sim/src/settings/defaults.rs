@@ -6,7 +6,7 @@ use super::{
 };
 use crate::motion::MotionSettings;
 use brushwork_protocol::codes::ENCODER_PIN_NONE;
-use brushwork_protocol::models::{Family, Model, Pin};
+use brushwork_protocol::models::{Family, Model};
 
 /// Logic battery limits on the settings screens (MCP manual 1.2.10).
 const LOGIC_MIN_TENTHS: u16 = 80;
@@ -66,7 +66,7 @@ impl Settings {
                 })
                 .collect(),
             streams: std::array::from_fn(|index| StreamSettings {
-                kind: if shares_encoder_pins(model, index) { STREAM_DISABLED } else { STREAM_PACKET_SERIAL },
+                kind: if model.stream_shares_encoder(index) { STREAM_DISABLED } else { STREAM_PACKET_SERIAL },
                 rate_bps: match model.family {
                     Family::Mcp => MCP_RATE_BPS,
                     Family::RoboClaw => ROBOCLAW_RATE_BPS,
@@ -152,14 +152,6 @@ fn default_encoder(model: &Model, motor_number: u8) -> u8 {
         Family::RoboClaw => 0,
         Family::Mcp => own.and_then(|index| u8::try_from(index).ok()).unwrap_or(ENCODER_PIN_NONE as u8),
     }
-}
-
-/// Whether a stream's lines are encoder pins. Assumed: such a UART is off when the unit leaves the factory, since otherwise the
-/// encoder would not count (MCP manual 1.9.7).
-fn shares_encoder_pins(model: &Model, stream: usize) -> bool {
-    let is_shared =
-        |pin: &Pin| pin.uart().map(usize::from) == stream.checked_sub(1) && pin.encoder_channel().is_some();
-    stream > 0 && model.pins.iter().any(is_shared)
 }
 
 fn tenths_of(value: f64) -> u16 {

@@ -1,7 +1,7 @@
 //! Settings that no public command carries. A person at a simulated controller can still set them, by key.
 //!
 //! Keys: `unit.bridge_channels`, `dout.N.inverted`, `stream.ttl1.multi_unit` to `ttl3`, `pin.N.digital`, `pin.N.low_pass`,
-//! `can.rate`, `i2c.rate`; N counts from 1, values are raw.
+//! `can.rate`, `can.node_id`, `i2c.rate`; N counts from 1, values are raw.
 
 use super::Settings;
 
@@ -36,6 +36,7 @@ impl Settings {
         match (group, name, field) {
             ("unit", "bridge_channels", None) => Some(Field::Flag(&mut self.unit.bridged)),
             ("can", "rate", None) => Some(Field::U32(&mut self.unit.can_rate_bps)),
+            ("can", "node_id", None) => Some(Field::NodeId(&mut self.unit.can_node_id)),
             ("i2c", "rate", None) => Some(Field::U32(&mut self.unit.i2c_rate_bps)),
             ("dout", number, Some("inverted")) => {
                 self.outputs.get_mut(index(number)?).map(|output| Field::Flag(&mut output.inverted))
@@ -59,17 +60,21 @@ enum Field<'a> {
     Flag(&'a mut bool),
     U32(&'a mut u32),
     LowPass(&'a mut u8),
+    NodeId(&'a mut u8),
 }
 
 /// Largest exponent of the low-pass filter: 2^15 samples.
 const MAX_LOW_PASS: i64 = 15;
+
+/// Largest CANopen node id (MCP manual 1.9.4).
+const MAX_NODE_ID: i64 = 127;
 
 impl Field<'_> {
     fn get(&self) -> i64 {
         match self {
             Self::Flag(flag) => i64::from(**flag),
             Self::U32(value) => i64::from(**value),
-            Self::LowPass(value) => i64::from(**value),
+            Self::LowPass(value) | Self::NodeId(value) => i64::from(**value),
         }
     }
 
@@ -78,6 +83,7 @@ impl Field<'_> {
             Self::Flag(flag) => *flag = value != 0,
             Self::U32(field) => *field = value.clamp(0, i64::from(u32::MAX)) as u32,
             Self::LowPass(field) => *field = value.clamp(0, MAX_LOW_PASS) as u8,
+            Self::NodeId(field) => *field = value.clamp(1, MAX_NODE_ID) as u8,
         }
     }
 }

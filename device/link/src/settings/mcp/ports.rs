@@ -13,7 +13,7 @@ pub(super) static ROWS: &[Template] = &[
         .per(Repeat::Streams)
         .only_on(Family::Mcp)
         .choice(STREAM_TYPES)
-        .default(DefaultValue::Key("packet_serial"))
+        .assumed_default(DefaultValue::StreamType)
         .forms(&[stream(&["type"])])
         .help(
             "Who uses this port: packet serial commands, or the user's script. With UART0 disabled its pins are CAN, with \
