@@ -1,5 +1,5 @@
-//! A line between the client's transport and a simulated machine in virtual time: hours pass in a moment, and every run
-//! is the same.
+//! A line between the client's transport and a simulated machine in virtual time: hours pass in a moment, and
+//! every run is the same.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;

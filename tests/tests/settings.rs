@@ -1,5 +1,5 @@
-//! Settings against the simulated controller, end to end in virtual time: everything written and read back, saved, kept over
-//! a power cycle, and what is told when a byte, a save or the power is lost.
+//! Settings against the simulated controller, end to end in virtual time: everything written and read back,
+//! saved, kept over a power cycle, and what is told when a byte, a save or the power is lost.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -122,7 +122,8 @@ fn what_was_not_saved_is_gone_after_a_reload() {
     for generation in Generation::ALL {
         let (_, mut wire, table) = unit(model("mcp266"), generation);
         let mut wanted = everything_changed(&table);
-        // USB answers to every address, and generation 1 does not report its own: whether it went back cannot be read.
+        // USB answers to every address, and generation 1 does not report its own: whether it went back cannot
+        // be read.
         if generation == Generation::Gen1 {
             wanted.remove("unit.address");
         }

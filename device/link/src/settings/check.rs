@@ -56,8 +56,8 @@ pub(super) fn dangers(table: &SettingsTable, after: &SettingsImage, changes: &Se
     dangers
 }
 
-/// Whether a pin begins to command motors: it has a target, its kind of input is in a priority level, and one of the two
-/// is new.
+/// Whether a pin begins to command motors: it has a target, its kind of input is in a priority level, and one
+/// of the two is new.
 fn input_danger(
     table: &SettingsTable,
     after: &SettingsImage,
@@ -78,7 +78,8 @@ fn input_danger(
     }
     let target_row = table.row(&key("target"))?;
     Some(format!(
-        "{} commands {} as soon as this is written, since {kind} inputs are at priority level {level}: the motor can start.",
+        "{} commands {} as soon as this is written, since {kind} inputs are at priority level {level}: the \
+         motor can start.",
         table.subject().pin_name(pin - 1),
         target_row.format(SettingValue::Choice(target)).to_lowercase()
     ))

@@ -78,8 +78,8 @@ impl Difference {
     }
 }
 
-/// Every setting of the table that differs, in screen order. Keys the table does not have are left out; so are keys that
-/// neither image has.
+/// Every setting of the table that differs, in screen order. Keys the table does not have are left out; so
+/// are keys that neither image has.
 pub fn diff(table: &SettingsTable, left: &SettingsImage, right: &SettingsImage) -> Vec<Difference> {
     let difference = |row: &Row| {
         let (left, right) = (left.get(&row.key), right.get(&row.key));
@@ -123,8 +123,8 @@ impl Copy {
     }
 }
 
-/// The copies of one controller's settings, told apart. What is not known stays `None`; nothing is guessed: EEPROM is
-/// known only after a reload or a save that were confirmed.
+/// The copies of one controller's settings, told apart. What is not known stays `None`; nothing is guessed:
+/// EEPROM is known only after a reload or a save that were confirmed.
 #[derive(Clone, Debug, Default)]
 pub struct Copies {
     ram: Option<SettingsImage>,

@@ -42,8 +42,8 @@ pub enum Coding {
     Plain,
     /// The wire holds the value times this many steps per unit.
     PerUnit(f64),
-    /// As [`Coding::PerUnit`] for a value that is never positive. Controllers report it with either sign, so the sign is
-    /// ignored when reading.
+    /// As [`Coding::PerUnit`] for a value that is never positive. Controllers report it with either sign, so
+    /// the sign is ignored when reading.
     NegativePerUnit {
         /// Steps per unit.
         steps: f64,
@@ -53,8 +53,8 @@ pub enum Coding {
 }
 
 impl Coding {
-    /// The physical value of a wire number. Exact for every number of up to 32 bits: the nearest double of the quotient,
-    /// which [`Coding::to_raw`] turns back into the same number.
+    /// The physical value of a wire number. Exact for every number of up to 32 bits: the nearest double of
+    /// the quotient, which [`Coding::to_raw`] turns back into the same number.
     pub fn to_physical(self, raw: i64) -> f64 {
         let physical = match self {
             Self::Plain => raw as f64,
@@ -88,7 +88,8 @@ impl Coding {
         }
     }
 
-    /// The wire number of a logical value; `None` when the value is of another kind or names no code of the list.
+    /// The wire number of a logical value; `None` when the value is of another kind or names no code of the
+    /// list.
     pub fn encode(self, kind: Kind, value: SettingValue) -> Option<i64> {
         match (kind, value) {
             (Kind::Bool, SettingValue::Bool(on)) => Some(i64::from(on)),

@@ -1,8 +1,8 @@
 //! The controller's own memory: saving RAM to EEPROM, loading it back, restoring defaults.
 //!
-//! A unit may restart after a save (public clients wait three seconds), and a reload sent right after it may go
-//! unanswered although the save was done. So each act waits until the unit answers again, and reads every row to see
-//! what became of it.
+//! A unit may restart after a save (public clients wait three seconds), and a reload sent right after it may
+//! go unanswered although the save was done. So each act waits until the unit answers again, and reads every
+//! row to see what became of it.
 
 use std::time::Duration;
 
@@ -61,13 +61,19 @@ impl SaveReport {
     pub fn sentence(&self) -> String {
         let count = self.differences.len();
         match (self.verdict, &self.failure) {
-            (SaveVerdict::Verified, _) => "The settings are saved; they were read back from EEPROM.".to_owned(),
-            (SaveVerdict::Acknowledged, _) => "The controller acknowledged the save. It did not answer when asked to load \
-                                               its EEPROM, so the save is not proven; that happens after good saves too."
+            (SaveVerdict::Verified, _) => {
+                "The settings are saved; they were read back from EEPROM.".to_owned()
+            }
+            (SaveVerdict::Acknowledged, _) => "The controller acknowledged the save. It did not answer \
+                                               when asked to load its EEPROM, so the save is not proven; \
+                                               that happens after good saves too."
                 .to_owned(),
             (SaveVerdict::NotSaved, _) => {
                 let settings = if count == 1 { "1 setting".to_owned() } else { format!("{count} settings") };
-                format!("The save did not take: {settings} came back from EEPROM otherwise. {}", self.put_back_sentence())
+                format!(
+                    "The save did not take: {settings} came back from EEPROM otherwise. {}",
+                    self.put_back_sentence()
+                )
             }
             (SaveVerdict::Unknown, Some(failure)) => {
                 format!("It is not known whether the settings are saved. {failure} Save again to be sure.")
@@ -236,7 +242,8 @@ fn restore(wire: &mut dyn Wire) -> Result<(), Failure> {
     })
 }
 
-/// Whether 95 was acknowledged, asked up to [`RELOAD_TRIES`] times. An error only when nothing further can be asked.
+/// Whether 95 was acknowledged, asked up to [`RELOAD_TRIES`] times. An error only when nothing further can be
+/// asked.
 fn reload_with_patience(wire: &mut dyn Wire) -> Result<bool, Failure> {
     let tried = "load the settings from EEPROM (95)";
     for _ in 0..RELOAD_TRIES {
@@ -269,7 +276,8 @@ fn await_unit(wire: &mut dyn Wire, tried: &str) -> Result<(), Failure> {
                 tried,
                 wire.describe(),
                 waited,
-                "Check its power; if it was given another address and that was not saved, look for it at the old one",
+                "Check its power; if it was given another address and that was not saved, look for it at \
+                 the old one",
             ));
         }
         wire.sleep(ASK_AGAIN).map_err(|error| describe(&error, wire))?;

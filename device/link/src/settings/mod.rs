@@ -1,8 +1,8 @@
 //! The settings of a controller: one table, and everything that reads it.
 //!
-//! [`SettingsTable`] says for one controller which settings there are, in which unit and range, which command carries each
-//! and what it means; nothing else repeats a range. [`SettingsImage`] holds values; [`Copies`] tells RAM, EEPROM and
-//! profile apart. Motion, status and the script are not settings.
+//! [`SettingsTable`] says for one controller which settings there are, in which unit and range, which command
+//! carries each and what it means; nothing else repeats a range. [`SettingsImage`] holds values; [`Copies`]
+//! tells RAM, EEPROM and profile apart. Motion, status and the script are not settings.
 
 mod check;
 mod image;

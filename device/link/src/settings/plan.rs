@@ -1,4 +1,5 @@
-//! From wanted values to the fewest commands that write them, in an order in which nothing dangerous happens in between.
+//! From wanted values to the fewest commands that write them, in an order in which nothing dangerous happens
+//! in between.
 //!
 //! A plan is all or nothing: one value that cannot be written refuses the whole. No command is sent here.
 
@@ -17,7 +18,8 @@ use crate::transport::Stream;
 /// What writing has to know besides the values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct WriteOptions {
-    /// The controller's stream that this program is connected through, where known. Its settings are written last.
+    /// The controller's stream that this program is connected through, where known. Its settings are written
+    /// last.
     pub own_stream: Option<Stream>,
     /// Whether the controller is simulated, so that settings without a public wire form can be set.
     pub simulated: bool,
@@ -47,8 +49,8 @@ pub struct Step {
     pub stage: Stage,
 }
 
-/// The order of writing: limits before what they limit, inputs before the levels that let them act, and last what
-/// changes the way to the controller itself.
+/// The order of writing: limits before what they limit, inputs before the levels that let them act, and last
+/// what changes the way to the controller itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stage {
@@ -93,8 +95,8 @@ impl Step {
     }
 }
 
-/// The commands that turn `ram` into `ram` with `changes`. Fields that share a command with a change keep the value they
-/// have in `ram`. Refuses, with every reason, when one change cannot be written.
+/// The commands that turn `ram` into `ram` with `changes`. Fields that share a command with a change keep the
+/// value they have in `ram`. Refuses, with every reason, when one change cannot be written.
 pub fn plan(
     table: &SettingsTable,
     ram: &SettingsImage,
@@ -117,7 +119,8 @@ pub fn plan(
     Ok(Plan { hidden: planner.hidden(), steps, warnings })
 }
 
-/// The rows whose values a change of `keys` needs: those themselves, and those that share a command with them.
+/// The rows whose values a change of `keys` needs: those themselves, and those that share a command with
+/// them.
 pub(super) fn rows_involved<'t>(table: &'t SettingsTable, keys: &[&str]) -> Vec<&'t Row> {
     let sinks: Vec<Sink> = keys.iter().filter_map(|key| table.row(key)?.sink()).collect();
     let shares = |row: &Row| {
@@ -205,7 +208,8 @@ impl Planner<'_> {
         Ok(arguments)
     }
 
-    /// The raw number of one field of a command: the changed value, or what the controller holds, bits put together.
+    /// The raw number of one field of a command: the changed value, or what the controller holds, bits put
+    /// together.
     fn field_value(&self, field: Sink, changed: &[&Row]) -> Result<i64, Refusal> {
         let of_field = |row: &&Row| {
             row.sink().is_some_and(|sink| {
@@ -217,7 +221,8 @@ impl Planner<'_> {
         let mut word = base.unwrap_or(0);
         for row in self.table.rows().iter().filter(of_field) {
             let change = self.changes.get(&row.key);
-            // With the whole word known, only the bits that change are touched; the rest of it is kept as it is.
+            // With the whole word known, only the bits that change are touched; the rest of it is kept as it
+            // is.
             if base.is_some() && change.is_none() {
                 continue;
             }
@@ -275,12 +280,14 @@ impl Planner<'_> {
         for step in steps {
             match (step.command, step.stage) {
                 (number::SET_ADDRESS_MIXED, Stage::Address) => warnings.push(
-                    "The controller answers to its new address from then on; save it, or a power cycle brings the old one back."
+                    "The controller answers to its new address from then on; save it, or a power cycle \
+                     brings the old one back."
                         .to_owned(),
                 ),
                 (number::SET_ADDRESS_MIXED, _) if self.address_is_unreadable() => warnings.push(format!(
-                    "Mixing is written together with the address, which this firmware does not report: {} is written, the \
-                     address this link speaks to. Over USB a unit answers to every address, so check it first.",
+                    "Mixing is written together with the address, which this firmware does not report: {} \
+                     is written, the address this link speaks to. Over USB a unit answers to every \
+                     address, so check it first.",
                     self.ram.get("unit.address").map_or_else(String::new, |address| match address {
                         SettingValue::Int(byte) => format!("0x{byte:02X}"),
                         _ => String::new(),
@@ -288,8 +295,8 @@ impl Planner<'_> {
                 )),
                 (number::SET_STREAM, Stage::OwnPort) => warnings.extend(self.own_port_warning(&changed)),
                 (number::SET_CONFIG, _) => warnings.push(
-                    "The configuration word takes effect at once and can move the controller to another address, baud rate or \
-                     control mode: the link may be lost."
+                    "The configuration word takes effect at once and can move the controller to another \
+                     address, baud rate or control mode: the link may be lost."
                         .to_owned(),
                 ),
                 _ => {}
@@ -318,7 +325,8 @@ impl Planner<'_> {
         } else if changed(&key("rate")) && stream != Stream::Usb {
             let to = shown("rate")?;
             Some(format!(
-                "This program is connected through {stream}, which changes to {to}: connect again at that rate."
+                "This program is connected through {stream}, which changes to {to}: connect again at that \
+                 rate."
             ))
         } else {
             None

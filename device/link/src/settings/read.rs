@@ -13,7 +13,8 @@ use crate::exchange::ExchangeError;
 use crate::failure::Failure;
 use crate::wire::Wire;
 
-/// After this many commands in a row without any answer, and none answered before, the controller counts as not there.
+/// After this many commands in a row without any answer, and none answered before, the controller counts as
+/// not there.
 const SILENT_COMMANDS: usize = 3;
 
 /// What reading gave.
@@ -40,8 +41,9 @@ pub struct ReadFailure {
     pub failure: Failure,
 }
 
-/// Reads every setting of a controller with as few commands as there are replies to read. What one command fails to
-/// give is in the report; an error means that there is no controller to read from, or that something more urgent came.
+/// Reads every setting of a controller with as few commands as there are replies to read. What one command
+/// fails to give is in the report; an error means that there is no controller to read from, or that something
+/// more urgent came.
 pub fn read_all(wire: &mut dyn Wire, subject: Subject) -> Result<ReadReport, Failure> {
     let mut reader = Reader::new(wire);
     let subject = reader.count(subject).map_err(|error| reader.gave_up(&error))?;
@@ -85,7 +87,8 @@ pub(super) fn is_final(error: &ExchangeError) -> bool {
     error.is_link_lost() || error.interruption().is_some()
 }
 
-/// Whether a command that failed may have reached the unit. An interruption may come after it went out, so it counts.
+/// Whether a command that failed may have reached the unit. An interruption may come after it went out, so it
+/// counts.
 pub(super) fn went_out(error: &ExchangeError) -> bool {
     !matches!(
         error,
@@ -108,8 +111,8 @@ impl<'w> Reader<'w> {
         Self { wire, replies: BTreeMap::new(), transactions: 0 }
     }
 
-    /// The subject with the numbers of pins, streams and outputs that the unit returns; where it does not answer, those
-    /// of its model stay.
+    /// The subject with the numbers of pins, streams and outputs that the unit returns; where it does not
+    /// answer, those of its model stay.
     fn count(&mut self, mut subject: Subject) -> Result<Subject, ExchangeError> {
         if subject.model.family == Family::Mcp {
             let lists = [number::READ_SIGNALS, number::READ_STREAMS, number::READ_DOUT_ACTIONS];

@@ -12,7 +12,8 @@ use super::row::{Access, Bits, Bound, Carrier, Group, Place, Row, Source};
 use super::table::Subject;
 use super::template::Template;
 
-/// One setting of the reference. Ranges and defaults that depend on the model are those of [`ReferenceRow::example`].
+/// One setting of the reference. Ranges and defaults that depend on the model are those of
+/// [`ReferenceRow::example`].
 #[derive(Clone, Debug, Serialize)]
 pub struct ReferenceRow {
     /// The key, "{n}" standing for the number or name of a motor, pin, stream or output.
@@ -254,8 +255,8 @@ mod tests {
         assert_eq!(
             told,
             [
-                "Generation 1: no public wire form. Command 143 of this firmware generation has no field for the low pass; \
-                 from generation 2 on it has.",
+                "Generation 1: no public wire form. Command 143 of this firmware generation has no field \
+                 for the low pass; from generation 2 on it has.",
                 "Generations 2 to 4: read with 144 low_pass, written with 143 low_pass.",
             ]
         );

@@ -1,6 +1,7 @@
 //! One setting of one controller: where it stands, what it may be, what it means.
 //!
-//! Rows are made by [`SettingsTable`](super::SettingsTable) from templates; this file is what everybody else reads.
+//! Rows are made by [`SettingsTable`](super::SettingsTable) from templates; this file is what everybody else
+//! reads.
 
 use std::fmt;
 
@@ -15,7 +16,8 @@ use super::value::{Notation, SettingValue};
 pub struct Row {
     /// Stable dotted name: "motor1.velocity.p", "pin.3.deadband".
     pub key: String,
-    /// The key before its numbers are filled in: "motor{n}.velocity.p"; the same for all rows of a repeated group.
+    /// The key before its numbers are filled in: "motor{n}.velocity.p"; the same for all rows of a repeated
+    /// group.
     pub pattern: &'static str,
     /// Name within its group: "Velocity P".
     pub label: &'static str,
@@ -300,7 +302,8 @@ impl Row {
         self.notation().format_bare(value)
     }
 
-    /// The value that `text` stands for, rounded to the row's step. Refuses, in a sentence, what is no such value or out of range.
+    /// The value that `text` stands for, rounded to the row's step. Refuses, in a sentence, what is no such
+    /// value or out of range.
     pub fn parse(&self, text: &str) -> Result<SettingValue, String> {
         let value = self.notation().parse(text).map_err(|why| format!("{}: {why}", self.title()))?;
         self.check(value)?;
@@ -329,8 +332,8 @@ impl Row {
         }
     }
 
-    /// The value rounded to the row's step and moved into its range, with a sentence for each thing that had to change.
-    /// A value of another kind becomes the default.
+    /// The value rounded to the row's step and moved into its range, with a sentence for each thing that had
+    /// to change. A value of another kind becomes the default.
     pub fn repair(&self, value: SettingValue) -> (SettingValue, Option<String>) {
         match self.check(value) {
             Ok(()) => (self.settle(value), None),

@@ -31,7 +31,8 @@ impl Subject {
         Self { model, generation, pins: model.pins.len(), streams: model.streams, douts: model.douts }
     }
 
-    /// The label of pin `index` (from 0), or "Pin 7" when the unit has more pins than its model is listed with.
+    /// The label of pin `index` (from 0), or "Pin 7" when the unit has more pins than its model is listed
+    /// with.
     pub fn pin_name(&self, index: usize) -> String {
         self.model.pins.get(index).map_or_else(|| format!("Pin {}", index + 1), |pin| pin.label.to_owned())
     }

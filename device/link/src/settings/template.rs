@@ -1,7 +1,7 @@
 //! How one line of the table becomes the rows of one controller.
 //!
-//! A [`Template`] stands for one setting of every motor, pin, stream or output at once and for all four firmware
-//! generations; [`Template::expand`] fills in a subject's numbers, names and ratings.
+//! A [`Template`] stands for one setting of every motor, pin, stream or output at once and for all four
+//! firmware generations; [`Template::expand`] fills in a subject's numbers, names and ratings.
 
 use brushwork_protocol::codes::{self, Code};
 use brushwork_protocol::models::Family;
@@ -251,7 +251,8 @@ impl Form {
         Self::new(FormCarrier::Wire { read, write: Some(write) })
     }
 
-    /// A form whose fields have the same names in the reply that reads them and in the request that writes them.
+    /// A form whose fields have the same names in the reply that reads them and in the request that writes
+    /// them.
     pub(super) const fn field(
         reads: &'static [u8],
         writes: &'static [u8],

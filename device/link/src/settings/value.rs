@@ -7,8 +7,8 @@ use super::kind::{Coding, Kind, unit_forms};
 
 /// The value of one setting, in the unit of its row.
 ///
-/// Numbers that came from a controller are exact images of the wire number, so two readings of the same setting compare
-/// equal. In JSON a choice stands by its key.
+/// Numbers that came from a controller are exact images of the wire number, so two readings of the same
+/// setting compare equal. In JSON a choice stands by its key.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum SettingValue {

@@ -1,7 +1,7 @@
 //! Writing changes: read what shares a command, plan, send, read back, and name what did not take.
 //!
-//! Until the first command is sent everything that is wrong refuses the whole. From then on there is always a report that
-//! says of each row what is known.
+//! Until the first command is sent everything that is wrong refuses the whole. From then on there is always a
+//! report that says of each row what is known.
 
 use serde::Serialize;
 use thiserror::Error;
@@ -127,7 +127,8 @@ impl RowOutcome {
             RowState::Taken => format!("{title} is {wanted}."),
             RowState::DidNotTake { why } if why.is_empty() => {
                 format!(
-                    "{title} was to be {wanted} and is {found}: the controller acknowledged it and did not take it."
+                    "{title} was to be {wanted} and is {found}: the controller acknowledged it and did not \
+                     take it."
                 )
             }
             RowState::DidNotTake { why } => format!("{title} was to be {wanted} and is {found}. {why}"),
@@ -324,7 +325,8 @@ impl Writer<'_> {
         }
     }
 
-    /// A step that changes the way to the controller: sent, followed if the wire can follow, and read back where it leads.
+    /// A step that changes the way to the controller: sent, followed if the wire can follow, and read back
+    /// where it leads.
     fn send_departing(&mut self, step: &Step, found: &mut ReadBack, warnings: &mut Vec<String>) {
         if self.ended.is_some() {
             return;
@@ -353,7 +355,8 @@ impl Writer<'_> {
         }
     }
 
-    /// Speaks to the unit's new address, or to the old one if it does not answer there. `false` if it answers to neither.
+    /// Speaks to the unit's new address, or to the old one if it does not answer there. `false` if it answers
+    /// to neither.
     fn follow(&mut self, step: &Step, warnings: &mut Vec<String>) -> bool {
         let old = self.wire.address();
         let argument = step.arguments.iter().find(|(name, _)| *name == "address").map(|(_, value)| *value);

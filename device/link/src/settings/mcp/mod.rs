@@ -1,8 +1,9 @@
 //! The settings of the MCP and RoboClaw controllers: the one table that everything else reads.
 //!
-//! Each file holds the lines of one part of it, in screen order. A line names the commands and fields that carry the
-//! setting by their names in the protocol table, so the order of fields on the wire never matters here. Lines that
-//! differ between firmware generations have several forms; a setting without a public wire form has a reason instead.
+//! Each file holds the lines of one part of it, in screen order. A line names the commands and fields that
+//! carry the setting by their names in the protocol table, so the order of fields on the wire never matters
+//! here. Lines that differ between firmware generations have several forms; a setting without a public wire
+//! form has a reason instead.
 
 mod motor;
 mod pins;

@@ -1,4 +1,5 @@
-//! One motor: current limits, encoder, gains, travel, acceleration, error limits, homing (MCP manual 1.2.10 to 1.2.13).
+//! One motor: current limits, encoder, gains, travel, acceleration, error limits, homing (MCP manual 1.2.10
+//! to 1.2.13).
 
 use brushwork_protocol::models::Family;
 use brushwork_protocol::packet_serial::{Unit, number, scale};
@@ -18,8 +19,8 @@ pub(super) static ROWS: &[Template] = &[
         .default(DefaultValue::Highest)
         .forms(&[Form::field(READ_CURRENT_LIMITS, SET_CURRENT_LIMITS, &["max"])])
         .help(
-            "The most current the motor may draw; power is cut back to hold it. Set it to what the motor stands. MCP \
-             manual 1.2.10, command 133.",
+            "The most current the motor may draw; power is cut back to hold it. Set it to what the motor \
+             stands. MCP manual 1.2.10, command 133.",
         ),
     Template::new("motor{n}.current.min_amps", "Minimum current", Group::CurrentLimits)
         .per(Repeat::Motors)
@@ -32,8 +33,8 @@ pub(super) static ROWS: &[Template] = &[
                 .with_coding(MIN_AMPS_MAGNITUDE),
         ])
         .help(
-            "The most current the motor may push back into the battery while it brakes, as a negative number. MCP manual \
-             1.2.10, command 133.",
+            "The most current the motor may push back into the battery while it brakes, as a negative \
+             number. MCP manual 1.2.10, command 133.",
         ),
     Template::new("motor{n}.encoder.pin", "Encoder input number", Group::Encoders)
         .per(Repeat::Motors)
@@ -44,8 +45,8 @@ pub(super) static ROWS: &[Template] = &[
             .writing(&["mode"])
             .simulated_only(PIN_NUMBERS)])
         .help(
-            "The number of the input signal that serves as this motor's encoder. Which number stands for which pin is not \
-             published. MCP manual 1.2.10, command 92.",
+            "The number of the input signal that serves as this motor's encoder. Which number stands for \
+             which pin is not published. MCP manual 1.2.10, command 92.",
         ),
     Template::new("motor{n}.encoder.mode", "Encoder mode", Group::Encoders)
         .per(Repeat::Motors)
@@ -54,8 +55,8 @@ pub(super) static ROWS: &[Template] = &[
         .only_on(Family::RoboClaw)
         .forms(&[Form::field(READ_ENCODERS, SET_ENCODER, &["mode_m1", "mode_m2"]).writing(&["mode"])])
         .help(
-            "Bit 0: 0 for a quadrature encoder, 1 for an absolute one. Bit 7: use it with RC and analog inputs too. Public \
-             clients, 2015-2025, command 92.",
+            "Bit 0: 0 for a quadrature encoder, 1 for an absolute one. Bit 7: use it with RC and analog \
+             inputs too. Public clients, 2015-2025, command 92.",
         ),
     Template::new("motor{n}.inductance_henries", "L", Group::Motor)
         .per(Repeat::Motors)
@@ -63,8 +64,8 @@ pub(super) static ROWS: &[Template] = &[
         .assumed_default(DefaultValue::Number(0.0))
         .forms(&[Form::field(READ_L_R, SET_L_R, &["inductance"])])
         .help(
-            "Inductance of the motor winding. Together with a resistance other than 0 it turns duty commands into current \
-             (torque) commands. MCP manual 1.2.11, command 128.",
+            "Inductance of the motor winding. Together with a resistance other than 0 it turns duty \
+             commands into current (torque) commands. MCP manual 1.2.11, command 128.",
         ),
     Template::new("motor{n}.resistance_ohms", "R", Group::Motor)
         .per(Repeat::Motors)
@@ -72,17 +73,19 @@ pub(super) static ROWS: &[Template] = &[
         .assumed_default(DefaultValue::Number(0.0))
         .forms(&[Form::field(READ_L_R, SET_L_R, &["resistance"])])
         .help(
-            "Resistance of the motor winding and its leads. Together with an inductance other than 0 it turns duty commands \
-             into current (torque) commands. MCP manual 1.2.11, command 128.",
+            "Resistance of the motor winding and its leads. Together with an inductance other than 0 it \
+             turns duty commands into current (torque) commands. MCP manual 1.2.11, command 128.",
         ),
     Template::new("motor{n}.default_accel", "Default duty acceleration", Group::Motor)
         .per(Repeat::Motors)
         .fixed(Unit::PercentPerSecond, DUTY_ACCEL, 0, U32_STEPS)
         .assumed_default(DefaultValue::Number(ACCEL_DEFAULT_PERCENT_PER_S))
-        .forms(&[Form::field(READ_DEFAULT_ACCELS, SET_DEFAULT_ACCEL, &["accel_m1", "accel_m2"]).writing(&["accel"])])
+        .forms(&[Form::field(READ_DEFAULT_ACCELS, SET_DEFAULT_ACCEL, &["accel_m1", "accel_m2"])
+            .writing(&["accel"])])
         .help(
-            "How fast the duty rises for duty commands without an acceleration of their own, and for pulse and analog inputs. \
-             2000 %/s goes from full backward to full forward in 100 ms. MCP manual 2.4.9, command 68.",
+            "How fast the duty rises for duty commands without an acceleration of their own, and for pulse \
+             and analog inputs. 2000 %/s goes from full backward to full forward in 100 ms. MCP manual \
+             2.4.9, command 68.",
         ),
     Template::new("motor{n}.default_decel", "Default duty deceleration", Group::Motor)
         .per(Repeat::Motors)
@@ -92,8 +95,8 @@ pub(super) static ROWS: &[Template] = &[
             .only(GEN2, GEN4)
             .writing(&["decel"])])
         .help(
-            "How fast the duty falls for duty commands without an acceleration of their own. Public clients, 2016-2025, \
-             command 68.",
+            "How fast the duty falls for duty commands without an acceleration of their own. Public \
+             clients, 2016-2025, command 68.",
         ),
     Template::new("motor{n}.default_speed", "Default speed", Group::Motor)
         .per(Repeat::Motors)
@@ -107,25 +110,23 @@ pub(super) static ROWS: &[Template] = &[
         .only(GEN3, GEN4)
         .writing(&["speed"])])
         .help(
-            "The share of the top speed that position commands without a speed of their own use. Public clients, 2018-2025, \
-             command 70.",
+            "The share of the top speed that position commands without a speed of their own use. Public \
+             clients, 2018-2025, command 70.",
         ),
     Template::new("motor{n}.idle.delay_seconds", "Idle delay", Group::Motor)
         .per(Repeat::Motors)
         .fixed(Unit::Seconds, DECISECONDS, 1, Limits::Steps(0, 127))
         .assumed_default(DefaultValue::Number(0.0))
         .forms(&[Form::bits(READ_PWM_IDLE, SET_PWM_IDLE, &["idle_m1", "idle_m2"], (0, 7)).only(GEN3, GEN4)])
-        .help(
-            "How long after a stop the bridge goes idle. Public clients, 2018-2025, command 160.",
-        ),
+        .help("How long after a stop the bridge goes idle. Public clients, 2018-2025, command 160."),
     Template::new("motor{n}.idle.mode", "Idle mode", Group::Motor)
         .per(Repeat::Motors)
         .int(Unit::None, Limits::Steps(0, 1))
         .assumed_default(DefaultValue::Int(0))
         .forms(&[Form::bits(READ_PWM_IDLE, SET_PWM_IDLE, &["idle_m1", "idle_m2"], (7, 1)).only(GEN3, GEN4)])
         .help(
-            "0 or 1: what the bridge does when idle; which number brakes is not published. Public clients, 2018-2025, \
-             command 160.",
+            "0 or 1: what the bridge does when idle; which number brakes is not published. Public clients, \
+             2018-2025, command 160.",
         ),
     Template::new("motor{n}.velocity.p", "Velocity P", Group::Velocity)
         .per(Repeat::Motors)
@@ -133,8 +134,8 @@ pub(super) static ROWS: &[Template] = &[
         .default(DefaultValue::Number(1.0))
         .forms(&[Form::field(READ_VELOCITY_PID, SET_VELOCITY_PID, &["p"])])
         .help(
-            "Proportional gain of the speed loop: how hard it pushes against a speed error. Start at 1 and raise it until the \
-             motor trembles, then take two thirds. MCP manual 2.4.6, command 28.",
+            "Proportional gain of the speed loop: how hard it pushes against a speed error. Start at 1 and \
+             raise it until the motor trembles, then take two thirds. MCP manual 2.4.6, command 28.",
         ),
     Template::new("motor{n}.velocity.i", "Velocity I", Group::Velocity)
         .per(Repeat::Motors)
@@ -142,8 +143,8 @@ pub(super) static ROWS: &[Template] = &[
         .default(DefaultValue::Number(0.5))
         .forms(&[Form::field(READ_VELOCITY_PID, SET_VELOCITY_PID, &["i"])])
         .help(
-            "Integral gain of the speed loop: takes away the error that remains. Raise it in steps of 0.1. MCP manual 2.4.6, \
-             command 28.",
+            "Integral gain of the speed loop: takes away the error that remains. Raise it in steps of 0.1. \
+             MCP manual 2.4.6, command 28.",
         ),
     Template::new("motor{n}.velocity.d", "Velocity D", Group::Velocity)
         .per(Repeat::Motors)
@@ -151,7 +152,8 @@ pub(super) static ROWS: &[Template] = &[
         .default(DefaultValue::Number(0.25))
         .forms(&[Form::field(READ_VELOCITY_PID, SET_VELOCITY_PID, &["d"])])
         .help(
-            "Derivative gain of the speed loop: damps overshoot and amplifies noise. Usually 0. MCP manual 2.4.6, command 28.",
+            "Derivative gain of the speed loop: damps overshoot and amplifies noise. Usually 0. MCP manual \
+             2.4.6, command 28.",
         ),
     Template::new("motor{n}.velocity.qpps", "QPPS", Group::Velocity)
         .per(Repeat::Motors)
@@ -159,8 +161,8 @@ pub(super) static ROWS: &[Template] = &[
         .default(DefaultValue::Int(44_000))
         .forms(&[Form::field(READ_VELOCITY_PID, SET_VELOCITY_PID, &["qpps"])])
         .help(
-            "Speed of the motor at full duty, in encoder counts per second. Measure it before tuning; with 0 neither speed \
-             nor position control moves. MCP manual 2.4.5, command 28.",
+            "Speed of the motor at full duty, in encoder counts per second. Measure it before tuning; with \
+             0 neither speed nor position control moves. MCP manual 2.4.5, command 28.",
         ),
     Template::new("motor{n}.position.p", "Position P", Group::Position)
         .per(Repeat::Motors)
@@ -168,8 +170,8 @@ pub(super) static ROWS: &[Template] = &[
         .default(DefaultValue::Number(0.0))
         .forms(&[Form::field(READ_POSITION_PID, SET_POSITION_PID, &["p"])])
         .help(
-            "Proportional gain of the position loop: speed asked for per count of position error. 2000 is a starting point. \
-             MCP manual 2.4.7, command 61.",
+            "Proportional gain of the position loop: speed asked for per count of position error. 2000 is \
+             a starting point. MCP manual 2.4.7, command 61.",
         ),
     Template::new("motor{n}.position.i", "Position I", Group::Position)
         .per(Repeat::Motors)
@@ -177,8 +179,8 @@ pub(super) static ROWS: &[Template] = &[
         .default(DefaultValue::Number(0.0))
         .forms(&[Form::field(READ_POSITION_PID, SET_POSITION_PID, &["i"])])
         .help(
-            "Integral gain of the position loop: closes the last counts, and makes a drive with play hunt. Needs Max I. MCP \
-             manual 2.4.7, command 61.",
+            "Integral gain of the position loop: closes the last counts, and makes a drive with play hunt. \
+             Needs Max I. MCP manual 2.4.7, command 61.",
         ),
     Template::new("motor{n}.position.d", "Position D", Group::Position)
         .per(Repeat::Motors)
@@ -186,7 +188,8 @@ pub(super) static ROWS: &[Template] = &[
         .default(DefaultValue::Number(0.0))
         .forms(&[Form::field(READ_POSITION_PID, SET_POSITION_PID, &["d"])])
         .help(
-            "Derivative gain of the position loop: damps the overshoot; usually 5 to 20 times P. MCP manual 2.4.7, command 61.",
+            "Derivative gain of the position loop: damps the overshoot; usually 5 to 20 times P. MCP \
+             manual 2.4.7, command 61.",
         ),
     Template::new("motor{n}.position.max_i", "Max I", Group::Position)
         .per(Repeat::Motors)
@@ -194,8 +197,8 @@ pub(super) static ROWS: &[Template] = &[
         .default(DefaultValue::Int(0))
         .forms(&[Form::field(READ_POSITION_PID, SET_POSITION_PID, &["max_i"])])
         .help(
-            "The most the integral of the position loop may wind up. With 0 the I gain does nothing. MCP manual 2.4.7, \
-             command 61.",
+            "The most the integral of the position loop may wind up. With 0 the I gain does nothing. MCP \
+             manual 2.4.7, command 61.",
         ),
     Template::new("motor{n}.position.deadzone", "Deadzone", Group::Position)
         .per(Repeat::Motors)
@@ -203,8 +206,8 @@ pub(super) static ROWS: &[Template] = &[
         .default(DefaultValue::Int(0))
         .forms(&[Form::field(READ_POSITION_PID, SET_POSITION_PID, &["deadzone"])])
         .help(
-            "Position errors up to this count as none, so that play in the gears does not make the motor hunt. MCP manual \
-             2.4.7, command 61.",
+            "Position errors up to this count as none, so that play in the gears does not make the motor \
+             hunt. MCP manual 2.4.7, command 61.",
         ),
     Template::new("motor{n}.position.min", "Minimum position", Group::Position)
         .per(Repeat::Motors)
@@ -212,8 +215,8 @@ pub(super) static ROWS: &[Template] = &[
         .default(DefaultValue::Int(0))
         .forms(&[Form::field(READ_POSITION_PID, SET_POSITION_PID, &["min"])])
         .help(
-            "The lowest position a command can reach. While minimum and maximum are both 0, position commands do not move. \
-             MCP manual 2.4.7, command 61.",
+            "The lowest position a command can reach. While minimum and maximum are both 0, position \
+             commands do not move. MCP manual 2.4.7, command 61.",
         ),
     Template::new("motor{n}.position.max", "Maximum position", Group::Position)
         .per(Repeat::Motors)
@@ -221,22 +224,23 @@ pub(super) static ROWS: &[Template] = &[
         .default(DefaultValue::Int(0))
         .forms(&[Form::field(READ_POSITION_PID, SET_POSITION_PID, &["max"])])
         .help(
-            "The highest position a command can reach. While minimum and maximum are both 0, position commands do not move. \
-             MCP manual 2.4.7, command 61.",
+            "The highest position a command can reach. While minimum and maximum are both 0, position \
+             commands do not move. MCP manual 2.4.7, command 61.",
         ),
     Template::new("motor{n}.error_limit.speed", "Speed error limit", Group::ErrorLimits)
         .per(Repeat::Motors)
         .int(Unit::CountsPerSecond, U32_STEPS)
         .assumed_default(DefaultValue::Int(0))
         .forms(&[
-            Form::field(READ_SPEED_ERROR_LIMITS, SET_SPEED_ERROR_LIMITS, &["limit_m1", "limit_m2"]).only(GEN3, GEN3),
+            Form::field(READ_SPEED_ERROR_LIMITS, SET_SPEED_ERROR_LIMITS, &["limit_m1", "limit_m2"])
+                .only(GEN3, GEN3),
             Form::field(READ_SPEED_ERROR_LIMITS, SET_SPEED_ERROR_LIMITS, &["limit_m1", "limit_m2"])
                 .only(GEN4, GEN4)
                 .with_range(U16_STEPS),
         ])
         .help(
-            "Stops the motor with a fault when its speed is this far from the speed asked for; 0 switches the check off. \
-             Public clients, 2018-2025, command 109.",
+            "Stops the motor with a fault when its speed is this far from the speed asked for; 0 switches \
+             the check off. Public clients, 2018-2025, command 109.",
         ),
     Template::new("motor{n}.error_limit.position", "Position error limit", Group::ErrorLimits)
         .per(Repeat::Motors)
@@ -250,27 +254,33 @@ pub(super) static ROWS: &[Template] = &[
                 .with_range(U16_STEPS),
         ])
         .help(
-            "Stops the motor with a fault when its position is this far from the position asked for; 0 switches the check \
-             off. It works only with accelerations set. Public clients, 2018-2025, command 112.",
+            "Stops the motor with a fault when its position is this far from the position asked for; 0 \
+             switches the check off. It works only with accelerations set. Public clients, 2018-2025, \
+             command 112.",
         ),
     Template::new("motor{n}.home.duty", "Homing duty", Group::Homing)
         .per(Repeat::Motors)
         .fixed(Unit::Percent, DEFAULT_SPEED, 1, Limits::Steps(0, 0x7FFF))
         .assumed_default(DefaultValue::Number(0.0))
-        .forms(&[Form::field(READ_HOMING, SET_HOMING, &["duty_m1", "duty_m2"]).only(GEN2, GEN3).writing(&["duty"])])
+        .forms(&[Form::field(READ_HOMING, SET_HOMING, &["duty_m1", "duty_m2"])
+            .only(GEN2, GEN3)
+            .writing(&["duty"])])
         .help("Duty with which the motor looks for its home switch. Public clients, 2016-2020, command 105."),
     Template::new("motor{n}.home.timeout_seconds", "Homing time-out", Group::Homing)
         .per(Repeat::Motors)
         .fixed(Unit::Seconds, Coding::PerUnit(steps_of(scale::HOMING_TIMEOUT_S)), 2, U32_STEPS)
         .assumed_default(DefaultValue::Number(0.0))
-        .forms(&[
-            Form::field(READ_HOMING, SET_HOMING, &["timeout_m1", "timeout_m2"]).only(GEN2, GEN4).writing(&["timeout"]),
-        ])
-        .help("How long the motor looks for its home switch before it gives up. Public clients, 2016-2025, command 105."),
+        .forms(&[Form::field(READ_HOMING, SET_HOMING, &["timeout_m1", "timeout_m2"])
+            .only(GEN2, GEN4)
+            .writing(&["timeout"])])
+        .help(
+            "How long the motor looks for its home switch before it gives up. Public clients, 2016-2025, \
+             command 105.",
+        ),
 ];
 
-const PIN_NUMBERS: &str = "Which number stands for which pin is not public, so it is not written to a real controller. \
-                           Choose the encoder pin with the vendor's own program.";
+const PIN_NUMBERS: &str = "Which number stands for which pin is not public, so it is not written to a real \
+                           controller. Choose the encoder pin with the vendor's own program.";
 
 /// 655359 on the wire: from full backward to full forward in 100 ms.
 const ACCEL_DEFAULT_PERCENT_PER_S: f64 =

@@ -1,5 +1,6 @@
-//! What only RoboClaw boards have: functions of S3 to S5, the inputs S1 and S2, CTRL outputs, the configuration word
-//! (public clients, 2015-2025). What the numbers of a function mean differs by firmware and is not repeated here.
+//! What only RoboClaw boards have: functions of S3 to S5, the inputs S1 and S2, CTRL outputs, the
+//! configuration word (public clients, 2015-2025). What the numbers of a function mean differs by firmware
+//! and is not repeated here.
 
 use brushwork_protocol::codes::Code;
 use brushwork_protocol::models::Family;
@@ -79,7 +80,8 @@ pub(super) static ROWS: &[Template] = &[
         .per(Repeat::Ctrls)
         .int(Unit::None, Limits::Between(0.0, 3.0))
         .assumed_default(DefaultValue::Int(0))
-        // Commands 100 and 101 carry the CTRL modes in these generations; their names are those of generation 4.
+        // Commands 100 and 101 carry the CTRL modes in these generations; their names are those of generation
+        // 4.
         .forms(&[Form::field(&[number::READ_TEMPERATURES], &[number::READ_VOLTS], &["mode_1", "mode_2"])
             .only(GEN2, GEN3)])
         .help("The number of what the CTRL output does. Command 100."),
@@ -95,7 +97,10 @@ pub(super) static ROWS: &[Template] = &[
         .forms(&[config(0, 2)])
         .choice(CONTROL_MODES)
         .assumed_default(DefaultValue::Key("rc"))
-        .help("What commands the motors. Anything but packet serial ends this connection. Command 98, bits 0 and 1."),
+        .help(
+            "What commands the motors. Anything but packet serial ends this connection. Command 98, bits 0 \
+             and 1.",
+        ),
     roboclaw("roboclaw.config.battery", "Battery mode")
         .forms(&[config(2, 3)])
         .int(Unit::None, Limits::Between(0.0, 7.0))
@@ -106,16 +111,16 @@ pub(super) static ROWS: &[Template] = &[
         .int(Unit::None, Limits::Between(0.0, 7.0))
         .assumed_default(DefaultValue::Int(0))
         .help(
-            "From 0 for 2400 baud: 2400, 9600, 19200, 38400, 57600, 115200, 230400, 460800. In RC mode bit 0 is mixing and \
-             bit 1 exponential. Command 98, bits 5 to 7.",
+            "From 0 for 2400 baud: 2400, 9600, 19200, 38400, 57600, 115200, 230400, 460800. In RC mode bit \
+             0 is mixing and bit 1 exponential. Command 98, bits 5 to 7.",
         ),
     roboclaw("roboclaw.config.address", "Address number")
         .forms(&[config(8, 3)])
         .int(Unit::None, Limits::Between(0.0, 7.0))
         .assumed_default(DefaultValue::Int(0))
         .help(
-            "From 0 for address 0x80 to 7 for 0x87; it counts at once. In RC mode bit 0 is the flip switch and bit 1 the \
-             time-out. Command 98, bits 8 to 10.",
+            "From 0 for address 0x80 to 7 for 0x87; it counts at once. In RC mode bit 0 is the flip switch \
+             and bit 1 the time-out. Command 98, bits 8 to 10.",
         ),
     roboclaw("roboclaw.config.slave_select", "Slave select")
         .forms(&[config(12, 1)])

@@ -1,4 +1,5 @@
-//! Profiles on disk. A file is replaced in one step: after a crash there is the old one or the new one, whole.
+//! Profiles on disk. A file is replaced in one step: after a crash there is the old one or the new one,
+//! whole.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -29,8 +30,9 @@ impl Profile {
     }
 }
 
-/// Puts `content` into the file at `path`: written beside it, flushed to the disk, then renamed over it. On failure the
-/// file is as it was. A symbolic link is followed, so that the file it points to is replaced and not the link.
+/// Puts `content` into the file at `path`: written beside it, flushed to the disk, then renamed over it. On
+/// failure the file is as it was. A symbolic link is followed, so that the file it points to is replaced and
+/// not the link.
 pub fn replace_file(path: &Path, content: &[u8]) -> io::Result<()> {
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let beside = temporary_beside(&target)?;

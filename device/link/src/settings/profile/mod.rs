@@ -1,7 +1,9 @@
-//! A profile: the settings of one controller in a file, with what is needed to judge whether they fit another one.
+//! A profile: the settings of one controller in a file, with what is needed to judge whether they fit another
+//! one.
 //!
-//! The form is JSON with a schema number; each value carries its unit. Reading takes all or nothing: every fault is told
-//! with its place, and nothing is half taken over. The date comes from outside, there is no clock here.
+//! The form is JSON with a schema number; each value carries its unit. Reading takes all or nothing: every
+//! fault is told with its place, and nothing is half taken over. The date comes from outside, there is no
+//! clock here.
 
 mod error;
 mod file;
@@ -61,8 +63,8 @@ impl Profile {
         parse::parse(text, Strictness::Refuse).map(|(profile, _)| profile)
     }
 
-    /// The profile in `text` with settings that are unknown, of a wrong type or out of range left out or moved into range,
-    /// and a sentence for each. What is wrong with the file as a whole still refuses it.
+    /// The profile in `text` with settings that are unknown, of a wrong type or out of range left out or
+    /// moved into range, and a sentence for each. What is wrong with the file as a whole still refuses it.
     pub fn parse_repairing(text: &str) -> Result<(Self, Vec<Problem>), ProfileError> {
         parse::parse(text, Strictness::Repair)
     }
@@ -77,8 +79,8 @@ impl Profile {
         SettingsTable::new(self.subject)
     }
 
-    /// What brings a controller to this profile. Refuses, with every reason, when the profile was made for another model or
-    /// generation, or holds what that controller does not have or allow.
+    /// What brings a controller to this profile. Refuses, with every reason, when the profile was made for
+    /// another model or generation, or holds what that controller does not have or allow.
     pub fn changes_for(
         &self,
         table: &SettingsTable,

@@ -1,4 +1,5 @@
-//! Reading the text of a profile: first the file as a whole, then each setting against the table it was made with.
+//! Reading the text of a profile: first the file as a whole, then each setting against the table it was made
+//! with.
 
 use std::collections::HashSet;
 
@@ -57,7 +58,8 @@ struct Reader<'t> {
 type Members = [(String, Node)];
 
 impl Reader<'_> {
-    /// Whether this is a profile at all, and one whose schema we know: nothing else is worth saying otherwise.
+    /// Whether this is a profile at all, and one whose schema we know: nothing else is worth saying
+    /// otherwise.
     fn check_format(&mut self, members: &Members) -> Result<(), ProfileError> {
         match find(members, "format") {
             Some(Node::Text(format)) if format == FORMAT => {}
@@ -68,12 +70,17 @@ impl Reader<'_> {
             }
         }
         match find(members, "schema") {
-            Some(Node::Int(schema)) if u64::try_from(*schema).is_ok_and(|schema| (1..=SCHEMA).contains(&schema)) => {
+            Some(Node::Int(schema))
+                if u64::try_from(*schema).is_ok_and(|schema| (1..=SCHEMA).contains(&schema)) =>
+            {
                 Ok(())
             }
             Some(Node::Int(schema)) if *schema > 0 => Err(self.refusal(
                 "schema",
-                format!("The profile has schema {schema}, this program reads up to {SCHEMA}. A newer program wrote it."),
+                format!(
+                    "The profile has schema {schema}, this program reads up to {SCHEMA}. A newer \
+                         program wrote it."
+                ),
             )),
             other => Err(self.refusal("schema", expected("a schema number from 1", other))),
         }

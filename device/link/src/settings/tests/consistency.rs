@@ -280,7 +280,8 @@ fn each_generation_has_the_rows_it_is_known_for() {
     let counts: BTreeMap<u8, usize> = Generation::ALL
         .map(|generation| (generation.number(), super::table("mcp266", generation).rows().len()))
         .into();
-    // Generation 1: 10 pins x 17, 5 streams x 3, 3 multi-unit modes, 2 outputs x 2, 3 buses, 13 of the unit, 2 motors x 17.
+    // Generation 1: 10 pins x 17, 5 streams x 3, 3 multi-unit modes, 2 outputs x 2, 3 buses, 13 of the unit,
+    // 2 motors x 17.
     assert_eq!(counts, BTreeMap::from([(1, 242), (2, 248), (3, 271), (4, 270)]));
     for (key, generations) in [
         ("unit.pwm_mode", &[1, 2][..]),

@@ -1,5 +1,6 @@
-//! A controller of a few lines for tests: it holds one raw number per row, finds rows by the commands that carry them, and
-//! can be told to misbehave. It proves how the code around it copes, not what a controller does.
+//! A controller of a few lines for tests: it holds one raw number per row, finds rows by the commands that
+//! carry them, and can be told to misbehave. It proves how the code around it copes, not what a controller
+//! does.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Mutex;

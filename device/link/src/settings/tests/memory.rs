@@ -75,8 +75,8 @@ fn a_save_that_does_nothing_is_found_out_and_ram_is_put_back() {
         assert_eq!(report.differences.len(), 1);
         assert_eq!(
             report.sentence(),
-            "The save did not take: 1 setting came back from EEPROM otherwise. The controller works on with the settings \
-             that were to be saved."
+            "The save did not take: 1 setting came back from EEPROM otherwise. The controller works on \
+             with the settings that were to be saved."
         );
         assert_eq!(unit.ram["motor1.velocity.p"], 0x20000, "RAM is as it was");
         assert_eq!(unit.eeprom["motor1.velocity.p"], 0x10000);
@@ -120,8 +120,8 @@ fn a_reload_throws_away_what_was_not_saved() {
     let failure = reload(&mut unit, &table).expect_err("95 is silent");
     assert_eq!(
         failure.to_string(),
-        "Could not load the settings from EEPROM (95) on 0x80 at the test: no acknowledgement in 3 tries. Read the settings \
-         to see what the controller works with."
+        "Could not load the settings from EEPROM (95) on 0x80 at the test: no acknowledgement in 3 tries. \
+         Read the settings to see what the controller works with."
     );
 }
 

@@ -1,6 +1,8 @@
-//! Plans: the exact bytes that changes put on the wire, how few commands, in which order, and what is refused.
+//! Plans: the exact bytes that changes put on the wire, how few commands, in which order, and what is
+//! refused.
 //!
-//! The bytes are written by hand from the manual and from public clients; their CRCs come from another implementation.
+//! The bytes are written by hand from the manual and from public clients; their CRCs come from another
+//! implementation.
 
 use brushwork_protocol::packet_serial::{Address, Generation};
 
@@ -74,7 +76,8 @@ fn position_gains_are_written_in_the_order_d_p_i_and_their_limits_signed() {
                 ("motor1.position.min", "-1000"),
                 ("motor1.position.max", "1000"),
             ],
-            // address, command 61, D 2.0, P 2000.0, I 1.0 (each x 1024), max I 100, deadzone 10, min -1000, max 1000, CRC
+            // address, command 61, D 2.0, P 2000.0, I 1.0 (each x 1024), max I 100, deadzone 10, min -1000,
+            // max 1000, CRC
             "80 3D 00000800 001F4000 00000400 00000064 0000000A FFFFFC18 000003E8 279D",
         );
     }
@@ -167,11 +170,11 @@ fn a_pin_of_generation_1_takes_46_bytes() {
         "mcp266",
         ONE,
         &JOYSTICK,
-        // address, command 143, index 0, type analog, mode position, target motor 1, no actions (u8 each), time-out 1000 ms,
-        // load home 0, min 100, max 4000, center 2048, deadband 20, power exponent 1.0, min output -32767, max output 32767,
-        // power min 0, CRC
-        "80 8F 00 01 00 01 00 00 000003E8 00000000 00000064 00000FA0 00000800 00000014 00010000 FFFF8001 00007FFF 00000000 \
-         485C",
+        // address, command 143, index 0, type analog, mode position, target motor 1, no actions (u8 each),
+        // time-out 1000 ms, load home 0, min 100, max 4000, center 2048, deadband 20, power exponent 1.0, min
+        // output -32767, max output 32767, power min 0, CRC
+        "80 8F 00 01 00 01 00 00 000003E8 00000000 00000064 00000FA0 00000800 00000014 00010000 FFFF8001 \
+         00007FFF 00000000 485C",
     );
 }
 
@@ -187,10 +190,10 @@ fn a_pin_of_generation_4_takes_53_bytes() {
         "mcp266",
         FOUR,
         &changes,
-        // address, command 143, index 0, type, mode, target, min action 0x0001, max action 0x0100 (u16 each), low pass 6,
-        // then as in generation 1, then potentiometer 0, CRC
-        "80 8F 00 01 00 01 0001 0100 06 000003E8 00000000 00000064 00000FA0 00000800 00000014 00010000 FFFF8001 00007FFF \
-         00000000 00000000 E6A4",
+        // address, command 143, index 0, type, mode, target, min action 0x0001, max action 0x0100 (u16 each),
+        // low pass 6, then as in generation 1, then potentiometer 0, CRC
+        "80 8F 00 01 00 01 0001 0100 06 000003E8 00000000 00000064 00000FA0 00000800 00000014 00010000 \
+         FFFF8001 00007FFF 00000000 00000000 E6A4",
     );
 }
 
@@ -291,10 +294,12 @@ fn limits_are_written_first_and_the_way_to_the_controller_last() {
     assert_eq!(
         plan.warnings,
         [
-            "The controller answers to its new address from then on; save it, or a power cycle brings the old one back.",
-            "This program is connected through RS232 UART0, which changes to 9600 bit/s: connect again at that rate.",
-            "DIN1/AN1/P1/TX3 commands both motors as soon as this is written, since pulse inputs are at priority level 1: the \
-             motor can start.",
+            "The controller answers to its new address from then on; save it, or a power cycle brings the \
+             old one back.",
+            "This program is connected through RS232 UART0, which changes to 9600 bit/s: connect again at \
+             that rate.",
+            "DIN1/AN1/P1/TX3 commands both motors as soon as this is written, since pulse inputs are at \
+             priority level 1: the motor can start.",
             "A stored script starts 500 ms after each power up and can move the motors.",
         ]
     );
@@ -341,7 +346,8 @@ fn a_command_whose_other_fields_are_not_known_is_not_written() {
         plan(&table, &ram, &image(&table, &[("motor1.velocity.p", "2")]), REAL).expect_err("D is not known");
     assert_eq!(
         refusals[0].sentence,
-        "Motor 1: velocity P cannot be written, since Motor 1: velocity D shares its command and its value is not known."
+        "Motor 1: velocity P cannot be written, since Motor 1: velocity D shares its command and its value \
+         is not known."
     );
 }
 

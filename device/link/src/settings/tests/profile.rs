@@ -92,7 +92,8 @@ fn each_fault_is_told_with_its_place() {
         (
             "\"schema\": 1",
             "\"schema\": 2",
-            "schema (line 3, column 3): The profile has schema 2, this program reads up to 1. A newer program wrote it.",
+            "schema (line 3, column 3): The profile has schema 2, this program reads up to 1. A newer \
+             program wrote it.",
         ),
         (
             "\"schema\": 1",
@@ -110,23 +111,27 @@ fn each_fault_is_told_with_its_place() {
         (
             "unit.mixing",
             "unit.mixxing",
-            "settings.unit.mixxing (line 13, column 5): The MCP266 with firmware generation 1 has no such setting.",
+            "settings.unit.mixxing (line 13, column 5): The MCP266 with firmware generation 1 has no such \
+             setting.",
         ),
         ("true", "1", "settings.unit.mixing (line 13, column 5): Expected true or false, got a number."),
         (
             "\"V\"",
             "\"mV\"",
-            "settings.limits.main_battery.max_volts (line 14, column 5): The unit is \"mV\"; it has to be \"V\".",
+            "settings.limits.main_battery.max_volts (line 14, column 5): The unit is \"mV\"; it has to be \
+             \"V\".",
         ),
         (
             ", \"unit\": \"V\"",
             "",
-            "settings.limits.main_battery.max_volts (line 14, column 5): The unit is missing; it has to be \"V\".",
+            "settings.limits.main_battery.max_volts (line 14, column 5): The unit is missing; it has to be \
+             \"V\".",
         ),
         (
             "24.3",
             "80",
-            "settings.limits.main_battery.max_volts (line 14, column 5): Main battery maximum 80.0 V is above the MCP266's 60.0 V.",
+            "settings.limits.main_battery.max_volts (line 14, column 5): Main battery maximum 80.0 V is \
+             above the MCP266's 60.0 V.",
         ),
         (
             "24.3",
@@ -136,7 +141,8 @@ fn each_fault_is_told_with_its_place() {
         (
             "{ \"value\": true }",
             "true",
-            "settings.unit.mixing (line 13, column 5): Expected an object with a \"value\", got true or false.",
+            "settings.unit.mixing (line 13, column 5): Expected an object with a \"value\", got true or \
+             false.",
         ),
         (
             "{ \"value\": true }",
@@ -149,10 +155,8 @@ fn each_fault_is_told_with_its_place() {
     }
     assert_eq!(
         broken("mcp266", "mcp999"),
-        [
-            "model (line 4, column 3): \"mcp999\" is no known model; known are mcp233, mcp236, mcp263, mcp266, mcp2126, mcp2128, \
-          mcp2163, mcp2166, mcp2168, mcp2206, roboclaw-2x7a."
-        ]
+        ["model (line 4, column 3): \"mcp999\" is no known model; known are mcp233, mcp236, mcp263, \
+             mcp266, mcp2126, mcp2128, mcp2163, mcp2166, mcp2168, mcp2206, roboclaw-2x7a."]
     );
     assert_eq!(
         broken(
@@ -210,9 +214,10 @@ fn single_faults_can_be_mended_with_a_warning_each() {
     assert_eq!(
         told,
         [
-            "settings.unit.mixxing (line 13, column 5): The MCP266 with firmware generation 1 has no such setting.",
-            "settings.limits.main_battery.max_volts (line 14, column 5): Main battery maximum 80.0 V is above the MCP266's \
-             60.0 V. 60.0 V is used instead.",
+            "settings.unit.mixxing (line 13, column 5): The MCP266 with firmware generation 1 has no such \
+             setting.",
+            "settings.limits.main_battery.max_volts (line 14, column 5): Main battery maximum 80.0 V is \
+             above the MCP266's 60.0 V. 60.0 V is used instead.",
         ]
     );
 }
@@ -226,7 +231,10 @@ fn a_profile_of_another_model_or_generation_changes_nothing() {
     assert!(told.contains(
         "model: The profile was made for the MCP266 (2x60A), the connected controller is the MCP233 (2x30A)."
     ));
-    assert!(told.contains("generation: The profile was made for firmware generation 1, the connected controller has generation 3."));
+    assert!(told.contains(
+        "generation: The profile was made for firmware generation 1, the connected \
+                           controller has generation 3."
+    ));
     assert!(told.contains("unit.pwm_mode: The connected controller has no such setting."));
     assert!(told.contains(
         "motor1.current.max_amps: Motor 1: maximum current 60.00 A is above the MCP233's 30.00 A."

@@ -1,4 +1,5 @@
-//! Reading and writing against a fake controller: how few commands, and what is told when something goes wrong.
+//! Reading and writing against a fake controller: how few commands, and what is told when something goes
+//! wrong.
 
 use brushwork_protocol::packet_serial::{Address, Generation};
 
@@ -75,8 +76,8 @@ fn a_command_that_is_not_answered_costs_only_its_own_rows() {
     assert_eq!(report.image.len(), table.rows().len() - 22);
     assert_eq!(
         report.failures[0].failure.to_string(),
-        "Could not read M1 position PID (63) on 0x80 at the test: no answer within 20 ms (3 tries). Check the controller's \
-         power, the wiring, the baud rate and the address."
+        "Could not read M1 position PID (63) on 0x80 at the test: no answer within 20 ms (3 tries). Check \
+         the controller's power, the wiring, the baud rate and the address."
     );
 }
 
@@ -164,9 +165,8 @@ fn what_did_not_take_is_named_with_both_values() {
     assert!(!report.is_complete());
     assert_eq!(
         report.sentences(&table),
-        [
-            "Motor 1: velocity I was to be 0.750 and is 0.500: the controller acknowledged it and did not take it."
-        ]
+        ["Motor 1: velocity I was to be 0.750 and is 0.500: the controller acknowledged it and did not \
+             take it."]
     );
     let mut ram = table.default_image();
     report.merge_into(&mut ram);
@@ -371,9 +371,8 @@ fn an_address_that_did_not_take_is_found_at_the_old_one() {
         let report = written(&mut unit, &table, &[("unit.address", "0x83")]);
         assert_eq!(
             report.sentences(&table),
-            [
-                "Packet serial address was to be 131 and is 128: the controller acknowledged it and did not take it."
-            ]
+            ["Packet serial address was to be 131 and is 128: the controller acknowledged it and did \
+                 not take it."]
         );
         assert_eq!(report.address, Address::DEFAULT);
     }
