@@ -1,8 +1,8 @@
 //! The motor controllers of the MCP / RoboClaw family: ratings, input pins and digital outputs.
 //!
-//! One list for everybody: the client takes ranges and pin names from it, the simulated controller its limits. It holds
-//! no protocol and no settings. What the manual does not print is marked in [`Model::assumed`]; on a real unit the counts
-//! that commands 138 and 144 return win over the lists here.
+//! One list for everybody: the client takes ranges and pin names from it, the simulated controller its
+//! limits. It holds no protocol and no settings. What the manual does not print is marked in
+//! [`Model::assumed`]; on a real unit the counts that commands 138 and 144 return win over the lists here.
 
 /// Which of the two product lines a model belongs to. They share packet serial, not all settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -38,7 +38,8 @@ pub struct Model {
     pub max_amps: f64,
     /// Lowest and highest main battery voltage the limits can be set to, in volts (MCP manual 1.1.3, 1.2.10).
     pub main_volts: (f64, f64),
-    /// Lowest and highest logic battery voltage the limits can be set to, in volts (MCP manual 1.5.4, command 26).
+    /// Lowest and highest logic battery voltage the limits can be set to, in volts (MCP manual 1.5.4, command
+    /// 26).
     pub logic_volts: (f64, f64),
     /// Configurable input pins in the order of command 144.
     pub pins: &'static [Pin],
@@ -58,8 +59,9 @@ impl Model {
         self.title.rsplit(' ').next().unwrap_or(self.title)
     }
 
-    /// Whether a stream (by the index of command 145) shares its lines with an encoder. Such a UART keeps the encoder from
-    /// counting while it is in use (MCP manual 1.9.7). Assumed: it is disabled when the unit leaves the factory.
+    /// Whether a stream (by the index of command 145) shares its lines with an encoder. Such a UART keeps the
+    /// encoder from counting while it is in use (MCP manual 1.9.7). Assumed: it is disabled when the unit
+    /// leaves the factory.
     pub fn stream_shares_encoder(&self, stream: usize) -> bool {
         let shares = |pin: &Pin| {
             pin.encoder_channel().is_some() && pin.uart().is_some_and(|uart| usize::from(uart) + 1 == stream)
@@ -105,7 +107,8 @@ impl Pin {
         Some((u8::try_from(number).ok()?, letters.next()?))
     }
 
-    /// The TTL UART whose line shares the pin (2 or 3); while that UART is in use the pin is not an input (1.9.7).
+    /// The TTL UART whose line shares the pin (2 or 3); while that UART is in use the pin is not an input
+    /// (1.9.7).
     pub fn uart(self) -> Option<u8> {
         let digits = self
             .functions()
@@ -116,17 +119,23 @@ impl Pin {
 
 /// The model whose key or printed name is `name`, whatever its case.
 pub fn lookup(name: &str) -> Option<&'static Model> {
-    MODELS.iter().find(|model| model.key.eq_ignore_ascii_case(name) || model.name.eq_ignore_ascii_case(name))
+    MODELS
+        .iter()
+        .chain(UNLISTED)
+        .find(|model| model.key.eq_ignore_ascii_case(name) || model.name.eq_ignore_ascii_case(name))
 }
 
-/// The model that reports itself as `version` in the reply to command 21 ("MCP266 2x60A v1.0.0").
+/// The model that reports itself as `version` in the reply to command 21 ("MCP266 2x60A v1.0.0"). A board of
+/// either line that is not listed is one of [`UNLISTED`]; `None` means that it is none of this family.
 pub fn identify(version: &str) -> Option<&'static Model> {
     let version = version.trim().to_ascii_lowercase();
     let by_title = MODELS.iter().find(|model| version.starts_with(&model.title.to_ascii_lowercase()));
-    by_title.or_else(|| {
+    let by_name = || {
         let first = version.split_whitespace().next()?;
         MODELS.iter().find(|model| first == model.key)
-    })
+    };
+    let by_line = || UNLISTED.iter().find(|model| version.contains(&model.title.to_ascii_lowercase()));
+    by_title.or_else(by_name).or_else(by_line)
 }
 
 /// Every model, MCP first, small to large.
@@ -185,6 +194,26 @@ pub static MODELS: &[Model] = &[
     },
 ];
 
+/// What stands for a board that is not in [`MODELS`]: bounds as wide as its line has them, no named pins. Its
+/// own data sheet says what it stands; commands 138, 144 and 146 say how many pins, streams and outputs it
+/// has.
+pub static UNLISTED: &[Model] = &[
+    Model {
+        key: "roboclaw",
+        name: "RoboClaw",
+        title: "Roboclaw",
+        family: Family::RoboClaw,
+        max_amps: 200.0,
+        main_volts: (6.0, 80.0),
+        logic_volts: (6.0, 34.0),
+        streams: 0,
+        assumed: NOT_LISTED,
+        ..mcp(80.0)
+    },
+    Model { key: "mcp", name: "MCP", title: "MCP", max_amps: 200.0, assumed: NOT_LISTED, ..mcp(80.0) },
+];
+
+const NOT_LISTED: &str = "Not a listed model: the bounds are the widest of its line.";
 const LIKE_160A: &str =
     "Ratings from the model number; pins, outputs and the second sensor as on the 2x160A.";
 
@@ -287,6 +316,9 @@ mod tests {
         assert_eq!(identify("MCP266 2x60A v1.0.0\n").map(|model| model.key), Some("mcp266"));
         assert_eq!(identify("USB Roboclaw 2x7a v4.2.8\n").map(|model| model.key), Some("roboclaw-2x7a"));
         assert_eq!(identify("MCP2163 2x160A v1.0.2").map(Model::rating), Some("2x160A"));
+        assert_eq!(identify("USB Roboclaw 2x15a v4.1.34\n").map(|model| model.key), Some("roboclaw"));
+        assert_eq!(identify("MCP2999 2x1A v9").map(|model| model.key), Some("mcp"));
+        assert_eq!(lookup("roboclaw").map(|model| model.family), Some(Family::RoboClaw));
         assert_eq!(identify("Motion Mind 3"), None);
         assert_eq!(identify(""), None);
     }

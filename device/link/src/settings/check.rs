@@ -53,7 +53,37 @@ pub(super) fn dangers(table: &SettingsTable, after: &SettingsImage, changes: &Se
         dangers
             .push(format!("A stored script starts {delay} ms after each power up and can move the motors."));
     }
+    dangers.extend(arming_obstacle(after, changes));
+    dangers.extend(torque_control(table, after, changes));
     dangers
+}
+
+/// Without the serial input in a priority level this program may not move a motor.
+fn arming_obstacle(after: &SettingsImage, changes: &SettingsImage) -> Option<String> {
+    let levels = ["priority.1", "priority.2", "priority.3"];
+    let is_new = levels.iter().any(|level| changes.get(level).is_some());
+    let has_serial = levels.iter().any(|level| after.get(level) == Some(SettingValue::Choice("serial")));
+    (is_new && !has_serial).then(|| {
+        "Serial is at no priority level then, so this program cannot be armed to move motors.".to_owned()
+    })
+}
+
+/// Inductance and resistance together change what duty commands mean (MCP manual 1.2.11, 3.1 MOTORL).
+fn torque_control(table: &SettingsTable, after: &SettingsImage, changes: &SettingsImage) -> Vec<String> {
+    let told = |motor: usize| {
+        let keys = [format!("motor{motor}.inductance_henries"), format!("motor{motor}.resistance_ohms")];
+        let is_new = keys.iter().any(|key| changes.get(key).is_some());
+        let is_set = |key: &String| {
+            table.row(key).is_some() && after.get(key).is_some_and(|value| value != SettingValue::Number(0.0))
+        };
+        (is_new && keys.iter().all(is_set)).then(|| {
+            format!(
+                "Motor {motor} has both L and R then: duty commands set its current instead of its \
+                 voltage, and duty 0 lets it coast."
+            )
+        })
+    };
+    (1..=2).filter_map(told).collect()
 }
 
 /// Whether a pin begins to command motors: it has a target, its kind of input is in a priority level, and one

@@ -7,6 +7,7 @@
 mod check;
 mod image;
 mod kind;
+mod listing;
 mod mcp;
 mod memory;
 mod plan;
@@ -21,6 +22,7 @@ mod write;
 
 pub use image::{Copies, Copy, Difference, SettingsImage, changes, diff};
 pub use kind::{Coding, Kind};
+pub use listing::{ListedSetting, list, list_text};
 pub use memory::{DefaultsReport, SaveReport, SaveVerdict, reload, restore_defaults, save_eeprom};
 pub use plan::{Plan, Refusal, Stage, Step, WriteOptions, plan};
 pub use profile::{

@@ -275,7 +275,6 @@ impl Planner<'_> {
 
     /// What the steps themselves bring about besides their values.
     fn warnings(&self, steps: &[Step]) -> Vec<String> {
-        let changed = |key: &str| self.changes.get(key).is_some();
         let mut warnings = Vec::new();
         for step in steps {
             match (step.command, step.stage) {
@@ -293,7 +292,7 @@ impl Planner<'_> {
                         _ => String::new(),
                     })
                 )),
-                (number::SET_STREAM, Stage::OwnPort) => warnings.extend(self.own_port_warning(&changed)),
+                (number::SET_STREAM, Stage::OwnPort) => warnings.extend(self.own_port_warnings()),
                 (number::SET_CONFIG, _) => warnings.push(
                     "The configuration word takes effect at once and can move the controller to another \
                      address, baud rate or control mode: the link may be lost."
@@ -310,27 +309,32 @@ impl Planner<'_> {
         row.is_some_and(|row| matches!(row.carrier, Carrier::Wire { read: Source::LinkAddress, .. }))
     }
 
-    fn own_port_warning(&self, changed: &dyn Fn(&str) -> bool) -> Option<String> {
-        let stream = self.options.own_stream?;
-        let key = |field: &str| format!("stream.{}.{field}", stream.key());
-        let shown = |field: &str| {
-            let (row, value) = (self.table.row(&key(field))?, self.changes.get(&key(field))?);
-            Some(row.format(value))
+    fn own_port_warnings(&self) -> Vec<String> {
+        let Some(stream) = self.options.own_stream else { return Vec::new() };
+        let change = |field: &str| {
+            let key = format!("stream.{}.{field}", stream.key());
+            let (row, value) = (self.table.row(&key)?, self.changes.get(&key)?);
+            Some((row.format(value), value))
         };
-        if changed(&key("type")) {
-            let to = shown("type")?;
-            Some(format!(
+        let mut warnings = Vec::new();
+        if let Some((to, _)) = change("type") {
+            warnings.push(format!(
                 "This program is connected through {stream}, which becomes \"{to}\": the link is lost then."
-            ))
-        } else if changed(&key("rate")) && stream != Stream::Usb {
-            let to = shown("rate")?;
-            Some(format!(
+            ));
+        }
+        if let (Some((to, _)), true) = (change("rate"), stream != Stream::Usb) {
+            warnings.push(format!(
                 "This program is connected through {stream}, which changes to {to}: connect again at that \
                  rate."
-            ))
-        } else {
-            None
+            ));
         }
+        if let Some((_, SettingValue::Int(0))) = change("timeout") {
+            warnings.push(format!(
+                "{stream} has no time-out then: the motors would go on if this program died, so it cannot \
+                 be armed."
+            ));
+        }
+        warnings
     }
 }
 

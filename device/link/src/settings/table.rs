@@ -9,6 +9,7 @@ use brushwork_protocol::packet_serial::Generation;
 use super::image::SettingsImage;
 use super::mcp;
 use super::row::{Group, Row};
+use super::value::SettingValue;
 
 /// What the table has to know about the controller in front of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,6 +88,19 @@ impl SettingsTable {
     /// The rows of one group, in screen order.
     pub fn group(&self, group: Group) -> impl Iterator<Item = &Row> {
         self.rows.iter().filter(move |row| row.group == group)
+    }
+
+    /// What a value means besides its text: the pin behind an encoder input number, as far as we assume it.
+    pub fn note(&self, row: &Row, value: SettingValue) -> Option<String> {
+        let number = match value {
+            SettingValue::Int(number) if row.pattern == "motor{n}.encoder.pin" => number,
+            _ => return None,
+        };
+        if number == ENCODER_PIN_NONE {
+            return Some("none, assumed".to_owned());
+        }
+        let index = usize::try_from(number).ok().filter(|index| *index < self.subject.pins)?;
+        Some(format!("counted from 0 in the pin list: {}, assumed", self.subject.pin_name(index)))
     }
 
     /// Every row at its default.

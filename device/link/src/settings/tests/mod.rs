@@ -1,6 +1,7 @@
 //! Tests of the settings over several files of the module: the table against the protocol, values, profiles.
 
 mod consistency;
+mod copies;
 mod fake;
 mod memory;
 mod plan;

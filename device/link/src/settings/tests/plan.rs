@@ -268,6 +268,7 @@ fn limits_are_written_first_and_the_way_to_the_controller_last() {
         ("stream.ttl1.rate", "9600"),
         ("script.autorun_delay", "500"),
         ("priority.1", "pulse"),
+        ("priority.2", "serial"),
         ("pin.1.type", "pulse"),
         ("pin.1.target", "both"),
         ("dout.1.action", "over_voltage"),
@@ -303,6 +304,27 @@ fn limits_are_written_first_and_the_way_to_the_controller_last() {
             "A stored script starts 500 ms after each power up and can move the motors.",
         ]
     );
+}
+
+#[test]
+fn what_keeps_this_program_from_arming_or_changes_what_duty_means_is_told() {
+    let usb = WriteOptions { own_stream: Some(Stream::Usb), simulated: false };
+    let warnings = |changes: &[(&str, &str)]| plan_of(&table("mcp266", ONE), changes, usb).warnings;
+    assert_eq!(
+        warnings(&[("stream.usb.timeout", "0")]),
+        ["USB has no time-out then: the motors would go on if this program died, so it cannot be armed."]
+    );
+    assert_eq!(
+        warnings(&[("priority.1", "disabled")]),
+        ["Serial is at no priority level then, so this program cannot be armed to move motors."]
+    );
+    assert_eq!(warnings(&[("motor1.resistance_ohms", "0.1")]), [""; 0]);
+    assert_eq!(
+        warnings(&[("motor1.resistance_ohms", "0.1"), ("motor1.inductance_henries", "0.2 mH")]),
+        ["Motor 1 has both L and R then: duty commands set its current instead of its voltage, and duty 0 \
+          lets it coast."]
+    );
+    assert_eq!(warnings(&[("stream.usb.rate", "9600")]), [""; 0], "a rate means nothing on USB");
 }
 
 #[test]

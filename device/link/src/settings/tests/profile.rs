@@ -205,6 +205,34 @@ fn every_prefix_of_a_profile_is_refused_without_panic() {
 }
 
 #[test]
+fn a_profile_with_a_few_bytes_changed_is_refused_or_read_as_what_it_then_says() {
+    // A small generator of our own: the same 20000 texts in every run.
+    let mut state: u64 = 0x9E37_79B9_7F4A_7C15;
+    let mut next = |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        usize::try_from(state >> 33).expect("31 bits") % below
+    };
+    let mut taken = 0;
+    for _ in 0..20_000 {
+        let mut bytes = SMALL.as_bytes().to_vec();
+        for _ in 0..=next(3) {
+            let at = next(bytes.len());
+            match next(3) {
+                0 => bytes[at] = b" !\"#,.:0123456789aetx{}[]-"[next(26)],
+                1 => drop(bytes.remove(at)),
+                _ => bytes.insert(at, bytes[next(bytes.len())]),
+            }
+        }
+        let text = String::from_utf8(bytes).expect("all of it is ASCII");
+        if let Ok(profile) = Profile::parse(&text) {
+            taken += 1;
+            assert_eq!(Profile::parse(&profile.to_json()), Ok(profile), "{text}");
+        }
+    }
+    assert!((100..15_000).contains(&taken), "{taken} texts were still right");
+}
+
+#[test]
 fn single_faults_can_be_mended_with_a_warning_each() {
     let text = SMALL.replace("24.3", "80").replace("unit.mixing", "unit.mixxing");
     let (profile, warnings) = Profile::parse_repairing(&text).expect("the file as a whole is right");
