@@ -2,6 +2,7 @@
 
 use super::can::Can;
 use super::config::{ControllerConfig, FirmwareOptions};
+use super::inputs::PinFunctions;
 use super::loader::Loader;
 use super::memory::Memory;
 use super::readings::Readings;
@@ -30,6 +31,7 @@ pub(super) struct Firmware {
     /// Settings in RAM.
     pub settings: Settings,
     pub channels: [Channel; 2],
+    pub pins: Vec<PinFunctions>,
     pub signals: Vec<Signal>,
     pub readings: Readings,
     pub protection: Protection,
@@ -38,6 +40,10 @@ pub(super) struct Firmware {
     pub triggers: Triggers,
     /// Motors whose direction a reverse action has turned round.
     pub reversed: [bool; 2],
+    /// Loop errors that stopped a motor.
+    pub loop_faults: [LoopFaults; 2],
+    /// Whether the E-stop button hangs on an input pin.
+    pub estop_is_on_a_pin: bool,
     /// Whether an error held the motors at the last tick.
     pub was_held: bool,
     pub ports: PortActivity,
@@ -59,6 +65,13 @@ pub(super) struct Firmware {
     pub now: Duration,
 }
 
+/// Which error limits of commands 109 and 112 stopped a motor.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct LoopFaults {
+    pub speed: bool,
+    pub position: bool,
+}
+
 /// When bytes came in.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PortActivity {
@@ -78,12 +91,15 @@ impl Firmware {
             options: config.options.clone(),
             factory_address: config.address,
             channels: [Channel::new(&config.law), Channel::new(&config.law)],
+            pins: config.model.pins.iter().copied().map(PinFunctions::of).collect(),
             signals: vec![Signal::default(); settings.signals.len()],
             readings,
             protection: Protection::default(),
             estop: EStop::default(),
             triggers: Triggers::default(),
             reversed: [false; 2],
+            loop_faults: [LoopFaults::default(); 2],
+            estop_is_on_a_pin: config.world.wiring.estop_pin.is_some(),
             was_held: false,
             ports: PortActivity::default(),
             source: None,
@@ -177,6 +193,7 @@ impl Firmware {
             return;
         }
         self.reversed[motor.index()] = false;
+        self.loop_faults[motor.index()] = LoopFaults::default();
         let settings = self.motion_settings(motor);
         // A refused command is acknowledged like any other; the wire has no word for it.
         let _ = self.channels[motor.index()].command(command, &settings);

@@ -26,6 +26,28 @@ const DIGITAL_THRESHOLD_VOLTS: f64 = 2.5;
 /// RoboClaw encoder mode bit: absolute (public clients, 2015-2025).
 const ROBOCLAW_ABSOLUTE: u8 = 0x01;
 
+/// What a pin can be, worked out once from its label.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct PinFunctions {
+    is_analog: bool,
+    is_pulse: bool,
+    /// Index of the encoder whose phase it is.
+    encoder: Option<usize>,
+    /// Index of the stream whose line it is.
+    stream: Option<usize>,
+}
+
+impl PinFunctions {
+    pub fn of(pin: Pin) -> Self {
+        Self {
+            is_analog: pin.is_analog(),
+            is_pulse: pin.is_pulse(),
+            encoder: pin.encoder_channel().and_then(|(number, _)| usize::from(number).checked_sub(1)),
+            stream: pin.uart().map(|uart| usize::from(uart) + 1),
+        }
+    }
+}
+
 impl Firmware {
     /// Reads every pin that has a function, and from them the encoder of each motor.
     pub(super) fn update_signals(&mut self, world: &mut World) {
@@ -216,18 +238,14 @@ impl Firmware {
 
     /// The axis encoder that is plugged into a pin, by the pin's ENC function.
     fn plug_on(&self, index: usize) -> Option<EncoderReading> {
-        let pin = self.usable_pin(index)?;
-        let (number, _) = pin.encoder_channel()?;
-        self.readings.plugs.get(usize::from(number) - 1).copied()
+        self.readings.plugs.get(self.usable_pin(index)?.encoder?).copied()
     }
 
     /// The pin, unless a UART that shares it is in use (MCP manual 1.9.7).
-    fn usable_pin(&self, index: usize) -> Option<Pin> {
-        let pin = self.model.pins.get(index).copied()?;
-        let in_use = pin.uart().is_some_and(|uart| {
-            let stream = self.settings.streams.get(usize::from(uart) + 1);
-            stream.is_some_and(|stream| stream.kind != STREAM_DISABLED)
-        });
+    fn usable_pin(&self, index: usize) -> Option<PinFunctions> {
+        let pin = self.pins.get(index).copied()?;
+        let stream = pin.stream.and_then(|stream| self.settings.streams.get(stream));
+        let in_use = stream.is_some_and(|stream| stream.kind != STREAM_DISABLED);
         (!in_use).then_some(pin)
     }
 
@@ -246,13 +264,9 @@ impl Firmware {
             return PinReading::Level(if is_high { ABSOLUTE_MAX_COUNTS as f64 } else { 0.0 });
         }
         match (settings.kind, state) {
-            (KIND_ANALOG, PinState::Volts(volts)) if pin.is_analog() => {
-                PinReading::Level(analog_counts(volts))
-            }
-            (KIND_ANALOG, _) if pin.is_analog() => PinReading::Level(0.0),
-            (KIND_PULSE, PinState::Pulse { microseconds }) if pin.is_pulse() => {
-                PinReading::Pulse(microseconds)
-            }
+            (KIND_ANALOG, PinState::Volts(volts)) if pin.is_analog => PinReading::Level(analog_counts(volts)),
+            (KIND_ANALOG, _) if pin.is_analog => PinReading::Level(0.0),
+            (KIND_PULSE, PinState::Pulse { microseconds }) if pin.is_pulse => PinReading::Pulse(microseconds),
             (KIND_ENCODER, _) => PinReading::Level(self.encoder_level(index)),
             _ => PinReading::Nothing,
         }

@@ -2,14 +2,13 @@
 
 use super::firmware::Firmware;
 use crate::signals::MotorTriggers;
-use brushwork_protocol::packet_serial::Motor::{M1, M2};
 use brushwork_protocol::packet_serial::status::{self, Condition, Conditions};
 
 impl Firmware {
     /// Everything that is so now, whether or not this generation has a bit for it.
     pub(super) fn conditions(&self) -> Conditions {
         let limits = &self.protection;
-        let errors = [M1, M2].map(|motor| self.channels[motor.index()].errors());
+        let faults = self.loop_faults;
         let homed = self.triggers.motors.map(MotorTriggers::is_limited);
         [
             (Condition::EStop, self.estop.is_tripped()),
@@ -19,10 +18,10 @@ impl Firmware {
             (Condition::MainBatteryLowError, limits.main_low_error),
             (Condition::LogicBatteryHighError, limits.logic_high_error),
             (Condition::LogicBatteryLowError, limits.logic_low_error),
-            (Condition::M1SpeedError, errors[0].speed_exceeded),
-            (Condition::M2SpeedError, errors[1].speed_exceeded),
-            (Condition::M1PositionError, errors[0].position_exceeded),
-            (Condition::M2PositionError, errors[1].position_exceeded),
+            (Condition::M1SpeedError, faults[0].speed),
+            (Condition::M2SpeedError, faults[1].speed),
+            (Condition::M1PositionError, faults[0].position),
+            (Condition::M2PositionError, faults[1].position),
             (Condition::M1OverCurrentWarning, limits.over_current[0]),
             (Condition::M2OverCurrentWarning, limits.over_current[1]),
             (Condition::MainBatteryHighWarning, limits.main_high_warning),

@@ -1,8 +1,9 @@
 //! Supervision at work: limits, emergency stop, LEDs and digital outputs of one unit.
 
 use super::firmware::Firmware;
+use super::firmware::LoopFaults;
 use super::readings::Readings;
-use crate::motion::BridgeOverride;
+use crate::motion::{BridgeOverride, MotionCommand};
 use crate::plant::ClampDrive;
 use crate::supervision::{EStopReset, LedInputs, Limits, Observed, OutputInputs, leds, output_is_on};
 use crate::world::World;
@@ -22,8 +23,11 @@ impl Firmware {
         for motor in Motor::BOTH {
             self.protection.over_current[motor.index()] |= self.channels[motor.index()].is_current_limited();
         }
-        self.estop.update(self.readings.estop_pressed, self.triggers.estop, self.estop_reset());
-        let is_held = self.estop.is_tripped() || self.has_latched_error() || self.has_loop_error();
+        // A button that is wired to a pin acts through that pin's action.
+        let button = self.readings.estop_pressed && !self.estop_is_on_a_pin;
+        self.estop.update(button || self.triggers.estop, self.estop_reset());
+        self.update_loop_faults();
+        let is_held = self.estop.is_tripped() || self.has_latched_error();
         if is_held && !self.was_held {
             self.stop_both();
         }
@@ -87,12 +91,16 @@ impl Firmware {
         self.protection.main_high_error || self.protection.logic_high_error || self.protection.logic_low_error
     }
 
-    /// A speed or position error beyond its limit stops both motors.
-    fn has_loop_error(&self) -> bool {
-        self.channels.iter().any(|channel| {
-            let errors = channel.errors();
-            errors.speed_exceeded || errors.position_exceeded
-        })
+    /// A speed or position error beyond its limit stops its motor. Assumed: the fault shows until the motor's next command.
+    fn update_loop_faults(&mut self) {
+        for motor in Motor::BOTH {
+            let errors = self.channels[motor.index()].errors();
+            if errors.speed_exceeded || errors.position_exceeded {
+                self.command(motor, MotionCommand::SafeStop);
+                self.loop_faults[motor.index()] =
+                    LoopFaults { speed: errors.speed_exceeded, position: errors.position_exceeded };
+            }
+        }
     }
 
     fn observed(&self) -> Observed {

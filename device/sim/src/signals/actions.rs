@@ -13,7 +13,7 @@ pub struct Triggers {
     pub stop_script: bool,
     /// Once: start the user script from the beginning if it runs.
     pub reset_script: bool,
-    /// Once: trigger the emergency stop.
+    /// While it holds: trigger the emergency stop.
     pub estop: bool,
 }
 
@@ -30,6 +30,8 @@ pub struct MotorTriggers {
     pub backward_limit: bool,
     /// Once: reverse the direction.
     pub reverse: bool,
+    /// While it holds: the home switch is closed.
+    pub at_home: bool,
     /// Once: set the encoder register.
     pub load_home: Option<i32>,
 }
@@ -37,7 +39,7 @@ pub struct MotorTriggers {
 impl MotorTriggers {
     /// Whether the motor is homed or at a limit switch, which is what the M1HM and M2HM lamps show (MCP manual 1.2.5).
     pub fn is_limited(self) -> bool {
-        self.safe_stop || self.off || self.forward_limit || self.backward_limit || self.load_home.is_some()
+        self.safe_stop || self.off || self.forward_limit || self.backward_limit || self.at_home
     }
 }
 
@@ -78,7 +80,9 @@ impl ActionBits {
             motor.off |= bits & OFF != 0;
             motor.forward_limit |= bits & FORWARD_LIMIT != 0;
             motor.backward_limit |= bits & BACKWARD_LIMIT != 0;
+            motor.at_home |= bits & LOAD_HOME != 0;
         }
+        triggers.estop |= self.0 & ESTOP != 0;
     }
 
     /// Adds what lasts from the end until the input is back at its center.
@@ -99,7 +103,6 @@ impl ActionBits {
         triggers.run_script |= self.0 & RUN_SCRIPT != 0;
         triggers.stop_script |= self.0 & STOP_SCRIPT != 0;
         triggers.reset_script |= self.0 & RESET_SCRIPT != 0;
-        triggers.estop |= self.0 & ESTOP != 0;
     }
 
     fn per_motor(self, triggers: &mut Triggers) -> impl Iterator<Item = (&mut MotorTriggers, u16)> {

@@ -211,7 +211,7 @@ mod tests {
         let pressed = at(&mut signal, 4095.0, &settings, ms(2));
         assert!(pressed.motors[0].forward_limit && pressed.motors[0].load_home == Some(1234));
         let held = at(&mut signal, 4095.0, &settings, ms(4));
-        assert!(held.motors[0].forward_limit && held.motors[0].load_home.is_none());
+        assert!(held.motors[0].forward_limit && held.motors[0].load_home.is_none() && held.motors[0].at_home);
         assert_eq!(at(&mut signal, 4000.0, &settings, ms(6)), Triggers::default());
     }
 

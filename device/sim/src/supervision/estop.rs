@@ -30,10 +30,10 @@ pub struct EStop {
 }
 
 impl EStop {
-    /// Takes the state of the input and whether an action triggers a stop at this moment.
-    pub fn update(&mut self, pressed: bool, triggered: bool, reset: EStopReset) {
+    /// Takes the state of the button and of inputs whose action is a stop.
+    pub fn update(&mut self, pressed: bool, reset: EStopReset) {
         self.pressed = pressed;
-        if pressed || triggered {
+        if pressed {
             self.tripped = true;
         } else if reset == EStopReset::Automatic {
             self.tripped = false;
@@ -59,8 +59,8 @@ mod tests {
 
     fn tripped() -> EStop {
         let mut estop = EStop::default();
-        estop.update(true, false, EStopReset::Hardware);
-        estop.update(false, false, EStopReset::Hardware);
+        estop.update(true, EStopReset::Hardware);
+        estop.update(false, EStopReset::Hardware);
         assert!(estop.is_tripped());
         estop
     }
@@ -75,10 +75,10 @@ mod tests {
     #[test]
     fn unlocked_command_200_releases_it_but_not_while_it_is_pressed() {
         let mut estop = tripped();
-        estop.update(true, false, EStopReset::Software);
+        estop.update(true, EStopReset::Software);
         estop.reset(EStopReset::Software);
         assert!(estop.is_tripped());
-        estop.update(false, false, EStopReset::Software);
+        estop.update(false, EStopReset::Software);
         estop.reset(EStopReset::Software);
         assert!(!estop.is_tripped());
     }
@@ -86,9 +86,9 @@ mod tests {
     #[test]
     fn automatic_it_ends_with_the_press() {
         let mut estop = EStop::default();
-        estop.update(true, false, EStopReset::Automatic);
+        estop.update(true, EStopReset::Automatic);
         assert!(estop.is_tripped());
-        estop.update(false, false, EStopReset::Automatic);
+        estop.update(false, EStopReset::Automatic);
         assert!(!estop.is_tripped());
     }
 

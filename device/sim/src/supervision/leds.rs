@@ -114,7 +114,7 @@ mod tests {
         assert_eq!(leds(&LedInputs::default()), all);
         let mut inputs = with(Protection::default());
         assert_eq!(leds(&inputs), Leds { stat1: true, stat2: false, err: false });
-        inputs.estop.update(true, false, crate::supervision::EStopReset::Hardware);
+        inputs.estop.update(true, crate::supervision::EStopReset::Hardware);
         assert_eq!(leds(&inputs), all);
     }
 

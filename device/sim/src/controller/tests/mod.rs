@@ -2,4 +2,5 @@
 
 mod conversation;
 mod every_command;
+mod memory;
 mod support;
