@@ -15,6 +15,9 @@ use serde::Serialize;
 /// Assumed: drop of one body diode of the bridge. Two carry the current of a coasting motor.
 const DIODE_VOLTS: f64 = 0.8;
 
+/// Most pieces that a step is cut into for the sake of a stiff coupling.
+const MOST_PIECES: f64 = 40.0;
+
 /// What an axis exchanged with the link over a stretch of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AxisPower {
@@ -56,6 +59,7 @@ pub struct AxisTruth {
 pub struct Axis {
     params: AxisParams,
     mechanics: Mechanics,
+    fastest_radians_per_second: f64,
     encoder: Encoder,
     current_noise: Noise,
     load_newton_metres: f64,
@@ -94,6 +98,7 @@ impl Axis {
         };
         Ok(Self {
             params: params.clone(),
+            fastest_radians_per_second: mechanics.fastest_radians_per_second(),
             mechanics,
             encoder: Encoder::new(params.encoder, seed, 1),
             current_noise: Noise::new(seed, 2),
@@ -208,15 +213,28 @@ impl Axis {
     /// What the axis would draw from the link over the next step: (amperes at no volts, more per volt).
     pub(crate) fn foretell(&mut self, output: BridgeOutput, step_s: f64) -> (f64, f64) {
         let duty = match output {
-            BridgeOutput::Duty(duty) if !self.lead_open => self.polarity() * duty.clamp(-1.0, 1.0),
+            BridgeOutput::Duty(duty) if !self.lead_open => self.winding_duty(duty),
             _ => return (0.0, 0.0),
         };
-        let (at_none, per_volt) = self.mechanics.charge_line(step_s);
-        (duty * at_none / step_s, duty * duty * per_volt / step_s)
+        let piece_s = step_s / self.pieces(step_s);
+        let (at_none, per_volt) = self.mechanics.charge_line(piece_s);
+        (duty * at_none / piece_s, duty * duty * per_volt / piece_s)
     }
 
     /// Takes one step and returns the charge drawn from the link.
     pub(crate) fn step(&mut self, output: BridgeOutput, bus_volts: f64, step_s: f64) -> f64 {
+        let pieces = self.pieces(step_s);
+        let piece_s = step_s / pieces;
+        (0..pieces as usize).map(|_| self.piece(output, bus_volts, piece_s)).sum()
+    }
+
+    /// Into how many pieces a step must be cut so that no swing turns by more than a radian of its phase in one. What a torque does
+    /// within a piece then has the sign one expects of it.
+    fn pieces(&self, step_s: f64) -> f64 {
+        (self.fastest_radians_per_second * step_s).ceil().clamp(1.0, MOST_PIECES)
+    }
+
+    fn piece(&mut self, output: BridgeOutput, bus_volts: f64, step_s: f64) -> f64 {
         let (motor_coulombs, bus_coulombs) = match output {
             _ if self.lead_open => {
                 self.mechanics.set_amps(0.0);
@@ -224,7 +242,7 @@ impl Axis {
                 (0.0, 0.0)
             }
             BridgeOutput::Duty(duty) => {
-                let duty = self.polarity() * duty.clamp(-1.0, 1.0);
+                let duty = self.winding_duty(duty);
                 let volts = duty * bus_volts;
                 let coulombs = self.mechanics.step(self.push(Winding::Driven { volts }, 0.0), step_s);
                 (coulombs, duty * coulombs)
@@ -289,6 +307,11 @@ impl Axis {
         }
     }
 
+    /// The duty as the winding sees it; one that is no number counts as none.
+    fn winding_duty(&self, duty: f64) -> f64 {
+        if duty.is_nan() { 0.0 } else { self.polarity() * duty.clamp(-1.0, 1.0) }
+    }
+
     fn polarity(&self) -> f64 {
         if self.leads_reversed { -1.0 } else { 1.0 }
     }
@@ -331,6 +354,13 @@ impl DyingCurrent {
 }
 
 impl Mechanics {
+    fn fastest_radians_per_second(&self) -> f64 {
+        match self {
+            Self::Rigid(rigid) => rigid.fastest_radians_per_second(),
+            Self::TwoMass(two) => two.fastest_radians_per_second(),
+        }
+    }
+
     fn charge_line(&mut self, step_s: f64) -> (f64, f64) {
         match self {
             Self::Rigid(rigid) => rigid.charge_line(step_s),

@@ -1,5 +1,6 @@
 //! The controller board's own heat: losses of the two bridges warm two sensors.
 
+use super::params::{ParamsError, above_zero, finite, not_negative};
 use serde::{Deserialize, Serialize};
 
 /// Thermal figures of a board.
@@ -28,6 +29,17 @@ impl Default for BoardParams {
             idle_rise_celsius: 5.0,
             time_constant_s: 40.0,
         }
+    }
+}
+
+impl BoardParams {
+    /// Checks every figure.
+    pub fn validate(&self) -> Result<(), ParamsError> {
+        finite("board.ambient_celsius", self.ambient_celsius)?;
+        not_negative("board.bridge_ohms", self.bridge_ohms)?;
+        not_negative("board.celsius_per_watt", self.celsius_per_watt)?;
+        finite("board.idle_rise_celsius", self.idle_rise_celsius)?;
+        above_zero("board.time_constant_s", self.time_constant_s)
     }
 }
 
@@ -64,7 +76,7 @@ impl Board {
             return;
         }
         let p = &self.params;
-        let share = -(-dt_s / p.time_constant_s.max(1e-3)).exp_m1();
+        let share = -(-dt_s / p.time_constant_s).exp_m1();
         for (celsius, squared) in self.celsius.iter_mut().zip(amps_squared) {
             let settled =
                 p.ambient_celsius + p.idle_rise_celsius + p.celsius_per_watt * p.bridge_ohms * squared;

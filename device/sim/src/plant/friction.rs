@@ -1,8 +1,9 @@
-//! Dry friction, locked shafts and hard stops as torques that may take any value within bounds, whichever brings a shaft to rest.
+//! Dry friction, locked shafts and hard stops as torques that may take any value within bounds.
 //!
-//! Over one step a shaft would reach the speed `free` without them, and each newton metre held over the step changes that by
-//! `gain`. If a torque within bounds brings the speed to exactly zero, that is the one taken and the shaft is at rest; otherwise
-//! the bound is taken. So a shaft at rest stays at rest until the breakaway torque is exceeded, and there is no chatter at zero.
+//! A shaft at rest is held as long as what it needs to stay so lies within the bounds of its breakaway torque, and does not move
+//! at all. A turning shaft meets Coulomb friction: over a step it would reach the speed `free` without it, and each newton metre
+//! held over the step changes that by `gain`. If a torque within bounds brings it to exactly zero, that is taken and the shaft is
+//! at rest; otherwise the bound is taken. So there is no chatter at zero speed.
 
 use super::params::FrictionParams;
 
@@ -14,9 +15,6 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// A shaft that cannot turn.
-    pub const LOCKED: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
-
     /// Dry friction of up to `newton_metres` either way.
     pub fn friction(newton_metres: f64) -> Self {
         Self { low: -newton_metres, high: newton_metres }
@@ -30,7 +28,7 @@ impl Bounds {
         }
     }
 
-    fn contains(self, torque: f64) -> bool {
+    pub fn contains(self, torque: f64) -> bool {
         self.low <= torque && torque <= self.high
     }
 
@@ -51,37 +49,32 @@ impl DryFriction {
         Self { coulomb: params.coulomb_newton_metres, breakaway: params.breakaway_newton_metres() }
     }
 
-    /// Bounds for a shaft that starts the step at `speed`, and those that hold once it has broken away.
-    pub fn bounds(&self, speed: f64) -> (Bounds, Bounds) {
-        let sliding = Bounds::friction(self.coulomb);
-        (if speed == 0.0 { Bounds::friction(self.breakaway) } else { sliding }, sliding)
+    /// Bounds for a shaft at rest.
+    pub fn at_rest(&self) -> Bounds {
+        Bounds::friction(self.breakaway)
+    }
+
+    /// Bounds for a shaft that turns, or has just broken away.
+    pub fn sliding(&self) -> Bounds {
+        Bounds::friction(self.coulomb)
     }
 }
 
-/// The torque on one shaft and whether the shaft ends the step at rest.
-pub fn hold_one(free: f64, gain: f64, first: Bounds, sliding: Bounds) -> (f64, bool) {
+/// The torque on one turning shaft and whether the shaft ends the step at rest.
+pub fn slide_one(free: f64, gain: f64, bounds: Bounds) -> (f64, bool) {
     let needed = -free / gain;
-    if first.contains(needed) {
-        return (needed, true);
-    }
-    // Broken away: sliding friction is never more than what held the shaft, so it cannot hold it either.
-    (sliding.nearest(needed), false)
+    (bounds.nearest(needed), bounds.contains(needed))
 }
 
-/// The torques on two coupled shafts, with `gain[a][b]` the speed of shaft `a` per torque on shaft `b`.
-pub fn hold_two(
-    free: [f64; 2],
-    gain: &[[f64; 2]; 2],
-    first: [Bounds; 2],
-    sliding: [Bounds; 2],
-) -> ([f64; 2], [bool; 2]) {
+/// The torques on two coupled shafts that turn, with `gain[a][b]` the speed of shaft `a` per torque on shaft `b`.
+pub fn slide_two(free: [f64; 2], gain: &[[f64; 2]; 2], bounds: [Bounds; 2]) -> ([f64; 2], [bool; 2]) {
     let determinant = gain[0][0] * gain[1][1] - gain[0][1] * gain[1][0];
     if determinant > 0.0 {
         let both = [
             -(gain[1][1] * free[0] - gain[0][1] * free[1]) / determinant,
             -(gain[0][0] * free[1] - gain[1][0] * free[0]) / determinant,
         ];
-        if first[0].contains(both[0]) && first[1].contains(both[1]) {
+        if bounds[0].contains(both[0]) && bounds[1].contains(both[1]) {
             return (both, [true, true]);
         }
     }
@@ -92,7 +85,7 @@ pub fn hold_two(
         for a in 0..2 {
             let other = 1 - a;
             let seen = free[a] + gain[a][other] * torque[other];
-            (torque[a], rest[a]) = hold_one(seen, gain[a][a], first[a], sliding[a]);
+            (torque[a], rest[a]) = slide_one(seen, gain[a][a], bounds[a]);
         }
     }
     (torque, rest)

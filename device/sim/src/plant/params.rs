@@ -181,7 +181,7 @@ pub struct CurrentSensorParams {
     pub offset_amps: f64,
 }
 
-/// Why an axis cannot be built.
+/// Why a machine cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ParamsError {
     /// A figure is out of its range or not a number.
@@ -429,15 +429,15 @@ fn swinging_inertia(params: &AxisParams) -> f64 {
     motor * load / (motor + load)
 }
 
-fn above_zero(name: &'static str, got: f64) -> Result<(), ParamsError> {
+pub(super) fn above_zero(name: &'static str, got: f64) -> Result<(), ParamsError> {
     within(name, got, got > 0.0, "above 0")
 }
 
-fn not_negative(name: &'static str, got: f64) -> Result<(), ParamsError> {
+pub(super) fn not_negative(name: &'static str, got: f64) -> Result<(), ParamsError> {
     within(name, got, got >= 0.0, "0 or more")
 }
 
-fn finite(name: &'static str, got: f64) -> Result<(), ParamsError> {
+pub(super) fn finite(name: &'static str, got: f64) -> Result<(), ParamsError> {
     within(name, got, true, "a finite number")
 }
 

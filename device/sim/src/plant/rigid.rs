@@ -1,6 +1,6 @@
 //! An axis whose load follows the motor without play: one inertia.
 
-use super::friction::{DryFriction, hold_one};
+use super::friction::{DryFriction, slide_one};
 use super::linear::{dot, exponential};
 use super::params::AxisParams;
 use super::same_step;
@@ -77,6 +77,8 @@ struct Maps {
     dt_s: f64,
     driven: StepMap,
     open: StepMap,
+    /// Driven, with the shaft held at rest.
+    held: StepMap,
 }
 
 impl Rigid {
@@ -103,6 +105,12 @@ impl Rigid {
         }
     }
 
+    /// How fast its quickest swing turns in its phase.
+    pub fn fastest_radians_per_second(&self) -> f64 {
+        let m = &self.model;
+        (m.torque_constant * m.back_emf / (m.henries * m.inertia)).sqrt()
+    }
+
     pub fn load_radians(&self) -> f64 {
         self.motor_radians / self.ratio
     }
@@ -122,11 +130,41 @@ impl Rigid {
     /// Advances by `dt_s` and returns the charge that flowed.
     pub fn step(&mut self, push: Push, dt_s: f64) -> f64 {
         self.learn(dt_s);
+        let torque = push.motor_newton_metres + push.load_newton_metres / self.ratio;
+        let may_stay = push.locked || self.motor_radians_per_second == 0.0;
+        let stayed = if may_stay { self.stay(push, torque) } else { None };
+        stayed.unwrap_or_else(|| self.turn(push, torque, dt_s))
+    }
+
+    /// A step at rest, unless the shaft breaks away in it.
+    fn stay(&mut self, push: Push, torque: f64) -> Option<f64> {
+        let start = [self.amps, 0.0, push.winding.volts(), 0.0];
+        let (amps, coulombs) = match push.winding {
+            Winding::Driven { .. } => {
+                (dot(&self.maps.held.amps, &start), dot(&self.maps.held.coulombs, &start))
+            }
+            Winding::Open => (self.amps, 0.0),
+        };
+        let load_radians = self.load_radians();
+        let (lower, upper) = self.travel.on_hard_stop(load_radians);
+        let bounds = self.friction.at_rest().with_stops(lower, upper);
+        let others = torque + self.travel.resting_torque(load_radians) / self.ratio;
+        let holds = |amps: f64| bounds.contains(-(self.model.torque_constant * amps + others));
+        let breaks_away = !(holds(self.amps) && holds(amps));
+        if breaks_away && !push.locked {
+            return None;
+        }
+        self.last_newton_metres = -self.model.torque_constant * amps;
+        self.amps = amps;
+        self.motor_radians_per_second = 0.0;
+        Some(coulombs)
+    }
+
+    fn turn(&mut self, push: Push, mut torque: f64, dt_s: f64) -> f64 {
         let map = match push.winding {
             Winding::Driven { .. } => &self.maps.driven,
             Winding::Open => &self.maps.open,
         };
-        let mut torque = push.motor_newton_metres + push.load_newton_metres / self.ratio;
         let start = [self.amps, self.motor_radians_per_second, push.winding.volts(), torque];
         let gain = map.speed[3];
         let mut free = dot(&map.speed, &start);
@@ -138,30 +176,16 @@ impl Rigid {
         ) / self.ratio;
         torque += spring;
         free += gain * spring;
-        let (held, rests) = self.hold(free, gain, push.locked);
-        torque += held;
+        let (friction, rests) = slide_one(free, gain, self.friction.sliding());
+        torque += friction;
         let inputs = [start[0], start[1], start[2], torque];
         let coulombs = dot(&map.coulombs, &inputs);
-        let amps = dot(&map.amps, &inputs);
-        let speed = if rests { 0.0 } else { dot(&map.speed, &inputs) };
-        let stays = rests && self.motor_radians_per_second == 0.0;
-        if !stays {
-            self.motor_radians += dot(&map.radians, &inputs);
-        }
-        self.amps = amps;
-        self.motor_radians_per_second = speed;
+        self.motor_radians += dot(&map.radians, &inputs);
+        self.amps = dot(&map.amps, &inputs);
+        self.motor_radians_per_second = if rests { 0.0 } else { dot(&map.speed, &inputs) };
         self.last_newton_metres = torque;
         self.stop_at_end();
         coulombs
-    }
-
-    fn hold(&self, free: f64, gain: f64, locked: bool) -> (f64, bool) {
-        if locked {
-            return (-free / gain, true);
-        }
-        let (first, sliding) = self.friction.bounds(self.motor_radians_per_second);
-        let (lower, upper) = self.travel.on_hard_stop(self.load_radians());
-        hold_one(free, gain, first.with_stops(lower, upper), sliding.with_stops(lower, upper))
     }
 
     fn stop_at_end(&mut self) {
@@ -180,24 +204,26 @@ impl Rigid {
 
 impl Model {
     fn maps(&self, dt_s: f64) -> Maps {
-        Maps { dt_s, driven: self.map(true, dt_s), open: self.map(false, dt_s) }
+        Maps {
+            dt_s,
+            driven: self.map(true, true, dt_s),
+            open: self.map(false, true, dt_s),
+            held: self.map(true, false, dt_s),
+        }
     }
 
-    fn map(&self, driven: bool, dt_s: f64) -> StepMap {
+    fn map(&self, driven: bool, turns: bool, dt_s: f64) -> StepMap {
         // Rows and columns: amps, speed, charge, angle; volts, newton metres (constant over the step).
         let mut a = [[0.0; 6]; 6];
         if driven {
             a[0] =
                 [-self.ohms / self.henries, -self.back_emf / self.henries, 0.0, 0.0, 1.0 / self.henries, 0.0];
         }
-        a[1] = [
-            self.torque_constant / self.inertia,
-            -self.viscous / self.inertia,
-            0.0,
-            0.0,
-            0.0,
-            1.0 / self.inertia,
-        ];
+        if turns {
+            a[1][0] = self.torque_constant / self.inertia;
+            a[1][1] = -self.viscous / self.inertia;
+            a[1][5] = 1.0 / self.inertia;
+        }
         a[2][0] = 1.0;
         a[3][1] = 1.0;
         let e = exponential(&a.map(|row| row.map(|x| x * dt_s)));

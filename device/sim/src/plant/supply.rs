@@ -5,6 +5,7 @@
 //! what the motors regenerate then stays on the capacitors and lifts the voltage until the motors slow or a resistor eats it
 //! (MCP manual 1.7).
 
+use super::params::{ParamsError, above_zero, not_negative};
 use serde::{Deserialize, Serialize};
 
 /// What feeds the board.
@@ -19,6 +20,9 @@ pub struct SupplyParams {
     pub can_sink: bool,
     /// Link capacitance on the board.
     pub capacitance_farads: f64,
+    /// Voltage the link never exceeds, since the bridges' transistors break down and eat what comes in. A real board does not
+    /// survive that for long; this one does.
+    pub breakdown_volts: f64,
     /// What discharges the capacitors when nothing feeds them.
     pub bleed_ohms: f64,
     /// A resistor that a digital output can switch across the link.
@@ -38,17 +42,32 @@ pub struct BrakeResistorParams {
 }
 
 impl Default for SupplyParams {
-    /// A 24 V battery that has been charged.
+    /// A 24 V battery on a board for 60 V. Assumed: 2.2 mF of link capacitors, transistors for 100 V.
     fn default() -> Self {
         Self {
             open_circuit_volts: 24.0,
             internal_ohms: 0.05,
             can_sink: true,
             capacitance_farads: 2.2e-3,
+            breakdown_volts: 100.0,
             bleed_ohms: 2000.0,
             brake_resistor: None,
             logic_volts: 12.0,
         }
+    }
+}
+
+impl SupplyParams {
+    /// Checks every figure; zero capacitance, resistance or bleeder is taken as very little.
+    pub fn validate(&self) -> Result<(), ParamsError> {
+        not_negative("supply.open_circuit_volts", self.open_circuit_volts)?;
+        not_negative("supply.internal_ohms", self.internal_ohms)?;
+        not_negative("supply.capacitance_farads", self.capacitance_farads)?;
+        above_zero("supply.breakdown_volts", self.breakdown_volts)?;
+        not_negative("supply.bleed_ohms", self.bleed_ohms)?;
+        not_negative("supply.logic_volts", self.logic_volts)?;
+        self.brake_resistor
+            .map_or(Ok(()), |resistor| not_negative("supply.brake_resistor.ohms", resistor.ohms))
     }
 }
 
@@ -152,10 +171,9 @@ impl Supply {
         let feed = 1.0 / p.internal_ohms.max(1e-4);
         let fed = (source + p.open_circuit_volts * feed) / (siemens + feed);
         let feeds = self.connected && (p.can_sink || fed <= p.open_circuit_volts);
-        if feeds {
-            return (fed.max(0.0), (p.open_circuit_volts - fed) * feed);
-        }
-        ((source / siemens).max(0.0), 0.0)
+        let (volts, battery_amps) =
+            if feeds { (fed, (p.open_circuit_volts - fed) * feed) } else { (source / siemens, 0.0) };
+        (volts.max(0.0).min(p.breakdown_volts), battery_amps)
     }
 }
 

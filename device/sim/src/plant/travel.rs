@@ -35,6 +35,19 @@ impl Travel {
         }
     }
 
+    /// Torque of a springy stop on a shaft at rest.
+    pub fn resting_torque(&self, radians: f64) -> f64 {
+        let Some(TravelParams { lower_radians, upper_radians, stop: StopKind::Spring { .. } }) = self.0
+        else {
+            return 0.0;
+        };
+        if (lower_radians..=upper_radians).contains(&radians) {
+            return 0.0;
+        }
+        // Without motion there is nothing for the damper or the step to do.
+        self.spring_torque(radians, 0.0, 0.0, 0.0)
+    }
+
     /// Torque of a springy stop over a step of `dt_s`, for a shaft that would end it at `free` radians per second and gains
     /// `gain` radians per second for each newton metre held. Taken from the end of the step (implicit), so no stiffness
     /// makes it unstable. A stop only pushes.

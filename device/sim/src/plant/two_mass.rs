@@ -1,11 +1,11 @@
 //! An axis whose load is a second mass behind teeth with play, a springy shaft, or both.
 //!
 //! While the teeth touch, motor and load are joined by spring and damper; in the gap they move alone. Both are linear, so each
-//! has its exact step. A step in which the teeth would meet or part is taken again in eighths, so that the spring neither wins
-//! nor loses noticeable energy at the change. The damper acts as long as the teeth touch, so it can pull for an instant before
+//! has its exact step, also with one or both shafts held at rest. A step in which the teeth would meet or part, or the load would
+//! hit a stop, is taken again in eighths, so that the spring neither wins nor loses noticeable energy at the change. The damper acts as long as the teeth touch, so it can pull for an instant before
 //! they part.
 
-use super::friction::{Bounds, DryFriction, hold_two};
+use super::friction::{DryFriction, slide_one, slide_two};
 use super::linear::{dot, exponential};
 use super::params::{AxisParams, CouplingParams};
 use super::rigid::{Push, Winding, effective_henries};
@@ -16,6 +16,8 @@ use super::travel::Travel;
 const TEETH_RESONANCE_HERTZ: f64 = 150.0;
 /// Assumed: damping of that resonance over critical damping.
 const TEETH_DAMPING_RATIO: f64 = 0.2;
+/// A coupling that would let motor and load swing faster than this is taken as one that lets them swing as fast as this.
+const FASTEST_RADIANS_PER_SECOND: f64 = 1e5;
 /// Parts a step is cut into when the teeth meet or part in it.
 const EVENT_PARTS: u8 = 8;
 
@@ -44,6 +46,7 @@ struct State {
     twist: f64,
     last_motor_newton_metres: f64,
     last_load_newton_metres: f64,
+    last_held: Held,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -71,12 +74,18 @@ struct StepMap {
     motor_radians: [f64; 7],
 }
 
-/// The steps of one length: by winding (driven, open) and teeth (touching, apart).
-#[derive(Clone, Copy, Debug)]
+/// The steps of one length, by [`Maps::index`].
+#[derive(Clone, Debug)]
 struct Maps {
     dt_s: f64,
-    driven: [StepMap; 2],
-    open: [StepMap; 2],
+    all: Vec<StepMap>,
+}
+
+/// Which shafts do not move over a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Held {
+    motor: bool,
+    load: bool,
 }
 
 impl TwoMass {
@@ -92,7 +101,11 @@ impl TwoMass {
             motor_viscous: params.motor.friction.viscous_newton_metre_seconds_per_radian,
             load_inertia: params.load.inertia_kilogram_square_metres,
             load_viscous: params.load.friction.viscous_newton_metre_seconds_per_radian,
-            coupling: params.load.coupling.unwrap_or_else(teeth),
+            coupling: no_stiffer_than(
+                FASTEST_RADIANS_PER_SECOND,
+                params,
+                params.load.coupling.unwrap_or_else(teeth),
+            ),
         };
         Self {
             state: State::AT_REST,
@@ -105,6 +118,16 @@ impl TwoMass {
             whole: model.maps(super::MAX_STEP_S),
             part: model.maps(super::MAX_STEP_S / f64::from(EVENT_PARTS)),
         }
+    }
+
+    /// How fast its quickest swing turns in its phase.
+    pub fn fastest_radians_per_second(&self) -> f64 {
+        let m = &self.model;
+        let motor = m.motor_inertia * m.ratio * m.ratio;
+        let swing = m.coupling.stiffness_newton_metres_per_radian * (motor + m.load_inertia)
+            / (motor * m.load_inertia);
+        let electric = m.torque_constant * m.back_emf / (m.henries * m.motor_inertia);
+        swing.max(electric).sqrt()
     }
 
     pub fn amps(&self) -> f64 {
@@ -136,7 +159,7 @@ impl TwoMass {
         self.learn(dt_s);
         let s = &self.state;
         let (touching, offset) = self.teeth(s.twist);
-        let row = &self.whole.driven[usize::from(!touching)].coulombs;
+        let row = &self.whole.of(true, touching, s.last_held).coulombs;
         let inputs = [
             s.amps,
             s.motor_speed,
@@ -152,27 +175,46 @@ impl TwoMass {
     /// Advances by `dt_s` and returns the charge that flowed.
     pub fn step(&mut self, push: Push, dt_s: f64) -> f64 {
         self.learn(dt_s);
-        let (next, coulombs) = self.moved(self.state, push, &self.whole);
-        if self.half_backlash == 0.0 || !self.teeth_changed(self.state.twist, next.twist) {
+        if push.locked {
+            self.state.motor_speed = 0.0;
+        }
+        let (next, coulombs) = self.moved(&self.state, push, &self.whole);
+        let hits = next.load_speed != 0.0 && self.travel.beyond_hard_stop(next.load_radians).is_some();
+        if !hits && !self.teeth_changed(self.state.twist, next.twist) {
             self.state = next;
             return coulombs;
         }
         let mut sum = 0.0;
         for _ in 0..EVENT_PARTS {
-            let (next, coulombs) = self.moved(self.state, push, &self.part);
-            self.state = next;
+            let (next, coulombs) = self.moved(&self.state, push, &self.part);
+            self.state = self.stopped_at_end(next);
             sum += coulombs;
         }
         sum
     }
 
-    fn moved(&self, s: State, push: Push, maps: &Maps) -> (State, f64) {
-        let (touching, offset) = self.teeth(s.twist);
-        let by_teeth = match push.winding {
-            Winding::Driven { .. } => &maps.driven,
-            Winding::Open => &maps.open,
+    /// The state after one step, holding at rest what friction, a lock or a stop can hold throughout.
+    fn moved(&self, s: &State, push: Push, maps: &Maps) -> (State, f64) {
+        let can = |held: Held, s: &State| {
+            let [motor, load] = self.can_hold(s, push);
+            Held { motor: held.motor && motor, load: held.load && load }
         };
-        let map = &by_teeth[usize::from(!touching)];
+        let at_rest = Held { motor: s.motor_speed == 0.0, load: s.load_speed == 0.0 };
+        let mut held = can(at_rest, s);
+        loop {
+            let (next, coulombs) = self.moved_with(s, push, maps, held);
+            // Each round lets go of a shaft, so there are three at most.
+            let still = can(held, &next);
+            if still == held {
+                return (next, coulombs);
+            }
+            held = still;
+        }
+    }
+
+    fn moved_with(&self, s: &State, push: Push, maps: &Maps, held: Held) -> (State, f64) {
+        let (touching, offset) = self.teeth(s.twist);
+        let map = maps.of(matches!(push.winding, Winding::Driven { .. }), touching, held);
         let mut x = [
             s.amps,
             s.motor_speed,
@@ -182,54 +224,84 @@ impl TwoMass {
             push.motor_newton_metres,
             push.load_newton_metres,
         ];
-        let free_load = dot(&map.load_speed, &x);
-        x[6] += self.travel.spring_torque(s.load_radians, free_load, map.load_speed[6], maps.dt_s);
-        let (held, rests) = self.hold(&s, map, &x, push.locked);
-        x[5] += held[0];
-        x[6] += held[1];
-        let motor_stays = rests[0] && s.motor_speed == 0.0;
-        let load_stays = rests[1] && s.load_speed == 0.0;
-        let turned = if motor_stays { 0.0 } else { dot(&map.motor_radians, &x) };
-        let twist = match (motor_stays, load_stays) {
-            (true, true) => s.twist,
-            (false, true) => s.twist + turned / self.ratio,
-            _ => dot(&map.twist, &x) + offset,
-        };
-        let mut next = State {
+        if !held.load {
+            let free = dot(&map.load_speed, &x);
+            x[6] += self.travel.spring_torque(s.load_radians, free, map.load_speed[6], maps.dt_s);
+        }
+        let (friction, rests) = self.slide(map, &x, held);
+        x[5] += friction[0];
+        x[6] += friction[1];
+        let turned = dot(&map.motor_radians, &x);
+        let twist = dot(&map.twist, &x) + offset;
+        let next = State {
             amps: dot(&map.amps, &x),
             motor_speed: if rests[0] { 0.0 } else { dot(&map.motor_speed, &x) },
             load_speed: if rests[1] { 0.0 } else { dot(&map.load_speed, &x) },
-            motor_radians: s.motor_radians + turned,
-            load_radians: if load_stays {
+            motor_radians: if held.motor { s.motor_radians } else { s.motor_radians + turned },
+            load_radians: if held.load {
                 s.load_radians
             } else {
                 s.load_radians + turned / self.ratio - (twist - s.twist)
             },
-            twist,
+            twist: if held.motor && held.load { s.twist } else { twist },
             last_motor_newton_metres: x[5],
             last_load_newton_metres: x[6],
+            last_held: held,
         };
-        if let Some(inside) = self.travel.beyond_hard_stop(next.load_radians) {
-            next.load_radians = inside;
-            next.twist = next.motor_radians / self.ratio - inside;
-            next.load_speed = 0.0;
-        }
         (next, dot(&map.coulombs, &x))
     }
 
-    fn hold(&self, s: &State, map: &StepMap, x: &[f64; 7], locked: bool) -> ([f64; 2], [bool; 2]) {
-        let free = [dot(&map.motor_speed, x), dot(&map.load_speed, x)];
-        let gain = [[map.motor_speed[5], map.motor_speed[6]], [map.load_speed[5], map.load_speed[6]]];
+    /// Whether each shaft, at rest in this state, would stay so: the torque it would need is within bounds.
+    fn can_hold(&self, s: &State, push: Push) -> [bool; 2] {
+        let (touching, offset) = self.teeth(s.twist);
+        let coupling = &self.model.coupling;
+        let through_teeth = if touching {
+            coupling.stiffness_newton_metres_per_radian * (s.twist - offset)
+                + coupling.damping_newton_metre_seconds_per_radian
+                    * (s.motor_speed / self.ratio - s.load_speed)
+        } else {
+            0.0
+        };
         let (lower, upper) = self.travel.on_hard_stop(s.load_radians);
-        let motor =
-            if locked { (Bounds::LOCKED, Bounds::LOCKED) } else { self.motor_friction.bounds(s.motor_speed) };
-        let load = self.load_friction.bounds(s.load_speed);
-        hold_two(
-            free,
-            &gain,
-            [motor.0, load.0.with_stops(lower, upper)],
-            [motor.1, load.1.with_stops(lower, upper)],
-        )
+        let on_motor =
+            self.model.torque_constant * s.amps + push.motor_newton_metres - through_teeth / self.ratio;
+        let on_load = through_teeth + push.load_newton_metres + self.travel.resting_torque(s.load_radians);
+        [
+            push.locked || self.motor_friction.at_rest().contains(-on_motor),
+            self.load_friction.at_rest().with_stops(lower, upper).contains(-on_load),
+        ]
+    }
+
+    /// Coulomb friction on the shafts that are not held, and which shafts end the step at rest.
+    fn slide(&self, map: &StepMap, x: &[f64; 7], held: Held) -> ([f64; 2], [bool; 2]) {
+        let free = || [dot(&map.motor_speed, x), dot(&map.load_speed, x)];
+        let (motor, load) = (self.motor_friction.sliding(), self.load_friction.sliding());
+        match (held.motor, held.load) {
+            (true, true) => ([0.0, 0.0], [true, true]),
+            (false, true) => {
+                let (torque, rests) = slide_one(free()[0], map.motor_speed[5], motor);
+                ([torque, 0.0], [rests, true])
+            }
+            (true, false) => {
+                let (torque, rests) = slide_one(free()[1], map.load_speed[6], load);
+                ([0.0, torque], [true, rests])
+            }
+            (false, false) => {
+                let gain = [[map.motor_speed[5], map.motor_speed[6]], [map.load_speed[5], map.load_speed[6]]];
+                slide_two(free(), &gain, [motor, load])
+            }
+        }
+    }
+
+    /// Puts a load that is beyond a hard stop back onto it, at rest. The motor goes back with it, so that the spring between them
+    /// does not gain by it.
+    fn stopped_at_end(&self, mut s: State) -> State {
+        if let Some(inside) = self.travel.beyond_hard_stop(s.load_radians) {
+            s.motor_radians -= (s.load_radians - inside) * self.ratio;
+            s.load_radians = inside;
+            s.load_speed = 0.0;
+        }
+        s
     }
 
     /// Whether the teeth touch, and the twist at which their spring is at rest.
@@ -266,17 +338,41 @@ impl State {
         twist: 0.0,
         last_motor_newton_metres: 0.0,
         last_load_newton_metres: 0.0,
+        last_held: Held { motor: true, load: true },
     };
+}
+
+impl Maps {
+    fn of(&self, driven: bool, touching: bool, held: Held) -> &StepMap {
+        &self.all[Self::index(driven, touching, held)]
+    }
+
+    fn index(driven: bool, touching: bool, held: Held) -> usize {
+        usize::from(driven)
+            | usize::from(touching) << 1
+            | usize::from(held.motor) << 2
+            | usize::from(held.load) << 3
+    }
 }
 
 impl Model {
     fn maps(&self, dt_s: f64) -> Maps {
-        let by_teeth = |driven| [self.map(driven, true, dt_s), self.map(driven, false, dt_s)];
-        Maps { dt_s, driven: by_teeth(true), open: by_teeth(false) }
+        let bit = |index: usize, n: u32| index >> n & 1 == 1;
+        let all = (0..16)
+            .map(|n| self.map(bit(n, 0), bit(n, 1), Held { motor: bit(n, 2), load: bit(n, 3) }, dt_s))
+            .collect();
+        Maps { dt_s, all }
     }
 
-    fn map(&self, driven: bool, touching: bool, dt_s: f64) -> StepMap {
-        let e = exponential(&self.equations(driven, touching).map(|row| row.map(|x| x * dt_s)));
+    fn map(&self, driven: bool, touching: bool, held: Held, dt_s: f64) -> StepMap {
+        let mut equations = self.equations(driven, touching);
+        if held.motor {
+            equations[1] = [0.0; 9];
+        }
+        if held.load {
+            equations[2] = [0.0; 9];
+        }
+        let e = exponential(&equations.map(|row| row.map(|x| x * dt_s)));
         let row = |n: usize| [e[n][0], e[n][1], e[n][2], e[n][3], e[n][6], e[n][7], e[n][8]];
         StepMap {
             amps: row(0),
@@ -320,5 +416,19 @@ impl Model {
         a[4][0] = 1.0;
         a[5][1] = 1.0;
         a
+    }
+}
+
+fn no_stiffer_than(radians_per_second: f64, params: &AxisParams, coupling: CouplingParams) -> CouplingParams {
+    let limit = CouplingParams::with_resonance(params, radians_per_second / std::f64::consts::TAU, 0.0);
+    let excess = coupling.stiffness_newton_metres_per_radian / limit.stiffness_newton_metres_per_radian;
+    if excess <= 1.0 {
+        return coupling;
+    }
+    CouplingParams {
+        stiffness_newton_metres_per_radian: limit.stiffness_newton_metres_per_radian,
+        // The same share of critical damping.
+        damping_newton_metre_seconds_per_radian: coupling.damping_newton_metre_seconds_per_radian
+            / excess.sqrt(),
     }
 }

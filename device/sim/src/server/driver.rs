@@ -14,13 +14,10 @@ use std::time::{Duration, Instant};
 
 /// Commands that may wait for the thread.
 const COMMANDS: usize = 64;
-/// Longest wait while bytes come and go, and while all is quiet. Replies do not wait for it.
-const BUSY_TICK: Duration = Duration::from_millis(1);
-const QUIET_TICK: Duration = Duration::from_millis(10);
+/// Longest wait. Bytes and replies do not wait for it, commands and snapshots do; the machine catches up with it in microseconds.
+const TICK: Duration = Duration::from_millis(5);
 /// The system wakes a sleeping thread this much late or less, so that much before a reply leaves the thread stays awake.
 const WAKE_EARLY: Duration = Duration::from_micros(80);
-/// How long after the last byte the line counts as busy.
-const BUSY_FOR: Duration = Duration::from_secs(1);
 /// How often the worlds are shown.
 const SHOW_EVERY: Duration = Duration::from_millis(20);
 /// After a longer gap (the computer slept, the program was stopped) the machine's time does not catch up but goes on from where
@@ -36,7 +33,6 @@ pub struct Driver<M: Machine> {
     commands: Receiver<Command<M>>,
     views: Views,
     shown_at: Duration,
-    heard_at: Option<Duration>,
     clock: Clock,
     incoming: Vec<u8>,
 }
@@ -67,7 +63,6 @@ impl<M: Machine + 'static> Driver<M> {
             commands,
             views: views.clone(),
             shown_at: machine_start,
-            heard_at: None,
             clock: Clock { start: Instant::now(), machine_start, skipped: Duration::ZERO },
             incoming: Vec::new(),
         };
@@ -94,11 +89,10 @@ impl<M: Machine + 'static> Driver<M> {
             self.show(now);
         }
         self.incoming.clear();
-        let patience = self.patience(now);
+        let patience = self.patience();
         let heard = self.line.receive(&mut self.incoming, patience);
         if !self.incoming.is_empty() {
-            let now = self.advance();
-            self.heard_at = Some(now);
+            self.advance();
             self.stack.receive(self.stream, &self.incoming);
         }
         if heard == Heard::ClientLeft {
@@ -165,13 +159,11 @@ impl<M: Machine + 'static> Driver<M> {
     }
 
     /// How long to wait for bytes: until the next reply leaves, or a tick.
-    fn patience(&mut self, now: Duration) -> Duration {
-        let busy = self.heard_at.is_some_and(|at| now < at + BUSY_FOR);
-        let tick = if busy { BUSY_TICK } else { QUIET_TICK };
-        let Some(at) = self.stack.next_output_at() else { return tick };
+    fn patience(&mut self) -> Duration {
+        let Some(at) = self.stack.next_output_at() else { return TICK };
         // The wall clock has gone on since the machine was brought up to it.
         let left = at.saturating_sub(self.clock.now(self.stack.now()));
-        left.saturating_sub(WAKE_EARLY).min(tick)
+        left.saturating_sub(WAKE_EARLY).min(TICK)
     }
 }
 

@@ -67,7 +67,12 @@ pub struct World {
 
 impl World {
     /// A world at rest, powered and plugged in. Seed 0 makes one without noise.
+    ///
+    /// # Errors
+    /// A figure that is out of its range, by name.
     pub fn new(params: &WorldParams, seed: u64) -> Result<Self, ParamsError> {
+        params.supply.validate()?;
+        params.board.validate()?;
         let [first, second] = &params.axes;
         // The axes must not share their noise, and a noisy world has no silent axis.
         let second_seed = if seed == 0 { 0 } else { (seed ^ 0x9E37_79B9_7F4A_7C15).max(1) };
