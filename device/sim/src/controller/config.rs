@@ -1,8 +1,9 @@
 //! What a simulated controller is made of.
 
 use crate::motion::ControlLaw;
+use crate::plant::EncoderKind;
 use crate::presets;
-use crate::settings::Settings;
+use crate::settings::{MotorRegisters, Settings, SignalSettings};
 use crate::world::WorldParams;
 use brushwork_protocol::models::{self, Family, Model};
 use brushwork_protocol::packet_serial::{Address, Generation};
@@ -22,7 +23,7 @@ pub struct ControllerConfig {
     pub law: ControlLaw,
     /// Seed of all noise; 0 for none.
     pub seed: u64,
-    /// What its EEPROM holds at first; `None` for factory settings.
+    /// What its EEPROM holds at first; `None` for factory settings with the inputs set for the encoders that are plugged in.
     pub settings: Option<Settings>,
     /// Details in which firmware versions differ.
     pub options: FirmwareOptions,
@@ -60,6 +61,43 @@ impl ControllerConfig {
             settings: None,
             options: FirmwareOptions::default(),
         }
+    }
+}
+
+impl ControllerConfig {
+    /// What the EEPROM holds at first.
+    pub(super) fn stored_settings(&self) -> Settings {
+        let factory = || {
+            let mut settings = Settings::factory(self.model, self.address.get());
+            for (axis, motor) in self.world.axes.iter().zip(&mut settings.motors) {
+                set_input_for(axis.encoder.kind, self.model.family, motor, &mut settings.signals);
+            }
+            settings
+        };
+        self.settings.clone().unwrap_or_else(factory)
+    }
+}
+
+/// Sets a motor's encoder input to the kind of encoder that is plugged in there.
+fn set_input_for(
+    kind: EncoderKind,
+    family: Family,
+    motor: &mut MotorRegisters,
+    signals: &mut [SignalSettings],
+) {
+    const ROBOCLAW_ABSOLUTE: u8 = 1;
+    match (family, signals.get_mut(usize::from(motor.encoder_mode))) {
+        (Family::RoboClaw, _) => {
+            motor.encoder_mode = if kind == EncoderKind::Quadrature { 0 } else { ROBOCLAW_ABSOLUTE };
+        }
+        (Family::Mcp, Some(signal)) => {
+            signal.kind = match kind {
+                EncoderKind::Analog => 1,
+                EncoderKind::Pulse => 2,
+                EncoderKind::Quadrature => 3,
+            };
+        }
+        (Family::Mcp, None) => {}
     }
 }
 

@@ -44,8 +44,8 @@ pub(super) struct Firmware {
     pub loop_faults: [LoopFaults; 2],
     /// Whether the E-stop button hangs on an input pin.
     pub estop_is_on_a_pin: bool,
-    /// Whether an error held the motors at the last tick.
-    pub was_held: bool,
+    /// Whether the emergency stop or a latched error holds the motors.
+    pub is_held: bool,
     pub ports: PortActivity,
     /// Which kind of input commands the motors, and its level.
     pub source: Option<(usize, Source)>,
@@ -61,6 +61,7 @@ pub(super) struct Firmware {
     pub loader: Option<Loader>,
     pub leds: Leds,
     pub outputs: Vec<bool>,
+    pub is_first_tick: bool,
     pub booted_at: Duration,
     pub now: Duration,
 }
@@ -100,7 +101,7 @@ impl Firmware {
             reversed: [false; 2],
             loop_faults: [LoopFaults::default(); 2],
             estop_is_on_a_pin: config.world.wiring.estop_pin.is_some(),
-            was_held: false,
+            is_held: false,
             ports: PortActivity::default(),
             source: None,
             steered: [None; 2],
@@ -111,6 +112,7 @@ impl Firmware {
             loader: None,
             leds: Leds::default(),
             outputs: vec![false; settings.outputs.len()],
+            is_first_tick: true,
             booted_at: now,
             now,
             memory,
@@ -187,9 +189,10 @@ impl Firmware {
         motion
     }
 
-    /// Gives a command to a channel, whoever it comes from.
+    /// Gives a command to a channel, whoever it comes from. A fault stops any further action until it is over (MCP manual 1.6.2).
     pub fn command(&mut self, motor: Motor, command: MotionCommand) {
-        if self.is_bridged() && motor == Motor::M2 {
+        let stops = matches!(command, MotionCommand::SafeStop | MotionCommand::Coast);
+        if (self.is_bridged() && motor == Motor::M2) || (self.is_held && !stops) {
             return;
         }
         self.reversed[motor.index()] = false;
@@ -233,6 +236,11 @@ impl Firmware {
             };
             let settings = self.motion_settings(motor);
             self.channels[index].tick(&measured, &conditions, &settings);
+            if self.is_first_tick {
+                // Counters start at zero, wherever the shaft is.
+                self.channels[index].encoder_mut().set(0);
+            }
         }
+        self.is_first_tick = false;
     }
 }

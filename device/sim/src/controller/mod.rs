@@ -69,8 +69,7 @@ impl Controller {
     pub fn new(config: ControllerConfig) -> Result<Self, ParamsError> {
         let params = WorldParams { pins: config.model.pins.len(), ..config.world.clone() };
         let world = World::new(&params, config.seed)?;
-        let factory = Settings::factory(config.model, config.address.get());
-        let memory = Memory::holding(config.settings.as_ref().unwrap_or(&factory));
+        let memory = Memory::holding(&config.stored_settings());
         let mut controller = Self {
             law: config.law.repaired(),
             ports: std::array::from_fn(|_| Port::new(config.generation)),

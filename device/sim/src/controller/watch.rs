@@ -28,10 +28,10 @@ impl Firmware {
         self.estop.update(button || self.triggers.estop, self.estop_reset());
         self.update_loop_faults();
         let is_held = self.estop.is_tripped() || self.has_latched_error();
-        if is_held && !self.was_held {
+        if is_held && !self.is_held {
             self.stop_both();
         }
-        self.was_held = is_held;
+        self.is_held = is_held;
     }
 
     /// How the emergency stop is released.

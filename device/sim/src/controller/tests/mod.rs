@@ -2,5 +2,7 @@
 
 mod conversation;
 mod every_command;
+mod inputs;
 mod memory;
+mod protection;
 mod support;

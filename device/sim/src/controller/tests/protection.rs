@@ -1,0 +1,241 @@
+//! Limits, the emergency stop and what they do to motors, status, LEDs and outputs.
+
+use super::support::Bench;
+use crate::bridge::BridgeOutput;
+use crate::controller::ControllerConfig;
+use crate::supervision::Leds;
+use crate::world::{Motor, WorldAction};
+use brushwork_protocol::models;
+use brushwork_protocol::packet_serial::status::{Condition, Lamp, Severity, decode};
+use brushwork_protocol::packet_serial::{Generation, number};
+use std::time::Duration;
+
+const A_MOMENT: Duration = Duration::from_millis(200);
+
+/// A unit whose motors run at half duty.
+fn running(generation: Generation) -> Bench {
+    let mut bench = Bench::new(generation);
+    bench.ask(number::DUTY_BOTH, &[16_000, 16_000]);
+    bench.wait_talking(Duration::from_millis(800));
+    assert_eq!(output(&bench), BridgeOutput::Duty(16_000.0 / 32_767.0));
+    bench
+}
+
+fn output(bench: &Bench) -> BridgeOutput {
+    bench.unit().view().axes[0].output
+}
+
+fn has(bench: &mut Bench, condition: Condition) -> bool {
+    let word = bench.read(number::READ_STATUS, "status") as u32;
+    decode(word, bench.generation).contains(condition)
+}
+
+fn leds(bench: &Bench) -> Leds {
+    bench.unit().unit().expect("it has power").leds()
+}
+
+#[test]
+fn over_85_degrees_warns_and_takes_current_away_and_over_100_the_motors_freewheel_while_it_lasts() {
+    for generation in Generation::ALL {
+        let mut bench = running(generation);
+        bench.apply(&WorldAction::SetBoardCelsius { celsius: Some(90.0) });
+        bench.wait_talking(A_MOMENT);
+        assert!(has(&mut bench, Condition::Temperature1Warning), "{generation}");
+        assert!(!has(&mut bench, Condition::Temperature1Error));
+        assert!(leds(&bench).err);
+        bench.apply(&WorldAction::SetBoardCelsius { celsius: Some(101.0) });
+        bench.wait_talking(A_MOMENT);
+        assert!(has(&mut bench, Condition::Temperature1Error), "{generation}");
+        assert_eq!(output(&bench), BridgeOutput::Coast);
+        bench.apply(&WorldAction::SetBoardCelsius { celsius: Some(40.0) });
+        bench.wait_talking(A_MOMENT);
+        assert!(!has(&mut bench, Condition::Temperature1Error));
+        assert!(matches!(output(&bench), BridgeOutput::Duty(duty) if duty > 0.0), "it goes on");
+    }
+}
+
+#[test]
+fn the_second_sensor_counts_on_boards_that_have_one() {
+    for (model, second) in [("mcp266", false), ("mcp2163", true)] {
+        let model = models::lookup(model).expect("in the list");
+        let mut bench = Bench::of(ControllerConfig::of(model));
+        bench.apply(&WorldAction::SetBoardCelsius { celsius: Some(101.0) });
+        bench.wait_talking(A_MOMENT);
+        assert_eq!(has(&mut bench, Condition::Temperature2Error), second, "{}", model.key);
+        assert_eq!(bench.read(number::READ_TEMPERATURE_2, "temperature_2"), if second { 1010 } else { 0 });
+    }
+}
+
+#[test]
+fn a_main_battery_above_its_maximum_brakes_the_motors_while_it_lasts() {
+    let mut bench = running(Generation::Gen1);
+    bench.ask(number::SET_MAIN_VOLTAGES, &[100, 260]);
+    bench.apply(&WorldAction::SetBatteryVolts { volts: 28.0 });
+    bench.wait_talking(A_MOMENT);
+    assert!(has(&mut bench, Condition::MainBatteryHighWarning));
+    assert_eq!(output(&bench), BridgeOutput::Brake);
+    assert!(leds(&bench).err);
+    bench.apply(&WorldAction::SetBatteryVolts { volts: 24.0 });
+    bench.wait_talking(A_MOMENT);
+    assert!(!has(&mut bench, Condition::MainBatteryHighWarning));
+    assert!(matches!(output(&bench), BridgeOutput::Duty(_)));
+}
+
+#[test]
+fn a_main_battery_above_the_rating_brakes_until_a_restart() {
+    let mut bench = running(Generation::Gen3);
+    bench.apply(&WorldAction::SetBatteryVolts { volts: 62.0 });
+    bench.wait_talking(A_MOMENT);
+    bench.apply(&WorldAction::SetBatteryVolts { volts: 24.0 });
+    bench.wait_talking(A_MOMENT);
+    assert!(has(&mut bench, Condition::MainBatteryHighError));
+    assert_eq!(output(&bench), BridgeOutput::Brake);
+    bench.apply(&WorldAction::Power { on: false });
+    bench.apply(&WorldAction::Power { on: true });
+    bench.wait_talking(A_MOMENT);
+    assert!(!has(&mut bench, Condition::MainBatteryHighError));
+    bench.ask(number::DUTY_M1, &[16_000]);
+    bench.wait_talking(A_MOMENT);
+    assert!(matches!(output(&bench), BridgeOutput::Duty(duty) if duty > 0.0));
+}
+
+#[test]
+fn a_main_battery_below_its_minimum_lets_the_motors_freewheel() {
+    let mut bench = running(Generation::Gen1);
+    bench.ask(number::SET_MAIN_VOLTAGES, &[230, 600]);
+    bench.apply(&WorldAction::SetBatteryVolts { volts: 15.0 });
+    bench.wait_talking(A_MOMENT);
+    assert!(has(&mut bench, Condition::MainBatteryLowWarning));
+    assert_eq!(output(&bench), BridgeOutput::Coast);
+}
+
+#[test]
+fn logic_battery_errors_freewheel_until_a_restart() {
+    for (volts, condition) in
+        [(16.0, Condition::LogicBatteryHighError), (5.5, Condition::LogicBatteryLowError)]
+    {
+        let mut bench = running(Generation::Gen1);
+        if condition == Condition::LogicBatteryLowError {
+            bench.apply(&WorldAction::SetBatteryVolts { volts: 6.0 }); // else the main battery feeds the logic
+        }
+        bench.apply(&WorldAction::SetLogicVolts { volts });
+        bench.wait_talking(Duration::from_secs(20));
+        bench.apply(&WorldAction::SetBatteryVolts { volts: 24.0 });
+        bench.apply(&WorldAction::SetLogicVolts { volts: 12.0 });
+        bench.wait_talking(A_MOMENT);
+        assert!(has(&mut bench, condition), "{condition:?}");
+        assert_eq!(output(&bench), BridgeOutput::Coast, "{condition:?}");
+    }
+}
+
+#[test]
+fn a_locked_shaft_is_held_to_the_current_limit_and_warned_about() {
+    let mut bench = Bench::new(Generation::Gen1);
+    bench.ask(number::SET_CURRENT_LIMITS_M1, &[150, -150]); // 1.5 A
+    bench.apply(&WorldAction::LockShaft { motor: Motor::M1, on: true });
+    bench.ask(number::DUTY_M1, &[32_767]);
+    bench.wait_talking(Duration::from_millis(900));
+    let current = bench.read(number::READ_CURRENTS, "current_m1");
+    assert!((140..=160).contains(&current), "{current} x 10 mA");
+    assert!(has(&mut bench, Condition::M1OverCurrentWarning));
+    assert!(!has(&mut bench, Condition::M2OverCurrentWarning));
+    assert_eq!(
+        Lamp::M1OverCurrent.lit_by(bench.unit().unit().expect("power").conditions()),
+        Some(Severity::Warning)
+    );
+}
+
+#[test]
+fn a_locked_emergency_stop_needs_a_restart() {
+    for generation in Generation::ALL {
+        let mut bench = running(generation);
+        bench.apply(&WorldAction::EStop { pressed: true });
+        bench.wait_talking(A_MOMENT);
+        assert_eq!(output(&bench), BridgeOutput::Brake, "{generation}");
+        assert_eq!(leds(&bench), Leds { stat1: true, stat2: true, err: true });
+        bench.apply(&WorldAction::EStop { pressed: false });
+        bench.ask(number::RESET_ESTOP, &[]);
+        bench.wait_talking(A_MOMENT);
+        assert!(has(&mut bench, Condition::EStop), "{generation}");
+        bench.apply(&WorldAction::Power { on: false });
+        bench.apply(&WorldAction::Power { on: true });
+        bench.wait_talking(A_MOMENT);
+        assert!(!has(&mut bench, Condition::EStop), "{generation}");
+    }
+}
+
+#[test]
+fn an_unlocked_emergency_stop_is_reset_by_command_and_the_motors_stay_stopped_until_told() {
+    let mut bench = running(Generation::Gen1);
+    bench.ask(number::SET_ESTOP_LOCK, &[0xaa]);
+    bench.apply(&WorldAction::EStop { pressed: true });
+    bench.wait_talking(A_MOMENT);
+    bench.ask(number::DUTY_M1, &[10_000]); // acknowledged, and refused
+    bench.ask(number::RESET_ESTOP, &[]); // still pressed
+    assert!(has(&mut bench, Condition::EStop));
+    bench.apply(&WorldAction::EStop { pressed: false });
+    bench.wait_talking(A_MOMENT);
+    bench.ask(number::RESET_ESTOP, &[]);
+    bench.wait_talking(A_MOMENT);
+    assert!(!has(&mut bench, Condition::EStop));
+    assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), 0);
+    bench.ask(number::DUTY_M1, &[10_000]);
+    bench.wait_talking(A_MOMENT);
+    assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), 10_000);
+}
+
+#[test]
+fn generation_4_can_reset_by_itself_and_the_others_take_its_code_for_locked() {
+    for generation in Generation::ALL {
+        let mut bench = Bench::new(generation);
+        bench.ask(number::SET_ESTOP_LOCK, &[0x55]);
+        bench.apply(&WorldAction::EStop { pressed: true });
+        bench.wait_talking(A_MOMENT);
+        bench.apply(&WorldAction::EStop { pressed: false });
+        bench.wait_talking(A_MOMENT);
+        assert_eq!(has(&mut bench, Condition::EStop), generation != Generation::Gen4, "{generation}");
+        assert_eq!(bench.read(number::READ_ESTOP_LOCK, "lock"), 0x55);
+    }
+}
+
+#[test]
+fn a_speed_error_beyond_its_limit_stops_the_motor_and_shows_until_the_next_command() {
+    let mut bench = Bench::new(Generation::Gen3);
+    bench.ask(number::SET_SPEED_ERROR_LIMITS, &[500, 0]);
+    bench.apply(&WorldAction::LockShaft { motor: Motor::M1, on: true });
+    bench.ask(number::SPEED_ACCEL_M1, &[20_000, 3_000]);
+    bench.wait_talking(Duration::from_millis(800));
+    assert!(has(&mut bench, Condition::M1SpeedError));
+    assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), 0);
+    bench.apply(&WorldAction::LockShaft { motor: Motor::M1, on: false });
+    bench.ask(number::DUTY_M1, &[5_000]);
+    bench.wait_talking(A_MOMENT);
+    assert!(!has(&mut bench, Condition::M1SpeedError));
+    assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), 5_000);
+}
+
+#[test]
+fn digital_outputs_follow_their_actions() {
+    let mut bench = Bench::new(Generation::Gen1);
+    let outputs = |bench: &Bench| bench.unit().unit().expect("power").outputs().to_vec();
+    bench.ask(number::SET_DOUT_ACTION, &[0, 1]); // motor 1 on
+    bench.ask(number::SET_DOUT_ACTION, &[1, 8]); // over-temperature
+    bench.wait_talking(A_MOMENT);
+    assert_eq!(outputs(&bench), [false, false]);
+    bench.ask(number::DUTY_M1, &[5_000]);
+    bench.apply(&WorldAction::SetBoardCelsius { celsius: Some(95.0) });
+    bench.wait_talking(A_MOMENT);
+    assert_eq!(outputs(&bench), [true, true]);
+    bench.apply(&WorldAction::SetHidden { key: "dout.2.inverted".to_owned(), value: 1 });
+    bench.wait_talking(A_MOMENT);
+    assert_eq!(outputs(&bench), [true, false]);
+}
+
+#[test]
+fn voltage_offsets_shift_the_readings_and_not_the_limits() {
+    let mut bench = Bench::new(Generation::Gen3);
+    let before = bench.read(number::READ_MAIN_BATTERY, "main_battery");
+    bench.ask(number::SET_VOLTAGE_OFFSETS, &[-7, 5]);
+    assert_eq!(bench.read(number::READ_MAIN_BATTERY, "main_battery"), before - 7);
+    assert_eq!(bench.read(number::READ_LOGIC_BATTERY, "logic_battery"), 125);
+}
