@@ -69,6 +69,8 @@ fn two_units_on_one_wire_answer_to_their_own_addresses_alone() {
 fn a_unit_unplugged_from_a_shared_wire_leaves_the_other_one_there() {
     let (handle, client) = serve(&[]);
     handle.apply(1, WorldAction::Unplug { unplugged: true }).expect("it runs");
+    // Actions queue behind each other, not behind bytes: this waits until the plug is out.
+    assert!(handle.inspect(|bus| bus.views().iter().any(|view| !view.plugged)).expect("it runs"));
     assert_eq!(ask(&client, 0x85, number::READ_VERSION, &[], SILENCE), None);
     assert!(ask(&client, 0x80, number::READ_VERSION, &[], PATIENCE).is_some());
     handle.apply(0, WorldAction::Unplug { unplugged: true }).expect("it runs");
