@@ -5,5 +5,8 @@
 )]
 
 pub mod graph;
+pub mod keys;
+pub mod model;
+pub mod parts;
 pub mod theme;
 pub mod widgets;

@@ -3,8 +3,8 @@
 use std::f32::consts::{PI, TAU};
 
 use egui::{
-    Align2, Color32, Pos2, Response, Role, Sense, Shape, Stroke, StrokeKind, TextStyle, Ui, Vec2, WidgetInfo,
-    pos2, vec2,
+    Align2, Color32, Pos2, Rect, Response, Role, Sense, Shape, Stroke, StrokeKind, TextStyle, Ui, Vec2,
+    WidgetInfo, pos2, vec2,
 };
 
 use crate::gui::theme::Palette;
@@ -18,6 +18,8 @@ pub enum LampState {
     /// The connected controller cannot tell.
     NotApplicable,
     Ok,
+    /// Something is so that is neither good nor bad, such as a closed limit switch.
+    Active,
     Warning,
     Error,
 }
@@ -28,6 +30,7 @@ impl LampState {
             Self::Unknown => "unknown",
             Self::NotApplicable => "not reported",
             Self::Ok => "OK",
+            Self::Active => "active",
             Self::Warning => "warning",
             Self::Error => "error",
         }
@@ -37,12 +40,13 @@ impl LampState {
         match self {
             Self::Unknown | Self::NotApplicable => palette.weak_text,
             Self::Ok => palette.ok,
+            Self::Active => palette.accent,
             Self::Warning => palette.warning,
             Self::Error => palette.error,
         }
     }
 
-    /// A ring, a dash, a disc, a triangle or a crossed octagon.
+    /// A ring, a dash, a disc, a square, a triangle or a crossed octagon.
     pub fn paint(self, ui: &Ui, center: Pos2, radius: f32) {
         let palette = Palette::of(ui);
         let color = self.color(palette);
@@ -61,6 +65,10 @@ impl LampState {
             }
             Self::Ok => {
                 painter.circle_filled(center, radius, color);
+            }
+            Self::Active => {
+                let square = Rect::from_center_size(center, Vec2::splat(radius * 1.7));
+                painter.rect_filled(square, 2.0, color);
             }
             Self::Warning => {
                 painter.add(polygon(center + vec2(0.0, radius * 0.25), radius * 1.25, 3, -PI / 2.0, color));
@@ -91,7 +99,7 @@ pub fn abbreviated_ui(ui: &mut Ui, size: Vec2, abbreviation: &str, name: &str, s
     response
         .widget_info(|| WidgetInfo::labeled(Role::Status, true, format!("{abbreviation}: {}", state.word())));
     let palette = Palette::of(ui);
-    let alarming = state >= LampState::Warning;
+    let alarming = state >= LampState::Active;
     let outline = if alarming { state.color(palette) } else { palette.line };
     ui.painter().rect(rect, 4.0, palette.raised, Stroke::new(1.0, outline), StrokeKind::Inside);
     state.paint(ui, pos2(rect.center().x, rect.top() + rect.height() * 0.32), 5.0);
@@ -112,7 +120,7 @@ pub fn full_ui(ui: &mut Ui, abbreviation: &str, name: &str, state: LampState) ->
     let palette = Palette::of(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 30.0), Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::Status, true, format!("{name}: {}", state.word())));
-    let alarming = state >= LampState::Warning;
+    let alarming = state >= LampState::Active;
     let outline = if alarming { state.color(palette) } else { palette.line };
     ui.painter().rect(rect, 4.0, palette.raised, Stroke::new(1.0, outline), StrokeKind::Inside);
     state.paint(ui, pos2(rect.left() + 18.0, rect.center().y), 7.0);

@@ -1,0 +1,144 @@
+//! The device list: what can be connected to, and what was chosen.
+
+use brushwork_link::Failure;
+use brushwork_link::transport::target::DEFAULT_BAUD;
+use brushwork_link::transport::{ConnectTarget, PortInfo, TargetError};
+
+/// The simulated controller that is always there.
+pub const SIMULATED: &str = "sim:mcp266";
+
+/// Rates a controller's serial ports can have (MCP manual 1.9.3), and those USB adapters are often set to.
+pub const BAUD_RATES: [u32; 8] = [2_400, 9_600, 19_200, 38_400, 57_600, 115_200, 230_400, 460_800];
+
+/// What the user chose to connect to.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Choice {
+    #[default]
+    Simulated,
+    /// A port of the list, by its name.
+    Port(String),
+    /// What stands in the field below the list.
+    Typed,
+}
+
+/// The device list.
+#[derive(Clone, Debug)]
+pub struct Devices {
+    ports: Vec<PortInfo>,
+    pub listing_failure: Option<Failure>,
+    pub choice: Choice,
+    pub typed: String,
+    /// For serial ports that are not a controller's own USB.
+    pub baud: u32,
+}
+
+impl Default for Devices {
+    fn default() -> Self {
+        Self {
+            ports: Vec::new(),
+            listing_failure: None,
+            choice: Choice::default(),
+            typed: String::new(),
+            baud: DEFAULT_BAUD,
+        }
+    }
+}
+
+impl Devices {
+    /// Takes over a new list of ports.
+    pub fn set_ports(&mut self, listed: Result<Vec<PortInfo>, Failure>) {
+        match listed {
+            Ok(ports) => {
+                self.ports = ports;
+                self.listing_failure = None;
+            }
+            Err(failure) => {
+                self.ports.clear();
+                self.listing_failure = Some(failure);
+            }
+        }
+    }
+
+    pub fn ports(&self) -> &[PortInfo] {
+        &self.ports
+    }
+
+    /// The chosen port, while it is listed.
+    pub fn chosen_port(&self) -> Option<&PortInfo> {
+        let Choice::Port(name) = &self.choice else { return None };
+        self.ports.iter().find(|port| port.name == *name)
+    }
+
+    /// Whether a port was chosen that is no longer there.
+    pub fn choice_is_gone(&self) -> bool {
+        matches!(self.choice, Choice::Port(_)) && self.chosen_port().is_none()
+    }
+
+    /// Whether the rate matters: not over a controller's own USB, TCP or in this program.
+    pub fn baud_matters(&self) -> bool {
+        match &self.choice {
+            Choice::Simulated => false,
+            Choice::Port(_) => self.chosen_port().is_some_and(|port| !port.names_a_controller()),
+            Choice::Typed => {
+                let typed = self.typed.trim();
+                let serial = matches!(typed.parse(), Ok(ConnectTarget::Serial { .. }));
+                serial && !typed.contains("baud=")
+            }
+        }
+    }
+
+    /// Where to connect to.
+    pub fn target(&self) -> Result<ConnectTarget, TargetError> {
+        match &self.choice {
+            Choice::Simulated => SIMULATED.parse(),
+            Choice::Port(name) => {
+                let stream = self.chosen_port().and_then(|port| port.stream);
+                Ok(ConnectTarget::Serial { path: name.clone(), baud: self.baud, stream })
+            }
+            Choice::Typed => {
+                let mut target = self.typed.parse()?;
+                if let ConnectTarget::Serial { baud, .. } = &mut target
+                    && self.baud_matters()
+                {
+                    *baud = self.baud;
+                }
+                Ok(target)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn devices(typed: &str) -> Devices {
+        Devices { choice: Choice::Typed, typed: typed.to_owned(), baud: 115_200, ..Devices::default() }
+    }
+
+    #[test]
+    fn the_simulated_controller_is_chosen_at_first() {
+        assert_eq!(Devices::default().target().unwrap(), ConnectTarget::Sim("mcp266".to_owned()));
+    }
+
+    #[test]
+    fn a_typed_path_gets_the_rate_of_the_list_unless_it_brings_its_own() {
+        let baud_of = |typed: &str| match devices(typed).target() {
+            Ok(ConnectTarget::Serial { baud, .. }) => baud,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(baud_of("/dev/ttyUSB7"), 115_200);
+        assert_eq!(baud_of("/dev/ttyUSB7,baud=9600"), 9_600);
+        assert!(!devices("tcp:127.0.0.1:4000").baud_matters());
+        assert!(devices("  ").target().is_err());
+    }
+
+    #[test]
+    fn a_port_that_went_away_stays_chosen_and_is_known_to_be_gone() {
+        let mut devices = Devices { choice: Choice::Port("COM3".to_owned()), ..Devices::default() };
+        devices.set_ports(Ok(vec![PortInfo { name: "COM3".to_owned(), ..PortInfo::default() }]));
+        assert!(!devices.choice_is_gone());
+        devices.set_ports(Ok(Vec::new()));
+        assert!(devices.choice_is_gone());
+    }
+}

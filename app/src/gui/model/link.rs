@@ -1,0 +1,213 @@
+//! The link as the window sees it: closed, opening, open, closing, and what is known of the controller.
+//!
+//! Everything here follows from the device thread's events. What an event means for the rest of the window (a
+//! sentence to say, a slider to put back to zero) is handed back as [`Effect`]s.
+
+use brushwork_link::Failure;
+use brushwork_link::device::{
+    ArmScope, DisarmReason, Event, Identity, Sample, Severity, StatusReport, StopReport,
+};
+use brushwork_link::exchange::LinkStatistics;
+use brushwork_link::transport::Stream;
+use std::time::Duration;
+
+use super::lamps::{Lamp, Lamps};
+use super::message::Gravity;
+use super::readings::Readings;
+use crate::gui::widgets::LampState;
+
+/// Whether motors may be moved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Arming {
+    #[default]
+    Disarmed,
+    /// Asked for; the device thread checks.
+    Asked(ArmScope),
+    Armed {
+        scope: ArmScope,
+        /// After how much silence the controller stops by itself.
+        controller_timeout: Option<Duration>,
+    },
+}
+
+impl Arming {
+    pub fn is_armed_for(self, wanted: ArmScope) -> bool {
+        matches!(self, Self::Armed { scope, .. } if scope == wanted)
+    }
+}
+
+/// What an event means beyond this module.
+#[derive(Debug)]
+pub enum Effect {
+    Say(Gravity, String),
+    /// Sliders go to zero: nothing may move any more.
+    AtRest,
+    /// A new sample of the selected unit.
+    Sample(Box<Sample>),
+    /// Another unit's samples follow.
+    OtherUnit,
+    /// The link has ended.
+    Ended,
+}
+
+/// What is known of an open link.
+#[derive(Debug, Default)]
+pub struct LinkView {
+    /// Every unit that answered.
+    pub units: Vec<Identity>,
+    pub selected: Option<u8>,
+    /// Which of the controller's ports this is, where it is known.
+    pub stream: Option<Stream>,
+    pub readings: Readings,
+    pub lamps: Lamps,
+    pub status: Option<StatusReport>,
+    pub statistics: LinkStatistics,
+    pub arming: Arming,
+    /// Why arming was refused the last time.
+    pub refusals: Vec<Failure>,
+}
+
+impl LinkView {
+    /// The unit that is looked at.
+    pub fn identity(&self) -> Option<&Identity> {
+        self.units.iter().find(|unit| Some(unit.address) == self.selected)
+    }
+
+    /// Takes over an event.
+    pub fn take(&mut self, event: Event) -> Vec<Effect> {
+        match event {
+            Event::Connected(identity) => self.connected(identity),
+            Event::Selected { address, stream } => self.select(address, stream),
+            Event::Sample(sample) if Some(sample.address) == self.selected => {
+                self.readings.update(&sample);
+                vec![Effect::Sample(sample)]
+            }
+            Event::Sample(_) => Vec::new(),
+            Event::Status(report) => self.status(report),
+            Event::Armed { scope, controller_timeout, .. } => self.armed(scope, controller_timeout),
+            Event::Disarmed(reason) => self.disarmed(&reason),
+            Event::ArmRefused { reasons, .. } => self.refused(reasons),
+            Event::Stopped(report) => stopped(&report),
+            Event::Link(statistics) => {
+                self.statistics = statistics;
+                Vec::new()
+            }
+            Event::Failure(failure) => vec![Effect::Say(Gravity::Error, failure.to_string())],
+            Event::Lost(failure) => self.lost(&failure),
+            Event::Closed => vec![Effect::Say(Gravity::Note, "Disconnected.".to_owned()), Effect::Ended],
+            Event::Transacted { .. }
+            | Event::JobStarted { .. }
+            | Event::JobProgress { .. }
+            | Event::JobEnded(_)
+            | Event::Traffic { .. } => Vec::new(),
+        }
+    }
+
+    fn connected(&mut self, identity: Identity) -> Vec<Effect> {
+        let mut said = format!(
+            "Connected to {} at {}, address 0x{:02X}",
+            identity.title(),
+            identity.port,
+            identity.address
+        );
+        if !identity.firmware.is_empty() {
+            said += &format!(", firmware {}", identity.firmware);
+        }
+        said += &format!(" ({}).", identity.generation);
+        let mut effects = vec![Effect::Say(Gravity::Note, said)];
+        let notes = identity.notes.iter().map(|note| Effect::Say(Gravity::Warning, note.clone()));
+        effects.extend(notes);
+        self.units.retain(|unit| unit.address != identity.address);
+        self.units.push(identity);
+        effects
+    }
+
+    fn select(&mut self, address: u8, stream: Option<Stream>) -> Vec<Effect> {
+        let changed = self.selected.replace(address) != Some(address);
+        self.stream = stream.or(if changed { None } else { self.stream });
+        if !changed {
+            return Vec::new();
+        }
+        self.readings = Readings::default();
+        self.lamps = Lamps::default();
+        self.status = None;
+        vec![Effect::OtherUnit]
+    }
+
+    fn status(&mut self, report: StatusReport) -> Vec<Effect> {
+        if Some(report.address) != self.selected {
+            return Vec::new();
+        }
+        self.lamps = lamps_of(&report);
+        self.status = Some(report);
+        Vec::new()
+    }
+
+    fn armed(&mut self, scope: ArmScope, controller_timeout: Option<Duration>) -> Vec<Effect> {
+        self.arming = Arming::Armed { scope, controller_timeout };
+        self.refusals.clear();
+        let text = format!("Armed for {scope}. Space or Esc stops.");
+        vec![Effect::AtRest, Effect::Say(Gravity::Warning, text)]
+    }
+
+    fn disarmed(&mut self, reason: &DisarmReason) -> Vec<Effect> {
+        self.arming = Arming::Disarmed;
+        let gravity = match reason {
+            DisarmReason::Fault(_) | DisarmReason::NoAnswer | DisarmReason::LinkLost => Gravity::Error,
+            DisarmReason::DeadMan => Gravity::Warning,
+            _ => Gravity::Note,
+        };
+        vec![Effect::AtRest, Effect::Say(gravity, format!("{reason}. The motors are being stopped."))]
+    }
+
+    fn refused(&mut self, reasons: Vec<Failure>) -> Vec<Effect> {
+        self.arming = Arming::Disarmed;
+        let first = reasons.first().map(ToString::to_string).unwrap_or_default();
+        self.refusals = reasons;
+        vec![Effect::AtRest, Effect::Say(Gravity::Error, first)]
+    }
+
+    fn lost(&mut self, failure: &Failure) -> Vec<Effect> {
+        self.arming = Arming::Disarmed;
+        vec![Effect::AtRest, Effect::Say(Gravity::Error, failure.to_string()), Effect::Ended]
+    }
+}
+
+/// What became of a stop, in one sentence per thing the user has to know.
+fn stopped(report: &StopReport) -> Vec<Effect> {
+    let mut effects = vec![Effect::AtRest];
+    for unit in &report.units {
+        for failure in &unit.failures {
+            effects.push(Effect::Say(Gravity::Error, failure.to_string()));
+        }
+        for driver in &unit.still_driven_by {
+            effects.push(Effect::Say(Gravity::Warning, format!("0x{:02X}: {driver}", unit.address)));
+        }
+    }
+    if report.confirmed() && effects.len() == 1 {
+        let milliseconds = report.latency().as_secs_f64() * 1000.0;
+        let text =
+            format!("Stopped. The stop was on the wire after {milliseconds:.1} ms; duty 0 is confirmed.");
+        effects.push(Effect::Say(Gravity::Note, text));
+    } else if !report.confirmed() && effects.len() == 1 {
+        let text =
+            "Stop was sent, but the controller did not confirm it. Cut the power if a motor still turns.";
+        effects.push(Effect::Say(Gravity::Error, text.to_owned()));
+    }
+    effects
+}
+
+/// The thirteen lamps as a status report lights them.
+fn lamps_of(report: &StatusReport) -> Lamps {
+    let mut lamps = Lamps::all(LampState::Ok);
+    for condition in &report.conditions {
+        let state = match condition.severity {
+            Severity::Note => LampState::Active,
+            Severity::Warning => LampState::Warning,
+            Severity::Fault => LampState::Error,
+        };
+        let lit = Lamp::ALL.into_iter().filter(|lamp| Some(lamp.abbreviation()) == condition.lamp);
+        lit.for_each(|lamp| lamps.raise(lamp, state));
+    }
+    lamps
+}

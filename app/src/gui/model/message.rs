@@ -1,0 +1,94 @@
+//! The message line: what happened last, until it is dismissed or something else happens.
+
+/// How grave a message is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Gravity {
+    Note,
+    Warning,
+    Error,
+}
+
+/// One message, a whole sentence.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Message {
+    pub gravity: Gravity,
+    pub text: String,
+}
+
+/// The newest message and how many came before it.
+#[derive(Clone, Debug, Default)]
+pub struct Messages {
+    shown: Option<Message>,
+    /// Newest last.
+    past: Vec<Message>,
+}
+
+/// Messages kept for looking back.
+const KEPT: usize = 200;
+
+impl Messages {
+    pub fn say(&mut self, gravity: Gravity, text: impl Into<String>) {
+        let message = Message { gravity, text: text.into() };
+        if self.past.len() == KEPT {
+            self.past.remove(0);
+        }
+        self.past.push(message.clone());
+        // A note does not wipe away an error that nobody has read.
+        let unread_error = self.shown.as_ref().is_some_and(|shown| shown.gravity == Gravity::Error);
+        if !(unread_error && gravity == Gravity::Note) {
+            self.shown = Some(message);
+        }
+    }
+
+    pub fn note(&mut self, text: impl Into<String>) {
+        self.say(Gravity::Note, text);
+    }
+
+    pub fn warn(&mut self, text: impl Into<String>) {
+        self.say(Gravity::Warning, text);
+    }
+
+    pub fn fail(&mut self, text: impl Into<String>) {
+        self.say(Gravity::Error, text);
+    }
+
+    pub fn shown(&self) -> Option<&Message> {
+        self.shown.as_ref()
+    }
+
+    pub fn dismiss(&mut self) {
+        self.shown = None;
+    }
+
+    /// All that were said, newest first.
+    pub fn past(&self) -> impl Iterator<Item = &Message> {
+        self.past.iter().rev()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_note_does_not_wipe_away_an_unread_error() {
+        let mut messages = Messages::default();
+        messages.fail("Could not open COM3.");
+        messages.note("Connected.");
+        assert_eq!(messages.shown().unwrap().gravity, Gravity::Error);
+        messages.dismiss();
+        messages.note("Connected.");
+        assert_eq!(messages.shown().unwrap().text, "Connected.");
+        assert_eq!(messages.past().count(), 3);
+    }
+
+    #[test]
+    fn messages_do_not_pile_up_without_end() {
+        let mut messages = Messages::default();
+        for number in 0..1000 {
+            messages.note(number.to_string());
+        }
+        assert_eq!(messages.past().count(), KEPT);
+        assert_eq!(messages.past().next().unwrap().text, "999");
+    }
+}

@@ -1,0 +1,42 @@
+//! What the window takes from outside: the time, the list of ports, and how a link is opened.
+//!
+//! A test brings its own, so that the window runs in virtual time against a controller that is stepped by hand.
+
+use std::sync::Arc;
+
+use brushwork_link::Failure;
+use brushwork_link::device::{Addresses, DeviceHandle};
+use brushwork_link::transport::{ConnectTarget, PortInfo};
+use brushwork_sim::world::{WorldAction, WorldView};
+use crossbeam_channel::Receiver;
+
+/// Everything the window needs and does not make itself.
+pub struct Parts {
+    pub ports: Box<dyn PortSource>,
+    pub opener: Box<dyn Opener>,
+}
+
+/// Where the list of serial ports comes from. Looking never waits.
+pub trait PortSource {
+    /// A new list, if there is one since the last call.
+    fn newest(&mut self) -> Option<Result<Vec<PortInfo>, Failure>>;
+}
+
+/// Opens links without keeping the window waiting.
+pub trait Opener {
+    /// Begins to open `target`. The answer comes later, once; dropping the receiver gives up.
+    fn open(&mut self, target: ConnectTarget, addresses: Addresses) -> Receiver<Result<OpenLink, Failure>>;
+}
+
+/// An open link.
+pub struct OpenLink {
+    pub device: DeviceHandle,
+    /// The world of a controller that is simulated in this program.
+    pub world: Option<Box<dyn SimulatedWorld>>,
+}
+
+/// What a person can see of a simulated controller's world, and do to it. Nothing here waits.
+pub trait SimulatedWorld {
+    fn apply(&self, action: WorldAction);
+    fn view(&self) -> Option<Arc<WorldView>>;
+}
