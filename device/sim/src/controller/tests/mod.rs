@@ -1,8 +1,10 @@
 //! Conversations with a simulated controller in virtual time.
 
+mod control_source;
 mod conversation;
 mod every_command;
 mod inputs;
 mod memory;
 mod protection;
+mod specials;
 mod support;
