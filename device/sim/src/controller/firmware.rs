@@ -33,6 +33,8 @@ pub(super) struct Firmware {
     pub channels: [Channel; 2],
     pub pins: Vec<PinFunctions>,
     pub signals: Vec<Signal>,
+    /// What quadrature encoders on the pins have counted.
+    pub counts: Vec<i64>,
     pub readings: Readings,
     pub protection: Protection,
     pub estop: EStop,
@@ -93,6 +95,7 @@ impl Firmware {
             factory_address: config.address,
             channels: [Channel::new(&config.law), Channel::new(&config.law)],
             pins: config.model.pins.iter().copied().map(PinFunctions::of).collect(),
+            counts: vec![0; settings.signals.len()],
             signals: vec![Signal::default(); settings.signals.len()],
             readings,
             protection: Protection::default(),

@@ -58,7 +58,11 @@ impl Firmware {
             if settings.kind == KIND_NONE && !settings.digital {
                 continue;
             }
-            let reading = self.pin_reading(world, index);
+            let state = self.pin_state(world, index);
+            if let PinState::Counts(counts) = state {
+                self.counts[index] = counts;
+            }
+            let reading = self.pin_reading(state, index);
             let settings = &self.settings.signals[index];
             self.signals[index].update(reading, settings, one_byte_actions, self.now, &mut triggers);
         }
@@ -222,17 +226,9 @@ impl Firmware {
             return EncoderInput::Quadrature(0);
         };
         match settings.kind {
-            KIND_ENCODER => EncoderInput::Quadrature(self.quadrature_counts(index)),
+            KIND_ENCODER => EncoderInput::Quadrature(self.counts[index]),
             KIND_NONE if !settings.digital => EncoderInput::Quadrature(0),
             _ => EncoderInput::Absolute(self.signals[index].raw() as i32),
-        }
-    }
-
-    /// What a quadrature encoder on that pin has counted; 0 where none can be.
-    fn quadrature_counts(&self, index: usize) -> i64 {
-        match self.plug_on(index) {
-            Some(reading) if reading.kind == EncoderKind::Quadrature => reading.counts,
-            _ => 0,
         }
     }
 
@@ -249,12 +245,11 @@ impl Firmware {
         (!in_use).then_some(pin)
     }
 
-    fn pin_reading(&self, world: &mut World, index: usize) -> PinReading {
+    fn pin_reading(&self, state: PinState, index: usize) -> PinReading {
         let Some(pin) = self.usable_pin(index) else {
             return PinReading::Nothing;
         };
         let settings = &self.settings.signals[index];
-        let state = self.pin_state(world, index);
         if settings.digital {
             let is_high = match state {
                 PinState::Volts(volts) => volts > DIGITAL_THRESHOLD_VOLTS,
@@ -267,7 +262,7 @@ impl Firmware {
             (KIND_ANALOG, PinState::Volts(volts)) if pin.is_analog => PinReading::Level(analog_counts(volts)),
             (KIND_ANALOG, _) if pin.is_analog => PinReading::Level(0.0),
             (KIND_PULSE, PinState::Pulse { microseconds }) if pin.is_pulse => PinReading::Pulse(microseconds),
-            (KIND_ENCODER, _) => PinReading::Level(self.encoder_level(index)),
+            (KIND_ENCODER, _) if pin.encoder.is_some() => PinReading::Level(self.encoder_level(index)),
             _ => PinReading::Nothing,
         }
     }
@@ -291,7 +286,7 @@ impl Firmware {
             .find(|motor| usize::from(self.settings.motors[motor.index()].encoder_mode) == index);
         match serves {
             Some(motor) => f64::from(self.channels[motor.index()].encoder().position()),
-            None => self.quadrature_counts(index) as f64,
+            None => self.counts[index] as f64,
         }
     }
 }

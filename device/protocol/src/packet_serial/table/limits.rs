@@ -71,15 +71,13 @@ pub(super) const ROWS: &[Command] = &[
         "set_voltage_offsets",
         "voltage offsets",
         forms![write(G3, G4, Effect::Setting, fields![offset("main"), offset("logic")])],
-    )
-    .simulated(TRUE_METERS),
+    ),
     late(
         number::READ_VOLTAGE_OFFSETS,
         "read_voltage_offsets",
         "read voltage offsets",
         forms![read(G3, G4, fields![offset("main"), offset("logic")])],
-    )
-    .simulated(TRUE_METERS),
+    ),
     late(
         number::SET_CONTROL_LIMITS,
         "set_control_limits",
@@ -116,8 +114,6 @@ pub(super) const ROWS: &[Command] = &[
 
 const CONTROL_INPUTS: Simulated =
     Simulated::StoredOnly("the simulated inputs are those of the MCP, set by 143");
-const TRUE_METERS: Simulated =
-    Simulated::StoredOnly("the simulated meters read true, so that there is nothing to correct");
 const BLANKING: &str =
     "The RoboClaw manual of 2018 calls the number current blanking, with two values of two bytes.";
 

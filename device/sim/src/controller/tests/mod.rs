@@ -1,5 +1,6 @@
 //! Conversations with a simulated controller in virtual time.
 
+mod any_input;
 mod control_source;
 mod conversation;
 mod every_command;
