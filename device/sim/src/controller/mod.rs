@@ -32,6 +32,7 @@ use crate::machine::{Machine, StreamIndex};
 use crate::motion::{Channel, ControlLaw};
 use crate::plant::ParamsError;
 use crate::settings::{Eeprom, Settings, UnknownKey};
+use crate::signals::SignalValues;
 use crate::supervision::Leds;
 use crate::world::{World, WorldAction, WorldParams, WorldView};
 use answer::{Answer, find};
@@ -418,6 +419,27 @@ impl UnitView<'_> {
             self.firmware.temperature_raw(0),
             self.firmware.temperature_raw(1),
         ]
+    }
+
+    /// The five values of command 147 of each pin.
+    pub fn signal_values(&self) -> Vec<SignalValues> {
+        let signals = self.firmware.signals.iter().zip(&self.firmware.settings.signals);
+        signals.map(|(signal, settings)| signal.values(settings)).collect()
+    }
+
+    /// Whether the emergency stop holds the motors.
+    pub fn estop_is_tripped(&self) -> bool {
+        self.firmware.estop.is_tripped()
+    }
+
+    /// Duties of commands 102 and 104 in generation 4.
+    pub fn auxiliary_duties(&self) -> [u16; 5] {
+        self.firmware.auxiliary_duties
+    }
+
+    /// The error register of the CAN port (command 180).
+    pub fn can_error_state(&self) -> u32 {
+        self.firmware.can.error_state()
     }
 
     /// Motor current in 10 mA as the wire carries it.
