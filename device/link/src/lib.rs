@@ -8,6 +8,8 @@ pub mod device;
 pub mod exchange;
 pub mod failure;
 pub mod settings;
+#[cfg(test)]
+mod testing;
 pub mod transport;
 pub mod wire;
 

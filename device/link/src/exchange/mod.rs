@@ -325,3 +325,6 @@ impl Fault {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
