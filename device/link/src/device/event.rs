@@ -38,6 +38,8 @@ pub enum Event {
         scope: ArmScope,
         /// After how much silence the controller stops the motors by itself.
         controller_timeout: Option<Duration>,
+        /// What else can drive a motor: input pins and scripts, each as a sentence.
+        warnings: Vec<String>,
     },
     /// Motors may no longer be moved; they are being stopped.
     Disarmed(DisarmReason),
@@ -103,6 +105,8 @@ pub enum DisarmReason {
     ScopeChange,
     /// Another unit was selected.
     Selection,
+    /// A setting that arming was based on was changed.
+    SettingsChanged,
     /// A command went unconfirmed, so that nobody knows what the motors do.
     NoAnswer,
     /// The job that moved the motors ended.
@@ -122,6 +126,9 @@ impl fmt::Display for DisarmReason {
             Self::Fault(what) => write!(f, "Disarmed: the controller reports {what}"),
             Self::ScopeChange => f.write_str("Disarmed: another screen was opened"),
             Self::Selection => f.write_str("Disarmed: another unit was selected"),
+            Self::SettingsChanged => {
+                f.write_str("Disarmed: a time-out, stream, priority or address was changed")
+            }
             Self::NoAnswer => f.write_str("Disarmed: the controller did not confirm a command"),
             Self::JobEnded => f.write_str("Disarmed: the job that moved the motors has ended"),
             Self::LinkLost => f.write_str("Disarmed: the link was lost"),

@@ -22,6 +22,10 @@ pub(super) struct Envelope {
     pub asked_at: Duration,
     /// How many stops had been asked for until then.
     pub stops: u64,
+    /// How often disarming had been asked for until then.
+    pub disarms: u64,
+    /// How often a job had been cancelled until then.
+    pub cancels: u64,
 }
 
 /// A device thread's handle. Dropping it closes the link: motors that this program set in motion are stopped first.
@@ -30,7 +34,7 @@ pub struct DeviceHandle {
     events: Receiver<Event>,
     signals: Arc<Signals>,
     waker: Waker,
-    ended: Receiver<()>,
+    ended: Option<Receiver<()>>,
 }
 
 impl DeviceHandle {
@@ -39,9 +43,13 @@ impl DeviceHandle {
         events: Receiver<Event>,
         signals: Arc<Signals>,
         waker: Waker,
-        ended: Receiver<()>,
     ) -> Self {
-        Self { requests, events, signals, waker, ended }
+        Self { requests, events, signals, waker, ended: None }
+    }
+
+    /// The channel that ends with the thread; without it nobody is waited for.
+    pub(super) fn set_ended(&mut self, ended: Receiver<()>) {
+        self.ended = Some(ended);
     }
 
     /// Queues a request. Disarm, cancel and disconnect are not queued but seen at once.
@@ -91,7 +99,13 @@ impl DeviceHandle {
     }
 
     fn queue(&self, request: Request) -> Result<(), RequestRefused> {
-        let envelope = Envelope { request, asked_at: self.now(), stops: self.signals.stops() };
+        let envelope = Envelope {
+            request,
+            asked_at: self.now(),
+            stops: self.signals.stops(),
+            disarms: self.signals.disarms(),
+            cancels: self.signals.cancels(),
+        };
         match self.requests.try_send(envelope) {
             Ok(()) => {
                 self.signals.wake();
@@ -106,8 +120,10 @@ impl DeviceHandle {
 impl Drop for DeviceHandle {
     fn drop(&mut self) {
         self.signals.close();
-        // Ends early with an error when the thread is gone, which is what is waited for.
-        let _ = self.ended.recv_timeout(CLOSE_LIMIT);
+        if let Some(ended) = &self.ended {
+            // Ends early with an error when the thread is gone, which is what is waited for.
+            let _ = ended.recv_timeout(CLOSE_LIMIT);
+        }
     }
 }
 

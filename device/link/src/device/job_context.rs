@@ -10,7 +10,7 @@ use std::time::Duration;
 pub(super) trait JobHost {
     fn transact(&mut self, command: u8, values: Vec<Value>) -> Result<Reply, ExchangeError>;
     fn sleep(&mut self, time: Duration) -> Result<(), ExchangeError>;
-    fn interruption(&self) -> Option<Interruption>;
+    fn interruption(&mut self) -> Option<Interruption>;
     fn progress(&mut self, fraction: Option<f32>, text: &str);
     fn sample(&mut self, sample: Sample);
     fn set_polling(&mut self, on: bool);
@@ -39,8 +39,8 @@ impl<'a> JobContext<'a> {
     }
 
     /// Why the job should end now, if it should. Asked between exchanges by work that computes for long.
-    #[must_use]
-    pub fn interruption(&self) -> Option<Interruption> {
+    /// Motors are stopped here too, before the job hears of it.
+    pub fn interruption(&mut self) -> Option<Interruption> {
         self.host.interruption()
     }
 

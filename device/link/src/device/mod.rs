@@ -4,18 +4,19 @@
 //! while waiting for a reply, the thread looks at the Stop flag first. Motion needs arming, dies unless it is renewed, and
 //! is ended on every way out of a job and of the thread itself.
 
-#![allow(dead_code, reason = "the thread itself follows")]
-
 mod channel;
+pub mod controller;
 mod drive;
 mod event;
 mod handle;
 mod identity;
 pub mod job;
 mod job_context;
+mod mcp;
 mod options;
 mod outbox;
 mod request;
+mod run;
 mod signals;
 mod status;
 mod stop;
@@ -26,8 +27,10 @@ pub use event::{DisarmReason, Event};
 pub use handle::{DeviceHandle, Stopper};
 pub use identity::Identity;
 pub use job::{FnJob, Job, JobContext, JobEnding, JobOutput, JobReport};
+pub use mcp::PacketSerial;
 pub use options::{Addresses, DeviceOptions};
 pub use request::{PollRate, Request, RequestRefused};
+pub use run::{DeviceLoop, DeviceThread, Step};
 pub use signals::MOTION_LIFE;
-pub use status::{Condition, Severity, StatusReport};
+pub use status::StatusReport;
 pub use stop::{StopReport, UnitStop};

@@ -16,13 +16,12 @@ pub struct Outbox {
     waker: Waker,
     fresh: bool,
     dropped_samples: u64,
-    gone: bool,
 }
 
 impl Outbox {
     /// Sends into `channel`.
     pub fn new(channel: Sender<Event>, waker: Waker) -> Self {
-        Self { channel, backlog: VecDeque::new(), waker, fresh: false, dropped_samples: 0, gone: false }
+        Self { channel, backlog: VecDeque::new(), waker, fresh: false, dropped_samples: 0 }
     }
 
     /// Hands an event over, or puts it behind those that wait.
@@ -45,7 +44,7 @@ impl Outbox {
                     return;
                 }
                 Err(TrySendError::Disconnected(_)) => {
-                    self.gone = true;
+                    // Nobody will take events any more; the handle closes the link as it goes.
                     self.backlog.clear();
                 }
             }
@@ -66,11 +65,6 @@ impl Outbox {
     /// Whether events wait for room.
     pub fn is_waiting(&self) -> bool {
         !self.backlog.is_empty()
-    }
-
-    /// Whether nobody will take events any more.
-    pub fn is_gone(&self) -> bool {
-        self.gone
     }
 
     /// Samples thrown away since the link was opened.
@@ -148,10 +142,10 @@ mod tests {
     }
 
     #[test]
-    fn a_window_that_is_gone_is_noticed() {
+    fn nothing_is_kept_for_a_window_that_is_gone() {
         let (mut outbox, receiver) = outbox(1);
         drop(receiver);
         outbox.send(sample(0));
-        assert!(outbox.is_gone() && !outbox.is_waiting());
+        assert!(!outbox.is_waiting());
     }
 }

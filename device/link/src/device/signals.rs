@@ -43,7 +43,7 @@ impl Signals {
         (Arc::new(signals), woken)
     }
 
-    /// Asks for a stop; the first of several not yet served keeps its time.
+    /// Asks for a stop.
     pub fn stop(&self) {
         self.stopped_at.store(nanoseconds(self.clock.now()), Ordering::SeqCst);
         self.stops.fetch_add(1, Ordering::SeqCst);
@@ -86,6 +86,11 @@ impl Signals {
     /// How often disarming was asked for.
     pub fn disarms(&self) -> u64 {
         self.disarms.load(Ordering::SeqCst)
+    }
+
+    /// How often a job was cancelled.
+    pub fn cancels(&self) -> u64 {
+        self.cancels.load(Ordering::SeqCst)
     }
 
     /// When the last stop was asked for.
@@ -149,10 +154,10 @@ impl Guard {
         self.motion_since.get().map(|since| since.max(renewed_at) + MOTION_LIFE)
     }
 
-    /// Something was armed or disarmed. Disarm requests from before arming do not count.
-    pub fn set_armed(&self, armed: bool) {
+    /// Something was armed or disarmed by a request before which disarming had been asked for `disarms` times.
+    pub fn set_armed(&self, armed: bool, disarms: u64) {
         self.armed.set(armed);
-        self.disarms_served.set(self.signals.disarms());
+        self.disarms_served.set(disarms);
     }
 
     /// The stop asked for has been served.
@@ -160,10 +165,10 @@ impl Guard {
         self.stops_served.set(stops);
     }
 
-    /// Begins a job that must end by `until`; `None` ends it.
-    pub fn set_job(&self, until: Option<Duration>) {
+    /// Begins a job that must end by `until` and before which jobs had been cancelled `cancels` times; `None` ends it.
+    pub fn set_job(&self, until: Option<Duration>, cancels: u64) {
         self.job_until.set(until);
-        self.cancels_served.set(self.signals.cancels.load(Ordering::SeqCst));
+        self.cancels_served.set(cancels);
     }
 
     /// While set, only a new Stop breaks in: the motors are being stopped.
@@ -187,7 +192,7 @@ impl Guard {
 
     fn job_ends(&self, now: Duration) -> Option<Interruption> {
         let until = self.job_until.get()?;
-        if self.signals.cancels.load(Ordering::SeqCst) != self.cancels_served.get() {
+        if self.signals.cancels() != self.cancels_served.get() {
             return Some(Interruption::Cancelled);
         }
         (now >= until).then_some(Interruption::TimeLimit)
@@ -237,8 +242,8 @@ mod tests {
     #[test]
     fn stop_comes_before_everything_else() {
         let (clock, signals, guard) = guard();
-        guard.set_armed(true);
-        guard.set_job(Some(Duration::ZERO));
+        guard.set_armed(true, 0);
+        guard.set_job(Some(Duration::ZERO), 0);
         signals.close();
         signals.disarm();
         signals.stop();
@@ -265,7 +270,7 @@ mod tests {
     fn a_disarm_asked_for_before_arming_does_not_disarm() {
         let (clock, signals, guard) = guard();
         signals.disarm();
-        guard.set_armed(true);
+        guard.set_armed(true, signals.disarms());
         assert_eq!(guard.interruption(clock.now()), None);
         signals.disarm();
         assert_eq!(guard.interruption(clock.now()), Some(Interruption::Disarm));
@@ -276,7 +281,7 @@ mod tests {
         let (_, signals, guard) = guard();
         let ms = Duration::from_millis;
         signals.cancel();
-        guard.set_job(Some(ms(500)));
+        guard.set_job(Some(ms(500)), signals.cancels());
         assert_eq!(guard.interruption(ms(499)), None, "an earlier cancel was for another job");
         assert_eq!(guard.interruption(ms(500)), Some(Interruption::TimeLimit));
         signals.cancel();

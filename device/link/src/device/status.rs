@@ -1,10 +1,10 @@
-//! A controller's status in terms that all families share.
+//! A controller's status at one moment.
 
-use serde::Serialize;
+use brushwork_protocol::packet_serial::status::{Condition, Conditions, Lamp, Severity};
 use std::time::Duration;
 
 /// What a status word says at one moment.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StatusReport {
     /// The unit.
     pub address: u8,
@@ -12,44 +12,21 @@ pub struct StatusReport {
     pub at: Duration,
     /// The word as it came.
     pub word: u32,
-    /// What is set in it, in the order of the family's table.
-    pub conditions: Vec<Condition>,
-}
-
-/// One thing that a status word can say.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
-pub struct Condition {
-    /// Name for files: snake_case.
-    pub key: &'static str,
-    /// Name for people.
-    pub text: &'static str,
-    /// How bad it is.
-    pub severity: Severity,
-    /// The lamp it lights, by its Ion Studio abbreviation: "M1OC".
-    pub lamp: Option<&'static str>,
-}
-
-/// How bad a condition is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Severity {
-    /// Worth knowing.
-    Note,
-    /// The controller still drives, perhaps with less.
-    Warning,
-    /// The controller stops motors for it. Disarms.
-    Fault,
+    /// What is set in it.
+    pub conditions: Conditions,
+    /// Bits that mean nothing in the unit's generation.
+    pub unknown_bits: u32,
 }
 
 impl StatusReport {
-    /// The conditions for which motors are stopped.
-    pub fn faults(&self) -> impl Iterator<Item = &Condition> {
-        self.conditions.iter().filter(|condition| condition.severity == Severity::Fault)
+    /// The conditions for which the controller stops motors. Any of them disarms.
+    pub fn faults(&self) -> impl Iterator<Item = Condition> {
+        self.conditions.iter().filter(|condition| condition.severity() == Severity::Error)
     }
 
-    /// Whether a lamp is lit.
+    /// How bad what a lamp shows is; `None` if it is dark.
     #[must_use]
-    pub fn is_lit(&self, lamp: &str) -> bool {
-        self.conditions.iter().any(|condition| condition.lamp == Some(lamp))
+    pub fn lamp(&self, lamp: Lamp) -> Option<Severity> {
+        lamp.lit_by(self.conditions)
     }
 }

@@ -82,6 +82,12 @@ pub enum ExchangeError {
         /// The generation that was detected.
         generation: Generation,
     },
+    /// The controller cannot do what was asked.
+    #[error("{what}")]
+    Impossible {
+        /// Why, as a clause: "it has one motor".
+        what: String,
+    },
     /// The values do not fit the command.
     #[error("the values do not fit the command")]
     Encode {
@@ -109,12 +115,15 @@ impl ExchangeError {
         }
     }
 
-    /// Whether the controller was asked and gave no usable answer, as a unit does that lacks the command.
+    /// Whether the controller was asked and answered nothing or nothing that fits, as a unit does that lacks the command.
     #[must_use]
-    pub fn is_no_answer(&self) -> bool {
+    pub fn is_unusable_answer(&self) -> bool {
         match self {
-            Self::TimedOut { .. } => true,
-            Self::MayHaveRun { cause } => cause.is_no_answer(),
+            Self::TimedOut { .. }
+            | Self::BadCrc { .. }
+            | Self::BadAcknowledgement { .. }
+            | Self::Malformed { .. } => true,
+            Self::MayHaveRun { cause } => cause.is_unusable_answer(),
             _ => false,
         }
     }
@@ -158,6 +167,7 @@ impl ExchangeError {
             Self::NotArmed { .. } => "Arm the motors on this screen first",
             Self::Unproven { .. } => "Try it on a simulated controller",
             Self::Unsupported { .. } => "Do without it, or check the firmware's version",
+            Self::Impossible { .. } => "Ask for something else",
             Self::Encode { .. } => "Use a value in range",
             Self::Transport { .. } => "Check the cable and connect again",
         }

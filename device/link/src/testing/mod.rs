@@ -3,6 +3,8 @@
 //! The far end sees each write with its time and returns chunks of bytes with the times at which they arrive. Reading
 //! turns the clock on to the next chunk or to the time-out, whichever comes first, and hooks can act at given times.
 
+pub mod unit;
+
 use crate::clock::{Clock, VirtualClock};
 use crate::transport::{Transport, TransportError};
 use std::collections::VecDeque;
@@ -18,29 +20,21 @@ pub fn ms(milliseconds: u64) -> Duration {
 pub type Answers = Vec<(Duration, Vec<u8>)>;
 type FarEnd = Box<dyn FnMut(&[u8], Duration) -> Answers + Send>;
 type Hook = Box<dyn FnOnce() + Send>;
+/// A write and when it was made.
+pub type Written = (Duration, Vec<u8>);
 
 /// The test's view of the wire.
 #[derive(Clone, Default)]
 pub struct Wiretap {
-    writes: Arc<Mutex<Vec<(Duration, Vec<u8>)>>>,
+    writes: Arc<Mutex<Vec<Written>>>,
     hooks: Arc<Mutex<Vec<(Duration, Hook)>>>,
     unplugged: Arc<Mutex<bool>>,
 }
 
 impl Wiretap {
     /// All writes so far, with their times.
-    pub fn writes(&self) -> Vec<(Duration, Vec<u8>)> {
+    pub fn writes(&self) -> Vec<Written> {
         self.writes.lock().unwrap().clone()
-    }
-
-    /// The bytes written so far.
-    pub fn requests(&self) -> Vec<Vec<u8>> {
-        self.writes().into_iter().map(|(_, bytes)| bytes).collect()
-    }
-
-    /// Forgets what was written.
-    pub fn clear(&self) {
-        self.writes.lock().unwrap().clear();
     }
 
     /// Does something at a given time, while somebody reads.
@@ -53,7 +47,8 @@ impl Wiretap {
         *self.unplugged.lock().unwrap() = true;
     }
 
-    fn next_hook(&self) -> Option<Duration> {
+    /// When the next hook is due.
+    pub fn next_hook(&self) -> Option<Duration> {
         self.hooks.lock().unwrap().iter().map(|(time, _)| *time).min()
     }
 

@@ -1,0 +1,230 @@
+//! What the device thread asks of a controller, whatever its family.
+//!
+//! The thread knows when and whether; a family knows which bytes. MCP and RoboClaw (packet serial) are the first; a
+//! family with other bytes, one motor and registers fits behind the same trait.
+
+use super::channel::Sample;
+use super::drive::Drive;
+use super::identity::Identity;
+use super::options::DeviceOptions;
+use super::signals::Guard;
+use super::status::StatusReport;
+use super::stop::UnitStop;
+use crate::exchange::packet::Permit;
+use crate::exchange::{Exchange, ExchangeError, RETRIES, Reply, Watch};
+use crate::failure::Failure;
+use crate::transport::Stream;
+use brushwork_protocol::packet_serial::{Motor, Value};
+use std::cell::Cell;
+use std::time::Duration;
+
+/// One thing that can be read in a sweep; its number means something to its family only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct PollItem {
+    /// The family's own number.
+    pub id: u16,
+    /// What is read, for sentences: "main battery".
+    pub name: &'static str,
+}
+
+/// What is read, and how often.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PollList {
+    /// Read in every sweep.
+    pub fast: Vec<PollItem>,
+    /// One of them in each sweep, in turn.
+    pub slow: Vec<PollItem>,
+    /// Which of them brings the status word.
+    pub status: Option<PollItem>,
+}
+
+/// What was found when arming was asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArmCheck {
+    /// Why it cannot be; empty if it can.
+    pub reasons: Vec<Failure>,
+    /// After how much silence the controller stops the motors by itself.
+    pub controller_timeout: Option<Duration>,
+}
+
+/// One unit on a link.
+pub trait Controller: Send {
+    /// Who it is.
+    fn identity(&self) -> &Identity;
+
+    /// What can be read from it.
+    fn poll_list(&self) -> PollList;
+
+    /// Reads one item into `sample`; returns the status if the item brings it.
+    fn poll(
+        &mut self,
+        line: &mut Line<'_>,
+        item: PollItem,
+        sample: &mut Sample,
+    ) -> Result<Option<StatusReport>, ExchangeError>;
+
+    /// Moves motors.
+    fn drive(&mut self, line: &mut Line<'_>, drive: &Drive) -> Result<(), ExchangeError>;
+
+    /// The bytes that stop this unit, to be written without waiting for anything. With `scripts`, a script is stopped first.
+    fn stop_bytes(&self, scripts: bool) -> Vec<u8>;
+
+    /// Stops the unit once more, this time asking for its confirmation, and empties its buffers.
+    fn confirm_stop(&mut self, line: &mut Line<'_>, scripts: bool) -> Result<UnitStop, ExchangeError>;
+
+    /// What can drive a motor without this program: input pins and scripts, each as a sentence.
+    fn other_drivers(&mut self, line: &mut Line<'_>) -> Result<Vec<String>, ExchangeError>;
+
+    /// Whether motion may be allowed over this port.
+    fn check_arming(
+        &mut self,
+        line: &mut Line<'_>,
+        stream: Option<Stream>,
+    ) -> Result<ArmCheck, ExchangeError>;
+
+    /// Sets an encoder's count.
+    fn set_encoder(&mut self, line: &mut Line<'_>, motor: Motor, counts: i32) -> Result<(), ExchangeError>;
+
+    /// Sets all encoders' counts to zero.
+    fn zero_encoders(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError>;
+
+    /// Resets an E-stop.
+    fn reset_estop(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError>;
+
+    /// Starts the stored script.
+    fn start_script(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError>;
+
+    /// Stops the running script.
+    fn stop_script(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError>;
+
+    /// Sends one command of the family's protocol.
+    fn transact(
+        &mut self,
+        line: &mut Line<'_>,
+        command: u8,
+        values: Vec<Value>,
+    ) -> Result<Reply, ExchangeError>;
+
+    /// Whether a command can set a motor in motion.
+    fn can_move(&self, command: u8) -> bool;
+
+    /// Whether a command starts a script.
+    fn starts_script(&self, command: u8) -> bool;
+
+    /// Whether a command can undo what [`Controller::check_arming`] found, so that it disarms.
+    fn undermines_arming(&self, command: u8) -> bool;
+
+    /// What bytes on the wire mean: a request alone, or what came after it.
+    fn describe_traffic(&self, request: &[u8], reply: Option<&[u8]>) -> String;
+}
+
+/// A protocol family: how its units are found.
+pub trait Family: Send {
+    /// Finds the units of a link. None found is a failure that says what came back.
+    fn discover(
+        &mut self,
+        line: &mut Line<'_>,
+        options: &DeviceOptions,
+    ) -> Result<Vec<Box<dyn Controller>>, DiscoverError>;
+
+    /// The bytes that stop every unit that may be there, for a Stop before any was found.
+    fn stop_bytes(&self) -> Vec<u8>;
+}
+
+/// Why no unit was found.
+#[derive(Debug)]
+pub enum DiscoverError {
+    /// Nothing answered that could be understood.
+    NothingThere(Failure),
+    /// The search was broken into or the link was lost.
+    Exchange(ExchangeError),
+}
+
+impl From<ExchangeError> for DiscoverError {
+    fn from(error: ExchangeError) -> Self {
+        Self::Exchange(error)
+    }
+}
+
+/// The wire as a controller gets it for one act: what may go out, and what breaks in.
+pub struct Line<'a> {
+    exchange: &'a mut Exchange,
+    guard: &'a Guard,
+    permit: Permit,
+    asked_at: Duration,
+    retries: u32,
+    stopping: bool,
+    moved: Cell<bool>,
+}
+
+impl<'a> Line<'a> {
+    /// A line for an act that was asked for at `asked_at`.
+    pub fn new(exchange: &'a mut Exchange, guard: &'a Guard, permit: Permit, asked_at: Duration) -> Self {
+        Self { exchange, guard, permit, asked_at, retries: RETRIES, stopping: false, moved: Cell::new(false) }
+    }
+
+    /// A line for stopping: driving commands pass and do not count as motion. For duty zero alone.
+    pub fn for_stopping(exchange: &'a mut Exchange, guard: &'a Guard, simulated: bool) -> Self {
+        let permit = Permit { motion: true, script: false, guesses: simulated };
+        Self {
+            exchange,
+            guard,
+            permit,
+            asked_at: Duration::ZERO,
+            retries: STOP_RETRIES,
+            stopping: true,
+            moved: Cell::new(false),
+        }
+    }
+
+    /// Sets how often a request is sent again.
+    #[must_use]
+    pub fn with_retries(mut self, retries: u32) -> Self {
+        self.retries = retries;
+        self
+    }
+
+    /// The exchange underneath.
+    pub fn exchange(&mut self) -> &mut Exchange {
+        self.exchange
+    }
+
+    /// Exchange and watch together, for requests that are not packets of a table.
+    pub fn parts(&mut self) -> (&mut Exchange, &dyn Watch) {
+        (self.exchange, self.guard)
+    }
+
+    /// What may go out.
+    #[must_use]
+    pub fn permit(&self) -> Permit {
+        self.permit
+    }
+
+    /// How often a request is sent again.
+    #[must_use]
+    pub fn retries(&self) -> u32 {
+        self.retries
+    }
+
+    /// Changes how often a request is sent again.
+    pub fn set_retries(&mut self, retries: u32) {
+        self.retries = retries;
+    }
+
+    /// Takes note that what is about to be written can set a motor in motion.
+    pub fn motion_begins(&self) {
+        if !self.stopping {
+            self.guard.motion_begins(self.asked_at);
+            self.moved.set(true);
+        }
+    }
+
+    /// Whether anything that can set a motor in motion was about to be written over this line.
+    #[must_use]
+    pub fn has_moved(&self) -> bool {
+        self.moved.get()
+    }
+}
+
+/// A stop is worth more tries than other requests.
+const STOP_RETRIES: u32 = 4;

@@ -1,0 +1,221 @@
+//! MCP and RoboClaw controllers over packet serial.
+//!
+//! [`PacketSerial`] finds units, [`Mcp`] is one of them. What it reads, how it drives, stops and is armed stand in a file
+//! each. Nothing outside this folder knows a command of packet serial.
+
+mod arming;
+mod discover;
+mod driving;
+mod generation;
+mod polling;
+mod stopping;
+#[cfg(test)]
+mod tests;
+
+pub use discover::PacketSerial;
+
+use super::channel::Sample;
+use super::controller::{ArmCheck, Controller, Line, PollItem, PollList};
+use super::drive::Drive;
+use super::identity::Identity;
+use super::status::StatusReport;
+use super::stop::UnitStop;
+use crate::exchange::packet::{Ask, gate, transact};
+use crate::exchange::{ExchangeError, Reply};
+use crate::transport::Stream;
+use brushwork_protocol::models::Model;
+use brushwork_protocol::packet_serial::status::Condition;
+use brushwork_protocol::packet_serial::{
+    Address, Effect, Generation, Motor, Request, Value, lookup, number, status,
+};
+
+/// Who is spoken to and in which widths.
+#[derive(Clone, Copy, Debug)]
+struct Speaker {
+    address: Address,
+    generation: Generation,
+}
+
+impl Speaker {
+    /// Sends a command whose values are all numbers.
+    fn ask(self, line: &mut Line<'_>, command: u8, values: &[i64]) -> Result<Reply, ExchangeError> {
+        self.ask_values(line, command, values.iter().map(|&value| Value::Int(value)).collect())
+    }
+
+    fn ask_values(
+        self,
+        line: &mut Line<'_>,
+        command: u8,
+        values: Vec<Value>,
+    ) -> Result<Reply, ExchangeError> {
+        let request = Request { address: self.address, command, values };
+        let ask = Ask {
+            request: &request,
+            generation: self.generation,
+            permit: line.permit(),
+            retries: line.retries(),
+        };
+        if gate(&ask)?.effect.may_move() {
+            line.motion_begins();
+        }
+        let (exchange, watch) = line.parts();
+        transact(exchange, watch, &ask)
+    }
+
+    /// As [`Speaker::ask`], but `None` where the unit does not know the command: it answers nothing, or nothing that fits, or
+    /// its generation has no such command.
+    fn ask_if_known(
+        self,
+        line: &mut Line<'_>,
+        command: u8,
+        values: &[i64],
+    ) -> Result<Option<Reply>, ExchangeError> {
+        match self.ask(line, command, values) {
+            Ok(reply) => Ok(Some(reply)),
+            Err(ExchangeError::Unsupported { .. }) => Ok(None),
+            Err(error) if error.is_unusable_answer() => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
+}
+
+/// One MCP or RoboClaw controller.
+pub struct Mcp {
+    speaker: Speaker,
+    identity: Identity,
+    model: Option<&'static Model>,
+    polls: PollList,
+    /// Whether this program has sent moves that can wait in the unit's buffers.
+    has_buffered: bool,
+}
+
+impl Controller for Mcp {
+    fn identity(&self) -> &Identity {
+        &self.identity
+    }
+
+    fn poll_list(&self) -> PollList {
+        self.polls.clone()
+    }
+
+    fn poll(
+        &mut self,
+        line: &mut Line<'_>,
+        item: PollItem,
+        sample: &mut Sample,
+    ) -> Result<Option<StatusReport>, ExchangeError> {
+        polling::read(self.speaker, line, item, sample)
+    }
+
+    fn drive(&mut self, line: &mut Line<'_>, drive: &Drive) -> Result<(), ExchangeError> {
+        for (command, values) in driving::packets(drive)? {
+            self.transact(line, command, values.into_iter().map(Value::Int).collect())?;
+        }
+        Ok(())
+    }
+
+    fn stop_bytes(&self, scripts: bool) -> Vec<u8> {
+        stopping::bytes(self.speaker, scripts, self.has_buffered)
+    }
+
+    fn confirm_stop(&mut self, line: &mut Line<'_>, scripts: bool) -> Result<UnitStop, ExchangeError> {
+        let on = self.name(line);
+        let stop = stopping::confirm(self.speaker, line, scripts, &on)?;
+        if stop.buffers_empty == Some(true) {
+            self.has_buffered = false;
+        }
+        Ok(stop)
+    }
+
+    fn other_drivers(&mut self, line: &mut Line<'_>) -> Result<Vec<String>, ExchangeError> {
+        stopping::other_drivers(self.speaker, line, self.model)
+    }
+
+    fn check_arming(
+        &mut self,
+        line: &mut Line<'_>,
+        stream: Option<Stream>,
+    ) -> Result<ArmCheck, ExchangeError> {
+        let on = self.name(line);
+        arming::check(self.speaker, line, stream, &on)
+    }
+
+    fn set_encoder(&mut self, line: &mut Line<'_>, motor: Motor, counts: i32) -> Result<(), ExchangeError> {
+        let command = [number::SET_ENCODER_M1, number::SET_ENCODER_M2][motor.index()];
+        self.speaker.ask(line, command, &[i64::from(counts)]).map(drop)
+    }
+
+    fn zero_encoders(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError> {
+        self.speaker.ask(line, number::RESET_ENCODERS, &[]).map(drop)
+    }
+
+    fn reset_estop(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError> {
+        self.speaker.ask(line, number::RESET_ESTOP, &[])?;
+        let reply = self.speaker.ask(line, number::READ_STATUS, &[])?;
+        let word = u32::try_from(reply.values.int("status")).unwrap_or(0);
+        if status::decode(word, self.speaker.generation).contains(Condition::EStop) {
+            let what = "the E-stop is still set: it is pressed, or its reset is locked to the hardware";
+            return Err(ExchangeError::Impossible { what: what.to_owned() });
+        }
+        Ok(())
+    }
+
+    fn start_script(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError> {
+        self.speaker.ask(line, number::START_SCRIPT, &[]).map(drop)
+    }
+
+    fn stop_script(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError> {
+        self.speaker.ask(line, number::STOP_SCRIPT, &[]).map(drop)
+    }
+
+    fn transact(
+        &mut self,
+        line: &mut Line<'_>,
+        command: u8,
+        values: Vec<Value>,
+    ) -> Result<Reply, ExchangeError> {
+        if matches!(self.effect(command), Effect::RelativeMotion | Effect::Buffered) {
+            self.has_buffered = true;
+        }
+        self.speaker.ask_values(line, command, values)
+    }
+
+    fn can_move(&self, command: u8) -> bool {
+        self.effect(command).may_move()
+    }
+
+    fn starts_script(&self, command: u8) -> bool {
+        self.effect(command) == Effect::Script
+    }
+
+    fn undermines_arming(&self, command: u8) -> bool {
+        UNDERMINING.contains(&command)
+    }
+
+    fn describe_traffic(&self, request: &[u8], reply: Option<&[u8]>) -> String {
+        let bytes = reply.unwrap_or(request);
+        bytes.iter().map(|byte| format!("{byte:02X}")).collect::<Vec<_>>().join(" ")
+    }
+}
+
+impl Mcp {
+    /// The unit and its port, for sentences.
+    fn name(&self, line: &mut Line<'_>) -> String {
+        format!("{} at {}", self.speaker.address, line.exchange().port())
+    }
+
+    fn effect(&self, command: u8) -> Effect {
+        lookup(command).map_or(Effect::Query, |row| row.effect(self.speaker.generation))
+    }
+}
+
+/// Commands that change what arming was based on: time-outs, streams, priorities, address, or all settings at once.
+const UNDERMINING: [u8; 7] = [
+    number::SET_SERIAL_TIMEOUT,
+    number::SET_STREAM,
+    number::SET_PRIORITIES,
+    number::SET_ADDRESS_MIXED,
+    number::RESTORE_DEFAULTS,
+    number::RELOAD_SETTINGS,
+    number::SET_CONFIG,
+];

@@ -1,0 +1,148 @@
+//! What is read from a unit in a sweep, and which signal each reply carries.
+
+use super::Speaker;
+use crate::device::channel::{Channel, Sample};
+use crate::device::controller::{Line, PollItem, PollList};
+use crate::device::status::StatusReport;
+use crate::exchange::{ExchangeError, Reply};
+use brushwork_protocol::packet_serial::{number, status};
+
+/// Signals that change quickly, each read in every sweep.
+const FAST: [(u8, &str); 6] = [
+    (number::READ_STATUS, "status"),
+    (number::READ_ENCODERS, "encoders"),
+    (number::READ_SPEED_M1, "M1 speed"),
+    (number::READ_SPEED_M2, "M2 speed"),
+    (number::READ_PWMS, "PWM outputs"),
+    (number::READ_CURRENTS, "motor currents"),
+];
+
+/// Signals that change slowly, read in turn.
+const SLOW: [(u8, &str); 6] = [
+    (number::READ_MAIN_BATTERY, "main battery"),
+    (number::READ_LOGIC_BATTERY, "logic battery"),
+    (number::READ_TEMPERATURE_1, "temperature 1"),
+    (number::READ_TEMPERATURE_2, "temperature 2"),
+    (number::READ_SPEED_ERRORS, "speed errors"),
+    (number::READ_POSITION_ERRORS, "position errors"),
+];
+
+/// Finds out what a unit answers, by asking once for everything. A unit that answers 73 needs nothing else.
+pub fn find(speaker: Speaker, line: &mut Line<'_>) -> Result<PollList, ExchangeError> {
+    let all = item(number::READ_ALL_STATUS, "all status");
+    if speaker.ask_if_known(line, number::READ_ALL_STATUS, &[])?.is_some() {
+        return Ok(PollList { fast: vec![all], slow: Vec::new(), status: Some(all) });
+    }
+    let mut fast = Vec::new();
+    let both_speeds = speaker.ask_if_known(line, number::READ_SPEEDS, &[])?.is_some();
+    for (command, name) in FAST {
+        match command {
+            number::READ_SPEED_M1 if both_speeds => fast.push(item(number::READ_SPEEDS, "speeds")),
+            number::READ_SPEED_M2 if both_speeds => {}
+            _ if speaker.ask_if_known(line, command, &[])?.is_some() => fast.push(item(command, name)),
+            _ => {}
+        }
+    }
+    let mut slow = Vec::new();
+    for (command, name) in SLOW {
+        if speaker.ask_if_known(line, command, &[])?.is_some() {
+            slow.push(item(command, name));
+        }
+    }
+    let status = fast.iter().find(|item| item.id == u16::from(number::READ_STATUS)).copied();
+    Ok(PollList { fast, slow, status })
+}
+
+/// Names of what could be read but is not answered.
+pub fn missing(polls: &PollList) -> Vec<&'static str> {
+    if polls.fast.iter().any(|item| item.id == u16::from(number::READ_ALL_STATUS)) {
+        return Vec::new();
+    }
+    let known = |command: u8| polls.fast.iter().chain(&polls.slow).any(|item| item.id == u16::from(command));
+    let always = FAST.iter().chain(&SLOW[..3]);
+    let speeds = known(number::READ_SPEEDS);
+    always
+        .filter(|(command, _)| {
+            let is_speed = matches!(*command, number::READ_SPEED_M1 | number::READ_SPEED_M2);
+            !(known(*command) || is_speed && speeds)
+        })
+        .map(|(_, name)| *name)
+        .collect()
+}
+
+/// Reads one item into a sample.
+pub fn read(
+    speaker: Speaker,
+    line: &mut Line<'_>,
+    item: PollItem,
+    sample: &mut Sample,
+) -> Result<Option<StatusReport>, ExchangeError> {
+    let command = u8::try_from(item.id).unwrap_or(0);
+    let reply = speaker.ask(line, command, &[])?;
+    match command {
+        number::READ_SPEED_M1 => signed_speed(sample, &reply, Channel::M1Velocity),
+        number::READ_SPEED_M2 => signed_speed(sample, &reply, Channel::M2Velocity),
+        number::READ_SPEED_ERRORS => errors(sample, &reply, Channel::M1SpeedError, Channel::M2SpeedError),
+        number::READ_POSITION_ERRORS => {
+            errors(sample, &reply, Channel::M1PositionError, Channel::M2PositionError);
+        }
+        _ => {}
+    }
+    for (name, channel) in NAMED {
+        if let Some(value) = reply.values.physical(name) {
+            sample.set(*channel, value, reply.span.requested_at, reply.span.replied_at);
+        }
+    }
+    Ok(reply.values.try_int("status").filter(|_| brings_status(command)).map(|word| {
+        let word = u32::try_from(word).unwrap_or(0);
+        StatusReport {
+            address: speaker.address.get(),
+            at: reply.span.replied_at,
+            word,
+            conditions: status::decode(word, speaker.generation),
+            unknown_bits: status::unknown_bits(word, speaker.generation),
+        }
+    }))
+}
+
+/// The fields of the replies above and the channels they are. In 18 and 19 a field "status" is the direction.
+const NAMED: &[(&str, Channel)] = &[
+    ("encoder_m1", Channel::M1Position),
+    ("encoder_m2", Channel::M2Position),
+    ("speed_m1", Channel::M1Velocity),
+    ("speed_m2", Channel::M2Velocity),
+    ("duty_m1", Channel::M1Pwm),
+    ("duty_m2", Channel::M2Pwm),
+    ("current_m1", Channel::M1Current),
+    ("current_m2", Channel::M2Current),
+    ("temperature_1", Channel::Temperature1),
+    ("temperature_2", Channel::Temperature2),
+    ("main_battery", Channel::MainBattery),
+    ("logic_battery", Channel::LogicBattery),
+    ("speed_error_m1", Channel::M1SpeedError),
+    ("speed_error_m2", Channel::M2SpeedError),
+    ("position_error_m1", Channel::M1PositionError),
+    ("position_error_m2", Channel::M2PositionError),
+];
+
+fn brings_status(command: u8) -> bool {
+    matches!(command, number::READ_STATUS | number::READ_ALL_STATUS)
+}
+
+/// Commands 18 and 19 carry the magnitude, and the direction in a byte: 1 is backwards (public clients, 2015-2025).
+fn signed_speed(sample: &mut Sample, reply: &Reply, channel: Channel) {
+    let magnitude = reply.values.physical("speed").unwrap_or(f64::NAN);
+    let speed = if reply.values.try_int("status") == Some(1) { -magnitude } else { magnitude };
+    sample.set(channel, speed, reply.span.requested_at, reply.span.replied_at);
+}
+
+fn errors(sample: &mut Sample, reply: &Reply, first: Channel, second: Channel) {
+    for (name, channel) in [("error_m1", first), ("error_m2", second)] {
+        let error = reply.values.physical(name).unwrap_or(f64::NAN);
+        sample.set(channel, error, reply.span.requested_at, reply.span.replied_at);
+    }
+}
+
+fn item(command: u8, name: &'static str) -> PollItem {
+    PollItem { id: u16::from(command), name }
+}

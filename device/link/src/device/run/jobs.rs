@@ -1,0 +1,250 @@
+//! Running a job: the wire it gets, what breaks into it, and the motors stopped on every way out, a panic included.
+
+use super::{DeviceLoop, Phase};
+use crate::device::channel::Sample;
+use crate::device::event::{DisarmReason, Event};
+use crate::device::job::{Job, JobEnding, JobOutput, JobReport};
+use crate::device::job_context::{JobContext, JobHost};
+use crate::exchange::{ExchangeError, Interruption, Reply, Watch};
+use crate::failure::Failure;
+use crate::transport::TransportError;
+use brushwork_protocol::packet_serial::{Address, Generation, Value};
+use std::any::Any;
+use std::panic::{self, AssertUnwindSafe};
+use std::time::Duration;
+
+/// The device thread as one job sees it.
+struct Host<'a> {
+    core: &'a mut DeviceLoop,
+    asked_at: Duration,
+    was_armed: bool,
+    polling: bool,
+    /// What broke in; from then on every call fails with it.
+    broken_by: Option<Interruption>,
+    /// The stop that was written when it broke in, to be confirmed when the job has returned.
+    stop: Option<super::halting::Written>,
+}
+
+impl DeviceLoop {
+    pub(super) fn run_job(
+        &mut self,
+        mut job: Box<dyn Job>,
+        asked_at: Duration,
+        overtaken: bool,
+        cancels: u64,
+    ) {
+        let name = job.name();
+        if let Some(failure) = self.job_refusal(job.as_ref(), overtaken) {
+            let ending = JobEnding::Failed(failure);
+            let report = JobReport { name, ran_for: Duration::ZERO, ending, motors_stopped: None };
+            return self.outbox.send(Event::JobEnded(report));
+        }
+        let begun_at = self.clock.now();
+        let was_moving = self.guard.is_moving();
+        self.guard.set_job(Some(begun_at + job.time_limit()), cancels);
+        self.outbox.send(Event::JobStarted { name: name.clone() });
+        let mut host = Host {
+            was_armed: self.armed.is_some(),
+            core: self,
+            asked_at,
+            polling: true,
+            broken_by: None,
+            stop: None,
+        };
+        let result = panic::catch_unwind(AssertUnwindSafe(|| job.run(&mut JobContext::new(&mut host))));
+        let (broken_by, stop) = (host.broken_by, host.stop);
+        self.guard.set_job(None, cancels);
+        let ending = ending(result, broken_by);
+        let has_moved = job.moves_motors() || self.guard.is_moving() && !was_moving || stop.is_some();
+        let must_stop = has_moved || self.armed.is_some() && matches!(ending, JobEnding::Panicked(_));
+        // Dropping a job can panic too; motors come first.
+        let motors_stopped = must_stop.then(|| self.stop_after_job(broken_by, stop));
+        let _ = panic::catch_unwind(AssertUnwindSafe(|| drop(job)));
+        self.restart_sweep();
+        let ran_for = self.clock.now().saturating_sub(begun_at);
+        self.outbox.send(Event::JobEnded(JobReport { name, ran_for, ending, motors_stopped }));
+    }
+
+    /// Stops the motors, or confirms the stop that was written when something broke in. Whether all units confirmed.
+    fn stop_after_job(
+        &mut self,
+        broken_by: Option<Interruption>,
+        stop: Option<super::halting::Written>,
+    ) -> bool {
+        if self.phase == Phase::Ended {
+            return false;
+        }
+        let reason = reason_of(broken_by);
+        match stop {
+            Some(written) => self.finish_halt(reason, written),
+            None => self.halt_and_confirm(reason),
+        }
+    }
+
+    fn job_refusal(&self, job: &dyn Job, overtaken: bool) -> Option<Failure> {
+        let refuse = |came_back: &str, mend: &str| {
+            Some(Failure::new(job.name(), self.name_of(self.selected), came_back, mend))
+        };
+        if !job.moves_motors() {
+            return None;
+        }
+        if overtaken {
+            return refuse("Stop was pressed after it was asked for", "Start it again when you are ready");
+        }
+        if !self.permit().motion {
+            return refuse("the motors are not armed", "Arm the motors on this screen first");
+        }
+        None
+    }
+}
+
+impl Host<'_> {
+    /// Whether the job may go on. Something that breaks in is acted on here, before the job hears of it.
+    fn check(&mut self) -> Result<(), ExchangeError> {
+        if let Some(cause) = self.broken_by {
+            if self.core.guard.stop_waits() {
+                self.break_in(Interruption::Stop);
+            }
+            return Err(ExchangeError::Interrupted { cause });
+        }
+        if self.core.phase == Phase::Ended {
+            return Err(link_lost());
+        }
+        if self.was_armed && self.core.armed.is_none() {
+            return Err(self.break_in(Interruption::Disarm));
+        }
+        match self.core.guard.interruption(self.core.clock.now()) {
+            Some(cause) => Err(self.break_in(cause)),
+            None => Ok(()),
+        }
+    }
+
+    /// Takes note of what broke in. Motors that may be moving are stopped now, not when the job returns.
+    fn break_in(&mut self, cause: Interruption) -> ExchangeError {
+        self.broken_by = Some(cause);
+        if cause == Interruption::Stop || self.core.guard.is_moving() {
+            match self.core.write_stop(&reason_of(Some(cause))) {
+                Ok(written) => self.stop = Some(written),
+                Err(error) => self.core.lose(&error),
+            }
+            self.core.guard.motion_ends();
+        }
+        ExchangeError::Interrupted { cause }
+    }
+
+    /// Reads a signal between two exchanges of the job, so that the window lives on.
+    fn read_between(&mut self) -> Result<(), ExchangeError> {
+        if self.polling && self.core.is_reading_due(self.core.clock.now()) {
+            self.core.read_one();
+            return self.check();
+        }
+        Ok(())
+    }
+
+    /// Turns an interruption of an exchange into one of the job.
+    fn settle<T>(&mut self, result: Result<T, ExchangeError>) -> Result<T, ExchangeError> {
+        self.core.keep_house();
+        if let Err(error) = &result {
+            if error.is_link_lost() {
+                self.core.lose(error);
+            } else if let Some(cause) = error.interruption()
+                && self.broken_by.is_none()
+            {
+                self.break_in(cause);
+            }
+        }
+        result
+    }
+}
+
+impl JobHost for Host<'_> {
+    fn transact(&mut self, command: u8, values: Vec<Value>) -> Result<Reply, ExchangeError> {
+        self.check()?;
+        self.read_between()?;
+        let reply = self.core.act(self.asked_at, |unit, line| unit.transact(line, command, values));
+        if self.core.phase != Phase::Ended {
+            self.core.after_command(command);
+        }
+        self.settle(reply)
+    }
+
+    fn sleep(&mut self, time: Duration) -> Result<(), ExchangeError> {
+        self.check()?;
+        self.core.keep_house();
+        let slept = self.core.exchange.wait(time, &self.core.guard);
+        self.settle(slept)
+    }
+
+    fn interruption(&mut self) -> Option<Interruption> {
+        self.check().err().and_then(|error| error.interruption())
+    }
+
+    fn progress(&mut self, fraction: Option<f32>, text: &str) {
+        self.core.outbox.send(Event::JobProgress { fraction, text: text.to_owned() });
+    }
+
+    fn sample(&mut self, sample: Sample) {
+        self.core.send_sample(sample);
+    }
+
+    fn set_polling(&mut self, on: bool) {
+        self.polling = on;
+    }
+
+    fn address(&self) -> Address {
+        Address::new(self.identity().address).unwrap_or_default()
+    }
+
+    fn generation(&self) -> Generation {
+        self.identity().generation
+    }
+
+    fn is_simulated(&self) -> bool {
+        self.core.options.simulated
+    }
+
+    fn now(&self) -> Duration {
+        self.core.clock.now()
+    }
+
+    fn port(&self) -> String {
+        self.core.exchange.port()
+    }
+}
+
+impl Host<'_> {
+    fn identity(&self) -> &crate::device::identity::Identity {
+        self.core.units[self.core.selected].controller.identity()
+    }
+}
+
+type Outcome = Result<Result<JobOutput, Failure>, Box<dyn Any + Send>>;
+
+/// How a job ended. What broke in counts for more than what the job made of it.
+fn ending(outcome: Outcome, broken_by: Option<Interruption>) -> JobEnding {
+    match (outcome, broken_by) {
+        (Err(panic), _) => JobEnding::Panicked(last_word(panic.as_ref())),
+        (Ok(_), Some(cause)) => JobEnding::Interrupted(cause),
+        (Ok(Ok(output)), None) => JobEnding::Done(output),
+        (Ok(Err(failure)), None) => JobEnding::Failed(failure),
+    }
+}
+
+fn last_word(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "no message".to_owned())
+}
+
+fn reason_of(broken_by: Option<Interruption>) -> DisarmReason {
+    match broken_by {
+        Some(Interruption::Stop) => DisarmReason::Stop,
+        Some(Interruption::DeadMan) => DisarmReason::DeadMan,
+        Some(Interruption::Disarm) => DisarmReason::Asked,
+        Some(Interruption::Closing) => DisarmReason::Closing,
+        Some(Interruption::Cancelled | Interruption::TimeLimit) | None => DisarmReason::JobEnded,
+    }
+}
+
+fn link_lost() -> ExchangeError {
+    TransportError::Gone { detail: "the link was lost before".to_owned() }.into()
+}

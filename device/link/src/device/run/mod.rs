@@ -1,0 +1,361 @@
+//! The loop of the device thread: one step at a time, so that a test can drive it in virtual time.
+//!
+//! Each step does the most urgent thing that is due: what breaks in (Stop, dead-man, disarm, close), then a request, then
+//! one reading of the sweep. Read [`DeviceLoop::step`] first; requests, readings, halts and jobs stand in a file each.
+
+mod halting;
+mod jobs;
+mod reading;
+mod requests;
+mod thread;
+
+pub use thread::DeviceThread;
+
+use super::controller::{Controller, DiscoverError, Family, Line};
+use super::drive::ArmScope;
+use super::event::{DisarmReason, Event};
+use super::handle::{DeviceHandle, Envelope};
+use super::mcp::PacketSerial;
+use super::options::DeviceOptions;
+use super::outbox::Outbox;
+use super::request::PollRate;
+use super::signals::{Guard, Signals};
+use crate::clock::Clock;
+use crate::exchange::packet::Permit;
+use crate::exchange::{Exchange, ExchangeError, Interruption, Watch};
+use crate::failure::Failure;
+use crate::transport::{Stream, Transport};
+use crossbeam_channel::{Receiver, bounded};
+use reading::{Plan, Sweep};
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+/// How often the link's figures are told.
+const STATISTICS_INTERVAL: Duration = Duration::from_millis(500);
+/// How soon a full event channel is tried again.
+const FLUSH_INTERVAL: Duration = Duration::from_millis(5);
+
+/// What a step leaves to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// More is due now.
+    Again,
+    /// Nothing is due before this time, unless a request or a signal comes.
+    IdleUntil(Duration),
+    /// The link is closed or lost.
+    Ended,
+}
+
+/// A link and all that is done over it.
+pub struct DeviceLoop {
+    exchange: Exchange,
+    clock: Arc<dyn Clock>,
+    signals: Arc<Signals>,
+    guard: Guard,
+    inbox: Receiver<Envelope>,
+    waiting: VecDeque<Envelope>,
+    outbox: Outbox,
+    family: Box<dyn Family>,
+    options: DeviceOptions,
+    stream: Option<Stream>,
+    units: Vec<Unit>,
+    selected: usize,
+    armed: Option<Armed>,
+    poll: PollRate,
+    sweep: Sweep,
+    statistics_at: Duration,
+    phase: Phase,
+    /// The last bytes sent, to read their answer by when traffic is shown.
+    last_sent: Vec<u8>,
+}
+
+/// One unit of the link.
+struct Unit {
+    controller: Box<dyn Controller>,
+    plan: Plan,
+    /// What each motor was last told, in the unit of the command.
+    setpoints: [Option<f64>; 2],
+    /// Whether a motion command may be in effect that came from this program.
+    moved: bool,
+    /// Whether this program has started the unit's script.
+    script_started: bool,
+}
+
+/// What is armed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Armed {
+    scope: ArmScope,
+    controller_timeout: Option<Duration>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    Connecting,
+    Running,
+    Ended,
+}
+
+impl DeviceLoop {
+    /// A loop over `transport` for MCP and RoboClaw controllers, and the handle that speaks to it. Nothing is sent before
+    /// the first step.
+    #[must_use]
+    pub fn new(
+        transport: Box<dyn Transport>,
+        clock: Arc<dyn Clock>,
+        options: DeviceOptions,
+    ) -> (Self, DeviceHandle) {
+        Self::with_family(transport, clock, options, Box::new(PacketSerial)).0
+    }
+
+    /// The same for any family, with the channel that wakes an idle thread.
+    fn with_family(
+        transport: Box<dyn Transport>,
+        clock: Arc<dyn Clock>,
+        options: DeviceOptions,
+        family: Box<dyn Family>,
+    ) -> ((Self, DeviceHandle), Receiver<()>) {
+        let (signals, woken) = Signals::new(clock.clone());
+        let (requests, inbox) = bounded(options.request_capacity.max(1));
+        let (events, for_window) = bounded(options.event_capacity.max(1));
+        let waker = Arc::new(Mutex::new(None));
+        let now = clock.now();
+        let handle = DeviceHandle::new(requests, for_window, signals.clone(), waker.clone());
+        let device_loop = Self {
+            exchange: Exchange::new(transport, clock.clone()),
+            guard: Guard::new(signals.clone()),
+            outbox: Outbox::new(events, waker),
+            waiting: VecDeque::new(),
+            stream: options.stream,
+            poll: options.poll,
+            units: Vec::new(),
+            selected: 0,
+            armed: None,
+            sweep: Sweep::new(now),
+            statistics_at: now + STATISTICS_INTERVAL,
+            phase: Phase::Connecting,
+            last_sent: Vec::new(),
+            clock,
+            signals,
+            inbox,
+            family,
+            options,
+        };
+        ((device_loop, handle), woken)
+    }
+
+    /// Does the most urgent thing that is due.
+    pub fn step(&mut self) -> Step {
+        let step = match self.phase {
+            Phase::Connecting => self.connect(),
+            Phase::Running => self.run_once(),
+            Phase::Ended => Step::Ended,
+        };
+        self.keep_house();
+        step
+    }
+
+    fn run_once(&mut self) -> Step {
+        let now = self.clock.now();
+        if let Some(cause) = self.guard.interruption(now) {
+            self.serve(cause);
+            return Step::Again;
+        }
+        if let Some(envelope) = self.next_request() {
+            self.handle(envelope);
+            return Step::Again;
+        }
+        if self.is_reading_due(now) {
+            self.read_one();
+            return Step::Again;
+        }
+        Step::IdleUntil(self.next_moment(now))
+    }
+
+    /// Does what broke in.
+    fn serve(&mut self, cause: Interruption) {
+        match cause {
+            Interruption::Stop => self.halt(DisarmReason::Stop),
+            Interruption::DeadMan => self.halt(DisarmReason::DeadMan),
+            Interruption::Disarm => self.halt(DisarmReason::Asked),
+            Interruption::Closing => self.close(),
+            // These end jobs, and no job runs here.
+            Interruption::Cancelled | Interruption::TimeLimit => {}
+        }
+    }
+
+    /// Finds the units of the link and introduces them.
+    fn connect(&mut self) -> Step {
+        let guesses = self.options.simulated;
+        let permit = Permit { guesses, ..Permit::default() };
+        let asked_at = self.clock.now();
+        let mut line = Line::new(&mut self.exchange, &self.guard, permit, asked_at);
+        match self.family.discover(&mut line, &self.options) {
+            Ok(units) => self.introduce(units),
+            Err(DiscoverError::NothingThere(failure)) => self.end(Event::Lost(failure)),
+            Err(DiscoverError::Exchange(error)) => self.break_off_connecting(&error),
+        }
+        Step::Again
+    }
+
+    fn introduce(&mut self, controllers: Vec<Box<dyn Controller>>) {
+        for controller in controllers {
+            self.outbox.send(Event::Connected(controller.identity().clone()));
+            self.units.push(Unit::new(controller));
+        }
+        self.phase = Phase::Running;
+        self.sweep = Sweep::new(self.clock.now());
+        self.tell_selection();
+    }
+
+    fn break_off_connecting(&mut self, error: &ExchangeError) {
+        match error.interruption() {
+            Some(Interruption::Stop) => self.halt(DisarmReason::Stop),
+            Some(_) => self.close(),
+            None => self.lose(error),
+        }
+    }
+
+    /// Stops what this program set in motion and closes the link.
+    fn close(&mut self) {
+        if self.armed.is_some() || self.units.iter().any(|unit| unit.moved) {
+            self.halt(DisarmReason::Closing);
+        }
+        if self.phase != Phase::Ended {
+            self.end(Event::Closed);
+        }
+    }
+
+    /// The link is gone: says so, and why, and does nothing more.
+    fn lose(&mut self, error: &ExchangeError) {
+        let mend = if self.guard.is_moving() {
+            "Make sure that the motors stand still; then check power and cable, and connect again"
+        } else {
+            "Check the controller's power and the cable, then connect again"
+        };
+        let failure =
+            Failure::new("go on talking to the controller", self.exchange.port(), error.full(), mend);
+        self.end(Event::Lost(failure));
+    }
+
+    fn end(&mut self, last: Event) {
+        if self.phase == Phase::Ended {
+            return;
+        }
+        if self.armed.take().is_some() {
+            self.outbox.send(Event::Disarmed(DisarmReason::LinkLost));
+        }
+        self.guard.set_armed(false, self.signals.disarms());
+        self.guard.motion_ends();
+        self.phase = Phase::Ended;
+        self.outbox.send(last);
+    }
+
+    /// Statistics, traffic and waiting events.
+    fn keep_house(&mut self) {
+        let now = self.clock.now();
+        if now >= self.statistics_at && self.phase == Phase::Running {
+            self.statistics_at = now + STATISTICS_INTERVAL;
+            let mut statistics = self.exchange.statistics();
+            statistics.dropped_samples = self.outbox.dropped_samples();
+            self.outbox.send(Event::Link(statistics));
+        }
+        self.tell_traffic();
+        self.outbox.flush();
+        self.outbox.wake_window();
+    }
+
+    fn tell_traffic(&mut self) {
+        for traffic in self.exchange.take_traffic() {
+            let controller = self.units.get(self.selected).map(|unit| &unit.controller);
+            let describe = |reply| controller.map(|unit| unit.describe_traffic(&self.last_sent, reply));
+            let text = if traffic.sent {
+                self.last_sent.clone_from(&traffic.bytes);
+                controller.map(|unit| unit.describe_traffic(&traffic.bytes, None))
+            } else {
+                describe(Some(&traffic.bytes))
+            };
+            self.outbox.send(Event::Traffic { traffic, text: text.unwrap_or_default() });
+        }
+    }
+
+    /// When something is due by time alone.
+    fn next_moment(&self, now: Duration) -> Duration {
+        let flush_at = self.outbox.is_waiting().then(|| now + FLUSH_INTERVAL);
+        [Some(self.statistics_at), self.next_reading_at(), self.guard.next(), flush_at]
+            .into_iter()
+            .flatten()
+            .min()
+            .unwrap_or(self.statistics_at)
+    }
+
+    /// What may go out now.
+    fn permit(&self) -> Permit {
+        let scope = self.armed.map(|armed| armed.scope);
+        Permit {
+            motion: scope.is_some_and(ArmScope::allows_motion),
+            script: scope.is_some_and(ArmScope::allows_scripts),
+            guesses: self.options.simulated,
+        }
+    }
+
+    /// Lets the selected unit do something that was asked for at `asked_at`.
+    fn act<T>(
+        &mut self,
+        asked_at: Duration,
+        act: impl FnOnce(&mut dyn Controller, &mut Line<'_>) -> Result<T, ExchangeError>,
+    ) -> Result<T, ExchangeError> {
+        self.act_on(self.selected, asked_at, act)
+    }
+
+    fn act_on<T>(
+        &mut self,
+        index: usize,
+        asked_at: Duration,
+        act: impl FnOnce(&mut dyn Controller, &mut Line<'_>) -> Result<T, ExchangeError>,
+    ) -> Result<T, ExchangeError> {
+        let permit = self.permit();
+        let was_moving = self.guard.is_moving();
+        let unit = &mut self.units[index];
+        let mut line = Line::new(&mut self.exchange, &self.guard, permit, asked_at);
+        let done = act(unit.controller.as_mut(), &mut line);
+        unit.moved |= line.has_moved() || self.guard.is_moving() && !was_moving;
+        done
+    }
+
+    /// Tells a failure of an act, unless something broke in that is served anyway. A lost link ends the loop.
+    fn tell(&mut self, tried: &str, error: &ExchangeError) {
+        if error.is_link_lost() {
+            self.lose(error);
+        } else if error.interruption().is_none() {
+            let failure = error.failure(tried, self.name_of(self.selected));
+            self.outbox.send(Event::Failure(failure));
+        }
+    }
+
+    /// A unit and its port, for sentences.
+    fn name_of(&self, index: usize) -> String {
+        let port = self.exchange.port();
+        match self.units.get(index) {
+            Some(unit) => format!("0x{:02X} at {port}", unit.controller.identity().address),
+            None => port,
+        }
+    }
+
+    fn tell_selection(&mut self) {
+        if let Some(unit) = self.units.get(self.selected) {
+            let address = unit.controller.identity().address;
+            self.outbox.send(Event::Selected { address, stream: self.stream });
+        }
+    }
+}
+
+impl Unit {
+    fn new(controller: Box<dyn Controller>) -> Self {
+        let plan = Plan::new(controller.poll_list());
+        Self { controller, plan, setpoints: [None; 2], moved: false, script_started: false }
+    }
+}
+
+#[cfg(test)]
+mod tests;

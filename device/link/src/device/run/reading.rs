@@ -1,0 +1,273 @@
+//! Reading the signals: a sweep of the selected unit's fast ones with one slow one in turn, and one look at one of the
+//! other units of the bus.
+
+use super::DeviceLoop;
+use crate::device::channel::{Channel, Sample};
+use crate::device::controller::{PollItem, PollList};
+use crate::device::event::{DisarmReason, Event};
+use crate::device::request::PollRate;
+use crate::device::status::StatusReport;
+use crate::exchange::ExchangeError;
+use crate::failure::Failure;
+use brushwork_protocol::packet_serial::status::Condition;
+use std::collections::VecDeque;
+use std::time::Duration;
+
+/// A status that does not change is told this often.
+const STATUS_INTERVAL: Duration = Duration::from_secs(1);
+/// A reading that failed this often in a row while others worked is left out for a while.
+const MISSES_TO_SUSPEND: u32 = 2;
+/// For how long it is left out.
+const SUSPENSION: Duration = Duration::from_secs(30);
+/// A link on which nothing has answered for so long is lost.
+pub const SILENCE_LIMIT: Duration = Duration::from_secs(2);
+/// How often signals are read while something is armed, if not more often.
+const ARMED_INTERVAL: Duration = Duration::from_millis(100);
+
+/// The sweep that is under way, or when the next one is due.
+pub struct Sweep {
+    items: VecDeque<(usize, PollItem)>,
+    sample: Sample,
+    begun_at: Duration,
+    next_at: Duration,
+    other_unit: usize,
+    sequence: u64,
+    failures_in_a_row: u32,
+    /// Silence before this does not count.
+    restarted_at: Duration,
+}
+
+impl Sweep {
+    /// Nothing under way; the first is due at `now`.
+    pub fn new(now: Duration) -> Self {
+        Self {
+            items: VecDeque::new(),
+            sample: Sample::new(0),
+            begun_at: now,
+            next_at: now,
+            other_unit: 0,
+            sequence: 0,
+            failures_in_a_row: 0,
+            restarted_at: now,
+        }
+    }
+
+    /// Drops what is under way.
+    pub fn abandon(&mut self) {
+        self.items.clear();
+    }
+}
+
+/// What is read from one unit, and what of it works.
+pub struct Plan {
+    list: PollList,
+    next_slow: usize,
+    misses: Vec<(PollItem, u32, Duration)>,
+    last_status: Option<StatusReport>,
+    status_told_at: Duration,
+}
+
+impl Plan {
+    /// A plan for what a unit can be asked.
+    pub fn new(list: PollList) -> Self {
+        Self { list, next_slow: 0, misses: Vec::new(), last_status: None, status_told_at: Duration::ZERO }
+    }
+
+    /// The items of a sweep that begins at `now`.
+    fn sweep(&mut self, now: Duration) -> Vec<PollItem> {
+        let mut items: Vec<_> =
+            self.list.fast.iter().copied().filter(|item| self.works(*item, now)).collect();
+        for _ in 0..self.list.slow.len() {
+            let item = self.list.slow[self.next_slow % self.list.slow.len()];
+            self.next_slow = (self.next_slow + 1) % self.list.slow.len();
+            if self.works(item, now) {
+                items.push(item);
+                break;
+            }
+        }
+        items
+    }
+
+    fn works(&self, item: PollItem, now: Duration) -> bool {
+        !self
+            .misses
+            .iter()
+            .any(|(missed, misses, until)| *missed == item && *misses >= MISSES_TO_SUSPEND && now < *until)
+    }
+
+    /// Notes a failed reading; whether it is left out from now on.
+    fn missed(&mut self, item: PollItem, now: Duration) -> bool {
+        let known = self.misses.iter().position(|(missed, ..)| *missed == item);
+        let index = known.unwrap_or_else(|| {
+            self.misses.push((item, 0, now));
+            self.misses.len() - 1
+        });
+        let (_, misses, until) = &mut self.misses[index];
+        *misses += 1;
+        *until = now + SUSPENSION;
+        *misses == MISSES_TO_SUSPEND
+    }
+
+    fn answered(&mut self, item: PollItem) {
+        self.misses.retain(|(missed, ..)| *missed != item);
+    }
+}
+
+impl DeviceLoop {
+    /// Whether a reading is due.
+    pub(super) fn is_reading_due(&self, now: Duration) -> bool {
+        !self.sweep.items.is_empty() || self.next_reading_at().is_some_and(|at| now >= at)
+    }
+
+    /// When the next sweep begins.
+    pub(super) fn next_reading_at(&self) -> Option<Duration> {
+        self.interval().map(|_| self.sweep.next_at)
+    }
+
+    /// Reads one item.
+    pub(super) fn read_one(&mut self) {
+        let now = self.clock.now();
+        if self.sweep.items.is_empty() {
+            self.begin_sweep(now);
+        }
+        let Some((index, item)) = self.sweep.items.pop_front() else { return self.end_sweep() };
+        let mut sample = std::mem::replace(&mut self.sweep.sample, Sample::new(0));
+        let mut other = Sample::new(0);
+        let into = if index == self.selected { &mut sample } else { &mut other };
+        let read = self.act_on(index, now, |controller, line| controller.poll(line, item, into));
+        self.sweep.sample = sample;
+        match read {
+            Ok(status) => {
+                self.sweep.failures_in_a_row = 0;
+                self.units[index].plan.answered(item);
+                if let Some(status) = status {
+                    self.take_status(index, status);
+                }
+            }
+            Err(error) => self.reading_failed(index, item, &error),
+        }
+        if self.sweep.items.is_empty() {
+            self.end_sweep();
+        }
+    }
+
+    fn begin_sweep(&mut self, now: Duration) {
+        let Some(unit) = self.units.get_mut(self.selected) else { return };
+        self.sweep.sample = Sample::new(unit.controller.identity().address);
+        self.sweep.begun_at = now;
+        let selected = self.selected;
+        self.sweep.items.extend(unit.plan.sweep(now).into_iter().map(|item| (selected, item)));
+        if let Some((index, item)) = self.look_at_another(now) {
+            self.sweep.items.push_back((index, item));
+        }
+    }
+
+    /// The status of the next of the other units.
+    fn look_at_another(&mut self, now: Duration) -> Option<(usize, PollItem)> {
+        if self.units.len() < 2 {
+            return None;
+        }
+        self.sweep.other_unit = (self.sweep.other_unit + 1) % self.units.len();
+        let index = self.sweep.other_unit;
+        let plan = &self.units[index].plan;
+        plan.list
+            .status
+            .filter(|item| index != self.selected && plan.works(*item, now))
+            .map(|item| (index, item))
+    }
+
+    /// Hands the sample over and sets the time of the next sweep.
+    fn end_sweep(&mut self) {
+        let now = self.clock.now();
+        let due = self.interval().map_or(now, |interval| self.sweep.begun_at + interval);
+        self.sweep.next_at = due.max(now);
+        let mut sample = std::mem::replace(&mut self.sweep.sample, Sample::new(0));
+        if sample.is_empty() {
+            return;
+        }
+        let (from, to) = (sample.requested_at, sample.replied_at);
+        let setpoints = self.units[self.selected].setpoints;
+        for (setpoint, channel) in setpoints.into_iter().zip([Channel::M1Setpoint, Channel::M2Setpoint]) {
+            if let Some(value) = setpoint {
+                sample.set(channel, value, from, to);
+            }
+        }
+        self.send_sample(sample);
+    }
+
+    /// Numbers a sample and sends it.
+    pub(super) fn send_sample(&mut self, mut sample: Sample) {
+        sample.sequence = self.sweep.sequence;
+        self.sweep.sequence += 1;
+        self.outbox.send(Event::Sample(Box::new(sample)));
+    }
+
+    /// Time between sweeps; `None` while nothing is read.
+    fn interval(&self) -> Option<Duration> {
+        let asked = match self.poll {
+            PollRate::Off => None,
+            PollRate::Every(interval) => Some(interval),
+            PollRate::Fastest => Some(Duration::ZERO),
+        };
+        let Some(armed) = self.armed else { return asked };
+        // Reading also feeds the controller's own time-out, so it must not be rarer than that.
+        let longest = armed.controller_timeout.map_or(ARMED_INTERVAL, |timeout| timeout / 3);
+        Some(asked.unwrap_or(ARMED_INTERVAL).min(longest))
+    }
+
+    /// Tells a status that is new, and disarms when the controller has stopped motors by itself.
+    fn take_status(&mut self, index: usize, status: StatusReport) {
+        let plan = &mut self.units[index].plan;
+        let changed = plan.last_status.is_none_or(|last| last.word != status.word);
+        plan.last_status = Some(status);
+        if changed || status.at >= plan.status_told_at + STATUS_INTERVAL {
+            plan.status_told_at = status.at;
+            self.outbox.send(Event::Status(status));
+        }
+        let faults: Vec<_> = status.faults().map(Condition::title).collect();
+        if !faults.is_empty() && self.armed.is_some() && index == self.selected {
+            self.halt(DisarmReason::Fault(faults.join(", ")));
+        }
+    }
+
+    fn reading_failed(&mut self, index: usize, item: PollItem, error: &ExchangeError) {
+        if error.is_link_lost() {
+            return self.lose(error);
+        }
+        if error.interruption().is_some() {
+            // Served in the next step; the item is read again after that.
+            return self.sweep.items.push_front((index, item));
+        }
+        let now = self.clock.now();
+        self.sweep.failures_in_a_row += 1;
+        if self.armed.is_some() && index == self.selected {
+            return self.halt(DisarmReason::NoAnswer);
+        }
+        let silent_since = self.exchange.last_reply_at().max(self.sweep.restarted_at);
+        if self.sweep.failures_in_a_row > 1 && now >= silent_since + SILENCE_LIMIT {
+            return self.lose(error);
+        }
+        if self.sweep.failures_in_a_row == 1 && self.units[index].plan.missed(item, now) {
+            self.tell_left_out(index, item, error);
+        }
+    }
+
+    fn tell_left_out(&mut self, index: usize, item: PollItem, error: &ExchangeError) {
+        let seconds = SUSPENSION.as_secs();
+        let failure = Failure::new(
+            format!("read: {}", item.name),
+            self.name_of(index),
+            error.full(),
+            format!("It is left out for {seconds} s, then tried again"),
+        );
+        self.outbox.send(Event::Failure(failure));
+    }
+
+    /// Forgets the sweep under way and what it counted: after a halt, a job, a change of unit.
+    pub(super) fn restart_sweep(&mut self) {
+        self.sweep.abandon();
+        self.sweep.failures_in_a_row = 0;
+        self.sweep.restarted_at = self.clock.now();
+        self.sweep.next_at = self.sweep.next_at.min(self.sweep.restarted_at);
+    }
+}

@@ -1,0 +1,267 @@
+//! What is asked of the loop, one request after the other.
+
+use super::{Armed, DeviceLoop};
+use crate::device::controller::ArmCheck;
+use crate::device::drive::{ArmScope, Drive};
+use crate::device::event::{DisarmReason, Event};
+use crate::device::handle::Envelope;
+use crate::device::request::Request;
+use crate::device::signals::MOTION_LIFE;
+use crate::exchange::ExchangeError;
+use crate::failure::Failure;
+use brushwork_protocol::packet_serial::{Motor, Value};
+use std::time::Duration;
+
+/// How far requests are looked ahead to find one that replaces an earlier one.
+const LOOK_AHEAD: usize = 64;
+
+impl DeviceLoop {
+    /// The next request. Of duties and speeds that follow each other only the last is worth sending.
+    pub(super) fn next_request(&mut self) -> Option<Envelope> {
+        while self.waiting.len() < LOOK_AHEAD {
+            let Ok(envelope) = self.inbox.try_recv() else { break };
+            self.waiting.push_back(envelope);
+        }
+        let mut envelope = self.waiting.pop_front()?;
+        while let (Request::Drive(drive), Some(next)) = (&envelope.request, self.waiting.front())
+            && let Request::Drive(later) = &next.request
+            && drive.is_replaced_by(later)
+            && let Some(later) = self.waiting.pop_front()
+        {
+            envelope = later;
+        }
+        Some(envelope)
+    }
+
+    /// Does what is asked.
+    pub(super) fn handle(&mut self, envelope: Envelope) {
+        let Envelope { request, asked_at, .. } = envelope;
+        let overtaken = envelope.stops != self.signals.stops();
+        match request {
+            Request::Select(address) => self.select(address),
+            Request::Poll(rate) => {
+                self.poll = rate;
+                self.restart_sweep();
+            }
+            Request::SetStream(stream) => {
+                self.stream = Some(stream);
+                self.tell_selection();
+            }
+            Request::Trace(on) => self.exchange.switch_trace(on),
+            Request::Arm(scope) => self.arm(scope, overtaken, envelope.disarms),
+            Request::Drive(drive) => self.drive(drive, asked_at, overtaken),
+            Request::SetEncoder { motor, counts } => {
+                self.simple("set the encoder", asked_at, |unit, line| unit.set_encoder(line, motor, counts));
+            }
+            Request::ZeroEncoders => {
+                self.simple("zero the encoders", asked_at, |unit, line| unit.zero_encoders(line));
+            }
+            Request::ResetEStop => {
+                self.simple("reset the E-stop", asked_at, |unit, line| unit.reset_estop(line));
+            }
+            Request::StartScript => self.start_script(asked_at, overtaken),
+            Request::StopScript => self.stop_script(asked_at),
+            Request::Transact { id, command, values } => {
+                self.transact(id, command, values, asked_at, overtaken);
+            }
+            Request::Job(job) => self.run_job(job, asked_at, overtaken, envelope.cancels),
+            // The handle turns these into signals, which are seen before any request.
+            Request::Disarm => self.signals.disarm(),
+            Request::CancelJob => self.signals.cancel(),
+            Request::Disconnect => self.signals.close(),
+        }
+    }
+
+    fn select(&mut self, address: u8) {
+        let found = self.units.iter().position(|unit| unit.controller.identity().address == address);
+        let Some(index) = found else {
+            let failure = Failure::new(
+                format!("select the unit 0x{address:02X}"),
+                self.exchange.port(),
+                "no unit answered there when the link was opened",
+                "Disconnect and connect again to look for it",
+            );
+            return self.outbox.send(Event::Failure(failure));
+        };
+        if index != self.selected {
+            if self.armed.is_some() {
+                self.halt(DisarmReason::Selection);
+            }
+            self.selected = index;
+            self.restart_sweep();
+        }
+        self.tell_selection();
+    }
+
+    /// Arms when the controller itself would stop the motors if this program died.
+    fn arm(&mut self, scope: ArmScope, overtaken: bool, disarms: u64) {
+        if let Some(armed) = self.armed.filter(|armed| armed.scope == scope && !overtaken) {
+            return self.tell_armed(armed, Vec::new());
+        }
+        if self.armed.is_some() && !self.halt_and_confirm(DisarmReason::ScopeChange) {
+            return self.refuse(scope, "the motors could not be stopped first", "Press Stop, then try again");
+        }
+        if overtaken {
+            return self.refuse(
+                scope,
+                "Stop was pressed after it was asked for",
+                "Arm again when you are ready",
+            );
+        }
+        let stream = self.stream;
+        let now = self.clock.now();
+        match self.act(now, |unit, line| {
+            let check = unit.check_arming(line, stream)?;
+            let warnings = if check.reasons.is_empty() { unit.other_drivers(line)? } else { Vec::new() };
+            Ok((check, warnings))
+        }) {
+            Ok((check, warnings)) if check.reasons.is_empty() => {
+                self.enter_armed(scope, &check, warnings, disarms);
+            }
+            Ok((ArmCheck { reasons, .. }, _)) => self.outbox.send(Event::ArmRefused { scope, reasons }),
+            Err(error) if error.is_link_lost() => self.lose(&error),
+            Err(error) => self.refuse(scope, &error.full(), error.mend()),
+        }
+    }
+
+    fn enter_armed(&mut self, scope: ArmScope, check: &ArmCheck, warnings: Vec<String>, disarms: u64) {
+        let controller_timeout = check.controller_timeout;
+        let armed = Armed { scope, controller_timeout };
+        self.armed = Some(armed);
+        self.guard.set_armed(true, disarms);
+        self.restart_sweep();
+        self.tell_armed(armed, warnings);
+    }
+
+    fn tell_armed(&mut self, armed: Armed, warnings: Vec<String>) {
+        let Armed { scope, controller_timeout } = armed;
+        let address = self.units[self.selected].controller.identity().address;
+        self.outbox.send(Event::Armed { address, scope, controller_timeout, warnings });
+    }
+
+    fn refuse(&mut self, scope: ArmScope, came_back: &str, mend: &str) {
+        let reason =
+            Failure::new(format!("arm {scope}"), self.name_of(self.selected), came_back, mend.to_owned());
+        self.outbox.send(Event::ArmRefused { scope, reasons: vec![reason] });
+    }
+
+    fn drive(&mut self, drive: Drive, asked_at: Duration, overtaken: bool) {
+        let waited = self.clock.now().saturating_sub(asked_at);
+        let refusal = if overtaken {
+            Some("Stop was pressed after it")
+        } else if waited > MOTION_LIFE {
+            Some("it waited for longer than a motion may live")
+        } else {
+            None
+        };
+        if let Some(came_back) = refusal {
+            return self.tell_not_sent("move the motors", came_back);
+        }
+        match self.act(asked_at, |unit, line| unit.drive(line, &drive)) {
+            Ok(()) => self.note_setpoints(&drive),
+            Err(error) => {
+                let unsure = is_unsure(&error);
+                self.tell("move the motors", &error);
+                if unsure {
+                    self.halt(DisarmReason::NoAnswer);
+                }
+            }
+        }
+    }
+
+    fn note_setpoints(&mut self, drive: &Drive) {
+        let unit = &mut self.units[self.selected];
+        for motor in Motor::BOTH {
+            if let Some(command) = drive.of(motor) {
+                unit.setpoints[motor.index()] = Some(command.setpoint());
+            }
+        }
+    }
+
+    fn start_script(&mut self, asked_at: Duration, overtaken: bool) {
+        if overtaken {
+            return self.tell_not_sent("start the script", "Stop was pressed after it");
+        }
+        let started = self.act(asked_at, |unit, line| unit.start_script(line));
+        self.units[self.selected].script_started |= !matches!(started, Err(ExchangeError::NotArmed { .. }));
+        if let Err(error) = started {
+            let unsure = is_unsure(&error);
+            self.tell("start the script", &error);
+            if unsure {
+                self.halt(DisarmReason::NoAnswer);
+            }
+        }
+    }
+
+    fn stop_script(&mut self, asked_at: Duration) {
+        match self.act(asked_at, |unit, line| unit.stop_script(line)) {
+            Ok(()) => self.units[self.selected].script_started = false,
+            Err(error) => self.tell("stop the script", &error),
+        }
+    }
+
+    fn simple(
+        &mut self,
+        tried: &str,
+        asked_at: Duration,
+        act: impl FnOnce(
+            &mut dyn crate::device::controller::Controller,
+            &mut crate::device::controller::Line<'_>,
+        ) -> Result<(), ExchangeError>,
+    ) {
+        if let Err(error) = self.act(asked_at, act) {
+            self.tell(tried, &error);
+        }
+    }
+
+    fn transact(&mut self, id: u64, command: u8, values: Vec<Value>, asked_at: Duration, overtaken: bool) {
+        let tried = format!("send command {command}");
+        let on = self.name_of(self.selected);
+        if overtaken && self.units[self.selected].controller.can_move(command) {
+            let failure =
+                Failure::new(tried, on, "Stop was pressed after it", "Send it again when you are ready");
+            return self.outbox.send(Event::Transacted { id, result: Err(failure) });
+        }
+        let reply = self.act(asked_at, |unit, line| unit.transact(line, command, values));
+        self.after_command(command);
+        match reply {
+            Ok(reply) => self.outbox.send(Event::Transacted { id, result: Ok(reply.values) }),
+            Err(error) => {
+                self.outbox.send(Event::Transacted { id, result: Err(error.failure(tried, on)) });
+                if error.is_link_lost() {
+                    self.lose(&error);
+                }
+            }
+        }
+    }
+
+    /// What a raw command of a window or a job means for arming: a script may run now, or what arming was based on may
+    /// have changed.
+    pub(super) fn after_command(&mut self, command: u8) {
+        let permit = self.permit();
+        let unit = &mut self.units[self.selected];
+        unit.script_started |= permit.script && unit.controller.starts_script(command);
+        if self.armed.is_some() && unit.controller.undermines_arming(command) {
+            self.halt(DisarmReason::SettingsChanged);
+        }
+    }
+
+    fn tell_not_sent(&mut self, tried: &str, came_back: &str) {
+        let failure =
+            Failure::new(tried, self.name_of(self.selected), came_back, "Ask again when you are ready");
+        self.outbox.send(Event::Failure(failure));
+    }
+}
+
+/// Whether a command went out and nobody knows what became of it.
+fn is_unsure(error: &ExchangeError) -> bool {
+    let sent = matches!(
+        error,
+        ExchangeError::TimedOut { .. }
+            | ExchangeError::BadCrc { .. }
+            | ExchangeError::BadAcknowledgement { .. }
+            | ExchangeError::Malformed { .. }
+            | ExchangeError::MayHaveRun { .. }
+    );
+    sent && !error.is_link_lost() && error.interruption().is_none()
+}
