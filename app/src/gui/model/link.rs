@@ -200,13 +200,14 @@ fn stopped(report: &StopReport) -> Vec<Effect> {
 /// The thirteen lamps as a status report lights them.
 fn lamps_of(report: &StatusReport) -> Lamps {
     let mut lamps = Lamps::all(LampState::Ok);
-    for condition in &report.conditions {
-        let state = match condition.severity {
-            Severity::Note => LampState::Active,
+    for condition in report.conditions.iter() {
+        let state = match condition.severity() {
+            Severity::Signal => LampState::Active,
             Severity::Warning => LampState::Warning,
-            Severity::Fault => LampState::Error,
+            Severity::Error => LampState::Error,
         };
-        let lit = Lamp::ALL.into_iter().filter(|lamp| Some(lamp.abbreviation()) == condition.lamp);
+        let abbreviation = condition.lamp().map(brushwork_link::device::Lamp::abbreviation);
+        let lit = Lamp::ALL.into_iter().filter(|lamp| Some(lamp.abbreviation()) == abbreviation);
         lit.for_each(|lamp| lamps.raise(lamp, state));
     }
     lamps

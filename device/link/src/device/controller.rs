@@ -105,6 +105,10 @@ pub trait Controller: Send {
         values: Vec<Value>,
     ) -> Result<Reply, ExchangeError>;
 
+    /// Speaks to another address from now on, since the unit has just been given it. `false` if the family has no such
+    /// address.
+    fn set_address(&mut self, address: u8) -> bool;
+
     /// Whether a command can set a motor in motion.
     fn can_move(&self, command: u8) -> bool;
 

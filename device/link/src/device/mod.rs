@@ -21,6 +21,7 @@ mod signals;
 mod status;
 mod stop;
 
+pub use brushwork_protocol::packet_serial::status::{Condition, Conditions, Lamp, Severity};
 pub use channel::{Channel, Sample};
 pub use drive::{ArmScope, Drive, DriveCommand};
 pub use event::{DisarmReason, Event};

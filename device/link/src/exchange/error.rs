@@ -115,6 +115,16 @@ impl ExchangeError {
         }
     }
 
+    /// Whether the controller was asked and did not answer in time.
+    #[must_use]
+    pub fn is_no_answer(&self) -> bool {
+        match self {
+            Self::TimedOut { .. } => true,
+            Self::MayHaveRun { cause } => cause.is_no_answer(),
+            _ => false,
+        }
+    }
+
     /// Whether the controller was asked and answered nothing or nothing that fits, as a unit does that lacks the command.
     #[must_use]
     pub fn is_unusable_answer(&self) -> bool {

@@ -9,8 +9,6 @@ mod driving;
 mod generation;
 mod polling;
 mod stopping;
-#[cfg(test)]
-mod tests;
 
 pub use discover::PacketSerial;
 
@@ -178,6 +176,18 @@ impl Controller for Mcp {
             self.has_buffered = true;
         }
         self.speaker.ask_values(line, command, values)
+    }
+
+    fn set_address(&mut self, address: u8) -> bool {
+        let Some(new) = Address::new(address) else { return false };
+        let old = std::mem::replace(&mut self.speaker.address, new).get();
+        self.identity.address = address;
+        // A unit that answers all eight goes on answering the others.
+        let others = &mut self.identity.also_answers;
+        if let Some(other) = others.iter_mut().find(|other| **other == address) {
+            *other = old;
+        }
+        true
     }
 
     fn can_move(&self, command: u8) -> bool {

@@ -8,6 +8,7 @@ use crate::device::job_context::{JobContext, JobHost};
 use crate::exchange::{ExchangeError, Interruption, Reply, Watch};
 use crate::failure::Failure;
 use crate::transport::TransportError;
+use crate::wire::HiddenSettings;
 use brushwork_protocol::packet_serial::{Address, Generation, Value};
 use std::any::Any;
 use std::panic::{self, AssertUnwindSafe};
@@ -209,6 +210,14 @@ impl JobHost for Host<'_> {
 
     fn port(&self) -> String {
         self.core.exchange.port()
+    }
+
+    fn set_address(&mut self, address: Address) -> bool {
+        self.core.readdress(address.get())
+    }
+
+    fn hidden_settings(&self) -> Option<&dyn HiddenSettings> {
+        self.core.options.hidden.as_deref()
     }
 }
 

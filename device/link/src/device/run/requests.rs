@@ -246,6 +246,17 @@ impl DeviceLoop {
         }
     }
 
+    /// The selected unit has been given another address; the window is told as if it had just been found.
+    pub(super) fn readdress(&mut self, address: u8) -> bool {
+        let unit = &mut self.units[self.selected];
+        if !unit.controller.set_address(address) {
+            return false;
+        }
+        self.outbox.send(Event::Connected(unit.controller.identity().clone()));
+        self.tell_selection();
+        true
+    }
+
     fn tell_not_sent(&mut self, tried: &str, came_back: &str) {
         let failure =
             Failure::new(tried, self.name_of(self.selected), came_back, "Ask again when you are ready");
