@@ -71,10 +71,6 @@ PAIRS = [
     (62, POSITION, 64, (4096, 256, 512, 50, 4, -20000, 30000)),
     (57, (70, 300), 59, (70, 300)),
     (58, (60, 280), 60, (60, 280)),
-    (92, (1,), 91, (1, 0)),
-    (92, (0,), 91, (0, 0)),
-    (93, (1,), 91, (0, 1)),
-    (93, (0,), 91, (0, 0)),
     (128, (16777, 8388608), 130, (16777, 8388608)),
     (128, (0, 0), 130, (0, 0)),
     (129, (16778, 8388609), 131, (16778, 8388609)),
@@ -85,8 +81,6 @@ PAIRS = [
     (139, (1, 0, 0), 140, (1, 0, 0)),
     (141, (0x80, 1), 142, (1,)),
     (141, (0x80, 0), 142, (0,)),
-    (14, (25,), 15, (25,)),
-    (14, (0,), 15, (0,)),
     (246, (3000,), 247, (3000,)),
     (246, (0,), 247, (0,)),
 ]
@@ -96,6 +90,13 @@ def settings(findings, client):
     for number, values, reader, wanted in PAIRS:
         client.write(number, *values)
         findings.equal(f"write {number} {values}, read {reader}", client.read(reader), wanted)
+    encoder_modes = client.read(91)
+    findings.equal("encoder modes", encoder_modes, tuple(m["encoder_mode"] for m in truth()["settings"]["motors"]))
+    client.write(92, 1)
+    client.write(93, 2)
+    findings.equal("encoder modes written", client.read(91), (1, 2))
+    client.write(92, encoder_modes[0])
+    client.write(93, encoder_modes[1])
     client.write(68, 222222)
     client.write(69, 333333)
     findings.equal("default accelerations", client.read(81), (222222, 333333))

@@ -31,7 +31,6 @@ SIGNAL_VALUES = "5i"
 
 # Reads: number -> reply layout. Lists are a count byte and records.
 READS = {
-    15: "B",
     16: "IB",
     17: "IB",
     18: "IB",
@@ -70,7 +69,7 @@ LISTS = {138: "B", 144: SIGNAL_RECORD, 146: STREAM_RECORD, 147: SIGNAL_VALUES}
 
 # Writes: number -> payload layout.
 WRITES = {
-    **{number: "B" for number in range(0, 15)},
+    **{number: "B" for number in range(0, 14)},
     20: "",
     22: "I",
     23: "I",

@@ -2,8 +2,98 @@
 //!
 //! The keys are those that the scripts in `tests/foreign` look up; numbers are raw, as the unit keeps them.
 
-use brushwork_sim::settings::{ControlInput, MotorRegisters, Settings, SignalSettings, StreamSettings};
+use std::f64::consts::TAU;
+
+use brushwork_protocol::packet_serial::Motor;
+use brushwork_protocol::packet_serial::status::Condition;
+use brushwork_sim::bridge::BridgeOutput;
+use brushwork_sim::controller::{Controller, UnitView};
+use brushwork_sim::plant::ShaftSide;
+use brushwork_sim::settings::{
+    ControlInput, MotorRegisters, Settings, SignalSettings, StreamSettings, USER_WORDS,
+};
+use brushwork_sim::signals::SignalValues;
 use serde_json::{Value, json};
+
+/// Everything: settings, EEPROM, and what the machine does at this moment.
+///
+/// # Panics
+/// When the unit has no power: then it knows nothing.
+#[must_use]
+pub fn of(controller: &Controller) -> Value {
+    let unit = controller.unit().expect("the unit has power");
+    let view = controller.view();
+    let tenths = |value: f64| (value * 10.0).round() as i64;
+    json!({
+        "version": unit.version_text(),
+        "settings": settings(&controller.settings()),
+        "saved_settings": settings(&controller.stored_settings()),
+        "user_memory": (0..USER_WORDS).filter_map(|word| u8::try_from(word).ok())
+            .map(|word| controller.eeprom().user_word(word)).collect::<Vec<u16>>(),
+        "main_tenths": tenths(view.bus_volts),
+        "logic_tenths": tenths(view.logic_volts),
+        "temperature_tenths": [tenths(view.board_celsius[0]), second_sensor(controller, tenths(view.board_celsius[1]))],
+        "status_word": unit.status_word(),
+        "estop": unit.conditions().contains(Condition::EStop),
+        "estop_pressed": unit.readings().estop_pressed,
+        "aux_duties": unit.auxiliary_duties(),
+        "signals": unit.signal_values().iter().map(signal_values).collect::<Vec<Value>>(),
+        "can_error_state": 0,
+        "motors": Motor::BOTH.map(|motor| live_motor(controller, &unit, motor)),
+    })
+}
+
+/// Speed of a motor's shaft as its encoder would count it, from the motion of the machine.
+#[must_use]
+pub fn speed_counts_per_s(controller: &Controller, motor: Motor) -> f64 {
+    let encoder = &controller.config().world.axes[motor.index()].encoder;
+    let shaft = &controller.view().axes[motor.index()].truth;
+    let radians_per_second = match encoder.side {
+        ShaftSide::Motor => shaft.motor_radians_per_second,
+        ShaftSide::Load => shaft.load_radians_per_second,
+    };
+    radians_per_second * encoder.counts_per_turn / TAU
+}
+
+/// What a sensor 2 would read, or the 0 of a model that has none (MCP manual 1.2.10).
+fn second_sensor(controller: &Controller, tenths: i64) -> i64 {
+    if controller.config().model.second_temperature { tenths } else { 0 }
+}
+
+/// The bridge's duty in raw units; 0 while it brakes or coasts.
+fn duty_raw(controller: &Controller, motor: Motor) -> i64 {
+    match controller.view().axes[motor.index()].output {
+        BridgeOutput::Duty(duty) => (duty * 32_767.0).round() as i64,
+        BridgeOutput::Brake | BridgeOutput::Coast => 0,
+    }
+}
+
+fn live_motor(controller: &Controller, unit: &UnitView<'_>, motor: Motor) -> Value {
+    let channel = unit.channel(motor);
+    let speed = speed_counts_per_s(controller, motor);
+    let amps = controller.view().axes[motor.index()].truth.amps;
+    json!({
+        "encoder_counts": channel.encoder().position(),
+        "encoder_status": channel.encoder().status(),
+        "speed_counts_per_s": speed,
+        "speed_status": u8::from(channel.speeds().filtered < 0),
+        "duty_raw": duty_raw(controller, motor),
+        "current_hundredths": (amps * 100.0).round() as i64,
+        "buffer": channel.buffer_length(),
+        "speed_error_counts_per_s": channel.errors().speed_counts_per_s,
+        "position_error_counts": channel.errors().position_counts,
+    })
+}
+
+fn signal_values(values: &SignalValues) -> Value {
+    json!({
+        "command": values.command,
+        "position": values.position,
+        "percent": values.percent,
+        "speed": values.speed,
+        "speeds": values.average_speed,
+    })
+}
 
 /// Every setting of a unit.
 #[must_use]
