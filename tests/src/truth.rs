@@ -5,7 +5,6 @@
 use std::f64::consts::TAU;
 
 use brushwork_protocol::packet_serial::Motor;
-use brushwork_protocol::packet_serial::status::Condition;
 use brushwork_sim::bridge::BridgeOutput;
 use brushwork_sim::controller::{Controller, UnitView};
 use brushwork_sim::plant::ShaftSide;
@@ -34,11 +33,11 @@ pub fn of(controller: &Controller) -> Value {
         "logic_tenths": tenths(view.logic_volts),
         "temperature_tenths": [tenths(view.board_celsius[0]), second_sensor(controller, tenths(view.board_celsius[1]))],
         "status_word": unit.status_word(),
-        "estop": unit.conditions().contains(Condition::EStop),
+        "estop": unit.estop_is_tripped(),
         "estop_pressed": unit.readings().estop_pressed,
         "aux_duties": unit.auxiliary_duties(),
         "signals": unit.signal_values().iter().map(signal_values).collect::<Vec<Value>>(),
-        "can_error_state": 0,
+        "can_error_state": unit.can_error_state(),
         "motors": Motor::BOTH.map(|motor| live_motor(controller, &unit, motor)),
     })
 }

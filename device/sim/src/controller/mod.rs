@@ -391,17 +391,6 @@ impl UnitView<'_> {
         &self.firmware.outputs
     }
 
-    /// The values of every input pin, as command 147 reads them.
-    pub fn signal_values(&self) -> Vec<SignalValues> {
-        let signals = self.firmware.signals.iter().zip(&self.firmware.settings.signals);
-        signals.map(|(signal, settings)| signal.values(settings)).collect()
-    }
-
-    /// The duties of commands 102 and 104 in generation 4.
-    pub fn auxiliary_duties(&self) -> [u16; 5] {
-        self.firmware.auxiliary_duties
-    }
-
     /// The priority level in force, 1 to 3, if any.
     pub fn priority_level(&self) -> Option<usize> {
         self.firmware.source.map(|(level, _)| level + 1)
