@@ -10,7 +10,6 @@ use crate::plant::{ABSOLUTE_FULL_SCALE_VOLTS, ABSOLUTE_MAX_COUNTS, EncoderKind, 
 use crate::priority::{self, Activity, Source};
 use crate::signals::{FULL_SCALE, PinReading, Triggers};
 use crate::world::{PinState, World};
-use brushwork_protocol::codes::ENCODER_PIN_NONE;
 use brushwork_protocol::models::{Family, Pin};
 use brushwork_protocol::packet_serial::{Generation, Motor};
 use std::time::Duration;
@@ -197,38 +196,25 @@ impl Firmware {
     }
 
     fn has_encoder(&self, motor: Motor) -> bool {
-        let mode = usize::from(self.settings.motors[motor.index()].encoder_mode);
-        match self.model.family {
-            Family::RoboClaw => true,
-            Family::Mcp => self
-                .settings
-                .signals
-                .get(mode)
-                .is_some_and(|settings| settings.kind != KIND_NONE || settings.digital),
-        }
+        let mode = self.settings.motors[motor.index()].encoder_mode;
+        self.model.family == Family::RoboClaw || usize::from(mode) < self.signals.len()
     }
 
+    /// What a motor takes for its encoder (commands 91 to 93). Assumed, besides the numbering of
+    /// [`ENCODER_PIN_NONE`](brushwork_protocol::codes::ENCODER_PIN_NONE): the number of a pin without a function leaves the motor its
+    /// own encoder input, so that clients which set RoboClaw modes 0 and 1 find one; a number beyond the pins is none.
     fn encoder_input(&self, motor: Motor) -> EncoderInput {
         let mode = self.settings.motors[motor.index()].encoder_mode;
-        let own = self.readings.plugs[motor.index()];
-        if self.model.family == Family::RoboClaw {
-            let is_absolute = mode & ROBOCLAW_ABSOLUTE != 0;
-            return match (is_absolute, own.kind) {
-                (false, EncoderKind::Quadrature) => EncoderInput::Quadrature(own.counts),
-                (true, EncoderKind::Analog | EncoderKind::Pulse) => EncoderInput::Absolute(own.counts as i32),
-                (false, _) => EncoderInput::Quadrature(0),
-                (true, _) => EncoderInput::Absolute(0),
-            };
-        }
         let index = usize::from(mode);
-        let Some(settings) = self.settings.signals.get(index).filter(|_| i64::from(mode) != ENCODER_PIN_NONE)
-        else {
-            return EncoderInput::Quadrature(0);
-        };
-        match settings.kind {
-            KIND_ENCODER => EncoderInput::Quadrature(self.counts[index]),
-            KIND_NONE if !settings.digital => EncoderInput::Quadrature(0),
-            _ => EncoderInput::Absolute(self.signals[index].raw() as i32),
+        let own = self.readings.plugs[motor.index()];
+        match (self.model.family, self.settings.signals.get(index)) {
+            (Family::RoboClaw, _) => roboclaw_encoder(mode, own),
+            (Family::Mcp, None) => EncoderInput::Quadrature(0),
+            (Family::Mcp, Some(pin)) => match (pin.kind, pin.digital) {
+                (KIND_ENCODER, false) => EncoderInput::Quadrature(self.counts[index]),
+                (KIND_NONE, false) => own_encoder(own),
+                _ => EncoderInput::Absolute(self.signals[index].raw() as i32),
+            },
         }
     }
 
@@ -288,6 +274,23 @@ impl Firmware {
             Some(motor) => f64::from(self.channels[motor.index()].encoder().position()),
             None => self.counts[index] as f64,
         }
+    }
+}
+
+fn own_encoder(own: EncoderReading) -> EncoderInput {
+    match own.kind {
+        EncoderKind::Quadrature => EncoderInput::Quadrature(own.counts),
+        EncoderKind::Analog | EncoderKind::Pulse => EncoderInput::Absolute(own.counts as i32),
+    }
+}
+
+/// A RoboClaw is told which kind of encoder it has; of another kind it hears nothing.
+fn roboclaw_encoder(mode: u8, own: EncoderReading) -> EncoderInput {
+    let expects_absolute = mode & ROBOCLAW_ABSOLUTE != 0;
+    match (own_encoder(own), expects_absolute) {
+        (EncoderInput::Quadrature(_), true) => EncoderInput::Absolute(0),
+        (EncoderInput::Absolute(_), false) => EncoderInput::Quadrature(0),
+        (matching, _) => matching,
     }
 }
 

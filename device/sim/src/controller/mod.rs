@@ -143,6 +143,10 @@ impl Controller {
         if !self.world.plugged() {
             self.ports.iter_mut().for_each(Port::reset);
         }
+        if let Some(firmware) = &mut self.firmware {
+            firmware.readings.estop_pressed = self.world.estop_pressed();
+            firmware.update_estop();
+        }
         Ok(())
     }
 

@@ -23,10 +23,14 @@ impl Firmware {
         for motor in Motor::BOTH {
             self.protection.over_current[motor.index()] |= self.channels[motor.index()].is_current_limited();
         }
-        // A button that is wired to a pin acts through that pin's action.
+        self.update_loop_faults();
+        self.update_estop();
+    }
+
+    /// The button acts at once, between ticks too. One that is wired to a pin acts through that pin's action.
+    pub(super) fn update_estop(&mut self) {
         let button = self.readings.estop_pressed && !self.estop_is_on_a_pin;
         self.estop.update(button || self.triggers.estop, self.estop_reset());
-        self.update_loop_faults();
         let is_held = self.estop.is_tripped() || self.has_latched_error();
         if is_held && !self.is_held {
             self.stop_both();

@@ -275,6 +275,17 @@ fn any_input_can_be_a_motors_encoder() {
 }
 
 #[test]
+fn the_number_of_a_pin_without_a_function_leaves_the_motors_own_encoder() {
+    for mode in [0, 1] {
+        let mut bench = Bench::new(Generation::Gen4);
+        bench.ask(number::SET_ENCODER_MODE_M1, &[mode]);
+        bench.ask(number::DUTY_M1, &[8_000]);
+        bench.wait(Duration::from_millis(300));
+        assert!(bench.read(number::READ_ENCODER_M1, "encoder") > 100, "mode {mode}");
+    }
+}
+
+#[test]
 fn an_actuator_with_an_analog_encoder_comes_with_its_input_set() {
     let model = models::lookup("mcp236").expect("in the list");
     let axis = crate::presets::lookup("linear-actuator").expect("built in");

@@ -174,10 +174,9 @@ fn an_unlocked_emergency_stop_is_reset_by_command_and_the_motors_stay_stopped_un
     bench.ask(number::RESET_ESTOP, &[]); // still pressed
     assert!(has(&mut bench, Condition::EStop));
     bench.apply(&WorldAction::EStop { pressed: false });
-    bench.wait_talking(A_MOMENT);
     bench.ask(number::RESET_ESTOP, &[]);
-    bench.wait_talking(A_MOMENT);
     assert!(!has(&mut bench, Condition::EStop));
+    bench.wait_talking(A_MOMENT);
     assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), 0);
     bench.ask(number::DUTY_M1, &[10_000]);
     bench.wait_talking(A_MOMENT);
