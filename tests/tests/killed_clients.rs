@@ -1,0 +1,60 @@
+//! A client that dies in mid-motion: the controller's own time-out stops the motors, and nothing else is needed.
+#![cfg(unix)]
+#![expect(clippy::print_stdout, reason = "measured times belong into the record of a test run")]
+
+use std::time::Duration;
+
+use brushwork_protocol::packet_serial::Generation;
+use brushwork_tests::foreign;
+use brushwork_tests::program::Program;
+use brushwork_tests::simulated::{OnPty, is_at_rest, is_driven};
+use brushwork_tests::workspace;
+
+const LIMIT: Duration = Duration::from_secs(10);
+
+/// What a busy test machine may add to a time-out: a late server thread, a late look.
+const LATENESS: Duration = Duration::from_millis(250);
+
+fn driving_client(controller: &OnPty, time_out: Duration) -> Program {
+    let script = workspace::root().join("tests/foreign/driving_client.py");
+    let port = controller.port();
+    let time_out_ms = time_out.as_millis().to_string();
+    let python = foreign::python();
+    let text = |path: &std::path::Path| path.to_string_lossy().into_owned();
+    let mut client = Program::start(&text(&python), &[text(&script), text(&port), time_out_ms]);
+    client.wait_for("driving", LIMIT);
+    client
+}
+
+fn dies_in_mid_motion(signal: &str, time_out: Duration) {
+    if foreign::is_left_out("python") {
+        return;
+    }
+    let controller = OnPty::start(Generation::Gen1);
+    let client = driving_client(&controller, time_out);
+    controller.wait_until(LIMIT, is_driven).expect("the client drives");
+    std::thread::sleep(time_out + time_out / 2);
+    assert!(controller.look(is_driven), "the motors run on for as long as the client talks");
+
+    client.signal(signal);
+    let stopped =
+        controller.wait_until(LIMIT, |unit| !is_driven(unit)).expect("the time-out stops the motors");
+    println!("SIG{signal}: bridges off {stopped:?} after the kill, time-out {time_out:?}");
+    assert!(stopped <= time_out + LATENESS, "took {stopped:?} with a time-out of {time_out:?}");
+    assert!(controller.wait_until(LIMIT, is_at_rest).is_some(), "the shafts come to rest");
+}
+
+#[test]
+fn a_killed_client_leaves_motors_that_stop_within_the_time_out() {
+    dies_in_mid_motion("KILL", Duration::from_millis(1000));
+}
+
+#[test]
+fn a_shorter_time_out_stops_them_sooner() {
+    dies_in_mid_motion("KILL", Duration::from_millis(200));
+}
+
+#[test]
+fn a_frozen_client_is_as_good_as_a_dead_one() {
+    dies_in_mid_motion("STOP", Duration::from_millis(300));
+}
