@@ -7,7 +7,8 @@ use std::time::Duration;
 
 /// Controllers that share the wire of one stream: each hears everything, each answers to its own address.
 ///
-/// Time is common. Two units with one address both answer, one after the other.
+/// Time is common. Two units with one address both answer, one after the other. Assumed: the wire works whether or not the units
+/// are in multi-unit mode, which real ones must be (MCP manual 2.2.11).
 #[derive(Clone, Debug)]
 pub struct Bus {
     units: Vec<Controller>,

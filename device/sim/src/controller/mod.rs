@@ -20,24 +20,23 @@ mod script;
 mod status;
 #[cfg(test)]
 mod tests;
+mod unit_view;
 mod watch;
 
 pub use bus::{Bus, BusError};
 pub use config::{ControllerConfig, FirmwareOptions};
 pub use port::{FAST_TURNAROUND, SLOW_TURNAROUND, turnaround};
 pub use readings::Readings;
+pub use unit_view::UnitView;
 
 use crate::bridge::BridgeOutput;
 use crate::machine::{Machine, StreamIndex};
-use crate::motion::{Channel, ControlLaw};
+use crate::motion::ControlLaw;
 use crate::plant::ParamsError;
 use crate::settings::{Eeprom, Settings, UnknownKey};
-use crate::signals::SignalValues;
-use crate::supervision::Leds;
 use crate::world::{World, WorldAction, WorldParams, WorldView};
 use answer::{Answer, find};
-use brushwork_protocol::packet_serial::status::Conditions;
-use brushwork_protocol::packet_serial::{ACK, Framed, Motor, encode_reply, encode_reply_named};
+use brushwork_protocol::packet_serial::{ACK, Framed, encode_reply, encode_reply_named};
 use firmware::Firmware;
 use loader::LoaderStep;
 use memory::Memory;
@@ -162,7 +161,7 @@ impl Controller {
 
     /// What the firmware has found and decided; `None` without power.
     pub fn unit(&self) -> Option<UnitView<'_>> {
-        self.firmware.as_ref().map(|firmware| UnitView { firmware })
+        self.firmware.as_ref().map(|firmware| UnitView::new(firmware))
     }
 
     /// The settings in RAM; without power those that a start would load.
@@ -350,104 +349,5 @@ impl Machine for Controller {
 
     fn plugged(&self) -> bool {
         self.world.plugged()
-    }
-}
-
-/// What the firmware of a unit has found and decided: the truth that a client's readings are compared with.
-#[derive(Clone, Copy, Debug)]
-pub struct UnitView<'a> {
-    firmware: &'a Firmware,
-}
-
-impl UnitView<'_> {
-    /// The text of command 21, without its end mark.
-    pub fn version_text(&self) -> String {
-        self.firmware.options.version_text(self.firmware.model)
-    }
-
-    /// The control side of a motor: encoder register, speeds, duty, buffer, errors.
-    pub fn channel(&self, motor: Motor) -> &Channel {
-        &self.firmware.channels[motor.index()]
-    }
-
-    /// The measurements of the last tick.
-    pub fn readings(&self) -> &Readings {
-        &self.firmware.readings
-    }
-
-    /// Conditions, whether or not the generation can report them.
-    pub fn conditions(&self) -> Conditions {
-        self.firmware.conditions()
-    }
-
-    /// The status word of command 90.
-    pub fn status_word(&self) -> u32 {
-        self.firmware.status_word()
-    }
-
-    /// The LEDs.
-    pub fn leds(&self) -> Leds {
-        self.firmware.leds
-    }
-
-    /// Which digital outputs are on.
-    pub fn outputs(&self) -> &[bool] {
-        &self.firmware.outputs
-    }
-
-    /// The priority level in force, 1 to 3, if any.
-    pub fn priority_level(&self) -> Option<usize> {
-        self.firmware.source.map(|(level, _)| level + 1)
-    }
-
-    /// Whether a stored script runs.
-    pub fn script_is_running(&self) -> bool {
-        self.firmware.script.is_running()
-    }
-
-    /// Whether the unit waits for new firmware.
-    pub fn is_in_loader(&self) -> bool {
-        self.firmware.loader.is_some()
-    }
-
-    /// Time since power up.
-    pub fn up_for(&self) -> Duration {
-        self.firmware.up_for()
-    }
-
-    /// Main battery, logic battery (0.1 V), temperatures 1 and 2 (0.1 degrees) as the wire carries them.
-    pub fn supply_raw(&self) -> [i64; 4] {
-        [
-            self.firmware.main_battery_raw(),
-            self.firmware.logic_battery_raw(),
-            self.firmware.temperature_raw(0),
-            self.firmware.temperature_raw(1),
-        ]
-    }
-
-    /// The five values of command 147 of each pin.
-    pub fn signal_values(&self) -> Vec<SignalValues> {
-        let signals = self.firmware.signals.iter().zip(&self.firmware.settings.signals);
-        signals.map(|(signal, settings)| signal.values(settings)).collect()
-    }
-
-    /// Whether the emergency stop holds the motors.
-    pub fn estop_is_tripped(&self) -> bool {
-        self.firmware.estop.is_tripped()
-    }
-
-    /// Duties of commands 102 and 104 in generation 4.
-    pub fn auxiliary_duties(&self) -> [u16; 5] {
-        self.firmware.auxiliary_duties
-    }
-
-    /// The error register of the CAN port (command 180).
-    pub fn can_error_state(&self) -> u32 {
-        self.firmware.can.error_state()
-    }
-
-    /// Motor current in 10 mA as the wire carries it.
-    pub fn current_raw(&self, motor: Motor) -> i64 {
-        self.firmware.current_raw(motor)
     }
 }

@@ -38,7 +38,8 @@ pub(super) const HANDLERS: Handlers = &[
         Answer::Ack
     }),
     (number::READ_SERIAL_NUMBER, |unit, _| {
-        Answer::Data(vec![("serial_number", Value::Text(unit.settings.unit.serial_number.clone()))])
+        let label = label_text(&unit.settings.unit.serial_number, unit.generation);
+        Answer::Data(vec![("serial_number", Value::Text(label))])
     }),
     (number::SET_ADDRESS_MIXED, |unit, args| {
         // Assumed: an address outside 0x80 to 0x87 leaves the old one.
@@ -87,6 +88,15 @@ impl Firmware {
         let address = self.settings.unit.address;
         self.settings = Settings::factory(self.model, address);
     }
+}
+
+/// As much of a serial number as 36 bytes hold: 18 characters of two bytes in generation 3, ASCII later.
+fn label_text(label: &str, generation: Generation) -> String {
+    if generation < Generation::Gen4 {
+        let units: Vec<u16> = label.encode_utf16().take(18).collect();
+        return String::from_utf16_lossy(&units);
+    }
+    label.chars().take(36).map(|letter| if letter.is_ascii() { letter } else { '?' }).collect()
 }
 
 /// From generation 3 on, 80 and 94 do nothing without the key, though they are acknowledged (public clients, 2015-2025).

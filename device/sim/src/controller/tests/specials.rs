@@ -180,3 +180,19 @@ fn the_old_voltage_commands_set_single_limits() {
     assert_eq!((main.int("min"), main.int("max")), (110, 240));
     assert_eq!((logic.int("min"), logic.int("max")), (60, 121));
 }
+
+#[test]
+fn a_serial_number_of_any_bytes_does_not_upset_the_unit() {
+    for generation in [Generation::Gen3, Generation::Gen4] {
+        for fill in [0x00, 0x41, 0x80, 0xd8, 0xff] {
+            for length in [0, 1, 35, 36, 37, 255] {
+                let mut bench = Bench::new(generation);
+                let label: Vec<u8> = [&[0x80, 96, length][..], &[fill; 36]].concat();
+                bench.raw(&with_crc(&label));
+                bench.wait(Duration::from_millis(20));
+                let back = bench.raw(&[0x80, 97]);
+                assert_eq!(back.len(), 39, "{generation}, {length} bytes of {fill:02x}"); // length, 36 bytes, CRC
+            }
+        }
+    }
+}
