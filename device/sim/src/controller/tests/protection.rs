@@ -3,6 +3,8 @@
 use super::support::Bench;
 use crate::bridge::BridgeOutput;
 use crate::controller::ControllerConfig;
+use crate::plant::BrakeResistorParams;
+use crate::presets;
 use crate::supervision::Leds;
 use crate::world::{Motor, WorldAction};
 use brushwork_protocol::models;
@@ -237,4 +239,50 @@ fn voltage_offsets_shift_the_readings_and_not_the_limits() {
     bench.ask(number::SET_VOLTAGE_OFFSETS, &[-7, 5]);
     assert_eq!(bench.read(number::READ_MAIN_BATTERY, "main_battery"), before - 7);
     assert_eq!(bench.read(number::READ_LOGIC_BATTERY, "logic_battery"), 125);
+}
+
+/// A flywheel on a power supply that takes no current back, slowed from full speed: at how many of 300 looks the unit had to
+/// brake because the main battery was too high.
+fn looks_at_which_protection_brakes(dout_action: i64) -> usize {
+    let flywheel = presets::lookup("flywheel").expect("built in");
+    let mut config = ControllerConfig::default();
+    config.world = presets::world_of(flywheel, flywheel, config.model.pins.len());
+    config.world.supply.can_sink = false;
+    config.world.supply.brake_resistor = Some(BrakeResistorParams { ohms: 2.0, dout: 0 });
+    let max_tenths = (config.world.supply.open_circuit_volts * 10.0) as i64 + 30;
+    let mut bench = Bench::of(config);
+    bench.ask(number::SET_MAIN_VOLTAGES, &[100, max_tenths]);
+    bench.ask(number::SET_DOUT_ACTION, &[0, dout_action]);
+    bench.ask(number::DUTY_ACCEL_M1, &[32_767, 655_359]);
+    bench.wait_talking(Duration::from_secs(30));
+    bench.ask(number::DUTY_ACCEL_M1, &[16_000, 6_553]); // to half duty in about 2.5 s: regeneration
+    let mut braking = 0;
+    for _ in 0..300 {
+        bench.wait_talking(Duration::from_millis(10));
+        braking += usize::from(output(&bench) == BridgeOutput::Brake);
+    }
+    braking
+}
+
+#[test]
+fn an_output_with_the_over_voltage_action_clamps_the_link_so_that_protection_need_not_brake() {
+    let (free, clamped) = (looks_at_which_protection_brakes(0), looks_at_which_protection_brakes(7));
+    assert!(free > 30 && clamped * 5 < free, "braking at {free} of 300 looks, clamped at {clamped}");
+}
+
+#[test]
+fn two_machines_of_one_seed_say_the_same_and_another_seed_says_something_else() {
+    let talk = |seed: u64| {
+        let mut bench = Bench::of(ControllerConfig { seed, ..ControllerConfig::default() });
+        bench.ask(number::SPEED_ACCEL_BOTH, &[10_000, 2_000, -1_500]);
+        let mut replies = Vec::new();
+        for _ in 0..200 {
+            bench.wait(Duration::from_millis(7));
+            replies.push(bench.raw(&[0x80, number::READ_CURRENTS]));
+            replies.push(bench.raw(&[0x80, number::READ_ENCODERS]));
+        }
+        replies
+    };
+    assert_eq!(talk(5), talk(5));
+    assert_ne!(talk(5), talk(6));
 }
