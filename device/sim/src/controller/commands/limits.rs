@@ -76,6 +76,7 @@ pub(super) const HANDLERS: Handlers = &[
     (number::RESET_ESTOP, |unit, _| {
         let reset = unit.estop_reset();
         unit.estop.reset(reset);
+        unit.update_estop();
         Answer::Ack
     }),
     (number::SET_ESTOP_LOCK, |unit, args| {

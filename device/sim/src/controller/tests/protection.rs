@@ -186,6 +186,19 @@ fn an_unlocked_emergency_stop_is_reset_by_command_and_the_motors_stay_stopped_un
 }
 
 #[test]
+fn a_command_right_behind_the_reset_is_taken() {
+    let mut bench = running(Generation::Gen1);
+    bench.ask(number::SET_ESTOP_LOCK, &[0xaa]);
+    bench.apply(&WorldAction::EStop { pressed: true });
+    bench.wait_talking(A_MOMENT);
+    bench.apply(&WorldAction::EStop { pressed: false });
+    bench.ask(number::RESET_ESTOP, &[]);
+    bench.ask(number::DUTY_M1, &[10_000]);
+    bench.wait_talking(A_MOMENT);
+    assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), 10_000);
+}
+
+#[test]
 fn generation_4_can_reset_by_itself_and_the_others_take_its_code_for_locked() {
     for generation in Generation::ALL {
         let mut bench = Bench::new(generation);
@@ -285,4 +298,19 @@ fn two_machines_of_one_seed_say_the_same_and_another_seed_says_something_else() 
     };
     assert_eq!(talk(5), talk(5));
     assert_ne!(talk(5), talk(6));
+}
+
+#[test]
+fn time_may_be_advanced_in_any_pieces() {
+    let run = |pieces: u32| {
+        let mut bench = Bench::of(ControllerConfig { seed: 9, ..ControllerConfig::default() });
+        bench.ask(number::SPEED_ACCEL_BOTH, &[10_000, 2_000, -1_500]);
+        for _ in 0..pieces {
+            bench.wait(Duration::from_millis(900) / pieces);
+        }
+        let unit = bench.unit().unit().expect("it has power");
+        (bench.unit().view().axes, *unit.readings())
+    };
+    assert_eq!(run(1), run(900));
+    assert_eq!(run(1), run(45));
 }
