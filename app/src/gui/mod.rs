@@ -4,9 +4,16 @@
     reason = "the window is no library: only the program and its own tests see these items"
 )]
 
+pub mod app;
+pub mod command;
 pub mod graph;
 pub mod keys;
 pub mod model;
 pub mod parts;
+pub mod screens;
+pub mod shell;
 pub mod theme;
 pub mod widgets;
+pub mod world;
+
+pub use app::App;

@@ -31,12 +31,16 @@ pub trait Opener {
 /// An open link.
 pub struct OpenLink {
     pub device: DeviceHandle,
-    /// The world of a controller that is simulated in this program.
-    pub world: Option<Box<dyn SimulatedWorld>>,
+    /// The world of the controllers that are simulated in this program. It lives on when the link ends, so that a
+    /// cable that was pulled out can be put back.
+    pub world: Option<Arc<dyn SimulatedWorld>>,
 }
 
-/// What a person can see of a simulated controller's world, and do to it. Nothing here waits.
+/// What a person can see of a simulated world, and do to it. Nothing here waits.
 pub trait SimulatedWorld {
-    fn apply(&self, action: WorldAction);
-    fn view(&self) -> Option<Arc<WorldView>>;
+    /// Does something to the world of a unit, counted from 0.
+    fn apply(&self, unit: usize, action: WorldAction) -> Result<(), Failure>;
+
+    /// The worlds of all units; none when the simulation has ended.
+    fn views(&self) -> Option<Arc<Vec<WorldView>>>;
 }

@@ -19,16 +19,17 @@ pub struct Palette {
     pub text: Color32,
     /// Labels and units: there when looked for.
     pub weak_text: Color32,
-    /// What was chosen, what has focus.
+    /// What has focus, what can be moved.
     pub accent: Color32,
-    pub on_accent: Color32,
+    /// Behind what was chosen.
+    pub chosen: Color32,
     pub ok: Color32,
     pub warning: Color32,
     pub error: Color32,
     /// The Stop button, and nothing else.
     pub stop: Color32,
     pub on_stop: Color32,
-    /// Lines of the graph; M1 in the first of each pair, M2 in the second.
+    /// Lines of the graph, in the order of the channels.
     pub traces: [Color32; 24],
 }
 
@@ -44,7 +45,7 @@ const DARK: Palette = Palette {
     text: hex(0xdf_e3_e9),
     weak_text: hex(0x97_a1_ae),
     accent: hex(0x4a_9d_f0),
-    on_accent: hex(0x0b_17_24),
+    chosen: hex(0x24_45_68),
     ok: hex(0x45_c0_6b),
     warning: hex(0xf0_b9_29),
     error: hex(0xff_5d_57),
@@ -61,7 +62,7 @@ const LIGHT: Palette = Palette {
     text: hex(0x1a_1f_27),
     weak_text: hex(0x55_60_6e),
     accent: hex(0x15_66_c0),
-    on_accent: Color32::WHITE,
+    chosen: hex(0xcb_de_f5),
     ok: hex(0x17_86_3d),
     warning: hex(0xa8_6a_00),
     error: hex(0xc4_1c_1c),
@@ -70,17 +71,17 @@ const LIGHT: Palette = Palette {
     traces: LIGHT_TRACES,
 };
 
-/// Pairs of related hues: two motors of one quantity can be told apart and still belong together.
+/// Setpoint, output, speed, position and current of motor 1, then related hues for those of motor 2, then the rest.
 const DARK_TRACES: [Color32; 24] = [
     hex(0xf5_f5_f5),
-    hex(0xa9_b4_c2),
     hex(0xff_c1_4d),
-    hex(0xff_8a_3d),
     hex(0x5a_b8_ff),
-    hex(0x7c_88_ff),
     hex(0x5f_dd_8a),
-    hex(0x1f_b5_a8),
     hex(0xff_7a_9c),
+    hex(0xa9_b4_c2),
+    hex(0xff_8a_3d),
+    hex(0x7c_88_ff),
+    hex(0x1f_b5_a8),
     hex(0xd9_6b_f2),
     hex(0xd2_e0_4f),
     hex(0x9f_8a_5c),
@@ -100,14 +101,14 @@ const DARK_TRACES: [Color32; 24] = [
 
 const LIGHT_TRACES: [Color32; 24] = [
     hex(0x22_22_22),
-    hex(0x77_80_8c),
     hex(0xc9_82_00),
-    hex(0xd9_4f_04),
     hex(0x0b_72_c9),
-    hex(0x45_4f_d8),
     hex(0x12_8a_43),
-    hex(0x00_7f_76),
     hex(0xd0_21_5a),
+    hex(0x77_80_8c),
+    hex(0xd9_4f_04),
+    hex(0x45_4f_d8),
+    hex(0x00_7f_76),
     hex(0xa0_25_c0),
     hex(0x7a_86_00),
     hex(0x7a_5c_20),
@@ -163,7 +164,7 @@ fn set(style: &mut Style, theme: Theme) {
         (TextStyle::Button, 13.5, FontFamily::Proportional),
         (TextStyle::Heading, 18.0, FontFamily::Proportional),
         (TextStyle::Monospace, 12.5, FontFamily::Monospace),
-        (figures(), 14.0, FontFamily::Monospace),
+        (figures(), 13.0, FontFamily::Monospace),
     ];
     style.text_styles = sizes.map(|(name, size, family)| (name, FontId::new(size, family))).into();
     style.drag_value_text_style = figures();
@@ -187,8 +188,8 @@ fn visuals(theme: Theme) -> Visuals {
     visuals.warn_fg_color = palette.warning;
     visuals.error_fg_color = palette.error;
     visuals.hyperlink_color = palette.accent;
-    visuals.selection.bg_fill = palette.accent;
-    visuals.selection.stroke = Stroke::new(1.0, palette.on_accent);
+    visuals.selection.bg_fill = palette.chosen;
+    visuals.selection.stroke = Stroke::new(1.0, palette.text);
     visuals.window_corner_radius = CornerRadius::same(6);
     visuals.menu_corner_radius = CornerRadius::same(6);
     let widgets = &mut visuals.widgets;
@@ -244,7 +245,7 @@ mod tests {
                 assert!(contrast(palette.weak_text, back) >= 4.5, "weak {:?} on {back:?}", palette.weak_text);
             }
             assert!(contrast(palette.on_stop, palette.stop) >= 4.5);
-            assert!(contrast(palette.on_accent, palette.accent) >= 4.5);
+            assert!(contrast(palette.text, palette.chosen) >= 7.0);
         }
     }
 

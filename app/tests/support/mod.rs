@@ -1,4 +1,6 @@
 //! What the window's tests share.
 #![allow(dead_code, reason = "each test file uses its own part of this")]
 
+pub mod bench;
 pub mod cpu;
+pub mod line;

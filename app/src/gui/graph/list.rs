@@ -15,7 +15,7 @@ const SWATCH: f32 = 14.0;
 
 /// The channels, one per row.
 pub fn channels_ui(ui: &mut Ui, graph: &mut LiveGraph) {
-    let footer = 64.0;
+    let footer = 62.0;
     ScrollArea::vertical().max_height((ui.available_height() - footer).max(ROW_HEIGHT)).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         for index in 0..graph.channels.len() {
@@ -28,7 +28,9 @@ pub fn channels_ui(ui: &mut Ui, graph: &mut LiveGraph) {
 
 /// What is shown of time, above the graph.
 pub fn time_ui(ui: &mut Ui, graph: &mut LiveGraph) {
-    ui.horizontal(|ui| {
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        ui.spacing_mut().button_padding.x = 7.0;
         for span_s in SPANS_S {
             let text = span_text(span_s);
             if ui.selectable_label(graph.span_s == span_s, &text).clicked() {

@@ -1,7 +1,7 @@
 //! Draws the graph: the grid, a line per shown channel, the selected channel's scale at the side.
 
 use egui::{Color32, Response, Role, Sense, Stroke, Ui, Vec2b, WidgetInfo};
-use egui_plot::{GridMark, HLine, Line, Plot, PlotPoint, PlotPoints};
+use egui_plot::{AxisHints, GridMark, HLine, Line, Plot, PlotPoint, PlotPoints};
 
 use super::live::LiveGraph;
 use super::scale::DIVISIONS;
@@ -11,10 +11,19 @@ use crate::gui::theme::Palette;
 /// Width kept for the figures of the vertical axis, so that the grid never moves.
 const AXIS_WIDTH: f32 = 76.0;
 
+/// Room for one figure of the horizontal axis.
+const LABEL_WIDTH: f32 = 56.0;
+
+/// Room for one figure of the vertical axis.
+const LABEL_HEIGHT: f32 = 20.0;
+
 /// Fills what is left of `ui`.
 pub fn plot_ui(ui: &mut Ui, graph: &LiveGraph) -> Response {
     let palette = Palette::of(ui);
-    let columns = ((ui.available_width() - AXIS_WIDTH) * ui.pixels_per_point()).clamp(16.0, 8192.0) as usize;
+    let width = (ui.available_width() - AXIS_WIDTH).max(16.0);
+    let labels = (width / LABEL_WIDTH) as usize;
+    let every = (DIVISIONS as f32 * LABEL_HEIGHT / ui.available_height().max(1.0)).ceil().max(1.0) as usize;
+    let columns = (width * ui.pixels_per_point()).clamp(16.0, 8192.0) as usize;
     let columns = Columns::new(graph.history(), &graph.view(columns));
     let lines = shown_lines(graph, &columns, palette);
     let selected = &graph.channels[graph.selected];
@@ -37,15 +46,34 @@ pub fn plot_ui(ui: &mut Ui, graph: &LiveGraph) -> Response {
         .grid_color(palette.line)
         .grid_fade(0.0)
         .grid_spacing(2.0..=4.0)
-        .y_axis_min_width(AXIS_WIDTH)
         .x_grid_spacer(move |_| x_marks(span_s, division_s))
         .y_grid_spacer(|_| y_marks())
-        .x_axis_formatter(move |mark, _| time_label(mark.value, span_s, division_s))
-        .y_axis_formatter(move |mark, _| format!("{:.decimals$} {unit}", scale.value(mark.value) + 0.0))
+        .custom_x_axes(vec![
+            AxisHints::new_x()
+                .label_spacing(1.0..=2.0)
+                .tick_label_color(palette.weak_text)
+                .formatter(move |mark, _| time_label(mark.value, span_s, division_s, labels)),
+        ])
+        .custom_y_axes(vec![
+            AxisHints::new_y()
+                .label_spacing(1.0..=2.0)
+                .min_thickness(AXIS_WIDTH)
+                .tick_label_color(palette.text)
+                .formatter(move |mark, _| {
+                    let division = (mark.value * DIVISIONS as f64).round() as usize;
+                    let value = scale.value(mark.value) + 0.0;
+                    if division.is_multiple_of(every) {
+                        format!("{value:.decimals$} {unit}")
+                    } else {
+                        String::new()
+                    }
+                }),
+        ])
         .label_formatter(|_| None)
         .show(ui, |plot| {
-            plot.set_plot_bounds_x(-span_s..=0.0);
-            plot.set_plot_bounds_y(-0.01..=1.01);
+            // Room for the label of the newest second, and for lines at the very top and bottom.
+            plot.set_plot_bounds_x(-span_s..=span_s * 0.025);
+            plot.set_plot_bounds_y(-0.015..=1.015);
             let zero = scale.part(0.0);
             plot.hline(
                 HLine::new("zero", zero).stroke(Stroke::new(1.0, palette.weak_text)).allow_hover(false),
@@ -100,10 +128,10 @@ fn y_marks() -> Vec<GridMark> {
     (0..=DIVISIONS).map(|i| GridMark { value: i as f64 * part, step_size: part }).collect()
 }
 
-/// At most about a dozen labels, the newest called "now".
-fn time_label(seconds: f64, span_s: f64, division_s: f64) -> String {
+/// At most about `labels` labels, the newest called "now".
+fn time_label(seconds: f64, span_s: f64, division_s: f64, labels: usize) -> String {
     let index = (-seconds / division_s).round() as usize;
-    let every = ((span_s / division_s) / 12.0).ceil() as usize;
+    let every = ((span_s / division_s) / labels.max(1) as f64).ceil() as usize;
     let every = [1, 2, 5, 10, 20].into_iter().find(|step| *step >= every).unwrap_or(60);
     match index {
         0 => "now".to_owned(),
@@ -136,7 +164,7 @@ mod tests {
             let division_s = division_s(span_s);
             let labels = x_marks(span_s, division_s)
                 .iter()
-                .map(|mark| time_label(mark.value, span_s, division_s))
+                .map(|mark| time_label(mark.value, span_s, division_s, 12))
                 .filter(|label| !label.is_empty())
                 .count();
             assert!((6..=13).contains(&labels), "{labels} labels for {span_s} s");

@@ -1,102 +1,29 @@
-//! The thirteen status lamps (MCP manual 1.2.5).
+//! The states of the thirteen status lamps (MCP manual 1.2.5).
+
+use brushwork_link::device::{Identity, StatusReport};
+use brushwork_protocol::packet_serial::Generation;
+use brushwork_protocol::packet_serial::status::{CONDITIONS, Lamp, Severity};
 
 use crate::gui::widgets::LampState;
-
-/// One lamp.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lamp {
-    M1OverCurrent,
-    M2OverCurrent,
-    MainBatteryHigh,
-    MainBatteryLow,
-    LogicBatteryHigh,
-    LogicBatteryLow,
-    Temperature1,
-    Temperature2,
-    M1DriverFault,
-    M2DriverFault,
-    EmergencyStop,
-    M1Home,
-    M2Home,
-}
-
-impl Lamp {
-    /// All of them, in the manual's order.
-    pub const ALL: [Self; 13] = [
-        Self::M1OverCurrent,
-        Self::M2OverCurrent,
-        Self::MainBatteryHigh,
-        Self::MainBatteryLow,
-        Self::LogicBatteryHigh,
-        Self::LogicBatteryLow,
-        Self::Temperature1,
-        Self::Temperature2,
-        Self::M1DriverFault,
-        Self::M2DriverFault,
-        Self::EmergencyStop,
-        Self::M1Home,
-        Self::M2Home,
-    ];
-
-    pub const fn abbreviation(self) -> &'static str {
-        match self {
-            Self::M1OverCurrent => "M1OC",
-            Self::M2OverCurrent => "M2OC",
-            Self::MainBatteryHigh => "MBHI",
-            Self::MainBatteryLow => "MBLO",
-            Self::LogicBatteryHigh => "LBHI",
-            Self::LogicBatteryLow => "LBLO",
-            Self::Temperature1 => "TMP1",
-            Self::Temperature2 => "TMP2",
-            Self::M1DriverFault => "M1DF",
-            Self::M2DriverFault => "M2DF",
-            Self::EmergencyStop => "ESTP",
-            Self::M1Home => "M1HM",
-            Self::M2Home => "M2HM",
-        }
-    }
-
-    pub const fn title(self) -> &'static str {
-        match self {
-            Self::M1OverCurrent => "Motor 1 over current",
-            Self::M2OverCurrent => "Motor 2 over current",
-            Self::MainBatteryHigh => "Main battery over voltage",
-            Self::MainBatteryLow => "Main battery under voltage",
-            Self::LogicBatteryHigh => "Logic battery over voltage",
-            Self::LogicBatteryLow => "Logic battery under voltage",
-            Self::Temperature1 => "Temperature 1",
-            Self::Temperature2 => "Temperature 2",
-            Self::M1DriverFault => "Motor 1 driver fault",
-            Self::M2DriverFault => "Motor 2 driver fault",
-            Self::EmergencyStop => "Emergency stop",
-            Self::M1Home => "Motor 1 home or limit switch",
-            Self::M2Home => "Motor 2 home or limit switch",
-        }
-    }
-
-    const fn index(self) -> usize {
-        self as usize
-    }
-}
 
 /// The state of all lamps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lamps([LampState; Lamp::ALL.len()]);
 
 impl Lamps {
-    /// All of them the same.
-    pub const fn all(state: LampState) -> Self {
-        Self([state; Lamp::ALL.len()])
+    /// The lamps as a unit's status lights them.
+    pub fn of(report: &StatusReport, identity: Option<&Identity>) -> Self {
+        let mut lamps = Self::default();
+        for lamp in Lamp::ALL {
+            let told = identity.is_none_or(|identity| is_reported(lamp, identity));
+            let dark = if told { LampState::Ok } else { LampState::NotApplicable };
+            lamps.0[lamp as usize] = report.lamp(lamp).map_or(dark, state_of);
+        }
+        lamps
     }
 
-    pub const fn get(&self, lamp: Lamp) -> LampState {
-        self.0[lamp.index()]
-    }
-
-    /// Lights a lamp; of several reasons the gravest shows.
-    pub fn raise(&mut self, lamp: Lamp, state: LampState) {
-        let now = &mut self.0[lamp.index()];
-        *now = (*now).max(state);
+    pub fn get(&self, lamp: Lamp) -> LampState {
+        self.0[lamp as usize]
     }
 
     /// The gravest state of all.
@@ -105,28 +32,90 @@ impl Lamps {
     }
 }
 
+/// How a condition of this severity is shown.
+pub const fn state_of(severity: Severity) -> LampState {
+    match severity {
+        Severity::Signal => LampState::Active,
+        Severity::Warning => LampState::Warning,
+        Severity::Error => LampState::Error,
+    }
+}
+
+/// Whether a unit can light a lamp at all: its status word has a bit for it, and the MCP's driver faults do not exist
+/// (MCP manual 1.2.5).
+fn is_reported(lamp: Lamp, identity: &Identity) -> bool {
+    let driver_fault = matches!(lamp, Lamp::M1DriverFault | Lamp::M2DriverFault);
+    let is_mcp = identity.model.is_some_and(|model| model.starts_with("MCP"));
+    has_bit(lamp, identity.generation) && !(driver_fault && is_mcp)
+}
+
+fn has_bit(lamp: Lamp, generation: Generation) -> bool {
+    CONDITIONS.iter().any(|row| row.lamp == Some(lamp) && row.mask(generation) != 0)
+}
+
+/// The lamp's name in full, as the manual has it.
+pub const fn title(lamp: Lamp) -> &'static str {
+    match lamp {
+        Lamp::M1OverCurrent => "Motor 1 over current",
+        Lamp::M2OverCurrent => "Motor 2 over current",
+        Lamp::MainBatteryHigh => "Main battery over voltage",
+        Lamp::MainBatteryLow => "Main battery under voltage",
+        Lamp::LogicBatteryHigh => "Logic battery over voltage",
+        Lamp::LogicBatteryLow => "Logic battery under voltage",
+        Lamp::Temperature1 => "Temperature 1",
+        Lamp::Temperature2 => "Temperature 2",
+        Lamp::M1DriverFault => "Motor 1 driver fault",
+        Lamp::M2DriverFault => "Motor 2 driver fault",
+        Lamp::EStop => "Emergency stop",
+        Lamp::M1Home => "Motor 1 home or limit switch",
+        Lamp::M2Home => "Motor 2 home or limit switch",
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
+    use brushwork_protocol::packet_serial::status::Condition;
+
     use super::*;
 
-    #[test]
-    fn every_lamp_has_its_own_place_abbreviation_and_title() {
-        for (index, lamp) in Lamp::ALL.into_iter().enumerate() {
-            assert_eq!(lamp.index(), index);
-            assert_eq!(lamp.abbreviation().len(), 4);
-            let same =
-                |other: &&Lamp| other.abbreviation() == lamp.abbreviation() || other.title() == lamp.title();
-            assert_eq!(Lamp::ALL.iter().filter(same).count(), 1);
+    fn identity(model: &'static str, generation: Generation) -> Identity {
+        Identity {
+            address: 0x80,
+            family: "packet serial",
+            version_text: model.to_owned(),
+            model: Some(model),
+            firmware: "1.0.0".to_owned(),
+            generation,
+            also_answers: Vec::new(),
+            simulated: true,
+            port: "sim:mcp266".to_owned(),
+            notes: Vec::new(),
         }
     }
 
+    fn report(conditions: &[Condition]) -> StatusReport {
+        let conditions = conditions.iter().copied().collect();
+        StatusReport { address: 0x80, at: Duration::ZERO, word: 0, conditions, unknown_bits: 0 }
+    }
+
     #[test]
-    fn the_gravest_reason_shows() {
-        let mut lamps = Lamps::all(LampState::Ok);
-        lamps.raise(Lamp::Temperature1, LampState::Error);
-        lamps.raise(Lamp::Temperature1, LampState::Warning);
+    fn of_several_reasons_the_gravest_shows() {
+        let conditions = [Condition::Temperature1Error, Condition::Temperature1Warning, Condition::M1Home];
+        let lamps = Lamps::of(&report(&conditions), None);
         assert_eq!(lamps.get(Lamp::Temperature1), LampState::Error);
-        assert_eq!(lamps.worst(), LampState::Error);
+        assert_eq!(lamps.get(Lamp::M1Home), LampState::Active);
         assert_eq!(lamps.get(Lamp::Temperature2), LampState::Ok);
+        assert_eq!(lamps.worst(), LampState::Error);
+    }
+
+    #[test]
+    fn a_lamp_the_unit_cannot_light_says_so() {
+        let state =
+            |model, generation, lamp| Lamps::of(&report(&[]), Some(&identity(model, generation))).get(lamp);
+        assert_eq!(state("MCP266", Generation::Gen1, Lamp::M1DriverFault), LampState::NotApplicable);
+        assert_eq!(state("RoboClaw 2x7A", Generation::Gen1, Lamp::M1DriverFault), LampState::Ok);
+        assert_eq!(state("MCP266", Generation::Gen1, Lamp::EStop), LampState::Ok);
     }
 }

@@ -4,17 +4,14 @@
 //! sentence to say, a slider to put back to zero) is handed back as [`Effect`]s.
 
 use brushwork_link::Failure;
-use brushwork_link::device::{
-    ArmScope, DisarmReason, Event, Identity, Sample, Severity, StatusReport, StopReport,
-};
+use brushwork_link::device::{ArmScope, DisarmReason, Event, Identity, Sample, StatusReport, StopReport};
 use brushwork_link::exchange::LinkStatistics;
 use brushwork_link::transport::Stream;
 use std::time::Duration;
 
-use super::lamps::{Lamp, Lamps};
+use super::lamps::Lamps;
 use super::message::Gravity;
 use super::readings::Readings;
-use crate::gui::widgets::LampState;
 
 /// Whether motors may be moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -65,6 +62,8 @@ pub struct LinkView {
     pub arming: Arming,
     /// Why arming was refused the last time.
     pub refusals: Vec<Failure>,
+    /// What else can drive a motor while something is armed: input pins and scripts, each as a sentence.
+    pub warnings: Vec<String>,
 }
 
 impl LinkView {
@@ -84,7 +83,15 @@ impl LinkView {
             }
             Event::Sample(_) => Vec::new(),
             Event::Status(report) => self.status(report),
-            Event::Armed { scope, controller_timeout, .. } => self.armed(scope, controller_timeout),
+            Event::Armed { scope, controller_timeout, warnings, .. } => {
+                self.arming = Arming::Armed { scope, controller_timeout };
+                self.warnings = warnings;
+                self.refusals.clear();
+                vec![
+                    Effect::AtRest,
+                    Effect::Say(Gravity::Warning, format!("Armed for {scope}. Space or Esc stops.")),
+                ]
+            }
             Event::Disarmed(reason) => self.disarmed(&reason),
             Event::ArmRefused { reasons, .. } => self.refused(reasons),
             Event::Stopped(report) => stopped(&report),
@@ -138,20 +145,14 @@ impl LinkView {
         if Some(report.address) != self.selected {
             return Vec::new();
         }
-        self.lamps = lamps_of(&report);
+        self.lamps = Lamps::of(&report, self.identity());
         self.status = Some(report);
         Vec::new()
     }
 
-    fn armed(&mut self, scope: ArmScope, controller_timeout: Option<Duration>) -> Vec<Effect> {
-        self.arming = Arming::Armed { scope, controller_timeout };
-        self.refusals.clear();
-        let text = format!("Armed for {scope}. Space or Esc stops.");
-        vec![Effect::AtRest, Effect::Say(Gravity::Warning, text)]
-    }
-
     fn disarmed(&mut self, reason: &DisarmReason) -> Vec<Effect> {
         self.arming = Arming::Disarmed;
+        self.warnings.clear();
         let gravity = match reason {
             DisarmReason::Fault(_) | DisarmReason::NoAnswer | DisarmReason::LinkLost => Gravity::Error,
             DisarmReason::DeadMan => Gravity::Warning,
@@ -195,20 +196,4 @@ fn stopped(report: &StopReport) -> Vec<Effect> {
         effects.push(Effect::Say(Gravity::Error, text.to_owned()));
     }
     effects
-}
-
-/// The thirteen lamps as a status report lights them.
-fn lamps_of(report: &StatusReport) -> Lamps {
-    let mut lamps = Lamps::all(LampState::Ok);
-    for condition in report.conditions.iter() {
-        let state = match condition.severity() {
-            Severity::Signal => LampState::Active,
-            Severity::Warning => LampState::Warning,
-            Severity::Error => LampState::Error,
-        };
-        let abbreviation = condition.lamp().map(brushwork_link::device::Lamp::abbreviation);
-        let lit = Lamp::ALL.into_iter().filter(|lamp| Some(lamp.abbreviation()) == abbreviation);
-        lit.for_each(|lamp| lamps.raise(lamp, state));
-    }
-    lamps
 }

@@ -1,5 +1,13 @@
 //! The window's state as plain data. Screens read it and ask for changes; nothing here draws or waits.
 
+use std::sync::Arc;
+
+use brushwork_link::device::{Addresses, Channel, PollRate};
+use brushwork_sim::world::WorldView;
+use egui::ThemePreference;
+
+use super::graph::{ChannelInfo, LiveGraph, Scale};
+
 pub mod devices;
 pub mod lamps;
 pub mod link;
@@ -7,3 +15,137 @@ pub mod message;
 pub mod pwm;
 pub mod readings;
 pub mod screen;
+pub mod world;
+
+use devices::Devices;
+use link::LinkView;
+use message::Messages;
+use pwm::Pwm;
+use screen::Screen;
+use world::WorldPanel;
+
+/// Everything the window shows.
+#[derive(Debug)]
+pub struct Model {
+    pub screen: Screen,
+    pub appearance: Appearance,
+    pub devices: Devices,
+    /// Which addresses to look for when connecting.
+    pub addresses: Addresses,
+    pub phase: Phase,
+    /// What is known of the open link; empty while there is none.
+    pub link: LinkView,
+    pub messages: Messages,
+    pub poll: PollRate,
+    pub graph: LiveGraph,
+    pub pwm: Pwm,
+    pub world: WorldPanel,
+    /// The worlds of the simulated units, while they run.
+    pub worlds: Option<Arc<Vec<WorldView>>>,
+}
+
+/// How the window looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Appearance {
+    pub theme: ThemePreference,
+    /// Hard edges, which software rendering draws in less time.
+    pub plain: bool,
+}
+
+/// Where the link is between closed and open.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Phase {
+    #[default]
+    Closed,
+    Opening {
+        target: String,
+    },
+    Open {
+        target: String,
+    },
+    /// Asked to close; the motors are being stopped.
+    Closing {
+        target: String,
+    },
+}
+
+impl Phase {
+    pub fn is_open(&self) -> bool {
+        matches!(self, Self::Open { .. })
+    }
+
+    /// What the link goes to.
+    pub fn target(&self) -> Option<&str> {
+        match self {
+            Self::Closed => None,
+            Self::Opening { target } | Self::Open { target } | Self::Closing { target } => Some(target),
+        }
+    }
+}
+
+impl Default for Model {
+    fn default() -> Self {
+        Self {
+            screen: Screen::default(),
+            appearance: Appearance { theme: ThemePreference::System, plain: false },
+            devices: Devices::default(),
+            addresses: Addresses::default(),
+            phase: Phase::default(),
+            link: LinkView::default(),
+            messages: Messages::default(),
+            poll: PollRate::default(),
+            graph: LiveGraph::new(graph_channels(), 0.1),
+            pwm: Pwm::default(),
+            world: WorldPanel::default(),
+            worlds: None,
+        }
+    }
+}
+
+impl Model {
+    /// Which unit of the simulated world is looked at: units stand in the order of their addresses.
+    pub fn world_unit(&self) -> usize {
+        let others = self.link.units.iter().filter(|unit| Some(unit.address) < self.link.selected);
+        others.count()
+    }
+
+    /// Whether a unit has answered on an open link.
+    pub fn is_connected(&self) -> bool {
+        self.phase.is_open() && self.link.identity().is_some()
+    }
+}
+
+/// Every channel of a controller, with the scale it begins with; duty and current of both motors are shown at first.
+pub fn graph_channels() -> Vec<ChannelInfo> {
+    let info = |channel: Channel| ChannelInfo {
+        label: channel.label(),
+        unit: channel.unit(),
+        decimals: decimals(channel),
+        scale: first_scale(channel),
+        shown: matches!(channel, Channel::M1Pwm | Channel::M1Velocity | Channel::M1Current),
+    };
+    Channel::ALL.into_iter().map(info).collect()
+}
+
+/// Digits after the point that a channel's readings have.
+pub fn decimals(channel: Channel) -> usize {
+    match channel {
+        Channel::M1Current | Channel::M2Current => 2,
+        Channel::M1Setpoint | Channel::M2Setpoint | Channel::M1Pwm | Channel::M2Pwm => 1,
+        Channel::Temperature1 | Channel::Temperature2 | Channel::MainBattery | Channel::LogicBattery => 1,
+        _ => 0,
+    }
+}
+
+fn first_scale(channel: Channel) -> Scale {
+    match channel {
+        Channel::M1Setpoint | Channel::M2Setpoint | Channel::M1Pwm | Channel::M2Pwm => {
+            Scale::around_zero(100.0)
+        }
+        Channel::M1Current | Channel::M2Current => Scale::around_zero(1.0),
+        Channel::Temperature1 | Channel::Temperature2 => Scale::from_zero(100.0),
+        Channel::MainBattery => Scale::from_zero(40.0),
+        Channel::LogicBattery => Scale::from_zero(20.0),
+        _ => Scale::around_zero(1000.0),
+    }
+}

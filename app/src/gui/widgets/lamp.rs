@@ -130,7 +130,7 @@ pub fn full_ui(ui: &mut Ui, abbreviation: &str, name: &str, state: LampState) ->
         ui.painter().text(pos2(x, rect.center().y), align, text, font, color);
     };
     text(rect.left() + 36.0, Align2::LEFT_CENTER, name, body.clone(), palette.text);
-    text(rect.right() - 104.0, Align2::LEFT_CENTER, state.word(), body, state.color(palette));
+    text(rect.right() - 136.0, Align2::LEFT_CENTER, state.word(), body, state.color(palette));
     text(rect.right() - 10.0, Align2::RIGHT_CENTER, abbreviation, small, palette.weak_text);
     response
 }

@@ -1,5 +1,6 @@
 //! Widgets of our own: each draws one thing and knows nothing of controllers.
 
+pub mod arm_switch;
 pub mod lamp;
 pub mod numeric;
 pub mod readout;

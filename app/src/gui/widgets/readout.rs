@@ -1,6 +1,6 @@
 //! A live figure with its unit, as wide as its widest value, so that nothing beside it moves.
 
-use egui::{Align2, Response, Role, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align2, Response, Role, Sense, TextStyle, Ui, Vec2, WidgetInfo, pos2, vec2};
 
 use crate::gui::theme::{self, Palette};
 
@@ -19,16 +19,25 @@ pub struct Readout<'a> {
 pub const NO_VALUE: &str = "–";
 
 impl Readout<'_> {
+    /// The room it takes, whatever its value.
+    pub fn size(&self, ui: &Ui) -> Vec2 {
+        let small = TextStyle::Small.resolve(ui.style());
+        let letter = ui.fonts_mut(|fonts| fonts.glyph_width(&small, 'm'));
+        let unit_width = if self.unit_letters == 0 { 0.0 } else { letter * self.unit_letters as f32 + 4.0 };
+        vec2(self.figure_width(ui) + unit_width, ui.spacing().interact_size.y)
+    }
+
+    fn figure_width(&self, ui: &Ui) -> f32 {
+        let figures = theme::figures().resolve(ui.style());
+        ui.fonts_mut(|fonts| fonts.glyph_width(&figures, '0')) * self.digits as f32
+    }
+
     /// `None` is drawn as a dash.
     pub fn ui(&self, ui: &mut Ui, value: Option<&str>) -> Response {
         let palette = Palette::of(ui);
         let figures = theme::figures().resolve(ui.style());
         let small = TextStyle::Small.resolve(ui.style());
-        let (digit, letter) =
-            ui.fonts_mut(|fonts| (fonts.glyph_width(&figures, '0'), fonts.glyph_width(&small, 'm')));
-        let unit_width = if self.unit_letters == 0 { 0.0 } else { letter * self.unit_letters as f32 + 4.0 };
-        let figure_width = digit * self.digits as f32;
-        let size = vec2(figure_width + unit_width, ui.spacing().interact_size.y);
+        let (size, figure_width) = (self.size(ui), self.figure_width(ui));
         let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, self.spoken(value)));
         let base = rect.center().y;

@@ -7,8 +7,8 @@ use std::ops::RangeInclusive;
 
 use egui::accesskit::{Action, ActionData};
 use egui::{
-    EventFilter, Key, Modifiers, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2,
-    vec2,
+    Align, EventFilter, Key, Layout, Modifiers, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui,
+    WidgetInfo, pos2, vec2,
 };
 
 use super::numeric::Numeric;
@@ -36,7 +36,8 @@ impl Setpoint<'_> {
     /// Changes `value` in place and tells whether it did.
     pub fn ui(&self, ui: &mut Ui, value: &mut f64) -> bool {
         let before = *value;
-        ui.horizontal(|ui| {
+        let size = vec2(ui.available_width(), HEIGHT);
+        ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
             let width = (ui.available_width() - ENTRY_WIDTH - 56.0).max(120.0);
             self.rail_ui(ui, width, value);
             Numeric {

@@ -1,0 +1,344 @@
+//! The window's one place for change: events come in, commands are applied, motion is renewed.
+//!
+//! [`App::contents`] draws one frame and is all that eframe, the tests and the benchmarks need. It takes its time from
+//! the link's own clock and its links from outside ([`Parts`]), and never waits for a byte.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use brushwork_link::Failure;
+use brushwork_link::device::{ArmScope, DeviceHandle, Event, PollRate, Request};
+use brushwork_sim::world::WorldAction;
+use crossbeam_channel::{Receiver, TryRecvError};
+use egui::{Context, Key, Modifiers, Ui};
+
+use super::command::{Command, Commands};
+use super::keys;
+use super::model::link::{Arming, Effect, LinkView};
+use super::model::message::Gravity;
+use super::model::screen::Screen;
+use super::model::{Appearance, Model, Phase};
+use super::parts::{OpenLink, Parts, SimulatedWorld};
+use super::{shell, theme};
+
+/// Time between two frames while nobody touches anything: ten a second show what ten samples a second bring.
+pub const FRAME_INTERVAL: Duration = Duration::from_millis(100);
+
+/// Time between two looks at a link that is being opened.
+const OPENING_INTERVAL: Duration = Duration::from_millis(50);
+
+/// Events taken in one frame. More wait for the next, so that a flood cannot freeze the window.
+const EVENTS_PER_FRAME: usize = 4096;
+
+/// The window.
+pub struct App {
+    pub model: Model,
+    parts: Parts,
+    opening: Option<Receiver<Result<OpenLink, Failure>>>,
+    device: Option<DeviceHandle>,
+    world: Option<Arc<dyn SimulatedWorld>>,
+    shown: Option<Appearance>,
+    last_frame: Arc<FrameTime>,
+}
+
+impl App {
+    /// A window that has not been drawn yet. Fonts and colours are installed in `ctx`.
+    pub fn new(ctx: &Context, parts: Parts) -> Self {
+        theme::install(ctx);
+        Self {
+            model: Model::default(),
+            parts,
+            opening: None,
+            device: None,
+            world: None,
+            shown: None,
+            last_frame: Arc::new(FrameTime::new()),
+        }
+    }
+
+    /// Draws one frame.
+    pub fn contents(&mut self, ui: &mut Ui) {
+        let ctx = ui.ctx().clone();
+        self.last_frame.drawn();
+        if keys::take_stop_key(&ctx).is_some() {
+            self.stop();
+        }
+        self.update(&ctx);
+        let mut commands = self.shortcuts(&ctx);
+        shell::shell_ui(ui, &mut self.model, &mut commands);
+        for command in commands {
+            self.apply(command);
+        }
+        self.drive(&ctx);
+        self.show_appearance(&ctx);
+    }
+
+    /// Takes in what happened since the last frame.
+    fn update(&mut self, ctx: &Context) {
+        if let Some(listed) = self.parts.ports.newest() {
+            self.model.devices.set_ports(listed);
+        }
+        self.finish_opening(ctx);
+        for _ in 0..EVENTS_PER_FRAME {
+            let Some(event) = self.device.as_ref().and_then(|device| device.events().try_recv().ok()) else {
+                break;
+            };
+            self.take(event);
+        }
+        self.model.worlds = self.world.as_ref().and_then(|world| world.views());
+    }
+
+    fn finish_opening(&mut self, ctx: &Context) {
+        let Some(opening) = &self.opening else { return };
+        let opened = match opening.try_recv() {
+            Ok(opened) => opened,
+            Err(TryRecvError::Empty) => return ctx.request_repaint_after(OPENING_INTERVAL),
+            Err(TryRecvError::Disconnected) => {
+                let failure = Failure::new("open the link", "", "the program gave up", "Try again");
+                Err(failure)
+            }
+        };
+        self.opening = None;
+        match opened {
+            Ok(link) => self.opened(link, ctx),
+            Err(failure) => {
+                self.model.phase = Phase::Closed;
+                self.model.messages.fail(failure.to_string());
+            }
+        }
+    }
+
+    fn opened(&mut self, link: OpenLink, ctx: &Context) {
+        let target = self.model.phase.target().unwrap_or_default().to_owned();
+        self.model.phase = Phase::Open { target };
+        self.model.link = LinkView::default();
+        self.model.world.forget();
+        self.world = link.world;
+        link.device.set_waker(waker(ctx.clone(), self.last_frame.clone()));
+        self.device = Some(link.device);
+        if self.model.poll != PollRate::default() {
+            self.request(Request::Poll(self.model.poll));
+        }
+    }
+
+    fn take(&mut self, event: Event) {
+        for effect in self.model.link.take(event) {
+            match effect {
+                Effect::Say(gravity, text) => self.model.messages.say(gravity, text),
+                Effect::AtRest => self.model.pwm.stop(),
+                Effect::Sample(sample) => {
+                    self.model.graph.push(sample.replied_at.as_secs_f64(), &sample.values);
+                }
+                Effect::OtherUnit => {
+                    self.model.graph.push_gap();
+                    self.model.world.forget();
+                }
+                Effect::Ended => self.ended(),
+            }
+        }
+    }
+
+    /// The link is gone, by wish or not. A simulated world lives on.
+    fn ended(&mut self) {
+        self.device = None;
+        self.model.phase = Phase::Closed;
+        self.model.link = LinkView::default();
+        self.model.pwm.stop();
+        self.model.graph.push_gap();
+    }
+
+    fn apply(&mut self, command: Command) {
+        match command {
+            Command::Connect => self.connect(),
+            Command::Disconnect => self.disconnect(),
+            Command::Show(screen) => self.show(screen),
+            Command::Stop => self.stop(),
+            Command::Arm(scope) => {
+                self.model.link.refusals.clear();
+                if self.request(Request::Arm(scope)) {
+                    self.model.link.arming = Arming::Asked(scope);
+                }
+            }
+            Command::Disarm => self.disarm(),
+            Command::SelectUnit(address) => {
+                self.disarm();
+                self.request(Request::Select(address));
+            }
+            Command::SetStream(stream) => {
+                if self.request(Request::SetStream(stream)) {
+                    self.model.link.stream = Some(stream);
+                }
+            }
+            Command::ZeroEncoder(motor) => {
+                self.request(Request::SetEncoder { motor, counts: 0 });
+            }
+            Command::ResetEmergencyStop => {
+                self.request(Request::ResetEStop);
+            }
+            Command::Poll(rate) => self.poll(rate),
+            Command::World(action) => self.act_on_world(action),
+            Command::DismissMessage => self.model.messages.dismiss(),
+        }
+    }
+
+    fn connect(&mut self) {
+        if self.model.phase != Phase::Closed {
+            return;
+        }
+        match self.model.devices.target() {
+            Ok(target) => {
+                self.model.messages.dismiss();
+                self.model.phase = Phase::Opening { target: target.to_string() };
+                self.opening = Some(self.parts.opener.open(target, self.model.addresses));
+            }
+            Err(error) => {
+                let typed = self.model.devices.typed.trim();
+                let mend = "Type a path such as /dev/ttyUSB0 or COM3, or tcp:host:port";
+                self.model.messages.fail(Failure::new("connect", typed, error, mend).to_string());
+            }
+        }
+    }
+
+    fn disconnect(&mut self) {
+        match &self.model.phase {
+            Phase::Opening { .. } => {
+                self.opening = None;
+                self.model.phase = Phase::Closed;
+                self.model.messages.note("Gave up connecting.");
+            }
+            Phase::Open { target } => {
+                self.model.phase = Phase::Closing { target: target.clone() };
+                self.request(Request::Disconnect);
+            }
+            Phase::Closed | Phase::Closing { .. } => {}
+        }
+    }
+
+    fn show(&mut self, screen: Screen) {
+        if screen == self.model.screen || screen.missing().is_some() {
+            return;
+        }
+        if self.model.screen.drives() {
+            self.disarm();
+        }
+        self.model.screen = screen;
+    }
+
+    /// Stops all motors, at once and without asking anything first.
+    fn stop(&mut self) {
+        if let Some(device) = &self.device {
+            device.stop_all();
+        }
+        self.at_rest();
+    }
+
+    fn disarm(&mut self) {
+        if self.model.link.arming != Arming::Disarmed {
+            self.request(Request::Disarm);
+        }
+        self.at_rest();
+    }
+
+    /// The screen is disarmed and its sliders are at zero; the device thread stops the motors.
+    fn at_rest(&mut self) {
+        self.model.link.arming = Arming::Disarmed;
+        self.model.pwm.stop();
+    }
+
+    fn poll(&mut self, rate: PollRate) {
+        self.model.poll = rate;
+        let interval = match rate {
+            PollRate::Every(time) => time,
+            PollRate::Fastest | PollRate::Off => FRAME_INTERVAL,
+        };
+        self.model.graph.set_interval(interval.as_secs_f64());
+        if self.device.is_some() {
+            self.request(Request::Poll(rate));
+        }
+    }
+
+    fn act_on_world(&mut self, action: WorldAction) {
+        let unit = self.model.world_unit();
+        if let Some(Err(failure)) = self.world.as_ref().map(|world| world.apply(unit, action)) {
+            self.model.messages.fail(failure.to_string());
+        }
+    }
+
+    /// While armed: sends what the sliders ask for and lets the motion live on.
+    fn drive(&mut self, ctx: &Context) {
+        if !self.model.link.arming.is_armed_for(ArmScope::Pwm) {
+            return;
+        }
+        let Some(device) = &self.device else { return };
+        device.renew();
+        if let Some(drive) = self.model.pwm.to_send() {
+            // A full queue takes it in the next frame.
+            if device.request(Request::Drive(drive)).is_ok() {
+                self.model.pwm.sent();
+            }
+        }
+        ctx.request_repaint_after(FRAME_INTERVAL);
+    }
+
+    /// Ctrl and a digit shows a screen, Ctrl+B the panel of the simulated world.
+    fn shortcuts(&mut self, ctx: &Context) -> Commands {
+        let keys = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6];
+        let pressed = |key| ctx.input_mut(|input| input.consume_key(Modifiers::COMMAND, key));
+        if pressed(Key::B) {
+            self.model.world.open = !self.model.world.open;
+        }
+        let screens = keys.into_iter().zip(Screen::ALL).filter(|(key, _)| pressed(*key));
+        screens.map(|(_, screen)| Command::Show(screen)).collect()
+    }
+
+    /// Queues a request; a refusal is told.
+    fn request(&mut self, request: Request) -> bool {
+        let Some(device) = &self.device else { return false };
+        match device.request(request) {
+            Ok(()) => true,
+            Err(refused) => {
+                self.model.messages.say(Gravity::Error, refused.to_string());
+                false
+            }
+        }
+    }
+
+    fn show_appearance(&mut self, ctx: &Context) {
+        let wanted = self.model.appearance;
+        if self.shown != Some(wanted) {
+            ctx.set_theme(wanted.theme);
+            theme::draw_plainly(ctx, wanted.plain);
+            self.shown = Some(wanted);
+        }
+    }
+}
+
+/// When the last frame was drawn, for the device thread to read.
+struct FrameTime {
+    epoch: Instant,
+    drawn_at_ns: AtomicU64,
+}
+
+impl FrameTime {
+    fn new() -> Self {
+        Self { epoch: Instant::now(), drawn_at_ns: AtomicU64::new(0) }
+    }
+
+    fn drawn(&self) {
+        let since_epoch = u64::try_from(self.epoch.elapsed().as_nanos()).unwrap_or(u64::MAX);
+        self.drawn_at_ns.store(since_epoch, Ordering::Relaxed);
+    }
+
+    /// How long the next frame has to wait, so that there are no more than one in each [`FRAME_INTERVAL`].
+    fn until_next(&self) -> Duration {
+        let drawn_at = Duration::from_nanos(self.drawn_at_ns.load(Ordering::Relaxed));
+        FRAME_INTERVAL.saturating_sub(self.epoch.elapsed().saturating_sub(drawn_at))
+    }
+}
+
+/// Asks for a frame when there is news. Called on the device thread.
+fn waker(ctx: Context, last_frame: Arc<FrameTime>) -> Box<dyn Fn() + Send> {
+    // Without any wait egui draws two frames.
+    Box::new(move || ctx.request_repaint_after(last_frame.until_next().max(Duration::from_millis(1))))
+}

@@ -1,0 +1,34 @@
+//! What a person can ask of the window. Screens send commands; [`super::app::App`] applies them in one place.
+
+use brushwork_link::device::{ArmScope, PollRate};
+use brushwork_link::transport::Stream;
+use brushwork_protocol::packet_serial::Motor;
+use brushwork_sim::world::WorldAction;
+
+use super::model::screen::Screen;
+
+/// One wish.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
+    /// Opens a link to what is chosen in the device list.
+    Connect,
+    /// Closes the link, or gives up opening it.
+    Disconnect,
+    Show(Screen),
+    /// Stops all motors of every open link.
+    Stop,
+    Arm(ArmScope),
+    Disarm,
+    SelectUnit(u8),
+    /// Which of the controller's ports this one is wired to.
+    SetStream(Stream),
+    ZeroEncoder(Motor),
+    ResetEmergencyStop,
+    Poll(PollRate),
+    /// Something done to the world of the simulated unit that is looked at.
+    World(WorldAction),
+    DismissMessage,
+}
+
+/// The wishes of one frame, in order.
+pub type Commands = Vec<Command>;

@@ -1,0 +1,52 @@
+//! The screens, one file each.
+
+use egui::{Align, Layout, RichText, Ui};
+
+use super::command::Commands;
+use super::model::screen::Screen;
+use super::model::{Model, Phase};
+use super::theme::Palette;
+
+mod pwm;
+mod status;
+
+pub fn screen_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    match model.screen {
+        Screen::DeviceStatus => status::status_ui(ui, model, commands),
+        Screen::Pwm => pwm::pwm_ui(ui, model, commands),
+        other => nothing_ui(ui, other.missing().unwrap_or_default()),
+    }
+}
+
+/// What a screen shows while it has nothing to show.
+fn nothing_ui(ui: &mut Ui, hint: &str) {
+    let color = Palette::of(ui).weak_text;
+    ui.with_layout(Layout::centered_and_justified(egui::Direction::LeftToRight), |ui| {
+        ui.with_layout(Layout::top_down(Align::Center), |ui| {
+            ui.add_space(ui.available_height() * 0.35);
+            ui.label(RichText::new(hint).size(15.0).color(color));
+        });
+    });
+}
+
+/// Why there is nothing to show before a controller has answered.
+fn not_connected_text(phase: &Phase) -> String {
+    match phase {
+        Phase::Closed => {
+            "Not connected.\nChoose a device at the left and press Connect. The simulated MCP266 needs no hardware.".to_owned()
+        }
+        Phase::Opening { target } => format!("Connecting to {target} …"),
+        Phase::Open { target } => format!("Looking for controllers at {target} …"),
+        Phase::Closing { target } => format!("Disconnecting from {target} …"),
+    }
+}
+
+/// The screen's title, with a line of explanation at its right.
+fn title_ui(ui: &mut Ui, title: &str, note: &str) {
+    ui.horizontal(|ui| {
+        ui.heading(title);
+        let color = Palette::of(ui).weak_text;
+        ui.label(RichText::new(note).color(color));
+    });
+    ui.add_space(4.0);
+}

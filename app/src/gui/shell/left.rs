@@ -1,0 +1,94 @@
+//! The left side: devices, screens, and Stop All at the bottom.
+
+use egui::{Align, Button, Layout, Panel, RichText, ScrollArea, ThemePreference, Ui};
+
+use super::devices::devices_ui;
+use super::heading_ui;
+use crate::gui::command::{Command, Commands};
+use crate::gui::model::screen::Screen;
+use crate::gui::model::{Appearance, Model};
+use crate::gui::widgets::stop;
+
+pub fn left_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    Panel::bottom("stop").resizable(false).show_separator_line(false).frame(egui::Frame::new()).show(
+        ui,
+        |ui| {
+            ui.add_space(6.0);
+            let response = stop::stop_ui(ui, model.is_connected());
+            if stop::pressed(&response) {
+                commands.push(Command::Stop);
+            }
+        },
+    );
+    egui::CentralPanel::no_frame().show(ui, |ui| {
+        title_ui(ui, &mut model.appearance);
+        ui.add_space(4.0);
+        ScrollArea::vertical().show(ui, |ui| {
+            devices_ui(ui, model, commands);
+            ui.add_space(10.0);
+            screens_ui(ui, model.screen, commands);
+            if model.worlds.is_some() {
+                ui.add_space(10.0);
+                world_ui(ui, &mut model.world.open);
+            }
+        });
+    });
+}
+
+fn title_ui(ui: &mut Ui, appearance: &mut Appearance) {
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("Brushwork").heading());
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.menu_button("View", |ui| appearance_ui(ui, appearance));
+        });
+    });
+}
+
+fn appearance_ui(ui: &mut Ui, appearance: &mut Appearance) {
+    let themes = [
+        (ThemePreference::System, "As the system"),
+        (ThemePreference::Light, "Light"),
+        (ThemePreference::Dark, "Dark"),
+    ];
+    for (theme, text) in themes {
+        ui.radio_value(&mut appearance.theme, theme, text);
+    }
+    ui.separator();
+    ui.checkbox(&mut appearance.plain, "Plain edges")
+        .on_hover_text("Draws without smoothing. Saves processor time where there is no graphics card.");
+}
+
+/// Shows and hides the panel of the simulated controller's world.
+fn world_ui(ui: &mut Ui, open: &mut bool) {
+    heading_ui(ui, "Simulator");
+    ui.with_layout(Layout::top_down_justified(Align::Min), |ui| {
+        let button = Button::selectable(*open, "Simulated world").right_text(RichText::new("Ctrl+B").small());
+        let note = "Load, batteries, switches, inputs and faults of the simulated controller";
+        if ui.add(button).on_hover_text(note).clicked() {
+            *open = !*open;
+        }
+    });
+}
+
+fn screens_ui(ui: &mut Ui, current: Screen, commands: &mut Commands) {
+    heading_ui(ui, "Screens");
+    ui.spacing_mut().item_spacing.y = 2.0;
+    ui.with_layout(Layout::top_down_justified(Align::Min), |ui| {
+        for (index, screen) in Screen::ALL.into_iter().enumerate() {
+            let missing = screen.missing();
+            let shortcut = RichText::new(format!("Ctrl+{}", index + 1)).small();
+            let button = Button::selectable(current == screen, screen.title());
+            let button = if missing.is_none() {
+                button.right_text(shortcut)
+            } else {
+                button.right_text(RichText::new("later").small())
+            };
+            let response = ui.add_enabled(missing.is_none(), button);
+            if let Some(why) = missing {
+                response.on_disabled_hover_text(why);
+            } else if response.clicked() {
+                commands.push(Command::Show(screen));
+            }
+        }
+    });
+}

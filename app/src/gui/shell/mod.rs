@@ -1,0 +1,46 @@
+//! What is always in view: devices and screens at the left, monitored parameters at the top, lamps at the bottom.
+
+use egui::{CentralPanel, Frame, Margin, Panel, RichText, ScrollArea, Ui};
+
+use super::command::Commands;
+use super::model::Model;
+use super::theme::Palette;
+use super::{screens, world};
+
+mod bottom;
+mod devices;
+mod left;
+mod message;
+mod top;
+
+const LEFT_WIDTH: f32 = 222.0;
+const WORLD_WIDTH: f32 = 292.0;
+
+/// The whole window.
+pub fn shell_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    let palette = Palette::of(ui);
+    let panel = Frame::new().fill(palette.panel).inner_margin(Margin::symmetric(10, 8));
+    Panel::left("left").resizable(false).exact_size(LEFT_WIDTH).frame(panel).show(ui, |ui| {
+        left::left_ui(ui, model, commands);
+    });
+    Panel::top("parameters").resizable(false).frame(panel).show(ui, |ui| {
+        top::top_ui(ui, model, commands);
+    });
+    Panel::bottom("lamps").resizable(false).frame(panel).show(ui, |ui| bottom::bottom_ui(ui, model));
+    Panel::bottom("message").resizable(false).frame(panel).show(ui, |ui| {
+        message::message_ui(ui, model, commands);
+    });
+    if model.worlds.is_some() && model.world.open {
+        Panel::right("world").resizable(false).exact_size(WORLD_WIDTH).frame(panel).show(ui, |ui| {
+            ScrollArea::vertical().show(ui, |ui| world::world_ui(ui, model, commands));
+        });
+    }
+    let central = Frame::new().fill(palette.panel).inner_margin(Margin::symmetric(12, 10));
+    CentralPanel::no_frame().frame(central).show(ui, |ui| screens::screen_ui(ui, model, commands));
+}
+
+/// The heading of a group.
+pub fn heading_ui(ui: &mut Ui, text: &str) {
+    let color = Palette::of(ui).weak_text;
+    ui.label(RichText::new(text.to_uppercase()).small().color(color));
+}

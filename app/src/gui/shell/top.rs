@@ -1,0 +1,187 @@
+//! The row of monitored parameters (MCP manual 1.2.2), in blocks that wrap when the window is narrow.
+
+use brushwork_link::device::Channel;
+use brushwork_protocol::packet_serial::Motor;
+use egui::{Label, RichText, Role, Ui, WidgetInfo, vec2};
+
+use crate::gui::command::{Command, Commands};
+use crate::gui::model::{Model, decimals};
+use crate::gui::theme::Palette;
+use crate::gui::widgets::readout::{NO_VALUE, Readout};
+
+/// Two readouts below each other.
+struct Block {
+    channels: [Channel; 2],
+    labels: [&'static str; 2],
+    label_width: f32,
+    unit: &'static str,
+    unit_letters: usize,
+    digits: usize,
+    /// Whether a Zero button goes with each.
+    zero: bool,
+}
+
+const BLOCKS: [Block; 5] = [
+    Block {
+        channels: [Channel::Temperature1, Channel::Temperature2],
+        labels: ["Temp 1", "Temp 2"],
+        label_width: 42.0,
+        unit: "°C",
+        unit_letters: 2,
+        digits: 5,
+        zero: false,
+    },
+    Block {
+        channels: [Channel::M1Current, Channel::M2Current],
+        labels: ["M1 amps", "M2 amps"],
+        label_width: 52.0,
+        unit: "A",
+        unit_letters: 1,
+        digits: 7,
+        zero: false,
+    },
+    Block {
+        channels: [Channel::M1Position, Channel::M2Position],
+        labels: ["M1 encoder", "M2 encoder"],
+        label_width: 68.0,
+        unit: "",
+        unit_letters: 0,
+        digits: 11,
+        zero: true,
+    },
+    Block {
+        channels: [Channel::M1Velocity, Channel::M2Velocity],
+        labels: ["M1 speed", "M2 speed"],
+        label_width: 56.0,
+        unit: "counts/s",
+        unit_letters: 5,
+        digits: 8,
+        zero: false,
+    },
+    Block {
+        channels: [Channel::MainBattery, Channel::LogicBattery],
+        labels: ["Main battery", "Logic battery"],
+        label_width: 76.0,
+        unit: "V",
+        unit_letters: 1,
+        digits: 5,
+        zero: false,
+    },
+];
+
+const GAP: f32 = 4.0;
+const ZERO_WIDTH: f32 = 46.0;
+const ROW_HEIGHT: f32 = 24.0;
+const IDENTITY_WIDTH: f32 = 152.0;
+
+pub fn top_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
+    ui.spacing_mut().item_spacing = vec2(12.0, 4.0);
+    // Rows are made by hand, since a wrapping layout does not know how wide a block will be.
+    let widths: Vec<f32> = BLOCKS.iter().map(|block| block.width(ui)).chain([IDENTITY_WIDTH]).collect();
+    let mut start = 0;
+    while start < widths.len() {
+        let end = row_end(&widths, start, ui.available_width(), ui.spacing().item_spacing.x);
+        ui.horizontal(|ui| {
+            for index in start..end {
+                match BLOCKS.get(index) {
+                    Some(block) => block_ui(ui, block, model, commands),
+                    None => identity_ui(ui, model),
+                }
+            }
+        });
+        start = end;
+    }
+}
+
+/// How many blocks from `start` on stand side by side: at least one.
+fn row_end(widths: &[f32], start: usize, available: f32, gap: f32) -> usize {
+    let mut used = widths[start];
+    let mut end = start + 1;
+    while end < widths.len() && used + gap + widths[end] <= available {
+        used += gap + widths[end];
+        end += 1;
+    }
+    end
+}
+
+impl Block {
+    fn readout(&self, row: usize) -> Readout<'static> {
+        Readout {
+            label: self.labels[row],
+            unit: self.unit,
+            digits: self.digits,
+            unit_letters: self.unit_letters,
+        }
+    }
+
+    fn width(&self, ui: &Ui) -> f32 {
+        let zero = if self.zero { GAP + ZERO_WIDTH } else { 0.0 };
+        self.label_width + GAP + self.readout(0).size(ui).x + zero
+    }
+}
+
+fn block_ui(ui: &mut Ui, block: &Block, model: &Model, commands: &mut Commands) {
+    ui.vertical(|ui| {
+        ui.spacing_mut().item_spacing = vec2(GAP, 2.0);
+        for motor in Motor::BOTH {
+            ui.horizontal(|ui| {
+                let row = motor.index();
+                label_ui(ui, block.labels[row], block.label_width);
+                let channel = block.channels[row];
+                let value = model.link.readings.text(channel, decimals(channel));
+                block.readout(row).ui(ui, value.as_deref());
+                if block.zero {
+                    zero_ui(ui, motor, model.is_connected(), commands);
+                }
+            });
+        }
+    });
+}
+
+fn zero_ui(ui: &mut Ui, motor: Motor, connected: bool, commands: &mut Commands) {
+    ui.add_enabled_ui(connected, |ui| {
+        let response = ui.add_sized(vec2(ZERO_WIDTH, ROW_HEIGHT - 2.0), egui::Button::new("Zero").small());
+        let name = format!("Zero {motor} encoder");
+        response.widget_info(|| WidgetInfo::labeled(Role::Button, connected, &name));
+        if response
+            .on_hover_text(format!("Sets the count of encoder {} to zero", motor.index() + 1))
+            .clicked()
+        {
+            commands.push(Command::ZeroEncoder(motor));
+        }
+    });
+}
+
+fn identity_ui(ui: &mut Ui, model: &Model) {
+    let identity = model.link.identity();
+    let title = identity.map(|identity| {
+        let simulated = if identity.simulated { " (simulated)" } else { "" };
+        format!("{}{simulated}", identity.title())
+    });
+    let version = identity.map(|identity| match identity.firmware.as_str() {
+        "" => "not told".to_owned(),
+        version => format!("{version} (gen {})", identity.generation.number()),
+    });
+    ui.vertical(|ui| {
+        ui.spacing_mut().item_spacing = vec2(GAP, 2.0);
+        for (label, value) in [("Model", title), ("Version", version)] {
+            ui.horizontal(|ui| {
+                ui.set_width(IDENTITY_WIDTH);
+                label_ui(ui, label, 48.0);
+                let spoken = format!("{label}: {}", value.as_deref().unwrap_or("no value"));
+                let text = ui.add(Label::new(value.as_deref().unwrap_or(NO_VALUE)).truncate());
+                text.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
+            });
+        }
+    });
+}
+
+/// A label of fixed width, so that what stands right of it never moves.
+fn label_ui(ui: &mut Ui, text: &str, width: f32) {
+    let color = Palette::of(ui).weak_text;
+    let (rect, _) = ui.allocate_exact_size(vec2(width, ROW_HEIGHT), egui::Sense::hover());
+    let label = Label::new(RichText::new(text).size(12.5).color(color)).selectable(false);
+    ui.put(rect, |ui: &mut Ui| {
+        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| ui.add(label)).inner
+    });
+}

@@ -1,0 +1,123 @@
+//! The panel for a simulated controller's world: what a person could do to the machine on the bench.
+
+use brushwork_protocol::packet_serial::Motor;
+use brushwork_sim::world::{WorldAction, WorldView};
+use egui::{RichText, Ui};
+
+use super::command::{Command, Commands};
+use super::model::Model;
+use super::model::world::WorldPanel;
+use super::shell::heading_ui;
+use super::theme::Palette;
+use super::widgets::numeric::Numeric;
+
+mod motor;
+mod pins;
+
+pub fn world_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    let Some(views) = model.worlds.clone() else { return };
+    let Some(view) = views.get(model.world_unit()) else { return };
+    model.world.sync(view);
+    let panel = &mut model.world;
+    let mut actions = Vec::new();
+    ui.spacing_mut().item_spacing.y = 4.0;
+    ui.label(RichText::new("Simulated world").heading());
+    let color = Palette::of(ui).weak_text;
+    let note = "What you could do to a real machine by hand. None of it goes over the wire.";
+    ui.label(RichText::new(note).small().color(color));
+    unit_ui(ui, view, &mut actions);
+    supply_ui(ui, view, panel, &mut actions);
+    for motor in Motor::BOTH {
+        motor::motor_ui(ui, motor, view, panel, &mut actions);
+    }
+    pins::pins_ui(ui, view, &mut actions);
+    commands.extend(actions.into_iter().map(Command::World));
+}
+
+type Actions = Vec<WorldAction>;
+
+fn unit_ui(ui: &mut Ui, view: &WorldView, actions: &mut Actions) {
+    ui.horizontal_wrapped(|ui| {
+        if toggle_ui(ui, "Power", view.powered) {
+            actions.push(WorldAction::Power { on: !view.powered });
+        }
+        let (text, unplugged) = if view.plugged { ("Unplug cable", true) } else { ("Plug cable in", false) };
+        if ui.button(text).clicked() {
+            actions.push(WorldAction::Unplug { unplugged });
+        }
+        if toggle_ui(ui, "E-stop pressed", view.estop_pressed) {
+            actions.push(WorldAction::EStop { pressed: !view.estop_pressed });
+        }
+    });
+}
+
+fn supply_ui(ui: &mut Ui, view: &WorldView, panel: &mut WorldPanel, actions: &mut Actions) {
+    ui.separator();
+    heading_ui(ui, "Supply");
+    let volts = number(("Main battery", "Battery voltage"), "V", 0.0..=80.0, 1);
+    if row_ui(ui, &volts, &mut panel.battery_volts) {
+        actions.push(WorldAction::SetBatteryVolts { volts: panel.battery_volts });
+    }
+    let ohms = number(("Its resistance", "Battery resistance"), "Ω", 0.0..=5.0, 3);
+    if row_ui(ui, &ohms, &mut panel.battery_ohms) {
+        actions.push(WorldAction::SetBatteryOhms { ohms: panel.battery_ohms });
+    }
+    let logic = number(("Logic battery", "Logic voltage"), "V", 0.0..=40.0, 1);
+    if row_ui(ui, &logic, &mut panel.logic_volts) {
+        actions.push(WorldAction::SetLogicVolts { volts: panel.logic_volts });
+    }
+    let sinks = view.battery_sinks;
+    if toggle_ui(ui, "Battery takes current back", sinks) {
+        actions.push(WorldAction::SetBatterySinks { can_sink: !sinks });
+    }
+    let mut held = panel.held_celsius.is_some();
+    if ui.checkbox(&mut held, "Hold the board's temperature").changed() {
+        panel.held_celsius = held.then_some(view.board_celsius[0].round());
+        actions.push(WorldAction::SetBoardCelsius { celsius: panel.held_celsius });
+    }
+    if let Some(mut celsius) = panel.held_celsius {
+        let field = number(("At", "Board temperature"), "°C", -40.0..=150.0, 1);
+        if row_ui(ui, &field, &mut celsius) {
+            panel.held_celsius = Some(celsius);
+            actions.push(WorldAction::SetBoardCelsius { celsius: Some(celsius) });
+        }
+    }
+    figures_ui(ui, &format!("{:6.2} V at the terminals  {:7.2} A drawn", view.bus_volts, view.battery_amps));
+}
+
+/// Figures that change by themselves, in digits of one width.
+fn figures_ui(ui: &mut Ui, text: &str) {
+    let color = Palette::of(ui).weak_text;
+    ui.add(egui::Label::new(RichText::new(text).monospace().size(11.5).color(color)).truncate());
+}
+
+/// A check box of what is so; true when it was clicked.
+fn toggle_ui(ui: &mut Ui, text: &str, mut on: bool) -> bool {
+    ui.checkbox(&mut on, text).changed()
+}
+
+/// A labelled number field: what is read at its left, and its full name.
+struct Field<'a> {
+    label: &'a str,
+    numeric: Numeric<'a>,
+}
+
+fn number<'a>(
+    (label, name): (&'a str, &'a str),
+    unit: &'a str,
+    range: std::ops::RangeInclusive<f64>,
+    decimals: usize,
+) -> Field<'a> {
+    let step = 10f64.powi(-(decimals as i32));
+    Field { label, numeric: Numeric { name, unit, range, decimals, step, width: 96.0 } }
+}
+
+fn row_ui(ui: &mut Ui, field: &Field<'_>, value: &mut f64) -> bool {
+    ui.horizontal(|ui| {
+        ui.add_sized([112.0, 22.0], |ui: &mut Ui| {
+            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| ui.label(field.label)).inner
+        });
+        field.numeric.ui(ui, value).changed()
+    })
+    .inner
+}

@@ -1,0 +1,245 @@
+//! A window on a test bench: the real window and the real device loop against a simulated controller, all in virtual
+//! time, spoken to in the words of a person.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::sync::Arc;
+use std::time::Duration;
+
+use brushwork::gui::App;
+use brushwork::gui::model::Model;
+use brushwork::gui::parts::{OpenLink, Opener, Parts, PortSource, SimulatedWorld};
+use brushwork_link::device::{Addresses, DeviceLoop, DeviceOptions, Step};
+use brushwork_link::transport::{ConnectTarget, PortInfo, Stream};
+use brushwork_link::{Clock as _, Failure};
+use brushwork_protocol::packet_serial::Motor;
+use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
+use brushwork_sim::machine::{Machine as _, StreamIndex};
+use brushwork_sim::world::{WorldAction, WorldView};
+use crossbeam_channel::{Receiver, bounded};
+use egui::Theme;
+use egui_kittest::kittest::Queryable as _;
+use egui_kittest::{Harness, HarnessBuilder, Node};
+
+use super::cpu::Cpu;
+use super::line::Line;
+
+/// Time between two frames, as in the real window.
+pub const FRAME: Duration = Duration::from_millis(100);
+
+/// A window, the loop it speaks to, and the controller at the far end.
+pub struct Bench {
+    pub harness: Harness<'static, Option<App>>,
+    pub line: Line,
+    device_loop: Rc<RefCell<Option<DeviceLoop>>>,
+    ports: Rc<RefCell<Option<Vec<PortInfo>>>>,
+}
+
+impl Bench {
+    /// A window of 1280 by 800 with an MCP266 in the simulator.
+    pub fn new() -> Self {
+        Self::sized([1280.0, 800.0], Theme::Dark)
+    }
+
+    pub fn sized(size: [f32; 2], theme: Theme) -> Self {
+        let unit = Controller::new(ControllerConfig::default()).expect("the default configuration is sound");
+        let line = Line::new(Bus::single(unit, StreamIndex::Usb));
+        let device_loop = Rc::new(RefCell::new(None));
+        let ports = Rc::new(RefCell::new(Some(Vec::new())));
+        let opener = BenchOpener { line: line.clone(), device_loop: device_loop.clone() };
+        let mut parts = Some(Parts { ports: Box::new(BenchPorts(ports.clone())), opener: Box::new(opener) });
+        let harness = HarnessBuilder::default()
+            .with_size(size)
+            .with_theme(theme)
+            .with_step_dt(FRAME.as_secs_f32())
+            .with_context_setup(brushwork::gui::theme::install)
+            .renderer(Cpu::default())
+            .build_ui_state(
+                move |ui, slot: &mut Option<App>| {
+                    let app = slot.get_or_insert_with(|| {
+                        let mut app = App::new(ui.ctx(), parts.take().expect("the window is made once"));
+                        app.model.appearance.theme = theme.into();
+                        app
+                    });
+                    app.contents(ui);
+                },
+                None,
+            );
+        Self { harness, line, device_loop, ports }
+    }
+
+    /// Lets time pass as it does with the program: the device loop works and the window draws each 100 ms.
+    pub fn pass(&mut self, time: Duration) {
+        let end = self.line.clock.now() + time;
+        while self.line.clock.now() < end {
+            self.turn_loop((self.line.clock.now() + FRAME).min(end));
+            self.harness.step();
+        }
+    }
+
+    pub fn pass_ms(&mut self, milliseconds: u64) {
+        self.pass(Duration::from_millis(milliseconds));
+    }
+
+    /// Lets time pass with the window frozen: no frame is drawn.
+    pub fn freeze(&mut self, time: Duration) {
+        self.turn_loop(self.line.clock.now() + time);
+    }
+
+    fn turn_loop(&self, until: Duration) {
+        while self.line.clock.now() < until {
+            let step = self.device_loop.borrow_mut().as_mut().map_or(Step::Ended, DeviceLoop::step);
+            match step {
+                Step::Again => {}
+                Step::IdleUntil(at) => self.line.clock.advance_to(at.min(until).max(self.line.clock.now())),
+                Step::Ended => self.line.clock.advance_to(until),
+            }
+            if let Step::IdleUntil(at) = step
+                && at >= until
+            {
+                self.line.clock.advance_to(until);
+            }
+        }
+        self.line.with(|_| ());
+    }
+
+    pub fn model(&mut self) -> &mut Model {
+        &mut self.harness.state_mut().as_mut().expect("the first frame made it").model
+    }
+
+    /// What the machine is really doing.
+    pub fn truth(&self) -> WorldView {
+        self.line.with(|bus| bus.views().remove(0))
+    }
+
+    /// The duty a motor's bridge really gets, -1 to 1; 0 for brake and coast.
+    pub fn real_duty(&self, motor: Motor) -> f64 {
+        match self.truth().axes[motor.index()].output {
+            brushwork_sim::bridge::BridgeOutput::Duty(duty) => duty,
+            _ => 0.0,
+        }
+    }
+
+    pub fn both_stand(&self) -> bool {
+        Motor::BOTH.into_iter().all(|motor| self.real_duty(motor) == 0.0)
+    }
+
+    /// Does something to the world behind the window's back.
+    pub fn act(&self, action: WorldAction) {
+        self.line.with(|bus| bus.apply(0, &action));
+    }
+
+    pub fn plug_in_port(&self, name: &str) {
+        let port = PortInfo { name: name.to_owned(), is_usb: true, ..PortInfo::default() };
+        *self.ports.borrow_mut() = Some(vec![port]);
+    }
+
+    pub fn unplug_ports(&self) {
+        *self.ports.borrow_mut() = Some(Vec::new());
+    }
+
+    // ---- in the words of a person ----
+
+    /// Presses a button by its label and lets two frames pass.
+    pub fn press(&mut self, label: &str) {
+        self.harness.get_by_label(label).click();
+        self.pass(FRAME * 2);
+    }
+
+    pub fn key(&mut self, key: egui::Key) {
+        self.harness.key_press(key);
+        self.pass(FRAME);
+    }
+
+    pub fn see<'a>(&'a self, label: &'a str) -> Node<'a> {
+        self.harness.get_by_label(label)
+    }
+
+    pub fn sees(&self, label: &str) -> bool {
+        self.harness.query_by_label(label).is_some()
+    }
+
+    pub fn sees_part(&self, part: &str) -> bool {
+        self.harness.query_all_by_label_contains(part).next().is_some()
+    }
+
+    /// Connects to the simulated controller and waits until it has answered.
+    pub fn connect(&mut self) {
+        self.press("Connect");
+        self.pass_ms(1500);
+        assert!(self.model().is_connected(), "{:?}", self.model().messages.past().collect::<Vec<_>>());
+    }
+
+    /// Goes to the PWM screen and arms it.
+    pub fn arm(&mut self) {
+        self.press("PWM Settings");
+        self.press("Arm");
+        self.pass_ms(500);
+        let arming = self.model().link.arming;
+        assert!(
+            matches!(arming, brushwork::gui::model::link::Arming::Armed { .. }),
+            "{arming:?}: {:?}",
+            self.model().link.refusals
+        );
+    }
+
+    /// Sets a duty in the field for exact numbers, as a keyboard does.
+    pub fn set_duty(&mut self, motor: Motor, percent: &str) {
+        let name = format!("{motor} duty exact");
+        self.harness.get_by_label(&name).focus();
+        self.pass(FRAME);
+        self.harness.get_by_label(&name).type_text(percent);
+        self.pass(FRAME);
+        self.key(egui::Key::Enter);
+        self.pass(FRAME);
+    }
+}
+
+struct BenchPorts(Rc<RefCell<Option<Vec<PortInfo>>>>);
+
+impl PortSource for BenchPorts {
+    fn newest(&mut self) -> Option<Result<Vec<PortInfo>, Failure>> {
+        self.0.borrow_mut().take().map(Ok)
+    }
+}
+
+struct BenchOpener {
+    line: Line,
+    device_loop: Rc<RefCell<Option<DeviceLoop>>>,
+}
+
+impl Opener for BenchOpener {
+    fn open(&mut self, target: ConnectTarget, addresses: Addresses) -> Receiver<Result<OpenLink, Failure>> {
+        let (sender, receiver) = bounded(1);
+        let opened = match target {
+            ConnectTarget::Sim(_) => {
+                let options = DeviceOptions {
+                    addresses,
+                    stream: Some(Stream::Usb),
+                    simulated: true,
+                    ..DeviceOptions::default()
+                };
+                let clock = Arc::new(self.line.clock.clone());
+                let (device_loop, device) = DeviceLoop::new(Box::new(self.line.clone()), clock, options);
+                *self.device_loop.borrow_mut() = Some(device_loop);
+                Ok(OpenLink { device, world: Some(Arc::new(BenchWorld(self.line.clone()))) })
+            }
+            other => Err(Failure::new("open", other.to_string(), "there is no such port", "Check the path")),
+        };
+        sender.send(opened).expect("the receiver is here");
+        receiver
+    }
+}
+
+struct BenchWorld(Line);
+
+impl SimulatedWorld for BenchWorld {
+    fn apply(&self, unit: usize, action: WorldAction) -> Result<(), Failure> {
+        self.0.with(|bus| bus.apply(unit, &action));
+        Ok(())
+    }
+
+    fn views(&self) -> Option<Arc<Vec<WorldView>>> {
+        Some(Arc::new(self.0.with(|bus| bus.views())))
+    }
+}

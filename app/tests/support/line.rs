@@ -1,0 +1,92 @@
+//! A line between the device loop and a simulated controller, in virtual time.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use brushwork_link::{Clock as _, Transport, TransportError, VirtualClock};
+use brushwork_sim::controller::Bus;
+use brushwork_sim::machine::Machine as _;
+
+/// A simulated bus and the clock it shares with its client. Clones are the same.
+#[derive(Clone)]
+pub struct Line {
+    bus: Arc<Mutex<Bus>>,
+    pub clock: VirtualClock,
+    rest: Vec<u8>,
+}
+
+impl Line {
+    pub fn new(bus: Bus) -> Self {
+        Self { bus: Arc::new(Mutex::new(bus)), clock: VirtualClock::new(), rest: Vec::new() }
+    }
+
+    /// Does something with the bus, which is first brought to the present.
+    pub fn with<T>(&self, act: impl FnOnce(&mut Bus) -> T) -> T {
+        let mut bus = self.lock();
+        bus.advance(self.clock.now());
+        act(&mut bus)
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Bus> {
+        self.bus.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn plugged(bus: &Bus) -> Result<(), TransportError> {
+        let gone = || TransportError::Gone { detail: "the cable was pulled out".to_owned() };
+        if bus.plugged() { Ok(()) } else { Err(gone()) }
+    }
+
+    fn wait_until(&self, deadline: Duration) -> Result<Vec<u8>, TransportError> {
+        let mut bus = self.lock();
+        loop {
+            bus.advance(self.clock.now());
+            Self::plugged(&bus)?;
+            let stream = bus.stream();
+            if let Some(bytes) = bus.take_output(stream) {
+                return Ok(bytes);
+            }
+            if self.clock.now() >= deadline {
+                return Ok(Vec::new());
+            }
+            self.clock.advance_to(bus.next_output_at().map_or(deadline, |at| at.min(deadline)));
+        }
+    }
+}
+
+impl Transport for Line {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), TransportError> {
+        self.with(|bus| {
+            Self::plugged(bus)?;
+            let stream = bus.stream();
+            bus.receive(stream, bytes);
+            Ok(())
+        })
+    }
+
+    fn read(&mut self, buffer: &mut [u8], timeout: Duration) -> Result<usize, TransportError> {
+        if self.rest.is_empty() {
+            self.rest = self.wait_until(self.clock.now() + timeout)?;
+        }
+        let count = self.rest.len().min(buffer.len());
+        buffer[..count].copy_from_slice(&self.rest[..count]);
+        self.rest.drain(..count);
+        Ok(count)
+    }
+
+    fn discard_input(&mut self) -> Result<usize, TransportError> {
+        let kept = std::mem::take(&mut self.rest).len();
+        self.with(|bus| {
+            let stream = bus.stream();
+            let late = std::iter::from_fn(|| bus.take_output(stream)).map(|bytes| bytes.len()).sum::<usize>();
+            Ok(kept + late)
+        })
+    }
+
+    fn describe(&self) -> String {
+        "sim:mcp266".to_owned()
+    }
+
+    fn byte_time(&self) -> Option<Duration> {
+        None
+    }
+}
