@@ -21,6 +21,7 @@ use super::model::screen::Screen;
 use super::model::{Appearance, Model, Phase};
 use super::parts::{OpenLink, Parts, SimulatedWorld};
 use super::{shell, theme};
+use crate::session::SessionError;
 
 /// Time between two frames while nobody touches anything: ten a second show what ten samples a second bring.
 pub const FRAME_INTERVAL: Duration = Duration::from_millis(100);
@@ -35,7 +36,7 @@ const EVENTS_PER_FRAME: usize = 4096;
 pub struct App {
     pub model: Model,
     parts: Parts,
-    opening: Option<Receiver<Result<OpenLink, Failure>>>,
+    opening: Option<Receiver<Result<OpenLink, SessionError>>>,
     device: Option<DeviceHandle>,
     world: Option<Arc<dyn SimulatedWorld>>,
     shown: Option<Appearance>,
@@ -91,25 +92,21 @@ impl App {
 
     fn finish_opening(&mut self, ctx: &Context) {
         let Some(opening) = &self.opening else { return };
-        let opened = match opening.try_recv() {
-            Ok(opened) => opened,
+        let why = match opening.try_recv() {
+            Ok(Ok(link)) => return self.opened(link, ctx),
+            Ok(Err(error)) => error.to_string(),
             Err(TryRecvError::Empty) => return ctx.request_repaint_after(OPENING_INTERVAL),
             Err(TryRecvError::Disconnected) => {
-                let failure = Failure::new("open the link", "", "the program gave up", "Try again");
-                Err(failure)
+                "Could not open the link: the system gave no thread. Try again.".to_owned()
             }
         };
         self.opening = None;
-        match opened {
-            Ok(link) => self.opened(link, ctx),
-            Err(failure) => {
-                self.model.phase = Phase::Closed;
-                self.model.messages.fail(failure.to_string());
-            }
-        }
+        self.model.phase = Phase::Closed;
+        self.model.messages.fail(why);
     }
 
     fn opened(&mut self, link: OpenLink, ctx: &Context) {
+        self.opening = None;
         let target = self.model.phase.target().unwrap_or_default().to_owned();
         self.model.phase = Phase::Open { target };
         self.model.link = LinkView::default();

@@ -10,6 +10,8 @@ use brushwork_link::transport::{ConnectTarget, PortInfo};
 use brushwork_sim::world::{WorldAction, WorldView};
 use crossbeam_channel::Receiver;
 
+use crate::session::SessionError;
+
 /// Everything the window needs and does not make itself.
 pub struct Parts {
     pub ports: Box<dyn PortSource>,
@@ -25,7 +27,11 @@ pub trait PortSource {
 /// Opens links without keeping the window waiting.
 pub trait Opener {
     /// Begins to open `target`. The answer comes later, once; dropping the receiver gives up.
-    fn open(&mut self, target: ConnectTarget, addresses: Addresses) -> Receiver<Result<OpenLink, Failure>>;
+    fn open(
+        &mut self,
+        target: ConnectTarget,
+        addresses: Addresses,
+    ) -> Receiver<Result<OpenLink, SessionError>>;
 }
 
 /// An open link.
@@ -37,7 +43,7 @@ pub struct OpenLink {
 }
 
 /// What a person can see of a simulated world, and do to it. Nothing here waits.
-pub trait SimulatedWorld {
+pub trait SimulatedWorld: Send + Sync {
     /// Does something to the world of a unit, counted from 0.
     fn apply(&self, unit: usize, action: WorldAction) -> Result<(), Failure>;
 

@@ -9,8 +9,9 @@ use std::time::Duration;
 use brushwork::gui::App;
 use brushwork::gui::model::Model;
 use brushwork::gui::parts::{OpenLink, Opener, Parts, PortSource, SimulatedWorld};
+use brushwork::session::SessionError;
 use brushwork_link::device::{Addresses, DeviceLoop, DeviceOptions, Step};
-use brushwork_link::transport::{ConnectTarget, PortInfo, Stream};
+use brushwork_link::transport::{ConnectTarget, OpenError, PortInfo, Stream};
 use brushwork_link::{Clock as _, Failure};
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
@@ -18,7 +19,8 @@ use brushwork_sim::machine::{Machine as _, StreamIndex};
 use brushwork_sim::world::{WorldAction, WorldView};
 use crossbeam_channel::{Receiver, bounded};
 use egui::Theme;
-use egui_kittest::kittest::Queryable as _;
+use egui::accesskit::Role;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{Harness, HarnessBuilder, Node};
 
 use super::cpu::Cpu;
@@ -125,8 +127,8 @@ impl Bench {
     }
 
     /// Does something to the world behind the window's back.
-    pub fn act(&self, action: WorldAction) {
-        self.line.with(|bus| bus.apply(0, &action));
+    pub fn act(&self, action: &WorldAction) {
+        self.line.with(|bus| bus.apply(0, action));
     }
 
     pub fn plug_in_port(&self, name: &str) {
@@ -138,17 +140,40 @@ impl Bench {
         *self.ports.borrow_mut() = Some(Vec::new());
     }
 
+    /// Takes the device loop away, to turn it without the window.
+    pub fn take_loop(&mut self) -> DeviceLoop {
+        self.device_loop.borrow_mut().take().expect("a link is open")
+    }
+
     // ---- in the words of a person ----
 
-    /// Presses a button by its label and lets two frames pass.
+    /// Presses a button by its label. The window draws at once, as it does for a hand, then two frames pass.
     pub fn press(&mut self, label: &str) {
-        self.harness.get_by_label(label).click();
+        self.button(label).click();
+        self.harness.step();
         self.pass(FRAME * 2);
+    }
+
+    /// Puts the keyboard focus on a button.
+    pub fn focus(&mut self, label: &str) {
+        self.button(label).focus();
+        self.harness.step();
+        self.pass(FRAME);
     }
 
     pub fn key(&mut self, key: egui::Key) {
         self.harness.key_press(key);
+        self.harness.step();
         self.pass(FRAME);
+    }
+
+    /// What can be pressed under that label; a heading may read the same.
+    pub fn button<'a>(&'a self, label: &'a str) -> Node<'a> {
+        let labelled = self.harness.get_all_by_label(label);
+        let mut pressable = labelled.filter(|node| node.accesskit_node().role() != Role::Label);
+        let found = pressable.next().unwrap_or_else(|| panic!("nothing to press reads {label:?}"));
+        assert!(pressable.next().is_none(), "several things to press read {label:?}");
+        found
     }
 
     pub fn see<'a>(&'a self, label: &'a str) -> Node<'a> {
@@ -209,7 +234,11 @@ struct BenchOpener {
 }
 
 impl Opener for BenchOpener {
-    fn open(&mut self, target: ConnectTarget, addresses: Addresses) -> Receiver<Result<OpenLink, Failure>> {
+    fn open(
+        &mut self,
+        target: ConnectTarget,
+        addresses: Addresses,
+    ) -> Receiver<Result<OpenLink, SessionError>> {
         let (sender, receiver) = bounded(1);
         let opened = match target {
             ConnectTarget::Sim(_) => {
@@ -224,7 +253,7 @@ impl Opener for BenchOpener {
                 *self.device_loop.borrow_mut() = Some(device_loop);
                 Ok(OpenLink { device, world: Some(Arc::new(BenchWorld(self.line.clone()))) })
             }
-            other => Err(Failure::new("open", other.to_string(), "there is no such port", "Check the path")),
+            other => Err(SessionError::from(OpenError::NotFound { path: other.to_string() })),
         };
         sender.send(opened).expect("the receiver is here");
         receiver

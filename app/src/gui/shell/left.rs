@@ -1,6 +1,6 @@
 //! The left side: devices, screens, and Stop All at the bottom.
 
-use egui::{Align, Button, Layout, Panel, RichText, ScrollArea, ThemePreference, Ui};
+use egui::{Align, Button, Layout, Panel, RichText, Role, ScrollArea, ThemePreference, Ui, WidgetInfo};
 
 use super::devices::devices_ui;
 use super::heading_ui;
@@ -64,7 +64,9 @@ fn world_ui(ui: &mut Ui, open: &mut bool) {
     ui.with_layout(Layout::top_down_justified(Align::Min), |ui| {
         let button = Button::selectable(*open, "Simulated world").right_text(RichText::new("Ctrl+B").small());
         let note = "Load, batteries, switches, inputs and faults of the simulated controller";
-        if ui.add(button).on_hover_text(note).clicked() {
+        let response = ui.add(button);
+        response.widget_info(|| WidgetInfo::selected(Role::Button, true, *open, "Simulated world"));
+        if response.on_hover_text(note).clicked() {
             *open = !*open;
         }
     });
@@ -84,6 +86,10 @@ fn screens_ui(ui: &mut Ui, current: Screen, commands: &mut Commands) {
                 button.right_text(RichText::new("later").small())
             };
             let response = ui.add_enabled(missing.is_none(), button);
+            let enabled = missing.is_none();
+            response.widget_info(|| {
+                WidgetInfo::selected(Role::Button, enabled, current == screen, screen.title())
+            });
             if let Some(why) = missing {
                 response.on_disabled_hover_text(why);
             } else if response.clicked() {

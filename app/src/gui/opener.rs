@@ -1,0 +1,120 @@
+//! The real sources of links and ports: each waits on a thread of its own, never on the window's.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use brushwork_link::device::Addresses;
+use brushwork_link::transport::{ConnectTarget, PortInfo, list_ports};
+use brushwork_link::{Clock, Failure, SystemClock};
+use brushwork_sim::world::{WorldAction, WorldView};
+use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
+use egui::Context;
+
+use super::parts::{OpenLink, Opener, Parts, PortSource, SimulatedWorld};
+use crate::session::{self, SessionError, SessionOptions, Simulation};
+
+/// How often the list of ports is made.
+const LISTING_INTERVAL: Duration = Duration::from_secs(1);
+
+/// The parts of the real program.
+pub fn real_parts(ctx: &Context) -> Parts {
+    Parts { ports: Box::new(ListedPorts::start(ctx.clone())), opener: Box::new(SessionOpener::default()) }
+}
+
+type Listed = Result<Vec<PortInfo>, Failure>;
+
+/// Lists the serial ports once a second and tells when the list changes.
+struct ListedPorts(Receiver<Listed>);
+
+impl ListedPorts {
+    fn start(ctx: Context) -> Self {
+        let (sender, receiver) = bounded(1);
+        let watch = std::thread::Builder::new().name("ports".to_owned()).spawn(move || watch(&sender, &ctx));
+        if let Err(error) = watch {
+            let mend = "Type the path of the port instead";
+            let (sender, receiver) = bounded(1);
+            let failure = Failure::new("watch the serial ports", "", error, mend);
+            sender.send(Err(failure)).expect("the channel is empty and its receiver is here");
+            return Self(receiver);
+        }
+        Self(receiver)
+    }
+}
+
+impl PortSource for ListedPorts {
+    fn newest(&mut self) -> Option<Listed> {
+        self.0.try_recv().ok()
+    }
+}
+
+/// Ends when the window is gone.
+fn watch(sender: &Sender<Listed>, ctx: &Context) {
+    let mut told: Option<Listed> = None;
+    loop {
+        let listed = list_ports();
+        if told.as_ref() != Some(&listed) {
+            match sender.try_send(listed.clone()) {
+                Ok(()) => {
+                    told = Some(listed);
+                    ctx.request_repaint();
+                }
+                // The window has not taken the list before; the next turn tries again.
+                Err(TrySendError::Full(_)) => {}
+                Err(TrySendError::Disconnected(_)) => return,
+            }
+        }
+        std::thread::sleep(LISTING_INTERVAL);
+    }
+}
+
+/// Opens sessions. The simulated machine of the last one is kept, so that it can be connected to again.
+#[derive(Default)]
+struct SessionOpener {
+    running: Option<Arc<Simulation>>,
+    started: Option<Receiver<Arc<Simulation>>>,
+}
+
+impl Opener for SessionOpener {
+    fn open(
+        &mut self,
+        target: ConnectTarget,
+        addresses: Addresses,
+    ) -> Receiver<Result<OpenLink, SessionError>> {
+        if let Some(started) = self.started.take().and_then(|started| started.try_recv().ok()) {
+            self.running = Some(started);
+        }
+        let (sender, receiver) = bounded(1);
+        let (tell_started, started) = bounded(1);
+        self.started = Some(started);
+        let running = self.running.clone();
+        let open = move || {
+            let options = SessionOptions { addresses, ..SessionOptions::default() };
+            let clock: Arc<dyn Clock> = SystemClock::shared();
+            let opened = session::open(&target, options, clock, running).map(|session| {
+                if let Some(simulation) = &session.simulation {
+                    // The opener may be gone with the window.
+                    let _ = tell_started.try_send(simulation.clone());
+                }
+                let world = session.simulation.map(|simulation| simulation as Arc<dyn SimulatedWorld>);
+                OpenLink { device: session.device, world }
+            });
+            // Whoever gave up waiting has dropped the receiver; the link is closed again by being dropped.
+            let _ = sender.send(opened);
+        };
+        // Without a thread the receiver is disconnected, which the window reports.
+        let _ = std::thread::Builder::new().name("open link".to_owned()).spawn(open);
+        receiver
+    }
+}
+
+impl SimulatedWorld for Simulation {
+    fn apply(&self, unit: usize, action: WorldAction) -> Result<(), Failure> {
+        Self::apply(self, unit, action).map_err(|error| {
+            Failure::new("change the simulated world", "", error, "Disconnect and connect again")
+        })
+    }
+
+    fn views(&self) -> Option<Arc<Vec<WorldView>>> {
+        Some(Self::views(self))
+    }
+}

@@ -1,0 +1,123 @@
+//! Opens the real window, or says in one sentence why it cannot.
+//!
+//! What a desktop lacks (a display, a library) shows up as an error of the window system or, in places, as a panic
+//! inside it. Both become a [`WindowError`] that names the command line, which works without a window.
+
+use std::any::Any;
+use std::panic::{self, AssertUnwindSafe};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use egui::{Ui, ViewportBuilder, vec2};
+
+use super::App;
+use super::opener::real_parts;
+
+/// Why there is no window. The text is one sentence with what to do.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "Brushwork cannot open its window ({reason}); the command line works without one: see `brushwork --help`."
+)]
+pub struct WindowError {
+    reason: String,
+}
+
+/// Opens the window and returns when it is closed.
+///
+/// # Errors
+/// There is no display, or a library that the window needs is missing.
+pub fn run() -> Result<(), WindowError> {
+    if let Some(reason) = no_display() {
+        return Err(WindowError { reason });
+    }
+    let opened = Arc::new(Mutex::new(false));
+    let result = quietly_until(&opened, || {
+        let opened = opened.clone();
+        eframe::run_native(
+            "Brushwork",
+            options(),
+            Box::new(move |creation| {
+                *opened.lock().unwrap_or_else(PoisonError::into_inner) = true;
+                let parts = real_parts(&creation.egui_ctx);
+                Ok(Box::new(Window(App::new(&creation.egui_ctx, parts))))
+            }),
+        )
+    });
+    match result {
+        Ok(Ok(())) => Ok(()),
+        Ok(Err(error)) => Err(WindowError { reason: one_line(&error.to_string()) }),
+        Err(panicked) => Err(WindowError { reason: one_line(&text_of(panicked.as_ref())) }),
+    }
+}
+
+/// The window as eframe knows it.
+struct Window(App);
+
+impl eframe::App for Window {
+    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+        self.0.contents(ui);
+    }
+}
+
+fn options() -> eframe::NativeOptions {
+    let viewport = ViewportBuilder::default()
+        .with_title("Brushwork")
+        .with_app_id("brushwork")
+        .with_inner_size(vec2(1280.0, 800.0))
+        .with_min_inner_size(vec2(1024.0, 700.0));
+    eframe::NativeOptions { viewport, dithering: false, ..Default::default() }
+}
+
+/// On Unix without a display there is no need to ask the window system.
+fn no_display() -> Option<String> {
+    let is_set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    let needs_one = cfg!(all(unix, not(target_os = "macos")));
+    let has_one = is_set("DISPLAY") || is_set("WAYLAND_DISPLAY") || is_set("WAYLAND_SOCKET");
+    (needs_one && !has_one)
+        .then(|| "there is no display: neither DISPLAY nor WAYLAND_DISPLAY is set".to_owned())
+}
+
+/// Runs `open`, keeping panics to itself as long as the window has not opened: a missing library is a panic inside
+/// the window system. Once it has, a panic is a bug and is reported as one.
+fn quietly_until<T>(opened: &Arc<Mutex<bool>>, open: impl FnOnce() -> T) -> Result<T, Box<dyn Any + Send>> {
+    let report = Arc::new(panic::take_hook());
+    let (is_open, report_later) = (opened.clone(), report.clone());
+    panic::set_hook(Box::new(move |panicked| {
+        if *is_open.lock().unwrap_or_else(PoisonError::into_inner) {
+            report_later(panicked);
+        }
+    }));
+    let result = panic::catch_unwind(AssertUnwindSafe(open));
+    let was_open = *opened.lock().unwrap_or_else(PoisonError::into_inner);
+    match result {
+        Err(panicked) if was_open => panic::resume_unwind(panicked),
+        other => other,
+    }
+}
+
+fn text_of(panicked: &(dyn Any + Send)) -> String {
+    let text = panicked.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| panicked.downcast_ref::<&str>().copied()).unwrap_or("a library is missing").to_owned()
+}
+
+/// A reason in one line, without the full stop of a sentence of its own.
+fn one_line(text: &str) -> String {
+    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    line.trim_end_matches('.').to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_before_the_window_opens_becomes_a_reason() {
+        let opened = Arc::new(Mutex::new(false));
+        let result =
+            quietly_until(&opened, || -> () { panic!("libxkbcommon-x11.so could not be loaded.\n") });
+        let _ = panic::take_hook();
+        let reason = one_line(&text_of(result.unwrap_err().as_ref()));
+        assert_eq!(reason, "libxkbcommon-x11.so could not be loaded");
+        let told = WindowError { reason }.to_string();
+        assert!(told.contains("brushwork --help") && told.lines().count() == 1, "{told}");
+    }
+}

@@ -1,0 +1,97 @@
+//! Opens what the user names: a serial port, a TCP server, or a controller that is simulated in this program.
+//!
+//! Shared by the window and the command line. Opening may wait for the operating system, so the window does it on
+//! another thread. What is opened is driven through [`DeviceHandle`]; this module sends nothing.
+
+use std::sync::Arc;
+
+use brushwork_link::device::{Addresses, DeviceHandle, DeviceOptions, DeviceThread, PollRate};
+use brushwork_link::transport::{ConnectTarget, OpenError, Stream, Transport, list_ports, ports};
+use brushwork_link::{Clock, HiddenSettings};
+
+pub mod sim_spec;
+pub mod simulation;
+
+pub use sim_spec::{SimSpec, SimSpecError};
+pub use simulation::{Simulation, SimulationError};
+
+/// An open link.
+pub struct Session {
+    /// The link's device thread.
+    pub device: DeviceHandle,
+    /// The simulated machine behind it, if it runs in this program. It lives on as long as somebody holds it.
+    pub simulation: Option<Arc<Simulation>>,
+}
+
+/// How a link is opened.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SessionOptions {
+    /// Which units to look for.
+    pub addresses: Addresses,
+    /// How often the signals are read at first.
+    pub poll: PollRate,
+}
+
+/// Why a link could not be opened. Each is a whole sentence for the user.
+#[derive(Debug, thiserror::Error)]
+pub enum SessionError {
+    /// The port or the connection.
+    #[error(transparent)]
+    Open(#[from] OpenError),
+    /// The simulated controller.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    /// The thread that would own the link.
+    #[error("Could not start the thread that owns the link: {0}. Close other programs and try again.")]
+    Thread(#[source] std::io::Error),
+}
+
+/// Opens `target`. A simulated controller is started, unless `running` is the one that the target names: then its
+/// cable is plugged into again.
+///
+/// # Errors
+/// A sentence: the port, the connection or the simulated controller cannot be opened.
+pub fn open(
+    target: &ConnectTarget,
+    options: SessionOptions,
+    clock: Arc<dyn Clock>,
+    running: Option<Arc<Simulation>>,
+) -> Result<Session, SessionError> {
+    let ConnectTarget::Sim(text) = target else {
+        return spawn(target.open()?, clock, options, stream_of(target), None);
+    };
+    let simulation = match running.filter(|running| running.is(text)) {
+        Some(running) => running,
+        None => Arc::new(Simulation::start(text)?),
+    };
+    let transport = simulation.connect()?;
+    spawn(Box::new(transport), clock, options, Some(simulation.stream()), Some(simulation))
+}
+
+/// The stream of the controller that a port is wired to: as the user said, or as the port's name tells.
+fn stream_of(target: &ConnectTarget) -> Option<Stream> {
+    target.stream().or_else(|| match target {
+        ConnectTarget::Serial { path, .. } => ports::stream_of(path, &list_ports().unwrap_or_default()),
+        ConnectTarget::Tcp { .. } | ConnectTarget::Sim(_) => None,
+    })
+}
+
+fn spawn(
+    transport: Box<dyn Transport>,
+    clock: Arc<dyn Clock>,
+    options: SessionOptions,
+    stream: Option<Stream>,
+    simulation: Option<Arc<Simulation>>,
+) -> Result<Session, SessionError> {
+    let hidden = simulation.clone().map(|simulation| simulation as Arc<dyn HiddenSettings>);
+    let options = DeviceOptions {
+        addresses: options.addresses,
+        poll: options.poll,
+        stream,
+        simulated: simulation.is_some(),
+        hidden,
+        ..DeviceOptions::default()
+    };
+    let device = DeviceThread::spawn(transport, clock, options).map_err(SessionError::Thread)?;
+    Ok(Session { device, simulation })
+}

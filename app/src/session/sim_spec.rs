@@ -1,0 +1,258 @@
+//! What simulated controllers to make: the text behind `sim:` and the arguments of `brushwork sim`.
+
+use std::fmt;
+
+use brushwork_protocol::models::{self, Model};
+use brushwork_protocol::packet_serial::{Address, Generation};
+
+/// One line with one or more simulated controllers on it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SimSpec {
+    /// The units, in the order of their addresses as given.
+    pub units: Vec<UnitSpec>,
+    /// Seed of noise and faults.
+    pub seed: u64,
+}
+
+/// One simulated controller.
+#[derive(Debug, Clone, PartialEq)]
+pub struct UnitSpec {
+    /// Its model.
+    pub model: &'static Model,
+    /// Firmware generation.
+    pub generation: Generation,
+    /// Address on the line.
+    pub address: Address,
+    /// Preset of motor 1 and motor 2.
+    pub presets: [String; 2],
+}
+
+/// Text that describes no simulated controller.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum SimSpecError {
+    /// No such model.
+    #[error("\"{given}\" is no simulated model. There are {known}")]
+    Model {
+        /// As given.
+        given: String,
+        /// All models.
+        known: String,
+    },
+    /// No such preset.
+    #[error("\"{given}\" is no motor preset. There are {known}")]
+    Preset {
+        /// As given.
+        given: String,
+        /// All presets.
+        known: String,
+    },
+    /// An option that does not exist.
+    #[error(
+        "\"{given}\" is no option of a simulated controller. There are generation=1..4, preset=NAME, address=0x80..0x87 and seed=N"
+    )]
+    Option {
+        /// As given.
+        given: String,
+    },
+    /// A value out of range.
+    #[error("\"{given}\" is no {what}. Use {range}")]
+    Value {
+        /// What the option sets.
+        what: &'static str,
+        /// As given.
+        given: String,
+        /// What may be given.
+        range: &'static str,
+    },
+    /// Two units on one address.
+    #[error(
+        "two simulated controllers are given the address {address}; units on one line need different ones"
+    )]
+    SameAddress {
+        /// The address.
+        address: Address,
+    },
+    /// Lists of different lengths.
+    #[error("{models} models are given for {addresses} addresses; give one model, or one for each address")]
+    Counts {
+        /// Number of models.
+        models: usize,
+        /// Number of addresses.
+        addresses: usize,
+    },
+    /// More presets than motors.
+    #[error("{given} presets are given; a controller has two motors")]
+    Presets {
+        /// How many.
+        given: usize,
+    },
+}
+
+/// What both ways of writing it have in common, as text.
+#[derive(Debug, Clone)]
+pub struct SimOptions<'a> {
+    /// One model for all units, or one for each.
+    pub models: Vec<&'a str>,
+    /// Firmware generation 1 to 4.
+    pub generation: u8,
+    /// None, one for both motors, or one for each.
+    pub presets: Vec<&'a str>,
+    /// At least one address.
+    pub addresses: Vec<u8>,
+    /// Seed of noise and faults.
+    pub seed: u64,
+}
+
+impl SimSpec {
+    /// Reads the text behind `sim:`, for example `mcp266,generation=4,preset=flywheel`.
+    ///
+    /// # Errors
+    /// A sentence that names the part at fault and what may stand there.
+    pub fn parse(text: &str) -> Result<Self, SimSpecError> {
+        let mut parts = text.split(',').map(str::trim);
+        let model = parts.next().filter(|name| !name.is_empty()).unwrap_or("mcp266");
+        let mut options =
+            SimOptions { models: vec![model], generation: 1, presets: vec![], addresses: vec![], seed: 1 };
+        for part in parts {
+            let Some((key, value)) = part.split_once('=') else {
+                return Err(SimSpecError::Option { given: part.to_owned() });
+            };
+            set_option(&mut options, key.trim(), value.trim())?;
+        }
+        if options.addresses.is_empty() {
+            options.addresses.push(0x80);
+        }
+        Self::from_options(&options)
+    }
+
+    /// Checks names, counts and ranges.
+    ///
+    /// # Errors
+    /// A sentence that names the part at fault and what may stand there.
+    pub fn from_options(options: &SimOptions<'_>) -> Result<Self, SimSpecError> {
+        let (n_models, n_addresses) = (options.models.len(), options.addresses.len());
+        if n_models != 1 && n_models != n_addresses {
+            return Err(SimSpecError::Counts { models: n_models, addresses: n_addresses });
+        }
+        let generation = Generation::from_number(options.generation).ok_or_else(|| SimSpecError::Value {
+            what: "firmware generation",
+            given: options.generation.to_string(),
+            range: "1 to 4",
+        })?;
+        let presets = presets_of(&options.presets)?;
+        let mut units: Vec<UnitSpec> = Vec::new();
+        for (index, &number) in options.addresses.iter().enumerate() {
+            let model = model_of(options.models[if n_models == 1 { 0 } else { index }])?;
+            let address = Address::new(number).ok_or_else(|| bad_address(&format!("{number:#04x}")))?;
+            if units.iter().any(|unit| unit.address == address) {
+                return Err(SimSpecError::SameAddress { address });
+            }
+            units.push(UnitSpec { model, generation, address, presets: presets.clone() });
+        }
+        Ok(Self { units, seed: options.seed })
+    }
+}
+
+impl fmt::Display for SimSpec {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, unit) in self.units.iter().enumerate() {
+            let comma = if index == 0 { "" } else { ", " };
+            write!(f, "{comma}{} at {} ({})", unit.model.name, unit.address, unit.generation)?;
+        }
+        Ok(())
+    }
+}
+
+fn set_option<'a>(options: &mut SimOptions<'a>, key: &str, value: &'a str) -> Result<(), SimSpecError> {
+    let bad = |what, range| SimSpecError::Value { what, given: value.to_owned(), range };
+    match key {
+        "generation" => {
+            options.generation = value.parse().map_err(|_| bad("firmware generation", "1 to 4"))?;
+        }
+        "preset" => options.presets = value.split('/').collect(),
+        "address" => {
+            let parsed = parse_address(value).map_err(|_| bad_address(value))?;
+            options.addresses.push(parsed);
+        }
+        "seed" => options.seed = value.parse().map_err(|_| bad("seed", "a whole number"))?,
+        _ => return Err(SimSpecError::Option { given: key.to_owned() }),
+    }
+    Ok(())
+}
+
+/// Reads an address, 0x80 to 0x87, in hexadecimal or decimal.
+///
+/// # Errors
+/// A sentence that says what an address is.
+pub fn parse_address(text: &str) -> Result<u8, String> {
+    let digits = text.trim();
+    let value = digits
+        .strip_prefix("0x")
+        .or_else(|| digits.strip_prefix("0X"))
+        .map_or_else(|| digits.parse::<u8>().ok(), |hex| u8::from_str_radix(hex, 16).ok());
+    match value {
+        Some(address @ 0x80..=0x87) => Ok(address),
+        _ => Err(format!("\"{text}\" is no address: use 0x80 to 0x87 (128 to 135)")),
+    }
+}
+
+fn bad_address(given: &str) -> SimSpecError {
+    SimSpecError::Value { what: "address", given: given.to_owned(), range: "0x80 to 0x87" }
+}
+
+fn model_of(name: &str) -> Result<&'static Model, SimSpecError> {
+    models::lookup(name).ok_or_else(|| SimSpecError::Model {
+        given: name.to_owned(),
+        known: models::MODELS.iter().map(|model| model.key).collect::<Vec<_>>().join(", "),
+    })
+}
+
+fn presets_of(names: &[&str]) -> Result<[String; 2], SimSpecError> {
+    let check = |name: &str| {
+        brushwork_sim::presets::lookup(name).map(|preset| preset.key.clone()).ok_or_else(|| {
+            SimSpecError::Preset { given: name.to_owned(), known: brushwork_sim::presets::keys().join(", ") }
+        })
+    };
+    match names {
+        [] => Ok([brushwork_sim::presets::DEFAULT.to_owned(), brushwork_sim::presets::DEFAULT.to_owned()]),
+        [both] => Ok([check(both)?, check(both)?]),
+        [first, second] => Ok([check(first)?, check(second)?]),
+        more => Err(SimSpecError::Presets { given: more.len() }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_but_the_scheme_means_one_mcp266_at_0x80() {
+        let spec = SimSpec::parse("").unwrap();
+        assert_eq!(spec.units.len(), 1);
+        assert_eq!(spec.units[0].model.key, "mcp266");
+        assert_eq!(spec.to_string(), "MCP266 at 0x80 (generation 1)");
+    }
+
+    #[test]
+    fn options_are_read_and_two_units_share_a_line() {
+        let spec = SimSpec::parse("mcp266,generation=4,address=0x80,address=129,seed=7").unwrap();
+        let addresses: Vec<u8> = spec.units.iter().map(|unit| unit.address.get()).collect();
+        assert_eq!((addresses, spec.seed), (vec![0x80, 0x81], 7));
+        assert_eq!(spec.units[0].generation, Generation::Gen4);
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_together_with_what_would_be_right() {
+        for (text, named) in [
+            ("mcp999", "mcp266"),
+            ("mcp266,generation=9", "1 to 4"),
+            ("mcp266,preset=nothing", "gearmotor"),
+            ("mcp266,address=7", "0x80 to 0x87"),
+            ("mcp266,colour=red", "seed=N"),
+            ("mcp266,address=0x80,address=0x80", "0x80"),
+        ] {
+            let error = SimSpec::parse(text).unwrap_err().to_string();
+            assert!(error.contains(named), "{text}: {error}");
+        }
+    }
+}

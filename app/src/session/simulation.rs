@@ -1,0 +1,206 @@
+//! A simulated machine that runs in this program, in real time.
+
+use std::fmt;
+use std::sync::Arc;
+
+use brushwork_link::HiddenSettings;
+use brushwork_link::transport::{ChannelTransport, Stream};
+use brushwork_protocol::packet_serial::Address;
+use brushwork_sim::controller::{Bus, BusError, Controller, ControllerConfig};
+use brushwork_sim::machine::StreamIndex;
+use brushwork_sim::plant::ParamsError;
+use brushwork_sim::presets;
+use brushwork_sim::server::{ChannelEnds, Endpoint, Server, ServerError, ServerOptions, SimHandle};
+use brushwork_sim::world::{WorldAction, WorldView};
+
+use super::sim_spec::{SimSpec, SimSpecError, UnitSpec};
+
+/// One or more simulated controllers on one line, and the worlds around them.
+pub struct Simulation {
+    text: String,
+    addresses: Vec<Address>,
+    stream: Stream,
+    server: SimHandle<Bus>,
+}
+
+/// Why a simulated controller cannot be started or reached. Each is a whole sentence for the user.
+#[derive(Debug, thiserror::Error)]
+pub enum SimulationError {
+    /// The text behind `sim:`.
+    #[error("Could not start the simulated controller sim:{text}: {source}.")]
+    Spec {
+        /// As typed.
+        text: String,
+        /// What is wrong with it.
+        #[source]
+        source: SimSpecError,
+    },
+    /// Figures of a preset that make no sense.
+    #[error("Could not start the simulated controller: {0}.")]
+    Params(#[from] ParamsError),
+    /// Several units where there is room for one.
+    #[error("Could not start the simulated controllers: {0}.")]
+    Bus(#[from] BusError),
+    /// It cannot be served.
+    #[error("Could not start the simulated controller: {0}.")]
+    Server(#[source] ServerError),
+    /// Its cable is out.
+    #[error(
+        "Could not connect to the simulated controller: its cable is unplugged. Plug it in again in the simulated world's panel."
+    )]
+    Unplugged,
+    /// It runs no more.
+    #[error("Could not connect to the simulated controller: {0}. Start it again.")]
+    Gone(#[source] ServerError),
+}
+
+impl Simulation {
+    /// Starts what the text behind `sim:` describes.
+    ///
+    /// # Errors
+    /// The text names something that does not exist, or the system gives no thread.
+    pub fn start(text: &str) -> Result<Self, SimulationError> {
+        let spec =
+            SimSpec::parse(text).map_err(|source| SimulationError::Spec { text: text.to_owned(), source })?;
+        // Several units can only share a TTL wire; one alone hangs on USB.
+        let (index, stream) = match spec.units.len() {
+            1 => (StreamIndex::Usb, Stream::Usb),
+            _ => (StreamIndex::Uart1, Stream::Ttl1),
+        };
+        let units =
+            spec.units.iter().map(|unit| controller(unit, spec.seed)).collect::<Result<Vec<_>, _>>()?;
+        let bus = Bus::new(units, index)?;
+        let options = ServerOptions { stream: index, seed: spec.seed, ..ServerOptions::default() };
+        let server = Server::spawn(bus, options, &Endpoint::Channel).map_err(SimulationError::Server)?;
+        let addresses = spec.units.iter().map(|unit| unit.address).collect();
+        Ok(Self { text: text.to_owned(), addresses, stream, server })
+    }
+
+    /// Whether it runs and is what `text` describes.
+    pub fn is(&self, text: &str) -> bool {
+        self.text == text && self.server.is_running()
+    }
+
+    /// The stream of the controller that its line is on.
+    pub fn stream(&self) -> Stream {
+        self.stream
+    }
+
+    /// Plugs a client in; the one before is disconnected.
+    ///
+    /// # Errors
+    /// The cable is unplugged, or the machine has ended.
+    pub fn connect(&self) -> Result<ChannelTransport, SimulationError> {
+        let ChannelEnds { to_controller, from_controller } =
+            self.server.new_channel().map_err(|error| match error {
+                ServerError::Unplugged => SimulationError::Unplugged,
+                other => SimulationError::Gone(other),
+            })?;
+        Ok(ChannelTransport::new(to_controller, from_controller, format!("sim:{}", self.text)))
+    }
+
+    /// Does something to the world of a unit, counted from 0. Never waits.
+    ///
+    /// # Errors
+    /// The machine has ended or its queue is full.
+    pub fn apply(&self, unit: usize, action: WorldAction) -> Result<(), ServerError> {
+        self.server.apply(unit, action)
+    }
+
+    /// The worlds of all units. Never waits.
+    pub fn views(&self) -> Arc<Vec<WorldView>> {
+        self.server.views()
+    }
+
+    /// The served machine, for those who need its truth.
+    pub fn server(&self) -> &SimHandle<Bus> {
+        &self.server
+    }
+
+    fn unit_at(&self, address: Address) -> Option<usize> {
+        self.addresses.iter().position(|unit| *unit == address)
+    }
+}
+
+impl fmt::Debug for Simulation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Simulation").field("text", &self.text).finish_non_exhaustive()
+    }
+}
+
+impl HiddenSettings for Simulation {
+    fn get(&self, address: Address, key: &str) -> Option<i64> {
+        let (unit, key) = (self.unit_at(address)?, key.to_owned());
+        let look = move |bus: &mut Bus| bus.controllers().get(unit)?.settings().hidden(&key).ok();
+        self.server.inspect(look).ok().flatten()
+    }
+
+    fn set(&self, address: Address, key: &str, value: i64) -> Result<(), String> {
+        let unit =
+            self.unit_at(address).ok_or_else(|| format!("There is no simulated unit at {address}."))?;
+        let action = WorldAction::SetHidden { key: key.to_owned(), value };
+        let act = move |bus: &mut Bus| bus.controllers_mut()[unit].apply(&action);
+        match self.server.inspect(act) {
+            Ok(Ok(())) => Ok(()),
+            Ok(Err(unknown)) => Err(format!("{unknown}.")),
+            Err(error) => Err(format!("{error}.")),
+        }
+    }
+}
+
+fn controller(unit: &UnitSpec, seed: u64) -> Result<Controller, ParamsError> {
+    let preset = |index: usize| {
+        presets::lookup(&unit.presets[index])
+            .expect("the names of presets were checked when the text was read")
+    };
+    Controller::new(ControllerConfig {
+        generation: unit.generation,
+        address: unit.address,
+        world: presets::world_of(preset(0), preset(1), unit.model.pins.len()),
+        seed,
+        ..ControllerConfig::of(unit.model)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use brushwork_link::Transport as _;
+    use std::time::Duration;
+
+    /// Command 21 to 0x80; the reply begins with the name.
+    fn name_of(transport: &mut ChannelTransport) -> String {
+        transport.write(&[0x80, 21]).unwrap();
+        let mut buffer = [0; 64];
+        let count = transport.read(&mut buffer, Duration::from_secs(5)).unwrap();
+        String::from_utf8_lossy(&buffer[..count]).into_owned()
+    }
+
+    #[test]
+    fn a_simulated_controller_answers_and_outlives_its_client() {
+        let simulation = Simulation::start("mcp266").unwrap();
+        let mut first = simulation.connect().unwrap();
+        assert!(name_of(&mut first).contains("MCP266"));
+        drop(first);
+        assert!(name_of(&mut simulation.connect().unwrap()).contains("MCP266"));
+        assert!(simulation.is("mcp266") && !simulation.is("mcp263"));
+    }
+
+    #[test]
+    fn an_unplugged_cable_is_named_with_the_cure() {
+        let simulation = Simulation::start("mcp266").unwrap();
+        simulation.apply(0, WorldAction::Unplug { unplugged: true }).unwrap();
+        let error = simulation.connect().err().unwrap();
+        assert!(error.to_string().contains("Plug it in again"), "{error}");
+    }
+
+    #[test]
+    fn hidden_settings_reach_the_unit_at_their_address() {
+        let simulation = Simulation::start("mcp266,address=0x80,address=0x81").unwrap();
+        let address = Address::new(0x81).unwrap();
+        HiddenSettings::set(&simulation, address, "unit.bridge_channels", 1).unwrap();
+        assert_eq!(HiddenSettings::get(&simulation, address, "unit.bridge_channels"), Some(1));
+        assert_eq!(HiddenSettings::get(&simulation, Address::DEFAULT, "unit.bridge_channels"), Some(0));
+        assert!(HiddenSettings::set(&simulation, address, "no.such", 1).is_err());
+    }
+}
