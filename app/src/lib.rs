@@ -1,4 +1,5 @@
 //! See `ARCHITECTURE.md`.
 
+pub mod cli;
 pub mod gui;
 pub mod session;

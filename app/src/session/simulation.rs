@@ -67,9 +67,7 @@ impl Simulation {
             1 => (StreamIndex::Usb, Stream::Usb),
             _ => (StreamIndex::Uart1, Stream::Ttl1),
         };
-        let units =
-            spec.units.iter().map(|unit| controller(unit, spec.seed)).collect::<Result<Vec<_>, _>>()?;
-        let bus = Bus::new(units, index)?;
+        let bus = bus_of(&spec, index)?;
         let options = ServerOptions { stream: index, seed: spec.seed, ..ServerOptions::default() };
         let server = Server::spawn(bus, options, &Endpoint::Channel).map_err(SimulationError::Server)?;
         let addresses = spec.units.iter().map(|unit| unit.address).collect();
@@ -146,6 +144,15 @@ impl HiddenSettings for Simulation {
             Err(error) => Err(format!("{error}.")),
         }
     }
+}
+
+/// The machines that a description asks for, on one wire.
+///
+/// # Errors
+/// Several units do not fit on this kind of wire.
+pub fn bus_of(spec: &SimSpec, stream: StreamIndex) -> Result<Bus, SimulationError> {
+    let units = spec.units.iter().map(|unit| controller(unit, spec.seed)).collect::<Result<Vec<_>, _>>()?;
+    Ok(Bus::new(units, stream)?)
 }
 
 fn controller(unit: &UnitSpec, seed: u64) -> Result<Controller, ParamsError> {

@@ -1,0 +1,274 @@
+//! The command line as clap sees it. No behaviour here: each subcommand's own file acts on its arguments.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use super::exit;
+use crate::session::sim_spec::parse_address;
+
+/// Configures, drives and tunes brushed-DC motor controllers.
+#[derive(Debug, Parser)]
+#[command(
+    name = "brushwork",
+    version,
+    about = "Configures, drives and tunes brushed-DC motor controllers",
+    long_about = "Configures, drives and tunes brushed-DC motor controllers (MCP / RoboClaw over packet serial).\n\
+                  Without a command the window opens.",
+    after_long_help = exit::HELP,
+)]
+pub struct Cli {
+    /// What to do; the window opens when this is left out.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
+
+/// What `brushwork` can do without a window.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// List serial ports and simulated controllers.
+    List(ListArgs),
+    /// Show measurements, lamps and why the motors do not run.
+    Status(StatusArgs),
+    /// Drive a motor until the time is over or you stop it.
+    Drive(DriveArgs),
+    /// Stop both motors at once.
+    Stop(StopArgs),
+    /// Run simulated controllers on a pseudo-terminal or a TCP port.
+    Sim(SimArgs),
+    /// Print the packet serial reference.
+    Protocol(ProtocolArgs),
+}
+
+/// Which controller, and how to reach it.
+#[derive(Debug, Clone, Args)]
+pub struct ConnectArgs {
+    /// sim:mcp266[,generation=4,preset=NAME], /dev/ttyACM0, /dev/ttyUSB0,baud=115200,stream=ttl1, COM3 or
+    /// tcp:HOST:PORT.
+    #[arg(long, short = 'c', value_name = "TARGET", default_value = "sim:mcp266")]
+    pub connect: String,
+    /// Address of the controller on its line.
+    #[arg(long, value_name = "0x80..0x87", default_value = "0x80", value_parser = parse_address)]
+    pub address: u8,
+}
+
+/// One of the controller's serial streams (MCP manual 2.3.1, command 145).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum StreamArg {
+    /// The USB port.
+    Usb,
+    /// UART0, with RS-232 levels.
+    Rs232,
+    /// UART1, TTL levels.
+    Ttl1,
+    /// UART2, TTL levels.
+    Ttl2,
+    /// UART3, TTL levels.
+    Ttl3,
+}
+
+/// Arguments of `brushwork list`.
+#[derive(Debug, Args)]
+pub struct ListArgs {
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+    /// Also open each port and ask the addresses 0x80 to 0x87 who is there.
+    #[arg(long)]
+    pub scan: bool,
+}
+
+/// Arguments of `brushwork status`.
+#[derive(Debug, Args)]
+pub struct StatusArgs {
+    /// The controller.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// Print JSON (one object a line with --watch).
+    #[arg(long)]
+    pub json: bool,
+    /// Go on until interrupted.
+    #[arg(long)]
+    pub watch: bool,
+    /// Time between two lines of --watch.
+    #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = parse_seconds, requires = "watch")]
+    pub interval: Duration,
+}
+
+/// Arguments of `brushwork drive`.
+#[derive(Debug, Args)]
+#[command(
+    group(clap::ArgGroup::new("setpoint").required(true).args(["duty", "speed", "position"])),
+    after_help = "Examples:\n  \
+        brushwork drive --connect sim:mcp266 --motor 1 --duty 25 --for 2\n  \
+        brushwork drive --connect /dev/ttyACM0 --motor both --speed -12000 --accel 24000 --for 5\n  \
+        brushwork drive --connect /dev/ttyACM0 --motor 2 --position 4000 --speed-limit 8000 --for 3\n\n\
+        Both motors are stopped when the time is over, on Ctrl-C, SIGTERM, SIGHUP, a closed pipe, a fault or a lost link."
+)]
+pub struct DriveArgs {
+    /// The controller.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// Which motor.
+    #[arg(long, value_enum, value_name = "1|2|both", default_value = "1")]
+    pub motor: MotorArg,
+    /// Duty cycle in percent, -100 to 100.
+    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true, value_parser = parse_duty_percent)]
+    pub duty: Option<f64>,
+    /// Speed in encoder counts per second.
+    #[arg(long, value_name = "COUNTS/S", allow_negative_numbers = true)]
+    pub speed: Option<i32>,
+    /// Position in encoder counts.
+    #[arg(long, value_name = "COUNTS", allow_negative_numbers = true)]
+    pub position: Option<i32>,
+    /// Acceleration: percent of duty per second with --duty, counts/s² with --speed and --position.
+    #[arg(long, value_name = "RATE", value_parser = parse_positive)]
+    pub accel: Option<f64>,
+    /// Deceleration of a position move in counts/s² (default: the acceleration).
+    #[arg(long, value_name = "RATE", requires = "position", value_parser = parse_positive)]
+    pub decel: Option<f64>,
+    /// Highest speed of a position move in counts/s (default: the motor's QPPS).
+    #[arg(long, value_name = "COUNTS/S", requires = "position")]
+    pub speed_limit: Option<u32>,
+    /// How long to drive.
+    #[arg(long = "for", value_name = "SECONDS", default_value = "1", value_parser = parse_seconds)]
+    pub duration: Duration,
+    /// Print each sample as a JSON object a line.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// One motor or both.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum MotorArg {
+    /// Motor 1.
+    #[value(name = "1")]
+    M1,
+    /// Motor 2.
+    #[value(name = "2")]
+    M2,
+    /// Both motors.
+    Both,
+}
+
+/// Arguments of `brushwork stop`.
+#[derive(Debug, Args)]
+pub struct StopArgs {
+    /// The controller.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `brushwork sim`.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    brushwork sim --pty /tmp/mcp\n  \
+    brushwork sim --model mcp2166 --generation 4 --preset flywheel --tcp 127.0.0.1:7000\n  \
+    brushwork sim --port ttl1 --pace --address 0x80,0x81,0x82 --pty /tmp/bus\n  \
+    brushwork sim --pty /tmp/mcp --fault drop=0.01 --fault 'plant:locked-shaft@4s,motor=1'\n\n\
+    Ctrl-C ends it. `brushwork sim --list` names the models and presets.")]
+pub struct SimArgs {
+    /// Controller model; a comma-separated list makes a bus of several models.
+    #[arg(long, value_name = "MODEL", default_value = "mcp266", value_delimiter = ',')]
+    pub model: Vec<String>,
+    /// Firmware generation, 1 to 4: widths and meanings of the replies.
+    #[arg(long, value_name = "1..4", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=4))]
+    pub generation: u8,
+    /// Motor preset; two, separated by a comma, give motor 1 and motor 2 different ones.
+    #[arg(long, value_name = "PRESET", value_delimiter = ',', num_args = 1)]
+    pub preset: Vec<String>,
+    /// Address, or a comma-separated list: one simulated unit for each, on one line.
+    #[arg(long, value_name = "0x80..0x87", default_value = "0x80", value_delimiter = ',', value_parser = parse_address)]
+    pub address: Vec<u8>,
+    /// Which of the controller's ports is served.
+    #[arg(long, value_enum, value_name = "PORT", default_value = "usb")]
+    pub port: StreamArg,
+    /// Make a pseudo-terminal and a symbolic link to it at PATH.
+    #[arg(long, value_name = "PATH", conflicts_with = "tcp")]
+    pub pty: Option<PathBuf>,
+    /// Listen on this TCP address instead; port 0 picks a free one.
+    #[arg(long, value_name = "127.0.0.1:PORT")]
+    pub tcp: Option<String>,
+    /// Send and take bytes at the port's set baud rate.
+    #[arg(long)]
+    pub pace: bool,
+    /// A fault on the wire or in the plant; may be given more than once.
+    #[arg(long, value_name = "FAULT")]
+    pub fault: Vec<String>,
+    /// Seed of noise and faults.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Write the simulator's own truth to FILE as JSON ten times a second.
+    #[arg(long, value_name = "FILE")]
+    pub truth: Option<PathBuf>,
+    /// Name the models and presets, and end.
+    #[arg(long)]
+    pub list: bool,
+}
+
+/// Arguments of `brushwork protocol`.
+#[derive(Debug, Args)]
+pub struct ProtocolArgs {
+    /// Only these commands, by number or key.
+    #[arg(value_name = "COMMAND")]
+    pub commands: Vec<String>,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+fn parse_seconds(text: &str) -> Result<Duration, String> {
+    let number = text.trim().trim_end_matches('s');
+    number
+        .parse::<f64>()
+        .ok()
+        .filter(|seconds| (0.0..=1e7).contains(seconds))
+        .map(Duration::from_secs_f64)
+        .ok_or_else(|| format!("\"{text}\" is no time in seconds: use for example 2 or 0.5"))
+}
+
+fn parse_duty_percent(text: &str) -> Result<f64, String> {
+    text.trim()
+        .trim_end_matches('%')
+        .parse::<f64>()
+        .ok()
+        .filter(|percent| (-100.0..=100.0).contains(percent))
+        .ok_or_else(|| format!("\"{text}\" is no duty cycle: use -100 to 100 percent"))
+}
+
+fn parse_positive(text: &str) -> Result<f64, String> {
+    text.trim()
+        .parse::<f64>()
+        .ok()
+        .filter(|value| *value > 0.0 && value.is_finite())
+        .ok_or_else(|| format!("\"{text}\" is no rate: use a number above zero"))
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+
+    #[test]
+    fn the_definition_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn a_duty_beyond_full_is_refused_with_its_range() {
+        let error = Cli::try_parse_from(["brushwork", "drive", "--duty", "120"]).unwrap_err();
+        assert!(error.to_string().contains("-100 to 100"), "{error}");
+    }
+
+    #[test]
+    fn drive_wants_exactly_one_setpoint() {
+        assert!(Cli::try_parse_from(["brushwork", "drive"]).is_err());
+        assert!(Cli::try_parse_from(["brushwork", "drive", "--duty", "5", "--speed", "100"]).is_err());
+        assert!(Cli::try_parse_from(["brushwork", "drive", "--duty", "-5"]).is_ok());
+    }
+}

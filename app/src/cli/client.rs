@@ -1,0 +1,108 @@
+//! A controller as a command sees it: connected and identified, or a sentence and an exit code.
+
+use std::time::{Duration, Instant};
+
+use brushwork_link::SystemClock;
+use brushwork_link::device::{Addresses, DeviceHandle, Event, Identity, PollRate};
+use brushwork_link::transport::ConnectTarget;
+use crossbeam_channel::RecvTimeoutError;
+
+use super::args::ConnectArgs;
+use super::exit::Exit;
+use super::interrupt::Interrupt;
+use super::output::say;
+use crate::session::{self, Session, SessionOptions};
+
+/// How long a controller may take to be found and identified.
+const CONNECT_LIMIT: Duration = Duration::from_secs(15);
+/// How long one look at the event queue waits, so that signals are noticed.
+const EVENT_SLICE: Duration = Duration::from_millis(20);
+
+/// A connected controller.
+pub struct Client {
+    session: Session,
+    /// Who answered.
+    pub identity: Identity,
+}
+
+impl Client {
+    /// Opens the target and waits until the unit at the address has said who it is.
+    ///
+    /// # Errors
+    /// Says on standard error what went wrong and gives the exit code.
+    pub fn connect(args: &ConnectArgs, poll: PollRate, interrupt: &Interrupt) -> Result<Self, Exit> {
+        let target: ConnectTarget = args.connect.parse().map_err(|error| {
+            say(format!("Could not understand --connect {}: {error}.", args.connect));
+            Exit::Failed
+        })?;
+        let target = at_address(target, args.address);
+        let options = SessionOptions { addresses: Addresses::Only(args.address), poll };
+        let session = session::open(&target, options, SystemClock::shared(), None).map_err(|error| {
+            say(error.to_string());
+            Exit::NoLink
+        })?;
+        let identity = wait_for_identity(&session.device, interrupt)?;
+        Ok(Self { session, identity })
+    }
+
+    /// The device thread.
+    pub fn device(&self) -> &DeviceHandle {
+        &self.session.device
+    }
+
+    /// The next event, or `None` when there was none for a moment.
+    ///
+    /// # Errors
+    /// The link is lost (said on standard error) or the program was asked to end.
+    pub fn next_event(&self, interrupt: &Interrupt) -> Result<Option<Event>, Exit> {
+        next_event(&self.session.device, interrupt)
+    }
+}
+
+/// A simulated controller is made at the address that is asked for, unless the target names one itself.
+fn at_address(target: ConnectTarget, address: u8) -> ConnectTarget {
+    match target {
+        ConnectTarget::Sim(text) if !text.contains("address=") => {
+            let model = if text.is_empty() { "mcp266" } else { &text };
+            ConnectTarget::Sim(format!("{model},address={address:#04x}"))
+        }
+        other => other,
+    }
+}
+
+fn wait_for_identity(device: &DeviceHandle, interrupt: &Interrupt) -> Result<Identity, Exit> {
+    let deadline = Instant::now() + CONNECT_LIMIT;
+    let mut found = None;
+    while Instant::now() < deadline {
+        match next_event(device, interrupt)? {
+            Some(Event::Connected(identity)) => found = Some(identity),
+            Some(Event::Selected { .. }) => {
+                if let Some(identity) = found {
+                    return Ok(identity);
+                }
+            }
+            Some(Event::Failure(failure)) => say(failure.to_string()),
+            _ => {}
+        }
+    }
+    say(format!("Could not connect: no controller identified itself within {} s.", CONNECT_LIMIT.as_secs()));
+    Err(Exit::NoLink)
+}
+
+fn next_event(device: &DeviceHandle, interrupt: &Interrupt) -> Result<Option<Event>, Exit> {
+    if interrupt.is_raised() {
+        return Err(Exit::Interrupted);
+    }
+    match device.events().recv_timeout(EVENT_SLICE) {
+        Ok(Event::Lost(failure)) => {
+            say(failure.to_string());
+            Err(Exit::NoLink)
+        }
+        Ok(event) => Ok(Some(event)),
+        Err(RecvTimeoutError::Timeout) => Ok(None),
+        Err(RecvTimeoutError::Disconnected) => {
+            say("The link was closed.");
+            Err(Exit::NoLink)
+        }
+    }
+}

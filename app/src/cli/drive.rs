@@ -1,0 +1,209 @@
+//! `brushwork drive`: motion for a stated time, ended by a stop on every way out.
+//!
+//! The device thread's dead-man is renewed by this loop alone, so that a hung terminal stops the motors too.
+
+use std::time::{Duration, Instant};
+
+use brushwork_link::device::{ArmScope, DisarmReason, Drive, DriveCommand, Event, PollRate, Request};
+use brushwork_protocol::packet_serial::{Motor, number};
+use serde_json::json;
+
+use super::args::{DriveArgs, MotorArg};
+use super::client::Client;
+use super::exit::Exit;
+use super::interrupt::Interrupt;
+use super::output::{Output, OutputError, say};
+use super::status::{Readings, line_of};
+use super::stop;
+
+/// Time between two printed lines.
+const PRINT_INTERVAL: Duration = Duration::from_millis(100);
+/// How long arming and reading a setting may take.
+const ANSWER_LIMIT: Duration = Duration::from_secs(5);
+
+/// Connects, arms, drives, stops.
+pub fn run(args: &DriveArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
+    let client = match Client::connect(&args.connect, PollRate::DEFAULT, interrupt) {
+        Ok(client) => client,
+        Err(exit) => return exit,
+    };
+    let drive = match command(args, &client, interrupt).and_then(|command| {
+        arm(&client, interrupt)?;
+        Ok(command)
+    }) {
+        Ok(command) => to_motors(args.motor, command),
+        Err(exit) => return exit,
+    };
+    let driven = keep_driving(args, drive, &client, out, interrupt);
+    finish(driven, &client)
+}
+
+/// Stops whatever the driving came to, then gives its exit code.
+fn finish(driven: Result<(), Exit>, client: &Client) -> Exit {
+    let was_lost = driven == Err(Exit::NoLink);
+    if !was_lost {
+        client.device().stop_all();
+        match stop::wait_for_report(client) {
+            Ok(report) => stop::warnings(&report).into_iter().for_each(say),
+            Err(exit) => return exit,
+        }
+    }
+    driven.map_or_else(|exit| exit, |()| Exit::Done)
+}
+
+fn to_motors(motor: MotorArg, command: DriveCommand) -> Drive {
+    match motor {
+        MotorArg::M1 => Drive::one(Motor::M1, command),
+        MotorArg::M2 => Drive::one(Motor::M2, command),
+        MotorArg::Both => Drive::both(command),
+    }
+}
+
+fn command(args: &DriveArgs, client: &Client, interrupt: &Interrupt) -> Result<DriveCommand, Exit> {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a rate above zero; `as` saturates"
+    )]
+    let rate = |value: f64| value.round() as u32;
+    if let Some(percent) = args.duty {
+        let accel_duty_per_s = args.accel.map(|percent_per_s| percent_per_s / 100.0);
+        return Ok(DriveCommand::Duty { duty: percent / 100.0, accel_duty_per_s });
+    }
+    if let Some(speed_counts_per_s) = args.speed {
+        return Ok(DriveCommand::Speed { speed_counts_per_s, accel_counts_per_s2: args.accel.map(rate) });
+    }
+    let speed_counts_per_s = match args.speed_limit {
+        Some(limit) => limit,
+        None => qpps(args.motor, client, interrupt)?,
+    };
+    // Without a figure the move takes a quarter of a second to its full speed.
+    let accel = args.accel.map_or(speed_counts_per_s.saturating_mul(4), rate);
+    Ok(DriveCommand::Position {
+        position_counts: args.position.unwrap_or_default(),
+        speed_counts_per_s,
+        accel_counts_per_s2: accel,
+        decel_counts_per_s2: args.decel.map_or(accel, rate),
+        queued: false,
+    })
+}
+
+/// The motor's own full speed: with both motors, the slower one's.
+fn qpps(motor: MotorArg, client: &Client, interrupt: &Interrupt) -> Result<u32, Exit> {
+    let commands: &[u8] = match motor {
+        MotorArg::M1 => &[number::READ_VELOCITY_PID_M1],
+        MotorArg::M2 => &[number::READ_VELOCITY_PID_M2],
+        MotorArg::Both => &[number::READ_VELOCITY_PID_M1, number::READ_VELOCITY_PID_M2],
+    };
+    let mut slowest = u32::MAX;
+    for &command in commands {
+        let request = Request::Transact { id: u64::from(command), command, values: Vec::new() };
+        ask(client, request)?;
+        let values = wait(client, interrupt, |event| match event {
+            Event::Transacted { result, .. } => Some(result),
+            _ => None,
+        })?
+        .map_err(|failure| {
+            say(failure.to_string());
+            Exit::Refused
+        })?;
+        slowest = slowest.min(u32::try_from(values.int("qpps")).unwrap_or(0));
+    }
+    if slowest == 0 {
+        say(
+            "The motor's QPPS is 0, so a position move would not move. Give --speed-limit or set QPPS first.",
+        );
+        return Err(Exit::Refused);
+    }
+    Ok(slowest)
+}
+
+fn arm(client: &Client, interrupt: &Interrupt) -> Result<(), Exit> {
+    client.device().renew();
+    ask(client, Request::Arm(ArmScope::CommandLine))?;
+    let reasons = wait(client, interrupt, |event| match event {
+        Event::Armed { warnings, .. } => {
+            warnings.iter().for_each(say);
+            Some(Vec::new())
+        }
+        Event::ArmRefused { reasons, .. } => Some(reasons),
+        _ => None,
+    })?;
+    if reasons.is_empty() {
+        return Ok(());
+    }
+    reasons.iter().for_each(|reason| say(reason.to_string()));
+    Err(Exit::Refused)
+}
+
+fn ask(client: &Client, request: Request) -> Result<(), Exit> {
+    client.device().request(request).map_err(|refused| {
+        say(format!("Could not ask the controller: {refused}"));
+        Exit::Refused
+    })
+}
+
+/// Takes events until one gives an answer, renewing the dead-man meanwhile.
+fn wait<T>(
+    client: &Client,
+    interrupt: &Interrupt,
+    mut answer: impl FnMut(Event) -> Option<T>,
+) -> Result<T, Exit> {
+    let deadline = Instant::now() + ANSWER_LIMIT;
+    while Instant::now() < deadline {
+        client.device().renew();
+        match client.next_event(interrupt)? {
+            Some(Event::Failure(failure)) => say(failure.to_string()),
+            Some(event) => {
+                if let Some(answer) = answer(event) {
+                    return Ok(answer);
+                }
+            }
+            None => {}
+        }
+    }
+    say(format!("The controller did not answer within {} s.", ANSWER_LIMIT.as_secs()));
+    Err(Exit::NoLink)
+}
+
+fn keep_driving(
+    args: &DriveArgs,
+    drive: Drive,
+    client: &Client,
+    out: &mut Output,
+    interrupt: &Interrupt,
+) -> Result<(), Exit> {
+    ask(client, Request::Drive(drive))?;
+    let start = Instant::now();
+    let mut next_print = start;
+    let mut readings = Readings::default();
+    while start.elapsed() < args.duration {
+        client.device().renew();
+        match client.next_event(interrupt)? {
+            Some(Event::Disarmed(reason)) => return Err(disarmed(&reason)),
+            Some(event) => readings.take(event),
+            None => {}
+        }
+        if Instant::now() >= next_print {
+            next_print += PRINT_INTERVAL;
+            print(args, start.elapsed(), &readings, out)?;
+        }
+    }
+    Ok(())
+}
+
+fn disarmed(reason: &DisarmReason) -> Exit {
+    say(format!("{reason}. Both motors are being stopped."));
+    match reason {
+        DisarmReason::LinkLost => Exit::NoLink,
+        _ => Exit::Refused,
+    }
+}
+
+fn print(args: &DriveArgs, at: Duration, readings: &Readings, out: &mut Output) -> Result<(), OutputError> {
+    let seconds = at.as_secs_f64();
+    if args.json {
+        return out.json_line(&json!({ "time_s": seconds, "readings": readings.to_json() }));
+    }
+    out.line(format!("{seconds:6.1} s  {}", line_of(readings)))
+}

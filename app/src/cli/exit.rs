@@ -1,0 +1,58 @@
+//! Exit codes: one place for the numbers, the help text and the type.
+
+use std::process::ExitCode;
+
+use super::output::OutputError;
+
+/// Shown under `brushwork --help`.
+pub const HELP: &str = "Exit codes:\n  \
+    0  done\n  \
+    1  something else failed (a file, a benchmark, an internal error)\n  \
+    2  the command line could not be understood\n  \
+    3  no controller could be reached, or the link was lost\n  \
+    4  the controller or a safety rule refused\n  \
+    5  settings: something did not take, or a profile was refused\n  \
+    6  settings diff: there are differences\n  \
+    130  ended by Ctrl-C, SIGTERM, SIGHUP or a closed pipe, after both motors were stopped";
+
+/// How a command ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Exit {
+    /// All was done.
+    Done,
+    /// A failure of no other kind.
+    Failed,
+    /// No controller was reached, or the link was lost.
+    NoLink,
+    /// The controller or a safety rule refused.
+    Refused,
+    /// A setting did not take or a profile was refused.
+    NotTaken,
+    /// `settings diff` found differences.
+    Different,
+    /// A signal or a closed pipe ended the command, with the motors stopped.
+    Interrupted,
+}
+
+impl From<OutputError> for Exit {
+    fn from(error: OutputError) -> Self {
+        match error {
+            OutputError::Closed => Self::Interrupted,
+            OutputError::Io(_) => Self::Failed,
+        }
+    }
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        Self::from(match exit {
+            Exit::Done => 0,
+            Exit::Failed => 1,
+            Exit::NoLink => 3,
+            Exit::Refused => 4,
+            Exit::NotTaken => 5,
+            Exit::Different => 6,
+            Exit::Interrupted => 130,
+        })
+    }
+}

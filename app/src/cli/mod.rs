@@ -1,0 +1,59 @@
+//! The command line: everything that can be done without a window.
+//!
+//! [`run`] reads the arguments and hands over to one file per command. Commands talk to controllers through
+//! [`crate::session`] like the window does; they print data on standard output and words on standard error.
+
+pub mod args;
+mod client;
+mod drive;
+mod exit;
+mod interrupt;
+mod list;
+mod output;
+mod protocol;
+mod sim;
+mod status;
+mod stop;
+
+use std::process::ExitCode;
+
+use clap::Parser as _;
+
+use args::{Cli, Command};
+pub use exit::Exit;
+use interrupt::Interrupt;
+use output::{Output, say};
+
+/// Runs the program: a command, or the window where none is given.
+#[must_use]
+pub fn run() -> ExitCode {
+    let cli = Cli::parse();
+    let Some(command) = cli.command else {
+        return match crate::gui::run::run() {
+            Ok(()) => Exit::Done.into(),
+            Err(error) => {
+                say(error.to_string());
+                Exit::Failed.into()
+            }
+        };
+    };
+    let interrupt = match Interrupt::install() {
+        Ok(interrupt) => interrupt,
+        Err(error) => {
+            say(format!("Could not take over Ctrl-C, without which motors could not be stopped: {error}."));
+            return Exit::Failed.into();
+        }
+    };
+    dispatch(&command, &mut Output::stdout(), &interrupt).into()
+}
+
+fn dispatch(command: &Command, out: &mut Output, interrupt: &Interrupt) -> Exit {
+    match command {
+        Command::List(args) => list::run(args, out, interrupt),
+        Command::Status(args) => status::run(args, out, interrupt),
+        Command::Drive(args) => drive::run(args, out, interrupt),
+        Command::Stop(args) => stop::run(args, out, interrupt),
+        Command::Sim(args) => sim::run(args, out, interrupt),
+        Command::Protocol(args) => protocol::run(args, out),
+    }
+}

@@ -1,0 +1,112 @@
+//! Standard output that survives a closed pipe: a failed write is an answer, not a panic.
+
+use std::io::{self, Write};
+
+/// Why printing stopped.
+#[derive(Debug, thiserror::Error)]
+pub enum OutputError {
+    /// The reader of our standard output has gone.
+    #[error("standard output was closed")]
+    Closed,
+    /// Something else, such as a full disk.
+    #[error("standard output can't be written: {0}")]
+    Io(io::Error),
+}
+
+impl From<io::Error> for OutputError {
+    fn from(error: io::Error) -> Self {
+        if error.kind() == io::ErrorKind::BrokenPipe { Self::Closed } else { Self::Io(error) }
+    }
+}
+
+/// Where a command's data goes.
+pub struct Output {
+    writer: Box<dyn Write>,
+}
+
+impl Output {
+    /// Standard output, flushed at every line.
+    #[must_use]
+    pub fn stdout() -> Self {
+        Self { writer: Box::new(io::stdout()) }
+    }
+
+    /// A sink of the caller's.
+    #[cfg(test)]
+    pub fn to(writer: Box<dyn Write>) -> Self {
+        Self { writer }
+    }
+
+    /// Writes one line.
+    pub fn line(&mut self, text: impl AsRef<str>) -> Result<(), OutputError> {
+        self.writer.write_all(text.as_ref().as_bytes())?;
+        self.writer.write_all(b"\n")?;
+        self.writer.flush()?;
+        Ok(())
+    }
+
+    /// Writes a value as indented JSON.
+    pub fn json(&mut self, value: &impl serde::Serialize) -> Result<(), OutputError> {
+        let text = serde_json::to_string_pretty(value).map_err(io::Error::from)?;
+        self.line(text)
+    }
+
+    /// Writes a value as one line of JSON.
+    pub fn json_line(&mut self, value: &impl serde::Serialize) -> Result<(), OutputError> {
+        let text = serde_json::to_string(value).map_err(io::Error::from)?;
+        self.line(text)
+    }
+
+    /// Writes rows in columns wide enough for their widest cell.
+    pub fn table(&mut self, heads: &[&str], rows: &[Vec<String>]) -> Result<(), OutputError> {
+        let width_of = |column: usize| {
+            let cells = rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count());
+            cells.chain([heads[column].chars().count()]).max().unwrap_or(0)
+        };
+        let widths: Vec<usize> = (0..heads.len()).map(width_of).collect();
+        self.line(padded(heads.iter().copied(), &widths))?;
+        for row in rows {
+            self.line(padded(row.iter().map(String::as_str), &widths))?;
+        }
+        Ok(())
+    }
+}
+
+/// Says something to the person at the terminal; a closed standard error is nobody to tell.
+pub fn say(text: impl AsRef<str>) {
+    let _ = writeln!(io::stderr(), "{}", text.as_ref());
+}
+
+fn padded<'a>(cells: impl Iterator<Item = &'a str>, widths: &[usize]) -> String {
+    let line: Vec<String> = cells.zip(widths).map(|(cell, &width)| format!("{cell:<width$}")).collect();
+    line.join("  ").trim_end().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::exit::Exit;
+    use super::*;
+
+    struct Gone;
+
+    impl Write for Gone {
+        fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+            Err(io::ErrorKind::BrokenPipe.into())
+        }
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_closed_pipe_ends_the_command_as_interrupted() {
+        let error = Output::to(Box::new(Gone)).line("x").unwrap_err();
+        assert_eq!(Exit::from(error), Exit::Interrupted);
+    }
+
+    #[test]
+    fn columns_are_as_wide_as_their_widest_cell() {
+        assert_eq!(padded(["a", "b"].into_iter(), &[3, 1]), "a    b");
+        assert_eq!(padded(["a", ""].into_iter(), &[3, 4]), "a");
+    }
+}

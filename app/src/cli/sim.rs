@@ -1,0 +1,144 @@
+//! `brushwork sim`: simulated controllers for other programs, on a pseudo-terminal or a TCP port.
+
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use brushwork_protocol::models::MODELS;
+use brushwork_sim::controller::Bus;
+use brushwork_sim::faults::{FAULT_SYNTAX, Fault};
+use brushwork_sim::machine::StreamIndex;
+use brushwork_sim::presets::presets;
+use brushwork_sim::server::{Endpoint, Server, ServerOptions, SimHandle};
+
+use super::args::{SimArgs, StreamArg};
+use super::exit::Exit;
+use super::interrupt::Interrupt;
+use super::output::{Output, OutputError, say};
+use crate::session::sim_spec::SimOptions;
+use crate::session::{SimSpec, simulation};
+
+/// Time between two looks at the server, and between two writes of the truth.
+const WATCH_INTERVAL: Duration = Duration::from_millis(100);
+
+/// Serves until interrupted.
+pub fn run(args: &SimArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
+    if args.list {
+        return list(out).map_or_else(Exit::from, |()| Exit::Done);
+    }
+    match start(args).map_err(|sentence| {
+        say(sentence);
+        Exit::Failed
+    }) {
+        Ok((spec, server)) => serve(args, &spec, &server, out, interrupt),
+        Err(exit) => exit,
+    }
+}
+
+fn start(args: &SimArgs) -> Result<(SimSpec, SimHandle<Bus>), String> {
+    let endpoint = endpoint(args)?;
+    let options = SimOptions {
+        models: args.model.iter().map(String::as_str).collect(),
+        generation: args.generation,
+        presets: args.preset.iter().map(String::as_str).collect(),
+        addresses: args.address.clone(),
+        seed: args.seed,
+    };
+    let spec = SimSpec::from_options(&options)
+        .map_err(|error| format!("Could not start the simulated controller: {error}."))?;
+    let stream = stream_index(args.port);
+    let faults = args.fault.iter().map(|text| fault(text)).collect::<Result<Vec<_>, _>>()?;
+    let bus = simulation::bus_of(&spec, stream).map_err(|error| error.to_string())?;
+    let options = ServerOptions { stream, pace: args.pace, faults, seed: args.seed };
+    let server = Server::spawn(bus, options, &endpoint)
+        .map_err(|error| format!("Could not start the simulated controller: {error}."))?;
+    Ok((spec, server))
+}
+
+fn endpoint(args: &SimArgs) -> Result<Endpoint, String> {
+    match (&args.pty, &args.tcp) {
+        (Some(link), _) => Ok(Endpoint::Pty { link: link.clone() }),
+        (None, Some(address)) => address.parse::<SocketAddr>().map(Endpoint::Tcp).map_err(|_| {
+            format!("\"{address}\" is no address to listen on. Use for example --tcp 127.0.0.1:7000.")
+        }),
+        (None, None) if cfg!(windows) => Ok(Endpoint::Tcp(SocketAddr::from(([127, 0, 0, 1], 0)))),
+        (None, None) => Ok(Endpoint::Pty { link: default_link() }),
+    }
+}
+
+fn default_link() -> PathBuf {
+    std::env::temp_dir().join("brushwork-sim")
+}
+
+fn fault(text: &str) -> Result<Fault, String> {
+    text.parse().map_err(|error| format!("Could not read --fault {text}: {error}.\n\n{FAULT_SYNTAX}"))
+}
+
+fn stream_index(port: StreamArg) -> StreamIndex {
+    match port {
+        StreamArg::Usb => StreamIndex::Usb,
+        StreamArg::Rs232 => StreamIndex::Uart0,
+        StreamArg::Ttl1 => StreamIndex::Uart1,
+        StreamArg::Ttl2 => StreamIndex::Uart2,
+        StreamArg::Ttl3 => StreamIndex::Uart3,
+    }
+}
+
+fn serve(
+    args: &SimArgs,
+    spec: &SimSpec,
+    server: &SimHandle<Bus>,
+    out: &mut Output,
+    interrupt: &Interrupt,
+) -> Exit {
+    let place = server.address().to_owned();
+    let connect = if args.tcp.is_some() { format!("tcp:{place}") } else { place.clone() };
+    let greeting =
+        format!("{spec}, port {}, on {place}\nConnect with: brushwork --open {connect}", spec_port(args));
+    if out.line(greeting).is_err() {
+        return Exit::Interrupted;
+    }
+    say("Ctrl-C ends it.");
+    let mut next_truth = Instant::now();
+    while !interrupt.sleep(WATCH_INTERVAL) {
+        if !server.is_running() {
+            say("The simulated controller has ended by itself.");
+            return Exit::Failed;
+        }
+        if let Some(file) = &args.truth
+            && Instant::now() >= next_truth
+        {
+            next_truth = Instant::now() + WATCH_INTERVAL;
+            if let Err(error) = write_truth(file, server) {
+                say(format!("Could not write the truth to {}: {error}.", file.display()));
+                return Exit::Failed;
+            }
+        }
+    }
+    Exit::Done
+}
+
+fn spec_port(args: &SimArgs) -> &'static str {
+    stream_index(args.port).key()
+}
+
+/// Replaced as a whole, so that a reader never sees half of it.
+fn write_truth(file: &Path, server: &SimHandle<Bus>) -> std::io::Result<()> {
+    let text = serde_json::to_string_pretty(&*server.views())?;
+    let mut beside = file.as_os_str().to_owned();
+    beside.push(".new");
+    std::fs::write(&beside, text)?;
+    std::fs::rename(&beside, file)
+}
+
+fn list(out: &mut Output) -> Result<(), OutputError> {
+    let models: Vec<Vec<String>> = MODELS
+        .iter()
+        .map(|model| vec![model.key.to_owned(), model.rating().to_owned(), model.assumed.to_owned()])
+        .collect();
+    out.table(&["MODEL", "RATING", "ASSUMED"], &models)?;
+    out.line("")?;
+    let rows: Vec<Vec<String>> =
+        presets().iter().map(|preset| vec![preset.key.clone(), preset.description.clone()]).collect();
+    out.table(&["PRESET", "WHAT"], &rows)
+}

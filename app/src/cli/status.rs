@@ -1,0 +1,200 @@
+//! `brushwork status`: what the controller measures and reports.
+
+use std::time::{Duration, Instant};
+
+use brushwork_link::device::{Channel, Event, PollRate, StatusReport};
+use brushwork_protocol::packet_serial::status::{Condition, Lamp, Severity};
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+
+use super::args::StatusArgs;
+use super::client::Client;
+use super::exit::Exit;
+use super::interrupt::Interrupt;
+use super::output::{Output, OutputError, say};
+
+/// How long the slow signals may take to come round.
+const FIRST_READING_LIMIT: Duration = Duration::from_secs(5);
+
+/// The newest of everything that has been read.
+#[derive(Default)]
+pub struct Readings {
+    values: [Option<f64>; Channel::COUNT],
+    status: Option<StatusReport>,
+}
+
+#[derive(Serialize)]
+struct LampState {
+    lamp: &'static str,
+    title: &'static str,
+    state: &'static str,
+}
+
+impl Readings {
+    /// Takes over what an event tells.
+    pub fn take(&mut self, event: Event) {
+        match event {
+            Event::Sample(sample) => {
+                for channel in Channel::ALL {
+                    if let Some(value) = sample.get(channel) {
+                        self.values[channel.index()] = Some(value);
+                    }
+                }
+            }
+            Event::Status(status) => self.status = Some(status),
+            Event::Failure(failure) => say(failure.to_string()),
+            _ => {}
+        }
+    }
+
+    /// A channel's newest value.
+    pub fn get(&self, channel: Channel) -> Option<f64> {
+        self.values[channel.index()]
+    }
+
+    fn is_complete(&self) -> bool {
+        let wanted = [
+            Channel::M1Position,
+            Channel::M1Velocity,
+            Channel::M1Current,
+            Channel::MainBattery,
+            Channel::LogicBattery,
+            Channel::Temperature1,
+        ];
+        self.status.is_some() && wanted.into_iter().all(|channel| self.get(channel).is_some())
+    }
+
+    /// All channels as JSON, by their keys; what was not read is null.
+    pub fn to_json(&self) -> Map<String, Value> {
+        Channel::ALL.into_iter().map(|channel| (channel.key(), json!(self.get(channel)))).collect()
+    }
+}
+
+/// Connects, reads and prints, once or until interrupted.
+pub fn run(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
+    watch(args, out, interrupt).unwrap_or_else(|exit| exit)
+}
+
+fn watch(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let client = Client::connect(&args.connect, PollRate::DEFAULT, interrupt)?;
+    let mut readings = Readings::default();
+    let first_deadline = Instant::now() + FIRST_READING_LIMIT;
+    while !readings.is_complete() && Instant::now() < first_deadline {
+        if let Some(event) = client.next_event(interrupt)? {
+            readings.take(event);
+        }
+    }
+    print(args, &client, &readings, out)?;
+    if !args.watch {
+        return Ok(Exit::Done);
+    }
+    let mut next = Instant::now() + args.interval;
+    loop {
+        if let Some(event) = client.next_event(interrupt)? {
+            readings.take(event);
+        }
+        if Instant::now() >= next {
+            next += args.interval;
+            print(args, &client, &readings, out)?;
+        }
+    }
+}
+
+fn print(
+    args: &StatusArgs,
+    client: &Client,
+    readings: &Readings,
+    out: &mut Output,
+) -> Result<(), OutputError> {
+    if args.json {
+        let object = to_json(client, readings);
+        return if args.watch { out.json_line(&object) } else { out.json(&object) };
+    }
+    if args.watch {
+        return out.line(line_of(readings));
+    }
+    let identity = &client.identity;
+    let simulated = if identity.simulated { ", simulated" } else { "" };
+    out.line(format!(
+        "{} at {:#04x} on {} ({}, {}{simulated})",
+        identity.title(),
+        identity.address,
+        identity.port,
+        identity.version_text,
+        identity.generation
+    ))?;
+    for note in &identity.notes {
+        out.line(format!("Note: {note}"))?;
+    }
+    let rows: Vec<Vec<String>> = Channel::ALL
+        .into_iter()
+        .filter_map(|channel| {
+            let value = readings.get(channel)?;
+            let digits = decimals(channel);
+            Some(vec![channel.label().to_owned(), format!("{value:>12.digits$}"), channel.unit().to_owned()])
+        })
+        .collect();
+    out.table(&["SIGNAL", "       VALUE", "UNIT"], &rows)?;
+    let lamps: Vec<Vec<String>> = lamps(readings)
+        .into_iter()
+        .map(|lamp| vec![lamp.lamp.to_owned(), lamp.state.to_owned(), lamp.title.to_owned()])
+        .collect();
+    out.line("")?;
+    out.table(&["LAMP", "STATE", "MEANING"], &lamps)
+}
+
+fn decimals(channel: Channel) -> usize {
+    match channel.unit() {
+        "A" => 2,
+        "V" | "°C" | "%" => 1,
+        _ => 0,
+    }
+}
+
+fn lamps(readings: &Readings) -> Vec<LampState> {
+    let state = |lamp: Lamp| match readings.status.map(|status| status.lamp(lamp)) {
+        None => "unknown",
+        Some(None) => "OK",
+        Some(Some(Severity::Signal)) => "active",
+        Some(Some(Severity::Warning)) => "warning",
+        Some(Some(Severity::Error)) => "ERROR",
+    };
+    Lamp::ALL
+        .into_iter()
+        .map(|lamp| LampState { lamp: lamp.abbreviation(), title: lamp.title(), state: state(lamp) })
+        .collect()
+}
+
+fn to_json(client: &Client, readings: &Readings) -> Value {
+    json!({
+        "identity": client.identity,
+        "readings": readings.to_json(),
+        "status_word": readings.status.map(|status| status.word),
+        "conditions": readings.status
+            .map(|status| status.conditions.iter().map(Condition::title).collect::<Vec<_>>()),
+        "lamps": lamps(readings),
+    })
+}
+
+/// One line of `--watch` and of `drive`.
+pub fn line_of(readings: &Readings) -> String {
+    let value = |channel: Channel, width: usize| {
+        let digits = decimals(channel);
+        readings
+            .get(channel)
+            .map_or_else(|| format!("{:>width$}", "-"), |value| format!("{value:>width$.digits$}"))
+    };
+    let motor = |name: &str, channels: [Channel; 4]| {
+        let [pwm, velocity, position, current] = channels;
+        format!(
+            "{name} {} % {} counts/s {} counts {} A",
+            value(pwm, 6),
+            value(velocity, 8),
+            value(position, 11),
+            value(current, 7)
+        )
+    };
+    let first = [Channel::M1Pwm, Channel::M1Velocity, Channel::M1Position, Channel::M1Current];
+    let second = [Channel::M2Pwm, Channel::M2Velocity, Channel::M2Position, Channel::M2Current];
+    format!("{} | {} | {} V", motor("M1", first), motor("M2", second), value(Channel::MainBattery, 5))
+}
