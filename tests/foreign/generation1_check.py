@@ -4,6 +4,7 @@ The layouts are those of packet.py, written from the manual and not from the Rus
 simulator's own memory. The time to the first byte of each reply is measured against the 5 ms that strict clients allow.
 """
 
+import os
 import random
 import sys
 import time
@@ -13,7 +14,7 @@ from harness import truth, wait_until
 from packet import AppendingClient, BadReply, BytewiseClient, Client, LISTS, Port, READS, Silence, sealed
 
 REPLY_LIMIT_MS = 5.0
-LATE_SHARE = 0.02  # what a machine with other work may hold back now and then
+LATE_SHARE = 0.04  # what a machine with other work may hold back now and then
 
 
 class Findings:
@@ -238,31 +239,20 @@ def garbage(findings, client):
 
 
 def latency(port):
-    """The limit is judged only where the machine itself wakes a process in time; the figures are stated always."""
+    """The limit is judged on a machine that has a core to spare; the figures are stated always."""
     ordered = sorted(port.latencies_ms)
     median = ordered[len(ordered) // 2]
-    late = sum(1 for value in ordered if value > REPLY_LIMIT_MS)
+    late_share = sum(value > REPLY_LIMIT_MS for value in ordered) / len(ordered)
+    load_per_core = os.getloadavg()[0] / (os.cpu_count() or 1)
     harness.figure("replies measured", len(ordered), "replies")
     harness.figure("median time to reply", median, "ms")
     harness.figure("99th percentile of time to reply", ordered[len(ordered) * 99 // 100], "ms")
     harness.figure("longest gap inside a reply", max(port.gaps_ms, default=0.0), "ms")
-    late_share = late_wake_ups()
-    harness.figure("late wake-ups of the machine itself", late_share * 100, "%")
-    if late_share > LATE_SHARE:
-        return  # other work holds every process back, this one and the simulator's
+    harness.figure("replies after more than 5 ms", late_share * 100, "%")
+    harness.figure("load of the machine per core", load_per_core, "")
     harness.report("wire: the median reply starts within 5 ms", median <= REPLY_LIMIT_MS, f"{median:.2f} ms")
-    passed = late <= len(ordered) * 2 * LATE_SHARE
-    harness.report("wire: replies start within 5 ms", passed, f"{late} of {len(ordered)} were late")
-
-
-def late_wake_ups(count=200):
-    """How often this machine wakes a sleeping process more than the limit too late."""
-    late = 0
-    for _ in range(count):
-        start = time.monotonic()
-        time.sleep(0.001)
-        late += (time.monotonic() - start) * 1000 > 1 + REPLY_LIMIT_MS
-    return late / count
+    if load_per_core < 1:
+        harness.report("wire: replies start within 5 ms", late_share <= LATE_SHARE, f"{late_share:.1%} were late")
 
 
 if __name__ == "__main__":
