@@ -9,6 +9,7 @@ mod driving;
 mod generation;
 mod polling;
 mod stopping;
+mod traffic;
 
 pub use discover::PacketSerial;
 
@@ -203,8 +204,11 @@ impl Controller for Mcp {
     }
 
     fn describe_traffic(&self, request: &[u8], reply: Option<&[u8]>) -> String {
-        let bytes = reply.unwrap_or(request);
-        bytes.iter().map(|byte| format!("{byte:02X}")).collect::<Vec<_>>().join(" ")
+        let generation = self.speaker.generation;
+        match reply {
+            None => traffic::describe_sent(request, generation),
+            Some(reply) => traffic::describe_received(request, reply, generation),
+        }
     }
 }
 
