@@ -9,4 +9,5 @@ pub mod rust_source;
 pub mod simulated;
 pub mod truth;
 pub mod virtual_line;
+pub mod virtual_link;
 pub mod workspace;

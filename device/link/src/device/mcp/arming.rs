@@ -16,6 +16,12 @@ use std::time::Duration;
 const PACKET_SERIAL: i64 = 1;
 const PRIORITY_SERIAL: i64 = 1;
 
+/// Why motors may not be moved, and what to do about it.
+struct Objection {
+    came_back: String,
+    mend: String,
+}
+
 /// Reads everything arming depends on, and lists all that speaks against it.
 pub fn check(
     speaker: Speaker,
@@ -23,124 +29,106 @@ pub fn check(
     stream: Option<Stream>,
     on: &str,
 ) -> Result<ArmCheck, ExchangeError> {
-    let mut reasons = Vec::new();
-    let mut refuse = |came_back: String, mend: String| {
-        reasons.push(Failure::new("arm the motors", on, came_back, mend));
-    };
-    let controller_timeout = match watchdog(speaker, line, stream)? {
-        Watchdog::After(timeout) => Some(timeout),
-        Watchdog::Off(stream) => {
-            refuse(
-                format!("the time-out of {stream} is 0, so the motors would run on if this program died"),
-                format!("Set the priority time-out of {stream} in General Settings, to 1000 ms for example"),
-            );
-            None
-        }
-        Watchdog::UnknownStream(stream) => {
-            refuse(
-                format!(
-                    "nobody said which connector of the controller this port is, and {stream} has no time-out"
-                ),
-                "Choose the connector, or give it with the port: \",stream=usb\"".to_owned(),
-            );
-            None
-        }
-        Watchdog::OtherUse(stream) => {
-            refuse(
-                format!("{stream} is not set to packet serial, so this port cannot be {stream}"),
-                "Choose the connector that this port is really wired to".to_owned(),
-            );
-            None
-        }
-        Watchdog::Unreadable => {
-            refuse(
-                "the controller does not tell its serial time-out, so nobody knows whether the motors would \
-                 stop if this program died"
-                    .to_owned(),
-                "Drive this controller with another program that you can watch".to_owned(),
-            );
-            None
-        }
-    };
-    if let Some(priorities) = speaker.ask_if_known(line, number::READ_PRIORITIES, &[])?
-        && !priorities.values.ints().any(|level| level == PRIORITY_SERIAL)
-    {
-        refuse(
-            "Serial is in none of the three priority levels, so the controller does not take its motion from this \
-             port"
-                .to_owned(),
-            "Set priority level 1 to Serial in General Settings".to_owned(),
-        );
-    }
-    for fault in faults(speaker, line)? {
-        refuse(
-            format!("the controller reports {fault}"),
-            "Remove the cause and reset the error first".to_owned(),
-        );
-    }
-    Ok(ArmCheck { reasons, controller_timeout })
+    let mut objections = Vec::new();
+    let watchdog = watchdog(speaker, line, stream)?;
+    let controller_timeout = watchdog.map_err(|objection| objections.push(objection)).ok();
+    objections.extend(object_to_priorities(speaker, line)?);
+    objections.extend(faults(speaker, line)?.into_iter().map(|fault| {
+        object(format!("the controller reports {fault}"), "Remove the cause and reset the error first")
+    }));
+    let failure =
+        |objection: Objection| Failure::new("arm the motors", on, objection.came_back, objection.mend);
+    Ok(ArmCheck { reasons: objections.into_iter().map(failure).collect(), controller_timeout })
 }
 
-/// What the controller does when this port falls silent.
-enum Watchdog {
-    /// It stops after this long.
-    After(Duration),
-    /// The port's stream has no time-out.
-    Off(Stream),
-    /// It is not known which stream the port is, and this one has no time-out.
-    UnknownStream(Stream),
-    /// The stream named is not one that speaks packet serial.
-    OtherUse(Stream),
-    /// The controller does not tell.
-    Unreadable,
-}
-
+/// After how much silence on this port the controller stops the motors.
 fn watchdog(
     speaker: Speaker,
     line: &mut Line<'_>,
     stream: Option<Stream>,
-) -> Result<Watchdog, ExchangeError> {
-    if let Some(reply) = speaker.ask_if_known(line, number::READ_STREAMS, &[])? {
+) -> Result<Result<Duration, Objection>, ExchangeError> {
+    let streams = speaker.ask_if_known(line, number::READ_STREAMS, &[])?;
+    if let Some(reply) = streams.filter(|reply| reply.values.records().next().is_some()) {
         return Ok(of_streams(&reply.values, stream));
     }
     // RoboClaw has one time-out for all ports. No source says which generation brought it, so generation 1 is asked too.
     let asker = Speaker { generation: speaker.generation.max(Generation::Gen2), ..speaker };
     let Some(reply) = asker.ask_if_known(line, number::READ_SERIAL_TIMEOUT, &[])? else {
-        return Ok(Watchdog::Unreadable);
+        return Ok(Err(unreadable()));
     };
     Ok(match reply.values.int("timeout") {
-        0 => Watchdog::Off(stream.unwrap_or(Stream::Usb)),
-        raw => Watchdog::After(Duration::from_secs_f64(raw as f64 * scale::DECISECOND_S)),
+        0 => Err(object(
+            "the serial time-out is 0, so the motors would run on if this program died",
+            "Set the serial time-out in General Settings, to 1 s for example",
+        )),
+        raw => Ok(Duration::from_secs_f64(raw as f64 * scale::DECISECOND_S)),
     })
 }
 
 /// Judges the streams of an MCP. A stream that is not known passes when every one that it could be has a time-out; the
 /// longest counts.
-fn of_streams(streams: &Values, stream: Option<Stream>) -> Watchdog {
-    let records = streams.records().zip(Stream::ALL);
-    let all: Vec<_> = records
-        .map(|(record, stream)| (stream, record.int("type") == PACKET_SERIAL, record.int("timeout")))
-        .collect();
-    let possible = all.iter().filter(|(candidate, packet, _)| match stream {
+fn of_streams(streams: &Values, stream: Option<Stream>) -> Result<Duration, Objection> {
+    let possible = streams.records().zip(Stream::ALL).filter(|(record, candidate)| match stream {
         Some(stream) => *candidate == stream,
-        None => *packet,
+        None => record.int("type") == PACKET_SERIAL,
     });
     let mut longest = None;
-    for (candidate, packet, timeout_ms) in possible {
-        if !packet {
-            return Watchdog::OtherUse(*candidate);
+    for (record, candidate) in possible {
+        if record.int("type") != PACKET_SERIAL {
+            return Err(object(
+                format!("{candidate} is not set to packet serial, so this port cannot be {candidate}"),
+                "Choose the connector that this port is really wired to",
+            ));
         }
-        if *timeout_ms <= 0 {
-            return if stream.is_some() {
-                Watchdog::Off(*candidate)
-            } else {
-                Watchdog::UnknownStream(*candidate)
-            };
+        let timeout_ms = u64::try_from(record.int("timeout")).unwrap_or(0);
+        if timeout_ms == 0 {
+            return Err(no_timeout(candidate, stream.is_some()));
         }
-        longest = longest.max(Some(*timeout_ms));
+        longest = longest.max(Some(Duration::from_millis(timeout_ms)));
     }
-    let longest = longest.and_then(|timeout_ms| u64::try_from(timeout_ms).ok());
-    longest.map_or(Watchdog::Unreadable, |timeout_ms| Watchdog::After(Duration::from_millis(timeout_ms)))
+    longest.ok_or_else(unreadable)
+}
+
+fn no_timeout(candidate: Stream, is_known: bool) -> Objection {
+    if is_known {
+        object(
+            format!("the time-out of {candidate} is 0, so the motors would run on if this program died"),
+            format!("Set the priority time-out of {candidate} in General Settings, to 1000 ms for example"),
+        )
+    } else {
+        object(
+            format!(
+                "nobody said which connector of the controller this port is, and {candidate} has no time-out"
+            ),
+            "Choose the connector, or give it with the port: \",stream=usb\"",
+        )
+    }
+}
+
+fn unreadable() -> Objection {
+    object(
+        "the controller does not tell its serial time-out, so nobody knows whether the motors would stop if this program \
+         died",
+        "Drive this controller with another program that you can watch",
+    )
+}
+
+/// Serial must be in one of the priority levels. A unit without such levels has nothing to object to.
+fn object_to_priorities(speaker: Speaker, line: &mut Line<'_>) -> Result<Option<Objection>, ExchangeError> {
+    let Some(priorities) = speaker.ask_if_known(line, number::READ_PRIORITIES, &[])? else {
+        return Ok(None);
+    };
+    let has_serial = priorities.values.ints().any(|level| level == PRIORITY_SERIAL);
+    Ok((!has_serial).then(|| {
+        object(
+            "Serial is in none of the three priority levels, so the controller does not take its motion from this port",
+            "Set priority level 1 to Serial in General Settings",
+        )
+    }))
+}
+
+fn object(came_back: impl Into<String>, mend: impl Into<String>) -> Objection {
+    Objection { came_back: came_back.into(), mend: mend.into() }
 }
 
 /// What the controller has stopped motors for.

@@ -1,0 +1,263 @@
+//! A device thread's loop on a simulated machine in virtual time, with a window that lives or is frozen.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use brushwork_link::device::{
+    ArmScope, DeviceHandle, DeviceLoop, DeviceOptions, Drive, DriveCommand, Event, Request, Step, StopReport,
+};
+use brushwork_link::{Clock, Transport, TransportError};
+use brushwork_protocol::packet_serial::Motor;
+use brushwork_sim::controller::{Bus, UnitView};
+use brushwork_sim::faults::{Fault, Faulty};
+use brushwork_sim::machine::{Machine, StreamIndex};
+use brushwork_sim::pacing::{Paced, byte_time};
+use brushwork_sim::world::WorldAction;
+
+use crate::virtual_line::VirtualLine;
+
+type Line = VirtualLine<Paced<Faulty<Bus>>>;
+type Hook = Box<dyn FnOnce(&DeviceHandle) + Send>;
+type Hooks = Arc<Mutex<Vec<(Duration, Hook)>>>;
+
+/// How often a living window renews motion and takes its events.
+const FRAME: Duration = Duration::from_millis(16);
+
+/// The loop, its handle, the machine behind it, and the events so far.
+pub struct VirtualLink {
+    /// The machine and the clock.
+    pub line: Line,
+    /// The window's end.
+    pub handle: Arc<DeviceHandle>,
+    /// What was told, and when the window took it.
+    pub events: Vec<(Duration, Event)>,
+    /// Whether the window renews motion and takes its events.
+    window_alive: Arc<AtomicBool>,
+    /// Whether the loop has ended.
+    pub ended: bool,
+    device_loop: DeviceLoop,
+    hooks: Hooks,
+    frame_at: Duration,
+}
+
+/// The line as the device thread gets it: reading stops at the window's frames and at hooks.
+struct Watched {
+    line: Line,
+    hooks: Hooks,
+    handle: Arc<Mutex<Option<Arc<DeviceHandle>>>>,
+    window_alive: Arc<AtomicBool>,
+    byte_time: Option<Duration>,
+}
+
+impl VirtualLink {
+    /// A loop on a stream of a bus; nothing has been sent. Bytes take no time on USB, and that of the stream's rate elsewhere.
+    pub fn new(bus: Bus, stream: StreamIndex, options: DeviceOptions, faults: Vec<Fault>, seed: u64) -> Self {
+        let paced = stream != StreamIndex::Usb;
+        let byte_time = paced.then(|| byte_time(bus.bits_per_second(stream)));
+        let line = VirtualLine::new(Paced::new(Faulty::new(bus, faults, seed), paced), stream);
+        let hooks = Hooks::default();
+        let handle_for_hooks = Arc::new(Mutex::new(None));
+        let window_alive = Arc::new(AtomicBool::new(true));
+        let watched = Watched {
+            line: line.clone(),
+            hooks: Arc::clone(&hooks),
+            handle: Arc::clone(&handle_for_hooks),
+            window_alive: Arc::clone(&window_alive),
+            byte_time,
+        };
+        let (device_loop, handle) =
+            DeviceLoop::new(Box::new(watched), Arc::new(line.clock().clone()), options);
+        let handle = Arc::new(handle);
+        *lock(&handle_for_hooks) = Some(Arc::clone(&handle));
+        let frame_at = line.clock().now();
+        Self { line, handle, events: Vec::new(), window_alive, ended: false, device_loop, hooks, frame_at }
+    }
+
+    /// The window hangs: it renews nothing and takes nothing.
+    pub fn freeze_window(&self) {
+        self.window_alive.store(false, Ordering::SeqCst);
+    }
+
+    /// The window goes on.
+    pub fn thaw_window(&self) {
+        self.window_alive.store(true, Ordering::SeqCst);
+        self.handle.renew();
+    }
+
+    /// Time now.
+    pub fn now(&self) -> Duration {
+        self.line.clock().now()
+    }
+
+    /// Lets the loop and the machine run for a time.
+    pub fn run_for(&mut self, time: Duration) {
+        let end = self.now() + time;
+        while self.now() < end && !self.ended {
+            self.frame();
+            match self.device_loop.step() {
+                Step::Again => {}
+                Step::IdleUntil(until) => self.pass(until.min(end).min(self.frame_at)),
+                Step::Ended => self.ended = true,
+            }
+        }
+        self.line.clock().advance_to(end);
+        self.take_events();
+    }
+
+    /// The window is gone and nobody turns the loop any more: only the machine lives on.
+    pub fn machine_alone_for(&mut self, time: Duration) {
+        self.line.pass(time);
+    }
+
+    /// Does something at a time, even in the middle of an exchange.
+    pub fn at(&self, time: Duration, act: impl FnOnce(&DeviceHandle) + Send + 'static) {
+        lock(&self.hooks).push((time, Box::new(act)));
+    }
+
+    /// Asks something of the loop.
+    pub fn ask(&self, request: Request) {
+        self.handle.request(request).expect("the queue has room in these tests");
+    }
+
+    /// Arms and says whether it was allowed.
+    pub fn arm(&mut self, scope: ArmScope) -> bool {
+        self.events.clear();
+        self.ask(Request::Arm(scope));
+        self.run_for(Duration::from_millis(300));
+        self.events.iter().any(|(_, event)| matches!(event, Event::Armed { .. }))
+    }
+
+    /// Drives both motors open loop.
+    pub fn drive(&self, duty: f64) {
+        self.ask(Request::Drive(Drive::both(DriveCommand::duty(duty))));
+    }
+
+    /// The reports of all stops so far.
+    pub fn stops(&self) -> Vec<&StopReport> {
+        let stops = self.events.iter().filter_map(|(_, event)| match event {
+            Event::Stopped(report) => Some(report),
+            _ => None,
+        });
+        stops.collect()
+    }
+
+    /// Does something with the simulated bus.
+    pub fn bus<T>(&self, act: impl FnOnce(&mut Bus) -> T) -> T {
+        self.line.with(|machine| act(machine.inner_mut().inner_mut()))
+    }
+
+    /// Does something to the world of a unit.
+    pub fn apply(&self, index: usize, action: &WorldAction) {
+        self.bus(|bus| Machine::apply(bus, index, action));
+    }
+
+    /// Looks at the truth of a unit of the bus, which must have power.
+    pub fn unit<T>(&self, index: usize, look: impl FnOnce(UnitView<'_>) -> T) -> T {
+        self.bus(|bus| look(bus.controllers()[index].unit().expect("the unit has power")))
+    }
+
+    /// The bridge duties of a unit as they are.
+    pub fn duties(&self, index: usize) -> [f64; 2] {
+        self.bus(|bus| bus.controllers()[index].view().axes.map(|axis| axis.output.duty()))
+    }
+
+    /// The bridge duties of a unit as they will be at a time, even if the loop is then in the middle of an exchange.
+    pub fn duties_at(&self, time: Duration, index: usize) -> Arc<Mutex<Option<[f64; 2]>>> {
+        let seen = Arc::new(Mutex::new(None));
+        let (line, into) = (self.line.clone(), Arc::clone(&seen));
+        self.at(time, move |_| {
+            let look = |machine: &mut Paced<Faulty<Bus>>| {
+                machine.inner_mut().inner_mut().controllers()[index].view()
+            };
+            *lock(&into) = Some(line.with(look).axes.map(|axis| axis.output.duty()));
+        });
+        seen
+    }
+
+    /// The speeds of a unit's motor shafts, rad/s.
+    pub fn speeds(&self, index: usize) -> [f64; 2] {
+        self.bus(|bus| bus.controllers()[index].view().axes.map(|axis| axis.truth.motor_radians_per_second))
+    }
+
+    /// Moves waiting in a unit's buffers, as command 47 tells them.
+    pub fn buffers(&self, index: usize) -> [u8; 2] {
+        self.unit(index, |unit| Motor::BOTH.map(|motor| unit.channel(motor).buffer_length()))
+    }
+
+    /// Passes time while the loop idles; a hook on the way wakes it.
+    fn pass(&self, until: Duration) {
+        let hook = next_hook(&self.hooks).filter(|at| *at <= until);
+        self.line.clock().advance_to(hook.unwrap_or(until));
+        run_hooks(&self.hooks, &self.handle, self.now());
+    }
+
+    /// What a living window does with each frame.
+    fn frame(&mut self) {
+        let now = self.now();
+        if now < self.frame_at {
+            return;
+        }
+        self.frame_at = now + FRAME;
+        if self.window_alive.load(Ordering::SeqCst) {
+            self.handle.renew();
+            self.take_events();
+        }
+    }
+
+    fn take_events(&mut self) {
+        let now = self.now();
+        self.events.extend(self.handle.events().try_iter().map(|event| (now, event)));
+    }
+}
+
+impl Transport for Watched {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), TransportError> {
+        self.line.write(bytes)
+    }
+
+    fn read(&mut self, buffer: &mut [u8], timeout: Duration) -> Result<usize, TransportError> {
+        let until = self.line.clock().now() + timeout;
+        let stop_at = next_hook(&self.hooks).map_or(until, |at| at.min(until));
+        let count = self.line.read(buffer, stop_at.saturating_sub(self.line.clock().now()))?;
+        if let Some(handle) = lock(&self.handle).as_ref() {
+            run_hooks(&self.hooks, handle, self.line.clock().now());
+            // Frames go on while the loop waits for bytes, in a job for instance.
+            if self.window_alive.load(Ordering::SeqCst) {
+                handle.renew();
+            }
+        }
+        Ok(count)
+    }
+
+    fn discard_input(&mut self) -> Result<usize, TransportError> {
+        self.line.discard_input()
+    }
+
+    fn describe(&self) -> String {
+        self.line.describe()
+    }
+
+    fn byte_time(&self) -> Option<Duration> {
+        self.byte_time
+    }
+}
+
+fn next_hook(hooks: &Hooks) -> Option<Duration> {
+    lock(hooks).iter().map(|(at, _)| *at).min()
+}
+
+/// Runs what is due. The lock is free while a hook runs.
+fn run_hooks(hooks: &Hooks, handle: &DeviceHandle, now: Duration) {
+    loop {
+        let mut waiting = lock(hooks);
+        let Some(index) = waiting.iter().position(|(at, _)| *at <= now) else { return };
+        let (_, hook) = waiting.remove(index);
+        drop(waiting);
+        hook(handle);
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
