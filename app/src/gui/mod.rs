@@ -5,7 +5,9 @@
 )]
 
 pub mod app;
+pub mod bench;
 pub mod command;
+pub mod files;
 pub mod graph;
 pub mod keys;
 pub mod model;

@@ -99,11 +99,16 @@ fn text_of(panicked: &(dyn Any + Send)) -> String {
     text.or_else(|| panicked.downcast_ref::<&str>().copied()).unwrap_or("a library is missing").to_owned()
 }
 
-/// A reason in one line, without the full stop of a sentence of its own.
+/// A reason in one line, without the window system's source paths and without the full stop of a sentence of its own.
+/// A library that is missing is named with the packages that bring it.
 fn one_line(text: &str) -> String {
     let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    line.trim_end_matches('.').to_owned()
+    let reason = line.rsplit(": ").next().unwrap_or(&line).trim_end_matches('.');
+    if reason.to_lowercase().contains("librar") { format!("{reason}: {PACKAGES}") } else { reason.to_owned() }
 }
+
+/// What a window needs on a bare Debian; other systems have packages of similar names.
+const PACKAGES: &str = "on Debian or Ubuntu install libx11-6 libxcursor1 libxi6 libxkbcommon-x11-0 libgl1";
 
 #[cfg(test)]
 mod tests {
@@ -117,6 +122,8 @@ mod tests {
         let _ = panic::take_hook();
         let reason = one_line(&text_of(result.unwrap_err().as_ref()));
         assert_eq!(reason, "libxkbcommon-x11.so could not be loaded");
+        let reason = one_line("os error at /a/b.rs:788: Failed to load one of xlib's shared libraries");
+        assert!(reason.starts_with("Failed to load one") && reason.contains("libxcursor1"), "{reason}");
         let told = WindowError { reason }.to_string();
         assert!(told.contains("brushwork --help") && told.lines().count() == 1, "{told}");
     }

@@ -1,8 +1,7 @@
 //! The list of channels beside the graph: which are shown, their newest values, and the selected one's scale.
 
 use egui::{
-    Align, Align2, Layout, Response, Role, ScrollArea, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo,
-    pos2, vec2,
+    Align2, Response, Role, ScrollArea, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2,
 };
 
 use super::live::{LiveGraph, SPANS_S};
@@ -15,7 +14,7 @@ const SWATCH: f32 = 14.0;
 
 /// The channels, one per row.
 pub fn channels_ui(ui: &mut Ui, graph: &mut LiveGraph) {
-    let footer = 62.0;
+    let footer = 66.0;
     ScrollArea::vertical().max_height((ui.available_height() - footer).max(ROW_HEIGHT)).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         for index in 0..graph.channels.len() {
@@ -26,34 +25,32 @@ pub fn channels_ui(ui: &mut Ui, graph: &mut LiveGraph) {
     selected_ui(ui, graph);
 }
 
-/// What is shown of time, above the graph.
+/// What is shown of time, above the graph; `ui` lays its buttons out side by side.
 pub fn time_ui(ui: &mut Ui, graph: &mut LiveGraph) {
-    ui.scope(|ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
-        ui.spacing_mut().button_padding.x = 7.0;
-        for span_s in SPANS_S {
-            let text = span_text(span_s);
-            if ui.selectable_label(graph.span_s == span_s, &text).clicked() {
-                graph.span_s = span_s;
-            }
+    ui.spacing_mut().item_spacing.x = 4.0;
+    ui.spacing_mut().button_padding.x = 7.0;
+    for span_s in SPANS_S {
+        let text = span_text(span_s);
+        if ui.selectable_label(graph.span_s == span_s, &text).clicked() {
+            graph.span_s = span_s;
         }
-        ui.separator();
-        let held = graph.is_held();
-        let hold = ui.selectable_label(held, "Hold").on_hover_text("Holds the picture; recording goes on");
-        if hold.clicked() {
-            graph.hold(!held);
-        }
-        if ui
-            .button("Fit all")
-            .on_hover_text("Fits the scale of every shown channel to what is in view")
-            .clicked()
-        {
-            graph.fit_shown();
-        }
-        if ui.button("Clear all").on_hover_text("Clears the lines of all channels").clicked() {
-            graph.clear_all();
-        }
-    });
+    }
+    ui.separator();
+    let held = graph.is_held();
+    let hold = ui.selectable_label(held, "Hold").on_hover_text("Holds the picture; recording goes on");
+    if hold.clicked() {
+        graph.hold(!held);
+    }
+    if ui
+        .button("Fit all")
+        .on_hover_text("Fits the scale of every shown channel to what is in view")
+        .clicked()
+    {
+        graph.fit_shown();
+    }
+    if ui.button("Clear all").on_hover_text("Clears the lines of all channels").clicked() {
+        graph.clear_all();
+    }
 }
 
 fn span_text(span_s: f64) -> String {
@@ -143,7 +140,7 @@ fn selected_ui(ui: &mut Ui, graph: &mut LiveGraph) {
         ui.add(egui::Label::new(egui::RichText::new(text).small()).truncate());
     });
     let (mut fit, mut clear) = (false, false);
-    ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+    ui.horizontal(|ui| {
         fit = ui.button("Fit scale").on_hover_text("Fits this channel's scale to what is in view").clicked();
         clear = ui.button("Clear").on_hover_text("Clears this channel's line").clicked();
     });

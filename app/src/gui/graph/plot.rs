@@ -47,7 +47,7 @@ pub fn plot_ui(ui: &mut Ui, graph: &LiveGraph) -> Response {
         .grid_fade(0.0)
         .grid_spacing(2.0..=4.0)
         .x_grid_spacer(move |_| x_marks(span_s, division_s))
-        .y_grid_spacer(|_| y_marks())
+        .y_grid_spacer(move |_| y_marks(every))
         .custom_x_axes(vec![
             AxisHints::new_x()
                 .label_spacing(1.0..=2.0)
@@ -123,9 +123,11 @@ fn x_marks(span_s: f64, division_s: f64) -> Vec<GridMark> {
     (0..=count).map(|i| GridMark { value: -(i as f64) * division_s, step_size: division_s }).collect()
 }
 
-fn y_marks() -> Vec<GridMark> {
+/// Marks that carry a figure say that there is room for it.
+fn y_marks(every: usize) -> Vec<GridMark> {
     let part = 1.0 / DIVISIONS as f64;
-    (0..=DIVISIONS).map(|i| GridMark { value: i as f64 * part, step_size: part }).collect()
+    let room = |i: usize| if i.is_multiple_of(every) { part * every as f64 } else { part };
+    (0..=DIVISIONS).map(|i| GridMark { value: i as f64 * part, step_size: room(i) }).collect()
 }
 
 /// At most about `labels` labels, the newest called "now".

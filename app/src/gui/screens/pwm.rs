@@ -5,7 +5,7 @@ use std::time::Duration;
 use brushwork_link::device::{ArmScope, Channel, PollRate};
 use brushwork_link::transport::Stream;
 use brushwork_protocol::packet_serial::Motor;
-use egui::{Align, ComboBox, Frame, Label, Layout, Margin, RichText, Stroke, Ui, vec2};
+use egui::{Align, ComboBox, Frame, Label, Layout, Margin, RichText, Stroke, Ui, UiBuilder, vec2};
 
 use super::{not_connected_text, nothing_ui, title_ui};
 use crate::gui::command::{Command, Commands};
@@ -45,7 +45,8 @@ pub fn pwm_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 fn arm_ui(ui: &mut Ui, link: &LinkView, commands: &mut Commands) {
     let palette = Palette::of(ui);
     let armed = link.arming.is_armed_for(ArmScope::Pwm);
-    let outline = if armed { Stroke::new(1.5, palette.warning) } else { Stroke::new(1.0, palette.line) };
+    // As thick armed as disarmed, so that nothing moves.
+    let outline = Stroke::new(1.5, if armed { palette.warning } else { palette.line });
     Frame::new().stroke(outline).corner_radius(4.0).inner_margin(Margin::symmetric(10, 6)).show(ui, |ui| {
         ui.set_width(ui.available_width());
         ui.horizontal(|ui| {
@@ -169,22 +170,19 @@ fn duty_ui(ui: &mut Ui, model: &mut Model, motor: Motor) {
 }
 
 fn graph_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    let size = ui.available_size();
-    ui.horizontal_top(|ui| {
-        ui.allocate_ui_with_layout(
-            vec2(size.x - LIST_WIDTH - 8.0, size.y),
-            Layout::top_down(Align::Min),
-            |ui| {
-                ui.horizontal(|ui| {
-                    list::time_ui(ui, &mut model.graph);
-                    rate_ui(ui, model.poll, commands);
-                });
-                plot::plot_ui(ui, &model.graph);
-            },
-        );
-        ui.allocate_ui_with_layout(vec2(LIST_WIDTH, size.y), Layout::top_down(Align::Min), |ui| {
-            list::channels_ui(ui, &mut model.graph);
+    // Two places of exact size: neither can push the other out of the window.
+    let (place, _) = ui.allocate_exact_size(ui.available_size(), egui::Sense::hover());
+    let (left, right) = place.split_left_right_at_x(place.right() - LIST_WIDTH);
+    let left = left.with_max_x(left.right() - 8.0);
+    ui.scope_builder(UiBuilder::new().max_rect(left).layout(Layout::top_down(Align::Min)), |ui| {
+        ui.horizontal_wrapped(|ui| {
+            list::time_ui(ui, &mut model.graph);
+            rate_ui(ui, model.poll, commands);
         });
+        plot::plot_ui(ui, &model.graph);
+    });
+    ui.scope_builder(UiBuilder::new().max_rect(right).layout(Layout::top_down(Align::Min)), |ui| {
+        list::channels_ui(ui, &mut model.graph);
     });
 }
 

@@ -14,17 +14,22 @@ use crate::gui::widgets::{LampState, lamp};
 /// Lamps in the first of the two columns.
 const FIRST_COLUMN: usize = 7;
 
+/// Width from which two columns fit.
+const TWO_COLUMNS_FROM: f32 = 600.0;
+
 pub fn status_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     let Some(identity) = model.link.identity() else {
         return nothing_ui(ui, &not_connected_text(&model.phase));
     };
     title_ui(ui, "Device Status", &headline(model));
+    // Side by side where there is room, else below each other.
+    let columns = if ui.available_width() < TWO_COLUMNS_FROM { 1 } else { 2 };
     ScrollArea::vertical().show(ui, |ui| {
-        lamps_ui(ui, model);
+        lamps_ui(ui, model, columns);
         ui.add_space(10.0);
-        ui.columns(2, |columns| {
-            conditions_ui(&mut columns[0], model, commands);
-            unit_ui(&mut columns[1], model, identity);
+        ui.columns(columns, |ui| {
+            conditions_ui(&mut ui[0], model, commands);
+            unit_ui(&mut ui[columns - 1], model, identity);
         });
     });
 }
@@ -39,10 +44,10 @@ fn headline(model: &Model) -> String {
     }
 }
 
-fn lamps_ui(ui: &mut Ui, model: &Model) {
-    ui.columns(2, |columns| {
+fn lamps_ui(ui: &mut Ui, model: &Model, columns: usize) {
+    ui.columns(columns, |ui| {
         for (index, lamp) in Lamp::ALL.into_iter().enumerate() {
-            let column = &mut columns[usize::from(index >= FIRST_COLUMN)];
+            let column = &mut ui[usize::from(index >= FIRST_COLUMN).min(columns - 1)];
             column.spacing_mut().item_spacing.y = 4.0;
             lamp::full_ui(column, lamp.abbreviation(), lamps::title(lamp), model.link.lamps.get(lamp));
         }

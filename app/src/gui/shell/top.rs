@@ -2,11 +2,11 @@
 
 use brushwork_link::device::Channel;
 use brushwork_protocol::packet_serial::Motor;
-use egui::{Label, RichText, Role, Ui, WidgetInfo, vec2};
+use egui::{Label, Role, Ui, WidgetInfo, vec2};
 
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::{Model, decimals};
-use crate::gui::theme::Palette;
+use crate::gui::widgets::label::fixed_label_ui;
 use crate::gui::widgets::readout::{NO_VALUE, Readout};
 
 /// Two readouts below each other.
@@ -126,7 +126,7 @@ fn block_ui(ui: &mut Ui, block: &Block, model: &Model, commands: &mut Commands) 
         for motor in Motor::BOTH {
             ui.horizontal(|ui| {
                 let row = motor.index();
-                label_ui(ui, block.labels[row], block.label_width);
+                fixed_label_ui(ui, block.labels[row], block.label_width);
                 let channel = block.channels[row];
                 let value = model.link.readings.text(channel, decimals(channel));
                 block.readout(row).ui(ui, value.as_deref());
@@ -162,26 +162,18 @@ fn identity_ui(ui: &mut Ui, model: &Model) {
         "" => "not told".to_owned(),
         version => format!("{version} (gen {})", identity.generation.number()),
     });
+    // The last block takes what is left of its row.
+    let width = ui.available_width().clamp(IDENTITY_WIDTH, 2.0 * IDENTITY_WIDTH);
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing = vec2(GAP, 2.0);
         for (label, value) in [("Model", title), ("Version", version)] {
             ui.horizontal(|ui| {
-                ui.set_width(IDENTITY_WIDTH);
-                label_ui(ui, label, 48.0);
+                ui.set_width(width);
+                fixed_label_ui(ui, label, 48.0);
                 let spoken = format!("{label}: {}", value.as_deref().unwrap_or("no value"));
                 let text = ui.add(Label::new(value.as_deref().unwrap_or(NO_VALUE)).truncate());
                 text.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
             });
         }
-    });
-}
-
-/// A label of fixed width, so that what stands right of it never moves.
-fn label_ui(ui: &mut Ui, text: &str, width: f32) {
-    let color = Palette::of(ui).weak_text;
-    let (rect, _) = ui.allocate_exact_size(vec2(width, ROW_HEIGHT), egui::Sense::hover());
-    let label = Label::new(RichText::new(text).size(12.5).color(color)).selectable(false);
-    ui.put(rect, |ui: &mut Ui| {
-        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| ui.add(label)).inner
     });
 }

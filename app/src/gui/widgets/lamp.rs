@@ -126,11 +126,14 @@ pub fn full_ui(ui: &mut Ui, abbreviation: &str, name: &str, state: LampState) ->
     state.paint(ui, pos2(rect.left() + 18.0, rect.center().y), 7.0);
     let body = TextStyle::Body.resolve(ui.style());
     let small = TextStyle::Small.resolve(ui.style());
-    let text = |x: f32, align: Align2, text: &str, font, color| {
-        ui.painter().text(pos2(x, rect.center().y), align, text, font, color);
-    };
-    text(rect.left() + 36.0, Align2::LEFT_CENTER, name, body.clone(), palette.text);
-    text(rect.right() - 136.0, Align2::LEFT_CENTER, state.word(), body, state.color(palette));
-    text(rect.right() - 10.0, Align2::RIGHT_CENTER, abbreviation, small, palette.weak_text);
+    let y = rect.center().y;
+    let painter = ui.painter().with_clip_rect(rect);
+    let word_at = pos2(rect.right() - 12.0, y);
+    let word = painter.text(word_at, Align2::RIGHT_CENTER, state.word(), body.clone(), state.color(palette));
+    let left = pos2(rect.left() + 36.0, y);
+    painter.text(left, Align2::LEFT_CENTER, abbreviation, small, palette.weak_text);
+    // A name that has no room ends before the word.
+    let painter = painter.with_clip_rect(rect.with_max_x(word.left() - 6.0));
+    painter.text(left + vec2(46.0, 0.0), Align2::LEFT_CENTER, name, body, palette.text);
     response
 }

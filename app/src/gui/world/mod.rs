@@ -9,6 +9,7 @@ use super::model::Model;
 use super::model::world::WorldPanel;
 use super::shell::heading_ui;
 use super::theme::Palette;
+use super::widgets::label::fixed_label_ui;
 use super::widgets::numeric::Numeric;
 
 mod motor;
@@ -35,6 +36,8 @@ pub fn world_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 }
 
 type Actions = Vec<WorldAction>;
+
+const LABEL_WIDTH: f32 = 100.0;
 
 fn unit_ui(ui: &mut Ui, view: &WorldView, actions: &mut Actions) {
     ui.horizontal_wrapped(|ui| {
@@ -82,7 +85,7 @@ fn supply_ui(ui: &mut Ui, view: &WorldView, panel: &mut WorldPanel, actions: &mu
             actions.push(WorldAction::SetBoardCelsius { celsius: Some(celsius) });
         }
     }
-    figures_ui(ui, &format!("{:6.2} V at the terminals  {:7.2} A drawn", view.bus_volts, view.battery_amps));
+    figures_ui(ui, &format!("{:6.2} V at the bridge {:8.2} A", view.bus_volts, view.battery_amps));
 }
 
 /// Figures that change by themselves, in digits of one width.
@@ -114,9 +117,7 @@ fn number<'a>(
 
 fn row_ui(ui: &mut Ui, field: &Field<'_>, value: &mut f64) -> bool {
     ui.horizontal(|ui| {
-        ui.add_sized([112.0, 22.0], |ui: &mut Ui| {
-            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| ui.label(field.label)).inner
-        });
+        fixed_label_ui(ui, field.label, LABEL_WIDTH);
         field.numeric.ui(ui, value).changed()
     })
     .inner

@@ -2,11 +2,12 @@
 
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_sim::world::{SwitchKind, WorldAction, WorldView};
-use egui::Ui;
+use egui::{Checkbox, Ui};
 
 use super::{Actions, figures_ui, number, row_ui, toggle_ui};
 use crate::gui::model::world::WorldPanel;
 use crate::gui::shell::heading_ui;
+use crate::gui::widgets::label::fixed_label_ui;
 
 pub fn motor_ui(ui: &mut Ui, motor: Motor, view: &WorldView, panel: &mut WorldPanel, actions: &mut Actions) {
     ui.separator();
@@ -63,20 +64,18 @@ fn faults_ui(ui: &mut Ui, motor: Motor, view: &WorldView, actions: &mut Actions)
 }
 
 fn switches_ui(ui: &mut Ui, motor: Motor, view: &WorldView, actions: &mut Actions) {
-    ui.horizontal_wrapped(|ui| {
-        ui.label("Switches closed:");
+    fixed_label_ui(ui, "Switches held closed", 150.0);
+    ui.horizontal(|ui| {
         for (kind, closed) in SwitchKind::ALL.into_iter().zip(view.axes[motor.index()].switches_closed) {
             let wired = view.wiring.switch(motor, kind).is_some();
-            ui.add_enabled_ui(wired, |ui| {
-                let mut now = closed;
-                let response = ui.checkbox(&mut now, name(kind));
-                let response = response.on_disabled_hover_text(
-                    "Not wired to a pin. Choose its pin below, and give the pin a limit or home mode in the settings.",
-                );
-                if response.changed() {
-                    actions.push(WorldAction::HoldSwitch { motor, switch: kind, closed: now });
-                }
-            });
+            let mut now = closed;
+            let response = ui.add_enabled(wired, Checkbox::new(&mut now, name(kind)));
+            let response = response.on_disabled_hover_text(
+                "Not wired. Choose it for a pin below, and give that pin a limit or home mode in the settings.",
+            );
+            if response.changed() {
+                actions.push(WorldAction::HoldSwitch { motor, switch: kind, closed: now });
+            }
         }
     });
 }

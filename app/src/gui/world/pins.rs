@@ -7,6 +7,7 @@ use egui::{ComboBox, Ui};
 use super::motor::name;
 use super::{Actions, number};
 use crate::gui::shell::heading_ui;
+use crate::gui::widgets::label::fixed_label_ui;
 
 pub fn pins_ui(ui: &mut Ui, view: &WorldView, actions: &mut Actions) {
     ui.separator();
@@ -18,7 +19,7 @@ pub fn pins_ui(ui: &mut Ui, view: &WorldView, actions: &mut Actions) {
 
 fn pin_ui(ui: &mut Ui, pin: usize, signal: PinSignal, view: &WorldView, actions: &mut Actions) {
     let label = format!("Pin {}", pin + 1);
-    ui.add_sized([44.0, 22.0], egui::Label::new(&label));
+    fixed_label_ui(ui, &label, 44.0);
     let wired = wired_to(view, pin);
     let text = wired.clone().unwrap_or_else(|| kind_text(signal).to_owned());
     let combo = ComboBox::from_id_salt("kind").width(112.0).selected_text(text);

@@ -1,0 +1,111 @@
+//! Asks for a file by the desktop's own dialog, on a thread of its own, so that the window goes on.
+//!
+//! Where there is no dialog (no portal, no desktop) the answer is none, as if it had been cancelled: screens that
+//! ask for a file also have a field for its path.
+
+use std::path::PathBuf;
+use std::thread;
+
+use crossbeam_channel::{Receiver, TryRecvError, bounded};
+
+/// What kind of file is asked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FileKind {
+    /// For people: "Profile".
+    pub title: String,
+    /// Without the dot: `json`.
+    pub extension: String,
+}
+
+/// Whether a file is read or written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum FileWish {
+    Open,
+    /// The name that is offered.
+    Save {
+        name: String,
+    },
+}
+
+/// A dialog that is open, or was.
+#[derive(Debug)]
+pub struct FileDialog {
+    answer: Receiver<Option<PathBuf>>,
+}
+
+/// What has become of a dialog.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum FileAnswer {
+    /// The user has not chosen yet.
+    Waiting,
+    /// Cancelled, or there is no dialog on this desktop.
+    None,
+    Chosen(PathBuf),
+}
+
+impl FileDialog {
+    /// Opens the dialog.
+    pub fn ask(wish: FileWish, kind: FileKind) -> Self {
+        Self::answered_by(move || {
+            let dialog = rfd::FileDialog::new().add_filter(kind.title, &[kind.extension]);
+            match wish {
+                FileWish::Open => dialog.pick_file(),
+                FileWish::Save { name } => dialog.set_file_name(name).save_file(),
+            }
+        })
+    }
+
+    fn answered_by(choose: impl FnOnce() -> Option<PathBuf> + Send + 'static) -> Self {
+        let (sender, answer) = bounded(1);
+        let ask = move || {
+            // The window may have gone on without the answer.
+            let _ = sender.send(choose());
+        };
+        // Without a thread the sender is dropped, which reads as cancelled.
+        let _ = thread::Builder::new().name("file dialog".to_owned()).spawn(ask);
+        Self { answer }
+    }
+
+    /// Looks for the answer; never waits.
+    pub fn answer(&self) -> FileAnswer {
+        match self.answer.try_recv() {
+            Ok(Some(path)) => FileAnswer::Chosen(path),
+            Ok(None) | Err(TryRecvError::Disconnected) => FileAnswer::None,
+            Err(TryRecvError::Empty) => FileAnswer::Waiting,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn settled(dialog: &FileDialog) -> FileAnswer {
+        for _ in 0..500 {
+            let answer = dialog.answer();
+            if answer != FileAnswer::Waiting {
+                return answer;
+            }
+            thread::sleep(std::time::Duration::from_millis(10));
+        }
+        FileAnswer::Waiting
+    }
+
+    #[test]
+    fn the_window_does_not_wait_for_the_user() {
+        let (choose, chosen) = bounded::<()>(1);
+        let dialog = FileDialog::answered_by(move || {
+            chosen.recv().ok()?;
+            Some(PathBuf::from("motor.json"))
+        });
+        assert_eq!(dialog.answer(), FileAnswer::Waiting);
+        choose.send(()).unwrap();
+        assert_eq!(settled(&dialog), FileAnswer::Chosen(PathBuf::from("motor.json")));
+    }
+
+    #[test]
+    fn a_desktop_without_a_dialog_reads_as_cancelled() {
+        assert_eq!(settled(&FileDialog::answered_by(|| None)), FileAnswer::None);
+        assert_eq!(settled(&FileDialog::answered_by(|| panic!("no dialog here"))), FileAnswer::None);
+    }
+}
