@@ -129,17 +129,21 @@ impl Program {
     pub fn finish(mut self, limit: Duration) -> Ending {
         self.stdin = None;
         let deadline = Instant::now() + limit;
+        let mut stderr = Vec::new();
         loop {
+            // A program that prints more than the queues hold would otherwise wait for ever.
+            self.seen.extend(self.stdout.try_iter());
+            stderr.extend(self.stderr.try_iter());
             if let Ok(Some(status)) = self.child.try_wait() {
                 let mut stdout = std::mem::take(&mut self.seen);
                 stdout.extend(drain_to_end(&self.stdout));
-                return Ending { status, stdout, stderr: drain_to_end(&self.stderr) };
+                stderr.extend(drain_to_end(&self.stderr));
+                return Ending { status, stdout, stderr };
             }
             assert!(
                 Instant::now() < deadline,
-                "still running after {limit:?}; printed {:#?}; stderr {:#?}",
-                self.seen,
-                drain(&self.stderr)
+                "still running after {limit:?}; printed {:#?}; stderr {stderr:#?}",
+                self.seen
             );
             thread::sleep(Duration::from_millis(5));
         }

@@ -91,10 +91,9 @@ fn serve(
     out: &mut Output,
     interrupt: &Interrupt,
 ) -> Exit {
-    let place = server.address().to_owned();
-    let connect = if args.tcp.is_some() { format!("tcp:{place}") } else { place.clone() };
+    let place = server.address();
     let greeting =
-        format!("{spec}, port {}, on {place}\nConnect with: brushwork --open {connect}", spec_port(args));
+        format!("{spec}, port {}, on {place}\nConnect with: brushwork --open {place}", spec_port(args));
     if out.line(greeting).is_err() {
         return Exit::Interrupted;
     }

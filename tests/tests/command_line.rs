@@ -1,0 +1,264 @@
+//! The built program from outside: what it prints, how it ends, and what the motors do when it is ended.
+#![cfg(unix)]
+#![expect(clippy::print_stdout, reason = "measured times belong into the record of a test run")]
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use brushwork_protocol::packet_serial::Generation;
+use brushwork_sim::controller::ControllerConfig;
+use brushwork_sim::machine::StreamIndex;
+use brushwork_sim::settings::Settings;
+use brushwork_tests::program::{Ending, Program};
+use brushwork_tests::simulated::{OnPty, is_at_rest, is_driven};
+use serde_json::Value;
+
+const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
+
+const LIMIT: Duration = Duration::from_secs(20);
+
+/// Exit codes, as `brushwork --help` lists them.
+const DONE: i32 = 0;
+const USAGE: i32 = 2;
+const NO_LINK: i32 = 3;
+const REFUSED: i32 = 4;
+const INTERRUPTED: i32 = 130;
+
+/// From the signal to bridges that are off: a look at the flag, one exchange, the ramp of the highest acceleration, and what
+/// a busy machine adds. Well below the controller's own time-out of a second, which must not be what stops the motors.
+const STOP_LIMIT: Duration = Duration::from_millis(500);
+
+fn start(arguments: &[&str]) -> Program {
+    Program::start(BRUSHWORK, arguments)
+}
+
+fn run(arguments: &[&str]) -> Ending {
+    start(arguments).finish(LIMIT)
+}
+
+fn text(path: &Path) -> String {
+    path.to_string_lossy().into_owned()
+}
+
+fn json(ending: &Ending) -> Value {
+    let text = ending.stdout.join("\n");
+    serde_json::from_str(&text).unwrap_or_else(|error| panic!("no JSON: {error}: {text}"))
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// brushwork sim
+
+/// Waits for a link that leads somewhere.
+fn wait_for_link(path: &Path) {
+    let end = Instant::now() + LIMIT;
+    while !path.exists() {
+        assert!(Instant::now() < end, "{} does not appear", path.display());
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+fn sim_ends_cleanly_on(signal: &str) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let link = folder.path().join("mcp");
+    let mut sim = start(&["sim", "--pty", &text(&link), "--generation", "4"]);
+    let greeting = sim.wait_for(&text(&link), LIMIT);
+    wait_for_link(&link);
+    let status = json(&run(&["status", "--connect", &text(&link), "--json"]));
+    println!("{greeting}: {status}");
+    sim.signal(signal);
+    let ending = sim.finish(LIMIT);
+    assert_eq!(ending.status.code(), Some(DONE), "{ending:?}");
+    assert!(link.symlink_metadata().is_err(), "the link is left behind after SIG{signal}");
+}
+
+#[test]
+fn a_served_controller_ends_cleanly_on_ctrl_c() {
+    sim_ends_cleanly_on("INT");
+}
+
+#[test]
+fn a_served_controller_ends_cleanly_on_sigterm() {
+    sim_ends_cleanly_on("TERM");
+}
+
+#[test]
+fn a_served_controller_ends_cleanly_when_the_terminal_closes() {
+    sim_ends_cleanly_on("HUP");
+}
+
+#[test]
+fn a_controller_on_tcp_says_how_to_connect_and_answers_there() {
+    let mut sim = start(&["sim", "--tcp", "127.0.0.1:0"]);
+    let line = sim.wait_for("Connect with", LIMIT);
+    let target = line.rsplit(' ').next().unwrap_or_default().to_owned();
+    assert!(target.starts_with("tcp:127.0.0.1:"), "{line}");
+    let ending = run(&["status", "--connect", &target, "--json"]);
+    assert_eq!(ending.status.code(), Some(DONE), "{ending:?}");
+    assert!(json(&ending).to_string().contains("MCP266"), "{ending:?}");
+}
+
+#[test]
+fn several_units_share_one_line() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let link = text(&folder.path().join("bus"));
+    let mut sim = start(&["sim", "--pty", &link, "--port", "ttl1", "--address", "0x80,0x83"]);
+    sim.wait_for(&link, LIMIT);
+    for (address, code) in [("0x80", DONE), ("0x83", DONE), ("0x81", NO_LINK)] {
+        let ending = run(&["status", "--connect", &link, "--address", address, "--json"]);
+        assert_eq!(ending.status.code(), Some(code), "{address}: {ending:?}");
+    }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// brushwork drive
+
+fn drive_arguments(port: &Path, seconds: &str) -> Vec<String> {
+    let target = format!("{},stream=usb", port.display());
+    let arguments = ["drive", "--connect", &target, "--motor", "both", "--duty", "50", "--for", seconds];
+    arguments.map(str::to_owned).to_vec()
+}
+
+fn driving(controller: &OnPty) -> Program {
+    let program = Program::start(BRUSHWORK, &drive_arguments(&controller.port(), "60"));
+    assert!(controller.wait_until(LIMIT, is_driven).is_some(), "the program drives the motors");
+    std::thread::sleep(Duration::from_millis(300));
+    program
+}
+
+fn is_ended_by(signal: &str) {
+    let controller = OnPty::start(Generation::Gen1);
+    let program = driving(&controller);
+    program.signal(signal);
+    let stopped = controller.wait_until(LIMIT, |unit| !is_driven(unit)).expect("the motors are switched off");
+    println!("SIG{signal}: bridges off after {stopped:?}");
+    let ending = program.finish(LIMIT);
+    assert!(stopped < STOP_LIMIT, "took {stopped:?}");
+    assert_eq!(ending.status.code(), Some(INTERRUPTED), "{ending:?}");
+    assert!(controller.wait_until(LIMIT, is_at_rest).is_some(), "the shafts come to rest");
+}
+
+#[test]
+fn ctrl_c_stops_both_motors_before_the_program_ends() {
+    is_ended_by("INT");
+}
+
+#[test]
+fn sigterm_stops_both_motors_before_the_program_ends() {
+    is_ended_by("TERM");
+}
+
+#[test]
+fn a_closed_terminal_stops_both_motors_before_the_program_ends() {
+    is_ended_by("HUP");
+}
+
+#[test]
+fn a_closed_pipe_stops_both_motors_before_the_program_ends() {
+    let controller = OnPty::start(Generation::Gen1);
+    let mut program = Command::new(BRUSHWORK)
+        .args(drive_arguments(&controller.port(), "60"))
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    assert!(controller.wait_until(LIMIT, is_driven).is_some(), "the program drives the motors");
+    drop(program.stdout.take());
+    let stopped = controller.wait_until(LIMIT, |unit| !is_driven(unit)).expect("the motors are switched off");
+    let status = program.wait().expect("the program ends");
+    println!("closed pipe: bridges off after {stopped:?}");
+    assert!(stopped < STOP_LIMIT, "took {stopped:?}");
+    assert_eq!(status.code(), Some(INTERRUPTED));
+}
+
+#[test]
+fn a_killed_program_leaves_motors_that_the_controller_stops() {
+    let controller = OnPty::start(Generation::Gen1);
+    let program = driving(&controller);
+    program.signal("KILL");
+    let stopped =
+        controller.wait_until(LIMIT, |unit| !is_driven(unit)).expect("the time-out stops the motors");
+    println!("SIGKILL: bridges off after {stopped:?}, time-out 1 s");
+    assert!(stopped < Duration::from_millis(1250), "took {stopped:?}");
+}
+
+#[test]
+fn a_frozen_program_leaves_motors_that_the_controller_stops() {
+    let controller = OnPty::start(Generation::Gen1);
+    let program = driving(&controller);
+    program.signal("STOP");
+    let stopped =
+        controller.wait_until(LIMIT, |unit| !is_driven(unit)).expect("the time-out stops the motors");
+    println!("SIGSTOP: bridges off after {stopped:?}, time-out 1 s");
+    assert!(stopped < Duration::from_millis(1250), "took {stopped:?}");
+}
+
+#[test]
+fn a_drive_that_is_over_stops_both_motors() {
+    let controller = OnPty::start(Generation::Gen2);
+    let program = Program::start(BRUSHWORK, &drive_arguments(&controller.port(), "0.5"));
+    assert!(controller.wait_until(LIMIT, is_driven).is_some(), "the program drives the motors");
+    let ending = program.finish(LIMIT);
+    assert_eq!(ending.status.code(), Some(DONE), "{ending:?}");
+    assert!(controller.wait_until(STOP_LIMIT, |unit| !is_driven(unit)).is_some(), "the motors are off");
+}
+
+#[test]
+fn driving_is_refused_without_a_time_out_and_nothing_moves() {
+    let mut config = ControllerConfig::default();
+    let mut settings = Settings::factory(config.model, config.address.get());
+    settings.streams[0].timeout_ms = 0;
+    config.settings = Some(settings);
+    let controller = OnPty::start_with(config, StreamIndex::Usb);
+    let program = Program::start(BRUSHWORK, &drive_arguments(&controller.port(), "1"));
+    let ending = program.finish(LIMIT);
+    assert_eq!(ending.status.code(), Some(REFUSED), "{ending:?}");
+    assert!(ending.stderr.join(" ").contains("time-out"), "{ending:?}");
+    assert!(controller.look(|unit| unit.view().axes.iter().all(|axis| axis.encoder_counts == 0)));
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// What goes wrong, and what is only read
+
+#[test]
+fn a_port_that_is_not_there_is_told_in_a_sentence() {
+    let ending = run(&["status", "--connect", "/dev/no-such-port"]);
+    assert_eq!(ending.status.code(), Some(NO_LINK), "{ending:?}");
+    let told = ending.stderr.join(" ");
+    assert!(told.contains("/dev/no-such-port") && told.ends_with('.'), "{told}");
+}
+
+#[test]
+fn a_port_that_is_no_controller_is_told_in_a_sentence() {
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a free port");
+    let target = format!("tcp:{}", listener.local_addr().expect("it has an address"));
+    let ending = run(&["status", "--connect", &target]);
+    assert_eq!(ending.status.code(), Some(NO_LINK), "{ending:?}");
+    let told = ending.stderr.join(" ");
+    assert!(told.contains(&target) && told.ends_with('.'), "{told}");
+}
+
+#[test]
+fn a_command_line_that_makes_no_sense_has_its_own_exit_code() {
+    for arguments in [&["fly"][..], &["drive"], &["drive", "--duty", "400"], &["sim", "--generation", "9"]] {
+        assert_eq!(run(arguments).status.code(), Some(USAGE), "{arguments:?}");
+    }
+}
+
+#[test]
+fn what_is_data_can_be_had_as_json() {
+    for arguments in [&["list", "--json"][..], &["protocol", "--json"], &["status", "--json"]] {
+        let ending = run(arguments);
+        assert_eq!(ending.status.code(), Some(DONE), "{ending:?}");
+        assert!(!json(&ending).is_null(), "{arguments:?}");
+    }
+}
+
+#[test]
+fn reading_the_status_moves_nothing() {
+    let controller = OnPty::start(Generation::Gen3);
+    let ending = run(&["status", "--connect", &text(&controller.port()), "--json"]);
+    assert_eq!(ending.status.code(), Some(DONE), "{ending:?}");
+    assert!(controller.look(|unit| unit.view().axes.iter().all(|axis| axis.encoder_counts == 0)));
+}
