@@ -2,7 +2,10 @@
 
 use std::time::{Duration, Instant};
 
-use brushwork_link::device::{Channel, Event, PollRate, StatusReport};
+use brushwork_link::device::{Channel, Event, FnJob, JobEnding, PollRate, Request, StatusReport};
+use brushwork_link::diagnosis::{Diagnosis, diagnose};
+use brushwork_link::settings::{ReadReport, SettingsImage, Subject, read_all};
+use brushwork_protocol::models;
 use brushwork_protocol::packet_serial::status::{Condition, Lamp, Severity};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -15,6 +18,8 @@ use super::output::{Output, OutputError, say};
 
 /// How long the slow signals may take to come round.
 const FIRST_READING_LIMIT: Duration = Duration::from_secs(5);
+/// How long reading the settings may take.
+const SETTINGS_LIMIT: Duration = Duration::from_secs(30);
 
 /// The newest of everything that has been read.
 #[derive(Default)]
@@ -84,7 +89,8 @@ fn watch(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
             readings.take(event);
         }
     }
-    print(args, &client, &readings, out)?;
+    let settings = read_settings(&client, &mut readings, interrupt)?;
+    print(args, &client, &readings, settings.as_ref(), out)?;
     if !args.watch {
         return Ok(Exit::Done);
     }
@@ -95,8 +101,43 @@ fn watch(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
         }
         if Instant::now() >= next {
             next += args.interval;
-            print(args, &client, &readings, out)?;
+            print(args, &client, &readings, settings.as_ref(), out)?;
         }
+    }
+}
+
+/// The settings in RAM, for the diagnosis; `None` with a word to the user where they cannot be read.
+fn read_settings(
+    client: &Client,
+    readings: &mut Readings,
+    interrupt: &Interrupt,
+) -> Result<Option<SettingsImage>, Exit> {
+    let Some(model) = models::identify(&client.identity.version_text) else { return Ok(None) };
+    let subject = Subject::new(model, client.identity.generation);
+    let job = FnJob::boxed("read the settings", SETTINGS_LIMIT, move |context| {
+        read_all(context, subject).map(|report| Box::new(report) as _)
+    });
+    if let Err(refused) = client.device().request(Request::Job(job)) {
+        say(refused.to_string());
+        return Ok(None);
+    }
+    loop {
+        match client.next_event(interrupt)? {
+            Some(Event::JobEnded(report)) => return Ok(image_of(report.ending)),
+            Some(event) => readings.take(event),
+            None => {}
+        }
+    }
+}
+
+fn image_of(ending: JobEnding) -> Option<SettingsImage> {
+    match ending {
+        JobEnding::Done(output) => output.downcast::<ReadReport>().ok().map(|report| report.image),
+        JobEnding::Failed(failure) => {
+            say(failure.to_string());
+            None
+        }
+        JobEnding::Interrupted(_) | JobEnding::Panicked(_) => None,
     }
 }
 
@@ -104,10 +145,12 @@ fn print(
     args: &StatusArgs,
     client: &Client,
     readings: &Readings,
+    settings: Option<&SettingsImage>,
     out: &mut Output,
 ) -> Result<(), OutputError> {
+    let diagnosis = readings.status.map(|status| diagnose(status.conditions, settings));
     if args.json {
-        let object = to_json(client, readings);
+        let object = to_json(client, readings, diagnosis.as_ref());
         return if args.watch { out.json_line(&object) } else { out.json(&object) };
     }
     if args.watch {
@@ -126,6 +169,10 @@ fn print(
     for note in &identity.notes {
         out.line(format!("Note: {note}"))?;
     }
+    if let Some(diagnosis) = &diagnosis {
+        out.line(diagnosis.sentence())?;
+    }
+    out.line("")?;
     let rows: Vec<Vec<String>> = Channel::ALL
         .into_iter()
         .filter_map(|channel| {
@@ -165,8 +212,10 @@ fn lamps(readings: &Readings) -> Vec<LampState> {
         .collect()
 }
 
-fn to_json(client: &Client, readings: &Readings) -> Value {
+fn to_json(client: &Client, readings: &Readings, diagnosis: Option<&Diagnosis>) -> Value {
     json!({
+        "diagnosis": diagnosis.map(Diagnosis::sentence),
+        "findings": diagnosis.map(|diagnosis| &diagnosis.findings),
         "identity": client.identity,
         "readings": readings.to_json(),
         "status_word": readings.status.map(|status| status.word),

@@ -5,6 +5,7 @@
 
 pub mod clock;
 pub mod device;
+pub mod diagnosis;
 pub mod exchange;
 pub mod failure;
 pub mod settings;
