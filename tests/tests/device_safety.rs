@@ -294,6 +294,33 @@ fn an_input_that_can_still_drive_a_motor_is_named_after_a_stop() {
 }
 
 #[test]
+fn a_stop_into_a_dead_spot_of_the_line_is_repeated_until_it_is_heard() {
+    for length in [100, 300, 500, 700, 900, 1_100] {
+        let mut link = drive(usb(
+            config(Generation::Gen1),
+            vec![Fault {
+                effect: FaultEffect::Mute,
+                direction: Direction::ToController,
+                unit: 0,
+                from: ms(4_000),
+                until: Some(ms(4_000 + length)),
+            }],
+            1,
+        ));
+        link.run_for(ms(4_020) - link.now());
+        link.handle.stop_all();
+        link.run_for(ms(length + 300) + RAMP_DOWN);
+        assert_eq!(link.duties(0), [0.0, 0.0], "after {length} ms without a byte");
+        assert!(
+            link.stops().last().is_some_and(|stop| stop.confirmed()),
+            "after {length} ms: {:?}",
+            link.stops()
+        );
+        assert_standing(&mut link, 0);
+    }
+}
+
+#[test]
 fn a_job_that_panics_in_mid_motion_leaves_the_motors_standing() {
     let mut link = usb(config(Generation::Gen1), Vec::new(), 1);
     assert!(link.arm(ArmScope::Tuning));
@@ -391,11 +418,15 @@ fn soak(seed: u64) -> [Duration; 2] {
         until: until.map(ms),
     };
     let mut faults = vec![fault(FaultEffect::Corrupt { share }, 3_000, None)];
-    let mute = dice.roll(3) == 0;
-    if mute {
-        let from = 5_000 + dice.roll(50_000);
-        let length = 20 + dice.roll(3_000);
-        faults.push(fault(FaultEffect::Mute, from, Some(from + length)));
+    // Silences of all lengths, in both directions or in one.
+    let mute = dice.roll(2) == 0;
+    let mut from = 3_000;
+    while mute && from < 120_000 {
+        from += dice.roll(6_000);
+        let length = 20 + dice.roll(1_500);
+        let direction = [Direction::Both, Direction::ToController, Direction::ToHost][dice.roll(3) as usize];
+        faults.push(Fault { direction, ..fault(FaultEffect::Mute, from, Some(from + length)) });
+        from += length;
     }
     let mut link = usb(config(generation), faults, seed);
     let mut watchman = Watchman { forbidden_since: Some(ms(0)), frozen_at: None, seen: 0 };

@@ -1,11 +1,27 @@
 //! Stopping motors: the bytes first, whatever is under way; then the line is settled and each unit is asked to confirm.
 
+use super::reading::SILENCE_LIMIT;
 use super::{DeviceLoop, Phase};
 use crate::device::controller::Line;
 use crate::device::event::{DisarmReason, Event};
 use crate::device::stop::{StopReport, UnitStop};
 use crate::exchange::{ExchangeError, Interruption};
+use crate::failure::Failure;
 use std::time::Duration;
+
+/// A stop that was not confirmed is repeated this often.
+const STOP_AGAIN_INTERVAL: Duration = Duration::from_millis(100);
+/// On a bus of several units one that does not confirm is given up after this long.
+const GIVE_UP_AFTER: Duration = Duration::from_secs(3);
+
+/// A stop that nobody confirmed, although this program may have set motors in motion.
+#[derive(Clone, Copy, Debug)]
+pub struct StopAgain {
+    /// When it is tried next.
+    pub at: Duration,
+    /// When it was first tried.
+    pub since: Duration,
+}
 
 /// When a stop was asked for and when its bytes had been written.
 #[derive(Clone, Copy, Debug)]
@@ -113,15 +129,76 @@ impl DeviceLoop {
                     self.write_stop(&DisarmReason::Stop)?;
                 }
                 Ok(stop) => {
-                    let unit = &mut self.units[index];
-                    if stop.confirmed {
-                        (unit.moved, unit.script_started, unit.setpoints) = (false, false, [Some(0.0); 2]);
-                    }
+                    self.note_confirmation(index, stop.confirmed);
                     return Ok(stop);
                 }
                 Err(error) => return Err(error),
             }
         }
+    }
+
+    fn note_confirmation(&mut self, index: usize, confirmed: bool) {
+        let now = self.clock.now();
+        let unit = &mut self.units[index];
+        if confirmed {
+            (unit.moved, unit.script_started, unit.stop_again) = (false, false, None);
+            unit.setpoints = [Some(0.0); 2];
+        } else if unit.moved {
+            let since = unit.stop_again.map_or(now, |again| again.since);
+            unit.stop_again = Some(StopAgain { at: now + STOP_AGAIN_INTERVAL, since });
+        }
+    }
+
+    /// The unit whose motors may still run although they were told to stop.
+    pub(super) fn unconfirmed_stop(&self) -> Option<(usize, StopAgain)> {
+        self.units.iter().enumerate().find_map(|(index, unit)| Some((index, unit.stop_again?)))
+    }
+
+    /// Tries once more to stop a unit that did not confirm. Silence for too long is a lost link; on a bus, where others may
+    /// answer, the unit is given up and the user told.
+    pub(super) fn stop_again(&mut self, index: usize, again: StopAgain) {
+        let requested_at = self.clock.now();
+        let unit = &self.units[index];
+        let bytes = unit.controller.stop_bytes(unit.script_started);
+        self.guard.set_only_stop(true);
+        let written = self.exchange.write_now(&bytes);
+        let stop = written.and_then(|written_at| Ok((written_at, self.try_to_confirm(index, false)?)));
+        self.guard.set_only_stop(false);
+        let (written_at, stop) = match stop {
+            Ok(stop) => stop,
+            // A new Stop is served in the next step.
+            Err(error) if error.interruption().is_some() => return,
+            Err(error) => return self.lose(&error),
+        };
+        self.note_confirmation(index, stop.confirmed);
+        let ended_at = self.clock.now();
+        if stop.confirmed {
+            let units = vec![stop];
+            return self.outbox.send(Event::Stopped(StopReport {
+                requested_at,
+                written_at,
+                ended_at,
+                units,
+            }));
+        }
+        let silent_since = again.since.max(self.exchange.last_reply_at());
+        if self.units.len() == 1 && ended_at >= silent_since + SILENCE_LIMIT {
+            let answer = stop.failures.first().map_or("no answer", |failure| failure.came_back.as_str());
+            self.lose_for(answer);
+        } else if ended_at >= again.since + GIVE_UP_AFTER {
+            self.give_up_stopping(index);
+        }
+    }
+
+    fn give_up_stopping(&mut self, index: usize) {
+        self.units[index].stop_again = None;
+        let failure = Failure::new(
+            "stop the motors",
+            self.name_of(index),
+            format!("it did not confirm within {} s", GIVE_UP_AFTER.as_secs()),
+            "Cut its motor power now: its motors may still be running",
+        );
+        self.outbox.send(Event::Failure(failure));
     }
 
     fn try_to_confirm(&mut self, index: usize, all_scripts: bool) -> Result<UnitStop, ExchangeError> {

@@ -26,6 +26,7 @@ use crate::exchange::{Exchange, ExchangeError, Interruption, Watch};
 use crate::failure::Failure;
 use crate::transport::{Stream, Transport};
 use crossbeam_channel::{Receiver, bounded};
+use halting::StopAgain;
 use reading::{Plan, Sweep};
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
@@ -80,6 +81,8 @@ struct Unit {
     moved: bool,
     /// Whether this program has started the unit's script.
     script_started: bool,
+    /// Set while a stop of what this program moved is not confirmed.
+    stop_again: Option<StopAgain>,
 }
 
 /// What is armed.
@@ -161,6 +164,14 @@ impl DeviceLoop {
             self.serve(cause);
             return Step::Again;
         }
+        if let Some((index, again)) = self.unconfirmed_stop() {
+            // Anything else on the line would feed the controller's own time-out and keep its motors alive.
+            if now < again.at {
+                return Step::IdleUntil(again.at);
+            }
+            self.stop_again(index, again);
+            return Step::Again;
+        }
         if let Some(envelope) = self.next_request() {
             self.handle(envelope);
             return Step::Again;
@@ -228,13 +239,16 @@ impl DeviceLoop {
 
     /// The link is gone: says so, and why, and does nothing more.
     fn lose(&mut self, error: &ExchangeError) {
-        let mend = if self.guard.is_moving() {
+        self.lose_for(&error.full());
+    }
+
+    fn lose_for(&mut self, came_back: &str) {
+        let mend = if self.guard.is_moving() || self.units.iter().any(|unit| unit.moved) {
             "Make sure that the motors stand still; then check power and cable, and connect again"
         } else {
             "Check the controller's power and the cable, then connect again"
         };
-        let failure =
-            Failure::new("go on talking to the controller", self.exchange.port(), error.full(), mend);
+        let failure = Failure::new("go on talking to the controller", self.exchange.port(), came_back, mend);
         self.end(Event::Lost(failure));
     }
 
@@ -353,7 +367,7 @@ impl DeviceLoop {
 impl Unit {
     fn new(controller: Box<dyn Controller>) -> Self {
         let plan = Plan::new(controller.poll_list());
-        Self { controller, plan, setpoints: [None; 2], moved: false, script_started: false }
+        Self { controller, plan, setpoints: [None; 2], moved: false, script_started: false, stop_again: None }
     }
 }
 

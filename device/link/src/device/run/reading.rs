@@ -240,6 +240,10 @@ impl DeviceLoop {
         }
         let now = self.clock.now();
         self.sweep.failures_in_a_row += 1;
+        if self.units.len() > 1 {
+            // The rest of the unit waits for the next sweep, so that the others are heard in time.
+            self.sweep.items.retain(|(other, _)| *other != index);
+        }
         if self.armed.is_some() && index == self.selected {
             return self.halt(DisarmReason::NoAnswer);
         }

@@ -6,6 +6,7 @@ use crate::device::drive::{ArmScope, Drive, DriveCommand};
 use crate::device::event::{DisarmReason, Event};
 use crate::device::options::DeviceOptions;
 use crate::device::request::{PollRate, Request};
+use crate::device::stop::StopReport;
 use crate::testing::ms;
 use crate::testing::unit::Bus;
 use crate::transport::Stream;
@@ -221,4 +222,65 @@ fn a_noisy_line_does_not_keep_stop_from_being_confirmed() {
     link.run_for(ms(1_000));
     assert!(link.stops()[0].confirmed());
     assert!(link.bus().count(number::DUTY_ACCEL_BOTH) >= 4);
+}
+
+#[test]
+fn a_stop_that_nobody_heard_is_repeated_and_until_it_is_confirmed_nothing_else_is_sent() {
+    let mut link = Link::armed();
+    link.drive(0.5);
+    link.run_for(ms(50));
+    link.forget();
+    link.bus().addresses.clear();
+    let bus = link.bus.clone();
+    let back_at = link.clock.now() + ms(900);
+    link.tap.at(back_at, move || bus.lock().unwrap().addresses = BTreeSet::from([0x80]));
+    link.handle.stop_all();
+    link.run_for(ms(2_000));
+    // A reading would feed the controller's own time-out and keep the motor alive.
+    let first = link.bus().taken[0].clone();
+    assert_eq!((first.command, first.values.as_slice()), (number::DUTY_ACCEL_BOTH, DUTY_ZERO.as_slice()));
+    assert!(first.at - back_at <= ms(250), "{:?}", first.at - back_at);
+    let confirmed: Vec<_> = link.stops().iter().map(StopReport::confirmed).collect();
+    assert_eq!(confirmed, [false, true]);
+    assert!(link.has(|event| matches!(event, Event::Sample(_))), "then it reads on");
+}
+
+#[test]
+fn a_unit_that_never_confirms_its_stop_is_a_lost_link() {
+    let mut link = Link::armed();
+    link.drive(0.5);
+    link.run_for(ms(50));
+    link.bus().dead = true;
+    link.handle.stop_all();
+    let stopped_at = link.clock.now();
+    link.run_for(ms(5_000));
+    let lost_at = link.when(|event| matches!(event, Event::Lost(_))).unwrap();
+    assert!(
+        lost_at - stopped_at >= ms(1_900) && lost_at - stopped_at <= ms(2_600),
+        "{:?}",
+        lost_at - stopped_at
+    );
+    let last = link.sentences().pop().unwrap();
+    assert!(last.contains("Make sure that the motors stand still"), "{last}");
+}
+
+#[test]
+fn the_other_units_of_a_bus_are_served_again_after_a_dead_one_was_given_up() {
+    let bus = Bus::shared();
+    bus.lock().unwrap().addresses = BTreeSet::from([0x80, 0x83]);
+    let mut link = Link::with(bus, DeviceOptions { stream: Some(Stream::Ttl1), ..DeviceOptions::default() });
+    link.run_for(ms(3_000));
+    link.ask(Request::Arm(ArmScope::Pwm));
+    link.drive(0.5);
+    link.run_for(ms(100));
+    link.bus().addresses = BTreeSet::from([0x83]);
+    link.handle.stop_all();
+    link.run_for(ms(6_000));
+    let told = link.sentences().join(" ");
+    assert!(told.contains("Could not stop the motors on 0x80"), "{told}");
+    assert!(!link.ended);
+    link.forget();
+    link.ask(Request::Select(0x83));
+    link.run_for(ms(500));
+    assert!(link.has(|event| matches!(event, Event::Sample(sample) if sample.address == 0x83)));
 }
