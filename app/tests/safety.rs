@@ -129,6 +129,19 @@ fn a_space_typed_into_a_field_for_words_is_a_letter_and_escape_still_stops() {
 }
 
 #[test]
+fn a_stop_in_the_moment_of_arming_leaves_the_screen_disarmed() {
+    let mut bench = Bench::new();
+    bench.connect();
+    bench.press("PWM Settings");
+    bench.button("Arm").click();
+    bench.harness.step();
+    bench.harness.key_press(Key::Space);
+    bench.harness.step();
+    bench.pass_ms(1000);
+    assert_stopped_and_disarmed(&mut bench);
+}
+
+#[test]
 fn leaving_the_screen_disarms_and_stops() {
     let mut bench = driving();
     bench.press("Device Status");

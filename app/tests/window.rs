@@ -245,3 +245,61 @@ fn a_cable_that_was_pulled_out_can_be_plugged_in_and_connected_again() {
     bench.press("Dismiss");
     bench.connect();
 }
+
+#[test]
+fn a_controller_without_power_is_told_in_a_sentence() {
+    let mut bench = Bench::new();
+    bench.act(&WorldAction::Power { on: false });
+    bench.press("Connect");
+    bench.pass_ms(5000);
+    assert!(!bench.model().is_connected());
+    assert!(bench.sees("Connect"));
+    assert!(bench.sees_part("Error: Could not"));
+}
+
+#[test]
+fn units_that_share_a_line_are_listed_and_one_is_looked_at() {
+    let mut bench = Bench::with_two_units();
+    bench.connect();
+    assert!(bench.sees("0x80  MCP266") && bench.sees("0x81  MCP266"));
+    bench.press("0x81  MCP266");
+    bench.pass_ms(500);
+    assert_eq!(bench.model().link.selected, Some(0x81));
+    bench.arm();
+    bench.set_duty(Motor::M1, "50");
+    bench.pass_ms(1500);
+    assert_eq!(bench.real_duty_of(0, Motor::M1), 0.0);
+    assert!(bench.real_duty_of(1, Motor::M1) > 0.45);
+    bench.press("0x80  MCP266");
+    bench.pass_ms(500);
+    assert_eq!(bench.real_duty_of(1, Motor::M1), 0.0, "going to another unit stops the one before");
+}
+
+#[test]
+fn the_panel_of_the_world_acts_on_the_unit_that_is_looked_at() {
+    let mut bench = Bench::with_two_units();
+    bench.connect();
+    bench.press("0x81  MCP266");
+    bench.press("Simulated world");
+    bench.press("E-stop pressed");
+    let pressed = bench.line.with(|bus| {
+        use brushwork_sim::machine::Machine as _;
+        bus.views().iter().map(|view| view.estop_pressed).collect::<Vec<_>>()
+    });
+    assert_eq!(pressed, [false, true]);
+}
+
+#[test]
+fn the_graph_goes_on_after_a_new_connection_and_shows_the_time_between_as_a_gap() {
+    let mut bench = Bench::new();
+    bench.connect();
+    bench.pass_ms(1000);
+    bench.press("Disconnect");
+    bench.pass_ms(3000);
+    bench.connect();
+    bench.pass_ms(1000);
+    let graph = &bench.model().graph;
+    let columns = brushwork::gui::graph::Columns::new(graph.history(), &graph.view(1000));
+    let lines = graph.lines(brushwork_link::device::Channel::MainBattery.index(), &columns);
+    assert_eq!(lines.len(), 2, "{lines:?}");
+}

@@ -82,12 +82,31 @@ impl App {
         }
         self.finish_opening(ctx);
         for _ in 0..EVENTS_PER_FRAME {
-            let Some(event) = self.device.as_ref().and_then(|device| device.events().try_recv().ok()) else {
-                break;
-            };
-            self.take(event);
+            let Some(device) = &self.device else { break };
+            match device.events().try_recv() {
+                Ok(event) => self.take(event),
+                Err(TryRecvError::Empty) => break,
+                Err(TryRecvError::Disconnected) => {
+                    self.model.messages.fail("The link ended without a reason. Connect again.");
+                    self.ended();
+                }
+            }
         }
-        self.model.worlds = self.world.as_ref().and_then(|world| world.views());
+        self.look_at_world();
+    }
+
+    /// Sees the worlds of simulated units as they are now.
+    fn look_at_world(&mut self) {
+        let Some(world) = &self.world else { return };
+        self.model.worlds = world.views();
+        let unit = self.model.link.selected.and_then(|address| world.unit_at(address));
+        // Without a link the unit looked at last stays in view.
+        if let Some(unit) = unit
+            && unit != self.model.world_unit
+        {
+            self.model.world_unit = unit;
+            self.model.world.forget();
+        }
     }
 
     fn finish_opening(&mut self, ctx: &Context) {
@@ -127,10 +146,7 @@ impl App {
                 Effect::Sample(sample) => {
                     self.model.graph.push(sample.replied_at.as_secs_f64(), &sample.values);
                 }
-                Effect::OtherUnit => {
-                    self.model.graph.push_gap();
-                    self.model.world.forget();
-                }
+                Effect::OtherUnit => self.model.graph.push_gap(),
                 Effect::Ended => self.ended(),
             }
         }
@@ -138,7 +154,10 @@ impl App {
 
     /// The link is gone, by wish or not. A simulated world lives on.
     fn ended(&mut self) {
-        self.device = None;
+        if let Some(device) = self.device.take() {
+            // Dropping waits for the link's thread to end; the window does not. Without a thread it has to.
+            let _ = std::thread::Builder::new().name("close link".to_owned()).spawn(move || drop(device));
+        }
         self.model.phase = Phase::Closed;
         self.model.link = LinkView::default();
         self.model.pwm.stop();
@@ -256,7 +275,7 @@ impl App {
     }
 
     fn act_on_world(&mut self, action: WorldAction) {
-        let unit = self.model.world_unit();
+        let unit = self.model.world_unit;
         if let Some(Err(failure)) = self.world.as_ref().map(|world| world.apply(unit, action)) {
             self.model.messages.fail(failure.to_string());
         }

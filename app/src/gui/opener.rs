@@ -6,6 +6,7 @@ use std::time::Duration;
 use brushwork_link::device::Addresses;
 use brushwork_link::transport::{ConnectTarget, PortInfo, list_ports};
 use brushwork_link::{Clock, Failure, SystemClock};
+use brushwork_protocol::packet_serial::Address;
 use brushwork_sim::world::{WorldAction, WorldView};
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 use egui::Context;
@@ -18,7 +19,7 @@ const LISTING_INTERVAL: Duration = Duration::from_secs(1);
 
 /// The parts of the real program.
 pub fn real_parts(ctx: &Context) -> Parts {
-    Parts { ports: Box::new(ListedPorts::start(ctx.clone())), opener: Box::new(SessionOpener::default()) }
+    Parts { ports: Box::new(ListedPorts::start(ctx.clone())), opener: Box::new(SessionOpener::new()) }
 }
 
 type Listed = Result<Vec<PortInfo>, Failure>;
@@ -68,10 +69,17 @@ fn watch(sender: &Sender<Listed>, ctx: &Context) {
 }
 
 /// Opens sessions. The simulated machine of the last one is kept, so that it can be connected to again.
-#[derive(Default)]
 struct SessionOpener {
+    /// One clock for all links, so that the graph's time runs on from one to the next.
+    clock: Arc<dyn Clock>,
     running: Option<Arc<Simulation>>,
     started: Option<Receiver<Arc<Simulation>>>,
+}
+
+impl SessionOpener {
+    fn new() -> Self {
+        Self { clock: SystemClock::shared(), running: None, started: None }
+    }
 }
 
 impl Opener for SessionOpener {
@@ -86,10 +94,9 @@ impl Opener for SessionOpener {
         let (sender, receiver) = bounded(1);
         let (tell_started, started) = bounded(1);
         self.started = Some(started);
-        let running = self.running.clone();
+        let (running, clock) = (self.running.clone(), self.clock.clone());
         let open = move || {
             let options = SessionOptions { addresses, ..SessionOptions::default() };
-            let clock: Arc<dyn Clock> = SystemClock::shared();
             let opened = session::open(&target, options, clock, running).map(|session| {
                 if let Some(simulation) = &session.simulation {
                     // The opener may be gone with the window.
@@ -116,5 +123,9 @@ impl SimulatedWorld for Simulation {
 
     fn views(&self) -> Option<Arc<Vec<WorldView>>> {
         Some(Self::views(self))
+    }
+
+    fn unit_at(&self, address: u8) -> Option<usize> {
+        Self::unit_at(self, Address::new(address)?)
     }
 }

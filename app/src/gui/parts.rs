@@ -49,4 +49,7 @@ pub trait SimulatedWorld: Send + Sync {
 
     /// The worlds of all units; none when the simulation has ended.
     fn views(&self) -> Option<Arc<Vec<WorldView>>>;
+
+    /// Which unit answers to an address.
+    fn unit_at(&self, address: u8) -> Option<usize>;
 }

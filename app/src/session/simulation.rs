@@ -115,7 +115,8 @@ impl Simulation {
         &self.server
     }
 
-    fn unit_at(&self, address: Address) -> Option<usize> {
+    /// Which unit, counted from 0, has the address it was started with.
+    pub fn unit_at(&self, address: Address) -> Option<usize> {
         self.addresses.iter().position(|unit| *unit == address)
     }
 }

@@ -13,7 +13,7 @@ use brushwork::session::SessionError;
 use brushwork_link::device::{Addresses, DeviceLoop, DeviceOptions, Step};
 use brushwork_link::transport::{ConnectTarget, OpenError, PortInfo, Stream};
 use brushwork_link::{Clock as _, Failure};
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_protocol::packet_serial::{Address, Motor};
 use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_sim::machine::{Machine as _, StreamIndex};
 use brushwork_sim::world::{WorldAction, WorldView};
@@ -45,7 +45,23 @@ impl Bench {
 
     pub fn sized(size: [f32; 2], theme: Theme) -> Self {
         let unit = Controller::new(ControllerConfig::default()).expect("the default configuration is sound");
-        let line = Line::new(Bus::single(unit, StreamIndex::Usb));
+        Self::with_bus(Bus::single(unit, StreamIndex::Usb), size, theme)
+    }
+
+    /// Two units at 0x80 and 0x81 that share a TTL line.
+    pub fn with_two_units() -> Self {
+        let unit = |address| {
+            let address = Address::new(address).expect("an address of the family");
+            let config = ControllerConfig { address, ..ControllerConfig::default() };
+            Controller::new(config).expect("the default configuration is sound")
+        };
+        let bus =
+            Bus::new(vec![unit(0x80), unit(0x81)], StreamIndex::Uart1).expect("TTL lines can be shared");
+        Self::with_bus(bus, [1280.0, 800.0], Theme::Dark)
+    }
+
+    fn with_bus(bus: Bus, size: [f32; 2], theme: Theme) -> Self {
+        let line = Line::new(bus);
         let device_loop = Rc::new(RefCell::new(None));
         let ports = Rc::new(RefCell::new(Some(Vec::new())));
         let opener = BenchOpener { line: line.clone(), device_loop: device_loop.clone() };
@@ -112,6 +128,14 @@ impl Bench {
     /// What the machine is really doing.
     pub fn truth(&self) -> WorldView {
         self.line.with(|bus| bus.views().remove(0))
+    }
+
+    /// The duty of a motor of any unit of the bus.
+    pub fn real_duty_of(&self, unit: usize, motor: Motor) -> f64 {
+        match self.line.with(|bus| bus.views().remove(unit)).axes[motor.index()].output {
+            brushwork_sim::bridge::BridgeOutput::Duty(duty) => duty,
+            _ => 0.0,
+        }
     }
 
     /// The duty a motor's bridge really gets, -1 to 1; 0 for brake and coast.
@@ -242,9 +266,10 @@ impl Opener for BenchOpener {
         let (sender, receiver) = bounded(1);
         let opened = match target {
             ConnectTarget::Sim(_) => {
+                let index = self.line.with(|bus| bus.stream().index());
                 let options = DeviceOptions {
                     addresses,
-                    stream: Some(Stream::Usb),
+                    stream: Some(Stream::ALL[index]),
                     simulated: true,
                     ..DeviceOptions::default()
                 };
@@ -270,5 +295,9 @@ impl SimulatedWorld for BenchWorld {
 
     fn views(&self) -> Option<Arc<Vec<WorldView>>> {
         Some(Arc::new(self.0.with(|bus| bus.views())))
+    }
+
+    fn unit_at(&self, address: u8) -> Option<usize> {
+        self.0.with(|bus| bus.controllers().iter().position(|unit| unit.config().address.get() == address))
     }
 }

@@ -42,6 +42,8 @@ pub struct Model {
     pub world: WorldPanel,
     /// The worlds of the simulated units, while they run.
     pub worlds: Option<Arc<Vec<WorldView>>>,
+    /// Which of them is looked at.
+    pub world_unit: usize,
 }
 
 /// How the window looks.
@@ -98,17 +100,12 @@ impl Default for Model {
             pwm: Pwm::default(),
             world: WorldPanel::default(),
             worlds: None,
+            world_unit: 0,
         }
     }
 }
 
 impl Model {
-    /// Which unit of the simulated world is looked at: units stand in the order of their addresses.
-    pub fn world_unit(&self) -> usize {
-        let others = self.link.units.iter().filter(|unit| Some(unit.address) < self.link.selected);
-        others.count()
-    }
-
     /// Whether a unit has answered on an open link.
     pub fn is_connected(&self) -> bool {
         self.phase.is_open() && self.link.identity().is_some()

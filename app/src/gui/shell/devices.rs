@@ -50,6 +50,9 @@ fn entries_ui(ui: &mut Ui, model: &mut Model, locked: bool) {
     if let (Choice::Port(name), true) = (&model.devices.choice, model.devices.choice_is_gone()) {
         rows.push((model.devices.choice.clone(), name.clone(), "unplugged".to_owned(), Entry::Gone));
     }
+    if let (Choice::Typed, Some(target)) = (&model.devices.choice, model.phase.target()) {
+        rows.push((Choice::Typed, target.to_owned(), "typed below".to_owned(), state(target)));
+    }
     for (choice, title, detail, entry) in rows {
         let chosen = model.devices.choice == choice;
         let simulated = choice == Choice::Simulated;
@@ -188,7 +191,7 @@ fn options_ui(ui: &mut Ui, model: &mut Model) {
                 ui.selectable_value(&mut model.addresses, addresses, text(addresses));
             }
         });
-        name_combo(ui, &response.response, "Address");
+        name_combo(ui, &response.response, "Address", "Where to look for controllers when connecting");
         if model.devices.baud_matters() {
             let combo =
                 ComboBox::from_id_salt("baud").width(76.0).selected_text(model.devices.baud.to_string());
@@ -197,14 +200,19 @@ fn options_ui(ui: &mut Ui, model: &mut Model) {
                     ui.selectable_value(&mut model.devices.baud, baud, baud.to_string());
                 }
             });
-            name_combo(ui, &response.response, "Baud rate");
+            name_combo(
+                ui,
+                &response.response,
+                "Baud rate",
+                "The rate the controller's serial port is set to",
+            );
         }
     });
 }
 
-fn name_combo(ui: &Ui, response: &Response, name: &str) {
+fn name_combo(ui: &Ui, response: &Response, name: &str, help: &str) {
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name));
-    response.clone().on_hover_text(name);
+    response.clone().on_hover_text(help);
 }
 
 fn connect_ui(ui: &mut Ui, phase: &Phase, commands: &mut Commands) {

@@ -17,7 +17,7 @@ mod pins;
 
 pub fn world_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let Some(views) = model.worlds.clone() else { return };
-    let Some(view) = views.get(model.world_unit()) else { return };
+    let Some(view) = views.get(model.world_unit) else { return };
     model.world.sync(view);
     let panel = &mut model.world;
     let mut actions = Vec::new();
