@@ -12,6 +12,9 @@ use egui::{Ui, ViewportBuilder, vec2};
 use super::App;
 use super::opener::real_parts;
 
+/// A commutator between its two brushes.
+const ICON: &[u8] = include_bytes!("../../../assets/icon/brushwork.png");
+
 /// Why there is no window. The text is one sentence with what to do.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
@@ -64,6 +67,11 @@ fn options() -> eframe::NativeOptions {
         .with_app_id("brushwork")
         .with_inner_size(vec2(1280.0, 800.0))
         .with_min_inner_size(vec2(1024.0, 700.0));
+    // Without a picture of our own the window has the toolkit's.
+    let viewport = match eframe::icon_data::from_png_bytes(ICON) {
+        Ok(icon) => viewport.with_icon(icon),
+        Err(_) => viewport,
+    };
     eframe::NativeOptions { viewport, dithering: false, ..Default::default() }
 }
 
@@ -113,6 +121,11 @@ const PACKAGES: &str = "on Debian or Ubuntu install libx11-6 libxcursor1 libxi6 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_icon_can_be_read() {
+        assert!(eframe::icon_data::from_png_bytes(ICON).is_ok());
+    }
 
     #[test]
     fn a_panic_before_the_window_opens_becomes_a_reason() {
