@@ -6,6 +6,7 @@ use std::time::Duration;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::exit;
+use super::monitor::args::MonitorArgs;
 use crate::session::sim_spec::parse_address;
 
 /// Configures, drives and tunes brushed-DC motor controllers.
@@ -39,6 +40,8 @@ pub enum Command {
     Sim(SimArgs),
     /// Print the packet serial reference.
     Protocol(ProtocolArgs),
+    /// Decode traffic: our own, another program's, or a file's.
+    Monitor(MonitorArgs),
 }
 
 /// Which controller, and how to reach it.
@@ -221,7 +224,8 @@ pub struct ProtocolArgs {
     pub json: bool,
 }
 
-fn parse_seconds(text: &str) -> Result<Duration, String> {
+/// Reads a time in seconds.
+pub fn parse_seconds(text: &str) -> Result<Duration, String> {
     let number = text.trim().trim_end_matches('s');
     number
         .parse::<f64>()

@@ -31,16 +31,7 @@ impl Client {
     /// # Errors
     /// Says on standard error what went wrong and gives the exit code.
     pub fn connect(args: &ConnectArgs, poll: PollRate, interrupt: &Interrupt) -> Result<Self, Exit> {
-        let target: ConnectTarget = args.connect.parse().map_err(|error| {
-            say(format!("Could not understand --connect {}: {error}.", args.connect));
-            Exit::Failed
-        })?;
-        let target = at_address(target, args.address);
-        let options = SessionOptions { addresses: Addresses::Only(args.address), poll };
-        let session = session::open(&target, options, SystemClock::shared(), None).map_err(|error| {
-            say(error.to_string());
-            Exit::NoLink
-        })?;
+        let session = open(args, poll)?;
         let identity = wait_for_identity(&session.device, interrupt)?;
         Ok(Self { session, identity })
     }
@@ -57,6 +48,31 @@ impl Client {
     pub fn next_event(&self, interrupt: &Interrupt) -> Result<Option<Event>, Exit> {
         next_event(&self.session.device, interrupt)
     }
+}
+
+/// Opens the target and looks at its one address; what becomes of that comes as events.
+///
+/// # Errors
+/// Says on standard error what went wrong and gives the exit code.
+pub fn open(args: &ConnectArgs, poll: PollRate) -> Result<Session, Exit> {
+    let target = target(args)?;
+    let options = SessionOptions { addresses: Addresses::Only(args.address), poll };
+    session::open(&target, options, SystemClock::shared(), None).map_err(|error| {
+        say(error.to_string());
+        Exit::NoLink
+    })
+}
+
+/// What `--connect` and `--address` name.
+///
+/// # Errors
+/// Says on standard error what cannot be understood.
+pub fn target(args: &ConnectArgs) -> Result<ConnectTarget, Exit> {
+    let target = args.connect.parse().map_err(|error| {
+        say(format!("Could not understand --connect {}: {error}.", args.connect));
+        Exit::Failed
+    })?;
+    Ok(at_address(target, args.address))
 }
 
 /// A simulated controller is made at the address that is asked for, unless the target names one itself.
@@ -89,7 +105,11 @@ fn wait_for_identity(device: &DeviceHandle, interrupt: &Interrupt) -> Result<Ide
     Err(Exit::NoLink)
 }
 
-fn next_event(device: &DeviceHandle, interrupt: &Interrupt) -> Result<Option<Event>, Exit> {
+/// The next event, or `None` when there was none for a moment.
+///
+/// # Errors
+/// The link is lost (said on standard error) or the program was asked to end.
+pub fn next_event(device: &DeviceHandle, interrupt: &Interrupt) -> Result<Option<Event>, Exit> {
     if interrupt.is_raised() {
         return Err(Exit::Interrupted);
     }

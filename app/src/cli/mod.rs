@@ -9,6 +9,7 @@ mod drive;
 mod exit;
 mod interrupt;
 mod list;
+mod monitor;
 mod output;
 mod protocol;
 mod sim;
@@ -55,5 +56,6 @@ fn dispatch(command: &Command, out: &mut Output, interrupt: &Interrupt) -> Exit 
         Command::Stop(args) => stop::run(args, out, interrupt),
         Command::Sim(args) => sim::run(args, out, interrupt),
         Command::Protocol(args) => protocol::run(args, out),
+        Command::Monitor(args) => monitor::run(args, out, interrupt),
     }
 }

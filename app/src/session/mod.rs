@@ -57,15 +57,28 @@ pub fn open(
     clock: Arc<dyn Clock>,
     running: Option<Arc<Simulation>>,
 ) -> Result<Session, SessionError> {
+    let (transport, simulation) = connect(target, running)?;
+    let stream = simulation.as_ref().map_or_else(|| stream_of(target), |running| Some(running.stream()));
+    spawn(transport, clock, options, stream, simulation)
+}
+
+/// A line, and the simulated machine behind it if it runs in this program.
+pub type BareLine = (Box<dyn Transport>, Option<Arc<Simulation>>);
+
+/// Opens the bare line to `target`, for those who carry bytes themselves. As for [`open`], a simulated controller is started
+/// unless `running` is the one.
+///
+/// # Errors
+/// As for [`open`].
+pub fn connect(target: &ConnectTarget, running: Option<Arc<Simulation>>) -> Result<BareLine, SessionError> {
     let ConnectTarget::Sim(text) = target else {
-        return spawn(target.open()?, clock, options, stream_of(target), None);
+        return Ok((target.open()?, None));
     };
     let simulation = match running.filter(|running| running.is(text)) {
         Some(running) => running,
         None => Arc::new(Simulation::start(text)?),
     };
-    let transport = simulation.connect()?;
-    spawn(Box::new(transport), clock, options, Some(simulation.stream()), Some(simulation))
+    Ok((Box::new(simulation.connect()?), Some(simulation)))
 }
 
 /// The stream of the controller that a port is wired to: as the user said, or as the port's name tells.

@@ -8,12 +8,10 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum ServerError {
     /// This system has none.
-    #[error(
-        "this system has no pseudo-terminals, so --pty cannot be used: serve the simulated controller with --tcp 127.0.0.1:PORT"
-    )]
+    #[error("this system has no pseudo-terminals, so --pty cannot be used: use --tcp 127.0.0.1:PORT")]
     NoPseudoTerminals,
     /// The system refused one.
-    #[error("no pseudo-terminal could be opened for the simulated controller: {step} failed")]
+    #[error("no pseudo-terminal could be opened: {step} failed ({source})")]
     PseudoTerminal {
         /// What was tried.
         step: &'static str,
@@ -23,7 +21,7 @@ pub enum ServerError {
     },
     /// Something else is where the link should be.
     #[error(
-        "{} is already there ({what}): remove it, or choose another path for the simulated controller",
+        "{} is already there ({what}): remove it, or choose another path",
         link.display()
     )]
     LinkTaken {
@@ -33,7 +31,7 @@ pub enum ServerError {
         what: String,
     },
     /// The link could not be made.
-    #[error("the link {} to the simulated controller's pseudo-terminal could not be made", link.display())]
+    #[error("the link {} to the pseudo-terminal could not be made ({source})", link.display())]
     Link {
         /// The path.
         link: PathBuf,
@@ -43,15 +41,15 @@ pub enum ServerError {
     },
     /// An address that others could reach.
     #[error(
-        "a simulated controller is only served on this computer, not on {address}: anybody on the network could drive it. Use \
-         127.0.0.1 or [::1]"
+        "controllers are only served on this computer, not on {address}: anybody on the network could drive them. Use 127.0.0.1 \
+         or [::1]"
     )]
     NotLoopback {
         /// As given.
         address: SocketAddr,
     },
     /// The port could not be opened.
-    #[error("the simulated controller cannot listen on {address}; is another program using that port?")]
+    #[error("nothing can listen on {address} ({source}); is another program using that port?")]
     Listen {
         /// As given.
         address: SocketAddr,

@@ -19,12 +19,12 @@ pub use bench::{VirtualSpeed, measure_speed};
 pub use channel::ChannelEnds;
 pub use error::ServerError;
 pub use handle::SimHandle;
+pub use line::{Heard, Line};
 
 use crate::faults::{Fault, Faulty};
 use crate::machine::{Machine, StreamIndex};
 use crate::pacing::Paced;
 use driver::Driver;
-use line::Line;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 
@@ -78,7 +78,11 @@ impl Server {
     }
 }
 
-fn open(endpoint: &Endpoint) -> Result<(Box<dyn Line>, String), ServerError> {
+/// Opens an endpoint for somebody who serves it with a machine of another kind, and says where it is reached.
+///
+/// # Errors
+/// The endpoint cannot be opened.
+pub fn open(endpoint: &Endpoint) -> Result<(Box<dyn Line>, String), ServerError> {
     match endpoint {
         Endpoint::Pty { link } => open_pty(link),
         Endpoint::Tcp(address) => {
