@@ -6,6 +6,7 @@
 pub mod foreign;
 pub mod program;
 pub mod rust_source;
+pub mod screen;
 pub mod simulated;
 pub mod truth;
 pub mod virtual_line;

@@ -116,7 +116,8 @@ fn one_line(text: &str) -> String {
 }
 
 /// What a window needs on a bare Debian; other systems have packages of similar names.
-const PACKAGES: &str = "on Debian or Ubuntu install libx11-6 libxcursor1 libxi6 libxkbcommon-x11-0 libgl1";
+const PACKAGES: &str =
+    "on Debian or Ubuntu install libx11-6 libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0 libgl1";
 
 #[cfg(test)]
 mod tests {
