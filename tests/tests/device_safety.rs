@@ -117,6 +117,24 @@ fn stop_in_the_middle_of_the_longest_reply_stands_the_motors_at_once() {
 }
 
 #[test]
+fn a_unit_on_usb_is_one_although_it_answers_all_eight_addresses() {
+    for generation in Generation::ALL {
+        let link = usb(config(generation), Vec::new(), 7);
+        let found: Vec<_> = link
+            .events
+            .iter()
+            .filter_map(|(_, event)| match event {
+                Event::Connected(identity) => Some(identity.clone()),
+                _ => None,
+            })
+            .collect();
+        assert_eq!(found.len(), 1);
+        assert_eq!((found[0].generation, found[0].also_answers.len()), (generation, 7));
+        assert_eq!(found[0].notes, Vec::<String>::new());
+    }
+}
+
+#[test]
 fn connecting_and_reading_for_a_minute_moves_nothing() {
     for generation in Generation::ALL {
         let mut link = usb(config(generation), Vec::new(), 1);

@@ -45,6 +45,8 @@ pub struct ArmCheck {
     pub reasons: Vec<Failure>,
     /// After how much silence the controller stops the motors by itself.
     pub controller_timeout: Option<Duration>,
+    /// What does not speak against it but should be known, as sentences.
+    pub warnings: Vec<String>,
 }
 
 /// One unit on a link.

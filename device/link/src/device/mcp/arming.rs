@@ -9,7 +9,7 @@ use crate::exchange::ExchangeError;
 use crate::failure::Failure;
 use crate::transport::Stream;
 use brushwork_protocol::packet_serial::status::{self, Condition, Severity};
-use brushwork_protocol::packet_serial::{Generation, Values, number, scale};
+use brushwork_protocol::packet_serial::{Generation, Motor, Values, number, scale};
 use std::time::Duration;
 
 /// The stream type "packet serial" and the priority "serial" on the wire (MCP manual 2.3.1, commands 139 and 145).
@@ -36,9 +36,10 @@ pub fn check(
     objections.extend(faults(speaker, line)?.into_iter().map(|fault| {
         object(format!("the controller reports {fault}"), "Remove the cause and reset the error first")
     }));
+    let warnings = if objections.is_empty() { coasting(speaker, line)? } else { Vec::new() };
     let failure =
         |objection: Objection| Failure::new("arm the motors", on, objection.came_back, objection.mend);
-    Ok(ArmCheck { reasons: objections.into_iter().map(failure).collect(), controller_timeout })
+    Ok(ArmCheck { reasons: objections.into_iter().map(failure).collect(), controller_timeout, warnings })
 }
 
 /// After how much silence on this port the controller stops the motors.
@@ -129,6 +130,20 @@ fn object_to_priorities(speaker: Speaker, line: &mut Line<'_>) -> Result<Option<
 
 fn object(came_back: impl Into<String>, mend: impl Into<String>) -> Objection {
     Objection { came_back: came_back.into(), mend: mend.into() }
+}
+
+/// Motors in torque control, which inductance and resistance switch on (MCP manual 1.2.11). Assumed: duty 0 is then a current of
+/// 0, so that Stop lets them coast.
+fn coasting(speaker: Speaker, line: &mut Line<'_>) -> Result<Vec<String>, ExchangeError> {
+    let mut warnings = Vec::new();
+    let reads = [number::READ_INDUCTANCE_RESISTANCE_M1, number::READ_INDUCTANCE_RESISTANCE_M2];
+    for (motor, command) in Motor::BOTH.into_iter().zip(reads) {
+        let reply = speaker.ask_if_known(line, command, &[])?;
+        if reply.is_some_and(|reply| reply.values.ints().all(|value| value != 0)) {
+            warnings.push(format!("{motor} is in torque control: Stop lets it coast instead of braking it."));
+        }
+    }
+    Ok(warnings)
 }
 
 /// What the controller has stopped motors for.

@@ -111,21 +111,21 @@ impl DeviceLoop {
         let stream = self.stream;
         let now = self.clock.now();
         match self.act(now, |unit, line| {
-            let check = unit.check_arming(line, stream)?;
-            let warnings = if check.reasons.is_empty() { unit.other_drivers(line)? } else { Vec::new() };
-            Ok((check, warnings))
-        }) {
-            Ok((check, warnings)) if check.reasons.is_empty() => {
-                self.enter_armed(scope, &check, warnings, disarms);
+            let mut check = unit.check_arming(line, stream)?;
+            if check.reasons.is_empty() {
+                check.warnings.extend(unit.other_drivers(line)?);
             }
-            Ok((ArmCheck { reasons, .. }, _)) => self.outbox.send(Event::ArmRefused { scope, reasons }),
+            Ok(check)
+        }) {
+            Ok(check) if check.reasons.is_empty() => self.enter_armed(scope, check, disarms),
+            Ok(ArmCheck { reasons, .. }) => self.outbox.send(Event::ArmRefused { scope, reasons }),
             Err(error) if error.is_link_lost() => self.lose(&error),
             Err(error) => self.refuse(scope, &error.full(), error.mend()),
         }
     }
 
-    fn enter_armed(&mut self, scope: ArmScope, check: &ArmCheck, warnings: Vec<String>, disarms: u64) {
-        let controller_timeout = check.controller_timeout;
+    fn enter_armed(&mut self, scope: ArmScope, check: ArmCheck, disarms: u64) {
+        let ArmCheck { controller_timeout, warnings, .. } = check;
         let armed = Armed { scope, controller_timeout };
         self.armed = Some(armed);
         self.guard.set_armed(true, disarms);

@@ -4,6 +4,7 @@ mod harness;
 
 mod arming;
 mod connecting;
+mod family;
 mod jobs;
 mod reading;
 mod stopping;

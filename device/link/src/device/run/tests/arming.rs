@@ -185,6 +185,21 @@ fn pins_that_can_drive_a_motor_are_told_at_arming() {
 }
 
 #[test]
+fn torque_control_is_told_at_arming_since_stop_brakes_nothing_there() {
+    let bus = Bus::shared();
+    bus.lock().unwrap().set(number::READ_INDUCTANCE_RESISTANCE_M2, &[1_000, 2_000]);
+    let mut link = Link::with(bus, DeviceOptions { stream: Some(Stream::Usb), ..DeviceOptions::default() });
+    link.run_for(ms(1_500));
+    link.ask(Request::Arm(ArmScope::Pwm));
+    link.run_for(ms(100));
+    let warnings = link.events.iter().find_map(|(_, event)| match event {
+        Event::Armed { warnings, .. } => Some(warnings.clone()),
+        _ => None,
+    });
+    assert_eq!(warnings.unwrap(), ["M2 is in torque control: Stop lets it coast instead of braking it."]);
+}
+
+#[test]
 fn nothing_moves_before_arming_and_the_failure_says_what_to_do() {
     let mut link = Link::connected();
     link.drive(0.5);

@@ -38,7 +38,12 @@ impl Link {
         let (transport, tap) =
             ScriptedTransport::new(&clock, move |bytes, now| far_end.lock().unwrap().take(bytes, now));
         let (device_loop, handle) = DeviceLoop::new(transport, Arc::new(clock.clone()), options);
-        let handle = Arc::new(handle);
+        Self { bus, ..Self::over(clock, device_loop, handle, tap) }
+    }
+
+    /// A link to whatever is at the far end of `tap`.
+    pub fn over(clock: VirtualClock, device_loop: DeviceLoop, handle: DeviceHandle, tap: Wiretap) -> Self {
+        let (handle, bus) = (Arc::new(handle), Bus::shared());
         Self { clock, device_loop, handle, bus, tap, events: Vec::new(), ended: false, window_alive: true }
     }
 
