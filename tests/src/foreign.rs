@@ -107,9 +107,9 @@ pub trait Simulated {
 ///
 /// # Panics
 /// When the script breaks off, says something unreadable or hangs.
-pub fn run(script: &str, port: &Path, simulated: &mut dyn Simulated) -> Findings {
+pub fn run(script: &str, port: &Path, arguments: &[&str], simulated: &mut dyn Simulated) -> Findings {
     let mut command = Command::new(python());
-    command.arg(workspace::root().join("tests/foreign").join(script)).arg(port);
+    command.arg(workspace::root().join("tests/foreign").join(script)).arg(port).args(arguments);
     let mut program = Program::spawn(command);
     let mut findings = Findings::default();
     while let Some(line) = program.next_line(SILENCE_LIMIT) {

@@ -58,7 +58,7 @@ fn the_vendors_python_library_finds_a_generation_4_controller() {
     }
     let mut controller = OnPty::start(Generation::Gen4);
     let port = controller.port();
-    let findings = foreign::run("basicmicro_check.py", &port, &mut controller);
+    let findings = foreign::run("basicmicro_check.py", &port, &[], &mut controller);
 
     let (local, wire): (Vec<_>, Vec<_>) =
         findings.findings.iter().partition(|finding| LOCAL.contains(&finding.name.as_str()));
@@ -86,9 +86,25 @@ fn clients_in_three_styles_find_a_generation_1_controller() {
     }
     let mut controller = OnPty::start(Generation::Gen1);
     let port = controller.port();
-    let findings = foreign::run("generation1_check.py", &port, &mut controller);
+    let findings = foreign::run("generation1_check.py", &port, &[], &mut controller);
     print(&findings);
     println!("{} findings", findings.findings.len());
     assert!(findings.failures().is_empty(), "{:#?}", findings.failures());
     assert!(findings.findings.len() > 300, "the script checked only {} things", findings.findings.len());
+}
+
+#[test]
+fn every_generation_has_the_widths_that_public_clients_expect() {
+    if foreign::is_left_out("python") {
+        return;
+    }
+    for generation in Generation::ALL {
+        let mut controller = OnPty::start(generation);
+        let port = controller.port();
+        let number = generation.number().to_string();
+        let findings = foreign::run("generations_check.py", &port, &[&number], &mut controller);
+        println!("{generation}: {} findings", findings.findings.len());
+        assert!(findings.failures().is_empty(), "{generation}: {:#?}", findings.failures());
+        assert!(findings.findings.len() >= 25, "{generation}: only {}", findings.findings.len());
+    }
 }
