@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::exit;
 use super::monitor::args::MonitorArgs;
+use super::settings::args::SettingsArgs;
 use crate::session::sim_spec::parse_address;
 
 /// Configures, drives and tunes brushed-DC motor controllers.
@@ -36,6 +37,8 @@ pub enum Command {
     Drive(DriveArgs),
     /// Stop both motors at once.
     Stop(StopArgs),
+    /// Read, write, compare and save a controller's settings.
+    Settings(SettingsArgs),
     /// Run simulated controllers on a pseudo-terminal or a TCP port.
     Sim(SimArgs),
     /// Print the packet serial reference.

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use brushwork_link::SystemClock;
 use brushwork_link::device::{Addresses, DeviceHandle, Event, Identity, PollRate};
-use brushwork_link::transport::ConnectTarget;
+use brushwork_link::transport::{ConnectTarget, Stream};
 use crossbeam_channel::RecvTimeoutError;
 
 use super::args::ConnectArgs;
@@ -23,6 +23,8 @@ pub struct Client {
     session: Session,
     /// Who answered.
     pub identity: Identity,
+    /// Which of its streams the port is wired to, where that is known.
+    pub stream: Option<Stream>,
 }
 
 impl Client {
@@ -32,8 +34,8 @@ impl Client {
     /// Says on standard error what went wrong and gives the exit code.
     pub fn connect(args: &ConnectArgs, poll: PollRate, interrupt: &Interrupt) -> Result<Self, Exit> {
         let session = open(args, poll)?;
-        let identity = wait_for_identity(&session.device, interrupt)?;
-        Ok(Self { session, identity })
+        let (identity, stream) = wait_for_identity(&session.device, interrupt)?;
+        Ok(Self { session, identity, stream })
     }
 
     /// The device thread.
@@ -86,15 +88,18 @@ fn at_address(target: ConnectTarget, address: u8) -> ConnectTarget {
     }
 }
 
-fn wait_for_identity(device: &DeviceHandle, interrupt: &Interrupt) -> Result<Identity, Exit> {
+fn wait_for_identity(
+    device: &DeviceHandle,
+    interrupt: &Interrupt,
+) -> Result<(Identity, Option<Stream>), Exit> {
     let deadline = Instant::now() + CONNECT_LIMIT;
     let mut found = None;
     while Instant::now() < deadline {
         match next_event(device, interrupt)? {
             Some(Event::Connected(identity)) => found = Some(identity),
-            Some(Event::Selected { .. }) => {
+            Some(Event::Selected { stream, .. }) => {
                 if let Some(identity) = found {
-                    return Ok(identity);
+                    return Ok((identity, stream));
                 }
             }
             Some(Event::Failure(failure)) => say(failure.to_string()),

@@ -11,7 +11,7 @@ pub const HELP: &str = "Exit codes:\n  \
     2  the command line could not be understood\n  \
     3  no controller could be reached, or the link was lost\n  \
     4  the controller or a safety rule refused\n  \
-    5  settings: something did not take, or a profile was refused\n  \
+    5  settings: a value or a profile was refused, or something did not take\n  \
     6  settings diff: there are differences\n  \
     130  ended by Ctrl-C, SIGTERM, SIGHUP or a closed pipe, after both motors were stopped";
 
@@ -26,7 +26,7 @@ pub enum Exit {
     NoLink,
     /// The controller or a safety rule refused.
     Refused,
-    /// A setting did not take or a profile was refused.
+    /// A setting's value or a profile was refused, or did not take.
     NotTaken,
     /// `settings diff` found differences.
     Different,

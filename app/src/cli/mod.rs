@@ -12,6 +12,7 @@ mod list;
 mod monitor;
 mod output;
 mod protocol;
+pub mod settings;
 mod sim;
 mod status;
 mod stop;
@@ -54,6 +55,7 @@ fn dispatch(command: &Command, out: &mut Output, interrupt: &Interrupt) -> Exit 
         Command::Status(args) => status::run(args, out, interrupt),
         Command::Drive(args) => drive::run(args, out, interrupt),
         Command::Stop(args) => stop::run(args, out, interrupt),
+        Command::Settings(args) => settings::run(args, out, interrupt),
         Command::Sim(args) => sim::run(args, out, interrupt),
         Command::Protocol(args) => protocol::run(args, out),
         Command::Monitor(args) => monitor::run(args, out, interrupt),

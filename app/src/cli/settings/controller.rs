@@ -1,0 +1,212 @@
+//! A connected controller whose settings are to be read or written: work runs as jobs on its device thread.
+
+use std::io::{self, IsTerminal as _, Write as _};
+use std::time::{Duration, Instant};
+
+use brushwork_link::device::{Event, FnJob, Identity, JobContext, JobEnding, JobReport, PollRate, Request};
+use brushwork_link::settings::{ReadReport, Subject, WriteOptions, read_all};
+use brushwork_protocol::models;
+use brushwork_protocol::packet_serial::Address;
+use crossbeam_channel::bounded;
+
+use crate::cli::args::ConnectArgs;
+use crate::cli::client::Client;
+use crate::cli::exit::Exit;
+use crate::cli::interrupt::Interrupt;
+use crate::cli::output::say;
+
+/// How long reading everything may take: a hundred commands at the slowest baud rates, with retries.
+pub const READ_LIMIT: Duration = Duration::from_secs(120);
+/// How long writing everything may take: reading before and after, and the writing between.
+pub const WRITE_LIMIT: Duration = Duration::from_secs(300);
+/// How long a cancelled job may take to end.
+const CANCEL_LIMIT: Duration = Duration::from_secs(10);
+
+/// A connected controller of a known model.
+pub struct Controller<'i> {
+    client: Client,
+    interrupt: &'i Interrupt,
+    subject: Subject,
+}
+
+/// What a job handed back.
+pub struct Finished<T> {
+    /// Its result, which tells how far it came when something broke in.
+    pub value: T,
+    /// The exit code, when something broke in.
+    pub broken: Option<Exit>,
+}
+
+impl<'i> Controller<'i> {
+    /// Connects and finds out which settings the controller has.
+    ///
+    /// # Errors
+    /// Says on standard error what went wrong and gives the exit code.
+    pub fn connect(args: &ConnectArgs, interrupt: &'i Interrupt) -> Result<Self, Exit> {
+        let client = Client::connect(args, PollRate::Off, interrupt)?;
+        let version = &client.identity.version_text;
+        let Some(model) = models::identify(version) else {
+            say(format!(
+                "The unit at {:#04x} on {} calls itself \"{version}\", which is no MCP or RoboClaw: its \
+                 settings are not known.",
+                client.identity.address, client.identity.port
+            ));
+            return Err(Exit::Refused);
+        };
+        let subject = Subject::new(model, client.identity.generation);
+        Ok(Self { client, interrupt, subject })
+    }
+
+    /// Who it is.
+    pub fn identity(&self) -> &Identity {
+        &self.client.identity
+    }
+
+    /// "0x80 at /dev/ttyACM0".
+    pub fn describe(&self) -> String {
+        format!("{:#04x} at {}", self.identity().address, self.identity().port)
+    }
+
+    /// Its address when it was connected.
+    pub fn address(&self) -> Address {
+        Address::new(self.identity().address).unwrap_or(Address::DEFAULT)
+    }
+
+    /// Whether the port's place among the controller's streams is known.
+    pub fn knows_own_stream(&self) -> bool {
+        self.client.stream.is_some()
+    }
+
+    /// What writing has to know of the way to this controller.
+    pub fn write_options(&self) -> WriteOptions {
+        WriteOptions { own_stream: self.client.stream, simulated: self.identity().simulated }
+    }
+
+    /// Which settings it has, as far as known before it was read.
+    pub fn subject(&self) -> Subject {
+        self.subject
+    }
+
+    /// Reads every setting; says what could not be read.
+    pub fn read(&self) -> Result<ReadReport, Exit> {
+        let subject = self.subject;
+        let finished = self.run("read the settings", READ_LIMIT, move |wire| read_all(wire, subject))?;
+        if let Some(exit) = finished.broken {
+            return Err(exit);
+        }
+        let report = finished.value.map_err(|failure| {
+            say(failure.to_string());
+            Exit::NoLink
+        })?;
+        for unread in &report.failures {
+            say(format!("Not read: {}. {}", unread.keys.join(", "), unread.failure));
+        }
+        Ok(report)
+    }
+
+    /// Runs work on the device thread and waits for its end. Ctrl-C cancels it; what it had to say by then
+    /// comes back all the same.
+    pub fn run<T: Send + 'static>(
+        &self,
+        name: &str,
+        limit: Duration,
+        mut work: impl FnMut(&mut JobContext<'_>) -> T + Send + 'static,
+    ) -> Result<Finished<T>, Exit> {
+        let (sender, receiver) = bounded(1);
+        let job = FnJob::boxed(name, limit, move |wire| {
+            // The receiver lives until the job has ended; without it nobody wants the result.
+            let _ = sender.try_send(work(wire));
+            Ok(Box::new(()))
+        });
+        self.client.device().request(Request::Job(job)).map_err(|refused| {
+            say(format!("Could not {name}: {refused}"));
+            Exit::Refused
+        })?;
+        let report = self.wait_for_end(name, limit)?;
+        let broken = explain(&report);
+        match (receiver.try_recv(), broken) {
+            (Ok(value), broken) => Ok(Finished { value, broken }),
+            (Err(_), broken) => Err(broken.unwrap_or(Exit::Failed)),
+        }
+    }
+
+    /// Lets events pass for a moment.
+    ///
+    /// # Errors
+    /// The link is lost or the program was asked to end.
+    pub fn breathe(&self) -> Result<(), Exit> {
+        self.client.next_event(self.interrupt).map(|_| ())
+    }
+
+    fn wait_for_end(&self, name: &str, limit: Duration) -> Result<JobReport, Exit> {
+        let deaf = Interrupt::default();
+        let mut progress = Progress::new();
+        let mut deadline = Instant::now() + limit + CANCEL_LIMIT;
+        let mut cancelled = false;
+        while Instant::now() < deadline {
+            if self.interrupt.is_raised() && !cancelled {
+                cancelled = true;
+                deadline = Instant::now() + CANCEL_LIMIT;
+                // A full queue cannot refuse this one: it overtakes what is queued.
+                let _ = self.client.device().request(Request::CancelJob);
+            }
+            match self.client.next_event(&deaf)? {
+                Some(Event::JobProgress { fraction, text }) => progress.show(fraction, &text),
+                Some(Event::Failure(failure)) => say(failure.to_string()),
+                Some(Event::JobEnded(report)) => return Ok(report),
+                _ => {}
+            }
+        }
+        say(format!("Could not {name}: the work did not end in time."));
+        Err(if cancelled { Exit::Interrupted } else { Exit::Failed })
+    }
+}
+
+/// Says why a job did not run to its end, and gives the exit code for that.
+fn explain(report: &JobReport) -> Option<Exit> {
+    let name = &report.name;
+    match &report.ending {
+        JobEnding::Done(_) => None,
+        JobEnding::Interrupted(cause) => {
+            say(format!("Could not {name} to the end: {cause}."));
+            Some(Exit::Interrupted)
+        }
+        JobEnding::Failed(failure) => {
+            say(failure.to_string());
+            Some(Exit::Failed)
+        }
+        JobEnding::Panicked(word) => {
+            say(format!("Could not {name}: an internal error ({word}). Please report it."));
+            Some(Exit::Failed)
+        }
+    }
+}
+
+/// One line on a terminal that is overwritten as work goes on; nothing where standard error is no terminal.
+struct Progress {
+    on_terminal: bool,
+    is_shown: bool,
+}
+
+impl Progress {
+    fn new() -> Self {
+        Self { on_terminal: io::stderr().is_terminal(), is_shown: false }
+    }
+
+    fn show(&mut self, fraction: Option<f32>, text: &str) {
+        if !self.on_terminal {
+            return;
+        }
+        self.is_shown = true;
+        let percent = fraction.map_or_else(String::new, |fraction| format!("{:3.0} % ", fraction * 100.0));
+        let _ = write!(io::stderr(), "\r\x1b[K{percent}{text}");
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if self.is_shown {
+            let _ = write!(io::stderr(), "\r\x1b[K");
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! `brushwork settings save` and `defaults`: acts on the controller's own memory, asked for and proven.
+
+use std::time::Duration;
+
+use brushwork_link::settings::{
+    DefaultsReport, SaveReport, SaveVerdict, SettingsImage, SettingsTable, restore_defaults, save_eeprom,
+};
+use serde_json::json;
+
+use super::args::MemoryArgs;
+use super::ask;
+use super::controller::Controller;
+use super::review::{Change, change_lines, changes, settings_count};
+use crate::cli::exit::Exit;
+use crate::cli::interrupt::Interrupt;
+use crate::cli::output::{Output, OutputError, say};
+
+/// How long a save or a restore may take with its readings before and after.
+const MEMORY_LIMIT: Duration = Duration::from_secs(300);
+
+/// Saves RAM to EEPROM and proves it.
+pub fn save(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let controller = Controller::connect(&args.connect, interrupt)?;
+    let ram = controller.read()?;
+    let list = changes(&ram.table, &known_defaults(&ram.table, &ram.image), &ram.image);
+    show(
+        args,
+        out,
+        "What EEPROM holds cannot be read without loading it over RAM. What would be saved, against the factory \
+         defaults:",
+        &list,
+    )?;
+    let question = format!("Save all settings of {} to EEPROM?", controller.describe());
+    ask::agreed(&question, args.yes, &controller)?;
+    let (report, exit) = save_to_eeprom(&controller, &ram.table)?;
+    if args.json {
+        out.json(&json!({ "identity": controller.identity(), "not_default": list, "save": report }))?;
+    } else if report.verdict == SaveVerdict::Verified {
+        out.line(report.sentence())?;
+    }
+    if report.verdict != SaveVerdict::Verified {
+        say(report.sentence());
+    }
+    Ok(exit)
+}
+
+/// Saves to EEPROM; the caller tells what the report says.
+pub fn save_to_eeprom(
+    controller: &Controller<'_>,
+    table: &SettingsTable,
+) -> Result<(SaveReport, Exit), Exit> {
+    let (options, table) = (controller.write_options(), table.clone());
+    let finished =
+        controller.run("save the settings", MEMORY_LIMIT, move |wire| save_eeprom(wire, &table, options))?;
+    let report = finished.value.map_err(|failure| {
+        say(format!("Nothing was saved. {failure}"));
+        finished.broken.unwrap_or(Exit::Refused)
+    })?;
+    let exit = match report.verdict {
+        SaveVerdict::Verified | SaveVerdict::Acknowledged => Exit::Done,
+        SaveVerdict::NotSaved | SaveVerdict::Unknown => Exit::NotTaken,
+    };
+    Ok((report, finished.broken.unwrap_or(exit)))
+}
+
+/// Restores the factory settings in RAM and proves it.
+pub fn defaults(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let controller = Controller::connect(&args.connect, interrupt)?;
+    let ram = controller.read()?;
+    let list = changes(&ram.table, &ram.image, &known_defaults(&ram.table, &ram.image));
+    show(args, out, "What would change, as far as the factory defaults are known:", &list)?;
+    let question = format!("Restore the factory defaults of {}?", controller.describe());
+    ask::agreed(&question, args.yes, &controller)?;
+    let subject = controller.subject();
+    let finished =
+        controller.run("restore the defaults", MEMORY_LIMIT, move |wire| restore_defaults(wire, subject))?;
+    let report = finished.value.map_err(|failure| {
+        say(failure.to_string());
+        finished.broken.unwrap_or(Exit::Refused)
+    })?;
+    let others = tell_defaults(args, &controller, &list, &report, out)?;
+    Ok(finished.broken.unwrap_or(if others == 0 { Exit::Done } else { Exit::NotTaken }))
+}
+
+/// Prints what came of it. How many settings are not at a default that the manual states.
+fn tell_defaults(
+    args: &MemoryArgs,
+    controller: &Controller<'_>,
+    list: &[Change],
+    report: &DefaultsReport,
+    out: &mut Output,
+) -> Result<usize, OutputError> {
+    let table = &report.read.table;
+    let image = &report.read.image;
+    let found = changes(table, &known_defaults(table, image), image);
+    let is_assumed = |change: &Change| table.row(&change.key).is_some_and(|row| row.default_assumed);
+    let (assumed, stated): (Vec<Change>, Vec<Change>) = found.into_iter().partition(is_assumed);
+    if args.json {
+        out.json(&json!({
+            "identity": controller.identity(),
+            "changes": list,
+            "address": report.address,
+            "not_at_default": stated,
+            "not_at_assumed_default": assumed,
+        }))?;
+        return Ok(stated.len());
+    }
+    if stated.is_empty() {
+        out.line("The factory defaults are restored in RAM; every setting was read back.")?;
+    }
+    tell_others("These are not at the factory default that the manual states:", &stated);
+    tell_others("These came back other than assumed; the controller knows its defaults better:", &assumed);
+    if report.address != controller.address() {
+        out.line(format!("The controller answers at {} now.", report.address))?;
+    }
+    out.line("A power cycle brings the saved settings back unless the defaults are saved (`brushwork settings save`).")?;
+    Ok(stated.len())
+}
+
+fn tell_others(head: &str, changes: &[Change]) {
+    if !changes.is_empty() {
+        say(head);
+        change_lines(changes).into_iter().for_each(say);
+    }
+}
+
+/// The default of every setting whose value was read.
+fn known_defaults(table: &SettingsTable, image: &SettingsImage) -> SettingsImage {
+    let known = table.rows().iter().filter(|row| image.get(&row.key).is_some());
+    known.map(|row| (row.key.clone(), row.default)).collect()
+}
+
+fn show(args: &MemoryArgs, out: &mut Output, head: &str, list: &[Change]) -> Result<(), OutputError> {
+    let mut lines = vec![head.to_owned()];
+    lines.extend(change_lines(list));
+    if list.is_empty() {
+        lines.push("  nothing: every setting is at its default".to_owned());
+    } else {
+        lines.push(format!("  ({})", settings_count(list.len())));
+    }
+    for line in lines {
+        if !args.json {
+            out.line(line)?;
+        } else if !args.yes {
+            say(line);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,67 @@
+//! `brushwork settings read` and `reference`.
+
+use std::collections::BTreeMap;
+
+use brushwork_link::settings::{self, ListedSetting, list, list_text};
+use serde_json::json;
+
+use super::args::{ReadArgs, ReferenceArgs};
+use super::controller::Controller;
+use super::keys;
+use crate::cli::exit::Exit;
+use crate::cli::interrupt::Interrupt;
+use crate::cli::output::{Output, say};
+
+/// Reads and prints.
+pub fn run(args: &ReadArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let controller = Controller::connect(&args.connect, interrupt)?;
+    let report = controller.read()?;
+    if let Some(problem) = keys::unmatched(&report.table, &args.keys) {
+        say(problem);
+        return Err(Exit::NotTaken);
+    }
+    let mut settings = list(&report.table, &report.image, controller.identity().simulated);
+    if !args.keys.is_empty() {
+        settings.retain(|setting| args.keys.iter().any(|start| keys::begins_with(&setting.key, start)));
+    }
+    if args.json {
+        out.json(&json!({
+            "identity": controller.identity(),
+            "settings": settings,
+            "failures": report.failures,
+        }))?;
+    } else {
+        out.line(list_text(&settings))?;
+        for line in legend(&settings) {
+            out.line(line)?;
+        }
+    }
+    Ok(if report.failures.is_empty() { Exit::Done } else { Exit::Failed })
+}
+
+/// Prints the reference page; no controller is needed.
+pub fn reference(args: &ReferenceArgs, out: &mut Output) -> Result<Exit, Exit> {
+    if args.json {
+        out.json(&settings::reference())?;
+    } else {
+        out.line(settings::reference_text().trim_end())?;
+    }
+    Ok(Exit::Done)
+}
+
+/// What the marks of the list mean, as far as they stand in it.
+fn legend(settings: &[ListedSetting]) -> Vec<String> {
+    let mut lines = Vec::new();
+    if settings.iter().any(|setting| setting.is_default == Some(false)) {
+        lines.push("\n*  is not the default".to_owned());
+    }
+    let mut locked: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for setting in settings.iter().filter(|setting| !setting.locked.is_empty()) {
+        locked.entry(setting.locked).or_default().push(&setting.key);
+    }
+    if !locked.is_empty() {
+        lines.push("\n#  cannot be written on this controller:".to_owned());
+    }
+    lines.extend(locked.iter().map(|(reason, keys)| format!("   {reason}\n      {}", keys.join(", "))));
+    lines
+}

@@ -1,0 +1,237 @@
+//! `brushwork settings write` and `import`: shows the changes, asks, writes, and names what did not take.
+
+use std::path::Path;
+
+use brushwork_link::settings::{
+    Profile, ReadReport, SaveReport, SaveVerdict, SettingsImage, SettingsTable, WriteReport, changes, write,
+};
+use serde_json::{Value, json};
+
+use super::args::{Assignment, ImportArgs, WriteArgs, WriteHow};
+use super::ask;
+use super::controller::{Controller, WRITE_LIMIT};
+use super::review::{Review, settings_count};
+use super::{keys, memory, profile};
+use crate::cli::exit::Exit;
+use crate::cli::interrupt::Interrupt;
+use crate::cli::output::{Output, say};
+
+/// Writes the changes given, and those of a profile.
+pub fn run(args: &WriteArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let profile = args.profile.as_deref().map(load).transpose()?;
+    let controller = Controller::connect(&args.connect, interrupt)?;
+    bring_about(&controller, profile.as_ref(), &args.changes, &args.how, out)
+}
+
+/// Writes what a profile says.
+pub fn import(args: &ImportArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let profile = load(&args.file)?;
+    let controller = Controller::connect(&args.connect, interrupt)?;
+    bring_about(&controller, Some(&profile), &[], &args.how, out)
+}
+
+/// What is to be written, and what of the profile cannot be.
+struct Wanted {
+    changes: SettingsImage,
+    left_out: Vec<String>,
+}
+
+/// What came of it.
+#[derive(Default)]
+struct Results {
+    write: Option<WriteReport>,
+    save: Option<SaveReport>,
+}
+
+fn load(path: &Path) -> Result<Profile, Exit> {
+    profile::load(path)
+}
+
+fn bring_about(
+    controller: &Controller<'_>,
+    profile: Option<&Profile>,
+    assignments: &[Assignment],
+    how: &WriteHow,
+    out: &mut Output,
+) -> Result<Exit, Exit> {
+    let ram = controller.read()?;
+    let wanted = wanted(controller, &ram, profile, assignments)?;
+    let review = review(controller, &ram, &wanted)?;
+    show(&review, &wanted, how, out)?;
+    if how.dry_run {
+        print_json(controller, &review, &wanted, how, &Results::default(), out)?;
+        return Ok(Exit::Done);
+    }
+    let count = review.changes.len();
+    if count > 0 || how.save {
+        ask::agreed(&question(controller, count, how.save), how.yes, controller)?;
+    }
+    let mut results = Results::default();
+    let exit = perform(controller, &ram.table, wanted.changes.clone(), how, &mut results);
+    tell(&ram.table, &results, how, out)?;
+    print_json(controller, &review, &wanted, how, &results, out)?;
+    exit
+}
+
+/// The changes that profile and assignments ask for.
+fn wanted(
+    controller: &Controller<'_>,
+    ram: &ReadReport,
+    profile: Option<&Profile>,
+    assignments: &[Assignment],
+) -> Result<Wanted, Exit> {
+    let mut wanted = Wanted { changes: SettingsImage::default(), left_out: Vec::new() };
+    if let Some(profile) = profile {
+        let asked = profile.changes_for(&ram.table, &ram.image, controller.identity().simulated);
+        let asked = asked.map_err(|error| {
+            say(format!("The profile does not fit {}, nothing was changed:\n{error}", controller.describe()));
+            Exit::NotTaken
+        })?;
+        wanted = Wanted { changes: asked.wanted, left_out: asked.left_out };
+    }
+    let typed = keys::parse(&ram.table, assignments).map_err(|problems| refused(&problems))?;
+    wanted.changes.merge(&typed);
+    wanted.changes = changes(&ram.table, &ram.image, &merged(&ram.image, &wanted.changes));
+    Ok(wanted)
+}
+
+fn merged(ram: &SettingsImage, changes: &SettingsImage) -> SettingsImage {
+    let mut after = ram.clone();
+    after.merge(changes);
+    after
+}
+
+fn review(controller: &Controller<'_>, ram: &ReadReport, wanted: &Wanted) -> Result<Review, Exit> {
+    let options = controller.write_options();
+    let mut review = Review::new(&ram.table, &ram.image, &wanted.changes, options, controller.address())
+        .map_err(|refusals| {
+            refused(&refusals.into_iter().map(|refusal| refusal.sentence).collect::<Vec<_>>())
+        })?;
+    let touches_streams = review.changes.iter().any(|change| change.key.starts_with("stream."));
+    if touches_streams && !controller.knows_own_stream() {
+        review.warnings.push(
+            "It is not known which of the controller's streams this port is wired to; if it is one that \
+             changes, the link may be lost. A target such as /dev/ttyUSB0,stream=ttl1 says it."
+                .to_owned(),
+        );
+    }
+    Ok(review)
+}
+
+fn refused(problems: &[String]) -> Exit {
+    say("Nothing was written:");
+    problems.iter().for_each(say);
+    Exit::NotTaken
+}
+
+/// The changes before anything is done: on standard output, or beside it where that carries JSON.
+fn show(review: &Review, wanted: &Wanted, how: &WriteHow, out: &mut Output) -> Result<(), Exit> {
+    let mut lines = Vec::new();
+    if review.changes.is_empty() {
+        lines.push("The controller holds these values already: there is nothing to write.".to_owned());
+    }
+    lines.extend(review.lines());
+    lines.extend(wanted.left_out.iter().map(|sentence| format!("Left out: {sentence}")));
+    if how.dry_run && !review.changes.is_empty() {
+        lines.push("Commands that would be sent:".to_owned());
+        lines.extend(review.command_lines());
+    }
+    for line in lines {
+        if !how.json {
+            out.line(line)?;
+        } else if !how.yes && !how.dry_run {
+            say(line);
+        }
+    }
+    Ok(())
+}
+
+fn question(controller: &Controller<'_>, count: usize, save: bool) -> String {
+    let place = controller.describe();
+    match (count, save) {
+        (0, _) => format!("Save all settings of {place} to EEPROM?"),
+        (count, false) => format!("Write {} to RAM of {place}?", settings_count(count)),
+        (count, true) => {
+            format!("Write {} to RAM of {place} and save all settings to EEPROM?", settings_count(count))
+        }
+    }
+}
+
+/// Writes, then saves if that was asked for and everything took.
+fn perform(
+    controller: &Controller<'_>,
+    table: &SettingsTable,
+    changes: SettingsImage,
+    how: &WriteHow,
+    results: &mut Results,
+) -> Result<Exit, Exit> {
+    let mut exit = Exit::Done;
+    if !changes.is_empty() {
+        let (options, job_table) = (controller.write_options(), table.clone());
+        let finished = controller
+            .run("write the settings", WRITE_LIMIT, move |wire| write(wire, &job_table, &changes, options))?;
+        let report = finished.value.map_err(|error| {
+            say(error.to_string());
+            finished.broken.unwrap_or(Exit::NotTaken)
+        })?;
+        let is_complete = report.is_complete();
+        results.write = Some(report);
+        exit = finished.broken.unwrap_or(if is_complete { Exit::Done } else { Exit::NotTaken });
+    }
+    if !how.save {
+        return Ok(exit);
+    }
+    if exit != Exit::Done {
+        say("The settings were not saved to EEPROM, since not all of them took.");
+        return Ok(exit);
+    }
+    let (report, exit) = memory::save_to_eeprom(controller, table)?;
+    results.save = Some(report);
+    Ok(exit)
+}
+
+fn tell(table: &SettingsTable, results: &Results, how: &WriteHow, out: &mut Output) -> Result<(), Exit> {
+    if let Some(report) = &results.write {
+        report.sentences(table).iter().for_each(say);
+        if let Some(failure) = &report.ended_early {
+            say(format!("Writing ended early. {failure}"));
+        }
+        let taken = report.rows.len() - report.did_not_take().count();
+        if !how.json {
+            out.line(format!("{} written and read back.", settings_count(taken)))?;
+            if report.is_complete() && !how.save {
+                out.line("A power cycle brings the old values back unless they are saved (`brushwork settings save`).")?;
+            }
+        }
+    }
+    match &results.save {
+        Some(report) if report.verdict == SaveVerdict::Verified && !how.json => {
+            out.line(report.sentence())?;
+        }
+        Some(report) if report.verdict != SaveVerdict::Verified => say(report.sentence()),
+        _ => {}
+    }
+    Ok(())
+}
+
+fn print_json(
+    controller: &Controller<'_>,
+    review: &Review,
+    wanted: &Wanted,
+    how: &WriteHow,
+    results: &Results,
+    out: &mut Output,
+) -> Result<(), Exit> {
+    if !how.json {
+        return Ok(());
+    }
+    let mut object = json!(review);
+    if let Value::Object(members) = &mut object {
+        members.insert("identity".to_owned(), json!(controller.identity()));
+        members.insert("dry_run".to_owned(), json!(how.dry_run));
+        members.insert("left_out".to_owned(), json!(wanted.left_out));
+        members.insert("write".to_owned(), json!(results.write));
+        members.insert("save".to_owned(), json!(results.save));
+    }
+    Ok(out.json(&object)?)
+}

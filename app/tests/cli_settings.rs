@@ -1,0 +1,415 @@
+//! `brushwork settings` as a person or a script runs it: the built program, its output and its exit codes.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+const DONE: i32 = 0;
+const USAGE: i32 = 2;
+const REFUSED: i32 = 4;
+const NOT_TAKEN: i32 = 5;
+const DIFFERENT: i32 = 6;
+
+/// What a run of the program gave.
+#[derive(Debug)]
+struct Run {
+    code: i32,
+    stdout: String,
+    stderr: String,
+}
+
+impl Run {
+    #[track_caller]
+    fn ended_with(self, code: i32) -> Self {
+        assert_eq!(self.code, code, "{self:#?}");
+        self
+    }
+
+    #[track_caller]
+    fn explains(self, words: &str) -> Self {
+        assert!(self.stderr.contains(words), "no {words:?} in {self:#?}");
+        self
+    }
+
+    /// Standard output has these words, however wide its columns are.
+    #[track_caller]
+    fn prints(self, words: &str) -> Self {
+        let in_one_line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(in_one_line(&self.stdout).contains(&in_one_line(words)), "no {words:?} in {self:#?}");
+        self
+    }
+
+    #[track_caller]
+    fn json(&self) -> Value {
+        serde_json::from_str(&self.stdout).unwrap_or_else(|error| panic!("{error}: {self:#?}"))
+    }
+}
+
+/// `brushwork settings` with nobody at the terminal.
+fn settings(arguments: &[&str]) -> Run {
+    let output = Command::new(env!("CARGO_BIN_EXE_brushwork"))
+        .arg("settings")
+        .args(arguments)
+        .stdin(Stdio::null())
+        .output()
+        .expect("the program was built for this test");
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("the program prints UTF-8");
+    Run { code: output.status.code().unwrap_or(-1), stdout: text(output.stdout), stderr: text(output.stderr) }
+}
+
+/// A profile of a fresh simulated controller, and the folder it is in.
+fn exported(target: &str) -> (TempDir, PathBuf) {
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    let file = folder.path().join("profile.json");
+    settings(&["export", "-c", target, name(&file)]).ended_with(DONE);
+    (folder, file)
+}
+
+fn name(path: &Path) -> &str {
+    path.to_str().expect("temporary names are UTF-8")
+}
+
+/// Replaces the first `from` of a profile.
+fn edit(file: &Path, from: &str, to: &str) {
+    let text = std::fs::read_to_string(file).expect("the profile is there");
+    assert!(text.contains(from), "no {from:?} in {text}");
+    std::fs::write(file, text.replacen(from, to, 1)).expect("the profile can be written");
+}
+
+#[test]
+fn read_shows_values_with_their_units() {
+    settings(&["read", "motor1.velocity"])
+        .ended_with(DONE)
+        .prints("motor1.velocity.qpps    44000 counts/s    default 44000 counts/s");
+}
+
+#[test]
+fn read_gives_json_for_programs() {
+    let json = settings(&["read", "--json", "motor2.velocity.p"]).ended_with(DONE).json();
+    assert_eq!(json["identity"]["model"], "MCP266");
+    assert_eq!(json["settings"].as_array().map(Vec::len), Some(1));
+    assert_eq!(json["settings"][0]["value"], 1.0);
+    assert_eq!(json["failures"], Value::Array(Vec::new()));
+}
+
+#[test]
+fn every_setting_can_be_read_in_every_generation() {
+    for generation in 1..=4 {
+        let target = format!("sim:mcp266,generation={generation}");
+        let json = settings(&["read", "--json", "-c", &target]).ended_with(DONE).json();
+        let rows = json["settings"].as_array().expect("a list of settings");
+        assert!(rows.len() > 200, "{} settings in generation {generation}", rows.len());
+        let unknown: Vec<&Value> = rows.iter().filter(|row| row["value"].is_null()).collect();
+        assert!(unknown.is_empty(), "without a value in generation {generation}: {unknown:#?}");
+    }
+}
+
+#[test]
+fn read_of_a_key_that_does_not_exist_is_told() {
+    settings(&["read", "motr1"]).ended_with(NOT_TAKEN).explains("has no setting motr1");
+}
+
+#[test]
+fn a_value_is_shown_old_and_new_written_and_read_back() {
+    settings(&["write", "motor1.velocity.p=2.5", "--yes"])
+        .ended_with(DONE)
+        .prints("motor1.velocity.p  1.000 -> 2.500")
+        .prints("1 setting written and read back.");
+}
+
+#[test]
+fn nothing_is_written_while_nobody_can_agree() {
+    settings(&["write", "motor1.velocity.p=2.5"])
+        .ended_with(REFUSED)
+        .prints("1.000 -> 2.500")
+        .explains("give --yes to do it. Nothing was written.");
+    settings(&["save"]).ended_with(REFUSED).explains("--yes");
+    settings(&["defaults"]).ended_with(REFUSED).explains("--yes");
+}
+
+#[test]
+fn a_value_out_of_range_is_told_with_its_range_and_nothing_is_written() {
+    settings(&["write", "limits.main_battery.max_volts=99", "motor1.velocity.p=2.5", "--yes"])
+        .ended_with(NOT_TAKEN)
+        .explains("Nothing was written:")
+        .explains("Main battery maximum 99.0 V is above the MCP266's 60.0 V.");
+    settings(&["write", "motor1.velocity.p=fast", "--yes"])
+        .ended_with(NOT_TAKEN)
+        .explains("'fast' is not a number");
+}
+
+#[test]
+fn an_unknown_key_is_answered_with_the_one_that_was_meant() {
+    settings(&["write", "motor1.velocty.p=2", "--yes"])
+        .ended_with(NOT_TAKEN)
+        .explains("has no setting motor1.velocty.p. Did you mean motor1.velocity.p?");
+    settings(&["write", "motor1.velocity.p", "--yes"]).ended_with(USAGE).explains("KEY=VALUE");
+}
+
+#[test]
+fn a_dry_run_shows_the_command_and_its_bytes() {
+    // 80: address. 1C: 28, M1 velocity PID. D 0.25 = 00004000, P 2.5 = 00028000, I 0.5 = 00008000 (each times
+    // 65536), QPPS 12000 = 00002EE0. 5E59: CRC-16/XMODEM of all before it.
+    settings(&["write", "motor1.velocity.p=2.5", "motor1.velocity.qpps=12000", "--dry-run"])
+        .ended_with(DONE)
+        .prints("0x80 M1 velocity PID: P 2.5, I 0.5, D 0.25, QPPS 12000")
+        .prints("80 1C 00 00 40 00 00 02 80 00 00 00 80 00 00 00 2E E0 5E 59");
+    let json = settings(&["write", "motor1.velocity.p=2.5", "--dry-run", "--json"]).ended_with(DONE).json();
+    assert_eq!(json["dry_run"], true);
+    assert_eq!(json["changes"][0]["after"], 2.5);
+    assert_eq!(json["commands"][0]["keys"][0], "motor1.velocity.p");
+    assert!(json["write"].is_null());
+}
+
+#[test]
+fn a_write_tells_programs_what_became_of_it() {
+    let run = settings(&["write", "motor1.velocity.p=2.5", "--yes", "--json", "--save"]).ended_with(DONE);
+    let json = run.json();
+    assert_eq!(json["write"]["rows"][0]["state"], "taken");
+    assert_eq!(json["write"]["rows"][0]["found"], 2.5);
+    assert_eq!(json["save"]["verdict"], "verified");
+}
+
+#[test]
+fn what_no_command_carries_is_set_in_the_simulated_controller() {
+    settings(&["write", "unit.bridge_channels=yes", "--yes"])
+        .ended_with(DONE)
+        .prints("unit.bridge_channels  no -> yes")
+        .prints("1 setting written and read back.");
+}
+
+#[test]
+fn defaults_are_restored_and_proven() {
+    settings(&["defaults", "--yes"]).ended_with(DONE).prints("The factory defaults are restored in RAM");
+}
+
+#[test]
+fn the_reference_needs_no_controller() {
+    settings(&["reference"]).ended_with(DONE).prints("motor{n}.velocity.p");
+    let json = settings(&["reference", "--json"]).ended_with(DONE).json();
+    assert!(json.as_array().is_some_and(|rows| rows.len() > 50));
+}
+
+#[test]
+fn a_profile_agrees_with_what_it_was_exported_from() {
+    let (_folder, file) = exported("sim:mcp266");
+    settings(&["diff", name(&file)]).ended_with(DONE).prints("agree");
+    settings(&["import", name(&file), "--yes"]).ended_with(DONE).prints("there is nothing to write");
+}
+
+#[test]
+fn a_difference_is_shown_and_has_its_own_exit_code() {
+    let (folder, file) = exported("sim:mcp266");
+    let other = folder.path().join("other.json");
+    std::fs::copy(&file, &other).unwrap();
+    edit(
+        &other,
+        "\"motor1.velocity.p\": { \"value\": 1.000 }",
+        "\"motor1.velocity.p\": { \"value\": 3.000 }",
+    );
+    for arguments in [vec!["diff", name(&other)], vec!["diff", name(&file), name(&other)]] {
+        settings(&arguments)
+            .ended_with(DIFFERENT)
+            .prints("1 setting with different values")
+            .prints("motor1.velocity.p  1.000 -> 3.000");
+    }
+    let json = settings(&["diff", "--json", name(&other)]).ended_with(DIFFERENT).json();
+    assert_eq!(json["differences"][0]["key"], "motor1.velocity.p");
+    settings(&["import", name(&other), "--yes"]).ended_with(DONE).prints("1 setting written and read back.");
+}
+
+#[test]
+fn an_export_replaces_the_whole_file_or_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("profile.json");
+    std::fs::write(&file, "x".repeat(1_000_000)).unwrap();
+    settings(&["export", name(&file)]).ended_with(DONE);
+    settings(&["diff", name(&file)]).ended_with(DONE);
+    // A folder of that name cannot be replaced by a file.
+    let in_the_way = folder.path().join("folder.json");
+    std::fs::create_dir(&in_the_way).unwrap();
+    settings(&["export", name(&in_the_way)]).ended_with(1).explains("Writing the profile");
+    assert!(in_the_way.is_dir());
+    let left = std::fs::read_dir(folder.path()).unwrap().count();
+    assert_eq!(left, 2, "nothing but the profile and the folder is left behind");
+}
+
+#[test]
+fn a_faulty_profile_is_refused_with_the_place_of_the_fault() {
+    let faults = [
+        ("{\n", "{{\n", "line 1, column 2"),
+        ("\"schema\": 1", "\"schema\": 99", "schema (line"),
+        ("motor1.velocity.p", "motor1.velocity.pp", "settings.motor1.velocity.pp (line"),
+        (
+            "\"motor1.velocity.p\": { \"value\": 1.000",
+            "\"motor1.velocity.p\": { \"value\": \"x\"",
+            "settings.motor1.velocity.p",
+        ),
+        (
+            "\"limits.main_battery.max_volts\": { \"value\": 60.0",
+            "\"limits.main_battery.max_volts\": { \"value\": 600",
+            "settings.limits.main_battery.max_volts",
+        ),
+    ];
+    for (from, to, place) in faults {
+        let (_folder, file) = exported("sim:mcp266");
+        edit(&file, from, to);
+        for arguments in [vec!["import", "--yes"], vec!["write", "--yes", "--profile"], vec!["diff"]] {
+            let run = settings(&[&arguments[..], &[name(&file)]].concat());
+            run.ended_with(NOT_TAKEN).explains("was not taken, nothing was changed").explains(place);
+        }
+    }
+}
+
+#[test]
+fn a_profile_for_another_controller_is_refused() {
+    let (_folder, file) = exported("sim:mcp266");
+    settings(&["import", name(&file), "--yes", "-c", "sim:mcp263"])
+        .ended_with(NOT_TAKEN)
+        .explains("nothing was changed")
+        .explains(
+            "The profile was made for the MCP266 (2x60A), the connected controller is the MCP263 (2x60A).",
+        );
+    settings(&["import", name(&file), "--yes", "-c", "sim:mcp266,generation=4"])
+        .ended_with(NOT_TAKEN)
+        .explains("made for firmware generation 1, the connected controller has generation 4");
+}
+
+#[test]
+fn a_profile_that_is_not_there_is_told_by_name() {
+    settings(&["import", "/no/such/profile.json", "--yes"])
+        .ended_with(NOT_TAKEN)
+        .explains("Reading the profile /no/such/profile.json failed");
+}
+
+#[cfg(unix)]
+mod on_a_pseudo_terminal {
+    use std::io::{BufRead as _, BufReader};
+    use std::process::Child;
+    use std::time::{Duration, Instant};
+
+    use super::*;
+
+    /// `brushwork sim` in the background: a controller that outlives one command.
+    struct Simulated {
+        child: Child,
+        folder: TempDir,
+    }
+
+    impl Simulated {
+        fn start(arguments: &[&str]) -> Self {
+            let folder = tempfile::tempdir().expect("a temporary folder can be made");
+            let mut child = Command::new(env!("CARGO_BIN_EXE_brushwork"))
+                .args(["sim", "--pty"])
+                .arg(folder.path().join("port"))
+                .args(arguments)
+                .stdin(Stdio::null())
+                .stdout(Stdio::piped())
+                .stderr(Stdio::null())
+                .spawn()
+                .expect("the program was built for this test");
+            let mut lines = BufReader::new(child.stdout.take().expect("it is piped")).lines();
+            let first = lines.next().expect("it says where it is").expect("it prints UTF-8");
+            assert!(first.contains("port"), "{first}");
+            // The rest is read to its end, so that the program never finds its standard output closed.
+            let reader = std::thread::Builder::new().name("sim output".to_owned());
+            reader.spawn(move || lines.for_each(drop)).expect("a thread can be started");
+            Self { child, folder }
+        }
+
+        fn port(&self) -> String {
+            name(&self.folder.path().join("port")).to_owned()
+        }
+
+        fn settings(&self, action: &str, arguments: &[&str]) -> Run {
+            settings(&[&[action, "--connect", &self.port()], arguments].concat())
+        }
+    }
+
+    impl Drop for Simulated {
+        fn drop(&mut self) {
+            let _ = Command::new("kill").arg(self.child.id().to_string()).status();
+            let _ = self.child.wait();
+        }
+    }
+
+    #[test]
+    fn what_one_command_writes_the_next_one_reads() {
+        let unit = Simulated::start(&[]);
+        unit.settings("write", &["motor1.velocity.p=2.5", "pin.1.deadband=3", "--yes"]).ended_with(DONE);
+        unit.settings("read", &["motor1.velocity.p"]).ended_with(DONE).prints("* 2.500");
+        let json = unit.settings("save", &["--yes", "--json"]).ended_with(DONE).json();
+        assert_eq!(json["save"]["verdict"], "verified");
+        let keys: Vec<&Value> =
+            json["not_default"].as_array().unwrap().iter().map(|row| &row["key"]).collect();
+        assert_eq!(keys, ["motor1.velocity.p", "pin.1.deadband"]);
+
+        let file = unit.folder.path().join("profile.json");
+        unit.settings("export", &[name(&file)]).ended_with(DONE);
+        unit.settings("defaults", &["--yes"]).ended_with(DONE).prints("2.500 -> 1.000");
+        unit.settings("diff", &[name(&file)])
+            .ended_with(DIFFERENT)
+            .prints("motor1.velocity.p  1.000 -> 2.500");
+        unit.settings("import", &[name(&file), "--yes"]).ended_with(DONE).prints("2 settings written");
+        unit.settings("diff", &[name(&file)]).ended_with(DONE).prints("agree");
+    }
+
+    #[test]
+    fn a_refused_write_changes_nothing() {
+        let unit = Simulated::start(&[]);
+        let mixed = ["motor1.velocity.p=2.5", "limits.main_battery.max_volts=99", "--yes"];
+        unit.settings("write", &mixed).ended_with(NOT_TAKEN);
+        let file = unit.folder.path().join("profile.json");
+        unit.settings("export", &[name(&file)]).ended_with(DONE);
+        edit(&file, "\"motor1.velocity.p\": { \"value\": 1.000", "\"motor1.velocity.p\": { \"value\": 2.000");
+        edit(
+            &file,
+            "\"motor2.velocity.p\": { \"value\": 1.000",
+            "\"motor2.velocity.p\": { \"value\": -2.0e9",
+        );
+        unit.settings("import", &[name(&file), "--yes"]).ended_with(NOT_TAKEN);
+        unit.settings("read", &["motor1.velocity.p"]).ended_with(DONE).prints("motor1.velocity.p     1.000");
+    }
+
+    #[test]
+    fn a_guess_is_never_written_to_a_controller_that_is_not_simulated_here() {
+        let unit = Simulated::start(&[]);
+        unit.settings("write", &["unit.bridge_channels=yes", "--yes"])
+            .ended_with(NOT_TAKEN)
+            .explains("No packet serial command for bridging the channels is public.");
+        unit.settings("read", &["unit"])
+            .ended_with(DONE)
+            .prints("#  cannot be written on this controller:")
+            .prints("No packet serial command for bridging the channels is public.");
+    }
+
+    #[test]
+    fn a_new_address_is_followed() {
+        let unit = Simulated::start(&[]);
+        unit.settings("write", &["unit.address=0x83", "--yes"])
+            .ended_with(DONE)
+            .prints("unit.address  128 -> 131")
+            .prints("answers to its new address");
+    }
+
+    #[test]
+    fn an_interrupt_ends_a_slow_reading_soon_and_cleanly() {
+        let unit = Simulated::start(&["--fault", "delay=30ms"]);
+        let child = Command::new(env!("CARGO_BIN_EXE_brushwork"))
+            .args(["settings", "read", "--connect", &unit.port()])
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(Duration::from_millis(700));
+        let signalled = Instant::now();
+        Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(130), "{output:?}");
+        assert!(output.stdout.is_empty(), "{output:?}");
+        assert!(signalled.elapsed() < Duration::from_secs(5), "took {:?}", signalled.elapsed());
+    }
+}
