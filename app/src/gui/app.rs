@@ -97,8 +97,8 @@ impl App {
 
     /// Sees the worlds of simulated units as they are now.
     fn look_at_world(&mut self) {
+        self.model.worlds = self.world.as_ref().and_then(|world| world.views());
         let Some(world) = &self.world else { return };
-        self.model.worlds = world.views();
         let unit = self.model.link.selected.and_then(|address| world.unit_at(address));
         // Without a link the unit looked at last stays in view.
         if let Some(unit) = unit

@@ -181,20 +181,25 @@ fn path_ui(ui: &mut Ui, devices: &mut Devices) -> bool {
 fn options_ui(ui: &mut Ui, model: &mut Model) {
     ui.horizontal(|ui| {
         let text = |addresses: Addresses| match addresses {
-            Addresses::Scan => "All addresses".to_owned(),
-            Addresses::Only(address) => format!("Only 0x{address:02X}"),
+            Addresses::Scan => "All units".to_owned(),
+            Addresses::Only(address) => format!("0x{address:02X}"),
         };
-        let combo = ComboBox::from_id_salt("address").width(98.0).selected_text(text(model.addresses));
+        let combo = ComboBox::from_id_salt("address").width(84.0).selected_text(text(model.addresses));
         let response = combo.show_ui(ui, |ui| {
             let each = Address::ALL.into_iter().map(|address| Addresses::Only(address.get()));
             for addresses in std::iter::once(Addresses::Scan).chain(each) {
                 ui.selectable_value(&mut model.addresses, addresses, text(addresses));
             }
         });
-        name_combo(ui, &response.response, "Address", "Where to look for controllers when connecting");
+        name_combo(
+            ui,
+            &response.response,
+            "Address",
+            "Which addresses to ask when connecting: all from 0x80 to 0x87, or one",
+        );
         if model.devices.baud_matters() {
             let combo =
-                ComboBox::from_id_salt("baud").width(76.0).selected_text(model.devices.baud.to_string());
+                ComboBox::from_id_salt("baud").width(70.0).selected_text(model.devices.baud.to_string());
             let response = combo.show_ui(ui, |ui| {
                 for baud in BAUD_RATES {
                     ui.selectable_value(&mut model.devices.baud, baud, baud.to_string());
