@@ -187,6 +187,7 @@ fn losing_the_link_disarms_and_the_controller_stops_by_its_own_time_out() {
     bench.pass_ms(500);
     assert!(!bench.model().is_connected());
     assert_eq!(bench.model().link.arming, Arming::Disarmed);
+    assert!(bench.sees_part("the controller stops its motors by itself after 1.0 s of silence"));
     bench.pass_ms(1500);
     assert!(bench.both_stand());
     bench.act(&WorldAction::Unplug { unplugged: false });
@@ -201,6 +202,18 @@ fn a_frozen_window_stops_the_motors_within_a_quarter_second_and_a_little() {
     bench.freeze(Duration::from_millis(300));
     assert!(bench.both_stand(), "{}", bench.real_duty(Motor::M1));
     bench.pass_ms(500);
+    assert_stopped_and_disarmed(&mut bench);
+}
+
+#[test]
+fn after_a_pause_of_the_whole_program_the_screen_is_disarmed() {
+    let mut bench = driving();
+    // The computer slept: window and device loop stood still, only the controller's time went on.
+    bench.line.clock.advance(Duration::from_secs(3));
+    assert!(bench.both_stand(), "the controller's own time-out has stopped them");
+    // The window wakes first and renews.
+    bench.harness.step();
+    bench.pass_ms(300);
     assert_stopped_and_disarmed(&mut bench);
 }
 

@@ -60,6 +60,8 @@ pub struct LinkView {
     pub status: Option<StatusReport>,
     pub statistics: LinkStatistics,
     pub arming: Arming,
+    /// Set when the link was lost while armed: after how much silence the controller stops by itself.
+    lost_while_armed: Option<Option<Duration>>,
     /// Why arming was refused the last time.
     pub refusals: Vec<Failure>,
     /// What else can drive a motor while something is armed: input pins and scripts, each as a sentence.
@@ -151,6 +153,9 @@ impl LinkView {
     }
 
     fn disarmed(&mut self, reason: &DisarmReason) -> Vec<Effect> {
+        if let (DisarmReason::LinkLost, Arming::Armed { controller_timeout, .. }) = (reason, self.arming) {
+            self.lost_while_armed = Some(controller_timeout);
+        }
         self.arming = Arming::Disarmed;
         self.warnings.clear();
         let gravity = match reason {
@@ -169,8 +174,22 @@ impl LinkView {
     }
 
     fn lost(&mut self, failure: &Failure) -> Vec<Effect> {
+        let mut text = failure.to_string();
+        if let Arming::Armed { controller_timeout, .. } = self.arming {
+            self.lost_while_armed = Some(controller_timeout);
+        }
+        match self.lost_while_armed {
+            Some(Some(timeout)) => {
+                text += &format!(
+                    " The screen was armed: the controller stops its motors by itself after {:.1} s of silence.",
+                    timeout.as_secs_f64()
+                );
+            }
+            Some(None) => text += " The screen was armed: make sure that the motors stand still.",
+            None => {}
+        }
         self.arming = Arming::Disarmed;
-        vec![Effect::AtRest, Effect::Say(Gravity::Error, failure.to_string()), Effect::Ended]
+        vec![Effect::AtRest, Effect::Say(Gravity::Error, text), Effect::Ended]
     }
 }
 

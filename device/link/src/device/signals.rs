@@ -14,12 +14,17 @@ use std::time::Duration;
 /// How long a motion command lives unless the window renews it.
 pub const MOTION_LIFE: Duration = Duration::from_millis(250);
 
+/// Stands for "no motion command is in effect".
+const AT_REST: u64 = u64::MAX;
+
 /// The flags of one link, shared by its handle and its thread.
 pub struct Signals {
     clock: Arc<dyn Clock>,
     stops: AtomicU64,
     stopped_at: AtomicU64,
     renewed_at: AtomicU64,
+    /// Since when a motion command may be in effect, in nanoseconds; [`AT_REST`] while none is.
+    motion_since: AtomicU64,
     disarms: AtomicU64,
     cancels: AtomicU64,
     closing: AtomicBool,
@@ -35,6 +40,7 @@ impl Signals {
             stops: AtomicU64::new(0),
             stopped_at: AtomicU64::new(0),
             renewed_at: AtomicU64::new(0),
+            motion_since: AtomicU64::new(AT_REST),
             disarms: AtomicU64::new(0),
             cancels: AtomicU64::new(0),
             closing: AtomicBool::new(false),
@@ -50,9 +56,20 @@ impl Signals {
         self.wake();
     }
 
-    /// Renews motion.
+    /// Renews motion. What has died is not revived: after a pause of the whole program (it was halted, the computer slept)
+    /// the thread still finds the motion dead, whichever of the two wakes first.
     pub fn renew(&self) {
-        self.renewed_at.fetch_max(nanoseconds(self.clock.now()), Ordering::SeqCst);
+        let now = self.clock.now();
+        if self.motion_dies_at().is_none_or(|dies_at| now < dies_at) {
+            self.renewed_at.fetch_max(nanoseconds(now), Ordering::SeqCst);
+        }
+    }
+
+    /// When the motion dies unless it is renewed; none while nothing moves.
+    fn motion_dies_at(&self) -> Option<Duration> {
+        let since = self.motion_since.load(Ordering::SeqCst);
+        let renewed_at = self.renewed_at.load(Ordering::SeqCst);
+        (since != AT_REST).then(|| Duration::from_nanos(since.max(renewed_at)) + MOTION_LIFE)
     }
 
     /// Asks for disarming.
@@ -111,8 +128,6 @@ pub struct Guard {
     disarms_served: Cell<u64>,
     cancels_served: Cell<u64>,
     armed: Cell<bool>,
-    /// Set while a motion command may be in effect: the moment it was asked for.
-    motion_since: Cell<Option<Duration>>,
     job_until: Cell<Option<Duration>>,
     only_stop: Cell<bool>,
 }
@@ -125,7 +140,6 @@ impl Guard {
             disarms_served: Cell::new(0),
             cancels_served: Cell::new(0),
             armed: Cell::new(false),
-            motion_since: Cell::new(None),
             job_until: Cell::new(None),
             only_stop: Cell::new(false),
             signals,
@@ -134,24 +148,25 @@ impl Guard {
 
     /// Takes note of a motion command that is about to be written, asked for at `asked_at`.
     pub fn motion_begins(&self, asked_at: Duration) {
-        let since = self.motion_since.get().map_or(asked_at, |since| since.max(asked_at));
-        self.motion_since.set(Some(since));
+        let since = self.signals.motion_since.load(Ordering::SeqCst);
+        let asked_at = nanoseconds(asked_at);
+        let since = if since == AT_REST { asked_at } else { since.max(asked_at) };
+        self.signals.motion_since.store(since, Ordering::SeqCst);
     }
 
     /// Whether a motion command may be in effect.
     pub fn is_moving(&self) -> bool {
-        self.motion_since.get().is_some()
+        self.signals.motion_since.load(Ordering::SeqCst) != AT_REST
     }
 
     /// The motors were stopped.
     pub fn motion_ends(&self) {
-        self.motion_since.set(None);
+        self.signals.motion_since.store(AT_REST, Ordering::SeqCst);
     }
 
     /// When the motion dies unless it is renewed.
     pub fn motion_dies_at(&self) -> Option<Duration> {
-        let renewed_at = Duration::from_nanos(self.signals.renewed_at.load(Ordering::SeqCst));
-        self.motion_since.get().map(|since| since.max(renewed_at) + MOTION_LIFE)
+        self.signals.motion_dies_at()
     }
 
     /// Something was armed or disarmed by a request before which disarming had been asked for `disarms` times.
@@ -264,6 +279,21 @@ mod tests {
         assert_eq!(guard.interruption(ms(350)), Some(Interruption::DeadMan));
         guard.motion_ends();
         assert_eq!(guard.interruption(ms(350)), None);
+    }
+
+    #[test]
+    fn a_motion_that_has_died_is_not_revived_by_a_late_renewal() {
+        let (clock, signals, guard) = guard();
+        let ms = Duration::from_millis;
+        guard.motion_begins(ms(0));
+        clock.advance_to(ms(1500));
+        signals.renew();
+        assert_eq!(guard.interruption(clock.now()), Some(Interruption::DeadMan));
+        guard.motion_ends();
+        guard.motion_begins(clock.now());
+        clock.advance(ms(100));
+        signals.renew();
+        assert_eq!(guard.next(), Some(ms(1850)), "the next motion is renewed as ever");
     }
 
     #[test]
