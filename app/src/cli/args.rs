@@ -19,11 +19,26 @@ use crate::session::sim_spec::parse_address;
     long_about = "Configures, drives and tunes brushed-DC motor controllers (MCP / RoboClaw over packet serial).\n\
                   Without a command the window opens.",
     after_long_help = exit::HELP,
+    args_conflicts_with_subcommands = true,
 )]
 pub struct Cli {
+    /// How the window opens.
+    #[command(flatten)]
+    pub window: WindowArgs,
     /// What to do; the window opens when this is left out.
     #[command(subcommand)]
     pub command: Option<Command>,
+}
+
+/// How the window opens.
+#[derive(Debug, Clone, Default, Args)]
+pub struct WindowArgs {
+    /// Connect at once: sim:mcp266, a port such as /dev/ttyACM0 or COM3, or tcp:HOST:PORT.
+    #[arg(long, value_name = "TARGET")]
+    pub open: Option<String>,
+    /// Draw without smoothing, which spares the processor where there is no graphics card.
+    #[arg(long)]
+    pub plain: bool,
 }
 
 /// What `brushwork` can do without a window.
@@ -264,6 +279,14 @@ mod tests {
     #[test]
     fn the_definition_is_consistent() {
         Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn the_window_can_be_opened_connected_but_not_beside_a_command() {
+        let cli = Cli::try_parse_from(["brushwork", "--open", "sim:mcp266", "--plain"]).unwrap();
+        assert!(cli.command.is_none() && cli.window.plain);
+        assert_eq!(cli.window.open.as_deref(), Some("sim:mcp266"));
+        assert!(Cli::try_parse_from(["brushwork", "--plain", "list"]).is_err());
     }
 
     #[test]

@@ -21,7 +21,8 @@ use std::process::ExitCode;
 
 use clap::Parser as _;
 
-use args::{Cli, Command};
+use crate::gui::run::WindowOptions;
+use args::{Cli, Command, WindowArgs};
 pub use exit::Exit;
 use interrupt::Interrupt;
 use output::{Output, say};
@@ -31,7 +32,7 @@ use output::{Output, say};
 pub fn run() -> ExitCode {
     let cli = Cli::parse();
     let Some(command) = cli.command else {
-        return match crate::gui::run::run() {
+        return match crate::gui::run::run(window_options(&cli.window)) {
             Ok(()) => Exit::Done.into(),
             Err(error) => {
                 say(error.to_string());
@@ -47,6 +48,10 @@ pub fn run() -> ExitCode {
         }
     };
     dispatch(&command, &mut Output::stdout(), &interrupt).into()
+}
+
+fn window_options(args: &WindowArgs) -> WindowOptions {
+    WindowOptions { open: args.open.clone(), plain: args.plain }
 }
 
 fn dispatch(command: &Command, out: &mut Output, interrupt: &Interrupt) -> Exit {

@@ -58,6 +58,12 @@ impl App {
         }
     }
 
+    /// Connects to what a person would have typed into the device list.
+    pub fn open(&mut self, target: &str) {
+        self.model.devices.choose(target);
+        self.connect();
+    }
+
     /// Draws one frame.
     pub fn contents(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();

@@ -24,11 +24,20 @@ pub struct WindowError {
     reason: String,
 }
 
+/// How the window opens.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct WindowOptions {
+    /// What to connect to at once, as a person would type it.
+    pub open: Option<String>,
+    /// Draw without smoothing.
+    pub plain: bool,
+}
+
 /// Opens the window and returns when it is closed.
 ///
 /// # Errors
 /// There is no display, or a library that the window needs is missing.
-pub fn run() -> Result<(), WindowError> {
+pub fn run(window: WindowOptions) -> Result<(), WindowError> {
     if let Some(reason) = no_display() {
         return Err(WindowError { reason });
     }
@@ -37,11 +46,15 @@ pub fn run() -> Result<(), WindowError> {
         let opened = opened.clone();
         eframe::run_native(
             "Brushwork",
-            options(),
+            native_options(),
             Box::new(move |creation| {
                 *opened.lock().unwrap_or_else(PoisonError::into_inner) = true;
-                let parts = real_parts(&creation.egui_ctx);
-                Ok(Box::new(Window(App::new(&creation.egui_ctx, parts))))
+                let mut app = App::new(&creation.egui_ctx, real_parts(&creation.egui_ctx));
+                app.model.appearance.plain = window.plain;
+                if let Some(target) = &window.open {
+                    app.open(target);
+                }
+                Ok(Box::new(Window(app)))
             }),
         )
     });
@@ -61,7 +74,7 @@ impl eframe::App for Window {
     }
 }
 
-fn options() -> eframe::NativeOptions {
+fn native_options() -> eframe::NativeOptions {
     let viewport = ViewportBuilder::default()
         .with_title("Brushwork")
         .with_app_id("brushwork")

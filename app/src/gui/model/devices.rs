@@ -59,6 +59,14 @@ impl Devices {
         }
     }
 
+    /// Chooses what a person would have typed.
+    pub fn choose(&mut self, typed: &str) {
+        self.choice = if typed == SIMULATED { Choice::Simulated } else { Choice::Typed };
+        if self.choice == Choice::Typed {
+            typed.clone_into(&mut self.typed);
+        }
+    }
+
     pub fn ports(&self) -> &[PortInfo] {
         &self.ports
     }
@@ -131,6 +139,15 @@ mod tests {
         assert_eq!(baud_of("/dev/ttyUSB7,baud=9600"), 9_600);
         assert!(!devices("tcp:127.0.0.1:4000").baud_matters());
         assert!(devices("  ").target().is_err());
+    }
+
+    #[test]
+    fn what_the_command_line_names_is_chosen_as_if_it_had_been_typed() {
+        let mut devices = Devices::default();
+        devices.choose("tcp:127.0.0.1:4000");
+        assert_eq!(devices.target().unwrap().to_string(), "tcp:127.0.0.1:4000");
+        devices.choose(SIMULATED);
+        assert_eq!(devices.choice, Choice::Simulated);
     }
 
     #[test]
