@@ -60,6 +60,8 @@ pub enum Command {
     Protocol(ProtocolArgs),
     /// Decode traffic: our own, another program's, or a file's.
     Monitor(MonitorArgs),
+    /// Measure link use, stop latency, the simulator and the window.
+    Bench(BenchArgs),
 }
 
 /// Which controller, and how to reach it.
@@ -240,6 +242,35 @@ pub struct ProtocolArgs {
     /// Print JSON.
     #[arg(long)]
     pub json: bool,
+}
+
+/// Arguments of `brushwork bench`.
+#[derive(Debug, Args)]
+pub struct BenchArgs {
+    /// What to measure.
+    #[arg(value_enum, value_name = "WHAT", required = true)]
+    pub what: Vec<BenchArg>,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+    /// Shorter runs with wider spread.
+    #[arg(long)]
+    pub quick: bool,
+}
+
+/// A benchmark.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum BenchArg {
+    /// Wire time over real time of status sweeps at 115200 and 1000000 bit/s.
+    Link,
+    /// From the stop key's event to the stop bytes on the wire.
+    Stop,
+    /// Simulated seconds per second with both motors in closed loop.
+    Sim,
+    /// An hour of 16 channels: our graph against plain plot lines.
+    Window,
+    /// All of them.
+    All,
 }
 
 /// Reads a time in seconds.

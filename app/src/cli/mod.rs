@@ -4,6 +4,7 @@
 //! [`crate::session`] like the window does; they print data on standard output and words on standard error.
 
 pub mod args;
+mod bench;
 mod client;
 mod drive;
 mod exit;
@@ -64,5 +65,6 @@ fn dispatch(command: &Command, out: &mut Output, interrupt: &Interrupt) -> Exit 
         Command::Sim(args) => sim::run(args, out, interrupt),
         Command::Protocol(args) => protocol::run(args, out),
         Command::Monitor(args) => monitor::run(args, out, interrupt),
+        Command::Bench(args) => bench::run(args, out, interrupt),
     }
 }

@@ -64,6 +64,11 @@ impl App {
         self.connect();
     }
 
+    /// The open link, for those who measure it.
+    pub fn device(&self) -> Option<&DeviceHandle> {
+        self.device.as_ref()
+    }
+
     /// Draws one frame.
     pub fn contents(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();

@@ -1,0 +1,131 @@
+//! `brushwork bench`: measures what the program promises, and says beside each figure whether the promise is kept.
+//!
+//! Everything runs in this process, against simulated controllers; nothing here is drawn on a screen. The figures hold for
+//! the machine and the build they were taken on: use a release build on a quiet machine.
+
+mod figure;
+mod headless;
+mod link;
+mod rig;
+mod sim;
+mod spread;
+mod stop;
+mod tap;
+mod window;
+
+use std::time::Duration;
+
+use serde_json::json;
+
+use super::args::{BenchArg, BenchArgs};
+use super::exit::Exit;
+use super::interrupt::Interrupt;
+use super::output::{Output, OutputError, say};
+use figure::{Figure, MARKS};
+
+/// How long and how often to measure.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Rounds of the link benchmark.
+    pub rounds: usize,
+    /// How long each of them is.
+    pub round: Duration,
+    /// Stops to time in each situation.
+    pub stops: usize,
+    /// Simulated time for each preset.
+    pub simulated: Duration,
+    /// Frames of the graph; the plain one has a tenth of them.
+    pub frames: usize,
+}
+
+/// The figures that are quoted.
+const FULL: Effort = Effort {
+    rounds: 5,
+    round: Duration::from_secs(3),
+    stops: 250,
+    simulated: Duration::from_secs(120),
+    frames: 200,
+};
+
+/// A look.
+const QUICK: Effort = Effort {
+    rounds: 3,
+    round: Duration::from_secs(1),
+    stops: 40,
+    simulated: Duration::from_secs(20),
+    frames: 40,
+};
+
+/// Measures, prints, and fails when a promise is not kept.
+pub fn run(args: &BenchArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
+    if cfg!(debug_assertions) {
+        say("This is a debug build: its figures say little. Use cargo run --release -p brushwork -- bench …");
+    }
+    let effort = if args.quick { QUICK } else { FULL };
+    let mut figures = Vec::new();
+    for what in wanted(&args.what) {
+        if interrupt.is_raised() {
+            return Exit::Interrupted;
+        }
+        match measure(what, effort, interrupt) {
+            Ok(measured) => figures.extend(measured),
+            Err(_) if interrupt.is_raised() => return Exit::Interrupted,
+            Err(why) => {
+                say(format!("Could not measure {}: {why}.", name_of(what)));
+                return Exit::Failed;
+            }
+        }
+    }
+    if let Err(error) = print(args.json, &figures, out) {
+        return error.into();
+    }
+    if figures.iter().any(|figure| figure.is_met() == Some(false)) { Exit::Failed } else { Exit::Done }
+}
+
+fn measure(what: BenchArg, effort: Effort, interrupt: &Interrupt) -> Result<Vec<Figure>, String> {
+    match what {
+        BenchArg::Link => link::measure(effort, interrupt),
+        BenchArg::Stop => stop::measure(effort, interrupt),
+        BenchArg::Sim => sim::measure(effort),
+        BenchArg::Window => window::measure(effort),
+        BenchArg::All => unreachable!("`wanted` replaces it by the others"),
+    }
+}
+
+/// Each benchmark once, in the order of the table.
+fn wanted(asked: &[BenchArg]) -> impl Iterator<Item = BenchArg> + '_ {
+    let each = [BenchArg::Link, BenchArg::Stop, BenchArg::Sim, BenchArg::Window];
+    each.into_iter().filter(|what| asked.contains(what) || asked.contains(&BenchArg::All))
+}
+
+fn name_of(what: BenchArg) -> &'static str {
+    match what {
+        BenchArg::Link => "the link",
+        BenchArg::Stop => "the stop",
+        BenchArg::Sim => "the simulator",
+        BenchArg::Window => "the window",
+        BenchArg::All => "everything",
+    }
+}
+
+fn print(as_json: bool, figures: &[Figure], out: &mut Output) -> Result<(), OutputError> {
+    if as_json {
+        let build = if cfg!(debug_assertions) { "debug" } else { "release" };
+        return out
+            .json(&json!({ "version": env!("CARGO_PKG_VERSION"), "build": build, "figures": figures }));
+    }
+    let rows: Vec<Vec<String>> = figures.iter().map(Figure::cells).collect();
+    out.table(&MARKS, &rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_means_each_once_in_a_fixed_order() {
+        let each = [BenchArg::Link, BenchArg::Stop, BenchArg::Sim, BenchArg::Window];
+        assert!(wanted(&[BenchArg::All]).eq(each));
+        assert!(wanted(&[BenchArg::Sim, BenchArg::Link, BenchArg::Sim]).eq([BenchArg::Link, BenchArg::Sim]));
+    }
+}
