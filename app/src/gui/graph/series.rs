@@ -41,15 +41,13 @@ impl Extrema {
     }
 
     fn add(&mut self, value: f64) {
-        // `min` and `max` pass over NaN, which covers both marks.
-        self.min = self.min.min(value);
-        self.max = self.max.max(value);
-        self.gap |= is_gap(value);
+        self.merge(&Self { min: value, max: value, gap: is_gap(value) });
     }
 
+    /// Comparing passes over NaN, which covers both marks, and is one instruction each.
     fn merge(&mut self, other: &Self) {
-        self.min = self.min.min(other.min);
-        self.max = self.max.max(other.max);
+        self.min = if other.min < self.min { other.min } else { self.min };
+        self.max = if other.max > self.max { other.max } else { self.max };
         self.gap |= other.gap;
     }
 }
@@ -73,6 +71,14 @@ impl<T: Copy> Ring<T> {
 
     pub fn get(&self, row: u64) -> T {
         self.items[(row % self.capacity) as usize]
+    }
+
+    /// The items of `rows`, all of them still kept, in one piece or, across the end of the ring, in two.
+    fn stretch(&self, rows: Range<u64>) -> (&[T], &[T]) {
+        let length = rows.end.saturating_sub(rows.start) as usize;
+        let start = (rows.start % self.capacity) as usize;
+        let first = length.min(self.capacity as usize - start);
+        (&self.items[start..start + first], &self.items[..length - first])
     }
 
     /// Writes `row`, which is either the next one ever or one still kept.
@@ -135,16 +141,29 @@ impl Series {
     /// oldest (partly overwritten) can leak rows that are outside.
     pub fn extrema(&self, rows: Range<u64>) -> Extrema {
         let mut found = Extrema::NONE;
-        let mut row = rows.start;
-        while row < rows.end {
-            let level = self.longest_level_at(row, rows.end);
-            match level {
-                0 => found.add(self.values.get(row)),
-                _ => found.merge(&self.levels[level as usize - 1].get(row / FACTOR.pow(level))),
-            }
-            row += FACTOR.pow(level);
+        let whole = whole_blocks(&rows);
+        let (head, tail) = around(&rows, &whole);
+        for part in [head, tail] {
+            let (first, second) = self.values.stretch(part);
+            first.iter().chain(second).for_each(|value| found.add(*value));
         }
+        self.merge_blocks(0, whole, &mut found);
         found
+    }
+
+    /// Merges blocks of a level, by blocks of the levels above where those are covered whole.
+    fn merge_blocks(&self, level: usize, blocks: Range<u64>, found: &mut Extrema) {
+        let Some(ring) = self.levels.get(level) else { return };
+        let is_highest = level + 1 == self.levels.len();
+        let whole = if is_highest { 0..0 } else { whole_blocks(&blocks) };
+        let (head, tail) = around(&blocks, &whole);
+        for part in [head, tail] {
+            let (first, second) = ring.stretch(part);
+            first.iter().chain(second).for_each(|extrema| found.merge(extrema));
+        }
+        if !whole.is_empty() {
+            self.merge_blocks(level + 1, whole, found);
+        }
     }
 
     /// The newest number at or before `row`, at most `reach` rows back; none if data was lost in between.
@@ -162,18 +181,20 @@ impl Series {
     pub fn bytes(&self) -> usize {
         self.values.bytes() + self.levels.iter().map(Ring::bytes).sum::<usize>()
     }
+}
 
-    fn longest_level_at(&self, row: u64, end: u64) -> u32 {
-        let mut level = 0;
-        while level < LEVELS {
-            let rows = FACTOR.pow(level + 1);
-            if !row.is_multiple_of(rows) || row + rows > end {
-                break;
-            }
-            level += 1;
-        }
-        level
+/// The blocks of the next level that `items` cover whole; empty if there is none.
+fn whole_blocks(items: &Range<u64>) -> Range<u64> {
+    let start = items.start.div_ceil(FACTOR);
+    start..(items.end / FACTOR).max(start)
+}
+
+/// What `items` hold before and after the `blocks` of the next level; all of it before where there is none.
+fn around(items: &Range<u64>, blocks: &Range<u64>) -> (Range<u64>, Range<u64>) {
+    if blocks.is_empty() {
+        return (items.clone(), items.end..items.end);
     }
+    (items.start..blocks.start * FACTOR, blocks.end * FACTOR..items.end)
 }
 
 #[cfg(test)]
