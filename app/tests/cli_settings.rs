@@ -8,6 +8,7 @@ use tempfile::TempDir;
 
 const DONE: i32 = 0;
 const USAGE: i32 = 2;
+const NO_LINK: i32 = 3;
 const REFUSED: i32 = 4;
 const NOT_TAKEN: i32 = 5;
 const DIFFERENT: i32 = 6;
@@ -178,6 +179,24 @@ fn what_no_command_carries_is_set_in_the_simulated_controller() {
         .ended_with(DONE)
         .prints("unit.bridge_channels  no -> yes")
         .prints("1 setting written and read back.");
+}
+
+#[test]
+fn what_could_not_be_read_back_is_named_and_has_its_own_exit_code() {
+    // Nothing can be read back through a port that has just been switched off.
+    settings(&["write", "stream.usb.type=disabled", "--yes", "--save"])
+        .ended_with(NOT_TAKEN)
+        .prints("Note: This program is connected through USB")
+        .explains("USB: mode was set to Disabled and not read back.")
+        .explains("not saved to EEPROM, since not all of them took");
+}
+
+#[test]
+fn values_that_contradict_each_other_are_refused() {
+    settings(&["write", "motor1.position.min=100", "motor1.position.max=-100", "--yes"])
+        .ended_with(NOT_TAKEN)
+        .explains("Nothing was written:")
+        .explains("minimum position 100 counts would be above");
 }
 
 #[test]
@@ -383,6 +402,57 @@ mod on_a_pseudo_terminal {
             .ended_with(DONE)
             .prints("#  cannot be written on this controller:")
             .prints("No packet serial command for bridging the channels is public.");
+    }
+
+    #[test]
+    fn what_a_profile_has_beyond_this_controller_is_left_out_with_its_reason() {
+        let (_folder, file) = exported("sim:mcp266");
+        edit(
+            &file,
+            "\"unit.bridge_channels\": { \"value\": false",
+            "\"unit.bridge_channels\": { \"value\": true",
+        );
+        edit(&file, "\"motor1.velocity.p\": { \"value\": 1.000", "\"motor1.velocity.p\": { \"value\": 4.000");
+        let unit = Simulated::start(&[]);
+        unit.settings("import", &[name(&file), "--yes"])
+            .ended_with(DONE)
+            .prints("Left out of the profile")
+            .prints("unit.bridge_channels (yes)")
+            .prints("1 setting written and read back.");
+    }
+
+    #[test]
+    fn a_port_that_is_no_controller_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let nothing = folder.path().join("nothing");
+        settings(&["read", "--connect", name(&nothing)]).ended_with(NO_LINK).explains("Could not open");
+        let unit = Simulated::start(&["--fault", "mute"]);
+        unit.settings("read", &[]).ended_with(NO_LINK).explains("nothing answered at address 0x80");
+    }
+
+    #[test]
+    fn an_interrupted_write_ends_soon_and_says_what_was_not_done() {
+        let unit = Simulated::start(&["--fault", "delay=20ms"]);
+        let keys = ["velocity.p", "velocity.i", "position.p", "position.i"];
+        let changes = keys.map(|key| [format!("motor1.{key}=7"), format!("motor2.{key}=7")]).concat();
+        let mut child = Command::new(env!("CARGO_BIN_EXE_brushwork"))
+            .args(["settings", "write", "--yes", "--connect", &unit.port()])
+            .args(&changes)
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // The changes are shown before the first of them is written.
+        let mut shown = BufReader::new(child.stdout.take().unwrap()).lines();
+        assert!(shown.next().unwrap().unwrap().contains("->"));
+        Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+        let signalled = Instant::now();
+        assert!(!shown.map(Result::unwrap).any(|line| line.starts_with("8 settings written")));
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(130), "{output:?}");
+        assert!(signalled.elapsed() < Duration::from_secs(5), "took {:?}", signalled.elapsed());
+        assert!(String::from_utf8_lossy(&output.stderr).contains("it was cancelled"), "{output:?}");
     }
 
     #[test]

@@ -46,7 +46,9 @@ fn answer(controller: &Controller<'_>) -> Result<String, Exit> {
         match receiver.try_recv() {
             Ok(line) => return Ok(line),
             Err(TryRecvError::Disconnected) => return Ok(String::new()),
-            Err(TryRecvError::Empty) => controller.breathe()?,
+            Err(TryRecvError::Empty) => {
+                controller.breathe().inspect_err(|_| say("\nNothing was written."))?;
+            }
         }
     }
 }

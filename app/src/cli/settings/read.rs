@@ -55,13 +55,20 @@ fn legend(settings: &[ListedSetting]) -> Vec<String> {
     if settings.iter().any(|setting| setting.is_default == Some(false)) {
         lines.push("\n*  is not the default".to_owned());
     }
-    let mut locked: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
-    for setting in settings.iter().filter(|setting| !setting.locked.is_empty()) {
-        locked.entry(setting.locked).or_default().push(&setting.key);
-    }
-    if !locked.is_empty() {
+    let locked = settings.iter().filter(|setting| !setting.locked.is_empty());
+    let reasons = by_reason(locked.map(|setting| (setting.locked, setting.key.clone())));
+    if !reasons.is_empty() {
         lines.push("\n#  cannot be written on this controller:".to_owned());
     }
-    lines.extend(locked.iter().map(|(reason, keys)| format!("   {reason}\n      {}", keys.join(", "))));
+    lines.extend(reasons);
     lines
+}
+
+/// Each reason once, followed by what it is the reason for.
+pub fn by_reason<'r>(locked: impl Iterator<Item = (&'r str, String)>) -> Vec<String> {
+    let mut reasons: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    for (reason, what) in locked {
+        reasons.entry(reason).or_default().push(what);
+    }
+    reasons.iter().map(|(reason, what)| format!("   {reason}\n      {}", what.join(", "))).collect()
 }

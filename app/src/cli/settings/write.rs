@@ -1,7 +1,5 @@
 //! `brushwork settings write` and `import`: shows the changes, asks, writes, and names what did not take.
 
-use std::path::Path;
-
 use brushwork_link::settings::{
     Profile, ReadReport, SaveReport, SaveVerdict, SettingsImage, SettingsTable, WriteReport, changes, write,
 };
@@ -11,21 +9,21 @@ use super::args::{Assignment, ImportArgs, WriteArgs, WriteHow};
 use super::ask;
 use super::controller::{Controller, WRITE_LIMIT};
 use super::review::{Review, settings_count};
-use super::{keys, memory, profile};
+use super::{keys, memory, profile, read};
 use crate::cli::exit::Exit;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::output::{Output, say};
 
 /// Writes the changes given, and those of a profile.
 pub fn run(args: &WriteArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
-    let profile = args.profile.as_deref().map(load).transpose()?;
+    let profile = args.profile.as_deref().map(profile::load).transpose()?;
     let controller = Controller::connect(&args.connect, interrupt)?;
     bring_about(&controller, profile.as_ref(), &args.changes, &args.how, out)
 }
 
 /// Writes what a profile says.
 pub fn import(args: &ImportArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
-    let profile = load(&args.file)?;
+    let profile = profile::load(&args.file)?;
     let controller = Controller::connect(&args.connect, interrupt)?;
     bring_about(&controller, Some(&profile), &[], &args.how, out)
 }
@@ -33,7 +31,10 @@ pub fn import(args: &ImportArgs, out: &mut Output, interrupt: &Interrupt) -> Res
 /// What is to be written, and what of the profile cannot be.
 struct Wanted {
     changes: SettingsImage,
+    /// A sentence for each setting of the profile that cannot be written here.
     left_out: Vec<String>,
+    /// The same as lines, with those that share a reason put together.
+    left_out_lines: Vec<String>,
 }
 
 /// What came of it.
@@ -41,10 +42,6 @@ struct Wanted {
 struct Results {
     write: Option<WriteReport>,
     save: Option<SaveReport>,
-}
-
-fn load(path: &Path) -> Result<Profile, Exit> {
-    profile::load(path)
 }
 
 fn bring_about(
@@ -80,19 +77,40 @@ fn wanted(
     profile: Option<&Profile>,
     assignments: &[Assignment],
 ) -> Result<Wanted, Exit> {
-    let mut wanted = Wanted { changes: SettingsImage::default(), left_out: Vec::new() };
+    let mut wanted =
+        Wanted { changes: SettingsImage::default(), left_out: Vec::new(), left_out_lines: Vec::new() };
     if let Some(profile) = profile {
         let asked = profile.changes_for(&ram.table, &ram.image, controller.identity().simulated);
         let asked = asked.map_err(|error| {
             say(format!("The profile does not fit {}, nothing was changed:\n{error}", controller.describe()));
             Exit::NotTaken
         })?;
-        wanted = Wanted { changes: asked.wanted, left_out: asked.left_out };
+        let left_out_lines = left_out_lines(controller, ram, profile);
+        wanted = Wanted { changes: asked.wanted, left_out: asked.left_out, left_out_lines };
     }
     let typed = keys::parse(&ram.table, assignments).map_err(|problems| refused(&problems))?;
     wanted.changes.merge(&typed);
     wanted.changes = changes(&ram.table, &ram.image, &merged(&ram.image, &wanted.changes));
     Ok(wanted)
+}
+
+/// What of the profile differs and cannot be written on this controller. A value is shown where it matters:
+/// where it is not the default.
+fn left_out_lines(controller: &Controller<'_>, ram: &ReadReport, profile: &Profile) -> Vec<String> {
+    let differing = changes(&ram.table, &ram.image, &profile.settings);
+    let locked = ram.table.rows().iter().filter_map(|row| {
+        let (value, reason) = (differing.get(&row.key)?, row.locked(controller.identity().simulated)?);
+        let shown = if value == row.default { String::new() } else { format!(" ({})", row.format(value)) };
+        Some((reason, format!("{}{shown}", row.key)))
+    });
+    let mut lines = read::by_reason(locked);
+    if !lines.is_empty() {
+        lines.insert(
+            0,
+            "Left out of the profile, since they cannot be written on this controller:".to_owned(),
+        );
+    }
+    lines
 }
 
 fn merged(ram: &SettingsImage, changes: &SettingsImage) -> SettingsImage {
@@ -131,7 +149,7 @@ fn show(review: &Review, wanted: &Wanted, how: &WriteHow, out: &mut Output) -> R
         lines.push("The controller holds these values already: there is nothing to write.".to_owned());
     }
     lines.extend(review.lines());
-    lines.extend(wanted.left_out.iter().map(|sentence| format!("Left out: {sentence}")));
+    lines.extend(wanted.left_out_lines.iter().cloned());
     if how.dry_run && !review.changes.is_empty() {
         lines.push("Commands that would be sent:".to_owned());
         lines.extend(review.command_lines());
