@@ -12,6 +12,7 @@ use brushwork_sim::machine::StreamIndex;
 use brushwork_sim::settings::Settings;
 use brushwork_tests::program::{Ending, Program};
 use brushwork_tests::simulated::{OnPty, is_at_rest, is_driven};
+use brushwork_tests::{foreign, workspace};
 use serde_json::Value;
 
 const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
@@ -216,6 +217,34 @@ fn driving_is_refused_without_a_time_out_and_nothing_moves() {
     assert_eq!(ending.status.code(), Some(REFUSED), "{ending:?}");
     assert!(ending.stderr.join(" ").contains("time-out"), "{ending:?}");
     assert!(controller.look(|unit| unit.view().axes.iter().all(|axis| axis.encoder_counts == 0)));
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// brushwork monitor
+
+#[test]
+fn a_tap_decodes_a_foreign_program_and_stops_its_motors_when_it_ends() {
+    if foreign::is_left_out("python") {
+        return;
+    }
+    let controller = OnPty::start(Generation::Gen1);
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let tap = folder.path().join("tap");
+    let mut monitor = start(&["monitor", "--connect", &text(&controller.port()), "--pty", &text(&tap)]);
+    wait_for_link(&tap);
+
+    let script = workspace::root().join("tests/foreign/driving_client.py");
+    let mut client = Program::start(&text(&foreign::python()), &[&text(&script), &text(&tap), "1000"]);
+    client.wait_for("driving", LIMIT);
+    assert!(controller.wait_until(LIMIT, is_driven).is_some(), "the client drives through the tap");
+    for decoded in ["duty M1 50.0 %, duty M2 -50.0 %", "read motor currents: current M1"] {
+        println!("{}", monitor.wait_for(decoded, LIMIT));
+    }
+
+    monitor.signal("INT");
+    let stopped = controller.wait_until(LIMIT, |unit| !is_driven(unit)).expect("the motors are switched off");
+    println!("tap ended: bridges off after {stopped:?}");
+    assert!(stopped < STOP_LIMIT, "took {stopped:?}");
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
