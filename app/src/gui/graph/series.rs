@@ -40,7 +40,8 @@ impl Extrema {
         self.min > self.max
     }
 
-    fn add(&mut self, value: f64) {
+    /// Counts one value more.
+    pub fn add(&mut self, value: f64) {
         self.merge(&Self { min: value, max: value, gap: is_gap(value) });
     }
 
@@ -168,6 +169,12 @@ impl Series {
 
     /// The newest number at or before `row`, at most `reach` rows back; none if data was lost in between.
     pub fn last_number(&self, rows: Range<u64>) -> Option<(u64, f64)> {
+        // Most often the last row has one.
+        let last = rows.end.checked_sub(1).filter(|row| *row >= rows.start)?;
+        let value = self.value(last);
+        if !value.is_nan() {
+            return Some((last, value));
+        }
         let mut back = rows.rev().map(|row| (row, self.value(row)));
         back.find(|(_, value)| !value.is_nan() || is_gap(*value)).filter(|(_, value)| !value.is_nan())
     }

@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use super::history::History;
-use super::series::is_gap;
+use super::series::{Series, is_gap};
 
 /// How far a line looks past the edge of the view for the sample that carries it out of the picture.
 const REACH_ROWS: u64 = 4096;
@@ -64,6 +64,8 @@ impl Columns {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trace {
     pub lines: Vec<Vec<[f64; 2]>>,
+    /// The value that the line has come to, while it is not broken.
+    carried: Option<f64>,
 }
 
 impl Trace {
@@ -79,14 +81,7 @@ impl Trace {
             if rows.end - rows.start <= 2 {
                 rows.for_each(|row| trace.sample(history.time_s(row), series.value(row)));
             } else {
-                let extrema = series.extrema(rows);
-                if !extrema.is_empty() {
-                    trace.point(columns.middle_s(column), extrema.min);
-                    trace.point(columns.middle_s(column), extrema.max);
-                }
-                if extrema.gap {
-                    trace.break_line();
-                }
+                trace.column(columns.middle_s(column), series, rows);
             }
         }
         if let Some((row, value)) = series.first_number(columns.after()) {
@@ -101,7 +96,27 @@ impl Trace {
         self.lines.iter().map(Vec::len).sum()
     }
 
+    /// Minimum and maximum of many samples. The last value before them counts too, so that a column always reaches
+    /// the one before it, however steep the line.
+    fn column(&mut self, time_s: f64, series: &Series, rows: Range<u64>) {
+        let mut extrema = series.extrema(rows.clone());
+        if !extrema.is_empty() {
+            if let Some(before) = self.carried {
+                extrema.add(before);
+            }
+            self.point(time_s, extrema.min);
+            self.point(time_s, extrema.max);
+            self.carried = series.last_number(rows).map(|(_, value)| value);
+        }
+        if extrema.gap {
+            let after_the_gap = self.carried;
+            self.break_line();
+            self.carried = after_the_gap.filter(|_| !extrema.is_empty());
+        }
+    }
+
     fn point(&mut self, time_s: f64, value: f64) {
+        self.carried = Some(value);
         match self.lines.last_mut() {
             Some(line) => line.push([time_s, value]),
             None => self.lines.push(vec![[time_s, value]]),
@@ -117,6 +132,7 @@ impl Trace {
     }
 
     fn break_line(&mut self) {
+        self.carried = None;
         if self.lines.last().is_some_and(|line| !line.is_empty()) {
             self.lines.push(Vec::new());
         }
@@ -205,6 +221,20 @@ mod tests {
     fn a_gap_breaks_the_line_and_a_value_not_read_does_not() {
         let trace = line_of(&[1.0, NOT_READ, 2.0, GAP, 3.0, 4.0], 100);
         assert_eq!(trace.lines, [vec![[0.0, 1.0], [2.0, 2.0]], vec![[4.0, 3.0], [5.0, 4.0]]]);
+    }
+
+    #[test]
+    fn a_steep_line_has_no_holes_between_its_columns() {
+        let mut history = History::new(1, 8192);
+        for row in 0..1000u32 {
+            history.push(f64::from(row), &[f64::from(row) * 100.0]);
+        }
+        let view = View { start_s: 0.0, end_s: 1000.0, columns: 50 };
+        let trace = Trace::of(&history, 0, &Columns::new(&history, &view));
+        for pair in trace.lines[0].chunks_exact(2).collect::<Vec<_>>().windows(2) {
+            let (highest_before, lowest) = (pair[0][1][1], pair[1][0][1]);
+            assert!(lowest <= highest_before, "{lowest} above {highest_before}");
+        }
     }
 
     #[test]
