@@ -10,6 +10,9 @@
 //! 4. Anything else is not answered: an unknown command, a CRC that fits nowhere, a packet that stops half way. It and
 //!    what follows it are dropped until nothing has come for more than 10 ms.
 //!
+//! 5. Assumed: a write whose address comes twice is taken. The published Rust crate `roboclaw` 0.1.0 sends all its writes so,
+//!    and its author drove a RoboClaw 2x15A with it.
+//!
 //! Packets of all eight addresses are framed: a unit on a bus must follow the traffic of its neighbours to find its own.
 //! Two ambiguities are left. By rule 3 a long write is cut short when its first bytes happen to have the CRC of a shorter
 //! one: one in 65536. By rule 2 a packet of a neighbour is swallowed when its header equals the CRC that is waited for
@@ -33,6 +36,11 @@ pub const PACKET_GAP: Duration = Duration::from_millis(10);
 
 /// Bytes of the longest request: address, command, 53 bytes of signal properties, CRC.
 pub const LONGEST_REQUEST: usize = 57;
+
+/// Address and command, in front of each payload.
+const HEAD: usize = 2;
+/// The checksum behind a write.
+const CRC: usize = 2;
 
 /// Finds requests in a stream of bytes. It allocates only for the values of a whole request.
 #[derive(Debug, Clone)]
@@ -236,7 +244,7 @@ impl RequestFramer {
     }
 
     fn judge(&mut self, now: Duration) -> Option<FramerEvent> {
-        match self.verdict() {
+        match self.verdict(self.bytes) {
             Verdict::Unfinished => None,
             Verdict::Request(framed) => {
                 self.finish(framed.command, now);
@@ -271,8 +279,8 @@ impl RequestFramer {
         (!bytes.is_empty()).then_some(FramerEvent::Discarded(Discarded { bytes, why }))
     }
 
-    fn verdict(&self) -> Verdict {
-        let &[address, number, ref rest @ ..] = &*self.bytes else {
+    fn verdict(&self, packet: RawBytes) -> Verdict {
+        let &[address, number, ..] = &*packet else {
             return Verdict::Unfinished;
         };
         let (Some(address), Some(command)) = (Address::new(address), lookup(number)) else {
@@ -280,29 +288,50 @@ impl RequestFramer {
         };
         match direction(command, self.generation) {
             None => Verdict::Skip(DiscardReason::UnknownCommand),
-            Some(Direction::Read) => self.judge_read(address, command, rest),
-            Some(Direction::Write) => self.judge_write(address, command, rest),
+            Some(Direction::Read) => self.judge_read(address, command, packet),
+            Some(Direction::Write) if number == address.get() => self.judge_doubled(address, command, packet),
+            Some(Direction::Write) => self.judge_write(address, command, packet),
         }
     }
 
-    fn judge_read(&self, address: Address, command: &'static Command, rest: &[u8]) -> Verdict {
-        match self.layout(command, Direction::Read, rest.len()) {
-            Some(fields) => self.whole(address, command, fields, rest),
+    /// Judges a packet that is either a write whose number equals its address or a write whose address came twice.
+    fn judge_doubled(&self, address: Address, command: &'static Command, packet: RawBytes) -> Verdict {
+        let verdict = self.judge_write(address, command, packet);
+        let inner = packet.without_first();
+        let is_write = inner.get(1).is_none_or(|number| {
+            *number != address.get()
+                && lookup(*number).and_then(|command| direction(command, self.generation))
+                    == Some(Direction::Write)
+        });
+        match (verdict, is_write.then(|| self.verdict(inner))) {
+            (
+                Verdict::Unfinished | Verdict::Skip(_),
+                Some(inner @ (Verdict::Request(_) | Verdict::Foreign(_))),
+            ) => inner,
+            (Verdict::Skip(_), Some(Verdict::Unfinished)) => Verdict::Unfinished,
+            (verdict, _) => verdict,
+        }
+    }
+
+    fn judge_read(&self, address: Address, command: &'static Command, packet: RawBytes) -> Verdict {
+        let width = packet.len().saturating_sub(HEAD);
+        match self.layout(command, Direction::Read, width) {
+            Some(fields) => self.whole(address, command, fields, packet, width),
             None => Verdict::Unfinished,
         }
     }
 
-    fn judge_write(&self, address: Address, command: &'static Command, rest: &[u8]) -> Verdict {
-        let Some((payload, _)) = rest.split_last_chunk::<2>() else {
+    fn judge_write(&self, address: Address, command: &'static Command, packet: RawBytes) -> Verdict {
+        let Some(width) = packet.len().checked_sub(HEAD + CRC) else {
             return Verdict::Unfinished;
         };
-        if let Some(fields) = self.layout(command, Direction::Write, payload.len())
-            && packet_crc(&self.bytes).is_some_and(|(got, expected)| got == expected)
+        if let Some(fields) = self.layout(command, Direction::Write, width)
+            && packet_crc(&packet).is_some_and(|(got, expected)| got == expected)
         {
-            return self.whole(address, command, fields, payload);
+            return self.whole(address, command, fields, packet, width);
         }
         let longest = command.payloads(Direction::Write).map(request_width).max();
-        if longest.is_none_or(|longest| payload.len() >= longest) {
+        if longest.is_none_or(|longest| width >= longest) {
             return Verdict::Skip(DiscardReason::BadCrc);
         }
         Verdict::Unfinished
@@ -320,15 +349,17 @@ impl RequestFramer {
         address: Address,
         command: &'static Command,
         fields: &'static [Field],
-        payload: &[u8],
+        packet: RawBytes,
+        width: usize,
     ) -> Verdict {
         let Some(form) = command.form(self.generation) else {
             return Verdict::Foreign(command);
         };
+        let payload = packet.get(HEAD..HEAD + width).unwrap_or_default();
         match parse_payload(fields, payload) {
             Some(values) => {
                 let native = std::ptr::eq(form.request, fields);
-                Verdict::Request(Framed { address, command, values, native, raw: self.bytes })
+                Verdict::Request(Framed { address, command, values, native, raw: packet })
             }
             None => Verdict::Skip(DiscardReason::BadCrc),
         }
@@ -352,6 +383,14 @@ impl RawBytes {
     pub const CAPACITY: usize = 64;
 
     const EMPTY: Self = Self { bytes: [0; Self::CAPACITY], length: 0 };
+
+    fn without_first(&self) -> Self {
+        let mut rest = Self::EMPTY;
+        for byte in self.iter().skip(1) {
+            rest.push(*byte);
+        }
+        rest
+    }
 
     fn push(&mut self, byte: u8) {
         if let Some(slot) = self.bytes.get_mut(usize::from(self.length)) {

@@ -212,6 +212,26 @@ fn a_write_with_a_damaged_crc_is_not_taken() {
 }
 
 #[test]
+fn a_write_whose_address_comes_twice_is_taken() {
+    let mut line = Line::new(Generation::Gen1);
+    // Address twice, command 32, duty 2000, CRC of the packet without the first address.
+    let framed = line.request(&[0x80, 0x80, 32, 0x07, 0xD0, 0x09, 0x14]);
+    assert_eq!((framed.command.number, framed.values.int("duty")), (number::DUTY_M1, 2000));
+    assert_eq!(&*framed.raw, [0x80, 32, 0x07, 0xD0, 0x09, 0x14]);
+    // A longer one than command 128, which the second address could be.
+    let mut doubled = write_packet(number::SPEED_ACCEL_DISTANCE_BOTH, 21);
+    doubled.insert(0, 0x80);
+    assert_eq!(line.request(&doubled).command.number, number::SPEED_ACCEL_DISTANCE_BOTH);
+    // Command 128 itself, whatever its values look like: L begins as command 24 would, R as command 34.
+    let mut resistance = vec![0x80, 128, 0, 24, 0, 24, 34, 0, 0, 0];
+    resistance.extend(crc16_xmodem(&resistance).to_be_bytes());
+    assert_eq!(line.request(&resistance).command.number, 128);
+    // A damaged one is not taken, doubled or not.
+    line.nothing(&[0x80, 0x80, 32, 0x07, 0xD0, 0x09, 0x15]);
+    assert_eq!(why(line.wait(ms(11))).map(|(bytes, _)| bytes.len()), Some(7));
+}
+
+#[test]
 fn bytes_that_start_no_packet_are_dropped_and_told_in_one_piece() {
     let mut line = Line::new(Generation::Gen1);
     line.nothing(&[0x00, 0x7F, 0x88, 0xFF]);
