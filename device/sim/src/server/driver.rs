@@ -6,6 +6,7 @@ use super::handle::{Command, SimHandle, Views};
 use super::line::{Heard, Line};
 use super::wait::wake_exactly;
 use crate::machine::{Machine, StreamIndex};
+use brushwork_protocol::packet_serial::PACKET_GAP;
 use crossbeam_channel::{Receiver, TryRecvError, bounded};
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
@@ -18,6 +19,8 @@ const COMMANDS: usize = 64;
 const TICK: Duration = Duration::from_millis(5);
 /// The system wakes a sleeping thread this much late or less, so that much before a reply leaves the thread stays awake.
 const WAKE_EARLY: Duration = Duration::from_micros(80);
+/// The line is looked at so soon after a gap has ended.
+const AFTER_GAP: Duration = Duration::from_micros(20);
 /// How often the worlds are shown.
 const SHOW_EVERY: Duration = Duration::from_millis(20);
 /// After a longer gap (the computer slept, the program was stopped) the machine's time does not catch up but goes on from where
@@ -35,6 +38,8 @@ pub struct Driver<M: Machine> {
     shown_at: Duration,
     clock: Clock,
     incoming: Vec<u8>,
+    /// Set after bytes until the line was seen empty at this time: the moment when the packet they are in would be discarded.
+    gap_ends_at: Option<Duration>,
 }
 
 /// The wall clock, less the time that was skipped.
@@ -65,6 +70,7 @@ impl<M: Machine + 'static> Driver<M> {
             shown_at: machine_start,
             clock: Clock { start: Instant::now(), machine_start, skipped: Duration::ZERO },
             incoming: Vec::new(),
+            gap_ends_at: None,
         };
         let thread = thread::Builder::new()
             .name("sim-server".to_owned())
@@ -91,19 +97,30 @@ impl<M: Machine + 'static> Driver<M> {
         self.incoming.clear();
         let patience = self.patience();
         let heard = self.line.receive(&mut self.incoming, patience);
-        if !self.incoming.is_empty() {
-            self.advance();
-            self.stack.receive(self.stream, &self.incoming);
-        }
+        self.hear();
         if heard == Heard::ClientLeft {
             self.stack.clear();
         }
         ControlFlow::Continue(())
     }
 
-    /// Brings the machine up to the wall clock.
+    /// Hands over what has come. A line that was seen empty after the gap is one that was silent for so long.
+    fn hear(&mut self) {
+        if self.incoming.is_empty() {
+            let now = self.clock.now(self.stack.now());
+            self.gap_ends_at = self.gap_ends_at.filter(|ends_at| now <= *ends_at);
+        } else {
+            let now = self.advance();
+            self.stack.receive(self.stream, &self.incoming);
+            self.gap_ends_at = Some(now + PACKET_GAP);
+        }
+    }
+
+    /// Brings the machine up to the wall clock, but not past a gap that may be this thread's own: when the system has not let
+    /// it run, bytes that came in time are still unread.
     fn advance(&mut self) -> Duration {
-        let now = self.clock.now(self.stack.now());
+        let wall = self.clock.now(self.stack.now());
+        let now = self.gap_ends_at.map_or(wall, |ends_at| wall.min(ends_at));
         self.stack.advance(now);
         now
     }
@@ -158,12 +175,13 @@ impl<M: Machine + 'static> Driver<M> {
         *self.views.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = views;
     }
 
-    /// How long to wait for bytes: until the next reply leaves, or a tick.
+    /// How long to wait for bytes: until the next reply leaves, a gap is over, or a tick.
     fn patience(&mut self) -> Duration {
-        let Some(at) = self.stack.next_output_at() else { return TICK };
         // The wall clock has gone on since the machine was brought up to it.
-        let left = at.saturating_sub(self.clock.now(self.stack.now()));
-        left.saturating_sub(WAKE_EARLY).min(TICK)
+        let now = self.clock.now(self.stack.now());
+        let reply = self.stack.next_output_at().map(|at| at.saturating_sub(now).saturating_sub(WAKE_EARLY));
+        let gap = self.gap_ends_at.map(|ends_at| ends_at.saturating_sub(now) + AFTER_GAP);
+        [reply, gap].into_iter().flatten().fold(TICK, Duration::min)
     }
 }
 
@@ -177,5 +195,89 @@ impl Clock {
         }
         self.skipped += behind;
         machine_now
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::controller::{Bus, Controller, ControllerConfig};
+    use crate::faults::Faulty;
+    use crate::pacing::Paced;
+
+    /// Duty 0 for both motors: address, command 34, two duties, CRC.
+    const DUTY_ZERO: [u8; 8] = [0x80, 34, 0, 0, 0, 0, 0x98, 0x17];
+
+    /// A client whose second half packet comes 14 ms after the first; the thread may oversleep.
+    struct SlowLine {
+        halves: Vec<Vec<u8>>,
+        oversleeps: bool,
+        silent_for: Duration,
+        sent: Arc<Mutex<Vec<u8>>>,
+    }
+
+    const PAUSE: Duration = Duration::from_millis(14);
+
+    impl Line for SlowLine {
+        fn receive(&mut self, bytes: &mut Vec<u8>, timeout: Duration) -> Heard {
+            let first = self.halves.len() == 2;
+            let waited = if self.oversleeps { PAUSE } else { timeout };
+            if !first {
+                thread::sleep(waited);
+                self.silent_for += waited;
+            }
+            if (first || self.silent_for >= PAUSE) && !self.halves.is_empty() {
+                bytes.extend(self.halves.remove(0));
+            }
+            Heard::Line
+        }
+
+        fn send(&mut self, reply: &[u8]) {
+            self.sent.lock().expect("no test panics with it").extend(reply);
+        }
+
+        fn unplug(&mut self) {}
+
+        fn plug_in(&mut self) -> Result<(), ServerError> {
+            Ok(())
+        }
+    }
+
+    fn answer_to(oversleeps: bool) -> Vec<u8> {
+        let controller = Controller::new(ControllerConfig::default()).expect("the default is in order");
+        let stack = Paced::new(Faulty::new(Bus::single(controller, StreamIndex::Usb), Vec::new(), 0), false);
+        let (_commands, commands) = bounded(COMMANDS);
+        let sent = Arc::new(Mutex::new(Vec::new()));
+        let halves = vec![DUTY_ZERO[..3].to_vec(), DUTY_ZERO[3..].to_vec()];
+        let line = SlowLine { halves, oversleeps, silent_for: Duration::ZERO, sent: sent.clone() };
+        let machine_start = stack.now();
+        let mut driver = Driver {
+            views: Arc::new(Mutex::new(Arc::new(stack.views()))),
+            stack,
+            stream: StreamIndex::Usb,
+            line: Box::new(line),
+            plugged: true,
+            commands,
+            shown_at: machine_start,
+            clock: Clock { start: Instant::now(), machine_start, skipped: Duration::ZERO },
+            incoming: Vec::new(),
+            gap_ends_at: None,
+        };
+        let until = Instant::now() + 4 * PAUSE;
+        while Instant::now() < until {
+            assert!(driver.turn().is_continue());
+        }
+        let sent = sent.lock().expect("no test panics with it");
+        sent.clone()
+    }
+
+    #[test]
+    fn bytes_that_waited_for_a_thread_that_overslept_are_still_one_packet() {
+        assert_eq!(answer_to(true), [0xFF]);
+    }
+
+    #[test]
+    fn a_gap_that_was_seen_discards_the_packet() {
+        assert_eq!(answer_to(false), Vec::<u8>::new());
     }
 }
