@@ -159,14 +159,12 @@ fn other_computers_are_refused_and_so_is_a_port_in_use() {
         Server::spawn(Parrot::new(), options(&[]), &Endpoint::Tcp(address))
     };
     let refusal = open("0.0.0.0:0").expect_err("anybody could reach it").to_string();
-    assert!(refusal.starts_with("a simulated controller is only served on this computer, not on 0.0.0.0:0"));
+    assert!(refusal.starts_with("controllers are only served on this computer, not on 0.0.0.0:0"));
     let first = open("127.0.0.1:0").expect("it is free");
     let taken = tcp_address(&first).to_string();
     let refusal = open(&taken).expect_err("it is in use").to_string();
-    assert_eq!(
-        refusal,
-        format!("the simulated controller cannot listen on {taken}; is another program using that port?")
-    );
+    assert!(refusal.starts_with(&format!("nothing can listen on {taken} (")), "{refusal}");
+    assert!(refusal.ends_with("; is another program using that port?"), "{refusal}");
 }
 
 #[test]
