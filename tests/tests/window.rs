@@ -6,9 +6,11 @@ use std::fs;
 use std::process::Command;
 use std::time::Duration;
 
+use brushwork_protocol::packet_serial::Generation;
 use brushwork_tests::foreign::is_left_out;
 use brushwork_tests::program::{Ending, Program};
-use brushwork_tests::screen::Screen;
+use brushwork_tests::screen::{Picture, Screen};
+use brushwork_tests::simulated::{OnPty, is_driven};
 
 const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
 
@@ -16,6 +18,9 @@ const LIMIT: Duration = Duration::from_secs(30);
 
 /// More than any blank or broken picture has: text alone, being smoothed, has more.
 const COLOURS_OF_A_WINDOW: usize = 200;
+
+/// A few lamps of some ten pixels across; an unconnected window has none.
+const GREEN_OF_LAMPS: usize = 400;
 
 fn window_on(display: &str) -> Command {
     let mut command = Command::new(BRUSHWORK);
@@ -44,6 +49,32 @@ fn the_window_opens_and_shows_something() {
     let Some(picture) = picture else { panic!("nothing is drawn: {:?}", window.finish(Duration::ZERO)) };
     println!("{} colours on {} x {} pixels", picture.colours(), picture.width, picture.height);
     assert!(window.is_running(), "the window stays open");
+}
+
+#[test]
+fn a_window_opened_on_a_controller_lights_its_lamps_and_moves_nothing() {
+    if is_left_out("xvfb") {
+        return;
+    }
+    let controller = OnPty::start(Generation::Gen4);
+    let screen = Screen::start();
+    let mut command = window_on(screen.display());
+    command.arg("--open").arg(controller.port());
+    let mut window = Program::spawn(command);
+    let Some(picture) = screen.wait_for(LIMIT, |picture| green_pixels(picture) >= GREEN_OF_LAMPS) else {
+        panic!("no lamp is green: {:?}", window.finish(Duration::ZERO))
+    };
+    println!("{} green pixels", green_pixels(&picture));
+    assert!(window.is_running(), "the window stays open");
+    assert!(controller.look(|unit| unit.view().axes.iter().all(|axis| axis.encoder_counts == 0)));
+    assert!(!controller.look(is_driven));
+}
+
+/// Pixels of a lamp that says OK, whatever the theme's exact green.
+fn green_pixels(picture: &Picture) -> usize {
+    let is_green =
+        |pixel: &&[u8]| pixel[1] > pixel[0].saturating_add(60) && pixel[1] > pixel[2].saturating_add(40);
+    picture.rgb.chunks_exact(3).filter(is_green).count()
 }
 
 #[test]
