@@ -68,3 +68,18 @@ fn every_line_of_the_map_names_something_that_exists() {
     }
     assert!(gone.is_empty(), "ARCHITECTURE.md names what is not there: {gone:#?}");
 }
+
+#[test]
+fn the_three_files_to_open_first_are_there() {
+    let text = workspace::read("ARCHITECTURE.md");
+    let named: Vec<String> = (1..=3)
+        .filter_map(|number| {
+            let start = format!("\n{number}. `");
+            text.split(&start).nth(1).and_then(quoted)
+        })
+        .collect();
+    assert_eq!(named.len(), 3, "{named:?}");
+    for file in named {
+        assert!(workspace::root().join(&file).is_file(), "{file} is gone");
+    }
+}
