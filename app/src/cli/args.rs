@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use brushwork_sim::faults::FAULT_SYNTAX;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::exit;
@@ -93,6 +94,9 @@ pub enum StreamArg {
 
 /// Arguments of `brushwork list`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    brushwork list\n  \
+    brushwork list --scan --json")]
 pub struct ListArgs {
     /// Print JSON.
     #[arg(long)]
@@ -104,6 +108,10 @@ pub struct ListArgs {
 
 /// Arguments of `brushwork status`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    brushwork status --connect sim:mcp266\n  \
+    brushwork status --connect /dev/ttyACM0 --watch\n  \
+    brushwork status --connect tcp:127.0.0.1:7000 --address 0x81 --json")]
 pub struct StatusArgs {
     /// The controller.
     #[command(flatten)]
@@ -177,6 +185,9 @@ pub enum MotorArg {
 
 /// Arguments of `brushwork stop`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    brushwork stop --connect /dev/ttyACM0\n  \
+    brushwork stop --connect /dev/ttyUSB0,baud=115200 --address 0x81")]
 pub struct StopArgs {
     /// The controller.
     #[command(flatten)]
@@ -186,14 +197,16 @@ pub struct StopArgs {
     pub json: bool,
 }
 
-/// Arguments of `brushwork sim`.
-#[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  \
+const SIM_EXAMPLES: &str = "Examples:\n  \
     brushwork sim --pty /tmp/mcp\n  \
     brushwork sim --model mcp2166 --generation 4 --preset flywheel --tcp 127.0.0.1:7000\n  \
     brushwork sim --port ttl1 --pace --address 0x80,0x81,0x82 --pty /tmp/bus\n  \
     brushwork sim --pty /tmp/mcp --fault drop=0.01 --fault 'plant:locked-shaft@4s,motor=1'\n\n\
-    Ctrl-C ends it. `brushwork sim --list` names the models and presets.")]
+    Ctrl-C ends it. `brushwork sim --list` names the models and presets.";
+
+/// Arguments of `brushwork sim`.
+#[derive(Debug, Args)]
+#[command(after_help = format!("{SIM_EXAMPLES}\n\nFaults: {FAULT_SYNTAX}"))]
 pub struct SimArgs {
     /// Controller model; a comma-separated list makes a bus of several models.
     #[arg(long, value_name = "MODEL", default_value = "mcp266", value_delimiter = ',')]
@@ -235,6 +248,10 @@ pub struct SimArgs {
 
 /// Arguments of `brushwork protocol`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    brushwork protocol\n  \
+    brushwork protocol 28 read_status\n  \
+    brushwork protocol --json")]
 pub struct ProtocolArgs {
     /// Only these commands, by number or key.
     #[arg(value_name = "COMMAND")]

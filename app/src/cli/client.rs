@@ -72,7 +72,7 @@ pub fn open(args: &ConnectArgs, poll: PollRate) -> Result<Session, Exit> {
 pub fn target(args: &ConnectArgs) -> Result<ConnectTarget, Exit> {
     let target = args.connect.parse().map_err(|error| {
         say(format!("Could not understand --connect {}: {error}.", args.connect));
-        Exit::Failed
+        Exit::Usage
     })?;
     Ok(at_address(target, args.address))
 }

@@ -13,7 +13,8 @@ pub const HELP: &str = "Exit codes:\n  \
     4  the controller or a safety rule refused\n  \
     5  settings: a value or a profile was refused, or something did not take\n  \
     6  settings diff: there are differences\n  \
-    130  ended by Ctrl-C, SIGTERM, SIGHUP or a closed pipe, after both motors were stopped";
+    130  ended by Ctrl-C, SIGTERM, SIGHUP or a closed pipe, after both motors were stopped\n\n\
+    `brushwork sim` ends with 0 then: that is how it is ended.";
 
 /// How a command ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,6 +23,8 @@ pub enum Exit {
     Done,
     /// A failure of no other kind.
     Failed,
+    /// An argument makes no sense; clap finds most of them itself, with the same code.
+    Usage,
     /// No controller was reached, or the link was lost.
     NoLink,
     /// The controller or a safety rule refused.
@@ -48,6 +51,7 @@ impl From<Exit> for ExitCode {
         Self::from(match exit {
             Exit::Done => 0,
             Exit::Failed => 1,
+            Exit::Usage => 2,
             Exit::NoLink => 3,
             Exit::Refused => 4,
             Exit::NotTaken => 5,

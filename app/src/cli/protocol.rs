@@ -19,7 +19,7 @@ pub fn run(args: &ProtocolArgs, out: &mut Output) -> Exit {
                      `brushwork protocol` prints all.",
                     lookup(28).map_or("read_version", |command| command.key)
                 ));
-                return Exit::Failed;
+                return Exit::Usage;
             }
         }
     }

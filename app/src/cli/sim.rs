@@ -26,17 +26,18 @@ pub fn run(args: &SimArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
     if args.list {
         return list(out).map_or_else(Exit::from, |()| Exit::Done);
     }
-    match start(args).map_err(|sentence| {
-        say(sentence);
-        Exit::Failed
-    }) {
+    match start(args) {
         Ok((spec, server)) => serve(args, &spec, &server, out, interrupt),
         Err(exit) => exit,
     }
 }
 
-fn start(args: &SimArgs) -> Result<(SimSpec, SimHandle<Bus>), String> {
-    let endpoint = endpoint(args)?;
+fn start(args: &SimArgs) -> Result<(SimSpec, SimHandle<Bus>), Exit> {
+    let usage = |sentence: String| {
+        say(sentence);
+        Exit::Usage
+    };
+    let endpoint = endpoint(args).map_err(usage)?;
     let options = SimOptions {
         models: args.model.iter().map(String::as_str).collect(),
         generation: args.generation,
@@ -45,13 +46,15 @@ fn start(args: &SimArgs) -> Result<(SimSpec, SimHandle<Bus>), String> {
         seed: args.seed,
     };
     let spec = SimSpec::from_options(&options)
-        .map_err(|error| format!("Could not start the simulated controller: {error}."))?;
+        .map_err(|error| usage(format!("Could not start the simulated controller: {error}.")))?;
     let stream = stream_index(args.port);
-    let faults = args.fault.iter().map(|text| fault(text)).collect::<Result<Vec<_>, _>>()?;
-    let bus = simulation::bus_of(&spec, stream).map_err(|error| error.to_string())?;
+    let faults = args.fault.iter().map(|text| fault(text)).collect::<Result<Vec<_>, _>>().map_err(usage)?;
+    let bus = simulation::bus_of(&spec, stream).map_err(|error| usage(error.to_string()))?;
     let options = ServerOptions { stream, pace: args.pace, faults, seed: args.seed };
-    let server = Server::spawn(bus, options, &endpoint)
-        .map_err(|error| format!("Could not start the simulated controller: {error}."))?;
+    let server = Server::spawn(bus, options, &endpoint).map_err(|error| {
+        say(format!("Could not start the simulated controller: {error}."));
+        Exit::Failed
+    })?;
     Ok((spec, server))
 }
 

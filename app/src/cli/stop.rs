@@ -71,7 +71,7 @@ fn print(report: &StopReport, out: &mut Output) -> Result<(), OutputError> {
             None => "",
         };
         out.line(format!(
-            "{:#04x}: both motors stopped{buffers} ({:.1} ms to the wire).",
+            "{:#04x}: both motors stopped{buffers} ({:.2} ms to the wire).",
             unit.address,
             report.latency().as_secs_f64() * 1e3
         ))?;

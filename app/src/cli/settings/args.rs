@@ -9,6 +9,10 @@ use crate::cli::args::ConnectArgs;
 
 /// Arguments of `brushwork settings`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    brushwork settings read --connect /dev/ttyACM0 motor1\n  \
+    brushwork settings write --connect /dev/ttyACM0 motor1.velocity.qpps=12000 --dry-run\n\n\
+    `brushwork settings help ACTION` has more.")]
 pub struct SettingsArgs {
     /// What to do.
     #[command(subcommand)]

@@ -1,0 +1,274 @@
+//! `brushwork monitor` from outside: its own traffic, a tap between two programs, and bytes from a file.
+#![cfg(unix)]
+#![expect(clippy::print_stdout, reason = "measured times belong into the record of a test run")]
+
+use std::net::TcpListener;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use brushwork_link::transport::{SerialTransport, Transport as _};
+use brushwork_protocol::packet_serial::Generation;
+use brushwork_tests::program::{Ending, Program};
+use brushwork_tests::simulated::{OnPty, is_driven};
+use serde_json::Value;
+
+const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
+
+const LIMIT: Duration = Duration::from_secs(20);
+
+fn start(arguments: &[&str]) -> Program {
+    Program::start(BRUSHWORK, arguments)
+}
+
+fn run(arguments: &[&str]) -> Ending {
+    start(arguments).finish(LIMIT)
+}
+
+fn text(path: &Path) -> String {
+    path.to_string_lossy().into_owned()
+}
+
+fn code(ending: &Ending) -> Option<i32> {
+    ending.status.code()
+}
+
+/// The lines of `--json` output.
+fn records(ending: &Ending) -> Vec<Value> {
+    let parsed = ending.stdout.iter().map(|line| serde_json::from_str(line));
+    parsed.collect::<Result<_, _>>().unwrap_or_else(|error| panic!("{error}: {ending:?}"))
+}
+
+fn wait_for_link(path: &Path) {
+    let end = Instant::now() + LIMIT;
+    while !path.exists() {
+        assert!(Instant::now() < end, "{} does not appear", path.display());
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+/// A simulated controller and a monitor that serves a second pseudo-terminal in front of it.
+struct Tapped {
+    controller: OnPty,
+    folder: tempfile::TempDir,
+    monitor: Program,
+}
+
+impl Tapped {
+    fn start(generation: Generation, more: &[&str]) -> Self {
+        let controller = OnPty::start(generation);
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let tap = text(&folder.path().join("tap"));
+        let port = text(&controller.port());
+        let monitor = start(&[&["monitor", "--connect", &port, "--pty", &tap], more].concat());
+        wait_for_link(&folder.path().join("tap"));
+        Self { controller, folder, monitor }
+    }
+
+    fn tap(&self) -> String {
+        text(&self.folder.path().join("tap"))
+    }
+
+    fn is_gone(folder: &Path) -> bool {
+        folder.join("tap").symlink_metadata().is_err()
+    }
+
+    /// Ends the monitor and gives its output.
+    fn end(self, signal: &str) -> Ending {
+        self.monitor.signal(signal);
+        let ending = self.monitor.finish(LIMIT);
+        assert_eq!(code(&ending), Some(130), "{ending:?}");
+        assert!(Self::is_gone(self.folder.path()), "the link is left behind after SIG{signal}");
+        ending
+    }
+}
+
+#[test]
+fn its_own_polling_is_shown_in_words_and_as_json() {
+    let ending = run(&["monitor", "--connect", "sim:mcp266,generation=2", "--for", "0.5", "--json"]);
+    assert_eq!(code(&ending), Some(0), "{ending:?}");
+    assert!(ending.stderr.join(" ").contains("generation 2"), "{ending:?}");
+    let records = records(&ending);
+    let request = |record: &Value| record["direction"] == "to_controller" && record["hex"] == "80 5A";
+    let at = records.iter().position(request).expect("a status request");
+    let reply = &records[at + 1];
+    assert_eq!(reply["direction"], "from_controller");
+    assert!(reply["text"].as_str().is_some_and(|text| text.contains("0x80 read status: 0x")), "{reply}");
+    assert!(reply["time_s"].as_f64() > records[at]["time_s"].as_f64());
+}
+
+#[test]
+fn a_tap_passes_another_programs_bytes_and_tells_them_while_clients_come_and_go() {
+    let tapped = Tapped::start(Generation::Gen3, &["--json"]);
+    for _ in 0..2 {
+        let ending = run(&["status", "--connect", &tapped.tap(), "--json"]);
+        assert_eq!(code(&ending), Some(0), "{ending:?}");
+        let status: Value = serde_json::from_str(&ending.stdout.join("\n")).expect("JSON");
+        assert_eq!(status["identity"]["generation"], 3, "{status}");
+    }
+    let ending = tapped.end("TERM");
+    let records = records(&ending);
+    let told = |record: &&Value, direction: &str, words: &str| {
+        record["direction"] == direction && record["text"].as_str().is_some_and(|text| text.contains(words))
+    };
+    let versions = records.iter().filter(|record| told(record, "from_controller", "MCP266 2x60A")).count();
+    assert!(versions >= 2, "each client reads the version: {ending:?}");
+    let wrong: Vec<_> = records
+        .iter()
+        .filter(|record| {
+            ["no answer", "bad reply", "dropped", "answer to nothing"]
+                .iter()
+                .any(|words| record["text"].as_str().is_some_and(|text| text.contains(words)))
+        })
+        .collect();
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn a_tap_delays_nobody() {
+    let tapped = Tapped::start(Generation::Gen1, &[]);
+    let median = |path: &str| {
+        let mut port = SerialTransport::open(path, 115_200).expect("the port opens");
+        let mut times: Vec<Duration> = (0..101).map(|_| round_trip(&mut port)).collect();
+        times.sort();
+        times[50]
+    };
+    let tap_time = median(&tapped.tap());
+    tapped.end("INT");
+    let direct = median(&text(&OnPty::start(Generation::Gen1).port()));
+    println!("round trip {direct:?}, through the tap {tap_time:?}");
+    assert!(tap_time < direct + Duration::from_millis(3), "{direct:?} became {tap_time:?}");
+}
+
+/// Reads the main battery.
+fn round_trip(port: &mut SerialTransport) -> Duration {
+    let start = Instant::now();
+    port.write(&[0x80, 24]).expect("the port takes bytes");
+    let (mut reply, mut chunk) = (Vec::<u8>::new(), [0; 16]);
+    while reply.len() < 4 {
+        let count = port.read(&mut chunk, Duration::from_secs(2)).expect("the port is there");
+        assert!(count > 0, "no answer");
+        reply.extend(&chunk[..count]);
+    }
+    start.elapsed()
+}
+
+fn stops_what_the_client_drove(signal: &str) {
+    let tapped = Tapped::start(Generation::Gen1, &[]);
+    let target = format!("{},stream=usb", tapped.tap());
+    let client = start(&["drive", "--connect", &target, "--motor", "both", "--duty", "40", "--for", "60"]);
+    assert!(tapped.controller.wait_until(LIMIT, is_driven).is_some(), "the client drives");
+    tapped.monitor.signal(signal);
+    let stopped = tapped.controller.wait_until(LIMIT, |unit| !is_driven(unit)).expect("the motors stop");
+    println!("SIG{signal} to the tap: bridges off after {stopped:?}");
+    assert!(stopped < Duration::from_millis(500), "not by the controller's own time-out: {stopped:?}");
+    let ending = tapped.monitor.finish(LIMIT);
+    assert_eq!(code(&ending), Some(130), "{ending:?}");
+    assert!(ending.stderr.join(" ").contains("Stopped both motors of 0x80"), "{ending:?}");
+    let client = client.finish(LIMIT);
+    assert_eq!(code(&client), Some(3), "the client has lost its link: {client:?}");
+}
+
+#[test]
+fn a_tap_that_is_ended_stops_the_motors_that_its_client_drove() {
+    stops_what_the_client_drove("TERM");
+}
+
+#[test]
+fn a_tap_whose_terminal_closes_stops_the_motors_that_its_client_drove() {
+    stops_what_the_client_drove("HUP");
+}
+
+#[test]
+fn a_tap_whose_reader_goes_ends_and_removes_its_link() {
+    let controller = OnPty::start(Generation::Gen1);
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let tap = folder.path().join("tap");
+    let mut monitor = Command::new(BRUSHWORK)
+        .args(["monitor", "--connect", &text(&controller.port()), "--pty", &text(&tap)])
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    wait_for_link(&tap);
+    drop(monitor.stdout.take());
+    let client = run(&["status", "--connect", &text(&tap)]);
+    let status = monitor.wait().expect("the program ends");
+    assert_eq!(status.code(), Some(130), "{client:?}");
+    assert!(Tapped::is_gone(folder.path()));
+}
+
+#[test]
+fn a_tap_on_tcp_ends_when_its_time_is_over() {
+    let free = TcpListener::bind("127.0.0.1:0").and_then(|listener| listener.local_addr()).expect("a port");
+    let address = free.to_string();
+    let arguments = ["monitor", "--connect", "sim:mcp236,generation=4", "--tcp", &address, "--for", "3"];
+    let monitor = start(&arguments);
+    let target = format!("tcp:{address},stream=usb");
+    let end = Instant::now() + LIMIT;
+    let status = loop {
+        let ending = run(&["status", "--connect", &target]);
+        if code(&ending) == Some(0) || Instant::now() > end {
+            break ending;
+        }
+    };
+    assert!(status.stdout.join("\n").contains("MCP236 at 0x80"), "{status:?}");
+    let ending = monitor.finish(LIMIT);
+    assert_eq!(code(&ending), Some(0), "{ending:?}");
+    assert!(ending.stdout.iter().any(|line| line.contains("> 80 15") && line.contains("read version")));
+}
+
+#[test]
+fn a_place_that_cannot_be_served_is_told_in_a_sentence() {
+    let file = tempfile::NamedTempFile::new().expect("a file");
+    let taken = text(file.path());
+    for (arguments, words) in [
+        (["--pty", taken.as_str()], "is already there"),
+        (["--tcp", "192.0.2.1:7000"], "only served on this computer"),
+        (["--tcp", "banana"], "no address to listen on"),
+    ] {
+        let ending = run(&[&["monitor", "--connect", "sim:mcp266"][..], &arguments].concat());
+        assert_eq!(code(&ending), Some(1), "{ending:?}");
+        let told = ending.stderr.join(" ");
+        assert!(told.contains(words) && told.ends_with('.'), "{told}");
+    }
+    assert!(file.path().exists(), "what was there is left alone");
+}
+
+fn decode(input: &str, more: &[&str]) -> Ending {
+    let mut program = start(&[&["monitor", "--decode", "-"], more].concat());
+    program.say(input);
+    program.finish(LIMIT)
+}
+
+#[test]
+fn bytes_of_requests_are_decoded_from_standard_input_and_from_a_file() {
+    let ending = decode("80 15 59 0C, 0x80 0x18\n80 AA", &[]);
+    assert_eq!(code(&ending), Some(0), "{ending:?}");
+    let texts: Vec<&str> =
+        ending.stdout.iter().map(|line| line.split("  ").last().unwrap_or_default()).collect();
+    let first = ["0x80 read version", "0x80 read main battery", "dropped 80 AA: unknown command"];
+    assert_eq!(texts.iter().map(|text| text.trim()).collect::<Vec<_>>(), first);
+
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("capture.txt");
+    std::fs::write(&file, "# read all status\n80 49\n").expect("the file is written");
+    let ending = run(&["monitor", "--decode", &text(&file), "--generation", "4", "--json"]);
+    assert_eq!(records(&ending)[0]["text"], "0x80 read all status", "{ending:?}");
+    assert_eq!(records(&ending)[0]["time_s"], Value::Null);
+}
+
+#[test]
+fn a_bad_digit_and_a_missing_file_are_told_in_a_sentence() {
+    let ending = decode("80 15\n80 1G", &[]);
+    assert_eq!(code(&ending), Some(1), "{ending:?}");
+    assert!(
+        ending.stderr.join(" ").contains("line 2, column 5: \"G\" is no hexadecimal digit"),
+        "{ending:?}"
+    );
+    assert!(ending.stdout.is_empty(), "{ending:?}");
+    let ending = run(&["monitor", "--decode", "/no/such/file"]);
+    assert_eq!(code(&ending), Some(1), "{ending:?}");
+    assert!(ending.stderr.join(" ").starts_with("Could not decode /no/such/file"), "{ending:?}");
+}
