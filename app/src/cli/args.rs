@@ -263,6 +263,9 @@ pub struct ProtocolArgs {
 
 /// Arguments of `brushwork bench`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    brushwork bench link stop --quick\n  \
+    brushwork bench all --json")]
 pub struct BenchArgs {
     /// What to measure.
     #[arg(value_enum, value_name = "WHAT", required = true)]
