@@ -303,3 +303,51 @@ fn the_graph_goes_on_after_a_new_connection_and_shows_the_time_between_as_a_gap(
     let lines = graph.lines(brushwork_link::device::Channel::MainBattery.index(), &columns);
     assert_eq!(lines.len(), 2, "{lines:?}");
 }
+
+#[test]
+fn a_limit_switch_is_wired_to_a_pin_and_held_closed() {
+    let mut bench = Bench::sized([1280.0, 1600.0], egui::Theme::Dark);
+    bench.connect();
+    bench.press("Simulated world");
+    bench.press("Pin 3 is connected to");
+    bench.press("M1 forward switch");
+    bench.harness.get_all_by_label("forward").next().unwrap().click();
+    bench.pass_ms(300);
+    assert_eq!(bench.truth().axes[0].switches_closed, [true, false, false]);
+    bench.press("Pin 3 is connected to");
+    bench.press("a voltage");
+    assert_eq!(bench.truth().pins[2], brushwork_sim::world::PinSignal::Volts { volts: 2.5 });
+    assert!(bench.truth().wiring.switches.is_empty());
+}
+
+#[test]
+fn the_sampling_rate_is_chosen_beside_the_graph() {
+    let mut bench = Bench::new();
+    bench.connect();
+    bench.press("PWM Settings");
+    bench.press("Sampling");
+    bench.press("every 10 ms");
+    let before = bench.model().graph.history().rows().end;
+    bench.pass_ms(1000);
+    let samples = bench.model().graph.history().rows().end - before;
+    assert!((90..=110).contains(&samples), "{samples} in a second");
+}
+
+#[test]
+fn fitting_and_clearing_are_done_to_the_channel_that_was_selected() {
+    let mut bench = Bench::new();
+    bench.connect();
+    bench.press("PWM Settings");
+    bench.pass_ms(2000);
+    let battery = brushwork_link::device::Channel::MainBattery.index();
+    bench.press("Show Main Battery");
+    assert_eq!(bench.model().graph.selected, battery);
+    bench.press("Fit scale");
+    let scale = bench.model().graph.channels[battery].scale;
+    assert!(scale.low > 20.0 && scale.high < 28.0, "{scale:?}");
+    bench.press("Clear");
+    let graph = &bench.model().graph;
+    let columns = brushwork::gui::graph::Columns::new(graph.history(), &graph.view(1000));
+    let drawn: usize = graph.lines(battery, &columns).iter().map(Vec::len).sum();
+    assert!(drawn <= 3, "{drawn} points are left");
+}
