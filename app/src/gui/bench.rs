@@ -13,6 +13,12 @@ use super::graph::{LiveGraph, plot};
 use super::model::graph_channels;
 use super::theme;
 
+/// Samples of an hour at 100 Hz.
+const ROWS: u32 = 360_000;
+const INTERVAL_S: f64 = 0.01;
+/// The time that [`hour`] fills.
+pub const SPAN_S: f64 = 3600.0;
+
 /// The figures of one run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GraphCost {
@@ -33,10 +39,15 @@ pub struct GraphCost {
 /// `now` reads a clock.
 pub fn graph_cost(frames: usize, mut now: impl FnMut() -> Duration) -> GraphCost {
     const CHANNELS: usize = 16;
-    const ROWS: u32 = 360_000;
-    let graph = hour(CHANNELS, ROWS);
+    let mut graph = hour(CHANNELS, 0.0);
     let lines: Vec<Vec<PlotPoint>> = (0..CHANNELS).map(|channel| plain_line(&graph, channel)).collect();
+    // Each frame brings the samples of a tenth of a second, as in the window.
+    let mut row = ROWS;
     let graph_ms = median_ms(frames, &mut now, |ui| {
+        for _ in 0..10 {
+            graph.push(f64::from(row) * INTERVAL_S, &[f64::from(row % 100); CHANNELS]);
+            row += 1;
+        }
         plot::plot_ui(ui, &graph);
     });
     let plain_ms = median_ms(frames, &mut now, |ui| {
@@ -49,30 +60,30 @@ pub fn graph_cost(frames: usize, mut now: impl FnMut() -> Duration) -> GraphCost
     GraphCost {
         channels: CHANNELS,
         samples_per_channel: u64::from(ROWS),
-        stored_megabytes: graph.history().bytes() as f64 / 1e6,
+        stored_megabytes: graph.bytes() as f64 / 1e6,
         graph_ms,
         plain_ms,
         ratio: graph_ms / plain_ms,
     }
 }
 
-/// Noise on slow waves, so that no two columns are alike; all channels are shown.
-fn hour(channels: usize, rows: u32) -> LiveGraph {
+/// An hour from `start_s` on: noise on slow waves, so that no two columns are alike. All channels are shown.
+pub fn hour(channels: usize, start_s: f64) -> LiveGraph {
     let mut infos = graph_channels();
     infos.truncate(channels);
     infos.iter_mut().for_each(|info| info.shown = true);
-    let mut graph = LiveGraph::new(infos, 0.01);
-    graph.span_s = 3600.0;
+    let mut graph = LiveGraph::new(infos, INTERVAL_S);
+    graph.span_s = SPAN_S;
     let mut noise: u32 = 1;
     let mut values = vec![0.0; channels];
-    for row in 0..rows {
-        let time_s = f64::from(row) * 0.01;
+    for row in 0..ROWS {
+        let time_s = f64::from(row) * INTERVAL_S;
         for (channel, value) in values.iter_mut().enumerate() {
             noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             let wave = (time_s * 0.01 * (channel + 1) as f64).sin();
             *value = 50.0 * wave + f64::from(noise >> 16) / 65_536.0 * 10.0;
         }
-        graph.push(time_s, &values);
+        graph.push(start_s + time_s, &values);
     }
     graph
 }

@@ -1,6 +1,9 @@
 //! The live graph's state: what was sampled, what is shown and how.
 
+use std::cell::RefCell;
+
 use super::history::{DEFAULT_ROWS, History};
+use super::memo::Memo;
 use super::scale::Scale;
 use super::trace::{Columns, Trace, View};
 
@@ -38,6 +41,7 @@ pub struct ChannelView {
 #[derive(Clone, Debug)]
 pub struct LiveGraph {
     history: History,
+    memos: RefCell<Vec<Memo>>,
     pub channels: Vec<ChannelView>,
     /// The channel whose scale is written at the side.
     pub selected: usize,
@@ -60,7 +64,16 @@ impl LiveGraph {
         };
         let channels: Vec<_> = channels.into_iter().map(view).collect();
         let selected = channels.iter().position(|channel| channel.shown).unwrap_or(0);
-        Self { history, channels, selected, span_s: 10.0, held_at_s: None, usual_interval_s: interval_s }
+        let memos = RefCell::new(vec![Memo::default(); channels.len()]);
+        Self {
+            history,
+            memos,
+            channels,
+            selected,
+            span_s: 10.0,
+            held_at_s: None,
+            usual_interval_s: interval_s,
+        }
     }
 
     /// Adds a sample; NaN is a channel that was not read.
@@ -93,6 +106,11 @@ impl LiveGraph {
 
     pub fn history(&self) -> &History {
         &self.history
+    }
+
+    /// Memory held for what was sampled, in bytes.
+    pub fn bytes(&self) -> usize {
+        self.history.bytes() + self.memos.borrow().iter().map(Memo::bytes).sum::<usize>()
     }
 
     pub fn is_held(&self) -> bool {
@@ -152,7 +170,9 @@ impl LiveGraph {
     pub fn lines(&self, channel: usize, columns: &Columns) -> Vec<Vec<[f64; 2]>> {
         let end_s = self.end_s();
         let view = &self.channels[channel];
-        let mut trace = Trace::of(&self.history, channel, columns);
+        let memo = &mut self.memos.borrow_mut()[channel];
+        memo.make_room(columns.count());
+        let mut trace = Trace::remembering(&self.history, channel, columns, memo);
         for line in &mut trace.lines {
             line.retain(|point| point[0] > view.cleared_at_s);
             for point in line.iter_mut() {

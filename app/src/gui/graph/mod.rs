@@ -6,6 +6,7 @@
 pub mod history;
 pub mod list;
 pub mod live;
+pub mod memo;
 pub mod plot;
 pub mod scale;
 pub mod series;

@@ -6,7 +6,8 @@
 use std::ops::Range;
 
 use super::history::History;
-use super::series::{Series, is_gap};
+use super::memo::{Memo, Seen};
+use super::series::is_gap;
 
 /// How far a line looks past the edge of the view for the sample that carries it out of the picture.
 const REACH_ROWS: u64 = 4096;
@@ -49,6 +50,16 @@ impl Columns {
         (self.first_column + column as f64 + 0.5) * self.column_s
     }
 
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.bounds.len() - 1
+    }
+
+    /// A column's number since the start of time, which scrolling does not change.
+    fn number(&self, column: usize) -> i64 {
+        (self.first_column + column as f64) as i64
+    }
+
     fn before(&self) -> Range<u64> {
         let first = self.bounds[0];
         first.saturating_sub(REACH_ROWS).max(self.kept.start)..first
@@ -71,6 +82,11 @@ pub struct Trace {
 impl Trace {
     /// The lines of one channel in the columns of a view.
     pub fn of(history: &History, channel: usize, columns: &Columns) -> Self {
+        Self::remembering(history, channel, columns, &mut Memo::default())
+    }
+
+    /// The same with what is remembered of that channel of that history.
+    pub fn remembering(history: &History, channel: usize, columns: &Columns, memo: &mut Memo) -> Self {
         let series = history.channel(channel);
         let mut trace = Self::default();
         if let Some((row, value)) = series.last_number(columns.before()) {
@@ -81,7 +97,7 @@ impl Trace {
             if rows.end - rows.start <= 2 {
                 rows.for_each(|row| trace.sample(history.time_s(row), series.value(row)));
             } else {
-                trace.column(columns.middle_s(column), series, rows);
+                trace.column(columns.middle_s(column), memo.look(series, columns.number(column), rows));
             }
         }
         if let Some((row, value)) = series.first_number(columns.after()) {
@@ -98,15 +114,15 @@ impl Trace {
 
     /// Minimum and maximum of many samples. The last value before them counts too, so that a column always reaches
     /// the one before it, however steep the line.
-    fn column(&mut self, time_s: f64, series: &Series, rows: Range<u64>) {
-        let mut extrema = series.extrema(rows.clone());
+    fn column(&mut self, time_s: f64, seen: Seen) {
+        let mut extrema = seen.extrema;
         if !extrema.is_empty() {
             if let Some(before) = self.carried {
                 extrema.add(before);
             }
             self.point(time_s, extrema.min);
             self.point(time_s, extrema.max);
-            self.carried = series.last_number(rows).map(|(_, value)| value);
+            self.carried = seen.last;
         }
         if extrema.gap {
             let after_the_gap = self.carried;
