@@ -13,9 +13,12 @@ use super::client::Client;
 use super::exit::Exit;
 use super::interrupt::Interrupt;
 use super::output::{Output, OutputError, say};
+use super::response::Response;
 use super::status::{Readings, line_of};
 use super::stop;
 
+/// Time between two sweeps of the signals.
+const SWEEP_INTERVAL: Duration = Duration::from_millis(20);
 /// Time between two printed lines.
 const PRINT_INTERVAL: Duration = Duration::from_millis(100);
 /// How long arming and reading a setting may take.
@@ -23,7 +26,7 @@ const ANSWER_LIMIT: Duration = Duration::from_secs(5);
 
 /// Connects, arms, drives, stops.
 pub fn run(args: &DriveArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
-    let client = match Client::connect(&args.connect, PollRate::DEFAULT, interrupt) {
+    let client = match Client::connect(&args.connect, PollRate::Every(SWEEP_INTERVAL), interrupt) {
         Ok(client) => client,
         Err(exit) => return exit,
     };
@@ -173,6 +176,8 @@ fn keep_driving(
     out: &mut Output,
     interrupt: &Interrupt,
 ) -> Result<(), Exit> {
+    let mut responses = Response::of(&drive);
+    let commanded_at = client.device().now();
     ask(client, Request::Drive(drive))?;
     let start = Instant::now();
     let mut next_print = start;
@@ -181,7 +186,12 @@ fn keep_driving(
         client.device().renew();
         match client.next_event(interrupt)? {
             Some(Event::Disarmed(reason)) => return Err(disarmed(&reason)),
-            Some(event) => readings.take(event),
+            Some(event) => {
+                if let Event::Sample(sample) = &event {
+                    responses.iter_mut().for_each(|response| response.take(sample, commanded_at));
+                }
+                readings.take(event);
+            }
             None => {}
         }
         if Instant::now() >= next_print {
@@ -189,6 +199,7 @@ fn keep_driving(
             print(args, start.elapsed(), &readings, out)?;
         }
     }
+    responses.iter().filter_map(Response::sentence).for_each(say);
     Ok(())
 }
 

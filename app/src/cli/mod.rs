@@ -13,6 +13,7 @@ mod list;
 mod monitor;
 mod output;
 mod protocol;
+mod response;
 pub mod settings;
 mod sim;
 mod status;
