@@ -15,6 +15,7 @@ use egui::{Context, Key, Modifiers, Ui};
 
 use super::command::{Command, Commands};
 use super::keys;
+use super::model::general::SettingsWish;
 use super::model::link::{Arming, Effect, LinkView};
 use super::model::message::Gravity;
 use super::model::screen::Screen;
@@ -150,7 +151,10 @@ impl App {
     }
 
     fn take(&mut self, event: Event) {
-        for effect in self.model.link.take(event) {
+        let model = &mut self.model;
+        let is_settings = model.general.awaits(&event);
+        let effects = if is_settings { model.general.take(event) } else { model.link.take(event) };
+        for effect in effects {
             match effect {
                 Effect::Say(gravity, text) => self.model.messages.say(gravity, text),
                 Effect::AtRest => self.model.pwm.stop(),
@@ -171,6 +175,7 @@ impl App {
         }
         self.model.phase = Phase::Closed;
         self.model.link = LinkView::default();
+        self.model.general.link_ended();
         self.model.pwm.stop();
         self.model.graph.push_gap();
     }
@@ -205,6 +210,7 @@ impl App {
             }
             Command::Poll(rate) => self.poll(rate),
             Command::World(action) => self.act_on_world(action),
+            Command::Settings(wish) => self.settings(wish),
             Command::DismissMessage => self.model.messages.dismiss(),
         }
     }
@@ -282,6 +288,16 @@ impl App {
         self.model.graph.set_interval(interval.as_secs_f64());
         if self.device.is_some() {
             self.request(Request::Poll(rate));
+        }
+    }
+
+    /// Starts or ends work with the settings, on the device thread.
+    fn settings(&mut self, wish: SettingsWish) {
+        let stream = self.model.link.stream;
+        if let Some(request) = self.model.general.begin(wish, stream)
+            && !self.request(request)
+        {
+            self.model.general.not_begun();
         }
     }
 

@@ -5,6 +5,7 @@ use brushwork_link::transport::Stream;
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_sim::world::WorldAction;
 
+use super::model::general::SettingsWish;
 use super::model::screen::Screen;
 
 /// One wish.
@@ -27,6 +28,8 @@ pub enum Command {
     Poll(PollRate),
     /// Something done to the world of the simulated unit that is looked at.
     World(WorldAction),
+    /// Something to be done with the settings of the unit that is looked at.
+    Settings(SettingsWish),
     DismissMessage,
 }
 

@@ -12,7 +12,7 @@ use brushwork::gui::parts::{OpenLink, Opener, Parts, PortSource, SimulatedWorld}
 use brushwork::session::SessionError;
 use brushwork_link::device::{Addresses, DeviceLoop, DeviceOptions, Step};
 use brushwork_link::transport::{ConnectTarget, OpenError, PortInfo, Stream};
-use brushwork_link::{Clock as _, Failure};
+use brushwork_link::{Clock as _, Failure, HiddenSettings};
 use brushwork_protocol::packet_serial::{Address, Motor};
 use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_sim::machine::{Machine as _, StreamIndex};
@@ -271,6 +271,7 @@ impl Opener for BenchOpener {
                     addresses,
                     stream: Some(Stream::ALL[index]),
                     simulated: true,
+                    hidden: Some(Arc::new(BenchHidden(self.line.clone()))),
                     ..DeviceOptions::default()
                 };
                 let clock = Arc::new(self.line.clock.clone());
@@ -282,6 +283,26 @@ impl Opener for BenchOpener {
         };
         sender.send(opened).expect("the receiver is here");
         receiver
+    }
+}
+
+/// The settings that packet serial does not carry.
+struct BenchHidden(Line);
+
+impl std::fmt::Debug for BenchHidden {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("BenchHidden")
+    }
+}
+
+impl HiddenSettings for BenchHidden {
+    fn get(&self, _address: Address, key: &str) -> Option<i64> {
+        self.0.with(|bus| bus.controllers()[0].settings().hidden(key).ok())
+    }
+
+    fn set(&self, _address: Address, key: &str, raw: i64) -> Result<(), String> {
+        let action = WorldAction::SetHidden { key: key.to_owned(), value: raw };
+        self.0.with(|bus| bus.controllers_mut()[0].apply(&action)).map_err(|error| format!("{error}."))
     }
 }
 

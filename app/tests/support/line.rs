@@ -13,11 +13,32 @@ pub struct Line {
     bus: Arc<Mutex<Bus>>,
     pub clock: VirtualClock,
     rest: Vec<u8>,
+    swallowed: Arc<Mutex<Option<Swallowed>>>,
+}
+
+/// A command that gets lost, and what comes back instead.
+struct Swallowed {
+    command: u8,
+    reply: Vec<u8>,
 }
 
 impl Line {
     pub fn new(bus: Bus) -> Self {
-        Self { bus: Arc::new(Mutex::new(bus)), clock: VirtualClock::new(), rest: Vec::new() }
+        let swallowed = Arc::default();
+        Self { bus: Arc::new(Mutex::new(bus)), clock: VirtualClock::new(), rest: Vec::new(), swallowed }
+    }
+
+    /// From now on a command does not reach the controller; what stands for its reply comes back at once.
+    pub fn swallow(&self, command: u8, reply: &[u8]) {
+        *self.swallowed.lock().unwrap_or_else(PoisonError::into_inner) =
+            Some(Swallowed { command, reply: reply.to_vec() });
+    }
+
+    /// The reply to a request that is swallowed.
+    fn instead_of(&self, request: &[u8]) -> Option<Vec<u8>> {
+        let swallowed = self.swallowed.lock().unwrap_or_else(PoisonError::into_inner);
+        let of_this = swallowed.as_ref().filter(|swallowed| request.get(1) == Some(&swallowed.command))?;
+        Some(of_this.reply.clone())
     }
 
     /// Does something with the bus, which is first brought to the present.
@@ -55,6 +76,10 @@ impl Line {
 
 impl Transport for Line {
     fn write(&mut self, bytes: &[u8]) -> Result<(), TransportError> {
+        if let Some(reply) = self.instead_of(bytes) {
+            self.rest.extend(reply);
+            return Ok(());
+        }
         self.with(|bus| {
             Self::plugged(bus)?;
             let stream = bus.stream();

@@ -9,6 +9,7 @@ use egui::ThemePreference;
 use super::graph::{ChannelInfo, LiveGraph, Scale};
 
 pub mod devices;
+pub mod general;
 pub mod lamps;
 pub mod link;
 pub mod message;
@@ -18,6 +19,7 @@ pub mod screen;
 pub mod world;
 
 use devices::Devices;
+use general::General;
 use link::LinkView;
 use message::Messages;
 use pwm::Pwm;
@@ -39,6 +41,8 @@ pub struct Model {
     pub poll: PollRate,
     pub graph: LiveGraph,
     pub pwm: Pwm,
+    /// The settings of the units met so far, and what is being done with them.
+    pub general: General,
     pub world: WorldPanel,
     /// The worlds of the simulated units, while they run.
     pub worlds: Option<Arc<Vec<WorldView>>>,
@@ -98,6 +102,7 @@ impl Default for Model {
             poll: PollRate::default(),
             graph: LiveGraph::new(graph_channels(), 0.1),
             pwm: Pwm::default(),
+            general: General::default(),
             world: WorldPanel::default(),
             worlds: None,
             world_unit: 0,

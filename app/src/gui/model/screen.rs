@@ -36,10 +36,7 @@ impl Screen {
     /// Why the screen cannot be opened, where it does not exist yet.
     pub const fn missing(self) -> Option<&'static str> {
         match self {
-            Self::DeviceStatus | Self::Pwm => None,
-            Self::GeneralSettings => {
-                Some("This screen is not built yet. On the command line: brushwork settings read")
-            }
+            Self::DeviceStatus | Self::GeneralSettings | Self::Pwm => None,
             Self::Velocity | Self::Position => {
                 Some("This screen is not built yet. On the command line: brushwork drive")
             }

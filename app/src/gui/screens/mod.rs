@@ -7,12 +7,14 @@ use super::model::screen::Screen;
 use super::model::{Model, Phase};
 use super::theme::Palette;
 
+mod general;
 mod pwm;
 mod status;
 
 pub fn screen_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     match model.screen {
         Screen::DeviceStatus => status::status_ui(ui, model, commands),
+        Screen::GeneralSettings => general::general_ui(ui, model, commands),
         Screen::Pwm => pwm::pwm_ui(ui, model, commands),
         other => nothing_ui(ui, other.missing().unwrap_or_default()),
     }

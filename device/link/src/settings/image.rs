@@ -143,6 +143,26 @@ impl Copies {
         }
     }
 
+    /// The controller's RAM as last read, if it was.
+    pub fn ram(&self) -> Option<&SettingsImage> {
+        self.ram.as_ref()
+    }
+
+    /// The controller's EEPROM as last known, if it is.
+    pub fn eeprom(&self) -> Option<&SettingsImage> {
+        self.eeprom.as_ref()
+    }
+
+    /// The controller's EEPROM was read in a way that leaves open what RAM holds.
+    pub fn note_eeprom(&mut self, image: SettingsImage) {
+        self.eeprom = Some(image);
+    }
+
+    /// The controller may work with anything: it was out of reach.
+    pub fn forget_ram(&mut self) {
+        self.ram = None;
+    }
+
     /// The controller's RAM was read.
     pub fn note_ram(&mut self, image: SettingsImage) {
         self.ram = Some(image);

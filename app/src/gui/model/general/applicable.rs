@@ -1,0 +1,120 @@
+//! Which settings mean nothing while others stand as they do (MCP manual 1.9.2: "will be grayed out").
+
+use brushwork_link::settings::{Group, Row, SettingValue};
+
+/// Why the row has no effect now, as a sentence; `wanted` gives the value of any key.
+pub(super) fn why_not(row: &Row, wanted: impl Fn(&str) -> Option<SettingValue>) -> Option<&'static str> {
+    match row.group {
+        Group::Pins => pin(row, wanted),
+        Group::Streams => stream(row, wanted),
+        Group::Buses => bus(row, wanted),
+        _ => None,
+    }
+}
+
+fn pin(row: &Row, wanted: impl Fn(&str) -> Option<SettingValue>) -> Option<&'static str> {
+    let number = row.instance.as_ref()?.number;
+    let of_pin = |field: &str| wanted(&format!("pin.{number}.{field}"));
+    if matches!(row.pattern, "pin.{n}.type" | "pin.{n}.digital") {
+        return None;
+    }
+    let kind = choice(of_pin("type"))?;
+    let is_digital = of_pin("digital") == Some(SettingValue::Bool(true));
+    if kind == "none" && !is_digital {
+        return Some("Not applicable: this pin measures nothing. Choose its type first.");
+    }
+    match row.pattern {
+        "pin.{n}.timeout" if kind != "pulse" => {
+            Some("Not applicable: the time-out is for pulse inputs only. MCP manual 1.9.8.")
+        }
+        "pin.{n}.load_home" => {
+            let loads = |field| choice(of_pin(field)).is_none_or(|action| action.ends_with("load_home"));
+            (!loads("min_action") && !loads("max_action"))
+                .then_some("Not applicable: neither action of this pin loads the home position.")
+        }
+        _ => None,
+    }
+}
+
+fn stream(row: &Row, wanted: impl Fn(&str) -> Option<SettingValue>) -> Option<&'static str> {
+    let stream = row.key.rsplit_once('.')?.0;
+    let is = |kind| choice(wanted(&format!("{stream}.type"))) == Some(kind);
+    match row.pattern {
+        "stream.{n}.type" => None,
+        _ if is("disabled") => Some("Not applicable: this port is disabled. Choose its mode first."),
+        "stream.{n}.rate" if stream == "stream.usb" => Some("Not applicable: USB has no bit rate."),
+        "stream.{n}.timeout" if is("mcl") => {
+            Some("Not applicable: a port that belongs to the script has no priority time-out.")
+        }
+        _ => None,
+    }
+}
+
+fn bus(row: &Row, wanted: impl Fn(&str) -> Option<SettingValue>) -> Option<&'static str> {
+    let in_use = |stream: &str| choice(wanted(stream)).is_some_and(|kind| kind != "disabled");
+    if row.key.starts_with("can.") && in_use("stream.rs232.type") {
+        Some("Not applicable: the pins serve RS-232. Disable UART0 to use them for CANopen.")
+    } else if row.key.starts_with("i2c.") && in_use("stream.ttl1.type") {
+        Some("Not applicable: the pins serve TTL UART1. Disable it to use them for I2C.")
+    } else {
+        None
+    }
+}
+
+fn choice(value: Option<SettingValue>) -> Option<&'static str> {
+    match value? {
+        SettingValue::Choice(key) => Some(key),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use brushwork_link::settings::{SettingsImage, SettingsTable, Subject};
+    use brushwork_protocol::models;
+    use brushwork_protocol::packet_serial::Generation;
+
+    use super::*;
+
+    fn reason(table: &SettingsTable, image: &SettingsImage, key: &str) -> Option<&'static str> {
+        why_not(table.row(key).expect("the table has the row"), |key| image.get(key))
+    }
+
+    #[test]
+    fn a_pins_settings_follow_its_type() {
+        let table = SettingsTable::new(Subject::new(models::lookup("mcp266").unwrap(), Generation::Gen1));
+        let mut image = table.default_image();
+        image.set("pin.1.type", SettingValue::Choice("none"));
+        assert_eq!(reason(&table, &image, "pin.1.type"), None);
+        assert!(reason(&table, &image, "pin.1.deadband").unwrap().contains("Choose its type"));
+        image.set("pin.1.type", SettingValue::Choice("analog"));
+        assert_eq!(reason(&table, &image, "pin.1.deadband"), None);
+        assert!(reason(&table, &image, "pin.1.timeout").unwrap().contains("pulse inputs only"));
+        assert!(reason(&table, &image, "pin.1.load_home").unwrap().contains("neither action"));
+        image.set("pin.1.max_action", SettingValue::Choice("m1_load_home"));
+        assert_eq!(reason(&table, &image, "pin.1.load_home"), None);
+    }
+
+    #[test]
+    fn a_disabled_port_leaves_its_pins_to_the_bus() {
+        let table = SettingsTable::new(Subject::new(models::lookup("mcp266").unwrap(), Generation::Gen1));
+        let mut image = table.default_image();
+        image.set("stream.rs232.type", SettingValue::Choice("packet_serial"));
+        assert!(reason(&table, &image, "can.rate").unwrap().contains("Disable UART0"));
+        assert_eq!(reason(&table, &image, "stream.rs232.rate"), None);
+        image.set("stream.rs232.type", SettingValue::Choice("disabled"));
+        assert_eq!(reason(&table, &image, "can.rate"), None);
+        assert!(reason(&table, &image, "stream.rs232.rate").unwrap().contains("disabled"));
+        assert!(reason(&table, &image, "stream.usb.rate").unwrap().contains("no bit rate"));
+    }
+
+    #[test]
+    fn what_is_not_known_locks_nothing() {
+        let table = SettingsTable::new(Subject::new(models::lookup("mcp266").unwrap(), Generation::Gen1));
+        let nothing = SettingsImage::default();
+        for row in table.rows() {
+            let reason = why_not(row, |key| nothing.get(key));
+            assert!(reason.is_none() || row.key == "stream.usb.rate", "{}: {reason:?}", row.key);
+        }
+    }
+}

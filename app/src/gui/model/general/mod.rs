@@ -1,0 +1,218 @@
+//! The General Settings screen's state: the settings of each unit, what runs, and what is being looked at.
+//!
+//! Edits belong to a unit and stay until they are written or reverted, whatever screen is shown, and over a lost link.
+
+use std::collections::BTreeMap;
+
+use brushwork_link::device::{Event, Identity, JobEnding, Request};
+use brushwork_link::transport::Stream;
+
+use super::link::Effect;
+use super::message::Gravity;
+
+mod applicable;
+mod outcome;
+mod section;
+mod unit;
+mod work;
+
+pub use section::{Section, sections};
+pub use unit::{Saved, UnitSettings};
+pub use work::{Running, SettingsWish};
+
+/// The state of the screen.
+#[derive(Debug, Default)]
+pub struct General {
+    units: BTreeMap<UnitKey, UnitSettings>,
+    current: Option<UnitKey>,
+    running: Option<Running>,
+    /// What the list shows while nothing is searched for.
+    pub section: Section,
+    pub search: String,
+    pub only_changed: bool,
+    /// The row that is explained below the list, by its key.
+    pub explained: Option<String>,
+    sheet: Option<Sheet>,
+    sheet_is_new: bool,
+}
+
+/// What stands in place of the list until it is answered.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Sheet {
+    Read,
+    Write,
+    Save,
+    Defaults,
+    /// What did not go as wanted, a sentence each.
+    Report {
+        title: String,
+        sentences: Vec<String>,
+    },
+}
+
+/// Which unit settings belong to.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct UnitKey {
+    port: String,
+    address: u8,
+    version_text: String,
+}
+
+impl UnitKey {
+    fn of(identity: &Identity) -> Self {
+        Self {
+            port: identity.port.clone(),
+            address: identity.address,
+            version_text: identity.version_text.clone(),
+        }
+    }
+}
+
+impl General {
+    /// Turns to the unit that is looked at. Its edits of earlier are there again.
+    pub fn look_at(&mut self, identity: &Identity) {
+        let key = UnitKey::of(identity);
+        if self.current.as_ref() == Some(&key) {
+            return;
+        }
+        self.units.entry(key.clone()).or_insert_with(|| UnitSettings::new(identity));
+        self.current = Some(key);
+        self.explained = None;
+        self.sheet = None;
+    }
+
+    pub fn unit(&self) -> Option<&UnitSettings> {
+        self.units.get(self.current.as_ref()?)
+    }
+
+    pub fn unit_mut(&mut self) -> Option<&mut UnitSettings> {
+        self.units.get_mut(self.current.as_ref()?)
+    }
+
+    pub fn running(&self) -> Option<&Running> {
+        self.running.as_ref()
+    }
+
+    /// Whether the settings were not asked for yet, so that opening the screen reads them.
+    pub fn wants_reading(&self) -> bool {
+        self.running.is_none() && self.unit().is_some_and(|unit| !unit.was_asked())
+    }
+
+    pub fn sheet(&self) -> Option<&Sheet> {
+        self.sheet.as_ref()
+    }
+
+    pub fn open(&mut self, sheet: Sheet) {
+        self.sheet = Some(sheet);
+        self.sheet_is_new = true;
+    }
+
+    pub fn close_sheet(&mut self) {
+        self.sheet = None;
+    }
+
+    /// True once for each sheet: then the keyboard goes to its button.
+    pub fn take_sheet_focus(&mut self) -> bool {
+        std::mem::take(&mut self.sheet_is_new)
+    }
+
+    /// What to ask of the device thread. Nothing while other work with settings runs.
+    pub fn begin(&mut self, wish: SettingsWish, own_stream: Option<Stream>) -> Option<Request> {
+        if wish == SettingsWish::Cancel {
+            self.running.as_mut()?.is_cancelled = true;
+            return Some(Request::CancelJob);
+        }
+        if self.running.is_some() {
+            return None;
+        }
+        let key = self.current.clone()?;
+        let unit = self.units.get_mut(&key)?;
+        unit.note_asked();
+        let (job, running) = work::begin(wish, key, unit, own_stream)?;
+        self.running = Some(running);
+        self.sheet = None;
+        Some(Request::Job(job))
+    }
+
+    /// The request was not taken.
+    pub fn not_begun(&mut self) {
+        if let Some(running) = &mut self.running
+            && !std::mem::take(&mut running.is_cancelled)
+        {
+            self.running = None;
+        }
+    }
+
+    /// Whether the event is about work that was begun here.
+    pub fn awaits(&self, event: &Event) -> bool {
+        let Some(running) = &self.running else { return false };
+        match event {
+            Event::JobStarted { name } => *name == running.name,
+            Event::JobProgress { .. } => running.has_started,
+            Event::JobEnded(report) => report.name == running.name,
+            _ => false,
+        }
+    }
+
+    /// Takes in an event that [`General::awaits`].
+    pub fn take(&mut self, event: Event) -> Vec<Effect> {
+        let Some(running) = &mut self.running else { return Vec::new() };
+        match event {
+            Event::JobStarted { .. } => running.has_started = true,
+            Event::JobProgress { fraction, text } => {
+                running.fraction = fraction;
+                running.text = text;
+            }
+            Event::JobEnded(report) => return self.ended(&report.ending),
+            _ => {}
+        }
+        Vec::new()
+    }
+
+    /// The link is gone: what the controllers hold may change unseen. Edits stay.
+    pub fn link_ended(&mut self) {
+        self.running = None;
+        self.current = None;
+        self.sheet = None;
+        for unit in self.units.values_mut() {
+            unit.forget();
+        }
+    }
+
+    fn ended(&mut self, ending: &JobEnding) -> Vec<Effect> {
+        let Some(running) = self.running.take() else { return Vec::new() };
+        let Some(unit) = self.units.get_mut(&running.unit) else { return Vec::new() };
+        let told = match running.result() {
+            Some(outcome) => outcome::take(unit, outcome),
+            None => outcome::nothing_came(&running, ending),
+        };
+        self.follow_address(&running.unit, told.address);
+        if !told.sentences.is_empty() {
+            self.open(Sheet::Report { title: told.summary.clone(), sentences: told.sentences });
+        }
+        vec![Effect::Say(told.gravity, told.summary)]
+    }
+
+    /// A unit that got another address keeps its settings here.
+    fn follow_address(&mut self, old: &UnitKey, address: Option<u8>) {
+        let Some(address) = address.filter(|address| *address != old.address) else { return };
+        if let Some(unit) = self.units.remove(old) {
+            let new = UnitKey { address, ..old.clone() };
+            if self.current.as_ref() == Some(old) || self.current.as_ref() == Some(&new) {
+                self.current = Some(new.clone());
+            }
+            self.units.insert(new, unit);
+        }
+    }
+}
+
+/// What became of some work, for the user.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Told {
+    gravity: Gravity,
+    summary: String,
+    /// More than fits the message line.
+    sentences: Vec<String>,
+    /// Where the unit answers now, if the work can have changed that.
+    address: Option<u8>,
+}

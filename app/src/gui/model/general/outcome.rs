@@ -1,0 +1,137 @@
+//! What work with settings gave, taken over into a unit's settings and told in sentences.
+
+use brushwork_link::device::JobEnding;
+use brushwork_link::settings::{
+    DefaultsReport, ReadReport, SaveReport, SaveVerdict, SettingsTable, WriteError, WriteReport,
+};
+
+use super::super::message::Gravity;
+use super::Told;
+use super::unit::UnitSettings;
+use super::work::{Outcome, Running};
+
+pub(super) fn take(unit: &mut UnitSettings, outcome: Outcome) -> Told {
+    match outcome {
+        Outcome::Read(report) => read(unit, *report, false),
+        Outcome::Reloaded(report) => read(unit, *report, true),
+        Outcome::Written(report) => written(unit, &report),
+        Outcome::NotWritten(error) => not_written(error),
+        Outcome::Saved(report) => saved(unit, &report),
+        Outcome::Restored(report) => restored(unit, *report),
+    }
+}
+
+/// The work ended without a result.
+pub(super) fn nothing_came(running: &Running, ending: &JobEnding) -> Told {
+    let (gravity, summary) = match ending {
+        JobEnding::Interrupted(cause) => (
+            Gravity::Warning,
+            format!("Did not {}: {cause}. What the screen shows is from before.", running.name()),
+        ),
+        JobEnding::Failed(failure) => (Gravity::Error, failure.to_string()),
+        JobEnding::Panicked(word) => (
+            Gravity::Error,
+            format!(
+                "Could not {}: the program has a fault ({word}). Read the settings to see what they are.",
+                running.name()
+            ),
+        ),
+        JobEnding::Done(_) => (Gravity::Error, format!("Could not {}: no result came.", running.name())),
+    };
+    Told { gravity, summary, sentences: Vec::new(), address: None }
+}
+
+/// "1 setting", "7 settings".
+pub(super) fn settings(count: usize) -> String {
+    if count == 1 { "1 setting".to_owned() } else { format!("{count} settings") }
+}
+
+fn read(unit: &mut UnitSettings, report: ReadReport, from_eeprom: bool) -> Told {
+    let (known, failed) = (report.image.len(), unread(&report));
+    let from = if from_eeprom { "loaded from EEPROM and read" } else { "read" };
+    unit.note_read(report, from_eeprom);
+    let (gravity, rest) = match failed {
+        0 => (Gravity::Note, String::new()),
+        _ => (
+            Gravity::Warning,
+            format!(" {} could not be read; each row says why.", capital(&settings(failed))),
+        ),
+    };
+    let summary = format!("{} {from}.{rest}", capital(&settings(known)));
+    Told { gravity, summary, sentences: Vec::new(), address: None }
+}
+
+fn unread(report: &ReadReport) -> usize {
+    report.failures.iter().map(|failure| failure.keys.len()).sum()
+}
+
+fn written(unit: &mut UnitSettings, report: &WriteReport) -> Told {
+    let wanted = report.rows.len();
+    let failed = report.did_not_take().count();
+    let mut sentences = report.sentences(unit.table());
+    sentences.extend(report.ended_early.iter().map(ToString::to_string));
+    unit.note_written(report);
+    let (gravity, summary) = if failed == 0 {
+        let text = format!(
+            "{} written and read back as wanted. Save to EEPROM to keep them over a power cycle.",
+            capital(&settings(wanted))
+        );
+        (Gravity::Note, text)
+    } else {
+        sentences.extend(report.warnings.iter().cloned());
+        let text = format!("{failed} of {} did not take; their rows keep the change.", settings(wanted));
+        (Gravity::Error, text)
+    };
+    Told { gravity, summary, sentences, address: Some(report.address.get()) }
+}
+
+fn not_written(error: WriteError) -> Told {
+    let (summary, sentences) = match error {
+        WriteError::Refused { refusals } => (
+            "Nothing was written: some of the changes cannot be.".to_owned(),
+            refusals.into_iter().map(|refusal| refusal.sentence).collect(),
+        ),
+        WriteError::NotRead { failure } => (format!("Nothing was written. {failure}"), Vec::new()),
+    };
+    Told { gravity: Gravity::Error, summary, sentences, address: None }
+}
+
+fn saved(unit: &mut UnitSettings, report: &SaveReport) -> Told {
+    let gravity = match report.verdict {
+        SaveVerdict::Verified => Gravity::Note,
+        SaveVerdict::Acknowledged => Gravity::Warning,
+        SaveVerdict::NotSaved | SaveVerdict::Unknown => Gravity::Error,
+    };
+    let sentences = differences(unit.table(), report);
+    unit.note_saved(report);
+    Told { gravity, summary: report.sentence(), sentences, address: None }
+}
+
+fn differences(table: &SettingsTable, report: &SaveReport) -> Vec<String> {
+    let wanted = report.differences.iter();
+    let mut sentences: Vec<String> = wanted
+        .filter_map(|difference| {
+            let row = table.row(&difference.key)?;
+            Some(format!("{} (wanted, then what EEPROM holds).", difference.describe(row)))
+        })
+        .collect();
+    sentences.extend(report.put_back.iter().flat_map(|put_back| put_back.sentences(table)));
+    sentences
+}
+
+fn restored(unit: &mut UnitSettings, report: DefaultsReport) -> Told {
+    let own = report.differences.len();
+    let address = report.address.get();
+    unit.note_read(report.read, false);
+    let mut summary =
+        "The controller works with its default settings. Save to EEPROM to keep them.".to_owned();
+    if own > 0 {
+        summary += &format!(" {} came back with another value than listed here.", capital(&settings(own)));
+    }
+    Told { gravity: Gravity::Note, summary, sentences: Vec::new(), address: Some(address) }
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}

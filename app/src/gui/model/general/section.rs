@@ -1,0 +1,93 @@
+//! The parts of the settings, as Ion Studio groups them: the unit's own first, then one for each port, pin and
+//! output.
+
+use brushwork_link::settings::{Group, Row, SettingsTable};
+
+use super::General;
+
+/// A part of the settings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Section {
+    /// All rows of a group.
+    Group(Group),
+    /// The rows of one port, pin or output: its group, and its number there.
+    One(Group, usize),
+}
+
+impl Default for Section {
+    fn default() -> Self {
+        Self::Group(Group::Unit)
+    }
+}
+
+impl Section {
+    /// The section a row stands in.
+    pub fn of(row: &Row) -> Self {
+        match (&row.instance, row.group) {
+            (Some(instance), Group::Streams | Group::Pins | Group::Outputs) => {
+                Self::One(row.group, instance.number)
+            }
+            _ => Self::Group(row.group),
+        }
+    }
+
+    /// Whether it stands in the second list, that of pins.
+    pub fn is_pin(self) -> bool {
+        matches!(self, Self::One(..) | Self::Group(Group::Buses))
+    }
+}
+
+/// The sections of a controller with their names: first those of the unit, then those of its pins.
+pub fn sections(table: &SettingsTable) -> Vec<(Section, &str)> {
+    let mut found: Vec<(Section, &str)> = Vec::new();
+    for row in table.rows() {
+        let section = Section::of(row);
+        if found.iter().all(|(known, _)| *known != section) {
+            let name = match (section, &row.instance) {
+                (Section::One(..), Some(instance)) => instance.name.as_str(),
+                _ => row.group.label(),
+            };
+            found.push((section, name));
+        }
+    }
+    // Ion Studio lists ports, buses, inputs and outputs in this order.
+    let place = |section: Section| match section {
+        Section::Group(Group::Buses) => (2, Group::Buses),
+        Section::Group(group) => (0, group),
+        Section::One(group @ Group::Streams, _) => (1, group),
+        Section::One(group @ Group::Pins, _) => (3, group),
+        Section::One(group, _) => (4, group),
+    };
+    found.sort_by_key(|(section, _)| place(*section));
+    found
+}
+
+impl General {
+    /// Whether rows are picked from all sections.
+    pub fn is_filtered(&self) -> bool {
+        self.only_changed || !self.search.trim().is_empty()
+    }
+
+    /// The keys of the rows to show, in screen order.
+    pub fn shown(&self) -> Vec<String> {
+        let Some(unit) = self.unit() else { return Vec::new() };
+        let words: Vec<String> = self.search.split_whitespace().map(str::to_lowercase).collect();
+        let is_shown = |row: &&Row| {
+            if self.is_filtered() {
+                (!self.only_changed || unit.is_edited(&row.key)) && matches(row, &words)
+            } else {
+                Section::of(row) == self.section
+            }
+        };
+        unit.table().rows().iter().filter(is_shown).map(|row| row.key.clone()).collect()
+    }
+}
+
+/// Whether a row has every word in its name, its key or its group.
+fn matches(row: &Row, words: &[String]) -> bool {
+    if words.is_empty() {
+        return true;
+    }
+    let text = format!("{} {} {}", row.title(), row.key, row.group.label()).to_lowercase();
+    words.iter().all(|word| text.contains(word))
+}

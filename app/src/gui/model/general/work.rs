@@ -1,0 +1,145 @@
+//! Work with settings on the device thread: one job each, with its result in a channel of its own.
+//!
+//! The result does not travel in the job's output, since a job that was cancelled has a result too: what was written
+//! and what was not.
+
+use std::time::Duration;
+
+use brushwork_link::Failure;
+use brushwork_link::device::{FnJob, Job, JobContext};
+use brushwork_link::settings::{
+    DefaultsReport, ReadReport, SaveReport, WriteError, WriteOptions, WriteReport, read_all, reload,
+    restore_defaults, save_eeprom, write,
+};
+use brushwork_link::transport::Stream;
+use crossbeam_channel::{Receiver, bounded};
+
+use super::UnitKey;
+use super::unit::UnitSettings;
+
+/// What can be asked of the settings' controller.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SettingsWish {
+    /// Reads what the controller works with.
+    Read,
+    /// Makes the controller load its EEPROM, then reads.
+    Reload,
+    /// Writes the edits to the controller's RAM and reads them back.
+    Write,
+    /// Saves the controller's RAM to its EEPROM and reads that back.
+    Save,
+    RestoreDefaults,
+    /// Ends the work that runs.
+    Cancel,
+}
+
+/// Work that was begun and has not ended.
+#[derive(Debug)]
+pub struct Running {
+    pub(super) unit: UnitKey,
+    pub(super) name: String,
+    pub(super) has_started: bool,
+    /// 0 to 1, where it is known.
+    pub fraction: Option<f32>,
+    pub text: String,
+    pub is_cancelled: bool,
+    result: Receiver<Outcome>,
+}
+
+/// What work gave.
+#[derive(Debug)]
+pub(super) enum Outcome {
+    Read(Box<ReadReport>),
+    Reloaded(Box<ReadReport>),
+    Written(Box<WriteReport>),
+    NotWritten(WriteError),
+    Saved(Box<SaveReport>),
+    Restored(Box<DefaultsReport>),
+}
+
+impl Running {
+    /// What it does: "read the settings".
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    pub(super) fn result(&self) -> Option<Outcome> {
+        self.result.try_recv().ok()
+    }
+}
+
+/// Longest time for reading: a serial line of 2400 bit/s takes most of it.
+const READING_LIMIT: Duration = Duration::from_secs(120);
+/// Longest time for anything that writes, reading before and after included.
+const WRITING_LIMIT: Duration = Duration::from_secs(400);
+
+/// The job for a wish.
+pub(super) fn begin(
+    wish: SettingsWish,
+    key: UnitKey,
+    unit: &UnitSettings,
+    own_stream: Option<Stream>,
+) -> Option<(Box<dyn Job>, Running)> {
+    let table = unit.table().clone();
+    let subject = *table.subject();
+    let options = unit.options(own_stream);
+    let begun = match wish {
+        SettingsWish::Cancel => return None,
+        SettingsWish::Read => job(key, "read the settings".to_owned(), READING_LIMIT, move |context| {
+            read_all(context, subject).map(|report| Outcome::Read(Box::new(report)))
+        }),
+        SettingsWish::Reload => {
+            job(key, "load the settings from EEPROM".to_owned(), WRITING_LIMIT, move |context| {
+                reload(context, &table).map(|report| Outcome::Reloaded(Box::new(report)))
+            })
+        }
+        SettingsWish::Write => writing(key, unit, options),
+        SettingsWish::Save => {
+            job(key, "save the settings to EEPROM".to_owned(), WRITING_LIMIT, move |context| {
+                save_eeprom(context, &table, options).map(|report| Outcome::Saved(Box::new(report)))
+            })
+        }
+        SettingsWish::RestoreDefaults => {
+            job(key, "restore the default settings".to_owned(), WRITING_LIMIT, move |context| {
+                restore_defaults(context, subject).map(|report| Outcome::Restored(Box::new(report)))
+            })
+        }
+    };
+    Some(begun)
+}
+
+fn writing(key: UnitKey, unit: &UnitSettings, options: WriteOptions) -> (Box<dyn Job>, Running) {
+    let (table, wanted) = (unit.table().clone(), unit.edits().clone());
+    let name = format!("write {}", super::outcome::settings(wanted.len()));
+    job(key, name, WRITING_LIMIT, move |context| {
+        Ok(match write(context, &table, &wanted, options) {
+            Ok(report) => Outcome::Written(Box::new(report)),
+            Err(error) => Outcome::NotWritten(error),
+        })
+    })
+}
+
+fn job(
+    unit: UnitKey,
+    name: String,
+    limit: Duration,
+    mut work: impl FnMut(&mut JobContext<'_>) -> Result<Outcome, Failure> + Send + 'static,
+) -> (Box<dyn Job>, Running) {
+    let (sender, result) = bounded(1);
+    let job = FnJob::boxed(name.clone(), limit, move |context| {
+        let outcome = work(context)?;
+        // Nobody waits for it when the link was closed meanwhile.
+        let _ = sender.try_send(outcome);
+        Ok(Box::new(()))
+    });
+    let running = Running {
+        unit,
+        name,
+        has_started: false,
+        fraction: None,
+        text: String::new(),
+        is_cancelled: false,
+        result,
+    };
+    (job, running)
+}

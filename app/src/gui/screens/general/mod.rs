@@ -1,0 +1,48 @@
+//! General Settings (MCP manual 1.2.10 and 1.9): every setting of the controller, grouped as Ion Studio groups them.
+//!
+//! Changing a row changes nothing on the controller; the write sheet shows what will be written, old and new. Sheets
+//! stand in place of the list and not above the window, so that nothing ever covers Stop All.
+
+use egui::{Align, Layout, Ui, vec2};
+
+use super::{not_connected_text, nothing_ui};
+use crate::gui::command::{Command, Commands};
+use crate::gui::model::Model;
+use crate::gui::model::general::SettingsWish;
+
+mod editor;
+mod head;
+mod help;
+mod nav;
+mod rows;
+mod sheet;
+
+const NAV_WIDTH: f32 = 184.0;
+
+pub fn general_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    let Some(identity) = model.link.identity() else {
+        return nothing_ui(ui, &not_connected_text(&model.phase));
+    };
+    let general = &mut model.general;
+    general.look_at(identity);
+    if general.wants_reading() {
+        commands.push(Command::Settings(SettingsWish::Read));
+    }
+    head::head_ui(ui, general, commands);
+    ui.add_space(4.0);
+    if general.sheet().is_some() {
+        return sheet::sheet_ui(ui, general, model.link.stream, commands);
+    }
+    let size = ui.available_size();
+    ui.horizontal_top(|ui| {
+        ui.allocate_ui_with_layout(vec2(NAV_WIDTH, size.y), Layout::top_down(Align::Min), |ui| {
+            nav::nav_ui(ui, general);
+        });
+        let width = ui.available_width();
+        ui.allocate_ui_with_layout(vec2(width, size.y), Layout::top_down(Align::Min), |ui| {
+            ui.set_width(width);
+            rows::rows_ui(ui, general, size.y - help::HEIGHT - ui.spacing().item_spacing.y);
+            help::help_ui(ui, general);
+        });
+    });
+}

@@ -1,0 +1,196 @@
+//! What each act will do, shown before it is done; and what did not go as wanted, after.
+
+use brushwork_link::settings::Difference;
+use brushwork_link::transport::Stream;
+use egui::{Button, Grid, Label, RichText, ScrollArea, Ui, vec2};
+
+use crate::gui::command::{Command, Commands};
+use crate::gui::model::general::{General, Saved, SettingsWish, Sheet, UnitSettings};
+use crate::gui::theme::Palette;
+use crate::gui::widgets::LampState;
+
+/// A button that does something, and what.
+type Act = (&'static str, SettingsWish, bool);
+
+/// Room for the buttons below the text.
+const BUTTONS_HEIGHT: f32 = 44.0;
+
+pub fn sheet_ui(ui: &mut Ui, general: &mut General, stream: Option<Stream>, commands: &mut Commands) {
+    let (Some(sheet), Some(unit)) = (general.sheet().cloned(), general.unit()) else { return };
+    let height = (ui.available_height() - BUTTONS_HEIGHT).max(60.0);
+    let acts = ui.scope(|ui| {
+        ui.set_height(height);
+        let area = ScrollArea::vertical().id_salt(format!("{sheet:?}")).auto_shrink(false);
+        area.show(ui, |ui| match &sheet {
+            Sheet::Read => read_ui(ui, unit),
+            Sheet::Write => write_ui(ui, unit, stream),
+            Sheet::Save => save_ui(ui, unit),
+            Sheet::Defaults => defaults_ui(ui, unit),
+            Sheet::Report { title, sentences } => report_ui(ui, title, sentences),
+        })
+        .inner
+    });
+    buttons_ui(ui, general, &acts.inner, commands);
+}
+
+fn buttons_ui(ui: &mut Ui, general: &mut General, acts: &[Act], commands: &mut Commands) {
+    let focus = general.take_sheet_focus();
+    let mut close = false;
+    ui.horizontal(|ui| {
+        for (index, (text, wish, enabled)) in acts.iter().enumerate() {
+            let response = ui.add_enabled(*enabled, Button::new(*text).min_size(vec2(120.0, 30.0)));
+            if focus && index == 0 && *enabled {
+                response.request_focus();
+            }
+            if response.clicked() {
+                commands.push(Command::Settings(*wish));
+            }
+        }
+        let back = ui.add(Button::new("Back").min_size(vec2(90.0, 30.0)));
+        if focus && !acts.first().is_some_and(|(_, _, enabled)| *enabled) {
+            back.request_focus();
+        }
+        close = back.clicked() || ui.input(|input| input.key_pressed(egui::Key::Escape));
+    });
+    if close && !focus {
+        general.close_sheet();
+    }
+}
+
+fn read_ui(ui: &mut Ui, unit: &UnitSettings) -> Vec<Act> {
+    title_ui(ui, "Read settings");
+    text_ui(ui, "Read asks the controller for every setting it works with now. Nothing on it changes.");
+    text_ui(
+        ui,
+        "Load from EEPROM makes the controller take back what it saved last, then reads that. \
+         What it works with now and was not saved is lost.",
+    );
+    if !unit.unsaved().is_empty() {
+        text_ui(ui, "These come back (works with now -> in EEPROM, as last known):");
+        differences_ui(ui, unit, unit.unsaved().iter().map(swapped));
+    }
+    if !unit.edits().is_empty() {
+        text_ui(ui, "Your changes that are not written stay on this screen either way.");
+    }
+    vec![("Read", SettingsWish::Read, true), ("Load from EEPROM", SettingsWish::Reload, true)]
+}
+
+fn swapped(difference: &Difference) -> Difference {
+    Difference { key: difference.key.clone(), left: difference.right, right: difference.left }
+}
+
+fn write_ui(ui: &mut Ui, unit: &UnitSettings, stream: Option<Stream>) -> Vec<Act> {
+    let changes = unit.changes();
+    title_ui(ui, "Write settings");
+    text_ui(
+        ui,
+        "Writes these to what the controller works with (RAM) and reads them back. A power cycle brings the old \
+         ones back until they are saved to EEPROM.",
+    );
+    differences_ui(ui, unit, changes.iter().cloned());
+    for refusal in unit.refused() {
+        lamp_ui(ui, LampState::Warning, &format!("{refusal} It is not written."));
+    }
+    let can_be_written = match unit.plan(stream) {
+        Ok(plan) => {
+            for warning in &plan.warnings {
+                lamp_ui(ui, LampState::Warning, warning);
+            }
+            true
+        }
+        Err(refusals) => {
+            for refusal in &refusals {
+                lamp_ui(ui, LampState::Error, &refusal.sentence);
+            }
+            false
+        }
+    };
+    vec![("Write to controller", SettingsWish::Write, can_be_written && !changes.is_empty())]
+}
+
+fn save_ui(ui: &mut Ui, unit: &UnitSettings) -> Vec<Act> {
+    title_ui(ui, "Save to EEPROM");
+    text_ui(
+        ui,
+        "Saves all settings that the controller works with now, loads them back and compares. The controller may \
+         restart; motors must stand still.",
+    );
+    match unit.saved() {
+        Saved::Yes => text_ui(ui, "As far as known its EEPROM holds the same already."),
+        Saved::Differs(_) => {
+            text_ui(ui, "These are saved (in EEPROM, as last known -> works with now):");
+            differences_ui(ui, unit, unit.unsaved().into_iter());
+        }
+        Saved::NotKnown { .. } => {
+            text_ui(ui, "What its EEPROM holds now is not known, so what changes there cannot be listed.");
+        }
+    }
+    if !unit.edits().is_empty() {
+        let text =
+            "Changes on this screen that are not written are not saved. Write them first to keep them.";
+        lamp_ui(ui, LampState::Warning, text);
+    }
+    vec![("Save", SettingsWish::Save, true)]
+}
+
+fn defaults_ui(ui: &mut Ui, unit: &UnitSettings) -> Vec<Act> {
+    let changes = unit.changes_to_defaults();
+    title_ui(ui, "Default settings");
+    text_ui(
+        ui,
+        "Makes the controller work with its factory settings, then reads them. They last only once they are saved \
+         to EEPROM.",
+    );
+    if changes.is_empty() {
+        text_ui(ui, "As far as known it has its defaults already.");
+    } else {
+        text_ui(ui, "As far as the defaults are known this changes (works with now -> default):");
+        differences_ui(ui, unit, changes.into_iter());
+    }
+    if !unit.edits().is_empty() {
+        text_ui(ui, "Your changes that are not written stay on this screen.");
+    }
+    vec![("Restore defaults", SettingsWish::RestoreDefaults, true)]
+}
+
+fn report_ui(ui: &mut Ui, title: &str, sentences: &[String]) -> Vec<Act> {
+    title_ui(ui, title);
+    for sentence in sentences {
+        lamp_ui(ui, LampState::Error, sentence);
+    }
+    Vec::new()
+}
+
+fn title_ui(ui: &mut Ui, text: &str) {
+    ui.label(RichText::new(text).size(16.0).strong());
+}
+
+fn text_ui(ui: &mut Ui, text: &str) {
+    ui.add(Label::new(text).wrap());
+}
+
+fn lamp_ui(ui: &mut Ui, state: LampState, text: &str) {
+    ui.horizontal_top(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(18.0, 18.0), egui::Sense::hover());
+        state.paint(ui, rect.center(), 6.0);
+        ui.add(Label::new(text).wrap());
+    });
+}
+
+/// Old and new of each setting, with units.
+fn differences_ui(ui: &mut Ui, unit: &UnitSettings, differences: impl Iterator<Item = Difference>) {
+    let weak = Palette::of(ui).weak_text;
+    Grid::new("differences").num_columns(4).spacing([16.0, 3.0]).show(ui, |ui| {
+        for difference in differences {
+            let Some(row) = unit.table().row(&difference.key) else { continue };
+            let text =
+                |value: Option<_>| value.map_or_else(|| "not known".to_owned(), |value| row.format(value));
+            ui.label(row.title());
+            ui.label(RichText::new(text(difference.left)).color(weak));
+            ui.label("->");
+            let new = ui.label(RichText::new(text(difference.right)).strong());
+            new.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, difference.describe(row)));
+            ui.end_row();
+        }
+    });
+}

@@ -1,0 +1,350 @@
+//! The General Settings screen against a simulated controller, in virtual time, by role and label.
+
+mod support;
+
+use brushwork::gui::model::general::{Sheet, sections};
+use brushwork::gui::model::message::Gravity;
+use brushwork::gui::model::screen::Screen;
+use brushwork_protocol::packet_serial::number;
+use brushwork_sim::settings::Settings;
+use egui::Key;
+use egui::accesskit::Role;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use support::bench::Bench;
+
+const MAX_VOLTS: &str = "Main battery maximum";
+
+/// Connected, with the screen opened and everything read.
+fn opened() -> Bench {
+    opened_in(Bench::new())
+}
+
+fn opened_in(mut bench: Bench) -> Bench {
+    bench.connect();
+    open(&mut bench);
+    bench
+}
+
+fn open(bench: &mut Bench) {
+    bench.harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::Num2);
+    bench.pass_ms(3000);
+    assert_eq!(bench.model().screen, Screen::GeneralSettings);
+    assert!(bench.model().general.running().is_none());
+}
+
+/// What the controller works with.
+fn truth(bench: &Bench) -> Settings {
+    bench.line.with(|bus| bus.controllers()[0].settings())
+}
+
+/// What it has in EEPROM.
+fn stored(bench: &Bench) -> Settings {
+    bench.line.with(|bus| bus.controllers()[0].stored_settings())
+}
+
+/// Types a value into a field, with the keyboard alone.
+fn enter(bench: &mut Bench, title: &str, text: &str) {
+    bench.harness.get_by_role_and_label(Role::TextInput, title).focus();
+    bench.pass_ms(100);
+    bench.harness.get_by_role_and_label(Role::TextInput, title).type_text(text);
+    bench.pass_ms(100);
+    bench.key(Key::Enter);
+    bench.pass_ms(100);
+}
+
+/// Opens the write sheet and writes.
+fn write(bench: &mut Bench) {
+    bench.press("Write settings");
+    bench.press("Write to controller");
+    bench.pass_ms(3000);
+}
+
+#[test]
+fn opening_the_screen_reads_every_setting_and_changes_none() {
+    let mut bench = Bench::new();
+    bench.connect();
+    let before = truth(&bench);
+    bench.harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::Num2);
+    bench.pass_ms(300);
+    open(&mut bench);
+    assert!(bench.sees("Edits: none"));
+    assert!(bench.sees("EEPROM: not known"));
+    bench.press("Section Voltage limits");
+    assert!(bench.sees(&format!("{MAX_VOLTS} on the controller: 60.0 V")), "{before:?}");
+    assert!(bench.sees("Main battery minimum default: 10.0 V"));
+    assert_eq!(truth(&bench), before);
+    assert!(bench.both_stand());
+    let unit = bench.model().general.unit().unwrap();
+    let unread: Vec<_> =
+        unit.table().rows().iter().filter(|row| unit.on_controller(&row.key).is_none()).collect();
+    assert!(unread.is_empty(), "{unread:?}");
+}
+
+#[test]
+fn a_limit_is_changed_written_and_read_back() {
+    let mut bench = opened();
+    bench.press("Section Voltage limits");
+    enter(&mut bench, MAX_VOLTS, "33.5");
+    assert!(bench.sees("Edits: 1 not written"));
+    assert!(bench.sees(&format!("{MAX_VOLTS} is changed")));
+    assert_ne!(truth(&bench).battery.main_max_tenths, 335, "typing alone writes nothing");
+    bench.press("Write settings");
+    assert!(bench.sees(&format!("{MAX_VOLTS}: 60.0 V -> 33.5 V")), "the sheet lists old and new");
+    bench.press("Write to controller");
+    bench.pass_ms(3000);
+    assert_eq!(truth(&bench).battery.main_max_tenths, 335);
+    assert!(bench.sees("Edits: none"));
+    assert!(bench.sees(&format!("{MAX_VOLTS} on the controller: 33.5 V")));
+    assert!(bench.sees("EEPROM: 1 written, not saved"));
+    assert_ne!(stored(&bench).battery.main_max_tenths, 335, "nothing goes to EEPROM without being asked for");
+}
+
+#[test]
+fn saving_puts_it_into_eeprom_and_is_read_back_from_there() {
+    let mut bench = opened();
+    bench.press("Section Voltage limits");
+    enter(&mut bench, MAX_VOLTS, "33.5 V");
+    write(&mut bench);
+    bench.press("Save to EEPROM");
+    assert!(bench.sees_part("loads them back and compares"));
+    assert_ne!(stored(&bench).battery.main_max_tenths, 335, "the sheet asks first");
+    bench.press("Save");
+    bench.pass_ms(10_000);
+    assert_eq!(stored(&bench).battery.main_max_tenths, 335);
+    assert!(bench.sees("EEPROM: saved"), "{:?}", bench.model().messages.shown());
+    enter(&mut bench, MAX_VOLTS, "30");
+    write(&mut bench);
+    assert!(bench.sees("EEPROM: 1 not saved"));
+}
+
+#[test]
+fn what_did_not_take_is_named_with_both_values_and_stays_an_edit() {
+    let mut bench = opened();
+    bench.press("Section Voltage limits");
+    enter(&mut bench, MAX_VOLTS, "33.5");
+    // Acknowledged with 0xFF and not carried out.
+    bench.line.swallow(number::SET_MAIN_VOLTAGES, &[0xFF]);
+    write(&mut bench);
+    assert!(bench.sees_part(&format!("{MAX_VOLTS} was to be 33.5 V and is 60.0 V")));
+    assert_eq!(bench.model().messages.shown().unwrap().gravity, Gravity::Error);
+    bench.press("Back");
+    assert!(bench.sees("Edits: 1 not written"), "the wish is kept");
+    assert!(bench.sees_part(&format!("{MAX_VOLTS}: {MAX_VOLTS} was to be 33.5 V")), "its row says why");
+}
+
+#[test]
+fn an_edit_made_while_a_write_runs_stays() {
+    let mut bench = opened();
+    bench.press("Section Voltage limits");
+    enter(&mut bench, MAX_VOLTS, "33.5");
+    bench.press("Write settings");
+    bench.button("Write to controller").click();
+    bench.harness.step();
+    assert!(bench.model().general.running().is_some());
+    let min_volts = brushwork_link::settings::SettingValue::Number(12.0);
+    bench.model().general.unit_mut().unwrap().set("limits.main_battery.min_volts", min_volts);
+    bench.pass_ms(3000);
+    assert_eq!(truth(&bench).battery.main_max_tenths, 335);
+    assert_ne!(truth(&bench).battery.main_min_tenths, 120, "it was made after the list was shown");
+    assert!(bench.sees("Edits: 1 not written"));
+    write(&mut bench);
+    assert_eq!(truth(&bench).battery.main_min_tenths, 120);
+}
+
+#[test]
+fn an_edit_is_reverted_by_its_row_and_all_by_one_button() {
+    let mut bench = opened();
+    bench.press("Section Voltage limits");
+    enter(&mut bench, MAX_VOLTS, "33.5");
+    enter(&mut bench, "Main battery minimum", "12");
+    bench.press(&format!("Revert {MAX_VOLTS}"));
+    assert!(bench.sees("Edits: 1 not written"));
+    bench.press("Revert all");
+    assert!(bench.sees("Edits: none"));
+    assert!(bench.see("Write settings").accesskit_node().is_disabled());
+    enter(&mut bench, MAX_VOLTS, "60");
+    assert!(bench.sees("Edits: none"), "the controller's own value is no change");
+}
+
+#[test]
+fn a_value_out_of_range_is_refused_in_a_sentence_and_not_written() {
+    let mut bench = opened();
+    bench.press("Section Voltage limits");
+    enter(&mut bench, MAX_VOLTS, "99");
+    assert!(bench.sees_part(&format!("{MAX_VOLTS} 99.0 V is above the MCP266's 60.0 V")));
+    assert!(bench.see("Write settings").accesskit_node().is_disabled());
+    enter(&mut bench, MAX_VOLTS, "9");
+    enter(&mut bench, MAX_VOLTS, "nonsense");
+    assert!(bench.sees("Edits: none"));
+    enter(&mut bench, MAX_VOLTS, "20");
+    enter(&mut bench, "Main battery minimum", "25");
+    bench.press("Write settings");
+    assert!(bench.sees_part("Main battery minimum 25.0 V would be above"), "pairs are judged together");
+    assert!(bench.see("Write to controller").accesskit_node().is_disabled());
+}
+
+#[test]
+fn search_and_only_changed_pick_rows_from_all_sections() {
+    let mut bench = opened();
+    bench.harness.get_by_role_and_label(Role::TextInput, "Search settings").focus();
+    bench.pass_ms(100);
+    bench.harness.get_by_role_and_label(Role::TextInput, "Search settings").type_text("battery max");
+    bench.pass_ms(200);
+    let shown = bench.model().general.shown();
+    assert_eq!(shown, ["limits.main_battery.max_volts", "limits.logic_battery.max_volts"]);
+    assert!(bench.sees_part("2 of "));
+    enter(&mut bench, MAX_VOLTS, "33.5");
+    bench.press("Section Unit settings");
+    assert_eq!(bench.model().general.search, "", "choosing a section ends the search");
+    assert!(!bench.sees(&format!("{MAX_VOLTS} on the controller: 60.0 V")));
+    bench.press("Only changed");
+    assert!(bench.sees(&format!("{MAX_VOLTS} on the controller: 60.0 V")));
+    assert!(bench.sees_part("1 of "));
+}
+
+#[test]
+fn each_pin_has_its_own_settings_and_those_that_do_not_apply_are_locked_with_the_reason() {
+    let mut bench = opened();
+    bench.press("Section DIN3/AN3");
+    let type_of_pin = || brushwork_link::settings::SettingValue::Choice("none");
+    let unit = bench.model().general.unit_mut().unwrap();
+    let pin = unit.table().rows().iter().find(|row| {
+        row.pattern == "pin.{n}.type" && row.instance.as_ref().is_some_and(|it| it.name == "DIN3/AN3")
+    });
+    let key = pin.unwrap().key.clone();
+    unit.set(&key, type_of_pin());
+    bench.pass_ms(200);
+    assert!(bench.sees_part("deadband is locked: Not applicable: this pin measures nothing"));
+    let field = bench.harness.get_by_role_and_label(Role::TextInput, "DIN3/AN3: deadband");
+    assert!(field.accesskit_node().is_disabled());
+}
+
+#[test]
+fn a_setting_without_a_wire_form_is_changed_on_the_simulated_controller_alone() {
+    let mut bench = opened();
+    assert!(!truth(&bench).unit.bridged);
+    bench.press("Bridge channels");
+    write(&mut bench);
+    assert!(truth(&bench).unit.bridged);
+    // The same unit, as if it were a real one.
+    let mut identity = bench.model().link.units[0].clone();
+    identity.simulated = false;
+    identity.port = "/dev/ttyACM0".to_owned();
+    bench.model().link.units[0] = identity;
+    bench.pass_ms(3000);
+    assert!(bench.sees_part("Bridge channels is locked: No packet serial command"));
+}
+
+#[test]
+fn what_could_not_be_read_says_why_in_its_row() {
+    let mut bench = Bench::new();
+    bench.connect();
+    // No answer at all to this one command.
+    bench.line.swallow(number::READ_MAIN_VOLTAGES, &[]);
+    open(&mut bench);
+    bench.press("Section Voltage limits");
+    assert!(bench.sees(&format!("{MAX_VOLTS} on the controller: –")));
+    assert!(bench.sees_part(&format!("{MAX_VOLTS}: Could not read")));
+    assert!(bench.sees("Logic battery maximum on the controller: 15.0 V"), "the rest is read all the same");
+    assert!(bench.sees_part("2 settings could not be read"));
+}
+
+#[test]
+fn edits_stay_when_the_screen_is_left_and_when_the_cable_is_pulled() {
+    let mut bench = opened();
+    bench.press("Section Voltage limits");
+    enter(&mut bench, MAX_VOLTS, "33.5");
+    bench.press("Device Status");
+    open(&mut bench);
+    assert!(bench.sees("Edits: 1 not written"));
+    bench.press("Disconnect");
+    bench.pass_ms(500);
+    bench.connect();
+    bench.pass_ms(3000);
+    assert!(bench.sees("Edits: 1 not written"));
+    assert!(bench.sees("EEPROM: not known"));
+    write(&mut bench);
+    assert_eq!(truth(&bench).battery.main_max_tenths, 335);
+}
+
+#[test]
+fn defaults_are_listed_before_they_are_restored() {
+    let mut bench = opened();
+    bench.press("Section Voltage limits");
+    enter(&mut bench, MAX_VOLTS, "33.5");
+    write(&mut bench);
+    bench.press("Default settings");
+    assert!(bench.sees(&format!("{MAX_VOLTS}: 33.5 V -> 60.0 V")));
+    assert_eq!(truth(&bench).battery.main_max_tenths, 335);
+    bench.press("Restore defaults");
+    bench.pass_ms(6000);
+    assert_eq!(truth(&bench).battery.main_max_tenths, 600);
+    assert!(bench.sees(&format!("{MAX_VOLTS} on the controller: 60.0 V")));
+}
+
+#[test]
+fn loading_from_eeprom_takes_back_what_was_not_saved() {
+    let mut bench = opened();
+    bench.press("Section Voltage limits");
+    enter(&mut bench, MAX_VOLTS, "33.5");
+    write(&mut bench);
+    bench.press("Read settings");
+    bench.press("Load from EEPROM");
+    bench.pass_ms(6000);
+    assert_eq!(truth(&bench).battery.main_max_tenths, 600);
+    assert!(bench.sees("EEPROM: saved"));
+}
+
+#[test]
+fn reading_can_be_cancelled_and_says_so() {
+    let mut bench = Bench::new();
+    bench.connect();
+    bench.harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::Num2);
+    // One frame to open the screen, one for the command to go out: nothing is read yet.
+    bench.harness.step();
+    bench.harness.step();
+    assert!(bench.sees_part("Progress: read the settings"));
+    bench.button("Cancel").click();
+    bench.harness.step();
+    bench.pass_ms(1000);
+    assert!(bench.sees_part("Did not read the settings: it was cancelled"));
+    assert!(bench.sees("Edits: not read yet"));
+    bench.press("Read settings");
+    bench.press("Read");
+    bench.pass_ms(3000);
+    assert!(bench.sees("Edits: none"));
+}
+
+#[test]
+fn the_stop_key_stops_and_closes_the_sheet_while_one_is_open() {
+    let mut bench = opened();
+    bench.press("Save to EEPROM");
+    assert_eq!(bench.model().general.sheet(), Some(&Sheet::Save));
+    assert!(bench.sees("Stop All"), "no sheet covers it");
+    bench.key(Key::Escape);
+    assert_eq!(bench.model().general.sheet(), None);
+    bench.pass_ms(300);
+    assert!(bench.sees_part("Stopped."));
+}
+
+#[test]
+fn every_section_can_be_drawn_at_the_smallest_size_and_the_screen_looks_as_it_did() {
+    let mut bench = opened_in(Bench::sized([1024.0, 700.0], egui::Theme::Light));
+    let unit = bench.model().general.unit().unwrap();
+    let sections: Vec<_> = sections(unit.table()).into_iter().map(|(section, _)| section).collect();
+    assert!(sections.len() > 20, "{sections:?}");
+    for section in sections {
+        bench.model().general.section = section;
+        bench.harness.step();
+        assert!(!bench.model().general.shown().is_empty(), "{section:?}");
+    }
+    bench.press("Section Voltage limits");
+    enter(&mut bench, MAX_VOLTS, "33.5");
+    enter(&mut bench, "Main battery minimum", "99");
+    bench.harness.set_render_cursor(false);
+    // Figures of the link and of noisy signals are not what this picture is about.
+    bench.model().link.statistics = brushwork_link::exchange::LinkStatistics::default();
+    bench.model().link.readings = brushwork::gui::model::readings::Readings::default();
+    bench.harness.step();
+    bench.harness.snapshot("general");
+}
