@@ -348,3 +348,83 @@ fn every_section_can_be_drawn_at_the_smallest_size_and_the_screen_looks_as_it_di
     bench.harness.step();
     bench.harness.snapshot("general");
 }
+
+#[test]
+fn a_profile_is_saved_opened_compared_and_taken_over_by_row() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("bench.json").display().to_string();
+    let mut bench = opened();
+    bench.press("Section Voltage limits");
+    enter(&mut bench, MAX_VOLTS, "33.5");
+    enter(&mut bench, "Main battery minimum", "12");
+    write(&mut bench);
+    bench.press("Save profile");
+    assert!(bench.harness.get_all_by_label("Save profile").any(|node| node.accesskit_node().is_disabled()));
+    bench.model().general.profiles.path = path.clone();
+    bench.pass_ms(200);
+    bench.harness.get_all_by_label("Save profile").last().unwrap().click();
+    bench.pass_ms(300);
+    assert!(bench.sees_part("242 settings are in"));
+    let saved = brushwork_link::settings::Profile::load(path.as_ref()).unwrap();
+    let wanted = brushwork_link::settings::SettingValue::Number(33.5);
+    assert_eq!(saved.settings.get("limits.main_battery.max_volts"), Some(wanted));
+    bench.press("Default settings");
+    bench.press("Restore defaults");
+    bench.pass_ms(6000);
+    bench.press("Open profile");
+    bench.press("Open");
+    assert_eq!(bench.model().general.sheet(), Some(&Sheet::Compare));
+    assert!(bench.sees(&format!("{MAX_VOLTS}: 60.0 V -> 33.5 V")));
+    assert!(bench.sees("Main battery minimum: 10.0 V -> 12.0 V"));
+    bench.press(&format!("Take over {MAX_VOLTS}"));
+    assert!(bench.sees("taken over") && bench.sees("Edits: 1 not written"));
+    assert_eq!(truth(&bench).battery.main_max_tenths, 600, "taking over writes nothing");
+    bench.press("Back");
+    write(&mut bench);
+    assert_eq!(truth(&bench).battery.main_max_tenths, 335);
+    assert_eq!(truth(&bench).battery.main_min_tenths, 100, "what was not taken over stays");
+    bench.press("Compare profile");
+    bench.press("Take over all");
+    write(&mut bench);
+    assert_eq!(truth(&bench).battery.main_min_tenths, 120);
+    bench.press("Compare profile");
+    assert!(bench.sees("The controller has every value of the profile."));
+}
+
+#[test]
+fn a_profile_that_is_faulty_or_made_for_another_controller_is_refused_with_every_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut bench = opened();
+    bench.press("Open profile");
+    bench.model().general.profiles.path = folder.path().join("none.json").display().to_string();
+    bench.pass_ms(200);
+    bench.press("Open");
+    assert!(bench.sees_part("Reading the profile"));
+    let path = folder.path().join("other.json");
+    let model = brushwork_protocol::models::lookup("mcp236").unwrap();
+    let subject =
+        brushwork_link::settings::Subject::new(model, brushwork_protocol::packet_serial::Generation::Gen2);
+    let other = brushwork_link::settings::Profile {
+        subject,
+        firmware: "MCP236 2x30A v1.0.0".to_owned(),
+        address: brushwork_protocol::packet_serial::Address::DEFAULT,
+        date: "2025-01-01T00:00:00Z".to_owned(),
+        settings: brushwork_link::settings::SettingsTable::new(subject).default_image(),
+    };
+    other.save(&path).unwrap();
+    bench.model().general.profiles.path = path.display().to_string();
+    bench.pass_ms(200);
+    bench.press("Open");
+    assert!(bench.sees_part("The profile was made for the MCP236"));
+    assert!(bench.see("Take over all").accesskit_node().is_disabled());
+    assert!(bench.sees("Edits: none"));
+    // One value beyond every range: refused at first, opened without it on request.
+    let mut broken = other.to_json();
+    broken = broken.replacen("128", "9999", 1);
+    std::fs::write(&path, broken).unwrap();
+    bench.press("Open profile");
+    bench.press("Open");
+    assert!(bench.sees_part("9999"));
+    bench.press("Open without what is wrong");
+    assert_eq!(bench.model().general.sheet(), Some(&Sheet::Compare));
+}

@@ -12,10 +12,12 @@ use super::message::Gravity;
 
 mod applicable;
 mod outcome;
+mod profile;
 mod section;
 mod unit;
 mod work;
 
+pub use profile::{Comparison, Profiles, Purpose, Told};
 pub use section::{Section, sections};
 pub use unit::{Saved, UnitSettings};
 pub use work::{Running, SettingsWish};
@@ -32,6 +34,7 @@ pub struct General {
     pub only_changed: bool,
     /// The row that is explained below the list, by its key.
     pub explained: Option<String>,
+    pub profiles: Profiles,
     sheet: Option<Sheet>,
     sheet_is_new: bool,
 }
@@ -43,6 +46,10 @@ pub enum Sheet {
     Write,
     Save,
     Defaults,
+    OpenProfile,
+    SaveProfile,
+    /// The open profile beside the controller.
+    Compare,
     /// What did not go as wanted, a sentence each.
     Report {
         title: String,
@@ -103,6 +110,7 @@ impl General {
     }
 
     pub fn open(&mut self, sheet: Sheet) {
+        self.profiles.forget_told();
         self.sheet = Some(sheet);
         self.sheet_is_new = true;
     }
@@ -201,14 +209,14 @@ impl General {
             if self.current.as_ref() == Some(old) || self.current.as_ref() == Some(&new) {
                 self.current = Some(new.clone());
             }
-            self.units.insert(new, unit);
+            self.units.insert(new, unit.at(address));
         }
     }
 }
 
 /// What became of some work, for the user.
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct Told {
+struct Summary {
     gravity: Gravity,
     summary: String,
     /// More than fits the message line.

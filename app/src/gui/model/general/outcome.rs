@@ -6,11 +6,11 @@ use brushwork_link::settings::{
 };
 
 use super::super::message::Gravity;
-use super::Told;
+use super::Summary;
 use super::unit::UnitSettings;
 use super::work::{Outcome, Running};
 
-pub(super) fn take(unit: &mut UnitSettings, outcome: Outcome) -> Told {
+pub(super) fn take(unit: &mut UnitSettings, outcome: Outcome) -> Summary {
     match outcome {
         Outcome::Read(report) => read(unit, *report, false),
         Outcome::Reloaded(report) => read(unit, *report, true),
@@ -22,7 +22,7 @@ pub(super) fn take(unit: &mut UnitSettings, outcome: Outcome) -> Told {
 }
 
 /// The work ended without a result.
-pub(super) fn nothing_came(running: &Running, ending: &JobEnding) -> Told {
+pub(super) fn nothing_came(running: &Running, ending: &JobEnding) -> Summary {
     let (gravity, summary) = match ending {
         JobEnding::Interrupted(cause) => (
             Gravity::Warning,
@@ -38,7 +38,7 @@ pub(super) fn nothing_came(running: &Running, ending: &JobEnding) -> Told {
         ),
         JobEnding::Done(_) => (Gravity::Error, format!("Could not {}: no result came.", running.name())),
     };
-    Told { gravity, summary, sentences: Vec::new(), address: None }
+    Summary { gravity, summary, sentences: Vec::new(), address: None }
 }
 
 /// "1 setting", "7 settings".
@@ -46,7 +46,7 @@ pub(super) fn settings(count: usize) -> String {
     if count == 1 { "1 setting".to_owned() } else { format!("{count} settings") }
 }
 
-fn read(unit: &mut UnitSettings, report: ReadReport, from_eeprom: bool) -> Told {
+fn read(unit: &mut UnitSettings, report: ReadReport, from_eeprom: bool) -> Summary {
     let (known, failed) = (report.image.len(), unread(&report));
     let from = if from_eeprom { "loaded from EEPROM and read" } else { "read" };
     unit.note_read(report, from_eeprom);
@@ -58,14 +58,14 @@ fn read(unit: &mut UnitSettings, report: ReadReport, from_eeprom: bool) -> Told 
         ),
     };
     let summary = format!("{} {from}.{rest}", capital(&settings(known)));
-    Told { gravity, summary, sentences: Vec::new(), address: None }
+    Summary { gravity, summary, sentences: Vec::new(), address: None }
 }
 
 fn unread(report: &ReadReport) -> usize {
     report.failures.iter().map(|failure| failure.keys.len()).sum()
 }
 
-fn written(unit: &mut UnitSettings, report: &WriteReport) -> Told {
+fn written(unit: &mut UnitSettings, report: &WriteReport) -> Summary {
     let wanted = report.rows.len();
     let failed = report.did_not_take().count();
     let mut sentences = report.sentences(unit.table());
@@ -82,10 +82,10 @@ fn written(unit: &mut UnitSettings, report: &WriteReport) -> Told {
         let text = format!("{failed} of {} did not take; their rows keep the change.", settings(wanted));
         (Gravity::Error, text)
     };
-    Told { gravity, summary, sentences, address: Some(report.address.get()) }
+    Summary { gravity, summary, sentences, address: Some(report.address.get()) }
 }
 
-fn not_written(error: WriteError) -> Told {
+fn not_written(error: WriteError) -> Summary {
     let (summary, sentences) = match error {
         WriteError::Refused { refusals } => (
             "Nothing was written: some of the changes cannot be.".to_owned(),
@@ -93,10 +93,10 @@ fn not_written(error: WriteError) -> Told {
         ),
         WriteError::NotRead { failure } => (format!("Nothing was written. {failure}"), Vec::new()),
     };
-    Told { gravity: Gravity::Error, summary, sentences, address: None }
+    Summary { gravity: Gravity::Error, summary, sentences, address: None }
 }
 
-fn saved(unit: &mut UnitSettings, report: &SaveReport) -> Told {
+fn saved(unit: &mut UnitSettings, report: &SaveReport) -> Summary {
     let gravity = match report.verdict {
         SaveVerdict::Verified => Gravity::Note,
         SaveVerdict::Acknowledged => Gravity::Warning,
@@ -104,7 +104,7 @@ fn saved(unit: &mut UnitSettings, report: &SaveReport) -> Told {
     };
     let sentences = differences(unit.table(), report);
     unit.note_saved(report);
-    Told { gravity, summary: report.sentence(), sentences, address: None }
+    Summary { gravity, summary: report.sentence(), sentences, address: None }
 }
 
 fn differences(table: &SettingsTable, report: &SaveReport) -> Vec<String> {
@@ -119,7 +119,7 @@ fn differences(table: &SettingsTable, report: &SaveReport) -> Vec<String> {
     sentences
 }
 
-fn restored(unit: &mut UnitSettings, report: DefaultsReport) -> Told {
+fn restored(unit: &mut UnitSettings, report: DefaultsReport) -> Summary {
     let own = report.differences.len();
     let address = report.address.get();
     unit.note_read(report.read, false);
@@ -128,7 +128,7 @@ fn restored(unit: &mut UnitSettings, report: DefaultsReport) -> Told {
     if own > 0 {
         summary += &format!(" {} came back with another value than listed here.", capital(&settings(own)));
     }
-    Told { gravity: Gravity::Note, summary, sentences: Vec::new(), address: Some(address) }
+    Summary { gravity: Gravity::Note, summary, sentences: Vec::new(), address: Some(address) }
 }
 
 fn capital(text: &str) -> String {

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use brushwork_link::device::Identity;
 use brushwork_link::settings::{
-    Copies, Difference, Plan, ReadReport, Refusal, Row, SaveReport, SaveVerdict, SettingValue, SettingsImage,
-    SettingsTable, Subject, WriteOptions, WriteReport, diff, plan,
+    Copies, Difference, Plan, Profile, ProfileChanges, ProfileError, ReadReport, Refusal, Row, SaveReport,
+    SaveVerdict, SettingValue, SettingsImage, SettingsTable, Subject, WriteOptions, WriteReport, diff, plan,
 };
 use brushwork_link::transport::Stream;
 use brushwork_protocol::models;
@@ -17,6 +17,8 @@ use super::applicable;
 pub struct UnitSettings {
     table: SettingsTable,
     is_simulated: bool,
+    address: u8,
+    firmware: String,
     copies: Copies,
     /// Wanted values that differ from the controller's.
     edits: SettingsImage,
@@ -56,6 +58,8 @@ impl UnitSettings {
         Self {
             table: SettingsTable::new(Subject::new(model, identity.generation)),
             is_simulated: identity.simulated,
+            address: identity.address,
+            firmware: identity.version_text.trim_end().to_owned(),
             copies: Copies::default(),
             edits: SettingsImage::default(),
             typed: BTreeMap::new(),
@@ -71,6 +75,25 @@ impl UnitSettings {
 
     pub fn edits(&self) -> &SettingsImage {
         &self.edits
+    }
+
+    /// What the controller works with, if it was read.
+    pub fn ram(&self) -> Option<&SettingsImage> {
+        self.copies.ram()
+    }
+
+    pub fn address(&self) -> u8 {
+        self.address
+    }
+
+    /// What the unit says of itself.
+    pub fn firmware(&self) -> &str {
+        &self.firmware
+    }
+
+    /// The same unit at another address.
+    pub(super) fn at(self, address: u8) -> Self {
+        Self { address, ..self }
     }
 
     /// Whether the controller's settings were read.
@@ -117,6 +140,17 @@ impl UnitSettings {
     /// Why the row cannot be changed: not at all, or not as the other settings are.
     pub fn locked(&self, row: &Row) -> Option<&'static str> {
         row.locked(self.is_simulated).or_else(|| applicable::why_not(row, |key| self.wanted(key)))
+    }
+
+    /// Whether the controller lets the row be written at all.
+    pub fn is_writable(&self, row: &Row) -> bool {
+        row.locked(self.is_simulated).is_none()
+    }
+
+    /// What would bring the controller to a profile, or why it does not fit.
+    pub fn changes_for(&self, profile: &Profile) -> Result<ProfileChanges, ProfileError> {
+        let nothing = SettingsImage::default();
+        profile.changes_for(&self.table, self.copies.ram().unwrap_or(&nothing), self.is_simulated)
     }
 
     /// Wants a value.

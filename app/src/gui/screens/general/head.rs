@@ -10,7 +10,7 @@ use crate::gui::widgets::text_field::text_field_ui;
 
 const SEARCH_WIDTH: f32 = 190.0;
 /// So that a count in a button moves nothing.
-const BUTTON_WIDTH: f32 = 92.0;
+const BUTTON_WIDTH: f32 = 84.0;
 
 pub fn head_ui(ui: &mut Ui, general: &mut General, commands: &mut Commands) {
     marks_ui(ui, general.unit());
@@ -66,6 +66,7 @@ fn mark_ui(ui: &mut Ui, state: LampState, title: &str, text: &str) {
 fn buttons_ui(ui: &mut Ui, general: &mut General) {
     let Some(unit) = general.unit() else { return };
     let idle = general.running().is_none();
+    let has_profile = general.profiles.opened().is_some();
     let edits = unit.edits().len();
     let write = if edits == 0 { "Write…".to_owned() } else { format!("Write {edits}…") };
     let buttons = [
@@ -79,6 +80,21 @@ fn buttons_ui(ui: &mut Ui, general: &mut General) {
         ),
         ("Save to EEPROM…", "Save to EEPROM", idle, "Keeps the settings over a power cycle", Sheet::Save),
         ("Default…", "Default settings", idle, "Restores the factory settings", Sheet::Defaults),
+        (
+            "Open profile…",
+            "Open profile",
+            true,
+            "Reads a file, shown beside the controller",
+            Sheet::OpenProfile,
+        ),
+        ("Save profile…", "Save profile", true, "Keeps the settings in a file", Sheet::SaveProfile),
+        (
+            "Compare…",
+            "Compare profile",
+            has_profile,
+            "The open profile beside the controller",
+            Sheet::Compare,
+        ),
     ];
     let mut wanted = None;
     ui.horizontal_wrapped(|ui| {

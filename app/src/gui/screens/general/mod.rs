@@ -14,6 +14,7 @@ mod editor;
 mod head;
 mod help;
 mod nav;
+mod profile;
 mod rows;
 mod sheet;
 

@@ -4,60 +4,93 @@ use brushwork_link::settings::Difference;
 use brushwork_link::transport::Stream;
 use egui::{Button, Grid, Label, RichText, ScrollArea, Ui, vec2};
 
+use super::profile;
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::general::{General, Saved, SettingsWish, Sheet, UnitSettings};
 use crate::gui::theme::Palette;
 use crate::gui::widgets::LampState;
 
-/// A button that does something, and what.
-type Act = (&'static str, SettingsWish, bool);
+/// What a button of a sheet does.
+#[derive(Clone, Copy, Debug)]
+pub enum Act {
+    Wish(SettingsWish),
+    OpenProfile { mending: bool },
+    SaveProfile,
+    TakeOverAll,
+}
+
+/// A button: its text, what it does, whether it can be pressed.
+pub type Offer = (&'static str, Act, bool);
 
 /// Room for the buttons below the text.
 const BUTTONS_HEIGHT: f32 = 44.0;
 
 pub fn sheet_ui(ui: &mut Ui, general: &mut General, stream: Option<Stream>, commands: &mut Commands) {
-    let (Some(sheet), Some(unit)) = (general.sheet().cloned(), general.unit()) else { return };
+    general.follow_dialog();
+    let Some(sheet) = general.sheet().cloned() else { return };
     let height = (ui.available_height() - BUTTONS_HEIGHT).max(60.0);
-    let acts = ui.scope(|ui| {
+    let offers = ui.scope(|ui| {
         ui.set_height(height);
         let area = ScrollArea::vertical().id_salt(format!("{sheet:?}")).auto_shrink(false);
-        area.show(ui, |ui| match &sheet {
-            Sheet::Read => read_ui(ui, unit),
-            Sheet::Write => write_ui(ui, unit, stream),
-            Sheet::Save => save_ui(ui, unit),
-            Sheet::Defaults => defaults_ui(ui, unit),
-            Sheet::Report { title, sentences } => report_ui(ui, title, sentences),
-        })
-        .inner
+        area.show(ui, |ui| content_ui(ui, general, &sheet, stream)).inner
     });
-    buttons_ui(ui, general, &acts.inner, commands);
+    buttons_ui(ui, general, &offers.inner, commands);
 }
 
-fn buttons_ui(ui: &mut Ui, general: &mut General, acts: &[Act], commands: &mut Commands) {
+fn content_ui(ui: &mut Ui, general: &mut General, sheet: &Sheet, stream: Option<Stream>) -> Vec<Offer> {
+    match sheet {
+        Sheet::OpenProfile => return profile::open_ui(ui, general),
+        Sheet::SaveProfile => return profile::save_ui(ui, general),
+        Sheet::Compare => return profile::compare_ui(ui, general),
+        _ => {}
+    }
+    let Some(unit) = general.unit() else { return Vec::new() };
+    match sheet {
+        Sheet::Read => read_ui(ui, unit),
+        Sheet::Write => write_ui(ui, unit, stream),
+        Sheet::Save => save_ui(ui, unit),
+        Sheet::Defaults => defaults_ui(ui, unit),
+        Sheet::Report { title, sentences } => report_ui(ui, title, sentences),
+        Sheet::OpenProfile | Sheet::SaveProfile | Sheet::Compare => Vec::new(),
+    }
+}
+
+fn buttons_ui(ui: &mut Ui, general: &mut General, offers: &[Offer], commands: &mut Commands) {
     let focus = general.take_sheet_focus();
+    let mut chosen = None;
     let mut close = false;
     ui.horizontal(|ui| {
-        for (index, (text, wish, enabled)) in acts.iter().enumerate() {
+        for (index, (text, act, enabled)) in offers.iter().enumerate() {
             let response = ui.add_enabled(*enabled, Button::new(*text).min_size(vec2(120.0, 30.0)));
             if focus && index == 0 && *enabled {
                 response.request_focus();
             }
             if response.clicked() {
-                commands.push(Command::Settings(*wish));
+                chosen = Some(*act);
             }
         }
         let back = ui.add(Button::new("Back").min_size(vec2(90.0, 30.0)));
-        if focus && !acts.first().is_some_and(|(_, _, enabled)| *enabled) {
+        if focus && !offers.first().is_some_and(|(_, _, enabled)| *enabled) {
             back.request_focus();
         }
         close = back.clicked() || ui.input(|input| input.key_pressed(egui::Key::Escape));
     });
+    match chosen {
+        Some(Act::Wish(wish)) => commands.push(Command::Settings(wish)),
+        Some(Act::OpenProfile { mending }) => general.open_profile(mending),
+        Some(Act::SaveProfile) => general.save_profile(),
+        Some(Act::TakeOverAll) => {
+            general.take_over(None);
+            close = true;
+        }
+        None => {}
+    }
     if close && !focus {
         general.close_sheet();
     }
 }
 
-fn read_ui(ui: &mut Ui, unit: &UnitSettings) -> Vec<Act> {
+fn read_ui(ui: &mut Ui, unit: &UnitSettings) -> Vec<Offer> {
     title_ui(ui, "Read settings");
     text_ui(ui, "Read asks the controller for every setting it works with now. Nothing on it changes.");
     text_ui(
@@ -72,14 +105,17 @@ fn read_ui(ui: &mut Ui, unit: &UnitSettings) -> Vec<Act> {
     if !unit.edits().is_empty() {
         text_ui(ui, "Your changes that are not written stay on this screen either way.");
     }
-    vec![("Read", SettingsWish::Read, true), ("Load from EEPROM", SettingsWish::Reload, true)]
+    vec![
+        ("Read", Act::Wish(SettingsWish::Read), true),
+        ("Load from EEPROM", Act::Wish(SettingsWish::Reload), true),
+    ]
 }
 
 fn swapped(difference: &Difference) -> Difference {
     Difference { key: difference.key.clone(), left: difference.right, right: difference.left }
 }
 
-fn write_ui(ui: &mut Ui, unit: &UnitSettings, stream: Option<Stream>) -> Vec<Act> {
+fn write_ui(ui: &mut Ui, unit: &UnitSettings, stream: Option<Stream>) -> Vec<Offer> {
     let changes = unit.changes();
     title_ui(ui, "Write settings");
     text_ui(
@@ -105,10 +141,10 @@ fn write_ui(ui: &mut Ui, unit: &UnitSettings, stream: Option<Stream>) -> Vec<Act
             false
         }
     };
-    vec![("Write to controller", SettingsWish::Write, can_be_written && !changes.is_empty())]
+    vec![("Write to controller", Act::Wish(SettingsWish::Write), can_be_written && !changes.is_empty())]
 }
 
-fn save_ui(ui: &mut Ui, unit: &UnitSettings) -> Vec<Act> {
+fn save_ui(ui: &mut Ui, unit: &UnitSettings) -> Vec<Offer> {
     title_ui(ui, "Save to EEPROM");
     text_ui(
         ui,
@@ -130,10 +166,10 @@ fn save_ui(ui: &mut Ui, unit: &UnitSettings) -> Vec<Act> {
             "Changes on this screen that are not written are not saved. Write them first to keep them.";
         lamp_ui(ui, LampState::Warning, text);
     }
-    vec![("Save", SettingsWish::Save, true)]
+    vec![("Save", Act::Wish(SettingsWish::Save), true)]
 }
 
-fn defaults_ui(ui: &mut Ui, unit: &UnitSettings) -> Vec<Act> {
+fn defaults_ui(ui: &mut Ui, unit: &UnitSettings) -> Vec<Offer> {
     let changes = unit.changes_to_defaults();
     title_ui(ui, "Default settings");
     text_ui(
@@ -150,10 +186,10 @@ fn defaults_ui(ui: &mut Ui, unit: &UnitSettings) -> Vec<Act> {
     if !unit.edits().is_empty() {
         text_ui(ui, "Your changes that are not written stay on this screen.");
     }
-    vec![("Restore defaults", SettingsWish::RestoreDefaults, true)]
+    vec![("Restore defaults", Act::Wish(SettingsWish::RestoreDefaults), true)]
 }
 
-fn report_ui(ui: &mut Ui, title: &str, sentences: &[String]) -> Vec<Act> {
+fn report_ui(ui: &mut Ui, title: &str, sentences: &[String]) -> Vec<Offer> {
     title_ui(ui, title);
     for sentence in sentences {
         lamp_ui(ui, LampState::Error, sentence);
@@ -161,15 +197,15 @@ fn report_ui(ui: &mut Ui, title: &str, sentences: &[String]) -> Vec<Act> {
     Vec::new()
 }
 
-fn title_ui(ui: &mut Ui, text: &str) {
+pub fn title_ui(ui: &mut Ui, text: &str) {
     ui.label(RichText::new(text).size(16.0).strong());
 }
 
-fn text_ui(ui: &mut Ui, text: &str) {
+pub fn text_ui(ui: &mut Ui, text: &str) {
     ui.add(Label::new(text).wrap());
 }
 
-fn lamp_ui(ui: &mut Ui, state: LampState, text: &str) {
+pub fn lamp_ui(ui: &mut Ui, state: LampState, text: &str) {
     ui.horizontal_top(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(18.0, 18.0), egui::Sense::hover());
         state.paint(ui, rect.center(), 6.0);
