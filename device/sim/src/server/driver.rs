@@ -19,8 +19,8 @@ const COMMANDS: usize = 64;
 const TICK: Duration = Duration::from_millis(5);
 /// The system wakes a sleeping thread this much late or less, so that much before a reply leaves the thread stays awake.
 const WAKE_EARLY: Duration = Duration::from_micros(80);
-/// The line is looked at so soon after a gap has ended.
-const AFTER_GAP: Duration = Duration::from_micros(20);
+/// Bytes are given so much longer to come through the system before a gap counts as one.
+const DELIVERY: Duration = Duration::from_millis(1);
 /// How often the worlds are shown.
 const SHOW_EVERY: Duration = Duration::from_millis(20);
 /// After a longer gap (the computer slept, the program was stopped) the machine's time does not catch up but goes on from where
@@ -38,8 +38,16 @@ pub struct Driver<M: Machine> {
     shown_at: Duration,
     clock: Clock,
     incoming: Vec<u8>,
-    /// Set after bytes until the line was seen empty at this time: the moment when the packet they are in would be discarded.
-    gap_ends_at: Option<Duration>,
+    gap: Option<Gap>,
+}
+
+/// What follows bytes until it is known whether the line was silent long enough to discard the packet they are in.
+#[derive(Clone, Copy)]
+struct Gap {
+    /// The machine's time does not go past this before.
+    ends_at: Duration,
+    /// A line that is empty then was silent.
+    judged_at: Duration,
 }
 
 /// The wall clock, less the time that was skipped.
@@ -70,7 +78,7 @@ impl<M: Machine + 'static> Driver<M> {
             shown_at: machine_start,
             clock: Clock { start: Instant::now(), machine_start, skipped: Duration::ZERO },
             incoming: Vec::new(),
-            gap_ends_at: None,
+            gap: None,
         };
         let thread = thread::Builder::new()
             .name("sim-server".to_owned())
@@ -95,24 +103,26 @@ impl<M: Machine + 'static> Driver<M> {
             self.show(now);
         }
         self.incoming.clear();
-        let patience = self.patience();
+        // The wall clock has gone on since the machine was brought up to it.
+        let looked_at = self.clock.now(self.stack.now());
+        let patience = self.patience(looked_at);
         let heard = self.line.receive(&mut self.incoming, patience);
-        self.hear();
+        self.hear(looked_at);
         if heard == Heard::ClientLeft {
             self.stack.clear();
         }
         ControlFlow::Continue(())
     }
 
-    /// Hands over what has come. A line that was seen empty after the gap is one that was silent for so long.
-    fn hear(&mut self) {
+    /// Hands over what has come. A line that is looked at after the gap and found empty has been silent for so long.
+    fn hear(&mut self, looked_at: Duration) {
         if self.incoming.is_empty() {
-            let now = self.clock.now(self.stack.now());
-            self.gap_ends_at = self.gap_ends_at.filter(|ends_at| now <= *ends_at);
+            self.gap = self.gap.filter(|gap| looked_at < gap.judged_at);
         } else {
             let now = self.advance();
             self.stack.receive(self.stream, &self.incoming);
-            self.gap_ends_at = Some(now + PACKET_GAP);
+            let heard_at = self.clock.now(now);
+            self.gap = Some(Gap { ends_at: now + PACKET_GAP, judged_at: heard_at + PACKET_GAP + DELIVERY });
         }
     }
 
@@ -120,7 +130,7 @@ impl<M: Machine + 'static> Driver<M> {
     /// it run, bytes that came in time are still unread.
     fn advance(&mut self) -> Duration {
         let wall = self.clock.now(self.stack.now());
-        let now = self.gap_ends_at.map_or(wall, |ends_at| wall.min(ends_at));
+        let now = self.gap.map_or(wall, |gap| wall.min(gap.ends_at));
         self.stack.advance(now);
         now
     }
@@ -176,11 +186,9 @@ impl<M: Machine + 'static> Driver<M> {
     }
 
     /// How long to wait for bytes: until the next reply leaves, a gap is over, or a tick.
-    fn patience(&mut self) -> Duration {
-        // The wall clock has gone on since the machine was brought up to it.
-        let now = self.clock.now(self.stack.now());
+    fn patience(&self, now: Duration) -> Duration {
         let reply = self.stack.next_output_at().map(|at| at.saturating_sub(now).saturating_sub(WAKE_EARLY));
-        let gap = self.gap_ends_at.map(|ends_at| ends_at.saturating_sub(now) + AFTER_GAP);
+        let gap = self.gap.map(|gap| gap.judged_at.saturating_sub(now));
         [reply, gap].into_iter().flatten().fold(TICK, Duration::min)
     }
 }
@@ -261,7 +269,7 @@ mod tests {
             shown_at: machine_start,
             clock: Clock { start: Instant::now(), machine_start, skipped: Duration::ZERO },
             incoming: Vec::new(),
-            gap_ends_at: None,
+            gap: None,
         };
         let until = Instant::now() + 4 * PAUSE;
         while Instant::now() < until {
