@@ -40,8 +40,14 @@ fn fed(model: &mut Model, conditions: &[Condition]) {
         notes: Vec::new(),
     };
     let conditions = conditions.iter().copied().collect();
-    let status =
-        StatusReport { address: 0x80, at: Duration::ZERO, word: 0x1004, conditions, unknown_bits: 0 };
+    let status = StatusReport {
+        address: 0x80,
+        at: Duration::ZERO,
+        word: 0x1004,
+        conditions,
+        unknown_bits: 0,
+        running_ticks: None,
+    };
     let figures = LinkStatistics { kbit_per_s: 5.8, transactions_per_s: 70.0, ..LinkStatistics::default() };
     for event in [
         Event::Connected(identity),

@@ -97,7 +97,14 @@ mod tests {
 
     fn report(conditions: &[Condition]) -> StatusReport {
         let conditions = conditions.iter().copied().collect();
-        StatusReport { address: 0x80, at: Duration::ZERO, word: 0, conditions, unknown_bits: 0 }
+        StatusReport {
+            address: 0x80,
+            at: Duration::ZERO,
+            word: 0,
+            conditions,
+            unknown_bits: 0,
+            running_ticks: None,
+        }
     }
 
     #[test]

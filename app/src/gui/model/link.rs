@@ -159,7 +159,10 @@ impl LinkView {
         self.arming = Arming::Disarmed;
         self.warnings.clear();
         let gravity = match reason {
-            DisarmReason::Fault(_) | DisarmReason::NoAnswer | DisarmReason::LinkLost => Gravity::Error,
+            DisarmReason::Fault(_)
+            | DisarmReason::Restarted
+            | DisarmReason::NoAnswer
+            | DisarmReason::LinkLost => Gravity::Error,
             DisarmReason::DeadMan => Gravity::Warning,
             _ => Gravity::Note,
         };

@@ -107,6 +107,8 @@ pub enum DisarmReason {
     Selection,
     /// A setting that arming was based on was changed.
     SettingsChanged,
+    /// The controller has started anew, so that it may have forgotten what arming was based on.
+    Restarted,
     /// A command went unconfirmed, so that nobody knows what the motors do.
     NoAnswer,
     /// The job that moved the motors ended.
@@ -129,6 +131,7 @@ impl fmt::Display for DisarmReason {
             Self::SettingsChanged => {
                 f.write_str("Disarmed: a time-out, stream, priority or address was changed")
             }
+            Self::Restarted => f.write_str("Disarmed: the controller has started anew"),
             Self::NoAnswer => f.write_str("Disarmed: the controller did not confirm a command"),
             Self::JobEnded => f.write_str("Disarmed: the job that moved the motors has ended"),
             Self::LinkLost => f.write_str("Disarmed: the link was lost"),

@@ -101,6 +101,7 @@ pub fn read(
             word,
             conditions: status::decode(word, speaker.generation),
             unknown_bits: status::unknown_bits(word, speaker.generation),
+            running_ticks: reply.values.try_int("tick").and_then(|ticks| u32::try_from(ticks).ok()),
         }
     }))
 }

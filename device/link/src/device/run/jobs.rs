@@ -142,6 +142,16 @@ impl Host<'_> {
         Ok(())
     }
 
+    /// Disarms before a command that may change what arming was based on; the job itself goes on.
+    fn stop_before(&mut self, command: u8) -> Result<(), ExchangeError> {
+        let stopped = self.core.stop_before(command);
+        if self.core.phase == Phase::Ended {
+            return Err(link_lost());
+        }
+        self.was_armed &= self.core.armed.is_some();
+        stopped.and_then(|()| self.check())
+    }
+
     /// Turns an interruption of an exchange into one of the job.
     fn settle<T>(&mut self, result: Result<T, ExchangeError>) -> Result<T, ExchangeError> {
         self.core.keep_house();
@@ -162,6 +172,7 @@ impl JobHost for Host<'_> {
     fn transact(&mut self, command: u8, values: Vec<Value>) -> Result<Reply, ExchangeError> {
         self.check()?;
         self.read_between()?;
+        self.stop_before(command)?;
         let reply = self.core.act(self.asked_at, |unit, line| unit.transact(line, command, values));
         if self.core.phase != Phase::Ended {
             self.core.after_command(command);

@@ -219,14 +219,20 @@ impl DeviceLoop {
     fn take_status(&mut self, index: usize, status: StatusReport) {
         let plan = &mut self.units[index].plan;
         let changed = plan.last_status.is_none_or(|last| last.word != status.word);
+        let restarted = plan.last_status.is_some_and(|last| status.has_restarted_since(&last));
         plan.last_status = Some(status);
         if changed || status.at >= plan.status_told_at + STATUS_INTERVAL {
             plan.status_told_at = status.at;
             self.outbox.send(Event::Status(status));
         }
+        if self.armed.is_none() || index != self.selected {
+            return;
+        }
         let faults: Vec<_> = status.faults().map(Condition::title).collect();
-        if !faults.is_empty() && self.armed.is_some() && index == self.selected {
+        if !faults.is_empty() {
             self.halt(DisarmReason::Fault(faults.join(", ")));
+        } else if restarted {
+            self.halt(DisarmReason::Restarted);
         }
     }
 

@@ -222,7 +222,9 @@ impl DeviceLoop {
                 Failure::new(tried, on, "Stop was pressed after it", "Send it again when you are ready");
             return self.outbox.send(Event::Transacted { id, result: Err(failure) });
         }
-        let reply = self.act(asked_at, |unit, line| unit.transact(line, command, values));
+        let reply = self
+            .stop_before(command)
+            .and_then(|()| self.act(asked_at, |unit, line| unit.transact(line, command, values)));
         self.after_command(command);
         match reply {
             Ok(reply) => self.outbox.send(Event::Transacted { id, result: Ok(reply.values) }),
@@ -235,15 +237,22 @@ impl DeviceLoop {
         }
     }
 
-    /// What a raw command of a window or a job means for arming: a script may run now, or what arming was based on may
-    /// have changed.
+    /// Disarms before a raw command of a window or a job that may change what arming was based on. Motors are stopped before it
+    /// and not after it, since the unit may listen to another address or have no time-out by then.
+    pub(super) fn stop_before(&mut self, command: u8) -> Result<(), ExchangeError> {
+        let undermines = self.units[self.selected].controller.undermines_arming(command);
+        if self.armed.is_none() || !undermines || self.halt_and_confirm(DisarmReason::SettingsChanged) {
+            return Ok(());
+        }
+        let what = "the motors could not be stopped first".to_owned();
+        Err(ExchangeError::Impossible { what })
+    }
+
+    /// What a raw command of a window or a job means for stopping: a script may run now.
     pub(super) fn after_command(&mut self, command: u8) {
         let permit = self.permit();
         let unit = &mut self.units[self.selected];
         unit.script_started |= permit.script && unit.controller.starts_script(command);
-        if self.armed.is_some() && unit.controller.undermines_arming(command) {
-            self.halt(DisarmReason::SettingsChanged);
-        }
     }
 
     /// The selected unit has been given another address; the window is told as if it had just been found.
