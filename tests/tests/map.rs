@@ -83,3 +83,20 @@ fn the_three_files_to_open_first_are_there() {
         assert!(workspace::root().join(&file).is_file(), "{file} is gone");
     }
 }
+
+#[test]
+fn every_test_named_for_a_safety_rule_exists() {
+    let text = workspace::read("ARCHITECTURE.md");
+    let (_, section) = text.split_once("## Safety rules and their tests").expect("the section is there");
+    let rows =
+        section.split("\n## ").next().unwrap_or_default().lines().filter(|line| line.starts_with("| "));
+    let named: BTreeSet<&str> = rows.flat_map(|row| row.split('`').skip(1).step_by(2)).collect();
+    assert!(named.len() > 60, "only {} tests are named", named.len());
+    let sources: Vec<String> = workspace::rust_files().iter().map(|path| workspace::read(path)).collect();
+    let exists = |name: &&str| {
+        let test = format!("#[test]\nfn {name}()");
+        sources.iter().any(|source| source.replace("\n    ", "\n").contains(&test))
+    };
+    let gone: Vec<_> = named.into_iter().filter(|name| !exists(name)).collect();
+    assert!(gone.is_empty(), "ARCHITECTURE.md names tests that are not there: {gone:#?}");
+}
