@@ -428,3 +428,21 @@ fn a_profile_that_is_faulty_or_made_for_another_controller_is_refused_with_every
     bench.press("Open without what is wrong");
     assert_eq!(bench.model().general.sheet(), Some(&Sheet::Compare));
 }
+
+#[test]
+fn a_unit_that_was_given_another_address_keeps_its_edits_here() {
+    let mut bench = opened();
+    enter(&mut bench, "Packet serial address", "130");
+    bench.press("Write settings");
+    assert!(bench.sees_part("answers to its new address"), "the plan's warning is shown first");
+    bench.button("Write to controller").click();
+    bench.harness.step();
+    let mixing = brushwork_link::settings::SettingValue::Bool(true);
+    bench.model().general.unit_mut().unwrap().set("unit.mixing", mixing);
+    bench.pass_ms(6000);
+    assert_eq!(truth(&bench).unit.address, 130);
+    assert!(bench.sees("Edits: 1 not written"), "{:?}", bench.model().messages.shown());
+    assert!(bench.sees("Packet serial address on the controller: 130"));
+    write(&mut bench);
+    assert_eq!((truth(&bench).unit.address, truth(&bench).unit.mixed), (130, 1));
+}

@@ -119,10 +119,16 @@ fn buttons_ui(ui: &mut Ui, general: &mut General) {
 fn filter_ui(ui: &mut Ui, general: &mut General, commands: &mut Commands) {
     ui.horizontal(|ui| {
         ui.set_min_height(ui.spacing().interact_size.y);
+        let mut is_new = false;
         ui.allocate_ui(vec2(SEARCH_WIDTH, ui.spacing().interact_size.y), |ui| {
-            text_field_ui(ui, &mut general.search, "Search settings", "Search");
+            let search = text_field_ui(ui, &mut general.search, "Search settings", "Search");
+            is_new |= search.changed();
         });
-        ui.checkbox(&mut general.only_changed, "Only changed");
+        is_new |= ui.checkbox(&mut general.only_changed, "Only changed").changed();
+        // What is looked for is in the list, which a sheet would stand in place of.
+        if is_new {
+            general.close_sheet();
+        }
         let has_edits = general.unit().is_some_and(|unit| !unit.edits().is_empty() || unit.has_typed());
         if ui.add_enabled(has_edits, Button::new("Revert all")).clicked()
             && let Some(unit) = general.unit_mut()

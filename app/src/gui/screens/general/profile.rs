@@ -127,6 +127,9 @@ pub fn compare_ui(ui: &mut Ui, general: &mut General) -> Vec<Offer> {
 /// Controller and profile side by side; the key of a row that was taken over.
 fn table_ui(ui: &mut Ui, unit: &UnitSettings, comparison: &Comparison, can_be_taken: bool) -> Option<String> {
     let weak = Palette::of(ui).weak_text;
+    if comparison.differences.is_empty() {
+        return None;
+    }
     let mut taken = None;
     Grid::new("comparison").num_columns(4).spacing([16.0, 3.0]).show(ui, |ui| {
         for title in ["Setting", "On the controller", "In the profile", ""] {
