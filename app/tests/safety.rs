@@ -28,7 +28,7 @@ fn driving() -> Bench {
 fn assert_stopped_and_disarmed(bench: &mut Bench) {
     assert!(bench.both_stand(), "{} {}", bench.real_duty(Motor::M1), bench.real_duty(Motor::M2));
     assert_eq!(bench.model().link.arming, Arming::Disarmed);
-    assert_eq!(bench.model().pwm.duty_percent, [0.0; 2]);
+    assert_eq!(bench.model().pwm.setpoints.values, [0.0; 2]);
 }
 
 #[test]

@@ -187,10 +187,13 @@ fn screens_are_reached_by_key_and_those_not_built_yet_say_so() {
     bench.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Num3);
     bench.pass_ms(200);
     assert_eq!(bench.model().screen, Screen::Pwm);
-    assert!(bench.see("Velocity Settings").accesskit_node().is_disabled());
-    bench.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Num4);
+    assert!(bench.see("MCL Editor").accesskit_node().is_disabled());
+    bench.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Num6);
     bench.pass_ms(200);
     assert_eq!(bench.model().screen, Screen::Pwm);
+    bench.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Num4);
+    bench.pass_ms(200);
+    assert_eq!(bench.model().screen, Screen::Velocity);
 }
 
 #[test]

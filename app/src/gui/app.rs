@@ -17,6 +17,7 @@ use super::command::{Command, Commands};
 use super::keys;
 use super::model::general::SettingsWish;
 use super::model::link::{Arming, Effect, LinkView};
+use super::model::loop_settings::Column;
 use super::model::message::Gravity;
 use super::model::screen::Screen;
 use super::model::{Appearance, Model, Phase};
@@ -83,6 +84,7 @@ impl App {
         for command in commands {
             self.apply(command);
         }
+        self.read_loops();
         self.drive(&ctx);
         self.show_appearance(&ctx);
     }
@@ -152,16 +154,25 @@ impl App {
 
     fn take(&mut self, event: Event) {
         let model = &mut self.model;
-        let is_settings = model.general.awaits(&event);
-        let effects = if is_settings { model.general.take(event) } else { model.link.take(event) };
+        let effects = if model.general.awaits(&event) {
+            model.general.take(event)
+        } else if model.loops.awaits(&event) {
+            model.loops.take(event)
+        } else {
+            model.link.take(event)
+        };
         for effect in effects {
             match effect {
                 Effect::Say(gravity, text) => self.model.messages.say(gravity, text),
-                Effect::AtRest => self.model.pwm.stop(),
+                Effect::AtRest => self.model.rest(),
                 Effect::Sample(sample) => {
                     self.model.graph.push(sample.replied_at.as_secs_f64(), &sample.values);
                 }
-                Effect::OtherUnit => self.model.graph.push_gap(),
+                Effect::OtherUnit => {
+                    self.model.graph.push_gap();
+                    self.model.loops.forget();
+                    self.model.loops.want_reading();
+                }
                 Effect::Ended => self.ended(),
             }
         }
@@ -176,7 +187,8 @@ impl App {
         self.model.phase = Phase::Closed;
         self.model.link = LinkView::default();
         self.model.general.link_ended();
-        self.model.pwm.stop();
+        self.model.loops.forget();
+        self.model.rest();
         self.model.graph.push_gap();
     }
 
@@ -209,6 +221,8 @@ impl App {
                 self.request(Request::ResetEStop);
             }
             Command::Poll(rate) => self.poll(rate),
+            Command::ReadLoops => self.model.loops.want_reading(),
+            Command::ApplyLoops(columns) => self.apply_loops(columns),
             Command::World(action) => self.act_on_world(action),
             Command::Settings(wish) => self.settings(wish),
             Command::DismissMessage => self.model.messages.dismiss(),
@@ -252,10 +266,34 @@ impl App {
         if screen == self.model.screen || screen.missing().is_some() {
             return;
         }
-        if self.model.screen.drives() {
+        if self.model.screen.arm_scope().is_some() {
             self.disarm();
         }
-        self.model.screen = screen;
+        self.model.turn_to(screen);
+        self.model.loops.want_reading();
+    }
+
+    /// Reads the settings of the control loops when a screen that shows them wants them.
+    fn read_loops(&mut self) {
+        if !self.model.screen.has_loops() || !self.model.loops.wants_reading() {
+            return;
+        }
+        let Some(identity) = self.model.link.identity().cloned() else { return };
+        if let Some(request) = self.model.loops.read(&identity)
+            && !self.request(request)
+        {
+            self.model.loops.not_begun();
+        }
+    }
+
+    fn apply_loops(&mut self, columns: &[Column]) {
+        let Some(identity) = self.model.link.identity().cloned() else { return };
+        let stream = self.model.link.stream;
+        if let Some(request) = self.model.loops.apply(columns, &identity, stream)
+            && !self.request(request)
+        {
+            self.model.loops.not_begun();
+        }
     }
 
     /// Stops all motors, at once and without asking anything first.
@@ -276,7 +314,7 @@ impl App {
     /// The screen is disarmed and its sliders are at zero; the device thread stops the motors.
     fn at_rest(&mut self) {
         self.model.link.arming = Arming::Disarmed;
-        self.model.pwm.stop();
+        self.model.rest();
     }
 
     fn poll(&mut self, rate: PollRate) {
@@ -310,16 +348,21 @@ impl App {
 
     /// While armed: sends what the sliders ask for and lets the motion live on.
     fn drive(&mut self, ctx: &Context) {
-        if !self.model.link.arming.is_armed_for(ArmScope::Pwm) {
-            return;
-        }
+        let armed_for = |scope| self.model.link.arming.is_armed_for(scope);
+        let Some(scope) = self.model.screen.arm_scope().filter(|scope| armed_for(*scope)) else { return };
         let Some(device) = &self.device else { return };
         device.renew();
-        if let Some(drive) = self.model.pwm.to_send() {
-            // A full queue takes it in the next frame.
-            if device.request(Request::Drive(drive)).is_ok() {
-                self.model.pwm.sent();
-            }
+        let model = &mut self.model;
+        let (drive, setpoints) = match scope {
+            ArmScope::Pwm => (model.pwm.to_send(), &mut model.pwm.setpoints),
+            ArmScope::Velocity => (model.velocity.to_send(), &mut model.velocity.setpoints),
+            _ => return,
+        };
+        // A full queue takes it in the next frame.
+        if let Some(drive) = drive
+            && device.request(Request::Drive(drive)).is_ok()
+        {
+            setpoints.sent();
         }
         ctx.request_repaint_after(FRAME_INTERVAL);
     }

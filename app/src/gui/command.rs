@@ -6,6 +6,7 @@ use brushwork_protocol::packet_serial::Motor;
 use brushwork_sim::world::WorldAction;
 
 use super::model::general::SettingsWish;
+use super::model::loop_settings::Column;
 use super::model::screen::Screen;
 
 /// One wish.
@@ -26,6 +27,10 @@ pub enum Command {
     ZeroEncoder(Motor),
     ResetEmergencyStop,
     Poll(PollRate),
+    /// Reads the settings of the control loops again.
+    ReadLoops,
+    /// Writes the edits of these settings of the control loops to the controller's RAM.
+    ApplyLoops(&'static [Column]),
     /// Something done to the world of the simulated unit that is looked at.
     World(WorldAction),
     /// Something to be done with the settings of the unit that is looked at.

@@ -221,7 +221,12 @@ impl Bench {
 
     /// Goes to the PWM screen and arms it.
     pub fn arm(&mut self) {
-        self.press("PWM Settings");
+        self.arm_on("PWM Settings");
+    }
+
+    /// Goes to a screen and arms it.
+    pub fn arm_on(&mut self, screen: &str) {
+        self.press(screen);
         self.press("Arm");
         self.pass_ms(500);
         let arming = self.model().link.arming;
@@ -234,10 +239,20 @@ impl Bench {
 
     /// Sets a duty in the field for exact numbers, as a keyboard does.
     pub fn set_duty(&mut self, motor: Motor, percent: &str) {
-        let name = format!("{motor} duty exact");
-        self.harness.get_by_label(&name).focus();
+        self.enter(&format!("{motor} duty exact"), percent);
+    }
+
+    /// Puts the keyboard focus on whatever has this label.
+    pub fn focus_label(&mut self, label: &str) {
+        self.harness.get_by_label(label).focus();
+        self.pass(FRAME * 2);
+    }
+
+    /// Types a number into a field and presses Enter.
+    pub fn enter(&mut self, field: &str, number: &str) {
+        self.harness.get_by_label(field).focus();
         self.pass(FRAME);
-        self.harness.get_by_label(&name).type_text(percent);
+        self.harness.get_by_label(field).type_text(number);
         self.pass(FRAME);
         self.key(egui::Key::Enter);
         self.pass(FRAME);

@@ -1,5 +1,6 @@
 //! The window's state as plain data. Screens read it and ask for changes; nothing here draws or waits.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use brushwork_link::device::{Addresses, Channel, PollRate};
@@ -12,18 +13,23 @@ pub mod devices;
 pub mod general;
 pub mod lamps;
 pub mod link;
+pub mod loop_settings;
 pub mod message;
 pub mod pwm;
 pub mod readings;
 pub mod screen;
+pub mod setpoints;
+pub mod velocity;
 pub mod world;
 
 use devices::Devices;
 use general::General;
 use link::LinkView;
+use loop_settings::LoopSettings;
 use message::Messages;
 use pwm::Pwm;
 use screen::Screen;
+use velocity::Velocity;
 use world::WorldPanel;
 
 /// Everything the window shows.
@@ -43,6 +49,12 @@ pub struct Model {
     pub pwm: Pwm,
     /// The settings of the units met so far, and what is being done with them.
     pub general: General,
+    pub velocity: Velocity,
+    pub loops: LoopSettings,
+    /// Which channels the graph showed when a screen that drives was left.
+    graph_choices: BTreeMap<&'static str, Vec<bool>>,
+    /// The screen whose channels the graph shows while a screen without a graph is open.
+    graph_of: Option<Screen>,
     pub world: WorldPanel,
     /// The worlds of the simulated units, while they run.
     pub worlds: Option<Arc<Vec<WorldView>>>,
@@ -103,6 +115,10 @@ impl Default for Model {
             graph: LiveGraph::new(graph_channels(), 0.1),
             pwm: Pwm::default(),
             general: General::default(),
+            velocity: Velocity::default(),
+            loops: LoopSettings::default(),
+            graph_choices: BTreeMap::new(),
+            graph_of: None,
             world: WorldPanel::default(),
             worlds: None,
             world_unit: 0,
@@ -115,6 +131,34 @@ impl Model {
     pub fn is_connected(&self) -> bool {
         self.phase.is_open() && self.link.identity().is_some()
     }
+
+    /// The sliders of every screen go back to rest, with nothing left to send.
+    pub fn rest(&mut self) {
+        self.pwm.setpoints.stop();
+        self.velocity.setpoints.stop();
+    }
+
+    /// Goes to a screen. Each screen that drives keeps its own choice of channels.
+    pub fn turn_to(&mut self, screen: Screen) {
+        let left = std::mem::replace(&mut self.screen, screen);
+        if screen.arm_scope().is_none() {
+            // The graph stays as it is until another screen shows it.
+            self.graph_of = self.graph_of.or(left.arm_scope().map(|_| left));
+            return;
+        }
+        let before =
+            self.graph_of.take().unwrap_or(if left.arm_scope().is_some() { left } else { Screen::Pwm });
+        if before == screen {
+            return;
+        }
+        let channels = &mut self.graph.channels;
+        self.graph_choices.insert(before.title(), channels.iter().map(|channel| channel.shown).collect());
+        let chosen = self.graph_choices.get(screen.title());
+        for (index, channel) in channels.iter_mut().enumerate() {
+            let at_first = || screen.first_channels().contains(&Channel::ALL[index]);
+            channel.shown = chosen.and_then(|chosen| chosen.get(index)).copied().unwrap_or_else(at_first);
+        }
+    }
 }
 
 /// Every channel of a controller, with the scale it begins with; duty and current of both motors are shown at first.
@@ -124,7 +168,7 @@ pub fn graph_channels() -> Vec<ChannelInfo> {
         unit: channel.unit(),
         decimals: decimals(channel),
         scale: first_scale(channel),
-        shown: matches!(channel, Channel::M1Pwm | Channel::M1Velocity | Channel::M1Current),
+        shown: Screen::Pwm.first_channels().contains(&channel),
     };
     Channel::ALL.into_iter().map(info).collect()
 }

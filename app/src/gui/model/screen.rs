@@ -1,5 +1,7 @@
 //! The screens, in Ion Studio's order (MCP manual 1.2.3 to 1.2.14).
 
+use brushwork_link::device::{ArmScope, Channel};
+
 /// One screen of the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Screen {
@@ -36,16 +38,35 @@ impl Screen {
     /// Why the screen cannot be opened, where it does not exist yet.
     pub const fn missing(self) -> Option<&'static str> {
         match self {
-            Self::DeviceStatus | Self::GeneralSettings | Self::Pwm => None,
-            Self::Velocity | Self::Position => {
-                Some("This screen is not built yet. On the command line: brushwork drive")
-            }
+            Self::DeviceStatus | Self::GeneralSettings | Self::Pwm | Self::Velocity => None,
+            Self::Position => Some("This screen is not built yet. On the command line: brushwork drive"),
             Self::MclEditor => Some("This screen is not built yet."),
         }
     }
 
-    /// Whether motors can be driven from this screen, so that leaving it disarms.
-    pub const fn drives(self) -> bool {
-        matches!(self, Self::Pwm | Self::Velocity | Self::Position)
+    /// What arming this screen allows; leaving such a screen disarms.
+    pub const fn arm_scope(self) -> Option<ArmScope> {
+        match self {
+            Self::Pwm => Some(ArmScope::Pwm),
+            Self::Velocity => Some(ArmScope::Velocity),
+            Self::Position => Some(ArmScope::Position),
+            Self::DeviceStatus | Self::GeneralSettings | Self::MclEditor => None,
+        }
+    }
+
+    /// Whether the screen shows settings of the control loops.
+    pub const fn has_loops(self) -> bool {
+        matches!(self, Self::Velocity | Self::Position)
+    }
+
+    /// What its graph shows at first.
+    pub const fn first_channels(self) -> &'static [Channel] {
+        use Channel as C;
+        match self {
+            Self::Velocity => {
+                &[C::M1Setpoint, C::M1Velocity, C::M1Pwm, C::M2Setpoint, C::M2Velocity, C::M2Pwm]
+            }
+            _ => &[C::M1Pwm, C::M1Velocity, C::M1Current],
+        }
     }
 }

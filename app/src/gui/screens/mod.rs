@@ -8,14 +8,18 @@ use super::model::{Model, Phase};
 use super::theme::Palette;
 
 mod general;
+mod drive;
+mod loops;
 mod pwm;
 mod status;
+mod velocity;
 
 pub fn screen_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     match model.screen {
         Screen::DeviceStatus => status::status_ui(ui, model, commands),
         Screen::GeneralSettings => general::general_ui(ui, model, commands),
         Screen::Pwm => pwm::pwm_ui(ui, model, commands),
+        Screen::Velocity => velocity::velocity_ui(ui, model, commands),
         other => nothing_ui(ui, other.missing().unwrap_or_default()),
     }
 }

@@ -1,130 +1,46 @@
 //! PWM Settings (MCP manual 1.2.11): two duty sliders behind an arm switch, and the live graph.
 
-use std::time::Duration;
-
-use brushwork_link::device::{ArmScope, Channel, PollRate};
-use brushwork_link::transport::Stream;
+use brushwork_link::device::{ArmScope, Channel};
 use brushwork_protocol::packet_serial::Motor;
-use egui::{Align, ComboBox, Frame, Label, Layout, Margin, RichText, Stroke, Ui, UiBuilder, vec2};
+use egui::Ui;
 
+use super::drive::{Output, arm_ui, graph_ui, motor_ui, sync_ui};
 use super::{not_connected_text, nothing_ui, title_ui};
-use crate::gui::command::{Command, Commands};
-use crate::gui::graph::{list, plot};
-use crate::gui::model::link::{Arming, LinkView};
+use crate::gui::command::Commands;
+use crate::gui::model::Model;
 use crate::gui::model::pwm::ACCEL_RANGE_PERCENT_PER_S;
-use crate::gui::model::{Model, decimals};
-use crate::gui::theme::Palette;
-use crate::gui::widgets::LampState;
-use crate::gui::widgets::arm_switch::arm_switch_ui;
 use crate::gui::widgets::numeric::Numeric;
-use crate::gui::widgets::readout::Readout;
 use crate::gui::widgets::setpoint::Setpoint;
 
-/// Width of the list of channels.
-const LIST_WIDTH: f32 = 258.0;
-
-/// Height of a motor's row.
-const ROW_HEIGHT: f32 = 34.0;
-
-const RISK: &str = "While armed, moving a slider turns the motor at once. Keep hands and cables clear. \
-                    Space or Esc stops both motors.";
+const OUTPUT: Output = Output {
+    scope: ArmScope::Pwm,
+    word: "output",
+    channels: [Channel::M1Pwm, Channel::M2Pwm],
+    unit: "%",
+    digits: 6,
+    unit_letters: 1,
+    width: 126.0,
+};
 
 pub fn pwm_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     if model.link.identity().is_none() {
         return nothing_ui(ui, &not_connected_text(&model.phase));
     }
     title_ui(ui, "PWM Settings", "Open loop: the duty is what the motor gets, whatever it does with it.");
-    arm_ui(ui, &model.link, commands);
+    arm_ui(ui, ArmScope::Pwm, &model.link, commands);
     ui.add_space(4.0);
     controls_ui(ui, model);
     ui.add_space(6.0);
     graph_ui(ui, model, commands);
 }
 
-/// The switch, the risk, and what stands in the way.
-fn arm_ui(ui: &mut Ui, link: &LinkView, commands: &mut Commands) {
-    let palette = Palette::of(ui);
-    let armed = link.arming.is_armed_for(ArmScope::Pwm);
-    // As thick armed as disarmed, so that nothing moves.
-    let outline = Stroke::new(1.5, if armed { palette.warning } else { palette.line });
-    Frame::new().stroke(outline).corner_radius(4.0).inner_margin(Margin::symmetric(10, 6)).show(ui, |ui| {
-        ui.set_width(ui.available_width());
-        ui.horizontal(|ui| {
-            let waiting = matches!(link.arming, Arming::Asked(_));
-            if arm_switch_ui(ui, armed, waiting).clicked() {
-                commands.push(if armed { Command::Disarm } else { Command::Arm(ArmScope::Pwm) });
-            }
-            ui.vertical(|ui| {
-                ui.label(RISK);
-                let color = palette.weak_text;
-                ui.label(RichText::new(fallback_text(link.arming)).small().color(color));
-            });
-        });
-        if link.stream.is_none() {
-            stream_ui(ui, commands);
-        }
-        for refusal in &link.refusals {
-            reason_ui(ui, LampState::Error, &refusal.to_string());
-        }
-        for warning in &link.warnings {
-            reason_ui(ui, LampState::Warning, warning);
-        }
-    });
-}
-
-fn reason_ui(ui: &mut Ui, state: LampState, text: &str) {
-    ui.horizontal(|ui| {
-        let (rect, _) = ui.allocate_exact_size(vec2(18.0, 18.0), egui::Sense::hover());
-        state.paint(ui, rect.center(), 6.0);
-        ui.add(Label::new(text).wrap());
-    });
-}
-
-/// What happens if this program dies.
-fn fallback_text(arming: Arming) -> String {
-    match arming {
-        Arming::Armed { controller_timeout: Some(timeout), .. } => format!(
-            "If this program falls silent, the controller stops the motors by itself after {:.1} s. \
-             Leaving this screen disarms.",
-            timeout.as_secs_f64()
-        ),
-        Arming::Armed { .. } => "Leaving this screen disarms.".to_owned(),
-        Arming::Asked(_) => "Asking the controller …".to_owned(),
-        Arming::Disarmed => "Disarmed: nothing on this screen moves a motor.".to_owned(),
-    }
-}
-
-/// Asked for when the port does not tell by its name which of the controller's streams it is.
-fn stream_ui(ui: &mut Ui, commands: &mut Commands) {
-    ui.horizontal(|ui| {
-        let label = ui.label("This port goes to the controller's");
-        let combo = ComboBox::from_id_salt("stream").selected_text("choose …");
-        let response = combo.show_ui(ui, |ui| {
-            for stream in Stream::ALL {
-                if ui.selectable_label(false, stream.label()).clicked() {
-                    commands.push(Command::SetStream(stream));
-                }
-            }
-        });
-        response.response.labelled_by(label.id);
-        ui.label("port: its time-out is what stops the motors if this program dies.");
-    });
-}
-
 fn controls_ui(ui: &mut Ui, model: &mut Model) {
-    let armed = model.link.arming.is_armed_for(ArmScope::Pwm);
     for motor in Motor::BOTH {
-        let size = vec2(ui.available_width(), ROW_HEIGHT);
-        ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
-            motor_ui(ui, model, motor, armed);
-        });
+        motor_ui(ui, model, motor, &OUTPUT, |ui, model| duty_ui(ui, model, motor));
     }
     ui.horizontal(|ui| {
         ui.add_space(70.0);
-        let mut sync = model.pwm.sync;
-        if ui.checkbox(&mut sync, "Sync motors").on_hover_text("Both sliders move together").changed() {
-            model.pwm.set_sync(sync);
-        }
+        sync_ui(ui, &mut model.pwm.setpoints);
         ui.separator();
         let label = ui.label("Accel");
         let accel = Numeric {
@@ -140,72 +56,11 @@ fn controls_ui(ui: &mut Ui, model: &mut Model) {
     });
 }
 
-/// One motor's row: its slider, and what its bridge really puts out.
-fn motor_ui(ui: &mut Ui, model: &mut Model, motor: Motor, armed: bool) {
-    ui.add_sized(
-        vec2(62.0, ROW_HEIGHT),
-        Label::new(format!("Motor {}", motor.index() + 1)).selectable(false),
-    );
-    let (channel, label) = match motor {
-        Motor::M1 => (Channel::M1Pwm, "M1 output"),
-        Motor::M2 => (Channel::M2Pwm, "M2 output"),
-    };
-    let slider_width = ui.available_width() - 126.0;
-    ui.add_enabled_ui(armed, |ui| {
-        ui.set_max_width(slider_width);
-        duty_ui(ui, model, motor);
-    });
-    ui.label(RichText::new("output").small().color(Palette::of(ui).weak_text));
-    let output = model.link.readings.text(channel, decimals(channel));
-    Readout { label, unit: "%", digits: 6, unit_letters: 1 }.ui(ui, output.as_deref());
-}
-
 fn duty_ui(ui: &mut Ui, model: &mut Model, motor: Motor) {
     let name = if motor == Motor::M1 { "M1 duty" } else { "M2 duty" };
     let slider = Setpoint { name, unit: "%", range: -100.0..=100.0, decimals: 1, step: 0.1 };
-    let mut duty = model.pwm.duty_percent[motor.index()];
-    if slider.ui(ui, &mut duty) && ui.is_enabled() {
+    let mut duty = model.pwm.setpoints.values[motor.index()];
+    if slider.ui(ui, &mut duty).changed && ui.is_enabled() {
         model.pwm.set_duty(motor, duty);
-    }
-}
-
-fn graph_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    // Two places of exact size: neither can push the other out of the window.
-    let (place, _) = ui.allocate_exact_size(ui.available_size(), egui::Sense::hover());
-    let (left, right) = place.split_left_right_at_x(place.right() - LIST_WIDTH);
-    let left = left.with_max_x(left.right() - 8.0);
-    ui.scope_builder(UiBuilder::new().max_rect(left).layout(Layout::top_down(Align::Min)), |ui| {
-        ui.horizontal_wrapped(|ui| {
-            list::time_ui(ui, &mut model.graph);
-            rate_ui(ui, model.poll, commands);
-        });
-        plot::plot_ui(ui, &model.graph);
-    });
-    ui.scope_builder(UiBuilder::new().max_rect(right).layout(Layout::top_down(Align::Min)), |ui| {
-        list::channels_ui(ui, &mut model.graph);
-    });
-}
-
-/// How often the signals are read.
-fn rate_ui(ui: &mut Ui, poll: PollRate, commands: &mut Commands) {
-    let every = |milliseconds| PollRate::Every(Duration::from_millis(milliseconds));
-    let rates = [every(500), every(100), every(50), every(20), every(10), PollRate::Fastest];
-    let combo = ComboBox::from_id_salt("rate").width(104.0).selected_text(rate_text(poll));
-    let response = combo.show_ui(ui, |ui| {
-        for rate in rates {
-            if ui.selectable_label(rate == poll, rate_text(rate)).clicked() {
-                commands.push(Command::Poll(rate));
-            }
-        }
-    });
-    let response = response.response.on_hover_text("How often the signals are read");
-    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Sampling"));
-}
-
-fn rate_text(poll: PollRate) -> String {
-    match poll {
-        PollRate::Off => "not read".to_owned(),
-        PollRate::Every(time) => format!("every {} ms", time.as_millis()),
-        PollRate::Fastest => "as fast as it goes".to_owned(),
     }
 }

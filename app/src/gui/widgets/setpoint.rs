@@ -32,14 +32,24 @@ pub struct Setpoint<'a> {
     pub step: f64,
 }
 
+/// What was done with a slider in this frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Moved {
+    /// The value is another.
+    pub changed: bool,
+    /// The pointer holds the handle.
+    pub held: bool,
+}
+
 impl Setpoint<'_> {
-    /// Changes `value` in place and tells whether it did.
-    pub fn ui(&self, ui: &mut Ui, value: &mut f64) -> bool {
+    /// Changes `value` in place.
+    pub fn ui(&self, ui: &mut Ui, value: &mut f64) -> Moved {
         let before = *value;
         let size = vec2(ui.available_width(), HEIGHT);
+        let mut held = false;
         ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
             let width = (ui.available_width() - ENTRY_WIDTH - 56.0).max(120.0);
-            self.rail_ui(ui, width, value);
+            held = self.rail_ui(ui, width, value).is_pointer_button_down_on();
             Numeric {
                 name: &format!("{} exact", self.name),
                 unit: self.unit,
@@ -58,7 +68,7 @@ impl Setpoint<'_> {
             }
         });
         *value = self.rounded(*value);
-        *value != before
+        Moved { changed: *value != before, held }
     }
 
     fn rail_ui(&self, ui: &mut Ui, width: f32, value: &mut f64) -> Response {

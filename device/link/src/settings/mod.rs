@@ -28,7 +28,7 @@ pub use plan::{Plan, Refusal, Stage, Step, WriteOptions, plan};
 pub use profile::{
     FORMAT, Problem, Profile, ProfileChanges, ProfileError, ProfileFileError, SCHEMA, replace_file,
 };
-pub use read::{ReadFailure, ReadReport, read_all};
+pub use read::{ReadFailure, ReadReport, read_all, read_some};
 pub use reference::{ReferenceForm, ReferenceRow, reference, reference_text};
 pub use row::{Access, Bits, Bound, Carrier, Group, Instance, Place, Range, Row, Sink, Source};
 pub use table::{SettingsTable, Subject};

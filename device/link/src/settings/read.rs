@@ -54,6 +54,15 @@ pub fn read_all(wire: &mut dyn Wire, subject: Subject) -> Result<ReadReport, Fai
     Ok(ReadReport { image, failures, transactions: reader.transactions, table })
 }
 
+/// Reads some rows of a controller whose table is known. Keys that the table does not have are left out.
+pub fn read_some(wire: &mut dyn Wire, table: &SettingsTable, keys: &[String]) -> Result<ReadReport, Failure> {
+    let rows: Vec<&Row> = keys.iter().filter_map(|key| table.row(key)).collect();
+    let reading =
+        read_rows(wire, &rows).map_err(|error| error.failure("read the settings", wire.describe()))?;
+    let Reading { image, failures, transactions } = reading;
+    Ok(ReadReport { table: table.clone(), image, failures, transactions })
+}
+
 /// The values of some rows, read anew, and what failed.
 pub(super) struct Reading {
     pub(super) image: SettingsImage,

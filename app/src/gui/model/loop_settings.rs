@@ -1,0 +1,330 @@
+//! The settings of the control loops of both motors, as the Velocity and the Position screen show and edit them.
+//!
+//! They are read when such a screen opens and written by a button, to RAM only. Both are jobs on the device thread.
+
+use std::time::Duration;
+
+use brushwork_link::Failure;
+use brushwork_link::device::{Event, FnJob, Identity, JobEnding, Request};
+use brushwork_link::settings::{
+    Kind, ReadReport, Row, RowState, SettingValue, SettingsImage, SettingsTable, Subject, WriteError,
+    WriteOptions, WriteReport, read_some, write,
+};
+use brushwork_link::transport::Stream;
+use brushwork_protocol::models;
+use brushwork_protocol::packet_serial::Motor;
+use crossbeam_channel::{Receiver, bounded};
+
+use super::link::Effect;
+use super::message::Gravity;
+
+/// One setting that both motors have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Column {
+    /// The key behind "motor1." or "motor2.".
+    pub key: &'static str,
+    /// What stands above it.
+    pub label: &'static str,
+    /// Change per arrow key.
+    pub step: f64,
+}
+
+const fn column(key: &'static str, label: &'static str, step: f64) -> Column {
+    Column { key, label, step }
+}
+
+/// What the Velocity screen has.
+pub const VELOCITY: &[Column] = &[
+    column("velocity.p", "P", 0.01),
+    column("velocity.i", "I", 0.01),
+    column("velocity.d", "D", 0.01),
+    column(QPPS, "QPPS (counts/s)", 100.0),
+    column(INDUCTANCE, "L (H)", 0.000_1),
+    column(RESISTANCE, "R (Ω)", 0.01),
+];
+
+const QPPS: &str = "velocity.qpps";
+const INDUCTANCE: &str = "inductance_henries";
+const RESISTANCE: &str = "resistance_ohms";
+
+/// Reading a dozen commands at the slowest baud rate, with retries.
+const READ_LIMIT: Duration = Duration::from_secs(20);
+/// Reading, writing and reading back.
+const WRITE_LIMIT: Duration = Duration::from_secs(60);
+
+const READ_JOB: &str = "read the settings of the control loops";
+const WRITE_JOB: &str = "write the settings of the control loops";
+
+/// What is known of the settings, what was edited, and what runs.
+#[derive(Debug, Default)]
+pub struct LoopSettings {
+    table: Option<SettingsTable>,
+    ram: SettingsImage,
+    edits: SettingsImage,
+    running: Option<Running>,
+    wants_reading: bool,
+}
+
+#[derive(Debug)]
+struct Running {
+    name: &'static str,
+    has_started: bool,
+    outcome: Receiver<Outcome>,
+}
+
+#[derive(Debug)]
+enum Outcome {
+    Read(Result<ReadReport, Failure>),
+    Written(Result<WriteReport, WriteError>),
+}
+
+/// The key of a motor's setting.
+pub fn key(motor: Motor, column: &str) -> String {
+    format!("motor{}.{column}", motor.index() + 1)
+}
+
+fn keys(columns: &[Column]) -> Vec<String> {
+    Motor::BOTH.iter().flat_map(|motor| columns.iter().map(|column| key(*motor, column.key))).collect()
+}
+
+impl LoopSettings {
+    /// Another unit, or none: nothing is known.
+    pub fn forget(&mut self) {
+        *self = Self::default();
+    }
+
+    /// The controller is to be asked (again) as soon as one is there.
+    pub fn want_reading(&mut self) {
+        self.wants_reading = true;
+    }
+
+    pub fn wants_reading(&self) -> bool {
+        self.wants_reading && self.running.is_none()
+    }
+
+    pub fn is_busy(&self) -> bool {
+        self.running.is_some()
+    }
+
+    /// Whether anything was read from the controller.
+    pub fn is_known(&self) -> bool {
+        !self.ram.is_empty()
+    }
+
+    /// The setting's row, where this controller has it.
+    pub fn row(&self, motor: Motor, column: &Column) -> Option<&Row> {
+        self.table.as_ref()?.row(&key(motor, column.key))
+    }
+
+    /// What the controller holds, as last read.
+    pub fn held(&self, motor: Motor, column: &str) -> Option<f64> {
+        number(self.ram.get(&key(motor, column))?)
+    }
+
+    /// What is to be shown: the edit, or else what the controller holds.
+    pub fn shown(&self, motor: Motor, column: &Column) -> Option<SettingValue> {
+        let key = key(motor, column.key);
+        self.edits.get(&key).or_else(|| self.ram.get(&key))
+    }
+
+    pub fn is_edited(&self, motor: Motor, column: &Column) -> bool {
+        self.edits.get(&key(motor, column.key)).is_some()
+    }
+
+    /// How many edits wait to be applied.
+    pub fn edits(&self, columns: &[Column]) -> usize {
+        keys(columns).iter().filter(|key| self.edits.get(key).is_some()).count()
+    }
+
+    /// Changes a setting here; the controller is told by [`LoopSettings::apply`].
+    pub fn edit(&mut self, motor: Motor, column: &Column, value: f64) {
+        let Some(row) = self.row(motor, column) else { return };
+        let value = match row.kind {
+            Kind::Int => SettingValue::Int(value.round() as i64),
+            _ => row.settle(SettingValue::Number(value)),
+        };
+        let key = row.key.clone();
+        let is_held = self.ram.get(&key).is_some_and(|held| row.encode(held) == row.encode(value));
+        if is_held { self.edits.remove(&key) } else { self.edits.set(&key, value) }
+    }
+
+    /// Edits the other motor to be like `from`.
+    pub fn copy_from(&mut self, from: Motor, columns: &[Column]) {
+        let to = if from == Motor::M1 { Motor::M2 } else { Motor::M1 };
+        for column in columns {
+            if let Some(value) = self.shown(from, column).and_then(number) {
+                self.edit(to, column, value);
+            }
+        }
+    }
+
+    /// Drops the edits.
+    pub fn revert(&mut self, columns: &[Column]) {
+        keys(columns).iter().for_each(|key| self.edits.remove(key));
+    }
+
+    /// Speed at full duty, counts/s, as the controller holds it.
+    pub fn qpps(&self, motor: Motor) -> Option<f64> {
+        self.held(motor, QPPS)
+    }
+
+    /// Motors whose L and R, as shown, are both other than 0.
+    pub fn torque_controlled(&self) -> Vec<Motor> {
+        let is_set = |motor, name: &str| {
+            let key = key(motor, name);
+            self.edits.get(&key).or_else(|| self.ram.get(&key)).and_then(number).is_some_and(|v| v != 0.0)
+        };
+        let both = |motor: &Motor| is_set(*motor, INDUCTANCE) && is_set(*motor, RESISTANCE);
+        Motor::BOTH.into_iter().filter(both).collect()
+    }
+
+    /// What to ask of the device thread to read the settings.
+    pub fn read(&mut self, identity: &Identity) -> Option<Request> {
+        self.wants_reading = false;
+        if self.running.is_some() {
+            return None;
+        }
+        let model = models::identify(&identity.version_text)?;
+        let table = SettingsTable::new(Subject::new(model, identity.generation));
+        self.table = Some(table.clone());
+        let keys = keys(VELOCITY);
+        let (sender, outcome) = bounded(1);
+        let job = FnJob::boxed(READ_JOB, READ_LIMIT, move |wire| {
+            // Nobody waits for it once the unit was left.
+            let _ = sender.try_send(Outcome::Read(read_some(wire, &table, &keys)));
+            Ok(Box::new(()))
+        });
+        self.running = Some(Running { name: READ_JOB, has_started: false, outcome });
+        Some(Request::Job(job))
+    }
+
+    /// What to ask of the device thread to write the edits to RAM.
+    pub fn apply(
+        &mut self,
+        columns: &[Column],
+        identity: &Identity,
+        own_stream: Option<Stream>,
+    ) -> Option<Request> {
+        let table = self.table.clone().filter(|_| self.running.is_none())?;
+        let wanted: SettingsImage = keys(columns)
+            .into_iter()
+            .filter_map(|key| self.edits.get(&key).map(|value| (key, value)))
+            .collect();
+        if wanted.is_empty() {
+            return None;
+        }
+        let options = WriteOptions { own_stream, simulated: identity.simulated };
+        let (sender, outcome) = bounded(1);
+        let job = FnJob::boxed(WRITE_JOB, WRITE_LIMIT, move |wire| {
+            // Nobody waits for it once the unit was left.
+            let _ = sender.try_send(Outcome::Written(write(wire, &table, &wanted, options)));
+            Ok(Box::new(()))
+        });
+        self.running = Some(Running { name: WRITE_JOB, has_started: false, outcome });
+        Some(Request::Job(job))
+    }
+
+    /// The request was not taken.
+    pub fn not_begun(&mut self) {
+        self.running = None;
+    }
+
+    /// Whether the event is about work that was begun here.
+    pub fn awaits(&self, event: &Event) -> bool {
+        let Some(running) = &self.running else { return false };
+        match event {
+            Event::JobStarted { name } => name == running.name,
+            Event::JobProgress { .. } => running.has_started,
+            Event::JobEnded(report) => report.name == running.name,
+            _ => false,
+        }
+    }
+
+    /// Takes in an event that [`LoopSettings::awaits`].
+    pub fn take(&mut self, event: Event) -> Vec<Effect> {
+        match event {
+            Event::JobStarted { .. } => {
+                if let Some(running) = &mut self.running {
+                    running.has_started = true;
+                }
+                Vec::new()
+            }
+            Event::JobEnded(report) => self.ended(&report.ending),
+            _ => Vec::new(),
+        }
+    }
+
+    fn ended(&mut self, ending: &JobEnding) -> Vec<Effect> {
+        let Some(running) = self.running.take() else { return Vec::new() };
+        match running.outcome.try_recv() {
+            Ok(Outcome::Read(Ok(report))) => self.was_read(&report),
+            Ok(Outcome::Written(Ok(report))) => self.was_written(&report),
+            Ok(Outcome::Read(Err(failure))) => vec![Effect::Say(Gravity::Error, failure.to_string())],
+            Ok(Outcome::Written(Err(error))) => vec![Effect::Say(Gravity::Error, error.to_string())],
+            Err(_) => vec![Effect::Say(Gravity::Error, nothing_came(running.name, ending))],
+        }
+    }
+
+    fn was_read(&mut self, report: &ReadReport) -> Vec<Effect> {
+        self.ram = report.image.clone();
+        self.drop_edits_that_are_held();
+        let failures = report.failures.iter();
+        failures.map(|unread| Effect::Say(Gravity::Error, unread.failure.to_string())).collect()
+    }
+
+    fn was_written(&mut self, report: &WriteReport) -> Vec<Effect> {
+        report.merge_into(&mut self.ram);
+        let taken = report.rows.iter().filter(|row| row.state == RowState::Taken);
+        let taken: Vec<&str> = taken.map(|row| row.key.as_str()).collect();
+        taken.iter().for_each(|key| self.edits.remove(key));
+        let mut effects: Vec<Effect> =
+            report.warnings.iter().map(|text| Effect::Say(Gravity::Warning, text.clone())).collect();
+        let wrong = self.table.as_ref().map(|table| report.sentences(table)).unwrap_or_default();
+        effects.push(if wrong.is_empty() {
+            Effect::Say(
+                Gravity::Note,
+                format!(
+                    "Applied and read back: {} in the controller's RAM. Until they are saved to EEPROM they last \
+                     until it is switched off.",
+                    counted(taken.len())
+                ),
+            )
+        } else {
+            Effect::Say(Gravity::Error, wrong.join(" "))
+        });
+        effects
+    }
+
+    fn drop_edits_that_are_held(&mut self) {
+        let Some(table) = &self.table else { return };
+        let is_open = |key: &str, value: SettingValue| {
+            let Some((row, held)) = table.row(key).zip(self.ram.get(key)) else { return true };
+            row.encode(held) != row.encode(value)
+        };
+        let open = self.edits.iter().filter(|(key, value)| is_open(key, *value));
+        self.edits = open.map(|(key, value)| (key.to_owned(), value)).collect();
+    }
+}
+
+/// "1 setting", "3 settings".
+pub fn counted(settings: usize) -> String {
+    if settings == 1 { "1 setting".to_owned() } else { format!("{settings} settings") }
+}
+
+pub fn number(value: SettingValue) -> Option<f64> {
+    match value {
+        SettingValue::Int(whole) => Some(whole as f64),
+        SettingValue::Number(number) => Some(number),
+        _ => None,
+    }
+}
+
+fn nothing_came(name: &str, ending: &JobEnding) -> String {
+    match ending {
+        JobEnding::Failed(failure) => failure.to_string(),
+        JobEnding::Panicked(word) => format!("Could not {name}: Brushwork had a bug. Its last word: {word}"),
+        JobEnding::Done(_) | JobEnding::Interrupted(_) => {
+            format!("Could not {name}: something more urgent came first. Read them again.")
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! What the screens that drive motors share: the arm switch, a motor's row, sync and on release, and the live graph.
+
+use std::time::Duration;
+
+use brushwork_link::device::{ArmScope, Channel, PollRate};
+use brushwork_link::transport::Stream;
+use brushwork_protocol::packet_serial::Motor;
+use egui::{Align, ComboBox, Frame, Label, Layout, Margin, RichText, Stroke, Ui, UiBuilder, vec2};
+
+use crate::gui::command::{Command, Commands};
+use crate::gui::graph::{list, plot};
+use crate::gui::model::link::{Arming, LinkView};
+use crate::gui::model::setpoints::Setpoints;
+use crate::gui::model::{Model, decimals};
+use crate::gui::theme::Palette;
+use crate::gui::widgets::LampState;
+use crate::gui::widgets::arm_switch::arm_switch_ui;
+use crate::gui::widgets::readout::Readout;
+
+/// Width of the list of channels.
+const LIST_WIDTH: f32 = 258.0;
+
+/// Height of a motor's row.
+const ROW_HEIGHT: f32 = 34.0;
+
+const RISK: &str = "While armed, moving a slider turns the motor at once. Keep hands and cables clear. \
+                    Space or Esc stops both motors.";
+
+/// The switch, the risk, and what stands in the way.
+pub fn arm_ui(ui: &mut Ui, scope: ArmScope, link: &LinkView, commands: &mut Commands) {
+    let palette = Palette::of(ui);
+    let armed = link.arming.is_armed_for(scope);
+    // As thick armed as disarmed, so that nothing moves.
+    let outline = Stroke::new(1.5, if armed { palette.warning } else { palette.line });
+    Frame::new().stroke(outline).corner_radius(4.0).inner_margin(Margin::symmetric(10, 6)).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        ui.horizontal(|ui| {
+            let waiting = matches!(link.arming, Arming::Asked(_));
+            if arm_switch_ui(ui, armed, waiting).clicked() {
+                commands.push(if armed { Command::Disarm } else { Command::Arm(scope) });
+            }
+            ui.vertical(|ui| {
+                ui.label(RISK);
+                let color = palette.weak_text;
+                ui.label(RichText::new(fallback_text(link.arming)).small().color(color));
+            });
+        });
+        if link.stream.is_none() {
+            stream_ui(ui, commands);
+        }
+        for refusal in &link.refusals {
+            reason_ui(ui, LampState::Error, &refusal.to_string());
+        }
+        for warning in &link.warnings {
+            reason_ui(ui, LampState::Warning, warning);
+        }
+    });
+}
+
+fn reason_ui(ui: &mut Ui, state: LampState, text: &str) {
+    ui.horizontal(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(18.0, 18.0), egui::Sense::hover());
+        state.paint(ui, rect.center(), 6.0);
+        ui.add(Label::new(text).wrap());
+    });
+}
+
+/// What happens if this program dies.
+fn fallback_text(arming: Arming) -> String {
+    match arming {
+        Arming::Armed { controller_timeout: Some(timeout), .. } => format!(
+            "If this program falls silent, the controller stops the motors by itself after {:.1} s. \
+             Leaving this screen disarms.",
+            timeout.as_secs_f64()
+        ),
+        Arming::Armed { .. } => "Leaving this screen disarms.".to_owned(),
+        Arming::Asked(_) => "Asking the controller …".to_owned(),
+        Arming::Disarmed => "Disarmed: nothing on this screen moves a motor.".to_owned(),
+    }
+}
+
+/// Asked for when the port does not tell by its name which of the controller's streams it is.
+fn stream_ui(ui: &mut Ui, commands: &mut Commands) {
+    ui.horizontal(|ui| {
+        let label = ui.label("This port goes to the controller's");
+        let combo = ComboBox::from_id_salt("stream").selected_text("choose …");
+        let response = combo.show_ui(ui, |ui| {
+            for stream in Stream::ALL {
+                if ui.selectable_label(false, stream.label()).clicked() {
+                    commands.push(Command::SetStream(stream));
+                }
+            }
+        });
+        response.response.labelled_by(label.id);
+        ui.label("port: its time-out is what stops the motors if this program dies.");
+    });
+}
+
+/// One motor's row: its slider in `slider_ui`, and what a channel reads.
+pub fn motor_ui(
+    ui: &mut Ui,
+    model: &mut Model,
+    motor: Motor,
+    output: &Output,
+    slider_ui: impl FnOnce(&mut Ui, &mut Model),
+) {
+    let size = vec2(ui.available_width(), ROW_HEIGHT);
+    ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+        let label = Label::new(format!("Motor {}", motor.index() + 1)).selectable(false);
+        ui.add_sized(vec2(62.0, ROW_HEIGHT), label);
+        let slider_width = ui.available_width() - output.width;
+        let armed = model.link.arming.is_armed_for(output.scope);
+        ui.add_enabled_ui(armed, |ui| {
+            ui.set_max_width(slider_width);
+            slider_ui(ui, model);
+        });
+        ui.label(RichText::new(output.word).small().color(Palette::of(ui).weak_text));
+        let channel = output.channels[motor.index()];
+        let text = model.link.readings.text(channel, decimals(channel));
+        let label = format!("{motor} {}", output.word);
+        let (digits, unit_letters) = (output.digits, output.unit_letters);
+        Readout { label: &label, unit: output.unit, digits, unit_letters }.ui(ui, text.as_deref());
+    });
+}
+
+/// What stands at the right of the sliders.
+#[derive(Clone, Copy, Debug)]
+pub struct Output {
+    pub scope: ArmScope,
+    pub word: &'static str,
+    pub channels: [Channel; 2],
+    pub unit: &'static str,
+    pub digits: usize,
+    pub unit_letters: usize,
+    /// Room for word, figure and unit.
+    pub width: f32,
+}
+
+/// The box that couples both sliders.
+pub fn sync_ui(ui: &mut Ui, setpoints: &mut Setpoints) {
+    let mut sync = setpoints.sync;
+    if ui.checkbox(&mut sync, "Sync motors").on_hover_text("Both sliders move together").changed() {
+        setpoints.set_sync(sync);
+    }
+}
+
+/// The box that keeps a setpoint back while its slider is held.
+pub fn on_release_ui(ui: &mut Ui, setpoints: &mut Setpoints) {
+    let hint = "The motor gets a new setpoint only when the slider is let go";
+    ui.checkbox(&mut setpoints.on_release, "On release").on_hover_text(hint);
+}
+
+/// The live graph and its list of channels, in what is left of the screen.
+pub fn graph_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    // Two places of exact size: neither can push the other out of the window.
+    let (place, _) = ui.allocate_exact_size(ui.available_size(), egui::Sense::hover());
+    let (left, right) = place.split_left_right_at_x(place.right() - LIST_WIDTH);
+    let left = left.with_max_x(left.right() - 8.0);
+    ui.scope_builder(UiBuilder::new().max_rect(left).layout(Layout::top_down(Align::Min)), |ui| {
+        ui.horizontal_wrapped(|ui| {
+            list::time_ui(ui, &mut model.graph);
+            rate_ui(ui, model.poll, commands);
+        });
+        plot::plot_ui(ui, &model.graph);
+    });
+    ui.scope_builder(UiBuilder::new().max_rect(right).layout(Layout::top_down(Align::Min)), |ui| {
+        list::channels_ui(ui, &mut model.graph);
+    });
+}
+
+/// How often the signals are read.
+fn rate_ui(ui: &mut Ui, poll: PollRate, commands: &mut Commands) {
+    let every = |milliseconds| PollRate::Every(Duration::from_millis(milliseconds));
+    let rates = [every(500), every(100), every(50), every(20), every(10), PollRate::Fastest];
+    let combo = ComboBox::from_id_salt("rate").width(104.0).selected_text(rate_text(poll));
+    let response = combo.show_ui(ui, |ui| {
+        for rate in rates {
+            if ui.selectable_label(rate == poll, rate_text(rate)).clicked() {
+                commands.push(Command::Poll(rate));
+            }
+        }
+    });
+    let response = response.response.on_hover_text("How often the signals are read");
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Sampling"));
+}
+
+fn rate_text(poll: PollRate) -> String {
+    match poll {
+        PollRate::Off => "not read".to_owned(),
+        PollRate::Every(time) => format!("every {} ms", time.as_millis()),
+        PollRate::Fastest => "as fast as it goes".to_owned(),
+    }
+}
