@@ -58,7 +58,7 @@ fn opening_the_screen_reads_the_settings_and_moves_nothing() {
     }
     assert_eq!(bench.model().loops.held(Motor::M1, "velocity.p"), Some(1.0));
     assert_eq!(bench.model().loops.qpps(Motor::M2), Some(44_000.0));
-    assert!(bench.see("M1 speed").accesskit_node().is_disabled());
+    assert!(bench.button("M1 speed").accesskit_node().is_disabled());
     assert!(bench.both_stand());
 }
 
