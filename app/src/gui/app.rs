@@ -289,10 +289,12 @@ impl App {
     fn apply_loops(&mut self, columns: &[Column]) {
         let Some(identity) = self.model.link.identity().cloned() else { return };
         let stream = self.model.link.stream;
-        if let Some(request) = self.model.loops.apply(columns, &identity, stream)
-            && !self.request(request)
-        {
-            self.model.loops.not_begun();
+        if let Some(request) = self.model.loops.apply(columns, &identity, stream) {
+            if self.request(request) {
+                self.model.general.ram_changes();
+            } else {
+                self.model.loops.not_begun();
+            }
         }
     }
 

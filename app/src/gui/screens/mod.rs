@@ -7,8 +7,8 @@ use super::model::screen::Screen;
 use super::model::{Model, Phase};
 use super::theme::Palette;
 
-mod general;
 mod drive;
+mod general;
 mod loops;
 mod pwm;
 mod status;

@@ -92,6 +92,13 @@ impl General {
         self.units.get(self.current.as_ref()?)
     }
 
+    /// Another screen writes to the controller's RAM: what was read of it is read again when it is next shown.
+    pub fn ram_changes(&mut self) {
+        if let Some(unit) = self.unit_mut() {
+            unit.forget_ram();
+        }
+    }
+
     pub fn unit_mut(&mut self) -> Option<&mut UnitSettings> {
         self.units.get_mut(self.current.as_ref()?)
     }

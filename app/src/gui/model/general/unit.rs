@@ -259,6 +259,11 @@ impl UnitSettings {
     }
 
     /// The link is gone. What was read may no longer be true; the edits stay.
+    pub(super) fn forget_ram(&mut self) {
+        self.copies.forget_ram();
+        self.was_asked = false;
+    }
+
     pub(super) fn forget(&mut self) {
         self.copies.forget_ram();
         self.copies.forget_eeprom();
