@@ -10,7 +10,7 @@ use brushwork::gui::App;
 use brushwork::gui::model::Model;
 use brushwork::gui::parts::{OpenLink, Opener, Parts, PortSource, SimulatedWorld};
 use brushwork::session::SessionError;
-use brushwork_link::device::{Addresses, DeviceLoop, DeviceOptions, Step};
+use brushwork_link::device::{Addresses, DeviceLoop, DeviceOptions};
 use brushwork_link::transport::{ConnectTarget, OpenError, PortInfo, Stream};
 use brushwork_link::{Clock as _, Failure, HiddenSettings};
 use brushwork_protocol::packet_serial::{Address, Motor};
@@ -25,6 +25,7 @@ use egui_kittest::{Harness, HarnessBuilder, Node};
 
 use super::cpu::Cpu;
 use super::line::Line;
+use super::lockstep::{Gate, Lockstep};
 
 /// Time between two frames, as in the real window.
 pub const FRAME: Duration = Duration::from_millis(100);
@@ -33,7 +34,7 @@ pub const FRAME: Duration = Duration::from_millis(100);
 pub struct Bench {
     pub harness: Harness<'static, Option<App>>,
     pub line: Line,
-    device_loop: Rc<RefCell<Option<DeviceLoop>>>,
+    device_loop: Rc<RefCell<Option<Lockstep>>>,
     ports: Rc<RefCell<Option<Vec<PortInfo>>>>,
 }
 
@@ -105,18 +106,9 @@ impl Bench {
     }
 
     fn turn_loop(&self, until: Duration) {
-        while self.line.clock.now() < until {
-            let step = self.device_loop.borrow_mut().as_mut().map_or(Step::Ended, DeviceLoop::step);
-            match step {
-                Step::Again => {}
-                Step::IdleUntil(at) => self.line.clock.advance_to(at.min(until).max(self.line.clock.now())),
-                Step::Ended => self.line.clock.advance_to(until),
-            }
-            if let Step::IdleUntil(at) = step
-                && at >= until
-            {
-                self.line.clock.advance_to(until);
-            }
+        match self.device_loop.borrow().as_ref() {
+            Some(device_loop) => device_loop.run_until(until),
+            None => self.line.clock.advance_to(until),
         }
         self.line.with(|_| ());
     }
@@ -166,7 +158,7 @@ impl Bench {
 
     /// Takes the device loop away, to turn it without the window.
     pub fn take_loop(&mut self) -> DeviceLoop {
-        self.device_loop.borrow_mut().take().expect("a link is open")
+        self.device_loop.borrow_mut().take().expect("a link is open").into_loop()
     }
 
     // ---- in the words of a person ----
@@ -269,7 +261,7 @@ impl PortSource for BenchPorts {
 
 struct BenchOpener {
     line: Line,
-    device_loop: Rc<RefCell<Option<DeviceLoop>>>,
+    device_loop: Rc<RefCell<Option<Lockstep>>>,
 }
 
 impl Opener for BenchOpener {
@@ -289,9 +281,10 @@ impl Opener for BenchOpener {
                     hidden: Some(Arc::new(BenchHidden(self.line.clone()))),
                     ..DeviceOptions::default()
                 };
-                let clock = Arc::new(self.line.clock.clone());
-                let (device_loop, device) = DeviceLoop::new(Box::new(self.line.clone()), clock, options);
-                *self.device_loop.borrow_mut() = Some(device_loop);
+                let gate = Gate::new(self.line.clock.clone());
+                let transport = Box::new(self.line.through(gate.clone()));
+                let (device_loop, device) = DeviceLoop::new(transport, Arc::new(gate.clone()), options);
+                *self.device_loop.borrow_mut() = Some(Lockstep::new(gate, device_loop));
                 Ok(OpenLink { device, world: Some(Arc::new(BenchWorld(self.line.clone()))) })
             }
             other => Err(SessionError::from(OpenError::NotFound { path: other.to_string() })),

@@ -7,6 +7,8 @@ use brushwork_link::{Clock as _, Transport, TransportError, VirtualClock};
 use brushwork_sim::controller::Bus;
 use brushwork_sim::machine::Machine as _;
 
+use super::lockstep::Gate;
+
 /// A simulated bus and the clock it shares with its client. Clones are the same.
 #[derive(Clone)]
 pub struct Line {
@@ -14,6 +16,7 @@ pub struct Line {
     pub clock: VirtualClock,
     rest: Vec<u8>,
     swallowed: Arc<Mutex<Option<Swallowed>>>,
+    gate: Option<Gate>,
 }
 
 /// A command that gets lost, and what comes back instead.
@@ -25,7 +28,25 @@ struct Swallowed {
 impl Line {
     pub fn new(bus: Bus) -> Self {
         let swallowed = Arc::default();
-        Self { bus: Arc::new(Mutex::new(bus)), clock: VirtualClock::new(), rest: Vec::new(), swallowed }
+        Self {
+            bus: Arc::new(Mutex::new(bus)),
+            clock: VirtualClock::new(),
+            rest: Vec::new(),
+            swallowed,
+            gate: None,
+        }
+    }
+
+    /// The same line for the device loop, which waits for the window at `gate`.
+    pub fn through(&self, gate: Gate) -> Self {
+        Self { gate: Some(gate), ..self.clone() }
+    }
+
+    fn advance_to(&self, time: Duration) {
+        match &self.gate {
+            Some(gate) => gate.advance_to(time),
+            None => self.clock.advance_to(time),
+        }
     }
 
     /// From now on a command does not reach the controller; what stands for its reply comes back at once.
@@ -58,8 +79,8 @@ impl Line {
     }
 
     fn wait_until(&self, deadline: Duration) -> Result<Vec<u8>, TransportError> {
-        let mut bus = self.lock();
         loop {
+            let mut bus = self.lock();
             bus.advance(self.clock.now());
             Self::plugged(&bus)?;
             let stream = bus.stream();
@@ -69,7 +90,10 @@ impl Line {
             if self.clock.now() >= deadline {
                 return Ok(Vec::new());
             }
-            self.clock.advance_to(bus.next_output_at().map_or(deadline, |at| at.min(deadline)));
+            let next = bus.next_output_at().map_or(deadline, |at| at.min(deadline));
+            // The window looks at the bus too.
+            drop(bus);
+            self.advance_to(next);
         }
     }
 }

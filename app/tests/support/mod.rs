@@ -4,3 +4,4 @@
 pub mod bench;
 pub mod cpu;
 pub mod line;
+pub mod lockstep;

@@ -1,6 +1,7 @@
 //! What a job holds of the device thread: the wire to the selected unit, progress, and the question whether to go on.
 
 use super::channel::Sample;
+use super::drive::Drive;
 use crate::exchange::{ExchangeError, Interruption, Reply};
 use crate::wire::{HiddenSettings, Wire};
 use brushwork_protocol::packet_serial::{Address, Generation, Value, Values};
@@ -9,6 +10,7 @@ use std::time::Duration;
 /// What the device thread does for a job.
 pub(super) trait JobHost {
     fn transact(&mut self, command: u8, values: Vec<Value>) -> Result<Reply, ExchangeError>;
+    fn drive(&mut self, drive: &Drive) -> Result<(), ExchangeError>;
     fn sleep(&mut self, time: Duration) -> Result<(), ExchangeError>;
     fn interruption(&mut self) -> Option<Interruption>;
     fn progress(&mut self, fraction: Option<f32>, text: &str);
@@ -47,6 +49,13 @@ impl<'a> JobContext<'a> {
     /// As [`Wire::transact`], with the host times of the exchange: for experiments.
     pub fn transact_timed(&mut self, command: u8, values: &[i64]) -> Result<Reply, ExchangeError> {
         self.host.transact(command, values.iter().map(|&value| Value::Int(value)).collect())
+    }
+
+    /// Moves motors, as [`Request::Drive`](super::Request::Drive) does. Refused unless something is armed; a job that uses it
+    /// says so by [`Job::moves_motors`](super::Job::moves_motors). After an error nobody knows what the motors do, so the job
+    /// should end.
+    pub fn drive(&mut self, drive: &Drive) -> Result<(), ExchangeError> {
+        self.host.drive(drive)
     }
 
     /// Shows the window a reading that the job made itself.

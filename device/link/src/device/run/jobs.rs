@@ -2,6 +2,7 @@
 
 use super::{DeviceLoop, Phase};
 use crate::device::channel::Sample;
+use crate::device::drive::Drive;
 use crate::device::event::{DisarmReason, Event};
 use crate::device::job::{Job, JobEnding, JobOutput, JobReport};
 use crate::device::job_context::{JobContext, JobHost};
@@ -178,6 +179,16 @@ impl JobHost for Host<'_> {
             self.core.after_command(command);
         }
         self.settle(reply)
+    }
+
+    fn drive(&mut self, drive: &Drive) -> Result<(), ExchangeError> {
+        self.check()?;
+        self.read_between()?;
+        let driven = self.core.act(self.asked_at, |unit, line| unit.drive(line, drive));
+        if driven.is_ok() {
+            self.core.note_setpoints(drive);
+        }
+        self.settle(driven)
     }
 
     fn sleep(&mut self, time: Duration) -> Result<(), ExchangeError> {

@@ -169,7 +169,7 @@ impl DeviceLoop {
         }
     }
 
-    fn note_setpoints(&mut self, drive: &Drive) {
+    pub(super) fn note_setpoints(&mut self, drive: &Drive) {
         let unit = &mut self.units[self.selected];
         for motor in Motor::BOTH {
             if let Some(command) = drive.of(motor) {

@@ -2,7 +2,8 @@
 
 use super::harness::{DUTY_ZERO, Link};
 use crate::clock::Clock;
-use crate::device::drive::ArmScope;
+use crate::device::channel::Channel;
+use crate::device::drive::{ArmScope, Drive, DriveCommand};
 use crate::device::event::{DisarmReason, Event};
 use crate::device::job::{FnJob, JobContext, JobEnding, JobOutput};
 use crate::device::request::{PollRate, Request, RequestRefused};
@@ -10,7 +11,7 @@ use crate::exchange::{ExchangeError, Interruption};
 use crate::failure::Failure;
 use crate::testing::ms;
 use crate::wire::Wire;
-use brushwork_protocol::packet_serial::number;
+use brushwork_protocol::packet_serial::{Motor, number};
 use std::time::Duration;
 
 type Outcome = Result<JobOutput, Failure>;
@@ -100,6 +101,38 @@ fn a_job_that_claims_to_move_nothing_cannot_move_anything_unarmed() {
     link.run_for(ms(500));
     assert!(matches!(ending(&link).0, JobEnding::Failed(_)));
     assert_eq!(link.bus().count(number::DUTY_M1), 0);
+}
+
+#[test]
+fn a_job_drives_in_the_words_of_the_window_and_its_setpoint_is_in_the_sample() {
+    let mut link = Link::armed();
+    start(&mut link, |context| {
+        context.drive(&Drive::one(Motor::M1, DriveCommand::duty(0.25))).map_err(fail)?;
+        context.sleep(ms(110)).map_err(fail)?;
+        for _ in 0..30 {
+            context.transact(number::READ_ENCODERS, &[]).map_err(fail)?;
+        }
+        Ok(Box::new(()))
+    });
+    link.run_for(ms(500));
+    assert_eq!(link.taken(number::DUTY_M1)[0].values, [8_192]);
+    assert!(link.has(
+        |event| matches!(event, Event::Sample(sample) if sample.get(Channel::M1Setpoint) == Some(25.0))
+    ));
+    assert_stopped(&link);
+}
+
+#[test]
+fn a_job_cannot_drive_unarmed() {
+    let mut link = Link::connected();
+    let job = FnJob::boxed("sneak", ms(1_000), |context| {
+        context.drive(&Drive::both(DriveCommand::duty(0.25))).map_err(fail)?;
+        Ok(Box::new(()))
+    });
+    link.ask(Request::Job(job));
+    link.run_for(ms(500));
+    assert!(matches!(ending(&link).0, JobEnding::Failed(_)));
+    assert_eq!(link.bus().count(number::DUTY_BOTH), 0);
 }
 
 #[test]
