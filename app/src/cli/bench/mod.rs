@@ -100,12 +100,30 @@ fn name_of(what: BenchArg) -> &'static str {
 
 fn print(as_json: bool, figures: &[Figure], out: &mut Output) -> Result<(), OutputError> {
     if as_json {
-        let build = if cfg!(debug_assertions) { "debug" } else { "release" };
-        return out
-            .json(&json!({ "version": env!("CARGO_PKG_VERSION"), "build": build, "figures": figures }));
+        return out.json(&json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "build": BUILD,
+            "processors": processors(),
+            "load": load(),
+            "figures": figures,
+        }));
     }
     let rows: Vec<Vec<String>> = figures.iter().map(Figure::cells).collect();
-    out.table(&MARKS, &rows)
+    out.table(&MARKS, &rows)?;
+    let load = load().map_or_else(String::new, |load| format!(", load {load}"));
+    out.line(format!("\n{BUILD} build, {} processors{load}", processors()))
+}
+
+const BUILD: &str = if cfg!(debug_assertions) { "debug" } else { "release" };
+
+fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// How many threads wanted a processor at a time in the last minute, where the system tells. More than there are
+/// processors makes every figure worse.
+fn load() -> Option<f64> {
+    std::fs::read_to_string("/proc/loadavg").ok()?.split(' ').next()?.parse().ok()
 }
 
 #[cfg(test)]

@@ -15,6 +15,8 @@ use std::time::Duration;
 
 /// A status that does not change is told this often.
 const STATUS_INTERVAL: Duration = Duration::from_secs(1);
+/// A slow signal is read this often at most, so that fast sweeps have room for the fast ones.
+const SLOW_INTERVAL: Duration = Duration::from_millis(20);
 /// A reading that failed this often in a row while others worked is left out for a while.
 const MISSES_TO_SUSPEND: u32 = 2;
 /// For how long it is left out.
@@ -62,6 +64,7 @@ impl Sweep {
 pub struct Plan {
     list: PollList,
     next_slow: usize,
+    slow_due_at: Duration,
     misses: Vec<(PollItem, u32, Duration)>,
     last_status: Option<StatusReport>,
     status_told_at: Duration,
@@ -70,22 +73,33 @@ pub struct Plan {
 impl Plan {
     /// A plan for what a unit can be asked.
     pub fn new(list: PollList) -> Self {
-        Self { list, next_slow: 0, misses: Vec::new(), last_status: None, status_told_at: Duration::ZERO }
+        Self {
+            list,
+            next_slow: 0,
+            slow_due_at: Duration::ZERO,
+            misses: Vec::new(),
+            last_status: None,
+            status_told_at: Duration::ZERO,
+        }
     }
 
     /// The items of a sweep that begins at `now`.
     fn sweep(&mut self, now: Duration) -> Vec<PollItem> {
         let mut items: Vec<_> =
             self.list.fast.iter().copied().filter(|item| self.works(*item, now)).collect();
-        for _ in 0..self.list.slow.len() {
-            let item = self.list.slow[self.next_slow % self.list.slow.len()];
-            self.next_slow = (self.next_slow + 1) % self.list.slow.len();
-            if self.works(item, now) {
-                items.push(item);
-                break;
-            }
+        if now >= self.slow_due_at {
+            self.slow_due_at = now + SLOW_INTERVAL;
+            items.extend(self.next_slow(now));
         }
         items
+    }
+
+    fn next_slow(&mut self, now: Duration) -> Option<PollItem> {
+        let slow = &self.list.slow;
+        let turn = (0..slow.len()).map(|step| (self.next_slow + step) % slow.len());
+        let index = turn.into_iter().find(|index| self.works(slow[*index], now))?;
+        self.next_slow = index + 1;
+        Some(self.list.slow[index])
     }
 
     fn works(&self, item: PollItem, now: Duration) -> bool {
