@@ -3,9 +3,11 @@
 use std::time::{Duration, Instant};
 
 use brushwork_link::device::{Channel, Event, FnJob, JobEnding, PollRate, Request, StatusReport};
-use brushwork_link::diagnosis::{Diagnosis, diagnose};
-use brushwork_link::settings::{ReadReport, SettingsImage, Subject, read_all};
+use brushwork_link::diagnosis::{Diagnosis, Evidence, Measured, PinEnd, diagnose, homed, pin_ends};
+use brushwork_link::settings::{SettingsImage, Subject, read_all};
+use brushwork_link::{Stream, Wire as _};
 use brushwork_protocol::models;
+use brushwork_protocol::packet_serial::number;
 use brushwork_protocol::packet_serial::status::{Condition, Lamp, Severity};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -26,6 +28,15 @@ const SETTINGS_LIMIT: Duration = Duration::from_secs(30);
 pub struct Readings {
     values: [Option<f64>; Channel::COUNT],
     status: Option<StatusReport>,
+    stream: Option<Stream>,
+}
+
+/// What a diagnosis needs beyond the readings.
+#[derive(Default)]
+struct Setup {
+    settings: Option<SettingsImage>,
+    /// Where the input pins stand, where the unit tells.
+    pins: Option<Vec<PinEnd>>,
 }
 
 #[derive(Serialize)]
@@ -47,6 +58,7 @@ impl Readings {
                 }
             }
             Event::Status(status) => self.status = Some(status),
+            Event::Selected { stream, .. } => self.stream = stream,
             Event::Failure(failure) => say(failure.to_string()),
             _ => {}
         }
@@ -89,8 +101,8 @@ fn watch(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
             readings.take(event);
         }
     }
-    let settings = read_settings(&client, &mut readings, interrupt)?;
-    print(args, &client, &readings, settings.as_ref(), out)?;
+    let setup = read_setup(&client, &mut readings, interrupt)?;
+    print(args, &client, &readings, &setup, out)?;
     if !args.watch {
         return Ok(Exit::Done);
     }
@@ -101,56 +113,70 @@ fn watch(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
         }
         if Instant::now() >= next {
             next += args.interval;
-            print(args, &client, &readings, settings.as_ref(), out)?;
+            print(args, &client, &readings, &setup, out)?;
         }
     }
 }
 
-/// The settings in RAM, for the diagnosis; `None` with a word to the user where they cannot be read.
-fn read_settings(
-    client: &Client,
-    readings: &mut Readings,
-    interrupt: &Interrupt,
-) -> Result<Option<SettingsImage>, Exit> {
-    let Some(model) = models::identify(&client.identity.version_text) else { return Ok(None) };
+/// The settings in RAM and the inputs, for the diagnosis; what cannot be read is told.
+fn read_setup(client: &Client, readings: &mut Readings, interrupt: &Interrupt) -> Result<Setup, Exit> {
+    let Some(model) = models::identify(&client.identity.version_text) else { return Ok(Setup::default()) };
     let subject = Subject::new(model, client.identity.generation);
     let job = FnJob::boxed("read the settings", SETTINGS_LIMIT, move |context| {
-        read_all(context, subject).map(|report| Box::new(report) as _)
+        let settings = Some(read_all(context, subject)?.image);
+        // A RoboClaw does not know the command; its status word has bits of its own.
+        let values = context.transact(number::READ_SIGNAL_VALUES, &[]);
+        Ok(Box::new(Setup { settings, pins: values.ok().map(|values| pin_ends(&values)) }))
     });
     if let Err(refused) = client.device().request(Request::Job(job)) {
         say(refused.to_string());
-        return Ok(None);
+        return Ok(Setup::default());
     }
     loop {
         match client.next_event(interrupt)? {
-            Some(Event::JobEnded(report)) => return Ok(image_of(report.ending)),
+            Some(Event::JobEnded(report)) => return Ok(setup_of(report.ending)),
             Some(event) => readings.take(event),
             None => {}
         }
     }
 }
 
-fn image_of(ending: JobEnding) -> Option<SettingsImage> {
+fn setup_of(ending: JobEnding) -> Setup {
     match ending {
-        JobEnding::Done(output) => output.downcast::<ReadReport>().ok().map(|report| report.image),
+        JobEnding::Done(output) => {
+            output.downcast::<Setup>().map_or_else(|_| Setup::default(), |setup| *setup)
+        }
         JobEnding::Failed(failure) => {
             say(failure.to_string());
-            None
+            Setup::default()
         }
-        JobEnding::Interrupted(_) | JobEnding::Panicked(_) => None,
+        JobEnding::Interrupted(_) | JobEnding::Panicked(_) => Setup::default(),
     }
+}
+
+/// Why the motors do not run, as far as anything is known.
+fn judge(client: &Client, readings: &Readings, setup: &Setup) -> Option<Diagnosis> {
+    let status = readings.status?;
+    Some(diagnose(&Evidence {
+        settings: setup.settings.as_ref(),
+        pins: setup.pins.as_deref(),
+        stream: readings.stream,
+        measured: Measured::of(|channel| readings.get(channel)),
+        ..Evidence::of(&status, &client.identity)
+    }))
 }
 
 fn print(
     args: &StatusArgs,
     client: &Client,
     readings: &Readings,
-    settings: Option<&SettingsImage>,
+    setup: &Setup,
     out: &mut Output,
 ) -> Result<(), OutputError> {
-    let diagnosis = readings.status.map(|status| diagnose(status.conditions, settings));
+    let diagnosis = judge(client, readings, setup);
+    let lamps = lamps(readings, client, setup);
     if args.json {
-        let object = to_json(client, readings, diagnosis.as_ref());
+        let object = to_json(client, readings, &lamps, diagnosis.as_ref());
         return if args.watch { out.json_line(&object) } else { out.json(&object) };
     }
     if args.watch {
@@ -182,7 +208,7 @@ fn print(
         })
         .collect();
     out.table(&["SIGNAL", "       VALUE", "UNIT"], &rows)?;
-    let lamps: Vec<Vec<String>> = lamps(readings)
+    let lamps: Vec<Vec<String>> = lamps
         .into_iter()
         .map(|lamp| vec![lamp.lamp.to_owned(), lamp.state.to_owned(), lamp.title.to_owned()])
         .collect();
@@ -198,10 +224,12 @@ fn decimals(channel: Channel) -> usize {
     }
 }
 
-fn lamps(readings: &Readings) -> Vec<LampState> {
+fn lamps(readings: &Readings, client: &Client, setup: &Setup) -> Vec<LampState> {
+    let homed =
+        setup.settings.as_ref().zip(setup.pins.as_deref()).map(|(settings, ends)| homed(settings, ends));
     let state = |lamp: Lamp| match readings.status.map(|status| status.lamp(lamp)) {
         None => "unknown",
-        Some(None) => "OK",
+        Some(None) => dark(lamp, client, homed),
         Some(Some(Severity::Signal)) => "active",
         Some(Some(Severity::Warning)) => "warning",
         Some(Some(Severity::Error)) => "ERROR",
@@ -212,7 +240,27 @@ fn lamps(readings: &Readings) -> Vec<LampState> {
         .collect()
 }
 
-fn to_json(client: &Client, readings: &Readings, diagnosis: Option<&Diagnosis>) -> Value {
+/// A lamp that the status word does not light: a home lamp is lit by the actions of the pins where the word has no bit.
+fn dark(lamp: Lamp, client: &Client, homed: Option<[bool; 2]>) -> &'static str {
+    let by_pins = match lamp {
+        Lamp::M1Home => homed.map(|homed| homed[0]),
+        Lamp::M2Home => homed.map(|homed| homed[1]),
+        _ => None,
+    };
+    match by_pins {
+        Some(true) => "active",
+        Some(false) => "OK",
+        None if lamp.is_reported(client.identity.generation, client.identity.is_mcp()) => "OK",
+        None => "not reported",
+    }
+}
+
+fn to_json(
+    client: &Client,
+    readings: &Readings,
+    lamps: &[LampState],
+    diagnosis: Option<&Diagnosis>,
+) -> Value {
     json!({
         "diagnosis": diagnosis.map(Diagnosis::sentence),
         "findings": diagnosis.map(|diagnosis| &diagnosis.findings),
@@ -221,7 +269,7 @@ fn to_json(client: &Client, readings: &Readings, diagnosis: Option<&Diagnosis>) 
         "status_word": readings.status.map(|status| status.word),
         "conditions": readings.status
             .map(|status| status.conditions.iter().map(Condition::title).collect::<Vec<_>>()),
-        "lamps": lamps(readings),
+        "lamps": lamps,
     })
 }
 

@@ -1,8 +1,7 @@
 //! The states of the thirteen status lamps (MCP manual 1.2.5).
 
 use brushwork_link::device::{Identity, StatusReport};
-use brushwork_protocol::packet_serial::Generation;
-use brushwork_protocol::packet_serial::status::{CONDITIONS, Lamp, Severity};
+use brushwork_protocol::packet_serial::status::{Lamp, Severity};
 
 use crate::gui::widgets::LampState;
 
@@ -15,7 +14,8 @@ impl Lamps {
     pub fn of(report: &StatusReport, identity: Option<&Identity>) -> Self {
         let mut lamps = Self::default();
         for lamp in Lamp::ALL {
-            let told = identity.is_none_or(|identity| is_reported(lamp, identity));
+            let told =
+                identity.is_none_or(|identity| lamp.is_reported(identity.generation, identity.is_mcp()));
             let dark = if told { LampState::Ok } else { LampState::NotApplicable };
             lamps.0[lamp as usize] = report.lamp(lamp).map_or(dark, state_of);
         }
@@ -41,18 +41,6 @@ pub const fn state_of(severity: Severity) -> LampState {
     }
 }
 
-/// Whether a unit can light a lamp at all: its status word has a bit for it, and the MCP's driver faults do not exist
-/// (MCP manual 1.2.5).
-fn is_reported(lamp: Lamp, identity: &Identity) -> bool {
-    let driver_fault = matches!(lamp, Lamp::M1DriverFault | Lamp::M2DriverFault);
-    let is_mcp = identity.model.is_some_and(|model| model.starts_with("MCP"));
-    has_bit(lamp, identity.generation) && !(driver_fault && is_mcp)
-}
-
-fn has_bit(lamp: Lamp, generation: Generation) -> bool {
-    CONDITIONS.iter().any(|row| row.lamp == Some(lamp) && row.mask(generation) != 0)
-}
-
 /// The lamp's name in full, as the manual has it.
 pub const fn title(lamp: Lamp) -> &'static str {
     match lamp {
@@ -76,6 +64,7 @@ pub const fn title(lamp: Lamp) -> &'static str {
 mod tests {
     use std::time::Duration;
 
+    use brushwork_protocol::packet_serial::Generation;
     use brushwork_protocol::packet_serial::status::Condition;
 
     use super::*;

@@ -1,7 +1,7 @@
 //! The panel for a simulated controller's world: what a person could do to the machine on the bench.
 
 use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::world::{WorldAction, WorldView};
+use brushwork_sim::world::{UnitFault, WorldAction, WorldView};
 use egui::{RichText, Ui};
 
 use super::command::{Command, Commands};
@@ -28,6 +28,7 @@ pub fn world_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     ui.label(RichText::new(note).small().color(color));
     unit_ui(ui, view, &mut actions);
     supply_ui(ui, view, panel, &mut actions);
+    electronics_ui(ui, view, &mut actions);
     for motor in Motor::BOTH {
         motor::motor_ui(ui, motor, view, panel, &mut actions);
     }
@@ -50,6 +51,21 @@ fn unit_ui(ui: &mut Ui, view: &WorldView, actions: &mut Actions) {
         }
         if toggle_ui(ui, "E-stop pressed", view.estop_pressed) {
             actions.push(WorldAction::EStop { pressed: !view.estop_pressed });
+        }
+    });
+}
+
+/// Faults of the controller's own electronics.
+fn electronics_ui(ui: &mut Ui, view: &WorldView, actions: &mut Actions) {
+    ui.separator();
+    heading_ui(ui, "Inside the controller");
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 10.0;
+        for fault in UnitFault::ALL {
+            let on = view.unit_faults.has(fault);
+            if toggle_ui(ui, fault.title(), on) {
+                actions.push(WorldAction::SetUnitFault { fault, on: !on });
+            }
         }
     });
 }

@@ -29,6 +29,12 @@ pub struct Identity {
 }
 
 impl Identity {
+    /// Whether it is an MCP rather than a RoboClaw.
+    #[must_use]
+    pub fn is_mcp(&self) -> bool {
+        self.model.is_some_and(|model| model.starts_with("MCP"))
+    }
+
     /// The model, or what the unit calls itself.
     #[must_use]
     pub fn title(&self) -> &str {

@@ -260,6 +260,15 @@ impl Lamp {
         }
     }
 
+    /// Whether a status word can light it. An MCP has no driver faults, and its home lamps follow the actions of its pins
+    /// instead (MCP manual 1.2.5 and command 90, whose table ends before them).
+    pub fn is_reported(self, generation: Generation, mcp: bool) -> bool {
+        let roboclaw_only =
+            matches!(self, Self::M1DriverFault | Self::M2DriverFault | Self::M1Home | Self::M2Home);
+        let has_bit = CONDITIONS.iter().any(|row| row.lamp == Some(self) && row.mask(generation) != 0);
+        has_bit && !(mcp && roboclaw_only)
+    }
+
     /// The gravest of the conditions that light it; `None` if it is dark.
     pub fn lit_by(self, conditions: Conditions) -> Option<Severity> {
         conditions.iter().filter(|condition| condition.lamp() == Some(self)).map(Condition::severity).max()

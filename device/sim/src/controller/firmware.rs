@@ -14,7 +14,7 @@ use crate::priority::Source;
 use crate::settings::{Image, Settings};
 use crate::signals::{Signal, Triggers};
 use crate::supervision::{EStop, Leds, Protection};
-use crate::world::{BridgeSense, World};
+use crate::world::{BridgeSense, UnitFault, World};
 use brushwork_protocol::models::{Family, Model};
 use brushwork_protocol::packet_serial::{Address, Generation, Motor};
 use std::time::Duration;
@@ -37,6 +37,8 @@ pub(super) struct Firmware {
     pub counts: Vec<i64>,
     pub readings: Readings,
     pub protection: Protection,
+    /// Something was wrong at start-up.
+    pub boot_warning: bool,
     pub estop: EStop,
     /// What the inputs' actions ask for at this tick.
     pub triggers: Triggers,
@@ -99,6 +101,7 @@ impl Firmware {
             signals: vec![Signal::default(); settings.signals.len()],
             readings,
             protection: Protection::default(),
+            boot_warning: readings.unit_faults.has(UnitFault::Boot),
             estop: EStop::default(),
             triggers: Triggers::default(),
             reversed: [false; 2],

@@ -151,7 +151,8 @@ impl Controller {
 
     /// The machine as it is now.
     pub fn view(&self) -> WorldView {
-        self.world.view(self.now)
+        let leds = self.firmware.as_ref().map(|firmware| firmware.leds);
+        WorldView { leds, ..self.world.view(self.now) }
     }
 
     /// The machine.

@@ -2,7 +2,7 @@
 
 use crate::motion::EncoderInput;
 use crate::plant::EncoderReading;
-use crate::world::World;
+use crate::world::{UnitFaults, World};
 use brushwork_protocol::packet_serial::{Motor, scale};
 
 /// One set of measurements.
@@ -18,6 +18,8 @@ pub struct Readings {
     pub amps: [f64; 2],
     /// The E-stop button.
     pub estop_pressed: bool,
+    /// What is wrong inside the unit.
+    pub unit_faults: UnitFaults,
     /// The encoders as they are plugged in.
     pub(super) plugs: [EncoderReading; 2],
     /// What is taken as each motor's encoder.
@@ -33,6 +35,7 @@ impl Readings {
             celsius: world.board_celsius(),
             amps: Motor::BOTH.map(|motor| world.measured_amps(motor)),
             estop_pressed: world.estop_pressed(),
+            unit_faults: world.unit_faults(),
             plugs: Motor::BOTH.map(|motor| world.encoder(motor)),
             encoders: [EncoderInput::Quadrature(0); 2],
         }

@@ -2,7 +2,19 @@
 
 use super::firmware::Firmware;
 use crate::signals::MotorTriggers;
+use crate::world::UnitFault;
+use brushwork_protocol::models::Family;
 use brushwork_protocol::packet_serial::status::{self, Condition, Conditions};
+
+/// What only a RoboClaw reports.
+const ROBOCLAW_ONLY: [Condition; 6] = [
+    Condition::M1DriverFault,
+    Condition::M2DriverFault,
+    Condition::M1Home,
+    Condition::M2Home,
+    Condition::S4Signal,
+    Condition::S5Signal,
+];
 
 impl Firmware {
     /// Everything that is so now, whether or not this generation has a bit for it.
@@ -18,6 +30,12 @@ impl Firmware {
             (Condition::MainBatteryLowError, limits.main_low_error),
             (Condition::LogicBatteryHighError, limits.logic_high_error),
             (Condition::LogicBatteryLowError, limits.logic_low_error),
+            (Condition::M1DriverFault, limits.driver_fault[0]),
+            (Condition::M2DriverFault, limits.driver_fault[1]),
+            (Condition::M1CurrentError, limits.current_error[0]),
+            (Condition::M2CurrentError, limits.current_error[1]),
+            (Condition::CanWarning, self.readings.unit_faults.has(UnitFault::Can)),
+            (Condition::BootWarning, self.boot_warning),
             (Condition::M1SpeedError, faults[0].speed),
             (Condition::M2SpeedError, faults[1].speed),
             (Condition::M1PositionError, faults[0].position),
@@ -40,8 +58,13 @@ impl Firmware {
         .collect()
     }
 
-    /// The status word of this generation.
+    /// The status word of this generation. The MCP's has no bits for driver faults and home switches (MCP manual 1.2.5 and
+    /// command 90).
     pub(super) fn status_word(&self) -> u32 {
-        status::encode(self.conditions(), self.generation)
+        let mut conditions = self.conditions();
+        if self.model.family == Family::Mcp {
+            ROBOCLAW_ONLY.into_iter().for_each(|condition| conditions.remove(condition));
+        }
+        status::encode(conditions, self.generation)
     }
 }

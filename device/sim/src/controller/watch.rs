@@ -6,7 +6,7 @@ use super::readings::Readings;
 use crate::motion::{BridgeOverride, MotionCommand};
 use crate::plant::ClampDrive;
 use crate::supervision::{EStopReset, LedInputs, Limits, Observed, OutputInputs, leds, output_is_on};
-use crate::world::World;
+use crate::world::{UnitFault, World};
 use brushwork_protocol::packet_serial::{Generation, Motor, scale};
 
 /// The over-voltage output action (command 137).
@@ -92,7 +92,11 @@ impl Firmware {
     }
 
     fn has_latched_error(&self) -> bool {
-        self.protection.main_high_error || self.protection.logic_high_error || self.protection.logic_low_error
+        let limits = &self.protection;
+        limits.main_high_error
+            || limits.logic_high_error
+            || limits.logic_low_error
+            || limits.has_bridge_fault()
     }
 
     /// A speed or position error beyond its limit stops its motor. Assumed: the fault shows until the motor's next command.
@@ -108,7 +112,7 @@ impl Firmware {
     }
 
     fn observed(&self) -> Observed {
-        let Readings { main_volts, logic_volts, celsius, amps, .. } = self.readings;
+        let Readings { main_volts, logic_volts, celsius, amps, unit_faults, .. } = self.readings;
         let driving = |motor: Motor| {
             let duty = f64::from(self.channels[motor.index()].duty_raw());
             if duty == 0.0 { 0.0 } else { amps[motor.index()] * duty.signum() }
@@ -119,6 +123,8 @@ impl Firmware {
             temperature_celsius: celsius[0],
             temperature_2_celsius: self.model.second_temperature.then_some(celsius[1]),
             driving_amps: Motor::BOTH.map(driving),
+            driver_fault: [UnitFault::M1Driver, UnitFault::M2Driver].map(|fault| unit_faults.has(fault)),
+            short_circuit: [UnitFault::M1Current, UnitFault::M2Current].map(|fault| unit_faults.has(fault)),
         }
     }
 

@@ -1,7 +1,7 @@
 //! The text form of a fault, as `--fault` takes it.
 
 use super::{Direction, Fault, FaultEffect};
-use crate::world::{Motor, PinSignal, SwitchKind, WorldAction};
+use crate::world::{Motor, PinSignal, SwitchKind, UnitFault, WorldAction};
 use std::str::FromStr;
 use std::time::Duration;
 
@@ -23,7 +23,8 @@ In the machine (motor=1 or motor=2, else motor 1; unit=N for the Nth unit of a b
   plant:swapped-encoders    plant:load-torque=NM      plant:battery=VOLTS
   plant:battery-ohms=OHMS   plant:battery-off         plant:power-supply
   plant:logic=VOLTS         plant:hot-board=CELSIUS   plant:e-stop
-  plant:power-loss          plant:pin-volts=VOLTS,pin=N
+  plant:power-loss          plant:pin-volts=VOLTS,pin=N     plant:driver-fault
+  plant:short-circuit       plant:boot-fault          plant:can-fault
   plant:limit-switch=forward|backward|home,pin=N      (wires the switch to that pin)
 
 Without FROM a fault is there from the start, without TO it stays. Times: 2s, 2.5s, 500ms, 100us, 1min.";
@@ -203,6 +204,16 @@ impl<'a> Parts<'a> {
             "battery-off" => self.bare(WorldAction::ConnectBattery { connected: false }),
             "power-supply" => self.bare(WorldAction::SetBatterySinks { can_sink: false }),
             "e-stop" => self.bare(WorldAction::EStop { pressed: true }),
+            "driver-fault" => {
+                let fault = [UnitFault::M1Driver, UnitFault::M2Driver][motor.index()];
+                self.bare(WorldAction::SetUnitFault { fault, on })
+            }
+            "short-circuit" => {
+                let fault = [UnitFault::M1Current, UnitFault::M2Current][motor.index()];
+                self.bare(WorldAction::SetUnitFault { fault, on })
+            }
+            "boot-fault" => self.bare(WorldAction::SetUnitFault { fault: UnitFault::Boot, on }),
+            "can-fault" => self.bare(WorldAction::SetUnitFault { fault: UnitFault::Can, on }),
             "power-loss" => self.bare(WorldAction::Power { on: false }),
             "noisy-encoder" => {
                 Ok(WorldAction::SetEncoderNoise { motor, counts: number("plant:noisy-encoder=5")? })
@@ -427,7 +438,7 @@ mod tests {
             fault(&text);
             count += 1;
         }
-        assert_eq!(count, 18);
+        assert_eq!(count, 22);
         for line in FAULT_SYNTAX.lines().filter(|line| line.starts_with("  ") && line.contains(": ")) {
             let (_, examples) = line.split_once(": ").expect("it was just found");
             for example in examples.split(", ") {

@@ -3,6 +3,7 @@
 //! Assumed: the lengths of the flashes, and that of several conditions the one nearest the top of table 1.6.3 shows.
 
 use super::{EStop, Protection};
+use serde::Serialize;
 use std::time::Duration;
 
 /// How long all three LEDs light after power up.
@@ -17,7 +18,7 @@ const DATA_BLINK: Duration = Duration::from_millis(30);
 const BOOT_TURN: Duration = Duration::from_millis(250);
 
 /// Which LEDs are lit.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Leds {
     /// Green STAT1.
     pub stat1: bool,

@@ -3,7 +3,8 @@
 //! Assumed, all in this file: the maximum of command 57 is the high *warning*, the model's own rating the high *error*; the
 //! logic supply's minimum is compared with the higher of logic and main battery, since either feeds the logic (1.0.10); the
 //! current limit falls in a straight line from all of it at 85 degrees to none at 100; where braking and freewheeling are
-//! both asked for, an error wins over a warning and otherwise braking wins.
+//! both asked for, an error wins over a warning and otherwise braking wins; a fault of a bridge and a short circuit let both
+//! motors freewheel until a restart (1.6.2 says that a fault disables both outputs until the unit is reset).
 
 use crate::motion::BridgeOverride;
 
@@ -25,6 +26,10 @@ pub struct Observed {
     pub temperature_2_celsius: Option<f64>,
     /// Motor currents, A, positive for driving torque whichever way the motor turns.
     pub driving_amps: [f64; 2],
+    /// The bridges say that they are broken or shorted.
+    pub driver_fault: [bool; 2],
+    /// More current than the board stands.
+    pub short_circuit: [bool; 2],
 }
 
 /// The limits in force.
@@ -69,6 +74,10 @@ pub struct Protection {
     pub over_current: [bool; 2],
     /// The motor feeds back as much current as it may.
     pub over_regeneration: [bool; 2],
+    /// Latched: a bridge reported a fault. Both motors freewheel.
+    pub driver_fault: [bool; 2],
+    /// Latched: a short circuit. Both motors freewheel.
+    pub current_error: [bool; 2],
 }
 
 /// Share of the limit at which the warning shows: the limiter holds the current there, so it is never much above.
@@ -100,6 +109,8 @@ impl Protection {
             let amps = observed.driving_amps[motor];
             self.over_current[motor] = reached(amps, limits.max_amps[motor]);
             self.over_regeneration[motor] = reached(-amps, limits.max_braking_amps[motor]);
+            self.driver_fault[motor] |= observed.driver_fault[motor];
+            self.current_error[motor] |= observed.short_circuit[motor];
         }
     }
 
@@ -125,8 +136,14 @@ impl Protection {
         (1.0 - above / (FREEWHEEL_AT_CELSIUS - WARNING_FROM_CELSIUS)).clamp(0.0, 1.0)
     }
 
+    /// Whether a bridge fault or a short circuit has disabled the motors.
+    pub fn has_bridge_fault(&self) -> bool {
+        self.driver_fault.contains(&true) || self.current_error.contains(&true)
+    }
+
     fn has_freewheeling_error(&self) -> bool {
-        self.temperature_error
+        self.has_bridge_fault()
+            || self.temperature_error
             || self.temperature_2_error
             || self.logic_high_error
             || self.logic_low_error
@@ -152,6 +169,8 @@ mod tests {
         temperature_celsius: 25.0,
         temperature_2_celsius: None,
         driving_amps: [1.0, 0.0],
+        driver_fault: [false; 2],
+        short_circuit: [false; 2],
     };
 
     fn after(observed: Observed) -> Protection {
@@ -188,6 +207,18 @@ mod tests {
         assert!(after(high).main_high_error);
         assert_eq!(after(high).bridge(), BridgeOverride::Brake);
         assert!(lasts(high));
+    }
+
+    #[test]
+    fn a_bridge_fault_and_a_short_circuit_freewheel_until_a_restart() {
+        let faults = [
+            Observed { driver_fault: [false, true], ..GOOD },
+            Observed { short_circuit: [true, false], ..GOOD },
+        ];
+        for observed in faults {
+            assert_eq!(after(observed).bridge(), BridgeOverride::Freewheel);
+            assert!(lasts(observed), "{observed:?}");
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! What a person, a panel, a fault script or a test can do to a world.
 
 use super::Motor;
+use super::UnitFault;
 use super::pins::{PinSignal, SwitchKind};
 use super::{World, WorldView};
 use serde::{Deserialize, Serialize};
@@ -72,6 +73,13 @@ pub enum WorldAction {
     EStop {
         /// Pressed.
         pressed: bool,
+    },
+    /// A fault of the unit's own electronics.
+    SetUnitFault {
+        /// Which.
+        fault: UnitFault,
+        /// There.
+        on: bool,
     },
     /// Encoder leads A and B changed round.
     ReverseEncoder {
@@ -166,6 +174,7 @@ impl World {
                 self.pins.wire(motor, switch, pin, trips_at_radians.map(sane));
             }
             WorldAction::EStop { pressed } => self.estop_pressed = pressed,
+            WorldAction::SetUnitFault { fault, on } => self.unit_faults.set(fault, on),
             WorldAction::ReverseEncoder { motor, on } => self.axes[motor.index()].reverse_encoder(on),
             WorldAction::LoseEncoder { motor, on } => self.axes[motor.index()].lose_encoder(on),
             WorldAction::SetEncoderNoise { motor, counts } => {
@@ -208,6 +217,9 @@ impl WorldAction {
                 }
             }
             Self::EStop { .. } => Self::EStop { pressed: before.estop_pressed },
+            Self::SetUnitFault { fault, .. } => {
+                Self::SetUnitFault { fault, on: before.unit_faults.has(fault) }
+            }
             Self::ReverseEncoder { motor, .. } => {
                 Self::ReverseEncoder { motor, on: truth(motor).encoder_reversed }
             }

@@ -6,11 +6,13 @@
 
 mod action;
 mod pins;
+mod unit_fault;
 mod view;
 
 pub use action::WorldAction;
 pub use brushwork_protocol::packet_serial::Motor;
 pub use pins::{PinSignal, PinState, SWITCH_OPEN_VOLTS, SwitchKind, SwitchWiring, Wiring};
+pub use unit_fault::{UnitFault, UnitFaults};
 pub use view::{AxisView, WorldView};
 
 use crate::bridge::BridgeOutput;
@@ -61,6 +63,7 @@ pub struct World {
     outputs: [BridgeOutput; 2],
     encoders_swapped: bool,
     estop_pressed: bool,
+    unit_faults: UnitFaults,
     powered: bool,
     plugged: bool,
 }
@@ -84,6 +87,7 @@ impl World {
             outputs: [BridgeOutput::Coast; 2],
             encoders_swapped: false,
             estop_pressed: false,
+            unit_faults: UnitFaults::default(),
             powered: true,
             plugged: true,
         })
@@ -159,6 +163,11 @@ impl World {
     /// Whether the E-stop is pressed.
     pub fn estop_pressed(&self) -> bool {
         self.estop_pressed
+    }
+
+    /// What is wrong inside the unit.
+    pub fn unit_faults(&self) -> UnitFaults {
+        self.unit_faults
     }
 
     /// Whether the unit has power.

@@ -1,10 +1,12 @@
 //! A snapshot of a world, for a panel and for tests that compare what the controller says with what is so.
 
 use super::Motor;
+use super::UnitFaults;
 use super::World;
 use super::pins::{PinSignal, SwitchKind, Wiring};
 use crate::bridge::BridgeOutput;
 use crate::plant::AxisTruth;
+use crate::supervision::Leds;
 use serde::Serialize;
 use std::time::Duration;
 
@@ -19,6 +21,10 @@ pub struct WorldView {
     pub plugged: bool,
     /// Whether the E-stop is pressed.
     pub estop_pressed: bool,
+    /// What is wrong inside the unit.
+    pub unit_faults: UnitFaults,
+    /// The unit's LEDs; none without power.
+    pub leds: Option<Leds>,
     /// Both axes.
     pub axes: [AxisView; 2],
     /// Whether the encoder plugs are changed round.
@@ -65,7 +71,7 @@ pub struct AxisView {
 }
 
 impl World {
-    /// A snapshot; `now` is the time it is said to be from. Looking changes nothing, not even the noise.
+    /// A snapshot; `now` is the time it is said to be from. The LEDs are the controller's to add. Looking changes nothing, not even the noise.
     pub fn view(&self, now: Duration) -> WorldView {
         let positions = self.axes.each_ref().map(|axis| axis.state().load_radians);
         let pins = (0..self.pins.signals().len())
@@ -76,6 +82,8 @@ impl World {
             powered: self.powered,
             plugged: self.plugged,
             estop_pressed: self.estop_pressed,
+            unit_faults: self.unit_faults,
+            leds: None,
             axes: Motor::BOTH.map(|motor| self.axis_view(motor)),
             encoders_swapped: self.encoders_swapped,
             bus_volts: self.supply.bus_volts(),

@@ -6,7 +6,7 @@ use crate::controller::ControllerConfig;
 use crate::plant::BrakeResistorParams;
 use crate::presets;
 use crate::supervision::Leds;
-use crate::world::{Motor, WorldAction};
+use crate::world::{Motor, UnitFault, WorldAction};
 use brushwork_protocol::models;
 use brushwork_protocol::packet_serial::status::{Condition, Lamp, Severity, decode};
 use brushwork_protocol::packet_serial::{Generation, number};
@@ -226,6 +226,54 @@ fn a_speed_error_beyond_its_limit_stops_the_motor_and_shows_until_the_next_comma
     bench.wait_talking(A_MOMENT);
     assert!(!has(&mut bench, Condition::M1SpeedError));
     assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), 5_000);
+}
+
+#[test]
+fn faults_of_the_electronics_stop_both_motors_until_a_restart_and_show_where_there_is_a_bit() {
+    let roboclaw = models::lookup("roboclaw").expect("it is in the list");
+    let faults = [
+        (UnitFault::M2Driver, Condition::M2DriverFault, [true, true, true, true]),
+        (UnitFault::M1Current, Condition::M1CurrentError, [false, false, true, true]),
+    ];
+    for generation in Generation::ALL {
+        for (fault, condition, shown) in faults {
+            let mut bench = Bench::of(ControllerConfig { generation, ..ControllerConfig::of(roboclaw) });
+            bench.ask(number::DUTY_BOTH, &[16_000, 16_000]);
+            bench.wait_talking(A_MOMENT);
+            bench.apply(&WorldAction::SetUnitFault { fault, on: true });
+            bench.wait_talking(A_MOMENT);
+            let shown = shown[usize::from(generation.number()) - 1];
+            assert_eq!(has(&mut bench, condition), shown, "{fault:?} in {generation}");
+            assert_eq!(output(&bench), BridgeOutput::Coast, "{fault:?} in {generation}");
+            bench.apply(&WorldAction::SetUnitFault { fault, on: false });
+            bench.ask(number::DUTY_BOTH, &[16_000, 16_000]);
+            bench.wait_talking(A_MOMENT);
+            assert_eq!(output(&bench), BridgeOutput::Coast, "{fault:?} in {generation}");
+            bench.apply(&WorldAction::Power { on: false });
+            bench.wait(A_MOMENT);
+            bench.apply(&WorldAction::Power { on: true });
+            bench.wait_talking(A_MOMENT);
+            assert!(!has(&mut bench, condition));
+        }
+    }
+}
+
+#[test]
+fn a_boot_fault_shows_from_the_next_start_on_and_a_can_fault_while_it_lasts() {
+    let mut bench = Bench::new(Generation::Gen4);
+    for fault in [UnitFault::Boot, UnitFault::Can] {
+        bench.apply(&WorldAction::SetUnitFault { fault, on: true });
+    }
+    bench.wait_talking(A_MOMENT);
+    assert!(has(&mut bench, Condition::CanWarning) && !has(&mut bench, Condition::BootWarning));
+    bench.apply(&WorldAction::Power { on: false });
+    bench.wait(A_MOMENT);
+    bench.apply(&WorldAction::Power { on: true });
+    for fault in [UnitFault::Boot, UnitFault::Can] {
+        bench.apply(&WorldAction::SetUnitFault { fault, on: false });
+    }
+    bench.wait_talking(A_MOMENT);
+    assert!(!has(&mut bench, Condition::CanWarning) && has(&mut bench, Condition::BootWarning));
 }
 
 #[test]
