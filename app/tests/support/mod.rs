@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test file uses its own part of this")]
 
 pub mod bench;
+pub mod causes;
 pub mod cpu;
 pub mod line;
 pub mod lockstep;

@@ -14,15 +14,8 @@ pub fn keys(table: &SettingsTable) -> Vec<String> {
     const LAST_PARTS: [&str; 7] =
         ["type", "digital", "target", "min_action", "max_action", "timeout", "serial_timeout"];
     const STARTS: [&str; 5] = ["priority.", "limits.", "script.", "unit.estop_reset", "unit.bridge_channels"];
-    const LOOPS: [&str; 7] = [
-        "velocity.qpps",
-        "position.min",
-        "position.max",
-        "position.p",
-        "position.i",
-        "position.d",
-        "current.max_amps",
-    ];
+    const LOOPS: [&str; 6] =
+        ["velocity.qpps", "position.min", "position.max", "position.p", "position.i", "position.d"];
     let wanted = |key: &str| {
         STARTS.iter().any(|start| key.starts_with(start))
             || LAST_PARTS.iter().any(|part| key.ends_with(&format!(".{part}")))
@@ -40,7 +33,6 @@ pub fn findings(evidence: &Evidence<'_>) -> Vec<Finding> {
         priorities(settings),
         time_out(settings, evidence.stream),
         script(settings, evidence),
-        current_limits(settings),
         qpps(settings),
         position_limits(settings),
         position_gains(settings),
@@ -114,19 +106,6 @@ fn started_script(evidence: &Evidence<'_>) -> Option<Finding> {
             "Press Stop All, which ends it",
         )
     })
-}
-
-fn current_limits(settings: &SettingsImage) -> Option<Finding> {
-    let motors = motors_with(|motor| {
-        let key = format!("motor{motor}.current.max_amps");
-        matches!(settings.get(&key), Some(SettingValue::Number(amps)) if amps == 0.0)
-    });
-    let all = if motors.len() == 2 { BlocksAll } else { BlocksSome };
-    Some(finding(
-        all,
-        format!("the current limit of {} is 0 A", named(&motors)?),
-        "Set the maximum current to what the motor stands",
-    ))
 }
 
 /// QPPS scales every speed (MCP manual 2.4.5).

@@ -169,13 +169,7 @@ fn a_pin_at_its_end_stops_what_its_action_says_and_lights_the_home_lamps() {
 }
 
 #[test]
-fn a_current_limit_of_zero_and_bridged_channels_are_found() {
-    let none = of_settings(&[
-        ("motor1.current.max_amps", SettingValue::Number(0.0)),
-        ("motor2.current.max_amps", SettingValue::Number(0.0)),
-    ]);
-    assert_eq!(none.findings[0].hindrance, Hindrance::BlocksAll);
-    assert!(none.sentence().contains("the current limit of both motors is 0 A"));
+fn bridged_channels_are_told_to_whoever_commands_motor_2() {
     assert!(
         of_settings(&[("unit.bridge_channels", SettingValue::Bool(true))]).sentence().contains("motor 2")
     );
@@ -205,7 +199,6 @@ fn every_key_that_is_judged_is_in_the_table_and_among_those_to_read() {
             "motor1.velocity.qpps",
             "motor2.position.max",
             "motor2.position.p",
-            "motor1.current.max_amps",
         ] {
             assert!(keys.iter().any(|wanted| wanted == key), "{key} in {generation}");
         }
