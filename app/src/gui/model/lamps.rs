@@ -16,6 +16,7 @@ impl Lamps {
         for lamp in Lamp::ALL {
             let told =
                 identity.is_none_or(|identity| lamp.is_reported(identity.generation, identity.is_mcp()));
+            let told = told || matches!(lamp, Lamp::M1Home | Lamp::M2Home);
             let dark = if told { LampState::Ok } else { LampState::NotApplicable };
             lamps.0[lamp as usize] = report.lamp(lamp).map_or(dark, state_of);
         }
