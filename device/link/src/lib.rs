@@ -8,6 +8,7 @@ pub mod device;
 pub mod diagnosis;
 pub mod exchange;
 pub mod failure;
+pub mod firmware;
 pub mod settings;
 #[cfg(test)]
 mod testing;

@@ -9,5 +9,6 @@
 
 pub mod codes;
 pub mod crc;
+pub mod loader;
 pub mod models;
 pub mod packet_serial;

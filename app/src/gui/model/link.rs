@@ -103,6 +103,7 @@ impl LinkView {
             }
             Event::Failure(failure) => vec![Effect::Say(Gravity::Error, failure.to_string())],
             Event::Lost(failure) => self.lost(&failure),
+            Event::LoaderEntered => Vec::new(),
             Event::Closed => vec![Effect::Say(Gravity::Note, "Disconnected.".to_owned()), Effect::Ended],
             Event::Transacted { .. }
             | Event::JobStarted { .. }

@@ -99,6 +99,13 @@ pub trait Controller: Send {
     /// Stops the running script.
     fn stop_script(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError>;
 
+    /// Sends the unit into its firmware loader, after which it understands nothing of this family any more. The user has accepted
+    /// the risk.
+    fn enter_loader(&mut self, _line: &mut Line<'_>) -> Result<(), ExchangeError> {
+        let what = "there is no way into its firmware loader from here".to_owned();
+        Err(ExchangeError::Impossible { what })
+    }
+
     /// Sends one command of the family's protocol.
     fn transact(
         &mut self,
@@ -171,7 +178,7 @@ impl<'a> Line<'a> {
 
     /// A line for stopping: driving commands pass and do not count as motion. For duty zero alone.
     pub fn for_stopping(exchange: &'a mut Exchange, guard: &'a Guard, simulated: bool) -> Self {
-        let permit = Permit { motion: true, script: false, guesses: simulated };
+        let permit = Permit { motion: true, guesses: simulated, ..Permit::default() };
         Self {
             exchange,
             guard,

@@ -59,6 +59,8 @@ pub enum Event {
         /// The values, or why there are none.
         result: Result<Values, Failure>,
     },
+    /// The unit is in its firmware loader, or on its way there. The link ends with this.
+    LoaderEntered,
     /// A job began.
     JobStarted {
         /// Its name.

@@ -2,6 +2,7 @@
 
 use super::drive::{ArmScope, Drive};
 use super::job::Job;
+use crate::firmware::RiskAccepted;
 use crate::transport::Stream;
 use brushwork_protocol::packet_serial::{Motor, Value};
 use std::time::Duration;
@@ -61,6 +62,9 @@ pub enum Request {
     StartScript,
     /// Stops the running script.
     StopScript,
+    /// Stops the motors and sends the unit into its firmware loader. Answered by
+    /// [`Event::LoaderEntered`](super::Event::LoaderEntered), which ends the link: the loader speaks another language.
+    EnterLoader(RiskAccepted),
     /// Sends one command of the protocol. Answered by [`Event::Transacted`](super::Event::Transacted).
     Transact {
         /// Comes back with the answer.

@@ -28,6 +28,8 @@ pub struct Permit {
     pub script: bool,
     /// Layouts that are guesses: the controller is simulated.
     pub guesses: bool,
+    /// Leaving packet serial for the firmware loader: the user has accepted the risk.
+    pub loader: bool,
 }
 
 /// One packet to send.
@@ -61,6 +63,11 @@ pub fn gate(ask: &Ask<'_>) -> Result<&'static Form, ExchangeError> {
     let title = || row.title(ask.generation).to_owned();
     if let Some(why) = guess(row, form).filter(|_| !ask.permit.guesses) {
         return Err(ExchangeError::Unproven { command: title(), why });
+    }
+    if form.effect == Effect::Loader && !ask.permit.loader {
+        let what =
+            "the firmware loader is entered by an update alone, after its risk was accepted".to_owned();
+        return Err(ExchangeError::Impossible { what });
     }
     let permitted = match form.effect {
         Effect::Script => ask.permit.script,

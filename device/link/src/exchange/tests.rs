@@ -25,7 +25,7 @@ fn ask(
     values: &[i64],
 ) -> Result<Reply, ExchangeError> {
     let request = Request::new(Address::DEFAULT, command, values);
-    let permit = Permit { motion: true, script: true, guesses: false };
+    let permit = Permit { motion: true, script: true, ..Permit::default() };
     transact(
         exchange,
         watch,
@@ -242,7 +242,7 @@ fn nothing_that_moves_a_motor_passes_without_arming_and_no_guess_reaches_a_real_
         for form in row.forms {
             let values = vec![0; form.request.len()];
             let request = Request::new(Address::DEFAULT, row.number, &values);
-            let permit = |motion, script, guesses| Permit { motion, script, guesses };
+            let permit = |motion, script, guesses| Permit { motion, script, guesses, loader: false };
             let allowed =
                 |permit| gate(&Ask { request: &request, generation: form.first, permit, retries: 0 }).is_ok();
             if form.effect.may_move() {

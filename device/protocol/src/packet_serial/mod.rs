@@ -15,6 +15,7 @@ mod encode;
 mod field;
 mod framer;
 mod identity;
+pub mod known;
 pub mod number;
 mod parse;
 pub mod reference;

@@ -115,7 +115,7 @@ impl Firmware {
             script: ScriptState::default(),
             can: Can::default(),
             auxiliary_duties: [0; 5],
-            loader: None,
+            loader: (!memory.flash.is_whole()).then(|| Loader::new(config.model.family)),
             leds: Leds::default(),
             outputs: vec![false; settings.outputs.len()],
             is_first_tick: true,
@@ -136,7 +136,9 @@ impl Firmware {
         self.update_source();
         self.steer_by_signals();
         self.run_channels();
-        self.script.autorun(self.settings.unit.script_autorun_ms, self.up_for(), &self.memory.script);
+        if self.loader.is_none() {
+            self.script.autorun(self.settings.unit.script_autorun_ms, self.up_for(), &self.memory.script);
+        }
         self.update_outputs(world);
     }
 

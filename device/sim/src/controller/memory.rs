@@ -1,5 +1,6 @@
-//! What a unit keeps without power: the EEPROM and the script memory.
+//! What a unit keeps without power: the EEPROM, the script memory and the flash memory of the firmware.
 
+use super::loader::Flash;
 use super::script::ScriptMemory;
 use crate::settings::{Eeprom, Image, Settings, Shape};
 use brushwork_protocol::models::Model;
@@ -10,12 +11,17 @@ use brushwork_protocol::packet_serial::Address;
 pub(super) struct Memory {
     pub eeprom: Eeprom,
     pub script: ScriptMemory,
+    pub flash: Flash,
 }
 
 impl Memory {
     /// A unit as it leaves the factory, with these settings stored.
     pub fn holding(settings: &Settings) -> Self {
-        Self { eeprom: Eeprom::holding(&Image::of(settings)), script: ScriptMemory::default() }
+        Self {
+            eeprom: Eeprom::holding(&Image::of(settings)),
+            script: ScriptMemory::default(),
+            flash: Flash::default(),
+        }
     }
 
     /// The stored settings, or factory settings where nothing valid is stored.

@@ -25,6 +25,7 @@ mod watch;
 
 pub use bus::{Bus, BusError};
 pub use config::{ControllerConfig, FirmwareOptions};
+pub use loader::{ERASE_TIME, Flash, PAGE_WRITE_TIME};
 pub use port::{FAST_TURNAROUND, SLOW_TURNAROUND, turnaround};
 pub use readings::Readings;
 pub use unit_view::UnitView;
@@ -193,6 +194,11 @@ impl Controller {
         memory.script.image()
     }
 
+    /// The flash memory of the firmware.
+    pub fn flash(&self) -> &Flash {
+        self.firmware.as_ref().map_or(&self.memory.flash, |firmware| &firmware.memory.flash)
+    }
+
     /// How long a stream waits before it answers.
     pub fn turnaround(&self, stream: StreamIndex) -> Duration {
         turnaround(stream, self.bits_per_second(stream))
@@ -224,13 +230,18 @@ impl Controller {
         let supply_volts = self.world.bus_volts().max(self.world.logic_volts());
         let has_power = self.world.powered() && supply_volts > BROWN_OUT_VOLTS;
         match (&self.firmware, has_power) {
-            (None, true) => self.boot(),
+            (None, true) if !matches!(self.memory.flash, Flash::Dead) => self.boot(),
             (Some(_), false) => self.shut_down(),
             _ => {}
         }
     }
 
     fn boot(&mut self) {
+        if let Some(image) = self.memory.flash.installed() {
+            self.config.options.version = Some(image.version);
+            self.config.generation = image.generation;
+            self.ports = std::array::from_fn(|_| Port::new(image.generation));
+        }
         let readings = Readings::take(&mut self.world);
         let firmware = Firmware::boot(&self.config, self.memory.clone(), readings, self.now);
         self.firmware = Some(firmware);
@@ -240,6 +251,7 @@ impl Controller {
         if let Some(firmware) = self.firmware.take() {
             self.memory = firmware.memory;
             self.memory.eeprom.cut_power();
+            self.memory.flash.cut_power(self.now);
         }
         self.ports.iter_mut().for_each(Port::reset);
     }
@@ -250,7 +262,7 @@ impl Controller {
         };
         firmware.note_byte(stream, self.now);
         if let Some(loader) = &mut firmware.loader {
-            let step = loader.feed(byte);
+            let step = loader.feed(byte, self.now, &mut firmware.memory.flash);
             self.load(stream, step);
         } else if firmware.speaks_packet_serial(stream)
             && let Some(framed) = self.ports[stream.index()].feed(byte, self.now)
@@ -262,7 +274,7 @@ impl Controller {
     fn load(&mut self, stream: StreamIndex, step: LoaderStep) {
         match step {
             LoaderStep::Wait => {}
-            LoaderStep::Answer(byte) => self.send(stream, vec![byte], Duration::ZERO),
+            LoaderStep::Answer { byte, after } => self.send(stream, vec![byte], after),
             LoaderStep::Restart => {
                 self.shut_down();
                 self.follow_power();

@@ -167,6 +167,14 @@ impl Controller for Mcp {
         self.speaker.ask(line, number::STOP_SCRIPT, &[]).map(drop)
     }
 
+    fn enter_loader(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError> {
+        match self.speaker.ask(line, number::ENTER_LOADER, &[]) {
+            // The libraries do not insist on the acknowledgement: the unit restarts.
+            Err(error) if error.is_unusable_answer() || error.is_link_lost() => Ok(()),
+            other => other.map(drop),
+        }
+    }
+
     fn transact(
         &mut self,
         line: &mut Line<'_>,

@@ -5,6 +5,7 @@
 
 mod halting;
 mod jobs;
+mod loader;
 mod reading;
 mod requests;
 mod thread;
@@ -310,6 +311,7 @@ impl DeviceLoop {
             motion: scope.is_some_and(ArmScope::allows_motion),
             script: scope.is_some_and(ArmScope::allows_scripts),
             guesses: self.options.simulated,
+            loader: false,
         }
     }
 

@@ -61,6 +61,7 @@ impl DeviceLoop {
             }
             Request::StartScript => self.start_script(asked_at, overtaken),
             Request::StopScript => self.stop_script(asked_at),
+            Request::EnterLoader(_) => self.enter_loader(asked_at, overtaken),
             Request::Transact { id, command, values } => {
                 self.transact(id, command, values, asked_at, overtaken);
             }
@@ -266,7 +267,7 @@ impl DeviceLoop {
         true
     }
 
-    fn tell_not_sent(&mut self, tried: &str, came_back: &str) {
+    pub(super) fn tell_not_sent(&mut self, tried: &str, came_back: &str) {
         let failure =
             Failure::new(tried, self.name_of(self.selected), came_back, "Ask again when you are ready");
         self.outbox.send(Event::Failure(failure));

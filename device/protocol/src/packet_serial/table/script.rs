@@ -37,10 +37,9 @@ pub(super) const ROWS: &[Command] = &[
         CLIENTS,
         forms![write(G1, G4, Effect::Loader, LOADER)],
     )
-    .simulated(Simulated::Inert("the loader takes an image and drops it"))
-    .client(ClientUse::Never("it ends packet serial and nothing here can load firmware"))
     .note(
-        "The unit restarts as a USB device of another name. Libraries do not insist on the acknowledgement.",
+        "It ends packet serial: the unit restarts as a USB device of another name and waits for an image. Libraries do not \
+         insist on the acknowledgement.",
     ),
 ];
 

@@ -2,9 +2,8 @@
 
 use super::super::answer::{Answer, Arguments, Handlers};
 use super::super::firmware::Firmware;
-use super::super::loader::{Loader, MCP_IMAGE_BYTES, ROBOCLAW_IMAGE_BYTES};
+use super::super::loader::Loader;
 use super::super::script::{BLOCK_WRITE_TIME, ERASE_TIME, STATUS_DONE, STATUS_NOT_DONE};
-use brushwork_protocol::models::Family;
 use brushwork_protocol::packet_serial::number;
 use std::time::Duration;
 
@@ -38,10 +37,7 @@ pub(super) const HANDLERS: Handlers = &[
             return Answer::Silence;
         }
         unit.stop_both();
-        unit.loader = Some(Loader::new(match unit.model.family {
-            Family::Mcp => MCP_IMAGE_BYTES,
-            Family::RoboClaw => ROBOCLAW_IMAGE_BYTES,
-        }));
+        unit.loader = Some(Loader::new(unit.model.family));
         Answer::Ack
     }),
 ];

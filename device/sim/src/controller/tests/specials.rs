@@ -1,6 +1,7 @@
 //! Relay tests, scripts, the loader, CAN, and requests in the widths of other generations.
 
 use super::support::Bench;
+use crate::controller::ERASE_TIME;
 use crate::machine::{Machine, StreamIndex};
 use brushwork_protocol::crc::crc16_xmodem;
 use brushwork_protocol::packet_serial::{Generation, Request, Value, number};
@@ -80,7 +81,9 @@ fn the_loader_takes_an_image_and_restarts_the_unit() {
     assert_eq!(bench.raw(&with_crc(&[0x80, 255, 0xff, 0xa5, 0xa5, 0x12, 0x34])), [0xff]);
     assert!(bench.raw(&[0x80, 24]).is_empty(), "packets are over");
     assert!(bench.unit().unit().expect("it has power").is_in_loader());
-    assert_eq!(bench.raw(&[0x01]), [0xaa]);
+    assert!(bench.raw(&[0x01]).is_empty(), "it erases");
+    bench.wait(ERASE_TIME);
+    assert_eq!(bench.bus.take_output(StreamIndex::Usb), Some(vec![0xaa]));
     for _ in 0..0xf_0000 / 256 {
         assert_eq!(bench.raw(&[0x5a; 256]), [0xaa]);
     }
