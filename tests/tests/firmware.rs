@@ -23,23 +23,23 @@ const PAGES: usize = 128;
 const ENTER: [u8; 9] = [0x80, 0xFF, 0xFF, 0xA5, 0xA5, 0x12, 0x34, 0xB6, 0x70];
 
 fn bus(model: &str) -> Bus {
-    let model = models::lookup(model).unwrap();
-    Bus::single(Controller::new(ControllerConfig::of(model)).unwrap(), StreamIndex::Usb)
+    let model = models::lookup(model).expect("the model is listed");
+    Bus::single(Controller::new(ControllerConfig::of(model)).expect("the preset is valid"), StreamIndex::Usb)
 }
 
 fn image(model: &str) -> Image {
-    let model = models::lookup(model).unwrap();
+    let model = models::lookup(model).expect("the model is listed");
     let made = SimulatedImage { model, version: "9.8.7".to_owned(), generation: Generation::Gen3 };
-    Image::new(made.bytes().unwrap(), model.family).unwrap()
+    Image::new(made.bytes().expect("a version"), model.family).expect("an image")
 }
 
 /// A RoboClaw that has just been sent into its loader.
 fn in_loader() -> Line {
     let line = VirtualLine::new(bus("roboclaw-2x7a"), StreamIndex::Usb);
     let mut client = line.clone();
-    client.write(&ENTER).unwrap();
+    client.write(&ENTER).expect("it is plugged in");
     let mut ack = [0; 8];
-    assert_eq!(client.read(&mut ack, Duration::from_millis(50)).unwrap(), 1);
+    assert_eq!(client.read(&mut ack, Duration::from_millis(50)).expect("it is plugged in"), 1);
     assert_eq!(ack[0], 0xFF);
     line
 }
@@ -53,7 +53,7 @@ fn transfer(line: &Line, image: &Image, mut on: impl FnMut(Progress)) -> Result<
 }
 
 fn set_power(line: &Line, on: bool) {
-    line.with(|bus| bus.controllers_mut()[0].apply(&WorldAction::Power { on }).unwrap());
+    line.with(|bus| bus.controllers_mut()[0].apply(&WorldAction::Power { on }).expect("no setting is named"));
 }
 
 fn cycle_power(line: &Line) {
@@ -81,7 +81,7 @@ fn resumes(line: &Line, image: &Image, what: &str) {
     transfer(line, image, |_| ()).unwrap_or_else(|error| panic!("{what}: {error}"));
     assert!(holds(line, image), "{what}: the image is not what was sent");
     line.pass(Duration::from_millis(600));
-    assert!(version(line).unwrap().ends_with("v9.8.7"), "{what}");
+    assert!(version(line).expect("it runs").ends_with("v9.8.7"), "{what}");
 }
 
 #[test]
