@@ -220,6 +220,27 @@ fn driving_is_refused_without_a_time_out_and_nothing_moves() {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
+// brushwork settings
+
+#[test]
+fn settings_that_contradict_each_other_are_told_before_the_write_and_at_every_read() {
+    let controller = OnPty::start(Generation::Gen2);
+    let port = controller.port().to_string_lossy().into_owned();
+    let run = |arguments: &[&str]| {
+        let words = [&["settings"], arguments, &["-c", &port]].concat();
+        Program::start(BRUSHWORK, &words).finish(LIMIT)
+    };
+    let write = run(&["write", "pin.3.type=analog", "pin.3.max=5000", "pin.3.max_action=m1_off", "--yes"]);
+    assert_eq!(write.status.code(), Some(DONE), "{write:?}");
+    let conflict = "The maximum action of DIN3/AN3 never acts: the input never goes up to 5000.";
+    assert!(write.stdout.join(" ").contains(&format!("Note: {conflict}")), "{write:?}");
+    let read = run(&["read"]);
+    assert!(read.stderr.join(" ").contains(&format!("Warning: {conflict}")), "{read:?}");
+    let json = run(&["read", "--json"]);
+    assert!(json.stdout.join(" ").contains("\"kind\": \"action_never_fires\""), "{json:?}");
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
 // brushwork monitor
 
 #[test]

@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use brushwork_link::exchange::PacketWire;
 use brushwork_link::settings::{
-    Carrier, Kind, Row, RowState, SaveVerdict, SettingValue, SettingsImage, SettingsTable, Subject,
-    WriteOptions, diff, read_all, reload, restore_defaults, save_eeprom, write,
+    Carrier, Kind, Row, RowState, SaveVerdict, SettingValue, SettingsImage, SettingsTable, SignalShape,
+    Subject, WriteOptions, diff, read_all, reload, restore_defaults, save_eeprom, write,
 };
 use brushwork_link::{Stream, Wire};
 use brushwork_protocol::models::{self, Family, Model};
@@ -15,7 +15,7 @@ use brushwork_protocol::packet_serial::{Address, Generation, number};
 use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_sim::faults::{Fault, Faulty};
 use brushwork_sim::machine::StreamIndex;
-use brushwork_sim::world::WorldAction;
+use brushwork_sim::world::{PinSignal, WorldAction};
 use brushwork_tests::virtual_line::{HiddenOf, VirtualLine};
 
 const OPTIONS: WriteOptions = WriteOptions { own_stream: Some(Stream::Usb), simulated: true };
@@ -233,5 +233,44 @@ fn nothing_is_left_out_but_what_this_line_needs_and_what_cannot_be_written() {
             .collect();
         assert_eq!(read_only, ["roboclaw.config.word"], "{generation}");
         assert!(roboclaw.rows().iter().all(|row| matches!(row.carrier, Carrier::Wire { .. })));
+    }
+}
+
+#[test]
+fn the_signal_graph_draws_what_the_controller_makes_of_an_input() {
+    let (line, mut wire, table) = unit(model("mcp266"), Generation::Gen2);
+    let fields = ["min", "center", "max", "deadband", "power_exp", "power_min", "min_output", "max_output"];
+    let shapes = [
+        [0.0, 2048.0, 4095.0, 0.0, 0.0, 0.0, -32_767.0, 32_767.0],
+        [300.0, 2100.0, 3800.0, 60.0, 0.0, 0.0, -32_767.0, 32_767.0],
+        [0.0, 2048.0, 4095.0, 100.0, 1.5, 200.0, -10_000.0, 20_000.0],
+        [500.0, 1000.0, 3500.0, 20.0, -2.0, 0.0, -32_767.0, 32_767.0],
+    ];
+    for shape in shapes {
+        let named = |(field, number): (&str, f64)| {
+            let row = table.row(&format!("pin.3.{field}")).expect("it is a pin");
+            let value = match row.kind {
+                Kind::Int => SettingValue::Int(number as i64),
+                _ => row.settle(SettingValue::Number(number)),
+            };
+            (row.key.clone(), value)
+        };
+        let mut wanted: SettingsImage = fields.into_iter().zip(shape).map(named).collect();
+        wanted.set("pin.3.type", SettingValue::Choice("analog"));
+        write(&mut wire, &table, &wanted, OPTIONS).expect("a sound shape can be written");
+        let drawn = SignalShape::of(&|key| wanted.get(key), 3).expect("all values are there");
+        for reading in (0..=4095).step_by(37) {
+            // Full scale is 5.1 V.
+            let volts = f64::from(reading) / 4095.0 * 5.1;
+            let action = WorldAction::SetPin { pin: 2, signal: PinSignal::Volts { volts } };
+            line.with(|bus| bus.controllers_mut()[0].apply(&action)).expect("it has that pin");
+            line.pass(Duration::from_millis(10));
+            let values = wire.transact(number::READ_SIGNAL_VALUES, &[]).expect("the line is sound");
+            let record = values.records().nth(2).expect("it has ten pins");
+            let reading = f64::from(reading);
+            assert_eq!(record.int("position"), drawn.position(reading) as i64, "{shape:?} at {reading}");
+            let command = record.int("command") as f64;
+            assert!((command - drawn.command(reading)).abs() <= 1.0, "{shape:?} at {reading}: {command}");
+        }
     }
 }

@@ -24,7 +24,6 @@ const FIRST_READING_LIMIT: Duration = Duration::from_secs(5);
 const SETTINGS_LIMIT: Duration = Duration::from_secs(30);
 
 /// The newest of everything that has been read.
-#[derive(Default)]
 pub struct Readings {
     values: [Option<f64>; Channel::COUNT],
     status: Option<StatusReport>,
@@ -37,6 +36,12 @@ struct Setup {
     settings: Option<SettingsImage>,
     /// Where the input pins stand, where the unit tells.
     pins: Option<Vec<PinEnd>>,
+}
+
+impl Default for Readings {
+    fn default() -> Self {
+        Self { values: [None; Channel::COUNT], status: None }
+    }
 }
 
 #[derive(Serialize)]
@@ -81,9 +86,10 @@ impl Readings {
         self.status.is_some() && wanted.into_iter().all(|channel| self.get(channel).is_some())
     }
 
-    /// All channels as JSON, by their keys; what was not read is null.
+    /// All channels but the input pins as JSON, by their keys; what was not read is null.
     pub fn to_json(&self) -> Map<String, Value> {
-        Channel::ALL.into_iter().map(|channel| (channel.key(), json!(self.get(channel)))).collect()
+        let polled = Channel::ALL.into_iter().filter(|channel| !channel.is_signal());
+        polled.map(|channel| (channel.key(), json!(self.get(channel)))).collect()
     }
 }
 

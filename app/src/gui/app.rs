@@ -166,7 +166,8 @@ impl App {
                 Effect::Say(gravity, text) => self.model.messages.say(gravity, text),
                 Effect::AtRest => self.model.rest(),
                 Effect::Sample(sample) => {
-                    self.model.graph.push(sample.replied_at.as_secs_f64(), &sample.values);
+                    let values = &sample.values[..self.model.graph.channels.len()];
+                    self.model.graph.push(sample.replied_at.as_secs_f64(), values);
                 }
                 Effect::OtherUnit => {
                     self.model.graph.push_gap();

@@ -24,16 +24,21 @@ pub fn run(args: &ReadArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
     if !args.keys.is_empty() {
         settings.retain(|setting| args.keys.iter().any(|start| keys::begins_with(&setting.key, start)));
     }
+    let conflicts = settings::conflicts(&report.table, &|key| report.image.get(key));
     if args.json {
         out.json(&json!({
             "identity": controller.identity(),
             "settings": settings,
             "failures": report.failures,
+            "conflicts": conflicts,
         }))?;
     } else {
         out.line(list_text(&settings))?;
         for line in legend(&settings) {
             out.line(line)?;
+        }
+        for conflict in conflicts {
+            say(format!("Warning: {}", conflict.sentence));
         }
     }
     Ok(if report.failures.is_empty() { Exit::Done } else { Exit::Failed })

@@ -161,7 +161,7 @@ impl Model {
     }
 }
 
-/// Every channel of a controller, with the scale it begins with; duty and current of both motors are shown at first.
+/// Every channel of a controller but its input pins, with the scale it begins with; duty and current of both motors are shown at first.
 pub fn graph_channels() -> Vec<ChannelInfo> {
     let info = |channel: Channel| ChannelInfo {
         label: channel.label(),
@@ -170,7 +170,7 @@ pub fn graph_channels() -> Vec<ChannelInfo> {
         scale: first_scale(channel),
         shown: Screen::Pwm.first_channels().contains(&channel),
     };
-    Channel::ALL.into_iter().map(info).collect()
+    Channel::ALL.into_iter().filter(|channel| !channel.is_signal()).map(info).collect()
 }
 
 /// Digits after the point that a channel's readings have.

@@ -1,16 +1,17 @@
 //! The newest reading of every channel, for the row of monitored parameters.
 
-use brushwork_link::device::{Channel, Sample};
+use brushwork_link::device::{Channel, PinSignal, Sample};
 
 /// The newest readings of one controller. A channel that was never read has none.
 #[derive(Clone, Debug)]
 pub struct Readings {
     values: [f64; Channel::COUNT],
+    signals: Vec<PinSignal>,
 }
 
 impl Default for Readings {
     fn default() -> Self {
-        Self { values: [f64::NAN; Channel::COUNT] }
+        Self { values: [f64::NAN; Channel::COUNT], signals: Vec::new() }
     }
 }
 
@@ -22,6 +23,19 @@ impl Readings {
                 *kept = new;
             }
         }
+        if !sample.signals.is_empty() {
+            self.signals.clone_from(&sample.signals);
+        }
+    }
+
+    /// The newest of an input pin, counted from 1. Pins are read only while a screen wants them.
+    pub fn signal(&self, pin: usize) -> Option<PinSignal> {
+        self.signals.get(pin.checked_sub(1)?).copied()
+    }
+
+    /// The input pins are not read any more.
+    pub fn forget_signals(&mut self) {
+        self.signals.clear();
     }
 
     pub fn get(&self, channel: Channel) -> Option<f64> {

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// One signal of a controller. The first sixteen are those of Ion Studio's graphs and status row (MCP manual 1.2).
+/// One signal of a controller. Those before the errors are of Ion Studio's graphs and status row (MCP manual 1.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Channel {
@@ -43,11 +43,50 @@ pub enum Channel {
     M1PositionError,
     /// Motor 2's position error as the controller reports it, counts.
     M2PositionError,
+    /// How far input 1 is in its range, %.
+    Signal1,
+    /// How far input 2 is in its range, %.
+    Signal2,
+    /// How far input 3 is in its range, %.
+    Signal3,
+    /// How far input 4 is in its range, %.
+    Signal4,
+    /// How far input 5 is in its range, %.
+    Signal5,
+    /// How far input 6 is in its range, %.
+    Signal6,
+    /// How far input 7 is in its range, %.
+    Signal7,
+    /// How far input 8 is in its range, %.
+    Signal8,
+    /// How far input 9 is in its range, %.
+    Signal9,
+    /// How far input 10 is in its range, %.
+    Signal10,
+    /// How far input 11 is in its range, %.
+    Signal11,
+    /// How far input 12 is in its range, %.
+    Signal12,
+    /// How far input 13 is in its range, %.
+    Signal13,
+    /// How far input 14 is in its range, %.
+    Signal14,
+    /// How far input 15 is in its range, %.
+    Signal15,
+    /// How far input 16 is in its range, %.
+    Signal16,
+    /// How far input 17 is in its range, %.
+    Signal17,
+    /// How far input 18 is in its range, %.
+    Signal18,
 }
 
 impl Channel {
     /// How many channels there are.
-    pub const COUNT: usize = 18;
+    pub const COUNT: usize = 18 + Self::SIGNALS;
+
+    /// How many of them are input pins; no model of the family has more. They come last and are read on request only.
+    pub const SIGNALS: usize = 18;
 
     /// All of them in the order of their index.
     pub const ALL: [Self; Self::COUNT] = [
@@ -69,6 +108,24 @@ impl Channel {
         Self::M2SpeedError,
         Self::M1PositionError,
         Self::M2PositionError,
+        Self::Signal1,
+        Self::Signal2,
+        Self::Signal3,
+        Self::Signal4,
+        Self::Signal5,
+        Self::Signal6,
+        Self::Signal7,
+        Self::Signal8,
+        Self::Signal9,
+        Self::Signal10,
+        Self::Signal11,
+        Self::Signal12,
+        Self::Signal13,
+        Self::Signal14,
+        Self::Signal15,
+        Self::Signal16,
+        Self::Signal17,
+        Self::Signal18,
     ];
 
     /// Place in [`Channel::ALL`] and in a sample's values.
@@ -99,6 +156,24 @@ impl Channel {
             Self::M2SpeedError => "M2 Speed Error",
             Self::M1PositionError => "M1 Position Error",
             Self::M2PositionError => "M2 Position Error",
+            Self::Signal1 => "DIN1",
+            Self::Signal2 => "DIN2",
+            Self::Signal3 => "DIN3",
+            Self::Signal4 => "DIN4",
+            Self::Signal5 => "DIN5",
+            Self::Signal6 => "DIN6",
+            Self::Signal7 => "DIN7",
+            Self::Signal8 => "DIN8",
+            Self::Signal9 => "DIN9",
+            Self::Signal10 => "DIN10",
+            Self::Signal11 => "DIN11",
+            Self::Signal12 => "DIN12",
+            Self::Signal13 => "DIN13",
+            Self::Signal14 => "DIN14",
+            Self::Signal15 => "DIN15",
+            Self::Signal16 => "DIN16",
+            Self::Signal17 => "DIN17",
+            Self::Signal18 => "DIN18",
         }
     }
 
@@ -119,8 +194,36 @@ impl Channel {
             Self::M1Current | Self::M2Current => "A",
             Self::Temperature1 | Self::Temperature2 => "°C",
             Self::MainBattery | Self::LogicBattery => "V",
+            _ => "%",
         }
     }
+
+    /// Whether it is an input pin.
+    #[must_use]
+    pub fn is_signal(self) -> bool {
+        self >= Self::Signal1
+    }
+
+    /// The channel of an input pin, counted from 0 in the order of command 144.
+    #[must_use]
+    pub fn signal(pin: usize) -> Option<Self> {
+        Self::ALL.get(Self::COUNT - Self::SIGNALS..)?.get(pin).copied()
+    }
+}
+
+/// What a controller makes of one input pin: a record of command 147 (MCP manual 1.9.12).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PinSignal {
+    /// What the pin commands, in steps of 1/32767 of full output.
+    pub command: i32,
+    /// Shaped distance from the center, in units of the input.
+    pub position: i32,
+    /// The position as a share of its side of the range, in steps of 1/32767.
+    pub percent: i32,
+    /// Speed at this moment, units of the input per second.
+    pub speed: i32,
+    /// Averaged speed, units of the input per second.
+    pub average_speed: i32,
 }
 
 /// What one sweep read from one controller. Signals that are read in rotation are absent from most sweeps.
@@ -136,6 +239,8 @@ pub struct Sample {
     pub replied_at: Duration,
     /// By [`Channel::index`]; NaN for what this sweep did not read.
     pub values: [f64; Channel::COUNT],
+    /// By input pin; empty in a sweep that did not read them.
+    pub signals: Vec<PinSignal>,
     /// Host times of request and reply of each value's own exchange.
     spans: [(Duration, Duration); Channel::COUNT],
 }
@@ -150,6 +255,7 @@ impl Sample {
             requested_at: Duration::MAX,
             replied_at: Duration::ZERO,
             values: [f64::NAN; Channel::COUNT],
+            signals: Vec::new(),
             spans: [(Duration::ZERO, Duration::ZERO); Channel::COUNT],
         }
     }
@@ -197,6 +303,9 @@ mod tests {
         keys.dedup();
         assert_eq!(keys.len(), Channel::COUNT);
         assert_eq!(Channel::M1SpeedError.key(), "m1_speed_error");
+        assert_eq!(Channel::signal(2), Some(Channel::Signal3));
+        assert_eq!(Channel::signal(18), None);
+        assert_eq!(Channel::ALL.iter().filter(|channel| channel.is_signal()).count(), Channel::SIGNALS);
     }
 
     #[test]

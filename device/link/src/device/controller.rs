@@ -36,6 +36,8 @@ pub struct PollList {
     pub slow: Vec<PollItem>,
     /// Which of them brings the status word.
     pub status: Option<PollItem>,
+    /// What reads the input pins; only in sweeps for which that was asked.
+    pub signals: Option<PollItem>,
 }
 
 /// What was found when arming was asked for.

@@ -22,7 +22,7 @@ mod status;
 mod stop;
 
 pub use brushwork_protocol::packet_serial::status::{Condition, Conditions, Lamp, Severity};
-pub use channel::{Channel, Sample};
+pub use channel::{Channel, PinSignal, Sample};
 pub use drive::{ArmScope, Drive, DriveCommand};
 pub use event::{DisarmReason, Event};
 pub use handle::{DeviceHandle, Stopper};

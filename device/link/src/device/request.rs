@@ -36,6 +36,8 @@ pub enum Request {
     Select(u8),
     /// Sets how often the signals are read.
     Poll(PollRate),
+    /// Sets whether sweeps read the input pins too, which takes a long reply each time.
+    ReadSignals(bool),
     /// Says which of the controller's streams this port is wired to, where the device name does not tell.
     SetStream(Stream),
     /// Switches [`Event::Traffic`](super::Event::Traffic) on or off.

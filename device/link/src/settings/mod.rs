@@ -10,6 +10,7 @@ mod kind;
 mod listing;
 mod mcp;
 mod memory;
+mod pins;
 mod plan;
 mod profile;
 mod read;
@@ -24,6 +25,10 @@ pub use image::{Copies, Copy, Difference, SettingsImage, changes, diff};
 pub use kind::{Coding, Kind};
 pub use listing::{ListedSetting, list, list_text};
 pub use memory::{DefaultsReport, SaveReport, SaveVerdict, reload, restore_defaults, save_eeprom};
+pub use pins::{
+    Behind, Calibrated, Calibration, CalibrationStage, Conflict, ConflictKind, PinMode, SignalShape,
+    change_mode, conflicts, function_text, modes, open_range,
+};
 pub use plan::{Plan, Refusal, Stage, Step, WriteOptions, plan};
 pub use profile::{
     FORMAT, Problem, Profile, ProfileChanges, ProfileError, ProfileFileError, SCHEMA, replace_file,

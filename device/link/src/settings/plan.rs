@@ -10,6 +10,7 @@ use serde::Serialize;
 
 use super::check::{dangers, refused_pairs};
 use super::image::SettingsImage;
+use super::pins::{Conflict, conflicts};
 use super::row::{Carrier, Row, Sink, Source};
 use super::table::SettingsTable;
 use super::value::SettingValue;
@@ -116,7 +117,15 @@ pub fn plan(
     }
     let mut warnings = planner.warnings(&steps);
     warnings.extend(dangers(table, &after, changes));
+    warnings.extend(new_conflicts(table, &after, changes));
     Ok(Plan { hidden: planner.hidden(), steps, warnings })
+}
+
+/// The contradictions that some of the changes take part in.
+fn new_conflicts(table: &SettingsTable, after: &SettingsImage, changes: &SettingsImage) -> Vec<String> {
+    let found = conflicts(table, &|key| after.get(key)).into_iter();
+    let is_touched = |conflict: &Conflict| conflict.keys.iter().any(|key| changes.get(key).is_some());
+    found.filter(is_touched).map(|conflict| conflict.sentence).collect()
 }
 
 /// The rows whose values a change of `keys` needs: those themselves, and those that share a command with

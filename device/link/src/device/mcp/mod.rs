@@ -22,7 +22,7 @@ use super::stop::UnitStop;
 use crate::exchange::packet::{Ask, gate, transact};
 use crate::exchange::{ExchangeError, Reply};
 use crate::transport::Stream;
-use brushwork_protocol::models::Model;
+use brushwork_protocol::models::{Family, Model};
 use brushwork_protocol::packet_serial::status::Condition;
 use brushwork_protocol::packet_serial::{
     Address, Effect, Generation, Motor, Request, Value, lookup, number, status,
@@ -94,7 +94,8 @@ impl Controller for Mcp {
     }
 
     fn poll_list(&self) -> PollList {
-        self.polls.clone()
+        let has_pins = self.model.is_some_and(|model| model.family == Family::Mcp);
+        PollList { signals: has_pins.then(polling::signals), ..self.polls.clone() }
     }
 
     fn poll(

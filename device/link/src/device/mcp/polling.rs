@@ -1,11 +1,11 @@
 //! What is read from a unit in a sweep, and which signal each reply carries.
 
 use super::Speaker;
-use crate::device::channel::{Channel, Sample};
+use crate::device::channel::{Channel, PinSignal, Sample};
 use crate::device::controller::{Line, PollItem, PollList};
 use crate::device::status::StatusReport;
 use crate::exchange::{ExchangeError, Reply};
-use brushwork_protocol::packet_serial::{number, status};
+use brushwork_protocol::packet_serial::{number, scale, status};
 
 /// Signals that change quickly, each read in every sweep.
 const FAST: [(u8, &str); 6] = [
@@ -31,7 +31,7 @@ const SLOW: [(u8, &str); 6] = [
 pub fn find(speaker: Speaker, line: &mut Line<'_>) -> Result<PollList, ExchangeError> {
     let all = item(number::READ_ALL_STATUS, "all status");
     if speaker.ask_if_known(line, number::READ_ALL_STATUS, &[])?.is_some() {
-        return Ok(PollList { fast: vec![all], slow: Vec::new(), status: Some(all) });
+        return Ok(PollList { fast: vec![all], slow: Vec::new(), status: Some(all), signals: None });
     }
     let mut fast = Vec::new();
     let both_speeds = speaker.ask_if_known(line, number::READ_SPEEDS, &[])?.is_some();
@@ -50,7 +50,12 @@ pub fn find(speaker: Speaker, line: &mut Line<'_>) -> Result<PollList, ExchangeE
         }
     }
     let status = fast.iter().find(|item| item.id == u16::from(number::READ_STATUS)).copied();
-    Ok(PollList { fast, slow, status })
+    Ok(PollList { fast, slow, status, signals: None })
+}
+
+/// What reads the input pins of an MCP.
+pub fn signals() -> PollItem {
+    item(number::READ_SIGNAL_VALUES, "input signals")
 }
 
 /// Names of what could be read but is not answered.
@@ -86,6 +91,7 @@ pub fn read(
         number::READ_POSITION_ERRORS => {
             errors(sample, &reply, Channel::M1PositionError, Channel::M2PositionError);
         }
+        number::READ_SIGNAL_VALUES => pin_signals(sample, &reply),
         _ => {}
     }
     for (name, channel) in NAMED {
@@ -141,6 +147,24 @@ fn errors(sample: &mut Sample, reply: &Reply, first: Channel, second: Channel) {
     for (name, channel) in [("error_m1", first), ("error_m2", second)] {
         let error = reply.values.physical(name).unwrap_or(f64::NAN);
         sample.set(channel, error, reply.span.requested_at, reply.span.replied_at);
+    }
+}
+
+fn pin_signals(sample: &mut Sample, reply: &Reply) {
+    let whole = |raw: i64| i32::try_from(raw).unwrap_or_default();
+    for (pin, record) in reply.values.records().enumerate() {
+        let signal = PinSignal {
+            command: whole(record.int("command")),
+            position: whole(record.int("position")),
+            percent: whole(record.int("percent")),
+            speed: whole(record.int("speed")),
+            average_speed: whole(record.int("average_speed")),
+        };
+        sample.signals.push(signal);
+        if let Some(channel) = Channel::signal(pin) {
+            let percent = f64::from(signal.percent) / scale::FULL_DUTY_RAW as f64 * 100.0;
+            sample.set(channel, percent, reply.span.requested_at, reply.span.replied_at);
+        }
     }
 }
 

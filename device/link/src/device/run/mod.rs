@@ -65,6 +65,8 @@ pub struct DeviceLoop {
     selected: usize,
     armed: Option<Armed>,
     poll: PollRate,
+    /// Whether sweeps read the input pins too.
+    reads_signals: bool,
     sweep: Sweep,
     statistics_at: Duration,
     phase: Phase,
@@ -132,6 +134,7 @@ impl DeviceLoop {
             waiting: VecDeque::new(),
             stream: options.stream,
             poll: options.poll,
+            reads_signals: false,
             units: Vec::new(),
             selected: 0,
             armed: None,

@@ -84,9 +84,10 @@ impl Plan {
     }
 
     /// The items of a sweep that begins at `now`.
-    fn sweep(&mut self, now: Duration) -> Vec<PollItem> {
-        let mut items: Vec<_> =
-            self.list.fast.iter().copied().filter(|item| self.works(*item, now)).collect();
+    fn sweep(&mut self, now: Duration, with_signals: bool) -> Vec<PollItem> {
+        let signals = self.list.signals.filter(|_| with_signals);
+        let wanted = self.list.fast.iter().copied().chain(signals);
+        let mut items: Vec<_> = wanted.filter(|item| self.works(*item, now)).collect();
         if now >= self.slow_due_at {
             self.slow_due_at = now + SLOW_INTERVAL;
             items.extend(self.next_slow(now));
@@ -169,8 +170,8 @@ impl DeviceLoop {
         let Some(unit) = self.units.get_mut(self.selected) else { return };
         self.sweep.sample = Sample::new(unit.controller.identity().address);
         self.sweep.begun_at = now;
-        let selected = self.selected;
-        self.sweep.items.extend(unit.plan.sweep(now).into_iter().map(|item| (selected, item)));
+        let (selected, with_signals) = (self.selected, self.reads_signals);
+        self.sweep.items.extend(unit.plan.sweep(now, with_signals).into_iter().map(|item| (selected, item)));
         if let Some((index, item)) = self.look_at_another(now) {
             self.sweep.items.push_back((index, item));
         }

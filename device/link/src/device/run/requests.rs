@@ -43,6 +43,7 @@ impl DeviceLoop {
                 self.poll = rate;
                 self.restart_sweep();
             }
+            Request::ReadSignals(on) => self.reads_signals = on,
             Request::SetStream(stream) => {
                 self.stream = Some(stream);
                 self.tell_selection();

@@ -1,5 +1,6 @@
 //! Tests of the settings over several files of the module: the table against the protocol, values, profiles.
 
+mod conflicts;
 mod consistency;
 mod copies;
 mod fake;

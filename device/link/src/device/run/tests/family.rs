@@ -57,7 +57,12 @@ impl Controller for Toy {
     }
 
     fn poll_list(&self) -> PollList {
-        PollList { fast: vec![PollItem { id: 7, name: "position" }], slow: Vec::new(), status: None }
+        PollList {
+            fast: vec![PollItem { id: 7, name: "position" }],
+            slow: Vec::new(),
+            status: None,
+            signals: None,
+        }
     }
 
     fn poll(

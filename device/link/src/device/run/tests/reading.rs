@@ -2,13 +2,13 @@
 
 use super::harness::Link;
 use crate::clock::Clock;
-use crate::device::channel::{Channel, Sample};
+use crate::device::channel::{Channel, PinSignal, Sample};
 use crate::device::event::Event;
 use crate::device::options::DeviceOptions;
 use crate::device::request::{PollRate, Request};
 use crate::testing::ms;
 use crate::testing::unit::{Bus, of_generation};
-use brushwork_protocol::packet_serial::{Generation, number};
+use brushwork_protocol::packet_serial::{Generation, Value, number};
 
 fn samples(link: &Link) -> Vec<Sample> {
     let samples = link.events.iter().filter_map(|(_, event)| match event {
@@ -102,8 +102,33 @@ fn a_unit_of_the_newest_generation_is_read_with_one_request() {
     assert_eq!(samples.len(), 10);
     for channel in Channel::ALL {
         let setpoint = matches!(channel, Channel::M1Setpoint | Channel::M2Setpoint);
-        assert_eq!(samples[0].get(channel).is_some(), !setpoint, "{channel:?}");
+        let is_read = !setpoint && !channel.is_signal();
+        assert_eq!(samples[0].get(channel).is_some(), is_read, "{channel:?}");
     }
+}
+
+#[test]
+fn the_input_pins_are_read_only_while_somebody_wants_them() {
+    let mut link = Link::connected();
+    // command, position, percent, speed, average speed of two pins
+    let pins = vec![vec![-16_384, -1024, -16_384, 7, 5], vec![0, 0, 0, 0, 0]];
+    link.bus().values.insert(number::READ_SIGNAL_VALUES, vec![Value::Records(pins)]);
+    link.run_for(ms(1_000));
+    assert!(!link.bus().commands().contains(&number::READ_SIGNAL_VALUES));
+    link.ask(Request::ReadSignals(true));
+    link.run_for(ms(1_000));
+    let last = samples(&link).pop().unwrap();
+    let first_pin =
+        PinSignal { command: -16_384, position: -1024, percent: -16_384, speed: 7, average_speed: 5 };
+    assert_eq!(last.signals, [first_pin, PinSignal::default()]);
+    let percent = last.get(Channel::Signal1).unwrap();
+    assert!((percent + 50.001_5).abs() < 1e-3, "{percent}");
+    assert_eq!(last.get(Channel::Signal3), None, "the unit has two");
+    link.ask(Request::ReadSignals(false));
+    link.run_for(ms(200));
+    link.forget();
+    link.run_for(ms(1_000));
+    assert!(samples(&link).iter().all(|sample| sample.signals.is_empty()));
 }
 
 #[test]
