@@ -59,7 +59,8 @@ fn fed(model: &mut Model, conditions: &[Condition]) {
     }
     for tick in 0..110 {
         let sample = sample(Duration::from_millis(100) * tick);
-        model.graph.push(sample.replied_at.as_secs_f64(), &sample.values[..model.graph.channels.len()]);
+        let values = &sample.values[..model.graph.channels.len()];
+        model.graph.push(sample.replied_at.as_secs_f64(), values);
         model.link.take(Event::Sample(Box::new(sample)));
     }
 }

@@ -40,7 +40,7 @@ struct Setup {
 
 impl Default for Readings {
     fn default() -> Self {
-        Self { values: [None; Channel::COUNT], status: None }
+        Self { values: [None; Channel::COUNT], status: None, stream: None }
     }
 }
 
