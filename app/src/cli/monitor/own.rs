@@ -20,7 +20,7 @@ pub fn run(args: &MonitorArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
     let mut first = None;
     while args.duration.is_none_or(|duration| start.elapsed() < duration) {
         match client::next_event(&session.device, interrupt)? {
-            Some(Event::Traffic { traffic, text }) => {
+            Some(Event::Traffic { traffic, text, .. }) => {
                 let at = traffic.at.saturating_sub(*first.get_or_insert(traffic.at));
                 let direction =
                     if traffic.sent { Direction::ToController } else { Direction::FromController };

@@ -130,7 +130,16 @@ pub trait Controller: Send {
     fn undermines_arming(&self, command: u8) -> bool;
 
     /// What bytes on the wire mean: a request alone, or what came after it.
-    fn describe_traffic(&self, request: &[u8], reply: Option<&[u8]>) -> String;
+    fn describe_traffic(&self, request: &[u8], reply: Option<&[u8]>) -> Described;
+}
+
+/// What bytes on the wire mean.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Described {
+    /// In words; the bytes themselves where they mean nothing.
+    pub text: String,
+    /// Whether they are a request as it should be, or the whole and undamaged reply to one.
+    pub sound: bool,
 }
 
 /// A protocol family: how its units are found.

@@ -83,6 +83,8 @@ pub enum Event {
         traffic: Traffic,
         /// What they mean.
         text: String,
+        /// Whether they are a request, or the whole and undamaged reply to the last one.
+        sound: bool,
     },
     /// Something did not work; the link goes on.
     Failure(Failure),

@@ -23,12 +23,13 @@ mod stop;
 
 pub use brushwork_protocol::packet_serial::status::{Condition, Conditions, Lamp, Severity};
 pub use channel::{Channel, PinSignal, Sample};
+pub use controller::Described;
 pub use drive::{ArmScope, Drive, DriveCommand};
 pub use event::{DisarmReason, Event};
 pub use handle::{DeviceHandle, Stopper};
 pub use identity::Identity;
 pub use job::{FnJob, Job, JobContext, JobEnding, JobOutput, JobReport};
-pub use mcp::PacketSerial;
+pub use mcp::{PacketSerial, describe_sent, preview};
 pub use options::{Addresses, DeviceOptions};
 pub use request::{PollRate, Request, RequestRefused};
 pub use run::{DeviceLoop, DeviceThread, Step};

@@ -195,7 +195,7 @@ impl Exchange {
 
     /// Takes the traffic recorded since the last call.
     pub fn take_traffic(&mut self) -> impl Iterator<Item = Traffic> + '_ {
-        self.trace.take()
+        self.trace.take(self.clock.now())
     }
 
     /// When the last good reply was complete, or when the link was opened.

@@ -16,6 +16,7 @@ mod field;
 mod framer;
 mod identity;
 pub mod known;
+pub mod led;
 pub mod number;
 mod parse;
 pub mod reference;

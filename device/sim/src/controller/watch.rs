@@ -63,8 +63,7 @@ impl Firmware {
             since_last_byte: last_byte.map(|last| self.now.saturating_sub(last)),
             driving: states.iter().any(|state| state.active),
             in_boot_mode: self.loader.is_some(),
-            estop: self.estop,
-            protection: self.protection,
+            conditions: self.conditions(),
         });
         let inputs = OutputInputs {
             motor_on: states.map(|state| state.active),

@@ -2,7 +2,7 @@
 
 use crate::device::drive::{Drive, DriveCommand};
 use crate::exchange::ExchangeError;
-use brushwork_protocol::packet_serial::{Motor, number, scale};
+use brushwork_protocol::packet_serial::{Address, Generation, Motor, Request, number, scale};
 
 /// A command number and its raw values.
 pub type Packet = (u8, Vec<i64>);
@@ -16,6 +16,14 @@ pub fn packets(drive: &Drive) -> Result<Vec<Packet>, ExchangeError> {
     }
     let commands = Motor::BOTH.into_iter().filter_map(|motor| Some((motor, drive.of(motor)?)));
     commands.map(|(motor, command)| for_one(motor, &command)).collect()
+}
+
+/// The bytes of a drive, packet by packet, as they would be sent.
+#[must_use]
+pub fn preview(drive: &Drive, address: Address, generation: Generation) -> Vec<Vec<u8>> {
+    let packets = packets(drive).unwrap_or_default().into_iter();
+    let encode = |(command, values): Packet| Request::new(address, command, &values).encode(generation).ok();
+    packets.filter_map(encode).collect()
 }
 
 fn for_one(motor: Motor, command: &DriveCommand) -> Result<Packet, ExchangeError> {

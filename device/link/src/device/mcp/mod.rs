@@ -12,9 +12,11 @@ mod stopping;
 mod traffic;
 
 pub use discover::PacketSerial;
+pub use driving::preview;
+pub use traffic::describe_sent;
 
 use super::channel::Sample;
-use super::controller::{ArmCheck, Controller, Line, PollItem, PollList};
+use super::controller::{ArmCheck, Controller, Described, Line, PollItem, PollList};
 use super::drive::Drive;
 use super::identity::Identity;
 use super::status::StatusReport;
@@ -212,10 +214,10 @@ impl Controller for Mcp {
         UNDERMINING.contains(&command)
     }
 
-    fn describe_traffic(&self, request: &[u8], reply: Option<&[u8]>) -> String {
+    fn describe_traffic(&self, request: &[u8], reply: Option<&[u8]>) -> Described {
         let generation = self.speaker.generation;
         match reply {
-            None => traffic::describe_sent(request, generation),
+            None => describe_sent(request, generation),
             Some(reply) => traffic::describe_received(request, reply, generation),
         }
     }

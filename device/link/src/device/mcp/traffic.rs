@@ -1,24 +1,29 @@
 //! What bytes on the wire mean, for the traffic view.
 
+use crate::device::controller::Described;
 use brushwork_protocol::packet_serial::{
-    FramerEvent, Generation, ReplyProgress, Request, RequestFramer, parse_reply,
+    ACK, FramerEvent, Generation, ReplyProgress, Request, RequestFramer, parse_reply,
 };
 use brushwork_protocol::packet_serial::{describe_event, describe_reply, hex};
 use std::time::Duration;
 
 /// The requests that a write holds, in words; a stop is several.
-pub fn describe_sent(bytes: &[u8], generation: Generation) -> String {
-    let told: Vec<_> =
-        events(bytes, generation).iter().map(|event| describe_event(event, generation)).collect();
-    if told.is_empty() { hex(bytes) } else { told.join("; ") }
+pub fn describe_sent(bytes: &[u8], generation: Generation) -> Described {
+    let events = events(bytes, generation);
+    let told: Vec<_> = events.iter().map(|event| describe_event(event, generation)).collect();
+    let text = if told.is_empty() { hex(bytes) } else { told.join("; ") };
+    let is_request = |event: &FramerEvent| matches!(event, FramerEvent::Request(_));
+    Described { text, sound: !events.is_empty() && events.iter().all(is_request) }
 }
 
 /// What came after a write, in words: read as the reply to its last request, else as plain bytes.
-pub fn describe_received(sent: &[u8], reply: &[u8], generation: Generation) -> String {
-    let Some(request) = last_request(sent, generation) else { return hex(reply) };
-    match parse_reply(&request, generation, reply) {
+pub fn describe_received(sent: &[u8], reply: &[u8], generation: Generation) -> Described {
+    let Some(request) = last_request(sent, generation) else {
+        return Described { text: hex(reply), sound: false };
+    };
+    let text = match parse_reply(&request, generation, reply) {
         ReplyProgress::Done { values, used } if used == reply.len() => {
-            describe_reply(&request, &values, generation)
+            return Described { text: describe_reply(&request, &values, generation), sound: true };
         }
         ReplyProgress::Done { values, used } => {
             format!("{}, then {}", describe_reply(&request, &values, generation), hex(&reply[used..]))
@@ -30,7 +35,10 @@ pub fn describe_received(sent: &[u8], reply: &[u8], generation: Generation) -> S
             format!("no reply to it: {}", hex(reply))
         }
         ReplyProgress::NeedMore { .. } => format!("part of a reply: {}", hex(reply)),
-    }
+    };
+    // Each of several writes at once is acknowledged with one byte.
+    let acknowledgements = reply.len() > 1 && reply.iter().all(|byte| *byte == ACK);
+    Described { text, sound: acknowledgements }
 }
 
 fn last_request(sent: &[u8], generation: Generation) -> Option<Request> {
@@ -59,16 +67,21 @@ mod tests {
     fn requests_and_replies_are_told_in_words() {
         // 0x80, command 24, no CRC; then 24.3 V.
         let request = [0x80, 24];
-        assert!(describe_sent(&request, G1).contains("main battery"), "{}", describe_sent(&request, G1));
+        let sent = describe_sent(&request, G1);
+        assert!(sent.text.contains("main battery") && sent.sound, "{sent:?}");
         let told = describe_received(&request, &reply_to(&request, &[0x00, 0xF3]), G1);
-        assert!(told.contains("24.3"), "{told}");
+        assert!(told.text.contains("24.3") && told.sound, "{told:?}");
     }
 
     #[test]
     fn a_stop_is_told_packet_by_packet() {
         let duty_zero = with_crc(&[0x80, 54, 0, 0, 0x00, 0x09, 0xFF, 0xFF, 0, 0, 0x00, 0x09, 0xFF, 0xFF]);
-        let told = describe_sent(&[with_crc(&[0x80, 249]), duty_zero].concat(), G1);
+        let stop = [with_crc(&[0x80, 249]), duty_zero].concat();
+        let told = describe_sent(&stop, G1);
+        assert!(told.sound, "{told:?}");
+        let told = told.text;
         assert!(told.contains("stop script") && told.contains("; ") && told.contains("duty"), "{told}");
+        assert!(describe_received(&stop, &[0xFF, 0xFF], G1).sound);
     }
 
     #[test]
@@ -80,10 +93,10 @@ mod tests {
             (&[0x00, 0xF3, 0xE8, 0x86, 9], "then 09"),
         ] {
             let told = describe_received(&request, reply, G1);
-            assert!(told.contains(word), "{told}");
+            assert!(told.text.contains(word) && !told.sound, "{told:?}");
         }
         let ack = with_crc(&[0x80, 249]);
-        assert!(describe_received(&ack, &[0x11], G1).contains("no reply to it"));
-        assert_eq!(describe_received(&[], &[0xAB], G1), "AB");
+        assert!(describe_received(&ack, &[0x11], G1).text.contains("no reply to it"));
+        assert_eq!(describe_received(&[], &[0xAB], G1).text, "AB");
     }
 }

@@ -12,7 +12,7 @@ mod thread;
 
 pub use thread::DeviceThread;
 
-use super::controller::{Controller, DiscoverError, Family, Line};
+use super::controller::{Controller, Described, DiscoverError, Family, Line};
 use super::drive::ArmScope;
 use super::event::{DisarmReason, Event};
 use super::handle::{DeviceHandle, Envelope};
@@ -293,7 +293,8 @@ impl DeviceLoop {
             } else {
                 describe(Some(&traffic.bytes))
             };
-            self.outbox.send(Event::Traffic { traffic, text: text.unwrap_or_default() });
+            let Described { text, sound } = text.unwrap_or_default();
+            self.outbox.send(Event::Traffic { traffic, text, sound });
         }
     }
 

@@ -4,7 +4,9 @@
 use super::harness::Link;
 use crate::clock::{Clock, VirtualClock};
 use crate::device::channel::{Channel, Sample};
-use crate::device::controller::{ArmCheck, Controller, DiscoverError, Family, Line, PollItem, PollList};
+use crate::device::controller::{
+    ArmCheck, Controller, Described, DiscoverError, Family, Line, PollItem, PollList,
+};
 use crate::device::drive::{ArmScope, Drive, DriveCommand};
 use crate::device::event::{DisarmReason, Event};
 use crate::device::identity::Identity;
@@ -149,8 +151,8 @@ impl Controller for Toy {
         false
     }
 
-    fn describe_traffic(&self, request: &[u8], _: Option<&[u8]>) -> String {
-        String::from_utf8_lossy(request).into_owned()
+    fn describe_traffic(&self, request: &[u8], _: Option<&[u8]>) -> Described {
+        Described { text: String::from_utf8_lossy(request).into_owned(), sound: true }
     }
 }
 
