@@ -29,7 +29,7 @@ fn open(bench: &mut Bench) {
     bench.harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::Num2);
     bench.pass_ms(3000);
     assert_eq!(bench.model().screen, Screen::GeneralSettings);
-    assert!(bench.model().general.running().is_none());
+    assert!(bench.model().front.general.running().is_none());
 }
 
 /// What the controller works with.
@@ -74,7 +74,7 @@ fn opening_the_screen_reads_every_setting_and_changes_none() {
     assert!(bench.sees("Main battery minimum default: 10.0 V"));
     assert_eq!(truth(&bench), before);
     assert!(bench.both_stand());
-    let unit = bench.model().general.unit().unwrap();
+    let unit = bench.model().front.general.unit().unwrap();
     let unread: Vec<_> =
         unit.table().rows().iter().filter(|row| unit.on_controller(&row.key).is_none()).collect();
     assert!(unread.is_empty(), "{unread:?}");
@@ -140,9 +140,9 @@ fn an_edit_made_while_a_write_runs_stays() {
     bench.press("Write settings");
     bench.button("Write to controller").click();
     bench.harness.step();
-    assert!(bench.model().general.running().is_some());
+    assert!(bench.model().front.general.running().is_some());
     let min_volts = brushwork_link::settings::SettingValue::Number(12.0);
-    bench.model().general.unit_mut().unwrap().set("limits.main_battery.min_volts", min_volts);
+    bench.model().front.general.unit_mut().unwrap().set("limits.main_battery.min_volts", min_volts);
     bench.pass_ms(3000);
     assert_eq!(truth(&bench).battery.main_max_tenths, 335);
     assert_ne!(truth(&bench).battery.main_min_tenths, 120, "it was made after the list was shown");
@@ -190,12 +190,12 @@ fn search_and_only_changed_pick_rows_from_all_sections() {
     bench.pass_ms(100);
     bench.harness.get_by_role_and_label(Role::TextInput, "Search settings").type_text("battery max");
     bench.pass_ms(200);
-    let shown = bench.model().general.shown();
+    let shown = bench.model().front.general.shown();
     assert_eq!(shown, ["limits.main_battery.max_volts", "limits.logic_battery.max_volts"]);
     assert!(bench.sees_part("2 of "));
     enter(&mut bench, MAX_VOLTS, "33.5");
     bench.press("Section Unit settings");
-    assert_eq!(bench.model().general.search, "", "choosing a section ends the search");
+    assert_eq!(bench.model().front.general.search, "", "choosing a section ends the search");
     assert!(!bench.sees(&format!("{MAX_VOLTS} on the controller: 60.0 V")));
     bench.press("Only changed");
     assert!(bench.sees(&format!("{MAX_VOLTS} on the controller: 60.0 V")));
@@ -207,7 +207,7 @@ fn each_pin_has_its_own_settings_and_those_that_do_not_apply_are_locked_with_the
     let mut bench = opened();
     bench.press("Section DIN3/AN3");
     let type_of_pin = || brushwork_link::settings::SettingValue::Choice("none");
-    let unit = bench.model().general.unit_mut().unwrap();
+    let unit = bench.model().front.general.unit_mut().unwrap();
     let pin = unit.table().rows().iter().find(|row| {
         row.pattern == "pin.{n}.type" && row.instance.as_ref().is_some_and(|it| it.name == "DIN3/AN3")
     });
@@ -227,10 +227,10 @@ fn a_setting_without_a_wire_form_is_changed_on_the_simulated_controller_alone() 
     write(&mut bench);
     assert!(truth(&bench).unit.bridged);
     // The same unit, as if it were a real one.
-    let mut identity = bench.model().link.units[0].clone();
+    let mut identity = bench.model().front.link.units[0].clone();
     identity.simulated = false;
     identity.port = "/dev/ttyACM0".to_owned();
-    bench.model().link.units[0] = identity;
+    bench.model().front.link.units[0] = identity;
     bench.pass_ms(3000);
     assert!(bench.sees_part("Bridge channels is locked: No packet serial command"));
 }
@@ -319,10 +319,10 @@ fn reading_can_be_cancelled_and_says_so() {
 fn the_stop_key_stops_and_closes_the_sheet_while_one_is_open() {
     let mut bench = opened();
     bench.press("Save to EEPROM");
-    assert_eq!(bench.model().general.sheet(), Some(&Sheet::Save));
+    assert_eq!(bench.model().front.general.sheet(), Some(&Sheet::Save));
     assert!(bench.sees("Stop All"), "no sheet covers it");
     bench.key(Key::Escape);
-    assert_eq!(bench.model().general.sheet(), None);
+    assert_eq!(bench.model().front.general.sheet(), None);
     bench.pass_ms(300);
     assert!(bench.sees_part("Stopped."));
 }
@@ -330,21 +330,21 @@ fn the_stop_key_stops_and_closes_the_sheet_while_one_is_open() {
 #[test]
 fn every_section_can_be_drawn_at_the_smallest_size_and_the_screen_looks_as_it_did() {
     let mut bench = opened_in(Bench::sized([1024.0, 700.0], egui::Theme::Light));
-    let unit = bench.model().general.unit().unwrap();
+    let unit = bench.model().front.general.unit().unwrap();
     let sections: Vec<_> = sections(unit.table()).into_iter().map(|(section, _)| section).collect();
     assert!(sections.len() > 20, "{sections:?}");
     for section in sections {
-        bench.model().general.section = section;
+        bench.model().front.general.section = section;
         bench.harness.step();
-        assert!(!bench.model().general.shown().is_empty(), "{section:?}");
+        assert!(!bench.model().front.general.shown().is_empty(), "{section:?}");
     }
     bench.press("Section Voltage limits");
     enter(&mut bench, MAX_VOLTS, "33.5");
     enter(&mut bench, "Main battery minimum", "99");
     bench.harness.set_render_cursor(false);
     // Figures of the link and of noisy signals are not what this picture is about.
-    bench.model().link.statistics = brushwork_link::exchange::LinkStatistics::default();
-    bench.model().link.readings = brushwork::gui::model::readings::Readings::default();
+    bench.model().front.link.statistics = brushwork_link::exchange::LinkStatistics::default();
+    bench.model().front.link.readings = brushwork::gui::model::readings::Readings::default();
     bench.harness.step();
     bench.harness.snapshot("general");
 }
@@ -360,7 +360,7 @@ fn a_profile_is_saved_opened_compared_and_taken_over_by_row() {
     write(&mut bench);
     bench.press("Save profile");
     assert!(bench.harness.get_all_by_label("Save profile").any(|node| node.accesskit_node().is_disabled()));
-    bench.model().general.profiles.path = path.clone();
+    bench.model().front.general.profiles.path = path.clone();
     bench.pass_ms(200);
     bench.harness.get_all_by_label("Save profile").last().unwrap().click();
     bench.pass_ms(300);
@@ -373,7 +373,7 @@ fn a_profile_is_saved_opened_compared_and_taken_over_by_row() {
     bench.pass_ms(6000);
     bench.press("Open profile");
     bench.press("Open");
-    assert_eq!(bench.model().general.sheet(), Some(&Sheet::Compare));
+    assert_eq!(bench.model().front.general.sheet(), Some(&Sheet::Compare));
     assert!(bench.sees(&format!("{MAX_VOLTS}: 60.0 V -> 33.5 V")));
     assert!(bench.sees("Main battery minimum: 10.0 V -> 12.0 V"));
     bench.press(&format!("Take over {MAX_VOLTS}"));
@@ -396,7 +396,7 @@ fn a_profile_that_is_faulty_or_made_for_another_controller_is_refused_with_every
     let folder = tempfile::tempdir().unwrap();
     let mut bench = opened();
     bench.press("Open profile");
-    bench.model().general.profiles.path = folder.path().join("none.json").display().to_string();
+    bench.model().front.general.profiles.path = folder.path().join("none.json").display().to_string();
     bench.pass_ms(200);
     bench.press("Open");
     assert!(bench.sees_part("Reading the profile"));
@@ -412,7 +412,7 @@ fn a_profile_that_is_faulty_or_made_for_another_controller_is_refused_with_every
         settings: brushwork_link::settings::SettingsTable::new(subject).default_image(),
     };
     other.save(&path).unwrap();
-    bench.model().general.profiles.path = path.display().to_string();
+    bench.model().front.general.profiles.path = path.display().to_string();
     bench.pass_ms(200);
     bench.press("Open");
     assert!(bench.sees_part("The profile was made for the MCP236"));
@@ -426,7 +426,7 @@ fn a_profile_that_is_faulty_or_made_for_another_controller_is_refused_with_every
     bench.press("Open");
     assert!(bench.sees_part("9999"));
     bench.press("Open without what is wrong");
-    assert_eq!(bench.model().general.sheet(), Some(&Sheet::Compare));
+    assert_eq!(bench.model().front.general.sheet(), Some(&Sheet::Compare));
 }
 
 #[test]
@@ -438,7 +438,7 @@ fn a_unit_that_was_given_another_address_keeps_its_edits_here() {
     bench.button("Write to controller").click();
     bench.harness.step();
     let mixing = brushwork_link::settings::SettingValue::Bool(true);
-    bench.model().general.unit_mut().unwrap().set("unit.mixing", mixing);
+    bench.model().front.general.unit_mut().unwrap().set("unit.mixing", mixing);
     bench.pass_ms(6000);
     assert_eq!(truth(&bench).unit.address, 130);
     assert!(bench.sees("Edits: 1 not written"), "{:?}", bench.model().messages.shown());

@@ -26,7 +26,7 @@ fn picture(mut bench: Bench, name: &str) {
 
 /// A unit that has answered, with the conditions given.
 fn fed(model: &mut Model, conditions: &[Condition]) {
-    model.phase = Phase::Open { target: "sim:mcp266".to_owned() };
+    model.front.phase = Phase::Open { target: "sim:mcp266".to_owned() };
     let identity = Identity {
         address: 0x80,
         family: "packet serial",
@@ -55,13 +55,13 @@ fn fed(model: &mut Model, conditions: &[Condition]) {
         Event::Status(status),
         Event::Link(figures),
     ] {
-        model.link.take(event);
+        model.front.link.take(event);
     }
     for tick in 0..110 {
         let sample = sample(Duration::from_millis(100) * tick);
-        let values = &sample.values[..model.graph.channels.len()];
-        model.graph.push(sample.replied_at.as_secs_f64(), values);
-        model.link.take(Event::Sample(Box::new(sample)));
+        let values = &sample.values[..model.front.graph.channels.len()];
+        model.front.graph.push(sample.replied_at.as_secs_f64(), values);
+        model.front.link.take(Event::Sample(Box::new(sample)));
     }
 }
 
@@ -110,12 +110,12 @@ fn the_pwm_screen_while_it_is_armed() {
     let model = bench.model();
     fed(model, &[]);
     model.screen = Screen::Pwm;
-    model.link.take(Event::Armed {
+    model.front.link.take(Event::Armed {
         address: 0x80,
         scope: ArmScope::Pwm,
         controller_timeout: Some(Duration::from_secs(1)),
         warnings: vec!["Input pin 3 can also drive motor 1.".to_owned()],
     });
-    model.pwm.set_duty(Motor::M1, 55.5);
+    model.front.pwm.set_duty(Motor::M1, 55.5);
     picture(bench, "pwm");
 }

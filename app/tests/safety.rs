@@ -27,8 +27,8 @@ fn driving() -> Bench {
 
 fn assert_stopped_and_disarmed(bench: &mut Bench) {
     assert!(bench.both_stand(), "{} {}", bench.real_duty(Motor::M1), bench.real_duty(Motor::M2));
-    assert_eq!(bench.model().link.arming, Arming::Disarmed);
-    assert_eq!(bench.model().pwm.setpoints.values, [0.0; 2]);
+    assert_eq!(bench.model().front.link.arming, Arming::Disarmed);
+    assert_eq!(bench.model().front.pwm.setpoints.values, [0.0; 2]);
 }
 
 #[test]
@@ -186,7 +186,7 @@ fn losing_the_link_disarms_and_the_controller_stops_by_its_own_time_out() {
     bench.act(&WorldAction::Unplug { unplugged: true });
     bench.pass_ms(500);
     assert!(!bench.model().is_connected());
-    assert_eq!(bench.model().link.arming, Arming::Disarmed);
+    assert_eq!(bench.model().front.link.arming, Arming::Disarmed);
     assert!(bench.sees_part("the controller stops its motors by itself after 1.0 s of silence"));
     bench.pass_ms(1500);
     assert!(bench.both_stand());

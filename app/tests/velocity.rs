@@ -45,8 +45,8 @@ fn held_p_raw(bench: &Bench, motor: Motor) -> u32 {
 
 fn assert_stopped_and_disarmed(bench: &mut Bench) {
     assert!(bench.both_stand(), "{} {}", bench.real_duty(Motor::M1), bench.real_duty(Motor::M2));
-    assert_eq!(bench.model().link.arming, Arming::Disarmed);
-    assert_eq!(bench.model().velocity.setpoints.values, [0.0; 2]);
+    assert_eq!(bench.model().front.link.arming, Arming::Disarmed);
+    assert_eq!(bench.model().front.velocity.setpoints.values, [0.0; 2]);
 }
 
 #[test]
@@ -56,8 +56,8 @@ fn opening_the_screen_reads_the_settings_and_moves_nothing() {
     for name in ["M1 Velocity P", "M2 Velocity I", "M1 Velocity D", "M2 QPPS", "M1 L", "M2 R"] {
         assert!(bench.sees(name), "{name}");
     }
-    assert_eq!(bench.model().loops.held(Motor::M1, "velocity.p"), Some(1.0));
-    assert_eq!(bench.model().loops.qpps(Motor::M2), Some(44_000.0));
+    assert_eq!(bench.model().front.loops.held(Motor::M1, "velocity.p"), Some(1.0));
+    assert_eq!(bench.model().front.loops.qpps(Motor::M2), Some(44_000.0));
     assert!(bench.button("M1 speed").accesskit_node().is_disabled());
     assert!(bench.both_stand());
 }
@@ -198,7 +198,7 @@ fn passing_through_a_field_does_not_change_it() {
     let held = held_p_raw(&bench, Motor::M1);
     bench.focus_label("M1 Velocity P");
     bench.focus_label("M1 Velocity I");
-    assert_eq!(bench.model().loops.edits(brushwork::gui::model::loop_settings::VELOCITY), 0);
+    assert_eq!(bench.model().front.loops.edits(brushwork::gui::model::loop_settings::VELOCITY), 0);
     assert_eq!(held_p_raw(&bench, Motor::M1), held);
 }
 

@@ -119,7 +119,7 @@ fn the_duty_follows_the_slider_at_the_acceleration_that_was_set() {
     let mut bench = Bench::new();
     bench.connect();
     bench.arm();
-    bench.model().pwm.accel_percent_per_s = 20.0;
+    bench.model().front.pwm.accel_percent_per_s = 20.0;
     bench.set_duty(Motor::M1, "100");
     bench.pass_ms(1000);
     let after_a_second = bench.real_duty(Motor::M1);
@@ -145,7 +145,7 @@ fn a_disarmed_slider_moves_nothing() {
     bench.connect();
     bench.press("PWM Settings");
     assert!(bench.see("M1 duty").accesskit_node().is_disabled());
-    bench.model().pwm.set_duty(Motor::M1, 50.0);
+    bench.model().front.pwm.set_duty(Motor::M1, 50.0);
     bench.pass_ms(1000);
     assert!(bench.both_stand());
 }
@@ -159,7 +159,7 @@ fn arming_is_refused_with_the_reason_while_the_emergency_stop_is_pressed() {
     bench.press("PWM Settings");
     bench.press("Arm");
     bench.pass_ms(500);
-    assert!(!bench.model().link.refusals.is_empty(), "{:?}", bench.model().link.arming);
+    assert!(!bench.model().front.link.refusals.is_empty(), "{:?}", bench.model().front.link.arming);
     assert_eq!(bench.model().messages.shown().unwrap().gravity, Gravity::Error);
     assert!(bench.sees_part("Disarmed: nothing on this screen moves a motor"));
 }
@@ -173,7 +173,8 @@ fn zeroing_sets_the_count_of_that_encoder() {
     bench.pass_ms(2000);
     bench.key(egui::Key::Escape);
     bench.pass_ms(2000);
-    let counted = bench.model().link.readings.text(brushwork_link::device::Channel::M1Position, 0).unwrap();
+    let counted =
+        bench.model().front.link.readings.text(brushwork_link::device::Channel::M1Position, 0).unwrap();
     assert_ne!(counted, "0");
     bench.press("Zero M1 encoder");
     bench.pass_ms(500);
@@ -206,7 +207,7 @@ fn the_graph_names_what_it_shows_and_channels_are_switched_by_their_boxes() {
     bench.press("Show M1 Velocity");
     bench.press("30 s");
     assert!(bench.sees("Live graph of the last 30 s: M1 PWM, M1 Current"));
-    let rows = bench.model().graph.history().rows();
+    let rows = bench.model().front.graph.history().rows();
     assert!((18..=60).contains(&(rows.end - rows.start)), "{rows:?} in about 2 s at 100 ms");
 }
 
@@ -267,7 +268,7 @@ fn units_that_share_a_line_are_listed_and_one_is_looked_at() {
     assert!(bench.sees("0x80  MCP266") && bench.sees("0x81  MCP266"));
     bench.press("0x81  MCP266");
     bench.pass_ms(500);
-    assert_eq!(bench.model().link.selected, Some(0x81));
+    assert_eq!(bench.model().front.link.selected, Some(0x81));
     bench.arm();
     bench.set_duty(Motor::M1, "50");
     bench.pass_ms(1500);
@@ -301,7 +302,7 @@ fn the_graph_goes_on_after_a_new_connection_and_shows_the_time_between_as_a_gap(
     bench.pass_ms(3000);
     bench.connect();
     bench.pass_ms(1000);
-    let graph = &bench.model().graph;
+    let graph = &bench.model().front.graph;
     let columns = brushwork::gui::graph::Columns::new(graph.history(), &graph.view(1000));
     let lines = graph.lines(brushwork_link::device::Channel::MainBattery.index(), &columns);
     assert_eq!(lines.len(), 2, "{lines:?}");
@@ -330,9 +331,9 @@ fn the_sampling_rate_is_chosen_beside_the_graph() {
     bench.press("PWM Settings");
     bench.press("Sampling");
     bench.press("every 10 ms");
-    let before = bench.model().graph.history().rows().end;
+    let before = bench.model().front.graph.history().rows().end;
     bench.pass_ms(1000);
-    let samples = bench.model().graph.history().rows().end - before;
+    let samples = bench.model().front.graph.history().rows().end - before;
     assert!((90..=110).contains(&samples), "{samples} in a second");
 }
 
@@ -344,12 +345,12 @@ fn fitting_and_clearing_are_done_to_the_channel_that_was_selected() {
     bench.pass_ms(2000);
     let battery = brushwork_link::device::Channel::MainBattery.index();
     bench.press("Show Main Battery");
-    assert_eq!(bench.model().graph.selected, battery);
+    assert_eq!(bench.model().front.graph.selected, battery);
     bench.press("Fit scale");
-    let scale = bench.model().graph.channels[battery].scale;
+    let scale = bench.model().front.graph.channels[battery].scale;
     assert!(scale.low > 20.0 && scale.high < 28.0, "{scale:?}");
     bench.press("Clear");
-    let graph = &bench.model().graph;
+    let graph = &bench.model().front.graph;
     let columns = brushwork::gui::graph::Columns::new(graph.history(), &graph.view(1000));
     let drawn: usize = graph.lines(battery, &columns).iter().map(Vec::len).sum();
     assert!(drawn <= 3, "{drawn} points are left");

@@ -10,20 +10,20 @@ use std::time::{Duration, Instant};
 use brushwork_link::Failure;
 use brushwork_link::device::{ArmScope, DeviceHandle, Event, PollRate, Request};
 use brushwork_sim::world::WorldAction;
-use crossbeam_channel::{Receiver, TryRecvError};
+use crossbeam_channel::TryRecvError;
 use egui::{Context, Key, Modifiers, Ui};
 
 use super::command::{Command, Commands};
 use super::keys;
+use super::links::{self, Links};
 use super::model::general::SettingsWish;
 use super::model::link::{Arming, Effect, LinkView};
 use super::model::loop_settings::Column;
 use super::model::message::Gravity;
 use super::model::screen::Screen;
-use super::model::{Appearance, Model, Phase};
-use super::parts::{OpenLink, Parts, SimulatedWorld};
+use super::model::{Appearance, DeskId, Model, Phase};
+use super::parts::{OpenLink, Parts};
 use super::{shell, theme};
-use crate::session::SessionError;
 
 /// Time between two frames while nobody touches anything: ten a second show what ten samples a second bring.
 pub const FRAME_INTERVAL: Duration = Duration::from_millis(100);
@@ -38,9 +38,7 @@ const EVENTS_PER_FRAME: usize = 4096;
 pub struct App {
     pub model: Model,
     parts: Parts,
-    opening: Option<Receiver<Result<OpenLink, SessionError>>>,
-    device: Option<DeviceHandle>,
-    world: Option<Arc<dyn SimulatedWorld>>,
+    links: Links,
     shown: Option<Appearance>,
     last_frame: Arc<FrameTime>,
 }
@@ -52,9 +50,7 @@ impl App {
         Self {
             model: Model::default(),
             parts,
-            opening: None,
-            device: None,
-            world: None,
+            links: Links::default(),
             shown: None,
             last_frame: Arc::new(FrameTime::new()),
         }
@@ -66,9 +62,9 @@ impl App {
         self.connect();
     }
 
-    /// The open link, for those who measure it.
+    /// The open link in front, for those who measure it.
     pub fn device(&self) -> Option<&DeviceHandle> {
-        self.device.as_ref()
+        self.links.device(self.model.front.id())
     }
 
     /// Draws one frame.
@@ -94,103 +90,110 @@ impl App {
         if let Some(listed) = self.parts.ports.newest() {
             self.model.devices.set_ports(listed);
         }
-        self.finish_opening(ctx);
+        for desk in self.links.ids() {
+            self.finish_opening(desk, ctx);
+            self.drain(desk);
+            self.look_at_world(desk);
+        }
+    }
+
+    /// Takes in a link's events, in front or not.
+    fn drain(&mut self, desk: DeskId) {
         for _ in 0..EVENTS_PER_FRAME {
-            let Some(device) = &self.device else { break };
+            let Some(device) = self.links.device(desk) else { break };
             match device.events().try_recv() {
-                Ok(event) => self.take(event),
+                Ok(event) => self.take(desk, event),
                 Err(TryRecvError::Empty) => break,
                 Err(TryRecvError::Disconnected) => {
-                    self.model.messages.fail("The link ended without a reason. Connect again.");
-                    self.ended();
+                    self.say(desk, Gravity::Error, "The link ended without a reason. Connect again.");
+                    self.ended(desk);
                 }
             }
         }
-        self.look_at_world();
     }
 
     /// Sees the worlds of simulated units as they are now.
-    fn look_at_world(&mut self) {
-        self.model.worlds = self.world.as_ref().and_then(|world| world.views());
-        let Some(world) = &self.world else { return };
-        let unit = self.model.link.selected.and_then(|address| world.unit_at(address));
+    fn look_at_world(&mut self, id: DeskId) {
+        let Some(desk) = self.model.desk_mut(id) else { return };
+        let world = self.links.get(id).and_then(|link| link.world.as_ref());
+        desk.worlds = world.and_then(|world| world.views());
+        let Some(world) = world else { return };
+        let unit = desk.link.selected.and_then(|address| world.unit_at(address));
         // Without a link the unit looked at last stays in view.
         if let Some(unit) = unit
-            && unit != self.model.world_unit
+            && unit != desk.world_unit
         {
-            self.model.world_unit = unit;
-            self.model.world.forget();
+            desk.world_unit = unit;
+            desk.world.forget();
         }
     }
 
-    fn finish_opening(&mut self, ctx: &Context) {
-        let Some(opening) = &self.opening else { return };
+    fn finish_opening(&mut self, id: DeskId, ctx: &Context) {
+        let Some(opening) = self.links.get(id).and_then(|link| link.opening.as_ref()) else { return };
         let why = match opening.try_recv() {
-            Ok(Ok(link)) => return self.opened(link, ctx),
+            Ok(Ok(link)) => return self.opened(id, link, ctx),
             Ok(Err(error)) => error.to_string(),
             Err(TryRecvError::Empty) => return ctx.request_repaint_after(OPENING_INTERVAL),
             Err(TryRecvError::Disconnected) => {
                 "Could not open the link: the system gave no thread. Try again.".to_owned()
             }
         };
-        self.opening = None;
-        self.model.phase = Phase::Closed;
-        self.model.messages.fail(why);
+        self.links.entry(id).opening = None;
+        if let Some(desk) = self.model.desk_mut(id) {
+            desk.phase = Phase::Closed;
+        }
+        self.say(id, Gravity::Error, why);
     }
 
-    fn opened(&mut self, link: OpenLink, ctx: &Context) {
-        self.opening = None;
-        let target = self.model.phase.target().unwrap_or_default().to_owned();
-        self.model.phase = Phase::Open { target };
-        self.model.link = LinkView::default();
-        self.model.world.forget();
-        self.world = link.world;
-        link.device.set_waker(waker(ctx.clone(), self.last_frame.clone()));
-        self.device = Some(link.device);
-        if self.model.poll != PollRate::default() {
-            self.request(Request::Poll(self.model.poll));
+    fn opened(&mut self, id: DeskId, opened: OpenLink, ctx: &Context) {
+        let link = self.links.entry(id);
+        link.opening = None;
+        // A desk that was given up meanwhile: the link is closed again by being dropped.
+        let Some(desk) = self.model.desk_mut(id) else { return };
+        let target = desk.phase.target().unwrap_or_default().to_owned();
+        desk.phase = Phase::Open { target };
+        desk.link = LinkView::default();
+        desk.world.forget();
+        link.world = opened.world;
+        opened.device.set_waker(waker(ctx.clone(), self.last_frame.clone()));
+        let poll = desk.poll;
+        link.device = Some(opened.device);
+        if poll != PollRate::default() {
+            self.request_of(id, Request::Poll(poll));
         }
     }
 
-    fn take(&mut self, event: Event) {
-        let model = &mut self.model;
-        let effects = if model.general.awaits(&event) {
-            model.general.take(event)
-        } else if model.loops.awaits(&event) {
-            model.loops.take(event)
-        } else {
-            model.link.take(event)
-        };
-        for effect in effects {
+    fn take(&mut self, id: DeskId, event: Event) {
+        let Some(desk) = self.model.desk_mut(id) else { return };
+        for effect in desk.take(event) {
             match effect {
-                Effect::Say(gravity, text) => self.model.messages.say(gravity, text),
-                Effect::AtRest => self.model.rest(),
-                Effect::Sample(sample) => {
-                    let values = &sample.values[..self.model.graph.channels.len()];
-                    self.model.graph.push(sample.replied_at.as_secs_f64(), values);
-                }
-                Effect::OtherUnit => {
-                    self.model.graph.push_gap();
-                    self.model.loops.forget();
-                    self.model.loops.want_reading();
-                }
-                Effect::Ended => self.ended(),
+                Effect::Say(gravity, text) => self.say(id, gravity, text),
+                Effect::Ended => self.ended(id),
+                // The desk has done the rest.
+                Effect::AtRest | Effect::Sample(_) | Effect::OtherUnit => {}
             }
         }
     }
 
-    /// The link is gone, by wish or not. A simulated world lives on.
-    fn ended(&mut self) {
-        if let Some(device) = self.device.take() {
-            // Dropping waits for the link's thread to end; the window does not. Without a thread it has to.
-            let _ = std::thread::Builder::new().name("close link".to_owned()).spawn(move || drop(device));
+    /// Says something about a link; one in the background is named.
+    fn say(&mut self, id: DeskId, gravity: Gravity, text: impl Into<String>) {
+        let text = text.into();
+        let behind = self.model.others.iter().find(|desk| desk.id() == id);
+        let text = match behind.and_then(|desk| desk.phase.target()) {
+            Some(target) => format!("{target}: {text}"),
+            None => text,
+        };
+        self.model.messages.say(gravity, text);
+    }
+
+    /// A link is gone, by wish or not. A simulated world lives on.
+    fn ended(&mut self, id: DeskId) {
+        if let Some(device) = self.links.entry(id).device.take() {
+            links::close(device);
         }
-        self.model.phase = Phase::Closed;
-        self.model.link = LinkView::default();
-        self.model.general.link_ended();
-        self.model.loops.forget();
-        self.model.rest();
-        self.model.graph.push_gap();
+        if let Some(desk) = self.model.desk_mut(id) {
+            desk.link_ended();
+        }
     }
 
     fn apply(&mut self, command: Command) {
@@ -200,9 +203,9 @@ impl App {
             Command::Show(screen) => self.show(screen),
             Command::Stop => self.stop(),
             Command::Arm(scope) => {
-                self.model.link.refusals.clear();
+                self.model.front.link.refusals.clear();
                 if self.request(Request::Arm(scope)) {
-                    self.model.link.arming = Arming::Asked(scope);
+                    self.model.front.link.arming = Arming::Asked(scope);
                 }
             }
             Command::Disarm => self.disarm(),
@@ -212,7 +215,7 @@ impl App {
             }
             Command::SetStream(stream) => {
                 if self.request(Request::SetStream(stream)) {
-                    self.model.link.stream = Some(stream);
+                    self.model.front.link.stream = Some(stream);
                 }
             }
             Command::ZeroEncoder(motor) => {
@@ -222,7 +225,7 @@ impl App {
                 self.request(Request::ResetEStop);
             }
             Command::Poll(rate) => self.poll(rate),
-            Command::ReadLoops => self.model.loops.want_reading(),
+            Command::ReadLoops => self.model.front.loops.want_reading(),
             Command::ApplyLoops(columns) => self.apply_loops(columns),
             Command::World(action) => self.act_on_world(action),
             Command::Settings(wish) => self.settings(wish),
@@ -231,14 +234,15 @@ impl App {
     }
 
     fn connect(&mut self) {
-        if self.model.phase != Phase::Closed {
+        if self.model.front.phase != Phase::Closed {
             return;
         }
         match self.model.devices.target() {
             Ok(target) => {
                 self.model.messages.dismiss();
-                self.model.phase = Phase::Opening { target: target.to_string() };
-                self.opening = Some(self.parts.opener.open(target, self.model.addresses));
+                self.model.front.phase = Phase::Opening { target: target.to_string() };
+                let opening = self.parts.opener.open(target, self.model.devices.addresses);
+                self.links.entry(self.model.front.id()).opening = Some(opening);
             }
             Err(error) => {
                 let typed = self.model.devices.typed.trim();
@@ -249,14 +253,14 @@ impl App {
     }
 
     fn disconnect(&mut self) {
-        match &self.model.phase {
+        match &self.model.front.phase {
             Phase::Opening { .. } => {
-                self.opening = None;
-                self.model.phase = Phase::Closed;
+                self.links.entry(self.model.front.id()).opening = None;
+                self.model.front.phase = Phase::Closed;
                 self.model.messages.note("Gave up connecting.");
             }
             Phase::Open { target } => {
-                self.model.phase = Phase::Closing { target: target.clone() };
+                self.model.front.phase = Phase::Closing { target: target.clone() };
                 self.request(Request::Disconnect);
             }
             Phase::Closed | Phase::Closing { .. } => {}
@@ -271,44 +275,45 @@ impl App {
             self.disarm();
         }
         self.model.turn_to(screen);
-        self.model.loops.want_reading();
+        self.model.front.loops.want_reading();
     }
 
     /// Reads the settings of the control loops when a screen that shows them wants them.
     fn read_loops(&mut self) {
-        if !self.model.screen.has_loops() || !self.model.loops.wants_reading() {
+        if !self.model.screen.has_loops() || !self.model.front.loops.wants_reading() {
             return;
         }
-        let Some(identity) = self.model.link.identity().cloned() else { return };
-        if let Some(request) = self.model.loops.read(&identity)
+        let Some(identity) = self.model.front.link.identity().cloned() else { return };
+        if let Some(request) = self.model.front.loops.read(&identity)
             && !self.request(request)
         {
-            self.model.loops.not_begun();
+            self.model.front.loops.not_begun();
         }
     }
 
     fn apply_loops(&mut self, columns: &[Column]) {
-        let Some(identity) = self.model.link.identity().cloned() else { return };
-        let stream = self.model.link.stream;
-        if let Some(request) = self.model.loops.apply(columns, &identity, stream) {
+        let Some(identity) = self.model.front.link.identity().cloned() else { return };
+        let stream = self.model.front.link.stream;
+        if let Some(request) = self.model.front.loops.apply(columns, &identity, stream) {
             if self.request(request) {
-                self.model.general.ram_changes();
+                self.model.front.general.ram_changes();
             } else {
-                self.model.loops.not_begun();
+                self.model.front.loops.not_begun();
             }
         }
     }
 
-    /// Stops all motors, at once and without asking anything first.
+    /// Stops all motors of every link, at once and without asking anything first.
     fn stop(&mut self) {
-        if let Some(device) = &self.device {
-            device.stop_all();
+        self.links.stop_all();
+        for desk in self.model.desks_mut() {
+            desk.link.arming = Arming::Disarmed;
+            desk.rest();
         }
-        self.at_rest();
     }
 
     fn disarm(&mut self) {
-        if self.model.link.arming != Arming::Disarmed {
+        if self.model.front.link.arming != Arming::Disarmed {
             self.request(Request::Disarm);
         }
         self.at_rest();
@@ -316,49 +321,50 @@ impl App {
 
     /// The screen is disarmed and its sliders are at zero; the device thread stops the motors.
     fn at_rest(&mut self) {
-        self.model.link.arming = Arming::Disarmed;
-        self.model.rest();
+        self.model.front.link.arming = Arming::Disarmed;
+        self.model.front.rest();
     }
 
     fn poll(&mut self, rate: PollRate) {
-        self.model.poll = rate;
+        self.model.front.poll = rate;
         let interval = match rate {
             PollRate::Every(time) => time,
             PollRate::Fastest | PollRate::Off => FRAME_INTERVAL,
         };
-        self.model.graph.set_interval(interval.as_secs_f64());
-        if self.device.is_some() {
+        self.model.front.graph.set_interval(interval.as_secs_f64());
+        if self.device().is_some() {
             self.request(Request::Poll(rate));
         }
     }
 
     /// Starts or ends work with the settings, on the device thread.
     fn settings(&mut self, wish: SettingsWish) {
-        let stream = self.model.link.stream;
-        if let Some(request) = self.model.general.begin(wish, stream)
+        let stream = self.model.front.link.stream;
+        if let Some(request) = self.model.front.general.begin(wish, stream)
             && !self.request(request)
         {
-            self.model.general.not_begun();
+            self.model.front.general.not_begun();
         }
     }
 
     fn act_on_world(&mut self, action: WorldAction) {
-        let unit = self.model.world_unit;
-        if let Some(Err(failure)) = self.world.as_ref().map(|world| world.apply(unit, action)) {
+        let unit = self.model.front.world_unit;
+        let world = self.links.get(self.model.front.id()).and_then(|link| link.world.as_ref());
+        if let Some(Err(failure)) = world.map(|world| world.apply(unit, action)) {
             self.model.messages.fail(failure.to_string());
         }
     }
 
     /// While armed: sends what the sliders ask for and lets the motion live on.
     fn drive(&mut self, ctx: &Context) {
-        let armed_for = |scope| self.model.link.arming.is_armed_for(scope);
+        let armed_for = |scope| self.model.front.link.arming.is_armed_for(scope);
         let Some(scope) = self.model.screen.arm_scope().filter(|scope| armed_for(*scope)) else { return };
-        let Some(device) = &self.device else { return };
+        let Some(device) = self.links.device(self.model.front.id()) else { return };
         device.renew();
         let model = &mut self.model;
         let (drive, setpoints) = match scope {
-            ArmScope::Pwm => (model.pwm.to_send(), &mut model.pwm.setpoints),
-            ArmScope::Velocity => (model.velocity.to_send(), &mut model.velocity.setpoints),
+            ArmScope::Pwm => (model.front.pwm.to_send(), &mut model.front.pwm.setpoints),
+            ArmScope::Velocity => (model.front.velocity.to_send(), &mut model.front.velocity.setpoints),
             _ => return,
         };
         // A full queue takes it in the next frame.
@@ -375,19 +381,23 @@ impl App {
         let keys = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6];
         let pressed = |key| ctx.input_mut(|input| input.consume_key(Modifiers::COMMAND, key));
         if pressed(Key::B) {
-            self.model.world.open = !self.model.world.open;
+            self.model.front.world.open = !self.model.front.world.open;
         }
         let screens = keys.into_iter().zip(Screen::ALL).filter(|(key, _)| pressed(*key));
         screens.map(|(_, screen)| Command::Show(screen)).collect()
     }
 
-    /// Queues a request; a refusal is told.
+    /// Queues a request to the link in front; a refusal is told.
     fn request(&mut self, request: Request) -> bool {
-        let Some(device) = &self.device else { return false };
+        self.request_of(self.model.front.id(), request)
+    }
+
+    fn request_of(&mut self, desk: DeskId, request: Request) -> bool {
+        let Some(device) = self.links.device(desk) else { return false };
         match device.request(request) {
             Ok(()) => true,
             Err(refused) => {
-                self.model.messages.say(Gravity::Error, refused.to_string());
+                self.say(desk, Gravity::Error, refused.to_string());
                 false
             }
         }

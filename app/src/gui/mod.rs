@@ -10,6 +10,7 @@ pub mod command;
 pub mod files;
 pub mod graph;
 pub mod keys;
+pub mod links;
 pub mod model;
 pub mod opener;
 pub mod parts;

@@ -221,11 +221,11 @@ impl Bench {
         self.press(screen);
         self.press("Arm");
         self.pass_ms(500);
-        let arming = self.model().link.arming;
+        let arming = self.model().front.link.arming;
         assert!(
             matches!(arming, brushwork::gui::model::link::Arming::Armed { .. }),
             "{arming:?}: {:?}",
-            self.model().link.refusals
+            self.model().front.link.refusals
         );
     }
 

@@ -88,7 +88,7 @@ impl<'a> StopBench<'a> {
         let headless = Headless::new();
         let parts = Parts { ports: Box::new(NoPorts), opener: Box::new(Given(Some(rig.open()?))) };
         let mut app = App::new(&headless.ctx, parts);
-        app.model.poll = PollRate::Fastest;
+        app.model.front.poll = PollRate::Fastest;
         app.open("the rig");
         let mut bench = Self { rig, app, headless, interrupt, long_reply_bytes: 0 };
         bench.wait("the controller was not found", |bench| {

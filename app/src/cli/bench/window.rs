@@ -58,9 +58,9 @@ fn window_figure(effort: Effort) -> Result<Figure, String> {
         std::thread::sleep(Duration::from_millis(20));
     }
     let now_s = app.device().map_or(0.0, |device| device.now().as_secs_f64());
-    let mut graph = hour(app.model.graph.channels.len(), now_s - SPAN_S);
+    let mut graph = hour(app.model.front.graph.channels.len(), now_s - SPAN_S);
     graph.channels.iter_mut().enumerate().for_each(|(index, channel)| channel.shown = index < SHOWN);
-    app.model.graph = graph;
+    app.model.front.graph = graph;
     app.model.screen = Screen::Pwm;
     let mut times_ms = Vec::new();
     for turn in 0..WARM_UP + effort.frames {

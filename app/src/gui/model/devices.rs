@@ -1,6 +1,7 @@
 //! The device list: what can be connected to, and what was chosen.
 
 use brushwork_link::Failure;
+use brushwork_link::device::Addresses;
 use brushwork_link::transport::target::DEFAULT_BAUD;
 use brushwork_link::transport::{ConnectTarget, PortInfo, TargetError};
 
@@ -30,6 +31,8 @@ pub struct Devices {
     pub typed: String,
     /// For serial ports that are not a controller's own USB.
     pub baud: u32,
+    /// Which addresses to look for when connecting.
+    pub addresses: Addresses,
 }
 
 impl Default for Devices {
@@ -40,6 +43,7 @@ impl Default for Devices {
             choice: Choice::default(),
             typed: String::new(),
             baud: DEFAULT_BAUD,
+            addresses: Addresses::default(),
         }
     }
 }

@@ -1,14 +1,11 @@
 //! The window's state as plain data. Screens read it and ask for changes; nothing here draws or waits.
 
-use std::collections::BTreeMap;
-use std::sync::Arc;
-
-use brushwork_link::device::{Addresses, Channel, PollRate};
-use brushwork_sim::world::WorldView;
+use brushwork_link::device::Channel;
 use egui::ThemePreference;
 
-use super::graph::{ChannelInfo, LiveGraph, Scale};
+use super::graph::{ChannelInfo, Scale};
 
+pub mod desk;
 pub mod devices;
 pub mod general;
 pub mod lamps;
@@ -22,15 +19,10 @@ pub mod setpoints;
 pub mod velocity;
 pub mod world;
 
+pub use desk::{Desk, DeskId, Phase};
 use devices::Devices;
-use general::General;
-use link::LinkView;
-use loop_settings::LoopSettings;
 use message::Messages;
-use pwm::Pwm;
 use screen::Screen;
-use velocity::Velocity;
-use world::WorldPanel;
 
 /// Everything the window shows.
 #[derive(Debug)]
@@ -38,28 +30,11 @@ pub struct Model {
     pub screen: Screen,
     pub appearance: Appearance,
     pub devices: Devices,
-    /// Which addresses to look for when connecting.
-    pub addresses: Addresses,
-    pub phase: Phase,
-    /// What is known of the open link; empty while there is none.
-    pub link: LinkView,
     pub messages: Messages,
-    pub poll: PollRate,
-    pub graph: LiveGraph,
-    pub pwm: Pwm,
-    /// The settings of the units met so far, and what is being done with them.
-    pub general: General,
-    pub velocity: Velocity,
-    pub loops: LoopSettings,
-    /// Which channels the graph showed when a screen that drives was left.
-    graph_choices: BTreeMap<&'static str, Vec<bool>>,
-    /// The screen whose channels the graph shows while a screen without a graph is open.
-    graph_of: Option<Screen>,
-    pub world: WorldPanel,
-    /// The worlds of the simulated units, while they run.
-    pub worlds: Option<Arc<Vec<WorldView>>>,
-    /// Which of them is looked at.
-    pub world_unit: usize,
+    /// The link that is looked at. Only this one can be armed.
+    pub front: Desk,
+    /// The links in the background. They are read and recorded like the one in front.
+    pub others: Vec<Desk>,
 }
 
 /// How the window looks.
@@ -70,94 +45,63 @@ pub struct Appearance {
     pub plain: bool,
 }
 
-/// Where the link is between closed and open.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub enum Phase {
-    #[default]
-    Closed,
-    Opening {
-        target: String,
-    },
-    Open {
-        target: String,
-    },
-    /// Asked to close; the motors are being stopped.
-    Closing {
-        target: String,
-    },
-}
-
-impl Phase {
-    pub fn is_open(&self) -> bool {
-        matches!(self, Self::Open { .. })
-    }
-
-    /// What the link goes to.
-    pub fn target(&self) -> Option<&str> {
-        match self {
-            Self::Closed => None,
-            Self::Opening { target } | Self::Open { target } | Self::Closing { target } => Some(target),
-        }
-    }
-}
-
 impl Default for Model {
     fn default() -> Self {
         Self {
             screen: Screen::default(),
             appearance: Appearance { theme: ThemePreference::System, plain: false },
             devices: Devices::default(),
-            addresses: Addresses::default(),
-            phase: Phase::default(),
-            link: LinkView::default(),
             messages: Messages::default(),
-            poll: PollRate::default(),
-            graph: LiveGraph::new(graph_channels(), 0.1),
-            pwm: Pwm::default(),
-            general: General::default(),
-            velocity: Velocity::default(),
-            loops: LoopSettings::default(),
-            graph_choices: BTreeMap::new(),
-            graph_of: None,
-            world: WorldPanel::default(),
-            worlds: None,
-            world_unit: 0,
+            front: Desk::default(),
+            others: Vec::new(),
         }
     }
 }
 
 impl Model {
-    /// Whether a unit has answered on an open link.
+    /// Whether a unit has answered on the link in front.
     pub fn is_connected(&self) -> bool {
-        self.phase.is_open() && self.link.identity().is_some()
+        self.front.is_connected()
     }
 
-    /// The sliders of every screen go back to rest, with nothing left to send.
-    pub fn rest(&mut self) {
-        self.pwm.setpoints.stop();
-        self.velocity.setpoints.stop();
+    /// All links: the one in front first.
+    pub fn desks(&self) -> impl Iterator<Item = &Desk> {
+        std::iter::once(&self.front).chain(&self.others)
+    }
+
+    /// All links: the one in front first.
+    pub fn desks_mut(&mut self) -> impl Iterator<Item = &mut Desk> {
+        std::iter::once(&mut self.front).chain(&mut self.others)
+    }
+
+    pub fn desk(&self, id: DeskId) -> Option<&Desk> {
+        self.desks().find(|desk| desk.id() == id)
+    }
+
+    pub fn desk_mut(&mut self, id: DeskId) -> Option<&mut Desk> {
+        self.desks_mut().find(|desk| desk.id() == id)
+    }
+
+    /// Puts another link in front. Nothing is armed across this: the window disarms first.
+    pub fn bring_to_front(&mut self, id: DeskId) {
+        if let Some(desk) = self.others.iter_mut().find(|desk| desk.id() == id) {
+            std::mem::swap(&mut self.front, desk);
+            self.front.graph_for(self.screen);
+        }
+    }
+
+    /// Puts a new, empty desk in front.
+    pub fn add_desk(&mut self) {
+        let next = self.desks().map(Desk::id).max().map_or(DeskId::default(), DeskId::next);
+        let before = std::mem::replace(&mut self.front, Desk::new(next));
+        self.others.push(before);
+        self.front.graph_for(self.screen);
     }
 
     /// Goes to a screen. Each screen that drives keeps its own choice of channels.
     pub fn turn_to(&mut self, screen: Screen) {
-        let left = std::mem::replace(&mut self.screen, screen);
-        if screen.arm_scope().is_none() {
-            // The graph stays as it is until another screen shows it.
-            self.graph_of = self.graph_of.or(left.arm_scope().map(|_| left));
-            return;
-        }
-        let before =
-            self.graph_of.take().unwrap_or(if left.arm_scope().is_some() { left } else { Screen::Pwm });
-        if before == screen {
-            return;
-        }
-        let channels = &mut self.graph.channels;
-        self.graph_choices.insert(before.title(), channels.iter().map(|channel| channel.shown).collect());
-        let chosen = self.graph_choices.get(screen.title());
-        for (index, channel) in channels.iter_mut().enumerate() {
-            let at_first = || screen.first_channels().contains(&Channel::ALL[index]);
-            channel.shown = chosen.and_then(|chosen| chosen.get(index)).copied().unwrap_or_else(at_first);
-        }
+        self.screen = screen;
+        self.front.graph_for(screen);
     }
 }
 

@@ -109,14 +109,14 @@ pub fn motor_ui(
         let label = Label::new(format!("Motor {}", motor.index() + 1)).selectable(false);
         ui.add_sized(vec2(62.0, ROW_HEIGHT), label);
         let slider_width = ui.available_width() - output.width;
-        let armed = model.link.arming.is_armed_for(output.scope);
+        let armed = model.front.link.arming.is_armed_for(output.scope);
         ui.add_enabled_ui(armed, |ui| {
             ui.set_max_width(slider_width);
             slider_ui(ui, model);
         });
         ui.label(RichText::new(output.word).small().color(Palette::of(ui).weak_text));
         let channel = output.channels[motor.index()];
-        let text = model.link.readings.text(channel, decimals(channel));
+        let text = model.front.link.readings.text(channel, decimals(channel));
         let label = format!("{motor} {}", output.word);
         let (digits, unit_letters) = (output.digits, output.unit_letters);
         Readout { label: &label, unit: output.unit, digits, unit_letters }.ui(ui, text.as_deref());
@@ -158,13 +158,13 @@ pub fn graph_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let left = left.with_max_x(left.right() - 8.0);
     ui.scope_builder(UiBuilder::new().max_rect(left).layout(Layout::top_down(Align::Min)), |ui| {
         ui.horizontal_wrapped(|ui| {
-            list::time_ui(ui, &mut model.graph);
-            rate_ui(ui, model.poll, commands);
+            list::time_ui(ui, &mut model.front.graph);
+            rate_ui(ui, model.front.poll, commands);
         });
-        plot::plot_ui(ui, &model.graph);
+        plot::plot_ui(ui, &model.front.graph);
     });
     ui.scope_builder(UiBuilder::new().max_rect(right).layout(Layout::top_down(Align::Min)), |ui| {
-        list::channels_ui(ui, &mut model.graph);
+        list::channels_ui(ui, &mut model.front.graph);
     });
 }
 

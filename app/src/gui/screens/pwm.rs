@@ -23,11 +23,11 @@ const OUTPUT: Output = Output {
 };
 
 pub fn pwm_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    if model.link.identity().is_none() {
-        return nothing_ui(ui, &not_connected_text(&model.phase));
+    if model.front.link.identity().is_none() {
+        return nothing_ui(ui, &not_connected_text(&model.front.phase));
     }
     title_ui(ui, "PWM Settings", "Open loop: the duty is what the motor gets, whatever it does with it.");
-    arm_ui(ui, ArmScope::Pwm, &model.link, commands);
+    arm_ui(ui, ArmScope::Pwm, &model.front.link, commands);
     ui.add_space(4.0);
     controls_ui(ui, model);
     ui.add_space(6.0);
@@ -40,7 +40,7 @@ fn controls_ui(ui: &mut Ui, model: &mut Model) {
     }
     ui.horizontal(|ui| {
         ui.add_space(70.0);
-        sync_ui(ui, &mut model.pwm.setpoints);
+        sync_ui(ui, &mut model.front.pwm.setpoints);
         ui.separator();
         let label = ui.label("Accel");
         let accel = Numeric {
@@ -51,7 +51,7 @@ fn controls_ui(ui: &mut Ui, model: &mut Model) {
             step: 5.0,
             width: 92.0,
         };
-        let response = accel.ui(ui, &mut model.pwm.accel_percent_per_s);
+        let response = accel.ui(ui, &mut model.front.pwm.accel_percent_per_s);
         response.labelled_by(label.id).on_hover_text("How fast the duty follows the slider; 0 means at once");
     });
 }
@@ -59,8 +59,8 @@ fn controls_ui(ui: &mut Ui, model: &mut Model) {
 fn duty_ui(ui: &mut Ui, model: &mut Model, motor: Motor) {
     let name = if motor == Motor::M1 { "M1 duty" } else { "M2 duty" };
     let slider = Setpoint { name, unit: "%", range: -100.0..=100.0, decimals: 1, step: 0.1 };
-    let mut duty = model.pwm.setpoints.values[motor.index()];
+    let mut duty = model.front.pwm.setpoints.values[motor.index()];
     if slider.ui(ui, &mut duty).changed && ui.is_enabled() {
-        model.pwm.set_duty(motor, duty);
+        model.front.pwm.set_duty(motor, duty);
     }
 }

@@ -18,8 +18,8 @@ const FIRST_COLUMN: usize = 7;
 const TWO_COLUMNS_FROM: f32 = 600.0;
 
 pub fn status_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
-    let Some(identity) = model.link.identity() else {
-        return nothing_ui(ui, &not_connected_text(&model.phase));
+    let Some(identity) = model.front.link.identity() else {
+        return nothing_ui(ui, &not_connected_text(&model.front.phase));
     };
     title_ui(ui, "Device Status", &headline(model));
     // Side by side where there is room, else below each other.
@@ -35,7 +35,7 @@ pub fn status_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
 }
 
 fn headline(model: &Model) -> String {
-    match model.link.lamps.worst() {
+    match model.front.link.lamps.worst() {
         LampState::Error => "At least one error: the controller has stopped a motor or both.".to_owned(),
         LampState::Warning => "At least one warning: a limit is close.".to_owned(),
         LampState::Active => "No warning and no error; a signal is active.".to_owned(),
@@ -49,7 +49,7 @@ fn lamps_ui(ui: &mut Ui, model: &Model, columns: usize) {
         for (index, lamp) in Lamp::ALL.into_iter().enumerate() {
             let column = &mut ui[usize::from(index >= FIRST_COLUMN).min(columns - 1)];
             column.spacing_mut().item_spacing.y = 4.0;
-            lamp::full_ui(column, lamp.abbreviation(), lamps::title(lamp), model.link.lamps.get(lamp));
+            lamp::full_ui(column, lamp.abbreviation(), lamps::title(lamp), model.front.link.lamps.get(lamp));
         }
     });
 }
@@ -57,7 +57,7 @@ fn lamps_ui(ui: &mut Ui, model: &Model, columns: usize) {
 /// What the status word says, in words.
 fn conditions_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     heading_ui(ui, "What the controller reports");
-    let reported = model.link.status.map(|report| report.conditions).unwrap_or_default();
+    let reported = model.front.link.status.map(|report| report.conditions).unwrap_or_default();
     if reported.is_empty() {
         let color = Palette::of(ui).weak_text;
         ui.label(RichText::new("Nothing: neither warning nor error.").color(color));
@@ -70,7 +70,7 @@ fn conditions_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
             ui.label(format!("{} ({})", condition.title(), state.word()));
         });
     }
-    if model.link.lamps.get(Lamp::EStop) == LampState::Error {
+    if model.front.link.lamps.get(Lamp::EStop) == LampState::Error {
         let reset = ui.horizontal(|ui| ui.button("Reset emergency stop")).inner;
         let note = "Works only where the controller lets software reset it, and not while it is pressed";
         if reset.on_hover_text(note).clicked() {
@@ -85,14 +85,14 @@ fn unit_ui(ui: &mut Ui, model: &Model, identity: &Identity) {
         let each: Vec<_> = addresses.iter().map(|address| format!("0x{address:02X}")).collect();
         if each.is_empty() { String::new() } else { format!(", also answers {}", each.join(" ")) }
     };
-    let stream = model.link.stream.map_or("not known".to_owned(), |stream| stream.to_string());
-    let figures = &model.link.statistics;
+    let stream = model.front.link.stream.map_or("not known".to_owned(), |stream| stream.to_string());
+    let figures = &model.front.link.statistics;
     let rows = [
         ("Says of itself", identity.version_text.trim().to_owned()),
         ("Firmware", format!("{}, {}", or_not_told(&identity.firmware), identity.generation)),
         ("Address", format!("0x{:02X}{}", identity.address, addresses(&identity.also_answers))),
         ("Port", format!("{} ({stream})", identity.port)),
-        ("Status word", model.link.status.as_ref().map_or(String::new(), word_text)),
+        ("Status word", model.front.link.status.as_ref().map_or(String::new(), word_text)),
         (
             "Traffic",
             format!("{:.1} kbit/s, {:.0} requests/s", figures.kbit_per_s, figures.transactions_per_s),

@@ -26,17 +26,17 @@ const OUTPUT: Output = Output {
 };
 
 pub fn velocity_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    if model.link.identity().is_none() {
-        return nothing_ui(ui, &not_connected_text(&model.phase));
+    if model.front.link.identity().is_none() {
+        return nothing_ui(ui, &not_connected_text(&model.front.phase));
     }
     title_ui(
         ui,
         "Velocity Settings",
         "Closed loop: the controller holds a speed in counts/s by the encoder.",
     );
-    loops_ui(ui, &mut model.loops, VELOCITY, commands);
+    loops_ui(ui, &mut model.front.loops, VELOCITY, commands);
     ui.add_space(4.0);
-    arm_ui(ui, ArmScope::Velocity, &model.link, commands);
+    arm_ui(ui, ArmScope::Velocity, &model.front.link, commands);
     ui.add_space(4.0);
     controls_ui(ui, model);
     ui.add_space(6.0);
@@ -49,8 +49,8 @@ fn controls_ui(ui: &mut Ui, model: &mut Model) {
     }
     ui.horizontal(|ui| {
         ui.add_space(70.0);
-        sync_ui(ui, &mut model.velocity.setpoints);
-        on_release_ui(ui, &mut model.velocity.setpoints);
+        sync_ui(ui, &mut model.front.velocity.setpoints);
+        on_release_ui(ui, &mut model.front.velocity.setpoints);
         ui.separator();
         ui.label("Accel");
         let accel = Numeric {
@@ -61,17 +61,17 @@ fn controls_ui(ui: &mut Ui, model: &mut Model) {
             step: 1000.0,
             width: 130.0,
         };
-        let response = accel.ui(ui, &mut model.velocity.accel_counts_per_s2);
+        let response = accel.ui(ui, &mut model.front.velocity.accel_counts_per_s2);
         let hint = "How fast the speed follows the slider; 0 leaves it to the controller";
         response.on_hover_text(hint);
     });
 }
 
 fn speed_ui(ui: &mut Ui, model: &mut Model, motor: Motor) {
-    let qpps = Motor::BOTH.map(|motor| model.loops.qpps(motor).unwrap_or(0.0).min(f64::from(i32::MAX)));
+    let qpps = Motor::BOTH.map(|motor| model.front.loops.qpps(motor).unwrap_or(0.0).min(f64::from(i32::MAX)));
     let reach = qpps[motor.index()];
     if reach < 1.0 {
-        ui.label(if model.loops.qpps(motor).is_some() {
+        ui.label(if model.front.loops.qpps(motor).is_some() {
             "QPPS is 0, so this motor has no speed to go to. Set QPPS above and apply it."
         } else {
             "QPPS has not been read, so the range of speeds is not known."
@@ -80,13 +80,13 @@ fn speed_ui(ui: &mut Ui, model: &mut Model, motor: Motor) {
     }
     let name = format!("{motor} speed");
     let slider = Setpoint { name: &name, unit: "", range: -reach..=reach, decimals: 0, step: 1.0 };
-    let mut speed = model.velocity.setpoints.values[motor.index()];
+    let mut speed = model.front.velocity.setpoints.values[motor.index()];
     let moved = slider.ui(ui, &mut speed);
     if !ui.is_enabled() {
         return;
     }
-    model.velocity.setpoints.hold(motor, moved.held);
+    model.front.velocity.setpoints.hold(motor, moved.held);
     if moved.changed {
-        model.velocity.set_speed(motor, speed, qpps);
+        model.front.velocity.set_speed(motor, speed, qpps);
     }
 }

@@ -17,7 +17,7 @@ pub fn bottom_ui(ui: &mut Ui, model: &Model) {
         let gaps = ui.spacing().item_spacing.x * Lamp::ALL.len() as f32;
         let width = ((ui.available_width() - LINK_WIDTH - gaps) / Lamp::ALL.len() as f32).clamp(38.0, 72.0);
         for lamp in Lamp::ALL {
-            let state = model.link.lamps.get(lamp);
+            let state = model.front.link.lamps.get(lamp);
             lamp::abbreviated_ui(
                 ui,
                 vec2(width.floor(), HEIGHT),
@@ -34,7 +34,7 @@ pub fn bottom_ui(ui: &mut Ui, model: &Model) {
 fn link_ui(ui: &mut Ui, model: &Model) {
     let palette = Palette::of(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
-    let figures = model.is_connected().then_some(&model.link.statistics);
+    let figures = model.is_connected().then_some(&model.front.link.statistics);
     let (first, second) = lines(figures);
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("Link: {first}, {second}")));
     let font = egui::FontId::new(12.0, theme::figures().resolve(ui.style()).family);

@@ -20,7 +20,7 @@ const ROW_HEIGHT: f32 = 40.0;
 
 pub fn devices_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     heading_ui(ui, "Attached devices");
-    let locked = model.phase != Phase::Closed;
+    let locked = model.front.phase != Phase::Closed;
     ui.spacing_mut().item_spacing.y = 4.0;
     entries_ui(ui, model, locked);
     if model.devices.ports().is_empty() {
@@ -32,12 +32,12 @@ pub fn devices_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         }
         options_ui(ui, model);
     });
-    connect_ui(ui, &model.phase, commands);
+    connect_ui(ui, &model.front.phase, commands);
     units_ui(ui, model, commands);
 }
 
 fn entries_ui(ui: &mut Ui, model: &mut Model, locked: bool) {
-    let state = |target: &str| state_of(&model.phase, target);
+    let state = |target: &str| state_of(&model.front.phase, target);
     let mut rows = vec![(
         Choice::Simulated,
         "Simulated MCP266".to_owned(),
@@ -50,7 +50,7 @@ fn entries_ui(ui: &mut Ui, model: &mut Model, locked: bool) {
     if let (Choice::Port(name), true) = (&model.devices.choice, model.devices.choice_is_gone()) {
         rows.push((model.devices.choice.clone(), name.clone(), "unplugged".to_owned(), Entry::Gone));
     }
-    if let (Choice::Typed, Some(target)) = (&model.devices.choice, model.phase.target()) {
+    if let (Choice::Typed, Some(target)) = (&model.devices.choice, model.front.phase.target()) {
         rows.push((Choice::Typed, target.to_owned(), "typed below".to_owned(), state(target)));
     }
     for (choice, title, detail, entry) in rows {
@@ -184,11 +184,12 @@ fn options_ui(ui: &mut Ui, model: &mut Model) {
             Addresses::Scan => "All units".to_owned(),
             Addresses::Only(address) => format!("0x{address:02X}"),
         };
-        let combo = ComboBox::from_id_salt("address").width(84.0).selected_text(text(model.addresses));
+        let combo =
+            ComboBox::from_id_salt("address").width(84.0).selected_text(text(model.devices.addresses));
         let response = combo.show_ui(ui, |ui| {
             let each = Address::ALL.into_iter().map(|address| Addresses::Only(address.get()));
             for addresses in std::iter::once(Addresses::Scan).chain(each) {
-                ui.selectable_value(&mut model.addresses, addresses, text(addresses));
+                ui.selectable_value(&mut model.devices.addresses, addresses, text(addresses));
             }
         });
         name_combo(
@@ -236,12 +237,12 @@ fn connect_ui(ui: &mut Ui, phase: &Phase, commands: &mut Commands) {
 
 /// The units of a bus, when there are several.
 fn units_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
-    if model.link.units.len() < 2 {
+    if model.front.link.units.len() < 2 {
         return;
     }
     heading_ui(ui, "Units on this link");
-    for unit in &model.link.units {
-        let selected = model.link.selected == Some(unit.address);
+    for unit in &model.front.link.units {
+        let selected = model.front.link.selected == Some(unit.address);
         if ui.selectable_label(selected, unit_text(unit)).clicked() && !selected {
             commands.push(Command::SelectUnit(unit.address));
         }

@@ -27,9 +27,9 @@ pub fn left_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             devices_ui(ui, model, commands);
             ui.add_space(10.0);
             screens_ui(ui, model.screen, commands);
-            if model.worlds.is_some() {
+            if model.front.worlds.is_some() {
                 ui.add_space(10.0);
-                world_ui(ui, &mut model.world.open);
+                world_ui(ui, &mut model.front.world.open);
             }
         });
     });

@@ -30,7 +30,7 @@ pub fn shell_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     Panel::bottom("message").resizable(false).frame(panel).show(ui, |ui| {
         message::message_ui(ui, model, commands);
     });
-    if model.worlds.is_some() && model.world.open {
+    if model.front.worlds.is_some() && model.front.world.open {
         Panel::right("world").resizable(false).exact_size(WORLD_WIDTH).frame(panel).show(ui, |ui| {
             ScrollArea::vertical().show(ui, |ui| world::world_ui(ui, model, commands));
         });

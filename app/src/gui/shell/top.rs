@@ -128,7 +128,7 @@ fn block_ui(ui: &mut Ui, block: &Block, model: &Model, commands: &mut Commands) 
                 let row = motor.index();
                 fixed_label_ui(ui, block.labels[row], block.label_width);
                 let channel = block.channels[row];
-                let value = model.link.readings.text(channel, decimals(channel));
+                let value = model.front.link.readings.text(channel, decimals(channel));
                 block.readout(row).ui(ui, value.as_deref());
                 if block.zero {
                     zero_ui(ui, motor, model.is_connected(), commands);
@@ -153,7 +153,7 @@ fn zero_ui(ui: &mut Ui, motor: Motor, connected: bool, commands: &mut Commands) 
 }
 
 fn identity_ui(ui: &mut Ui, model: &Model) {
-    let identity = model.link.identity();
+    let identity = model.front.link.identity();
     let title = identity.map(|identity| {
         let simulated = if identity.simulated { " (simulated)" } else { "" };
         format!("{}{simulated}", identity.title())

@@ -16,10 +16,10 @@ mod motor;
 mod pins;
 
 pub fn world_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    let Some(views) = model.worlds.clone() else { return };
-    let Some(view) = views.get(model.world_unit) else { return };
-    model.world.sync(view);
-    let panel = &mut model.world;
+    let Some(views) = model.front.worlds.clone() else { return };
+    let Some(view) = views.get(model.front.world_unit) else { return };
+    model.front.world.sync(view);
+    let panel = &mut model.front.world;
     let mut actions = Vec::new();
     ui.spacing_mut().item_spacing.y = 4.0;
     ui.label(RichText::new("Simulated world").heading());

@@ -21,10 +21,10 @@ mod sheet;
 const NAV_WIDTH: f32 = 184.0;
 
 pub fn general_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    let Some(identity) = model.link.identity() else {
-        return nothing_ui(ui, &not_connected_text(&model.phase));
+    let Some(identity) = model.front.link.identity() else {
+        return nothing_ui(ui, &not_connected_text(&model.front.phase));
     };
-    let general = &mut model.general;
+    let general = &mut model.front.general;
     general.look_at(identity);
     if general.wants_reading() {
         commands.push(Command::Settings(SettingsWish::Read));
@@ -32,7 +32,7 @@ pub fn general_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     head::head_ui(ui, general, commands);
     ui.add_space(4.0);
     if general.sheet().is_some() {
-        return sheet::sheet_ui(ui, general, model.link.stream, commands);
+        return sheet::sheet_ui(ui, general, model.front.link.stream, commands);
     }
     let size = ui.available_size();
     ui.horizontal_top(|ui| {

@@ -1,0 +1,186 @@
+//! One link and all that belongs to it: what is known of its controllers, their settings, what its screens hold, and
+//! what its graph has recorded.
+//!
+//! Several desks are open at once; one is in front. Switching swaps whole desks, so nothing of one controller can
+//! end up in another.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use brushwork_link::device::{Channel, Event, PollRate};
+use brushwork_sim::world::WorldView;
+
+use super::general::General;
+use super::graph_channels;
+use super::link::{Effect, LinkView};
+use super::loop_settings::LoopSettings;
+use super::pwm::Pwm;
+use super::screen::Screen;
+use super::velocity::Velocity;
+use super::world::WorldPanel;
+use crate::gui::graph::LiveGraph;
+
+/// Which desk, for as long as the window is open.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct DeskId(u32);
+
+impl DeskId {
+    pub fn next(self) -> Self {
+        Self(self.0 + 1)
+    }
+}
+
+/// One link and all that belongs to it.
+#[derive(Debug)]
+pub struct Desk {
+    id: DeskId,
+    pub phase: Phase,
+    /// What is known of the open link; empty while there is none.
+    pub link: LinkView,
+    pub poll: PollRate,
+    pub graph: LiveGraph,
+    pub pwm: Pwm,
+    /// The settings of the units met so far, and what is being done with them.
+    pub general: General,
+    pub velocity: Velocity,
+    pub loops: LoopSettings,
+    /// The screen whose channels the graph shows.
+    graph_of: Screen,
+    /// Which channels the graph showed when another screen that drives was left.
+    graph_choices: BTreeMap<&'static str, Vec<bool>>,
+    pub world: WorldPanel,
+    /// The worlds of the simulated units, while they run.
+    pub worlds: Option<Arc<Vec<WorldView>>>,
+    /// Which of them is looked at.
+    pub world_unit: usize,
+}
+
+/// Where a link is between closed and open.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Phase {
+    #[default]
+    Closed,
+    Opening {
+        target: String,
+    },
+    Open {
+        target: String,
+    },
+    /// Asked to close; the motors are being stopped.
+    Closing {
+        target: String,
+    },
+}
+
+impl Phase {
+    pub fn is_open(&self) -> bool {
+        matches!(self, Self::Open { .. })
+    }
+
+    /// What the link goes to.
+    pub fn target(&self) -> Option<&str> {
+        match self {
+            Self::Closed => None,
+            Self::Opening { target } | Self::Open { target } | Self::Closing { target } => Some(target),
+        }
+    }
+}
+
+impl Default for Desk {
+    fn default() -> Self {
+        Self::new(DeskId::default())
+    }
+}
+
+impl Desk {
+    /// A desk without a link.
+    pub fn new(id: DeskId) -> Self {
+        Self {
+            id,
+            phase: Phase::default(),
+            link: LinkView::default(),
+            poll: PollRate::default(),
+            graph: LiveGraph::new(graph_channels(), 0.1),
+            pwm: Pwm::default(),
+            general: General::default(),
+            velocity: Velocity::default(),
+            loops: LoopSettings::default(),
+            graph_of: Screen::Pwm,
+            graph_choices: BTreeMap::new(),
+            world: WorldPanel::default(),
+            worlds: None,
+            world_unit: 0,
+        }
+    }
+
+    pub fn id(&self) -> DeskId {
+        self.id
+    }
+
+    /// Whether a unit has answered on the open link.
+    pub fn is_connected(&self) -> bool {
+        self.phase.is_open() && self.link.identity().is_some()
+    }
+
+    /// The sliders of every screen go back to rest, with nothing left to send.
+    pub fn rest(&mut self) {
+        self.pwm.setpoints.stop();
+        self.velocity.setpoints.stop();
+    }
+
+    /// Takes over an event of this link. What it means beyond this desk is handed back: something to say, or the
+    /// end of the link.
+    pub fn take(&mut self, event: Event) -> Vec<Effect> {
+        let effects = if self.general.awaits(&event) {
+            self.general.take(event)
+        } else if self.loops.awaits(&event) {
+            self.loops.take(event)
+        } else {
+            self.link.take(event)
+        };
+        effects.into_iter().filter_map(|effect| self.settle(effect)).collect()
+    }
+
+    /// Does what an effect means for this desk.
+    fn settle(&mut self, effect: Effect) -> Option<Effect> {
+        match effect {
+            Effect::Say(..) | Effect::Ended => return Some(effect),
+            Effect::AtRest => self.rest(),
+            Effect::Sample(sample) => {
+                let values = &sample.values[..self.graph.channels.len()];
+                self.graph.push(sample.replied_at.as_secs_f64(), values);
+            }
+            Effect::OtherUnit => {
+                self.graph.push_gap();
+                self.loops.forget();
+                self.loops.want_reading();
+            }
+        }
+        None
+    }
+
+    /// The link is gone, by wish or not. A simulated world lives on.
+    pub fn link_ended(&mut self) {
+        self.phase = Phase::Closed;
+        self.link = LinkView::default();
+        self.general.link_ended();
+        self.loops.forget();
+        self.rest();
+        self.graph.push_gap();
+    }
+
+    /// The graph shows the channels of a screen that drives; for other screens it stays as it is.
+    pub(super) fn graph_for(&mut self, screen: Screen) {
+        if screen.arm_scope().is_none() || screen == self.graph_of {
+            return;
+        }
+        let left = std::mem::replace(&mut self.graph_of, screen);
+        let channels = &mut self.graph.channels;
+        self.graph_choices.insert(left.title(), channels.iter().map(|channel| channel.shown).collect());
+        let chosen = self.graph_choices.get(screen.title());
+        for (index, channel) in channels.iter_mut().enumerate() {
+            let at_first = || screen.first_channels().contains(&Channel::ALL[index]);
+            channel.shown = chosen.and_then(|chosen| chosen.get(index)).copied().unwrap_or_else(at_first);
+        }
+    }
+}
