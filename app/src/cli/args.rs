@@ -7,6 +7,7 @@ use brushwork_sim::faults::FAULT_SYNTAX;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::exit;
+use super::firmware::args::FirmwareArgs;
 use super::monitor::args::MonitorArgs;
 use super::settings::args::SettingsArgs;
 use crate::session::sim_spec::parse_address;
@@ -55,6 +56,8 @@ pub enum Command {
     Stop(StopArgs),
     /// Read, write, compare and save a controller's settings.
     Settings(SettingsArgs),
+    /// Show what firmware is installed, and update it from a file of yours.
+    Firmware(FirmwareArgs),
     /// Run simulated controllers on a pseudo-terminal or a TCP port.
     Sim(SimArgs),
     /// Print the packet serial reference.

@@ -1,5 +1,6 @@
 //! A controller as a command sees it: connected and identified, or a sentence and an exit code.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use brushwork_link::SystemClock;
@@ -11,7 +12,7 @@ use super::args::ConnectArgs;
 use super::exit::Exit;
 use super::interrupt::Interrupt;
 use super::output::say;
-use crate::session::{self, Session, SessionOptions};
+use crate::session::{self, Session, SessionOptions, Simulation};
 
 /// How long a controller may take to be found and identified.
 const CONNECT_LIMIT: Duration = Duration::from_secs(15);
@@ -41,6 +42,11 @@ impl Client {
     /// The device thread.
     pub fn device(&self) -> &DeviceHandle {
         &self.session.device
+    }
+
+    /// The simulated machine behind it, if it runs in this program.
+    pub fn simulation(&self) -> Option<Arc<Simulation>> {
+        self.session.simulation.clone()
     }
 
     /// The next event, or `None` when there was none for a moment.

@@ -8,6 +8,7 @@ mod bench;
 mod client;
 mod drive;
 mod exit;
+mod firmware;
 mod interrupt;
 mod list;
 mod monitor;
@@ -63,6 +64,7 @@ fn dispatch(command: &Command, out: &mut Output, interrupt: &Interrupt) -> Exit 
         Command::Drive(args) => drive::run(args, out, interrupt),
         Command::Stop(args) => stop::run(args, out, interrupt),
         Command::Settings(args) => settings::run(args, out, interrupt),
+        Command::Firmware(args) => firmware::run(args, out, interrupt),
         Command::Sim(args) => sim::run(args, out, interrupt),
         Command::Protocol(args) => protocol::run(args, out),
         Command::Monitor(args) => monitor::run(args, out, interrupt),

@@ -9,6 +9,7 @@ use brushwork_link::device::{Addresses, DeviceHandle, DeviceOptions, DeviceThrea
 use brushwork_link::transport::{ConnectTarget, OpenError, Stream, Transport, list_ports, ports};
 use brushwork_link::{Clock, HiddenSettings};
 
+pub mod firmware;
 pub mod sim_spec;
 pub mod simulation;
 

@@ -22,15 +22,20 @@ pub fn agreed(question: &str, yes: bool, controller: &Controller<'_>) -> Result<
         return Err(Exit::Refused);
     }
     let _ = write!(io::stderr(), "{question} [y/N] ");
-    if is_yes(&answer(controller)?) {
+    let breathe = || controller.breathe().inspect_err(|_| say("\nNothing was written."));
+    if is_yes(&line(&breathe)?) {
         return Ok(());
     }
     say("Nothing was written.");
     Err(Exit::Refused)
 }
 
-/// One line from the terminal. It is read on a thread of its own, since reading cannot be called off.
-fn answer(controller: &Controller<'_>) -> Result<String, Exit> {
+/// One line from the terminal. It is read on a thread of its own, since reading cannot be called off; `breathe` is called
+/// meanwhile and can end the waiting.
+///
+/// # Errors
+/// What `breathe` said, or that nobody can be asked.
+pub fn line(breathe: &dyn Fn() -> Result<(), Exit>) -> Result<String, Exit> {
     let (sender, receiver) = bounded(1);
     let reader = std::thread::Builder::new().name("answer".to_owned()).spawn(move || {
         let mut line = String::new();
@@ -46,9 +51,7 @@ fn answer(controller: &Controller<'_>) -> Result<String, Exit> {
         match receiver.try_recv() {
             Ok(line) => return Ok(line),
             Err(TryRecvError::Disconnected) => return Ok(String::new()),
-            Err(TryRecvError::Empty) => {
-                controller.breathe().inspect_err(|_| say("\nNothing was written."))?;
-            }
+            Err(TryRecvError::Empty) => breathe()?,
         }
     }
 }

@@ -1,9 +1,13 @@
 //! A connected controller whose settings are to be read or written: work runs as jobs on its device thread.
 
 use std::io::{self, IsTerminal as _, Write as _};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use brushwork_link::device::{Event, FnJob, Identity, JobContext, JobEnding, JobReport, PollRate, Request};
+use brushwork_link::Stream;
+use brushwork_link::device::{
+    DeviceHandle, Event, FnJob, Identity, JobContext, JobEnding, JobReport, PollRate, Request,
+};
 use brushwork_link::settings::{ReadReport, Subject, WriteOptions, read_all};
 use brushwork_protocol::models;
 use brushwork_protocol::packet_serial::Address;
@@ -14,6 +18,7 @@ use crate::cli::client::Client;
 use crate::cli::exit::Exit;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::output::say;
+use crate::session::Simulation;
 
 /// How long reading everything may take: a hundred commands at the slowest baud rates, with retries.
 pub const READ_LIMIT: Duration = Duration::from_secs(120);
@@ -70,6 +75,21 @@ impl<'i> Controller<'i> {
     /// Its address when it was connected.
     pub fn address(&self) -> Address {
         Address::new(self.identity().address).unwrap_or(Address::DEFAULT)
+    }
+
+    /// The device thread.
+    pub fn device(&self) -> &DeviceHandle {
+        self.client.device()
+    }
+
+    /// Which of its streams the port is wired to, where that is known.
+    pub fn stream(&self) -> Option<Stream> {
+        self.client.stream
+    }
+
+    /// The simulated machine behind it, if it runs in this program.
+    pub fn simulation(&self) -> Option<Arc<Simulation>> {
+        self.client.simulation()
     }
 
     /// Whether the port's place among the controller's streams is known.

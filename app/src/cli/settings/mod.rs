@@ -4,8 +4,8 @@
 //! before the changes were shown and agreed to, and nothing reaches EEPROM unless that was asked for.
 
 pub mod args;
-mod ask;
-mod controller;
+pub(super) mod ask;
+pub(super) mod controller;
 mod diff;
 mod keys;
 mod memory;

@@ -3,6 +3,7 @@
 use super::serial;
 use super::target::Stream;
 use crate::failure::Failure;
+use brushwork_protocol::loader::USB_NAME_PART;
 use serde::Serialize;
 use std::panic;
 use std::path::Path;
@@ -32,7 +33,14 @@ impl PortInfo {
     #[must_use]
     pub fn names_a_controller(&self) -> bool {
         let product = self.product.as_deref().unwrap_or_default().to_ascii_lowercase();
-        product.contains("roboclaw") || MCP_NAMES.iter().any(|name| product.contains(name))
+        !self.is_loader()
+            && (product.contains("roboclaw") || MCP_NAMES.iter().any(|name| product.contains(name)))
+    }
+
+    /// Whether the USB device is a controller of this family that waits for firmware ("MCP266ASTULDR"; public clients, 2015-2020).
+    #[must_use]
+    pub fn is_loader(&self) -> bool {
+        self.product.as_deref().is_some_and(|product| product.to_ascii_uppercase().contains(USB_NAME_PART))
     }
 }
 

@@ -1,0 +1,35 @@
+//! `brushwork firmware image`: an image for simulated controllers.
+
+use brushwork_protocol::loader::SimulatedImage;
+use brushwork_protocol::models;
+use brushwork_protocol::packet_serial::Generation;
+
+use super::args::ImageArgs;
+use crate::cli::exit::Exit;
+use crate::cli::output::{Output, say};
+
+/// Writes the image.
+pub fn run(args: &ImageArgs, out: &mut Output) -> Result<Exit, Exit> {
+    let usage = |sentence: String| {
+        say(sentence);
+        Exit::Usage
+    };
+    let model = models::lookup(&args.model).ok_or_else(|| {
+        usage(format!("\"{}\" is no model. `brushwork sim --list` names them.", args.model))
+    })?;
+    let generation = Generation::from_number(args.generation).unwrap_or(Generation::Gen1);
+    let image = SimulatedImage { model, version: args.version.clone(), generation };
+    let bytes = image.bytes().map_err(|error| usage(format!("Could not make the image: {error}.")))?;
+    std::fs::write(&args.file, &bytes).map_err(|error| {
+        say(format!("Could not write {}: {error}.", args.file.display()));
+        Exit::Failed
+    })?;
+    out.line(format!(
+        "{} holds {} bytes that make a simulated {} report version {} ({generation}). No real controller can use them.",
+        args.file.display(),
+        bytes.len(),
+        model.name,
+        args.version
+    ))?;
+    Ok(Exit::Done)
+}

@@ -1,0 +1,21 @@
+//! `brushwork firmware`: what is installed, and an update from a file the user has.
+
+pub mod args;
+mod image;
+mod info;
+mod update;
+
+use super::exit::Exit;
+use super::interrupt::Interrupt;
+use super::output::Output;
+use args::{FirmwareAction, FirmwareArgs};
+
+/// Does what the arguments ask for.
+pub fn run(args: &FirmwareArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
+    let done = match &args.action {
+        FirmwareAction::Info(args) => info::run(args, out, interrupt),
+        FirmwareAction::Update(args) => update::run(args, out, interrupt),
+        FirmwareAction::Image(args) => image::run(args, out),
+    };
+    done.unwrap_or_else(|exit| exit)
+}
