@@ -1,3 +1,5 @@
+//! Which sentence each cause of standing motors gives.
+
 use super::*;
 use crate::settings::SettingValue;
 use brushwork_protocol::packet_serial::status::{CONDITIONS, Condition, Severity};
