@@ -55,7 +55,7 @@ fn fed(model: &mut Model, conditions: &[Condition]) {
         Event::Status(status),
         Event::Link(figures),
     ] {
-        model.front.link.take(event);
+        model.front.take(event);
     }
     for tick in 0..110 {
         let sample = sample(Duration::from_millis(100) * tick);

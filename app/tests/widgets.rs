@@ -117,7 +117,7 @@ fn stop_is_pressed_when_the_pointer_goes_down_and_only_once_per_press() {
 fn a_lamp_says_its_word() {
     let harness = Harness::new_ui(|ui| {
         lamp::abbreviated_ui(ui, vec2(60.0, 34.0), "M1OC", "Motor 1 over current", LampState::Warning);
-        lamp::full_ui(ui, "ESTP", "Emergency stop", LampState::Error);
+        lamp::full_ui(ui, "ESTP", "Emergency stop", LampState::Error, None);
     });
     harness.get_by_role_and_label(Role::Status, "M1OC: warning");
     harness.get_by_role_and_label(Role::Status, "Emergency stop: error");
@@ -157,8 +157,8 @@ fn gallery_ui(ui: &mut Ui) {
                 lamp::abbreviated_ui(ui, vec2(52.0, 36.0), "MBHI", "Main battery high", state);
             }
         });
-        lamp::full_ui(ui, "ESTP", "Emergency stop", LampState::Error);
-        lamp::full_ui(ui, "TMP1", "Temperature 1", LampState::Ok);
+        lamp::full_ui(ui, "ESTP", "Emergency stop", LampState::Error, None);
+        lamp::full_ui(ui, "TMP1", "Temperature 1", LampState::Ok, None);
         ui.horizontal(|ui| {
             let readout = Readout { label: "M1 speed", unit: "counts/s", digits: 8, unit_letters: 6 };
             readout.ui(ui, Some("-12345"));

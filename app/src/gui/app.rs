@@ -93,12 +93,36 @@ impl App {
         for desk in self.links.ids() {
             self.finish_opening(desk, ctx);
             self.drain(desk);
+            self.watch(desk);
             self.look_at_world(desk);
+        }
+    }
+
+    /// Has read what a diagnosis needs. Nothing is said when it cannot be: it is tried again.
+    fn watch(&mut self, id: DeskId) {
+        let (Some(device), Some(desk)) = (self.links.device(id), self.model.desk_mut(id)) else { return };
+        let is_quiet = desk.link.arming == Arming::Disarmed && desk.is_connected();
+        if let Some(identity) = desk.link.identity().cloned().filter(|_| is_quiet)
+            && let Some(request) = desk.watch.read(&identity)
+            && device.request(request).is_err()
+        {
+            desk.watch.not_begun();
+        }
+        let wanted = desk.watch.wants_signals();
+        let link = self.links.entry(id);
+        if link.reads_signals != wanted
+            && let Some(device) = &link.device
+            && device.request(Request::ReadSignals(wanted)).is_ok()
+        {
+            link.reads_signals = wanted;
         }
     }
 
     /// Takes in a link's events, in front or not.
     fn drain(&mut self, desk: DeskId) {
+        if let (Some(device), Some(desk)) = (self.links.device(desk), self.model.desk_mut(desk)) {
+            desk.history.tick(device.now());
+        }
         for _ in 0..EVENTS_PER_FRAME {
             let Some(device) = self.links.device(desk) else { break };
             match device.events().try_recv() {
@@ -158,6 +182,7 @@ impl App {
         opened.device.set_waker(waker(ctx.clone(), self.last_frame.clone()));
         let poll = desk.poll;
         link.device = Some(opened.device);
+        link.reads_signals = false;
         if poll != PollRate::default() {
             self.request_of(id, Request::Poll(poll));
         }
@@ -275,6 +300,9 @@ impl App {
             self.disarm();
         }
         self.model.turn_to(screen);
+        if screen == Screen::DeviceStatus {
+            self.model.front.watch.want_reading();
+        }
         self.model.front.loops.want_reading();
     }
 

@@ -15,6 +15,8 @@ use crate::session::SessionError;
 pub struct Link {
     pub opening: Option<Receiver<Result<OpenLink, SessionError>>>,
     pub device: Option<DeviceHandle>,
+    /// Whether the device thread was told to read the input pins.
+    pub reads_signals: bool,
     /// Lives on when the link ends, so that a cable that was pulled out can be put back.
     pub world: Option<Arc<dyn SimulatedWorld>>,
 }

@@ -49,6 +49,11 @@ impl Bench {
         Self::with_bus(Bus::single(unit, StreamIndex::Usb), size, theme)
     }
 
+    /// A window of 1280 by 800 with any one controller behind it, on its USB port.
+    pub fn of(unit: Controller) -> Self {
+        Self::with_bus(Bus::single(unit, StreamIndex::Usb), [1280.0, 800.0], Theme::Dark)
+    }
+
     /// Two units at 0x80 and 0x81 that share a TTL line.
     pub fn with_two_units() -> Self {
         let unit = |address| {

@@ -1,7 +1,7 @@
 //! Every cause of standing motors, as a state of the simulated controller: what is done to it and what must be said.
 
 use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::{Generation, Motor};
+use brushwork_protocol::packet_serial::Generation;
 use brushwork_sim::controller::{Controller, ControllerConfig};
 use brushwork_sim::settings::Settings;
 use brushwork_sim::world::{PinSignal, UnitFault, WorldAction};
@@ -189,7 +189,10 @@ fn of_the_inputs() -> Vec<Cause> {
     ]
 }
 
-/// A shaft that is held while motor 1 drives brings the current to its limit.
-pub fn block_motor_1() -> WorldAction {
-    WorldAction::LockShaft { motor: Motor::M1, on: true }
+/// A controller whose motors may draw 1 A, so that a blocked shaft brings them to their limit.
+pub fn limited_to_one_amp() -> Controller {
+    let change = |settings: &mut Settings| {
+        settings.motors.iter_mut().for_each(|motor| motor.motion.max_current_raw = 100);
+    };
+    of_settings("1 A", change, [""; 2]).controller()
 }

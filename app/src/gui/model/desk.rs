@@ -6,17 +6,21 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::time::Duration;
 
-use brushwork_link::device::{Channel, Event, PollRate};
+use brushwork_link::device::{Channel, Event, Lamp, PollRate};
+use brushwork_link::diagnosis::{Evidence, Measured};
 use brushwork_sim::world::WorldView;
 
 use super::general::General;
 use super::graph_channels;
+use super::history::History;
 use super::link::{Effect, LinkView};
 use super::loop_settings::LoopSettings;
 use super::pwm::Pwm;
 use super::screen::Screen;
 use super::velocity::Velocity;
+use super::watch::Watch;
 use super::world::WorldPanel;
 use crate::gui::graph::LiveGraph;
 
@@ -44,6 +48,10 @@ pub struct Desk {
     pub general: General,
     pub velocity: Velocity,
     pub loops: LoopSettings,
+    /// What happened since the connection.
+    pub history: History,
+    /// What a diagnosis needs besides the status word.
+    pub watch: Watch,
     /// The screen whose channels the graph shows.
     graph_of: Screen,
     /// Which channels the graph showed when another screen that drives was left.
@@ -105,6 +113,8 @@ impl Desk {
             general: General::default(),
             velocity: Velocity::default(),
             loops: LoopSettings::default(),
+            history: History::default(),
+            watch: Watch::default(),
             graph_of: Screen::Pwm,
             graph_choices: BTreeMap::new(),
             world: WorldPanel::default(),
@@ -131,6 +141,11 @@ impl Desk {
     /// Takes over an event of this link. What it means beyond this desk is handed back: something to say, or the
     /// end of the link.
     pub fn take(&mut self, event: Event) -> Vec<Effect> {
+        self.history.note(&event);
+        if self.watch.note(&event) {
+            self.update_homed();
+            return Vec::new();
+        }
         let effects = if self.general.awaits(&event) {
             self.general.take(event)
         } else if self.loops.awaits(&event) {
@@ -141,12 +156,43 @@ impl Desk {
         effects.into_iter().filter_map(|effect| self.settle(effect)).collect()
     }
 
+    /// All that is known for a diagnosis; `None` before the status was read.
+    pub fn evidence(&self) -> Option<Evidence<'_>> {
+        let identity = self.link.identity()?;
+        let status = self.link.status.as_ref()?;
+        Some(Evidence {
+            settings: self.watch.settings(),
+            pins: self.watch.pins(),
+            stream: self.link.stream,
+            measured: Measured::of(|channel| self.link.readings.get(channel)),
+            script: self.watch.script(),
+            ..Evidence::of(status, identity)
+        })
+    }
+
+    /// Since when a lamp of the unit that is looked at is as it is, as time since the connection.
+    pub fn lamp_since(&self, lamp: Lamp) -> Option<Duration> {
+        self.history.lamp_since(self.link.selected?, lamp)
+    }
+
+    /// Brings the home lamps of an MCP up to date with its pins.
+    fn update_homed(&mut self) {
+        let Some(identity) = self.link.identity().filter(|identity| identity.is_mcp()) else { return };
+        let (address, homed) = (identity.address, self.watch.homed());
+        self.link.set_homed(homed);
+        if let Some(homed) = homed {
+            self.history.note_homed(address, homed);
+        }
+    }
+
     /// Does what an effect means for this desk.
     fn settle(&mut self, effect: Effect) -> Option<Effect> {
         match effect {
             Effect::Say(..) | Effect::Ended => return Some(effect),
             Effect::AtRest => self.rest(),
             Effect::Sample(sample) => {
+                self.watch.note_sample(&sample);
+                self.update_homed();
                 let values = &sample.values[..self.graph.channels.len()];
                 self.graph.push(sample.replied_at.as_secs_f64(), values);
             }
@@ -154,6 +200,7 @@ impl Desk {
                 self.graph.push_gap();
                 self.loops.forget();
                 self.loops.want_reading();
+                self.watch.forget();
             }
         }
         None
@@ -163,6 +210,7 @@ impl Desk {
     pub fn link_ended(&mut self) {
         self.phase = Phase::Closed;
         self.link = LinkView::default();
+        self.watch = Watch::default();
         self.general.link_ended();
         self.loops.forget();
         self.rest();

@@ -10,15 +10,24 @@ use crate::gui::widgets::LampState;
 pub struct Lamps([LampState; Lamp::ALL.len()]);
 
 impl Lamps {
-    /// The lamps as a unit's status lights them.
-    pub fn of(report: &StatusReport, identity: Option<&Identity>) -> Self {
+    /// The lamps as a unit's status lights them; those for home and limit switches of an MCP as its pins do, where they are
+    /// known.
+    pub fn of(report: &StatusReport, identity: Option<&Identity>, homed: Option<[bool; 2]>) -> Self {
         let mut lamps = Self::default();
         for lamp in Lamp::ALL {
             let told =
                 identity.is_none_or(|identity| lamp.is_reported(identity.generation, identity.is_mcp()));
-            let told = told || matches!(lamp, Lamp::M1Home | Lamp::M2Home);
             let dark = if told { LampState::Ok } else { LampState::NotApplicable };
             lamps.0[lamp as usize] = report.lamp(lamp).map_or(dark, state_of);
+        }
+        if identity.is_some_and(Identity::is_mcp) {
+            for (lamp, index) in [(Lamp::M1Home, 0), (Lamp::M2Home, 1)] {
+                lamps.0[lamp as usize] = match homed {
+                    None => LampState::Unknown,
+                    Some(homed) if homed[index] => LampState::Active,
+                    Some(_) => LampState::Ok,
+                };
+            }
         }
         lamps
     }
@@ -100,7 +109,7 @@ mod tests {
     #[test]
     fn of_several_reasons_the_gravest_shows() {
         let conditions = [Condition::Temperature1Error, Condition::Temperature1Warning, Condition::M1Home];
-        let lamps = Lamps::of(&report(&conditions), None);
+        let lamps = Lamps::of(&report(&conditions), None, None);
         assert_eq!(lamps.get(Lamp::Temperature1), LampState::Error);
         assert_eq!(lamps.get(Lamp::M1Home), LampState::Active);
         assert_eq!(lamps.get(Lamp::Temperature2), LampState::Ok);
@@ -109,10 +118,14 @@ mod tests {
 
     #[test]
     fn a_lamp_the_unit_cannot_light_says_so() {
-        let state =
-            |model, generation, lamp| Lamps::of(&report(&[]), Some(&identity(model, generation))).get(lamp);
+        let state = |model, generation, lamp| {
+            Lamps::of(&report(&[]), Some(&identity(model, generation)), Some([true, false])).get(lamp)
+        };
         assert_eq!(state("MCP266", Generation::Gen1, Lamp::M1DriverFault), LampState::NotApplicable);
         assert_eq!(state("RoboClaw 2x7A", Generation::Gen1, Lamp::M1DriverFault), LampState::Ok);
         assert_eq!(state("MCP266", Generation::Gen1, Lamp::EStop), LampState::Ok);
+        // Where the status word has a bit, the pins are not asked.
+        assert_eq!(state("MCP266", Generation::Gen1, Lamp::M1Home), LampState::Active);
+        assert_eq!(state("RoboClaw 2x7A", Generation::Gen1, Lamp::M1Home), LampState::Ok);
     }
 }

@@ -57,6 +57,8 @@ pub struct LinkView {
     pub stream: Option<Stream>,
     pub readings: Readings,
     pub lamps: Lamps,
+    /// Whether the pins hold a motor at a home or limit switch, where they are known.
+    homed: Option<[bool; 2]>,
     pub status: Option<StatusReport>,
     pub statistics: LinkStatistics,
     pub arming: Arming,
@@ -72,6 +74,17 @@ impl LinkView {
     /// The unit that is looked at.
     pub fn identity(&self) -> Option<&Identity> {
         self.units.iter().find(|unit| Some(unit.address) == self.selected)
+    }
+
+    /// Takes over what the pins say of home and limit switches.
+    pub fn set_homed(&mut self, homed: Option<[bool; 2]>) {
+        if homed == self.homed {
+            return;
+        }
+        self.homed = homed;
+        if let Some(report) = &self.status {
+            self.lamps = Lamps::of(report, self.identity(), homed);
+        }
     }
 
     /// Takes over an event.
@@ -148,7 +161,7 @@ impl LinkView {
         if Some(report.address) != self.selected {
             return Vec::new();
         }
-        self.lamps = Lamps::of(&report, self.identity());
+        self.lamps = Lamps::of(&report, self.identity(), self.homed);
         self.status = Some(report);
         Vec::new()
     }

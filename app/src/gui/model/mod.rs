@@ -8,6 +8,7 @@ use super::graph::{ChannelInfo, Scale};
 pub mod desk;
 pub mod devices;
 pub mod general;
+pub mod history;
 pub mod lamps;
 pub mod link;
 pub mod loop_settings;
@@ -17,6 +18,7 @@ pub mod readings;
 pub mod screen;
 pub mod setpoints;
 pub mod velocity;
+pub mod watch;
 pub mod world;
 
 pub use desk::{Desk, DeskId, Phase};

@@ -3,11 +3,11 @@
 use std::f32::consts::{PI, TAU};
 
 use egui::{
-    Align2, Color32, Pos2, Rect, Response, Role, Sense, Shape, Stroke, StrokeKind, TextStyle, Ui, Vec2,
-    WidgetInfo, pos2, vec2,
+    Align2, Color32, FontId, Pos2, Rect, Response, Role, Sense, Shape, Stroke, StrokeKind, TextStyle, Ui,
+    Vec2, WidgetInfo, pos2, vec2,
 };
 
-use crate::gui::theme::Palette;
+use crate::gui::theme::{self, Palette};
 
 /// What a lamp says.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -115,11 +115,23 @@ pub fn abbreviated_ui(ui: &mut Ui, size: Vec2, abbreviation: &str, name: &str, s
     response.on_hover_text(format!("{name}: {}", state.word()))
 }
 
-/// A lamp in full: shape, name and word on one line.
-pub fn full_ui(ui: &mut Ui, abbreviation: &str, name: &str, state: LampState) -> Response {
+/// Room for "since 10:00:00.0".
+const SINCE_WIDTH: f32 = 100.0;
+
+/// A lamp in full: shape, name, word and since when on one line.
+pub fn full_ui(
+    ui: &mut Ui,
+    abbreviation: &str,
+    name: &str,
+    state: LampState,
+    since: Option<&str>,
+) -> Response {
     let palette = Palette::of(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 30.0), Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::Status, true, format!("{name}: {}", state.word())));
+    if let Some(since) = since {
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_description(since));
+    }
     let alarming = state >= LampState::Active;
     let outline = if alarming { state.color(palette) } else { palette.line };
     ui.painter().rect(rect, 4.0, palette.raised, Stroke::new(1.0, outline), StrokeKind::Inside);
@@ -128,7 +140,11 @@ pub fn full_ui(ui: &mut Ui, abbreviation: &str, name: &str, state: LampState) ->
     let small = TextStyle::Small.resolve(ui.style());
     let y = rect.center().y;
     let painter = ui.painter().with_clip_rect(rect);
-    let word_at = pos2(rect.right() - 12.0, y);
+    if let Some(since) = since {
+        let figures = FontId::new(small.size, theme::figures().resolve(ui.style()).family);
+        painter.text(pos2(rect.right() - 10.0, y), Align2::RIGHT_CENTER, since, figures, palette.weak_text);
+    }
+    let word_at = pos2(rect.right() - 12.0 - since.map_or(0.0, |_| SINCE_WIDTH), y);
     let word = painter.text(word_at, Align2::RIGHT_CENTER, state.word(), body.clone(), state.color(palette));
     let left = pos2(rect.left() + 36.0, y);
     painter.text(left, Align2::LEFT_CENTER, abbreviation, small, palette.weak_text);

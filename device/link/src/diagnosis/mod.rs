@@ -10,7 +10,7 @@ mod reported;
 mod tests;
 
 pub use configured::keys;
-pub use pins::{PinEnd, homed, pin_ends};
+pub use pins::{PinEnd, has_actions, homed, pin_ends};
 
 use crate::device::{Channel, Identity, StatusReport};
 use crate::settings::SettingsImage;

@@ -25,14 +25,28 @@ const FULL_SCALE: i64 = 32_767;
 /// Assumed: percent reaches full scale exactly at the ends; with a curve that ends early it may say so a little before.
 #[must_use]
 pub fn pin_ends(values: &Values) -> Vec<PinEnd> {
-    values
-        .records()
-        .map(|record| match record.int("percent") {
-            percent if percent <= -FULL_SCALE => PinEnd::Lowest,
-            percent if percent >= FULL_SCALE => PinEnd::Highest,
-            _ => PinEnd::Between,
-        })
-        .collect()
+    values.records().map(|record| PinEnd::of_percent(record.int("percent"))).collect()
+}
+
+impl PinEnd {
+    /// From the raw percent of command 147.
+    #[must_use]
+    pub fn of_percent(percent_raw: i64) -> Self {
+        match percent_raw {
+            percent if percent <= -FULL_SCALE => Self::Lowest,
+            percent if percent >= FULL_SCALE => Self::Highest,
+            _ => Self::Between,
+        }
+    }
+}
+
+/// Whether any input pin that is in use has an action, so that it can stop a motor.
+#[must_use]
+pub fn has_actions(settings: &SettingsImage) -> bool {
+    let acts = |pin, side| choice(settings, pin, side).is_some_and(|action| action != "none");
+    (0..)
+        .take_while(|pin| choice(settings, *pin, "type").is_some())
+        .any(|pin| is_used(settings, pin) && (acts(pin, "min_action") || acts(pin, "max_action")))
 }
 
 /// Whether motor 1 and motor 2 are homed or at a limit switch by the actions of their pins: what M1HM and M2HM show where
