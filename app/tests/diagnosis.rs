@@ -4,9 +4,10 @@ mod support;
 
 use std::net::SocketAddr;
 use std::process::{Command, Stdio};
+use std::time::Duration;
 
 use brushwork_sim::controller::Bus;
-use brushwork_sim::machine::StreamIndex;
+use brushwork_sim::machine::{Machine as _, StreamIndex};
 use brushwork_sim::server::{Endpoint, Server, ServerOptions};
 use serde_json::Value;
 use support::causes::{self, Cause};
@@ -14,11 +15,12 @@ use support::causes::{self, Cause};
 /// What `brushwork status` says of a controller in the state of a cause.
 fn status_of(cause: &Cause) -> Value {
     let endpoint = Endpoint::Tcp(SocketAddr::from(([127, 0, 0, 1], 0)));
-    let bus = Bus::single(cause.controller(), StreamIndex::Usb);
-    let served = Server::spawn(bus, ServerOptions::default(), &endpoint).expect("loopback has a free port");
+    let mut bus = Bus::single(cause.controller(), StreamIndex::Usb);
     for action in &cause.actions {
-        served.apply(0, action.clone()).expect("the server runs");
+        bus.apply(0, action);
     }
+    bus.advance(Duration::from_secs(2));
+    let served = Server::spawn(bus, ServerOptions::default(), &endpoint).expect("loopback has a free port");
     let target = format!("tcp:{}", served.address().trim_start_matches("tcp:"));
     let output = Command::new(env!("CARGO_BIN_EXE_brushwork"))
         .args(["status", "--json", "--connect", &target])
