@@ -59,8 +59,7 @@ fn fed(model: &mut Model, conditions: &[Condition]) {
     }
     for tick in 0..110 {
         let sample = sample(Duration::from_millis(100) * tick);
-        let values = &sample.values[..model.front.graph.channels.len()];
-        model.front.graph.push(sample.replied_at.as_secs_f64(), values);
+        model.front.graph.push(sample.replied_at.as_secs_f64(), &sample.values);
         model.front.link.take(Event::Sample(Box::new(sample)));
     }
 }

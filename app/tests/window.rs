@@ -205,9 +205,10 @@ fn the_graph_names_what_it_shows_and_channels_are_switched_by_their_boxes() {
     bench.pass_ms(2000);
     assert!(bench.sees("Live graph of the last 10 s: M1 PWM, M1 Velocity, M1 Current"));
     bench.press("Show M1 Velocity");
+    bench.press("Time in view");
     bench.press("30 s");
     assert!(bench.sees("Live graph of the last 30 s: M1 PWM, M1 Current"));
-    let rows = bench.model().front.graph.history().rows();
+    let rows = bench.model().front.graph.live.track.history.rows();
     assert!((18..=60).contains(&(rows.end - rows.start)), "{rows:?} in about 2 s at 100 ms");
 }
 
@@ -303,8 +304,8 @@ fn the_graph_goes_on_after_a_new_connection_and_shows_the_time_between_as_a_gap(
     bench.connect();
     bench.pass_ms(1000);
     let graph = &bench.model().front.graph;
-    let columns = brushwork::gui::graph::Columns::new(graph.history(), &graph.view(1000));
-    let lines = graph.lines(brushwork_link::device::Channel::MainBattery.index(), &columns);
+    let columns = brushwork::gui::graph::Columns::new(&graph.live.track.history, &graph.live.view(1000));
+    let lines = graph.live.lines(brushwork_link::device::Channel::MainBattery.index(), &columns);
     assert_eq!(lines.len(), 2, "{lines:?}");
 }
 
@@ -331,9 +332,9 @@ fn the_sampling_rate_is_chosen_beside_the_graph() {
     bench.press("PWM Settings");
     bench.press("Sampling");
     bench.press("every 10 ms");
-    let before = bench.model().front.graph.history().rows().end;
+    let before = bench.model().front.graph.live.track.history.rows().end;
     bench.pass_ms(1000);
-    let samples = bench.model().front.graph.history().rows().end - before;
+    let samples = bench.model().front.graph.live.track.history.rows().end - before;
     assert!((90..=110).contains(&samples), "{samples} in a second");
 }
 
@@ -345,13 +346,13 @@ fn fitting_and_clearing_are_done_to_the_channel_that_was_selected() {
     bench.pass_ms(2000);
     let battery = brushwork_link::device::Channel::MainBattery.index();
     bench.press("Show Main Battery");
-    assert_eq!(bench.model().front.graph.selected, battery);
+    assert_eq!(bench.model().front.graph.live.selected, battery);
     bench.press("Fit scale");
-    let scale = bench.model().front.graph.channels[battery].scale;
+    let scale = bench.model().front.graph.live.channels[battery].scale;
     assert!(scale.low > 20.0 && scale.high < 28.0, "{scale:?}");
     bench.press("Clear");
     let graph = &bench.model().front.graph;
-    let columns = brushwork::gui::graph::Columns::new(graph.history(), &graph.view(1000));
-    let drawn: usize = graph.lines(battery, &columns).iter().map(Vec::len).sum();
+    let columns = brushwork::gui::graph::Columns::new(&graph.live.track.history, &graph.live.view(1000));
+    let drawn: usize = graph.live.lines(battery, &columns).iter().map(Vec::len).sum();
     assert!(drawn <= 3, "{drawn} points are left");
 }

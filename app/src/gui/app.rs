@@ -95,6 +95,21 @@ impl App {
             self.drain(desk);
             self.watch(desk);
             self.look_at_world(desk);
+            self.look_after_graph(desk, ctx);
+        }
+    }
+
+    /// Recordings, exports and files being opened.
+    fn look_after_graph(&mut self, id: DeskId, ctx: &Context) {
+        let now = self.links.device(id).map(DeviceHandle::now);
+        let Some(desk) = self.model.desk_mut(id) else { return };
+        let dark = ctx.global_style().visuals.dark_mode;
+        let said = desk.graph.poll_files(now, dark);
+        if desk.graph.files.is_busy() {
+            ctx.request_repaint_after(FRAME_INTERVAL);
+        }
+        for (gravity, text) in said {
+            self.say(id, gravity, text);
         }
     }
 
@@ -189,7 +204,9 @@ impl App {
     }
 
     fn take(&mut self, id: DeskId, event: Event) {
+        let now_s = self.links.device(id).map_or(0.0, |device| device.now().as_secs_f64());
         let Some(desk) = self.model.desk_mut(id) else { return };
+        desk.graph.note(&event, now_s);
         for effect in desk.take(event) {
             match effect {
                 Effect::Say(gravity, text) => self.say(id, gravity, text),

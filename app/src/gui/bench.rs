@@ -19,6 +19,22 @@ const INTERVAL_S: f64 = 0.01;
 /// The time that [`hour`] fills.
 pub const SPAN_S: f64 = 3600.0;
 
+/// What one way of looking at the data costs in a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Pair {
+    /// Median time of a frame with the graph.
+    pub graph_ms: f64,
+    /// Median time of a frame with plain plot lines of the same samples.
+    pub plain_ms: f64,
+}
+
+impl Pair {
+    /// How much of the plain lines' time the graph takes.
+    pub fn ratio(&self) -> f64 {
+        self.graph_ms / self.plain_ms
+    }
+}
+
 /// The figures of one run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GraphCost {
@@ -26,45 +42,74 @@ pub struct GraphCost {
     pub samples_per_channel: u64,
     /// Memory the samples take.
     pub stored_megabytes: f64,
-    /// Median time of a frame with the graph, all of the samples in view.
-    pub graph_ms: f64,
-    /// Median time of a frame with plain plot lines of the same samples.
-    pub plain_ms: f64,
-    /// How much of the plain lines' time the graph takes.
-    pub ratio: f64,
+    /// All of the samples in view, with new ones in each frame.
+    pub follow: Pair,
+    /// Half of them in view, another half in each frame.
+    pub pan: Pair,
+    /// More and less of them in view, in turn.
+    pub zoom: Pair,
 }
 
-/// Draws an hour of sixteen channels at 100 Hz, as the graph does and as plain lines, `frames` times each.
+/// A stretch of time to look at.
+type Window = (f64, f64);
+
+/// Draws an hour of sixteen channels at 100 Hz, as the graph does and as plain lines, `frames` times each: following,
+/// panned and zoomed.
 ///
 /// `now` reads a clock.
 pub fn graph_cost(frames: usize, mut now: impl FnMut() -> Duration) -> GraphCost {
     const CHANNELS: usize = 16;
     let mut graph = hour(CHANNELS, 0.0);
+    let stored_megabytes = graph.bytes() as f64 / 1e6;
     let lines: Vec<Vec<PlotPoint>> = (0..CHANNELS).map(|channel| plain_line(&graph, channel)).collect();
-    // Each frame brings the samples of a tenth of a second, as in the window.
-    let mut row = ROWS;
-    let graph_ms = median_ms(frames, &mut now, |ui| {
-        for _ in 0..10 {
-            graph.push(f64::from(row) * INTERVAL_S, &[f64::from(row % 100); CHANNELS]);
-            row += 1;
-        }
-        plot::plot_ui(ui, &graph);
-    });
-    let plain_ms = median_ms(frames, &mut now, |ui| {
-        Plot::new("plain").show(ui, |plot| {
-            for (index, points) in lines.iter().enumerate() {
-                plot.line(Line::new(format!("channel {index}"), PlotPoints::Borrowed(points)));
+    let mut looked_at = |at: fn(usize) -> Window, follow: bool| {
+        let plain_ms = median_ms(frames, &mut now, |ui, frame| plain_ui(ui, &lines, at(frame)));
+        // Each frame brings the samples of a tenth of a second, as in the window.
+        let graph_ms = median_ms(frames, &mut now, |ui, frame| {
+            let mut next_s = graph.live.newest_s();
+            for _ in 0..10 {
+                next_s += INTERVAL_S;
+                graph.push(next_s, &[next_s.fract() * 100.0; CHANNELS]);
             }
+            let (start_s, end_s) = at(frame);
+            if !follow {
+                graph.live.look_at(start_s, end_s);
+            }
+            plot::plot_ui(ui, &mut graph);
         });
+        Pair { graph_ms, plain_ms }
+    };
+    let follow = looked_at(|_| (0.0, SPAN_S), true);
+    let pan = looked_at(panned, false);
+    let zoom = looked_at(zoomed, false);
+    let samples_per_channel = u64::from(ROWS);
+    GraphCost { channels: CHANNELS, samples_per_channel, stored_megabytes, follow, pan, zoom }
+}
+
+/// Half an hour, moved by some seconds per frame to the end and back.
+fn panned(frame: usize) -> Window {
+    let way_s = SPAN_S / 2.0;
+    let moved_s = (frame as f64 * 17.3) % (2.0 * way_s);
+    let start_s = if moved_s <= way_s { moved_s } else { 2.0 * way_s - moved_s };
+    (start_s, start_s + way_s)
+}
+
+/// An hour down to five minutes and back, a twentieth per frame, about a place off the middle.
+fn zoomed(frame: usize) -> Window {
+    let steps = frame % 98;
+    let closer = if steps < 49 { steps } else { 98 - steps };
+    let span_s = SPAN_S * 0.95f64.powi(closer as i32);
+    let start_s = 1500.0 * (1.0 - span_s / SPAN_S);
+    (start_s, start_s + span_s)
+}
+
+fn plain_ui(ui: &mut egui::Ui, lines: &[Vec<PlotPoint>], (start_s, end_s): Window) {
+    Plot::new("plain").show(ui, |plot| {
+        plot.set_plot_bounds_x(start_s..=end_s);
+        for (index, points) in lines.iter().enumerate() {
+            plot.line(Line::new(format!("channel {index}"), PlotPoints::Borrowed(points)));
+        }
     });
-    GraphCost {
-        channels: CHANNELS,
-        samples_per_channel: u64::from(ROWS),
-        stored_megabytes: graph.bytes() as f64 / 1e6,
-        graph_ms,
-        plain_ms,
-        ratio: graph_ms / plain_ms,
-    }
 }
 
 /// An hour from `start_s` on: noise on slow waves, so that no two columns are alike. All channels are shown.
@@ -73,7 +118,7 @@ pub fn hour(channels: usize, start_s: f64) -> LiveGraph {
     infos.truncate(channels);
     infos.iter_mut().for_each(|info| info.shown = true);
     let mut graph = LiveGraph::new(infos, INTERVAL_S);
-    graph.span_s = SPAN_S;
+    graph.live.set_span_s(SPAN_S);
     let mut noise: u32 = 1;
     let mut values = vec![0.0; channels];
     for row in 0..ROWS {
@@ -89,13 +134,17 @@ pub fn hour(channels: usize, start_s: f64) -> LiveGraph {
 }
 
 fn plain_line(graph: &LiveGraph, channel: usize) -> Vec<PlotPoint> {
-    let history = graph.history();
+    let history = &graph.live.track.history;
     let point = |row| PlotPoint::new(history.time_s(row), history.channel(channel).value(row));
     history.rows().map(point).collect()
 }
 
 /// The median time of a frame: one pass of egui and its tessellation.
-fn median_ms(frames: usize, now: &mut impl FnMut() -> Duration, mut draw: impl FnMut(&mut egui::Ui)) -> f64 {
+fn median_ms(
+    frames: usize,
+    now: &mut impl FnMut() -> Duration,
+    mut draw: impl FnMut(&mut egui::Ui, usize),
+) -> f64 {
     let ctx = Context::default();
     theme::install(&ctx);
     let screen = Rect::from_min_size(Pos2::ZERO, vec2(1280.0, 800.0));
@@ -104,7 +153,7 @@ fn median_ms(frames: usize, now: &mut impl FnMut() -> Duration, mut draw: impl F
     for frame in 0..frames + 2 {
         let input = RawInput { screen_rect: Some(screen), ..RawInput::default() };
         let began = now();
-        let mut output = ctx.run_ui(input, &mut draw);
+        let mut output = ctx.run_ui(input, |ui| draw(ui, frame));
         let shapes = std::mem::take(&mut output.shapes);
         std::hint::black_box(ctx.tessellate(shapes, output.pixels_per_point));
         let took = now().saturating_sub(began);
@@ -128,6 +177,8 @@ mod tests {
         let epoch = Instant::now();
         let cost = graph_cost(1, || epoch.elapsed());
         assert!(cost.stored_megabytes < 100.0, "{cost:?}");
-        assert!(cost.ratio.is_finite() && cost.ratio > 0.0, "{cost:?}");
+        for pair in [cost.follow, cost.pan, cost.zoom] {
+            assert!(pair.ratio().is_finite() && pair.ratio() > 0.0, "{cost:?}");
+        }
     }
 }

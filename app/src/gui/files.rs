@@ -13,7 +13,7 @@ use crossbeam_channel::{Receiver, TryRecvError, bounded};
 pub struct FileKind {
     /// For people: "Profile".
     pub title: String,
-    /// Without the dot: `json`.
+    /// Without the dot: `json`; several with commas between them.
     pub extension: String,
 }
 
@@ -47,12 +47,18 @@ impl FileDialog {
     /// Opens the dialog.
     pub fn ask(wish: FileWish, kind: FileKind) -> Self {
         Self::answered_by(move || {
-            let dialog = rfd::FileDialog::new().add_filter(kind.title, &[kind.extension]);
+            let extensions: Vec<&str> = kind.extension.split(',').collect();
+            let dialog = rfd::FileDialog::new().add_filter(kind.title, &extensions);
             match wish {
                 FileWish::Open => dialog.pick_file(),
                 FileWish::Save { name } => dialog.set_file_name(name).save_file(),
             }
         })
+    }
+
+    /// Asks for a folder.
+    pub fn ask_folder() -> Self {
+        Self::answered_by(|| rfd::FileDialog::new().pick_folder())
     }
 
     fn answered_by(choose: impl FnOnce() -> Option<PathBuf> + Send + 'static) -> Self {

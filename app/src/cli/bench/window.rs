@@ -31,13 +31,24 @@ fn graph_figures(effort: Effort) -> Vec<Figure> {
     let epoch = Instant::now();
     let cost = graph_cost(effort.frames, || epoch.elapsed());
     let figure = |name, value, unit, decimals| Figure::new("window", name, value, unit, decimals);
+    let part = |name: &'static str, ratio: f64| {
+        figure(name, ratio, "", 4)
+            .target(Target::AtMost(REQUIRED_PART))
+            .note(format!("{:.0} times less", 1.0 / ratio))
+    };
     let data = format!("{} samples of each of {} channels", cost.samples_per_channel, cost.channels);
     vec![
-        figure("graph part of a frame", cost.graph_ms, "ms", 2).note("1280x800, tessellation included"),
-        figure("plain egui_plot lines", cost.plain_ms, "ms", 1).note("the same data in the same run"),
-        figure("graph over plain lines", cost.ratio, "", 4)
-            .target(Target::AtMost(REQUIRED_PART))
-            .note(format!("{:.0} times less", 1.0 / cost.ratio)),
+        figure("graph part of a frame", cost.follow.graph_ms, "ms", 2)
+            .note("1280x800, tessellation included"),
+        figure("plain egui_plot lines", cost.follow.plain_ms, "ms", 1).note("the same data in the same run"),
+        part("graph over plain lines", cost.follow.ratio()),
+        figure("graph while panned", cost.pan.graph_ms, "ms", 2)
+            .note("half an hour in view, moved in each frame"),
+        figure("plain lines while panned", cost.pan.plain_ms, "ms", 1).note("the same stretches of time"),
+        part("pan over plain lines", cost.pan.ratio()),
+        figure("graph while zoomed", cost.zoom.graph_ms, "ms", 2).note("an hour to five minutes and back"),
+        figure("plain lines while zoomed", cost.zoom.plain_ms, "ms", 1).note("the same stretches of time"),
+        part("zoom over plain lines", cost.zoom.ratio()),
         figure("memory of the history", cost.stored_megabytes, "MB", 1)
             .target(Target::AtMost(REQUIRED_MEGABYTES))
             .note(data),
@@ -58,8 +69,8 @@ fn window_figure(effort: Effort) -> Result<Figure, String> {
         std::thread::sleep(Duration::from_millis(20));
     }
     let now_s = app.device().map_or(0.0, |device| device.now().as_secs_f64());
-    let mut graph = hour(app.model.front.graph.channels.len(), now_s - SPAN_S);
-    graph.channels.iter_mut().enumerate().for_each(|(index, channel)| channel.shown = index < SHOWN);
+    let mut graph = hour(app.model.front.graph.live.channels.len(), now_s - SPAN_S);
+    graph.live.channels.iter_mut().enumerate().for_each(|(index, channel)| channel.shown = index < SHOWN);
     app.model.front.graph = graph;
     app.model.screen = Screen::Pwm;
     let mut times_ms = Vec::new();

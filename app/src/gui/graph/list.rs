@@ -1,91 +1,65 @@
 //! The list of channels beside the graph: which are shown, their newest values, and the selected one's scale.
 
 use egui::{
-    Align2, Response, Role, ScrollArea, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2,
+    Align2, CollapsingHeader, Response, Role, ScrollArea, Sense, Stroke, StrokeKind, TextStyle, Ui,
+    WidgetInfo, pos2, vec2,
 };
 
-use super::live::{LiveGraph, SPANS_S};
-use super::plot::trace_color;
+use super::action::GraphAction;
+use super::live::LiveGraph;
+use super::picture::draw::color_of;
+use super::sheet::Sheet;
 use crate::gui::theme::{self, Palette};
 use crate::gui::widgets::readout::NO_VALUE;
 
 const ROW_HEIGHT: f32 = 22.0;
 const SWATCH: f32 = 14.0;
+/// Room for the selected channel's scale under the list.
+const FOOTER: f32 = 66.0;
 
 /// The channels, one per row.
 pub fn channels_ui(ui: &mut Ui, graph: &mut LiveGraph) {
-    let footer = 66.0;
-    ScrollArea::vertical().max_height((ui.available_height() - footer).max(ROW_HEIGHT)).show(ui, |ui| {
+    ScrollArea::vertical().max_height((ui.available_height() - FOOTER).max(ROW_HEIGHT)).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        for index in 0..graph.channels.len() {
-            row_ui(ui, graph, index);
+        let sheet = graph.sheet_mut();
+        let (pins, others): (Vec<usize>, Vec<usize>) =
+            (0..sheet.channels.len()).partition(|index| sheet.channels[*index].info.is_pin);
+        others.into_iter().for_each(|index| row_ui(ui, sheet, index));
+        if !pins.is_empty() {
+            CollapsingHeader::new("Input pins").show_unindented(ui, |ui| {
+                pins.into_iter().for_each(|index| row_ui(ui, sheet, index));
+            });
         }
     });
     ui.separator();
     selected_ui(ui, graph);
 }
 
-/// What is shown of time, above the graph; `ui` lays its buttons out side by side.
-pub fn time_ui(ui: &mut Ui, graph: &mut LiveGraph) {
-    ui.spacing_mut().item_spacing.x = 4.0;
-    ui.spacing_mut().button_padding.x = 7.0;
-    for span_s in SPANS_S {
-        let text = span_text(span_s);
-        if ui.selectable_label(graph.span_s == span_s, &text).clicked() {
-            graph.span_s = span_s;
-        }
-    }
-    ui.separator();
-    let held = graph.is_held();
-    let hold = ui.selectable_label(held, "Hold").on_hover_text("Holds the picture; recording goes on");
-    if hold.clicked() {
-        graph.hold(!held);
-    }
-    if ui
-        .button("Fit all")
-        .on_hover_text("Fits the scale of every shown channel to what is in view")
-        .clicked()
-    {
-        graph.fit_shown();
-    }
-    if ui.button("Clear all").on_hover_text("Clears the lines of all channels").clicked() {
-        graph.clear_all();
-    }
-}
-
-fn span_text(span_s: f64) -> String {
-    match span_s {
-        s if s < 60.0 => format!("{s:.0} s"),
-        s if s < 3600.0 => format!("{:.0} min", s / 60.0),
-        s => format!("{:.0} h", s / 3600.0),
-    }
-}
-
-fn row_ui(ui: &mut Ui, graph: &mut LiveGraph, index: usize) {
+fn row_ui(ui: &mut Ui, sheet: &mut Sheet, index: usize) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        if swatch_ui(ui, graph, index).clicked() {
-            let channel = &mut graph.channels[index];
+        if swatch_ui(ui, sheet, index).clicked() {
+            let channel = &mut sheet.channels[index];
             channel.shown = !channel.shown;
             if channel.shown {
-                graph.selected = index;
+                sheet.selected = index;
             }
         }
-        if name_ui(ui, graph, index).clicked() {
-            graph.selected = index;
+        if name_ui(ui, sheet, index).clicked() {
+            sheet.selected = index;
         }
     });
 }
 
 /// A box in the channel's colour: filled when it is shown.
-fn swatch_ui(ui: &mut Ui, graph: &LiveGraph, index: usize) -> Response {
+fn swatch_ui(ui: &mut Ui, sheet: &Sheet, index: usize) -> Response {
     let palette = Palette::of(ui);
-    let channel = &graph.channels[index];
+    let channel = &sheet.channels[index];
     let (rect, response) = ui.allocate_exact_size(vec2(SWATCH + 8.0, ROW_HEIGHT), Sense::click());
     let label = format!("Show {}", channel.info.label);
     response.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, channel.shown, &label));
     let square = egui::Rect::from_center_size(rect.center(), vec2(SWATCH, SWATCH));
-    let color = trace_color(palette, index);
+    let color = color_of(sheet, palette, index);
     let fill = if channel.shown { color } else { palette.panel };
     ui.painter().rect(square, 3.0, fill, Stroke::new(1.0, color), StrokeKind::Inside);
     if channel.shown {
@@ -101,13 +75,13 @@ fn swatch_ui(ui: &mut Ui, graph: &LiveGraph, index: usize) -> Response {
     response
 }
 
-/// Name and newest value; a click selects the channel.
-fn name_ui(ui: &mut Ui, graph: &LiveGraph, index: usize) -> Response {
+/// Number, name and newest value; a click selects the channel.
+fn name_ui(ui: &mut Ui, sheet: &Sheet, index: usize) -> Response {
     let palette = Palette::of(ui);
-    let channel = &graph.channels[index];
-    let selected = graph.selected == index;
+    let channel = &sheet.channels[index];
+    let selected = sheet.selected == index;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::click());
-    let value = channel.latest.map(|value| format!("{value:.0$}", channel.info.decimals));
+    let value = channel.latest.map(|value| format!("{:.1$}", value + 0.0, channel.info.decimals));
     let spoken =
         format!("{}: {} {}", channel.info.label, value.as_deref().unwrap_or("no value"), channel.info.unit);
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, selected, spoken.trim_end()));
@@ -121,33 +95,75 @@ fn name_ui(ui: &mut Ui, graph: &LiveGraph, index: usize) -> Response {
     let figures = egui::FontId::new(12.5, theme::figures().resolve(ui.style()).family);
     let color = if channel.shown { palette.text } else { palette.weak_text };
     let painter = ui.painter().with_clip_rect(rect);
-    painter.text(pos2(rect.left() + 6.0, y), Align2::LEFT_CENTER, channel.info.label, body, color);
+    let number = (index + 1).to_string();
+    painter.text(
+        pos2(rect.left() + 17.0, y + 1.0),
+        Align2::RIGHT_CENTER,
+        number,
+        small.clone(),
+        palette.weak_text,
+    );
+    painter.text(pos2(rect.left() + 22.0, y), Align2::LEFT_CENTER, &channel.info.label, body, color);
     let unit_left = rect.right() - 46.0;
     let value = value.as_deref().unwrap_or(NO_VALUE);
     painter.text(pos2(unit_left - 3.0, y), Align2::RIGHT_CENTER, value, figures, color);
-    painter.text(pos2(unit_left, y + 1.0), Align2::LEFT_CENTER, channel.info.unit, small, palette.weak_text);
+    painter.text(pos2(unit_left, y + 1.0), Align2::LEFT_CENTER, &channel.info.unit, small, palette.weak_text);
     response.on_hover_text("Click to write this channel's scale at the side of the graph")
 }
 
+/// The selected channel's scale, and what can be done with it.
 fn selected_ui(ui: &mut Ui, graph: &mut LiveGraph) {
-    let selected = graph.selected;
-    let channel = &graph.channels[selected];
+    ui.spacing_mut().item_spacing.x = 4.0;
+    ui.spacing_mut().button_padding.x = 7.0;
+    let sheet = graph.sheet_mut();
+    let selected = sheet.selected;
+    let Some(channel) = sheet.channels.get(selected) else { return };
     let decimals = channel.scale.decimals();
-    let (low, high) = (channel.scale.low, channel.scale.high);
+    let (low, high) = (channel.scale.low + 0.0, channel.scale.high + 0.0);
+    let text = format!("{} {low:.decimals$} to {high:.decimals$} {}", channel.info.label, channel.info.unit);
+    let own_color = color_of(sheet, Palette::of(ui), selected);
     ui.horizontal(|ui| {
-        let text =
-            format!("{} {low:.decimals$} to {high:.decimals$} {}", channel.info.label, channel.info.unit);
+        ui.spacing_mut().interact_size.x = 24.0;
+        let mut color = own_color;
+        let response = ui.color_edit_button_srgba(&mut color);
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Colour of the selected channel"));
+        if response.on_hover_text("Colour of this channel's line").changed() {
+            sheet.channels[selected].color = Some(color);
+        }
         ui.add(egui::Label::new(egui::RichText::new(text).small()).truncate());
     });
-    let (mut fit, mut clear) = (false, false);
+    let mut wanted = None;
     ui.horizontal(|ui| {
-        fit = ui.button("Fit scale").on_hover_text("Fits this channel's scale to what is in view").clicked();
-        clear = ui.button("Clear").on_hover_text("Clears this channel's line").clicked();
+        let mut button = |ui: &mut Ui, text: &str, label: &str, hint: &str, action: GraphAction| {
+            let response = ui.button(text);
+            ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(label));
+            if response.on_hover_text(hint).clicked() {
+                wanted = Some(action);
+            }
+        };
+        let fit = "Fits this channel's scale to what is in view";
+        button(ui, "Fit", "Fit scale", fit, GraphAction::FitSelected);
+        button(
+            ui,
+            "−",
+            "More units per division",
+            "More units per division (Shift and down, or Ctrl and wheel)",
+            GraphAction::ScaleWider,
+        );
+        button(
+            ui,
+            "+",
+            "Fewer units per division",
+            "Fewer units per division (Shift and up, or Ctrl and wheel)",
+            GraphAction::ScaleCloser,
+        );
+        let grows = ui.checkbox(&mut sheet.channels[selected].grows, "Grow");
+        grows.on_hover_text("The scale grows by itself when a value does not fit");
+        if ui.button("Clear").on_hover_text("Clears this channel's line").clicked() {
+            sheet.clear(selected);
+        }
     });
-    if fit {
-        graph.fit(selected);
-    }
-    if clear {
-        graph.clear(selected);
+    if let Some(action) = wanted {
+        graph.act(action);
     }
 }

@@ -1,260 +1,300 @@
-//! The live graph's state: what was sampled, what is shown and how.
+//! The graph of one link: what its samples look like, earlier runs beneath them, and a recording that is looked at
+//! instead, while sampling goes on.
 
-use std::cell::RefCell;
+use super::files::GraphFiles;
+use super::history::DEFAULT_ROWS;
+use super::marks::{Mark, MarkKind};
+use super::rate::Rate;
+use super::runs::{Align, Run};
+use super::series::GAP;
+use super::sheet::Sheet;
+use super::track::{ChannelInfo, Track};
+use super::trigger::TriggerSource;
 
-use super::history::{DEFAULT_ROWS, History};
-use super::memo::Memo;
-use super::scale::Scale;
-use super::trace::{Columns, Trace, View};
+/// A channel that was read in each of this many samples and then in as many not has lost data.
+const MISSED_SAMPLES: u64 = 20;
 
-/// Stretches of time the graph can show, in seconds.
-pub const SPANS_S: [f64; 6] = [5.0, 10.0, 30.0, 60.0, 600.0, 3600.0];
-
-/// A pause in the samples of more than this many usual intervals is lost data.
-const LOST_INTERVALS: f64 = 5.0;
-
-/// What a channel is, fixed for the life of a graph.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ChannelInfo {
-    pub label: &'static str,
-    pub unit: &'static str,
-    /// Digits after the point of its readout.
-    pub decimals: usize,
-    pub scale: Scale,
-    /// Whether it is shown at first.
-    pub shown: bool,
-}
-
-/// How one channel is shown.
-#[derive(Clone, Debug)]
-pub struct ChannelView {
-    pub info: ChannelInfo,
-    pub shown: bool,
-    pub scale: Scale,
-    /// The newest value read.
-    pub latest: Option<f64>,
-    /// Nothing before this time is drawn.
-    cleared_at_s: f64,
-}
-
-/// The graph's state.
-#[derive(Clone, Debug)]
+/// The graph of one link.
+#[derive(Debug)]
 pub struct LiveGraph {
-    history: History,
-    memos: RefCell<Vec<Memo>>,
-    pub channels: Vec<ChannelView>,
-    /// The channel whose scale is written at the side.
-    pub selected: usize,
-    pub span_s: f64,
-    /// The right edge while the picture is held; recording goes on.
-    held_at_s: Option<f64>,
-    usual_interval_s: f64,
+    pub live: Sheet,
+    /// A recording that is looked at.
+    pub opened: Option<Opened>,
+    /// Earlier runs, drawn beneath.
+    pub runs: Vec<Run>,
+    pub align: Align,
+    pub rate: Rate,
+    /// The graph takes the whole screen.
+    pub large: bool,
+    /// Folders, names, dialogs, and what is being read and written.
+    pub files: GraphFiles,
+    /// The plot's size when it was drawn last, for pictures of it.
+    pub last_plot_size: egui::Vec2,
+    /// The sequence number that the next sample should have.
+    pub(super) next_sequence: Option<u64>,
+    /// Samples since each channel was read, and how many of those is usual.
+    silent: Vec<Silence>,
+}
+
+/// A recording from a file.
+#[derive(Debug)]
+pub struct Opened {
+    pub name: String,
+    pub sheet: Sheet,
+    /// When it was made, if the file tells.
+    pub began: Option<std::time::SystemTime>,
+    /// What the reader should know of it: rows left out, damage.
+    pub note: Option<String>,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Silence {
+    samples: u64,
+    usual: u64,
 }
 
 impl LiveGraph {
     /// An empty graph for samples that come about every `interval_s`.
     pub fn new(channels: Vec<ChannelInfo>, interval_s: f64) -> Self {
-        let history = History::new(channels.len(), DEFAULT_ROWS);
-        let view = |info: ChannelInfo| ChannelView {
-            shown: info.shown,
-            scale: info.scale,
-            latest: None,
-            cleared_at_s: f64::NEG_INFINITY,
-            info,
-        };
-        let channels: Vec<_> = channels.into_iter().map(view).collect();
-        let selected = channels.iter().position(|channel| channel.shown).unwrap_or(0);
-        let memos = RefCell::new(vec![Memo::default(); channels.len()]);
+        let silent = vec![Silence::default(); channels.len()];
         Self {
-            history,
-            memos,
-            channels,
-            selected,
-            span_s: 10.0,
-            held_at_s: None,
-            usual_interval_s: interval_s,
+            live: Sheet::new(Track::new(channels, DEFAULT_ROWS)),
+            opened: None,
+            runs: Vec::new(),
+            align: Align::default(),
+            rate: Rate::new(interval_s),
+            large: false,
+            files: GraphFiles::default(),
+            last_plot_size: egui::vec2(800.0, 400.0),
+            next_sequence: None,
+            silent,
         }
     }
 
-    /// Adds a sample; NaN is a channel that was not read.
+    /// What is looked at: the recording if one is open, else the live samples.
+    pub fn sheet(&self) -> &Sheet {
+        self.opened.as_ref().map_or(&self.live, |opened| &opened.sheet)
+    }
+
+    pub fn sheet_mut(&mut self) -> &mut Sheet {
+        self.opened.as_mut().map_or(&mut self.live, |opened| &mut opened.sheet)
+    }
+
+    /// Adds a sample that was read all at once; NaN is a channel that was not read.
     pub fn push(&mut self, time_s: f64, values: &[f64]) {
-        if let Some(last) = self.history.last_time_s() {
-            let pause_s = time_s - last;
-            if pause_s > LOST_INTERVALS * self.usual_interval_s {
-                self.history.push_gap(last + self.usual_interval_s);
+        self.push_read(time_s, values, |_| time_s);
+    }
+
+    /// Adds a sample that was complete at `time_s`; `read_s` tells when each channel was read.
+    pub fn push_read(&mut self, time_s: f64, values: &[f64], read_s: impl Fn(usize) -> f64) {
+        let last_s = self.live.track.history.last_time_s();
+        if self.rate.take(time_s)
+            && let Some(last_s) = last_s
+        {
+            self.gap_at(last_s);
+        }
+        self.break_silent_channels(values);
+        self.live.track.push(time_s, values, &read_s);
+        let (span_s, source) = (self.live.span_s(), self.live.trigger.settings().source);
+        for (index, (channel, value)) in self.live.channels.iter_mut().zip(values).enumerate() {
+            if !value.is_finite() {
+                continue;
+            }
+            channel.latest = Some(*value);
+            if channel.grows {
+                channel.scale.include(*value);
+            }
+            if source == TriggerSource::Channel(index) {
+                self.live.trigger.feed(read_s(index), *value, span_s);
             }
         }
-        self.history.push(time_s, values);
-        for (channel, value) in self.channels.iter_mut().zip(values).filter(|(_, value)| value.is_finite()) {
-            channel.latest = Some(*value);
-            channel.scale.include(*value);
-        }
     }
 
-    /// Samples now come about every `interval_s`.
-    pub fn set_interval(&mut self, interval_s: f64) {
-        self.usual_interval_s = interval_s;
+    /// A channel that is read again after it was missing from many samples is not joined to what was.
+    fn break_silent_channels(&mut self, values: &[f64]) {
+        let mut broken = Vec::new();
+        for (silence, value) in self.silent.iter_mut().zip(values) {
+            silence.samples += 1;
+            let back = value.is_finite();
+            let lost = back && silence.usual > 0 && silence.samples > silence.usual * 5 + MISSED_SAMPLES;
+            broken.push(if lost { GAP } else { f64::NAN });
+            if back {
+                silence.usual = if lost { silence.usual } else { silence.samples };
+                silence.samples = 0;
+            }
+        }
+        if let Some(last_s) = self.live.track.history.last_time_s()
+            && broken.iter().any(|value| super::series::is_gap(*value))
+        {
+            self.live.track.push(last_s, &broken, |_| last_s);
+        }
     }
 
     /// Marks lost data at the end, so that what comes next is not joined to what was.
     pub fn push_gap(&mut self) {
-        if let Some(last) = self.history.last_time_s() {
-            self.history.push_gap(last);
+        if let Some(last_s) = self.live.track.history.last_time_s() {
+            self.gap_at(last_s);
         }
-        self.channels.iter_mut().for_each(|channel| channel.latest = None);
+        self.rate.restart();
+        self.next_sequence = None;
+        self.live.channels.iter_mut().for_each(|channel| channel.latest = None);
+        self.silent.fill(Silence::default());
     }
 
-    pub fn history(&self) -> &History {
-        &self.history
+    /// Samples were thrown away before the next one.
+    pub fn lost(&mut self, samples: u64) {
+        self.rate.lose(samples);
+        if let Some(last_s) = self.live.track.history.last_time_s() {
+            self.gap_at(last_s);
+        }
+    }
+
+    fn gap_at(&mut self, time_s: f64) {
+        self.live.track.history.push_gap(time_s);
+        self.record_gap(time_s);
+        self.live.trigger.lost();
+    }
+
+    /// Samples now come about every `interval_s`.
+    pub fn set_interval(&mut self, interval_s: f64) {
+        self.rate.ask(interval_s);
+    }
+
+    /// Leaves a mark at a time of the link's clock.
+    pub fn mark(&mut self, at_s: f64, kind: MarkKind, text: impl Into<String>) {
+        if kind == MarkKind::Drive {
+            let span_s = self.live.span_s();
+            self.live.trigger.command(at_s, span_s);
+        }
+        let mark = Mark { at_s, kind, text: text.into() };
+        self.record_mark(&mark);
+        self.live.track.marks.push(mark);
+    }
+
+    /// Keeps what is in view as a run beneath, to compare what comes with it.
+    pub fn keep_run(&mut self) {
+        let sheet = self.sheet();
+        let (start_s, end_s) = sheet.window();
+        let track = sheet.track.cut(start_s, end_s);
+        if !track.history.is_empty() {
+            let number = self.runs.len() + 1;
+            self.runs.push(Run::new(format!("Kept run {number}"), track));
+        }
     }
 
     /// Memory held for what was sampled, in bytes.
     pub fn bytes(&self) -> usize {
-        self.history.bytes() + self.memos.borrow().iter().map(Memo::bytes).sum::<usize>()
-    }
-
-    pub fn is_held(&self) -> bool {
-        self.held_at_s.is_some()
-    }
-
-    /// Holds the picture, or follows the newest sample again.
-    pub fn hold(&mut self, hold: bool) {
-        self.held_at_s = if hold { self.history.last_time_s() } else { None };
-    }
-
-    /// The time at the right edge.
-    pub fn end_s(&self) -> f64 {
-        self.held_at_s.or(self.history.last_time_s()).unwrap_or(0.0)
-    }
-
-    pub fn view(&self, columns: usize) -> View {
-        let end_s = self.end_s();
-        View { start_s: end_s - self.span_s, end_s, columns }
-    }
-
-    /// Stops drawing what a channel has shown so far.
-    pub fn clear(&mut self, channel: usize) {
-        let now = self.history.last_time_s().unwrap_or(f64::NEG_INFINITY);
-        if let Some(channel) = self.channels.get_mut(channel) {
-            channel.cleared_at_s = now;
-        }
-    }
-
-    pub fn clear_all(&mut self) {
-        (0..self.channels.len()).for_each(|channel| self.clear(channel));
-    }
-
-    /// Sets a channel's scale to what of it is in view; without anything in view, to where it began.
-    pub fn fit(&mut self, channel: usize) {
-        let view = self.view(1);
-        let drawn_from_s = view.start_s.max(self.channels[channel].cleared_at_s.next_up());
-        let rows = self.history.row_at(drawn_from_s)..self.history.row_at(view.end_s.next_up());
-        let seen = self.history.channel(channel).extrema(rows.start..rows.end.max(rows.start));
-        let channel = &mut self.channels[channel];
-        let least_division = 10f64.powi(-(channel.info.decimals as i32));
-        channel.scale = match seen.is_empty() {
-            true => channel.info.scale,
-            false => Scale::fitting(seen.min, seen.max, least_division),
-        };
-    }
-
-    pub fn fit_shown(&mut self) {
-        for index in 0..self.channels.len() {
-            if self.channels[index].shown {
-                self.fit(index);
-            }
-        }
-    }
-
-    /// The lines of a channel, with times from the right edge (negative) and heights from 0 to 1.
-    pub fn lines(&self, channel: usize, columns: &Columns) -> Vec<Vec<[f64; 2]>> {
-        let end_s = self.end_s();
-        let view = &self.channels[channel];
-        let memo = &mut self.memos.borrow_mut()[channel];
-        memo.make_room(columns.count());
-        let mut trace = Trace::remembering(&self.history, channel, columns, memo);
-        for line in &mut trace.lines {
-            line.retain(|point| point[0] > view.cleared_at_s);
-            for point in line.iter_mut() {
-                *point = [point[0] - end_s, view.scale.part(point[1])];
-            }
-        }
-        trace.lines
+        let opened = self.opened.as_ref().map_or(0, |opened| opened.sheet.bytes());
+        let runs = self.runs.iter().map(|run| run.track.history.bytes()).sum::<usize>();
+        self.live.bytes() + opened + runs
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::scale::Scale;
+    use super::super::trace::Columns;
+    use super::super::trigger::{TriggerMode, TriggerSettings};
     use super::*;
 
     fn graph() -> LiveGraph {
-        let info = ChannelInfo {
-            label: "M1 PWM",
-            unit: "%",
+        let info = |key: &str| ChannelInfo {
+            key: key.to_owned(),
+            label: key.to_owned(),
+            unit: "%".to_owned(),
             decimals: 1,
             scale: Scale::around_zero(100.0),
             shown: true,
+            is_pin: false,
         };
-        LiveGraph::new(vec![info], 0.1)
+        LiveGraph::new(vec![info("one"), info("two")], 0.1)
     }
 
     fn filled() -> LiveGraph {
         let mut graph = graph();
         for tick in 0..50 {
-            graph.push(f64::from(tick) * 0.1, &[f64::from(tick)]);
+            graph.push(f64::from(tick) * 0.1, &[f64::from(tick), 1.0]);
         }
         graph
     }
 
-    fn points(graph: &LiveGraph) -> Vec<[f64; 2]> {
-        let columns = Columns::new(graph.history(), &graph.view(1000));
-        graph.lines(0, &columns).concat()
+    fn lines(graph: &LiveGraph, channel: usize) -> Vec<Vec<[f64; 2]>> {
+        let columns = Columns::new(&graph.live.track.history, &graph.live.view(1000));
+        graph.live.lines(channel, &columns)
     }
 
     #[test]
-    fn the_newest_sample_lies_at_the_right_edge() {
-        let points = points(&filled());
-        assert_eq!(points.len(), 50);
-        assert_eq!(points[49], [0.0, Scale::around_zero(100.0).part(49.0)]);
-    }
-
-    #[test]
-    fn a_held_picture_stays_while_recording_goes_on() {
+    fn a_held_picture_stays_while_sampling_goes_on() {
         let mut graph = filled();
-        graph.hold(true);
-        let before = points(&graph);
-        graph.push(5.0, &[99.0]);
-        assert_eq!(points(&graph)[..50], before[..]);
-        graph.hold(false);
-        assert_eq!(points(&graph)[50][0], 0.0);
+        graph.live.hold();
+        let before = lines(&graph, 0);
+        graph.push(5.0, &[99.0, 1.0]);
+        assert_eq!(lines(&graph, 0)[0][..50], before[0][..50]);
+        graph.live.follow();
+        assert_eq!(lines(&graph, 0)[0][50], [5.0, 99.0]);
     }
 
     #[test]
-    fn clearing_hides_the_past_and_shows_what_comes() {
+    fn a_late_sample_and_a_lost_one_break_the_line_and_are_counted() {
         let mut graph = filled();
-        graph.clear(0);
-        assert!(points(&graph).is_empty());
-        graph.push(5.0, &[1.0]);
-        assert_eq!(points(&graph).len(), 1);
+        graph.push(7.0, &[1.0, 1.0]);
+        assert_eq!((lines(&graph, 0).len(), graph.rate.late), (2, 1));
+        graph.lost(3);
+        graph.push(7.1, &[1.0, 1.0]);
+        assert_eq!((lines(&graph, 0).len(), graph.rate.lost), (3, 3));
     }
 
     #[test]
-    fn a_pause_in_the_samples_breaks_the_line() {
+    fn a_channel_that_was_not_read_for_long_is_not_joined_to_what_it_was() {
         let mut graph = filled();
-        graph.push(7.0, &[1.0]);
-        let columns = Columns::new(graph.history(), &graph.view(1000));
-        assert_eq!(graph.lines(0, &columns).len(), 2);
+        for tick in 50..90 {
+            graph.push(f64::from(tick) * 0.1, &[0.0, f64::NAN]);
+        }
+        graph.push(9.0, &[0.0, 1.0]);
+        assert_eq!((lines(&graph, 0).len(), lines(&graph, 1).len()), (1, 2));
     }
 
     #[test]
-    fn fitting_takes_the_scale_from_what_is_in_view() {
+    fn a_scale_set_by_hand_does_not_grow() {
         let mut graph = filled();
-        graph.fit(0);
-        let scale = graph.channels[0].scale;
-        assert!(scale.low <= 0.0 && scale.high >= 49.0 && scale.high <= 80.0, "{scale:?}");
-        graph.clear(0);
-        graph.push(5.0, &[f64::NAN]);
-        graph.fit(0);
-        assert_eq!(graph.channels[0].scale, Scale::around_zero(100.0));
+        graph.live.set_scale(0, Scale::around_zero(10.0));
+        graph.push(5.0, &[400.0, 400.0]);
+        assert_eq!(graph.live.channels[0].scale, Scale::around_zero(10.0));
+        assert_eq!(graph.live.channels[1].scale, Scale::around_zero(500.0));
+    }
+
+    #[test]
+    fn a_picture_with_a_trigger_stands_at_it() {
+        let mut graph = graph();
+        let settings = *graph.live.trigger.settings();
+        graph.live.trigger.set(TriggerSettings { level: 10.5, pre: 0.1, ..settings });
+        graph.live.trigger.set_mode(TriggerMode::Normal);
+        for tick in 0..50 {
+            graph.push(f64::from(tick) * 0.1, &[f64::from(tick), 1.0]);
+        }
+        let (start_s, end_s) = graph.live.window();
+        assert!((start_s - 0.05).abs() < 1e-9 && (end_s - 10.05).abs() < 1e-9, "{start_s} {end_s}");
+        assert!((graph.live.origin_s() - 1.05).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_run_is_laid_on_the_present_picture_by_start_command_or_trigger() {
+        let mut graph = filled();
+        graph.mark(2.0, MarkKind::Drive, "duty");
+        graph.keep_run();
+        let settings = *graph.live.trigger.settings();
+        graph.live.trigger.set(TriggerSettings { level: 30.5, ..settings });
+        for tick in 0..60 {
+            graph.push(20.0 + f64::from(tick) * 0.1, &[f64::from(tick), 1.0]);
+        }
+        graph.mark(22.5, MarkKind::Drive, "duty");
+        let offset = |align| graph.runs[0].offset_s(&graph.live, align);
+        assert!((offset(Align::Command) - 20.5).abs() < 1e-9);
+        let (start_s, _) = graph.live.window();
+        assert!((offset(Align::Start) - start_s).abs() < 1e-9);
+        assert!(
+            (offset(Align::Trigger) - (start_s - 3.05)).abs() < 1e-9,
+            "no trigger in view: the left edge"
+        );
     }
 }

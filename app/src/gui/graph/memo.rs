@@ -69,7 +69,7 @@ mod tests {
     #[test]
     fn a_column_that_gained_a_row_or_lost_its_oldest_is_worked_out_anew() {
         let mut series = Series::new(LONGEST_BLOCK);
-        (0..100).for_each(|row| series.push(row, row as f64));
+        (0..100).for_each(|row| series.push(row, row as f64, row as f64, 0.0));
         let mut memo = Memo::default();
         memo.make_room(8);
         let mut look = |rows: Range<u64>| {
@@ -86,7 +86,7 @@ mod tests {
     #[test]
     fn without_room_it_remembers_nothing_and_is_right_all_the_same() {
         let mut series = Series::new(LONGEST_BLOCK);
-        (0..40).for_each(|row| series.push(row, -(row as f64)));
+        (0..40).for_each(|row| series.push(row, -(row as f64), row as f64, 0.0));
         let found = Memo::default().look(&series, 5, 0..40).extrema;
         assert_eq!((found.min, found.max), (-39.0, 0.0));
     }

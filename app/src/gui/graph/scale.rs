@@ -56,6 +56,42 @@ impl Scale {
         }
     }
 
+    /// Moved so that what was at part `from` of the height is at `to`.
+    pub fn shifted(&self, from: f64, to: f64) -> Self {
+        let by = (to - from) * (self.high - self.low);
+        Self { low: self.low - by, high: self.high - by }
+    }
+
+    /// `factor` times as much, with what is at part `about` of the height left where it is.
+    pub fn zoomed(&self, factor: f64, about: f64) -> Self {
+        let fixed = self.value(about);
+        Self { low: fixed + (self.low - fixed) * factor, high: fixed + (self.high - fixed) * factor }
+    }
+
+    /// The next rounder number of units per division, up or down, about zero if that is in view, else the middle.
+    pub fn stepped(&self, closer: bool) -> Self {
+        let now = self.division();
+        let steps = (-9..=12).flat_map(|power| [1.0, 2.0, 5.0].map(|step| step * 10f64.powi(power)));
+        let next = match closer {
+            true => steps.rev().find(|step| *step < now * 0.999),
+            false => steps.clone().find(|step| *step > now * 1.001),
+        };
+        let about = if (self.low..=self.high).contains(&0.0) { self.part(0.0) } else { 0.5 };
+        next.map_or(*self, |next| self.zoomed(next / now, about))
+    }
+
+    /// Units per division.
+    pub fn division(&self) -> f64 {
+        (self.high - self.low) / DIVISIONS as f64
+    }
+
+    /// Whether values can be drawn with it.
+    pub fn is_sound(&self) -> bool {
+        let reach = self.high - self.low;
+        let size = self.high.abs().max(self.low.abs());
+        reach.is_finite() && reach > size * 1e-12 && reach > 1e-12 && size < 1e15
+    }
+
     /// Where `value` lies: 0 at the bottom, 1 at the top.
     pub fn part(&self, value: f64) -> f64 {
         (value - self.low) / (self.high - self.low)
@@ -114,6 +150,16 @@ mod tests {
         assert_eq!(Scale::around_zero(100.0).decimals(), 0);
         assert_eq!(Scale::from_zero(1.0).decimals(), 3);
         assert_eq!(Scale::from_zero(20.0).decimals(), 1);
+    }
+
+    #[test]
+    fn a_scale_is_moved_and_stretched_about_a_point() {
+        let scale = Scale::around_zero(100.0);
+        assert_eq!(scale.shifted(0.5, 0.75), Scale { low: -150.0, high: 50.0 });
+        assert_eq!(scale.zoomed(0.5, 0.5), Scale::around_zero(50.0));
+        assert_eq!(Scale::from_zero(8.0).stepped(false), Scale::from_zero(16.0));
+        assert_eq!(Scale::from_zero(8.0).stepped(true), Scale::from_zero(4.0));
+        assert!(!Scale { low: 5.0, high: 5.0 }.is_sound() && !Scale::around_zero(f64::NAN).is_sound());
     }
 
     proptest! {

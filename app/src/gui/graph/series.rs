@@ -1,10 +1,15 @@
 //! One channel's values: a ring with a pyramid of minima and maxima above it.
 //!
-//! The ring keeps every value that was read. Level `n` of the pyramid holds one [`Extrema`] for each block of
+//! The ring keeps every value that was read, and how long before the time of its row that was: the signals of one sweep
+//! are read one after the other. Level `n` of the pyramid holds one [`Extrema`] for each block of
 //! 16ⁿ rows, so the extrema of any stretch of rows cost a few dozen steps, however long the stretch is.
-//! Times are kept once for all channels, in [`super::history`]. What is drawn of this is decided in [`super::trace`].
+//! One level also holds [`Moments`], for statistics of long stretches.
+//! The times of rows are kept once for all channels, in [`super::history`]. What is drawn of this is decided in
+//! [`super::trace`].
 
 use std::ops::Range;
+
+use super::moments::Moments;
 
 /// A value that was not read in its row. The line passes over it.
 pub const NOT_READ: f64 = f64::NAN;
@@ -15,6 +20,15 @@ pub const GAP: f64 = f64::from_bits(0x7ff8_0000_0067_6170);
 /// Rows per block of the first level; each level has blocks this many times as long as the one below.
 const FACTOR: u64 = 16;
 const LEVELS: u32 = 3;
+
+/// Rows in a block of [`Moments`].
+const MOMENTS_BLOCK: u64 = FACTOR * FACTOR;
+
+/// What one step of [`Series::behind_s`] stands for: far below what a serial link can tell apart.
+const BEHIND_STEP_S: f64 = 20e-6;
+
+/// No value is further behind its row than this.
+pub const MOST_BEHIND_S: f64 = u16::MAX as f64 * BEHIND_STEP_S;
 
 /// Rows in a block of the highest level. The capacity of a [`Series`] is a multiple of this.
 pub const LONGEST_BLOCK: u64 = FACTOR.pow(LEVELS);
@@ -96,6 +110,14 @@ impl<T: Copy> Ring<T> {
         }
     }
 
+    /// Items of all rows before `row` that are still kept, in an empty ring.
+    fn fill(&mut self, row: u64, item: T) {
+        debug_assert!(self.items.is_empty());
+        let count = row.min(self.capacity) as usize;
+        self.items.reserve_exact(count);
+        self.items.resize(count, item);
+    }
+
     pub fn bytes(&self) -> usize {
         self.items.capacity() * size_of::<T>()
     }
@@ -105,7 +127,9 @@ impl<T: Copy> Ring<T> {
 #[derive(Clone, Debug)]
 pub struct Series {
     values: Ring<f64>,
+    behind: Ring<u16>,
     levels: Vec<Ring<Extrema>>,
+    moments: Ring<Moments>,
 }
 
 impl Series {
@@ -113,13 +137,46 @@ impl Series {
     pub fn new(capacity: u64) -> Self {
         debug_assert_eq!(capacity % LONGEST_BLOCK, 0);
         let levels = (1..=LEVELS).map(|level| Ring::new(capacity / FACTOR.pow(level))).collect();
-        Self { values: Ring::new(capacity), levels }
+        let moments = Ring::new(capacity / MOMENTS_BLOCK);
+        Self { values: Ring::new(capacity), behind: Ring::new(capacity), levels, moments }
     }
 
-    /// Writes the next row. An infinite value counts as not read.
-    pub fn push(&mut self, row: u64, value: f64) {
+    /// No number was ever read: nothing is held.
+    fn is_blank(&self) -> bool {
+        self.values.items.is_empty()
+    }
+
+    /// Takes the rows before `row` as not read. A channel that is never read costs no memory until then.
+    fn begin_at(&mut self, row: u64) {
+        self.values.fill(row, NOT_READ);
+        self.behind.fill(row, 0);
+        let mut block_rows = 1;
+        for level in &mut self.levels {
+            block_rows *= FACTOR;
+            level.fill(row.div_ceil(block_rows), Extrema::NONE);
+        }
+        self.moments.fill(row.div_ceil(MOMENTS_BLOCK), Moments::default());
+    }
+
+    /// Writes the next row, whose time is `row_s`; the value was read `behind_s` before that. An infinite value counts
+    /// as not read.
+    pub fn push(&mut self, row: u64, value: f64, row_s: f64, behind_s: f64) {
         let value = if value.is_infinite() { NOT_READ } else { value };
+        if self.is_blank() {
+            if value.is_nan() {
+                return;
+            }
+            self.begin_at(row);
+        }
         self.values.set(row, value);
+        self.behind.set(row, (behind_s / BEHIND_STEP_S).round().clamp(0.0, f64::from(u16::MAX)) as u16);
+        let starts_here = row.is_multiple_of(MOMENTS_BLOCK);
+        let block = row / MOMENTS_BLOCK;
+        let mut moments = if starts_here { Moments::default() } else { self.moments.get(block) };
+        if !value.is_nan() {
+            moments.add(row_s - self.behind_s(row), value);
+        }
+        self.moments.set(block, moments);
         let mut block_rows = 1;
         for level in &mut self.levels {
             block_rows *= FACTOR;
@@ -133,7 +190,32 @@ impl Series {
 
     /// The value of a row still kept: a number, [`NOT_READ`] or [`GAP`].
     pub fn value(&self, row: u64) -> f64 {
+        if self.is_blank() {
+            return NOT_READ;
+        }
         self.values.get(row)
+    }
+
+    /// How long before its row's time a value was read.
+    pub fn behind_s(&self, row: u64) -> f64 {
+        if self.is_blank() {
+            return 0.0;
+        }
+        f64::from(self.behind.get(row)) * BEHIND_STEP_S
+    }
+
+    /// Merges the moments of whole blocks inside `rows`, and gives back what `rows` hold before and after those.
+    pub fn merge_moments(&self, rows: Range<u64>, found: &mut Moments) -> (Range<u64>, Range<u64>) {
+        if self.is_blank() {
+            return (rows.end..rows.end, rows.end..rows.end);
+        }
+        let start = rows.start.div_ceil(MOMENTS_BLOCK);
+        let end = rows.end / MOMENTS_BLOCK;
+        if start >= end {
+            return (rows.clone(), rows.end..rows.end);
+        }
+        (start..end).for_each(|block| found.merge(&self.moments.get(block)));
+        (rows.start..start * MOMENTS_BLOCK, end * MOMENTS_BLOCK..rows.end)
     }
 
     /// Extrema of `rows`, all of them still kept.
@@ -142,6 +224,9 @@ impl Series {
     /// oldest (partly overwritten) can leak rows that are outside.
     pub fn extrema(&self, rows: Range<u64>) -> Extrema {
         let mut found = Extrema::NONE;
+        if self.is_blank() {
+            return found;
+        }
         let whole = whole_blocks(&rows);
         let (head, tail) = around(&rows, &whole);
         for part in [head, tail] {
@@ -169,6 +254,9 @@ impl Series {
 
     /// The newest number at or before `row`, at most `reach` rows back; none if data was lost in between.
     pub fn last_number(&self, rows: Range<u64>) -> Option<(u64, f64)> {
+        if self.is_blank() {
+            return None;
+        }
         // Most often the last row has one.
         let last = rows.end.checked_sub(1).filter(|row| *row >= rows.start)?;
         let value = self.value(last);
@@ -181,12 +269,16 @@ impl Series {
 
     /// The oldest number in `rows`; none if data was lost before it.
     pub fn first_number(&self, rows: Range<u64>) -> Option<(u64, f64)> {
+        if self.is_blank() {
+            return None;
+        }
         let mut ahead = rows.map(|row| (row, self.value(row)));
         ahead.find(|(_, value)| !value.is_nan() || is_gap(*value)).filter(|(_, value)| !value.is_nan())
     }
 
     pub fn bytes(&self) -> usize {
-        self.values.bytes() + self.levels.iter().map(Ring::bytes).sum::<usize>()
+        let levels = self.levels.iter().map(Ring::bytes).sum::<usize>();
+        self.values.bytes() + self.behind.bytes() + levels + self.moments.bytes()
     }
 }
 
@@ -233,7 +325,7 @@ mod tests {
             let mut series = Series::new(capacity);
             let all: Vec<f64> = (0..skip).map(|row| -(row as f64)).chain(values).collect();
             for (row, value) in all.iter().enumerate() {
-                series.push(row as u64, *value);
+                series.push(row as u64, *value, row as f64, 0.0);
             }
             let end = all.len() as u64;
             let kept = end.saturating_sub(capacity)..end;
@@ -250,17 +342,36 @@ mod tests {
     fn a_single_spike_in_a_long_stretch_is_found() {
         let mut series = Series::new(16 * LONGEST_BLOCK);
         for row in 0..50_000 {
-            series.push(row, if row == 31_234 { 9.0 } else { 0.5 });
+            series.push(row, if row == 31_234 { 9.0 } else { 0.5 }, row as f64, 0.0);
         }
         assert_eq!(series.extrema(0..50_000), Extrema { min: 0.5, max: 9.0, gap: false });
         assert_eq!(series.extrema(31_235..50_000).max, 0.5);
     }
 
     #[test]
+    fn a_channel_that_is_read_late_holds_nothing_before() {
+        for first in [0, 1, 255, 4096, 5000, 70_000] {
+            let mut series = Series::new(2 * LONGEST_BLOCK);
+            (0..first)
+                .for_each(|row| series.push(row, if row % 7 == 0 { GAP } else { NOT_READ }, row as f64, 0.0));
+            assert_eq!((series.bytes(), series.extrema(0..first)), (0, Extrema::NONE));
+            (first..first + 500).for_each(|row| series.push(row, row as f64, row as f64, 0.001));
+            let kept = (first + 500u64).saturating_sub(2 * LONGEST_BLOCK);
+            assert_eq!(series.extrema(kept..first + 500).min, first as f64);
+            assert_eq!(series.last_number(kept..first + 500), Some((first + 499, (first + 499) as f64)));
+            assert!((series.behind_s(first + 3) - 0.001).abs() < 2e-5);
+            let mut moments = Moments::default();
+            let (head, tail) = series.merge_moments(kept..first + 500, &mut moments);
+            let rest = head.chain(tail).filter(|row| !series.value(*row).is_nan()).count() as u64;
+            assert_eq!(moments.count() + rest, 500);
+        }
+    }
+
+    #[test]
     fn a_gap_is_told_apart_from_a_value_that_was_not_read() {
         let mut series = Series::new(LONGEST_BLOCK);
         for (row, value) in [1.0, NOT_READ, 3.0, GAP, NOT_READ].into_iter().enumerate() {
-            series.push(row as u64, value);
+            series.push(row as u64, value, row as f64, 0.0);
         }
         assert_eq!(series.extrema(0..3), Extrema { min: 1.0, max: 3.0, gap: false });
         assert!(series.extrema(2..4).gap);
@@ -273,7 +384,7 @@ mod tests {
     #[test]
     fn an_infinite_value_counts_as_not_read() {
         let mut series = Series::new(LONGEST_BLOCK);
-        series.push(0, f64::INFINITY);
+        series.push(0, f64::INFINITY, 0.0, 0.0);
         assert_eq!(series.extrema(0..1), Extrema::NONE);
     }
 }

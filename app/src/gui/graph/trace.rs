@@ -90,18 +90,18 @@ impl Trace {
         let series = history.channel(channel);
         let mut trace = Self::default();
         if let Some((row, value)) = series.last_number(columns.before()) {
-            trace.point(history.time_s(row), value);
+            trace.point(history.read_s(channel, row), value);
         }
         for (column, bounds) in columns.bounds.windows(2).enumerate() {
             let rows = bounds[0]..bounds[1];
             if rows.end - rows.start <= 2 {
-                rows.for_each(|row| trace.sample(history.time_s(row), series.value(row)));
+                rows.for_each(|row| trace.sample(history.read_s(channel, row), series.value(row)));
             } else {
                 trace.column(columns.middle_s(column), memo.look(series, columns.number(column), rows));
             }
         }
         if let Some((row, value)) = series.first_number(columns.after()) {
-            trace.point(history.time_s(row), value);
+            trace.point(history.read_s(channel, row), value);
         }
         trace.lines.retain(|line| !line.is_empty());
         trace

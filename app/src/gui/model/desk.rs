@@ -193,8 +193,7 @@ impl Desk {
             Effect::Sample(sample) => {
                 self.watch.note_sample(&sample);
                 self.update_homed();
-                let values = &sample.values[..self.graph.channels.len()];
-                self.graph.push(sample.replied_at.as_secs_f64(), values);
+                self.graph.take(&sample);
             }
             Effect::OtherUnit => {
                 self.graph.push_gap();
@@ -214,7 +213,7 @@ impl Desk {
         self.general.link_ended();
         self.loops.forget();
         self.rest();
-        self.graph.push_gap();
+        self.graph.link_ended();
     }
 
     /// The graph shows the channels of a screen that drives; for other screens it stays as it is.
@@ -223,7 +222,7 @@ impl Desk {
             return;
         }
         let left = std::mem::replace(&mut self.graph_of, screen);
-        let channels = &mut self.graph.channels;
+        let channels = &mut self.graph.live.channels;
         self.graph_choices.insert(left.title(), channels.iter().map(|channel| channel.shown).collect());
         let chosen = self.graph_choices.get(screen.title());
         for (index, channel) in channels.iter_mut().enumerate() {

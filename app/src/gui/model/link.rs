@@ -118,7 +118,8 @@ impl LinkView {
             Event::Lost(failure) => self.lost(&failure),
             Event::LoaderEntered => Vec::new(),
             Event::Closed => vec![Effect::Say(Gravity::Note, "Disconnected.".to_owned()), Effect::Ended],
-            Event::Transacted { .. }
+            Event::Driven { .. }
+            | Event::Transacted { .. }
             | Event::JobStarted { .. }
             | Event::JobProgress { .. }
             | Event::JobEnded(_)

@@ -107,16 +107,18 @@ impl Model {
     }
 }
 
-/// Every channel of a controller but its input pins, with the scale it begins with; duty and current of both motors are shown at first.
+/// Every channel of a controller with the scale it begins with; those of the PWM screen are shown at first.
 pub fn graph_channels() -> Vec<ChannelInfo> {
     let info = |channel: Channel| ChannelInfo {
-        label: channel.label(),
-        unit: channel.unit(),
+        key: channel.key(),
+        label: channel.label().to_owned(),
+        unit: channel.unit().to_owned(),
         decimals: decimals(channel),
         scale: first_scale(channel),
         shown: Screen::Pwm.first_channels().contains(&channel),
+        is_pin: channel.is_signal(),
     };
-    Channel::ALL.into_iter().filter(|channel| !channel.is_signal()).map(info).collect()
+    Channel::ALL.into_iter().map(info).collect()
 }
 
 /// Digits after the point that a channel's readings have.

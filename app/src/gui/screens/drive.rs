@@ -1,14 +1,12 @@
 //! What the screens that drive motors share: the arm switch, a motor's row, sync and on release, and the live graph.
 
-use std::time::Duration;
-
-use brushwork_link::device::{ArmScope, Channel, PollRate};
+use brushwork_link::device::{ArmScope, Channel};
 use brushwork_link::transport::Stream;
 use brushwork_protocol::packet_serial::Motor;
-use egui::{Align, ComboBox, Frame, Label, Layout, Margin, RichText, Stroke, Ui, UiBuilder, vec2};
+use egui::{Align, ComboBox, Frame, Label, Layout, Margin, RichText, Stroke, Ui, vec2};
 
 use crate::gui::command::{Command, Commands};
-use crate::gui::graph::{list, plot};
+use crate::gui::graph::panel;
 use crate::gui::model::link::{Arming, LinkView};
 use crate::gui::model::setpoints::Setpoints;
 use crate::gui::model::{Model, decimals};
@@ -16,9 +14,6 @@ use crate::gui::theme::Palette;
 use crate::gui::widgets::LampState;
 use crate::gui::widgets::arm_switch::arm_switch_ui;
 use crate::gui::widgets::readout::Readout;
-
-/// Width of the list of channels.
-const LIST_WIDTH: f32 = 258.0;
 
 /// Height of a motor's row.
 const ROW_HEIGHT: f32 = 34.0;
@@ -152,42 +147,5 @@ pub fn on_release_ui(ui: &mut Ui, setpoints: &mut Setpoints) {
 
 /// The live graph and its list of channels, in what is left of the screen.
 pub fn graph_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    // Two places of exact size: neither can push the other out of the window.
-    let (place, _) = ui.allocate_exact_size(ui.available_size(), egui::Sense::hover());
-    let (left, right) = place.split_left_right_at_x(place.right() - LIST_WIDTH);
-    let left = left.with_max_x(left.right() - 8.0);
-    ui.scope_builder(UiBuilder::new().max_rect(left).layout(Layout::top_down(Align::Min)), |ui| {
-        ui.horizontal_wrapped(|ui| {
-            list::time_ui(ui, &mut model.front.graph);
-            rate_ui(ui, model.front.poll, commands);
-        });
-        plot::plot_ui(ui, &model.front.graph);
-    });
-    ui.scope_builder(UiBuilder::new().max_rect(right).layout(Layout::top_down(Align::Min)), |ui| {
-        list::channels_ui(ui, &mut model.front.graph);
-    });
-}
-
-/// How often the signals are read.
-fn rate_ui(ui: &mut Ui, poll: PollRate, commands: &mut Commands) {
-    let every = |milliseconds| PollRate::Every(Duration::from_millis(milliseconds));
-    let rates = [every(500), every(100), every(50), every(20), every(10), PollRate::Fastest];
-    let combo = ComboBox::from_id_salt("rate").width(104.0).selected_text(rate_text(poll));
-    let response = combo.show_ui(ui, |ui| {
-        for rate in rates {
-            if ui.selectable_label(rate == poll, rate_text(rate)).clicked() {
-                commands.push(Command::Poll(rate));
-            }
-        }
-    });
-    let response = response.response.on_hover_text("How often the signals are read");
-    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Sampling"));
-}
-
-fn rate_text(poll: PollRate) -> String {
-    match poll {
-        PollRate::Off => "not read".to_owned(),
-        PollRate::Every(time) => format!("every {} ms", time.as_millis()),
-        PollRate::Fastest => "as fast as it goes".to_owned(),
-    }
+    panel::graph_ui(ui, &mut model.front.graph, model.front.poll, commands);
 }

@@ -275,6 +275,12 @@ impl Sample {
         (!value.is_nan()).then_some(value)
     }
 
+    /// Host times of the request and of the complete reply that brought a channel's reading.
+    #[must_use]
+    pub fn span(&self, channel: Channel) -> Option<(Duration, Duration)> {
+        self.get(channel).map(|_| self.spans[channel.index()])
+    }
+
     /// When a channel was read: half way between its request and its reply.
     #[must_use]
     pub fn read_at(&self, channel: Channel) -> Option<Duration> {
@@ -317,6 +323,8 @@ mod tests {
         sample.set(Channel::MainBattery, 24.0, ms(102), ms(106));
         assert_eq!((sample.requested_at, sample.replied_at), (ms(100), ms(106)));
         assert_eq!(sample.read_at(Channel::MainBattery), Some(ms(104)));
+        assert_eq!(sample.span(Channel::M1Pwm), Some((ms(100), ms(102))));
+        assert_eq!(sample.span(Channel::M2Pwm), None);
         assert_eq!(sample.get(Channel::M1Pwm), Some(12.5));
         assert_eq!(sample.get(Channel::M2Pwm), None);
         assert_eq!(sample.read_at(Channel::M2Pwm), None);

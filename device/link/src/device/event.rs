@@ -1,7 +1,7 @@
 //! What the device thread tells: one closed list.
 
 use super::channel::Sample;
-use super::drive::ArmScope;
+use super::drive::{ArmScope, Drive};
 use super::identity::Identity;
 use super::job::JobReport;
 use super::status::StatusReport;
@@ -40,6 +40,15 @@ pub enum Event {
         controller_timeout: Option<Duration>,
         /// What else can drive a motor: input pins and scripts, each as a sentence.
         warnings: Vec<String>,
+    },
+    /// A motion command was confirmed by the controller.
+    Driven {
+        /// The unit.
+        address: u8,
+        /// When its first byte was on the way.
+        sent_at: Duration,
+        /// What the motors were told.
+        drive: Drive,
     },
     /// Motors may no longer be moved; they are being stopped.
     Disarmed(DisarmReason),

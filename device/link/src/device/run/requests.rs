@@ -159,8 +159,13 @@ impl DeviceLoop {
         if let Some(came_back) = refusal {
             return self.tell_not_sent("move the motors", came_back);
         }
+        let sent_at = self.clock.now();
         match self.act(asked_at, |unit, line| unit.drive(line, &drive)) {
-            Ok(()) => self.note_setpoints(&drive),
+            Ok(()) => {
+                self.note_setpoints(&drive);
+                let address = self.units[self.selected].controller.identity().address;
+                self.outbox.send(Event::Driven { address, sent_at, drive });
+            }
             Err(error) => {
                 let unsure = is_unsure(&error);
                 self.tell("move the motors", &error);

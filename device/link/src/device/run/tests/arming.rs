@@ -311,6 +311,19 @@ fn of_duties_that_wait_only_the_last_is_sent_and_moves_are_all_sent() {
     let duties = link.taken(number::DUTY_BOTH);
     assert_eq!(duties.len(), 1);
     assert_eq!(duties[0].values, [16_384, 16_384]);
+    let told: Vec<_> = link
+        .events
+        .iter()
+        .filter_map(|(at, event)| match event {
+            Event::Driven { sent_at, drive, .. } => Some((*sent_at <= *at, *drive)),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(
+        told,
+        [(true, Drive::both(DriveCommand::duty(0.5)))],
+        "what was sent is told, and nothing else"
+    );
     let step = DriveCommand::Distance {
         speed_counts_per_s: 100,
         accel_counts_per_s2: None,

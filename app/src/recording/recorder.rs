@@ -1,0 +1,275 @@
+//! Writes a recording as data comes in, on a thread of its own: hours fit, and the window never waits for the disk.
+
+use std::fs::OpenOptions;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TrySendError, bounded};
+
+use super::compact::CompactWriter;
+use super::csv::{CsvWriter, Times};
+use super::{Form, Head, Record};
+
+/// Records that may wait for the disk: more than four seconds at a thousand a second.
+const QUEUE: usize = 4096;
+
+/// No more than this is lost when the computer's power goes.
+const FLUSH_INTERVAL: Duration = Duration::from_secs(1);
+
+/// How far a recording is.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Progress {
+    /// Samples written.
+    pub samples: u64,
+    /// Bytes written.
+    pub bytes: u64,
+    /// Records that the disk was too slow for.
+    pub dropped: u64,
+    /// Set once the file is closed: whether it is whole, or why it is not, in a sentence.
+    pub ended: Option<Result<(), String>>,
+}
+
+/// A recording under way.
+#[derive(Debug)]
+pub struct Recorder {
+    path: PathBuf,
+    sender: Option<Sender<Record>>,
+    progress: Arc<Mutex<Progress>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Recorder {
+    /// Begins a new file, making its folder if need be.
+    ///
+    /// # Errors
+    /// There is no thread for it. What goes wrong with the file is told by [`Recorder::progress`].
+    pub fn start(path: &Path, form: Form, head: Head) -> std::io::Result<Self> {
+        let file_path = path.to_owned();
+        let open = move || -> std::io::Result<Box<dyn Write>> {
+            if let Some(folder) = file_path.parent() {
+                std::fs::create_dir_all(folder)?;
+            }
+            Ok(Box::new(OpenOptions::new().write(true).create_new(true).open(file_path)?))
+        };
+        Self::into(path, form, head, open)
+    }
+
+    fn into(
+        path: &Path,
+        form: Form,
+        head: Head,
+        open: impl FnOnce() -> std::io::Result<Box<dyn Write>> + Send + 'static,
+    ) -> std::io::Result<Self> {
+        let (sender, receiver) = bounded(QUEUE);
+        let progress = Arc::new(Mutex::new(Progress::default()));
+        let (told, name) = (progress.clone(), path.display().to_string());
+        let work = move || {
+            let result = open().and_then(|file| write_all(file, form, &head, &receiver, &told));
+            // Dropping the receiver tells the window that nothing more is taken.
+            drop(receiver);
+            lock(&told).ended = Some(result.map_err(|error| sentence(&name, &error)));
+        };
+        let thread = thread::Builder::new().name("recorder".to_owned()).spawn(work)?;
+        Ok(Self { path: path.to_owned(), sender: Some(sender), progress, thread: Some(thread) })
+    }
+
+    /// The file.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Hands a record over; never waits.
+    pub fn record(&self, record: Record) {
+        let Some(sender) = &self.sender else { return };
+        if let Err(TrySendError::Full(_)) = sender.try_send(record) {
+            lock(&self.progress).dropped += 1;
+        }
+    }
+
+    /// Ends the recording; the file is closed soon after.
+    pub fn stop(&mut self) {
+        self.sender = None;
+    }
+
+    /// How far it is.
+    #[must_use]
+    pub fn progress(&self) -> Progress {
+        lock(&self.progress).clone()
+    }
+}
+
+impl Drop for Recorder {
+    /// What was handed over is on the disk when this returns.
+    fn drop(&mut self) {
+        self.stop();
+        if let Some(thread) = self.thread.take() {
+            // A panic there has been reported by the runtime.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Counts what goes through it.
+struct Counted<W> {
+    inner: W,
+    progress: Arc<Mutex<Progress>>,
+}
+
+impl<W: Write> Write for Counted<W> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let written = self.inner.write(bytes)?;
+        lock(&self.progress).bytes += written as u64;
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.inner.flush()
+    }
+}
+
+enum Writer<W: Write> {
+    Csv(Box<CsvWriter<W>>),
+    Compact(CompactWriter<W>),
+}
+
+impl<W: Write> Writer<W> {
+    fn write(&mut self, record: &Record) -> std::io::Result<()> {
+        match self {
+            Self::Csv(writer) => writer.write(record),
+            Self::Compact(writer) => writer.write(record),
+        }
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        match self {
+            Self::Csv(writer) => writer.flush(),
+            Self::Compact(writer) => writer.flush(),
+        }
+    }
+}
+
+/// Writes until nobody hands over any more.
+fn write_all(
+    file: Box<dyn Write>,
+    form: Form,
+    head: &Head,
+    records: &Receiver<Record>,
+    progress: &Arc<Mutex<Progress>>,
+) -> std::io::Result<()> {
+    let out = BufWriter::new(Counted { inner: file, progress: progress.clone() });
+    let mut writer = match form {
+        Form::Csv => Writer::Csv(Box::new(CsvWriter::new(out, head, Times::Exchange)?)),
+        Form::Compact => Writer::Compact(CompactWriter::new(out, head)?),
+    };
+    writer.flush()?;
+    let mut flushed = Instant::now();
+    loop {
+        match records.recv_timeout(FLUSH_INTERVAL) {
+            Ok(record) => {
+                writer.write(&record)?;
+                lock(progress).samples += u64::from(matches!(record, Record::Sample(_)));
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => return writer.flush(),
+        }
+        if flushed.elapsed() >= FLUSH_INTERVAL {
+            writer.flush()?;
+            flushed = Instant::now();
+        }
+    }
+}
+
+fn lock(progress: &Mutex<Progress>) -> MutexGuard<'_, Progress> {
+    progress.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn sentence(path: &str, error: &std::io::Error) -> String {
+    let mend = match error.kind() {
+        std::io::ErrorKind::StorageFull | std::io::ErrorKind::QuotaExceeded => {
+            "Make room on the disk, or choose another folder"
+        }
+        std::io::ErrorKind::PermissionDenied => "Choose a folder that you may write to",
+        _ => "Choose another folder",
+    };
+    format!("Could not record to {path}: {error}. What was written before that is kept. {mend}.")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::SystemTime;
+
+    use super::super::{Column, Reading};
+    use super::*;
+
+    fn head() -> Head {
+        Head {
+            columns: vec![Column::new("M1 PWM", "%")],
+            began: SystemTime::UNIX_EPOCH,
+            device: String::new(),
+        }
+    }
+
+    fn sample(at_us: u64) -> Record {
+        Record::Sample(vec![Reading {
+            column: 0,
+            value: at_us as f64,
+            requested_us: at_us,
+            replied_us: at_us + 5,
+        }])
+    }
+
+    fn settled(recorder: &Recorder) -> Result<(), String> {
+        for _ in 0..1000 {
+            if let Some(ended) = recorder.progress().ended {
+                return ended;
+            }
+            thread::sleep(Duration::from_millis(10));
+        }
+        panic!("the recorder did not end");
+    }
+
+    #[test]
+    fn what_was_handed_over_is_in_the_file_when_it_is_closed() {
+        let folder = tempfile::tempdir().unwrap();
+        for form in [Form::Csv, Form::Compact] {
+            let path = folder.path().join("deeper").join(format!("run.{}", form.extension()));
+            let mut recorder = Recorder::start(&path, form, head()).unwrap();
+            (0..1000).for_each(|at| recorder.record(sample(at * 1000)));
+            recorder.stop();
+            assert_eq!(settled(&recorder), Ok(()));
+            let progress = recorder.progress();
+            assert_eq!((progress.samples, progress.dropped), (1000, 0));
+            assert_eq!(std::fs::metadata(&path).unwrap().len(), progress.bytes);
+        }
+    }
+
+    #[test]
+    fn a_file_that_exists_is_not_written_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("run.csv");
+        std::fs::write(&path, "precious").unwrap();
+        let recorder = Recorder::start(&path, Form::Csv, head()).unwrap();
+        assert!(settled(&recorder).unwrap_err().contains("Choose another folder"));
+        drop(recorder);
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "precious");
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_disk_ends_the_recording_with_a_sentence() {
+        let path = Path::new("/dev/full");
+        let open = || -> std::io::Result<Box<dyn Write>> {
+            Ok(Box::new(OpenOptions::new().write(true).open("/dev/full")?))
+        };
+        let recorder = Recorder::into(path, Form::Compact, head(), open).unwrap();
+        recorder.record(sample(1));
+        let told = settled(&recorder).unwrap_err();
+        assert!(told.starts_with("Could not record to /dev/full: No space left"), "{told}");
+        assert!(told.ends_with("Make room on the disk, or choose another folder."), "{told}");
+        recorder.record(sample(2));
+    }
+}
