@@ -340,7 +340,7 @@ fn the_sampling_rate_is_chosen_beside_the_graph() {
 
 #[test]
 fn fitting_and_clearing_are_done_to_the_channel_that_was_selected() {
-    let mut bench = Bench::new();
+    let mut bench = Bench::sized([1280.0, 1100.0], egui::Theme::Dark);
     bench.connect();
     bench.press("PWM Settings");
     bench.pass_ms(2000);

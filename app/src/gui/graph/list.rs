@@ -1,5 +1,6 @@
 //! The list of channels beside the graph: which are shown, their newest values, and the selected one's scale.
 
+use egui::containers::menu::MenuButton;
 use egui::{
     Align2, CollapsingHeader, Response, Role, ScrollArea, Sense, Stroke, StrokeKind, TextStyle, Ui,
     WidgetInfo, pos2, vec2,
@@ -12,7 +13,7 @@ use super::sheet::Sheet;
 use crate::gui::theme::{self, Palette};
 use crate::gui::widgets::readout::NO_VALUE;
 
-const ROW_HEIGHT: f32 = 22.0;
+const ROW_HEIGHT: f32 = 20.0;
 const SWATCH: f32 = 14.0;
 /// Room for the selected channel's scale under the list.
 const FOOTER: f32 = 66.0;
@@ -121,15 +122,8 @@ fn selected_ui(ui: &mut Ui, graph: &mut LiveGraph) {
     let decimals = channel.scale.decimals();
     let (low, high) = (channel.scale.low + 0.0, channel.scale.high + 0.0);
     let text = format!("{} {low:.decimals$} to {high:.decimals$} {}", channel.info.label, channel.info.unit);
-    let own_color = color_of(sheet, Palette::of(ui), selected);
     ui.horizontal(|ui| {
-        ui.spacing_mut().interact_size.x = 24.0;
-        let mut color = own_color;
-        let response = ui.color_edit_button_srgba(&mut color);
-        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Colour of the selected channel"));
-        if response.on_hover_text("Colour of this channel's line").changed() {
-            sheet.channels[selected].color = Some(color);
-        }
+        color_ui(ui, sheet, selected);
         ui.add(egui::Label::new(egui::RichText::new(text).small()).truncate());
     });
     let mut wanted = None;
@@ -166,4 +160,34 @@ fn selected_ui(ui: &mut Ui, graph: &mut LiveGraph) {
     if let Some(action) = wanted {
         graph.act(action);
     }
+}
+
+/// The colour of a channel's line, chosen among the theme's, which differ from each other on light and dark ground.
+fn color_ui(ui: &mut Ui, sheet: &mut Sheet, channel: usize) {
+    let palette = Palette::of(ui);
+    let (response, _) = MenuButton::new("      ").ui(ui, |ui| {
+        ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
+        for row in 0..4 {
+            ui.horizontal(|ui| {
+                for place in row * 6..row * 6 + 6 {
+                    let name = format!("Colour {}", place + 1);
+                    if dot_ui(ui, palette.traces[place], &name).clicked() {
+                        sheet.channels[channel].color = Some(place);
+                        ui.close();
+                    }
+                }
+            });
+        }
+    });
+    ui.painter().rect_filled(response.rect.shrink(4.0), 3.0, color_of(sheet, palette, channel));
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Colour of the selected channel"));
+}
+
+fn dot_ui(ui: &mut Ui, color: egui::Color32, name: &str) -> Response {
+    let (rect, response) = ui.allocate_exact_size(vec2(22.0, 22.0), Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
+    let lit = response.hovered() || response.has_focus();
+    let ring = Stroke::new(2.0, if lit { Palette::of(ui).accent } else { color });
+    ui.painter().rect(rect.shrink(1.0), 3.0, color, ring, StrokeKind::Inside);
+    response
 }

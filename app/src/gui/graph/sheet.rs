@@ -5,8 +5,6 @@
 
 use std::cell::RefCell;
 
-use egui::Color32;
-
 use super::cursors::{Cursors, Measure};
 use super::memo::Memo;
 use super::runs::first_crossing_s;
@@ -30,8 +28,8 @@ pub struct ChannelView {
     pub scale: Scale,
     /// Whether the scale grows by itself when a value does not fit.
     pub grows: bool,
-    /// Chosen by hand; else the theme's.
-    pub color: Option<Color32>,
+    /// Place of its colour among the theme's, chosen by hand; else its own place.
+    pub color: Option<usize>,
     /// The newest value read.
     pub latest: Option<f64>,
     /// Nothing before this time is drawn.

@@ -117,7 +117,8 @@ fn time_ui(ui: &mut Ui, graph: &mut LiveGraph) {
     let minus = button_ui(ui, graph, "−", "Shows more time (−, or the wheel)", GraphAction::ZoomOut);
     name(ui, &minus, "Zoom out");
     let span_s = graph.sheet().span_s();
-    let combo = ComboBox::from_id_salt("span").width(66.0).selected_text(axes::span_text(span_s));
+    let combo =
+        ComboBox::from_id_salt("span").width(66.0).height(480.0).selected_text(axes::span_text(span_s));
     let response = combo.show_ui(ui, |ui| {
         for span in SPANS_S {
             if ui.selectable_label(span == span_s, axes::span_text(span)).clicked() {

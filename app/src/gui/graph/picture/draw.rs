@@ -35,7 +35,7 @@ pub struct Scene<'a> {
 /// The colour of a channel's line.
 pub fn color_of(sheet: &Sheet, palette: &Palette, channel: usize) -> Color32 {
     let chosen = sheet.channels.get(channel).and_then(|channel| channel.color);
-    chosen.unwrap_or(palette.traces[channel % palette.traces.len()])
+    palette.traces[chosen.unwrap_or(channel) % palette.traces.len()]
 }
 
 /// What the times are counted from.
