@@ -3,4 +3,5 @@
 pub mod cli;
 pub mod gui;
 pub mod recording;
+pub mod keep;
 pub mod session;

@@ -21,6 +21,8 @@ pub fn export(args: &ExportArgs, out: &mut Output, interrupt: &Interrupt) -> Res
         firmware: controller.identity().version_text.clone(),
         address: controller.address(),
         date: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
+        unit: String::new(),
+        note: String::new(),
         settings: report.image,
     };
     profile.save(&args.file).map_err(|error| {

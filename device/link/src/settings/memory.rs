@@ -102,8 +102,17 @@ pub fn save_eeprom(
     options: WriteOptions,
 ) -> Result<SaveReport, Failure> {
     let before = read_all(wire, *table.subject())?;
+    save_eeprom_of(wire, &before, options)
+}
+
+/// As [`save_eeprom`], when the settings have just been read.
+pub(super) fn save_eeprom_of(
+    wire: &mut dyn Wire,
+    before: &ReadReport,
+    options: WriteOptions,
+) -> Result<SaveReport, Failure> {
     wire.set_quiet(true);
-    let report = save_and_compare(wire, &before, options);
+    let report = save_and_compare(wire, before, options);
     wire.set_quiet(false);
     report
 }

@@ -5,7 +5,9 @@
 //! tells RAM, EEPROM and profile apart. Motion, status and the script are not settings.
 
 mod check;
+mod copy;
 mod image;
+mod keep;
 mod kind;
 mod listing;
 mod mcp;
@@ -21,7 +23,11 @@ mod template;
 mod value;
 mod write;
 
+pub use copy::{CopiedMotor, copy_motor};
 pub use image::{Copies, Copy, Difference, SettingsImage, changes, diff};
+pub use keep::{
+    Act, Aftermath, Ending, Entry, Held, Journal, JournalError, Keeper, defaults_kept, save_kept, write_kept,
+};
 pub use kind::{Coding, Kind};
 pub use listing::{ListedSetting, list, list_text};
 pub use memory::{DefaultsReport, SaveReport, SaveVerdict, reload, restore_defaults, save_eeprom};
@@ -31,7 +37,8 @@ pub use pins::{
 };
 pub use plan::{Plan, Refusal, Stage, Step, WriteOptions, plan};
 pub use profile::{
-    FORMAT, Problem, Profile, ProfileChanges, ProfileError, ProfileFileError, SCHEMA, replace_file,
+    FORMAT, Fitted, OpenedProfile, Problem, Profile, ProfileChanges, ProfileError, ProfileFileError, SCHEMA,
+    Strictness, replace_file,
 };
 pub use read::{ReadFailure, ReadReport, read_all, read_some};
 pub use reference::{ReferenceForm, ReferenceRow, reference, reference_text};

@@ -32,6 +32,12 @@ pub enum WriteError {
         /// What was tried and what came back.
         failure: Failure,
     },
+    /// What was there could not be kept on this computer first.
+    #[error("Nothing was written. {failure}")]
+    NotKept {
+        /// What was tried and what came of it.
+        failure: Failure,
+    },
 }
 
 fn sentences(refusals: &[Refusal]) -> String {

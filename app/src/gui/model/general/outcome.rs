@@ -91,7 +91,9 @@ fn not_written(error: WriteError) -> Summary {
             "Nothing was written: some of the changes cannot be.".to_owned(),
             refusals.into_iter().map(|refusal| refusal.sentence).collect(),
         ),
-        WriteError::NotRead { failure } => (format!("Nothing was written. {failure}"), Vec::new()),
+        WriteError::NotRead { failure } | WriteError::NotKept { failure } => {
+            (format!("Nothing was written. {failure}"), Vec::new())
+        }
     };
     Summary { gravity: Gravity::Error, summary, sentences, address: None }
 }

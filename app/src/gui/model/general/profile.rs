@@ -6,7 +6,7 @@
 use std::path::Path;
 use std::time::SystemTime;
 
-use brushwork_link::settings::{Difference, Profile, ProfileFileError, diff};
+use brushwork_link::settings::{Difference, OpenedProfile, Profile, ProfileFileError, Strictness, diff};
 use brushwork_protocol::packet_serial::Address;
 
 use super::{General, Sheet, UnitSettings};
@@ -129,21 +129,17 @@ impl General {
     pub fn open_profile(&mut self, mending: bool) {
         let typed = self.profiles.path.trim().to_owned();
         let path = Path::new(&typed);
-        let read = if mending {
-            Profile::load_repairing(path)
-        } else {
-            Profile::load(path).map(|profile| (profile, Vec::new()))
-        };
-        match read {
-            Ok((profile, problems)) => {
+        let strictness = if mending { Strictness::Repair } else { Strictness::Refuse };
+        match Profile::open(path, strictness) {
+            Ok(OpenedProfile { profile, mended, .. }) => {
                 let name = path.file_name().map_or_else(|| typed.clone(), |name| name.display().to_string());
-                let mended = problems.iter().map(ToString::to_string).collect();
+                let mended = mended.iter().map(ToString::to_string).collect();
                 self.profiles.opened = Some(Opened { name, profile, mended });
                 self.profiles.told = Told::Nothing;
                 self.open(Sheet::Compare);
             }
             Err(error) => {
-                let can_be_mended = !mending && Profile::load_repairing(path).is_ok();
+                let can_be_mended = !mending && Profile::open(path, Strictness::Repair).is_ok();
                 self.profiles.fail(&error, can_be_mended);
             }
         }
@@ -197,6 +193,8 @@ impl UnitSettings {
             firmware: self.firmware().to_owned(),
             address: Address::new(self.address()).unwrap_or(Address::DEFAULT),
             date: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
+            unit: String::new(),
+            note: String::new(),
             settings,
         })
     }

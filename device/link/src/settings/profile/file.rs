@@ -5,22 +5,23 @@ use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
 
-use super::Profile;
-use super::error::{Problem, ProfileFileError};
+use super::error::ProfileFileError;
+use super::{OpenedProfile, Profile, Strictness};
 
 impl Profile {
-    /// The profile in a file; strict, see [`Profile::parse`].
-    pub fn load(path: &Path) -> Result<Self, ProfileFileError> {
-        let text = read(path)?;
-        Self::parse(&text).map_err(|source| ProfileFileError::Content { path: path.to_owned(), source })
+    /// The profile in a file, with what reading it changed; see [`Profile::read`].
+    pub fn open(path: &Path, strictness: Strictness) -> Result<OpenedProfile, ProfileFileError> {
+        let text = fs::read_to_string(path)
+            .map_err(|source| ProfileFileError::Read { path: path.to_owned(), source })?;
+        Self::read(&text, strictness)
+            .map_err(|source| ProfileFileError::Content { path: path.to_owned(), source })
     }
 
-    /// The profile in a file with faults of single settings mended; see [`Profile::parse_repairing`].
-    pub fn load_repairing(path: &Path) -> Result<(Self, Vec<Problem>), ProfileFileError> {
-        let text = read(path)?;
-        Self::parse_repairing(&text)
-            .map_err(|source| ProfileFileError::Content { path: path.to_owned(), source })
+    /// The profile in a file; strict, see [`Profile::parse`].
+    pub fn load(path: &Path) -> Result<Self, ProfileFileError> {
+        Self::open(path, Strictness::Refuse).map(|opened| opened.profile)
     }
 
     /// Writes the profile to a file, replacing an older one in one step.
@@ -29,6 +30,9 @@ impl Profile {
             .map_err(|source| ProfileFileError::Write { path: path.to_owned(), source })
     }
 }
+
+/// Tells the temporary files of one process apart.
+static SERIAL: AtomicU32 = AtomicU32::new(0);
 
 /// Puts `content` into the file at `path`: written beside it, flushed to the disk, then renamed over it. On
 /// failure the file is as it was. A symbolic link is followed, so that the file it points to is replaced and
@@ -40,19 +44,18 @@ pub fn replace_file(path: &Path, content: &[u8]) -> io::Result<()> {
     written.and_then(|()| fs::rename(&beside, &target)).inspect_err(|_| {
         // The first error is the one to tell; a left-over temporary file harms nothing.
         let _ = fs::remove_file(&beside);
-    })
-}
-
-fn read(path: &Path) -> Result<String, ProfileFileError> {
-    fs::read_to_string(path).map_err(|source| ProfileFileError::Read { path: path.to_owned(), source })
+    })?;
+    flush_folder(&target);
+    Ok(())
 }
 
 fn temporary_beside(target: &Path) -> io::Result<PathBuf> {
     let name =
         target.file_name().ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "it names no file"))?;
+    let serial = SERIAL.fetch_add(1, Ordering::Relaxed);
     let mut hidden = OsString::from(".");
     hidden.push(name);
-    hidden.push(format!(".{}.tmp", std::process::id()));
+    hidden.push(format!(".{}-{serial}.tmp", std::process::id()));
     Ok(target.with_file_name(hidden))
 }
 
@@ -67,4 +70,15 @@ fn keep_permissions(target: &Path, beside: &Path) -> io::Result<()> {
         Ok(metadata) => fs::set_permissions(beside, metadata.permissions()),
         Err(_) => Ok(()),
     }
+}
+
+/// Makes the new name last over a power loss of the computer, where the system lets a folder be flushed.
+fn flush_folder(target: &Path) {
+    #[cfg(unix)]
+    if let Some(folder) = target.parent() {
+        // The file itself is safe; a file system that cannot flush a folder keeps the name its own way.
+        let _ = File::open(folder).and_then(|folder| folder.sync_all());
+    }
+    #[cfg(not(unix))]
+    let _ = target;
 }

@@ -23,6 +23,8 @@ pub(super) fn write(profile: &Profile) -> String {
     member("generation", subject.generation.number().to_string());
     member("address", quote(&profile.address.to_string()));
     member("date", quote(&profile.date));
+    member("unit", quote(&profile.unit));
+    member("note", quote(&profile.note));
     member("pins", subject.pins.to_string());
     member("streams", subject.streams.to_string());
     member("douts", subject.douts.to_string());

@@ -7,8 +7,10 @@
 
 mod error;
 mod file;
+mod fit;
 mod json;
 mod parse;
+mod schema;
 
 use brushwork_protocol::models::Model;
 use brushwork_protocol::packet_serial::{Address, Generation};
@@ -18,9 +20,10 @@ use super::table::{SettingsTable, Subject};
 
 pub use error::{Problem, ProfileError, ProfileFileError};
 pub use file::replace_file;
+pub use fit::Fitted;
 
 /// The schema this program writes, and the newest it reads.
-pub const SCHEMA: u64 = 1;
+pub const SCHEMA: u64 = 2;
 /// What the "format" member of a profile says.
 pub const FORMAT: &str = "brushwork-settings";
 
@@ -35,8 +38,24 @@ pub struct Profile {
     pub address: Address,
     /// When they were read, as the caller writes dates; ISO 8601 is advised.
     pub date: String,
+    /// What tells the unit from others of its kind, as far as anything does: a serial number, or the port it was
+    /// at; may be empty.
+    pub unit: String,
+    /// Why the settings were kept: "before a write"; may be empty.
+    pub note: String,
     /// The values, by key.
     pub settings: SettingsImage,
+}
+
+/// A profile as it was read, with what reading it changed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OpenedProfile {
+    /// The profile.
+    pub profile: Profile,
+    /// What an older schema said otherwise, a sentence each.
+    pub upgraded: Vec<String>,
+    /// Faults that were mended.
+    pub mended: Vec<Problem>,
 }
 
 /// What a profile asks of a controller.
@@ -50,7 +69,7 @@ pub struct ProfileChanges {
 
 /// Whether faults are refused or mended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Strictness {
+pub enum Strictness {
     /// Any fault refuses the profile.
     Refuse,
     /// Faults of single settings are mended, each with a warning; others still refuse it.
@@ -60,13 +79,14 @@ pub(super) enum Strictness {
 impl Profile {
     /// The profile in `text`. Refuses anything that is not exactly right, with every fault it found.
     pub fn parse(text: &str) -> Result<Self, ProfileError> {
-        parse::parse(text, Strictness::Refuse).map(|(profile, _)| profile)
+        Self::read(text, Strictness::Refuse).map(|opened| opened.profile)
     }
 
-    /// The profile in `text` with settings that are unknown, of a wrong type or out of range left out or
-    /// moved into range, and a sentence for each. What is wrong with the file as a whole still refuses it.
-    pub fn parse_repairing(text: &str) -> Result<(Self, Vec<Problem>), ProfileError> {
-        parse::parse(text, Strictness::Repair)
+    /// The profile in `text`, with what reading it changed: an older schema is brought to the newest, and with
+    /// [`Strictness::Repair`] settings that are unknown, of a wrong type or out of range are left out or moved
+    /// into range. What is wrong with the file as a whole refuses it either way.
+    pub fn read(text: &str, strictness: Strictness) -> Result<OpenedProfile, ProfileError> {
+        parse::parse(text, strictness)
     }
 
     /// The profile as text: one line per setting, in screen order.

@@ -13,28 +13,31 @@ use super::super::table::{SettingsTable, Subject};
 use super::super::value::SettingValue;
 use super::error::{Problem, ProfileError};
 use super::json::{Node, quote};
-use super::{FORMAT, Profile, SCHEMA, Strictness};
+use super::{FORMAT, OpenedProfile, Profile, SCHEMA, Strictness, schema};
 
 /// More pins, streams or outputs than any controller has; a larger number is a fault of the file.
 const MOST_PINS: i64 = 32;
 
-/// The profile in `text`, and what was mended on the way.
-pub(super) fn parse(text: &str, strictness: Strictness) -> Result<(Profile, Vec<Problem>), ProfileError> {
+/// The profile in `text`, and what was changed on the way.
+pub(super) fn parse(text: &str, strictness: Strictness) -> Result<OpenedProfile, ProfileError> {
     let root: Node = serde_json::from_str(text).map_err(|error| not_json(&error))?;
     let Node::Object(members) = root else {
         return Err(whole("The file holds no JSON object, so it is no settings profile."));
     };
     let mut reader = Reader { text, problems: Vec::new(), warnings: Vec::new(), strictness };
-    reader.check_format(&members)?;
+    let found = reader.check_format(&members)?;
+    let (members, upgraded) = schema::upgrade(members, found);
     reader.check_members(&members);
     let profile = reader.profile(&members);
     match profile {
-        Some(profile) if reader.problems.is_empty() => Ok((profile, reader.warnings)),
+        Some(profile) if reader.problems.is_empty() => {
+            Ok(OpenedProfile { profile, upgraded, mended: reader.warnings })
+        }
         _ => Err(ProfileError { problems: reader.problems }),
     }
 }
 
-const MEMBERS: [&str; 11] = [
+const MEMBERS: [&str; 13] = [
     "format",
     "schema",
     "model",
@@ -42,6 +45,8 @@ const MEMBERS: [&str; 11] = [
     "generation",
     "address",
     "date",
+    "unit",
+    "note",
     "pins",
     "streams",
     "douts",
@@ -59,8 +64,8 @@ type Members = [(String, Node)];
 
 impl Reader<'_> {
     /// Whether this is a profile at all, and one whose schema we know: nothing else is worth saying
-    /// otherwise.
-    fn check_format(&mut self, members: &Members) -> Result<(), ProfileError> {
+    /// otherwise. Gives the schema.
+    fn check_format(&mut self, members: &Members) -> Result<u64, ProfileError> {
         match find(members, "format") {
             Some(Node::Text(format)) if format == FORMAT => {}
             _ => {
@@ -70,18 +75,16 @@ impl Reader<'_> {
             }
         }
         match find(members, "schema") {
-            Some(Node::Int(schema))
-                if u64::try_from(*schema).is_ok_and(|schema| (1..=SCHEMA).contains(&schema)) =>
-            {
-                Ok(())
-            }
-            Some(Node::Int(schema)) if *schema > 0 => Err(self.refusal(
-                "schema",
-                format!(
-                    "The profile has schema {schema}, this program reads up to {SCHEMA}. A newer \
-                         program wrote it."
-                ),
-            )),
+            Some(Node::Int(schema)) if *schema > 0 => match u64::try_from(*schema) {
+                Ok(schema) if schema <= SCHEMA => Ok(schema),
+                _ => Err(self.refusal(
+                    "schema",
+                    format!(
+                        "The profile has schema {schema}, this program reads up to {SCHEMA}. A newer program \
+                         wrote it."
+                    ),
+                )),
+            },
             other => Err(self.refusal("schema", expected("a schema number from 1", other))),
         }
     }
@@ -104,11 +107,20 @@ impl Reader<'_> {
         let address = self.address(members);
         let firmware = self.string(members, "firmware");
         let date = self.string(members, "date");
+        let (unit, note) = (self.string(members, "unit"), self.string(members, "note"));
         let [pins, streams, douts] = ["pins", "streams", "douts"].map(|name| self.count(members, name));
         let subject =
             Subject { model: model?, generation: generation?, pins: pins?, streams: streams?, douts: douts? };
         let settings = self.settings(members, &SettingsTable::new(subject))?;
-        Some(Profile { subject, firmware: firmware?, address: address?, date: date?, settings })
+        Some(Profile {
+            subject,
+            firmware: firmware?,
+            address: address?,
+            date: date?,
+            unit: unit?,
+            note: note?,
+            settings,
+        })
     }
 
     fn model(&mut self, members: &Members) -> Option<&'static Model> {

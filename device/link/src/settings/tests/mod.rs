@@ -7,6 +7,7 @@ mod fake;
 mod memory;
 mod plan;
 mod profile;
+mod upgrade;
 mod values;
 mod writing;
 

@@ -3,7 +3,7 @@
 use brushwork_protocol::models;
 use brushwork_protocol::packet_serial::{Address, Generation};
 
-use super::super::{Profile, SettingValue, SettingsTable, Subject, diff};
+use super::super::{OpenedProfile, Profile, SettingValue, SettingsTable, Strictness, Subject, diff};
 use super::table;
 
 fn profile(model: &str, generation: Generation) -> Profile {
@@ -13,6 +13,8 @@ fn profile(model: &str, generation: Generation) -> Profile {
         firmware: "MCP266 2x60A v1.0.0".to_owned(),
         address: Address::DEFAULT,
         date: "2026-01-05T10:00:00Z".to_owned(),
+        unit: "0123456789".to_owned(),
+        note: "before a write".to_owned(),
         settings: SettingsTable::new(subject).default_image(),
     }
 }
@@ -20,12 +22,12 @@ fn profile(model: &str, generation: Generation) -> Profile {
 /// A valid profile with two settings, as text.
 const SMALL: &str = r#"{
   "format": "brushwork-settings",
-  "schema": 1,
+  "schema": 2,
   "model": "mcp266",
   "firmware": "MCP266 2x60A v1.0.0",
   "generation": 1,
   "address": "0x80",
-  "date": "2026-01-05",
+  "date": "2026-01-05", "unit": "", "note": "",
   "pins": 10,
   "streams": 5,
   "douts": 2,
@@ -82,7 +84,7 @@ fn broken(from: &str, to: &str) -> Vec<String> {
 #[test]
 fn each_fault_is_told_with_its_place() {
     for (from, to, expected) in [
-        ("\"schema\": 1,", "\"schema\": 1", "line 4, column 3: Not JSON: expected `,` or `}`."),
+        ("\"schema\": 2,", "\"schema\": 2", "line 4, column 3: Not JSON: expected `,` or `}`."),
         ("}\n}", "}", "line 16, column 0: Not JSON: EOF while parsing an object."),
         (
             "brushwork-settings",
@@ -90,13 +92,13 @@ fn each_fault_is_told_with_its_place() {
             "This is no settings profile: it does not say \"format\": \"brushwork-settings\".",
         ),
         (
-            "\"schema\": 1",
             "\"schema\": 2",
-            "schema (line 3, column 3): The profile has schema 2, this program reads up to 1. A newer \
+            "\"schema\": 3",
+            "schema (line 3, column 3): The profile has schema 3, this program reads up to 2. A newer \
              program wrote it.",
         ),
         (
-            "\"schema\": 1",
+            "\"schema\": 2",
             "\"schema\": \"1\"",
             "schema (line 3, column 3): Expected a schema number from 1, got a text.",
         ),
@@ -235,7 +237,9 @@ fn a_profile_with_a_few_bytes_changed_is_refused_or_read_as_what_it_then_says() 
 #[test]
 fn single_faults_can_be_mended_with_a_warning_each() {
     let text = SMALL.replace("24.3", "80").replace("unit.mixing", "unit.mixxing");
-    let (profile, warnings) = Profile::parse_repairing(&text).expect("the file as a whole is right");
+    let opened = Profile::read(&text, Strictness::Repair).expect("the file as a whole is right");
+    let OpenedProfile { profile, mended: warnings, upgraded } = opened;
+    assert!(upgraded.is_empty(), "{upgraded:?}");
     assert_eq!(profile.settings.len(), 1);
     assert_eq!(profile.settings.get("limits.main_battery.max_volts"), Some(SettingValue::Number(60.0)));
     let told: Vec<String> = warnings.iter().map(ToString::to_string).collect();

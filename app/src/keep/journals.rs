@@ -1,0 +1,95 @@
+//! Journals of acts that were begun and not told to have ended.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process;
+use std::time::SystemTime;
+
+use brushwork_link::settings::{Aftermath, Journal, SettingValue, SettingsImage, SettingsTable};
+
+use super::backups::stamp;
+use super::store::{KeepError, Store};
+use super::unit::UnitId;
+
+const FOLDER: &str = "journals";
+/// More than this are left over from long ago; the oldest give way.
+const MOST: usize = 200;
+
+/// A journal whose act is not known to have ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OpenJournal {
+    /// Its file.
+    pub path: PathBuf,
+    /// What it says.
+    pub journal: Journal,
+}
+
+impl OpenJournal {
+    /// What the controller's settings say of it.
+    pub fn aftermath(&self, table: &SettingsTable, now: &SettingsImage) -> Aftermath {
+        self.journal.aftermath(table, now)
+    }
+}
+
+impl Store {
+    /// Keeps a journal; it is there until it is closed.
+    pub fn open_journal(&self, unit: &UnitId, journal: &Journal) -> Result<PathBuf, KeepError> {
+        let name = format!("{}{}-{}", owner(unit), stamp(SystemTime::now()), unit.file_name());
+        let path = self.path(&[FOLDER, &format!("{name}.json")])?;
+        self.put(&path, &journal.to_json())?;
+        let files = self.files(&[FOLDER]);
+        for old in files.iter().take(files.len().saturating_sub(MOST)) {
+            // One too many harms nothing.
+            let _ = fs::remove_file(old);
+        }
+        Ok(path)
+    }
+
+    /// Its act has ended, or was told to the user.
+    pub fn close_journal(&self, path: &Path) -> Result<(), KeepError> {
+        match fs::remove_file(path) {
+            Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+                Err(KeepError::Write { path: path.to_owned(), source })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The journals of a unit that were not closed, oldest first, and what is wrong with those that cannot be read.
+    pub fn open_journals(&self, unit: &UnitId) -> (Vec<OpenJournal>, Vec<KeepError>) {
+        let (mut journals, mut faults) = (Vec::new(), Vec::new());
+        for path in self.files(&[FOLDER]).into_iter().filter(|path| is_owned(path, unit)) {
+            match read(&path) {
+                Ok(journal) if concerns(&journal, unit) => journals.push(OpenJournal { path, journal }),
+                Ok(_) => {}
+                Err(fault) if path.to_string_lossy().contains(&unit.file_name()) => faults.push(fault),
+                Err(_) => {}
+            }
+        }
+        (journals, faults)
+    }
+}
+
+/// A unit that is simulated in this program is gone with it: its journals are for this process alone.
+fn owner(unit: &UnitId) -> String {
+    if unit.is_simulated { format!("process-{}-", process::id()) } else { String::new() }
+}
+
+fn is_owned(path: &Path, unit: &UnitId) -> bool {
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    if unit.is_simulated { name.starts_with(&owner(unit)) } else { !name.starts_with("process-") }
+}
+
+fn read(path: &Path) -> Result<Journal, KeepError> {
+    let fault = |what: String| KeepError::Read { path: path.to_owned(), what };
+    let text = fs::read_to_string(path).map_err(|error| fault(error.to_string()))?;
+    Journal::parse(&text).map_err(|error| fault(error.to_string()))
+}
+
+/// Whether the journal is of this unit, under its old address or the one it was to get.
+fn concerns(journal: &Journal, unit: &UnitId) -> bool {
+    let wanted = journal.wanted.settings.get("unit.address");
+    let is_there = journal.before.address.get() == unit.address
+        || wanted == Some(SettingValue::Int(i64::from(unit.address)));
+    unit.is_of(&journal.before) && is_there
+}

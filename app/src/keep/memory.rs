@@ -1,0 +1,118 @@
+//! What is known of a unit's EEPROM: its content as last proven, and how often it was written from here.
+
+use std::fs;
+
+use brushwork_link::settings::Profile;
+use serde::{Deserialize, Serialize};
+
+use super::store::{KeepError, Store};
+use super::unit::UnitId;
+
+const EEPROM: &str = "eeprom";
+const WEAR: &str = "wear";
+
+/// Assumed: writes that each byte of the EEPROM stands. Makers of EEPROMs state 100 000, of flash that stands in for
+/// one 10 000; the controllers' manuals state nothing, so the lower figure counts.
+pub const ENDURANCE: u64 = 10_000;
+
+/// How often a unit's EEPROM was written.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Wear {
+    /// Saves begun from this computer.
+    pub saves: u64,
+    /// The date of the first of them.
+    pub since: String,
+}
+
+/// How near an EEPROM is to its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum WearLevel {
+    /// Far from it.
+    Fine,
+    /// Half of what it stands for certain is used.
+    Half,
+    /// It may fail any time.
+    Worn,
+}
+
+impl Wear {
+    /// How near the EEPROM is to its end.
+    pub fn level(&self) -> WearLevel {
+        match self.saves {
+            saves if saves >= ENDURANCE => WearLevel::Worn,
+            saves if saves >= ENDURANCE / 2 => WearLevel::Half,
+            _ => WearLevel::Fine,
+        }
+    }
+
+    /// The count in a sentence, with a warning where one is due.
+    pub fn sentence(&self) -> String {
+        let count = match self.saves {
+            0 => return "No save to this EEPROM was counted yet.".to_owned(),
+            1 => format!("1 save to this EEPROM was counted, {}.", self.since),
+            saves => format!("{saves} saves to this EEPROM were counted since {}.", self.since),
+        };
+        let warning = match self.level() {
+            WearLevel::Fine => return count,
+            WearLevel::Half => {
+                "is half worn if it is flash that stands in for EEPROM; save only what is to last"
+            }
+            WearLevel::Worn => {
+                "may be worn out; check after each save that it took, and save only what is to last"
+            }
+        };
+        format!("{count} It {warning} (assumed: {ENDURANCE} writes).")
+    }
+}
+
+impl Store {
+    /// How often the unit's EEPROM was written. A file that cannot be read counts as none.
+    pub fn wear(&self, unit: &UnitId) -> Wear {
+        let path = self.path(&[WEAR, &format!("{}.json", unit.file_name())]);
+        let text = path.ok().and_then(|path| fs::read_to_string(path).ok());
+        text.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default()
+    }
+
+    /// Counts saves, or takes back those that were not carried out.
+    pub fn count_saves(&self, unit: &UnitId, by: i64, today: &str) -> Result<Wear, KeepError> {
+        let mut wear = self.wear(unit);
+        wear.saves = wear.saves.saturating_add_signed(by);
+        if wear.since.is_empty() {
+            today.clone_into(&mut wear.since);
+        }
+        let path = self.path(&[WEAR, &format!("{}.json", unit.file_name())])?;
+        let text = serde_json::to_string_pretty(&wear).unwrap_or_default();
+        self.put(&path, &text)?;
+        Ok(wear)
+    }
+
+    /// What the unit's EEPROM held when that was proven last, with the date.
+    pub fn eeprom(&self, unit: &UnitId) -> Option<Profile> {
+        let path = self.path(&[EEPROM, &format!("{}.json", unit.file_name())]).ok()?;
+        Profile::load(&path).ok()
+    }
+
+    /// What the unit's EEPROM holds is known, or (`None`) not any more.
+    pub fn note_eeprom(&self, unit: &UnitId, profile: Option<&Profile>) -> Result<(), KeepError> {
+        let path = self.path(&[EEPROM, &format!("{}.json", unit.file_name())])?;
+        match profile {
+            Some(profile) => self.put(&path, &profile.to_json()),
+            None => self.close_journal(&path),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_warning_comes_before_the_wear() {
+        let wear = |saves| Wear { saves, since: "2026-01-05".to_owned() };
+        assert_eq!(wear(0).sentence(), "No save to this EEPROM was counted yet.");
+        assert_eq!(wear(4999).sentence(), "4999 saves to this EEPROM were counted since 2026-01-05.");
+        assert_eq!(wear(5000).level(), WearLevel::Half);
+        assert!(wear(5000).sentence().contains("half worn"));
+        assert!(wear(10_000).sentence().contains("worn out"));
+    }
+}

@@ -1,0 +1,28 @@
+//! What the program keeps on this computer of the controllers it works on: backups of their settings, journals of
+//! what was begun, what their EEPROM held last, and how often it was written.
+//!
+//! Files are replaced in one step. Those that are needed while a controller is worked on are written by a thread of
+//! their own ([`Keeping`]), so that neither the window nor the device thread waits for a disk.
+
+mod backups;
+pub mod folder;
+mod journals;
+mod memory;
+mod store;
+mod unit;
+mod worker;
+
+pub use backups::Backup;
+pub use journals::OpenJournal;
+pub use memory::{Wear, WearLevel};
+pub use store::{KeepError, Store};
+pub use unit::UnitId;
+pub use worker::Keeping;
+
+/// Now, as files write it: "2026-01-05T10:00:00Z".
+pub fn today() -> String {
+    humantime::format_rfc3339_seconds(std::time::SystemTime::now()).to_string()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,155 @@
+//! The store as a whole: what an act leaves behind, and what happens when nothing can be kept.
+
+use std::fs;
+use std::path::Path;
+
+use brushwork_link::settings::{
+    Act, Ending, Entry, Keeper, Profile, SettingValue, SettingsImage, SettingsTable, Subject,
+};
+use brushwork_protocol::models;
+use brushwork_protocol::packet_serial::{Address, Generation};
+
+use super::*;
+
+fn table() -> SettingsTable {
+    SettingsTable::new(Subject::new(models::lookup("mcp266").expect("it is listed"), Generation::Gen1))
+}
+
+fn unit() -> UnitId {
+    UnitId {
+        model: "mcp266".to_owned(),
+        place: "/dev/ttyACM0".to_owned(),
+        has_serial_number: false,
+        address: 0x80,
+        is_simulated: false,
+    }
+}
+
+fn entry(act: Act, wanted: SettingsImage) -> Entry {
+    let table = table();
+    Entry { act, ram: table.default_image(), table, address: Address::DEFAULT, wanted }
+}
+
+fn one(key: &str, value: SettingValue) -> SettingsImage {
+    [(key.to_owned(), value)].into_iter().collect()
+}
+
+/// Waits as the device thread does.
+fn begin(keeper: &mut dyn Keeper, entry: Entry) -> Result<(), brushwork_link::Failure> {
+    keeper.begin(entry);
+    (0..1000).find_map(|_| keeper.begun()).expect("a disk answers within ten seconds")
+}
+
+#[test]
+fn a_write_leaves_a_backup_and_its_journal_is_open_until_it_ends() {
+    let folder = tempfile::tempdir().unwrap();
+    let keeping = Keeping::new(Store::at(folder.path()));
+    let mut keeper = keeping.keeper(unit(), "MCP266 2x60A v1.0.0\n");
+    let wanted = one("unit.mixing", SettingValue::Bool(true));
+    begin(&mut *keeper, entry(Act::Write, wanted)).unwrap();
+    let store = keeping.store().clone();
+    let (journals, faults) = store.open_journals(&unit());
+    assert_eq!((journals.len(), faults.len()), (1, 0));
+    let aftermath = journals[0].aftermath(&table(), &table().default_image());
+    assert_eq!((aftermath.old.len(), aftermath.new.len()), (1, 0), "{aftermath:?}");
+
+    keeper.end(Ending::Known);
+    drop((keeper, keeping));
+    assert!(store.open_journals(&unit()).0.is_empty());
+    let backups = store.backups(Some(&unit()));
+    assert_eq!(backups.len(), 1);
+    assert!(backups[0].name.ends_with("-before-write"), "{}", backups[0].name);
+    let profile = backups[0].open().unwrap().profile;
+    assert_eq!(profile.settings, table().default_image());
+    assert_eq!((profile.note.as_str(), profile.unit.as_str()), ("before write", "/dev/ttyACM0"));
+}
+
+#[test]
+fn a_save_is_counted_and_what_eeprom_holds_is_known_only_once_it_is_proven() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::at(folder.path());
+    let image = table().default_image();
+    for (ending, saves, is_known) in [
+        (Ending::EepromKnown(image.clone()), 1, true),
+        (Ending::Open, 2, false),
+        (Ending::EepromKnown(image.clone()), 3, true),
+        (Ending::NotDone, 3, true),
+        (Ending::Known, 4, false),
+    ] {
+        let keeping = Keeping::new(store.clone());
+        let mut keeper = keeping.keeper(unit(), "");
+        begin(&mut *keeper, entry(Act::Save, image.clone())).unwrap();
+        keeper.end(ending.clone());
+        drop((keeper, keeping));
+        assert_eq!(store.wear(&unit()).saves, saves, "{ending:?}");
+        assert_eq!(store.eeprom(&unit()).is_some(), is_known, "{ending:?}");
+    }
+    assert_eq!(store.open_journals(&unit()).0.len(), 1, "the one that was left open");
+}
+
+#[test]
+fn a_journal_is_found_under_the_new_address_and_not_by_another_unit() {
+    let folder = tempfile::tempdir().unwrap();
+    let keeping = Keeping::new(Store::at(folder.path()));
+    let mut keeper = keeping.keeper(unit(), "");
+    begin(&mut *keeper, entry(Act::Write, one("unit.address", SettingValue::Int(0x83)))).unwrap();
+    let open = |unit: &UnitId| keeping.store().open_journals(unit).0.len();
+    assert_eq!(open(&unit()), 1);
+    assert_eq!(open(&UnitId { address: 0x83, ..unit() }), 1);
+    assert_eq!(open(&UnitId { address: 0x84, ..unit() }), 0);
+    assert_eq!(open(&UnitId { place: "/dev/ttyACM1".to_owned(), ..unit() }), 0);
+    assert_eq!(open(&UnitId { model: "mcp233".to_owned(), ..unit() }), 0);
+}
+
+#[test]
+fn nothing_is_begun_when_nothing_can_be_kept_and_the_sentence_says_what_to_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let in_the_way = folder.path().join("file");
+    fs::write(&in_the_way, "a file where a folder should be").unwrap();
+    let keeping = Keeping::new(Store::at(&in_the_way));
+    let mut keeper = keeping.keeper(unit(), "");
+    let failure = begin(&mut *keeper, entry(Act::Write, SettingsImage::default())).unwrap_err().to_string();
+    assert!(failure.contains("keep a backup before the write"), "{failure}");
+    assert!(failure.contains("BRUSHWORK_DATA_DIR"), "{failure}");
+    assert_eq!(fs::read_to_string(&in_the_way).unwrap(), "a file where a folder should be");
+}
+
+#[test]
+fn a_damaged_journal_is_told_and_hides_no_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::at(folder.path());
+    let keeping = Keeping::new(store.clone());
+    let mut keeper = keeping.keeper(unit(), "");
+    begin(&mut *keeper, entry(Act::Write, SettingsImage::default())).unwrap();
+    let path = store.open_journals(&unit()).0[0].path.clone();
+    let half = fs::read_to_string(&path).unwrap();
+    let copy = path.with_file_name(format!("2000-{}", path.file_name().unwrap().to_string_lossy()));
+    fs::write(&copy, &half[..half.len() / 2]).unwrap();
+    let (journals, faults) = store.open_journals(&unit());
+    assert_eq!((journals.len(), faults.len()), (1, 1));
+    assert!(faults[0].to_string().contains("damaged"), "{}", faults[0]);
+}
+
+#[test]
+fn every_backup_can_be_opened_and_they_are_listed_newest_first() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::at(folder.path());
+    let mut profile = Profile {
+        subject: *table().subject(),
+        firmware: String::new(),
+        address: Address::DEFAULT,
+        date: today(),
+        unit: String::new(),
+        note: String::new(),
+        settings: SettingsImage::default(),
+    };
+    for number in 0..60 {
+        profile.settings.set("motor1.velocity.qpps", SettingValue::Int(number));
+        store.back_up(&unit(), Act::Defaults, &profile).unwrap();
+    }
+    let backups = store.backups(None);
+    assert!((40..=41).contains(&backups.len()), "bounded: {}", backups.len());
+    let newest = backups[0].open().unwrap().profile;
+    assert_eq!(newest.settings.get("motor1.velocity.qpps"), Some(SettingValue::Int(59)));
+    assert!(backups.iter().all(|backup| backup.open().is_ok() && Path::exists(&backup.path)));
+}

@@ -1,0 +1,199 @@
+//! The thread that writes files while a controller is worked on.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use brushwork_link::Failure;
+use brushwork_link::settings::{Act, Ending, Entry, Journal, Keeper, Profile, SettingsImage};
+use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
+
+use super::store::{KeepError, Store};
+use super::today;
+use super::unit::UnitId;
+
+/// Tasks that may wait. An act has two, one after the other.
+const QUEUE: usize = 64;
+/// How long one look at whether something is kept may take.
+const MOMENT: Duration = Duration::from_millis(10);
+
+/// The store, and the thread that writes to it. Dropping it waits for what is still to be written.
+#[derive(Clone, Debug)]
+pub struct Keeping {
+    store: Store,
+    worker: Arc<Worker>,
+}
+
+#[derive(Debug)]
+struct Worker {
+    tasks: Option<Sender<Task>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// What is known of the unit besides its settings.
+#[derive(Clone, Debug)]
+struct Origin {
+    unit: UnitId,
+    firmware: String,
+}
+
+enum Task {
+    Begin { origin: Origin, entry: Box<Entry>, answer: Sender<Result<Begun, Failure>> },
+    End { origin: Origin, begun: Box<Begun>, ending: Ending },
+}
+
+/// What was kept when an act began.
+#[derive(Clone, Debug)]
+struct Begun {
+    act: Act,
+    path: PathBuf,
+    journal: Journal,
+}
+
+impl Keeping {
+    /// Keeps in `store`.
+    pub fn new(store: Store) -> Self {
+        let (sender, tasks) = bounded(QUEUE);
+        let own = store.clone();
+        let work = move || tasks.iter().for_each(|task| perform(&own, task));
+        // Without a thread the sender's other end is gone: nothing can be kept, so nothing is begun.
+        let thread = thread::Builder::new().name("keep".to_owned()).spawn(work).ok();
+        Self { store, worker: Arc::new(Worker { tasks: Some(sender), thread }) }
+    }
+
+    /// The files.
+    pub fn store(&self) -> &Store {
+        &self.store
+    }
+
+    /// Keeps what is done to one unit.
+    pub fn keeper(&self, unit: UnitId, firmware: &str) -> Box<dyn Keeper> {
+        Box::new(UnitKeeper {
+            origin: Origin { unit, firmware: firmware.trim_end().to_owned() },
+            worker: self.worker.clone(),
+            answer: None,
+            begun: None,
+        })
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        self.tasks = None;
+        if let Some(thread) = self.thread.take() {
+            // A panic of that thread has told itself already.
+            let _ = thread.join();
+        }
+    }
+}
+
+struct UnitKeeper {
+    origin: Origin,
+    worker: Arc<Worker>,
+    answer: Option<Receiver<Result<Begun, Failure>>>,
+    begun: Option<Begun>,
+}
+
+impl Keeper for UnitKeeper {
+    fn begin(&mut self, entry: Entry) {
+        let (answer, answered) = bounded(1);
+        let task = Task::Begin { origin: self.origin.clone(), entry: Box::new(entry), answer };
+        if let Some(tasks) = &self.worker.tasks {
+            // A full queue drops the answer, which is told as a failure.
+            let _ = tasks.try_send(task);
+        }
+        self.answer = Some(answered);
+    }
+
+    fn begun(&mut self) -> Option<Result<(), Failure>> {
+        let answer = self.answer.as_ref()?.recv_timeout(MOMENT);
+        match answer {
+            Ok(Ok(begun)) => {
+                self.begun = Some(begun);
+                Some(Ok(()))
+            }
+            Ok(Err(failure)) => Some(Err(failure)),
+            Err(RecvTimeoutError::Timeout) => None,
+            Err(RecvTimeoutError::Disconnected) => Some(Err(Failure::new(
+                "keep a backup",
+                "this computer",
+                "the thread that writes files is busy or gone",
+                "Start the program again",
+            ))),
+        }
+    }
+
+    fn end(&mut self, ending: Ending) {
+        let (Some(begun), Some(tasks)) = (self.begun.take(), &self.worker.tasks) else { return };
+        // A journal that stays open for want of room is looked at once more; nothing is lost by that.
+        let _ = tasks.try_send(Task::End { origin: self.origin.clone(), begun: Box::new(begun), ending });
+    }
+}
+
+fn perform(store: &Store, task: Task) {
+    match task {
+        Task::Begin { origin, entry, answer } => {
+            let tried = format!("keep a backup before the {}", entry.act.label());
+            let begun = begin(store, &origin, &entry).map_err(|error| error.failure(&tried));
+            // Whoever asked may have been called off.
+            let _ = answer.send(begun);
+        }
+        Task::End { origin, begun, ending } => {
+            // What cannot be written now leaves the journal open: it is told at the next connection.
+            let _ = end(store, &origin, &begun, &ending);
+        }
+    }
+}
+
+fn begin(store: &Store, origin: &Origin, entry: &Entry) -> Result<Begun, KeepError> {
+    let mut backup = profile(origin, entry, entry.ram.clone());
+    backup.note = format!("before {}", entry.act.label());
+    store.back_up(&origin.unit, entry.act, &backup)?;
+    let before = match entry.act {
+        // What a cut save leaves is a mix of what EEPROM held and of what was saved.
+        Act::Save => Profile {
+            date: backup.date.clone(),
+            ..store.eeprom(&origin.unit).unwrap_or_else(|| profile(origin, entry, SettingsImage::default()))
+        },
+        _ => backup,
+    };
+    let journal = Journal { act: entry.act, before, wanted: profile(origin, entry, entry.wanted.clone()) };
+    let path = store.open_journal(&origin.unit, &journal)?;
+    if entry.act == Act::Save {
+        store.count_saves(&origin.unit, 1, &today())?;
+        store.note_eeprom(&origin.unit, None)?;
+    }
+    Ok(Begun { act: entry.act, path, journal })
+}
+
+fn end(store: &Store, origin: &Origin, begun: &Begun, ending: &Ending) -> Result<(), KeepError> {
+    match ending {
+        Ending::Open => return Ok(()),
+        Ending::Known => {}
+        Ending::EepromKnown(image) => {
+            let known = Profile { date: today(), settings: image.clone(), ..begun.journal.wanted.clone() };
+            store.note_eeprom(&origin.unit, Some(&known))?;
+        }
+        Ending::NotDone if begun.act == Act::Save => {
+            store.count_saves(&origin.unit, -1, &today())?;
+            if !begun.journal.before.settings.is_empty() {
+                store.note_eeprom(&origin.unit, Some(&begun.journal.before))?;
+            }
+        }
+        Ending::NotDone => {}
+    }
+    store.close_journal(&begun.path)
+}
+
+fn profile(origin: &Origin, entry: &Entry, settings: SettingsImage) -> Profile {
+    Profile {
+        subject: *entry.table.subject(),
+        firmware: origin.firmware.clone(),
+        address: entry.address,
+        date: today(),
+        unit: origin.unit.place.clone(),
+        note: String::new(),
+        settings,
+    }
+}

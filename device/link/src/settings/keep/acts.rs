@@ -1,0 +1,147 @@
+//! Write, save and restore, each between the beginning and the end of a journal.
+
+use super::super::image::{Difference, SettingsImage, diff};
+use super::super::memory::{DefaultsReport, SaveReport, SaveVerdict, restore_defaults, save_eeprom_of};
+use super::super::plan::WriteOptions;
+use super::super::read::{ReadReport, read_all};
+use super::super::table::{SettingsTable, Subject};
+use super::super::write::{RowState, WriteError, WriteReport, write};
+use super::{Act, Ending, Entry, Keeper};
+use crate::failure::Failure;
+use crate::wire::Wire;
+use std::time::Duration;
+
+/// How often a keeper is asked whether it has kept everything before it counts as stuck: each time it may wait
+/// for a few milliseconds, so this is some ten seconds.
+const PATIENCE: usize = 1000;
+
+/// As [`write`], with a backup and a journal. Nothing is written when those cannot be kept.
+pub fn write_kept(
+    wire: &mut dyn Wire,
+    table: &SettingsTable,
+    wanted: &SettingsImage,
+    options: WriteOptions,
+    keeper: &mut dyn Keeper,
+) -> Result<WriteReport, WriteError> {
+    let before = read_all(wire, *table.subject()).map_err(|failure| WriteError::NotRead { failure })?;
+    begin(wire, Act::Write, &before, wanted.clone(), keeper)
+        .map_err(|failure| WriteError::NotKept { failure })?;
+    let mut result = write(wire, table, wanted, options);
+    if let Ok(report) = &mut result
+        && !report.is_complete()
+        && report.ended_early.is_none()
+    {
+        tell_disturbed(wire, table, &before.image, report);
+    }
+    keeper.end(match &result {
+        Ok(report) if is_conclusive(report) => Ending::Known,
+        Ok(_) => Ending::Open,
+        Err(_) => Ending::NotDone,
+    });
+    result
+}
+
+/// A unit that restarted in the middle has lost more than what was to be written: everything that was not in its
+/// EEPROM.
+fn tell_disturbed(
+    wire: &mut dyn Wire,
+    table: &SettingsTable,
+    before: &SettingsImage,
+    report: &mut WriteReport,
+) {
+    let Ok(after) = read_all(wire, *table.subject()) else { return };
+    let is_ours = |key: &str| report.rows.iter().any(|row| row.key == key);
+    let disturbed = diff(table, before, &after.image).into_iter().filter(|difference| {
+        difference.left.is_some() && difference.right.is_some() && !is_ours(&difference.key)
+    });
+    let sentence = |difference: Difference| {
+        let row = table.row(&difference.key)?;
+        Some(format!("{}, which was not asked for.", difference.describe(row)))
+    };
+    let sentences: Vec<String> = disturbed.filter_map(sentence).collect();
+    report.warnings.extend(sentences);
+}
+
+/// As [`super::super::save_eeprom`], with a backup and a journal. Nothing is saved when those cannot be kept.
+pub fn save_kept(
+    wire: &mut dyn Wire,
+    table: &SettingsTable,
+    options: WriteOptions,
+    keeper: &mut dyn Keeper,
+) -> Result<SaveReport, Failure> {
+    let before = read_all(wire, *table.subject())?;
+    begin(wire, Act::Save, &before, before.image.clone(), keeper)?;
+    let result = save_eeprom_of(wire, &before, options);
+    keeper.end(match &result {
+        Ok(report) => save_ending(report),
+        Err(_) => Ending::NotDone,
+    });
+    result
+}
+
+/// As [`restore_defaults`], with a backup and a journal. Nothing is restored when those cannot be kept.
+pub fn defaults_kept(
+    wire: &mut dyn Wire,
+    subject: Subject,
+    keeper: &mut dyn Keeper,
+) -> Result<DefaultsReport, Failure> {
+    let before = read_all(wire, subject)?;
+    let wanted = before.table.default_image();
+    let readable = wanted.iter().filter(|(key, _)| before.image.get(key).is_some());
+    let wanted = readable.map(|(key, value)| (key.to_owned(), value)).collect();
+    begin(wire, Act::Defaults, &before, wanted, keeper)?;
+    let result = restore_defaults(wire, subject);
+    keeper.end(match &result {
+        Ok(report) if report.read.failures.is_empty() => Ending::Known,
+        _ => Ending::Open,
+    });
+    result
+}
+
+/// Has backup and journal kept, and waits for that in small steps between which Stop is looked at.
+fn begin(
+    wire: &mut dyn Wire,
+    act: Act,
+    before: &ReadReport,
+    wanted: SettingsImage,
+    keeper: &mut dyn Keeper,
+) -> Result<(), Failure> {
+    let tried = format!("keep a backup before the {}", act.label());
+    wire.report_progress(0, 1, &tried);
+    keeper.begin(Entry {
+        act,
+        table: before.table.clone(),
+        address: wire.address(),
+        ram: before.image.clone(),
+        wanted,
+    });
+    for _ in 0..PATIENCE {
+        if let Some(kept) = keeper.begun() {
+            return kept;
+        }
+        wire.sleep(Duration::ZERO).map_err(|error| error.failure(&tried, wire.describe()))?;
+    }
+    Err(Failure::new(
+        tried,
+        "this computer",
+        "the disk did not answer in time",
+        "Check the disk and try again",
+    ))
+}
+
+/// Whether every row was read back, or never sent.
+fn is_conclusive(report: &WriteReport) -> bool {
+    report.rows.iter().all(|row| !matches!(row.state, RowState::Unverified { .. }))
+}
+
+fn save_ending(report: &SaveReport) -> Ending {
+    match (report.verdict, &report.eeprom) {
+        (SaveVerdict::Verified, Some(eeprom)) => Ending::EepromKnown(eeprom.clone()),
+        (SaveVerdict::NotSaved, Some(eeprom)) => match &report.put_back {
+            Some(put_back) if is_conclusive(put_back) => Ending::EepromKnown(eeprom.clone()),
+            _ => Ending::Open,
+        },
+        (SaveVerdict::Acknowledged, _) => Ending::Known,
+        _ => Ending::Open,
+    }
+}

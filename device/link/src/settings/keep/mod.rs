@@ -1,0 +1,59 @@
+//! Acts on a controller's settings that leave a trace on the computer before they begin: a backup of what was
+//! there, and a journal of what is about to change. Should power, cable or program fail midway, the next
+//! connection compares the journal with what the controller holds and tells which settings are old and which new.
+//!
+//! Files are the caller's: a [`Keeper`] takes what is to be kept. Nothing here waits for a disk for longer than a
+//! moment, so that Stop overtakes it.
+
+mod acts;
+mod aftermath;
+mod journal;
+
+pub use acts::{defaults_kept, save_kept, write_kept};
+pub use aftermath::{Aftermath, Held};
+pub use journal::{Act, Journal, JournalError};
+
+use super::image::SettingsImage;
+use super::table::SettingsTable;
+use crate::failure::Failure;
+use brushwork_protocol::packet_serial::Address;
+
+/// What is about to be done, and to what.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// What is about to be done.
+    pub act: Act,
+    /// The table of the controller.
+    pub table: SettingsTable,
+    /// Where it answers.
+    pub address: Address,
+    /// Every setting that could be read, as the controller works with it now.
+    pub ram: SettingsImage,
+    /// The values that it is to hold afterwards: the changes of a write, everything of a save or of the defaults.
+    pub wanted: SettingsImage,
+}
+
+/// How an act ended, as far as what was kept of it goes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ending {
+    /// Nothing was sent: it is as if the act had never begun.
+    NotDone,
+    /// What became of every setting is known and was reported: the journal is closed.
+    Known,
+    /// As [`Ending::Known`]; and this is what the EEPROM was found to hold.
+    EepromKnown(SettingsImage),
+    /// Something is left open: the journal stays, to be compared at the next connection.
+    Open,
+}
+
+/// Takes what is to be kept, on a thread of its own.
+pub trait Keeper: Send {
+    /// Takes a backup and a journal. Returns at once.
+    fn begin(&mut self, entry: Entry);
+
+    /// Whether both are safely kept; waits for a few milliseconds at most. `None` while it is under way.
+    fn begun(&mut self) -> Option<Result<(), Failure>>;
+
+    /// Closes the journal, or leaves it. Returns at once.
+    fn end(&mut self, ending: Ending);
+}

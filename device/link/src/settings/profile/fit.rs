@@ -1,0 +1,286 @@
+//! A profile made for one controller, fitted to another: other model, other firmware generation, other numbers
+//! of pins, streams and outputs. Every change is told in a sentence.
+
+use brushwork_protocol::codes::ENCODER_PIN_NONE;
+use brushwork_protocol::models::Pin;
+
+use super::super::image::SettingsImage;
+use super::super::kind::Kind;
+use super::super::row::{Group, Row};
+use super::super::table::{SettingsTable, Subject};
+use super::super::value::SettingValue;
+use super::{Profile, generation_misfit, model_misfit};
+
+/// A profile fitted to another controller.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fitted {
+    /// The profile as it is for that controller.
+    pub profile: Profile,
+    /// What was changed or left out, a sentence each; empty when it fitted as it was.
+    pub changes: Vec<String>,
+}
+
+impl Profile {
+    /// Fits the profile to the controller of `table`. Inputs go by their printed name and encoders by their
+    /// channel, not by their place in the list; what does not exist there is left out; what is out of range
+    /// there is moved into range. Nothing is changed where the profile fits already.
+    pub fn fitted_to(&self, table: &SettingsTable) -> Fitted {
+        let mut fitter = Fitter::new(self, table);
+        fitter.tell_kind();
+        fitter.settings();
+        fitter.tell_left_out();
+        let profile = Profile { subject: *table.subject(), settings: fitter.image, ..self.clone() };
+        Fitted { profile, changes: fitter.changes }
+    }
+}
+
+struct Fitter<'f> {
+    profile: &'f Profile,
+    from: SettingsTable,
+    to: &'f SettingsTable,
+    image: SettingsImage,
+    changes: Vec<String>,
+    /// What the settings of one thing (a pin, a group) have nowhere to go to: its name, and what was lost there.
+    left_out: Vec<LeftOut>,
+}
+
+struct LeftOut {
+    thing: String,
+    count: usize,
+    /// Those not at their default, as "deadband 3.0 %".
+    worth_naming: Vec<String>,
+}
+
+/// Where a setting goes.
+enum Place {
+    Key(String),
+    Nowhere,
+}
+
+impl<'f> Fitter<'f> {
+    fn new(profile: &'f Profile, to: &'f SettingsTable) -> Self {
+        Self {
+            profile,
+            from: profile.table(),
+            to,
+            image: SettingsImage::default(),
+            changes: Vec::new(),
+            left_out: Vec::new(),
+        }
+    }
+
+    fn subjects(&self) -> (&Subject, &Subject) {
+        (&self.profile.subject, self.to.subject())
+    }
+
+    fn tell_kind(&mut self) {
+        let (from, to) = (self.profile.subject, *self.to.subject());
+        if from.model != to.model {
+            self.changes.push(model_misfit(from.model, to.model));
+        }
+        if from.generation != to.generation {
+            self.changes.push(generation_misfit(from.generation, to.generation));
+        }
+    }
+
+    fn settings(&mut self) {
+        let rows = self.from.rows().to_vec();
+        let mut moved_pins = Vec::new();
+        for row in &rows {
+            let Some(value) = self.profile.settings.get(&row.key) else { continue };
+            match self.place(row) {
+                Place::Key(key) => {
+                    if let Some(there) = self.to.row(&key).cloned() {
+                        self.note_moved_pin(row, &there, &mut moved_pins);
+                        self.take(row, &there, value);
+                    } else {
+                        self.leave_out(row, value);
+                    }
+                }
+                Place::Nowhere => self.leave_out(row, value),
+            }
+        }
+    }
+
+    fn place(&self, row: &Row) -> Place {
+        match (&row.instance, row.group) {
+            (Some(instance), Group::Pins) => match self.pin_place(instance.number - 1) {
+                Some(pin) => Place::Key(row.pattern.replace("{n}", &(pin + 1).to_string())),
+                None => Place::Nowhere,
+            },
+            _ => Place::Key(row.key.clone()),
+        }
+    }
+
+    /// The pin over there, from 0, that stands for a pin of the profile: the one of the same encoder channel for
+    /// what serves as an encoder, the one of the same name for everything else.
+    fn pin_place(&self, pin: usize) -> Option<usize> {
+        let (from, to) = self.subjects();
+        if from.model == to.model {
+            return (pin < to.pins).then_some(pin);
+        }
+        let wanted = from.model.pins.get(pin)?;
+        let there = if self.serves_encoder(pin) {
+            to.model
+                .pins
+                .iter()
+                .position(|other| channel(other).is_some() && channel(other) == channel(wanted))
+        } else {
+            let named = to.model.pins.iter().position(|other| other.name() == wanted.name());
+            // That one is taken by an encoder of the profile.
+            named.filter(|named| !self.is_encoder_place(*named))
+        };
+        there.filter(|there| *there < to.pins)
+    }
+
+    fn serves_encoder(&self, pin: usize) -> bool {
+        let kind = self.profile.settings.get(&format!("pin.{}.type", pin + 1));
+        kind == Some(SettingValue::Choice("encoder"))
+            && self.profile.subject.model.pins.get(pin).is_some_and(|pin| channel(pin).is_some())
+    }
+
+    fn is_encoder_place(&self, there: usize) -> bool {
+        let (from, to) = self.subjects();
+        let Some(wanted) = to.model.pins.get(there).and_then(channel) else { return false };
+        (0..from.model.pins.len())
+            .any(|pin| self.serves_encoder(pin) && channel(&from.model.pins[pin]) == Some(wanted))
+    }
+
+    fn note_moved_pin(&mut self, row: &Row, there: &Row, moved: &mut Vec<usize>) {
+        let (Some(old), Some(new)) = (&row.instance, &there.instance) else { return };
+        if row.group == Group::Pins && old.name != new.name && !moved.contains(&old.number) {
+            moved.push(old.number);
+            self.changes.push(format!("The settings of input {} go to {}.", old.name, new.name));
+        }
+    }
+
+    /// Takes a value over to a row of the other controller, changed as far as it must be.
+    fn take(&mut self, row: &Row, there: &Row, value: SettingValue) {
+        let Some(value) = self.translated(row, there, value) else {
+            return self.leave_out(row, value);
+        };
+        if let Some(why) = self.impossible_type(there, value) {
+            self.changes.push(why);
+            self.image.set(&there.key, SettingValue::Choice("none"));
+            return;
+        }
+        if matches!(value, SettingValue::UnknownCode(_)) && self.from.subject() == self.to.subject() {
+            self.image.set(&there.key, value);
+            return;
+        }
+        let (fitted, why) = there.repair(value);
+        if let Some(why) = why {
+            self.changes.push(why);
+        } else if !is_same_number(value, fitted) {
+            let title = there.title();
+            self.changes.push(format!(
+                "{title}: {} becomes {}, the nearest step there.",
+                row.format(value),
+                there.format(fitted)
+            ));
+        }
+        self.image.set(&there.key, fitted);
+    }
+
+    /// The value in the words of the other row; `None` when it means nothing there.
+    fn translated(&self, row: &Row, there: &Row, value: SettingValue) -> Option<SettingValue> {
+        if row.pattern == "motor{n}.encoder.pin" {
+            return self.encoder_pin(value);
+        }
+        match (there.kind, value) {
+            (Kind::Int, SettingValue::Number(number)) if number.fract() == 0.0 => {
+                Some(SettingValue::Int(number as i64))
+            }
+            (Kind::Fixed { .. }, SettingValue::Int(number)) => Some(SettingValue::Number(number as f64)),
+            _ => Some(value),
+        }
+    }
+
+    /// Encoder inputs are numbers in the pin list, which is another one there.
+    fn encoder_pin(&self, value: SettingValue) -> Option<SettingValue> {
+        let (from, to) = self.subjects();
+        let SettingValue::Int(number) = value else { return Some(value) };
+        if from.model == to.model || number == ENCODER_PIN_NONE {
+            return Some(value);
+        }
+        let wanted = from.model.pins.get(usize::try_from(number).ok()?)?;
+        let by_channel = |pin: &Pin| channel(wanted).is_some() && channel(pin) == channel(wanted);
+        let by_name = |pin: &Pin| channel(wanted).is_none() && pin.name() == wanted.name();
+        let there = to.model.pins.iter().position(|pin| by_channel(pin) || by_name(pin))?;
+        i64::try_from(there).ok().map(SettingValue::Int)
+    }
+
+    /// Why an input cannot have the type that the profile wants of it.
+    fn impossible_type(&self, there: &Row, value: SettingValue) -> Option<String> {
+        if there.pattern != "pin.{n}.type" || self.profile.subject.model == self.to.subject().model {
+            return None;
+        }
+        let pin = self.to.subject().model.pins.get(there.instance.as_ref()?.number - 1)?;
+        let is_possible = match value {
+            SettingValue::Choice("analog") => pin.is_analog(),
+            SettingValue::Choice("pulse") => pin.is_pulse(),
+            SettingValue::Choice("encoder") => channel(pin).is_some(),
+            _ => true,
+        };
+        (!is_possible).then(|| {
+            format!(
+                "{} cannot be {} on the {}; it measures nothing instead.",
+                pin.label,
+                there.format_bare(value).to_lowercase(),
+                self.to.subject().model.name
+            )
+        })
+    }
+
+    fn leave_out(&mut self, row: &Row, value: SettingValue) {
+        let thing = row.instance.as_ref().map_or_else(|| row.title(), |instance| instance.name.clone());
+        let position = self.left_out.iter().position(|left| left.thing == thing).unwrap_or_else(|| {
+            self.left_out.push(LeftOut { thing, count: 0, worth_naming: Vec::new() });
+            self.left_out.len() - 1
+        });
+        let left = &mut self.left_out[position];
+        left.count += 1;
+        if value != row.default {
+            left.worth_naming.push(format!("{} {}", lower(row.label), row.format(value)));
+        }
+    }
+
+    /// One sentence for each thing whose settings went nowhere; those not at their default by name.
+    fn tell_left_out(&mut self) {
+        let there =
+            format!("The {} with firmware {}", self.to.subject().model.name, self.to.subject().generation);
+        for left in &self.left_out {
+            let LeftOut { thing, count, worth_naming } = left;
+            let settings =
+                if *count == 1 { "its setting is".to_owned() } else { format!("its {count} settings are") };
+            let lost = match worth_naming.as_slice() {
+                [] => "at the default".to_owned(),
+                named => format!("not at the default: {}", named.join(", ")),
+            };
+            self.changes.push(format!("{there} has no place for {thing}: {settings} left out ({lost})."));
+        }
+    }
+}
+
+fn channel(pin: &Pin) -> Option<(u8, char)> {
+    pin.encoder_channel()
+}
+
+fn is_same_number(value: SettingValue, fitted: SettingValue) -> bool {
+    match (value, fitted) {
+        (SettingValue::Number(old), SettingValue::Number(new)) => {
+            (old - new).abs() <= 1e-9 * old.abs().max(new.abs())
+        }
+        (old, new) => old == new,
+    }
+}
+
+fn lower(label: &str) -> String {
+    let mut letters = label.chars();
+    match letters.next() {
+        Some(first) if letters.clone().next().is_some_and(char::is_lowercase) => {
+            first.to_lowercase().chain(letters).collect()
+        }
+        _ => label.to_owned(),
+    }
+}

@@ -1,0 +1,62 @@
+//! Older schemas: a chain of pure steps, each from one schema to the next, with a sentence for what it changed.
+//!
+//! A step sees the file's members as they stand, before any setting is judged against a table. For each older
+//! schema there is a file of that time among the test fixtures.
+
+use super::SCHEMA;
+use super::json::Node;
+
+/// The members of a profile's file, in their order.
+pub(super) type Members = Vec<(String, Node)>;
+
+/// From one schema to the next.
+struct Step {
+    from: u64,
+    /// Changes the members; gives a sentence for each change.
+    apply: fn(&mut Members) -> Vec<String>,
+}
+
+/// One step for each older schema, in order.
+static STEPS: &[Step] = &[Step { from: 1, apply: name_unit_and_note }];
+
+/// Brings members of schema `from` to the newest one, and says what that changed.
+pub(super) fn upgrade(mut members: Members, from: u64) -> (Members, Vec<String>) {
+    let mut sentences = Vec::new();
+    for step in STEPS.iter().filter(|step| step.from >= from) {
+        sentences.extend((step.apply)(&mut members));
+    }
+    if from < SCHEMA {
+        set(&mut members, "schema", Node::Int(i64::try_from(SCHEMA).unwrap_or(i64::MAX)));
+    }
+    (members, sentences)
+}
+
+/// Schema 2 says which unit the settings came from and why they were kept.
+fn name_unit_and_note(members: &mut Members) -> Vec<String> {
+    let mut sentences = Vec::new();
+    for (name, what) in [("unit", "which unit the settings came from"), ("note", "why they were kept")] {
+        if !members.iter().any(|(member, _)| member == name) {
+            members.push((name.to_owned(), Node::Text(String::new())));
+            sentences.push(format!("Schema 1 did not say {what}; that stays open."));
+        }
+    }
+    sentences
+}
+
+fn set(members: &mut Members, name: &str, value: Node) {
+    match members.iter_mut().find(|(member, _)| member == name) {
+        Some((_, old)) => *old = value,
+        None => members.push((name.to_owned(), value)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_is_a_step_from_every_older_schema() {
+        let from: Vec<u64> = STEPS.iter().map(|step| step.from).collect();
+        assert_eq!(from, (1..SCHEMA).collect::<Vec<_>>());
+    }
+}
