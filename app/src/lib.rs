@@ -2,6 +2,6 @@
 
 pub mod cli;
 pub mod gui;
-pub mod recording;
 pub mod keep;
+pub mod recording;
 pub mod session;

@@ -1,83 +1,12 @@
 //! `brushwork settings` as a person or a script runs it: the built program, its output and its exit codes.
 
-use std::path::{Path, PathBuf};
+#[path = "support/cli.rs"]
+mod cli;
+
 use std::process::{Command, Stdio};
 
+use cli::{DIFFERENT, DONE, NO_LINK, NOT_TAKEN, REFUSED, USAGE, edit, exported, name, program, settings};
 use serde_json::Value;
-use tempfile::TempDir;
-
-const DONE: i32 = 0;
-const USAGE: i32 = 2;
-const NO_LINK: i32 = 3;
-const REFUSED: i32 = 4;
-const NOT_TAKEN: i32 = 5;
-const DIFFERENT: i32 = 6;
-
-/// What a run of the program gave.
-#[derive(Debug)]
-struct Run {
-    code: i32,
-    stdout: String,
-    stderr: String,
-}
-
-impl Run {
-    #[track_caller]
-    fn ended_with(self, code: i32) -> Self {
-        assert_eq!(self.code, code, "{self:#?}");
-        self
-    }
-
-    #[track_caller]
-    fn explains(self, words: &str) -> Self {
-        assert!(self.stderr.contains(words), "no {words:?} in {self:#?}");
-        self
-    }
-
-    /// Standard output has these words, however wide its columns are.
-    #[track_caller]
-    fn prints(self, words: &str) -> Self {
-        let in_one_line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(in_one_line(&self.stdout).contains(&in_one_line(words)), "no {words:?} in {self:#?}");
-        self
-    }
-
-    #[track_caller]
-    fn json(&self) -> Value {
-        serde_json::from_str(&self.stdout).unwrap_or_else(|error| panic!("{error}: {self:#?}"))
-    }
-}
-
-/// `brushwork settings` with nobody at the terminal.
-fn settings(arguments: &[&str]) -> Run {
-    let output = Command::new(env!("CARGO_BIN_EXE_brushwork"))
-        .arg("settings")
-        .args(arguments)
-        .stdin(Stdio::null())
-        .output()
-        .expect("the program was built for this test");
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("the program prints UTF-8");
-    Run { code: output.status.code().unwrap_or(-1), stdout: text(output.stdout), stderr: text(output.stderr) }
-}
-
-/// A profile of a fresh simulated controller, and the folder it is in.
-fn exported(target: &str) -> (TempDir, PathBuf) {
-    let folder = tempfile::tempdir().expect("a temporary folder can be made");
-    let file = folder.path().join("profile.json");
-    settings(&["export", "-c", target, name(&file)]).ended_with(DONE);
-    (folder, file)
-}
-
-fn name(path: &Path) -> &str {
-    path.to_str().expect("temporary names are UTF-8")
-}
-
-/// Replaces the first `from` of a profile.
-fn edit(file: &Path, from: &str, to: &str) {
-    let text = std::fs::read_to_string(file).expect("the profile is there");
-    assert!(text.contains(from), "no {from:?} in {text}");
-    std::fs::write(file, text.replacen(from, to, 1)).expect("the profile can be written");
-}
 
 #[test]
 fn read_shows_values_with_their_units() {
@@ -259,7 +188,7 @@ fn an_export_replaces_the_whole_file_or_nothing() {
 fn a_faulty_profile_is_refused_with_the_place_of_the_fault() {
     let faults = [
         ("{\n", "{{\n", "line 1, column 2"),
-        ("\"schema\": 1", "\"schema\": 99", "schema (line"),
+        ("\"schema\": 2", "\"schema\": 99", "schema (line"),
         ("motor1.velocity.p", "motor1.velocity.pp", "settings.motor1.velocity.pp (line"),
         (
             "\"motor1.velocity.p\": { \"value\": 1.000",
@@ -283,17 +212,24 @@ fn a_faulty_profile_is_refused_with_the_place_of_the_fault() {
 }
 
 #[test]
-fn a_profile_for_another_controller_is_refused() {
+fn a_profile_for_another_controller_is_upgraded_only_when_that_is_agreed_to() {
     let (_folder, file) = exported("sim:mcp266");
-    settings(&["import", name(&file), "--yes", "-c", "sim:mcp263"])
-        .ended_with(NOT_TAKEN)
-        .explains("nothing was changed")
+    settings(&["import", name(&file), "-c", "sim:mcp263"])
+        .ended_with(REFUSED)
         .explains(
             "The profile was made for the MCP266 (2x60A), the connected controller is the MCP263 (2x60A).",
-        );
-    settings(&["import", name(&file), "--yes", "-c", "sim:mcp266,generation=4"])
-        .ended_with(NOT_TAKEN)
-        .explains("made for firmware generation 1, the connected controller has generation 4");
+        )
+        .explains("Main battery maximum 60.0 V is above the MCP263's 34.0 V. 34.0 V is used instead.")
+        .explains("Use the profile with these changes? Nobody can be asked here");
+    settings(&["import", name(&file), "--yes", "-c", "sim:mcp263"])
+        .ended_with(DONE)
+        .explains("34.0 V is used instead.")
+        .prints("there is nothing to write");
+    let json = settings(&["import", name(&file), "--yes", "--json", "-c", "sim:mcp266,generation=4"])
+        .ended_with(DONE)
+        .explains("made for firmware generation 1, the connected controller has generation 4")
+        .json();
+    assert!(!json["upgraded"].as_array().unwrap().is_empty());
 }
 
 #[test]
@@ -306,53 +242,10 @@ fn a_profile_that_is_not_there_is_told_by_name() {
 #[cfg(unix)]
 mod on_a_pseudo_terminal {
     use std::io::{BufRead as _, BufReader};
-    use std::process::Child;
     use std::time::{Duration, Instant};
 
+    use super::cli::Simulated;
     use super::*;
-
-    /// `brushwork sim` in the background: a controller that outlives one command.
-    struct Simulated {
-        child: Child,
-        folder: TempDir,
-    }
-
-    impl Simulated {
-        fn start(arguments: &[&str]) -> Self {
-            let folder = tempfile::tempdir().expect("a temporary folder can be made");
-            let mut child = Command::new(env!("CARGO_BIN_EXE_brushwork"))
-                .args(["sim", "--pty"])
-                .arg(folder.path().join("port"))
-                .args(arguments)
-                .stdin(Stdio::null())
-                .stdout(Stdio::piped())
-                .stderr(Stdio::null())
-                .spawn()
-                .expect("the program was built for this test");
-            let mut lines = BufReader::new(child.stdout.take().expect("it is piped")).lines();
-            let first = lines.next().expect("it says where it is").expect("it prints UTF-8");
-            assert!(first.contains("port"), "{first}");
-            // The rest is read to its end, so that the program never finds its standard output closed.
-            let reader = std::thread::Builder::new().name("sim output".to_owned());
-            reader.spawn(move || lines.for_each(drop)).expect("a thread can be started");
-            Self { child, folder }
-        }
-
-        fn port(&self) -> String {
-            name(&self.folder.path().join("port")).to_owned()
-        }
-
-        fn settings(&self, action: &str, arguments: &[&str]) -> Run {
-            settings(&[&[action, "--connect", &self.port()], arguments].concat())
-        }
-    }
-
-    impl Drop for Simulated {
-        fn drop(&mut self) {
-            let _ = Command::new("kill").arg(self.child.id().to_string()).status();
-            let _ = self.child.wait();
-        }
-    }
 
     #[test]
     fn what_one_command_writes_the_next_one_reads() {
@@ -435,10 +328,9 @@ mod on_a_pseudo_terminal {
         let unit = Simulated::start(&["--fault", "delay=20ms"]);
         let keys = ["velocity.p", "velocity.i", "position.p", "position.i"];
         let changes = keys.map(|key| [format!("motor1.{key}=7"), format!("motor2.{key}=7")]).concat();
-        let mut child = Command::new(env!("CARGO_BIN_EXE_brushwork"))
+        let mut child = program()
             .args(["settings", "write", "--yes", "--connect", &unit.port()])
             .args(&changes)
-            .stdin(Stdio::null())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()
@@ -467,9 +359,8 @@ mod on_a_pseudo_terminal {
     #[test]
     fn an_interrupt_ends_a_slow_reading_soon_and_cleanly() {
         let unit = Simulated::start(&["--fault", "delay=30ms"]);
-        let child = Command::new(env!("CARGO_BIN_EXE_brushwork"))
+        let child = program()
             .args(["settings", "read", "--connect", &unit.port()])
-            .stdin(Stdio::null())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()

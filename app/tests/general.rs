@@ -409,6 +409,8 @@ fn a_profile_that_is_faulty_or_made_for_another_controller_is_refused_with_every
         firmware: "MCP236 2x30A v1.0.0".to_owned(),
         address: brushwork_protocol::packet_serial::Address::DEFAULT,
         date: "2025-01-01T00:00:00Z".to_owned(),
+        unit: String::new(),
+        note: String::new(),
         settings: brushwork_link::settings::SettingsTable::new(subject).default_image(),
     };
     other.save(&path).unwrap();

@@ -3,6 +3,7 @@
 //! Used for the built `brushwork` and for the foreign clients. Waiting always has a limit.
 
 use std::io::{BufRead, BufReader, Read, Write};
+use std::path::PathBuf;
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
@@ -18,6 +19,11 @@ pub struct Program {
     stdout: Receiver<String>,
     stderr: Receiver<String>,
     seen: Vec<String>,
+}
+
+/// What the program keeps for its user is kept among the build products.
+fn data_folder() -> Option<PathBuf> {
+    Some(std::env::current_exe().ok()?.parent()?.parent()?.join("tmp").join("data"))
 }
 
 /// How a program ended and what it had printed.
@@ -43,6 +49,9 @@ impl Program {
     /// Starts a prepared command with its three streams connected to the test.
     #[must_use]
     pub fn spawn(mut command: Command) -> Self {
+        if let Some(folder) = data_folder() {
+            command.env("BRUSHWORK_DATA_DIR", folder);
+        }
         let mut child = command
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())

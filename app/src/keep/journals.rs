@@ -2,14 +2,13 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process;
 use std::time::SystemTime;
 
 use brushwork_link::settings::{Aftermath, Journal, SettingValue, SettingsImage, SettingsTable};
 
 use super::backups::stamp;
 use super::store::{KeepError, Store};
-use super::unit::UnitId;
+use super::unit::{OWNER, UnitId};
 
 const FOLDER: &str = "journals";
 /// More than this are left over from long ago; the oldest give way.
@@ -34,7 +33,7 @@ impl OpenJournal {
 impl Store {
     /// Keeps a journal; it is there until it is closed.
     pub fn open_journal(&self, unit: &UnitId, journal: &Journal) -> Result<PathBuf, KeepError> {
-        let name = format!("{}{}-{}", owner(unit), stamp(SystemTime::now()), unit.file_name());
+        let name = format!("{}{}-{}", unit.owner(), stamp(SystemTime::now()), unit.file_name());
         let path = self.path(&[FOLDER, &format!("{name}.json")])?;
         self.put(&path, &journal.to_json())?;
         let files = self.files(&[FOLDER]);
@@ -70,14 +69,9 @@ impl Store {
     }
 }
 
-/// A unit that is simulated in this program is gone with it: its journals are for this process alone.
-fn owner(unit: &UnitId) -> String {
-    if unit.is_simulated { format!("process-{}-", process::id()) } else { String::new() }
-}
-
 fn is_owned(path: &Path, unit: &UnitId) -> bool {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    if unit.is_simulated { name.starts_with(&owner(unit)) } else { !name.starts_with("process-") }
+    if unit.is_simulated { name.starts_with(&unit.owner()) } else { !name.starts_with(OWNER) }
 }
 
 fn read(path: &Path) -> Result<Journal, KeepError> {

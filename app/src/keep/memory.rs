@@ -1,12 +1,13 @@
 //! What is known of a unit's EEPROM: its content as last proven, and how often it was written from here.
 
 use std::fs;
+use std::path::PathBuf;
 
 use brushwork_link::settings::Profile;
 use serde::{Deserialize, Serialize};
 
 use super::store::{KeepError, Store};
-use super::unit::UnitId;
+use super::unit::{OWNER, UnitId};
 
 const EEPROM: &str = "eeprom";
 const WEAR: &str = "wear";
@@ -66,10 +67,31 @@ impl Wear {
 }
 
 impl Store {
+    /// The file of what is known of a unit's memory.
+    fn memory_path(&self, kind: &str, unit: &UnitId) -> Result<PathBuf, KeepError> {
+        self.path(&[kind, &format!("{}{}.json", unit.owner(), unit.file_name())])
+    }
+
+    /// Keeps something of a unit's memory, and forgets the memories of simulated units that are gone.
+    fn put_memory(&self, kind: &str, unit: &UnitId, text: &str) -> Result<(), KeepError> {
+        if unit.is_simulated {
+            let is_gone = |path: &PathBuf| {
+                let name =
+                    path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+                name.starts_with(OWNER) && !name.starts_with(&unit.owner())
+            };
+            // What stays is a few bytes.
+            self.files(&[kind])
+                .iter()
+                .filter(|path| is_gone(path))
+                .for_each(|path| drop(fs::remove_file(path)));
+        }
+        self.put(&self.memory_path(kind, unit)?, text)
+    }
+
     /// How often the unit's EEPROM was written. A file that cannot be read counts as none.
     pub fn wear(&self, unit: &UnitId) -> Wear {
-        let path = self.path(&[WEAR, &format!("{}.json", unit.file_name())]);
-        let text = path.ok().and_then(|path| fs::read_to_string(path).ok());
+        let text = self.memory_path(WEAR, unit).ok().and_then(|path| fs::read_to_string(path).ok());
         text.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default()
     }
 
@@ -80,24 +102,21 @@ impl Store {
         if wear.since.is_empty() {
             today.clone_into(&mut wear.since);
         }
-        let path = self.path(&[WEAR, &format!("{}.json", unit.file_name())])?;
         let text = serde_json::to_string_pretty(&wear).unwrap_or_default();
-        self.put(&path, &text)?;
+        self.put_memory(WEAR, unit, &text)?;
         Ok(wear)
     }
 
     /// What the unit's EEPROM held when that was proven last, with the date.
     pub fn eeprom(&self, unit: &UnitId) -> Option<Profile> {
-        let path = self.path(&[EEPROM, &format!("{}.json", unit.file_name())]).ok()?;
-        Profile::load(&path).ok()
+        Profile::load(&self.memory_path(EEPROM, unit).ok()?).ok()
     }
 
     /// What the unit's EEPROM holds is known, or (`None`) not any more.
     pub fn note_eeprom(&self, unit: &UnitId, profile: Option<&Profile>) -> Result<(), KeepError> {
-        let path = self.path(&[EEPROM, &format!("{}.json", unit.file_name())])?;
         match profile {
-            Some(profile) => self.put(&path, &profile.to_json()),
-            None => self.close_journal(&path),
+            Some(profile) => self.put_memory(EEPROM, unit, &profile.to_json()),
+            None => self.close_journal(&self.memory_path(EEPROM, unit)?),
         }
     }
 }

@@ -5,6 +5,9 @@ use brushwork_link::settings::Profile;
 use brushwork_link::transport::PortInfo;
 use brushwork_protocol::models;
 
+/// How the names of files begin that are for one process alone.
+pub(super) const OWNER: &str = "process-";
+
 /// What tells a unit from others: its model, its address, and the serial number of its USB device or else the port
 /// it is at.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -26,7 +29,10 @@ impl UnitId {
     pub fn new(identity: &Identity, ports: &[PortInfo]) -> Self {
         let named = identity.model.and_then(models::lookup);
         let model = named.or_else(|| models::identify(&identity.version_text));
-        let port = ports.iter().find(|port| port.name == identity.port);
+        let path = identity.port.split(',').next().unwrap_or_default();
+        let real = std::fs::canonicalize(path).ok();
+        let real = real.as_ref().and_then(|real| real.to_str()).unwrap_or(path);
+        let port = ports.iter().find(|port| port.name == real || port.name == path);
         let serial =
             port.and_then(|port| port.serial_number.clone()).filter(|serial| !serial.trim().is_empty());
         Self {
@@ -45,6 +51,12 @@ impl UnitId {
         // Long names are cut; two ports whose names agree that far would share their files.
         let place: String = place.trim_matches('-').chars().take(80).collect();
         format!("{}-{:#04x}-{place}", self.model, self.address)
+    }
+
+    /// How the names of files begin that are about the present of this unit: one that is simulated in this program
+    /// is gone with it, and the next of that name is another one.
+    pub(super) fn owner(&self) -> String {
+        if self.is_simulated { format!("{OWNER}{}-", std::process::id()) } else { String::new() }
     }
 
     /// Whether a profile was taken of this unit, or could have been before it got another address.

@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use clap::{Args, Subcommand};
 
+use super::compare::SideName;
 use crate::cli::args::ConnectArgs;
 
 /// Arguments of `brushwork settings`.
@@ -36,8 +37,105 @@ pub enum SettingsAction {
     Export(ExportArgs),
     /// Check a profile and write it to the controller (as `write --profile`).
     Import(ImportArgs),
+    /// Compare any two of: RAM, EEPROM as last known, a profile, the defaults, a backup.
+    Compare(CompareArgs),
+    /// List the backups; one is made before every write, restore of defaults and save.
+    Backups(BackupsArgs),
+    /// Write what a backup holds, after showing the changes.
+    Restore(RestoreArgs),
+    /// Copy one motor's settings to the other motor.
+    CopyMotor(CopyMotorArgs),
+    /// Show what was cut short on this controller, setting by setting, and settle it.
+    Unfinished(UnfinishedArgs),
     /// Print every setting with unit, range, default and help.
     Reference(ReferenceArgs),
+}
+
+/// Arguments of `brushwork settings compare`.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    brushwork settings compare ram cart.json -c /dev/ttyACM0\n  \
+    brushwork settings compare eeprom ram -c /dev/ttyACM0\n  \
+    brushwork settings compare backup default -c /dev/ttyACM0\n  \
+    brushwork settings compare old.json new.json\n\n\
+    Each side is one of: ram, eeprom (as last known on this computer), default, backup (the newest), \
+    backup:NAME, or the path of a profile.")]
+pub struct CompareArgs {
+    /// The controller; not asked where both sides are files.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// The first side.
+    #[arg(value_name = "A")]
+    pub left: SideName,
+    /// The second side.
+    #[arg(value_name = "B")]
+    pub right: SideName,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `brushwork settings backups`.
+#[derive(Debug, Args)]
+pub struct BackupsArgs {
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `brushwork settings restore`.
+#[derive(Debug, Args)]
+pub struct RestoreArgs {
+    /// The controller.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// The backup's name or the beginning of it; without a name the newest of this controller.
+    #[arg(value_name = "BACKUP")]
+    pub name: Option<String>,
+    /// How to go about it.
+    #[command(flatten)]
+    pub how: WriteHow,
+}
+
+/// Arguments of `brushwork settings copy-motor`.
+#[derive(Debug, Args)]
+pub struct CopyMotorArgs {
+    /// The controller.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// The motor whose settings are copied to the other one.
+    #[arg(value_name = "FROM", value_parser = clap::value_parser!(u8).range(1..=2), default_value = "1")]
+    pub from: u8,
+    /// How to go about it.
+    #[command(flatten)]
+    pub how: WriteHow,
+}
+
+/// Arguments of `brushwork settings unfinished`.
+#[derive(Debug, Args)]
+#[allow(clippy::struct_excessive_bools)]
+pub struct UnfinishedArgs {
+    /// The controller.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// Write the values that were to come; a save is done again.
+    #[arg(long, conflicts_with_all = ["undo", "forget"])]
+    pub finish: bool,
+    /// Write the values from before.
+    #[arg(long, conflicts_with = "forget")]
+    pub undo: bool,
+    /// Leave the controller as it is and do not tell it any more.
+    #[arg(long)]
+    pub forget: bool,
+    /// Do it without asking.
+    #[arg(long, short = 'y')]
+    pub yes: bool,
+    /// Show the changes and write nothing.
+    #[arg(long)]
+    pub dry_run: bool,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Arguments of `brushwork settings read`.

@@ -8,16 +8,19 @@ use brushwork_link::Stream;
 use brushwork_link::device::{
     DeviceHandle, Event, FnJob, Identity, JobContext, JobEnding, JobReport, PollRate, Request,
 };
-use brushwork_link::settings::{ReadReport, Subject, WriteOptions, read_all};
+use brushwork_link::settings::{Keeper, Profile, ReadReport, SettingsImage, Subject, WriteOptions, read_all};
+use brushwork_link::transport::list_ports;
 use brushwork_protocol::models;
 use brushwork_protocol::packet_serial::Address;
 use crossbeam_channel::bounded;
 
+use super::unfinished;
 use crate::cli::args::ConnectArgs;
 use crate::cli::client::Client;
 use crate::cli::exit::Exit;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::output::say;
+use crate::keep::{self, Keeping, Store, UnitId};
 use crate::session::Simulation;
 
 /// How long reading everything may take: a hundred commands at the slowest baud rates, with retries.
@@ -32,6 +35,8 @@ pub struct Controller<'i> {
     client: Client,
     interrupt: &'i Interrupt,
     subject: Subject,
+    keeping: Keeping,
+    unit: UnitId,
 }
 
 /// What a job handed back.
@@ -59,7 +64,9 @@ impl<'i> Controller<'i> {
             return Err(Exit::Refused);
         };
         let subject = Subject::new(model, client.identity.generation);
-        Ok(Self { client, interrupt, subject })
+        // Without a list of ports a unit is told by the name of its port.
+        let unit = UnitId::new(&client.identity, &list_ports().unwrap_or_default());
+        Ok(Self { client, interrupt, subject, keeping: Keeping::new(Store::of_user()), unit })
     }
 
     /// Who it is.
@@ -107,8 +114,38 @@ impl<'i> Controller<'i> {
         self.subject
     }
 
-    /// Reads every setting; says what could not be read.
+    /// What it is known as on this computer.
+    pub fn unit(&self) -> &UnitId {
+        &self.unit
+    }
+
+    /// What keeps backup and journal of an act on it.
+    pub fn keeper(&self) -> Box<dyn Keeper> {
+        self.keeping.keeper(self.unit.clone(), &self.identity().version_text)
+    }
+
+    /// Values as a profile of this controller.
+    pub fn profile_of(&self, report: &ReadReport, settings: SettingsImage) -> Profile {
+        Profile {
+            subject: *report.table.subject(),
+            firmware: self.identity().version_text.clone(),
+            address: self.address(),
+            date: keep::today(),
+            unit: self.unit.place.clone(),
+            note: String::new(),
+            settings,
+        }
+    }
+
+    /// Reads every setting; says what could not be read, and what an act that was cut short has left of them.
     pub fn read(&self) -> Result<ReadReport, Exit> {
+        let report = self.read_quietly()?;
+        unfinished::tell(self, &report);
+        Ok(report)
+    }
+
+    /// Reads every setting; says what could not be read.
+    pub fn read_quietly(&self) -> Result<ReadReport, Exit> {
         let subject = self.subject;
         let finished = self.run("read the settings", READ_LIMIT, move |wire| read_all(wire, subject))?;
         if let Some(exit) = finished.broken {

@@ -11,18 +11,23 @@ use crate::cli::exit::Exit;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::output::{Output, say};
 
-/// One side of the comparison.
-struct Side {
-    name: String,
+/// One side of a comparison.
+#[derive(Clone)]
+pub struct Side {
+    /// What it is called.
+    pub name: String,
+    /// Its settings, and whose they are.
+    pub profile: Profile,
     table: SettingsTable,
-    settings: SettingsImage,
 }
 
 /// Compares and prints.
 pub fn run(args: &DiffArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let mut sides = Vec::new();
     for path in &args.profiles {
-        sides.push(Side::of_profile(path.display().to_string(), profile::load(path)?));
+        let opened = profile::open(path)?;
+        opened.upgraded.iter().for_each(say);
+        sides.push(Side::new(path.display().to_string(), opened.profile));
     }
     if sides.len() < 2 {
         sides.insert(0, Side::of_controller(&Controller::connect(&args.connect, interrupt)?)?);
@@ -35,13 +40,15 @@ pub fn run(args: &DiffArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
 }
 
 impl Side {
-    fn of_profile(name: String, profile: Profile) -> Self {
-        Self { name, table: profile.table(), settings: profile.settings }
+    /// A profile by a name.
+    pub fn new(name: String, profile: Profile) -> Self {
+        Self { name, table: profile.table(), profile }
     }
 
     fn of_controller(controller: &Controller<'_>) -> Result<Self, Exit> {
         let report = controller.read()?;
-        Ok(Self { name: controller.describe(), table: report.table, settings: report.image })
+        let profile = controller.profile_of(&report, report.image.clone());
+        Ok(Self { name: controller.describe(), table: report.table, profile })
     }
 
     fn subject(&self) -> &Subject {
@@ -49,15 +56,16 @@ impl Side {
     }
 }
 
-fn compare(left: &Side, right: &Side, json: bool, out: &mut Output) -> Result<Exit, Exit> {
+/// Prints what differs, from the left side to the right one.
+pub fn compare(left: &Side, right: &Side, json: bool, out: &mut Output) -> Result<Exit, Exit> {
     warn_of_other_kind(left, right);
     let (differences, mut one_sided): (Vec<Change>, Vec<Change>) =
-        changes(&left.table, &left.settings, &right.settings)
+        changes(&left.table, &left.profile.settings, &right.profile.settings)
             .into_iter()
             .partition(|change| change.before.is_some() && change.after.is_some());
     let foreign = SettingsImage::default();
     one_sided.extend(
-        changes(&right.table, &foreign, &right.settings)
+        changes(&right.table, &foreign, &right.profile.settings)
             .into_iter()
             .filter(|change| left.table.row(&change.key).is_none()),
     );

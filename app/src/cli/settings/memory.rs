@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use brushwork_link::settings::{
-    DefaultsReport, SaveReport, SaveVerdict, SettingsImage, SettingsTable, restore_defaults, save_eeprom,
+    DefaultsReport, SaveReport, SaveVerdict, SettingsImage, SettingsTable, defaults_kept, save_kept,
 };
 use serde_json::json;
 
@@ -11,9 +11,11 @@ use super::args::MemoryArgs;
 use super::ask;
 use super::controller::Controller;
 use super::review::{Change, change_lines, changes, settings_count};
+use super::write::merged;
 use crate::cli::exit::Exit;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::output::{Output, OutputError, say};
+use crate::keep::{Store, UnitId, WearLevel};
 
 /// How long a save or a restore may take with its readings before and after.
 const MEMORY_LIMIT: Duration = Duration::from_secs(300);
@@ -23,20 +25,36 @@ pub fn save(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
     let controller = Controller::connect(&args.connect, interrupt)?;
     let ram = controller.read()?;
     let list = changes(&ram.table, &known_defaults(&ram.table, &ram.image), &ram.image);
-    show(
-        args,
-        out,
-        "What EEPROM holds cannot be read without loading it over RAM. What would be saved, against the factory \
-         defaults:",
-        &list,
-    )?;
+    match Store::of_user().eeprom(controller.unit()) {
+        Some(known) => {
+            let head = format!("What would change in EEPROM, as known since {}:", known.date);
+            let unsaved = changes(&ram.table, &known.settings, &merged(&known.settings, &ram.image));
+            show(args, out, &head, &unsaved, "nothing: it holds the same already")?;
+        }
+        None => show(
+            args,
+            out,
+            "What EEPROM holds cannot be read without loading it over RAM. What would be saved, against the factory \
+             defaults:",
+            &list,
+            AT_DEFAULT,
+        )?,
+    }
+    tell_wear(controller.unit());
     let question = format!("Save all settings of {} to EEPROM?", controller.describe());
     ask::agreed(&question, args.yes, &controller)?;
     let (report, exit) = save_to_eeprom(&controller, &ram.table)?;
+    let wear = Store::of_user().wear(controller.unit());
     if args.json {
-        out.json(&json!({ "identity": controller.identity(), "not_default": list, "save": report }))?;
+        out.json(&json!({
+            "identity": controller.identity(),
+            "not_default": list,
+            "save": report,
+            "saves_counted": wear,
+        }))?;
     } else if report.verdict == SaveVerdict::Verified {
         out.line(report.sentence())?;
+        out.line(wear.sentence())?;
     }
     if report.verdict != SaveVerdict::Verified {
         say(report.sentence());
@@ -49,9 +67,9 @@ pub fn save_to_eeprom(
     controller: &Controller<'_>,
     table: &SettingsTable,
 ) -> Result<(SaveReport, Exit), Exit> {
-    let (options, table) = (controller.write_options(), table.clone());
-    let finished =
-        controller.run("save the settings", MEMORY_LIMIT, move |wire| save_eeprom(wire, &table, options))?;
+    let (options, table, mut keeper) = (controller.write_options(), table.clone(), controller.keeper());
+    let finished = controller
+        .run("save the settings", MEMORY_LIMIT, move |wire| save_kept(wire, &table, options, &mut *keeper))?;
     let report = finished.value.map_err(|failure| {
         say(format!("Nothing was saved. {failure}"));
         finished.broken.unwrap_or(Exit::Refused)
@@ -68,12 +86,12 @@ pub fn defaults(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> R
     let controller = Controller::connect(&args.connect, interrupt)?;
     let ram = controller.read()?;
     let list = changes(&ram.table, &ram.image, &known_defaults(&ram.table, &ram.image));
-    show(args, out, "What would change, as far as the factory defaults are known:", &list)?;
+    show(args, out, "What would change, as far as the factory defaults are known:", &list, AT_DEFAULT)?;
     let question = format!("Restore the factory defaults of {}?", controller.describe());
     ask::agreed(&question, args.yes, &controller)?;
-    let subject = controller.subject();
-    let finished =
-        controller.run("restore the defaults", MEMORY_LIMIT, move |wire| restore_defaults(wire, subject))?;
+    let (subject, mut keeper) = (controller.subject(), controller.keeper());
+    let finished = controller
+        .run("restore the defaults", MEMORY_LIMIT, move |wire| defaults_kept(wire, subject, &mut *keeper))?;
     let report = finished.value.map_err(|failure| {
         say(failure.to_string());
         finished.broken.unwrap_or(Exit::Refused)
@@ -130,11 +148,27 @@ fn known_defaults(table: &SettingsTable, image: &SettingsImage) -> SettingsImage
     known.map(|row| (row.key.clone(), row.default)).collect()
 }
 
-fn show(args: &MemoryArgs, out: &mut Output, head: &str, list: &[Change]) -> Result<(), OutputError> {
+const AT_DEFAULT: &str = "nothing: every setting is at its default";
+
+/// Says how often the EEPROM was written where that begins to matter.
+pub fn tell_wear(unit: &UnitId) {
+    let wear = Store::of_user().wear(unit);
+    if wear.level() > WearLevel::Fine {
+        say(format!("Note: {} {}", wear.sentence(), unit.limits()));
+    }
+}
+
+fn show(
+    args: &MemoryArgs,
+    out: &mut Output,
+    head: &str,
+    list: &[Change],
+    none: &str,
+) -> Result<(), OutputError> {
     let mut lines = vec![head.to_owned()];
     lines.extend(change_lines(list));
     if list.is_empty() {
-        lines.push("  nothing: every setting is at its default".to_owned());
+        lines.push(format!("  {none}"));
     } else {
         lines.push(format!("  ({})", settings_count(list.len())));
     }

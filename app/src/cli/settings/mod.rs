@@ -5,13 +5,17 @@
 
 pub mod args;
 pub(super) mod ask;
+mod backups;
+mod compare;
 pub(super) mod controller;
+mod copy;
 mod diff;
 mod keys;
 mod memory;
 mod profile;
 mod read;
 mod review;
+mod unfinished;
 mod write;
 
 use super::exit::Exit;
@@ -29,6 +33,11 @@ pub fn run(args: &SettingsArgs, out: &mut Output, interrupt: &Interrupt) -> Exit
         SettingsAction::Save(args) => memory::save(args, out, interrupt),
         SettingsAction::Defaults(args) => memory::defaults(args, out, interrupt),
         SettingsAction::Export(args) => profile::export(args, out, interrupt),
+        SettingsAction::Compare(args) => compare::run(args, out, interrupt),
+        SettingsAction::Backups(args) => backups::list(args, out),
+        SettingsAction::Restore(args) => backups::restore(args, out, interrupt),
+        SettingsAction::CopyMotor(args) => copy::run(args, out, interrupt),
+        SettingsAction::Unfinished(args) => unfinished::run(args, out, interrupt),
         SettingsAction::Reference(args) => read::reference(args, out),
     };
     done.unwrap_or_else(|exit| exit)

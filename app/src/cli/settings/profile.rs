@@ -1,9 +1,8 @@
 //! `brushwork settings export`, and profiles as files.
 
 use std::path::Path;
-use std::time::SystemTime;
 
-use brushwork_link::settings::Profile;
+use brushwork_link::settings::{OpenedProfile, Profile, Strictness};
 
 use super::args::ExportArgs;
 use super::controller::Controller;
@@ -16,15 +15,7 @@ use crate::cli::output::{Output, say};
 pub fn export(args: &ExportArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let controller = Controller::connect(&args.connect, interrupt)?;
     let report = controller.read()?;
-    let profile = Profile {
-        subject: *report.table.subject(),
-        firmware: controller.identity().version_text.clone(),
-        address: controller.address(),
-        date: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
-        unit: String::new(),
-        note: String::new(),
-        settings: report.image,
-    };
+    let profile = controller.profile_of(&report, report.image.clone());
     profile.save(&args.file).map_err(|error| {
         say(error.to_string());
         Exit::Failed
@@ -39,8 +30,8 @@ pub fn export(args: &ExportArgs, out: &mut Output, interrupt: &Interrupt) -> Res
 }
 
 /// The profile in a file; what is wrong with it is said on standard error.
-pub fn load(path: &Path) -> Result<Profile, Exit> {
-    Profile::load(path).map_err(|error| {
+pub fn open(path: &Path) -> Result<OpenedProfile, Exit> {
+    Profile::open(path, Strictness::Refuse).map_err(|error| {
         say(error.to_string());
         Exit::NotTaken
     })

@@ -1,11 +1,12 @@
 //! `brushwork settings write` and `import`: shows the changes, asks, writes, and names what did not take.
 
 use brushwork_link::settings::{
-    Profile, ReadReport, SaveReport, SaveVerdict, SettingsImage, SettingsTable, WriteReport, changes, write,
+    OpenedProfile, Profile, ReadReport, SaveReport, SaveVerdict, SettingsImage, SettingsTable, WriteReport,
+    changes, write_kept,
 };
 use serde_json::{Value, json};
 
-use super::args::{Assignment, ImportArgs, WriteArgs, WriteHow};
+use super::args::{Assignment, ImportArgs, UnfinishedArgs, WriteArgs, WriteHow};
 use super::ask;
 use super::controller::{Controller, WRITE_LIMIT};
 use super::review::{Review, settings_count};
@@ -16,25 +17,36 @@ use crate::cli::output::{Output, say};
 
 /// Writes the changes given, and those of a profile.
 pub fn run(args: &WriteArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
-    let profile = args.profile.as_deref().map(profile::load).transpose()?;
+    let profile = args.profile.as_deref().map(profile::open).transpose()?;
     let controller = Controller::connect(&args.connect, interrupt)?;
-    bring_about(&controller, profile.as_ref(), &args.changes, &args.how, out)
+    bring_about(&controller, profile, &args.changes, &args.how, out)
 }
 
 /// Writes what a profile says.
 pub fn import(args: &ImportArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
-    let profile = profile::load(&args.file)?;
+    let profile = profile::open(&args.file)?;
     let controller = Controller::connect(&args.connect, interrupt)?;
-    bring_about(&controller, Some(&profile), &[], &args.how, out)
+    bring_about(&controller, Some(profile), &[], &args.how, out)
 }
 
 /// What is to be written, and what of the profile cannot be.
-struct Wanted {
-    changes: SettingsImage,
+#[derive(Default)]
+pub struct Wanted {
+    /// The values that differ.
+    pub changes: SettingsImage,
     /// A sentence for each setting of the profile that cannot be written here.
-    left_out: Vec<String>,
+    pub left_out: Vec<String>,
     /// The same as lines, with those that share a reason put together.
-    left_out_lines: Vec<String>,
+    pub left_out_lines: Vec<String>,
+    /// What fitting a profile to this controller changed, a sentence each.
+    upgraded: Vec<String>,
+}
+
+impl Wanted {
+    /// Changes that leave nothing out.
+    pub fn of(changes: SettingsImage) -> Self {
+        Self { changes, ..Self::default() }
+    }
 }
 
 /// What came of it.
@@ -44,49 +56,90 @@ struct Results {
     save: Option<SaveReport>,
 }
 
-fn bring_about(
+/// Writes what a profile says, and assignments over it.
+pub fn bring_about(
     controller: &Controller<'_>,
-    profile: Option<&Profile>,
+    profile: Option<OpenedProfile>,
     assignments: &[Assignment],
     how: &WriteHow,
     out: &mut Output,
 ) -> Result<Exit, Exit> {
     let ram = controller.read()?;
-    let wanted = wanted(controller, &ram, profile, assignments)?;
-    let review = review(controller, &ram, &wanted)?;
-    show(&review, &wanted, how, out)?;
+    let wanted = wanted(controller, &ram, profile, assignments, how)?;
+    carry_out(controller, &ram, &wanted, how, out)
+}
+
+/// Shows the changes, asks, writes, reads back and tells.
+pub fn carry_out(
+    controller: &Controller<'_>,
+    ram: &ReadReport,
+    wanted: &Wanted,
+    how: &WriteHow,
+    out: &mut Output,
+) -> Result<Exit, Exit> {
+    let review = review(controller, ram, wanted)?;
+    show(&review, wanted, how, out)?;
     if how.dry_run {
-        print_json(controller, &review, &wanted, how, &Results::default(), out)?;
+        print_json(controller, &review, wanted, how, &Results::default(), out)?;
         return Ok(Exit::Done);
     }
     let count = review.changes.len();
+    if how.save {
+        memory::tell_wear(controller.unit());
+    }
     if count > 0 || how.save {
         ask::agreed(&question(controller, count, how.save), how.yes, controller)?;
     }
     let mut results = Results::default();
     let exit = perform(controller, &ram.table, wanted.changes.clone(), how, &mut results);
     tell(&ram.table, &results, how, out)?;
-    print_json(controller, &review, &wanted, how, &results, out)?;
+    print_json(controller, &review, wanted, how, &results, out)?;
     exit
+}
+
+/// How something that was cut short is settled.
+pub fn how(args: &UnfinishedArgs, save: bool) -> WriteHow {
+    WriteHow { yes: args.yes, dry_run: args.dry_run, save, json: args.json }
+}
+
+/// The profile as it is for this controller. Every change is told, and asked about before it is used.
+fn upgraded(
+    controller: &Controller<'_>,
+    ram: &ReadReport,
+    opened: OpenedProfile,
+    how: &WriteHow,
+) -> Result<(Profile, Vec<String>), Exit> {
+    let fitted = opened.profile.fitted_to(&ram.table);
+    let sentences: Vec<String> = opened.upgraded.into_iter().chain(fitted.changes).collect();
+    if sentences.is_empty() {
+        return Ok((opened.profile, sentences));
+    }
+    say("The profile has to be changed to fit this controller:");
+    sentences.iter().for_each(|sentence| say(format!("  {sentence}")));
+    if !how.dry_run {
+        ask::agreed("Use the profile with these changes?", how.yes, controller)?;
+    }
+    Ok((fitted.profile, sentences))
 }
 
 /// The changes that profile and assignments ask for.
 fn wanted(
     controller: &Controller<'_>,
     ram: &ReadReport,
-    profile: Option<&Profile>,
+    profile: Option<OpenedProfile>,
     assignments: &[Assignment],
+    how: &WriteHow,
 ) -> Result<Wanted, Exit> {
-    let mut wanted =
-        Wanted { changes: SettingsImage::default(), left_out: Vec::new(), left_out_lines: Vec::new() };
-    if let Some(profile) = profile {
+    let mut wanted = Wanted::default();
+    if let Some(opened) = profile {
+        let (profile, upgraded) = upgraded(controller, ram, opened, how)?;
         let asked = profile.changes_for(&ram.table, &ram.image, controller.identity().simulated);
         let asked = asked.map_err(|error| {
             say(format!("The profile does not fit {}, nothing was changed:\n{error}", controller.describe()));
             Exit::NotTaken
         })?;
-        let left_out_lines = left_out_lines(controller, ram, profile);
-        wanted = Wanted { changes: asked.wanted, left_out: asked.left_out, left_out_lines };
+        let left_out_lines = left_out_lines(controller, ram, &profile);
+        wanted = Wanted { changes: asked.wanted, left_out: asked.left_out, left_out_lines, upgraded };
     }
     let typed = keys::parse(&ram.table, assignments).map_err(|problems| refused(&problems))?;
     wanted.changes.merge(&typed);
@@ -113,7 +166,8 @@ fn left_out_lines(controller: &Controller<'_>, ram: &ReadReport, profile: &Profi
     lines
 }
 
-fn merged(ram: &SettingsImage, changes: &SettingsImage) -> SettingsImage {
+/// `ram` with `changes`.
+pub fn merged(ram: &SettingsImage, changes: &SettingsImage) -> SettingsImage {
     let mut after = ram.clone();
     after.merge(changes);
     after
@@ -185,9 +239,11 @@ fn perform(
 ) -> Result<Exit, Exit> {
     let mut exit = Exit::Done;
     if !changes.is_empty() {
-        let (options, job_table) = (controller.write_options(), table.clone());
-        let finished = controller
-            .run("write the settings", WRITE_LIMIT, move |wire| write(wire, &job_table, &changes, options))?;
+        let (options, job_table, mut keeper) =
+            (controller.write_options(), table.clone(), controller.keeper());
+        let finished = controller.run("write the settings", WRITE_LIMIT, move |wire| {
+            write_kept(wire, &job_table, &changes, options, &mut *keeper)
+        })?;
         let report = finished.value.map_err(|error| {
             say(error.to_string());
             finished.broken.unwrap_or(Exit::NotTaken)
@@ -211,6 +267,9 @@ fn perform(
 fn tell(table: &SettingsTable, results: &Results, how: &WriteHow, out: &mut Output) -> Result<(), Exit> {
     if let Some(report) = &results.write {
         report.sentences(table).iter().for_each(say);
+        if !report.is_complete() {
+            report.warnings.iter().for_each(say);
+        }
         if let Some(failure) = &report.ended_early {
             say(format!("Writing ended early. {failure}"));
         }
@@ -248,6 +307,7 @@ fn print_json(
         members.insert("identity".to_owned(), json!(controller.identity()));
         members.insert("dry_run".to_owned(), json!(how.dry_run));
         members.insert("left_out".to_owned(), json!(wanted.left_out));
+        members.insert("upgraded".to_owned(), json!(wanted.upgraded));
         members.insert("write".to_owned(), json!(results.write));
         members.insert("save".to_owned(), json!(results.save));
     }

@@ -1,0 +1,137 @@
+//! The built program as a person or a script runs it: its output, its exit codes, and controllers in the background.
+
+#![allow(dead_code)]
+
+use std::io::{BufRead as _, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+pub const DONE: i32 = 0;
+pub const USAGE: i32 = 2;
+pub const NO_LINK: i32 = 3;
+pub const REFUSED: i32 = 4;
+pub const NOT_TAKEN: i32 = 5;
+pub const DIFFERENT: i32 = 6;
+
+/// What a run of the program gave.
+#[derive(Debug)]
+pub struct Run {
+    pub code: i32,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+impl Run {
+    #[track_caller]
+    pub fn ended_with(self, code: i32) -> Self {
+        assert_eq!(self.code, code, "{self:#?}");
+        self
+    }
+
+    #[track_caller]
+    pub fn explains(self, words: &str) -> Self {
+        assert!(self.stderr.contains(words), "no {words:?} in {self:#?}");
+        self
+    }
+
+    /// Standard output has these words, however wide its columns are.
+    #[track_caller]
+    pub fn prints(self, words: &str) -> Self {
+        let in_one_line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(in_one_line(&self.stdout).contains(&in_one_line(words)), "no {words:?} in {self:#?}");
+        self
+    }
+
+    #[track_caller]
+    pub fn json(&self) -> Value {
+        serde_json::from_str(&self.stdout).unwrap_or_else(|error| panic!("{error}: {self:#?}"))
+    }
+}
+
+/// The program, keeping its files in a folder of the tests.
+pub fn program() -> Command {
+    program_keeping_in(Path::new(env!("CARGO_TARGET_TMPDIR")))
+}
+
+/// The program, keeping its files in a folder.
+pub fn program_keeping_in(folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_brushwork"));
+    command.env("BRUSHWORK_DATA_DIR", folder).stdin(Stdio::null());
+    command
+}
+
+/// `brushwork settings` with nobody at the terminal.
+pub fn settings(arguments: &[&str]) -> Run {
+    run(program().arg("settings").args(arguments))
+}
+
+/// Runs to the end.
+pub fn run(command: &mut Command) -> Run {
+    let output = command.output().expect("the program was built for this test");
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("the program prints UTF-8");
+    Run { code: output.status.code().unwrap_or(-1), stdout: text(output.stdout), stderr: text(output.stderr) }
+}
+
+/// A profile of a fresh simulated controller, and the folder it is in.
+pub fn exported(target: &str) -> (TempDir, PathBuf) {
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    let file = folder.path().join("profile.json");
+    settings(&["export", "-c", target, name(&file)]).ended_with(DONE);
+    (folder, file)
+}
+
+pub fn name(path: &Path) -> &str {
+    path.to_str().expect("temporary names are UTF-8")
+}
+
+/// Replaces the first `from` of a profile.
+pub fn edit(file: &Path, from: &str, to: &str) {
+    let text = std::fs::read_to_string(file).expect("the profile is there");
+    assert!(text.contains(from), "no {from:?} in {text}");
+    std::fs::write(file, text.replacen(from, to, 1)).expect("the profile can be written");
+}
+
+/// `brushwork sim` in the background: a controller that outlives one command.
+pub struct Simulated {
+    pub child: Child,
+    pub folder: TempDir,
+}
+
+impl Simulated {
+    pub fn start(arguments: &[&str]) -> Self {
+        let folder = tempfile::tempdir().expect("a temporary folder can be made");
+        let mut child = program()
+            .args(["sim", "--pty"])
+            .arg(folder.path().join("port"))
+            .args(arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("the program was built for this test");
+        let mut lines = BufReader::new(child.stdout.take().expect("it is piped")).lines();
+        let first = lines.next().expect("it says where it is").expect("it prints UTF-8");
+        assert!(first.contains("port"), "{first}");
+        // The rest is read to its end, so that the program never finds its standard output closed.
+        let reader = std::thread::Builder::new().name("sim output".to_owned());
+        reader.spawn(move || lines.for_each(drop)).expect("a thread can be started");
+        Self { child, folder }
+    }
+
+    pub fn port(&self) -> String {
+        name(&self.folder.path().join("port")).to_owned()
+    }
+
+    pub fn settings(&self, action: &str, arguments: &[&str]) -> Run {
+        settings(&[&[action, "--connect", &self.port()], arguments].concat())
+    }
+}
+
+impl Drop for Simulated {
+    fn drop(&mut self) {
+        let _ = Command::new("kill").arg(self.child.id().to_string()).status();
+        let _ = self.child.wait();
+    }
+}
