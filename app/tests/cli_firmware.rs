@@ -24,6 +24,7 @@ struct Run {
 fn command(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_brushwork"));
     command
+        .env("BRUSHWORK_DATA_DIR", env!("CARGO_TARGET_TMPDIR"))
         .arg("firmware")
         .args(arguments)
         .stdin(Stdio::null())

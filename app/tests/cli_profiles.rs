@@ -239,16 +239,16 @@ mod on_a_pseudo_terminal {
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()
-            .unwrap();
-        let mut shown = BufReader::new(child.stdout.take().unwrap()).lines();
-        assert!(shown.next().unwrap().unwrap().contains("->"));
+            .expect("the program was built for this test");
+        let mut shown = BufReader::new(child.stdout.take().expect("it is piped")).lines();
+        assert!(shown.next().is_some_and(|line| line.is_ok_and(|line| line.contains("->"))));
         let limit = std::time::Instant::now() + std::time::Duration::from_secs(60);
         while kept.files("journals").iter().all(|path| path.extension().is_none_or(|name| name != "json")) {
             assert!(std::time::Instant::now() < limit, "no journal");
             std::thread::sleep(std::time::Duration::from_millis(5));
         }
         std::thread::sleep(std::time::Duration::from_millis(400));
-        child.kill().unwrap();
+        let _ = child.kill();
         let _ = child.wait();
     }
 

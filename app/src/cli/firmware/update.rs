@@ -7,7 +7,7 @@ use std::time::{Duration, Instant, SystemTime};
 use brushwork_link::SystemClock;
 use brushwork_link::device::{Event, Request};
 use brushwork_link::firmware::{Progress, RESUME_NOTE, RiskAccepted, Sent, risks, suit};
-use brushwork_link::settings::Profile;
+use brushwork_link::settings::Act;
 use brushwork_link::transport::ConnectTarget;
 use brushwork_protocol::loader::{Image, SimulatedImage};
 use brushwork_protocol::models;
@@ -20,6 +20,7 @@ use crate::cli::interrupt::Interrupt;
 use crate::cli::output::{Output, say};
 use crate::cli::settings::ask;
 use crate::cli::settings::controller::Controller;
+use crate::keep::Store;
 use crate::session::firmware::{LoaderPlace, Upload, UploadEvent};
 
 /// How long the controller may take to stop its motors and enter the loader.
@@ -120,13 +121,12 @@ fn back_up(args: &UpdateArgs, controller: &Controller<'_>, out: &mut Output) -> 
         return Err(Exit::Refused);
     }
     let date = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
-    let profile = Profile {
-        subject: *report.table.subject(),
-        firmware: controller.identity().version_text.clone(),
-        address: controller.address(),
-        date: date.clone(),
-        settings: report.image,
-    };
+    let mut profile = controller.profile_of(&report, report.image.clone());
+    profile.note = format!("before {}", Act::Firmware.label());
+    Store::of_user().back_up(controller.unit(), Act::Firmware, &profile).map_err(|error| {
+        say(format!("{error} Nothing was sent."));
+        Exit::Failed
+    })?;
     let model = profile.subject.model.key;
     let path = args.backup.clone().unwrap_or_else(|| {
         // Colons do not go into file names everywhere.

@@ -31,7 +31,7 @@ pub fn write_kept(
         && !report.is_complete()
         && report.ended_early.is_none()
     {
-        tell_disturbed(wire, table, &before.image, report);
+        look_again(wire, table, &before.image, report);
     }
     keeper.end(match &result {
         Ok(report) if is_conclusive(report) => Ending::Known,
@@ -41,26 +41,32 @@ pub fn write_kept(
     result
 }
 
-/// A unit that restarted in the middle has lost more than what was to be written: everything that was not in its
-/// EEPROM.
-fn tell_disturbed(
-    wire: &mut dyn Wire,
-    table: &SettingsTable,
-    before: &SettingsImage,
-    report: &mut WriteReport,
-) {
+/// A unit that restarted in the middle has lost more than what came back otherwise: what had been read back before,
+/// and everything else that was not in its EEPROM. Reads all of it once more.
+fn look_again(wire: &mut dyn Wire, table: &SettingsTable, before: &SettingsImage, report: &mut WriteReport) {
     let Ok(after) = read_all(wire, *table.subject()) else { return };
+    report.transactions += after.transactions;
+    for row in report.rows.iter_mut().filter(|row| row.state == RowState::Taken) {
+        if let Some(now) = after.image.get(&row.key).filter(|now| *now != row.wanted) {
+            row.found = Some(now);
+            row.state = RowState::DidNotTake { why: LOST_AGAIN.to_owned() };
+        }
+    }
     let is_ours = |key: &str| report.rows.iter().any(|row| row.key == key);
     let disturbed = diff(table, before, &after.image).into_iter().filter(|difference| {
         difference.left.is_some() && difference.right.is_some() && !is_ours(&difference.key)
     });
     let sentence = |difference: Difference| {
         let row = table.row(&difference.key)?;
-        Some(format!("{}, which was not asked for.", difference.describe(row)))
+        Some(format!("{}, which was not asked for. {RESTARTED}", difference.describe(row)))
     };
     let sentences: Vec<String> = disturbed.filter_map(sentence).collect();
     report.warnings.extend(sentences);
 }
+
+const RESTARTED: &str = "The controller seems to have restarted meanwhile.";
+const LOST_AGAIN: &str =
+    "It had been taken and was lost again: the controller seems to have restarted meanwhile.";
 
 /// As [`super::super::save_eeprom`], with a backup and a journal. Nothing is saved when those cannot be kept.
 pub fn save_kept(
