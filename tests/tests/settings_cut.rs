@@ -26,6 +26,8 @@ const GENERATION: Generation = Generation::Gen1;
 const UNSAVED: (&str, SettingValue) = ("motor1.velocity.p", SettingValue::Number(5.0));
 
 type Line = VirtualLine<Faulty<Bus>>;
+/// When each request went out, and which command it was.
+type Sent = Arc<Mutex<Vec<(Duration, u8)>>>;
 
 fn table() -> SettingsTable {
     let model = models::lookup("mcp233").expect("it is listed");
@@ -49,7 +51,7 @@ fn wire(line: &Line) -> PacketWire {
 }
 
 /// A wire that notes when each request goes out, and which command it is.
-fn recorded_wire(line: &Line) -> (PacketWire, Arc<Mutex<Vec<(Duration, u8)>>>) {
+fn recorded_wire(line: &Line) -> (PacketWire, Sent) {
     let sent = Arc::new(Mutex::new(Vec::new()));
     let recorder = Recorder { line: line.clone(), sent: sent.clone() };
     let exchange = Exchange::new(Box::new(recorder), Arc::new(line.clock().clone()));
@@ -58,7 +60,7 @@ fn recorded_wire(line: &Line) -> (PacketWire, Arc<Mutex<Vec<(Duration, u8)>>>) {
 
 struct Recorder {
     line: Line,
-    sent: Arc<Mutex<Vec<(Duration, u8)>>>,
+    sent: Sent,
 }
 
 impl Transport for Recorder {
