@@ -15,7 +15,7 @@ use std::time::Duration;
 /// for a few milliseconds, so this is some ten seconds.
 const PATIENCE: usize = 1000;
 
-/// As [`write`], with a backup and a journal. Nothing is written when those cannot be kept.
+/// As [`write()`], with a backup and a journal. Nothing is written when those cannot be kept.
 pub fn write_kept(
     wire: &mut dyn Wire,
     table: &SettingsTable,
@@ -68,7 +68,7 @@ const RESTARTED: &str = "The controller seems to have restarted meanwhile.";
 const LOST_AGAIN: &str =
     "It had been taken and was lost again: the controller seems to have restarted meanwhile.";
 
-/// As [`super::super::save_eeprom`], with a backup and a journal. Nothing is saved when those cannot be kept.
+/// As `save_eeprom`, with a backup and a journal. Nothing is saved when those cannot be kept.
 pub fn save_kept(
     wire: &mut dyn Wire,
     table: &SettingsTable,
