@@ -123,13 +123,19 @@ impl App {
         {
             desk.watch.not_begun();
         }
-        let wanted = desk.watch.wants_signals();
+        let (wanted, traced) = (desk.watch.wants_signals(), desk.traffic.open);
         let link = self.links.entry(id);
         if link.reads_signals != wanted
             && let Some(device) = &link.device
             && device.request(Request::ReadSignals(wanted)).is_ok()
         {
             link.reads_signals = wanted;
+        }
+        if link.traced != traced
+            && let Some(device) = &link.device
+            && device.request(Request::Trace(traced)).is_ok()
+        {
+            link.traced = traced;
         }
     }
 
@@ -198,6 +204,7 @@ impl App {
         let poll = desk.poll;
         link.device = Some(opened.device);
         link.reads_signals = false;
+        link.traced = false;
         if poll != PollRate::default() {
             self.request_of(id, Request::Poll(poll));
         }
@@ -271,6 +278,11 @@ impl App {
             Command::ApplyLoops(columns) => self.apply_loops(columns),
             Command::World(action) => self.act_on_world(action),
             Command::Settings(wish) => self.settings(wish),
+            Command::Transact { id, command, values } => {
+                if !self.request(Request::Transact { id, command, values }) {
+                    self.model.front.traffic.composer.forget_waiting();
+                }
+            }
             Command::DismissMessage => self.model.messages.dismiss(),
         }
     }
@@ -421,12 +433,15 @@ impl App {
         ctx.request_repaint_after(FRAME_INTERVAL);
     }
 
-    /// Ctrl and a digit shows a screen, Ctrl+B the panel of the simulated world.
+    /// Ctrl and a digit shows a screen, Ctrl+B the panel of the simulated world, Ctrl+T the traffic.
     fn shortcuts(&mut self, ctx: &Context) -> Commands {
         let keys = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6];
         let pressed = |key| ctx.input_mut(|input| input.consume_key(Modifiers::COMMAND, key));
         if pressed(Key::B) {
             self.model.front.world.open = !self.model.front.world.open;
+        }
+        if pressed(Key::T) {
+            self.model.front.traffic.open = !self.model.front.traffic.open;
         }
         let screens = keys.into_iter().zip(Screen::ALL).filter(|(key, _)| pressed(*key));
         screens.map(|(_, screen)| Command::Show(screen)).collect()

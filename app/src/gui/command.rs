@@ -2,7 +2,7 @@
 
 use brushwork_link::device::{ArmScope, PollRate};
 use brushwork_link::transport::Stream;
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_protocol::packet_serial::{Motor, Value};
 use brushwork_sim::world::WorldAction;
 
 use super::model::general::SettingsWish;
@@ -35,6 +35,12 @@ pub enum Command {
     World(WorldAction),
     /// Something to be done with the settings of the unit that is looked at.
     Settings(SettingsWish),
+    /// Sends one raw command; the answer comes with `id`.
+    Transact {
+        id: u64,
+        command: u8,
+        values: Vec<Value>,
+    },
     DismissMessage,
 }
 

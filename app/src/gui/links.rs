@@ -17,6 +17,8 @@ pub struct Link {
     pub device: Option<DeviceHandle>,
     /// Whether the device thread was told to read the input pins.
     pub reads_signals: bool,
+    /// Whether the device thread was told to tell what goes over the wire.
+    pub traced: bool,
     /// Lives on when the link ends, so that a cable that was pulled out can be put back.
     pub world: Option<Arc<dyn SimulatedWorld>>,
 }

@@ -18,6 +18,7 @@ pub mod run;
 pub mod screens;
 pub mod shell;
 pub mod theme;
+pub mod traffic;
 pub mod widgets;
 pub mod world;
 

@@ -19,6 +19,7 @@ use super::link::{Effect, LinkView};
 use super::loop_settings::LoopSettings;
 use super::pwm::Pwm;
 use super::screen::Screen;
+use super::traffic::Traffic;
 use super::velocity::Velocity;
 use super::watch::Watch;
 use super::world::WorldPanel;
@@ -52,6 +53,8 @@ pub struct Desk {
     pub history: History,
     /// What a diagnosis needs besides the status word.
     pub watch: Watch,
+    /// The traffic panel of this link.
+    pub traffic: Traffic,
     /// The screen whose channels the graph shows.
     graph_of: Screen,
     /// Which channels the graph showed when another screen that drives was left.
@@ -115,6 +118,7 @@ impl Desk {
             loops: LoopSettings::default(),
             history: History::default(),
             watch: Watch::default(),
+            traffic: Traffic::default(),
             graph_of: Screen::Pwm,
             graph_choices: BTreeMap::new(),
             world: WorldPanel::default(),
@@ -142,6 +146,7 @@ impl Desk {
     /// end of the link.
     pub fn take(&mut self, event: Event) -> Vec<Effect> {
         self.history.note(&event);
+        self.traffic.note(&event);
         if self.watch.note(&event) {
             self.update_homed();
             return Vec::new();
@@ -210,6 +215,7 @@ impl Desk {
         self.phase = Phase::Closed;
         self.link = LinkView::default();
         self.watch = Watch::default();
+        self.traffic.link_ended();
         self.general.link_ended();
         self.loops.forget();
         self.rest();

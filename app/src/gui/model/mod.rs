@@ -17,6 +17,7 @@ pub mod pwm;
 pub mod readings;
 pub mod screen;
 pub mod setpoints;
+pub mod traffic;
 pub mod velocity;
 pub mod watch;
 pub mod world;

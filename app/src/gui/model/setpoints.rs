@@ -65,6 +65,11 @@ impl Setpoints {
         (drive.m1.is_some() || drive.m2.is_some()).then_some(drive)
     }
 
+    /// Counts both as changed, whoever holds them: to see what they stand for.
+    pub fn touch(&mut self) {
+        (self.changed, self.held) = ([true; 2], [false; 2]);
+    }
+
     /// The device thread has taken what [`Setpoints::to_send`] gave.
     pub fn sent(&mut self) {
         self.changed = [false; 2];

@@ -5,7 +5,7 @@ use egui::{CentralPanel, Frame, Margin, Panel, RichText, ScrollArea, Ui};
 use super::command::Commands;
 use super::model::Model;
 use super::theme::Palette;
-use super::{screens, world};
+use super::{screens, traffic, world};
 
 mod bottom;
 mod devices;
@@ -15,6 +15,8 @@ mod top;
 
 const LEFT_WIDTH: f32 = 222.0;
 const WORLD_WIDTH: f32 = 292.0;
+const TRAFFIC_HEIGHT: f32 = 230.0;
+const TRAFFIC_RANGE: std::ops::RangeInclusive<f32> = 140.0..=600.0;
 
 /// The whole window.
 pub fn shell_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
@@ -34,6 +36,13 @@ pub fn shell_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         Panel::right("world").resizable(false).exact_size(WORLD_WIDTH).frame(panel).show(ui, |ui| {
             ScrollArea::vertical().show(ui, |ui| world::world_ui(ui, model, commands));
         });
+    }
+    if model.front.traffic.open {
+        let traffic = Panel::bottom("traffic").resizable(true).default_size(TRAFFIC_HEIGHT);
+        traffic
+            .size_range(TRAFFIC_RANGE)
+            .frame(panel)
+            .show(ui, |ui| traffic::traffic_ui(ui, model, commands));
     }
     let central = Frame::new().fill(palette.panel).inner_margin(Margin::symmetric(12, 10));
     CentralPanel::no_frame().frame(central).show(ui, |ui| screens::screen_ui(ui, model, commands));

@@ -35,6 +35,8 @@ use std::time::Duration;
 
 /// How often the link's figures are told.
 const STATISTICS_INTERVAL: Duration = Duration::from_millis(500);
+/// No reply is longer.
+const LONGEST_REPLY: usize = 4096;
 /// How soon a full event channel is tried again.
 const FLUSH_INTERVAL: Duration = Duration::from_millis(5);
 
@@ -70,8 +72,9 @@ pub struct DeviceLoop {
     sweep: Sweep,
     statistics_at: Duration,
     phase: Phase,
-    /// The last bytes sent, to read their answer by when traffic is shown.
+    /// The last bytes sent, to read their answer by when traffic is shown, and what has come of it.
     last_sent: Vec<u8>,
+    last_received: Vec<u8>,
 }
 
 /// One unit of the link.
@@ -142,6 +145,7 @@ impl DeviceLoop {
             statistics_at: now + STATISTICS_INTERVAL,
             phase: Phase::Connecting,
             last_sent: Vec::new(),
+            last_received: Vec::new(),
             clock,
             signals,
             inbox,
@@ -286,12 +290,16 @@ impl DeviceLoop {
     fn tell_traffic(&mut self) {
         for traffic in self.exchange.take_traffic() {
             let controller = self.units.get(self.selected).map(|unit| &unit.controller);
-            let describe = |reply| controller.map(|unit| unit.describe_traffic(&self.last_sent, reply));
             let text = if traffic.sent {
                 self.last_sent.clone_from(&traffic.bytes);
+                self.last_received.clear();
                 controller.map(|unit| unit.describe_traffic(&traffic.bytes, None))
             } else {
-                describe(Some(&traffic.bytes))
+                // A reply that comes in two parts is read as one. Noise without end is not kept.
+                if self.last_received.len() < LONGEST_REPLY {
+                    self.last_received.extend(&traffic.bytes);
+                }
+                controller.map(|unit| unit.describe_traffic(&self.last_sent, Some(&self.last_received)))
             };
             let Described { text, sound } = text.unwrap_or_default();
             self.outbox.send(Event::Traffic { traffic, text, sound });

@@ -1,0 +1,46 @@
+//! The traffic panel: every transaction as it goes over the wire, one command put together by hand, and the bytes that wait to
+//! be sent. It lies below any screen, so that one can watch while driving.
+
+use egui::{Key, Ui};
+
+use super::command::{Command, Commands};
+use super::model::Model;
+use super::model::traffic::Tab;
+use super::shell::heading_ui;
+
+mod composer;
+mod log;
+mod pending;
+
+pub fn traffic_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    let tab = model.front.traffic.tab;
+    ui.horizontal(|ui| {
+        heading_ui(ui, "Traffic");
+        let tabs = [(Tab::Log, "Log"), (Tab::Composer, "Send a command"), (Tab::Pending, "Before sending")];
+        for (each, title) in tabs {
+            let response = ui.selectable_label(tab == each, title);
+            if response.clicked() || (response.has_focus() && ui.input(|input| input.key_pressed(Key::Enter)))
+            {
+                model.front.traffic.tab = each;
+            }
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if ui.button("Close").on_hover_text("Hides the panel and ends the recording (Ctrl+T)").clicked() {
+                model.front.traffic.open = false;
+            }
+            if tab == Tab::Log {
+                log::head_ui(ui, model, commands);
+            }
+        });
+    });
+    match tab {
+        Tab::Log => log::log_ui(ui, model, commands),
+        Tab::Composer => composer::composer_ui(ui, model, commands),
+        Tab::Pending => pending::pending_ui(ui, model),
+    }
+}
+
+/// What a screen command is called here, so that others need not know it.
+pub fn send(id: u64, request: brushwork_protocol::packet_serial::Request) -> Command {
+    Command::Transact { id, command: request.command, values: request.values }
+}
