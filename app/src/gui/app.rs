@@ -81,6 +81,7 @@ impl App {
             self.apply(command);
         }
         self.read_loops();
+        self.watch_signals();
         self.drive(&ctx);
         self.show_appearance(&ctx);
     }
@@ -348,6 +349,36 @@ impl App {
         }
     }
 
+    /// Has the input pins read while a screen shows them, and puts an input back whose calibration has ended or was left.
+    fn watch_signals(&mut self) {
+        for id in self.links.ids() {
+            let is_shown = self.model.screen == Screen::GeneralSettings && id == self.model.front.id();
+            let Some(desk) = self.model.desk_mut(id) else { continue };
+            if !is_shown {
+                desk.general.cancel_calibration();
+            }
+            let wanted = is_shown && desk.is_connected() && desk.general.wants_signals();
+            let is_other = wanted != desk.link.reads_signals;
+            if let Some(wish) = desk.general.next_wish() {
+                self.settings_of(id, wish);
+            }
+            if is_other
+                && self.links.device(id).is_some()
+                && self.request_of(id, Request::ReadSignals(wanted))
+            {
+                self.signals_switched(id, wanted);
+            }
+        }
+    }
+
+    fn signals_switched(&mut self, id: DeskId, on: bool) {
+        let Some(desk) = self.model.desk_mut(id) else { return };
+        desk.link.reads_signals = on;
+        if !on {
+            desk.link.readings.forget_signals();
+        }
+    }
+
     fn apply_loops(&mut self, columns: &[Column]) {
         let Some(identity) = self.model.front.link.identity().cloned() else { return };
         let stream = self.model.front.link.stream;
@@ -396,11 +427,17 @@ impl App {
 
     /// Starts or ends work with the settings, on the device thread.
     fn settings(&mut self, wish: SettingsWish) {
-        let stream = self.model.front.link.stream;
-        if let Some(request) = self.model.front.general.begin(wish, stream)
-            && !self.request(request)
+        self.settings_of(self.model.front.id(), wish);
+    }
+
+    fn settings_of(&mut self, id: DeskId, wish: SettingsWish) {
+        let Some(desk) = self.model.desk_mut(id) else { return };
+        let stream = desk.link.stream;
+        if let Some(request) = desk.general.begin(wish, stream)
+            && !self.request_of(id, request)
+            && let Some(desk) = self.model.desk_mut(id)
         {
-            self.model.front.general.not_begun();
+            desk.general.not_begun();
         }
     }
 

@@ -198,6 +198,7 @@ impl Desk {
             Effect::Sample(sample) => {
                 self.watch.note_sample(&sample);
                 self.update_homed();
+                self.general.take_signals(&sample.signals);
                 self.graph.take(&sample);
             }
             Effect::OtherUnit => {

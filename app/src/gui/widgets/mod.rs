@@ -6,6 +6,7 @@ pub mod lamp;
 pub mod numeric;
 pub mod readout;
 pub mod setpoint;
+pub mod steps;
 pub mod stop;
 pub mod text_field;
 

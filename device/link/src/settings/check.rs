@@ -13,6 +13,14 @@ const ORDERED_PAIRS: &[(&str, &str)] = &[
     ("motor2.position.min", "motor2.position.max"),
 ];
 
+/// The row that drives one motor with both channels.
+const BRIDGE_CHANNELS: &str = "unit.bridge_channels";
+
+/// What to know before the channels are bridged (MCP manual 1.8.1, 1.8.2).
+pub const BRIDGE_WARNING: &str = "Bridged channels drive one motor with both outputs: wire that motor to them only after \
+     this is written and saved to EEPROM, and exactly as in MCP manual 1.8.2. Wired before, or wired otherwise, the \
+     controller is damaged.";
+
 /// A script autorun delay below this switches autorun off (MCP manual 2.3.1, command 246).
 const SHORTEST_AUTORUN_MS: i64 = 100;
 
@@ -55,7 +63,19 @@ pub(super) fn dangers(table: &SettingsTable, after: &SettingsImage, changes: &Se
     }
     dangers.extend(arming_obstacle(after, changes));
     dangers.extend(torque_control(table, after, changes));
+    dangers.extend(bridging(changes).map(str::to_owned));
     dangers
+}
+
+/// One motor on both channels, or one on each: the wiring must fit before power is put on it (MCP manual 1.8).
+fn bridging(changes: &SettingsImage) -> Option<&'static str> {
+    match changes.get(BRIDGE_CHANNELS)? {
+        SettingValue::Bool(true) => Some(BRIDGE_WARNING),
+        _ => Some(
+            "The channels are separate again: take the single motor off both of them before this is written, or the \
+             controller is damaged. MCP manual 1.8.",
+        ),
+    }
 }
 
 /// Without the serial input in a priority level this program may not move a motor.

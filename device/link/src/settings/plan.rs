@@ -124,7 +124,12 @@ pub fn plan(
 /// The contradictions that some of the changes take part in.
 fn new_conflicts(table: &SettingsTable, after: &SettingsImage, changes: &SettingsImage) -> Vec<String> {
     let found = conflicts(table, &|key| after.get(key)).into_iter();
-    let is_touched = |conflict: &Conflict| conflict.keys.iter().any(|key| changes.get(key).is_some());
+    // The type of a pin and whether it is digital are one choice for a person.
+    let twin = |key: &str| key.strip_suffix(".type").map(|pin| format!("{pin}.digital"));
+    let is_changed = |key: &String| {
+        changes.get(key).is_some() || twin(key).is_some_and(|twin| changes.get(&twin).is_some())
+    };
+    let is_touched = |conflict: &Conflict| conflict.keys.iter().any(is_changed);
     found.filter(is_touched).map(|conflict| conflict.sentence).collect()
 }
 

@@ -11,12 +11,15 @@ use super::link::Effect;
 use super::message::Gravity;
 
 mod applicable;
+mod calibrate;
 mod outcome;
+mod pins;
 mod profile;
 mod section;
 mod unit;
 mod work;
 
+pub use calibrate::Run as CalibrationRun;
 pub use profile::{Comparison, Profiles, Purpose, Told};
 pub use section::{Section, sections};
 pub use unit::{Saved, UnitSettings};
@@ -35,6 +38,9 @@ pub struct General {
     /// The row that is explained below the list, by its key.
     pub explained: Option<String>,
     pub profiles: Profiles,
+    calibration: Option<calibrate::Run>,
+    /// The row that is to be scrolled into view.
+    sought: Option<String>,
     sheet: Option<Sheet>,
     sheet_is_new: bool,
 }
@@ -122,6 +128,16 @@ impl General {
         self.sheet_is_new = true;
     }
 
+    /// Whether a row is to be scrolled into view.
+    pub fn is_seeking(&self) -> bool {
+        self.sought.is_some()
+    }
+
+    /// The row that is to be scrolled into view, once.
+    pub fn take_sought(&mut self) -> Option<String> {
+        self.sought.take()
+    }
+
     pub fn close_sheet(&mut self) {
         self.sheet = None;
     }
@@ -137,13 +153,16 @@ impl General {
             self.running.as_mut()?.is_cancelled = true;
             return Some(Request::CancelJob);
         }
-        if self.running.is_some() {
+        let is_calibrating = matches!(wish, SettingsWish::OpenInput | SettingsWish::CloseInput);
+        if self.running.is_some() || self.calibration.is_some() != is_calibrating {
             return None;
         }
-        let key = self.current.clone()?;
+        let run = self.calibration.as_ref();
+        let key = run.map(|run| run.unit.clone()).or_else(|| self.current.clone())?;
+        let input = run.map(|run| run.image(wish));
         let unit = self.units.get_mut(&key)?;
         unit.note_asked();
-        let (job, running) = work::begin(wish, key, unit, own_stream)?;
+        let (job, running) = work::begin(wish, key, unit, input, own_stream)?;
         self.running = Some(running);
         self.sheet = None;
         Some(Request::Job(job))
@@ -155,6 +174,7 @@ impl General {
             && !std::mem::take(&mut running.is_cancelled)
         {
             self.running = None;
+            self.calibration_not_begun();
         }
     }
 
@@ -189,6 +209,7 @@ impl General {
         self.running = None;
         self.current = None;
         self.sheet = None;
+        self.calibration_lost();
         for unit in self.units.values_mut() {
             unit.forget();
         }
@@ -196,12 +217,24 @@ impl General {
 
     fn ended(&mut self, ending: &JobEnding) -> Vec<Effect> {
         let Some(running) = self.running.take() else { return Vec::new() };
+        if matches!(running.wish, SettingsWish::OpenInput | SettingsWish::CloseInput) {
+            let report = match running.result() {
+                Some(work::Outcome::Written(report)) => Some(*report),
+                _ => None,
+            };
+            let told = self.calibration_step_ended(report);
+            return self.told(told);
+        }
         let Some(unit) = self.units.get_mut(&running.unit) else { return Vec::new() };
         let told = match running.result() {
             Some(outcome) => outcome::take(unit, outcome),
             None => outcome::nothing_came(&running, ending),
         };
         self.follow_address(&running.unit, told.address);
+        self.told(told)
+    }
+
+    fn told(&mut self, told: Summary) -> Vec<Effect> {
         if !told.sentences.is_empty() {
             self.open(Sheet::Report { title: told.summary.clone(), sentences: told.sentences });
         }
@@ -230,4 +263,10 @@ struct Summary {
     sentences: Vec<String>,
     /// Where the unit answers now, if the work can have changed that.
     address: Option<u8>,
+}
+
+impl Summary {
+    fn note(summary: String) -> Self {
+        Self { gravity: Gravity::Note, summary, sentences: Vec::new(), address: None }
+    }
 }

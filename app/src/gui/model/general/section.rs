@@ -12,7 +12,13 @@ pub enum Section {
     Group(Group),
     /// The rows of one port, pin or output: its group, and its number there.
     One(Group, usize),
+    /// What contradicts itself.
+    Conflicts,
 }
+
+/// The ports whose lines are also those of a bus (MCP manual 1.9.4, 1.9.6): their numbers and what to call them.
+const RS232: (usize, &str) = (2, "CAN/RS-232 UART0");
+const TTL1: (usize, &str) = (3, "I2C/TTL UART1");
 
 impl Default for Section {
     fn default() -> Self {
@@ -27,13 +33,15 @@ impl Section {
             (Some(instance), Group::Streams | Group::Pins | Group::Outputs) => {
                 Self::One(row.group, instance.number)
             }
+            (_, Group::Buses) if row.key.starts_with("i2c.") => Self::One(Group::Streams, TTL1.0),
+            (_, Group::Buses) => Self::One(Group::Streams, RS232.0),
             _ => Self::Group(row.group),
         }
     }
 
     /// Whether it stands in the second list, that of pins.
     pub fn is_pin(self) -> bool {
-        matches!(self, Self::One(..) | Self::Group(Group::Buses))
+        matches!(self, Self::One(..))
     }
 }
 
@@ -44,6 +52,8 @@ pub fn sections(table: &SettingsTable) -> Vec<(Section, &str)> {
         let section = Section::of(row);
         if found.iter().all(|(known, _)| *known != section) {
             let name = match (section, &row.instance) {
+                (Section::One(Group::Streams, number), _) if number == RS232.0 => RS232.1,
+                (Section::One(Group::Streams, number), _) if number == TTL1.0 => TTL1.1,
                 (Section::One(..), Some(instance)) => instance.name.as_str(),
                 _ => row.group.label(),
             };
@@ -52,7 +62,7 @@ pub fn sections(table: &SettingsTable) -> Vec<(Section, &str)> {
     }
     // Ion Studio lists ports, buses, inputs and outputs in this order.
     let place = |section: Section| match section {
-        Section::Group(Group::Buses) => (2, Group::Buses),
+        Section::Conflicts => (0, Group::Unit),
         Section::Group(group) => (0, group),
         Section::One(group @ Group::Streams, _) => (1, group),
         Section::One(group @ Group::Pins, _) => (3, group),

@@ -31,6 +31,13 @@ pub struct UnitSettings {
     was_asked: bool,
 }
 
+/// What a calibration must not disturb: edits, and what is known of EEPROM.
+#[derive(Clone, Debug)]
+pub(super) struct Kept {
+    edits: SettingsImage,
+    written: BTreeSet<String>,
+}
+
 #[derive(Debug)]
 struct Typed {
     text: String,
@@ -256,6 +263,18 @@ impl UnitSettings {
         let (Some(eeprom), Some(ram)) = (self.copies.eeprom(), self.copies.ram()) else { return Vec::new() };
         let known = |difference: &Difference| difference.left.is_some() && difference.right.is_some();
         diff(&self.table, eeprom, ram).into_iter().filter(known).collect()
+    }
+
+    /// The edits and what was written, as they are.
+    pub(super) fn keep(&self) -> Kept {
+        Kept { edits: self.edits.clone(), written: self.written.clone() }
+    }
+
+    /// Edits and what was written as they were.
+    pub(super) fn put_back(&mut self, kept: Kept) {
+        self.edits = kept.edits;
+        self.written = kept.written;
+        self.drop_fulfilled();
     }
 
     /// The link is gone. What was read may no longer be true; the edits stay.

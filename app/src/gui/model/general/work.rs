@@ -8,8 +8,8 @@ use std::time::Duration;
 use brushwork_link::Failure;
 use brushwork_link::device::{FnJob, Job, JobContext};
 use brushwork_link::settings::{
-    DefaultsReport, ReadReport, SaveReport, WriteError, WriteOptions, WriteReport, read_all, reload,
-    restore_defaults, save_eeprom, write,
+    DefaultsReport, ReadReport, SaveReport, SettingsImage, WriteError, WriteOptions, WriteReport, read_all,
+    reload, restore_defaults, save_eeprom, write,
 };
 use brushwork_link::transport::Stream;
 use crossbeam_channel::{Receiver, bounded};
@@ -29,6 +29,10 @@ pub enum SettingsWish {
     /// Saves the controller's RAM to its EEPROM and reads that back.
     Save,
     RestoreDefaults,
+    /// Opens the range of the input that is to be calibrated.
+    OpenInput,
+    /// Puts the input back that was opened.
+    CloseInput,
     /// Ends the work that runs.
     Cancel,
 }
@@ -38,6 +42,7 @@ pub enum SettingsWish {
 pub struct Running {
     pub(super) unit: UnitKey,
     pub(super) name: String,
+    pub(super) wish: SettingsWish,
     pub(super) has_started: bool,
     /// 0 to 1, where it is known.
     pub fraction: Option<f32>,
@@ -73,11 +78,12 @@ const READING_LIMIT: Duration = Duration::from_secs(120);
 /// Longest time for anything that writes, reading before and after included.
 const WRITING_LIMIT: Duration = Duration::from_secs(400);
 
-/// The job for a wish.
+/// The job for a wish. `input` is what opens or closes an input.
 pub(super) fn begin(
     wish: SettingsWish,
     key: UnitKey,
     unit: &UnitSettings,
+    input: Option<SettingsImage>,
     own_stream: Option<Stream>,
 ) -> Option<(Box<dyn Job>, Running)> {
     let table = unit.table().clone();
@@ -93,7 +99,14 @@ pub(super) fn begin(
                 reload(context, &table).map(|report| Outcome::Reloaded(Box::new(report)))
             })
         }
-        SettingsWish::Write => writing(key, unit, options),
+        SettingsWish::Write => {
+            let name = format!("write {}", super::outcome::settings(unit.edits().len()));
+            writing(key, name, unit, unit.edits().clone(), options)
+        }
+        SettingsWish::OpenInput | SettingsWish::CloseInput => {
+            let does = if wish == SettingsWish::OpenInput { "open the input" } else { "put the input back" };
+            writing(key, does.to_owned(), unit, input?, options)
+        }
         SettingsWish::Save => {
             job(key, "save the settings to EEPROM".to_owned(), WRITING_LIMIT, move |context| {
                 save_eeprom(context, &table, options).map(|report| Outcome::Saved(Box::new(report)))
@@ -105,12 +118,18 @@ pub(super) fn begin(
             })
         }
     };
-    Some(begun)
+    let (job, running) = begun;
+    Some((job, Running { wish, ..running }))
 }
 
-fn writing(key: UnitKey, unit: &UnitSettings, options: WriteOptions) -> (Box<dyn Job>, Running) {
-    let (table, wanted) = (unit.table().clone(), unit.edits().clone());
-    let name = format!("write {}", super::outcome::settings(wanted.len()));
+fn writing(
+    key: UnitKey,
+    name: String,
+    unit: &UnitSettings,
+    wanted: SettingsImage,
+    options: WriteOptions,
+) -> (Box<dyn Job>, Running) {
+    let table = unit.table().clone();
     job(key, name, WRITING_LIMIT, move |context| {
         Ok(match write(context, &table, &wanted, options) {
             Ok(report) => Outcome::Written(Box::new(report)),
@@ -135,6 +154,7 @@ fn job(
     let running = Running {
         unit,
         name,
+        wish: SettingsWish::Read,
         has_started: false,
         fraction: None,
         text: String::new(),

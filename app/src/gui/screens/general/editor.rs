@@ -1,7 +1,7 @@
 //! The field of one setting: a box, a list, or an exact number.
 
 use brushwork_link::settings::{Kind, Row, SettingValue};
-use brushwork_protocol::codes::Code;
+use brushwork_protocol::codes::{Code, ENCODER_PIN_NONE};
 use egui::text::{CCursor, CCursorRange};
 use egui::{ComboBox, Id, Key, Response, RichText, Stroke, TextEdit, Ui, vec2};
 
@@ -14,6 +14,11 @@ const LIST_WIDTH: f32 = 164.0;
 /// Draws the field; true when it has the keyboard.
 pub fn editor_ui(ui: &mut Ui, unit: &mut UnitSettings, row: &Row) -> bool {
     let response = match (row.kind, unit.wanted(&row.key)) {
+        (Kind::Int, value) if row.pattern == ENCODER_PIN => {
+            let choices = encoder_pins(unit);
+            let named: Vec<_> = choices.iter().map(|(value, name)| (*value, name.as_str())).collect();
+            list_ui(ui, unit, row, value, &named)
+        }
         (Kind::Bool, Some(SettingValue::Bool(on))) => box_ui(ui, unit, row, on),
         (Kind::Bool, value) => list_ui(ui, unit, row, value, &[(NO, "no"), (YES, "yes")]),
         (Kind::Choice(codes), value) => list_ui(ui, unit, row, value, &choices(codes)),
@@ -24,6 +29,23 @@ pub fn editor_ui(ui: &mut Ui, unit: &mut UnitSettings, row: &Row) -> bool {
         response.scroll_to_me(None);
     }
     response.has_focus()
+}
+
+/// The row that names a motor's encoder by the number of its pin.
+const ENCODER_PIN: &str = "motor{n}.encoder.pin";
+
+/// None, and every pin that can be an encoder, by the numbers that we assume for them.
+fn encoder_pins(unit: &UnitSettings) -> Vec<(SettingValue, String)> {
+    let subject = unit.table().subject();
+    let is_able = |index: &usize| {
+        let pin = subject.model.pins.get(*index);
+        pin.is_none_or(|pin| pin.is_analog() || pin.is_pulse() || pin.encoder_channel().is_some())
+    };
+    let pins = (0..subject.pins)
+        .filter(is_able)
+        .map(|index| (index as i64, format!("{index}: {}", subject.pin_name(index))));
+    let none = (ENCODER_PIN_NONE, "None".to_owned());
+    std::iter::once(none).chain(pins).map(|(number, name)| (SettingValue::Int(number), name)).collect()
 }
 
 const NO: SettingValue = SettingValue::Bool(false);
@@ -49,7 +71,9 @@ fn list_ui(
     value: Option<SettingValue>,
     choices: &[(SettingValue, &str)],
 ) -> Response {
-    let shown = value.map_or_else(|| "not known".to_owned(), |value| row.format(value));
+    let named = choices.iter().find(|(choice, _)| value == Some(*choice)).map(|(_, name)| (*name).to_owned());
+    let shown =
+        named.unwrap_or_else(|| value.map_or_else(|| "not known".to_owned(), |value| row.format(value)));
     let list = ComboBox::from_id_salt(&row.key).width(LIST_WIDTH).selected_text(shown).truncate();
     let opened = list.show_ui(ui, |ui| {
         for (choice, label) in choices {

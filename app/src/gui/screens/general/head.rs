@@ -65,7 +65,7 @@ fn mark_ui(ui: &mut Ui, state: LampState, title: &str, text: &str) {
 
 fn buttons_ui(ui: &mut Ui, general: &mut General) {
     let Some(unit) = general.unit() else { return };
-    let idle = general.running().is_none();
+    let idle = !general.is_busy();
     let has_profile = general.profiles.opened().is_some();
     let edits = unit.edits().len();
     let write = if edits == 0 { "Write…".to_owned() } else { format!("Write {edits}…") };

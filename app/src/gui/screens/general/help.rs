@@ -6,14 +6,17 @@ use egui::{Frame, Label, Margin, RichText, ScrollArea, Stroke, Ui};
 use crate::gui::model::general::{General, UnitSettings};
 use crate::gui::theme::Palette;
 
-pub const HEIGHT: f32 = 116.0;
+/// Its height on a screen of `available` points: less where the settings themselves have little room.
+pub fn height(available: f32) -> f32 {
+    if available < 460.0 { 74.0 } else { 116.0 }
+}
 
-pub fn help_ui(ui: &mut Ui, general: &General) {
+pub fn help_ui(ui: &mut Ui, general: &General, height: f32) {
     let palette = Palette::of(ui);
     let frame = Frame::new().stroke(Stroke::new(1.0, palette.line)).corner_radius(4.0);
     frame.inner_margin(Margin::symmetric(10, 6)).show(ui, |ui| {
         ui.set_width(ui.available_width());
-        ui.set_height(HEIGHT - 14.0);
+        ui.set_height(height - 14.0);
         ScrollArea::vertical().id_salt("help").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 3.0;
             let explained = general.explained.as_deref();

@@ -8,17 +8,23 @@ use egui::{Align, Layout, Ui, vec2};
 use super::{not_connected_text, nothing_ui};
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
-use crate::gui::model::general::SettingsWish;
+use crate::gui::model::general::{Section, SettingsWish};
 
+mod calibrate;
+mod conflicts;
 mod editor;
 mod head;
 mod help;
 mod nav;
+mod pin;
 mod profile;
 mod rows;
 mod sheet;
+mod signal_graph;
 
-const NAV_WIDTH: f32 = 184.0;
+/// The share of the screen that the list of sections takes, and its least and greatest width.
+const NAV_SHARE: f32 = 0.25;
+const NAV_WIDTH: (f32, f32) = (176.0, 250.0);
 
 pub fn general_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let Some(identity) = model.front.link.identity() else {
@@ -35,15 +41,26 @@ pub fn general_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         return sheet::sheet_ui(ui, general, model.front.link.stream, commands);
     }
     let size = ui.available_size();
+    let nav_width = (size.x * NAV_SHARE).clamp(NAV_WIDTH.0, NAV_WIDTH.1);
     ui.horizontal_top(|ui| {
-        ui.allocate_ui_with_layout(vec2(NAV_WIDTH, size.y), Layout::top_down(Align::Min), |ui| {
+        ui.allocate_ui_with_layout(vec2(nav_width, size.y), Layout::top_down(Align::Min), |ui| {
+            ui.set_width(nav_width);
             nav::nav_ui(ui, general);
         });
         let width = ui.available_width();
         ui.allocate_ui_with_layout(vec2(width, size.y), Layout::top_down(Align::Min), |ui| {
             ui.set_width(width);
-            rows::rows_ui(ui, general, size.y - help::HEIGHT - ui.spacing().item_spacing.y);
-            help::help_ui(ui, general);
+            let help_height = help::height(size.y);
+            let height = size.y - help_height - ui.spacing().item_spacing.y;
+            if let Some(pin) = general.pin() {
+                let signal = model.front.link.readings.signal(pin);
+                pin::pin_ui(ui, general, pin, signal, height, commands);
+            } else if general.section == Section::Conflicts && !general.is_filtered() {
+                conflicts::conflicts_ui(ui, general, height);
+            } else {
+                rows::rows_ui(ui, general, height);
+            }
+            help::help_ui(ui, general, help_height);
         });
     });
 }

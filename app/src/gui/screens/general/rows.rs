@@ -1,9 +1,10 @@
 //! The list of settings: name, field, what the controller has, the default, revert.
 
-use brushwork_link::settings::Row;
+use brushwork_link::settings::{BRIDGE_WARNING, Group, Row, SettingValue};
 use egui::{Align, Button, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
 use super::editor;
+use super::sheet::lamp_ui;
 use crate::gui::model::general::{General, Section, UnitSettings};
 use crate::gui::shell::heading_ui;
 use crate::gui::theme::Palette;
@@ -15,25 +16,41 @@ const MARK_WIDTH: f32 = 14.0;
 const FIELD_WIDTH: f32 = 184.0;
 const VALUE_WIDTH: f32 = 110.0;
 const REVERT_WIDTH: f32 = 62.0;
+const EXTRA_WIDTH: f32 = 46.0;
 /// Room a name needs at least; columns are left out for it, the default first.
 const NAME_WIDTH: f32 = 140.0;
 
 /// Which columns there is room for.
 #[derive(Clone, Copy)]
-struct Columns {
+pub struct Columns {
     name: f32,
+    /// Room beside the field for what belongs to it.
+    extra: f32,
     controller: bool,
     default: bool,
 }
 
+/// Draws what stands beside the field of a row.
+pub type Extra<'a> = &'a mut dyn FnMut(&mut Ui, &mut UnitSettings, &Row);
+
 impl Columns {
     fn fit(width: f32, gap: f32) -> Self {
-        let fixed = MARK_WIDTH + FIELD_WIDTH + REVERT_WIDTH + 4.0 * gap;
+        Self::with(width, gap, 0.0)
+    }
+
+    /// With room for a small button beside each field.
+    pub fn with_extra(width: f32, gap: f32) -> Self {
+        Self::with(width, gap, EXTRA_WIDTH)
+    }
+
+    fn with(width: f32, gap: f32, extra: f32) -> Self {
+        let extra_gap = if extra > 0.0 { gap } else { 0.0 };
+        let fixed = MARK_WIDTH + FIELD_WIDTH + extra + extra_gap + REVERT_WIDTH + 4.0 * gap;
         let with = |values: f32| width - fixed - values * (VALUE_WIDTH + gap);
         let controller = with(1.0) >= NAME_WIDTH;
         let default = with(2.0) >= NAME_WIDTH;
         let values = f32::from(u8::from(controller) + u8::from(default));
-        Self { name: with(values).clamp(80.0, 320.0), controller, default }
+        Self { name: with(values).clamp(80.0, 320.0), extra, controller, default }
     }
 }
 
@@ -48,7 +65,6 @@ pub fn rows_ui(ui: &mut Ui, general: &mut General, height: f32) {
     let header_height = ui.spacing().interact_size.y;
     header_ui(ui, columns);
     let list_height = (height - header_height - ui.spacing().item_spacing.y).max(HEIGHT);
-    let mut explained = None;
     ui.allocate_ui_with_layout(vec2(ui.available_width(), list_height), Layout::top_down(Align::Min), |ui| {
         ui.set_min_height(list_height);
         let salt = ("settings", format!("{:?}", general.section), is_filtered);
@@ -57,20 +73,43 @@ pub fn rows_ui(ui: &mut Ui, general: &mut General, height: f32) {
             if shown.is_empty() {
                 ui.label("No setting of this controller fits.");
             }
-            let Some(unit) = general.unit_mut() else { return };
-            let mut section = None;
-            for key in &shown {
-                let Some(row) = unit.table().row(key).cloned() else { continue };
-                if is_filtered && section.replace(Section::of(&row)) != Some(Section::of(&row)) {
-                    section_heading_ui(ui, &row);
-                }
-                // The key as identity: rows come and go with the filter.
-                if ui.push_id(key, |ui| row_ui(ui, unit, &row, columns, is_filtered)).inner {
-                    explained = Some(key.clone());
-                }
+            list_ui(ui, general, &shown, columns, &mut |_, _, _| {});
+            if general.section == Section::Group(Group::Unit) && !is_filtered {
+                bridge_ui(ui, general.unit());
             }
         });
     });
+}
+
+/// The wiring warning of bridged channels, while they are wanted (MCP manual 1.8).
+fn bridge_ui(ui: &mut Ui, unit: Option<&UnitSettings>) {
+    let is_on = |unit: &UnitSettings| unit.wanted("unit.bridge_channels") == Some(SettingValue::Bool(true));
+    if unit.is_some_and(is_on) {
+        ui.add_space(6.0);
+        lamp_ui(ui, LampState::Warning, BRIDGE_WARNING);
+    }
+}
+
+/// The rows one below the other, under their sections where several are shown.
+pub fn list_ui(ui: &mut Ui, general: &mut General, shown: &[String], columns: Columns, extra: Extra<'_>) {
+    let is_filtered = general.is_filtered();
+    let sought = general.take_sought();
+    let mut explained = None;
+    let Some(unit) = general.unit_mut() else { return };
+    let mut section = None;
+    for key in shown {
+        let Some(row) = unit.table().row(key).cloned() else { continue };
+        if is_filtered && section.replace(Section::of(&row)) != Some(Section::of(&row)) {
+            section_heading_ui(ui, &row);
+        }
+        // The key as identity: rows come and go with the filter.
+        if ui.push_id(key, |ui| row_ui(ui, unit, &row, columns, is_filtered, extra)).inner {
+            explained = Some(key.clone());
+        }
+        if sought.as_deref() == Some(key) {
+            ui.scroll_to_cursor(None);
+        }
+    }
     if explained.is_some() {
         general.explained = explained;
     }
@@ -85,11 +124,12 @@ fn section_heading_ui(ui: &mut Ui, row: &Row) {
     heading_ui(ui, name);
 }
 
-fn header_ui(ui: &mut Ui, columns: Columns) {
+pub fn header_ui(ui: &mut Ui, columns: Columns) {
     ui.horizontal(|ui| {
         ui.set_min_height(ui.spacing().interact_size.y);
         ui.allocate_space(vec2(MARK_WIDTH, 1.0));
         let mut titles = vec![("Setting", columns.name), ("Wanted", FIELD_WIDTH)];
+        titles.extend((columns.extra > 0.0).then_some(("", columns.extra)));
         titles.extend(columns.controller.then_some(("On the controller", VALUE_WIDTH)));
         titles.extend(columns.default.then_some(("Default", VALUE_WIDTH)));
         for (title, width) in titles {
@@ -99,7 +139,14 @@ fn header_ui(ui: &mut Ui, columns: Columns) {
 }
 
 /// Draws a row; true when it is the one to explain.
-fn row_ui(ui: &mut Ui, unit: &mut UnitSettings, row: &Row, columns: Columns, is_filtered: bool) -> bool {
+fn row_ui(
+    ui: &mut Ui,
+    unit: &mut UnitSettings,
+    row: &Row,
+    columns: Columns,
+    is_filtered: bool,
+    extra: Extra<'_>,
+) -> bool {
     let locked = unit.locked(row);
     let width = ui.available_width();
     let response =
@@ -117,6 +164,13 @@ fn row_ui(ui: &mut Ui, unit: &mut UnitSettings, row: &Row, columns: Columns, is_
                     ui.add_enabled_ui(locked.is_none(), |ui| editor::editor_ui(ui, unit, row)).inner
                 },
             );
+            if columns.extra > 0.0 {
+                let place = vec2(columns.extra, HEIGHT);
+                ui.allocate_ui_with_layout(place, Layout::left_to_right(Align::Center), |ui| {
+                    ui.set_min_width(columns.extra);
+                    extra(ui, unit, row);
+                });
+            }
             if columns.controller {
                 let text = unit.on_controller(&row.key).map(|value| row.format(value));
                 let text = text.unwrap_or_else(|| NO_VALUE.to_owned());

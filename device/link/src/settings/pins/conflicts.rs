@@ -41,6 +41,8 @@ pub enum ConflictKind {
     NeverCommands,
     /// Two inputs of the same kind command the same motor.
     TwoCommanders,
+    /// A bus is set to a rate that it does not have.
+    NoSuchRate,
 }
 
 /// Every contradiction among the settings that are known, pin by pin.
@@ -63,7 +65,28 @@ pub fn conflicts(table: &SettingsTable, get: Lookup<'_>) -> Vec<Conflict> {
     }
     found.extend((1..=2).filter_map(|motor| encoder_unread(get, &pins, motor)));
     found.extend((1..=2).flat_map(|motor| two_commanders(&pins, motor)));
+    found.extend(BUS_RATES.iter().filter_map(|(key, name, rates)| no_such_rate(get, key, name, rates)));
     found
+}
+
+/// The bit rates of the buses (MCP manual 1.9.4, 1.9.6; the fifth of CAN is printed with a digit too many).
+const BUS_RATES: [(&str, &str, &[i64]); 2] = [
+    (
+        "can.rate",
+        "CANopen",
+        &[1_000_000, 800_000, 500_000, 250_000, 125_000, 100_000, 50_000, 20_000, 10_000],
+    ),
+    ("i2c.rate", "I2C", &[100_000, 400_000, 1_000_000]),
+];
+
+fn no_such_rate(get: Lookup<'_>, key: &str, name: &str, rates: &[i64]) -> Option<Conflict> {
+    let Some(SettingValue::Int(rate)) = get(key) else { return None };
+    let listed: Vec<String> = rates.iter().map(ToString::to_string).collect();
+    (!rates.contains(&rate)).then(|| Conflict {
+        kind: ConflictKind::NoSuchRate,
+        keys: vec![key.to_owned()],
+        sentence: format!("{name} has no rate of {rate} bit/s. It has {}.", listed.join(", ")),
+    })
 }
 
 /// A pin with what is known of it.

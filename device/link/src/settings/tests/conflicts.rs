@@ -183,3 +183,11 @@ fn two_inputs_of_a_kind_cannot_command_one_motor() {
     other_kind[2].1 = CHOICE("pulse");
     assert_eq!(found(&other_kind), [], "a pulse takes over from an analog input by its priority level");
 }
+
+#[test]
+fn a_bus_has_certain_rates_only() {
+    let (kind, key, sentence) = only(&[("can.rate", SettingValue::Int(300_000))]);
+    assert_eq!((kind, key.as_str()), (ConflictKind::NoSuchRate, "can.rate"));
+    assert!(sentence.contains("CANopen has no rate of 300000 bit/s"), "{sentence}");
+    assert!(only(&[("i2c.rate", SettingValue::Int(200_000))]).2.contains("100000, 400000, 1000000"));
+}

@@ -382,3 +382,11 @@ fn what_has_no_wire_form_is_planned_past_the_wire_on_a_simulated_controller_only
     assert!(plan.steps.is_empty());
     assert_eq!(plan.hidden, [("unit.bridge_channels".to_owned(), 1), ("can.rate".to_owned(), 500_000)]);
 }
+
+#[test]
+fn bridging_the_channels_comes_with_its_wiring_warning() {
+    let options = WriteOptions { own_stream: Some(Stream::Usb), simulated: true };
+    let warnings =
+        |on: &str| plan_of(&table("mcp266", ONE), &[("unit.bridge_channels", on)], options).warnings;
+    assert!(warnings("yes")[0].contains("only after this is written and saved to EEPROM"));
+}
