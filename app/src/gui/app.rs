@@ -81,7 +81,7 @@ impl App {
             self.apply(command);
         }
         self.read_loops();
-        self.watch_signals();
+        self.end_calibrations();
         self.drive(&ctx);
         self.show_appearance(&ctx);
     }
@@ -116,6 +116,7 @@ impl App {
 
     /// Has read what a diagnosis needs. Nothing is said when it cannot be: it is tried again.
     fn watch(&mut self, id: DeskId) {
+        let shows_settings = self.shows_settings_of(id);
         let (Some(device), Some(desk)) = (self.links.device(id), self.model.desk_mut(id)) else { return };
         let is_quiet = desk.link.arming == Arming::Disarmed && desk.is_connected();
         if let Some(identity) = desk.link.identity().cloned().filter(|_| is_quiet)
@@ -124,13 +125,17 @@ impl App {
         {
             desk.watch.not_begun();
         }
-        let (wanted, traced) = (desk.watch.wants_signals(), desk.traffic.open);
+        let wanted = desk.watch.wants_signals() || desk.shows_signals(shows_settings);
+        let traced = desk.traffic.open;
         let link = self.links.entry(id);
         if link.reads_signals != wanted
             && let Some(device) = &link.device
             && device.request(Request::ReadSignals(wanted)).is_ok()
         {
             link.reads_signals = wanted;
+            if !wanted {
+                desk.link.readings.forget_signals();
+            }
         }
         if link.traced != traced
             && let Some(device) = &link.device
@@ -349,34 +354,22 @@ impl App {
         }
     }
 
-    /// Has the input pins read while a screen shows them, and puts an input back whose calibration has ended or was left.
-    fn watch_signals(&mut self) {
+    /// Puts an input back whose calibration has ended or was left.
+    fn end_calibrations(&mut self) {
         for id in self.links.ids() {
-            let is_shown = self.model.screen == Screen::GeneralSettings && id == self.model.front.id();
+            let is_shown = self.shows_settings_of(id);
             let Some(desk) = self.model.desk_mut(id) else { continue };
             if !is_shown {
                 desk.general.cancel_calibration();
             }
-            let wanted = is_shown && desk.is_connected() && desk.general.wants_signals();
-            let is_other = wanted != desk.link.reads_signals;
             if let Some(wish) = desk.general.next_wish() {
                 self.settings_of(id, wish);
-            }
-            if is_other
-                && self.links.device(id).is_some()
-                && self.request_of(id, Request::ReadSignals(wanted))
-            {
-                self.signals_switched(id, wanted);
             }
         }
     }
 
-    fn signals_switched(&mut self, id: DeskId, on: bool) {
-        let Some(desk) = self.model.desk_mut(id) else { return };
-        desk.link.reads_signals = on;
-        if !on {
-            desk.link.readings.forget_signals();
-        }
+    fn shows_settings_of(&self, id: DeskId) -> bool {
+        self.model.screen == Screen::GeneralSettings && id == self.model.front.id()
     }
 
     fn apply_loops(&mut self, columns: &[Column]) {

@@ -190,6 +190,13 @@ impl Desk {
         }
     }
 
+    /// Whether the live signals of the input pins are in view: on the settings screen, or in the graph.
+    pub fn shows_signals(&self, settings_are_shown: bool) -> bool {
+        let channels = self.graph.live.channels.iter();
+        let in_graph = channels.zip(Channel::ALL).any(|(shown, channel)| channel.is_signal() && shown.shown);
+        self.is_connected() && (in_graph || settings_are_shown && self.general.wants_signals())
+    }
+
     /// Does what an effect means for this desk.
     fn settle(&mut self, effect: Effect) -> Option<Effect> {
         match effect {

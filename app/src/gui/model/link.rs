@@ -56,8 +56,6 @@ pub struct LinkView {
     /// Which of the controller's ports this is, where it is known.
     pub stream: Option<Stream>,
     pub readings: Readings,
-    /// Whether the input pins are being read.
-    pub reads_signals: bool,
     pub lamps: Lamps,
     /// Whether the pins hold a motor at a home or limit switch, where they are known.
     homed: Option<[bool; 2]>,
