@@ -26,6 +26,7 @@ fn picture(mut bench: Bench, name: &str) {
 
 /// A unit that has answered, with the conditions given.
 fn fed(model: &mut Model, conditions: &[Condition]) {
+    model.front.target = Some("sim:mcp266".to_owned());
     model.front.phase = Phase::Open { target: "sim:mcp266".to_owned() };
     let identity = Identity {
         address: 0x80,

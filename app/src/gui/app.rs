@@ -9,19 +9,23 @@ use std::time::{Duration, Instant};
 
 use brushwork_link::Failure;
 use brushwork_link::device::{ArmScope, DeviceHandle, Event, PollRate, Request};
+use brushwork_link::transport::{ConnectTarget, TargetError};
 use brushwork_sim::world::WorldAction;
 use crossbeam_channel::TryRecvError;
-use egui::{Context, Key, Modifiers, Ui};
+use egui::{Context, Ui, ViewportCommand};
 
-use super::command::{Command, Commands};
+use super::actions;
+use super::command::Command;
 use super::keys;
 use super::links::{self, Links};
+use super::model::devices::Choice;
 use super::model::general::SettingsWish;
 use super::model::link::{Arming, Effect, LinkView};
 use super::model::loop_settings::Column;
 use super::model::message::Gravity;
+use super::model::palette::Palette;
 use super::model::screen::Screen;
-use super::model::{Appearance, DeskId, Model, Phase};
+use super::model::{Appearance, Desk, DeskId, Model, Phase, place_of};
 use super::parts::{OpenLink, Parts};
 use super::{shell, theme};
 
@@ -40,6 +44,8 @@ pub struct App {
     parts: Parts,
     links: Links,
     shown: Option<Appearance>,
+    /// The window was asked to close.
+    closing: bool,
     last_frame: Arc<FrameTime>,
 }
 
@@ -52,6 +58,7 @@ impl App {
             parts,
             links: Links::default(),
             shown: None,
+            closing: false,
             last_frame: Arc::new(FrameTime::new()),
         }
     }
@@ -75,7 +82,7 @@ impl App {
             self.stop();
         }
         self.update(&ctx);
-        let mut commands = self.shortcuts(&ctx);
+        let mut commands = actions::shortcuts(&ctx, &mut self.model);
         shell::shell_ui(ui, &mut self.model, &mut commands);
         for command in commands {
             self.apply(command);
@@ -84,6 +91,10 @@ impl App {
         self.end_calibrations();
         self.drive(&ctx);
         self.show_appearance(&ctx);
+        if self.closing {
+            self.links.stop_all();
+            ctx.send_viewport_cmd(ViewportCommand::Close);
+        }
     }
 
     /// Takes in what happened since the last frame.
@@ -202,6 +213,8 @@ impl App {
         // A desk that was given up meanwhile: the link is closed again by being dropped.
         let Some(desk) = self.model.desk_mut(id) else { return };
         let target = desk.phase.target().unwrap_or_default().to_owned();
+        self.model.devices.remember(&target);
+        let Some(desk) = self.model.desk_mut(id) else { return };
         desk.phase = Phase::Open { target };
         desk.link = LinkView::default();
         desk.world.forget();
@@ -254,7 +267,10 @@ impl App {
     fn apply(&mut self, command: Command) {
         match command {
             Command::Connect => self.connect(),
-            Command::Disconnect => self.disconnect(),
+            Command::Disconnect(desk) => self.disconnect(desk),
+            Command::Front(desk) => self.bring_to_front(desk),
+            Command::Forget(desk) => self.forget(desk),
+            Command::ConnectTo(target) => self.connect_to(&target, target.parse()),
             Command::Show(screen) => self.show(screen),
             Command::Stop => self.stop(),
             Command::Arm(scope) => {
@@ -289,42 +305,121 @@ impl App {
                     self.model.front.traffic.composer.forget_waiting();
                 }
             }
-            Command::DismissMessage => self.model.messages.dismiss(),
+            Command::OpenSheet(sheet) => {
+                self.show(Screen::GeneralSettings);
+                self.model.front.general.open(sheet);
+            }
+            Command::FindSetting => {
+                self.show(Screen::GeneralSettings);
+                self.model.front.general.find();
+            }
+            Command::RevertSettings => {
+                if let Some(unit) = self.model.front.general.unit_mut() {
+                    unit.revert_all();
+                }
+            }
+            other => self.apply_to_window(other),
         }
     }
 
+    /// Commands that no controller hears of.
+    fn apply_to_window(&mut self, command: Command) {
+        let model = &mut self.model;
+        match command {
+            Command::Theme(theme) => model.appearance.theme = theme,
+            Command::PlainEdges(plain) => model.appearance.plain = plain,
+            Command::Scale(percent) => model.appearance.set_scale(percent),
+            Command::ToggleWorld => model.front.world.open = !model.front.world.open,
+            Command::ToggleTraffic => model.front.traffic.open = !model.front.traffic.open,
+            Command::OpenPalette => {
+                model.palette = if model.palette.is_some() { None } else { Some(Palette::opened()) };
+            }
+            Command::ForgetRecent(target) => model.devices.forget_recent(&target),
+            Command::OpenHelp(page) => model.help.open(page),
+            Command::Exit => self.closing = true,
+            Command::DismissMessage => model.messages.dismiss(),
+            _ => {}
+        }
+    }
+
+    /// Connects to what is chosen in the device list.
     fn connect(&mut self) {
-        if self.model.front.phase != Phase::Closed {
-            return;
-        }
-        match self.model.devices.target() {
-            Ok(target) => {
-                self.model.messages.dismiss();
-                self.model.front.phase = Phase::Opening { target: target.to_string() };
-                let opening = self.parts.opener.open(target, self.model.devices.addresses);
-                self.links.entry(self.model.front.id()).opening = Some(opening);
-            }
-            Err(error) => {
-                let typed = self.model.devices.typed.trim();
-                let mend = "Type a path such as /dev/ttyUSB0 or COM3, or tcp:host:port";
-                self.model.messages.fail(Failure::new("connect", typed, error, mend).to_string());
-            }
-        }
+        let chosen = match self.model.devices.choice {
+            Choice::Desk(id) => self.model.desk(id).and_then(|desk| desk.target.clone()),
+            _ => None,
+        };
+        let target = match &chosen {
+            Some(target) => target.parse(),
+            None => self.model.devices.target(),
+        };
+        let typed = chosen.unwrap_or_else(|| self.model.devices.typed.trim().to_owned());
+        self.connect_to(&typed, target);
     }
 
-    fn disconnect(&mut self) {
-        match &self.model.front.phase {
+    /// Opens a link on a desk of its own, or brings the one that is open to the front.
+    fn connect_to(&mut self, typed: &str, target: Result<ConnectTarget, TargetError>) {
+        let target = match target {
+            Ok(target) => target,
+            Err(error) => {
+                let mend = "Type a path such as /dev/ttyUSB0 or COM3, or tcp:host:port";
+                return self.model.messages.fail(Failure::new("connect", typed, error, mend).to_string());
+            }
+        };
+        let place = place_of(&target.to_string());
+        match self.model.desk_at(&place).map(Desk::id) {
+            Some(desk) => self.bring_to_front(desk),
+            None => {
+                self.disarm();
+                self.model.add_desk();
+            }
+        }
+        self.open_front(target);
+    }
+
+    fn open_front(&mut self, target: ConnectTarget) {
+        let text = target.to_string();
+        let front = &mut self.model.front;
+        front.target = Some(text.clone());
+        if front.phase == Phase::Closed {
+            self.model.messages.dismiss();
+            front.phase = Phase::Opening { target: text };
+            let opening = self.parts.opener.open(target, self.model.devices.addresses);
+            self.links.entry(front.id()).opening = Some(opening);
+        }
+        self.model.devices.choose_desk(&self.model.front);
+    }
+
+    fn disconnect(&mut self, id: DeskId) {
+        let Some(desk) = self.model.desk_mut(id) else { return };
+        match &desk.phase {
             Phase::Opening { .. } => {
-                self.links.entry(self.model.front.id()).opening = None;
-                self.model.front.phase = Phase::Closed;
+                self.links.entry(id).opening = None;
+                desk.phase = Phase::Closed;
                 self.model.messages.note("Gave up connecting.");
             }
             Phase::Open { target } => {
-                self.model.front.phase = Phase::Closing { target: target.clone() };
-                self.request(Request::Disconnect);
+                desk.phase = Phase::Closing { target: target.clone() };
+                self.request_of(id, Request::Disconnect);
             }
             Phase::Closed | Phase::Closing { .. } => {}
         }
+    }
+
+    /// Another link comes to the front. What is armed is disarmed and stopped first: only the front can be armed.
+    fn bring_to_front(&mut self, id: DeskId) {
+        if id == self.model.front.id() || self.model.desk(id).is_none() {
+            return;
+        }
+        self.disarm();
+        self.model.bring_to_front(id);
+        self.model.devices.choose_desk(&self.model.front);
+        self.model.front.loops.want_reading();
+    }
+
+    fn forget(&mut self, id: DeskId) {
+        self.links.remove(id);
+        self.model.remove_desk(id);
+        self.model.devices.choose_desk(&self.model.front);
     }
 
     fn show(&mut self, screen: Screen) {
@@ -463,20 +558,6 @@ impl App {
         ctx.request_repaint_after(FRAME_INTERVAL);
     }
 
-    /// Ctrl and a digit shows a screen, Ctrl+B the panel of the simulated world, Ctrl+T the traffic.
-    fn shortcuts(&mut self, ctx: &Context) -> Commands {
-        let keys = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6];
-        let pressed = |key| ctx.input_mut(|input| input.consume_key(Modifiers::COMMAND, key));
-        if pressed(Key::B) {
-            self.model.front.world.open = !self.model.front.world.open;
-        }
-        if pressed(Key::T) {
-            self.model.front.traffic.open = !self.model.front.traffic.open;
-        }
-        let screens = keys.into_iter().zip(Screen::ALL).filter(|(key, _)| pressed(*key));
-        screens.map(|(_, screen)| Command::Show(screen)).collect()
-    }
-
     /// Queues a request to the link in front; a refusal is told.
     fn request(&mut self, request: Request) -> bool {
         self.request_of(self.model.front.id(), request)
@@ -498,6 +579,7 @@ impl App {
         if self.shown != Some(wanted) {
             ctx.set_theme(wanted.theme);
             theme::draw_plainly(ctx, wanted.plain);
+            ctx.set_zoom_factor(f32::from(wanted.scale_percent) / 100.0);
             self.shown = Some(wanted);
         }
     }

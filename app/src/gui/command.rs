@@ -4,8 +4,11 @@ use brushwork_link::device::{ArmScope, PollRate};
 use brushwork_link::transport::Stream;
 use brushwork_protocol::packet_serial::{Motor, Value};
 use brushwork_sim::world::WorldAction;
+use egui::ThemePreference;
 
-use super::model::general::SettingsWish;
+use super::model::DeskId;
+use super::model::general::{SettingsWish, Sheet};
+use super::model::help::HelpPage;
 use super::model::loop_settings::Column;
 use super::model::screen::Screen;
 
@@ -14,8 +17,16 @@ use super::model::screen::Screen;
 pub enum Command {
     /// Opens a link to what is chosen in the device list.
     Connect,
-    /// Closes the link, or gives up opening it.
-    Disconnect,
+    /// Opens a link to what a person would have typed, or brings it to the front if it is open.
+    ConnectTo(String),
+    /// Closes a link, or gives up opening it.
+    Disconnect(DeskId),
+    /// Puts another open link in front.
+    Front(DeskId),
+    /// Closes a link and forgets all that is known of it.
+    Forget(DeskId),
+    /// Takes a target off the list of recent connections.
+    ForgetRecent(String),
     Show(Screen),
     /// Stops all motors of every open link.
     Stop,
@@ -41,6 +52,22 @@ pub enum Command {
         command: u8,
         values: Vec<Value>,
     },
+    /// Shows General Settings with a sheet in place of the list.
+    OpenSheet(Sheet),
+    /// Shows General Settings and puts the keyboard into its search field.
+    FindSetting,
+    /// Drops the edits of settings that were not written.
+    RevertSettings,
+    Theme(ThemePreference),
+    PlainEdges(bool),
+    /// Size of everything in the window, percent.
+    Scale(u16),
+    ToggleWorld,
+    ToggleTraffic,
+    OpenPalette,
+    OpenHelp(HelpPage),
+    /// Stops all motors and closes the window.
+    Exit,
     DismissMessage,
 }
 

@@ -4,11 +4,13 @@
     reason = "the window is no library: only the program and its own tests see these items"
 )]
 
+pub mod actions;
 pub mod app;
 pub mod bench;
 pub mod command;
 pub mod files;
 pub mod graph;
+pub mod help;
 pub mod keys;
 pub mod links;
 pub mod model;

@@ -1,6 +1,6 @@
 //! The real sources of links and ports: each waits on a thread of its own, never on the window's.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 use std::time::Duration;
 
 use brushwork_link::device::Addresses;
@@ -68,17 +68,19 @@ fn watch(sender: &Sender<Listed>, ctx: &Context) {
     }
 }
 
-/// Opens sessions. The simulated machine of the last one is kept, so that it can be connected to again.
+/// Simulated machines that the window still holds.
+type Running = Arc<Mutex<Vec<Weak<Simulation>>>>;
+
+/// Opens sessions. A simulated machine that is still there is connected to again.
 struct SessionOpener {
     /// One clock for all links, so that the graph's time runs on from one to the next.
     clock: Arc<dyn Clock>,
-    running: Option<Arc<Simulation>>,
-    started: Option<Receiver<Arc<Simulation>>>,
+    running: Running,
 }
 
 impl SessionOpener {
     fn new() -> Self {
-        Self { clock: SystemClock::shared(), running: None, started: None }
+        Self { clock: SystemClock::shared(), running: Running::default() }
     }
 }
 
@@ -88,19 +90,15 @@ impl Opener for SessionOpener {
         target: ConnectTarget,
         addresses: Addresses,
     ) -> Receiver<Result<OpenLink, SessionError>> {
-        if let Some(started) = self.started.take().and_then(|started| started.try_recv().ok()) {
-            self.running = Some(started);
-        }
         let (sender, receiver) = bounded(1);
-        let (tell_started, started) = bounded(1);
-        self.started = Some(started);
         let (running, clock) = (self.running.clone(), self.clock.clone());
         let open = move || {
             let options = SessionOptions { addresses, ..SessionOptions::default() };
-            let opened = session::open(&target, options, clock, running).map(|session| {
+            let opened = session::open(&target, options, clock, find(&running, &target)).map(|session| {
                 if let Some(simulation) = &session.simulation {
-                    // The opener may be gone with the window.
-                    let _ = tell_started.try_send(simulation.clone());
+                    let mut running = running.lock().unwrap_or_else(PoisonError::into_inner);
+                    running.retain(|known| known.strong_count() > 0);
+                    running.push(Arc::downgrade(simulation));
                 }
                 let world = session.simulation.map(|simulation| simulation as Arc<dyn SimulatedWorld>);
                 OpenLink { device: session.device, world }
@@ -112,6 +110,13 @@ impl Opener for SessionOpener {
         let _ = std::thread::Builder::new().name("open link".to_owned()).spawn(open);
         receiver
     }
+}
+
+/// The simulated machine that a target names, if it runs.
+fn find(running: &Running, target: &ConnectTarget) -> Option<Arc<Simulation>> {
+    let ConnectTarget::Sim(text) = target else { return None };
+    let running = running.lock().unwrap_or_else(PoisonError::into_inner);
+    running.iter().filter_map(Weak::upgrade).find(|simulation| simulation.is(text))
 }
 
 impl SimulatedWorld for Simulation {

@@ -30,11 +30,19 @@ use super::lockstep::{Gate, Lockstep};
 /// Time between two frames, as in the real window.
 pub const FRAME: Duration = Duration::from_millis(100);
 
+/// What connects to the second machine.
+pub const SECOND: &str = "sim:mcp236";
+
+/// The loop of a line that is open.
+type Slot = Rc<RefCell<Option<Lockstep>>>;
+
 /// A window, the loop it speaks to, and the controller at the far end.
 pub struct Bench {
     pub harness: Harness<'static, Option<App>>,
     pub line: Line,
-    device_loop: Rc<RefCell<Option<Lockstep>>>,
+    /// A second machine on a line of its own, at [`SECOND`].
+    pub second: Line,
+    loops: [Slot; 2],
     ports: Rc<RefCell<Option<Vec<PortInfo>>>>,
 }
 
@@ -68,9 +76,11 @@ impl Bench {
 
     fn with_bus(bus: Bus, size: [f32; 2], theme: Theme) -> Self {
         let line = Line::new(bus);
-        let device_loop = Rc::new(RefCell::new(None));
+        let unit = Controller::new(ControllerConfig::default()).expect("the default configuration is sound");
+        let second = Line::new(Bus::single(unit, StreamIndex::Usb));
+        let loops = [Slot::default(), Slot::default()];
         let ports = Rc::new(RefCell::new(Some(Vec::new())));
-        let opener = BenchOpener { line: line.clone(), device_loop: device_loop.clone() };
+        let opener = BenchOpener { lines: [line.clone(), second.clone()], loops: loops.clone() };
         let mut parts = Some(Parts { ports: Box::new(BenchPorts(ports.clone())), opener: Box::new(opener) });
         let harness = HarnessBuilder::default()
             .with_size(size)
@@ -89,7 +99,7 @@ impl Bench {
                 },
                 None,
             );
-        Self { harness, line, device_loop, ports }
+        Self { harness, line, second, loops, ports }
     }
 
     /// Lets time pass as it does with the program: the device loop works and the window draws each 100 ms.
@@ -111,11 +121,13 @@ impl Bench {
     }
 
     fn turn_loop(&self, until: Duration) {
-        match self.device_loop.borrow().as_ref() {
-            Some(device_loop) => device_loop.run_until(until),
-            None => self.line.clock.advance_to(until),
+        for (line, device_loop) in [&self.line, &self.second].into_iter().zip(&self.loops) {
+            match device_loop.borrow().as_ref() {
+                Some(device_loop) => device_loop.run_until(until),
+                None => line.clock.advance_to(until),
+            }
+            line.with(|_| ());
         }
-        self.line.with(|_| ());
     }
 
     pub fn model(&mut self) -> &mut Model {
@@ -163,7 +175,7 @@ impl Bench {
 
     /// Takes the device loop away, to turn it without the window.
     pub fn take_loop(&mut self) -> DeviceLoop {
-        self.device_loop.borrow_mut().take().expect("a link is open").into_loop()
+        self.loops[0].borrow_mut().take().expect("a link is open").into_loop()
     }
 
     // ---- in the words of a person ----
@@ -265,8 +277,8 @@ impl PortSource for BenchPorts {
 }
 
 struct BenchOpener {
-    line: Line,
-    device_loop: Rc<RefCell<Option<Lockstep>>>,
+    lines: [Line; 2],
+    loops: [Slot; 2],
 }
 
 impl Opener for BenchOpener {
@@ -278,19 +290,21 @@ impl Opener for BenchOpener {
         let (sender, receiver) = bounded(1);
         let opened = match target {
             ConnectTarget::Sim(_) => {
-                let index = self.line.with(|bus| bus.stream().index());
+                let which = usize::from(target.to_string() == SECOND);
+                let line = &self.lines[which];
+                let index = line.with(|bus| bus.stream().index());
                 let options = DeviceOptions {
                     addresses,
                     stream: Some(Stream::ALL[index]),
                     simulated: true,
-                    hidden: Some(Arc::new(BenchHidden(self.line.clone()))),
+                    hidden: Some(Arc::new(BenchHidden(line.clone()))),
                     ..DeviceOptions::default()
                 };
-                let gate = Gate::new(self.line.clock.clone());
-                let transport = Box::new(self.line.through(gate.clone()));
+                let gate = Gate::new(line.clock.clone());
+                let transport = Box::new(line.through(gate.clone()));
                 let (device_loop, device) = DeviceLoop::new(transport, Arc::new(gate.clone()), options);
-                *self.device_loop.borrow_mut() = Some(Lockstep::new(gate, device_loop));
-                Ok(OpenLink { device, world: Some(Arc::new(BenchWorld(self.line.clone()))) })
+                *self.loops[which].borrow_mut() = Some(Lockstep::new(gate, device_loop));
+                Ok(OpenLink { device, world: Some(Arc::new(BenchWorld(line.clone()))) })
             }
             other => Err(SessionError::from(OpenError::NotFound { path: other.to_string() })),
         };

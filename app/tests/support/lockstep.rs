@@ -24,6 +24,8 @@ struct State {
     limit: Duration,
     /// The thread hands the loop back when it is next at rest.
     hand_over: bool,
+    /// The thread has come to its end.
+    ended: bool,
 }
 
 /// A clock that nobody on the loop's thread can turn beyond what was granted. Clones are the same.
@@ -35,7 +37,7 @@ pub struct Gate {
 
 impl Gate {
     pub fn new(clock: VirtualClock) -> Self {
-        let state = State { turn: Turn::Window, limit: Duration::ZERO, hand_over: false };
+        let state = State { turn: Turn::Window, limit: Duration::ZERO, hand_over: false, ended: false };
         Self { clock, state: Arc::new((Mutex::new(state), Condvar::new())) }
     }
 
@@ -95,9 +97,7 @@ impl Lockstep {
         let mut state = self.gate.lock();
         (state.limit, state.turn) = (time, Turn::Loop);
         self.gate.state.1.notify_all();
-        let is_at_work = |state: &mut State| {
-            state.turn == Turn::Loop && !self.thread.as_ref().is_some_and(JoinHandle::is_finished)
-        };
+        let is_at_work = |state: &mut State| state.turn == Turn::Loop && !state.ended;
         let waited = self.gate.state.1.wait_timeout_while(state, PATIENCE, is_at_work);
         let (state, waited) = waited.unwrap_or_else(PoisonError::into_inner);
         drop(state);
@@ -154,7 +154,9 @@ struct GiveTurnAtEnd<'a>(&'a Gate);
 
 impl Drop for GiveTurnAtEnd<'_> {
     fn drop(&mut self) {
-        self.0.lock().turn = Turn::Window;
+        let mut state = self.0.lock();
+        (state.turn, state.ended) = (Turn::Window, true);
+        drop(state);
         self.0.state.1.notify_all();
     }
 }

@@ -10,6 +10,7 @@ use std::time::Duration;
 
 use brushwork_link::device::{Channel, Event, Lamp, PollRate};
 use brushwork_link::diagnosis::{Evidence, Measured};
+use brushwork_link::transport::ConnectTarget;
 use brushwork_sim::world::WorldView;
 
 use super::general::General;
@@ -39,6 +40,8 @@ impl DeskId {
 #[derive(Debug)]
 pub struct Desk {
     id: DeskId,
+    /// What the link goes to, or went to last.
+    pub target: Option<String>,
     pub phase: Phase,
     /// What is known of the open link; empty while there is none.
     pub link: LinkView,
@@ -64,6 +67,15 @@ pub struct Desk {
     pub worlds: Option<Arc<Vec<WorldView>>>,
     /// Which of them is looked at.
     pub world_unit: usize,
+}
+
+/// The place that a target names: two links cannot go to the same one.
+pub fn place_of(target: &str) -> String {
+    match target.parse() {
+        Ok(ConnectTarget::Serial { path, .. }) => path,
+        Ok(other) => other.to_string(),
+        Err(_) => target.to_owned(),
+    }
 }
 
 /// Where a link is between closed and open.
@@ -108,6 +120,7 @@ impl Desk {
     pub fn new(id: DeskId) -> Self {
         Self {
             id,
+            target: None,
             phase: Phase::default(),
             link: LinkView::default(),
             poll: PollRate::default(),
@@ -129,6 +142,18 @@ impl Desk {
 
     pub fn id(&self) -> DeskId {
         self.id
+    }
+
+    /// Whether the link goes, or went, to that place: a port, whatever its rate, or another target's text.
+    pub fn is_at(&self, place: &str) -> bool {
+        self.target.as_deref().is_some_and(|target| place_of(target) == place)
+    }
+
+    /// Whether there is nothing here that anybody would miss: no link, no record, no edits.
+    pub fn is_blank(&self) -> bool {
+        self.phase == Phase::Closed
+            && self.graph.sheet().track.history.is_empty()
+            && !self.general.has_edits()
     }
 
     /// Whether a unit has answered on the open link.

@@ -1,5 +1,6 @@
 //! The device list: what can be connected to, and what was chosen.
 
+use super::desk::{Desk, DeskId};
 use brushwork_link::Failure;
 use brushwork_link::device::Addresses;
 use brushwork_link::transport::target::DEFAULT_BAUD;
@@ -11,6 +12,9 @@ pub const SIMULATED: &str = "sim:mcp266";
 /// Rates a controller's serial ports can have (MCP manual 1.9.3), and those USB adapters are often set to.
 pub const BAUD_RATES: [u32; 8] = [2_400, 9_600, 19_200, 38_400, 57_600, 115_200, 230_400, 460_800];
 
+/// Connections that are remembered.
+const RECENT_KEPT: usize = 8;
+
 /// What the user chose to connect to.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Choice {
@@ -20,6 +24,8 @@ pub enum Choice {
     Port(String),
     /// What stands in the field below the list.
     Typed,
+    /// A link that is open, or was, to something else.
+    Desk(DeskId),
 }
 
 /// The device list.
@@ -33,6 +39,8 @@ pub struct Devices {
     pub baud: u32,
     /// Which addresses to look for when connecting.
     pub addresses: Addresses,
+    /// What was connected to before, newest first.
+    recent: Vec<String>,
 }
 
 impl Default for Devices {
@@ -44,6 +52,7 @@ impl Default for Devices {
             typed: String::new(),
             baud: DEFAULT_BAUD,
             addresses: Addresses::default(),
+            recent: Vec::new(),
         }
     }
 }
@@ -71,6 +80,39 @@ impl Devices {
         }
     }
 
+    /// Chooses the row that shows a desk.
+    pub fn choose_desk(&mut self, desk: &Desk) {
+        if desk.target.is_none() {
+            return;
+        }
+        self.choice = match self.ports.iter().find(|port| desk.is_at(&port.name)) {
+            Some(port) => Choice::Port(port.name.clone()),
+            None if desk.is_at(SIMULATED) => Choice::Simulated,
+            None => Choice::Desk(desk.id()),
+        };
+    }
+
+    /// Connections of before, newest first.
+    pub fn recent(&self) -> &[String] {
+        &self.recent
+    }
+
+    pub fn set_recent(&mut self, recent: Vec<String>) {
+        self.recent = recent;
+        self.recent.truncate(RECENT_KEPT);
+    }
+
+    /// A connection was made: it is now the newest.
+    pub fn remember(&mut self, target: &str) {
+        self.recent.retain(|known| known != target);
+        self.recent.insert(0, target.to_owned());
+        self.recent.truncate(RECENT_KEPT);
+    }
+
+    pub fn forget_recent(&mut self, target: &str) {
+        self.recent.retain(|known| known != target);
+    }
+
     pub fn ports(&self) -> &[PortInfo] {
         &self.ports
     }
@@ -89,7 +131,7 @@ impl Devices {
     /// Whether the rate matters: not over a controller's own USB, TCP or in this program.
     pub fn baud_matters(&self) -> bool {
         match &self.choice {
-            Choice::Simulated => false,
+            Choice::Simulated | Choice::Desk(_) => false,
             Choice::Port(_) => self.chosen_port().is_some_and(|port| !port.names_a_controller()),
             Choice::Typed => {
                 let typed = self.typed.trim();
@@ -99,7 +141,7 @@ impl Devices {
         }
     }
 
-    /// Where to connect to.
+    /// Where to connect to. A desk's own target is known to the desk.
     pub fn target(&self) -> Result<ConnectTarget, TargetError> {
         match &self.choice {
             Choice::Simulated => SIMULATED.parse(),
@@ -107,7 +149,7 @@ impl Devices {
                 let stream = self.chosen_port().and_then(|port| port.stream);
                 Ok(ConnectTarget::Serial { path: name.clone(), baud: self.baud, stream })
             }
-            Choice::Typed => {
+            Choice::Desk(_) | Choice::Typed => {
                 let mut target = self.typed.parse()?;
                 if let ConnectTarget::Serial { baud, .. } = &mut target
                     && self.baud_matters()

@@ -8,11 +8,13 @@ use super::graph::{ChannelInfo, Scale};
 pub mod desk;
 pub mod devices;
 pub mod general;
+pub mod help;
 pub mod history;
 pub mod lamps;
 pub mod link;
 pub mod loop_settings;
 pub mod message;
+pub mod palette;
 pub mod pwm;
 pub mod readings;
 pub mod screen;
@@ -22,9 +24,11 @@ pub mod velocity;
 pub mod watch;
 pub mod world;
 
-pub use desk::{Desk, DeskId, Phase};
+pub use desk::{Desk, DeskId, Phase, place_of};
 use devices::Devices;
+use help::Help;
 use message::Messages;
+use palette::Palette;
 use screen::Screen;
 
 /// Everything the window shows.
@@ -34,6 +38,9 @@ pub struct Model {
     pub appearance: Appearance,
     pub devices: Devices,
     pub messages: Messages,
+    /// Open while there is one.
+    pub palette: Option<Palette>,
+    pub help: Help,
     /// The link that is looked at. Only this one can be armed.
     pub front: Desk,
     /// The links in the background. They are read and recorded like the one in front.
@@ -41,20 +48,39 @@ pub struct Model {
 }
 
 /// How the window looks.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Appearance {
     pub theme: ThemePreference,
+    /// Size of everything, percent.
+    pub scale_percent: u16,
     /// Hard edges, which software rendering draws in less time.
     pub plain: bool,
+}
+
+impl Default for Appearance {
+    fn default() -> Self {
+        Self { theme: ThemePreference::System, scale_percent: 100, plain: false }
+    }
+}
+
+impl Appearance {
+    /// Sizes that can be read on one side and leave room for the screens on the other.
+    pub const SCALES_PERCENT: std::ops::RangeInclusive<u16> = 60..=250;
+
+    pub fn set_scale(&mut self, percent: u16) {
+        self.scale_percent = percent.clamp(*Self::SCALES_PERCENT.start(), *Self::SCALES_PERCENT.end());
+    }
 }
 
 impl Default for Model {
     fn default() -> Self {
         Self {
             screen: Screen::default(),
-            appearance: Appearance { theme: ThemePreference::System, plain: false },
+            appearance: Appearance::default(),
             devices: Devices::default(),
             messages: Messages::default(),
+            palette: None,
+            help: Help::default(),
             front: Desk::default(),
             others: Vec::new(),
         }
@@ -85,6 +111,16 @@ impl Model {
         self.desks_mut().find(|desk| desk.id() == id)
     }
 
+    /// The link that stands before or behind the one in front, in the order they were opened; round at the ends.
+    pub fn neighbour(&self, forward: bool) -> DeskId {
+        let front = self.front.id();
+        let mut ids: Vec<DeskId> = self.desks().map(Desk::id).collect();
+        ids.sort_unstable();
+        let at = ids.iter().position(|id| *id == front).unwrap_or_default();
+        let by = if forward { 1 } else { ids.len() - 1 };
+        ids[(at + by) % ids.len()]
+    }
+
     /// Puts another link in front. Nothing is armed across this: the window disarms first.
     pub fn bring_to_front(&mut self, id: DeskId) {
         if let Some(desk) = self.others.iter_mut().find(|desk| desk.id() == id) {
@@ -93,12 +129,33 @@ impl Model {
         }
     }
 
-    /// Puts a new, empty desk in front.
+    /// The link at a place, open or not.
+    pub fn desk_at(&self, place: &str) -> Option<&Desk> {
+        self.desks().find(|desk| desk.is_at(place))
+    }
+
+    /// Puts an empty desk in front: a new one, or the one in front if nobody would miss what it holds.
     pub fn add_desk(&mut self) {
+        if self.front.is_blank() {
+            return;
+        }
         let next = self.desks().map(Desk::id).max().map_or(DeskId::default(), DeskId::next);
         let before = std::mem::replace(&mut self.front, Desk::new(next));
         self.others.push(before);
         self.front.graph_for(self.screen);
+    }
+
+    /// Takes a desk away. Without any other an empty one comes in its place.
+    pub fn remove_desk(&mut self, id: DeskId) {
+        if id == self.front.id() {
+            let next = self.neighbour(true);
+            if next == id {
+                self.front = Desk::new(id.next());
+            } else {
+                self.bring_to_front(next);
+            }
+        }
+        self.others.retain(|desk| desk.id() != id);
     }
 
     /// Goes to a screen. Each screen that drives keeps its own choice of channels.

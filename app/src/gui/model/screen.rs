@@ -39,7 +39,9 @@ impl Screen {
     pub const fn missing(self) -> Option<&'static str> {
         match self {
             Self::DeviceStatus | Self::GeneralSettings | Self::Pwm | Self::Velocity => None,
-            Self::Position => Some("This screen is not built yet. On the command line: brushwork drive"),
+            Self::Position => {
+                Some("This screen is not built yet. On the command line there is brushwork drive.")
+            }
             Self::MclEditor => Some("This screen is not built yet."),
         }
     }

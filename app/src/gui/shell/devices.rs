@@ -4,104 +4,213 @@ use brushwork_link::device::{Addresses, Identity};
 use brushwork_link::transport::PortInfo;
 use brushwork_protocol::packet_serial::Address;
 use egui::{
-    Align2, ComboBox, Key, Response, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo,
-    pos2, vec2,
+    Align2, ComboBox, Key, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui,
+    WidgetInfo, pos2, vec2,
 };
 
 use super::heading_ui;
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::devices::{BAUD_RATES, Choice, Devices, SIMULATED};
-use crate::gui::model::{Model, Phase};
+use crate::gui::model::link::Arming;
+use crate::gui::model::{Desk, DeskId, Model, Phase, place_of};
 use crate::gui::theme::Palette;
 use crate::gui::widgets::LampState;
 use crate::gui::widgets::text_field::text_field_ui;
 
-const ROW_HEIGHT: f32 = 40.0;
+const ROW_HEIGHT: f32 = 54.0;
 
 pub fn devices_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     heading_ui(ui, "Attached devices");
-    let locked = model.front.phase != Phase::Closed;
     ui.spacing_mut().item_spacing.y = 4.0;
-    entries_ui(ui, model, locked);
+    for row in rows(model) {
+        row_ui(ui, &row, model, commands);
+    }
     if model.devices.ports().is_empty() {
         hint_ui(ui, &model.devices);
     }
-    ui.add_enabled_ui(!locked, |ui| {
-        if path_ui(ui, &mut model.devices) {
-            commands.push(Command::Connect);
-        }
-        options_ui(ui, model);
-    });
-    connect_ui(ui, &model.front.phase, commands);
+    if path_ui(ui, &mut model.devices) {
+        commands.push(Command::Connect);
+    }
+    options_ui(ui, model, commands);
+    connect_ui(ui, model, commands);
     units_ui(ui, model, commands);
 }
 
-fn entries_ui(ui: &mut Ui, model: &mut Model, locked: bool) {
-    let state = |target: &str| state_of(&model.front.phase, target);
-    let mut rows = vec![(
-        Choice::Simulated,
-        "Simulated MCP266".to_owned(),
-        "in this program".to_owned(),
-        state(SIMULATED),
-    )];
-    for port in model.devices.ports() {
-        rows.push((Choice::Port(port.name.clone()), port.name.clone(), described(port), state(&port.name)));
+/// One line of the list: something that can be connected to, or is.
+struct Row {
+    choice: Choice,
+    title: String,
+    /// What it is, or who answered there.
+    detail: String,
+    state: State,
+    simulated: bool,
+    desk: Option<DeskId>,
+    is_open: bool,
+    /// It is there only because of its desk, and can be taken off the list.
+    can_be_forgotten: bool,
+}
+
+/// The simulated controller, the ports, then links to anything else.
+fn rows(model: &Model) -> Vec<Row> {
+    let devices = &model.devices;
+    let mut rows = vec![row(model, Choice::Simulated, SIMULATED, "Simulated MCP266", "in this program")];
+    for port in devices.ports() {
+        rows.push(row(model, Choice::Port(port.name.clone()), &port.name, &port.name, &described(port)));
     }
-    if let (Choice::Port(name), true) = (&model.devices.choice, model.devices.choice_is_gone()) {
-        rows.push((model.devices.choice.clone(), name.clone(), "unplugged".to_owned(), Entry::Gone));
+    if let (Choice::Port(name), true) = (&devices.choice, devices.choice_is_gone()) {
+        let mut gone = row(model, devices.choice.clone(), name, name, "unplugged");
+        gone.state = State::GONE;
+        rows.push(gone);
     }
-    if let (Choice::Typed, Some(target)) = (&model.devices.choice, model.front.phase.target()) {
-        rows.push((Choice::Typed, target.to_owned(), "typed below".to_owned(), state(target)));
+    let mut desks: Vec<&Desk> = model.desks().filter(|desk| desk.target.is_some()).collect();
+    desks.sort_by_key(|desk| desk.id());
+    for desk in desks {
+        let target = desk.target.as_deref().unwrap_or_default();
+        if !rows.iter().any(|row| row.desk == Some(desk.id())) {
+            let mut other = row(model, Choice::Desk(desk.id()), &place_of(target), target, "named below");
+            other.can_be_forgotten = !other.is_open;
+            rows.push(other);
+        }
     }
-    for (choice, title, detail, entry) in rows {
-        let chosen = model.devices.choice == choice;
-        let simulated = choice == Choice::Simulated;
-        let clicked = entry_ui(ui, &title, &detail, entry, chosen, simulated).clicked();
-        if clicked && !locked {
-            model.devices.choice = choice;
+    rows
+}
+
+fn row(model: &Model, choice: Choice, place: &str, title: &str, detail: &str) -> Row {
+    let desk = model.desk_at(place);
+    let identity = desk.and_then(|desk| desk.link.identity());
+    Row {
+        choice,
+        title: title.to_owned(),
+        detail: identity.map_or_else(|| detail.to_owned(), answered),
+        state: desk.map_or(State::AVAILABLE, State::of),
+        simulated: place.starts_with("sim:"),
+        desk: desk.map(Desk::id),
+        is_open: desk.is_some_and(|desk| desk.phase != Phase::Closed),
+        can_be_forgotten: false,
+    }
+}
+
+/// Model, address and firmware of who answered.
+fn answered(identity: &Identity) -> String {
+    let firmware = match identity.firmware.as_str() {
+        "" => "firmware not told".to_owned(),
+        version => format!("firmware {version}"),
+    };
+    format!("{} · 0x{:02X} · {firmware}", identity.title(), identity.address)
+}
+
+/// What is so with a device: a word, and a lamp that says the same by colour and shape.
+#[derive(Clone, Copy)]
+struct State(&'static str, LampState);
+
+impl State {
+    const AVAILABLE: Self = Self("available", LampState::Unknown);
+    const GONE: Self = Self("gone", LampState::Warning);
+
+    fn of(desk: &Desk) -> Self {
+        match &desk.phase {
+            Phase::Closed => Self::AVAILABLE,
+            Phase::Opening { .. } => Self("connecting", LampState::Active),
+            Phase::Closing { .. } => Self("disconnecting", LampState::Active),
+            Phase::Open { .. } if desk.link.identity().is_none() => {
+                Self("looking for controllers", LampState::Active)
+            }
+            Phase::Open { .. } => Self::of_unit(desk),
+        }
+    }
+
+    fn of_unit(desk: &Desk) -> Self {
+        match (desk.link.lamps.worst(), desk.link.arming) {
+            (LampState::Error, _) => Self("connected, error", LampState::Error),
+            (_, Arming::Armed { .. }) => Self("connected, armed", LampState::Active),
+            (LampState::Warning, _) => Self("connected, warning", LampState::Warning),
+            _ => Self("connected", LampState::Ok),
         }
     }
 }
 
-/// What is so with a device of the list.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Entry {
-    Available,
-    Connecting,
-    Connected,
-    Gone,
+fn row_ui(ui: &mut Ui, row: &Row, model: &mut Model, commands: &mut Commands) {
+    let chosen = model.devices.choice == row.choice;
+    let in_front = row.is_open && row.desk == Some(model.front.id());
+    let several = model.desks().filter(|desk| desk.phase != Phase::Closed).count() > 1;
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::click());
+    let front = if in_front && several { ", in front" } else { "" };
+    let spoken = format!("{}: {}, {}{front}", row.title, row.detail, row.state.0);
+    response.widget_info(|| WidgetInfo::selected(Role::Button, true, chosen, &spoken));
+    paint_row(ui, rect, row, (chosen, in_front && several), &response);
+    end_ui(ui, rect, row, commands);
+    if response.clicked() {
+        model.devices.choice = row.choice.clone();
+        commands.extend(row.desk.filter(|_| row.is_open).map(Command::Front));
+    }
+    if response.double_clicked() && !row.is_open {
+        commands.push(Command::Connect);
+    }
+    response.on_hover_text(format!("{}\n{}\n{}{front}", row.title, row.detail, row.state.0));
 }
 
-impl Entry {
-    const fn word(self) -> &'static str {
-        match self {
-            Self::Available => "available",
-            Self::Connecting => "connecting",
-            Self::Connected => "connected",
-            Self::Gone => "gone",
-        }
-    }
-
-    const fn lamp(self) -> LampState {
-        match self {
-            Self::Available => LampState::Unknown,
-            Self::Connecting => LampState::Active,
-            Self::Connected => LampState::Ok,
-            Self::Gone => LampState::Warning,
-        }
+/// The small button in the row's corner: ends the link, or takes a closed one off the list.
+fn end_ui(ui: &mut Ui, rect: Rect, row: &Row, commands: &mut Commands) {
+    let Some(desk) = row.desk.filter(|_| row.is_open || row.can_be_forgotten) else { return };
+    let (verb, command) = match row.is_open {
+        true => ("Disconnect from", Command::Disconnect(desk)),
+        false => ("Forget", Command::Forget(desk)),
+    };
+    let at = Rect::from_center_size(pos2(rect.right() - 13.0, rect.bottom() - 11.0), vec2(20.0, 16.0));
+    let name = format!("{verb} {}", row.title);
+    let response = ui.interact(at, ui.scope_id().with((&row.title, "end")), Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+    let palette = Palette::of(ui);
+    let ring =
+        if response.has_focus() { Stroke::new(2.0, palette.accent) } else { Stroke::new(1.0, palette.line) };
+    let fill = if response.hovered() { palette.line } else { palette.raised };
+    ui.painter().rect(at, 3.0, fill, ring, StrokeKind::Inside);
+    let font = TextStyle::Button.resolve(ui.style());
+    ui.painter().text(at.center(), Align2::CENTER_CENTER, "×", font, palette.text);
+    if response.on_hover_text(&name).clicked() {
+        commands.push(command);
     }
 }
 
-fn state_of(phase: &Phase, target: &str) -> Entry {
-    // A target can carry options behind a comma.
-    if phase.target().is_none_or(|open| open != target && !open.starts_with(&format!("{target},"))) {
-        return Entry::Available;
+fn paint_row(ui: &Ui, rect: Rect, row: &Row, (chosen, in_front): (bool, bool), response: &Response) {
+    let palette = Palette::of(ui);
+    let outline = match (chosen || response.has_focus(), response.hovered()) {
+        (true, _) => Stroke::new(if response.has_focus() { 2.0 } else { 1.5 }, palette.accent),
+        (false, true) => Stroke::new(1.0, palette.weak_text),
+        (false, false) => Stroke::new(1.0, palette.line),
+    };
+    let fill = if chosen { palette.raised } else { palette.panel };
+    let painter = ui.painter().with_clip_rect(rect);
+    painter.rect(rect, 4.0, fill, outline, StrokeKind::Inside);
+    if in_front {
+        let bar = Rect::from_min_max(
+            rect.left_top() + vec2(2.0, 4.0),
+            pos2(rect.left() + 5.0, rect.bottom() - 4.0),
+        );
+        painter.rect_filled(bar, 1.0, palette.accent);
     }
-    match phase {
-        Phase::Open { .. } => Entry::Connected,
-        Phase::Closed => Entry::Available,
-        Phase::Opening { .. } | Phase::Closing { .. } => Entry::Connecting,
+    row.state.1.paint(ui, pos2(rect.left() + 16.0, rect.top() + 14.0), 5.0);
+    let (body, small) = (TextStyle::Body.resolve(ui.style()), TextStyle::Small.resolve(ui.style()));
+    let left = rect.left() + 28.0;
+    let mut room = rect.shrink(4.0);
+    if row.simulated {
+        let at = pos2(rect.right() - 8.0, rect.top() + 7.0);
+        let tag = painter.text(at, Align2::RIGHT_TOP, "SIM", small.clone(), palette.accent);
+        let frame = tag.expand2(vec2(3.0, 1.0));
+        painter.rect_stroke(frame, 3.0, Stroke::new(1.0, palette.accent), StrokeKind::Outside);
+        room.max.x = frame.left() - 4.0;
     }
+    let title = painter.with_clip_rect(room);
+    title.text(pos2(left, rect.top() + 5.0), Align2::LEFT_TOP, &row.title, body, palette.text);
+    let below = painter.with_clip_rect(rect.shrink(4.0));
+    below.text(
+        pos2(left, rect.top() + 23.0),
+        Align2::LEFT_TOP,
+        &row.detail,
+        small.clone(),
+        palette.weak_text,
+    );
+    below.text(pos2(left, rect.bottom() - 5.0), Align2::LEFT_BOTTOM, row.state.0, small, palette.text);
 }
 
 /// What a port is, as far as its USB names tell.
@@ -111,44 +220,6 @@ fn described(port: &PortInfo) -> String {
         (None, true) => "USB".to_owned(),
         (None, false) => "serial port".to_owned(),
     }
-}
-
-fn entry_ui(ui: &mut Ui, title: &str, detail: &str, entry: Entry, chosen: bool, simulated: bool) -> Response {
-    let palette = Palette::of(ui);
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::click());
-    let spoken = format!("{title}: {detail}, {}", entry.word());
-    response.widget_info(|| WidgetInfo::selected(Role::Button, true, chosen, &spoken));
-    let outline = match (chosen, response.has_focus() || response.hovered()) {
-        (true, _) => Stroke::new(1.5, palette.accent),
-        (false, true) => Stroke::new(1.0, palette.weak_text),
-        (false, false) => Stroke::new(1.0, palette.line),
-    };
-    let fill = if chosen { palette.raised } else { palette.panel };
-    ui.painter().rect(rect, 4.0, fill, outline, StrokeKind::Inside);
-    entry.lamp().paint(ui, pos2(rect.left() + 14.0, rect.center().y), 5.0);
-    let (body, small) = (TextStyle::Body.resolve(ui.style()), TextStyle::Small.resolve(ui.style()));
-    let painter = ui.painter().with_clip_rect(rect.shrink(4.0));
-    let left = rect.left() + 28.0;
-    painter.text(pos2(left, rect.top() + 5.0), Align2::LEFT_TOP, title, body, palette.text);
-    let below = format!("{detail} · {}", entry.word());
-    painter.text(
-        pos2(left, rect.bottom() - 5.0),
-        Align2::LEFT_BOTTOM,
-        below,
-        small.clone(),
-        palette.weak_text,
-    );
-    if simulated {
-        let at = pos2(rect.right() - 8.0, rect.top() + 7.0);
-        let text = painter.text(at, Align2::RIGHT_TOP, "SIM", small, palette.accent);
-        painter.rect_stroke(
-            text.expand2(vec2(3.0, 1.0)),
-            3.0,
-            Stroke::new(1.0, palette.accent),
-            StrokeKind::Outside,
-        );
-    }
-    response.on_hover_text(format!("{title}\n{detail}"))
 }
 
 fn hint_ui(ui: &mut Ui, devices: &Devices) {
@@ -177,43 +248,63 @@ fn path_ui(ui: &mut Ui, devices: &mut Devices) -> bool {
     entered && devices.choice == Choice::Typed
 }
 
-/// Address, and the rate where it matters.
-fn options_ui(ui: &mut Ui, model: &mut Model) {
+/// Address, rate where it matters, and what was connected to before.
+fn options_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     ui.horizontal(|ui| {
-        let text = |addresses: Addresses| match addresses {
-            Addresses::Scan => "All units".to_owned(),
-            Addresses::Only(address) => format!("0x{address:02X}"),
-        };
-        let combo =
-            ComboBox::from_id_salt("address").width(84.0).selected_text(text(model.devices.addresses));
-        let response = combo.show_ui(ui, |ui| {
-            let each = Address::ALL.into_iter().map(|address| Addresses::Only(address.get()));
-            for addresses in std::iter::once(Addresses::Scan).chain(each) {
-                ui.selectable_value(&mut model.devices.addresses, addresses, text(addresses));
-            }
-        });
-        name_combo(
-            ui,
-            &response.response,
-            "Address",
-            "Which addresses to ask when connecting: all from 0x80 to 0x87, or one",
-        );
+        ui.spacing_mut().item_spacing.x = 4.0;
+        address_ui(ui, &mut model.devices.addresses);
         if model.devices.baud_matters() {
-            let combo =
-                ComboBox::from_id_salt("baud").width(70.0).selected_text(model.devices.baud.to_string());
-            let response = combo.show_ui(ui, |ui| {
-                for baud in BAUD_RATES {
-                    ui.selectable_value(&mut model.devices.baud, baud, baud.to_string());
-                }
-            });
-            name_combo(
-                ui,
-                &response.response,
-                "Baud rate",
-                "The rate the controller's serial port is set to",
-            );
+            baud_ui(ui, &mut model.devices.baud);
+        }
+        recent_ui(ui, &model.devices, commands);
+    });
+}
+
+fn address_ui(ui: &mut Ui, chosen: &mut Addresses) {
+    let text = |addresses: Addresses| match addresses {
+        Addresses::Scan => "Scan all".to_owned(),
+        Addresses::Only(address) => format!("0x{address:02X}"),
+    };
+    let combo = ComboBox::from_id_salt("address").width(72.0).selected_text(text(*chosen));
+    let response = combo.show_ui(ui, |ui| {
+        let each = Address::ALL.into_iter().map(|address| Addresses::Only(address.get()));
+        for addresses in std::iter::once(Addresses::Scan).chain(each) {
+            ui.selectable_value(chosen, addresses, text(addresses));
         }
     });
+    let help = "Which addresses to ask when connecting: all from 0x80 to 0x87, or one";
+    name_combo(ui, &response.response, "Address", help);
+}
+
+fn baud_ui(ui: &mut Ui, chosen: &mut u32) {
+    let combo = ComboBox::from_id_salt("baud").width(64.0).selected_text(chosen.to_string());
+    let response = combo.show_ui(ui, |ui| {
+        for baud in BAUD_RATES {
+            ui.selectable_value(chosen, baud, baud.to_string());
+        }
+    });
+    name_combo(ui, &response.response, "Baud rate", "The rate the controller's serial port is set to");
+}
+
+fn recent_ui(ui: &mut Ui, devices: &Devices, commands: &mut Commands) {
+    let recent = devices.recent();
+    let menu = ui.add_enabled_ui(!recent.is_empty(), |ui| {
+        ui.menu_button("Recent", |ui| {
+            ui.set_min_width(200.0);
+            for target in recent {
+                if ui.button(target).clicked() {
+                    commands.push(Command::ConnectTo(target.clone()));
+                    ui.close();
+                }
+            }
+            ui.separator();
+            if ui.button("Forget all").clicked() {
+                commands.extend(recent.iter().cloned().map(Command::ForgetRecent));
+                ui.close();
+            }
+        })
+    });
+    menu.inner.response.on_hover_text("Connections of before");
 }
 
 fn name_combo(ui: &Ui, response: &Response, name: &str, help: &str) {
@@ -221,12 +312,16 @@ fn name_combo(ui: &Ui, response: &Response, name: &str, help: &str) {
     response.clone().on_hover_text(help);
 }
 
-fn connect_ui(ui: &mut Ui, phase: &Phase, commands: &mut Commands) {
-    let (text, command) = match phase {
-        Phase::Closed => ("Connect", Some(Command::Connect)),
-        Phase::Opening { .. } => ("Cancel", Some(Command::Disconnect)),
-        Phase::Open { .. } => ("Disconnect", Some(Command::Disconnect)),
-        Phase::Closing { .. } => ("Disconnecting", None),
+/// Connects to what is chosen, or ends the link to it.
+fn connect_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
+    let chosen = rows(model).into_iter().find(|row| row.choice == model.devices.choice);
+    let desk = chosen.and_then(|row| row.desk).and_then(|id| model.desk(id));
+    let end = desk.map(|desk| Command::Disconnect(desk.id()));
+    let (text, command) = match desk.map(|desk| &desk.phase) {
+        None | Some(Phase::Closed) => ("Connect", Some(Command::Connect)),
+        Some(Phase::Opening { .. }) => ("Cancel", end),
+        Some(Phase::Open { .. }) => ("Disconnect", end),
+        Some(Phase::Closing { .. }) => ("Disconnecting", None),
     };
     ui.add_enabled_ui(command.is_some(), |ui| {
         if ui.add_sized(vec2(ui.available_width(), 30.0), egui::Button::new(text)).clicked() {

@@ -1,12 +1,12 @@
 //! The left side: devices, screens, and Stop All at the bottom.
 
-use egui::{Align, Button, Layout, Panel, RichText, Role, ScrollArea, ThemePreference, Ui, WidgetInfo};
+use egui::{Align, Button, Layout, Panel, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
 use super::devices::devices_ui;
 use super::heading_ui;
 use crate::gui::command::{Command, Commands};
+use crate::gui::model::Model;
 use crate::gui::model::screen::Screen;
-use crate::gui::model::{Appearance, Model};
 use crate::gui::widgets::stop;
 
 pub fn left_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
@@ -21,8 +21,6 @@ pub fn left_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         },
     );
     egui::CentralPanel::no_frame().show(ui, |ui| {
-        title_ui(ui, &mut model.appearance);
-        ui.add_space(4.0);
         ScrollArea::vertical().show(ui, |ui| {
             devices_ui(ui, model, commands);
             ui.add_space(10.0);
@@ -33,29 +31,6 @@ pub fn left_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             }
         });
     });
-}
-
-fn title_ui(ui: &mut Ui, appearance: &mut Appearance) {
-    ui.horizontal(|ui| {
-        ui.label(RichText::new("Brushwork").heading());
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.menu_button("View", |ui| appearance_ui(ui, appearance));
-        });
-    });
-}
-
-fn appearance_ui(ui: &mut Ui, appearance: &mut Appearance) {
-    let themes = [
-        (ThemePreference::System, "As the system"),
-        (ThemePreference::Light, "Light"),
-        (ThemePreference::Dark, "Dark"),
-    ];
-    for (theme, text) in themes {
-        ui.radio_value(&mut appearance.theme, theme, text);
-    }
-    ui.separator();
-    ui.checkbox(&mut appearance.plain, "Plain edges")
-        .on_hover_text("Draws without smoothing. Saves processor time where there is no graphics card.");
 }
 
 /// Shows and hides the panel of the simulated controller's world.

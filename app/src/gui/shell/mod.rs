@@ -5,15 +5,17 @@ use egui::{CentralPanel, Frame, Margin, Panel, RichText, ScrollArea, Ui};
 use super::command::Commands;
 use super::model::Model;
 use super::theme::Palette;
-use super::{screens, traffic, world};
+use super::{help, screens, traffic, world};
 
 mod bottom;
 mod devices;
 mod left;
+mod menu;
 mod message;
+mod palette;
 mod top;
 
-const LEFT_WIDTH: f32 = 222.0;
+const LEFT_WIDTH: f32 = 216.0;
 const WORLD_WIDTH: f32 = 292.0;
 const TRAFFIC_HEIGHT: f32 = 230.0;
 const TRAFFIC_RANGE: std::ops::RangeInclusive<f32> = 140.0..=600.0;
@@ -22,7 +24,9 @@ const TRAFFIC_RANGE: std::ops::RangeInclusive<f32> = 140.0..=600.0;
 pub fn shell_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let palette = Palette::of(ui);
     let panel = Frame::new().fill(palette.panel).inner_margin(Margin::symmetric(10, 8));
-    Panel::left("left").resizable(false).exact_size(LEFT_WIDTH).frame(panel).show(ui, |ui| {
+    let bar = Frame::new().fill(palette.panel).inner_margin(Margin::symmetric(6, 2));
+    Panel::top("menus").resizable(false).frame(bar).show(ui, |ui| menu::menu_ui(ui, model, commands));
+    let left = Panel::left("left").resizable(false).exact_size(LEFT_WIDTH).frame(panel).show(ui, |ui| {
         left::left_ui(ui, model, commands);
     });
     Panel::top("parameters").resizable(false).frame(panel).show(ui, |ui| {
@@ -46,6 +50,9 @@ pub fn shell_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     }
     let central = Frame::new().fill(palette.panel).inner_margin(Margin::symmetric(12, 10));
     CentralPanel::no_frame().frame(central).show(ui, |ui| screens::screen_ui(ui, model, commands));
+    let right_of_devices = left.response.rect.right();
+    help::help_ui(ui.ctx(), model, ui.ctx().content_rect().with_min_x(right_of_devices));
+    palette::palette_ui(ui.ctx(), model, commands);
 }
 
 /// The heading of a group.

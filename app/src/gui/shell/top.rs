@@ -25,7 +25,7 @@ const BLOCKS: [Block; 5] = [
     Block {
         channels: [Channel::Temperature1, Channel::Temperature2],
         labels: ["Temp 1", "Temp 2"],
-        label_width: 42.0,
+        label_width: 40.0,
         unit: "°C",
         unit_letters: 2,
         digits: 5,
@@ -34,7 +34,7 @@ const BLOCKS: [Block; 5] = [
     Block {
         channels: [Channel::M1Current, Channel::M2Current],
         labels: ["M1 amps", "M2 amps"],
-        label_width: 52.0,
+        label_width: 51.0,
         unit: "A",
         unit_letters: 1,
         digits: 7,
@@ -52,7 +52,7 @@ const BLOCKS: [Block; 5] = [
     Block {
         channels: [Channel::M1Velocity, Channel::M2Velocity],
         labels: ["M1 speed", "M2 speed"],
-        label_width: 56.0,
+        label_width: 54.0,
         unit: "counts/s",
         unit_letters: 5,
         digits: 8,
@@ -61,7 +61,7 @@ const BLOCKS: [Block; 5] = [
     Block {
         channels: [Channel::MainBattery, Channel::LogicBattery],
         labels: ["Main battery", "Logic battery"],
-        label_width: 76.0,
+        label_width: 74.0,
         unit: "V",
         unit_letters: 1,
         digits: 5,
@@ -70,23 +70,26 @@ const BLOCKS: [Block; 5] = [
 ];
 
 const GAP: f32 = 4.0;
-const ZERO_WIDTH: f32 = 46.0;
+const ZERO_WIDTH: f32 = 42.0;
 const ROW_HEIGHT: f32 = 24.0;
 const IDENTITY_WIDTH: f32 = 152.0;
 
 pub fn top_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
-    ui.spacing_mut().item_spacing = vec2(12.0, 4.0);
+    ui.spacing_mut().item_spacing = vec2(7.0, 4.0);
     // Rows are made by hand, since a wrapping layout does not know how wide a block will be.
-    let widths: Vec<f32> = BLOCKS.iter().map(|block| block.width(ui)).chain([IDENTITY_WIDTH]).collect();
+    let widths: Vec<f32> = BLOCKS.iter().map(|block| block.width(ui)).collect();
+    let (room, gap) = (ui.available_width(), ui.spacing().item_spacing.x);
     let mut start = 0;
     while start < widths.len() {
-        let end = row_end(&widths, start, ui.available_width(), ui.spacing().item_spacing.x);
+        let end = row_end(&widths, start, room, gap);
+        let used: f32 = widths[start..end].iter().map(|width| width + gap).sum();
         ui.horizontal(|ui| {
-            for index in start..end {
-                match BLOCKS.get(index) {
-                    Some(block) => block_ui(ui, block, model, commands),
-                    None => identity_ui(ui, model),
-                }
+            for block in &BLOCKS[start..end] {
+                block_ui(ui, block, model, commands);
+            }
+            // Who the controller is stands in the device list too, so it takes no row of its own.
+            if end == widths.len() && used + IDENTITY_WIDTH <= room {
+                identity_ui(ui, model);
             }
         });
         start = end;

@@ -43,6 +43,7 @@ pub struct General {
     sought: Option<String>,
     sheet: Option<Sheet>,
     sheet_is_new: bool,
+    wants_search: bool,
 }
 
 /// What stands in place of the list until it is answered.
@@ -140,6 +141,22 @@ impl General {
 
     pub fn close_sheet(&mut self) {
         self.sheet = None;
+    }
+
+    /// Whether any unit has edits that were not written.
+    pub fn has_edits(&self) -> bool {
+        self.units.values().any(|unit| !unit.edits().is_empty())
+    }
+
+    /// The keyboard is to go to the search field.
+    pub fn find(&mut self) {
+        self.close_sheet();
+        self.wants_search = true;
+    }
+
+    /// True once for each [`General::find`].
+    pub fn take_search_focus(&mut self) -> bool {
+        std::mem::take(&mut self.wants_search)
     }
 
     /// True once for each sheet: then the keyboard goes to its button.

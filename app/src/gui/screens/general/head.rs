@@ -123,6 +123,9 @@ fn filter_ui(ui: &mut Ui, general: &mut General, commands: &mut Commands) {
         ui.allocate_ui(vec2(SEARCH_WIDTH, ui.spacing().interact_size.y), |ui| {
             let search = text_field_ui(ui, &mut general.search, "Search settings", "Search");
             is_new |= search.changed();
+            if general.take_search_focus() {
+                search.request_focus();
+            }
         });
         is_new |= ui.checkbox(&mut general.only_changed, "Only changed").changed();
         // What is looked for is in the list, which a sheet would stand in place of.

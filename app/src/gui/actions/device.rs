@@ -1,0 +1,228 @@
+//! The Device menu (MCP manual 1.2.8) with Ion Studio's keys, and what is new: links, arming, encoders.
+
+use brushwork_protocol::packet_serial::Motor;
+use egui::Key;
+
+use super::{
+    Action, Keys, Menu, Ready, always, connected, ctrl, ctrl_shift, key, mcl_missing, place, settings_idle,
+};
+use crate::gui::command::Command;
+use crate::gui::model::general::Sheet;
+use crate::gui::model::link::Arming;
+use crate::gui::model::screen::Screen;
+use crate::gui::model::{Model, Phase};
+
+pub(super) const ACTIONS: &[Action] = &[
+    Action {
+        id: "device.stop",
+        title: "Stop All",
+        place: place(Menu::Device, 0),
+        keys: Keys::Elsewhere("Space or Esc"),
+        help: "Stops all motors of every open link, at once.",
+        ready: always,
+        is_on: None,
+        command: |_| Command::Stop,
+    },
+    Action {
+        id: "device.arm",
+        title: "Arm This Screen",
+        place: place(Menu::Device, 0),
+        keys: ctrl_shift(Key::A),
+        help: "Lets the open screen move motors, or disarms it and stops them.",
+        ready: can_arm,
+        is_on: Some(|model| model.front.link.arming != Arming::Disarmed),
+        command: arm_or_disarm,
+    },
+    Action {
+        id: "device.connect",
+        title: "Connect to the Chosen Device",
+        place: place(Menu::Device, 1),
+        keys: ctrl_shift(Key::C),
+        help: "Opens a link to the device that is chosen in the list, or brings it to the front.",
+        ready: always,
+        is_on: None,
+        command: |_| Command::Connect,
+    },
+    Action {
+        id: "device.disconnect",
+        title: "Disconnect from the Device in Front",
+        place: place(Menu::Device, 1),
+        keys: ctrl_shift(Key::D),
+        help: "Stops the motors and closes the link in front, or gives up opening it.",
+        ready: has_link,
+        is_on: None,
+        command: |model| Command::Disconnect(model.front.id()),
+    },
+    Action {
+        id: "device.next",
+        title: "Next Open Device",
+        place: place(Menu::Device, 1),
+        keys: ctrl(Key::PageDown),
+        help: "Puts the next open link in front; what was armed is disarmed and stopped.",
+        ready: has_others,
+        is_on: None,
+        command: |model| Command::Front(model.neighbour(true)),
+    },
+    Action {
+        id: "device.previous",
+        title: "Previous Open Device",
+        place: place(Menu::Device, 1),
+        keys: ctrl(Key::PageUp),
+        help: "Puts the previous open link in front; what was armed is disarmed and stopped.",
+        ready: has_others,
+        is_on: None,
+        command: |model| Command::Front(model.neighbour(false)),
+    },
+    Action {
+        id: "device.canopen",
+        title: "Connect CANopen Bus…",
+        place: place(Menu::Device, 2),
+        keys: Keys::None,
+        help: "Connects to a CANopen bus through a GridConnect adapter.",
+        ready: |_| Err("The CANopen bus is not built yet.".into()),
+        is_on: None,
+        command: |_| Command::Connect,
+    },
+    Action {
+        id: "device.read-settings",
+        title: "Read Settings…",
+        place: place(Menu::Device, 3),
+        keys: key(Key::F8),
+        help: "Reads the controller's settings, from what it works with or from its EEPROM.",
+        ready: settings_idle,
+        is_on: None,
+        command: |_| Command::OpenSheet(Sheet::Read),
+    },
+    Action {
+        id: "device.default-settings",
+        title: "Default Settings…",
+        place: place(Menu::Device, 3),
+        keys: Keys::None,
+        help: "Restores the factory settings on the controller.",
+        ready: settings_idle,
+        is_on: None,
+        command: |_| Command::OpenSheet(Sheet::Defaults),
+    },
+    Action {
+        id: "device.write-settings",
+        title: "Write Settings…",
+        place: place(Menu::Device, 3),
+        keys: key(Key::F9),
+        help: "Shows the edits, old and new, and writes them to the controller's RAM.",
+        ready: has_changes,
+        is_on: None,
+        command: |_| Command::OpenSheet(Sheet::Write),
+    },
+    Action {
+        id: "device.save-settings",
+        title: "Save Settings…",
+        place: place(Menu::Device, 3),
+        keys: key(Key::F10),
+        help: "Saves the controller's settings to its EEPROM, so that they outlive a power cycle.",
+        ready: settings_idle,
+        is_on: None,
+        command: |_| Command::OpenSheet(Sheet::Save),
+    },
+    Action {
+        id: "device.check-mcl",
+        title: "Check MCL",
+        place: place(Menu::Device, 4),
+        keys: key(Key::F7),
+        help: "Compiles the open MCL program and checks it for errors.",
+        ready: mcl_missing,
+        is_on: None,
+        command: |_| Command::Show(Screen::MclEditor),
+    },
+    Action {
+        id: "device.download-mcl",
+        title: "Download MCL",
+        place: place(Menu::Device, 4),
+        keys: key(Key::F5),
+        help: "Downloads the MCL program to the controller's flash memory.",
+        ready: mcl_missing,
+        is_on: None,
+        command: |_| Command::Show(Screen::MclEditor),
+    },
+    Action {
+        id: "device.start-script",
+        title: "Start Script",
+        place: place(Menu::Device, 4),
+        keys: Keys::None,
+        help: "Starts the program that is in the controller.",
+        ready: mcl_missing,
+        is_on: None,
+        command: |_| Command::Show(Screen::MclEditor),
+    },
+    Action {
+        id: "device.stop-script",
+        title: "Stop Script",
+        place: place(Menu::Device, 4),
+        keys: Keys::None,
+        help: "Stops the program that runs in the controller.",
+        ready: mcl_missing,
+        is_on: None,
+        command: |_| Command::Show(Screen::MclEditor),
+    },
+    Action {
+        id: "device.zero-m1",
+        title: "Zero Encoder M1",
+        place: place(Menu::Device, 5),
+        keys: Keys::None,
+        help: "Sets the count of encoder 1 to zero.",
+        ready: connected,
+        is_on: None,
+        command: |_| Command::ZeroEncoder(Motor::M1),
+    },
+    Action {
+        id: "device.zero-m2",
+        title: "Zero Encoder M2",
+        place: place(Menu::Device, 5),
+        keys: Keys::None,
+        help: "Sets the count of encoder 2 to zero.",
+        ready: connected,
+        is_on: None,
+        command: |_| Command::ZeroEncoder(Motor::M2),
+    },
+    Action {
+        id: "device.reset-estop",
+        title: "Reset Emergency Stop (E-Stop)",
+        place: place(Menu::Device, 5),
+        keys: Keys::None,
+        help: "Ends an emergency stop where the controller lets software do so.",
+        ready: connected,
+        is_on: None,
+        command: |_| Command::ResetEmergencyStop,
+    },
+];
+
+fn can_arm(model: &Model) -> Ready {
+    connected(model)?;
+    match model.screen.arm_scope() {
+        Some(_) => Ok(()),
+        None => Err("This screen moves no motor. Go to the PWM, Velocity or Position screen first.".into()),
+    }
+}
+
+fn arm_or_disarm(model: &Model) -> Command {
+    match model.screen.arm_scope() {
+        Some(scope) if model.front.link.arming == Arming::Disarmed => Command::Arm(scope),
+        _ => Command::Disarm,
+    }
+}
+
+fn has_link(model: &Model) -> Ready {
+    match model.front.phase {
+        Phase::Open { .. } | Phase::Opening { .. } => Ok(()),
+        Phase::Closed | Phase::Closing { .. } => Err("No link is open.".into()),
+    }
+}
+
+fn has_others(model: &Model) -> Ready {
+    if model.others.is_empty() { Err("No other device is open.".into()) } else { Ok(()) }
+}
+
+fn has_changes(model: &Model) -> Ready {
+    settings_idle(model)?;
+    let has = model.front.general.unit().is_some_and(|unit| !unit.edits().is_empty());
+    if has { Ok(()) } else { Err("No setting was edited.".into()) }
+}

@@ -1,0 +1,75 @@
+//! The Help menu (MCP manual 1.2.9): pages drawn from the tables in place of PDF files.
+
+use egui::Key;
+
+use super::{Action, Keys, Menu, always, key, mcl_missing, place};
+use crate::gui::command::Command;
+use crate::gui::model::help::HelpPage;
+
+macro_rules! page {
+    ($id:literal, $title:literal, $group:literal, $keys:expr, $page:ident, $help:literal) => {
+        Action {
+            id: $id,
+            title: $title,
+            place: place(Menu::Help, $group),
+            keys: $keys,
+            help: $help,
+            ready: always,
+            is_on: None,
+            command: |_| Command::OpenHelp(HelpPage::$page),
+        }
+    };
+}
+
+pub(super) const ACTIONS: &[Action] = &[
+    page!(
+        "help.first-steps",
+        "First Steps",
+        0,
+        key(Key::F1),
+        FirstSteps,
+        "From an empty window to a motor that turns."
+    ),
+    page!(
+        "help.settings",
+        "Settings Reference",
+        1,
+        Keys::None,
+        Settings,
+        "Every setting: unit, range, default, and how it is read and written."
+    ),
+    page!(
+        "help.packet-serial",
+        "Packet Serial Reference",
+        1,
+        Keys::None,
+        PacketSerial,
+        "Every command of the protocol, byte by byte, and the bits of the status word."
+    ),
+    Action {
+        id: "help.mcl",
+        title: "MCL Reference",
+        place: place(Menu::Help, 1),
+        keys: Keys::None,
+        help: "Every command of the MCL language.",
+        ready: mcl_missing,
+        is_on: None,
+        command: |_| Command::OpenHelp(HelpPage::FirstSteps),
+    },
+    page!(
+        "help.shortcuts",
+        "Keyboard Shortcuts",
+        2,
+        key(Key::F2),
+        Shortcuts,
+        "Every key that does something."
+    ),
+    page!(
+        "help.about",
+        "About Brushwork",
+        3,
+        Keys::None,
+        About,
+        "Version, licence and what it is built with."
+    ),
+];

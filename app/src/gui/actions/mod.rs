@@ -1,0 +1,225 @@
+//! Everything a person can ask for by name: ONE table behind the menus, the command palette, the shortcuts and the list
+//! of shortcuts in Help.
+//!
+//! To add an action, add a row to the file of its menu. Nothing else has to know: the row says where it stands, which
+//! keys call it, when it can be done and why not, and which [`Command`] it is.
+
+use std::borrow::Cow;
+
+use egui::{Context, Key, KeyboardShortcut, Modifiers};
+
+use super::command::{Command, Commands};
+use super::model::Model;
+
+mod device;
+mod edit;
+mod file;
+mod help;
+mod view;
+
+/// One thing that can be asked for.
+#[derive(Debug)]
+pub struct Action {
+    /// A stable name: `device.read-settings`.
+    pub id: &'static str,
+    /// As it stands in its menu; dots at the end where it asks something first.
+    pub title: &'static str,
+    pub place: Place,
+    pub keys: Keys,
+    /// One sentence: what it does.
+    pub help: &'static str,
+    /// Whether it can be done now, else why not.
+    pub ready: fn(&Model) -> Ready,
+    /// For what can be on or off.
+    pub is_on: Option<fn(&Model) -> bool>,
+    /// What is done. Asked only when it is ready.
+    pub command: fn(&Model) -> Command,
+}
+
+/// Where an action stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    pub menu: Menu,
+    /// A line is drawn between two groups.
+    pub group: u8,
+}
+
+/// The menus, in order (MCP manual 1.2.6 to 1.2.9, and View).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Menu {
+    File,
+    Edit,
+    Device,
+    View,
+    Help,
+}
+
+impl Menu {
+    pub const ALL: [Self; 5] = [Self::File, Self::Edit, Self::Device, Self::View, Self::Help];
+
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::File => "File",
+            Self::Edit => "Edit",
+            Self::Device => "Device",
+            Self::View => "View",
+            Self::Help => "Help",
+        }
+    }
+}
+
+/// How the keyboard calls an action.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Keys {
+    None,
+    /// Calls it from anywhere.
+    Shortcut(KeyboardShortcut),
+    /// Is taken elsewhere (by a text field, by the stop keys) and only listed here.
+    Elsewhere(&'static str),
+}
+
+/// `Err` says in a sentence why an action cannot be done now.
+pub type Ready = Result<(), Cow<'static, str>>;
+
+/// Every action, menu by menu, as the menus show them.
+pub fn all() -> impl Iterator<Item = &'static Action> {
+    [file::ACTIONS, edit::ACTIONS, device::ACTIONS, view::ACTIONS, help::ACTIONS].into_iter().flatten()
+}
+
+/// The actions of a menu.
+pub fn of_menu(menu: Menu) -> impl Iterator<Item = &'static Action> {
+    all().filter(move |action| action.place.menu == menu)
+}
+
+impl Action {
+    /// Its keys as text: "Ctrl+Shift+P". Empty when it has none.
+    pub fn keys_text(&self, ctx: &Context) -> String {
+        match self.keys {
+            Keys::None => String::new(),
+            Keys::Shortcut(shortcut) => ctx.format_shortcut(&shortcut),
+            Keys::Elsewhere(text) => text.to_owned(),
+        }
+    }
+}
+
+/// The commands of the shortcuts that were pressed. What cannot be done now says why.
+pub fn shortcuts(ctx: &Context, model: &mut Model) -> Commands {
+    let mut pressed: Vec<&Action> = Vec::new();
+    // Ctrl+Shift+S would also pass for Ctrl+S: more modifiers go first.
+    for count in (0..=3).rev() {
+        for action in all() {
+            let Keys::Shortcut(shortcut) = action.keys else { continue };
+            if modifiers(shortcut) == count && ctx.input_mut(|input| input.consume_shortcut(&shortcut)) {
+                pressed.push(action);
+            }
+        }
+    }
+    let mut commands = Commands::new();
+    for action in pressed {
+        match (action.ready)(model) {
+            Ok(()) => commands.push((action.command)(model)),
+            Err(why) => model.messages.warn(format!("{}: {why}", action.title.trim_end_matches('…'))),
+        }
+    }
+    commands
+}
+
+fn modifiers(shortcut: KeyboardShortcut) -> usize {
+    let Modifiers { alt, ctrl, shift, command, .. } = shortcut.modifiers;
+    [alt, shift, ctrl || command].into_iter().filter(|held| *held).count()
+}
+
+const fn place(menu: Menu, group: u8) -> Place {
+    Place { menu, group }
+}
+
+const fn key(key: Key) -> Keys {
+    Keys::Shortcut(KeyboardShortcut::new(Modifiers::NONE, key))
+}
+
+const fn ctrl(key: Key) -> Keys {
+    Keys::Shortcut(KeyboardShortcut::new(Modifiers::COMMAND, key))
+}
+
+const fn ctrl_shift(key: Key) -> Keys {
+    Keys::Shortcut(KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key))
+}
+
+// ---- when something can be done ----
+
+fn always(_: &Model) -> Ready {
+    Ok(())
+}
+
+fn connected(model: &Model) -> Ready {
+    if model.is_connected() { Ok(()) } else { Err("No controller is connected.".into()) }
+}
+
+/// A controller is connected and no other work with its settings runs.
+fn settings_idle(model: &Model) -> Ready {
+    connected(model)?;
+    match model.front.general.running() {
+        Some(running) => Err(format!("Wait until Brushwork is done ({}).", running.name()).into()),
+        None => Ok(()),
+    }
+}
+
+fn mcl_missing(_: &Model) -> Ready {
+    Err("The MCL editor is not built yet.".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn no_two_actions_share_a_name_a_title_or_keys() {
+        let (mut ids, mut titles, mut keys) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
+        let ctx = Context::default();
+        for action in all() {
+            assert!(ids.insert(action.id), "{} twice", action.id);
+            assert!(titles.insert(action.title), "{} twice", action.title);
+            let text = action.keys_text(&ctx);
+            assert!(text.is_empty() || keys.insert(text.clone()), "{text} twice: {}", action.id);
+        }
+    }
+
+    #[test]
+    fn each_action_tells_what_it_does_and_stands_in_the_menu_its_name_says() {
+        for action in all() {
+            let menu = action.place.menu.title().to_lowercase();
+            assert!(action.id.starts_with(&format!("{menu}.")), "{}", action.id);
+            assert!(action.help.ends_with('.') && action.help.len() > 10, "{}: {}", action.id, action.help);
+        }
+    }
+
+    #[test]
+    fn groups_stand_together_in_their_menu() {
+        for menu in Menu::ALL {
+            let groups: Vec<u8> = of_menu(menu).map(|action| action.place.group).collect();
+            assert!(groups.is_sorted(), "{menu:?}: {groups:?}");
+            assert!(!groups.is_empty(), "{menu:?} is empty");
+        }
+    }
+
+    #[test]
+    fn nothing_takes_a_stop_key() {
+        for action in all() {
+            if let Keys::Shortcut(shortcut) = action.keys {
+                assert!(!matches!(shortcut.logical_key, Key::Space | Key::Escape), "{}", action.id);
+            }
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_done_says_why_in_a_sentence() {
+        let model = Model::default();
+        for action in all() {
+            if let Err(why) = (action.ready)(&model) {
+                assert!(why.ends_with('.') && why.len() > 10, "{}: {why}", action.id);
+            }
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! The window of help: first steps, the references drawn from the tables, shortcuts, and what Brushwork is.
+
+use egui::{Context, Rect, RichText, ScrollArea, Ui, Window, vec2};
+
+use super::model::Model;
+use super::model::help::{Help, HelpPage};
+use super::theme::Palette;
+use super::widgets::text_field::text_field_ui;
+
+mod pages;
+mod reference;
+
+/// Draws the window, if it is open, within `room`: it never covers what lies outside.
+pub fn help_ui(ctx: &Context, model: &mut Model, room: Rect) {
+    let Some(page) = model.help.page else { return };
+    let mut open = true;
+    let size = vec2(780.0, 520.0).min(room.size() - vec2(24.0, 60.0));
+    Window::new("Help")
+        .open(&mut open)
+        .collapsible(false)
+        .default_size(size)
+        .default_pos(room.center() - size / 2.0 - vec2(0.0, 16.0))
+        .min_size(vec2(420.0, 240.0))
+        .constrain_to(room)
+        .show(ctx, |ui| page_ui(ui, page, &mut model.help));
+    let escape = ctx.input(|input| input.key_pressed(egui::Key::Escape));
+    if !open || escape {
+        model.help = Help::default();
+    }
+}
+
+fn page_ui(ui: &mut Ui, page: HelpPage, help: &mut Help) {
+    ui.horizontal_wrapped(|ui| {
+        for each in HelpPage::ALL {
+            if ui.selectable_label(each == page, each.title()).clicked() {
+                help.open(each);
+            }
+        }
+    });
+    if page.is_searched() {
+        let field = text_field_ui(ui, &mut help.search, "Search this page", "Search");
+        if std::mem::take(&mut help.wants_focus) {
+            field.request_focus();
+        }
+    }
+    ui.separator();
+    match page {
+        HelpPage::FirstSteps => scrolled_ui(ui, pages::first_steps_ui),
+        HelpPage::Settings => reference::settings_ui(ui, help),
+        HelpPage::PacketSerial => reference::packet_serial_ui(ui, help),
+        HelpPage::Shortcuts => scrolled_ui(ui, |ui| pages::shortcuts_ui(ui, &help.search)),
+        HelpPage::About => scrolled_ui(ui, pages::about_ui),
+    }
+}
+
+fn scrolled_ui(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+    ScrollArea::vertical().auto_shrink([false; 2]).show(ui, contents);
+}
+
+/// A paragraph in the weak colour.
+fn note_ui(ui: &mut Ui, text: &str) {
+    let color = Palette::of(ui).weak_text;
+    ui.label(RichText::new(text).color(color));
+}

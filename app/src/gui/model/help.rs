@@ -1,0 +1,51 @@
+//! The page of help that is open, and what is looked for in it.
+
+/// A page of help.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum HelpPage {
+    #[default]
+    FirstSteps,
+    Settings,
+    PacketSerial,
+    Shortcuts,
+    About,
+}
+
+impl HelpPage {
+    pub const ALL: [Self; 5] =
+        [Self::FirstSteps, Self::Settings, Self::PacketSerial, Self::Shortcuts, Self::About];
+
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::FirstSteps => "First Steps",
+            Self::Settings => "Settings Reference",
+            Self::PacketSerial => "Packet Serial Reference",
+            Self::Shortcuts => "Keyboard Shortcuts",
+            Self::About => "About Brushwork",
+        }
+    }
+
+    /// Whether the page is long enough to be searched.
+    pub const fn is_searched(self) -> bool {
+        matches!(self, Self::Settings | Self::PacketSerial | Self::Shortcuts)
+    }
+}
+
+/// The window of help.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Help {
+    /// None while it is closed.
+    pub page: Option<HelpPage>,
+    pub search: String,
+    /// The entry of a reference that is shown in full, by its key.
+    pub entry: Option<String>,
+    /// The keyboard goes to the search field in the next frame.
+    pub wants_focus: bool,
+}
+
+impl Help {
+    /// Opens a page, with nothing looked for.
+    pub fn open(&mut self, page: HelpPage) {
+        *self = Self { page: Some(page), wants_focus: true, ..Self::default() };
+    }
+}
