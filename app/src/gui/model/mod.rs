@@ -32,7 +32,7 @@ use palette::Palette;
 use screen::Screen;
 
 /// Everything the window shows.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Model {
     pub screen: Screen,
     pub appearance: Appearance,
@@ -69,21 +69,6 @@ impl Appearance {
 
     pub fn set_scale(&mut self, percent: u16) {
         self.scale_percent = percent.clamp(*Self::SCALES_PERCENT.start(), *Self::SCALES_PERCENT.end());
-    }
-}
-
-impl Default for Model {
-    fn default() -> Self {
-        Self {
-            screen: Screen::default(),
-            appearance: Appearance::default(),
-            devices: Devices::default(),
-            messages: Messages::default(),
-            palette: None,
-            help: Help::default(),
-            front: Desk::default(),
-            others: Vec::new(),
-        }
     }
 }
 
