@@ -8,15 +8,23 @@ use brushwork_tests::rust_source::{code_lines, without_tests};
 use brushwork_tests::workspace::{self, DependencyKind, Member, Metadata};
 
 /// The arrows that ship: a crate and the crates of this workspace it may use.
-const ARROWS: [(&str, &[&str]); 7] = [
+const ARROWS: [(&str, &[&str]); 8] = [
     (
         "brushwork",
-        &["brushwork-link", "brushwork-protocol", "brushwork-raster", "brushwork-sim", "brushwork-tuning"],
+        &[
+            "brushwork-link",
+            "brushwork-protocol",
+            "brushwork-raster",
+            "brushwork-script",
+            "brushwork-sim",
+            "brushwork-tuning",
+        ],
     ),
     ("brushwork-tuning", &[]),
     ("brushwork-link", &["brushwork-protocol"]),
-    ("brushwork-sim", &["brushwork-protocol"]),
+    ("brushwork-sim", &["brushwork-protocol", "brushwork-script"]),
     ("brushwork-protocol", &[]),
+    ("brushwork-script", &[]),
     ("brushwork-raster", &[]),
     ("brushwork-tests", &["brushwork", "brushwork-link", "brushwork-protocol", "brushwork-sim"]),
 ];
@@ -52,8 +60,12 @@ const IMPURE: [&str; 9] = [
 ];
 
 /// The pure parts: a source folder and the modules in it that are the named exception.
-const PURE: [(&str, &[&str]); 3] =
-    [("device/protocol/src", &[]), ("device/sim/src", &["server"]), ("tuning/src", &[])];
+const PURE: [(&str, &[&str]); 4] = [
+    ("device/protocol/src", &[]),
+    ("device/script/src", &[]),
+    ("device/sim/src", &["server"]),
+    ("tuning/src", &[]),
+];
 
 fn allowed(table: &[(&str, &[&'static str])], name: &str) -> BTreeSet<&'static str> {
     table.iter().filter(|(from, _)| *from == name).flat_map(|(_, to)| to.iter().copied()).collect()

@@ -1,0 +1,438 @@
+//! A program as a tree.
+
+use super::types::VarType;
+use crate::text::Span;
+
+/// A name as it stands in the text; `key` is it in small letters.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Name {
+    /// For look-ups.
+    pub key: String,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// A statement.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Statement {
+    /// What it is.
+    pub kind: StatementKind,
+    /// Where it stands; for blocks, where their first line does.
+    pub span: Span,
+}
+
+/// What a statement is.
+#[derive(Clone, Debug, PartialEq)]
+#[expect(missing_docs, reason = "the line above each variant shows its parts")]
+pub enum StatementKind {
+    /// `name VAR type` or `name VAR type(size)`.
+    Variable { name: Name, kind: VarType, size: Option<Expr> },
+    /// `name VAR other.modifier`.
+    Alias { name: Name, of: Place },
+    /// `name CON value`, or FCON.
+    Constant { name: Name, value: Expr, float: bool },
+    /// `name ByteTable values`.
+    Table { name: Name, kind: VarType, values: Vec<Expr> },
+    /// A label, with the variables that a subroutine takes.
+    Label { name: Name, arguments: Option<Vec<Place>> },
+    /// `place = items`.
+    Assign { to: Place, items: Vec<Item> },
+    /// `IF` with its branches, in order; the last may have no condition.
+    If { branches: Vec<(Option<Expr>, Vec<Statement>)>, end: Span },
+    /// `IF condition THEN label`, or GOTO or GOSUB on the line.
+    IfJump { condition: Expr, then: Box<Statement> },
+    /// `WHILE` to `WEND`.
+    While { condition: Expr, body: Vec<Statement>, end: Span },
+    /// `DO` to `WHILE`, or `REPEAT` to `UNTIL`.
+    Repeat { body: Vec<Statement>, condition: Expr, until: bool },
+    /// `FOR` to `NEXT`.
+    For { variable: Place, start: Expr, finish: Expr, step: Option<Expr>, body: Vec<Statement>, end: Span },
+    /// `GOTO label`.
+    Goto(Name),
+    /// `GOSUB label[arguments], result`.
+    Gosub { label: Name, arguments: Vec<Expr>, result: Option<Place> },
+    /// `RETURN value`.
+    Return(Option<Expr>),
+    /// `BRANCH index, [labels]`.
+    Branch { index: Expr, labels: Vec<Name> },
+    /// `PUTS stream, [items]`.
+    Puts { stream: Expr, items: Vec<Item> },
+    /// `GETS stream, [items]`.
+    Gets { stream: Expr, items: Vec<Item> },
+    /// `READ address, place`.
+    Read { address: Expr, to: Place },
+    /// `WRITE address, value`.
+    Write { address: Expr, value: Expr },
+    /// `I2COUT` and `I2COUTNS`.
+    I2cOut { otherwise: Option<(Name, Expr)>, bytes: Vec<Expr>, stop: bool },
+    /// `I2CIN`.
+    I2cIn { otherwise: Option<(Name, Expr)>, to: Vec<Place> },
+    /// `PAUSE time`.
+    Pause(Expr),
+    /// A motion command.
+    Motion { command: Motion, arguments: Vec<Expr> },
+    /// `CLEAR`.
+    Clear,
+    /// `END` and `STOP`.
+    End,
+}
+
+/// A motion command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+pub enum Motion {
+    /// `DIST motor, speed, accel, distance, buffer`.
+    Dist,
+    /// The same for both motors.
+    Dist2,
+    /// `MOVE motor, speed, accel, deccel, position, buffer`.
+    Move,
+    /// The same for both motors.
+    Move2,
+    /// `POWER motor, duty, accel`.
+    Power,
+    /// The same for both motors.
+    Power2,
+    /// `SPEED motor, speed, accel`.
+    Speed,
+    /// The same for both motors.
+    Speed2,
+}
+
+impl Motion {
+    /// Every command.
+    pub const ALL: [Self; 8] = [
+        Self::Dist,
+        Self::Dist2,
+        Self::Move,
+        Self::Move2,
+        Self::Power,
+        Self::Power2,
+        Self::Speed,
+        Self::Speed2,
+    ];
+
+    /// Its word.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Dist => "DIST",
+            Self::Dist2 => "DIST2",
+            Self::Move => "MOVE",
+            Self::Move2 => "MOVE2",
+            Self::Power => "POWER",
+            Self::Power2 => "POWER2",
+            Self::Speed => "SPEED",
+            Self::Speed2 => "SPEED2",
+        }
+    }
+
+    /// How many arguments it has.
+    #[must_use]
+    pub const fn arguments(self) -> usize {
+        match self {
+            Self::Dist => 5,
+            Self::Dist2 => 7,
+            Self::Move => 6,
+            Self::Move2 => 9,
+            Self::Power | Self::Speed => 3,
+            Self::Power2 | Self::Speed2 => 4,
+        }
+    }
+
+    /// Whether a buffer argument may follow although the syntax line has none.
+    #[must_use]
+    pub const fn takes_extra_buffer(self) -> bool {
+        matches!(self, Self::Speed | Self::Speed2)
+    }
+}
+
+/// A variable, register, table or constant, perhaps an element of it, perhaps a part of that.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Place {
+    /// Its name.
+    pub name: Name,
+    /// `(index)`.
+    pub index: Option<Box<Expr>>,
+    /// `.modifier`.
+    pub modifier: Option<Name>,
+    /// All of it.
+    pub span: Span,
+}
+
+/// An expression.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Expr {
+    /// What it is.
+    pub kind: ExprKind,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// What an expression is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ExprKind {
+    /// A whole number.
+    Integer(u32),
+    /// A number with a point.
+    Float(f32),
+    /// A text; one of one character is a number.
+    Text(Vec<u8>),
+    /// A variable, register, table entry or constant.
+    Place(Place),
+    /// An operator before its operand.
+    Unary(Unary, Box<Expr>),
+    /// An operator between its operands.
+    Binary(Binary, Box<Expr>, Box<Expr>),
+    /// Something in parentheses.
+    Group(Box<Expr>),
+}
+
+/// Operators of one operand; all bind tighter than any other (MCP manual 3.2.5).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[expect(missing_docs, reason = "each is the word or sign of MCP manual 3.2.3")]
+pub enum Unary {
+    Negative,
+    BitNot,
+    Not,
+    Abs,
+    Sin,
+    Cos,
+    Sqr,
+    Bin2Bcd,
+    Random,
+    ToInt,
+    ToFloat,
+    FAbs,
+    FSqrt,
+    FSin,
+    FCos,
+    FTan,
+    FAsin,
+    FAcos,
+    FAtan,
+    FSinh,
+    FCosh,
+    FTanh,
+    FAtanh,
+    FLn,
+    FExp,
+}
+
+/// Operators of two operands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[expect(missing_docs, reason = "each is the word or sign of MCP manual 3.2.3")]
+pub enum Binary {
+    Dig,
+    Max,
+    Min,
+    Multiply,
+    MultiplyHigh,
+    MultiplyFraction,
+    Divide,
+    Remainder,
+    Add,
+    Subtract,
+    ShiftLeft,
+    ShiftRight,
+    Less,
+    LessOrEqual,
+    Equal,
+    GreaterOrEqual,
+    Greater,
+    NotEqual,
+    BitAnd,
+    BitOr,
+    BitXor,
+    BitNand,
+    BitNor,
+    BitNxor,
+    And,
+    Or,
+    Xor,
+}
+
+impl Unary {
+    /// The operator of this word.
+    #[must_use]
+    pub fn of_word(word: &str) -> Option<Self> {
+        Some(match word.to_ascii_lowercase().as_str() {
+            "not" => Self::Not,
+            "abs" => Self::Abs,
+            "sin" => Self::Sin,
+            "cos" => Self::Cos,
+            "sqr" => Self::Sqr,
+            "bin2bcd" => Self::Bin2Bcd,
+            "random" => Self::Random,
+            "toint" => Self::ToInt,
+            "tofloat" => Self::ToFloat,
+            "fabs" => Self::FAbs,
+            "fsqrt" => Self::FSqrt,
+            "fsin" => Self::FSin,
+            "fcos" => Self::FCos,
+            "ftan" => Self::FTan,
+            "fasin" => Self::FAsin,
+            "facos" => Self::FAcos,
+            "fatan" => Self::FAtan,
+            "fsinh" => Self::FSinh,
+            "fcosh" => Self::FCosh,
+            "ftanh" => Self::FTanh,
+            "fatanh" => Self::FAtanh,
+            "fln" => Self::FLn,
+            "fexp" => Self::FExp,
+            _ => return None,
+        })
+    }
+
+    /// Whether it takes and gives floats.
+    #[must_use]
+    pub const fn is_float(self) -> bool {
+        matches!(
+            self,
+            Self::FAbs
+                | Self::FSqrt
+                | Self::FSin
+                | Self::FCos
+                | Self::FTan
+                | Self::FAsin
+                | Self::FAcos
+                | Self::FAtan
+                | Self::FSinh
+                | Self::FCosh
+                | Self::FTanh
+                | Self::FAtanh
+                | Self::FLn
+                | Self::FExp
+        )
+    }
+}
+
+impl Binary {
+    /// The operator written with this sign.
+    #[must_use]
+    pub fn of_sign(sign: &str) -> Option<Self> {
+        Some(match sign {
+            "*" => Self::Multiply,
+            "**" => Self::MultiplyHigh,
+            "*/" => Self::MultiplyFraction,
+            "/" => Self::Divide,
+            "//" => Self::Remainder,
+            "+" => Self::Add,
+            "-" => Self::Subtract,
+            "<<" => Self::ShiftLeft,
+            ">>" => Self::ShiftRight,
+            "<" => Self::Less,
+            "<=" => Self::LessOrEqual,
+            "=" => Self::Equal,
+            ">=" => Self::GreaterOrEqual,
+            ">" => Self::Greater,
+            "<>" => Self::NotEqual,
+            "&" => Self::BitAnd,
+            "|" => Self::BitOr,
+            "^" => Self::BitXor,
+            "&/" => Self::BitNand,
+            "|/" => Self::BitNor,
+            "^/" => Self::BitNxor,
+            _ => return None,
+        })
+    }
+
+    /// The operator of this word.
+    #[must_use]
+    pub fn of_word(word: &str) -> Option<Self> {
+        Some(match word.to_ascii_lowercase().as_str() {
+            "dig" => Self::Dig,
+            "max" => Self::Max,
+            "min" => Self::Min,
+            "and" => Self::And,
+            "or" => Self::Or,
+            "xor" => Self::Xor,
+            _ => return None,
+        })
+    }
+
+    /// How tightly it binds: the order of MCP manual 3.2.5, from 2 (first) to 9.
+    #[must_use]
+    pub const fn order(self) -> u8 {
+        match self {
+            Self::Dig => 2,
+            Self::Max | Self::Min => 3,
+            Self::Multiply | Self::MultiplyHigh | Self::MultiplyFraction | Self::Divide | Self::Remainder => 4,
+            Self::Add | Self::Subtract => 5,
+            Self::ShiftLeft | Self::ShiftRight => 6,
+            Self::Less
+            | Self::LessOrEqual
+            | Self::Equal
+            | Self::GreaterOrEqual
+            | Self::Greater
+            | Self::NotEqual => 7,
+            Self::BitAnd | Self::BitOr | Self::BitXor | Self::BitNand | Self::BitNor | Self::BitNxor => 8,
+            Self::And | Self::Or | Self::Xor => 9,
+        }
+    }
+
+    /// Whether the result is 0 or 1 by comparing.
+    #[must_use]
+    pub const fn compares(self) -> bool {
+        self.order() == 7
+    }
+}
+
+/// How a value is written or read (MCP manual 3.3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[expect(missing_docs, reason = "each is the word of MCP manual 3.3.2")]
+pub enum Format {
+    Dec,
+    SDec,
+    Hex,
+    IHex,
+    Rep,
+    Real,
+    Str,
+}
+
+impl Format {
+    /// The modifier that a word names, with the number written after it: `hex2` is `HEX` with 2.
+    #[must_use]
+    pub fn of_word(word: &str) -> Option<(Self, Option<u32>)> {
+        let letters = word.trim_end_matches(|letter: char| letter.is_ascii_digit());
+        let format = match letters.to_ascii_lowercase().as_str() {
+            "dec" => Self::Dec,
+            "sdec" => Self::SDec,
+            "hex" => Self::Hex,
+            "ihex" => Self::IHex,
+            "rep" => Self::Rep,
+            "real" => Self::Real,
+            "str" => Self::Str,
+            _ => return None,
+        };
+        let digits = &word[letters.len()..];
+        if digits.is_empty() { Some((format, None)) } else { Some((format, Some(digits.parse().ok()?))) }
+    }
+
+    /// Its word.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Dec => "DEC",
+            Self::SDec => "SDEC",
+            Self::Hex => "HEX",
+            Self::IHex => "IHEX",
+            Self::Rep => "REP",
+            Self::Real => "REAL",
+            Self::Str => "STR",
+        }
+    }
+}
+
+/// One entry of an output or input list.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Item {
+    /// Its modifier and the number after that.
+    pub format: Option<(Format, Option<u32>)>,
+    /// The value, or the place of an input.
+    pub value: Expr,
+    /// What follows, each after a backslash.
+    pub arguments: Vec<Expr>,
+    /// Where it stands.
+    pub span: Span,
+}

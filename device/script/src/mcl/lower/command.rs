@@ -1,0 +1,86 @@
+//! Motion, EEPROM, I2C, PAUSE.
+
+use super::super::ast::{Expr, Motion, Name, Place};
+use super::super::codes;
+use super::Lowering;
+use crate::arithmetic::Type;
+use crate::op::Op;
+
+/// Addresses that the manual calls byte sized.
+const LAST_BYTE_ADDRESS: i64 = 255;
+
+impl Lowering<'_> {
+    pub(super) fn pause(&mut self, time: &Expr) {
+        self.whole_number(time);
+        self.emit(Op::Pause);
+    }
+
+    pub(super) fn motion(&mut self, command: Motion, arguments: &[Expr]) {
+        for argument in arguments {
+            self.whole_number(argument);
+        }
+        let extra = arguments.len() > command.arguments();
+        if let (true, Some(buffer)) = (extra, arguments.last()) {
+            let message = format!("The manual describes a buffer for {}, but its syntax has none.", command.word());
+            self.report(codes::EXTRA_BUFFER, buffer.span, message, None);
+        }
+        let accelerations: &[usize] = match command {
+            Motion::Move => &[2, 3],
+            Motion::Move2 => &[1, 2, 5, 6],
+            _ => &[],
+        };
+        for argument in accelerations.iter().filter_map(|index| arguments.get(*index)) {
+            if self.folded(argument).is_ok_and(|known| known.as_whole() == 0) {
+                let message = "With acceleration 0 the motor's default acceleration is taken.".to_owned();
+                self.report(codes::NO_ACCELERATION, argument.span, message, None);
+            }
+        }
+        self.emit(Op::Motion(command, extra));
+    }
+
+    fn address(&mut self, address: &Expr) {
+        self.whole_number(address);
+        if self.folded(address).is_ok_and(|known| known.as_whole() > LAST_BYTE_ADDRESS) {
+            let message = "The EEPROM of a script has addresses 0 to 255.".to_owned();
+            self.report(codes::ADDRESS_UNIT, address.span, message, None);
+        }
+    }
+
+    pub(super) fn read(&mut self, address: &Expr, to: &Place) {
+        self.address(address);
+        self.emit(Op::ReadEeprom);
+        self.store(to, Type::Unsigned);
+    }
+
+    pub(super) fn write(&mut self, address: &Expr, value: &Expr) {
+        self.address(address);
+        self.whole_number(value);
+        self.emit(Op::WriteEeprom);
+    }
+
+    pub(super) fn i2c_out(&mut self, otherwise: Option<&(Name, Expr)>, bytes: &[Expr], stop: bool) {
+        for byte in bytes {
+            self.whole_number(byte);
+        }
+        let count = u32::try_from(bytes.len()).unwrap_or(u32::MAX);
+        self.i2c(otherwise, |target| Op::I2cOut(count, stop, target));
+    }
+
+    pub(super) fn i2c_in(&mut self, otherwise: Option<&(Name, Expr)>, to: &[Place]) {
+        let count = u32::try_from(to.len()).unwrap_or(u32::MAX);
+        self.i2c(otherwise, |target| Op::I2cIn(count, target));
+        for place in to {
+            self.store(place, Type::Unsigned);
+        }
+    }
+
+    fn i2c(&mut self, otherwise: Option<&(Name, Expr)>, op: impl Fn(Option<u32>) -> Op) {
+        match otherwise {
+            None => self.emit(op(None)),
+            Some((label, timeout)) => {
+                self.whole_number(timeout);
+                self.jump_to_label(op(Some(0)), label);
+            }
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! Labels, jumps, subroutines, conditions and loops.
+
+use super::super::ast::{Expr, Name, Place, Statement};
+use super::super::codes;
+use super::super::types::VarType;
+use super::place::Target;
+use super::scope::{Meaning, type_of};
+use super::{Argument, Lowering, Mark};
+use crate::arithmetic::Type;
+use crate::op::{Cell, Op};
+use crate::text::Span;
+
+impl Lowering<'_> {
+    /// A label; a subroutine's takes its arguments from the stack, the last one first.
+    pub(super) fn label(&mut self, name: &Name, arguments: Option<&[Place]>) {
+        let at = Some(self.here());
+        let places = arguments.unwrap_or_default();
+        let mut types = vec![Type::Unsigned; places.len()];
+        for (place, kind) in places.iter().zip(&mut types).rev() {
+            if let Some(target) = self.settable(place) {
+                *kind = type_of(target.kind());
+            }
+            self.scope.get_mut(&place.name.key).into_iter().for_each(|entry| {
+                entry.symbol.uses.pop();
+            });
+            self.store(place, *kind);
+        }
+        self.scope.settle(name, Meaning::Label { at, arguments: Some(types) });
+    }
+
+    pub(super) fn if_branches(&mut self, branches: &[(Option<Expr>, Vec<Statement>)], end: Span) {
+        let mut done = Mark::default();
+        for (index, (condition, body)) in branches.iter().enumerate() {
+            let mut next = Mark::default();
+            if let Some(condition) = condition {
+                self.line = self.text_lines.line_of(condition.span.start);
+                self.condition(condition);
+                self.jump(Op::JumpIfZero(0), &mut next);
+            }
+            self.block(body);
+            if index + 1 < branches.len() {
+                self.jump(Op::Jump(0), &mut done);
+            }
+            self.set(next);
+        }
+        self.line = self.text_lines.line_of(end.start);
+        self.set(done);
+    }
+
+    pub(super) fn if_jump(&mut self, condition: &Expr, then: &Statement) {
+        self.condition(condition);
+        let mut over = Mark::default();
+        self.jump(Op::JumpIfZero(0), &mut over);
+        self.statement(then);
+        self.set(over);
+    }
+
+    pub(super) fn while_loop(&mut self, condition: &Expr, body: &[Statement], end: Span) {
+        let top = self.here();
+        let mut out = Mark::default();
+        self.condition(condition);
+        self.jump(Op::JumpIfZero(0), &mut out);
+        self.block(body);
+        self.line = self.text_lines.line_of(end.start);
+        self.emit(Op::Jump(top));
+        self.set(out);
+    }
+
+    pub(super) fn repeat_loop(&mut self, body: &[Statement], condition: &Expr, until: bool) {
+        let top = self.here();
+        self.block(body);
+        self.line = self.text_lines.line_of(condition.span.start);
+        self.condition(condition);
+        self.emit(if until { Op::JumpIfZero(top) } else { Op::JumpIfNotZero(top) });
+    }
+
+    pub(super) fn for_loop(
+        &mut self,
+        variable: &Place,
+        [start, finish]: [&Expr; 2],
+        step: Option<&Expr>,
+        body: &[Statement],
+        end: Span,
+    ) {
+        let cell = self.counter(variable);
+        let kind = type_of(cell.kind);
+        let number = self.loops;
+        self.loops += 1;
+        self.value_as(start, kind);
+        self.value_as(finish, kind);
+        if let Some(step) = step {
+            // A step of an unsigned counter may be negative: it counts down by wrapping round.
+            let from = self.expression(step);
+            self.convert(from, kind);
+        } else {
+            self.warn_of_counting_down(start, finish);
+        }
+        self.emit(Op::ForStart(cell, number, step.is_some()));
+        let top = self.here();
+        self.block(body);
+        self.line = self.text_lines.line_of(end.start);
+        self.value_as(finish, kind);
+        self.emit(Op::ForNext(cell, number, top));
+    }
+
+    /// The variable of a FOR, which has to be one at a known place.
+    fn counter(&mut self, variable: &Place) -> Cell {
+        let nowhere = Cell { kind: VarType::Long, at: 0 };
+        let Some(target) = self.settable(variable) else { return nowhere };
+        self.mark_read(&target);
+        match target {
+            Target::Cell { cell, .. } => cell,
+            _ => {
+                let message = "FOR counts a variable, or an element with a constant index.".to_owned();
+                self.report(codes::NOT_A_VARIABLE, variable.span, message, None);
+                nowhere
+            }
+        }
+    }
+
+    /// Puts an expression on the stack as a value of this type.
+    fn value_as(&mut self, expr: &Expr, kind: Type) {
+        let from = self.expression(expr);
+        if from == Type::Float && kind != Type::Float {
+            let message = "A floating point number is used for a whole one; its fraction is lost.".to_owned();
+            self.report(codes::FLOAT_INTO_INTEGER, expr.span, message, Some("Write TOINT if that is meant.".into()));
+        }
+        self.convert(from, kind);
+    }
+
+    fn warn_of_counting_down(&mut self, start: &Expr, finish: &Expr) {
+        if let (Ok(first), Ok(last)) = (self.folded(start), self.folded(finish))
+            && first.as_float() > last.as_float()
+        {
+            let message = "Without STEP this counts down, one at a time.".to_owned();
+            let hint = Some("Write step -1 to make that plain.".to_owned());
+            self.report(codes::COUNTS_DOWN, start.span.to(finish.span), message, hint);
+        }
+    }
+
+    pub(super) fn gosub(&mut self, label: &Name, arguments: &[Expr], result: Option<&Place>) {
+        let wanted = self.scope.get(&label.key).and_then(|entry| entry.argument_count);
+        if let Some(wanted) = wanted.filter(|wanted| *wanted != arguments.len()) {
+            let name = label.span.of(self.text);
+            let message = format!("`{name}` takes {wanted} arguments, not {}.", arguments.len());
+            self.report(codes::GOSUB_ARGUMENTS, label.span, message, None);
+        }
+        for (index, argument) in arguments.iter().enumerate() {
+            let from = self.expression(argument);
+            self.arguments.push(Argument { op: self.ops.len(), label: label.key.clone(), index, from });
+            self.emit(Op::Nop);
+        }
+        let count = u32::try_from(arguments.len()).unwrap_or(u32::MAX);
+        self.jump_to_label(Op::Gosub(0, count), label);
+        if let Some(place) = result {
+            let kind = self.kind_of(place);
+            self.emit(Op::Result(kind));
+            self.store(place, kind);
+        }
+    }
+
+    /// How values of a place are read; uses and faults are not noted.
+    fn kind_of(&self, place: &Place) -> Type {
+        if let Some((id, _)) = super::super::registers::lookup(&place.name.key) {
+            return type_of(id.row().kind);
+        }
+        match self.scope.get(&place.name.key).and_then(|entry| entry.meaning.as_ref()) {
+            Some(Meaning::Memory { memory, .. }) => {
+                let part = place.modifier.as_ref().map(|modifier| modifier.span.of(self.text));
+                let part = part.and_then(|part| super::super::types::part(memory.first.kind, part).ok());
+                type_of(part.map_or(memory.first.kind, |part| part.kind))
+            }
+            _ => Type::Unsigned,
+        }
+    }
+
+    pub(super) fn return_value(&mut self, value: Option<&Expr>) {
+        let kind = value.map(|value| self.expression(value));
+        self.emit(Op::Return(kind));
+    }
+
+    pub(super) fn branch(&mut self, index: &Expr, labels: &[Name]) {
+        self.whole_number(index);
+        self.emit(Op::Branch(u32::try_from(labels.len()).unwrap_or(u32::MAX)));
+        for label in labels {
+            self.jump_to_label(Op::Jump(0), label);
+        }
+    }
+}

@@ -1,0 +1,261 @@
+//! A tree into instructions: names are looked up, types settled, and whatever is wrong is said.
+//!
+//! Statements are taken in the order of the text, because a variable is known only below its definition (MCP manual 3.1.3).
+//! Jumps to labels are patched at the end.
+
+mod command;
+mod define;
+mod expression;
+mod flow;
+mod output;
+mod place;
+mod scope;
+mod warnings;
+
+use super::ast::{Name, Statement, StatementKind};
+use super::codes;
+use super::parser::{Parsed, parse};
+use crate::arithmetic::Type;
+use crate::diagnostic::{Diagnostic, Severity};
+use crate::op::Op;
+use crate::program::{Program, Variable, limits};
+use crate::text::{Lines, Span};
+use scope::Scope;
+pub use scope::{Symbol, SymbolKind};
+
+/// What became of a program.
+#[derive(Clone, Debug, Default)]
+pub struct Compiled {
+    /// The program, unless there are errors.
+    pub program: Option<Program>,
+    /// Everything there is to say, in the order of the text.
+    pub diagnostics: Vec<Diagnostic>,
+    /// Every name with its places, for editors.
+    pub symbols: Vec<Symbol>,
+    /// What compile-time directives left out.
+    pub left_out: Vec<Span>,
+}
+
+impl Compiled {
+    /// Whether there is a program.
+    #[must_use]
+    pub fn is_ok(&self) -> bool {
+        self.program.is_some()
+    }
+}
+
+/// Compiles a program.
+#[must_use]
+pub fn compile(text: &str) -> Compiled {
+    let Parsed { statements, diagnostics, left_out } = parse(text);
+    let mut lowering = Lowering::new(text, diagnostics);
+    lowering.scope.collect(&statements, &mut lowering.diagnostics);
+    lowering.block(&statements);
+    lowering.end_of_program(&statements);
+    lowering.patch_jumps();
+    lowering.check_size();
+    lowering.warn_of_unused();
+    warnings::flow(text, &statements, &mut lowering.diagnostics);
+    lowering.finish(left_out)
+}
+
+/// A jump whose target is not known yet: instruction, label.
+struct Jump {
+    op: usize,
+    label: String,
+}
+
+/// An argument whose type is known only when its subroutine has been seen.
+struct Argument {
+    op: usize,
+    label: String,
+    index: usize,
+    from: Type,
+}
+
+struct Lowering<'a> {
+    text: &'a str,
+    text_lines: Lines,
+    line: u32,
+    ops: Vec<Op>,
+    lines: Vec<u32>,
+    data: Vec<u8>,
+    ram_bits: u64,
+    loops: u32,
+    scope: Scope,
+    diagnostics: Vec<Diagnostic>,
+    jumps: Vec<Jump>,
+    arguments: Vec<Argument>,
+}
+
+/// A place to jump to inside a statement; all jumps to it are patched when it is set.
+#[derive(Default)]
+struct Mark {
+    jumps: Vec<usize>,
+}
+
+impl<'a> Lowering<'a> {
+    fn new(text: &'a str, diagnostics: Vec<Diagnostic>) -> Self {
+        Self {
+            text,
+            text_lines: Lines::of(text),
+            line: 1,
+            ops: Vec::new(),
+            lines: Vec::new(),
+            data: Vec::new(),
+            ram_bits: 0,
+            loops: 0,
+            scope: Scope::default(),
+            diagnostics,
+            jumps: Vec::new(),
+            arguments: Vec::new(),
+        }
+    }
+
+    fn block(&mut self, statements: &[Statement]) {
+        for statement in statements {
+            self.line = self.text_lines.line_of(statement.span.start);
+            self.statement(statement);
+        }
+    }
+
+    fn statement(&mut self, statement: &Statement) {
+        use StatementKind as Kind;
+        match &statement.kind {
+            Kind::Variable { name, kind, size } => self.variable(name, *kind, size.as_ref()),
+            Kind::Alias { name, of } => self.alias(name, of),
+            Kind::Constant { name, value, float } => self.constant(name, value, *float),
+            Kind::Table { name, kind, values } => self.table(name, *kind, values),
+            Kind::Label { name, arguments } => self.label(name, arguments.as_deref()),
+            Kind::Assign { to, items } => self.assign(to, items),
+            Kind::If { branches, end } => self.if_branches(branches, *end),
+            Kind::IfJump { condition, then } => self.if_jump(condition, then),
+            Kind::While { condition, body, end } => self.while_loop(condition, body, *end),
+            Kind::Repeat { body, condition, until } => self.repeat_loop(body, condition, *until),
+            Kind::For { variable, start, finish, step, body, end } => {
+                self.for_loop(variable, [start, finish], step.as_ref(), body, *end);
+            }
+            Kind::Goto(label) => self.jump_to_label(Op::Jump(0), label),
+            Kind::Gosub { label, arguments, result } => self.gosub(label, arguments, result.as_ref()),
+            Kind::Return(value) => self.return_value(value.as_ref()),
+            Kind::Branch { index, labels } => self.branch(index, labels),
+            Kind::Puts { stream, items } => self.puts(stream, items),
+            Kind::Gets { stream, items } => self.gets(stream, items),
+            Kind::Read { address, to } => self.read(address, to),
+            Kind::Write { address, value } => self.write(address, value),
+            Kind::I2cOut { otherwise, bytes, stop } => self.i2c_out(otherwise.as_ref(), bytes, *stop),
+            Kind::I2cIn { otherwise, to } => self.i2c_in(otherwise.as_ref(), to),
+            Kind::Pause(time) => self.pause(time),
+            Kind::Motion { command, arguments } => self.motion(*command, arguments),
+            Kind::Clear => self.emit(Op::Clear),
+            Kind::End => self.emit(Op::End),
+        }
+    }
+
+    fn emit(&mut self, op: Op) {
+        self.ops.push(op);
+        self.lines.push(self.line);
+    }
+
+    /// The number of the next instruction.
+    fn here(&self) -> u32 {
+        u32::try_from(self.ops.len()).unwrap_or(u32::MAX)
+    }
+
+    /// A jump to a place further down in the same statement.
+    fn jump(&mut self, op: Op, mark: &mut Mark) {
+        mark.jumps.push(self.ops.len());
+        self.emit(op);
+    }
+
+    fn set(&mut self, mark: Mark) {
+        let here = self.here();
+        for op in mark.jumps {
+            self.retarget(op, here);
+        }
+    }
+
+    fn retarget(&mut self, op: usize, to: u32) {
+        if let Some(op) = self.ops.get_mut(op) {
+            *op = match *op {
+                Op::Jump(_) => Op::Jump(to),
+                Op::JumpIfZero(_) => Op::JumpIfZero(to),
+                Op::JumpIfNotZero(_) => Op::JumpIfNotZero(to),
+                Op::Gosub(_, count) => Op::Gosub(to, count),
+                Op::I2cOut(count, stop, Some(_)) => Op::I2cOut(count, stop, Some(to)),
+                Op::I2cIn(count, Some(_)) => Op::I2cIn(count, Some(to)),
+                other => other,
+            };
+        }
+    }
+
+    /// A jump to a label, which may stand anywhere.
+    fn jump_to_label(&mut self, op: Op, label: &Name) {
+        self.use_label(label);
+        self.jumps.push(Jump { op: self.ops.len(), label: label.key.clone() });
+        self.emit(op);
+    }
+
+    fn report(&mut self, code: &'static str, span: Span, message: String, hint: Option<String>) {
+        self.diagnostics.push(Diagnostic { code, span, message, hint });
+    }
+
+    fn end_of_program(&mut self, statements: &[Statement]) {
+        if let Some(last) = statements.last() {
+            self.line = self.text_lines.line_of(last.span.end);
+        }
+        self.emit(Op::End);
+    }
+
+    fn patch_jumps(&mut self) {
+        for jump in std::mem::take(&mut self.jumps) {
+            if let Some(at) = self.scope.label_at(&jump.label) {
+                self.retarget(jump.op, at);
+            }
+        }
+        for argument in std::mem::take(&mut self.arguments) {
+            let to = self.scope.argument_type(&argument.label, argument.index).unwrap_or(argument.from);
+            let op = if to == argument.from { Op::Nop } else { Op::Convert(argument.from, to) };
+            self.ops[argument.op] = op;
+        }
+    }
+
+    fn check_size(&mut self) {
+        let whole = Span::new(0, self.text.find('\n').unwrap_or(self.text.len()));
+        for (what, is, most) in [
+            ("bytes of variables", self.ram_bits.div_ceil(8), u64::from(limits::RAM_BYTES)),
+            ("instructions", self.ops.len() as u64, limits::INSTRUCTIONS as u64),
+            ("bytes of tables and texts", self.data.len() as u64, limits::DATA_BYTES as u64),
+        ] {
+            if is > most {
+                let message = format!("The program has {is} {what}; {most} are allowed.");
+                self.report(codes::TOO_LARGE, whole, message, None);
+            }
+        }
+    }
+
+    fn finish(mut self, left_out: Vec<Span>) -> Compiled {
+        self.diagnostics.sort_by_key(|diagnostic| (diagnostic.span.start, diagnostic.code));
+        self.diagnostics.dedup();
+        let is_wrong = self.diagnostics.iter().any(|diagnostic| diagnostic.severity() == Severity::Error);
+        let symbols = self.scope.symbols();
+        let program = (!is_wrong).then(|| Program {
+            variables: self.scope.variables(self.text),
+            labels: self.scope.labels(self.text),
+            ops: self.ops,
+            lines: self.lines,
+            data: self.data,
+            loops: self.loops,
+            ram_bytes: u32::try_from(self.ram_bits.div_ceil(8)).unwrap_or(u32::MAX),
+        });
+        Compiled { program, diagnostics: self.diagnostics, symbols, left_out }
+    }
+}
+
+/// A variable as the debugger wants it.
+fn variable(name: &str, memory: crate::op::Array, is_array: bool) -> Variable {
+    Variable { name: name.to_owned(), memory, is_array }
+}
+
+#[cfg(test)]
+mod tests;

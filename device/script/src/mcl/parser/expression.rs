@@ -1,0 +1,125 @@
+//! Expressions, by the precedence of MCP manual 3.2.5: from left to right, unary operators first.
+
+use super::{Parse, Parser};
+use crate::mcl::ast::{Binary, Expr, ExprKind, Name, Place, Unary};
+use crate::mcl::codes;
+use crate::mcl::lexer::TokenKind;
+use crate::mcl::words;
+
+/// The loosest order of all.
+const LOOSEST: u8 = 9;
+
+impl Parser<'_> {
+    /// A whole expression.
+    pub(super) fn expression(&mut self) -> Parse<Expr> {
+        self.binary(LOOSEST)
+    }
+
+    /// An expression of operators that bind as tightly as `order` or tighter.
+    fn binary(&mut self, order: u8) -> Parse<Expr> {
+        let mut left = self.unary()?;
+        loop {
+            let Some(operator) = self.operator().filter(|operator| operator.order() <= order) else {
+                return Ok(left);
+            };
+            self.advance();
+            let right = self.deeper(|parser| parser.binary(operator.order() - 1))?;
+            let span = left.span.to(right.span);
+            left = Expr { kind: ExprKind::Binary(operator, Box::new(left), Box::new(right)), span };
+        }
+    }
+
+    fn operator(&self) -> Option<Binary> {
+        match self.kind() {
+            TokenKind::Sign(sign) => Binary::of_sign(sign),
+            TokenKind::Word => self.word_here().and_then(Binary::of_word),
+            _ => None,
+        }
+    }
+
+    fn unary(&mut self) -> Parse<Expr> {
+        let start = self.span();
+        let operator = match self.kind() {
+            TokenKind::Sign("-") => Some(Unary::Negative),
+            TokenKind::Sign("~" | "!") => Some(Unary::BitNot),
+            TokenKind::Word => self.word_here().and_then(Unary::of_word),
+            _ => None,
+        };
+        if let Some(operator) = operator {
+            self.advance();
+            let operand = self.deeper(Self::unary)?;
+            let span = start.to(operand.span);
+            return Ok(Expr { kind: ExprKind::Unary(operator, Box::new(operand)), span });
+        }
+        self.primary()
+    }
+
+    fn primary(&mut self) -> Parse<Expr> {
+        let span = self.span();
+        let kind = match self.kind().clone() {
+            TokenKind::Integer(value) => ExprKind::Integer(value),
+            TokenKind::Float(value) => ExprKind::Float(value),
+            TokenKind::Text(bytes) => ExprKind::Text(bytes),
+            TokenKind::Sign("(") => {
+                self.advance();
+                let inner = self.deeper(Self::expression)?;
+                self.expect_sign(")", "at the end of what is in parentheses")?;
+                let span = span.to(self.span_before());
+                return Ok(Expr { kind: ExprKind::Group(Box::new(inner)), span });
+            }
+            TokenKind::Word => {
+                let place = self.place("A value")?;
+                return Ok(Expr { span: place.span, kind: ExprKind::Place(place) });
+            }
+            _ => {
+                let found = self.found_here();
+                return self.fail(codes::UNEXPECTED, format!("A value should stand here, but there is {found}."), None);
+            }
+        };
+        self.advance();
+        Ok(Expr { kind, span })
+    }
+
+    /// A variable, register, table or constant with its index and modifier.
+    pub(super) fn place(&mut self, what: &str) -> Parse<Place> {
+        let name = self.place_name(what)?;
+        let mut span = name.span;
+        let mut index = None;
+        if self.skip_sign("(") {
+            index = Some(Box::new(self.deeper(Self::expression)?));
+            self.expect_sign(")", "after the index")?;
+            span = span.to(self.span_before());
+        }
+        let mut modifier = None;
+        if self.skip_sign(".") {
+            let Some(word) = self.word_here() else {
+                let found = self.found_here();
+                let message = format!("A modifier should follow the point, but there is {found}.");
+                return self.fail(codes::UNEXPECTED, message, Some("For example: .byte0, .highword, .bit3".into()));
+            };
+            let part = self.any_name(word);
+            span = span.to(part.span);
+            modifier = Some(part);
+        }
+        Ok(Place { name, index, modifier, span })
+    }
+
+    /// A name that may be a system register.
+    fn place_name(&mut self, what: &str) -> Parse<Name> {
+        if let Some(word) = self.word_here() {
+            if words::CAN.iter().any(|can| can.eq_ignore_ascii_case(word)) {
+                return self.no_public_syntax(word);
+            }
+            if crate::mcl::registers::lookup(word).is_some() {
+                return Ok(self.any_name(word));
+            }
+        }
+        self.name(what)
+    }
+
+    pub(super) fn no_public_syntax<T>(&mut self, word: &str) -> Parse<T> {
+        let message = format!("`{word}` is a word for the CAN bus, but no syntax for it is public.");
+        let hint = "CAN is stream 1 of GETS and PUTS.".to_owned();
+        self.fail(codes::NO_PUBLIC_SYNTAX, message, Some(hint))
+    }
+}

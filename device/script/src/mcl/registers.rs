@@ -1,0 +1,158 @@
+//! The system registers (MCP manual 3.1.15 and the pages of each): one table for compiler, machine, editor and reference.
+//!
+//! Where table and pages differ, the pages' spelling counts. SIGNALTICK, SIGNALITER and I2CERROR stand outside the table;
+//! the size of SIGNALITER is assumed. The table gives SIGNALMINACTION and SIGNALMAXACTION a byte, but their values go to 0x8000,
+//! so they are words here; it gives SIGNALPERCENT an unsigned word, but a signal goes both ways.
+
+use super::types::VarType;
+use serde::Serialize;
+
+/// One system register.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Register {
+    /// Its name.
+    pub name: &'static str,
+    /// Type of each element.
+    pub kind: VarType,
+    /// How many elements it has; 1 is no array.
+    pub length: u8,
+    /// Whether a program may set it.
+    pub writable: bool,
+    /// What it is, with its unit.
+    pub meaning: &'static str,
+}
+
+/// Which register, as an index into [`REGISTERS`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+pub struct RegisterId(pub u8);
+
+impl RegisterId {
+    /// Its row. Ids are made by [`lookup`] alone or checked when an image is read.
+    #[must_use]
+    pub fn row(self) -> &'static Register {
+        &REGISTERS[usize::from(self.0) % REGISTERS.len()]
+    }
+}
+
+const fn row(
+    name: &'static str,
+    kind: VarType,
+    length: u8,
+    writable: bool,
+    meaning: &'static str,
+) -> Register {
+    Register { name, kind, length, writable, meaning }
+}
+
+/// Every register, in the manual's order.
+pub const REGISTERS: [Register; 80] = [
+    row("VERSION", VarType::Word, 1, false, "firmware version: major in the high byte, minor in the low byte"),
+    row("SYSSTATUS", VarType::Word, 1, false, "warning and error states (bits of this register, not of command 90)"),
+    row("SYSCLK", VarType::Long, 1, false, "clock counter since power-up, 160 MHz"),
+    row("SYSUSTICK", VarType::Long, 1, false, "microseconds since power-up"),
+    row("SYSTICK", VarType::Long, 1, false, "milliseconds since power-up"),
+    row("SYSTEMP", VarType::Word, 1, false, "board temperature, 0.1 °C"),
+    row("SYSTEMP2", VarType::Word, 1, false, "second board temperature, 0.1 °C (MCP21xx)"),
+    row("SYSMBAT", VarType::Word, 1, false, "main battery voltage, 0.1 V"),
+    row("SYSLBAT", VarType::Word, 1, false, "logic battery voltage, 0.1 V"),
+    row("SYSMINMBAT", VarType::Word, 1, true, "minimum main battery voltage, 0.1 V"),
+    row("SYSMAXMBAT", VarType::Word, 1, true, "maximum main battery voltage, 0.1 V"),
+    row("SYSMINLBAT", VarType::Word, 1, true, "minimum logic battery voltage, 0.1 V"),
+    row("SYSMAXLBAT", VarType::Word, 1, true, "maximum logic battery voltage, 0.1 V"),
+    row("DOUTACTION", VarType::Byte, 8, true, "what switches an output pin"),
+    row("DOUT", VarType::Bit, 8, true, "state of an output pin; writing it overrides its action"),
+    row("PRIORITYLEVEL", VarType::Byte, 1, false, "active priority level: 0, 1 or 2"),
+    row("PRIORITYACTIVE", VarType::Byte, 1, false, "mask of the inputs that can raise the priority level: serial 1, pulse 2, analog 4"),
+    row("MOTORFLAGS", VarType::Word, 2, false, "control state flags of a motor"),
+    row("MOTORPWM", VarType::SWord, 2, false, "duty of a motor, full is 32767"),
+    row("MOTORCURRENT", VarType::SWord, 2, false, "motor current, 10 mA"),
+    row("MOTORTARGETPWM", VarType::SWord, 2, false, "duty that a motor is going to, full is 32767"),
+    row("MOTORVELKP", VarType::Long, 2, true, "velocity P, 65536 is 1"),
+    row("MOTORVELKI", VarType::Long, 2, true, "velocity I, 65536 is 1"),
+    row("MOTORVELKD", VarType::Long, 2, true, "velocity D, 65536 is 1"),
+    row("MOTORVELQPPS", VarType::Long, 2, true, "speed at full duty, counts/s"),
+    row("MOTORTARGETSPEED", VarType::SLong, 2, false, "speed that a motor is going to, counts/s"),
+    row("MOTORDISTANCE", VarType::Long, 2, false, "distance left, counts"),
+    row("MOTORPOSKP", VarType::Long, 2, true, "position P"),
+    row("MOTORPOSKI", VarType::Long, 2, true, "position I"),
+    row("MOTORPOSKIMAX", VarType::Long, 2, true, "limit of the position integral"),
+    row("MOTORPOSKD", VarType::Long, 2, true, "position D"),
+    row("MOTORPOSMAX", VarType::SLong, 2, true, "largest position, counts"),
+    row("MOTORPOSMIN", VarType::SLong, 2, true, "smallest position, counts"),
+    row("MOTORPOSDEADZONE", VarType::Long, 2, true, "position dead zone, counts"),
+    row("MOTORTARGETPOS", VarType::SLong, 2, false, "position that a motor is going to, counts"),
+    row("MOTORACCEL", VarType::Long, 2, false, "acceleration in force, counts/s²"),
+    row("MOTORDECCEL", VarType::Long, 2, false, "deceleration in force, counts/s² (position commands)"),
+    row("MOTORSPEED", VarType::SLong, 2, false, "speed setpoint now, counts/s"),
+    row("MOTORDEFAULTACCEL", VarType::Long, 2, true, "acceleration of duty commands that carry none"),
+    row("MOTORMAXCURRENT", VarType::SWord, 2, true, "current limit, 10 mA"),
+    row("MOTORMINCURRENT", VarType::SWord, 2, true, "negative current limit, 10 mA"),
+    row("MOTORL", VarType::Long, 2, true, "motor inductance, 16777216 is 1 H; with MOTORR duty becomes a current"),
+    row("MOTORR", VarType::Long, 2, true, "motor resistance, 16777216 is 1 ohm; with MOTORL duty becomes a current"),
+    row("MOTORENCPOS", VarType::SLong, 2, true, "encoder position, counts"),
+    row("MOTORENCSPEED", VarType::SLong, 2, false, "encoder speed, counts/s"),
+    row("MOTORENCSPEEDS", VarType::SLong, 2, false, "encoder speed, mean of a second, counts/s"),
+    row("MOTORENCSTATUS", VarType::Byte, 2, false, "encoder status bits"),
+    row("MOTORENCPIN", VarType::Byte, 2, true, "which signal is the encoder"),
+    row("MOTORBUFFER", VarType::Byte, 2, false, "buffered commands; 0x80 when the buffer is empty and nothing runs"),
+    row("STREAMTYPE", VarType::Byte, 4, true, "0 script, 1 packet serial"),
+    row("STREAMRATE", VarType::Long, 4, true, "bits per second"),
+    row("STREAMTIMEOUT", VarType::Long, 4, true, "silence after which a stream is inactive, ms"),
+    row("STREAMTICK", VarType::Long, 4, false, "SYSTICK of the last byte received"),
+    row("STREAMISBUSY", VarType::Bit, 4, false, "whether a stream is active"),
+    row("STREAMCOUNT", VarType::Byte, 4, false, "bytes waiting to be read"),
+    row("SIGNALACTIVE", VarType::Byte, 32, false, "whether a signal is active"),
+    row("SIGNALTYPE", VarType::Byte, 32, true, "0 none, 1 analog, 2 pulse, 3 quadrature encoder"),
+    row("SIGNALTARGET", VarType::Byte, 32, true, "motor that a signal commands: 0 or 1"),
+    row("SIGNALMINACTION", VarType::Word, 32, true, "action at the signal's minimum"),
+    row("SIGNALMAXACTION", VarType::Word, 32, true, "action at the signal's maximum"),
+    row("SIGNALLOWPASS", VarType::Byte, 32, true, "low pass over 2^n samples, 0 is none"),
+    row("SIGNALTIMEOUT", VarType::Long, 32, true, "silence after which a signal is inactive, ms"),
+    row("SIGNALTICK", VarType::Long, 32, false, "SYSTICK of the last change"),
+    row("SIGNALITER", VarType::Long, 32, false, "updates of the signal"),
+    row("SIGNALLOADHOME", VarType::SLong, 32, true, "encoder value that a load-home action sets"),
+    row("SIGNALMIN", VarType::SLong, 32, true, "smallest raw value"),
+    row("SIGNALMAX", VarType::SLong, 32, true, "largest raw value"),
+    row("SIGNALCENTER", VarType::SLong, 32, true, "raw value of the centre"),
+    row("SIGNALDEADBAND", VarType::Long, 32, true, "width around the centre that counts as the centre"),
+    row("SIGNALPOWEREXP", VarType::SLong, 32, true, "power exponent, 65536 is 1"),
+    row("SIGNALPOWERMIN", VarType::Long, 32, true, "smallest output that is not zero"),
+    row("SIGNALMODE", VarType::Byte, 32, false, "0 position, 1 percent, 2 mean speed, 3 speed"),
+    row("SIGNALMINOUT", VarType::SLong, 32, true, "output at the minimum"),
+    row("SIGNALMAXOUT", VarType::SLong, 32, true, "output at the maximum"),
+    row("SIGNALPOSITION", VarType::SLong, 32, false, "position of a signal"),
+    row("SIGNALPERCENT", VarType::SWord, 32, false, "position within the range, full is 32767"),
+    row("SIGNALSPEED", VarType::SLong, 32, false, "speed of a signal"),
+    row("SIGNALSPEEDS", VarType::SLong, 32, false, "mean speed of a signal"),
+    row("SIGNALCOMMAND", VarType::SLong, 32, false, "what a signal commands, by its mode"),
+    row("I2CERROR", VarType::Byte, 1, false, "last error of the I2C bus, 0 is none"),
+];
+
+/// Spellings of the manual's table that its pages do not confirm, and what they stand for.
+pub const MISSPELT: [(&str, &str); 3] =
+    [("SYSMINMBAY", "SYSMINMBAT"), ("SINGALTIMEOUT", "SIGNALTIMEOUT"), ("SIGNALLOWPAS", "SIGNALLOWPASS")];
+
+/// The register of this name, in any case; the second part is true for a spelling of [`MISSPELT`].
+#[must_use]
+pub fn lookup(name: &str) -> Option<(RegisterId, bool)> {
+    let meant = MISSPELT.iter().find(|(wrong, _)| wrong.eq_ignore_ascii_case(name));
+    let right = meant.map_or(name, |(_, right)| right);
+    let index = REGISTERS.iter().position(|register| register.name.eq_ignore_ascii_case(right))?;
+    Some((RegisterId(u8::try_from(index).ok()?), meant.is_some()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_register_is_found_by_its_name_in_any_case() {
+        for (index, register) in REGISTERS.iter().enumerate() {
+            let (id, misspelt) = lookup(&register.name.to_lowercase()).unwrap();
+            assert_eq!((usize::from(id.0), misspelt), (index, false), "{}", register.name);
+        }
+        assert_eq!(lookup("SINGALTIMEOUT").unwrap().0.row().name, "SIGNALTIMEOUT");
+        assert!(lookup("SINGALTIMEOUT").unwrap().1);
+        assert_eq!(lookup("SYSNOTHING"), None);
+    }
+}

@@ -1,0 +1,173 @@
+//! The words of the language (MCP manual chapter 3): commands with their syntax line, operators, output modifiers, and words that
+//! are kept from being names. Compiler, completion, hover help and the reference read these tables.
+
+use serde::Serialize;
+
+/// A command or a word of one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Word {
+    /// The word.
+    pub name: &'static str,
+    /// How the statement is written; braces stand round what may be left out.
+    pub syntax: &'static str,
+    /// What it does.
+    pub help: &'static str,
+}
+
+const fn word(name: &'static str, syntax: &'static str, help: &'static str) -> Word {
+    Word { name, syntax, help }
+}
+
+/// Statements (MCP manual 3.4.1).
+pub const COMMANDS: [Word; 44] = [
+    word("BRANCH", "branch index, [label0, label1, ...]", "Jumps to the label that index names, counted from 0; goes on with the next line if there is none."),
+    word("CLEAR", "clear", "Sets all variables to zero."),
+    word("DIST", "dist motor, speed, accel, distance, buffer", "Moves a motor a distance at a speed (counts/s). Buffer 0 waits for its turn, 1 begins at once."),
+    word("DIST2", "dist2 speed1, accel1, distance1, speed2, accel2, distance2, buffer", "Moves both motors a distance each."),
+    word("DO", "do ... while condition", "Repeats as long as the condition holds; runs at least once."),
+    word("ELSE", "if condition then ... else ... endif", "What to do when no condition of the IF held."),
+    word("ELSEIF", "if condition then ... elseif condition ... endif", "Another condition, tried when those before did not hold."),
+    word("END", "end", "Ends the program until the next start."),
+    word("ENDIF", "if condition then ... endif", "Closes an IF."),
+    word("FOR", "for variable = start to finish {step increment} ... next", "Counts a variable from start to finish."),
+    word("GETS", "gets stream, [variable, ...]", "Waits for bytes of a stream and stores them."),
+    word("GOSUB", "gosub label{[argument, ...]}{, result}", "Calls a subroutine, which ends with RETURN."),
+    word("GOTO", "goto label", "Goes on at a label."),
+    word("I2CIN", "i2cin {label, timeout}, [variable, ...]", "Reads bytes of an I2C device; jumps to the label if one takes longer than timeout (ms)."),
+    word("I2COUT", "i2cout {label, timeout}, [byte, ...]", "Sends bytes to an I2C device, then a stop."),
+    word("I2COUTNS", "i2coutns {label, timeout}, [byte, ...]", "Sends bytes to an I2C device without a stop, so that a repeated start can follow."),
+    word("IF", "if condition then label   or   if condition then ... endif", "Does something only when a condition holds."),
+    word("LET", "{let} variable = expression", "Stores a value; arrays take several, and texts."),
+    word("MOVE", "move motor, speed, accel, deccel, position, buffer", "Moves a motor to a position (counts)."),
+    word("MOVE2", "move2 speed1, accel1, deccel1, position1, speed2, accel2, deccel2, position2, buffer", "Moves both motors to a position each."),
+    word("NEXT", "for ... next", "Closes a FOR."),
+    word("PAUSE", "pause time", "Waits for time in milliseconds."),
+    word("POWER", "power motor, duty, accel", "Runs a motor at a duty (full is 32767) without a loop."),
+    word("POWER2", "power2 duty1, accel1, duty2, accel2", "Runs both motors at a duty each."),
+    word("PUTS", "puts stream, [data, ...]", "Sends data to a stream: 0 USB, 1 CAN, 2 TTL, 3 RS-232."),
+    word("READ", "read address, variable", "Reads a byte of the user EEPROM."),
+    word("REPEAT", "repeat ... until condition", "Repeats until the condition holds; runs at least once."),
+    word("RETURN", "return {expression}", "Ends a subroutine, with a value if one is given."),
+    word("SPEED", "speed motor, speed, accel", "Runs a motor at a speed (counts/s)."),
+    word("SPEED2", "speed2 speed1, accel1, speed2, accel2", "Runs both motors at a speed each."),
+    word("STEP", "for variable = start to finish step increment", "By how much FOR counts."),
+    word("STOP", "stop", "The same as END."),
+    word("THEN", "if condition then ...", "What to do when the condition holds."),
+    word("TO", "for variable = start to finish", "Where FOR ends."),
+    word("UNTIL", "repeat ... until condition", "Closes a REPEAT."),
+    word("WEND", "while condition ... wend", "Closes a WHILE."),
+    word("WHILE", "while condition ... wend   or   do ... while condition", "Repeats as long as the condition holds."),
+    word("WRITE", "write address, value", "Writes a byte of the user EEPROM."),
+    word("VAR", "name VAR type{(size)}   or   name VAR variable{.modifier}", "Defines a variable, an array or another name for one."),
+    word("CON", "name CON value", "Defines a constant."),
+    word("FCON", "name FCON value", "Defines a floating point constant."),
+    word("BYTETABLE", "name ByteTable value, ...", "Defines a table of constants: ByteTable, SByteTable, WordTable, SWordTable, LongTable, SLongTable, FloatTable."),
+    word("#IF", "#IF expression ... #ELSEIF expression ... #ELSE ... #ENDIF", "Compiles a part only when an expression of constants holds."),
+    word("#IFDEF", "#IFDEF name ... #ENDIF   (also #IFNDEF, #ELSEIFDEF, #ELSEIFNDEF)", "Compiles a part only when a name is defined above."),
+];
+
+/// Operators written as words (MCP manual 3.2.3, 3.2.4).
+pub const OPERATORS: [Word; 31] = [
+    word("ABS", "ABS x", "Absolute value."),
+    word("AND", "a AND b", "1 when both are not zero."),
+    word("BIN2BCD", "BIN2BCD x", "Packed decimal digits, four bits each."),
+    word("COS", "COS x", "Cosine of x in 256ths of a circle, from -127 to 128."),
+    word("DIG", "x DIG n", "Decimal digit n of x, the lowest is 1."),
+    word("FABS", "FABS x", "Absolute value of a float."),
+    word("FACOS", "FACOS x", "Arc cosine, radians."),
+    word("FASIN", "FASIN x", "Arc sine, radians."),
+    word("FATAN", "FATAN x", "Arc tangent, radians."),
+    word("FATANH", "FATANH x", "Hyperbolic arc tangent."),
+    word("FCOS", "FCOS x", "Cosine of radians."),
+    word("FCOSH", "FCOSH x", "Hyperbolic cosine."),
+    word("FEXP", "FEXP x", "e to the power of x."),
+    word("FLN", "FLN x", "Natural logarithm."),
+    word("FSIN", "FSIN x", "Sine of radians."),
+    word("FSINH", "FSINH x", "Hyperbolic sine."),
+    word("FSQRT", "FSQRT x", "Square root of a float."),
+    word("FTAN", "FTAN x", "Tangent of radians."),
+    word("FTANH", "FTANH x", "Hyperbolic tangent."),
+    word("MAX", "x MAX limit", "The smaller of the two: x up to a maximum."),
+    word("MIN", "x MIN limit", "The larger of the two: x down to a minimum."),
+    word("MOD", "a // b", "Not a word of the language: the remainder is written //."),
+    word("NOT", "NOT x", "1 when x is zero, else 0. It is worked out before any comparison."),
+    word("OR", "a OR b", "1 when one is not zero."),
+    word("RANDOM", "RANDOM seed", "A 32 bit number that follows from the seed."),
+    word("SIN", "SIN x", "Sine of x in 256ths of a circle, from -127 to 128."),
+    word("SQR", "SQR x", "Whole part of the square root."),
+    word("TOFLOAT", "TOFLOAT x", "A whole number as a float."),
+    word("TOINT", "TOINT x", "A float without its fraction."),
+    word("XOR", "a XOR b", "1 when exactly one is not zero."),
+    word("~", "~x   or   !x", "Each bit turned over."),
+];
+
+/// Output and input modifiers (MCP manual 3.3).
+pub const FORMATS: [Word; 7] = [
+    word("DEC", "DEC{max} x{\\min}", "Decimal digits: at most max, with zeros to at least min."),
+    word("SDEC", "SDEC{max} x{\\min}", "Decimal digits with a minus sign."),
+    word("HEX", "HEX{max} x{\\min}", "Hexadecimal digits."),
+    word("IHEX", "IHEX{max} x{\\min}", "Hexadecimal digits after a $."),
+    word("REP", "REP character\\count", "A character several times."),
+    word("REAL", "REAL{max} x{\\decimals}", "A number with a decimal point: at most max digits before and decimals after it."),
+    word("STR", "STR array\\length{\\end}", "Characters of an array: at most length, up to the character end."),
+];
+
+/// CAN words that controllers have and whose syntax is not public (public clients and forums, 2015-2025).
+pub const CAN: [&str; 7] = ["CANIN", "CANOUT", "CANCOBID", "CANRTR", "CANLEN", "CANDATA", "CANESR"];
+
+/// Words that the manual carried over from another product.
+pub const OTHER_PRODUCT: [&str; 3] = ["SEROUT", "SERIN", "BIN"];
+
+/// Whether a word can be no name: it is a command, an operator, a type, a modifier or a register.
+#[must_use]
+pub fn is_reserved(name: &str) -> bool {
+    let is = |word: &str| word.eq_ignore_ascii_case(name);
+    COMMANDS.iter().chain(&FORMATS).any(|word| is(word.name))
+        || OPERATORS.iter().any(|word| word.name != "MOD" && is(word.name))
+        || super::types::VarType::lookup(name).is_some()
+        || super::types::TABLES.iter().any(|(table, _)| is(table))
+        || CAN.into_iter().chain(OTHER_PRODUCT).any(is)
+        || super::registers::lookup(name).is_some()
+}
+
+/// The word nearest to what was typed, if one is near.
+#[must_use]
+pub fn nearest<'a>(typed: &str, words: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let typed = typed.to_ascii_lowercase();
+    let limit = (typed.chars().count() / 3).clamp(1, 3);
+    words
+        .into_iter()
+        .map(|word| (strsim::damerau_levenshtein(&typed, &word.to_ascii_lowercase()), word))
+        .filter(|(distance, _)| (1..=limit).contains(distance))
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, word)| word)
+}
+
+/// "Did you mean ...?" for the nearest of these words.
+#[must_use]
+pub fn did_you_mean<'a>(typed: &str, words: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    nearest(typed, words).map(|word| format!("Did you mean {word}?"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_of_the_language_are_reserved_in_any_case_and_labels_of_the_manual_are_not() {
+        for word in ["goto", "Puts", "sysTICK", "float", "bytetable", "canin", "dig", "ihex", "Serout"] {
+            assert!(is_reserved(word), "{word}");
+        }
+        for name in ["reset", "error", "main", "temp", "value", "loop", "mod"] {
+            assert!(!is_reserved(name), "{name}");
+        }
+    }
+
+    #[test]
+    fn a_slip_of_the_finger_finds_the_word() {
+        let names = || COMMANDS.iter().map(|word| word.name);
+        assert_eq!(nearest("gotto", names()), Some("GOTO"));
+        assert_eq!(nearest("pust", names()), Some("PUTS"));
+        assert_eq!(nearest("xyzzy", names()), None);
+    }
+}

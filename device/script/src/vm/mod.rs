@@ -1,0 +1,261 @@
+//! The virtual machine: runs a [`Program`] a bounded number of instructions at a time, in a [`Host`] that has the clock, the streams
+//! and the motors.
+
+pub mod digits;
+mod execute;
+mod host;
+mod memory;
+mod reading;
+mod streams;
+
+pub use host::Host;
+pub use memory::{Memory, element};
+
+use crate::arithmetic::{self, Type};
+use crate::op::{Array, Op};
+use crate::program::{Program, limits};
+use reading::Reading;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// A running program.
+#[derive(Clone, Debug)]
+pub struct Machine {
+    program: Arc<Program>,
+    memory: Memory,
+    stack: Vec<u32>,
+    calls: Vec<Call>,
+    loops: Vec<Loop>,
+    at: u32,
+    state: State,
+    sink: Sink,
+    source: u32,
+    reading: Reading,
+    result: (u32, Type),
+    executed: u64,
+}
+
+/// A subroutine that has not returned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Call {
+    /// The instruction it returns to.
+    pub returns_to: u32,
+    /// Its first instruction.
+    pub entered_at: u32,
+    /// Height of the stack without its arguments.
+    base: usize,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Loop {
+    start: u32,
+    step: u32,
+}
+
+/// Where output goes.
+#[derive(Clone, Copy, Debug)]
+enum Sink {
+    Stream(u32),
+    Array { array: Array, next: u32 },
+}
+
+/// How far a machine is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum State {
+    /// It can go on.
+    Ready,
+    /// It waits for this time.
+    Pausing {
+        /// Time since power-up.
+        until: Duration,
+    },
+    /// It waits for a byte of this stream.
+    Listening {
+        /// The stream.
+        stream: u32,
+    },
+    /// END or STOP.
+    Ended,
+    /// Something went wrong.
+    Faulted(Fault),
+}
+
+/// What went wrong, and where.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("line {line}: {kind}")]
+pub struct Fault {
+    /// The line of the program's text.
+    pub line: u32,
+    /// What went wrong.
+    pub kind: FaultKind,
+}
+
+/// What can go wrong in a running program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FaultKind {
+    /// An index outside its array.
+    #[error("index {index} is outside the array, which has elements 0 to {last}", last = length.saturating_sub(1))]
+    IndexOutside {
+        /// The index, as a signed number.
+        index: i32,
+        /// Elements of the array.
+        length: u32,
+    },
+    /// A whole number divided by zero.
+    #[error("a division by zero")]
+    DivisionByZero,
+    /// RETURN outside a subroutine.
+    #[error("RETURN without GOSUB")]
+    NoCall,
+    /// Too many calls within calls.
+    #[error("more than {} GOSUBs without RETURN", limits::CALLS)]
+    CallsTooDeep,
+    /// The stack is full.
+    #[error("the stack is full")]
+    StackFull,
+    /// The stack is empty where a value is wanted: a subroutine was entered without GOSUB.
+    #[error("the stack is empty: was the subroutine entered without GOSUB?")]
+    StackEmpty,
+    /// A jump out of the program; only a damaged image has one.
+    #[error("a jump out of the program")]
+    BadJump,
+}
+
+impl Machine {
+    /// A machine at the beginning of a program, with zeroed memory.
+    #[must_use]
+    pub fn new(program: Arc<Program>) -> Self {
+        Self {
+            memory: Memory::new(program.ram_bytes),
+            loops: vec![Loop::default(); program.loops as usize],
+            program,
+            stack: Vec::with_capacity(64),
+            calls: Vec::new(),
+            at: 0,
+            state: State::Ready,
+            sink: Sink::Stream(0),
+            source: 0,
+            reading: Reading::default(),
+            result: (0, Type::Unsigned),
+            executed: 0,
+        }
+    }
+
+    /// Goes back to the beginning, with zeroed memory.
+    pub fn reset(&mut self) {
+        *self = Self::new(self.program.clone());
+    }
+
+    /// Runs at most `budget` instructions and says how far it is. A machine that ended or faulted stays where it is.
+    pub fn run<H: Host + ?Sized>(&mut self, host: &mut H, budget: u32) -> &State {
+        if let State::Pausing { until } = self.state
+            && host.now() >= until
+        {
+            self.state = State::Ready;
+        }
+        if let State::Listening { .. } = self.state {
+            self.state = State::Ready;
+        }
+        let program = self.program.clone();
+        let mut left = budget;
+        while left > 0 && self.state == State::Ready {
+            left -= 1;
+            self.executed += 1;
+            let at = self.at;
+            let Some(op) = program.ops.get(at as usize) else {
+                self.fault(at, FaultKind::BadJump);
+                break;
+            };
+            self.at = at + 1;
+            if let Err(kind) = self.execute(*op, &program, host) {
+                self.fault(at, kind);
+            }
+        }
+        &self.state
+    }
+
+    fn fault(&mut self, at: u32, kind: FaultKind) {
+        self.at = at;
+        let line = self.program.lines.get(at as usize).copied().unwrap_or(0);
+        self.state = State::Faulted(Fault { line, kind });
+    }
+
+    /// How far it is.
+    #[must_use]
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// The program it runs.
+    #[must_use]
+    pub fn program(&self) -> &Arc<Program> {
+        &self.program
+    }
+
+    /// The next instruction.
+    #[must_use]
+    pub fn at(&self) -> u32 {
+        self.at
+    }
+
+    /// The line of the text that comes next.
+    #[must_use]
+    pub fn line(&self) -> u32 {
+        self.program.lines.get(self.at as usize).copied().unwrap_or(0)
+    }
+
+    /// Subroutines that have not returned, the innermost last.
+    #[must_use]
+    pub fn calls(&self) -> &[Call] {
+        &self.calls
+    }
+
+    /// Instructions run so far.
+    #[must_use]
+    pub fn executed(&self) -> u64 {
+        self.executed
+    }
+
+    /// The variables.
+    #[must_use]
+    pub fn memory(&self) -> &Memory {
+        &self.memory
+    }
+
+    /// The variables, to be changed.
+    pub fn memory_mut(&mut self) -> &mut Memory {
+        &mut self.memory
+    }
+
+    fn push(&mut self, value: u32) -> Result<(), FaultKind> {
+        if self.stack.len() >= limits::STACK_CELLS {
+            return Err(FaultKind::StackFull);
+        }
+        self.stack.push(value);
+        Ok(())
+    }
+
+    fn pop(&mut self) -> Result<u32, FaultKind> {
+        self.stack.pop().ok_or(FaultKind::StackEmpty)
+    }
+
+    /// What the last subroutine returned, as another type.
+    fn result_as(&self, kind: Type) -> u32 {
+        arithmetic::convert(self.result.0, self.result.1, kind)
+    }
+
+    /// The line of an instruction and the label it belongs to, for call stacks.
+    #[must_use]
+    pub fn label_of(&self, at: u32) -> Option<&str> {
+        let labels = self.program.labels.iter().filter(|(_, label)| *label <= at);
+        labels.max_by_key(|(_, label)| *label).map(|(name, _)| name.as_str())
+    }
+}
+
+impl Op {
+    /// Whether the machine may wait at it.
+    #[must_use]
+    pub fn may_wait(self) -> bool {
+        matches!(self, Self::Pause | Self::InByte | Self::InNumber(..) | Self::InReal | Self::InString(..))
+    }
+}

@@ -1,0 +1,107 @@
+//! A host without a controller: streams as buffers, registers that hold what is stored, a clock that jumps over pauses.
+
+#![allow(dead_code, reason = "each test file uses its part")]
+
+use brushwork_script::mcl::ast::Motion;
+use brushwork_script::mcl::{self, registers::RegisterId};
+use brushwork_script::vm::{Host, Machine, State};
+use std::collections::{HashMap, VecDeque};
+use std::sync::Arc;
+use std::time::Duration;
+
+#[derive(Debug, Default)]
+pub struct Desk {
+    pub now: Duration,
+    pub sent: HashMap<u32, Vec<u8>>,
+    pub waiting: HashMap<u32, VecDeque<u8>>,
+    pub registers: HashMap<(u8, u8), u32>,
+    pub motions: Vec<(Motion, Vec<i32>)>,
+    pub eeprom: HashMap<u32, u8>,
+    pub i2c: Vec<Vec<u8>>,
+    /// What the I2C device answers; none is no device.
+    pub i2c_reply: Option<Vec<u8>>,
+}
+
+impl Host for Desk {
+    fn now(&self) -> Duration {
+        self.now
+    }
+
+    fn register(&mut self, id: RegisterId, element: u8) -> u32 {
+        self.registers.get(&(id.0, element)).copied().unwrap_or(0)
+    }
+
+    fn set_register(&mut self, id: RegisterId, element: u8, value: u32) {
+        self.registers.insert((id.0, element), value);
+    }
+
+    fn put(&mut self, stream: u32, byte: u8) {
+        self.sent.entry(stream).or_default().push(byte);
+    }
+
+    fn get(&mut self, stream: u32) -> Option<u8> {
+        self.waiting.get_mut(&stream)?.pop_front()
+    }
+
+    fn motion(&mut self, command: Motion, arguments: &[i32]) {
+        self.motions.push((command, arguments.to_vec()));
+    }
+
+    fn read_eeprom(&mut self, address: u32) -> u8 {
+        self.eeprom.get(&address).copied().unwrap_or(0)
+    }
+
+    fn write_eeprom(&mut self, address: u32, value: u8) {
+        self.eeprom.insert(address, value);
+    }
+
+    fn i2c_write(&mut self, bytes: &[u8], _stop: bool, _timeout: Option<Duration>) -> bool {
+        self.i2c.push(bytes.to_vec());
+        self.i2c_reply.is_some()
+    }
+
+    fn i2c_read(&mut self, count: usize, _timeout: Option<Duration>) -> Option<Vec<u8>> {
+        self.i2c_reply.as_ref().map(|reply| reply.iter().copied().cycle().take(count).collect())
+    }
+}
+
+/// A machine with a program that has to compile.
+pub fn machine(text: &str) -> Machine {
+    let compiled = mcl::compile(text);
+    let lines = brushwork_script::text::Lines::of(text);
+    let page: String =
+        compiled.diagnostics.iter().map(|diagnostic| diagnostic.render("test.mcl", text, &lines)).collect();
+    Machine::new(Arc::new(compiled.program.unwrap_or_else(|| panic!("{page}"))))
+}
+
+/// Runs a machine to its end or to this many instructions, jumping over pauses.
+pub fn run_on(machine: &mut Machine, desk: &mut Desk, most: u32) -> State {
+    for _ in 0..most / 100 {
+        match machine.run(desk, 100) {
+            State::Pausing { until } => desk.now = *until,
+            State::Ready => {}
+            state => return state.clone(),
+        }
+    }
+    State::Ready
+}
+
+/// What a program sends to stream 0, with its last state.
+pub fn run(text: &str) -> (String, State) {
+    let mut desk = Desk::default();
+    let state = run_on(&mut machine(text), &mut desk, 200_000);
+    let sent = desk.sent.remove(&0).unwrap_or_default();
+    (sent.into_iter().map(char::from).collect(), state)
+}
+
+/// What a program sends to stream 0 before it ends.
+pub fn output(text: &str) -> String {
+    let (sent, state) = run(text);
+    assert_eq!(state, State::Ended, "{text}\nsent {sent:?}");
+    sent
+}
+
+/// The value of an expression, as SDEC writes it.
+pub fn value(expression: &str) -> String {
+    output(&format!("puts 0,[sdec {expression}]\nend\n"))
+}
