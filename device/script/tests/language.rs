@@ -99,7 +99,9 @@ end
 #[test]
 fn loops_count_as_the_manual_says() {
     let count = |head: &str, kind: &str| {
-        output(&format!("v var {kind}\nfor v = {head}\nputs 0,[sdec v,\" \"]\nnext\nputs 0,[\"| \",sdec v]\nend\n"))
+        output(&format!(
+            "v var {kind}\nfor v = {head}\nputs 0,[sdec v,\" \"]\nnext\nputs 0,[\"| \",sdec v]\nend\n"
+        ))
     };
     assert_eq!(count("0 to 3", "long"), "0 1 2 3 | 4");
     assert_eq!(count("3 to 0", "long"), "3 2 1 0 | -1");

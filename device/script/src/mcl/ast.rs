@@ -356,7 +356,9 @@ impl Binary {
         match self {
             Self::Dig => 2,
             Self::Max | Self::Min => 3,
-            Self::Multiply | Self::MultiplyHigh | Self::MultiplyFraction | Self::Divide | Self::Remainder => 4,
+            Self::Multiply | Self::MultiplyHigh | Self::MultiplyFraction | Self::Divide | Self::Remainder => {
+                4
+            }
             Self::Add | Self::Subtract => 5,
             Self::ShiftLeft | Self::ShiftRight => 6,
             Self::Less

@@ -36,8 +36,8 @@ pub struct Token {
 
 /// Longest first, so that `*/` is not `*` and `/`.
 const SIGNS: [&str; 31] = [
-    "<<", ">>", "<>", "<=", ">=", "**", "*/", "//", "&/", "|/", "^/", "+", "-", "*", "/", "&", "|", "^", "=", "<",
-    ">", "~", "!", "(", ")", "[", "]", ",", ".", "\\", ":",
+    "<<", ">>", "<>", "<=", ">=", "**", "*/", "//", "&/", "|/", "^/", "+", "-", "*", "/", "&", "|", "^", "=",
+    "<", ">", "~", "!", "(", ")", "[", "]", ",", ".", "\\", ":",
 ];
 
 /// Longest name that the language takes (MCP manual 3.1.5).
@@ -102,7 +102,8 @@ impl Lexer<'_> {
         let start = self.at;
         self.at += self.name_length(start);
         if self.at - start > LONGEST_NAME {
-            let message = format!("This name is {} characters long; {LONGEST_NAME} are allowed.", self.at - start);
+            let message =
+                format!("This name is {} characters long; {LONGEST_NAME} are allowed.", self.at - start);
             self.report(codes::NAME_TOO_LONG, start, message, None);
         }
         self.push(TokenKind::Word, start);
@@ -130,7 +131,12 @@ impl Lexer<'_> {
 
     fn too_large(&mut self, start: usize) -> u32 {
         let message = format!("`{}` does not fit in 32 bits.", &self.text[start..self.at]);
-        self.report(codes::NUMBER_TOO_LARGE, start, message, Some("The largest number is 4294967295.".into()));
+        self.report(
+            codes::NUMBER_TOO_LARGE,
+            start,
+            message,
+            Some("The largest number is 4294967295.".into()),
+        );
         0
     }
 
@@ -213,8 +219,12 @@ impl Lexer<'_> {
         }
         self.at += letter.len_utf8();
         let hint = match letter {
-            '“' | '”' | '„' | '‘' | '’' | '\'' => Some("Texts stand between straight double quotes.".to_owned()),
-            '{' | '}' => Some("Braces in the manual mark what may be left out; they are not written.".to_owned()),
+            '“' | '”' | '„' | '‘' | '’' | '\'' => {
+                Some("Texts stand between straight double quotes.".to_owned())
+            }
+            '{' | '}' => {
+                Some("Braces in the manual mark what may be left out; they are not written.".to_owned())
+            }
             '$' => Some("Hexadecimal numbers are written 0x1F.".to_owned()),
             '%' => Some("A binary number is % and its digits, as in %1010.".to_owned()),
             _ => None,

@@ -20,26 +20,66 @@ const fn word(name: &'static str, syntax: &'static str, help: &'static str) -> W
 
 /// Statements (MCP manual 3.4.1).
 pub const COMMANDS: [Word; 44] = [
-    word("BRANCH", "branch index, [label0, label1, ...]", "Jumps to the label that index names, counted from 0; goes on with the next line if there is none."),
+    word(
+        "BRANCH",
+        "branch index, [label0, label1, ...]",
+        "Jumps to the label that index names, counted from 0; goes on with the next line if there is none.",
+    ),
     word("CLEAR", "clear", "Sets all variables to zero."),
-    word("DIST", "dist motor, speed, accel, distance, buffer", "Moves a motor a distance at a speed (counts/s). Buffer 0 waits for its turn, 1 begins at once."),
-    word("DIST2", "dist2 speed1, accel1, distance1, speed2, accel2, distance2, buffer", "Moves both motors a distance each."),
+    word(
+        "DIST",
+        "dist motor, speed, accel, distance, buffer",
+        "Moves a motor a distance at a speed (counts/s). Buffer 0 waits for its turn, 1 begins at once.",
+    ),
+    word(
+        "DIST2",
+        "dist2 speed1, accel1, distance1, speed2, accel2, distance2, buffer",
+        "Moves both motors a distance each.",
+    ),
     word("DO", "do ... while condition", "Repeats as long as the condition holds; runs at least once."),
     word("ELSE", "if condition then ... else ... endif", "What to do when no condition of the IF held."),
-    word("ELSEIF", "if condition then ... elseif condition ... endif", "Another condition, tried when those before did not hold."),
+    word(
+        "ELSEIF",
+        "if condition then ... elseif condition ... endif",
+        "Another condition, tried when those before did not hold.",
+    ),
     word("END", "end", "Ends the program until the next start."),
     word("ENDIF", "if condition then ... endif", "Closes an IF."),
-    word("FOR", "for variable = start to finish {step increment} ... next", "Counts a variable from start to finish."),
+    word(
+        "FOR",
+        "for variable = start to finish {step increment} ... next",
+        "Counts a variable from start to finish.",
+    ),
     word("GETS", "gets stream, [variable, ...]", "Waits for bytes of a stream and stores them."),
     word("GOSUB", "gosub label{[argument, ...]}{, result}", "Calls a subroutine, which ends with RETURN."),
     word("GOTO", "goto label", "Goes on at a label."),
-    word("I2CIN", "i2cin {label, timeout}, [variable, ...]", "Reads bytes of an I2C device; jumps to the label if one takes longer than timeout (ms)."),
+    word(
+        "I2CIN",
+        "i2cin {label, timeout}, [variable, ...]",
+        "Reads bytes of an I2C device; jumps to the label if one takes longer than timeout (ms).",
+    ),
     word("I2COUT", "i2cout {label, timeout}, [byte, ...]", "Sends bytes to an I2C device, then a stop."),
-    word("I2COUTNS", "i2coutns {label, timeout}, [byte, ...]", "Sends bytes to an I2C device without a stop, so that a repeated start can follow."),
-    word("IF", "if condition then label   or   if condition then ... endif", "Does something only when a condition holds."),
+    word(
+        "I2COUTNS",
+        "i2coutns {label, timeout}, [byte, ...]",
+        "Sends bytes to an I2C device without a stop, so that a repeated start can follow.",
+    ),
+    word(
+        "IF",
+        "if condition then label   or   if condition then ... endif",
+        "Does something only when a condition holds.",
+    ),
     word("LET", "{let} variable = expression", "Stores a value; arrays take several, and texts."),
-    word("MOVE", "move motor, speed, accel, deccel, position, buffer", "Moves a motor to a position (counts)."),
-    word("MOVE2", "move2 speed1, accel1, deccel1, position1, speed2, accel2, deccel2, position2, buffer", "Moves both motors to a position each."),
+    word(
+        "MOVE",
+        "move motor, speed, accel, deccel, position, buffer",
+        "Moves a motor to a position (counts).",
+    ),
+    word(
+        "MOVE2",
+        "move2 speed1, accel1, deccel1, position1, speed2, accel2, deccel2, position2, buffer",
+        "Moves both motors to a position each.",
+    ),
     word("NEXT", "for ... next", "Closes a FOR."),
     word("PAUSE", "pause time", "Waits for time in milliseconds."),
     word("POWER", "power motor, duty, accel", "Runs a motor at a duty (full is 32767) without a loop."),
@@ -56,14 +96,34 @@ pub const COMMANDS: [Word; 44] = [
     word("TO", "for variable = start to finish", "Where FOR ends."),
     word("UNTIL", "repeat ... until condition", "Closes a REPEAT."),
     word("WEND", "while condition ... wend", "Closes a WHILE."),
-    word("WHILE", "while condition ... wend   or   do ... while condition", "Repeats as long as the condition holds."),
+    word(
+        "WHILE",
+        "while condition ... wend   or   do ... while condition",
+        "Repeats as long as the condition holds.",
+    ),
     word("WRITE", "write address, value", "Writes a byte of the user EEPROM."),
-    word("VAR", "name VAR type{(size)}   or   name VAR variable{.modifier}", "Defines a variable, an array or another name for one."),
+    word(
+        "VAR",
+        "name VAR type{(size)}   or   name VAR variable{.modifier}",
+        "Defines a variable, an array or another name for one.",
+    ),
     word("CON", "name CON value", "Defines a constant."),
     word("FCON", "name FCON value", "Defines a floating point constant."),
-    word("BYTETABLE", "name ByteTable value, ...", "Defines a table of constants: ByteTable, SByteTable, WordTable, SWordTable, LongTable, SLongTable, FloatTable."),
-    word("#IF", "#IF expression ... #ELSEIF expression ... #ELSE ... #ENDIF", "Compiles a part only when an expression of constants holds."),
-    word("#IFDEF", "#IFDEF name ... #ENDIF   (also #IFNDEF, #ELSEIFDEF, #ELSEIFNDEF)", "Compiles a part only when a name is defined above."),
+    word(
+        "BYTETABLE",
+        "name ByteTable value, ...",
+        "Defines a table of constants: ByteTable, SByteTable, WordTable, SWordTable, LongTable, SLongTable, FloatTable.",
+    ),
+    word(
+        "#IF",
+        "#IF expression ... #ELSEIF expression ... #ELSE ... #ENDIF",
+        "Compiles a part only when an expression of constants holds.",
+    ),
+    word(
+        "#IFDEF",
+        "#IFDEF name ... #ENDIF   (also #IFNDEF, #ELSEIFDEF, #ELSEIFNDEF)",
+        "Compiles a part only when a name is defined above.",
+    ),
 ];
 
 /// Operators written as words (MCP manual 3.2.3, 3.2.4).
@@ -108,8 +168,16 @@ pub const FORMATS: [Word; 7] = [
     word("HEX", "HEX{max} x{\\min}", "Hexadecimal digits."),
     word("IHEX", "IHEX{max} x{\\min}", "Hexadecimal digits after a $."),
     word("REP", "REP character\\count", "A character several times."),
-    word("REAL", "REAL{max} x{\\decimals}", "A number with a decimal point: at most max digits before and decimals after it."),
-    word("STR", "STR array\\length{\\end}", "Characters of an array: at most length, up to the character end."),
+    word(
+        "REAL",
+        "REAL{max} x{\\decimals}",
+        "A number with a decimal point: at most max digits before and decimals after it.",
+    ),
+    word(
+        "STR",
+        "STR array\\length{\\end}",
+        "Characters of an array: at most length, up to the character end.",
+    ),
 ];
 
 /// CAN words that controllers have and whose syntax is not public (public clients and forums, 2015-2025).

@@ -33,7 +33,14 @@ pub fn whole(format: Format, value: u32, max: u32, min: u32) -> String {
 #[must_use]
 pub fn real(value: f32, max: u32, decimals: u32) -> String {
     if !value.is_finite() {
-        return if value.is_nan() { "nan" } else if value > 0.0 { "inf" } else { "-inf" }.to_owned();
+        return if value.is_nan() {
+            "nan"
+        } else if value > 0.0 {
+            "inf"
+        } else {
+            "-inf"
+        }
+        .to_owned();
     }
     let places = decimals.min(MOST_ZEROS) as usize;
     let shortest = value.abs().to_string();
@@ -63,7 +70,7 @@ mod tests {
         assert_eq!(whole(Format::SDec, (-1234i32) as u32, 0, 0), "-1234");
         assert_eq!(whole(Format::Hex, 0x12AB, 0, 0), "12ab");
         assert_eq!(whole(Format::IHex, 0x3456, 0, 0), "$3456");
-        assert_eq!(real(3.14159, 0, u32::MAX), "3.14159");
+        assert_eq!(real(2.71828, 0, u32::MAX), "2.71828");
     }
 
     #[test]

@@ -166,7 +166,8 @@ impl Machine {
                 (next.to_bits(), start.min(finish) <= next && next <= start.max(finish))
             }
             kind => {
-                let wide = |cell: u32| if kind == Type::Signed { i64::from(cell as i32) } else { i64::from(cell) };
+                let wide =
+                    |cell: u32| if kind == Type::Signed { i64::from(cell as i32) } else { i64::from(cell) };
                 let next = wide(value) + i64::from(step as i32);
                 let (start, finish) = (wide(start), wide(finish));
                 (next as u32, start.min(finish) <= next && next <= start.max(finish))

@@ -53,7 +53,7 @@ impl Reading {
     }
 
     fn digits(&self) -> usize {
-        self.text.chars().filter(|letter| letter.is_ascii_hexdigit()).count()
+        self.text.chars().filter(char::is_ascii_hexdigit).count()
     }
 
     /// The low 32 bits of what was read.

@@ -43,7 +43,8 @@ impl Machine {
                 }
             }
             Op::OutString(array, has_end) => {
-                let load = |machine: &Self, index| element(array, index).map(|cell| machine.memory.load(cell));
+                let load =
+                    |machine: &Self, index| element(array, index).map(|cell| machine.memory.load(cell));
                 self.out_string(array.length, has_end, host, load)?;
             }
             Op::OutTable(table, has_end) => self.out_table(table, has_end, program, host)?,

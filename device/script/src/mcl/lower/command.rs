@@ -21,7 +21,8 @@ impl Lowering<'_> {
         }
         let extra = arguments.len() > command.arguments();
         if let (true, Some(buffer)) = (extra, arguments.last()) {
-            let message = format!("The manual describes a buffer for {}, but its syntax has none.", command.word());
+            let message =
+                format!("The manual describes a buffer for {}, but its syntax has none.", command.word());
             self.report(codes::EXTRA_BUFFER, buffer.span, message, None);
         }
         let accelerations: &[usize] = match command {

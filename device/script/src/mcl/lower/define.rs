@@ -76,7 +76,8 @@ impl Lowering<'_> {
             }
             Some(Target::Whole { memory, root }) => Meaning::Memory { memory, is_array: true, root },
             Some(_) => {
-                let message = "An alias names a variable, an element with a constant index, or a part of one.";
+                let message =
+                    "An alias names a variable, an element with a constant index, or a part of one.";
                 self.report(codes::NOT_CONSTANT, of.span, message.to_owned(), None);
                 Meaning::Broken
             }
@@ -99,7 +100,7 @@ impl Lowering<'_> {
         let mut length = 0;
         for value in values {
             if let Some(bytes) = text_of(value).filter(|bytes| bytes.len() != 1) {
-                for byte in bytes.to_vec() {
+                for byte in bytes.iter().copied() {
                     self.table_entry(kind, Constant::Whole(byte.into(), Type::Unsigned), value.span);
                     length += 1;
                 }

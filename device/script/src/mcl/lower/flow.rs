@@ -123,7 +123,12 @@ impl Lowering<'_> {
         let from = self.expression(expr);
         if from == Type::Float && kind != Type::Float {
             let message = "A floating point number is used for a whole one; its fraction is lost.".to_owned();
-            self.report(codes::FLOAT_INTO_INTEGER, expr.span, message, Some("Write TOINT if that is meant.".into()));
+            self.report(
+                codes::FLOAT_INTO_INTEGER,
+                expr.span,
+                message,
+                Some("Write TOINT if that is meant.".into()),
+            );
         }
         self.convert(from, kind);
     }

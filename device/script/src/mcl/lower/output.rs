@@ -26,7 +26,8 @@ impl Lowering<'_> {
         self.whole_number(stream);
         match self.folded(stream).map(super::super::constant::Constant::as_whole) {
             Ok(2 | 3) => {
-                let message = "The manual numbers streams 2 and 3 in two ways; here 2 is TTL and 3 RS-232.".to_owned();
+                let message =
+                    "The manual numbers streams 2 and 3 in two ways; here 2 is TTL and 3 RS-232.".to_owned();
                 self.report(codes::AMBIGUOUS_STREAM, stream.span, message, None);
             }
             Ok(number) if !(0..=3).contains(&number) => {
@@ -41,7 +42,8 @@ impl Lowering<'_> {
     /// `place = items`.
     pub(super) fn assign(&mut self, to: &Place, items: &[Item]) {
         if let Some(array) = self.whole_array(to) {
-            let whole_text = items.len() > 1 || items.iter().any(|item| item.format.is_some() || is_text(&item.value));
+            let whole_text =
+                items.len() > 1 || items.iter().any(|item| item.format.is_some() || is_text(&item.value));
             if whole_text {
                 self.settable(to);
                 self.emit(Op::OutArray(array));
@@ -109,7 +111,8 @@ impl Lowering<'_> {
             Format::Real => {
                 let from = self.expression(&item.value);
                 if from != Type::Float {
-                    let message = "REAL shows a floating point number; this whole one is converted.".to_owned();
+                    let message =
+                        "REAL shows a floating point number; this whole one is converted.".to_owned();
                     let hint = Some("Write TOFLOAT before it.".to_owned());
                     self.report(codes::MIXED, item.value.span, message, hint);
                     self.convert(from, Type::Float);

@@ -72,10 +72,11 @@ impl Lowering<'_> {
     fn meaning(&mut self, name: &Name) -> Option<Meaning> {
         let Some(entry) = self.scope.get_mut(&name.key) else {
             let registers = registers::REGISTERS.iter().map(|register| register.name);
-            let hint = words::did_you_mean(&name.key, self.scope.names(false).chain(registers)).or_else(|| {
-                let kinds = VarType::ALL.map(VarType::name);
-                Some(format!("Define it above: {} VAR {}", name.span.of(self.text), kinds[7]))
-            });
+            let hint =
+                words::did_you_mean(&name.key, self.scope.names(false).chain(registers)).or_else(|| {
+                    let kinds = VarType::ALL.map(VarType::name);
+                    Some(format!("Define it above: {} VAR {}", name.span.of(self.text), kinds[7]))
+                });
             let message = format!("`{}` is not defined.", name.span.of(self.text));
             self.report(codes::UNKNOWN_NAME, name.span, message, hint);
             return None;
@@ -117,7 +118,12 @@ impl Lowering<'_> {
     fn no_index<T>(&mut self, place: &Place) -> Option<T> {
         let name = place.name.span.of(self.text);
         let hint = Some(format!("An array is defined with its size: {name} VAR Byte(10)"));
-        self.report(codes::NOT_AN_ARRAY, place.span, format!("`{name}` is no array and takes no index."), hint);
+        self.report(
+            codes::NOT_AN_ARRAY,
+            place.span,
+            format!("`{name}` is no array and takes no index."),
+            hint,
+        );
         None
     }
 
@@ -164,7 +170,8 @@ impl Lowering<'_> {
         let mut part = None;
         if let Some(modifier) = &place.modifier {
             part = Some(self.part(modifier, row.kind)?);
-            let message = "Modifiers on system registers are forbidden by one page of the manual and used by another.";
+            let message =
+                "Modifiers on system registers are forbidden by one page of the manual and used by another.";
             let hint = Some("Copy the register to a variable first.".to_owned());
             self.report(codes::REGISTER_PART, modifier.span, message.to_owned(), hint);
         }
@@ -323,7 +330,9 @@ impl Lowering<'_> {
 
     fn root(target: &Target) -> Option<&str> {
         match target {
-            Target::Cell { root, .. } | Target::Element { root, .. } | Target::Whole { root, .. } => Some(root),
+            Target::Cell { root, .. } | Target::Element { root, .. } | Target::Whole { root, .. } => {
+                Some(root)
+            }
             _ => None,
         }
     }

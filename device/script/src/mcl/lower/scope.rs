@@ -132,15 +132,15 @@ impl Scope {
             defined: name.span,
             uses: Vec::new(),
         };
-        let entry =
-            Entry { symbol, meaning: None, is_read: false, is_written: false, argument_count: None };
+        let entry = Entry { symbol, meaning: None, is_read: false, is_written: false, argument_count: None };
         self.entries.insert(name.key.clone(), entry);
         self.order.push(name.key.clone());
     }
 
     /// Gives a name its meaning, at its definition. A second definition has been complained about and changes nothing.
     pub fn settle(&mut self, name: &Name, meaning: Meaning) {
-        let Some(entry) = self.entries.get_mut(&name.key).filter(|entry| entry.symbol.defined == name.span) else {
+        let Some(entry) = self.entries.get_mut(&name.key).filter(|entry| entry.symbol.defined == name.span)
+        else {
             return;
         };
         match &meaning {

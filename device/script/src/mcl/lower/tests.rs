@@ -7,7 +7,8 @@ fn said(text: &str) -> Vec<&'static str> {
 
 #[test]
 fn a_plain_program_compiles_without_a_word() {
-    let text = "value var long\nmain\n  for value = 0 to 9\n  puts 0,[\"Value=\",dec value,13]\n  next\ngoto main\n";
+    let text =
+        "value var long\nmain\n  for value = 0 to 9\n  puts 0,[\"Value=\",dec value,13]\n  next\ngoto main\n";
     assert_eq!(said(text), Vec::<&str>::new());
 }
 

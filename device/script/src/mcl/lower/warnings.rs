@@ -169,7 +169,12 @@ impl Flow<'_> {
         }
         if let Some(last) = before.filter(|last| !leaves(last)) {
             let message = "The program runs out here and ends.".to_owned();
-            self.report(codes::MISSING_END, last.span, message, Some("Write END, or GOTO to go on.".to_owned()));
+            self.report(
+                codes::MISSING_END,
+                last.span,
+                message,
+                Some("Write END, or GOTO to go on.".to_owned()),
+            );
         }
     }
 
@@ -180,7 +185,8 @@ impl Flow<'_> {
             if !self.called.contains(&name.key) {
                 continue;
             }
-            let length = statements[index..].iter().position(leaves).map_or(statements.len() - index, |at| at + 1);
+            let length =
+                statements[index..].iter().position(leaves).map_or(statements.len() - index, |at| at + 1);
             let body = &statements[index..index + length];
             let mut found = Vec::new();
             walk(body, &mut |inner| {
@@ -208,7 +214,8 @@ fn has_return_after(statements: &[Statement], label: &str) -> bool {
     let at = |statement: &Statement| matches!(&statement.kind, StatementKind::Label { name, .. } if name.key == label);
     let Some(start) = statements.iter().position(at) else { return true };
     let mut found = false;
-    let end = statements[start..].iter().position(leaves).map_or(statements.len(), |length| start + length + 1);
+    let end =
+        statements[start..].iter().position(leaves).map_or(statements.len(), |length| start + length + 1);
     walk(&statements[start..end], &mut |inner| found |= matches!(inner.kind, StatementKind::Return(_)));
     found
 }

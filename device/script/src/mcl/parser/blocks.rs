@@ -60,7 +60,9 @@ impl Parser<'_> {
             StatementKind::Goto(self.label_name()?)
         } else if self.skip_word("gosub") {
             self.gosub()?
-        } else if *self.kind() == TokenKind::Word && matches!(self.peek(1), TokenKind::Newline | TokenKind::End) {
+        } else if *self.kind() == TokenKind::Word
+            && matches!(self.peek(1), TokenKind::Newline | TokenKind::End)
+        {
             if crate::mcl::words::is_reserved(self.word_here().unwrap_or("")) {
                 return Ok(None);
             }

@@ -73,7 +73,11 @@ impl Parser<'_> {
             }
             _ => {
                 let found = self.found_here();
-                return self.fail(codes::UNEXPECTED, format!("A value should stand here, but there is {found}."), None);
+                return self.fail(
+                    codes::UNEXPECTED,
+                    format!("A value should stand here, but there is {found}."),
+                    None,
+                );
             }
         };
         self.advance();
@@ -95,7 +99,11 @@ impl Parser<'_> {
             let Some(word) = self.word_here() else {
                 let found = self.found_here();
                 let message = format!("A modifier should follow the point, but there is {found}.");
-                return self.fail(codes::UNEXPECTED, message, Some("For example: .byte0, .highword, .bit3".into()));
+                return self.fail(
+                    codes::UNEXPECTED,
+                    message,
+                    Some("For example: .byte0, .highword, .bit3".into()),
+                );
             };
             let part = self.any_name(word);
             span = span.to(part.span);

@@ -82,9 +82,11 @@ impl Parser<'_> {
             let ends = matches!(follows, TokenKind::Sign("," | "]" | "=" | "." | "\\") | TokenKind::Newline);
             return (!ends).then_some(format);
         }
-        let starts_value = matches!(self.peek(1), TokenKind::Word | TokenKind::Integer(_) | TokenKind::Text(_));
+        let starts_value =
+            matches!(self.peek(1), TokenKind::Word | TokenKind::Integer(_) | TokenKind::Text(_));
         let letters = word.trim_end_matches(|letter: char| letter.is_ascii_digit());
-        if starts_value && crate::mcl::ast::Binary::of_word(self.word_at(self.at + 1).unwrap_or("")).is_none() {
+        if starts_value && crate::mcl::ast::Binary::of_word(self.word_at(self.at + 1).unwrap_or("")).is_none()
+        {
             let hint = words::OTHER_PRODUCT
                 .iter()
                 .any(|other| other.eq_ignore_ascii_case(letters))
@@ -128,7 +130,8 @@ impl Parser<'_> {
     /// A table's entries: values and texts.
     pub(super) fn table_values(&mut self) -> Parse<Vec<Expr>> {
         let values = self.expressions()?;
-        let empty = values.iter().find(|value| matches!(&value.kind, ExprKind::Text(bytes) if bytes.is_empty()));
+        let empty =
+            values.iter().find(|value| matches!(&value.kind, ExprKind::Text(bytes) if bytes.is_empty()));
         if let Some(empty) = empty {
             let span = empty.span;
             self.report(codes::LONG_TEXT, span, "An empty text is no entry.".into(), None);

@@ -120,7 +120,12 @@ impl<'a> Parser<'a> {
     }
 
     fn end_of_statement(&mut self) {
-        if self.skip_sign(":") || self.at_newline() || self.is_end() || self.is_directive() || self.is_closed() {
+        if self.skip_sign(":")
+            || self.at_newline()
+            || self.is_end()
+            || self.is_directive()
+            || self.is_closed()
+        {
             return;
         }
         let found = self.found_here();
@@ -232,10 +237,15 @@ impl<'a> Parser<'a> {
     fn name(&mut self, what: &str) -> Parse<Name> {
         let Some(word) = self.word_here() else {
             let found = self.found_here();
-            return self.fail(codes::UNEXPECTED, format!("{what} should stand here, but there is {found}."), None);
+            return self.fail(
+                codes::UNEXPECTED,
+                format!("{what} should stand here, but there is {found}."),
+                None,
+            );
         };
         if words::is_reserved(word) {
-            let message = format!("`{word}` is a word of the language and cannot be {}.", what.to_lowercase());
+            let message =
+                format!("`{word}` is a word of the language and cannot be {}.", what.to_lowercase());
             return self.fail(codes::RESERVED_WORD, message, None);
         }
         Ok(self.any_name(word))
@@ -275,7 +285,11 @@ impl<'a> Parser<'a> {
     fn deeper<T>(&mut self, inner: impl FnOnce(&mut Self) -> Parse<T>) -> Parse<T> {
         if self.depth >= DEEPEST {
             let message = format!("This is nested more than {DEEPEST} levels deep.");
-            return self.fail(codes::TOO_DEEP, message, Some("Use a subroutine or a variable in between.".into()));
+            return self.fail(
+                codes::TOO_DEEP,
+                message,
+                Some("Use a subroutine or a variable in between.".into()),
+            );
         }
         self.depth += 1;
         let result = inner(self);

@@ -26,7 +26,8 @@ impl Parser<'_> {
 
     /// A statement that begins with a command word; `None` if it is no such word.
     fn command(&mut self, word: &str) -> Parse<Option<StatementKind>> {
-        if let Some(motion) = Motion::ALL.into_iter().find(|motion| motion.word().eq_ignore_ascii_case(word)) {
+        if let Some(motion) = Motion::ALL.into_iter().find(|motion| motion.word().eq_ignore_ascii_case(word))
+        {
             self.advance();
             return self.motion(motion).map(Some);
         }
@@ -66,7 +67,8 @@ impl Parser<'_> {
                 "until" => "REPEAT",
                 _ => "IF",
             };
-            let hint = (start == "IF").then(|| "An IF with a jump on its own line takes no ENDIF.".to_owned());
+            let hint =
+                (start == "IF").then(|| "An IF with a jump on its own line takes no ENDIF.".to_owned());
             let upper = word.to_uppercase();
             return self.fail(codes::NO_BLOCK_START, format!("{upper} without its {start}."), hint);
         }
@@ -100,7 +102,9 @@ impl Parser<'_> {
         }
         match self.peek(1) {
             TokenKind::Sign("=" | "(" | ".") => self.assignment(),
-            TokenKind::Sign("[" | ":") | TokenKind::Newline | TokenKind::End | TokenKind::Directive(_) => self.label(),
+            TokenKind::Sign("[" | ":") | TokenKind::Newline | TokenKind::End | TokenKind::Directive(_) => {
+                self.label()
+            }
             TokenKind::Word if self.is_label_before_statement() => self.label(),
             _ => {
                 let commands = words::COMMANDS.iter().map(|command| command.name);
@@ -200,7 +204,11 @@ impl Parser<'_> {
     }
 
     fn return_statement(&mut self) -> Parse<StatementKind> {
-        let none = self.at_newline() || self.is_end() || self.is_sign(":") || self.is_directive() || self.is_closed();
+        let none = self.at_newline()
+            || self.is_end()
+            || self.is_sign(":")
+            || self.is_directive()
+            || self.is_closed();
         Ok(StatementKind::Return(if none { None } else { Some(self.expression()?) }))
     }
 
