@@ -70,7 +70,7 @@ mod tests {
         assert_eq!(whole(Format::SDec, (-1234i32) as u32, 0, 0), "-1234");
         assert_eq!(whole(Format::Hex, 0x12AB, 0, 0), "12ab");
         assert_eq!(whole(Format::IHex, 0x3456, 0, 0), "$3456");
-        assert_eq!(real(2.71828, 0, u32::MAX), "2.71828");
+        assert_eq!(real(2.345, 0, u32::MAX), "2.345");
     }
 
     #[test]

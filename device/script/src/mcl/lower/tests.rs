@@ -1,3 +1,5 @@
+//! The compiler as a whole.
+
 use super::compile;
 use crate::mcl::codes;
 
