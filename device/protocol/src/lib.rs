@@ -7,6 +7,7 @@
 //! Units stand in names (`_counts`, `_volts`, `_amps`). A value as it lies on the wire is called *raw*; the factor
 //! that turns it into a physical one stands in [`packet_serial::scale`] and nowhere else.
 
+pub mod canopen;
 pub mod codes;
 pub mod crc;
 pub mod loader;
