@@ -151,9 +151,9 @@ impl Decoder {
                 self.inside = false;
                 let frame = read_ascii(&self.kept);
                 if frame.is_some() {
-                    self.kept.clear()
+                    self.kept.clear();
                 } else {
-                    self.drop_kept()
+                    self.drop_kept();
                 }
                 return frame;
             }
@@ -202,9 +202,9 @@ impl Decoder {
         };
         self.inside = false;
         if frame.is_some() {
-            self.kept.clear()
+            self.kept.clear();
         } else {
-            self.drop_kept()
+            self.drop_kept();
         }
         frame
     }

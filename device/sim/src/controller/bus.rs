@@ -1,8 +1,10 @@
 //! Several controllers on one wire.
 
 use super::Controller;
+use super::canbus::CanBus;
 use crate::machine::{Machine, StreamIndex};
 use crate::world::{WorldAction, WorldView};
+use brushwork_protocol::canopen::adapter::Form;
 use std::time::Duration;
 
 /// Controllers that share the wire of one stream: each hears everything, each answers to its own address.
@@ -13,6 +15,8 @@ use std::time::Duration;
 pub struct Bus {
     units: Vec<Controller>,
     stream: StreamIndex,
+    /// The CAN bus with its adapter, where the wire is one.
+    can: Option<CanBus>,
 }
 
 /// Why controllers cannot be put on one wire.
@@ -29,7 +33,7 @@ pub enum BusError {
 impl Bus {
     /// One controller on a stream.
     pub fn single(unit: Controller, stream: StreamIndex) -> Self {
-        Self { units: vec![unit], stream }
+        Self { units: vec![unit], stream, can: None }
     }
 
     /// Controllers on one wire.
@@ -39,10 +43,29 @@ impl Bus {
     pub fn new(units: Vec<Controller>, stream: StreamIndex) -> Result<Self, BusError> {
         match units.len() {
             0 => Err(BusError::Empty),
-            1 => Ok(Self { units, stream }),
+            1 => Ok(Self { units, stream, can: None }),
             _ if matches!(stream, StreamIndex::Usb | StreamIndex::Uart0) => Err(BusError::NotABus(stream)),
-            _ => Ok(Self { units, stream }),
+            _ => Ok(Self { units, stream, can: None }),
         }
+    }
+
+    /// Controllers on a CAN bus, reached through an adapter on a serial port. Each is the node of its settings.
+    ///
+    /// # Errors
+    /// If there is none.
+    pub fn on_can(units: Vec<Controller>, form: Form) -> Result<Self, BusError> {
+        if units.is_empty() {
+            return Err(BusError::Empty);
+        }
+        let mut can = CanBus::new(form, units.len());
+        let mut units = units;
+        can.run(&mut units, Duration::ZERO);
+        Ok(Self { units, stream: StreamIndex::Usb, can: Some(can) })
+    }
+
+    /// Whether the wire is a CAN bus behind an adapter.
+    pub fn is_can(&self) -> bool {
+        self.can.is_some()
     }
 
     /// The stream the wire is on.
@@ -77,25 +100,50 @@ impl Bus {
     }
 }
 
+impl Bus {
+    /// Moves time on without a look at what happens on the CAN bus on the way.
+    fn advance_units(&mut self, to: Duration) {
+        self.units.iter_mut().for_each(|unit| unit.advance(to));
+        let now = self.now();
+        if let Some(can) = &mut self.can {
+            can.run(&mut self.units, now);
+        }
+    }
+}
+
 impl Machine for Bus {
     fn now(&self) -> Duration {
         self.units.first().map_or(Duration::ZERO, Controller::now)
     }
 
     fn receive(&mut self, stream: StreamIndex, bytes: &[u8]) {
-        self.units.iter_mut().for_each(|unit| unit.receive(stream, bytes));
+        let now = self.now();
+        match &mut self.can {
+            Some(can) => can.receive(bytes, &mut self.units, now),
+            None => self.units.iter_mut().for_each(|unit| unit.receive(stream, bytes)),
+        }
     }
 
     fn advance(&mut self, to: Duration) {
-        self.units.iter_mut().for_each(|unit| unit.advance(to));
+        while let Some(at) = self.can.as_ref().and_then(CanBus::next_event_at).filter(|at| *at < to) {
+            self.advance_units(at.max(self.now()));
+        }
+        self.advance_units(to);
     }
 
     fn next_output_at(&self) -> Option<Duration> {
-        self.units.iter().filter_map(Controller::next_output_at).min()
+        match &self.can {
+            Some(can) => [can.next_output_at(), can.next_event_at()].into_iter().flatten().min(),
+            None => self.units.iter().filter_map(Controller::next_output_at).min(),
+        }
     }
 
     fn take_output(&mut self, stream: StreamIndex) -> Option<Vec<u8>> {
-        self.units.iter_mut().find_map(|unit| unit.take_output(stream))
+        let now = self.now();
+        match &mut self.can {
+            Some(can) => can.take_output(now),
+            None => self.units.iter_mut().find_map(|unit| unit.take_output(stream)),
+        }
     }
 
     fn bits_per_second(&self, stream: StreamIndex) -> u32 {
@@ -109,6 +157,14 @@ impl Machine for Bus {
     fn apply(&mut self, unit: usize, action: &WorldAction) {
         if let Some(unit) = self.units.get_mut(unit) {
             Machine::apply(unit, 0, action);
+        }
+        let now = self.now();
+        let plugged = self.plugged();
+        if let Some(can) = &mut self.can {
+            if !plugged {
+                can.unplug();
+            }
+            can.run(&mut self.units, now);
         }
     }
 

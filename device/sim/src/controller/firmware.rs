@@ -59,6 +59,8 @@ pub(super) struct Firmware {
     pub mixer: Mixer,
     pub script: ScriptState,
     pub can: Can,
+    /// Whether the command that is being carried out came over the CAN bus, whose functions act at all priority levels.
+    pub from_can: bool,
     /// Duties of commands 102 and 104.
     pub auxiliary_duties: [u16; 5],
     /// The firmware loader, once command 255 has been taken.
@@ -114,6 +116,7 @@ impl Firmware {
             mixer: Mixer::default(),
             script: ScriptState::default(),
             can: Can::default(),
+            from_can: false,
             auxiliary_duties: [0; 5],
             loader: (!memory.flash.is_whole()).then(|| Loader::new(config.model.family)),
             leds: Leds::default(),

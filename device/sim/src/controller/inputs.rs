@@ -83,9 +83,10 @@ impl Firmware {
         self.check_serial_timeout();
     }
 
-    /// Whether packet serial commands move the motors now.
+    /// Whether the command at hand may move the motors now: one of packet serial where Serial commands, one of the CAN bus always
+    /// (MCP manual 1.9.4).
     pub(super) fn serial_commands(&self) -> bool {
-        matches!(self.source, Some((_, Source::Serial)))
+        self.from_can || matches!(self.source, Some((_, Source::Serial)))
     }
 
     /// Gives the motors what the commanding inputs say, where that has changed.

@@ -7,6 +7,7 @@
 mod answer;
 mod bus;
 mod can;
+mod canbus;
 mod commands;
 mod config;
 mod dispatch;
@@ -14,6 +15,7 @@ mod firmware;
 mod inputs;
 mod loader;
 mod memory;
+mod object;
 mod port;
 mod readings;
 mod script;

@@ -75,6 +75,11 @@ impl<'a> UnitView<'a> {
         self.firmware.up_for()
     }
 
+    /// When it was last powered up, in the machine's time.
+    pub fn booted_at(&self) -> Duration {
+        self.firmware.booted_at
+    }
+
     /// Main battery, logic battery (0.1 V), temperatures 1 and 2 (0.1 degrees) as the wire carries them.
     pub fn supply_raw(&self) -> [i64; 4] {
         [

@@ -77,10 +77,12 @@ pub(super) const ROWS: &[Command] = &[
     .note("The vendor's C++ library of 2025 appends a CRC and starts the reply's CRC anew."),
 ];
 
-const NO_BUS: Simulated = Simulated::StoredOnly("there is no simulated CAN bus");
+const NO_BUS: Simulated =
+    Simulated::StoredOnly("on a simulated CAN bus the unit answers to it from its next start on");
 const QUIET_BUS: Simulated = Simulated::Inert("the simulated port is in loop-back and has no errors");
-const LOOP_BACK: Simulated =
-    Simulated::StoredOnly("there is no simulated CAN bus: what is sent is what is received next");
+const LOOP_BACK: Simulated = Simulated::StoredOnly(
+    "the port is in loop-back for packet serial, also on a simulated CAN bus: what is sent is what is received next",
+);
 const DICTIONARY: Simulated = Simulated::StoredOnly(
     "the dictionary keeps what is written to it; objects from 0x2000 on read as the command of that number",
 );

@@ -1,6 +1,7 @@
 //! Conversations with a simulated controller in virtual time.
 
 mod any_input;
+mod can_bus;
 mod control_source;
 mod conversation;
 mod every_command;
