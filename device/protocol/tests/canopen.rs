@@ -135,11 +135,11 @@ fn any_bytes_at_all_stop_neither_client_nor_server() {
         let mut last = client.begin();
         for _ in 0..40 {
             let mut bytes = last;
-            if dice.next_u32() % 3 == 0 {
+            if dice.next_u32().is_multiple_of(3) {
                 bytes[dice.next_u32() as usize % 8] = dice.next_u32() as u8;
             }
             let Some(mut answer) = server.take(&bytes, &mut objects) else { break };
-            if dice.next_u32() % 3 == 0 {
+            if dice.next_u32().is_multiple_of(3) {
                 answer[dice.next_u32() as usize % 8] = dice.next_u32() as u8;
             }
             match client.take(&answer) {
@@ -159,12 +159,13 @@ fn any_frame(dice: &mut ChaCha8Rng, form: Form) -> Frame {
         _ => CanId::Standard(dice.next_u32() as u16 & CanId::MAX_STANDARD),
     };
     let length = dice.next_u32() % 9;
-    if dice.next_u32() % 8 == 0 {
+    if dice.next_u32().is_multiple_of(8) {
         return Frame::remote(id, length as u8).expect("at most eight");
     }
     // FF often, since the binary form treats it apart.
-    let bytes: Vec<u8> =
-        (0..length).map(|_| if dice.next_u32() % 3 == 0 { 0xFF } else { dice.next_u32() as u8 }).collect();
+    let bytes: Vec<u8> = (0..length)
+        .map(|_| if dice.next_u32().is_multiple_of(3) { 0xFF } else { dice.next_u32() as u8 })
+        .collect();
     Frame::data(id, &bytes).expect("at most eight")
 }
 
