@@ -155,7 +155,7 @@ fn every_object_holds_what_the_command_behind_it_reads() {
             compared += 1;
             match shape {
                 Shape::Single(field) => {
-                    assert_eq!(bench.raw(row.number, 0, field), values.int(field.name), "{}", row.key)
+                    assert_eq!(bench.raw(row.number, 0, field), values.int(field.name), "{}", row.key);
                 }
                 Shape::Several(fields) => {
                     assert_eq!(bench.read(index_of(row.number), 0), Ok(vec![fields.len() as u8]));
