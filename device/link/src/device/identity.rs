@@ -3,12 +3,15 @@
 use brushwork_protocol::packet_serial::Generation;
 use serde::Serialize;
 
+/// The family's name of units on a CAN bus.
+pub const CANOPEN: &str = "CANopen";
+
 /// A unit that answered, and what was found out about it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Identity {
-    /// Its address on the bus.
+    /// Its address on the bus; on a CAN bus its node id.
     pub address: u8,
-    /// Protocol family: "packet serial".
+    /// Protocol family: "packet serial" or "CANopen".
     pub family: &'static str,
     /// Its version text as it came: "MCP266 2x60A v1.0.0".
     pub version_text: String,
@@ -33,6 +36,18 @@ impl Identity {
     #[must_use]
     pub fn is_mcp(&self) -> bool {
         self.model.is_some_and(|model| model.starts_with("MCP"))
+    }
+
+    /// Whether it is a node of a CAN bus.
+    #[must_use]
+    pub fn is_node(&self) -> bool {
+        self.family == CANOPEN
+    }
+
+    /// Where it is on its bus: "0x80", or "node 3".
+    #[must_use]
+    pub fn place(&self) -> String {
+        if self.is_node() { format!("node {}", self.address) } else { format!("0x{:02X}", self.address) }
     }
 
     /// The model, or what the unit calls itself.

@@ -4,6 +4,7 @@
 //! while waiting for a reply, the thread looks at the Stop flag first. Motion needs arming, dies unless it is renewed, and
 //! is ended on every way out of a job and of the thread itself.
 
+pub mod can;
 mod channel;
 pub mod controller;
 mod drive;

@@ -82,6 +82,14 @@ pub enum ExchangeError {
         /// The generation that was detected.
         generation: Generation,
     },
+    /// The controller understood and refused.
+    #[error("the controller refused: {what}")]
+    Refused {
+        /// What it said.
+        what: String,
+        /// Whether it lacks what was asked for.
+        is_absent: bool,
+    },
     /// The controller cannot do what was asked.
     #[error("{what}")]
     Impossible {
@@ -133,6 +141,7 @@ impl ExchangeError {
             | Self::BadCrc { .. }
             | Self::BadAcknowledgement { .. }
             | Self::Malformed { .. } => true,
+            Self::Refused { is_absent, .. } => *is_absent,
             Self::MayHaveRun { cause } => cause.is_unusable_answer(),
             _ => false,
         }
@@ -177,6 +186,7 @@ impl ExchangeError {
             Self::NotArmed { .. } => "Arm the motors on this screen first",
             Self::Unproven { .. } => "Try it on a simulated controller",
             Self::Unsupported { .. } => "Do without it, or check the firmware's version",
+            Self::Refused { .. } => "Check the value and the state of the controller",
             Self::Impossible { .. } => "Ask for something else",
             Self::Encode { .. } => "Use a value in range",
             Self::Transport { .. } => "Check the cable and connect again",

@@ -53,6 +53,8 @@ pub struct Outgoing<'a> {
 pub enum Judgement {
     /// At least this many more bytes are needed.
     More(usize),
+    /// What came belongs to others on a shared bus: the time that is left stays as it is.
+    Elsewhere,
     /// Complete; this many bytes belong to it.
     Good(usize),
     /// It cannot become a good one.
@@ -276,6 +278,7 @@ impl Exchange {
                     return Ok(now);
                 }
                 Judgement::More(missing) => deadline = deadline.max(now + self.allowance(request, missing)),
+                Judgement::Elsewhere => {}
                 Judgement::Bad(fault) => {
                     self.counters.totals.crc_errors += 1;
                     return Err(fault.error(tries));

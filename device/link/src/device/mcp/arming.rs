@@ -3,7 +3,8 @@
 //! Assumed: that a stream's time-out stops the motors when no lower priority level is active. The manual says only that the
 //! next level takes over (MCP manual 1.9.3, commands 139 and 145); this is our reading of "none takes over".
 
-use super::Speaker;
+use super::{Speaker, Wire};
+use crate::device::can::{MASTER_LIMIT, Monitor, Place};
 use crate::device::controller::{ArmCheck, Line};
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
@@ -25,14 +26,21 @@ struct Objection {
 /// Reads everything arming depends on, and lists all that speaks against it.
 pub fn check(
     speaker: Speaker,
+    monitor: Option<&Monitor>,
     line: &mut Line<'_>,
     stream: Option<Stream>,
     on: &str,
 ) -> Result<ArmCheck, ExchangeError> {
     let mut objections = Vec::new();
-    let watchdog = watchdog(speaker, line, stream)?;
-    let controller_timeout = watchdog.map_err(|objection| objections.push(objection)).ok();
-    objections.extend(object_to_priorities(speaker, line)?);
+    let watchdog = match (speaker.wire, monitor) {
+        (Wire::Objects(place), Some(monitor)) => node_watchdog(place, monitor, line)?,
+        _ => {
+            // Over CAN, functions act at all priority levels (MCP manual 1.9.4).
+            objections.extend(object_to_priorities(speaker, line)?);
+            watchdog(speaker, line, stream)?
+        }
+    };
+    let controller_timeout = watchdog.map_err(|objection| objections.insert(0, objection)).ok();
     objections.extend(faults(speaker, line)?.into_iter().map(|fault| {
         object(format!("the controller reports {fault}"), "Remove the cause and reset the error first")
     }));
@@ -40,6 +48,33 @@ pub fn check(
     let failure =
         |objection: Objection| Failure::new("arm the motors", on, objection.came_back, objection.mend);
     Ok(ArmCheck { reasons: objections.into_iter().map(failure).collect(), controller_timeout, warnings })
+}
+
+/// The same for a node of a CAN bus, where the manual has no time-out ("Priority Timeout - Disabled", MCP manual 1.9.4). CANopen has one: a node
+/// may watch a master's heartbeat. Whether a real controller does so, and whether it stops its motors then, nobody has said, so
+/// only a simulated one is armed.
+fn node_watchdog(
+    place: Place,
+    monitor: &Monitor,
+    line: &mut Line<'_>,
+) -> Result<Result<Duration, Objection>, ExchangeError> {
+    if !line.permit().guesses {
+        return Ok(Err(object(
+            "over CANopen the controller has no time-out (MCP manual 1.9.4), so the motors would run on if this program died",
+            "Drive it over USB or a serial port; settings and readings work over CANopen too",
+        )));
+    }
+    match place.watch_master(line) {
+        Ok(()) => {
+            monitor.beat(true);
+            Ok(Ok(MASTER_LIMIT))
+        }
+        Err(error) if error.is_link_lost() || error.interruption().is_some() => Err(error),
+        Err(_) => Ok(Err(object(
+            "the node does not watch this program's heartbeat, so the motors would run on if this program died",
+            "Drive it over USB or a serial port",
+        ))),
+    }
 }
 
 /// After how much silence on this port the controller stops the motors.

@@ -1,8 +1,9 @@
 //! Finding the units of a link: which addresses answer, whether they are one unit, and who each is.
 
-use super::{Mcp, Speaker, generation, polling, stopping};
+use super::{Mcp, Speaker, Wire, generation, polling, stopping};
+use crate::device::can::{Monitor, Place};
 use crate::device::controller::{Controller, DiscoverError, Family, Line};
-use crate::device::identity::Identity;
+use crate::device::identity::{CANOPEN, Identity};
 use crate::device::options::{Addresses, DeviceOptions};
 use crate::exchange::{ExchangeError, RETRIES};
 use crate::failure::Failure;
@@ -47,7 +48,7 @@ impl Family for PacketSerial {
     }
 
     fn stop_bytes(&self) -> Vec<u8> {
-        let speaker = |address| Speaker { address, generation: Generation::Gen1 };
+        let speaker = |address| Speaker::packets(address, Generation::Gen1);
         Address::ALL.into_iter().flat_map(|address| stopping::bytes(speaker(address), true, false)).collect()
     }
 }
@@ -61,7 +62,7 @@ fn scan(line: &mut Line<'_>, addresses: Addresses) -> Result<Vec<(Address, Strin
     line.set_retries(if candidates.len() > 1 { SCAN_RETRIES } else { RETRIES });
     let mut answers = Vec::new();
     for address in candidates {
-        let speaker = Speaker { address, generation: Generation::Gen1 };
+        let speaker = Speaker::packets(address, Generation::Gen1);
         match speaker.ask(line, number::READ_VERSION, &[]) {
             Ok(reply) => {
                 answers.push((address, reply.values.text("version").unwrap_or_default().trim().to_owned()));
@@ -115,7 +116,7 @@ const STATE: [(u8, i64); 7] = [
 ];
 
 fn state(line: &mut Line<'_>, address: Address) -> Result<Vec<(i64, i64)>, ExchangeError> {
-    let speaker = Speaker { address, generation: Generation::Gen1 };
+    let speaker = Speaker::packets(address, Generation::Gen1);
     let mut state = Vec::new();
     for (command, tolerance) in STATE {
         if let Some(reply) = speaker.ask_if_known(line, command, &[])? {
@@ -133,27 +134,57 @@ fn identify(
     simulated: bool,
 ) -> Result<Mcp, ExchangeError> {
     let finding = generation::detect(line, address)?;
-    let speaker = Speaker { address, generation: finding.generation };
+    let speaker = Speaker::packets(address, finding.generation);
+    finish(line, speaker, None, version, simulated, finding.notes)
+}
+
+/// Finds out all about one node of a CAN bus; `notes` are told with its identity.
+pub fn identify_node(
+    line: &mut Line<'_>,
+    place: Place,
+    monitor: &Monitor,
+    version: &str,
+    simulated: bool,
+    mut notes: Vec<String>,
+) -> Result<Mcp, ExchangeError> {
+    let finding = generation::detect_node(line, place)?;
+    notes.extend(finding.notes);
+    let speaker =
+        Speaker { wire: Wire::Objects(place), ..Speaker::packets(Address::DEFAULT, finding.generation) };
+    finish(line, speaker, Some(monitor.clone()), version, simulated, notes)
+}
+
+/// What remains to be found out, on whichever wire.
+fn finish(
+    line: &mut Line<'_>,
+    speaker: Speaker,
+    monitor: Option<Monitor>,
+    version: &str,
+    simulated: bool,
+    mut notes: Vec<String>,
+) -> Result<Mcp, ExchangeError> {
     let polls = polling::find(speaker, line)?;
     let model = models::identify(version);
-    let mut notes = finding.notes;
     let missing = polling::missing(&polls);
     if !missing.is_empty() {
         notes.push(format!("It does not answer for: {}.", missing.join(", ")));
     }
     let identity = Identity {
-        address: address.get(),
-        family: "packet serial",
+        address: speaker.id(),
+        family: match speaker.wire {
+            Wire::Packets => "packet serial",
+            Wire::Objects(_) => CANOPEN,
+        },
         version_text: version.to_owned(),
         model: model.map(|model| model.name),
         firmware: firmware_of(version).to_owned(),
-        generation: finding.generation,
+        generation: speaker.generation,
         also_answers: Vec::new(),
         simulated,
         port: line.exchange().port(),
         notes,
     };
-    Ok(Mcp { speaker, identity, model, polls, has_buffered: false })
+    Ok(Mcp { speaker, identity, model, polls, has_buffered: false, monitor })
 }
 
 /// The version behind the last " v" of the text: "1.0.0" of "MCP266 2x60A v1.0.0".

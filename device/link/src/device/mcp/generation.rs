@@ -3,6 +3,7 @@
 //! Nothing on the wire names the generation (public clients, 2015-2025). Five reads have replies whose length changed; a
 //! unit need not answer all of them. A reply counts with the length at which its CRC fits.
 
+use crate::device::can::{self, Place};
 use crate::device::controller::Line;
 use crate::exchange::{ExchangeError, Fault, Judgement, Outgoing};
 use brushwork_protocol::crc::crc16_xmodem;
@@ -24,15 +25,53 @@ struct Probe {
     short: usize,
     long: usize,
     long_since: Generation,
+    /// The part of its object that only the long form has, or that is this wide in it.
+    subindex: u8,
+    long_width: usize,
 }
 
 /// Lengths with CRC (public clients, 2015-2025).
 const PROBES: [Probe; 5] = [
-    Probe { command: number::READ_STATUS, short: 4, long: 6, long_since: Generation::Gen3 },
-    Probe { command: number::READ_MAIN_VOLTAGES, short: 6, long: 7, long_since: Generation::Gen4 },
-    Probe { command: number::READ_DEFAULT_ACCELS, short: 10, long: 18, long_since: Generation::Gen2 },
-    Probe { command: number::READ_PWM_MODE, short: 3, long: 4, long_since: Generation::Gen3 },
-    Probe { command: number::READ_ADDRESS_MIXED, short: 3, long: 4, long_since: Generation::Gen2 },
+    Probe {
+        command: number::READ_STATUS,
+        short: 4,
+        long: 6,
+        long_since: Generation::Gen3,
+        subindex: 0,
+        long_width: 4,
+    },
+    Probe {
+        command: number::READ_MAIN_VOLTAGES,
+        short: 6,
+        long: 7,
+        long_since: Generation::Gen4,
+        subindex: 3,
+        long_width: 1,
+    },
+    Probe {
+        command: number::READ_DEFAULT_ACCELS,
+        short: 10,
+        long: 18,
+        long_since: Generation::Gen2,
+        subindex: 3,
+        long_width: 4,
+    },
+    Probe {
+        command: number::READ_PWM_MODE,
+        short: 3,
+        long: 4,
+        long_since: Generation::Gen3,
+        subindex: 1,
+        long_width: 1,
+    },
+    Probe {
+        command: number::READ_ADDRESS_MIXED,
+        short: 3,
+        long: 4,
+        long_since: Generation::Gen2,
+        subindex: 1,
+        long_width: 1,
+    },
 ];
 
 /// Asks the unit at `address`. A contradiction is asked about once more, since one reply in 65536 fits by chance.
@@ -42,6 +81,22 @@ pub fn detect(line: &mut Line<'_>, address: Address) -> Result<Finding, Exchange
         return Ok(finding);
     }
     Ok(judge(&observe(line, address)?))
+}
+
+/// The same of a node, by the parts its objects have.
+pub fn detect_node(line: &mut Line<'_>, place: Place) -> Result<Finding, ExchangeError> {
+    let mut observations = [None; PROBES.len()];
+    for (observation, probe) in observations.iter_mut().zip(&PROBES) {
+        let part = can::probe(line, place, probe.command, probe.subindex)?;
+        // Where the part is missing the object itself may be too, which tells nothing.
+        *observation = match part {
+            can::Probe::Wide(width) => Some(width >= probe.long_width),
+            can::Probe::Absent => {
+                (can::probe(line, place, probe.command, 0)? != can::Probe::Absent).then_some(false)
+            }
+        };
+    }
+    Ok(judge(&observations))
 }
 
 /// For each probe whether the long reply came; `None` if no usable one did.

@@ -1,4 +1,4 @@
-//! MCP and RoboClaw controllers over packet serial.
+//! MCP and RoboClaw controllers over packet serial, and MCP controllers as nodes of a CAN bus ([`super::can`] carries the commands).
 //!
 //! [`PacketSerial`] finds units, [`Mcp`] is one of them. What it reads, how it drives, stops and is armed stand in a file
 //! each. Nothing outside this folder knows a command of packet serial.
@@ -11,10 +11,11 @@ mod polling;
 mod stopping;
 mod traffic;
 
-pub use discover::PacketSerial;
+pub use discover::{PacketSerial, identify_node};
 pub use driving::preview;
 pub use traffic::describe_sent;
 
+use super::can::{self, Monitor, Place};
 use super::channel::Sample;
 use super::controller::{ArmCheck, Controller, Described, Line, PollItem, PollList};
 use super::drive::Drive;
@@ -22,8 +23,8 @@ use super::identity::Identity;
 use super::status::StatusReport;
 use super::stop::UnitStop;
 use crate::exchange::packet::{Ask, gate, transact};
-use crate::exchange::{ExchangeError, Reply};
-use crate::transport::Stream;
+use crate::exchange::{ExchangeError, Reply, Tries};
+use crate::transport::{Stream, TransportError};
 use brushwork_protocol::models::{Family, Model};
 use brushwork_protocol::packet_serial::status::Condition;
 use brushwork_protocol::packet_serial::{
@@ -35,9 +36,32 @@ use brushwork_protocol::packet_serial::{
 struct Speaker {
     address: Address,
     generation: Generation,
+    wire: Wire,
+}
+
+/// How commands reach the unit.
+#[derive(Clone, Copy, Debug)]
+enum Wire {
+    /// As packets.
+    Packets,
+    /// As accesses to the objects of a node.
+    Objects(Place),
 }
 
 impl Speaker {
+    /// A unit on packet serial.
+    fn packets(address: Address, generation: Generation) -> Self {
+        Self { address, generation, wire: Wire::Packets }
+    }
+
+    /// Its number on its bus: the address, or the node id.
+    fn id(self) -> u8 {
+        match self.wire {
+            Wire::Packets => self.address.get(),
+            Wire::Objects(place) => place.node.get(),
+        }
+    }
+
     /// Sends a command whose values are all numbers.
     fn ask(self, line: &mut Line<'_>, command: u8, values: &[i64]) -> Result<Reply, ExchangeError> {
         self.ask_values(line, command, values.iter().map(|&value| Value::Int(value)).collect())
@@ -59,8 +83,13 @@ impl Speaker {
         if gate(&ask)?.effect.may_move() {
             line.motion_begins();
         }
-        let (exchange, watch) = line.parts();
-        transact(exchange, watch, &ask)
+        match self.wire {
+            Wire::Packets => {
+                let (exchange, watch) = line.parts();
+                transact(exchange, watch, &ask)
+            }
+            Wire::Objects(place) => can::carry_out(line, place, &ask),
+        }
     }
 
     /// As [`Speaker::ask`], but `None` where the unit does not know the command: it answers nothing, or nothing that fits, or
@@ -88,6 +117,8 @@ pub struct Mcp {
     polls: PollList,
     /// Whether this program has sent moves that can wait in the unit's buffers.
     has_buffered: bool,
+    /// What is heard of the nodes, on a CAN bus.
+    monitor: Option<Monitor>,
 }
 
 impl Controller for Mcp {
@@ -106,7 +137,8 @@ impl Controller for Mcp {
         item: PollItem,
         sample: &mut Sample,
     ) -> Result<Option<StatusReport>, ExchangeError> {
-        polling::read(self.speaker, line, item, sample)
+        let status = polling::read(self.speaker, line, item, sample)?;
+        self.look_at_the_bus(line, status)
     }
 
     fn drive(&mut self, line: &mut Line<'_>, drive: &Drive) -> Result<(), ExchangeError> {
@@ -126,6 +158,7 @@ impl Controller for Mcp {
         if stop.buffers_empty == Some(true) {
             self.has_buffered = false;
         }
+        self.leave_alone(line)?;
         Ok(stop)
     }
 
@@ -139,7 +172,11 @@ impl Controller for Mcp {
         stream: Option<Stream>,
     ) -> Result<ArmCheck, ExchangeError> {
         let on = self.name(line);
-        arming::check(self.speaker, line, stream, &on)
+        let check = arming::check(self.speaker, self.monitor.as_ref(), line, stream, &on)?;
+        if !check.reasons.is_empty() {
+            self.leave_alone(line)?;
+        }
+        Ok(check)
     }
 
     fn set_encoder(&mut self, line: &mut Line<'_>, motor: Motor, counts: i32) -> Result<(), ExchangeError> {
@@ -171,6 +208,10 @@ impl Controller for Mcp {
     }
 
     fn enter_loader(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError> {
+        if matches!(self.speaker.wire, Wire::Objects(_)) {
+            let what = "the firmware loader cannot be entered over the CAN bus; connect over USB".to_owned();
+            return Err(ExchangeError::Impossible { what });
+        }
         match self.speaker.ask(line, number::ENTER_LOADER, &[]) {
             // The libraries do not insist on the acknowledgement: the unit restarts.
             Err(error) if error.is_unusable_answer() || error.is_link_lost() => Ok(()),
@@ -192,6 +233,10 @@ impl Controller for Mcp {
 
     fn set_address(&mut self, address: u8) -> bool {
         let Some(new) = Address::new(address) else { return false };
+        if matches!(self.speaker.wire, Wire::Objects(_)) {
+            // The node id stays, whatever the address of packet serial is.
+            return true;
+        }
         let old = std::mem::replace(&mut self.speaker.address, new).get();
         self.identity.address = address;
         // A unit that answers all eight goes on answering the others.
@@ -216,6 +261,9 @@ impl Controller for Mcp {
 
     fn describe_traffic(&self, request: &[u8], reply: Option<&[u8]>) -> Described {
         let generation = self.speaker.generation;
+        if let Wire::Objects(place) = self.speaker.wire {
+            return can::describe(reply.unwrap_or(request), place.form);
+        }
         match reply {
             None => describe_sent(request, generation),
             Some(reply) => traffic::describe_received(request, reply, generation),
@@ -226,7 +274,53 @@ impl Controller for Mcp {
 impl Mcp {
     /// The unit and its port, for sentences.
     fn name(&self, line: &mut Line<'_>) -> String {
-        format!("{} at {}", self.speaker.address, line.exchange().port())
+        format!("{} at {}", self.identity.place(), line.exchange().port())
+    }
+
+    /// What the bus told on the way: a node that no longer beats is lost, an emergency is a failure, a boot-up a restart.
+    fn look_at_the_bus(
+        &self,
+        line: &mut Line<'_>,
+        status: Option<StatusReport>,
+    ) -> Result<Option<StatusReport>, ExchangeError> {
+        let (Wire::Objects(place), Some(monitor)) = (self.speaker.wire, &self.monitor) else {
+            return Ok(status);
+        };
+        let now = line.exchange().clock().now();
+        if let Some(away) = monitor.lost_for(place.node, now) {
+            let detail = format!("the heartbeat of {} stayed away for {} ms", place.node, away.as_millis());
+            return Err(TransportError::Gone { detail }.into());
+        }
+        if let Some(emergency) =
+            monitor.take_emergencies(place.node).iter().find(|emergency| emergency.code != 0)
+        {
+            let what =
+                format!("{} reported emergency {:04X} ({})", place.node, emergency.code, emergency.class());
+            return Err(ExchangeError::Malformed { what, tries: Tries(1) });
+        }
+        // Time since its last boot-up that was heard; it falls when the node starts anew.
+        let (_, booted_at) = monitor.boots(place.node);
+        let running = now.saturating_sub(booted_at.unwrap_or_default()).as_millis();
+        Ok(status.map(|status| StatusReport {
+            running_ticks: status.running_ticks.or(u32::try_from(running).ok()),
+            ..status
+        }))
+    }
+
+    /// A node that was made to watch this program's heartbeat need not do so any more.
+    fn leave_alone(&self, line: &mut Line<'_>) -> Result<(), ExchangeError> {
+        let (Wire::Objects(place), Some(monitor)) = (self.speaker.wire, &self.monitor) else { return Ok(()) };
+        if !monitor.is_beating() {
+            return Ok(());
+        }
+        match place.unwatch_master(line) {
+            Err(error) if error.is_link_lost() || error.interruption().is_some() => Err(error),
+            // It may go on watching then, and stops motors that stand.
+            _ => {
+                monitor.beat(false);
+                Ok(())
+            }
+        }
     }
 
     fn effect(&self, command: u8) -> Effect {

@@ -1,6 +1,6 @@
 //! Stopping a unit: at once without asking, then again with its confirmation, and what can still drive it after that.
 
-use super::Speaker;
+use super::{Speaker, Wire};
 use crate::device::controller::Line;
 use crate::device::stop::UnitStop;
 use crate::exchange::ExchangeError;
@@ -24,6 +24,10 @@ const CUT_POWER: &str = "Cut the motor power now: the motors may still be runnin
 ///
 /// Assumed: a duty command ends the move that runs, and leaves open whether it drops those that wait.
 pub fn bytes(speaker: Speaker, scripts: bool, buffered: bool) -> Vec<u8> {
+    if let Wire::Objects(place) = speaker.wire {
+        // Dropping buffers takes several accesses; the confirmation does that.
+        return place.stop_bytes(scripts);
+    }
     let mut packets: Vec<(u8, &[i64])> = Vec::new();
     if scripts {
         packets.push((number::STOP_SCRIPT, &[]));
@@ -44,7 +48,7 @@ pub fn confirm(
     on: &str,
 ) -> Result<UnitStop, ExchangeError> {
     let mut stop = UnitStop {
-        address: speaker.address.get(),
+        address: speaker.id(),
         confirmed: false,
         buffers_empty: None,
         still_driven_by: Vec::new(),
@@ -190,8 +194,8 @@ mod tests {
     fn the_stop_bytes_are_the_same_in_every_generation() {
         for generation in Generation::ALL {
             for address in Address::ALL {
-                let speaker = Speaker { address, generation };
-                let first = Speaker { address, generation: Generation::Gen1 };
+                let speaker = Speaker::packets(address, generation);
+                let first = Speaker::packets(address, Generation::Gen1);
                 assert_eq!(bytes(speaker, true, true), bytes(first, true, true));
             }
         }
@@ -199,7 +203,7 @@ mod tests {
 
     #[test]
     fn stop_is_end_of_script_then_duty_zero_then_empty_buffers_then_duty_zero() {
-        let speaker = Speaker { address: Address::DEFAULT, generation: Generation::Gen1 };
+        let speaker = Speaker::packets(Address::DEFAULT, Generation::Gen1);
         // 0x80, command 54, duty 0, accel 655359 (0009 FFFF), twice, CRC.
         let duty_zero =
             crate::testing::with_crc(&[0x80, 54, 0, 0, 0x00, 0x09, 0xFF, 0xFF, 0, 0, 0x00, 0x09, 0xFF, 0xFF]);

@@ -365,7 +365,7 @@ impl DeviceLoop {
     fn name_of(&self, index: usize) -> String {
         let port = self.exchange.port();
         match self.units.get(index) {
-            Some(unit) => format!("0x{:02X} at {port}", unit.controller.identity().address),
+            Some(unit) => format!("{} at {port}", unit.controller.identity().place()),
             None => port,
         }
     }

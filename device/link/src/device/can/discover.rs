@@ -1,0 +1,159 @@
+//! Finding the nodes of a bus: by their heartbeats, and by asking every node id at once.
+
+use super::access::read;
+use super::{Monitor, Place};
+use crate::device::controller::{Controller, DiscoverError, Family, Line};
+use crate::device::mcp;
+use crate::device::options::{Addresses, DeviceOptions};
+use crate::exchange::{ExchangeError, Judgement, Outgoing};
+use crate::failure::Failure;
+use brushwork_protocol::canopen::adapter::{Decoder, Form};
+use brushwork_protocol::canopen::nmt::objects;
+use brushwork_protocol::canopen::objects::{TEXT, index_of};
+use brushwork_protocol::canopen::sdo::Transfer;
+use brushwork_protocol::canopen::{Function, NodeId};
+use brushwork_protocol::packet_serial::number;
+use std::collections::BTreeSet;
+use std::time::Duration;
+
+/// How long answers and heartbeats are waited for: a node that beats once a second is heard.
+const LISTEN_FOR: Duration = Duration::from_millis(1200);
+
+/// MCP controllers on a CANopen bus.
+pub struct CanOpen {
+    form: Form,
+    monitor: Monitor,
+}
+
+impl CanOpen {
+    /// Nodes behind an adapter that writes frames in `form`. `monitor` is that of the link's [`BusTransport`](super::BusTransport).
+    #[must_use]
+    pub fn new(form: Form, monitor: Monitor) -> Self {
+        Self { form, monitor }
+    }
+
+    fn place(&self, node: NodeId) -> Place {
+        Place { node, form: self.form }
+    }
+
+    /// The nodes that answer or are heard.
+    fn nodes(&self, line: &mut Line<'_>, addresses: Addresses) -> Result<Vec<NodeId>, ExchangeError> {
+        match addresses {
+            Addresses::Only(id) => Ok(NodeId::new(id).into_iter().collect()),
+            Addresses::Scan => {
+                let mut found = self.ask_all(line)?;
+                found.extend(self.monitor.nodes());
+                Ok(found.into_iter().collect())
+            }
+        }
+    }
+
+    /// Asks every node id for its device type, which every CANopen device has, and listens who answers.
+    fn ask_all(&self, line: &mut Line<'_>) -> Result<BTreeSet<NodeId>, ExchangeError> {
+        let ask = Transfer::upload(objects::DEVICE_TYPE, 0).begin();
+        let bytes: Vec<u8> = NodeId::all().flat_map(|node| self.place(node).request(ask)).collect();
+        let outgoing =
+            Outgoing { bytes: &bytes, reply_length: 0, patience: LISTEN_FOR, retries: 0, once: false };
+        let mut found = BTreeSet::new();
+        let (mut decoder, mut heard) = (Decoder::new(self.form), 0);
+        let (exchange, watch) = line.parts();
+        let listened = exchange.exchange(&outgoing, watch, &mut |bytes| {
+            for frame in decoder.feed_all(bytes.get(heard..).unwrap_or_default()) {
+                if let Some(Function::SdoResponse(node)) = Function::of(frame.id()) {
+                    found.insert(node);
+                }
+            }
+            heard = bytes.len();
+            Judgement::Elsewhere
+        });
+        match listened {
+            Err(error) if error.is_link_lost() || error.interruption().is_some() => Err(error),
+            // The time is over, as it should be.
+            _ => Ok(found),
+        }
+    }
+
+    /// Finds out all about one node; `None` if it is none of this family.
+    fn identify(
+        &self,
+        line: &mut Line<'_>,
+        node: NodeId,
+        simulated: bool,
+    ) -> Result<Result<Box<dyn Controller>, String>, ExchangeError> {
+        let place = self.place(node);
+        let version = match read(line, place, index_of(number::READ_VERSION), TEXT) {
+            Ok((bytes, _)) => String::from_utf8_lossy(&bytes).trim().to_owned(),
+            Err(error) if error.is_link_lost() || error.interruption().is_some() => return Err(error),
+            Err(error) => return Ok(Err(format!("{node} has no version of an MCP ({})", error.full()))),
+        };
+        let mut notes = identity_notes(line, place)?;
+        if let Some(state) = self.monitor.state(node) {
+            notes.push(format!("Its heartbeat says: {state}."));
+        }
+        Ok(Ok(Box::new(mcp::identify_node(line, place, &self.monitor, &version, simulated, notes)?)))
+    }
+}
+
+impl Family for CanOpen {
+    fn discover(
+        &mut self,
+        line: &mut Line<'_>,
+        options: &DeviceOptions,
+    ) -> Result<Vec<Box<dyn Controller>>, DiscoverError> {
+        let heard_before = line.exchange().statistics().bytes_in;
+        let mut units = Vec::new();
+        let mut others = Vec::new();
+        for node in self.nodes(line, options.addresses)? {
+            match self.identify(line, node, options.simulated)? {
+                Ok(unit) => units.push(unit),
+                Err(why) => others.push(why),
+            }
+        }
+        if units.is_empty() {
+            let heard = line.exchange().statistics().bytes_in - heard_before;
+            let failure = nothing_there(line, options.addresses, &others, heard);
+            return Err(DiscoverError::NothingThere(failure));
+        }
+        Ok(units)
+    }
+
+    fn stop_bytes(&self) -> Vec<u8> {
+        NodeId::all().flat_map(|node| self.place(node).stop_bytes(false)).collect()
+    }
+}
+
+/// Vendor, product, revision and serial number, as far as the node tells them.
+fn identity_notes(line: &mut Line<'_>, place: Place) -> Result<Vec<String>, ExchangeError> {
+    let mut told = Vec::new();
+    for (subindex, name) in [(1, "vendor"), (2, "product"), (3, "revision"), (4, "serial number")] {
+        match read(line, place, objects::IDENTITY, subindex) {
+            Ok((bytes, _)) => {
+                let hex: String = bytes.iter().rev().map(|byte| format!("{byte:02X}")).collect();
+                told.push(format!("{name} 0x{hex}"));
+            }
+            Err(error) if error.is_link_lost() || error.interruption().is_some() => return Err(error),
+            Err(_) => {}
+        }
+    }
+    Ok(if told.is_empty() { Vec::new() } else { vec![format!("CANopen identity: {}.", told.join(", "))] })
+}
+
+fn nothing_there(line: &mut Line<'_>, addresses: Addresses, others: &[String], heard: u64) -> Failure {
+    let on = line.exchange().port();
+    let asked = match addresses {
+        Addresses::Scan => "no node of the bus answered".to_owned(),
+        Addresses::Only(id) => format!("node {id} did not answer"),
+    };
+    let (came_back, mend) = match (others, heard) {
+        ([], 0) => (
+            format!("{asked}, and the adapter said nothing"),
+            "Check the adapter's port and baud rate, its form (form=ascii or form=binary), the bus rate and the 120 Ω at both ends",
+        ),
+        ([], _) => (
+            format!("{asked}, though the adapter works"),
+            "Check the node id, that the controller's CAN pins are set to CANopen, and that its rate is the bus's",
+        ),
+        (others, _) => (others.join("; "), "Give the node of the motor controller: node=3"),
+    };
+    Failure::new("find a controller", on, came_back, mend)
+}
