@@ -4,10 +4,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
+use brushwork_link::device::can::{BusTransport, CanOpen, Monitor};
 use brushwork_link::device::{
     ArmScope, DeviceHandle, DeviceLoop, DeviceOptions, Drive, DriveCommand, Event, Request, Step, StopReport,
 };
 use brushwork_link::{Clock, Transport, TransportError};
+use brushwork_protocol::canopen::adapter::Form;
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_sim::controller::{Bus, UnitView};
 use brushwork_sim::faults::{Fault, Faulty};
@@ -53,6 +55,25 @@ struct Watched {
 impl VirtualLink {
     /// A loop on a stream of a bus; nothing has been sent. Bytes take no time on USB, and that of the stream's rate elsewhere.
     pub fn new(bus: Bus, stream: StreamIndex, options: DeviceOptions, faults: Vec<Fault>, seed: u64) -> Self {
+        Self::made(bus, stream, faults, seed, |line, clock| DeviceLoop::new(line, clock, options))
+    }
+
+    /// A loop on the adapter of a CAN bus, whose frames it writes in `form`.
+    pub fn on_can(bus: Bus, form: Form, options: DeviceOptions, faults: Vec<Fault>, seed: u64) -> Self {
+        Self::made(bus, StreamIndex::Usb, faults, seed, |line, clock| {
+            let monitor = Monitor::default();
+            let line = BusTransport::new(line, Arc::clone(&clock), form, monitor.clone());
+            DeviceLoop::for_family(Box::new(line), clock, options, Box::new(CanOpen::new(form, monitor)))
+        })
+    }
+
+    fn made(
+        bus: Bus,
+        stream: StreamIndex,
+        faults: Vec<Fault>,
+        seed: u64,
+        open: impl FnOnce(Box<dyn Transport>, Arc<dyn Clock>) -> (DeviceLoop, DeviceHandle),
+    ) -> Self {
         let paced = stream != StreamIndex::Usb;
         let byte_time = paced.then(|| byte_time(bus.bits_per_second(stream)));
         let line = VirtualLine::new(Paced::new(Faulty::new(bus, faults, seed), paced), stream);
@@ -66,8 +87,7 @@ impl VirtualLink {
             window_alive: Arc::clone(&window_alive),
             byte_time,
         };
-        let (device_loop, handle) =
-            DeviceLoop::new(Box::new(watched), Arc::new(line.clock().clone()), options);
+        let (device_loop, handle) = open(Box::new(watched), Arc::new(line.clock().clone()));
         let handle = Arc::new(handle);
         *lock(&handle_for_hooks) = Some(Arc::clone(&handle));
         let frame_at = line.clock().now();

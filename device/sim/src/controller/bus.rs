@@ -63,6 +63,13 @@ impl Bus {
         Ok(Self { units, stream: StreamIndex::Usb, can: Some(can) })
     }
 
+    /// Sets how often a node sends its heartbeat, 0 for never, as a write to its object 0x1017 would; does nothing elsewhere.
+    pub fn set_producer_heartbeat(&mut self, unit: usize, milliseconds: u16) {
+        if let Some(can) = &mut self.can {
+            can.set_producer_heartbeat(unit, milliseconds);
+        }
+    }
+
     /// Whether the wire is a CAN bus behind an adapter.
     pub fn is_can(&self) -> bool {
         self.can.is_some()

@@ -117,6 +117,17 @@ impl DeviceLoop {
         Self::with_family(transport, clock, options, Box::new(PacketSerial)).0
     }
 
+    /// The same for any family.
+    #[must_use]
+    pub fn for_family(
+        transport: Box<dyn Transport>,
+        clock: Arc<dyn Clock>,
+        options: DeviceOptions,
+        family: Box<dyn Family>,
+    ) -> (Self, DeviceHandle) {
+        Self::with_family(transport, clock, options, family).0
+    }
+
     /// The same for any family, with the channel that wakes an idle thread.
     fn with_family(
         transport: Box<dyn Transport>,

@@ -50,6 +50,11 @@ impl Communication {
         (self.producer_ms > 0).then(|| Duration::from_millis(self.producer_ms.into()))
     }
 
+    /// Sets how often it sends its heartbeat.
+    pub fn set_producer(&mut self, milliseconds: u16) {
+        self.producer_ms = milliseconds;
+    }
+
     /// Whose heartbeat it listens for, and how long that may be away.
     pub fn consumer(&self) -> Option<(NodeId, Duration)> {
         let [low, high, node, _] = self.consumer.to_le_bytes();

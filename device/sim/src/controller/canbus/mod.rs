@@ -82,6 +82,13 @@ impl CanBus {
         self.outbox.pop_front().map(|(_, bytes)| bytes)
     }
 
+    /// Sets how often a node sends its heartbeat.
+    pub fn set_producer_heartbeat(&mut self, unit: usize, milliseconds: u16) {
+        if let Some(node) = self.nodes.get_mut(unit) {
+            node.set_producer_heartbeat(milliseconds);
+        }
+    }
+
     /// The host's cable is out.
     pub fn unplug(&mut self) {
         self.decoder.reset();

@@ -39,6 +39,14 @@ impl Node {
         [running.heartbeat_at, running.lost_at()].into_iter().flatten().min()
     }
 
+    /// Sets how often it sends its heartbeat.
+    pub fn set_producer_heartbeat(&mut self, milliseconds: u16) {
+        if let Some(running) = &mut self.running {
+            running.communication.set_producer(milliseconds);
+            running.heartbeat_at = running.heartbeat_at.filter(|_| milliseconds > 0);
+        }
+    }
+
     /// Starts and stops with the unit's power; sends what is due at `now`.
     pub fn run(&mut self, unit: &mut Controller, now: Duration) -> Vec<Frame> {
         let started_at = match unit.unit() {
