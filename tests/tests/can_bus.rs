@@ -141,12 +141,12 @@ fn run<T: Send + 'static>(
     let value = Arc::new(Mutex::new(None));
     let into = Arc::clone(&value);
     link.ask(Request::Job(FnJob::boxed("test", Duration::from_secs(300), move |wire| {
-        *into.lock().unwrap() = Some(work(wire));
+        *into.lock().expect("nobody panics with it") = Some(work(wire));
         Ok(Box::new(()))
     })));
     for _ in 0..300 {
         link.run_for(ms(1000));
-        if let Some(value) = value.lock().unwrap().take() {
+        if let Some(value) = value.lock().expect("nobody panics with it").take() {
             return value;
         }
     }
@@ -154,8 +154,8 @@ fn run<T: Send + 'static>(
 }
 
 fn settings(link: &mut VirtualLink, generation: Generation) -> ReadReport {
-    let subject = Subject::new(models::lookup("mcp266").unwrap(), generation);
-    run(link, move |wire| read_all(wire, subject)).unwrap()
+    let subject = Subject::new(models::lookup("mcp266").expect("it is listed"), generation);
+    run(link, move |wire| read_all(wire, subject)).expect("the link holds")
 }
 
 #[test]
@@ -255,7 +255,7 @@ fn stop_breaks_into_the_reading_of_a_list_and_every_access_at_any_moment() {
         // A list of eight records with many fields each: hundreds of accesses.
         link.ask(Request::Transact { id: 1, command: 144, values: Vec::new() });
         let at = link.now() + moment;
-        link.at(at, |handle| handle.stop_all());
+        link.at(at, brushwork_link::device::DeviceHandle::stop_all);
         link.run_for(ms(300));
         assert_eq!(link.duties(0), [0.0, 0.0], "stop {moment:?} after the request");
         let stop = link.stops().last().copied().cloned().unwrap();
