@@ -1,6 +1,6 @@
 //! MCP controllers as nodes of a CANopen bus, through an adapter on a serial port.
 //!
-//! [`CanOpen`] finds nodes. Each is driven by the same code as over packet serial ([`super::mcp`]): only how a command and its values
+//! [`CanOpen`] finds nodes. Each is driven by the same code as over packet serial (module `mcp`): only how a command and its values
 //! reach the unit differs, and that is here. Commands are objects (`brushwork_protocol::canopen::objects`), read and written by
 //! SDO; heartbeats are listened for on the way.
 
