@@ -1,0 +1,83 @@
+//! Readings that a job makes itself: encoder counts with their moments, and what a motor draws.
+
+use brushwork_link::Wire;
+use brushwork_link::device::JobContext;
+use brushwork_link::exchange::ExchangeError;
+use brushwork_protocol::packet_serial::{Motor, number};
+use std::time::Duration;
+
+use super::speed::Reading;
+
+/// Time between two readings of a job. The window's own readings go in between.
+pub const INTERVAL: Duration = Duration::from_millis(5);
+
+/// Follows both encoders over the ends of their 32 bits.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Encoders {
+    last: Option<[i32; 2]>,
+    counts: [i64; 2],
+}
+
+/// What a motor gets and draws.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Power {
+    /// Output, -1 to 1.
+    pub duty: f64,
+    /// Current, A.
+    pub amps: f64,
+    /// Main battery, V.
+    pub volts: f64,
+}
+
+impl Encoders {
+    /// Reads both, dated half way between request and reply.
+    pub fn read(&mut self, context: &mut JobContext<'_>) -> Result<[Reading; 2], ExchangeError> {
+        let reply = context.transact_timed(number::READ_ENCODERS, &[])?;
+        let at_s = (reply.span.requested_at + reply.span.replied_at).as_secs_f64() / 2.0;
+        // The count is a 32 bit pattern.
+        let now = ["encoder_m1", "encoder_m2"].map(|name| reply.values.int(name) as i32);
+        Ok(self.take(now).map(|counts| Reading { at_s, counts: counts as f64 }))
+    }
+
+    fn take(&mut self, now: [i32; 2]) -> [i64; 2] {
+        match self.last {
+            None => self.counts = now.map(i64::from),
+            Some(last) => {
+                for index in 0..2 {
+                    self.counts[index] += i64::from(now[index].wrapping_sub(last[index]));
+                }
+            }
+        }
+        self.last = Some(now);
+        self.counts
+    }
+}
+
+/// Reads what a motor gets and draws, with the battery that feeds it.
+pub fn read_power(context: &mut JobContext<'_>, motor: Motor) -> Result<Power, ExchangeError> {
+    let [duty, current] = match motor {
+        Motor::M1 => ["duty_m1", "current_m1"],
+        Motor::M2 => ["duty_m2", "current_m2"],
+    };
+    let duties = context.transact(number::READ_PWMS, &[])?;
+    let currents = context.transact(number::READ_CURRENTS, &[])?;
+    let battery = context.transact(number::READ_MAIN_BATTERY, &[])?;
+    Ok(Power {
+        duty: duties.physical(duty).unwrap_or(f64::NAN) / 100.0,
+        amps: currents.physical(current).unwrap_or(f64::NAN),
+        volts: battery.physical("main_battery").unwrap_or(f64::NAN),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_go_on_over_the_end_of_32_bits() {
+        let mut encoders = Encoders::default();
+        assert_eq!(encoders.take([i32::MAX - 5, 7]), [i64::from(i32::MAX) - 5, 7]);
+        assert_eq!(encoders.take([i32::MIN + 4, -3]), [i64::from(i32::MAX) + 5, -3]);
+        assert_eq!(encoders.take([i32::MAX, -3]), [i64::from(i32::MAX), -3]);
+    }
+}
