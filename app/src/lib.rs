@@ -3,6 +3,6 @@
 pub mod cli;
 pub mod gui;
 pub mod keep;
-pub mod recording;
 pub mod motion;
+pub mod recording;
 pub mod session;

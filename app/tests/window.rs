@@ -6,6 +6,7 @@ use brushwork::gui::model::message::Gravity;
 use brushwork::gui::model::screen::Screen;
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_sim::world::WorldAction;
+use egui::Theme;
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use support::bench::Bench;
@@ -311,7 +312,7 @@ fn the_graph_goes_on_after_a_new_connection_and_shows_the_time_between_as_a_gap(
 
 #[test]
 fn a_limit_switch_is_wired_to_a_pin_and_held_closed() {
-    let mut bench = Bench::sized([1280.0, 1600.0], egui::Theme::Dark);
+    let mut bench = Bench::sized([1280.0, 1600.0], Theme::Dark);
     bench.connect();
     bench.press("Simulated world");
     bench.press("Pin 3 is connected to");
@@ -340,7 +341,8 @@ fn the_sampling_rate_is_chosen_beside_the_graph() {
 
 #[test]
 fn fitting_and_clearing_are_done_to_the_channel_that_was_selected() {
-    let mut bench = Bench::sized([1280.0, 1100.0], egui::Theme::Dark);
+    // As high as the list of channels needs to show them all.
+    let mut bench = Bench::sized([1280.0, 1100.0], Theme::Dark);
     bench.connect();
     bench.press("PWM Settings");
     bench.pass_ms(2000);

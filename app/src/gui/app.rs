@@ -15,7 +15,7 @@ use crossbeam_channel::TryRecvError;
 use egui::{Context, Ui, ViewportCommand};
 
 use super::actions;
-use super::command::Command;
+use super::command::{Command, GuidedWish};
 use super::keys;
 use super::links::{self, Links};
 use super::model::devices::Choice;
@@ -305,6 +305,7 @@ impl App {
                     self.model.front.traffic.composer.forget_waiting();
                 }
             }
+            Command::Guided(wish) => self.guided(wish),
             Command::OpenSheet(sheet) => {
                 self.show(Screen::GeneralSettings);
                 self.model.front.general.open(sheet);
@@ -529,6 +530,18 @@ impl App {
         }
     }
 
+    /// Starts or ends a job that moves motors.
+    fn guided(&mut self, wish: GuidedWish) {
+        match self.model.front.guided_request(wish, self.model.screen) {
+            Ok(request) => {
+                if !self.request(request) {
+                    self.model.front.guided_not_begun();
+                }
+            }
+            Err(sentence) => self.model.messages.fail(sentence),
+        }
+    }
+
     fn act_on_world(&mut self, action: WorldAction) {
         let unit = self.model.front.world_unit;
         let world = self.links.get(self.model.front.id()).and_then(|link| link.world.as_ref());
@@ -547,6 +560,7 @@ impl App {
         let (drive, setpoints) = match scope {
             ArmScope::Pwm => (model.front.pwm.to_send(), &mut model.front.pwm.setpoints),
             ArmScope::Velocity => (model.front.velocity.to_send(), &mut model.front.velocity.setpoints),
+            ArmScope::Position => (model.front.position.to_send(), &mut model.front.position.setpoints),
             _ => return,
         };
         // A full queue takes it in the next frame.

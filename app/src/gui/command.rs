@@ -8,6 +8,7 @@ use egui::ThemePreference;
 
 use super::model::DeskId;
 use super::model::general::{SettingsWish, Sheet};
+pub use super::model::guided::GuidedWish;
 use super::model::help::HelpPage;
 use super::model::loop_settings::Column;
 use super::model::screen::Screen;
@@ -68,6 +69,8 @@ pub enum Command {
     OpenHelp(HelpPage),
     /// Stops all motors and closes the window.
     Exit,
+    /// A profile to be played or QPPS to be measured.
+    Guided(GuidedWish),
     DismissMessage,
 }
 

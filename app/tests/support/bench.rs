@@ -187,6 +187,35 @@ impl Bench {
         self.pass(FRAME * 2);
     }
 
+    /// Puts the pointer on a button and holds it down until [`Bench::let_go`].
+    pub fn hold(&mut self, label: &str) {
+        let at = self.button(label).rect().center();
+        self.harness.hover_at(at);
+        self.harness.step();
+        self.pointer_button(at, true);
+        self.pass(FRAME);
+    }
+
+    /// Lets go of what is held, wherever the pointer is.
+    pub fn let_go(&mut self, label: &str) {
+        let at = self.button(label).rect().center();
+        self.pointer_button(at, false);
+        self.pass(FRAME);
+    }
+
+    fn pointer_button(&mut self, pos: egui::Pos2, pressed: bool) {
+        let button = egui::PointerButton::Primary;
+        let modifiers = egui::Modifiers::NONE;
+        self.harness.event(egui::Event::PointerButton { pos, button, pressed, modifiers });
+        self.harness.step();
+    }
+
+    /// Chooses from a list.
+    pub fn choose(&mut self, list: &str, entry: &str) {
+        self.press(list);
+        self.press(entry);
+    }
+
     /// Puts the keyboard focus on a button.
     pub fn focus(&mut self, label: &str) {
         self.button(label).focus();

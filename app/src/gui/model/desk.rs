@@ -13,12 +13,16 @@ use brushwork_link::diagnosis::{Evidence, Measured};
 use brushwork_link::transport::ConnectTarget;
 use brushwork_sim::world::WorldView;
 
+use super::drawer::Drawers;
 use super::general::General;
+use super::generator::Generator;
 use super::graph_channels;
 use super::history::History;
 use super::link::{Effect, LinkView};
 use super::loop_settings::LoopSettings;
+use super::position::Position;
 use super::pwm::Pwm;
+use super::qpps::QppsPanel;
 use super::screen::Screen;
 use super::traffic::Traffic;
 use super::velocity::Velocity;
@@ -51,6 +55,11 @@ pub struct Desk {
     /// The settings of the units met so far, and what is being done with them.
     pub general: General,
     pub velocity: Velocity,
+    pub position: Position,
+    pub generator: Generator,
+    pub qpps: QppsPanel,
+    /// What the screens that drive have open above their graphs.
+    pub drawers: Drawers,
     pub loops: LoopSettings,
     /// What happened since the connection.
     pub history: History,
@@ -128,6 +137,10 @@ impl Desk {
             pwm: Pwm::default(),
             general: General::default(),
             velocity: Velocity::default(),
+            position: Position::default(),
+            generator: Generator::default(),
+            qpps: QppsPanel::default(),
+            drawers: Drawers::default(),
             loops: LoopSettings::default(),
             history: History::default(),
             watch: Watch::default(),
@@ -165,6 +178,7 @@ impl Desk {
     pub fn rest(&mut self) {
         self.pwm.setpoints.stop();
         self.velocity.setpoints.stop();
+        self.position.setpoints.stop();
     }
 
     /// Takes over an event of this link. What it means beyond this desk is handed back: something to say, or the
@@ -176,7 +190,9 @@ impl Desk {
             self.update_homed();
             return Vec::new();
         }
-        let effects = if self.general.awaits(&event) {
+        let effects = if self.awaits_guided(&event) {
+            self.take_guided(event)
+        } else if self.general.awaits(&event) {
             self.general.take(event)
         } else if self.loops.awaits(&event) {
             self.loops.take(event)
@@ -235,7 +251,7 @@ impl Desk {
             }
             Effect::OtherUnit => {
                 self.graph.push_gap();
-                self.loops.forget();
+                self.forget_unit();
                 self.loops.want_reading();
                 self.watch.forget();
             }
@@ -250,9 +266,16 @@ impl Desk {
         self.watch = Watch::default();
         self.traffic.link_ended();
         self.general.link_ended();
-        self.loops.forget();
+        self.forget_unit();
         self.rest();
         self.graph.link_ended();
+    }
+
+    /// What is known of one unit's motors says nothing of another's.
+    fn forget_unit(&mut self) {
+        self.loops.forget();
+        self.generator.forget();
+        self.qpps.forget();
     }
 
     /// The graph shows the channels of a screen that drives; for other screens it stays as it is.

@@ -1,6 +1,7 @@
-//! The settings of the control loops of both motors, as the Velocity and the Position screen show and edit them.
+//! The settings of the control loops of both motors, as the screens that drive show and edit them.
 //!
-//! They are read when such a screen opens and written by a button, to RAM only. Both are jobs on the device thread.
+//! They are read when such a screen opens and written to RAM only, by a button or at once. Both are jobs on the device
+//! thread.
 
 use std::time::Duration;
 
@@ -27,11 +28,24 @@ pub struct Column {
     pub label: &'static str,
     /// Change per arrow key.
     pub step: f64,
+    /// Room for its greatest value, so that nothing beside it moves, points.
+    pub width: f32,
 }
 
 const fn column(key: &'static str, label: &'static str, step: f64) -> Column {
-    Column { key, label, step }
+    Column { key, label, step, width: 84.0 }
 }
+
+const fn wide(key: &'static str, label: &'static str, step: f64) -> Column {
+    Column { key, label, step, width: 112.0 }
+}
+
+/// What the PWM screen has (MCP manual 1.2.11), and QPPS, which is measured there.
+pub const PWM: &[Column] = &[
+    column(INDUCTANCE, "L (H)", 0.000_1),
+    column(RESISTANCE, "R (Ω)", 0.01),
+    column(QPPS, "QPPS (counts/s)", 100.0),
+];
 
 /// What the Velocity screen has.
 pub const VELOCITY: &[Column] = &[
@@ -43,6 +57,19 @@ pub const VELOCITY: &[Column] = &[
     column(RESISTANCE, "R (Ω)", 0.01),
 ];
 
+/// What the Position screen has of its own (MCP manual 1.2.13); it has those of [`VELOCITY`] too.
+pub const POSITION: &[Column] = &[
+    column("position.p", "P", 1.0),
+    column("position.i", "I", 1.0),
+    column("position.d", "D", 1.0),
+    column("position.max_i", "Max I", 1.0),
+    column("position.deadzone", "Deadzone", 1.0),
+    wide(MINIMUM, "Min (counts)", 100.0),
+    wide(MAXIMUM, "Max (counts)", 100.0),
+];
+
+const MINIMUM: &str = "position.min";
+const MAXIMUM: &str = "position.max";
 const QPPS: &str = "velocity.qpps";
 const INDUCTANCE: &str = "inductance_henries";
 const RESISTANCE: &str = "resistance_ohms";
@@ -63,6 +90,10 @@ pub struct LoopSettings {
     edits: SettingsImage,
     running: Option<Running>,
     wants_reading: bool,
+    /// Every edit is applied as soon as it is made.
+    pub at_once: bool,
+    /// Something was edited since the edits were last applied.
+    is_fresh: bool,
 }
 
 #[derive(Debug)]
@@ -90,7 +121,7 @@ fn keys(columns: &[Column]) -> Vec<String> {
 impl LoopSettings {
     /// Another unit, or none: nothing is known.
     pub fn forget(&mut self) {
-        *self = Self::default();
+        *self = Self { at_once: self.at_once, ..Self::default() };
     }
 
     /// The controller is to be asked (again) as soon as one is there.
@@ -145,7 +176,20 @@ impl LoopSettings {
         };
         let key = row.key.clone();
         let is_held = self.ram.get(&key).is_some_and(|held| row.encode(held) == row.encode(value));
+        self.is_fresh |= !is_held;
         if is_held { self.edits.remove(&key) } else { self.edits.set(&key, value) }
+    }
+
+    /// Whether edits are to be applied now. Told once for each edit, so that what was refused is not sent again and again.
+    pub fn wants_applying(&mut self) -> bool {
+        self.at_once && self.is_known() && !self.is_busy() && std::mem::take(&mut self.is_fresh)
+    }
+
+    /// Edits QPPS of a motor, as it was measured.
+    pub fn edit_qpps(&mut self, motor: Motor, counts_per_s: f64) {
+        if let Some(column) = PWM.iter().find(|column| column.key == QPPS) {
+            self.edit(motor, column, counts_per_s);
+        }
     }
 
     /// Edits the other motor to be like `from`.
@@ -168,6 +212,12 @@ impl LoopSettings {
         self.held(motor, QPPS)
     }
 
+    /// Lowest and highest position, counts, as the controller holds them; none where they leave no travel.
+    pub fn travel(&self, motor: Motor) -> Option<(f64, f64)> {
+        let (low, high) = self.held(motor, MINIMUM).zip(self.held(motor, MAXIMUM))?;
+        (low < high).then_some((low, high))
+    }
+
     /// Motors whose L and R, as shown, are both other than 0.
     pub fn torque_controlled(&self) -> Vec<Motor> {
         let is_set = |motor, name: &str| {
@@ -187,7 +237,7 @@ impl LoopSettings {
         let model = models::identify(&identity.version_text)?;
         let table = SettingsTable::new(Subject::new(model, identity.generation));
         self.table = Some(table.clone());
-        let keys = keys(VELOCITY);
+        let keys = [keys(VELOCITY), keys(POSITION)].concat();
         let (sender, outcome) = bounded(1);
         let job = FnJob::boxed(READ_JOB, READ_LIMIT, move |wire| {
             // Nobody waits for it once the unit was left.

@@ -7,7 +7,10 @@ use super::graph::{ChannelInfo, Scale};
 
 pub mod desk;
 pub mod devices;
+pub mod drawer;
 pub mod general;
+pub mod generator;
+pub mod guided;
 pub mod help;
 pub mod history;
 pub mod lamps;
@@ -15,13 +18,16 @@ pub mod link;
 pub mod loop_settings;
 pub mod message;
 pub mod palette;
+pub mod position;
 pub mod pwm;
+pub mod qpps;
 pub mod readings;
 pub mod screen;
 pub mod setpoints;
 pub mod traffic;
 pub mod velocity;
 pub mod watch;
+pub mod watched;
 pub mod world;
 
 pub use desk::{Desk, DeskId, Phase, place_of};

@@ -3,7 +3,7 @@
 use brushwork_link::device::{Drive, DriveCommand};
 use brushwork_protocol::packet_serial::Motor;
 
-use super::setpoints::Setpoints;
+use super::setpoints::{Direction, Setpoints};
 
 /// Percent of full duty per second at which a duty may change; what the screen offers.
 pub const ACCEL_RANGE_PERCENT_PER_S: std::ops::RangeInclusive<f64> = 0.0..=2000.0;
@@ -15,11 +15,13 @@ pub struct Pwm {
     pub setpoints: Setpoints,
     /// 0 changes the duty at once.
     pub accel_percent_per_s: f64,
+    /// What a jog button asks for.
+    pub jog_percent: f64,
 }
 
 impl Default for Pwm {
     fn default() -> Self {
-        Self { setpoints: Setpoints::default(), accel_percent_per_s: 100.0 }
+        Self { setpoints: Setpoints::default(), accel_percent_per_s: 100.0, jog_percent: 20.0 }
     }
 }
 
@@ -28,6 +30,13 @@ impl Pwm {
     pub fn set_duty(&mut self, motor: Motor, percent: f64) {
         let percent = if percent.is_finite() { percent.clamp(-100.0, 100.0) } else { 0.0 };
         self.setpoints.set(motor, percent);
+    }
+
+    /// What the jog buttons ask for in this frame: the duty while one is held, then none.
+    pub fn jog(&mut self, motor: Motor, held: Option<Direction>) {
+        if let Some(begun) = self.setpoints.jog(motor, held) {
+            self.set_duty(motor, begun.map_or(0.0, |direction| direction.sign() * self.jog_percent));
+        }
     }
 
     /// What has to be sent, if anything.
@@ -49,6 +58,16 @@ mod tests {
         pwm.set_duty(Motor::M2, 12.5);
         let wanted = DriveCommand::Duty { duty: 0.125, accel_duty_per_s: Some(1.0) };
         assert_eq!(pwm.to_send(), Some(Drive::one(Motor::M2, wanted)));
+    }
+
+    #[test]
+    fn a_jog_runs_while_it_is_held() {
+        let mut pwm = Pwm { jog_percent: 15.0, ..Pwm::default() };
+        pwm.jog(Motor::M1, Some(Direction::Backward));
+        assert_eq!(pwm.setpoints.values, [-15.0, 0.0]);
+        pwm.set_duty(Motor::M2, 40.0);
+        pwm.jog(Motor::M1, None);
+        assert_eq!(pwm.setpoints.values, [0.0, 40.0]);
     }
 
     #[test]

@@ -38,10 +38,7 @@ impl Screen {
     /// Why the screen cannot be opened, where it does not exist yet.
     pub const fn missing(self) -> Option<&'static str> {
         match self {
-            Self::DeviceStatus | Self::GeneralSettings | Self::Pwm | Self::Velocity => None,
-            Self::Position => {
-                Some("This screen is not built yet. On the command line there is brushwork drive.")
-            }
+            Self::DeviceStatus | Self::GeneralSettings | Self::Pwm | Self::Velocity | Self::Position => None,
             Self::MclEditor => Some("This screen is not built yet."),
         }
     }
@@ -58,7 +55,7 @@ impl Screen {
 
     /// Whether the screen shows settings of the control loops.
     pub const fn has_loops(self) -> bool {
-        matches!(self, Self::Velocity | Self::Position)
+        matches!(self, Self::Pwm | Self::Velocity | Self::Position)
     }
 
     /// What its graph shows at first.
@@ -67,6 +64,9 @@ impl Screen {
         match self {
             Self::Velocity => {
                 &[C::M1Setpoint, C::M1Velocity, C::M1Pwm, C::M2Setpoint, C::M2Velocity, C::M2Pwm]
+            }
+            Self::Position => {
+                &[C::M1Setpoint, C::M1Position, C::M1Velocity, C::M2Setpoint, C::M2Position, C::M2Velocity]
             }
             _ => &[C::M1Pwm, C::M1Velocity, C::M1Current],
         }

@@ -3,6 +3,31 @@
 use brushwork_link::device::{Drive, DriveCommand};
 use brushwork_protocol::packet_serial::Motor;
 
+/// Which way a motor is jogged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    Backward,
+    Forward,
+}
+
+impl Direction {
+    pub const BOTH: [Self; 2] = [Self::Backward, Self::Forward];
+
+    pub const fn sign(self) -> f64 {
+        match self {
+            Self::Backward => -1.0,
+            Self::Forward => 1.0,
+        }
+    }
+
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Backward => "backward",
+            Self::Forward => "forward",
+        }
+    }
+}
+
 /// Two setpoints, in the unit of their screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Setpoints {
@@ -15,6 +40,10 @@ pub struct Setpoints {
     held: [bool; 2],
     /// Motors whose setpoint was changed and not yet handed to the device thread.
     changed: [bool; 2],
+    /// Motors that were asked for something since the last rest.
+    asked: [bool; 2],
+    /// The jog button that is held.
+    jogging: [Option<Direction>; 2],
 }
 
 impl Setpoints {
@@ -22,10 +51,15 @@ impl Setpoints {
     pub fn set(&mut self, motor: Motor, value: f64) {
         for each in Motor::BOTH {
             if each == motor || self.sync {
-                self.values[each.index()] = value;
-                self.changed[each.index()] = true;
+                self.set_one(each, value);
             }
         }
+    }
+
+    /// Asks for a value of one motor, coupled or not.
+    pub fn set_one(&mut self, motor: Motor, value: f64) {
+        let index = motor.index();
+        (self.values[index], self.changed[index], self.asked[index]) = (value, true, true);
     }
 
     /// Couples the sliders; motor 2 takes over motor 1's setpoint.
@@ -42,9 +76,18 @@ impl Setpoints {
         self.held[motor.index()] = held;
     }
 
-    /// Shows values without asking for them.
+    /// Shows where a motor is, as long as nothing was asked of it.
     pub fn show(&mut self, motor: Motor, value: f64) {
-        self.values[motor.index()] = value;
+        if !self.asked[motor.index()] {
+            self.values[motor.index()] = value;
+        }
+    }
+
+    /// Takes note of the jog button that is held in this frame. Tells what is new: a jog that begins or, as `None` inside,
+    /// one that ends.
+    pub fn jog(&mut self, motor: Motor, held: Option<Direction>) -> Option<Option<Direction>> {
+        let before = std::mem::replace(&mut self.jogging[motor.index()], held);
+        (before != held).then_some(held)
     }
 
     /// Both sliders to zero, with nothing left to send: the motors were or are being stopped by other means.
@@ -118,6 +161,29 @@ mod tests {
         setpoints.stop();
         assert_eq!((setpoints.values, setpoints.to_send(speed)), ([0.0; 2], None));
         assert!(setpoints.sync, "what a person has ticked stays");
+    }
+
+    #[test]
+    fn what_a_slider_shows_by_itself_is_not_sent_and_ends_with_the_first_wish() {
+        let mut setpoints = Setpoints::default();
+        setpoints.show(Motor::M1, 5000.0);
+        assert_eq!((setpoints.values[0], setpoints.to_send(speed)), (5000.0, None));
+        setpoints.set(Motor::M1, 5001.0);
+        setpoints.show(Motor::M1, 0.0);
+        assert_eq!(setpoints.values[0], 5001.0);
+        setpoints.stop();
+        setpoints.show(Motor::M1, 7.0);
+        assert_eq!(setpoints.values[0], 7.0);
+    }
+
+    #[test]
+    fn a_jog_is_told_once_when_it_begins_and_once_when_it_ends() {
+        let mut setpoints = Setpoints::default();
+        let forward = Some(Direction::Forward);
+        assert_eq!(setpoints.jog(Motor::M1, forward), Some(forward));
+        assert_eq!(setpoints.jog(Motor::M1, forward), None);
+        assert_eq!(setpoints.jog(Motor::M2, None), None);
+        assert_eq!(setpoints.jog(Motor::M1, None), Some(None));
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use brushwork_link::device::{Drive, DriveCommand};
 use brushwork_protocol::packet_serial::Motor;
 
-use super::setpoints::Setpoints;
+use super::setpoints::{Direction, Setpoints};
 
 /// Acceleration that the screen offers, counts/s².
 pub const ACCEL_RANGE_COUNTS_PER_S2: std::ops::RangeInclusive<f64> = 0.0..=10_000_000.0;
@@ -15,11 +15,13 @@ pub struct Velocity {
     pub setpoints: Setpoints,
     /// 0 leaves it to the controller.
     pub accel_counts_per_s2: f64,
+    /// What a jog button asks for.
+    pub jog_counts_per_s: f64,
 }
 
 impl Default for Velocity {
     fn default() -> Self {
-        Self { setpoints: Setpoints::default(), accel_counts_per_s2: 20_000.0 }
+        Self { setpoints: Setpoints::default(), accel_counts_per_s2: 20_000.0, jog_counts_per_s: 2000.0 }
     }
 }
 
@@ -29,6 +31,14 @@ impl Velocity {
         let asked = if counts_per_s.is_finite() { counts_per_s } else { 0.0 };
         let reach = if self.setpoints.sync { qpps[0].min(qpps[1]) } else { qpps[motor.index()] };
         self.setpoints.set(motor, asked.clamp(-reach, reach));
+    }
+
+    /// What the jog buttons ask for in this frame: a speed while one is held, then none.
+    pub fn jog(&mut self, motor: Motor, held: Option<Direction>, qpps: [f64; 2]) {
+        if let Some(begun) = self.setpoints.jog(motor, held) {
+            let speed = begun.map_or(0.0, |direction| direction.sign() * self.jog_counts_per_s);
+            self.set_speed(motor, speed, qpps);
+        }
     }
 
     /// What has to be sent, if anything.
@@ -52,6 +62,15 @@ mod tests {
         velocity.set_speed(Motor::M2, -90_000.0, [44_000.0, 12_000.0]);
         let wanted = DriveCommand::Speed { speed_counts_per_s: -12_000, accel_counts_per_s2: None };
         assert_eq!(velocity.to_send(), Some(Drive::one(Motor::M2, wanted)));
+    }
+
+    #[test]
+    fn a_jog_keeps_to_the_top_speed_too() {
+        let mut velocity = Velocity { jog_counts_per_s: 50_000.0, ..Velocity::default() };
+        velocity.jog(Motor::M1, Some(Direction::Forward), [44_000.0; 2]);
+        assert_eq!(velocity.setpoints.values, [44_000.0, 0.0]);
+        velocity.jog(Motor::M1, None, [44_000.0; 2]);
+        assert_eq!(velocity.setpoints.values, [0.0; 2]);
     }
 
     #[test]

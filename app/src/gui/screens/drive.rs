@@ -3,26 +3,75 @@
 use brushwork_link::device::{ArmScope, Channel};
 use brushwork_link::transport::Stream;
 use brushwork_protocol::packet_serial::Motor;
-use egui::{Align, ComboBox, Frame, Label, Layout, Margin, RichText, Stroke, Ui, vec2};
+use egui::{
+    Align, ComboBox, Frame, Label, Layout, Margin, ProgressBar, RichText, ScrollArea, Stroke, Ui, UiBuilder,
+    vec2,
+};
 
-use crate::gui::command::{Command, Commands};
+use super::drawer::drawer_ui;
+use super::title_ui;
+use crate::gui::command::{Command, Commands, GuidedWish};
 use crate::gui::graph::panel;
 use crate::gui::model::link::{Arming, LinkView};
-use crate::gui::model::setpoints::Setpoints;
+use crate::gui::model::setpoints::{Direction, Setpoints};
 use crate::gui::model::{Model, decimals};
 use crate::gui::theme::Palette;
 use crate::gui::widgets::LampState;
 use crate::gui::widgets::arm_switch::arm_switch_ui;
+use crate::gui::widgets::jog::{self, jog_ui};
+use crate::gui::widgets::numeric::Numeric;
 use crate::gui::widgets::readout::Readout;
 
 /// Height of a motor's row.
 const ROW_HEIGHT: f32 = 34.0;
 
-const RISK: &str = "While armed, moving a slider turns the motor at once. Keep hands and cables clear. \
-                    Space or Esc stops both motors.";
+/// In a small window the screen scrolls rather than give the graph less.
+const LEAST_GRAPH_HEIGHT: f32 = 210.0;
+/// Height of a screen that has room for the drawer and a graph.
+const ROOM_FOR_DRAWER: f32 = 520.0;
+const BAR_WIDTH: f32 = 10.0;
+
+const RISK: &str = "While armed, a slider moves its motor at once. Keep clear. Space or Esc stops both.";
+
+/// What a screen that drives is made of: its head, its arm switch, its sliders in `controls_ui`, the drawer and the graph.
+pub fn drive_ui(
+    ui: &mut Ui,
+    model: &mut Model,
+    (title, note, scope): (&str, &str, ArmScope),
+    commands: &mut Commands,
+    controls_ui: impl FnOnce(&mut Ui, &mut Model),
+) {
+    let room = ui.available_rect_before_wrap();
+    model.front.drawers.has_room = room.height() >= ROOM_FOR_DRAWER;
+    // The scroll bar stands in the margin of the window, beside everything.
+    let with_bar = room.with_max_x(room.right() + BAR_WIDTH);
+    ui.scope_builder(UiBuilder::new().max_rect(with_bar), |ui| {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.set_max_width(room.width());
+            let top = ui.cursor().top();
+            title_ui(ui, title, note);
+            arm_ui(ui, scope, &model.front.link, commands);
+            // A large graph takes the room of the sliders. What they asked for goes on; nobody can hold a jog button.
+            if model.front.graph.large {
+                model.front.release_jogs();
+            } else {
+                ui.add_space(2.0);
+                controls_ui(ui, model);
+                ui.add_space(2.0);
+                drawer_ui(ui, model, commands);
+            }
+            ui.add_space(4.0);
+            let height = (room.height() - (ui.cursor().top() - top)).max(LEAST_GRAPH_HEIGHT);
+            // A place of exact size: what does not fit into it cannot make the screen scroll.
+            let (place, _) = ui.allocate_exact_size(vec2(room.width(), height), egui::Sense::hover());
+            let layout = Layout::top_down(Align::Min);
+            graph_ui(&mut ui.new_child(UiBuilder::new().max_rect(place).layout(layout)), model, commands);
+        });
+    });
+}
 
 /// The switch, the risk, and what stands in the way.
-pub fn arm_ui(ui: &mut Ui, scope: ArmScope, link: &LinkView, commands: &mut Commands) {
+fn arm_ui(ui: &mut Ui, scope: ArmScope, link: &LinkView, commands: &mut Commands) {
     let palette = Palette::of(ui);
     let armed = link.arming.is_armed_for(scope);
     // As thick armed as disarmed, so that nothing moves.
@@ -91,23 +140,35 @@ fn stream_ui(ui: &mut Ui, commands: &mut Commands) {
     });
 }
 
-/// One motor's row: its slider in `slider_ui`, and what a channel reads.
+/// One motor's row: its slider in `slider_ui` between two jog buttons, and what a channel reads. Tells which jog button is
+/// held.
 pub fn motor_ui(
     ui: &mut Ui,
     model: &mut Model,
     motor: Motor,
     output: &Output,
     slider_ui: impl FnOnce(&mut Ui, &mut Model),
-) {
+) -> Option<Direction> {
+    let mut held = None;
     let size = vec2(ui.available_width(), ROW_HEIGHT);
     ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
         let label = Label::new(format!("Motor {}", motor.index() + 1)).selectable(false);
         ui.add_sized(vec2(62.0, ROW_HEIGHT), label);
         let slider_width = ui.available_width() - output.width;
         let armed = model.front.link.arming.is_armed_for(output.scope);
-        ui.add_enabled_ui(armed, |ui| {
-            ui.set_max_width(slider_width);
-            slider_ui(ui, model);
+        ui.add_enabled_ui(armed && !model.front.is_guided(), |ui| {
+            let jog = |ui: &mut Ui, direction: Direction| {
+                let name = format!("{motor} jog {}", direction.word());
+                let hint = "Runs the motor while it is held: by mouse, or by Enter while it has the focus";
+                jog_ui(ui, &name, direction == Direction::Forward, hint).then_some(direction)
+            };
+            held = jog(ui, Direction::Backward);
+            let size = vec2(slider_width - 2.0 * (jog::SIZE.x + ui.spacing().item_spacing.x), ROW_HEIGHT);
+            ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+                ui.set_width(size.x);
+                slider_ui(ui, model);
+            });
+            held = held.or(jog(ui, Direction::Forward));
         });
         ui.label(RichText::new(output.word).small().color(Palette::of(ui).weak_text));
         let channel = output.channels[motor.index()];
@@ -116,6 +177,30 @@ pub fn motor_ui(
         let (digits, unit_letters) = (output.digits, output.unit_letters);
         Readout { label: &label, unit: output.unit, digits, unit_letters }.ui(ui, text.as_deref());
     });
+    held
+}
+
+/// The row of what the sliders keep to.
+pub fn options_ui(ui: &mut Ui, options: impl FnOnce(&mut Ui)) {
+    ui.horizontal_wrapped(options);
+}
+
+/// A field of that row with its label, which stay on one line.
+pub fn pace_ui(ui: &mut Ui, label: &str, hint: &str, field: &Numeric<'_>, value: &mut f64) {
+    ui.horizontal(|ui| {
+        ui.label(label);
+        field.ui(ui, value).on_hover_text(hint);
+    });
+}
+
+/// How far a job is, with the button that ends it.
+pub fn progress_ui(ui: &mut Ui, progress: Option<(f32, &str)>, commands: &mut Commands) {
+    let (fraction, text) = progress.unwrap_or((0.0, "Another job moves the motors"));
+    ui.add(ProgressBar::new(fraction).desired_width(180.0));
+    if ui.button("Cancel").on_hover_text("Stops the motors").clicked() {
+        commands.push(Command::Guided(GuidedWish::Cancel));
+    }
+    ui.add(Label::new(text).truncate());
 }
 
 /// What stands at the right of the sliders.
@@ -146,6 +231,6 @@ pub fn on_release_ui(ui: &mut Ui, setpoints: &mut Setpoints) {
 }
 
 /// The live graph and its list of channels, in what is left of the screen.
-pub fn graph_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+fn graph_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     panel::graph_ui(ui, &mut model.front.graph, model.front.poll, commands);
 }

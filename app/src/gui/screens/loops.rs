@@ -2,46 +2,46 @@
 
 use brushwork_link::settings::{Kind, SettingValue};
 use brushwork_protocol::packet_serial::Motor;
-use egui::{Button, Frame, Grid, Margin, RichText, Stroke, Ui, vec2};
+use egui::{Button, Grid, RichText, Ui, vec2};
 
 use crate::gui::command::{Command, Commands};
+use crate::gui::model::Model;
 use crate::gui::model::loop_settings::{Column, LoopSettings, counted, number};
 use crate::gui::theme::Palette;
 use crate::gui::widgets::numeric::Numeric;
 use crate::gui::widgets::readout::NO_VALUE;
 
-const FIELD_WIDTH: f32 = 84.0;
-
 /// Where no row says otherwise.
 const GREATEST: f64 = u32::MAX as f64;
 
-pub fn loops_ui(ui: &mut Ui, loops: &mut LoopSettings, columns: &'static [Column], commands: &mut Commands) {
+pub fn loops_ui(ui: &mut Ui, model: &mut Model, columns: &'static [Column], commands: &mut Commands) {
     let palette = Palette::of(ui);
-    let outline = Stroke::new(1.0, palette.line);
-    Frame::new().stroke(outline).corner_radius(4.0).inner_margin(Margin::symmetric(10, 6)).show(ui, |ui| {
-        ui.set_width(ui.available_width());
-        Grid::new("loops").spacing(vec2(8.0, 4.0)).show(ui, |ui| {
-            ui.label("");
-            for column in columns {
-                ui.label(RichText::new(column.label).small().color(palette.weak_text));
-            }
+    let is_free = !model.front.is_guided();
+    let loops = &mut model.front.loops;
+    Grid::new(("loops", columns[0].key)).spacing(vec2(8.0, 4.0)).show(ui, |ui| {
+        ui.label("");
+        for column in columns {
+            ui.label(RichText::new(column.label).small().color(palette.weak_text));
+        }
+        ui.end_row();
+        for motor in Motor::BOTH {
+            motor_row_ui(ui, loops, motor, columns);
             ui.end_row();
-            for motor in Motor::BOTH {
-                motor_row_ui(ui, loops, motor, columns);
-                ui.end_row();
-            }
-        });
-        ui.add_space(2.0);
-        ui.horizontal_wrapped(|ui| buttons_ui(ui, loops, columns, commands));
-        for motor in torque_controlled(loops, columns) {
-            let text = format!(
-                "Motor {}: with L and R both other than 0 the controller switches from duty to current (torque) \
-                 control.",
-                motor.index() + 1
-            );
-            ui.label(RichText::new(text).color(palette.warning));
         }
     });
+    ui.add_space(2.0);
+    ui.horizontal_wrapped(|ui| buttons_ui(ui, loops, columns, is_free, commands));
+    for motor in torque_controlled(loops, columns) {
+        let text = format!(
+            "Motor {}: with L and R both other than 0 the controller switches from duty to current (torque) \
+             control.",
+            motor.index() + 1
+        );
+        ui.label(RichText::new(text).color(palette.warning));
+    }
+    if is_free && loops.wants_applying() {
+        commands.push(Command::ApplyLoops(columns));
+    }
 }
 
 /// Told where L and R stand.
@@ -74,7 +74,7 @@ fn field_ui(ui: &mut Ui, loops: &mut LoopSettings, motor: Motor, column: &Column
                 ui.visuals_mut().override_text_color = Some(Palette::of(ui).accent);
             }
             let field =
-                Numeric { name: &name, unit: "", range, decimals, step: column.step, width: FIELD_WIDTH };
+                Numeric { name: &name, unit: "", range, decimals, step: column.step, width: column.width };
             field.ui(ui, &mut shown)
         })
         .inner;
@@ -91,18 +91,26 @@ fn decimals_of(text: &str, kind: Kind, value: SettingValue) -> usize {
     }
 }
 
-fn buttons_ui(ui: &mut Ui, loops: &mut LoopSettings, columns: &'static [Column], commands: &mut Commands) {
+fn buttons_ui(
+    ui: &mut Ui,
+    loops: &mut LoopSettings,
+    columns: &'static [Column],
+    is_free: bool,
+    commands: &mut Commands,
+) {
     let edits = loops.edits(columns);
-    let is_ready = loops.is_known() && !loops.is_busy();
+    let is_ready = is_free && loops.is_known() && !loops.is_busy();
     let apply = ui.add_enabled(is_ready && edits > 0, Button::new("Apply to RAM"));
     if apply.on_hover_text("Writes the changes to the controller and reads them back").clicked() {
         commands.push(Command::ApplyLoops(columns));
     }
+    let at_once = ui.checkbox(&mut loops.at_once, "At once");
+    at_once.on_hover_text("Applies each change as soon as it is entered, so that its effect can be watched");
     let revert = ui.add_enabled(edits > 0, Button::new("Revert"));
     if revert.on_hover_text("Drops the changes that were not applied").clicked() {
         loops.revert(columns);
     }
-    let read = ui.add_enabled(!loops.is_busy(), Button::new("Read again"));
+    let read = ui.add_enabled(is_free && !loops.is_busy(), Button::new("Read again"));
     if read.on_hover_text("Reads the settings from the controller; changes here stay").clicked() {
         commands.push(Command::ReadLoops);
     }

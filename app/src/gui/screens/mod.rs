@@ -7,10 +7,14 @@ use super::model::screen::Screen;
 use super::model::{Model, Phase};
 use super::theme::Palette;
 
+mod drawer;
 mod drive;
 mod general;
+mod generator;
 mod loops;
+mod position;
 mod pwm;
+mod qpps;
 mod status;
 mod velocity;
 
@@ -20,6 +24,7 @@ pub fn screen_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         Screen::GeneralSettings => general::general_ui(ui, model, commands),
         Screen::Pwm => pwm::pwm_ui(ui, model, commands),
         Screen::Velocity => velocity::velocity_ui(ui, model, commands),
+        Screen::Position => position::position_ui(ui, model, commands),
         other => nothing_ui(ui, other.missing().unwrap_or_default()),
     }
 }

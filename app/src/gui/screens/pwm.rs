@@ -4,8 +4,8 @@ use brushwork_link::device::{ArmScope, Channel};
 use brushwork_protocol::packet_serial::Motor;
 use egui::Ui;
 
-use super::drive::{Output, arm_ui, graph_ui, motor_ui, sync_ui};
-use super::{not_connected_text, nothing_ui, title_ui};
+use super::drive::{Output, drive_ui, motor_ui, on_release_ui, options_ui, pace_ui, sync_ui};
+use super::{not_connected_text, nothing_ui};
 use crate::gui::command::Commands;
 use crate::gui::model::Model;
 use crate::gui::model::pwm::ACCEL_RANGE_PERCENT_PER_S;
@@ -26,33 +26,27 @@ pub fn pwm_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     if model.front.link.identity().is_none() {
         return nothing_ui(ui, &not_connected_text(&model.front.phase));
     }
-    title_ui(ui, "PWM Settings", "Open loop: the duty is what the motor gets, whatever it does with it.");
-    arm_ui(ui, ArmScope::Pwm, &model.front.link, commands);
-    ui.add_space(4.0);
-    controls_ui(ui, model);
-    ui.add_space(6.0);
-    graph_ui(ui, model, commands);
+    let note = "Open loop: the duty is what the motor gets, whatever it does with it.";
+    drive_ui(ui, model, ("PWM Settings", note, ArmScope::Pwm), commands, controls_ui);
 }
 
 fn controls_ui(ui: &mut Ui, model: &mut Model) {
     for motor in Motor::BOTH {
-        motor_ui(ui, model, motor, &OUTPUT, |ui, model| duty_ui(ui, model, motor));
+        let held = motor_ui(ui, model, motor, &OUTPUT, |ui, model| duty_ui(ui, model, motor));
+        model.front.pwm.jog(motor, held);
     }
-    ui.horizontal(|ui| {
-        ui.add_space(70.0);
-        sync_ui(ui, &mut model.front.pwm.setpoints);
+    options_ui(ui, |ui| {
+        let pwm = &mut model.front.pwm;
+        sync_ui(ui, &mut pwm.setpoints);
+        on_release_ui(ui, &mut pwm.setpoints);
         ui.separator();
-        let label = ui.label("Accel");
-        let accel = Numeric {
-            name: "Acceleration",
-            unit: "%/s",
-            range: ACCEL_RANGE_PERCENT_PER_S,
-            decimals: 0,
-            step: 5.0,
-            width: 92.0,
-        };
-        let response = accel.ui(ui, &mut model.front.pwm.accel_percent_per_s);
-        response.labelled_by(label.id).on_hover_text("How fast the duty follows the slider; 0 means at once");
+        let field =
+            |name, unit, range, decimals, step| Numeric { name, unit, range, decimals, step, width: 92.0 };
+        let accel = field("Acceleration", "%/s", ACCEL_RANGE_PERCENT_PER_S, 0, 5.0);
+        let hint = "How fast the duty follows the slider; 0 means at once";
+        pace_ui(ui, "Accel", hint, &accel, &mut pwm.accel_percent_per_s);
+        let jog = field("Jog duty", "%", 0.0..=100.0, 1, 1.0);
+        pace_ui(ui, "Jog", "The duty while a jog button is held", &jog, &mut pwm.jog_percent);
     });
 }
 
@@ -60,7 +54,12 @@ fn duty_ui(ui: &mut Ui, model: &mut Model, motor: Motor) {
     let name = if motor == Motor::M1 { "M1 duty" } else { "M2 duty" };
     let slider = Setpoint { name, unit: "%", range: -100.0..=100.0, decimals: 1, step: 0.1 };
     let mut duty = model.front.pwm.setpoints.values[motor.index()];
-    if slider.ui(ui, &mut duty).changed && ui.is_enabled() {
+    let moved = slider.ui(ui, &mut duty);
+    if !ui.is_enabled() {
+        return;
+    }
+    model.front.pwm.setpoints.hold(motor, moved.held);
+    if moved.changed {
         model.front.pwm.set_duty(motor, duty);
     }
 }

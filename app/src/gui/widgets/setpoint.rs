@@ -7,8 +7,8 @@ use std::ops::RangeInclusive;
 
 use egui::accesskit::{Action, ActionData};
 use egui::{
-    Align, EventFilter, Key, Layout, Modifiers, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui,
-    WidgetInfo, pos2, vec2,
+    Align, Button, EventFilter, Key, Layout, Modifiers, Pos2, Rect, Response, Role, Sense, Stroke,
+    StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
 
 use super::numeric::Numeric;
@@ -26,7 +26,7 @@ pub struct Setpoint<'a> {
     /// The accessible name, for example "M1 duty".
     pub name: &'a str,
     pub unit: &'a str,
-    /// Runs from below zero to above it.
+    /// Runs from below zero to above it, or a travel that need not have a zero in it.
     pub range: RangeInclusive<f64>,
     pub decimals: usize,
     pub step: f64,
@@ -59,7 +59,7 @@ impl Setpoint<'_> {
                 width: ENTRY_WIDTH,
             }
             .ui(ui, value);
-            let zero = ui.button("0").on_hover_text("Back to zero (Home)");
+            let zero = ui.add_enabled(self.has_zero(), Button::new("0")).on_hover_text("Back to zero (Home)");
             zero.widget_info(|| {
                 WidgetInfo::labeled(Role::Button, ui.is_enabled(), format!("{} to zero", self.name))
             });
@@ -120,12 +120,18 @@ impl Setpoint<'_> {
             for (modifiers, key, by) in keys {
                 change += input.count_and_consume_key(modifiers, key) as f64 * by;
             }
-            if input.consume_key(Modifiers::NONE, Key::Home) { -value } else { change }
+            let home = input.consume_key(Modifiers::NONE, Key::Home);
+            if home && self.has_zero() { -value } else { change }
         })
     }
 
+    /// A travel may lie on one side of zero.
+    fn has_zero(&self) -> bool {
+        self.range.contains(&0.0)
+    }
+
     fn value_at(&self, x: f32, rail: &Rect) -> f64 {
-        if (x - self.x_of(0.0, rail)).abs() <= CATCH_POINTS {
+        if self.has_zero() && (x - self.x_of(0.0, rail)).abs() <= CATCH_POINTS {
             return 0.0;
         }
         let part = f64::from((x - rail.left()) / rail.width()).clamp(0.0, 1.0);
@@ -149,11 +155,11 @@ impl Setpoint<'_> {
         let middle = rail.center().y;
         let zero = self.x_of(0.0, rail);
         painter.rect(*rail, 3.0, palette.raised, Stroke::new(1.0, palette.line), StrokeKind::Inside);
-        for quarter in -4..=4 {
-            let x = zero + rail.width() / 8.0 * quarter as f32;
-            let length = if quarter == 0 { 12.0 } else { 7.0 };
+        let tick = |x: f32, length: f32| {
             painter.vline(x, middle - length..=middle + length, Stroke::new(1.0, palette.line));
-        }
+        };
+        (0..=8).for_each(|eighth| tick(rail.left() + rail.width() / 8.0 * eighth as f32, 7.0));
+        tick(zero, 12.0);
         let handle = pos2(self.x_of(value, rail), middle);
         let color = if ui.is_enabled() { palette.accent } else { palette.weak_text };
         painter.rect_filled(
@@ -214,6 +220,13 @@ mod tests {
         assert_eq!(DUTY.value_at(305.0, &rail()), 0.0);
         assert!(DUTY.value_at(307.0, &rail()) > 3.0);
         assert!((DUTY.rounded(0.1) - 0.1).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_travel_beside_zero_never_leads_to_zero() {
+        let travel = Setpoint { name: "M1 position", unit: "", range: 500.0..=900.0, decimals: 0, step: 1.0 };
+        assert_eq!(travel.value_at(100.0, &rail()), 500.0);
+        assert_eq!(travel.rounded(0.0), 500.0);
     }
 
     #[test]

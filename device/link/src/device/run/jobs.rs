@@ -184,9 +184,12 @@ impl JobHost for Host<'_> {
     fn drive(&mut self, drive: &Drive) -> Result<(), ExchangeError> {
         self.check()?;
         self.read_between()?;
+        let sent_at = self.core.clock.now();
         let driven = self.core.act(self.asked_at, |unit, line| unit.drive(line, drive));
         if driven.is_ok() {
             self.core.note_setpoints(drive);
+            let address = self.identity().address;
+            self.core.outbox.send(Event::Driven { address, sent_at, drive: *drive });
         }
         self.settle(driven)
     }
