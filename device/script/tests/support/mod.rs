@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "each test file uses its part")]
 
+pub mod examples;
+
 use brushwork_script::mcl::ast::Motion;
 use brushwork_script::mcl::{self, registers::RegisterId};
 use brushwork_script::vm::{Host, Machine, State};

@@ -135,7 +135,8 @@ impl Lowering<'_> {
         match u32::try_from(value) {
             Ok(value) if value < length => Some(Some(value)),
             _ => {
-                let message = format!("Index {value} is outside: it goes from 0 to {}.", length - 1);
+                let message =
+                    format!("Index {value} is outside: it goes from 0 to {}.", length.saturating_sub(1));
                 self.report(codes::INDEX_OUTSIDE, index.span, message, None);
                 None
             }
