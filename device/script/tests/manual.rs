@@ -32,9 +32,13 @@ fn bytes(text: &str) -> Vec<u8> {
         .into_bytes()
 }
 
+fn number<T: std::str::FromStr>(text: &str) -> T {
+    text.parse().ok().unwrap_or_else(|| panic!("{text} is no number"))
+}
+
 fn register(desk: &Desk, name: &str, index: &str) -> u32 {
     let (id, _) = registers::lookup(name).expect("a register");
-    desk.registers[&(id.0, index.parse().unwrap())]
+    desk.registers[&(id.0, number(index))]
 }
 
 fn prepare(example: &Example<'_>) -> Desk {
@@ -49,9 +53,9 @@ fn prepare(example: &Example<'_>) -> Desk {
         match words[..] {
             ["set", name, index, value] => {
                 let (id, _) = registers::lookup(name).expect("a register");
-                desk.registers.insert((id.0, index.parse().unwrap()), value.parse().unwrap());
+                desk.registers.insert((id.0, number(index)), number(value));
             }
-            ["i2c", byte] => desk.i2c_reply = Some(vec![byte.parse().unwrap()]),
+            ["i2c", byte] => desk.i2c_reply = Some(vec![number(byte)]),
             _ => {
                 if let Some(input) = line.strip_prefix("< ") {
                     desk.waiting.insert(0, bytes(input).into());
@@ -75,22 +79,18 @@ fn check(example: &Example<'_>, machine: &Machine, desk: &Desk, state: &State) {
         let words: Vec<&str> = line.split(' ').collect();
         match words[..] {
             ["=", name, index, value] => {
-                assert_eq!(register(desk, name, index).to_string(), value, "{title}: {line}")
+                assert_eq!(register(desk, name, index).to_string(), value, "{title}: {line}");
             }
             ["var", name, index, value] => {
-                assert_eq!(
-                    variable(machine, name, index.parse().unwrap()).to_string(),
-                    value,
-                    "{title}: {line}"
-                );
+                assert_eq!(variable(machine, name, number(index)).to_string(), value, "{title}: {line}");
             }
             ["real", name, value] => {
                 let got = f32::from_bits(variable(machine, name, 0));
-                assert_eq!(got, value.parse::<f32>().unwrap(), "{title}: {line}");
+                assert_eq!(got, number::<f32>(value), "{title}: {line}");
             }
             ["near", name, value, within] => {
                 let got = f32::from_bits(variable(machine, name, 0));
-                let (value, within): (f32, f32) = (value.parse().unwrap(), within.parse().unwrap());
+                let (value, within): (f32, f32) = (number(value), number(within));
                 assert!((got - value).abs() <= within, "{title}: {line}, got {got}");
             }
             ["@", command, ..] => {
