@@ -98,6 +98,8 @@ pub struct Exchange {
     /// Whether the request of the present attempt went out.
     sent: bool,
     last_reply_at: Duration,
+    /// Time that every reply may take beyond what the link and its request need.
+    patience: Duration,
 }
 
 impl Exchange {
@@ -114,7 +116,13 @@ impl Exchange {
             unsettled: false,
             sent: false,
             last_reply_at: now,
+            patience: Duration::ZERO,
         }
+    }
+
+    /// Lets every reply take so much longer: a computer under load, or a controller that is just starting.
+    pub fn set_patience(&mut self, patience: Duration) {
+        self.patience = patience;
     }
 
     /// Sends a request and waits for its reply; sends it again after a fault as often as it may.
@@ -291,7 +299,7 @@ impl Exchange {
     fn allowance(&self, request: &Outgoing<'_>, bytes: usize) -> Duration {
         let bytes = u32::try_from(bytes).unwrap_or(u32::MAX);
         let on_the_wire = self.transport.byte_time().unwrap_or_default().saturating_mul(bytes);
-        on_the_wire + self.transport.latency() + request.patience
+        on_the_wire + self.transport.latency() + request.patience + self.patience
     }
 
     fn write(&mut self, bytes: &[u8]) -> Result<(), ExchangeError> {

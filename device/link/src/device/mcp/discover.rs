@@ -10,6 +10,7 @@ use crate::failure::Failure;
 use crate::transport::Stream;
 use brushwork_protocol::models;
 use brushwork_protocol::packet_serial::{Address, Generation, number};
+use std::time::Duration;
 
 /// MCP and RoboClaw controllers.
 #[derive(Debug, Default)]
@@ -17,6 +18,11 @@ pub struct PacketSerial;
 
 /// A scan asks each address once more than this; most of the eight have nobody to answer.
 const SCAN_RETRIES: u32 = 1;
+/// How much longer a reply may take when nobody has answered before: a computer under load leaves no process its turn
+/// within the usual time, and a controller may just be starting. Nobody is asked twice who has answered.
+const PATIENCE: [Duration; 3] = [Duration::ZERO, Duration::from_millis(150), Duration::from_millis(500)];
+/// The same for a scan of all addresses, which would take eight times as long.
+const SCAN_PATIENCE: [Duration; 2] = [Duration::ZERO, Duration::from_millis(150)];
 
 impl Family for PacketSerial {
     fn discover(
@@ -24,27 +30,9 @@ impl Family for PacketSerial {
         line: &mut Line<'_>,
         options: &DeviceOptions,
     ) -> Result<Vec<Box<dyn Controller>>, DiscoverError> {
-        let heard_before = line.exchange().statistics().bytes_in;
-        let answers = scan(line, options.addresses)?;
-        if answers.is_empty() {
-            let heard = line.exchange().statistics().bytes_in - heard_before;
-            return Err(DiscoverError::NothingThere(nothing_there(line, options.addresses, heard)));
-        }
-        let one_unit = is_one_unit(line, &answers, options.stream)?;
-        let mut units: Vec<Box<dyn Controller>> = Vec::new();
-        for (address, version) in &answers {
-            let mut unit = identify(line, *address, version, options.simulated)?;
-            if one_unit {
-                let others =
-                    answers.iter().map(|(other, _)| other.get()).filter(|other| *other != address.get());
-                unit.identity.also_answers = others.collect();
-            }
-            units.push(Box::new(unit));
-            if one_unit {
-                break;
-            }
-        }
-        Ok(units)
+        let units = find(line, options);
+        line.exchange().set_patience(Duration::ZERO);
+        units
     }
 
     fn stop_bytes(&self) -> Vec<u8> {
@@ -53,15 +41,56 @@ impl Family for PacketSerial {
     }
 }
 
-/// The addresses that answer with a version, and their answers.
+fn find(line: &mut Line<'_>, options: &DeviceOptions) -> Result<Vec<Box<dyn Controller>>, DiscoverError> {
+    let heard_before = line.exchange().statistics().bytes_in;
+    let answers = scan(line, options.addresses)?;
+    if answers.is_empty() {
+        let heard = line.exchange().statistics().bytes_in - heard_before;
+        return Err(DiscoverError::NothingThere(nothing_there(line, options.addresses, heard)));
+    }
+    let one_unit = is_one_unit(line, &answers, options.stream)?;
+    let mut units: Vec<Box<dyn Controller>> = Vec::new();
+    for (address, version) in &answers {
+        let mut unit = identify(line, *address, version, options.simulated)?;
+        if one_unit {
+            let others = answers.iter().map(|(other, _)| other.get()).filter(|other| *other != address.get());
+            unit.identity.also_answers = others.collect();
+        }
+        units.push(Box::new(unit));
+        if one_unit {
+            break;
+        }
+    }
+    Ok(units)
+}
+
+/// The addresses that answer with a version, and their answers. A line that needed patience keeps it until all units
+/// are known.
 fn scan(line: &mut Line<'_>, addresses: Addresses) -> Result<Vec<(Address, String)>, ExchangeError> {
-    let candidates = match addresses {
-        Addresses::Scan => Address::ALL.to_vec(),
-        Addresses::Only(byte) => Address::new(byte).into_iter().collect(),
+    let (candidates, patience) = match addresses {
+        Addresses::Scan => (Address::ALL.to_vec(), &SCAN_PATIENCE[..]),
+        Addresses::Only(byte) => (Address::new(byte).into_iter().collect(), &PATIENCE[..]),
     };
-    line.set_retries(if candidates.len() > 1 { SCAN_RETRIES } else { RETRIES });
     let mut answers = Vec::new();
-    for address in candidates {
+    for (round, patience) in patience.iter().enumerate() {
+        line.exchange().set_patience(*patience);
+        line.set_retries(match (round, candidates.len()) {
+            (0, 0..=1) => RETRIES,
+            (0, _) => SCAN_RETRIES,
+            _ => 0,
+        });
+        answers = ask_each(line, &candidates)?;
+        if !answers.is_empty() {
+            break;
+        }
+    }
+    line.set_retries(RETRIES);
+    Ok(answers)
+}
+
+fn ask_each(line: &mut Line<'_>, candidates: &[Address]) -> Result<Vec<(Address, String)>, ExchangeError> {
+    let mut answers = Vec::new();
+    for &address in candidates {
         let speaker = Speaker::packets(address, Generation::Gen1);
         match speaker.ask(line, number::READ_VERSION, &[]) {
             Ok(reply) => {
@@ -72,7 +101,6 @@ fn scan(line: &mut Line<'_>, addresses: Addresses) -> Result<Vec<(Address, Strin
             Err(_) => {}
         }
     }
-    line.set_retries(RETRIES);
     Ok(answers)
 }
 

@@ -135,12 +135,37 @@ fn a_port_that_is_no_controller_is_told_by_what_it_says_and_nothing_is_sent_but_
     let Ok(Event::Lost(failure)) = handle.events().try_recv() else { panic!("nothing was told") };
     assert_eq!(
         failure.to_string(),
-        "Could not find a controller on /dev/test: 21 bytes came, but no packet serial, from address 0x80. Check the baud \
+        "Could not find a controller on /dev/test: 35 bytes came, but no packet serial, from address 0x80. Check the baud \
          rate, and that the device on this port is a motor controller set to packet serial."
     );
-    // 0x80, command 21 (read version), three times.
+    // 0x80, command 21 (read version), three times, and twice more with patience.
     let writes: Vec<_> = tap.writes().into_iter().map(|(_, bytes)| bytes).collect();
-    assert_eq!(writes, [[0x80, 21], [0x80, 21], [0x80, 21]]);
+    assert_eq!(writes, [[0x80, 21]; 5]);
+}
+
+#[test]
+fn a_computer_under_load_that_answers_late_is_waited_for() {
+    use crate::clock::VirtualClock;
+    use crate::device::run::{DeviceLoop, Step};
+    use crate::testing::{ScriptedTransport, reply_to};
+    let clock = VirtualClock::new();
+    // Every answer takes 120 ms, far longer than the 20 ms of a link that is well.
+    let (transport, tap) = ScriptedTransport::new(&clock, |request, _| match request {
+        [0x80, 21] => vec![(ms(120), reply_to(request, b"MCP266 2x60A v1.0.0\n\0"))],
+        _ => Vec::new(),
+    });
+    let options = DeviceOptions { addresses: Addresses::Only(0x80), ..DeviceOptions::default() };
+    let (mut device_loop, handle) = DeviceLoop::new(transport, std::sync::Arc::new(clock.clone()), options);
+    let mut found = false;
+    while !found && clock.now() < ms(10_000) {
+        match device_loop.step() {
+            Step::Ended => break,
+            Step::IdleUntil(at) => clock.advance_to(at),
+            Step::Again => {}
+        }
+        found |= handle.events().try_iter().any(|event| matches!(event, Event::Connected(_)));
+    }
+    assert!(found, "{:?}", tap.writes().len());
 }
 
 #[test]
