@@ -383,16 +383,16 @@ fn a_profile_is_saved_opened_compared_and_taken_over_by_row() {
     write(&mut bench);
     assert_eq!(truth(&bench).battery.main_max_tenths, 335);
     assert_eq!(truth(&bench).battery.main_min_tenths, 100, "what was not taken over stays");
-    bench.press("Compare profile");
+    bench.press("Compare settings");
     bench.press("Take over all");
     write(&mut bench);
     assert_eq!(truth(&bench).battery.main_min_tenths, 120);
-    bench.press("Compare profile");
-    assert!(bench.sees("The controller has every value of the profile."));
+    bench.press("Compare settings");
+    assert!(bench.sees("Both sides have the same values."));
 }
 
 #[test]
-fn a_profile_that_is_faulty_or_made_for_another_controller_is_refused_with_every_reason() {
+fn a_faulty_profile_is_refused_and_one_of_another_controller_is_upgraded_when_that_is_agreed_to() {
     let folder = tempfile::tempdir().unwrap();
     let mut bench = opened();
     bench.press("Open profile");
@@ -417,9 +417,19 @@ fn a_profile_that_is_faulty_or_made_for_another_controller_is_refused_with_every
     bench.model().front.general.profiles.path = path.display().to_string();
     bench.pass_ms(200);
     bench.press("Open");
+    assert_eq!(bench.model().front.general.sheet(), Some(&Sheet::Upgrade));
     assert!(bench.sees_part("The profile was made for the MCP236"));
-    assert!(bench.see("Take over all").accesskit_node().is_disabled());
-    assert!(bench.sees("Edits: none"));
+    assert!(bench.sees_part("The settings of input DIN3/AN3/P3/ENC1A/TX2 go to DIN7/AN7/P7/ENC1A."));
+    assert!(
+        bench.model().front.general.profiles.opened().is_none(),
+        "nothing is used before that is agreed to"
+    );
+    bench.press("Use with these changes");
+    assert_eq!(bench.model().front.general.sheet(), Some(&Sheet::Compare));
+    assert!(bench.sees("Motor 1: maximum current: 60.00 A -> 30.00 A"));
+    bench.press("Take over group Current limits");
+    assert!(bench.sees("Edits: 4 not written"), "{:?}", bench.model().front.general.unit().unwrap().edits());
+    bench.press("Revert all");
     // One value beyond every range: refused at first, opened without it on request.
     let mut broken = other.to_json();
     broken = broken.replacen("128", "9999", 1);
@@ -428,7 +438,7 @@ fn a_profile_that_is_faulty_or_made_for_another_controller_is_refused_with_every
     bench.press("Open");
     assert!(bench.sees_part("9999"));
     bench.press("Open without what is wrong");
-    assert_eq!(bench.model().front.general.sheet(), Some(&Sheet::Compare));
+    assert_eq!(bench.model().front.general.sheet(), Some(&Sheet::Upgrade));
 }
 
 #[test]

@@ -89,6 +89,7 @@ impl App {
         }
         self.read_loops();
         self.end_calibrations();
+        self.look_for_unfinished();
         self.drive(&ctx);
         self.show_appearance(&ctx);
         if self.closing {
@@ -208,6 +209,7 @@ impl App {
     }
 
     fn opened(&mut self, id: DeskId, opened: OpenLink, ctx: &Context) {
+        let ports = self.model.devices.ports().to_vec();
         let link = self.links.entry(id);
         link.opening = None;
         // A desk that was given up meanwhile: the link is closed again by being dropped.
@@ -217,6 +219,7 @@ impl App {
         let Some(desk) = self.model.desk_mut(id) else { return };
         desk.phase = Phase::Open { target };
         desk.link = LinkView::default();
+        desk.general.keep_in(self.parts.keeping.clone(), ports);
         desk.world.forget();
         link.world = opened.world;
         opened.device.set_waker(waker(ctx.clone(), self.last_frame.clone()));
@@ -466,6 +469,17 @@ impl App {
 
     fn shows_settings_of(&self, id: DeskId) -> bool {
         self.model.screen == Screen::GeneralSettings && id == self.model.front.id()
+    }
+
+    /// Something that was begun on this controller and cut short: its settings are read at once, to tell which are
+    /// old and which new.
+    fn look_for_unfinished(&mut self) {
+        let front = &mut self.model.front;
+        let Some(identity) = front.link.identity() else { return };
+        front.general.look_at(identity);
+        if front.general.has_unfinished() && front.general.wants_reading() {
+            self.settings(SettingsWish::Read);
+        }
     }
 
     fn apply_loops(&mut self, columns: &[Column]) {

@@ -12,6 +12,7 @@ use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 use egui::Context;
 
 use super::parts::{OpenLink, Opener, Parts, PortSource, SimulatedWorld};
+use crate::keep::{Keeping, Store};
 use crate::session::{self, SessionError, SessionOptions, Simulation};
 
 /// How often the list of ports is made.
@@ -19,7 +20,11 @@ const LISTING_INTERVAL: Duration = Duration::from_secs(1);
 
 /// The parts of the real program.
 pub fn real_parts(ctx: &Context) -> Parts {
-    Parts { ports: Box::new(ListedPorts::start(ctx.clone())), opener: Box::new(SessionOpener::new()) }
+    Parts {
+        ports: Box::new(ListedPorts::start(ctx.clone())),
+        opener: Box::new(SessionOpener::new()),
+        keeping: Keeping::new(Store::of_user()),
+    }
 }
 
 type Listed = Result<Vec<PortInfo>, Failure>;

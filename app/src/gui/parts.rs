@@ -10,12 +10,15 @@ use brushwork_link::transport::{ConnectTarget, PortInfo};
 use brushwork_sim::world::{WorldAction, WorldView};
 use crossbeam_channel::Receiver;
 
+use crate::keep::Keeping;
 use crate::session::SessionError;
 
 /// Everything the window needs and does not make itself.
 pub struct Parts {
     pub ports: Box<dyn PortSource>,
     pub opener: Box<dyn Opener>,
+    /// Where backups and journals go.
+    pub keeping: Keeping,
 }
 
 /// Where the list of serial ports comes from. Looking never waits.

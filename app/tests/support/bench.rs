@@ -9,6 +9,7 @@ use std::time::Duration;
 use brushwork::gui::App;
 use brushwork::gui::model::Model;
 use brushwork::gui::parts::{OpenLink, Opener, Parts, PortSource, SimulatedWorld};
+use brushwork::keep::{Keeping, Store};
 use brushwork::session::SessionError;
 use brushwork_link::device::{Addresses, DeviceLoop, DeviceOptions};
 use brushwork_link::transport::{ConnectTarget, OpenError, PortInfo, Stream};
@@ -44,6 +45,8 @@ pub struct Bench {
     pub second: Line,
     loops: [Slot; 2],
     ports: Rc<RefCell<Option<Vec<PortInfo>>>>,
+    /// The folder of what the window keeps on the computer; gone with the bench.
+    kept: Rc<tempfile::TempDir>,
 }
 
 impl Bench {
@@ -81,7 +84,10 @@ impl Bench {
         let loops = [Slot::default(), Slot::default()];
         let ports = Rc::new(RefCell::new(Some(Vec::new())));
         let opener = BenchOpener { lines: [line.clone(), second.clone()], loops: loops.clone() };
-        let mut parts = Some(Parts { ports: Box::new(BenchPorts(ports.clone())), opener: Box::new(opener) });
+        let kept = Rc::new(tempfile::tempdir().expect("a temporary folder can be made"));
+        let keeping = Keeping::new(Store::at(kept.path()));
+        let mut parts =
+            Some(Parts { ports: Box::new(BenchPorts(ports.clone())), opener: Box::new(opener), keeping });
         let harness = HarnessBuilder::default()
             .with_size(size)
             .with_theme(theme)
@@ -99,7 +105,12 @@ impl Bench {
                 },
                 None,
             );
-        Self { harness, line, second, loops, ports }
+        Self { harness, line, second, loops, ports, kept }
+    }
+
+    /// What the window keeps on the computer.
+    pub fn store(&self) -> Store {
+        Store::at(self.kept.path())
     }
 
     /// Lets time pass as it does with the program: the device loop works and the window draws each 100 ms.

@@ -6,6 +6,7 @@ use std::time::Duration;
 use brushwork_link::{Clock as _, Transport, TransportError, VirtualClock};
 use brushwork_sim::controller::Bus;
 use brushwork_sim::machine::Machine as _;
+use brushwork_sim::world::WorldAction;
 
 use super::lockstep::Gate;
 
@@ -16,7 +17,16 @@ pub struct Line {
     pub clock: VirtualClock,
     rest: Vec<u8>,
     swallowed: Arc<Mutex<Option<Swallowed>>>,
+    cut: Arc<Mutex<Option<Cut>>>,
     gate: Option<Gate>,
+}
+
+/// Something done to the machine right after a command has reached it.
+struct Cut {
+    command: u8,
+    /// Commands of that number that pass before.
+    passing: usize,
+    action: WorldAction,
 }
 
 /// A command that gets lost, and what comes back instead.
@@ -33,6 +43,7 @@ impl Line {
             clock: VirtualClock::new(),
             rest: Vec::new(),
             swallowed,
+            cut: Arc::default(),
             gate: None,
         }
     }
@@ -53,6 +64,22 @@ impl Line {
     pub fn swallow(&self, command: u8, reply: &[u8]) {
         *self.swallowed.lock().unwrap_or_else(PoisonError::into_inner) =
             Some(Swallowed { command, reply: reply.to_vec() });
+    }
+
+    /// Does something to the machine as soon as a command has reached it so many times.
+    pub fn after(&self, command: u8, times: usize, action: WorldAction) {
+        *self.cut.lock().unwrap_or_else(PoisonError::into_inner) =
+            Some(Cut { command, passing: times.saturating_sub(1), action });
+    }
+
+    fn cut(&self, request: &[u8]) {
+        let mut planned = self.cut.lock().unwrap_or_else(PoisonError::into_inner);
+        let Some(cut) = planned.as_mut().filter(|cut| request.get(1) == Some(&cut.command)) else { return };
+        if cut.passing > 0 {
+            cut.passing -= 1;
+        } else if let Some(cut) = planned.take() {
+            self.with(|bus| bus.apply(0, &cut.action));
+        }
     }
 
     /// The reply to a request that is swallowed.
@@ -109,7 +136,9 @@ impl Transport for Line {
             let stream = bus.stream();
             bus.receive(stream, bytes);
             Ok(())
-        })
+        })?;
+        self.cut(bytes);
+        Ok(())
     }
 
     fn read(&mut self, buffer: &mut [u8], timeout: Duration) -> Result<usize, TransportError> {

@@ -21,6 +21,7 @@ use super::spread::{percentile, scattered};
 use super::tap::Noted;
 use crate::gui::App;
 use crate::gui::parts::{OpenLink, Opener, Parts, PortSource};
+use crate::keep::{Keeping, Store};
 use crate::session::SessionError;
 
 const RATE_BPS: u32 = 115_200;
@@ -86,7 +87,11 @@ impl<'a> StopBench<'a> {
     fn connect(interrupt: &'a Interrupt) -> Result<Self, String> {
         let rig = Rig::start(Generation::Gen1, RATE_BPS)?;
         let headless = Headless::new();
-        let parts = Parts { ports: Box::new(NoPorts), opener: Box::new(Given(Some(rig.open()?))) };
+        let parts = Parts {
+            ports: Box::new(NoPorts),
+            opener: Box::new(Given(Some(rig.open()?))),
+            keeping: Keeping::new(Store::of_user()),
+        };
         let mut app = App::new(&headless.ctx, parts);
         app.model.front.poll = PollRate::Fastest;
         app.open("the rig");

@@ -9,9 +9,12 @@ use brushwork_link::transport::Stream;
 
 use super::link::Effect;
 use super::message::Gravity;
+use kept::{Came, Kept};
 
 mod applicable;
 mod calibrate;
+mod compare;
+mod kept;
 mod outcome;
 mod pins;
 mod profile;
@@ -20,7 +23,9 @@ mod unit;
 mod work;
 
 pub use calibrate::Run as CalibrationRun;
-pub use profile::{Comparison, Profiles, Purpose, Told};
+pub use compare::{Comparing, Comparison, Side, Take};
+pub use kept::Settle;
+pub use profile::{Profiles, Purpose, Told};
 pub use section::{Section, sections};
 pub use unit::{Saved, UnitSettings};
 pub use work::{Running, SettingsWish};
@@ -41,6 +46,11 @@ pub struct General {
     calibration: Option<calibrate::Run>,
     /// The row that is to be scrolled into view.
     sought: Option<String>,
+    /// Which two copies are set side by side.
+    pub comparing: Comparing,
+    /// Which motor is copied to the other, 1 or 2.
+    pub copied_motor: usize,
+    kept: Kept,
     sheet: Option<Sheet>,
     sheet_is_new: bool,
     wants_search: bool,
@@ -55,8 +65,14 @@ pub enum Sheet {
     Defaults,
     OpenProfile,
     SaveProfile,
-    /// The open profile beside the controller.
+    /// What has to be changed of a profile before it fits.
+    Upgrade,
+    /// Any two copies side by side.
     Compare,
+    Backups,
+    CopyMotor,
+    /// What was cut short on this controller.
+    Unfinished,
     /// What did not go as wanted, a sentence each.
     Report {
         title: String,
@@ -90,6 +106,7 @@ impl General {
             return;
         }
         self.units.entry(key.clone()).or_insert_with(|| UnitSettings::new(identity));
+        self.look_up(key.clone(), identity);
         self.current = Some(key);
         self.explained = None;
         self.sheet = None;
@@ -125,6 +142,7 @@ impl General {
 
     pub fn open(&mut self, sheet: Sheet) {
         self.profiles.forget_told();
+        self.refresh_for(&sheet);
         self.sheet = Some(sheet);
         self.sheet_is_new = true;
     }
@@ -179,7 +197,8 @@ impl General {
         let input = run.map(|run| run.image(wish));
         let unit = self.units.get_mut(&key)?;
         unit.note_asked();
-        let (job, running) = work::begin(wish, key, unit, input, own_stream)?;
+        let keeper = self.kept.keeper(&key, unit.firmware())?;
+        let (job, running) = work::begin(wish, key, unit, input, own_stream, keeper)?;
         self.running = Some(running);
         self.sheet = None;
         Some(Request::Job(job))
@@ -225,6 +244,7 @@ impl General {
     pub fn link_ended(&mut self) {
         self.running = None;
         self.current = None;
+        self.kept.forget_unit();
         self.sheet = None;
         self.calibration_lost();
         for unit in self.units.values_mut() {
@@ -243,12 +263,19 @@ impl General {
             return self.told(told);
         }
         let Some(unit) = self.units.get_mut(&running.unit) else { return Vec::new() };
-        let told = match running.result() {
+        let result = running.result();
+        let came_of = result.as_ref().map(Came::of);
+        let told = match result {
             Some(outcome) => outcome::take(unit, outcome),
             None => outcome::nothing_came(&running, ending),
         };
+        let is_current = self.current.as_ref() == Some(&running.unit);
         self.follow_address(&running.unit, told.address);
-        self.told(told)
+        let mut effects = self.told(told);
+        if is_current {
+            effects.extend(self.note_came(came_of));
+        }
+        effects
     }
 
     fn told(&mut self, told: Summary) -> Vec<Effect> {
@@ -263,6 +290,7 @@ impl General {
         let Some(address) = address.filter(|address| *address != old.address) else { return };
         if let Some(unit) = self.units.remove(old) {
             let new = UnitKey { address, ..old.clone() };
+            self.kept.follow_address(old, new.clone());
             if self.current.as_ref() == Some(old) || self.current.as_ref() == Some(&new) {
                 self.current = Some(new.clone());
             }

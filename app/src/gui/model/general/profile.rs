@@ -4,12 +4,11 @@
 //! other.
 
 use std::path::Path;
-use std::time::SystemTime;
 
-use brushwork_link::settings::{Difference, OpenedProfile, Profile, ProfileFileError, Strictness, diff};
+use brushwork_link::settings::{OpenedProfile, Profile, ProfileFileError, SettingsImage, Strictness};
 use brushwork_protocol::packet_serial::Address;
 
-use super::{General, Sheet, UnitSettings};
+use super::{General, Sheet, Side, UnitSettings, compare};
 use crate::gui::files::{FileAnswer, FileDialog, FileKind, FileWish};
 
 /// Profiles as files.
@@ -21,6 +20,8 @@ pub struct Profiles {
     pub with_edits: bool,
     dialog: Option<(FileDialog, Purpose)>,
     opened: Option<Opened>,
+    /// A profile that has to be changed before it fits, until that is agreed to.
+    pending: Option<(Opened, Vec<String>)>,
     /// What came of the last attempt.
     told: Told,
 }
@@ -54,20 +55,14 @@ pub struct Opened {
     pub mended: Vec<String>,
 }
 
-/// An open profile beside the controller.
-#[derive(Debug, Default)]
-pub struct Comparison {
-    /// What the controller has, then what the profile has.
-    pub differences: Vec<Difference>,
-    /// Why nothing can be taken over.
-    pub misfits: Vec<String>,
-    /// What differs and cannot be written here.
-    pub left_out: Vec<String>,
-}
-
 impl Profiles {
     pub fn opened(&self) -> Option<&Opened> {
         self.opened.as_ref()
+    }
+
+    /// What would be changed of the profile that was read, a sentence each, and its name.
+    pub fn pending(&self) -> Option<(&str, &[String])> {
+        self.pending.as_ref().map(|(opened, changes)| (opened.name.as_str(), changes.as_slice()))
     }
 
     pub fn told(&self) -> &Told {
@@ -131,12 +126,9 @@ impl General {
         let path = Path::new(&typed);
         let strictness = if mending { Strictness::Repair } else { Strictness::Refuse };
         match Profile::open(path, strictness) {
-            Ok(OpenedProfile { profile, mended, .. }) => {
+            Ok(read) => {
                 let name = path.file_name().map_or_else(|| typed.clone(), |name| name.display().to_string());
-                let mended = mended.iter().map(ToString::to_string).collect();
-                self.profiles.opened = Some(Opened { name, profile, mended });
-                self.profiles.told = Told::Nothing;
-                self.open(Sheet::Compare);
+                self.take_profile(name, read);
             }
             Err(error) => {
                 let can_be_mended = !mending && Profile::open(path, Strictness::Repair).is_ok();
@@ -161,23 +153,32 @@ impl General {
         }
     }
 
-    /// The open profile beside the controller that is looked at.
-    pub fn comparison(&self) -> Comparison {
-        let (Some(opened), Some(unit)) = (self.profiles.opened(), self.unit()) else {
-            return Comparison::default();
-        };
-        unit.compare(&opened.profile)
+    /// A profile that fits is open now; one that does not is shown with what has to be changed of it.
+    fn take_profile(&mut self, name: String, read: OpenedProfile) {
+        let Some(unit) = self.unit() else { return };
+        let mended = read.mended.iter().map(ToString::to_string).collect();
+        let (profile, changes) = compare::upgrade(read, unit.table());
+        let opened = Opened { name, profile, mended };
+        self.profiles.told = Told::Nothing;
+        if changes.is_empty() {
+            self.show_opened(opened);
+        } else {
+            self.profiles.pending = Some((opened, changes));
+            self.open(Sheet::Upgrade);
+        }
     }
 
-    /// Makes one setting of the open profile an edit, or all that differ.
-    pub fn take_over(&mut self, key: Option<&str>) {
-        let (Some(opened), Some(unit)) = (self.profiles.opened(), self.unit()) else { return };
-        let Ok(changes) = unit.changes_for(&opened.profile) else { return };
-        let wanted = changes.wanted;
-        let Some(unit) = self.unit_mut() else { return };
-        for (own, value) in wanted.iter().filter(|(own, _)| key.is_none_or(|key| key == *own)) {
-            unit.set(own, value);
+    /// Uses the profile with the changes that were shown.
+    pub fn use_upgraded(&mut self) {
+        if let Some((opened, _)) = self.profiles.pending.take() {
+            self.show_opened(opened);
         }
+    }
+
+    fn show_opened(&mut self, opened: Opened) {
+        self.profiles.opened = Some(opened);
+        self.compare_with(Side::Ram, Side::Profile);
+        self.open(Sheet::Compare);
     }
 }
 
@@ -188,28 +189,19 @@ impl UnitSettings {
         if with_edits {
             settings.merge(self.edits());
         }
+        self.profile_of(settings)
+    }
+
+    /// Values as a profile of this controller.
+    pub(super) fn profile_of(&self, settings: SettingsImage) -> Option<Profile> {
         Some(Profile {
             subject: *self.table().subject(),
             firmware: self.firmware().to_owned(),
             address: Address::new(self.address()).unwrap_or(Address::DEFAULT),
-            date: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
+            date: crate::keep::today(),
             unit: String::new(),
             note: String::new(),
             settings,
         })
-    }
-
-    fn compare(&self, profile: &Profile) -> Comparison {
-        let nothing = brushwork_link::settings::SettingsImage::default();
-        let ram = self.ram().unwrap_or(&nothing);
-        let in_profile = |difference: &Difference| difference.right.is_some();
-        let differences = diff(self.table(), ram, &profile.settings).into_iter().filter(in_profile).collect();
-        match self.changes_for(profile) {
-            Ok(changes) => Comparison { differences, misfits: Vec::new(), left_out: changes.left_out },
-            Err(error) => {
-                let misfits = error.problems.iter().map(ToString::to_string).collect();
-                Comparison { differences, misfits, left_out: Vec::new() }
-            }
-        }
     }
 }

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use brushwork_link::device::Identity;
 use brushwork_link::settings::{
-    Copies, Difference, Plan, Profile, ProfileChanges, ProfileError, ReadReport, Refusal, Row, SaveReport,
-    SaveVerdict, SettingValue, SettingsImage, SettingsTable, Subject, WriteOptions, WriteReport, diff, plan,
+    Copies, Difference, Plan, ReadReport, Refusal, Row, SaveReport, SaveVerdict, SettingValue, SettingsImage,
+    SettingsTable, Subject, WriteOptions, WriteReport, diff, plan,
 };
 use brushwork_link::transport::Stream;
 use brushwork_protocol::models;
@@ -89,6 +89,15 @@ impl UnitSettings {
         self.copies.ram()
     }
 
+    /// What its EEPROM holds, if that was proven in this session.
+    pub fn eeprom(&self) -> Option<&SettingsImage> {
+        self.copies.eeprom()
+    }
+
+    pub fn is_simulated(&self) -> bool {
+        self.is_simulated
+    }
+
     pub fn address(&self) -> u8 {
         self.address
     }
@@ -152,12 +161,6 @@ impl UnitSettings {
     /// Whether the controller lets the row be written at all.
     pub fn is_writable(&self, row: &Row) -> bool {
         row.locked(self.is_simulated).is_none()
-    }
-
-    /// What would bring the controller to a profile, or why it does not fit.
-    pub fn changes_for(&self, profile: &Profile) -> Result<ProfileChanges, ProfileError> {
-        let nothing = SettingsImage::default();
-        profile.changes_for(&self.table, self.copies.ram().unwrap_or(&nothing), self.is_simulated)
     }
 
     /// Wants a value.

@@ -8,8 +8,8 @@ use std::time::Duration;
 use brushwork_link::Failure;
 use brushwork_link::device::{FnJob, Job, JobContext};
 use brushwork_link::settings::{
-    DefaultsReport, ReadReport, SaveReport, SettingsImage, WriteError, WriteOptions, WriteReport, read_all,
-    reload, restore_defaults, save_eeprom, write,
+    DefaultsReport, Keeper, ReadReport, SaveReport, SettingsImage, WriteError, WriteOptions, WriteReport,
+    defaults_kept, read_all, reload, save_kept, write_kept,
 };
 use brushwork_link::transport::Stream;
 use crossbeam_channel::{Receiver, bounded};
@@ -85,6 +85,7 @@ pub(super) fn begin(
     unit: &UnitSettings,
     input: Option<SettingsImage>,
     own_stream: Option<Stream>,
+    mut keeper: Box<dyn Keeper>,
 ) -> Option<(Box<dyn Job>, Running)> {
     let table = unit.table().clone();
     let subject = *table.subject();
@@ -101,20 +102,22 @@ pub(super) fn begin(
         }
         SettingsWish::Write => {
             let name = format!("write {}", super::outcome::settings(unit.edits().len()));
-            writing(key, name, unit, unit.edits().clone(), options)
+            writing(key, name, unit, unit.edits().clone(), options, keeper)
         }
         SettingsWish::OpenInput | SettingsWish::CloseInput => {
             let does = if wish == SettingsWish::OpenInput { "open the input" } else { "put the input back" };
-            writing(key, does.to_owned(), unit, input?, options)
+            writing(key, does.to_owned(), unit, input?, options, keeper)
         }
         SettingsWish::Save => {
             job(key, "save the settings to EEPROM".to_owned(), WRITING_LIMIT, move |context| {
-                save_eeprom(context, &table, options).map(|report| Outcome::Saved(Box::new(report)))
+                save_kept(context, &table, options, &mut *keeper)
+                    .map(|report| Outcome::Saved(Box::new(report)))
             })
         }
         SettingsWish::RestoreDefaults => {
             job(key, "restore the default settings".to_owned(), WRITING_LIMIT, move |context| {
-                restore_defaults(context, subject).map(|report| Outcome::Restored(Box::new(report)))
+                defaults_kept(context, subject, &mut *keeper)
+                    .map(|report| Outcome::Restored(Box::new(report)))
             })
         }
     };
@@ -128,10 +131,11 @@ fn writing(
     unit: &UnitSettings,
     wanted: SettingsImage,
     options: WriteOptions,
+    mut keeper: Box<dyn Keeper>,
 ) -> (Box<dyn Job>, Running) {
     let table = unit.table().clone();
     job(key, name, WRITING_LIMIT, move |context| {
-        Ok(match write(context, &table, &wanted, options) {
+        Ok(match write_kept(context, &table, &wanted, options, &mut *keeper) {
             Ok(report) => Outcome::Written(Box::new(report)),
             Err(error) => Outcome::NotWritten(error),
         })

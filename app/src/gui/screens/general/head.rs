@@ -66,7 +66,6 @@ fn mark_ui(ui: &mut Ui, state: LampState, title: &str, text: &str) {
 fn buttons_ui(ui: &mut Ui, general: &mut General) {
     let Some(unit) = general.unit() else { return };
     let idle = !general.is_busy();
-    let has_profile = general.profiles.opened().is_some();
     let edits = unit.edits().len();
     let write = if edits == 0 { "Write…".to_owned() } else { format!("Write {edits}…") };
     let buttons = [
@@ -90,15 +89,24 @@ fn buttons_ui(ui: &mut Ui, general: &mut General) {
         ("Save profile…", "Save profile", true, "Keeps the settings in a file", Sheet::SaveProfile),
         (
             "Compare…",
-            "Compare profile",
-            has_profile,
-            "The open profile beside the controller",
+            "Compare settings",
+            true,
+            "Any two of controller, EEPROM, profile, defaults and backup side by side",
             Sheet::Compare,
         ),
+        ("Backups…", "Backups", true, "What was there before each write, save and restore", Sheet::Backups),
+        ("Copy motor…", "Copy motor", true, "One motor's settings for the other one", Sheet::CopyMotor),
     ];
+    let unfinished = general.has_unfinished().then_some((
+        "Unfinished…",
+        "Unfinished",
+        true,
+        "What was cut short on this controller, setting by setting",
+        Sheet::Unfinished,
+    ));
     let mut wanted = None;
     ui.horizontal_wrapped(|ui| {
-        for (text, name, enabled, note, sheet) in buttons {
+        for (text, name, enabled, note, sheet) in buttons.into_iter().chain(unfinished) {
             let is_open = general.sheet() == Some(&sheet);
             let response = ui.add_enabled(
                 enabled,

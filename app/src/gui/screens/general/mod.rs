@@ -11,10 +11,12 @@ use crate::gui::model::Model;
 use crate::gui::model::general::{Section, SettingsWish};
 
 mod calibrate;
+mod compare;
 mod conflicts;
 mod editor;
 mod head;
 mod help;
+mod kept;
 mod nav;
 mod pin;
 mod profile;

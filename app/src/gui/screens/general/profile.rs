@@ -1,12 +1,10 @@
 //! The sheets of profiles: opening and saving a file, and a profile beside the controller.
 
-use brushwork_link::settings::Difference;
-use egui::{Button, Grid, RichText, Ui, vec2};
+use egui::{Button, Ui, vec2};
 
 use super::sheet::{Act, Offer, lamp_ui, text_ui, title_ui};
 use crate::gui::app::FRAME_INTERVAL;
-use crate::gui::model::general::{Comparison, General, Purpose, Told, UnitSettings};
-use crate::gui::theme::Palette;
+use crate::gui::model::general::{General, Purpose, Told, UnitSettings};
 use crate::gui::widgets::LampState;
 use crate::gui::widgets::text_field::text_field_ui;
 
@@ -88,82 +86,17 @@ fn told_ui(ui: &mut Ui, told: &Told) -> bool {
     }
 }
 
-pub fn compare_ui(ui: &mut Ui, general: &mut General) -> Vec<Offer> {
-    let comparison = general.comparison();
-    let Some(opened) = general.profiles.opened() else { return Vec::new() };
-    title_ui(ui, &format!("Profile {}", opened.name));
-    let subject = &opened.profile.subject;
+/// What has to be changed of a profile before it fits; nothing is used before that is agreed to.
+pub fn upgrade_ui(ui: &mut Ui, general: &General) -> Vec<Offer> {
+    let Some((name, changes)) = general.profiles.pending() else { return Vec::new() };
+    title_ui(ui, &format!("Upgrade profile {name}"));
     text_ui(
         ui,
-        &format!(
-            "Made for the {}, firmware {}, address 0x{:02X}, on {}. Taking a value over makes it a change here; \
-             Write sends it.",
-            subject.model.name,
-            subject.generation,
-            opened.profile.address.get(),
-            opened.profile.date
-        ),
+        "The profile was made for another controller, another firmware generation or by an older program. To fit the \
+         controller here it is changed as follows; the file stays as it is, and nothing is written yet.",
     );
-    for sentence in &opened.mended {
-        lamp_ui(ui, LampState::Warning, sentence);
+    for change in changes {
+        lamp_ui(ui, LampState::Warning, change);
     }
-    for misfit in &comparison.misfits {
-        lamp_ui(ui, LampState::Error, misfit);
-    }
-    if comparison.differences.is_empty() {
-        lamp_ui(ui, LampState::Ok, "The controller has every value of the profile.");
-    }
-    let can_be_taken = comparison.misfits.is_empty();
-    let taken = general.unit().and_then(|unit| table_ui(ui, unit, &comparison, can_be_taken));
-    for sentence in &comparison.left_out {
-        lamp_ui(ui, LampState::Unknown, sentence);
-    }
-    if let Some(key) = taken {
-        general.take_over(Some(&key));
-    }
-    vec![("Take over all", Act::TakeOverAll, can_be_taken && !comparison.differences.is_empty())]
-}
-
-/// Controller and profile side by side; the key of a row that was taken over.
-fn table_ui(ui: &mut Ui, unit: &UnitSettings, comparison: &Comparison, can_be_taken: bool) -> Option<String> {
-    let weak = Palette::of(ui).weak_text;
-    if comparison.differences.is_empty() {
-        return None;
-    }
-    let mut taken = None;
-    Grid::new("comparison").num_columns(4).spacing([16.0, 3.0]).show(ui, |ui| {
-        for title in ["Setting", "On the controller", "In the profile", ""] {
-            ui.label(RichText::new(title).color(weak));
-        }
-        ui.end_row();
-        for difference in &comparison.differences {
-            if comparison_row_ui(ui, unit, difference, can_be_taken) {
-                taken = Some(difference.key.clone());
-            }
-        }
-    });
-    taken
-}
-
-fn comparison_row_ui(ui: &mut Ui, unit: &UnitSettings, difference: &Difference, can_be_taken: bool) -> bool {
-    let Some(row) = unit.table().row(&difference.key) else { return false };
-    let weak = Palette::of(ui).weak_text;
-    let text = |value: Option<_>| value.map_or_else(|| "not known".to_owned(), |value| row.format(value));
-    ui.label(row.title());
-    ui.label(RichText::new(text(difference.left)).color(weak));
-    let new = ui.label(RichText::new(text(difference.right)).strong());
-    new.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, difference.describe(row)));
-    let is_taken = unit.edits().get(&row.key) == difference.right;
-    let clicked = if is_taken {
-        ui.label(RichText::new("taken over").color(weak));
-        false
-    } else {
-        let enabled = can_be_taken && unit.is_writable(row);
-        let response = ui.add_enabled(enabled, Button::new("Take over").small());
-        let name = format!("Take over {}", row.title());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, &name));
-        response.clicked()
-    };
-    ui.end_row();
-    clicked
+    vec![("Use with these changes", Act::UseUpgraded, true)]
 }

@@ -1,14 +1,15 @@
 //! What each act will do, shown before it is done; and what did not go as wanted, after.
 
-use brushwork_link::settings::Difference;
+use brushwork_link::settings::{Difference, diff};
 use brushwork_link::transport::Stream;
 use egui::{Button, Grid, Label, RichText, ScrollArea, Ui, vec2};
 
-use super::profile;
+use super::{compare, kept, profile};
 use crate::gui::command::{Command, Commands};
-use crate::gui::model::general::{General, Saved, SettingsWish, Sheet, UnitSettings};
+use crate::gui::model::general::{General, Saved, SettingsWish, Settle, Sheet, Take, UnitSettings};
 use crate::gui::theme::Palette;
 use crate::gui::widgets::LampState;
+use crate::keep::WearLevel;
 
 /// What a button of a sheet does.
 #[derive(Clone, Copy, Debug)]
@@ -17,6 +18,9 @@ pub enum Act {
     OpenProfile { mending: bool },
     SaveProfile,
     TakeOverAll,
+    UseUpgraded,
+    CopyMotor,
+    Settle(Settle),
 }
 
 /// A button: its text, what it does, whether it can be pressed.
@@ -41,17 +45,21 @@ fn content_ui(ui: &mut Ui, general: &mut General, sheet: &Sheet, stream: Option<
     match sheet {
         Sheet::OpenProfile => return profile::open_ui(ui, general),
         Sheet::SaveProfile => return profile::save_ui(ui, general),
-        Sheet::Compare => return profile::compare_ui(ui, general),
+        Sheet::Upgrade => return profile::upgrade_ui(ui, general),
+        Sheet::Compare => return compare::compare_ui(ui, general),
+        Sheet::Backups => return kept::backups_ui(ui, general),
+        Sheet::CopyMotor => return kept::copy_motor_ui(ui, general),
+        Sheet::Unfinished => return kept::unfinished_ui(ui, general),
+        Sheet::Save => return save_ui(ui, general),
         _ => {}
     }
     let Some(unit) = general.unit() else { return Vec::new() };
     match sheet {
         Sheet::Read => read_ui(ui, unit),
         Sheet::Write => write_ui(ui, unit, stream),
-        Sheet::Save => save_ui(ui, unit),
         Sheet::Defaults => defaults_ui(ui, unit),
         Sheet::Report { title, sentences } => report_ui(ui, title, sentences),
-        Sheet::OpenProfile | Sheet::SaveProfile | Sheet::Compare => Vec::new(),
+        _ => Vec::new(),
     }
 }
 
@@ -80,9 +88,15 @@ fn buttons_ui(ui: &mut Ui, general: &mut General, offers: &[Offer], commands: &m
         Some(Act::OpenProfile { mending }) => general.open_profile(mending),
         Some(Act::SaveProfile) => general.save_profile(),
         Some(Act::TakeOverAll) => {
-            general.take_over(None);
+            general.take_over(&Take::All);
             close = true;
         }
+        Some(Act::UseUpgraded) => general.use_upgraded(),
+        Some(Act::CopyMotor) => {
+            general.copy_motor();
+            close = true;
+        }
+        Some(Act::Settle(how)) => general.settle(how),
         None => {}
     }
     if close && !focus {
@@ -121,7 +135,7 @@ fn write_ui(ui: &mut Ui, unit: &UnitSettings, stream: Option<Stream>) -> Vec<Off
     text_ui(
         ui,
         "Writes these to what the controller works with (RAM) and reads them back. A power cycle brings the old \
-         ones back until they are saved to EEPROM.",
+         ones back until they are saved to EEPROM. A backup is made first.",
     );
     differences_ui(ui, unit, changes.iter().cloned());
     for refusal in unit.refused() {
@@ -144,20 +158,29 @@ fn write_ui(ui: &mut Ui, unit: &UnitSettings, stream: Option<Stream>) -> Vec<Off
     vec![("Write to controller", Act::Wish(SettingsWish::Write), can_be_written && !changes.is_empty())]
 }
 
-fn save_ui(ui: &mut Ui, unit: &UnitSettings) -> Vec<Offer> {
+fn save_ui(ui: &mut Ui, general: &General) -> Vec<Offer> {
+    let Some(unit) = general.unit() else { return Vec::new() };
     title_ui(ui, "Save to EEPROM");
     text_ui(
         ui,
         "Saves all settings that the controller works with now, loads them back and compares. The controller may \
          restart; motors must stand still.",
     );
-    match unit.saved() {
-        Saved::Yes => text_ui(ui, "As far as known its EEPROM holds the same already."),
-        Saved::Differs(_) => {
+    match (unit.saved(), general.known_eeprom().zip(unit.ram())) {
+        (Saved::Yes, _) => text_ui(ui, "As far as known its EEPROM holds the same already."),
+        (Saved::Differs(_), _) => {
             text_ui(ui, "These are saved (in EEPROM, as last known -> works with now):");
             differences_ui(ui, unit, unit.unsaved().into_iter());
         }
-        Saved::NotKnown { .. } => {
+        (Saved::NotKnown { .. }, Some((known, ram))) => {
+            text_ui(
+                ui,
+                &format!("These are saved (in EEPROM, as known since {} -> works with now):", known.date),
+            );
+            let both = |each: &Difference| each.left.is_some() && each.right.is_some();
+            differences_ui(ui, unit, diff(unit.table(), &known.settings, ram).into_iter().filter(both));
+        }
+        (Saved::NotKnown { .. }, None) => {
             text_ui(ui, "What its EEPROM holds now is not known, so what changes there cannot be listed.");
         }
     }
@@ -166,6 +189,13 @@ fn save_ui(ui: &mut Ui, unit: &UnitSettings) -> Vec<Offer> {
             "Changes on this screen that are not written are not saved. Write them first to keep them.";
         lamp_ui(ui, LampState::Warning, text);
     }
+    let (wear, limits) = general.wear();
+    let state = match wear.level() {
+        WearLevel::Fine => LampState::Ok,
+        WearLevel::Half => LampState::Warning,
+        WearLevel::Worn => LampState::Error,
+    };
+    lamp_ui(ui, state, &format!("{} {limits}", wear.sentence()));
     vec![("Save", Act::Wish(SettingsWish::Save), true)]
 }
 
@@ -214,7 +244,7 @@ pub fn lamp_ui(ui: &mut Ui, state: LampState, text: &str) {
 }
 
 /// Old and new of each setting, with units.
-fn differences_ui(ui: &mut Ui, unit: &UnitSettings, differences: impl Iterator<Item = Difference>) {
+pub fn differences_ui(ui: &mut Ui, unit: &UnitSettings, differences: impl Iterator<Item = Difference>) {
     let weak = Palette::of(ui).weak_text;
     Grid::new("differences").num_columns(4).spacing([16.0, 3.0]).show(ui, |ui| {
         for difference in differences {
