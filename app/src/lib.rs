@@ -1,5 +1,6 @@
 //! See `ARCHITECTURE.md`.
 
+pub mod clamp;
 pub mod cli;
 pub mod gui;
 pub mod keep;

@@ -90,6 +90,7 @@ impl App {
         self.read_loops();
         self.end_calibrations();
         self.look_for_unfinished();
+        self.disarm_when_left();
         self.drive(&ctx);
         self.show_appearance(&ctx);
         if self.closing {
@@ -322,6 +323,7 @@ impl App {
                     unit.revert_all();
                 }
             }
+            Command::ClampTest => self.clamp_test(),
             other => self.apply_to_window(other),
         }
     }
@@ -430,7 +432,7 @@ impl App {
         if screen == self.model.screen || screen.missing().is_some() {
             return;
         }
-        if self.model.screen.arm_scope().is_some() {
+        if self.arm_scope().is_some() {
             self.disarm();
         }
         self.model.turn_to(screen);
@@ -450,6 +452,31 @@ impl App {
             && !self.request(request)
         {
             self.model.front.loops.not_begun();
+        }
+    }
+
+    /// What can be armed where the window stands.
+    fn arm_scope(&self) -> Option<ArmScope> {
+        let shows_settings = self.model.screen == Screen::GeneralSettings;
+        let in_settings = || self.model.front.general.arm_scope().filter(|_| shows_settings);
+        self.model.screen.arm_scope().or_else(in_settings)
+    }
+
+    fn clamp_test(&mut self) {
+        if let Some(request) = self.model.front.general.begin_clamp_test()
+            && !self.request(request)
+        {
+            self.model.front.general.clamp_test_not_begun();
+        }
+    }
+
+    /// Leaving the page of the clamp test disarms as leaving a screen does.
+    fn disarm_when_left(&mut self) {
+        let arming = self.model.front.link.arming;
+        let is_tested =
+            arming == Arming::Asked(ArmScope::ClampTest) || arming.is_armed_for(ArmScope::ClampTest);
+        if is_tested && self.arm_scope() != Some(ArmScope::ClampTest) {
+            self.disarm();
         }
     }
 
@@ -567,7 +594,7 @@ impl App {
     /// While armed: sends what the sliders ask for and lets the motion live on.
     fn drive(&mut self, ctx: &Context) {
         let armed_for = |scope| self.model.front.link.arming.is_armed_for(scope);
-        let Some(scope) = self.model.screen.arm_scope().filter(|scope| armed_for(*scope)) else { return };
+        let Some(scope) = self.arm_scope().filter(|scope| armed_for(*scope)) else { return };
         let Some(device) = self.links.device(self.model.front.id()) else { return };
         device.renew();
         let model = &mut self.model;

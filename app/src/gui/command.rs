@@ -71,6 +71,8 @@ pub enum Command {
     Exit,
     /// A profile to be played or QPPS to be measured.
     Guided(GuidedWish),
+    /// The voltage clamp test.
+    ClampTest,
     DismissMessage,
 }
 

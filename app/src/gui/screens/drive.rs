@@ -32,6 +32,9 @@ const ROOM_FOR_DRAWER: f32 = 520.0;
 const BAR_WIDTH: f32 = 10.0;
 
 const RISK: &str = "While armed, a slider moves its motor at once. Keep clear. Space or Esc stops both.";
+/// The same where a run is started instead.
+const RISK_OF_RUN: &str = "While armed, starting the test turns the motor at up to full speed. Keep hands and cables \
+                           clear. Space or Esc stops both motors.";
 
 /// What a screen that drives is made of: its head, its arm switch, its sliders in `controls_ui`, the drawer and the graph.
 pub fn drive_ui(
@@ -84,7 +87,7 @@ fn arm_ui(ui: &mut Ui, scope: ArmScope, link: &LinkView, commands: &mut Commands
                 commands.push(if armed { Command::Disarm } else { Command::Arm(scope) });
             }
             ui.vertical(|ui| {
-                ui.label(RISK);
+                ui.label(if scope == ArmScope::ClampTest { RISK_OF_RUN } else { RISK });
                 let color = palette.weak_text;
                 ui.label(RichText::new(fallback_text(link.arming)).small().color(color));
             });

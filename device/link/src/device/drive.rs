@@ -14,6 +14,8 @@ pub enum ArmScope {
     Velocity,
     /// The position screen.
     Position,
+    /// The test of the voltage clamp, which a job runs.
+    ClampTest,
     /// Tuning: experiments that a job runs.
     Tuning,
     /// The script screen: starting a script and nothing else.
@@ -42,6 +44,7 @@ impl fmt::Display for ArmScope {
             Self::Pwm => "the PWM screen",
             Self::Velocity => "the velocity screen",
             Self::Position => "the position screen",
+            Self::ClampTest => "the voltage clamp test",
             Self::Tuning => "tuning",
             Self::Script => "the script screen",
             Self::CommandLine => "the command line",

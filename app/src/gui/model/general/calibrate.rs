@@ -68,7 +68,7 @@ impl General {
 
     /// Whether nothing else may be done with the settings for now.
     pub fn is_busy(&self) -> bool {
-        self.running.is_some() || self.calibration.is_some()
+        self.running.is_some() || self.calibration.is_some() || self.clamp.is_running()
     }
 
     /// Begins to calibrate a pin; what to ask for next.

@@ -13,6 +13,7 @@ use kept::{Came, Kept};
 
 mod applicable;
 mod calibrate;
+mod clamp;
 mod compare;
 mod kept;
 mod outcome;
@@ -23,6 +24,7 @@ mod unit;
 mod work;
 
 pub use calibrate::Run as CalibrationRun;
+pub use clamp::{ClampTest, Verdict};
 pub use compare::{Comparing, Comparison, Side, Take};
 pub use kept::Settle;
 pub use profile::{Profiles, Purpose, Told};
@@ -44,6 +46,7 @@ pub struct General {
     pub explained: Option<String>,
     pub profiles: Profiles,
     calibration: Option<calibrate::Run>,
+    pub clamp: ClampTest,
     /// The row that is to be scrolled into view.
     sought: Option<String>,
     /// Which two copies are set side by side.
@@ -108,6 +111,7 @@ impl General {
         self.units.entry(key.clone()).or_insert_with(|| UnitSettings::new(identity));
         self.look_up(key.clone(), identity);
         self.current = Some(key);
+        self.forget_clamp_test();
         self.explained = None;
         self.sheet = None;
     }
@@ -216,6 +220,9 @@ impl General {
 
     /// Whether the event is about work that was begun here.
     pub fn awaits(&self, event: &Event) -> bool {
+        if self.awaits_clamp_test(event) {
+            return true;
+        }
         let Some(running) = &self.running else { return false };
         match event {
             Event::JobStarted { name } => *name == running.name,
@@ -227,6 +234,9 @@ impl General {
 
     /// Takes in an event that [`General::awaits`].
     pub fn take(&mut self, event: Event) -> Vec<Effect> {
+        if self.awaits_clamp_test(&event) {
+            return self.take_clamp_test(event);
+        }
         let Some(running) = &mut self.running else { return Vec::new() };
         match event {
             Event::JobStarted { .. } => running.has_started = true,
@@ -247,6 +257,7 @@ impl General {
         self.kept.forget_unit();
         self.sheet = None;
         self.calibration_lost();
+        self.clamp_test_lost();
         for unit in self.units.values_mut() {
             unit.forget();
         }

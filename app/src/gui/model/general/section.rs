@@ -14,6 +14,8 @@ pub enum Section {
     One(Group, usize),
     /// What contradicts itself.
     Conflicts,
+    /// The voltage clamp test.
+    ClampTest,
 }
 
 /// The ports whose lines are also those of a bus (MCP manual 1.9.4, 1.9.6): their numbers and what to call them.
@@ -62,7 +64,7 @@ pub fn sections(table: &SettingsTable) -> Vec<(Section, &str)> {
     }
     // Ion Studio lists ports, buses, inputs and outputs in this order.
     let place = |section: Section| match section {
-        Section::Conflicts => (0, Group::Unit),
+        Section::Conflicts | Section::ClampTest => (0, Group::Unit),
         Section::Group(group) => (0, group),
         Section::One(group @ Group::Streams, _) => (1, group),
         Section::One(group @ Group::Pins, _) => (3, group),

@@ -11,6 +11,7 @@ use crate::gui::model::Model;
 use crate::gui::model::general::{Section, SettingsWish};
 
 mod calibrate;
+mod clamp;
 mod compare;
 mod conflicts;
 mod editor;
@@ -54,15 +55,23 @@ pub fn general_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             ui.set_width(width);
             let help_height = help::height(size.y);
             let height = size.y - help_height - ui.spacing().item_spacing.y;
-            if let Some(pin) = general.pin() {
-                let signal = model.front.link.readings.signal(pin);
-                pin::pin_ui(ui, general, pin, signal, height, commands);
-            } else if general.section == Section::Conflicts && !general.is_filtered() {
-                conflicts::conflicts_ui(ui, general, height);
-            } else {
-                rows::rows_ui(ui, general, height);
+            // Pages without rows have nothing to explain.
+            match general.section {
+                Section::Conflicts if !general.is_filtered() => conflicts::conflicts_ui(ui, general, size.y),
+                Section::ClampTest if !general.is_filtered() => {
+                    clamp::clamp_ui(ui, general, &model.front.link, size.y, commands);
+                }
+                _ => {
+                    match general.pin() {
+                        Some(pin) => {
+                            let signal = model.front.link.readings.signal(pin);
+                            pin::pin_ui(ui, general, pin, signal, height, commands);
+                        }
+                        None => rows::rows_ui(ui, general, height),
+                    }
+                    help::help_ui(ui, general, help_height);
+                }
             }
-            help::help_ui(ui, general, help_height);
         });
     });
 }

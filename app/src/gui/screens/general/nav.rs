@@ -41,6 +41,10 @@ pub fn nav_ui(ui: &mut Ui, general: &mut General) {
                 if section_ui(ui, "Conflicts", None, mark, is_current).clicked() {
                     wanted = Some(Section::Conflicts);
                 }
+                let is_current = current == Some(Section::ClampTest);
+                if section_ui(ui, "Voltage clamp test", None, String::new(), is_current).clicked() {
+                    wanted = Some(Section::ClampTest);
+                }
             }
             ui.add_space(6.0);
         }
