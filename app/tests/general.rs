@@ -204,7 +204,7 @@ fn search_and_only_changed_pick_rows_from_all_sections() {
 
 #[test]
 fn each_pin_has_its_own_settings_and_those_that_do_not_apply_are_locked_with_the_reason() {
-    let mut bench = opened();
+    let mut bench = opened_in(Bench::sized([1280.0, 1000.0], egui::Theme::Dark));
     bench.press("Section DIN3/AN3");
     let type_of_pin = || brushwork_link::settings::SettingValue::Choice("none");
     let unit = bench.model().front.general.unit_mut().unwrap();

@@ -26,7 +26,7 @@ pub fn mode_of(scope: ArmScope) -> Option<Mode> {
         ArmScope::Pwm => Some(Mode::Duty),
         ArmScope::Velocity => Some(Mode::Speed),
         ArmScope::Position => Some(Mode::Position),
-        ArmScope::Tuning | ArmScope::Script | ArmScope::CommandLine => None,
+        ArmScope::ClampTest | ArmScope::Tuning | ArmScope::Script | ArmScope::CommandLine => None,
     }
 }
 

@@ -74,7 +74,7 @@ pub fn drive_ui(
 }
 
 /// The switch, the risk, and what stands in the way.
-fn arm_ui(ui: &mut Ui, scope: ArmScope, link: &LinkView, commands: &mut Commands) {
+pub fn arm_ui(ui: &mut Ui, scope: ArmScope, link: &LinkView, commands: &mut Commands) {
     let palette = Palette::of(ui);
     let armed = link.arming.is_armed_for(scope);
     // As thick armed as disarmed, so that nothing moves.
