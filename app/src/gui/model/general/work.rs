@@ -9,7 +9,7 @@ use brushwork_link::Failure;
 use brushwork_link::device::{FnJob, Job, JobContext};
 use brushwork_link::settings::{
     DefaultsReport, Keeper, ReadReport, SaveReport, SettingsImage, WriteError, WriteOptions, WriteReport,
-    defaults_kept, read_all, reload, save_kept, write_kept,
+    defaults_kept, read_all, reload, save_kept, write, write_kept,
 };
 use brushwork_link::transport::Stream;
 use crossbeam_channel::{Receiver, bounded};
@@ -104,9 +104,16 @@ pub(super) fn begin(
             let name = format!("write {}", super::outcome::settings(unit.edits().len()));
             writing(key, name, unit, unit.edits().clone(), options, keeper)
         }
-        SettingsWish::OpenInput | SettingsWish::CloseInput => {
-            let does = if wish == SettingsWish::OpenInput { "open the input" } else { "put the input back" };
-            writing(key, does.to_owned(), unit, input?, options, keeper)
+        SettingsWish::OpenInput => writing(key, "open the input".to_owned(), unit, input?, options, keeper),
+        SettingsWish::CloseInput => {
+            let wanted = input?;
+            // Without a backup: what would be backed up is the open range.
+            job(key, "put the input back".to_owned(), WRITING_LIMIT, move |context| {
+                Ok(match write(context, &table, &wanted, options) {
+                    Ok(report) => Outcome::Written(Box::new(report)),
+                    Err(error) => Outcome::NotWritten(error),
+                })
+            })
         }
         SettingsWish::Save => {
             job(key, "save the settings to EEPROM".to_owned(), WRITING_LIMIT, move |context| {
