@@ -115,8 +115,8 @@ pub fn abbreviated_ui(ui: &mut Ui, size: Vec2, abbreviation: &str, name: &str, s
     response.on_hover_text(format!("{name}: {}", state.word()))
 }
 
-/// Room for "since 10:00:00.0".
-const SINCE_WIDTH: f32 = 100.0;
+/// Room for "since 10:00:00".
+const SINCE_WIDTH: f32 = 92.0;
 
 /// A lamp in full: shape, name, word and since when on one line.
 pub fn full_ui(

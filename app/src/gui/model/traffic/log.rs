@@ -110,10 +110,17 @@ impl Transaction {
     /// Both directions in words.
     pub fn words(&self) -> String {
         match (self.request.is_empty(), self.reply.is_empty()) {
-            (false, false) => format!("{} -> {}", self.request, self.reply),
+            (false, false) => format!("{} -> {}", self.request, self.answer()),
             (true, _) => self.reply.clone(),
             (_, true) => format!("{} ({})", self.request, self.outcome.word()),
         }
+    }
+
+    /// The answer without the name of the command, which the request has already.
+    fn answer(&self) -> &str {
+        let repeated =
+            self.reply.strip_prefix(self.request.as_str()).and_then(|rest| rest.strip_prefix(": "));
+        repeated.unwrap_or(&self.reply)
     }
 
     /// Both directions as bytes.

@@ -7,7 +7,7 @@ use crate::gui::shell::heading_ui;
 use crate::gui::theme::{self, Palette};
 
 /// The list is at least this high, however small the window.
-pub const LEAST_HEIGHT: f32 = 170.0;
+pub const LEAST_HEIGHT: f32 = 300.0;
 
 const ROW_HEIGHT: f32 = 20.0;
 const TIME_WIDTH: f32 = 84.0;

@@ -8,7 +8,7 @@ use crate::gui::model::history::clock_text;
 use crate::gui::model::lamps;
 use crate::gui::shell::heading_ui;
 use crate::gui::theme::Palette;
-use crate::gui::widgets::lamp;
+use crate::gui::widgets::{LampState, lamp};
 
 /// Lamps in the first of the two columns.
 const FIRST_COLUMN: usize = 7;
@@ -18,8 +18,11 @@ pub fn lamps_ui(ui: &mut Ui, desk: &Desk, columns: usize) {
         for (index, lamp) in Lamp::ALL.into_iter().enumerate() {
             let column = &mut ui[usize::from(index >= FIRST_COLUMN).min(columns - 1)];
             column.spacing_mut().item_spacing.y = 4.0;
-            let since = desk.lamp_since(lamp).map(|since| format!("since {}", clock_text(since)));
             let state = desk.link.lamps.get(lamp);
+            let since = desk.lamp_since(lamp).filter(|_| state >= LampState::Ok).map(|since| {
+                let clock = clock_text(since);
+                format!("since {}", clock.split('.').next().unwrap_or_default())
+            });
             lamp::full_ui(column, lamp.abbreviation(), lamps::title(lamp), state, since.as_deref());
         }
     });

@@ -1,7 +1,7 @@
 //! Device Status (MCP manual 1.2.3 to 1.2.5): why the motors do not run, thirteen lamps in full, the LEDs, who the unit is,
 //! and what happened since the connection.
 
-use egui::{ScrollArea, Ui};
+use egui::{Align, Layout, ScrollArea, Ui};
 
 use super::{not_connected_text, nothing_ui, title_ui};
 use crate::gui::command::Commands;
@@ -35,14 +35,18 @@ pub fn status_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         ui.add_space(8.0);
         lamps::lamps_ui(ui, &model.front, columns);
         ui.add_space(8.0);
-        ui.columns(columns, |ui| {
-            leds::leds_ui(&mut ui[0], &model.front);
-            lamps::conditions_ui(&mut ui[0], &model.front);
-            unit::unit_ui(&mut ui[columns - 1], &model.front);
-        });
-        ui.add_space(8.0);
         let height = ui.available_height().max(history::LEAST_HEIGHT);
-        history::history_ui(ui, &mut model.front.history, height);
+        ui.columns(columns, |ui| {
+            // Columns stretch their text from edge to edge, which no paragraph is read by.
+            let left = Layout::top_down(Align::Min);
+            ui[0].with_layout(left, |ui| history::history_ui(ui, &mut model.front.history, height));
+            ui[columns - 1].with_layout(left, |ui| {
+                leds::leds_ui(ui, &model.front);
+                lamps::conditions_ui(ui, &model.front);
+                ui.add_space(6.0);
+                unit::unit_ui(ui, &model.front);
+            });
+        });
     });
 }
 
