@@ -50,16 +50,16 @@ fn the_log_can_be_filtered_paused_cleared_and_copied() {
     assert!(
         (0..log.shown_len()).all(|index| log.shown(index).is_some_and(|one| one.words().contains("battery")))
     );
-    bench.press("Copy");
+    bench.press("Copy log");
     assert!(bench.sees_part("Copied"));
-    bench.press("Pause");
+    bench.press("Pause log");
     let held = bench.model().front.traffic.log.len();
     bench.pass_ms(1000);
     assert_eq!(bench.model().front.traffic.log.len(), held);
     assert!(bench.sees_part("not recorded while paused"));
     bench.press("Clear log");
-    assert!(bench.sees_part("Paused. Press Go on to record."));
-    bench.press("Go on");
+    assert!(bench.sees_part("Paused. Press Record again to go on."));
+    bench.press("Record again");
     bench.pass_ms(500);
     assert!(!bench.model().front.traffic.log.is_empty());
 }
@@ -80,7 +80,7 @@ fn the_log_is_saved_to_a_file_and_a_failure_is_a_sentence() {
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
     let file = folder.path().join("traffic.txt");
     let mut bench = open();
-    bench.press("Save…");
+    bench.press("Save log…");
     bench.model().front.traffic.saving = Some(folder.path().join("no/such/folder.txt").display().to_string());
     bench.press("Save traffic");
     assert!(bench.sees_part("Could not save the traffic to"));

@@ -122,6 +122,12 @@ impl Bench {
         }
     }
 
+    /// One frame that comes so much after the last one.
+    pub fn pass_frame(&mut self, after: Duration) {
+        self.turn_loop(self.line.clock.now() + after);
+        self.harness.step();
+    }
+
     pub fn pass_ms(&mut self, milliseconds: u64) {
         self.pass(Duration::from_millis(milliseconds));
     }
@@ -236,6 +242,12 @@ impl Bench {
 
     pub fn key(&mut self, key: egui::Key) {
         self.harness.key_press(key);
+        self.harness.step();
+        self.pass(FRAME);
+    }
+
+    pub fn key_with(&mut self, modifiers: egui::Modifiers, key: egui::Key) {
+        self.harness.key_press_modifiers(modifiers, key);
         self.harness.step();
         self.pass(FRAME);
     }

@@ -29,14 +29,14 @@ pub fn head_ui(ui: &mut Ui, model: &mut Model, _commands: &mut Commands) {
         traffic.log.clear();
     }
     if ui
-        .add_enabled(has_any, egui::Button::new("Save…"))
+        .add_enabled(has_any, egui::Button::new("Save log…"))
         .on_hover_text("What the filter lets through")
         .clicked()
     {
         traffic.saving = Some(traffic.saving.take().unwrap_or_else(|| "traffic.txt".to_owned()));
     }
     if ui
-        .add_enabled(has_any, egui::Button::new("Copy"))
+        .add_enabled(has_any, egui::Button::new("Copy log"))
         .on_hover_text("What the filter lets through")
         .clicked()
     {
@@ -45,7 +45,7 @@ pub fn head_ui(ui: &mut Ui, model: &mut Model, _commands: &mut Commands) {
         model.messages.note(format!("Copied {count} transactions."));
     }
     let paused = model.front.traffic.log.is_paused();
-    let pause = if paused { "Go on" } else { "Pause" };
+    let pause = if paused { "Record again" } else { "Pause log" };
     if ui.button(pause).on_hover_text("Stops and continues the recording; the link goes on").clicked() {
         model.front.traffic.log.set_paused(!paused);
     }
@@ -75,7 +75,7 @@ pub fn log_ui(ui: &mut Ui, model: &mut Model, _commands: &mut Commands) {
 fn hint(traffic: &Traffic, connected: bool) -> &'static str {
     match (traffic.log.is_empty(), traffic.log.is_paused(), connected) {
         (false, ..) => "Nothing passes the filter.",
-        (true, true, _) => "Paused. Press Go on to record.",
+        (true, true, _) => "Paused. Press Record again to go on.",
         (true, false, true) => "Nothing has gone over the wire since the panel was opened.",
         (true, false, false) => {
             "Not connected. What goes over the wire is listed here, with times and bytes."
