@@ -2,7 +2,7 @@
 //! list of legs, which [`super::player`] plays.
 //!
 //! A step and a square wave change at once, a trapezoid and a jog at the pace of their screen. "At once" is, on the
-//! Position screen, a move at QPPS that gets there within [`AT_ONCE_S`]; packet serial of generation 1 has no other.
+//! Position screen, a move at QPPS that gets there within `AT_ONCE_S`; packet serial of generation 1 has no other.
 
 use std::ops::RangeInclusive;
 use std::time::Duration;
