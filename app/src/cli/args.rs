@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use brushwork_protocol::canopen::adapter::Form;
 use brushwork_sim::faults::FAULT_SYNTAX;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
@@ -72,7 +73,7 @@ pub enum Command {
 #[derive(Debug, Clone, Args)]
 pub struct ConnectArgs {
     /// sim:mcp266[,generation=4,preset=NAME], /dev/ttyACM0, /dev/ttyUSB0,baud=115200,stream=ttl1, COM3 or
-    /// tcp:HOST:PORT.
+    /// tcp:HOST:PORT; a CANopen bus as can:PORT[,node=3,form=binary].
     #[arg(long, short = 'c', value_name = "TARGET", default_value = "sim:mcp266")]
     pub connect: String,
     /// Address of the controller on its line.
@@ -204,6 +205,7 @@ const SIM_EXAMPLES: &str = "Examples:\n  \
     brushwork sim --pty /tmp/mcp\n  \
     brushwork sim --model mcp2166 --generation 4 --preset flywheel --tcp 127.0.0.1:7000\n  \
     brushwork sim --port ttl1 --pace --address 0x80,0x81,0x82 --pty /tmp/bus\n  \
+    brushwork sim --can ascii --node 3,5 --pty /tmp/can\n  \
     brushwork sim --pty /tmp/mcp --fault drop=0.01 --fault 'plant:locked-shaft@4s,motor=1'\n\n\
     Ctrl-C ends it. `brushwork sim --list` names the models and presets.";
 
@@ -232,6 +234,12 @@ pub struct SimArgs {
     /// Listen on this TCP address instead; port 0 picks a free one.
     #[arg(long, value_name = "127.0.0.1:PORT")]
     pub tcp: Option<String>,
+    /// Put the units on a CAN bus behind a GridConnect adapter that writes frames this way; the line is the adapter's.
+    #[arg(long, value_name = "ascii|binary", value_parser = parse_form, conflicts_with_all = ["port", "pace"])]
+    pub can: Option<Form>,
+    /// Node id on the CAN bus, or a comma-separated list: one simulated unit for each.
+    #[arg(long, value_name = "1..127", value_delimiter = ',', requires = "can", value_parser = clap::value_parser!(u8).range(1..=127))]
+    pub node: Vec<u8>,
     /// Send and take bytes at the port's set baud rate.
     #[arg(long)]
     pub pace: bool,
@@ -305,6 +313,10 @@ pub fn parse_seconds(text: &str) -> Result<Duration, String> {
         .filter(|seconds| (0.0..=1e7).contains(seconds))
         .map(Duration::from_secs_f64)
         .ok_or_else(|| format!("\"{text}\" is no time in seconds: use for example 2 or 0.5"))
+}
+
+fn parse_form(text: &str) -> Result<Form, String> {
+    Form::from_key(text).ok_or_else(|| format!("\"{text}\" is no form of a CAN adapter: use ascii or binary"))
 }
 
 fn parse_duty_percent(text: &str) -> Result<f64, String> {

@@ -4,6 +4,7 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use brushwork_protocol::canopen::adapter::Form;
 use brushwork_protocol::models::MODELS;
 use brushwork_sim::controller::Bus;
 use brushwork_sim::faults::{FAULT_SYNTAX, Fault};
@@ -44,6 +45,8 @@ fn start(args: &SimArgs) -> Result<(SimSpec, SimHandle<Bus>), Exit> {
         presets: args.preset.iter().map(String::as_str).collect(),
         addresses: args.address.clone(),
         seed: args.seed,
+        can: args.can,
+        nodes: args.node.clone(),
     };
     let spec = SimSpec::from_options(&options)
         .map_err(|error| usage(format!("Could not start the simulated controller: {error}.")))?;
@@ -95,8 +98,17 @@ fn serve(
     interrupt: &Interrupt,
 ) -> Exit {
     let place = server.address();
-    let greeting =
-        format!("{spec}, port {}, on {place}\nConnect with: brushwork --open {place}", spec_port(args));
+    let greeting = match args.can {
+        Some(form) => {
+            let form = if form == Form::default() { String::new() } else { format!(",form={}", form.key()) };
+            format!(
+                "{spec}, behind a CAN adapter on {place}\nConnect with: brushwork --open can:{place}{form}"
+            )
+        }
+        None => {
+            format!("{spec}, port {}, on {place}\nConnect with: brushwork --open {place}", spec_port(args))
+        }
+    };
     if out.line(greeting).is_err() {
         return Exit::Interrupted;
     }

@@ -56,7 +56,7 @@ impl LoaderPlace {
                 .unwrap_or_default()
                 .iter()
                 .any(|port| port.is_usb && port.name == real_path(path)),
-            ConnectTarget::Tcp { .. } | ConnectTarget::Sim(_) => false,
+            ConnectTarget::Tcp { .. } | ConnectTarget::Can { .. } | ConnectTarget::Sim(_) => false,
         };
         Self { target: target.clone(), simulation, changes_name }
     }

@@ -5,9 +5,12 @@
 
 use std::sync::Arc;
 
+use brushwork_link::device::can::{BusTransport, CanOpen, Monitor};
 use brushwork_link::device::{Addresses, DeviceHandle, DeviceOptions, DeviceThread, PollRate};
 use brushwork_link::transport::{ConnectTarget, OpenError, Stream, Transport, list_ports, ports};
 use brushwork_link::{Clock, HiddenSettings};
+use brushwork_protocol::canopen::NodeId;
+use brushwork_protocol::canopen::adapter::Form;
 
 pub mod firmware;
 pub mod sim_spec;
@@ -59,6 +62,11 @@ pub fn open(
     running: Option<Arc<Simulation>>,
 ) -> Result<Session, SessionError> {
     let (transport, simulation) = connect(target, running)?;
+    if let Some((node, form)) = on_can(target, simulation.as_deref()) {
+        let options =
+            node.map_or(options, |node| SessionOptions { addresses: Addresses::Only(node.get()), ..options });
+        return spawn_on_can(transport, clock, options, form, simulation);
+    }
     let stream = simulation.as_ref().map_or_else(|| stream_of(target), |running| Some(running.stream()));
     spawn(transport, clock, options, stream, simulation)
 }
@@ -82,11 +90,46 @@ pub fn connect(target: &ConnectTarget, running: Option<Arc<Simulation>>) -> Resu
     Ok((Box::new(simulation.connect()?), Some(simulation)))
 }
 
+/// Whether a CAN bus is at the end of a target: the node that is meant, if one is, and the adapter's form.
+fn on_can(target: &ConnectTarget, simulation: Option<&Simulation>) -> Option<(Option<NodeId>, Form)> {
+    match target {
+        ConnectTarget::Can { node, form, .. } => Some((*node, *form)),
+        _ => simulation?.can_form().map(|form| (None, form)),
+    }
+}
+
+fn spawn_on_can(
+    transport: Box<dyn Transport>,
+    clock: Arc<dyn Clock>,
+    options: SessionOptions,
+    form: Form,
+    simulation: Option<Arc<Simulation>>,
+) -> Result<Session, SessionError> {
+    let alone = simulation.clone().filter(|simulation| simulation.is_single());
+    let options = DeviceOptions {
+        addresses: match options.addresses {
+            // What was asked is an address of packet serial, which a node does not have.
+            Addresses::Only(address) if NodeId::new(address).is_none() => Addresses::Scan,
+            addresses => addresses,
+        },
+        poll: options.poll,
+        simulated: simulation.is_some(),
+        // Hidden settings are found by address, which nodes share.
+        hidden: alone.map(|simulation| simulation as Arc<dyn HiddenSettings>),
+        ..DeviceOptions::default()
+    };
+    let monitor = Monitor::default();
+    let transport = BusTransport::new(transport, Arc::clone(&clock), form, monitor.clone());
+    let family = Box::new(CanOpen::new(form, monitor));
+    let device = DeviceThread::spawn_family(Box::new(transport), clock, options, family);
+    Ok(Session { device: device.map_err(SessionError::Thread)?, simulation })
+}
+
 /// The stream of the controller that a port is wired to: as the user said, or as the port's name tells.
 fn stream_of(target: &ConnectTarget) -> Option<Stream> {
     target.stream().or_else(|| match target {
         ConnectTarget::Serial { path, .. } => ports::stream_of(path, &list_ports().unwrap_or_default()),
-        ConnectTarget::Tcp { .. } | ConnectTarget::Sim(_) => None,
+        ConnectTarget::Tcp { .. } | ConnectTarget::Can { .. } | ConnectTarget::Sim(_) => None,
     })
 }
 

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use brushwork_protocol::canopen::NodeId;
+use brushwork_protocol::canopen::adapter::Form;
 use brushwork_protocol::models::{self, Model};
 use brushwork_protocol::packet_serial::{Address, Generation};
 
@@ -12,6 +14,8 @@ pub struct SimSpec {
     pub units: Vec<UnitSpec>,
     /// Seed of noise and faults.
     pub seed: u64,
+    /// The units are nodes of a CAN bus, behind an adapter of this form.
+    pub can: Option<Form>,
 }
 
 /// One simulated controller.
@@ -25,6 +29,8 @@ pub struct UnitSpec {
     pub address: Address,
     /// Preset of motor 1 and motor 2.
     pub presets: [String; 2],
+    /// Its node id on a CAN bus.
+    pub node: NodeId,
 }
 
 /// Text that describes no simulated controller.
@@ -48,7 +54,7 @@ pub enum SimSpecError {
     },
     /// An option that does not exist.
     #[error(
-        "\"{given}\" is no option of a simulated controller. There are generation=1..4, preset=NAME, address=0x80..0x87 and seed=N"
+        "\"{given}\" is no option of a simulated controller. There are generation=1..4, preset=NAME, address=0x80..0x87, seed=N, can or can=binary, and node=1..127"
     )]
     Option {
         /// As given.
@@ -101,6 +107,10 @@ pub struct SimOptions<'a> {
     pub addresses: Vec<u8>,
     /// Seed of noise and faults.
     pub seed: u64,
+    /// The units are nodes of a CAN bus, behind an adapter of this form.
+    pub can: Option<Form>,
+    /// Node ids on the CAN bus, one unit for each; none means one unit with the id it leaves the factory with.
+    pub nodes: Vec<u8>,
 }
 
 impl SimSpec {
@@ -111,9 +121,20 @@ impl SimSpec {
     pub fn parse(text: &str) -> Result<Self, SimSpecError> {
         let mut parts = text.split(',').map(str::trim);
         let model = parts.next().filter(|name| !name.is_empty()).unwrap_or("mcp266");
-        let mut options =
-            SimOptions { models: vec![model], generation: 1, presets: vec![], addresses: vec![], seed: 1 };
+        let mut options = SimOptions {
+            models: vec![model],
+            generation: 1,
+            presets: vec![],
+            addresses: vec![],
+            seed: 1,
+            can: None,
+            nodes: vec![],
+        };
         for part in parts {
+            if part == "can" {
+                options.can = Some(Form::default());
+                continue;
+            }
             let Some((key, value)) = part.split_once('=') else {
                 return Err(SimSpecError::Option { given: part.to_owned() });
             };
@@ -130,6 +151,9 @@ impl SimSpec {
     /// # Errors
     /// A sentence that names the part at fault and what may stand there.
     pub fn from_options(options: &SimOptions<'_>) -> Result<Self, SimSpecError> {
+        if options.can.is_some() {
+            return Self::on_can(options);
+        }
         let (n_models, n_addresses) = (options.models.len(), options.addresses.len());
         if n_models != 1 && n_models != n_addresses {
             return Err(SimSpecError::Counts { models: n_models, addresses: n_addresses });
@@ -147,9 +171,37 @@ impl SimSpec {
             if units.iter().any(|unit| unit.address == address) {
                 return Err(SimSpecError::SameAddress { address });
             }
-            units.push(UnitSpec { model, generation, address, presets: presets.clone() });
+            units.push(UnitSpec {
+                model,
+                generation,
+                address,
+                presets: presets.clone(),
+                node: NodeId::DEFAULT,
+            });
         }
-        Ok(Self { units, seed: options.seed })
+        Ok(Self { units, seed: options.seed, can: None })
+    }
+
+    /// Units on a CAN bus: told apart by their node ids, all at the address they leave the factory with.
+    fn on_can(options: &SimOptions<'_>) -> Result<Self, SimSpecError> {
+        let nodes =
+            if options.nodes.is_empty() { vec![NodeId::DEFAULT.get()] } else { options.nodes.clone() };
+        let mut units: Vec<UnitSpec> = Vec::new();
+        for (index, id) in nodes.iter().enumerate() {
+            let name =
+                if options.models.len() == nodes.len() { options.models[index] } else { options.models[0] };
+            let alone = SimOptions {
+                models: vec![name],
+                addresses: vec![0x80],
+                can: None,
+                nodes: vec![],
+                ..options.clone()
+            };
+            let node = NodeId::new(*id).filter(|node| units.iter().all(|unit| unit.node != *node));
+            let node = node.ok_or_else(|| bad_node(&id.to_string()))?;
+            units.extend(Self::from_options(&alone)?.units.into_iter().map(|unit| UnitSpec { node, ..unit }));
+        }
+        Ok(Self { units, seed: options.seed, can: options.can })
     }
 }
 
@@ -157,7 +209,8 @@ impl fmt::Display for SimSpec {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, unit) in self.units.iter().enumerate() {
             let comma = if index == 0 { "" } else { ", " };
-            write!(f, "{comma}{} at {} ({})", unit.model.name, unit.address, unit.generation)?;
+            let place = if self.can.is_some() { unit.node.to_string() } else { unit.address.to_string() };
+            write!(f, "{comma}{} at {place} ({})", unit.model.name, unit.generation)?;
         }
         Ok(())
     }
@@ -174,6 +227,11 @@ fn set_option<'a>(options: &mut SimOptions<'a>, key: &str, value: &'a str) -> Re
             let parsed = parse_address(value).map_err(|_| bad_address(value))?;
             options.addresses.push(parsed);
         }
+        "can" => {
+            options.can =
+                Some(Form::from_key(value).ok_or_else(|| bad("form of a CAN adapter", "ascii or binary"))?);
+        }
+        "node" => options.nodes.push(value.parse().map_err(|_| bad_node(value))?),
         "seed" => options.seed = value.parse().map_err(|_| bad("seed", "a whole number"))?,
         _ => return Err(SimSpecError::Option { given: key.to_owned() }),
     }
@@ -194,6 +252,11 @@ pub fn parse_address(text: &str) -> Result<u8, String> {
         Some(address @ 0x80..=0x87) => Ok(address),
         _ => Err(format!("\"{text}\" is no address: use 0x80 to 0x87 (128 to 135)")),
     }
+}
+
+fn bad_node(given: &str) -> SimSpecError {
+    let range = "1 to 127, each once";
+    SimSpecError::Value { what: "node id", given: given.to_owned(), range }
 }
 
 fn bad_address(given: &str) -> SimSpecError {
@@ -242,6 +305,14 @@ mod tests {
     }
 
     #[test]
+    fn nodes_of_a_can_bus_are_told_apart_by_their_ids() {
+        let spec = SimSpec::parse("mcp266,can=binary,node=3,node=5").unwrap();
+        assert_eq!(spec.can, Some(Form::Binary));
+        assert_eq!(spec.to_string(), "MCP266 at node 3 (generation 1), MCP266 at node 5 (generation 1)");
+        assert_eq!(SimSpec::parse("mcp266,can").unwrap().to_string(), "MCP266 at node 1 (generation 1)");
+    }
+
+    #[test]
     fn what_is_wrong_is_named_together_with_what_would_be_right() {
         for (text, named) in [
             ("mcp999", "mcp266"),
@@ -249,6 +320,9 @@ mod tests {
             ("mcp266,preset=nothing", "gearmotor"),
             ("mcp266,address=7", "0x80 to 0x87"),
             ("mcp266,colour=red", "seed=N"),
+            ("mcp266,can=slcan", "ascii or binary"),
+            ("mcp266,can,node=0", "1 to 127"),
+            ("mcp266,can,node=3,node=3", "each once"),
             ("mcp266,address=0x80,address=0x80", "0x80"),
         ] {
             let error = SimSpec::parse(text).unwrap_err().to_string();

@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use brushwork_link::HiddenSettings;
 use brushwork_link::transport::{ChannelTransport, Stream};
+use brushwork_protocol::canopen::NodeId;
+use brushwork_protocol::canopen::adapter::Form;
 use brushwork_protocol::packet_serial::Address;
 use brushwork_sim::controller::{Bus, BusError, Controller, ControllerConfig};
 use brushwork_sim::machine::StreamIndex;
@@ -20,6 +22,7 @@ pub struct Simulation {
     text: String,
     addresses: Vec<Address>,
     stream: Stream,
+    can_form: Option<Form>,
     server: SimHandle<Bus>,
 }
 
@@ -64,6 +67,7 @@ impl Simulation {
             SimSpec::parse(text).map_err(|source| SimulationError::Spec { text: text.to_owned(), source })?;
         // Several units can only share a TTL wire; one alone hangs on USB.
         let (index, stream) = match spec.units.len() {
+            _ if spec.can.is_some() => (StreamIndex::Usb, Stream::Usb),
             1 => (StreamIndex::Usb, Stream::Usb),
             _ => (StreamIndex::Uart1, Stream::Ttl1),
         };
@@ -71,12 +75,22 @@ impl Simulation {
         let options = ServerOptions { stream: index, seed: spec.seed, ..ServerOptions::default() };
         let server = Server::spawn(bus, options, &Endpoint::Channel).map_err(SimulationError::Server)?;
         let addresses = spec.units.iter().map(|unit| unit.address).collect();
-        Ok(Self { text: text.to_owned(), addresses, stream, server })
+        Ok(Self { text: text.to_owned(), addresses, stream, can_form: spec.can, server })
     }
 
     /// Whether it runs and is what `text` describes.
     pub fn is(&self, text: &str) -> bool {
         self.text == text && self.server.is_running()
+    }
+
+    /// How the adapter writes frames, where the line is one to a CAN bus.
+    pub fn can_form(&self) -> Option<Form> {
+        self.can_form
+    }
+
+    /// Whether there is one unit alone.
+    pub fn is_single(&self) -> bool {
+        self.addresses.len() == 1
     }
 
     /// The stream of the controller that its line is on.
@@ -153,7 +167,10 @@ impl HiddenSettings for Simulation {
 /// Several units do not fit on this kind of wire.
 pub fn bus_of(spec: &SimSpec, stream: StreamIndex) -> Result<Bus, SimulationError> {
     let units = spec.units.iter().map(|unit| controller(unit, spec.seed)).collect::<Result<Vec<_>, _>>()?;
-    Ok(Bus::new(units, stream)?)
+    match spec.can {
+        Some(form) => Ok(Bus::on_can(units, form)?),
+        None => Ok(Bus::new(units, stream)?),
+    }
 }
 
 fn controller(unit: &UnitSpec, seed: u64) -> Result<Controller, ParamsError> {
@@ -161,13 +178,17 @@ fn controller(unit: &UnitSpec, seed: u64) -> Result<Controller, ParamsError> {
         presets::lookup(&unit.presets[index])
             .expect("the names of presets were checked when the text was read")
     };
-    Controller::new(ControllerConfig {
+    let mut config = ControllerConfig {
         generation: unit.generation,
         address: unit.address,
         world: presets::world_of(preset(0), preset(1), unit.model.pins.len()),
         seed,
         ..ControllerConfig::of(unit.model)
-    })
+    };
+    if unit.node != NodeId::DEFAULT {
+        config.set_node(unit.node);
+    }
+    Controller::new(config)
 }
 
 #[cfg(test)]

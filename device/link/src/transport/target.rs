@@ -1,16 +1,22 @@
 //! What the user types to say where a controller is, and the sentences for when it cannot be opened.
 //!
 //! `/dev/ttyACM0`, `COM3`, `tcp:host:port` and `sim:mcp266`; serial ports take options behind a comma:
-//! `/dev/ttyUSB0,baud=115200,stream=ttl1`. Any other text is taken as the path of a serial port, so that
+//! `/dev/ttyUSB0,baud=115200,stream=ttl1`. `can:` in front of a port or TCP address says that a CAN adapter is there:
+//! `can:/dev/ttyUSB0,node=3,form=binary`. Any other text is taken as the path of a serial port, so that
 //! links, pseudo-terminals and names this program has never heard of work too.
 
 use super::{SerialTransport, TcpTransport, Transport};
+use brushwork_protocol::canopen::NodeId;
+use brushwork_protocol::canopen::adapter::Form;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
 /// Baud rate of a serial port when none is given: the default of the family (public clients, 2015-2025).
 pub const DEFAULT_BAUD: u32 = 38_400;
+
+/// Baud rate of an adapter for a CAN bus when none is given. Assumed: the makers' manuals name no common one.
+pub const DEFAULT_ADAPTER_BAUD: u32 = 115_200;
 
 /// One of the controller's serial streams, as commands 145 and 146 count them (MCP manual 2.3.1, command 145).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -87,6 +93,15 @@ pub enum ConnectTarget {
         /// Which of the controller's streams the server is wired to, when the user said so.
         stream: Option<Stream>,
     },
+    /// A CAN bus behind an adapter on a serial port or a TCP server.
+    Can {
+        /// Where the adapter is.
+        adapter: Box<ConnectTarget>,
+        /// The node to speak to; all that answer when none is named.
+        node: Option<NodeId>,
+        /// How the adapter writes frames.
+        form: Form,
+    },
     /// A simulated controller in this program; the text says which and is read by the application.
     Sim(String),
 }
@@ -100,6 +115,7 @@ impl ConnectTarget {
                 Ok(transport) => Ok(Box::new(transport)),
                 Err(source) => Err(OpenError::Tcp { address: address.clone(), source }),
             },
+            Self::Can { adapter, .. } => adapter.open(),
             Self::Sim(_) => Err(OpenError::SimulatedElsewhere),
         }
     }
@@ -109,7 +125,7 @@ impl ConnectTarget {
     pub fn stream(&self) -> Option<Stream> {
         match self {
             Self::Serial { stream, .. } | Self::Tcp { stream, .. } => *stream,
-            Self::Sim(_) => None,
+            Self::Can { .. } | Self::Sim(_) => None,
         }
     }
 }
@@ -124,6 +140,9 @@ impl FromStr for ConnectTarget {
         }
         if let Some(rest) = strip_scheme(text, "sim:") {
             return Ok(Self::Sim(rest.to_owned()));
+        }
+        if let Some(rest) = strip_scheme(text, "can:") {
+            return parse_can(rest);
         }
         let (place, options) = split_options(text)?;
         match strip_scheme(place, "tcp:") {
@@ -147,6 +166,23 @@ impl fmt::Display for ConnectTarget {
                 }
             }
             Self::Tcp { address, .. } => write!(f, "tcp:{address}")?,
+            Self::Can { adapter, node, form } => {
+                match adapter.as_ref() {
+                    Self::Serial { path, baud, .. } => {
+                        write!(f, "can:{path}")?;
+                        if *baud != DEFAULT_ADAPTER_BAUD {
+                            write!(f, ",baud={baud}")?;
+                        }
+                    }
+                    other => write!(f, "can:{other}")?,
+                }
+                if let Some(node) = node {
+                    write!(f, ",node={}", node.get())?;
+                }
+                if *form != Form::default() {
+                    write!(f, ",form={}", form.key())?;
+                }
+            }
             Self::Sim(what) => write!(f, "sim:{what}")?,
         }
         self.stream().map_or(Ok(()), |stream| write!(f, ",stream={}", stream.key()))
@@ -168,6 +204,18 @@ pub enum TargetError {
     /// A baud rate out of range.
     #[error("\"{given}\" is no baud rate. Packet serial takes 300 to 1000000")]
     Baud {
+        /// What was given.
+        given: String,
+    },
+    /// A node id out of range.
+    #[error("\"{given}\" is no node id. CANopen has 1 to 127")]
+    Node {
+        /// What was given.
+        given: String,
+    },
+    /// An unknown form of adapter.
+    #[error("\"{given}\" is no form of a CAN adapter. Use ascii or binary")]
+    Form {
         /// What was given.
         given: String,
     },
@@ -247,6 +295,37 @@ pub enum OpenError {
     SimulatedElsewhere,
 }
 
+/// Reads what stands behind "can:".
+fn parse_can(text: &str) -> Result<ConnectTarget, TargetError> {
+    let (mut node, mut form, mut baud) = (None, Form::default(), DEFAULT_ADAPTER_BAUD);
+    let mut place = text;
+    while let Some((before, last)) = place.rsplit_once(',') {
+        if let Some(given) = last.strip_prefix("node=") {
+            node = Some(parse_node(given)?);
+        } else if let Some(given) = last.strip_prefix("form=") {
+            form = Form::from_key(given).ok_or_else(|| TargetError::Form { given: given.to_owned() })?;
+        } else if let Some(given) = last.strip_prefix("baud=") {
+            baud = parse_baud(given)?;
+        } else {
+            break;
+        }
+        place = before;
+    }
+    if place.is_empty() {
+        return Err(TargetError::Empty);
+    }
+    let adapter = match strip_scheme(place, "tcp:") {
+        Some(address) => parse_tcp(address, &Options::default())?,
+        None => ConnectTarget::Serial { path: place.to_owned(), baud, stream: None },
+    };
+    Ok(ConnectTarget::Can { adapter: Box::new(adapter), node, form })
+}
+
+fn parse_node(given: &str) -> Result<NodeId, TargetError> {
+    let node = given.parse().ok().and_then(NodeId::new);
+    node.ok_or_else(|| TargetError::Node { given: given.to_owned() })
+}
+
 /// The options behind the commas.
 #[derive(Default)]
 struct Options {
@@ -304,6 +383,10 @@ mod tests {
         ConnectTarget::Serial { path: path.to_owned(), baud, stream }
     }
 
+    fn can(adapter: ConnectTarget, node: Option<NodeId>, form: Form) -> ConnectTarget {
+        ConnectTarget::Can { adapter: Box::new(adapter), node, form }
+    }
+
     #[test]
     fn every_form_of_target_is_understood() {
         let cases = [
@@ -318,6 +401,19 @@ mod tests {
                 ConnectTarget::Tcp { address: "[::1]:5000".into(), stream: Some(Stream::Rs232) },
             ),
             ("sim:mcp266,generation=4", ConnectTarget::Sim("mcp266,generation=4".into())),
+            ("can:COM7", can(serial("COM7", 115_200, None), None, Form::Ascii)),
+            (
+                "can:/dev/ttyUSB0,baud=230400,node=3,form=binary",
+                can(serial("/dev/ttyUSB0", 230_400, None), NodeId::new(3), Form::Binary),
+            ),
+            (
+                "CAN:tcp:localhost:4000,node=127",
+                can(
+                    ConnectTarget::Tcp { address: "localhost:4000".into(), stream: None },
+                    NodeId::new(127),
+                    Form::Ascii,
+                ),
+            ),
         ];
         for (text, target) in cases {
             assert_eq!(text.parse::<ConnectTarget>().unwrap(), target, "{text}");
@@ -326,8 +422,14 @@ mod tests {
 
     #[test]
     fn a_target_prints_as_it_is_typed() {
-        for text in ["/dev/ttyACM0", "COM3,baud=9600,stream=usb", "tcp:[::1]:5000,stream=ttl3", "sim:mcp266"]
-        {
+        for text in [
+            "can:/dev/ttyUSB0,baud=9600,node=3,form=binary",
+            "can:tcp:[::1]:5000",
+            "/dev/ttyACM0",
+            "COM3,baud=9600,stream=usb",
+            "tcp:[::1]:5000,stream=ttl3",
+            "sim:mcp266",
+        ] {
             assert_eq!(text.parse::<ConnectTarget>().unwrap().to_string(), text);
         }
     }
@@ -341,5 +443,8 @@ mod tests {
         assert!(sentence("tcp::80").contains("tcp:host:port"));
         assert!(sentence("COM3,baud=12").contains("300 to 1000000"));
         assert!(sentence("COM3,stream=can").contains("rs232"));
+        assert!(sentence("can:COM3,node=0").contains("1 to 127"));
+        assert!(sentence("can:COM3,form=slcan").contains("ascii or binary"));
+        assert!(sentence("can:").contains("no port was named"));
     }
 }

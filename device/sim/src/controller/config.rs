@@ -5,6 +5,7 @@ use crate::plant::EncoderKind;
 use crate::presets;
 use crate::settings::{MotorRegisters, Settings, SignalSettings};
 use crate::world::WorldParams;
+use brushwork_protocol::canopen::NodeId;
 use brushwork_protocol::models::{self, Family, Model};
 use brushwork_protocol::packet_serial::{Address, Generation};
 
@@ -65,6 +66,13 @@ impl ControllerConfig {
 }
 
 impl ControllerConfig {
+    /// Makes it another node of a CAN bus than the one it leaves the factory as.
+    pub fn set_node(&mut self, node: NodeId) {
+        let mut settings = self.stored_settings();
+        settings.unit.can_node_id = node.get();
+        self.settings = Some(settings);
+    }
+
     /// What the EEPROM holds at first.
     pub(super) fn stored_settings(&self) -> Settings {
         let factory = || {
