@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use brushwork_protocol::canopen::NodeId;
+use brushwork_protocol::canopen::adapter::Form;
 use brushwork_protocol::packet_serial::{Generation, Motor};
 use brushwork_sim::bridge::BridgeOutput;
 use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
@@ -36,12 +38,29 @@ impl OnPty {
     /// When the controller cannot be built or the system gives no pseudo-terminal.
     #[must_use]
     pub fn start_with(config: ControllerConfig, stream: StreamIndex) -> Self {
-        let folder = tempfile::tempdir().expect("a temporary folder can be made");
         let controller = Controller::new(config).expect("the presets make a controller");
+        Self::serve(Bus::single(controller, stream), stream)
+    }
+
+    /// An MCP266 as a node of a CAN bus, behind an adapter.
+    ///
+    /// # Panics
+    /// When the system gives no pseudo-terminal.
+    #[must_use]
+    pub fn on_can(node: NodeId, form: Form) -> Self {
+        let mut config = ControllerConfig::default();
+        config.set_node(node);
+        let controller = Controller::new(config).expect("the presets make a controller");
+        let bus = Bus::on_can(vec![controller], form).expect("there is a unit");
+        Self::serve(bus, StreamIndex::Usb)
+    }
+
+    fn serve(bus: Bus, stream: StreamIndex) -> Self {
+        let folder = tempfile::tempdir().expect("a temporary folder can be made");
         let endpoint = Endpoint::Pty { link: folder.path().join("controller") };
         let options = ServerOptions { stream, ..ServerOptions::default() };
-        let handle = Server::spawn(Bus::single(controller, stream), options, &endpoint)
-            .expect("the system has a pseudo-terminal to give");
+        let handle =
+            Server::spawn(bus, options, &endpoint).expect("the system has a pseudo-terminal to give");
         Self { handle, folder }
     }
 

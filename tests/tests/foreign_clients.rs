@@ -2,6 +2,8 @@
 #![cfg(unix)]
 #![expect(clippy::print_stdout, reason = "figures and refusals belong into the record of a test run")]
 
+use brushwork_protocol::canopen::NodeId;
+use brushwork_protocol::canopen::adapter::Form;
 use brushwork_protocol::packet_serial::Generation;
 use brushwork_tests::foreign::{self, Findings};
 use brushwork_tests::simulated::OnPty;
@@ -91,6 +93,21 @@ fn clients_in_three_styles_find_a_generation_1_controller() {
     println!("{} findings", findings.findings.len());
     assert!(findings.failures().is_empty(), "{:#?}", findings.failures());
     assert!(findings.findings.len() > 300, "the script checked only {} things", findings.findings.len());
+}
+
+#[test]
+fn the_python_package_canopen_reads_drives_and_loses_the_node() {
+    if foreign::is_left_out("python") {
+        return;
+    }
+    let node = NodeId::new(3).unwrap();
+    let mut controller = OnPty::on_can(node, Form::Ascii);
+    let port = controller.port();
+    let findings = foreign::run("canopen_check.py", &port, &["3"], &mut controller);
+    print(&findings);
+    println!("{} findings", findings.findings.len());
+    assert!(findings.failures().is_empty(), "{:#?}", findings.failures());
+    assert!(findings.findings.len() >= 23, "the script checked only {} things", findings.findings.len());
 }
 
 #[test]

@@ -49,6 +49,8 @@ pub struct WindowArgs {
 pub enum Command {
     /// List serial ports and simulated controllers.
     List(ListArgs),
+    /// List the nodes of a CANopen bus.
+    Nodes(NodesArgs),
     /// Show measurements, lamps and why the motors do not run.
     Status(StatusArgs),
     /// Drive a motor until the time is over or you stop it.
@@ -108,6 +110,22 @@ pub struct ListArgs {
     /// Also open each port and ask the addresses 0x80 to 0x87 who is there.
     #[arg(long)]
     pub scan: bool,
+}
+
+/// Arguments of `brushwork nodes`.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    brushwork nodes --connect can:/dev/ttyUSB0\n  \
+    brushwork nodes --connect can:COM5,form=binary,baud=230400 --json\n  \
+    brushwork nodes --connect sim:mcp266,can,node=3,node=5\n\n\
+    Every node id is asked for its device type, and heartbeats are listened for. The bus rate is the adapter's own setting.")]
+pub struct NodesArgs {
+    /// The adapter: can:PORT[,baud=115200,form=ascii|binary], or simulated nodes.
+    #[arg(long, short = 'c', value_name = "TARGET", default_value = "sim:mcp266,can")]
+    pub connect: String,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Arguments of `brushwork status`.

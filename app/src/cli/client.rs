@@ -99,12 +99,13 @@ fn wait_for_identity(
     interrupt: &Interrupt,
 ) -> Result<(Identity, Option<Stream>), Exit> {
     let deadline = Instant::now() + CONNECT_LIMIT;
-    let mut found = None;
+    let mut found: Vec<Identity> = Vec::new();
     while Instant::now() < deadline {
         match next_event(device, interrupt)? {
-            Some(Event::Connected(identity)) => found = Some(identity),
-            Some(Event::Selected { stream, .. }) => {
-                if let Some(identity) = found {
+            Some(Event::Connected(identity)) => found.push(identity),
+            Some(Event::Selected { address, stream }) => {
+                let selected = found.iter().find(|identity| identity.address == address).cloned();
+                if let Some(identity) = selected {
                     return Ok((identity, stream));
                 }
             }

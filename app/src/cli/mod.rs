@@ -12,6 +12,7 @@ mod firmware;
 mod interrupt;
 mod list;
 mod monitor;
+mod nodes;
 mod output;
 mod protocol;
 mod response;
@@ -60,6 +61,7 @@ fn window_options(args: &WindowArgs) -> WindowOptions {
 fn dispatch(command: &Command, out: &mut Output, interrupt: &Interrupt) -> Exit {
     match command {
         Command::List(args) => list::run(args, out, interrupt),
+        Command::Nodes(args) => nodes::run(args, out, interrupt),
         Command::Status(args) => status::run(args, out, interrupt),
         Command::Drive(args) => drive::run(args, out, interrupt),
         Command::Stop(args) => stop::run(args, out, interrupt),

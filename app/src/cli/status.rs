@@ -191,9 +191,9 @@ fn print(
     let identity = &client.identity;
     let simulated = if identity.simulated { ", simulated" } else { "" };
     out.line(format!(
-        "{} at {:#04x} on {} ({}, {}{simulated})",
+        "{} at {} on {} ({}, {}{simulated})",
         identity.title(),
-        identity.address,
+        identity.place(),
         identity.port,
         identity.version_text,
         identity.generation

@@ -76,7 +76,7 @@ impl<'i> Controller<'i> {
 
     /// "0x80 at /dev/ttyACM0".
     pub fn describe(&self) -> String {
-        format!("{:#04x} at {}", self.identity().address, self.identity().port)
+        format!("{} at {}", self.identity().place(), self.identity().port)
     }
 
     /// Its address when it was connected.

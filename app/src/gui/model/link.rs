@@ -128,18 +128,16 @@ impl LinkView {
     }
 
     fn connected(&mut self, identity: Identity) -> Vec<Effect> {
-        let mut said = format!(
-            "Connected to {} at {}, address 0x{:02X}",
-            identity.title(),
-            identity.port,
-            identity.address
-        );
+        let mut said =
+            format!("Connected to {} at {}, {}", identity.title(), identity.port, identity.named_place());
         if !identity.firmware.is_empty() {
             said += &format!(", firmware {}", identity.firmware);
         }
         said += &format!(" ({}).", identity.generation);
         let mut effects = vec![Effect::Say(Gravity::Note, said)];
-        let notes = identity.notes.iter().map(|note| Effect::Say(Gravity::Warning, note.clone()));
+        // A node's notes are its CANopen identity, which is nothing odd.
+        let gravity = if identity.is_node() { Gravity::Note } else { Gravity::Warning };
+        let notes = identity.notes.iter().map(|note| Effect::Say(gravity, note.clone()));
         effects.extend(notes);
         self.units.retain(|unit| unit.address != identity.address);
         self.units.push(identity);

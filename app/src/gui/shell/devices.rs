@@ -96,7 +96,7 @@ fn answered(identity: &Identity) -> String {
         "" => "firmware not told".to_owned(),
         version => format!("firmware {version}"),
     };
-    format!("{} · 0x{:02X} · {firmware}", identity.title(), identity.address)
+    format!("{} · {} · {firmware}", identity.title(), identity.place())
 }
 
 /// What is so with a device: a word, and a lamp that says the same by colour and shape.
@@ -345,5 +345,5 @@ fn units_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
 }
 
 fn unit_text(unit: &Identity) -> String {
-    format!("0x{:02X}  {}", unit.address, unit.title())
+    format!("{}  {}", unit.place(), unit.title())
 }

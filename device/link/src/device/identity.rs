@@ -50,6 +50,12 @@ impl Identity {
         if self.is_node() { format!("node {}", self.address) } else { format!("0x{:02X}", self.address) }
     }
 
+    /// The same with its kind: "address 0x80", or "node 3".
+    #[must_use]
+    pub fn named_place(&self) -> String {
+        if self.is_node() { self.place() } else { format!("address {}", self.place()) }
+    }
+
     /// The model, or what the unit calls itself.
     #[must_use]
     pub fn title(&self) -> &str {

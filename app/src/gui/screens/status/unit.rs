@@ -19,7 +19,7 @@ pub fn unit_ui(ui: &mut Ui, desk: &Desk) {
     let rows = [
         ("Says of itself", identity.version_text.trim().to_owned()),
         ("Firmware", format!("{}, {}", or_not_told(&identity.firmware), identity.generation)),
-        ("Address", format!("0x{:02X}{}", identity.address, addresses(&identity.also_answers))),
+        ("Address", format!("{}{}", identity.place(), addresses(&identity.also_answers))),
         ("Port", format!("{} ({stream})", identity.port)),
         ("Status word", desk.link.status.as_ref().map_or(String::new(), word_text)),
         (

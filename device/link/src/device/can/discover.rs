@@ -73,24 +73,28 @@ impl CanOpen {
         }
     }
 
-    /// Finds out all about one node; `None` if it is none of this family.
+    /// Finds out all about one node; `None` if nobody answers, a clause if it is none of this family.
     fn identify(
         &self,
         line: &mut Line<'_>,
         node: NodeId,
         simulated: bool,
-    ) -> Result<Result<Box<dyn Controller>, String>, ExchangeError> {
+    ) -> Result<Option<Result<Box<dyn Controller>, String>>, ExchangeError> {
         let place = self.place(node);
         let version = match read(line, place, index_of(number::READ_VERSION), TEXT) {
             Ok((bytes, _)) => String::from_utf8_lossy(&bytes).trim().to_owned(),
             Err(error) if error.is_link_lost() || error.interruption().is_some() => return Err(error),
-            Err(error) => return Ok(Err(format!("{node} has no version of an MCP ({})", error.full()))),
+            Err(error) if error.is_no_answer() => return Ok(None),
+            Err(error) => {
+                return Ok(Some(Err(format!("{node} has no version of an MCP ({})", error.full()))));
+            }
         };
         let mut notes = identity_notes(line, place)?;
         if let Some(state) = self.monitor.state(node) {
             notes.push(format!("Its heartbeat says: {state}."));
         }
-        Ok(Ok(Box::new(mcp::identify_node(line, place, &self.monitor, &version, simulated, notes)?)))
+        let unit = mcp::identify_node(line, place, &self.monitor, &version, simulated, notes)?;
+        Ok(Some(Ok(Box::new(unit))))
     }
 }
 
@@ -105,8 +109,9 @@ impl Family for CanOpen {
         let mut others = Vec::new();
         for node in self.nodes(line, options.addresses)? {
             match self.identify(line, node, options.simulated)? {
-                Ok(unit) => units.push(unit),
-                Err(why) => others.push(why),
+                Some(Ok(unit)) => units.push(unit),
+                Some(Err(why)) => others.push(why),
+                None => {}
             }
         }
         if units.is_empty() {
