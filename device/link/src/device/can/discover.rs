@@ -19,6 +19,9 @@ use std::time::Duration;
 /// How long answers and heartbeats are waited for: a node that beats once a second is heard.
 const LISTEN_FOR: Duration = Duration::from_millis(1200);
 
+/// A controller, or why a node is none.
+type Found = Result<Box<dyn Controller>, String>;
+
 /// MCP controllers on a CANopen bus.
 pub struct CanOpen {
     form: Form,
@@ -79,7 +82,7 @@ impl CanOpen {
         line: &mut Line<'_>,
         node: NodeId,
         simulated: bool,
-    ) -> Result<Option<Result<Box<dyn Controller>, String>>, ExchangeError> {
+    ) -> Result<Option<Found>, ExchangeError> {
         let place = self.place(node);
         let version = match read(line, place, index_of(number::READ_VERSION), TEXT) {
             Ok((bytes, _)) => String::from_utf8_lossy(&bytes).trim().to_owned(),
