@@ -16,6 +16,7 @@ use egui::{Context, Ui, ViewportCommand};
 
 use super::actions;
 use super::command::{Command, GuidedWish};
+use super::ending::EndBySignal;
 use super::keys;
 use super::links::{self, Links};
 use super::model::devices::Choice;
@@ -27,6 +28,7 @@ use super::model::palette::Palette;
 use super::model::screen::Screen;
 use super::model::{Appearance, Desk, DeskId, Model, Phase, place_of};
 use super::parts::{OpenLink, Parts};
+use super::remember::Memory;
 use super::{shell, theme};
 
 /// Time between two frames while nobody touches anything: ten a second show what ten samples a second bring.
@@ -46,6 +48,8 @@ pub struct App {
     shown: Option<Appearance>,
     /// The window was asked to close.
     closing: bool,
+    memory: Option<Memory>,
+    end: EndBySignal,
     last_frame: Arc<FrameTime>,
 }
 
@@ -59,8 +63,22 @@ impl App {
             links: Links::default(),
             shown: None,
             closing: false,
+            memory: None,
+            end: EndBySignal::default(),
             last_frame: Arc::new(FrameTime::new()),
         }
+    }
+
+    /// Makes the window like it was, and keeps from now on what it is like.
+    pub fn remember(&mut self, memory: Memory) {
+        memory.remembered().recall(&mut self.model);
+        self.memory = Some(memory);
+    }
+
+    /// Closes, with all motors stopped, when a signal asks the program to end.
+    pub fn end_by(&mut self, end: EndBySignal, ctx: &Context) {
+        end.set_window(ctx.clone());
+        self.end = end;
     }
 
     /// Connects to what a person would have typed into the device list.
@@ -93,7 +111,10 @@ impl App {
         self.disarm_when_left();
         self.drive(&ctx);
         self.show_appearance(&ctx);
-        if self.closing {
+        if let Some(failure) = self.memory.as_mut().and_then(|memory| memory.look(&ctx, &self.model)) {
+            self.model.messages.warn(failure.to_string());
+        }
+        if self.closing || self.end.is_asked() {
             self.links.stop_all();
             ctx.send_viewport_cmd(ViewportCommand::Close);
         }
@@ -211,23 +232,24 @@ impl App {
 
     fn opened(&mut self, id: DeskId, opened: OpenLink, ctx: &Context) {
         let ports = self.model.devices.ports().to_vec();
-        let link = self.links.entry(id);
-        link.opening = None;
+        self.links.entry(id).opening = None;
         // A desk that was given up meanwhile: the link is closed again by being dropped.
         let Some(desk) = self.model.desk_mut(id) else { return };
         let target = desk.phase.target().unwrap_or_default().to_owned();
-        self.model.devices.remember(&target);
-        let Some(desk) = self.model.desk_mut(id) else { return };
-        desk.phase = Phase::Open { target };
+        desk.phase = Phase::Open { target: target.clone() };
         desk.link = LinkView::default();
         desk.general.keep_in(self.parts.keeping.clone(), ports);
         desk.world.forget();
-        link.world = opened.world;
-        opened.device.set_waker(waker(ctx.clone(), self.last_frame.clone()));
         let poll = desk.poll;
+        self.model.devices.remember(&target);
+        self.model.devices.opened(&target);
+        opened.device.set_waker(waker(ctx.clone(), self.last_frame.clone()));
+        let link = self.links.entry(id);
+        link.world = opened.world;
         link.device = Some(opened.device);
         link.reads_signals = false;
         link.traced = false;
+        self.end.watch(self.links.stoppers().collect());
         if poll != PollRate::default() {
             self.request_of(id, Request::Poll(poll));
         }
@@ -312,7 +334,11 @@ impl App {
             Command::Guided(wish) => self.guided(wish),
             Command::OpenSheet(sheet) => {
                 self.show(Screen::GeneralSettings);
-                self.model.front.general.open(sheet);
+                let front = &mut self.model.front;
+                if let Some(identity) = front.link.identity() {
+                    front.general.look_at(identity);
+                }
+                front.general.open_once_read(sheet);
             }
             Command::FindSetting => {
                 self.show(Screen::GeneralSettings);

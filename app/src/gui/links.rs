@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use brushwork_link::device::DeviceHandle;
+use brushwork_link::device::{DeviceHandle, Stopper};
 use crossbeam_channel::Receiver;
 
 use super::model::DeskId;
@@ -43,6 +43,11 @@ impl Links {
     /// Every desk that has or had a link.
     pub fn ids(&self) -> Vec<DeskId> {
         self.0.keys().copied().collect()
+    }
+
+    /// What stops the open links.
+    pub fn stoppers(&self) -> impl Iterator<Item = Stopper> {
+        self.0.values().filter_map(|link| link.device.as_ref()).map(DeviceHandle::stopper)
     }
 
     /// Stops all motors of every open link. Waits for none of them.

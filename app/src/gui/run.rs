@@ -7,10 +7,12 @@ use std::any::Any;
 use std::panic::{self, AssertUnwindSafe};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use egui::{Ui, ViewportBuilder, vec2};
+use egui::{Ui, Vec2, ViewportBuilder, vec2};
 
 use super::App;
+use super::ending::EndBySignal;
 use super::opener::real_parts;
+use super::remember::{Memory, Remembered};
 
 /// A commutator between its two brushes.
 const ICON: &[u8] = include_bytes!("../../../assets/icon/brushwork.png");
@@ -42,15 +44,22 @@ pub fn run(window: WindowOptions) -> Result<(), WindowError> {
         return Err(WindowError { reason });
     }
     let opened = Arc::new(Mutex::new(false));
+    let (memory, trouble) = Memory::open();
+    let options = native_options(memory.remembered());
     let result = quietly_until(&opened, || {
         let opened = opened.clone();
         eframe::run_native(
             "Brushwork",
-            native_options(),
+            options,
             Box::new(move |creation| {
                 *opened.lock().unwrap_or_else(PoisonError::into_inner) = true;
                 let mut app = App::new(&creation.egui_ctx, real_parts(&creation.egui_ctx));
-                app.model.appearance.plain = window.plain;
+                app.remember(memory);
+                app.end_by(EndBySignal::install(), &creation.egui_ctx);
+                app.model.appearance.plain |= window.plain;
+                if let Some(failure) = trouble {
+                    app.model.messages.warn(failure.to_string());
+                }
                 if let Some(target) = &window.open {
                     app.open(target);
                 }
@@ -74,12 +83,22 @@ impl eframe::App for Window {
     }
 }
 
-fn native_options() -> eframe::NativeOptions {
+/// The least that every screen has room in.
+const LEAST_SIZE: Vec2 = vec2(1024.0, 700.0);
+
+fn native_options(remembered: &Remembered) -> eframe::NativeOptions {
+    let window = remembered.window;
+    let size = window.map_or(vec2(1280.0, 800.0), |window| window.size.into());
     let viewport = ViewportBuilder::default()
         .with_title("Brushwork")
         .with_app_id("brushwork")
-        .with_inner_size(vec2(1280.0, 800.0))
-        .with_min_inner_size(vec2(1024.0, 700.0));
+        .with_inner_size(size.max(LEAST_SIZE))
+        .with_min_inner_size(LEAST_SIZE)
+        .with_maximized(window.is_some_and(|window| window.maximized));
+    let viewport = match window.and_then(|window| window.at) {
+        Some(at) => viewport.with_position(at),
+        None => viewport,
+    };
     // Without a picture of our own the window has the toolkit's.
     let viewport = match eframe::icon_data::from_png_bytes(ICON) {
         Ok(icon) => viewport.with_icon(icon),

@@ -15,7 +15,7 @@ pub fn help_ui(ctx: &Context, model: &mut Model, room: Rect) {
     let Some(page) = model.help.page else { return };
     let mut open = true;
     let size = vec2(780.0, 520.0).min(room.size() - vec2(24.0, 60.0));
-    Window::new("Help")
+    Window::new("Brushwork help")
         .open(&mut open)
         .collapsible(false)
         .default_size(size)

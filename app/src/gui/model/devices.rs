@@ -1,6 +1,6 @@
 //! The device list: what can be connected to, and what was chosen.
 
-use super::desk::{Desk, DeskId};
+use super::desk::{Desk, DeskId, place_of};
 use brushwork_link::Failure;
 use brushwork_link::device::Addresses;
 use brushwork_link::transport::target::DEFAULT_BAUD;
@@ -107,6 +107,17 @@ impl Devices {
         self.recent.retain(|known| known != target);
         self.recent.insert(0, target.to_owned());
         self.recent.truncate(RECENT_KEPT);
+    }
+
+    /// What was typed has been opened, and has a row of its own now.
+    pub fn opened(&mut self, target: &str) {
+        if self
+            .typed
+            .parse::<ConnectTarget>()
+            .is_ok_and(|typed| place_of(&typed.to_string()) == place_of(target))
+        {
+            self.typed.clear();
+        }
     }
 
     pub fn forget_recent(&mut self, target: &str) {

@@ -42,6 +42,7 @@ use screen::Screen;
 pub struct Model {
     pub screen: Screen,
     pub appearance: Appearance,
+    pub layout: Layout,
     pub devices: Devices,
     pub messages: Messages,
     /// Open while there is one.
@@ -61,6 +62,35 @@ pub struct Appearance {
     pub scale_percent: u16,
     /// Hard edges, which software rendering draws in less time.
     pub plain: bool,
+}
+
+/// Widths that were dragged, in points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Layout {
+    pub left_width: f32,
+    pub world_width: f32,
+}
+
+impl Default for Layout {
+    fn default() -> Self {
+        Self { left_width: 216.0, world_width: 292.0 }
+    }
+}
+
+impl Layout {
+    /// Narrower cuts off the device list, wider takes too much from the screens.
+    pub const LEFT_RANGE: std::ops::RangeInclusive<f32> = 208.0..=340.0;
+    pub const WORLD_RANGE: std::ops::RangeInclusive<f32> = 280.0..=420.0;
+
+    /// Sets both; what makes no sense stays as it is.
+    pub fn set(&mut self, left_width: f32, world_width: f32) {
+        if Self::LEFT_RANGE.contains(&left_width) {
+            self.left_width = left_width;
+        }
+        if Self::WORLD_RANGE.contains(&world_width) {
+            self.world_width = world_width;
+        }
+    }
 }
 
 impl Default for Appearance {

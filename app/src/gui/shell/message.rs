@@ -2,6 +2,7 @@
 
 use egui::{Align, Label, Layout, RichText, Role, Ui, WidgetInfo, vec2};
 
+use super::marks;
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
 use crate::gui::model::message::{Gravity, Message};
@@ -17,10 +18,15 @@ pub fn message_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
         Layout::left_to_right(Align::Center),
         |ui| {
             ui.set_min_height(HEIGHT);
-            match model.messages.shown() {
-                Some(message) => shown_ui(ui, message, commands),
-                None => quiet_ui(ui, model),
-            }
+            let width = ui.available_width() - marks::WIDTH - ui.spacing().item_spacing.x;
+            ui.allocate_ui_with_layout(vec2(width, HEIGHT), Layout::left_to_right(Align::Center), |ui| {
+                ui.set_min_size(vec2(width, HEIGHT));
+                match model.messages.shown() {
+                    Some(message) => shown_ui(ui, message, commands),
+                    None => quiet_ui(ui, model),
+                }
+            });
+            marks::marks_ui(ui, model, commands);
         },
     );
 }
@@ -54,7 +60,7 @@ fn quiet_ui(ui: &mut Ui, model: &Model) {
         }
     };
     let color = Palette::of(ui).weak_text;
-    ui.label(RichText::new(text).color(color));
+    ui.add(Label::new(RichText::new(text).color(color)).wrap());
 }
 
 const fn word(gravity: Gravity) -> &'static str {

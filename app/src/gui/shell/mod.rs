@@ -3,20 +3,19 @@
 use egui::{CentralPanel, Frame, Margin, Panel, RichText, ScrollArea, Ui};
 
 use super::command::Commands;
-use super::model::Model;
+use super::model::{Layout, Model};
 use super::theme::Palette;
 use super::{help, screens, traffic, world};
 
 mod bottom;
 mod devices;
 mod left;
+mod marks;
 mod menu;
 mod message;
 mod palette;
 mod top;
 
-const LEFT_WIDTH: f32 = 216.0;
-const WORLD_WIDTH: f32 = 292.0;
 const TRAFFIC_HEIGHT: f32 = 230.0;
 const TRAFFIC_RANGE: std::ops::RangeInclusive<f32> = 140.0..=600.0;
 
@@ -26,9 +25,10 @@ pub fn shell_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let panel = Frame::new().fill(palette.panel).inner_margin(Margin::symmetric(10, 8));
     let bar = Frame::new().fill(palette.panel).inner_margin(Margin::symmetric(6, 2));
     Panel::top("menus").resizable(false).frame(bar).show(ui, |ui| menu::menu_ui(ui, model, commands));
-    let left = Panel::left("left").resizable(false).exact_size(LEFT_WIDTH).frame(panel).show(ui, |ui| {
-        left::left_ui(ui, model, commands);
-    });
+    let left = Panel::left("left").resizable(true).default_size(model.layout.left_width);
+    let left = left.size_range(Layout::LEFT_RANGE).frame(panel);
+    let left = left.show(ui, |ui| left::left_ui(ui, model, commands)).response.rect;
+    model.layout.left_width = left.width();
     Panel::top("parameters").resizable(false).frame(panel).show(ui, |ui| {
         top::top_ui(ui, model, commands);
     });
@@ -37,9 +37,12 @@ pub fn shell_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         message::message_ui(ui, model, commands);
     });
     if model.front.worlds.is_some() && model.front.world.open {
-        Panel::right("world").resizable(false).exact_size(WORLD_WIDTH).frame(panel).show(ui, |ui| {
+        let world = Panel::right("world").resizable(true).default_size(model.layout.world_width);
+        let world = world.size_range(Layout::WORLD_RANGE).frame(panel);
+        let world = world.show(ui, |ui| {
             ScrollArea::vertical().show(ui, |ui| world::world_ui(ui, model, commands));
         });
+        model.layout.world_width = world.response.rect.width();
     }
     if model.front.traffic.open {
         let traffic = Panel::bottom("traffic").resizable(true).default_size(TRAFFIC_HEIGHT);
@@ -50,8 +53,7 @@ pub fn shell_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     }
     let central = Frame::new().fill(palette.panel).inner_margin(Margin::symmetric(12, 10));
     CentralPanel::no_frame().frame(central).show(ui, |ui| screens::screen_ui(ui, model, commands));
-    let right_of_devices = left.response.rect.right();
-    help::help_ui(ui.ctx(), model, ui.ctx().content_rect().with_min_x(right_of_devices));
+    help::help_ui(ui.ctx(), model, ui.ctx().content_rect().with_min_x(left.right()));
     palette::palette_ui(ui.ctx(), model, commands);
 }
 

@@ -57,6 +57,8 @@ pub struct General {
     sheet: Option<Sheet>,
     sheet_is_new: bool,
     wants_search: bool,
+    /// Opened as soon as the settings were read.
+    waiting_sheet: Option<Sheet>,
 }
 
 /// What stands in place of the list until it is answered.
@@ -161,6 +163,14 @@ impl General {
         self.sought.take()
     }
 
+    /// Opens a sheet; if the settings were not read yet, when they have been.
+    pub fn open_once_read(&mut self, sheet: Sheet) {
+        match self.unit().is_some_and(UnitSettings::was_asked) && self.running.is_none() {
+            true => self.open(sheet),
+            false => self.waiting_sheet = Some(sheet),
+        }
+    }
+
     pub fn close_sheet(&mut self) {
         self.sheet = None;
     }
@@ -256,6 +266,7 @@ impl General {
         self.current = None;
         self.kept.forget_unit();
         self.sheet = None;
+        self.waiting_sheet = None;
         self.calibration_lost();
         self.clamp_test_lost();
         for unit in self.units.values_mut() {
@@ -292,6 +303,8 @@ impl General {
     fn told(&mut self, told: Summary) -> Vec<Effect> {
         if !told.sentences.is_empty() {
             self.open(Sheet::Report { title: told.summary.clone(), sentences: told.sentences });
+        } else if let Some(sheet) = self.waiting_sheet.take() {
+            self.open(sheet);
         }
         vec![Effect::Say(told.gravity, told.summary)]
     }

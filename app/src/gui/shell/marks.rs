@@ -1,0 +1,72 @@
+//! Where the settings are: wanted here, in the controller's RAM, in its EEPROM, in the open profile.
+
+use egui::{Align2, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
+
+use crate::gui::command::{Command, Commands};
+use crate::gui::model::Model;
+use crate::gui::model::general::Saved;
+use crate::gui::model::screen::Screen;
+use crate::gui::theme::Palette;
+use crate::gui::widgets::LampState;
+
+pub const WIDTH: f32 = 206.0;
+const HEIGHT: f32 = 36.0;
+
+/// One lamp with two lines; pressing it goes to the settings.
+pub fn marks_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
+    let (state, first, second) = mark(model);
+    let palette = Palette::of(ui);
+    let (rect, response) = ui.allocate_exact_size(vec2(WIDTH, HEIGHT), Sense::click());
+    let spoken = format!("Settings: {first}, {second}");
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &spoken));
+    let outline = match (response.has_focus(), response.hovered()) {
+        (true, _) => Stroke::new(2.0, palette.accent),
+        (false, true) => Stroke::new(1.0, palette.weak_text),
+        (false, false) => Stroke::new(1.0, palette.line),
+    };
+    ui.painter().rect(rect, 4.0, palette.raised, outline, StrokeKind::Inside);
+    state.paint(ui, pos2(rect.left() + 14.0, rect.center().y), 6.0);
+    let small = TextStyle::Small.resolve(ui.style());
+    let painter = ui.painter().with_clip_rect(rect.shrink(4.0));
+    let left = rect.left() + 28.0;
+    painter.text(pos2(left, rect.top() + 4.0), Align2::LEFT_TOP, &first, small.clone(), palette.text);
+    painter.text(pos2(left, rect.bottom() - 4.0), Align2::LEFT_BOTTOM, &second, small, palette.weak_text);
+    let help = "Edits that are not written, RAM that is not saved to EEPROM, and the open profile. Press to see them.";
+    if response.on_hover_text(format!("{spoken}\n{help}")).clicked() {
+        commands.push(Command::Show(Screen::GeneralSettings));
+    }
+}
+
+/// The gravest state, then RAM and EEPROM, then edits and profile.
+fn mark(model: &Model) -> (LampState, String, String) {
+    let general = &model.front.general;
+    let Some(unit) = general.unit().filter(|unit| unit.is_read() && model.is_connected()) else {
+        let text = if model.is_connected() { "not read yet" } else { "no controller" };
+        return (LampState::Unknown, text.to_owned(), profile(model));
+    };
+    let (state, first) = match unit.saved() {
+        Saved::Yes => (LampState::Ok, "RAM is saved in EEPROM".to_owned()),
+        Saved::Differs(count) => (LampState::Warning, format!("RAM: {count} not saved in EEPROM")),
+        Saved::NotKnown { written: 0 } => (LampState::Unknown, "EEPROM not known".to_owned()),
+        Saved::NotKnown { written } => (LampState::Warning, format!("RAM: {written} written, not saved")),
+    };
+    match unit.changes().len() {
+        0 => (state, first, profile(model)),
+        edits => (LampState::Warning, first, format!("{edits} edits not written")),
+    }
+}
+
+/// How the open profile differs from the controller.
+fn profile(model: &Model) -> String {
+    let general = &model.front.general;
+    let Some(opened) = general.profiles.opened() else { return "no profile open".to_owned() };
+    let differing = general.unit().filter(|unit| unit.is_read()).and_then(|unit| {
+        let changes = unit.changes_for(&opened.profile).ok()?;
+        Some(changes.wanted.iter().count() + changes.left_out.len())
+    });
+    match differing {
+        Some(0) => "profile: as in RAM".to_owned(),
+        Some(count) => format!("profile: {count} differ from RAM"),
+        None => "profile: not compared".to_owned(),
+    }
+}
