@@ -1,5 +1,6 @@
 //! Where the settings are: wanted here, in the controller's RAM, in its EEPROM, in the open profile.
 
+use brushwork_link::settings::diff;
 use egui::{Align2, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
 use crate::gui::command::{Command, Commands};
@@ -60,9 +61,9 @@ fn mark(model: &Model) -> (LampState, String, String) {
 fn profile(model: &Model) -> String {
     let general = &model.front.general;
     let Some(opened) = general.profiles.opened() else { return "no profile open".to_owned() };
-    let differing = general.unit().filter(|unit| unit.is_read()).and_then(|unit| {
-        let changes = unit.changes_for(&opened.profile).ok()?;
-        Some(changes.wanted.iter().count() + changes.left_out.len())
+    let differing = general.unit().and_then(|unit| {
+        let differences = diff(unit.table(), unit.ram()?, &opened.profile.settings);
+        Some(differences.iter().filter(|difference| difference.right.is_some()).count())
     });
     match differing {
         Some(0) => "profile: as in RAM".to_owned(),
