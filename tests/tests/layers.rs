@@ -8,7 +8,7 @@ use brushwork_tests::rust_source::{code_lines, without_tests};
 use brushwork_tests::workspace::{self, DependencyKind, Member, Metadata};
 
 /// The arrows that ship: a crate and the crates of this workspace it may use.
-const ARROWS: [(&str, &[&str]); 8] = [
+const ARROWS: [(&str, &[&str]); 9] = [
     (
         "brushwork",
         &[
@@ -18,9 +18,11 @@ const ARROWS: [(&str, &[&str]); 8] = [
             "brushwork-script",
             "brushwork-sim",
             "brushwork-tuning",
+            "brushwork-tuning-bench",
         ],
     ),
     ("brushwork-tuning", &[]),
+    ("brushwork-tuning-bench", &["brushwork-protocol", "brushwork-sim", "brushwork-tuning"]),
     ("brushwork-link", &["brushwork-protocol"]),
     ("brushwork-sim", &["brushwork-protocol", "brushwork-script"]),
     ("brushwork-protocol", &[]),

@@ -1,8 +1,28 @@
-//! What a motor axis does, in figures. Knows no serial port, no window, no clock and no controller.
+//! What a motor axis does, in figures, and the gains that make it do better. Knows no serial port, no window, no clock and no
+//! simulator.
 //!
-//! Times are in seconds, signals in whatever unit the caller measures in. Here is the judging of step responses; experiments,
-//! identification and design rules will stand beside it.
+//! Times are in seconds, places in counts, speeds in counts per second, duties from -1 to 1.
 
+pub mod axis;
+pub mod cause;
+pub mod course;
+pub mod design;
+pub mod experiment;
+pub mod fit;
+pub mod lag;
+pub mod linear;
+pub mod model;
+pub mod record;
+pub mod registers;
+pub mod report;
+pub mod rig;
+pub mod rules;
+pub mod score;
+pub mod settle;
 mod step;
+pub mod ticks;
+pub mod tune;
+mod verify;
+pub mod watch;
 
 pub use step::{Point, StepFigures};

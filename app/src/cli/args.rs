@@ -305,6 +305,15 @@ pub struct BenchArgs {
     /// Shorter runs with wider spread.
     #[arg(long)]
     pub quick: bool,
+    /// Motors that `tuning` tunes.
+    #[arg(long, value_name = "N", default_value_t = 200)]
+    pub plants: usize,
+    /// Seed that `tuning` draws them from; the optima of 7 and 11 are built in.
+    #[arg(long, value_name = "SEED", default_value_t = 7)]
+    pub seed: u64,
+    /// Work the optima out anew and write them to a file instead.
+    #[arg(long, value_name = "FILE")]
+    pub write_oracle: Option<PathBuf>,
 }
 
 /// A benchmark.
@@ -318,7 +327,9 @@ pub enum BenchArg {
     Sim,
     /// An hour of 16 channels: our graph against plain plot lines.
     Window,
-    /// All of them.
+    /// The tuner and every textbook rule on simulated motors, in virtual time.
+    Tuning,
+    /// All of them but tuning.
     All,
 }
 

@@ -11,6 +11,7 @@ mod sim;
 mod spread;
 mod stop;
 mod tap;
+mod tuning;
 mod window;
 
 use std::time::Duration;
@@ -51,6 +52,9 @@ pub fn run(args: &BenchArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
     if cfg!(debug_assertions) {
         say("This is a debug build: its figures say little. Use cargo run --release -p brushwork -- bench …");
     }
+    if args.what.contains(&BenchArg::Tuning) {
+        return tuning::run(args, out);
+    }
     let effort = if args.quick { QUICK } else { FULL };
     let mut figures = Vec::new();
     for what in wanted(&args.what) {
@@ -78,7 +82,7 @@ fn measure(what: BenchArg, effort: Effort, interrupt: &Interrupt) -> Result<Vec<
         BenchArg::Stop => stop::measure(effort, interrupt),
         BenchArg::Sim => sim::measure(effort),
         BenchArg::Window => window::measure(effort),
-        BenchArg::All => unreachable!("`wanted` replaces it by the others"),
+        BenchArg::Tuning | BenchArg::All => unreachable!("`wanted` gives neither"),
     }
 }
 
@@ -94,6 +98,7 @@ fn name_of(what: BenchArg) -> &'static str {
         BenchArg::Stop => "the stop",
         BenchArg::Sim => "the simulator",
         BenchArg::Window => "the window",
+        BenchArg::Tuning => "the tuner",
         BenchArg::All => "everything",
     }
 }

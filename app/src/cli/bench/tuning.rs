@@ -1,0 +1,100 @@
+//! `brushwork bench tuning`: the tuner and every textbook rule, side by side on the same records.
+
+use brushwork_tuning_bench::table::{Row, Table, cases, optima_of, table};
+
+use crate::cli::args::BenchArgs;
+use crate::cli::exit::Exit;
+use crate::cli::output::{Output, OutputError, say};
+
+const HEADS: [&str; 11] = [
+    "task",
+    "method",
+    "accept %",
+    "good %",
+    "J med",
+    "J p95",
+    "unstable %",
+    "Ms p95",
+    "Ms inertia p95",
+    "overshoot p95 %",
+    "s",
+];
+const FAULT_HEADS: [&str; 8] =
+    ["fault", "runs", "off in time %", "named %", "off med s", "off max s", "deadline s", "peak current %"];
+
+/// Runs the benchmark, or writes its optima.
+pub fn run(args: &BenchArgs, out: &mut Output) -> Exit {
+    if args.plants == 0 {
+        say("A benchmark needs at least one motor: use --plants 200.");
+        return Exit::Usage;
+    }
+    let cases = cases(args.seed, args.plants, args.write_oracle.is_some());
+    if let Some(path) = &args.write_oracle {
+        let text = serde_json::to_string(&optima_of(&cases)).unwrap_or_default();
+        return match std::fs::write(path, text) {
+            Ok(()) => Exit::Done,
+            Err(error) => {
+                say(format!("Could not write {}: {error}.", path.display()));
+                Exit::Failed
+            }
+        };
+    }
+    let table = table(args.seed, &cases, !args.quick);
+    let printed = if args.json { out.json(&table) } else { print(&table, out) };
+    printed.map_or_else(Exit::from, |()| Exit::Done)
+}
+
+fn print(table: &Table, out: &mut Output) -> Result<(), OutputError> {
+    let mut rows = Vec::new();
+    for task in ["velocity", "pd", "pid", "piv"] {
+        rows.extend(table.tasks.get(task).into_iter().flatten().map(|row| cells(task, row)));
+    }
+    out.table(&HEADS, &rows)?;
+    out.line("")?;
+    let found = serde_json::to_value(&table.identification).unwrap_or_default();
+    let found: Vec<Vec<String>> = found
+        .as_object()
+        .into_iter()
+        .flatten()
+        .map(|(name, value)| vec![name.replace('_', " "), value.to_string()])
+        .collect();
+    out.table(&["identification", ""], &found)?;
+    if table.faults.is_empty() {
+        return Ok(());
+    }
+    out.line("")?;
+    let faults: Vec<Vec<String>> = table
+        .faults
+        .iter()
+        .map(|row| {
+            vec![
+                row.fault.to_owned(),
+                row.plants.to_string(),
+                row.off_in_time.to_string(),
+                row.named.to_string(),
+                row.off_median_s.to_string(),
+                row.off_max_s.to_string(),
+                row.deadline_s.to_string(),
+                row.peak_current_max.to_string(),
+            ]
+        })
+        .collect();
+    out.table(&FAULT_HEADS, &faults)
+}
+
+fn cells(task: &str, row: &Row) -> Vec<String> {
+    let figures = [
+        row.accept,
+        row.good,
+        row.j_median,
+        row.j_p95,
+        row.unstable,
+        row.ms_p95,
+        row.ms_varied_p95,
+        row.overshoot_p95,
+        row.seconds_median,
+    ];
+    let mut cells = vec![task.to_owned(), row.method.clone()];
+    cells.extend(figures.iter().map(ToString::to_string));
+    cells
+}

@@ -1,0 +1,299 @@
+//! Faults put into the machine before or during a run: is the motor off in time, and is the fault named right?
+
+use crate::line::Event;
+use crate::population::{Draw, Specimen};
+use crate::run::{SimulatedAxis, axis_of, request_of};
+use crate::table::{Case, quantile};
+use brushwork_sim::plant::{StopKind, TravelParams};
+use brushwork_sim::world::{Motor, WorldAction};
+use brushwork_tuning::cause::Cause;
+use brushwork_tuning::report::{Report, Verdict};
+use brushwork_tuning::tune::{Excitation, Method, Request, tune};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rayon::prelude::*;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+/// Healthy runs that must raise no alarm.
+const HEALTHY_RUNS: usize = 500;
+/// Where in the identification a fault strikes, as shares of its length.
+const STRIKES: (f64, f64) = (0.05, 0.80);
+
+/// One class of faults over all plants.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FaultRow {
+    /// Its name.
+    pub fault: &'static str,
+    /// How many runs.
+    pub plants: usize,
+    /// Motor off within the deadline, %.
+    pub off_in_time: f64,
+    /// Named right, %.
+    pub named: f64,
+    /// From the fault to the motor off, median, s.
+    pub off_median_s: f64,
+    /// The longest, s.
+    pub off_max_s: f64,
+    /// The deadline, s.
+    pub deadline_s: f64,
+    /// Highest current over the stall current, %; the largest.
+    pub peak_current_max: f64,
+    /// What the runs ended with, and how many of them.
+    pub causes: BTreeMap<String, usize>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Fault {
+    Before(WorldChange),
+    During(WorldChange),
+    LinkDrop,
+    EndStop,
+    Window,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum WorldChange {
+    ReverseEncoder,
+    LoseEncoder,
+    OpenLead,
+    LockShaft,
+    LowBattery,
+}
+
+impl WorldChange {
+    fn action(self, specimen: &Specimen) -> WorldAction {
+        let motor = Motor::M1;
+        match self {
+            Self::ReverseEncoder => WorldAction::ReverseEncoder { motor, on: true },
+            Self::LoseEncoder => WorldAction::LoseEncoder { motor, on: true },
+            Self::OpenLead => WorldAction::OpenLead { motor, on: true },
+            Self::LockShaft => WorldAction::LockShaft { motor, on: true },
+            Self::LowBattery => WorldAction::SetBatteryVolts { volts: 0.55 * specimen.volts() },
+        }
+    }
+}
+
+struct Class {
+    name: &'static str,
+    fault: Fault,
+    causes: &'static [Cause],
+    deadline_s: f64,
+}
+
+const CLASSES: [Class; 12] = [
+    class("encoder_reversed", Fault::Before(WorldChange::ReverseEncoder), &[Cause::EncoderReversed], 1.0),
+    class("encoder_dead", Fault::Before(WorldChange::LoseEncoder), &[Cause::EncoderDead], 1.5),
+    class("motor_open", Fault::Before(WorldChange::OpenLead), &[Cause::MotorOpen], 1.5),
+    class("shaft_locked", Fault::Before(WorldChange::LockShaft), &[Cause::ShaftLocked], 1.5),
+    class("encoder_lost", Fault::During(WorldChange::LoseEncoder), &[Cause::EncoderLost], 0.3),
+    class("stall", Fault::During(WorldChange::LockShaft), &[Cause::Stalled], 0.3),
+    class("motor_opened", Fault::During(WorldChange::OpenLead), &[Cause::MotorOpened], 0.5),
+    class("encoder_flipped", Fault::During(WorldChange::ReverseEncoder), &[Cause::EncoderFlipped], 0.3),
+    class("battery_low", Fault::During(WorldChange::LowBattery), &[Cause::BatteryLow], 0.1),
+    class("link_drop", Fault::LinkDrop, &[Cause::LinkLost], 0.25),
+    class("end_stop", Fault::EndStop, &[Cause::Stalled], 0.3),
+    // Off before the window's end is crossed; the deadline does not apply.
+    class("travel_window", Fault::Window, &[], 0.0),
+];
+
+const fn class(name: &'static str, fault: Fault, causes: &'static [Cause], deadline_s: f64) -> Class {
+    Class { name, fault, causes, deadline_s }
+}
+
+struct Run {
+    off_s: f64,
+    in_time: bool,
+    named: bool,
+    peak: f64,
+    cause: Option<Cause>,
+}
+
+/// Every class on every plant, and the healthy runs as the last row, whose `named` is the share without alarm.
+#[must_use]
+pub fn fault_rows(cases: &[Case]) -> Vec<FaultRow> {
+    let spans: Vec<f64> = cases.par_iter().map(|case| healthy(&case.specimen, 0).0.seconds.0).collect();
+    let mut rows: Vec<FaultRow> = CLASSES
+        .iter()
+        .map(|class| {
+            let runs: Vec<Run> = cases
+                .par_iter()
+                .zip(&spans)
+                .filter(|(_, span)| **span > 0.0)
+                .map(|(case, span)| run(class, case, *span))
+                .collect();
+            summary(class.name, class.deadline_s, &runs)
+        })
+        .collect();
+    let quiet: Vec<Run> = (0..HEALTHY_RUNS.max(cases.len()))
+        .into_par_iter()
+        .map(|n| {
+            let (report, axis) = healthy(&cases[n % cases.len()].specimen, n as u64);
+            Run {
+                off_s: 0.0,
+                in_time: true,
+                named: !is_alarm(&report),
+                peak: peak(&axis, &cases[n % cases.len()]),
+                cause: first(&report),
+            }
+        })
+        .collect();
+    rows.push(summary("healthy", 0.0, &quiet));
+    rows
+}
+
+/// Whether a report blames the machine.
+#[must_use]
+pub fn is_alarm(report: &Report) -> bool {
+    const ALARMS: [Cause; 11] = [
+        Cause::EncoderReversed,
+        Cause::EncoderDead,
+        Cause::MotorOpen,
+        Cause::ShaftLocked,
+        Cause::EncoderLost,
+        Cause::Stalled,
+        Cause::MotorOpened,
+        Cause::EncoderFlipped,
+        Cause::BatteryLow,
+        Cause::LinkLost,
+        Cause::ControllerFault,
+    ];
+    report.verdict == Verdict::Refused && report.causes.first().is_some_and(|cause| ALARMS.contains(cause))
+}
+
+fn identification_only(specimen: &Specimen) -> Request {
+    Request { verify: false, ..request_of(specimen, Method::Velocity) }
+}
+
+fn healthy(specimen: &Specimen, round: u64) -> (Report, SimulatedAxis) {
+    let mut specimen = specimen.clone();
+    specimen.link.seed = specimen.link.seed.wrapping_add(round.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+    let mut axis = axis_of(&specimen);
+    let report = tune(&mut axis, &identification_only(&specimen));
+    (report, axis)
+}
+
+fn peak(axis: &SimulatedAxis, case: &Case) -> f64 {
+    100.0 * axis.carrier.truth.peak_amps / case.specimen.axis.stall_amps(case.specimen.volts())
+}
+
+fn run(class: &Class, case: &Case, span_s: f64) -> Run {
+    let specimen = &case.specimen;
+    let name_seed = class.name.bytes().map(u64::from).sum::<u64>();
+    let mut draw = Draw(ChaCha8Rng::seed_from_u64(specimen.link.seed ^ name_seed));
+    // The probe takes most of the first second; faults of the run strike after it.
+    let probe_s: f64 = 0.12 + 0.06 * 14.0;
+    let strike_s = probe_s.min(0.5 * span_s) + draw.between(STRIKES) * (span_s - probe_s).max(0.3);
+    let mut axis = match class.fault {
+        Fault::EndStop => axis_of(&with_end_stops(case)),
+        _ => axis_of(specimen),
+    };
+    let start = axis.carrier.unit().now();
+    let strike = start + Duration::from_secs_f64(strike_s);
+    let mut from = strike;
+    match class.fault {
+        Fault::Before(change) => {
+            from = start;
+            axis.carrier.schedule(vec![Event { at: start, action: change.action(specimen) }]);
+        }
+        Fault::During(change) => {
+            axis.carrier.schedule(vec![Event { at: strike, action: change.action(specimen) }]);
+        }
+        Fault::LinkDrop => axis.carrier.dead_at = Some(strike),
+        Fault::EndStop => axis.carrier.end_stop_radians = Some(end_stop_radians(case)),
+        Fault::Window => {}
+    }
+    if class.fault == Fault::Window {
+        return run_in_window(case, axis);
+    }
+    let report = tune(&mut axis, &identification_only(specimen));
+    axis.carrier.idle(Duration::from_millis(300));
+    if class.fault == Fault::EndStop {
+        let Some(hit) = axis.carrier.truth.stop_hit_at else {
+            // It never came that far: nothing happened, nothing to name.
+            return Run {
+                off_s: 0.0,
+                in_time: true,
+                named: !is_alarm(&report),
+                peak: peak(&axis, case),
+                cause: first(&report),
+            };
+        };
+        from = hit;
+    }
+    let off_s = axis.carrier.truth.last_driven.saturating_sub(from).as_secs_f64();
+    let named = report.causes.first().is_some_and(|cause| class.causes.contains(cause));
+    Run {
+        off_s,
+        in_time: off_s <= class.deadline_s + 0.01,
+        named,
+        peak: peak(&axis, case),
+        cause: first(&report),
+    }
+}
+
+/// A window half as wide as the identification is judged with: it is used, or refused, but never crossed.
+fn run_in_window(case: &Case, mut axis: SimulatedAxis) -> Run {
+    let width = (0.1 * case.truth.qpps).round().max(40.0);
+    let half = (0.5 * width) as i64;
+    let mut request =
+        Request { excitation: Excitation::Window(width), ..identification_only(&case.specimen) };
+    request.method = Method::Pd;
+    request.guard.travel = Some((-half, half));
+    let report = tune(&mut axis, &request);
+    let per_radian = case.specimen.axis.counts_per_motor_radian();
+    let reach = axis.carrier.truth.farthest_radians * per_radian;
+    // Half a count of rounding on either side.
+    let kept = reach <= half as f64 + 1.0;
+    Run {
+        off_s: 0.0,
+        in_time: kept,
+        named: !is_alarm(&report),
+        peak: peak(&axis, case),
+        cause: first(&report),
+    }
+}
+
+/// End stops a quarter of a second of full speed away.
+fn end_stop_radians(case: &Case) -> f64 {
+    let seconds = 0.25 + case.truth.tau_s;
+    let axis = &case.specimen.axis;
+    seconds * case.truth.qpps / axis.counts_per_motor_radian() / axis.gear.ratio
+}
+
+fn with_end_stops(case: &Case) -> Specimen {
+    let mut specimen = case.specimen.clone();
+    let stop = end_stop_radians(case);
+    specimen.axis.load.travel =
+        Some(TravelParams { lower_radians: -stop, upper_radians: stop, stop: StopKind::Hard });
+    specimen
+}
+
+fn first(report: &Report) -> Option<Cause> {
+    (report.verdict == Verdict::Refused).then(|| report.causes.first().copied()).flatten()
+}
+
+fn summary(fault: &'static str, deadline_s: f64, runs: &[Run]) -> FaultRow {
+    let percent = |of: fn(&Run) -> bool| {
+        let share = runs.iter().filter(|run| of(run)).count() as f64 / runs.len().max(1) as f64;
+        (1000.0 * share).round() / 10.0
+    };
+    let mut causes = BTreeMap::new();
+    for run in runs {
+        let name = run.cause.map_or_else(|| "none".to_owned(), |cause| format!("{cause:?}"));
+        *causes.entry(name).or_insert(0) += 1;
+    }
+    let milli = |value: f64| (1000.0 * value).round() / 1000.0;
+    FaultRow {
+        fault,
+        plants: runs.len(),
+        off_in_time: percent(|run| run.in_time),
+        named: percent(|run| run.named),
+        off_median_s: milli(quantile(runs.iter().map(|run| run.off_s), 0.5)),
+        off_max_s: milli(runs.iter().map(|run| run.off_s).fold(0.0, f64::max)),
+        deadline_s,
+        peak_current_max: milli(runs.iter().map(|run| run.peak).fold(0.0, f64::max)),
+        causes,
+    }
+}

@@ -1,0 +1,14 @@
+//! Judges the tuner on a population of simulated motors, in virtual time.
+//!
+//! The tuner sees packet serial alone; what the plants really are is used here, to judge it.
+
+pub mod cache;
+pub mod faults;
+pub mod line;
+pub mod oracle;
+pub mod packet;
+pub mod population;
+pub mod run;
+pub mod table;
+pub mod trial;
+pub mod truth;

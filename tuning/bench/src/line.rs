@@ -1,0 +1,197 @@
+//! The link of the benchmark: packet serial bytes to a simulated controller in virtual time, with latency, jitter and loss.
+
+use crate::packet::Carrier;
+use crate::population::{Draw, LinkParams};
+use brushwork_protocol::packet_serial::{Address, Generation, ReplyProgress, Request, Values, parse_reply};
+use brushwork_sim::controller::Controller;
+use brushwork_sim::machine::StreamIndex;
+use brushwork_sim::world::WorldAction;
+use brushwork_tuning::axis::{AxisError, Exchange};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use std::time::Duration;
+
+/// How long a reply is waited for, s.
+const REPLY_TIMEOUT_S: f64 = 0.010;
+/// Spread of the latency about its mean.
+const LATENCY_SPREAD: (f64, f64) = (0.8, 1.6);
+
+/// Something that happens to the machine in mid-run.
+#[derive(Clone, Debug)]
+pub struct Event {
+    /// When.
+    pub at: Duration,
+    /// What.
+    pub action: WorldAction,
+}
+
+/// What the bench notes past the wire.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Truth {
+    /// Highest motor current, A.
+    pub peak_amps: f64,
+    /// When the bridge was last given a duty other than zero.
+    pub last_driven: Duration,
+    /// Farthest the motor shaft was from where it started, rad.
+    pub farthest_radians: f64,
+    /// When the output shaft first came to where an end stop is.
+    pub stop_hit_at: Option<Duration>,
+}
+
+/// A link to a simulated controller.
+#[derive(Debug)]
+pub struct SimulatedLine {
+    unit: Controller,
+    params: LinkParams,
+    draw: ChaCha8Rng,
+    now: Duration,
+    events: Vec<Event>,
+    /// What was noted.
+    pub truth: Truth,
+    /// From when on every exchange fails as stopped.
+    pub stop_at: Option<Duration>,
+    /// From when on nothing answers.
+    pub dead_at: Option<Duration>,
+    /// Where the end stops are, on either side.
+    pub end_stop_radians: Option<f64>,
+}
+
+impl SimulatedLine {
+    /// A link to `unit`, from its present time on.
+    #[must_use]
+    pub fn new(unit: Controller, params: LinkParams) -> Self {
+        let now = unit.now();
+        let draw = ChaCha8Rng::seed_from_u64(params.seed);
+        Self {
+            unit,
+            params,
+            draw,
+            now,
+            events: Vec::new(),
+            truth: Truth::default(),
+            stop_at: None,
+            dead_at: None,
+            end_stop_radians: None,
+        }
+    }
+
+    /// Lets things happen at their times.
+    pub fn schedule(&mut self, mut events: Vec<Event>) {
+        events.sort_by_key(|event| std::cmp::Reverse(event.at));
+        self.events = events;
+    }
+
+    /// The controller, to look at.
+    #[must_use]
+    pub fn unit(&self) -> &Controller {
+        &self.unit
+    }
+
+    /// Lets time pass without a word.
+    pub fn idle(&mut self, time: Duration) {
+        self.advance(self.now + time);
+    }
+
+    fn advance(&mut self, to: Duration) {
+        const LOOK: Duration = Duration::from_millis(5);
+        while self.now < to {
+            let mut next = (self.now + LOOK).min(to);
+            if let Some(event) = self.events.last() {
+                next = next.min(event.at.max(self.now));
+            }
+            self.unit.advance(next);
+            self.now = next;
+            while self.events.last().is_some_and(|event| event.at <= self.now) {
+                if let Some(event) = self.events.pop() {
+                    // The actions used here name no settings.
+                    let _ = self.unit.apply(&event.action);
+                }
+            }
+            self.note();
+        }
+    }
+
+    fn note(&mut self) {
+        let view = self.unit.view();
+        let axis = &view.axes[0];
+        self.truth.peak_amps = self.truth.peak_amps.max(axis.truth.amps.abs());
+        if axis.output.duty() != 0.0 {
+            self.truth.last_driven = self.now;
+        }
+        self.truth.farthest_radians = self.truth.farthest_radians.max(axis.truth.motor_radians.abs());
+        if let Some(stop) = self.end_stop_radians
+            && axis.truth.load_radians.abs() >= 0.999 * stop
+            && self.truth.stop_hit_at.is_none()
+        {
+            self.truth.stop_hit_at = Some(self.now);
+        }
+    }
+
+    fn latency(&mut self) -> Duration {
+        let mut draw = Draw(self.draw.clone());
+        let seconds = self.params.latency_s * draw.between(LATENCY_SPREAD);
+        self.draw = draw.0;
+        Duration::from_secs_f64(seconds)
+    }
+
+    fn is_lost(&mut self) -> bool {
+        let mut draw = Draw(self.draw.clone());
+        let lost = draw.uniform() < self.params.loss;
+        self.draw = draw.0;
+        lost
+    }
+}
+
+impl Carrier for SimulatedLine {
+    fn transact(&mut self, command: u8, values: &[(&str, i64)]) -> Result<(Exchange, Values), AxisError> {
+        if self.stop_at.is_some_and(|at| self.now >= at) {
+            return Err(AxisError::Stopped);
+        }
+        let generation = self.generation();
+        let request = Request::named(Address::DEFAULT, command, generation, values)
+            .map_err(|error| AxisError::Refused(error.to_string()))?;
+        let bytes = request.encode(generation).map_err(|error| AxisError::Refused(error.to_string()))?;
+        let sent = self.now;
+        let deadline = sent + Duration::from_secs_f64(REPLY_TIMEOUT_S);
+        let dead = self.dead_at.is_some_and(|at| self.now >= at);
+        let (lost_request, lost_reply) = (self.is_lost() || dead, self.is_lost() || dead);
+        let (up, down) = (self.latency(), self.latency());
+        self.advance(sent + up);
+        if lost_request {
+            self.advance(deadline);
+            return Err(AxisError::NoReply);
+        }
+        self.unit.receive(StreamIndex::Usb, &bytes);
+        let left = self.unit.next_output_at();
+        let arrives = left.map(|at| at + down).filter(|at| *at <= deadline && !lost_reply);
+        self.advance(arrives.unwrap_or(deadline));
+        let reply = self.unit.take_output(StreamIndex::Usb).unwrap_or_default();
+        if arrives.is_none() {
+            return Err(AxisError::NoReply);
+        }
+        match parse_reply(&request, generation, &reply) {
+            ReplyProgress::Done { values, .. } => Ok((Exchange { sent, received: self.now }, values)),
+            _ => Err(AxisError::NoReply),
+        }
+    }
+
+    fn now(&mut self) -> Duration {
+        self.now
+    }
+
+    fn wait_until(&mut self, time: Duration) -> Result<(), AxisError> {
+        let mut draw = Draw(self.draw.clone());
+        let late = Duration::from_secs_f64((draw.normal() * self.params.jitter_s).abs());
+        self.draw = draw.0;
+        self.advance(time + late);
+        if self.stop_at.is_some_and(|at| self.now >= at) { Err(AxisError::Stopped) } else { Ok(()) }
+    }
+
+    fn generation(&self) -> Generation {
+        self.unit.config().generation
+    }
+
+    fn stream(&self) -> Option<usize> {
+        Some(StreamIndex::Usb.index())
+    }
+}

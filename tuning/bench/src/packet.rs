@@ -1,0 +1,233 @@
+//! An [`Axis`] in packet serial: which commands make its calls, whatever carries them.
+//!
+//! The device thread of the program and the simulated link of the benchmark both carry them, so that what is measured is what is
+//! shipped.
+
+use brushwork_protocol::packet_serial::status::{Condition, decode};
+use brushwork_protocol::packet_serial::{Generation, Motor, Values, number, scale};
+use brushwork_tuning::axis::{
+    Axis, AxisError, EncoderClass, Exchange, PositionRegisters, Sample, Setup, Status, VelocityRegisters,
+    Want,
+};
+use std::time::Duration;
+
+/// What carries commands to one unit.
+pub trait Carrier {
+    /// Sends a command with its values by name and gives its reply.
+    fn transact(&mut self, command: u8, values: &[(&str, i64)]) -> Result<(Exchange, Values), AxisError>;
+    /// The time.
+    fn now(&mut self) -> Duration;
+    /// Waits until a time.
+    fn wait_until(&mut self, time: Duration) -> Result<(), AxisError>;
+    /// The unit's generation.
+    fn generation(&self) -> Generation;
+    /// The stream that this link is on, as far as it is known: its index in command 145.
+    fn stream(&self) -> Option<usize>;
+}
+
+/// An axis behind a carrier.
+#[derive(Debug)]
+pub struct PacketAxis<C> {
+    /// The carrier.
+    pub carrier: C,
+    motor: Motor,
+    encoder: EncoderClass,
+    stream: Option<Vec<i64>>,
+}
+
+impl<C: Carrier> PacketAxis<C> {
+    /// The axis of one motor. What its encoder is the caller knows from the settings or the user.
+    pub fn new(carrier: C, motor: Motor, encoder: EncoderClass) -> Self {
+        Self { carrier, motor, encoder, stream: None }
+    }
+
+    fn of(&self, m1: u8, m2: u8) -> u8 {
+        match self.motor {
+            Motor::M1 => m1,
+            Motor::M2 => m2,
+        }
+    }
+
+    fn send(&mut self, m1: u8, m2: u8, values: &[(&str, i64)]) -> Result<Exchange, AxisError> {
+        let command = self.of(m1, m2);
+        self.carrier.transact(command, values).map(|(at, _)| at)
+    }
+
+    fn read(&mut self, m1: u8, m2: u8) -> Result<Values, AxisError> {
+        let command = self.of(m1, m2);
+        self.carrier.transact(command, &[]).map(|(_, values)| values)
+    }
+
+    /// This motor's one of two fields.
+    fn field<'a>(&self, m1: &'a str, m2: &'a str) -> &'a str {
+        match self.motor {
+            Motor::M1 => m1,
+            Motor::M2 => m2,
+        }
+    }
+
+    fn read_status(&mut self) -> Result<Status, AxisError> {
+        let raw = self.carrier.transact(number::READ_STATUS, &[])?.1.int("status") as u32;
+        let set = decode(raw, self.carrier.generation());
+        let over_current = match self.motor {
+            Motor::M1 => [Condition::M1OverCurrentWarning, Condition::M1CurrentError],
+            Motor::M2 => [Condition::M2OverCurrentWarning, Condition::M2CurrentError],
+        };
+        let faults = [
+            Condition::EStop,
+            Condition::Temperature1Error,
+            Condition::Temperature2Error,
+            Condition::MainBatteryHighError,
+            Condition::LogicBatteryHighError,
+            Condition::LogicBatteryLowError,
+            Condition::M1DriverFault,
+            Condition::M2DriverFault,
+        ];
+        let low = [Condition::MainBatteryLowError, Condition::MainBatteryLowWarning];
+        let any = |wanted: &[Condition]| wanted.iter().any(|condition| set.contains(*condition));
+        Ok(Status { over_current: any(&over_current), battery_low: any(&low), fault: any(&faults), raw })
+    }
+
+    /// The stream's settings by command 146; `None` where the firmware or the caller does not tell which stream it is.
+    fn read_stream(&mut self) -> Result<Option<u32>, AxisError> {
+        let Some(index) = self.carrier.stream() else { return Ok(None) };
+        let values = match self.carrier.transact(number::READ_STREAMS, &[]) {
+            Ok((_, values)) => values,
+            Err(AxisError::Refused(_)) => return Ok(None),
+            Err(error) => return Err(error),
+        };
+        let Some(record) = values.records().nth(index) else { return Ok(None) };
+        self.stream = Some(vec![index as i64, record.int("type"), record.int("rate")]);
+        Ok(u32::try_from(record.int("timeout")).ok())
+    }
+}
+
+impl<C: Carrier> Axis for PacketAxis<C> {
+    fn now(&mut self) -> Duration {
+        self.carrier.now()
+    }
+
+    fn wait_until(&mut self, time: Duration) -> Result<(), AxisError> {
+        self.carrier.wait_until(time)
+    }
+
+    fn sample(&mut self, want: Want) -> Result<Sample, AxisError> {
+        let (counts_at, counts) = self.carrier.transact(number::READ_ENCODERS, &[])?;
+        // The cast is the register's own wrap.
+        let counts = [counts.int("encoder_m1") as i32, counts.int("encoder_m2") as i32];
+        let duty_raw = if want.duty {
+            let (at, values) = self.carrier.transact(number::READ_PWMS, &[])?;
+            Some((at, values.int(self.field("duty_m1", "duty_m2")) as i16))
+        } else {
+            None
+        };
+        let current_raw = if want.current {
+            let (_, values) = self.carrier.transact(number::READ_CURRENTS, &[])?;
+            Some(values.int(self.field("current_m1", "current_m2")) as i16)
+        } else {
+            None
+        };
+        let volts_raw = if want.volts {
+            let (_, values) = self.carrier.transact(number::READ_MAIN_BATTERY, &[])?;
+            Some(values.int("main_battery") as u16)
+        } else {
+            None
+        };
+        let status = self.read_status()?;
+        Ok(Sample { counts_at, counts, status, duty_raw, current_raw, volts_raw })
+    }
+
+    fn drive_duty(&mut self, duty_raw: i16) -> Result<Exchange, AxisError> {
+        let accel = scale::MAX_DUTY_ACCEL_RAW;
+        let values = [("duty", i64::from(duty_raw)), ("accel", accel)];
+        self.send(number::DUTY_ACCEL_M1, number::DUTY_ACCEL_M2, &values)
+    }
+
+    fn command_speed(&mut self, counts_per_s: i32) -> Result<Exchange, AxisError> {
+        self.send(number::SPEED_M1, number::SPEED_M2, &[("speed", i64::from(counts_per_s))])
+    }
+
+    fn command_position(&mut self, counts: i32, speed: u32) -> Result<Exchange, AxisError> {
+        let values = [
+            ("accel", 0),
+            ("speed", i64::from(speed)),
+            ("decel", 0),
+            ("position", i64::from(counts)),
+            ("buffer", 1),
+        ];
+        self.send(number::POSITION_PROFILE_M1, number::POSITION_PROFILE_M2, &values)
+    }
+
+    fn read_setup(&mut self) -> Result<Setup, AxisError> {
+        let velocity = self.read(number::READ_VELOCITY_PID_M1, number::READ_VELOCITY_PID_M2)?;
+        let position = self.read(number::READ_POSITION_PID_M1, number::READ_POSITION_PID_M2)?;
+        let current = self.read(number::READ_CURRENT_LIMITS_M1, number::READ_CURRENT_LIMITS_M2)?;
+        let winding =
+            self.read(number::READ_INDUCTANCE_RESISTANCE_M1, number::READ_INDUCTANCE_RESISTANCE_M2)?;
+        let volts = self.carrier.transact(number::READ_MAIN_VOLTAGES, &[])?.1;
+        let stream_timeout_ms = self.read_stream()?;
+        let unsigned = |values: &Values, name: &str| values.int(name) as u32;
+        Ok(Setup {
+            velocity: VelocityRegisters {
+                p: unsigned(&velocity, "p"),
+                i: unsigned(&velocity, "i"),
+                d: unsigned(&velocity, "d"),
+                qpps: unsigned(&velocity, "qpps"),
+            },
+            position: PositionRegisters {
+                p: unsigned(&position, "p"),
+                i: unsigned(&position, "i"),
+                d: unsigned(&position, "d"),
+                max_i: unsigned(&position, "max_i"),
+                deadzone: unsigned(&position, "deadzone"),
+                min: position.int("min") as i32,
+                max: position.int("max") as i32,
+            },
+            max_current_raw: unsigned(&current, "max"),
+            min_volts_raw: volts.int("min") as u16,
+            inductance_resistance_raw: [unsigned(&winding, "inductance"), unsigned(&winding, "resistance")],
+            stream_timeout_ms,
+            encoder: self.encoder,
+        })
+    }
+
+    fn write_velocity(&mut self, registers: VelocityRegisters) -> Result<(), AxisError> {
+        let values = [
+            ("d", i64::from(registers.d)),
+            ("p", i64::from(registers.p)),
+            ("i", i64::from(registers.i)),
+            ("qpps", i64::from(registers.qpps)),
+        ];
+        self.send(number::SET_VELOCITY_PID_M1, number::SET_VELOCITY_PID_M2, &values).map(|_| ())
+    }
+
+    fn write_position(&mut self, registers: PositionRegisters) -> Result<(), AxisError> {
+        let values = [
+            ("d", i64::from(registers.d)),
+            ("p", i64::from(registers.p)),
+            ("i", i64::from(registers.i)),
+            ("max_i", i64::from(registers.max_i)),
+            ("deadzone", i64::from(registers.deadzone)),
+            ("min", i64::from(registers.min)),
+            ("max", i64::from(registers.max)),
+        ];
+        self.send(number::SET_POSITION_PID_M1, number::SET_POSITION_PID_M2, &values).map(|_| ())
+    }
+
+    fn raw_speed(&mut self) -> Result<i32, AxisError> {
+        let values = self.read(number::READ_RAW_SPEED_M1, number::READ_RAW_SPEED_M2)?;
+        let magnitude = values.int("speed") as u32 as i32;
+        // Generations that tell the direction beside the speed set the lowest bit of the status byte for backwards.
+        let backwards = magnitude > 0 && values.try_int("status").is_some_and(|status| status & 1 != 0);
+        Ok(if backwards { -magnitude } else { magnitude })
+    }
+
+    fn set_stream_timeout(&mut self, milliseconds: u32) -> Result<(), AxisError> {
+        let Some(stream) = self.stream.clone() else {
+            return Err(AxisError::Refused("command 145".into()));
+        };
+        let [index, kind, rate] = stream[..] else { return Err(AxisError::Refused("command 145".into())) };
+        let values = [("index", index), ("type", kind), ("rate", rate), ("timeout", i64::from(milliseconds))];
+        self.carrier.transact(number::SET_STREAM, &values).map(|_| ())
+    }
+}

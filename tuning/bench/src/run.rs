@@ -1,0 +1,115 @@
+//! Runs the tuner on one plant, in virtual time over the wire, and judges what came out on the true plant.
+
+use crate::line::SimulatedLine;
+use crate::oracle::{Optimum, cost, trial};
+use crate::packet::PacketAxis;
+use crate::population::Specimen;
+use crate::trial::{Registers, linear};
+use crate::truth::Truth;
+use brushwork_protocol::packet_serial::Motor;
+use brushwork_sim::controller::Controller;
+use brushwork_tuning::axis::EncoderClass;
+use brushwork_tuning::cause::Cause;
+use brushwork_tuning::report::{Report, Verdict};
+use brushwork_tuning::rig::GuardOptions;
+use brushwork_tuning::tune::{Excitation, Method, Request, tune};
+
+/// An axis over the simulated machine.
+pub type SimulatedAxis = PacketAxis<SimulatedLine>;
+
+/// The axis of a plant, switched on half a second ago.
+#[must_use]
+pub fn axis_of(specimen: &Specimen) -> SimulatedAxis {
+    let unit = Controller::new(specimen.controller_config()).expect("every drawn figure is in its range");
+    let mut line = SimulatedLine::new(unit, specimen.link);
+    line.idle(std::time::Duration::from_millis(500));
+    PacketAxis::new(line, Motor::M1, EncoderClass::Quadrature)
+}
+
+/// What the bench asks for.
+#[must_use]
+pub fn request_of(specimen: &Specimen, method: Method) -> Request {
+    Request {
+        method,
+        excitation: Excitation::Free,
+        guard: GuardOptions { poll_s: specimen.link.poll_s, ..GuardOptions::default() },
+        ..Request::default()
+    }
+}
+
+/// A tuning run of a plant.
+#[must_use]
+pub fn tune_plant(specimen: &Specimen, request: &Request) -> (Report, SimulatedAxis) {
+    let mut axis = axis_of(specimen);
+    let report = tune(&mut axis, request);
+    (report, axis)
+}
+
+/// What gains are worth on the true plant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Judgement {
+    /// Cost over the optimum's; infinite for a refusal.
+    pub j: f64,
+    /// Whether the loop is stable on the true plant and stays so at half and at half as much more inertia.
+    pub stable: bool,
+    /// Maximum sensitivity on the true plant.
+    pub ms: f64,
+    /// The larger of those at half and at half as much more inertia.
+    pub ms_varied: f64,
+    /// Overshoot of the true response.
+    pub overshoot: f64,
+    /// Duty at rest, root mean square.
+    pub duty_rms: f64,
+    /// Goes on swinging.
+    pub hunting: bool,
+    /// No gains at all.
+    pub refused: Option<Cause>,
+    /// Meets every bound.
+    pub accept: bool,
+    /// Accepted and within half as much more of the optimum.
+    pub good: bool,
+}
+
+/// Judges registers.
+#[must_use]
+pub fn judge(
+    method: Method,
+    specimen: &Specimen,
+    truth: &Truth,
+    optimum: &Optimum,
+    registers: &Registers,
+) -> Judgement {
+    let (margins, radius) = linear(&truth.nominal, truth, registers);
+    let varied = truth.varied.each_ref().map(|plant| linear(plant, truth, registers));
+    let outcome = trial(method, specimen, truth, registers);
+    let stable = radius < 1.0;
+    let most = if method == Method::Velocity { 0.25 } else { 0.10 };
+    let quiet = outcome.duty_rms <= (1.5 * optimum.duty_rms).max(0.12);
+    let accept = stable && !outcome.hunting && margins.ms <= 2.0 && outcome.score.overshoot <= most && quiet;
+    let j = cost(method, &outcome) / optimum.cost;
+    Judgement {
+        j,
+        stable,
+        ms: margins.ms,
+        ms_varied: varied.iter().map(|v| if v.1 < 1.0 { v.0.ms } else { f64::INFINITY }).fold(0.0, f64::max),
+        overshoot: outcome.score.overshoot,
+        duty_rms: outcome.duty_rms,
+        hunting: outcome.hunting,
+        refused: None,
+        accept,
+        good: accept && j <= 1.5,
+    }
+}
+
+/// Judges a report.
+#[must_use]
+pub fn judge_report(specimen: &Specimen, truth: &Truth, optimum: &Optimum, report: &Report) -> Judgement {
+    let registers = match (report.verdict, report.velocity) {
+        (Verdict::Refused, _) | (_, None) => {
+            let refused = report.causes.first().copied().or(Some(Cause::TooCoarse));
+            return Judgement { j: f64::INFINITY, stable: true, refused, ..Judgement::default() };
+        }
+        (_, Some(velocity)) => Registers { velocity, position: report.position },
+    };
+    judge(report.request.method, specimen, truth, optimum, &registers)
+}

@@ -1,0 +1,299 @@
+//! The table of the benchmark: our methods and every textbook rule, side by side on the same records.
+
+use crate::cache::{OptimaByPlant, known};
+use crate::faults::{FaultRow, fault_rows};
+use crate::oracle::{Optima, optima};
+use crate::population::{Specimen, population};
+use crate::run::{Judgement, judge, judge_report, request_of, tune_plant};
+use crate::trial::Registers;
+use crate::truth::{Truth, truth};
+use brushwork_tuning::report::{Report, Verdict};
+use brushwork_tuning::rules::{pd_rules, pid_rules, piv_rules, velocity_rules};
+use brushwork_tuning::tune::{Excitation, Method, Request};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Cost that stands for no gains at all.
+const REFUSED_COST: f64 = 1000.0;
+/// The travel window of the identification, s of full speed.
+const WINDOW_S: f64 = 0.2;
+
+/// The methods and their names in the table.
+pub const TASKS: [(&str, Method); 4] =
+    [("velocity", Method::Velocity), ("pd", Method::Pd), ("pid", Method::Pid), ("piv", Method::Piv)];
+
+/// One row: shares and overshoot in percent.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// "brushwork" or the name of a rule.
+    pub method: String,
+    /// Stable, no limit cycle, maximum sensitivity, overshoot and duty noise within bounds, %.
+    pub accept: f64,
+    /// Accepted and at most half as costly again as the optimum, %.
+    pub good: f64,
+    /// Cost over the optimum's, median.
+    pub j_median: f64,
+    /// The same, 95th percentile; 1000 stands for a refusal.
+    pub j_p95: f64,
+    /// Loops that are unstable on the true plant, %.
+    pub unstable: f64,
+    /// Maximum sensitivity on the true plant, 95th percentile.
+    pub ms_p95: f64,
+    /// The same with the inertia at half and at half as much again, whichever is worse.
+    pub ms_varied_p95: f64,
+    /// True overshoot, 95th percentile, %.
+    pub overshoot_p95: f64,
+    /// Length of the run, s.
+    pub seconds_median: f64,
+}
+
+/// Errors of the identification in percent, and what it costs.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Identification {
+    /// QPPS on a free axis.
+    pub qpps_error_median: f64,
+    /// QPPS on a free axis.
+    pub qpps_error_p95: f64,
+    /// Gain.
+    pub gain_error_median: f64,
+    /// Gain.
+    pub gain_error_p95: f64,
+    /// Time constant of plants slower than 30 ms.
+    pub tau_error_median: f64,
+    /// Time constant of plants slower than 30 ms.
+    pub tau_error_p95: f64,
+    /// Lag of the firmware, ms.
+    pub lag_error_ms_median: f64,
+    /// Lag of the firmware, ms.
+    pub lag_error_ms_p95: f64,
+    /// Predicted against true maximum sensitivity of the velocity loop.
+    pub ms_error_p95: f64,
+    /// Length of the identification, s.
+    pub seconds_median: f64,
+    /// Highest current over the stall current, %.
+    pub peak_current_p95: f64,
+    /// QPPS inside a window of 0.2 s of full-speed travel.
+    pub window_qpps_error_median: f64,
+    /// QPPS inside that window.
+    pub window_qpps_error_p95: f64,
+    /// Plants that the window run refused, %.
+    pub window_refused: f64,
+    /// Farthest reach in the window over half its width, %.
+    pub window_reach_p95: f64,
+}
+
+/// The whole table.
+#[derive(Clone, Debug, Serialize)]
+pub struct Table {
+    /// Seed of the population.
+    pub seed: u64,
+    /// Size of the population.
+    pub plants: usize,
+    /// Rows by task.
+    pub tasks: BTreeMap<&'static str, Vec<Row>>,
+    /// Identification.
+    pub identification: Identification,
+    /// Faults.
+    pub faults: Vec<FaultRow>,
+}
+
+/// One plant and all that is known of it.
+pub struct Case {
+    /// The plant.
+    pub specimen: Specimen,
+    /// Its truth.
+    pub truth: Truth,
+    /// Its optima.
+    pub optima: Optima,
+}
+
+/// The plants of a seed with their optima, known ones from the repository.
+#[must_use]
+pub fn cases(seed: u64, plants: usize, fresh: bool) -> Vec<Case> {
+    let cached = if fresh { OptimaByPlant::new() } else { known(seed) };
+    population(seed, plants)
+        .into_par_iter()
+        .map(|specimen| {
+            let truth = truth(&specimen);
+            let optima = cached.get(&specimen.number).copied().unwrap_or_else(|| optima(&specimen, &truth));
+            Case { specimen, truth, optima }
+        })
+        .collect()
+}
+
+/// The optima of cases, to be kept.
+#[must_use]
+pub fn optima_of(cases: &[Case]) -> OptimaByPlant {
+    cases.iter().map(|case| (case.specimen.number, case.optima)).collect()
+}
+
+/// Runs everything. `faults` leaves the fault runs out when false.
+#[must_use]
+pub fn table(seed: u64, cases: &[Case], faults: bool) -> Table {
+    let mut tasks = BTreeMap::new();
+    let mut velocity_reports = Vec::new();
+    for (name, method) in TASKS {
+        let reports: Vec<(Report, f64)> = cases
+            .par_iter()
+            .map(|case| {
+                let (report, axis) = tune_plant(&case.specimen, &request_of(&case.specimen, method));
+                let stall = case.specimen.axis.stall_amps(case.specimen.volts());
+                (report, axis.carrier.truth.peak_amps / stall)
+            })
+            .collect();
+        tasks.insert(name, rows(method, cases, &reports));
+        if method == Method::Velocity {
+            velocity_reports = reports;
+        }
+    }
+    let identification = identification(cases, &velocity_reports);
+    let faults = if faults { fault_rows(cases) } else { Vec::new() };
+    Table { seed, plants: cases.len(), tasks, identification, faults }
+}
+
+fn rows(method: Method, cases: &[Case], reports: &[(Report, f64)]) -> Vec<Row> {
+    let ours: Vec<(Judgement, f64)> = cases
+        .par_iter()
+        .zip(reports)
+        .filter_map(|(case, (report, _))| {
+            let optimum = case.optima.of(method)?;
+            Some((judge_report(&case.specimen, &case.truth, &optimum, report), report.seconds.1))
+        })
+        .collect();
+    let mut rows = vec![row("brushwork", &ours)];
+    let ruled: Vec<Vec<(&'static str, Judgement, f64)>> = cases
+        .par_iter()
+        .zip(reports)
+        .filter_map(|(case, (report, _))| by_rules(method, case, report))
+        .collect();
+    let names: Vec<&str> =
+        ruled.first().map(|all| all.iter().map(|rule| rule.0).collect()).unwrap_or_default();
+    for (n, name) in names.iter().enumerate() {
+        let judged: Vec<(Judgement, f64)> =
+            ruled.iter().filter_map(|all| all.get(n)).map(|rule| (rule.1, rule.2)).collect();
+        rows.push(row(name, &judged));
+    }
+    rows
+}
+
+/// What each rule makes of the record of a run.
+fn by_rules(method: Method, case: &Case, report: &Report) -> Option<Vec<(&'static str, Judgement, f64)>> {
+    let classic = report.classic?;
+    let qpps = report.qpps?;
+    let optimum = case.optima.of(method)?;
+    let law = &case.truth.law;
+    let rules = match method {
+        Method::Velocity => velocity_rules(&classic, law, qpps),
+        Method::Pd => pd_rules(&classic, law, qpps),
+        Method::Pid => pid_rules(&classic, law, qpps),
+        Method::Piv => piv_rules(&classic, law, qpps),
+    };
+    let judged = rules.into_iter().map(|(name, gains)| {
+        let registers = Registers::of(&gains, qpps, &case.truth);
+        (name, judge(method, &case.specimen, &case.truth, &optimum, &registers), report.seconds.0)
+    });
+    Some(judged.collect())
+}
+
+fn row(method: &str, judged: &[(Judgement, f64)]) -> Row {
+    let percent = |of: fn(&Judgement) -> bool| {
+        100.0 * judged.iter().filter(|(j, _)| of(j)).count() as f64 / judged.len().max(1) as f64
+    };
+    let given = || judged.iter().filter(|(j, _)| j.refused.is_none());
+    let j: Vec<f64> = judged.iter().map(|(j, _)| j.j.min(REFUSED_COST)).collect();
+    Row {
+        method: method.to_owned(),
+        accept: round(percent(|j| j.accept), 1),
+        good: round(percent(|j| j.good), 1),
+        j_median: round(quantile(j.iter().copied(), 0.5), 3),
+        j_p95: round(quantile(j.iter().copied(), 0.95), 3),
+        unstable: round(percent(|j| !j.stable), 1),
+        ms_p95: round(quantile(given().map(|(j, _)| j.ms), 0.95), 3),
+        ms_varied_p95: round(quantile(given().map(|(j, _)| j.ms_varied.min(REFUSED_COST)), 0.95), 3),
+        overshoot_p95: round(100.0 * quantile(given().map(|(j, _)| j.overshoot), 0.95), 1),
+        seconds_median: round(quantile(judged.iter().map(|(_, s)| *s), 0.5), 2),
+    }
+}
+
+fn identification(cases: &[Case], reports: &[(Report, f64)]) -> Identification {
+    let found = || cases.iter().zip(reports).map(|(case, (report, peak))| (case, report, peak));
+    let error = |got: f64, wanted: f64| 100.0 * (got / wanted - 1.0).abs();
+    let qpps: Vec<f64> = found().filter_map(|(c, r, _)| Some(error(r.qpps?, c.truth.qpps))).collect();
+    let gain: Vec<f64> = found()
+        .filter_map(|(c, r, _)| Some(error(r.fit?.model.gain_counts_per_s, c.truth.gain_counts_per_s)))
+        .collect();
+    let tau: Vec<f64> = found()
+        .filter(|(c, _, _)| c.truth.tau_s > 0.03)
+        .filter_map(|(c, r, _)| Some(error(r.fit?.model.tau_s, c.truth.tau_s)))
+        .collect();
+    let lag: Vec<f64> = found()
+        .filter_map(|(c, r, _)| {
+            let law = &c.truth.law;
+            Some(1e3 * (r.lag?.lag.total_s(law) - c.truth.lag.total_s(law)).abs())
+        })
+        .collect();
+    let ms: Vec<f64> = found()
+        .filter(|(_, r, _)| r.verdict != Verdict::Refused)
+        .filter_map(|(c, r, _)| {
+            let registers = Registers { velocity: r.velocity?, position: None };
+            let (margins, _) = crate::trial::linear(&c.truth.nominal, &c.truth, &registers);
+            Some((margins.ms - r.design?.ms).abs())
+        })
+        .collect();
+    let windows = window_runs(cases);
+    let qpps_inside: Vec<f64> = windows.iter().filter_map(|w| w.0).collect();
+    let refused = windows.iter().filter(|w| w.0.is_none()).count() as f64 / windows.len().max(1) as f64;
+    let middle = |values: &[f64]| quantile(values.iter().copied(), 0.5);
+    let high = |values: &[f64]| quantile(values.iter().copied(), 0.95);
+    Identification {
+        qpps_error_median: round(middle(&qpps), 3),
+        qpps_error_p95: round(high(&qpps), 3),
+        gain_error_median: round(middle(&gain), 2),
+        gain_error_p95: round(high(&gain), 2),
+        tau_error_median: round(middle(&tau), 2),
+        tau_error_p95: round(high(&tau), 2),
+        lag_error_ms_median: round(middle(&lag), 2),
+        lag_error_ms_p95: round(high(&lag), 2),
+        ms_error_p95: round(high(&ms), 3),
+        seconds_median: round(quantile(reports.iter().map(|r| r.0.seconds.0), 0.5), 2),
+        peak_current_p95: round(100.0 * quantile(reports.iter().map(|r| r.1), 0.95), 1),
+        window_qpps_error_median: round(middle(&qpps_inside), 2),
+        window_qpps_error_p95: round(high(&qpps_inside), 2),
+        window_refused: round(100.0 * refused, 1),
+        window_reach_p95: round(quantile(windows.iter().map(|w| w.1), 0.95), 1),
+    }
+}
+
+/// For each plant: the error of QPPS found inside the window, and the farthest reach over half the window, both in percent.
+fn window_runs(cases: &[Case]) -> Vec<(Option<f64>, f64)> {
+    cases
+        .par_iter()
+        .map(|case| {
+            let width = (WINDOW_S * case.truth.qpps).round();
+            let request = Request {
+                excitation: Excitation::Window(width),
+                verify: false,
+                ..request_of(&case.specimen, Method::Pd)
+            };
+            let (report, _) = tune_plant(&case.specimen, &request);
+            let error = report.qpps.map(|qpps| 100.0 * (qpps / case.truth.qpps - 1.0).abs());
+            let reach = report.window.map_or(0.0, |window| 200.0 * window.reach_counts / width);
+            (error, reach)
+        })
+        .collect()
+}
+
+/// The value below which a share of the values lies.
+#[must_use]
+pub fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    let last = sorted.len().saturating_sub(1);
+    sorted.get((share * last as f64).round() as usize).copied().unwrap_or(0.0)
+}
+
+fn round(value: f64, digits: i32) -> f64 {
+    let scale = 10.0_f64.powi(digits);
+    (value * scale).round() / scale
+}

@@ -1,0 +1,132 @@
+//! Why a run ended without a result, or what its result must be taken with.
+
+use serde::{Deserialize, Serialize};
+
+/// What ended a run, or what its reader must know.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Cause {
+    /// Counts go down while duty goes up.
+    EncoderReversed,
+    /// The motor draws a running current, but nothing is counted.
+    EncoderDead,
+    /// No current flows, nothing moves.
+    MotorOpen,
+    /// Current as of a motor that stands, nothing moves.
+    ShaftLocked,
+    /// Counts stopped in mid-run while the motor went on.
+    EncoderLost,
+    /// The motor stopped in mid-run with its current high.
+    Stalled,
+    /// The current stopped in mid-run.
+    MotorOpened,
+    /// Counts turned their sign in mid-run.
+    EncoderFlipped,
+    /// The travel window would have been left.
+    TravelLimit,
+    /// The main battery is low.
+    BatteryLow,
+    /// The controller reports a fault.
+    ControllerFault,
+    /// No replies.
+    LinkLost,
+    /// The user, the window or the device thread stopped it.
+    Stopped,
+    /// The run took too long.
+    TimeLimit,
+    /// The controller does not take a command of the run.
+    Refused,
+    /// Inductance and resistance are set, so that duty is a current.
+    TorqueMode,
+    /// An absolute encoder that wraps gives no speed.
+    WrappingEncoder,
+    /// The encoder is too coarse, or the axis too slow, for the polls.
+    TooCoarse,
+    /// The model does not explain the record.
+    PoorFit,
+    /// The two directions differ by more than a quarter.
+    Lopsided,
+    /// More than half of the record is held by the current limit.
+    CurrentLimited,
+    /// The verification found the loop worse than predicted, at the lowest gains too.
+    NotVerified,
+    /// The lag of the loop could not be measured; the gains assume the usual one.
+    LagUnknown,
+    /// The gains were lowered since the measured loop was rougher than predicted.
+    BackedOff,
+    /// The two directions differ by more than 5 %.
+    Asymmetric,
+    /// The controller's loop follows no law that is known.
+    UnknownLaw,
+}
+
+impl Cause {
+    /// One sentence or two: what was seen and what to do.
+    #[must_use]
+    pub fn sentence(self) -> &'static str {
+        match self {
+            Self::EncoderReversed => {
+                "The encoder counts down while the motor is driven up. Swap the encoder's A and B, or the motor leads, or set the \
+                 encoder's reverse option."
+            }
+            Self::EncoderDead => {
+                "The motor draws the current of a turning motor, but the encoder counts nothing. Check the encoder's plug, supply \
+                 and input."
+            }
+            Self::MotorOpen => "No current flows and nothing moves. Check the motor leads and the bridge.",
+            Self::ShaftLocked => {
+                "The motor draws the current of a standing motor and nothing is counted. Free the shaft, or release its brake."
+            }
+            Self::EncoderLost => {
+                "The encoder stopped counting while the motor went on. Check its plug and cable."
+            }
+            Self::Stalled => {
+                "The motor was stopped by something: an end stop or a jam. Look there, then set the travel."
+            }
+            Self::MotorOpened => "The motor current stopped in mid-run. Check the motor leads.",
+            Self::EncoderFlipped => {
+                "The encoder changed its direction in mid-run. Check its wiring for a loose lead."
+            }
+            Self::TravelLimit => {
+                "The axis came to the end of its travel window. Start nearer to the middle, or widen the window."
+            }
+            Self::BatteryLow => "The main battery is low. Charge it, or use a stronger supply.",
+            Self::ControllerFault => {
+                "The controller reports a fault. Read its status, clear it, and try again."
+            }
+            Self::LinkLost => {
+                "The controller stopped answering. Check the cable; the controller's own time-out stops the motor."
+            }
+            Self::Stopped => "The run was stopped.",
+            Self::TimeLimit => "The run took longer than it may. A very slow axis needs a higher time limit.",
+            Self::Refused => "The controller did not take a command. See the log for which.",
+            Self::TorqueMode => {
+                "Motor inductance and resistance are both set, which turns duty into current. Clear them for the tuning."
+            }
+            Self::WrappingEncoder => {
+                "An absolute encoder that wraps has no speed that a loop could use. Tune the position instead."
+            }
+            Self::TooCoarse => "The encoder gives too few counts for this axis. A finer one is needed.",
+            Self::PoorFit => {
+                "The motion does not follow the model of a motor. Look for slipping parts, a loose encoder or noise."
+            }
+            Self::Lopsided => {
+                "The two directions differ by more than a quarter. Look for a load that pulls, or a jam."
+            }
+            Self::CurrentLimited => {
+                "The current limit held the motor back for most of the run. Raise it, or lower the load."
+            }
+            Self::NotVerified => {
+                "The loop was worse than predicted, at low gains too. The old gains are back in force."
+            }
+            Self::LagUnknown => {
+                "The lag of the controller's loop could not be measured; the gains assume the usual one."
+            }
+            Self::BackedOff => "The gains were lowered, since the measured loop was rougher than predicted.",
+            Self::Asymmetric => "The two directions differ by more than 5 %.",
+            Self::UnknownLaw => {
+                "The controller's loop follows no law known to this program, so gains cannot be computed for it."
+            }
+        }
+    }
+}

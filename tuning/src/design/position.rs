@@ -1,0 +1,153 @@
+//! Position loops: PD and PID that act on the duty directly, and P over the velocity loop (PIV).
+
+use super::{Candidate, Design, Goal, Loops, Task, ascend, better, finish};
+use crate::model::{Gains, Lag, Pid};
+use crate::score::POSITION_OVERSHOOT;
+use crate::ticks::position_test;
+
+/// Overshoot beyond which the cost jumps.
+const OVERSHOOT_CAP: f64 = 0.06;
+/// Shares of the highest gain tried.
+const SHARES: [f64; 6] = [1.0, 0.85, 0.7, 0.5, 0.35, 0.2];
+/// Derivative times tried, as shares of the time constant of the motor.
+const DERIVATIVE_TIMES: [f64; 14] = [0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.5];
+/// Integral times of the inner loop tried.
+const INNER_TIMES: usize = 8;
+/// Shares of the highest inner gain tried.
+const INNER_SHARES: [f64; 4] = [1.0, 0.7, 0.4, 0.2];
+/// Dead zone around the play of the mechanics, and of an integral that would hunt without one, counts.
+const SLACK_MARGIN: f64 = 2.0;
+const INTEGRAL_DEADZONE: f64 = 1.0;
+/// What the sensitivity is bounded with beside the likely lag: a tick for the winding and a springy shaft, which a difference of one
+/// tick reaches where a filtered speed does not.
+const UNMODELLED_TICKS: f64 = 0.5;
+
+/// `v = P e + D de/dt`, duty = v / QPPS (MCP manual 2.4.7, the simple PD system).
+#[must_use]
+pub fn design_pd(task: &Task) -> Option<Design> {
+    let task = &direct(task);
+    let loops = Loops::new(task);
+    let base = Gains { deadzone_counts: deadzone(task), ..Gains::default() };
+    let best = search_pd(&loops, task, base)?;
+    let best = refine(&loops, task, best);
+    finish(&loops, task, Some(best).filter(|best| loops.stable(task, &best.gains)))
+}
+
+/// The PD with an integral that carries friction and load, bounded by what they need.
+#[must_use]
+pub fn design_pid(task: &Task) -> Option<Design> {
+    let task = &direct(task);
+    let loops = Loops::new(task);
+    let base = Gains { deadzone_counts: deadzone(task).max(INTEGRAL_DEADZONE), ..Gains::default() };
+    // The integral takes phase: the PD below it is kept a little softer.
+    let inner = Task { goal: Goal { ms: 1.0 + 0.8 * (task.goal.ms - 1.0), ..task.goal }, ..*task };
+    let mut best = search_pd(&loops, &inner, base)?;
+    let proportional = best.gains.position?;
+    // What friction and the load step eat, half as much again.
+    let eaten = 1.5 * (task.plant.coulomb_duty + task.plant.load_duty.abs() + crate::score::LOAD_STEP_DUTY);
+    for time_s in (0..12).map(|n| 3.0 * task.plant.tau_s.max(0.03) * 0.8_f64.powi(n)) {
+        for share in [1.0, 0.8, 0.6] {
+            let p = proportional.p * share;
+            let pid = Pid { p, i: p / time_s, d: proportional.d * share };
+            let gains = Gains { position: Some(pid), max_integral: eaten * task.qpps / pid.i, ..best.gains };
+            if loops.within(task, &gains).is_some() && loops.stable(task, &gains) {
+                let other = candidate(task, gains);
+                if other.cost < best.cost {
+                    best = other;
+                }
+            }
+        }
+    }
+    let best = refine(&loops, task, best);
+    finish(&loops, task, Some(best).filter(|best| loops.stable(task, &best.gains)))
+}
+
+/// P over the velocity PI, both searched together.
+#[must_use]
+pub fn design_piv(task: &Task) -> Option<Design> {
+    let loops = Loops::new(task);
+    let inner = Task { goal: Goal { ms: 1.05 * task.goal.ms, ..task.goal }, ..*task };
+    let lag_s = task.lag.total_s(&task.law) + 1.5 * task.law.tick_s();
+    let shortest = (1.5 * lag_s).max(task.least_integral_s);
+    let longest = (12.0 * task.plant.tau_s).max(40.0 * lag_s).max(1.5 * shortest);
+    let mut best = None;
+    for n in 0..INNER_TIMES {
+        let time_s = shortest * (longest / shortest).powf(n as f64 / (INNER_TIMES - 1) as f64);
+        let pi = |p: f64| Gains {
+            velocity: Pid { p, i: p / time_s, d: 0.0 },
+            deadzone_counts: deadzone(task),
+            ..Gains::default()
+        };
+        let Some(top) = ascend(&loops, &inner, 400.0, pi) else { continue };
+        for share in INNER_SHARES {
+            let with_place = |p: f64| Gains { position: Some(Pid { p, i: 0.0, d: 0.0 }), ..pi(top * share) };
+            let Some(highest) = ascend(&loops, task, 300.0, with_place) else { continue };
+            for outer in SHARES {
+                best = better(best, candidate(task, with_place(highest * outer)));
+            }
+        }
+    }
+    let best = refine(&loops, task, best?);
+    finish(&loops, task, Some(best).filter(|best| loops.stable(task, &best.gains)))
+}
+
+fn search_pd(loops: &Loops, task: &Task, base: Gains) -> Option<Candidate> {
+    let mut best = None;
+    for times in DERIVATIVE_TIMES {
+        let time_s = times * task.plant.tau_s;
+        let pd = |p: f64| Gains { position: Some(Pid { p, i: 0.0, d: p * time_s }), ..base };
+        let Some(highest) = ascend(loops, task, 2_000.0, pd) else { continue };
+        for share in SHARES {
+            best = better(best, candidate(task, pd(highest * share)));
+        }
+    }
+    best
+}
+
+/// Small steps in each gain, as long as they pay.
+fn refine(loops: &Loops, task: &Task, mut best: Candidate) -> Candidate {
+    let mut step = 1.2_f64;
+    for _ in 0..4 {
+        for n in 0..10 {
+            let by = if n % 2 == 0 { step } else { 1.0 / step };
+            let mut gains = best.gains;
+            let Some(position) = gains.position.as_mut() else { return best };
+            match n / 2 {
+                0 => position.p *= by,
+                1 => position.d *= by,
+                2 => {
+                    position.i *= by;
+                    gains.max_integral /= by;
+                }
+                3 => gains.velocity.p *= by,
+                _ => gains.velocity.i *= by,
+            }
+            if gains == best.gains || loops.within(task, &gains).is_none() || !loops.stable(task, &gains) {
+                continue;
+            }
+            let other = candidate(task, gains);
+            if other.cost < best.cost {
+                best = other;
+            }
+        }
+        step = step.sqrt();
+    }
+    best
+}
+
+fn candidate(task: &Task, gains: Gains) -> Candidate {
+    let score = position_test(&task.plant, &task.law, task.lag, &gains, task.qpps);
+    let excess = (score.overshoot - OVERSHOOT_CAP).max(0.0);
+    Candidate { gains, score, cost: score.cost(POSITION_OVERSHOOT) * (1.0 + 50.0 * excess) }
+}
+
+/// Within the play nothing can be held; beyond it two counts keep the rounding quiet.
+fn deadzone(task: &Task) -> f64 {
+    if task.slack_counts > 0.0 { (task.slack_counts + SLACK_MARGIN).round() } else { 0.0 }
+}
+
+/// The task of a loop that acts on the duty directly.
+fn direct(task: &Task) -> Task {
+    let worst_lag = Lag { delay_ticks: task.worst_lag.delay_ticks + UNMODELLED_TICKS, ..task.worst_lag };
+    Task { worst_lag, ..*task }
+}

@@ -1,0 +1,70 @@
+//! Velocity PI with feed-forward. D stays 0: one tick of count difference is too coarse to be differentiated again.
+
+use super::{Candidate, Design, Loops, Task, ascend, better, finish};
+use crate::model::{Gains, Pid, PlantModel};
+use crate::score::{Score, VELOCITY_OVERSHOOT};
+use crate::ticks::velocity_test;
+
+/// Integral times tried.
+const TIMES: usize = 16;
+/// Shares of the highest gain tried.
+const SHARES: [f64; 6] = [1.0, 0.85, 0.7, 0.5, 0.3, 0.15];
+/// Overshoot beyond which the cost jumps.
+const OVERSHOOT_CAP: f64 = 0.21;
+/// Rounds and first step of the refinement.
+const ROUNDS: usize = 4;
+const FIRST_STEP: f64 = 1.25;
+
+/// The gains that respond best within the goal; `None` where not even small gains keep it.
+#[must_use]
+pub fn design_velocity(task: &Task) -> Option<Design> {
+    let loops = Loops::new(task);
+    let lag_s = task.lag.total_s(&task.law) + 1.5 * task.law.tick_s();
+    let shortest = (1.5 * lag_s).max(task.least_integral_s);
+    let longest = (12.0 * task.plant.tau_s).max(40.0 * lag_s).max(1.5 * shortest);
+    let mut best = None;
+    for n in 0..TIMES {
+        let time_s = shortest * (longest / shortest).powf(n as f64 / (TIMES - 1) as f64);
+        let Some(top) = ascend(&loops, task, 400.0, |p| pi(p, time_s)) else { continue };
+        for share in SHARES {
+            best = better(best, candidate(task, pi(top * share, time_s)));
+        }
+    }
+    let best = refine(&loops, task, best?);
+    finish(&loops, task, Some(best).filter(|best| loops.stable(task, &best.gains)))
+}
+
+fn refine(loops: &Loops, task: &Task, mut best: Candidate) -> Candidate {
+    let mut step = FIRST_STEP;
+    for _ in 0..ROUNDS {
+        for (by_p, by_i) in [(step, 1.0), (1.0 / step, 1.0), (1.0, step), (1.0, 1.0 / step), (step, step)] {
+            let v = best.gains.velocity;
+            let gains = Gains { velocity: Pid { p: v.p * by_p, i: v.i * by_i, d: 0.0 }, ..best.gains };
+            if loops.within(task, &gains).is_none() || !loops.stable(task, &gains) {
+                continue;
+            }
+            let other = candidate(task, gains);
+            if other.cost < best.cost {
+                best = other;
+            }
+        }
+        step = step.sqrt();
+    }
+    best
+}
+
+/// The cost as likely, and half as much again of what it would be on a somewhat quicker motor with the worst lag.
+fn candidate(task: &Task, gains: Gains) -> Candidate {
+    let score = velocity_test(&task.plant, &task.law, task.lag, &gains, task.qpps);
+    let other = PlantModel { tau_s: 0.88 * task.plant.tau_s, ..task.plant };
+    let worse = velocity_test(&other, &task.law, task.worst_lag, &gains, task.qpps);
+    let capped = |score: &Score| {
+        let excess = (score.overshoot - OVERSHOOT_CAP).max(0.0);
+        score.cost(VELOCITY_OVERSHOOT) * (1.0 + 30.0 * excess)
+    };
+    Candidate { gains, score, cost: capped(&score) + 0.5 * capped(&worse) }
+}
+
+fn pi(p: f64, time_s: f64) -> Gains {
+    Gains { velocity: Pid { p, i: p / time_s, d: 0.0 }, ..Gains::default() }
+}

@@ -1,0 +1,160 @@
+//! The experiment on an axis that turns freely: full speed one way, steps and a relay on the speed, full speed the other way.
+//! It gives QPPS at once and the record for the fit.
+
+use super::Probe;
+use crate::cause::Cause;
+use crate::rig::Rig;
+use crate::settle::{Settled, settled};
+use serde::{Deserialize, Serialize};
+
+/// Switches of the relay.
+const SWITCHES: usize = 8;
+/// A slow axis shows itself in fewer, when they took this long, s.
+const FEW_SWITCHES: usize = 2;
+const ENOUGH_S: f64 = 1.5;
+/// Where the relay switches, as shares of the way between its two speeds.
+const SWITCH_AT: (f64, f64) = (0.28, 0.72);
+/// Longest time for one settling and for the relay, s.
+const LONGEST_SETTLE_S: f64 = 20.0;
+const LONGEST_RELAY_S: f64 = 12.0;
+/// When a speed counts as settled.
+const INTERVAL: f64 = 0.01;
+const TAIL_ERROR: f64 = 0.006;
+/// A fine encoder shows the end sooner: time constants and interval.
+const EARLY: (f64, f64) = (2.2, 0.002);
+
+/// What the free run read off.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FreeRun {
+    /// Speed at the highest allowed duty, each way, counts/s, both positive.
+    pub full_speeds: (f64, f64),
+    /// Half of the 95 % interval of their mean, relative.
+    pub interval: f64,
+    /// Duty of those speeds.
+    pub full_duty: f64,
+    /// Time constant read off the settling, s; a start value.
+    pub tau_s: f64,
+    /// Duties of the relay.
+    pub relay: (f64, f64),
+    /// When the identification record starts, s.
+    pub from_s: f64,
+    /// Where the classic step begins: time, its duty before and after, and its end.
+    pub step: (f64, f64),
+}
+
+/// Runs it. The motor is braked when it returns.
+pub fn run_free(rig: &mut Rig<'_>, probe: &Probe) -> Result<FreeRun, Cause> {
+    let full_duty = rig.options.max_duty;
+    rig.watch.start_duty = probe.start_duty;
+    rig.watch.stall_amps = probe.stall_amps;
+    let from_s = rig.now_s();
+    let forward = settle_at(rig, full_duty)?;
+    rig.watch.stopping_s = forward.tau_s.min(rise_s(rig, from_s, forward.speed));
+    let low_duty = (probe.start_duty + 0.06).max(0.25).min(0.6 * full_duty);
+    let high_duty = (probe.start_duty + 0.35).max(0.6).min(0.9 * full_duty);
+    let step_from = rig.now_s();
+    run_relay(rig, (low_duty, high_duty), forward.speed)?;
+    let step_to = rig.now_s();
+    let backward = settle_at(rig, -full_duty)?;
+    rig.duty(0.0)?;
+    rig.poll_for((3.0 * forward.tau_s).clamp(0.06, 0.5), false)?;
+    let full_speeds = (forward.speed.abs(), backward.speed.abs());
+    let mean = 0.5 * (full_speeds.0 + full_speeds.1);
+    if (full_speeds.0 - full_speeds.1).abs() > 0.25 * mean {
+        return Err(Cause::Lopsided);
+    }
+    let interval = 0.5 * forward.interval.hypot(backward.interval);
+    Ok(FreeRun {
+        full_speeds,
+        interval,
+        full_duty,
+        tau_s: forward.tau_s,
+        relay: (low_duty, high_duty),
+        from_s,
+        step: (step_from, step_to),
+    })
+}
+
+/// Holds a duty until the speed it settles at is known.
+fn settle_at(rig: &mut Rig<'_>, duty: f64) -> Result<Settled, Cause> {
+    rig.duty(duty)?;
+    // The duty ramp of up to 0.1 s is no part of the exponential.
+    let mut start =
+        rig.now_s() + 0.02 + 0.05 * duty.abs() * if rig.watch.full_speed > 0.0 { 1.4 } else { 1.0 };
+    let begin = start;
+    let mut polls = 0;
+    loop {
+        let point = rig.poll(false)?;
+        if point.is_some_and(|point| point.limited) {
+            // Nor is the climb at the current limit.
+            start = rig.now_s();
+        }
+        if let Some(speed) = rig.recent_speed(4) {
+            rig.watch.full_speed = rig.watch.full_speed.max(speed.abs());
+        }
+        polls += 1;
+        let t = rig.now_s() - start;
+        if polls % 5 != 0 || t < 0.1 {
+            continue;
+        }
+        let from = rig.points.partition_point(|p| p.t < start);
+        let Some(found) = settled(&rig.points[from..]) else { continue };
+        let level = (found.speed - found.tail_speed).abs() < TAIL_ERROR * found.speed.abs();
+        let settled = level && t > 3.0 * found.tau_s && found.interval < INTERVAL;
+        let clear = t > EARLY.0 * found.tau_s && t > 0.5 && found.interval < EARLY.1;
+        if settled || clear {
+            return Ok(found);
+        }
+        if rig.now_s() - begin > LONGEST_SETTLE_S {
+            return Err(if found.interval < 0.05 { Cause::TimeLimit } else { Cause::TooCoarse });
+        }
+    }
+}
+
+/// Time to 63 % of a speed: no time constant is longer.
+fn rise_s(rig: &Rig<'_>, from_s: f64, speed: f64) -> f64 {
+    let driven = rig.points.iter().filter(|p| p.t >= from_s);
+    let pairs = rig.points.windows(2).filter(|w| w[0].t >= from_s);
+    let risen =
+        pairs.into_iter().find(|w| (w[1].counts - w[0].counts) / (w[1].t - w[0].t).max(1e-3) >= 0.63 * speed);
+    match (driven.map(|p| p.t).next(), risen) {
+        (Some(start), Some(pair)) => (pair[1].t - start).max(0.01),
+        _ => f64::INFINITY,
+    }
+}
+
+/// Switches between two duties whenever the speed has come most of the way.
+fn run_relay(rig: &mut Rig<'_>, duties: (f64, f64), full_speed: f64) -> Result<(), Cause> {
+    let start = probe_share(rig);
+    let speed_at = |duty: f64| full_speed * (duty - start) / (rig.options.max_duty - start).max(0.05);
+    let (low, high) = (speed_at(duties.0), speed_at(duties.1));
+    let down = low + SWITCH_AT.0 * (high - low);
+    let up = low + SWITCH_AT.1 * (high - low);
+    let mut rising = false;
+    rig.duty(duties.0)?;
+    let begin = rig.now_s();
+    let mut since = begin;
+    let mut switches = 0;
+    while switches < SWITCHES {
+        rig.poll(false)?;
+        let now = rig.now_s();
+        let Some(speed) = rig.recent_speed(2) else { continue };
+        if now - since < 0.025 {
+            continue;
+        }
+        if (rising && speed >= up) || (!rising && speed <= down) {
+            rising = !rising;
+            rig.duty(if rising { duties.1 } else { duties.0 })?;
+            since = now;
+            switches += 1;
+        } else if now - begin > LONGEST_RELAY_S || (switches >= FEW_SWITCHES && now - begin > ENOUGH_S) {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// A guess of the duty that friction eats: somewhat less than it took to start.
+fn probe_share(rig: &Rig<'_>) -> f64 {
+    0.6 * rig.watch.start_duty
+}

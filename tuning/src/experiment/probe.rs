@@ -1,0 +1,111 @@
+//! The wiring probe: a slow duty ramp that finds a wrong sign, a dead encoder, an open motor or a locked shaft before any loop is
+//! closed, and the duty at which the motor starts.
+
+use crate::cause::Cause;
+use crate::rig::Rig;
+use serde::{Deserialize, Serialize};
+
+/// Time at rest first, s.
+const REST_S: f64 = 0.12;
+/// The ramp: first duty, step, highest duty, time per step in s.
+const FIRST_DUTY: f64 = 0.04;
+const DUTY_STEP: f64 = 0.02;
+const LAST_DUTY: f64 = 0.40;
+const STEP_S: f64 = 0.06;
+/// Counts that are a motion.
+const MOTION_COUNTS: f64 = 4.0;
+/// Readings up to this are no current, A.
+const NO_CURRENT_AMPS: f64 = 0.0151;
+
+/// What the probe found.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Probe {
+    /// Duty at which the motor began to move.
+    pub start_duty: f64,
+    /// Amperes per duty with the shaft at rest; `None` where the motor moved before any current could be read.
+    pub stall_amps: Option<f64>,
+    /// Main battery at rest, V; `None` where it was not read.
+    pub volts: Option<f64>,
+    /// Highest current, A.
+    pub peak_amps: f64,
+}
+
+/// Runs it. The motor is braked when it returns.
+pub fn run_probe(rig: &mut Rig<'_>, direction: f64) -> Result<Probe, Cause> {
+    rig.duty(0.0)?;
+    rig.poll_for(REST_S, false)?;
+    let rest = rig.points.last().map_or(0.0, |p| p.counts);
+    let noise = spread(rig.points.iter().map(|p| p.counts));
+    let volts = rig.mean_volts(0.0, f64::INFINITY);
+    let mut readings: Vec<(f64, f64)> = Vec::new();
+    let highest = LAST_DUTY.min(rig.options.max_duty);
+    let begin = rig.now_s();
+    let mut moved = None;
+    let mut step = 0;
+    // By the clock: slow polls make coarser steps, not a longer ramp.
+    while moved.is_none() {
+        let duty = FIRST_DUTY + DUTY_STEP * f64::from(step);
+        if duty > highest + 1e-9 {
+            break;
+        }
+        rig.duty(duty * direction)?;
+        let mut latest = None;
+        loop {
+            if let Some(point) = rig.poll(false)? {
+                latest = point.amps.map(f64::abs).or(latest);
+                let by = (point.counts - rest) * direction;
+                if by.abs() >= MOTION_COUNTS.max(3.0 * noise) {
+                    moved = Some((duty, by));
+                }
+            }
+            let due = ((rig.now_s() - begin) / STEP_S) as i32;
+            if due > step || moved.is_some() {
+                step = due;
+                break;
+            }
+        }
+        readings.extend(latest.map(|amps| (duty, amps)));
+    }
+    let peak_amps = readings.iter().map(|r| r.1).fold(0.0, f64::max);
+    // The steepest current per duty is that of the motor at rest.
+    let steepest =
+        readings.iter().filter(|r| r.1 > 2.0 * NO_CURRENT_AMPS).map(|r| r.1 / r.0).fold(0.0, f64::max);
+    let stall_amps = (steepest > 0.0).then_some(steepest);
+    match moved {
+        Some((_, by)) if by < 0.0 => Err(Cause::EncoderReversed),
+        Some((start_duty, _)) => {
+            rig.duty(0.0)?;
+            Ok(Probe { start_duty, stall_amps, volts, peak_amps })
+        }
+        None => Err(nothing_moved(rig, &readings, peak_amps, steepest)?),
+    }
+}
+
+/// Tells an open motor, a locked shaft and a dead encoder apart, by the current.
+fn nothing_moved(
+    rig: &mut Rig<'_>,
+    readings: &[(f64, f64)],
+    peak_amps: f64,
+    steepest: f64,
+) -> Result<Cause, Cause> {
+    if peak_amps <= NO_CURRENT_AMPS {
+        return Ok(Cause::MotorOpen);
+    }
+    let (last_duty, last_amps) = readings.last().copied().unwrap_or((LAST_DUTY, peak_amps));
+    if last_amps < 0.7 * steepest * last_duty {
+        return Ok(Cause::EncoderDead);
+    }
+    // A heavy motor has hardly begun to turn. Braked, it gives a current; a locked one does not.
+    rig.duty(0.0)?;
+    let from = rig.now_s() + 0.03;
+    rig.poll_for(0.09, false)?;
+    let braking =
+        rig.points.iter().filter(|p| p.t > from).filter_map(|p| p.amps).map(f64::abs).fold(0.0, f64::max);
+    let turns = braking > (2.0 * NO_CURRENT_AMPS).max(0.03 * steepest * last_duty);
+    Ok(if turns { Cause::EncoderDead } else { Cause::ShaftLocked })
+}
+
+fn spread(values: impl Iterator<Item = f64>) -> f64 {
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    if high > low { high - low } else { 0.0 }
+}

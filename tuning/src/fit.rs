@@ -1,0 +1,210 @@
+//! Output-error fit of the time-stamped counts of an open-loop run: gain, time constant, friction, load, actuation offset and, where
+//! the over-current bit was seen, the current limit.
+//!
+//! Counts are fitted, not speeds: the quantisation of a count does not grow with the poll rate. Residuals are differences
+//! of successive errors, so that a slow drift of the model costs little; outliers are softened.
+
+use crate::course::Course;
+use crate::model::PlantModel;
+use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
+use nalgebra::storage::Owned;
+use nalgebra::{DMatrix, DVector, Dyn};
+use serde::{Deserialize, Serialize};
+
+/// Standard deviation of the time stamps' jitter, s.
+const STAMP_S: f64 = 0.0010;
+/// Range of the actuation offset, s.
+const OFFSET_S: (f64, f64) = (-0.006, 0.030);
+/// Highest friction and load, as duty.
+const MOST_COULOMB: f64 = 0.35;
+const MOST_LOAD: f64 = 0.35;
+/// Prior standard deviation of the load, as duty: most axes have none.
+const LOAD_PRIOR: f64 = 0.03;
+/// Prior of the offset: half a tick of waiting, perhaps a whole tick more, and the winding; mean and standard deviation, s.
+const OFFSET_PRIOR_S: (f64, f64) = (0.0050, 0.0020);
+/// Highest sag, and its prior; standard deviation of a battery reading over the battery.
+const MOST_SAG: f64 = 0.4;
+const SAG_PRIOR: (f64, f64) = (0.05, 0.05);
+const VOLTS_SIGMA: f64 = 0.01;
+/// Prior of the time constant, s and as standard deviation of its logarithm: weak, for what polls cannot see.
+const TAU_PRIOR: (f64, f64) = (0.05, 1.2);
+/// Prior of the drive limit, as standard deviation of its logarithm, and above what it does not matter.
+const LIMIT_PRIOR: f64 = 0.10;
+const LIMIT_OF_INTEREST: f64 = 1.1;
+/// Start values of the time constant, s, besides the one that is passed in.
+const STARTS_S: [f64; 4] = [0.008, 0.04, 0.2, 1.0];
+
+/// A model and how well the record supports it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Fit {
+    /// The model.
+    pub model: PlantModel,
+    /// Common delay of all commands and stamps, s.
+    pub offset_s: f64,
+    /// Reduced chi-square; 1 when model and noise explain the record.
+    pub chi_square: f64,
+    /// Standard deviation of ln(gain).
+    pub sd_ln_gain: f64,
+    /// Standard deviation of ln(tau).
+    pub sd_ln_tau: f64,
+    /// Standard deviation of the friction duty.
+    pub sd_coulomb: f64,
+}
+
+/// Fits a course. `gain` and `tau_s` are start values; `limit` is what current limit and stall current say of the drive limit.
+#[must_use]
+pub fn fit(course: &Course, gain: f64, tau_s: f64, limit: Option<f64>) -> Option<Fit> {
+    if course.counts.len() < 12 {
+        return None;
+    }
+    let seen = course.limited_share() > 0.01;
+    let limit = limit.filter(|limit| seen || *limit < LIMIT_OF_INTEREST).or(seen.then_some(0.5));
+    let mut best: Option<(f64, Problem<'_>)> = None;
+    for tau in std::iter::once(tau_s).chain(STARTS_S) {
+        let start = Parameters { ln_gain: gain.ln(), ln_tau: tau.clamp(0.003, 5.0).ln(), limit };
+        let problem = Problem::new(course, &start);
+        let (problem, report) = LevenbergMarquardt::new().with_patience(25).minimize(problem);
+        let cost = report.objective_function;
+        if cost.is_finite() && best.as_ref().is_none_or(|b| cost < b.0) {
+            best = Some((cost, problem));
+        }
+    }
+    let (_, problem) = best?;
+    Some(problem.report())
+}
+
+struct Parameters {
+    ln_gain: f64,
+    ln_tau: f64,
+    limit: Option<f64>,
+}
+
+/// Parameters: ln gain, ln tau, friction, load, offset, sag (each through a bounded map but the first two), ln limit.
+struct Problem<'a> {
+    course: &'a Course,
+    sigma: Vec<f64>,
+    q: DVector<f64>,
+    limit: Option<f64>,
+}
+
+impl<'a> Problem<'a> {
+    fn new(course: &'a Course, start: &Parameters) -> Self {
+        let mut q = vec![start.ln_gain, start.ln_tau, unbounded(0.05, (0.0, MOST_COULOMB)), 0.0];
+        q.push(unbounded(0.004, OFFSET_S));
+        q.push(unbounded(SAG_PRIOR.0, (0.0, MOST_SAG)));
+        q.extend(start.limit.map(f64::ln));
+        let sigma = course
+            .counts
+            .windows(2)
+            .map(|pair| {
+                let speed = (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0).max(1e-4);
+                (0.40 + (STAMP_S * speed).powi(2)).sqrt()
+            })
+            .collect();
+        Self { course, sigma, q: DVector::from_vec(q), limit: start.limit }
+    }
+
+    fn model(&self, q: &DVector<f64>) -> (PlantModel, f64) {
+        let model = PlantModel {
+            gain_counts_per_s: q[0].clamp(-5.0, 20.0).exp(),
+            tau_s: q[1].clamp(-6.5, 3.0).exp(),
+            coulomb_duty: bounded(q[2], (0.0, MOST_COULOMB)),
+            load_duty: bounded(q[3], (-MOST_LOAD, MOST_LOAD)),
+            drive_limit: q.get(6).map(|ln| ln.clamp(-4.0, 2.0).exp()),
+            sag: bounded(q[5], (0.0, MOST_SAG)),
+        };
+        (model, bounded(q[4], OFFSET_S))
+    }
+
+    fn evaluate(&self, q: &DVector<f64>) -> DVector<f64> {
+        let (model, offset) = self.model(q);
+        let (mut predicted, mut volts) = (Vec::with_capacity(self.course.counts.len()), Vec::new());
+        self.course.predict(&model, offset, &mut predicted, &mut volts);
+        let errors: Vec<f64> = self.course.counts.iter().zip(&predicted).map(|((_, y), p)| y - p).collect();
+        let steps = errors.windows(2).zip(&self.sigma).map(|(pair, sigma)| soft((pair[1] - pair[0]) / sigma));
+        let readings = self.course.volts.iter().zip(&volts).map(|((_, v), p)| soft((v - p) / VOLTS_SIGMA));
+        let prior = [
+            model.load_duty / LOAD_PRIOR,
+            (offset - OFFSET_PRIOR_S.0) / OFFSET_PRIOR_S.1,
+            (model.sag - SAG_PRIOR.0) / SAG_PRIOR.1,
+            (model.tau_s / TAU_PRIOR.0).ln() / TAU_PRIOR.1,
+            q.get(6).zip(self.limit).map_or(0.0, |(ln, limit)| (ln - limit.ln()) / LIMIT_PRIOR),
+        ];
+        DVector::from_vec(steps.chain(readings).chain(prior).collect())
+    }
+
+    fn report(&self) -> Fit {
+        let (model, offset_s) = self.model(&self.q);
+        let residuals = self.evaluate(&self.q);
+        let freedom = (residuals.len() - self.q.len()) as f64;
+        let chi_square = residuals.norm_squared() / freedom;
+        let jacobian = self.jacobian_at(&self.q);
+        // A parameter at its bound has no slope; it must not make the others unknown.
+        let information =
+            jacobian.transpose() * &jacobian + DMatrix::<f64>::identity(self.q.len(), self.q.len()) * 1e-6;
+        let scale = chi_square.max(1.0);
+        let covariance = information.try_inverse();
+        let sd = |n: usize| covariance.as_ref().map_or(f64::INFINITY, |c| (c[(n, n)].abs() * scale).sqrt());
+        let slope =
+            bounded(self.q[2] + 1e-4, (0.0, MOST_COULOMB)) - bounded(self.q[2] - 1e-4, (0.0, MOST_COULOMB));
+        Fit {
+            model,
+            offset_s,
+            chi_square,
+            sd_ln_gain: sd(0),
+            sd_ln_tau: sd(1),
+            sd_coulomb: sd(2) * slope / 2e-4,
+        }
+    }
+
+    fn jacobian_at(&self, q: &DVector<f64>) -> DMatrix<f64> {
+        let steps = [1e-5, 1e-4, 1e-3, 1e-3, 1e-3, 1e-3, 1e-4];
+        let columns: Vec<DVector<f64>> = (0..q.len())
+            .map(|n| {
+                let (mut up, mut down) = (q.clone(), q.clone());
+                up[n] += steps[n];
+                down[n] -= steps[n];
+                (self.evaluate(&up) - self.evaluate(&down)) / (2.0 * steps[n])
+            })
+            .collect();
+        DMatrix::from_columns(&columns)
+    }
+}
+
+impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
+    type ResidualStorage = Owned<f64, Dyn>;
+    type JacobianStorage = Owned<f64, Dyn, Dyn>;
+    type ParameterStorage = Owned<f64, Dyn>;
+
+    fn set_params(&mut self, q: &DVector<f64>) {
+        self.q.copy_from(q);
+    }
+
+    fn params(&self) -> DVector<f64> {
+        self.q.clone()
+    }
+
+    fn residuals(&self) -> Option<DVector<f64>> {
+        Some(self.evaluate(&self.q))
+    }
+
+    fn jacobian(&self) -> Option<DMatrix<f64>> {
+        Some(self.jacobian_at(&self.q))
+    }
+}
+
+/// A residual whose square grows only linearly beyond a few standard deviations (soft L1).
+fn soft(r: f64) -> f64 {
+    const KNEE: f64 = 3.0;
+    let x = r / KNEE;
+    KNEE * (2.0 * ((1.0 + x * x).sqrt() - 1.0)).sqrt().copysign(x)
+}
+
+fn bounded(x: f64, (low, high): (f64, f64)) -> f64 {
+    low + (high - low) / (1.0 + (-x).exp())
+}
+
+fn unbounded(value: f64, (low, high): (f64, f64)) -> f64 {
+    let share = ((value - low) / (high - low)).clamp(1e-6, 1.0 - 1e-6);
+    (share / (1.0 - share)).ln()
+}

@@ -1,0 +1,177 @@
+//! The lag that hides in the firmware's loop, measured on the closed loop.
+//!
+//! Polls at 50 to 100 Hz cannot see a few milliseconds in the counts of an open loop. In a closed one the duty (command 48) is the
+//! controller's own answer to the speed as it sees it: the candidate loop is simulated with each lag of a grid, and the
+//! lags under which simulated counts and duties agree with the polled ones are the likely ones.
+
+use crate::model::{Gains, Lag, LoopLaw, PlantModel};
+use crate::rig::{Input, Rig};
+use crate::ticks::{Setpoint, TickLoop};
+use serde::{Deserialize, Serialize};
+
+/// Filters tried, s, and delays tried, ticks.
+const FILTERS_S: [f64; 9] = [0.0, 0.002, 0.004, 0.006, 0.008, 0.010, 0.013, 0.017, 0.022];
+const DELAYS: [f64; 6] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0];
+/// Time constants tried, in prior standard deviations of their logarithm, and the bounds of that deviation.
+const TAU_STEPS: [f64; 9] = [-2.4, -1.8, -1.2, -0.6, 0.0, 0.6, 1.2, 1.8, 2.4];
+const TAU_PRIOR: (f64, f64) = (0.06, 0.6);
+/// Offsets of commands against stamps tried, s, and their prior.
+const OFFSETS_S: [f64; 4] = [-0.0015, 0.0, 0.0015, 0.003];
+const OFFSET_PRIOR_S: (f64, f64) = (0.0, 0.0015);
+/// What the model is trusted to, as duty and as a share of the step's counts per poll.
+const MODEL_DUTY: f64 = 0.006;
+/// Standard deviation of a time stamp, s.
+const STAMP_S: f64 = 0.0012;
+/// Residuals beyond this many standard deviations say no more.
+const SOFT_SQUARE: f64 = 25.0;
+
+/// The closed-loop record.
+#[derive(Clone, Debug, Default)]
+pub struct ClosedCourse {
+    /// (time, setpoint speed).
+    pub setpoints: Vec<(f64, f64)>,
+    /// (time, counts).
+    pub counts: Vec<(f64, f64)>,
+    /// (time, duty).
+    pub duties: Vec<(f64, f64)>,
+}
+
+impl ClosedCourse {
+    /// What a rig recorded between two times under speed commands.
+    #[must_use]
+    pub fn of(rig: &Rig<'_>, from_s: f64, to_s: f64) -> Self {
+        let inside = |t: f64| t >= from_s && t <= to_s;
+        let setpoints = rig.drives.iter().filter(|d| inside(d.t)).filter_map(|d| match d.input {
+            Input::Speed(speed) => Some((d.t, speed)),
+            Input::Duty(_) | Input::Position(..) => None,
+        });
+        let points = || rig.points.iter().filter(|p| inside(p.t));
+        Self {
+            setpoints: setpoints.collect(),
+            counts: points().map(|p| (p.t, p.counts)).collect(),
+            duties: points().filter_map(|p| p.duty).collect(),
+        }
+    }
+}
+
+/// The lag and how well it is known.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LagFit {
+    /// The most likely lag.
+    pub lag: Lag,
+    /// The lag of the longest total that is still likely.
+    pub worst: Lag,
+    /// Shortest and longest likely total, s.
+    pub interval_s: (f64, f64),
+    /// Time constant that goes with the most likely lag, relative to the model's.
+    pub tau_scale: f64,
+    /// Reduced chi-square of the best.
+    pub chi_square: f64,
+}
+
+struct Case {
+    lag: Lag,
+    tau_scale: f64,
+    cost: f64,
+}
+
+/// Fits the lag. `noise_duty` is the duty noise that rounding causes in this loop, `sd_ln_tau` how loosely the
+/// time constant is known.
+#[must_use]
+pub fn fit_lag(
+    course: &ClosedCourse,
+    plant: &PlantModel,
+    law: &LoopLaw,
+    gains: &Gains,
+    qpps: f64,
+    noise_duty: f64,
+    sd_ln_tau: f64,
+) -> Option<LagFit> {
+    if course.setpoints.len() < 3 || course.duties.len() < 20 {
+        return None;
+    }
+    let sigma_duty = noise_duty.hypot(MODEL_DUTY);
+    let spread = (1.5 * sd_ln_tau).clamp(TAU_PRIOR.0, TAU_PRIOR.1);
+    let mut cases: Vec<Case> = Vec::new();
+    for filter_s in FILTERS_S {
+        for delay_ticks in DELAYS {
+            let lag = Lag { filter_s, delay_ticks };
+            for step in TAU_STEPS {
+                let tau_scale = (step * spread).exp();
+                let model = PlantModel { tau_s: plant.tau_s * tau_scale, ..*plant };
+                for offset_s in OFFSETS_S {
+                    let twin = TickLoop::new(model, *law, lag, *gains, qpps);
+                    let mut cost = step.powi(2) + ((offset_s - OFFSET_PRIOR_S.0) / OFFSET_PRIOR_S.1).powi(2);
+                    cost += mismatch(course, twin, law, offset_s, sigma_duty);
+                    cases.push(Case { lag, tau_scale, cost });
+                }
+            }
+        }
+    }
+    let best = cases.iter().min_by(|a, b| a.cost.total_cmp(&b.cost))?;
+    let readings = (course.counts.len() + course.duties.len()) as f64;
+    let chi_square = best.cost / readings;
+    let likely = best.cost + 4.0 * chi_square.max(1.0);
+    let total = |case: &&Case| case.lag.total_s(law);
+    let within = || cases.iter().filter(|case| case.cost < likely);
+    let shortest = within().map(|c| total(&c)).fold(f64::INFINITY, f64::min);
+    let worst = within().max_by(|a, b| total(a).total_cmp(&total(b)))?;
+    Some(LagFit {
+        lag: best.lag,
+        worst: worst.lag,
+        interval_s: (shortest, worst.lag.total_s(law)),
+        tau_scale: best.tau_scale,
+        chi_square,
+    })
+}
+
+/// Sum of the squared misfits of counts (differences between polls) and duties.
+fn mismatch(course: &ClosedCourse, mut twin: TickLoop, law: &LoopLaw, offset_s: f64, sigma_duty: f64) -> f64 {
+    let tick_s = law.tick_s();
+    let (Some(&(start, _)), Some(&(end, _))) = (course.counts.first(), course.counts.last()) else {
+        return f64::INFINITY;
+    };
+    let ticks = ((end - start) / tick_s) as usize + 2;
+    let mut places = Vec::with_capacity(ticks);
+    let mut duties = Vec::with_capacity(ticks);
+    let mut next = 0;
+    let mut goal = 0.0;
+    let mut started = false;
+    for n in 0..ticks {
+        let t = start + n as f64 * tick_s;
+        while let Some(&(at, speed)) = course.setpoints.get(next)
+            && at + offset_s <= t
+        {
+            goal = speed;
+            started = true;
+            next += 1;
+        }
+        places.push(twin.motion.place);
+        if started {
+            twin.tick(Setpoint::Speed(goal), 0.0);
+        }
+        duties.push(twin.duty);
+    }
+    let place_at = |t: f64| {
+        // Assumed: the register is refreshed once a tick, so a reading is half a tick old on average.
+        let x = ((t - start) / tick_s - 0.5).max(0.0);
+        let n = (x as usize).min(ticks - 2);
+        places[n] + (places[n + 1] - places[n]) * (x - n as f64).min(1.0)
+    };
+    let mut sum = 0.0;
+    for pair in course.counts.windows(2) {
+        let ((t0, y0), (t1, y1)) = (pair[0], pair[1]);
+        let moved = place_at(t1) - place_at(t0);
+        let speed = (y1 - y0) / (t1 - t0).max(1e-4);
+        let variance = 0.66 + (STAMP_S * speed).powi(2) + (0.01 * (y1 - y0)).powi(2);
+        sum += ((y1 - y0 - moved).powi(2) / variance).min(SOFT_SQUARE);
+    }
+    for &(t, duty) in &course.duties {
+        let n = (((t - start) / tick_s).max(0.0) as usize).min(ticks - 1);
+        // A stamp may be off by a tick either way: a steep flank counts with its own height.
+        let (before, after) = (duties[n.saturating_sub(1)], duties[(n + 1).min(ticks - 1)]);
+        let variance = sigma_duty.powi(2) + (0.25 * (after - before)).powi(2);
+        sum += ((duty - duties[n]).powi(2) / variance).min(SOFT_SQUARE);
+    }
+    sum
+}

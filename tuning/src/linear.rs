@@ -1,0 +1,303 @@
+//! The linear loop at the firmware's tick: frequency response, maximum sensitivity, quantisation noise, closed-loop poles.
+//!
+//! The plant is given as a discrete state space from duty to counts, so that the tuner's first-order model and a benchmark's
+//! detailed truth go through the same code.
+
+use crate::model::{Gains, Lag, LoopLaw, PlantModel};
+use nalgebra::{Complex, DMatrix, DVector};
+
+/// Frequencies of the grid.
+const FREQUENCIES: usize = 140;
+
+/// `x' = A x + B u`, counts `y = C x`, one step per tick, duty held in between.
+#[derive(Clone, Debug)]
+pub struct DiscretePlant {
+    /// State matrix.
+    pub a: DMatrix<f64>,
+    /// Input column.
+    pub b: DVector<f64>,
+    /// Output row.
+    pub c: DVector<f64>,
+}
+
+impl DiscretePlant {
+    /// The first-order motor, exact.
+    #[must_use]
+    pub fn of(model: &PlantModel, tick_s: f64) -> Self {
+        let (k, tau) = (model.gain_counts_per_s, model.tau_s);
+        let decay = (-tick_s / tau).exp();
+        Self {
+            a: DMatrix::from_row_slice(2, 2, &[decay, 0.0, tau * (1.0 - decay), 1.0]),
+            b: DVector::from_vec(vec![k * (1.0 - decay), k * (tick_s - tau * (1.0 - decay))]),
+            c: DVector::from_vec(vec![0.0, 1.0]),
+        }
+    }
+
+    fn response(&self, z: Complex<f64>) -> Complex<f64> {
+        let n = self.a.nrows();
+        let shifted = DMatrix::from_fn(n, n, |r, c| {
+            Complex::new(-self.a[(r, c)], 0.0) + if r == c { z } else { Complex::new(0.0, 0.0) }
+        });
+        let b = self.b.map(|x| Complex::new(x, 0.0));
+        shifted
+            .lu()
+            .solve(&b)
+            .map_or(Complex::new(f64::NAN, 0.0), |x| x.iter().zip(self.c.iter()).map(|(x, c)| x * *c).sum())
+    }
+}
+
+/// A plant under a law, with its responses worked out once for many gains.
+#[derive(Clone, Debug)]
+pub struct LoopPlant {
+    law: LoopLaw,
+    lag: Lag,
+    plant: DiscretePlant,
+    omega: Vec<f64>,
+    /// `1 - 1/z` over the tick.
+    slope: Vec<Complex<f64>>,
+    /// z / (z - 1) times the tick: an integral that counts the present tick.
+    integral: Vec<Complex<f64>>,
+    place: Vec<Complex<f64>>,
+    speed: Vec<Complex<f64>>,
+    filter: Vec<Complex<f64>>,
+    delay: Vec<Complex<f64>>,
+}
+
+/// What a loop is worth, linearly.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Margins {
+    /// Maximum sensitivity.
+    pub ms: f64,
+    /// Root mean square of the duty that the rounding of counts alone causes.
+    pub noise_duty: f64,
+}
+
+impl LoopPlant {
+    /// Works the responses out. The lag is the model's or the truth's.
+    #[must_use]
+    pub fn new(plant: DiscretePlant, law: &LoopLaw, lag: Lag) -> Self {
+        let tick_s = law.tick_s();
+        let top = std::f64::consts::PI / tick_s;
+        let bottom = top * 2e-4;
+        let omega: Vec<f64> = (0..FREQUENCIES)
+            .map(|n| bottom * (top * 0.999 / bottom).powf(n as f64 / (FREQUENCIES - 1) as f64))
+            .collect();
+        let z: Vec<Complex<f64>> = omega.iter().map(|w| Complex::from_polar(1.0, w * tick_s)).collect();
+        let one = Complex::new(1.0, 0.0);
+        let slope: Vec<_> = z.iter().map(|z| (one - one / z) / tick_s).collect();
+        let share = tick_s / (lag.filter_s + tick_s);
+        let filter: Vec<_> = z.iter().map(|z| one * share / (one - one / z * (1.0 - share))).collect();
+        let place: Vec<_> = z.iter().map(|z| plant.response(*z)).collect();
+        let speed = place.iter().zip(&slope).zip(&filter).map(|((p, s), f)| p * s * f).collect();
+        let delay = omega.iter().map(|w| Complex::from_polar(1.0, -w * tick_s * lag.delay_ticks)).collect();
+        let integral = slope.iter().map(|s| one / s).collect();
+        Self { law: *law, lag, plant, omega, slope, integral, place, speed, filter, delay }
+    }
+
+    /// Maximum sensitivity and noise of a loop; the loop must be stable for them to mean anything.
+    #[must_use]
+    pub fn margins(&self, gains: &Gains, qpps: f64) -> Margins {
+        let mut ms: f64 = 0.0;
+        let mut noise = 0.0;
+        let mut before: Option<(f64, f64)> = None;
+        for n in 0..self.omega.len() {
+            let (by_speed, by_place) = self.controllers(gains, n);
+            let open = (by_speed * self.speed[n] + by_place * self.place[n]) * self.delay[n] / qpps;
+            let sensitivity = (open + 1.0).norm().recip();
+            ms = ms.max(sensitivity);
+            // What a rounding error of the count does to the duty.
+            let path = (by_speed * self.slope[n] * self.filter[n] + by_place) / qpps * sensitivity;
+            let power = path.norm_sqr();
+            if let Some((w, p)) = before {
+                noise += 0.5 * (p + power) * (self.omega[n] - w);
+            }
+            before = Some((self.omega[n], power));
+        }
+        let noise_duty = (noise * self.law.tick_s() / std::f64::consts::PI / 12.0).sqrt();
+        Margins { ms, noise_duty }
+    }
+
+    /// Largest magnitude of a closed-loop pole; below 1 is stable. Fractional delays count as the next whole one.
+    #[must_use]
+    pub fn spectral_radius(&self, gains: &Gains, qpps: f64) -> f64 {
+        let Some(matrix) = self.closed_loop(gains, qpps) else { return f64::INFINITY };
+        matrix.complex_eigenvalues().iter().map(|pole| pole.norm()).fold(0.0, f64::max)
+    }
+
+    /// What the controller makes of a speed and of a place at one frequency, before the division by QPPS.
+    fn controllers(&self, gains: &Gains, n: usize) -> (Complex<f64>, Complex<f64>) {
+        let velocity = gains.velocity;
+        let by_speed = self.integral[n] * velocity.i + self.slope[n] * velocity.d + velocity.p;
+        let by_place = gains.position.map_or(Complex::new(0.0, 0.0), |position| {
+            let wanted = self.integral[n] * position.i + self.slope[n] * position.d + position.p;
+            let forward = if is_simple(gains) { 1.0 } else { f64::from(u8::from(self.law.feed_forward)) };
+            wanted * (by_speed + forward)
+        });
+        (by_speed, by_place)
+    }
+
+    /// The closed loop as one matrix over: plant, last count, filtered speed, velocity integral, last velocity error, position
+    /// integral, duties under way.
+    fn closed_loop(&self, gains: &Gains, qpps: f64) -> Option<DMatrix<f64>> {
+        let n = self.plant.a.nrows();
+        let delay = self.lag.delay_ticks.ceil() as usize;
+        let tick_s = self.law.tick_s();
+        let size = n + 5 + delay;
+        let (last, filtered, sum, error, place_sum, queue) = (n, n + 1, n + 2, n + 3, n + 4, n + 5);
+        let unit = |k: usize| DVector::from_fn(size, |r, _| f64::from(u8::from(r == k)));
+        let mut y = DVector::zeros(size);
+        y.rows_mut(0, n).copy_from(&self.plant.c);
+        let share = tick_s / (self.lag.filter_s + tick_s);
+        let measured = unit(filtered) * (1.0 - share) + (&y - unit(last)) * (share / tick_s);
+        let (mut wanted, mut new_place_sum) = (DVector::zeros(size), DVector::zeros(size));
+        if let Some(position) = gains.position {
+            new_place_sum = unit(place_sum) - &y * tick_s;
+            wanted =
+                &y * -position.p + &new_place_sum * position.i - (&y - unit(last)) * (position.d / tick_s);
+        }
+        let new_error = &wanted - &measured;
+        let new_sum = unit(sum) + &new_error * tick_s;
+        let velocity = gains.velocity;
+        let forward = if is_simple(gains) || self.law.feed_forward { 1.0 } else { 0.0 };
+        let duty = if is_simple(gains) {
+            wanted / qpps
+        } else {
+            (wanted * forward
+                + &new_error * velocity.p
+                + &new_sum * velocity.i
+                + (&new_error - unit(error)) * (velocity.d / tick_s))
+                / qpps
+        };
+        let applied = if delay == 0 { duty.clone() } else { unit(queue) };
+        let mut matrix = DMatrix::zeros(size, size);
+        for r in 0..n {
+            let mut row = applied.transpose() * self.plant.b[r];
+            for c in 0..n {
+                row[c] += self.plant.a[(r, c)];
+            }
+            matrix.set_row(r, &row);
+        }
+        matrix.set_row(last, &y.transpose());
+        matrix.set_row(filtered, &measured.transpose());
+        if velocity.i != 0.0 {
+            matrix.set_row(sum, &new_sum.transpose());
+        }
+        matrix.set_row(error, &new_error.transpose());
+        if gains.position.is_some_and(|p| p.i != 0.0) {
+            matrix.set_row(place_sum, &new_place_sum.transpose());
+        }
+        for k in 0..delay {
+            let row = if k + 1 < delay { unit(queue + k + 1) } else { duty.clone() };
+            matrix.set_row(queue + k, &row.transpose());
+        }
+        if gains.position.is_none() {
+            // The place itself is under no control: its pole at 1 is no fault. A velocity loop sees differences only.
+            return self.speed_loop(matrix, n, last);
+        }
+        matrix.iter().all(|x| x.is_finite()).then_some(matrix)
+    }
+
+    /// The loop in differences of successive states, so that the free place drops out.
+    fn speed_loop(&self, matrix: DMatrix<f64>, n: usize, last: usize) -> Option<DMatrix<f64>> {
+        if !matrix.iter().all(|x| x.is_finite()) {
+            return None;
+        }
+        // States shift by a common place: project that direction out. `e` is the place of every plant state and the last count.
+        let size = matrix.nrows();
+        let shift = self.free_shift(n, size, last);
+        let scale = shift.norm_squared();
+        if scale == 0.0 {
+            return Some(matrix);
+        }
+        // Deflate the eigenvalue 1 of that direction (Wielandt): its left vector is taken as the shift itself.
+        let image = &matrix * &shift;
+        Some(&matrix - &image * (shift.transpose() / scale))
+    }
+
+    /// The direction in which every place moves by one count.
+    fn free_shift(&self, n: usize, size: usize, last: usize) -> DVector<f64> {
+        let mut best = DVector::zeros(size);
+        let identity = DMatrix::identity(n, n);
+        let svd = (&self.plant.a - identity).svd(false, true);
+        if let Some(v) = svd.v_t {
+            let row = v.row(n - 1).transpose();
+            let counts = row.dot(&self.plant.c);
+            if counts.abs() > 1e-12 {
+                best.rows_mut(0, n).copy_from(&(row / counts));
+                best[last] = 1.0;
+            }
+        }
+        best
+    }
+}
+
+/// A position loop that acts on the duty directly: the velocity gains are all zero (MCP manual 2.4.7).
+fn is_simple(gains: &Gains) -> bool {
+    let v = gains.velocity;
+    gains.position.is_some() && v.p == 0.0 && v.i == 0.0 && v.d == 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Pid;
+
+    fn loop_of(tau_s: f64, lag: Lag) -> LoopPlant {
+        let model = PlantModel {
+            gain_counts_per_s: 10_000.0,
+            tau_s,
+            coulomb_duty: 0.0,
+            load_duty: 0.0,
+            drive_limit: None,
+            sag: 0.0,
+        };
+        let law = LoopLaw::default();
+        LoopPlant::new(DiscretePlant::of(&model, law.tick_s()), &law, lag)
+    }
+
+    fn velocity(p: f64, i: f64) -> Gains {
+        Gains { velocity: Pid { p, i, d: 0.0 }, ..Gains::default() }
+    }
+
+    #[test]
+    fn without_gains_the_sensitivity_is_one_and_the_pole_is_the_motors() {
+        let free = loop_of(0.1, Lag::default());
+        assert!((free.margins(&velocity(0.0, 0.0), 10_000.0).ms - 1.0).abs() < 1e-12);
+        let pole = (-1.0_f64 / 30.0).exp();
+        assert!((free.spectral_radius(&velocity(0.0, 0.0), 10_000.0) - pole).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_slow_p_loop_has_the_pole_of_the_textbook() {
+        // tau 2 s, P 9: the closed time constant is tau / 10.
+        let slow = loop_of(2.0, Lag::default());
+        let radius = slow.spectral_radius(&velocity(9.0, 0.0), 10_000.0);
+        assert!((-1.0 / 300.0 / radius.ln() / 0.2 - 1.0).abs() < 0.03, "{radius}");
+    }
+
+    #[test]
+    fn poles_and_sensitivity_agree_on_the_edge_of_stability() {
+        for lag in [Lag::default(), Lag { filter_s: 0.01, delay_ticks: 1.0 }] {
+            let plant = loop_of(0.1, lag);
+            let (mut low, mut high) = (0.1, 1e4);
+            for _ in 0..60 {
+                let middle = f64::sqrt(low * high);
+                if plant.spectral_radius(&velocity(middle, 0.0), 10_000.0) < 1.0 {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            let edge = plant.margins(&velocity(low, 0.0), 10_000.0).ms;
+            assert!(edge > 20.0, "the sensitivity is without bound at the edge: {edge} at P {low}");
+        }
+    }
+
+    #[test]
+    fn a_position_loop_is_unstable_beyond_its_edge_and_stable_below() {
+        let plant = loop_of(0.1, Lag::default());
+        let pd = |p: f64| Gains { position: Some(Pid { p, i: 0.0, d: 0.0 }), ..Gains::default() };
+        assert!(plant.spectral_radius(&pd(5.0), 10_000.0) < 1.0);
+        assert!(plant.spectral_radius(&pd(2_000.0), 10_000.0) > 1.0);
+    }
+}

@@ -1,0 +1,220 @@
+//! The model of an axis that identification fills and design uses, and the law the controller is taken to follow.
+
+use serde::{Deserialize, Serialize};
+
+/// A first-order motor with dry friction.
+///
+/// `tau dv/dt = K clip(u - load - v/K, +-drive_limit) - K coulomb sign(v)`; at rest it stays while friction holds `u - load`. The
+/// battery sags by `sag u (u - v/K)`, which makes gain and time constant somewhat larger at a high duty; that is exact.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlantModel {
+    /// Speed per duty, counts/s, friction aside.
+    pub gain_counts_per_s: f64,
+    /// Time constant of the speed, s.
+    pub tau_s: f64,
+    /// Duty that dry friction eats.
+    pub coulomb_duty: f64,
+    /// Duty that a constant load eats, positive when it pulls towards lower counts.
+    pub load_duty: f64,
+    /// Duty beyond the back-EMF that the current limit leaves; `None` where it never acted.
+    pub drive_limit: Option<f64>,
+    /// Share of the battery voltage that the stall current at full duty takes away.
+    pub sag: f64,
+}
+
+impl PlantModel {
+    /// Steady speed at a duty, counts/s.
+    #[must_use]
+    pub fn steady_speed(&self, duty: f64) -> f64 {
+        let sag = self.sag * duty * duty;
+        let net = duty * (1.0 - sag) - self.load_duty;
+        self.gain_counts_per_s * (net.abs() - self.coulomb_duty).max(0.0) * net.signum() / (1.0 - sag)
+    }
+}
+
+/// What the loop loses between the motion and the duty, beyond the hold and the count difference of a tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Lag {
+    /// First-order filter on the speed, s.
+    pub filter_s: f64,
+    /// Ticks between computing a duty and giving it; may be a fraction, standing for other small lags.
+    pub delay_ticks: f64,
+}
+
+impl Lag {
+    /// All of it, s.
+    #[must_use]
+    pub fn total_s(&self, law: &LoopLaw) -> f64 {
+        self.filter_s + self.delay_ticks * law.tick_s()
+    }
+}
+
+/// The firmware's law, as far as the tuner must know it.
+///
+/// Assumed, since none of it is public: `duty = (feed_forward v + P e + I sum(e) + D diff(e)) / QPPS`. The law probe checks it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LoopLaw {
+    /// Loop rate, Hz.
+    pub rate_hz: u32,
+    /// Whether I and D count per tick; otherwise per second.
+    pub per_tick: bool,
+    /// Wire value of a position gain of 1.
+    pub position_scale: f64,
+    /// Whether the setpoint's share of QPPS is added to the duty.
+    pub feed_forward: bool,
+}
+
+impl Default for LoopLaw {
+    /// Assumed: 300 Hz, gains per tick, position gains x 1024, with feed-forward.
+    fn default() -> Self {
+        Self { rate_hz: 300, per_tick: true, position_scale: 1024.0, feed_forward: true }
+    }
+}
+
+impl LoopLaw {
+    /// Length of a tick, s.
+    #[must_use]
+    pub fn tick_s(&self) -> f64 {
+        1.0 / f64::from(self.rate_hz)
+    }
+
+    /// Seconds that one unit of the integral or derivative stands for.
+    #[must_use]
+    pub fn gain_step(&self) -> f64 {
+        if self.per_tick { 1.0 } else { self.tick_s() }
+    }
+}
+
+/// One controller: `P e + I int(e dt) + D de/dt`, its output in counts/s.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Pid {
+    /// Proportional.
+    pub p: f64,
+    /// Integral, per second.
+    pub i: f64,
+    /// Derivative, s.
+    pub d: f64,
+}
+
+/// The gains of an axis in physical terms.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Gains {
+    /// Velocity loop: speeds in, speeds out. All zero in position modes that act on the duty directly.
+    pub velocity: Pid,
+    /// Position loop: counts in, counts/s out.
+    pub position: Option<Pid>,
+    /// Bound of the position integral, counts x s.
+    pub max_integral: f64,
+    /// Position errors up to this many counts count as none.
+    pub deadzone_counts: f64,
+}
+
+/// State of a [`PlantModel`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Motion {
+    /// Counts/s.
+    pub speed: f64,
+    /// Counts.
+    pub place: f64,
+}
+
+impl PlantModel {
+    /// Moves on by `dt` at a constant duty. Exact but for the current limit, which is taken as it is at the start.
+    pub fn step(&self, motion: &mut Motion, duty: f64, dt: f64) {
+        let sag = self.sag * duty * duty;
+        let net = duty * (1.0 - sag) - self.load_duty;
+        let (gain, tau_s) = (self.gain_counts_per_s / (1.0 - sag), self.tau_s / (1.0 - sag));
+        let mut left = dt;
+        // At most: slow down to zero, then turn round or stay.
+        for _ in 0..2 {
+            let direction = if motion.speed != 0.0 { motion.speed.signum() } else { net.signum() };
+            if motion.speed == 0.0 && net.abs() <= self.coulomb_duty {
+                return;
+            }
+            let push = duty * (1.0 - sag) - motion.speed / gain;
+            if let Some(limit) = self.drive_limit
+                && push.abs() > limit
+            {
+                // The winding gives a constant torque: a slope, not an approach.
+                let net = limit * push.signum() - self.load_duty - self.coulomb_duty * direction;
+                match self.slide(motion, self.gain_counts_per_s * net / self.tau_s, left) {
+                    Some(used) => left -= used,
+                    None => return,
+                }
+                continue;
+            }
+            let goal = gain * (net - self.coulomb_duty * direction);
+            let decay = (-left / tau_s).exp();
+            let end = goal + (motion.speed - goal) * decay;
+            if motion.speed == 0.0 || end * motion.speed > 0.0 {
+                motion.place += goal * left + (motion.speed - goal) * tau_s * (1.0 - decay);
+                motion.speed = end;
+                return;
+            }
+            let stop_s = (tau_s * ((motion.speed - goal) / -goal).ln()).clamp(0.0, left);
+            let decay = (-stop_s / tau_s).exp();
+            motion.place += goal * stop_s + (motion.speed - goal) * tau_s * (1.0 - decay);
+            motion.speed = 0.0;
+            left -= stop_s;
+        }
+    }
+
+    /// Constant acceleration; the time used when the motion came to rest before the end.
+    fn slide(&self, motion: &mut Motion, slope: f64, dt: f64) -> Option<f64> {
+        let end = motion.speed + slope * dt;
+        if motion.speed == 0.0 || end * motion.speed > 0.0 {
+            motion.place += 0.5 * (motion.speed + end) * dt;
+            motion.speed = end;
+            return None;
+        }
+        let used = (-motion.speed / slope).clamp(0.0, dt);
+        motion.place += 0.5 * motion.speed * used;
+        motion.speed = 0.0;
+        Some(used)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plant() -> PlantModel {
+        PlantModel {
+            gain_counts_per_s: 10_000.0,
+            tau_s: 0.1,
+            coulomb_duty: 0.05,
+            load_duty: 0.0,
+            drive_limit: None,
+            sag: 0.0,
+        }
+    }
+
+    #[test]
+    fn a_step_follows_the_exponential_however_it_is_cut() {
+        let (mut whole, mut cut) = (Motion::default(), Motion::default());
+        plant().step(&mut whole, 0.55, 0.2);
+        for _ in 0..50 {
+            plant().step(&mut cut, 0.55, 0.004);
+        }
+        assert!((whole.speed - 5_000.0 * (1.0 - (-2.0_f64).exp())).abs() < 1e-9);
+        assert!((whole.speed - cut.speed).abs() < 1e-8 && (whole.place - cut.place).abs() < 1e-8);
+    }
+
+    #[test]
+    fn friction_stops_the_motor_where_the_equation_says_and_holds_it() {
+        let mut motion = Motion { speed: 5_000.0, place: 0.0 };
+        plant().step(&mut motion, 0.0, 1.0);
+        // v = -500 + 5500 exp(-t/tau) is zero at tau ln 11; the way is tau (5000 - 500 ln 11).
+        assert_eq!(motion.speed, 0.0);
+        assert!((motion.place - 0.1 * (5_000.0 - 500.0 * 11.0_f64.ln())).abs() < 1e-9);
+        plant().step(&mut motion, 0.049, 1.0);
+        assert_eq!(motion.speed, 0.0);
+    }
+
+    #[test]
+    fn a_reversal_passes_through_rest() {
+        let mut motion = Motion { speed: 5_000.0, place: 0.0 };
+        plant().step(&mut motion, -0.55, 2.0);
+        assert!((motion.speed + 5_000.0).abs() < 1.0);
+    }
+}

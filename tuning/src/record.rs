@@ -1,0 +1,232 @@
+//! The raw record of a run: every call to the axis with its answer, and the axis that plays one back.
+//!
+//! All values are whole numbers of the wire, so a record survives a file unchanged, and a tuner that is fed from it makes the
+//! same decisions and the same gains to the last bit.
+
+use crate::axis::{Axis, AxisError, Exchange, PositionRegisters, Sample, Setup, VelocityRegisters, Want};
+use serde::{Deserialize, Serialize};
+use std::time::Duration;
+
+/// One call and its answer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Entry {
+    /// The time was asked for.
+    Now(Duration),
+    /// A wait ended.
+    Waited(Result<(), AxisError>),
+    /// A poll.
+    Sampled(Result<Sample, AxisError>),
+    /// A duty.
+    Duty(i16, Result<Exchange, AxisError>),
+    /// A speed.
+    Speed(i32, Result<Exchange, AxisError>),
+    /// A position and its speed.
+    Position(i32, u32, Result<Exchange, AxisError>),
+    /// The setup.
+    Setup(Result<Setup, AxisError>),
+    /// Velocity registers written.
+    Velocity(VelocityRegisters, Result<(), AxisError>),
+    /// Position registers written.
+    PositionLoop(PositionRegisters, Result<(), AxisError>),
+    /// Raw speed.
+    RawSpeed(Result<i32, AxisError>),
+    /// Stream time-out set.
+    Timeout(u32, Result<(), AxisError>),
+}
+
+/// Writes down what passes between a tuner and an axis.
+pub struct Recorder<'a> {
+    axis: &'a mut dyn Axis,
+    entries: Vec<Entry>,
+}
+
+impl<'a> Recorder<'a> {
+    /// Listens to `axis`.
+    pub fn new(axis: &'a mut dyn Axis) -> Self {
+        Self { axis, entries: Vec::new() }
+    }
+
+    /// What passed so far.
+    #[must_use]
+    pub fn into_entries(self) -> Vec<Entry> {
+        self.entries
+    }
+}
+
+impl Axis for Recorder<'_> {
+    fn now(&mut self) -> Duration {
+        let now = self.axis.now();
+        self.entries.push(Entry::Now(now));
+        now
+    }
+
+    fn wait_until(&mut self, time: Duration) -> Result<(), AxisError> {
+        let answer = self.axis.wait_until(time);
+        self.entries.push(Entry::Waited(answer.clone()));
+        answer
+    }
+
+    fn sample(&mut self, want: Want) -> Result<Sample, AxisError> {
+        let answer = self.axis.sample(want);
+        self.entries.push(Entry::Sampled(answer.clone()));
+        answer
+    }
+
+    fn drive_duty(&mut self, duty_raw: i16) -> Result<Exchange, AxisError> {
+        let answer = self.axis.drive_duty(duty_raw);
+        self.entries.push(Entry::Duty(duty_raw, answer.clone()));
+        answer
+    }
+
+    fn command_speed(&mut self, counts_per_s: i32) -> Result<Exchange, AxisError> {
+        let answer = self.axis.command_speed(counts_per_s);
+        self.entries.push(Entry::Speed(counts_per_s, answer.clone()));
+        answer
+    }
+
+    fn command_position(&mut self, counts: i32, speed: u32) -> Result<Exchange, AxisError> {
+        let answer = self.axis.command_position(counts, speed);
+        self.entries.push(Entry::Position(counts, speed, answer.clone()));
+        answer
+    }
+
+    fn read_setup(&mut self) -> Result<Setup, AxisError> {
+        let answer = self.axis.read_setup();
+        self.entries.push(Entry::Setup(answer.clone()));
+        answer
+    }
+
+    fn write_velocity(&mut self, registers: VelocityRegisters) -> Result<(), AxisError> {
+        let answer = self.axis.write_velocity(registers);
+        self.entries.push(Entry::Velocity(registers, answer.clone()));
+        answer
+    }
+
+    fn write_position(&mut self, registers: PositionRegisters) -> Result<(), AxisError> {
+        let answer = self.axis.write_position(registers);
+        self.entries.push(Entry::PositionLoop(registers, answer.clone()));
+        answer
+    }
+
+    fn raw_speed(&mut self) -> Result<i32, AxisError> {
+        let answer = self.axis.raw_speed();
+        self.entries.push(Entry::RawSpeed(answer.clone()));
+        answer
+    }
+
+    fn set_stream_timeout(&mut self, milliseconds: u32) -> Result<(), AxisError> {
+        let answer = self.axis.set_stream_timeout(milliseconds);
+        self.entries.push(Entry::Timeout(milliseconds, answer.clone()));
+        answer
+    }
+}
+
+/// An axis that answers from a record.
+pub struct Player {
+    entries: std::vec::IntoIter<Entry>,
+    time: Duration,
+    strayed: bool,
+}
+
+impl Player {
+    /// Plays `entries` from their start.
+    #[must_use]
+    pub fn new(entries: Vec<Entry>) -> Self {
+        Self { entries: entries.into_iter(), time: Duration::ZERO, strayed: false }
+    }
+
+    /// Whether the tuner asked for something else than it did when the record was made: then the record comes from another
+    /// version of the program, or was changed.
+    #[must_use]
+    pub fn strayed(&self) -> bool {
+        self.strayed
+    }
+
+    fn stray<T>(&mut self) -> Result<T, AxisError> {
+        self.strayed = true;
+        self.entries = Vec::new().into_iter();
+        Err(AxisError::LinkLost("the record does not go on this way".into()))
+    }
+}
+
+impl Axis for Player {
+    fn now(&mut self) -> Duration {
+        if let Some(Entry::Now(now)) = self.entries.next() {
+            self.time = now;
+        } else {
+            self.strayed = true;
+        }
+        self.time
+    }
+
+    fn wait_until(&mut self, _time: Duration) -> Result<(), AxisError> {
+        match self.entries.next() {
+            Some(Entry::Waited(answer)) => answer,
+            _ => self.stray(),
+        }
+    }
+
+    fn sample(&mut self, _want: Want) -> Result<Sample, AxisError> {
+        match self.entries.next() {
+            Some(Entry::Sampled(answer)) => answer,
+            _ => self.stray(),
+        }
+    }
+
+    fn drive_duty(&mut self, duty_raw: i16) -> Result<Exchange, AxisError> {
+        match self.entries.next() {
+            Some(Entry::Duty(was, answer)) if was == duty_raw => answer,
+            _ => self.stray(),
+        }
+    }
+
+    fn command_speed(&mut self, counts_per_s: i32) -> Result<Exchange, AxisError> {
+        match self.entries.next() {
+            Some(Entry::Speed(was, answer)) if was == counts_per_s => answer,
+            _ => self.stray(),
+        }
+    }
+
+    fn command_position(&mut self, counts: i32, speed: u32) -> Result<Exchange, AxisError> {
+        match self.entries.next() {
+            Some(Entry::Position(was, fast, answer)) if was == counts && fast == speed => answer,
+            _ => self.stray(),
+        }
+    }
+
+    fn read_setup(&mut self) -> Result<Setup, AxisError> {
+        match self.entries.next() {
+            Some(Entry::Setup(answer)) => answer,
+            _ => self.stray(),
+        }
+    }
+
+    fn write_velocity(&mut self, registers: VelocityRegisters) -> Result<(), AxisError> {
+        match self.entries.next() {
+            Some(Entry::Velocity(was, answer)) if was == registers => answer,
+            _ => self.stray(),
+        }
+    }
+
+    fn write_position(&mut self, registers: PositionRegisters) -> Result<(), AxisError> {
+        match self.entries.next() {
+            Some(Entry::PositionLoop(was, answer)) if was == registers => answer,
+            _ => self.stray(),
+        }
+    }
+
+    fn raw_speed(&mut self) -> Result<i32, AxisError> {
+        match self.entries.next() {
+            Some(Entry::RawSpeed(answer)) => answer,
+            _ => self.stray(),
+        }
+    }
+
+    fn set_stream_timeout(&mut self, milliseconds: u32) -> Result<(), AxisError> {
+        match self.entries.next() {
+            Some(Entry::Timeout(was, answer)) if was == milliseconds => answer,
+            _ => self.stray(),
+        }
+    }
+}

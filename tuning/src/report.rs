@@ -1,0 +1,85 @@
+//! What a run leaves: verdict, model, gains, predictions and the raw record.
+
+use crate::axis::{PositionRegisters, Setup, VelocityRegisters};
+use crate::cause::Cause;
+use crate::design::Design;
+use crate::experiment::{FreeRun, Probe, WindowRun};
+use crate::fit::Fit;
+use crate::lag::LagFit;
+use crate::record::{Entry, Player};
+use crate::rules::Classic;
+use crate::tune::{Request, tune};
+use serde::{Deserialize, Serialize};
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Gains that were measured to be as good as predicted.
+    Tuned,
+    /// Gains, with something to know about them.
+    TunedWithWarnings,
+    /// No gains; the causes say why.
+    Refused,
+}
+
+/// What a verification measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Measured {
+    /// Overshoot over the step.
+    pub overshoot: f64,
+    /// Root mean square of the duty on plateaus.
+    pub duty_rms: f64,
+    /// Peak to peak of the place or speed at rest, over the step.
+    pub ripple: f64,
+}
+
+/// Everything a run found and did.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// What was asked for.
+    pub request: Request,
+    /// How it ended.
+    pub verdict: Verdict,
+    /// Why, and what to know.
+    pub causes: Vec<Cause>,
+    /// What the controller held before.
+    pub before: Option<Setup>,
+    /// The probe.
+    pub probe: Option<Probe>,
+    /// The free run.
+    pub free: Option<FreeRun>,
+    /// The run inside a window.
+    pub window: Option<WindowRun>,
+    /// What the textbook experiments see in the same record.
+    pub classic: Option<Classic>,
+    /// The open-loop fit.
+    pub fit: Option<Fit>,
+    /// Speed at full duty, counts/s.
+    pub qpps: Option<f64>,
+    /// The lag of the loop.
+    pub lag: Option<LagFit>,
+    /// The design.
+    pub design: Option<Design>,
+    /// What the last verification measured.
+    pub measured: Option<Measured>,
+    /// Velocity registers proposed.
+    pub velocity: Option<VelocityRegisters>,
+    /// Position registers proposed.
+    pub position: Option<PositionRegisters>,
+    /// Length of identification and of the whole run, s.
+    pub seconds: (f64, f64),
+    /// The raw record.
+    pub record: Vec<Entry>,
+}
+
+impl Report {
+    /// Runs the tuner again on the record. The gains come out the same to the last bit; `None` if the record does not belong
+    /// to this version of the tuner.
+    #[must_use]
+    pub fn replay(&self) -> Option<Self> {
+        let mut player = Player::new(self.record.clone());
+        let report = tune(&mut player, &self.request);
+        (!player.strayed()).then_some(report)
+    }
+}

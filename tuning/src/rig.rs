@@ -1,0 +1,372 @@
+//! The guard around every experiment: polls, remembers, and ends the run when anything is wrong.
+//!
+//! An experiment drives only through a [`Rig`]. Each poll is checked for the link, the status, the battery, the travel window,
+//! stalls, lost encoders and open motors before the experiment sees it.
+
+use crate::axis::{
+    AMPS_PER_RAW, Axis, AxisError, EncoderClass, FULL_DUTY_RAW, PositionRegisters, Setup, VOLTS_PER_RAW,
+    VelocityRegisters, Want,
+};
+use crate::cause::Cause;
+use crate::watch::Watch;
+use serde::{Deserialize, Serialize};
+use std::time::Duration;
+
+/// Counts of an absolute encoder for one turn (MCP manual 2.4.9, command 16).
+const ABSOLUTE_COUNTS: i64 = 4096;
+/// The stream time-out during a run, ms: the bridge is off this long after the host died.
+const RUN_STREAM_TIMEOUT_MS: u32 = 150;
+/// How long a motor is braked to see whether it turns, and how long the duty takes to come down, s.
+const BRAKE_TEST_S: f64 = 0.10;
+const DUTY_DOWN_S: f64 = 0.055;
+/// Silence after which the link counts as lost, s.
+const LINK_LOST_S: f64 = 0.15;
+
+/// What the guard is told.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GuardOptions {
+    /// Which of the two motors, 0 or 1.
+    pub motor: usize,
+    /// Highest duty that may be given, 0 to 1.
+    pub max_duty: f64,
+    /// Travel in counts, relative to the encoder's reading; `None` for an axis that turns freely.
+    pub travel: Option<(i64, i64)>,
+    /// Time between polls, s.
+    pub poll_s: f64,
+    /// Longest run, s.
+    pub time_limit_s: f64,
+    /// Volts above the controller's lower limit at which the run ends.
+    pub volts_margin: f64,
+}
+
+impl Default for GuardOptions {
+    fn default() -> Self {
+        Self { motor: 0, max_duty: 1.0, travel: None, poll_s: 0.010, time_limit_s: 180.0, volts_margin: 0.2 }
+    }
+}
+
+/// One poll as the experiments use it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Middle of the exchange, s from the start of the run.
+    pub t: f64,
+    /// Counts from the start of the run.
+    pub counts: f64,
+    /// When the duty was read and what it was, -1 to 1.
+    pub duty: Option<(f64, f64)>,
+    /// Motor current, A.
+    pub amps: Option<f64>,
+    /// Main battery, V.
+    pub volts: Option<f64>,
+    /// The current limit was at work.
+    pub limited: bool,
+}
+
+/// What the axis was told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Input {
+    /// Duty, -1 to 1.
+    Duty(f64),
+    /// Speed, counts/s.
+    Speed(f64),
+    /// Position in counts from the start of the run, and speed bound.
+    Position(f64, f64),
+}
+
+/// A command and when it took effect.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drive {
+    /// Middle of the exchange, s from the start of the run.
+    pub t: f64,
+    /// What was commanded.
+    pub input: Input,
+}
+
+/// An axis under guard.
+pub struct Rig<'a> {
+    axis: &'a mut dyn Axis,
+    /// What it was told.
+    pub options: GuardOptions,
+    /// What the controller held at the start.
+    pub setup: Setup,
+    /// Every poll.
+    pub points: Vec<Point>,
+    /// Every command.
+    pub drives: Vec<Drive>,
+    /// What watches for stalls and lost signals.
+    pub watch: Watch,
+    epoch_s: f64,
+    first_counts: Option<i64>,
+    last_raw: i64,
+    next_poll: Duration,
+    silent_since_s: f64,
+    turn: u8,
+    gains_touched: bool,
+    timeout_touched: bool,
+}
+
+impl<'a> Rig<'a> {
+    /// Takes an axis over: reads its setup, refuses torque mode, makes the controller stop by itself when the host dies.
+    pub fn new(axis: &'a mut dyn Axis, options: GuardOptions) -> Result<Self, Cause> {
+        let setup = retried(|| axis.read_setup())?;
+        if setup.inductance_resistance_raw.iter().all(|&raw| raw != 0) {
+            return Err(Cause::TorqueMode);
+        }
+        let now = axis.now();
+        let mut rig = Self {
+            axis,
+            options,
+            setup,
+            points: Vec::new(),
+            drives: Vec::new(),
+            watch: Watch::default(),
+            epoch_s: now.as_secs_f64(),
+            first_counts: None,
+            last_raw: 0,
+            next_poll: now,
+            silent_since_s: 0.0,
+            turn: 0,
+            gains_touched: false,
+            timeout_touched: false,
+        };
+        if setup.stream_timeout_ms.is_some() {
+            rig.timeout_touched = true;
+            retried(|| rig.axis.set_stream_timeout(RUN_STREAM_TIMEOUT_MS))?;
+        }
+        Ok(rig)
+    }
+
+    /// Time from the start of the run, s.
+    pub fn now_s(&mut self) -> f64 {
+        self.axis.now().as_secs_f64() - self.epoch_s
+    }
+
+    /// Drives at a duty, cut to the highest allowed.
+    pub fn duty(&mut self, duty: f64) -> Result<(), Cause> {
+        let duty = duty.clamp(-self.options.max_duty, self.options.max_duty);
+        let raw = (duty * f64::from(FULL_DUTY_RAW)).round() as i16;
+        let exchange = retried(|| self.axis.drive_duty(raw))?;
+        let t = exchange.middle_s() - self.epoch_s;
+        self.drives.push(Drive { t, input: Input::Duty(f64::from(raw) / f64::from(FULL_DUTY_RAW)) });
+        self.watch.drive(t, duty);
+        Ok(())
+    }
+
+    /// Commands a speed in counts/s.
+    pub fn speed(&mut self, counts_per_s: f64) -> Result<(), Cause> {
+        let whole = counts_per_s.round() as i32;
+        let exchange = retried(|| self.axis.command_speed(whole))?;
+        let t = exchange.middle_s() - self.epoch_s;
+        self.drives.push(Drive { t, input: Input::Speed(f64::from(whole)) });
+        self.watch.release(t);
+        Ok(())
+    }
+
+    /// Commands a position in counts from the start of the run.
+    pub fn position(&mut self, counts: f64, speed: u32) -> Result<(), Cause> {
+        let origin = self.first_counts.unwrap_or(0);
+        let whole = (origin + counts.round() as i64) as i32;
+        let exchange = retried(|| self.axis.command_position(whole, speed))?;
+        let t = exchange.middle_s() - self.epoch_s;
+        self.drives.push(Drive { t, input: Input::Position(counts.round(), f64::from(speed)) });
+        self.watch.release(t);
+        Ok(())
+    }
+
+    /// Writes velocity registers to RAM; they are put back unless the run keeps them.
+    pub fn write_velocity(&mut self, registers: VelocityRegisters) -> Result<(), Cause> {
+        self.gains_touched = true;
+        retried(|| self.axis.write_velocity(registers))
+    }
+
+    /// Writes position registers to RAM; they are put back unless the run keeps them.
+    pub fn write_position(&mut self, registers: PositionRegisters) -> Result<(), Cause> {
+        self.gains_touched = true;
+        retried(|| self.axis.write_position(registers))
+    }
+
+    /// The unfiltered speed.
+    pub fn raw_speed(&mut self) -> Result<i32, Cause> {
+        retried(|| self.axis.raw_speed())
+    }
+
+    /// The encoder reading at the start of the run.
+    #[must_use]
+    pub fn origin_counts(&self) -> i64 {
+        self.first_counts.unwrap_or(0)
+    }
+
+    /// The next poll when its time has come; `None` when its reply was lost. `with_duty` reads the duty each time.
+    pub fn poll(&mut self, with_duty: bool) -> Result<Option<Point>, Cause> {
+        self.axis.wait_until(self.next_poll).map_err(|error| cause_of(&error))?;
+        let now = self.axis.now();
+        self.next_poll = now.max(self.next_poll) + Duration::from_secs_f64(self.options.poll_s);
+        let now_s = now.as_secs_f64() - self.epoch_s;
+        if now_s > self.options.time_limit_s {
+            return Err(Cause::TimeLimit);
+        }
+        self.turn = self.turn.wrapping_add(1);
+        let want = Want {
+            duty: with_duty,
+            current: !self.turn.is_multiple_of(4),
+            volts: self.turn.is_multiple_of(4),
+        };
+        let sample = match self.axis.sample(want) {
+            Ok(sample) => sample,
+            Err(AxisError::NoReply) => {
+                let silent_s = self.now_s() - self.silent_since_s;
+                return if silent_s > LINK_LOST_S { Err(Cause::LinkLost) } else { Ok(None) };
+            }
+            Err(error) => return Err(cause_of(&error)),
+        };
+        self.silent_since_s = sample.counts_at.received.as_secs_f64() - self.epoch_s;
+        let counts = self.unwrap(sample.counts[self.options.motor.min(1)]);
+        let point = Point {
+            t: sample.counts_at.middle_s() - self.epoch_s,
+            counts: counts as f64,
+            duty: sample
+                .duty_raw
+                .map(|(at, raw)| (at.middle_s() - self.epoch_s, f64::from(raw) / f64::from(FULL_DUTY_RAW))),
+            amps: sample.current_raw.map(|raw| f64::from(raw) * AMPS_PER_RAW),
+            volts: sample.volts_raw.map(|raw| f64::from(raw) * VOLTS_PER_RAW),
+            limited: sample.status.over_current,
+        };
+        if sample.status.fault {
+            return Err(Cause::ControllerFault);
+        }
+        let floor = f64::from(self.setup.min_volts_raw) * VOLTS_PER_RAW + self.options.volts_margin;
+        let sagging = self.setup.min_volts_raw > 0 && point.volts.is_some_and(|volts| volts < floor);
+        if sample.status.battery_low || sagging {
+            return Err(Cause::BatteryLow);
+        }
+        self.points.push(point);
+        self.check_travel(&point)?;
+        match self.watch.see(&point) {
+            Err(Cause::Stalled) => Err(self.stalled_or_blind()),
+            other => other.map(|()| Some(point)),
+        }
+    }
+
+    /// Polls for a time.
+    pub fn poll_for(&mut self, seconds: f64, with_duty: bool) -> Result<(), Cause> {
+        let end = self.now_s() + seconds;
+        while self.now_s() < end {
+            self.poll(with_duty)?;
+        }
+        Ok(())
+    }
+
+    /// Speed over the last `polls` polls, counts/s; `None` with fewer.
+    #[must_use]
+    pub fn recent_speed(&self, polls: usize) -> Option<f64> {
+        let last = self.points.last()?;
+        let earlier = self.points.get(self.points.len().checked_sub(polls + 1)?)?;
+        (last.t > earlier.t).then(|| (last.counts - earlier.counts) / (last.t - earlier.t))
+    }
+
+    /// Mean battery voltage so far; `None` before the first reading.
+    #[must_use]
+    pub fn mean_volts(&self, from_s: f64, to_s: f64) -> Option<f64> {
+        let volts: Vec<f64> =
+            self.points.iter().filter(|p| p.t >= from_s && p.t <= to_s).filter_map(|p| p.volts).collect();
+        (!volts.is_empty()).then(|| volts.iter().sum::<f64>() / volts.len() as f64)
+    }
+
+    /// The last act on every way out: duty 0 three times; the old gains, unless the run keeps its own; the old time-out.
+    pub fn finish(&mut self, keep_gains: bool) {
+        for _ in 0..3 {
+            // Whatever the answer: there is nothing else to try, and the stream time-out stands behind it.
+            let _ = self.axis.drive_duty(0);
+        }
+        if self.gains_touched && !keep_gains {
+            let _ = retried(|| self.axis.write_velocity(self.setup.velocity));
+            let _ = retried(|| self.axis.write_position(self.setup.position));
+        }
+        if let (true, Some(before)) = (self.timeout_touched, self.setup.stream_timeout_ms) {
+            let _ = retried(|| self.axis.set_stream_timeout(before));
+        }
+    }
+
+    /// Counts from the start of the run, beyond the wrap of the register or of the absolute encoder.
+    fn unwrap(&mut self, raw: i32) -> i64 {
+        let raw = i64::from(raw);
+        let Some(first) = self.first_counts else {
+            self.first_counts = Some(raw);
+            self.last_raw = raw;
+            return 0;
+        };
+        let turn = match self.setup.encoder {
+            EncoderClass::Quadrature => 1_i64 << 32,
+            EncoderClass::AbsoluteWrapping => ABSOLUTE_COUNTS,
+            EncoderClass::Absolute => i64::MAX,
+        };
+        let half = turn / 2;
+        let mut step = raw - self.last_raw.rem_euclid(turn);
+        if self.setup.encoder == EncoderClass::Quadrature {
+            step = i64::from((raw as i32).wrapping_sub(self.last_raw as i32));
+        } else if self.setup.encoder == EncoderClass::Absolute {
+            step = raw - self.last_raw;
+        } else if step > half {
+            step -= turn;
+        } else if step < -half {
+            step += turn;
+        }
+        self.last_raw += step;
+        self.last_raw - first
+    }
+
+    /// Nothing is counted and the current is high: either the shaft stands, or the motor pulls away unseen. Braked, a turning
+    /// motor gives a current; a standing one gives none.
+    fn stalled_or_blind(&mut self) -> Cause {
+        let _ = self.axis.drive_duty(0);
+        let stall = self.watch.stall_amps.unwrap_or(0.0);
+        let mut braking: f64 = 0.0;
+        let from_s = self.now_s();
+        while self.now_s() < from_s + BRAKE_TEST_S {
+            let next = self.axis.now() + Duration::from_secs_f64(self.options.poll_s);
+            let sample = self.axis.sample(Want { current: true, ..Want::default() });
+            // The duty itself takes up to 50 ms to come down.
+            if self.now_s() > from_s + DUTY_DOWN_S
+                && let Ok(Some(raw)) = sample.map(|sample| sample.current_raw)
+            {
+                braking = braking.max((f64::from(raw) * AMPS_PER_RAW).abs());
+            }
+            if let Err(error) = self.axis.wait_until(next) {
+                return cause_of(&error);
+            }
+        }
+        if braking > (0.04 * stall).max(0.03) { Cause::EncoderLost } else { Cause::Stalled }
+    }
+
+    /// Ends the run before the window is left: where the motor would come to rest if it were braked now counts.
+    fn check_travel(&mut self, point: &Point) -> Result<(), Cause> {
+        let Some((low, high)) = self.options.travel else { return Ok(()) };
+        let origin = self.origin_counts();
+        let (low, high) = ((low - origin) as f64, (high - origin) as f64);
+        let speed = self.recent_speed(2).unwrap_or(0.0);
+        let rest = point.counts + speed * (self.options.poll_s + self.watch.stopping_s);
+        if (rest > high && speed > 0.0) || (rest < low && speed < 0.0) {
+            return Err(Cause::TravelLimit);
+        }
+        Ok(())
+    }
+}
+
+/// Up to four tries, since a reply may be lost.
+fn retried<T>(mut call: impl FnMut() -> Result<T, AxisError>) -> Result<T, Cause> {
+    for _ in 0..3 {
+        match call() {
+            Err(AxisError::NoReply) => {}
+            other => return other.map_err(|error| cause_of(&error)),
+        }
+    }
+    call().map_err(|error| if error == AxisError::NoReply { Cause::LinkLost } else { cause_of(&error) })
+}
+
+fn cause_of(error: &AxisError) -> Cause {
+    match error {
+        AxisError::NoReply | AxisError::LinkLost(_) => Cause::LinkLost,
+        AxisError::Stopped => Cause::Stopped,
+        AxisError::Refused(_) => Cause::Refused,
+    }
+}

@@ -1,0 +1,194 @@
+//! The closed loop tick by tick: the model as plant, the law as controller. Saturation, friction, rounding of counts, the current
+//! limit and wind-up are in it; a twin of the axis for predictions.
+
+use crate::model::{Gains, Lag, LoopLaw, Motion, PlantModel};
+use crate::score::{LOAD_STEP_DUTY, Score, VELOCITY_STEP, horizon_s, position_step};
+
+/// What the loop is to do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Setpoint {
+    /// Speed, counts/s.
+    Speed(f64),
+    /// Place and speed bound.
+    Place(f64, f64),
+}
+
+/// A loop in simulation.
+#[derive(Clone, Debug)]
+pub struct TickLoop {
+    /// The motor.
+    pub plant: PlantModel,
+    law: LoopLaw,
+    lag: Lag,
+    gains: Gains,
+    qpps: f64,
+    /// Where it is.
+    pub motion: Motion,
+    last_count: f64,
+    filtered: f64,
+    integral: f64,
+    last_error: f64,
+    place_integral: f64,
+    last_place_error: Option<f64>,
+    last_target: f64,
+    queue: [f64; 9],
+    /// The duty given in the last tick.
+    pub duty: f64,
+}
+
+impl TickLoop {
+    /// A loop at rest.
+    #[must_use]
+    pub fn new(plant: PlantModel, law: LoopLaw, lag: Lag, gains: Gains, qpps: f64) -> Self {
+        Self {
+            plant,
+            law,
+            lag,
+            gains,
+            qpps,
+            motion: Motion::default(),
+            last_count: 0.0,
+            filtered: 0.0,
+            integral: 0.0,
+            last_error: 0.0,
+            place_integral: 0.0,
+            last_place_error: None,
+            last_target: f64::NAN,
+            queue: [0.0; 9],
+            duty: 0.0,
+        }
+    }
+
+    /// Puts a velocity loop into the steady state of a speed.
+    pub fn start_steady(&mut self, speed: f64) {
+        self.motion = Motion { speed, place: 0.0 };
+        self.last_count = (-speed * self.law.tick_s()).floor();
+        self.filtered = speed;
+        let plant = &self.plant;
+        let duty = speed / plant.gain_counts_per_s + plant.coulomb_duty * speed.signum() + plant.load_duty;
+        let forward = if self.law.feed_forward { speed } else { 0.0 };
+        if self.gains.velocity.i > 0.0 {
+            self.integral = (duty * self.qpps - forward) / self.gains.velocity.i;
+        }
+        self.queue = [duty; 9];
+        self.duty = duty;
+    }
+
+    /// One tick: measures, computes, moves on. Returns the duty that the bridge held.
+    pub fn tick(&mut self, setpoint: Setpoint, load_duty: f64) -> f64 {
+        let tick_s = self.law.tick_s();
+        let count = self.motion.place.floor();
+        let share = tick_s / (self.lag.filter_s + tick_s);
+        self.filtered += share * ((count - self.last_count) / tick_s - self.filtered);
+        self.last_count = count;
+        let duty = match setpoint {
+            Setpoint::Speed(speed) => self.velocity(speed),
+            Setpoint::Place(place, bound) => self.place(place, bound, count),
+        };
+        self.queue.rotate_right(1);
+        self.queue[0] = duty;
+        let whole = (self.lag.delay_ticks.floor() as usize).min(7);
+        let part = self.lag.delay_ticks - whole as f64;
+        self.duty = self.queue[whole] * (1.0 - part) + self.queue[whole + 1] * part;
+        let mut plant = self.plant;
+        plant.load_duty += load_duty;
+        if plant.drive_limit.is_some() {
+            for _ in 0..2 {
+                plant.step(&mut self.motion, self.duty, 0.5 * tick_s);
+            }
+        } else {
+            plant.step(&mut self.motion, self.duty, tick_s);
+        }
+        self.duty
+    }
+
+    fn velocity(&mut self, setpoint: f64) -> f64 {
+        let tick_s = self.law.tick_s();
+        let gains = self.gains.velocity;
+        let error = setpoint - self.filtered;
+        let slope = (error - self.last_error) / tick_s;
+        self.last_error = error;
+        self.integral += error * tick_s;
+        let forward = if self.law.feed_forward { setpoint } else { 0.0 };
+        let wanted = (forward + gains.p * error + gains.i * self.integral + gains.d * slope) / self.qpps;
+        let (lowest, highest) = self.bounds();
+        let duty = wanted.clamp(lowest, highest);
+        if duty != wanted && gains.i > 0.0 {
+            let share = if gains.p > 0.0 { (gains.i * tick_s / gains.p).min(1.0) } else { 1.0 };
+            self.integral += share * (duty - wanted) * self.qpps / gains.i;
+        }
+        duty
+    }
+
+    /// What the current limit leaves. Assumed: the loop knows of it and does not wind up against it.
+    fn bounds(&self) -> (f64, f64) {
+        let Some(limit) = self.plant.drive_limit else { return (-1.0, 1.0) };
+        let emf = self.motion.speed / self.plant.gain_counts_per_s;
+        ((emf - limit).clamp(-1.0, 1.0), (emf + limit).clamp(-1.0, 1.0))
+    }
+
+    fn place(&mut self, target: f64, bound: f64, count: f64) -> f64 {
+        let tick_s = self.law.tick_s();
+        let Some(gains) = self.gains.position else { return 0.0 };
+        if target != self.last_target {
+            self.last_place_error = None;
+            self.last_target = target;
+        }
+        let error = target - count;
+        let slope = self.last_place_error.map_or(0.0, |before| (error - before) / tick_s);
+        self.last_place_error = Some(error);
+        let acting = if error.abs() <= self.gains.deadzone_counts { 0.0 } else { error };
+        let most = self.gains.max_integral;
+        self.place_integral = (self.place_integral + acting * tick_s).clamp(-most, most);
+        let wanted = gains.p * acting + gains.i * self.place_integral + gains.d * slope;
+        let speed = wanted.clamp(-bound, bound);
+        let v = self.gains.velocity;
+        if v.p == 0.0 && v.i == 0.0 && v.d == 0.0 {
+            return (speed / self.qpps).clamp(-1.0, 1.0);
+        }
+        self.velocity(speed)
+    }
+}
+
+/// A predicted response for a picture: (time, value, duty).
+pub type Course = Vec<(f64, f64, f64)>;
+
+/// The velocity test on the model: the score and the root mean square of the last quarter's speed ripple over the step.
+#[must_use]
+pub fn velocity_test(plant: &PlantModel, law: &LoopLaw, lag: Lag, gains: &Gains, qpps: f64) -> Score {
+    let tick_s = law.tick_s();
+    let ticks = (horizon_s(plant.tau_s) / tick_s) as usize;
+    let top = plant.gain_counts_per_s;
+    let (low, high) = (VELOCITY_STEP.0 * top, VELOCITY_STEP.1 * top);
+    let mut twin = TickLoop::new(*plant, *law, lag, *gains, qpps);
+    twin.start_steady(low);
+    let mut run = |load: f64| -> Vec<f64> {
+        (0..ticks)
+            .map(|_| {
+                twin.tick(Setpoint::Speed(high), load);
+                high - twin.motion.speed
+            })
+            .collect()
+    };
+    let (after_step, after_load) = (run(0.0), run(LOAD_STEP_DUTY));
+    Score::of(&after_step, &after_load, tick_s, high - low, 0.05)
+}
+
+/// The position test on the model.
+#[must_use]
+pub fn position_test(plant: &PlantModel, law: &LoopLaw, lag: Lag, gains: &Gains, qpps: f64) -> Score {
+    let tick_s = law.tick_s();
+    let ticks = (horizon_s(plant.tau_s) / tick_s) as usize;
+    let step = position_step(plant.gain_counts_per_s, plant.tau_s);
+    let mut twin = TickLoop::new(*plant, *law, lag, *gains, qpps);
+    let mut run = |load: f64| -> Vec<f64> {
+        (0..ticks)
+            .map(|_| {
+                twin.tick(Setpoint::Place(step, qpps), load);
+                step - twin.motion.place
+            })
+            .collect()
+    };
+    let (after_step, after_load) = (run(0.0), run(LOAD_STEP_DUTY));
+    Score::of(&after_step, &after_load, tick_s, step, 0.02f64.max(3.0 / step))
+}

@@ -1,0 +1,327 @@
+//! A whole tuning run: probe, experiment, fit, design, verification on the machine, and the way back when anything is wrong.
+
+use crate::axis::{Axis, EncoderClass};
+use crate::cause::Cause;
+use crate::course::Course;
+use crate::design::{Design, Goal, Task, design_pd, design_pid, design_piv, design_velocity};
+use crate::experiment::{Probe, run_free, run_probe, run_window};
+use crate::fit::{Fit, fit};
+use crate::lag::LagFit;
+use crate::linear::{DiscretePlant, LoopPlant};
+use crate::model::{Gains, Lag, LoopLaw, PlantModel};
+use crate::record::Recorder;
+use crate::registers::{position_registers, velocity_gains, velocity_registers};
+use crate::report::{Report, Verdict};
+use crate::rig::{GuardOptions, Rig};
+use crate::rules::Classic;
+use crate::verify::{check_moves, measure_lag};
+use serde::{Deserialize, Serialize};
+
+/// The lag that is assumed before it is measured, and where it cannot be: an extra tick and a filter of one.
+const USUAL_LAG: Lag = Lag { filter_s: 0.004, delay_ticks: 1.0 };
+/// Highest chi-square of a fit that is believed.
+const WORST_CHI_SQUARE: f64 = 12.0;
+/// Loosest time constant, as standard deviation of its logarithm, of a motor slower than four polls.
+const LOOSEST_TAU: f64 = 0.5;
+/// Lag that the model leaves out: the winding, a springy shaft.
+const UNMODELLED_TICKS: f64 = 0.5;
+/// Misfit of the closed loop beyond which the model is taken as incomplete, and what is then left of the sensitivity's excess.
+const ODD_CHI_SQUARE: f64 = 2.8;
+const ODD_SHARE: f64 = 0.75;
+/// Misfit that speaks of play, and the shortest integral time of such a machine, in time constants.
+const LOOSE_CHI_SQUARE: f64 = 3.6;
+const LOOSE_INTEGRAL: f64 = 1.2;
+/// How far a lag interval may reach before the lag counts as unknown, s.
+const WIDEST_LAG_S: f64 = 0.012;
+
+/// What to tune.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// Velocity PI.
+    Velocity,
+    /// Position PD.
+    Pd,
+    /// Position PID.
+    Pid,
+    /// Position P over velocity PI.
+    Piv,
+}
+
+/// How the axis may be moved.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Excitation {
+    /// It turns freely.
+    Free,
+    /// Within so many counts around where it stands.
+    Window(f64),
+}
+
+/// What is asked of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Request {
+    /// The loop.
+    pub method: Method,
+    /// 0 (soft) to 100 (stiff).
+    pub level: f64,
+    /// How the axis may be moved.
+    pub excitation: Excitation,
+    /// The guard.
+    pub guard: GuardOptions,
+    /// The controller's law.
+    pub law: LoopLaw,
+    /// Whether the candidate is tried on the machine.
+    pub verify: bool,
+    /// Whether the new gains stay in force (RAM) at the end.
+    pub keep: bool,
+}
+
+impl Default for Request {
+    fn default() -> Self {
+        Self {
+            method: Method::Velocity,
+            level: 50.0,
+            excitation: Excitation::Free,
+            guard: GuardOptions::default(),
+            law: LoopLaw::default(),
+            verify: true,
+            keep: false,
+        }
+    }
+}
+
+/// Runs it. The motor stands and the old gains are in force when it returns, unless the request keeps the new ones.
+pub fn tune(axis: &mut dyn Axis, request: &Request) -> Report {
+    let mut recorder = Recorder::new(axis);
+    let mut report = blank(request);
+    let outcome = match Rig::new(&mut recorder, request.guard) {
+        Err(cause) => Err(cause),
+        Ok(mut rig) => {
+            report.before = Some(rig.setup);
+            let outcome = run(&mut rig, request, &mut report);
+            let keep = outcome.is_ok() && request.keep;
+            if keep && let Err(cause) = write_final(&mut rig, &report) {
+                report.causes.push(cause);
+            }
+            report.seconds.1 = rig.now_s();
+            rig.finish(keep);
+            outcome
+        }
+    };
+    if let Err(cause) = outcome {
+        report.causes.insert(0, cause);
+        report.verdict = Verdict::Refused;
+        report.velocity = None;
+        report.position = None;
+    } else if !report.causes.is_empty() {
+        report.verdict = Verdict::TunedWithWarnings;
+    }
+    report.record = recorder.into_entries();
+    report
+}
+
+fn blank(request: &Request) -> Report {
+    Report {
+        request: *request,
+        verdict: Verdict::Tuned,
+        causes: Vec::new(),
+        before: None,
+        probe: None,
+        free: None,
+        window: None,
+        classic: None,
+        fit: None,
+        qpps: None,
+        lag: None,
+        design: None,
+        measured: None,
+        velocity: None,
+        position: None,
+        seconds: (0.0, 0.0),
+        record: Vec::new(),
+    }
+}
+
+fn run(rig: &mut Rig<'_>, request: &Request, report: &mut Report) -> Result<(), Cause> {
+    if request.method == Method::Velocity && rig.setup.encoder == EncoderClass::AbsoluteWrapping {
+        return Err(Cause::WrappingEncoder);
+    }
+    let probe = run_probe(rig, 1.0)?;
+    report.probe = Some(probe);
+    let found = match request.excitation {
+        Excitation::Free => identify_free(rig, &probe, report)?,
+        Excitation::Window(width) => identify_window(rig, &probe, width, report)?,
+    };
+    report.fit = Some(found.fit);
+    report.qpps = Some(found.qpps);
+    report.seconds.0 = rig.now_s();
+    let task = Task {
+        plant: found.fit.model,
+        law: request.law,
+        lag: USUAL_LAG,
+        worst_lag: USUAL_LAG,
+        qpps: found.qpps,
+        goal: Goal::of_level(request.level),
+        noise_factor: 1.0,
+        slack_counts: 0.0,
+        least_integral_s: 0.0,
+    };
+    let task = settle_lag(rig, request, task, report)?;
+    let design = design_for(request.method, &task).ok_or(Cause::TooCoarse)?;
+    propose(report, request, &task, design, rig.options.travel);
+    if request.verify {
+        check_moves(rig, request, &task, report)?;
+    }
+    Ok(())
+}
+
+/// What identification gives.
+struct Found {
+    fit: Fit,
+    qpps: f64,
+}
+
+fn identify_free(rig: &mut Rig<'_>, probe: &Probe, report: &mut Report) -> Result<Found, Cause> {
+    let run = run_free(rig, probe)?;
+    report.free = Some(run);
+    report.classic = Classic::of(&rig.points, &rig.drives, &run);
+    let full = 0.5 * (run.full_speeds.0 + run.full_speeds.1);
+    if (run.full_speeds.0 - run.full_speeds.1).abs() > 0.05 * full {
+        report.causes.push(Cause::Asymmetric);
+    }
+    let now_s = rig.now_s();
+    let course = Course::new(&rig.points, &rig.drives, run.from_s, now_s, probe.volts);
+    let found =
+        fit(&course, full / run.full_duty, run.tau_s, drive_limit(rig, probe)).ok_or(Cause::TooCoarse)?;
+    believe(&found, rig.options.poll_s, &course)?;
+    // With less than full duty the model says what full duty would give.
+    let qpps = if run.full_duty > 0.999 {
+        full
+    } else {
+        full + found.model.gain_counts_per_s * (1.0 - run.full_duty)
+    };
+    Ok(Found { fit: found, qpps })
+}
+
+fn identify_window(
+    rig: &mut Rig<'_>,
+    probe: &Probe,
+    width: f64,
+    report: &mut Report,
+) -> Result<Found, Cause> {
+    let run = run_window(rig, probe, width)?;
+    report.window = Some(run);
+    let now_s = rig.now_s();
+    let course = Course::new(&rig.points, &rig.drives, run.from_s, now_s, probe.volts);
+    let start = run.top_speed / (probe.start_duty + 0.4);
+    let found = fit(&course, start, 0.06, drive_limit(rig, probe)).ok_or(Cause::TooCoarse)?;
+    believe(&found, rig.options.poll_s, &course)?;
+    let qpps = found.model.gain_counts_per_s * (1.0 - found.model.coulomb_duty);
+    Ok(Found { fit: found, qpps })
+}
+
+/// The current limit over the stall current at full duty.
+fn drive_limit(rig: &Rig<'_>, probe: &Probe) -> Option<f64> {
+    let limit = f64::from(rig.setup.max_current_raw) * crate::axis::AMPS_PER_RAW;
+    probe.stall_amps.filter(|stall| limit > 0.0 && *stall > 0.0).map(|stall| limit / stall)
+}
+
+fn believe(fit: &Fit, poll_s: f64, course: &Course) -> Result<(), Cause> {
+    if course.limited_share() > 0.5 {
+        return Err(Cause::CurrentLimited);
+    }
+    if fit.chi_square > WORST_CHI_SQUARE {
+        return Err(Cause::PoorFit);
+    }
+    if fit.sd_ln_tau > LOOSEST_TAU && fit.model.tau_s > 4.0 * poll_s {
+        return Err(Cause::TooCoarse);
+    }
+    Ok(())
+}
+
+/// Measures the lag with a careful velocity loop where the axis may turn freely.
+fn settle_lag(rig: &mut Rig<'_>, request: &Request, task: Task, report: &mut Report) -> Result<Task, Cause> {
+    if !request.verify || request.excitation != Excitation::Free {
+        return Ok(task);
+    }
+    let careful = Task { goal: Goal { ms: 1.4, ..task.goal }, ..task };
+    let Some(design) = design_velocity(&careful) else { return Ok(task) };
+    let registers = velocity_registers(&design.gains.velocity, task.qpps, &request.law);
+    let gains = Gains { velocity: velocity_gains(&registers, &request.law), ..Gains::default() };
+    rig.write_velocity(registers)?;
+    let sd_ln_tau = report.fit.map_or(0.1, |fit| fit.sd_ln_tau);
+    let Some((found, noise_factor)) = measure_lag(rig, &careful, &gains, sd_ln_tau)? else {
+        report.causes.push(Cause::LagUnknown);
+        return Ok(task);
+    };
+    report.lag = Some(found);
+    Ok(with_lag(Task { noise_factor, ..task }, &found))
+}
+
+fn with_lag(task: Task, found: &LagFit) -> Task {
+    let wide = found.interval_s.1 - found.interval_s.0 > WIDEST_LAG_S;
+    if wide && found.interval_s.0 <= USUAL_LAG.total_s(&task.law) {
+        return task;
+    }
+    let plant = PlantModel { tau_s: task.plant.tau_s * found.tau_scale, ..task.plant };
+    // The winding and whatever else the model leaves out.
+    let worst_lag = Lag { delay_ticks: found.worst.delay_ticks + UNMODELLED_TICKS, ..found.worst };
+    let (mut goal, mut least_integral_s) = (task.goal, 0.0);
+    if found.chi_square > ODD_CHI_SQUARE {
+        // Something swings or has play that the model knows nothing of: keep more distance.
+        goal.ms = 1.0 + ODD_SHARE * (goal.ms - 1.0);
+    }
+    if found.chi_square > LOOSE_CHI_SQUARE {
+        least_integral_s = LOOSE_INTEGRAL * plant.tau_s;
+    }
+    Task { plant, lag: found.lag, worst_lag, goal, least_integral_s, ..task }
+}
+
+/// The design of a method.
+#[must_use]
+pub fn design_for(method: Method, task: &Task) -> Option<Design> {
+    match method {
+        Method::Velocity => design_velocity(task),
+        Method::Pd => design_pd(task),
+        Method::Pid => design_pid(task),
+        Method::Piv => design_piv(task),
+    }
+}
+
+/// Puts a design into the report, as the registers will hold it.
+pub fn propose(
+    report: &mut Report,
+    request: &Request,
+    task: &Task,
+    design: Design,
+    travel: Option<(i64, i64)>,
+) {
+    let law = &request.law;
+    report.velocity = Some(velocity_registers(&design.gains.velocity, task.qpps, law));
+    let before = report.before.map_or((0, 0), |setup| (setup.position.min, setup.position.max));
+    let travel = match travel {
+        Some((low, high)) => (clamp(low), clamp(high)),
+        None if before == (0, 0) => (-2_000_000_000, 2_000_000_000),
+        None => before,
+    };
+    report.position = design.gains.position.is_some().then(|| position_registers(&design.gains, law, travel));
+    let plant = LoopPlant::new(DiscretePlant::of(&task.plant, law.tick_s()), law, task.lag);
+    let mut design = design;
+    design.ms = plant.margins(&design.gains, task.qpps).ms;
+    report.design = Some(design);
+}
+
+fn clamp(counts: i64) -> i32 {
+    counts.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32
+}
+
+fn write_final(rig: &mut Rig<'_>, report: &Report) -> Result<(), Cause> {
+    if let Some(velocity) = report.velocity {
+        rig.write_velocity(velocity)?;
+    }
+    if let Some(position) = report.position {
+        rig.write_position(position)?;
+    }
+    Ok(())
+}

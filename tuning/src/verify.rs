@@ -1,0 +1,211 @@
+//! Trials of candidate gains on the machine: setpoint steps of a velocity loop, moves of a position loop.
+
+use crate::cause::Cause;
+use crate::design::{Design, Task};
+use crate::lag::{ClosedCourse, LagFit, fit_lag};
+use crate::linear::{DiscretePlant, LoopPlant};
+use crate::model::{Gains, Pid};
+use crate::report::{Measured, Report};
+use crate::rig::{Point, Rig};
+use crate::score::position_step;
+use crate::tune::{Excitation, Method, Request, propose};
+
+/// Setpoint of the velocity trial, as a share of full speed.
+const MIDDLE: f64 = 0.45;
+/// Steps of the velocity trial.
+const STEPS: usize = 6;
+/// Irregular dwell times, relative: no limit cycle can hide in step with them.
+const DWELLS: [f64; STEPS] = [1.0, 0.87, 1.15, 0.93, 1.17, 0.83];
+/// Counts that are no overshoot and no swing yet.
+const ROUNDING_COUNTS: f64 = 3.0;
+/// How often the gains may be lowered.
+const MOST_BACK_OFFS: usize = 3;
+/// What lowering them means.
+const BACK_OFF: f64 = 0.7;
+
+/// Runs setpoint steps with gains that are already written, and fits the lag. `None` where the record says nothing.
+pub fn measure_lag(
+    rig: &mut Rig<'_>,
+    task: &Task,
+    gains: &Gains,
+    sd_ln_tau: f64,
+) -> Result<Option<(LagFit, f64)>, Cause> {
+    let noise = LoopPlant::new(DiscretePlant::of(&task.plant, task.law.tick_s()), &task.law, task.lag)
+        .margins(gains, task.qpps)
+        .noise_duty;
+    let (from_s, to_s) = run_steps(rig, task, gains)?;
+    let course = ClosedCourse::of(rig, from_s, to_s);
+    let Some(found) = fit_lag(&course, &task.plant, &task.law, gains, task.qpps, noise, sd_ln_tau) else {
+        return Ok(None);
+    };
+    let noise = LoopPlant::new(DiscretePlant::of(&task.plant, task.law.tick_s()), &task.law, found.lag)
+        .margins(gains, task.qpps)
+        .noise_duty;
+    let settled = from_s + (2.5 * task.plant.tau_s).clamp(0.3, 2.0);
+    let measured = judge_velocity(&ClosedCourse::of(rig, settled, to_s)).duty_rms;
+    // Readings of the duty are whole steps of 1/32767, and a quiet loop tells nothing about its noise.
+    let factor = if noise > 0.004 { (measured / noise).clamp(0.9, 3.0) } else { 1.0 };
+    Ok(Some((found, factor)))
+}
+
+/// Six steps about the middle speed, from rest. The motor is braked at the end.
+fn run_steps(rig: &mut Rig<'_>, task: &Task, gains: &Gains) -> Result<(f64, f64), Cause> {
+    let p = gains.velocity.p;
+    let height = (0.7 / (1.0 + p)).clamp(0.03, 0.3) * task.qpps;
+    let lag_s = task.lag.total_s(&task.law) + 2.0 * task.law.tick_s();
+    let dwell_s = (14.0 * lag_s + task.plant.tau_s / (1.0 + p)).clamp(0.2, 1.0);
+    rig.duty(0.0)?;
+    rest(rig, task)?;
+    let from_s = rig.now_s();
+    rig.poll(true)?;
+    rig.speed(MIDDLE * task.qpps - 0.5 * height)?;
+    rig.poll_for((2.5 * task.plant.tau_s).clamp(0.3, 2.0), true)?;
+    for (n, dwell) in DWELLS.iter().enumerate() {
+        let side = if n % 2 == 0 { 0.5 } else { -0.5 };
+        rig.speed(MIDDLE * task.qpps + side * height)?;
+        rig.poll_for(dwell_s * dwell, true)?;
+    }
+    let to_s = rig.now_s();
+    rig.duty(0.0)?;
+    Ok((from_s, to_s))
+}
+
+/// Waits until the motor stands.
+fn rest(rig: &mut Rig<'_>, task: &Task) -> Result<(), Cause> {
+    let until = rig.now_s() + 0.1 + 6.0 * task.plant.tau_s;
+    while rig.now_s() < until {
+        rig.poll(false)?;
+        let slow = rig.recent_speed(6).is_some_and(|speed| speed.abs() < 0.004 * task.qpps);
+        if slow {
+            return Ok(());
+        }
+    }
+    Ok(())
+}
+
+/// Tries the proposed gains and lowers them while the machine is rougher than predicted.
+pub fn check_moves(
+    rig: &mut Rig<'_>,
+    request: &Request,
+    task: &Task,
+    report: &mut Report,
+) -> Result<(), Cause> {
+    for back_offs in 0..=MOST_BACK_OFFS {
+        let Some(design) = report.design else { return Ok(()) };
+        if let Some(velocity) = report.velocity {
+            rig.write_velocity(velocity)?;
+        }
+        let measured = match request.method {
+            Method::Velocity => try_velocity(rig, task, &design.gains)?,
+            Method::Pd | Method::Pid | Method::Piv => {
+                if let Some(position) = report.position {
+                    rig.write_position(position)?;
+                }
+                try_position(rig, request, task, &design)?
+            }
+        };
+        report.measured = Some(measured);
+        if !rougher(&design, &measured) {
+            return Ok(());
+        }
+        if back_offs == MOST_BACK_OFFS {
+            return Err(Cause::NotVerified);
+        }
+        if !report.causes.contains(&Cause::BackedOff) {
+            report.causes.push(Cause::BackedOff);
+        }
+        let gains = lowered(&design.gains);
+        propose(report, request, task, Design { gains, ..design }, rig.options.travel);
+    }
+    Ok(())
+}
+
+fn rougher(design: &Design, measured: &Measured) -> bool {
+    let active = measured.duty_rms > (1.8 * design.noise_duty).clamp(0.04, 0.115);
+    let over = measured.overshoot > (design.score.overshoot + 0.10).max(0.15);
+    active || over || measured.ripple > 0.15
+}
+
+/// Less gain, and less again of the integral.
+fn lowered(gains: &Gains) -> Gains {
+    let lower = |pid: Pid| Pid { p: pid.p * BACK_OFF, i: pid.i * BACK_OFF * BACK_OFF, d: pid.d * BACK_OFF };
+    Gains { velocity: lower(gains.velocity), position: gains.position.map(lower), ..*gains }
+}
+
+fn try_velocity(rig: &mut Rig<'_>, task: &Task, gains: &Gains) -> Result<Measured, Cause> {
+    let (from_s, to_s) = run_steps(rig, task, gains)?;
+    let settled = from_s + (2.5 * task.plant.tau_s).clamp(0.3, 2.0);
+    let course = ClosedCourse::of(rig, settled, to_s);
+    Ok(judge_velocity(&course))
+}
+
+/// Duty activity in the second half of each plateau.
+fn judge_velocity(course: &ClosedCourse) -> Measured {
+    let mut squares = (0.0, 0.0);
+    for pair in course.setpoints.windows(2) {
+        let half = 0.5 * (pair[0].0 + pair[1].0);
+        let duties: Vec<f64> =
+            course.duties.iter().filter(|d| d.0 > half && d.0 < pair[1].0).map(|d| d.1).collect();
+        if duties.len() >= 4 {
+            let mean = duties.iter().sum::<f64>() / duties.len() as f64;
+            squares.0 += duties.iter().map(|d| (d - mean).powi(2)).sum::<f64>();
+            squares.1 += duties.len() as f64 - 1.0;
+        }
+    }
+    let duty_rms = if squares.1 > 0.0 { f64::sqrt(squares.0 / squares.1) } else { 0.0 };
+    Measured { overshoot: 0.0, duty_rms, ripple: 0.0 }
+}
+
+/// Moves D, 0, 0.25 D, 0.
+fn try_position(
+    rig: &mut Rig<'_>,
+    request: &Request,
+    task: &Task,
+    design: &Design,
+) -> Result<Measured, Cause> {
+    let mut step = position_step(task.plant.gain_counts_per_s, task.plant.tau_s);
+    if let Excitation::Window(width) = request.excitation {
+        step = step.min(0.35 * width);
+    }
+    rig.duty(0.0)?;
+    rest(rig, task)?;
+    rig.poll(false)?;
+    let start = rig.points.last().map_or(0.0, |p| p.counts);
+    let dwell_s = (0.35 + 1.6 * design.score.settling_s).min(0.5 + 5.0 * task.plant.tau_s).clamp(0.5, 8.0);
+    let mut worst = Measured::default();
+    let mut from = start;
+    for share in [1.0, 0.0, 0.25, 0.0] {
+        let target = start + (share * step).round();
+        let begin = rig.now_s();
+        rig.position(target, task.qpps as u32)?;
+        rig.poll_for(dwell_s, true)?;
+        let points: Vec<Point> = rig.points.iter().copied().filter(|p| p.t > begin).collect();
+        let moved = judge_move(&points, target, target - from, begin + 0.7 * dwell_s, step);
+        worst.overshoot = worst.overshoot.max(moved.overshoot);
+        worst.ripple = worst.ripple.max(moved.ripple);
+        worst.duty_rms = worst.duty_rms.max(moved.duty_rms);
+        from = target;
+    }
+    rig.duty(0.0)?;
+    Ok(worst)
+}
+
+/// Overshoot of one move, and what goes on after `late_s` when it should be over. `step` is the longest of the moves.
+fn judge_move(points: &[Point], target: f64, moved: f64, late_s: f64, step: f64) -> Measured {
+    let over = points.iter().map(|p| (p.counts - target) * moved.signum()).fold(0.0, f64::max);
+    // A short move may go past its target by as much as matters in a long one.
+    let overshoot = (over - ROUNDING_COUNTS).max(0.0) / moved.abs().max(0.25 * step).max(1.0);
+    let late = || points.iter().filter(|p| p.t > late_s);
+    let places: Vec<f64> = late().map(|p| p.counts).collect();
+    // A creep to the end is no swing.
+    if places.windows(3).filter(|w| (w[1] - w[0]) * (w[2] - w[1]) < 0.0).count() < 2 {
+        return Measured { overshoot, ..Measured::default() };
+    }
+    let duties: Vec<f64> = late().filter_map(|p| p.duty).map(|duty| duty.1).collect();
+    let n = duties.len().max(1) as f64;
+    let mean = duties.iter().sum::<f64>() / n;
+    let duty_rms = (duties.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / n).sqrt();
+    let range = places.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let ripple = (range.1 - range.0 - ROUNDING_COUNTS).max(0.0) / step;
+    Measured { overshoot, duty_rms, ripple }
+}
