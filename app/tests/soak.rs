@@ -14,7 +14,7 @@ use brushwork_protocol::packet_serial::Motor;
 use brushwork_sim::world::WorldAction;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use support::bench::{Bench, FRAME};
+use support::bench::Bench;
 
 /// Virtual hours of the run that CI makes.
 const SHORT_HOURS: f64 = 0.2;
@@ -24,7 +24,9 @@ const GROWTH_LIMIT_MEGABYTES: f64 = 16.0;
 /// Rows that fill the graph's ring, which is bounded by itself.
 const RING_ROWS: u32 = 370_000;
 /// Frames while nobody touches anything and nothing is armed: fewer than the ten a second of the real window, to save time.
-const IDLE_FRAME: Duration = Duration::from_millis(1_000);
+const IDLE_FRAME: Duration = Duration::from_millis(2_000);
+/// Frames while something is armed: each renews the motion, which lives 250 ms.
+const ARMED_FRAME: Duration = Duration::from_millis(200);
 /// What a stop may take: the ramp from full duty, a second try, and the controller's own second after a lost link.
 const GRACE: Duration = Duration::from_millis(1_700);
 
@@ -59,17 +61,23 @@ fn hours_of_random_use_leave_nothing_driven_and_memory_flat() {
     let whole = Duration::from_secs_f64(hours() * 3_600.0);
     let mut bench = Bench::new();
     bench.connect();
-    let channels = brushwork::gui::model::graph_channels().len();
-    for _ in 0..RING_ROWS {
-        bench.model().front.graph.push(0.0, &vec![1.0; channels]);
+    if hours() > 1.0 {
+        fill_graph(&mut bench);
     }
     let mut dice = Dice(seed);
     let mut user = User::default();
-    let (mut early, mut acts) = (None, 0_u32);
+    let (mut early, mut acts, mut told_hour) = (None, 0_u32, 0);
     while bench.line.clock.now() < whole {
         user.act(&mut bench, &mut dice);
         acts += 1;
-        let rest = Duration::from_millis(200 + dice.roll(20_000));
+        let hour = bench.line.clock.now().as_secs() / 3_600;
+        if hour > told_hour {
+            told_hour = hour;
+            println!("hour {hour}: {:.1} MB", resident_megabytes().unwrap_or(f64::NAN));
+        }
+        // Nobody leaves a motor running for long.
+        let is_armed = bench.model().front.link.arming != Arming::Disarmed;
+        let rest = Duration::from_millis(200 + dice.roll(if is_armed { 3_000 } else { 25_000 }));
         user.watch(&mut bench, rest, seed);
         if early.is_none() && bench.line.clock.now() > whole / 8 {
             early = resident_megabytes();
@@ -85,6 +93,14 @@ fn hours_of_random_use_leave_nothing_driven_and_memory_flat() {
             late - early < GROWTH_LIMIT_MEGABYTES,
             "seed {seed}: memory grew from {early:.1} to {late:.1} MB"
         );
+    }
+}
+
+/// Fills the graph's ring, so that its growth, which ends by itself, is not taken for a leak.
+fn fill_graph(bench: &mut Bench) {
+    let values = vec![1.0; brushwork::gui::model::graph_channels().len()];
+    for _ in 0..RING_ROWS {
+        bench.model().front.graph.push(0.0, &values);
     }
 }
 
@@ -168,7 +184,7 @@ impl User {
         let end = bench.line.clock.now() + time;
         while bench.line.clock.now() < end {
             let armed = bench.model().front.link.arming != Arming::Disarmed;
-            let frame = if armed { FRAME } else { IDLE_FRAME };
+            let frame = if armed { ARMED_FRAME } else { IDLE_FRAME };
             bench.pass_frame(frame);
             let now = bench.line.clock.now();
             if bench.model().front.link.arming != Arming::Disarmed {

@@ -144,6 +144,10 @@ fn the_bytes_of_edited_settings_and_of_the_sliders_are_shown_before_they_are_sen
     unit.set("motor1.velocity.qpps", brushwork_link::settings::SettingValue::Int(12_345));
     bench.pass_ms(300);
     assert!(bench.sees_part("Write: ") && bench.sees_part("12345"));
+    bench.press("Write settings");
+    bench.press("Show the bytes");
+    bench.pass_ms(300);
+    assert!(bench.harness.query_all_by_label_contains("80 1C ").next().is_some(), "command 28 in bytes");
     let sent = |bench: &Bench| bench.line.with(|bus| bus.controllers()[0].settings().motors[0].motion.qpps);
     assert_eq!(sent(&bench), 44_000, "showing sends nothing");
 }

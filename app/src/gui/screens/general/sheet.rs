@@ -1,8 +1,10 @@
 //! What each act will do, shown before it is done; and what did not go as wanted, after.
 
-use brushwork_link::settings::{Difference, diff};
+use brushwork_link::device::describe_sent;
+use brushwork_link::settings::{Difference, Plan, Step, diff};
 use brushwork_link::transport::Stream;
-use egui::{Button, Grid, Label, RichText, ScrollArea, Ui, vec2};
+use brushwork_protocol::packet_serial::{Address, Generation, hex};
+use egui::{Button, CollapsingHeader, Grid, Label, RichText, ScrollArea, Ui, vec2};
 
 use super::{compare, kept, profile};
 use crate::gui::command::{Command, Commands};
@@ -146,6 +148,7 @@ fn write_ui(ui: &mut Ui, unit: &UnitSettings, stream: Option<Stream>) -> Vec<Off
             for warning in &plan.warnings {
                 lamp_ui(ui, LampState::Warning, warning);
             }
+            bytes_ui(ui, unit, &plan);
             true
         }
         Err(refusals) => {
@@ -156,6 +159,31 @@ fn write_ui(ui: &mut Ui, unit: &UnitSettings, stream: Option<Stream>) -> Vec<Off
         }
     };
     vec![("Write to controller", Act::Wish(SettingsWish::Write), can_be_written && !changes.is_empty())]
+}
+
+/// The packets of a plan, for who wants to see them before they are sent.
+fn bytes_ui(ui: &mut Ui, unit: &UnitSettings, plan: &Plan) {
+    let Some(address) = Address::new(unit.address()) else { return };
+    let generation = unit.table().subject().generation;
+    CollapsingHeader::new("Show the bytes").show(ui, |ui| {
+        for step in &plan.steps {
+            let bytes =
+                step.bytes(address, generation).map_or_else(|error| error.to_string(), |bytes| hex(&bytes));
+            ui.label(format!("{}: {}", step.title(), describe(step, address, generation)));
+            ui.label(RichText::new(bytes).monospace().color(Palette::of(ui).weak_text));
+        }
+        if !plan.hidden.is_empty() {
+            ui.label(format!(
+                "{} without a wire form go past the wire of the simulated controller.",
+                plan.hidden.len()
+            ));
+        }
+    });
+}
+
+fn describe(step: &Step, address: Address, generation: Generation) -> String {
+    step.bytes(address, generation)
+        .map_or_else(|_| String::new(), |bytes| describe_sent(&bytes, generation).text)
 }
 
 fn save_ui(ui: &mut Ui, general: &General) -> Vec<Offer> {
