@@ -282,3 +282,23 @@ fn edits_made_while_a_write_runs_stay() {
     assert_eq!(edits(&mut bench), 1);
     assert!(bench.sees("Edits: 1 not written"));
 }
+
+#[test]
+fn a_series_of_small_changes_on_a_screen_that_drives_has_one_backup() {
+    let mut bench = Bench::new();
+    bench.connect();
+    bench.press("Velocity Settings");
+    bench.pass_ms(2000);
+    for gain in ["2.5", "3.5"] {
+        bench.enter("M1 Velocity P", gain);
+        bench.press("Apply to RAM");
+        bench.pass_ms(2000);
+    }
+    let unit = unit(&mut bench);
+    let backups = bench.store().backups(Some(&unit));
+    assert_eq!(backups.len(), 1);
+    let profile = backups[0].open().unwrap().profile;
+    assert_eq!(profile.settings.get(P), Some(number(1.0)), "what was there before the first of them");
+    assert_eq!(profile.settings.len(), 242);
+    assert_eq!(bench.store().open_journals(&unit).0.len(), 0);
+}

@@ -538,7 +538,8 @@ impl App {
     fn apply_loops(&mut self, columns: &[Column]) {
         let Some(identity) = self.model.front.link.identity().cloned() else { return };
         let stream = self.model.front.link.stream;
-        if let Some(request) = self.model.front.loops.apply(columns, &identity, stream) {
+        let keeper = self.model.front.general.keeper();
+        if let Some(request) = self.model.front.loops.apply(columns, &identity, stream, keeper) {
             if self.request(request) {
                 self.model.front.general.ram_changes();
             } else {

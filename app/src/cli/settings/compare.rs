@@ -101,7 +101,7 @@ fn side(name: &SideName, controller: Option<&Controller<'_>>, other: Option<Side
                      that was proven on this computer.",
                 )
             })?;
-            Ok(Side::new(format!("EEPROM as known since {}", known.date), known))
+            Ok(Side::new(format!("EEPROM as known since {}", known.date_text()), known))
         }
         (SideName::Default, None) => {
             let other = other.ok_or(Exit::Failed)?;

@@ -27,7 +27,7 @@ pub fn save(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
     let list = changes(&ram.table, &known_defaults(&ram.table, &ram.image), &ram.image);
     match Store::of_user().eeprom(controller.unit()) {
         Some(known) => {
-            let head = format!("What would change in EEPROM, as known since {}:", known.date);
+            let head = format!("What would change in EEPROM, as known since {}:", known.date_text());
             let unsaved = changes(&ram.table, &known.settings, &merged(&known.settings, &ram.image));
             show(args, out, &head, &unsaved, "nothing: it holds the same already")?;
         }

@@ -8,8 +8,8 @@ use std::time::Duration;
 use brushwork_link::Failure;
 use brushwork_link::device::{Event, FnJob, Identity, JobEnding, Request};
 use brushwork_link::settings::{
-    Kind, ReadReport, Row, RowState, SettingValue, SettingsImage, SettingsTable, Subject, WriteError,
-    WriteOptions, WriteReport, read_some, write,
+    Keeper, Kind, ReadReport, Row, RowState, SettingValue, SettingsImage, SettingsTable, Subject, WriteError,
+    WriteOptions, WriteReport, read_some, write, write_kept,
 };
 use brushwork_link::transport::Stream;
 use brushwork_protocol::models;
@@ -78,6 +78,8 @@ const RESISTANCE: &str = "resistance_ohms";
 const READ_LIMIT: Duration = Duration::from_secs(20);
 /// Reading, writing and reading back.
 const WRITE_LIMIT: Duration = Duration::from_secs(60);
+/// With everything read before, for the backup.
+const BACKUP_LIMIT: Duration = Duration::from_secs(130);
 
 const READ_JOB: &str = "read the settings of the control loops";
 const WRITE_JOB: &str = "write the settings of the control loops";
@@ -94,6 +96,8 @@ pub struct LoopSettings {
     pub at_once: bool,
     /// Something was edited since the edits were last applied.
     is_fresh: bool,
+    /// Whether a backup was made of this unit since it was connected.
+    is_backed_up: bool,
 }
 
 #[derive(Debug)]
@@ -254,6 +258,7 @@ impl LoopSettings {
         columns: &[Column],
         identity: &Identity,
         own_stream: Option<Stream>,
+        keeper: Option<Box<dyn Keeper>>,
     ) -> Option<Request> {
         let table = self.table.clone().filter(|_| self.running.is_none())?;
         let wanted: SettingsImage = keys(columns)
@@ -265,9 +270,16 @@ impl LoopSettings {
         }
         let options = WriteOptions { own_stream, simulated: identity.simulated };
         let (sender, outcome) = bounded(1);
-        let job = FnJob::boxed(WRITE_JOB, WRITE_LIMIT, move |wire| {
+        // A backup reads everything, so a series of small changes has one, before the first.
+        let mut keeper = keeper.filter(|_| !std::mem::replace(&mut self.is_backed_up, true));
+        let limit = if keeper.is_some() { BACKUP_LIMIT } else { WRITE_LIMIT };
+        let job = FnJob::boxed(WRITE_JOB, limit, move |wire| {
+            let result = match &mut keeper {
+                Some(keeper) => write_kept(wire, &table, &wanted, options, &mut **keeper),
+                None => write(wire, &table, &wanted, options),
+            };
             // Nobody waits for it once the unit was left.
-            let _ = sender.try_send(Outcome::Written(write(wire, &table, &wanted, options)));
+            let _ = sender.try_send(Outcome::Written(result));
             Ok(Box::new(()))
         });
         self.running = Some(Running { name: WRITE_JOB, has_started: false, outcome });
@@ -277,6 +289,7 @@ impl LoopSettings {
     /// The request was not taken.
     pub fn not_begun(&mut self) {
         self.running = None;
+        self.is_backed_up = false;
     }
 
     /// Whether the event is about work that was begun here.

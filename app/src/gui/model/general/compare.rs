@@ -77,7 +77,7 @@ impl General {
         match side {
             Side::Ram => "Controller (RAM)".to_owned(),
             Side::Eeprom => match self.known_eeprom() {
-                Some(known) => format!("EEPROM as known since {}", known.date),
+                Some(known) => format!("EEPROM as known since {}", known.date_text()),
                 None => "EEPROM (not known)".to_owned(),
             },
             Side::Profile => match self.profiles.opened() {

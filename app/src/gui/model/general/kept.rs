@@ -90,6 +90,11 @@ impl General {
         self.kept.ports = ports;
     }
 
+    /// What keeps backup and journal of work on the unit that is looked at.
+    pub fn keeper(&self) -> Option<Box<dyn Keeper>> {
+        self.kept.keeper(self.current.as_ref()?, self.unit()?.firmware())
+    }
+
     /// Looks up what is kept of the unit that is looked at from now on.
     pub(super) fn look_up(&mut self, key: UnitKey, identity: &Identity) {
         let kept = &mut self.kept;

@@ -28,7 +28,7 @@ pub fn compare_ui(ui: &mut Ui, general: &mut General) -> Vec<Offer> {
         for sentence in &opened.mended {
             lamp_ui(ui, LampState::Warning, sentence);
         }
-        text_ui(ui, &format!("Profile {}, read {}.", opened.name, opened.profile.date));
+        text_ui(ui, &format!("Profile {}, read {}.", opened.name, opened.profile.date_text()));
     }
     if comparison.missing.is_empty() {
         count_ui(ui, &comparison);

@@ -1,6 +1,6 @@
 //! The sheets of what is kept on this computer: backups, what was cut short; and the one that copies a motor.
 
-use brushwork_link::settings::{Aftermath, Difference, Held};
+use brushwork_link::settings::{Aftermath, Difference, Held, Row};
 use egui::{Button, Grid, RichText, Role, Ui, WidgetInfo};
 
 use super::sheet::{Act, Offer, differences_ui, lamp_ui, text_ui, title_ui};
@@ -69,12 +69,11 @@ pub fn copy_motor_ui(ui: &mut Ui, general: &mut General) -> Vec<Offer> {
     if copied.wanted.is_empty() {
         lamp_ui(ui, LampState::Ok, "The other motor has the same settings already.");
     }
-    let difference = |(key, value): (&str, _)| Difference {
-        key: key.to_owned(),
-        left: unit.wanted(key),
-        right: Some(value),
+    let difference = |row: &Row| {
+        let right = Some(copied.wanted.get(&row.key)?);
+        Some(Difference { key: row.key.clone(), left: unit.wanted(&row.key), right })
     };
-    differences_ui(ui, unit, copied.wanted.iter().map(difference));
+    differences_ui(ui, unit, unit.table().rows().iter().filter_map(difference));
     for sentence in &copied.left_out {
         lamp_ui(ui, LampState::Unknown, sentence);
     }

@@ -203,7 +203,10 @@ fn save_ui(ui: &mut Ui, general: &General) -> Vec<Offer> {
         (Saved::NotKnown { .. }, Some((known, ram))) => {
             text_ui(
                 ui,
-                &format!("These are saved (in EEPROM, as known since {} -> works with now):", known.date),
+                &format!(
+                    "These are saved (in EEPROM, as known since {} -> works with now):",
+                    known.date_text()
+                ),
             );
             let both = |each: &Difference| each.left.is_some() && each.right.is_some();
             differences_ui(ui, unit, diff(unit.table(), &known.settings, ram).into_iter().filter(both));

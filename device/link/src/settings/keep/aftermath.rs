@@ -45,7 +45,7 @@ impl Journal {
     pub fn aftermath(&self, table: &SettingsTable, now: &SettingsImage) -> Aftermath {
         let mut aftermath = Aftermath {
             act: self.act,
-            begun: self.begun().to_owned(),
+            begun: self.begun(),
             new: Vec::new(),
             old: Vec::new(),
             other: Vec::new(),

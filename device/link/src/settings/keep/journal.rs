@@ -100,8 +100,8 @@ impl Journal {
         Ok(Self { act, before: profile("before")?, wanted: profile("wanted")? })
     }
 
-    /// When the act began.
-    pub fn begun(&self) -> &str {
-        &self.before.date
+    /// When the act began, for people.
+    pub fn begun(&self) -> String {
+        self.before.date_text()
     }
 }

@@ -94,6 +94,14 @@ impl Profile {
         json::write(self)
     }
 
+    /// The date for people: "2026-01-05 10:00:00 UTC" where it is of the advised form, else as it stands.
+    pub fn date_text(&self) -> String {
+        match self.date.strip_suffix('Z').and_then(|date| date.split_once('T')) {
+            Some((day, time)) => format!("{day} {time} UTC"),
+            None => self.date.clone(),
+        }
+    }
+
     /// The table of the controller the profile was read from.
     pub fn table(&self) -> SettingsTable {
         SettingsTable::new(self.subject)
