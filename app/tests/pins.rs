@@ -419,3 +419,16 @@ fn the_buses_stand_with_the_ports_whose_lines_they_share() {
     let described = bench.button("Section CAN/RS-232 UART0").accesskit_node().description();
     assert_eq!(described.as_deref(), Some("CAN/RS-232 UART0: CANopen"));
 }
+
+#[test]
+fn a_script_on_power_up_is_switched_by_a_box_over_its_delay() {
+    let mut bench = opened();
+    bench.press("Section Scripting");
+    bench.press("Execute script on power up");
+    write(&mut bench);
+    let delay = |bench: &Bench| bench.line.with(|bus| bus.controllers()[0].settings()).unit.script_autorun_ms;
+    assert_eq!(delay(&bench), 100);
+    bench.press("Execute script on power up");
+    write(&mut bench);
+    assert_eq!(delay(&bench), 0);
+}

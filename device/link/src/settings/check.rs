@@ -22,7 +22,7 @@ pub const BRIDGE_WARNING: &str = "Bridged channels drive one motor with both out
      controller is damaged.";
 
 /// A script autorun delay below this switches autorun off (MCP manual 2.3.1, command 246).
-const SHORTEST_AUTORUN_MS: i64 = 100;
+pub const SHORTEST_AUTORUN_MS: i64 = 100;
 
 /// Pairs that `after` holds the wrong way round, if `changes` touches them.
 pub(super) fn refused_pairs(

@@ -23,7 +23,7 @@ mod template;
 mod value;
 mod write;
 
-pub use check::BRIDGE_WARNING;
+pub use check::{BRIDGE_WARNING, SHORTEST_AUTORUN_MS};
 pub use copy::{CopiedMotor, copy_motor};
 pub use image::{Copies, Copy, Difference, SettingsImage, changes, diff};
 pub use keep::{

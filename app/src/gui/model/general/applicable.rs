@@ -21,7 +21,7 @@ fn pin(row: &Row, wanted: impl Fn(&str) -> Option<SettingValue>) -> Option<&'sta
     let kind = choice(of_pin("type"))?;
     let is_digital = of_pin("digital") == Some(SettingValue::Bool(true));
     if kind == "none" && !is_digital {
-        return Some("Not applicable: this pin measures nothing. Choose its type first.");
+        return Some("Not applicable: this pin measures nothing. Choose its mode first.");
     }
     match row.pattern {
         "pin.{n}.timeout" if kind != "pulse" => {
@@ -86,7 +86,7 @@ mod tests {
         let mut image = table.default_image();
         image.set("pin.1.type", SettingValue::Choice("none"));
         assert_eq!(reason(&table, &image, "pin.1.type"), None);
-        assert!(reason(&table, &image, "pin.1.deadband").unwrap().contains("Choose its type"));
+        assert!(reason(&table, &image, "pin.1.deadband").unwrap().contains("Choose its mode"));
         image.set("pin.1.type", SettingValue::Choice("analog"));
         assert_eq!(reason(&table, &image, "pin.1.deadband"), None);
         assert!(reason(&table, &image, "pin.1.timeout").unwrap().contains("pulse inputs only"));

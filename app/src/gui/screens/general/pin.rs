@@ -5,7 +5,10 @@
 use brushwork_link::device::PinSignal;
 use brushwork_link::settings::{Behind, PinMode, Row};
 use brushwork_protocol::packet_serial::scale;
-use egui::{Align, Button, ComboBox, Label, Layout, RichText, Role, ScrollArea, Ui, WidgetInfo, vec2};
+use egui::{
+    Align, Button, ComboBox, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, UiBuilder, WidgetInfo,
+    vec2,
+};
 
 use super::calibrate::calibrate_ui;
 use super::rows::{self, Columns};
@@ -97,6 +100,10 @@ fn head_ui(ui: &mut Ui, general: &mut General, pin: usize, commands: &mut Comman
         if response.on_hover_text(note).on_disabled_hover_text(note).clicked() {
             wish = Some(pin);
         }
+        if is_edited {
+            let hint = "Write the mode to see the live signal.";
+            ui.add(Label::new(RichText::new(hint).small().color(Palette::of(ui).weak_text)).truncate());
+        }
     });
     if let Some(wish) = wish.and_then(|pin| general.calibrate(pin)) {
         commands.push(Command::Settings(wish));
@@ -129,9 +136,11 @@ fn picture_ui(ui: &mut Ui, general: &mut General, pin: usize, signal: Option<Pin
     let Some(unit) = general.unit_mut() else { return };
     if matches!(unit.pin_mode(pin), None | Some(PinMode::None)) {
         let hint = "This pin measures nothing. Choose a mode to see its signal graph.";
-        ui.allocate_ui(vec2(width, 60.0), |ui| {
-            ui.add(Label::new(RichText::new(hint).color(Palette::of(ui).weak_text)).wrap())
-        });
+        // As high as the graph, so that nothing moves when a mode is chosen.
+        let (rect, _) = ui.allocate_exact_size(vec2(width, GRAPH_HEIGHT), Sense::hover());
+        let place = UiBuilder::new().max_rect(rect.shrink(20.0)).layout(Layout::top_down(Align::Min));
+        let color = Palette::of(ui).weak_text;
+        ui.new_child(place).add(Label::new(RichText::new(hint).color(color)).wrap());
         return;
     }
     ui.add_enabled_ui(idle, |ui| signal_graph_ui(ui, unit, pin, signal, vec2(width, GRAPH_HEIGHT)));

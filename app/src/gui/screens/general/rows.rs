@@ -1,6 +1,6 @@
 //! The list of settings: name, field, what the controller has, the default, revert.
 
-use brushwork_link::settings::{BRIDGE_WARNING, Group, Row, SettingValue};
+use brushwork_link::settings::{BRIDGE_WARNING, Group, Row, SHORTEST_AUTORUN_MS, SettingValue};
 use egui::{Align, Button, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
 use super::editor;
@@ -73,11 +73,28 @@ pub fn rows_ui(ui: &mut Ui, general: &mut General, height: f32) {
             if shown.is_empty() {
                 ui.label("No setting of this controller fits.");
             }
+            if general.section == Section::Group(Group::Scripting) && !is_filtered {
+                autorun_ui(ui, general);
+            }
             list_ui(ui, general, &shown, columns, &mut |_, _, _| {});
             if general.section == Section::Group(Group::Unit) && !is_filtered {
                 bridge_ui(ui, general.unit());
             }
         });
+    });
+}
+
+/// Ion Studio's box over the delay (MCP manual 1.2.10): a delay too short for a start is none.
+fn autorun_ui(ui: &mut Ui, general: &mut General) {
+    const DELAY: &str = "script.autorun_delay";
+    let Some(unit) = general.unit_mut() else { return };
+    let Some(SettingValue::Int(delay_ms)) = unit.wanted(DELAY) else { return };
+    let mut runs = delay_ms >= SHORTEST_AUTORUN_MS;
+    ui.horizontal(|ui| {
+        ui.allocate_space(vec2(MARK_WIDTH, HEIGHT));
+        if ui.checkbox(&mut runs, "Execute script on power up").changed() {
+            unit.set_number(DELAY, if runs { SHORTEST_AUTORUN_MS as f64 } else { 0.0 });
+        }
     });
 }
 
