@@ -7,3 +7,4 @@ pub mod keep;
 pub mod motion;
 pub mod recording;
 pub mod session;
+pub mod tune;

@@ -174,4 +174,6 @@ pub trait Axis {
     fn raw_speed(&mut self) -> Result<i32, AxisError>;
     /// Sets the time-out after which the controller stops by itself, ms (command 145). Firmware without it refuses.
     fn set_stream_timeout(&mut self, milliseconds: u32) -> Result<(), AxisError>;
+    /// Tells whoever waits what is going on.
+    fn progress(&mut self, _text: &str) {}
 }

@@ -28,6 +28,8 @@ pub enum Cause {
     BatteryLow,
     /// The controller reports a fault.
     ControllerFault,
+    /// The current went beyond the highest that the run was allowed.
+    OverCurrent,
     /// No replies.
     LinkLost,
     /// The user, the window or the device thread stopped it.
@@ -93,6 +95,9 @@ impl Cause {
             Self::BatteryLow => "The main battery is low. Charge it, or use a stronger supply.",
             Self::ControllerFault => {
                 "The controller reports a fault. Read its status, clear it, and try again."
+            }
+            Self::OverCurrent => {
+                "The current went beyond the highest that was allowed. Allow more, or lower the highest duty."
             }
             Self::LinkLost => {
                 "The controller stopped answering. Check the cable; the controller's own time-out stops the motor."

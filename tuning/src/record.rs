@@ -120,6 +120,10 @@ impl Axis for Recorder<'_> {
         self.entries.push(Entry::Timeout(milliseconds, answer.clone()));
         answer
     }
+
+    fn progress(&mut self, text: &str) {
+        self.axis.progress(text);
+    }
 }
 
 /// An axis that answers from a record.

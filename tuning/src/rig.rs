@@ -37,11 +37,21 @@ pub struct GuardOptions {
     pub time_limit_s: f64,
     /// Volts above the controller's lower limit at which the run ends.
     pub volts_margin: f64,
+    /// Highest current, A; the run ends above it.
+    pub max_amps: Option<f64>,
 }
 
 impl Default for GuardOptions {
     fn default() -> Self {
-        Self { motor: 0, max_duty: 1.0, travel: None, poll_s: 0.010, time_limit_s: 180.0, volts_margin: 0.2 }
+        Self {
+            motor: 0,
+            max_duty: 1.0,
+            travel: None,
+            poll_s: 0.010,
+            time_limit_s: 180.0,
+            volts_margin: 0.2,
+            max_amps: None,
+        }
     }
 }
 
@@ -99,7 +109,7 @@ pub struct Rig<'a> {
     first_counts: Option<i64>,
     last_raw: i64,
     next_poll: Duration,
-    silent_since_s: f64,
+    silent_since_s: Option<f64>,
     turn: u8,
     gains_touched: bool,
     timeout_touched: bool,
@@ -124,7 +134,7 @@ impl<'a> Rig<'a> {
             first_counts: None,
             last_raw: 0,
             next_poll: now,
-            silent_since_s: 0.0,
+            silent_since_s: None,
             turn: 0,
             gains_touched: false,
             timeout_touched: false,
@@ -134,6 +144,11 @@ impl<'a> Rig<'a> {
             retried(|| rig.axis.set_stream_timeout(RUN_STREAM_TIMEOUT_MS))?;
         }
         Ok(rig)
+    }
+
+    /// Tells whoever waits what is going on.
+    pub fn progress(&mut self, text: &str) {
+        self.axis.progress(text);
     }
 
     /// Time from the start of the run, s.
@@ -214,12 +229,13 @@ impl<'a> Rig<'a> {
         let sample = match self.axis.sample(want) {
             Ok(sample) => sample,
             Err(AxisError::NoReply) => {
-                let silent_s = self.now_s() - self.silent_since_s;
-                return if silent_s > LINK_LOST_S { Err(Cause::LinkLost) } else { Ok(None) };
+                // Counted from the first poll without a reply: between experiments nobody asks for a while.
+                let since_s = *self.silent_since_s.get_or_insert(now_s);
+                return if self.now_s() - since_s > LINK_LOST_S { Err(Cause::LinkLost) } else { Ok(None) };
             }
             Err(error) => return Err(cause_of(&error)),
         };
-        self.silent_since_s = sample.counts_at.received.as_secs_f64() - self.epoch_s;
+        self.silent_since_s = None;
         let counts = self.unwrap(sample.counts[self.options.motor.min(1)]);
         let point = Point {
             t: sample.counts_at.middle_s() - self.epoch_s,
@@ -238,6 +254,10 @@ impl<'a> Rig<'a> {
         let sagging = self.setup.min_volts_raw > 0 && point.volts.is_some_and(|volts| volts < floor);
         if sample.status.battery_low || sagging {
             return Err(Cause::BatteryLow);
+        }
+        let beyond = self.options.max_amps.zip(point.amps).is_some_and(|(most, amps)| amps.abs() > most);
+        if beyond {
+            return Err(Cause::OverCurrent);
         }
         self.points.push(point);
         self.check_travel(&point)?;

@@ -147,7 +147,9 @@ fn run(rig: &mut Rig<'_>, request: &Request, report: &mut Report) -> Result<(), 
     if request.method == Method::Velocity && rig.setup.encoder == EncoderClass::AbsoluteWrapping {
         return Err(Cause::WrappingEncoder);
     }
+    rig.progress("Checking the wiring with a little duty");
     let probe = run_probe(rig, 1.0)?;
+    rig.progress("Measuring the motor");
     report.probe = Some(probe);
     let found = match request.excitation {
         Excitation::Free => identify_free(rig, &probe, report)?,
@@ -167,10 +169,12 @@ fn run(rig: &mut Rig<'_>, request: &Request, report: &mut Report) -> Result<(), 
         slack_counts: 0.0,
         least_integral_s: 0.0,
     };
+    rig.progress("Measuring the lag of the loop");
     let task = settle_lag(rig, request, task, report)?;
     let design = design_for(request.method, &task).ok_or(Cause::TooCoarse)?;
     propose(report, request, &task, design, rig.options.travel);
     if request.verify {
+        rig.progress("Trying the gains on the machine");
         check_moves(rig, request, &task, report)?;
     }
     Ok(())

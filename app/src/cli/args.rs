@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use super::tune::TuneArgs;
 use brushwork_protocol::canopen::adapter::Form;
 use brushwork_sim::faults::FAULT_SYNTAX;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -67,6 +68,8 @@ pub enum Command {
     Protocol(ProtocolArgs),
     /// Decode traffic: our own, another program's, or a file's.
     Monitor(MonitorArgs),
+    /// Tune a motor's velocity or position loop on the machine.
+    Tune(TuneArgs),
     /// Measure link use, stop latency, the simulator and the window.
     Bench(BenchArgs),
 }

@@ -13,6 +13,7 @@ pub const HELP: &str = "Exit codes:\n  \
     4  the controller or a safety rule refused\n  \
     5  settings: a value or a profile was refused, or something did not take\n  \
     6  settings diff: there are differences\n  \
+    8  tune: gains were found, with warnings to read\n  \
     130  ended by Ctrl-C, SIGTERM, SIGHUP or a closed pipe, after both motors were stopped\n\n\
     `brushwork sim` ends with 0 then: that is how it is ended.";
 
@@ -33,6 +34,8 @@ pub enum Exit {
     NotTaken,
     /// `settings diff` found differences.
     Different,
+    /// The tuner found gains, with something to know about them.
+    TunedWithWarnings,
     /// A signal or a closed pipe ended the command, with the motors stopped.
     Interrupted,
 }
@@ -56,6 +59,7 @@ impl From<Exit> for ExitCode {
             Exit::Refused => 4,
             Exit::NotTaken => 5,
             Exit::Different => 6,
+            Exit::TunedWithWarnings => 8,
             Exit::Interrupted => 130,
         })
     }

@@ -20,6 +20,7 @@ pub mod settings;
 mod sim;
 mod status;
 mod stop;
+pub mod tune;
 
 use std::process::ExitCode;
 
@@ -70,6 +71,7 @@ fn dispatch(command: &Command, out: &mut Output, interrupt: &Interrupt) -> Exit 
         Command::Sim(args) => sim::run(args, out, interrupt),
         Command::Protocol(args) => protocol::run(args, out),
         Command::Monitor(args) => monitor::run(args, out, interrupt),
+        Command::Tune(args) => tune::run(args, out, interrupt),
         Command::Bench(args) => bench::run(args, out, interrupt),
     }
 }

@@ -23,6 +23,8 @@ pub trait Carrier {
     fn generation(&self) -> Generation;
     /// The stream that this link is on, as far as it is known: its index in command 145.
     fn stream(&self) -> Option<usize>;
+    /// Tells whoever waits what is going on.
+    fn progress(&mut self, _text: &str) {}
 }
 
 /// An axis behind a carrier.
@@ -229,5 +231,9 @@ impl<C: Carrier> Axis for PacketAxis<C> {
         let [index, kind, rate] = stream[..] else { return Err(AxisError::Refused("command 145".into())) };
         let values = [("index", index), ("type", kind), ("rate", rate), ("timeout", i64::from(milliseconds))];
         self.carrier.transact(number::SET_STREAM, &values).map(|_| ())
+    }
+
+    fn progress(&mut self, text: &str) {
+        self.carrier.progress(text);
     }
 }

@@ -1,0 +1,218 @@
+//! `brushwork tune`: tunes a motor on the machine, or plays a report back.
+
+mod args;
+mod replay;
+mod words;
+
+use std::time::{Duration, Instant};
+
+use brushwork_link::device::{ArmScope, Event, Job, JobEnding, PollRate, Request};
+use brushwork_protocol::packet_serial::Motor;
+use brushwork_tuning::axis::EncoderClass;
+use brushwork_tuning::report::{Report, Verdict};
+use brushwork_tuning::rig::GuardOptions;
+use brushwork_tuning::tune::{Excitation, Method, Request as TuneRequest};
+
+use super::client::Client;
+use super::exit::Exit;
+use super::interrupt::Interrupt;
+use super::output::{Output, say};
+use crate::tune::{Slot, Target, prepare, restore, run as tuning_job, take};
+use args::{EncoderArg, MethodArg, RunArgs};
+pub use args::{TuneArgs, TuneCommand};
+
+/// How long arming and the short jobs may take.
+const ANSWER_LIMIT: Duration = Duration::from_secs(30);
+
+/// Tunes or replays.
+pub fn run(args: &TuneArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
+    match &args.command {
+        TuneCommand::Velocity(args) => tune(args, Method::Velocity, out, interrupt),
+        TuneCommand::Position(args) => {
+            let method = match args.method {
+                MethodArg::Pd => Method::Pd,
+                MethodArg::Pid => Method::Pid,
+                MethodArg::Piv => Method::Piv,
+            };
+            tune(args, method, out, interrupt)
+        }
+        TuneCommand::Replay { report, json } => replay::run(report, *json, out),
+    }
+}
+
+fn tune(args: &RunArgs, method: Method, out: &mut Output, interrupt: &Interrupt) -> Exit {
+    let client = match Client::connect(&args.connect, PollRate::Off, interrupt) {
+        Ok(client) => client,
+        Err(exit) => return exit,
+    };
+    match session(args, method, &client, interrupt) {
+        Ok(report) => conclude(args, &report, &client, interrupt, out),
+        Err(exit) => exit,
+    }
+}
+
+/// The three jobs. The last one runs whatever became of the second.
+fn session(args: &RunArgs, method: Method, client: &Client, interrupt: &Interrupt) -> Result<Report, Exit> {
+    let encoder = match args.encoder {
+        EncoderArg::Quadrature => EncoderClass::Quadrature,
+        EncoderArg::Absolute => EncoderClass::Absolute,
+        EncoderArg::AbsoluteWrapping => EncoderClass::AbsoluteWrapping,
+    };
+    let target = Target { motor: motor(args), encoder, stream: client.stream };
+    let setup = Slot::default();
+    job(client, prepare(target, &setup), interrupt)?;
+    let Some(before) = take(&setup) else { return Err(Exit::NoLink) };
+    let found: Slot<Report> = Slot::default();
+    let ran = arm(client, interrupt)
+        .and_then(|()| job(client, tuning_job(target, request(args, method), &found), interrupt));
+    let report = take(&found);
+    // A raised interrupt has ended the run; it must not keep the old gains from being put back.
+    let restored = job(client, restore(target, before, report.as_ref()), &Interrupt::default());
+    ran?;
+    restored?;
+    report.ok_or(Exit::Failed)
+}
+
+fn motor(args: &RunArgs) -> Motor {
+    if args.motor == 2 { Motor::M2 } else { Motor::M1 }
+}
+
+fn request(args: &RunArgs, method: Method) -> TuneRequest {
+    let excitation = match args.travel {
+        Some(range) => Excitation::Window((range.high - range.low) as f64),
+        None => Excitation::Free,
+    };
+    TuneRequest {
+        method,
+        level: f64::from(args.level),
+        excitation,
+        guard: GuardOptions {
+            motor: motor(args).index(),
+            max_duty: f64::from(args.max_duty) / 100.0,
+            travel: args.travel.map(|range| (range.low, range.high)),
+            max_amps: args.max_current,
+            ..GuardOptions::default()
+        },
+        keep: args.apply || args.save,
+        ..TuneRequest::default()
+    }
+}
+
+fn conclude(
+    args: &RunArgs,
+    report: &Report,
+    client: &Client,
+    interrupt: &Interrupt,
+    out: &mut Output,
+) -> Exit {
+    if let Some(path) = &args.report {
+        let written = serde_json::to_string(report)
+            .map_err(|error| error.to_string())
+            .and_then(|text| std::fs::write(path, text).map_err(|error| error.to_string()));
+        if let Err(error) = written {
+            say(format!("Could not write the report to {}: {error}.", path.display()));
+            return Exit::Failed;
+        }
+    }
+    let printed = if args.json { out.json(&words::summary(report)) } else { words::print(report, out) };
+    if let Err(error) = printed {
+        return error.into();
+    }
+    if args.save && report.verdict != Verdict::Refused {
+        if let Err(exit) = save(client, interrupt) {
+            return exit;
+        }
+        say("Saved to the controller's EEPROM.");
+    }
+    words::exit_of(report)
+}
+
+/// Saves RAM to EEPROM, as asked for by `--save`. The user's own time-out is back in force by now.
+fn save(client: &Client, interrupt: &Interrupt) -> Result<(), Exit> {
+    use brushwork_link::device::FnJob;
+    use brushwork_link::failure::Failure;
+    use brushwork_link::wire::Wire as _;
+    use brushwork_protocol::packet_serial::number;
+    let saving = FnJob::boxed("save the settings", ANSWER_LIMIT, |context| {
+        let place = context.describe();
+        context.transact_named(number::SAVE_SETTINGS, &[]).map_err(|error| {
+            Failure::new(
+                "save the settings",
+                &place,
+                error.to_string(),
+                "Save them with `brushwork settings save`",
+            )
+        })?;
+        Ok(Box::new(()))
+    });
+    job(client, saving, interrupt)
+}
+
+fn arm(client: &Client, interrupt: &Interrupt) -> Result<(), Exit> {
+    client.device().renew();
+    ask(client, Request::Arm(ArmScope::CommandLine))?;
+    let deadline = Instant::now() + ANSWER_LIMIT;
+    while Instant::now() < deadline {
+        client.device().renew();
+        match client.next_event(interrupt)? {
+            Some(Event::Armed { warnings, .. }) => {
+                warnings.iter().for_each(say);
+                return Ok(());
+            }
+            Some(Event::ArmRefused { reasons, .. }) => {
+                reasons.iter().for_each(|reason| say(reason.to_string()));
+                return Err(Exit::Refused);
+            }
+            _ => {}
+        }
+    }
+    say("The controller did not answer the arming.");
+    Err(Exit::NoLink)
+}
+
+fn ask(client: &Client, request: Request) -> Result<(), Exit> {
+    client.device().request(request).map_err(|refused| {
+        say(format!("Could not ask the controller: {refused}"));
+        Exit::Refused
+    })
+}
+
+/// Runs a job to its end, renewing the dead-man. Ctrl-C stops all motors, which ends the job.
+fn job(client: &Client, job: Box<dyn Job>, interrupt: &Interrupt) -> Result<(), Exit> {
+    let deaf = Interrupt::default();
+    let limit = job.time_limit() + ANSWER_LIMIT;
+    ask(client, Request::Job(job))?;
+    let deadline = Instant::now() + limit;
+    let mut stopped = false;
+    while Instant::now() < deadline {
+        if interrupt.is_raised() && !stopped {
+            stopped = true;
+            client.device().stop_all();
+        }
+        client.device().renew();
+        match client.next_event(&deaf)? {
+            Some(Event::JobProgress { text, .. }) => say(text),
+            Some(Event::Failure(failure)) => say(failure.to_string()),
+            Some(Event::JobEnded(report)) => {
+                return match report.ending {
+                    JobEnding::Done(_) => Ok(()),
+                    JobEnding::Interrupted(cause) => {
+                        say(format!("{cause}. Both motors were stopped and the old gains are put back."));
+                        Err(Exit::Interrupted)
+                    }
+                    JobEnding::Failed(failure) => {
+                        say(failure.to_string());
+                        Err(Exit::Refused)
+                    }
+                    JobEnding::Panicked(word) => {
+                        say(format!("Internal error while tuning: {word}. The motors were stopped."));
+                        Err(Exit::Failed)
+                    }
+                };
+            }
+            _ => {}
+        }
+    }
+    say("The run did not end in its time.");
+    Err(Exit::NoLink)
+}

@@ -1,0 +1,186 @@
+//! Tuning over the device thread: the tuner's axis as a job on the thread that owns the link, and what brackets it.
+//!
+//! A run is three jobs. The first moves nothing: it reads what the controller holds and shortens the stream's time-out. The second
+//! is the run, which needs arming. The third moves nothing either and puts back what must be put back, on every way out on which
+//! there is still a link. What an interruption leaves of the run's own report is kept past the job.
+
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use brushwork_link::Stream;
+use brushwork_link::device::{FnJob, Job, JobContext};
+use brushwork_link::exchange::ExchangeError;
+use brushwork_link::failure::Failure;
+use brushwork_link::wire::Wire;
+use brushwork_protocol::packet_serial::{Generation, Motor, Request as Packet, Value, Values};
+use brushwork_tuning::axis::{Axis, AxisError, EncoderClass, Exchange, Setup};
+use brushwork_tuning::report::{Report, Verdict};
+use brushwork_tuning::tune::{Request, tune};
+use brushwork_tuning_bench::packet::{Carrier, PacketAxis};
+
+/// The stream's time-out during a run, ms. Assumed: it stops the motor when the program dies.
+const RUN_TIMEOUT_MS: u32 = 250;
+/// An exchange that took longer had a retry in it, so that its middle says nothing.
+const LONGEST_EXCHANGE: Duration = Duration::from_millis(40);
+/// How long the jobs before and after a run may take.
+const BRACKET_LIMIT: Duration = Duration::from_secs(10);
+/// What a run may take beyond its own limit.
+const GRACE: Duration = Duration::from_secs(10);
+
+/// What a job leaves for whoever started it, whatever became of the job.
+pub type Slot<T> = Arc<Mutex<Option<T>>>;
+
+/// Takes what a job left.
+pub fn take<T>(slot: &Slot<T>) -> Option<T> {
+    slot.lock().unwrap_or_else(PoisonError::into_inner).take()
+}
+
+fn put<T>(slot: &Slot<T>, value: T) {
+    *slot.lock().unwrap_or_else(PoisonError::into_inner) = Some(value);
+}
+
+/// The wire of a job as the tuner's carrier.
+struct JobCarrier<'a, 'b> {
+    context: &'a mut JobContext<'b>,
+    stream: Option<Stream>,
+}
+
+impl Carrier for JobCarrier<'_, '_> {
+    fn transact(&mut self, command: u8, values: &[(&str, i64)]) -> Result<(Exchange, Values), AxisError> {
+        let packet = Packet::named(self.context.address(), command, self.context.generation(), values)
+            .map_err(|error| AxisError::Refused(error.to_string()))?;
+        let values: Vec<i64> = packet.values.iter().filter_map(Value::as_int).collect();
+        let reply = self.context.transact_timed(command, &values).map_err(|error| told(&error))?;
+        let exchange = Exchange { sent: reply.span.requested_at, received: reply.span.replied_at };
+        if reply.values.is_empty() || exchange.received.saturating_sub(exchange.sent) < LONGEST_EXCHANGE {
+            Ok((exchange, reply.values))
+        } else {
+            Err(AxisError::NoReply)
+        }
+    }
+
+    fn now(&mut self) -> Duration {
+        self.context.now()
+    }
+
+    fn wait_until(&mut self, time: Duration) -> Result<(), AxisError> {
+        let left = time.saturating_sub(self.context.now());
+        self.context.sleep(left).map_err(|error| told(&error))
+    }
+
+    fn generation(&self) -> Generation {
+        self.context.generation()
+    }
+
+    fn stream(&self) -> Option<usize> {
+        self.stream.and_then(|stream| Stream::ALL.iter().position(|other| *other == stream))
+    }
+
+    fn progress(&mut self, text: &str) {
+        self.context.progress(None, text);
+    }
+}
+
+fn told(error: &ExchangeError) -> AxisError {
+    if error.interruption().is_some() {
+        AxisError::Stopped
+    } else if error.is_link_lost() {
+        AxisError::LinkLost(error.to_string())
+    } else {
+        match error {
+            ExchangeError::TimedOut { .. }
+            | ExchangeError::BadCrc { .. }
+            | ExchangeError::BadAcknowledgement { .. }
+            | ExchangeError::Malformed { .. } => AxisError::NoReply,
+            other => AxisError::Refused(other.to_string()),
+        }
+    }
+}
+
+/// Whose axis a job tunes.
+#[derive(Clone, Copy, Debug)]
+pub struct Target {
+    /// The motor.
+    pub motor: Motor,
+    /// What its encoder is.
+    pub encoder: EncoderClass,
+    /// The stream that the port is wired to, where that is known: only then can its time-out be set.
+    pub stream: Option<Stream>,
+}
+
+fn axis<'a, 'b>(
+    context: &'a mut JobContext<'b>,
+    target: Target,
+    own_timeout: bool,
+) -> PacketAxis<JobCarrier<'a, 'b>> {
+    let stream = target.stream.filter(|_| own_timeout);
+    PacketAxis::new(JobCarrier { context, stream }, target.motor, target.encoder)
+}
+
+/// The job before: reads what is put back afterwards, and shortens the time-out. It moves nothing.
+pub fn prepare(target: Target, found: &Slot<Setup>) -> Box<dyn Job> {
+    let found = Arc::clone(found);
+    FnJob::boxed("get ready to tune", BRACKET_LIMIT, move |context| {
+        let place = context.describe();
+        let mut axis = axis(context, target, true);
+        let setup = thrice(|| axis.read_setup()).map_err(|error| failed("read the loops", &place, &error))?;
+        put(&found, setup);
+        if setup.stream_timeout_ms.is_some() {
+            thrice(|| axis.set_stream_timeout(RUN_TIMEOUT_MS))
+                .map_err(|error| failed("set the time-out of the port", &place, &error))?;
+        }
+        Ok(Box::new(()))
+    })
+}
+
+/// The run. It moves the motor, so it must be armed. The report is in its slot also after an interruption.
+pub fn run(target: Target, request: Request, found: &Slot<Report>) -> Box<dyn Job> {
+    let found = Arc::clone(found);
+    let limit = Duration::from_secs_f64(request.guard.time_limit_s) + GRACE;
+    FnJob::moving("tune the motor", limit, move |context| {
+        context.set_polling(false);
+        // The time-out was set before: changing it now would undermine the arming.
+        let report = tune(&mut axis(context, target, false), &request);
+        put(&found, report);
+        Ok(Box::new(()))
+    })
+}
+
+/// The job after: the old gains, unless the run's own stay, and the old time-out. It moves nothing.
+pub fn restore(target: Target, before: Setup, report: Option<&Report>) -> Box<dyn Job> {
+    let keeps = report.filter(|report| report.request.keep && report.verdict != Verdict::Refused);
+    let velocity = keeps.and_then(|report| report.velocity).unwrap_or(before.velocity);
+    let position = keeps.and_then(|report| report.position).unwrap_or(before.position);
+    FnJob::boxed("put back what the tuning changed", BRACKET_LIMIT, move |context| {
+        let place = context.describe();
+        let mut axis = axis(context, target, true);
+        thrice(|| axis.write_velocity(velocity))
+            .and_then(|()| thrice(|| axis.write_position(position)))
+            .map_err(|error| failed("write the loops back", &place, &error))?;
+        if let Some(timeout_ms) = before.stream_timeout_ms {
+            thrice(|| axis.read_setup())
+                .and_then(|_| thrice(|| axis.set_stream_timeout(timeout_ms)))
+                .map_err(|error| failed("set the time-out of the port back", &place, &error))?;
+        }
+        Ok(Box::new(()))
+    })
+}
+
+fn thrice<T>(mut call: impl FnMut() -> Result<T, AxisError>) -> Result<T, AxisError> {
+    for _ in 0..2 {
+        match call() {
+            Err(AxisError::NoReply) => {}
+            other => return other,
+        }
+    }
+    call()
+}
+
+fn failed(tried: &str, place: &str, error: &AxisError) -> Failure {
+    Failure::new(
+        tried,
+        place,
+        error.to_string(),
+        "Check the link and try again; `brushwork settings read` shows the loops",
+    )
+}
