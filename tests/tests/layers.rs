@@ -28,7 +28,10 @@ const ARROWS: [(&str, &[&str]); 9] = [
     ("brushwork-protocol", &[]),
     ("brushwork-script", &[]),
     ("brushwork-raster", &[]),
-    ("brushwork-tests", &["brushwork", "brushwork-link", "brushwork-protocol", "brushwork-sim"]),
+    (
+        "brushwork-tests",
+        &["brushwork", "brushwork-link", "brushwork-protocol", "brushwork-sim", "brushwork-tuning"],
+    ),
 ];
 
 /// Arrows for tests alone: the client is tried against the simulated controller.
