@@ -130,6 +130,29 @@ fn without_one_it_stops_where_the_controller_has_to_brake_by_itself() {
 }
 
 #[test]
+fn the_page_is_reached_and_armed_by_the_keyboard_alone() {
+    let mut bench = Bench::of(unit(Some(1.0), MAXIMUM_VOLTS));
+    bench.connect();
+    bench.harness.key_press_modifiers(egui::Modifiers::COMMAND | egui::Modifiers::SHIFT, Key::P);
+    bench.pass_ms(300);
+    bench.harness.event(egui::Event::Text("voltage clamp".to_owned()));
+    bench.pass_ms(300);
+    bench.key(Key::Enter);
+    bench.pass_ms(3000);
+    assert!(bench.sees("Start clamp test"));
+    bench.harness.key_press_modifiers(egui::Modifiers::COMMAND | egui::Modifiers::SHIFT, Key::A);
+    bench.pass_ms(500);
+    assert!(matches!(bench.model().front.link.arming, Arming::Armed { .. }));
+    bench.focus("Start clamp test");
+    bench.key(Key::Enter);
+    bench.pass_ms(1500);
+    assert!(bench.real_duty(Motor::M1) > 0.1);
+    bench.key(Key::Escape);
+    bench.pass_ms(500);
+    assert_stopped(&mut bench);
+}
+
+#[test]
 fn nothing_moves_before_the_page_is_armed() {
     let mut bench = armed(None);
     bench.press("Arm");

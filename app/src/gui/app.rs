@@ -340,6 +340,10 @@ impl App {
                 }
                 front.general.open_once_read(sheet);
             }
+            Command::ShowSettings(section) => {
+                self.show(Screen::GeneralSettings);
+                self.model.front.general.turn_to(section);
+            }
             Command::FindSetting => {
                 self.show(Screen::GeneralSettings);
                 self.model.front.general.find();
@@ -458,7 +462,7 @@ impl App {
         if screen == self.model.screen || screen.missing().is_some() {
             return;
         }
-        if self.arm_scope().is_some() {
+        if self.model.arm_scope().is_some() {
             self.disarm();
         }
         self.model.turn_to(screen);
@@ -481,13 +485,6 @@ impl App {
         }
     }
 
-    /// What can be armed where the window stands.
-    fn arm_scope(&self) -> Option<ArmScope> {
-        let shows_settings = self.model.screen == Screen::GeneralSettings;
-        let in_settings = || self.model.front.general.arm_scope().filter(|_| shows_settings);
-        self.model.screen.arm_scope().or_else(in_settings)
-    }
-
     fn clamp_test(&mut self) {
         if let Some(request) = self.model.front.general.begin_clamp_test()
             && !self.request(request)
@@ -501,7 +498,7 @@ impl App {
         let arming = self.model.front.link.arming;
         let is_tested =
             arming == Arming::Asked(ArmScope::ClampTest) || arming.is_armed_for(ArmScope::ClampTest);
-        if is_tested && self.arm_scope() != Some(ArmScope::ClampTest) {
+        if is_tested && self.model.arm_scope() != Some(ArmScope::ClampTest) {
             self.disarm();
         }
     }
@@ -621,7 +618,7 @@ impl App {
     /// While armed: sends what the sliders ask for and lets the motion live on.
     fn drive(&mut self, ctx: &Context) {
         let armed_for = |scope| self.model.front.link.arming.is_armed_for(scope);
-        let Some(scope) = self.arm_scope().filter(|scope| armed_for(*scope)) else { return };
+        let Some(scope) = self.model.arm_scope().filter(|scope| armed_for(*scope)) else { return };
         let Some(device) = self.links.device(self.model.front.id()) else { return };
         device.renew();
         let model = &mut self.model;

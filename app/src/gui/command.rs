@@ -7,7 +7,7 @@ use brushwork_sim::world::WorldAction;
 use egui::ThemePreference;
 
 use super::model::DeskId;
-use super::model::general::{SettingsWish, Sheet};
+use super::model::general::{Section, SettingsWish, Sheet};
 pub use super::model::guided::GuidedWish;
 use super::model::help::HelpPage;
 use super::model::loop_settings::Column;
@@ -55,6 +55,8 @@ pub enum Command {
     },
     /// Shows General Settings with a sheet in place of the list.
     OpenSheet(Sheet),
+    /// Shows a part of General Settings.
+    ShowSettings(Section),
     /// Shows General Settings and puts the keyboard into its search field.
     FindSetting,
     /// Drops the edits of settings that were not written.

@@ -7,7 +7,7 @@ use super::{
     Action, Keys, Menu, Ready, always, connected, ctrl, ctrl_shift, key, mcl_missing, place, settings_idle,
 };
 use crate::gui::command::Command;
-use crate::gui::model::general::Sheet;
+use crate::gui::model::general::{Section, Sheet};
 use crate::gui::model::link::Arming;
 use crate::gui::model::screen::Screen;
 use crate::gui::model::{Model, Phase};
@@ -124,6 +124,26 @@ pub(super) const ACTIONS: &[Action] = &[
         command: |_| Command::OpenSheet(Sheet::Save),
     },
     Action {
+        id: "device.conflicts",
+        title: "Settings Conflicts",
+        place: place(Menu::Device, 3),
+        keys: Keys::None,
+        help: "Lists settings that contradict each other, with the way to each.",
+        ready: connected,
+        is_on: None,
+        command: |_| Command::ShowSettings(Section::Conflicts),
+    },
+    Action {
+        id: "device.clamp-test",
+        title: "Voltage Clamp Test…",
+        place: place(Menu::Device, 3),
+        keys: Keys::None,
+        help: "Goes to the guided test of the voltage clamp; it moves a motor once armed and started there.",
+        ready: connected,
+        is_on: None,
+        command: |_| Command::ShowSettings(Section::ClampTest),
+    },
+    Action {
         id: "device.check-mcl",
         title: "Check MCL",
         place: place(Menu::Device, 4),
@@ -197,14 +217,14 @@ pub(super) const ACTIONS: &[Action] = &[
 
 fn can_arm(model: &Model) -> Ready {
     connected(model)?;
-    match model.screen.arm_scope() {
+    match model.arm_scope() {
         Some(_) => Ok(()),
         None => Err("This screen moves no motor. Go to the PWM, Velocity or Position screen first.".into()),
     }
 }
 
 fn arm_or_disarm(model: &Model) -> Command {
-    match model.screen.arm_scope() {
+    match model.arm_scope() {
         Some(scope) if model.front.link.arming == Arming::Disarmed => Command::Arm(scope),
         _ => Command::Disarm,
     }

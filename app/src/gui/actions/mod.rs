@@ -160,6 +160,9 @@ fn settings_idle(model: &Model) -> Ready {
     connected(model)?;
     match model.front.general.running() {
         Some(running) => Err(format!("Wait until Brushwork is done ({}).", running.name()).into()),
+        None if model.front.general.is_busy() => {
+            Err("A calibration or a test uses the settings. End it first.".into())
+        }
         None => Ok(()),
     }
 }

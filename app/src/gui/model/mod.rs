@@ -1,6 +1,6 @@
 //! The window's state as plain data. Screens read it and ask for changes; nothing here draws or waits.
 
-use brushwork_link::device::Channel;
+use brushwork_link::device::{ArmScope, Channel};
 use egui::ThemePreference;
 
 use super::graph::{ChannelInfo, Scale};
@@ -109,6 +109,13 @@ impl Appearance {
 }
 
 impl Model {
+    /// What can be armed where the window stands.
+    pub fn arm_scope(&self) -> Option<ArmScope> {
+        let shows_settings = self.screen == Screen::GeneralSettings;
+        let in_settings = || self.front.general.arm_scope().filter(|_| shows_settings);
+        self.screen.arm_scope().or_else(in_settings)
+    }
+
     /// Whether a unit has answered on the link in front.
     pub fn is_connected(&self) -> bool {
         self.front.is_connected()

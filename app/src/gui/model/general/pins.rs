@@ -98,16 +98,22 @@ impl General {
         self.calibration.is_some() || self.sheet.is_none() && self.pin().is_some()
     }
 
+    /// Shows a part of the settings.
+    pub fn turn_to(&mut self, section: Section) {
+        self.section = section;
+        self.search.clear();
+        self.only_changed = false;
+        self.explained = None;
+        self.close_sheet();
+    }
+
     /// Goes to a row and explains it.
     pub fn go_to(&mut self, key: &str) {
         let section = self.unit().and_then(|unit| unit.table().row(key)).map(Section::of);
         if let Some(section) = section {
-            self.section = section;
-            self.search.clear();
-            self.only_changed = false;
+            self.turn_to(section);
             self.explained = Some(key.to_owned());
             self.sought = Some(key.to_owned());
-            self.close_sheet();
         }
     }
 

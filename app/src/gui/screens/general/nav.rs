@@ -50,10 +50,7 @@ pub fn nav_ui(ui: &mut Ui, general: &mut General) {
         }
     });
     if let Some(section) = wanted {
-        general.section = section;
-        general.search.clear();
-        general.only_changed = false;
-        general.explained = None;
+        general.turn_to(section);
     }
 }
 
