@@ -327,7 +327,10 @@ impl App {
             Command::World(action) => self.act_on_world(action),
             Command::Settings(wish) => self.settings(wish),
             Command::Transact { id, command, values } => {
-                if !self.request(Request::Transact { id, command, values }) {
+                if self.request(Request::Transact { id, command, values }) {
+                    // It may have changed a setting.
+                    self.model.front.watch.want_reading();
+                } else {
                     self.model.front.traffic.composer.forget_waiting();
                 }
             }

@@ -92,7 +92,7 @@ impl Watch {
                 true
             }
             // Whatever it was may have changed settings.
-            Event::JobEnded(_) | Event::Transacted { .. } => {
+            Event::JobEnded(_) => {
                 self.wants_reading = true;
                 false
             }

@@ -303,9 +303,10 @@ impl Exchange {
     }
 
     fn write(&mut self, bytes: &[u8]) -> Result<(), ExchangeError> {
+        let at = self.clock.now();
         self.transport.write(bytes)?;
         self.counters.wrote(bytes.len());
-        self.trace.record(self.clock.now(), true, bytes);
+        self.trace.record(at, true, bytes);
         Ok(())
     }
 
