@@ -55,8 +55,8 @@ fn a_second_device_opens_beside_the_first_and_both_are_read() {
     let mut bench = both_open();
     assert_eq!(bench.model().others.len(), 1);
     assert!(bench.model().others[0].is_connected());
-    assert!(bench.sees("Simulated MCP266: MCP266 · 0x80 · firmware 1.0.0, connected"));
-    assert!(bench.sees(&format!("{SECOND}: MCP266 · 0x80 · firmware 1.0.0, connected, in front")));
+    assert!(bench.sees("Simulated MCP266: MCP266 · 0x80 · v1.0.0, connected"));
+    assert!(bench.sees(&format!("{SECOND}: MCP266 · 0x80 · v1.0.0, connected, in front")));
     let rows = |bench: &mut Bench| {
         let others = &bench.model().others[0].graph;
         others.sheet().track.history.rows().end
@@ -113,7 +113,7 @@ fn switching_devices_disarms_and_stops_the_one_before() {
     bench.arm();
     bench.set_duty(Motor::M1, "40");
     bench.pass_ms(1000);
-    bench.press("Simulated MCP266: MCP266 · 0x80 · firmware 1.0.0, connected");
+    bench.press("Simulated MCP266: MCP266 · 0x80 · v1.0.0, connected");
     bench.pass_ms(300);
     assert_eq!(bench.model().front.target.as_deref(), Some("sim:mcp266"));
     assert_eq!(second_duty(&bench, Motor::M1), 0.0);
@@ -174,7 +174,7 @@ fn what_a_device_in_the_background_says_names_it() {
 #[test]
 fn a_place_is_opened_once_and_connecting_again_brings_it_to_the_front() {
     let mut bench = both_open();
-    bench.press("Simulated MCP266: MCP266 · 0x80 · firmware 1.0.0, connected");
+    bench.press("Simulated MCP266: MCP266 · 0x80 · v1.0.0, connected");
     bench.harness.get_by_role_and_label(Role::TextInput, "Other device").focus();
     bench.pass(FRAME);
     bench.harness.get_by_role_and_label(Role::TextInput, "Other device").type_text(SECOND);

@@ -16,7 +16,7 @@ fn the_simulated_controller_is_in_the_list_and_connects() {
     let mut bench = Bench::new();
     assert!(bench.sees("Simulated MCP266: in this program, available"));
     bench.connect();
-    assert!(bench.sees("Simulated MCP266: MCP266 · 0x80 · firmware 1.0.0, connected"));
+    assert!(bench.sees("Simulated MCP266: MCP266 · 0x80 · v1.0.0, connected"));
     assert!(bench.sees("Model: MCP266 (simulated)"));
     assert!(bench.sees("M1OC: OK"));
     assert!(bench.sees_part("Main battery: 24.0 V"));

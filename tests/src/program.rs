@@ -49,7 +49,8 @@ impl Program {
     /// Starts a prepared command with its three streams connected to the test.
     #[must_use]
     pub fn spawn(mut command: Command) -> Self {
-        if let Some(folder) = data_folder() {
+        let has_its_own = command.get_envs().any(|(name, _)| name == "BRUSHWORK_DATA_DIR");
+        if let Some(folder) = data_folder().filter(|_| !has_its_own) {
             command.env("BRUSHWORK_DATA_DIR", folder);
         }
         let mut child = command

@@ -8,7 +8,7 @@ use brushwork_protocol::canopen::adapter::Form;
 use brushwork_protocol::packet_serial::{Generation, Motor};
 use brushwork_sim::bridge::BridgeOutput;
 use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
-use brushwork_sim::machine::StreamIndex;
+use brushwork_sim::machine::{Machine as _, StreamIndex};
 use brushwork_sim::server::{Endpoint, Server, ServerOptions, SimHandle};
 use brushwork_sim::world::WorldAction;
 use serde_json::Value;
@@ -84,6 +84,18 @@ impl OnPty {
     /// When the server has ended.
     pub fn apply(&self, action: WorldAction) {
         self.handle.apply(0, action).expect("the server runs as long as this does");
+    }
+
+    /// Lets bytes come in as if the client had sent them.
+    ///
+    /// # Panics
+    /// When the server has ended.
+    pub fn receive(&self, bytes: Vec<u8>) {
+        let receive = move |bus: &mut Bus| {
+            let stream = bus.stream();
+            bus.receive(stream, &bytes);
+        };
+        self.handle.inspect(receive).expect("the server runs as long as this does");
     }
 
     /// Waits until `holds` does, and returns how long that took; none when `limit` passes first.

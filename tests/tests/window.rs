@@ -6,7 +6,7 @@ use std::fs;
 use std::process::Command;
 use std::time::Duration;
 
-use brushwork_protocol::packet_serial::Generation;
+use brushwork_protocol::packet_serial::{Address, Generation, Request};
 use brushwork_tests::foreign::is_left_out;
 use brushwork_tests::program::{Ending, Program};
 use brushwork_tests::screen::{Picture, Screen};
@@ -15,6 +15,9 @@ use brushwork_tests::simulated::{OnPty, is_driven};
 const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
 
 const LIMIT: Duration = Duration::from_secs(30);
+
+/// From the signal to bridges without duty.
+const STOP_LIMIT: Duration = Duration::from_millis(500);
 
 /// More than any blank or broken picture has: text alone, being smoothed, has more.
 const COLOURS_OF_A_WINDOW: usize = 200;
@@ -68,6 +71,72 @@ fn a_window_opened_on_a_controller_lights_its_lamps_and_moves_nothing() {
     assert!(window.is_running(), "the window stays open");
     assert!(controller.look(|unit| unit.view().axes.iter().all(|axis| axis.encoder_counts == 0)));
     assert!(!controller.look(is_driven));
+}
+
+/// A window that is ended by a signal stops the motors of its controller, whoever set them in motion, and ends cleanly.
+fn signal_stops_and_closes(name: &str) {
+    if is_left_out("xvfb") {
+        return;
+    }
+    let controller = OnPty::start(Generation::Gen1);
+    let screen = Screen::start();
+    let mut command = window_on(screen.display());
+    command.arg("--open").arg(controller.port());
+    let mut window = Program::spawn(command);
+    if screen.wait_for(LIMIT, |picture| green_pixels(picture) >= GREEN_OF_LAMPS).is_none() {
+        panic!("no lamp is green: {:?}", window.finish(Duration::ZERO));
+    }
+    // The window's polling keeps the controller's own time-out from stopping this.
+    let duty = Request::new(Address::ALL[0], 34, &[16_384, -16_384]);
+    controller.receive(duty.encode(Generation::Gen1).expect("command 34 has two arguments"));
+    assert!(controller.wait_until(LIMIT, is_driven).is_some(), "the motors are driven");
+    std::thread::sleep(Duration::from_millis(1500));
+    assert!(controller.look(is_driven) && window.is_running(), "they go on while the window is open");
+    window.signal(name);
+    let stopped = controller.wait_until(LIMIT, |unit| !is_driven(unit)).expect("the motors are switched off");
+    let ending = window.finish(LIMIT);
+    println!("SIG{name}: bridges off after {stopped:?}");
+    assert!(stopped < STOP_LIMIT, "took {stopped:?}");
+    assert!(ending.status.success() && ending.stderr.is_empty(), "{ending:?}");
+}
+
+#[test]
+fn sigterm_stops_both_motors_and_closes_the_window() {
+    signal_stops_and_closes("TERM");
+}
+
+#[test]
+fn ctrl_c_stops_both_motors_and_closes_the_window() {
+    signal_stops_and_closes("INT");
+}
+
+#[test]
+fn a_closed_terminal_stops_both_motors_and_closes_the_window() {
+    signal_stops_and_closes("HUP");
+}
+
+#[test]
+fn a_broken_memory_of_the_window_does_not_keep_it_from_opening_and_is_made_anew() {
+    if is_left_out("xvfb") {
+        return;
+    }
+    let screen = Screen::start();
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let state = folder.path().join("window.json");
+    fs::write(&state, "{ this is no JSON").expect("the folder can be written to");
+    let mut command = window_on(screen.display());
+    command.env("BRUSHWORK_DATA_DIR", folder.path());
+    let window = Program::spawn(command);
+    let picture = screen.wait_for(LIMIT, |picture| picture.colours() >= COLOURS_OF_A_WINDOW);
+    assert!(picture.is_some(), "nothing is drawn");
+    window.signal("TERM");
+    let ending = window.finish(LIMIT);
+    assert!(ending.status.success(), "{ending:?}");
+    assert!(folder.path().join("window.json.broken").exists());
+    let kept: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(&state).expect("it is kept")).expect("JSON");
+    assert_eq!(kept["screen"], "Device Status");
+    assert!(kept["window"]["size"][0].as_f64().is_some_and(|width| width >= 1000.0), "{kept}");
 }
 
 /// Pixels of a lamp that says OK, whatever the theme's exact green.

@@ -209,7 +209,7 @@ fn read(path: &Path) -> Result<Remembered, Failure> {
 }
 
 fn unread(path: &Path, error: impl std::fmt::Display, mend: &str) -> Failure {
-    Failure::new("read how the window was", path.display().to_string(), error, mend)
+    Failure::new("read the window's state", path.display().to_string(), error, mend)
 }
 
 /// A window that is nowhere or has no size is as good as none.
@@ -279,7 +279,7 @@ impl Writer {
 fn write(path: &Path, remembered: &Remembered) -> Result<(), Failure> {
     let failed = |error: &dyn std::fmt::Display| {
         let mend = "The next start will be as the last one was. Look at the folder's permissions";
-        Failure::new("keep how the window is", path.display().to_string(), error, mend)
+        Failure::new("keep the window's state", path.display().to_string(), error, mend)
     };
     let text = serde_json::to_string_pretty(remembered).map_err(|error| failed(&error))?;
     if let Some(folder) = path.parent() {

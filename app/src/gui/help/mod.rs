@@ -1,6 +1,6 @@
 //! The window of help: first steps, the references drawn from the tables, shortcuts, and what Brushwork is.
 
-use egui::{Context, Rect, RichText, ScrollArea, Ui, Window, vec2};
+use egui::{Context, Frame, Margin, Rect, RichText, ScrollArea, Ui, Window, vec2};
 
 use super::model::Model;
 use super::model::help::{Help, HelpPage};
@@ -54,7 +54,9 @@ fn page_ui(ui: &mut Ui, page: HelpPage, help: &mut Help) {
 }
 
 fn scrolled_ui(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
-    ScrollArea::vertical().auto_shrink([false; 2]).show(ui, contents);
+    ScrollArea::vertical().auto_shrink([false; 2]).show(ui, |ui| {
+        Frame::new().inner_margin(Margin::symmetric(8, 2)).show(ui, contents);
+    });
 }
 
 /// A paragraph in the weak colour.

@@ -1,9 +1,10 @@
 //! The pages of running text, and the list of shortcuts.
 
-use egui::{Grid, RichText, Ui};
+use egui::{RichText, Ui};
 
 use super::note_ui;
 use crate::gui::actions::{self, Keys, Menu};
+use crate::gui::widgets::label::fixed_label_ui;
 
 /// Numbered, in the order a person does them.
 const FIRST_STEPS: [(&str, &str); 8] = [
@@ -62,14 +63,14 @@ pub fn first_steps_ui(ui: &mut Ui) {
 }
 
 /// Keys that belong to widgets and not to actions.
-const OF_WIDGETS: [(&str, &str); 7] = [
-    ("Tab, Shift+Tab", "Goes to the next or previous thing that can be used"),
-    ("Enter", "Presses the button that has the focus (Space stops the motors)"),
-    ("Arrow keys", "On a slider: one step. Elsewhere: to what lies in that direction"),
-    ("Shift+Arrow keys", "On a slider: ten steps"),
-    ("Page Up, Page Down", "On a slider: a tenth of its range"),
-    ("Home", "On a slider: to zero"),
-    ("Ctrl+wheel", "On the graph: zooms"),
+const OF_WIDGETS: [(&str, &str, &str); 7] = [
+    ("Tab, Shift+Tab", "Next, previous", "Goes to the next or previous thing that can be used."),
+    ("Enter", "Press", "Presses the button that has the focus; Space stops the motors instead."),
+    ("Arrow keys", "One step", "On a slider. Elsewhere they go to what lies in that direction."),
+    ("Shift+Arrows", "Ten steps", "On a slider."),
+    ("Page Up, Down", "A tenth of the range", "On a slider."),
+    ("Home", "To zero", "On a slider."),
+    ("Ctrl+wheel", "Zoom", "On a graph."),
 ];
 
 pub fn shortcuts_ui(ui: &mut Ui, search: &str) {
@@ -81,10 +82,14 @@ pub fn shortcuts_ui(ui: &mut Ui, search: &str) {
         let rows: Vec<_> = rows.map(|(keys, action)| (keys.as_str(), action.title, action.help)).collect();
         table_ui(ui, menu.title(), &rows);
     }
-    let rows = OF_WIDGETS.iter().filter(|(keys, what)| fits(keys) || fits(what));
-    let rows: Vec<_> = rows.map(|(keys, what)| (*keys, *what, "")).collect();
+    let rows = OF_WIDGETS.into_iter().filter(|(keys, what, help)| fits(keys) || fits(what) || fits(help));
+    let rows: Vec<_> = rows.collect();
     table_ui(ui, "In widgets", &rows);
 }
+
+/// Room for "Ctrl+Shift+S" and for the longest title.
+const KEYS_WIDTH: f32 = 112.0;
+const WHAT_WIDTH: f32 = 216.0;
 
 fn table_ui(ui: &mut Ui, title: &str, rows: &[(&str, &str, &str)]) {
     if rows.is_empty() {
@@ -92,14 +97,13 @@ fn table_ui(ui: &mut Ui, title: &str, rows: &[(&str, &str, &str)]) {
     }
     ui.add_space(4.0);
     ui.label(RichText::new(title).strong());
-    Grid::new(title).num_columns(3).spacing([16.0, 3.0]).show(ui, |ui| {
-        for (keys, what, help) in rows {
-            ui.label(RichText::new(*keys).monospace());
-            ui.label(*what);
+    for (keys, what, help) in rows {
+        ui.horizontal_top(|ui| {
+            fixed_label_ui(ui, keys, KEYS_WIDTH);
+            fixed_label_ui(ui, what, WHAT_WIDTH);
             note_ui(ui, help);
-            ui.end_row();
-        }
-    });
+        });
+    }
 }
 
 pub fn about_ui(ui: &mut Ui) {

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use brushwork_link::settings::{ReferenceForm, ReferenceRow, reference};
 use brushwork_protocol::packet_serial::{COMMANDS, reference as protocol};
-use egui::{Button, Grid, Label, Panel, RichText, Role, ScrollArea, Ui, WidgetInfo};
+use egui::{Atom, Button, Grid, Label, Panel, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
 use super::{note_ui, scrolled_ui};
 use crate::gui::model::help::Help;
@@ -171,8 +171,9 @@ fn list_ui(ui: &mut Ui, entries: &[Entry], help: &mut Help) {
         ScrollArea::vertical().auto_shrink([false; 2]).show_rows(ui, height, found.len(), |ui, shown| {
             for entry in &found[shown] {
                 let chosen = help.entry.as_deref() == Some(entry.key.as_str());
-                let button = Button::selectable(chosen, &entry.title).truncate();
-                let response = ui.add_sized(egui::vec2(ui.available_width(), height), button);
+                let size = egui::vec2(ui.available_width(), height);
+                let button = Button::selectable(chosen, (&entry.title, Atom::grow())).truncate();
+                let response = ui.add(button.min_size(size));
                 response
                     .widget_info(|| WidgetInfo::selected(Role::ListBoxOption, true, chosen, &entry.title));
                 if response.on_hover_text(&entry.title).clicked() {

@@ -93,8 +93,8 @@ fn row(model: &Model, choice: Choice, place: &str, title: &str, detail: &str) ->
 /// Model, address and firmware of who answered.
 fn answered(identity: &Identity) -> String {
     let firmware = match identity.firmware.as_str() {
-        "" => "firmware not told".to_owned(),
-        version => format!("firmware {version}"),
+        "" => "firmware?".to_owned(),
+        version => format!("v{version}"),
     };
     format!("{} · {} · {firmware}", identity.title(), identity.place())
 }

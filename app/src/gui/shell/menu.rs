@@ -1,18 +1,25 @@
 //! The menu bar, drawn from the table of actions.
 
-use egui::{Button, MenuBar, Response, Role, Ui, WidgetInfo};
+use egui::{Button, MenuBar, Response, Role, ScrollArea, Ui, WidgetInfo};
 
 use crate::gui::actions::{self, Action, Menu};
 use crate::gui::command::Commands;
 use crate::gui::model::Model;
 
 /// So that titles and keys stand clear of each other.
-const MENU_WIDTH: f32 = 280.0;
+const MENU_WIDTH: f32 = 300.0;
+/// The menu bar, the Stop button and the space around them.
+const BELOW: f32 = 136.0;
 
 pub fn menu_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     MenuBar::new().ui(ui, |ui| {
         for menu in Menu::ALL {
-            ui.menu_button(menu.title(), |ui| items_ui(ui, menu, model, commands));
+            ui.menu_button(menu.title(), |ui| {
+                // A long menu scrolls: it never hangs over the Stop button.
+                let room = ui.ctx().content_rect().height() - BELOW;
+                let scroll = ScrollArea::vertical().max_height(room);
+                scroll.show(ui, |ui| items_ui(ui, menu, model, commands));
+            });
         }
     });
 }
