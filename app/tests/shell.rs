@@ -452,3 +452,20 @@ fn at_the_smallest_size_the_shell_is_whole_on_every_screen() {
         assert!(window.contains_rect(battery.rect()), "{:?}", battery.rect());
     }
 }
+
+#[test]
+fn a_typed_path_with_its_rate_fits_into_the_list() {
+    let mut bench = Bench::sized([1024.0, 700.0], Theme::Dark);
+    bench.harness.get_by_role_and_label(Role::TextInput, "Other device").focus();
+    bench.pass(FRAME);
+    bench
+        .harness
+        .get_by_role_and_label(Role::TextInput, "Other device")
+        .type_text("/tmp/somewhere/controller");
+    bench.pass(FRAME * 3);
+    let edge = bench.model().layout.left_width - 8.0;
+    for label in ["Other device", "Recent", "Address", "Baud rate", "Connect", "Device Status", "Stop All"] {
+        let right = bench.see(label).rect().right();
+        assert!(right <= edge, "{label} ends at {right} in a list of {edge}");
+    }
+}

@@ -369,6 +369,8 @@ impl App {
             Command::PlainEdges(plain) => model.appearance.plain = plain,
             Command::Scale(percent) => model.appearance.set_scale(percent),
             Command::ToggleWorld => model.front.world.open = !model.front.world.open,
+            Command::PauseTraffic(paused) => model.front.traffic.log.set_paused(paused),
+            Command::ClearHistory => model.front.history.clear(),
             Command::ToggleTraffic => model.front.traffic.open = !model.front.traffic.open,
             Command::OpenPalette => {
                 model.palette = if model.palette.is_some() { None } else { Some(Palette::opened()) };

@@ -67,6 +67,9 @@ pub enum Command {
     Scale(u16),
     ToggleWorld,
     ToggleTraffic,
+    PauseTraffic(bool),
+    /// Empties the list of events.
+    ClearHistory,
     OpenPalette,
     OpenHelp(HelpPage),
     /// Stops all motors and closes the window.

@@ -5,6 +5,7 @@ use egui::Key;
 use super::{Action, Keys, Menu, Ready, connected, ctrl, mcl_missing, place};
 use crate::gui::command::Command;
 use crate::gui::model::Model;
+use crate::gui::model::general::Sheet;
 use crate::gui::model::screen::Screen;
 
 /// One command of the MCL editor's text field, which takes its keys by itself.
@@ -46,6 +47,16 @@ pub(super) const ACTIONS: &[Action] = &[
         ready: has_edits,
         is_on: None,
         command: |_| Command::RevertSettings,
+    },
+    Action {
+        id: "edit.copy-motor",
+        title: "Copy Motor 1 to Motor 2…",
+        place: place(Menu::Edit, 1),
+        keys: Keys::None,
+        help: "Shows what would make the settings of motor 2 those of motor 1, as edits to be written.",
+        ready: connected,
+        is_on: None,
+        command: |_| Command::OpenSheet(Sheet::CopyMotor),
     },
 ];
 

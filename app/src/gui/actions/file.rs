@@ -4,7 +4,6 @@ use egui::Key;
 
 use super::{Action, Keys, Menu, always, connected, ctrl, ctrl_shift, mcl_missing, place};
 use crate::gui::command::Command;
-use crate::gui::model::Model;
 use crate::gui::model::general::Sheet;
 use crate::gui::model::screen::Screen;
 
@@ -70,14 +69,24 @@ pub(super) const ACTIONS: &[Action] = &[
         command: |_| Command::OpenSheet(Sheet::SaveProfile),
     },
     Action {
-        id: "file.compare-profile",
-        title: "Compare Profile…",
+        id: "file.compare",
+        title: "Compare Settings…",
         place: place(Menu::File, 1),
         keys: Keys::None,
-        help: "Shows the open profile beside the controller.",
-        ready: profile_open,
+        help: "Shows any two of RAM, EEPROM, profile, factory settings and backups side by side.",
+        ready: connected,
         is_on: None,
         command: |_| Command::OpenSheet(Sheet::Compare),
+    },
+    Action {
+        id: "file.backups",
+        title: "Backups…",
+        place: place(Menu::File, 1),
+        keys: Keys::None,
+        help: "Lists what was kept before each write, save and firmware change, to be restored.",
+        ready: connected,
+        is_on: None,
+        command: |_| Command::OpenSheet(Sheet::Backups),
     },
     Action {
         id: "file.exit",
@@ -90,9 +99,3 @@ pub(super) const ACTIONS: &[Action] = &[
         command: |_| Command::Exit,
     },
 ];
-
-fn profile_open(model: &Model) -> super::Ready {
-    connected(model)?;
-    let is_open = model.front.general.profiles.opened().is_some();
-    if is_open { Ok(()) } else { Err("No profile is open.".into()) }
-}

@@ -8,6 +8,8 @@ use egui::{
     WidgetInfo, pos2, vec2,
 };
 
+use egui::containers::menu::MenuButton;
+
 use super::heading_ui;
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::devices::{BAUD_RATES, Choice, Devices, SIMULATED};
@@ -18,6 +20,7 @@ use crate::gui::widgets::LampState;
 use crate::gui::widgets::text_field::text_field_ui;
 
 const ROW_HEIGHT: f32 = 54.0;
+const RECENT_WIDTH: f32 = 62.0;
 
 pub fn devices_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     heading_ui(ui, "Attached devices");
@@ -28,10 +31,16 @@ pub fn devices_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     if model.devices.ports().is_empty() {
         hint_ui(ui, &model.devices);
     }
-    if path_ui(ui, &mut model.devices) {
-        commands.push(Command::Connect);
-    }
-    options_ui(ui, model, commands);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let room = vec2(ui.available_width() - RECENT_WIDTH - 4.0, ui.spacing().interact_size.y);
+        let entered = ui.allocate_ui(room, |ui| path_ui(ui, &mut model.devices)).inner;
+        recent_ui(ui, &model.devices, commands);
+        if entered {
+            commands.push(Command::Connect);
+        }
+    });
+    options_ui(ui, &mut model.devices);
     connect_ui(ui, model, commands);
     units_ui(ui, model, commands);
 }
@@ -233,7 +242,7 @@ fn hint_ui(ui: &mut Ui, devices: &Devices) {
 
 /// The field for a path; true when Enter was pressed in it.
 fn path_ui(ui: &mut Ui, devices: &mut Devices) -> bool {
-    let response = text_field_ui(ui, &mut devices.typed, "Other device", "Other: path, tcp:host:port, sim:…");
+    let response = text_field_ui(ui, &mut devices.typed, "Other device", "Path, tcp:, sim:");
     if response.changed() {
         devices.choice = if devices.typed.trim().is_empty() { Choice::Simulated } else { Choice::Typed };
     }
@@ -248,15 +257,14 @@ fn path_ui(ui: &mut Ui, devices: &mut Devices) -> bool {
     entered && devices.choice == Choice::Typed
 }
 
-/// Address, rate where it matters, and what was connected to before.
-fn options_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+/// Address, and the rate where it matters.
+fn options_ui(ui: &mut Ui, devices: &mut Devices) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        address_ui(ui, &mut model.devices.addresses);
-        if model.devices.baud_matters() {
-            baud_ui(ui, &mut model.devices.baud);
+        address_ui(ui, &mut devices.addresses);
+        if devices.baud_matters() {
+            baud_ui(ui, &mut devices.baud);
         }
-        recent_ui(ui, &model.devices, commands);
     });
 }
 
@@ -289,7 +297,8 @@ fn baud_ui(ui: &mut Ui, chosen: &mut u32) {
 fn recent_ui(ui: &mut Ui, devices: &Devices, commands: &mut Commands) {
     let recent = devices.recent();
     let menu = ui.add_enabled_ui(!recent.is_empty(), |ui| {
-        ui.menu_button("Recent", |ui| {
+        let button = egui::Button::new("Recent").min_size(vec2(RECENT_WIDTH, 0.0));
+        MenuButton::from_button(button).ui(ui, |ui| {
             ui.set_min_width(200.0);
             for target in recent {
                 if ui.button(target).clicked() {
@@ -304,7 +313,7 @@ fn recent_ui(ui: &mut Ui, devices: &Devices, commands: &mut Commands) {
             }
         })
     });
-    menu.inner.response.on_hover_text("Connections of before");
+    menu.inner.0.on_hover_text("Connections of before");
 }
 
 fn name_combo(ui: &Ui, response: &Response, name: &str, help: &str) {
