@@ -20,7 +20,7 @@ use crate::gui::widgets::LampState;
 use crate::gui::widgets::text_field::text_field_ui;
 
 const ROW_HEIGHT: f32 = 54.0;
-const RECENT_WIDTH: f32 = 62.0;
+const RECENT_WIDTH: f32 = 70.0;
 
 pub fn devices_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     heading_ui(ui, "Attached devices");
