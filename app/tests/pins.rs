@@ -408,9 +408,8 @@ fn the_buses_stand_with_the_ports_whose_lines_they_share() {
     let mut bench = opened();
     bench.press("Section CAN/RS-232 UART0");
     assert!(bench.sees_part("CANopen node is locked: Not applicable: the pins serve RS-232"));
-    let unit = bench.model().front.general.unit_mut().unwrap();
-    unit.set("stream.rs232.type", SettingValue::Choice("disabled"));
-    bench.pass_ms(200);
+    bench.press("RS-232 (UART0): mode");
+    bench.press("Disabled: CANopen");
     enter(&mut bench, "CANopen node", "17");
     enter(&mut bench, "CANopen rate", "500 kbit/s");
     write(&mut bench);

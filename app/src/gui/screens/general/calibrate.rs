@@ -4,12 +4,11 @@ use brushwork_link::settings::CalibrationStage;
 use egui::{Button, ProgressBar, RichText, Role, Ui, WidgetInfo, vec2};
 
 use super::sheet::{lamp_ui, text_ui};
-use crate::gui::command::Commands;
 use crate::gui::model::general::General;
 use crate::gui::widgets::LampState;
 use crate::gui::widgets::readout::Readout;
 
-pub fn calibrate_ui(ui: &mut Ui, general: &mut General, _commands: &mut Commands) {
+pub fn calibrate_ui(ui: &mut Ui, general: &mut General) {
     let Some(run) = general.calibration() else { return };
     ui.label(RichText::new("Calibration").size(16.0).strong());
     let Some(calibration) = run.moving() else {

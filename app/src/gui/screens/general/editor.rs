@@ -21,7 +21,7 @@ pub fn editor_ui(ui: &mut Ui, unit: &mut UnitSettings, row: &Row) -> bool {
         }
         (Kind::Bool, Some(SettingValue::Bool(on))) => box_ui(ui, unit, row, on),
         (Kind::Bool, value) => list_ui(ui, unit, row, value, &[(NO, "no"), (YES, "yes")]),
-        (Kind::Choice(codes), value) => list_ui(ui, unit, row, value, &choices(codes)),
+        (Kind::Choice(codes), value) => list_ui(ui, unit, row, value, &choices(row, codes)),
         (Kind::Int | Kind::Fixed { .. }, _) => number_ui(ui, unit, row),
     };
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(row.title()));
@@ -51,8 +51,13 @@ fn encoder_pins(unit: &UnitSettings) -> Vec<(SettingValue, String)> {
 const NO: SettingValue = SettingValue::Bool(false);
 const YES: SettingValue = SettingValue::Bool(true);
 
-fn choices(codes: &'static [Code]) -> Vec<(SettingValue, &'static str)> {
-    codes.iter().map(|code| (SettingValue::Choice(code.key), code.label)).collect()
+fn choices(row: &Row, codes: &'static [Code]) -> Vec<(SettingValue, &'static str)> {
+    let label = |code: &Code| match (row.key.as_str(), code.key) {
+        ("stream.rs232.type", "disabled") => "Disabled: CANopen",
+        ("stream.ttl1.type", "disabled") => "Disabled: I2C master",
+        _ => code.label,
+    };
+    codes.iter().map(|code| (SettingValue::Choice(code.key), label(code))).collect()
 }
 
 fn box_ui(ui: &mut Ui, unit: &mut UnitSettings, row: &Row, on: bool) -> Response {

@@ -43,12 +43,16 @@ pub fn pin_ui(
         head_ui(ui, general, pin, commands);
         let scroll = ScrollArea::vertical().id_salt(("pin", pin)).auto_shrink(false);
         scroll.show(ui, |ui| {
+            if general.calibration().is_some_and(|run| run.pin() == pin) {
+                // The graph of the open range says nothing.
+                return calibrate_ui(ui, general);
+            }
             if is_wide {
                 let left = width - BAR_WIDTH - GRAPH_WIDTH - ui.spacing().item_spacing.x;
                 ui.horizontal_top(|ui| {
                     ui.allocate_ui_with_layout(vec2(left, 0.0), Layout::top_down(Align::Min), |ui| {
                         ui.set_width(left);
-                        settings_ui(ui, general, pin, signal, left, commands);
+                        settings_ui(ui, general, pin, signal, left);
                     });
                     ui.vertical(|ui| {
                         ui.set_width(GRAPH_WIDTH);
@@ -65,7 +69,7 @@ pub fn pin_ui(
                     });
                     ui.vertical(|ui| status_ui(ui, general, pin, signal));
                 });
-                settings_ui(ui, general, pin, signal, width - BAR_WIDTH, commands);
+                settings_ui(ui, general, pin, signal, width - BAR_WIDTH);
             }
         });
     });
@@ -183,18 +187,8 @@ fn reading_text(behind: Behind) -> String {
     }
 }
 
-/// The settings of the pin, or its calibration while one runs.
-fn settings_ui(
-    ui: &mut Ui,
-    general: &mut General,
-    pin: usize,
-    signal: Option<PinSignal>,
-    width: f32,
-    commands: &mut Commands,
-) {
-    if general.calibration().is_some_and(|run| run.pin() == pin) {
-        return calibrate_ui(ui, general, commands);
-    }
+/// The settings of the pin.
+fn settings_ui(ui: &mut Ui, general: &mut General, pin: usize, signal: Option<PinSignal>, width: f32) {
     let keys: Vec<String> = general.shown().into_iter().filter(|key| !is_mode(key)).collect();
     let columns = Columns::with_extra(width, ui.spacing().item_spacing.x);
     rows::header_ui(ui, columns);
