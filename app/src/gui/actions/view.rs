@@ -90,7 +90,7 @@ pub(super) const ACTIONS: &[Action] = &[
         title: "Pause the Traffic",
         place: place(Menu::View, 1),
         keys: Keys::None,
-        help: "Holds the list of transactions still; recording goes on.",
+        help: "Stops and continues the recording of transactions; the link goes on.",
         ready: |model| match model.front.traffic.open {
             true => Ok(()),
             false => Err("The traffic is not shown.".into()),

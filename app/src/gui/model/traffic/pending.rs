@@ -59,6 +59,11 @@ fn drive_of(desk: &Desk, screen: Screen) -> Option<Drive> {
             velocity.setpoints.touch();
             velocity.to_send()
         }
+        Screen::Position => {
+            let mut position = desk.position;
+            position.setpoints.touch();
+            position.to_send()
+        }
         _ => None,
     }
 }
