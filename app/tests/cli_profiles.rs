@@ -160,6 +160,22 @@ mod on_a_pseudo_terminal {
     }
 
     #[test]
+    fn loading_eeprom_brings_back_what_was_saved_and_leaves_a_backup_of_the_rest() {
+        let (kept, unit) = (Kept::new(), Simulated::start(&[]));
+        at(&kept, &unit, "write", &["motor1.velocity.p=2.5", "--yes"]).ended_with(DONE);
+        at(&kept, &unit, "reload", &[])
+            .ended_with(REFUSED)
+            .explains("What was written and not saved is lost.");
+        at(&kept, &unit, "reload", &["--yes"]).ended_with(DONE).prints("2.500 -> 1.000");
+        at(&kept, &unit, "compare", &["ram", "eeprom"]).ended_with(DONE).prints("agree");
+        at(&kept, &unit, "restore", &["--only", "motor2", "--yes"])
+            .ended_with(DONE)
+            .prints("nothing to write");
+        at(&kept, &unit, "restore", &["--only", "motr1", "--yes"]).ended_with(NOT_TAKEN).explains("motr1");
+        at(&kept, &unit, "restore", &["--only", "motor1", "--yes"]).ended_with(DONE).prints("1.000 -> 2.500");
+    }
+
+    #[test]
     fn eeprom_is_known_after_a_save_and_saves_are_counted() {
         let (kept, unit) = (Kept::new(), Simulated::start(&[]));
         at(&kept, &unit, "save", &["--yes"]).ended_with(DONE).prints("1 save to this EEPROM was counted");

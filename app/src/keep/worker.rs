@@ -41,7 +41,6 @@ struct Origin {
 enum Task {
     Begin { origin: Origin, entry: Box<Entry>, answer: Sender<Result<Begun, Failure>> },
     End { origin: Origin, begun: Box<Begun>, ending: Ending },
-    Eeprom { unit: UnitId, profile: Box<Profile> },
 }
 
 /// What was kept when an act began.
@@ -66,14 +65,6 @@ impl Keeping {
     /// The files.
     pub fn store(&self) -> &Store {
         &self.store
-    }
-
-    /// What a unit's EEPROM holds was just read from there.
-    pub fn note_eeprom(&self, unit: UnitId, profile: Profile) {
-        if let Some(tasks) = &self.worker.tasks {
-            // Without room the older knowledge stays, with its date.
-            let _ = tasks.try_send(Task::Eeprom { unit, profile: Box::new(profile) });
-        }
     }
 
     /// Keeps what is done to one unit.
@@ -151,10 +142,6 @@ fn perform(store: &Store, task: Task) {
         Task::End { origin, begun, ending } => {
             // What cannot be written now leaves the journal open: it is told at the next connection.
             let _ = end(store, &origin, &begun, &ending);
-        }
-        Task::Eeprom { unit, profile } => {
-            // As above: what was known before stays, with its date.
-            let _ = store.note_eeprom(&unit, Some(&profile));
         }
     }
 }

@@ -33,6 +33,8 @@ pub enum SettingsAction {
     Save(MemoryArgs),
     /// Restore the controller's factory defaults in RAM.
     Defaults(MemoryArgs),
+    /// Make the controller load its EEPROM, then read that; what was in RAM alone is lost.
+    Reload(MemoryArgs),
     /// Read the controller's settings into a profile.
     Export(ExportArgs),
     /// Check a profile and write it to the controller (as `write --profile`).
@@ -202,6 +204,9 @@ pub struct WriteHow {
     /// Save to EEPROM when everything took.
     #[arg(long)]
     pub save: bool,
+    /// Of a profile or backup, take only keys that begin with this, for example motor1; may be given again.
+    #[arg(long, value_name = "KEY")]
+    pub only: Vec<String>,
     /// Print JSON.
     #[arg(long)]
     pub json: bool,

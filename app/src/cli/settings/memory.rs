@@ -3,7 +3,8 @@
 use std::time::Duration;
 
 use brushwork_link::settings::{
-    DefaultsReport, SaveReport, SaveVerdict, SettingsImage, SettingsTable, defaults_kept, save_kept,
+    DefaultsReport, SaveReport, SaveVerdict, SettingsImage, SettingsTable, defaults_kept, reload_kept,
+    save_kept,
 };
 use serde_json::json;
 
@@ -133,6 +134,41 @@ fn tell_defaults(
     }
     out.line("A power cycle brings the saved settings back unless the defaults are saved (`brushwork settings save`).")?;
     Ok(stated.len())
+}
+
+/// Loads EEPROM over RAM and reads it.
+pub fn reload(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let controller = Controller::connect(&args.connect, interrupt)?;
+    let ram = controller.read()?;
+    match Store::of_user().eeprom(controller.unit()) {
+        Some(known) => {
+            let head = format!("What comes back, as EEPROM is known since {}:", known.date_text());
+            let list = changes(&ram.table, &ram.image, &merged(&ram.image, &known.settings));
+            show(args, out, &head, &list, "nothing: RAM holds the same")?;
+        }
+        None => say("What EEPROM holds is not known. What was written and not saved is lost."),
+    }
+    let question = format!("Load the EEPROM of {} over its RAM?", controller.describe());
+    ask::agreed(&question, args.yes, &controller)?;
+    let (table, mut keeper) = (ram.table.clone(), controller.keeper());
+    let finished = controller.run("load the settings from EEPROM", MEMORY_LIMIT, move |wire| {
+        reload_kept(wire, &table, &mut *keeper)
+    })?;
+    let report = finished.value.map_err(|failure| {
+        say(failure.to_string());
+        finished.broken.unwrap_or(Exit::Refused)
+    })?;
+    let came_back = changes(&ram.table, &ram.image, &merged(&ram.image, &report.image));
+    if args.json {
+        out.json(&json!({ "identity": controller.identity(), "changes": came_back }))?;
+    } else {
+        let count = settings_count(came_back.len());
+        out.line(format!("EEPROM is loaded and read: {count} came back otherwise."))?;
+        for line in change_lines(&came_back) {
+            out.line(line)?;
+        }
+    }
+    Ok(finished.broken.unwrap_or(if report.failures.is_empty() { Exit::Done } else { Exit::NotTaken }))
 }
 
 fn tell_others(head: &str, changes: &[Change]) {

@@ -32,6 +32,7 @@ pub fn run(args: &SettingsArgs, out: &mut Output, interrupt: &Interrupt) -> Exit
         SettingsAction::Diff(args) => diff::run(args, out, interrupt),
         SettingsAction::Save(args) => memory::save(args, out, interrupt),
         SettingsAction::Defaults(args) => memory::defaults(args, out, interrupt),
+        SettingsAction::Reload(args) => memory::reload(args, out, interrupt),
         SettingsAction::Export(args) => profile::export(args, out, interrupt),
         SettingsAction::Compare(args) => compare::run(args, out, interrupt),
         SettingsAction::Backups(args) => backups::list(args, out),

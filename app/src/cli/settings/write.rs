@@ -99,7 +99,7 @@ pub fn carry_out(
 
 /// How something that was cut short is settled.
 pub fn how(args: &UnfinishedArgs, save: bool) -> WriteHow {
-    WriteHow { yes: args.yes, dry_run: args.dry_run, save, json: args.json }
+    WriteHow { yes: args.yes, dry_run: args.dry_run, save, only: Vec::new(), json: args.json }
 }
 
 /// The profile as it is for this controller. Every change is told, and asked about before it is used.
@@ -139,12 +139,23 @@ fn wanted(
             Exit::NotTaken
         })?;
         let left_out_lines = left_out_lines(controller, ram, &profile);
-        wanted = Wanted { changes: asked.wanted, left_out: asked.left_out, left_out_lines, upgraded };
+        let changes = only(&ram.table, &asked.wanted, &how.only)?;
+        wanted = Wanted { changes, left_out: asked.left_out, left_out_lines, upgraded };
     }
     let typed = keys::parse(&ram.table, assignments).map_err(|problems| refused(&problems))?;
     wanted.changes.merge(&typed);
     wanted.changes = changes(&ram.table, &ram.image, &merged(&ram.image, &wanted.changes));
     Ok(wanted)
+}
+
+/// The changes whose keys begin with one of `starts`; all of them where there are none.
+fn only(table: &SettingsTable, changes: &SettingsImage, starts: &[String]) -> Result<SettingsImage, Exit> {
+    if let Some(problem) = keys::unmatched(table, starts) {
+        say(problem);
+        return Err(Exit::NotTaken);
+    }
+    let is_meant = |key: &str| starts.is_empty() || starts.iter().any(|start| keys::begins_with(key, start));
+    Ok(changes.iter().filter(|(key, _)| is_meant(key)).map(|(key, value)| (key.to_owned(), value)).collect())
 }
 
 /// What of the profile differs and cannot be written on this controller. A value is shown where it matters:

@@ -190,7 +190,9 @@ impl General {
     pub(super) fn note_came(&mut self, came: Option<Came>) -> Vec<Effect> {
         match came {
             Some(Came::Read) if self.has_unfinished() => return self.tell_unfinished(),
-            Some(Came::Reloaded(image)) => self.note_reloaded(image),
+            Some(Came::Reloaded(image)) => {
+                self.kept.eeprom = self.unit().and_then(|unit| unit.profile_of(image));
+            }
             Some(Came::Saved { verified }) => {
                 self.kept.eeprom = None;
                 if verified {
@@ -218,15 +220,5 @@ impl General {
             format!("{} General Settings says which settings are old and which are new.", newest.headline());
         self.open(Sheet::Unfinished);
         vec![Effect::Say(Gravity::Error, text)]
-    }
-
-    fn note_reloaded(&mut self, image: SettingsImage) {
-        let known = self.unit().and_then(|unit| unit.profile_of(image));
-        let Some(mut known) = known else { return };
-        if let (Some(keeping), Some(unit)) = (&self.kept.keeping, &self.kept.unit) {
-            unit.place.clone_into(&mut known.unit);
-            keeping.note_eeprom(unit.clone(), known.clone());
-        }
-        self.kept.eeprom = Some(known);
     }
 }

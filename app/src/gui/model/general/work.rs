@@ -9,7 +9,7 @@ use brushwork_link::Failure;
 use brushwork_link::device::{FnJob, Job, JobContext};
 use brushwork_link::settings::{
     DefaultsReport, Keeper, ReadReport, SaveReport, SettingsImage, WriteError, WriteOptions, WriteReport,
-    defaults_kept, read_all, reload, save_kept, write, write_kept,
+    defaults_kept, read_all, reload_kept, save_kept, write, write_kept,
 };
 use brushwork_link::transport::Stream;
 use crossbeam_channel::{Receiver, bounded};
@@ -97,7 +97,7 @@ pub(super) fn begin(
         }),
         SettingsWish::Reload => {
             job(key, "load the settings from EEPROM".to_owned(), WRITING_LIMIT, move |context| {
-                reload(context, &table).map(|report| Outcome::Reloaded(Box::new(report)))
+                reload_kept(context, &table, &mut *keeper).map(|report| Outcome::Reloaded(Box::new(report)))
             })
         }
         SettingsWish::Write => {

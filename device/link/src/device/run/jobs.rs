@@ -15,6 +15,11 @@ use std::any::Any;
 use std::panic::{self, AssertUnwindSafe};
 use std::time::Duration;
 
+/// How much longer than usual the last try of a job's command waits for its reply.
+const PATIENCE: Duration = Duration::from_millis(250);
+/// A unit that answered this recently is there.
+const ALIVE: Duration = Duration::from_secs(1);
+
 /// The device thread as one job sees it.
 struct Host<'a> {
     core: &'a mut DeviceLoop,
@@ -134,6 +139,24 @@ impl Host<'_> {
         ExchangeError::Interrupted { cause }
     }
 
+    /// Whether a reply may yet come if it is waited for: nothing came although the unit has just answered others, as
+    /// on a computer under load. Not while motors may be moved: then a silence has to be seen soon.
+    fn may_be_late(&self, reply: &Result<Reply, ExchangeError>) -> bool {
+        let is_alive = self.core.clock.now() < self.core.exchange.last_reply_at() + ALIVE;
+        let is_at_rest = self.core.armed.is_none() && !self.core.guard.is_moving();
+        matches!(reply, Err(ExchangeError::TimedOut { .. })) && is_alive && is_at_rest
+    }
+
+    fn ask_patiently(&mut self, command: u8, values: Vec<Value>) -> Result<Reply, ExchangeError> {
+        self.core.exchange.set_patience(PATIENCE);
+        let reply = self.core.act(self.asked_at, |unit, line| {
+            line.set_retries(0);
+            unit.transact(line, command, values)
+        });
+        self.core.exchange.set_patience(Duration::ZERO);
+        reply
+    }
+
     /// Reads a signal between two exchanges of the job, so that the window lives on.
     fn read_between(&mut self) -> Result<(), ExchangeError> {
         if self.polling && self.core.is_reading_due(self.core.clock.now()) {
@@ -174,7 +197,11 @@ impl JobHost for Host<'_> {
         self.check()?;
         self.read_between()?;
         self.stop_before(command)?;
-        let reply = self.core.act(self.asked_at, |unit, line| unit.transact(line, command, values));
+        let again = values.clone();
+        let mut reply = self.core.act(self.asked_at, |unit, line| unit.transact(line, command, values));
+        if self.may_be_late(&reply) {
+            reply = self.ask_patiently(command, again);
+        }
         if self.core.phase != Phase::Ended {
             self.core.after_command(command);
         }

@@ -1,7 +1,9 @@
 //! Write, save and restore, each between the beginning and the end of a journal.
 
 use super::super::image::{Difference, SettingsImage, diff};
-use super::super::memory::{DefaultsReport, SaveReport, SaveVerdict, restore_defaults, save_eeprom_of};
+use super::super::memory::{
+    DefaultsReport, SaveReport, SaveVerdict, reload, restore_defaults, save_eeprom_of,
+};
 use super::super::plan::WriteOptions;
 use super::super::read::{ReadReport, read_all};
 use super::super::table::{SettingsTable, Subject};
@@ -100,6 +102,22 @@ pub fn defaults_kept(
     keeper.end(match &result {
         Ok(report) if report.read.failures.is_empty() => Ending::Known,
         _ => Ending::Open,
+    });
+    result
+}
+
+/// As [`reload`], with a backup of what RAM held. Nothing is loaded when that cannot be kept.
+pub fn reload_kept(
+    wire: &mut dyn Wire,
+    table: &SettingsTable,
+    keeper: &mut dyn Keeper,
+) -> Result<ReadReport, Failure> {
+    let before = read_all(wire, *table.subject())?;
+    begin(wire, Act::Reload, &before, SettingsImage::default(), keeper)?;
+    let result = reload(wire, table);
+    keeper.end(match &result {
+        Ok(report) => Ending::EepromKnown(report.image.clone()),
+        Err(_) => Ending::Open,
     });
     result
 }

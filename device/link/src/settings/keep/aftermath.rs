@@ -106,6 +106,7 @@ impl Aftermath {
             Act::Write => format!("A write of settings begun {begun} was cut short."),
             Act::Save => format!("A save to EEPROM begun {begun} was cut short."),
             Act::Defaults => format!("Restoring the defaults, begun {begun}, was cut short."),
+            Act::Reload => format!("Loading the settings from EEPROM, begun {begun}, was cut short."),
             Act::Firmware => format!("A firmware change begun {begun} was cut short."),
         };
         let state = match (self.is_all_new(), self.is_all_old(), act) {

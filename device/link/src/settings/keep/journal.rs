@@ -16,13 +16,15 @@ pub enum Act {
     Save,
     /// The factory settings are restored in RAM.
     Defaults,
+    /// EEPROM is loaded over RAM.
+    Reload,
     /// The firmware is replaced.
     Firmware,
 }
 
 impl Act {
     /// Every act.
-    pub const ALL: [Self; 4] = [Self::Write, Self::Save, Self::Defaults, Self::Firmware];
+    pub const ALL: [Self; 5] = [Self::Write, Self::Save, Self::Defaults, Self::Reload, Self::Firmware];
 
     /// The act as a noun: "write".
     pub fn label(self) -> &'static str {
@@ -30,6 +32,7 @@ impl Act {
             Self::Write => "write",
             Self::Save => "save",
             Self::Defaults => "defaults",
+            Self::Reload => "reload",
             Self::Firmware => "firmware change",
         }
     }

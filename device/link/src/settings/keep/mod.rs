@@ -9,7 +9,7 @@ mod acts;
 mod aftermath;
 mod journal;
 
-pub use acts::{defaults_kept, save_kept, write_kept};
+pub use acts::{defaults_kept, reload_kept, save_kept, write_kept};
 pub use aftermath::{Aftermath, Held};
 pub use journal::{Act, Journal, JournalError};
 
