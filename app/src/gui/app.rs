@@ -27,9 +27,11 @@ use super::model::message::Gravity;
 use super::model::palette::Palette;
 use super::model::screen::Screen;
 use super::model::{Appearance, Desk, DeskId, Model, Phase, place_of};
-use super::parts::{OpenLink, Parts};
+use super::parts::{OpenLink, Parts, SimulatedWorld};
 use super::remember::Memory;
 use super::{shell, theme};
+
+mod updating;
 
 /// Time between two frames while nobody touches anything: ten a second show what ten samples a second bring.
 pub const FRAME_INTERVAL: Duration = Duration::from_millis(100);
@@ -92,6 +94,11 @@ impl App {
         self.links.device(self.model.front.id())
     }
 
+    /// The simulated world behind the link in front, if there is one.
+    pub fn world(&self) -> Option<&dyn SimulatedWorld> {
+        self.links.get(self.model.front.id())?.world.as_deref()
+    }
+
     /// Draws one frame.
     pub fn contents(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
@@ -114,6 +121,7 @@ impl App {
         if let Some(failure) = self.memory.as_mut().and_then(|memory| memory.look(&ctx, &self.model)) {
             self.model.messages.warn(failure.to_string());
         }
+        self.hold_open(&ctx);
         if self.closing || self.end.is_asked() {
             self.links.stop_all();
             ctx.send_viewport_cmd(ViewportCommand::Close);
@@ -131,6 +139,7 @@ impl App {
             self.watch(desk);
             self.look_at_world(desk);
             self.look_after_graph(desk, ctx);
+            self.look_after_firmware(desk, ctx);
         }
     }
 
@@ -335,6 +344,7 @@ impl App {
                 }
             }
             Command::Guided(wish) => self.guided(wish),
+            Command::Firmware(wish) => self.firmware(wish),
             Command::OpenSheet(sheet) => {
                 self.show(Screen::GeneralSettings);
                 let front = &mut self.model.front;
@@ -368,6 +378,10 @@ impl App {
             Command::Theme(theme) => model.appearance.theme = theme,
             Command::PlainEdges(plain) => model.appearance.plain = plain,
             Command::Scale(percent) => model.appearance.set_scale(percent),
+            Command::OpenCanOpen => {
+                let ports = model.devices.ports().to_vec();
+                model.canopen.show(&ports);
+            }
             Command::ToggleWorld => model.front.world.open = !model.front.world.open,
             Command::PauseTraffic(paused) => model.front.traffic.log.set_paused(paused),
             Command::ClearHistory => model.front.history.clear(),

@@ -7,6 +7,7 @@ use brushwork_sim::world::WorldAction;
 use egui::ThemePreference;
 
 use super::model::DeskId;
+use super::model::firmware::FirmwareWish;
 use super::model::general::{Section, SettingsWish, Sheet};
 pub use super::model::guided::GuidedWish;
 use super::model::help::HelpPage;
@@ -65,6 +66,10 @@ pub enum Command {
     PlainEdges(bool),
     /// Size of everything in the window, percent.
     Scale(u16),
+    /// Something to be done with the firmware of the unit that is looked at.
+    Firmware(FirmwareWish),
+    /// Opens the window for connecting to a CANopen bus.
+    OpenCanOpen,
     ToggleWorld,
     ToggleTraffic,
     PauseTraffic(bool),

@@ -6,13 +6,13 @@ use std::time::Duration;
 use brushwork_link::device::Addresses;
 use brushwork_link::transport::{ConnectTarget, PortInfo, list_ports};
 use brushwork_link::{Clock, Failure, SystemClock};
-use brushwork_protocol::packet_serial::Address;
 use brushwork_sim::world::{WorldAction, WorldView};
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 use egui::Context;
 
 use super::parts::{OpenLink, Opener, Parts, PortSource, SimulatedWorld};
 use crate::keep::{Keeping, Store};
+use crate::session::firmware::LoaderPlace;
 use crate::session::{self, SessionError, SessionOptions, Simulation};
 
 /// How often the list of ports is made.
@@ -73,6 +73,11 @@ fn watch(sender: &Sender<Listed>, ctx: &Context) {
     }
 }
 
+/// An opener as the real program has it, for those who bring their own ports.
+pub fn session_opener() -> Box<dyn Opener> {
+    Box::new(SessionOpener::new())
+}
+
 /// Simulated machines that the window still holds.
 type Running = Arc<Mutex<Vec<Weak<Simulation>>>>;
 
@@ -115,6 +120,10 @@ impl Opener for SessionOpener {
         let _ = std::thread::Builder::new().name("open link".to_owned()).spawn(open);
         receiver
     }
+
+    fn loader_place(&mut self, target: &ConnectTarget, ports: &[PortInfo]) -> LoaderPlace {
+        LoaderPlace::among(target, find(&self.running, target), ports)
+    }
 }
 
 /// The simulated machine that a target names, if it runs.
@@ -136,6 +145,6 @@ impl SimulatedWorld for Simulation {
     }
 
     fn unit_at(&self, address: u8) -> Option<usize> {
-        Self::unit_at(self, Address::new(address)?)
+        self.unit_of(address)
     }
 }

@@ -12,6 +12,7 @@ use crossbeam_channel::Receiver;
 
 use crate::keep::Keeping;
 use crate::session::SessionError;
+use crate::session::firmware::LoaderPlace;
 
 /// Everything the window needs and does not make itself.
 pub struct Parts {
@@ -35,6 +36,11 @@ pub trait Opener {
         target: ConnectTarget,
         addresses: Addresses,
     ) -> Receiver<Result<OpenLink, SessionError>>;
+
+    /// Where a unit at `target` will be found once it is in its firmware loader. Does not wait.
+    fn loader_place(&mut self, target: &ConnectTarget, ports: &[PortInfo]) -> LoaderPlace {
+        LoaderPlace::among(target, None, ports)
+    }
 }
 
 /// An open link.

@@ -51,11 +51,16 @@ impl LoaderPlace {
     /// Where the unit behind `target` will be. To be asked while it is still connected, or of the loader's own port.
     #[must_use]
     pub fn of(target: &ConnectTarget, simulation: Option<Arc<Simulation>>) -> Self {
+        Self::among(target, simulation, &list_ports().unwrap_or_default())
+    }
+
+    /// The same where the ports are known already.
+    #[must_use]
+    pub fn among(target: &ConnectTarget, simulation: Option<Arc<Simulation>>, ports: &[PortInfo]) -> Self {
         let changes_name = match target {
-            ConnectTarget::Serial { path, .. } => list_ports()
-                .unwrap_or_default()
-                .iter()
-                .any(|port| port.is_usb && port.name == real_path(path)),
+            ConnectTarget::Serial { path, .. } => {
+                ports.iter().any(|port| port.is_usb && port.name == real_path(path))
+            }
             ConnectTarget::Tcp { .. } | ConnectTarget::Can { .. } | ConnectTarget::Sim(_) => false,
         };
         Self { target: target.clone(), simulation, changes_name }

@@ -23,6 +23,7 @@ pub struct Simulation {
     addresses: Vec<Address>,
     stream: Stream,
     can_form: Option<Form>,
+    nodes: Vec<NodeId>,
     server: SimHandle<Bus>,
 }
 
@@ -74,8 +75,9 @@ impl Simulation {
         let bus = bus_of(&spec, index)?;
         let options = ServerOptions { stream: index, seed: spec.seed, ..ServerOptions::default() };
         let server = Server::spawn(bus, options, &Endpoint::Channel).map_err(SimulationError::Server)?;
+        let nodes = spec.units.iter().map(|unit| unit.node).collect();
         let addresses = spec.units.iter().map(|unit| unit.address).collect();
-        Ok(Self { text: text.to_owned(), addresses, stream, can_form: spec.can, server })
+        Ok(Self { text: text.to_owned(), addresses, stream, can_form: spec.can, nodes, server })
     }
 
     /// Whether it runs and is what `text` describes.
@@ -127,6 +129,14 @@ impl Simulation {
     /// The served machine, for those who need its truth.
     pub fn server(&self) -> &SimHandle<Bus> {
         &self.server
+    }
+
+    /// Which unit, counted from 0, has this number on its bus: an address, or a node id on a CAN bus.
+    pub fn unit_of(&self, id: u8) -> Option<usize> {
+        match self.can_form {
+            Some(_) => self.nodes.iter().position(|node| node.get() == id),
+            None => self.unit_at(Address::new(id)?),
+        }
     }
 
     /// Which unit, counted from 0, has the address it was started with.

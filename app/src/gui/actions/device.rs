@@ -7,6 +7,7 @@ use super::{
     Action, Keys, Menu, Ready, always, connected, ctrl, ctrl_shift, key, mcl_missing, place, settings_idle,
 };
 use crate::gui::command::Command;
+use crate::gui::model::firmware::FirmwareWish;
 use crate::gui::model::general::{Section, Sheet};
 use crate::gui::model::link::Arming;
 use crate::gui::model::screen::Screen;
@@ -79,9 +80,19 @@ pub(super) const ACTIONS: &[Action] = &[
         place: place(Menu::Device, 2),
         keys: Keys::None,
         help: "Connects to a CANopen bus through a GridConnect adapter.",
-        ready: |_| Err("The CANopen bus is not built yet.".into()),
+        ready: always,
         is_on: None,
-        command: |_| Command::Connect,
+        command: |_| Command::OpenCanOpen,
+    },
+    Action {
+        id: "device.firmware",
+        title: "Firmware…",
+        place: place(Menu::Device, 2),
+        keys: Keys::None,
+        help: "Shows what firmware is installed and what is known about it, and updates it from a file of yours.",
+        ready: always,
+        is_on: None,
+        command: |_| Command::Firmware(FirmwareWish::Open),
     },
     Action {
         id: "device.read-settings",

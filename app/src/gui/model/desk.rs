@@ -14,6 +14,7 @@ use brushwork_link::transport::ConnectTarget;
 use brushwork_sim::world::WorldView;
 
 use super::drawer::Drawers;
+use super::firmware::Firmware;
 use super::general::General;
 use super::generator::Generator;
 use super::graph_channels;
@@ -55,6 +56,8 @@ pub struct Desk {
     /// The settings of the units met so far, and what is being done with them.
     pub general: General,
     pub velocity: Velocity,
+    /// The firmware window and the update that runs.
+    pub firmware: Firmware,
     pub position: Position,
     pub generator: Generator,
     pub qpps: QppsPanel,
@@ -137,6 +140,7 @@ impl Desk {
             pwm: Pwm::default(),
             general: General::default(),
             velocity: Velocity::default(),
+            firmware: Firmware::default(),
             position: Position::default(),
             generator: Generator::default(),
             qpps: QppsPanel::default(),
@@ -186,6 +190,7 @@ impl Desk {
     pub fn take(&mut self, event: Event) -> Vec<Effect> {
         self.history.note(&event);
         self.traffic.note(&event);
+        self.firmware.note(&event);
         if self.watch.note(&event) {
             self.update_homed();
             return Vec::new();
@@ -265,6 +270,7 @@ impl Desk {
         self.link = LinkView::default();
         self.watch = Watch::default();
         self.traffic.link_ended();
+        self.firmware.not_entered("the link was lost.");
         self.general.link_ended();
         self.forget_unit();
         self.rest();

@@ -5,9 +5,11 @@ use egui::ThemePreference;
 
 use super::graph::{ChannelInfo, Scale};
 
+pub mod canopen;
 pub mod desk;
 pub mod devices;
 pub mod drawer;
+pub mod firmware;
 pub mod general;
 pub mod generator;
 pub mod guided;
@@ -48,6 +50,8 @@ pub struct Model {
     /// Open while there is one.
     pub palette: Option<Palette>,
     pub help: Help,
+    /// The window for connecting to a CANopen bus.
+    pub canopen: canopen::CanOpenChoice,
     /// The link that is looked at. Only this one can be armed.
     pub front: Desk,
     /// The links in the background. They are read and recorded like the one in front.

@@ -7,8 +7,10 @@ use super::model::screen::Screen;
 use super::model::{Model, Phase};
 use super::theme::Palette;
 
+pub mod canopen;
 mod drawer;
 mod drive;
+pub mod firmware;
 mod general;
 mod generator;
 mod loops;

@@ -53,7 +53,10 @@ pub fn shell_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     }
     let central = Frame::new().fill(palette.panel).inner_margin(Margin::symmetric(12, 10));
     CentralPanel::no_frame().frame(central).show(ui, |ui| screens::screen_ui(ui, model, commands));
-    help::help_ui(ui.ctx(), model, ui.ctx().content_rect().with_min_x(left.right()));
+    let room = ui.ctx().content_rect().with_min_x(left.right());
+    help::help_ui(ui.ctx(), model, room);
+    screens::firmware::firmware_ui(ui.ctx(), model, commands, room);
+    screens::canopen::canopen_ui(ui.ctx(), model, commands, room);
     palette::palette_ui(ui.ctx(), model, commands);
 }
 
