@@ -1,6 +1,5 @@
 //! See `ARCHITECTURE.md`.
 
-pub mod clamp;
 pub mod cli;
 pub mod gui;
 pub mod keep;

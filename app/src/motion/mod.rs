@@ -1,13 +1,14 @@
-//! Guided motion: setpoint profiles and the measurement of QPPS, as jobs on the device thread.
+//! Guided motion: setpoint profiles, the measurement of QPPS and the voltage clamp test, as jobs on the device thread.
 //!
-//! What is to be done ([`profile`]) and what the readings mean ([`speed`]) are pure; [`player`] and [`qpps`] are the jobs.
-//! Both need an armed screen, live on its renewals and end with the motors stopped, whatever their way out. They draw
+//! What is to be done ([`profile`]) and what the readings mean ([`speed`]) are pure; [`player`], [`qpps`] and [`clamp`] are the
+//! jobs. All need an armed screen, live on its renewals and end with the motors stopped, whatever their way out. They draw
 //! nothing; the window's model starts them and shows what they hand back.
 #![allow(
     missing_docs,
     reason = "the program is no library: only its window and its own tests see these items"
 )]
 
+pub mod clamp;
 pub mod player;
 pub mod profile;
 pub mod qpps;

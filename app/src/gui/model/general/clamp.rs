@@ -12,7 +12,7 @@ use super::super::message::Gravity;
 use super::General;
 use super::section::Section;
 use super::unit::UnitSettings;
-use crate::clamp::{self, STEPS, Step, Task};
+use crate::motion::clamp::{self, STEPS, Step, Task};
 
 /// How far above the controller's own limit the test's is set at first: a clamp acts at the controller's limit.
 const ABOVE_MAXIMUM_VOLTS: f64 = 2.0;

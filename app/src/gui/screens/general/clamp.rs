@@ -5,7 +5,6 @@ use brushwork_protocol::packet_serial::Motor;
 use egui::{Button, Grid, Label, Layout, ProgressBar, RichText, Role, ScrollArea, Ui, WidgetInfo, vec2};
 
 use super::sheet::lamp_ui;
-use crate::clamp::Step;
 use crate::gui::command::{Command, Commands, GuidedWish};
 use crate::gui::model::general::General;
 use crate::gui::model::link::LinkView;
@@ -14,6 +13,7 @@ use crate::gui::screens::drive::arm_ui;
 use crate::gui::theme::Palette;
 use crate::gui::widgets::LampState;
 use crate::gui::widgets::numeric::Numeric;
+use crate::motion::clamp::Step;
 
 const WHAT_IT_DOES: &str = "Runs the motor up to 25 % and slows it down quickly, then 5 % more each time up to 100 %, while \
     the main battery's voltage is watched. It stops where the voltage reaches the \

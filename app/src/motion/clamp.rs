@@ -1,13 +1,9 @@
 //! The voltage clamp test of MCP manual 1.7.5 as a job: the motor runs up to 25 % and is slowed quickly, then 5 % more each
-//! time, while the main battery's voltage is watched. It ends at 100 %, where the voltage reaches the limit, or where the controller has to brake the motor by itself
-//! because its over-voltage lasts.
+//! time, while the main battery's voltage is watched. It ends at 100 %, where the voltage reaches the limit, or where the
+//! controller has to brake the motor by itself because its over-voltage lasts.
 //!
 //! Slowing down takes the duty back quickly but not at once: at once would short the motor, which brakes it and gives nothing
 //! back. The motors are stopped by the device thread on every way out.
-#![allow(
-    missing_docs,
-    reason = "the program is no library: only its window and its own tests see these items"
-)]
 
 use std::time::Duration;
 
