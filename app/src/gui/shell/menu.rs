@@ -17,7 +17,7 @@ pub fn menu_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
             ui.menu_button(menu.title(), |ui| {
                 // A long menu scrolls: it never hangs over the Stop button.
                 let room = ui.ctx().content_rect().height() - BELOW;
-                let scroll = ScrollArea::vertical().max_height(room);
+                let scroll = ScrollArea::vertical().max_height(room).min_scrolled_height(room);
                 scroll.show(ui, |ui| items_ui(ui, menu, model, commands));
             });
         }
@@ -26,6 +26,7 @@ pub fn menu_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
 
 fn items_ui(ui: &mut Ui, menu: Menu, model: &Model, commands: &mut Commands) {
     ui.set_min_width(MENU_WIDTH);
+    ui.spacing_mut().item_spacing.y = 1.0;
     let mut group = None;
     for action in actions::of_menu(menu) {
         if group.replace(action.place.group).is_some_and(|before| before != action.place.group) {
