@@ -98,7 +98,7 @@ fn table_ui(ui: &mut Ui, title: &str, rows: &[(&str, &str, &str)]) {
     ui.add_space(4.0);
     ui.label(RichText::new(title).strong());
     for (keys, what, help) in rows {
-        ui.horizontal_top(|ui| {
+        ui.horizontal(|ui| {
             fixed_label_ui(ui, keys, KEYS_WIDTH);
             fixed_label_ui(ui, what, WHAT_WIDTH);
             note_ui(ui, help);
