@@ -469,3 +469,19 @@ fn a_typed_path_with_its_rate_fits_into_the_list() {
         assert!(right <= edge, "{label} ends at {right} in a list of {edge}");
     }
 }
+
+#[test]
+fn exit_stops_every_device_and_asks_the_window_to_close() {
+    let mut bench = both_open();
+    bench.arm();
+    bench.set_duty(Motor::M1, "40");
+    bench.pass_ms(1000);
+    assert!(second_duty(&bench, Motor::M1) > 0.35);
+    bench.harness.key_press_modifiers(Modifiers::COMMAND, Key::Q);
+    bench.harness.step();
+    let viewports = &bench.harness.output().viewport_output;
+    let asked = viewports.values().flat_map(|viewport| &viewport.commands);
+    assert!(asked.into_iter().any(|command| *command == egui::ViewportCommand::Close));
+    bench.pass_ms(100);
+    assert_eq!(second_duty(&bench, Motor::M1), 0.0);
+}
