@@ -208,3 +208,69 @@ fn unbounded(value: f64, (low, high): (f64, f64)) -> f64 {
     let share = ((value - low) / (high - low)).clamp(1e-6, 1.0 - 1e-6);
     (share / (1.0 - share)).ln()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rig::{Drive, Input, Point};
+
+    /// A course of steps over four seconds, its counts made by a known model and rounded.
+    fn course(model: &PlantModel, offset_s: f64) -> Course {
+        let steps = [(0.05, 1.0), (0.9, 0.3), (1.3, 0.65), (1.6, 0.3), (1.9, 0.65), (2.2, -1.0), (3.2, 0.0)];
+        let drives: Vec<Drive> =
+            steps.iter().map(|&(t, duty)| Drive { t, input: Input::Duty(duty) }).collect();
+        let mut points: Vec<Point> = (0..320)
+            .map(|n| Point {
+                t: f64::from(n) * 0.0125,
+                counts: 0.0,
+                duty: None,
+                amps: None,
+                volts: None,
+                limited: false,
+            })
+            .collect();
+        let empty = Course::new(&points, &drives, 0.0, 4.0, None);
+        let (mut counts, mut volts) = (Vec::new(), Vec::new());
+        empty.predict(model, offset_s, &mut counts, &mut volts);
+        for (point, count) in points.iter_mut().zip(&counts) {
+            point.counts = count.floor();
+        }
+        Course::new(&points, &drives, 0.0, 4.0, None)
+    }
+
+    #[test]
+    fn a_known_motor_is_found_again_whatever_the_start_value_of_its_time_constant() {
+        let truth = PlantModel {
+            gain_counts_per_s: 8_000.0,
+            tau_s: 0.09,
+            coulomb_duty: 0.06,
+            load_duty: 0.0,
+            drive_limit: None,
+            sag: 0.05,
+        };
+        let course = course(&truth, 0.005);
+        for start_s in [0.01, 0.09, 1.5] {
+            let found = fit(&course, 6_000.0, start_s, None).expect("enough polls");
+            let model = &found.model;
+            assert!((model.gain_counts_per_s / 8_000.0 - 1.0).abs() < 0.01, "{found:?}");
+            assert!((model.tau_s / 0.09 - 1.0).abs() < 0.02, "{found:?}");
+            assert!((model.coulomb_duty - 0.06).abs() < 0.01, "{found:?}");
+            assert!(found.chi_square < 1.0, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn the_interval_of_the_time_constant_covers_the_truth_of_a_quick_and_coarse_axis() {
+        let truth = PlantModel {
+            gain_counts_per_s: 700.0,
+            tau_s: 0.02,
+            coulomb_duty: 0.05,
+            load_duty: 0.0,
+            drive_limit: None,
+            sag: 0.05,
+        };
+        let found = fit(&course(&truth, 0.004), 600.0, 0.05, None).expect("enough polls");
+        let off = (found.model.tau_s / 0.02).ln().abs();
+        assert!(off < 3.0 * found.sd_ln_tau, "{off} of {}", found.sd_ln_tau);
+    }
+}

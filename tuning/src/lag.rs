@@ -175,3 +175,76 @@ fn mismatch(course: &ClosedCourse, mut twin: TickLoop, law: &LoopLaw, offset_s: 
     }
     sum
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Pid;
+
+    const PLANT: PlantModel = PlantModel {
+        gain_counts_per_s: 40_000.0,
+        tau_s: 0.12,
+        coulomb_duty: 0.05,
+        load_duty: 0.0,
+        drive_limit: None,
+        sag: 0.0,
+    };
+    const GAINS: Gains = Gains {
+        velocity: Pid { p: 3.0, i: 20.0, d: 0.0 },
+        position: None,
+        max_integral: 0.0,
+        deadzone_counts: 0.0,
+    };
+
+    /// Steps of a loop with a known lag, polled every 12.3 ms.
+    fn course(lag: Lag) -> ClosedCourse {
+        let law = LoopLaw::default();
+        let mut twin = TickLoop::new(PLANT, law, lag, GAINS, 40_000.0);
+        let mut course = ClosedCourse::default();
+        for n in 0..5 {
+            let speed = if n % 2 == 0 { 15_000.0 } else { 20_000.0 };
+            course.setpoints.push((0.02 + 0.35 * f64::from(n), speed));
+        }
+        let mut poll = 0.0;
+        for tick in 0..540 {
+            let t = f64::from(tick) * law.tick_s();
+            let goal = course.setpoints.iter().rev().find(|s| s.0 <= t).map(|s| s.1);
+            let place = twin.motion.place;
+            if let Some(goal) = goal {
+                twin.tick(Setpoint::Speed(goal), 0.0);
+            }
+            if t >= poll {
+                // A reading is half a tick old.
+                course.counts.push((t + 0.5 * law.tick_s(), place.floor()));
+                course.duties.push((t + 0.5 * law.tick_s(), twin.duty));
+                poll += 0.0123;
+            }
+        }
+        course
+    }
+
+    #[test]
+    fn a_known_lag_is_found_again_and_lies_in_its_interval() {
+        let law = LoopLaw::default();
+        for lag in [
+            Lag::default(),
+            Lag { filter_s: 0.004, delay_ticks: 1.0 },
+            Lag { filter_s: 0.010, delay_ticks: 0.0 },
+            Lag { filter_s: 0.010, delay_ticks: 1.0 },
+        ] {
+            let found =
+                fit_lag(&course(lag), &PLANT, &law, &GAINS, 40_000.0, 0.002, 0.03).expect("enough readings");
+            let (got, wanted) = (found.lag.total_s(&law), lag.total_s(&law));
+            assert!((got - wanted).abs() < 0.0025, "{got} s instead of {wanted} s: {found:?}");
+            assert!(found.chi_square < 1.5, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn a_record_without_steps_says_nothing() {
+        assert!(
+            fit_lag(&ClosedCourse::default(), &PLANT, &LoopLaw::default(), &GAINS, 40_000.0, 0.01, 0.1)
+                .is_none()
+        );
+    }
+}

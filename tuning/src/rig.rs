@@ -16,9 +16,11 @@ use std::time::Duration;
 const ABSOLUTE_COUNTS: i64 = 4096;
 /// The stream time-out during a run, ms: the bridge is off this long after the host died.
 const RUN_STREAM_TIMEOUT_MS: u32 = 150;
+/// Share of full speed up to which a load may swing back.
+const SWING_BACK: f64 = 0.3;
 /// How long a motor is braked to see whether it turns, and how long the duty takes to come down, s.
-const BRAKE_TEST_S: f64 = 0.10;
-const DUTY_DOWN_S: f64 = 0.055;
+const BRAKE_TEST_S: f64 = 0.13;
+const DUTY_DOWN_S: f64 = 0.078;
 /// Silence after which the link counts as lost, s.
 const LINK_LOST_S: f64 = 0.15;
 
@@ -262,7 +264,8 @@ impl<'a> Rig<'a> {
         self.points.push(point);
         self.check_travel(&point)?;
         match self.watch.see(&point) {
-            Err(Cause::Stalled) => Err(self.stalled_or_blind()),
+            Err(Cause::Stalled) => Err(self.stalled_or(Cause::EncoderLost)),
+            Err(Cause::EncoderFlipped) if self.swings_back() => Err(self.stalled_or(Cause::EncoderFlipped)),
             other => other.map(|()| Some(point)),
         }
     }
@@ -335,9 +338,14 @@ impl<'a> Rig<'a> {
         self.last_raw - first
     }
 
-    /// Nothing is counted and the current is high: either the shaft stands, or the motor pulls away unseen. Braked, a turning
-    /// motor gives a current; a standing one gives none.
-    fn stalled_or_blind(&mut self) -> Cause {
+    /// Whether a speed of the wrong sign is so low that a load may have swung back from where it was stopped.
+    fn swings_back(&self) -> bool {
+        self.recent_speed(2).is_none_or(|speed| speed.abs() < SWING_BACK * self.watch.full_speed)
+    }
+
+    /// The counts stand, or swing back, and the current is high: either the shaft is held, or the motor pulls away while the
+    /// encoder is wrong. Braked, a turning motor gives a current; a standing one gives none.
+    fn stalled_or(&mut self, wrong: Cause) -> Cause {
         let _ = self.axis.drive_duty(0);
         let stall = self.watch.stall_amps.unwrap_or(0.0);
         let mut braking: f64 = 0.0;
@@ -355,7 +363,7 @@ impl<'a> Rig<'a> {
                 return cause_of(&error);
             }
         }
-        if braking > (0.04 * stall).max(0.03) { Cause::EncoderLost } else { Cause::Stalled }
+        if braking > (0.04 * stall).max(0.03) { wrong } else { Cause::Stalled }
     }
 
     /// Ends the run before the window is left: where the motor would come to rest if it were braked now counts.

@@ -44,6 +44,7 @@ pub struct Watch {
     open_since_s: Option<f64>,
     /// Motion in the direction of the present duty has been seen.
     follows: bool,
+    follows_since_s: f64,
     recent: VecDeque<Point>,
 }
 
@@ -95,6 +96,9 @@ impl Watch {
         let speed = (last.counts - first.counts) / (last.t - first.t) * self.duty.signum();
         let floor = (0.04 * self.full_speed).max(4.0 / (last.t - first.t));
         if speed > floor {
+            if !self.follows {
+                self.follows_since_s = point.t;
+            }
             self.follows = true;
         } else if self.follows && speed < -floor && point.t - self.since_s > 0.05 {
             return Err(Cause::EncoderFlipped);
@@ -151,17 +155,31 @@ impl Watch {
         let silence = silence.min(MEMORY_S - 0.05);
         let counts = self.recent.iter().filter(|old| point.t - old.t <= silence).map(|old| old.counts);
         let (low, high) = counts.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), c| (l.min(c), h.max(c)));
-        if self.over(silence).is_none() || high - low > 1.0 {
+        let Some((first, last)) = self.over(silence) else { return Ok(()) };
+        // A load behind a spring swings on while the motor is held.
+        let gained = (last.counts - first.counts) * self.duty.signum();
+        let held = self.follows
+            && point.t - self.follows_since_s > silence + 0.05
+            && self.pulls_hard()
+            && gained < 0.1 * expected * silence;
+        if high - low > 1.0 && !held {
             return Ok(());
         }
         let amps = self.recent.iter().rev().find_map(|old| old.amps).map(f64::abs);
         if amps.is_some_and(|amps| amps <= NO_CURRENT_AMPS) {
             return Err(Cause::MotorOpened);
         }
-        let stalled = match (amps, self.stall_amps) {
-            (Some(amps), Some(stall)) => amps > 0.45 * self.duty.abs() * stall || point.limited,
-            _ => point.limited,
-        };
-        Err(if stalled { Cause::Stalled } else { Cause::EncoderLost })
+        Err(if self.pulls_hard() { Cause::Stalled } else { Cause::EncoderLost })
+    }
+
+    /// Whether the current is that of a motor that is held, or that pulls away from rest.
+    #[must_use]
+    pub fn pulls_hard(&self) -> bool {
+        let Some(newest) = self.recent.back() else { return false };
+        let amps = self.recent.iter().rev().find_map(|old| old.amps).map(f64::abs);
+        match (amps, self.stall_amps) {
+            (Some(amps), Some(stall)) => amps > 0.45 * self.duty.abs() * stall || newest.limited,
+            _ => newest.limited,
+        }
     }
 }

@@ -30,7 +30,7 @@ pub struct Event {
 pub struct Truth {
     /// Highest motor current, A.
     pub peak_amps: f64,
-    /// When the bridge was last given a duty other than zero.
+    /// When the bridge last drove the motor.
     pub last_driven: Duration,
     /// Farthest the motor shaft was from where it started, rad.
     pub farthest_radians: f64,
@@ -115,7 +115,10 @@ impl SimulatedLine {
         let view = self.unit.view();
         let axis = &view.axes[0];
         self.truth.peak_amps = self.truth.peak_amps.max(axis.truth.amps.abs());
-        if axis.output.duty() != 0.0 {
+        // A current limit that softens the braking gives a duty too, but against the current: that drives nothing.
+        // Without any current, as with a lead off, the duty alone counts.
+        let (duty, amps) = (axis.output.duty(), axis.truth.amps);
+        if duty * amps > 0.0 || (duty != 0.0 && amps == 0.0) {
             self.truth.last_driven = self.now;
         }
         self.truth.farthest_radians = self.truth.farthest_radians.max(axis.truth.motor_radians.abs());

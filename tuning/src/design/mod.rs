@@ -147,3 +147,54 @@ fn finish(loops: &Loops, task: &Task, best: Option<Candidate>) -> Option<Design>
         noise_duty: margins.noise_duty * task.noise_factor,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn task(level: f64) -> Task {
+        let lag = Lag { filter_s: 0.004, delay_ticks: 1.0 };
+        Task {
+            plant: PlantModel {
+                gain_counts_per_s: 30_000.0,
+                tau_s: 0.1,
+                coulomb_duty: 0.05,
+                load_duty: 0.0,
+                drive_limit: None,
+                sag: 0.03,
+            },
+            law: LoopLaw::default(),
+            lag,
+            worst_lag: lag,
+            qpps: 28_000.0,
+            goal: Goal::of_level(level),
+            noise_factor: 1.0,
+            slack_counts: 0.0,
+            least_integral_s: 0.0,
+        }
+    }
+
+    #[test]
+    fn every_method_keeps_its_goal_at_every_level_and_stiffer_is_never_slower() {
+        type Method = fn(&Task) -> Option<Design>;
+        let methods: [(&str, Method); 4] =
+            [("velocity", design_velocity), ("pd", design_pd), ("pid", design_pid), ("piv", design_piv)];
+        for (name, method) in methods {
+            let mut before = f64::INFINITY;
+            for level in [0.0, 25.0, 50.0, 75.0] {
+                let task = task(level);
+                let design = method(&task).unwrap_or_else(|| panic!("{name} at level {level}: no gains"));
+                assert!(design.ms <= task.goal.ms + 1e-9, "{name} at level {level}: Ms {}", design.ms);
+                assert!(design.noise_duty <= task.goal.noise_duty + 1e-9, "{name} at level {level}");
+                let cost = design.score.setpoint + design.score.load;
+                assert!(cost <= 1.1 * before, "{name} at level {level}: {cost} after {before}");
+                before = cost;
+            }
+        }
+    }
+
+    #[test]
+    fn the_same_task_gives_the_same_gains_to_the_last_bit() {
+        assert_eq!(design_piv(&task(50.0)), design_piv(&task(50.0)));
+    }
+}
