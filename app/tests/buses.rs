@@ -10,6 +10,7 @@ use brushwork::gui::opener::session_opener;
 use brushwork::gui::parts::{Parts, PortSource};
 use brushwork::keep::{Keeping, Store};
 use brushwork_link::Failure;
+use brushwork_link::device::{Drive, DriveCommand, Request};
 use brushwork_link::transport::PortInfo;
 use brushwork_protocol::loader::SimulatedImage;
 use brushwork_protocol::models;
@@ -186,7 +187,7 @@ fn settings_that_differ_after_an_update_are_listed_and_can_be_restored() {
     window.open(UNIT);
     // A change in RAM that was never saved: the restart after the update forgets it.
     window.app.borrow_mut().as_mut().unwrap().model.front.firmware.open = true;
-    let request = brushwork_link::device::Request::Transact {
+    let request = Request::Transact {
         id: 1,
         command: brushwork_protocol::packet_serial::number::SET_VELOCITY_PID_M1,
         values: [0x4000, 0x10000, 0x8000, 12_345].map(brushwork_protocol::packet_serial::Value::Int).to_vec(),
@@ -252,4 +253,31 @@ fn a_canopen_bus_is_connected_from_the_device_menu() {
     let identity = app.as_ref().unwrap().model.front.link.identity().unwrap();
     assert_eq!((identity.place(), identity.model), ("node 1".to_owned(), Some("MCP266")));
     assert_eq!(app.as_ref().unwrap().model.front.phase.target(), Some("sim:mcp266,can=binary,node=1"));
+}
+
+#[test]
+fn settings_are_read_and_a_simulated_node_is_armed_driven_and_stopped_over_can() {
+    let mut window = Window::new();
+    window.open("sim:mcp266,can,node=3");
+    window.click(Role::Button, "General Settings");
+    window.until("the settings are read", |app| {
+        app.model.front.general.unit().is_some_and(brushwork::gui::model::general::UnitSettings::is_read)
+    });
+    window.click(Role::Button, "PWM Settings");
+    window.click(Role::Button, "Device");
+    window.click(Role::MenuItemCheckBox, "Arm This Screen");
+    window.until_text("Armed for");
+    let duty = || {
+        let drive = Drive::both(DriveCommand::duty(0.3));
+        Request::Drive(drive)
+    };
+    window.app.borrow().as_ref().unwrap().device().unwrap().request(duty()).unwrap();
+    let driven = |app: &App, drives: bool| {
+        let views =
+            app.world().and_then(brushwork::gui::parts::SimulatedWorld::views).expect("it is simulated");
+        (views[0].axes[0].output.duty() > 0.2) == drives
+    };
+    window.until("the motor is driven", |app| driven(app, true));
+    window.harness.key_press(egui::Key::Space);
+    window.until("Space stops it", |app| driven(app, false));
 }

@@ -225,6 +225,9 @@ fn paint_row(ui: &Ui, rect: Rect, row: &Row, (chosen, in_front): (bool, bool), r
 /// What a port is, as far as its USB names tell.
 fn described(port: &PortInfo) -> String {
     match (&port.product, port.is_usb) {
+        (Some(product), _) if port.is_loader() => {
+            format!("{product}: waits for firmware, see Device > Firmware")
+        }
         (Some(product), _) => product.clone(),
         (None, true) => "USB".to_owned(),
         (None, false) => "serial port".to_owned(),
