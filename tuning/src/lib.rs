@@ -2,6 +2,8 @@
 //! simulator.
 //!
 //! Times are in seconds, places in counts, speeds in counts per second, duties from -1 to 1.
+//!
+#![doc = include_str!("../MEASURED.md")]
 
 pub mod axis;
 pub mod cause;

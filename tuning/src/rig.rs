@@ -265,7 +265,9 @@ impl<'a> Rig<'a> {
         self.check_travel(&point)?;
         match self.watch.see(&point) {
             Err(Cause::Stalled) => Err(self.stalled_or(Cause::EncoderLost)),
-            Err(Cause::EncoderFlipped) if self.swings_back() => Err(self.stalled_or(Cause::EncoderFlipped)),
+            Err(Cause::EncoderFlipped) if self.swings_back() && self.watch.pulls_hard() => {
+                Err(self.stalled_or(Cause::EncoderFlipped))
+            }
             other => other.map(|()| Some(point)),
         }
     }

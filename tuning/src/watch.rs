@@ -176,7 +176,9 @@ impl Watch {
     #[must_use]
     pub fn pulls_hard(&self) -> bool {
         let Some(newest) = self.recent.back() else { return false };
-        let amps = self.recent.iter().rev().find_map(|old| old.amps).map(f64::abs);
+        // The higher of the last two readings: the current of a load that swings back comes and goes.
+        let latest = self.recent.iter().rev().filter_map(|old| old.amps).take(2);
+        let amps = latest.map(f64::abs).reduce(f64::max);
         match (amps, self.stall_amps) {
             (Some(amps), Some(stall)) => amps > 0.45 * self.duty.abs() * stall || newest.limited,
             _ => newest.limited,
