@@ -28,6 +28,8 @@ const DIRECTION_COUNTS: f64 = 10.0;
 const CAUGHT_SHARE: f64 = 0.2;
 /// Output below which the controller is holding back.
 const FULL_DUTY: f64 = 0.99;
+/// The same of the little duty of the direction check, which is read with some delay.
+const HELD_BACK: f64 = 0.8;
 /// How long a motor is given to come to rest.
 const REST_LIMIT: Duration = Duration::from_secs(20);
 /// A motor that goes slower than this share of its best speed has come to rest.
@@ -113,7 +115,6 @@ impl Bench {
         let rest_volts = power(context, motor)?.volts;
         context.progress(Some(0.05), "Checking the direction");
         self.check_direction(context)?;
-        self.come_to_rest(context)?;
         context.progress(Some(0.15), "Forward at full duty");
         let forward = self.run(context, 1.0)?;
         context.progress(Some(0.5), "Coming to rest");
@@ -186,6 +187,9 @@ impl Bench {
     fn no_counts(&self, context: &JobContext<'_>, half: Power, full: Power) -> Failure {
         let motor = self.task.motor;
         let amps = full.amps.abs();
+        if full.duty.abs() < DIRECTION_DUTY * HELD_BACK {
+            return held_back(context, full.duty / DIRECTION_DUTY);
+        }
         let drew = format!("{motor} counted nothing up to {:.0} % duty and drew", DIRECTION_DUTY * 100.0);
         if amps < NO_AMPS {
             let mend = "Check the motor's leads, its fuse and its power";
@@ -240,10 +244,7 @@ impl Bench {
     ) -> Result<Run, Failure> {
         let power = power(context, self.task.motor)?;
         if power.duty.abs() < FULL_DUTY {
-            let came_back =
-                format!("the controller gives only {:.1} % of full duty", power.duty.abs() * 100.0);
-            let mend = "A limit of current, voltage or temperature holds it back: see the lamps and General Settings";
-            return Err(refusal(context, came_back, mend));
+            return Err(held_back(context, power.duty));
         }
         let travel_counts = watch.record.last().map_or(0.0, |last| (last.counts - watch.start).abs());
         Ok(Run { speed, power, travel_counts })
@@ -334,6 +335,14 @@ struct Watch {
     /// Greatest speed so far in the direction asked for, counts/s.
     best: f64,
     record: Vec<Reading>,
+}
+
+/// `share` of the duty that was asked for is given.
+fn held_back(context: &JobContext<'_>, share: f64) -> Failure {
+    let came_back =
+        format!("the controller gives only {:.0} % of the duty that was asked for", share.abs() * 100.0);
+    let mend = "A limit of current, voltage or temperature holds it back: see the lamps and General Settings";
+    refusal(context, came_back, mend)
 }
 
 fn power(context: &mut JobContext<'_>, motor: Motor) -> Result<Power, Failure> {

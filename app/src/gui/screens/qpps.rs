@@ -44,7 +44,7 @@ fn task_ui(ui: &mut Ui, model: &mut Model) {
         ui.radio_value(&mut panel.motor, motor, motor.to_string());
     }
     ui.separator();
-    ui.label("Travel limit");
+    ui.label("Travel up to");
     let travel = Numeric {
         name: "Travel limit",
         unit: "counts",
@@ -54,7 +54,7 @@ fn task_ui(ui: &mut Ui, model: &mut Model) {
         width: 130.0,
     };
     travel.ui(ui, &mut panel.travel_limit_counts).on_hover_text("How far it may go in one direction");
-    ui.label("Time limit");
+    ui.label("Time up to");
     let time =
         Numeric { name: "Time limit", unit: "s", range: 1.0..=120.0, decimals: 0, step: 1.0, width: 60.0 };
     time.ui(ui, &mut panel.time_limit_s).on_hover_text("How long it may run in one direction");
