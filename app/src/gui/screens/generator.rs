@@ -65,14 +65,14 @@ fn profile_ui(ui: &mut Ui, model: &mut Model, mode: Mode) {
     };
     let step = 10f64.powi(-decimals) * 10.0;
     let setpoint = |name| field(name, unit, range.clone(), decimals as usize, step);
-    labelled_ui(ui, "From", &setpoint("From"), &mut profile.from);
-    labelled_ui(ui, "To", &setpoint("To"), &mut profile.to);
+    labelled_ui(ui, "From", &setpoint("Profile from"), &mut profile.from);
+    labelled_ui(ui, "To", &setpoint("Profile to"), &mut profile.to);
     if by_points {
         let (most, decimals) = if mode == Mode::Duty { (100.0, 1) } else { (f64::from(i32::MAX), 0) };
-        let rate = field("Rate", mode.unit(), 0.0..=most, decimals, 1.0);
+        let rate = field("Profile rate", mode.unit(), 0.0..=most, decimals, 1.0);
         labelled_ui(ui, "at", &rate, &mut profile.rate);
     }
-    labelled_ui(ui, "Dwell", &field("Dwell", "s", DWELL_RANGE_S, 2, 0.05), &mut profile.dwell_s);
+    labelled_ui(ui, "Dwell", &field("Profile dwell", "s", DWELL_RANGE_S, 2, 0.05), &mut profile.dwell_s);
     count_ui(ui, profile);
 }
 
@@ -81,7 +81,7 @@ fn count_ui(ui: &mut Ui, profile: &mut Profile) {
     let mut count = f64::from(profile.count);
     // A single step has no count, but its place stays.
     ui.add_enabled_ui(profile.shape != Shape::Step, |ui| {
-        let numeric = Numeric { width: 48.0, ..field("Count", "", range, 0, 1.0) };
+        let numeric = Numeric { width: 48.0, ..field("Profile count", "", range, 0, 1.0) };
         labelled_ui(ui, "Count", &numeric, &mut count);
     });
     profile.count = count as u32;
