@@ -168,7 +168,8 @@ impl App {
         {
             desk.watch.not_begun();
         }
-        let wanted = desk.watch.wants_signals() || desk.shows_signals(shows_settings);
+        let wanted =
+            desk.watch.wants_signals() || desk.shows_signals(shows_settings) || desk.graph.wants_pins();
         let traced = desk.traffic.open;
         let link = self.links.entry(id);
         if link.reads_signals != wanted

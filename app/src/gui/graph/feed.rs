@@ -1,6 +1,7 @@
 //! What the link tells the graph: samples with their own times, and events that become marks.
 
 use brushwork_link::device::{Channel, Drive, DriveCommand, Event, Sample};
+use brushwork_protocol::models;
 use brushwork_protocol::packet_serial::Motor;
 
 use super::live::LiveGraph;
@@ -33,7 +34,11 @@ impl LiveGraph {
             Event::Armed { scope, .. } => self.mark(now_s, MarkKind::Arm, format!("Armed for {scope}")),
             Event::Disarmed(reason) => self.mark(now_s, MarkKind::Arm, reason.to_string()),
             Event::JobStarted { name } => self.mark(now_s, MarkKind::Setting, name.clone()),
-            Event::Connected(identity) => identity.title().clone_into(&mut self.files.device),
+            Event::Connected(identity) => {
+                identity.title().clone_into(&mut self.files.device);
+                let model = identity.model.and_then(models::lookup);
+                self.pins = model.map_or(Channel::SIGNALS, |model| model.pins.len());
+            }
             Event::Lost(_) => self.mark(now_s, MarkKind::Note, "Link lost"),
             _ => {}
         }

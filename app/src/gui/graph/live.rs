@@ -9,7 +9,7 @@ use super::runs::{Align, Run};
 use super::series::GAP;
 use super::sheet::Sheet;
 use super::track::{ChannelInfo, Track};
-use super::trigger::TriggerSource;
+use super::trigger::{TriggerMode, TriggerSource};
 
 /// A channel that was read in each of this many samples and then in as many not has lost data.
 const MISSED_SAMPLES: u64 = 20;
@@ -26,6 +26,8 @@ pub struct LiveGraph {
     pub rate: Rate,
     /// The graph takes the whole screen.
     pub large: bool,
+    /// Input pins of the unit, for the list.
+    pub pins: usize,
     /// Folders, names, dialogs, and what is being read and written.
     pub files: GraphFiles,
     /// The plot's size when it was drawn last, for pictures of it.
@@ -64,6 +66,7 @@ impl LiveGraph {
             align: Align::default(),
             rate: Rate::new(interval_s),
             large: false,
+            pins: 0,
             files: GraphFiles::default(),
             last_plot_size: egui::vec2(800.0, 400.0),
             next_sequence: None,
@@ -171,6 +174,16 @@ impl LiveGraph {
         self.live.track.marks.push(mark);
     }
 
+    /// Whether an input pin is shown or triggered on, which are read on request only.
+    pub fn wants_pins(&self) -> bool {
+        let source = self.live.trigger.settings().source;
+        let triggered = |index: usize| {
+            source == TriggerSource::Channel(index) && self.live.trigger.mode() != TriggerMode::Off
+        };
+        let mut channels = self.live.channels.iter().enumerate().filter(|(_, channel)| channel.info.is_pin);
+        channels.any(|(index, channel)| channel.shown || triggered(index))
+    }
+
     /// Keeps what is in view as a run beneath, to compare what comes with it.
     pub fn keep_run(&mut self) {
         let sheet = self.sheet();
@@ -194,7 +207,7 @@ impl LiveGraph {
 mod tests {
     use super::super::scale::Scale;
     use super::super::trace::Columns;
-    use super::super::trigger::{TriggerMode, TriggerSettings};
+    use super::super::trigger::TriggerSettings;
     use super::*;
 
     fn graph() -> LiveGraph {

@@ -341,6 +341,10 @@ fn spoken(graph: &LiveGraph) -> String {
         None if sheet.shot_s().is_some() => format!("Graph of {span} at the trigger: {shown}"),
         None => format!("Live graph of the last {span}: {shown}"),
     };
+    let (start_s, end_s) = sheet.window();
+    if let Some(mark) = sheet.track.marks.between(start_s, end_s).next_back() {
+        text += &format!(". Last mark: {}", mark.text);
+    }
     if sheet.cursors.on {
         text += &format!(". Cursor {} is moved by the arrow keys", Cursors::NAMES[sheet.cursors.active]);
     }

@@ -11,6 +11,7 @@ use super::files::OpenAs;
 use super::icons::{Icon, ROOM, icon_button_ui, put_icon};
 use super::live::LiveGraph;
 use super::picture::axes;
+use super::plot::KEYS;
 use super::runs::Align;
 use super::sheet::SPANS_S;
 use super::trigger::{Edge, TriggerMode, TriggerSettings, TriggerSource};
@@ -308,6 +309,36 @@ fn more_ui(ui: &mut Ui, graph: &mut LiveGraph) {
     open_ui(ui, graph);
     ui.separator();
     runs_ui(ui, graph);
+    ui.separator();
+    ui.collapsing("Marks", |ui| marks_ui(ui, graph));
+    ui.collapsing("Keys", |ui| ui.label(KEYS));
+}
+
+/// The newest marks; a click brings one into view.
+fn marks_ui(ui: &mut Ui, graph: &mut LiveGraph) {
+    const MOST: usize = 40;
+    let sheet = graph.sheet_mut();
+    let began_s = sheet.track.began_s.unwrap_or(0.0);
+    let newest: Vec<(f64, String)> = sheet
+        .track
+        .marks
+        .iter()
+        .rev()
+        .take(MOST)
+        .map(|mark| {
+            let at = axes::duration_text((mark.at_s - began_s).max(0.0), 0.01);
+            (mark.at_s, format!("{at}  {}: {}", mark.kind.word(), mark.text))
+        })
+        .collect();
+    if newest.is_empty() {
+        ui.label("No mark yet. Commands, stops and arming leave one.");
+    }
+    for (at_s, text) in newest {
+        if ui.selectable_label(false, RichText::new(text).small()).clicked() {
+            let span_s = sheet.span_s();
+            sheet.look_at(at_s - span_s * 0.2, at_s + span_s * 0.8);
+        }
+    }
 }
 
 fn heading_ui(ui: &mut Ui, text: &str) {

@@ -237,3 +237,10 @@ pub fn on_release_ui(ui: &mut Ui, setpoints: &mut Setpoints) {
 fn graph_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     panel::graph_ui(ui, &mut model.front.graph, model.front.poll, commands);
 }
+
+/// The graph instead of the rest of a screen that drives. The arm switch stays, and so does what it says.
+pub fn large_graph_ui(ui: &mut Ui, scope: ArmScope, model: &mut Model, commands: &mut Commands) {
+    arm_ui(ui, scope, &model.front.link, commands);
+    ui.add_space(6.0);
+    graph_ui(ui, model, commands);
+}

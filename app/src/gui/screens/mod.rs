@@ -21,6 +21,10 @@ mod status;
 mod velocity;
 
 pub fn screen_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    let drives = model.screen.arm_scope().filter(|_| model.front.graph.large && model.is_connected());
+    if let Some(scope) = drives.filter(|scope| scope.allows_motion()) {
+        return drive::large_graph_ui(ui, scope, model, commands);
+    }
     match model.screen {
         Screen::DeviceStatus => status::status_ui(ui, model, commands),
         Screen::GeneralSettings => general::general_ui(ui, model, commands),

@@ -214,9 +214,7 @@ impl JobHost for Host<'_> {
         let sent_at = self.core.clock.now();
         let driven = self.core.act(self.asked_at, |unit, line| unit.drive(line, drive));
         if driven.is_ok() {
-            self.core.note_setpoints(drive);
-            let address = self.identity().address;
-            self.core.outbox.send(Event::Driven { address, sent_at, drive: *drive });
+            self.core.note_drive(drive, sent_at);
         }
         self.settle(driven)
     }

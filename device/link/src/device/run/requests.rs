@@ -161,11 +161,7 @@ impl DeviceLoop {
         }
         let sent_at = self.clock.now();
         match self.act(asked_at, |unit, line| unit.drive(line, &drive)) {
-            Ok(()) => {
-                self.note_setpoints(&drive);
-                let address = self.units[self.selected].controller.identity().address;
-                self.outbox.send(Event::Driven { address, sent_at, drive });
-            }
+            Ok(()) => self.note_drive(&drive, sent_at),
             Err(error) => {
                 let unsure = is_unsure(&error);
                 self.tell("move the motors", &error);
@@ -176,13 +172,16 @@ impl DeviceLoop {
         }
     }
 
-    pub(super) fn note_setpoints(&mut self, drive: &Drive) {
+    /// A motion command was confirmed.
+    pub(super) fn note_drive(&mut self, drive: &Drive, sent_at: Duration) {
         let unit = &mut self.units[self.selected];
         for motor in Motor::BOTH {
             if let Some(command) = drive.of(motor) {
                 unit.setpoints[motor.index()] = Some(command.setpoint());
             }
         }
+        let address = unit.controller.identity().address;
+        self.outbox.send(Event::Driven { address, sent_at, drive: *drive });
     }
 
     fn start_script(&mut self, asked_at: Duration, overtaken: bool) {
