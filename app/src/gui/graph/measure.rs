@@ -92,7 +92,7 @@ fn row_ui(ui: &mut Ui, sheet: &Sheet, channel: usize) {
     for (head, text) in HEADS[1..].iter().zip(texts(view, &measure)) {
         let response = ui.label(RichText::new(&text).small().monospace());
         let spoken = format!("{} {head}: {text} {unit}", view.info.label);
-        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(spoken.trim_end()));
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_value(spoken.trim_end()));
     }
     ui.end_row();
 }
