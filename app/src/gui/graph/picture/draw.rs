@@ -4,7 +4,7 @@ use egui::{Align2, Color32, Pos2, Rect, Vec2, pos2, vec2};
 
 use super::axes::{self, Zero};
 use super::frame::{FLAGS, Frame, GUTTER};
-use super::{Element, Layer, Picture};
+use super::{Element, Layer, Picture, line_of};
 use crate::gui::graph::cursors::Cursors;
 use crate::gui::graph::marks::{Mark, MarkKind};
 use crate::gui::graph::runs::{Align, Run};
@@ -186,9 +186,7 @@ impl Scene<'_> {
                 match points.as_slice() {
                     [only] => inside
                         .push(Element::Box { rect: Rect::from_center_size(*only, Vec2::splat(3.0)), color }),
-                    _ => {
-                        inside.push(Element::Line { points, color, width: if selected { 2.0 } else { 1.2 } });
-                    }
+                    _ => inside.extend(line_of(points, color, if selected { 2.0 } else { 1.2 })),
                 }
             }
         }
@@ -373,7 +371,7 @@ fn line(from: Pos2, to: Pos2, color: Color32, width: f32) -> Element {
 /// A long line is drawn whole: dashes shorter than its own bends would only be noise.
 fn dashed(inside: &mut Vec<Element>, points: &[Pos2], color: Color32) {
     if points.len() > 240 || points.len() < 2 {
-        inside.push(Element::Line { points: points.to_vec(), color, width: 1.0 });
+        inside.extend(line_of(points.to_vec(), color, 1.0));
         return;
     }
     inside.extend(points.windows(2).map(|pair| Element::Dashes {

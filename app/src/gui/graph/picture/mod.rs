@@ -3,7 +3,7 @@
 //! What is drawn is decided in [`draw`]; [`paint`] hands it to egui, [`svg`] writes it as text, [`png`] draws it on the
 //! CPU.
 
-use egui::{Align2, Color32, FontFamily, FontId, Painter, Pos2, Rect, Shape, Stroke};
+use egui::{Align2, Color32, FontFamily, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, vec2};
 
 pub mod axes;
 pub mod draw;
@@ -21,6 +21,13 @@ pub enum Element {
     },
     Line {
         points: Vec<Pos2>,
+        color: Color32,
+        width: f32,
+    },
+    /// Upright bars side by side: what lies between the least and the greatest of many samples. Cheap, since it is not
+    /// smoothed.
+    Bars {
+        bars: Vec<[Pos2; 2]>,
         color: Color32,
         width: f32,
     },
@@ -80,6 +87,9 @@ fn paint_element(painter: &Painter, element: Element) {
         Element::Line { points, color, width } => {
             painter.add(Shape::line(points, Stroke::new(width, color)));
         }
+        Element::Bars { bars, color, width } => {
+            painter.add(Shape::mesh(bars_mesh(&bars, color, width)));
+        }
         Element::Dashes { points, color, width } => {
             painter.extend(Shape::dashed_line(&points, Stroke::new(width, color), DASH, DASH_GAP));
         }
@@ -89,5 +99,85 @@ fn paint_element(painter: &Painter, element: Element) {
         Element::Text { at, anchor, text, size, color, figures } => {
             painter.text(at, anchor, text, font(size, figures), color);
         }
+    }
+}
+
+/// Two triangles for each bar.
+fn bars_mesh(bars: &[[Pos2; 2]], color: Color32, width: f32) -> Mesh {
+    let mut mesh = Mesh::default();
+    mesh.reserve_vertices(bars.len() * 4);
+    mesh.reserve_triangles(bars.len() * 2);
+    let half = vec2(width * 0.5, width * 0.5);
+    for [a, b] in bars {
+        mesh.add_colored_rect(Rect::from_two_pos(*a, *b).expand2(half), color);
+    }
+    mesh
+}
+
+/// A line as what is cheapest to draw: bars where it goes up and down in one place again and again, lines elsewhere.
+pub fn line_of(points: Vec<Pos2>, color: Color32, width: f32) -> Vec<Element> {
+    /// Bars further apart than this would leave holes.
+    const NEXT: f32 = 1.1;
+    /// Fewer are not worth it.
+    const LEAST: usize = 16;
+    let is_bar = |at: usize| at + 1 < points.len() && points[at].x == points[at + 1].x;
+    let follows = |at: usize| is_bar(at) && points[at].x - points[at - 1].x <= NEXT;
+    let mut elements = Vec::new();
+    let mut drawn = 0;
+    let mut at = 0;
+    while at < points.len() {
+        let first = at;
+        while if at == first { is_bar(at) } else { follows(at) } {
+            at += 2;
+        }
+        if at - first >= 2 * LEAST {
+            if first > drawn {
+                elements.push(Element::Line { points: points[drawn..=first].to_vec(), color, width });
+            }
+            let bars = points[first..at].chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
+            elements.push(Element::Bars { bars, color, width });
+            drawn = at - 1;
+        }
+        at = at.max(first + 1);
+    }
+    if drawn + 1 < points.len() || drawn == 0 {
+        let points = if drawn == 0 { points } else { points[drawn..].to_vec() };
+        elements.push(Element::Line { points, color, width });
+    }
+    elements
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::pos2;
+
+    use super::*;
+
+    #[test]
+    fn a_dense_stretch_becomes_bars_and_the_rest_stays_a_line_that_meets_them() {
+        let mut points = vec![pos2(0.0, 5.0), pos2(7.0, 6.0)];
+        for x in 10..60 {
+            points.extend([pos2(x as f32, 1.0), pos2(x as f32, 9.0)]);
+        }
+        points.extend([pos2(70.0, 4.0), pos2(80.0, 4.0)]);
+        let elements = line_of(points.clone(), Color32::WHITE, 1.2);
+        let [
+            Element::Line { points: before, .. },
+            Element::Bars { bars, .. },
+            Element::Line { points: after, .. },
+        ] = elements.as_slice()
+        else {
+            panic!("{elements:?}");
+        };
+        assert_eq!((before.len(), bars.len(), after.len()), (3, 50, 3));
+        assert_eq!((before[2], after[0]), (bars[0][0], bars[49][1]));
+    }
+
+    #[test]
+    fn a_sparse_line_stays_as_it_is() {
+        let points: Vec<Pos2> = (0..200).map(|x| pos2(x as f32 * 3.0, (x % 7) as f32)).collect();
+        let whole = vec![Element::Line { points: points.clone(), color: Color32::WHITE, width: 1.0 }];
+        assert_eq!(line_of(points, Color32::WHITE, 1.0), whole);
+        assert_eq!(line_of(vec![pos2(1.0, 1.0)], Color32::WHITE, 1.0).len(), 1);
     }
 }

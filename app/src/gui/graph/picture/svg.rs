@@ -53,6 +53,12 @@ fn element(out: &mut String, element: &Element) {
             places(points),
             paint("stroke", *color)
         ),
+        Element::Bars { bars, color, width } => writeln!(
+            out,
+            "<polyline points=\"{}\" fill=\"none\" stroke-width=\"{width:.2}\" stroke-linejoin=\"round\" stroke={}/>",
+            places(bars.as_flattened()),
+            paint("stroke", *color)
+        ),
         Element::Dashes { points, color, width } => writeln!(
             out,
             "<polyline points=\"{}\" fill=\"none\" stroke-width=\"{width:.2}\" stroke-dasharray=\"{} {}\" stroke={}/>",
