@@ -278,7 +278,7 @@ fn lost_and_late_samples_are_counted_beside_the_rate_that_was_reached() {
 }
 
 fn in_folder(bench: &mut Bench) -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir().expect("a folder for the test");
     graph(bench).files.folder = folder.path().display().to_string();
     folder
 }
@@ -288,8 +288,8 @@ fn files_in(bench: &mut Bench, folder: &Path, count: usize) -> Vec<PathBuf> {
     for _ in 0..500 {
         bench.pass_ms(100);
         let mut found: Vec<PathBuf> = std::fs::read_dir(folder)
-            .unwrap()
-            .map(|entry| entry.unwrap().path())
+            .expect("the folder is there")
+            .map(|entry| entry.expect("an entry of the folder").path())
             .filter(|path| path.extension().is_some_and(|e| e != "part"))
             .collect();
         found.sort();
