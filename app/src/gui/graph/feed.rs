@@ -33,7 +33,6 @@ impl LiveGraph {
             Event::Stopped(report) => self.mark(report.written_at.as_secs_f64(), MarkKind::Stop, "Stop"),
             Event::Armed { scope, .. } => self.mark(now_s, MarkKind::Arm, format!("Armed for {scope}")),
             Event::Disarmed(reason) => self.mark(now_s, MarkKind::Arm, reason.to_string()),
-            Event::JobStarted { name } => self.mark(now_s, MarkKind::Setting, name.clone()),
             Event::Connected(identity) => {
                 identity.title().clone_into(&mut self.files.device);
                 let model = identity.model.and_then(models::lookup);
