@@ -61,13 +61,16 @@ fn the_stop_button_stops_and_so_does_enter_on_it() {
 
 #[test]
 fn space_stops_from_every_screen_that_there_is() {
-    let mut bench = driving();
-    bench.press("Device Status");
-    assert_stopped_and_disarmed(&mut bench);
-    let stops = stops_seen(&mut bench);
-    bench.key(Key::Space);
-    bench.pass_ms(300);
-    assert_eq!(stops_seen(&mut bench), stops + 1);
+    let screens = ["Device Status", "General Settings", "Velocity Settings", "Position Settings"];
+    for screen in screens {
+        let mut bench = driving();
+        bench.press(screen);
+        assert_stopped_and_disarmed(&mut bench);
+        let stops = stops_seen(&mut bench);
+        bench.key(Key::Space);
+        bench.pass_ms(300);
+        assert_eq!(stops_seen(&mut bench), stops + 1, "{screen}");
+    }
 }
 
 /// How many stops the device thread has reported.
