@@ -4,6 +4,8 @@
 //! a controller brings one up through `brushwork-sim`.
 
 pub mod foreign;
+#[cfg(target_os = "linux")]
+pub mod hands;
 pub mod program;
 pub mod rust_source;
 pub mod screen;

@@ -99,6 +99,17 @@ impl Picture {
         (rgb.len() == width * height * 3).then_some(Self { width, height, rgb })
     }
 
+    /// Keeps it as a PNG file.
+    ///
+    /// # Panics
+    /// When the file cannot be written.
+    #[cfg(target_os = "linux")]
+    pub fn keep(&self, path: &Path) {
+        let (width, height) = (self.width as u32, self.height as u32);
+        let image = image::RgbImage::from_raw(width, height, self.rgb.clone()).expect("three bytes a pixel");
+        image.save(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    }
+
     /// How many different colours it has: a blank screen has one, a window with text some hundred.
     #[must_use]
     pub fn colours(&self) -> usize {

@@ -3,11 +3,13 @@
 #![expect(clippy::print_stdout, reason = "figures belong into the record of a test run")]
 
 use std::fs;
+use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
 use brushwork_protocol::packet_serial::{Address, Generation, Request};
 use brushwork_tests::foreign::is_left_out;
+use brushwork_tests::hands::{Hands, Key};
 use brushwork_tests::program::{Ending, Program};
 use brushwork_tests::screen::{Picture, Screen};
 use brushwork_tests::simulated::{OnPty, is_driven};
@@ -73,8 +75,15 @@ fn a_window_opened_on_a_controller_lights_its_lamps_and_moves_nothing() {
     assert!(!controller.look(is_driven));
 }
 
+<<<<<<< HEAD
 /// A window that is ended by a signal stops the motors of its controller, whoever set them in motion, and ends cleanly.
 fn signal_stops_and_closes(name: &str) {
+=======
+/// From an empty window to a turning motor and back, with the hands: what a first user does. The picture is kept beside the test's
+/// record.
+#[test]
+fn hands_on_keyboard_and_mouse_arm_drive_and_stop_a_motor() {
+>>>>>>> 5c657af (Walk a table of Ion Studio's functions; drive the window by hand under Xvfb)
     if is_left_out("xvfb") {
         return;
     }
@@ -83,6 +92,7 @@ fn signal_stops_and_closes(name: &str) {
     let mut command = window_on(screen.display());
     command.arg("--open").arg(controller.port());
     let mut window = Program::spawn(command);
+<<<<<<< HEAD
     if screen.wait_for(LIMIT, |picture| green_pixels(picture) >= GREEN_OF_LAMPS).is_none() {
         panic!("no lamp is green: {:?}", window.finish(Duration::ZERO));
     }
@@ -137,6 +147,37 @@ fn a_broken_memory_of_the_window_does_not_keep_it_from_opening_and_is_made_anew(
         serde_json::from_str(&fs::read_to_string(&state).expect("it is kept")).expect("JSON");
     assert_eq!(kept["screen"], "Device Status");
     assert!(kept["window"]["size"][0].as_f64().is_some_and(|width| width >= 1000.0), "{kept}");
+=======
+    let connected = screen.wait_for(LIMIT, |picture| green_pixels(picture) >= GREEN_OF_LAMPS);
+    assert!(connected.is_some(), "no lamp is green: {:?}", window.finish(Duration::ZERO));
+    let hands = Hands::at(screen.display());
+    hands.click(640, 700);
+    hands.focus();
+    hands.press(&[Key::Control, Key::Char('3')]);
+    hands.press(&[Key::Control, Key::Shift, Key::Char('a')]);
+    std::thread::sleep(Duration::from_millis(1500));
+    assert!(!controller.look(is_driven), "arming alone moves nothing");
+    // Tab leads to the slider before long; Page Up on anything else changes nothing that moves.
+    let driven = (0..80).any(|_| {
+        hands.press(&[Key::Tab]);
+        hands.press(&[Key::PageUp]);
+        controller.look(is_driven)
+    });
+    let picture = screen.picture();
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    if let Some(picture) = &picture {
+        picture.keep(&folder.join("window-driving.png"));
+        println!("the window while it drove: {}", folder.join("window-driving.png").display());
+    }
+    assert!(driven, "no slider moved its motor");
+    hands.press(&[Key::Space]);
+    let stands = (0..100).any(|_| {
+        std::thread::sleep(Duration::from_millis(20));
+        !controller.look(is_driven)
+    });
+    assert!(stands, "Space stops");
+    assert!(window.is_running());
+>>>>>>> 5c657af (Walk a table of Ion Studio's functions; drive the window by hand under Xvfb)
 }
 
 /// Pixels of a lamp that says OK, whatever the theme's exact green.
