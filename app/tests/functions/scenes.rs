@@ -40,7 +40,7 @@ pub fn play(bench: &mut Bench, row: &Row, scene: &str) {
         "pin_list" => pin_list(bench, row),
         "encoder_pin" => encoder_pin(bench, row),
         "live" | "signal_graph" | "match_input" | "set_min" | "set_center" | "set_max" => {
-            signal(bench, row, name)
+            signal(bench, row, name);
         }
         name if name.starts_with("stop_") => stop(bench, row, name),
         name if name.starts_with("lamp_") => lamp(bench, row, name),
