@@ -75,15 +75,8 @@ fn a_window_opened_on_a_controller_lights_its_lamps_and_moves_nothing() {
     assert!(!controller.look(is_driven));
 }
 
-<<<<<<< HEAD
 /// A window that is ended by a signal stops the motors of its controller, whoever set them in motion, and ends cleanly.
 fn signal_stops_and_closes(name: &str) {
-=======
-/// From an empty window to a turning motor and back, with the hands: what a first user does. The picture is kept beside the test's
-/// record.
-#[test]
-fn hands_on_keyboard_and_mouse_arm_drive_and_stop_a_motor() {
->>>>>>> 5c657af (Walk a table of Ion Studio's functions; drive the window by hand under Xvfb)
     if is_left_out("xvfb") {
         return;
     }
@@ -92,7 +85,6 @@ fn hands_on_keyboard_and_mouse_arm_drive_and_stop_a_motor() {
     let mut command = window_on(screen.display());
     command.arg("--open").arg(controller.port());
     let mut window = Program::spawn(command);
-<<<<<<< HEAD
     if screen.wait_for(LIMIT, |picture| green_pixels(picture) >= GREEN_OF_LAMPS).is_none() {
         panic!("no lamp is green: {:?}", window.finish(Duration::ZERO));
     }
@@ -147,7 +139,20 @@ fn a_broken_memory_of_the_window_does_not_keep_it_from_opening_and_is_made_anew(
         serde_json::from_str(&fs::read_to_string(&state).expect("it is kept")).expect("JSON");
     assert_eq!(kept["screen"], "Device Status");
     assert!(kept["window"]["size"][0].as_f64().is_some_and(|width| width >= 1000.0), "{kept}");
-=======
+}
+
+/// From an empty window to a turning motor and back, with the hands: what a first user does. The picture is kept beside the test's
+/// record.
+#[test]
+fn hands_on_keyboard_and_mouse_arm_drive_and_stop_a_motor() {
+    if is_left_out("xvfb") {
+        return;
+    }
+    let controller = OnPty::start(Generation::Gen1);
+    let screen = Screen::start();
+    let mut command = window_on(screen.display());
+    command.arg("--open").arg(controller.port());
+    let mut window = Program::spawn(command);
     let connected = screen.wait_for(LIMIT, |picture| green_pixels(picture) >= GREEN_OF_LAMPS);
     assert!(connected.is_some(), "no lamp is green: {:?}", window.finish(Duration::ZERO));
     let hands = Hands::at(screen.display());
@@ -177,7 +182,6 @@ fn a_broken_memory_of_the_window_does_not_keep_it_from_opening_and_is_made_anew(
     });
     assert!(stands, "Space stops");
     assert!(window.is_running());
->>>>>>> 5c657af (Walk a table of Ion Studio's functions; drive the window by hand under Xvfb)
 }
 
 /// Pixels of a lamp that says OK, whatever the theme's exact green.

@@ -3,7 +3,7 @@
 use brushwork_protocol::codes::{Code, DOUT_ACTIONS, SIGNAL_ACTIONS_GENERATION_1};
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_sim::settings::Settings;
-use brushwork_sim::world::{PinSignal, UnitFault, WorldAction};
+use brushwork_sim::world::{PinSignal, WorldAction};
 use egui::Key;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
@@ -134,17 +134,20 @@ fn monitored(bench: &mut Bench, label: &str) {
 
 /// The world in which a lamp burns.
 fn lamp(bench: &mut Bench, row: &Row, name: &str) {
-    let fault = |fault| WorldAction::SetUnitFault { fault, on: true };
     match name {
-        "lamp_m1oc" => bench.act(&fault(UnitFault::M1Current)),
-        "lamp_m2oc" => bench.act(&fault(UnitFault::M2Current)),
+        "lamp_m1oc" => over_current(bench, Motor::M1),
+        "lamp_m2oc" => over_current(bench, Motor::M2),
         "lamp_mbhi" => bench.act(&WorldAction::SetBatteryVolts { volts: 75.0 }),
         "lamp_mblo" => bench.act(&WorldAction::SetBatteryVolts { volts: 7.0 }),
         "lamp_lbhi" => bench.act(&WorldAction::SetLogicVolts { volts: 18.0 }),
-        "lamp_lblo" => bench.act(&WorldAction::SetLogicVolts { volts: 4.0 }),
+        // The logic runs on the higher of both supplies, so both have to be low.
+        "lamp_lblo" => {
+            bench.act(&WorldAction::SetBatteryVolts { volts: 7.0 });
+            bench.act(&WorldAction::SetLogicVolts { volts: 7.0 });
+        }
         "lamp_tmp1" | "lamp_tmp2" => bench.act(&WorldAction::SetBoardCelsius { celsius: Some(101.0) }),
         "lamp_estp" => bench.act(&WorldAction::EStop { pressed: true }),
-        _ => home(bench, if name == "lamp_m1hm" { 1 } else { 0x100 }),
+        _ => home(bench, if name == "lamp_m1hm" { 1 } else { 2 }),
     }
     bench.pass_ms(2500);
     let lamp = &row.label[..4];
@@ -155,7 +158,16 @@ fn lamp(bench: &mut Bench, row: &Row, name: &str) {
     *bench = super::opened(row.place);
 }
 
-/// An analog input whose minimum action stops a motor, at its minimum.
+/// A motor that pulls against a blocked shaft, at a limit of one ampere.
+fn over_current(bench: &mut Bench, motor: Motor) {
+    *bench = Bench::of(super::support::causes::limited_to_one_amp());
+    bench.connect();
+    bench.arm();
+    bench.act(&WorldAction::LockShaft { motor, on: true });
+    bench.set_duty(motor, "100");
+}
+
+/// An analog input whose minimum action stops a motor (1 is motor 1, 2 is motor 2 in generation 1), at its minimum.
 fn home(bench: &mut Bench, action: u16) {
     bench.line.with(|bus| {
         let unit = &mut bus.controllers_mut()[0];
@@ -177,7 +189,7 @@ fn help(bench: &mut Bench, row: &Row) {
     bench.pass_ms(300);
     let words = match row.usage {
         "do help_first_steps" => "Arm",
-        "do help_packet_serial" => "Read Main Battery",
+        "do help_packet_serial" => "CRC",
         "do help_settings" => "Main battery maximum",
         _ => env!("CARGO_PKG_VERSION"),
     };
