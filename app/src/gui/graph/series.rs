@@ -18,7 +18,7 @@ pub const NOT_READ: f64 = f64::NAN;
 pub const GAP: f64 = f64::from_bits(0x7ff8_0000_0067_6170);
 
 /// Rows per block of the first level; each level has blocks this many times as long as the one below.
-const FACTOR: u64 = 16;
+pub const FACTOR: u64 = 16;
 const LEVELS: u32 = 3;
 
 /// Rows in a block of [`Moments`].
