@@ -383,6 +383,7 @@ impl App {
                 let ports = model.devices.ports().to_vec();
                 model.canopen.show(&ports);
             }
+            Command::Graph(action) => model.front.graph.act(action),
             Command::ToggleWorld => model.front.world.open = !model.front.world.open,
             Command::PauseTraffic(paused) => model.front.traffic.log.set_paused(paused),
             Command::ClearHistory => model.front.history.clear(),

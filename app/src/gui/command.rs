@@ -6,6 +6,7 @@ use brushwork_protocol::packet_serial::{Motor, Value};
 use brushwork_sim::world::WorldAction;
 use egui::ThemePreference;
 
+use super::graph::GraphAction;
 use super::model::DeskId;
 use super::model::firmware::FirmwareWish;
 use super::model::general::{Section, SettingsWish, Sheet};
@@ -71,6 +72,8 @@ pub enum Command {
     /// Opens the window for connecting to a CANopen bus.
     OpenCanOpen,
     ToggleWorld,
+    /// Something to be done with the graph.
+    Graph(GraphAction),
     ToggleTraffic,
     PauseTraffic(bool),
     /// Empties the list of events.

@@ -14,6 +14,7 @@ use super::model::Model;
 mod device;
 mod edit;
 mod file;
+mod graph;
 mod help;
 mod view;
 
@@ -51,11 +52,12 @@ pub enum Menu {
     Edit,
     Device,
     View,
+    Graph,
     Help,
 }
 
 impl Menu {
-    pub const ALL: [Self; 5] = [Self::File, Self::Edit, Self::Device, Self::View, Self::Help];
+    pub const ALL: [Self; 6] = [Self::File, Self::Edit, Self::Device, Self::View, Self::Graph, Self::Help];
 
     pub const fn title(self) -> &'static str {
         match self {
@@ -63,6 +65,7 @@ impl Menu {
             Self::Edit => "Edit",
             Self::Device => "Device",
             Self::View => "View",
+            Self::Graph => "Graph",
             Self::Help => "Help",
         }
     }
@@ -83,7 +86,9 @@ pub type Ready = Result<(), Cow<'static, str>>;
 
 /// Every action, menu by menu, as the menus show them.
 pub fn all() -> impl Iterator<Item = &'static Action> {
-    [file::ACTIONS, edit::ACTIONS, device::ACTIONS, view::ACTIONS, help::ACTIONS].into_iter().flatten()
+    [file::ACTIONS, edit::ACTIONS, device::ACTIONS, view::ACTIONS, graph::ACTIONS, help::ACTIONS]
+        .into_iter()
+        .flatten()
 }
 
 /// The actions of a menu.
