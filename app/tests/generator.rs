@@ -57,6 +57,24 @@ fn a_step_of_duty_is_played_judged_and_stops_by_itself() {
 }
 
 #[test]
+fn both_motors_play_a_profile_together() {
+    let mut bench = armed_on("PWM Settings");
+    bench.press("M2");
+    bench.press("Run profile");
+    let mut together = false;
+    for _ in 0..100 {
+        bench.pass_ms(100);
+        together |= Motor::BOTH.into_iter().all(|motor| (bench.real_duty(motor) - 0.30).abs() < 0.005);
+        if !bench.model().front.is_guided() {
+            break;
+        }
+    }
+    bench.pass_ms(300);
+    assert!(together);
+    assert_at_rest(&mut bench);
+}
+
+#[test]
 fn a_square_wave_goes_there_and_back_as_often_as_asked() {
     let mut bench = armed_on("PWM Settings");
     bench.choose("Shape", "Square wave");
@@ -131,6 +149,64 @@ fn a_step_of_speed_reaches_its_speed_and_its_figures() {
     let steps = bench.model().front.generator.last_steps(brushwork::motion::profile::Mode::Speed);
     let figures = steps[0].figures.expect("it was judged");
     assert!(figures.rise_time_s.is_some_and(|time| time < 3.0), "{figures:?}");
+}
+
+/// A position loop over a speed loop on both motors, within -20 000 to 20 000 counts.
+fn tune_position(bench: &mut Bench) {
+    let loops: [(&str, &[(&str, &str)]); 2] = [
+        ("Velocity loop", &[("M1 QPPS", "10600"), ("M1 Velocity I", "0.05"), ("M1 Velocity D", "0")]),
+        (
+            "Position loop",
+            &[("M1 Position P", "15"), ("M1 Minimum position", "-20000"), ("M1 Maximum position", "20000")],
+        ),
+    ];
+    for (tab, fields) in loops {
+        bench.press(tab);
+        for (field, value) in fields {
+            bench.enter(field, value);
+        }
+        bench.press("Copy M1 to M2");
+        bench.press("Apply to RAM");
+        bench.pass_ms(1000);
+    }
+}
+
+#[test]
+fn a_step_of_position_is_opened_from_the_menu_goes_there_and_stops_by_itself() {
+    let mut bench = Bench::new();
+    bench.connect();
+    bench.press("Position Settings");
+    bench.pass_ms(1000);
+    tune_position(&mut bench);
+    bench.press("Arm");
+    bench.pass_ms(500);
+    bench.press("Device");
+    bench.press("Setpoint Generator…");
+    bench.enter("Profile to", "3000");
+    bench.enter("Profile dwell", "3");
+    bench.press("Run profile");
+    let mut reached = false;
+    for _ in 0..200 {
+        bench.pass_ms(100);
+        reached |= (bench.truth().axes[0].encoder_counts - 3000).abs() < 150;
+        if !bench.model().front.is_guided() {
+            break;
+        }
+    }
+    bench.pass_ms(1500);
+    assert!(reached, "{} counts", bench.truth().axes[0].encoder_counts);
+    assert_at_rest(&mut bench);
+}
+
+#[test]
+fn the_measurement_of_full_speed_is_reached_from_the_menu() {
+    let mut bench = Bench::new();
+    bench.connect();
+    bench.press("Device");
+    bench.press("Measure QPPS…");
+    assert_eq!(bench.model().screen, brushwork::gui::model::screen::Screen::Pwm);
+    assert!(bench.sees_part("QPPS"));
+    assert!(bench.both_stand());
 }
 
 #[test]

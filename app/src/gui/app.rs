@@ -358,6 +358,12 @@ impl App {
                 self.show(Screen::GeneralSettings);
                 self.model.front.general.turn_to(section);
             }
+            Command::OpenDrawer(screen, tab) => {
+                self.show(screen);
+                if self.model.front.drawers.open(screen) != Some(tab) {
+                    self.model.front.drawers.press(screen, tab);
+                }
+            }
             Command::FindSetting => {
                 self.show(Screen::GeneralSettings);
                 self.model.front.general.find();

@@ -8,6 +8,7 @@ use egui::ThemePreference;
 
 use super::graph::GraphAction;
 use super::model::DeskId;
+use super::model::drawer::Tab;
 use super::model::firmware::FirmwareWish;
 use super::model::general::{Section, SettingsWish, Sheet};
 pub use super::model::guided::GuidedWish;
@@ -72,6 +73,8 @@ pub enum Command {
     /// Opens the window for connecting to a CANopen bus.
     OpenCanOpen,
     ToggleWorld,
+    /// Shows a screen that drives, with this tab of its drawer open.
+    OpenDrawer(Screen, Tab),
     /// Something to be done with the graph.
     Graph(GraphAction),
     ToggleTraffic,

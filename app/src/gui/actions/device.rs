@@ -7,6 +7,7 @@ use super::{
     Action, Keys, Menu, Ready, always, connected, ctrl, ctrl_shift, key, mcl_missing, place, settings_idle,
 };
 use crate::gui::command::Command;
+use crate::gui::model::drawer::Tab;
 use crate::gui::model::firmware::FirmwareWish;
 use crate::gui::model::general::{Section, Sheet};
 use crate::gui::model::link::Arming;
@@ -153,6 +154,29 @@ pub(super) const ACTIONS: &[Action] = &[
         ready: connected,
         is_on: None,
         command: |_| Command::ShowSettings(Section::ClampTest),
+    },
+    Action {
+        id: "device.measure-qpps",
+        title: "Measure QPPS…",
+        place: place(Menu::Device, 3),
+        keys: Keys::None,
+        help: "Goes to the guided measurement of full speed; it moves a motor once armed and started there.",
+        ready: connected,
+        is_on: None,
+        command: |_| Command::OpenDrawer(Screen::Pwm, Tab::Qpps),
+    },
+    Action {
+        id: "device.generator",
+        title: "Setpoint Generator…",
+        place: place(Menu::Device, 3),
+        keys: Keys::None,
+        help: "Goes to the generator of steps, squares, trapezoids and jogs of the open screen, or of the PWM screen.",
+        ready: connected,
+        is_on: None,
+        command: |model| {
+            let drives = matches!(model.screen, Screen::Pwm | Screen::Velocity | Screen::Position);
+            Command::OpenDrawer(if drives { model.screen } else { Screen::Pwm }, Tab::Generator)
+        },
     },
     Action {
         id: "device.check-mcl",
