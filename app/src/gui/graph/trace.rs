@@ -12,9 +12,12 @@ use super::series::{FACTOR, is_gap};
 /// How far a line looks past the edge of the view for the sample that carries it out of the picture.
 const REACH_ROWS: u64 = 4096;
 
-/// Columns of more blocks than this begin at whole blocks: a row may then stand a fifth of a column beside its place, and no column
-/// has to look at single rows. That halves the cost of a zoom, where every column is new.
+/// Columns of more blocks than this begin at whole blocks, so that none has to look at single rows. That halves the cost of a zoom,
+/// where every column is new.
 const ROUNDED_FROM_BLOCKS: u64 = 4;
+
+/// A row may stand this part of a column beside its place for it.
+const MOST_ASIDE: f64 = 0.3;
 
 /// The beginning of the block that `row` is in, unless that is no longer kept or `row` is the end of all.
 fn rounded(row: u64, kept: &Range<u64>) -> u64 {
@@ -50,11 +53,20 @@ impl Columns {
             return Self { bounds: vec![kept.end], first_column: 0.0, column_s: 1.0, kept };
         }
         let first_column = (view.start_s / column_s).floor();
-        let mut bounds: Vec<u64> =
-            (0..=view.columns + 1).map(|i| history.row_at((first_column + i as f64) * column_s)).collect();
+        let starts_s = (0..=view.columns + 1).map(|i| (first_column + i as f64) * column_s);
+        let mut bounds: Vec<u64> = starts_s.clone().map(|start_s| history.row_at(start_s)).collect();
         let rows = bounds[bounds.len() - 1] - bounds[0];
         if rows > bounds.len() as u64 * ROUNDED_FROM_BLOCKS * FACTOR {
-            bounds.iter_mut().for_each(|bound| *bound = rounded(*bound, &kept));
+            let mut before = 0;
+            for (bound, start_s) in bounds.iter_mut().zip(starts_s) {
+                let block = rounded(*bound, &kept);
+                // Rows are not evenly spread in time: a pause may lie between the block's beginning and the column's.
+                let is_near = block < kept.end && start_s - history.time_s(block) <= column_s * MOST_ASIDE;
+                if block >= before && is_near {
+                    *bound = block;
+                }
+                before = *bound;
+            }
         }
         Self { bounds, first_column, column_s, kept }
     }
