@@ -12,8 +12,8 @@ use super::series::{FACTOR, is_gap};
 /// How far a line looks past the edge of the view for the sample that carries it out of the picture.
 const REACH_ROWS: u64 = 4096;
 
-/// Columns of more blocks than this begin at whole blocks, so that none has to look at single rows. That halves the cost of a zoom,
-/// where every column is new.
+/// Columns of more blocks than this begin at whole blocks, so that none has to look at single rows: a zoom costs less,
+/// in which every column is new.
 const ROUNDED_FROM_BLOCKS: u64 = 4;
 
 /// A row may stand this part of a column beside its place for it.
