@@ -43,7 +43,6 @@ codes! {
     BAD_OUTPUT = "E316", "A modifier that does not fit here, or with the wrong arguments.";
     TOO_LARGE = "E317", "A program that does not fit the format: too much memory, code or tables.";
     DIVISION_BY_ZERO = "E318", "A division by a constant zero.";
-    NO_RESULT = "E319", "A value is wanted of a subroutine that returns none.";
     UNUSED_VARIABLE = "W401", "A variable that is never read.";
     UNUSED_LABEL = "W402", "A label that nothing jumps to.";
     DOES_NOT_FIT = "W403", "A constant that loses bits where it is stored.";
@@ -63,7 +62,6 @@ codes! {
     WHOLE_ARRAY = "W417", "An array without an index: its first element is meant.";
     AMBIGUOUS_STREAM = "W418", "Stream 2 or 3: the manual's tables disagree; here 2 is TTL and 3 RS-232, as GETS and PUTS have it.";
     ADDRESS_UNIT = "W419", "READ or WRITE beyond address 255: commands 252 and 253 count other units.";
-    NOT_UNDERSTOOD = "W420", "A statement without effect.";
 }
 
 #[cfg(test)]

@@ -58,8 +58,7 @@ impl Parser<'_> {
         if format.is_some() {
             self.advance();
         }
-        if let (true, Some((format, limit @ None))) = (input, &mut format) {
-            let _ = format;
+        if let (true, Some((_, limit @ None))) = (input, &mut format) {
             *limit = self.parenthesised_limit();
         }
         let value = self.expression()?;
