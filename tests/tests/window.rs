@@ -34,6 +34,17 @@ fn window_on(display: &str) -> Command {
     command
 }
 
+/// A window that was opened on a controller, and what it looks like once its lamps are green.
+fn connected_window(screen: &Screen, controller: &OnPty) -> (Program, Picture) {
+    let mut command = window_on(screen.display());
+    command.arg("--open").arg(controller.port());
+    let mut window = Program::spawn(command);
+    match screen.wait_for(LIMIT, |picture| green_pixels(picture) >= GREEN_OF_LAMPS) {
+        Some(picture) => (window, picture),
+        None => panic!("no lamp is green: {:?}", window.finish(Duration::ZERO)),
+    }
+}
+
 /// One sentence on standard error that names the command line; no panic, no trace, nothing else.
 fn assert_says_why(ending: &Ending, reason: &str) {
     assert_eq!(ending.status.code(), Some(1), "{ending:?}");
@@ -63,12 +74,7 @@ fn a_window_opened_on_a_controller_lights_its_lamps_and_moves_nothing() {
     }
     let controller = OnPty::start(Generation::Gen4);
     let screen = Screen::start();
-    let mut command = window_on(screen.display());
-    command.arg("--open").arg(controller.port());
-    let mut window = Program::spawn(command);
-    let Some(picture) = screen.wait_for(LIMIT, |picture| green_pixels(picture) >= GREEN_OF_LAMPS) else {
-        panic!("no lamp is green: {:?}", window.finish(Duration::ZERO))
-    };
+    let (mut window, picture) = connected_window(&screen, &controller);
     println!("{} green pixels", green_pixels(&picture));
     assert!(window.is_running(), "the window stays open");
     assert!(controller.look(|unit| unit.view().axes.iter().all(|axis| axis.encoder_counts == 0)));
@@ -82,12 +88,7 @@ fn signal_stops_and_closes(name: &str) {
     }
     let controller = OnPty::start(Generation::Gen1);
     let screen = Screen::start();
-    let mut command = window_on(screen.display());
-    command.arg("--open").arg(controller.port());
-    let mut window = Program::spawn(command);
-    if screen.wait_for(LIMIT, |picture| green_pixels(picture) >= GREEN_OF_LAMPS).is_none() {
-        panic!("no lamp is green: {:?}", window.finish(Duration::ZERO));
-    }
+    let (mut window, _) = connected_window(&screen, &controller);
     // The window's polling keeps the controller's own time-out from stopping this.
     let duty = Request::new(Address::ALL[0], 34, &[16_384, -16_384]);
     controller.receive(duty.encode(Generation::Gen1).expect("command 34 has two arguments"));
@@ -150,11 +151,7 @@ fn hands_on_keyboard_and_mouse_arm_drive_and_stop_a_motor() {
     }
     let controller = OnPty::start(Generation::Gen1);
     let screen = Screen::start();
-    let mut command = window_on(screen.display());
-    command.arg("--open").arg(controller.port());
-    let mut window = Program::spawn(command);
-    let connected = screen.wait_for(LIMIT, |picture| green_pixels(picture) >= GREEN_OF_LAMPS);
-    assert!(connected.is_some(), "no lamp is green: {:?}", window.finish(Duration::ZERO));
+    let (mut window, _) = connected_window(&screen, &controller);
     let hands = Hands::at(screen.display());
     hands.click(640, 700);
     hands.focus();
