@@ -38,7 +38,7 @@ fn window_on(display: &str) -> Command {
 fn connected_window(screen: &Screen, controller: &OnPty) -> (Program, Picture) {
     let mut command = window_on(screen.display());
     command.arg("--open").arg(controller.port());
-    let mut window = Program::spawn(command);
+    let window = Program::spawn(command);
     match screen.wait_for(LIMIT, |picture| green_pixels(picture) >= GREEN_OF_LAMPS) {
         Some(picture) => (window, picture),
         None => panic!("no lamp is green: {:?}", window.finish(Duration::ZERO)),

@@ -154,7 +154,6 @@ fn lamp(bench: &mut Bench, row: &Row, name: &str) {
     let state = shown(bench, lamp);
     let burns = state == "error" || state == "warning" || state == "active";
     assert!(burns || name == "lamp_tmp2", "{lamp}: {state}");
-    bench.act(&WorldAction::EStop { pressed: false });
     *bench = super::opened(row.place);
 }
 
