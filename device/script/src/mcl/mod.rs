@@ -6,8 +6,10 @@
 pub mod ast;
 pub mod codes;
 pub mod constant;
+pub mod index;
 pub mod lexer;
 mod lower;
+pub mod operators;
 mod parser;
 pub mod registers;
 pub mod types;

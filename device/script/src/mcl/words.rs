@@ -1,7 +1,12 @@
 //! The words of the language (MCP manual chapter 3): commands with their syntax line, operators, output modifiers, and words that
 //! are kept from being names. Compiler, completion, hover help and the reference read these tables.
 
+use super::operators::{OPERATORS, Operator};
+use super::registers::{self, RegisterId};
+use super::types::{TABLES, VarType};
 use serde::Serialize;
+use std::collections::HashMap;
+use std::sync::LazyLock;
 
 /// A command or a word of one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -126,41 +131,6 @@ pub const COMMANDS: [Word; 44] = [
     ),
 ];
 
-/// Operators written as words (MCP manual 3.2.3, 3.2.4).
-pub const OPERATORS: [Word; 31] = [
-    word("ABS", "ABS x", "Absolute value."),
-    word("AND", "a AND b", "1 when both are not zero."),
-    word("BIN2BCD", "BIN2BCD x", "Packed decimal digits, four bits each."),
-    word("COS", "COS x", "Cosine of x in 256ths of a circle, from -127 to 128."),
-    word("DIG", "x DIG n", "Decimal digit n of x, the lowest is 1."),
-    word("FABS", "FABS x", "Absolute value of a float."),
-    word("FACOS", "FACOS x", "Arc cosine, radians."),
-    word("FASIN", "FASIN x", "Arc sine, radians."),
-    word("FATAN", "FATAN x", "Arc tangent, radians."),
-    word("FATANH", "FATANH x", "Hyperbolic arc tangent."),
-    word("FCOS", "FCOS x", "Cosine of radians."),
-    word("FCOSH", "FCOSH x", "Hyperbolic cosine."),
-    word("FEXP", "FEXP x", "e to the power of x."),
-    word("FLN", "FLN x", "Natural logarithm."),
-    word("FSIN", "FSIN x", "Sine of radians."),
-    word("FSINH", "FSINH x", "Hyperbolic sine."),
-    word("FSQRT", "FSQRT x", "Square root of a float."),
-    word("FTAN", "FTAN x", "Tangent of radians."),
-    word("FTANH", "FTANH x", "Hyperbolic tangent."),
-    word("MAX", "x MAX limit", "The smaller of the two: x up to a maximum."),
-    word("MIN", "x MIN limit", "The larger of the two: x down to a minimum."),
-    word("MOD", "a // b", "Not a word of the language: the remainder is written //."),
-    word("NOT", "NOT x", "1 when x is zero, else 0. It is worked out before any comparison."),
-    word("OR", "a OR b", "1 when one is not zero."),
-    word("RANDOM", "RANDOM seed", "A 32 bit number that follows from the seed."),
-    word("SIN", "SIN x", "Sine of x in 256ths of a circle, from -127 to 128."),
-    word("SQR", "SQR x", "Whole part of the square root."),
-    word("TOFLOAT", "TOFLOAT x", "A whole number as a float."),
-    word("TOINT", "TOINT x", "A float without its fraction."),
-    word("XOR", "a XOR b", "1 when exactly one is not zero."),
-    word("~", "~x   or   !x", "Each bit turned over."),
-];
-
 /// Output and input modifiers (MCP manual 3.3).
 pub const FORMATS: [Word; 7] = [
     word("DEC", "DEC{max} x{\\min}", "Decimal digits: at most max, with zeros to at least min."),
@@ -186,16 +156,68 @@ pub const CAN: [&str; 7] = ["CANIN", "CANOUT", "CANCOBID", "CANRTR", "CANLEN", "
 /// Words that the manual carried over from another product.
 pub const OTHER_PRODUCT: [&str; 3] = ["SEROUT", "SERIN", "BIN"];
 
+/// What a word of the language is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Known {
+    /// A statement's word; a row of [`COMMANDS`].
+    Command(&'static Word),
+    /// An operator's word.
+    Operator(&'static Operator),
+    /// An output modifier; a row of [`FORMATS`].
+    Format(&'static Word),
+    /// The type of a variable.
+    Type(VarType),
+    /// The type of a table, by its entries.
+    Table(VarType),
+    /// A system register.
+    Register(RegisterId),
+    /// A system register in a spelling of the manual's table alone.
+    Misspelt(RegisterId),
+    /// A word for the CAN bus.
+    Can,
+    /// A word of another product.
+    OtherProduct,
+}
+
+/// No word of the language is longer.
+const LONGEST_WORD: usize = 20;
+
+/// What a word of the language is, in any case; `None` for names.
+#[must_use]
+pub fn known(word: &str) -> Option<Known> {
+    static TABLE: LazyLock<HashMap<String, Known>> = LazyLock::new(every_word);
+    let mut small = [0u8; LONGEST_WORD];
+    let small = small.get_mut(..word.len())?;
+    small.copy_from_slice(word.as_bytes());
+    small.make_ascii_lowercase();
+    TABLE.get(std::str::from_utf8(small).ok()?).copied()
+}
+
+fn every_word() -> HashMap<String, Known> {
+    let ids = || (0u8..).zip(&registers::REGISTERS).map(|(index, row)| (row.name, RegisterId(index)));
+    let misspelt = registers::MISSPELT.iter().filter_map(|(wrong, right)| {
+        ids().find(|(name, _)| name == right).map(|(_, id)| (*wrong, Known::Misspelt(id)))
+    });
+    let rows = |rows: &'static [Word], what: fn(&'static Word) -> Known| {
+        rows.iter().map(move |row| (row.name, what(row)))
+    };
+    let words = rows(&COMMANDS, Known::Command)
+        .filter(|(name, _)| !name.starts_with('#'))
+        .chain(OPERATORS.iter().filter(|row| row.is_word()).map(|row| (row.name, Known::Operator(row))))
+        .chain(rows(&FORMATS, Known::Format))
+        .chain(VarType::ALL.map(|kind| (kind.name(), Known::Type(kind))))
+        .chain(TABLES.map(|(name, kind)| (name, Known::Table(kind))))
+        .chain(ids().map(|(name, id)| (name, Known::Register(id))))
+        .chain(misspelt)
+        .chain(CAN.map(|name| (name, Known::Can)))
+        .chain(OTHER_PRODUCT.map(|name| (name, Known::OtherProduct)));
+    words.map(|(name, what)| (name.to_ascii_lowercase(), what)).collect()
+}
+
 /// Whether a word can be no name: it is a command, an operator, a type, a modifier or a register.
 #[must_use]
 pub fn is_reserved(name: &str) -> bool {
-    let is = |word: &str| word.eq_ignore_ascii_case(name);
-    COMMANDS.iter().chain(&FORMATS).any(|word| is(word.name))
-        || OPERATORS.iter().any(|word| word.name != "MOD" && is(word.name))
-        || super::types::VarType::lookup(name).is_some()
-        || super::types::TABLES.iter().any(|(table, _)| is(table))
-        || CAN.into_iter().chain(OTHER_PRODUCT).any(is)
-        || super::registers::lookup(name).is_some()
+    known(name).is_some()
 }
 
 /// The word nearest to what was typed, if one is near.

@@ -238,7 +238,7 @@ impl<'a> Lowering<'a> {
         self.diagnostics.sort_by_key(|diagnostic| (diagnostic.span.start, diagnostic.code));
         self.diagnostics.dedup();
         let is_wrong = self.diagnostics.iter().any(|diagnostic| diagnostic.severity() == Severity::Error);
-        let symbols = self.scope.symbols();
+        let symbols = self.scope.symbols(self.text);
         let program = (!is_wrong).then(|| Program {
             variables: self.scope.variables(self.text),
             labels: self.scope.labels(self.text),

@@ -34,6 +34,8 @@ pub enum SymbolKind {
 pub struct Symbol {
     /// The name in small letters.
     pub key: String,
+    /// The name as it is defined.
+    pub name: String,
     /// What it is.
     pub kind: SymbolKind,
     /// Type of a variable or table entry.
@@ -126,6 +128,7 @@ impl Scope {
         }
         let symbol = Symbol {
             key: name.key.clone(),
+            name: name.key.clone(),
             kind,
             value: None,
             length: None,
@@ -200,8 +203,10 @@ impl Scope {
         self.order.iter().filter_map(|key| self.entries.get(key))
     }
 
-    pub fn symbols(&self) -> Vec<Symbol> {
-        self.entries().map(|entry| entry.symbol.clone()).collect()
+    pub fn symbols(&self, text: &str) -> Vec<Symbol> {
+        let spelt =
+            |entry: &Entry| Symbol { name: entry.symbol.defined.of(text).to_owned(), ..entry.symbol.clone() };
+        self.entries().map(spelt).collect()
     }
 
     pub fn variables(&self, text: &str) -> Vec<Variable> {

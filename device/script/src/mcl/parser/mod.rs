@@ -62,6 +62,8 @@ struct Broken;
 
 type Parse<T> = Result<T, Broken>;
 
+pub use whiles::heads as while_heads;
+
 struct Parser<'a> {
     text: &'a str,
     tokens: Vec<Token>,
