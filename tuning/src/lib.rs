@@ -23,8 +23,11 @@ pub mod score;
 pub mod settle;
 mod step;
 pub mod ticks;
+pub mod trace;
+pub mod trial;
 pub mod tune;
 mod verify;
 pub mod watch;
+pub mod whatif;
 
 pub use step::{Point, StepFigures};

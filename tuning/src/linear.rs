@@ -117,6 +117,17 @@ impl LoopPlant {
         Margins { ms, noise_duty }
     }
 
+    /// The open loop over the grid: (angular frequency in 1/s, response).
+    #[must_use]
+    pub fn open_loop(&self, gains: &Gains, qpps: f64) -> Vec<(f64, Complex<f64>)> {
+        let at = |n: usize| {
+            let (by_speed, by_place) = self.controllers(gains, n);
+            let open = (by_speed * self.speed[n] + by_place * self.place[n]) * self.delay[n] / qpps;
+            (self.omega[n], open)
+        };
+        (0..self.omega.len()).map(at).collect()
+    }
+
     /// Largest magnitude of a closed-loop pole; below 1 is stable. Fractional delays count as the next whole one.
     #[must_use]
     pub fn spectral_radius(&self, gains: &Gains, qpps: f64) -> f64 {

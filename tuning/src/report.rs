@@ -2,7 +2,7 @@
 
 use crate::axis::{PositionRegisters, Setup, VelocityRegisters};
 use crate::cause::Cause;
-use crate::design::Design;
+use crate::design::{Design, Task};
 use crate::experiment::{FreeRun, Probe, WindowRun};
 use crate::fit::Fit;
 use crate::lag::LagFit;
@@ -59,6 +59,9 @@ pub struct Report {
     pub qpps: Option<f64>,
     /// The lag of the loop.
     pub lag: Option<LagFit>,
+    /// What the design was made for: the model with all that the run learned of the loop.
+    #[serde(default)]
+    pub task: Option<Task>,
     /// The design.
     pub design: Option<Design>,
     /// What the last verification measured.

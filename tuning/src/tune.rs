@@ -134,6 +134,7 @@ fn blank(request: &Request) -> Report {
         fit: None,
         qpps: None,
         lag: None,
+        task: None,
         design: None,
         measured: None,
         velocity: None,
@@ -171,6 +172,7 @@ fn run(rig: &mut Rig<'_>, request: &Request, report: &mut Report) -> Result<(), 
     };
     rig.progress("Measuring the lag of the loop");
     let task = settle_lag(rig, request, task, report)?;
+    report.task = Some(task);
     let design = design_for(request.method, &task).ok_or(Cause::TooCoarse)?;
     propose(report, request, &task, design, rig.options.travel);
     if request.verify {

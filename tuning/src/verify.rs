@@ -105,7 +105,7 @@ pub fn check_moves(
             }
         };
         report.measured = Some(measured);
-        if !rougher(&design, &measured) {
+        if !is_rougher(&design, &measured) {
             return Ok(());
         }
         if back_offs == MOST_BACK_OFFS {
@@ -120,7 +120,8 @@ pub fn check_moves(
     Ok(())
 }
 
-fn rougher(design: &Design, measured: &Measured) -> bool {
+/// Whether the machine is rougher than a design promised.
+pub(crate) fn is_rougher(design: &Design, measured: &Measured) -> bool {
     let active = measured.duty_rms > (1.8 * design.noise_duty).clamp(0.04, 0.115);
     let over = measured.overshoot > (design.score.overshoot + 0.10).max(0.15);
     active || over || measured.ripple > 0.15
@@ -132,7 +133,7 @@ fn lowered(gains: &Gains) -> Gains {
     Gains { velocity: lower(gains.velocity), position: gains.position.map(lower), ..*gains }
 }
 
-fn try_velocity(rig: &mut Rig<'_>, task: &Task, gains: &Gains) -> Result<Measured, Cause> {
+pub(crate) fn try_velocity(rig: &mut Rig<'_>, task: &Task, gains: &Gains) -> Result<Measured, Cause> {
     let (from_s, to_s) = run_steps(rig, task, gains)?;
     let settled = from_s + (2.5 * task.plant.tau_s).clamp(0.3, 2.0);
     let course = ClosedCourse::of(rig, settled, to_s);
@@ -157,7 +158,7 @@ fn judge_velocity(course: &ClosedCourse) -> Measured {
 }
 
 /// Moves D, 0, 0.25 D, 0.
-fn try_position(
+pub(crate) fn try_position(
     rig: &mut Rig<'_>,
     request: &Request,
     task: &Task,

@@ -1,0 +1,107 @@
+//! Gains tried on the machine by themselves: the same moves as at the end of a run, under the same guard.
+
+use crate::axis::{Axis, PositionRegisters, VelocityRegisters};
+use crate::cause::Cause;
+use crate::design::{Design, Task};
+use crate::experiment::Probe;
+use crate::model::Gains;
+use crate::record::{Entry, Recorder};
+use crate::registers::{gains_of, velocity_gains};
+use crate::report::Measured;
+use crate::rig::Rig;
+use crate::tune::{Excitation, Method, Request};
+use crate::verify::{is_rougher, try_position, try_velocity};
+use crate::whatif::forecast;
+use serde::{Deserialize, Serialize};
+
+/// What is to be tried.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrialRequest {
+    /// As the run was asked for: guard, excitation, law.
+    pub request: Request,
+    /// The model of that run.
+    pub task: Task,
+    /// Its probe, for the guard.
+    pub probe: Probe,
+    /// The velocity loop.
+    pub velocity: VelocityRegisters,
+    /// The position loop, of the methods that have one.
+    pub position: Option<PositionRegisters>,
+}
+
+/// What came of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Trial {
+    /// Why it ended early, or [`Cause::NotVerified`] where the machine was rougher than predicted.
+    pub cause: Option<Cause>,
+    /// What was measured.
+    pub measured: Option<Measured>,
+    /// How long it took, s.
+    pub seconds: f64,
+    /// The raw record.
+    pub record: Vec<Entry>,
+}
+
+impl TrialRequest {
+    /// The gains as the registers hold them.
+    #[must_use]
+    pub fn gains(&self) -> Gains {
+        registers_gains(&self.velocity, self.position.as_ref(), &self.request)
+    }
+}
+
+/// The gains that registers stand for under a request's law.
+#[must_use]
+pub fn registers_gains(
+    velocity: &VelocityRegisters,
+    position: Option<&PositionRegisters>,
+    request: &Request,
+) -> Gains {
+    match position {
+        Some(position) => gains_of(velocity, position, &request.law),
+        None => Gains { velocity: velocity_gains(velocity, &request.law), ..Gains::default() },
+    }
+}
+
+/// Runs it. The motor stands and the gains from before are in force when it returns.
+pub fn run_trial(axis: &mut dyn Axis, wanted: &TrialRequest) -> Trial {
+    let mut recorder = Recorder::new(axis);
+    let mut trial = Trial { cause: None, measured: None, seconds: 0.0, record: Vec::new() };
+    match Rig::new(&mut recorder, wanted.request.guard) {
+        Err(cause) => trial.cause = Some(cause),
+        Ok(mut rig) => {
+            rig.progress("Trying the gains on the machine");
+            match moves(&mut rig, wanted) {
+                Ok((measured, rougher)) => {
+                    trial.measured = Some(measured);
+                    trial.cause = rougher.then_some(Cause::NotVerified);
+                }
+                Err(cause) => trial.cause = Some(cause),
+            }
+            trial.seconds = rig.now_s();
+            rig.finish(false);
+        }
+    }
+    trial.record = recorder.into_entries();
+    trial
+}
+
+fn moves(rig: &mut Rig<'_>, wanted: &TrialRequest) -> Result<(Measured, bool), Cause> {
+    let gains = wanted.gains();
+    let shown = forecast(&wanted.task, &gains);
+    let design = Design { gains, score: shown.score, ms: shown.ms, noise_duty: shown.noise_duty };
+    rig.watch.start_duty = wanted.probe.start_duty;
+    rig.watch.stall_amps = wanted.probe.stall_amps;
+    rig.watch.full_speed = wanted.task.qpps;
+    rig.watch.stopping_s = wanted.task.plant.tau_s;
+    rig.write_velocity(wanted.velocity)?;
+    let measured = match wanted.position {
+        Some(position) if wanted.request.method != Method::Velocity => {
+            rig.write_position(position)?;
+            try_position(rig, &wanted.request, &wanted.task, &design)?
+        }
+        _ if matches!(wanted.request.excitation, Excitation::Window(_)) => return Err(Cause::TravelLimit),
+        _ => try_velocity(rig, &wanted.task, &gains)?,
+    };
+    Ok((measured, is_rougher(&design, &measured)))
+}

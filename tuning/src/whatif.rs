@@ -1,0 +1,251 @@
+//! What any gains would do on the model that a run identified: step, load step, figures, and the loop over frequency.
+//!
+//! Pure and quick, so that a slider or a typed gain redraws its prediction at once; nothing is sent and no motor moves.
+
+use crate::design::{Design, Goal, Task};
+use crate::linear::{DiscretePlant, LoopPlant};
+use crate::model::Gains;
+use crate::score::{LOAD_STEP_DUTY, Score, VELOCITY_STEP, horizon_s, position_step};
+use crate::ticks::{Setpoint, TickLoop};
+use crate::tune::{Method, design_for};
+
+/// One point of a predicted response.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reply {
+    /// Time from the step, s.
+    pub t: f64,
+    /// Counts/s or counts.
+    pub value: f64,
+    /// Duty, -1 to 1.
+    pub duty: f64,
+}
+
+/// What gains promise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Forecast {
+    /// Whether the loop is stable on the model, with the likely lag and with the largest that is likely.
+    pub is_stable: bool,
+    /// Where the step begins and where it goes: counts/s, or counts.
+    pub step: (f64, f64),
+    /// The response to the step.
+    pub after_step: Vec<Reply>,
+    /// What a load of 15 % of the stall torque does to it, from the moment it comes.
+    pub after_load: Vec<Reply>,
+    /// Overshoot over the step.
+    pub overshoot: f64,
+    /// Time to stay within 5 % (velocity) or 2 % (position), s; `None` if it never does in the time that is looked at.
+    pub settling_s: Option<f64>,
+    /// Farthest that the load drives it off, over the step.
+    pub load_dip: f64,
+    /// Maximum sensitivity.
+    pub ms: f64,
+    /// Root mean square of the duty that the rounding of counts alone causes.
+    pub noise_duty: f64,
+    /// The figures as the designs score them.
+    pub score: Score,
+}
+
+/// The loop at one frequency.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoopPoint {
+    /// Hz.
+    pub hz: f64,
+    /// Real and imaginary part of the open loop.
+    pub open: (f64, f64),
+}
+
+impl LoopPoint {
+    /// Gain of the open loop, dB.
+    #[must_use]
+    pub fn gain_db(&self) -> f64 {
+        20.0 * self.open.0.hypot(self.open.1).log10()
+    }
+
+    /// Phase of the open loop, degrees, -180 to 180.
+    #[must_use]
+    pub fn phase_deg(&self) -> f64 {
+        self.open.1.atan2(self.open.0).to_degrees()
+    }
+
+    /// Magnitude of the sensitivity, 1 / |1 + L|.
+    #[must_use]
+    pub fn sensitivity(&self) -> f64 {
+        (1.0 + self.open.0).hypot(self.open.1).recip()
+    }
+}
+
+/// What `gains` would do.
+#[must_use]
+pub fn forecast(task: &Task, gains: &Gains) -> Forecast {
+    let is_position = gains.position.is_some();
+    let (from, to) = if is_position {
+        (0.0, position_step(task.plant.gain_counts_per_s, task.plant.tau_s))
+    } else {
+        let top = task.plant.gain_counts_per_s;
+        (VELOCITY_STEP.0 * top, VELOCITY_STEP.1 * top)
+    };
+    let tick_s = task.law.tick_s();
+    let ticks = (horizon_s(task.plant.tau_s) / tick_s) as usize;
+    let mut twin = TickLoop::new(task.plant, task.law, task.lag, *gains, task.qpps);
+    if !is_position {
+        twin.start_steady(from);
+    }
+    let goal = if is_position { Setpoint::Place(to, task.qpps) } else { Setpoint::Speed(to) };
+    let mut run = |load: f64| -> Vec<Reply> {
+        let reply = |n: usize| {
+            let duty = twin.tick(goal, load);
+            let value = if is_position { twin.motion.place } else { twin.motion.speed };
+            Reply { t: (n + 1) as f64 * tick_s, value, duty }
+        };
+        (0..ticks).map(reply).collect()
+    };
+    let (after_step, after_load) = (run(0.0), run(LOAD_STEP_DUTY));
+    let step = to - from;
+    let errors = |replies: &[Reply]| -> Vec<f64> { replies.iter().map(|reply| to - reply.value).collect() };
+    let band = if is_position { 0.02_f64.max(3.0 / step) } else { 0.05 };
+    let score = Score::of(&errors(&after_step), &errors(&after_load), tick_s, step, band);
+    let plant = loop_of(task);
+    let margins = plant.margins(gains, task.qpps);
+    let worst = LoopPlant::new(DiscretePlant::of(&task.plant, tick_s), &task.law, task.worst_lag);
+    Forecast {
+        is_stable: plant.spectral_radius(gains, task.qpps) < 1.0
+            && worst.spectral_radius(gains, task.qpps) < 1.0,
+        step: (from, to),
+        overshoot: score.overshoot,
+        settling_s: (score.settling_s < (ticks - 1) as f64 * tick_s).then_some(score.settling_s),
+        load_dip: after_load.iter().map(|reply| (to - reply.value).abs()).fold(0.0, f64::max) / step.abs(),
+        ms: margins.ms,
+        noise_duty: margins.noise_duty * task.noise_factor,
+        score,
+        after_step,
+        after_load,
+    }
+}
+
+/// The open loop over frequency, up to half the firmware's loop rate.
+#[must_use]
+pub fn frequency_response(task: &Task, gains: &Gains) -> Vec<LoopPoint> {
+    let points = loop_of(task).open_loop(gains, task.qpps);
+    points
+        .into_iter()
+        .map(|(omega, open)| LoopPoint { hz: omega / std::f64::consts::TAU, open: (open.re, open.im) })
+        .collect()
+}
+
+fn loop_of(task: &Task) -> LoopPlant {
+    LoopPlant::new(DiscretePlant::of(&task.plant, task.law.tick_s()), &task.law, task.lag)
+}
+
+/// The task of another level: what the run learned to be careful about stays.
+#[must_use]
+pub fn at_level(task: &Task, was: f64, level: f64) -> Task {
+    let (before, now) = (Goal::of_level(was), Goal::of_level(level));
+    let share = (task.goal.ms - 1.0) / (before.ms - 1.0);
+    let noise = task.goal.noise_duty / before.noise_duty;
+    let goal = Goal { ms: 1.0 + share * (now.ms - 1.0), noise_duty: noise * now.noise_duty };
+    Task { goal, ..*task }
+}
+
+/// The gains of another level from the model of a run, with no new experiment. What the run took back on the machine is taken back
+/// here in the same proportion.
+#[must_use]
+pub fn redesign(method: Method, task: &Task, was: f64, run: &Design, level: f64) -> Option<Design> {
+    let design = design_for(method, &at_level(task, was, level))?;
+    let ratio = design_for(method, task).map_or(1.0, |first| share_of(&run.gains, &first.gains));
+    if ratio >= 0.999 {
+        return Some(design);
+    }
+    let mut gains = design.gains;
+    for pid in [Some(&mut gains.velocity), gains.position.as_mut()].into_iter().flatten() {
+        pid.p *= ratio;
+        pid.i *= ratio * ratio;
+        pid.d *= ratio;
+    }
+    let forecast = forecast(task, &gains);
+    Some(Design { gains, score: forecast.score, ms: forecast.ms, noise_duty: forecast.noise_duty })
+}
+
+/// The share of the first gains that was left on the machine.
+fn share_of(left: &Gains, first: &Gains) -> f64 {
+    let lead = |gains: &Gains| gains.position.map_or(gains.velocity.p, |position| position.p);
+    if lead(first) > 0.0 { (lead(left) / lead(first)).clamp(0.0, 1.0) } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Lag, LoopLaw, Pid, PlantModel};
+
+    fn task() -> Task {
+        let lag = Lag { filter_s: 0.004, delay_ticks: 1.0 };
+        Task {
+            plant: PlantModel {
+                gain_counts_per_s: 30_000.0,
+                tau_s: 0.1,
+                coulomb_duty: 0.0,
+                load_duty: 0.0,
+                drive_limit: None,
+                sag: 0.0,
+            },
+            law: LoopLaw::default(),
+            lag,
+            worst_lag: lag,
+            qpps: 30_000.0,
+            goal: Goal::of_level(50.0),
+            noise_factor: 1.0,
+            slack_counts: 0.0,
+            least_integral_s: 0.0,
+        }
+    }
+
+    #[test]
+    fn a_design_keeps_what_its_forecast_shows() {
+        for method in [Method::Velocity, Method::Pd, Method::Pid, Method::Piv] {
+            let design = design_for(method, &task()).unwrap();
+            let shown = forecast(&task(), &design.gains);
+            assert!(shown.is_stable, "{method:?}");
+            assert!(
+                (shown.ms - design.ms).abs() < 1e-9 && (shown.score.load - design.score.load).abs() < 1e-9
+            );
+            let most = frequency_response(&task(), &design.gains)
+                .iter()
+                .map(LoopPoint::sensitivity)
+                .fold(0.0, f64::max);
+            assert!((most - shown.ms).abs() < 1e-9, "{method:?}: {most} {}", shown.ms);
+        }
+    }
+
+    #[test]
+    fn a_p_loop_with_feed_forward_gives_way_to_a_load_as_its_gain_says() {
+        // At rest again, the load's share of the gain is held off by 1 + P: 0.15 x 30000 / (1 + 2) counts/s.
+        let gains = Gains { velocity: Pid { p: 2.0, i: 0.0, d: 0.0 }, ..Gains::default() };
+        let shown = forecast(&task(), &gains);
+        let end = shown.after_load.last().unwrap().value;
+        assert!((end - (13_500.0 - 1_500.0)).abs() < 60.0, "{end}");
+        assert!((shown.load_dip - 1_500.0 / 9_000.0).abs() < 0.02, "{}", shown.load_dip);
+    }
+
+    #[test]
+    fn too_much_gain_is_told_as_unstable() {
+        let gains = Gains { velocity: Pid { p: 400.0, i: 0.0, d: 0.0 }, ..Gains::default() };
+        assert!(!forecast(&task(), &gains).is_stable);
+    }
+
+    #[test]
+    fn another_level_is_designed_from_the_same_model_and_stiffer_gives_less_to_a_load() {
+        let first = design_for(Method::Velocity, &task()).unwrap();
+        let at = |level| redesign(Method::Velocity, &task(), 50.0, &first, level).unwrap();
+        assert_eq!(at(50.0), first);
+        let dips = [10.0, 50.0, 90.0].map(|level| forecast(&task(), &at(level).gains).load_dip);
+        assert!(dips[0] > dips[1] && dips[1] > dips[2], "{dips:?}");
+        let lowered = Design {
+            gains: Gains {
+                velocity: Pid { p: 0.7 * first.gains.velocity.p, ..first.gains.velocity },
+                ..first.gains
+            },
+            ..first
+        };
+        let again = redesign(Method::Velocity, &task(), 50.0, &lowered, 50.0).unwrap();
+        assert!((again.gains.velocity.p - lowered.gains.velocity.p).abs() < 1e-9);
+    }
+}
