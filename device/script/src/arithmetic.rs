@@ -17,6 +17,11 @@ pub enum Type {
     Float,
 }
 
+impl Type {
+    /// Every one, in the order in which images number them.
+    pub const ALL: [Self; 3] = [Self::Unsigned, Self::Signed, Self::Float];
+}
+
 /// A whole number divided by zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DivisionByZero;

@@ -4,6 +4,8 @@
 
 pub mod arithmetic;
 pub mod diagnostic;
+pub mod disassembly;
+pub mod image;
 pub mod mcl;
 pub mod op;
 pub mod program;

@@ -1,5 +1,6 @@
 //! A compiled program as the machine runs it and the debugger reads it.
 
+use crate::image;
 use crate::mcl::types::VarType;
 use crate::op::{Array, Op};
 use serde::Serialize;
@@ -45,6 +46,61 @@ pub struct Size {
     pub data_bytes: usize,
     /// Bytes of variables.
     pub ram_bytes: u32,
+    /// Bytes of the image, names and lines included.
+    pub image_bytes: usize,
+}
+
+/// A controller and what it holds of a script.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Room {
+    /// The model, as printed on the board.
+    pub model: &'static str,
+    /// Bytes for variables.
+    pub ram_bytes: u32,
+    /// Bytes for an image.
+    pub image_bytes: usize,
+}
+
+/// What each model of the manual holds. Assumed: the manual says that the amount of RAM "varies for each MCP model" (3.1.1) and gives no
+/// figure.
+pub const ROOMS: [Room; 7] = [
+    small("MCP233"),
+    small("MCP236"),
+    small("MCP263"),
+    small("MCP266"),
+    large("MCP2163"),
+    large("MCP2166"),
+    large("MCP2168"),
+];
+
+const fn small(model: &'static str) -> Room {
+    Room { model, ram_bytes: 16 * 1024, image_bytes: 128 * 1024 }
+}
+
+const fn large(model: &'static str) -> Room {
+    Room { model, ram_bytes: limits::RAM_BYTES, image_bytes: 256 * 1024 }
+}
+
+impl Room {
+    /// Whether a program fits.
+    #[must_use]
+    pub fn takes(&self, size: &Size) -> bool {
+        size.ram_bytes <= self.ram_bytes && size.image_bytes <= self.image_bytes
+    }
+}
+
+impl Program {
+    /// What it takes of a controller.
+    #[must_use]
+    pub fn size(&self) -> Size {
+        Size {
+            instructions: self.ops.len(),
+            code_bytes: image::code_bytes(self),
+            data_bytes: self.data.len(),
+            ram_bytes: self.ram_bytes,
+            image_bytes: image::encode(self).len(),
+        }
+    }
 }
 
 /// The largest program that the machine takes. Assumed: what the controllers hold is not public.
@@ -57,6 +113,10 @@ pub mod limits {
     pub const DATA_BYTES: usize = 256 * 1024;
     /// Cells of the stack.
     pub const STACK_CELLS: usize = 1024;
+    /// FOR loops.
+    pub const LOOPS: u32 = 4096;
+    /// Variables, and labels.
+    pub const NAMES: usize = 64 * 1024;
     /// Calls within calls.
     pub const CALLS: usize = 256;
 }

@@ -4,6 +4,7 @@
 
 mod support;
 
+use brushwork_script::image;
 use brushwork_script::mcl::{codes, compile};
 use brushwork_script::vm::{Machine, State};
 use rand_chacha::ChaCha8Rng;
@@ -117,6 +118,7 @@ fn damaged_programs_neither_panic_nor_hang() {
             assert!(diagnostic.span.end as usize <= text.len(), "{text}");
         }
         let Some(program) = compiled.program else { continue };
+        assert_eq!(image::decode(&image::encode(&program)).as_ref(), Ok(&program), "{text}");
         let mut machine = Machine::new(Arc::new(program));
         let mut desk = Desk::default();
         desk.waiting.insert(0, (0..=255).collect());

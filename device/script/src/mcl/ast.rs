@@ -252,6 +252,35 @@ pub enum Binary {
 }
 
 impl Unary {
+    /// Every one, in the order in which images number them.
+    pub const ALL: [Self; 25] = [
+        Self::Negative,
+        Self::BitNot,
+        Self::Not,
+        Self::Abs,
+        Self::Sin,
+        Self::Cos,
+        Self::Sqr,
+        Self::Bin2Bcd,
+        Self::Random,
+        Self::ToInt,
+        Self::ToFloat,
+        Self::FAbs,
+        Self::FSqrt,
+        Self::FSin,
+        Self::FCos,
+        Self::FTan,
+        Self::FAsin,
+        Self::FAcos,
+        Self::FAtan,
+        Self::FSinh,
+        Self::FCosh,
+        Self::FTanh,
+        Self::FAtanh,
+        Self::FLn,
+        Self::FExp,
+    ];
+
     /// The operator of this word.
     #[must_use]
     pub fn of_word(word: &str) -> Option<Self> {
@@ -307,6 +336,37 @@ impl Unary {
 }
 
 impl Binary {
+    /// Every one, in the order in which images number them.
+    pub const ALL: [Self; 27] = [
+        Self::Dig,
+        Self::Max,
+        Self::Min,
+        Self::Multiply,
+        Self::MultiplyHigh,
+        Self::MultiplyFraction,
+        Self::Divide,
+        Self::Remainder,
+        Self::Add,
+        Self::Subtract,
+        Self::ShiftLeft,
+        Self::ShiftRight,
+        Self::Less,
+        Self::LessOrEqual,
+        Self::Equal,
+        Self::GreaterOrEqual,
+        Self::Greater,
+        Self::NotEqual,
+        Self::BitAnd,
+        Self::BitOr,
+        Self::BitXor,
+        Self::BitNand,
+        Self::BitNor,
+        Self::BitNxor,
+        Self::And,
+        Self::Or,
+        Self::Xor,
+    ];
+
     /// The operator written with this sign.
     #[must_use]
     pub fn of_sign(sign: &str) -> Option<Self> {
@@ -393,6 +453,10 @@ pub enum Format {
 }
 
 impl Format {
+    /// Every one, in the order in which images number them.
+    pub const ALL: [Self; 7] =
+        [Self::Dec, Self::SDec, Self::Hex, Self::IHex, Self::Rep, Self::Real, Self::Str];
+
     /// The modifier that a word names, with the number written after it: `hex2` is `HEX` with 2.
     #[must_use]
     pub fn of_word(word: &str) -> Option<(Self, Option<u32>)> {

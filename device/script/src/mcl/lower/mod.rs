@@ -226,6 +226,8 @@ impl<'a> Lowering<'a> {
             ("bytes of variables", self.ram_bits.div_ceil(8), u64::from(limits::RAM_BYTES)),
             ("instructions", self.ops.len() as u64, limits::INSTRUCTIONS as u64),
             ("bytes of tables and texts", self.data.len() as u64, limits::DATA_BYTES as u64),
+            ("FOR loops", u64::from(self.loops), u64::from(limits::LOOPS)),
+            ("names", self.scope.count() as u64, limits::NAMES as u64),
         ] {
             if is > most {
                 let message = format!("The program has {is} {what}; {most} are allowed.");

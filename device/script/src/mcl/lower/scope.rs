@@ -198,6 +198,11 @@ impl Scope {
         }
     }
 
+    /// How many names there are.
+    pub fn count(&self) -> usize {
+        self.order.len()
+    }
+
     /// All entries in the order of the text.
     pub fn entries(&self) -> impl Iterator<Item = &Entry> {
         self.order.iter().filter_map(|key| self.entries.get(key))
