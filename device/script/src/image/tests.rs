@@ -1,3 +1,5 @@
+//! Images byte by byte, whole and damaged.
+
 use super::*;
 use crate::mcl::compile;
 use crate::op::Op;

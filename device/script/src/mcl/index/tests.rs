@@ -1,3 +1,5 @@
+//! The index on programs of a few lines.
+
 use super::*;
 use crate::mcl::lower::SymbolKind;
 
