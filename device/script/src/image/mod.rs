@@ -5,7 +5,7 @@
 //!
 //! | Bytes | What |
 //! | --- | --- |
-//! | 0 to 7 | `BRUSHMCL` |
+//! | 0 to 7 | `BWMCLIMG` |
 //! | 8, 9 | version of the format, [`VERSION`] |
 //! | 10, 11 | 0, kept for later |
 //! | 12 to 15 | length of the image in bytes, this header included; what follows is padding |
@@ -19,6 +19,8 @@
 //!
 //! A name is a varint count of bytes and UTF-8. An image is filled up with 0xFF to whole rows of [`ROW_BYTES`], because that is what
 //! command 251 writes.
+//!
+//! A file holds [`FILE_HEADER_BYTES`] bytes for people and then the image: the makers' tool skips so many before it downloads.
 
 mod bytes;
 mod code;
@@ -30,7 +32,7 @@ use crate::program::{Program, Variable, limits};
 use bytes::{Reader, Writer};
 
 /// The first bytes of every image.
-pub const MAGIC: [u8; 8] = *b"BRUSHMCL";
+pub const MAGIC: [u8; 8] = *b"BWMCLIMG";
 /// The version of the format.
 pub const VERSION: u16 = 1;
 /// An image is a multiple of this long.
@@ -70,6 +72,27 @@ pub enum ImageError {
 pub fn length(bytes: &[u8]) -> Option<usize> {
     let length = bytes.get(12..16)?.try_into().ok()?;
     bytes.starts_with(&MAGIC).then(|| u32::from_le_bytes(length) as usize)
+}
+
+/// What a file has before its image.
+pub const FILE_HEADER_BYTES: usize = 0x100;
+
+const FILE_TITLE: &str = "Brushwork MCL image, format 1\r\n\
+    A compiled script for Brushwork's simulated controllers. The byte code of real controllers is not public; they do not run this.\r\n";
+
+/// The file of an image.
+#[must_use]
+pub fn to_file(image: &[u8]) -> Vec<u8> {
+    let mut file = FILE_TITLE.as_bytes().to_vec();
+    file.resize(FILE_HEADER_BYTES, 0x1A);
+    file.extend_from_slice(image);
+    file
+}
+
+/// The image in a file, if the file is one of ours.
+#[must_use]
+pub fn of_file(file: &[u8]) -> Option<&[u8]> {
+    file.get(FILE_HEADER_BYTES..).filter(|image| image.starts_with(&MAGIC))
 }
 
 /// How many bytes the instructions of a program take.

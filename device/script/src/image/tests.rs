@@ -48,7 +48,7 @@ fn the_header_is_what_the_documentation_says() {
         0, // variables
         0, // labels
     ];
-    let mut expected = b"BRUSHMCL\x01\x00\x00\x00".to_vec();
+    let mut expected = b"BWMCLIMG\x01\x00\x00\x00".to_vec();
     expected.extend([34, 0, 0, 0]); // 20 bytes of header and 14 of body
     expected.extend(crc32fast::hash(&body).to_le_bytes());
     expected.extend(body);
@@ -118,4 +118,15 @@ fn opcodes_are_told_apart_and_values_stand_at_their_places() {
     assert!(Motion::ALL.iter().enumerate().all(|(at, value)| at == *value as usize));
     assert!(VarType::ALL.iter().enumerate().all(|(at, value)| at == *value as usize));
     assert!(Type::ALL.iter().enumerate().all(|(at, value)| at == *value as usize));
+}
+
+#[test]
+fn a_file_has_words_for_people_before_its_image() {
+    let image = encode(&program());
+    let file = to_file(&image);
+    assert_eq!(file.len(), 0x100 + image.len());
+    assert!(file.starts_with(b"Brushwork MCL image, format 1\r\n"));
+    assert_eq!(of_file(&file), Some(&image[..]));
+    assert_eq!(of_file(&image), None);
+    assert_eq!(of_file(b""), None);
 }
