@@ -12,4 +12,5 @@ pub mod codes;
 pub mod crc;
 pub mod loader;
 pub mod models;
+pub mod motion_mind;
 pub mod packet_serial;

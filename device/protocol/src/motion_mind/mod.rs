@@ -1,0 +1,32 @@
+//! The two serial protocols of the Motion Mind 3 (Motion Mind manual, chapters 5 to 7).
+//!
+//! The same [`Command`]s travel in binary frames ([`encode_frame`], [`FrameReader`]) or in lines of text ([`encode_line`],
+//! [`LineReader`]); a switch on the board selects which. What a controller says back is one [`Reply`] in either form.
+//! Registers, their widths and their bits are data: [`REGISTERS`], [`FUNCTION_BITS`], [`FUNCTION2_BITS`], [`STATUS_BITS`].
+//!
+//! The self-test line `Z` can be read, by a simulated controller, but not written: a unit needs a power cycle after it.
+
+mod address;
+mod bits;
+mod command;
+mod describe;
+mod frame;
+mod frame_reader;
+mod line;
+mod line_reader;
+mod register;
+mod reply;
+
+pub use address::{Address, InvalidAddress};
+pub use bits::{Bit, FUNCTION_BITS, FUNCTION2_BITS, STATUS_BITS, function, function2, status};
+pub use command::{Command, Effect, Part};
+pub use describe::{describe_command, describe_reply};
+pub use frame::{ACK, EncodeError, checksum, encode_frame, encode_frame_reply, parse_frame_reply};
+pub use frame_reader::{BYTE_GAP, FrameEvent, FrameReader};
+pub use line::{encode_line, encode_line_reply, parse_line_reply};
+pub use line_reader::{LineEvent, LineReader};
+pub use register::{Access, Kind, REGISTERS, Register, register, register_named};
+pub use reply::{BadReply, Progress, Reply, Returned, Returns};
+
+/// Bytes that the controller's receive buffer holds (Motion Mind manual 5.1).
+pub const RECEIVE_BUFFER: usize = 50;
