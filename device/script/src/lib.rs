@@ -3,6 +3,7 @@
 //! Nothing here has a clock or does IO: text goes in, a program comes out; the machine takes steps when it is told to.
 
 pub mod arithmetic;
+pub mod debug;
 pub mod diagnostic;
 pub mod disassembly;
 pub mod image;

@@ -15,5 +15,5 @@ pub mod registers;
 pub mod types;
 pub mod words;
 
-pub use lower::{Compiled, Symbol, SymbolKind, compile};
+pub use lower::{Compiled, Names, Symbol, SymbolKind, compile};
 pub use parser::{Parsed, parse};

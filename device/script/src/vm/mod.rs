@@ -210,6 +210,23 @@ impl Machine {
         &self.calls
     }
 
+    /// What the innermost subroutine was given and has not taken from the stack yet, the first argument first.
+    #[must_use]
+    pub fn arguments(&self) -> &[u32] {
+        let base = self.calls.last().map_or(self.stack.len(), |call| call.base);
+        self.stack.get(base..).unwrap_or_default()
+    }
+
+    /// Puts a value on the stack of a machine that has not run yet.
+    pub(crate) fn put_first(&mut self, value: u32) {
+        self.stack.push(value);
+    }
+
+    /// The top of the stack: what an expression has come to.
+    pub(crate) fn top(&self) -> Option<u32> {
+        self.stack.last().copied()
+    }
+
     /// Instructions run so far.
     #[must_use]
     pub fn executed(&self) -> u64 {

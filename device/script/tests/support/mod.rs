@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "each test file uses its part")]
 
 pub mod examples;
+pub mod mutation;
 
 use brushwork_script::mcl::ast::Motion;
 use brushwork_script::mcl::{self, registers::RegisterId};
@@ -106,4 +107,11 @@ pub fn output(text: &str) -> String {
 /// The value of an expression, as SDEC writes it.
 pub fn value(expression: &str) -> String {
     output(&format!("puts 0,[sdec {expression}]\nend\n"))
+}
+
+/// Whether two hosts saw the same.
+pub fn same_desk(a: &Desk, b: &Desk) -> bool {
+    let outside = |desk: &Desk| (desk.sent.clone(), desk.registers.clone(), desk.eeprom.clone());
+    let done = |desk: &Desk| (desk.motions.clone(), desk.i2c.clone(), desk.waiting.clone());
+    a.now == b.now && outside(a) == outside(b) && done(a) == done(b)
 }

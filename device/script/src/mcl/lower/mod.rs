@@ -11,6 +11,7 @@ mod output;
 mod place;
 mod scope;
 mod warnings;
+mod watch;
 
 use super::ast::{Name, Statement, StatementKind};
 use super::codes;
@@ -22,6 +23,7 @@ use crate::program::{Program, Variable, limits};
 use crate::text::{Lines, Span};
 use scope::Scope;
 pub use scope::{Symbol, SymbolKind};
+pub use watch::Names;
 
 /// What became of a program.
 #[derive(Clone, Debug, Default)]
@@ -47,6 +49,11 @@ impl Compiled {
 /// Compiles a program.
 #[must_use]
 pub fn compile(text: &str) -> Compiled {
+    compile_whole(text).0
+}
+
+/// Compiles a program and hands its names out besides.
+fn compile_whole(text: &str) -> (Compiled, Scope) {
     let Parsed { statements, diagnostics, left_out } = parse(text);
     let mut lowering = Lowering::new(text, diagnostics);
     lowering.scope.collect(&statements, &mut lowering.diagnostics);
@@ -236,7 +243,7 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    fn finish(mut self, left_out: Vec<Span>) -> Compiled {
+    fn finish(mut self, left_out: Vec<Span>) -> (Compiled, Scope) {
         self.diagnostics.sort_by_key(|diagnostic| (diagnostic.span.start, diagnostic.code));
         self.diagnostics.dedup();
         let is_wrong = self.diagnostics.iter().any(|diagnostic| diagnostic.severity() == Severity::Error);
@@ -250,7 +257,7 @@ impl<'a> Lowering<'a> {
             loops: self.loops,
             ram_bytes: u32::try_from(self.ram_bits.div_ceil(8)).unwrap_or(u32::MAX),
         });
-        Compiled { program, diagnostics: self.diagnostics, symbols, left_out }
+        (Compiled { program, diagnostics: self.diagnostics, symbols, left_out }, self.scope)
     }
 }
 
