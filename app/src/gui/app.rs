@@ -31,6 +31,7 @@ use super::parts::{OpenLink, Parts, SimulatedWorld};
 use super::remember::Memory;
 use super::{shell, theme};
 
+mod tuning;
 mod updating;
 
 /// Time between two frames while nobody touches anything: ten a second show what ten samples a second bring.
@@ -112,6 +113,7 @@ impl App {
         for command in commands {
             self.apply(command);
         }
+        self.go_on_tuning();
         self.read_loops();
         self.end_calibrations();
         self.look_for_unfinished();
@@ -295,8 +297,11 @@ impl App {
         if let Some(device) = self.links.entry(id).device.take() {
             links::close(device);
         }
-        if let Some(desk) = self.model.desk_mut(id) {
-            desk.link_ended();
+        let effects = self.model.desk_mut(id).map(|desk| desk.link_ended()).unwrap_or_default();
+        for effect in effects {
+            if let Effect::Say(gravity, text) = effect {
+                self.say(id, gravity, text);
+            }
         }
     }
 
@@ -345,6 +350,7 @@ impl App {
                 }
             }
             Command::Guided(wish) => self.guided(wish),
+            Command::Tune(wish) => self.tune(wish),
             Command::Firmware(wish) => self.firmware(wish),
             Command::OpenSheet(sheet) => {
                 self.show(Screen::GeneralSettings);
@@ -576,12 +582,14 @@ impl App {
     fn stop(&mut self) {
         self.links.stop_all();
         for desk in self.model.desks_mut() {
+            desk.tune.abort("Stop was pressed");
             desk.link.arming = Arming::Disarmed;
             desk.rest();
         }
     }
 
     fn disarm(&mut self) {
+        self.model.front.tune.abort("the screen was left or disarmed");
         if self.model.front.link.arming != Arming::Disarmed {
             self.request(Request::Disarm);
         }

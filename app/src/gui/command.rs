@@ -15,6 +15,7 @@ pub use super::model::guided::GuidedWish;
 use super::model::help::HelpPage;
 use super::model::loop_settings::Column;
 use super::model::screen::Screen;
+pub use super::tune::TuneWish;
 
 /// One wish.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,6 +88,8 @@ pub enum Command {
     Exit,
     /// A profile to be played or QPPS to be measured.
     Guided(GuidedWish),
+    /// Something to be done in guided tuning.
+    Tune(TuneWish),
     /// The voltage clamp test.
     ClampTest,
     DismissMessage,

@@ -23,6 +23,7 @@ pub mod screens;
 pub mod shell;
 pub mod theme;
 pub mod traffic;
+pub mod tune;
 pub mod widgets;
 pub mod world;
 

@@ -4,6 +4,8 @@
 //! is the run, which needs arming. The third moves nothing either and puts back what must be put back, on every way out on which
 //! there is still a link. What an interruption leaves of the run's own report is kept past the job.
 
+pub mod tap;
+
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -15,9 +17,23 @@ use brushwork_link::wire::Wire;
 use brushwork_protocol::packet_serial::{Generation, Motor, Request as Packet, Value, Values};
 use brushwork_tuning::axis::{Axis, AxisError, EncoderClass, Exchange, Setup};
 use brushwork_tuning::report::{Report, Verdict};
+use brushwork_tuning::trial::{Trial, TrialRequest, run_trial};
 use brushwork_tuning::tune::{Request, tune};
 use brushwork_tuning_bench::packet::{Carrier, PacketAxis};
 
+use tap::{Live, Tap};
+
+/// Verb phrase of the job before a run.
+pub const PREPARE: &str = "get ready to tune";
+/// Verb phrase of a run.
+pub const RUN: &str = "tune the motor";
+/// Verb phrase of a trial.
+pub const TRIAL: &str = "try the gains";
+/// Verb phrase of the job after either.
+pub const RESTORE: &str = "put back what the tuning changed";
+
+/// What a trial of gains may take.
+const TRIAL_LIMIT: Duration = Duration::from_secs(120);
 /// The stream's time-out during a run, ms. Assumed: it stops the motor when the program dies.
 const RUN_TIMEOUT_MS: u32 = 250;
 /// An exchange that took longer had a retry in it, so that its middle says nothing.
@@ -120,7 +136,7 @@ fn axis<'a, 'b>(
 /// The job before: reads what is put back afterwards, and shortens the time-out. It moves nothing.
 pub fn prepare(target: Target, found: &Slot<Setup>) -> Box<dyn Job> {
     let found = Arc::clone(found);
-    FnJob::boxed("get ready to tune", BRACKET_LIMIT, move |context| {
+    FnJob::boxed(PREPARE, BRACKET_LIMIT, move |context| {
         let place = context.describe();
         let mut axis = axis(context, target, true);
         let setup = thrice(|| axis.read_setup()).map_err(|error| failed("read the loops", &place, &error))?;
@@ -133,15 +149,33 @@ pub fn prepare(target: Target, found: &Slot<Setup>) -> Box<dyn Job> {
     })
 }
 
-/// The run. It moves the motor, so it must be armed. The report is in its slot also after an interruption.
-pub fn run(target: Target, request: Request, found: &Slot<Report>) -> Box<dyn Job> {
+/// The run. It moves the motor, so it must be armed. The report is in its slot also after an interruption; `live` shows what goes on
+/// meanwhile.
+pub fn run(target: Target, request: Request, found: &Slot<Report>, live: Option<&Live>) -> Box<dyn Job> {
+    let live = live.cloned();
     let found = Arc::clone(found);
     let limit = Duration::from_secs_f64(request.guard.time_limit_s) + GRACE;
-    FnJob::moving("tune the motor", limit, move |context| {
+    FnJob::moving(RUN, limit, move |context| {
         context.set_polling(false);
         // The time-out was set before: changing it now would undermine the arming.
-        let report = tune(&mut axis(context, target, false), &request);
+        let mut axis = axis(context, target, false);
+        let report = match &live {
+            Some(live) => tune(&mut Tap::new(&mut axis, live.clone()), &request),
+            None => tune(&mut axis, &request),
+        };
         put(&found, report);
+        Ok(Box::new(()))
+    })
+}
+
+/// Gains tried by themselves. It moves the motor, so it must be armed; what it found is in its slot also after an interruption.
+pub fn trial(target: Target, wanted: TrialRequest, found: &Slot<Trial>, live: &Live) -> Box<dyn Job> {
+    let (found, live) = (Arc::clone(found), live.clone());
+    FnJob::moving(TRIAL, TRIAL_LIMIT, move |context| {
+        context.set_polling(false);
+        let mut axis = axis(context, target, false);
+        let trial = run_trial(&mut Tap::new(&mut axis, live.clone()), &wanted);
+        put(&found, trial);
         Ok(Box::new(()))
     })
 }
@@ -151,7 +185,7 @@ pub fn restore(target: Target, before: Setup, report: Option<&Report>) -> Box<dy
     let keeps = report.filter(|report| report.request.keep && report.verdict != Verdict::Refused);
     let velocity = keeps.and_then(|report| report.velocity).unwrap_or(before.velocity);
     let position = keeps.and_then(|report| report.position).unwrap_or(before.position);
-    FnJob::boxed("put back what the tuning changed", BRACKET_LIMIT, move |context| {
+    FnJob::boxed(RESTORE, BRACKET_LIMIT, move |context| {
         let place = context.describe();
         let mut axis = axis(context, target, true);
         thrice(|| axis.write_velocity(velocity))

@@ -30,6 +30,7 @@ use super::velocity::Velocity;
 use super::watch::Watch;
 use super::world::WorldPanel;
 use crate::gui::graph::LiveGraph;
+use crate::gui::tune::Tuning;
 
 /// Which desk, for as long as the window is open.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -61,6 +62,8 @@ pub struct Desk {
     pub position: Position,
     pub generator: Generator,
     pub qpps: QppsPanel,
+    /// Guided tuning.
+    pub tune: Tuning,
     /// What the screens that drive have open above their graphs.
     pub drawers: Drawers,
     pub loops: LoopSettings,
@@ -144,6 +147,7 @@ impl Desk {
             position: Position::default(),
             generator: Generator::default(),
             qpps: QppsPanel::default(),
+            tune: Tuning::default(),
             drawers: Drawers::default(),
             loops: LoopSettings::default(),
             history: History::default(),
@@ -195,7 +199,14 @@ impl Desk {
             self.update_homed();
             return Vec::new();
         }
-        let effects = if self.awaits_guided(&event) {
+        let effects = if self.tune.awaits(&event) {
+            let effects = self.tune.take(event);
+            if !self.tune.is_running() {
+                // A run has written gains and put others back.
+                self.loops.want_reading();
+            }
+            effects
+        } else if self.awaits_guided(&event) {
             self.take_guided(event)
         } else if self.general.awaits(&event) {
             self.general.take(event)
@@ -264,8 +275,9 @@ impl Desk {
         None
     }
 
-    /// The link is gone, by wish or not. A simulated world lives on.
-    pub fn link_ended(&mut self) {
+    /// The link is gone, by wish or not. A simulated world lives on. What there is to say of it is handed back.
+    pub fn link_ended(&mut self) -> Vec<Effect> {
+        let effects = self.tune.link_ended();
         self.phase = Phase::Closed;
         self.link = LinkView::default();
         self.watch = Watch::default();
@@ -275,6 +287,7 @@ impl Desk {
         self.forget_unit();
         self.rest();
         self.graph.link_ended();
+        effects
     }
 
     /// What is known of one unit's motors says nothing of another's.

@@ -11,6 +11,8 @@ pub enum Tab {
     VelocityLoop,
     Generator,
     Qpps,
+    /// Guided tuning; it takes the room of the sliders and the graph.
+    Tune,
 }
 
 impl Tab {
@@ -18,8 +20,8 @@ impl Tab {
     pub const fn of(screen: Screen) -> &'static [Self] {
         match screen {
             Screen::Pwm => &[Self::Settings, Self::Generator, Self::Qpps],
-            Screen::Velocity => &[Self::Settings, Self::Generator],
-            Screen::Position => &[Self::Settings, Self::VelocityLoop, Self::Generator],
+            Screen::Velocity => &[Self::Settings, Self::Generator, Self::Tune],
+            Screen::Position => &[Self::Settings, Self::VelocityLoop, Self::Generator, Self::Tune],
             _ => &[],
         }
     }
@@ -31,6 +33,7 @@ impl Tab {
             (Self::Settings | Self::VelocityLoop, _) => "Velocity loop",
             (Self::Generator, _) => "Generator",
             (Self::Qpps, _) => "Measure QPPS",
+            (Self::Tune, _) => "Tune",
         }
     }
 }

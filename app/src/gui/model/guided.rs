@@ -24,7 +24,7 @@ pub enum GuidedWish {
 impl Desk {
     /// Whether a job moves the motors; the sliders rest meanwhile.
     pub fn is_guided(&self) -> bool {
-        self.generator.is_running() || self.qpps.is_running()
+        self.generator.is_running() || self.qpps.is_running() || self.tune.is_running()
     }
 
     /// The legs of the profile that is set, or why there are none.

@@ -260,11 +260,22 @@ impl LoopSettings {
         own_stream: Option<Stream>,
         keeper: Option<Box<dyn Keeper>>,
     ) -> Option<Request> {
-        let table = self.table.clone().filter(|_| self.running.is_none())?;
         let wanted: SettingsImage = keys(columns)
             .into_iter()
             .filter_map(|key| self.edits.get(&key).map(|value| (key, value)))
             .collect();
+        self.apply_image(wanted, identity, own_stream, keeper)
+    }
+
+    /// What to ask of the device thread to write these values to RAM, whatever is edited.
+    pub fn apply_image(
+        &mut self,
+        wanted: SettingsImage,
+        identity: &Identity,
+        own_stream: Option<Stream>,
+        keeper: Option<Box<dyn Keeper>>,
+    ) -> Option<Request> {
+        let table = self.table.clone().filter(|_| self.running.is_none())?;
         if wanted.is_empty() {
             return None;
         }

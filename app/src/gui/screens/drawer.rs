@@ -12,6 +12,11 @@ use crate::gui::model::loop_settings::{Column, POSITION, PWM, VELOCITY};
 use crate::gui::model::screen::Screen;
 use crate::gui::theme::Palette;
 
+/// Whether guided tuning has the screen.
+pub fn is_tuning(model: &Model) -> bool {
+    model.front.drawers.open(model.screen) == Some(Tab::Tune)
+}
+
 pub fn drawer_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let screen = model.screen;
     ui.horizontal(|ui| {
@@ -24,7 +29,7 @@ pub fn drawer_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             }
         }
     });
-    let Some(tab) = model.front.drawers.open(screen) else { return };
+    let Some(tab) = model.front.drawers.open(screen).filter(|tab| *tab != Tab::Tune) else { return };
     let outline = Stroke::new(1.0, Palette::of(ui).line);
     Frame::new().stroke(outline).corner_radius(4.0).inner_margin(Margin::symmetric(10, 6)).show(ui, |ui| {
         ui.set_width(ui.available_width());
@@ -32,6 +37,7 @@ pub fn drawer_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             Tab::Settings | Tab::VelocityLoop => loops_ui(ui, model, columns(screen, tab), commands),
             Tab::Generator => generator_ui(ui, model, commands),
             Tab::Qpps => qpps_ui(ui, model, commands),
+            Tab::Tune => {}
         }
     });
 }

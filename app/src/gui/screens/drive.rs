@@ -8,7 +8,7 @@ use egui::{
     vec2,
 };
 
-use super::drawer::drawer_ui;
+use super::drawer::{drawer_ui, is_tuning};
 use super::title_ui;
 use crate::gui::command::{Command, Commands, GuidedWish};
 use crate::gui::graph::panel;
@@ -16,6 +16,7 @@ use crate::gui::model::link::{Arming, LinkView};
 use crate::gui::model::setpoints::{Direction, Setpoints};
 use crate::gui::model::{Model, decimals};
 use crate::gui::theme::Palette;
+use crate::gui::tune::guide::guide_ui;
 use crate::gui::widgets::LampState;
 use crate::gui::widgets::arm_switch::arm_switch_ui;
 use crate::gui::widgets::jog::{self, jog_ui};
@@ -55,7 +56,11 @@ pub fn drive_ui(
             title_ui(ui, title, note);
             arm_ui(ui, scope, &model.front.link, commands);
             // A large graph takes the room of the sliders. What they asked for goes on; nobody can hold a jog button.
-            if model.front.graph.large {
+            if is_tuning(model) {
+                model.front.release_jogs();
+                ui.add_space(2.0);
+                drawer_ui(ui, model, commands);
+            } else if model.front.graph.large {
                 model.front.release_jogs();
             } else {
                 ui.add_space(2.0);
@@ -68,7 +73,12 @@ pub fn drive_ui(
             // A place of exact size: what does not fit into it cannot make the screen scroll.
             let (place, _) = ui.allocate_exact_size(vec2(room.width(), height), egui::Sense::hover());
             let layout = Layout::top_down(Align::Min);
-            graph_ui(&mut ui.new_child(UiBuilder::new().max_rect(place).layout(layout)), model, commands);
+            let mut inside = ui.new_child(UiBuilder::new().max_rect(place).layout(layout));
+            if is_tuning(model) {
+                guide_ui(&mut inside, model, commands);
+            } else {
+                graph_ui(&mut inside, model, commands);
+            }
         });
     });
 }

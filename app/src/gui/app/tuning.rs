@@ -1,0 +1,129 @@
+//! Guided tuning: its jobs one after the other, its gains into RAM and back, its reports on the disk.
+
+use super::App;
+use crate::gui::model::DeskId;
+use crate::gui::model::link::Arming;
+use crate::gui::tune::files;
+use crate::gui::tune::model::as_request;
+use crate::gui::tune::registers::Registers;
+use crate::gui::tune::sequence::Next;
+use crate::gui::tune::{Loop, TuneWish};
+use brushwork_link::device::Request;
+use brushwork_link::settings::SettingsImage;
+use brushwork_protocol::packet_serial::Motor;
+
+impl App {
+    pub(super) fn tune(&mut self, wish: TuneWish) {
+        let Some(which) = Loop::of(self.model.screen) else { return };
+        let front = &mut self.model.front;
+        let stream = front.link.stream;
+        let told = match wish {
+            TuneWish::Start(_) | TuneWish::Verify if front.is_guided() => {
+                Err("A job runs already. Wait for it or cancel it.".to_owned())
+            }
+            TuneWish::Start(motor) => front.tune.start(which, motor, stream),
+            TuneWish::Verify => front.tune.verify(which, stream),
+            TuneWish::Cancel => {
+                front.tune.abort("it was cancelled");
+                self.request(Request::CancelJob);
+                Ok(())
+            }
+            TuneWish::Apply => self.apply_gains(which),
+            TuneWish::Undo => self.undo_gains(which),
+            TuneWish::SaveReport(path) => match front.tune.front(which).run() {
+                Some(run) => files::save(&run.report, &path)
+                    .map(|()| self.model.messages.note(format!("The report is in {}.", path.display()))),
+                None => Ok(()),
+            },
+            TuneWish::OpenReport(path) => self.open_report(&path),
+        };
+        if let Err(sentence) = told {
+            self.model.messages.fail(sentence);
+        }
+    }
+
+    /// Asks for what comes next in each run that goes on, on whatever desk it is.
+    pub(super) fn go_on_tuning(&mut self) {
+        for id in self.links.ids() {
+            let Some(desk) = self.model.desk_mut(id) else { continue };
+            if let Some(identity) = desk.link.identity() {
+                let identity = identity.clone();
+                desk.tune.meet(&identity);
+                desk.tune.settle_debts();
+            }
+            let refused = !desk.link.refusals.is_empty();
+            if let Some(next) = desk.tune.next(desk.link.arming, refused) {
+                self.ask_next(id, next);
+            }
+        }
+    }
+
+    fn ask_next(&mut self, id: DeskId, next: Next) {
+        let scope = match &next {
+            Next::Arm(scope) => Some(*scope),
+            Next::Job(_) => None,
+        };
+        if let (Some(_), Some(desk)) = (scope, self.model.desk_mut(id)) {
+            desk.link.refusals.clear();
+        }
+        let is_taken = self.request_of(id, as_request(next));
+        let Some(desk) = self.model.desk_mut(id) else { return };
+        match scope {
+            _ if !is_taken => desk.tune.not_begun(),
+            Some(scope) => desk.link.arming = Arming::Asked(scope),
+            None => {}
+        }
+    }
+
+    fn apply_gains(&mut self, which: Loop) -> Result<(), String> {
+        let front = &mut self.model.front;
+        let motor = front.tune.motor(which);
+        let shown = front.tune.front(which).run().and_then(|run| run.shown.as_ref());
+        let Some(registers) = shown.map(|shown| shown.registers) else {
+            return Err("There are no gains to apply. Tune first.".to_owned());
+        };
+        let held = Registers::held(&front.loops, motor, registers.position.is_some());
+        self.write_gains(motor, registers.image(motor))?;
+        self.model.front.tune.front_mut(which).undo = held.map(|held| held.image(motor));
+        Ok(())
+    }
+
+    fn undo_gains(&mut self, which: Loop) -> Result<(), String> {
+        let front = &mut self.model.front;
+        let motor = front.tune.motor(which);
+        let Some(image) = front.tune.front(which).undo.clone() else {
+            return Err("Nothing was applied that could be undone.".to_owned());
+        };
+        self.write_gains(motor, image)?;
+        self.model.front.tune.front_mut(which).undo = None;
+        Ok(())
+    }
+
+    /// Writes gains to RAM as the settings of the loops are written: with a backup before, and read back.
+    fn write_gains(&mut self, _motor: Motor, image: SettingsImage) -> Result<(), String> {
+        let busy = || "The settings are being read or written. Try again in a moment.".to_owned();
+        let front = &mut self.model.front;
+        let identity = front.link.identity().cloned().ok_or("No controller is connected.")?;
+        let (stream, keeper) = (front.link.stream, front.general.keeper());
+        let request = front.loops.apply_image(image, &identity, stream, keeper).ok_or_else(busy)?;
+        if self.request(request) {
+            self.model.front.general.ram_changes();
+            Ok(())
+        } else {
+            self.model.front.loops.not_begun();
+            Err(busy())
+        }
+    }
+
+    fn open_report(&mut self, path: &std::path::Path) -> Result<(), String> {
+        let report = files::open(path)?;
+        let which = files::loop_of(&report);
+        let motor = if report.request.guard.motor == 1 { Motor::M2 } else { Motor::M1 };
+        let tuning = &mut self.model.front.tune;
+        tuning.panel_mut(which, motor).add(report);
+        tuning.look_at(which, motor);
+        let screen = which.screen().title();
+        self.model.messages.note(format!("The report of {motor} is shown on {screen}."));
+        Ok(())
+    }
+}

@@ -1,0 +1,18 @@
+//! Tuning in the window: a guided run for each loop of each motor, what its gains would do, and calibration by hand.
+//!
+//! State and screens stand together here; `crate::tune` has the jobs, `brushwork_tuning` the method.
+
+pub mod chart;
+pub mod files;
+pub mod guide;
+pub mod model;
+pub mod plots;
+pub mod refusal;
+pub mod registers;
+pub mod remaining;
+pub mod result;
+pub mod run;
+pub mod sequence;
+pub mod setup;
+
+pub use model::{Loop, TuneWish, Tuning};

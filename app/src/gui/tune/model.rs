@@ -1,0 +1,400 @@
+//! Tuning as the window keeps it: what is set, what runs, and the runs so far, for each loop of each motor.
+
+use brushwork_link::device::{ArmScope, Event, Identity, Request};
+use brushwork_link::transport::Stream;
+use brushwork_protocol::packet_serial::Motor;
+use brushwork_tuning::axis::{EncoderClass, Setup};
+use brushwork_tuning::report::Verdict;
+use brushwork_tuning::rig::GuardOptions;
+use brushwork_tuning::tune::{self, Excitation, Method};
+
+use super::run::Run;
+use super::sequence::{Ended, Next, Sequence, Work};
+use crate::gui::model::link::{Arming, Effect};
+use crate::gui::model::message::Gravity;
+use crate::gui::model::screen::Screen;
+use crate::tune::Target;
+
+/// Which loop is tuned: each has its screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Loop {
+    Velocity,
+    Position,
+}
+
+impl Loop {
+    pub const fn of(screen: Screen) -> Option<Self> {
+        match screen {
+            Screen::Velocity => Some(Self::Velocity),
+            Screen::Position => Some(Self::Position),
+            _ => None,
+        }
+    }
+
+    pub const fn screen(self) -> Screen {
+        match self {
+            Self::Velocity => Screen::Velocity,
+            Self::Position => Screen::Position,
+        }
+    }
+
+    pub const fn scope(self) -> ArmScope {
+        match self {
+            Self::Velocity => ArmScope::Velocity,
+            Self::Position => ArmScope::Position,
+        }
+    }
+
+    /// Unit of what it holds.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Velocity => "counts/s",
+            Self::Position => "counts",
+        }
+    }
+}
+
+/// What is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TuneWish {
+    Start(Motor),
+    Verify,
+    Cancel,
+    /// The considered gains into the controller's RAM.
+    Apply,
+    /// What RAM held before they were applied.
+    Undo,
+    SaveReport(std::path::PathBuf),
+    OpenReport(std::path::PathBuf),
+}
+
+/// How an axis is tuned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setting {
+    /// 0 (soft) to 100 (stiff).
+    pub level: f64,
+    pub method: Method,
+    /// Whether it may turn without end; otherwise it stays within the travel.
+    pub turns_freely: bool,
+    /// Lowest and highest count.
+    pub travel: (f64, f64),
+    pub max_duty_percent: f64,
+    /// The run ends above this current; 0 leaves it to the controller's own limit.
+    pub max_amps: f64,
+    pub encoder: EncoderClass,
+    /// Whether the gains are tried on the machine at the end of the run.
+    pub tries: bool,
+}
+
+impl Setting {
+    fn new(which: Loop) -> Self {
+        Self {
+            level: 50.0,
+            method: if which == Loop::Velocity { Method::Velocity } else { Method::Piv },
+            turns_freely: true,
+            travel: (-2000.0, 2000.0),
+            max_duty_percent: 100.0,
+            max_amps: 0.0,
+            encoder: EncoderClass::Quadrature,
+            tries: true,
+        }
+    }
+
+    fn request(&self, motor: Motor) -> tune::Request {
+        let (low, high) = (self.travel.0.round() as i64, self.travel.1.round() as i64);
+        let travel = (!self.turns_freely).then_some((low, high));
+        tune::Request {
+            method: self.method,
+            level: self.level,
+            excitation: travel.map_or(Excitation::Free, |_| Excitation::Window((high - low) as f64)),
+            guard: GuardOptions {
+                motor: motor.index(),
+                max_duty: (self.max_duty_percent / 100.0).clamp(0.2, 1.0),
+                travel,
+                max_amps: (self.max_amps > 0.0).then_some(self.max_amps),
+                ..GuardOptions::default()
+            },
+            verify: self.tries,
+            keep: false,
+            ..tune::Request::default()
+        }
+    }
+}
+
+/// One loop of one motor.
+#[derive(Clone, Debug)]
+pub struct Panel {
+    pub setting: Setting,
+    pub runs: Vec<Run>,
+    /// Which of them is looked at.
+    pub chosen: usize,
+    /// What RAM held before gains were applied, to go back to.
+    pub undo: Option<brushwork_link::settings::SettingsImage>,
+}
+
+impl Panel {
+    fn new(which: Loop) -> Self {
+        Self { setting: Setting::new(which), runs: Vec::new(), chosen: 0, undo: None }
+    }
+
+    pub fn run(&self) -> Option<&Run> {
+        self.runs.get(self.chosen)
+    }
+
+    pub fn run_mut(&mut self) -> Option<&mut Run> {
+        self.runs.get_mut(self.chosen)
+    }
+
+    pub fn add(&mut self, report: brushwork_tuning::report::Report) {
+        let number = self.runs.last().map_or(1, |run| run.number + 1);
+        self.runs.push(Run::new(number, report));
+        self.chosen = self.runs.len() - 1;
+    }
+}
+
+/// Gains that a lost link left in a controller.
+#[derive(Clone, Debug)]
+struct Owed {
+    target: Target,
+    which: Loop,
+    unit: (u8, String),
+    before: Setup,
+}
+
+/// Tuning on one link.
+#[derive(Debug)]
+pub struct Tuning {
+    panels: [[Panel; 2]; 2],
+    /// The motor that is looked at, by loop.
+    motors: [Motor; 2],
+    running: Option<(Loop, Sequence)>,
+    owed: Option<Owed>,
+    unit: Option<(u8, String)>,
+    pub view: super::plots::View,
+    /// A path for a report, as it is typed.
+    pub path: String,
+    pub dialog: Option<super::files::Asked>,
+}
+
+impl Default for Tuning {
+    fn default() -> Self {
+        let pair = |which| [Panel::new(which), Panel::new(which)];
+        Self {
+            panels: [pair(Loop::Velocity), pair(Loop::Position)],
+            motors: [Motor::M1; 2],
+            running: None,
+            owed: None,
+            unit: None,
+            view: super::plots::View::default(),
+            path: String::new(),
+            dialog: None,
+        }
+    }
+}
+
+impl Tuning {
+    pub fn motor(&self, which: Loop) -> Motor {
+        self.motors[which as usize]
+    }
+
+    pub fn look_at(&mut self, which: Loop, motor: Motor) {
+        self.motors[which as usize] = motor;
+    }
+
+    pub fn panel(&self, which: Loop, motor: Motor) -> &Panel {
+        &self.panels[which as usize][motor.index()]
+    }
+
+    pub fn panel_mut(&mut self, which: Loop, motor: Motor) -> &mut Panel {
+        &mut self.panels[which as usize][motor.index()]
+    }
+
+    /// The panel that is looked at.
+    pub fn front(&self, which: Loop) -> &Panel {
+        self.panel(which, self.motor(which))
+    }
+
+    pub fn front_mut(&mut self, which: Loop) -> &mut Panel {
+        self.panel_mut(which, self.motor(which))
+    }
+
+    pub fn is_running(&self) -> bool {
+        self.running.is_some()
+    }
+
+    pub fn running(&self) -> Option<&Sequence> {
+        self.running.as_ref().map(|(_, sequence)| sequence)
+    }
+
+    /// Begins a run. It goes on by [`Tuning::next`] in every frame.
+    pub fn start(&mut self, which: Loop, motor: Motor, stream: Option<Stream>) -> Result<(), String> {
+        self.begin(which, motor, stream, |panel, motor| Ok(Work::Tune(panel.setting.request(motor))))
+    }
+
+    /// Begins to try the considered gains on the machine.
+    pub fn verify(&mut self, which: Loop, stream: Option<Stream>) -> Result<(), String> {
+        let motor = self.motor(which);
+        self.begin(which, motor, stream, |panel, _| {
+            let trial = panel.run().and_then(Run::trial);
+            let missing = || "There are no gains to try. Tune first.".to_owned();
+            trial.map(|trial| Work::Try(Box::new(trial))).ok_or_else(missing)
+        })
+    }
+
+    fn begin(
+        &mut self,
+        which: Loop,
+        motor: Motor,
+        stream: Option<Stream>,
+        work: impl FnOnce(&Panel, Motor) -> Result<Work, String>,
+    ) -> Result<(), String> {
+        if self.running.is_some() {
+            return Err("A run goes on already. Wait for it or stop it.".to_owned());
+        }
+        let panel = self.panel(which, motor);
+        if !panel.setting.turns_freely && panel.setting.travel.1 - panel.setting.travel.0 < 40.0 {
+            return Err("The travel has no room: its high end must be at least 40 counts above its low end.".to_owned());
+        }
+        let target = Target { motor, encoder: panel.setting.encoder, stream };
+        let work = work(panel, motor)?;
+        self.look_at(which, motor);
+        self.running = Some((which, Sequence::new(work, target, which.scope())));
+        Ok(())
+    }
+
+    /// Ends a run before its end; the old gains are put back.
+    pub fn abort(&mut self, why: &str) {
+        if let Some((_, sequence)) = &mut self.running {
+            sequence.abort(why);
+        }
+    }
+
+    /// What to ask of the device thread now; asked in every frame.
+    pub fn next(&mut self, arming: Arming, refused: bool) -> Option<Next> {
+        self.running.as_mut()?.1.next(arming, refused)
+    }
+
+    /// The device thread did not take it.
+    pub fn not_begun(&mut self) {
+        if let Some((_, sequence)) = &mut self.running {
+            sequence.not_begun();
+        }
+    }
+
+    pub fn awaits(&self, event: &Event) -> bool {
+        self.running.as_ref().is_some_and(|(_, sequence)| sequence.awaits(event))
+    }
+
+    /// Takes in an event that it awaits.
+    pub fn take(&mut self, event: Event) -> Vec<Effect> {
+        let Some((which, sequence)) = &mut self.running else { return Vec::new() };
+        let which = *which;
+        let target = sequence.target;
+        let Some(ended) = sequence.take(event) else { return Vec::new() };
+        self.running = None;
+        self.ended(which, target, ended)
+    }
+
+    fn ended(&mut self, which: Loop, target: Target, ended: Ended) -> Vec<Effect> {
+        let mut effects = Vec::new();
+        if let Some(before) = ended.owed {
+            effects.push(owed_effect());
+            let unit = self.unit.clone().unwrap_or_default();
+            self.owed = Some(Owed { target, which, unit, before });
+        }
+        let panel = self.panel_mut(which, target.motor);
+        effects.push(match (&ended.work, ended.report, &ended.trial) {
+            (Work::Tune(_), Some(report), _) => {
+                let said = said_of(target.motor, &report, ended.why.as_deref());
+                panel.add(report);
+                said
+            }
+            (Work::Try(_), _, Some(trial)) => {
+                let said = said_of_trial(target.motor, trial);
+                if let Some(run) = panel.run_mut() {
+                    run.was_tried(trial);
+                }
+                said
+            }
+            (Work::PutBack, ..) => {
+                Effect::Say(Gravity::Note, format!("The gains of {} from before the run are back.", target.motor))
+            }
+            _ => Effect::Say(
+                Gravity::Warning,
+                format!("{} was not tuned: {}.", target.motor, ended.why.as_deref().unwrap_or("nothing came of it")),
+            ),
+        });
+        effects
+    }
+
+    /// The link is gone; what was not put back is, when the same unit answers again.
+    pub fn link_ended(&mut self) -> Vec<Effect> {
+        let Some((which, sequence)) = self.running.take() else { return Vec::new() };
+        let target = sequence.target;
+        let ended = sequence.link_ended();
+        self.ended(which, target, ended)
+    }
+
+    /// Another unit is looked at: its runs are not those of the last one.
+    pub fn meet(&mut self, identity: &Identity) -> bool {
+        let unit = (identity.address, identity.version_text.clone());
+        if self.unit.as_ref() == Some(&unit) {
+            return false;
+        }
+        let is_other = self.unit.replace(unit).is_some();
+        if is_other && self.running.is_none() {
+            let (owed, unit) = (self.owed.take(), self.unit.take());
+            *self = Self { owed, unit, ..Self::default() };
+        }
+        is_other
+    }
+
+    /// Begins to put back what a lost link has left, if this is the unit.
+    pub fn settle_debts(&mut self) {
+        if self.running.is_some() || self.owed.as_ref().map(|owed| &owed.unit) != self.unit.as_ref() {
+            return;
+        }
+        if let Some(owed) = self.owed.take() {
+            let sequence = Sequence::put_back(owed.target, owed.which.scope(), owed.before);
+            self.running = Some((owed.which, sequence));
+        }
+    }
+}
+
+fn owed_effect() -> Effect {
+    let text = "The gains from before the run could not be put back. They are put back when this controller answers again; \
+                switching it off and on brings back those of its EEPROM.";
+    Effect::Say(Gravity::Error, text.to_owned())
+}
+
+fn said_of(motor: Motor, report: &brushwork_tuning::report::Report, why: Option<&str>) -> Effect {
+    match (report.verdict, report.causes.first()) {
+        (Verdict::Refused, Some(cause)) => {
+            let why = why.map_or_else(|| cause.sentence().to_owned(), |why| format!("{why}."));
+            let back = "The motors were stopped and the old gains are in force.";
+            Effect::Say(Gravity::Warning, format!("{motor} was not tuned: {why} {back}"))
+        }
+        (Verdict::TunedWithWarnings, Some(cause)) => {
+            Effect::Say(Gravity::Warning, format!("{motor} is tuned, with something to know: {}", cause.sentence()))
+        }
+        _ => Effect::Say(
+            Gravity::Note,
+            format!("{motor} is tuned. The old gains are in force until you apply the proposed ones."),
+        ),
+    }
+}
+
+fn said_of_trial(motor: Motor, trial: &brushwork_tuning::trial::Trial) -> Effect {
+    match trial.cause {
+        None => Effect::Say(Gravity::Note, format!("{motor} behaves as predicted with these gains.")),
+        Some(cause) => Effect::Say(Gravity::Warning, format!("{motor}: {}", cause.sentence())),
+    }
+}
+
+/// What to ask for as a request.
+pub fn as_request(next: Next) -> Request {
+    match next {
+        Next::Arm(scope) => Request::Arm(scope),
+        Next::Job(request) => request,
+    }
+}

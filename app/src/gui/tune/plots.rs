@@ -1,0 +1,355 @@
+//! The pictures of tuning: what goes on, what was measured over what was predicted, steps, load steps, and the loop over frequency.
+
+use brushwork_tuning::rig::{Drive, Input};
+use brushwork_tuning::trace::{Stretch, Trace};
+use brushwork_tuning::whatif::{LoopPoint, Reply};
+use egui::{Color32, Ui, vec2};
+
+use super::chart::{Axis, Chart, Line, Look};
+use super::model::{Loop, Panel};
+use super::run::{Run, Shown};
+use crate::gui::theme::Palette;
+
+/// Speeds are taken over this long while counts are coarse, s.
+const SPEED_OVER_S: f64 = 0.02;
+/// The time that a live picture shows at least, s, and the steps in which it grows.
+const LIVE_S: f64 = 6.0;
+/// Share of the height that the duty gets.
+const DUTY_SHARE: f32 = 0.3;
+
+/// Which picture of a result is looked at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Kind {
+    #[default]
+    Measured,
+    Step,
+    Load,
+    Bode,
+    Nyquist,
+    Sensitivity,
+}
+
+impl Kind {
+    pub const ALL: [Self; 6] =
+        [Self::Measured, Self::Step, Self::Load, Self::Bode, Self::Nyquist, Self::Sensitivity];
+
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Measured => "Measured",
+            Self::Step => "Step",
+            Self::Load => "Load",
+            Self::Bode => "Bode",
+            Self::Nyquist => "Nyquist",
+            Self::Sensitivity => "Sensitivity",
+        }
+    }
+
+    pub const fn hint(self) -> &'static str {
+        match self {
+            Self::Measured => "What the machine did with the gains that were tried, over what the model predicts",
+            Self::Step => "What the gains do to a step of the setpoint, on the model",
+            Self::Load => "What a load of 15 % of the stall torque does, on the model",
+            Self::Bode => "Gain and phase of the open loop over frequency",
+            Self::Nyquist => "The open loop in the complex plane; it keeps out of the Ms circle",
+            Self::Sensitivity => "How much the loop enlarges what disturbs it; its peak is Ms",
+        }
+    }
+}
+
+/// What is looked at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct View {
+    pub kind: Kind,
+}
+
+/// The picture of a run that goes on.
+pub fn live_ui(ui: &mut Ui, trace: &Trace, which: Loop) {
+    let palette = Palette::of(ui);
+    let end_s = (trace.end_s() / 3.0).ceil() * 3.0;
+    let x = Axis::new("time", "s", 0.0, end_s.max(LIVE_S));
+    let room = ui.available_size();
+    let heights = [0.5, 0.25, 0.25].map(|share: f32| (room.y - 16.0) * share);
+    let mut main = match which {
+        Loop::Velocity => vec![line("speed", trace.speeds(SPEED_OVER_S), palette.traces[2], Look::Solid)],
+        Loop::Position => vec![line("position", places(trace, None), palette.traces[3], Look::Solid)],
+    };
+    let whole = Stretch { from_s: 0.0, to_s: trace.end_s(), is_position: which == Loop::Position };
+    main.insert(0, line("setpoint", setpoints(trace, &whole), palette.traces[0], Look::Dashed));
+    let (name, unit) = if which == Loop::Velocity { ("speed", "counts/s") } else { ("position", "counts") };
+    let empty = "The motor is about to turn a little, to check its wiring.";
+    let label = format!("Live {name} of the run");
+    chart(ui, &label, (x, around(name, unit, &main)), &main, &[], empty, vec2(room.x, heights[0]));
+    let duty = [line("duty", duties(trace, None), palette.traces[1], Look::Solid)];
+    chart(ui, "Live duty of the run", (x, Axis::new("duty", "%", -110.0, 110.0)), &duty, &[], "", vec2(room.x, heights[1]));
+    let amps = trace.points.iter().filter_map(|point| point.amps.map(|amps| (point.t, amps)));
+    let current = [line("current", amps.collect(), palette.traces[4], Look::Solid)];
+    let y = Axis::around("current", "A", current[0].points.iter().map(|p| p[1]).chain([0.0, 0.5]));
+    chart(ui, "Live current of the run", (x, y), &current, &[], "", vec2(room.x, heights[2]));
+}
+
+/// The picture of a result, with what chooses it.
+pub fn result_ui(ui: &mut Ui, panel: &Panel, view: &mut View, which: Loop) {
+    ui.horizontal_wrapped(|ui| {
+        for kind in Kind::ALL {
+            let label = ui.selectable_label(view.kind == kind, kind.title());
+            if label.on_hover_text(kind.hint()).clicked() {
+                view.kind = kind;
+            }
+        }
+    });
+    let Some(run) = panel.run() else {
+        let empty = "Nothing tuned yet: predictions and measurements of a run are drawn here.";
+        let size = ui.available_size();
+        let axes = (Axis::new("time", "s", 0.0, 1.0), Axis::new("", which.unit(), 0.0, 1.0));
+        return chart(ui, "Result of a run", axes, &[], &[], empty, size);
+    };
+    match view.kind {
+        Kind::Measured => measured_ui(ui, run, which),
+        Kind::Step => replies_ui(ui, panel, run, which, false),
+        Kind::Load => replies_ui(ui, panel, run, which, true),
+        Kind::Bode => bode_ui(ui, panel, run),
+        Kind::Nyquist => nyquist_ui(ui, panel, run),
+        Kind::Sensitivity => sensitivity_ui(ui, panel, run),
+    }
+}
+
+/// What was tried on the machine, over what the model predicts for the same commands: with the gains that were tried, and with those
+/// that are considered where they are others.
+fn measured_ui(ui: &mut Ui, run: &Run, which: Loop) {
+    let palette = Palette::of(ui);
+    let size = ui.available_size();
+    let Some(tried) = run.tried.as_ref() else {
+        let axes = (Axis::new("time", "s", 0.0, 1.0), Axis::new("", which.unit(), 0.0, 1.0));
+        let empty = "No gains were tried on the machine in this run. Verify tries the proposed ones.";
+        return chart(ui, "Measured response", axes, &[], &[], empty, size);
+    };
+    let (trace, stretch) = (&tried.trace, &tried.stretch);
+    let from_s = stretch.from_s;
+    let (name, unit) = if stretch.is_position { ("position", "counts") } else { ("speed", "counts/s") };
+    let color = if stretch.is_position { palette.traces[3] } else { palette.traces[2] };
+    let (mut main, mut duty) = (Vec::new(), Vec::new());
+    let mut predict = |shown: &Shown, name: &str, look: Look| {
+        let Some(task) = run.task() else { return };
+        let course = trace.predict(task, &shown.gains, stretch);
+        let value = |p: &brushwork_tuning::trace::Predicted| if stretch.is_position { p.counts } else { p.speed };
+        main.push(line(name, course.iter().map(|p| (p.t - from_s, value(p))).collect(), palette.accent, look));
+        duty.push(line(name, course.iter().map(|p| (p.t - from_s, 100.0 * p.duty)).collect(), palette.accent, look));
+    };
+    if let Some(shown) = run.on_model(tried.registers) {
+        predict(&shown, "predicted", Look::Under);
+    }
+    if let Some(shown) = run.shown.as_ref().filter(|shown| shown.registers != tried.registers) {
+        predict(shown, "with the gains considered", Look::Dashed);
+    }
+    main.push(line("setpoint", shifted(setpoints(trace, stretch), from_s), palette.traces[0], Look::Dashed));
+    let values = if stretch.is_position { places(trace, Some(stretch)) } else { speeds(trace, stretch) };
+    main.push(line("measured", shifted(values, from_s), color, Look::Solid));
+    duty.push(line("measured", shifted(duties(trace, Some(stretch)), from_s), palette.traces[1], Look::Solid));
+    let x = Axis::new("time", "s", 0.0, (stretch.to_s - from_s).max(0.1));
+    let lower = (size.y * DUTY_SHARE).max(70.0);
+    let label = format!("Measured {name} over the predicted one");
+    chart(ui, &label, (x, around(name, unit, &main)), &main, &[], "", vec2(size.x, size.y - lower - 6.0));
+    chart(ui, "Measured duty over the predicted one", (x, around("duty", "%", &duty)), &duty, &[], "", vec2(size.x, lower));
+}
+
+/// Steps or load steps on the model: the considered gains, the present ones, and earlier runs.
+fn replies_ui(ui: &mut Ui, panel: &Panel, run: &Run, which: Loop, load: bool) {
+    let palette = Palette::of(ui);
+    let size = ui.available_size();
+    let picked = |shown: &Shown| -> Vec<Reply> {
+        if load { shown.forecast.after_load.clone() } else { shown.forecast.after_step.clone() }
+    };
+    let (mut main, mut duty) = (Vec::new(), Vec::new());
+    for (name, shown, color, look) in lines_of(panel, run, palette) {
+        let replies = picked(shown);
+        main.push(line(&name, replies.iter().map(|r| (r.t, r.value)).collect(), color, look));
+        duty.push(line("", replies.iter().map(|r| (r.t, 100.0 * r.duty)).collect(), color, look));
+    }
+    let x_end = main.iter().filter_map(|line| line.points.last().map(|p| p[0])).fold(0.1, f64::max);
+    let x = Axis::new("time", "s", 0.0, x_end);
+    let lower = (size.y * DUTY_SHARE).max(70.0);
+    let name = if which == Loop::Velocity { "speed" } else { "position" };
+    let goal = run.shown.as_ref().map(|shown| (shown.forecast.step.1, "setpoint"));
+    let label = if load { format!("Predicted {name} under a load step") } else { format!("Predicted step of the {name}") };
+    let empty = "There is no model yet: tune first.";
+    let levels: Vec<(f64, &str)> = goal.into_iter().collect();
+    let y = around(name, which.unit(), &main);
+    chart(ui, &label, (x, y), &main, &levels, empty, vec2(size.x, size.y - lower - 6.0));
+    chart(ui, "Predicted duty", (x, around("duty", "%", &duty)), &duty, &[], "", vec2(size.x, lower));
+}
+
+fn bode_ui(ui: &mut Ui, panel: &Panel, run: &Run) {
+    let palette = Palette::of(ui);
+    let size = ui.available_size();
+    let (mut gain, mut phase) = (Vec::new(), Vec::new());
+    let mut top_hz: f64 = 1.0;
+    for (name, shown, color, look) in lines_of(panel, run, palette) {
+        top_hz = shown.frequency.last().map_or(top_hz, |point| point.hz.max(top_hz));
+        gain.push(line(&name, over_frequency(shown, LoopPoint::gain_db), color, look));
+        phase.push(line("", unwrapped_phase(shown), color, look));
+    }
+    let x = Axis::new("frequency", "Hz", (top_hz * 2e-4).max(0.01), top_hz).log();
+    let half = vec2(size.x, (size.y - 6.0) / 2.0);
+    let y = Axis { low: -60.0, high: 60.0, ..Axis::new("gain", "dB", 0.0, 0.0) };
+    let empty = "There is no model yet: tune first.";
+    chart(ui, "Bode gain of the open loop", (x, y), &gain, &[(0.0, "0 dB")], empty, half);
+    let y = Axis::new("phase", "degrees", -270.0, 0.0);
+    chart(ui, "Bode phase of the open loop", (x, y), &phase, &[(-180.0, "-180°")], "", half);
+}
+
+fn nyquist_ui(ui: &mut Ui, panel: &Panel, run: &Run) {
+    let palette = Palette::of(ui);
+    let size = ui.available_size();
+    let lines: Vec<Line> = lines_of(panel, run, palette)
+        .map(|(name, shown, color, look)| {
+            let points = shown.frequency.iter().map(|point| point.open);
+            line(&name, points.filter(|open| open.0.hypot(open.1) < 60.0).collect(), color, look)
+        })
+        .collect();
+    let goal = run.task().map_or(1.6, |task| task.goal.ms);
+    let word = format!("Ms {goal:.2}");
+    // The curve keeps out of the circle about -1 with the radius 1 / Ms.
+    let circles = [([-1.0, 0.0], goal.recip(), word.as_str()), ([-1.0, 0.0], 0.02, "-1")];
+    let chart = Chart {
+        name: "Nyquist plot with the Ms circle",
+        x: Axis::new("real", "", -2.2, 0.8),
+        y: Axis::new("imaginary", "", -1.6, 1.0),
+        lines: &lines,
+        levels: &[],
+        circles: &circles,
+        is_square: true,
+        empty: "There is no model yet: tune first.",
+    };
+    chart.ui(ui, size);
+}
+
+fn sensitivity_ui(ui: &mut Ui, panel: &Panel, run: &Run) {
+    let palette = Palette::of(ui);
+    let size = ui.available_size();
+    let lines: Vec<Line> = lines_of(panel, run, palette)
+        .map(|(name, shown, color, look)| line(&name, over_frequency(shown, LoopPoint::sensitivity), color, look))
+        .collect();
+    let top_hz = lines.iter().filter_map(|line| line.points.last().map(|p| p[0])).fold(1.0, f64::max);
+    let goal = run.task().map_or(1.6, |task| task.goal.ms);
+    let word = format!("Ms of the level: {goal:.2}");
+    let top = lines.iter().flat_map(|line| &line.points).map(|p| p[1]).fold(goal, f64::max).min(6.0);
+    let x = Axis::new("frequency", "Hz", (top_hz * 2e-4).max(0.01), top_hz).log();
+    let y = Axis::new("sensitivity |S|", "", 0.0, (1.15 * top).max(1.8));
+    let empty = "There is no model yet: tune first.";
+    chart(ui, "Sensitivity over frequency", (x, y), &lines, &[(goal, &word), (1.0, "")], empty, size);
+}
+
+/// Whose gains are drawn: earlier runs first, so that they lie below; then the present ones, then those that are considered.
+fn lines_of<'a>(
+    panel: &'a Panel,
+    run: &'a Run,
+    palette: &'a Palette,
+) -> impl Iterator<Item = (String, &'a Shown, Color32, Look)> {
+    let others = panel.runs.iter().filter(move |other| other.number != run.number && other.is_overlaid);
+    let earlier = others.filter_map(|other| {
+        let color = palette.traces[(5 + other.number) % palette.traces.len()];
+        Some((format!("run {}", other.number), other.shown.as_ref()?, color, Look::Dots))
+    });
+    let current = run.current().map(|shown| ("current".to_owned(), shown, palette.weak_text, Look::Dashed));
+    let shown = run.shown.as_ref().map(|shown| ("proposed".to_owned(), shown, palette.accent, Look::Solid));
+    earlier.chain(current).chain(shown)
+}
+
+fn over_frequency(shown: &Shown, value: impl Fn(&LoopPoint) -> f64) -> Vec<(f64, f64)> {
+    shown.frequency.iter().map(|point| (point.hz, value(point))).collect()
+}
+
+/// Phase without jumps, degrees.
+fn unwrapped_phase(shown: &Shown) -> Vec<(f64, f64)> {
+    let mut before: Option<f64> = None;
+    let mut phases = Vec::with_capacity(shown.frequency.len());
+    for point in &shown.frequency {
+        let mut phase = point.phase_deg();
+        if phase > 0.0 && before.is_none() {
+            phase -= 360.0;
+        }
+        if let Some(before) = before {
+            phase -= 360.0 * ((phase - before) / 360.0).round();
+        }
+        before = Some(phase);
+        phases.push((point.hz, phase));
+    }
+    phases
+}
+
+fn line(name: &str, points: Vec<(f64, f64)>, color: Color32, look: Look) -> Line {
+    let points = points.into_iter().map(|(x, y)| [x, y]).collect();
+    Line { name: name.to_owned(), points, color, look }
+}
+
+fn around(name: &'static str, unit: &'static str, lines: &[Line]) -> Axis {
+    Axis::around(name, unit, lines.iter().flat_map(|line| &line.points).map(|point| point[1]))
+}
+
+fn chart(
+    ui: &mut Ui,
+    name: &str,
+    (x, y): (Axis, Axis),
+    lines: &[Line],
+    levels: &[(f64, &str)],
+    empty: &str,
+    size: egui::Vec2,
+) {
+    Chart { name, x, y, lines, levels, circles: &[], is_square: false, empty }.ui(ui, size);
+}
+
+fn shifted(points: Vec<(f64, f64)>, from_s: f64) -> Vec<(f64, f64)> {
+    points.into_iter().map(|(t, value)| (t - from_s, value)).collect()
+}
+
+fn inside(t: f64, stretch: Option<&Stretch>) -> bool {
+    stretch.is_none_or(|stretch| t >= stretch.from_s && t <= stretch.to_s)
+}
+
+fn speeds(trace: &Trace, stretch: &Stretch) -> Vec<(f64, f64)> {
+    trace.speeds(SPEED_OVER_S).into_iter().filter(|(t, _)| inside(*t, Some(stretch))).collect()
+}
+
+fn places(trace: &Trace, stretch: Option<&Stretch>) -> Vec<(f64, f64)> {
+    let within = trace.points.iter().filter(|point| inside(point.t, stretch));
+    within.map(|point| (point.t, point.counts)).collect()
+}
+
+/// Duty in percent as it was read; where it was not, as it was commanded.
+fn duties(trace: &Trace, stretch: Option<&Stretch>) -> Vec<(f64, f64)> {
+    let read = trace.points.iter().filter(|point| inside(point.t, stretch));
+    let mut duties: Vec<(f64, f64)> =
+        read.filter_map(|point| point.duty.map(|duty| (point.t, 100.0 * duty))).collect();
+    let mut before = 0.0;
+    for Drive { t, input } in &trace.drives {
+        if let Input::Duty(duty) = input
+            && inside(*t, stretch)
+        {
+            duties.push((t - 1e-4, 100.0 * before));
+            duties.push((*t, 100.0 * duty));
+            before = *duty;
+        }
+    }
+    duties.sort_by(|a, b| a.0.total_cmp(&b.0));
+    duties
+}
+
+/// What the loop was told, as a staircase.
+fn setpoints(trace: &Trace, stretch: &Stretch) -> Vec<(f64, f64)> {
+    let mut stairs: Vec<(f64, f64)> = Vec::new();
+    for drive in trace.drives.iter().filter(|drive| inside(drive.t, Some(stretch))) {
+        let value = match (drive.input, stretch.is_position) {
+            (Input::Speed(speed), false) => speed,
+            (Input::Position(counts, _), true) => counts,
+            _ => continue,
+        };
+        if let Some(&(_, before)) = stairs.last() {
+            stairs.push((drive.t, before));
+        }
+        stairs.push((drive.t, value));
+    }
+    if let Some(&(_, last)) = stairs.last() {
+        stairs.push((stretch.to_s, last));
+    }
+    stairs
+}

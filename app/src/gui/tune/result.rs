@@ -1,0 +1,303 @@
+//! What a run has found: its verdict, the gains as current, proposed and change, what they promise, and the runs so far.
+
+use brushwork_tuning::report::{Report, Verdict};
+use egui::{Button, Grid, Label, RichText, Ui, vec2};
+
+use super::files::files_ui;
+use super::model::{Loop, TuneWish};
+use super::registers::{FIELDS, Field, Registers};
+use super::run::{Run, Shown};
+use crate::gui::command::{Command, Commands};
+use crate::gui::model::Model;
+use crate::gui::model::general::Sheet;
+use crate::gui::theme::{self, Palette};
+use crate::gui::widgets::LampState;
+use crate::gui::widgets::numeric::Numeric;
+
+pub fn result_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands) {
+    let motor = model.front.tune.motor(which);
+    let with_position = model.front.tune.front(which).run().is_some_and(|run| run.report.position.is_some());
+    let held = Registers::held(&model.front.loops, motor, with_position);
+    if let Some(run) = model.front.tune.front_mut(which).run_mut() {
+        run.look_at_held(held);
+    }
+    let Some(run) = model.front.tune.front(which).run() else {
+        empty_ui(ui, which);
+        return files_ui(ui, &mut model.front.tune, which, commands);
+    };
+    if run.is_refused() {
+        super::refusal::refusal_ui(ui, model, which, commands);
+    } else {
+        verdict_ui(ui, run);
+        gains_ui(ui, model, which, held);
+        acts_ui(ui, model, which, commands);
+        figures_ui(ui, model, which);
+    }
+    runs_ui(ui, model, which);
+    files_ui(ui, &mut model.front.tune, which, commands);
+}
+
+fn empty_ui(ui: &mut Ui, which: Loop) {
+    let palette = Palette::of(ui);
+    let text = match which {
+        Loop::Velocity => {
+            "Not tuned yet.\n\n1. Let the motor turn freely: lift the wheels, unhitch the load.\n2. Arm this screen and press Tune.\n\
+             3. Look at what is proposed, move the level, and apply what you like."
+        }
+        Loop::Position => {
+            "Not tuned yet.\n\n1. Choose the method. PIV holds best; PD is the simplest.\n2. If the axis has end stops, choose Within \
+             and give its travel.\n3. Arm this screen and press Tune."
+        }
+    };
+    ui.add_space(6.0);
+    ui.add(Label::new(RichText::new(text).color(palette.weak_text)).wrap());
+    ui.add_space(6.0);
+}
+
+pub fn lamp_ui(ui: &mut Ui, state: LampState, text: &str) {
+    ui.horizontal(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(18.0, 18.0), egui::Sense::hover());
+        state.paint(ui, rect.center(), 6.0);
+        ui.add(Label::new(text).wrap());
+    });
+}
+
+fn verdict_ui(ui: &mut Ui, run: &Run) {
+    let report = &run.report;
+    let (state, word) = match report.verdict {
+        Verdict::Tuned => (LampState::Ok, "Tuned"),
+        Verdict::TunedWithWarnings => (LampState::Warning, "Tuned with warnings"),
+        Verdict::Refused => (LampState::Error, "Refused"),
+    };
+    lamp_ui(ui, state, &format!("{word} · run {} · {:.1} s", run.number, report.seconds.1));
+    for cause in &report.causes {
+        lamp_ui(ui, LampState::Warning, cause.sentence());
+    }
+    if let Some(text) = model_text(report) {
+        ui.add(Label::new(RichText::new(text).small().color(Palette::of(ui).weak_text)).wrap());
+    }
+}
+
+/// What was found of the motor, in one line.
+fn model_text(report: &Report) -> Option<String> {
+    let fit = report.fit?;
+    let mut text = format!(
+        "Motor: {:.0} counts/s at full duty ± {:.1} %, time constant {:.1} ms ± {:.0} %, friction {:.1} % duty",
+        report.qpps?,
+        200.0 * fit.sd_ln_gain,
+        1e3 * fit.model.tau_s,
+        200.0 * fit.sd_ln_tau,
+        100.0 * fit.model.coulomb_duty,
+    );
+    if let Some(lag) = &report.lag {
+        let (low, high) = (1e3 * lag.interval_s.0, 1e3 * lag.interval_s.1);
+        text += &format!(", lag {low:.1} to {high:.1} ms");
+    }
+    Some(text)
+}
+
+/// Gains: current, proposed (to be edited), change.
+fn gains_ui(ui: &mut Ui, model: &mut Model, which: Loop, held: Option<Registers>) {
+    let palette = Palette::of(ui);
+    let tuning = &mut model.front.tune;
+    let motor = tuning.motor(which);
+    let Some(run) = tuning.front_mut(which).run_mut() else { return };
+    let Some(mut wanted) = run.shown.as_ref().map(|shown| shown.registers) else { return };
+    let before = wanted;
+    ui.add_space(4.0);
+    Grid::new("tune gains").striped(true).num_columns(4).spacing(vec2(12.0, 2.0)).show(ui, |ui| {
+        for head in ["", "current", "proposed", "change"] {
+            ui.label(RichText::new(head).small().color(palette.weak_text));
+        }
+        ui.end_row();
+        for field in &FIELDS {
+            let Some(mut value) = field.value(&wanted) else { continue };
+            let current = held.and_then(|held| field.value(&held));
+            ui.label(field.label);
+            figure_ui(ui, &current.map_or_else(|| "–".to_owned(), |value| field.text(value)), 84.0);
+            let name = format!("{motor} proposed {}", field.label);
+            let range = field.range.0..=field.range.1;
+            let entry = Numeric { name: &name, unit: "", range, decimals: field.decimals, step: field.step, width: 96.0 };
+            let entry = entry.ui(ui, &mut value);
+            if entry.on_hover_text("Edit it to see what it would do; nothing is sent until you apply it").changed() {
+                field.set(&mut wanted, value);
+            }
+            figure_ui(ui, &change_text(field, current, field.value(&wanted)), 64.0);
+            ui.end_row();
+        }
+    });
+    if wanted != before {
+        run.consider(wanted);
+    }
+}
+
+fn change_text(field: &Field, current: Option<f64>, wanted: Option<f64>) -> String {
+    let (Some(current), Some(wanted)) = (current, wanted) else { return "–".to_owned() };
+    if field.text(current) == field.text(wanted) {
+        "same".to_owned()
+    } else if current == 0.0 || field.unit == "counts" {
+        format!("{:+.*}", field.decimals.min(2), wanted - current)
+    } else {
+        let percent = 100.0 * (wanted / current - 1.0);
+        if percent.abs() < 1000.0 { format!("{percent:+.0} %") } else { format!("× {:.0}", wanted / current) }
+    }
+}
+
+/// A figure at the right of a place of fixed width.
+pub fn figure_ui(ui: &mut Ui, text: &str, width: f32) {
+    let size = vec2(width, ui.spacing().interact_size.y);
+    ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        ui.set_min_width(width);
+        ui.add(Label::new(RichText::new(text).text_style(theme::figures())).truncate());
+    });
+}
+
+fn acts_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands) {
+    let is_armed = model.front.link.arming.is_armed_for(which.scope());
+    let is_free = !model.front.is_guided() && !model.front.loops.is_busy() && model.front.is_connected();
+    let panel = model.front.tune.front_mut(which);
+    let can_undo = panel.undo.is_some();
+    let Some(run) = panel.run_mut() else { return };
+    let has_gains = run.shown.is_some();
+    let differs = run.current().map(|shown| shown.registers) != run.shown.as_ref().map(|shown| shown.registers);
+    ui.add_space(4.0);
+    ui.horizontal_wrapped(|ui| {
+        let apply = ui.add_enabled(is_free && has_gains && differs, Button::new("Apply (RAM)"));
+        if apply.on_hover_text("Writes the proposed gains into the controller's RAM and reads them back").clicked() {
+            commands.push(Command::Tune(TuneWish::Apply));
+        }
+        let verify = ui.add_enabled(is_free && is_armed && has_gains, Button::new("Verify"));
+        let verify = verify.on_disabled_hover_text("Arm this screen first");
+        if verify.on_hover_text("Moves the motor with the proposed gains and compares it with the prediction").clicked() {
+            commands.push(Command::Tune(TuneWish::Verify));
+        }
+        let save = ui.add_enabled(is_free, Button::new("Save…"));
+        if save.on_hover_text("Shows what is not in EEPROM yet and saves it there").clicked() {
+            commands.push(Command::OpenSheet(Sheet::Save));
+        }
+        let undo = ui.add_enabled(is_free && can_undo, Button::new("Undo"));
+        if undo.on_hover_text("Writes back what RAM held before the gains were applied").clicked() {
+            commands.push(Command::Tune(TuneWish::Undo));
+        }
+        let reset = ui.add_enabled(!run.is_as_proposed(), Button::new("As proposed"));
+        if reset.on_hover_text("Back to the gains and the level of the run").clicked() {
+            run.reset();
+        }
+    });
+    if !run.is_as_proposed() {
+        let text = format!("Considered on the model only: level {:.0}, or gains by hand. Nothing was sent.", run.level);
+        ui.label(RichText::new(text).small().color(Palette::of(ui).accent));
+    }
+    match run.verified {
+        Some(Ok(())) => lamp_ui(ui, LampState::Ok, "Verified: the machine behaves as predicted."),
+        Some(Err(cause)) => lamp_ui(ui, LampState::Warning, cause.sentence()),
+        None => {}
+    }
+}
+
+/// What the gains promise, and what was measured.
+fn figures_ui(ui: &mut Ui, model: &Model, which: Loop) {
+    let palette = Palette::of(ui);
+    let Some(run) = model.front.tune.front(which).run() else { return };
+    let Some(shown) = &run.shown else { return };
+    ui.add_space(4.0);
+    Grid::new("tune figures").striped(true).num_columns(4).spacing(vec2(12.0, 2.0)).show(ui, |ui| {
+        for head in ["predicted", "current", "proposed", "measured"] {
+            ui.label(RichText::new(head).small().color(palette.weak_text));
+        }
+        ui.end_row();
+        for (name, hint, figure) in FIGURES {
+            ui.label(name).on_hover_text(hint);
+            figure_ui(ui, &run.current().map_or_else(|| "–".to_owned(), figure), 84.0);
+            figure_ui(ui, &figure(shown), 96.0);
+            figure_ui(ui, &measured(run, name), 64.0);
+            ui.end_row();
+        }
+    });
+    if !shown.forecast.is_stable {
+        lamp_ui(ui, LampState::Error, "Unstable on the model: the motor would swing up. Lower the gains.");
+    } else if shown.forecast.ms > 2.0 {
+        lamp_ui(ui, LampState::Warning, "Ms above 2: a little more load or lag could make it swing.");
+    }
+}
+
+type Figure = (&'static str, &'static str, fn(&Shown) -> String);
+
+/// Figures of a forecast, by name, with what they mean.
+pub const FIGURES: [Figure; 5] = [
+    ("Overshoot", "How far a step goes beyond its setpoint, over the step", |shown| {
+        if_stable(shown, || format!("{:.1} %", 100.0 * shown.forecast.overshoot))
+    }),
+    ("Settling", "How long a step takes to stay near its setpoint: 5 % of a speed, 2 % of a position", |shown| {
+        if_stable(shown, || {
+            shown.forecast.settling_s.map_or_else(|| "never".to_owned(), |s| format!("{:.0} ms", 1e3 * s))
+        })
+    }),
+    ("Load dip", "How far a load of 15 % of the stall torque drives it off, over the step", |shown| {
+        if_stable(shown, || format!("{:.1} %", 100.0 * shown.forecast.load_dip))
+    }),
+    ("Ms", "Maximum sensitivity: 1.2 is very tame, 1.6 is firm, above 2 is close to swinging", |shown| {
+        if_stable(shown, || format!("{:.2}", shown.forecast.ms))
+    }),
+    ("Duty noise", "What the rounding of counts alone does to the duty", |shown| {
+        if_stable(shown, || format!("{:.2} %", 100.0 * shown.forecast.noise_duty))
+    }),
+];
+
+fn if_stable(shown: &Shown, text: impl FnOnce() -> String) -> String {
+    if shown.forecast.is_stable { text() } else { "unstable".to_owned() }
+}
+
+fn measured(run: &Run, name: &str) -> String {
+    let percent = |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{:.1} %", 100.0 * share));
+    let tried = run.tried.as_ref();
+    match name {
+        "Overshoot" => percent(tried.and_then(|tried| tried.overshoot)),
+        "Duty noise" => percent(tried.and_then(|tried| tried.duty_rms)),
+        _ => "–".to_owned(),
+    }
+}
+
+/// The runs so far: which is looked at, which are drawn beneath, their gains and figures.
+fn runs_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
+    let palette = Palette::of(ui);
+    let panel = model.front.tune.front_mut(which);
+    if panel.runs.len() < 2 {
+        return;
+    }
+    ui.add_space(6.0);
+    ui.label(RichText::new("Runs so far").strong());
+    let mut chosen = panel.chosen;
+    Grid::new("tune runs").striped(true).spacing(vec2(8.0, 2.0)).show(ui, |ui| {
+        for head in ["run", "drawn", "level", "P", "I", "D", "over", "settle", "Ms"] {
+            ui.label(RichText::new(head).small().color(palette.weak_text));
+        }
+        ui.end_row();
+        for (index, run) in panel.runs.iter_mut().enumerate() {
+            if ui.selectable_label(index == chosen, format!("Run {}", run.number)).clicked() {
+                chosen = index;
+            }
+            let drawn = ui.checkbox(&mut run.is_overlaid, "");
+            ui.ctx().accesskit_node_builder(drawn.id, |node| node.set_label(format!("Draw run {}", run.number)));
+            run_row_ui(ui, run);
+            ui.end_row();
+        }
+    });
+    panel.chosen = chosen;
+}
+
+fn run_row_ui(ui: &mut Ui, run: &Run) {
+    let Some(shown) = &run.shown else {
+        ui.label(run.report.causes.first().map_or("no gains", |_| "refused"));
+        return;
+    };
+    figure_ui(ui, &format!("{:.0}", run.level), 30.0);
+    let loops = shown.registers.position.is_some();
+    for key in if loops { ["position.p", "position.i", "position.d"] } else { ["velocity.p", "velocity.i", "velocity.d"] } {
+        let value = FIELDS.iter().find(|field| field.key == key).and_then(|field| field.value(&shown.registers));
+        figure_ui(ui, &value.map_or_else(|| "–".to_owned(), |value| format!("{value:.2}")), 46.0);
+    }
+    for (_, _, figure) in [FIGURES[0], FIGURES[1], FIGURES[3]] {
+        figure_ui(ui, &figure(shown), 52.0);
+    }
+}

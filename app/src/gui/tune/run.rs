@@ -1,0 +1,206 @@
+//! One run as the window keeps it: its report, what it looked like, and the gains that are considered now.
+
+use brushwork_tuning::cause::Cause;
+use brushwork_tuning::design::Task;
+use brushwork_tuning::model::Gains;
+use brushwork_tuning::registers::{position_registers, velocity_registers};
+use brushwork_tuning::report::{Report, Verdict};
+use brushwork_tuning::trace::{Stretch, Trace, Written};
+use brushwork_tuning::trial::{Trial, TrialRequest, registers_gains};
+use brushwork_tuning::whatif::{Forecast, LoopPoint, forecast, frequency_response, redesign};
+
+use super::registers::Registers;
+
+/// Gains on the model: what they promise, and the loop over frequency.
+#[derive(Clone, Debug)]
+pub struct Shown {
+    pub registers: Registers,
+    pub gains: Gains,
+    pub forecast: Forecast,
+    pub frequency: Vec<LoopPoint>,
+}
+
+/// A stretch of the machine in which some gains were tried.
+#[derive(Clone, Debug)]
+pub struct Tried {
+    pub trace: Trace,
+    pub stretch: Stretch,
+    pub registers: Registers,
+    /// Of the step response as measured: overshoot and settling, where they can be told.
+    pub overshoot: Option<f64>,
+    pub duty_rms: Option<f64>,
+}
+
+/// One run.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// Counted from 1.
+    pub number: usize,
+    pub report: Report,
+    /// What was tried on the machine last: by the run itself or by a verification.
+    pub tried: Option<Tried>,
+    /// What a verification said.
+    pub verified: Option<Result<(), Cause>>,
+    /// Where the slider stands.
+    pub level: f64,
+    /// What is considered, by the level or by hand.
+    pub shown: Option<Shown>,
+    /// What the run proposed.
+    pub first: Option<Registers>,
+    /// Drawn under other runs.
+    pub is_overlaid: bool,
+    /// What is drawn of the gains that the controller holds.
+    current: Option<Shown>,
+}
+
+impl Run {
+    pub fn new(number: usize, report: Report) -> Self {
+        let motor = report.request.guard.motor;
+        let trace = Trace::of(motor, &report.record);
+        let first = report.velocity.map(|velocity| Registers { velocity, position: report.position });
+        let measured = report.measured;
+        let tried = tried(trace, report.before.map(|setup| setup.velocity), measured.map(|m| m.duty_rms));
+        let mut run = Self {
+            number,
+            tried,
+            verified: None,
+            level: report.request.level,
+            shown: None,
+            first,
+            is_overlaid: true,
+            current: None,
+            report,
+        };
+        run.shown = first.and_then(|registers| run.on_model(registers));
+        run
+    }
+
+    pub fn is_refused(&self) -> bool {
+        self.report.verdict == Verdict::Refused
+    }
+
+    pub fn task(&self) -> Option<&Task> {
+        self.report.task.as_ref()
+    }
+
+    /// What gains do on this run's model.
+    pub fn on_model(&self, registers: Registers) -> Option<Shown> {
+        let task = self.report.task?;
+        let gains = self.gains(&registers);
+        let task = Task { qpps: f64::from(registers.velocity.qpps).max(1.0), ..task };
+        Some(Shown { registers, gains, forecast: forecast(&task, &gains), frequency: frequency_response(&task, &gains) })
+    }
+
+    fn gains(&self, registers: &Registers) -> Gains {
+        registers_gains(&registers.velocity, registers.position.as_ref(), &self.report.request)
+    }
+
+    /// The slider was moved: the gains of that level, with no new experiment.
+    pub fn set_level(&mut self, level: f64) {
+        self.level = level;
+        let (Some(task), Some(design), Some(first)) = (self.report.task, self.report.design, self.first) else { return };
+        let request = &self.report.request;
+        if level == request.level {
+            self.shown = self.on_model(first);
+            return;
+        }
+        let Some(design) = redesign(request.method, &task, request.level, &design, level) else { return };
+        let velocity = velocity_registers(&design.gains.velocity, task.qpps, &request.law);
+        let position =
+            first.position.map(|was| position_registers(&design.gains, &request.law, (was.min, was.max)));
+        self.shown = self.on_model(Registers { velocity, position });
+    }
+
+    /// A gain was entered by hand.
+    pub fn consider(&mut self, registers: Registers) {
+        self.shown = self.on_model(registers);
+    }
+
+    /// Back to what the run proposed.
+    pub fn reset(&mut self) {
+        self.level = self.report.request.level;
+        self.shown = self.first.and_then(|first| self.on_model(first));
+    }
+
+    /// Whether what is considered is what the run proposed.
+    pub fn is_as_proposed(&self) -> bool {
+        self.shown.as_ref().map(|shown| shown.registers) == self.first
+    }
+
+    /// What the gains that the controller holds do on this model; worked out when they change.
+    pub fn look_at_held(&mut self, held: Option<Registers>) {
+        if self.current.as_ref().map(|current| current.registers) != held {
+            self.current = held.and_then(|registers| self.on_model(registers));
+        }
+    }
+
+    pub fn current(&self) -> Option<&Shown> {
+        self.current.as_ref()
+    }
+
+    /// What to try on the machine.
+    pub fn trial(&self) -> Option<TrialRequest> {
+        let registers = self.shown.as_ref()?.registers;
+        Some(TrialRequest {
+            request: self.report.request,
+            task: self.report.task?,
+            probe: self.report.probe?,
+            velocity: registers.velocity,
+            position: registers.position,
+        })
+    }
+
+    /// A verification has ended.
+    pub fn was_tried(&mut self, trial: &Trial) {
+        self.verified = Some(trial.cause.map_or(Ok(()), Err));
+        let trace = Trace::of(self.report.request.guard.motor, &trial.record);
+        let rms = trial.measured.map(|measured| measured.duty_rms);
+        let before = self.report.before.map(|setup| setup.velocity);
+        if let Some(tried) = tried(trace, before, rms) {
+            self.tried = Some(tried);
+        }
+    }
+}
+
+/// The last stretch in which a loop held the motor, and with which gains.
+fn tried(
+    trace: Trace,
+    before: Option<brushwork_tuning::axis::VelocityRegisters>,
+    duty_rms: Option<f64>,
+) -> Option<Tried> {
+    let stretch = *trace.stretches().last()?;
+    let mut registers = Registers { velocity: before.unwrap_or_default(), position: None };
+    for (_, written) in trace.writes.iter().filter(|(at, _)| *at <= stretch.from_s) {
+        match written {
+            Written::Velocity(velocity) => registers.velocity = *velocity,
+            Written::Position(position) => registers.position = Some(*position),
+        }
+    }
+    if !stretch.is_position {
+        registers.position = None;
+    }
+    let overshoot = overshoot(&trace, &stretch);
+    Some(Tried { trace, stretch, registers, overshoot, duty_rms })
+}
+
+/// Overshoot of the largest step of a position stretch, over the step.
+fn overshoot(trace: &Trace, stretch: &Stretch) -> Option<f64> {
+    use brushwork_tuning::rig::Input;
+    if !stretch.is_position {
+        return None;
+    }
+    let inside = trace.drives.iter().filter(|drive| drive.t >= stretch.from_s && drive.t <= stretch.to_s);
+    let moves: Vec<(f64, f64)> = inside
+        .filter_map(|drive| match drive.input {
+            Input::Position(counts, _) => Some((drive.t, counts)),
+            _ => None,
+        })
+        .collect();
+    let &(from_s, target) = moves.first()?;
+    let to_s = moves.get(1).map_or(stretch.to_s, |next| next.0);
+    let start = trace.points.iter().rev().find(|point| point.t <= from_s)?.counts;
+    let way = target - start;
+    let beyond = trace.points.iter().filter(|point| point.t > from_s && point.t < to_s);
+    let most = beyond.map(|point| (point.counts - target) * way.signum()).fold(0.0, f64::max);
+    (way.abs() >= 1.0).then(|| most / way.abs())
+}

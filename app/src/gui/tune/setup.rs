@@ -1,0 +1,129 @@
+//! What is set before a run: which motor, how stiff, by which method, and how far the axis may go.
+
+use brushwork_protocol::packet_serial::Motor;
+use brushwork_tuning::axis::EncoderClass;
+use brushwork_tuning::tune::Method;
+use egui::{Button, ComboBox, Grid, Label, RichText, Slider, Ui, vec2};
+
+use super::model::{Loop, Setting, TuneWish};
+use crate::gui::command::{Command, Commands};
+use crate::gui::model::Model;
+use crate::gui::theme::Palette;
+use crate::gui::widgets::numeric::Numeric;
+
+const WHAT_IT_DOES: &str = "Checks the wiring with little duty, measures the motor, designs gains for the level, and tries them. \
+    Nothing stays in the controller until you apply it.";
+
+pub fn setup_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands) {
+    let palette = Palette::of(ui);
+    let is_armed = model.front.link.arming.is_armed_for(which.scope());
+    let is_free = !model.front.is_guided();
+    Grid::new("tune motors").spacing(vec2(10.0, 4.0)).show(ui, |ui| {
+        for motor in Motor::BOTH {
+            motor_row_ui(ui, model, which, motor, is_armed && is_free, commands);
+            ui.end_row();
+        }
+    });
+    ui.horizontal_wrapped(|ui| options_ui(ui, model, which));
+    let hint = if is_armed { WHAT_IT_DOES } else { "Arm this screen to tune. Looking at results and trying gains on the model needs no arming." };
+    ui.add(Label::new(RichText::new(hint).small().color(palette.weak_text)).wrap());
+}
+
+fn motor_row_ui(
+    ui: &mut Ui,
+    model: &mut Model,
+    which: Loop,
+    motor: Motor,
+    can_start: bool,
+    commands: &mut Commands,
+) {
+    let is_front = model.front.tune.motor(which) == motor;
+    let look = ui.selectable_label(is_front, format!("Motor {}", motor.index() + 1));
+    if look.on_hover_text("Shows its results below").clicked() {
+        model.front.tune.look_at(which, motor);
+    }
+    let tune = ui.add_enabled(can_start, Button::new(format!("Tune {motor}")));
+    let tune = tune.on_disabled_hover_text("Arm this screen first");
+    if tune.on_hover_text("Moves the motor, at up to the highest duty").clicked() {
+        commands.push(Command::Tune(TuneWish::Start(motor)));
+    }
+    let panel = model.front.tune.panel_mut(which, motor);
+    let mut level = panel.run().filter(|run| run.first.is_some()).map_or(panel.setting.level, |run| run.level);
+    ui.label("Level");
+    ui.label(RichText::new("softer").small().color(Palette::of(ui).weak_text));
+    ui.spacing_mut().slider_width = 150.0;
+    let slider = ui.add(Slider::new(&mut level, 0.0..=100.0).step_by(1.0).fixed_decimals(0).show_value(true));
+    ui.ctx().accesskit_node_builder(slider.id, |node| node.set_label(format!("{motor} level")));
+    let hint = "How stiff the loop is made. After a run it redraws what the gains of another level would do, without moving anything.";
+    if slider.on_hover_text(hint).changed() {
+        panel.setting.level = level;
+        if let Some(run) = panel.run_mut() {
+            run.set_level(level);
+        }
+        model.front.tune.look_at(which, motor);
+    }
+    ui.label(RichText::new("stiffer").small().color(Palette::of(ui).weak_text));
+}
+
+fn options_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
+    let motor = model.front.tune.motor(which);
+    let travel = model.front.loops.travel(motor);
+    let setting = &mut model.front.tune.panel_mut(which, motor).setting;
+    ui.label(RichText::new(format!("Motor {}:", motor.index() + 1)).strong());
+    if which == Loop::Position {
+        ui.label("Method");
+        for (method, name, hint) in [
+            (Method::Pd, "PD", "Proportional and differential, straight on the duty"),
+            (Method::Pid, "PID", "With an integral, which needs Max I and a deadzone"),
+            (Method::Piv, "PIV", "Position P over the velocity loop: both are tuned"),
+        ] {
+            ui.radio_value(&mut setting.method, method, name).on_hover_text(hint);
+        }
+        ui.separator();
+    }
+    travel_ui(ui, setting, travel);
+    ui.separator();
+    ui.label("Duty up to");
+    let duty = Numeric { name: "Highest duty", unit: "%", range: 20.0..=100.0, decimals: 0, step: 5.0, width: 62.0 };
+    duty.ui(ui, &mut setting.max_duty_percent).on_hover_text("The run never gives more");
+    ui.label("Current up to");
+    let amps = Numeric { name: "Highest current", unit: "A", range: 0.0..=200.0, decimals: 1, step: 0.5, width: 70.0 };
+    amps.ui(ui, &mut setting.max_amps).on_hover_text("The run ends above it; 0 leaves it to the controller's own limit");
+    ui.separator();
+    let tries = ui.checkbox(&mut setting.tries, "Try the gains");
+    tries.on_hover_text("Tries them on the machine at the end of the run and lowers them if it is rougher than predicted");
+    encoder_ui(ui, setting);
+}
+
+fn travel_ui(ui: &mut Ui, setting: &mut Setting, held: Option<(f64, f64)>) {
+    let free = ui.radio_value(&mut setting.turns_freely, true, "Turns freely");
+    free.on_hover_text("The motor may run at full speed in both directions for some seconds");
+    let bound = ui.radio_value(&mut setting.turns_freely, false, "Within");
+    if bound.on_hover_text("The axis stays between two counts and never runs at full speed").clicked()
+        && let Some((low, high)) = held.filter(|(low, high)| high - low < 1e8)
+    {
+        setting.travel = (low, high);
+    }
+    if !setting.turns_freely {
+        let field = |name| Numeric { name, unit: "", range: -2e9..=2e9, decimals: 0, step: 100.0, width: 88.0 };
+        field("Travel low").ui(ui, &mut setting.travel.0);
+        ui.label("to");
+        field("Travel high").ui(ui, &mut setting.travel.1);
+        ui.label("counts");
+    }
+}
+
+fn encoder_ui(ui: &mut Ui, setting: &mut Setting) {
+    let label = ui.label("Encoder");
+    let word = |class| match class {
+        EncoderClass::Quadrature => "quadrature",
+        EncoderClass::Absolute => "absolute",
+        EncoderClass::AbsoluteWrapping => "absolute, wraps",
+    };
+    let combo = ComboBox::from_id_salt("tune encoder").selected_text(word(setting.encoder)).show_ui(ui, |ui| {
+        for class in [EncoderClass::Quadrature, EncoderClass::Absolute, EncoderClass::AbsoluteWrapping] {
+            ui.selectable_value(&mut setting.encoder, class, word(class));
+        }
+    });
+    combo.response.labelled_by(label.id);
+}

@@ -1,0 +1,107 @@
+//! Lets a window look at a run while it goes on: an axis that passes everything on and keeps a trace of it.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use brushwork_tuning::axis::{
+    Axis, AxisError, Exchange, PositionRegisters, Sample, Setup, VelocityRegisters, Want,
+};
+use brushwork_tuning::record::Entry;
+use brushwork_tuning::trace::Trace;
+
+/// The trace of a run, shared between the run and whoever looks on. Each holds it only for a moment.
+#[derive(Clone, Debug, Default)]
+pub struct Live(Arc<Mutex<Trace>>);
+
+impl Live {
+    /// An empty trace.
+    pub fn new(trace: Trace) -> Self {
+        Self(Arc::new(Mutex::new(trace)))
+    }
+
+    /// The trace so far.
+    pub fn look(&self) -> MutexGuard<'_, Trace> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn take(&self, entry: &Entry) {
+        self.look().take(entry);
+    }
+}
+
+/// An axis that is looked at.
+pub struct Tap<'a> {
+    axis: &'a mut dyn Axis,
+    live: Live,
+}
+
+impl<'a> Tap<'a> {
+    /// Passes on to `axis`, and keeps a trace in `live`.
+    pub fn new(axis: &'a mut dyn Axis, live: Live) -> Self {
+        Self { axis, live }
+    }
+}
+
+impl Axis for Tap<'_> {
+    fn now(&mut self) -> Duration {
+        let now = self.axis.now();
+        self.live.take(&Entry::Now(now));
+        now
+    }
+
+    fn wait_until(&mut self, time: Duration) -> Result<(), AxisError> {
+        self.axis.wait_until(time)
+    }
+
+    fn sample(&mut self, want: Want) -> Result<Sample, AxisError> {
+        let answer = self.axis.sample(want);
+        self.live.take(&Entry::Sampled(answer.clone()));
+        answer
+    }
+
+    fn drive_duty(&mut self, duty_raw: i16) -> Result<Exchange, AxisError> {
+        let answer = self.axis.drive_duty(duty_raw);
+        self.live.take(&Entry::Duty(duty_raw, answer.clone()));
+        answer
+    }
+
+    fn command_speed(&mut self, counts_per_s: i32) -> Result<Exchange, AxisError> {
+        let answer = self.axis.command_speed(counts_per_s);
+        self.live.take(&Entry::Speed(counts_per_s, answer.clone()));
+        answer
+    }
+
+    fn command_position(&mut self, counts: i32, speed: u32) -> Result<Exchange, AxisError> {
+        let answer = self.axis.command_position(counts, speed);
+        self.live.take(&Entry::Position(counts, speed, answer.clone()));
+        answer
+    }
+
+    fn read_setup(&mut self) -> Result<Setup, AxisError> {
+        self.axis.read_setup()
+    }
+
+    fn write_velocity(&mut self, registers: VelocityRegisters) -> Result<(), AxisError> {
+        let answer = self.axis.write_velocity(registers);
+        self.live.take(&Entry::Velocity(registers, answer.clone()));
+        answer
+    }
+
+    fn write_position(&mut self, registers: PositionRegisters) -> Result<(), AxisError> {
+        let answer = self.axis.write_position(registers);
+        self.live.take(&Entry::PositionLoop(registers, answer.clone()));
+        answer
+    }
+
+    fn raw_speed(&mut self) -> Result<i32, AxisError> {
+        self.axis.raw_speed()
+    }
+
+    fn set_stream_timeout(&mut self, milliseconds: u32) -> Result<(), AxisError> {
+        self.axis.set_stream_timeout(milliseconds)
+    }
+
+    fn progress(&mut self, text: &str) {
+        self.axis.progress(text);
+    }
+}
