@@ -65,6 +65,11 @@ impl Bench {
         Self::with_bus(Bus::single(unit, StreamIndex::Usb), [1280.0, 800.0], Theme::Dark)
     }
 
+    /// A window of any size with any one controller behind it.
+    pub fn of_sized(unit: Controller, size: [f32; 2], theme: Theme) -> Self {
+        Self::with_bus(Bus::single(unit, StreamIndex::Usb), size, theme)
+    }
+
     /// Two units at 0x80 and 0x81 that share a TTL line.
     pub fn with_two_units() -> Self {
         let unit = |address| {

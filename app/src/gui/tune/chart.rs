@@ -98,7 +98,11 @@ impl Axis {
 fn tick_step(span: f64, most: usize) -> f64 {
     let raw = (span / most.max(1) as f64).max(1e-12);
     let power = 10_f64.powf(raw.log10().floor());
-    [1.0, 2.0, 5.0, 10.0].map(|times| times * power).into_iter().find(|step| *step >= raw * 0.999).unwrap_or(10.0 * power)
+    [1.0, 2.0, 5.0, 10.0]
+        .map(|times| times * power)
+        .into_iter()
+        .find(|step| *step >= raw * 0.999)
+        .unwrap_or(10.0 * power)
 }
 
 /// As many digits as the step needs.
@@ -133,10 +137,7 @@ impl Chart<'_> {
         if !ui.is_rect_visible(outer) {
             return response;
         }
-        let mut plot = Rect::from_min_max(
-            outer.min + vec2(LEFT, ABOVE),
-            outer.max - vec2(8.0, BELOW),
-        );
+        let mut plot = Rect::from_min_max(outer.min + vec2(LEFT, ABOVE), outer.max - vec2(8.0, BELOW));
         let (mut x, mut y) = (self.x, self.y);
         if self.is_square {
             (x, y) = squared(x, y, plot.size());
@@ -164,7 +165,8 @@ impl Chart<'_> {
     }
 
     fn spoken(&self) -> String {
-        let names: Vec<&str> = self.lines.iter().filter(|l| !l.points.is_empty()).map(|l| l.name.as_str()).collect();
+        let names: Vec<&str> =
+            self.lines.iter().filter(|l| !l.points.is_empty()).map(|l| l.name.as_str()).collect();
         if names.is_empty() { self.name.to_owned() } else { format!("{}: {}", self.name, names.join(", ")) }
     }
 
@@ -180,7 +182,13 @@ impl Chart<'_> {
             let x = frame.at(value, frame.y.low).x;
             painter.vline(x, frame.plot.y_range(), thin);
             let step = if frame.x.is_log { value } else { x_step };
-            painter.text(pos2(x, frame.plot.bottom() + 3.0), Align2::CENTER_TOP, figure(value, step), font.clone(), palette.weak_text);
+            painter.text(
+                pos2(x, frame.plot.bottom() + 3.0),
+                Align2::CENTER_TOP,
+                figure(value, step),
+                font.clone(),
+                palette.weak_text,
+            );
         }
         let most_y = ((frame.plot.height() / 28.0) as usize).clamp(2, 8);
         let y_step = tick_step(frame.y.high - frame.y.low, most_y);
@@ -188,7 +196,13 @@ impl Chart<'_> {
             let y = frame.at(frame.x.low, value).y;
             painter.hline(frame.plot.x_range(), y, thin);
             let step = if frame.y.is_log { value } else { y_step };
-            painter.text(pos2(frame.plot.left() - 5.0, y), Align2::RIGHT_CENTER, figure(value, step), font.clone(), palette.weak_text);
+            painter.text(
+                pos2(frame.plot.left() - 5.0, y),
+                Align2::RIGHT_CENTER,
+                figure(value, step),
+                font.clone(),
+                palette.weak_text,
+            );
         }
         for (value, word) in self.levels {
             let y = frame.at(frame.x.low, *value).y;
@@ -199,14 +213,32 @@ impl Chart<'_> {
                     6.0,
                     4.0,
                 ));
-                painter.text(pos2(frame.plot.left() + 5.0, y - 2.0), Align2::LEFT_BOTTOM, *word, FontId::proportional(FIGURE), palette.warning);
+                painter.text(
+                    pos2(frame.plot.left() + 5.0, y - 2.0),
+                    Align2::LEFT_BOTTOM,
+                    *word,
+                    FontId::proportional(FIGURE),
+                    palette.warning,
+                );
             }
         }
         painter.rect_stroke(frame.plot, 0.0, Stroke::new(1.0, palette.line), StrokeKind::Inside);
         let small = FontId::proportional(FIGURE + 0.5);
         let y_name = [self.y.name, self.y.unit].join(" ");
-        painter.text(pos2(frame.plot.left(), frame.plot.top() - 2.0), Align2::LEFT_BOTTOM, y_name.trim(), small.clone(), palette.text);
-        painter.text(pos2(frame.plot.right() - 4.0, frame.plot.bottom() - 3.0), Align2::RIGHT_BOTTOM, [self.x.name, self.x.unit].join(" ").trim(), small, palette.weak_text);
+        painter.text(
+            pos2(frame.plot.left(), frame.plot.top() - 2.0),
+            Align2::LEFT_BOTTOM,
+            y_name.trim(),
+            small.clone(),
+            palette.text,
+        );
+        painter.text(
+            pos2(frame.plot.right() - 4.0, frame.plot.bottom() - 3.0),
+            Align2::RIGHT_BOTTOM,
+            [self.x.name, self.x.unit].join(" ").trim(),
+            small,
+            palette.weak_text,
+        );
     }
 
     /// Names with samples of their lines, right above the plot.
@@ -243,7 +275,8 @@ impl Chart<'_> {
         }
         let font = FontId::new(FIGURE + 0.5, FontFamily::Monospace);
         let galley = ui.painter().layout_no_wrap(text, font, palette.text);
-        let beside = if at.x + galley.size().x + 16.0 > frame.plot.right() { -galley.size().x - 10.0 } else { 10.0 };
+        let beside =
+            if at.x + galley.size().x + 16.0 > frame.plot.right() { -galley.size().x - 10.0 } else { 10.0 };
         let place = Rect::from_min_size(pos2(at.x + beside, frame.plot.top() + 6.0), galley.size());
         ui.painter().rect_filled(place.expand(4.0), 3.0, palette.raised);
         ui.painter().galley(place.min, galley, palette.text);
@@ -275,7 +308,8 @@ impl Frame {
 
 /// Both axes with the same scale, about their middles.
 fn squared(x: Axis, y: Axis, size: egui::Vec2) -> (Axis, Axis) {
-    let per_point = ((x.high - x.low) / f64::from(size.x.max(1.0))).max((y.high - y.low) / f64::from(size.y.max(1.0)));
+    let per_point =
+        ((x.high - x.low) / f64::from(size.x.max(1.0))).max((y.high - y.low) / f64::from(size.y.max(1.0)));
     let widen = |axis: Axis, points: f32| {
         let (middle, half) = (0.5 * (axis.low + axis.high), 0.5 * per_point * f64::from(points));
         Axis { low: middle - half, high: middle + half, ..axis }

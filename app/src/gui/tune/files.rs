@@ -29,7 +29,10 @@ pub fn save(report: &Report, path: &Path) -> Result<(), String> {
 /// Reads a report.
 pub fn open(path: &Path) -> Result<Report, String> {
     let told = |error: &dyn std::fmt::Display| {
-        format!("Could not read a report from {}: {error}. Choose a file that a tuning run wrote.", path.display())
+        format!(
+            "Could not read a report from {}: {error}. Choose a file that a tuning run wrote.",
+            path.display()
+        )
     };
     let text = std::fs::read_to_string(path).map_err(|error| told(&error))?;
     serde_json::from_str(&text).map_err(|error| told(&error))

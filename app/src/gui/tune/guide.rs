@@ -1,6 +1,9 @@
 //! The guide: buttons and levels at the top, what is found at the left, its picture at the right.
 
-use egui::{Align, Button, Frame, Label, Layout, Margin, ProgressBar, Rect, RichText, ScrollArea, Stroke, Ui, UiBuilder, vec2};
+use egui::{
+    Align, Button, Frame, Label, Layout, Margin, ProgressBar, Rect, RichText, ScrollArea, Stroke, Ui,
+    UiBuilder, vec2,
+};
 
 use super::model::{Loop, TuneWish, Tuning};
 use super::{plots, result, setup};
@@ -39,7 +42,8 @@ pub fn guide_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     if room.width() < SIDE_BY_SIDE {
         ScrollArea::vertical().id_salt("tune").auto_shrink(false).show(ui, |ui| {
             result::result_ui(ui, model, which, commands);
-            let (place, _) = ui.allocate_exact_size(vec2(ui.available_width(), PICTURE_HEIGHT), egui::Sense::hover());
+            let (place, _) =
+                ui.allocate_exact_size(vec2(ui.available_width(), PICTURE_HEIGHT), egui::Sense::hover());
             part_ui(ui, place, |ui| picture_ui(ui, &mut model.front.tune, which));
         });
         return;

@@ -253,7 +253,8 @@ impl Tuning {
         }
         let panel = self.panel(which, motor);
         if !panel.setting.turns_freely && panel.setting.travel.1 - panel.setting.travel.0 < 40.0 {
-            return Err("The travel has no room: its high end must be at least 40 counts above its low end.".to_owned());
+            return Err("The travel has no room: its high end must be at least 40 counts above its low end."
+                .to_owned());
         }
         let target = Target { motor, encoder: panel.setting.encoder, stream };
         let work = work(panel, motor)?;
@@ -316,12 +317,17 @@ impl Tuning {
                 }
                 said
             }
-            (Work::PutBack, ..) => {
-                Effect::Say(Gravity::Note, format!("The gains of {} from before the run are back.", target.motor))
-            }
+            (Work::PutBack, ..) => Effect::Say(
+                Gravity::Note,
+                format!("The gains of {} from before the run are back.", target.motor),
+            ),
             _ => Effect::Say(
                 Gravity::Warning,
-                format!("{} was not tuned: {}.", target.motor, ended.why.as_deref().unwrap_or("nothing came of it")),
+                format!(
+                    "{} was not tuned: {}.",
+                    target.motor,
+                    ended.why.as_deref().unwrap_or("nothing came of it")
+                ),
             ),
         });
         effects
@@ -374,9 +380,10 @@ fn said_of(motor: Motor, report: &brushwork_tuning::report::Report, why: Option<
             let back = "The motors were stopped and the old gains are in force.";
             Effect::Say(Gravity::Warning, format!("{motor} was not tuned: {why} {back}"))
         }
-        (Verdict::TunedWithWarnings, Some(cause)) => {
-            Effect::Say(Gravity::Warning, format!("{motor} is tuned, with something to know: {}", cause.sentence()))
-        }
+        (Verdict::TunedWithWarnings, Some(cause)) => Effect::Say(
+            Gravity::Warning,
+            format!("{motor} is tuned, with something to know: {}", cause.sentence()),
+        ),
         _ => Effect::Say(
             Gravity::Note,
             format!("{motor} is tuned. The old gains are in force until you apply the proposed ones."),

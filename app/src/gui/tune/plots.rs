@@ -46,7 +46,9 @@ impl Kind {
 
     pub const fn hint(self) -> &'static str {
         match self {
-            Self::Measured => "What the machine did with the gains that were tried, over what the model predicts",
+            Self::Measured => {
+                "What the machine did with the gains that were tried, over what the model predicts"
+            }
             Self::Step => "What the gains do to a step of the setpoint, on the model",
             Self::Load => "What a load of 15 % of the stall torque does, on the model",
             Self::Bode => "Gain and phase of the open loop over frequency",
@@ -80,7 +82,15 @@ pub fn live_ui(ui: &mut Ui, trace: &Trace, which: Loop) {
     let label = format!("Live {name} of the run");
     chart(ui, &label, (x, around(name, unit, &main)), &main, &[], empty, vec2(room.x, heights[0]));
     let duty = [line("duty", duties(trace, None), palette.traces[1], Look::Solid)];
-    chart(ui, "Live duty of the run", (x, Axis::new("duty", "%", -110.0, 110.0)), &duty, &[], "", vec2(room.x, heights[1]));
+    chart(
+        ui,
+        "Live duty of the run",
+        (x, Axis::new("duty", "%", -110.0, 110.0)),
+        &duty,
+        &[],
+        "",
+        vec2(room.x, heights[1]),
+    );
     let amps = trace.points.iter().filter_map(|point| point.amps.map(|amps| (point.t, amps)));
     let current = [line("current", amps.collect(), palette.traces[4], Look::Solid)];
     let y = Axis::around("current", "A", current[0].points.iter().map(|p| p[1]).chain([0.0, 0.5]));
@@ -131,9 +141,20 @@ fn measured_ui(ui: &mut Ui, run: &Run, which: Loop) {
     let mut predict = |shown: &Shown, name: &str, look: Look| {
         let Some(task) = run.task() else { return };
         let course = trace.predict(task, &shown.gains, stretch);
-        let value = |p: &brushwork_tuning::trace::Predicted| if stretch.is_position { p.counts } else { p.speed };
-        main.push(line(name, course.iter().map(|p| (p.t - from_s, value(p))).collect(), palette.accent, look));
-        duty.push(line(name, course.iter().map(|p| (p.t - from_s, 100.0 * p.duty)).collect(), palette.accent, look));
+        let value =
+            |p: &brushwork_tuning::trace::Predicted| if stretch.is_position { p.counts } else { p.speed };
+        main.push(line(
+            name,
+            course.iter().map(|p| (p.t - from_s, value(p))).collect(),
+            palette.accent,
+            look,
+        ));
+        duty.push(line(
+            name,
+            course.iter().map(|p| (p.t - from_s, 100.0 * p.duty)).collect(),
+            palette.accent,
+            look,
+        ));
     };
     if let Some(shown) = run.on_model(tried.registers) {
         predict(&shown, "predicted", Look::Under);
@@ -144,12 +165,25 @@ fn measured_ui(ui: &mut Ui, run: &Run, which: Loop) {
     main.push(line("setpoint", shifted(setpoints(trace, stretch), from_s), palette.traces[0], Look::Dashed));
     let values = if stretch.is_position { places(trace, Some(stretch)) } else { speeds(trace, stretch) };
     main.push(line("measured", shifted(values, from_s), color, Look::Solid));
-    duty.push(line("measured", shifted(duties(trace, Some(stretch)), from_s), palette.traces[1], Look::Solid));
+    duty.push(line(
+        "measured",
+        shifted(duties(trace, Some(stretch)), from_s),
+        palette.traces[1],
+        Look::Solid,
+    ));
     let x = Axis::new("time", "s", 0.0, (stretch.to_s - from_s).max(0.1));
     let lower = (size.y * DUTY_SHARE).max(70.0);
     let label = format!("Measured {name} over the predicted one");
     chart(ui, &label, (x, around(name, unit, &main)), &main, &[], "", vec2(size.x, size.y - lower - 6.0));
-    chart(ui, "Measured duty over the predicted one", (x, around("duty", "%", &duty)), &duty, &[], "", vec2(size.x, lower));
+    chart(
+        ui,
+        "Measured duty over the predicted one",
+        (x, around("duty", "%", &duty)),
+        &duty,
+        &[],
+        "",
+        vec2(size.x, lower),
+    );
 }
 
 /// Steps or load steps on the model: the considered gains, the present ones, and earlier runs.
@@ -170,7 +204,11 @@ fn replies_ui(ui: &mut Ui, panel: &Panel, run: &Run, which: Loop, load: bool) {
     let lower = (size.y * DUTY_SHARE).max(70.0);
     let name = if which == Loop::Velocity { "speed" } else { "position" };
     let goal = run.shown.as_ref().map(|shown| (shown.forecast.step.1, "setpoint"));
-    let label = if load { format!("Predicted {name} under a load step") } else { format!("Predicted step of the {name}") };
+    let label = if load {
+        format!("Predicted {name} under a load step")
+    } else {
+        format!("Predicted step of the {name}")
+    };
     let empty = "There is no model yet: tune first.";
     let levels: Vec<(f64, &str)> = goal.into_iter().collect();
     let y = around(name, which.unit(), &main);
@@ -227,7 +265,9 @@ fn sensitivity_ui(ui: &mut Ui, panel: &Panel, run: &Run) {
     let palette = Palette::of(ui);
     let size = ui.available_size();
     let lines: Vec<Line> = lines_of(panel, run, palette)
-        .map(|(name, shown, color, look)| line(&name, over_frequency(shown, LoopPoint::sensitivity), color, look))
+        .map(|(name, shown, color, look)| {
+            line(&name, over_frequency(shown, LoopPoint::sensitivity), color, look)
+        })
         .collect();
     let top_hz = lines.iter().filter_map(|line| line.points.last().map(|p| p[0])).fold(1.0, f64::max);
     let goal = run.task().map_or(1.6, |task| task.goal.ms);

@@ -173,8 +173,15 @@ mod tests {
 
     #[test]
     fn a_value_that_is_shown_and_set_again_is_the_same_register() {
-        let position =
-            PositionRegisters { p: 12_345, i: 7, d: 999_999, max_i: 50, deadzone: 3, min: -900, max: 1_000_000 };
+        let position = PositionRegisters {
+            p: 12_345,
+            i: 7,
+            d: 999_999,
+            max_i: 50,
+            deadzone: 3,
+            min: -900,
+            max: 1_000_000,
+        };
         let velocity = VelocityRegisters { p: 0x1_2345, i: 1, d: 0x4000, qpps: 44_000 };
         let full = Registers { velocity, position: Some(position) };
         let mut again = Registers { position: Some(PositionRegisters::default()), ..Registers::default() };

@@ -117,9 +117,19 @@ fn gains_ui(ui: &mut Ui, model: &mut Model, which: Loop, held: Option<Registers>
             figure_ui(ui, &current.map_or_else(|| "–".to_owned(), |value| field.text(value)), 84.0);
             let name = format!("{motor} proposed {}", field.label);
             let range = field.range.0..=field.range.1;
-            let entry = Numeric { name: &name, unit: "", range, decimals: field.decimals, step: field.step, width: 96.0 };
+            let entry = Numeric {
+                name: &name,
+                unit: "",
+                range,
+                decimals: field.decimals,
+                step: field.step,
+                width: 96.0,
+            };
             let entry = entry.ui(ui, &mut value);
-            if entry.on_hover_text("Edit it to see what it would do; nothing is sent until you apply it").changed() {
+            if entry
+                .on_hover_text("Edit it to see what it would do; nothing is sent until you apply it")
+                .changed()
+            {
                 field.set(&mut wanted, value);
             }
             figure_ui(ui, &change_text(field, current, field.value(&wanted)), 64.0);
@@ -139,7 +149,11 @@ fn change_text(field: &Field, current: Option<f64>, wanted: Option<f64>) -> Stri
         format!("{:+.*}", field.decimals.min(2), wanted - current)
     } else {
         let percent = 100.0 * (wanted / current - 1.0);
-        if percent.abs() < 1000.0 { format!("{percent:+.0} %") } else { format!("× {:.0}", wanted / current) }
+        if percent.abs() < 1000.0 {
+            format!("{percent:+.0} %")
+        } else {
+            format!("× {:.0}", wanted / current)
+        }
     }
 }
 
@@ -159,16 +173,23 @@ fn acts_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands)
     let can_undo = panel.undo.is_some();
     let Some(run) = panel.run_mut() else { return };
     let has_gains = run.shown.is_some();
-    let differs = run.current().map(|shown| shown.registers) != run.shown.as_ref().map(|shown| shown.registers);
+    let differs =
+        run.current().map(|shown| shown.registers) != run.shown.as_ref().map(|shown| shown.registers);
     ui.add_space(4.0);
     ui.horizontal_wrapped(|ui| {
         let apply = ui.add_enabled(is_free && has_gains && differs, Button::new("Apply (RAM)"));
-        if apply.on_hover_text("Writes the proposed gains into the controller's RAM and reads them back").clicked() {
+        if apply
+            .on_hover_text("Writes the proposed gains into the controller's RAM and reads them back")
+            .clicked()
+        {
             commands.push(Command::Tune(TuneWish::Apply));
         }
         let verify = ui.add_enabled(is_free && is_armed && has_gains, Button::new("Verify"));
         let verify = verify.on_disabled_hover_text("Arm this screen first");
-        if verify.on_hover_text("Moves the motor with the proposed gains and compares it with the prediction").clicked() {
+        if verify
+            .on_hover_text("Moves the motor with the proposed gains and compares it with the prediction")
+            .clicked()
+        {
             commands.push(Command::Tune(TuneWish::Verify));
         }
         let save = ui.add_enabled(is_free, Button::new("Save…"));
@@ -185,7 +206,10 @@ fn acts_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands)
         }
     });
     if !run.is_as_proposed() {
-        let text = format!("Considered on the model only: level {:.0}, or gains by hand. Nothing was sent.", run.level);
+        let text = format!(
+            "Considered on the model only: level {:.0}, or gains by hand. Nothing was sent.",
+            run.level
+        );
         ui.label(RichText::new(text).small().color(Palette::of(ui).accent));
     }
     match run.verified {
@@ -228,11 +252,15 @@ pub const FIGURES: [Figure; 5] = [
     ("Overshoot", "How far a step goes beyond its setpoint, over the step", |shown| {
         if_stable(shown, || format!("{:.1} %", 100.0 * shown.forecast.overshoot))
     }),
-    ("Settling", "How long a step takes to stay near its setpoint: 5 % of a speed, 2 % of a position", |shown| {
-        if_stable(shown, || {
-            shown.forecast.settling_s.map_or_else(|| "never".to_owned(), |s| format!("{:.0} ms", 1e3 * s))
-        })
-    }),
+    (
+        "Settling",
+        "How long a step takes to stay near its setpoint: 5 % of a speed, 2 % of a position",
+        |shown| {
+            if_stable(shown, || {
+                shown.forecast.settling_s.map_or_else(|| "never".to_owned(), |s| format!("{:.0} ms", 1e3 * s))
+            })
+        },
+    ),
     ("Load dip", "How far a load of 15 % of the stall torque drives it off, over the step", |shown| {
         if_stable(shown, || format!("{:.1} %", 100.0 * shown.forecast.load_dip))
     }),
@@ -249,7 +277,8 @@ fn if_stable(shown: &Shown, text: impl FnOnce() -> String) -> String {
 }
 
 fn measured(run: &Run, name: &str) -> String {
-    let percent = |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{:.1} %", 100.0 * share));
+    let percent =
+        |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{:.1} %", 100.0 * share));
     let tried = run.tried.as_ref();
     match name {
         "Overshoot" => percent(tried.and_then(|tried| tried.overshoot)),
@@ -278,7 +307,8 @@ fn runs_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
                 chosen = index;
             }
             let drawn = ui.checkbox(&mut run.is_overlaid, "");
-            ui.ctx().accesskit_node_builder(drawn.id, |node| node.set_label(format!("Draw run {}", run.number)));
+            ui.ctx()
+                .accesskit_node_builder(drawn.id, |node| node.set_label(format!("Draw run {}", run.number)));
             run_row_ui(ui, run);
             ui.end_row();
         }
@@ -293,8 +323,13 @@ fn run_row_ui(ui: &mut Ui, run: &Run) {
     };
     figure_ui(ui, &format!("{:.0}", run.level), 30.0);
     let loops = shown.registers.position.is_some();
-    for key in if loops { ["position.p", "position.i", "position.d"] } else { ["velocity.p", "velocity.i", "velocity.d"] } {
-        let value = FIELDS.iter().find(|field| field.key == key).and_then(|field| field.value(&shown.registers));
+    for key in if loops {
+        ["position.p", "position.i", "position.d"]
+    } else {
+        ["velocity.p", "velocity.i", "velocity.d"]
+    } {
+        let value =
+            FIELDS.iter().find(|field| field.key == key).and_then(|field| field.value(&shown.registers));
         figure_ui(ui, &value.map_or_else(|| "–".to_owned(), |value| format!("{value:.2}")), 46.0);
     }
     for (_, _, figure) in [FIGURES[0], FIGURES[1], FIGURES[3]] {

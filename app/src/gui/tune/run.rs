@@ -88,7 +88,12 @@ impl Run {
         let task = self.report.task?;
         let gains = self.gains(&registers);
         let task = Task { qpps: f64::from(registers.velocity.qpps).max(1.0), ..task };
-        Some(Shown { registers, gains, forecast: forecast(&task, &gains), frequency: frequency_response(&task, &gains) })
+        Some(Shown {
+            registers,
+            gains,
+            forecast: forecast(&task, &gains),
+            frequency: frequency_response(&task, &gains),
+        })
     }
 
     fn gains(&self, registers: &Registers) -> Gains {
@@ -98,7 +103,10 @@ impl Run {
     /// The slider was moved: the gains of that level, with no new experiment.
     pub fn set_level(&mut self, level: f64) {
         self.level = level;
-        let (Some(task), Some(design), Some(first)) = (self.report.task, self.report.design, self.first) else { return };
+        let (Some(task), Some(design), Some(first)) = (self.report.task, self.report.design, self.first)
+        else {
+            return;
+        };
         let request = &self.report.request;
         if level == request.level {
             self.shown = self.on_model(first);

@@ -25,7 +25,11 @@ pub fn setup_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Comm
         }
     });
     ui.horizontal_wrapped(|ui| options_ui(ui, model, which));
-    let hint = if is_armed { WHAT_IT_DOES } else { "Arm this screen to tune. Looking at results and trying gains on the model needs no arming." };
+    let hint = if is_armed {
+        WHAT_IT_DOES
+    } else {
+        "Arm this screen to tune. Looking at results and trying gains on the model needs no arming."
+    };
     ui.add(Label::new(RichText::new(hint).small().color(palette.weak_text)).wrap());
 }
 
@@ -48,7 +52,8 @@ fn motor_row_ui(
         commands.push(Command::Tune(TuneWish::Start(motor)));
     }
     let panel = model.front.tune.panel_mut(which, motor);
-    let mut level = panel.run().filter(|run| run.first.is_some()).map_or(panel.setting.level, |run| run.level);
+    let mut level =
+        panel.run().filter(|run| run.first.is_some()).map_or(panel.setting.level, |run| run.level);
     ui.label("Level");
     ui.label(RichText::new("softer").small().color(Palette::of(ui).weak_text));
     ui.spacing_mut().slider_width = 150.0;
@@ -84,14 +89,25 @@ fn options_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
     travel_ui(ui, setting, travel);
     ui.separator();
     ui.label("Duty up to");
-    let duty = Numeric { name: "Highest duty", unit: "%", range: 20.0..=100.0, decimals: 0, step: 5.0, width: 62.0 };
+    let duty =
+        Numeric { name: "Highest duty", unit: "%", range: 20.0..=100.0, decimals: 0, step: 5.0, width: 62.0 };
     duty.ui(ui, &mut setting.max_duty_percent).on_hover_text("The run never gives more");
     ui.label("Current up to");
-    let amps = Numeric { name: "Highest current", unit: "A", range: 0.0..=200.0, decimals: 1, step: 0.5, width: 70.0 };
-    amps.ui(ui, &mut setting.max_amps).on_hover_text("The run ends above it; 0 leaves it to the controller's own limit");
+    let amps = Numeric {
+        name: "Highest current",
+        unit: "A",
+        range: 0.0..=200.0,
+        decimals: 1,
+        step: 0.5,
+        width: 70.0,
+    };
+    amps.ui(ui, &mut setting.max_amps)
+        .on_hover_text("The run ends above it; 0 leaves it to the controller's own limit");
     ui.separator();
     let tries = ui.checkbox(&mut setting.tries, "Try the gains");
-    tries.on_hover_text("Tries them on the machine at the end of the run and lowers them if it is rougher than predicted");
+    tries.on_hover_text(
+        "Tries them on the machine at the end of the run and lowers them if it is rougher than predicted",
+    );
     encoder_ui(ui, setting);
 }
 
@@ -105,7 +121,8 @@ fn travel_ui(ui: &mut Ui, setting: &mut Setting, held: Option<(f64, f64)>) {
         setting.travel = (low, high);
     }
     if !setting.turns_freely {
-        let field = |name| Numeric { name, unit: "", range: -2e9..=2e9, decimals: 0, step: 100.0, width: 88.0 };
+        let field =
+            |name| Numeric { name, unit: "", range: -2e9..=2e9, decimals: 0, step: 100.0, width: 88.0 };
         field("Travel low").ui(ui, &mut setting.travel.0);
         ui.label("to");
         field("Travel high").ui(ui, &mut setting.travel.1);
@@ -120,10 +137,11 @@ fn encoder_ui(ui: &mut Ui, setting: &mut Setting) {
         EncoderClass::Absolute => "absolute",
         EncoderClass::AbsoluteWrapping => "absolute, wraps",
     };
-    let combo = ComboBox::from_id_salt("tune encoder").selected_text(word(setting.encoder)).show_ui(ui, |ui| {
-        for class in [EncoderClass::Quadrature, EncoderClass::Absolute, EncoderClass::AbsoluteWrapping] {
-            ui.selectable_value(&mut setting.encoder, class, word(class));
-        }
-    });
+    let combo =
+        ComboBox::from_id_salt("tune encoder").selected_text(word(setting.encoder)).show_ui(ui, |ui| {
+            for class in [EncoderClass::Quadrature, EncoderClass::Absolute, EncoderClass::AbsoluteWrapping] {
+                ui.selectable_value(&mut setting.encoder, class, word(class));
+            }
+        });
     combo.response.labelled_by(label.id);
 }
