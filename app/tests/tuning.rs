@@ -30,7 +30,7 @@ fn opened(preset: &str, screen: &str) -> Bench {
 
 /// What the controller holds for a motor.
 fn held(bench: &Bench, motor: Motor) -> MotionSettings {
-    bench.line.with(|bus| bus.controllers()[0].settings().motors[motor.index()].motion.clone())
+    bench.line.with(|bus| bus.controllers()[0].settings().motors[motor.index()].motion)
 }
 
 fn timeout_ms(bench: &Bench) -> u32 {

@@ -297,7 +297,7 @@ impl App {
         if let Some(device) = self.links.entry(id).device.take() {
             links::close(device);
         }
-        let effects = self.model.desk_mut(id).map(|desk| desk.link_ended()).unwrap_or_default();
+        let effects = self.model.desk_mut(id).map(Desk::link_ended).unwrap_or_default();
         for effect in effects {
             if let Effect::Say(gravity, text) = effect {
                 self.say(id, gravity, text);
