@@ -149,20 +149,20 @@ pub fn prepare(target: Target, found: &Slot<Setup>) -> Box<dyn Job> {
     })
 }
 
-/// The run. It moves the motor, so it must be armed. The report is in its slot also after an interruption; `live` shows what goes on
-/// meanwhile.
-pub fn run(target: Target, request: Request, found: &Slot<Report>, live: Option<&Live>) -> Box<dyn Job> {
-    let live = live.cloned();
-    let found = Arc::clone(found);
+/// The run. It moves the motor, so it must be armed. The report is in its slot also after an interruption.
+pub fn run(target: Target, request: Request, found: &Slot<Report>) -> Box<dyn Job> {
+    run_watched(target, request, found, &Live::default())
+}
+
+/// The run, with a trace in `live` for whoever looks on.
+pub fn run_watched(target: Target, request: Request, found: &Slot<Report>, live: &Live) -> Box<dyn Job> {
+    let (found, live) = (Arc::clone(found), live.clone());
     let limit = Duration::from_secs_f64(request.guard.time_limit_s) + GRACE;
     FnJob::moving(RUN, limit, move |context| {
         context.set_polling(false);
         // The time-out was set before: changing it now would undermine the arming.
         let mut axis = axis(context, target, false);
-        let report = match &live {
-            Some(live) => tune(&mut Tap::new(&mut axis, live.clone()), &request),
-            None => tune(&mut axis, &request),
-        };
+        let report = tune(&mut Tap::new(&mut axis, live.clone()), &request);
         put(&found, report);
         Ok(Box::new(()))
     })

@@ -64,7 +64,7 @@ fn session(args: &RunArgs, method: Method, client: &Client, interrupt: &Interrup
     let Some(before) = take(&setup) else { return Err(Exit::NoLink) };
     let found: Slot<Report> = Slot::default();
     let ran = arm(client, interrupt)
-        .and_then(|()| job(client, tuning_job(target, request(args, method), &found, None), interrupt));
+        .and_then(|()| job(client, tuning_job(target, request(args, method), &found), interrupt));
     let report = take(&found);
     // A raised interrupt has ended the run; it must not keep the old gains from being put back.
     let restored = job(client, restore(target, before, report.as_ref()), &Interrupt::default());

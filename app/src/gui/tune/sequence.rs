@@ -165,7 +165,7 @@ impl Sequence {
             Stage::Arming => return Some(Next::Arm(self.scope)),
             Stage::Preparing => jobs::prepare(self.target, &self.setup),
             Stage::Running => match &self.work {
-                Work::Tune(request) => jobs::run(self.target, *request, &self.found, Some(&self.live)),
+                Work::Tune(request) => jobs::run_watched(self.target, *request, &self.found, &self.live),
                 Work::Try(wanted) => jobs::trial(self.target, **wanted, &self.tried, &self.live),
                 Work::PutBack => return None,
             },
