@@ -31,6 +31,7 @@ use super::parts::{OpenLink, Parts, SimulatedWorld};
 use super::remember::Memory;
 use super::{shell, theme};
 
+mod scripting;
 mod tuning;
 mod updating;
 
@@ -54,6 +55,7 @@ pub struct App {
     memory: Option<Memory>,
     end: EndBySignal,
     last_frame: Arc<FrameTime>,
+    ctx: Context,
 }
 
 impl App {
@@ -69,6 +71,7 @@ impl App {
             memory: None,
             end: EndBySignal::default(),
             last_frame: Arc::new(FrameTime::new()),
+            ctx: ctx.clone(),
         }
     }
 
@@ -407,6 +410,7 @@ impl App {
             Command::OpenHelp(page) => model.help.open(page),
             Command::Exit => self.closing = true,
             Command::DismissMessage => model.messages.dismiss(),
+            Command::Mcl(wish) => self.edit_mcl(wish),
             _ => {}
         }
     }
@@ -492,7 +496,7 @@ impl App {
     }
 
     fn show(&mut self, screen: Screen) {
-        if screen == self.model.screen || screen.missing().is_some() {
+        if screen == self.model.screen {
             return;
         }
         if self.model.arm_scope().is_some() {

@@ -7,6 +7,7 @@ use brushwork_sim::world::WorldAction;
 use egui::ThemePreference;
 
 use super::graph::GraphAction;
+use super::mcl::MclWish;
 use super::model::DeskId;
 use super::model::drawer::Tab;
 use super::model::firmware::FirmwareWish;
@@ -93,6 +94,8 @@ pub enum Command {
     /// The voltage clamp test.
     ClampTest,
     DismissMessage,
+    /// Something to be done in the MCL editor.
+    Mcl(MclWish),
 }
 
 /// The wishes of one frame, in order.

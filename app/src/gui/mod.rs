@@ -14,6 +14,7 @@ pub mod graph;
 pub mod help;
 pub mod keys;
 pub mod links;
+pub mod mcl;
 pub mod model;
 pub mod opener;
 pub mod parts;

@@ -104,7 +104,7 @@ impl Remembered {
         model.appearance.plain = self.plain;
         model.appearance.set_scale(self.scale_percent);
         let screen = Screen::ALL.into_iter().find(|screen| screen.title() == self.screen);
-        if let Some(screen) = screen.filter(|screen| screen.missing().is_none()) {
+        if let Some(screen) = screen {
             model.turn_to(screen);
         }
         model.devices.set_recent(self.recent.clone());

@@ -31,6 +31,22 @@ pub struct Palette {
     pub on_stop: Color32,
     /// Lines of the graph, in the order of the channels.
     pub traces: [Color32; 24],
+    /// Words of a program.
+    pub syntax: Syntax,
+}
+
+/// Colours of the words of a program, on the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Syntax {
+    pub command: Color32,
+    pub operator: Color32,
+    pub kind: Color32,
+    pub register: Color32,
+    pub directive: Color32,
+    pub number: Color32,
+    pub text: Color32,
+    pub comment: Color32,
+    pub label: Color32,
 }
 
 const fn hex(rgb: u32) -> Color32 {
@@ -52,6 +68,17 @@ const DARK: Palette = Palette {
     stop: hex(0xd4_2c_2c),
     on_stop: Color32::WHITE,
     traces: DARK_TRACES,
+    syntax: Syntax {
+        command: hex(0x6c_b2_f7),
+        operator: hex(0xc8_a2_f2),
+        kind: hex(0x4f_d0_c0),
+        register: hex(0xf2_c0_6b),
+        directive: hex(0xf0_8f_c0),
+        number: hex(0xb5_d8_8f),
+        text: hex(0xf0_9f_80),
+        comment: hex(0x84_94_a4),
+        label: hex(0xf0_e0_9a),
+    },
 };
 
 const LIGHT: Palette = Palette {
@@ -69,6 +96,17 @@ const LIGHT: Palette = Palette {
     stop: hex(0xc9_1f_1f),
     on_stop: Color32::WHITE,
     traces: LIGHT_TRACES,
+    syntax: Syntax {
+        command: hex(0x0a_55_b5),
+        operator: hex(0x74_2c_b8),
+        kind: hex(0x00_70_6a),
+        register: hex(0x8a_50_00),
+        directive: hex(0xa8_1c_76),
+        number: hex(0x2f_6d_10),
+        text: hex(0xa6_33_10),
+        comment: hex(0x5f_6c_7a),
+        label: hex(0x7a_5a_00),
+    },
 };
 
 /// Setpoint, output, speed, position and current of motor 1, then related hues for those of motor 2, then the rest.
@@ -246,6 +284,17 @@ mod tests {
             }
             assert!(contrast(palette.on_stop, palette.stop) >= 4.5);
             assert!(contrast(palette.text, palette.chosen) >= 7.0);
+        }
+    }
+
+    #[test]
+    fn words_of_a_program_can_be_read() {
+        for palette in [&DARK, &LIGHT] {
+            let Syntax { command, operator, kind, register, directive, number, text, comment, label } =
+                palette.syntax;
+            for color in [command, operator, kind, register, directive, number, text, comment, label] {
+                assert!(contrast(color, palette.ground) >= 4.5, "{color:?}");
+            }
         }
     }
 

@@ -16,7 +16,7 @@ macro_rules! screen {
             place: place(Menu::View, 0),
             keys: ctrl(Key::$key),
             help: $help,
-            ready: |_| is_there(Screen::$screen),
+            ready: always,
             is_on: Some(|model| model.screen == Screen::$screen),
             command: |_| Command::Show(Screen::$screen),
         }
@@ -152,10 +152,6 @@ pub(super) const ACTIONS: &[Action] = &[
         command: |_| Command::Scale(100),
     },
 ];
-
-fn is_there(screen: Screen) -> Ready {
-    screen.missing().map_or(Ok(()), |why| Err(why.into()))
-}
 
 fn has_world(model: &Model) -> Ready {
     if model.front.worlds.is_some() {

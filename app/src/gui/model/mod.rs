@@ -4,6 +4,7 @@ use brushwork_link::device::{ArmScope, Channel};
 use egui::ThemePreference;
 
 use super::graph::{ChannelInfo, Scale};
+use super::mcl::Editor;
 
 pub mod canopen;
 pub mod desk;
@@ -52,6 +53,8 @@ pub struct Model {
     pub help: Help,
     /// The window for connecting to a CANopen bus.
     pub canopen: canopen::CanOpenChoice,
+    /// The MCL programs that are open; they belong to no link.
+    pub mcl: Editor,
     /// The link that is looked at. Only this one can be armed.
     pub front: Desk,
     /// The links in the background. They are read and recorded like the one in front.

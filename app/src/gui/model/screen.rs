@@ -35,21 +35,14 @@ impl Screen {
         }
     }
 
-    /// Why the screen cannot be opened, where it does not exist yet.
-    pub const fn missing(self) -> Option<&'static str> {
-        match self {
-            Self::DeviceStatus | Self::GeneralSettings | Self::Pwm | Self::Velocity | Self::Position => None,
-            Self::MclEditor => Some("This screen is not built yet."),
-        }
-    }
-
     /// What arming this screen allows; leaving such a screen disarms.
     pub const fn arm_scope(self) -> Option<ArmScope> {
         match self {
             Self::Pwm => Some(ArmScope::Pwm),
             Self::Velocity => Some(ArmScope::Velocity),
             Self::Position => Some(ArmScope::Position),
-            Self::DeviceStatus | Self::GeneralSettings | Self::MclEditor => None,
+            Self::MclEditor => Some(ArmScope::Script),
+            Self::DeviceStatus | Self::GeneralSettings => None,
         }
     }
 

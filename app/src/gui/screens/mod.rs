@@ -3,6 +3,7 @@
 use egui::{Align, Layout, RichText, Ui};
 
 use super::command::Commands;
+use super::mcl;
 use super::model::screen::Screen;
 use super::model::{Model, Phase};
 use super::theme::Palette;
@@ -31,7 +32,7 @@ pub fn screen_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         Screen::Pwm => pwm::pwm_ui(ui, model, commands),
         Screen::Velocity => velocity::velocity_ui(ui, model, commands),
         Screen::Position => position::position_ui(ui, model, commands),
-        other => nothing_ui(ui, other.missing().unwrap_or_default()),
+        Screen::MclEditor => mcl::screen_ui(ui, model, commands),
     }
 }
 

@@ -52,22 +52,11 @@ fn screens_ui(ui: &mut Ui, current: Screen, commands: &mut Commands) {
     ui.spacing_mut().item_spacing.y = 2.0;
     ui.with_layout(Layout::top_down_justified(Align::Min), |ui| {
         for (index, screen) in Screen::ALL.into_iter().enumerate() {
-            let missing = screen.missing();
             let shortcut = RichText::new(format!("Ctrl+{}", index + 1)).small();
-            let button = Button::selectable(current == screen, screen.title());
-            let button = if missing.is_none() {
-                button.right_text(shortcut)
-            } else {
-                button.right_text(RichText::new("later").small())
-            };
-            let response = ui.add_enabled(missing.is_none(), button);
-            let enabled = missing.is_none();
-            response.widget_info(|| {
-                WidgetInfo::selected(Role::Button, enabled, current == screen, screen.title())
-            });
-            if let Some(why) = missing {
-                response.on_disabled_hover_text(why);
-            } else if response.clicked() {
+            let response = ui.add(Button::selectable(current == screen, screen.title()).right_text(shortcut));
+            response
+                .widget_info(|| WidgetInfo::selected(Role::Button, true, current == screen, screen.title()));
+            if response.clicked() {
                 commands.push(Command::Show(screen));
             }
         }

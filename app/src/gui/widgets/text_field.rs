@@ -10,9 +10,14 @@ pub fn text_field_ui(ui: &mut Ui, text: &mut String, name: &str, hint: &str) -> 
     let response = ui.add(TextEdit::singleline(text).hint_text(hint).desired_width(f32::INFINITY));
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name));
     if response.has_focus() {
-        ui.data_mut(|data| data.insert_temp(key(), response.id));
+        keep_space(ui, response.id);
     }
     response
+}
+
+/// Lets the widget `id`, which has the keyboard, take a space as a letter.
+pub fn keep_space(ui: &Ui, id: Id) {
+    ui.data_mut(|data| data.insert_temp(key(), id));
 }
 
 /// Whether the widget with keyboard focus takes a space as a letter.

@@ -1,0 +1,177 @@
+//! One open program: its text, caret, marks, and what the compiler says about it.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use egui::Vec2;
+
+use super::buffer::{Buffer, Edit, Kind};
+use super::caret::Caret;
+use super::fold::Folds;
+use super::input::Composing;
+use super::marks::Marks;
+
+/// Which program, for as long as the window is open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct DocId(pub u64);
+
+/// One open program.
+#[derive(Debug)]
+pub struct Document {
+    id: DocId,
+    /// Its file; none before it was saved.
+    pub path: Option<PathBuf>,
+    /// What it is called while it has no file.
+    pub untitled: String,
+    pub text: Buffer,
+    pub caret: Caret,
+    pub bookmarks: Marks,
+    /// Lines, from 0, at which a run is to halt.
+    pub breakpoints: Marks,
+    pub folds: Folds,
+    /// What an input method has put into the text and not committed.
+    pub composing: Option<Composing>,
+    pub run: RunMarks,
+    pub view: View,
+}
+
+/// What a run of this program shows beside its lines.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RunMarks {
+    /// The line, from 0, at which the machine halts.
+    pub halted_at: Option<usize>,
+    /// How often each line, from 0, was run; empty without a run that counts.
+    pub counts: Vec<u64>,
+}
+
+/// How the program is looked at.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct View {
+    /// How far it is scrolled, in points.
+    pub offset: Vec2,
+    /// What of it is in view, in points.
+    pub size: Vec2,
+    /// The widest line seen so far, in points.
+    pub widest: f32,
+    /// The caret is to come into view.
+    pub reveal: Reveal,
+}
+
+/// Whether and how the caret is brought into view.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Reveal {
+    #[default]
+    No,
+    /// By as little as need be.
+    Nearest,
+    /// In the middle, as after a jump.
+    Middle,
+}
+
+impl Document {
+    pub fn new(id: DocId, untitled: String, text: &str) -> Self {
+        Self {
+            id,
+            path: None,
+            untitled,
+            text: Buffer::new(text),
+            caret: Caret::default(),
+            bookmarks: Marks::default(),
+            breakpoints: Marks::default(),
+            folds: Folds::default(),
+            composing: None,
+            run: RunMarks::default(),
+            view: View::default(),
+        }
+    }
+
+    pub fn id(&self) -> DocId {
+        self.id
+    }
+
+    /// As the tab shows it.
+    pub fn title(&self) -> String {
+        let name = self.path.as_ref().and_then(|path| path.file_name());
+        name.map_or_else(|| self.untitled.clone(), |name| name.to_string_lossy().into_owned())
+    }
+
+    /// The line of the caret, from 0.
+    pub fn caret_line(&self) -> usize {
+        self.text.line_of(self.caret.head)
+    }
+
+    /// Replaces stretches of the text as one step of undo. `after` tells where the caret is then.
+    pub fn edit(
+        &mut self,
+        kind: Kind,
+        edits: impl IntoIterator<Item = (std::ops::Range<usize>, String)>,
+        after: impl FnOnce(&Buffer) -> Caret,
+    ) {
+        let mut caret = self.caret;
+        let done = self.text.edit(kind, self.caret, edits, |text| {
+            caret = after(text);
+            caret
+        });
+        if !done.is_empty() {
+            self.follow(&done);
+            self.caret = caret;
+            self.folds.show(self.text.line_of(caret.head));
+        }
+        self.view.reveal = Reveal::Nearest;
+    }
+
+    pub fn undo(&mut self) {
+        if let Some((edits, caret)) = self.text.undo() {
+            self.follow(&edits);
+            self.caret = caret;
+            self.view.reveal = Reveal::Nearest;
+        }
+    }
+
+    pub fn redo(&mut self) {
+        if let Some((edits, caret)) = self.text.redo() {
+            self.follow(&edits);
+            self.caret = caret;
+            self.view.reveal = Reveal::Nearest;
+        }
+    }
+
+    /// Marks go along with the text.
+    fn follow(&mut self, edits: &[Edit]) {
+        for edit in edits {
+            self.bookmarks.follow(edit);
+            self.breakpoints.follow(edit);
+            self.folds.follow(edit);
+        }
+        // Counts and the place of a halt are those of the program that runs, not of this text.
+        self.run = RunMarks::default();
+    }
+
+    /// Puts the caret at a place and brings it into view.
+    pub fn go_to(&mut self, caret: Caret) {
+        let bound = |at| self.text.boundary(at);
+        self.caret = Caret { anchor: bound(caret.anchor), head: bound(caret.head), goal: caret.goal };
+        self.text.close_group();
+        self.folds.show(self.text.line_of(self.caret.head));
+        self.view.reveal = Reveal::Middle;
+    }
+
+    /// Puts the caret at the beginning of a line, from 0.
+    pub fn go_to_line(&mut self, line: usize) {
+        let line = line.min(self.text.line_count() - 1);
+        self.go_to(Caret::at(self.text.line_start(line)));
+    }
+
+    /// Shows where the machine halts, or that it does not.
+    pub fn show_halt(&mut self, line: Option<usize>) {
+        if self.run.halted_at != line {
+            self.run.halted_at = line;
+            if let Some(line) = line {
+                self.go_to_line(line);
+            }
+        }
+    }
+}
+
+/// How long typing pauses before what was typed counts as a step of its own.
+pub const TYPING_PAUSE: Duration = Duration::from_secs(2);
