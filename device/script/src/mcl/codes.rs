@@ -30,13 +30,11 @@ codes! {
     DEFINED_TWICE = "E303", "A name that is defined already.";
     USED_BEFORE = "E304", "A variable, constant or table that is defined only further down.";
     NOT_A_VARIABLE = "E305", "Something that cannot be set.";
-    READ_ONLY = "E306", "A system register that can only be read.";
     UNKNOWN_MODIFIER = "E307", "A modifier that does not exist.";
     NO_SUCH_PART = "E308", "A modifier for a part that the variable does not have.";
     NOT_AN_ARRAY = "E309", "An index on something that has none.";
     INDEX_OUTSIDE = "E310", "An index past the end of an array or table.";
     NOT_CONSTANT = "E311", "A value that has to be known when the program is compiled.";
-    GOSUB_ARGUMENTS = "E312", "GOSUB with another number of arguments than its subroutine takes.";
     BAD_ARRAY_SIZE = "E313", "An array without elements or larger than memory.";
     NO_FLOATS = "E314", "A floating point number where only whole numbers work.";
     LONG_TEXT = "E315", "A text where one character or a number is wanted.";
@@ -50,7 +48,7 @@ codes! {
     FLOAT_INTO_INTEGER = "W405", "A floating point number stored in an integer without TOINT.";
     UNREACHABLE = "W406", "Statements that nothing leads to.";
     MISSING_END = "W407", "The program runs out of its last line, or into a subroutine.";
-    MISSPELT_REGISTER = "W408", "A register in a spelling that only the manual's table has.";
+    MISSPELT = "W408", "A register or directive in a spelling that only one place of the manual has.";
     REGISTER_PART = "W409", "A modifier on a system register: the manual forbids it and does it.";
     MIXED = "W410", "Whole and floating point numbers in one operation: the whole one is converted.";
     NOT_FIRST = "W411", "NOT before a comparison: NOT is worked out first (MCP manual 3.2.5), the manual's example means it last.";
@@ -62,6 +60,9 @@ codes! {
     WHOLE_ARRAY = "W417", "An array without an index: its first element is meant.";
     AMBIGUOUS_STREAM = "W418", "Stream 2 or 3: the manual's tables disagree; here 2 is TTL and 3 RS-232, as GETS and PUTS have it.";
     ADDRESS_UNIT = "W419", "READ or WRITE beyond address 255: commands 252 and 253 count other units.";
+    READ_ONLY = "W420", "A system register that can only be read is set: nothing is stored.";
+    GOSUB_ARGUMENTS = "W421", "GOSUB with another number of arguments than its subroutine takes: the stack overflows or underflows.";
+    DISPUTED_VALUE = "W422", "A value of a system register about which pages of the manual disagree.";
 }
 
 #[cfg(test)]

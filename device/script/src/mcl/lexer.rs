@@ -207,8 +207,21 @@ impl Lexer<'_> {
     fn directive(&mut self) {
         let start = self.at;
         self.at += 1 + self.name_length(start + 1);
-        let name = self.text[start + 1..self.at].to_ascii_lowercase();
+        let mut name = self.text[start + 1..self.at].to_ascii_lowercase();
+        if name == "elsif" {
+            let message = "The directive is #ELSEIF; only a heading of the manual has #ELSIF.".to_owned();
+            self.report(codes::MISSPELT, start, message, None);
+            name = "elseif".to_owned();
+        }
         self.push(TokenKind::Directive(name), start);
+    }
+
+    /// `$1F`, as other languages write it.
+    fn dollar(&mut self, start: usize) {
+        self.at += self.name_length(self.at);
+        let hint = Some("Hexadecimal numbers are written 0x1F.".to_owned());
+        self.report(codes::BAD_CHARACTER, start, "`$` means nothing here.".to_owned(), hint);
+        self.push(TokenKind::Integer(0), start);
     }
 
     fn sign(&mut self, letter: char) {
@@ -218,6 +231,9 @@ impl Lexer<'_> {
             return self.push(TokenKind::Sign(sign), start);
         }
         self.at += letter.len_utf8();
+        if letter == '$' {
+            return self.dollar(start);
+        }
         let hint = match letter {
             '“' | '”' | '„' | '‘' | '’' | '\'' => {
                 Some("Texts stand between straight double quotes.".to_owned())
@@ -225,7 +241,6 @@ impl Lexer<'_> {
             '{' | '}' => {
                 Some("Braces in the manual mark what may be left out; they are not written.".to_owned())
             }
-            '$' => Some("Hexadecimal numbers are written 0x1F.".to_owned()),
             '%' => Some("A binary number is % and its digits, as in %1010.".to_owned()),
             _ => None,
         };

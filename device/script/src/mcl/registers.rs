@@ -9,7 +9,7 @@ mod values;
 use super::types::VarType;
 use super::words::{self, Known};
 use serde::Serialize;
-pub use values::values;
+pub use values::{dispute, values};
 
 /// One system register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -117,7 +117,7 @@ fn pieces_of_a_line_have_their_colours() {
     assert_eq!(one("main"), [Label]);
     assert_eq!(one("goto main"), [Command, Label]);
     assert_eq!(one("#IF a"), [Directive, Name]);
-    assert_eq!(one("a = 1 $ 2"), [Name, Operator, Number, Wrong, Number]);
+    assert_eq!(one("a = 1 ? 2"), [Name, Operator, Number, Wrong, Number]);
     assert_eq!(one("canout"), [Wrong]);
     assert_eq!(one(""), []);
 }

@@ -3,6 +3,7 @@
 use super::super::ast::{Expr, Name, Place};
 use super::super::codes;
 use super::super::constant::{self, Constant};
+use super::super::registers;
 use super::super::types::VarType;
 use super::Lowering;
 use super::place::Target;
@@ -69,12 +70,20 @@ impl Lowering<'_> {
     }
 
     pub(super) fn alias(&mut self, name: &Name, of: &Place) {
+        let whole = registers::lookup(of.name.span.of(self.text))
+            .filter(|(id, _)| id.row().length > 1 && of.index.is_none() && of.modifier.is_none());
+        if let Some((id, _)) = whole {
+            return self.scope.settle(name, Meaning::Register { id, element: None, part: None });
+        }
         let meaning = match self.target(of) {
             Some(Target::Cell { cell, root }) => {
                 let memory = Array { first: cell, stride: cell.kind.bits(), length: 1 };
                 Meaning::Memory { memory, is_array: false, root }
             }
             Some(Target::Whole { memory, root }) => Meaning::Memory { memory, is_array: true, root },
+            Some(Target::Register { id, element: element @ Some(_), part }) => {
+                Meaning::Register { id, element, part }
+            }
             Some(_) => {
                 let message =
                     "An alias names a variable, an element with a constant index, or a part of one.";
@@ -113,7 +122,9 @@ impl Lowering<'_> {
             // "Constant tables are restricted to word boundaries" (MCP manual 3.1.12).
             self.data.push(0);
         }
-        self.scope.settle(name, Meaning::Table(TableRef { kind, at, length }));
+        let is_empty = length == 0;
+        let meaning = if is_empty { Meaning::Broken } else { Meaning::Table(TableRef { kind, at, length }) };
+        self.scope.settle(name, meaning);
     }
 
     fn table_entry(&mut self, kind: VarType, value: Constant, span: Span) {

@@ -3,6 +3,7 @@
 use super::super::ast::{Binary, Expr, ExprKind, Unary};
 use super::super::codes;
 use super::super::constant::Why;
+use super::super::registers::{self, RegisterId};
 use super::Lowering;
 use crate::arithmetic::{self, Type};
 use crate::op::Op;
@@ -51,8 +52,13 @@ impl Lowering<'_> {
             self.convert(from, Type::Float);
             kind = Type::Float;
         } else if from == Type::Float && !matches!(operator, Unary::Negative | Unary::Not | Unary::ToInt) {
-            if operator != Unary::ToFloat {
-                self.no_floats(operand.span);
+            match operator {
+                Unary::ToFloat => {}
+                Unary::Abs => self.no_floats_but(operand.span, "FABS takes a float."),
+                Unary::Sin => self.no_floats_but(operand.span, "FSIN takes a float, in radians."),
+                Unary::Cos => self.no_floats_but(operand.span, "FCOS takes a float, in radians."),
+                Unary::Sqr => self.no_floats_but(operand.span, "FSQRT takes a float."),
+                _ => self.no_floats(operand.span),
             }
             return from;
         }
@@ -61,11 +67,17 @@ impl Lowering<'_> {
     }
 
     fn no_floats(&mut self, span: Span) {
-        let hint = Some("Convert with TOINT.".to_owned());
+        self.no_floats_but(span, "Convert with TOINT.");
+    }
+
+    fn no_floats_but(&mut self, span: Span, hint: &str) {
+        let hint = Some(hint.to_owned());
         self.report(codes::NO_FLOATS, span, "Only whole numbers work here.".to_owned(), hint);
     }
 
     fn binary(&mut self, operator: Binary, left: &Expr, right: &Expr, span: Span) -> Type {
+        self.warn_of_disputed_operand(operator, left, right);
+        self.warn_of_disputed_operand(operator, right, left);
         let left_kind = self.value(left);
         let after_left = self.ops.len();
         let right_kind = self.value(right);
@@ -94,10 +106,35 @@ impl Lowering<'_> {
         arithmetic::result_of(operator, kind)
     }
 
+    /// Looks at a register beside a constant: comparisons and masks depend on what its values mean.
+    fn warn_of_disputed_operand(&mut self, operator: Binary, place: &Expr, other: &Expr) {
+        if !(operator.compares() || operator.order() == 8) {
+            return;
+        }
+        let mut inner = place;
+        while let ExprKind::Group(deeper) = &inner.kind {
+            inner = deeper;
+        }
+        if let ExprKind::Place(place) = &inner.kind
+            && let Some(id) = self.register_of(place)
+            && let Ok(known) = self.folded(other)
+        {
+            self.warn_of_dispute(id, known.as_whole(), other.span);
+        }
+    }
+
+    /// Warns of a register's value about which the manual's pages disagree.
+    pub(super) fn warn_of_dispute(&mut self, id: RegisterId, value: i64, span: Span) {
+        if let Some(dispute) = registers::dispute(id, value) {
+            self.report(codes::DISPUTED_VALUE, span, dispute.to_owned(), None);
+        }
+    }
+
     /// Puts an instruction between those of one expression, where no jump leads.
     fn insert(&mut self, at: usize, op: Op) {
         self.ops.insert(at, op);
         self.lines.insert(at, self.line);
+        self.spans.insert(at, self.span);
     }
 
     fn warn_of_mixing(&mut self, span: Span) {

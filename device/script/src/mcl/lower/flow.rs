@@ -2,7 +2,9 @@
 
 use super::super::ast::{Expr, Name, Place, Statement};
 use super::super::codes;
-use super::super::types::VarType;
+use super::super::constant::Constant;
+use super::super::registers::{self, RegisterId};
+use super::super::types::{self, VarType};
 use super::place::Target;
 use super::scope::{Meaning, type_of};
 use super::{Argument, Lowering, Mark};
@@ -33,13 +35,16 @@ impl Lowering<'_> {
         for (index, (condition, body)) in branches.iter().enumerate() {
             let mut next = Mark::default();
             if let Some(condition) = condition {
-                self.line = self.text_lines.line_of(condition.span.start);
+                if index > 0 {
+                    self.at(condition.span);
+                }
                 self.condition(condition);
                 self.jump(Op::JumpIfZero(0), &mut next);
             }
             self.block(body);
             if index + 1 < branches.len() {
-                self.jump(Op::Jump(0), &mut done);
+                done.jumps.push(self.ops.len());
+                self.emit_unwritten(Op::Jump(0));
             }
             self.set(next);
         }
@@ -56,22 +61,40 @@ impl Lowering<'_> {
     }
 
     pub(super) fn while_loop(&mut self, condition: &Expr, body: &[Statement], end: Span) {
-        let top = self.here();
+        let mut top = self.here();
         let mut out = Mark::default();
-        self.condition(condition);
-        self.jump(Op::JumpIfZero(0), &mut out);
+        if self.always(condition) == Some(true) {
+            // The line has an instruction to stop at, which is passed once.
+            self.emit(Op::Nop);
+            top = self.here();
+        } else {
+            self.condition(condition);
+            self.jump(Op::JumpIfZero(0), &mut out);
+        }
         self.block(body);
         self.line = self.text_lines.line_of(end.start);
-        self.emit(Op::Jump(top));
+        self.emit_unwritten(Op::Jump(top));
         self.set(out);
     }
 
     pub(super) fn repeat_loop(&mut self, body: &[Statement], condition: &Expr, until: bool) {
         let top = self.here();
         self.block(body);
-        self.line = self.text_lines.line_of(condition.span.start);
-        self.condition(condition);
-        self.emit(if until { Op::JumpIfZero(top) } else { Op::JumpIfNotZero(top) });
+        self.at(condition.span);
+        match self.always(condition) {
+            Some(holds) if holds != until => self.emit_unwritten(Op::Jump(top)),
+            _ => {
+                self.condition(condition);
+                self.emit(if until { Op::JumpIfZero(top) } else { Op::JumpIfNotZero(top) });
+            }
+        }
+    }
+
+    /// Whether the condition of a loop always holds, or never; `None` if that is not known now.
+    fn always(&mut self, condition: &Expr) -> Option<bool> {
+        let known = self.folded(condition).ok()?;
+        self.use_constants(condition);
+        Some(known.is_true())
     }
 
     pub(super) fn for_loop(
@@ -86,6 +109,11 @@ impl Lowering<'_> {
         let kind = type_of(cell.kind);
         let number = self.loops;
         self.loops += 1;
+        for bound in [start, finish] {
+            if let Ok(known @ Constant::Whole(..)) = self.folded(bound) {
+                self.warn_of_loss(known, cell.kind, bound.span);
+            }
+        }
         self.value_as(start, kind);
         self.value_as(finish, kind);
         if let Some(step) = step {
@@ -99,6 +127,7 @@ impl Lowering<'_> {
         let top = self.here();
         self.block(body);
         self.line = self.text_lines.line_of(end.start);
+        self.span = None;
         self.value_as(finish, kind);
         self.emit(Op::ForNext(cell, number, top));
     }
@@ -106,7 +135,14 @@ impl Lowering<'_> {
     /// The variable of a FOR, which has to be one at a known place.
     fn counter(&mut self, variable: &Place) -> Cell {
         let nowhere = Cell { kind: VarType::Long, at: 0 };
-        let Some(target) = self.settable(variable) else { return nowhere };
+        let target = if self.register_of(variable).is_some() { None } else { self.settable(variable) };
+        let Some(target) = target else {
+            if self.register_of(variable).is_some() {
+                let message = "FOR counts a variable, not a system register.".to_owned();
+                self.report(codes::NOT_A_VARIABLE, variable.span, message, None);
+            }
+            return nowhere;
+        };
         self.mark_read(&target);
         match target {
             Target::Cell { cell, .. } => cell,
@@ -148,7 +184,8 @@ impl Lowering<'_> {
         if let Some(wanted) = wanted.filter(|wanted| *wanted != arguments.len()) {
             let name = label.span.of(self.text);
             let message = format!("`{name}` takes {wanted} arguments, not {}.", arguments.len());
-            self.report(codes::GOSUB_ARGUMENTS, label.span, message, None);
+            let hint = Some("By the manual the stack overflows or underflows then.".to_owned());
+            self.report(codes::GOSUB_ARGUMENTS, label.span, message, hint);
         }
         for (index, argument) in arguments.iter().enumerate() {
             let from = self.expression(argument);
@@ -166,17 +203,33 @@ impl Lowering<'_> {
 
     /// How values of a place are read; uses and faults are not noted.
     fn kind_of(&self, place: &Place) -> Type {
-        if let Some((id, _)) = super::super::registers::lookup(&place.name.key) {
-            return type_of(id.row().kind);
+        self.stored_kind(place).map_or(Type::Unsigned, type_of)
+    }
+
+    /// The register that a place names, perhaps by an alias.
+    pub(super) fn register_of(&self, place: &Place) -> Option<RegisterId> {
+        if let Some((id, _)) = registers::lookup(&place.name.key) {
+            return Some(id);
         }
-        match self.scope.get(&place.name.key).and_then(|entry| entry.meaning.as_ref()) {
-            Some(Meaning::Memory { memory, .. }) => {
-                let part = place.modifier.as_ref().map(|modifier| modifier.span.of(self.text));
-                let part = part.and_then(|part| super::super::types::part(memory.first.kind, part).ok());
-                type_of(part.map_or(memory.first.kind, |part| part.kind))
-            }
-            _ => Type::Unsigned,
+        match self.scope.get(&place.name.key)?.meaning.as_ref()? {
+            Meaning::Register { id, .. } => Some(*id),
+            _ => None,
         }
+    }
+
+    /// The type that a variable, a register or a part of one is stored as; uses and faults are not noted.
+    pub(super) fn stored_kind(&self, place: &Place) -> Option<VarType> {
+        let whole = match (registers::lookup(&place.name.key), self.scope.get(&place.name.key)) {
+            (Some((id, _)), _) => id.row().kind,
+            (None, entry) => match entry?.meaning.as_ref()? {
+                Meaning::Memory { memory, .. } => memory.first.kind,
+                Meaning::Register { id, part, .. } => part.map_or(id.row().kind, |part| part.kind),
+                _ => return None,
+            },
+        };
+        let part = place.modifier.as_ref().map(|modifier| modifier.span.of(self.text));
+        let part = part.and_then(|part| types::part(whole, part).ok());
+        Some(part.map_or(whole, |part| part.kind))
     }
 
     pub(super) fn return_value(&mut self, value: Option<&Expr>) {

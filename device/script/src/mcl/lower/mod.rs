@@ -9,8 +9,9 @@ mod expression;
 mod flow;
 mod output;
 mod place;
+mod reach;
 mod scope;
-mod warnings;
+mod unused;
 mod watch;
 
 use super::ast::{Name, Statement, StatementKind};
@@ -62,7 +63,7 @@ fn compile_whole(text: &str) -> (Compiled, Scope) {
     lowering.patch_jumps();
     lowering.check_size();
     lowering.warn_of_unused();
-    warnings::flow(text, &statements, &mut lowering.diagnostics);
+    lowering.warn_of_flow();
     lowering.finish(left_out)
 }
 
@@ -86,6 +87,9 @@ struct Lowering<'a> {
     line: u32,
     ops: Vec<Op>,
     lines: Vec<u32>,
+    /// The statement of each instruction; none for those that nobody wrote, such as the jump over an ELSE.
+    spans: Vec<Option<Span>>,
+    span: Option<Span>,
     data: Vec<u8>,
     ram_bits: u64,
     loops: u32,
@@ -109,6 +113,8 @@ impl<'a> Lowering<'a> {
             line: 1,
             ops: Vec::new(),
             lines: Vec::new(),
+            spans: Vec::new(),
+            span: None,
             data: Vec::new(),
             ram_bits: 0,
             loops: 0,
@@ -121,7 +127,7 @@ impl<'a> Lowering<'a> {
 
     fn block(&mut self, statements: &[Statement]) {
         for statement in statements {
-            self.line = self.text_lines.line_of(statement.span.start);
+            self.at(statement.span);
             self.statement(statement);
         }
     }
@@ -159,9 +165,24 @@ impl<'a> Lowering<'a> {
         }
     }
 
+    /// What is emitted next belongs to what stands here.
+    fn at(&mut self, span: Span) {
+        self.line = self.text_lines.line_of(span.start);
+        self.span = Some(span);
+    }
+
     fn emit(&mut self, op: Op) {
         self.ops.push(op);
         self.lines.push(self.line);
+        self.spans.push(self.span);
+    }
+
+    /// An instruction that nobody wrote: it is not missed where nothing leads to it.
+    fn emit_unwritten(&mut self, op: Op) {
+        self.emit(op);
+        if let Some(span) = self.spans.last_mut() {
+            *span = None;
+        }
     }
 
     /// The number of the next instruction.
@@ -211,7 +232,7 @@ impl<'a> Lowering<'a> {
         if let Some(last) = statements.last() {
             self.line = self.text_lines.line_of(last.span.end);
         }
-        self.emit(Op::End);
+        self.emit_unwritten(Op::End);
     }
 
     fn patch_jumps(&mut self) {

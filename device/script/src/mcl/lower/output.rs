@@ -2,8 +2,10 @@
 
 use super::super::ast::{Expr, ExprKind, Format, Item, Place};
 use super::super::codes;
+use super::super::constant::Constant;
+use super::super::types::VarType;
 use super::Lowering;
-use super::place::Target;
+use super::place::{AMBIGUOUS_STREAM, Target};
 use super::scope::{text_of, type_of};
 use crate::arithmetic::Type;
 use crate::op::{Array, Op};
@@ -24,11 +26,9 @@ impl Lowering<'_> {
     /// A stream's number on the stack.
     fn stream(&mut self, stream: &Expr) {
         self.whole_number(stream);
-        match self.folded(stream).map(super::super::constant::Constant::as_whole) {
+        match self.folded(stream).map(Constant::as_whole) {
             Ok(2 | 3) => {
-                let message =
-                    "The manual numbers streams 2 and 3 in two ways; here 2 is TTL and 3 RS-232.".to_owned();
-                self.report(codes::AMBIGUOUS_STREAM, stream.span, message, None);
+                self.report(codes::AMBIGUOUS_STREAM, stream.span, AMBIGUOUS_STREAM.to_owned(), None);
             }
             Ok(number) if !(0..=3).contains(&number) => {
                 let message = format!("There is no stream {number}.");
@@ -65,12 +65,12 @@ impl Lowering<'_> {
             let message = "A backslash belongs to an output modifier.".to_owned();
             return self.report(codes::BAD_OUTPUT, argument.span, message, None);
         }
-        if let Ok(known) = self.folded(&item.value)
-            && let Some(kind) = self.assigned_kind(to)
+        if let Ok(known @ Constant::Whole(..)) = self.folded(&item.value)
+            && let Some(kind) = self.stored_kind(to)
         {
-            let is_float = matches!(known, super::super::constant::Constant::Float(_));
-            if !is_float {
-                self.warn_of_loss(known, kind, item.value.span);
+            self.warn_of_loss(known, kind, item.value.span);
+            if let Some(id) = self.register_of(to) {
+                self.warn_of_dispute(id, known.as_whole(), item.value.span);
             }
         }
         let from = self.expression(&item.value);
@@ -84,17 +84,6 @@ impl Lowering<'_> {
         }
         match self.scope.get(&place.name.key)?.meaning.as_ref()? {
             super::scope::Meaning::Memory { memory, is_array: true, .. } => Some(*memory),
-            _ => None,
-        }
-    }
-
-    /// The type of a plain variable that is set.
-    fn assigned_kind(&self, place: &Place) -> Option<super::super::types::VarType> {
-        if place.modifier.is_some() {
-            return None;
-        }
-        match self.scope.get(&place.name.key)?.meaning.as_ref()? {
-            super::scope::Meaning::Memory { memory, .. } => Some(memory.first.kind),
             _ => None,
         }
     }
@@ -141,6 +130,9 @@ impl Lowering<'_> {
             let length = u32::try_from(bytes.len()).unwrap_or(u32::MAX);
             self.data.extend(bytes);
             return self.emit(Op::OutText(at, length));
+        }
+        if let (None, Ok(known @ Constant::Whole(..))) = (array, self.folded(&item.value)) {
+            self.warn_of_loss(known, VarType::Byte, item.value.span);
         }
         let from = self.expression(&item.value);
         let Some(array) = array else {

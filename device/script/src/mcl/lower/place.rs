@@ -49,6 +49,10 @@ impl Target {
     }
 }
 
+/// What is said of streams 2 and 3 wherever they are named.
+pub const AMBIGUOUS_STREAM: &str =
+    "The manual numbers streams 2 and 3 in two ways; here 2 is TTL and 3 RS-232.";
+
 impl Lowering<'_> {
     /// What a place is; what is wrong with it is reported.
     pub(super) fn target(&mut self, place: &Place) -> Option<Target> {
@@ -59,6 +63,7 @@ impl Lowering<'_> {
             Meaning::Memory { memory, is_array, root } => self.memory(place, memory, is_array, root),
             Meaning::Table(table) => self.table_target(place, table),
             Meaning::Constant(constant) => self.constant_target(place, constant),
+            Meaning::Register { id, element, part } => self.register_alias(place, id, element, part),
             Meaning::Label { .. } => {
                 let message = format!("`{}` is a label, not a value.", place.name.key);
                 self.report(codes::UNKNOWN_NAME, place.name.span, message, None);
@@ -117,7 +122,8 @@ impl Lowering<'_> {
 
     fn no_index<T>(&mut self, place: &Place) -> Option<T> {
         let name = place.name.span.of(self.text);
-        let hint = Some(format!("An array is defined with its size: {name} VAR Byte(10)"));
+        let is_variable = self.register_of(place).is_none();
+        let hint = is_variable.then(|| format!("An array is defined with its size: {name} VAR Byte(10)"));
         self.report(
             codes::NOT_AN_ARRAY,
             place.span,
@@ -166,7 +172,7 @@ impl Lowering<'_> {
         let row = id.row();
         if misspelt {
             let message = format!("The register's pages write it {}.", row.name);
-            self.report(codes::MISSPELT_REGISTER, place.name.span, message, None);
+            self.report(codes::MISSPELT, place.name.span, message, None);
         }
         let mut part = None;
         if let Some(modifier) = &place.modifier {
@@ -184,6 +190,34 @@ impl Lowering<'_> {
         if place.index.is_none() && row.length > 1 {
             self.warn_of_whole(place);
         }
+        if row.name.starts_with("STREAM") && place.index.is_some() && matches!(element, Some(2 | 3)) {
+            self.report(codes::AMBIGUOUS_STREAM, place.span, AMBIGUOUS_STREAM.to_owned(), None);
+        }
+        Some(Target::Register { id, element, part })
+    }
+
+    /// A name that an alias gives to a register, to an element or to a part of one.
+    fn register_alias(
+        &mut self,
+        place: &Place,
+        id: RegisterId,
+        element: Option<u8>,
+        part: Option<Part>,
+    ) -> Option<Target> {
+        if let (None, None) = (element, part) {
+            return self.register(place, id, false);
+        }
+        if place.index.is_some() {
+            return self.no_index(place);
+        }
+        let part = match &place.modifier {
+            Some(modifier) => {
+                let inner = self.part(modifier, part.map_or(id.row().kind, |part| part.kind))?;
+                let first_bit = part.map_or(0, |part| part.first_bit) + inner.first_bit;
+                Some(Part { first_bit, ..inner })
+            }
+            None => part,
+        };
         Some(Target::Register { id, element, part })
     }
 
@@ -302,7 +336,7 @@ impl Lowering<'_> {
             Target::Table { .. } | Target::WholeTable(_) => "an entry of a table",
             Target::Constant(_) => "a constant",
             Target::Register { id, .. } if !id.row().writable => {
-                let message = format!("{name} can only be read.");
+                let message = format!("{name} can only be read: nothing is stored.");
                 self.report(codes::READ_ONLY, place.span, message, None);
                 return None;
             }

@@ -3,7 +3,8 @@
 use super::super::ast::{Expr, Name, Statement, StatementKind};
 use super::super::codes;
 use super::super::constant::Constant;
-use super::super::types::VarType;
+use super::super::registers::RegisterId;
+use super::super::types::{Part, VarType};
 use super::variable;
 use crate::arithmetic::Type;
 use crate::diagnostic::Diagnostic;
@@ -55,6 +56,8 @@ pub enum Meaning {
     Memory { memory: Array, is_array: bool, root: String },
     /// A constant.
     Constant(Constant),
+    /// Another name for a register, for an element or for a part of one.
+    Register { id: RegisterId, element: Option<u8>, part: Option<Part> },
     /// A table.
     Table(TableRef),
     /// A label; where it is once it has been seen.
@@ -151,6 +154,11 @@ impl Scope {
                 entry.symbol.value = Some(memory.first.kind);
                 entry.symbol.length = is_array.then_some(memory.length);
             }
+            Meaning::Register { id, element, part } => {
+                let row = id.row();
+                entry.symbol.value = Some(part.map_or(row.kind, |part| part.kind));
+                entry.symbol.length = element.is_none().then_some(row.length.into());
+            }
             Meaning::Table(table) => {
                 entry.symbol.value = Some(table.kind);
                 entry.symbol.length = Some(table.length);
@@ -188,6 +196,12 @@ impl Scope {
             Meaning::Label { at, .. } => *at,
             _ => None,
         }
+    }
+
+    /// The label of an instruction as it is written.
+    pub fn label_name(&self, text: &str, at: usize) -> Option<String> {
+        let is_there = |entry: &&Entry| matches!(entry.meaning, Some(Meaning::Label { at: Some(to), .. }) if to as usize == at);
+        self.entries().filter(is_there).last().map(|entry| entry.symbol.defined.of(text).to_owned())
     }
 
     /// The type that a subroutine's argument is stored as.

@@ -20,7 +20,14 @@ impl Parser<'_> {
         }
         let upper = word.to_uppercase();
         let message = format!("This {opener} has no {upper}.");
-        self.report(codes::NO_BLOCK_END, opened_at, message, Some(format!("Write {upper} where it ends.")));
+        let hint = match opener {
+            "IF" => {
+                "Write ENDIF where it ends; only a label, GOTO or GOSUB on the line of THEN does without."
+                    .to_owned()
+            }
+            _ => format!("Write {upper} where it ends."),
+        };
+        self.report(codes::NO_BLOCK_END, opened_at, message, Some(hint));
         self.span_before()
     }
 

@@ -131,7 +131,9 @@ impl<'a> Parser<'a> {
             return;
         }
         let found = self.found_here();
-        self.report_here(codes::UNEXPECTED, format!("The line should end here, but there is {found}."), None);
+        let before = self.span_before().of(self.text);
+        let hint = before.eq_ignore_ascii_case("next").then(|| "NEXT takes no variable.".to_owned());
+        self.report_here(codes::UNEXPECTED, format!("The line should end here, but there is {found}."), hint);
         self.skip_line();
     }
 
@@ -270,6 +272,13 @@ impl<'a> Parser<'a> {
 
     // ----- reports
 
+    /// Whether the text before this was not closed: that has been said, and what is missing after it stands in it.
+    fn follows_open_text(&self) -> bool {
+        let before = &self.tokens[self.at.saturating_sub(1)];
+        let shown = before.span.of(self.text);
+        matches!(before.kind, TokenKind::Text(_)) && (shown.len() < 2 || !shown.ends_with('"'))
+    }
+
     fn report(&mut self, code: &'static str, span: Span, message: String, hint: Option<String>) {
         self.diagnostics.push(Diagnostic { code, span, message, hint });
     }
@@ -279,7 +288,9 @@ impl<'a> Parser<'a> {
     }
 
     fn fail<T>(&mut self, code: &'static str, message: String, hint: Option<String>) -> Parse<T> {
-        self.report_here(code, message, hint);
+        if !self.follows_open_text() {
+            self.report_here(code, message, hint);
+        }
         Err(Broken)
     }
 

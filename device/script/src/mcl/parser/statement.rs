@@ -246,6 +246,8 @@ impl Parser<'_> {
     }
 
     fn i2c_otherwise(&mut self) -> Parse<Option<(Name, crate::mcl::ast::Expr)>> {
+        // "{label,timeout}, [...]": with the first part left out the comma may stay.
+        self.skip_sign(",");
         if self.is_sign("[") {
             return Ok(None);
         }

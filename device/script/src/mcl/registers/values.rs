@@ -25,6 +25,25 @@ pub fn values(id: RegisterId) -> &'static [Value] {
     }
 }
 
+/// What pages of the manual disagree about when a program compares a register with this value, masks it so or sets it so.
+#[must_use]
+pub fn dispute(id: RegisterId, value: i64) -> Option<&'static str> {
+    match (id.row().name, value) {
+        ("SYSSTATUS", 1..) => Some("The bits of SYSSTATUS are those of its page; command 90 has others."),
+        ("SIGNALMODE", 2 | 3) => Some(
+            "SIGNALMODE's page has 2 mean speed and 3 speed; that of SIGNALCOMMAND and command 143 swap them.",
+        ),
+        ("SIGNALTARGET", 2..) => Some("SIGNALTARGET's page has targets 0 and 1; command 143 has 0 to 3."),
+        ("SIGNALPERCENT", ..0 | 32_768..) => {
+            Some("SIGNALPERCENT is a WORD in the manual's table; here it goes from -32767 to 32767.")
+        }
+        ("SIGNALMINACTION" | "SIGNALMAXACTION", 256..) => Some(
+            "The manual's table gives actions a BYTE, their page values up to 0x8000; here they are words.",
+        ),
+        _ => None,
+    }
+}
+
 const SYSSTATUS: [Value; 11] = [
     (0x0001, "motor 1 over current"),
     (0x0002, "motor 2 over current"),
