@@ -336,8 +336,8 @@ impl Lowering<'_> {
             Target::Table { .. } | Target::WholeTable(_) => "an entry of a table",
             Target::Constant(_) => "a constant",
             Target::Register { id, .. } if !id.row().writable => {
-                let message = format!("{name} can only be read: nothing is stored.");
-                self.report(codes::READ_ONLY, place.span, message, None);
+                let message = format!("{name} can only be read.");
+                self.report(codes::READ_ONLY, place.span, message, Some("Nothing is stored.".to_owned()));
                 return None;
             }
             Target::Register { part: Some(_), .. } => {

@@ -1,6 +1,7 @@
 //! Expressions and places in the scope of a program that is compiled already, for the debugger.
 
 use super::super::ast::{Expr, ExprKind, StatementKind};
+use super::super::codes;
 use super::place::Target;
 use super::scope::{Scope, type_of};
 use super::{Lowering, Parsed, compile_whole, parse};
@@ -101,9 +102,13 @@ impl Names {
         std::mem::swap(&mut lowering.scope, &mut self.scope);
         let made = make(&mut lowering, &parsed);
         std::mem::swap(&mut lowering.scope, &mut self.scope);
-        let wrong = lowering.diagnostics.iter().find(|diagnostic| diagnostic.severity() == Severity::Error);
+        // Setting what can only be read is a warning in a program; here it would be a promise that is not kept.
+        let wrong = lowering.diagnostics.iter().find(|diagnostic| {
+            diagnostic.severity() == Severity::Error || diagnostic.code == codes::READ_ONLY
+        });
         if let Some(wrong) = wrong {
-            let hint = wrong.hint.as_ref().map(|hint| format!(" {hint}")).unwrap_or_default();
+            let hint = wrong.hint.as_ref().filter(|_| wrong.severity() == Severity::Error);
+            let hint = hint.map(|hint| format!(" {hint}")).unwrap_or_default();
             return Err(format!("{}{hint}", wrong.message));
         }
         let made = made?;
