@@ -14,3 +14,4 @@ pub mod loader;
 pub mod models;
 pub mod motion_mind;
 pub mod packet_serial;
+pub mod script_image;

@@ -4,7 +4,7 @@
 //! on the simulated axis.
 
 use crate::plant::{AxisParams, SupplyParams};
-use crate::world::{Wiring, WorldParams};
+use crate::world::{CanPeer, Wiring, WorldParams};
 use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
 
@@ -82,6 +82,8 @@ pub fn world_of(first: &Preset, second: &Preset, pins: usize) -> WorldParams {
         supply: first.supply,
         board: crate::plant::BoardParams::default(),
         wiring: Wiring::default(),
+        i2c: Vec::new(),
+        can_peer: CanPeer::default(),
         pins,
     }
 }

@@ -6,7 +6,7 @@ use brushwork_sim::plant::{
     EncoderParams, FrictionParams, GearParams, LoadParams, MotorParams, ShaftSide, SupplyParams,
 };
 use brushwork_sim::world::{
-    Motor, PinSignal, PinState, SwitchKind, SwitchWiring, Wiring, World, WorldAction, WorldParams,
+    CanPeer, Motor, PinSignal, PinState, SwitchKind, SwitchWiring, Wiring, World, WorldAction, WorldParams,
 };
 use std::time::Duration;
 
@@ -41,6 +41,8 @@ fn params() -> WorldParams {
         supply: SupplyParams::default(),
         board: BoardParams::default(),
         wiring: Wiring::default(),
+        i2c: Vec::new(),
+        can_peer: CanPeer::default(),
         pins: 4,
     }
 }

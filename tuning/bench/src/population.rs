@@ -136,7 +136,7 @@ impl Specimen {
             supply: self.supply,
             board: BoardParams::default(),
             wiring: Wiring::default(),
-            pins: base.world.pins,
+            ..base.world.clone()
         };
         let mut config = ControllerConfig { world, law: self.law, ..base };
         config.settings = Some(self.settings(&config));

@@ -104,9 +104,16 @@ impl Machine {
             Op::WriteEeprom => {
                 let (value, address) = (self.pop()?, self.pop()?);
                 host.write_eeprom(address, value as u8);
+                self.wait_for(host);
             }
-            Op::I2cOut(count, stop, otherwise) => self.i2c_out(count, stop, otherwise, host)?,
-            Op::I2cIn(count, otherwise) => self.i2c_in(count, otherwise, host)?,
+            Op::I2cOut(count, stop, otherwise) => {
+                self.i2c_out(count, stop, otherwise, host)?;
+                self.wait_for(host);
+            }
+            Op::I2cIn(count, otherwise) => {
+                self.i2c_in(count, otherwise, host)?;
+                self.wait_for(host);
+            }
             Op::Clear => self.memory.clear(),
             Op::End => {
                 // It stays on its instruction, so that the line that ended it is known.

@@ -9,6 +9,12 @@ pub trait Host {
     /// Time since power-up.
     fn now(&self) -> Duration;
 
+    /// Until when what the script just did keeps it from going on: a byte on a bus, a byte into the EEPROM, a port without room. Asked
+    /// after instructions that can take time.
+    fn busy_until(&self) -> Option<Duration> {
+        None
+    }
+
     /// An element of a system register; elements that the controller does not have are 0.
     fn register(&mut self, id: RegisterId, element: u8) -> u32;
 

@@ -59,7 +59,15 @@ impl Machine {
             Op::InString(array, has_end) => self.in_string(array, has_end, host)?,
             _ => {}
         }
+        self.wait_for(host);
         Ok(())
+    }
+
+    /// Lets the script wait while its host is busy with what it did.
+    pub(super) fn wait_for<H: Host + ?Sized>(&mut self, host: &H) {
+        if let (State::Ready, Some(until)) = (&self.state, host.busy_until()) {
+            self.state = State::Pausing { until };
+        }
     }
 
     fn out<H: Host + ?Sized>(&mut self, value: u32, host: &mut H) -> Done {

@@ -7,6 +7,10 @@ use std::time::Duration;
 /// One field of an answer by the name it has in the command table.
 pub(super) type Named = (&'static str, Value);
 
+/// What 248 answers in place of 0xFF when no script that the unit can run is stored. Assumed: no source tells what a real one says;
+/// a client takes anything but 0xFF for a refusal.
+pub(super) const REFUSED: u8 = 0;
+
 /// What a handler answers. Widths and order are the command table's business.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Answer {
@@ -21,6 +25,8 @@ pub(super) enum Answer {
         /// How long the work takes.
         after: Duration,
     },
+    /// [`REFUSED`] where 0xFF is expected.
+    Refused,
     /// Nothing.
     Silence,
 }

@@ -118,10 +118,15 @@ impl Default for FirmwareOptions {
 impl FirmwareOptions {
     /// The text of command 21 without its end mark.
     pub(super) fn version_text(&self, model: &Model) -> String {
+        format!("{} v{}", model.title, self.version_number(model))
+    }
+
+    /// The number alone, without the "v".
+    pub(super) fn version_number(&self, model: &Model) -> &str {
         let shown = match model.family {
             Family::Mcp => "1.0.0",
             Family::RoboClaw => "4.2.8",
         };
-        format!("{} v{}", model.title, self.version.as_deref().unwrap_or(shown))
+        self.version.as_deref().unwrap_or(shown)
     }
 }

@@ -67,6 +67,10 @@ pub(super) struct Firmware {
     pub loader: Option<Loader>,
     pub leds: Leds,
     pub outputs: Vec<bool>,
+    /// Outputs that a script has set, which overrides their actions.
+    pub overrides: Vec<Option<bool>>,
+    /// Whether the host holds the USB port's RTS line.
+    pub rts: bool,
     pub is_first_tick: bool,
     pub booted_at: Duration,
     pub now: Duration,
@@ -121,6 +125,8 @@ impl Firmware {
             loader: (!memory.flash.is_whole()).then(|| Loader::new(config.model.family)),
             leds: Leds::default(),
             outputs: vec![false; settings.outputs.len()],
+            overrides: vec![None; settings.outputs.len()],
+            rts: false,
             is_first_tick: true,
             booted_at: now,
             now,
@@ -134,13 +140,15 @@ impl Firmware {
         self.now = now;
         self.memory.eeprom.advance(now);
         self.readings = Readings::take(world);
+        self.rts = world.rts();
         self.update_signals(world);
         self.update_protection();
         self.update_source();
         self.steer_by_signals();
         self.run_channels();
         if self.loader.is_none() {
-            self.script.autorun(self.settings.unit.script_autorun_ms, self.up_for(), &self.memory.script);
+            let up_for = self.up_for();
+            self.script.autorun(self.settings.unit.script_autorun_ms, up_for, &self.memory.script);
         }
         self.update_outputs(world);
     }
@@ -164,10 +172,12 @@ impl Firmware {
         self.ports.timed_out = false;
     }
 
-    /// Whether a stream takes packets: not while it belongs to a script or is disabled (command 145).
+    /// Whether a stream takes packets: not while it belongs to a script or is disabled (command 145), but for the USB port whose RTS line
+    /// the host holds (MCP manual 1.9.3).
     pub fn speaks_packet_serial(&self, stream: StreamIndex) -> bool {
         const PACKET_SERIAL: u8 = 1;
-        self.settings.streams[stream.index()].kind == PACKET_SERIAL
+        let is_forced = stream == StreamIndex::Usb && self.rts;
+        is_forced || self.settings.streams[stream.index()].kind == PACKET_SERIAL
     }
 
     /// Writes the settings to EEPROM (command 94); that takes its time.
@@ -207,6 +217,7 @@ impl Firmware {
             return;
         }
         self.reversed[motor.index()] = false;
+        self.script.drives[motor.index()] = false;
         self.loop_faults[motor.index()] = LoopFaults::default();
         let settings = self.motion_settings(motor);
         // A refused command is acknowledged like any other; the wire has no word for it.
@@ -218,6 +229,17 @@ impl Firmware {
         self.mixer = Mixer::default();
         for motor in Motor::BOTH {
             self.command(motor, MotionCommand::SafeStop);
+        }
+    }
+
+    /// The same for motors that the running script does not drive: the source that commanded the others has gone silent.
+    pub fn stop_what_no_script_drives(&mut self) {
+        self.mixer = Mixer::default();
+        let is_running = self.script.is_running();
+        for motor in Motor::BOTH {
+            if !is_running || !self.script.drives[motor.index()] {
+                self.command(motor, MotionCommand::SafeStop);
+            }
         }
     }
 

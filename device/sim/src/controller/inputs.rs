@@ -77,7 +77,7 @@ impl Firmware {
             Family::RoboClaw => Some((0, Source::Serial)),
         };
         if before.is_some() && before.map(|(_, source)| source) != self.source.map(|(_, source)| source) {
-            self.stop_both();
+            self.stop_what_no_script_drives();
             self.steered = [None; 2];
         }
         self.check_serial_timeout();
@@ -161,8 +161,13 @@ impl Firmware {
         if triggers.stop_script {
             self.script.stop();
         }
-        if triggers.run_script || (triggers.reset_script && self.script.is_running()) {
-            self.script.start(&self.memory.script);
+        let up_for = self.up_for();
+        // There is nobody to tell of a script that does not start.
+        if triggers.run_script {
+            let _ = self.script.start(&self.memory.script, up_for);
+        }
+        if triggers.reset_script && self.script.is_running() {
+            let _ = self.script.restart(&self.memory.script, up_for);
         }
     }
 
@@ -191,7 +196,7 @@ impl Firmware {
         };
         let is_late = self.now.saturating_sub(last) > Duration::from_millis(100) * u32::from(tenths);
         if is_late && !self.ports.timed_out {
-            self.stop_both();
+            self.stop_what_no_script_drives();
         }
         self.ports.timed_out = is_late;
     }

@@ -30,6 +30,7 @@ pub use config::{ControllerConfig, FirmwareOptions};
 pub use loader::{ERASE_TIME, Flash, PAGE_WRITE_TIME};
 pub use port::{FAST_TURNAROUND, SLOW_TURNAROUND, turnaround};
 pub use readings::Readings;
+pub use script::{Content, INSTRUCTION_TIME, ScriptRun, ScriptView};
 pub use unit_view::UnitView;
 
 use crate::bridge::BridgeOutput;
@@ -38,7 +39,7 @@ use crate::motion::ControlLaw;
 use crate::plant::ParamsError;
 use crate::settings::{Eeprom, Settings, UnknownKey};
 use crate::world::{World, WorldAction, WorldParams, WorldView};
-use answer::{Answer, find};
+use answer::{Answer, REFUSED, find};
 use brushwork_protocol::packet_serial::{ACK, Framed, encode_reply, encode_reply_named};
 use firmware::Firmware;
 use loader::LoaderStep;
@@ -114,8 +115,10 @@ impl Controller {
             if next > to {
                 break;
             }
+            self.run_script(next);
             self.run_tick(next);
         }
+        self.run_script(to);
         self.now = self.now.max(to);
     }
 
@@ -140,6 +143,9 @@ impl Controller {
                 None => Ok(()),
             };
         }
+        if let WorldAction::SendCan { bytes } = action {
+            self.world.can_line.send(bytes, self.now);
+        }
         self.world.apply(action);
         self.follow_power();
         if !self.world.plugged() {
@@ -147,6 +153,7 @@ impl Controller {
         }
         if let Some(firmware) = &mut self.firmware {
             firmware.readings.estop_pressed = self.world.estop_pressed();
+            firmware.rts = self.world.rts();
             firmware.update_estop();
         }
         Ok(())
@@ -155,7 +162,8 @@ impl Controller {
     /// The machine as it is now.
     pub fn view(&self) -> WorldView {
         let leds = self.firmware.as_ref().map(|firmware| firmware.leds);
-        WorldView { leds, ..self.world.view(self.now) }
+        let script = self.unit().map(|unit| unit.script_view());
+        WorldView { leds, script, ..self.world.view(self.now) }
     }
 
     /// The machine.
@@ -194,6 +202,17 @@ impl Controller {
     pub fn script_image(&self) -> &[u8] {
         let memory = self.firmware.as_ref().map_or(&self.memory, |firmware| &firmware.memory);
         memory.script.image()
+    }
+
+    /// Stores a script image past the wire, as if it had been downloaded. A script that runs is stopped.
+    pub fn install_script(&mut self, image: &[u8]) {
+        match &mut self.firmware {
+            Some(firmware) => {
+                firmware.script.stop();
+                firmware.memory.script.install(image);
+            }
+            None => self.memory.script.install(image),
+        }
     }
 
     /// The flash memory of the firmware.
@@ -266,9 +285,9 @@ impl Controller {
         if let Some(loader) = &mut firmware.loader {
             let step = loader.feed(byte, self.now, &mut firmware.memory.flash);
             self.load(stream, step);
-        } else if firmware.speaks_packet_serial(stream)
-            && let Some(framed) = self.ports[stream.index()].feed(byte, self.now)
-        {
+        } else if !firmware.speaks_packet_serial(stream) {
+            firmware.hear_for_script(stream, byte, self.now);
+        } else if let Some(framed) = self.ports[stream.index()].feed(byte, self.now) {
             self.answer(stream, &framed);
         }
     }
@@ -302,6 +321,7 @@ impl Controller {
             Answer::Ack => encode_reply(&request, generation, &[]),
             Answer::Data(fields) => encode_reply_named(&request, generation, |name| find(fields, name)),
             Answer::AckThenStatus { .. } => Ok(vec![ACK]),
+            Answer::Refused => Ok(vec![REFUSED]),
         };
         // A reply that does not fit the table is a mistake of a handler; a test over all commands keeps it from happening.
         debug_assert!(reply.is_ok(), "{}: {reply:?}", framed.command.key);

@@ -47,7 +47,7 @@ impl Controller {
         match answer {
             Answer::Ack => Outcome::Done,
             Answer::Data(values) => Outcome::Values(values),
-            Answer::Silence | Answer::AckThenStatus { .. } => Outcome::Refused,
+            Answer::Silence | Answer::Refused | Answer::AckThenStatus { .. } => Outcome::Refused,
         }
     }
 

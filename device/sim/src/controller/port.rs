@@ -11,12 +11,16 @@ pub const SLOW_TURNAROUND: Duration = Duration::from_millis(1);
 pub const FAST_TURNAROUND: Duration = Duration::from_micros(50);
 /// Up to this rate a reply is held back.
 const SLOW_RATE_BPS: u32 = 38_400;
+/// Bytes of a script that wait for somebody who reads them.
+const SAID_BYTES: usize = 64 * 1024;
 
 /// One stream.
 #[derive(Clone, Debug)]
 pub(super) struct Port {
     framer: RequestFramer,
     outbox: VecDeque<(Duration, Vec<u8>)>,
+    /// What a script has sent and nobody has taken yet.
+    said: Vec<u8>,
 }
 
 /// How long a stream waits before it answers.
@@ -26,7 +30,7 @@ pub fn turnaround(stream: StreamIndex, rate_bps: u32) -> Duration {
 
 impl Port {
     pub fn new(generation: Generation) -> Self {
-        Self { framer: RequestFramer::new(generation), outbox: VecDeque::new() }
+        Self { framer: RequestFramer::new(generation), outbox: VecDeque::new(), said: Vec::new() }
     }
 
     /// Takes one byte; a request that is whole now comes back.
@@ -43,23 +47,30 @@ impl Port {
         self.outbox.push_back((due.max(last), bytes));
     }
 
-    /// When the next write leaves.
+    /// Takes what a script sends; what nobody takes in time is lost, as on any port.
+    pub fn say(&mut self, bytes: &[u8]) {
+        let room = SAID_BYTES.saturating_sub(self.said.len());
+        self.said.extend(&bytes[..bytes.len().min(room)]);
+    }
+
+    /// When the next reply leaves. What scripts send is not waited for: a stream that nobody reads would never be done.
     pub fn next_output_at(&self) -> Option<Duration> {
         self.outbox.front().map(|(due, _)| *due)
     }
 
     /// Takes the next write if it has left by `now`.
     pub fn take_output(&mut self, now: Duration) -> Option<Vec<u8>> {
-        if self.next_output_at()? > now {
-            return None;
+        if self.next_output_at().is_some_and(|at| at <= now) {
+            return self.outbox.pop_front().map(|(_, bytes)| bytes);
         }
-        self.outbox.pop_front().map(|(_, bytes)| bytes)
+        (!self.said.is_empty()).then(|| std::mem::take(&mut self.said))
     }
 
     /// Forgets everything, as when the power goes.
     pub fn reset(&mut self) {
         self.framer.reset();
         self.outbox.clear();
+        self.said.clear();
     }
 }
 

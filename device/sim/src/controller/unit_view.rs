@@ -2,11 +2,13 @@
 
 use super::firmware::Firmware;
 use super::readings::Readings;
+use super::script::ScriptView;
 use crate::motion::Channel;
 use crate::signals::SignalValues;
 use crate::supervision::Leds;
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_protocol::packet_serial::status::Conditions;
+use brushwork_script::vm::Machine;
 use std::time::Duration;
 
 /// What the firmware of a unit has found and decided: the truth that a client's readings are compared with.
@@ -63,6 +65,16 @@ impl<'a> UnitView<'a> {
     /// Whether a stored script runs.
     pub fn script_is_running(&self) -> bool {
         self.firmware.script.is_running()
+    }
+
+    /// The script that runs or ran last.
+    pub fn script(&self) -> Option<&Machine> {
+        self.firmware.script.machine()
+    }
+
+    /// What the script does.
+    pub fn script_view(&self) -> ScriptView {
+        self.firmware.script.view(&self.firmware.memory.script)
     }
 
     /// Whether the unit waits for new firmware.

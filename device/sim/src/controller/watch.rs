@@ -72,18 +72,44 @@ impl Firmware {
             over_temperature: self.protection.temperature_warning || self.protection.temperature_2_warning,
             leds: self.leds,
         };
-        for (state, settings) in self.outputs.iter_mut().zip(&self.settings.outputs) {
-            *state = output_is_on(settings, &inputs);
+        let settings = self.settings.outputs.iter().zip(&self.overrides);
+        for (state, (settings, over)) in self.outputs.iter_mut().zip(settings) {
+            *state = over.unwrap_or_else(|| output_is_on(settings, &inputs));
         }
         if let Some(dout) = world.brake_resistor_dout() {
             world.set_clamp(self.clamp_drive(dout));
         }
     }
 
+    /// Whether a digital output is on, for scripts: what was set last counts at once.
+    pub(super) fn output_is_on(&self, index: usize) -> bool {
+        let over = self.overrides.get(index).copied().flatten();
+        over.or_else(|| self.outputs.get(index).copied()).unwrap_or(false)
+    }
+
+    /// Sets a digital output, which overrides its action (MCP manual 1.9.9). Assumed: until the action is set again or the unit starts
+    /// anew, whether or not the script goes on.
+    pub(super) fn override_output(&mut self, index: usize, on: bool) {
+        if let Some(over) = self.overrides.get_mut(index) {
+            *over = Some(on);
+        }
+    }
+
+    /// Sets the action of a digital output, from which on it follows that again; false for an output that is not there.
+    pub(super) fn set_output_action(&mut self, index: usize, action: u8) -> bool {
+        let Some(output) = self.settings.outputs.get_mut(index) else { return false };
+        output.action = action;
+        self.overrides[index] = None;
+        true
+    }
+
     /// An output with the plain over-voltage action follows the link faster than a tick; any other is as it is.
     fn clamp_drive(&self, dout: usize) -> ClampDrive {
         let settings = self.settings.outputs.get(dout);
-        if settings.is_some_and(|output| output.action == ACTION_OVER_VOLTAGE && !output.inverted) {
+        let is_overridden = self.overrides.get(dout).copied().flatten().is_some();
+        if !is_overridden
+            && settings.is_some_and(|output| output.action == ACTION_OVER_VOLTAGE && !output.inverted)
+        {
             let on_volts = f64::from(self.settings.battery.main_max_tenths) * scale::VOLTAGE_VOLTS;
             return ClampDrive::Above { on_volts, off_volts: on_volts - OVER_VOLTAGE_HYSTERESIS_VOLTS };
         }

@@ -99,6 +99,10 @@ impl<M: Machine + 'static> Driver<M> {
         while let Some(reply) = self.stack.take_output(self.stream) {
             self.line.send(&reply);
         }
+        // What a script says on a stream that leads nowhere.
+        for stream in StreamIndex::ALL.into_iter().filter(|stream| *stream != self.stream) {
+            while self.stack.take_output(stream).is_some() {}
+        }
         if now >= self.shown_at + SHOW_EVERY {
             self.show(now);
         }

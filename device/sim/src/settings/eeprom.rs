@@ -92,6 +92,21 @@ impl Eeprom {
         self.row_writes += 1;
     }
 
+    /// A byte of the user memory, as scripts count them. Assumed: byte 2n is the low byte of word n, since the processor stores that one
+    /// first, and addresses wrap at 256, the size that the manual gives (MCP manual 3.4.1 against commands 252 and 253, whose byte
+    /// sized address counts words here).
+    pub fn user_byte(&self, address: u32) -> u8 {
+        self.user_word((address / 2) as u8).to_le_bytes()[(address % 2) as usize]
+    }
+
+    /// Sets a byte of the user memory.
+    pub fn set_user_byte(&mut self, address: u32, value: u8) {
+        let word = (address / 2) as u8;
+        let mut bytes = self.user_word(word).to_le_bytes();
+        bytes[(address % 2) as usize] = value;
+        self.set_user_word(word, u16::from_le_bytes(bytes));
+    }
+
     fn store(&mut self, index: usize, row: Row) {
         if index >= self.rows.len() {
             self.rows.resize(index + 1, [0xff; ROW_BYTES]);

@@ -69,6 +69,25 @@ impl ActionBits {
         Self(bits as u16)
     }
 
+    /// From the bits themselves.
+    pub fn from_bits(bits: u16) -> Self {
+        Self(bits)
+    }
+
+    /// The bits.
+    pub fn bits(self) -> u16 {
+        self.0
+    }
+
+    /// The raw field; none for a combination that the one-byte numbering does not have.
+    pub fn to_raw(self, one_byte: bool) -> Option<u16> {
+        if !one_byte {
+            return Some(self.0);
+        }
+        let listed = codes::SIGNAL_ACTIONS.iter().position(|code| code.raw == i64::from(self.0))?;
+        SIGNAL_ACTIONS_GENERATION_1.get(listed).map(|code| code.raw as u16)
+    }
+
     /// Whether nothing is to be done.
     pub fn is_none(self) -> bool {
         self.0 == 0
@@ -138,6 +157,7 @@ mod tests {
     fn the_one_byte_codes_of_generation_1_mean_the_same_actions() {
         for (short, long) in SIGNAL_ACTIONS_GENERATION_1.iter().zip(codes::SIGNAL_ACTIONS) {
             assert_eq!(short.key, long.key);
+            assert_eq!(ActionBits(long.raw as u16).to_raw(true), Some(short.raw as u16));
             assert_eq!(
                 ActionBits::from_raw(short.raw as u16, true),
                 ActionBits::from_raw(long.raw as u16, false)

@@ -51,6 +51,7 @@ pub struct Signal {
     /// Positions of the last second for the average speed.
     history: VecDeque<(Duration, f64)>,
     last_activity: Option<Duration>,
+    updates: u32,
     at_min: bool,
     at_max: bool,
     stopped_by_min: bool,
@@ -79,6 +80,7 @@ impl Signal {
         let before = self.filtered;
         self.average.push(now, value);
         self.filtered = self.average.mean(now, settings.low_pass);
+        self.updates = self.updates.wrapping_add(1);
         self.update_speed(before, now);
         if matches!(reading, PinReading::Pulse(_)) || self.filtered != before || self.last_activity.is_none()
         {
@@ -90,6 +92,16 @@ impl Signal {
     /// The filtered reading, in input units.
     pub fn raw(&self) -> f64 {
         self.filtered
+    }
+
+    /// When the last signal or change was seen.
+    pub fn last_activity(&self) -> Option<Duration> {
+        self.last_activity
+    }
+
+    /// How often it was read. Assumed: once in each control tick.
+    pub fn updates(&self) -> u32 {
+        self.updates
     }
 
     /// Speed of the reading, in units per second.

@@ -2,6 +2,8 @@
 
 use super::Motor;
 use super::UnitFault;
+use super::can_peer::CanPeer;
+use super::i2c::I2cDevice;
 use super::pins::{PinSignal, SwitchKind};
 use super::{World, WorldView};
 use serde::{Deserialize, Serialize};
@@ -133,6 +135,40 @@ pub enum WorldAction {
         /// The temperature; `None` lets the board follow its losses again.
         celsius: Option<f64>,
     },
+    /// Puts a device on the I2C bus, in place of the one at its address.
+    AddI2cDevice {
+        /// The device.
+        device: I2cDevice,
+    },
+    /// Takes a device off the I2C bus.
+    RemoveI2cDevice {
+        /// Its address of seven bits.
+        address: u8,
+    },
+    /// Sets registers of a device on the I2C bus.
+    SetI2cRegisters {
+        /// Its address of seven bits.
+        address: u8,
+        /// The first register.
+        first: u8,
+        /// The values of this and the following ones.
+        values: Vec<u8>,
+    },
+    /// Who is at the other end of a script's CAN stream.
+    SetCanPeer {
+        /// What it does.
+        peer: CanPeer,
+    },
+    /// The other end of the CAN stream sends bytes.
+    SendCan {
+        /// The bytes.
+        bytes: Vec<u8>,
+    },
+    /// The host's RTS line of the USB port, which forces packet serial on a port that belongs to scripts.
+    SetRts {
+        /// Held.
+        on: bool,
+    },
     /// Power of the whole unit, main and logic.
     Power {
         /// On.
@@ -185,9 +221,22 @@ impl World {
             WorldAction::OpenLead { motor, on } => self.axes[motor.index()].open_lead(on),
             WorldAction::ReverseLeads { motor, on } => self.axes[motor.index()].reverse_leads(on),
             WorldAction::SetBoardCelsius { celsius } => self.board.force_celsius(celsius.map(sane)),
+            WorldAction::AddI2cDevice { ref device } => {
+                self.i2c.retain(|known| known.address != device.address);
+                self.i2c.push(device.clone());
+            }
+            WorldAction::RemoveI2cDevice { address } => self.i2c.retain(|known| known.address != address),
+            WorldAction::SetI2cRegisters { address, first, ref values } => {
+                if let Some(device) = self.i2c_device(address) {
+                    device.set(first, values);
+                }
+            }
+            WorldAction::SetCanPeer { peer } => self.can_line.set_peer(peer),
+            WorldAction::SetRts { on } => self.rts = on,
             WorldAction::Power { on } => self.powered = on,
             WorldAction::Unplug { unplugged } => self.plugged = !unplugged,
-            WorldAction::SetHidden { .. } => {}
+            // These need to know the time, or the controller.
+            WorldAction::SendCan { .. } | WorldAction::SetHidden { .. } => {}
         }
     }
 }
@@ -232,6 +281,19 @@ impl WorldAction {
             Self::OpenLead { motor, .. } => Self::OpenLead { motor, on: truth(motor).lead_open },
             Self::ReverseLeads { motor, .. } => Self::ReverseLeads { motor, on: truth(motor).leads_reversed },
             Self::SetBoardCelsius { .. } => Self::SetBoardCelsius { celsius: None },
+            Self::AddI2cDevice { ref device } => {
+                match before.i2c.iter().find(|known| known.address == device.address) {
+                    Some(known) => Self::AddI2cDevice { device: known.clone() },
+                    None => Self::RemoveI2cDevice { address: device.address },
+                }
+            }
+            Self::RemoveI2cDevice { address } | Self::SetI2cRegisters { address, .. } => {
+                let known = before.i2c.iter().find(|known| known.address == address)?;
+                Self::AddI2cDevice { device: known.clone() }
+            }
+            Self::SetCanPeer { .. } => Self::SetCanPeer { peer: before.can_peer },
+            Self::SendCan { .. } => return None,
+            Self::SetRts { .. } => Self::SetRts { on: before.rts },
             Self::Power { .. } => Self::Power { on: before.powered },
             Self::Unplug { .. } => Self::Unplug { unplugged: !before.plugged },
             Self::SetHidden { .. } => return None,

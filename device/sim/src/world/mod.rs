@@ -5,12 +5,16 @@
 //! [`WorldAction`]s and looks at it through [`WorldView`]s. It knows nothing of bytes and settings.
 
 mod action;
+mod can_peer;
+mod i2c;
 mod pins;
 mod unit_fault;
 mod view;
 
 pub use action::WorldAction;
 pub use brushwork_protocol::packet_serial::Motor;
+pub use can_peer::{CanLine, CanPeer};
+pub use i2c::I2cDevice;
 pub use pins::{PinSignal, PinState, SWITCH_OPEN_VOLTS, SwitchKind, SwitchWiring, Wiring};
 pub use unit_fault::{UnitFault, UnitFaults};
 pub use view::{AxisView, WorldView};
@@ -38,6 +42,12 @@ pub struct WorldParams {
     /// What is wired to the pins.
     #[serde(default)]
     pub wiring: Wiring,
+    /// What is on the I2C bus.
+    #[serde(default)]
+    pub i2c: Vec<I2cDevice>,
+    /// Who is at the other end of a script's CAN stream.
+    #[serde(default)]
+    pub can_peer: CanPeer,
     /// How many input pins the controller has.
     pub pins: usize,
 }
@@ -64,6 +74,11 @@ pub struct World {
     encoders_swapped: bool,
     estop_pressed: bool,
     unit_faults: UnitFaults,
+    i2c: Vec<I2cDevice>,
+    /// The other end of a script's CAN stream.
+    pub(crate) can_line: CanLine,
+    /// Whether the host holds the USB port's RTS line.
+    rts: bool,
     powered: bool,
     plugged: bool,
 }
@@ -77,6 +92,8 @@ impl World {
         params.supply.validate()?;
         params.board.validate()?;
         let [first, second] = &params.axes;
+        let mut can_line = CanLine::default();
+        can_line.set_peer(params.can_peer);
         // The axes must not share their noise, and a noisy world has no silent axis.
         let second_seed = if seed == 0 { 0 } else { (seed ^ 0x9E37_79B9_7F4A_7C15).max(1) };
         Ok(Self {
@@ -88,6 +105,9 @@ impl World {
             encoders_swapped: false,
             estop_pressed: false,
             unit_faults: UnitFaults::default(),
+            i2c: params.i2c.clone(),
+            can_line,
+            rts: false,
             powered: true,
             plugged: true,
         })
@@ -168,6 +188,16 @@ impl World {
     /// What is wrong inside the unit.
     pub fn unit_faults(&self) -> UnitFaults {
         self.unit_faults
+    }
+
+    /// The device at an address of the I2C bus.
+    pub fn i2c_device(&mut self, address: u8) -> Option<&mut I2cDevice> {
+        self.i2c.iter_mut().find(|device| device.address == address)
+    }
+
+    /// Whether the host holds the USB port's RTS line, which forces packet serial on it (MCP manual 1.9.3).
+    pub fn rts(&self) -> bool {
+        self.rts
     }
 
     /// Whether the unit has power.

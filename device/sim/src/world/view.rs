@@ -3,8 +3,11 @@
 use super::Motor;
 use super::UnitFaults;
 use super::World;
+use super::can_peer::CanPeer;
+use super::i2c::I2cDevice;
 use super::pins::{PinSignal, SwitchKind, Wiring};
 use crate::bridge::BridgeOutput;
+use crate::controller::ScriptView;
 use crate::plant::AxisTruth;
 use crate::supervision::Leds;
 use serde::Serialize;
@@ -55,6 +58,16 @@ pub struct WorldView {
     pub pins: Vec<PinSignal>,
     /// Which switches and buttons are wired to which pins.
     pub wiring: Wiring,
+    /// What is on the I2C bus.
+    pub i2c: Vec<I2cDevice>,
+    /// Who is at the other end of a script's CAN stream.
+    pub can_peer: CanPeer,
+    /// What that one heard last.
+    pub can_heard: Vec<u8>,
+    /// Whether the host holds the USB port's RTS line.
+    pub rts: bool,
+    /// What the unit's script does; none without power.
+    pub script: Option<ScriptView>,
 }
 
 /// One axis at one moment.
@@ -71,7 +84,7 @@ pub struct AxisView {
 }
 
 impl World {
-    /// A snapshot; `now` is the time it is said to be from. The LEDs are the controller's to add. Looking changes nothing, not even the noise.
+    /// A snapshot; `now` is the time it is said to be from. LEDs and script are the controller's to add. Looking changes nothing, not even the noise.
     pub fn view(&self, now: Duration) -> WorldView {
         let positions = self.axes.each_ref().map(|axis| axis.state().load_radians);
         let pins = (0..self.pins.signals().len())
@@ -99,6 +112,11 @@ impl World {
             board_celsius: self.board.celsius(),
             pins,
             wiring: self.pins.wiring().clone(),
+            i2c: self.i2c.clone(),
+            can_peer: self.can_line.peer(),
+            can_heard: self.can_line.heard(),
+            rts: self.rts,
+            script: None,
         }
     }
 

@@ -12,21 +12,17 @@ pub(super) const ROWS: &[Command] = &[
         "script autorun delay",
         forms![write(G1, G4, Effect::Setting, fields![DELAY])],
     )
-    .simulated(SCRIPT_KEPT)
     .note("A client of 2025 refuses to send 1 to 99."),
     manual(
         number::READ_SCRIPT_AUTORUN,
         "read_script_autorun",
         "read script autorun delay",
         forms![read(G1, G4, fields![DELAY])],
-    )
-    .simulated(SCRIPT_KEPT),
-    manual(number::START_SCRIPT, "start_script", "start script", forms![write(G1, G4, Effect::Script, &[])])
-        .simulated(NO_VM),
-    manual(number::STOP_SCRIPT, "stop_script", "stop script", forms![write(G1, G4, Effect::Stop, &[])])
-        .simulated(NO_VM),
-    Command::new(number::ERASE_SCRIPT, "erase_script", "erase script", CLIENTS, ERASE).simulated(SCRIPT_KEPT),
-    Command::new(number::WRITE_SCRIPT, "write_script", "write script", CLIENTS, WRITE).simulated(SCRIPT_KEPT),
+    ),
+    manual(number::START_SCRIPT, "start_script", "start script", forms![write(G1, G4, Effect::Script, &[])]),
+    manual(number::STOP_SCRIPT, "stop_script", "stop script", forms![write(G1, G4, Effect::Stop, &[])]),
+    Command::new(number::ERASE_SCRIPT, "erase_script", "erase script", CLIENTS, ERASE),
+    Command::new(number::WRITE_SCRIPT, "write_script", "write script", CLIENTS, WRITE),
     Command::new(number::READ_SCRIPT, "read_script", "read script", CLIENTS, &[])
         .simulated(Simulated::Silent("only the number is public, not the layout"))
         .client(ClientUse::Never("only the number is public, not the layout")),
@@ -42,10 +38,6 @@ pub(super) const ROWS: &[Command] = &[
          insist on the acknowledgement.",
     ),
 ];
-
-const SCRIPT_KEPT: Simulated =
-    Simulated::StoredOnly("a script is kept and does nothing yet: its byte code is not public");
-const NO_VM: Simulated = Simulated::Inert("a stored script does nothing yet: its byte code is not public");
 
 const DELAY: Field = Field::new("delay", Kind::U32, "time after a reset; below 100 the script is not run")
     .unit(Unit::Milliseconds);

@@ -8,13 +8,8 @@ use brushwork_protocol::packet_serial::{Generation, Value, number};
 /// Assumed: an index that the model does not have is refused by silence.
 pub(super) const HANDLERS: Handlers = &[
     (number::SET_DOUT_ACTION, |unit, args| {
-        match unit.settings.outputs.get_mut(usize::from(args.u8("index"))) {
-            Some(output) => {
-                output.action = args.u8("action");
-                Answer::Ack
-            }
-            None => Answer::Silence,
-        }
+        let is_there = unit.set_output_action(args.u8("index").into(), args.u8("action"));
+        if is_there { Answer::Ack } else { Answer::Silence }
     }),
     (number::READ_DOUT_ACTIONS, |unit, _| {
         records("douts", unit.settings.outputs.iter().map(|output| vec![output.action.into()]))

@@ -5,6 +5,7 @@ use super::super::firmware::Firmware;
 use super::super::loader::Loader;
 use super::super::script::{BLOCK_WRITE_TIME, ERASE_TIME, STATUS_DONE, STATUS_NOT_DONE};
 use brushwork_protocol::packet_serial::number;
+use brushwork_protocol::script_image::BLOCK_BYTES;
 use std::time::Duration;
 
 pub(super) const HANDLERS: Handlers = &[
@@ -16,8 +17,11 @@ pub(super) const HANDLERS: Handlers = &[
         Answer::ints([("delay", unit.settings.unit.script_autorun_ms.into())])
     }),
     (number::START_SCRIPT, |unit, _| {
-        unit.script.start(&unit.memory.script);
-        Answer::Ack
+        let up_for = unit.up_for();
+        match unit.script.start(&unit.memory.script, up_for) {
+            Ok(()) => Answer::Ack,
+            Err(_) => Answer::Refused,
+        }
     }),
     (number::STOP_SCRIPT, |unit, _| {
         unit.script.stop();
@@ -49,8 +53,9 @@ const LOADER_KEY: i64 = 0xa5a5_1234;
 
 fn write_block(unit: &mut Firmware, args: &Arguments<'_>) -> Answer {
     let address = args.u32("address") as usize;
-    let block = args.values.bytes("data").unwrap_or_default();
-    let is_stored = unit.memory.script.write(address, block);
+    let block = args.values.bytes("data").and_then(|bytes| <[u8; BLOCK_BYTES]>::try_from(bytes).ok());
+    unit.script.stop();
+    let is_stored = block.is_some_and(|block| unit.memory.script.write(address, block));
     let status = if is_stored { STATUS_DONE } else { STATUS_NOT_DONE };
     Answer::AckThenStatus { status, after: if is_stored { BLOCK_WRITE_TIME } else { Duration::ZERO } }
 }

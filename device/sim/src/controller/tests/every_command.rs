@@ -150,6 +150,7 @@ fn replies_have_the_kind_the_table_says() {
             else {
                 continue;
             };
+            bench.install("main\ngoto main\n");
             let bytes = request.encode(generation).expect("a valid request");
             let reply = bench.raw(&bytes);
             match form.reply {

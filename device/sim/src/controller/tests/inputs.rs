@@ -301,8 +301,7 @@ fn an_actuator_with_an_analog_encoder_comes_with_its_input_set() {
 #[test]
 fn a_stored_script_is_started_and_stopped_by_inputs() {
     let mut bench = Bench::new(Generation::Gen2);
-    bench.raw(&script_block());
-    bench.wait(A_MOMENT);
+    bench.install("main\ngoto main\n");
     set_pin(&mut bench, PIN, Pin { min_action: 0x4000, max_action: 0x0040, ..Pin::default() });
     let runs = |bench: &Bench| bench.unit().unit().expect("power").script_is_running();
     for (level, running) in [(2.5, false), (5.1, true), (2.5, true), (0.0, false)] {
@@ -310,12 +309,4 @@ fn a_stored_script_is_started_and_stopped_by_inputs() {
         bench.wait(A_MOMENT);
         assert_eq!(runs(&bench), running, "{level} V");
     }
-}
-
-/// Command 251 with sixteen bytes at address 0.
-fn script_block() -> Vec<u8> {
-    let mut bytes = vec![0x80, 251, 0, 0, 0];
-    bytes.extend([0x11; 16]);
-    bytes.extend(brushwork_protocol::crc::crc16_xmodem(&bytes).to_be_bytes());
-    bytes
 }

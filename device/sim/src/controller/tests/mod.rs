@@ -8,5 +8,6 @@ mod every_command;
 mod inputs;
 mod memory;
 mod protection;
+mod script;
 mod specials;
 mod support;

@@ -54,11 +54,12 @@ fn a_stored_script_is_started_stopped_and_run_by_itself_after_its_delay() {
     use crate::world::WorldAction;
     let mut bench = Bench::new(Generation::Gen1);
     let runs = |bench: &Bench| bench.unit().unit().expect("it has power").script_is_running();
-    bench.ask(number::START_SCRIPT, &[]);
-    assert!(!runs(&bench), "there is none");
+    assert_eq!(bench.raw(&with_crc(&[0x80, 248])), [0], "there is none");
     bench.raw(&with_crc(&[&[0x80, 251, 0, 0, 0][..], &[0xab; 16]].concat()));
     bench.wait(Duration::from_millis(10));
     let _ = bench.bus.take_output(StreamIndex::Usb);
+    assert_eq!(bench.raw(&with_crc(&[0x80, 248])), [0], "it is no image of ours");
+    bench.install("main\ngoto main\n");
     bench.ask(number::START_SCRIPT, &[]);
     assert!(runs(&bench));
     bench.ask(number::STOP_SCRIPT, &[]);

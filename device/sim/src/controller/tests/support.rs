@@ -1,11 +1,13 @@
 //! A client in virtual time: asks, waits for the reply, and takes it apart with the client's side of the codec.
 
-use crate::controller::{Bus, Controller, ControllerConfig};
+use crate::controller::{Bus, Controller, ControllerConfig, ScriptRun};
 use crate::machine::{Machine, StreamIndex};
 use crate::world::WorldAction;
 use brushwork_protocol::packet_serial::{
     Address, Generation, ReplyProgress, Request, Values, lookup, parse_reply,
 };
+use brushwork_script::mcl;
+use brushwork_script::program::Program;
 use std::time::Duration;
 
 /// A controller on a wire and whoever talks to it.
@@ -94,8 +96,38 @@ impl Bench {
         }
     }
 
+    /// Stores a script, as if it had been downloaded.
+    pub fn install(&mut self, text: &str) {
+        let image = brushwork_script::image::encode(&compiled(text));
+        self.bus.controllers_mut()[0].install_script(&image);
+    }
+
+    /// Stores a script and starts it with command 248.
+    pub fn start(&mut self, text: &str) {
+        self.install(text);
+        self.ask(brushwork_protocol::packet_serial::number::START_SCRIPT, &[]);
+    }
+
+    /// What the script has said on a stream since it was asked last.
+    pub fn said(&mut self, stream: StreamIndex) -> String {
+        let writes = std::iter::from_fn(|| self.bus.take_output(stream));
+        writes.flatten().map(char::from).collect()
+    }
+
+    /// How far the script is.
+    pub fn script(&self) -> ScriptRun {
+        self.unit().unit().expect("it has power").script_view().run
+    }
+
     /// Does something to the machine.
     pub fn apply(&mut self, action: &WorldAction) {
         self.bus.controllers_mut()[0].apply(action).expect("a known key");
     }
+}
+
+/// A program that has to compile.
+pub fn compiled(text: &str) -> Program {
+    let compiled = mcl::compile(text);
+    let problems: Vec<String> = compiled.diagnostics.iter().map(|problem| problem.message.clone()).collect();
+    compiled.program.unwrap_or_else(|| panic!("{problems:?} in\n{text}"))
 }
