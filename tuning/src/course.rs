@@ -4,7 +4,7 @@ use crate::model::{Motion, PlantModel};
 use crate::rig::{Drive, Input, Point};
 
 /// Duty per second of the explicit highest acceleration: 100 % to -100 % in 100 ms (MCP manual, command 52).
-const DUTY_SLEW_PER_S: f64 = 20.0;
+pub(crate) const DUTY_SLEW_PER_S: f64 = 20.0;
 /// Step along a duty ramp, and under a current limit, s.
 const RAMP_STEP_S: f64 = 0.001;
 const LIMITED_STEP_S: f64 = 0.002;

@@ -9,6 +9,7 @@ pub mod axis;
 pub mod cause;
 pub mod course;
 pub mod design;
+mod diagnosis;
 pub mod experiment;
 pub mod fit;
 pub mod lag;

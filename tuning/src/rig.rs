@@ -4,10 +4,11 @@
 //! stalls, lost encoders and open motors before the experiment sees it.
 
 use crate::axis::{
-    AMPS_PER_RAW, Axis, AxisError, EncoderClass, FULL_DUTY_RAW, PositionRegisters, Setup, VOLTS_PER_RAW,
-    VelocityRegisters, Want,
+    AMPS_PER_RAW, Axis, AxisError, EncoderClass, FULL_DUTY_RAW, PositionRegisters, Sample, Setup,
+    VOLTS_PER_RAW, VelocityRegisters, Want,
 };
 use crate::cause::Cause;
+use crate::diagnosis::{DIAGNOSIS_S, diagnose};
 use crate::watch::Watch;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
@@ -16,11 +17,6 @@ use std::time::Duration;
 const ABSOLUTE_COUNTS: i64 = 4096;
 /// The stream time-out during a run, ms: the bridge is off this long after the host died.
 const RUN_STREAM_TIMEOUT_MS: u32 = 150;
-/// Share of full speed up to which a load may swing back.
-const SWING_BACK: f64 = 0.3;
-/// How long a motor is braked to see whether it turns, and how long the duty takes to come down, s.
-const BRAKE_TEST_S: f64 = 0.13;
-const DUTY_DOWN_S: f64 = 0.078;
 /// Silence after which the link counts as lost, s.
 const LINK_LOST_S: f64 = 0.15;
 
@@ -238,17 +234,7 @@ impl<'a> Rig<'a> {
             Err(error) => return Err(cause_of(&error)),
         };
         self.silent_since_s = None;
-        let counts = self.unwrap(sample.counts[self.options.motor.min(1)]);
-        let point = Point {
-            t: sample.counts_at.middle_s() - self.epoch_s,
-            counts: counts as f64,
-            duty: sample
-                .duty_raw
-                .map(|(at, raw)| (at.middle_s() - self.epoch_s, f64::from(raw) / f64::from(FULL_DUTY_RAW))),
-            amps: sample.current_raw.map(|raw| f64::from(raw) * AMPS_PER_RAW),
-            volts: sample.volts_raw.map(|raw| f64::from(raw) * VOLTS_PER_RAW),
-            limited: sample.status.over_current,
-        };
+        let point = self.point_of(&sample);
         if sample.status.fault {
             return Err(Cause::ControllerFault);
         }
@@ -264,12 +250,16 @@ impl<'a> Rig<'a> {
         self.points.push(point);
         self.check_travel(&point)?;
         match self.watch.see(&point) {
-            Err(Cause::Stalled) => Err(self.stalled_or(Cause::EncoderLost)),
-            Err(Cause::EncoderFlipped) if self.swings_back() && self.watch.pulls_hard() => {
-                Err(self.stalled_or(Cause::EncoderFlipped))
-            }
-            other => other.map(|()| Some(point)),
+            Err(guess) => Err(self.name_fault(guess)),
+            Ok(()) => Ok(Some(point)),
         }
+    }
+
+    /// The current limit over the stall current at full duty.
+    #[must_use]
+    pub fn drive_limit(&self, stall_amps: Option<f64>) -> Option<f64> {
+        let limit = f64::from(self.setup.max_current_raw) * AMPS_PER_RAW;
+        stall_amps.filter(|stall| limit > 0.0 && *stall > 0.0).map(|stall| limit / stall)
     }
 
     /// Polls for a time.
@@ -340,32 +330,45 @@ impl<'a> Rig<'a> {
         self.last_raw - first
     }
 
-    /// Whether a speed of the wrong sign is so low that a load may have swung back from where it was stopped.
-    fn swings_back(&self) -> bool {
-        self.recent_speed(2).is_none_or(|speed| speed.abs() < SWING_BACK * self.watch.full_speed)
-    }
-
-    /// The counts stand, or swing back, and the current is high: either the shaft is held, or the motor pulls away while the
-    /// encoder is wrong. Braked, a turning motor gives a current; a standing one gives none.
-    fn stalled_or(&mut self, wrong: Cause) -> Cause {
-        let _ = self.axis.drive_duty(0);
-        let stall = self.watch.stall_amps.unwrap_or(0.0);
-        let mut braking: f64 = 0.0;
-        let from_s = self.now_s();
-        while self.now_s() < from_s + BRAKE_TEST_S {
+    /// Takes the duty away and watches what the motor does then, which tells the faults apart. `guess` stands where nothing more
+    /// is heard.
+    fn name_fault(&mut self, guess: Cause) -> Cause {
+        if guess == Cause::MotorOpened {
+            return guess;
+        }
+        let alarm_s = match retried(|| self.axis.drive_duty(0)) {
+            Ok(exchange) => exchange.middle_s() - self.epoch_s,
+            Err(cause) => return cause,
+        };
+        self.watch.drive(alarm_s, 0.0);
+        let mut after: Vec<Point> = self.points.last().copied().into_iter().collect();
+        while self.now_s() < alarm_s + DIAGNOSIS_S {
             let next = self.axis.now() + Duration::from_secs_f64(self.options.poll_s);
-            let sample = self.axis.sample(Want { current: true, ..Want::default() });
-            // The duty itself takes up to 50 ms to come down.
-            if self.now_s() > from_s + DUTY_DOWN_S
-                && let Ok(Some(raw)) = sample.map(|sample| sample.current_raw)
-            {
-                braking = braking.max((f64::from(raw) * AMPS_PER_RAW).abs());
+            match self.axis.sample(Want { current: true, ..Want::default() }) {
+                Ok(sample) => after.push(self.point_of(&sample)),
+                Err(AxisError::NoReply) => {}
+                Err(error) => return cause_of(&error),
             }
             if let Err(error) = self.axis.wait_until(next) {
                 return cause_of(&error);
             }
         }
-        if braking > (0.04 * stall).max(0.03) { wrong } else { Cause::Stalled }
+        diagnose(&self.watch, alarm_s, &after)
+    }
+
+    fn point_of(&mut self, sample: &Sample) -> Point {
+        let counts = self.unwrap(sample.counts[self.options.motor.min(1)]);
+        let epoch_s = self.epoch_s;
+        Point {
+            t: sample.counts_at.middle_s() - epoch_s,
+            counts: counts as f64,
+            duty: sample
+                .duty_raw
+                .map(|(at, raw)| (at.middle_s() - epoch_s, f64::from(raw) / f64::from(FULL_DUTY_RAW))),
+            amps: sample.current_raw.map(|raw| f64::from(raw) * AMPS_PER_RAW),
+            volts: sample.volts_raw.map(|raw| f64::from(raw) * VOLTS_PER_RAW),
+            limited: sample.status.over_current,
+        }
     }
 
     /// Ends the run before the window is left: where the motor would come to rest if it were braked now counts.

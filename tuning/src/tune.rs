@@ -199,7 +199,7 @@ fn identify_free(rig: &mut Rig<'_>, probe: &Probe, report: &mut Report) -> Resul
     let now_s = rig.now_s();
     let course = Course::new(&rig.points, &rig.drives, run.from_s, now_s, probe.volts);
     let found =
-        fit(&course, full / run.full_duty, run.tau_s, drive_limit(rig, probe)).ok_or(Cause::TooCoarse)?;
+        fit(&course, full / run.full_duty, run.tau_s, rig.drive_limit(probe.stall_amps)).ok_or(Cause::TooCoarse)?;
     believe(&found, rig.options.poll_s, &course)?;
     // With less than full duty the model says what full duty would give.
     let qpps = if run.full_duty > 0.999 {
@@ -221,16 +221,10 @@ fn identify_window(
     let now_s = rig.now_s();
     let course = Course::new(&rig.points, &rig.drives, run.from_s, now_s, probe.volts);
     let start = run.top_speed / (probe.start_duty + 0.4);
-    let found = fit(&course, start, 0.06, drive_limit(rig, probe)).ok_or(Cause::TooCoarse)?;
+    let found = fit(&course, start, 0.06, rig.drive_limit(probe.stall_amps)).ok_or(Cause::TooCoarse)?;
     believe(&found, rig.options.poll_s, &course)?;
     let qpps = found.model.gain_counts_per_s * (1.0 - found.model.coulomb_duty);
     Ok(Found { fit: found, qpps })
-}
-
-/// The current limit over the stall current at full duty.
-fn drive_limit(rig: &Rig<'_>, probe: &Probe) -> Option<f64> {
-    let limit = f64::from(rig.setup.max_current_raw) * crate::axis::AMPS_PER_RAW;
-    probe.stall_amps.filter(|stall| limit > 0.0 && *stall > 0.0).map(|stall| limit / stall)
 }
 
 fn believe(fit: &Fit, poll_s: f64, course: &Course) -> Result<(), Cause> {

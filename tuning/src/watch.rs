@@ -1,134 +1,299 @@
-//! Watches a driven motor poll by poll: has it stalled, lost its encoder, its leads, its direction?
+//! Watches a driven motor poll by poll: does it still do what a motor does?
 //!
-//! The rules compare what was counted with what the same motor did a moment ago, so they need no model and no data sheet.
+//! What was counted over a short stretch is compared with the least that a motor of this kind could have moved, given how fast it
+//! was and which duty it had. The bounds are wide, since they come from the run itself: the speeds seen so far and a rough time
+//! constant. A stretch outside them is a suspicion, which [`diagnosis`](crate::diagnosis) turns into a cause.
 
 use crate::cause::Cause;
+use crate::course::DUTY_SLEW_PER_S;
 use crate::rig::Point;
 use std::collections::VecDeque;
 
-/// How much steeper than it can be a change of speed must look to be none.
-const JUMP: f64 = 1.6;
-/// A quick motor has turned round after this, s.
-const TURNING_S: f64 = 0.3;
-/// Longest stretch looked back at, s.
-const MEMORY_S: f64 = 0.6;
-/// Counts that a turning motor must be expected to give before silence means anything.
-const EXPECTED_COUNTS: f64 = 8.0;
-/// Least and longest silence that means something, s.
-const SILENCE_S: (f64, f64) = (0.12, 0.25);
+/// Stretches that are looked at, s.
+const STRETCHES_S: [f64; 4] = [0.045, 0.08, 0.12, 0.17];
+/// Longest time looked back at, s.
+const MEMORY_S: f64 = 0.8;
+/// Time over which the speed before a stretch is taken, s.
+const SPEED_S: f64 = 0.03;
+/// Step of the bounds, s.
+const STEP_S: f64 = 0.004;
+/// Least share of the gain seen so far that is expected.
+const LEAST_GAIN: f64 = 0.75;
+/// Counts that a stretch may be short of its bound, and share of the speed before it.
+const MARGIN_COUNTS: f64 = 5.0;
+const MARGIN_SPEED: f64 = 0.3;
+/// What a motor keeps at the least of its speed while its duty stays.
+const KEPT_SPEED: f64 = 0.5;
+/// A motor that has started once starts again within this, at a clearly higher duty, s.
+const START_S: f64 = 0.13;
+const CLEARLY_HIGHER: f64 = 0.1;
 /// Without current for this long, the motor is open, s.
 const OPEN_S: f64 = 0.2;
+/// Duty readings of a loop lie this much beside the truth between two polls.
+const LOOP_DUTY: f64 = 0.08;
+/// A loop that was told something new does what no poll sees for this long, s.
+const NEWS_S: f64 = 0.05;
 /// Highest reading that counts as no current, A: the wire's resolution.
-const NO_CURRENT_AMPS: f64 = 0.0151;
+pub(crate) const NO_CURRENT_AMPS: f64 = 0.0151;
 
 /// The watch over one motor.
 #[derive(Clone, Debug, Default)]
 pub struct Watch {
-    /// Whether a duty is given, so that motion can be expected.
-    armed: bool,
-    /// The duty and since when.
-    duty: f64,
-    since_s: f64,
-    /// When the duty last changed its sign.
-    turned_s: f64,
     /// Time from braking to rest, s: how long a speed runs on.
     pub stopping_s: f64,
     /// Amperes at full duty with the shaft at rest; `None` before the probe.
     pub stall_amps: Option<f64>,
-    /// Duty at which the motor began to move.
+    /// The current limit over the stall current, where there is one.
+    pub drive_limit: Option<f64>,
+    /// Duty at which the motor began to move; 0 before the probe.
     pub start_duty: f64,
     /// Speed at full duty, counts/s, as far as it is known; 0 before.
     pub full_speed: f64,
-    /// Smallest steady current of the running motor, A; `None` until one was seen.
+    /// Between which values the time constant lies, s; `None` as long as nothing is known.
+    pub tau_bounds_s: Option<(f64, f64)>,
+    /// Duties given and when, oldest first; the first is older than the memory.
+    duties: VecDeque<(f64, f64)>,
+    /// Whether a loop has the motor, and since when it was told something new.
+    looped: bool,
+    news_s: f64,
+    /// When the duty last changed, and whether it went up or round: a speed that still falls says nothing about the gain.
+    since_s: f64,
+    rising: bool,
+    /// When the motor was first driven at a duty that it starts with.
+    first_s: f64,
+    /// Highest speed over duty seen, counts/s.
+    gain: f64,
+    /// The same by speed and current.
+    emf_gain: f64,
     running_amps: Option<f64>,
     open_since_s: Option<f64>,
-    /// Motion in the direction of the present duty has been seen.
-    follows: bool,
-    follows_since_s: f64,
     recent: VecDeque<Point>,
+}
+
+/// What one looks like from its counts and its duty over a time.
+#[derive(Clone, Copy, Debug)]
+struct Stretch {
+    from: Point,
+    to: Point,
+    speed_before: f64,
 }
 
 impl Watch {
     /// A duty was given.
     pub fn drive(&mut self, t: f64, duty: f64) {
-        if duty == 0.0 || duty * self.duty <= 0.0 {
-            // From rest or from the other direction: what was moving must first turn round.
-            self.follows = false;
-            self.since_s = t;
-            self.turned_s = t;
+        if self.looped {
+            let last = self.duty_at(t);
+            self.duties.push_back((t, last));
+            self.looped = false;
         }
-        self.armed = duty != 0.0;
-        self.duty = duty;
-    }
-
-    /// A loop has the motor: only the rules that need no duty hold.
-    pub fn release(&mut self, t: f64) {
-        self.armed = false;
-        self.follows = false;
-        self.duty = 0.0;
+        let before = self.duties.back().map_or(0.0, |given| given.1);
+        self.rising = before * duty <= 0.0 || duty.abs() >= before.abs();
+        self.duties.push_back((t, duty));
+        if self.tau_bounds_s.is_none() && duty != 0.0 {
+            self.first_s = t;
+        }
         self.since_s = t;
+        while self.duties.get(1).is_some_and(|next| t - next.0 > MEMORY_S) {
+            self.duties.pop_front();
+        }
     }
 
-    /// Looks at a poll.
+    /// A loop has the motor: its duty is what is read.
+    pub fn release(&mut self, t: f64) {
+        self.looped = true;
+        self.news_s = t;
+        self.since_s = t;
+        self.duties.clear();
+    }
+
+    /// The polls it remembers, oldest first.
+    pub(crate) fn recent(&self) -> impl DoubleEndedIterator<Item = &Point> {
+        self.recent.iter()
+    }
+
+    /// Looks at a poll. The cause of an error is a first guess.
     pub fn see(&mut self, point: &Point) -> Result<(), Cause> {
         self.recent.push_back(*point);
         while self.recent.front().is_some_and(|old| point.t - old.t > MEMORY_S) {
             self.recent.pop_front();
         }
-        if !self.armed || self.start_duty == 0.0 || self.duty.abs() < self.start_duty + 0.04 {
-            self.open_since_s = None;
+        if self.start_duty == 0.0 {
             return Ok(());
         }
-        self.check_direction(point)?;
         self.check_current(point)?;
-        self.check_motion(point)
-    }
-
-    fn over(&self, seconds: f64) -> Option<(Point, Point)> {
-        let last = *self.recent.back()?;
-        let first = *self.recent.iter().rev().find(|old| last.t - old.t >= seconds)?;
-        Some((first, last))
-    }
-
-    /// A motor driven one way cannot, once it turns that way, turn the other.
-    fn check_direction(&mut self, point: &Point) -> Result<(), Cause> {
-        let Some((first, last)) = self.over(0.02) else { return Ok(()) };
-        let speed = (last.counts - first.counts) / (last.t - first.t) * self.duty.signum();
-        let floor = (0.04 * self.full_speed).max(4.0 / (last.t - first.t));
-        if speed > floor {
-            if !self.follows {
-                self.follows_since_s = point.t;
+        self.check_start(point)?;
+        for seconds in STRETCHES_S {
+            if let Some(stretch) = self.stretch(seconds) {
+                self.check_stretch(&stretch)?;
             }
-            self.follows = true;
-        } else if self.follows && speed < -floor && point.t - self.since_s > 0.05 {
-            return Err(Cause::EncoderFlipped);
         }
-        let settling = point.t - self.turned_s < TURNING_S && self.stopping_s < TURNING_S;
-        if settling { Ok(()) } else { self.check_jump() }
+        self.learn();
+        Ok(())
     }
 
-    /// Speed that turns its sign at full height between two polls did not come from a motor.
-    fn check_jump(&self) -> Result<(), Cause> {
-        let newest: Vec<&Point> = self.recent.iter().rev().take(5).collect();
-        let [e, d, _, b, a] = newest[..] else { return Ok(()) };
-        let (before, after) = ((b.counts - a.counts) / (b.t - a.t), (e.counts - d.counts) / (e.t - d.t));
-        let height = before.abs().min(after.abs());
-        if self.stopping_s <= 0.0 || before * after > 0.0 || height < 0.15 * self.full_speed {
+    /// The duty in force at a time, ramps included.
+    pub(crate) fn duty_at(&self, t: f64) -> f64 {
+        if self.looped {
+            let read = self.recent.iter().rev().filter_map(|point| point.duty).find(|duty| duty.0 <= t);
+            return read.map_or(0.0, |duty| duty.1);
+        }
+        let mut duty = 0.0;
+        let mut at = f64::NEG_INFINITY;
+        let mut goal = 0.0;
+        for &(next, new_goal) in self.duties.iter().take_while(|given| given.0 <= t) {
+            duty = slewed(duty, goal, next - at);
+            (at, goal) = (next, new_goal);
+        }
+        slewed(duty, goal, t - at)
+    }
+
+    /// Lowest and highest duty that may have been in force about a time.
+    fn duty_range(&self, t: f64) -> (f64, f64) {
+        if !self.looped {
+            // The stamp of a command is off by a few milliseconds at the most.
+            let (a, b) = (self.duty_at(t - 0.006), self.duty_at(t + 0.002));
+            return (a.min(b), a.max(b));
+        }
+        let readings = || self.recent.iter().filter_map(|point| point.duty);
+        let before = readings().rev().find(|duty| duty.0 <= t);
+        let after = readings().find(|duty| duty.0 > t);
+        match (before, after) {
+            (Some(a), Some(b)) => (a.1.min(b.1) - LOOP_DUTY, a.1.max(b.1) + LOOP_DUTY),
+            (Some(a), None) | (None, Some(a)) => (a.1 - 2.0 * LOOP_DUTY, a.1 + 2.0 * LOOP_DUTY),
+            (None, None) => (-1.0, 1.0),
+        }
+    }
+
+    /// The last `seconds`, and the speed just before them.
+    fn stretch(&self, seconds: f64) -> Option<Stretch> {
+        let to = *self.recent.back()?;
+        let from = self.recent.iter().rev().find(|old| to.t - old.t >= seconds)?;
+        let earlier = self.recent.iter().rev().find(|old| from.t - old.t >= SPEED_S)?;
+        let speed_before = (from.counts - earlier.counts) / (from.t - earlier.t);
+        Some(Stretch { from: *from, to, speed_before })
+    }
+
+    /// Compares a stretch with what the motor can have done.
+    fn check_stretch(&self, stretch: &Stretch) -> Result<(), Cause> {
+        let Stretch { from, to, speed_before } = stretch;
+        if self.looped && self.news_s > from.t - NEWS_S - SPEED_S {
             return Ok(());
         }
-        // The steepest that a motor of this time constant can be, driven from full speed one way to the other.
-        let steepest = 2.0 * self.full_speed / self.stopping_s;
-        let change = (after - before).abs() / (0.5 * (d.t + e.t - a.t - b.t));
-        if change > JUMP * steepest && height * (e.t - d.t) > EXPECTED_COUNTS {
-            return Err(Cause::EncoderFlipped);
+        let span = to.t - from.t;
+        let moved = to.counts - from.counts;
+        let margin = MARGIN_COUNTS + MARGIN_SPEED * speed_before.abs() * span;
+        let way = self.duty_at(to.t).signum();
+        if self.keeps_its_speed(stretch, way) {
+            let least = KEPT_SPEED * speed_before.abs() * span - MARGIN_COUNTS;
+            if least > 0.0 && moved * way < least {
+                return Err(Cause::Stalled);
+            }
+        }
+        let Some(tau) = self.tau_bounds_s else { return Ok(()) };
+        if self.gain <= 0.0 {
+            return Ok(());
+        }
+        let least = self.least_way(stretch, 1.0, tau);
+        let most = -self.least_way(stretch, -1.0, tau);
+        if moved < least - margin || moved > most + margin {
+            return Err(Cause::Stalled);
         }
         Ok(())
     }
 
+    /// Whether nothing slows the motor down: its duty has stayed, and it was on its way there.
+    fn keeps_its_speed(&self, stretch: &Stretch, way: f64) -> bool {
+        let settled_s = self.tau_bounds_s.map_or(0.0, |tau| 3.0 * tau.1);
+        let steady = stretch.from.t - SPEED_S > self.since_s + 0.11 + settled_s;
+        let rising = self.tau_bounds_s.is_none() && stretch.from.t - SPEED_S > self.since_s + 0.02;
+        !self.looped && (steady || rising) && stretch.speed_before * way > 0.0
+    }
+
+    /// The least way that the motor can have gone in a direction: with the lowest duty, the most friction, and the time constant
+    /// that suits it. A way backwards is negative.
+    fn least_way(&self, stretch: &Stretch, direction: f64, tau: (f64, f64)) -> f64 {
+        let mut speed = stretch.speed_before * direction;
+        let mut way = 0.0;
+        let mut t = stretch.from.t - 0.5 * SPEED_S;
+        // The speed before was that of the middle of its own time.
+        while t < stretch.to.t {
+            let step = STEP_S.min(stretch.to.t - t);
+            let range = self.duty_range(t + 0.5 * step);
+            let duty = if direction > 0.0 { range.0 } else { -range.1 };
+            let next = self.least_speed(speed, duty, step, tau);
+            if t + step > stretch.from.t {
+                way += 0.5 * (speed + next) * step.min(t + step - stretch.from.t);
+            }
+            speed = next;
+            t += step;
+        }
+        way
+    }
+
+    /// The lowest speed after a step.
+    fn least_speed(&self, speed: f64, duty: f64, step: f64, tau: (f64, f64)) -> f64 {
+        let gain = if duty > 0.0 { LEAST_GAIN * self.gain } else { self.gain / LEAST_GAIN };
+        let mut drive = gain * duty - speed;
+        if let Some(limit) = self.drive_limit {
+            let most = self.gain * limit;
+            drive = drive.clamp(-1.3 * most, 0.7 * most);
+        }
+        let friction = self.gain * self.start_duty;
+        let force = if speed > 0.0 { drive - friction } else { drive };
+        let held = speed == 0.0 && force >= 0.0;
+        let force = if held { (force - friction).max(0.0) } else { force };
+        let tau_s = if force > 0.0 { tau.1 } else { tau.0 };
+        let next = speed + force * (1.0 - (-step / tau_s).exp());
+        // Friction stops a motor, but does not turn it.
+        let stops = speed > 0.0 && next < 0.0 && gain * duty >= -friction;
+        if stops { 0.0 } else { next }
+    }
+
+    /// From rest, a duty clearly above the one that it started with moves it soon.
+    fn check_start(&self, point: &Point) -> Result<(), Cause> {
+        let duty = self.duty_at(point.t).abs();
+        if self.looped || duty < self.start_duty + CLEARLY_HIGHER || self.tau_bounds_s.is_some() {
+            return Ok(());
+        }
+        if point.t - self.since_s < START_S + 0.05 {
+            return Ok(());
+        }
+        let within = self.recent.iter().filter(|old| point.t - old.t <= START_S).map(|old| old.counts);
+        let (low, high) = within.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), c| (l.min(c), h.max(c)));
+        if high - low <= 1.0 { Err(Cause::Stalled) } else { Ok(()) }
+    }
+
+    /// Remembers the highest speed over duty.
+    fn learn(&mut self) {
+        let Some(stretch) = self.stretch(STRETCHES_S[0]) else { return };
+        let duty = self.duty_at(stretch.to.t);
+        if self.looped || !self.rising || duty.abs() < self.start_duty + 0.03 || stretch.from.t < self.since_s + 0.06 {
+            return;
+        }
+        let speed = (stretch.to.counts - stretch.from.counts) / (stretch.to.t - stretch.from.t);
+        self.gain = self.gain.max(speed / duty);
+        self.learn_emf(stretch.to, speed, duty);
+    }
+
+    /// Current is what the duty has over the voltage of the turning motor.
+    fn learn_emf(&mut self, point: Point, speed: f64, duty: f64) {
+        let (Some(amps), Some(stall)) = (point.amps, self.stall_amps) else { return };
+        let turning = duty.abs() - amps.abs() / stall;
+        if point.limited || turning < 0.15 || speed * duty <= 0.0 {
+            return;
+        }
+        let gain = speed.abs() / turning;
+        self.emf_gain = if self.emf_gain > 0.0 { self.emf_gain + 0.3 * (gain - self.emf_gain) } else { gain };
+    }
+
     fn check_current(&mut self, point: &Point) -> Result<(), Cause> {
+        let driven = self.duty_at(point.t).abs() >= self.start_duty + 0.04;
+        if !driven {
+            self.open_since_s = None;
+            return Ok(());
+        }
         let Some(amps) = point.amps else { return Ok(()) };
-        let steady = point.t - self.since_s > 0.3 && self.follows;
-        if steady && amps.abs() > 2.5 * NO_CURRENT_AMPS {
+        if point.t - self.since_s > 0.3 && amps.abs() > 2.5 * NO_CURRENT_AMPS {
             let lowest = self.running_amps.map_or(amps.abs(), |known| known.min(amps.abs()));
             self.running_amps = Some(lowest);
         }
@@ -142,46 +307,16 @@ impl Watch {
         if draws && point.t - since > OPEN_S { Err(Cause::MotorOpened) } else { Ok(()) }
     }
 
-    fn check_motion(&self, point: &Point) -> Result<(), Cause> {
-        // What the motor would do at this duty at the least, in the stretch since it was given.
-        let expected = 0.35 * self.full_speed * (self.duty.abs() - self.start_duty).max(0.0);
-        if expected <= 0.0 {
-            return Ok(());
-        }
-        let silence = (EXPECTED_COUNTS / expected).max(SILENCE_S.0);
-        if silence > 3.0 * SILENCE_S.1 || point.t - self.since_s < silence + self.stopping_s.min(0.5) {
-            return Ok(());
-        }
-        let silence = silence.min(MEMORY_S - 0.05);
-        let counts = self.recent.iter().filter(|old| point.t - old.t <= silence).map(|old| old.counts);
-        let (low, high) = counts.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), c| (l.min(c), h.max(c)));
-        let Some((first, last)) = self.over(silence) else { return Ok(()) };
-        // A load behind a spring swings on while the motor is held.
-        let gained = (last.counts - first.counts) * self.duty.signum();
-        let held = self.follows
-            && point.t - self.follows_since_s > silence + 0.05
-            && self.pulls_hard()
-            && gained < 0.1 * expected * silence;
-        if high - low > 1.0 && !held {
-            return Ok(());
-        }
-        let amps = self.recent.iter().rev().find_map(|old| old.amps).map(f64::abs);
-        if amps.is_some_and(|amps| amps <= NO_CURRENT_AMPS) {
-            return Err(Cause::MotorOpened);
-        }
-        Err(if self.pulls_hard() { Cause::Stalled } else { Cause::EncoderLost })
+    /// Speed per duty without any load, counts/s, and the time constant, as far as they are known.
+    pub(crate) fn rough_model(&self, alarm_s: f64) -> (f64, f64) {
+        // In the first run a motor that has come to some speed is not far from its time constant.
+        let young_s = (0.5 * (alarm_s - self.first_s)).clamp(0.01, 0.5);
+        let tau_s = self.tau_bounds_s.map_or(young_s, |tau| (tau.0 * tau.1).sqrt());
+        (if self.emf_gain > 0.0 { self.emf_gain } else { self.gain }, tau_s)
     }
+}
 
-    /// Whether the current is that of a motor that is held, or that pulls away from rest.
-    #[must_use]
-    pub fn pulls_hard(&self) -> bool {
-        let Some(newest) = self.recent.back() else { return false };
-        // The higher of the last two readings: the current of a load that swings back comes and goes.
-        let latest = self.recent.iter().rev().filter_map(|old| old.amps).take(2);
-        let amps = latest.map(f64::abs).reduce(f64::max);
-        match (amps, self.stall_amps) {
-            (Some(amps), Some(stall)) => amps > 0.45 * self.duty.abs() * stall || newest.limited,
-            _ => newest.limited,
-        }
-    }
+fn slewed(duty: f64, goal: f64, seconds: f64) -> f64 {
+    let most = DUTY_SLEW_PER_S * seconds.max(0.0);
+    if most.is_finite() { duty + (goal - duty).clamp(-most, most) } else { goal }
 }

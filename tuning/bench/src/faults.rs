@@ -1,9 +1,10 @@
 //! Faults put into the machine before or during a run: is the motor off in time, and is the fault named right?
 
 use crate::line::Event;
-use crate::population::{Draw, Specimen};
+use crate::population::{Draw, Kind, Specimen};
 use crate::run::{SimulatedAxis, axis_of, request_of};
-use crate::table::{Case, quantile};
+use crate::table::quantile;
+use crate::truth::{Truth, truth};
 use brushwork_sim::plant::{StopKind, TravelParams};
 use brushwork_sim::world::{Motor, WorldAction};
 use brushwork_tuning::cause::Cause;
@@ -16,8 +17,12 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
+/// The row of runs without a fault.
+const HEALTHY: &str = "healthy";
 /// Healthy runs that must raise no alarm.
 const HEALTHY_RUNS: usize = 500;
+/// How finely the bench looks at the bridge, with some rounding, s.
+const LOOK_S: f64 = 0.01;
 /// Where in the identification a fault strikes, as shares of its length.
 const STRIKES: (f64, f64) = (0.05, 0.80);
 
@@ -42,6 +47,23 @@ pub struct FaultRow {
     pub peak_current_max: f64,
     /// What the runs ended with, and how many of them.
     pub causes: BTreeMap<String, usize>,
+    /// The runs that were late or were named otherwise.
+    pub misses: Vec<Miss>,
+}
+
+/// A run that was late or was named otherwise.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Miss {
+    /// The plant's number.
+    pub plant: usize,
+    /// The plant's kind.
+    pub kind: Kind,
+    /// When the fault struck, s from the start of the run.
+    pub at_s: f64,
+    /// From the fault to the motor off, s.
+    pub off_s: f64,
+    /// What the run ended with.
+    pub cause: Option<Cause>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,6 +125,8 @@ const fn class(name: &'static str, fault: Fault, causes: &'static [Cause], deadl
 }
 
 struct Run {
+    plant: (usize, Kind),
+    at_s: f64,
     off_s: f64,
     in_time: bool,
     named: bool,
@@ -110,36 +134,50 @@ struct Run {
     cause: Option<Cause>,
 }
 
+/// A plant, what it is, and how long its identification takes.
+struct Subject {
+    specimen: Specimen,
+    truth: Truth,
+    span_s: f64,
+}
+
 /// Every class on every plant, and the healthy runs as the last row, whose `named` is the share without alarm.
 #[must_use]
-pub fn fault_rows(cases: &[Case]) -> Vec<FaultRow> {
-    let spans: Vec<f64> = cases.par_iter().map(|case| healthy(&case.specimen, 0).0.seconds.0).collect();
-    let mut rows: Vec<FaultRow> = CLASSES
-        .iter()
+pub fn fault_rows(plants: &[Specimen]) -> Vec<FaultRow> {
+    rows_of(plants, &[])
+}
+
+/// The same of the classes named only; all of them where none is.
+#[must_use]
+pub fn rows_of(plants: &[Specimen], names: &[&str]) -> Vec<FaultRow> {
+    let wanted = |name: &str| names.is_empty() || names.contains(&name);
+    let subjects: Vec<Subject> = plants
+        .par_iter()
+        .map(|specimen| Subject {
+            span_s: healthy(specimen, 0).0.seconds.0,
+            truth: truth(specimen),
+            specimen: specimen.clone(),
+        })
+        .collect();
+    let classes = CLASSES.iter().filter(|class| wanted(class.name));
+    let mut rows: Vec<FaultRow> = classes
         .map(|class| {
-            let runs: Vec<Run> = cases
-                .par_iter()
-                .zip(&spans)
-                .filter(|(_, span)| **span > 0.0)
-                .map(|(case, span)| run(class, case, *span))
-                .collect();
+            let able = subjects.par_iter().filter(|subject| subject.span_s > 0.0);
+            let runs: Vec<Run> = able.map(|subject| run(class, subject)).collect();
             summary(class.name, class.deadline_s, &runs)
         })
         .collect();
-    let quiet: Vec<Run> = (0..HEALTHY_RUNS.max(cases.len()))
-        .into_par_iter()
-        .map(|n| {
-            let (report, axis) = healthy(&cases[n % cases.len()].specimen, n as u64);
-            Run {
-                off_s: 0.0,
-                in_time: true,
-                named: !is_alarm(&report),
-                peak: peak(&axis, &cases[n % cases.len()]),
-                cause: first(&report),
-            }
-        })
-        .collect();
-    rows.push(summary("healthy", 0.0, &quiet));
+    if wanted(HEALTHY) && !subjects.is_empty() {
+        let quiet: Vec<Run> = (0..HEALTHY_RUNS.max(subjects.len()))
+            .into_par_iter()
+            .map(|n| {
+                let subject = &subjects[n % subjects.len()];
+                let (report, axis) = healthy(&subject.specimen, n as u64);
+                Run::quiet(subject, &axis, &report, true)
+            })
+            .collect();
+        rows.push(summary(HEALTHY, 0.0, &quiet));
+    }
     rows
 }
 
@@ -174,19 +212,19 @@ fn healthy(specimen: &Specimen, round: u64) -> (Report, SimulatedAxis) {
     (report, axis)
 }
 
-fn peak(axis: &SimulatedAxis, case: &Case) -> f64 {
-    100.0 * axis.carrier.truth.peak_amps / case.specimen.axis.stall_amps(case.specimen.volts())
+fn peak(axis: &SimulatedAxis, subject: &Subject) -> f64 {
+    100.0 * axis.carrier.truth.peak_amps / subject.specimen.axis.stall_amps(subject.specimen.volts())
 }
 
-fn run(class: &Class, case: &Case, span_s: f64) -> Run {
-    let specimen = &case.specimen;
+fn run(class: &Class, subject: &Subject) -> Run {
+    let (specimen, span_s) = (&subject.specimen, subject.span_s);
     let name_seed = class.name.bytes().map(u64::from).sum::<u64>();
     let mut draw = Draw(ChaCha8Rng::seed_from_u64(specimen.link.seed ^ name_seed));
     // The probe takes most of the first second; faults of the run strike after it.
     let probe_s: f64 = 0.12 + 0.06 * 14.0;
     let strike_s = probe_s.min(0.5 * span_s) + draw.between(STRIKES) * (span_s - probe_s).max(0.3);
     let mut axis = match class.fault {
-        Fault::EndStop => axis_of(&with_end_stops(case)),
+        Fault::EndStop => axis_of(&with_end_stops(subject)),
         _ => axis_of(specimen),
     };
     let start = axis.carrier.unit().now();
@@ -201,70 +239,75 @@ fn run(class: &Class, case: &Case, span_s: f64) -> Run {
             axis.carrier.schedule(vec![Event { at: strike, action: change.action(specimen) }]);
         }
         Fault::LinkDrop => axis.carrier.dead_at = Some(strike),
-        Fault::EndStop => axis.carrier.end_stop_radians = Some(end_stop_radians(case)),
+        Fault::EndStop => axis.carrier.end_stop_radians = Some(end_stop_radians(subject)),
         Fault::Window => {}
     }
     if class.fault == Fault::Window {
-        return run_in_window(case, axis);
+        return run_in_window(subject, axis);
     }
     let report = tune(&mut axis, &identification_only(specimen));
     axis.carrier.idle(Duration::from_millis(300));
     if class.fault == Fault::EndStop {
         let Some(hit) = axis.carrier.truth.stop_hit_at else {
             // It never came that far: nothing happened, nothing to name.
-            return Run {
-                off_s: 0.0,
-                in_time: true,
-                named: !is_alarm(&report),
-                peak: peak(&axis, case),
-                cause: first(&report),
-            };
+            return Run::quiet(subject, &axis, &report, true);
         };
         from = hit;
     }
     let off_s = axis.carrier.truth.last_driven.saturating_sub(from).as_secs_f64();
     let named = report.causes.first().is_some_and(|cause| class.causes.contains(cause));
     Run {
+        plant: (specimen.number, specimen.kind),
+        at_s: from.saturating_sub(start).as_secs_f64(),
         off_s,
-        in_time: off_s <= class.deadline_s + 0.01,
+        in_time: off_s <= class.deadline_s + LOOK_S,
         named,
-        peak: peak(&axis, case),
+        peak: peak(&axis, subject),
         cause: first(&report),
+    }
+}
+
+impl Run {
+    /// A run in which nothing happened: any alarm is a false one.
+    fn quiet(subject: &Subject, axis: &SimulatedAxis, report: &Report, in_time: bool) -> Self {
+        Self {
+            plant: (subject.specimen.number, subject.specimen.kind),
+            at_s: 0.0,
+            off_s: 0.0,
+            in_time,
+            named: !is_alarm(report),
+            peak: peak(axis, subject),
+            cause: first(report),
+        }
     }
 }
 
 /// A window half as wide as the identification is judged with: it is used, or refused, but never crossed.
-fn run_in_window(case: &Case, mut axis: SimulatedAxis) -> Run {
-    let width = (0.1 * case.truth.qpps).round().max(40.0);
+fn run_in_window(subject: &Subject, mut axis: SimulatedAxis) -> Run {
+    let width = (0.1 * subject.truth.qpps).round().max(40.0);
     let half = (0.5 * width) as i64;
     let mut request =
-        Request { excitation: Excitation::Window(width), ..identification_only(&case.specimen) };
+        Request { excitation: Excitation::Window(width), ..identification_only(&subject.specimen) };
     request.method = Method::Pd;
     request.guard.travel = Some((-half, half));
     let report = tune(&mut axis, &request);
-    let per_radian = case.specimen.axis.counts_per_motor_radian();
+    let per_radian = subject.specimen.axis.counts_per_motor_radian();
     let reach = axis.carrier.truth.farthest_radians * per_radian;
     // Half a count of rounding on either side.
     let kept = reach <= half as f64 + 1.0;
-    Run {
-        off_s: 0.0,
-        in_time: kept,
-        named: !is_alarm(&report),
-        peak: peak(&axis, case),
-        cause: first(&report),
-    }
+    Run::quiet(subject, &axis, &report, kept)
 }
 
 /// End stops a quarter of a second of full speed away.
-fn end_stop_radians(case: &Case) -> f64 {
-    let seconds = 0.25 + case.truth.tau_s;
-    let axis = &case.specimen.axis;
-    seconds * case.truth.qpps / axis.counts_per_motor_radian() / axis.gear.ratio
+fn end_stop_radians(subject: &Subject) -> f64 {
+    let seconds = 0.25 + subject.truth.tau_s;
+    let axis = &subject.specimen.axis;
+    seconds * subject.truth.qpps / axis.counts_per_motor_radian() / axis.gear.ratio
 }
 
-fn with_end_stops(case: &Case) -> Specimen {
-    let mut specimen = case.specimen.clone();
-    let stop = end_stop_radians(case);
+fn with_end_stops(subject: &Subject) -> Specimen {
+    let mut specimen = subject.specimen.clone();
+    let stop = end_stop_radians(subject);
     specimen.axis.load.travel =
         Some(TravelParams { lower_radians: -stop, upper_radians: stop, stop: StopKind::Hard });
     specimen
@@ -285,6 +328,13 @@ fn summary(fault: &'static str, deadline_s: f64, runs: &[Run]) -> FaultRow {
         *causes.entry(name).or_insert(0) += 1;
     }
     let milli = |value: f64| (1000.0 * value).round() / 1000.0;
+    let misses = runs.iter().filter(|run| !(run.in_time && run.named)).map(|run| Miss {
+        plant: run.plant.0,
+        kind: run.plant.1,
+        at_s: milli(run.at_s),
+        off_s: milli(run.off_s),
+        cause: run.cause,
+    });
     FaultRow {
         fault,
         plants: runs.len(),
@@ -295,5 +345,6 @@ fn summary(fault: &'static str, deadline_s: f64, runs: &[Run]) -> FaultRow {
         deadline_s,
         peak_current_max: milli(runs.iter().map(|run| run.peak).fold(0.0, f64::max)),
         causes,
+        misses: misses.collect(),
     }
 }

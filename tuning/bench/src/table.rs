@@ -148,7 +148,8 @@ pub fn table(seed: u64, cases: &[Case], faults: bool) -> Table {
         }
     }
     let identification = identification(cases, &velocity_reports);
-    let faults = if faults { fault_rows(cases) } else { Vec::new() };
+    let plants = || cases.iter().map(|case| case.specimen.clone()).collect::<Vec<_>>();
+    let faults = if faults { fault_rows(&plants()) } else { Vec::new() };
     Table { seed, plants: cases.len(), tasks, identification, faults }
 }
 

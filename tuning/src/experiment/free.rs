@@ -47,9 +47,12 @@ pub fn run_free(rig: &mut Rig<'_>, probe: &Probe) -> Result<FreeRun, Cause> {
     let full_duty = rig.options.max_duty;
     rig.watch.start_duty = probe.start_duty;
     rig.watch.stall_amps = probe.stall_amps;
+    rig.watch.drive_limit = rig.drive_limit(probe.stall_amps);
     let from_s = rig.now_s();
     let forward = settle_at(rig, full_duty)?;
-    rig.watch.stopping_s = forward.tau_s.min(rise_s(rig, from_s, forward.speed));
+    let rise = rise_s(rig, from_s, forward.speed);
+    rig.watch.stopping_s = forward.tau_s.min(rise);
+    rig.watch.tau_bounds_s = Some(tau_bounds(forward.tau_s, rise));
     let low_duty = (probe.start_duty + 0.06).max(0.25).min(0.6 * full_duty);
     let high_duty = (probe.start_duty + 0.35).max(0.6).min(0.9 * full_duty);
     let step_from = rig.now_s();
@@ -109,6 +112,12 @@ fn settle_at(rig: &mut Rig<'_>, duty: f64) -> Result<Settled, Cause> {
             return Err(if found.interval < 0.05 { Cause::TimeLimit } else { Cause::TooCoarse });
         }
     }
+}
+
+/// Between which values the time constant lies, by the fit of the settling and by the rise. A load behind a spring makes the motor
+/// alone quicker.
+fn tau_bounds(fitted: f64, rise: f64) -> (f64, f64) {
+    (0.3 * fitted.min(rise), 1.6 * if rise.is_finite() { fitted.max(rise) } else { fitted })
 }
 
 /// Time to 63 % of a speed: no time constant is longer.

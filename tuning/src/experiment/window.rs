@@ -31,6 +31,7 @@ pub struct WindowRun {
 pub fn run_window(rig: &mut Rig<'_>, probe: &Probe, width: f64) -> Result<WindowRun, Cause> {
     rig.watch.start_duty = probe.start_duty;
     rig.watch.stall_amps = probe.stall_amps;
+    rig.watch.drive_limit = rig.drive_limit(probe.stall_amps);
     rig.poll_for(0.05, false)?;
     let middle = rig.points.last().map_or(0.0, |p| p.counts);
     let from_s = rig.now_s();
@@ -77,6 +78,7 @@ fn swing(
             if switches > 0 && switch_speed > 0.0 && farthest > 0.0 {
                 *brake_s = (0.5 * *brake_s + 0.5 * (farthest / switch_speed)).clamp(0.02, 0.6);
                 rig.watch.stopping_s = *brake_s;
+                rig.watch.tau_bounds_s = Some((0.15 * *brake_s, 6.0 * *brake_s));
             }
             switched_at = point.counts;
             switch_speed = speed * direction;

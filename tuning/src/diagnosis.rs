@@ -1,0 +1,190 @@
+//! What is wrong with a motor that did not do what motors do: stopped, or its encoder lost or turned round?
+//!
+//! The duty is taken away first; what currents and counts do while it goes down, and did just before, tells the rest. The current
+//! of a motor follows from its duty and its true speed, whatever the encoder says. So each story (the motor was stopped and the
+//! encoder is right; the encoder is dead since then; it counts the other way since then) is held against the currents.
+
+use crate::cause::Cause;
+use crate::rig::Point;
+use crate::watch::{NO_CURRENT_AMPS, Watch};
+
+/// How long the motor is watched with its duty taken away, s.
+pub(crate) const DIAGNOSIS_S: f64 = 0.15;
+/// Least stall current that lets currents be compared, A.
+const TELLING_STALL_AMPS: f64 = 0.2;
+/// How long before the alarm a fault may have come, s.
+const BEFORE_S: f64 = 0.22;
+/// Counts that a dead encoder may give.
+const DEAD_COUNTS: f64 = 1.5;
+/// A current that is off by more than this share of the stall current is just wrong.
+const WRONG: f64 = 0.3;
+/// Misfit from which on the currents may object, and how much better the other story must then be.
+const OBJECTION: f64 = 0.05;
+const BETTER: f64 = 0.6;
+/// Largest error of mirrored speeds over the speeds, both squared: by itself, and where the currents say the same.
+const MIRROR_ERROR: (f64, f64) = (0.12, 0.6);
+/// Misfit that says nothing.
+const SAME: f64 = 3e-4;
+/// How long the duty takes to come down and the winding's current to follow, s.
+const BRAKED_S: f64 = 0.066;
+/// Counts of a motion against the duty that no spring gives back, and the share of its speed that it must keep.
+const SPRING_COUNTS: f64 = 6.0;
+const KEPT: f64 = 0.4;
+
+/// One poll with what a story needs.
+struct Moment {
+    t: f64,
+    duty: f64,
+    /// Speed as counted, counts/s.
+    speed: f64,
+    /// Current over stall current.
+    current: Option<f64>,
+}
+
+/// Names what is wrong. `after` are the polls since `alarm_s`, when the duty was taken away.
+pub(crate) fn diagnose(watch: &Watch, alarm_s: f64, after: &[Point]) -> Cause {
+    let polls: Vec<Point> = watch.recent().copied().chain(after.iter().copied()).collect();
+    if is_open(watch, &polls, alarm_s) {
+        return Cause::MotorOpened;
+    }
+    let moments = moments(watch, &polls, alarm_s - BEFORE_S);
+    let stall = watch.stall_amps.filter(|stall| *stall > TELLING_STALL_AMPS);
+    let (gain, tau_s) = watch.rough_model(alarm_s);
+    let last = watch.recent().next_back().map_or(0.0, |point| point.counts);
+    let alive = after.iter().any(|point| (point.counts - last).abs() > DEAD_COUNTS);
+    if stall.is_some() && !alive {
+        return if turns_unseen(watch, &moments, alarm_s) { Cause::EncoderLost } else { Cause::Stalled };
+    }
+    if !alive || gain <= 0.0 {
+        return Cause::Stalled;
+    }
+    let story = Story { moments: &moments, gain, tau_s, limit: limit_of(watch), alarm_s };
+    let (stopped, flipped) = (story.as_counted().min(story.stands()), story.flipped());
+    let likeness = story.likeness_of_mirror();
+    let currents_agree = stall.is_some() && stopped > OBJECTION && flipped < BETTER * stopped;
+    let currents_object = stall.is_some() && flipped > OBJECTION && stopped < BETTER * flipped;
+    let goes_on = likeness < if currents_agree { MIRROR_ERROR.1 } else { MIRROR_ERROR.0 };
+    if goes_on && !currents_object { Cause::EncoderFlipped } else { Cause::Stalled }
+}
+
+/// Whether no current flows: not at the duty that was given at last, nor while the motor is braked.
+fn is_open(watch: &Watch, polls: &[Point], alarm_s: f64) -> bool {
+    let visible = watch.stall_amps.is_some_and(|stall| stall * 0.015 > 2.0 * NO_CURRENT_AMPS);
+    let none = |amps: f64| amps.abs() <= NO_CURRENT_AMPS;
+    let driven = |point: &&Point| point.t < alarm_s && watch.duty_at(point.t).abs() > watch.start_duty;
+    let mut before = polls.iter().rev().filter(driven).filter_map(|point| point.amps).take(2).peekable();
+    let mut after = polls.iter().filter(|point| point.t >= alarm_s).filter_map(|point| point.amps);
+    visible && before.peek().is_some() && before.all(none) && after.all(none)
+}
+
+fn moments(watch: &Watch, polls: &[Point], from_s: f64) -> Vec<Moment> {
+    let stall = watch.stall_amps.filter(|stall| *stall > 0.0);
+    let around = |n: usize| {
+        let (a, b) = (&polls[n - 1], &polls[(n + 1).min(polls.len() - 1)]);
+        if b.t > a.t { (b.counts - a.counts) / (b.t - a.t) } else { 0.0 }
+    };
+    let late = polls.iter().enumerate().skip(1).filter(|(_, point)| point.t > from_s);
+    late.map(|(n, point)| Moment {
+        t: point.t,
+        duty: watch.duty_at(point.t),
+        speed: around(n),
+        current: point.amps.zip(stall).map(|(amps, stall)| amps.abs() / stall),
+    })
+    .collect()
+}
+
+fn limit_of(watch: &Watch) -> f64 {
+    watch.drive_limit.unwrap_or(f64::INFINITY)
+}
+
+/// Whether currents are other than those of a motor that stands, while nothing is counted.
+fn turns_unseen(watch: &Watch, moments: &[Moment], alarm_s: f64) -> bool {
+    let limit = limit_of(watch);
+    let still = moments.iter().rposition(|moment| moment.speed != 0.0).map_or(0, |last| last + 1);
+    let still = &moments[still..];
+    let mut off: Vec<f64> = still
+        .iter()
+        .filter(|moment| moment.duty.abs() >= 0.15)
+        .filter_map(|moment| Some(moment.duty.abs().min(limit) - moment.current?))
+        .collect();
+    off.sort_by(f64::total_cmp);
+    let driven_off = off.get(off.len() / 2).is_some_and(|middle| *middle > 0.1);
+    let stall = watch.stall_amps.unwrap_or(f64::INFINITY);
+    let braked = still.iter().filter(|moment| moment.duty == 0.0 && moment.t > alarm_s + BRAKED_S);
+    let braked: Vec<f64> = braked.filter_map(|moment| moment.current).collect();
+    let first = braked.iter().take(2).sum::<f64>() / braked.len().clamp(1, 2) as f64;
+    // What rings on a spring comes by nought again and again.
+    let least = braked.into_iter().reduce(f64::min).unwrap_or(0.0);
+    driven_off || first > 0.08 || least > (2.0 * NO_CURRENT_AMPS / stall).max(0.02)
+}
+
+/// What the currents are held against.
+struct Story<'a> {
+    moments: &'a [Moment],
+    gain: f64,
+    tau_s: f64,
+    limit: f64,
+    alarm_s: f64,
+}
+
+impl Story<'_> {
+    fn miss(&self, moment: &Moment, speed: f64) -> f64 {
+        let Some(current) = moment.current else { return 0.0 };
+        let expected = (moment.duty - speed / self.gain).abs().min(self.limit);
+        (expected - current).abs().min(WRONG).powi(2)
+    }
+
+    fn misfit(&self, speed: impl Fn(&Moment) -> f64) -> f64 {
+        self.moments.iter().map(|moment| self.miss(moment, speed(moment))).sum::<f64>() + SAME
+    }
+
+    /// The best misfit with the speed changed by `change` from some moment before the alarm on.
+    fn since_best(&self, change: impl Fn(f64) -> f64) -> f64 {
+        let starts = self.moments.iter().map(|moment| moment.t).filter(|t| *t <= self.alarm_s);
+        let of = |from: f64| {
+            self.misfit(|moment| if moment.t >= from { change(moment.speed) } else { moment.speed })
+        };
+        starts.map(of).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The encoder is right.
+    fn as_counted(&self) -> f64 {
+        self.misfit(|moment| moment.speed)
+    }
+
+    /// The motor stands while a load swings that the encoder sees.
+    fn stands(&self) -> f64 {
+        self.since_best(|_| 0.0)
+    }
+
+    /// The encoder counts the other way.
+    fn flipped(&self) -> f64 {
+        self.since_best(|speed| -speed)
+    }
+
+    /// How far the motor is from going on as such a motor does, counted the other way from some moment before the alarm on.
+    fn likeness_of_mirror(&self) -> f64 {
+        let starts = (1..self.moments.len()).take_while(|n| self.moments[n - 1].t < self.alarm_s);
+        let tries = starts.flat_map(|n| [0.5, 1.0, 2.0].map(|scale| (n, scale * self.tau_s)));
+        tries.map(|(start, tau_s)| self.mirrored(start, tau_s)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Squared error of the mirrored speeds over the squared speeds.
+    fn mirrored(&self, start: usize, tau_s: f64) -> f64 {
+        let before = &self.moments[start - 1];
+        let (mut speed, mut t) = (before.speed, before.t);
+        let (mut error, mut height) = (0.0, 0.0);
+        for (n, moment) in self.moments[start..].iter().enumerate() {
+            let most = self.gain * self.limit;
+            let drive = (self.gain * moment.duty - speed).clamp(-most, most);
+            speed += drive * (1.0 - (-(moment.t - t) / tau_s).exp());
+            t = moment.t;
+            // About the change itself a speed is a mixture.
+            if n >= 1 {
+                error += (speed + moment.speed).powi(2);
+                height += speed.powi(2);
+            }
+        }
+        error / f64::max(height, 1e-9)
+    }
+}
