@@ -21,8 +21,11 @@ const WRONG: f64 = 0.3;
 /// Misfit from which on the currents may object, and how much better the other story must then be.
 const OBJECTION: f64 = 0.05;
 const BETTER: f64 = 0.6;
+const AGREE: f64 = 0.9;
 /// Largest error of mirrored speeds over the speeds, both squared: by itself, and where the currents say the same.
 const MIRROR_ERROR: (f64, f64) = (0.12, 0.6);
+/// Share of the current of a standing motor by which that of a turning one is short at the least; a battery sags by less.
+const SHORT: f64 = 0.3;
 /// Misfit that says nothing.
 const SAME: f64 = 3e-4;
 /// How long the duty takes to come down and the winding's current to follow, s.
@@ -61,7 +64,7 @@ pub(crate) fn diagnose(watch: &Watch, alarm_s: f64, after: &[Point]) -> Cause {
     let story = Story { moments: &moments, gain, tau_s, limit: limit_of(watch), alarm_s };
     let (stopped, flipped) = (story.as_counted().min(story.stands()), story.flipped());
     let likeness = story.likeness_of_mirror();
-    let currents_agree = stall.is_some() && stopped > OBJECTION && flipped < BETTER * stopped;
+    let currents_agree = stall.is_some() && stopped > OBJECTION && flipped < AGREE * stopped;
     let currents_object = stall.is_some() && flipped > OBJECTION && stopped < BETTER * flipped;
     let goes_on = likeness < if currents_agree { MIRROR_ERROR.1 } else { MIRROR_ERROR.0 };
     if goes_on && !currents_object { Cause::EncoderFlipped } else { Cause::Stalled }
@@ -69,12 +72,11 @@ pub(crate) fn diagnose(watch: &Watch, alarm_s: f64, after: &[Point]) -> Cause {
 
 /// Whether no current flows: not at the duty that was given at last, nor while the motor is braked.
 fn is_open(watch: &Watch, polls: &[Point], alarm_s: f64) -> bool {
-    let visible = watch.stall_amps.is_some_and(|stall| stall * 0.015 > 2.0 * NO_CURRENT_AMPS);
     let none = |amps: f64| amps.abs() <= NO_CURRENT_AMPS;
     let driven = |point: &&Point| point.t < alarm_s && watch.duty_at(point.t).abs() > watch.start_duty;
     let mut before = polls.iter().rev().filter(driven).filter_map(|point| point.amps).take(2).peekable();
     let mut after = polls.iter().filter(|point| point.t >= alarm_s).filter_map(|point| point.amps);
-    visible && before.peek().is_some() && before.all(none) && after.all(none)
+    watch.draws() && before.peek().is_some() && before.all(none) && after.all(none)
 }
 
 fn moments(watch: &Watch, polls: &[Point], from_s: f64) -> Vec<Moment> {
@@ -105,10 +107,10 @@ fn turns_unseen(watch: &Watch, moments: &[Moment], alarm_s: f64) -> bool {
     let mut off: Vec<f64> = still
         .iter()
         .filter(|moment| moment.duty.abs() >= 0.15)
-        .filter_map(|moment| Some(moment.duty.abs().min(limit) - moment.current?))
+        .filter_map(|moment| Some(1.0 - moment.current? / moment.duty.abs().min(limit)))
         .collect();
     off.sort_by(f64::total_cmp);
-    let driven_off = off.get(off.len() / 2).is_some_and(|middle| *middle > 0.1);
+    let driven_off = off.get(off.len() / 2).is_some_and(|middle| *middle > SHORT);
     let stall = watch.stall_amps.unwrap_or(f64::INFINITY);
     let braked = still.iter().filter(|moment| moment.duty == 0.0 && moment.t > alarm_s + BRAKED_S);
     let braked: Vec<f64> = braked.filter_map(|moment| moment.current).collect();

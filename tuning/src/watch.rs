@@ -302,9 +302,13 @@ impl Watch {
             return Ok(());
         }
         let since = *self.open_since_s.get_or_insert(point.t);
-        let draws = self.running_amps.is_some_and(|running| running > 2.5 * NO_CURRENT_AMPS)
-            || self.stall_amps.is_some_and(|stall| stall * 0.015 > 2.0 * NO_CURRENT_AMPS);
-        if draws && point.t - since > OPEN_S { Err(Cause::MotorOpened) } else { Ok(()) }
+        if self.draws() && point.t - since > OPEN_S { Err(Cause::MotorOpened) } else { Ok(()) }
+    }
+
+    /// Whether a turning motor draws a current that can be told from none.
+    pub(crate) fn draws(&self) -> bool {
+        self.running_amps.is_some_and(|running| running > 2.5 * NO_CURRENT_AMPS)
+            || self.stall_amps.is_some_and(|stall| stall * 0.015 > 2.0 * NO_CURRENT_AMPS)
     }
 
     /// Speed per duty without any load, counts/s, and the time constant, as far as they are known.
