@@ -314,6 +314,9 @@ pub struct BenchArgs {
     /// Seed that `tuning` draws them from; the optima of 7 and 11 are built in.
     #[arg(long, value_name = "SEED", default_value_t = 7)]
     pub seed: u64,
+    /// Of `tuning`, only the faults: they need no optima.
+    #[arg(long)]
+    pub faults: bool,
     /// Work the optima out anew and write them to a file instead.
     #[arg(long, value_name = "FILE")]
     pub write_oracle: Option<PathBuf>,

@@ -1,5 +1,7 @@
 //! `brushwork bench tuning`: the tuner and every textbook rule, side by side on the same records.
 
+use brushwork_tuning_bench::faults::{FaultRow, fault_rows};
+use brushwork_tuning_bench::population::population;
 use brushwork_tuning_bench::table::{Row, Table, cases, optima_of, table};
 
 use crate::cli::args::BenchArgs;
@@ -27,6 +29,11 @@ pub fn run(args: &BenchArgs, out: &mut Output) -> Exit {
     if args.plants == 0 {
         say("A benchmark needs at least one motor: use --plants 200.");
         return Exit::Usage;
+    }
+    if args.faults {
+        let rows = fault_rows(&population(args.seed, args.plants));
+        let printed = if args.json { out.json(&rows) } else { print_faults(&rows, out) };
+        return printed.map_or_else(Exit::from, |()| Exit::Done);
     }
     let cases = cases(args.seed, args.plants, args.write_oracle.is_some());
     if let Some(path) = &args.write_oracle {
@@ -63,23 +70,23 @@ fn print(table: &Table, out: &mut Output) -> Result<(), OutputError> {
         return Ok(());
     }
     out.line("")?;
-    let faults: Vec<Vec<String>> = table
-        .faults
-        .iter()
-        .map(|row| {
-            vec![
-                row.fault.to_owned(),
-                row.plants.to_string(),
-                row.off_in_time.to_string(),
-                row.named.to_string(),
-                row.off_median_s.to_string(),
-                row.off_max_s.to_string(),
-                row.deadline_s.to_string(),
-                row.peak_current_max.to_string(),
-            ]
-        })
-        .collect();
-    out.table(&FAULT_HEADS, &faults)
+    print_faults(&table.faults, out)
+}
+
+fn print_faults(rows: &[FaultRow], out: &mut Output) -> Result<(), OutputError> {
+    let cells = |row: &FaultRow| {
+        vec![
+            row.fault.to_owned(),
+            row.plants.to_string(),
+            row.off_in_time.to_string(),
+            row.named.to_string(),
+            row.off_median_s.to_string(),
+            row.off_max_s.to_string(),
+            row.deadline_s.to_string(),
+            row.peak_current_max.to_string(),
+        ]
+    };
+    out.table(&FAULT_HEADS, &rows.iter().map(cells).collect::<Vec<_>>())
 }
 
 fn cells(task: &str, row: &Row) -> Vec<String> {

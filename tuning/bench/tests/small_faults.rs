@@ -1,0 +1,32 @@
+//! Every class of faults on the first 16 plants of a seed: the motor is off in time on each, and nearly each is named right.
+//!
+//! `brushwork bench tuning --faults` prints the same figures for as many plants as wanted.
+
+use brushwork_tuning_bench::faults::rows_of;
+use brushwork_tuning_bench::population::population;
+
+const CLASSES: [&str; 12] = [
+    "encoder_reversed",
+    "encoder_dead",
+    "motor_open",
+    "shaft_locked",
+    "encoder_lost",
+    "stall",
+    "motor_opened",
+    "encoder_flipped",
+    "battery_low",
+    "link_drop",
+    "end_stop",
+    "travel_window",
+];
+
+#[test]
+fn each_fault_ends_with_the_motor_off_in_time_and_is_named() {
+    let rows = rows_of(&population(5, 16), &CLASSES);
+    assert_eq!(rows.len(), CLASSES.len());
+    for row in rows {
+        println!("{row:?}");
+        assert_eq!(row.off_in_time, 100.0, "{}: off within {} s: {:?}", row.fault, row.deadline_s, row.misses);
+        assert!(row.named > 93.0, "{}: named {} %: {:?}", row.fault, row.named, row.misses);
+    }
+}
