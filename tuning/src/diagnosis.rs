@@ -30,9 +30,6 @@ const SHORT: f64 = 0.3;
 const SAME: f64 = 3e-4;
 /// How long the duty takes to come down and the winding's current to follow, s.
 const BRAKED_S: f64 = 0.066;
-/// Counts of a motion against the duty that no spring gives back, and the share of its speed that it must keep.
-const SPRING_COUNTS: f64 = 6.0;
-const KEPT: f64 = 0.4;
 
 /// One poll with what a story needs.
 struct Moment {

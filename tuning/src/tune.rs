@@ -198,8 +198,8 @@ fn identify_free(rig: &mut Rig<'_>, probe: &Probe, report: &mut Report) -> Resul
     }
     let now_s = rig.now_s();
     let course = Course::new(&rig.points, &rig.drives, run.from_s, now_s, probe.volts);
-    let found =
-        fit(&course, full / run.full_duty, run.tau_s, rig.drive_limit(probe.stall_amps)).ok_or(Cause::TooCoarse)?;
+    let found = fit(&course, full / run.full_duty, run.tau_s, rig.drive_limit(probe.stall_amps))
+        .ok_or(Cause::TooCoarse)?;
     believe(&found, rig.options.poll_s, &course)?;
     // With less than full duty the model says what full duty would give.
     let qpps = if run.full_duty > 0.999 {

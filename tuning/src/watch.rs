@@ -2,7 +2,7 @@
 //!
 //! What was counted over a short stretch is compared with the least that a motor of this kind could have moved, given how fast it
 //! was and which duty it had. The bounds are wide, since they come from the run itself: the speeds seen so far and a rough time
-//! constant. A stretch outside them is a suspicion, which [`diagnosis`](crate::diagnosis) turns into a cause.
+//! constant. A stretch outside them is a suspicion, which the diagnosis turns into a cause.
 
 use crate::cause::Cause;
 use crate::course::DUTY_SLEW_PER_S;
@@ -267,7 +267,11 @@ impl Watch {
     fn learn(&mut self) {
         let Some(stretch) = self.stretch(STRETCHES_S[0]) else { return };
         let duty = self.duty_at(stretch.to.t);
-        if self.looped || !self.rising || duty.abs() < self.start_duty + 0.03 || stretch.from.t < self.since_s + 0.06 {
+        if self.looped
+            || !self.rising
+            || duty.abs() < self.start_duty + 0.03
+            || stretch.from.t < self.since_s + 0.06
+        {
             return;
         }
         let speed = (stretch.to.counts - stretch.from.counts) / (stretch.to.t - stretch.from.t);
