@@ -53,8 +53,9 @@ pub struct Watch {
     pub tau_bounds_s: Option<(f64, f64)>,
     /// Duties given and when, oldest first; the first is older than the memory.
     duties: VecDeque<(f64, f64)>,
-    /// Whether a loop has the motor, and since when it was told something new.
+    /// Whether a loop has the motor, until when one had it, and when it was given the motor, told something new, or lost it.
     looped: bool,
+    looped_until_s: f64,
     news_s: f64,
     /// When the duty last changed, and whether it went up or round: a speed that still falls says nothing about the gain.
     since_s: f64,
@@ -85,6 +86,8 @@ impl Watch {
             let last = self.duty_at(t);
             self.duties.push_back((t, last));
             self.looped = false;
+            self.looped_until_s = t;
+            self.news_s = t;
         }
         let before = self.duties.back().map_or(0.0, |given| given.1);
         self.rising = before * duty <= 0.0 || duty.abs() >= before.abs();
@@ -133,7 +136,7 @@ impl Watch {
 
     /// The duty in force at a time, ramps included.
     pub(crate) fn duty_at(&self, t: f64) -> f64 {
-        if self.looped {
+        if self.looped || t < self.looped_until_s {
             let read = self.recent.iter().rev().filter_map(|point| point.duty).find(|duty| duty.0 <= t);
             return read.map_or(0.0, |duty| duty.1);
         }
@@ -176,7 +179,8 @@ impl Watch {
     /// Compares a stretch with what the motor can have done.
     fn check_stretch(&self, stretch: &Stretch) -> Result<(), Cause> {
         let Stretch { from, to, speed_before } = stretch;
-        if self.looped && self.news_s > from.t - NEWS_S - SPEED_S {
+        let unclear_s = self.news_s + if self.looped { NEWS_S } else { 0.0 };
+        if unclear_s > from.t - SPEED_S {
             return Ok(());
         }
         let span = to.t - from.t;

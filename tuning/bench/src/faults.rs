@@ -2,7 +2,7 @@
 
 use crate::line::Event;
 use crate::population::{Draw, Kind, Specimen};
-use crate::run::{SimulatedAxis, axis_of, request_of};
+use crate::run::{SimulatedAxis, axis_of, request_of, tune_plant};
 use crate::table::quantile;
 use crate::truth::{Truth, truth};
 use brushwork_sim::plant::{StopKind, TravelParams};
@@ -70,6 +70,8 @@ pub struct Miss {
 enum Fault {
     Before(WorldChange),
     During(WorldChange),
+    /// While a loop has the motor.
+    InTrial(WorldChange),
     LinkDrop,
     EndStop,
     Window,
@@ -104,7 +106,7 @@ struct Class {
     deadline_s: f64,
 }
 
-const CLASSES: [Class; 12] = [
+const CLASSES: [Class; 16] = [
     class("encoder_reversed", Fault::Before(WorldChange::ReverseEncoder), &[Cause::EncoderReversed], 1.0),
     class("encoder_dead", Fault::Before(WorldChange::LoseEncoder), &[Cause::EncoderDead], 1.5),
     class("motor_open", Fault::Before(WorldChange::OpenLead), &[Cause::MotorOpen], 1.5),
@@ -116,6 +118,15 @@ const CLASSES: [Class; 12] = [
     class("battery_low", Fault::During(WorldChange::LowBattery), &[Cause::BatteryLow], 0.1),
     class("link_drop", Fault::LinkDrop, &[Cause::LinkLost], 0.25),
     class("end_stop", Fault::EndStop, &[Cause::Stalled], 0.3),
+    class("encoder_lost_in_trial", Fault::InTrial(WorldChange::LoseEncoder), &[Cause::EncoderLost], 0.3),
+    class("stall_in_trial", Fault::InTrial(WorldChange::LockShaft), &[Cause::Stalled], 0.3),
+    class("motor_opened_in_trial", Fault::InTrial(WorldChange::OpenLead), &[Cause::MotorOpened], 0.5),
+    class(
+        "encoder_flipped_in_trial",
+        Fault::InTrial(WorldChange::ReverseEncoder),
+        &[Cause::EncoderFlipped],
+        0.3,
+    ),
     // Off before the window's end is crossed; the deadline does not apply.
     class("travel_window", Fault::Window, &[], 0.0),
 ];
@@ -138,7 +149,24 @@ struct Run {
 struct Subject {
     specimen: Specimen,
     truth: Truth,
+    /// Length of the identification, and of whole runs by method, s.
     span_s: f64,
+    whole_s: [f64; 2],
+}
+
+/// The methods whose trials are struck, and whose runs have to be quiet.
+const WHOLE: [Method; 2] = [Method::Velocity, Method::Piv];
+
+impl Subject {
+    fn new(specimen: &Specimen) -> Self {
+        let whole = |method| tune_plant(specimen, &request_of(specimen, method)).0.seconds.1;
+        Self {
+            span_s: healthy(specimen, 0, None).0.seconds.0,
+            whole_s: WHOLE.map(whole),
+            truth: truth(specimen),
+            specimen: specimen.clone(),
+        }
+    }
 }
 
 /// Every class on every plant, and the healthy runs as the last row, whose `named` is the share without alarm.
@@ -151,14 +179,7 @@ pub fn fault_rows(plants: &[Specimen]) -> Vec<FaultRow> {
 #[must_use]
 pub fn rows_of(plants: &[Specimen], names: &[&str]) -> Vec<FaultRow> {
     let wanted = |name: &str| names.is_empty() || names.contains(&name);
-    let subjects: Vec<Subject> = plants
-        .par_iter()
-        .map(|specimen| Subject {
-            span_s: healthy(specimen, 0).0.seconds.0,
-            truth: truth(specimen),
-            specimen: specimen.clone(),
-        })
-        .collect();
+    let subjects: Vec<Subject> = plants.par_iter().map(Subject::new).collect();
     let classes = CLASSES.iter().filter(|class| wanted(class.name));
     let mut rows: Vec<FaultRow> = classes
         .map(|class| {
@@ -172,7 +193,8 @@ pub fn rows_of(plants: &[Specimen], names: &[&str]) -> Vec<FaultRow> {
             .into_par_iter()
             .map(|n| {
                 let subject = &subjects[n % subjects.len()];
-                let (report, axis) = healthy(&subject.specimen, n as u64);
+                let (report, axis) =
+                    healthy(&subject.specimen, n as u64, healthy_method(n / subjects.len() + n));
                 Run::quiet(subject, &axis, &report, true)
             })
             .collect();
@@ -204,11 +226,18 @@ fn identification_only(specimen: &Specimen) -> Request {
     Request { verify: false, ..request_of(specimen, Method::Velocity) }
 }
 
-fn healthy(specimen: &Specimen, round: u64) -> (Report, SimulatedAxis) {
+/// Every third run is an identification alone.
+fn healthy_method(n: usize) -> Option<Method> {
+    WHOLE.get(n % 3).copied()
+}
+
+fn healthy(specimen: &Specimen, round: u64, method: Option<Method>) -> (Report, SimulatedAxis) {
     let mut specimen = specimen.clone();
     specimen.link.seed = specimen.link.seed.wrapping_add(round.wrapping_mul(0x9E37_79B9_7F4A_7C15));
     let mut axis = axis_of(&specimen);
-    let report = tune(&mut axis, &identification_only(&specimen));
+    let request =
+        method.map_or_else(|| identification_only(&specimen), |method| request_of(&specimen, method));
+    let report = tune(&mut axis, &request);
     (report, axis)
 }
 
@@ -222,7 +251,17 @@ fn run(class: &Class, subject: &Subject) -> Run {
     let mut draw = Draw(ChaCha8Rng::seed_from_u64(specimen.link.seed ^ name_seed));
     // The probe takes most of the first second; faults of the run strike after it.
     let probe_s: f64 = 0.12 + 0.06 * 14.0;
-    let strike_s = probe_s.min(0.5 * span_s) + draw.between(STRIKES) * (span_s - probe_s).max(0.3);
+    let nth = specimen.number % WHOLE.len();
+    let (request, strike_s) = match class.fault {
+        Fault::InTrial(_) => {
+            let trial_s = (subject.whole_s[nth] - span_s).max(0.1);
+            (request_of(specimen, WHOLE[nth]), span_s + draw.between(STRIKES) * trial_s)
+        }
+        _ => {
+            let strike_s = probe_s.min(0.5 * span_s) + draw.between(STRIKES) * (span_s - probe_s).max(0.3);
+            (identification_only(specimen), strike_s)
+        }
+    };
     let mut axis = match class.fault {
         Fault::EndStop => axis_of(&with_end_stops(subject)),
         _ => axis_of(specimen),
@@ -235,7 +274,7 @@ fn run(class: &Class, subject: &Subject) -> Run {
             from = start;
             axis.carrier.schedule(vec![Event { at: start, action: change.action(specimen) }]);
         }
-        Fault::During(change) => {
+        Fault::During(change) | Fault::InTrial(change) => {
             axis.carrier.schedule(vec![Event { at: strike, action: change.action(specimen) }]);
         }
         Fault::LinkDrop => axis.carrier.dead_at = Some(strike),
@@ -245,7 +284,7 @@ fn run(class: &Class, subject: &Subject) -> Run {
     if class.fault == Fault::Window {
         return run_in_window(subject, axis);
     }
-    let report = tune(&mut axis, &identification_only(specimen));
+    let report = tune(&mut axis, &request);
     axis.carrier.idle(Duration::from_millis(300));
     if class.fault == Fault::EndStop {
         let Some(hit) = axis.carrier.truth.stop_hit_at else {
@@ -253,6 +292,10 @@ fn run(class: &Class, subject: &Subject) -> Run {
             return Run::quiet(subject, &axis, &report, true);
         };
         from = hit;
+    }
+    if matches!(class.fault, Fault::InTrial(_)) {
+        // A loop at rest shows nothing; the clock runs from when it next drives the motor.
+        from = axis.carrier.truth.driven_after.unwrap_or(from).max(from);
     }
     let off_s = axis.carrier.truth.last_driven.saturating_sub(from).as_secs_f64();
     let named = report.causes.first().is_some_and(|cause| class.causes.contains(cause));

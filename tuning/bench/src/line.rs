@@ -13,6 +13,8 @@ use std::time::Duration;
 
 /// How long a reply is waited for, s.
 const REPLY_TIMEOUT_S: f64 = 0.010;
+/// A duty that moves each of the motors.
+const CLEAR_DUTY: f64 = 0.25;
 /// Spread of the latency about its mean.
 const LATENCY_SPREAD: (f64, f64) = (0.8, 1.6);
 
@@ -32,6 +34,8 @@ pub struct Truth {
     pub peak_amps: f64,
     /// When the bridge last drove the motor.
     pub last_driven: Duration,
+    /// When the bridge first drove the motor clearly after the last thing that happened to the machine.
+    pub driven_after: Option<Duration>,
     /// Farthest the motor shaft was from where it started, rad.
     pub farthest_radians: f64,
     /// When the output shaft first came to where an end stop is.
@@ -105,6 +109,7 @@ impl SimulatedLine {
                 if let Some(event) = self.events.pop() {
                     // The actions used here name no settings.
                     let _ = self.unit.apply(&event.action);
+                    self.truth.driven_after = None;
                 }
             }
             self.note();
@@ -120,6 +125,9 @@ impl SimulatedLine {
         let (duty, amps) = (axis.output.duty(), axis.truth.amps);
         if duty * amps > 0.0 || (duty != 0.0 && amps == 0.0) {
             self.truth.last_driven = self.now;
+        }
+        if duty.abs() > CLEAR_DUTY && self.truth.driven_after.is_none() {
+            self.truth.driven_after = Some(self.now);
         }
         self.truth.farthest_radians = self.truth.farthest_radians.max(axis.truth.motor_radians.abs());
         if let Some(stop) = self.end_stop_radians
