@@ -77,6 +77,12 @@ impl Lines {
         Place { line, column: u32::try_from(before.chars().count()).unwrap_or(u32::MAX).saturating_add(1) }
     }
 
+    /// The first byte of line `line` (from 1).
+    #[must_use]
+    pub fn start_of(&self, line: u32) -> u32 {
+        self.starts.get((line as usize).saturating_sub(1)).copied().unwrap_or(u32::MAX)
+    }
+
     /// The text of line `line` (from 1) without its end.
     #[must_use]
     pub fn text_of<'a>(&self, text: &'a str, line: u32) -> &'a str {

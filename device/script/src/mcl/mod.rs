@@ -6,11 +6,14 @@
 pub mod ast;
 pub mod codes;
 pub mod constant;
+pub mod contradictions;
+pub mod format;
 pub mod index;
 pub mod lexer;
 mod lower;
 pub mod operators;
 mod parser;
+pub mod reference;
 pub mod registers;
 pub mod types;
 pub mod words;

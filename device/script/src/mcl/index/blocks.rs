@@ -44,7 +44,7 @@ pub struct Fold {
 }
 
 /// The blocks of a program, by the place of their first word.
-pub(super) fn blocks(text: &str, tokens: &[Token]) -> Vec<Block> {
+pub fn blocks(text: &str, tokens: &[Token]) -> Vec<Block> {
     let heads = while_heads(text, tokens);
     let mut finder = Finder::default();
     for (index, token) in tokens.iter().enumerate() {

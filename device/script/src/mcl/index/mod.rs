@@ -10,6 +10,7 @@ mod complete;
 mod help;
 mod rename;
 
+pub(super) use blocks::blocks;
 pub use blocks::{Block, BlockKind, Fold};
 pub use classes::{Class, classes};
 pub use complete::{Completions, Entry, EntryKind, SyntaxHint, syntax_at};
@@ -54,7 +55,7 @@ impl Index {
         let lines = Lines::of(text);
         let mut symbols = compiled.symbols;
         find_uses(text, &tokens, &mut symbols);
-        let blocks = blocks::blocks(text, &tokens);
+        let blocks = blocks(text, &tokens);
         let folds = blocks::folds(text, &lines, &blocks, &symbols);
         Self { diagnostics: compiled.diagnostics, symbols, blocks, folds, left_out: compiled.left_out, lines }
     }
