@@ -10,6 +10,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::exit;
 use super::firmware::args::FirmwareArgs;
+use super::mcl::args::MclArgs;
 use super::monitor::args::MonitorArgs;
 use super::settings::args::SettingsArgs;
 use crate::session::sim_spec::parse_address;
@@ -70,6 +71,8 @@ pub enum Command {
     Monitor(MonitorArgs),
     /// Tune a motor's velocity or position loop on the machine.
     Tune(TuneArgs),
+    /// Check, build, run, list and format MCL scripts; print the language reference.
+    Mcl(MclArgs),
     /// Measure link use, stop latency, the simulator and the window.
     Bench(BenchArgs),
 }

@@ -14,6 +14,8 @@ pub const HELP: &str = "Exit codes:\n  \
     5  settings: a value or a profile was refused, or something did not take\n  \
     6  settings diff: there are differences\n  \
     8  tune: gains were found, with warnings to read\n  \
+    9  mcl: a script has errors\n  \
+    10  mcl run: the script was stopped by a fault\n  \
     130  ended by Ctrl-C, SIGTERM, SIGHUP or a closed pipe, after both motors were stopped\n\n\
     `brushwork sim` ends with 0 then: that is how it is ended.";
 
@@ -36,6 +38,10 @@ pub enum Exit {
     Different,
     /// The tuner found gains, with something to know about them.
     TunedWithWarnings,
+    /// A script has errors.
+    ScriptWrong,
+    /// A script was stopped by a fault.
+    ScriptFaulted,
     /// A signal or a closed pipe ended the command, with the motors stopped.
     Interrupted,
 }
@@ -60,6 +66,8 @@ impl From<Exit> for ExitCode {
             Exit::NotTaken => 5,
             Exit::Different => 6,
             Exit::TunedWithWarnings => 8,
+            Exit::ScriptWrong => 9,
+            Exit::ScriptFaulted => 10,
             Exit::Interrupted => 130,
         })
     }

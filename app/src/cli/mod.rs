@@ -11,6 +11,7 @@ mod exit;
 mod firmware;
 mod interrupt;
 mod list;
+mod mcl;
 mod monitor;
 mod nodes;
 mod output;
@@ -72,6 +73,7 @@ fn dispatch(command: &Command, out: &mut Output, interrupt: &Interrupt) -> Exit 
         Command::Protocol(args) => protocol::run(args, out),
         Command::Monitor(args) => monitor::run(args, out, interrupt),
         Command::Tune(args) => tune::run(args, out, interrupt),
+        Command::Mcl(args) => mcl::run(args, out, interrupt),
         Command::Bench(args) => bench::run(args, out, interrupt),
     }
 }

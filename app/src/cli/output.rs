@@ -45,6 +45,13 @@ impl Output {
         Ok(())
     }
 
+    /// Writes bytes as they are.
+    pub fn bytes(&mut self, bytes: &[u8]) -> Result<(), OutputError> {
+        self.writer.write_all(bytes)?;
+        self.writer.flush()?;
+        Ok(())
+    }
+
     /// Writes a value as indented JSON.
     pub fn json(&mut self, value: &impl serde::Serialize) -> Result<(), OutputError> {
         let text = serde_json::to_string_pretty(value).map_err(io::Error::from)?;

@@ -1,0 +1,47 @@
+//! `brushwork mcl fmt`: scripts in one style.
+
+use std::path::Path;
+
+use brushwork_script::mcl::format::format;
+
+use super::args::FmtArgs;
+use super::source::{Source, is_standard};
+use crate::cli::exit::Exit;
+use crate::cli::output::{Output, say};
+
+/// Formats every file in its place.
+pub fn run(args: &FmtArgs, out: &mut Output) -> Exit {
+    let mut exit = Exit::Done;
+    for path in &args.files {
+        match one(path, args, out) {
+            Ok(false) => {}
+            Ok(true) => exit = if exit == Exit::Done { Exit::Different } else { exit },
+            Err(failed) => exit = failed,
+        }
+    }
+    exit
+}
+
+/// Whether a file would change, which only matters when it is not written.
+fn one(path: &Path, args: &FmtArgs, out: &mut Output) -> Result<bool, Exit> {
+    let failed = |sentence: String| {
+        say(sentence);
+        Exit::Failed
+    };
+    let source = Source::read(path).map_err(|error| failed(error.to_string()))?;
+    let formatted = format(&source.text);
+    let changes = formatted != source.text;
+    if args.check {
+        if changes {
+            out.line(&source.name).map_err(Exit::from)?;
+        }
+        return Ok(changes);
+    }
+    if is_standard(path) {
+        out.bytes(&source.encoded(&formatted)).map_err(Exit::from)?;
+    } else if changes {
+        let write = std::fs::write(path, source.encoded(&formatted));
+        write.map_err(|error| failed(format!("Could not write {}: {error}.", path.display())))?;
+    }
+    Ok(false)
+}
