@@ -13,7 +13,7 @@ use super::firmware::args::FirmwareArgs;
 use super::mcl::args::MclArgs;
 use super::monitor::args::MonitorArgs;
 use super::settings::args::SettingsArgs;
-use crate::session::sim_spec::parse_address;
+use crate::session::sim_spec::{parse_address, parse_byte};
 
 /// Configures, drives and tunes brushed-DC motor controllers.
 #[derive(Debug, Parser)]
@@ -230,6 +230,7 @@ const SIM_EXAMPLES: &str = "Examples:\n  \
     brushwork sim --model mcp2166 --generation 4 --preset flywheel --tcp 127.0.0.1:7000\n  \
     brushwork sim --port ttl1 --pace --address 0x80,0x81,0x82 --pty /tmp/bus\n  \
     brushwork sim --can ascii --node 3,5 --pty /tmp/can\n  \
+    brushwork sim --model motion-mind-3 --mode 4 --protocol ascii --address 1,2 --pty /tmp/mm\n  \
     brushwork sim --pty /tmp/mcp --fault drop=0.01 --fault 'plant:locked-shaft@4s,motor=1'\n\n\
     Ctrl-C ends it. `brushwork sim --list` names the models and presets.";
 
@@ -246,9 +247,15 @@ pub struct SimArgs {
     /// Motor preset; two, separated by a comma, give motor 1 and motor 2 different ones.
     #[arg(long, value_name = "PRESET", value_delimiter = ',', num_args = 1)]
     pub preset: Vec<String>,
-    /// Address, or a comma-separated list: one simulated unit for each, on one line.
-    #[arg(long, value_name = "0x80..0x87", default_value = "0x80", value_delimiter = ',', value_parser = parse_address)]
+    /// Address, or a comma-separated list: one simulated unit for each, on one line. 0x80 to 0x87, or 1 to 98 for a Motion Mind 3.
+    #[arg(long, value_name = "ADDRESS", value_delimiter = ',', value_parser = parse_unit_number)]
     pub address: Vec<u8>,
+    /// What moves the motor of a Motion Mind 3, as its switches say; 4 if not given.
+    #[arg(long, value_name = "0..7", value_parser = clap::value_parser!(u8).range(0..=7))]
+    pub mode: Option<u8>,
+    /// Which of its two protocols a Motion Mind 3 speaks.
+    #[arg(long, value_enum, value_name = "PROTOCOL", default_value = "binary")]
+    pub protocol: ProtocolArg,
     /// Which of the controller's ports is served.
     #[arg(long, value_enum, value_name = "PORT", default_value = "usb")]
     pub port: StreamArg,
@@ -279,6 +286,21 @@ pub struct SimArgs {
     /// Name the models and presets, and end.
     #[arg(long)]
     pub list: bool,
+}
+
+/// A unit's number as typed; what numbers there are depends on the model.
+fn parse_unit_number(text: &str) -> Result<u8, String> {
+    parse_byte(text)
+        .ok_or_else(|| format!("\"{text}\" is no address; an example is 0x80, or 1 for a Motion Mind 3"))
+}
+
+/// A protocol of the Motion Mind 3.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ProtocolArg {
+    /// Frames with a checksum.
+    Binary,
+    /// Lines of text.
+    Ascii,
 }
 
 /// Arguments of `brushwork protocol`.

@@ -243,15 +243,17 @@ fn set_option<'a>(options: &mut SimOptions<'a>, key: &str, value: &'a str) -> Re
 /// # Errors
 /// A sentence that says what an address is.
 pub fn parse_address(text: &str) -> Result<u8, String> {
-    let digits = text.trim();
-    let value = digits
-        .strip_prefix("0x")
-        .or_else(|| digits.strip_prefix("0X"))
-        .map_or_else(|| digits.parse::<u8>().ok(), |hex| u8::from_str_radix(hex, 16).ok());
-    match value {
+    match parse_byte(text) {
         Some(address @ 0x80..=0x87) => Ok(address),
         _ => Err(format!("\"{text}\" is no address: use 0x80 to 0x87 (128 to 135)")),
     }
+}
+
+/// Reads a number of one byte, in hexadecimal with 0x or in decimal.
+pub fn parse_byte(text: &str) -> Option<u8> {
+    let digits = text.trim();
+    let hexadecimal = digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X"));
+    hexadecimal.map_or_else(|| digits.parse().ok(), |digits| u8::from_str_radix(digits, 16).ok())
 }
 
 fn bad_node(given: &str) -> SimSpecError {

@@ -1,14 +1,17 @@
 //! `brushwork sim`: simulated controllers for other programs, on a pseudo-terminal or a TCP port.
 
+mod motion_mind;
+
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use brushwork_protocol::canopen::adapter::Form;
 use brushwork_protocol::models::MODELS;
+use brushwork_protocol::packet_serial::Address;
 use brushwork_sim::controller::Bus;
 use brushwork_sim::faults::{FAULT_SYNTAX, Fault};
-use brushwork_sim::machine::StreamIndex;
+use brushwork_sim::machine::{Machine, StreamIndex};
 use brushwork_sim::presets::presets;
 use brushwork_sim::server::{Endpoint, Server, ServerOptions, SimHandle};
 
@@ -27,23 +30,34 @@ pub fn run(args: &SimArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
     if args.list {
         return list(out).map_or_else(Exit::from, |()| Exit::Done);
     }
-    match start(args) {
-        Ok((spec, server)) => serve(args, &spec, &server, out, interrupt),
-        Err(exit) => exit,
-    }
+    let served = if motion_mind::is_asked_for(args) {
+        motion_mind::bus_of(args)
+            .map_err(usage)
+            .and_then(|(bus, what)| Ok((start(args, bus)?, what)))
+            .map(|(server, what)| serve(args, &what, &server, out, interrupt))
+    } else {
+        mcp_bus(args)
+            .and_then(|(bus, what)| Ok((start(args, bus)?, what)))
+            .map(|(server, what)| serve(args, &what, &server, out, interrupt))
+    };
+    served.unwrap_or_else(|exit| exit)
 }
 
-fn start(args: &SimArgs) -> Result<(SimSpec, SimHandle<Bus>), Exit> {
-    let usage = |sentence: String| {
-        say(sentence);
-        Exit::Usage
-    };
-    let endpoint = endpoint(args).map_err(usage)?;
+fn usage(sentence: String) -> Exit {
+    say(sentence);
+    Exit::Usage
+}
+
+/// Controllers of the MCP family, and what they are in one line.
+fn mcp_bus(args: &SimArgs) -> Result<(Bus, String), Exit> {
+    if args.mode.is_some() {
+        return Err(usage(format!("--mode is for --model {}.", motion_mind::MODEL)));
+    }
     let options = SimOptions {
         models: args.model.iter().map(String::as_str).collect(),
         generation: args.generation,
         presets: args.preset.iter().map(String::as_str).collect(),
-        addresses: args.address.clone(),
+        addresses: if args.address.is_empty() { vec![Address::ALL[0].get()] } else { args.address.clone() },
         seed: args.seed,
         can: args.can,
         nodes: args.node.clone(),
@@ -51,14 +65,20 @@ fn start(args: &SimArgs) -> Result<(SimSpec, SimHandle<Bus>), Exit> {
     let spec = SimSpec::from_options(&options)
         .map_err(|error| usage(format!("Could not start the simulated controller: {error}.")))?;
     let stream = stream_index(args.port);
-    let faults = args.fault.iter().map(|text| fault(text)).collect::<Result<Vec<_>, _>>().map_err(usage)?;
     let bus = simulation::bus_of(&spec, stream).map_err(|error| usage(error.to_string()))?;
+    let what = if args.can.is_some() { spec.to_string() } else { format!("{spec}, port {}", stream.key()) };
+    Ok((bus, what))
+}
+
+fn start<M: Machine + 'static>(args: &SimArgs, machine: M) -> Result<SimHandle<M>, Exit> {
+    let endpoint = endpoint(args).map_err(usage)?;
+    let faults = args.fault.iter().map(|text| fault(text)).collect::<Result<Vec<_>, _>>().map_err(usage)?;
+    let stream = stream_index(args.port);
     let options = ServerOptions { stream, pace: args.pace, faults, seed: args.seed };
-    let server = Server::spawn(bus, options, &endpoint).map_err(|error| {
+    Server::spawn(machine, options, &endpoint).map_err(|error| {
         say(format!("Could not start the simulated controller: {error}."));
         Exit::Failed
-    })?;
-    Ok((spec, server))
+    })
 }
 
 fn endpoint(args: &SimArgs) -> Result<Endpoint, String> {
@@ -90,10 +110,10 @@ fn stream_index(port: StreamArg) -> StreamIndex {
     }
 }
 
-fn serve(
+fn serve<M: Machine + 'static>(
     args: &SimArgs,
-    spec: &SimSpec,
-    server: &SimHandle<Bus>,
+    what: &str,
+    server: &SimHandle<M>,
     out: &mut Output,
     interrupt: &Interrupt,
 ) -> Exit {
@@ -102,12 +122,11 @@ fn serve(
         Some(form) => {
             let form = if form == Form::default() { String::new() } else { format!(",form={}", form.key()) };
             format!(
-                "{spec}, behind a CAN adapter on {place}\nConnect with: brushwork --open can:{place}{form}"
+                "{what}, behind a CAN adapter on {place}\nConnect with: brushwork --open can:{place}{form}"
             )
         }
-        None => {
-            format!("{spec}, port {}, on {place}\nConnect with: brushwork --open {place}", spec_port(args))
-        }
+        None if motion_mind::is_asked_for(args) => format!("{what}, on {place}"),
+        None => format!("{what}, on {place}\nConnect with: brushwork --open {place}"),
     };
     if out.line(greeting).is_err() {
         return Exit::Interrupted;
@@ -132,12 +151,8 @@ fn serve(
     Exit::Done
 }
 
-fn spec_port(args: &SimArgs) -> &'static str {
-    stream_index(args.port).key()
-}
-
 /// Replaced as a whole, so that a reader never sees half of it.
-fn write_truth(file: &Path, server: &SimHandle<Bus>) -> std::io::Result<()> {
+fn write_truth<M: Machine + 'static>(file: &Path, server: &SimHandle<M>) -> std::io::Result<()> {
     let text = serde_json::to_string_pretty(&*server.views())?;
     let mut beside = file.as_os_str().to_owned();
     beside.push(".new");
@@ -146,10 +161,11 @@ fn write_truth(file: &Path, server: &SimHandle<Bus>) -> std::io::Result<()> {
 }
 
 fn list(out: &mut Output) -> Result<(), OutputError> {
-    let models: Vec<Vec<String>> = MODELS
+    let mut models: Vec<Vec<String>> = MODELS
         .iter()
         .map(|model| vec![model.key.to_owned(), model.rating().to_owned(), model.assumed.to_owned()])
         .collect();
+    models.push([motion_mind::MODEL, motion_mind::RATING, motion_mind::ASSUMED].map(str::to_owned).to_vec());
     out.table(&["MODEL", "RATING", "ASSUMED"], &models)?;
     out.line("")?;
     let rows: Vec<Vec<String>> =

@@ -1,0 +1,70 @@
+//! `brushwork sim --model motion-mind-3` from outside: the bytes and lines of its manual over a socket.
+#![cfg(unix)]
+
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::time::Duration;
+
+use brushwork_tests::program::Program;
+
+const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
+const LIMIT: Duration = Duration::from_secs(20);
+
+/// A simulated unit and a client that is connected to it.
+fn served(options: &[&str]) -> (Program, TcpStream) {
+    let arguments = [&["sim", "--model", "motion-mind-3", "--tcp", "127.0.0.1:0"], options].concat();
+    let mut program = Program::start(BRUSHWORK, &arguments);
+    let greeting = program.next_line(LIMIT).expect("it says where it is");
+    let place = greeting.rsplit("tcp:").next().expect("there is a last part");
+    let stream = TcpStream::connect(place).unwrap_or_else(|error| panic!("{greeting}: {error}"));
+    stream.set_read_timeout(Some(LIMIT)).expect("a timeout can be set");
+    (program, stream)
+}
+
+fn ask(stream: &mut TcpStream, request: &[u8], reply: &[u8]) {
+    stream.write_all(request).expect("the line is open");
+    let mut got = vec![0; reply.len()];
+    stream.read_exact(&mut got).expect("a reply comes");
+    assert_eq!(
+        got,
+        reply,
+        "{:?} for {:?}",
+        got.escape_ascii().to_string(),
+        request.escape_ascii().to_string()
+    );
+}
+
+#[test]
+fn a_served_unit_answers_in_frames_each_to_its_address() {
+    let (_program, mut stream) = served(&["--address", "1,2", "--mode", "3"]);
+    // READ REGISTER 7, ADDRESS, of units 1 and 2: address, value, checksum.
+    ask(&mut stream, &[0x1D, 0x01, 0x07, 0x25], &[0x01, 0x01, 0x02]);
+    ask(&mut stream, &[0x1D, 0x02, 0x07, 0x26], &[0x02, 0x02, 0x04]);
+    // READ REGISTER 18, MODE.
+    ask(&mut stream, &[0x1D, 0x01, 0x12, 0x30], &[0x01, 0x03, 0x04]);
+    // CHANGE_SPEED 763.
+    ask(&mut stream, &[0x14, 0x01, 0xFB, 0x02, 0x12], &[0x06]);
+}
+
+#[test]
+fn a_served_unit_answers_in_lines() {
+    let (_program, mut stream) = served(&["--protocol", "ascii"]);
+    ask(&mut stream, b"R01 04\r\n", b"PTRM=6000\r\n");
+    ask(&mut stream, b"W01 00 -10000\r\n", b"OK\r\n");
+    ask(&mut stream, b"R01 00\r\n", b"APOS=-10000\r\n");
+    ask(&mut stream, b"Q\r\n", b"BAD COMMAND\r\n");
+}
+
+#[test]
+fn what_does_not_fit_together_is_said_in_a_sentence() {
+    for (options, sentence) in [
+        (&["--model", "motion-mind-3", "--address", "0x80"][..], "an address from 1 to 98"),
+        (&["--model", "motion-mind-3,mcp266"][..], "cannot share a line"),
+        (&["--model", "motion-mind-3", "--can", "ascii"][..], "no CAN bus"),
+        (&["--mode", "3"][..], "--model motion-mind-3"),
+    ] {
+        let ending = Program::start(BRUSHWORK, &[&["sim"], options].concat()).finish(LIMIT);
+        let said = ending.stderr.join("\n");
+        assert!(ending.status.code() == Some(2) && said.contains(sentence), "{options:?}: {ending:?}");
+    }
+}
