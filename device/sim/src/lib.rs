@@ -6,6 +6,7 @@ pub mod controller;
 pub mod faults;
 pub mod machine;
 pub mod motion;
+pub mod motion_mind;
 pub mod pacing;
 pub mod plant;
 pub mod presets;
