@@ -30,7 +30,14 @@ const ARROWS: [(&str, &[&str]); 9] = [
     ("brushwork-raster", &[]),
     (
         "brushwork-tests",
-        &["brushwork", "brushwork-link", "brushwork-protocol", "brushwork-sim", "brushwork-tuning"],
+        &[
+            "brushwork",
+            "brushwork-link",
+            "brushwork-protocol",
+            "brushwork-script",
+            "brushwork-sim",
+            "brushwork-tuning",
+        ],
     ),
 ];
 

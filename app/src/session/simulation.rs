@@ -4,9 +4,11 @@ use std::fmt;
 use std::sync::Arc;
 
 use brushwork_link::HiddenSettings;
+use brushwork_link::script::CHECKSUM_KEY;
 use brushwork_link::transport::{ChannelTransport, Stream};
 use brushwork_protocol::canopen::NodeId;
 use brushwork_protocol::canopen::adapter::Form;
+use brushwork_protocol::crc::crc16_xmodem;
 use brushwork_protocol::packet_serial::Address;
 use brushwork_sim::controller::{Bus, BusError, Controller, ControllerConfig};
 use brushwork_sim::machine::StreamIndex;
@@ -153,7 +155,12 @@ impl fmt::Debug for Simulation {
 
 impl HiddenSettings for Simulation {
     fn get(&self, address: Address, key: &str) -> Option<i64> {
-        let (unit, key) = (self.unit_at(address)?, key.to_owned());
+        let unit = self.unit_at(address)?;
+        if key == CHECKSUM_KEY {
+            let look = move |bus: &mut Bus| Some(crc16_xmodem(bus.controllers().get(unit)?.script_image()));
+            return self.server.inspect(look).ok().flatten().map(i64::from);
+        }
+        let key = key.to_owned();
         let look = move |bus: &mut Bus| bus.controllers().get(unit)?.settings().hidden(&key).ok();
         self.server.inspect(look).ok().flatten()
     }

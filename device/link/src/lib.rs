@@ -9,6 +9,7 @@ pub mod diagnosis;
 pub mod exchange;
 pub mod failure;
 pub mod firmware;
+pub mod script;
 pub mod settings;
 #[cfg(test)]
 mod testing;

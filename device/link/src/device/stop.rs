@@ -23,6 +23,8 @@ pub struct UnitStop {
     pub address: u8,
     /// Whether it confirmed duty 0 on its motors.
     pub confirmed: bool,
+    /// Whether it confirmed the end of its script; `None` where that was not asked.
+    pub script_ended: Option<bool>,
     /// Whether its motion buffers are empty by its own account; `None` if it does not tell.
     pub buffers_empty: Option<bool>,
     /// What can still drive a motor now: input pins and scripts, each as a sentence.

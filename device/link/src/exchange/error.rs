@@ -147,6 +147,16 @@ impl ExchangeError {
         }
     }
 
+    /// The byte that came in place of an acknowledgement.
+    #[must_use]
+    pub fn answered(&self) -> Option<u8> {
+        match self {
+            Self::BadAcknowledgement { got, .. } => Some(*got),
+            Self::MayHaveRun { cause } => cause.answered(),
+            _ => None,
+        }
+    }
+
     /// What came first, if the exchange was cut short.
     #[must_use]
     pub fn interruption(&self) -> Option<Interruption> {

@@ -66,6 +66,10 @@ impl Line for ChannelLine {
         Ok(())
     }
 
+    fn has_rts(&self) -> bool {
+        true
+    }
+
     fn new_channel(&mut self) -> Option<ChannelEnds> {
         let (to_controller, requests) = bounded(CAPACITY);
         let (replies, from_controller) = bounded(CAPACITY);

@@ -6,6 +6,7 @@ use super::handle::{Command, SimHandle, Views};
 use super::line::{Heard, Line};
 use super::wait::wake_exactly;
 use crate::machine::{Machine, StreamIndex};
+use crate::world::WorldAction;
 use brushwork_protocol::packet_serial::PACKET_GAP;
 use crossbeam_channel::{Receiver, TryRecvError, bounded};
 use std::ops::ControlFlow;
@@ -113,6 +114,9 @@ impl<M: Machine + 'static> Driver<M> {
         let heard = self.line.receive(&mut self.incoming, patience);
         self.hear(looked_at);
         if heard == Heard::ClientLeft {
+            if self.line.has_rts() {
+                self.hold_rts(false);
+            }
             self.stack.clear();
         }
         ControlFlow::Continue(())
@@ -151,6 +155,9 @@ impl<M: Machine + 'static> Driver<M> {
                         Command::Inspect(inspect) => inspect(self.stack.inner_mut().inner_mut()),
                         Command::NewChannel(reply) => {
                             let ends = if self.stack.plugged() { self.line.new_channel() } else { None };
+                            if ends.is_some() {
+                                self.hold_rts(true);
+                            }
                             // Whoever asked may have gone.
                             let _ = reply.send(ends);
                         }
@@ -164,6 +171,13 @@ impl<M: Machine + 'static> Driver<M> {
             self.show(self.stack.now());
         }
         ControlFlow::Continue(())
+    }
+
+    /// The host's end of a USB port holds RTS as long as it is open, so that packet serial is spoken on it (MCP manual 1.9.3).
+    fn hold_rts(&mut self, on: bool) {
+        for unit in 0..self.stack.units() {
+            self.stack.apply(unit, &WorldAction::SetRts { on });
+        }
     }
 
     /// Takes the endpoint away or brings it back with the cable. An endpoint that cannot be brought back is the end.

@@ -18,6 +18,11 @@ pub trait Line: Send {
     /// Brings the endpoint back.
     fn plug_in(&mut self) -> Result<(), ServerError>;
 
+    /// Whether a client that is there holds the port's RTS line, as this program's own does. A pseudo-terminal and a socket have none.
+    fn has_rts(&self) -> bool {
+        false
+    }
+
     /// Connects a client inside the program; none where the endpoint is no channel.
     fn new_channel(&mut self) -> Option<ChannelEnds> {
         None

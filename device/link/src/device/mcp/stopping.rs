@@ -50,6 +50,7 @@ pub fn confirm(
     let mut stop = UnitStop {
         address: speaker.id(),
         confirmed: false,
+        script_ended: None,
         buffers_empty: None,
         still_driven_by: Vec::new(),
         failures: Vec::new(),
@@ -60,8 +61,14 @@ pub fn confirm(
         return Ok(stop);
     }
     stop.confirmed = true;
-    if scripts {
-        stop_script(speaker, line, &mut stop)?;
+    if scripts && stop_script(speaker, line, &mut stop)? {
+        // It may have driven the motors again since they were told to stand.
+        if let Err(error) = speaker.ask(line, number::DUTY_ACCEL_BOTH, &DUTY_ZERO) {
+            pass_on(&error)?;
+            stop.confirmed = false;
+            stop.failures.push(Failure::new("stop the motors", on, error.full(), CUT_POWER));
+            return Ok(stop);
+        }
     }
     match empty_buffers(speaker, line) {
         Ok(empty) => stop.buffers_empty = empty,
@@ -136,18 +143,21 @@ fn lower_first(text: &str) -> String {
     letters.next().map_or(String::new(), |first| first.to_lowercase().chain(letters).collect())
 }
 
-/// Stops the script. A unit without scripts does not answer, which is no failure; then nobody knows whether one runs.
-fn stop_script(speaker: Speaker, line: &mut Line<'_>, stop: &mut UnitStop) -> Result<(), ExchangeError> {
+/// Stops the script and says whether that was confirmed. A unit without scripts does not answer, which is no failure; then nobody knows
+/// whether one runs.
+fn stop_script(speaker: Speaker, line: &mut Line<'_>, stop: &mut UnitStop) -> Result<bool, ExchangeError> {
     let retries = line.retries();
     line.set_retries(1);
     let stopped = speaker.ask(line, number::STOP_SCRIPT, &[]);
     line.set_retries(retries);
+    stop.script_ended = Some(stopped.is_ok());
     if let Err(error) = stopped {
         pass_on(&error)?;
         stop.still_driven_by
             .push("A script may still run: the controller did not confirm its end.".to_owned());
+        return Ok(false);
     }
-    Ok(())
+    Ok(true)
 }
 
 /// Whether the buffers are empty at the end; `None` if the unit does not tell.

@@ -129,7 +129,7 @@ impl DeviceLoop {
                     self.write_stop(&DisarmReason::Stop)?;
                 }
                 Ok(stop) => {
-                    self.note_confirmation(index, stop.confirmed);
+                    self.note_confirmation(index, &stop);
                     return Ok(stop);
                 }
                 Err(error) => return Err(error),
@@ -137,10 +137,12 @@ impl DeviceLoop {
         }
     }
 
-    fn note_confirmation(&mut self, index: usize, confirmed: bool) {
+    /// A script that this program has started has to confirm its end too, or it may drive the motors again.
+    fn note_confirmation(&mut self, index: usize, stop: &UnitStop) {
         let now = self.clock.now();
         let unit = &mut self.units[index];
-        if confirmed {
+        let script_may_run = unit.script_started && stop.script_ended != Some(true);
+        if stop.confirmed && !script_may_run {
             (unit.moved, unit.script_started, unit.stop_again) = (false, false, None);
             unit.setpoints = [Some(0.0); 2];
         } else if unit.moved {
@@ -170,9 +172,9 @@ impl DeviceLoop {
             Err(error) if error.interruption().is_some() => return,
             Err(error) => return self.lose(&error),
         };
-        self.note_confirmation(index, stop.confirmed);
+        self.note_confirmation(index, &stop);
         let ended_at = self.clock.now();
-        if stop.confirmed {
+        if self.units[index].stop_again.is_none() {
             let units = vec![stop];
             return self.outbox.send(Event::Stopped(StopReport {
                 requested_at,

@@ -192,11 +192,23 @@ impl DeviceLoop {
         self.units[self.selected].script_started |= !matches!(started, Err(ExchangeError::NotArmed { .. }));
         if let Err(error) = started {
             let unsure = is_unsure(&error);
-            self.tell("start the script", &error);
+            match error.answered() {
+                Some(answer) => self.tell_refused_start(answer),
+                None => self.tell("start the script", &error),
+            }
             if unsure {
                 self.halt(DisarmReason::NoAnswer);
             }
         }
+    }
+
+    /// Simulated controllers refuse by another byte than FF. Nobody knows what a real one says, so that it is stopped all the same.
+    fn tell_refused_start(&mut self, answer: u8) {
+        let came_back = format!("it answered {answer:02X} instead of FF: it holds no script that it can run");
+        let mend = "Download the script first; a simulated controller runs what this program compiles, a real one what the maker's \
+                    tool compiles";
+        let failure = Failure::new("start the script", self.name_of(self.selected), came_back, mend);
+        self.outbox.send(Event::Failure(failure));
     }
 
     fn stop_script(&mut self, asked_at: Duration) {

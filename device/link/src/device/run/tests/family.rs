@@ -95,7 +95,14 @@ impl Controller for Toy {
         ask(line, "D 0\n")?;
         let (address, confirmed) = (self.identity.address, true);
         let (still_driven_by, failures) = (Vec::new(), Vec::new());
-        Ok(UnitStop { address, confirmed, buffers_empty: None, still_driven_by, failures })
+        Ok(UnitStop {
+            address,
+            confirmed,
+            script_ended: None,
+            buffers_empty: None,
+            still_driven_by,
+            failures,
+        })
     }
 
     fn other_drivers(&mut self, _line: &mut Line<'_>) -> Result<Vec<String>, ExchangeError> {
