@@ -31,6 +31,7 @@ use super::parts::{OpenLink, Parts, SimulatedWorld};
 use super::remember::Memory;
 use super::{shell, theme};
 
+mod debugging;
 mod scripting;
 mod tuning;
 mod updating;
@@ -116,6 +117,7 @@ impl App {
         for command in commands {
             self.apply(command);
         }
+        self.ask_debugger(&ctx);
         self.go_on_tuning();
         self.read_loops();
         self.end_calibrations();
@@ -143,6 +145,7 @@ impl App {
             self.drain(desk);
             self.watch(desk);
             self.look_at_world(desk);
+            self.look_at_script(desk, ctx);
             self.look_after_graph(desk, ctx);
             self.look_after_firmware(desk, ctx);
         }
@@ -383,6 +386,7 @@ impl App {
                 }
             }
             Command::ClampTest => self.clamp_test(),
+            Command::Debug(wish) => self.debug(wish),
             other => self.apply_to_window(other),
         }
     }

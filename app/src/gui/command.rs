@@ -6,6 +6,7 @@ use brushwork_protocol::packet_serial::{Motor, Value};
 use brushwork_sim::world::WorldAction;
 use egui::ThemePreference;
 
+use super::debugger::DebugWish;
 use super::graph::GraphAction;
 use super::mcl::MclWish;
 use super::model::DeskId;
@@ -94,6 +95,8 @@ pub enum Command {
     /// The voltage clamp test.
     ClampTest,
     DismissMessage,
+    /// Something to be done by the MCL debugger.
+    Debug(DebugWish),
     /// Something to be done in the MCL editor.
     Mcl(MclWish),
 }

@@ -8,6 +8,7 @@ pub mod actions;
 pub mod app;
 pub mod bench;
 pub mod command;
+pub mod debugger;
 pub mod ending;
 pub mod files;
 pub mod graph;

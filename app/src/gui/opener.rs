@@ -6,6 +6,8 @@ use std::time::Duration;
 use brushwork_link::device::Addresses;
 use brushwork_link::transport::{ConnectTarget, PortInfo, list_ports};
 use brushwork_link::{Clock, Failure, SystemClock};
+use brushwork_script::debug::{Request, View, Wanted};
+use brushwork_sim::server::Pace;
 use brushwork_sim::world::{WorldAction, WorldView};
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 use egui::Context;
@@ -146,5 +148,28 @@ impl SimulatedWorld for Simulation {
 
     fn unit_at(&self, address: u8) -> Option<usize> {
         self.unit_of(address)
+    }
+
+    fn debug(&self, unit: usize, requests: Vec<Request>, wanted: Wanted) -> Result<(), Failure> {
+        Self::debug(self, unit, requests, wanted).map_err(|error| {
+            Failure::new(
+                "debug the script of the simulated controller",
+                "",
+                error,
+                "Disconnect and connect again",
+            )
+        })
+    }
+
+    fn script(&self) -> Option<View> {
+        Self::script(self)
+    }
+
+    fn pace(&self) -> Option<Pace> {
+        Some(self.server().pace())
+    }
+
+    fn set_pace(&self, pace: Pace) {
+        self.server().set_pace(pace);
     }
 }

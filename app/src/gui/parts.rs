@@ -7,6 +7,8 @@ use std::sync::Arc;
 use brushwork_link::Failure;
 use brushwork_link::device::{Addresses, DeviceHandle};
 use brushwork_link::transport::{ConnectTarget, PortInfo};
+use brushwork_script::debug::{Request, View, Wanted};
+use brushwork_sim::server::Pace;
 use brushwork_sim::world::{WorldAction, WorldView};
 use crossbeam_channel::Receiver;
 
@@ -61,4 +63,16 @@ pub trait SimulatedWorld: Send + Sync {
 
     /// Which unit answers to an address.
     fn unit_at(&self, address: u8) -> Option<usize>;
+
+    /// Asks the debugger of a unit's script for something, and for a look at it; [`SimulatedWorld::script`] has it a moment later.
+    fn debug(&self, unit: usize, requests: Vec<Request>, wanted: Wanted) -> Result<(), Failure>;
+
+    /// The newest look at the script that was asked for, once.
+    fn script(&self) -> Option<View>;
+
+    /// How fast the machine's time goes, where that can be chosen.
+    fn pace(&self) -> Option<Pace>;
+
+    /// Lets the machine's time go faster, or as the clock again.
+    fn set_pace(&self, pace: Pace);
 }

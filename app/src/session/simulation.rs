@@ -1,7 +1,7 @@
 //! A simulated machine that runs in this program, in real time.
 
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use brushwork_link::HiddenSettings;
 use brushwork_link::script::CHECKSUM_KEY;
@@ -10,6 +10,7 @@ use brushwork_protocol::canopen::NodeId;
 use brushwork_protocol::canopen::adapter::Form;
 use brushwork_protocol::crc::crc16_xmodem;
 use brushwork_protocol::packet_serial::Address;
+use brushwork_script::debug::{Request, View, Wanted};
 use brushwork_sim::controller::{Bus, BusError, Controller, ControllerConfig};
 use brushwork_sim::machine::StreamIndex;
 use brushwork_sim::plant::ParamsError;
@@ -27,6 +28,8 @@ pub struct Simulation {
     can_form: Option<Form>,
     nodes: Vec<NodeId>,
     server: SimHandle<Bus>,
+    /// The last look at a script that was asked for.
+    script: Arc<Mutex<Option<View>>>,
 }
 
 /// Why a simulated controller cannot be started or reached. Each is a whole sentence for the user.
@@ -79,7 +82,15 @@ impl Simulation {
         let server = Server::spawn(bus, options, &Endpoint::Channel).map_err(SimulationError::Server)?;
         let nodes = spec.units.iter().map(|unit| unit.node).collect();
         let addresses = spec.units.iter().map(|unit| unit.address).collect();
-        Ok(Self { text: text.to_owned(), addresses, stream, can_form: spec.can, nodes, server })
+        Ok(Self {
+            text: text.to_owned(),
+            addresses,
+            stream,
+            can_form: spec.can,
+            nodes,
+            server,
+            script: Arc::default(),
+        })
     }
 
     /// Whether it runs and is what `text` describes.
@@ -126,6 +137,23 @@ impl Simulation {
     /// The worlds of all units. Never waits.
     pub fn views(&self) -> Arc<Vec<WorldView>> {
         self.server.views()
+    }
+
+    /// Asks the debugger of a unit's script for something, and for a look at it. Never waits.
+    ///
+    /// # Errors
+    /// The machine has ended or its queue is full.
+    pub fn debug(&self, unit: usize, requests: Vec<Request>, wanted: Wanted) -> Result<(), ServerError> {
+        let script = Arc::clone(&self.script);
+        self.server.post(move |bus| {
+            let view = bus.controllers_mut().get_mut(unit).map(|unit| unit.debug(requests, &wanted));
+            *script.lock().unwrap_or_else(PoisonError::into_inner) = view;
+        })
+    }
+
+    /// The newest look at the script that was asked for, once.
+    pub fn script(&self) -> Option<View> {
+        self.script.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 
     /// The served machine, for those who need its truth.

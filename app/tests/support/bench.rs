@@ -3,7 +3,7 @@
 
 use std::cell::RefCell;
 use std::rc::Rc;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use brushwork::gui::App;
@@ -15,8 +15,10 @@ use brushwork_link::device::{Addresses, DeviceLoop, DeviceOptions};
 use brushwork_link::transport::{ConnectTarget, OpenError, PortInfo, Stream};
 use brushwork_link::{Clock as _, Failure, HiddenSettings};
 use brushwork_protocol::packet_serial::{Address, Motor};
+use brushwork_script::debug::{Request as DebugRequest, View, Wanted};
 use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_sim::machine::{Machine as _, StreamIndex};
+use brushwork_sim::server::Pace;
 use brushwork_sim::world::{WorldAction, WorldView};
 use crossbeam_channel::{Receiver, bounded};
 use egui::Theme;
@@ -361,7 +363,7 @@ impl Opener for BenchOpener {
                 let transport = Box::new(line.through(gate.clone()));
                 let (device_loop, device) = DeviceLoop::new(transport, Arc::new(gate.clone()), options);
                 *self.loops[which].borrow_mut() = Some(Lockstep::new(gate, device_loop));
-                Ok(OpenLink { device, world: Some(Arc::new(BenchWorld(line.clone()))) })
+                Ok(OpenLink { device, world: Some(Arc::new(BenchWorld::new(line.clone()))) })
             }
             other => Err(SessionError::from(OpenError::NotFound { path: other.to_string() })),
         };
@@ -390,19 +392,49 @@ impl HiddenSettings for BenchHidden {
     }
 }
 
-struct BenchWorld(Line);
+struct BenchWorld {
+    line: Line,
+    script: Mutex<Option<View>>,
+    pace: Mutex<Pace>,
+}
+
+impl BenchWorld {
+    fn new(line: Line) -> Self {
+        Self { line, script: Mutex::default(), pace: Mutex::default() }
+    }
+}
 
 impl SimulatedWorld for BenchWorld {
     fn apply(&self, unit: usize, action: WorldAction) -> Result<(), Failure> {
-        self.0.with(|bus| bus.apply(unit, &action));
+        self.line.with(|bus| bus.apply(unit, &action));
         Ok(())
     }
 
     fn views(&self) -> Option<Arc<Vec<WorldView>>> {
-        Some(Arc::new(self.0.with(|bus| bus.views())))
+        Some(Arc::new(self.line.with(|bus| bus.views())))
     }
 
     fn unit_at(&self, address: u8) -> Option<usize> {
-        self.0.with(|bus| bus.controllers().iter().position(|unit| unit.config().address.get() == address))
+        let is_at = |unit: &Controller| unit.config().address.get() == address;
+        self.line.with(|bus| bus.controllers().iter().position(is_at))
+    }
+
+    fn debug(&self, unit: usize, requests: Vec<DebugRequest>, wanted: Wanted) -> Result<(), Failure> {
+        let view = self.line.with(|bus| bus.controllers_mut()[unit].debug(requests, &wanted));
+        *self.script.lock().expect("no test panics with it") = Some(view);
+        Ok(())
+    }
+
+    fn script(&self) -> Option<View> {
+        self.script.lock().expect("no test panics with it").take()
+    }
+
+    /// Only noted: the bench turns the time by hand.
+    fn pace(&self) -> Option<Pace> {
+        Some(*self.pace.lock().expect("no test panics with it"))
+    }
+
+    fn set_pace(&self, pace: Pace) {
+        *self.pace.lock().expect("no test panics with it") = pace;
     }
 }

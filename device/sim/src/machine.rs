@@ -88,4 +88,9 @@ pub trait Machine: Send {
     /// Whether anything is at the other end of the host's cable: false once every unit is unplugged. A unit unplugged from a wire
     /// that others share hears nothing and says nothing.
     fn plugged(&self) -> bool;
+
+    /// Whether there is something that a person wants to look at in peace: a server that hurries goes back to real time.
+    fn wants_real_time(&self) -> bool {
+        false
+    }
 }

@@ -144,6 +144,10 @@ impl<M: Machine> Machine for Paced<M> {
     fn plugged(&self) -> bool {
         self.inner.plugged()
     }
+
+    fn wants_real_time(&self) -> bool {
+        self.inner.wants_real_time()
+    }
 }
 
 fn earliest(a: Option<Duration>, b: Option<Duration>) -> Option<Duration> {

@@ -11,6 +11,7 @@ use egui::{Context, Key, KeyboardShortcut, Modifiers};
 use super::command::{Command, Commands};
 use super::model::Model;
 
+mod debug;
 mod device;
 mod edit;
 mod file;
@@ -45,25 +46,28 @@ pub struct Place {
     pub group: u8,
 }
 
-/// The menus, in order (MCP manual 1.2.6 to 1.2.9, and View).
+/// The menus, in order (MCP manual 1.2.6 to 1.2.9, and what is new).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Menu {
     File,
     Edit,
     Device,
+    Debug,
     View,
     Graph,
     Help,
 }
 
 impl Menu {
-    pub const ALL: [Self; 6] = [Self::File, Self::Edit, Self::Device, Self::View, Self::Graph, Self::Help];
+    pub const ALL: [Self; 7] =
+        [Self::File, Self::Edit, Self::Device, Self::Debug, Self::View, Self::Graph, Self::Help];
 
     pub const fn title(self) -> &'static str {
         match self {
             Self::File => "File",
             Self::Edit => "Edit",
             Self::Device => "Device",
+            Self::Debug => "Debug",
             Self::View => "View",
             Self::Graph => "Graph",
             Self::Help => "Help",
@@ -86,9 +90,17 @@ pub type Ready = Result<(), Cow<'static, str>>;
 
 /// Every action, menu by menu, as the menus show them.
 pub fn all() -> impl Iterator<Item = &'static Action> {
-    [file::ACTIONS, edit::ACTIONS, device::ACTIONS, view::ACTIONS, graph::ACTIONS, help::ACTIONS]
-        .into_iter()
-        .flatten()
+    [
+        file::ACTIONS,
+        edit::ACTIONS,
+        device::ACTIONS,
+        debug::ACTIONS,
+        view::ACTIONS,
+        graph::ACTIONS,
+        help::ACTIONS,
+    ]
+    .into_iter()
+    .flatten()
 }
 
 /// The actions of a menu.
@@ -140,6 +152,10 @@ const fn place(menu: Menu, group: u8) -> Place {
 
 const fn key(key: Key) -> Keys {
     Keys::Shortcut(KeyboardShortcut::new(Modifiers::NONE, key))
+}
+
+const fn shift(key: Key) -> Keys {
+    Keys::Shortcut(KeyboardShortcut::new(Modifiers::SHIFT, key))
 }
 
 const fn ctrl(key: Key) -> Keys {

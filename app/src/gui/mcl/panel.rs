@@ -5,15 +5,17 @@
 pub enum Tab {
     #[default]
     Problems,
+    Debugger,
     Terminal,
 }
 
 impl Tab {
-    pub const ALL: [Self; 2] = [Self::Problems, Self::Terminal];
+    pub const ALL: [Self; 3] = [Self::Problems, Self::Debugger, Self::Terminal];
 
     pub const fn title(self) -> &'static str {
         match self {
             Self::Problems => "Problems",
+            Self::Debugger => "Debugger",
             Self::Terminal => "Terminal",
         }
     }

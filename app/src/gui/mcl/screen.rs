@@ -2,17 +2,19 @@
 
 use egui::{CentralPanel, Frame, Panel as Area, Ui};
 
-use super::panel::{self, Tab};
+use super::panel::Tab;
 use super::strip::strip_ui;
 use super::tabs::tabs_ui;
 use super::toolbar::toolbar_ui;
 use super::view::view_ui;
 use super::wish::MclWish;
 use crate::gui::command::{Command, Commands};
+use crate::gui::debugger;
 use crate::gui::model::Model;
 
 /// Height of the panel at first, and what it can be dragged to.
 const PANEL_HEIGHT: f32 = 150.0;
+const DEBUGGER_HEIGHT: f32 = 280.0;
 const PANEL_RANGE: std::ops::RangeInclusive<f32> = 90.0..=520.0;
 
 /// Draws the screen.
@@ -27,8 +29,13 @@ pub fn screen_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         panel_tabs_ui(ui, model, &mut wishes);
     });
     if model.mcl.panel.open {
-        let area = Area::bottom("mcl panel").resizable(true).default_size(PANEL_HEIGHT);
-        area.size_range(PANEL_RANGE).frame(bare).show(ui, |ui| panel_ui(ui, model));
+        // The debugger has more to show, so it keeps a height of its own.
+        let (id, height) = match model.mcl.panel.tab {
+            Tab::Debugger => ("mcl debugger", DEBUGGER_HEIGHT),
+            _ => ("mcl panel", PANEL_HEIGHT),
+        };
+        let area = Area::bottom(id).resizable(true).default_size(height);
+        area.size_range(PANEL_RANGE).frame(bare).show(ui, |ui| panel_ui(ui, model, commands));
     }
     CentralPanel::no_frame().show(ui, |ui| {
         Area::bottom("mcl strip").resizable(false).show_separator_line(false).frame(bare).show(ui, |ui| {
@@ -52,16 +59,13 @@ fn panel_tabs_ui(ui: &mut Ui, model: &Model, wishes: &mut Vec<MclWish>) {
     });
 }
 
-fn panel_ui(ui: &mut Ui, model: &mut Model) {
+fn panel_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     ui.take_available_space();
     match model.mcl.panel.tab {
         Tab::Problems => {
             ui.label("No problems.");
         }
-        // The debugger's panels hang in here, a tab each.
-        Tab::Terminal => {
-            ui.label("Nothing was received.");
-        }
+        Tab::Debugger => debugger::debug_ui(ui, model, commands),
+        Tab::Terminal => debugger::terminal_ui(ui, model, commands),
     }
-    let _ = panel::Panel::default;
 }

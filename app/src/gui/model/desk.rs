@@ -29,6 +29,7 @@ use super::traffic::Traffic;
 use super::velocity::Velocity;
 use super::watch::Watch;
 use super::world::WorldPanel;
+use crate::gui::debugger::Debugging;
 use crate::gui::graph::LiveGraph;
 use crate::gui::tune::Tuning;
 
@@ -71,6 +72,8 @@ pub struct Desk {
     pub history: History,
     /// What a diagnosis needs besides the status word.
     pub watch: Watch,
+    /// The MCL debugger of a simulated controller.
+    pub debug: Debugging,
     /// The traffic panel of this link.
     pub traffic: Traffic,
     /// The screen whose channels the graph shows.
@@ -152,6 +155,7 @@ impl Desk {
             loops: LoopSettings::default(),
             history: History::default(),
             watch: Watch::default(),
+            debug: Debugging::default(),
             traffic: Traffic::default(),
             graph_of: Screen::Pwm,
             graph_choices: BTreeMap::new(),
@@ -270,6 +274,7 @@ impl Desk {
                 self.forget_unit();
                 self.loops.want_reading();
                 self.watch.forget();
+                self.debug.forget();
             }
         }
         None
@@ -282,6 +287,7 @@ impl Desk {
         self.link = LinkView::default();
         self.watch = Watch::default();
         self.traffic.link_ended();
+        self.debug.forget();
         self.firmware.not_entered("the link was lost.");
         self.general.link_ended();
         self.forget_unit();

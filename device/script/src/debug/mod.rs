@@ -136,6 +136,18 @@ impl Debugger {
         self.attached && self.paused
     }
 
+    /// Whether anybody debugs.
+    #[must_use]
+    pub fn is_attached(&self) -> bool {
+        self.attached
+    }
+
+    /// Whether bytes that were given to a stream wait to be read.
+    #[must_use]
+    pub fn has_given(&self, stream: u32) -> bool {
+        self.attached && self.terminal.waiting(stream) > 0
+    }
+
     /// A script was started from its beginning.
     pub fn started(&mut self, machine: &Machine) {
         self.adopt(machine);
@@ -169,7 +181,15 @@ impl Debugger {
     /// Does what was asked for; without a machine what concerns one is passed by.
     pub fn ask<H: Host + ?Sized>(&mut self, request: Request, machine: Option<&mut Machine>, host: &mut H) {
         match request {
-            Request::Attach(on) => self.attach(on, machine.as_deref()),
+            Request::Set { id, setting } => self.answer = Some((id, self.set(&setting, machine, host))),
+            other => self.ask_alone(other, machine.as_deref()),
+        }
+    }
+
+    /// The same where there is no host, as in a controller without power: nothing can be set then.
+    pub fn ask_alone(&mut self, request: Request, machine: Option<&Machine>) {
+        match request {
+            Request::Attach(on) => self.attach(on, machine),
             Request::Breakpoints(wanted) => self.set_breakpoints(wanted),
             Request::StopAtEntry(on) => self.stops_at_entry = on,
             Request::FreezeWorld(on) => self.freezes_world = on,
@@ -177,7 +197,9 @@ impl Debugger {
                 self.terminal.give(stream, &bytes);
             }
             Request::ClearCounts => self.counts.fill(0),
-            Request::Set { id, setting } => self.answer = Some((id, self.set(&setting, machine, host))),
+            Request::Set { id, .. } => {
+                self.answer = Some((id, Err("The controller has no power.".to_owned())));
+            }
             Request::Continue => self.resume(Mode::Free),
             Request::RunTo(line) => {
                 let line = self.lines.next_with_code(line);
@@ -187,7 +209,7 @@ impl Debugger {
                 let depth = machine.map_or(0, |machine| machine.calls().len());
                 self.resume(Mode::Step { kind, depth });
             }
-            Request::Pause => self.pause(machine.as_deref()),
+            Request::Pause => self.pause(machine),
         }
     }
 
@@ -201,7 +223,7 @@ impl Debugger {
         if let Some(machine) = machine.filter(|_| on) {
             self.adopt(machine);
             self.moved = true;
-            self.reason = view::reason_of(machine.state(), &self.reason);
+            self.reason = view::reason_of(machine, &self.reason);
         }
     }
 
@@ -232,7 +254,7 @@ impl Debugger {
         let Some(machine) = machine.filter(|machine| !self.paused && !is_over(machine.state())) else {
             return;
         };
-        match waits(machine.state()) {
+        match waits(machine) {
             Some(wait) => self.stand(Reason::Asked(Some(wait))),
             None => self.mode = Mode::Stopping,
         }
@@ -241,7 +263,7 @@ impl Debugger {
     fn stand(&mut self, reason: Reason) {
         self.paused = true;
         // The line that follows a PAUSE has not been looked at yet.
-        self.moved = matches!(reason, Reason::Asked(Some(Wait::Pause { .. })));
+        self.moved = matches!(reason, Reason::Asked(Some(Wait::Pause { .. } | Wait::Busy { .. })));
         self.mode = Mode::Free;
         self.reason = reason;
     }
@@ -324,7 +346,7 @@ impl Debugger {
         if machine.executed() != executed && !waited {
             self.count(at);
         }
-        self.moved |= machine.executed() != executed && waits(machine.state()).is_none_or(|_| !waited);
+        self.moved |= machine.executed() != executed && waits(machine).is_none_or(|_| !waited);
         self.follow_calls(depth, machine);
         match machine.state() {
             State::Ready => {
@@ -335,8 +357,8 @@ impl Debugger {
             }
             State::Ended => self.reason = Reason::Ended,
             State::Faulted(fault) => self.reason = Reason::Faulted(fault.clone()),
-            waiting => {
-                let wait = waits(waiting);
+            _ => {
+                let wait = waits(machine);
                 if self.mode == Mode::Stopping {
                     self.stand(Reason::Asked(wait));
                 } else if let Some(wait) = wait {
@@ -372,9 +394,13 @@ fn is_over(state: &State) -> bool {
     matches!(state, State::Ended | State::Faulted(_))
 }
 
-fn waits(state: &State) -> Option<Wait> {
-    match state {
-        State::Pausing { until } => Some(Wait::Pause { until: *until }),
+fn waits(machine: &Machine) -> Option<Wait> {
+    match machine.state() {
+        State::Pausing { until } => {
+            let op = machine.program().ops.get(machine.at().saturating_sub(1) as usize);
+            let is_pause = matches!(op, Some(Op::Pause));
+            Some(if is_pause { Wait::Pause { until: *until } } else { Wait::Busy { until: *until } })
+        }
         State::Listening { stream } => Some(Wait::Gets { stream: *stream }),
         _ => None,
     }

@@ -26,6 +26,11 @@ pub enum Wait {
         /// Until then, in time since power-up.
         until: Duration,
     },
+    /// Something that is still being sent, read or written: I2C, the EEPROM, a slow port.
+    Busy {
+        /// Until then, in time since power-up.
+        until: Duration,
+    },
     /// GETS.
     Gets {
         /// The stream.
@@ -121,6 +126,10 @@ impl Wait {
             Self::Pause { until } => {
                 let left = until.saturating_sub(now).as_secs_f64();
                 format!("PAUSE at line {line} waits until {:.3} s, {left:.3} s more", until.as_secs_f64())
+            }
+            Self::Busy { until } => {
+                let left = until.saturating_sub(now).as_secs_f64();
+                format!("line {line} waits until what it began is done, {left:.3} s more")
             }
             Self::Gets { stream } => format!("GETS at line {line} waits for a byte on stream {stream}"),
         }

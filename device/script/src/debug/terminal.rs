@@ -112,6 +112,10 @@ impl<H: Host + ?Sized> Host for Tapped<'_, H> {
         typed.or_else(|| self.host.get(stream))
     }
 
+    fn busy_until(&self) -> Option<Duration> {
+        self.host.busy_until()
+    }
+
     fn motion(&mut self, command: Motion, arguments: &[i32]) {
         self.host.motion(command, arguments);
     }

@@ -144,7 +144,7 @@ impl Debugger {
         view.executed = machine.executed();
         view.is_paused = self.is_paused();
         if !self.attached {
-            view.reason = reason_of(machine.state(), &self.reason);
+            view.reason = reason_of(machine, &self.reason);
         }
         view.line = line_of(machine, &view.reason);
         let was_ended = matches!(self.reason, Reason::Stopped(_) | Reason::NotStarted);
@@ -169,7 +169,8 @@ fn worked_out<H: Host + ?Sized>(
 /// The line a script stands on. One that waits in PAUSE has that behind it already.
 fn line_of(machine: &Machine, reason: &Reason) -> u32 {
     match reason {
-        Reason::Waiting(Wait::Pause { .. }) | Reason::Asked(Some(Wait::Pause { .. })) => {
+        Reason::Waiting(Wait::Pause { .. } | Wait::Busy { .. })
+        | Reason::Asked(Some(Wait::Pause { .. } | Wait::Busy { .. })) => {
             let at = machine.at().saturating_sub(1) as usize;
             machine.program().lines.get(at).copied().unwrap_or(0)
         }
@@ -178,12 +179,12 @@ fn line_of(machine: &Machine, reason: &Reason) -> u32 {
 }
 
 /// What the machine alone tells.
-pub(super) fn reason_of(state: &State, known: &Reason) -> Reason {
-    match state {
+pub(super) fn reason_of(machine: &Machine, known: &Reason) -> Reason {
+    match machine.state() {
         _ if matches!(known, Reason::Stopped(_)) => known.clone(),
         State::Ended => Reason::Ended,
         State::Faulted(fault) => Reason::Faulted(fault.clone()),
-        waiting => super::waits(waiting).map_or(Reason::Running, Reason::Waiting),
+        _ => super::waits(machine).map_or(Reason::Running, Reason::Waiting),
     }
 }
 

@@ -17,6 +17,12 @@ impl Memory {
         Self { bytes: vec![0; bytes as usize] }
     }
 
+    /// Memory that holds these bytes.
+    #[must_use]
+    pub fn of(bytes: Vec<u8>) -> Self {
+        Self { bytes }
+    }
+
     /// Sets everything to zero.
     pub fn clear(&mut self) {
         self.bytes.fill(0);

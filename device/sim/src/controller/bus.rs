@@ -182,4 +182,8 @@ impl Machine for Bus {
     fn plugged(&self) -> bool {
         self.units.iter().any(Controller::plugged)
     }
+
+    fn wants_real_time(&self) -> bool {
+        self.units.iter().any(Controller::has_something_to_see)
+    }
 }

@@ -12,6 +12,7 @@ use crate::signals::{FULL_SCALE, PinReading, Triggers};
 use crate::world::{PinState, World};
 use brushwork_protocol::models::{Family, Pin};
 use brushwork_protocol::packet_serial::{Generation, Motor};
+use brushwork_script::debug::StopCause;
 use std::time::Duration;
 
 const KIND_NONE: u8 = 0;
@@ -159,7 +160,7 @@ impl Firmware {
             }
         }
         if triggers.stop_script {
-            self.script.stop();
+            self.script.stop_for(StopCause::PinAction(None));
         }
         let up_for = self.up_for();
         // There is nobody to tell of a script that does not start.

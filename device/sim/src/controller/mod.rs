@@ -10,6 +10,7 @@ mod can;
 mod canbus;
 mod commands;
 mod config;
+mod debugging;
 mod dispatch;
 mod firmware;
 mod inputs;
@@ -41,6 +42,7 @@ use crate::settings::{Eeprom, Settings, UnknownKey};
 use crate::world::{World, WorldAction, WorldParams, WorldView};
 use answer::{Answer, REFUSED, find};
 use brushwork_protocol::packet_serial::{ACK, Framed, encode_reply, encode_reply_named};
+use brushwork_script::debug::{Debugger, StopCause};
 use firmware::Firmware;
 use loader::LoaderStep;
 use memory::Memory;
@@ -61,8 +63,13 @@ pub struct Controller {
     /// What is kept while it does not run.
     memory: Memory,
     ports: [Port; 5],
+    /// Time on the wire, which never stands still.
     now: Duration,
+    /// How much of that the unit and its world stood still, because somebody looked at a paused script.
+    frozen_for: Duration,
     ticks: u64,
+    /// Keeps its breakpoints over power cycles.
+    debugger: Debugger,
 }
 
 impl Controller {
@@ -82,7 +89,9 @@ impl Controller {
             firmware: None,
             memory,
             now: Duration::ZERO,
+            frozen_for: Duration::ZERO,
             ticks: 0,
+            debugger: Debugger::default(),
         };
         controller.follow_power();
         Ok(controller)
@@ -110,16 +119,17 @@ impl Controller {
 
     /// Moves time on to `to`, tick by tick. A time that is past changes nothing.
     pub fn advance(&mut self, to: Duration) {
-        loop {
+        while !self.is_frozen() {
             let next = self.law.tick_at(self.ticks + 1);
-            if next > to {
-                break;
+            if next > to.saturating_sub(self.frozen_for) {
+                self.run_script(to.saturating_sub(self.frozen_for));
+                self.now = self.now.max(to);
+                return;
             }
             self.run_script(next);
             self.run_tick(next);
         }
-        self.run_script(to);
-        self.now = self.now.max(to);
+        self.stand_still(to);
     }
 
     /// When the next reply leaves, on whichever stream.
@@ -144,7 +154,7 @@ impl Controller {
             };
         }
         if let WorldAction::SendCan { bytes } = action {
-            self.world.can_line.send(bytes, self.now);
+            self.world.can_line.send(bytes, self.unit_now());
         }
         self.world.apply(action);
         self.follow_power();
@@ -163,7 +173,7 @@ impl Controller {
     pub fn view(&self) -> WorldView {
         let leds = self.firmware.as_ref().map(|firmware| firmware.leds);
         let script = self.unit().map(|unit| unit.script_view());
-        WorldView { leds, script, ..self.world.view(self.now) }
+        WorldView { leds, script, ..self.world.view(self.unit_now()) }
     }
 
     /// The machine.
@@ -208,7 +218,7 @@ impl Controller {
     pub fn install_script(&mut self, image: &[u8]) {
         match &mut self.firmware {
             Some(firmware) => {
-                firmware.script.stop();
+                firmware.script.stop_for(StopCause::NewImage);
                 firmware.memory.script.install(image);
             }
             None => self.memory.script.install(image),
@@ -229,7 +239,7 @@ impl Controller {
         // Always the same length, so that the machine's step is worked out once; ticks in whole nanoseconds differ by one.
         let dt_s = self.law.tick_s();
         self.ticks += 1;
-        self.now = self.now.max(at);
+        self.now = self.now.max(at + self.frozen_for);
         match &mut self.firmware {
             Some(firmware) => {
                 let mut is_first = [true; 2];
@@ -264,7 +274,7 @@ impl Controller {
             self.ports = std::array::from_fn(|_| Port::new(image.generation));
         }
         let readings = Readings::take(&mut self.world);
-        let firmware = Firmware::boot(&self.config, self.memory.clone(), readings, self.now);
+        let firmware = Firmware::boot(&self.config, self.memory.clone(), readings, self.unit_now());
         self.firmware = Some(firmware);
     }
 
@@ -272,21 +282,22 @@ impl Controller {
         if let Some(firmware) = self.firmware.take() {
             self.memory = firmware.memory;
             self.memory.eeprom.cut_power();
-            self.memory.flash.cut_power(self.now);
+            self.memory.flash.cut_power(self.unit_now());
         }
         self.ports.iter_mut().for_each(Port::reset);
     }
 
     fn receive_byte(&mut self, stream: StreamIndex, byte: u8) {
+        let unit_now = self.unit_now();
         let Some(firmware) = &mut self.firmware else {
             return;
         };
-        firmware.note_byte(stream, self.now);
+        firmware.note_byte(stream, unit_now);
         if let Some(loader) = &mut firmware.loader {
-            let step = loader.feed(byte, self.now, &mut firmware.memory.flash);
+            let step = loader.feed(byte, unit_now, &mut firmware.memory.flash);
             self.load(stream, step);
         } else if !firmware.speaks_packet_serial(stream) {
-            firmware.hear_for_script(stream, byte, self.now);
+            firmware.hear_for_script(stream, byte, unit_now);
         } else if let Some(framed) = self.ports[stream.index()].feed(byte, self.now) {
             self.answer(stream, &framed);
         }
@@ -304,6 +315,7 @@ impl Controller {
     }
 
     fn answer(&mut self, stream: StreamIndex, framed: &Framed) {
+        let unit_now = self.unit_now();
         let Some(firmware) = &mut self.firmware else {
             return;
         };
@@ -311,7 +323,7 @@ impl Controller {
             return;
         }
         // The bytes of this very request may have made Serial the commanding source.
-        firmware.now = self.now;
+        firmware.now = unit_now;
         firmware.update_source();
         let answer = firmware.execute(framed);
         let request = framed.request();
@@ -384,5 +396,9 @@ impl Machine for Controller {
 
     fn plugged(&self) -> bool {
         self.world.plugged()
+    }
+
+    fn wants_real_time(&self) -> bool {
+        self.has_something_to_see()
     }
 }

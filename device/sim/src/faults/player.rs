@@ -168,6 +168,10 @@ impl<M: Machine> Machine for Faulty<M> {
     fn plugged(&self) -> bool {
         self.inner.plugged()
     }
+
+    fn wants_real_time(&self) -> bool {
+        self.inner.wants_real_time()
+    }
 }
 
 impl Wire {

@@ -1,9 +1,11 @@
 //! The thread that advances a machine with the wall clock and carries its bytes.
 
 use super::Stack;
+use super::clock::Clock;
 use super::error::ServerError;
 use super::handle::{Command, SimHandle, Views};
 use super::line::{Heard, Line};
+use super::pace::{Pace, SharedPace};
 use super::wait::wake_exactly;
 use crate::machine::{Machine, StreamIndex};
 use crate::world::WorldAction;
@@ -24,9 +26,10 @@ const WAKE_EARLY: Duration = Duration::from_micros(80);
 const DELIVERY: Duration = Duration::from_millis(1);
 /// How often the worlds are shown.
 const SHOW_EVERY: Duration = Duration::from_millis(20);
-/// After a longer gap (the computer slept, the program was stopped) the machine's time does not catch up but goes on from where
-/// it was.
-const LONGEST_CATCH_UP: Duration = Duration::from_millis(250);
+/// At full speed the machine runs for so long before the line and the commands are looked at again.
+const STRETCH: Duration = Duration::from_millis(4);
+/// So much of the machine's time is run before it is asked whether it still wants to be at full speed.
+const STRIDE: Duration = Duration::from_millis(1);
 
 /// A machine on its endpoint.
 pub struct Driver<M: Machine> {
@@ -38,6 +41,7 @@ pub struct Driver<M: Machine> {
     views: Views,
     shown_at: Duration,
     clock: Clock,
+    pace: SharedPace,
     incoming: Vec<u8>,
     gap: Option<Gap>,
 }
@@ -51,13 +55,6 @@ struct Gap {
     judged_at: Duration,
 }
 
-/// The wall clock, less the time that was skipped.
-struct Clock {
-    start: Instant,
-    machine_start: Duration,
-    skipped: Duration,
-}
-
 impl<M: Machine + 'static> Driver<M> {
     /// Starts the thread.
     pub fn spawn(
@@ -69,6 +66,7 @@ impl<M: Machine + 'static> Driver<M> {
         let (sender, commands) = bounded(COMMANDS);
         let views: Views = Arc::new(Mutex::new(Arc::new(stack.views())));
         let machine_start = stack.now();
+        let pace = SharedPace::default();
         let driver = Self {
             stack,
             stream,
@@ -77,7 +75,8 @@ impl<M: Machine + 'static> Driver<M> {
             commands,
             views: views.clone(),
             shown_at: machine_start,
-            clock: Clock { start: Instant::now(), machine_start, skipped: Duration::ZERO },
+            clock: Clock::starting_at(machine_start),
+            pace: pace.clone(),
             incoming: Vec::new(),
             gap: None,
         };
@@ -85,7 +84,7 @@ impl<M: Machine + 'static> Driver<M> {
             .name("sim-server".to_owned())
             .spawn(move || driver.run())
             .map_err(ServerError::Thread)?;
-        Ok(SimHandle::new(sender, views, address, thread))
+        Ok(SimHandle::new(sender, views, pace, address, thread))
     }
 
     fn run(mut self) {
@@ -96,6 +95,7 @@ impl<M: Machine + 'static> Driver<M> {
     fn turn(&mut self) -> ControlFlow<()> {
         self.obey()?;
         self.follow_plug()?;
+        self.hurry();
         let now = self.advance();
         while let Some(reply) = self.stack.take_output(self.stream) {
             self.line.send(&reply);
@@ -125,12 +125,15 @@ impl<M: Machine + 'static> Driver<M> {
     /// Hands over what has come. A line that is looked at after the gap and found empty has been silent for so long.
     fn hear(&mut self, looked_at: Duration) {
         if self.incoming.is_empty() {
-            self.gap = self.gap.filter(|gap| looked_at < gap.judged_at);
+            // At full speed the time of the machine does not tell how long the line was silent; this thread has waited for it.
+            let full_speed = self.clock.pace() == Pace::Max;
+            self.gap = self.gap.filter(|gap| looked_at < gap.judged_at && !full_speed);
         } else {
             let now = self.advance();
             self.stack.receive(self.stream, &self.incoming);
             let heard_at = self.clock.now(now);
-            self.gap = Some(Gap { ends_at: now + PACKET_GAP, judged_at: heard_at + PACKET_GAP + DELIVERY });
+            let judged_at = heard_at + PACKET_GAP + self.clock.to_machine(DELIVERY);
+            self.gap = Some(Gap { ends_at: now + PACKET_GAP, judged_at });
         }
     }
 
@@ -141,6 +144,28 @@ impl<M: Machine + 'static> Driver<M> {
         let now = self.gap.map_or(wall, |gap| wall.min(gap.ends_at));
         self.stack.advance(now);
         now
+    }
+
+    /// At full speed: runs the machine for a stretch of the wall clock, unless somebody has something to look at.
+    fn hurry(&mut self) {
+        self.clock.set_pace(self.pace.get(), self.stack.now());
+        if self.clock.pace() != Pace::Max {
+            return;
+        }
+        let until = Instant::now() + STRETCH;
+        while Instant::now() < until {
+            if self.stack.wants_real_time() {
+                self.pace.set(Pace::default());
+                self.clock.set_pace(Pace::default(), self.stack.now());
+                return;
+            }
+            let next = self.stack.now() + STRIDE;
+            let to = self.gap.map_or(next, |gap| next.min(gap.ends_at));
+            if to <= self.stack.now() {
+                return;
+            }
+            self.stack.advance(to);
+        }
     }
 
     fn obey(&mut self) -> ControlFlow<()> {
@@ -205,22 +230,14 @@ impl<M: Machine + 'static> Driver<M> {
 
     /// How long to wait for bytes: until the next reply leaves, a gap is over, or a tick.
     fn patience(&self, now: Duration) -> Duration {
-        let reply = self.stack.next_output_at().map(|at| at.saturating_sub(now).saturating_sub(WAKE_EARLY));
-        let gap = self.gap.map(|gap| gap.judged_at.saturating_sub(now));
-        [reply, gap].into_iter().flatten().fold(TICK, Duration::min)
-    }
-}
-
-impl Clock {
-    /// The machine's time by the wall clock; the machine itself stands at `machine_now`.
-    fn now(&mut self, machine_now: Duration) -> Duration {
-        let now = self.machine_start + self.start.elapsed() - self.skipped;
-        let behind = now.saturating_sub(machine_now);
-        if behind <= LONGEST_CATCH_UP {
-            return now;
+        if self.clock.pace() == Pace::Max {
+            return if self.gap.is_some() { DELIVERY } else { Duration::ZERO };
         }
-        self.skipped += behind;
-        machine_now
+        let wall = |time: Duration| self.clock.to_wall(time);
+        let reply = self.stack.next_output_at();
+        let reply = reply.map(|at| wall(at.saturating_sub(now)).saturating_sub(WAKE_EARLY));
+        let gap = self.gap.map(|gap| wall(gap.judged_at.saturating_sub(now)));
+        [reply, gap].into_iter().flatten().fold(TICK, Duration::min)
     }
 }
 
@@ -285,7 +302,8 @@ mod tests {
             plugged: true,
             commands,
             shown_at: machine_start,
-            clock: Clock { start: Instant::now(), machine_start, skipped: Duration::ZERO },
+            clock: Clock::starting_at(machine_start),
+            pace: SharedPace::default(),
             incoming: Vec::new(),
             gap: None,
         };

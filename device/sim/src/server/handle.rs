@@ -2,6 +2,7 @@
 
 use super::channel::ChannelEnds;
 use super::error::ServerError;
+use super::pace::{Pace, SharedPace};
 use crate::machine::Machine;
 use crate::world::{WorldAction, WorldView};
 use crossbeam_channel::{Sender, TrySendError, bounded};
@@ -26,6 +27,7 @@ pub enum Command<M> {
 pub struct SimHandle<M> {
     commands: Option<Sender<Command<M>>>,
     views: Views,
+    pace: SharedPace,
     address: String,
     thread: Option<JoinHandle<()>>,
 }
@@ -63,6 +65,24 @@ impl<M: Machine + 'static> SimHandle<M> {
             let _ = sender.send(look(machine));
         })))?;
         answer.recv().map_err(|_| ServerError::Ended)
+    }
+
+    /// Lets `work` act on the machine between two steps, on the server's thread. Never waits.
+    ///
+    /// # Errors
+    /// The server has ended, or is so busy that its queue is full.
+    pub fn post(&self, work: impl FnOnce(&mut M) + Send + 'static) -> Result<(), ServerError> {
+        self.ask(Command::Inspect(Box::new(work)))
+    }
+
+    /// How fast the machine's time goes. A machine that wanted real time has it again.
+    pub fn pace(&self) -> Pace {
+        self.pace.get()
+    }
+
+    /// Lets the machine's time go faster, or as the wall clock again. Never waits.
+    pub fn set_pace(&self, pace: Pace) {
+        self.pace.set(pace);
     }
 
     /// Connects a client inside the program; the one before is disconnected.
@@ -103,10 +123,11 @@ impl<M> SimHandle<M> {
     pub(super) fn new(
         commands: Sender<Command<M>>,
         views: Views,
+        pace: SharedPace,
         address: String,
         thread: JoinHandle<()>,
     ) -> Self {
-        Self { commands: Some(commands), views, address, thread: Some(thread) }
+        Self { commands: Some(commands), views, pace, address, thread: Some(thread) }
     }
 }
 

@@ -6,10 +6,12 @@
 
 mod bench;
 mod channel;
+mod clock;
 mod driver;
 mod error;
 mod handle;
 mod line;
+mod pace;
 #[cfg(unix)]
 mod pty;
 mod tcp;
@@ -20,6 +22,7 @@ pub use channel::ChannelEnds;
 pub use error::ServerError;
 pub use handle::SimHandle;
 pub use line::{Heard, Line};
+pub use pace::Pace;
 
 use crate::faults::{Fault, Faulty};
 use crate::machine::{Machine, StreamIndex};

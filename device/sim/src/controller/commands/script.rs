@@ -6,6 +6,7 @@ use super::super::loader::Loader;
 use super::super::script::{BLOCK_WRITE_TIME, ERASE_TIME, STATUS_DONE, STATUS_NOT_DONE};
 use brushwork_protocol::packet_serial::number;
 use brushwork_protocol::script_image::BLOCK_BYTES;
+use brushwork_script::debug::StopCause;
 use std::time::Duration;
 
 pub(super) const HANDLERS: Handlers = &[
@@ -31,7 +32,7 @@ pub(super) const HANDLERS: Handlers = &[
         if args.int_or("key", 0) != ERASE_KEY {
             return Answer::Silence;
         }
-        unit.script.stop();
+        unit.script.stop_for(StopCause::NewImage);
         unit.memory.script.erase();
         Answer::AckThenStatus { status: STATUS_DONE, after: ERASE_TIME }
     }),
@@ -54,7 +55,7 @@ const LOADER_KEY: i64 = 0xa5a5_1234;
 fn write_block(unit: &mut Firmware, args: &Arguments<'_>) -> Answer {
     let address = args.u32("address") as usize;
     let block = args.values.bytes("data").and_then(|bytes| <[u8; BLOCK_BYTES]>::try_from(bytes).ok());
-    unit.script.stop();
+    unit.script.stop_for(StopCause::NewImage);
     let is_stored = block.is_some_and(|block| unit.memory.script.write(address, block));
     let status = if is_stored { STATUS_DONE } else { STATUS_NOT_DONE };
     Answer::AckThenStatus { status, after: if is_stored { BLOCK_WRITE_TIME } else { Duration::ZERO } }

@@ -17,6 +17,7 @@ pub use memory::{BLOCK_WRITE_TIME, Content, ERASE_TIME, STATUS_DONE, STATUS_NOT_
 pub use run::INSTRUCTION_TIME;
 pub use streams::Streams;
 
+use brushwork_script::debug::StopCause;
 use brushwork_script::image::{self, ImageError};
 use brushwork_script::vm::{Machine, State};
 use serde::Serialize;
@@ -34,6 +35,10 @@ pub struct ScriptState {
     /// How far the script has run, in time since power-up.
     clock: Duration,
     stopped: bool,
+    /// What stopped it.
+    pub stopped_by: Option<StopCause>,
+    /// It was started, and the debugger was not told yet.
+    pub is_fresh: bool,
     autorun_done: bool,
     /// Bytes for GETS.
     pub streams: Streams,
@@ -138,6 +143,8 @@ impl ScriptState {
         self.machine = Some(Machine::new(Arc::new(program)));
         self.clock = up_for;
         self.stopped = false;
+        self.stopped_by = None;
+        self.is_fresh = true;
         self.streams.clear();
         self.i2c = I2cMaster::default();
         Ok(())
@@ -145,9 +152,21 @@ impl ScriptState {
 
     /// Stops the script; it does not start by itself any more until the next power-up. Assumed: motors go on as they were told.
     pub fn stop(&mut self) {
-        self.stopped |= self.is_running();
+        if self.is_running() {
+            self.stopped = true;
+            self.stopped_by = Some(StopCause::Command);
+        }
         self.autorun_done = true;
         self.drives = [false; 2];
+    }
+
+    /// Stops the script for another reason than a command.
+    pub fn stop_for(&mut self, cause: StopCause) {
+        let was_running = self.is_running();
+        self.stop();
+        if was_running {
+            self.stopped_by = Some(cause);
+        }
     }
 
     /// Starts the image once, when the autorun delay after power-up has passed.

@@ -6,6 +6,7 @@
 use super::super::Controller;
 use super::streams::CAN;
 use super::{ScriptHost, ScriptState};
+use brushwork_script::debug::Debugger;
 use brushwork_script::vm::{Host, Machine, State};
 use std::time::Duration;
 
@@ -62,7 +63,19 @@ impl Controller {
             let at = self.world.can_line.next_at()?.saturating_sub(firmware.booted_at);
             firmware.script.listens_to(CAN).then(|| at.max(firmware.script.clock))
         };
-        firmware.script.due_at().or_else(over_can)
+        firmware.script.due_at().or_else(over_can).or_else(|| self.debugger_due_at())
+    }
+
+    /// The debugger has given bytes to a stream that the script listens to.
+    fn debugger_due_at(&self) -> Option<Duration> {
+        let firmware = self.firmware.as_ref()?;
+        let up_for = self.unit_now().saturating_sub(firmware.booted_at);
+        match firmware.script.machine.as_ref()?.state() {
+            State::Listening { stream } if !self.debugger.is_paused() && self.debugger.has_given(*stream) => {
+                Some(up_for.max(firmware.script.clock))
+            }
+            _ => None,
+        }
     }
 
     fn run_slice(&mut self, at: Duration) {
@@ -70,10 +83,10 @@ impl Controller {
             firmware.hear_can(&mut self.world, at);
             firmware.script.clock = firmware.script.clock.max(at);
         }
-        let ran = self.with_host(at, |machine, host| {
+        let ran = self.with_host(at, |debugger, machine, host| {
             let machine = machine?;
             let before = machine.executed();
-            machine.run(host, SLICE_INSTRUCTIONS);
+            debugger.run(machine, host, SLICE_INSTRUCTIONS);
             Some(machine.executed() - before)
         });
         let instructions = u32::try_from(ran.flatten().unwrap_or(0)).unwrap_or(u32::MAX);
@@ -85,30 +98,41 @@ impl Controller {
         }
     }
 
-    /// Lets somebody look at the script and reach what it reaches, now; `None` without power.
+    /// Lets somebody look at the script and reach what it reaches, now, with its debugger; `None` without power.
     pub fn with_script<T>(
         &mut self,
-        look: impl FnOnce(Option<&mut Machine>, &mut dyn Host) -> T,
+        look: impl FnOnce(&mut Debugger, Option<&mut Machine>, &mut dyn Host) -> T,
     ) -> Option<T> {
-        let up_for = self.now.saturating_sub(self.firmware.as_ref()?.booted_at);
-        self.with_host(up_for, |machine, host| look(machine, host))
+        let up_for = self.unit_now().saturating_sub(self.firmware.as_ref()?.booted_at);
+        self.with_host(up_for, |debugger, machine, host| look(debugger, machine, host))
     }
 
     /// The script and its host at a time since power-up. What it sends is handed to the streams afterwards.
     fn with_host<T>(
         &mut self,
         up_for: Duration,
-        act: impl FnOnce(Option<&mut Machine>, &mut ScriptHost<'_>) -> T,
+        act: impl FnOnce(&mut Debugger, Option<&mut Machine>, &mut ScriptHost<'_>) -> T,
     ) -> Option<T> {
         let firmware = self.firmware.as_mut()?;
         let mut machine = firmware.script.machine.take();
+        tell(&mut self.debugger, machine.as_ref(), &mut firmware.script);
         let mut host = ScriptHost::new(firmware, &mut self.world, up_for);
-        let done = act(machine.as_mut(), &mut host);
+        let done = act(&mut self.debugger, machine.as_mut(), &mut host);
         let said = host.finish();
         firmware.script.machine = machine;
         for (stream, bytes) in said {
             self.ports[stream.index()].say(&bytes);
         }
         Some(done)
+    }
+}
+
+/// Tells the debugger of starts and stops since it was asked last.
+fn tell(debugger: &mut Debugger, machine: Option<&Machine>, script: &mut ScriptState) {
+    if let Some(machine) = machine.filter(|_| std::mem::take(&mut script.is_fresh)) {
+        debugger.started(machine);
+    }
+    if let Some(cause) = script.stopped_by.take() {
+        debugger.stopped(cause);
     }
 }

@@ -1,6 +1,7 @@
 //! Scripts inside the simulated controller, in virtual time and over wire bytes.
 
 mod buses;
+mod debugging;
 mod life;
 mod motors;
 mod registers;
