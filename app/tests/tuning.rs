@@ -3,13 +3,19 @@
 
 mod support;
 
+use std::time::Duration;
+
 use brushwork::gui::model::link::Arming;
 use brushwork::gui::tune::Loop;
+use brushwork::gui::tune::registers::Registers;
+use brushwork::gui::tune::run::Run;
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_sim::controller::{Controller, ControllerConfig};
 use brushwork_sim::motion::MotionSettings;
 use brushwork_sim::presets;
-use brushwork_tuning::report::Verdict;
+use brushwork_sim::world::WorldAction;
+use brushwork_tuning::report::{Report, Verdict};
+use egui::{Key, Modifiers};
 use support::bench::Bench;
 
 fn config(preset: &str) -> ControllerConfig {
@@ -31,6 +37,13 @@ fn opened(preset: &str, screen: &str) -> Bench {
 /// What the controller holds for a motor.
 fn held(bench: &Bench, motor: Motor) -> MotionSettings {
     bench.line.with(|bus| bus.controllers()[0].settings().motors[motor.index()].motion)
+}
+
+/// Presses what may have to be scrolled to first, as with a wheel.
+fn press_below(bench: &mut Bench, label: &str) {
+    bench.button(label).scroll_to_me();
+    bench.pass_ms(300);
+    bench.press(label);
 }
 
 fn timeout_ms(bench: &Bench) -> u32 {
@@ -56,31 +69,318 @@ fn assert_at_rest(bench: &mut Bench) {
     assert_eq!(bench.model().front.link.arming, Arming::Disarmed);
 }
 
-#[test]
-fn a_velocity_loop_is_tuned_and_the_old_gains_are_in_force_until_the_new_ones_are_applied() {
-    let mut bench = opened("small-gearmotor", "Velocity Settings");
-    let (before, timeout) = (held(&bench, Motor::M1), timeout_ms(&bench));
+/// A run that has begun, and the gains from before it.
+fn running(preset: &str, screen: &str) -> (Bench, MotionSettings) {
+    let mut bench = opened(preset, screen);
+    let before = held(&bench, Motor::M1);
     bench.press("Tune M1");
     assert!(bench.model().front.tune.is_running());
-    bench.pass_ms(3000);
-    assert!(bench.sees("Live speed of the run: speed") || bench.sees_part("Live speed of the run"));
-    assert!(bench.sees_part("s left"));
+    (bench, before)
+}
+
+/// A loop of motor 1 that was tuned to its end.
+fn tuned(screen: &str, which: Loop) -> Bench {
+    let (mut bench, _) = running("small-gearmotor", screen);
     finish(&mut bench);
-    let said: Vec<String> = bench.model().messages.past().map(|message| message.text.clone()).collect();
-    let run = bench.model().front.tune.front(Loop::Velocity).run().cloned();
-    let run = run.unwrap_or_else(|| panic!("{said:?}"));
+    let run = run(&mut bench, which);
     assert_ne!(run.report.verdict, Verdict::Refused, "{:?}", run.report.causes);
-    assert_eq!(held(&bench, Motor::M1), before, "nothing stays in the controller by itself");
-    assert_eq!(timeout_ms(&bench), timeout, "the time-out is the user's again");
-    let proposed = run.first.expect("gains").velocity;
-    bench.press("Apply (RAM)");
-    bench.pass_ms(4000);
-    let now = held(&bench, Motor::M1);
+    bench
+}
+
+#[track_caller]
+fn run(bench: &mut Bench, which: Loop) -> Run {
+    let said: Vec<String> = bench.model().messages.past().map(|message| message.text.clone()).collect();
+    let run = bench.model().front.tune.front(which).run().cloned();
+    run.unwrap_or_else(|| panic!("no run: {said:?}"))
+}
+
+fn proposed(bench: &mut Bench, which: Loop) -> Registers {
+    run(bench, which).shown.expect("gains").registers
+}
+
+/// Bytes that have gone to the controller so far, and gains among them.
+fn gains_sent(bench: &Bench) -> MotionSettings {
+    held(bench, Motor::M1)
+}
+
+#[track_caller]
+fn assert_holds(bench: &Bench, wanted: Registers) {
+    let now = held(bench, Motor::M1);
+    let velocity = wanted.velocity;
     assert_eq!(
         (now.velocity_p_raw, now.velocity_i_raw, now.velocity_d_raw, now.qpps),
-        (proposed.p, proposed.i, proposed.d, proposed.qpps)
+        (velocity.p, velocity.i, velocity.d, velocity.qpps)
     );
+    if let Some(position) = wanted.position {
+        assert_eq!(
+            (now.position_p_raw, now.position_i_raw, now.position_d_raw, now.position_max_i),
+            (position.p, position.i, position.d, position.max_i)
+        );
+        assert_eq!((now.position_min_counts, now.position_max_counts), (position.min, position.max));
+    }
+}
+
+#[test]
+fn a_velocity_loop_is_tuned_applied_verified_and_undone_and_nothing_stays_by_itself() {
+    let (mut bench, before) = running("small-gearmotor", "Velocity Settings");
+    let timeout = timeout_ms(&bench);
+    bench.pass_ms(2500);
+    assert!(bench.sees_part("Live speed of the run"));
+    assert!(bench.sees_part("s left"));
+    finish(&mut bench);
+    let tuned = run(&mut bench, Loop::Velocity);
+    assert_ne!(tuned.report.verdict, Verdict::Refused, "{:?}", tuned.report.causes);
+    assert_eq!(held(&bench, Motor::M1), before, "nothing stays in the controller by itself");
+    assert!(timeout >= 250, "the time-out is the user's again: {timeout}");
+    assert!(bench.sees_part("Measured speed over the predicted one: predicted"));
+    bench.press("Apply (RAM)");
+    bench.pass_ms(4000);
+    let wanted = proposed(&mut bench, Loop::Velocity);
+    assert_holds(&bench, wanted);
+    // Verified with the gains that are in force now, which stay in force.
+    bench.press("Arm");
+    bench.pass_ms(500);
+    bench.press("Verify");
+    bench.pass_ms(700);
+    assert!(bench.model().front.tune.is_running());
+    finish(&mut bench);
+    assert!(
+        bench.sees("Verified: the machine behaves as predicted."),
+        "{:?}",
+        run(&mut bench, Loop::Velocity).verified
+    );
+    let wanted = proposed(&mut bench, Loop::Velocity);
+    assert_holds(&bench, wanted);
     bench.press("Undo");
     bench.pass_ms(3000);
     assert_eq!(held(&bench, Motor::M1), before);
+    assert_eq!(timeout_ms(&bench), timeout_of_factory());
+}
+
+/// What the simulated controller's ports begin with.
+fn timeout_of_factory() -> u32 {
+    let unit = Controller::new(ControllerConfig::default()).expect("the default is sound");
+    unit.settings().streams[0].timeout_ms
+}
+
+#[test]
+fn a_position_loop_is_tuned_by_each_method_and_applied_whole() {
+    for (method, has_velocity) in [("PD", false), ("PID", false), ("PIV", true)] {
+        let mut bench = opened("small-gearmotor", "Position Settings");
+        bench.press(method);
+        bench.press("Tune M1");
+        finish(&mut bench);
+        let tuned = run(&mut bench, Loop::Position);
+        assert_ne!(tuned.report.verdict, Verdict::Refused, "{method}: {:?}", tuned.report.causes);
+        assert!(bench.sees_part("Measured position over the predicted one"), "{method}");
+        let gains = proposed(&mut bench, Loop::Position);
+        assert_eq!(gains.velocity.p > 0, has_velocity, "{method}: {gains:?}");
+        assert!(gains.position.is_some_and(|position| position.p > 0), "{method}: {gains:?}");
+        bench.press("Apply (RAM)");
+        bench.pass_ms(4000);
+        assert_holds(&bench, gains);
+    }
+}
+
+#[test]
+fn within_its_travel_an_actuator_is_tuned_without_leaving_it() {
+    let mut bench = opened("linear-actuator", "Position Settings");
+    let start = bench.truth().axes[0].encoder_counts;
+    bench.press("Within");
+    bench.enter("Travel low", &(start - 600).to_string());
+    bench.enter("Travel high", &(start + 600).to_string());
+    bench.press("Tune M1");
+    let (mut low, mut high) = (start, start);
+    while bench.model().front.tune.is_running() {
+        bench.pass_ms(100);
+        let now = bench.truth().axes[0].encoder_counts;
+        (low, high) = (low.min(now), high.max(now));
+    }
+    assert!(low >= start - 600 && high <= start + 600, "{low} {high} about {start}");
+    let tuned = run(&mut bench, Loop::Position);
+    assert_ne!(tuned.report.verdict, Verdict::Refused, "{:?}", tuned.report.causes);
+}
+
+#[test]
+fn the_level_and_gains_by_hand_redraw_the_prediction_and_send_nothing() {
+    let mut bench = tuned("Position Settings", Loop::Position);
+    let (before, first) = (gains_sent(&bench), run(&mut bench, Loop::Position).shown.expect("gains"));
+    bench.focus_label("M1 level");
+    for _ in 0..25 {
+        bench.key(Key::ArrowRight);
+    }
+    let stiffer = run(&mut bench, Loop::Position);
+    assert!(stiffer.level > 60.0, "{}", stiffer.level);
+    let shown = stiffer.shown.expect("gains");
+    assert_ne!(shown.registers, first.registers);
+    assert!(shown.forecast.load_dip < first.forecast.load_dip && shown.forecast.ms > first.forecast.ms);
+    assert!(bench.sees_part("Considered on the model only"));
+    bench.enter("M1 proposed Position P", "4000");
+    assert!(bench.sees_part("Unstable on the model"), "what would happen is told before it does");
+    bench.pass_ms(2000);
+    assert_eq!(gains_sent(&bench), before, "nothing was sent");
+    assert!(bench.both_stand());
+    bench.press("As proposed");
+    assert_eq!(proposed(&mut bench, Loop::Position), first.registers);
+    for (kind, picture) in [
+        ("Step", "Predicted step of the position: current, proposed"),
+        ("Load", "Predicted position under a load step: current, proposed"),
+        ("Bode", "Bode gain of the open loop: current, proposed"),
+        ("Nyquist", "Nyquist plot with the Ms circle: current, proposed"),
+        ("Sensitivity", "Sensitivity over frequency: current, proposed"),
+    ] {
+        bench.press(kind);
+        assert!(bench.sees(picture), "{picture}");
+    }
+}
+
+/// Ends runs at several moments, and looks that the motors stand with the old gains in force, whenever it is.
+#[track_caller]
+fn end_at_any_moment(how: &str, end: impl Fn(&mut Bench), after: impl Fn(&mut Bench)) {
+    for after_ms in [0, 700, 2600] {
+        let (mut bench, before) = running("small-gearmotor", "Velocity Settings");
+        bench.pass_ms(after_ms);
+        assert!(bench.model().front.tune.is_running(), "{how} after {after_ms} ms comes too late");
+        end(&mut bench);
+        bench.pass_ms(600);
+        assert!(bench.both_stand(), "{how} after {after_ms} ms: {}", bench.real_duty(Motor::M1));
+        bench.pass_ms(2000);
+        assert_at_rest(&mut bench);
+        after(&mut bench);
+        assert!(!bench.model().front.tune.is_running(), "{how} after {after_ms} ms");
+        assert_eq!(held(&bench, Motor::M1), before, "{how} after {after_ms} ms");
+        assert_eq!(timeout_ms(&bench), timeout_of_factory(), "{how} after {after_ms} ms");
+        assert_at_rest(&mut bench);
+    }
+}
+
+#[test]
+fn space_and_esc_stop_a_run_at_any_moment_and_put_the_old_gains_back() {
+    end_at_any_moment("Space", |bench| bench.key(Key::Space), |_| {});
+    end_at_any_moment("Esc", |bench| bench.key(Key::Escape), |_| {});
+}
+
+#[test]
+fn the_buttons_stop_a_run_at_any_moment_and_put_the_old_gains_back() {
+    end_at_any_moment("Stop All", |bench| bench.press("Stop All"), |_| {});
+    end_at_any_moment("Stop the run", |bench| bench.press("Stop the run"), |_| {});
+}
+
+#[test]
+fn disarming_or_leaving_the_screen_ends_a_run_at_any_moment_and_puts_the_old_gains_back() {
+    end_at_any_moment("leaving", |bench| bench.press("Device Status"), |_| {});
+    end_at_any_moment(
+        "disarming",
+        |bench| bench.key_with(Modifiers::CTRL | Modifiers::SHIFT, Key::A),
+        |_| {},
+    );
+}
+
+#[test]
+fn a_cable_pulled_out_in_a_run_stops_the_motor_and_the_old_gains_are_put_back_when_it_is_in_again() {
+    let unplug = |bench: &mut Bench| bench.act(&WorldAction::Unplug { unplugged: true });
+    end_at_any_moment("unplugging", unplug, |bench| {
+        bench.act(&WorldAction::Unplug { unplugged: false });
+        bench.press("Connect");
+        bench.pass_ms(5000);
+    });
+}
+
+#[test]
+fn a_frozen_window_stops_the_motor_and_the_old_gains_are_put_back_when_it_lives_again() {
+    let (mut bench, before) = running("small-gearmotor", "Velocity Settings");
+    for _ in 0..60 {
+        if bench.real_duty(Motor::M1) > 0.9 {
+            break;
+        }
+        bench.pass_ms(100);
+    }
+    assert!(bench.real_duty(Motor::M1) > 0.9);
+    // 250 ms, and 50 ms that full duty takes to go to 0 at the highest deceleration.
+    bench.freeze(Duration::from_millis(320));
+    assert!(bench.both_stand(), "{}", bench.real_duty(Motor::M1));
+    bench.pass_ms(2500);
+    assert_at_rest(&mut bench);
+    assert!(!bench.model().front.tune.is_running());
+    assert_eq!(held(&bench, Motor::M1), before);
+}
+
+#[test]
+fn a_refusal_says_what_was_seen_shows_where_and_offers_another_try() {
+    let on = true;
+    for (wrong, sketch, word) in [
+        (WorldAction::ReverseEncoder { motor: Motor::M1, on }, "Sketch: The motor leads OR", "counts down"),
+        (WorldAction::ReverseLeads { motor: Motor::M1, on }, "Sketch: The motor leads OR", "counts down"),
+        (WorldAction::LoseEncoder { motor: Motor::M1, on }, "Sketch: The encoder's plug", "counts nothing"),
+        (WorldAction::LockShaft { motor: Motor::M1, on }, "Sketch: The shaft is held", "Free the shaft"),
+        (WorldAction::OpenLead { motor: Motor::M1, on }, "Sketch: A motor lead", "No current"),
+    ] {
+        let mut bench = opened("small-gearmotor", "Velocity Settings");
+        let before = held(&bench, Motor::M1);
+        bench.act(&wrong);
+        bench.press("Tune M1");
+        finish(&mut bench);
+        assert_eq!(run(&mut bench, Loop::Velocity).report.verdict, Verdict::Refused, "{wrong:?}");
+        assert!(bench.sees_part(sketch), "{wrong:?}: {:?}", run(&mut bench, Loop::Velocity).report.causes);
+        assert!(bench.sees_part(word), "{wrong:?}");
+        assert_eq!(held(&bench, Motor::M1), before, "{wrong:?}");
+        let turned = bench.truth().axes[0].encoder_counts.abs();
+        assert!(turned < 500, "{wrong:?}: {turned}");
+    }
+}
+
+#[test]
+fn after_a_refusal_is_mended_another_try_succeeds_and_both_runs_are_kept() {
+    let mut bench = opened("small-gearmotor", "Velocity Settings");
+    bench.act(&WorldAction::ReverseLeads { motor: Motor::M1, on: true });
+    bench.press("Tune M1");
+    finish(&mut bench);
+    bench.act(&WorldAction::ReverseLeads { motor: Motor::M1, on: false });
+    bench.press("Arm");
+    bench.pass_ms(500);
+    bench.press("Try again");
+    finish(&mut bench);
+    assert_ne!(run(&mut bench, Loop::Velocity).report.verdict, Verdict::Refused);
+    assert_eq!(bench.model().front.tune.front(Loop::Velocity).runs.len(), 2);
+    assert!(bench.sees("Runs so far"));
+}
+
+#[test]
+fn a_report_is_saved_as_the_command_line_writes_it_and_opened_again() {
+    let mut bench = tuned("Velocity Settings", Loop::Velocity);
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("run.json");
+    bench.model().front.tune.path = path.display().to_string();
+    press_below(&mut bench, "Save report");
+    let saved: Report =
+        serde_json::from_str(&std::fs::read_to_string(&path).expect("written")).expect("a report");
+    assert_eq!(saved, run(&mut bench, Loop::Velocity).report);
+    assert_eq!(saved.replay().expect("the record belongs to it"), saved, "the same to the last bit");
+    press_below(&mut bench, "Open report");
+    bench.pass_ms(300);
+    assert_eq!(bench.model().front.tune.front(Loop::Velocity).runs.len(), 2);
+    assert_eq!(run(&mut bench, Loop::Velocity).report, saved);
+}
+
+#[test]
+fn tuning_needs_an_armed_screen() {
+    let mut bench = Bench::new();
+    bench.connect();
+    bench.press("Velocity Settings");
+    bench.press("Tune");
+    bench.press("Tune M1");
+    bench.pass_ms(1500);
+    assert!(!bench.model().front.tune.is_running() && bench.both_stand());
+    assert!(bench.sees_part("Arm this screen to tune"));
+}
+
+#[test]
+fn the_second_motor_is_tuned_and_the_first_stands() {
+    let mut bench = opened("small-gearmotor", "Velocity Settings");
+    let before = bench.truth().axes[0].encoder_counts;
+    bench.press("Tune M2");
+    finish(&mut bench);
+    assert_ne!(run(&mut bench, Loop::Velocity).report.verdict, Verdict::Refused);
+    assert_eq!(bench.model().front.tune.motor(Loop::Velocity), Motor::M2);
+    assert_eq!(bench.truth().axes[0].encoder_counts, before);
 }

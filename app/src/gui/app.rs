@@ -320,6 +320,8 @@ impl App {
             Command::ConnectTo(target) => self.connect_to(&target, target.parse()),
             Command::Show(screen) => self.show(screen),
             Command::Stop => self.stop(),
+            // The switch and its key in the middle of a run ask for its end, wherever it is between two jobs.
+            Command::Arm(_) if self.model.front.tune.is_running() => self.disarm(),
             Command::Arm(scope) => {
                 self.model.front.link.refusals.clear();
                 if self.request(Request::Arm(scope)) {

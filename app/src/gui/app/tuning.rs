@@ -30,6 +30,7 @@ impl App {
             }
             TuneWish::Apply => self.apply_gains(which),
             TuneWish::Undo => self.undo_gains(which),
+            TuneWish::Adjust(motor, registers) => self.adjust(which, motor, registers),
             TuneWish::SaveReport(path) => match front.tune.front(which).run() {
                 Some(run) => files::save(&run.report, &path)
                     .map(|()| self.model.messages.note(format!("The report is in {}.", path.display()))),
@@ -83,24 +84,36 @@ impl App {
             return Err("There are no gains to apply. Tune first.".to_owned());
         };
         let held = Registers::held(&front.loops, motor, registers.position.is_some());
-        self.write_gains(motor, registers.image(motor))?;
+        self.write_gains(registers.image(motor))?;
         self.model.front.tune.front_mut(which).undo = held.map(|held| held.image(motor));
         Ok(())
     }
 
+    /// Writes what was turned by hand, and nothing else.
+    fn adjust(&mut self, which: Loop, motor: Motor, registers: Registers) -> Result<(), String> {
+        let loops = &self.model.front.loops;
+        let held = Registers::held(loops, motor, which == Loop::Position).map(|held| held.image(motor));
+        let wanted = registers.image(motor);
+        let changed =
+            wanted.iter().filter(|(key, value)| held.as_ref().and_then(|held| held.get(key)) != Some(*value));
+        let image: SettingsImage = changed.map(|(key, value)| (key.to_owned(), value)).collect();
+        if image.is_empty() {
+            return Err("That changes nothing: the value is at its end already.".to_owned());
+        }
+        self.write_gains(image)
+    }
+
     fn undo_gains(&mut self, which: Loop) -> Result<(), String> {
-        let front = &mut self.model.front;
-        let motor = front.tune.motor(which);
-        let Some(image) = front.tune.front(which).undo.clone() else {
+        let Some(image) = self.model.front.tune.front(which).undo.clone() else {
             return Err("Nothing was applied that could be undone.".to_owned());
         };
-        self.write_gains(motor, image)?;
+        self.write_gains(image)?;
         self.model.front.tune.front_mut(which).undo = None;
         Ok(())
     }
 
     /// Writes gains to RAM as the settings of the loops are written: with a backup before, and read back.
-    fn write_gains(&mut self, _motor: Motor, image: SettingsImage) -> Result<(), String> {
+    fn write_gains(&mut self, image: SettingsImage) -> Result<(), String> {
         let busy = || "The settings are being read or written. Try again in a moment.".to_owned();
         let front = &mut self.model.front;
         let identity = front.link.identity().cloned().ok_or("No controller is connected.")?;

@@ -267,6 +267,7 @@ impl Desk {
                 self.watch.note_sample(&sample);
                 self.update_homed();
                 self.general.take_signals(&sample.signals);
+                self.tune.note_sample(&sample, self.graph_of);
                 self.graph.take(&sample);
             }
             Effect::OtherUnit => {

@@ -11,6 +11,8 @@ pub enum Tab {
     VelocityLoop,
     Generator,
     Qpps,
+    /// Calibration by hand, step by step.
+    ByHand,
     /// Guided tuning; it takes the room of the sliders and the graph.
     Tune,
 }
@@ -20,8 +22,10 @@ impl Tab {
     pub const fn of(screen: Screen) -> &'static [Self] {
         match screen {
             Screen::Pwm => &[Self::Settings, Self::Generator, Self::Qpps],
-            Screen::Velocity => &[Self::Settings, Self::Generator, Self::Tune],
-            Screen::Position => &[Self::Settings, Self::VelocityLoop, Self::Generator, Self::Tune],
+            Screen::Velocity => &[Self::Settings, Self::Generator, Self::ByHand, Self::Tune],
+            Screen::Position => {
+                &[Self::Settings, Self::VelocityLoop, Self::Generator, Self::ByHand, Self::Tune]
+            }
             _ => &[],
         }
     }
@@ -33,6 +37,7 @@ impl Tab {
             (Self::Settings | Self::VelocityLoop, _) => "Velocity loop",
             (Self::Generator, _) => "Generator",
             (Self::Qpps, _) => "Measure QPPS",
+            (Self::ByHand, _) => "By hand",
             (Self::Tune, _) => "Tune",
         }
     }

@@ -11,6 +11,7 @@ use crate::gui::model::drawer::Tab;
 use crate::gui::model::loop_settings::{Column, POSITION, PWM, VELOCITY};
 use crate::gui::model::screen::Screen;
 use crate::gui::theme::Palette;
+use crate::gui::tune::by_hand::by_hand_ui;
 
 /// Whether guided tuning has the screen.
 pub fn is_tuning(model: &Model) -> bool {
@@ -37,6 +38,7 @@ pub fn drawer_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             Tab::Settings | Tab::VelocityLoop => loops_ui(ui, model, columns(screen, tab), commands),
             Tab::Generator => generator_ui(ui, model, commands),
             Tab::Qpps => qpps_ui(ui, model, commands),
+            Tab::ByHand => by_hand_ui(ui, model, commands),
             Tab::Tune => {}
         }
     });

@@ -146,8 +146,11 @@ impl Chart<'_> {
         let frame = Frame { plot, x, y };
         self.paint_grid(ui, &frame);
         let painter = ui.painter().with_clip_rect(plot);
-        for (center, radius, _) in self.circles {
-            painter.extend(circle(&frame, *center, *radius, Palette::of(ui).warning));
+        for (center, radius, word) in self.circles {
+            let color = Palette::of(ui).warning;
+            painter.extend(circle(&frame, *center, *radius, color));
+            let below = frame.at(center[0], center[1] - radius) + vec2(0.0, 2.0);
+            painter.text(below, Align2::CENTER_TOP, *word, FontId::proportional(FIGURE), color);
         }
         for line in self.lines {
             painter.extend(shapes(line, &frame));

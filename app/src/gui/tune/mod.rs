@@ -2,10 +2,14 @@
 //!
 //! State and screens stand together here; `crate::tune` has the jobs, `brushwork_tuning` the method.
 
+pub mod by_hand;
+pub mod calibration;
 pub mod chart;
 pub mod files;
 pub mod guide;
+mod level;
 pub mod model;
+pub mod observe;
 pub mod plots;
 pub mod refusal;
 pub mod registers;
@@ -14,5 +18,6 @@ pub mod result;
 pub mod run;
 pub mod sequence;
 pub mod setup;
+mod sketches;
 
 pub use model::{Loop, TuneWish, Tuning};

@@ -1,6 +1,6 @@
 //! Tuning as the window keeps it: what is set, what runs, and the runs so far, for each loop of each motor.
 
-use brushwork_link::device::{ArmScope, Event, Identity, Request};
+use brushwork_link::device::{ArmScope, Event, Identity, Request, Sample};
 use brushwork_link::transport::Stream;
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_tuning::axis::{EncoderClass, Setup};
@@ -8,6 +8,8 @@ use brushwork_tuning::report::Verdict;
 use brushwork_tuning::rig::GuardOptions;
 use brushwork_tuning::tune::{self, Excitation, Method};
 
+use super::calibration::Calibration;
+use super::registers::Registers;
 use super::run::Run;
 use super::sequence::{Ended, Next, Sequence, Work};
 use crate::gui::model::link::{Arming, Effect};
@@ -64,6 +66,8 @@ pub enum TuneWish {
     Apply,
     /// What RAM held before they were applied.
     Undo,
+    /// Gains turned by hand, into the controller's RAM.
+    Adjust(Motor, Registers),
     SaveReport(std::path::PathBuf),
     OpenReport(std::path::PathBuf),
 }
@@ -170,6 +174,7 @@ pub struct Tuning {
     running: Option<(Loop, Sequence)>,
     owed: Option<Owed>,
     unit: Option<(u8, String)>,
+    calibrations: [Calibration; 2],
     pub view: super::plots::View,
     /// A path for a report, as it is typed.
     pub path: String,
@@ -185,6 +190,7 @@ impl Default for Tuning {
             running: None,
             owed: None,
             unit: None,
+            calibrations: <[Calibration; 2]>::default(),
             view: super::plots::View::default(),
             path: String::new(),
             dialog: None,
@@ -207,6 +213,29 @@ impl Tuning {
 
     pub fn panel_mut(&mut self, which: Loop, motor: Motor) -> &mut Panel {
         &mut self.panels[which as usize][motor.index()]
+    }
+
+    /// The assistant for calibration by hand.
+    pub fn calibration(&self, which: Loop) -> &Calibration {
+        &self.calibrations[which as usize]
+    }
+
+    pub fn calibration_mut(&mut self, which: Loop) -> &mut Calibration {
+        &mut self.calibrations[which as usize]
+    }
+
+    /// Lets the assistant of a screen see a sample; that of another screen has nothing to go by.
+    pub fn note_sample(&mut self, sample: &Sample, screen: Screen) {
+        for which in [Loop::Velocity, Loop::Position] {
+            let calibration = &mut self.calibrations[which as usize];
+            if Loop::of(screen) != Some(which) {
+                calibration.forget();
+                continue;
+            }
+            for motor in Motor::BOTH {
+                calibration.observer_mut(motor).note(sample, which, motor);
+            }
+        }
     }
 
     /// The panel that is looked at.

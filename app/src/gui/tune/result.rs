@@ -29,9 +29,11 @@ pub fn result_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Com
         super::refusal::refusal_ui(ui, model, which, commands);
     } else {
         verdict_ui(ui, run);
-        gains_ui(ui, model, which, held);
         acts_ui(ui, model, which, commands);
+        ui.spacing_mut().interact_size.y = 20.0;
         figures_ui(ui, model, which);
+        gains_ui(ui, model, which, held);
+        model_ui(ui, model, which);
     }
     runs_ui(ui, model, which);
     files_ui(ui, &mut model.front.tune, which, commands);
@@ -73,7 +75,12 @@ fn verdict_ui(ui: &mut Ui, run: &Run) {
     for cause in &report.causes {
         lamp_ui(ui, LampState::Warning, cause.sentence());
     }
-    if let Some(text) = model_text(report) {
+}
+
+fn model_ui(ui: &mut Ui, model: &Model, which: Loop) {
+    let text = model.front.tune.front(which).run().and_then(|run| model_text(&run.report));
+    if let Some(text) = text {
+        ui.add_space(4.0);
         ui.add(Label::new(RichText::new(text).small().color(Palette::of(ui).weak_text)).wrap());
     }
 }

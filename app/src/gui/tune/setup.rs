@@ -3,8 +3,9 @@
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::tune::Method;
-use egui::{Button, ComboBox, Grid, Label, RichText, Slider, Ui, vec2};
+use egui::{Button, ComboBox, Label, RichText, Ui};
 
+use super::level::level_ui;
 use super::model::{Loop, Setting, TuneWish};
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
@@ -18,10 +19,10 @@ pub fn setup_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Comm
     let palette = Palette::of(ui);
     let is_armed = model.front.link.arming.is_armed_for(which.scope());
     let is_free = !model.front.is_guided();
-    Grid::new("tune motors").spacing(vec2(10.0, 4.0)).show(ui, |ui| {
+    ui.horizontal_wrapped(|ui| {
         for motor in Motor::BOTH {
-            motor_row_ui(ui, model, which, motor, is_armed && is_free, commands);
-            ui.end_row();
+            ui.horizontal(|ui| motor_row_ui(ui, model, which, motor, is_armed && is_free, commands));
+            ui.add_space(10.0);
         }
     });
     ui.horizontal_wrapped(|ui| options_ui(ui, model, which));
@@ -55,19 +56,16 @@ fn motor_row_ui(
     let mut level =
         panel.run().filter(|run| run.first.is_some()).map_or(panel.setting.level, |run| run.level);
     ui.label("Level");
-    ui.label(RichText::new("softer").small().color(Palette::of(ui).weak_text));
-    ui.spacing_mut().slider_width = 150.0;
-    let slider = ui.add(Slider::new(&mut level, 0.0..=100.0).step_by(1.0).fixed_decimals(0).show_value(true));
-    ui.ctx().accesskit_node_builder(slider.id, |node| node.set_label(format!("{motor} level")));
+    ui.label(RichText::new("soft").small().color(Palette::of(ui).weak_text));
     let hint = "How stiff the loop is made. After a run it redraws what the gains of another level would do, without moving anything.";
-    if slider.on_hover_text(hint).changed() {
+    if level_ui(ui, &format!("{motor} level"), hint, &mut level) {
         panel.setting.level = level;
         if let Some(run) = panel.run_mut() {
             run.set_level(level);
         }
         model.front.tune.look_at(which, motor);
     }
-    ui.label(RichText::new("stiffer").small().color(Palette::of(ui).weak_text));
+    ui.label(RichText::new("stiff").small().color(Palette::of(ui).weak_text));
 }
 
 fn options_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
@@ -131,6 +129,10 @@ fn travel_ui(ui: &mut Ui, setting: &mut Setting, held: Option<(f64, f64)>) {
 }
 
 fn encoder_ui(ui: &mut Ui, setting: &mut Setting) {
+    ui.horizontal(|ui| encoder_choice_ui(ui, setting));
+}
+
+fn encoder_choice_ui(ui: &mut Ui, setting: &mut Setting) {
     let label = ui.label("Encoder");
     let word = |class| match class {
         EncoderClass::Quadrature => "quadrature",

@@ -1,0 +1,348 @@
+//! Calibration by hand, step by step: MCP manual 2.4.6 for the velocity loop, 2.4.7 for the position loop.
+//!
+//! Each step says what to do, offers the changes it is made of, and says what the motor's last moves speak for.
+
+use brushwork_protocol::packet_serial::Motor;
+
+use super::model::Loop;
+use super::observe::{Observation, Observer};
+use super::registers::{FIELDS, Registers};
+
+/// P of the position loop to begin with, 2000 on the wire (MCP manual 2.4.7), which is about 2 counts/s per count.
+const FIRST_POSITION_P: f64 = 2000.0 / 1024.0;
+/// Travel of an axis without end stops (MCP manual 2.4.7).
+const NO_STOPS: f64 = 2_000_000_000.0;
+/// Near enough to the setpoint to go on, as a share.
+const NEAR: f64 = 0.05;
+/// Exact, as a share.
+const EXACT: f64 = 0.01;
+/// Overshoot that is some, and that is too much.
+const SOME_OVERSHOOT: f64 = 0.03;
+const MUCH_OVERSHOOT: f64 = 0.25;
+
+/// Where the assistant stands, for one loop.
+#[derive(Clone, Debug)]
+pub struct Calibration {
+    pub motor: Motor,
+    step: usize,
+    observers: [Observer; 2],
+}
+
+impl Default for Calibration {
+    fn default() -> Self {
+        Self { motor: Motor::M1, step: 0, observers: <[Observer; 2]>::default() }
+    }
+}
+
+/// One step.
+#[derive(Debug)]
+pub struct Step {
+    pub title: &'static str,
+    pub text: &'static str,
+    pub changes: &'static [Change],
+}
+
+/// A change that a button makes.
+#[derive(Clone, Copy, Debug)]
+pub struct Change {
+    pub label: &'static str,
+    pub hint: &'static str,
+    make: fn(&mut Registers),
+}
+
+fn set(registers: &mut Registers, key: &str, change: impl Fn(f64) -> f64) {
+    if let Some(field) = FIELDS.iter().find(|field| field.key == key)
+        && let Some(value) = field.value(registers)
+    {
+        field.set(registers, change(value));
+    }
+}
+
+macro_rules! change {
+    ($label:literal, $hint:literal, $($key:literal: |$value:ident| $new:expr),+) => {
+        Change { label: $label, hint: $hint, make: |registers| { $(set(registers, $key, |$value| $new);)+ } }
+    };
+}
+
+/// The steps of MCP manual 2.4.6.
+pub const VELOCITY_STEPS: [Step; 5] = [
+    Step {
+        title: "Full speed",
+        text: "QPPS is the speed at 100 % duty in counts/s. Measure it on the PWM screen, or enter an estimate under Velocity loop \
+               if the motor cannot run freely. The slider here reaches as far as QPPS.",
+        changes: &[],
+    },
+    Step {
+        title: "First values",
+        text: "Begin with P 1, I 0, D 0. Arm the screen and move the slider a little. If the motor stands still, raise P. If it \
+               runs off at full speed at once, stop: the motor leads or the encoder wires are swapped.",
+        changes: &[change!("Set P 1, I 0, D 0", "The values that the procedure begins with",
+                "velocity.p": |_value| 1.0, "velocity.i": |_value| 0.0, "velocity.d": |_value| 0.0)],
+    },
+    Step {
+        title: "P",
+        text: "Ask for a moderate speed, a third of the range. Raise P until the speed comes near to it. When the motor vibrates, go \
+               back to two thirds.",
+        changes: &[
+            change!("P up 25 %", "A stronger answer to the same error", "velocity.p": |p| (p * 1.25).max(p + 0.05)),
+            change!("P to two thirds", "What the procedure does against a vibration", "velocity.p": |p| p * 2.0 / 3.0),
+        ],
+    },
+    Step {
+        title: "I",
+        text: "Raise I in steps of 0.1 until the speed is exact. Too much of it makes the motor rough: it swings about the setpoint.",
+        changes: &[
+            change!("I up 0.1", "Makes good what P leaves, sooner", "velocity.i": |i| i + 0.1),
+            change!("I up 0.02", "A small step, for quick motors", "velocity.i": |i| i + 0.02),
+            change!("I down 0.1", "Less of it, against swings", "velocity.i": |i| i - 0.1),
+            change!("I to two thirds", "Less of it, against swings", "velocity.i": |i| i * 2.0 / 3.0),
+        ],
+    },
+    Step {
+        title: "D",
+        text: "D usually stays 0. Only if P and I cannot be made strong enough without overshoot, a little D damps them; it also makes \
+               noise, which can swing by itself.",
+        changes: &[
+            change!("D up 0.1", "Damps overshoot, adds noise", "velocity.d": |d| d + 0.1),
+            change!("D to 0", "As the procedure leaves it", "velocity.d": |_value| 0.0),
+        ],
+    },
+];
+
+/// The steps of MCP manual 2.4.7.
+pub const POSITION_STEPS: [Step; 5] = [
+    Step {
+        title: "Speed and travel",
+        text: "QPPS must be set as for the velocity loop. For simple position control P, I and D of the velocity loop are 0. Set Min \
+               and Max under Position loop with some margin before each end stop; a motor without stops gets ±2 billion. Travel \
+               speed is best QPPS.",
+        changes: &[
+            change!("Velocity P, I, D to 0", "The position loop then acts on the duty itself",
+                "velocity.p": |_value| 0.0, "velocity.i": |_value| 0.0, "velocity.d": |_value| 0.0),
+            change!("No end stops: ±2 billion", "Only for axes that turn without end",
+                "position.min": |_value| -NO_STOPS, "position.max": |_value| NO_STOPS),
+        ],
+    },
+    Step {
+        title: "First values",
+        text: "Begin with P 2000 on the wire, which is about 2 here, and I and D 0. Arm the screen and move the slider: the motor must \
+               go the right way and stop, not necessarily near.",
+        changes: &[
+            change!("Set P 2, I 0, D 0", "The values that the procedure begins with", "position.p": |_value| FIRST_POSITION_P,
+                "position.i": |_value| 0.0, "position.d": |_value| 0.0, "position.max_i": |_value| 0.0),
+        ],
+    },
+    Step {
+        title: "P, then D",
+        text: "Raise P until each move overshoots a little. Then raise D, which damps the end of a move, until it does not. D is often 5 \
+               to 20 times P. Go on with both until the motor is quick enough.",
+        changes: &[
+            change!("P up 25 %", "Quicker, with more overshoot", "position.p": |p| (p * 1.25).max(p + 0.05)),
+            change!("P down 20 %", "Slower, with less overshoot", "position.p": |p| p * 0.8),
+            Change {
+                label: "D to 5 × P",
+                hint: "Where the useful values of D usually begin",
+                make: |registers| {
+                    let p = registers.position.map_or(0.0, |position| f64::from(position.p) / 1024.0);
+                    set(registers, "position.d", |_value| 5.0 * p);
+                },
+            },
+            change!("D up 25 %", "More damping", "position.d": |d| (d * 1.25).max(d + 0.5)),
+            change!("D down 20 %", "Less damping, less noise", "position.d": |d| d * 0.8),
+        ],
+    },
+    Step {
+        title: "I and deadzone",
+        text: "I brings the axis to the exact place. With play in the gears it makes it hunt about that place instead: widen the \
+               deadzone, within which the place counts as reached, or lower I.",
+        changes: &[
+            change!("I up", "A quarter more, from 0.05 on", "position.i": |i| (i * 1.25).max(i + 0.05)),
+            change!("I to two thirds", "Less of it, against hunting", "position.i": |i| i * 2.0 / 3.0),
+            change!("Deadzone +1", "One count wider", "position.deadzone": |zone| zone + 1.0),
+            change!("Deadzone -1", "One count narrower", "position.deadzone": |zone| zone - 1.0),
+        ],
+    },
+    Step {
+        title: "Max I",
+        text: "I works only within Max I. Raise it until I carries what friction and load take; too much lets the axis swing.",
+        changes: &[
+            change!("Max I up", "Half as much again, from 10 on", "position.max_i": |most| (most * 1.5).max(most + 10.0)),
+            change!("Max I down", "A third less", "position.max_i": |most| most / 1.5),
+        ],
+    },
+];
+
+impl Change {
+    /// The registers with this change made.
+    pub fn made(&self, held: Registers) -> Registers {
+        let mut registers = held;
+        (self.make)(&mut registers);
+        registers
+    }
+}
+
+/// What the motor's last moves speak for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Advice {
+    /// Nothing to go by yet; what to do for it.
+    Wait(&'static str),
+    Good(String),
+    Change(String),
+    Danger(String),
+}
+
+impl Calibration {
+    pub fn steps(which: Loop) -> &'static [Step] {
+        if which == Loop::Velocity { &VELOCITY_STEPS } else { &POSITION_STEPS }
+    }
+
+    pub fn step(&self) -> usize {
+        self.step
+    }
+
+    pub fn go_to(&mut self, which: Loop, step: usize) {
+        self.step = step.min(Self::steps(which).len() - 1);
+    }
+
+    pub fn look_at(&mut self, motor: Motor) {
+        self.motor = motor;
+    }
+
+    pub fn observer_mut(&mut self, motor: Motor) -> &mut Observer {
+        &mut self.observers[motor.index()]
+    }
+
+    pub fn forget(&mut self) {
+        self.observers.iter_mut().for_each(Observer::forget);
+    }
+
+    /// What to do now.
+    pub fn advice(&self, which: Loop, held: Option<Registers>) -> Advice {
+        let Some(held) = held else { return Advice::Wait("The settings have not been read yet.") };
+        let has_speed = held.velocity.qpps >= 1;
+        match (which, self.step) {
+            (_, 0) if !has_speed => Advice::Change("QPPS is 0. Measure or enter it first.".to_owned()),
+            (_, 0) => {
+                Advice::Good(format!("QPPS is {} counts/s. If that is right, go on.", held.velocity.qpps))
+            }
+            _ => match self.observers[self.motor.index()].observe(which) {
+                None => Advice::Wait("Arm the screen and move the slider; then wait a second."),
+                Some(seen) => advise(which, self.step, &seen),
+            },
+        }
+    }
+}
+
+fn advise(which: Loop, step: usize, seen: &Observation) -> Advice {
+    if seen.runs_away {
+        return Advice::Danger(
+            "It runs away at full duty: stop. The motor leads or the encoder wires are swapped; swap one of the two, not both."
+                .to_owned(),
+        );
+    }
+    match which {
+        Loop::Velocity => advise_velocity(step, seen),
+        Loop::Position => advise_position(step, seen),
+    }
+}
+
+fn advise_velocity(step: usize, seen: &Observation) -> Advice {
+    let (below, percent) = (100.0 * seen.error, 100.0 * seen.swing / seen.setpoint.abs().max(1.0));
+    let vibration =
+        format!("It vibrates: ± {percent:.0} % of the speed, ± {:.0} % duty.", seen.duty_swing_percent);
+    match (step, seen.vibrates) {
+        (1 | 2, true) => Advice::Change(format!("{vibration} Take P to two thirds.")),
+        (3, true) => Advice::Change(format!("{vibration} Take I back.")),
+        (_, true) => Advice::Change(format!("{vibration} Take D back, or I and P if D is 0.")),
+        (1, false) if seen.error > 0.9 => Advice::Change("It hardly moves. Raise P.".to_owned()),
+        (1, false) => Advice::Good("It turns and the loop has it. Go on to P.".to_owned()),
+        (2, false) if seen.error.abs() <= NEAR => {
+            Advice::Good(format!("Smooth, and {below:.1} % off. Go on to I."))
+        }
+        (2, false) => Advice::Change(format!("Smooth, but {below:.0} % below the setpoint. Raise P.")),
+        (_, false) if seen.error.abs() > EXACT => {
+            Advice::Change(format!("{below:.1} % below the setpoint. Raise I."))
+        }
+        (_, false) => match seen.overshoot.filter(|over| *over > MUCH_OVERSHOOT) {
+            Some(over) => Advice::Change(format!(
+                "Exact, but the last change overshot by {:.0} %. Take I back a little.",
+                100.0 * over
+            )),
+            None => Advice::Good("Exact and smooth. You are done; save it when you like.".to_owned()),
+        },
+    }
+}
+
+fn advise_position(step: usize, seen: &Observation) -> Advice {
+    let hunting = format!("It hunts about the place: ± {:.0} counts.", seen.swing);
+    let over = seen.overshoot.unwrap_or(0.0);
+    let overshot = format!("The last move overshot by {:.0} %.", 100.0 * over);
+    match (step, seen.vibrates) {
+        (1 | 2, true) => Advice::Change(format!("{hunting} Take D back, then P.")),
+        (_, true) => Advice::Change(format!("{hunting} Widen the deadzone, or take I back.")),
+        (1, false) => Advice::Good("It goes and stops. Go on to P and D.".to_owned()),
+        (2, false) if over > MUCH_OVERSHOOT => Advice::Change(format!("{overshot} Raise D.")),
+        (2, false) if over > SOME_OVERSHOOT => {
+            Advice::Change(format!("{overshot} Raise D until it does not."))
+        }
+        (2, false) if seen.error.abs() > 3.0 => Advice::Change(format!(
+            "No overshoot, and {:.0} counts from the place. Raise P.",
+            seen.error.abs()
+        )),
+        (2, false) => {
+            Advice::Good("No overshoot, and at the place. Raise P and D for more speed, or go on.".to_owned())
+        }
+        (_, false) if seen.error.abs() > 1.5 => Advice::Change(format!(
+            "{:.0} counts from the place. Raise I, and Max I if that does nothing.",
+            seen.error.abs()
+        )),
+        (_, false) => Advice::Good("At the place and quiet. You are done; save it when you like.".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use brushwork_tuning::axis::{PositionRegisters, VelocityRegisters};
+
+    fn held() -> Registers {
+        let velocity = VelocityRegisters { p: 65_536, i: 0, d: 0, qpps: 10_000 };
+        Registers { velocity, position: Some(PositionRegisters { p: 2000, ..PositionRegisters::default() }) }
+    }
+
+    #[test]
+    fn the_first_values_are_those_of_the_manual() {
+        let velocity = VELOCITY_STEPS[1].changes[0].made(Registers::default()).velocity;
+        assert_eq!((velocity.p, velocity.i, velocity.d), (0x1_0000, 0, 0));
+        let position = POSITION_STEPS[1].changes[0].made(held()).position.unwrap();
+        assert_eq!((position.p, position.i, position.d), (2000, 0, 0));
+    }
+
+    #[test]
+    fn two_thirds_and_tenths_are_what_they_say() {
+        let down = VELOCITY_STEPS[2].changes[1].made(held()).velocity.p;
+        assert_eq!(down, 43_691);
+        let up = VELOCITY_STEPS[3].changes[0].made(held()).velocity.i;
+        assert_eq!(up, 6554);
+        let d = POSITION_STEPS[2].changes[2].made(held()).position.unwrap().d;
+        assert_eq!(d, 10_000);
+    }
+
+    #[test]
+    fn advice_follows_the_procedure() {
+        let seen = Observation { setpoint: 1000.0, error: 0.3, ..Observation::default() };
+        assert!(matches!(advise(Loop::Velocity, 2, &seen), Advice::Change(text) if text.contains("Raise P")));
+        let shakes = Observation { vibrates: true, swing: 100.0, ..seen };
+        assert!(
+            matches!(advise(Loop::Velocity, 2, &shakes), Advice::Change(text) if text.contains("two thirds"))
+        );
+        let near = Observation { error: 0.02, ..seen };
+        assert!(matches!(advise(Loop::Velocity, 2, &near), Advice::Good(_)));
+        assert!(matches!(advise(Loop::Velocity, 3, &near), Advice::Change(text) if text.contains("Raise I")));
+        let over =
+            Observation { error: 0.0, overshoot: Some(0.2), setpoint: 500.0, ..Observation::default() };
+        assert!(matches!(advise(Loop::Position, 2, &over), Advice::Change(text) if text.contains("Raise D")));
+        let away = Observation { runs_away: true, ..over };
+        assert!(matches!(advise(Loop::Position, 1, &away), Advice::Danger(_)));
+    }
+}
