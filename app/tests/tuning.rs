@@ -223,11 +223,11 @@ fn the_level_and_gains_by_hand_redraw_the_prediction_and_send_nothing() {
     bench.press("As proposed");
     assert_eq!(proposed(&mut bench, Loop::Position), first.registers);
     for (kind, picture) in [
-        ("Step", "Predicted step of the position: current, proposed"),
-        ("Load", "Predicted position under a load step: current, proposed"),
-        ("Bode", "Bode gain of the open loop: current, proposed"),
-        ("Nyquist", "Nyquist plot with the Ms circle: current, proposed"),
-        ("Sensitivity", "Sensitivity over frequency: current, proposed"),
+        ("Step", "Predicted step of the position: proposed"),
+        ("Load", "Predicted position under a load step: proposed"),
+        ("Bode", "Bode gain of the open loop: proposed"),
+        ("Nyquist", "Nyquist plot with the Ms circle: proposed"),
+        ("Sensitivity", "Sensitivity over frequency: proposed"),
     ] {
         bench.press(kind);
         assert!(bench.sees(picture), "{picture}");
@@ -271,7 +271,7 @@ fn disarming_or_leaving_the_screen_ends_a_run_at_any_moment_and_puts_the_old_gai
     end_at_any_moment("leaving", |bench| bench.press("Device Status"), |_| {});
     end_at_any_moment(
         "disarming",
-        |bench| bench.key_with(Modifiers::CTRL | Modifiers::SHIFT, Key::A),
+        |bench| bench.key_with(Modifiers::COMMAND | Modifiers::SHIFT, Key::A),
         |_| {},
     );
 }

@@ -7,6 +7,7 @@ mod graph;
 mod scenes;
 #[path = "../support/mod.rs"]
 mod support;
+mod tuning;
 
 use brushwork::gui::model::screen::Screen;
 use brushwork_sim::settings::Settings;
@@ -128,6 +129,7 @@ fn opened(place: &str) -> Bench {
         match part {
             "Velocity loop" => bench.press("Velocity loop"),
             "tuned" => tune_position(&mut bench),
+            "Tune" => bench.press("Tune"),
             _ => {}
         }
         return bench;
@@ -247,6 +249,7 @@ fn role_of(row: &Row) -> Role {
         "SpinButton" => Role::SpinButton,
         "Slider" => Role::Slider,
         "Image" => Role::Image,
+        "RadioButton" => Role::RadioButton,
         other => panic!("no such role: {other}"),
     }
 }

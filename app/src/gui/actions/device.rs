@@ -13,6 +13,7 @@ use crate::gui::model::general::{Section, Sheet};
 use crate::gui::model::link::Arming;
 use crate::gui::model::screen::Screen;
 use crate::gui::model::{Model, Phase};
+use crate::gui::tune::{Loop, TuneWish};
 
 pub(super) const ACTIONS: &[Action] = &[
     Action {
@@ -166,6 +167,59 @@ pub(super) const ACTIONS: &[Action] = &[
         command: |_| Command::OpenDrawer(Screen::Pwm, Tab::Qpps),
     },
     Action {
+        id: "device.tune-velocity",
+        title: "Tune Velocity…",
+        place: place(Menu::Device, 3),
+        keys: Keys::None,
+        help: "Goes to guided tuning of the velocity loop; it moves a motor once armed and started there.",
+        ready: connected,
+        is_on: None,
+        command: |_| Command::OpenDrawer(Screen::Velocity, Tab::Tune),
+    },
+    Action {
+        id: "device.tune-position",
+        title: "Tune Position…",
+        place: place(Menu::Device, 3),
+        keys: Keys::None,
+        help: "Goes to guided tuning of the position loop; it moves a motor once armed and started there.",
+        ready: connected,
+        is_on: None,
+        command: |_| Command::OpenDrawer(Screen::Position, Tab::Tune),
+    },
+    Action {
+        id: "device.tune-m1",
+        title: "Tune Motor 1",
+        place: place(Menu::Device, 3),
+        keys: Keys::None,
+        help: "Starts the guided tuning of motor 1 on the open and armed Velocity or Position screen.",
+        ready: can_tune,
+        is_on: None,
+        command: |_| Command::Tune(TuneWish::Start(Motor::M1)),
+    },
+    Action {
+        id: "device.tune-m2",
+        title: "Tune Motor 2",
+        place: place(Menu::Device, 3),
+        keys: Keys::None,
+        help: "Starts the guided tuning of motor 2 on the open and armed Velocity or Position screen.",
+        ready: can_tune,
+        is_on: None,
+        command: |_| Command::Tune(TuneWish::Start(Motor::M2)),
+    },
+    Action {
+        id: "device.by-hand",
+        title: "Calibrate by Hand…",
+        place: place(Menu::Device, 3),
+        keys: Keys::None,
+        help: "Goes to the assistant that turns the gains with you, step by step, on the open screen or the Velocity screen.",
+        ready: connected,
+        is_on: None,
+        command: |model| {
+            let screen = if model.screen == Screen::Position { Screen::Position } else { Screen::Velocity };
+            Command::OpenDrawer(screen, Tab::ByHand)
+        },
+    },
+    Action {
         id: "device.generator",
         title: "Setpoint Generator…",
         place: place(Menu::Device, 3),
@@ -249,6 +303,21 @@ pub(super) const ACTIONS: &[Action] = &[
         command: |_| Command::ResetEmergencyStop,
     },
 ];
+
+fn can_tune(model: &Model) -> Ready {
+    connected(model)?;
+    let Some(which) = Loop::of(model.screen) else {
+        return Err("Tuning is on the Velocity and Position screens.".into());
+    };
+    if model.front.is_guided() {
+        return Err("A job moves the motors already.".into());
+    }
+    if model.front.link.arming.is_armed_for(which.scope()) {
+        Ok(())
+    } else {
+        Err("Arm this screen first.".into())
+    }
+}
 
 fn can_arm(model: &Model) -> Ready {
     connected(model)?;

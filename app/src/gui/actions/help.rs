@@ -31,6 +31,14 @@ pub(super) const ACTIONS: &[Action] = &[
         "From an empty window to a motor that turns."
     ),
     page!(
+        "help.tuning",
+        "How Tuning Works",
+        0,
+        Keys::None,
+        Tuning,
+        "How the tuner works, what its figures mean, and what it refuses."
+    ),
+    page!(
         "help.settings",
         "Settings Reference",
         1,

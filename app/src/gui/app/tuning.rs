@@ -2,6 +2,7 @@
 
 use super::App;
 use crate::gui::model::DeskId;
+use crate::gui::model::drawer::Tab;
 use crate::gui::model::link::Arming;
 use crate::gui::tune::files;
 use crate::gui::tune::model::as_request;
@@ -15,6 +16,11 @@ use brushwork_protocol::packet_serial::Motor;
 impl App {
     pub(super) fn tune(&mut self, wish: TuneWish) {
         let Some(which) = Loop::of(self.model.screen) else { return };
+        if matches!(wish, TuneWish::Start(_))
+            && self.model.front.drawers.open(which.screen()) != Some(Tab::Tune)
+        {
+            self.model.front.drawers.press(which.screen(), Tab::Tune);
+        }
         let front = &mut self.model.front;
         let stream = front.link.stream;
         let told = match wish {

@@ -9,6 +9,7 @@ use super::widgets::text_field::text_field_ui;
 
 mod pages;
 mod reference;
+mod tuning;
 
 /// Draws the window, if it is open, within `room`: it never covers what lies outside.
 pub fn help_ui(ctx: &Context, model: &mut Model, room: Rect) {
@@ -46,6 +47,7 @@ fn page_ui(ui: &mut Ui, page: HelpPage, help: &mut Help) {
     ui.separator();
     match page {
         HelpPage::FirstSteps => scrolled_ui(ui, pages::first_steps_ui),
+        HelpPage::Tuning => scrolled_ui(ui, tuning::tuning_ui),
         HelpPage::Settings => reference::settings_ui(ui, help),
         HelpPage::PacketSerial => reference::packet_serial_ui(ui, help),
         HelpPage::Shortcuts => scrolled_ui(ui, |ui| pages::shortcuts_ui(ui, &help.search)),

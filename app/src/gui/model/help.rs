@@ -5,6 +5,7 @@
 pub enum HelpPage {
     #[default]
     FirstSteps,
+    Tuning,
     Settings,
     PacketSerial,
     Shortcuts,
@@ -12,12 +13,13 @@ pub enum HelpPage {
 }
 
 impl HelpPage {
-    pub const ALL: [Self; 5] =
-        [Self::FirstSteps, Self::Settings, Self::PacketSerial, Self::Shortcuts, Self::About];
+    pub const ALL: [Self; 6] =
+        [Self::FirstSteps, Self::Tuning, Self::Settings, Self::PacketSerial, Self::Shortcuts, Self::About];
 
     pub const fn title(self) -> &'static str {
         match self {
             Self::FirstSteps => "First Steps",
+            Self::Tuning => "Tuning",
             Self::Settings => "Settings Reference",
             Self::PacketSerial => "Packet Serial Reference",
             Self::Shortcuts => "Keyboard Shortcuts",

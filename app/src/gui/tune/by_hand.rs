@@ -7,12 +7,12 @@ use egui::{Button, Label, RichText, Ui};
 use super::calibration::{Advice, Calibration};
 use super::model::{Loop, TuneWish};
 use super::registers::{FIELDS, Registers};
-use super::result::{figure_ui, lamp_ui};
+use super::result::lamp_ui;
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
 use crate::gui::model::drawer::Tab;
 use crate::gui::model::screen::Screen;
-use crate::gui::theme::Palette;
+use crate::gui::theme::{self, Palette};
 use crate::gui::widgets::LampState;
 
 pub fn by_hand_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
@@ -40,8 +40,8 @@ pub fn by_hand_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         if which == Loop::Position && at == 0 {
             travel_speed_ui(ui, model, motor);
         }
+        held_ui(ui, which, held);
     });
-    held_ui(ui, which, held);
     advice_ui(ui, &model.front.tune.calibration(which).advice(which, held));
 }
 
@@ -93,21 +93,18 @@ fn travel_speed_ui(ui: &mut Ui, model: &mut Model, motor: Motor) {
 fn held_ui(ui: &mut Ui, which: Loop, held: Option<Registers>) {
     let palette = Palette::of(ui);
     let Some(held) = held else { return };
-    ui.horizontal_wrapped(|ui| {
-        ui.label(RichText::new("In the controller:").small().color(palette.weak_text));
-        let keys: &[&str] = match which {
-            Loop::Velocity => &["velocity.p", "velocity.i", "velocity.d"],
-            Loop::Position => {
-                &["position.p", "position.i", "position.d", "position.max_i", "position.deadzone"]
-            }
-        };
-        for field in FIELDS.iter().filter(|field| keys.contains(&field.key)) {
-            if let Some(value) = field.value(&held) {
-                ui.label(RichText::new(field.label).small().color(palette.weak_text));
-                figure_ui(ui, &field.text(value), 76.0);
-            }
+    ui.separator();
+    ui.label(RichText::new("In the controller:").small().color(palette.weak_text));
+    let keys: &[&str] = match which {
+        Loop::Velocity => &["velocity.p", "velocity.i", "velocity.d"],
+        Loop::Position => &["position.p", "position.i", "position.d", "position.max_i", "position.deadzone"],
+    };
+    for field in FIELDS.iter().filter(|field| keys.contains(&field.key)) {
+        if let Some(value) = field.value(&held) {
+            ui.label(RichText::new(field.label).small().color(palette.weak_text));
+            ui.label(RichText::new(field.text(value)).text_style(theme::figures()));
         }
-    });
+    }
 }
 
 fn advice_ui(ui: &mut Ui, advice: &Advice) {

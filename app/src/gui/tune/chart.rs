@@ -321,13 +321,11 @@ fn squared(x: Axis, y: Axis, size: egui::Vec2) -> (Axis, Axis) {
 }
 
 fn shapes(line: &Line, frame: &Frame) -> Vec<Shape> {
-    let points: Vec<Pos2> = line
-        .points
-        .iter()
-        .filter(|point| point[0].is_finite() && point[1].is_finite())
-        .map(|point| frame.at(point[0], point[1]))
-        .collect();
-    drawn(points, line.look, line.color)
+    // What is no number leaves a gap.
+    let is_gap = |point: &[f64; 2]| !(point[0].is_finite() && point[1].is_finite());
+    let parts = line.points.split(is_gap).filter(|part| !part.is_empty());
+    let of_part = |part: &[[f64; 2]]| part.iter().map(|point| frame.at(point[0], point[1])).collect();
+    parts.flat_map(|part| drawn(of_part(part), line.look, line.color)).collect()
 }
 
 fn sample_of(line: &Line, from: Pos2, to: Pos2) -> Vec<Shape> {

@@ -3,7 +3,7 @@
 use brushwork_tuning::rig::{Drive, Input};
 use brushwork_tuning::trace::{Stretch, Trace};
 use brushwork_tuning::whatif::{LoopPoint, Reply};
-use egui::{Color32, Ui, vec2};
+use egui::{Color32, RichText, Ui, vec2};
 
 use super::chart::{Axis, Chart, Line, Look};
 use super::model::{Loop, Panel};
@@ -99,20 +99,20 @@ pub fn live_ui(ui: &mut Ui, trace: &Trace, which: Loop) {
 
 /// The picture of a result, with what chooses it.
 pub fn result_ui(ui: &mut Ui, panel: &Panel, view: &mut View, which: Loop) {
-    ui.horizontal_wrapped(|ui| {
-        for kind in Kind::ALL {
-            let label = ui.selectable_label(view.kind == kind, kind.title());
-            if label.on_hover_text(kind.hint()).clicked() {
-                view.kind = kind;
-            }
-        }
-    });
+    if panel.run().is_some_and(Run::is_refused) {
+        ui.label(RichText::new("What was seen").strong());
+    } else {
+        kinds_ui(ui, view);
+    }
     let Some(run) = panel.run() else {
         let empty = "Nothing tuned yet: predictions and measurements of a run are drawn here.";
         let size = ui.available_size();
         let axes = (Axis::new("time", "s", 0.0, 1.0), Axis::new("", which.unit(), 0.0, 1.0));
         return chart(ui, "Result of a run", axes, &[], &[], empty, size);
     };
+    if let Some(seen) = &run.seen {
+        return live_ui(ui, seen, which);
+    }
     match view.kind {
         Kind::Measured => measured_ui(ui, run, which),
         Kind::Step => replies_ui(ui, panel, run, which, false),
@@ -121,6 +121,17 @@ pub fn result_ui(ui: &mut Ui, panel: &Panel, view: &mut View, which: Loop) {
         Kind::Nyquist => nyquist_ui(ui, panel, run),
         Kind::Sensitivity => sensitivity_ui(ui, panel, run),
     }
+}
+
+fn kinds_ui(ui: &mut Ui, view: &mut View) {
+    ui.horizontal_wrapped(|ui| {
+        for kind in Kind::ALL {
+            let label = ui.selectable_label(view.kind == kind, kind.title());
+            if label.on_hover_text(kind.hint()).clicked() {
+                view.kind = kind;
+            }
+        }
+    });
 }
 
 /// What was tried on the machine, over what the model predicts for the same commands: with the gains that were tried, and with those
@@ -381,7 +392,8 @@ fn setpoints(trace: &Trace, stretch: &Stretch) -> Vec<(f64, f64)> {
         let value = match (drive.input, stretch.is_position) {
             (Input::Speed(speed), false) => speed,
             (Input::Position(counts, _), true) => counts,
-            _ => continue,
+            // A duty ends the line; the next setpoint begins another.
+            _ => f64::NAN,
         };
         if let Some(&(_, before)) = stairs.last() {
             stairs.push((drive.t, before));

@@ -180,8 +180,7 @@ fn acts_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands)
     let can_undo = panel.undo.is_some();
     let Some(run) = panel.run_mut() else { return };
     let has_gains = run.shown.is_some();
-    let differs =
-        run.current().map(|shown| shown.registers) != run.shown.as_ref().map(|shown| shown.registers);
+    let differs = run.held() != run.shown.as_ref().map(|shown| shown.registers);
     ui.add_space(4.0);
     ui.horizontal_wrapped(|ui| {
         let apply = ui.add_enabled(is_free && has_gains && differs, Button::new("Apply (RAM)"));

@@ -47,16 +47,20 @@ pub struct Run {
     pub shown: Option<Shown>,
     /// What the run proposed.
     pub first: Option<Registers>,
+    /// The whole run, where it was refused: what was seen.
+    pub seen: Option<Trace>,
     /// Drawn under other runs.
     pub is_overlaid: bool,
     /// What is drawn of the gains that the controller holds.
     current: Option<Shown>,
+    looked_at: Option<Registers>,
 }
 
 impl Run {
     pub fn new(number: usize, report: Report) -> Self {
         let motor = report.request.guard.motor;
         let trace = Trace::of(motor, &report.record);
+        let seen = (report.verdict == Verdict::Refused).then(|| trace.clone());
         let first = report.velocity.map(|velocity| Registers { velocity, position: report.position });
         let measured = report.measured;
         let tried = tried(trace, report.before.map(|setup| setup.velocity), measured.map(|m| m.duty_rms));
@@ -67,8 +71,10 @@ impl Run {
             level: report.request.level,
             shown: None,
             first,
+            seen,
             is_overlaid: true,
             current: None,
+            looked_at: None,
             report,
         };
         run.shown = first.and_then(|registers| run.on_model(registers));
@@ -137,9 +143,19 @@ impl Run {
 
     /// What the gains that the controller holds do on this model; worked out when they change.
     pub fn look_at_held(&mut self, held: Option<Registers>) {
-        if self.current.as_ref().map(|current| current.registers) != held {
+        let wanted = held;
+        if self.looked_at != wanted {
+            // Without any gain there is no loop to draw.
+            let held =
+                held.filter(|held| held.position.is_none_or(|position| position.p > 0 || position.i > 0));
             self.current = held.and_then(|registers| self.on_model(registers));
+            self.looked_at = wanted;
         }
+    }
+
+    /// What the controller holds, as last read.
+    pub fn held(&self) -> Option<Registers> {
+        self.looked_at
     }
 
     pub fn current(&self) -> Option<&Shown> {

@@ -12,6 +12,10 @@ use crate::gui::model::Model;
 use crate::gui::theme::Palette;
 use crate::gui::widgets::numeric::Numeric;
 
+/// From this width on both motors stand in one row, and so do all options.
+const BOTH_IN_A_ROW: f32 = 930.0;
+const OPTIONS_IN_A_ROW: f32 = 1010.0;
+
 const WHAT_IT_DOES: &str = "Checks the wiring with little duty, measures the motor, designs gains for the level, and tries them. \
     Nothing stays in the controller until you apply it.";
 
@@ -19,13 +23,19 @@ pub fn setup_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Comm
     let palette = Palette::of(ui);
     let is_armed = model.front.link.arming.is_armed_for(which.scope());
     let is_free = !model.front.is_guided();
-    ui.horizontal_wrapped(|ui| {
+    let can_start = is_armed && is_free;
+    if ui.available_width() >= BOTH_IN_A_ROW {
+        ui.horizontal(|ui| {
+            motor_row_ui(ui, model, which, Motor::M1, can_start, commands);
+            ui.add_space(16.0);
+            motor_row_ui(ui, model, which, Motor::M2, can_start, commands);
+        });
+    } else {
         for motor in Motor::BOTH {
-            ui.horizontal(|ui| motor_row_ui(ui, model, which, motor, is_armed && is_free, commands));
-            ui.add_space(10.0);
+            ui.horizontal(|ui| motor_row_ui(ui, model, which, motor, can_start, commands));
         }
-    });
-    ui.horizontal_wrapped(|ui| options_ui(ui, model, which));
+    }
+    options_ui(ui, model, which);
     let hint = if is_armed {
         WHAT_IT_DOES
     } else {
@@ -72,7 +82,21 @@ fn options_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
     let motor = model.front.tune.motor(which);
     let travel = model.front.loops.travel(motor);
     let setting = &mut model.front.tune.panel_mut(which, motor).setting;
-    ui.label(RichText::new(format!("Motor {}:", motor.index() + 1)).strong());
+    let is_wide = ui.available_width() >= OPTIONS_IN_A_ROW;
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(format!("Motor {}:", motor.index() + 1)).strong());
+        axis_ui(ui, setting, which, travel);
+        if is_wide {
+            ui.separator();
+            limits_ui(ui, setting);
+        }
+    });
+    if !is_wide {
+        ui.horizontal(|ui| limits_ui(ui, setting));
+    }
+}
+
+fn axis_ui(ui: &mut Ui, setting: &mut Setting, which: Loop, travel: Option<(f64, f64)>) {
     if which == Loop::Position {
         ui.label("Method");
         for (method, name, hint) in [
@@ -85,7 +109,9 @@ fn options_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
         ui.separator();
     }
     travel_ui(ui, setting, travel);
-    ui.separator();
+}
+
+fn limits_ui(ui: &mut Ui, setting: &mut Setting) {
     ui.label("Duty up to");
     let duty =
         Numeric { name: "Highest duty", unit: "%", range: 20.0..=100.0, decimals: 0, step: 5.0, width: 62.0 };
@@ -129,10 +155,6 @@ fn travel_ui(ui: &mut Ui, setting: &mut Setting, held: Option<(f64, f64)>) {
 }
 
 fn encoder_ui(ui: &mut Ui, setting: &mut Setting) {
-    ui.horizontal(|ui| encoder_choice_ui(ui, setting));
-}
-
-fn encoder_choice_ui(ui: &mut Ui, setting: &mut Setting) {
     let label = ui.label("Encoder");
     let word = |class| match class {
         EncoderClass::Quadrature => "quadrature",

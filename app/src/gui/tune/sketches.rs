@@ -271,7 +271,7 @@ impl Pen<'_> {
         self.disc(sketch.disc, sketch.shaft == Shaft::Slipping);
         match sketch.shaft {
             Shaft::Free | Shaft::Slipping => {
-                self.line(&[(360.0, 30.0), (360.0, 58.0)], palette.weak_text, 3.0)
+                self.line(&[(360.0, 30.0), (360.0, 58.0)], palette.weak_text, 3.0);
             }
             Shaft::Blocked => {
                 for y in [24.0, 52.0] {
