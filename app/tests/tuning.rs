@@ -384,3 +384,69 @@ fn the_second_motor_is_tuned_and_the_first_stands() {
     assert_eq!(bench.model().front.tune.motor(Loop::Velocity), Motor::M2);
     assert_eq!(bench.truth().axes[0].encoder_counts, before);
 }
+
+#[test]
+fn an_axis_with_position_limits_stays_within_them_unless_a_person_says_otherwise() {
+    let mut config = config("small-gearmotor");
+    let mut settings = Controller::new(config.clone()).expect("the preset is sound").stored_settings();
+    for motor in &mut settings.motors {
+        (motor.motion.position_min_counts, motor.motion.position_max_counts) = (-3000, 3000);
+    }
+    config.settings = Some(settings);
+    let mut bench = Bench::of(Controller::new(config).expect("the configuration is sound"));
+    bench.connect();
+    bench.arm_on("Position Settings");
+    bench.press("Tune");
+    bench.press("Tune M2");
+    let mut farthest = 0;
+    while bench.model().front.tune.is_running() {
+        bench.pass_ms(100);
+        farthest = farthest.max(bench.truth().axes[1].encoder_counts.abs());
+    }
+    assert!(farthest > 20 && farthest <= 3000, "{farthest}");
+    assert_ne!(run(&mut bench, Loop::Position).report.verdict, Verdict::Refused);
+    bench.press("Turns freely");
+    bench.pass_ms(500);
+    assert!(bench.model().front.tune.front(Loop::Position).setting.turns_freely);
+}
+
+#[test]
+fn calibration_by_hand_makes_the_changes_of_the_manual_and_says_what_the_motor_does() {
+    let mut bench = Bench::of(Controller::new(config("small-gearmotor")).expect("the preset is sound"));
+    bench.connect();
+    bench.press("Velocity Settings");
+    bench.pass_ms(1000);
+    bench.enter("M1 QPPS", "10600");
+    bench.press("Apply to RAM");
+    bench.pass_ms(3000);
+    bench.press("By hand");
+    assert!(bench.sees("QPPS is 10600 counts/s. If that is right, go on."));
+    bench.press("Next step");
+    bench.press("Set P 1, I 0, D 0");
+    bench.pass_ms(1500);
+    let now = held(&bench, Motor::M1);
+    assert_eq!((now.velocity_p_raw, now.velocity_i_raw, now.velocity_d_raw), (0x1_0000, 0, 0));
+    assert!(bench.sees("Arm the screen and move the slider; then wait a second."));
+    bench.press("Arm");
+    bench.pass_ms(500);
+    bench.enter("M1 speed exact", "3500");
+    bench.pass_ms(4000);
+    assert!(bench.sees_part("It turns and the loop has it."));
+    bench.press("3. P");
+    assert!(bench.sees_part("Go on to I.") || bench.sees_part("Raise P."));
+    // Far too much P: the loop swings, and the assistant sees it.
+    for _ in 0..16 {
+        bench.press("P up 25 %");
+        bench.pass_ms(900);
+    }
+    bench.pass_ms(2500);
+    assert!(bench.sees_part("It vibrates"), "P {}", held(&bench, Motor::M1).velocity_p_raw);
+    let rough = held(&bench, Motor::M1).velocity_p_raw;
+    bench.press("P to two thirds");
+    bench.pass_ms(1500);
+    let calmer = held(&bench, Motor::M1).velocity_p_raw;
+    assert!((f64::from(calmer) / f64::from(rough) - 2.0 / 3.0).abs() < 1e-4, "{rough} {calmer}");
+    bench.key(Key::Space);
+    bench.pass_ms(1500);
+    assert_at_rest(&mut bench);
+}

@@ -58,6 +58,9 @@ impl App {
                 desk.tune.meet(&identity);
                 desk.tune.settle_debts();
             }
+            for (motor, travel) in Motor::BOTH.into_iter().zip(desk.travels()) {
+                desk.tune.adopt_travel(motor, travel);
+            }
             let refused = !desk.link.refusals.is_empty();
             if let Some(next) = desk.tune.next(desk.link.arming, refused) {
                 self.ask_next(id, next);

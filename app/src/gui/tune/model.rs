@@ -17,6 +17,9 @@ use crate::gui::model::message::Gravity;
 use crate::gui::model::screen::Screen;
 use crate::tune::Target;
 
+/// Position limits farther apart are none.
+const ENDLESS_COUNTS: f64 = 1e8;
+
 /// Which loop is tuned: each has its screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Loop {
@@ -82,6 +85,8 @@ pub struct Setting {
     pub turns_freely: bool,
     /// Lowest and highest count.
     pub travel: (f64, f64),
+    /// Whether a person has said which; until then the controller's own limits count.
+    pub is_travel_chosen: bool,
     pub max_duty_percent: f64,
     /// The run ends above this current; 0 leaves it to the controller's own limit.
     pub max_amps: f64,
@@ -97,6 +102,7 @@ impl Setting {
             method: if which == Loop::Velocity { Method::Velocity } else { Method::Piv },
             turns_freely: true,
             travel: (-2000.0, 2000.0),
+            is_travel_chosen: false,
             max_duty_percent: 100.0,
             max_amps: 0.0,
             encoder: EncoderClass::Quadrature,
@@ -213,6 +219,17 @@ impl Tuning {
 
     pub fn panel_mut(&mut self, which: Loop, motor: Motor) -> &mut Panel {
         &mut self.panels[which as usize][motor.index()]
+    }
+
+    /// Takes the controller's position limits as the travel, until a person says otherwise: an axis that has some has end stops. A
+    /// velocity loop has no use for limits, which may be left over.
+    pub fn adopt_travel(&mut self, motor: Motor, held: Option<(f64, f64)>) {
+        let setting = &mut self.panel_mut(Loop::Position, motor).setting;
+        if let Some(travel) =
+            held.filter(|(low, high)| high - low < ENDLESS_COUNTS && !setting.is_travel_chosen)
+        {
+            (setting.turns_freely, setting.travel) = (false, travel);
+        }
     }
 
     /// The assistant for calibration by hand.

@@ -12,16 +12,17 @@ use super::model::Loop;
 
 /// How far back it looks, s.
 const MEMORY_S: f64 = 12.0;
-/// The part at the end of a constant setpoint that counts as steady, s, and the fewest samples in it.
-const STEADY_S: f64 = 1.5;
+/// The part at the end of a constant setpoint that counts as steady, s: of a speed, and of a place, about which it hunts slowly. The
+/// fewest samples in it.
+const STEADY_S: [f64; 2] = [1.5, 3.0];
 const FEWEST: usize = 8;
 /// How long a motor is given to come to its setpoint, s.
 const SETTLING_S: f64 = 1.0;
 /// Swings beyond these, with enough turning points, are a vibration: of the speed over the setpoint, of the duty, %.
 const SPEED_SWING: f64 = 0.04;
 const DUTY_SWING_PERCENT: f64 = 6.0;
-/// A swing that turns less often in a second than this is a drift.
-const FEWEST_TURNS_PER_S: f64 = 1.6;
+/// A swing of a speed or of a place that turns less often in a second than this is a drift.
+const FEWEST_TURNS_PER_S: [f64; 2] = [1.6, 0.9];
 /// Duty that is full, %.
 const FULL_PERCENT: f64 = 97.0;
 /// Counts that are rounding.
@@ -103,7 +104,7 @@ impl Observer {
     pub fn observe(&self, which: Loop) -> Option<Observation> {
         let last = *self.readings.back()?;
         let changed_s = self.last_change().map_or(f64::NEG_INFINITY, |(at, ..)| at);
-        let from_s = (last.t - STEADY_S).max(changed_s + SETTLING_S);
+        let from_s = (last.t - STEADY_S[which as usize]).max(changed_s + SETTLING_S);
         let steady: Vec<Reading> = self.readings.iter().filter(|r| r.t >= from_s).copied().collect();
         let is_asked = which == Loop::Position || last.setpoint != 0.0;
         if steady.len() < FEWEST || !is_asked {
@@ -122,7 +123,7 @@ impl Observer {
             overshoot: self.overshoot(which),
             ..Observation::default()
         };
-        let turns_enough = turns_per_s >= FEWEST_TURNS_PER_S;
+        let turns_enough = turns_per_s >= FEWEST_TURNS_PER_S[which as usize];
         match which {
             Loop::Velocity => {
                 seen.error /= last.setpoint;

@@ -1,17 +1,15 @@
 //! The pictures of tuning: what goes on, what was measured over what was predicted, steps, load steps, and the loop over frequency.
 
 use brushwork_tuning::rig::{Drive, Input};
-use brushwork_tuning::trace::{Stretch, Trace};
+use brushwork_tuning::trace::{Predicted, Stretch, Trace};
 use brushwork_tuning::whatif::{LoopPoint, Reply};
 use egui::{Color32, RichText, Ui, vec2};
 
 use super::chart::{Axis, Chart, Line, Look};
 use super::model::{Loop, Panel};
-use super::run::{Run, Shown};
+use super::run::{Run, SPEED_OVER_S, Shown};
 use crate::gui::theme::Palette;
 
-/// Speeds are taken over this long while counts are coarse, s.
-const SPEED_OVER_S: f64 = 0.02;
 /// The time that a live picture shows at least, s, and the steps in which it grows.
 const LIVE_S: f64 = 6.0;
 /// Share of the height that the duty gets.
@@ -149,30 +147,19 @@ fn measured_ui(ui: &mut Ui, run: &Run, which: Loop) {
     let (name, unit) = if stretch.is_position { ("position", "counts") } else { ("speed", "counts/s") };
     let color = if stretch.is_position { palette.traces[3] } else { palette.traces[2] };
     let (mut main, mut duty) = (Vec::new(), Vec::new());
-    let mut predict = |shown: &Shown, name: &str, look: Look| {
-        let Some(task) = run.task() else { return };
-        let course = trace.predict(task, &shown.gains, stretch);
-        let value =
-            |p: &brushwork_tuning::trace::Predicted| if stretch.is_position { p.counts } else { p.speed };
+    let mut predict = |course: &[Predicted], name: &str, look: Look| {
+        let value = |p: &Predicted| if stretch.is_position { p.counts } else { p.speed };
         main.push(line(
             name,
             course.iter().map(|p| (p.t - from_s, value(p))).collect(),
             palette.accent,
             look,
         ));
-        duty.push(line(
-            name,
-            course.iter().map(|p| (p.t - from_s, 100.0 * p.duty)).collect(),
-            palette.accent,
-            look,
-        ));
+        let duties = course.iter().map(|p| (p.t - from_s, 100.0 * p.duty));
+        duty.push(line(name, duties.collect(), palette.accent, look));
     };
-    if let Some(shown) = run.on_model(tried.registers) {
-        predict(&shown, "predicted", Look::Under);
-    }
-    if let Some(shown) = run.shown.as_ref().filter(|shown| shown.registers != tried.registers) {
-        predict(shown, "with the gains considered", Look::Dashed);
-    }
+    predict(&tried.predicted, "predicted", Look::Under);
+    predict(&tried.considered, "with the gains considered", Look::Dashed);
     main.push(line("setpoint", shifted(setpoints(trace, stretch), from_s), palette.traces[0], Look::Dashed));
     let values = if stretch.is_position { places(trace, Some(stretch)) } else { speeds(trace, stretch) };
     main.push(line("measured", shifted(values, from_s), color, Look::Solid));

@@ -1,9 +1,10 @@
 //! What a run has found: its verdict, the gains as current, proposed and change, what they promise, and the runs so far.
 
 use brushwork_tuning::report::{Report, Verdict};
-use egui::{Button, Grid, Label, RichText, Ui, vec2};
+use egui::{Button, Grid, Label, Response, RichText, Ui, vec2};
 
 use super::files::files_ui;
+use super::measured::Figures;
 use super::model::{Loop, TuneWish};
 use super::registers::{FIELDS, Field, Registers};
 use super::run::{Run, Shown};
@@ -165,12 +166,13 @@ fn change_text(field: &Field, current: Option<f64>, wanted: Option<f64>) -> Stri
 }
 
 /// A figure at the right of a place of fixed width.
-pub fn figure_ui(ui: &mut Ui, text: &str, width: f32) {
+pub fn figure_ui(ui: &mut Ui, text: &str, width: f32) -> Response {
     let size = vec2(width, ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), |ui| {
         ui.set_min_width(width);
-        ui.add(Label::new(RichText::new(text).text_style(theme::figures())).truncate());
-    });
+        ui.add(Label::new(RichText::new(text).text_style(theme::figures())).truncate())
+    })
+    .inner
 }
 
 fn acts_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands) {
@@ -240,7 +242,11 @@ fn figures_ui(ui: &mut Ui, model: &Model, which: Loop) {
             ui.label(name).on_hover_text(hint);
             figure_ui(ui, &run.current().map_or_else(|| "–".to_owned(), figure), 84.0);
             figure_ui(ui, &figure(shown), 96.0);
-            figure_ui(ui, &measured(run, name), 64.0);
+            let (measured, promised) = measured(run, name);
+            let response = figure_ui(ui, &measured, 72.0);
+            if let Some(promised) = promised {
+                response.on_hover_text(format!("The model gives {promised} for the same moves"));
+            }
             ui.end_row();
         }
     });
@@ -282,15 +288,23 @@ fn if_stable(shown: &Shown, text: impl FnOnce() -> String) -> String {
     if shown.forecast.is_stable { text() } else { "unstable".to_owned() }
 }
 
-fn measured(run: &Run, name: &str) -> String {
-    let percent =
-        |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{:.1} %", 100.0 * share));
-    let tried = run.tried.as_ref();
-    match name {
-        "Overshoot" => percent(tried.and_then(|tried| tried.overshoot)),
-        "Duty noise" => percent(tried.and_then(|tried| tried.duty_rms)),
-        _ => "–".to_owned(),
-    }
+/// A figure as measured, and what the model gives for the same moves.
+fn measured(run: &Run, name: &str) -> (String, Option<String>) {
+    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    let time = |figures: &Figures| {
+        figures.settling_s.map_or_else(|| "never".to_owned(), |s| format!("{:.0} ms", 1e3 * s))
+    };
+    let Some(tried) = &run.tried else { return ("–".to_owned(), None) };
+    let (measured, promised) = match name {
+        "Overshoot" => {
+            let of = |figures: Option<Figures>| figures.map(|figures| percent(figures.overshoot));
+            (of(tried.figures), of(tried.promised))
+        }
+        "Settling" => (tried.figures.as_ref().map(time), tried.promised.as_ref().map(time)),
+        "Duty noise" => (tried.duty_rms.map(|rms| format!("{:.2} %", 100.0 * rms)), None),
+        _ => (None, None),
+    };
+    (measured.unwrap_or_else(|| "–".to_owned()), promised)
 }
 
 /// The runs so far: which is looked at, which are drawn beneath, their gains and figures.

@@ -5,11 +5,15 @@ use brushwork_tuning::design::Task;
 use brushwork_tuning::model::Gains;
 use brushwork_tuning::registers::{position_registers, velocity_registers};
 use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::trace::{Stretch, Trace, Written};
+use brushwork_tuning::trace::{Predicted, Stretch, Trace, Written};
 use brushwork_tuning::trial::{Trial, TrialRequest, registers_gains};
 use brushwork_tuning::whatif::{Forecast, LoopPoint, forecast, frequency_response, redesign};
 
+use super::measured::{self, Figures};
 use super::registers::Registers;
+
+/// Speeds are taken over this long while counts are coarse, s.
+pub const SPEED_OVER_S: f64 = 0.02;
 
 /// Gains on the model: what they promise, and the loop over frequency.
 #[derive(Clone, Debug)]
@@ -26,8 +30,14 @@ pub struct Tried {
     pub trace: Trace,
     pub stretch: Stretch,
     pub registers: Registers,
-    /// Of the step response as measured: overshoot and settling, where they can be told.
-    pub overshoot: Option<f64>,
+    /// What the model predicts for the same commands, with the gains that were tried.
+    pub predicted: Vec<Predicted>,
+    /// The same with the gains that are considered, where they are others.
+    pub considered: Vec<Predicted>,
+    /// Of the steps as measured, and as predicted.
+    pub figures: Option<Figures>,
+    pub promised: Option<Figures>,
+    /// Of the duty on plateaus, as measured.
     pub duty_rms: Option<f64>,
 }
 
@@ -63,7 +73,8 @@ impl Run {
         let seen = (report.verdict == Verdict::Refused).then(|| trace.clone());
         let first = report.velocity.map(|velocity| Registers { velocity, position: report.position });
         let measured = report.measured;
-        let tried = tried(trace, report.before.map(|setup| setup.velocity), measured.map(|m| m.duty_rms));
+        let rms = measured.and_then(|m| (m.duty_rms > 0.0).then_some(m.duty_rms));
+        let tried = tried(trace, report.before.map(|setup| setup.velocity), rms, &report);
         let mut run = Self {
             number,
             tried,
@@ -78,6 +89,7 @@ impl Run {
             report,
         };
         run.shown = first.and_then(|registers| run.on_model(registers));
+        run.predict_considered();
         run
     }
 
@@ -115,25 +127,35 @@ impl Run {
         };
         let request = &self.report.request;
         if level == request.level {
-            self.shown = self.on_model(first);
-            return;
+            return self.consider(first);
         }
         let Some(design) = redesign(request.method, &task, request.level, &design, level) else { return };
         let velocity = velocity_registers(&design.gains.velocity, task.qpps, &request.law);
         let position =
             first.position.map(|was| position_registers(&design.gains, &request.law, (was.min, was.max)));
-        self.shown = self.on_model(Registers { velocity, position });
+        self.consider(Registers { velocity, position });
     }
 
     /// A gain was entered by hand.
     pub fn consider(&mut self, registers: Registers) {
         self.shown = self.on_model(registers);
+        self.predict_considered();
+    }
+
+    /// What the considered gains would have made of the commands of the trial.
+    fn predict_considered(&mut self) {
+        let (Some(task), Some(tried)) = (self.report.task, &mut self.tried) else { return };
+        let shown = self.shown.as_ref().filter(|shown| shown.registers != tried.registers);
+        tried.considered =
+            shown.map(|s| tried.trace.predict(&task, &s.gains, &tried.stretch)).unwrap_or_default();
     }
 
     /// Back to what the run proposed.
     pub fn reset(&mut self) {
         self.level = self.report.request.level;
-        self.shown = self.first.and_then(|first| self.on_model(first));
+        if let Some(first) = self.first {
+            self.consider(first);
+        }
     }
 
     /// Whether what is considered is what the run proposed.
@@ -178,11 +200,12 @@ impl Run {
     pub fn was_tried(&mut self, trial: &Trial) {
         self.verified = Some(trial.cause.map_or(Ok(()), Err));
         let trace = Trace::of(self.report.request.guard.motor, &trial.record);
-        let rms = trial.measured.map(|measured| measured.duty_rms);
+        let rms = trial.measured.map(|measured| measured.duty_rms).filter(|rms| *rms > 0.0);
         let before = self.report.before.map(|setup| setup.velocity);
-        if let Some(tried) = tried(trace, before, rms) {
+        if let Some(tried) = tried(trace, before, rms, &self.report) {
             self.tried = Some(tried);
         }
+        self.predict_considered();
     }
 }
 
@@ -191,6 +214,7 @@ fn tried(
     trace: Trace,
     before: Option<brushwork_tuning::axis::VelocityRegisters>,
     duty_rms: Option<f64>,
+    report: &Report,
 ) -> Option<Tried> {
     let stretch = *trace.stretches().last()?;
     let mut registers = Registers { velocity: before.unwrap_or_default(), position: None };
@@ -203,28 +227,17 @@ fn tried(
     if !stretch.is_position {
         registers.position = None;
     }
-    let overshoot = overshoot(&trace, &stretch);
-    Some(Tried { trace, stretch, registers, overshoot, duty_rms })
-}
-
-/// Overshoot of the largest step of a position stretch, over the step.
-fn overshoot(trace: &Trace, stretch: &Stretch) -> Option<f64> {
-    use brushwork_tuning::rig::Input;
-    if !stretch.is_position {
-        return None;
-    }
-    let inside = trace.drives.iter().filter(|drive| drive.t >= stretch.from_s && drive.t <= stretch.to_s);
-    let moves: Vec<(f64, f64)> = inside
-        .filter_map(|drive| match drive.input {
-            Input::Position(counts, _) => Some((drive.t, counts)),
-            _ => None,
-        })
-        .collect();
-    let &(from_s, target) = moves.first()?;
-    let to_s = moves.get(1).map_or(stretch.to_s, |next| next.0);
-    let start = trace.points.iter().rev().find(|point| point.t <= from_s)?.counts;
-    let way = target - start;
-    let beyond = trace.points.iter().filter(|point| point.t > from_s && point.t < to_s);
-    let most = beyond.map(|point| (point.counts - target) * way.signum()).fold(0.0, f64::max);
-    (way.abs() >= 1.0).then(|| most / way.abs())
+    let values = |place: f64, speed: f64| if stretch.is_position { place } else { speed };
+    let gains = registers_gains(&registers.velocity, registers.position.as_ref(), &report.request);
+    let predicted = report.task.map(|task| trace.predict(&task, &gains, &stretch)).unwrap_or_default();
+    let (measured, rounding) = if stretch.is_position {
+        (trace.points.iter().map(|point| (point.t, point.counts)).collect(), 1.0)
+    } else {
+        (trace.speeds(SPEED_OVER_S), 1.0 / SPEED_OVER_S)
+    };
+    let course: Vec<(f64, f64)> = predicted.iter().map(|p| (p.t, values(p.counts, p.speed))).collect();
+    let figures = measured::figures(&trace, &stretch, &measured, rounding);
+    let promised = measured::figures(&trace, &stretch, &course, 0.0);
+    let considered = Vec::new();
+    Some(Tried { trace, stretch, registers, predicted, considered, figures, promised, duty_rms })
 }

@@ -108,7 +108,8 @@ fn axis_ui(ui: &mut Ui, setting: &mut Setting, which: Loop, travel: Option<(f64,
         }
         ui.separator();
     }
-    travel_ui(ui, setting, travel);
+    // A velocity loop has no use for position limits, which may be left over.
+    travel_ui(ui, setting, travel.filter(|_| which == Loop::Position));
 }
 
 fn limits_ui(ui: &mut Ui, setting: &mut Setting) {
@@ -137,19 +138,21 @@ fn limits_ui(ui: &mut Ui, setting: &mut Setting) {
 
 fn travel_ui(ui: &mut Ui, setting: &mut Setting, held: Option<(f64, f64)>) {
     let free = ui.radio_value(&mut setting.turns_freely, true, "Turns freely");
-    free.on_hover_text("The motor may run at full speed in both directions for some seconds");
+    let free = free.on_hover_text("The motor may run at full speed in both directions for some seconds");
+    setting.is_travel_chosen |= free.clicked();
     let bound = ui.radio_value(&mut setting.turns_freely, false, "Within");
-    if bound.on_hover_text("The axis stays between two counts and never runs at full speed").clicked()
-        && let Some((low, high)) = held.filter(|(low, high)| high - low < 1e8)
-    {
-        setting.travel = (low, high);
+    if bound.on_hover_text("The axis stays between two counts and never runs at full speed").clicked() {
+        setting.is_travel_chosen = true;
+        setting.travel = held.unwrap_or(setting.travel);
     }
     if !setting.turns_freely {
         let field =
             |name| Numeric { name, unit: "", range: -2e9..=2e9, decimals: 0, step: 100.0, width: 88.0 };
+        let before = setting.travel;
         field("Travel low").ui(ui, &mut setting.travel.0);
         ui.label("to");
         field("Travel high").ui(ui, &mut setting.travel.1);
+        setting.is_travel_chosen |= setting.travel != before;
         ui.label("counts");
     }
 }

@@ -1,0 +1,110 @@
+//! Figures of what a loop did in a stretch: overshoot and settling of its steps, as measured and as predicted for the same commands.
+
+use brushwork_tuning::rig::Input;
+use brushwork_tuning::trace::{Stretch, Trace};
+
+/// Band of a settled speed, as a share of the step; that of a position, and the counts that are rounding.
+const SPEED_BAND: f64 = 0.05;
+const PLACE_BAND: f64 = 0.02;
+const ROUNDING_COUNTS: f64 = 3.0;
+
+/// What the steps of a stretch amount to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Figures {
+    /// Beyond the setpoint, over the step; the median of the steps.
+    pub overshoot: f64,
+    /// s; the median of the steps that settled, none where most did not before the next one.
+    pub settling_s: Option<f64>,
+}
+
+struct Step {
+    from_s: f64,
+    to_s: f64,
+    before: f64,
+    goal: f64,
+}
+
+/// The steps of the setpoint in a stretch. That from rest to the first speed is none: it saturates.
+fn steps(trace: &Trace, stretch: &Stretch) -> Vec<Step> {
+    let inside = trace.drives.iter().filter(|drive| drive.t >= stretch.from_s && drive.t <= stretch.to_s);
+    let goals: Vec<(f64, f64)> = inside
+        .filter_map(|drive| match drive.input {
+            Input::Speed(speed) if !stretch.is_position => Some((drive.t, speed)),
+            Input::Position(counts, _) if stretch.is_position => Some((drive.t, counts)),
+            _ => None,
+        })
+        .collect();
+    let start = trace.points.iter().rev().find(|point| point.t <= stretch.from_s).map(|point| point.counts);
+    let mut before = start.filter(|_| stretch.is_position);
+    let mut steps = Vec::new();
+    for (index, (from_s, goal)) in goals.iter().copied().enumerate() {
+        let to_s = goals.get(index + 1).map_or(stretch.to_s, |next| next.0);
+        if let Some(before) = before.filter(|before| *before != goal) {
+            steps.push(Step { from_s, to_s, before, goal });
+        }
+        before = Some(goal);
+    }
+    steps
+}
+
+/// The figures of `values` (time, speed or position) in the stretch. `rounding` is what the resolution alone can do to a value.
+pub fn figures(trace: &Trace, stretch: &Stretch, values: &[(f64, f64)], rounding: f64) -> Option<Figures> {
+    let (mut overs, mut settled) = (Vec::new(), Vec::new());
+    for step in steps(trace, stretch) {
+        let way = step.goal - step.before;
+        let inside: Vec<(f64, f64)> =
+            values.iter().filter(|(t, _)| *t > step.from_s && *t < step.to_s).copied().collect();
+        if inside.len() < 4 || way.abs() < 4.0 * rounding {
+            continue;
+        }
+        let over = inside.iter().map(|(_, value)| (value - step.goal) * way.signum()).fold(0.0, f64::max);
+        overs.push((over - rounding).max(0.0) / way.abs());
+        let band = if stretch.is_position {
+            (PLACE_BAND * way.abs()).max(ROUNDING_COUNTS)
+        } else {
+            SPEED_BAND * way.abs() + rounding
+        };
+        let last_outside = inside.iter().rposition(|(_, value)| (value - step.goal).abs() > band);
+        settled.push(match last_outside {
+            None => 0.0,
+            Some(index) => inside.get(index + 1).map_or(f64::INFINITY, |(t, _)| t - step.from_s),
+        });
+    }
+    let overshoot = median(overs)?;
+    Some(Figures { overshoot, settling_s: median(settled).filter(|s| s.is_finite()) })
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use brushwork_tuning::axis::EncoderClass;
+    use brushwork_tuning::rig::Drive;
+
+    #[test]
+    fn the_median_of_the_steps_counts_and_the_first_from_rest_does_not() {
+        let mut trace = Trace::new(0, EncoderClass::Quadrature);
+        for (t, speed) in [(0.0, 1000.0), (1.0, 2000.0), (2.0, 1000.0), (3.0, 2000.0)] {
+            trace.drives.push(Drive { t, input: Input::Speed(speed) });
+        }
+        let stretch = Stretch { from_s: 0.0, to_s: 4.0, is_position: false };
+        // From rest it overshoots wildly; each step overshoots by 20 % and settles after 0.3 s.
+        let value = |t: f64| {
+            let goal = if (t as i64) % 2 == 0 { 1000.0 } else { 2000.0 };
+            let sign = if goal > 1500.0 { 1.0 } else { -1.0 };
+            match t {
+                t if t < 1.0 => (t, 9000.0),
+                t if t.fract() < 0.3 => (t, goal + sign * 200.0),
+                t => (t, goal),
+            }
+        };
+        let values: Vec<(f64, f64)> = (0..400).map(|n| value(f64::from(n) * 0.01)).collect();
+        let found = figures(&trace, &stretch, &values, 0.0).unwrap();
+        assert!((found.overshoot - 0.2).abs() < 1e-9, "{found:?}");
+        assert!((found.settling_s.unwrap() - 0.3).abs() < 0.011, "{found:?}");
+    }
+}
