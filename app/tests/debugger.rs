@@ -6,7 +6,9 @@ use std::time::{Duration, Instant};
 
 use brushwork::gui::graph::MarkKind;
 use brushwork_protocol::packet_serial::Motor;
+use brushwork_script::debug::Wanted;
 use brushwork_script::{image, mcl};
+use brushwork_sim::machine::{Machine as _, StreamIndex};
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
@@ -358,6 +360,31 @@ fn a_frozen_world_holds_motors_and_readings_and_the_link_stays() {
     bench.pass_ms(300);
     assert!(bench.truth().axes[0].truth.motor_radians > at[0].truth.motor_radians + 0.5);
     assert!(bench.sees("The motors go on as they were told."));
+}
+
+#[test]
+fn a_frozen_world_is_not_left_behind_on_other_screens() {
+    let mut bench = bench("main\npower 0,8192,0\npause 10\ngoto main\n");
+    bench.press("Freeze world too");
+    bench.model().mcl.front_mut().breakpoints.toggle(1);
+    bench.pass_ms(300);
+    // Command 248 by somebody else, as autorun or a pin would start it: this window is not armed.
+    let mut start = vec![0x80, 248];
+    start.extend(brushwork_protocol::crc::crc16_xmodem(&start).to_be_bytes());
+    bench.line.with(|bus| {
+        bus.receive(StreamIndex::Uart0, &start);
+        bus.advance(bus.now() + Duration::from_millis(2));
+        assert_eq!(bus.take_output(StreamIndex::Uart0), Some(vec![0xFF]));
+    });
+    until(&mut bench, "it stops", |bench| bench.model().front.debug.is_paused());
+    let at = bench.line.with(|bus| bus.controllers_mut()[0].debug(Vec::new(), &Wanted::default()).now);
+    bench.press("PWM Settings");
+    bench.pass_ms(1_000);
+    let now = bench.line.with(|bus| bus.controllers_mut()[0].debug(Vec::new(), &Wanted::default()).now);
+    assert!(now > at + Duration::from_millis(900), "{now:?} after {at:?}");
+    bench.press("MCL Editor");
+    bench.pass_ms(300);
+    assert!(bench.model().front.debug.is_paused() && bench.sees("The world stands still."));
 }
 
 #[test]

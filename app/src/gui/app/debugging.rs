@@ -78,6 +78,7 @@ impl App {
         let front = &mut self.model.front;
         let is_shown = self.model.screen == Screen::MclEditor;
         let Some(world) = self.links.get(front.id()).and_then(|link| link.world.as_ref()) else { return };
+        front.debug.shown(is_shown);
         if !is_shown && !front.debug.has_requests() {
             return;
         }

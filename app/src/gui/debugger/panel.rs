@@ -15,6 +15,7 @@ pub fn debug_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         ui.add(Label::new(why.as_ref()).wrap());
         return;
     }
+    ui.add_space(4.0);
     toolbar::toolbar_ui(ui, model, commands);
     toolbar::reason_ui(ui, model);
     let debug = &model.front.debug;
@@ -25,6 +26,7 @@ pub fn debug_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     }
     ui.separator();
     let height = ui.available_height().max(60.0);
+    ui.spacing_mut().item_spacing.y = 3.0;
     ui.columns_const(|[left, middle, right]| {
         let column = |ui: &mut Ui, id: &str, content: &mut dyn FnMut(&mut Ui)| {
             ScrollArea::vertical()

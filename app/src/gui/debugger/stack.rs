@@ -91,7 +91,7 @@ fn breakpoints_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
         });
         ui.horizontal(|ui| {
             ui.add_space(22.0);
-            let from = DragValue::new(&mut terms.from_hit).range(0..=1_000_000).prefix("from hit ");
+            let from = DragValue::new(&mut terms.from_hit).range(1..=1_000_000).prefix("from hit ");
             let response = ui.add(from).on_hover_text("It stops from this time on that it is reached");
             let name = format!("First hit of breakpoint at line {line}");
             ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name));

@@ -107,6 +107,8 @@ pub struct Debugging {
     before: Snapshot,
     here: Snapshot,
     is_attached: bool,
+    /// Whether the MCL screen was open in the last frame.
+    is_shown: bool,
     /// Something was asked for in the last frame, whose answer is to be shown soon.
     pub is_stepping: bool,
     pub show: Show,
@@ -203,6 +205,14 @@ impl Debugging {
 
     pub fn ask(&mut self, request: Request) {
         self.requests.push(request);
+    }
+
+    /// The MCL screen is open, or not. A world that stands still is not left behind: other screens drive in it.
+    pub fn shown(&mut self, is_shown: bool) {
+        if is_shown != self.is_shown {
+            self.is_shown = is_shown;
+            self.ask(Request::FreezeWorld(is_shown && self.freezes_world));
+        }
     }
 
     pub fn has_requests(&self) -> bool {

@@ -25,6 +25,7 @@ pub fn terminal_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         ui.add(Label::new(why.as_ref()).wrap());
         return;
     }
+    ui.add_space(4.0);
     head_ui(ui, terminal);
     let height = (ui.available_height() - 52.0).max(24.0);
     let scroll = ScrollArea::vertical().id_salt("script terminal").auto_shrink(false).stick_to_bottom(true);

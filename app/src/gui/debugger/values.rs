@@ -13,6 +13,10 @@ use crate::gui::theme::Palette;
 /// Elements of an array that are listed.
 const LISTED: u32 = 256;
 
+/// How much of a line is for the name.
+const NAME_SHARE: f32 = 0.5;
+const ROW_HEIGHT: f32 = 17.0;
+
 /// One line of the list.
 struct Row<'a> {
     /// What Set takes.
@@ -110,21 +114,28 @@ fn variable_ui(
 fn row_ui(ui: &mut Ui, row: &Row<'_>) -> Option<(String, String)> {
     let palette = Palette::of(ui);
     let Row { place, text, hint, changed } = row;
-    let clicked = ui
-        .horizontal(|ui| {
+    let line_ui = |ui: &mut Ui| {
+        let name = egui::vec2(ui.available_width() * NAME_SHARE, ROW_HEIGHT);
+        ui.allocate_ui_with_layout(name, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+            ui.set_width(name.x);
             ui.add(Label::new(RichText::new(place).monospace()).truncate());
-            let color = if *changed { palette.warning } else { palette.text };
-            let mark = if *changed { " *" } else { "" };
-            let value = RichText::new(format!("{text}{mark}")).monospace().color(color);
-            let value = if *changed { value.strong() } else { value };
-            let response = ui.add(Label::new(value).sense(Sense::click()).truncate());
-            let state = if *changed { ", changed" } else { "" };
-            response.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::Role::Button, true, format!("{place} is {text}{state}"))
-            });
-            response.on_hover_text(format!("{hint}. Click to set it to something else")).clicked()
-        })
-        .inner;
+        });
+        let color = if *changed { palette.warning } else { palette.text };
+        let mark = if *changed { " *" } else { "" };
+        let value = RichText::new(format!("{text}{mark}")).monospace().color(color);
+        let value = if *changed { value.strong() } else { value };
+        let response = ui.add(Label::new(value).sense(Sense::click()).truncate());
+        let state = if *changed { ", changed" } else { "" };
+        response.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Button, true, format!("{place} is {text}{state}"))
+        });
+        response.on_hover_text(format!("{hint}. Click to set it to something else")).clicked()
+    };
+    let scope = ui.scope(|ui| {
+        ui.spacing_mut().interact_size.y = ROW_HEIGHT;
+        ui.horizontal(line_ui).inner
+    });
+    let clicked = scope.inner;
     clicked.then(|| (place.clone(), text.clone()))
 }
 

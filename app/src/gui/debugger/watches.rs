@@ -10,10 +10,14 @@ use crate::gui::shell::heading_ui;
 use crate::gui::theme::Palette;
 use crate::gui::widgets::text_field::text_field_ui;
 
+/// A column that has room for a watch and its form side by side.
+const WIDE: f32 = 300.0;
+
 pub fn watches_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
     heading_ui(ui, "Watches");
     let mut removed = None;
     let view = debug.view.clone();
+    let is_wide = ui.available_width() >= WIDE;
     for (index, row) in debug.watches.iter_mut().enumerate() {
         let value = view.as_ref().and_then(|view| view.watches.get(index));
         let (text, is_wrong) = match value {
@@ -27,10 +31,13 @@ pub fn watches_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
                 removed = Some(index);
             }
             show_ui(ui, &format!("Form of watch {}", row.text), &mut row.show);
-            ui.add(Label::new(RichText::new(format!("{} =", row.text)).monospace()).truncate());
-            let color = if is_wrong { Palette::of(ui).warning } else { Palette::of(ui).text };
-            ui.add(Label::new(RichText::new(&text).monospace().color(color)).truncate()).on_hover_text(&text);
+            if is_wide {
+                value_ui(ui, &row.text, &text, is_wrong);
+            }
         });
+        if !is_wide {
+            ui.horizontal(|ui| value_ui(ui, &row.text, &text, is_wrong));
+        }
     }
     removed.into_iter().for_each(|index| drop(debug.watches.remove(index)));
     let hint = "e.g. total / 2, text(3), MOTORENCPOS(0)";
@@ -41,6 +48,13 @@ pub fn watches_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
     }
     ui.add_space(8.0);
     set_ui(ui, debug, commands);
+}
+
+/// An expression and what it is.
+fn value_ui(ui: &mut Ui, expression: &str, value: &str, is_wrong: bool) {
+    ui.add(Label::new(RichText::new(format!("{expression} =")).monospace()).truncate());
+    let color = if is_wrong { Palette::of(ui).warning } else { Palette::of(ui).text };
+    ui.add(Label::new(RichText::new(value).monospace().color(color)).truncate()).on_hover_text(value);
 }
 
 fn set_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
