@@ -5,7 +5,7 @@ use std::time::Duration;
 use brushwork::tune::{Slot, Target, prepare, restore, run, take};
 use brushwork_link::Stream;
 use brushwork_link::device::{ArmScope, DeviceOptions, Event, Job, JobEnding, Request};
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_protocol::packet_serial::{Address, Motor, Request as Packet, number};
 use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_sim::machine::{Machine, StreamIndex};
 use brushwork_sim::motion::MotionSettings;
@@ -76,7 +76,7 @@ fn tuned(link: &mut VirtualLink, request: Tuning, before_run: impl FnOnce(&Virtu
     let report = take(&found);
     // From full duty to none at the highest acceleration takes 50 ms.
     link.line.pass(ms(60));
-    assert_eq!(link.duties(0)[0], 0.0, "a run ends with the motor off");
+    assert!(link.duties(0)[0].abs() < 1e-6, "a run ends with the motor off");
     if !link.ended {
         finish(link, restore(TARGET, before, report.as_ref()), ms(5_000));
     }
@@ -194,5 +194,62 @@ fn a_cable_pulled_at_every_stage_leaves_the_motor_to_the_controllers_time_out() 
         link.machine_alone_for(ms(400));
         let duty = link.bus(|bus| bus.controllers()[0].view().axes[0].output.duty());
         assert_eq!(duty, 0.0, "pulled after {after} ms");
+    }
+}
+
+/// What the unit's current limit and its inductance and resistance are set to.
+fn held(link: &VirtualLink) -> (u32, i32, [u32; 2]) {
+    let motion = settings(link).0;
+    (motion.max_current_raw, motion.min_current_raw, [motion.inductance_raw, motion.resistance_raw])
+}
+
+fn set(link: &VirtualLink, command: u8, values: &[(&str, i64)]) {
+    link.bus(|bus| {
+        let generation = bus.controllers()[0].config().generation;
+        let packet = Packet::named(Address::DEFAULT, command, generation, values).expect("the values fit");
+        let bytes = packet.encode(generation).expect("it encodes");
+        bus.receive(StreamIndex::Usb, &bytes);
+    });
+}
+
+#[test]
+fn torque_mode_is_refused_and_left_only_with_the_users_word_and_put_back() {
+    let mut link = connected();
+    // L 1 mH (16777 of 2^24), R 0.5 ohm (8388608 of 2^24): duty is a current (MCP manual 1.2.11).
+    set(&link, number::SET_INDUCTANCE_RESISTANCE_M1, &[("inductance", 16_777), ("resistance", 8_388_608)]);
+    link.run_for(ms(100));
+    let before = held(&link);
+    assert_eq!(before.2, [16_777, 8_388_608]);
+    let refused = tuned(&mut link, velocity(), |_| {}).expect("a report");
+    assert_eq!((refused.verdict, refused.causes.first()), (Verdict::Refused, Some(&Cause::TorqueMode)));
+    assert_eq!(held(&link), before);
+    let mut request = velocity();
+    request.guard.clear_winding = true;
+    let report = tuned(&mut link, request, |_| {}).expect("a report");
+    assert_ne!(report.verdict, Verdict::Refused, "{:?}", report.causes);
+    assert_eq!(held(&link), before, "L and R are back");
+}
+
+#[test]
+fn the_highest_current_is_the_controllers_limit_during_a_run_and_the_users_after_it() {
+    for stopped in [false, true] {
+        let mut link = connected();
+        let before = held(&link);
+        let mut request = velocity();
+        request.guard.max_amps = Some(0.8);
+        tuned(&mut link, request, |link| {
+            let line = link.line.clone();
+            link.at(link.now() + ms(900), move |handle| {
+                let during = line.with(|machine| {
+                    let unit = &machine.inner_mut().inner_mut().controllers()[0];
+                    unit.settings().motors[0].motion.max_current_raw
+                });
+                assert_eq!(during, 80, "10 mA units");
+                if stopped {
+                    handle.stop_all();
+                }
+            });
+        });
+        assert_eq!(held(&link), before, "stopped: {stopped}");
     }
 }

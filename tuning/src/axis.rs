@@ -123,6 +123,9 @@ pub struct Setup {
     pub position: PositionRegisters,
     /// Highest current, 10 mA (commands 135, 136); 0 = none.
     pub max_current_raw: u32,
+    /// Highest current while braking, 10 mA, as it stands beside the other.
+    #[serde(default)]
+    pub min_current_raw: i32,
     /// Lowest main battery voltage that the controller accepts, 0.1 V (command 59).
     pub min_volts_raw: u16,
     /// Inductance and resistance of commands 128 to 131: both non-zero make duty a current command.
@@ -131,6 +134,14 @@ pub struct Setup {
     pub stream_timeout_ms: Option<u32>,
     /// The encoder.
     pub encoder: EncoderClass,
+}
+
+impl Setup {
+    /// Whether duty is a current command: inductance and resistance are both set (MCP manual 1.2.11).
+    #[must_use]
+    pub fn is_torque_mode(&self) -> bool {
+        self.inductance_resistance_raw.iter().all(|&raw| raw != 0)
+    }
 }
 
 /// Why a call to the axis gave nothing.
@@ -170,6 +181,10 @@ pub trait Axis {
     fn write_velocity(&mut self, registers: VelocityRegisters) -> Result<(), AxisError>;
     /// Writes the position loop to RAM.
     fn write_position(&mut self, registers: PositionRegisters) -> Result<(), AxisError>;
+    /// Writes inductance and resistance to RAM (commands 128, 129).
+    fn write_winding(&mut self, inductance_resistance_raw: [u32; 2]) -> Result<(), AxisError>;
+    /// Writes the highest currents to RAM, driving and braking, 10 mA (commands 133, 134).
+    fn write_current_limits(&mut self, max_raw: u32, min_raw: i32) -> Result<(), AxisError>;
     /// Reads the unfiltered speed, counts/s (commands 30, 31).
     fn raw_speed(&mut self) -> Result<i32, AxisError>;
     /// Sets the time-out after which the controller stops by itself, ms (command 145). Firmware without it refuses.

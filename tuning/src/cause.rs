@@ -36,6 +36,12 @@ pub enum Cause {
     Stopped,
     /// The run took too long.
     TimeLimit,
+    /// The controller did not take the current limit of the run.
+    LimitNotTaken,
+    /// The axis does not stand inside its travel window.
+    OutsideTravel,
+    /// The travel window is too narrow for the encoder, or the axis stands too near to its end.
+    NarrowTravel,
     /// The controller does not take a command of the run.
     Refused,
     /// Inductance and resistance are set, so that duty is a current.
@@ -104,9 +110,21 @@ impl Cause {
             }
             Self::Stopped => "The run was stopped.",
             Self::TimeLimit => "The run took longer than it may. A very slow axis needs a higher time limit.",
+            Self::LimitNotTaken => {
+                "The controller did not take the current limit of the run, so the motor was not driven. Leave the limit out, or set \
+                 it in the settings."
+            }
+            Self::OutsideTravel => {
+                "The axis stands outside its travel window. Move it inside, or give a window around where it stands."
+            }
+            Self::NarrowTravel => {
+                "The axis stands too near to an end of its travel window, or the window is too narrow. Move it to the middle, or \
+                 widen the window."
+            }
             Self::Refused => "The controller did not take a command. See the log for which.",
             Self::TorqueMode => {
-                "Motor inductance and resistance are both set, which turns duty into current. Clear them for the tuning."
+                "Motor inductance and resistance are both set, which turns duty into current. Have them cleared for the run; they \
+                 are put back after it."
             }
             Self::WrappingEncoder => {
                 "An absolute encoder that wraps has no speed that a loop could use. Tune the position instead."

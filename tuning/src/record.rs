@@ -29,6 +29,10 @@ pub enum Entry {
     Velocity(VelocityRegisters, Result<(), AxisError>),
     /// Position registers written.
     PositionLoop(PositionRegisters, Result<(), AxisError>),
+    /// Inductance and resistance written.
+    Winding([u32; 2], Result<(), AxisError>),
+    /// Highest currents written.
+    CurrentLimits(u32, i32, Result<(), AxisError>),
     /// Raw speed.
     RawSpeed(Result<i32, AxisError>),
     /// Stream time-out set.
@@ -106,6 +110,18 @@ impl Axis for Recorder<'_> {
     fn write_position(&mut self, registers: PositionRegisters) -> Result<(), AxisError> {
         let answer = self.axis.write_position(registers);
         self.entries.push(Entry::PositionLoop(registers, answer.clone()));
+        answer
+    }
+
+    fn write_winding(&mut self, raw: [u32; 2]) -> Result<(), AxisError> {
+        let answer = self.axis.write_winding(raw);
+        self.entries.push(Entry::Winding(raw, answer.clone()));
+        answer
+    }
+
+    fn write_current_limits(&mut self, max_raw: u32, min_raw: i32) -> Result<(), AxisError> {
+        let answer = self.axis.write_current_limits(max_raw, min_raw);
+        self.entries.push(Entry::CurrentLimits(max_raw, min_raw, answer.clone()));
         answer
     }
 
@@ -216,6 +232,20 @@ impl Axis for Player {
     fn write_position(&mut self, registers: PositionRegisters) -> Result<(), AxisError> {
         match self.entries.next() {
             Some(Entry::PositionLoop(was, answer)) if was == registers => answer,
+            _ => self.stray(),
+        }
+    }
+
+    fn write_winding(&mut self, raw: [u32; 2]) -> Result<(), AxisError> {
+        match self.entries.next() {
+            Some(Entry::Winding(was, answer)) if was == raw => answer,
+            _ => self.stray(),
+        }
+    }
+
+    fn write_current_limits(&mut self, max_raw: u32, min_raw: i32) -> Result<(), AxisError> {
+        match self.entries.next() {
+            Some(Entry::CurrentLimits(max, min, answer)) if max == max_raw && min == min_raw => answer,
             _ => self.stray(),
         }
     }

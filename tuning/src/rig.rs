@@ -17,6 +17,23 @@ use std::time::Duration;
 const ABSOLUTE_COUNTS: i64 = 4096;
 /// The stream time-out during a run, ms: the bridge is off this long after the host died.
 const RUN_STREAM_TIMEOUT_MS: u32 = 150;
+/// Time a duty takes to change its sign, as far as it counts for the way, s; and the longest that a motion is driven against.
+const TURNING_S: f64 = 0.03;
+const LONGEST_TURN_S: f64 = 2.0;
+/// How much longer than computed a way to rest may be.
+const STOPPING_DOUBT: f64 = 1.15;
+/// A motor that runs on for longer than this is heavy, s; the duty above the starting one that brings it to rest, and how long it
+/// is watched then, s.
+const HEAVY_S: f64 = 0.05;
+const RESTING_DUTY: f64 = 0.25;
+const RESTING_S: f64 = 0.15;
+/// Readings beyond the highest current that end a run: how far, and how many in a row.
+const PEAK_OVER_LIMIT: f64 = 1.25;
+const PEAK_AMPS: f64 = 0.1;
+const BEYOND_POLLS: u32 = 3;
+/// How long a braked motor may take to stand, and how often it is looked at.
+const LONGEST_REST: Duration = Duration::from_secs(3);
+const REST_LOOK: Duration = Duration::from_millis(40);
 /// Silence after which the link counts as lost, s.
 const LINK_LOST_S: f64 = 0.15;
 
@@ -35,8 +52,11 @@ pub struct GuardOptions {
     pub time_limit_s: f64,
     /// Volts above the controller's lower limit at which the run ends.
     pub volts_margin: f64,
-    /// Highest current, A; the run ends above it.
+    /// Highest current, A. The controller is told, and the run ends when it is exceeded nevertheless.
     pub max_amps: Option<f64>,
+    /// Whether inductance and resistance, where both are set, may be cleared for the run. They are put back after it.
+    #[serde(default)]
+    pub clear_winding: bool,
 }
 
 impl Default for GuardOptions {
@@ -49,6 +69,7 @@ impl Default for GuardOptions {
             time_limit_s: 180.0,
             volts_margin: 0.2,
             max_amps: None,
+            clear_winding: false,
         }
     }
 }
@@ -109,17 +130,20 @@ pub struct Rig<'a> {
     next_poll: Duration,
     silent_since_s: Option<f64>,
     turn: u8,
+    /// Polls in a row with a current beyond the highest.
+    beyond: u32,
+    max_current_raw: u32,
     gains_touched: bool,
     timeout_touched: bool,
+    limits_touched: bool,
+    winding_touched: bool,
 }
 
 impl<'a> Rig<'a> {
-    /// Takes an axis over: reads its setup, refuses torque mode, makes the controller stop by itself when the host dies.
+    /// Takes an axis over: reads its setup, refuses torque mode unless it may be left, makes the controller stop by itself when
+    /// the host dies, and gives it the highest current. What was changed is put back when it fails.
     pub fn new(axis: &'a mut dyn Axis, options: GuardOptions) -> Result<Self, Cause> {
         let setup = retried(|| axis.read_setup())?;
-        if setup.inductance_resistance_raw.iter().all(|&raw| raw != 0) {
-            return Err(Cause::TorqueMode);
-        }
         let now = axis.now();
         let mut rig = Self {
             axis,
@@ -134,14 +158,48 @@ impl<'a> Rig<'a> {
             next_poll: now,
             silent_since_s: None,
             turn: 0,
+            beyond: 0,
+            max_current_raw: setup.max_current_raw,
             gains_touched: false,
             timeout_touched: false,
+            limits_touched: false,
+            winding_touched: false,
         };
-        if setup.stream_timeout_ms.is_some() {
-            rig.timeout_touched = true;
-            retried(|| rig.axis.set_stream_timeout(RUN_STREAM_TIMEOUT_MS))?;
+        match rig.get_ready() {
+            Ok(()) => Ok(rig),
+            Err(cause) => {
+                rig.put_back(false);
+                Err(cause)
+            }
         }
-        Ok(rig)
+    }
+
+    fn get_ready(&mut self) -> Result<(), Cause> {
+        let setup = self.setup;
+        if setup.is_torque_mode() {
+            if !self.options.clear_winding {
+                return Err(Cause::TorqueMode);
+            }
+            self.winding_touched = true;
+            retried(|| self.axis.write_winding([0, 0]))?;
+        }
+        if setup.stream_timeout_ms.is_some() {
+            self.timeout_touched = true;
+            retried(|| self.axis.set_stream_timeout(RUN_STREAM_TIMEOUT_MS))?;
+        }
+        if let Some(amps) = self.options.max_amps {
+            let raw = ((amps / AMPS_PER_RAW).round() as u32).max(1);
+            if setup.max_current_raw == 0 || raw < setup.max_current_raw {
+                self.limits_touched = true;
+                self.max_current_raw = raw;
+                let taken = retried(|| self.axis.write_current_limits(raw, setup.min_current_raw));
+                taken.map_err(|cause| match cause {
+                    Cause::Refused | Cause::LinkLost => Cause::LimitNotTaken,
+                    other => other,
+                })?;
+            }
+        }
+        Ok(())
     }
 
     /// Tells whoever waits what is going on.
@@ -243,10 +301,7 @@ impl<'a> Rig<'a> {
         if sample.status.battery_low || sagging {
             return Err(Cause::BatteryLow);
         }
-        let beyond = self.options.max_amps.zip(point.amps).is_some_and(|(most, amps)| amps.abs() > most);
-        if beyond {
-            return Err(Cause::OverCurrent);
-        }
+        self.check_highest_current(&point)?;
         self.points.push(point);
         self.check_travel(&point)?;
         match self.watch.see(&point) {
@@ -258,7 +313,7 @@ impl<'a> Rig<'a> {
     /// The current limit over the stall current at full duty.
     #[must_use]
     pub fn drive_limit(&self, stall_amps: Option<f64>) -> Option<f64> {
-        let limit = f64::from(self.setup.max_current_raw) * AMPS_PER_RAW;
+        let limit = f64::from(self.max_current_raw) * AMPS_PER_RAW;
         stall_amps.filter(|stall| limit > 0.0 && *stall > 0.0).map(|stall| limit / stall)
     }
 
@@ -293,13 +348,34 @@ impl<'a> Rig<'a> {
             // Whatever the answer: there is nothing else to try, and the stream time-out stands behind it.
             let _ = self.axis.drive_duty(0);
         }
+        self.put_back(keep_gains);
+    }
+
+    /// Puts back what the run has changed. What cannot be said now is left to whoever owns the link.
+    fn put_back(&mut self, keep_gains: bool) {
+        let before = self.setup;
         if self.gains_touched && !keep_gains {
-            let _ = retried(|| self.axis.write_velocity(self.setup.velocity));
-            let _ = retried(|| self.axis.write_position(self.setup.position));
+            let _ = retried(|| self.axis.write_velocity(before.velocity));
+            let _ = retried(|| self.axis.write_position(before.position));
         }
-        if let (true, Some(before)) = (self.timeout_touched, self.setup.stream_timeout_ms) {
-            let _ = retried(|| self.axis.set_stream_timeout(before));
+        if self.limits_touched {
+            let _ =
+                retried(|| self.axis.write_current_limits(before.max_current_raw, before.min_current_raw));
         }
+        if self.winding_touched {
+            wait_for_rest(self.axis);
+            let _ = retried(|| self.axis.write_winding(before.inductance_resistance_raw));
+        }
+        if let (true, Some(timeout_ms)) = (self.timeout_touched, before.stream_timeout_ms) {
+            let _ = retried(|| self.axis.set_stream_timeout(timeout_ms));
+        }
+    }
+
+    /// The controller holds the current at its limit but for short peaks; what stays beyond it was not held.
+    fn check_highest_current(&mut self, point: &Point) -> Result<(), Cause> {
+        let (Some(most), Some(amps)) = (self.options.max_amps, point.amps) else { return Ok(()) };
+        self.beyond = if amps.abs() > PEAK_OVER_LIMIT * most + PEAK_AMPS { self.beyond + 1 } else { 0 };
+        if self.beyond >= BEYOND_POLLS { Err(Cause::OverCurrent) } else { Ok(()) }
     }
 
     /// Counts from the start of the run, beyond the wrap of the register or of the absolute encoder.
@@ -371,17 +447,110 @@ impl<'a> Rig<'a> {
         }
     }
 
-    /// Ends the run before the window is left: where the motor would come to rest if it were braked now counts.
-    fn check_travel(&mut self, point: &Point) -> Result<(), Cause> {
-        let Some((low, high)) = self.options.travel else { return Ok(()) };
+    /// How much room there is on either side, as twice the shorter way to an end of the travel window, counts.
+    #[must_use]
+    pub fn room_counts(&self) -> Option<f64> {
+        let (low, high) = self.travel_counts()?;
+        let now = self.points.last()?.counts;
+        Some(2.0 * (high - now).min(now - low))
+    }
+
+    /// The travel window in counts from the start of the run.
+    #[must_use]
+    pub fn travel_counts(&self) -> Option<(f64, f64)> {
+        let (low, high) = self.options.travel?;
         let origin = self.origin_counts();
-        let (low, high) = ((low - origin) as f64, (high - origin) as f64);
+        Some(((low - origin) as f64, (high - origin) as f64))
+    }
+
+    /// Ends the run before the window is left: where the motor would come to rest if it were driven back now counts.
+    fn check_travel(&mut self, point: &Point) -> Result<(), Cause> {
+        let Some((low, high)) = self.travel_counts() else { return Ok(()) };
+        if self.points.len() == 1 && !(low..=high).contains(&point.counts) {
+            return Err(Cause::OutsideTravel);
+        }
         let speed = self.recent_speed(2).unwrap_or(0.0);
-        let rest = point.counts + speed * (self.options.poll_s + self.watch.stopping_s);
+        let runs_on = match self.watch.stopping_counts(speed.abs(), self.options.max_duty) {
+            Some(counts) => STOPPING_DOUBT * counts * speed.signum() + speed * TURNING_S,
+            // From rest a motor needs no longer way back than it had.
+            None => 0.7 * self.way_since_drive(point) + speed * TURNING_S.max(self.watch.stopping_s),
+        };
+        let rest = point.counts + speed * self.options.poll_s + runs_on;
         if (rest > high && speed > 0.0) || (rest < low && speed < 0.0) {
+            self.turn_back(speed);
             return Err(Cause::TravelLimit);
         }
         Ok(())
+    }
+
+    /// Counts gone under the first duty from rest; 0 later.
+    fn way_since_drive(&self, point: &Point) -> f64 {
+        let [.., Drive { input: Input::Duty(0.0), .. }, Drive { t: since, .. }] = self.drives[..] else {
+            return 0.0;
+        };
+        let first = self.points.iter().rev().take_while(|old| old.t >= since).last();
+        first.map_or(0.0, |first| point.counts - first.counts)
+    }
+
+    /// Brings the motor to rest: a heavy one runs on for long when it is only braked, so it is driven against first.
+    pub fn come_to_rest(&mut self) -> Result<(), Cause> {
+        let speed = self.recent_speed(2).unwrap_or(0.0);
+        let heavy =
+            self.watch.stopping_s > HEAVY_S || self.watch.tau_bounds_s.is_some_and(|tau| tau.1 > HEAVY_S);
+        if heavy && speed.abs() > 0.02 * self.watch.full_speed {
+            let duty = (self.watch.start_duty + RESTING_DUTY).min(self.options.max_duty);
+            self.duty(-speed.signum() * duty)?;
+            let until = self.now_s() + LONGEST_TURN_S;
+            while self.now_s() < until && self.recent_speed(2).is_some_and(|now| now * speed > 0.0) {
+                self.poll(false)?;
+            }
+        }
+        self.duty(0.0)?;
+        self.poll_for(RESTING_S, false)
+    }
+
+    /// Drives against a motion until it is over, so that an axis near the end of its window does not run on beyond it.
+    fn turn_back(&mut self, speed: f64) {
+        let raw = (-speed.signum() * self.options.max_duty * f64::from(FULL_DUTY_RAW)) as i16;
+        if retried(|| self.axis.drive_duty(raw)).is_err() {
+            return;
+        }
+        let until = self.axis.now() + Duration::from_secs_f64(LONGEST_TURN_S);
+        let mut before: Option<Point> = None;
+        while self.axis.now() < until {
+            match self.axis.sample(Want::default()).map(|sample| self.point_of(&sample)) {
+                Ok(now) => {
+                    if before.is_some_and(|before| (now.counts - before.counts) * speed <= 0.0) {
+                        break;
+                    }
+                    before = Some(now);
+                }
+                Err(AxisError::NoReply) => {}
+                Err(_) => break,
+            }
+            let next = self.axis.now() + Duration::from_secs_f64(0.5 * self.options.poll_s);
+            if self.axis.wait_until(next).is_err() {
+                break;
+            }
+        }
+        let _ = self.axis.drive_duty(0);
+    }
+}
+
+/// Waits until a braked motor stands, for a few seconds at the most: where duty is a current, duty 0 no longer brakes it.
+pub fn wait_for_rest(axis: &mut dyn Axis) {
+    let until = axis.now() + LONGEST_REST;
+    let mut before = None;
+    while axis.now() < until {
+        let counts = axis.sample(Want::default()).ok().map(|sample| sample.counts);
+        if counts.is_some() && counts == before {
+            return;
+        }
+        before = counts.or(before);
+        let next = axis.now() + REST_LOOK;
+        if axis.wait_until(next).is_err() {
+            return;
+        }
     }
 }
 

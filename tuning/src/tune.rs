@@ -4,7 +4,7 @@ use crate::axis::{Axis, EncoderClass};
 use crate::cause::Cause;
 use crate::course::Course;
 use crate::design::{Design, Goal, Task, design_pd, design_pid, design_piv, design_velocity};
-use crate::experiment::{Probe, run_free, run_probe, run_window};
+use crate::experiment::{Probe, go_to, run_free, run_probe, run_window};
 use crate::fit::{Fit, fit};
 use crate::lag::LagFit;
 use crate::linear::{DiscretePlant, LoopPlant};
@@ -31,6 +31,9 @@ const ODD_SHARE: f64 = 0.75;
 /// Misfit that speaks of play, and the shortest integral time of such a machine, in time constants.
 const LOOSE_CHI_SQUARE: f64 = 3.6;
 const LOOSE_INTEGRAL: f64 = 1.2;
+/// Share of the travel window that has to be free around the axis, and the narrowest window, counts.
+const ENOUGH_ROOM: f64 = 0.8;
+const LEAST_WIDTH_COUNTS: f64 = 24.0;
 /// How far a lag interval may reach before the lag counts as unknown, s.
 const WIDEST_LAG_S: f64 = 0.012;
 
@@ -154,8 +157,13 @@ fn run(rig: &mut Rig<'_>, request: &Request, report: &mut Report) -> Result<(), 
     report.probe = Some(probe);
     let found = match request.excitation {
         Excitation::Free => identify_free(rig, &probe, report)?,
-        Excitation::Window(width) => identify_window(rig, &probe, width, report)?,
+        Excitation::Window(width) => {
+            let width = usable_width(rig, &probe, width)?;
+            identify_window(rig, &probe, width, report)?
+        }
     };
+    let model = found.fit.model;
+    rig.watch.know(model.gain_counts_per_s * (1.0 - model.coulomb_duty), model.tau_s);
     report.fit = Some(found.fit);
     report.qpps = Some(found.qpps);
     report.seconds.0 = rig.now_s();
@@ -180,6 +188,17 @@ fn run(rig: &mut Rig<'_>, request: &Request, report: &mut Report) -> Result<(), 
         check_moves(rig, request, &task, report)?;
     }
     Ok(())
+}
+
+/// The width that fits into the travel window around where the axis stands; from near an end it goes to the middle first.
+fn usable_width(rig: &mut Rig<'_>, probe: &Probe, width: f64) -> Result<f64, Cause> {
+    let Some((low, high)) = rig.travel_counts() else { return Ok(width) };
+    if rig.room_counts().is_some_and(|room| room < ENOUGH_ROOM * (high - low)) {
+        rig.progress("Going to the middle of the travel");
+        go_to(rig, probe, 0.5 * (low + high))?;
+    }
+    let room = rig.room_counts().unwrap_or(0.0).min(width);
+    if room < LEAST_WIDTH_COUNTS { Err(Cause::NarrowTravel) } else { Ok(room) }
 }
 
 /// What identification gives.

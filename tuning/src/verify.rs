@@ -14,6 +14,8 @@ use crate::tune::{Excitation, Method, Request, propose};
 const MIDDLE: f64 = 0.45;
 /// Steps of the velocity trial.
 const STEPS: usize = 6;
+/// Share of a travel window that one stroke of a velocity trial inside it covers.
+const INSIDE_SHARE: f64 = 0.35;
 /// Irregular dwell times, relative: no limit cycle can hide in step with them.
 const DWELLS: [f64; STEPS] = [1.0, 0.87, 1.15, 0.93, 1.17, 0.83];
 /// Counts that are no overshoot and no swing yet.
@@ -96,7 +98,10 @@ pub fn check_moves(
             rig.write_velocity(velocity)?;
         }
         let measured = match request.method {
-            Method::Velocity => try_velocity(rig, task, &design.gains)?,
+            Method::Velocity => match request.excitation {
+                Excitation::Free => try_velocity(rig, task, &design.gains)?,
+                Excitation::Window(width) => try_velocity_inside(rig, task, &design.gains, width)?,
+            },
             Method::Pd | Method::Pid | Method::Piv => {
                 if let Some(position) = report.position {
                     rig.write_position(position)?;
@@ -138,6 +143,27 @@ pub(crate) fn try_velocity(rig: &mut Rig<'_>, task: &Task, gains: &Gains) -> Res
     let settled = from_s + (2.5 * task.plant.tau_s).clamp(0.3, 2.0);
     let course = ClosedCourse::of(rig, settled, to_s);
     Ok(judge_velocity(&course))
+}
+
+/// The same inside a travel window: to and fro about where the axis stands, as fast as the room allows. The motor is braked at the
+/// end.
+fn try_velocity_inside(rig: &mut Rig<'_>, task: &Task, gains: &Gains, width: f64) -> Result<Measured, Cause> {
+    let lag_s = task.lag.total_s(&task.law) + 2.0 * task.law.tick_s();
+    let dwell_s = (14.0 * lag_s + task.plant.tau_s / (1.0 + gains.velocity.p)).clamp(0.12, 0.4);
+    let room = rig.room_counts().unwrap_or(width).min(width);
+    let speed = (INSIDE_SHARE * room / dwell_s).min(MIDDLE * task.qpps);
+    rig.duty(0.0)?;
+    rest(rig, task)?;
+    let from_s = rig.now_s();
+    // Half a way out first, so that the rest swings about the middle.
+    for (n, share) in [0.5, 1.0, 1.0, 1.0, 1.0, 0.5].into_iter().enumerate() {
+        let side = if n % 2 == 0 { 1.0 } else { -1.0 };
+        rig.speed(side * speed)?;
+        rig.poll_for(share * dwell_s, true)?;
+    }
+    let to_s = rig.now_s();
+    rig.come_to_rest()?;
+    Ok(judge_velocity(&ClosedCourse::of(rig, from_s, to_s)))
 }
 
 /// Duty activity in the second half of each plateau.

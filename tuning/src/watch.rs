@@ -30,9 +30,13 @@ const CLEARLY_HIGHER: f64 = 0.1;
 /// Without current for this long, the motor is open, s.
 const OPEN_S: f64 = 0.2;
 /// Duty readings of a loop lie this much beside the truth between two polls.
-const LOOP_DUTY: f64 = 0.08;
+const LOOP_DUTY: f64 = 0.14;
+/// Share of the speed at full duty that a loop may be beside what its duty readings say.
+const LOOP_MARGIN: f64 = 0.04;
 /// A loop that was told something new does what no poll sees for this long, s.
-const NEWS_S: f64 = 0.05;
+const NEWS_S: f64 = 0.07;
+/// Between which multiples of a time constant that was found the true one lies: a load behind a spring makes the motor alone quicker.
+const TAU_SPREAD: (f64, f64) = (0.3, 1.6);
 /// Highest reading that counts as no current, A: the wire's resolution.
 pub(crate) const NO_CURRENT_AMPS: f64 = 0.0151;
 
@@ -99,6 +103,21 @@ impl Watch {
         while self.duties.get(1).is_some_and(|next| t - next.0 > MEMORY_S) {
             self.duties.pop_front();
         }
+    }
+
+    /// Takes over what an identification found: speed at full duty per duty, and the time constant.
+    pub fn know(&mut self, gain_counts_per_s: f64, tau_s: f64) {
+        self.gain = gain_counts_per_s;
+        self.tau_bounds_s = Some((TAU_SPREAD.0 * tau_s, TAU_SPREAD.1 * tau_s));
+    }
+
+    /// Counts that the motor runs on from a speed while it is driven the other way at a duty, and the time until that duty acts
+    /// aside; `None` before anything is known.
+    pub(crate) fn stopping_counts(&self, speed: f64, duty: f64) -> Option<f64> {
+        let (gain, tau_s) = self.rough_model(0.0);
+        let limit = self.drive_limit.unwrap_or(f64::INFINITY);
+        let pull = gain * duty.min(limit);
+        (self.tau_bounds_s.is_some() && pull > 0.0).then(|| tau_s * (speed - pull * (speed / pull).ln_1p()))
     }
 
     /// A loop has the motor: its duty is what is read.
@@ -185,7 +204,8 @@ impl Watch {
         }
         let span = to.t - from.t;
         let moved = to.counts - from.counts;
-        let margin = MARGIN_COUNTS + MARGIN_SPEED * speed_before.abs() * span;
+        let unseen = if self.looped { LOOP_MARGIN * self.gain * span } else { 0.0 };
+        let margin = MARGIN_COUNTS + MARGIN_SPEED * speed_before.abs() * span + unseen;
         let way = self.duty_at(to.t).signum();
         if self.keeps_its_speed(stretch, way) {
             let least = KEPT_SPEED * speed_before.abs() * span - MARGIN_COUNTS;

@@ -17,6 +17,7 @@ use brushwork_link::wire::Wire;
 use brushwork_protocol::packet_serial::{Generation, Motor, Request as Packet, Value, Values};
 use brushwork_tuning::axis::{Axis, AxisError, EncoderClass, Exchange, Setup};
 use brushwork_tuning::report::{Report, Verdict};
+use brushwork_tuning::rig::wait_for_rest;
 use brushwork_tuning::trial::{Trial, TrialRequest, run_trial};
 use brushwork_tuning::tune::{Request, tune};
 use brushwork_tuning_bench::packet::{Carrier, PacketAxis};
@@ -191,9 +192,19 @@ pub fn restore(target: Target, before: Setup, report: Option<&Report>) -> Box<dy
         thrice(|| axis.write_velocity(velocity))
             .and_then(|()| thrice(|| axis.write_position(position)))
             .map_err(|error| failed("write the loops back", &place, &error))?;
+        let now =
+            thrice(|| axis.read_setup()).map_err(|error| failed("read the loops back", &place, &error))?;
+        if (now.max_current_raw, now.min_current_raw) != (before.max_current_raw, before.min_current_raw) {
+            thrice(|| axis.write_current_limits(before.max_current_raw, before.min_current_raw))
+                .map_err(|error| failed("put the current limit back", &place, &error))?;
+        }
+        if now.inductance_resistance_raw != before.inductance_resistance_raw {
+            wait_for_rest(&mut axis);
+            thrice(|| axis.write_winding(before.inductance_resistance_raw))
+                .map_err(|error| failed("put inductance and resistance back", &place, &error))?;
+        }
         if let Some(timeout_ms) = before.stream_timeout_ms {
-            thrice(|| axis.read_setup())
-                .and_then(|_| thrice(|| axis.set_stream_timeout(timeout_ms)))
+            thrice(|| axis.set_stream_timeout(timeout_ms))
                 .map_err(|error| failed("set the time-out of the port back", &place, &error))?;
         }
         Ok(Box::new(()))

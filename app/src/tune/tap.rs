@@ -93,6 +93,14 @@ impl Axis for Tap<'_> {
         answer
     }
 
+    fn write_winding(&mut self, raw: [u32; 2]) -> Result<(), AxisError> {
+        self.axis.write_winding(raw)
+    }
+
+    fn write_current_limits(&mut self, max_raw: u32, min_raw: i32) -> Result<(), AxisError> {
+        self.axis.write_current_limits(max_raw, min_raw)
+    }
+
     fn raw_speed(&mut self) -> Result<i32, AxisError> {
         self.axis.raw_speed()
     }

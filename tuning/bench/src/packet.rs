@@ -186,6 +186,7 @@ impl<C: Carrier> Axis for PacketAxis<C> {
                 max: position.int("max") as i32,
             },
             max_current_raw: unsigned(&current, "max"),
+            min_current_raw: current.int("min") as i32,
             min_volts_raw: volts.int("min") as u16,
             inductance_resistance_raw: [unsigned(&winding, "inductance"), unsigned(&winding, "resistance")],
             stream_timeout_ms,
@@ -214,6 +215,17 @@ impl<C: Carrier> Axis for PacketAxis<C> {
             ("max", i64::from(registers.max)),
         ];
         self.send(number::SET_POSITION_PID_M1, number::SET_POSITION_PID_M2, &values).map(|_| ())
+    }
+
+    fn write_winding(&mut self, [inductance, resistance]: [u32; 2]) -> Result<(), AxisError> {
+        let values = [("inductance", i64::from(inductance)), ("resistance", i64::from(resistance))];
+        let (m1, m2) = (number::SET_INDUCTANCE_RESISTANCE_M1, number::SET_INDUCTANCE_RESISTANCE_M2);
+        self.send(m1, m2, &values).map(|_| ())
+    }
+
+    fn write_current_limits(&mut self, max_raw: u32, min_raw: i32) -> Result<(), AxisError> {
+        let values = [("max", i64::from(max_raw)), ("min", i64::from(min_raw))];
+        self.send(number::SET_CURRENT_LIMITS_M1, number::SET_CURRENT_LIMITS_M2, &values).map(|_| ())
     }
 
     fn raw_speed(&mut self) -> Result<i32, AxisError> {

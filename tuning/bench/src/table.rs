@@ -40,7 +40,8 @@ pub struct Row {
     pub unstable: f64,
     /// Maximum sensitivity on the true plant, 95th percentile.
     pub ms_p95: f64,
-    /// The same with the inertia at half and at half as much again, whichever is worse.
+    /// The same with the inertia at half and at half as much again, whichever is worse. JSON has it with the identification.
+    #[serde(skip)]
     pub ms_varied_p95: f64,
     /// True overshoot, 95th percentile, %.
     pub overshoot_p95: f64,
@@ -69,6 +70,8 @@ pub struct Identification {
     pub lag_error_ms_p95: f64,
     /// Predicted against true maximum sensitivity of the velocity loop.
     pub ms_error_p95: f64,
+    /// Maximum sensitivity of our velocity loop at half or half as much more inertia.
+    pub ms_varied_p95: f64,
     /// Length of the identification, s.
     pub seconds_median: f64,
     /// Highest current over the stall current, %.
@@ -147,7 +150,8 @@ pub fn table(seed: u64, cases: &[Case], faults: bool) -> Table {
             velocity_reports = reports;
         }
     }
-    let identification = identification(cases, &velocity_reports);
+    let mut identification = identification(cases, &velocity_reports);
+    identification.ms_varied_p95 = tasks["velocity"].first().map_or(0.0, |row: &Row| row.ms_varied_p95);
     let plants = || cases.iter().map(|case| case.specimen.clone()).collect::<Vec<_>>();
     let faults = if faults { fault_rows(&plants()) } else { Vec::new() };
     Table { seed, plants: cases.len(), tasks, identification, faults }
@@ -257,6 +261,7 @@ fn identification(cases: &[Case], reports: &[(Report, f64)]) -> Identification {
         lag_error_ms_median: round(middle(&lag), 2),
         lag_error_ms_p95: round(high(&lag), 2),
         ms_error_p95: round(high(&ms), 3),
+        ms_varied_p95: 0.0,
         seconds_median: round(quantile(reports.iter().map(|r| r.0.seconds.0), 0.5), 2),
         peak_current_p95: round(100.0 * quantile(reports.iter().map(|r| r.1), 0.95), 1),
         window_qpps_error_median: round(middle(&qpps_inside), 2),

@@ -6,4 +6,4 @@ mod window;
 
 pub use free::{FreeRun, run_free};
 pub use probe::{Probe, run_probe};
-pub use window::{WindowRun, run_window};
+pub use window::{WindowRun, go_to, run_window};

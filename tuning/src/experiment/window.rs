@@ -11,6 +11,9 @@ const SWITCHES: usize = 10;
 const DUTIES: [f64; 2] = [0.22, 0.50];
 /// Where the relay switches, as a share of the window.
 const SWITCH_AT: f64 = 0.22;
+/// Duty above the starting one for going somewhere, and how far its end is looked ahead for, s.
+const GOING_DUTY: f64 = 0.05;
+const GOING_AHEAD_S: f64 = 0.05;
 /// Longest time, s.
 const LONGEST_S: f64 = 25.0;
 
@@ -41,9 +44,27 @@ pub fn run_window(rig: &mut Rig<'_>, probe: &Probe, width: f64) -> Result<Window
         let duty = (probe.start_duty + above).min(rig.options.max_duty);
         swing(rig, duty, middle, width, &mut run, &mut brake_s)?;
     }
-    rig.duty(0.0)?;
-    rig.poll_for(0.15, false)?;
+    rig.come_to_rest()?;
     if run.switches < 4 { Err(Cause::TooCoarse) } else { Ok(run) }
+}
+
+/// Drives to a place with little duty, and lets the axis come to rest there.
+pub fn go_to(rig: &mut Rig<'_>, probe: &Probe, place: f64) -> Result<(), Cause> {
+    let begin = rig.now_s();
+    let here = |rig: &Rig<'_>| rig.points.last().map_or(0.0, |p| p.counts);
+    let direction = (place - here(rig)).signum();
+    rig.duty((probe.start_duty + GOING_DUTY).min(rig.options.max_duty) * direction)?;
+    loop {
+        rig.poll(false)?;
+        let ahead = rig.recent_speed(2).unwrap_or(0.0) * GOING_AHEAD_S;
+        if (place - here(rig) - ahead) * direction <= 0.0 {
+            break;
+        }
+        if rig.now_s() - begin > LONGEST_S {
+            return Err(Cause::TimeLimit);
+        }
+    }
+    rig.come_to_rest()
 }
 
 /// Swings about the middle at one duty. The time it takes to turn round is learned from each swing.
@@ -78,7 +99,7 @@ fn swing(
             if switches > 0 && switch_speed > 0.0 && farthest > 0.0 {
                 *brake_s = (0.5 * *brake_s + 0.5 * (farthest / switch_speed)).clamp(0.02, 0.6);
                 rig.watch.stopping_s = *brake_s;
-                rig.watch.tau_bounds_s = Some((0.15 * *brake_s, 6.0 * *brake_s));
+                rig.watch.tau_bounds_s = Some((0.1 * *brake_s, 10.0 * *brake_s));
             }
             switched_at = point.counts;
             switch_speed = speed * direction;

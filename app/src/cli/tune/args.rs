@@ -13,7 +13,7 @@ use crate::cli::args::ConnectArgs;
     brushwork tune position --motor 1 --method piv --travel -2000..2000 --max-current 10 --apply\n  \
     brushwork tune replay run.json\n\n\
     The motor turns both ways at up to full duty (--max-duty), or within --travel at less. Ctrl-C stops both motors at once and \
-    puts the old gains back. Exit codes: 0 tuned, 4 refused, 8 tuned with warnings.")]
+    puts the old gains back. Exit codes: 0 tuned, 4 refused, 8 tuned with warnings, 3 no link, 130 interrupted.")]
 pub struct TuneArgs {
     /// What to do.
     #[command(subcommand)]
@@ -52,12 +52,15 @@ pub struct RunArgs {
     /// From 0 (soft) to 100 (stiff).
     #[arg(long, default_value_t = 50, value_parser = clap::value_parser!(u8).range(0..=100))]
     pub level: u8,
-    /// Counts between which the axis may move, with the axis in the middle: full speed is not used then.
+    /// Counts of the encoder between which the axis may move: it goes to the middle if it must, and never at full speed.
     #[arg(long, value_name = "LOW..HIGH", allow_hyphen_values = true, value_parser = parse_travel)]
     pub travel: Option<Travel>,
-    /// Highest motor current in amperes; the run ends above it.
-    #[arg(long, value_name = "AMPS")]
+    /// Highest motor current in amperes: the controller's limit is lowered to it for the run.
+    #[arg(long, value_name = "AMPS", value_parser = parse_amps)]
     pub max_current: Option<f64>,
+    /// Clear inductance and resistance for the run where both are set, since duty is a current then; they are put back.
+    #[arg(long)]
+    pub clear_lr: bool,
     /// Highest duty in percent.
     #[arg(long, value_name = "PERCENT", default_value_t = 100, value_parser = clap::value_parser!(u8).range(20..=100))]
     pub max_duty: u8,
@@ -112,13 +115,29 @@ pub enum EncoderArg {
     AbsoluteWrapping,
 }
 
+/// The narrowest travel, counts.
+const LEAST_TRAVEL: i64 = 40;
+
 fn parse_travel(text: &str) -> Result<Travel, String> {
     let parsed = text.split_once("..").and_then(|(low, high)| {
         Some(Travel { low: low.trim().parse().ok()?, high: high.trim().parse().ok()? })
     });
-    parsed.filter(|travel| travel.high - travel.low >= 40).ok_or_else(|| {
-        format!("\"{text}\" is no travel: use for example -2000..2000, at least 40 counts wide")
+    let in_range = |counts: i64| i32::try_from(counts).is_ok();
+    let sound = |travel: &Travel| {
+        in_range(travel.low) && in_range(travel.high) && travel.high - travel.low >= LEAST_TRAVEL
+    };
+    parsed.filter(sound).ok_or_else(|| {
+        format!(
+            "\"{text}\" is no travel: use for example -2000..2000, from the lower to the higher count, at least {LEAST_TRAVEL} \
+             counts wide"
+        )
     })
+}
+
+fn parse_amps(text: &str) -> Result<f64, String> {
+    let amps = text.trim().trim_end_matches(['A', 'a']).trim_end().parse::<f64>().ok();
+    amps.filter(|amps| (0.05..=1000.0).contains(amps))
+        .ok_or_else(|| format!("\"{text}\" is no current: use amperes from 0.05 to 1000, for example 10"))
 }
 
 #[cfg(test)]
@@ -126,9 +145,18 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_current_is_in_amperes_above_nought() {
+        assert_eq!(parse_amps("10"), Ok(10.0));
+        assert_eq!(parse_amps("2.5A"), Ok(2.5));
+        for wrong in ["0", "-3", "nan", "inf", "ten", ""] {
+            assert!(parse_amps(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
     fn a_travel_is_two_counts_with_room_between_them() {
         assert_eq!(parse_travel("-2000..2000"), Ok(Travel { low: -2000, high: 2000 }));
-        for wrong in ["2000", "5..1", "a..b", "0..10", ".."] {
+        for wrong in ["2000", "5..1", "a..b", "0..10", "..", "0..99999999999"] {
             assert!(parse_travel(wrong).is_err(), "{wrong}");
         }
     }

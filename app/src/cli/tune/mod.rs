@@ -91,6 +91,7 @@ fn request(args: &RunArgs, method: Method) -> TuneRequest {
             max_duty: f64::from(args.max_duty) / 100.0,
             travel: args.travel.map(|range| (range.low, range.high)),
             max_amps: args.max_current,
+            clear_winding: args.clear_lr,
             ..GuardOptions::default()
         },
         keep: args.apply || args.save,
