@@ -450,3 +450,33 @@ fn calibration_by_hand_makes_the_changes_of_the_manual_and_says_what_the_motor_d
     bench.pass_ms(1500);
     assert_at_rest(&mut bench);
 }
+
+#[test]
+fn with_l_and_r_set_a_run_is_refused_until_they_are_cleared_for_it_and_they_are_put_back_after() {
+    let mut config = config("small-gearmotor");
+    let mut settings = Controller::new(config.clone()).expect("the preset is sound").stored_settings();
+    (settings.motors[0].motion.inductance_raw, settings.motors[0].motion.resistance_raw) =
+        (67_109, 134_217_728);
+    config.settings = Some(settings);
+    let mut bench = Bench::of(Controller::new(config).expect("the configuration is sound"));
+    bench.connect();
+    bench.arm_on("Velocity Settings");
+    bench.press("Tune");
+    let before = held(&bench, Motor::M1);
+    bench.press("Tune M1");
+    finish(&mut bench);
+    assert!(bench.sees_part("Sketch: L and R are both set"));
+    assert_eq!(held(&bench, Motor::M1), before);
+    bench.press("Clear L and R for the run");
+    bench.pass_ms(4000);
+    let cleared = held(&bench, Motor::M1);
+    assert_eq!((cleared.inductance_raw, cleared.resistance_raw), (0, 0));
+    assert!(bench.sees_part("L and R of M1 are cleared"));
+    bench.press("Arm");
+    bench.pass_ms(500);
+    bench.press("Try again");
+    finish(&mut bench);
+    bench.pass_ms(3000);
+    assert_ne!(run(&mut bench, Loop::Velocity).report.verdict, Verdict::Refused);
+    assert_eq!(held(&bench, Motor::M1), before, "L, R and the old gains are in force");
+}

@@ -508,6 +508,7 @@ impl App {
         if self.model.arm_scope().is_some() {
             self.disarm();
         }
+        self.model.front.tune.want_winding_back();
         self.model.turn_to(screen);
         if screen == Screen::DeviceStatus {
             self.model.front.watch.want_reading();

@@ -4,13 +4,14 @@ use super::App;
 use crate::gui::model::DeskId;
 use crate::gui::model::drawer::Tab;
 use crate::gui::model::link::Arming;
+use crate::gui::model::loop_settings::key;
 use crate::gui::tune::files;
 use crate::gui::tune::model::as_request;
 use crate::gui::tune::registers::Registers;
 use crate::gui::tune::sequence::Next;
 use crate::gui::tune::{Loop, TuneWish};
 use brushwork_link::device::Request;
-use brushwork_link::settings::SettingsImage;
+use brushwork_link::settings::{SettingValue, SettingsImage};
 use brushwork_protocol::packet_serial::Motor;
 
 impl App {
@@ -36,6 +37,11 @@ impl App {
             }
             TuneWish::Apply => self.apply_gains(which),
             TuneWish::Undo => self.undo_gains(which),
+            TuneWish::ClearWinding => self.clear_winding(which),
+            TuneWish::PutWindingBack => {
+                front.tune.want_winding_back();
+                Ok(())
+            }
             TuneWish::Adjust(motor, registers) => self.adjust(which, motor, registers),
             TuneWish::SaveReport(path) => match front.tune.front(which).run() {
                 Some(run) => files::save(&run.report, &path)
@@ -66,6 +72,36 @@ impl App {
                 self.ask_next(id, next);
             }
         }
+        self.put_winding_back();
+    }
+
+    /// Writes L and R back when the run that they were cleared for has ended.
+    fn put_winding_back(&mut self) {
+        let front = &self.model.front;
+        let is_idle = !front.loops.is_busy() && !front.loops.wants_reading() && front.is_connected();
+        let Some(image) = front.tune.winding_due().filter(|_| is_idle).cloned() else { return };
+        // A write that is not taken is tried again in the next frame.
+        if self.write_gains(image).is_ok() {
+            self.model.front.tune.winding_is_back();
+            self.model.messages.note("L and R are put back as they were before the run.");
+        }
+    }
+
+    /// L and R to 0, with the user's word, so that a duty is a duty.
+    fn clear_winding(&mut self, which: Loop) -> Result<(), String> {
+        let front = &self.model.front;
+        let motor = front.tune.motor(which);
+        let (mut before, mut cleared) = (SettingsImage::default(), SettingsImage::default());
+        for name in ["inductance_henries", "resistance_ohms"] {
+            let Some(value) = front.loops.held(motor, name) else {
+                return Err("L and R have not been read. Read the settings again first.".to_owned());
+            };
+            before.set(&key(motor, name), SettingValue::Number(value));
+            cleared.set(&key(motor, name), SettingValue::Number(0.0));
+        }
+        self.write_gains(cleared)?;
+        self.model.front.tune.winding_cleared(motor, before);
+        Ok(())
     }
 
     fn ask_next(&mut self, id: DeskId, next: Next) {

@@ -28,6 +28,7 @@ const ROW_HEIGHT: f32 = 34.0;
 
 /// In a small window the screen scrolls rather than give the graph less.
 const LEAST_GRAPH_HEIGHT: f32 = 210.0;
+const LEAST_GUIDE_HEIGHT: f32 = 320.0;
 /// Height of a screen that has room for the drawer and a graph.
 const ROOM_FOR_DRAWER: f32 = 520.0;
 const BAR_WIDTH: f32 = 10.0;
@@ -69,7 +70,8 @@ pub fn drive_ui(
                 drawer_ui(ui, model, commands);
             }
             ui.add_space(4.0);
-            let height = (room.height() - (ui.cursor().top() - top)).max(LEAST_GRAPH_HEIGHT);
+            let least = if is_tuning(model) { LEAST_GUIDE_HEIGHT } else { LEAST_GRAPH_HEIGHT };
+            let height = (room.height() - (ui.cursor().top() - top)).max(least);
             // A place of exact size: what does not fit into it cannot make the screen scroll.
             let (place, _) = ui.allocate_exact_size(vec2(room.width(), height), egui::Sense::hover());
             let layout = Layout::top_down(Align::Min);

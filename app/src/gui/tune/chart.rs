@@ -58,7 +58,7 @@ impl Axis {
         if low > high {
             return Self::new(name, unit, 0.0, 1.0);
         }
-        let room = (0.06 * (high - low)).max(1e-9 * high.abs()).max(1e-6);
+        let room = (0.06 * (high - low)).max(1e-9 * high.abs()).max(0.5);
         let step = tick_step(high - low + 2.0 * room, 4);
         Self::new(name, unit, ((low - room) / step).floor() * step, ((high + room) / step).ceil() * step)
     }
@@ -132,7 +132,7 @@ pub struct Chart<'a> {
 impl Chart<'_> {
     /// Takes `size` and draws.
     pub fn ui(&self, ui: &mut Ui, size: egui::Vec2) -> Response {
-        let (outer, response) = ui.allocate_exact_size(size, Sense::hover());
+        let (outer, response) = ui.allocate_exact_size(size.max(vec2(80.0, 40.0)), Sense::hover());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, self.spoken()));
         if !ui.is_rect_visible(outer) {
             return response;
@@ -181,17 +181,18 @@ impl Chart<'_> {
         let thin = Stroke::new(1.0, palette.line.gamma_multiply(0.6));
         let most_x = (frame.plot.width() / 70.0) as usize;
         let x_step = tick_step(frame.x.high - frame.x.low, most_x);
-        for value in frame.x.ticks(most_x) {
-            let x = frame.at(value, frame.y.low).x;
+        let ticks = frame.x.ticks(most_x);
+        for (index, value) in ticks.iter().enumerate() {
+            let x = frame.at(*value, frame.y.low).x;
             painter.vline(x, frame.plot.y_range(), thin);
-            let step = if frame.x.is_log { value } else { x_step };
-            painter.text(
-                pos2(x, frame.plot.bottom() + 3.0),
-                Align2::CENTER_TOP,
-                figure(value, step),
-                font.clone(),
-                palette.weak_text,
-            );
+            let mut text = figure(*value, if frame.x.is_log { *value } else { x_step });
+            if index + 1 == ticks.len() {
+                // The last one tells what it is.
+                text = format!("{text} {}", if self.x.unit.is_empty() { self.x.name } else { self.x.unit });
+            }
+            let text = painter.layout_no_wrap(text, font.clone(), palette.weak_text);
+            let left = (x - text.size().x / 2.0).min(frame.plot.right() - text.size().x + 6.0);
+            painter.galley(pos2(left, frame.plot.bottom() + 3.0), text, palette.weak_text);
         }
         let most_y = ((frame.plot.height() / 28.0) as usize).clamp(2, 8);
         let y_step = tick_step(frame.y.high - frame.y.low, most_y);
@@ -232,15 +233,8 @@ impl Chart<'_> {
             pos2(frame.plot.left(), frame.plot.top() - 2.0),
             Align2::LEFT_BOTTOM,
             y_name.trim(),
-            small.clone(),
-            palette.text,
-        );
-        painter.text(
-            pos2(frame.plot.right() - 4.0, frame.plot.bottom() - 3.0),
-            Align2::RIGHT_BOTTOM,
-            [self.x.name, self.x.unit].join(" ").trim(),
             small,
-            palette.weak_text,
+            palette.text,
         );
     }
 

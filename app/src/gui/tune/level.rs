@@ -7,15 +7,14 @@ use crate::gui::theme::Palette;
 use crate::gui::widgets::numeric::Numeric;
 use crate::gui::widgets::steps::{Steps, set_by_reader};
 
-const WIDTH: f32 = 136.0;
 const HEIGHT: f32 = 24.0;
 const RADIUS: f32 = 7.0;
 const TOP: f64 = 100.0;
 
 /// Changes `level` in place; tells whether it did.
-pub fn level_ui(ui: &mut Ui, name: &str, hint: &str, level: &mut f64) -> bool {
+pub fn level_ui(ui: &mut Ui, name: &str, hint: &str, width: f32, level: &mut f64) -> bool {
     let before = *level;
-    rail_ui(ui, name, level).on_hover_text(hint);
+    rail_ui(ui, name, width, level).on_hover_text(hint);
     let exact = format!("{name} exact");
     let entry = Numeric { name: &exact, unit: "", range: 0.0..=TOP, decimals: 0, step: 1.0, width: 44.0 };
     entry.ui(ui, level).on_hover_text(hint);
@@ -23,8 +22,8 @@ pub fn level_ui(ui: &mut Ui, name: &str, hint: &str, level: &mut f64) -> bool {
     *level != before
 }
 
-fn rail_ui(ui: &mut Ui, name: &str, level: &mut f64) -> Response {
-    let (rect, response) = ui.allocate_exact_size(vec2(WIDTH, HEIGHT), Sense::click_and_drag());
+fn rail_ui(ui: &mut Ui, name: &str, width: f32, level: &mut f64) -> Response {
+    let (rect, response) = ui.allocate_exact_size(vec2(width, HEIGHT), Sense::click_and_drag());
     let (left, right) = (rect.left() + RADIUS, rect.right() - RADIUS);
     if let Some(pointer) = response.interact_pointer_pos() {
         response.request_focus();

@@ -69,6 +69,10 @@ pub enum TuneWish {
     Apply,
     /// What RAM held before they were applied.
     Undo,
+    /// L and R to 0 for a run; they are put back when it has ended.
+    ClearWinding,
+    /// What was cleared is put back now.
+    PutWindingBack,
     /// Gains turned by hand, into the controller's RAM.
     Adjust(Motor, Registers),
     SaveReport(std::path::PathBuf),
@@ -171,6 +175,15 @@ struct Owed {
     before: Setup,
 }
 
+/// Inductance and resistance that were cleared for a run.
+#[derive(Clone, Debug)]
+struct Winding {
+    motor: Motor,
+    before: brushwork_link::settings::SettingsImage,
+    /// The run that they were cleared for has ended.
+    is_due: bool,
+}
+
 /// Tuning on one link.
 #[derive(Debug)]
 pub struct Tuning {
@@ -179,6 +192,8 @@ pub struct Tuning {
     motors: [Motor; 2],
     running: Option<(Loop, Sequence)>,
     owed: Option<Owed>,
+    /// L and R that were cleared for a run, with the user's word.
+    winding: Option<Winding>,
     unit: Option<(u8, String)>,
     calibrations: [Calibration; 2],
     pub view: super::plots::View,
@@ -195,6 +210,7 @@ impl Default for Tuning {
             motors: [Motor::M1; 2],
             running: None,
             owed: None,
+            winding: None,
             unit: None,
             calibrations: <[Calibration; 2]>::default(),
             view: super::plots::View::default(),
@@ -349,16 +365,19 @@ impl Tuning {
             let unit = self.unit.clone().unwrap_or_default();
             self.owed = Some(Owed { target, which, unit, before });
         }
-        let panel = self.panel_mut(which, target.motor);
         effects.push(match (&ended.work, ended.report, &ended.trial) {
             (Work::Tune(_), Some(report), _) => {
+                if let Some(winding) = &mut self.winding {
+                    winding.is_due = true;
+                }
+                let panel = self.panel_mut(which, target.motor);
                 let said = said_of(target.motor, &report, ended.why.as_deref());
                 panel.add(report);
                 said
             }
             (Work::Try(_), _, Some(trial)) => {
                 let said = said_of_trial(target.motor, trial);
-                if let Some(run) = panel.run_mut() {
+                if let Some(run) = self.panel_mut(which, target.motor).run_mut() {
                     run.was_tried(trial);
                 }
                 said
@@ -381,6 +400,7 @@ impl Tuning {
 
     /// The link is gone; what was not put back is, when the same unit answers again.
     pub fn link_ended(&mut self) -> Vec<Effect> {
+        self.want_winding_back();
         let Some((which, sequence)) = self.running.take() else { return Vec::new() };
         let target = sequence.target;
         let ended = sequence.link_ended();
@@ -399,6 +419,34 @@ impl Tuning {
             *self = Self { owed, unit, ..Self::default() };
         }
         is_other
+    }
+
+    /// L and R are cleared: what they were is put back after the run.
+    pub fn winding_cleared(&mut self, motor: Motor, before: brushwork_link::settings::SettingsImage) {
+        self.winding = Some(Winding { motor, before, is_due: false });
+    }
+
+    /// Whose L and R are cleared at the moment.
+    pub fn cleared_winding(&self) -> Option<Motor> {
+        self.winding.as_ref().map(|winding| winding.motor)
+    }
+
+    /// They are to be put back without waiting for a run.
+    pub fn want_winding_back(&mut self) {
+        if let Some(winding) = &mut self.winding {
+            winding.is_due = true;
+        }
+    }
+
+    /// What is to be written to put them back, once nothing runs any more.
+    pub fn winding_due(&self) -> Option<&brushwork_link::settings::SettingsImage> {
+        let winding = self.winding.as_ref().filter(|winding| winding.is_due && self.running.is_none())?;
+        Some(&winding.before)
+    }
+
+    /// They have been written back.
+    pub fn winding_is_back(&mut self) {
+        self.winding = None;
     }
 
     /// Begins to put back what a lost link has left, if this is the unit.

@@ -14,6 +14,8 @@ use crate::gui::theme::Palette;
 const LIVE_S: f64 = 6.0;
 /// Share of the height that the duty gets.
 const DUTY_SHARE: f32 = 0.3;
+/// Least height of a picture that has the duty under it.
+const ROOM_FOR_DUTY: f32 = 180.0;
 
 /// Which picture of a result is looked at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -64,11 +66,17 @@ pub struct View {
 
 /// The picture of a run that goes on.
 pub fn live_ui(ui: &mut Ui, trace: &Trace, which: Loop) {
-    let palette = Palette::of(ui);
     let end_s = (trace.end_s() / 3.0).ceil() * 3.0;
-    let x = Axis::new("time", "s", 0.0, end_s.max(LIVE_S));
+    record_ui(ui, trace, which, end_s.max(LIVE_S));
+}
+
+/// The record of a run from its start to `end_s`.
+fn record_ui(ui: &mut Ui, trace: &Trace, which: Loop, end_s: f64) {
+    let palette = Palette::of(ui);
+    let x = Axis::new("time", "s", 0.0, end_s);
     let room = ui.available_size();
-    let heights = [0.5, 0.25, 0.25].map(|share: f32| (room.y - 16.0) * share);
+    let shares = if room.y < ROOM_FOR_DUTY { [0.6, 0.0, 0.4] } else { [0.5, 0.25, 0.25] };
+    let heights = shares.map(|share: f32| (room.y - 16.0) * share);
     let mut main = match which {
         Loop::Velocity => vec![line("speed", trace.speeds(SPEED_OVER_S), palette.traces[2], Look::Solid)],
         Loop::Position => vec![line("position", places(trace, None), palette.traces[3], Look::Solid)],
@@ -109,7 +117,7 @@ pub fn result_ui(ui: &mut Ui, panel: &Panel, view: &mut View, which: Loop) {
         return chart(ui, "Result of a run", axes, &[], &[], empty, size);
     };
     if let Some(seen) = &run.seen {
-        return live_ui(ui, seen, which);
+        return record_ui(ui, seen, which, (1.05 * seen.end_s()).max(0.5));
     }
     match view.kind {
         Kind::Measured => measured_ui(ui, run, which),
@@ -123,6 +131,7 @@ pub fn result_ui(ui: &mut Ui, panel: &Panel, view: &mut View, which: Loop) {
 
 fn kinds_ui(ui: &mut Ui, view: &mut View) {
     ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
         for kind in Kind::ALL {
             let label = ui.selectable_label(view.kind == kind, kind.title());
             if label.on_hover_text(kind.hint()).clicked() {
@@ -170,9 +179,17 @@ fn measured_ui(ui: &mut Ui, run: &Run, which: Loop) {
         Look::Solid,
     ));
     let x = Axis::new("time", "s", 0.0, (stretch.to_s - from_s).max(0.1));
-    let lower = (size.y * DUTY_SHARE).max(70.0);
+    let lower = lower_height(size.y);
     let label = format!("Measured {name} over the predicted one");
-    chart(ui, &label, (x, around(name, unit, &main)), &main, &[], "", vec2(size.x, size.y - lower - 6.0));
+    chart(
+        ui,
+        &label,
+        (x, around(name, unit, &main)),
+        &main,
+        &[],
+        "",
+        vec2(size.x, size.y - lower - if lower > 0.0 { 6.0 } else { 0.0 }),
+    );
     chart(
         ui,
         "Measured duty over the predicted one",
@@ -199,7 +216,7 @@ fn replies_ui(ui: &mut Ui, panel: &Panel, run: &Run, which: Loop, load: bool) {
     }
     let x_end = main.iter().filter_map(|line| line.points.last().map(|p| p[0])).fold(0.1, f64::max);
     let x = Axis::new("time", "s", 0.0, x_end);
-    let lower = (size.y * DUTY_SHARE).max(70.0);
+    let lower = lower_height(size.y);
     let name = if which == Loop::Velocity { "speed" } else { "position" };
     let goal = run.shown.as_ref().map(|shown| (shown.forecast.step.1, "setpoint"));
     let label = if load {
@@ -210,7 +227,15 @@ fn replies_ui(ui: &mut Ui, panel: &Panel, run: &Run, which: Loop, load: bool) {
     let empty = "There is no model yet: tune first.";
     let levels: Vec<(f64, &str)> = goal.into_iter().collect();
     let y = around(name, which.unit(), &main);
-    chart(ui, &label, (x, y), &main, &levels, empty, vec2(size.x, size.y - lower - 6.0));
+    chart(
+        ui,
+        &label,
+        (x, y),
+        &main,
+        &levels,
+        empty,
+        vec2(size.x, size.y - lower - if lower > 0.0 { 6.0 } else { 0.0 }),
+    );
     chart(ui, "Predicted duty", (x, around("duty", "%", &duty)), &duty, &[], "", vec2(size.x, lower));
 }
 
@@ -315,6 +340,11 @@ fn unwrapped_phase(shown: &Shown) -> Vec<(f64, f64)> {
     phases
 }
 
+/// Height of the duty under another picture; none where there is no room for both.
+fn lower_height(height: f32) -> f32 {
+    if height < ROOM_FOR_DUTY { 0.0 } else { (height * DUTY_SHARE).max(70.0) }
+}
+
 fn line(name: &str, points: Vec<(f64, f64)>, color: Color32, look: Look) -> Line {
     let points = points.into_iter().map(|(x, y)| [x, y]).collect();
     Line { name: name.to_owned(), points, color, look }
@@ -333,7 +363,9 @@ fn chart(
     empty: &str,
     size: egui::Vec2,
 ) {
-    Chart { name, x, y, lines, levels, circles: &[], is_square: false, empty }.ui(ui, size);
+    if size.y >= 1.0 {
+        Chart { name, x, y, lines, levels, circles: &[], is_square: false, empty }.ui(ui, size);
+    }
 }
 
 fn shifted(points: Vec<(f64, f64)>, from_s: f64) -> Vec<(f64, f64)> {

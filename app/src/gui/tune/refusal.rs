@@ -5,6 +5,7 @@ use egui::{Button, Label, RichText, Ui};
 
 use super::model::{Loop, TuneWish};
 use super::result::lamp_ui;
+use super::run::Run;
 use super::sketches::{Sketch, sketch_ui};
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
@@ -90,6 +91,35 @@ fn steps(cause: Cause) -> &'static [&'static str] {
     }
 }
 
+/// Offers to clear L and R for the run, where that is what it was refused for.
+fn clearing_ui(ui: &mut Ui, model: &Model, which: Loop, commands: &mut Commands) {
+    let is_torque = |run: &Run| run.report.causes.contains(&Cause::TorqueMode);
+    if model.front.tune.cleared_winding().is_some()
+        || !model.front.tune.front(which).run().is_some_and(is_torque)
+    {
+        return;
+    }
+    let is_free = !model.front.is_guided() && !model.front.loops.is_busy();
+    let clear = ui.add_enabled(is_free, Button::new("Clear L and R for the run"));
+    let hint = "Writes 0 for both into the controller's RAM now and puts them back after the next run, whatever becomes of it";
+    if clear.on_hover_text(hint).clicked() {
+        commands.push(Command::Tune(TuneWish::ClearWinding));
+    }
+}
+
+/// Says that L and R are cleared, with the way back.
+pub fn cleared_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
+    let Some(motor) = model.front.tune.cleared_winding() else { return };
+    lamp_ui(
+        ui,
+        LampState::Warning,
+        &format!("L and R of {motor} are cleared. They are put back after the run."),
+    );
+    if ui.button("Put L and R back").on_hover_text("Now, without a run").clicked() {
+        commands.push(Command::Tune(TuneWish::PutWindingBack));
+    }
+}
+
 pub fn refusal_ui(ui: &mut Ui, model: &Model, which: Loop, commands: &mut Commands) {
     let Some(run) = model.front.tune.front(which).run() else { return };
     let motor = model.front.tune.motor(which);
@@ -103,6 +133,7 @@ pub fn refusal_ui(ui: &mut Ui, model: &Model, which: Loop, commands: &mut Comman
         if again.on_disabled_hover_text("Arm this screen first").clicked() {
             commands.push(Command::Tune(TuneWish::Start(motor)));
         }
+        clearing_ui(ui, model, which, commands);
         if !is_armed {
             ui.label(RichText::new("Arm this screen to try again.").small().color(weak));
         }

@@ -22,10 +22,12 @@ pub fn result_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Com
     if let Some(run) = model.front.tune.front_mut(which).run_mut() {
         run.look_at_held(held);
     }
-    let Some(run) = model.front.tune.front(which).run() else {
+    if model.front.tune.front(which).run().is_none() {
         empty_ui(ui, which);
         return files_ui(ui, &mut model.front.tune, which, commands);
-    };
+    }
+    super::refusal::cleared_ui(ui, model, commands);
+    let Some(run) = model.front.tune.front(which).run() else { return };
     if run.is_refused() {
         super::refusal::refusal_ui(ui, model, which, commands);
     } else {
@@ -106,7 +108,6 @@ fn model_text(report: &Report) -> Option<String> {
 
 /// Gains: current, proposed (to be edited), change.
 fn gains_ui(ui: &mut Ui, model: &mut Model, which: Loop, held: Option<Registers>) {
-    let palette = Palette::of(ui);
     let tuning = &mut model.front.tune;
     let motor = tuning.motor(which);
     let Some(run) = tuning.front_mut(which).run_mut() else { return };
@@ -114,9 +115,7 @@ fn gains_ui(ui: &mut Ui, model: &mut Model, which: Loop, held: Option<Registers>
     let before = wanted;
     ui.add_space(4.0);
     Grid::new("tune gains").striped(true).num_columns(4).spacing(vec2(12.0, 2.0)).show(ui, |ui| {
-        for head in ["", "current", "proposed", "change"] {
-            ui.label(RichText::new(head).small().color(palette.weak_text));
-        }
+        heads_ui(ui, "", [("current", 84.0), ("proposed", 96.0), ("change", 72.0)]);
         ui.end_row();
         for field in &FIELDS {
             let Some(mut value) = field.value(&wanted) else { continue };
@@ -140,7 +139,7 @@ fn gains_ui(ui: &mut Ui, model: &mut Model, which: Loop, held: Option<Registers>
             {
                 field.set(&mut wanted, value);
             }
-            figure_ui(ui, &change_text(field, current, field.value(&wanted)), 64.0);
+            figure_ui(ui, &change_text(field, current, field.value(&wanted)), 72.0);
             ui.end_row();
         }
     });
@@ -173,6 +172,20 @@ pub fn figure_ui(ui: &mut Ui, text: &str, width: f32) -> Response {
         ui.add(Label::new(RichText::new(text).text_style(theme::figures())).truncate())
     })
     .inner
+}
+
+/// Words above columns of figures, at their right as those are.
+fn heads_ui(ui: &mut Ui, first: &str, others: [(&str, f32); 3]) {
+    let weak = Palette::of(ui).weak_text;
+    let word = |text: &str| Label::new(RichText::new(text).small().color(weak));
+    ui.add(word(first));
+    for (text, width) in others {
+        let size = vec2(width, 14.0);
+        ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.set_min_width(width);
+            ui.add(word(text));
+        });
+    }
 }
 
 fn acts_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands) {
@@ -229,14 +242,11 @@ fn acts_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands)
 
 /// What the gains promise, and what was measured.
 fn figures_ui(ui: &mut Ui, model: &Model, which: Loop) {
-    let palette = Palette::of(ui);
     let Some(run) = model.front.tune.front(which).run() else { return };
     let Some(shown) = &run.shown else { return };
     ui.add_space(4.0);
     Grid::new("tune figures").striped(true).num_columns(4).spacing(vec2(12.0, 2.0)).show(ui, |ui| {
-        for head in ["predicted", "current", "proposed", "measured"] {
-            ui.label(RichText::new(head).small().color(palette.weak_text));
-        }
+        heads_ui(ui, "predicted", [("current", 84.0), ("proposed", 96.0), ("measured", 72.0)]);
         ui.end_row();
         for (name, hint, figure) in FIGURES {
             ui.label(name).on_hover_text(hint);

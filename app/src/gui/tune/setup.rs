@@ -12,9 +12,10 @@ use crate::gui::model::Model;
 use crate::gui::theme::Palette;
 use crate::gui::widgets::numeric::Numeric;
 
-/// From this width on both motors stand in one row, and so do all options.
-const BOTH_IN_A_ROW: f32 = 930.0;
-const OPTIONS_IN_A_ROW: f32 = 1010.0;
+/// From these widths on both motors stand in one row, with words beside their sliders, and all options in another.
+const BOTH_IN_A_ROW: f32 = 720.0;
+const WITH_WORDS: f32 = 960.0;
+const OPTIONS_IN_A_ROW: [f32; 2] = [860.0, 1010.0];
 
 const WHAT_IT_DOES: &str = "Checks the wiring with little duty, measures the motor, designs gains for the level, and tries them. \
     Nothing stays in the controller until you apply it.";
@@ -24,15 +25,16 @@ pub fn setup_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Comm
     let is_armed = model.front.link.arming.is_armed_for(which.scope());
     let is_free = !model.front.is_guided();
     let can_start = is_armed && is_free;
+    let is_wide = ui.available_width() >= WITH_WORDS;
     if ui.available_width() >= BOTH_IN_A_ROW {
         ui.horizontal(|ui| {
-            motor_row_ui(ui, model, which, Motor::M1, can_start, commands);
-            ui.add_space(16.0);
-            motor_row_ui(ui, model, which, Motor::M2, can_start, commands);
+            motor_row_ui(ui, model, (which, Motor::M1), (can_start, is_wide), commands);
+            ui.add_space(10.0);
+            motor_row_ui(ui, model, (which, Motor::M2), (can_start, is_wide), commands);
         });
     } else {
         for motor in Motor::BOTH {
-            ui.horizontal(|ui| motor_row_ui(ui, model, which, motor, can_start, commands));
+            ui.horizontal(|ui| motor_row_ui(ui, model, (which, motor), (can_start, is_wide), commands));
         }
     }
     options_ui(ui, model, which);
@@ -47,9 +49,8 @@ pub fn setup_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Comm
 fn motor_row_ui(
     ui: &mut Ui,
     model: &mut Model,
-    which: Loop,
-    motor: Motor,
-    can_start: bool,
+    (which, motor): (Loop, Motor),
+    (can_start, is_wide): (bool, bool),
     commands: &mut Commands,
 ) {
     let is_front = model.front.tune.motor(which) == motor;
@@ -66,23 +67,27 @@ fn motor_row_ui(
     let mut level =
         panel.run().filter(|run| run.first.is_some()).map_or(panel.setting.level, |run| run.level);
     ui.label("Level");
-    ui.label(RichText::new("soft").small().color(Palette::of(ui).weak_text));
+    if is_wide {
+        ui.label(RichText::new("soft").small().color(Palette::of(ui).weak_text));
+    }
     let hint = "How stiff the loop is made. After a run it redraws what the gains of another level would do, without moving anything.";
-    if level_ui(ui, &format!("{motor} level"), hint, &mut level) {
+    if level_ui(ui, &format!("{motor} level"), hint, if is_wide { 136.0 } else { 104.0 }, &mut level) {
         panel.setting.level = level;
         if let Some(run) = panel.run_mut() {
             run.set_level(level);
         }
         model.front.tune.look_at(which, motor);
     }
-    ui.label(RichText::new("stiff").small().color(Palette::of(ui).weak_text));
+    if is_wide {
+        ui.label(RichText::new("stiff").small().color(Palette::of(ui).weak_text));
+    }
 }
 
 fn options_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
     let motor = model.front.tune.motor(which);
     let travel = model.front.loops.travel(motor);
     let setting = &mut model.front.tune.panel_mut(which, motor).setting;
-    let is_wide = ui.available_width() >= OPTIONS_IN_A_ROW;
+    let is_wide = ui.available_width() >= OPTIONS_IN_A_ROW[which as usize];
     ui.horizontal(|ui| {
         ui.label(RichText::new(format!("Motor {}:", motor.index() + 1)).strong());
         axis_ui(ui, setting, which, travel);
