@@ -63,8 +63,10 @@ impl App {
     /// A window that has not been drawn yet. Fonts and colours are installed in `ctx`.
     pub fn new(ctx: &Context, parts: Parts) -> Self {
         theme::install(ctx);
+        let mut model = Model::default();
+        model.mcl.start(ctx, parts.keeping.store().root());
         Self {
-            model: Model::default(),
+            model,
             parts,
             links: Links::default(),
             shown: None,
@@ -128,7 +130,12 @@ impl App {
         if let Some(failure) = self.memory.as_mut().and_then(|memory| memory.look(&ctx, &self.model)) {
             self.model.messages.warn(failure.to_string());
         }
+        self.look_after_programs(&ctx);
+        self.hold_unsaved(&ctx);
         self.hold_open(&ctx);
+        if self.end.is_asked() {
+            self.model.mcl.keep_all();
+        }
         if self.closing || self.end.is_asked() {
             self.links.stop_all();
             ctx.send_viewport_cmd(ViewportCommand::Close);
@@ -389,6 +396,13 @@ impl App {
             }
             Command::ClampTest => self.clamp_test(),
             Command::Debug(wish) => self.debug(wish),
+            Command::Mcl(wish) => self.edit_mcl(wish),
+            Command::DownloadMcl => self.download_mcl(),
+            Command::CancelDownload => {
+                self.request(Request::CancelJob);
+            }
+            Command::StartScript => self.start_script(),
+            Command::StopScript => self.stop_script(),
             other => self.apply_to_window(other),
         }
     }
@@ -416,7 +430,6 @@ impl App {
             Command::OpenHelp(page) => model.help.open(page),
             Command::Exit => self.closing = true,
             Command::DismissMessage => model.messages.dismiss(),
-            Command::Mcl(wish) => self.edit_mcl(wish),
             _ => {}
         }
     }

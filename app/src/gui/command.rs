@@ -99,6 +99,12 @@ pub enum Command {
     Debug(DebugWish),
     /// Something to be done in the MCL editor.
     Mcl(MclWish),
+    /// Compiles the MCL program in front and downloads it.
+    DownloadMcl,
+    /// Gives up the download that runs.
+    CancelDownload,
+    StartScript,
+    StopScript,
 }
 
 /// The wishes of one frame, in order.

@@ -8,7 +8,7 @@ use egui::Key;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 use super::support::bench::Bench;
-use super::{PIN, Row, apply, driving, graph, tuning, value_of, write};
+use super::{PIN, Row, apply, driving, graph, mcl, tuning, value_of, write};
 
 /// Plays the scene that a row names.
 pub fn play(bench: &mut Bench, row: &Row, scene: &str) {
@@ -43,6 +43,7 @@ pub fn play(bench: &mut Bench, row: &Row, scene: &str) {
             signal(bench, row, name);
         }
         name if name.starts_with("tune_") => tuning::play(bench, row, name),
+        name if name.starts_with("mcl_") => mcl::play(bench, row, name),
         name if name.starts_with("stop_") => stop(bench, row, name),
         name if name.starts_with("lamp_") => lamp(bench, row, name),
         name if name.starts_with("help_") => help(bench, row),

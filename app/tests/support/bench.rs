@@ -84,14 +84,26 @@ impl Bench {
         Self::with_bus(bus, [1280.0, 800.0], Theme::Dark)
     }
 
+    /// The window goes without a word, as in a crash, and another one comes that finds what was kept.
+    pub fn after_a_crash(self) -> Self {
+        let kept = self.kept.clone();
+        drop(self);
+        let unit = Controller::new(ControllerConfig::default()).expect("the default configuration is sound");
+        Self::keeping_in(kept, Bus::single(unit, StreamIndex::Usb), [1280.0, 800.0], Theme::Dark)
+    }
+
     fn with_bus(bus: Bus, size: [f32; 2], theme: Theme) -> Self {
+        let kept = Rc::new(tempfile::tempdir().expect("a temporary folder can be made"));
+        Self::keeping_in(kept, bus, size, theme)
+    }
+
+    fn keeping_in(kept: Rc<tempfile::TempDir>, bus: Bus, size: [f32; 2], theme: Theme) -> Self {
         let line = Line::new(bus);
         let unit = Controller::new(ControllerConfig::default()).expect("the default configuration is sound");
         let second = Line::new(Bus::single(unit, StreamIndex::Usb));
         let loops = [Slot::default(), Slot::default()];
         let ports = Rc::new(RefCell::new(Some(Vec::new())));
         let opener = BenchOpener { lines: [line.clone(), second.clone()], loops: loops.clone() };
-        let kept = Rc::new(tempfile::tempdir().expect("a temporary folder can be made"));
         let keeping = Keeping::new(Store::at(kept.path()));
         let mut parts =
             Some(Parts { ports: Box::new(BenchPorts(ports.clone())), opener: Box::new(opener), keeping });

@@ -3,6 +3,7 @@
 //! Everything runs in this process, against simulated controllers; nothing here is drawn on a screen. The figures hold for
 //! the machine and the build they were taken on: use a release build on a quiet machine.
 
+mod editor;
 mod figure;
 mod headless;
 mod link;

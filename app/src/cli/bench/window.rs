@@ -2,10 +2,10 @@
 
 use std::time::{Duration, Instant};
 
-use super::Effort;
 use super::figure::{Figure, Target};
 use super::headless::Headless;
 use super::spread::{median, percentile};
+use super::{Effort, editor};
 use crate::gui::App;
 use crate::gui::bench::{SPAN_S, graph_cost, hour};
 use crate::gui::model::screen::Screen;
@@ -24,6 +24,7 @@ const CONNECT_LIMIT: Duration = Duration::from_secs(10);
 pub fn measure(effort: Effort) -> Result<Vec<Figure>, String> {
     let mut figures = graph_figures(effort);
     figures.push(window_figure(effort)?);
+    figures.extend(editor::measure(effort));
     Ok(figures)
 }
 

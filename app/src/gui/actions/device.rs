@@ -1,12 +1,12 @@
 //! The Device menu (MCP manual 1.2.8) with Ion Studio's keys, and what is new: links, arming, encoders.
 
+use brushwork_link::device::ArmScope;
 use brushwork_protocol::packet_serial::Motor;
 use egui::Key;
 
-use super::{
-    Action, Keys, Menu, Ready, always, connected, ctrl, ctrl_shift, key, mcl_missing, place, settings_idle,
-};
+use super::{Action, Keys, Menu, Ready, always, connected, ctrl, ctrl_shift, key, place, settings_idle};
 use crate::gui::command::Command;
+use crate::gui::mcl::MclWish;
 use crate::gui::model::drawer::Tab;
 use crate::gui::model::firmware::FirmwareWish;
 use crate::gui::model::general::{Section, Sheet};
@@ -238,9 +238,9 @@ pub(super) const ACTIONS: &[Action] = &[
         place: place(Menu::Device, 4),
         keys: key(Key::F7),
         help: "Compiles the open MCL program and checks it for errors.",
-        ready: mcl_missing,
+        ready: always,
         is_on: None,
-        command: |_| Command::Show(Screen::MclEditor),
+        command: |_| Command::Mcl(MclWish::Check),
     },
     Action {
         id: "device.download-mcl",
@@ -248,9 +248,19 @@ pub(super) const ACTIONS: &[Action] = &[
         place: place(Menu::Device, 4),
         keys: key(Key::F5),
         help: "Downloads the MCL program to the controller's flash memory.",
-        ready: mcl_missing,
+        ready: can_download,
         is_on: None,
-        command: |_| Command::Show(Screen::MclEditor),
+        command: |_| Command::DownloadMcl,
+    },
+    Action {
+        id: "device.download-image",
+        title: "Download the Maker's Image File…",
+        place: place(Menu::Device, 4),
+        keys: Keys::None,
+        help: "Downloads a script that the maker's own program has compiled, for real controllers.",
+        ready: connected,
+        is_on: None,
+        command: |_| Command::Mcl(MclWish::ChooseImage),
     },
     Action {
         id: "device.start-script",
@@ -258,9 +268,9 @@ pub(super) const ACTIONS: &[Action] = &[
         place: place(Menu::Device, 4),
         keys: Keys::None,
         help: "Starts the program that is in the controller.",
-        ready: mcl_missing,
+        ready: can_start_script,
         is_on: None,
-        command: |_| Command::Show(Screen::MclEditor),
+        command: |_| Command::StartScript,
     },
     Action {
         id: "device.stop-script",
@@ -268,9 +278,9 @@ pub(super) const ACTIONS: &[Action] = &[
         place: place(Menu::Device, 4),
         keys: Keys::None,
         help: "Stops the program that runs in the controller.",
-        ready: mcl_missing,
+        ready: connected,
         is_on: None,
-        command: |_| Command::Show(Screen::MclEditor),
+        command: |_| Command::StopScript,
     },
     Action {
         id: "device.zero-m1",
@@ -323,8 +333,27 @@ fn can_arm(model: &Model) -> Ready {
     connected(model)?;
     match model.arm_scope() {
         Some(_) => Ok(()),
-        None => Err("This screen moves no motor. Go to the PWM, Velocity or Position screen first.".into()),
+        None => {
+            Err("This screen moves no motor. Go to the PWM, Velocity, Position or MCL screen first.".into())
+        }
     }
+}
+
+fn can_download(model: &Model) -> Ready {
+    connected(model)?;
+    match model.front.script.is_running() {
+        true => Err("A download runs already. Wait for it or cancel it.".into()),
+        false => Ok(()),
+    }
+}
+
+/// A script can move motors, so starting one is a motion.
+fn can_start_script(model: &Model) -> Ready {
+    connected(model)?;
+    if model.front.link.arming.is_armed_for(ArmScope::Script) {
+        return Ok(());
+    }
+    Err("A script can move motors. Arm the MCL Editor screen first.".into())
 }
 
 fn arm_or_disarm(model: &Model) -> Command {

@@ -2,7 +2,7 @@
 
 use egui::Key;
 
-use super::{Action, Keys, Menu, always, key, mcl_missing, place};
+use super::{Action, Keys, Menu, always, key, place};
 use crate::gui::command::Command;
 use crate::gui::model::help::HelpPage;
 
@@ -54,16 +54,14 @@ pub(super) const ACTIONS: &[Action] = &[
         PacketSerial,
         "Every command of the protocol, byte by byte, and the bits of the status word."
     ),
-    Action {
-        id: "help.mcl",
-        title: "MCL Reference",
-        place: place(Menu::Help, 1),
-        keys: Keys::None,
-        help: "Every command of the MCL language.",
-        ready: mcl_missing,
-        is_on: None,
-        command: |_| Command::OpenHelp(HelpPage::FirstSteps),
-    },
+    page!(
+        "help.mcl",
+        "MCL Reference",
+        1,
+        Keys::None,
+        Mcl,
+        "Every command, operator, modifier, type and register of the MCL language, and where the manual contradicts itself."
+    ),
     page!(
         "help.shortcuts",
         "Keyboard Shortcuts",

@@ -9,7 +9,9 @@ use std::borrow::Cow;
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use super::command::{Command, Commands};
+use super::mcl;
 use super::model::Model;
+use super::model::screen::Screen;
 
 mod debug;
 mod device;
@@ -17,6 +19,7 @@ mod edit;
 mod file;
 mod graph;
 mod help;
+mod program;
 mod view;
 
 /// One thing that can be asked for.
@@ -81,6 +84,10 @@ pub enum Keys {
     None,
     /// Calls it from anywhere.
     Shortcut(KeyboardShortcut),
+    /// Calls it while the MCL screen is shown, and goes before what the keys call elsewhere.
+    OnMcl(KeyboardShortcut),
+    /// Calls it while a program's text has the keyboard: fields for words use the same keys.
+    InText(KeyboardShortcut),
     /// Is taken elsewhere (by a text field, by the stop keys) and only listed here.
     Elsewhere(&'static str),
 }
@@ -91,11 +98,14 @@ pub type Ready = Result<(), Cow<'static, str>>;
 /// Every action, menu by menu, as the menus show them.
 pub fn all() -> impl Iterator<Item = &'static Action> {
     [
+        program::FILE,
         file::ACTIONS,
+        program::EDIT,
         edit::ACTIONS,
         device::ACTIONS,
         debug::ACTIONS,
         view::ACTIONS,
+        program::VIEW,
         graph::ACTIONS,
         help::ACTIONS,
     ]
@@ -113,7 +123,9 @@ impl Action {
     pub fn keys_text(&self, ctx: &Context) -> String {
         match self.keys {
             Keys::None => String::new(),
-            Keys::Shortcut(shortcut) => ctx.format_shortcut(&shortcut),
+            Keys::Shortcut(shortcut) | Keys::OnMcl(shortcut) | Keys::InText(shortcut) => {
+                ctx.format_shortcut(&shortcut)
+            }
             Keys::Elsewhere(text) => text.to_owned(),
         }
     }
@@ -122,12 +134,22 @@ impl Action {
 /// The commands of the shortcuts that were pressed. What cannot be done now says why.
 pub fn shortcuts(ctx: &Context, model: &mut Model) -> Commands {
     let mut pressed: Vec<&Action> = Vec::new();
+    let on_mcl = model.screen == Screen::MclEditor && model.palette.is_none();
+    let in_text = on_mcl && mcl::has_keyboard(ctx, &model.mcl);
     // Ctrl+Shift+S would also pass for Ctrl+S: more modifiers go first.
     for count in (0..=3).rev() {
-        for action in all() {
-            let Keys::Shortcut(shortcut) = action.keys else { continue };
-            if modifiers(shortcut) == count && ctx.input_mut(|input| input.consume_shortcut(&shortcut)) {
-                pressed.push(action);
+        // What is for the program that is edited goes before what is for the whole window.
+        for general in [false, true] {
+            for action in all() {
+                let shortcut = match action.keys {
+                    Keys::Shortcut(shortcut) if general => shortcut,
+                    Keys::OnMcl(shortcut) if !general && on_mcl => shortcut,
+                    Keys::InText(shortcut) if !general && in_text => shortcut,
+                    _ => continue,
+                };
+                if modifiers(shortcut) == count && ctx.input_mut(|input| input.consume_shortcut(&shortcut)) {
+                    pressed.push(action);
+                }
             }
         }
     }
@@ -188,8 +210,20 @@ fn settings_idle(model: &Model) -> Ready {
     }
 }
 
-fn mcl_missing(_: &Model) -> Ready {
-    Err("The MCL editor is not built yet.".into())
+/// The MCL screen is shown.
+fn on_mcl(model: &Model) -> Ready {
+    match model.screen {
+        Screen::MclEditor => Ok(()),
+        _ => Err("This is for MCL programs. Go to the MCL Editor first.".into()),
+    }
+}
+
+const fn on_mcl_key(modifiers: Modifiers, key: Key) -> Keys {
+    Keys::OnMcl(KeyboardShortcut::new(modifiers, key))
+}
+
+const fn in_text_key(modifiers: Modifiers, key: Key) -> Keys {
+    Keys::InText(KeyboardShortcut::new(modifiers, key))
 }
 
 #[cfg(test)]
@@ -206,7 +240,9 @@ mod tests {
             assert!(ids.insert(action.id), "{} twice", action.id);
             assert!(titles.insert(action.title), "{} twice", action.title);
             let text = action.keys_text(&ctx);
-            assert!(text.is_empty() || keys.insert(text.clone()), "{text} twice: {}", action.id);
+            let for_programs = matches!(action.keys, Keys::OnMcl(_) | Keys::InText(_));
+            let is_new = text.is_empty() || keys.insert((for_programs, text.clone()));
+            assert!(is_new, "{text} twice: {}", action.id);
         }
     }
 
@@ -231,7 +267,7 @@ mod tests {
     #[test]
     fn nothing_takes_a_stop_key() {
         for action in all() {
-            if let Keys::Shortcut(shortcut) = action.keys {
+            if let Keys::Shortcut(shortcut) | Keys::OnMcl(shortcut) | Keys::InText(shortcut) = action.keys {
                 assert!(!matches!(shortcut.logical_key, Key::Space | Key::Escape), "{}", action.id);
             }
         }

@@ -7,6 +7,7 @@ use super::model::help::{Help, HelpPage};
 use super::theme::Palette;
 use super::widgets::text_field::text_field_ui;
 
+mod mcl;
 mod pages;
 mod reference;
 mod tuning;
@@ -50,6 +51,7 @@ fn page_ui(ui: &mut Ui, page: HelpPage, help: &mut Help) {
         HelpPage::Tuning => scrolled_ui(ui, tuning::tuning_ui),
         HelpPage::Settings => reference::settings_ui(ui, help),
         HelpPage::PacketSerial => reference::packet_serial_ui(ui, help),
+        HelpPage::Mcl => mcl::mcl_ui(ui, help),
         HelpPage::Shortcuts => scrolled_ui(ui, |ui| pages::shortcuts_ui(ui, &help.search)),
         HelpPage::About => scrolled_ui(ui, pages::about_ui),
     }

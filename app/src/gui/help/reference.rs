@@ -13,11 +13,11 @@ use crate::gui::theme::Palette;
 const LIST_WIDTH: f32 = 262.0;
 
 /// One entry of a list.
-struct Entry {
-    key: String,
-    title: String,
+pub(super) struct Entry {
+    pub key: String,
+    pub title: String,
     /// What a search looks through, in small letters.
-    words: String,
+    pub words: String,
 }
 
 pub fn settings_ui(ui: &mut Ui, help: &mut Help) {
@@ -160,7 +160,7 @@ fn text_ui(ui: &mut Ui, text: &str) {
 }
 
 /// The list at the left; a click chooses an entry.
-fn list_ui(ui: &mut Ui, entries: &[Entry], help: &mut Help) {
+pub(super) fn list_ui(ui: &mut Ui, entries: &[Entry], help: &mut Help) {
     let wanted: Vec<String> = help.search.to_lowercase().split_whitespace().map(str::to_owned).collect();
     let fits = |entry: &&Entry| wanted.iter().all(|word| entry.words.contains(word));
     let found: Vec<&Entry> = entries.iter().filter(fits).collect();

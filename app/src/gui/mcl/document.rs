@@ -1,15 +1,17 @@
 //! One open program: its text, caret, marks, and what the compiler says about it.
 
 use std::path::PathBuf;
-use std::time::Duration;
 
+use brushwork_script::diagnostic::Severity;
 use egui::Vec2;
 
 use super::buffer::{Buffer, Edit, Kind};
 use super::caret::Caret;
+use super::disk::{Format, LineEnds, Stamp};
 use super::fold::Folds;
 use super::input::Composing;
 use super::marks::Marks;
+use super::problems::Findings;
 
 /// Which program, for as long as the window is open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -33,6 +35,28 @@ pub struct Document {
     pub composing: Option<Composing>,
     pub run: RunMarks,
     pub view: View,
+    /// What the compiler says.
+    pub findings: Findings,
+    /// Encoding and line ends of the file.
+    pub format: Format,
+    /// The file as it was when it was read or written here.
+    pub(super) stamp: Option<Stamp>,
+    pub on_disk: OnDisk,
+    pub(super) is_saving: bool,
+    /// The revision seen last, and when it came, seconds.
+    pub(super) seen: (u64, f64),
+    /// The revision that is kept against a crash.
+    pub(super) kept: u64,
+}
+
+/// Whether the file is as it was.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OnDisk {
+    #[default]
+    Same,
+    /// Another program has written it, while there is unsaved text here.
+    Changed,
+    Gone,
 }
 
 /// What a run of this program shows beside its lines.
@@ -82,6 +106,13 @@ impl Document {
             composing: None,
             run: RunMarks::default(),
             view: View::default(),
+            findings: Findings::default(),
+            format: Format::default(),
+            stamp: None,
+            on_disk: OnDisk::Same,
+            is_saving: false,
+            seen: (0, 0.0),
+            kept: 0,
         }
     }
 
@@ -142,9 +173,19 @@ impl Document {
             self.bookmarks.follow(edit);
             self.breakpoints.follow(edit);
             self.folds.follow(edit);
+            self.findings.follow(edit);
         }
         // Counts and the place of a halt are those of the program that runs, not of this text.
         self.run = RunMarks::default();
+    }
+
+    /// Puts another text in place of the whole, as one step of undo.
+    pub fn replace_all(&mut self, text: &str) {
+        let line = self.caret_line();
+        let whole = 0..self.text.len();
+        self.edit(Kind::Other, [(whole, text.to_owned())], |text| {
+            Caret::at(text.line_start(line.min(text.line_count() - 1)))
+        });
     }
 
     /// Puts the caret at a place and brings it into view.
@@ -162,6 +203,37 @@ impl Document {
         self.go_to(Caret::at(self.text.line_start(line)));
     }
 
+    /// Goes to the next problem after the caret, or the one before; round at the ends.
+    pub fn go_to_problem(&mut self, forward: bool) {
+        let at = self.caret.range().start;
+        let problems = &self.findings.problems;
+        let next = match forward {
+            true => problems.iter().find(|problem| problem.range.start > at).or(problems.first()),
+            false => problems.iter().rev().find(|problem| problem.range.start < at).or(problems.last()),
+        };
+        if let Some(range) = next.map(|problem| problem.range.clone()) {
+            self.go_to(Caret::at(range.start));
+        }
+    }
+
+    /// Goes to the first error.
+    pub fn go_to_first_error(&mut self) {
+        let error = self.findings.problems.iter().find(|problem| problem.severity == Severity::Error);
+        if let Some(start) = error.map(|problem| problem.range.start) {
+            self.go_to(Caret::at(start));
+        }
+    }
+
+    /// Lines are to end otherwise in the file. Mixed ends in the text become one kind.
+    pub fn set_line_ends(&mut self, ends: LineEnds) {
+        if self.format.ends == LineEnds::Mixed {
+            let text = self.text.text().replace("\r\n", "\n").replace('\r', "\n");
+            self.replace_all(&text);
+        }
+        self.format.ends = ends;
+        self.text.set_unsaved();
+    }
+
     /// Shows where the machine halts, or that it does not.
     pub fn show_halt(&mut self, line: Option<usize>) {
         if self.run.halted_at != line {
@@ -172,6 +244,3 @@ impl Document {
         }
     }
 }
-
-/// How long typing pauses before what was typed counts as a step of its own.
-pub const TYPING_PAUSE: Duration = Duration::from_secs(2);

@@ -1,7 +1,15 @@
 //! The open programs, and how all of them are shown.
 
+use std::path::PathBuf;
+
+use super::complete::Completion;
 use super::document::{DocId, Document};
+use super::find::Find;
+use super::journal::Left;
 use super::panel::Panel;
+use super::services::Services;
+use super::sheet::Sheet;
+use crate::gui::model::message::Gravity;
 
 /// What is shown of a program besides its text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,16 +35,42 @@ impl Options {
     }
 }
 
+/// Where the window is on its way to being closed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Exit {
+    #[default]
+    No,
+    /// It waits until unsaved text is saved or given up.
+    Asked,
+    Now,
+}
+
 /// The editor: always at least one program.
 #[derive(Debug)]
 pub struct Editor {
-    documents: Vec<Document>,
-    front: usize,
+    pub(super) documents: Vec<Document>,
+    pub(super) front: usize,
     next: u64,
     pub options: Options,
     pub panel: Panel,
+    pub find: Find,
+    /// Words that could be typed, while the list is open.
+    pub completion: Option<Completion>,
+    /// What is being asked.
+    pub sheet: Option<Sheet>,
+    /// The keyboard goes to the sheet in the next frame.
+    pub sheet_is_new: bool,
     /// The keyboard goes to the text in the next frame.
     pub wants_focus: bool,
+    /// What earlier windows left unsaved.
+    pub left: Vec<Left>,
+    /// The maker's image file that is to be downloaded.
+    pub image: Option<PathBuf>,
+    /// Programs that are closed as soon as they are saved.
+    pub(super) closing: Vec<DocId>,
+    pub(super) exit: Exit,
+    pub(super) services: Option<Services>,
+    pub(super) said: Vec<(Gravity, String)>,
 }
 
 impl Default for Editor {
@@ -47,7 +81,17 @@ impl Default for Editor {
             next: 1,
             options: Options::default(),
             panel: Panel::default(),
+            find: Find::default(),
+            completion: None,
+            sheet: None,
+            sheet_is_new: false,
             wants_focus: true,
+            left: Vec::new(),
+            image: None,
+            closing: Vec::new(),
+            exit: Exit::No,
+            services: None,
+            said: Vec::new(),
         };
         editor.open_new("");
         editor
@@ -84,28 +128,58 @@ impl Editor {
     pub fn open_new(&mut self, text: &str) -> DocId {
         let id = DocId(self.next);
         self.next += 1;
-        self.documents.push(Document::new(id, format!("Untitled {}", id.0), text));
+        let names = (1..).map(|number| format!("Untitled {number}"));
+        let mut free = names.filter(|name| !self.documents.iter().any(|document| document.untitled == *name));
+        let name = free.next().unwrap_or_default();
+        self.documents.push(Document::new(id, name, text));
         self.front = self.documents.len() - 1;
-        self.wants_focus = true;
+        self.turned();
+        id
+    }
+
+    /// Opens a text that is in no file and has a name, such as an example.
+    pub fn open_named(&mut self, name: &str, text: &str) -> DocId {
+        let blank = self.front();
+        let is_blank = blank.path.is_none() && blank.text.is_empty() && !blank.text.can_undo();
+        let blank = is_blank.then(|| blank.id());
+        let id = self.open_new(text);
+        name.clone_into(&mut self.front_mut().untitled);
+        if let Some(blank) = blank {
+            self.close_now(blank);
+        }
         id
     }
 
     pub fn bring_to_front(&mut self, id: DocId) {
         if let Some(index) = self.documents.iter().position(|document| document.id() == id) {
             self.front = index;
-            self.wants_focus = true;
+            self.turned();
         }
     }
 
+    /// The program to the right or left of the one in front, round at the ends.
+    pub fn neighbour(&self, right: bool) -> DocId {
+        let count = self.documents.len();
+        let step = if right { 1 } else { count - 1 };
+        self.documents[(self.front + step) % count].id()
+    }
+
     /// Takes a program away, saved or not. Without any other an empty one comes in its place.
-    pub fn close(&mut self, id: DocId) {
+    pub fn close_now(&mut self, id: DocId) {
         let Some(index) = self.documents.iter().position(|document| document.id() == id) else { return };
+        self.ask(super::files::Task::Forget(id));
         self.documents.remove(index);
         if self.documents.is_empty() {
             self.open_new("");
         }
         let last = self.documents.len() - 1;
         self.front = if index < self.front { self.front - 1 } else { self.front.min(last) };
+        self.turned();
+    }
+
+    /// Another program is in front.
+    fn turned(&mut self) {
         self.wants_focus = true;
+        self.completion = None;
     }
 }

@@ -47,6 +47,9 @@ pub fn gutter_ui(
         let line = document.folds.line_at(row);
         let at = Rect::from_min_size(pos2(rect.left(), top), vec2(rect.width(), metrics.row));
         marks_ui(ui, &painter, at, document, line);
+        if options.folding {
+            fold_ui(ui, &painter, at, document, line);
+        }
         let color = if line == caret_line && options.current_line { palette.text } else { palette.weak_text };
         let right = at.right() - FOLDS;
         let font = FontId::monospace(metrics.font.size * 0.9);
@@ -55,8 +58,33 @@ pub fn gutter_ui(
     if let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked()) {
         let row = ((at.y - rect.top() + document.view.offset.y) / metrics.row).max(0.0) as usize;
         if row < count {
-            wishes.push(MclWish::ToggleBreakpoint(document.folds.line_at(row)));
+            let line = document.folds.line_at(row);
+            let folds =
+                options.folding && at.x > rect.right() - FOLDS && document.findings.last_of(line).is_some();
+            wishes.push(if folds { MclWish::ToggleFold(line) } else { MclWish::ToggleBreakpoint(line) });
         }
+    }
+    let hint = "Click a line to set a breakpoint; click the sign at its right to fold a block away";
+    response.on_hover_text(hint);
+}
+
+/// A sign where a block can be folded away, and a line beside what belongs to it.
+fn fold_ui(ui: &Ui, painter: &egui::Painter, at: Rect, document: &Document, line: usize) {
+    let palette = Palette::of(ui);
+    let center = pos2(at.right() - FOLDS / 2.0, at.center().y);
+    let stroke = Stroke::new(1.0, palette.weak_text);
+    if document.findings.last_of(line).is_none() {
+        let inside = document.findings.folds.iter().any(|(first, last)| *first < line && line <= *last);
+        if inside {
+            painter.vline(center.x, at.y_range(), Stroke::new(1.0, palette.line));
+        }
+        return;
+    }
+    let sign = Rect::from_center_size(center, vec2(9.0, 9.0));
+    painter.rect_stroke(sign, 1.0, stroke, egui::StrokeKind::Inside);
+    painter.hline(sign.x_range().shrink(2.0), center.y, stroke);
+    if document.folds.is_closed(line) {
+        painter.vline(center.x, sign.y_range().shrink(2.0), stroke);
     }
 }
 

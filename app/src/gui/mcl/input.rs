@@ -4,6 +4,7 @@ use egui::{Event, EventFilter, Id, ImeEvent, Key, Modifiers, Ui};
 
 use super::buffer::Kind;
 use super::caret::{Caret, Move, moved};
+use super::complete::Completion;
 use super::document::{Document, Reveal};
 
 /// The keys that stay with the text instead of moving the focus.
@@ -17,11 +18,15 @@ pub struct Composing {
     pub length: usize,
 }
 
-/// Does what was typed since the last frame. `page` is how many rows are in view.
-pub fn take(ui: &Ui, id: Id, document: &mut Document, page: usize) {
+/// Does what was typed since the last frame. `page` is how many rows are in view. The list of words goes along with what is typed.
+pub fn take(ui: &Ui, id: Id, document: &mut Document, list: &mut Option<Completion>, page: usize) {
     let owns_ime = ui.memory(|memory| memory.owns_ime_events(id));
     for event in ui.input(|input| input.filtered_events(&FILTER)) {
+        let before = (document.text.revision(), document.caret);
+        let typed = matches!(&event, Event::Text(_) | Event::Ime(_));
         match event {
+            // Ctrl+Space comes as a key and as a letter.
+            Event::Text(text) if text == " " && ui.input(|input| input.modifiers.command) => {}
             Event::Text(text) if !text.is_empty() && text != "\n" && text != "\r" => {
                 document.type_text(&text);
             }
@@ -29,10 +34,50 @@ pub fn take(ui: &Ui, id: Id, document: &mut Document, page: usize) {
             Event::Copy => ui.ctx().copy_text(document.copied()),
             Event::Cut => ui.ctx().copy_text(document.cut()),
             Event::Ime(event) if owns_ime => compose(document, &event),
-            Event::Key { key, pressed: true, modifiers, .. } => press(document, key, modifiers, page),
+            Event::Key { key, pressed: true, modifiers, .. } => {
+                if in_list(document, list, key, modifiers) {
+                    continue;
+                }
+                press(document, key, modifiers, page);
+            }
             _ => {}
         }
+        follow(document, list, before, typed);
     }
+}
+
+/// The list opens and narrows while a word is typed, narrows while one is erased, and closes when the caret goes elsewhere.
+fn follow(document: &Document, list: &mut Option<Completion>, before: (u64, Caret), typed: bool) {
+    let edited = document.text.revision() != before.0;
+    if edited && (typed || list.is_some()) && document.composing.is_none() {
+        *list = Completion::of(document, false);
+    } else if document.caret != before.1 || edited {
+        *list = None;
+    }
+}
+
+/// Keys that belong to the list of words while it is open. True if the key was one.
+fn in_list(document: &mut Document, list: &mut Option<Completion>, key: Key, modifiers: Modifiers) -> bool {
+    if key == Key::Space && modifiers.command {
+        *list = Completion::of(document, true);
+        return true;
+    }
+    let Some(open) = list.as_mut().filter(|_| !modifiers.any()) else { return false };
+    match key {
+        Key::ArrowDown => open.step(1),
+        Key::ArrowUp => open.step(-1),
+        Key::PageDown => open.step(8),
+        Key::PageUp => open.step(-8),
+        Key::Escape => *list = None,
+        Key::Enter | Key::Tab => {
+            if let Some(list) = list.take() {
+                let chosen = list.chosen;
+                list.accept(document, chosen);
+            }
+        }
+        _ => return false,
+    }
+    true
 }
 
 fn press(document: &mut Document, key: Key, modifiers: Modifiers, page: usize) {
@@ -48,7 +93,7 @@ fn press(document: &mut Document, key: Key, modifiers: Modifiers, page: usize) {
         Key::Tab if modifiers.is_none() => document.indent(),
         Key::Backspace => document.erase(erases(Move::Left, Move::WordLeft)),
         Key::Delete if !modifiers.shift => document.erase(erases(Move::Right, Move::WordRight)),
-        Key::ArrowUp | Key::ArrowDown if modifiers.alt => document.move_lines(key == Key::ArrowDown),
+        Key::Z if modifiers.command && modifiers.shift => document.redo(),
         _ => {}
     }
 }

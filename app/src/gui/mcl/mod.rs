@@ -1,20 +1,41 @@
 //! The MCL editor (MCP manual 1.2.14): programs in tabs, checked as they are typed, downloaded, started and stopped.
 //!
-//! `buffer` to `disk` know nothing of egui and are plain operations on text; `view` draws a document, `screen` puts everything together.
+//! The text and what is done to it (`buffer`, `caret`, `typing`, `find`, `fold`, `marks`, `disk`, `journal`) know nothing of egui; `view`
+//! draws a program, `screen` puts everything together, `services` keeps the threads that check, read and write.
 
 mod access;
 mod act;
+mod ask;
 pub mod buffer;
 pub mod caret;
+pub mod check;
+pub mod complete;
+pub mod disk;
 pub mod document;
 pub mod editor;
+pub mod examples;
+pub mod files;
+pub mod find;
+mod findbar;
 pub mod fold;
 mod gutter;
 mod input;
+pub mod journal;
+pub mod language;
+mod list;
 pub mod marks;
+mod notices;
 mod paint;
 pub mod panel;
+mod popup;
+pub mod print;
+pub mod problems;
+mod runbar;
+mod saving;
 mod screen;
+mod services;
+pub mod sheet;
+mod squiggle;
 mod strip;
 mod tabs;
 mod toolbar;
@@ -25,4 +46,8 @@ pub mod wish;
 pub use document::{DocId, Document};
 pub use editor::Editor;
 pub use screen::screen_ui;
+pub use view::has_keyboard;
 pub use wish::MclWish;
+
+#[cfg(test)]
+mod tests;

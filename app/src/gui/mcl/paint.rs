@@ -98,7 +98,7 @@ impl Line {
     }
 }
 
-fn color_of(syntax: &Syntax, class: Class, palette: &Palette) -> egui::Color32 {
+pub fn color_of(syntax: &Syntax, class: Class, palette: &Palette) -> egui::Color32 {
     match class {
         Class::Command => syntax.command,
         Class::Operator | Class::Format => syntax.operator,

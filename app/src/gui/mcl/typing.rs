@@ -215,6 +215,15 @@ impl Document {
         });
     }
 
+    /// Writes the program anew in the usual form; the caret stays in its line.
+    pub fn tidy(&mut self) {
+        let text = self.text.text();
+        let tidied = brushwork_script::mcl::format::format(&text);
+        if tidied != text {
+            self.replace_all(&tidied);
+        }
+    }
+
     /// What is copied or cut: the selection, or the whole line without one.
     pub fn copied(&self) -> String {
         if !self.caret.is_empty() {

@@ -25,6 +25,7 @@ use super::position::Position;
 use super::pwm::Pwm;
 use super::qpps::QppsPanel;
 use super::screen::Screen;
+use super::script::ScriptWork;
 use super::traffic::Traffic;
 use super::velocity::Velocity;
 use super::watch::Watch;
@@ -60,6 +61,8 @@ pub struct Desk {
     pub velocity: Velocity,
     /// The firmware window and the update that runs.
     pub firmware: Firmware,
+    /// The download of a script, and which one the controller holds.
+    pub script: ScriptWork,
     pub position: Position,
     pub generator: Generator,
     pub qpps: QppsPanel,
@@ -147,6 +150,7 @@ impl Desk {
             general: General::default(),
             velocity: Velocity::default(),
             firmware: Firmware::default(),
+            script: ScriptWork::default(),
             position: Position::default(),
             generator: Generator::default(),
             qpps: QppsPanel::default(),
@@ -212,6 +216,8 @@ impl Desk {
             effects
         } else if self.awaits_guided(&event) {
             self.take_guided(event)
+        } else if self.script.awaits(&event) {
+            self.script.take(event)
         } else if self.general.awaits(&event) {
             self.general.take(event)
         } else if self.loops.awaits(&event) {
@@ -301,6 +307,7 @@ impl Desk {
     fn forget_unit(&mut self) {
         self.loops.forget();
         self.generator.forget();
+        self.script.forget();
         self.qpps.forget();
     }
 

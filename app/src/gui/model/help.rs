@@ -8,13 +8,14 @@ pub enum HelpPage {
     Tuning,
     Settings,
     PacketSerial,
+    Mcl,
     Shortcuts,
     About,
 }
 
 impl HelpPage {
-    pub const ALL: [Self; 6] =
-        [Self::FirstSteps, Self::Tuning, Self::Settings, Self::PacketSerial, Self::Shortcuts, Self::About];
+    pub const ALL: [Self; 7] =
+        [Self::FirstSteps, Self::Tuning, Self::Settings, Self::PacketSerial, Self::Mcl, Self::Shortcuts, Self::About];
 
     pub const fn title(self) -> &'static str {
         match self {
@@ -22,6 +23,7 @@ impl HelpPage {
             Self::Tuning => "Tuning",
             Self::Settings => "Settings Reference",
             Self::PacketSerial => "Packet Serial Reference",
+            Self::Mcl => "MCL Reference",
             Self::Shortcuts => "Keyboard Shortcuts",
             Self::About => "About Brushwork",
         }
@@ -29,7 +31,7 @@ impl HelpPage {
 
     /// Whether the page is long enough to be searched.
     pub const fn is_searched(self) -> bool {
-        matches!(self, Self::Settings | Self::PacketSerial | Self::Shortcuts)
+        matches!(self, Self::Settings | Self::PacketSerial | Self::Mcl | Self::Shortcuts)
     }
 }
 

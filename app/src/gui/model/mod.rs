@@ -26,6 +26,7 @@ pub mod pwm;
 pub mod qpps;
 pub mod readings;
 pub mod screen;
+pub mod script;
 pub mod setpoints;
 pub mod traffic;
 pub mod velocity;
