@@ -100,7 +100,11 @@ pub fn play(bench: &mut Bench, row: &Row, scene: &str) {
         "mcl_terminal" => assert_eq!(bench.model().mcl.panel.tab, Tab::Terminal),
         "mcl_download" => {
             bench.pass_ms(3000);
-            assert!(bench.model().front.script.on_board().is_some(), "{:?}", bench.model().messages.past().collect::<Vec<_>>());
+            assert!(
+                bench.model().front.script.on_board().is_some(),
+                "{:?}",
+                bench.model().messages.past().collect::<Vec<_>>()
+            );
         }
         "mcl_start" => {
             bench.pass_ms(500);

@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use brushwork_link::device::{ArmScope, DeviceHandle, Request as LinkRequest};
+use brushwork_link::device::DeviceHandle;
 use brushwork_script::debug::{Reason, Request};
 use egui::Context;
 
@@ -155,17 +155,6 @@ impl App {
         if let Some(world) = self.links.get(id).and_then(|link| link.world.as_ref()) {
             world.set_pace(pace);
             self.model.front.graph.mark(now_s, MarkKind::Note, format!("time {}", pace.name()));
-        }
-    }
-
-    /// A start moves motors, so it needs the armed screen as the menu's Start Script does.
-    fn start_script(&mut self) {
-        if self.model.front.link.arming.is_armed_for(ArmScope::Script) {
-            self.request(LinkRequest::StartScript);
-        } else {
-            self.model
-                .messages
-                .warn("A script can move motors: arm the MCL Editor first, then press Run again.");
         }
     }
 }

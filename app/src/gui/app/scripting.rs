@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use brushwork_link::Failure;
-use brushwork_link::device::Request;
+use brushwork_link::device::{ArmScope, Request};
 use brushwork_link::diagnosis::Script;
 use brushwork_link::script::ScriptImage;
 use brushwork_script::image;
@@ -117,8 +117,12 @@ impl App {
         }
     }
 
-    /// Starts the stored script; the screen is armed for it.
-    pub(in crate::gui) fn start_script(&mut self) {
+    /// Starts the stored script. It may move motors, so it needs the armed screen.
+    pub(super) fn start_script(&mut self) {
+        if !self.model.front.link.arming.is_armed_for(ArmScope::Script) {
+            let text = "A script can move motors: arm the MCL Editor first, then press Run again.";
+            return self.model.messages.warn(text);
+        }
         if self.request(Request::StartScript) {
             self.model.front.watch.note_script(Script::Started);
         }

@@ -76,11 +76,17 @@ mod tests {
         let pages = pages();
         let mut keys: Vec<&str> = pages.iter().map(|page| page.entry.key.as_str()).collect();
         assert!(keys.len() > 150, "{}", keys.len());
-        assert!(keys.iter().any(|key| key.ends_with("GOSUB")) && keys.iter().any(|key| key.ends_with("SYSTICK")));
+        assert!(
+            keys.iter().any(|key| key.ends_with("GOSUB")) && keys.iter().any(|key| key.ends_with("SYSTICK"))
+        );
         keys.sort_unstable();
         assert!(keys.windows(2).all(|pair| pair[0] != pair[1]), "two entries of one name");
         for page in &pages {
-            assert!(!page.title.trim().is_empty() && !page.entry.words.trim().is_empty(), "{}", page.entry.key);
+            assert!(
+                !page.title.trim().is_empty() && !page.entry.words.trim().is_empty(),
+                "{}",
+                page.entry.key
+            );
         }
     }
 }

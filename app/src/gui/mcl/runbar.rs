@@ -55,7 +55,8 @@ pub fn reasons_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
 fn told(model: &Model, armed: bool) -> String {
     let front = &model.front;
     if !model.is_connected() {
-        return "Not connected. Programs can be written and checked; running them needs a controller.".to_owned();
+        return "Not connected. Programs can be written and checked; running them needs a controller."
+            .to_owned();
     }
     let view = front.worlds.as_ref().and_then(|views| views.get(front.world_unit)?.script.clone());
     let runs = match view.map(|view| view.run) {

@@ -39,7 +39,8 @@ fn button_ui(ui: &mut Ui, id: &str, reads: &str, model: &Model, commands: &mut C
     let Some(action) = actions::all().find(|action| action.id == id) else { return };
     let ready = (action.ready)(model);
     let on = action.is_on.map(|is_on| is_on(model));
-    let response = ui.add_enabled(ready.is_ok(), Button::selectable(on.unwrap_or(false), RichText::new(reads).size(12.5)));
+    let response = ui
+        .add_enabled(ready.is_ok(), Button::selectable(on.unwrap_or(false), RichText::new(reads).size(12.5)));
     let name = format!("Toolbar {}", action.title.trim_end_matches('…'));
     response.widget_info(|| match on {
         Some(on) => WidgetInfo::selected(Role::Button, ready.is_ok(), on, &name),

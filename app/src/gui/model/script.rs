@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use brushwork_link::Wire as _;
 use brushwork_link::device::{Event, FnJob, JobContext, Request};
 use brushwork_link::script::{DOWNLOAD_JOB, Downloaded, ScriptImage, Verified, download};
 
@@ -93,7 +94,9 @@ fn told(title: &str, done: &Downloaded) -> String {
     let verified = match done.verified {
         Verified::Content => "verified".to_owned(),
         Verified::Status => "each block confirmed".to_owned(),
-        Verified::Alike(byte) => format!("each block answered with 0x{byte:02X}, whose meaning is not public"),
+        Verified::Alike(byte) => {
+            format!("each block answered with 0x{byte:02X}, whose meaning is not public")
+        }
     };
     let foreign = if done.is_foreign { " A simulated controller does not run it." } else { "" };
     format!(
