@@ -515,6 +515,8 @@ impl App {
     }
 
     fn show(&mut self, screen: Screen) {
+        // Whoever goes there wants to write.
+        self.model.mcl.wants_focus |= screen == Screen::MclEditor;
         if screen == self.model.screen {
             return;
         }
