@@ -152,6 +152,8 @@ fn names_of_the_program_are_offered_once_they_were_checked() {
     assert!(bench.sees("Word total_counts"));
     bench.key(Key::Escape);
     assert!(!bench.sees("Word total_counts"));
+    type_in(&mut bench, "al");
+    assert!(text(&mut bench).ends_with("total"), "the text has kept the keyboard");
 }
 
 #[test]
@@ -222,6 +224,31 @@ fn unsaved_text_is_asked_for_before_its_tab_goes_and_before_the_window_goes() {
     bench.press("Close without saving");
     bench.pass_ms(200);
     assert_eq!(text(&mut bench), "");
+}
+
+#[test]
+fn several_programs_are_saved_one_after_the_other_before_the_window_goes() {
+    let mut bench = editor();
+    type_in(&mut bench, "one");
+    bench.key_with(CTRL, Key::N);
+    bench.pass_ms(200);
+    type_in(&mut bench, "two");
+    bench.key_with(CTRL, Key::Q);
+    bench.pass_ms(200);
+    bench.press("Save and close");
+    let folder = bench.store().root().expect("a test has a folder").to_owned();
+    for (name, held) in [("first.mcl", "one"), ("second.mcl", "two")] {
+        until(&mut bench, "asked for a path", |bench| {
+            bench.harness.query_by_role_and_label(Role::TextInput, "Path").is_some()
+        });
+        bench.harness.get_by_role_and_label(Role::TextInput, "Path").focus();
+        bench.pass_ms(100);
+        bench.key_with(CTRL, Key::A);
+        let path = folder.join(name);
+        type_in(&mut bench, &format!("{}\n", path.display()));
+        until(&mut bench, "saved", move |_| std::fs::read_to_string(&path).is_ok_and(|text| text == held));
+    }
+    until(&mut bench, "may go", |bench| bench.model().mcl.may_exit());
 }
 
 #[test]

@@ -7,7 +7,7 @@ use crate::gui::actions::{self, Keys, Menu};
 use crate::gui::widgets::label::fixed_label_ui;
 
 /// Numbered, in the order a person does them.
-const FIRST_STEPS: [(&str, &str); 8] = [
+const FIRST_STEPS: [(&str, &str); 9] = [
     (
         "Connect",
         "Choose a device at the left and press Connect. The simulated MCP266 is always there and needs no hardware: \
@@ -40,6 +40,12 @@ const FIRST_STEPS: [(&str, &str); 8] = [
         "Close the loop",
         "Velocity Settings holds the speed loop. Set QPPS to the speed at full duty in counts per second first, then P, \
          I and D. The graph shows the setpoint and what the motor makes of it.",
+    ),
+    (
+        "Script it",
+        "The MCL Editor holds programs that run in the controller itself. Open an example from the File menu, press Download, \
+         arm the screen and press Run; the Terminal shows what the program says, the Debugger where it stands. Simulated \
+         controllers run what is compiled here; a real one takes files of its maker's compiler.",
     ),
     (
         "Keep it",

@@ -7,9 +7,10 @@ use super::caret::{Caret, Move, moved};
 use super::complete::Completion;
 use super::document::{Document, Reveal};
 
-/// The keys that stay with the text instead of moving the focus.
-pub const FILTER: EventFilter =
-    EventFilter { tab: true, horizontal_arrows: true, vertical_arrows: true, escape: false };
+/// The keys that stay with the text instead of moving the focus. Esc leaves the text, unless it has a list of words to close.
+pub const fn filter(list_is_open: bool) -> EventFilter {
+    EventFilter { tab: true, horizontal_arrows: true, vertical_arrows: true, escape: list_is_open }
+}
 
 /// What an input method is composing, and where it stands in the text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -21,7 +22,7 @@ pub struct Composing {
 /// Does what was typed since the last frame. `page` is how many rows are in view. The list of words goes along with what is typed.
 pub fn take(ui: &Ui, id: Id, document: &mut Document, list: &mut Option<Completion>, page: usize) {
     let owns_ime = ui.memory(|memory| memory.owns_ime_events(id));
-    for event in ui.input(|input| input.filtered_events(&FILTER)) {
+    for event in ui.input(|input| input.filtered_events(&filter(true))) {
         let before = (document.text.revision(), document.caret);
         let typed = matches!(&event, Event::Text(_) | Event::Ime(_));
         match event {

@@ -122,9 +122,21 @@ impl Editor {
                 Err(why) => self.say(Gravity::Warning, why),
             },
             Sheet::Close { ids } => {
-                self.closing.clone_from(&ids);
-                ids.into_iter().for_each(|id| self.save(id));
+                self.closing = ids;
+                self.save_closing();
             }
+        }
+    }
+
+    /// Saves what is to be closed; programs without a file are asked for one after the other.
+    fn save_closing(&mut self) {
+        for id in self.closing.clone() {
+            let Some(document) = self.document(id).filter(|document| !document.is_saving) else { continue };
+            if document.path.is_none() {
+                self.bring_to_front(id);
+                return self.save_as(id);
+            }
+            self.save(id);
         }
     }
 
@@ -162,6 +174,7 @@ impl Editor {
             self.closing.remove(index);
             self.close_now(id);
             self.exit_if_asked();
+            self.save_closing();
         }
     }
 

@@ -20,6 +20,8 @@ use crate::gui::model::Model;
 /// Height of the panel at first, and what it can be dragged to.
 const PANEL_HEIGHT: f32 = 118.0;
 const DEBUGGER_HEIGHT: f32 = 280.0;
+/// Of the arm switch.
+const SWITCH_HEIGHT: f32 = 32.0;
 /// A screen without room for more.
 const LOW: f32 = 560.0;
 const PANEL_RANGE: std::ops::RangeInclusive<f32> = 80.0..=520.0;
@@ -63,6 +65,8 @@ fn panel_tabs_ui(ui: &mut Ui, model: &Model, wishes: &mut Vec<MclWish>, commands
     ui.add_space(2.0);
     reasons_ui(ui, model, commands);
     ui.horizontal(|ui| {
+        // As high as the switch, so that all stands on one line.
+        ui.set_min_height(SWITCH_HEIGHT);
         ui.spacing_mut().item_spacing.x = 4.0;
         for tab in Tab::ALL {
             let shown = model.mcl.panel.open && model.mcl.panel.tab == tab;

@@ -44,10 +44,11 @@ pub fn view_ui(
         ui.memory_mut(|memory| memory.request_focus(id));
     }
     if ui.memory(|memory| memory.has_focus(id)) {
-        ui.memory_mut(|memory| memory.set_focus_lock_filter(id, input::FILTER));
         text_field::keep_space(ui, id);
         let page = (document.view.size.y / metrics.row) as usize;
         input::take(ui, id, document, &mut list, page.saturating_sub(1).max(1));
+        let filter = input::filter(list.is_some());
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
     } else {
         list = None;
     }
