@@ -14,8 +14,15 @@ pub enum HelpPage {
 }
 
 impl HelpPage {
-    pub const ALL: [Self; 7] =
-        [Self::FirstSteps, Self::Tuning, Self::Settings, Self::PacketSerial, Self::Mcl, Self::Shortcuts, Self::About];
+    pub const ALL: [Self; 7] = [
+        Self::FirstSteps,
+        Self::Tuning,
+        Self::Settings,
+        Self::PacketSerial,
+        Self::Mcl,
+        Self::Shortcuts,
+        Self::About,
+    ];
 
     pub const fn title(self) -> &'static str {
         match self {
