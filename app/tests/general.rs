@@ -2,7 +2,10 @@
 
 mod support;
 
+use std::time::Duration;
+
 use brushwork::gui::model::general::{Sheet, sections};
+use brushwork::gui::model::link::Arming;
 use brushwork::gui::model::message::Gravity;
 use brushwork::gui::model::screen::Screen;
 use brushwork_protocol::packet_serial::number;
@@ -238,9 +241,9 @@ fn a_setting_without_a_wire_form_is_changed_on_the_simulated_controller_alone() 
 #[test]
 fn what_could_not_be_read_says_why_in_its_row() {
     let mut bench = Bench::new();
-    bench.connect();
     // No answer at all to this one command.
     bench.line.swallow(number::READ_MAIN_VOLTAGES, &[]);
+    bench.connect();
     open(&mut bench);
     bench.press("Section Voltage limits");
     assert!(bench.sees(&format!("{MAX_VOLTS} on the controller: –")));
@@ -297,10 +300,10 @@ fn loading_from_eeprom_takes_back_what_was_not_saved() {
 
 #[test]
 fn reading_can_be_cancelled_and_says_so() {
-    let mut bench = Bench::new();
-    bench.connect();
-    bench.harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::Num2);
-    // One frame to open the screen, one for the command to go out: nothing is read yet.
+    let mut bench = opened();
+    bench.press("Read settings");
+    bench.button("Read").click();
+    // One frame for the command to go out, one to show it: nothing is read yet.
     bench.harness.step();
     bench.harness.step();
     assert!(bench.sees_part("Progress: read the settings"));
@@ -308,11 +311,72 @@ fn reading_can_be_cancelled_and_says_so() {
     bench.harness.step();
     bench.pass_ms(1000);
     assert!(bench.sees_part("Did not read the settings: it was cancelled"));
-    assert!(bench.sees("Edits: not read yet"));
     bench.press("Read settings");
     bench.press("Read");
     bench.pass_ms(3000);
-    assert!(bench.sees("Edits: none"));
+    assert!(bench.sees("Edits: none") && bench.sees_part("settings read."));
+}
+
+/// The mark at the bottom of every screen.
+fn mark(bench: &Bench) -> String {
+    let marks = bench.harness.query_all_by_label_contains("Settings: ");
+    marks.filter_map(|node| node.accesskit_node().label()).next().expect("it is always there")
+}
+
+#[test]
+fn after_connecting_the_settings_are_known_on_every_screen_without_a_word() {
+    let mut bench = Bench::new();
+    let before = truth(&bench);
+    bench.connect();
+    bench.pass_ms(3000);
+    assert_eq!(bench.model().screen, Screen::DeviceStatus);
+    assert_eq!(mark(&bench), "Settings: EEPROM not known, no profile open");
+    assert!(bench.sees_part("Connected to MCP266"), "what is said is of the connection");
+    assert_eq!(truth(&bench), before);
+    // What a screen that drives writes is known here too.
+    bench.press("Velocity Settings");
+    bench.pass_ms(500);
+    bench.enter("M1 Velocity P", "2.5");
+    bench.press("Apply to RAM");
+    bench.pass_ms(2000);
+    assert_eq!(mark(&bench), "Settings: RAM: 1 written, not saved, no profile open");
+    open(&mut bench);
+    bench.press("Save to EEPROM");
+    bench.press("Save");
+    bench.pass_ms(10_000);
+    assert_eq!(mark(&bench), "Settings: RAM is saved in EEPROM, no profile open");
+    bench.press("Disconnect");
+    bench.pass_ms(500);
+    bench.connect();
+    bench.pass_ms(3000);
+    assert_eq!(mark(&bench), "Settings: RAM is as saved last, no profile open");
+}
+
+#[test]
+fn reading_that_nobody_asked_for_delays_nothing_and_is_begun_again() {
+    let mut bench = Bench::new();
+    // Without an answer to this command reading takes its time.
+    bench.line.swallow(number::READ_MAIN_VOLTAGES, &[]);
+    bench.press("Connect");
+    for _ in 0..500 {
+        if bench.model().front.general.is_reading_quietly() {
+            break;
+        }
+        bench.pass_frame(Duration::from_millis(5));
+    }
+    assert!(bench.model().front.general.is_reading_quietly());
+    bench.button("Zero M1 encoder").click();
+    bench.pass_frame(Duration::from_millis(5));
+    assert!(!bench.model().front.general.is_reading_quietly(), "it gives way at once");
+    bench.arm();
+    assert!(matches!(bench.model().front.link.arming, Arming::Armed { .. }));
+    assert!(!bench.model().front.general.unit().unwrap().is_read());
+    assert!(!bench.sees_part("cancelled"), "nobody called anything off");
+    bench.pass_ms(2000);
+    assert!(bench.model().front.general.running().is_none(), "nothing is begun while armed");
+    bench.press("Arm");
+    bench.pass_ms(3000);
+    assert!(bench.model().front.general.unit().unwrap().is_read());
 }
 
 #[test]

@@ -3,10 +3,11 @@
 mod support;
 
 use brushwork::gui::model::general::{Sheet, Side};
+use brushwork::gui::model::loop_settings::{self, key};
 use brushwork::gui::model::screen::Screen;
 use brushwork::keep::UnitId;
 use brushwork_link::settings::{Act, SettingValue};
-use brushwork_protocol::packet_serial::number;
+use brushwork_protocol::packet_serial::{Motor, number};
 use brushwork_sim::world::WorldAction;
 use egui::Key;
 use egui::accesskit::Role;
@@ -86,6 +87,82 @@ fn the_list_of_backups_compares_and_restores() {
     bench.pass_ms(3000);
     assert_eq!(bench.model().front.general.unit().unwrap().on_controller(P), Some(number(1.0)));
     assert_eq!(bench.store().backups(Some(&unit)).len(), 2, "restoring is a write and leaves a backup too");
+}
+
+#[test]
+fn every_write_from_every_screen_that_drives_has_a_backup_of_what_was_there() {
+    let mut bench = Bench::new();
+    bench.connect();
+    let unit = unit(&mut bench);
+    let mut writes = 0;
+    for (screen, field, (motor, column), values) in [
+        ("PWM Settings", "M1 L", (Motor::M1, "inductance_henries"), ["0.01", "0.02", "0"]),
+        ("Velocity Settings", "M1 Velocity P", (Motor::M1, "velocity.p"), ["2", "3", "2.5"]),
+        ("Velocity Settings", "M2 QPPS", (Motor::M2, "velocity.qpps"), ["9000", "9500", "9000"]),
+        ("Position Settings", "M2 Position P", (Motor::M2, "position.p"), ["7", "8", "9"]),
+    ] {
+        bench.press(screen);
+        bench.pass_ms(1000);
+        for value in values {
+            let before = bench.model().front.loops.held(motor, column).expect("it was read");
+            bench.enter(field, value);
+            bench.press("Apply to RAM");
+            bench.pass_ms(3000);
+            writes += 1;
+            assert!(bench.sees("As the controller holds them."), "{field} {value}");
+            let backups = bench.store().backups(Some(&unit));
+            assert_eq!(backups.len(), writes, "{field} {value}");
+            let kept = backups[0].open().unwrap().profile.settings;
+            let held = kept.get(&key(motor, column)).and_then(loop_settings::number);
+            assert_eq!(held, Some(before), "before {field} {value}");
+            assert_eq!(kept.len(), 242, "everything is in it");
+            assert!(bench.store().open_journals(&unit).0.is_empty(), "it ended and was told");
+        }
+    }
+}
+
+#[test]
+fn a_backup_tells_the_truth_after_the_controller_restarted_in_between() {
+    let mut bench = Bench::new();
+    bench.connect();
+    bench.press("Velocity Settings");
+    bench.pass_ms(1000);
+    for value in ["2", "3"] {
+        bench.enter("M1 Velocity P", value);
+        bench.enter("M2 Velocity P", value);
+        bench.press("Apply to RAM");
+        bench.pass_ms(3000);
+    }
+    bench.act(&WorldAction::Power { on: false });
+    bench.act(&WorldAction::Power { on: true });
+    bench.pass_ms(1000);
+    bench.enter("M1 Velocity P", "4");
+    bench.press("Apply to RAM");
+    bench.pass_ms(3000);
+    let unit = unit(&mut bench);
+    let kept = bench.store().backups(Some(&unit))[0].open().unwrap().profile.settings;
+    assert_eq!((kept.get(P), kept.get("motor2.velocity.p")), (Some(number(1.0)), Some(number(1.0))));
+}
+
+#[test]
+fn a_small_write_that_is_cut_is_told_at_the_next_connection() {
+    let mut bench = Bench::new();
+    bench.connect();
+    bench.press("Velocity Settings");
+    bench.pass_ms(1000);
+    bench.enter("M1 Velocity P", "2");
+    bench.enter("M2 Velocity P", "2");
+    bench.press("Apply to RAM");
+    bench.pass_ms(3000);
+    bench.enter("M1 Velocity P", "3");
+    bench.enter("M2 Velocity P", "3");
+    bench.line.after(number::SET_VELOCITY_PID_M1, 1, WorldAction::Unplug { unplugged: true });
+    bench.press("Apply to RAM");
+    bench.pass_ms(3000);
+    assert!(!bench.model().is_connected());
+    put_back(&mut bench);
+    open(&mut bench);
+    assert!(bench.sees_part("The controller holds a mix: 1 new, 1 old."));
 }
 
 #[test]
@@ -281,24 +358,4 @@ fn edits_made_while_a_write_runs_stay() {
     bench.pass_ms(5000);
     assert_eq!(edits(&mut bench), 1);
     assert!(bench.sees("Edits: 1 not written"));
-}
-
-#[test]
-fn a_series_of_small_changes_on_a_screen_that_drives_has_one_backup() {
-    let mut bench = Bench::new();
-    bench.connect();
-    bench.press("Velocity Settings");
-    bench.pass_ms(2000);
-    for gain in ["2.5", "3.5"] {
-        bench.enter("M1 Velocity P", gain);
-        bench.press("Apply to RAM");
-        bench.pass_ms(2000);
-    }
-    let unit = unit(&mut bench);
-    let backups = bench.store().backups(Some(&unit));
-    assert_eq!(backups.len(), 1);
-    let profile = backups[0].open().unwrap().profile;
-    assert_eq!(profile.settings.get(P), Some(number(1.0)), "what was there before the first of them");
-    assert_eq!(profile.settings.len(), 242);
-    assert_eq!(bench.store().open_journals(&unit).0.len(), 0);
 }

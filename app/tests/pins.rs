@@ -5,6 +5,7 @@ mod support;
 use std::time::Duration;
 
 use brushwork::gui::model::screen::Screen;
+use brushwork::keep::UnitId;
 use brushwork_link::settings::{ConflictKind, PinMode, SettingValue, SignalShape};
 use brushwork_sim::settings::SignalSettings;
 use brushwork_sim::world::{PinSignal, WorldAction};
@@ -259,6 +260,9 @@ fn an_input_is_calibrated_by_moving_it() {
     bench.pass_ms(2000);
     assert!(bench.sees("Step 1 of 2"));
     assert_eq!((truth(&bench).target, truth(&bench).center), (0, 0), "it commands nothing meanwhile");
+    let unit = UnitId::new(bench.model().front.link.identity().unwrap(), &[]);
+    assert!(bench.store().backups(Some(&unit))[0].name.ends_with("-before-trial"));
+    assert_eq!(bench.store().open_journals(&unit).0.len(), 1, "open until the input is put back");
     hold(&mut bench, 300.0);
     bench.press("Take ends");
     assert!(bench.sees_part("The input moved over"), "one end alone is refused");
@@ -277,6 +281,7 @@ fn an_input_is_calibrated_by_moving_it() {
     bench.pass_ms(2000);
     let pin = truth(&bench);
     assert_eq!((pin.target, pin.min, pin.center, pin.max, pin.deadband), (1, 0, 2048, 4095, 5), "put back");
+    assert!(bench.store().open_journals(&unit).0.is_empty());
     assert_eq!(wanted(&mut bench, "min"), SettingValue::Int(300));
     assert_eq!(wanted(&mut bench, "center"), SettingValue::Int(2150));
     assert_eq!(wanted(&mut bench, "max"), SettingValue::Int(3900));
@@ -324,9 +329,12 @@ fn a_link_lost_while_calibrating_leaves_the_old_settings_as_changes_to_write() {
     bench.connect();
     open(&mut bench);
     assert_ne!(truth(&bench), before, "nothing could put it back");
+    assert!(bench.sees_part("A tuning run or a calibration begun"), "the journal tells it");
     assert!(bench.sees_part("not written"));
     write(&mut bench);
     assert_eq!(truth(&bench), before);
+    let unit = UnitId::new(bench.model().front.link.identity().unwrap(), &[]);
+    assert!(bench.store().open_journals(&unit).0.is_empty(), "all is as it was");
 }
 
 #[test]

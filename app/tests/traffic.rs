@@ -3,6 +3,8 @@
 mod support;
 
 use brushwork::gui::model::traffic::Tab;
+use brushwork::keep::UnitId;
+use brushwork_link::settings::SettingValue;
 use brushwork_protocol::packet_serial::{Motor, number};
 use egui::Key;
 use egui::accesskit::Role;
@@ -105,6 +107,42 @@ fn a_command_is_shown_as_bytes_then_sent_and_answered() {
 }
 
 #[test]
+fn a_command_that_changes_settings_is_sent_once_a_backup_of_them_is_kept() {
+    let mut bench = open();
+    bench.press("Send a command");
+    let generation = brushwork_protocol::packet_serial::Generation::Gen1;
+    let unit = UnitId::new(bench.model().front.link.identity().unwrap(), &[]);
+    let composer = &mut bench.model().front.traffic.composer;
+    composer.choose(number::SET_VELOCITY_PID_M1, generation);
+    // D, P, I and QPPS (MCP manual 2.4.1).
+    composer.arguments = ["0", "131072", "0", "9000"].map(str::to_owned).to_vec();
+    bench.pass_ms(200);
+    bench.press("Send these bytes");
+    bench.pass_ms(2000);
+    assert!(bench.sees_part("Answer: "));
+    let held = bench.line.with(|bus| bus.controllers()[0].settings().motors[0].motion.qpps);
+    assert_eq!(held, 9000);
+    let backups = bench.store().backups(Some(&unit));
+    assert_eq!(backups.len(), 1);
+    let kept = backups[0].open().unwrap().profile.settings;
+    assert_eq!(kept.get("motor1.velocity.qpps"), Some(SettingValue::Int(44_000)), "what was there before");
+    // A save counts as one.
+    assert_eq!(bench.store().wear(&unit).saves, 0);
+    bench.model().front.traffic.composer.choose(number::SAVE_SETTINGS, generation);
+    bench.pass_ms(200);
+    bench.press("Send these bytes");
+    bench.pass_ms(3000);
+    assert_eq!((bench.store().backups(Some(&unit)).len(), bench.store().wear(&unit).saves), (2, 1));
+    assert!(bench.store().open_journals(&unit).0.is_empty());
+    // What only reads has none.
+    bench.model().front.traffic.composer.choose(number::READ_MAIN_BATTERY, generation);
+    bench.pass_ms(200);
+    bench.press("Send these bytes");
+    bench.pass_ms(1000);
+    assert_eq!(bench.store().backups(Some(&unit)).len(), 2);
+}
+
+#[test]
 fn a_motion_command_is_refused_until_a_screen_is_armed_and_space_stops_it() {
     let mut bench = open();
     bench.press("Send a command");
@@ -141,7 +179,7 @@ fn the_bytes_of_edited_settings_and_of_the_sliders_are_shown_before_they_are_sen
     bench.press("General Settings");
     bench.pass_ms(1500);
     let unit = bench.model().front.general.unit_mut().expect("it is connected");
-    unit.set("motor1.velocity.qpps", brushwork_link::settings::SettingValue::Int(12_345));
+    unit.set("motor1.velocity.qpps", SettingValue::Int(12_345));
     bench.pass_ms(300);
     assert!(bench.sees_part("Write: ") && bench.sees_part("12345"));
     bench.press("Write settings");

@@ -1,11 +1,15 @@
 //! Whole tuning runs through the device thread with real bytes, in virtual time: faults, Stop and a lost cable at every stage.
 
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use brushwork::keep::TrialKeeper;
 use brushwork::tune::{Slot, Target, prepare, restore, run, take};
-use brushwork_link::Stream;
 use brushwork_link::device::{ArmScope, DeviceOptions, Event, Job, JobEnding, Request};
-use brushwork_protocol::packet_serial::{Address, Motor, Request as Packet, number};
+use brushwork_link::settings::{Act, Ending, Entry, Keeper, Subject};
+use brushwork_link::{Failure, Stream};
+use brushwork_protocol::models;
+use brushwork_protocol::packet_serial::{Address, Generation, Motor, Request as Packet, number};
 use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_sim::machine::{Machine, StreamIndex};
 use brushwork_sim::motion::MotionSettings;
@@ -66,9 +70,11 @@ fn strike(link: &VirtualLink, after: Duration, action: WorldAction) {
 /// The three jobs, as the program runs them.
 fn tuned(link: &mut VirtualLink, request: Tuning, before_run: impl FnOnce(&VirtualLink)) -> Option<Report> {
     let setup: Slot<Setup> = Slot::default();
-    let prepared = finish(link, prepare(TARGET, &setup), ms(5_000));
+    let (keeper, journal) = keeper();
+    let prepared = finish(link, prepare(TARGET, subject(), &setup, &keeper), ms(5_000));
     assert!(matches!(prepared, Some(JobEnding::Done(_))), "{prepared:?}");
     let before = take(&setup).expect("it was read");
+    assert_backed_up(link, &journal);
     assert!(link.arm(ArmScope::CommandLine), "{:?}", link.events);
     before_run(link);
     let found: Slot<Report> = Slot::default();
@@ -78,9 +84,56 @@ fn tuned(link: &mut VirtualLink, request: Tuning, before_run: impl FnOnce(&Virtu
     link.line.pass(ms(60));
     assert!(link.duties(0)[0].abs() < 1e-6, "a run ends with the motor off");
     if !link.ended {
-        finish(link, restore(TARGET, before, report.as_ref()), ms(5_000));
+        finish(link, restore(TARGET, before, report.as_ref(), &keeper), ms(5_000));
     }
+    let ending = journal.lock().expect("no test panics with it").1.clone();
+    assert_eq!(ending, (!link.ended).then_some(Ending::Known), "a cut run leaves its journal open");
     report
+}
+
+/// What a run began with on this computer, and how it ended.
+type Journal = Arc<Mutex<(Option<Entry>, Option<Ending>)>>;
+
+struct Noting(Journal);
+
+impl Keeper for Noting {
+    fn begin(&mut self, entry: Entry) {
+        self.0.lock().expect("no test panics with it").0 = Some(entry);
+    }
+
+    fn begun(&mut self) -> Option<Result<(), Failure>> {
+        Some(Ok(()))
+    }
+
+    fn end(&mut self, ending: Ending) {
+        self.0.lock().expect("no test panics with it").1 = Some(ending);
+    }
+}
+
+fn keeper() -> (TrialKeeper, Journal) {
+    let journal = Journal::default();
+    (TrialKeeper::new(Box::new(Noting(journal.clone()))), journal)
+}
+
+fn subject() -> Subject {
+    Subject::new(models::lookup("mcp266").expect("it is listed"), Generation::Gen1)
+}
+
+/// Everything was kept before the run changed anything, and the journal says what is to be as it was.
+fn assert_backed_up(link: &VirtualLink, journal: &Journal) {
+    let journal = journal.lock().expect("no test panics with it");
+    let entry = journal.0.as_ref().expect("a run begins with a backup");
+    assert_eq!((entry.act, journal.1.as_ref()), (Act::Trial, None));
+    let (_, timeout_ms) = settings(link);
+    let kept_timeout = entry.wanted.get("stream.usb.timeout");
+    assert_ne!(kept_timeout, None);
+    assert_eq!(entry.ram.get("stream.usb.timeout"), kept_timeout);
+    assert_eq!(timeout_ms, 250, "shortened after the backup: {kept_timeout:?}");
+    for key in ["motor1.velocity.p", "motor1.velocity.qpps", "motor1.position.p", "motor1.position.max"] {
+        assert_eq!(entry.wanted.get(key), entry.ram.get(key), "{key}");
+        assert!(entry.wanted.get(key).is_some(), "{key}");
+    }
+    assert_eq!(entry.wanted.get("motor2.velocity.p"), None, "another motor's are not its business");
 }
 
 fn velocity() -> Tuning {
@@ -186,7 +239,7 @@ fn a_cable_pulled_at_every_stage_leaves_the_motor_to_the_controllers_time_out() 
     for after in (50..7_000).step_by(450) {
         let mut link = connected();
         let setup: Slot<Setup> = Slot::default();
-        finish(&mut link, prepare(TARGET, &setup), ms(5_000));
+        finish(&mut link, prepare(TARGET, subject(), &setup, &keeper().0), ms(5_000));
         assert!(link.arm(ArmScope::CommandLine), "{:?}", link.events);
         strike(&link, ms(after), WorldAction::Unplug { unplugged: true });
         let found: Slot<Report> = Slot::default();

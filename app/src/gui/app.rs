@@ -7,9 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use brushwork_link::Failure;
 use brushwork_link::device::{ArmScope, DeviceHandle, Event, PollRate, Request};
-use brushwork_link::transport::{ConnectTarget, TargetError};
 use brushwork_sim::world::WorldAction;
 use crossbeam_channel::TryRecvError;
 use egui::{Context, Ui, ViewportCommand};
@@ -18,21 +16,21 @@ use super::actions;
 use super::command::{Command, GuidedWish};
 use super::ending::EndBySignal;
 use super::keys;
-use super::links::{self, Links};
-use super::model::devices::Choice;
-use super::model::general::SettingsWish;
-use super::model::link::{Arming, Effect, LinkView};
-use super::model::loop_settings::Column;
+use super::links::Links;
+use super::model::link::{Arming, Effect};
 use super::model::message::Gravity;
 use super::model::palette::Palette;
 use super::model::screen::Screen;
-use super::model::{Appearance, Desk, DeskId, Model, Phase, place_of};
-use super::parts::{OpenLink, Parts, SimulatedWorld};
+use super::model::traffic::Transact;
+use super::model::{Appearance, DeskId, Model};
+use super::parts::{Parts, SimulatedWorld};
 use super::remember::Memory;
 use super::{shell, theme};
 
 mod debugging;
+mod linking;
 mod scripting;
+mod settings;
 mod tuning;
 mod updating;
 
@@ -123,7 +121,7 @@ impl App {
         self.go_on_tuning();
         self.read_loops();
         self.end_calibrations();
-        self.look_for_unfinished();
+        self.look_for_settings();
         self.disarm_when_left();
         self.drive(&ctx);
         self.show_appearance(&ctx);
@@ -155,6 +153,7 @@ impl App {
             self.look_at_script(desk, ctx);
             self.look_after_graph(desk, ctx);
             self.look_after_firmware(desk, ctx);
+            self.send_kept_command(desk);
         }
     }
 
@@ -238,48 +237,6 @@ impl App {
         }
     }
 
-    fn finish_opening(&mut self, id: DeskId, ctx: &Context) {
-        let Some(opening) = self.links.get(id).and_then(|link| link.opening.as_ref()) else { return };
-        let why = match opening.try_recv() {
-            Ok(Ok(link)) => return self.opened(id, link, ctx),
-            Ok(Err(error)) => error.to_string(),
-            Err(TryRecvError::Empty) => return ctx.request_repaint_after(OPENING_INTERVAL),
-            Err(TryRecvError::Disconnected) => {
-                "Could not open the link: the system gave no thread. Try again.".to_owned()
-            }
-        };
-        self.links.entry(id).opening = None;
-        if let Some(desk) = self.model.desk_mut(id) {
-            desk.phase = Phase::Closed;
-        }
-        self.say(id, Gravity::Error, why);
-    }
-
-    fn opened(&mut self, id: DeskId, opened: OpenLink, ctx: &Context) {
-        let ports = self.model.devices.ports().to_vec();
-        self.links.entry(id).opening = None;
-        // A desk that was given up meanwhile: the link is closed again by being dropped.
-        let Some(desk) = self.model.desk_mut(id) else { return };
-        let target = desk.phase.target().unwrap_or_default().to_owned();
-        desk.phase = Phase::Open { target: target.clone() };
-        desk.link = LinkView::default();
-        desk.general.keep_in(self.parts.keeping.clone(), ports);
-        desk.world.forget();
-        let poll = desk.poll;
-        self.model.devices.remember(&target);
-        self.model.devices.opened(&target);
-        opened.device.set_waker(waker(ctx.clone(), self.last_frame.clone()));
-        let link = self.links.entry(id);
-        link.world = opened.world;
-        link.device = Some(opened.device);
-        link.reads_signals = false;
-        link.traced = false;
-        self.end.watch(self.links.stoppers().collect());
-        if poll != PollRate::default() {
-            self.request_of(id, Request::Poll(poll));
-        }
-    }
-
     fn take(&mut self, id: DeskId, event: Event) {
         let now_s = self.links.device(id).map_or(0.0, |device| device.now().as_secs_f64());
         let Some(desk) = self.model.desk_mut(id) else { return };
@@ -303,19 +260,6 @@ impl App {
             None => text,
         };
         self.model.messages.say(gravity, text);
-    }
-
-    /// A link is gone, by wish or not. A simulated world lives on.
-    fn ended(&mut self, id: DeskId) {
-        if let Some(device) = self.links.entry(id).device.take() {
-            links::close(device);
-        }
-        let effects = self.model.desk_mut(id).map(Desk::link_ended).unwrap_or_default();
-        for effect in effects {
-            if let Effect::Say(gravity, text) = effect {
-                self.say(id, gravity, text);
-            }
-        }
     }
 
     fn apply(&mut self, command: Command) {
@@ -356,14 +300,7 @@ impl App {
             Command::ApplyLoops(columns) => self.apply_loops(columns),
             Command::World(action) => self.act_on_world(action),
             Command::Settings(wish) => self.settings(wish),
-            Command::Transact { id, command, values } => {
-                if self.request(Request::Transact { id, command, values }) {
-                    // It may have changed a setting.
-                    self.model.front.watch.want_reading();
-                } else {
-                    self.model.front.traffic.composer.forget_waiting();
-                }
-            }
+            Command::Transact { id, command, values } => self.transact(Transact { id, command, values }),
             Command::Guided(wish) => self.guided(wish),
             Command::Tune(wish) => self.tune(wish),
             Command::Firmware(wish) => self.firmware(wish),
@@ -434,86 +371,6 @@ impl App {
         }
     }
 
-    /// Connects to what is chosen in the device list.
-    fn connect(&mut self) {
-        let chosen = match self.model.devices.choice {
-            Choice::Desk(id) => self.model.desk(id).and_then(|desk| desk.target.clone()),
-            _ => None,
-        };
-        let target = match &chosen {
-            Some(target) => target.parse(),
-            None => self.model.devices.target(),
-        };
-        let typed = chosen.unwrap_or_else(|| self.model.devices.typed.trim().to_owned());
-        self.connect_to(&typed, target);
-    }
-
-    /// Opens a link on a desk of its own, or brings the one that is open to the front.
-    fn connect_to(&mut self, typed: &str, target: Result<ConnectTarget, TargetError>) {
-        let target = match target {
-            Ok(target) => target,
-            Err(error) => {
-                let mend = "Type a path such as /dev/ttyUSB0 or COM3, or tcp:host:port";
-                return self.model.messages.fail(Failure::new("connect", typed, error, mend).to_string());
-            }
-        };
-        let place = place_of(&target.to_string());
-        match self.model.desk_at(&place).map(Desk::id) {
-            Some(desk) => self.bring_to_front(desk),
-            None => {
-                self.disarm();
-                self.model.add_desk();
-            }
-        }
-        self.open_front(target);
-    }
-
-    fn open_front(&mut self, target: ConnectTarget) {
-        let text = target.to_string();
-        let front = &mut self.model.front;
-        front.target = Some(text.clone());
-        if front.phase == Phase::Closed {
-            self.model.messages.dismiss();
-            front.phase = Phase::Opening { target: text };
-            let opening = self.parts.opener.open(target, self.model.devices.addresses);
-            self.links.entry(front.id()).opening = Some(opening);
-        }
-        self.model.devices.choose_desk(&self.model.front);
-    }
-
-    fn disconnect(&mut self, id: DeskId) {
-        let Some(desk) = self.model.desk_mut(id) else { return };
-        match &desk.phase {
-            Phase::Opening { .. } => {
-                self.links.entry(id).opening = None;
-                desk.phase = Phase::Closed;
-                self.model.messages.note("Gave up connecting.");
-            }
-            Phase::Open { target } => {
-                desk.phase = Phase::Closing { target: target.clone() };
-                self.request_of(id, Request::Disconnect);
-            }
-            Phase::Closed | Phase::Closing { .. } => {}
-        }
-    }
-
-    /// Another link comes to the front. What is armed is disarmed and stopped first: only the front can be armed.
-    fn bring_to_front(&mut self, id: DeskId) {
-        if id == self.model.front.id() || self.model.desk(id).is_none() {
-            return;
-        }
-        self.disarm();
-        self.model.bring_to_front(id);
-        self.model.devices.choose_desk(&self.model.front);
-        self.model.front.loops.want_reading();
-    }
-
-    fn forget(&mut self, id: DeskId) {
-        self.links.remove(id);
-        self.model.remove_desk(id);
-        self.model.devices.choose_desk(&self.model.front);
-    }
-
     fn show(&mut self, screen: Screen) {
         // Whoever goes there wants to write.
         self.model.mcl.wants_focus |= screen == Screen::MclEditor;
@@ -531,27 +388,6 @@ impl App {
         self.model.front.loops.want_reading();
     }
 
-    /// Reads the settings of the control loops when a screen that shows them wants them.
-    fn read_loops(&mut self) {
-        if !self.model.screen.has_loops() || !self.model.front.loops.wants_reading() {
-            return;
-        }
-        let Some(identity) = self.model.front.link.identity().cloned() else { return };
-        if let Some(request) = self.model.front.loops.read(&identity)
-            && !self.request(request)
-        {
-            self.model.front.loops.not_begun();
-        }
-    }
-
-    fn clamp_test(&mut self) {
-        if let Some(request) = self.model.front.general.begin_clamp_test()
-            && !self.request(request)
-        {
-            self.model.front.general.clamp_test_not_begun();
-        }
-    }
-
     /// Leaving the page of the clamp test disarms as leaving a screen does.
     fn disarm_when_left(&mut self) {
         let arming = self.model.front.link.arming;
@@ -559,48 +395,6 @@ impl App {
             arming == Arming::Asked(ArmScope::ClampTest) || arming.is_armed_for(ArmScope::ClampTest);
         if is_tested && self.model.arm_scope() != Some(ArmScope::ClampTest) {
             self.disarm();
-        }
-    }
-
-    /// Puts an input back whose calibration has ended or was left.
-    fn end_calibrations(&mut self) {
-        for id in self.links.ids() {
-            let is_shown = self.shows_settings_of(id);
-            let Some(desk) = self.model.desk_mut(id) else { continue };
-            if !is_shown {
-                desk.general.cancel_calibration();
-            }
-            if let Some(wish) = desk.general.next_wish() {
-                self.settings_of(id, wish);
-            }
-        }
-    }
-
-    fn shows_settings_of(&self, id: DeskId) -> bool {
-        self.model.screen == Screen::GeneralSettings && id == self.model.front.id()
-    }
-
-    /// Something that was begun on this controller and cut short: its settings are read at once, to tell which are
-    /// old and which new.
-    fn look_for_unfinished(&mut self) {
-        let front = &mut self.model.front;
-        let Some(identity) = front.link.identity() else { return };
-        front.general.look_at(identity);
-        if front.general.has_unfinished() && front.general.wants_reading() {
-            self.settings(SettingsWish::Read);
-        }
-    }
-
-    fn apply_loops(&mut self, columns: &[Column]) {
-        let Some(identity) = self.model.front.link.identity().cloned() else { return };
-        let stream = self.model.front.link.stream;
-        let keeper = self.model.front.general.keeper();
-        if let Some(request) = self.model.front.loops.apply(columns, &identity, stream, keeper) {
-            if self.request(request) {
-                self.model.front.general.ram_changes();
-            } else {
-                self.model.front.loops.not_begun();
-            }
         }
     }
 
@@ -637,22 +431,6 @@ impl App {
         self.model.front.graph.set_interval(interval.as_secs_f64());
         if self.device().is_some() {
             self.request(Request::Poll(rate));
-        }
-    }
-
-    /// Starts or ends work with the settings, on the device thread.
-    fn settings(&mut self, wish: SettingsWish) {
-        self.settings_of(self.model.front.id(), wish);
-    }
-
-    fn settings_of(&mut self, id: DeskId, wish: SettingsWish) {
-        let Some(desk) = self.model.desk_mut(id) else { return };
-        let stream = desk.link.stream;
-        if let Some(request) = desk.general.begin(wish, stream)
-            && !self.request_of(id, request)
-            && let Some(desk) = self.model.desk_mut(id)
-        {
-            desk.general.not_begun();
         }
     }
 
@@ -704,7 +482,12 @@ impl App {
     }
 
     fn request_of(&mut self, desk: DeskId, request: Request) -> bool {
+        let gives_way = self.model.desk_mut(desk).and_then(|desk| desk.general.give_way());
         let Some(device) = self.links.device(desk) else { return false };
+        if let Some(cancel) = gives_way {
+            // A signal, which is never refused.
+            let _ = device.request(cancel);
+        }
         match device.request(request) {
             Ok(()) => true,
             Err(refused) => {

@@ -9,6 +9,7 @@ pub mod folder;
 mod journals;
 mod memory;
 mod store;
+mod trial;
 mod unit;
 mod worker;
 
@@ -16,6 +17,7 @@ pub use backups::Backup;
 pub use journals::OpenJournal;
 pub use memory::{Wear, WearLevel};
 pub use store::{KeepError, Store};
+pub use trial::TrialKeeper;
 pub use unit::UnitId;
 pub use worker::Keeping;
 

@@ -1,6 +1,7 @@
 //! Tuning over the device thread: the tuner's axis as a job on the thread that owns the link, and what brackets it.
 //!
-//! A run is three jobs. The first moves nothing: it reads what the controller holds and shortens the stream's time-out. The second
+//! A run is three jobs. The first moves nothing: it keeps a backup and a journal on this computer, reads what the controller holds
+//! and shortens the stream's time-out. The second
 //! is the run, which needs arming. The third moves nothing either and puts back what must be put back, on every way out on which
 //! there is still a link. What an interruption leaves of the run's own report is kept past the job.
 
@@ -13,6 +14,7 @@ use brushwork_link::Stream;
 use brushwork_link::device::{FnJob, Job, JobContext};
 use brushwork_link::exchange::ExchangeError;
 use brushwork_link::failure::Failure;
+use brushwork_link::settings::{Ending, Subject, begin_trial};
 use brushwork_link::wire::Wire;
 use brushwork_protocol::packet_serial::{Generation, Motor, Request as Packet, Value, Values};
 use brushwork_tuning::axis::{Axis, AxisError, EncoderClass, Exchange, Setup};
@@ -22,6 +24,7 @@ use brushwork_tuning::trial::{Trial, TrialRequest, run_trial};
 use brushwork_tuning::tune::{Request, tune};
 use brushwork_tuning_bench::packet::{Carrier, PacketAxis};
 
+use crate::keep::TrialKeeper;
 use tap::{Live, Tap};
 
 /// Verb phrase of the job before a run.
@@ -39,8 +42,10 @@ const TRIAL_LIMIT: Duration = Duration::from_secs(120);
 const RUN_TIMEOUT_MS: u32 = 250;
 /// An exchange that took longer had a retry in it, so that its middle says nothing.
 const LONGEST_EXCHANGE: Duration = Duration::from_millis(40);
-/// How long the jobs before and after a run may take.
-const BRACKET_LIMIT: Duration = Duration::from_secs(10);
+/// How long the job before a run may take: it reads every setting for the backup.
+const PREPARE_LIMIT: Duration = Duration::from_secs(130);
+/// How long the job after a run may take.
+const RESTORE_LIMIT: Duration = Duration::from_secs(10);
 /// What a run may take beyond its own limit.
 const GRACE: Duration = Duration::from_secs(10);
 
@@ -134,11 +139,12 @@ fn axis<'a, 'b>(
     PacketAxis::new(JobCarrier { context, stream }, target.motor, target.encoder)
 }
 
-/// The job before: reads what is put back afterwards, and shortens the time-out. It moves nothing.
-pub fn prepare(target: Target, found: &Slot<Setup>) -> Box<dyn Job> {
-    let found = Arc::clone(found);
-    FnJob::boxed(PREPARE, BRACKET_LIMIT, move |context| {
+/// The job before: keeps backup and journal, reads what is put back afterwards, and shortens the time-out. It moves nothing.
+pub fn prepare(target: Target, subject: Subject, found: &Slot<Setup>, keeper: &TrialKeeper) -> Box<dyn Job> {
+    let (found, keeper) = (Arc::clone(found), keeper.clone());
+    FnJob::boxed(PREPARE, PREPARE_LIMIT, move |context| {
         let place = context.describe();
+        begin_trial(context, subject, &|key| is_tried(target.motor, key), &mut **keeper.lock())?;
         let mut axis = axis(context, target, true);
         let setup = thrice(|| axis.read_setup()).map_err(|error| failed("read the loops", &place, &error))?;
         put(&found, setup);
@@ -181,12 +187,20 @@ pub fn trial(target: Target, wanted: TrialRequest, found: &Slot<Trial>, live: &L
     })
 }
 
-/// The job after: the old gains, unless the run's own stay, and the old time-out. It moves nothing.
-pub fn restore(target: Target, before: Setup, report: Option<&Report>) -> Box<dyn Job> {
+/// Whether a run changes a setting, if only for a while.
+fn is_tried(motor: Motor, key: &str) -> bool {
+    let of_motor = key.strip_prefix(&format!("motor{}.", motor.index() + 1));
+    of_motor.is_some_and(|key| key.starts_with("velocity.") || key.starts_with("position."))
+        || key.starts_with("stream.") && key.ends_with(".timeout")
+}
+
+/// The job after: the old gains, unless the run's own stay, and the old time-out; the journal is closed. It moves nothing.
+pub fn restore(target: Target, before: Setup, report: Option<&Report>, keeper: &TrialKeeper) -> Box<dyn Job> {
+    let keeper = keeper.clone();
     let keeps = report.filter(|report| report.request.keep && report.verdict != Verdict::Refused);
     let velocity = keeps.and_then(|report| report.velocity).unwrap_or(before.velocity);
     let position = keeps.and_then(|report| report.position).unwrap_or(before.position);
-    FnJob::boxed(RESTORE, BRACKET_LIMIT, move |context| {
+    FnJob::boxed(RESTORE, RESTORE_LIMIT, move |context| {
         let place = context.describe();
         let mut axis = axis(context, target, true);
         thrice(|| axis.write_velocity(velocity))
@@ -207,6 +221,7 @@ pub fn restore(target: Target, before: Setup, report: Option<&Report>) -> Box<dy
             thrice(|| axis.set_stream_timeout(timeout_ms))
                 .map_err(|error| failed("set the time-out of the port back", &place, &error))?;
         }
+        keeper.lock().end(Ending::Known);
         Ok(Box::new(()))
     })
 }

@@ -29,8 +29,7 @@ pub fn measure(effort: Effort) -> Result<Vec<Figure>, String> {
 }
 
 fn graph_figures(effort: Effort) -> Vec<Figure> {
-    let epoch = Instant::now();
-    let cost = graph_cost(effort.frames, || epoch.elapsed());
+    let cost = graph_cost(effort.frames, processor_time);
     let figure = |name, value, unit, decimals| Figure::new("window", name, value, unit, decimals);
     let part = |name: &'static str, ratio: f64| {
         figure(name, ratio, "", 4)
@@ -54,6 +53,22 @@ fn graph_figures(effort: Effort) -> Vec<Figure> {
             .target(Target::AtMost(REQUIRED_MEGABYTES))
             .note(data),
     ]
+}
+
+/// What this thread has had of a processor, so that other programs on the machine do not count.
+#[cfg(unix)]
+fn processor_time() -> Duration {
+    use rustix::time::{ClockId, clock_gettime};
+    // The time of a thread is never below zero.
+    Duration::try_from(clock_gettime(ClockId::ThreadCPUTime)).unwrap_or_default()
+}
+
+/// The time that passes, where nothing better is known.
+#[cfg(not(unix))]
+fn processor_time() -> Duration {
+    use std::sync::OnceLock;
+    static EPOCH: OnceLock<Instant> = OnceLock::new();
+    EPOCH.get_or_init(Instant::now).elapsed()
 }
 
 /// The whole window, connected to a simulated controller, on the screen with the graph.

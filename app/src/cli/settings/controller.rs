@@ -84,6 +84,11 @@ impl<'i> Controller<'i> {
         Address::new(self.identity().address).unwrap_or(Address::DEFAULT)
     }
 
+    /// The link.
+    pub fn client(&self) -> &Client {
+        &self.client
+    }
+
     /// The device thread.
     pub fn device(&self) -> &DeviceHandle {
         self.client.device()

@@ -11,7 +11,7 @@ pub(super) mod controller;
 mod copy;
 mod diff;
 mod keys;
-mod memory;
+pub(super) mod memory;
 mod profile;
 mod read;
 mod review;

@@ -6,7 +6,8 @@ mod words;
 
 use std::time::{Duration, Instant};
 
-use brushwork_link::device::{ArmScope, Event, Job, JobEnding, PollRate, Request};
+use brushwork_link::device::{ArmScope, Event, Job, JobEnding, Request};
+use brushwork_link::settings::SettingsTable;
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::report::{Report, Verdict};
@@ -17,6 +18,9 @@ use super::client::Client;
 use super::exit::Exit;
 use super::interrupt::Interrupt;
 use super::output::{Output, say};
+use super::settings::controller::Controller;
+use super::settings::memory::save_to_eeprom;
+use crate::keep::TrialKeeper;
 use crate::tune::{Slot, Target, prepare, restore, run as tuning_job, take};
 use args::{EncoderArg, MethodArg, RunArgs};
 pub use args::{TuneArgs, TuneCommand};
@@ -41,18 +45,24 @@ pub fn run(args: &TuneArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
 }
 
 fn tune(args: &RunArgs, method: Method, out: &mut Output, interrupt: &Interrupt) -> Exit {
-    let client = match Client::connect(&args.connect, PollRate::Off, interrupt) {
-        Ok(client) => client,
+    let controller = match Controller::connect(&args.connect, interrupt) {
+        Ok(controller) => controller,
         Err(exit) => return exit,
     };
-    match session(args, method, &client, interrupt) {
-        Ok(report) => conclude(args, &report, &client, interrupt, out),
+    match session(args, method, &controller, interrupt) {
+        Ok(report) => conclude(args, &report, &controller, out),
         Err(exit) => exit,
     }
 }
 
 /// The three jobs. The last one runs whatever became of the second.
-fn session(args: &RunArgs, method: Method, client: &Client, interrupt: &Interrupt) -> Result<Report, Exit> {
+fn session(
+    args: &RunArgs,
+    method: Method,
+    controller: &Controller<'_>,
+    interrupt: &Interrupt,
+) -> Result<Report, Exit> {
+    let client = controller.client();
     let encoder = match args.encoder {
         EncoderArg::Quadrature => EncoderClass::Quadrature,
         EncoderArg::Absolute => EncoderClass::Absolute,
@@ -60,14 +70,15 @@ fn session(args: &RunArgs, method: Method, client: &Client, interrupt: &Interrup
     };
     let target = Target { motor: motor(args), encoder, stream: client.stream };
     let setup = Slot::default();
-    job(client, prepare(target, &setup), interrupt)?;
+    let keeper = TrialKeeper::new(controller.keeper());
+    job(client, prepare(target, controller.subject(), &setup, &keeper), interrupt)?;
     let Some(before) = take(&setup) else { return Err(Exit::NoLink) };
     let found: Slot<Report> = Slot::default();
     let ran = arm(client, interrupt)
         .and_then(|()| job(client, tuning_job(target, request(args, method), &found), interrupt));
     let report = take(&found);
     // A raised interrupt has ended the run; it must not keep the old gains from being put back.
-    let restored = job(client, restore(target, before, report.as_ref()), &Interrupt::default());
+    let restored = job(client, restore(target, before, report.as_ref(), &keeper), &Interrupt::default());
     ran?;
     restored?;
     report.ok_or(Exit::Failed)
@@ -99,13 +110,7 @@ fn request(args: &RunArgs, method: Method) -> TuneRequest {
     }
 }
 
-fn conclude(
-    args: &RunArgs,
-    report: &Report,
-    client: &Client,
-    interrupt: &Interrupt,
-    out: &mut Output,
-) -> Exit {
+fn conclude(args: &RunArgs, report: &Report, controller: &Controller<'_>, out: &mut Output) -> Exit {
     if let Some(path) = &args.report {
         let written = serde_json::to_string(report)
             .map_err(|error| error.to_string())
@@ -120,33 +125,17 @@ fn conclude(
         return error.into();
     }
     if args.save && report.verdict != Verdict::Refused {
-        if let Err(exit) = save(client, interrupt) {
-            return exit;
+        match save_to_eeprom(controller, &SettingsTable::new(controller.subject())) {
+            Ok((saved, exit)) => {
+                say(saved.sentence());
+                if exit != Exit::Done {
+                    return exit;
+                }
+            }
+            Err(exit) => return exit,
         }
-        say("Saved to the controller's EEPROM.");
     }
     words::exit_of(report)
-}
-
-/// Saves RAM to EEPROM, as asked for by `--save`. The user's own time-out is back in force by now.
-fn save(client: &Client, interrupt: &Interrupt) -> Result<(), Exit> {
-    use brushwork_link::device::FnJob;
-    use brushwork_link::failure::Failure;
-    use brushwork_link::wire::Wire as _;
-    use brushwork_protocol::packet_serial::number;
-    let saving = FnJob::boxed("save the settings", ANSWER_LIMIT, |context| {
-        let place = context.describe();
-        context.transact_named(number::SAVE_SETTINGS, &[]).map_err(|error| {
-            Failure::new(
-                "save the settings",
-                &place,
-                error.to_string(),
-                "Save them with `brushwork settings save`",
-            )
-        })?;
-        Ok(Box::new(()))
-    });
-    job(client, saving, interrupt)
 }
 
 fn arm(client: &Client, interrupt: &Interrupt) -> Result<(), Exit> {

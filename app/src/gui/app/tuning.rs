@@ -8,8 +8,9 @@ use crate::gui::model::loop_settings::key;
 use crate::gui::tune::files;
 use crate::gui::tune::model::as_request;
 use crate::gui::tune::registers::Registers;
-use crate::gui::tune::sequence::Next;
+use crate::gui::tune::sequence::{Next, Origin};
 use crate::gui::tune::{Loop, TuneWish};
+use crate::keep::TrialKeeper;
 use brushwork_link::device::Request;
 use brushwork_link::settings::{SettingValue, SettingsImage};
 use brushwork_protocol::packet_serial::Motor;
@@ -68,7 +69,12 @@ impl App {
                 desk.tune.adopt_travel(motor, travel);
             }
             let refused = !desk.link.refusals.is_empty();
-            if let Some(next) = desk.tune.next(desk.link.arming, refused) {
+            let general = &desk.general;
+            let origin = || {
+                let subject = *general.unit()?.table().subject();
+                Some(Origin { subject, keeper: TrialKeeper::new(general.keeper()?) })
+            };
+            if let Some(next) = desk.tune.next(desk.link.arming, refused, origin) {
                 self.ask_next(id, next);
             }
         }
@@ -162,10 +168,10 @@ impl App {
         let busy = || "The settings are being read or written. Try again in a moment.".to_owned();
         let front = &mut self.model.front;
         let identity = front.link.identity().cloned().ok_or("No controller is connected.")?;
-        let (stream, keeper) = (front.link.stream, front.general.keeper());
+        let stream = front.link.stream;
+        let keeper = front.general.keeper().ok_or("No controller is connected.")?;
         let request = front.loops.apply_image(image, &identity, stream, keeper).ok_or_else(busy)?;
         if self.request(request) {
-            self.model.front.general.ram_changes();
             Ok(())
         } else {
             self.model.front.loops.not_begun();

@@ -269,7 +269,7 @@ impl LiveGraph {
     }
 
     fn show_recording(&mut self, name: String, loaded: load::Loaded) {
-        let load::Loaded { track, began, note } = loaded;
+        let load::Loaded { track, began, note, left_out } = loaded;
         let mut sheet = super::sheet::Sheet::new(track);
         let shown_live = |key: &str| self.live.channels.iter().any(|live| live.shown && live.info.key == key);
         let has_data =
@@ -284,7 +284,7 @@ impl LiveGraph {
         sheet.selected = shown.first().copied().unwrap_or(0);
         sheet.look_at_all();
         sheet.fit_shown();
-        self.opened = Some(Opened { name, sheet, began, note });
+        self.opened = Some(Opened { name, sheet, began, note, left_out });
     }
 
     fn poll_dialog(&mut self) {

@@ -139,7 +139,33 @@ impl History {
 
     /// The first row kept at or after `time_s`; the end of [`History::rows`] if there is none.
     pub fn row_at(&self, time_s: f64) -> u64 {
-        let mut rows = self.rows();
+        self.row_within(time_s, self.rows())
+    }
+
+    /// As [`History::row_at`], for a time that is not before the row `from`; quick when the row is near `from + ahead`.
+    pub fn row_from(&self, time_s: f64, from: u64, ahead: u64) -> u64 {
+        let end = self.rows().end;
+        let is_before = |row: u64| row < end && self.time_s(row) < time_s;
+        let guess = (from + ahead).min(end);
+        let mut step = 1;
+        if is_before(guess) {
+            let mut low = guess;
+            while is_before(low + step) {
+                low += step;
+                step *= 2;
+            }
+            return self.row_within(time_s, low + 1..(low + step).min(end));
+        }
+        let mut high = guess;
+        while high > from && !is_before(high.saturating_sub(step).max(from)) {
+            high = high.saturating_sub(step).max(from);
+            step *= 2;
+        }
+        self.row_within(time_s, high.saturating_sub(step).max(from)..high)
+    }
+
+    /// The first of `rows` at or after `time_s`; their end if there is none.
+    fn row_within(&self, time_s: f64, mut rows: Range<u64>) -> u64 {
         while rows.start < rows.end {
             let middle = rows.start + (rows.end - rows.start) / 2;
             if self.time_s(middle) < time_s { rows.start = middle + 1 } else { rows.end = middle }
@@ -190,6 +216,30 @@ mod tests {
         assert_eq!(history.row_at(9_000.5), 9_001);
         assert_eq!(history.row_at(9_001.0), 9_001);
         assert_eq!(history.row_at(1e9), 10_000);
+    }
+
+    #[test]
+    fn rows_are_found_from_another_row_wherever_they_are_guessed_to_be() {
+        let mut history = History::new(1, LONGEST_BLOCK);
+        let mut time_s = 0.0;
+        for row in 0..6000u32 {
+            time_s += if row % 97 == 0 { 40.0 } else { f64::from(row % 3) };
+            history.push(time_s, &[0.0]);
+        }
+        let rows = history.rows();
+        for from in [rows.start, rows.start + 1, rows.start + 1000, rows.end - 1, rows.end] {
+            let from_s = if from < rows.end { history.time_s(from) } else { time_s };
+            for later_s in [0.0, 0.5, 1.0, 3.0, 41.0, 777.7, 2000.0, 1e6] {
+                let wanted = history.row_at(from_s + later_s).max(from);
+                for ahead in [0, 1, 7, 300, 100_000] {
+                    assert_eq!(
+                        history.row_from(from_s + later_s, from, ahead),
+                        wanted,
+                        "{from} {later_s} {ahead}"
+                    );
+                }
+            }
+        }
     }
 
     #[test]

@@ -47,6 +47,8 @@ pub struct Opened {
     pub began: Option<std::time::SystemTime>,
     /// What the reader should know of it: rows left out, damage.
     pub note: Option<String>,
+    /// So many of its oldest rows did not fit in memory.
+    pub left_out: u64,
 }
 
 #[derive(Clone, Copy, Debug, Default)]

@@ -22,6 +22,8 @@ pub struct Loaded {
     pub began: Option<SystemTime>,
     /// What was damaged or left out.
     pub note: Option<String>,
+    /// So many of its oldest rows are not in the track.
+    pub left_out: u64,
 }
 
 /// Reads a file. `rows` counts along; `given_up` ends it.
@@ -29,6 +31,15 @@ pub struct Loaded {
 /// # Errors
 /// The file cannot be read; the text is a sentence.
 pub fn load(path: &Path, rows: &AtomicU64, given_up: &AtomicBool) -> Result<Loaded, String> {
+    load_newest(path, rows, given_up, MOST_ROWS)
+}
+
+fn load_newest(
+    path: &Path,
+    rows: &AtomicU64,
+    given_up: &AtomicBool,
+    most_rows: u64,
+) -> Result<Loaded, String> {
     let mut head: Option<Head> = None;
     let mut builder: Option<Builder> = None;
     let begun = std::cell::RefCell::new((&mut head, &mut builder));
@@ -36,7 +47,7 @@ pub fn load(path: &Path, rows: &AtomicU64, given_up: &AtomicBool) -> Result<Load
         path,
         |found| {
             let mut begun = begun.borrow_mut();
-            *begun.1 = Some(Builder::new(found));
+            *begun.1 = Some(Builder::new(found, most_rows));
             *begun.0 = Some(found.clone());
         },
         |record| {
@@ -58,12 +69,11 @@ pub fn load(path: &Path, rows: &AtomicU64, given_up: &AtomicBool) -> Result<Load
     let began = head.map(|head| head.began).filter(|began| *began > SystemTime::UNIX_EPOCH);
     let left_out =
         builder.pushed.saturating_sub(builder.track.history.rows().end - builder.track.history.rows().start);
-    let note = note.or_else(|| {
-        (left_out > 0).then(|| {
-            format!("{}: the oldest {left_out} rows are left out; the rest fits in memory.", path.display())
-        })
-    });
-    Ok(Loaded { track: builder.track, began, note })
+    let cut =
+        format!("{}: the oldest {left_out} rows are left out; the rest fits in memory.", path.display());
+    let notes: Vec<String> = note.into_iter().chain((left_out > 0).then_some(cut)).collect();
+    let note = (!notes.is_empty()).then(|| notes.join(" "));
+    Ok(Loaded { track: builder.track, began, note, left_out })
 }
 
 struct Builder {
@@ -74,11 +84,11 @@ struct Builder {
 }
 
 impl Builder {
-    fn new(head: &Head) -> Self {
+    fn new(head: &Head, most_rows: u64) -> Self {
         let known = graph_channels();
         let channels: Vec<_> = head.columns.iter().map(|column| info_of(column, &known)).collect();
         let count = channels.len();
-        let track = Track::new(channels, MOST_ROWS);
+        let track = Track::new(channels, most_rows);
         Self { track, values: vec![NOT_READ; count], times_s: vec![0.0; count], pushed: 0 }
     }
 
@@ -165,4 +175,25 @@ pub fn csv_of(track: &Track, keys: &[String], zero_s: f64, began: SystemTime) ->
     writer.flush()?;
     drop(writer);
     Ok(file)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_a_file_that_is_too_long_the_newest_rows_are_kept_and_the_rest_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("long.csv");
+        let rows: String = (0..9000).map(|row| format!("{row}.0,{row}\n")).collect();
+        std::fs::write(&path, format!("time_s,a\n{rows}")).unwrap();
+        let load = |most_rows| {
+            load_newest(&path, &AtomicU64::new(0), &AtomicBool::new(false), most_rows).expect("it is sound")
+        };
+        let whole = load(MOST_ROWS);
+        assert_eq!((whole.left_out, whole.note, whole.track.history.rows().end), (0, None, 9000));
+        let cut = load(4096);
+        assert_eq!((cut.left_out, cut.track.history.rows().end), (9000 - 4096, 9000));
+        assert!(cut.note.is_some_and(|note| note.contains("the oldest 4904 rows are left out")));
+    }
 }

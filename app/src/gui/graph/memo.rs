@@ -17,6 +17,7 @@ pub struct Seen {
 /// What was found for the columns of one channel.
 #[derive(Clone, Debug, Default)]
 pub struct Memo {
+    /// A power of two of them, or none.
     slots: Vec<Slot>,
 }
 
@@ -45,8 +46,9 @@ impl Memo {
     /// What there is in `rows` of `series`, which is the same at each call. Columns that lie side by side do not
     /// displace each other.
     pub fn look(&mut self, series: &Series, column: i64, rows: Range<u64>) -> Seen {
-        let count = self.slots.len().max(1) as i64;
-        let Some(slot) = self.slots.get_mut(column.rem_euclid(count) as usize) else {
+        // Their number is a power of two: the lowest bits are the rest of a division by it, below zero too.
+        let slot = column as usize & self.slots.len().wrapping_sub(1);
+        let Some(slot) = self.slots.get_mut(slot) else {
             return Seen::in_rows(series, rows);
         };
         if slot.rows != rows {

@@ -83,7 +83,10 @@ fn notice_ui(ui: &Ui, graph: &LiveGraph, frame: &Frame) {
     let palette = Palette::of(ui);
     let sheet = graph.sheet();
     let text = if let Some(opened) = &graph.opened {
-        format!("RECORDING  {}", opened.name)
+        match opened.left_out {
+            0 => format!("RECORDING  {}", opened.name),
+            rows => format!("RECORDING  {} · its oldest {rows} rows are left out", opened.name),
+        }
     } else if sheet.track.history.is_empty() {
         "No sample yet".to_owned()
     } else if sheet.is_held() {

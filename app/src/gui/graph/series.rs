@@ -74,6 +74,8 @@ impl Extrema {
 pub struct Ring<T> {
     items: Vec<T>,
     capacity: u64,
+    /// The row in the first slot: the last multiple of the capacity that was written. It saves a division at each look.
+    lap: u64,
 }
 
 impl<T: Copy> Ring<T> {
@@ -81,24 +83,36 @@ impl<T: Copy> Ring<T> {
     const GROWTH_STEPS: u64 = 64;
 
     pub fn new(capacity: u64) -> Self {
-        Self { items: Vec::new(), capacity }
+        Self { items: Vec::new(), capacity, lap: 0 }
     }
 
     pub fn get(&self, row: u64) -> T {
-        self.items[(row % self.capacity) as usize]
+        self.items[self.slot(row)]
+    }
+
+    /// Where a row still kept is.
+    fn slot(&self, row: u64) -> usize {
+        let in_this_lap = row >= self.lap;
+        (if in_this_lap { row - self.lap } else { row + self.capacity - self.lap }) as usize
     }
 
     /// The items of `rows`, all of them still kept, in one piece or, across the end of the ring, in two.
     fn stretch(&self, rows: Range<u64>) -> (&[T], &[T]) {
-        let length = rows.end.saturating_sub(rows.start) as usize;
-        let start = (rows.start % self.capacity) as usize;
+        if rows.is_empty() {
+            return (&[], &[]);
+        }
+        let length = (rows.end - rows.start) as usize;
+        let start = self.slot(rows.start);
         let first = length.min(self.capacity as usize - start);
         (&self.items[start..start + first], &self.items[..length - first])
     }
 
     /// Writes `row`, which is either the next one ever or one still kept.
     pub fn set(&mut self, row: u64, item: T) {
-        let slot = (row % self.capacity) as usize;
+        if row >= self.lap + self.capacity {
+            self.lap = row - row % self.capacity;
+        }
+        let slot = self.slot(row);
         if slot < self.items.len() {
             self.items[slot] = item;
         } else {
@@ -114,6 +128,7 @@ impl<T: Copy> Ring<T> {
     fn fill(&mut self, row: u64, item: T) {
         debug_assert!(self.items.is_empty());
         let count = row.min(self.capacity) as usize;
+        self.lap = row.saturating_sub(1) / self.capacity * self.capacity;
         self.items.reserve_exact(count);
         self.items.resize(count, item);
     }

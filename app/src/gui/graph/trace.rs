@@ -24,6 +24,20 @@ fn rounded(row: u64, kept: &Range<u64>) -> u64 {
     if row >= kept.end { row } else { (row - row % FACTOR).max(kept.start) }
 }
 
+/// The first row at or after each of some rising times. Rows come at a steady pace most of the time, so each is looked
+/// for as far behind the one before as that was behind its own.
+fn rows_at(history: &History, times_s: impl Iterator<Item = f64>) -> Vec<u64> {
+    let mut found: Vec<u64> = Vec::with_capacity(times_s.size_hint().0);
+    for time_s in times_s {
+        found.push(match found.as_slice() {
+            [] => history.row_at(time_s),
+            [only] => history.row_from(time_s, *only, 0),
+            [.., before, last] => history.row_from(time_s, *last, last - before),
+        });
+    }
+    found
+}
+
 /// A stretch of time and the pixel columns it is drawn in.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
@@ -54,7 +68,7 @@ impl Columns {
         }
         let first_column = (view.start_s / column_s).floor();
         let starts_s = (0..=view.columns + 1).map(|i| (first_column + i as f64) * column_s);
-        let mut bounds: Vec<u64> = starts_s.clone().map(|start_s| history.row_at(start_s)).collect();
+        let mut bounds = rows_at(history, starts_s.clone());
         let rows = bounds[bounds.len() - 1] - bounds[0];
         if rows > bounds.len() as u64 * ROUNDED_FROM_BLOCKS * FACTOR {
             let mut before = 0;
@@ -114,6 +128,8 @@ impl Trace {
     pub fn remembering(history: &History, channel: usize, columns: &Columns, memo: &mut Memo) -> Self {
         let series = history.channel(channel);
         let mut trace = Self::default();
+        // A line that breaks needs no more than one that does not.
+        trace.lines.push(Vec::with_capacity(2 * columns.count() + 2));
         if let Some((row, value)) = series.last_number(columns.before()) {
             trace.point(history.read_s(channel, row), value);
         }

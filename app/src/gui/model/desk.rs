@@ -19,7 +19,7 @@ use super::general::General;
 use super::generator::Generator;
 use super::graph_channels;
 use super::history::History;
-use super::link::{Effect, LinkView};
+use super::link::{Arming, Effect, LinkView};
 use super::loop_settings::LoopSettings;
 use super::position::Position;
 use super::pwm::Pwm;
@@ -190,6 +190,18 @@ impl Desk {
         self.phase.is_open() && self.link.identity().is_some()
     }
 
+    /// Whether nothing is armed, asked for or at work.
+    pub fn is_idle(&self) -> bool {
+        self.link.arming == Arming::Disarmed
+            && self.is_connected()
+            && !self.watch.is_busy()
+            && !self.loops.is_busy()
+            && !self.general.is_busy()
+            && !self.is_guided()
+            && self.tune.running().is_none()
+            && !self.firmware.stage.is_running()
+    }
+
     /// The sliders of every screen go back to rest, with nothing left to send.
     pub fn rest(&mut self) {
         self.pwm.setpoints.stop();
@@ -221,7 +233,11 @@ impl Desk {
         } else if self.general.awaits(&event) {
             self.general.take(event)
         } else if self.loops.awaits(&event) {
-            self.loops.take(event)
+            let effects = self.loops.take(event);
+            if let Some(written) = self.loops.take_written() {
+                self.general.note_written_elsewhere(&written);
+            }
+            effects
         } else {
             self.link.take(event)
         };
@@ -323,6 +339,11 @@ impl Desk {
         for (index, channel) in channels.iter_mut().enumerate() {
             let at_first = || screen.first_channels().contains(&Channel::ALL[index]);
             channel.shown = chosen.and_then(|chosen| chosen.get(index)).copied().unwrap_or_else(at_first);
+        }
+        // The axis at the side is of a line that is there.
+        let sheet = &mut self.graph.live;
+        if !sheet.channels.get(sheet.selected).is_some_and(|channel| channel.shown) {
+            sheet.selected = sheet.channels.iter().position(|channel| channel.shown).unwrap_or_default();
         }
     }
 }

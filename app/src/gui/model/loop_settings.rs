@@ -1,15 +1,15 @@
 //! The settings of the control loops of both motors, as the screens that drive show and edit them.
 //!
 //! They are read when such a screen opens and written to RAM only, by a button or at once. Both are jobs on the device
-//! thread.
+//! thread. Every write has a backup and a journal; of a series only the first reads everything for that.
 
 use std::time::Duration;
 
 use brushwork_link::Failure;
 use brushwork_link::device::{Event, FnJob, Identity, JobEnding, Request};
 use brushwork_link::settings::{
-    Keeper, Kind, ReadReport, Row, RowState, SettingValue, SettingsImage, SettingsTable, Subject, WriteError,
-    WriteOptions, WriteReport, read_some, write, write_kept,
+    Keeper, Kind, Known, ReadReport, Row, RowState, SettingValue, SettingsImage, SettingsTable, Subject,
+    WriteError, WriteOptions, WriteReport, read_some, write_kept_knowing,
 };
 use brushwork_link::transport::Stream;
 use brushwork_protocol::models;
@@ -76,10 +76,8 @@ const RESISTANCE: &str = "resistance_ohms";
 
 /// Reading a dozen commands at the slowest baud rate, with retries.
 const READ_LIMIT: Duration = Duration::from_secs(20);
-/// Reading, writing and reading back.
-const WRITE_LIMIT: Duration = Duration::from_secs(60);
-/// With everything read before, for the backup.
-const BACKUP_LIMIT: Duration = Duration::from_secs(130);
+/// Reading everything for the backup, writing and reading back.
+const WRITE_LIMIT: Duration = Duration::from_secs(130);
 
 const READ_JOB: &str = "read the settings of the control loops";
 const WRITE_JOB: &str = "write the settings of the control loops";
@@ -96,8 +94,10 @@ pub struct LoopSettings {
     pub at_once: bool,
     /// Something was edited since the edits were last applied.
     is_fresh: bool,
-    /// Whether a backup was made of this unit since it was connected.
-    is_backed_up: bool,
+    /// All settings, as known from the last write.
+    known: Known,
+    /// What the last write came to, for others that show the same settings.
+    written: Option<Box<WriteReport>>,
 }
 
 #[derive(Debug)]
@@ -110,7 +110,7 @@ struct Running {
 #[derive(Debug)]
 enum Outcome {
     Read(Result<ReadReport, Failure>),
-    Written(Result<WriteReport, WriteError>),
+    Written(Result<Box<WriteReport>, WriteError>, Known),
 }
 
 /// The key of a motor's setting.
@@ -235,6 +235,7 @@ impl LoopSettings {
     /// What to ask of the device thread to read the settings.
     pub fn read(&mut self, identity: &Identity) -> Option<Request> {
         self.wants_reading = false;
+        self.known.forget();
         if self.running.is_some() {
             return None;
         }
@@ -258,7 +259,7 @@ impl LoopSettings {
         columns: &[Column],
         identity: &Identity,
         own_stream: Option<Stream>,
-        keeper: Option<Box<dyn Keeper>>,
+        keeper: Box<dyn Keeper>,
     ) -> Option<Request> {
         let wanted: SettingsImage = keys(columns)
             .into_iter()
@@ -273,7 +274,7 @@ impl LoopSettings {
         wanted: SettingsImage,
         identity: &Identity,
         own_stream: Option<Stream>,
-        keeper: Option<Box<dyn Keeper>>,
+        mut keeper: Box<dyn Keeper>,
     ) -> Option<Request> {
         let table = self.table.clone().filter(|_| self.running.is_none())?;
         if wanted.is_empty() {
@@ -281,16 +282,11 @@ impl LoopSettings {
         }
         let options = WriteOptions { own_stream, simulated: identity.simulated };
         let (sender, outcome) = bounded(1);
-        // A backup reads everything, so a series of small changes has one, before the first.
-        let mut keeper = keeper.filter(|_| !std::mem::replace(&mut self.is_backed_up, true));
-        let limit = if keeper.is_some() { BACKUP_LIMIT } else { WRITE_LIMIT };
-        let job = FnJob::boxed(WRITE_JOB, limit, move |wire| {
-            let result = match &mut keeper {
-                Some(keeper) => write_kept(wire, &table, &wanted, options, &mut **keeper),
-                None => write(wire, &table, &wanted, options),
-            };
+        let mut known = std::mem::take(&mut self.known);
+        let job = FnJob::boxed(WRITE_JOB, WRITE_LIMIT, move |wire| {
+            let result = write_kept_knowing(wire, &table, &wanted, options, &mut *keeper, &mut known);
             // Nobody waits for it once the unit was left.
-            let _ = sender.try_send(Outcome::Written(result));
+            let _ = sender.try_send(Outcome::Written(result.map(Box::new), std::mem::take(&mut known)));
             Ok(Box::new(()))
         });
         self.running = Some(Running { name: WRITE_JOB, has_started: false, outcome });
@@ -300,7 +296,11 @@ impl LoopSettings {
     /// The request was not taken.
     pub fn not_begun(&mut self) {
         self.running = None;
-        self.is_backed_up = false;
+    }
+
+    /// What a write came to, once.
+    pub fn take_written(&mut self) -> Option<Box<WriteReport>> {
+        self.written.take()
     }
 
     /// Whether the event is about work that was begun here.
@@ -332,9 +332,14 @@ impl LoopSettings {
         let Some(running) = self.running.take() else { return Vec::new() };
         match running.outcome.try_recv() {
             Ok(Outcome::Read(Ok(report))) => self.was_read(&report),
-            Ok(Outcome::Written(Ok(report))) => self.was_written(&report),
+            Ok(Outcome::Written(Ok(report), known)) => {
+                self.known = known;
+                let effects = self.was_written(&report);
+                self.written = Some(report);
+                effects
+            }
             Ok(Outcome::Read(Err(failure))) => vec![Effect::Say(Gravity::Error, failure.to_string())],
-            Ok(Outcome::Written(Err(error))) => vec![Effect::Say(Gravity::Error, error.to_string())],
+            Ok(Outcome::Written(Err(error), _)) => vec![Effect::Say(Gravity::Error, error.to_string())],
             Err(_) => vec![Effect::Say(Gravity::Error, nothing_came(running.name, ending))],
         }
     }

@@ -62,6 +62,9 @@ pub struct Model {
     pub others: Vec<Desk>,
 }
 
+/// Closed links that stay in the list behind the one in front.
+pub const MOST_CLOSED: usize = 8;
+
 /// How the window looks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Appearance {
@@ -181,6 +184,18 @@ impl Model {
         self.front.graph_for(self.screen);
     }
 
+    /// Links that were closed long ago, beyond so many of them: their graphs take memory. One with edits that were not
+    /// written, or whose recording still runs, is kept.
+    pub fn closed_too_many(&self) -> Vec<DeskId> {
+        let is_over = |desk: &&Desk| {
+            desk.phase == Phase::Closed && !desk.general.has_edits() && !desk.graph.files.is_recording()
+        };
+        let mut closed: Vec<DeskId> = self.others.iter().filter(is_over).map(Desk::id).collect();
+        closed.sort_unstable();
+        closed.truncate(closed.len().saturating_sub(MOST_CLOSED));
+        closed
+    }
+
     /// Takes a desk away. Without any other an empty one comes in its place.
     pub fn remove_desk(&mut self, id: DeskId) {
         if id == self.front.id() {
@@ -235,5 +250,33 @@ fn first_scale(channel: Channel) -> Scale {
         Channel::MainBattery => Scale::from_zero(40.0),
         Channel::LogicBattery => Scale::from_zero(20.0),
         _ => Scale::around_zero(1000.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_links_that_were_closed_the_newest_stay_and_so_do_those_with_something_to_lose() {
+        let mut model = Model::default();
+        for number in 0..12 {
+            let values = vec![0.0; graph_channels().len()];
+            model.front.target = Some(format!("tcp:host:{number}"));
+            model.front.graph.push(f64::from(number), &values);
+            if number == 1 {
+                model.front.phase = Phase::Open { target: "tcp:host:1".to_owned() };
+            }
+            model.add_desk();
+        }
+        let over = model.closed_too_many();
+        assert_eq!(over.len(), 11 - MOST_CLOSED, "all but the open one were closed");
+        for desk in over {
+            model.remove_desk(desk);
+        }
+        assert!(model.closed_too_many().is_empty());
+        let left: Vec<&str> = model.others.iter().filter_map(|desk| desk.target.as_deref()).collect();
+        assert!(left.contains(&"tcp:host:1") && left.contains(&"tcp:host:11"), "{left:?}");
+        assert!(!left.contains(&"tcp:host:0") && !left.contains(&"tcp:host:2"), "{left:?}");
     }
 }

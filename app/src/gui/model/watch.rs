@@ -76,6 +76,11 @@ impl Watch {
         })))
     }
 
+    /// Whether it reads, or is about to.
+    pub fn is_busy(&self) -> bool {
+        self.wants_reading || self.running.is_some()
+    }
+
     /// The request was not taken; it is made again later.
     pub fn not_begun(&mut self) {
         self.running = None;

@@ -27,7 +27,7 @@ use crate::gui::widgets::readout::Readout;
 const ROW_HEIGHT: f32 = 34.0;
 
 /// In a small window the screen scrolls rather than give the graph less.
-const LEAST_GRAPH_HEIGHT: f32 = 210.0;
+const LEAST_GRAPH_HEIGHT: f32 = 176.0;
 const LEAST_GUIDE_HEIGHT: f32 = 320.0;
 /// Height of a screen that has room for the drawer and a graph.
 const ROOM_FOR_DRAWER: f32 = 520.0;

@@ -1,6 +1,6 @@
 //! Where the settings are: wanted here, in the controller's RAM, in its EEPROM, in the open profile.
 
-use brushwork_link::settings::diff;
+use brushwork_link::settings::{Difference, diff};
 use egui::{Align2, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
 use crate::gui::command::{Command, Commands};
@@ -32,7 +32,8 @@ pub fn marks_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     let left = rect.left() + 28.0;
     painter.text(pos2(left, rect.top() + 4.0), Align2::LEFT_TOP, &first, small.clone(), palette.text);
     painter.text(pos2(left, rect.bottom() - 4.0), Align2::LEFT_BOTTOM, &second, small, palette.weak_text);
-    let help = "Edits that are not written, RAM that is not saved to EEPROM, and the open profile. Press to see them.";
+    let help = "Edits that are not written, RAM that is not saved to EEPROM, and the open profile. The EEPROM is known \
+                once it was saved or loaded from here. Press to see them.";
     if response.on_hover_text(format!("{spoken}\n{help}")).clicked() {
         commands.push(Command::Show(Screen::GeneralSettings));
     }
@@ -42,18 +43,36 @@ pub fn marks_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
 fn mark(model: &Model) -> (LampState, String, String) {
     let general = &model.front.general;
     let Some(unit) = general.unit().filter(|unit| unit.is_read() && model.is_connected()) else {
-        let text = if model.is_connected() { "not read yet" } else { "no controller" };
+        let text = match (model.is_connected(), general.running().is_some()) {
+            (false, _) => "no controller",
+            (true, true) => "reading the settings …",
+            (true, false) => "settings not read yet",
+        };
         return (LampState::Unknown, text.to_owned(), profile(model));
     };
     let (state, first) = match unit.saved() {
         Saved::Yes => (LampState::Ok, "RAM is saved in EEPROM".to_owned()),
         Saved::Differs(count) => (LampState::Warning, format!("RAM: {count} not saved in EEPROM")),
-        Saved::NotKnown { written: 0 } => (LampState::Unknown, "EEPROM not known".to_owned()),
+        Saved::NotKnown { written: 0 } => as_known_before(model),
         Saved::NotKnown { written } => (LampState::Warning, format!("RAM: {written} written, not saved")),
     };
     match unit.changes().len() {
         0 => (state, first, profile(model)),
         edits => (LampState::Warning, first, format!("{edits} edits not written")),
+    }
+}
+
+/// RAM against what the EEPROM was proven to hold last, in an earlier session.
+fn as_known_before(model: &Model) -> (LampState, String) {
+    let general = &model.front.general;
+    let differing = general.known_eeprom().zip(general.unit()).and_then(|(known, unit)| {
+        let both = |each: &Difference| each.left.is_some() && each.right.is_some();
+        Some(diff(unit.table(), &known.settings, unit.ram()?).into_iter().filter(both).count())
+    });
+    match differing {
+        Some(0) => (LampState::Ok, "RAM is as saved last".to_owned()),
+        Some(count) => (LampState::Warning, format!("RAM: {count} not as saved last")),
+        None => (LampState::Unknown, "EEPROM not known".to_owned()),
     }
 }
 

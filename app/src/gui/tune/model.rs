@@ -11,7 +11,7 @@ use brushwork_tuning::tune::{self, Excitation, Method};
 use super::calibration::Calibration;
 use super::registers::Registers;
 use super::run::Run;
-use super::sequence::{Ended, Next, Sequence, Work};
+use super::sequence::{Ended, Next, Origin, Sequence, Work};
 use crate::gui::model::link::{Arming, Effect};
 use crate::gui::model::message::Gravity;
 use crate::gui::model::screen::Screen;
@@ -172,7 +172,7 @@ struct Owed {
     target: Target,
     which: Loop,
     unit: (u8, String),
-    before: Setup,
+    before: (Setup, Origin),
 }
 
 /// Inductance and resistance that were cleared for a run.
@@ -333,8 +333,13 @@ impl Tuning {
     }
 
     /// What to ask of the device thread now; asked in every frame.
-    pub fn next(&mut self, arming: Arming, refused: bool) -> Option<Next> {
-        self.running.as_mut()?.1.next(arming, refused)
+    pub fn next(
+        &mut self,
+        arming: Arming,
+        refused: bool,
+        origin: impl FnOnce() -> Option<Origin>,
+    ) -> Option<Next> {
+        self.running.as_mut()?.1.next(arming, refused, origin)
     }
 
     /// The device thread did not take it.

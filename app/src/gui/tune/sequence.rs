@@ -6,6 +6,7 @@
 
 use brushwork_link::device::{ArmScope, Event, Job, JobEnding, Request};
 use brushwork_link::exchange::Interruption;
+use brushwork_link::settings::Subject;
 use brushwork_tuning::axis::Setup;
 use brushwork_tuning::report::Report;
 use brushwork_tuning::trace::Trace;
@@ -13,6 +14,7 @@ use brushwork_tuning::trial::{Trial, TrialRequest};
 use brushwork_tuning::tune;
 
 use crate::gui::model::link::Arming;
+use crate::keep::TrialKeeper;
 use crate::tune::tap::Live;
 use crate::tune::{self as jobs, Slot, Target, take};
 
@@ -48,7 +50,14 @@ pub struct Ended {
     /// Why there is less than was asked for.
     pub why: Option<String>,
     /// What the controller held before and does not hold again.
-    pub owed: Option<Setup>,
+    pub owed: Option<(Setup, Origin)>,
+}
+
+/// What a run's backup and journal need.
+#[derive(Clone, Debug)]
+pub struct Origin {
+    pub subject: Subject,
+    pub keeper: TrialKeeper,
 }
 
 /// What is to be asked of the device thread next.
@@ -69,6 +78,8 @@ pub struct Sequence {
     is_asked: bool,
     has_started: bool,
     restores: u8,
+    /// From the job that prepares on.
+    origin: Option<Origin>,
     setup: Slot<Setup>,
     before: Option<Setup>,
     found: Slot<Report>,
@@ -90,6 +101,7 @@ impl Sequence {
             is_asked: false,
             has_started: false,
             restores: 0,
+            origin: None,
             setup: Slot::default(),
             before: None,
             found: Slot::default(),
@@ -101,9 +113,9 @@ impl Sequence {
     }
 
     /// What a lost link has left to do: nothing but putting back.
-    pub fn put_back(target: Target, scope: ArmScope, before: Setup) -> Self {
+    pub fn put_back(target: Target, scope: ArmScope, (before, origin): (Setup, Origin)) -> Self {
         let stage = Stage::Restoring;
-        Self { stage, before: Some(before), ..Self::new(Work::PutBack, target, scope) }
+        Self { stage, before: Some(before), origin: Some(origin), ..Self::new(Work::PutBack, target, scope) }
     }
 
     /// What it does, as a person reads it.
@@ -149,8 +161,17 @@ impl Sequence {
         (self.stage, self.is_asked, self.has_started) = (stage, false, false);
     }
 
-    /// What to ask for now, if anything; asked in every frame.
-    pub fn next(&mut self, arming: Arming, refused: bool) -> Option<Next> {
+    /// What to ask for now, if anything; asked in every frame. `origin` is asked once, before anything else.
+    pub fn next(
+        &mut self,
+        arming: Arming,
+        refused: bool,
+        origin: impl FnOnce() -> Option<Origin>,
+    ) -> Option<Next> {
+        if self.origin.is_none() {
+            self.origin = origin();
+        }
+        let Origin { subject, keeper } = self.origin.clone()?;
         if self.stage == Stage::Arming {
             if arming.is_armed_for(self.scope) {
                 self.go_to(Stage::Running);
@@ -163,13 +184,13 @@ impl Sequence {
         }
         let job: Box<dyn Job> = match self.stage {
             Stage::Arming => return Some(Next::Arm(self.scope)),
-            Stage::Preparing => jobs::prepare(self.target, &self.setup),
+            Stage::Preparing => jobs::prepare(self.target, subject, &self.setup, &keeper),
             Stage::Running => match &self.work {
                 Work::Tune(request) => jobs::run_watched(self.target, *request, &self.found, &self.live),
                 Work::Try(wanted) => jobs::trial(self.target, **wanted, &self.tried, &self.live),
                 Work::PutBack => return None,
             },
-            Stage::Restoring => jobs::restore(self.target, self.before?, None),
+            Stage::Restoring => jobs::restore(self.target, self.before?, None, &keeper),
         };
         Some(Next::Job(Request::Job(job)))
     }
@@ -262,7 +283,7 @@ impl Sequence {
             report: take(&self.found),
             trial: take(&self.tried),
             why: self.why.take(),
-            owed,
+            owed: owed.zip(self.origin.clone()),
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::packet::{Ask, Permit, gate, transact};
 use super::*;
+use crate::TransportError;
 use crate::clock::VirtualClock;
 use crate::testing::{Answers, ScriptedTransport, Wiretap, ms, reply_to, script, with_crc};
 use brushwork_protocol::packet_serial::{Address, Generation, Request, number};
@@ -47,6 +48,69 @@ fn a_reply_that_comes_in_pieces_is_put_together_and_dated() {
     assert_eq!(reply.span, Span { requested_at: ms(0), replied_at: ms(5) });
     let statistics = exchange.statistics();
     assert_eq!((statistics.transactions, statistics.bytes_out, statistics.bytes_in), (1, 2, 4));
+}
+
+/// A transport whose reader gets no processor for a while at its first read.
+struct Starved {
+    inner: Box<ScriptedTransport>,
+    clock: VirtualClock,
+    stolen: Option<Duration>,
+}
+
+impl Transport for Starved {
+    fn read(&mut self, buffer: &mut [u8], timeout: Duration) -> Result<usize, TransportError> {
+        match self.stolen.take() {
+            Some(stolen) => {
+                self.clock.advance_to(self.clock.now() + stolen);
+                Ok(0)
+            }
+            None => self.inner.read(buffer, timeout),
+        }
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> Result<(), TransportError> {
+        self.inner.write(bytes)
+    }
+
+    fn discard_input(&mut self) -> Result<usize, TransportError> {
+        self.inner.discard_input()
+    }
+
+    fn describe(&self) -> String {
+        self.inner.describe()
+    }
+
+    fn byte_time(&self) -> Option<Duration> {
+        self.inner.byte_time()
+    }
+
+    fn latency(&self) -> Duration {
+        self.inner.latency()
+    }
+}
+
+/// What a battery that answers after so long reads when the reader had no processor for `stolen` after asking.
+fn starved(stolen: Duration, after: Duration) -> Result<Reply, ExchangeError> {
+    let clock = VirtualClock::new();
+    let far_end = script(vec![(READ_BATTERY.to_vec(), vec![(after, battery())])]);
+    let (inner, _) = ScriptedTransport::new(&clock, far_end);
+    let transport = Starved { inner, clock: clock.clone(), stolen: Some(stolen) };
+    let mut exchange = Exchange::new(Box::new(transport), Arc::new(clock));
+    let request = Request::new(Address::DEFAULT, number::READ_MAIN_BATTERY, &[]);
+    let ask = Ask { request: &request, generation: Generation::Gen1, permit: Permit::default(), retries: 0 };
+    transact(&mut exchange, &Unwatched, &ask)
+}
+
+#[test]
+fn a_reply_that_came_while_there_was_no_processor_is_taken_however_late_that_is_seen() {
+    assert_eq!(starved(ms(900), ms(20)).unwrap().values.int("main_battery"), 243);
+}
+
+#[test]
+fn time_without_a_processor_is_given_to_the_reply_and_no_more_than_that() {
+    assert_eq!(starved(ms(40), ms(80)).unwrap().values.int("main_battery"), 243);
+    assert!(matches!(starved(ms(40), ms(120)), Err(ExchangeError::TimedOut { .. })));
+    assert!(matches!(starved(ms(2), ms(60)), Err(ExchangeError::TimedOut { .. })), "a link that is well");
 }
 
 #[test]

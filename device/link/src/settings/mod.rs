@@ -27,8 +27,8 @@ pub use check::{BRIDGE_WARNING, SHORTEST_AUTORUN_MS};
 pub use copy::{CopiedMotor, copy_motor};
 pub use image::{Copies, Copy, Difference, SettingsImage, changes, diff};
 pub use keep::{
-    Act, Aftermath, Ending, Entry, Held, Journal, JournalError, Keeper, defaults_kept, reload_kept,
-    save_kept, write_kept,
+    Act, Aftermath, Ending, Entry, Held, Journal, JournalError, Keeper, Known, begin_command, begin_trial,
+    defaults_kept, reload_kept, save_kept, write_kept, write_kept_knowing,
 };
 pub use kind::{Coding, Kind};
 pub use listing::{ListedSetting, list, list_text};

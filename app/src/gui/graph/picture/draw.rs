@@ -438,3 +438,79 @@ pub fn mark_color(palette: &Palette, kind: MarkKind) -> Color32 {
 fn short(label: &str) -> &str {
     if label.chars().count() > 9 { label.split_once(' ').map_or(label, |(_, rest)| rest) } else { label }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gui::graph::scale::Scale;
+    use crate::gui::graph::track::{ChannelInfo, Track};
+
+    /// Ten seconds of one channel within the scale of -1 to 1, drawn into 600 by 300 points.
+    fn drawn(value: impl Fn(f64) -> f64) -> (Frame, Picture) {
+        let info = ChannelInfo {
+            key: "x".to_owned(),
+            label: "X".to_owned(),
+            unit: "A".to_owned(),
+            decimals: 1,
+            scale: Scale::around_zero(1.0),
+            shown: true,
+            is_pin: false,
+        };
+        let mut track = Track::new(vec![info], 2000);
+        for row in 0..=1000 {
+            let time_s = f64::from(row) * 0.01;
+            track.push(time_s, &[value(time_s)], |_| time_s);
+        }
+        let sheet = Sheet::new(track);
+        let frame = Frame::new(Rect::from_min_max(pos2(0.0, 0.0), pos2(600.0, 300.0)), sheet.window());
+        let scene = Scene {
+            sheet: &sheet,
+            runs: &[],
+            align: Align::Start,
+            palette: Palette::of_theme(egui::Theme::Dark),
+            frame,
+            pixels_per_point: 1.0,
+            is_recording: false,
+        };
+        (frame, scene.picture())
+    }
+
+    /// The tips of the triangles at the upper and at the lower edge of the plot.
+    fn arrows(frame: &Frame, picture: &Picture) -> [Vec<Pos2>; 2] {
+        let mut found = [Vec::new(), Vec::new()];
+        for element in &picture[0].elements {
+            let Element::Polygon { points, .. } = element else { continue };
+            let up = points[1].y > points[0].y;
+            let edge = if up { frame.plot.top() + 1.0 } else { frame.plot.bottom() - 1.0 };
+            assert_eq!(points[0].y, edge, "the tip points out of the picture: {points:?}");
+            found[usize::from(!up)].push(points[0]);
+        }
+        found
+    }
+
+    #[test]
+    fn an_arrow_points_to_where_a_line_leaves_the_picture() {
+        let (frame, picture) = drawn(|time_s| if (4.0..4.2).contains(&time_s) { 7.0 } else { 0.5 });
+        let [above, below] = arrows(&frame, &picture);
+        assert_eq!((above.len(), below.len()), (1, 0));
+        assert!((above[0].x - frame.x(4.0)).abs() < 3.0, "{above:?}");
+
+        let (frame, picture) = drawn(|time_s| if time_s < 5.0 { -3.0 } else { 0.0 });
+        let [above, below] = arrows(&frame, &picture);
+        assert!(above.is_empty() && below.len() > 4, "{below:?}");
+        assert!(below.iter().all(|tip| tip.x <= frame.x(5.1)), "{below:?}");
+        assert!(
+            below.windows(2).all(|pair| pair[1].x - pair[0].x >= SPACING),
+            "not a row of spikes: {below:?}"
+        );
+    }
+
+    #[test]
+    fn a_line_inside_the_picture_has_no_arrow_and_one_spike_alone_has_one() {
+        let (frame, picture) = drawn(f64::sin);
+        assert_eq!(arrows(&frame, &picture), [Vec::new(), Vec::new()]);
+        let (frame, picture) = drawn(|time_s| if (time_s - 6.0).abs() < 0.005 { -9.0 } else { 0.1 });
+        let [above, below] = arrows(&frame, &picture);
+        assert_eq!((above.len(), below.len()), (0, 1));
+    }
+}

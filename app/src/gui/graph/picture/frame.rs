@@ -6,8 +6,8 @@ use egui::{Pos2, Rect, pos2};
 pub const AXIS_WIDTH: f32 = 68.0;
 /// Width of the strip with the zero marks.
 pub const GUTTER: f32 = 16.0;
-/// Height of the strip with the flags of marks.
-pub const FLAGS: f32 = 13.0;
+/// Height of the strip with the flags of marks and, at the left, the unit above the topmost figure.
+pub const FLAGS: f32 = 18.0;
 /// Height of the strip with the figures of the time axis.
 pub const TIMES: f32 = 17.0;
 /// Room at the right, for the handle of the trigger's level and the last time's figure.
@@ -57,8 +57,10 @@ impl Frame {
         let margin_s = f64::from(OUTSIDE / self.plot.width()) * (self.end_s - self.start_s);
         let (from_s, to_s) = (self.start_s - margin_s, self.end_s + margin_s);
         let height = |value: f64| self.y(part(value).clamp(-20.0, 21.0));
+        let pixels_per_s = f64::from(self.plot.width()) / (self.end_s - self.start_s);
+        let across = |time_s: f64| self.plot.left() + ((time_s - self.start_s) * pixels_per_s) as f32;
         let mut points: Vec<Pos2> =
-            line.iter().map(|[time_s, value]| pos2(self.x(*time_s), height(*value))).collect();
+            line.iter().map(|[time_s, value]| pos2(across(*time_s), height(*value))).collect();
         if let [first, second, ..] = line
             && first[0] < from_s
         {

@@ -2,11 +2,12 @@
 //! back on every way out. While it is open the input commands nothing.
 
 use brushwork_link::device::PinSignal;
-use brushwork_link::settings::{Calibrated, Calibration, SettingsImage, WriteReport, open_range};
+use brushwork_link::settings::{Calibrated, Calibration, Keeper, SettingsImage, WriteReport, open_range};
 
 use super::super::message::Gravity;
 use super::unit::{Kept, UnitSettings};
 use super::{General, SettingsWish, Summary, UnitKey};
+use crate::keep::TrialKeeper;
 
 /// A calibration of one input.
 #[derive(Debug)]
@@ -19,6 +20,8 @@ pub struct Run {
     /// What the pin had before.
     before: SettingsImage,
     kept: Kept,
+    /// From the write that opens the input to the one that closes it.
+    keeper: Option<TrialKeeper>,
     found: Option<Calibrated>,
 }
 
@@ -53,6 +56,14 @@ impl Run {
             SettingsWish::CloseInput => self.before.clone(),
             _ => self.opened(),
         }
+    }
+
+    /// What keeps the journal of the whole calibration; `make` makes one at its beginning.
+    pub(super) fn keeper(&mut self, make: impl FnOnce() -> Option<Box<dyn Keeper>>) -> Option<TrialKeeper> {
+        if self.keeper.is_none() {
+            self.keeper = make().map(TrialKeeper::new);
+        }
+        self.keeper.clone()
     }
 
     fn opened(&self) -> SettingsImage {
@@ -99,6 +110,7 @@ impl General {
             told: None,
             before,
             kept: unit.keep(),
+            keeper: None,
             found: None,
         });
         Some(SettingsWish::OpenInput)

@@ -5,6 +5,7 @@
 use std::collections::BTreeMap;
 
 use brushwork_link::device::{Event, Identity, JobEnding, Request};
+use brushwork_link::settings::WriteReport;
 use brushwork_link::transport::Stream;
 
 use super::link::Effect;
@@ -32,6 +33,9 @@ pub use section::{Section, sections};
 pub use unit::{Saved, UnitSettings};
 pub use work::{Running, SettingsWish};
 
+/// After so many failures the settings are read no more before somebody asks.
+const QUIET_TRIES: usize = 2;
+
 /// The state of the screen.
 #[derive(Debug, Default)]
 pub struct General {
@@ -57,6 +61,8 @@ pub struct General {
     sheet: Option<Sheet>,
     sheet_is_new: bool,
     wants_search: bool,
+    /// How often reading that nobody asked for has failed on this link.
+    quiet_failures: usize,
     /// Opened as soon as the settings were read.
     waiting_sheet: Option<Sheet>,
 }
@@ -122,7 +128,14 @@ impl General {
         self.units.get(self.current.as_ref()?)
     }
 
-    /// Another screen writes to the controller's RAM: what was read of it is read again when it is next shown.
+    /// Another screen has written to the controller's RAM.
+    pub fn note_written_elsewhere(&mut self, report: &WriteReport) {
+        if let Some(unit) = self.unit_mut().filter(|unit| unit.is_read()) {
+            unit.note_written(report);
+        }
+    }
+
+    /// The controller's RAM may be another one now: it is read again.
     pub fn ram_changes(&mut self) {
         if let Some(unit) = self.unit_mut() {
             unit.forget_ram();
@@ -199,23 +212,57 @@ impl General {
     /// What to ask of the device thread. Nothing while other work with settings runs.
     pub fn begin(&mut self, wish: SettingsWish, own_stream: Option<Stream>) -> Option<Request> {
         if wish == SettingsWish::Cancel {
-            self.running.as_mut()?.is_cancelled = true;
+            let running = self.running.as_mut()?;
+            running.is_cancelled = true;
+            // Whoever calls it off is told, and it is not begun again by itself.
+            running.is_quiet = false;
             return Some(Request::CancelJob);
         }
         let is_calibrating = matches!(wish, SettingsWish::OpenInput | SettingsWish::CloseInput);
         if self.running.is_some() || self.calibration.is_some() != is_calibrating {
             return None;
         }
-        let run = self.calibration.as_ref();
-        let key = run.map(|run| run.unit.clone()).or_else(|| self.current.clone())?;
-        let input = run.map(|run| run.image(wish));
+        let calibrated = self.calibration.as_ref().map(|run| run.unit.clone());
+        let key = calibrated.or_else(|| self.current.clone())?;
         let unit = self.units.get_mut(&key)?;
         unit.note_asked();
-        let keeper = self.kept.keeper(&key, unit.firmware())?;
+        let keep = || self.kept.keeper(&key, unit.firmware());
+        let keeper = keep()?;
+        let input = match &mut self.calibration {
+            Some(run) => Some((run.image(wish), run.keeper(keep)?)),
+            None => None,
+        };
         let (job, running) = work::begin(wish, key, unit, input, own_stream, keeper)?;
         self.running = Some(running);
         self.sheet = None;
         Some(Request::Job(job))
+    }
+
+    /// Reads what the controller works with, without a word: whoever is connected is to see what is saved and what is not.
+    /// It gives way to whatever is asked for meanwhile, and is begun again.
+    pub fn begin_quietly(&mut self) -> Option<Request> {
+        if self.quiet_failures >= QUIET_TRIES {
+            return None;
+        }
+        let sheet = self.sheet.clone();
+        let request = self.begin(SettingsWish::Read, None);
+        self.sheet = sheet;
+        if let Some(running) = self.running.as_mut().filter(|_| request.is_some()) {
+            running.is_quiet = true;
+        }
+        request
+    }
+
+    /// Whether the settings are being read without anybody having asked.
+    pub fn is_reading_quietly(&self) -> bool {
+        self.running.as_ref().is_some_and(|running| running.is_quiet && !running.is_cancelled)
+    }
+
+    /// Makes reading that nobody asked for give way.
+    pub fn give_way(&mut self) -> Option<Request> {
+        let running = self.running.as_mut().filter(|running| running.is_quiet && !running.is_cancelled)?;
+        running.is_cancelled = true;
+        Some(Request::CancelJob)
     }
 
     /// The request was not taken.
@@ -263,6 +310,7 @@ impl General {
     /// The link is gone: what the controllers hold may change unseen. Edits stay.
     pub fn link_ended(&mut self) {
         self.running = None;
+        self.quiet_failures = 0;
         self.current = None;
         self.kept.forget_unit();
         self.sheet = None;
@@ -291,9 +339,16 @@ impl General {
             Some(outcome) => outcome::take(unit, outcome),
             None => outcome::nothing_came(&running, ending),
         };
+        if running.is_quiet && came_of.is_none() {
+            unit.forget_asked();
+            self.quiet_failures += usize::from(matches!(ending, JobEnding::Failed(_)));
+        }
         let is_current = self.current.as_ref() == Some(&running.unit);
         self.follow_address(&running.unit, told.address);
         let mut effects = self.told(told);
+        if running.is_quiet {
+            effects.retain(|effect| matches!(effect, Effect::Say(Gravity::Warning, _)) && came_of.is_some());
+        }
         if is_current {
             effects.extend(self.note_came(came_of));
         }

@@ -125,6 +125,11 @@ impl UnitSettings {
         self.was_asked = true;
     }
 
+    /// What was asked for gave way to something more urgent.
+    pub(super) fn forget_asked(&mut self) {
+        self.was_asked = false;
+    }
+
     /// What the controller works with, as last read.
     pub fn on_controller(&self, key: &str) -> Option<SettingValue> {
         self.copies.ram()?.get(key)

@@ -8,14 +8,16 @@ use std::time::Duration;
 use brushwork_link::Failure;
 use brushwork_link::device::{FnJob, Job, JobContext};
 use brushwork_link::settings::{
-    DefaultsReport, Keeper, ReadReport, SaveReport, SettingsImage, WriteError, WriteOptions, WriteReport,
-    defaults_kept, read_all, reload_kept, save_kept, write, write_kept,
+    DefaultsReport, Ending, Keeper, ReadReport, SaveReport, SettingsImage, SettingsTable, WriteError,
+    WriteOptions, WriteReport, begin_trial, defaults_kept, read_all, reload_kept, save_kept, write,
+    write_kept,
 };
 use brushwork_link::transport::Stream;
 use crossbeam_channel::{Receiver, bounded};
 
 use super::UnitKey;
 use super::unit::UnitSettings;
+use crate::keep::TrialKeeper;
 
 /// What can be asked of the settings' controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,6 +50,8 @@ pub struct Running {
     pub fraction: Option<f32>,
     pub text: String,
     pub is_cancelled: bool,
+    /// Begun by nobody: nothing is said of it.
+    pub(super) is_quiet: bool,
     result: Receiver<Outcome>,
 }
 
@@ -83,7 +87,7 @@ pub(super) fn begin(
     wish: SettingsWish,
     key: UnitKey,
     unit: &UnitSettings,
-    input: Option<SettingsImage>,
+    input: Option<(SettingsImage, TrialKeeper)>,
     own_stream: Option<Stream>,
     mut keeper: Box<dyn Keeper>,
 ) -> Option<(Box<dyn Job>, Running)> {
@@ -104,15 +108,12 @@ pub(super) fn begin(
             let name = format!("write {}", super::outcome::settings(unit.edits().len()));
             writing(key, name, unit, unit.edits().clone(), options, keeper)
         }
-        SettingsWish::OpenInput => writing(key, "open the input".to_owned(), unit, input?, options, keeper),
-        SettingsWish::CloseInput => {
-            let wanted = input?;
-            // Without a backup: what would be backed up is the open range.
-            job(key, "put the input back".to_owned(), WRITING_LIMIT, move |context| {
-                Ok(match write(context, &table, &wanted, options) {
-                    Ok(report) => Outcome::Written(Box::new(report)),
-                    Err(error) => Outcome::NotWritten(error),
-                })
+        SettingsWish::OpenInput | SettingsWish::CloseInput => {
+            let (wanted, keeper) = input?;
+            let opens = wish == SettingsWish::OpenInput;
+            let name = if opens { "open the input" } else { "put the input back" };
+            job(key, name.to_owned(), WRITING_LIMIT, move |context| {
+                calibrating(context, &table, &wanted, options, &keeper, opens)
             })
         }
         SettingsWish::Save => {
@@ -130,6 +131,31 @@ pub(super) fn begin(
     };
     let (job, running) = begun;
     Some((job, Running { wish, ..running }))
+}
+
+/// Opens or closes an input: one journal from the one to the other.
+fn calibrating(
+    context: &mut JobContext<'_>,
+    table: &SettingsTable,
+    wanted: &SettingsImage,
+    options: WriteOptions,
+    keeper: &TrialKeeper,
+    opens: bool,
+) -> Result<Outcome, Failure> {
+    if opens {
+        let is_changed = |key: &str| wanted.get(key).is_some();
+        begin_trial(context, *table.subject(), &is_changed, &mut **keeper.lock())?;
+    }
+    let result = write(context, table, wanted, options);
+    match &result {
+        Ok(report) if !opens && report.is_complete() => keeper.lock().end(Ending::Known),
+        Err(_) if opens => keeper.lock().end(Ending::NotDone),
+        _ => {}
+    }
+    Ok(match result {
+        Ok(report) => Outcome::Written(Box::new(report)),
+        Err(error) => Outcome::NotWritten(error),
+    })
 }
 
 fn writing(
@@ -170,6 +196,7 @@ fn job(
         fraction: None,
         text: String::new(),
         is_cancelled: false,
+        is_quiet: false,
         result,
     };
     (job, running)

@@ -1,10 +1,12 @@
 //! The traffic panel's state: what went over the wire, a composer for one command, and the bytes that wait to be sent.
 
 mod composer;
+mod kept;
 mod log;
 mod pending;
 
 pub use composer::{Composer, Prepared};
+pub use kept::{KeptCommand, Transact};
 pub use log::{Filter, Log, MOST, MOST_BYTES, Outcome, Transaction};
 pub use pending::{Pending, pending};
 
@@ -31,6 +33,8 @@ pub struct Traffic {
     pub tab: Tab,
     pub log: Log,
     pub composer: Composer,
+    /// A command that changes settings and waits for their backup.
+    pub kept: KeptCommand,
     /// The name that was typed for a file, while one is asked for.
     pub saving: Option<String>,
     pub dialog: Option<FileDialog>,
@@ -41,7 +45,10 @@ impl Traffic {
     pub fn note(&mut self, event: &Event) {
         match event {
             Event::Traffic { traffic, text, sound } => self.log.take(traffic, text, *sound),
-            Event::Transacted { id, result } => self.composer.answered(*id, result),
+            Event::Transacted { id, result } => {
+                self.kept.answered(*id, result);
+                self.composer.answered(*id, result);
+            }
             _ => {}
         }
     }
@@ -50,6 +57,7 @@ impl Traffic {
     pub fn link_ended(&mut self) {
         self.log.link_ended();
         self.composer.forget_waiting();
+        self.kept.forget();
     }
 
     /// Writes what the filter lets through to a file; what became of it, as a sentence.

@@ -4,8 +4,8 @@ use super::super::image::{Difference, SettingsImage, diff};
 use super::super::memory::{
     DefaultsReport, SaveReport, SaveVerdict, reload, restore_defaults, save_eeprom_of,
 };
-use super::super::plan::WriteOptions;
-use super::super::read::{ReadReport, read_all};
+use super::super::plan::{WriteOptions, rows_involved};
+use super::super::read::{ReadReport, read_all, read_rows};
 use super::super::table::{SettingsTable, Subject};
 use super::super::write::{RowState, WriteError, WriteReport, write};
 use super::{Act, Ending, Entry, Keeper};
@@ -26,7 +26,103 @@ pub fn write_kept(
     keeper: &mut dyn Keeper,
 ) -> Result<WriteReport, WriteError> {
     let before = read_all(wire, *table.subject()).map_err(|failure| WriteError::NotRead { failure })?;
-    begin(wire, Act::Write, &before, wanted.clone(), keeper)
+    write_over(&before, wire, table, wanted, options, keeper)
+}
+
+/// Everything that is known of a controller's settings from one write of a series to the next, so that not each of
+/// them has to read everything for its backup.
+#[derive(Clone, Debug, Default)]
+pub struct Known(Option<ReadReport>);
+
+impl Known {
+    /// Somebody else may have changed something.
+    pub fn forget(&mut self) {
+        self.0 = None;
+    }
+
+    /// What is known, if the rows concerned still are as they are known to be; else everything, read anew.
+    fn before(
+        &mut self,
+        wire: &mut dyn Wire,
+        table: &SettingsTable,
+        wanted: &SettingsImage,
+    ) -> Result<ReadReport, WriteError> {
+        let keys: Vec<&str> = wanted.iter().map(|(key, _)| key).collect();
+        if let Some(known) = self.0.take() {
+            let now = read_rows(wire, &rows_involved(table, &keys)).map_err(|error| WriteError::NotRead {
+                failure: error.failure("read the settings first", wire.describe()),
+            })?;
+            let is_as_known = |(key, value): (&str, _)| known.image.get(key) == Some(value);
+            if now.failures.is_empty() && now.image.iter().all(is_as_known) {
+                return Ok(known);
+            }
+        }
+        read_all(wire, *table.subject()).map_err(|failure| WriteError::NotRead { failure })
+    }
+}
+
+/// As [`write_kept`], for one of a series of small writes: each has its backup and its journal, but only the first
+/// reads everything. `known` goes from one to the next.
+pub fn write_kept_knowing(
+    wire: &mut dyn Wire,
+    table: &SettingsTable,
+    wanted: &SettingsImage,
+    options: WriteOptions,
+    keeper: &mut dyn Keeper,
+    known: &mut Known,
+) -> Result<WriteReport, WriteError> {
+    let mut before = known.before(wire, table, wanted)?;
+    let result = write_over(&before, wire, table, wanted, options, keeper);
+    if let Ok(report) = &result
+        && report.is_complete()
+    {
+        report.merge_into(&mut before.image);
+        known.0 = Some(before);
+    }
+    result
+}
+
+/// Keeps what is there before some settings are changed for a while, as by a tuning run or a calibration: a backup, and a
+/// journal which says that those settings are to be again as they are now. Whoever changes them ends it with
+/// [`Keeper::end`] once they are, or are to stay.
+pub fn begin_trial(
+    wire: &mut dyn Wire,
+    subject: Subject,
+    is_changed: &dyn Fn(&str) -> bool,
+    keeper: &mut dyn Keeper,
+) -> Result<ReadReport, Failure> {
+    let before = read_all(wire, subject)?;
+    let changed = before.image.iter().filter(|(key, _)| is_changed(key));
+    let wanted = changed.map(|(key, value)| (key.to_owned(), value)).collect();
+    begin(wire, Act::Trial, &before, wanted, keeper)?;
+    Ok(before)
+}
+
+/// Keeps what is there before one command that was put together by hand and changes settings; `saves` when it writes
+/// EEPROM. Whoever sends it ends it with [`Keeper::end`].
+pub fn begin_command(
+    wire: &mut dyn Wire,
+    subject: Subject,
+    saves: bool,
+    keeper: &mut dyn Keeper,
+) -> Result<(), Failure> {
+    let before = read_all(wire, subject)?;
+    match saves {
+        true => begin(wire, Act::Save, &before, before.image.clone(), keeper),
+        false => begin(wire, Act::Write, &before, SettingsImage::default(), keeper),
+    }
+}
+
+/// Writes between the beginning and the end of a journal. `before` is what is there.
+fn write_over(
+    before: &ReadReport,
+    wire: &mut dyn Wire,
+    table: &SettingsTable,
+    wanted: &SettingsImage,
+    options: WriteOptions,
+    keeper: &mut dyn Keeper,
+) -> Result<WriteReport, WriteError> {
+    begin(wire, Act::Write, before, wanted.clone(), keeper)
         .map_err(|failure| WriteError::NotKept { failure })?;
     let mut result = write(wire, table, wanted, options);
     if let Ok(report) = &mut result

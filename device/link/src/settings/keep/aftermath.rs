@@ -108,8 +108,13 @@ impl Aftermath {
             Act::Defaults => format!("Restoring the defaults, begun {begun}, was cut short."),
             Act::Reload => format!("Loading the settings from EEPROM, begun {begun}, was cut short."),
             Act::Firmware => format!("A firmware change begun {begun} was cut short."),
+            Act::Trial => format!("A tuning run or a calibration begun {begun} was cut short."),
         };
         let state = match (self.is_all_new(), self.is_all_old(), act) {
+            (true, true, Act::Trial) => "Every setting is as it was before.".to_owned(),
+            (_, _, Act::Trial) => {
+                format!("Not as before: {}.", settings(self.disturbed.len() + self.unread.len()))
+            }
             (true, true, _) => "No setting had to change.".to_owned(),
             (true, _, Act::Save) => format!(
                 "The controller works with the values that were to be saved ({} new). Whether its EEPROM has \
@@ -168,7 +173,9 @@ impl Held {
         let (title, old, new, now) = (row.title(), text(self.old), text(self.new), text(self.now));
         match (self.now, self.new) {
             (None, _) => format!("{title} could not be read; it was to become {new}."),
-            (Some(_), None) => format!("{title} was {old} and is {now}; it was to stay as it was."),
+            (Some(_), new_value) if new_value.is_none_or(|new| self.old == Some(new)) => {
+                format!("{title} was {old} and is {now}; it was to stay as it was.")
+            }
             (Some(value), Some(new)) if value == new => {
                 format!("{title} holds the new value {now}; it was {old} before.")
             }

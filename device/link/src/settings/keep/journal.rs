@@ -20,11 +20,14 @@ pub enum Act {
     Reload,
     /// The firmware is replaced.
     Firmware,
+    /// Settings are changed for a while: a tuning run, a calibration.
+    Trial,
 }
 
 impl Act {
     /// Every act.
-    pub const ALL: [Self; 5] = [Self::Write, Self::Save, Self::Defaults, Self::Reload, Self::Firmware];
+    pub const ALL: [Self; 6] =
+        [Self::Write, Self::Save, Self::Defaults, Self::Reload, Self::Firmware, Self::Trial];
 
     /// The act as a noun: "write".
     pub fn label(self) -> &'static str {
@@ -34,6 +37,7 @@ impl Act {
             Self::Defaults => "defaults",
             Self::Reload => "reload",
             Self::Firmware => "firmware change",
+            Self::Trial => "trial",
         }
     }
 }

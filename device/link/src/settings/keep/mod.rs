@@ -9,7 +9,9 @@ mod acts;
 mod aftermath;
 mod journal;
 
-pub use acts::{defaults_kept, reload_kept, save_kept, write_kept};
+pub use acts::{
+    Known, begin_command, begin_trial, defaults_kept, reload_kept, save_kept, write_kept, write_kept_knowing,
+};
 pub use aftermath::{Aftermath, Held};
 pub use journal::{Act, Journal, JournalError};
 
