@@ -6,12 +6,14 @@ use std::time::Duration;
 use super::tune::TuneArgs;
 use brushwork_protocol::canopen::adapter::Form;
 use brushwork_sim::faults::FAULT_SYNTAX;
+use brushwork_sim::world::I2cDevice;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::exit;
 use super::firmware::args::FirmwareArgs;
 use super::mcl::args::MclArgs;
 use super::monitor::args::MonitorArgs;
+use super::script::args::ScriptArgs;
 use super::settings::args::SettingsArgs;
 use crate::session::sim_spec::{parse_address, parse_byte};
 
@@ -63,6 +65,8 @@ pub enum Command {
     Settings(SettingsArgs),
     /// Show what firmware is installed, and update it from a file of yours.
     Firmware(FirmwareArgs),
+    /// Download, start and stop a controller's script.
+    Script(ScriptArgs),
     /// Run simulated controllers on a pseudo-terminal or a TCP port.
     Sim(SimArgs),
     /// Print the packet serial reference.
@@ -82,7 +86,7 @@ pub enum Command {
 pub struct ConnectArgs {
     /// sim:mcp266[,generation=4,preset=NAME], /dev/ttyACM0, /dev/ttyUSB0,baud=115200,stream=ttl1, COM3 or
     /// tcp:HOST:PORT; a CANopen bus as can:PORT[,node=3,form=binary].
-    #[arg(long, short = 'c', value_name = "TARGET", default_value = "sim:mcp266")]
+    #[arg(long, short = 'c', alias = "to", value_name = "TARGET", default_value = "sim:mcp266")]
     pub connect: String,
     /// Address of the controller on its line.
     #[arg(long, value_name = "0x80..0x87", default_value = "0x80", value_parser = parse_address)]
@@ -280,6 +284,21 @@ pub struct SimArgs {
     /// Seed of noise and faults.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
+    /// A script that stands in the script memory from the start: a .mcl file or a compiled one. Command 248 starts it.
+    #[arg(long, value_name = "FILE")]
+    pub script: Option<PathBuf>,
+    /// Put a device on the controller's I2C bus.
+    #[arg(long, value_name = "mpu6050", value_parser = parse_i2c)]
+    pub i2c: Vec<I2cDevice>,
+    /// Who is at the other end of a script's CAN stream.
+    #[arg(long, value_enum, value_name = "listen|echo")]
+    pub can_peer: Option<CanPeerArg>,
+    /// Hold the USB port's RTS line from the start, which forces packet serial where a script has taken the port.
+    #[arg(long)]
+    pub rts: bool,
+    /// Take commands on standard input while it runs: "rts on", "rts off".
+    #[arg(long)]
+    pub control: bool,
     /// Write the simulator's own truth to FILE as JSON ten times a second.
     #[arg(long, value_name = "FILE")]
     pub truth: Option<PathBuf>,
@@ -301,6 +320,19 @@ pub enum ProtocolArg {
     Binary,
     /// Lines of text.
     Ascii,
+}
+
+/// What the other end of the CAN stream does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CanPeerArg {
+    /// It listens.
+    Listen,
+    /// It sends back what it hears.
+    Echo,
+}
+
+fn parse_i2c(text: &str) -> Result<I2cDevice, String> {
+    I2cDevice::named(text).ok_or_else(|| format!("\"{text}\" is no device that is known here: use mpu6050"))
 }
 
 /// Arguments of `brushwork protocol`.

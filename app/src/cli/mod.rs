@@ -17,6 +17,7 @@ mod nodes;
 mod output;
 mod protocol;
 mod response;
+mod script;
 pub mod settings;
 mod sim;
 mod status;
@@ -70,6 +71,7 @@ fn dispatch(command: &Command, out: &mut Output, interrupt: &Interrupt) -> Exit 
         Command::Settings(args) => settings::run(args, out, interrupt),
         Command::Firmware(args) => firmware::run(args, out, interrupt),
         Command::Sim(args) => sim::run(args, out, interrupt),
+        Command::Script(args) => script::run(args, out, interrupt),
         Command::Protocol(args) => protocol::run(args, out),
         Command::Monitor(args) => monitor::run(args, out, interrupt),
         Command::Tune(args) => tune::run(args, out, interrupt),

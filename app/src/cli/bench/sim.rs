@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use brushwork_protocol::packet_serial::{Address, Generation, Motor, Request, number};
+use brushwork_script::{image, mcl};
 use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_sim::machine::{Machine as _, StreamIndex};
 use brushwork_sim::presets::{self, Preset};
@@ -33,6 +34,7 @@ pub fn measure(effort: Effort) -> Result<Vec<Figure>, String> {
         }
     }
     let (slowest, worst) = worst.ok_or("there is no preset")?;
+    let scripted = scripted_speed(effort.sim_rounds)?;
     let simulated = ROUND.as_secs();
     let figure = |name: String, times: f64| {
         Figure::new("sim", name, times, "x real time", 0).target(Target::AtLeast(REQUIRED))
@@ -45,7 +47,34 @@ pub fn measure(effort: Effort) -> Result<Vec<Figure>, String> {
         figure(format!("default preset ({})", presets::DEFAULT), default.unwrap_or(f64::NAN)).note(note),
         figure(format!("slowest preset ({slowest})"), worst)
             .note(format!("the slowest of {}", presets::presets().len())),
+        figure("default preset, with a script".to_owned(), scripted).note(
+            "the script never pauses: it counts, reads registers, drives both motors and says something ten times a second",
+        ),
     ])
+}
+
+/// What a script that never pauses takes of it.
+const SCRIPT: &str = "count var long\nsum var long\nnext_at var long\nspeed2 4000,8000,-4000,8000\nmain\n\
+    count = count+1\nsum = sum+(count*3 & 0xFF)\nif MOTORENCPOS(0) > 1000000000 then main\nif SYSTICK < next_at then main\n\
+    next_at = SYSTICK+100\nspeed2 4000,8000,-4000,8000\nputs 3,[dec count,13]\ngoto main\n";
+
+/// Simulated seconds per second with a script that runs all the time.
+fn scripted_speed(rounds: usize) -> Result<f64, String> {
+    let preset = presets::lookup(presets::DEFAULT).ok_or("the default preset is missing")?;
+    let mut bus = bus_of(preset)?;
+    let program = mcl::compile(SCRIPT).program.ok_or("the script of the benchmark does not compile")?;
+    bus.controllers_mut()[0].install_script(&image::encode(&program));
+    let start = Request::new(Address::DEFAULT, number::START_SCRIPT, &[]);
+    let start = start.encode(Generation::Gen1).map_err(|error| error.to_string())?;
+    if bus.exchange(&start, Duration::from_millis(10)) != [0xff] {
+        return Err("the simulated controller did not start the script".to_owned());
+    }
+    let speeds: Vec<f64> = (0..rounds).map(|_| times_real_time(&mut bus, ROUND)).collect::<Result<_, _>>()?;
+    let unit = bus.controllers()[0].unit().ok_or("the unit lost its power")?;
+    if !unit.script_is_running() || !Motor::BOTH.into_iter().all(|motor| is_turning(&bus, motor)) {
+        return Err("the script did not drive the motors to the end".to_owned());
+    }
+    Ok(median(&speeds))
 }
 
 /// The median of some rounds, so that a moment in which the machine did something else does not count.
@@ -58,20 +87,24 @@ fn speed_of(preset: &Preset, round: Duration, rounds: usize) -> Result<f64, Stri
     if reply != [0xff] {
         return Err(format!("{}: the simulated controller refused its speeds", preset.key));
     }
-    let asked = Request::new(Address::DEFAULT, number::READ_ENCODERS, &[]);
-    let asked = asked.encode(Generation::Gen1).map_err(|error| error.to_string())?;
-    let one_round = |_| {
-        let speed = measure_speed(&mut bus, round, POLL_INTERVAL, |bus: &mut Bus| {
-            while bus.take_output(StreamIndex::Usb).is_some() {}
-            bus.receive(StreamIndex::Usb, &asked);
-        });
-        speed.times_real_time()
-    };
-    let speeds: Vec<f64> = (0..rounds).map(one_round).collect();
+    let speeds: Vec<f64> = (0..rounds).map(|_| times_real_time(&mut bus, round)).collect::<Result<_, _>>()?;
     if preset.key == presets::DEFAULT && !Motor::BOTH.into_iter().all(|motor| is_turning(&bus, motor)) {
         return Err(format!("{}: the motors did not turn", preset.key));
     }
     Ok(median(&speeds))
+}
+
+/// One round, polled as by a program.
+fn times_real_time(bus: &mut Bus, round: Duration) -> Result<f64, String> {
+    let asked = Request::new(Address::DEFAULT, number::READ_ENCODERS, &[]);
+    let asked = asked.encode(Generation::Gen1).map_err(|error| error.to_string())?;
+    let speed = measure_speed(bus, round, POLL_INTERVAL, |bus: &mut Bus| {
+        for stream in StreamIndex::ALL {
+            while bus.take_output(stream).is_some() {}
+        }
+        bus.receive(StreamIndex::Usb, &asked);
+    });
+    Ok(speed.times_real_time())
 }
 
 /// A controller with the preset on both channels and its speed loops set to the preset's full speed.

@@ -7,7 +7,7 @@ mod disasm;
 mod fmt;
 mod rig;
 mod run;
-mod source;
+pub mod source;
 
 use brushwork_script::mcl::reference;
 

@@ -200,6 +200,22 @@ impl<'i> Controller<'i> {
         self.client.next_event(self.interrupt).map(|_| ())
     }
 
+    /// The next event, or `None` when there was none for a moment.
+    ///
+    /// # Errors
+    /// The link is lost or the program was asked to end.
+    pub fn next_event(&self) -> Result<Option<Event>, Exit> {
+        self.client.next_event(self.interrupt)
+    }
+
+    /// The same for what has to be done to its end.
+    ///
+    /// # Errors
+    /// The link is lost.
+    pub fn next_event_whatever(&self) -> Result<Option<Event>, Exit> {
+        self.client.next_event(&Interrupt::default())
+    }
+
     fn wait_for_end(&self, name: &str, limit: Duration) -> Result<JobReport, Exit> {
         let deaf = Interrupt::default();
         let mut progress = Progress::new();

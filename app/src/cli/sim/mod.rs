@@ -1,6 +1,7 @@
 //! `brushwork sim`: simulated controllers for other programs, on a pseudo-terminal or a TCP port.
 
 mod motion_mind;
+mod scripting;
 
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
@@ -14,6 +15,8 @@ use brushwork_sim::faults::{FAULT_SYNTAX, Fault};
 use brushwork_sim::machine::{Machine, StreamIndex};
 use brushwork_sim::presets::presets;
 use brushwork_sim::server::{Endpoint, Server, ServerOptions, SimHandle};
+
+use crossbeam_channel::Receiver;
 
 use super::args::{SimArgs, StreamArg};
 use super::exit::Exit;
@@ -65,7 +68,8 @@ fn mcp_bus(args: &SimArgs) -> Result<(Bus, String), Exit> {
     let spec = SimSpec::from_options(&options)
         .map_err(|error| usage(format!("Could not start the simulated controller: {error}.")))?;
     let stream = stream_index(args.port);
-    let bus = simulation::bus_of(&spec, stream).map_err(|error| usage(error.to_string()))?;
+    let mut bus = simulation::bus_of(&spec, stream).map_err(|error| usage(error.to_string()))?;
+    scripting::prepare(args, &mut bus)?;
     let what = if args.can.is_some() { spec.to_string() } else { format!("{spec}, port {}", stream.key()) };
     Ok((bus, what))
 }
@@ -132,11 +136,15 @@ fn serve<M: Machine + 'static>(
         return Exit::Interrupted;
     }
     say("Ctrl-C ends it.");
+    let control = if args.control { scripting::control() } else { None };
     let mut next_truth = Instant::now();
     while !interrupt.sleep(WATCH_INTERVAL) {
         if !server.is_running() {
             say("The simulated controller has ended by itself.");
             return Exit::Failed;
+        }
+        for line in control.iter().flat_map(Receiver::try_iter) {
+            scripting::obey(&line, server);
         }
         if let Some(file) = &args.truth
             && Instant::now() >= next_truth

@@ -9,8 +9,11 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use brushwork_link::device::{Channel, Event, Lamp, PollRate};
-use brushwork_link::diagnosis::{Evidence, Measured};
+use brushwork_link::diagnosis::{Evidence, Measured, Script};
+use brushwork_link::script::MIN_AUTORUN;
+use brushwork_link::settings::SettingValue;
 use brushwork_link::transport::ConnectTarget;
+use brushwork_sim::controller::ScriptRun;
 use brushwork_sim::world::WorldView;
 
 use super::drawer::Drawers;
@@ -244,6 +247,44 @@ impl Desk {
         effects.into_iter().filter_map(|effect| self.settle(effect)).collect()
     }
 
+    /// What is known of the unit's script. A simulated controller in this program tells; of others nothing is known but what went over
+    /// this link, since no command asks for it.
+    pub fn script(&self) -> Script {
+        match self.script_line() {
+            Some(Some(_)) => Script::Started,
+            Some(None) => Script::Stopped,
+            None => self.watch.script(),
+        }
+    }
+
+    /// The line of the script that runs on a simulated unit; the outer `None` where nobody can tell.
+    fn script_line(&self) -> Option<Option<u32>> {
+        let view = self.worlds.as_ref()?.get(self.world_unit)?;
+        Some(match view.script.as_ref()?.run {
+            ScriptRun::Running { line } => Some(line),
+            _ => None,
+        })
+    }
+
+    /// What is said on every screen of a script that runs, or may run.
+    pub fn script_notice(&self) -> Option<String> {
+        if !self.is_connected() {
+            return None;
+        }
+        match (self.script(), self.script_line()) {
+            (Script::Started, Some(Some(line))) => Some(format!("Script running, line {line}")),
+            (Script::Started, _) => Some("Script running".to_owned()),
+            (Script::NotKnown, _) if self.autoruns() => Some("Script may run (autorun)".to_owned()),
+            _ => None,
+        }
+    }
+
+    /// Whether the unit starts its script by itself, as far as its settings were read.
+    fn autoruns(&self) -> bool {
+        let delay = self.watch.settings().and_then(|settings| settings.get("script.autorun_delay"));
+        matches!(delay, Some(SettingValue::Int(delay_ms)) if delay_ms >= MIN_AUTORUN.as_millis() as i64)
+    }
+
     /// All that is known for a diagnosis; `None` before the status was read.
     pub fn evidence(&self) -> Option<Evidence<'_>> {
         let identity = self.link.identity()?;
@@ -253,7 +294,7 @@ impl Desk {
             pins: self.watch.pins(),
             stream: self.link.stream,
             measured: Measured::of(|channel| self.link.readings.get(channel)),
-            script: self.watch.script(),
+            script: self.script(),
             ..Evidence::of(status, identity)
         })
     }

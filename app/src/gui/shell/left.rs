@@ -1,18 +1,20 @@
 //! The left side: devices, screens, and Stop All at the bottom.
 
-use egui::{Align, Button, Layout, Panel, RichText, Role, ScrollArea, Ui, WidgetInfo};
+use egui::{Align, Button, Label, Layout, Panel, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
 use super::devices::devices_ui;
 use super::heading_ui;
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
 use crate::gui::model::screen::Screen;
+use crate::gui::theme::Palette;
 use crate::gui::widgets::stop;
 
 pub fn left_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     Panel::bottom("stop").resizable(false).show_separator_line(false).frame(egui::Frame::new()).show(
         ui,
         |ui| {
+            script_ui(ui, model);
             ui.add_space(6.0);
             let response = stop::stop_ui(ui, model.is_connected());
             if stop::pressed(&response) {
@@ -31,6 +33,15 @@ pub fn left_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             }
         });
     });
+}
+
+/// A script that runs is told on every screen, above what ends it.
+fn script_ui(ui: &mut Ui, model: &Model) {
+    let Some(notice) = model.front.script_notice() else { return };
+    ui.add_space(4.0);
+    let color = Palette::of(ui).warning;
+    let note = "A script commands the motors by itself. Stop All ends it; so does leaving the MCL screen it was started from.";
+    ui.add(Label::new(RichText::new(notice).strong().color(color)).truncate()).on_hover_text(note);
 }
 
 /// Shows and hides the panel of the simulated controller's world.

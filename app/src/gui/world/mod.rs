@@ -12,6 +12,7 @@ use super::theme::Palette;
 use super::widgets::label::fixed_label_ui;
 use super::widgets::numeric::Numeric;
 
+mod buses;
 mod motor;
 mod pins;
 
@@ -33,6 +34,7 @@ pub fn world_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         motor::motor_ui(ui, motor, view, panel, &mut actions);
     }
     pins::pins_ui(ui, view, &mut actions);
+    buses::buses_ui(ui, view, &mut actions);
     commands.extend(actions.into_iter().map(Command::World));
 }
 
