@@ -11,10 +11,10 @@ use brushwork_script::vm::{Host, Machine, State};
 use std::time::Duration;
 
 /// Time of one instruction of our byte code. Assumed: no source tells how fast scripts run; the processor has 160 MHz (MCP manual,
-/// SYSCLK), and 800 of its clocks for an instruction that is interpreted are a careful figure.
-pub const INSTRUCTION_TIME: Duration = Duration::from_micros(5);
+/// SYSCLK), and 1280 of its clocks for an instruction that is interpreted are a careful figure.
+pub const INSTRUCTION_TIME: Duration = Duration::from_micros(8);
 /// Instructions of a slice.
-pub const SLICE_INSTRUCTIONS: u32 = 20;
+pub const SLICE_INSTRUCTIONS: u32 = 25;
 /// How soon a script is looked at again that was due and did not run.
 const IDLE_TIME: Duration = Duration::from_millis(1);
 
