@@ -261,7 +261,7 @@ fn register<H: Host + ?Sized>(host: &mut H, id: RegisterId, index: u8) -> u32 {
     id.row().kind.keep(host.register(id, index))
 }
 
-fn outside(index: u32, length: u32) -> FaultKind {
+pub(super) fn outside(index: u32, length: u32) -> FaultKind {
     FaultKind::IndexOutside { index: index as i32, length }
 }
 

@@ -5,16 +5,43 @@ use crate::mcl::types::VarType;
 use crate::op::{Array, Cell};
 
 /// Memory of a machine.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default)]
 pub struct Memory {
     bytes: Vec<u8>,
+    /// Bytes of variables; what is behind them is the machine's own.
+    visible: usize,
 }
+
+impl PartialEq for Memory {
+    fn eq(&self, other: &Self) -> bool {
+        self.bytes() == other.bytes()
+    }
+}
+
+impl Eq for Memory {}
 
 impl Memory {
     /// Zeroed memory.
     #[must_use]
     pub fn new(bytes: u32) -> Self {
-        Self { bytes: vec![0; bytes as usize] }
+        Self::with_hidden(bytes, [])
+    }
+
+    /// Zeroed memory with cells behind it that only the machine sees.
+    pub(super) fn with_hidden(bytes: u32, cells: impl IntoIterator<Item = u32>) -> Self {
+        let visible = bytes as usize;
+        let mut bytes = vec![0; visible];
+        bytes.extend(cells.into_iter().flat_map(u32::to_le_bytes));
+        Self { bytes, visible }
+    }
+
+    /// Every byte, hidden ones included.
+    pub(super) fn all(&mut self) -> &mut [u8] {
+        &mut self.bytes
+    }
+
+    fn seen(&mut self) -> &mut [u8] {
+        &mut self.bytes[..self.visible]
     }
 
     /// Memory that holds these bytes.
@@ -25,56 +52,86 @@ impl Memory {
 
     /// Sets everything to zero.
     pub fn clear(&mut self) {
-        self.bytes.fill(0);
+        self.seen().fill(0);
     }
 
     /// Every byte, as it is.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
-        &self.bytes
+        &self.bytes[..self.visible]
     }
 
     /// The value at a place, its sign spread.
     #[must_use]
     pub fn load(&self, cell: Cell) -> u32 {
-        let at = (cell.at / 8) as usize;
-        match cell.kind {
-            VarType::Bit | VarType::Nib => {
-                cell.kind.keep(u32::from(self.bytes.get(at).copied().unwrap_or(0)) >> (cell.at % 8))
-            }
-            VarType::Byte => u32::from(self.bytes.get(at).copied().unwrap_or(0)),
-            VarType::SByte => cell.kind.keep(u32::from(self.bytes.get(at).copied().unwrap_or(0))),
-            VarType::Word => self.wide::<2>(at),
-            VarType::SWord => cell.kind.keep(self.wide::<2>(at)),
-            VarType::Long | VarType::SLong | VarType::Float => self.wide::<4>(at),
-        }
-    }
-
-    fn wide<const N: usize>(&self, at: usize) -> u32 {
-        let mut wide = [0; 4];
-        if let Some(bytes) = self.bytes.get(at..at + N) {
-            wide[..N].copy_from_slice(bytes);
-        }
-        u32::from_le_bytes(wide)
+        load(self.bytes(), cell)
     }
 
     /// Stores the low bits of a value at a place.
     pub fn store(&mut self, cell: Cell, value: u32) {
-        let at = (cell.at / 8) as usize;
-        let bytes = value.to_le_bytes();
-        match cell.kind {
-            VarType::Bit | VarType::Nib => {
-                let mask = ((1u16 << cell.kind.bits()) - 1) as u8;
-                let shift = cell.at % 8;
-                if let Some(byte) = self.bytes.get_mut(at) {
-                    *byte = *byte & !(mask << shift) | (bytes[0] & mask) << shift;
-                }
+        store(self.seen(), cell, value);
+    }
+}
+
+/// The 32 bits at a byte.
+#[inline(always)]
+pub(super) fn cell(bytes: &[u8], at: u32) -> u32 {
+    let at = at as usize;
+    match bytes.get(at..at + 4) {
+        Some(&[a, b, c, d]) => u32::from_le_bytes([a, b, c, d]),
+        _ => 0,
+    }
+}
+
+/// Sets the 32 bits at a byte.
+#[inline(always)]
+pub(super) fn set_cell(bytes: &mut [u8], at: u32, value: u32) {
+    let at = at as usize;
+    if let Some(place) = bytes.get_mut(at..at + 4) {
+        place.copy_from_slice(&value.to_le_bytes());
+    }
+}
+
+/// The value at a place, its sign spread.
+#[inline]
+pub(super) fn load(bytes: &[u8], cell: Cell) -> u32 {
+    let at = (cell.at / 8) as usize;
+    let byte = || u32::from(bytes.get(at).copied().unwrap_or(0));
+    match cell.kind {
+        VarType::Bit | VarType::Nib => cell.kind.keep(byte() >> (cell.at % 8)),
+        VarType::Byte => byte(),
+        VarType::SByte => cell.kind.keep(byte()),
+        VarType::Word => wide::<2>(bytes, at),
+        VarType::SWord => cell.kind.keep(wide::<2>(bytes, at)),
+        VarType::Long | VarType::SLong | VarType::Float => wide::<4>(bytes, at),
+    }
+}
+
+fn wide<const N: usize>(bytes: &[u8], at: usize) -> u32 {
+    let mut wide = [0; 4];
+    if let Some(bytes) = bytes.get(at..at + N) {
+        wide[..N].copy_from_slice(bytes);
+    }
+    u32::from_le_bytes(wide)
+}
+
+/// Stores the low bits of a value at a place.
+#[inline]
+pub(super) fn store(bytes: &mut [u8], cell: Cell, value: u32) {
+    let at = (cell.at / 8) as usize;
+    let low = value.to_le_bytes();
+    match cell.kind {
+        VarType::Bit | VarType::Nib => {
+            let mask = ((1u16 << cell.kind.bits()) - 1) as u8;
+            let shift = cell.at % 8;
+            if let Some(byte) = bytes.get_mut(at) {
+                *byte = *byte & !(mask << shift) | (low[0] & mask) << shift;
             }
-            kind => {
-                let length = (kind.bits() / 8) as usize;
-                if let Some(place) = self.bytes.get_mut(at..at + length) {
-                    place.copy_from_slice(&bytes[..length]);
-                }
+        }
+        kind => {
+            let length = (kind.bits() / 8) as usize;
+            if let Some(place) = bytes.get_mut(at..at + length) {
+                place.copy_from_slice(&low[..length]);
             }
         }
     }

@@ -3,9 +3,11 @@
 
 pub mod digits;
 mod execute;
+mod fast;
 mod host;
 mod memory;
 mod reading;
+mod regions;
 mod streams;
 
 pub use host::Host;
@@ -14,7 +16,9 @@ pub use memory::{Memory, element};
 use crate::arithmetic::{self, Type};
 use crate::op::{Array, Op};
 use crate::program::{Program, limits};
+use fast::MARGIN;
 use reading::Reading;
+use regions::Regions;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -33,6 +37,7 @@ pub struct Machine {
     reading: Reading,
     result: (u32, Type),
     executed: u64,
+    regions: Arc<Regions>,
 }
 
 /// A subroutine that has not returned.
@@ -125,8 +130,19 @@ impl Machine {
     /// A machine at the beginning of a program, with zeroed memory.
     #[must_use]
     pub fn new(program: Arc<Program>) -> Self {
+        let regions = Arc::new(Regions::of(&program));
+        Self::with_regions(program, regions)
+    }
+
+    /// The same without the translation that makes long runs fast: for programs of a few instructions, and those whose memory is lent.
+    #[must_use]
+    pub fn plain(program: Arc<Program>) -> Self {
+        Self::with_regions(program, Arc::default())
+    }
+
+    fn with_regions(program: Arc<Program>, regions: Arc<Regions>) -> Self {
         Self {
-            memory: Memory::new(program.ram_bytes),
+            memory: regions.memory(&program),
             loops: vec![Loop::default(); program.loops as usize],
             program,
             stack: Vec::with_capacity(64),
@@ -138,12 +154,13 @@ impl Machine {
             reading: Reading::default(),
             result: (0, Type::Unsigned),
             executed: 0,
+            regions,
         }
     }
 
     /// Goes back to the beginning, with zeroed memory.
     pub fn reset(&mut self) {
-        *self = Self::new(self.program.clone());
+        *self = Self::with_regions(self.program.clone(), self.regions.clone());
     }
 
     /// Runs at most `budget` instructions and says how far it is. A machine that ended or faulted stays where it is.
@@ -156,9 +173,16 @@ impl Machine {
         if let State::Listening { .. } = self.state {
             self.state = State::Ready;
         }
-        let program = self.program.clone();
+        let (program, regions) = (self.program.clone(), self.regions.clone());
         let mut left = budget;
-        while left > 0 && self.state == State::Ready {
+        while left > 0 && matches!(self.state, State::Ready) {
+            if left > MARGIN {
+                let before = left;
+                left = self.run_regions(&regions, &program, left);
+                if left != before {
+                    continue;
+                }
+            }
             left -= 1;
             self.executed += 1;
             let at = self.at;
