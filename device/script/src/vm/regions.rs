@@ -149,7 +149,7 @@ fn starts(program: &Program) -> Vec<bool> {
             | Op::ForNext(_, _, to) => mark(*to),
             Op::I2cOut(_, _, Some(to)) | Op::I2cIn(_, Some(to)) => mark(*to),
             Op::Branch(count) => {
-                (0..=*count).take(program.ops.len()).for_each(|skipped| mark(at.saturating_add(1 + skipped)))
+                (0..=*count).take(program.ops.len()).for_each(|skipped| mark(at.saturating_add(1 + skipped)));
             }
             _ => {}
         }
@@ -254,10 +254,10 @@ impl Translation<'_> {
                 draft.stack.push(Value::Place(d));
             }
             Op::LoadAt(array) => {
-                self.take_one(draft, |regions| (Does::LoadAt, row(&mut regions.arrays, array)), at)?
+                self.take_one(draft, |regions| (Does::LoadAt, row(&mut regions.arrays, array)), at)?;
             }
             Op::LoadTable(table) => {
-                self.take_one(draft, |regions| (Does::LoadTable, row(&mut regions.tables, table)), at)?
+                self.take_one(draft, |regions| (Does::LoadTable, row(&mut regions.tables, table)), at)?;
             }
             Op::Unary(operator, kind) => {
                 self.take_one(
