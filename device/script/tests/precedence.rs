@@ -34,7 +34,7 @@ impl Number {
 }
 
 fn level(operator: &str) -> usize {
-    ORDER.iter().position(|line| line.contains(&operator)).unwrap()
+    ORDER.iter().position(|line| line.contains(&operator)).expect("the table has it")
 }
 
 /// Arithmetic in 128 bits, cut to 32 at the end. `None` for a division by zero.
@@ -104,7 +104,7 @@ fn one(operator: &str, a: Number) -> Number {
         "RANDOM" => number((u64::from(a.bits) * 1_664_525 + 1_013_904_223) as u32, false),
         "BIN2BCD" => {
             let text = (a.bits % 100_000_000).to_string();
-            number(u32::from_str_radix(&text, 16).unwrap(), false)
+            number(u32::from_str_radix(&text, 16).expect("digits"), false)
         }
         "~" => number(a.bits ^ u32::MAX, a.signed),
         other => panic!("{other}"),
