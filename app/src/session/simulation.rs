@@ -219,6 +219,11 @@ pub fn bus_of(spec: &SimSpec, stream: StreamIndex) -> Result<Bus, SimulationErro
 }
 
 fn controller(unit: &UnitSpec, seed: u64) -> Result<Controller, ParamsError> {
+    Controller::new(config_of(unit, seed))
+}
+
+/// What a unit is made of.
+pub fn config_of(unit: &UnitSpec, seed: u64) -> ControllerConfig {
     let preset = |index: usize| {
         presets::lookup(&unit.presets[index])
             .expect("the names of presets were checked when the text was read")
@@ -233,7 +238,7 @@ fn controller(unit: &UnitSpec, seed: u64) -> Result<Controller, ParamsError> {
     if unit.node != NodeId::DEFAULT {
         config.set_node(unit.node);
     }
-    Controller::new(config)
+    config
 }
 
 #[cfg(test)]

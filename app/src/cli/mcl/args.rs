@@ -84,8 +84,8 @@ pub struct RunArgs {
     /// How long it runs at most, in the controller's time.
     #[arg(long, value_name = "TIME", default_value = "60s", value_parser = parse_limit)]
     pub limit: Duration,
-    /// The stream that is printed and that standard input feeds, as GETS and PUTS number it: 0 USB, 1 CAN, 2 TTL, 3 RS-232.
-    #[arg(long, value_name = "0..3", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=3))]
+    /// The stream that is printed and that standard input feeds, as GETS and PUTS number it: 0 USB, 2 TTL, 3 RS-232.
+    #[arg(long, value_name = "0|2|3", default_value_t = 0, value_parser = parse_stream)]
     pub stream: u8,
     /// Controller model.
     #[arg(long, value_name = "MODEL", default_value = "mcp266")]
@@ -141,4 +141,11 @@ fn parse_limit(text: &str) -> Result<Duration, String> {
         humantime::parse_duration(text)
             .map_err(|_| "give a time such as 5 (seconds), 500ms, 90s or 2m".to_owned())
     })
+}
+
+fn parse_stream(text: &str) -> Result<u8, String> {
+    match text {
+        "0" | "2" | "3" => Ok(text.as_bytes()[0] - b'0'),
+        _ => Err("use 0 for USB, 2 for TTL or 3 for RS-232".to_owned()),
+    }
 }

@@ -1,23 +1,34 @@
-//! What a script runs in: for now a machine with plain memory in place of a controller's registers and motors.
+//! A script on a simulated controller in virtual time: its streams, how far it is, how time passes.
 
-use std::collections::{HashMap, VecDeque};
-use std::sync::Arc;
 use std::time::Duration;
 
-use brushwork_script::mcl::ast::Motion;
-use brushwork_script::mcl::registers::RegisterId;
+use brushwork_protocol::crc::crc16_xmodem;
+use brushwork_protocol::packet_serial::{Address, number};
+use brushwork_script::image;
 use brushwork_script::program::Program;
-use brushwork_script::vm::{Host, Machine, State};
+use brushwork_script::vm::{Machine, State};
+use brushwork_sim::controller::{Controller, ControllerConfig, ScriptRun};
+use brushwork_sim::machine::StreamIndex;
 
 use super::args::RunArgs;
+use crate::session::sim_spec::{SimOptions, SimSpec};
+use crate::session::simulation;
 
-/// Instructions in a millisecond of the controller's time.
-const INSTRUCTIONS_PER_MS: u32 = 200;
+/// From power-up to the start of the script: the encoders have been read by then.
+const WARM_UP: Duration = Duration::from_millis(10);
+/// How long the command that starts it takes on its line.
+const START_TIME: Duration = Duration::from_millis(1);
+/// What a stream's buffer holds (see the simulated controller's streams).
+const BUFFER_BYTES: usize = 255;
+/// A stream of type MCL (command 145).
+const TYPE_MCL: u8 = 0;
 
-/// A script and what it runs in.
+/// A simulated controller with a script.
 pub struct Rig {
-    machine: Machine,
-    desk: Desk,
+    controller: Controller,
+    stream: u8,
+    port: StreamIndex,
+    began_at: Duration,
 }
 
 /// How far a script is.
@@ -43,118 +54,119 @@ pub enum Run {
 }
 
 impl Rig {
-    /// A controller that is about to run a script.
+    /// A controller that has just been switched on, with the script in its memory and just started.
     ///
     /// # Errors
     /// A sentence: there is no such model or preset.
     pub fn new(args: &RunArgs, program: &Program) -> Result<Self, String> {
-        let desk = Desk { stream: args.stream.into(), ..Desk::default() };
-        Ok(Self { machine: Machine::new(Arc::new(program.clone())), desk })
+        let told =
+            |error: &dyn std::fmt::Display| format!("Could not start the simulated controller: {error}.");
+        let options = SimOptions {
+            models: vec![&args.model],
+            generation: 1,
+            presets: args.preset.iter().map(String::as_str).collect(),
+            addresses: vec![0x80],
+            seed: args.seed,
+            can: None,
+            nodes: vec![],
+        };
+        let spec = SimSpec::from_options(&options).map_err(|error| told(&error))?;
+        let unit = spec.units.first().ok_or_else(|| told(&"no model is named"))?;
+        let config = simulation::config_of(unit, spec.seed);
+        let mut settings = Controller::new(config.clone()).map_err(|error| told(&error))?.stored_settings();
+        let port = match args.stream {
+            2 => StreamIndex::Uart1,
+            3 => StreamIndex::Uart0,
+            _ => StreamIndex::Usb,
+        };
+        // One port stays with packet serial, for the command that starts the script.
+        let control = if port == StreamIndex::Uart0 { StreamIndex::Usb } else { StreamIndex::Uart0 };
+        for (index, stream) in settings.streams.iter_mut().enumerate() {
+            if index != control.index() {
+                stream.kind = TYPE_MCL;
+            }
+        }
+        let config = ControllerConfig { settings: Some(settings), ..config };
+        let mut controller = Controller::new(config).map_err(|error| told(&error))?;
+        controller.install_script(&image::encode(program));
+        controller.advance(WARM_UP);
+        controller.receive(control, &start_bytes());
+        controller.advance(WARM_UP + START_TIME);
+        let began_at = controller.now();
+        let rig = Self { controller, stream: args.stream, port, began_at };
+        Ok(rig)
     }
 
-    /// Time since the start.
+    fn machine(&self) -> Option<&Machine> {
+        self.controller.unit()?.script()
+    }
+
+    /// Time since the script was begun.
     pub fn now(&self) -> Duration {
-        self.desk.now
+        self.controller.now().saturating_sub(self.began_at)
     }
 
     /// How far the script is.
     pub fn run(&self) -> Run {
-        let line = self.machine.line();
-        match self.machine.state() {
-            State::Ended => Run::Ended { line },
-            State::Faulted(fault) => Run::Faulted { line: fault.line, what: fault.kind.to_string() },
-            _ => Run::Running { line },
+        match self.controller.unit().map(|unit| unit.script_view().run) {
+            Some(ScriptRun::Ended { line }) => Run::Ended { line },
+            Some(ScriptRun::Faulted { line, what }) => Run::Faulted { line, what },
+            Some(ScriptRun::Stopped { line }) => {
+                Run::Faulted { line, what: "the controller stopped it".to_owned() }
+            }
+            Some(ScriptRun::Running { line }) => Run::Running { line },
+            Some(ScriptRun::Idle) => {
+                Run::Faulted { line: 0, what: "the controller did not start it".to_owned() }
+            }
+            None => Run::Faulted { line: 0, what: "the controller has lost its power".to_owned() },
         }
     }
 
     /// Instructions run so far.
     pub fn executed(&self) -> u64 {
-        self.machine.executed()
+        self.machine().map_or(0, Machine::executed)
     }
 
-    /// Whether the script waits for a byte.
+    /// Whether the script waits for a byte that has not come.
     pub fn is_listening(&self) -> bool {
-        matches!(self.machine.state(), State::Listening { stream } if *stream == self.desk.stream)
-            && self.desk.waiting.is_empty()
+        let state = self.machine().map(Machine::state);
+        let listens = matches!(state, Some(State::Listening { stream }) if *stream == u32::from(self.stream));
+        listens && self.waiting() == 0
+    }
+
+    fn waiting(&self) -> usize {
+        self.controller.unit().map_or(0, |unit| unit.script_waiting(self.stream.into()))
     }
 
     /// Whether bytes are on their way out.
     pub fn is_sending(&self) -> bool {
-        false
+        self.controller.next_output_at().is_some()
     }
 
     /// Takes as many of these bytes as there is room for, and says how many.
     pub fn feed(&mut self, bytes: &[u8]) -> usize {
-        let taken = bytes.len().min(255usize.saturating_sub(self.desk.waiting.len()));
-        self.desk.waiting.extend(&bytes[..taken]);
+        if self.machine().is_none() {
+            return 0;
+        }
+        let taken = bytes.len().min(BUFFER_BYTES.saturating_sub(self.waiting()));
+        self.controller.receive(self.port, &bytes[..taken]);
         taken
     }
 
     /// Lets time pass.
     pub fn advance(&mut self, by: Duration) {
-        let end = self.desk.now + by;
-        self.machine.run(&mut self.desk, INSTRUCTIONS_PER_MS);
-        self.desk.now = end;
+        self.controller.advance(self.controller.now() + by);
     }
 
-    /// What the script has sent.
+    /// What the script has sent and what has left the controller.
     pub fn take_output(&mut self) -> Vec<u8> {
-        std::mem::take(&mut self.desk.sent)
+        std::iter::from_fn(|| self.controller.take_output(self.port)).flatten().collect()
     }
 }
 
-#[derive(Default)]
-struct Desk {
-    now: Duration,
-    stream: u32,
-    sent: Vec<u8>,
-    waiting: VecDeque<u8>,
-    registers: HashMap<(u8, u8), u32>,
-    eeprom: HashMap<u32, u8>,
-}
-
-impl Host for Desk {
-    fn now(&self) -> Duration {
-        self.now
-    }
-
-    fn register(&mut self, id: RegisterId, element: u8) -> u32 {
-        match id.row().name {
-            "SYSTICK" => self.now.as_millis() as u32,
-            "SYSUSTICK" => self.now.as_micros() as u32,
-            _ => self.registers.get(&(id.0, element)).copied().unwrap_or(0),
-        }
-    }
-
-    fn set_register(&mut self, id: RegisterId, element: u8, value: u32) {
-        self.registers.insert((id.0, element), value);
-    }
-
-    fn put(&mut self, stream: u32, byte: u8) {
-        if stream == self.stream {
-            self.sent.push(byte);
-        }
-    }
-
-    fn get(&mut self, stream: u32) -> Option<u8> {
-        if stream == self.stream { self.waiting.pop_front() } else { None }
-    }
-
-    fn motion(&mut self, _: Motion, _: &[i32]) {}
-
-    fn read_eeprom(&mut self, address: u32) -> u8 {
-        self.eeprom.get(&address).copied().unwrap_or(0xFF)
-    }
-
-    fn write_eeprom(&mut self, address: u32, value: u8) {
-        self.eeprom.insert(address, value);
-    }
-
-    fn i2c_write(&mut self, _: &[u8], _: bool, _: Option<Duration>) -> bool {
-        false
-    }
-
-    fn i2c_read(&mut self, _: usize, _: Option<Duration>) -> Option<Vec<u8>> {
-        None
-    }
+/// Command 248 as it stands on the wire: address, command, checksum.
+fn start_bytes() -> Vec<u8> {
+    let mut bytes = vec![Address::DEFAULT.get(), number::START_SCRIPT];
+    bytes.extend(crc16_xmodem(&bytes).to_be_bytes());
+    bytes
 }

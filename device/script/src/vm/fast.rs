@@ -16,6 +16,9 @@ impl Machine {
         let Some(first) = regions.entry.get(self.at as usize).copied().filter(|step| *step != NONE) else {
             return budget;
         };
+        if !regions.fits(&self.memory) {
+            return budget;
+        }
         let mut left = budget;
         let mut run = Run { regions, program, bytes: self.memory.all(), loops: &mut self.loops };
         match run.steps(first as usize, &mut left) {

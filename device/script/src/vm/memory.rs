@@ -47,7 +47,12 @@ impl Memory {
     /// Memory that holds these bytes.
     #[must_use]
     pub fn of(bytes: Vec<u8>) -> Self {
-        Self { bytes }
+        Self { visible: bytes.len(), bytes }
+    }
+
+    /// How many bytes there are behind the variables.
+    pub(super) fn hidden(&self) -> usize {
+        self.bytes.len() - self.visible
     }
 
     /// Sets everything to zero.

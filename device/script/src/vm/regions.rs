@@ -125,6 +125,11 @@ impl Regions {
         translation.regions
     }
 
+    /// Whether this is memory as [`Self::memory`] makes it, and not some that was lent.
+    pub fn fits(&self, memory: &Memory) -> bool {
+        memory.hidden() == (TEMPS as usize + self.constants.len()) * 4
+    }
+
     /// Memory for the program, with cells behind its variables for constants and values in between.
     pub fn memory(&self, program: &Program) -> Memory {
         let zeros = std::iter::repeat_n(0, TEMPS as usize);

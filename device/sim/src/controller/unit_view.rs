@@ -68,8 +68,13 @@ impl<'a> UnitView<'a> {
     }
 
     /// The script that runs or ran last.
-    pub fn script(&self) -> Option<&Machine> {
+    pub fn script(&self) -> Option<&'a Machine> {
         self.firmware.script.machine()
+    }
+
+    /// Bytes of a stream, as scripts number them, that wait for GETS.
+    pub fn script_waiting(&self, stream: usize) -> usize {
+        self.firmware.script.streams.count(stream)
     }
 
     /// What the script does.
