@@ -92,6 +92,8 @@ impl Rig {
         controller.advance(WARM_UP);
         controller.receive(control, &start_bytes());
         controller.advance(WARM_UP + START_TIME);
+        // Its acknowledgement is nobody's.
+        controller.take_output(control);
         let began_at = controller.now();
         let rig = Self { controller, stream: args.stream, port, began_at };
         Ok(rig)

@@ -1,0 +1,127 @@
+//! `brushwork mcl` from outside: what stands on standard output, the exit codes, input, faults, files in their places.
+#![cfg(unix)]
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
+
+/// Runs `brushwork mcl` with something on standard input.
+fn mcl(arguments: &[&str], input: &str) -> Output {
+    let mut command = Command::new(BRUSHWORK);
+    command.arg("mcl").args(arguments);
+    let mut child = command
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let mut stdin = child.stdin.take().expect("it has an input");
+    // A program that reads nothing closes it.
+    let _ = stdin.write_all(input.as_bytes());
+    drop(stdin);
+    child.wait_with_output().expect("it ends")
+}
+
+fn shown(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn script(folder: &Path, name: &str, text: &str) -> PathBuf {
+    let path = folder.join(name);
+    std::fs::write(&path, text).expect("the script can be written");
+    path
+}
+
+fn path(path: &Path) -> &str {
+    path.to_str().expect("a plain path")
+}
+
+#[test]
+fn run_prints_the_bytes_of_stream_0_alone_and_ends_with_the_script() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = script(
+        folder.path(),
+        "a.mcl",
+        "main\nputs 0,[\"hello\",13]\npause 5000\nputs 0,[0,255,dec 7]\nend\n",
+    );
+    let output = mcl(&["run", path(&file)], "");
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    assert_eq!(output.stdout, b"hello\r\x00\xFF7");
+    assert!(shown(&output.stderr).contains("W402"), "the warning stands on standard error");
+}
+
+#[test]
+fn run_ends_at_its_limit_and_feeds_gets_from_standard_input() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = script(
+        folder.path(),
+        "b.mcl",
+        "n var long\nmain\ngets 0,[dec n]\nputs 0,[dec n * 2,10]\ngoto main\n",
+    );
+    let output = mcl(&["run", "--limit", "2s", path(&file)], "1 20\n300\n");
+    assert_eq!((output.status.code(), shown(&output.stdout)), (Some(0), "2\n40\n600\n".to_owned()));
+}
+
+#[test]
+fn a_motor_turns_while_a_script_runs() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = "power 0,16000,100000\npause 1000\nif MOTORENCPOS(0) > 100 then turned\nputs 0,[\"stands\"]\nend\nturned\nputs 0,[\"turned\"]\nend\n";
+    let file = script(folder.path(), "c.mcl", text);
+    assert_eq!(shown(&mcl(&["run", path(&file)], "").stdout), "turned");
+}
+
+#[test]
+fn a_fault_and_an_error_end_with_their_codes_and_name_the_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file =
+        script(folder.path(), "d.mcl", "i var byte\nl var byte(2)\ni = 2\nl(i) = 1\nputs 0,[l(0)]\nend\n");
+    let output = mcl(&["run", path(&file)], "");
+    assert_eq!(output.status.code(), Some(10), "{output:?}");
+    assert!(shown(&output.stderr).contains("d.mcl:4: "), "{output:?}");
+    let file = script(folder.path(), "e.mcl", "goto nowhere\n");
+    for command in ["run", "check", "build", "disasm"] {
+        let output = mcl(&[command, path(&file)], "");
+        assert_eq!(output.status.code(), Some(9), "{command}: {output:?}");
+    }
+    assert!(!folder.path().join("e.mcli").exists());
+}
+
+#[test]
+fn check_tells_everything_as_json_for_several_files_and_standard_input() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let good = script(folder.path(), "good.mcl", "puts 0,[1]\nend\n");
+    let output = mcl(&["check", "--json", path(&good), "-"], "a = 1\n");
+    assert_eq!(output.status.code(), Some(9));
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(report["files"][0]["ok"], true);
+    let wrong = &report["files"][1]["diagnostics"][0];
+    assert_eq!((wrong["code"].as_str(), wrong["line"].as_u64()), (Some("E302"), Some(1)));
+    assert_eq!(mcl(&["check", path(&folder.path().join("none.mcl"))], "").status.code(), Some(1));
+}
+
+#[test]
+fn an_image_runs_and_is_listed_like_its_script() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = script(folder.path(), "f.mcl", "puts 0,[\"image\"]\nend\n");
+    let output = mcl(&["build", "--json", path(&file)], "");
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(report["files"][0]["models"][0]["fits"], true);
+    let image = folder.path().join("f.mcli");
+    assert_eq!(shown(&mcl(&["run", path(&image)], "").stdout), "image");
+    assert!(shown(&mcl(&["disasm", path(&image)], "").stdout).contains("out-text"));
+}
+
+#[test]
+fn fmt_rewrites_files_once_and_check_names_those_that_would_change() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = script(folder.path(), "g.mcl", "main\nif 1 then\nputs 0 ,[1] ; one\nendif\nend\n");
+    let output = mcl(&["fmt", "--check", path(&file)], "");
+    assert_eq!((output.status.code(), shown(&output.stdout).trim()), (Some(6), path(&file)));
+    assert_eq!(mcl(&["fmt", path(&file)], "").status.code(), Some(0));
+    let formatted = std::fs::read_to_string(&file).expect("the script");
+    assert_eq!(formatted, "main\n    if 1 then\n        puts 0, [1]  ; one\n    endif\n    end\n");
+    assert_eq!(mcl(&["fmt", "--check", path(&file)], "").status.code(), Some(0));
+    assert_eq!(shown(&mcl(&["fmt", "-"], "a  =  1\n").stdout), "a = 1\n");
+}
