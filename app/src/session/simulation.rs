@@ -245,6 +245,9 @@ pub fn config_of(unit: &UnitSpec, seed: u64) -> ControllerConfig {
 mod tests {
     use super::*;
     use brushwork_link::Transport as _;
+    use brushwork_protocol::crc::crc16_xmodem;
+    use brushwork_script::debug::{Breakpoint, Reason};
+    use brushwork_sim::server::Pace;
     use std::time::Duration;
 
     /// Command 21 to 0x80; the reply begins with the name.
@@ -281,5 +284,51 @@ mod tests {
         assert_eq!(HiddenSettings::get(&simulation, address, "unit.bridge_channels"), Some(1));
         assert_eq!(HiddenSettings::get(&simulation, Address::DEFAULT, "unit.bridge_channels"), Some(0));
         assert!(HiddenSettings::set(&simulation, address, "no.such", 1).is_err());
+    }
+
+    const DRIVER: &str = "rounds var long\nmain\nrounds = rounds+1\npause 10\ngoto main\n";
+
+    /// Looks at the script once something is so.
+    fn seen(simulation: &Simulation, requests: &[Request], mut holds: impl FnMut(&View) -> bool) -> View {
+        let mut requests = requests.to_vec();
+        let began = std::time::Instant::now();
+        loop {
+            let asked = std::mem::take(&mut requests);
+            simulation.debug(0, asked, Wanted::default()).unwrap();
+            std::thread::sleep(Duration::from_millis(10));
+            match simulation.script() {
+                Some(view) if holds(&view) => return view,
+                view => assert!(began.elapsed() < Duration::from_secs(30), "{view:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn full_speed_leads_to_a_breakpoint_and_stops_hurrying_there_with_the_link_alive() {
+        let simulation = Simulation::start("mcp266").unwrap();
+        let mut transport = simulation.connect().unwrap();
+        let program = brushwork_script::mcl::compile(DRIVER).program.unwrap();
+        let image = brushwork_script::image::encode(&program);
+        simulation.server().inspect(move |bus| bus.controllers_mut()[0].install_script(&image)).unwrap();
+        // The thousandth round is ten seconds of the controller's time away.
+        let breakpoint = Breakpoint { from_hit: 1_000, ..Breakpoint::at(3) };
+        seen(&simulation, &[Request::Attach(true), Request::Breakpoints(vec![breakpoint])], |_| true);
+        let mut start = vec![0x80, 248];
+        start.extend(crc16_xmodem(&start).to_be_bytes());
+        transport.write(&start).unwrap();
+        assert_eq!(transport.read(&mut [0; 8], Duration::from_secs(5)).unwrap(), 1);
+        seen(&simulation, &[], |view| view.is_running);
+        let began = std::time::Instant::now();
+        simulation.server().set_pace(Pace::Max);
+        assert!(name_of(&mut transport).contains("MCP266"), "it answers while it hurries");
+        let view = seen(&simulation, &[], |view| view.is_paused);
+        assert!(matches!(view.reason, Reason::Breakpoint { line: 3, hits: 1_000, .. }), "{view:?}");
+        assert!(
+            view.now >= Duration::from_secs(10) && began.elapsed() < Duration::from_secs(8),
+            "{:?}",
+            began.elapsed()
+        );
+        assert_eq!(simulation.server().pace(), Pace::REAL);
+        assert!(name_of(&mut transport).contains("MCP266"));
     }
 }
