@@ -24,6 +24,8 @@ const DEBUGGER_HEIGHT: f32 = 280.0;
 const SWITCH_HEIGHT: f32 = 32.0;
 /// A screen without room for more.
 const LOW: f32 = 560.0;
+/// One in which the debugger would leave the text no room.
+const LOWEST: f32 = 500.0;
 const PANEL_RANGE: std::ops::RangeInclusive<f32> = 80.0..=520.0;
 
 /// Draws the screen.
@@ -41,6 +43,8 @@ pub fn screen_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     if model.mcl.panel.open {
         // The debugger has more to show, so it keeps a height of its own. In a low window the text keeps most of the room.
         let (id, height) = match model.mcl.panel.tab {
+            // The line where the script stands has to stay in view.
+            Tab::Debugger if room.height() < LOWEST => ("mcl debugger", DEBUGGER_HEIGHT * 0.65),
             Tab::Debugger => ("mcl debugger", DEBUGGER_HEIGHT),
             _ if room.height() < LOW => ("mcl panel", PANEL_HEIGHT * 0.7),
             _ => ("mcl panel", PANEL_HEIGHT),
