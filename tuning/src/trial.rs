@@ -10,7 +10,7 @@ use crate::registers::{gains_of, velocity_gains};
 use crate::report::Measured;
 use crate::rig::Rig;
 use crate::tune::{Excitation, Method, Request};
-use crate::verify::{is_rougher, try_position, try_velocity};
+use crate::verify::{is_rougher, try_position, try_velocity, try_velocity_inside};
 use crate::whatif::forecast;
 use serde::{Deserialize, Serialize};
 
@@ -100,8 +100,10 @@ fn moves(rig: &mut Rig<'_>, wanted: &TrialRequest) -> Result<(Measured, bool), C
             rig.write_position(position)?;
             try_position(rig, &wanted.request, &wanted.task, &design)?
         }
-        _ if matches!(wanted.request.excitation, Excitation::Window(_)) => return Err(Cause::TravelLimit),
-        _ => try_velocity(rig, &wanted.task, &gains)?,
+        _ => match wanted.request.excitation {
+            Excitation::Free => try_velocity(rig, &wanted.task, &gains)?,
+            Excitation::Window(width) => try_velocity_inside(rig, &wanted.task, &gains, width)?,
+        },
     };
     Ok((measured, is_rougher(&design, &measured)))
 }

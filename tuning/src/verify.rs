@@ -147,7 +147,12 @@ pub(crate) fn try_velocity(rig: &mut Rig<'_>, task: &Task, gains: &Gains) -> Res
 
 /// The same inside a travel window: to and fro about where the axis stands, as fast as the room allows. The motor is braked at the
 /// end.
-fn try_velocity_inside(rig: &mut Rig<'_>, task: &Task, gains: &Gains, width: f64) -> Result<Measured, Cause> {
+pub(crate) fn try_velocity_inside(
+    rig: &mut Rig<'_>,
+    task: &Task,
+    gains: &Gains,
+    width: f64,
+) -> Result<Measured, Cause> {
     let lag_s = task.lag.total_s(&task.law) + 2.0 * task.law.tick_s();
     let dwell_s = (14.0 * lag_s + task.plant.tau_s / (1.0 + gains.velocity.p)).clamp(0.12, 0.4);
     let room = rig.room_counts().unwrap_or(width).min(width);
