@@ -37,6 +37,7 @@ const ARROWS: [(&str, &[&str]); 9] = [
             "brushwork-script",
             "brushwork-sim",
             "brushwork-tuning",
+            "brushwork-tuning-bench",
         ],
     ),
 ];

@@ -52,6 +52,8 @@ pub struct SimulatedLine {
     events: Vec<Event>,
     /// What was noted.
     pub truth: Truth,
+    /// Every request that was sent, as it went over the wire.
+    pub sent: Vec<Vec<u8>>,
     /// From when on every exchange fails as stopped.
     pub stop_at: Option<Duration>,
     /// From when on nothing answers.
@@ -73,6 +75,7 @@ impl SimulatedLine {
             now,
             events: Vec::new(),
             truth: Truth::default(),
+            sent: Vec::new(),
             stop_at: None,
             dead_at: None,
             end_stop_radians: None,
@@ -173,6 +176,7 @@ impl Carrier for SimulatedLine {
             return Err(AxisError::NoReply);
         }
         self.unit.receive(StreamIndex::Usb, &bytes);
+        self.sent.push(bytes);
         let left = self.unit.next_output_at();
         let arrives = left.map(|at| at + down).filter(|at| *at <= deadline && !lost_reply);
         self.advance(arrives.unwrap_or(deadline));
