@@ -42,13 +42,16 @@ fn in_virtual_time() -> Report {
 }
 
 fn in_real_time(report: &Path) -> Report {
-    let controller = OnPty::start_with(config(), StreamIndex::Ttl1);
+    let controller = OnPty::start_with(config(), StreamIndex::Uart1);
     let target = format!("{},baud=115200,stream=ttl1", controller.port().display());
     let report_text = report.to_string_lossy().into_owned();
     let arguments = ["tune", "velocity", "--connect", &target, "--dry-run", "--report", &report_text];
     let ending = Program::start(BRUSHWORK, &arguments).finish(Duration::from_secs(90));
     assert!(matches!(ending.status.code(), Some(0 | 8)), "{ending:?}");
-    assert!(controller.wait_until(Duration::from_secs(3), is_at_rest).is_some(), "the motors stand at the end");
+    assert!(
+        controller.wait_until(Duration::from_secs(3), is_at_rest).is_some(),
+        "the motors stand at the end"
+    );
     let text = std::fs::read_to_string(report).expect("the report was written");
     serde_json::from_str(&text).expect("the report reads back")
 }

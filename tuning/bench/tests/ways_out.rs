@@ -27,7 +27,9 @@ fn requests(request: &Request, strike: Option<(f64, WorldAction)>) -> (Vec<Vec<u
         .collect();
     let report = tune(&mut axis, request);
     let cause = (report.verdict == Verdict::Refused).then(|| report.causes[0]);
-    let sent = axis.carrier.sent.iter().map(|bytes| bytes[..bytes.len() - 2].to_vec()).collect();
+    // Questions are address and command alone; what sets something ends with a checksum of two bytes.
+    let body = |bytes: &Vec<u8>| bytes[..(bytes.len() - 2).max(2)].to_vec();
+    let sent = axis.carrier.sent.iter().map(body).collect();
     (sent, cause, before)
 }
 
