@@ -123,7 +123,7 @@ pub struct Setup {
     pub position: PositionRegisters,
     /// Highest current, 10 mA (commands 135, 136); 0 = none.
     pub max_current_raw: u32,
-    /// Highest current while braking, 10 mA, as it stands beside the other.
+    /// Highest braking current, 10 mA, negative (commands 135, 136); 0 = as for driving.
     #[serde(default)]
     pub min_current_raw: i32,
     /// Lowest main battery voltage that the controller accepts, 0.1 V (command 59).

@@ -20,16 +20,21 @@ pub struct Course {
     pub limited: Vec<bool>,
     /// (time, battery voltage over the reference) of the polls that read it.
     pub volts: Vec<(f64, f64)>,
+    /// Speed at the first poll, counts/s.
+    pub start_speed: f64,
 }
 
 impl Course {
-    /// The part of a run between two times, with the duty in force at its start. Voltages are taken relative to `reference`.
+    /// The part of a run between two times, from the last poll before the first of them on, with the duty in force there, which must
+    /// have been reached. Voltages are taken relative to `reference`.
     #[must_use]
     pub fn new(points: &[Point], drives: &[Drive], from_s: f64, to_s: f64, reference: Option<f64>) -> Self {
+        let first = points.partition_point(|p| p.t < from_s).saturating_sub(1);
+        let start_s = points.get(first).map_or(from_s, |p| p.t);
         let mut duties: Vec<(f64, f64)> = Vec::new();
         for drive in drives {
             if let Input::Duty(duty) = drive.input {
-                if drive.t < from_s {
+                if drive.t < start_s {
                     duties.clear();
                 }
                 if drive.t <= to_s {
@@ -37,7 +42,13 @@ impl Course {
                 }
             }
         }
-        let inside = || points.iter().filter(|p| p.t >= from_s && p.t <= to_s);
+        let inside = || points[first.min(points.len())..].iter().filter(|p| p.t <= to_s);
+        let start_speed = match (points.get(first), points.get(first.wrapping_sub(3))) {
+            (Some(last), Some(earlier)) if last.t > earlier.t => {
+                (last.counts - earlier.counts) / (last.t - earlier.t)
+            }
+            _ => 0.0,
+        };
         let volts = match reference {
             Some(reference) if reference > 0.0 => {
                 inside().filter_map(|p| p.volts.map(|v| (p.t, v / reference))).collect()
@@ -49,6 +60,7 @@ impl Course {
             counts: inside().map(|p| (p.t, p.counts)).collect(),
             limited: inside().map(|p| p.limited).collect(),
             volts,
+            start_speed,
         }
     }
 
@@ -58,18 +70,19 @@ impl Course {
         self.limited.iter().filter(|&&l| l).count() as f64 / self.limited.len().max(1) as f64
     }
 
-    /// Predicted counts at each poll, from rest at the first one, and battery voltages at each reading; each duty takes effect
+    /// Predicted counts at each poll, from the first one on, and battery voltages at each reading; each duty takes effect
     /// `offset_s` after its time stamp.
     pub fn predict(&self, model: &PlantModel, offset_s: f64, counts: &mut Vec<f64>, volts: &mut Vec<f64>) {
         counts.clear();
         volts.clear();
         let Some(&(start, _)) = self.counts.first() else { return };
-        let mut state = Cursor { t: start, duty: 0.0, goal: 0.0, motion: Motion::default() };
+        let motion = Motion { speed: self.start_speed, place: 0.0 };
+        let mut state = Cursor { t: start, duty: 0.0, goal: 0.0, motion };
         let mut next = 0;
         while let Some(&(t, duty)) = self.duties.get(next)
-            && t + offset_s <= start
+            && t <= start
         {
-            (state.duty, state.goal) = (if t + 0.1 < start { duty } else { state.duty }, duty);
+            (state.duty, state.goal) = (duty, duty);
             next += 1;
         }
         for &(t, _) in &self.counts {
@@ -83,8 +96,10 @@ impl Course {
             self.advance(model, &mut state, t);
             counts.push(state.motion.place);
             if self.volts.get(volts.len()).is_some_and(|reading| reading.0 <= t) {
-                let drawn = state.duty - state.motion.speed / model.gain_counts_per_s;
-                volts.push(1.0 - model.sag * state.duty * drawn);
+                let limit = model.push_limit(state.duty, state.motion.speed).unwrap_or(f64::INFINITY);
+                let emf = state.motion.speed / model.gain_counts_per_s;
+                let drawn = (state.duty - emf).clamp(-limit, limit);
+                volts.push(1.0 - model.sag * (emf + drawn) * drawn);
             }
         }
     }

@@ -13,6 +13,9 @@ use serde::{Deserialize, Serialize};
 
 /// Standard deviation of the time stamps' jitter, s.
 const STAMP_S: f64 = 0.0010;
+/// Variance of a count's rounding, and the speed error that the model drifts with, over the speed and the root of a second.
+const ROUNDING: f64 = 0.1;
+const DRIFT: f64 = 0.003;
 /// Range of the actuation offset, s.
 const OFFSET_S: (f64, f64) = (-0.006, 0.030);
 /// Highest friction and load, as duty.
@@ -21,7 +24,7 @@ const MOST_LOAD: f64 = 0.35;
 /// Prior standard deviation of the load, as duty: most axes have none.
 const LOAD_PRIOR: f64 = 0.03;
 /// Prior of the offset: half a tick of waiting, perhaps a whole tick more, and the winding; mean and standard deviation, s.
-const OFFSET_PRIOR_S: (f64, f64) = (0.0050, 0.0020);
+const OFFSET_PRIOR_S: (f64, f64) = (0.0035, 0.0010);
 /// Highest sag, and its prior; standard deviation of a battery reading over the battery.
 const MOST_SAG: f64 = 0.4;
 const SAG_PRIOR: (f64, f64) = (0.05, 0.05);
@@ -51,9 +54,10 @@ pub struct Fit {
     pub sd_coulomb: f64,
 }
 
-/// Fits a course. `gain` and `tau_s` are start values; `limit` is what current limit and stall current say of the drive limit.
+/// Fits a course. `gain` and `tau_s` are start values; `limit` is what current limit and stall current say of the drive limit,
+/// `brake_share` the limit for braking over that.
 #[must_use]
-pub fn fit(course: &Course, gain: f64, tau_s: f64, limit: Option<f64>) -> Option<Fit> {
+pub fn fit(course: &Course, gain: f64, tau_s: f64, limit: Option<f64>, brake_share: f64) -> Option<Fit> {
     if course.counts.len() < 12 {
         return None;
     }
@@ -61,7 +65,7 @@ pub fn fit(course: &Course, gain: f64, tau_s: f64, limit: Option<f64>) -> Option
     let limit = limit.filter(|limit| seen || *limit < LIMIT_OF_INTEREST).or(seen.then_some(0.5));
     let mut best: Option<(f64, Problem<'_>)> = None;
     for tau in std::iter::once(tau_s).chain(STARTS_S) {
-        let start = Parameters { ln_gain: gain.ln(), ln_tau: tau.clamp(0.003, 5.0).ln(), limit };
+        let start = Parameters { ln_gain: gain.ln(), ln_tau: tau.clamp(0.003, 5.0).ln(), limit, brake_share };
         let problem = Problem::new(course, &start);
         let (problem, report) = LevenbergMarquardt::new().with_patience(25).minimize(problem);
         let cost = report.objective_function;
@@ -77,14 +81,17 @@ struct Parameters {
     ln_gain: f64,
     ln_tau: f64,
     limit: Option<f64>,
+    brake_share: f64,
 }
 
 /// Parameters: ln gain, ln tau, friction, load, offset, sag (each through a bounded map but the first two), ln limit.
 struct Problem<'a> {
     course: &'a Course,
-    sigma: Vec<f64>,
+    /// For each poll: variance of its count, and of what the model drifts by since the poll before.
+    noise: Vec<(f64, f64)>,
     q: DVector<f64>,
     limit: Option<f64>,
+    brake_share: f64,
 }
 
 impl<'a> Problem<'a> {
@@ -93,24 +100,28 @@ impl<'a> Problem<'a> {
         q.push(unbounded(0.004, OFFSET_S));
         q.push(unbounded(SAG_PRIOR.0, (0.0, MOST_SAG)));
         q.extend(start.limit.map(f64::ln));
-        let sigma = course
+        let mut noise: Vec<(f64, f64)> = course
             .counts
             .windows(2)
             .map(|pair| {
-                let speed = (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0).max(1e-4);
-                (0.40 + (STAMP_S * speed).powi(2)).sqrt()
+                let dt = (pair[1].0 - pair[0].0).max(1e-4);
+                let speed = (pair[1].1 - pair[0].1) / dt;
+                (ROUNDING + (STAMP_S * speed).powi(2), (DRIFT * speed).powi(2) * dt + 1e-3)
             })
             .collect();
-        Self { course, sigma, q: DVector::from_vec(q), limit: start.limit }
+        noise.insert(0, noise.first().copied().unwrap_or((1.0, 1.0)));
+        Self { course, noise, q: DVector::from_vec(q), limit: start.limit, brake_share: start.brake_share }
     }
 
     fn model(&self, q: &DVector<f64>) -> (PlantModel, f64) {
+        let drive_limit = q.get(6).map(|ln| ln.clamp(-4.0, 2.0).exp());
         let model = PlantModel {
             gain_counts_per_s: q[0].clamp(-5.0, 20.0).exp(),
             tau_s: q[1].clamp(-6.5, 3.0).exp(),
             coulomb_duty: bounded(q[2], (0.0, MOST_COULOMB)),
             load_duty: bounded(q[3], (-MOST_LOAD, MOST_LOAD)),
-            drive_limit: q.get(6).map(|ln| ln.clamp(-4.0, 2.0).exp()),
+            drive_limit,
+            brake_limit: drive_limit.map(|limit| limit * self.brake_share),
             sag: bounded(q[5], (0.0, MOST_SAG)),
         };
         (model, bounded(q[4], OFFSET_S))
@@ -121,7 +132,7 @@ impl<'a> Problem<'a> {
         let (mut predicted, mut volts) = (Vec::with_capacity(self.course.counts.len()), Vec::new());
         self.course.predict(&model, offset, &mut predicted, &mut volts);
         let errors: Vec<f64> = self.course.counts.iter().zip(&predicted).map(|((_, y), p)| y - p).collect();
-        let steps = errors.windows(2).zip(&self.sigma).map(|(pair, sigma)| soft((pair[1] - pair[0]) / sigma));
+        let steps = self.innovations(&errors);
         let readings = self.course.volts.iter().zip(&volts).map(|((_, v), p)| soft((v - p) / VOLTS_SIGMA));
         let prior = [
             model.load_duty / LOAD_PRIOR,
@@ -130,7 +141,23 @@ impl<'a> Problem<'a> {
             (model.tau_s / TAU_PRIOR.0).ln() / TAU_PRIOR.1,
             q.get(6).zip(self.limit).map_or(0.0, |(ln, limit)| (ln - limit.ln()) / LIMIT_PRIOR),
         ];
-        DVector::from_vec(steps.chain(readings).chain(prior).collect())
+        DVector::from_vec(steps.into_iter().chain(readings).chain(prior).collect())
+    }
+
+    /// What each error has that the ones before it do not tell, in standard deviations: a scalar Kalman filter follows the drift.
+    fn innovations(&self, errors: &[f64]) -> Vec<f64> {
+        let Some(&first) = errors.first() else { return Vec::new() };
+        let (mut drift, mut variance) = (first, self.noise[0].0);
+        let follow = |(error, (white, walk)): (&f64, &(f64, f64))| {
+            let before = variance + walk;
+            let spread = before + white;
+            let innovation = error - drift;
+            let share = before / spread;
+            drift += share * innovation;
+            variance = (1.0 - share) * before;
+            soft(innovation / spread.sqrt())
+        };
+        errors.iter().zip(&self.noise).skip(1).map(follow).collect()
     }
 
     fn report(&self) -> Fit {
@@ -246,17 +273,60 @@ mod tests {
             coulomb_duty: 0.06,
             load_duty: 0.0,
             drive_limit: None,
+            brake_limit: None,
             sag: 0.05,
         };
         let course = course(&truth, 0.005);
         for start_s in [0.01, 0.09, 1.5] {
-            let found = fit(&course, 6_000.0, start_s, None).expect("enough polls");
+            let found = fit(&course, 6_000.0, start_s, None, 1.0).expect("enough polls");
             let model = &found.model;
             assert!((model.gain_counts_per_s / 8_000.0 - 1.0).abs() < 0.01, "{found:?}");
             assert!((model.tau_s / 0.09 - 1.0).abs() < 0.02, "{found:?}");
             assert!((model.coulomb_duty - 0.06).abs() < 0.01, "{found:?}");
             assert!(found.chi_square < 1.0, "{found:?}");
         }
+    }
+
+    /// A current limit of 40 % for driving and none for braking: taken as one limit for both, the time constant came out 9 % short.
+    #[test]
+    fn a_motor_that_brakes_harder_than_it_may_drive_is_found_again() {
+        let truth = PlantModel {
+            gain_counts_per_s: 8_000.0,
+            tau_s: 0.12,
+            coulomb_duty: 0.05,
+            load_duty: 0.0,
+            drive_limit: Some(0.4),
+            brake_limit: Some(2.0),
+            sag: 0.04,
+        };
+        let mut course = course(&truth, 0.0035);
+        course.limited = course.counts.iter().map(|(t, _)| *t < 0.3).collect();
+        let found = fit(&course, 7_000.0, 0.05, Some(0.39), 5.0).expect("enough polls");
+        assert!((found.model.tau_s / 0.12 - 1.0).abs() < 0.02, "{found:?}");
+        assert!((found.model.gain_counts_per_s / 8_000.0 - 1.0).abs() < 0.01, "{found:?}");
+        assert!((found.model.drive_limit.unwrap() / 0.4 - 1.0).abs() < 0.03, "{found:?}");
+    }
+
+    #[test]
+    fn a_motor_that_still_turns_at_the_first_poll_is_followed_from_its_speed_there() {
+        let truth = PlantModel {
+            gain_counts_per_s: 8_000.0,
+            tau_s: 0.09,
+            coulomb_duty: 0.05,
+            load_duty: 0.0,
+            drive_limit: None,
+            brake_limit: None,
+            sag: 0.0,
+        };
+        let mut turning = course(&truth, 0.0035);
+        turning.start_speed = 600.0;
+        let (mut counts, mut volts) = (Vec::new(), Vec::new());
+        turning.predict(&truth, 0.0035, &mut counts, &mut volts);
+        for (point, count) in turning.counts.iter_mut().zip(counts) {
+            point.1 = count.floor();
+        }
+        let found = fit(&turning, 6_000.0, 0.05, None, 1.0).expect("enough polls");
+        assert!((found.model.tau_s / 0.09 - 1.0).abs() < 0.02, "{found:?}");
     }
 
     #[test]
@@ -267,9 +337,10 @@ mod tests {
             coulomb_duty: 0.05,
             load_duty: 0.0,
             drive_limit: None,
+            brake_limit: None,
             sag: 0.05,
         };
-        let found = fit(&course(&truth, 0.004), 600.0, 0.05, None).expect("enough polls");
+        let found = fit(&course(&truth, 0.004), 600.0, 0.05, None, 1.0).expect("enough polls");
         let off = (found.model.tau_s / 0.02).ln().abs();
         assert!(off < 3.0 * found.sd_ln_tau, "{off} of {}", found.sd_ln_tau);
     }

@@ -4,6 +4,7 @@
 //! controller's own answer to the speed as it sees it: the candidate loop is simulated with each lag of a grid, and the
 //! lags under which simulated counts and duties agree with the polled ones are the likely ones.
 
+use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, Lag, LoopLaw, PlantModel};
 use crate::rig::{Input, Rig};
 use crate::ticks::{Setpoint, TickLoop};
@@ -14,10 +15,12 @@ const FILTERS_S: [f64; 9] = [0.0, 0.002, 0.004, 0.006, 0.008, 0.010, 0.013, 0.01
 const DELAYS: [f64; 6] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0];
 /// Time constants tried, in prior standard deviations of their logarithm, and the bounds of that deviation.
 const TAU_STEPS: [f64; 9] = [-2.4, -1.8, -1.2, -0.6, 0.0, 0.6, 1.2, 1.8, 2.4];
-const TAU_PRIOR: (f64, f64) = (0.06, 0.6);
+const TAU_PRIOR: (f64, f64) = (0.02, 0.6);
 /// Offsets of commands against stamps tried, s, and their prior.
 const OFFSETS_S: [f64; 4] = [-0.0015, 0.0, 0.0015, 0.003];
 const OFFSET_PRIOR_S: (f64, f64) = (0.0, 0.0015);
+/// How much of the delay may lie in the winding, ticks: the duty is read before it, the counts behind it.
+const WINDINGS_TICKS: [f64; 3] = [0.0, 0.5, 1.0];
 /// What the model is trusted to, as duty and as a share of the step's counts per poll.
 const MODEL_DUTY: f64 = 0.006;
 /// Standard deviation of a time stamp, s.
@@ -72,11 +75,12 @@ pub struct LagFit {
 struct Case {
     lag: Lag,
     tau_scale: f64,
+    /// What is compared: misfit, and how much of it was to be expected.
     cost: f64,
+    misfit: f64,
 }
 
-/// Fits the lag. `noise_duty` is the duty noise that rounding causes in this loop, `sd_ln_tau` how loosely the
-/// time constant is known.
+/// Fits the lag. `sd_ln_tau` is how loosely the time constant is known.
 #[must_use]
 pub fn fit_lag(
     course: &ClosedCourse,
@@ -84,34 +88,37 @@ pub fn fit_lag(
     law: &LoopLaw,
     gains: &Gains,
     qpps: f64,
-    noise_duty: f64,
     sd_ln_tau: f64,
 ) -> Option<LagFit> {
     if course.setpoints.len() < 3 || course.duties.len() < 20 {
         return None;
     }
-    let sigma_duty = noise_duty.hypot(MODEL_DUTY);
     let spread = (1.5 * sd_ln_tau).clamp(TAU_PRIOR.0, TAU_PRIOR.1);
     let mut cases: Vec<Case> = Vec::new();
     for filter_s in FILTERS_S {
         for delay_ticks in DELAYS {
             let lag = Lag { filter_s, delay_ticks };
+            // A lag that lets more of the rounding through explains a rougher duty.
+            let linear = LoopPlant::new(DiscretePlant::of(plant, law.tick_s()), law, lag);
+            let sigma_duty = linear.margins(gains, qpps).noise_duty.hypot(MODEL_DUTY);
+            let spread_cost = 2.0 * course.duties.len() as f64 * (sigma_duty / MODEL_DUTY).ln();
             for step in TAU_STEPS {
                 let tau_scale = (step * spread).exp();
                 let model = PlantModel { tau_s: plant.tau_s * tau_scale, ..*plant };
                 for offset_s in OFFSETS_S {
-                    let twin = TickLoop::new(model, *law, lag, *gains, qpps);
+                    let twin = TickLoop::new(model, *law, lag, *gains, qpps).smooth();
                     let mut cost = step.powi(2) + ((offset_s - OFFSET_PRIOR_S.0) / OFFSET_PRIOR_S.1).powi(2);
                     cost += mismatch(course, twin, law, offset_s, sigma_duty);
-                    cases.push(Case { lag, tau_scale, cost });
+                    cases.push(Case { lag, tau_scale, cost: cost + spread_cost, misfit: cost });
                 }
             }
         }
     }
     let best = cases.iter().min_by(|a, b| a.cost.total_cmp(&b.cost))?;
     let readings = (course.counts.len() + course.duties.len()) as f64;
-    let chi_square = best.cost / readings;
-    let likely = best.cost + 4.0 * chi_square.max(1.0);
+    let chi_square = best.misfit / readings;
+    // What the model explains badly it also places badly.
+    let likely = best.cost + 4.0 * chi_square.max(1.0).powi(2);
     let total = |case: &&Case| case.lag.total_s(law);
     let within = || cases.iter().filter(|case| case.cost < likely);
     let shortest = within().map(|c| total(&c)).fold(f64::INFINITY, f64::min);
@@ -125,55 +132,90 @@ pub fn fit_lag(
     })
 }
 
-/// Sum of the squared misfits of counts (differences between polls) and duties.
-fn mismatch(course: &ClosedCourse, mut twin: TickLoop, law: &LoopLaw, offset_s: f64, sigma_duty: f64) -> f64 {
-    let tick_s = law.tick_s();
-    let (Some(&(start, _)), Some(&(end, _))) = (course.counts.first(), course.counts.last()) else {
-        return f64::INFINITY;
-    };
-    let ticks = ((end - start) / tick_s) as usize + 2;
-    let mut places = Vec::with_capacity(ticks);
-    let mut duties = Vec::with_capacity(ticks);
-    let mut next = 0;
-    let mut goal = 0.0;
-    let mut started = false;
-    for n in 0..ticks {
-        let t = start + n as f64 * tick_s;
-        while let Some(&(at, speed)) = course.setpoints.get(next)
-            && at + offset_s <= t
-        {
-            goal = speed;
-            started = true;
-            next += 1;
+/// What a loop does under the setpoints of a course, tick by tick from its first poll on.
+struct Followed {
+    start: f64,
+    tick_s: f64,
+    places: Vec<f64>,
+    duties: Vec<f64>,
+}
+
+impl Followed {
+    /// `started` says whether the loop is at work before the first setpoint of the course. `offset_s` is how long after its stamp a
+    /// setpoint takes effect.
+    fn new(
+        course: &ClosedCourse,
+        mut twin: TickLoop,
+        law: &LoopLaw,
+        offset_s: f64,
+        before: Option<f64>,
+    ) -> Option<Self> {
+        let tick_s = law.tick_s();
+        let (start, end) = (course.counts.first()?.0, course.counts.last()?.0);
+        let ticks = ((end - start) / tick_s) as usize + 2;
+        let (mut places, mut duties) = (Vec::with_capacity(ticks), Vec::with_capacity(ticks));
+        let (mut next, mut goal) = (0, before);
+        for n in 0..ticks {
+            let t = start + n as f64 * tick_s;
+            while let Some(&(at, speed)) = course.setpoints.get(next)
+                && at + offset_s <= t
+            {
+                goal = Some(speed);
+                next += 1;
+            }
+            places.push(twin.motion.place);
+            if let Some(speed) = goal {
+                twin.tick(Setpoint::Speed(speed), 0.0);
+            }
+            duties.push(twin.duty);
         }
-        places.push(twin.motion.place);
-        if started {
-            twin.tick(Setpoint::Speed(goal), 0.0);
-        }
-        duties.push(twin.duty);
+        Some(Self { start, tick_s, places, duties })
     }
-    let place_at = |t: f64| {
+
+    fn place_at(&self, t: f64) -> f64 {
         // Assumed: the register is refreshed once a tick, so a reading is half a tick old on average.
-        let x = ((t - start) / tick_s - 0.5).max(0.0);
-        let n = (x as usize).min(ticks - 2);
-        places[n] + (places[n + 1] - places[n]) * (x - n as f64).min(1.0)
-    };
+        let x = ((t - self.start) / self.tick_s - 0.5).max(0.0);
+        let n = (x as usize).min(self.places.len() - 2);
+        self.places[n] + (self.places[n + 1] - self.places[n]) * (x - n as f64).min(1.0)
+    }
+}
+
+/// The course that a loop, at work at the speed `before`, would have given under the same setpoints and polls.
+pub(crate) fn predicted_course(
+    course: &ClosedCourse,
+    twin: TickLoop,
+    law: &LoopLaw,
+    before: f64,
+) -> Option<ClosedCourse> {
+    let followed = Followed::new(course, twin, law, 0.5 * law.tick_s(), Some(before))?;
+    let counts = course.counts.iter().map(|&(t, _)| (t, followed.place_at(t).floor())).collect();
+    Some(ClosedCourse { setpoints: course.setpoints.clone(), counts, duties: Vec::new() })
+}
+
+/// Sum of the squared misfits of counts (differences between polls) and duties.
+fn mismatch(course: &ClosedCourse, twin: TickLoop, law: &LoopLaw, offset_s: f64, sigma_duty: f64) -> f64 {
+    let Some(followed) = Followed::new(course, twin, law, offset_s, None) else { return f64::INFINITY };
+    let (start, tick_s, duties) = (followed.start, followed.tick_s, &followed.duties);
+    let ticks = duties.len();
     let mut sum = 0.0;
     for pair in course.counts.windows(2) {
         let ((t0, y0), (t1, y1)) = (pair[0], pair[1]);
-        let moved = place_at(t1) - place_at(t0);
+        let moved = followed.place_at(t1) - followed.place_at(t0);
         let speed = (y1 - y0) / (t1 - t0).max(1e-4);
         let variance = 0.66 + (STAMP_S * speed).powi(2) + (0.01 * (y1 - y0)).powi(2);
         sum += ((y1 - y0 - moved).powi(2) / variance).min(SOFT_SQUARE);
     }
-    for &(t, duty) in &course.duties {
-        let n = (((t - start) / tick_s).max(0.0) as usize).min(ticks - 1);
-        // A stamp may be off by a tick either way: a steep flank counts with its own height.
-        let (before, after) = (duties[n.saturating_sub(1)], duties[(n + 1).min(ticks - 1)]);
-        let variance = sigma_duty.powi(2) + (0.25 * (after - before)).powi(2);
-        sum += ((duty - duties[n]).powi(2) / variance).min(SOFT_SQUARE);
-    }
-    sum
+    let duties_with = |winding_ticks: f64| -> f64 {
+        let misfit = |&(t, duty): &(f64, f64)| {
+            let n = (((t - start) / tick_s + winding_ticks).max(0.0) as usize).min(ticks - 1);
+            // A stamp may be off by a tick either way: a steep flank counts with its own height.
+            let (before, after) = (duties[n.saturating_sub(1)], duties[(n + 1).min(ticks - 1)]);
+            let variance = sigma_duty.powi(2) + (0.25 * (after - before)).powi(2);
+            ((duty - duties[n]).powi(2) / variance).min(SOFT_SQUARE)
+        };
+        course.duties.iter().map(misfit).sum()
+    };
+    sum + WINDINGS_TICKS.iter().map(|&ticks| duties_with(ticks)).fold(f64::INFINITY, f64::min)
 }
 
 #[cfg(test)]
@@ -187,6 +229,7 @@ mod tests {
         coulomb_duty: 0.05,
         load_duty: 0.0,
         drive_limit: None,
+        brake_limit: None,
         sag: 0.0,
     };
     const GAINS: Gains = Gains {
@@ -232,8 +275,7 @@ mod tests {
             Lag { filter_s: 0.010, delay_ticks: 0.0 },
             Lag { filter_s: 0.010, delay_ticks: 1.0 },
         ] {
-            let found =
-                fit_lag(&course(lag), &PLANT, &law, &GAINS, 40_000.0, 0.002, 0.03).expect("enough readings");
+            let found = fit_lag(&course(lag), &PLANT, &law, &GAINS, 40_000.0, 0.03).expect("enough readings");
             let (got, wanted) = (found.lag.total_s(&law), lag.total_s(&law));
             assert!((got - wanted).abs() < 0.0025, "{got} s instead of {wanted} s: {found:?}");
             assert!(found.chi_square < 1.5, "{found:?}");
@@ -243,8 +285,7 @@ mod tests {
     #[test]
     fn a_record_without_steps_says_nothing() {
         assert!(
-            fit_lag(&ClosedCourse::default(), &PLANT, &LoopLaw::default(), &GAINS, 40_000.0, 0.01, 0.1)
-                .is_none()
+            fit_lag(&ClosedCourse::default(), &PLANT, &LoopLaw::default(), &GAINS, 40_000.0, 0.1).is_none()
         );
     }
 }

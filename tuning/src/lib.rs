@@ -23,6 +23,7 @@ pub mod rules;
 pub mod score;
 pub mod settle;
 mod step;
+mod swing;
 pub mod ticks;
 pub mod trace;
 pub mod trial;

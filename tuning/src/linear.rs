@@ -260,6 +260,7 @@ mod tests {
             coulomb_duty: 0.0,
             load_duty: 0.0,
             drive_limit: None,
+            brake_limit: None,
             sag: 0.0,
         };
         let law = LoopLaw::default();

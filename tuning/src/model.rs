@@ -2,6 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+/// Share of the damping that is viscous friction, not back-EMF. Only a current limit tells them apart; small in every motor, so one
+/// middle value does for all.
+const VISCOUS_SHARE: f64 = 0.025;
+
 /// A first-order motor with dry friction.
 ///
 /// `tau dv/dt = K clip(u - load - v/K, +-drive_limit) - K coulomb sign(v)`; at rest it stays while friction holds `u - load`. The
@@ -18,6 +22,9 @@ pub struct PlantModel {
     pub load_duty: f64,
     /// Duty beyond the back-EMF that the current limit leaves; `None` where it never acted.
     pub drive_limit: Option<f64>,
+    /// The same while the motor brakes; `None` where nothing else is known than `drive_limit`.
+    #[serde(default)]
+    pub brake_limit: Option<f64>,
     /// Share of the battery voltage that the stall current at full duty takes away.
     pub sag: f64,
 }
@@ -131,12 +138,13 @@ impl PlantModel {
             if motion.speed == 0.0 && net.abs() <= self.coulomb_duty {
                 return;
             }
-            let push = duty * (1.0 - sag) - motion.speed / gain;
-            if let Some(limit) = self.drive_limit
+            let eaten = VISCOUS_SHARE * motion.speed / self.gain_counts_per_s;
+            let push = duty * (1.0 - sag) - motion.speed / gain + eaten;
+            if let Some(limit) = self.push_limit(duty, motion.speed)
                 && push.abs() > limit
             {
                 // The winding gives a constant torque: a slope, not an approach.
-                let net = limit * push.signum() - self.load_duty - self.coulomb_duty * direction;
+                let net = limit * push.signum() - eaten - self.load_duty - self.coulomb_duty * direction;
                 match self.slide(motion, self.gain_counts_per_s * net / self.tau_s, left) {
                     Some(used) => left -= used,
                     None => return,
@@ -157,6 +165,24 @@ impl PlantModel {
             motion.speed = 0.0;
             left -= stop_s;
         }
+    }
+
+    /// What the current limit leaves of `duty` less the back-EMF, at a duty and a speed; `None` without a limit.
+    ///
+    /// Assumed: the limit for braking holds while the bridge's voltage has the sign of the speed, the one for driving beyond it. A motor
+    /// that is driven against its motion is thus braked at duty 0 as long as that alone gives more than the limit for driving.
+    #[must_use]
+    pub fn push_limit(&self, duty: f64, speed: f64) -> Option<f64> {
+        let drive = self.drive_limit?;
+        let brake = self.brake_limit.unwrap_or(drive);
+        let emf = speed / self.gain_counts_per_s;
+        Some(if (duty - emf) * speed >= 0.0 {
+            drive
+        } else if duty * speed >= 0.0 {
+            brake
+        } else {
+            brake.min(emf.abs().max(drive))
+        })
     }
 
     /// Constant acceleration; the time used when the motion came to rest before the end.
@@ -185,6 +211,7 @@ mod tests {
             coulomb_duty: 0.05,
             load_duty: 0.0,
             drive_limit: None,
+            brake_limit: None,
             sag: 0.0,
         }
     }
@@ -216,5 +243,29 @@ mod tests {
         let mut motion = Motion { speed: 5_000.0, place: 0.0 };
         plant().step(&mut motion, -0.55, 2.0);
         assert!((motion.speed + 5_000.0).abs() < 1.0);
+    }
+
+    #[test]
+    fn braking_has_a_limit_of_its_own_as_long_as_the_bridge_does_not_drive_backwards() {
+        let limited = PlantModel { drive_limit: Some(0.4), brake_limit: Some(2.0), ..plant() };
+        // Driving; braking by a lower duty; driven against the motion, first by the short circuit alone, then by the limit.
+        let cases = [(1.0, 5_000.0, 0.4), (0.2, 9_000.0, 2.0), (-1.0, 9_000.0, 0.9), (-1.0, 2_000.0, 0.4)];
+        for (duty, speed, expected) in cases {
+            let limit = limited.push_limit(duty, speed).unwrap();
+            assert!((limit - expected).abs() < 1e-12, "{duty} at {speed}: {limit}");
+            assert_eq!(limited.push_limit(-duty, -speed), Some(limit));
+        }
+        assert_eq!(plant().push_limit(1.0, 0.0), None);
+    }
+
+    #[test]
+    fn at_the_limit_the_speed_grows_by_what_it_leaves_after_friction() {
+        let limited = PlantModel { drive_limit: Some(0.4), ..plant() };
+        let mut motion = Motion::default();
+        for _ in 0..10 {
+            limited.step(&mut motion, 1.0, 0.001);
+        }
+        // K (limit - friction) / tau = 35 000 counts/s2 for 10 ms, less a little for what grows with the speed.
+        assert!((motion.speed / 350.0 - 1.0).abs() < 0.01, "{}", motion.speed);
     }
 }

@@ -32,6 +32,7 @@ pub struct TickLoop {
     last_place_error: Option<f64>,
     last_target: f64,
     queue: [f64; 9],
+    smooth: bool,
     /// The duty given in the last tick.
     pub duty: f64,
 }
@@ -55,8 +56,15 @@ impl TickLoop {
             last_place_error: None,
             last_target: f64::NAN,
             queue: [0.0; 9],
+            smooth: false,
             duty: 0.0,
         }
+    }
+
+    /// The same loop with an encoder of endless resolution: what a rounded one does on average.
+    #[must_use]
+    pub fn smooth(self) -> Self {
+        Self { smooth: true, ..self }
     }
 
     /// Puts a velocity loop into the steady state of a speed.
@@ -77,7 +85,7 @@ impl TickLoop {
     /// One tick: measures, computes, moves on. Returns the duty that the bridge held.
     pub fn tick(&mut self, setpoint: Setpoint, load_duty: f64) -> f64 {
         let tick_s = self.law.tick_s();
-        let count = self.motion.place.floor();
+        let count = if self.smooth { self.motion.place } else { self.motion.place.floor() };
         let share = tick_s / (self.lag.filter_s + tick_s);
         self.filtered += share * ((count - self.last_count) / tick_s - self.filtered);
         self.last_count = count;
@@ -122,9 +130,11 @@ impl TickLoop {
 
     /// What the current limit leaves. Assumed: the loop knows of it and does not wind up against it.
     fn bounds(&self) -> (f64, f64) {
-        let Some(limit) = self.plant.drive_limit else { return (-1.0, 1.0) };
-        let emf = self.motion.speed / self.plant.gain_counts_per_s;
-        ((emf - limit).clamp(-1.0, 1.0), (emf + limit).clamp(-1.0, 1.0))
+        let speed = self.motion.speed;
+        let emf = speed / self.plant.gain_counts_per_s;
+        let down = self.plant.push_limit(-1.0, speed).map_or(-1.0, |limit| emf - limit);
+        let up = self.plant.push_limit(1.0, speed).map_or(1.0, |limit| emf + limit);
+        (down.clamp(-1.0, 1.0), up.clamp(-1.0, 1.0))
     }
 
     fn place(&mut self, target: f64, bound: f64, count: f64) -> f64 {

@@ -3,7 +3,9 @@
 use crate::axis::{Axis, EncoderClass};
 use crate::cause::Cause;
 use crate::course::Course;
-use crate::design::{Design, Goal, Task, design_pd, design_pid, design_piv, design_velocity};
+use crate::design::{
+    Design, Goal, Task, USUAL_OVERSHOOT, design_pd, design_pid, design_piv, design_velocity,
+};
 use crate::experiment::{Probe, go_to, run_free, run_probe, run_window};
 use crate::fit::{Fit, fit};
 use crate::lag::LagFit;
@@ -26,10 +28,13 @@ const LOOSEST_TAU: f64 = 0.5;
 /// Lag that the model leaves out: the winding, a springy shaft.
 const UNMODELLED_TICKS: f64 = 0.5;
 /// Misfit of the closed loop beyond which the model is taken as incomplete, and what is then left of the sensitivity's excess.
-const ODD_CHI_SQUARE: f64 = 2.8;
-const ODD_SHARE: f64 = 0.75;
+const ODD_CHI_SQUARE: f64 = 2.2;
+const ODD_SHARE: f64 = 0.6;
+/// Time constants in polls below which a motor's overshoot is over before it is seen, and the overshoot that is then designed for.
+const QUICK_POLLS: f64 = 0.0;
+const SHORT_OVERSHOOT: f64 = 0.15;
 /// Misfit that speaks of play, and the shortest integral time of such a machine, in time constants.
-const LOOSE_CHI_SQUARE: f64 = 3.6;
+const LOOSE_CHI_SQUARE: f64 = 2.3;
 const LOOSE_INTEGRAL: f64 = 1.2;
 /// Share of the travel window that has to be free around the axis, and the narrowest window, counts.
 const ENOUGH_ROOM: f64 = 0.8;
@@ -177,6 +182,11 @@ fn run(rig: &mut Rig<'_>, request: &Request, report: &mut Report) -> Result<(), 
         noise_factor: 1.0,
         slack_counts: 0.0,
         least_integral_s: 0.0,
+        most_overshoot: if found.fit.model.tau_s < QUICK_POLLS * rig.options.poll_s {
+            SHORT_OVERSHOOT
+        } else {
+            USUAL_OVERSHOOT
+        },
     };
     rig.progress("Measuring the lag of the loop");
     let task = settle_lag(rig, request, task, report)?;
@@ -217,8 +227,9 @@ fn identify_free(rig: &mut Rig<'_>, probe: &Probe, report: &mut Report) -> Resul
     }
     let now_s = rig.now_s();
     let course = Course::new(&rig.points, &rig.drives, run.from_s, now_s, probe.volts);
-    let found = fit(&course, full / run.full_duty, run.tau_s, rig.drive_limit(probe.stall_amps))
-        .ok_or(Cause::TooCoarse)?;
+    let limit = rig.drive_limit(probe.stall_amps);
+    let found =
+        fit(&course, full / run.full_duty, run.tau_s, limit, brake_share(rig)).ok_or(Cause::TooCoarse)?;
     believe(&found, rig.options.poll_s, &course)?;
     // With less than full duty the model says what full duty would give.
     let qpps = if run.full_duty > 0.999 {
@@ -240,10 +251,17 @@ fn identify_window(
     let now_s = rig.now_s();
     let course = Course::new(&rig.points, &rig.drives, run.from_s, now_s, probe.volts);
     let start = run.top_speed / (probe.start_duty + 0.4);
-    let found = fit(&course, start, 0.06, rig.drive_limit(probe.stall_amps)).ok_or(Cause::TooCoarse)?;
+    let limit = rig.drive_limit(probe.stall_amps);
+    let found = fit(&course, start, 0.06, limit, brake_share(rig)).ok_or(Cause::TooCoarse)?;
     believe(&found, rig.options.poll_s, &course)?;
     let qpps = found.model.gain_counts_per_s * (1.0 - found.model.coulomb_duty);
     Ok(Found { fit: found, qpps })
+}
+
+/// The current limit for braking over that for driving.
+fn brake_share(rig: &Rig<'_>) -> f64 {
+    let (drive, brake) = (f64::from(rig.setup.max_current_raw), f64::from(rig.setup.min_current_raw).abs());
+    if drive > 0.0 && brake > 0.0 { brake / drive } else { 1.0 }
 }
 
 fn believe(fit: &Fit, poll_s: f64, course: &Course) -> Result<(), Cause> {
@@ -286,15 +304,16 @@ fn with_lag(task: Task, found: &LagFit) -> Task {
     let plant = PlantModel { tau_s: task.plant.tau_s * found.tau_scale, ..task.plant };
     // The winding and whatever else the model leaves out.
     let worst_lag = Lag { delay_ticks: found.worst.delay_ticks + UNMODELLED_TICKS, ..found.worst };
-    let (mut goal, mut least_integral_s) = (task.goal, 0.0);
+    let (mut goal, mut least_integral_s, mut most_overshoot) = (task.goal, 0.0, task.most_overshoot);
     if found.chi_square > ODD_CHI_SQUARE {
         // Something swings or has play that the model knows nothing of: keep more distance.
         goal.ms = 1.0 + ODD_SHARE * (goal.ms - 1.0);
+        most_overshoot = SHORT_OVERSHOOT;
     }
     if found.chi_square > LOOSE_CHI_SQUARE {
         least_integral_s = LOOSE_INTEGRAL * plant.tau_s;
     }
-    Task { plant, lag: found.lag, worst_lag, goal, least_integral_s, ..task }
+    Task { plant, lag: found.lag, worst_lag, goal, least_integral_s, most_overshoot, ..task }
 }
 
 /// The design of a method.

@@ -185,6 +185,7 @@ mod tests {
                 coulomb_duty: 0.0,
                 load_duty: 0.0,
                 drive_limit: None,
+                brake_limit: None,
                 sag: 0.0,
             },
             law: LoopLaw::default(),
@@ -195,6 +196,7 @@ mod tests {
             noise_factor: 1.0,
             slack_counts: 0.0,
             least_integral_s: 0.0,
+            most_overshoot: crate::design::USUAL_OVERSHOOT,
         }
     }
 

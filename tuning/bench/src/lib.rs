@@ -8,6 +8,7 @@ pub mod line;
 pub mod oracle;
 pub mod packet;
 pub mod population;
+pub mod reject;
 pub mod run;
 pub mod table;
 pub mod trial;

@@ -4,6 +4,7 @@ use crate::line::SimulatedLine;
 use crate::oracle::{Optimum, cost, trial};
 use crate::packet::PacketAxis;
 use crate::population::Specimen;
+use crate::reject::{MOST_MS, most_overshoot};
 use crate::trial::{Registers, linear};
 use crate::truth::Truth;
 use brushwork_protocol::packet_serial::Motor;
@@ -62,6 +63,8 @@ pub struct Judgement {
     pub duty_rms: f64,
     /// Goes on swinging.
     pub hunting: bool,
+    /// By how much of the step, and how often, Hz.
+    pub ripple: (f64, f64),
     /// No gains at all.
     pub refused: Option<Cause>,
     /// Meets every bound.
@@ -83,9 +86,10 @@ pub fn judge(
     let varied = truth.varied.each_ref().map(|plant| linear(plant, truth, registers));
     let outcome = trial(method, specimen, truth, registers);
     let stable = radius < 1.0;
-    let most = if method == Method::Velocity { 0.25 } else { 0.10 };
+    let most = most_overshoot(method);
     let quiet = outcome.duty_rms <= (1.5 * optimum.duty_rms).max(0.12);
-    let accept = stable && !outcome.hunting && margins.ms <= 2.0 && outcome.score.overshoot <= most && quiet;
+    let accept =
+        stable && !outcome.hunting && margins.ms <= MOST_MS && outcome.score.overshoot <= most && quiet;
     let j = cost(method, &outcome) / optimum.cost;
     Judgement {
         j,
@@ -95,6 +99,7 @@ pub fn judge(
         overshoot: outcome.score.overshoot,
         duty_rms: outcome.duty_rms,
         hunting: outcome.hunting,
+        ripple: (outcome.ripple, outcome.ripple_hz),
         refused: None,
         accept,
         good: accept && j <= 1.5,

@@ -4,6 +4,7 @@ use crate::cache::{OptimaByPlant, known};
 use crate::faults::{FaultRow, fault_rows};
 use crate::oracle::{Optima, optima};
 use crate::population::{Specimen, population};
+use crate::reject::group;
 use crate::run::{Judgement, judge, judge_report, request_of, tune_plant};
 use crate::trial::Registers;
 use crate::truth::{Truth, truth};
@@ -47,6 +48,8 @@ pub struct Row {
     pub overshoot_p95: f64,
     /// Length of the run, s.
     pub seconds_median: f64,
+    /// What was not accepted, by what was measured and on what machine, and how many of each.
+    pub rejects: BTreeMap<String, usize>,
 }
 
 /// Errors of the identification in percent, and what it costs.
@@ -158,16 +161,17 @@ pub fn table(seed: u64, cases: &[Case], faults: bool) -> Table {
 }
 
 fn rows(method: Method, cases: &[Case], reports: &[(Report, f64)]) -> Vec<Row> {
-    let ours: Vec<(Judgement, f64)> = cases
+    let ours: Vec<Judged> = cases
         .par_iter()
         .zip(reports)
         .filter_map(|(case, (report, _))| {
             let optimum = case.optima.of(method)?;
-            Some((judge_report(&case.specimen, &case.truth, &optimum, report), report.seconds.1))
+            let judged = judge_report(&case.specimen, &case.truth, &optimum, report);
+            Some(Judged::new(method, case, judged, report.seconds.1))
         })
         .collect();
-    let mut rows = vec![row("brushwork", &ours)];
-    let ruled: Vec<Vec<(&'static str, Judgement, f64)>> = cases
+    let mut rows = vec![row("brushwork", ours.iter())];
+    let ruled: Vec<Vec<(&'static str, Judged)>> = cases
         .par_iter()
         .zip(reports)
         .filter_map(|(case, (report, _))| by_rules(method, case, report))
@@ -175,15 +179,13 @@ fn rows(method: Method, cases: &[Case], reports: &[(Report, f64)]) -> Vec<Row> {
     let names: Vec<&str> =
         ruled.first().map(|all| all.iter().map(|rule| rule.0).collect()).unwrap_or_default();
     for (n, name) in names.iter().enumerate() {
-        let judged: Vec<(Judgement, f64)> =
-            ruled.iter().filter_map(|all| all.get(n)).map(|rule| (rule.1, rule.2)).collect();
-        rows.push(row(name, &judged));
+        rows.push(row(name, ruled.iter().filter_map(|all| all.get(n)).map(|rule| &rule.1)));
     }
     rows
 }
 
 /// What each rule makes of the record of a run.
-fn by_rules(method: Method, case: &Case, report: &Report) -> Option<Vec<(&'static str, Judgement, f64)>> {
+fn by_rules(method: Method, case: &Case, report: &Report) -> Option<Vec<(&'static str, Judged)>> {
     let classic = report.classic?;
     let qpps = report.qpps?;
     let optimum = case.optima.of(method)?;
@@ -196,17 +198,37 @@ fn by_rules(method: Method, case: &Case, report: &Report) -> Option<Vec<(&'stati
     };
     let judged = rules.into_iter().map(|(name, gains)| {
         let registers = Registers::of(&gains, qpps, &case.truth);
-        (name, judge(method, &case.specimen, &case.truth, &optimum, &registers), report.seconds.0)
+        let judged = judge(method, &case.specimen, &case.truth, &optimum, &registers);
+        (name, Judged::new(method, case, judged, report.seconds.0))
     });
     Some(judged.collect())
 }
 
-fn row(method: &str, judged: &[(Judgement, f64)]) -> Row {
+/// A judgement, the length of its run, and its group if it was not accepted.
+struct Judged {
+    result: Judgement,
+    seconds: f64,
+    reject: Option<String>,
+}
+
+impl Judged {
+    fn new(method: Method, case: &Case, result: Judgement, seconds: f64) -> Self {
+        let reject = group(method, &case.specimen, &case.truth, &result);
+        Self { result, seconds, reject }
+    }
+}
+
+fn row<'a>(method: &str, judged: impl Iterator<Item = &'a Judged>) -> Row {
+    let all: Vec<&Judged> = judged.collect();
     let percent = |of: fn(&Judgement) -> bool| {
-        100.0 * judged.iter().filter(|(j, _)| of(j)).count() as f64 / judged.len().max(1) as f64
+        100.0 * all.iter().filter(|j| of(&j.result)).count() as f64 / all.len().max(1) as f64
     };
-    let given = || judged.iter().filter(|(j, _)| j.refused.is_none());
-    let j: Vec<f64> = judged.iter().map(|(j, _)| j.j.min(REFUSED_COST)).collect();
+    let given = || all.iter().map(|j| &j.result).filter(|j| j.refused.is_none());
+    let j: Vec<f64> = all.iter().map(|j| j.result.j.min(REFUSED_COST)).collect();
+    let mut rejects = BTreeMap::new();
+    for reject in all.iter().filter_map(|j| j.reject.clone()) {
+        *rejects.entry(reject).or_insert(0) += 1;
+    }
     Row {
         method: method.to_owned(),
         accept: round(percent(|j| j.accept), 1),
@@ -214,10 +236,11 @@ fn row(method: &str, judged: &[(Judgement, f64)]) -> Row {
         j_median: round(quantile(j.iter().copied(), 0.5), 3),
         j_p95: round(quantile(j.iter().copied(), 0.95), 3),
         unstable: round(percent(|j| !j.stable), 1),
-        ms_p95: round(quantile(given().map(|(j, _)| j.ms), 0.95), 3),
-        ms_varied_p95: round(quantile(given().map(|(j, _)| j.ms_varied.min(REFUSED_COST)), 0.95), 3),
-        overshoot_p95: round(100.0 * quantile(given().map(|(j, _)| j.overshoot), 0.95), 1),
-        seconds_median: round(quantile(judged.iter().map(|(_, s)| *s), 0.5), 2),
+        ms_p95: round(quantile(given().map(|j| j.ms), 0.95), 3),
+        ms_varied_p95: round(quantile(given().map(|j| j.ms_varied.min(REFUSED_COST)), 0.95), 3),
+        overshoot_p95: round(100.0 * quantile(given().map(|j| j.overshoot), 0.95), 1),
+        seconds_median: round(quantile(all.iter().map(|j| j.seconds), 0.5), 2),
+        rejects,
     }
 }
 

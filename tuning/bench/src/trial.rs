@@ -52,6 +52,10 @@ pub struct Outcome {
     pub duty_rms: f64,
     /// Whether it goes on swinging when it should be settled.
     pub hunting: bool,
+    /// Deviation of the settled speed over the step (velocity), or height of the swing over the step (position).
+    pub ripple: f64,
+    /// How often it swings, Hz.
+    pub ripple_hz: f64,
 }
 
 /// Linear judgement of registers on the true plant.
@@ -174,7 +178,14 @@ pub fn velocity_trial(specimen: &Specimen, truth: &Truth, registers: &Registers)
     let late = ticks * 7 / 10;
     // Ripple beyond what a tick's rounding makes visible at all.
     let ripple = deviation(&after_step[late..]) / step;
-    Outcome { score, duty_rms: deviation(&duties[late..]), hunting: ripple > 0.05 }
+    Outcome {
+        score,
+        duty_rms: deviation(&duties[late..]),
+        hunting: ripple > 0.05,
+        ripple,
+        ripple_hz: crossings(&after_step[late..])
+            / (2.0 * (after_step.len() - late).max(1) as f64 * machine.tick_s),
+    }
 }
 
 /// The position test: a step of a third of a time constant's way, then the load.
@@ -211,11 +222,20 @@ pub fn position_trial(specimen: &Specimen, truth: &Truth, registers: &Registers)
         height > (0.02 * step).max(4.0) && turns >= 2
     };
     let hunting = hunts(&after_step) || hunts(&after_load);
-    Outcome { score, duty_rms: deviation(&duties[late..]), hunting }
+    let ripple = swing(&after_step[late..]).0.max(swing(&after_load[late..]).0) / step;
+    let ripple_hz =
+        crossings(&after_step[late..]) / (2.0 * (after_step.len() - late).max(1) as f64 * machine.tick_s);
+    Outcome { score, duty_rms: deviation(&duties[late..]), hunting, ripple, ripple_hz }
 }
 
 fn deviation(values: &[f64]) -> f64 {
     let n = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / n;
     (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt()
+}
+
+/// How often the values pass their mean.
+fn crossings(values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+    values.windows(2).filter(|pair| (pair[0] - mean) * (pair[1] - mean) < 0.0).count() as f64
 }

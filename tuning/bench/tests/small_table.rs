@@ -13,10 +13,10 @@ type Range = (f64, f64);
 
 /// Method, accepted %, good %, median cost.
 const BOUNDS: [(&str, Range, Range, Range); 4] = [
-    ("velocity", (83.0, 100.0), (58.0, 96.0), (0.9, 1.45)),
-    ("pd", (91.0, 100.0), (45.0, 90.0), (0.9, 1.60)),
-    ("pid", (87.0, 100.0), (20.0, 75.0), (1.0, 2.20)),
-    ("piv", (87.0, 100.0), (58.0, 96.0), (0.8, 1.45)),
+    ("velocity", (91.0, 100.0), (54.0, 80.0), (0.9, 1.50)),
+    ("pd", (95.0, 100.0), (58.0, 90.0), (0.9, 1.40)),
+    ("pid", (95.0, 100.0), (45.0, 75.0), (1.0, 1.70)),
+    ("piv", (95.0, 100.0), (62.0, 92.0), (0.8, 1.35)),
 ];
 
 fn ours(rows: &[Row]) -> &Row {
@@ -37,7 +37,10 @@ fn twenty_four_plants_come_out_as_they_did() {
     let found = &table.identification;
     println!("{found:?}");
     assert!(found.qpps_error_p95 <= 1.0, "QPPS within 1 %: {}", found.qpps_error_p95);
-    assert!(found.tau_error_p95 <= 15.0 && found.tau_error_p95 >= 3.0, "tau: {} %", found.tau_error_p95);
+    assert!(found.tau_error_p95 <= 6.0 && found.tau_error_p95 >= 1.5, "tau: {} %", found.tau_error_p95);
+    assert!(found.gain_error_p95 <= 2.0, "gain: {} %", found.gain_error_p95);
+    assert!(found.lag_error_ms_p95 <= 5.0, "lag: {} ms", found.lag_error_ms_p95);
+    assert!(found.window_qpps_error_p95 <= 6.0, "QPPS inside a window: {} %", found.window_qpps_error_p95);
     assert!(found.window_reach_p95 <= 100.0, "the window is never left: {} %", found.window_reach_p95);
 }
 

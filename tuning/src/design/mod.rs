@@ -53,7 +53,12 @@ pub struct Task {
     pub slack_counts: f64,
     /// Shortest integral time of the velocity loop, s: play turns a quick integral into a limit cycle.
     pub least_integral_s: f64,
+    /// Overshoot of a speed step beyond which the cost jumps, over the step.
+    pub most_overshoot: f64,
 }
+
+/// The overshoot of a speed step that a well-known motor may be designed for.
+pub const USUAL_OVERSHOOT: f64 = 0.20;
 
 /// Gains and what they promise.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -161,6 +166,7 @@ mod tests {
                 coulomb_duty: 0.05,
                 load_duty: 0.0,
                 drive_limit: None,
+                brake_limit: None,
                 sag: 0.03,
             },
             law: LoopLaw::default(),
@@ -171,6 +177,7 @@ mod tests {
             noise_factor: 1.0,
             slack_counts: 0.0,
             least_integral_s: 0.0,
+            most_overshoot: USUAL_OVERSHOOT,
         }
     }
 

@@ -9,8 +9,6 @@ use crate::ticks::velocity_test;
 const TIMES: usize = 16;
 /// Shares of the highest gain tried.
 const SHARES: [f64; 6] = [1.0, 0.85, 0.7, 0.5, 0.3, 0.15];
-/// Overshoot beyond which the cost jumps.
-const OVERSHOOT_CAP: f64 = 0.21;
 /// Rounds and first step of the refinement.
 const ROUNDS: usize = 4;
 const FIRST_STEP: f64 = 1.25;
@@ -59,7 +57,7 @@ fn candidate(task: &Task, gains: Gains) -> Candidate {
     let other = PlantModel { tau_s: 0.88 * task.plant.tau_s, ..task.plant };
     let worse = velocity_test(&other, &task.law, task.worst_lag, &gains, task.qpps);
     let capped = |score: &Score| {
-        let excess = (score.overshoot - OVERSHOOT_CAP).max(0.0);
+        let excess = (score.overshoot - task.most_overshoot).max(0.0);
         score.cost(VELOCITY_OVERSHOOT) * (1.0 + 30.0 * excess)
     };
     Candidate { gains, score, cost: capped(&score) + 0.5 * capped(&worse) }

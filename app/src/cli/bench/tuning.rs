@@ -57,6 +57,7 @@ fn print(table: &Table, out: &mut Output) -> Result<(), OutputError> {
         rows.extend(table.tasks.get(task).into_iter().flatten().map(|row| cells(task, row)));
     }
     out.table(&HEADS, &rows)?;
+    print_rejects(table, out)?;
     out.line("")?;
     let found = serde_json::to_value(&table.identification).unwrap_or_default();
     let found: Vec<Vec<String>> = found
@@ -71,6 +72,22 @@ fn print(table: &Table, out: &mut Output) -> Result<(), OutputError> {
     }
     out.line("")?;
     print_faults(&table.faults, out)
+}
+
+/// What our own methods did not get accepted, the largest groups first.
+fn print_rejects(table: &Table, out: &mut Output) -> Result<(), OutputError> {
+    let mut groups: Vec<(&str, &String, usize)> = Vec::new();
+    for (task, rows) in &table.tasks {
+        let ours = rows.iter().filter(|row| row.method == "brushwork");
+        groups.extend(ours.flat_map(|row| &row.rejects).map(|(group, count)| (*task, group, *count)));
+    }
+    groups.sort_by_key(|(_, _, count)| std::cmp::Reverse(*count));
+    let rows: Vec<Vec<String>> = groups
+        .iter()
+        .map(|(task, group, count)| vec![(*task).to_owned(), (*group).clone(), count.to_string()])
+        .collect();
+    out.line("")?;
+    out.table(&["task", "not accepted", "runs"], &rows)
 }
 
 fn print_faults(rows: &[FaultRow], out: &mut Output) -> Result<(), OutputError> {

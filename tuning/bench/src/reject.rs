@@ -1,0 +1,55 @@
+//! Why a result was not accepted, from what the trial on the true plant measured and what that plant is.
+
+use crate::population::Specimen;
+use crate::run::Judgement;
+use crate::truth::Truth;
+use brushwork_sim::plant::ShaftSide;
+use brushwork_tuning::tune::Method;
+
+/// Highest true sensitivity and duty noise that are accepted.
+pub const MOST_MS: f64 = 2.0;
+/// Motors below this time constant are over before a poll sees them, s.
+const QUICK_S: f64 = 0.020;
+/// An encoder that counts less than this in a tick at full speed, at 300 Hz, is coarse.
+const COARSE_COUNTS_PER_S: f64 = 1_500.0;
+
+/// Highest overshoot that is accepted.
+#[must_use]
+pub fn most_overshoot(method: Method) -> f64 {
+    if method == Method::Velocity { 0.25 } else { 0.10 }
+}
+
+/// The group of a result that was not accepted: what was measured, and on what; `None` for an accepted one.
+#[must_use]
+pub fn group(method: Method, specimen: &Specimen, truth: &Truth, judged: &Judgement) -> Option<String> {
+    if judged.accept {
+        return None;
+    }
+    if let Some(cause) = judged.refused {
+        return Some(format!("refused: {cause:?}"));
+    }
+    let measured = if !judged.stable {
+        "unstable"
+    } else if judged.hunting {
+        "limit cycle"
+    } else if judged.ms > MOST_MS {
+        "true Ms above 2"
+    } else if judged.overshoot > most_overshoot(method) {
+        "overshoot"
+    } else {
+        "duty noise"
+    };
+    Some(format!("{measured}, {}", machine(specimen, truth)))
+}
+
+fn machine(specimen: &Specimen, truth: &Truth) -> &'static str {
+    let axis = &specimen.axis;
+    let play = axis.gear.backlash_radians > 0.0;
+    match (axis.is_two_mass(), axis.encoder.side) {
+        (true, ShaftSide::Load) if play => "encoder behind play",
+        (true, _) => "springy shaft",
+        _ if truth.tau_s < QUICK_S => "time constant below 20 ms",
+        _ if truth.qpps < COARSE_COUNTS_PER_S => "coarse encoder",
+        _ => "rigid",
+    }
+}
