@@ -13,6 +13,7 @@ mod diagnosis;
 pub mod experiment;
 pub mod fit;
 pub mod lag;
+pub mod law_probe;
 pub mod linear;
 pub mod model;
 pub mod record;

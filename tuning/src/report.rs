@@ -6,6 +6,7 @@ use crate::design::{Design, Task};
 use crate::experiment::{FreeRun, Probe, WindowRun};
 use crate::fit::Fit;
 use crate::lag::LagFit;
+use crate::law_probe::LawFindings;
 use crate::record::{Entry, Player};
 use crate::rules::Classic;
 use crate::tune::{Request, tune};
@@ -57,6 +58,9 @@ pub struct Report {
     pub fit: Option<Fit>,
     /// Speed at full duty, counts/s.
     pub qpps: Option<f64>,
+    /// What the law probe found.
+    #[serde(default)]
+    pub law: Option<LawFindings>,
     /// The lag of the loop.
     pub lag: Option<LagFit>,
     /// What the design was made for: the model with all that the run learned of the loop.

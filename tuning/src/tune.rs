@@ -9,6 +9,7 @@ use crate::design::{
 use crate::experiment::{Probe, go_to, run_free, run_probe, run_window};
 use crate::fit::{Fit, fit};
 use crate::lag::LagFit;
+use crate::law_probe::probe_law;
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, Lag, LoopLaw, PlantModel};
 use crate::record::Recorder;
@@ -16,7 +17,7 @@ use crate::registers::{position_registers, velocity_gains, velocity_registers};
 use crate::report::{Report, Verdict};
 use crate::rig::{GuardOptions, Rig};
 use crate::rules::Classic;
-use crate::verify::{check_moves, measure_lag};
+use crate::verify::{check_moves, measure_lag, rest};
 use serde::{Deserialize, Serialize};
 
 /// The lag that is assumed before it is measured, and where it cannot be: an extra tick and a filter of one.
@@ -77,8 +78,11 @@ pub struct Request {
     pub excitation: Excitation,
     /// The guard.
     pub guard: GuardOptions,
-    /// The controller's law.
+    /// The controller's law, as far as it is not found out.
     pub law: LoopLaw,
+    /// Whether it is found out. The report's request then has what was found.
+    #[serde(default)]
+    pub probe_law: bool,
     /// Whether the candidate is tried on the machine.
     pub verify: bool,
     /// Whether the new gains stay in force (RAM) at the end.
@@ -93,6 +97,7 @@ impl Default for Request {
             excitation: Excitation::Free,
             guard: GuardOptions::default(),
             law: LoopLaw::default(),
+            probe_law: true,
             verify: true,
             keep: false,
         }
@@ -141,6 +146,7 @@ fn blank(request: &Request) -> Report {
         classic: None,
         fit: None,
         qpps: None,
+        law: None,
         lag: None,
         task: None,
         design: None,
@@ -172,6 +178,7 @@ fn run(rig: &mut Rig<'_>, request: &Request, report: &mut Report) -> Result<(), 
     report.fit = Some(found.fit);
     report.qpps = Some(found.qpps);
     report.seconds.0 = rig.now_s();
+    let request = &with_law(rig, request, &probe, &found, report)?;
     let task = Task {
         plant: found.fit.model,
         law: request.law,
@@ -209,6 +216,27 @@ fn usable_width(rig: &mut Rig<'_>, probe: &Probe, width: f64) -> Result<f64, Cau
     }
     let room = rig.room_counts().unwrap_or(0.0).min(width);
     if room < LEAST_WIDTH_COUNTS { Err(Cause::NarrowTravel) } else { Ok(room) }
+}
+
+/// The request with the law that the controller follows. A run that may not move by loops keeps the law that it was given.
+fn with_law(
+    rig: &mut Rig<'_>,
+    request: &Request,
+    probe: &Probe,
+    found: &Found,
+    report: &mut Report,
+) -> Result<Request, Cause> {
+    if !request.probe_law || !request.verify {
+        return Ok(*request);
+    }
+    rig.progress("Finding out the law of the loop");
+    rest(rig, found.fit.model.tau_s, found.qpps)?;
+    let position = request.method != Method::Velocity;
+    let Some(findings) = probe_law(rig, probe.start_duty, position)? else { return Ok(*request) };
+    report.law = Some(findings);
+    let law = findings.law(&request.law, position).ok_or(Cause::UnknownLaw)?;
+    report.request.law = law;
+    Ok(Request { law, ..*request })
 }
 
 /// What identification gives.

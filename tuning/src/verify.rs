@@ -63,7 +63,7 @@ fn run_steps(rig: &mut Rig<'_>, task: &Task, gains: &Gains) -> Result<(f64, f64)
     let lag_s = task.lag.total_s(&task.law) + 2.0 * task.law.tick_s();
     let dwell_s = (14.0 * lag_s + task.plant.tau_s / (1.0 + p)).clamp(0.2, 1.0);
     rig.duty(0.0)?;
-    rest(rig, task)?;
+    rest(rig, task.plant.tau_s, task.qpps)?;
     let from_s = rig.now_s();
     rig.poll(true)?;
     rig.speed(MIDDLE * task.qpps - 0.5 * height)?;
@@ -79,11 +79,11 @@ fn run_steps(rig: &mut Rig<'_>, task: &Task, gains: &Gains) -> Result<(f64, f64)
 }
 
 /// Waits until the motor stands.
-fn rest(rig: &mut Rig<'_>, task: &Task) -> Result<(), Cause> {
-    let until = rig.now_s() + 0.1 + 6.0 * task.plant.tau_s;
+pub(crate) fn rest(rig: &mut Rig<'_>, tau_s: f64, qpps: f64) -> Result<(), Cause> {
+    let until = rig.now_s() + 0.1 + 6.0 * tau_s;
     while rig.now_s() < until {
         rig.poll(false)?;
-        let slow = rig.recent_speed(6).is_some_and(|speed| speed.abs() < 0.004 * task.qpps);
+        let slow = rig.recent_speed(6).is_some_and(|speed| speed.abs() < 0.004 * qpps);
         if slow {
             return Ok(());
         }
@@ -253,7 +253,7 @@ pub(crate) fn try_position(
         step = step.min(0.35 * width);
     }
     rig.duty(0.0)?;
-    rest(rig, task)?;
+    rest(rig, task.plant.tau_s, task.qpps)?;
     rig.poll(false)?;
     let start = rig.points.last().map_or(0.0, |p| p.counts);
     let dwell_s = (0.35 + 1.6 * design.score.settling_s).min(0.5 + 5.0 * task.plant.tau_s).clamp(0.5, 8.0);
