@@ -10,8 +10,8 @@ use crate::model::LoopLaw;
 use crate::rig::{Point, Rig};
 use serde::{Deserialize, Serialize};
 
-/// QPPS while probing; any number does.
-const QPPS: f64 = 100_000.0;
+/// QPPS while probing: so high that the command is large beside whatever the motor still creeps.
+const QPPS: f64 = 10_000_000.0;
 /// Share of the starting duty that is given, and its bounds.
 const DUTY_SHARE: f64 = 0.35;
 const DUTY: (f64, f64) = (0.006, 0.03);
