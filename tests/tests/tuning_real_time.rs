@@ -1,7 +1,6 @@
 //! The whole program in real time over a pseudo-terminal at 115200 bit/s: it finds the model that virtual time finds.
 //!
-//! It takes some 10 s and a quiet machine, so it is asked for:
-//! `cargo test -p brushwork-tests --test tuning_real_time -- --ignored`
+//! It takes some 6 s.
 #![cfg(unix)]
 
 use std::path::Path;
@@ -57,7 +56,6 @@ fn in_real_time(report: &Path) -> Report {
 }
 
 #[test]
-#[ignore = "takes 10 s of real time on a quiet machine"]
 fn a_run_in_real_time_finds_the_model_of_virtual_time_within_its_intervals() {
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
     let real = in_real_time(&folder.path().join("report.json"));
