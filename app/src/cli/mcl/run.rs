@@ -84,6 +84,8 @@ fn drive(
     out: &mut Output,
     interrupt: &Interrupt,
 ) -> Result<(), OutputError> {
+    // A short script has said everything while it was started.
+    print(rig, out)?;
     while rig.now() < limit && matches!(rig.run(), Run::Running { .. }) && !interrupt.is_raised() {
         input.feed(rig, interrupt);
         rig.advance(SLICE.min(limit - rig.now()));

@@ -53,13 +53,15 @@ fn device_ui(ui: &mut Ui, device: &I2cDevice, actions: &mut Actions) {
 fn peer_ui(ui: &mut Ui, view: &WorldView, actions: &mut Actions) {
     ui.horizontal(|ui| {
         fixed_label_ui(ui, "CAN peer", LABEL_WIDTH);
-        ComboBox::from_id_salt("can peer").selected_text(title(view.can_peer)).show_ui(ui, |ui| {
+        let combo = ComboBox::from_id_salt("can peer").selected_text(title(view.can_peer));
+        let response = combo.show_ui(ui, |ui| {
             for peer in [CanPeer::Absent, CanPeer::Listening, CanPeer::Echoing] {
                 if ui.selectable_label(view.can_peer == peer, title(peer)).clicked() {
                     actions.push(WorldAction::SetCanPeer { peer });
                 }
             }
         });
+        ui.ctx().accesskit_node_builder(response.response.id, |node| node.set_label("CAN peer"));
         if ui.add_enabled(view.can_peer != CanPeer::Absent, egui::Button::new("Send \"hello\"")).clicked() {
             actions.push(WorldAction::SendCan { bytes: b"hello".to_vec() });
         }
