@@ -470,7 +470,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(64))]
+        #![proptest_config(ProptestConfig { rng_seed: proptest::test_runner::RngSeed::Fixed(0x5EED), failure_persistence: None, ..ProptestConfig::with_cases(64) })]
         #[test]
         fn everything_written_is_read_back_to_the_last_bit(records in prop::collection::vec(record(), 0..200)) {
             let head = head(18);

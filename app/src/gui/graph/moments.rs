@@ -92,6 +92,12 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(proptest::test_runner::Config {
+            rng_seed: proptest::test_runner::RngSeed::Fixed(0x5EED),
+            failure_persistence: None,
+            ..proptest::test_runner::Config::default()
+        })]
+
         #[test]
         fn merged_parts_tell_what_a_plain_walk_tells(
             steps in prop::collection::vec((0.001..0.5f64, -1e6..1e6f64), 2..300),

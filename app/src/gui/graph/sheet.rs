@@ -438,6 +438,12 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(proptest::test_runner::Config {
+            rng_seed: proptest::test_runner::RngSeed::Fixed(0x5EED),
+            failure_persistence: None,
+            ..proptest::test_runner::Config::default()
+        })]
+
         #[test]
         fn wherever_it_is_moved_some_of_the_samples_stay_in_view(
             moves in prop::collection::vec((0u8..3, -1e4..1e4f64), 1..60),

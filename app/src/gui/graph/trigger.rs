@@ -249,6 +249,12 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(proptest::test_runner::Config {
+            rng_seed: proptest::test_runner::RngSeed::Fixed(0x5EED),
+            failure_persistence: None,
+            ..proptest::test_runner::Config::default()
+        })]
+
         #[test]
         fn without_hysteresis_every_pair_of_readings_on_either_side_is_a_crossing(
             values in prop::collection::vec(prop_oneof![Just(-1.0), Just(1.0), -2.0..2.0f64], 1..200),

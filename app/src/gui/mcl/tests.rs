@@ -50,6 +50,12 @@ fn agrees(buffer: &Buffer, model: &str) -> Result<(), TestCaseError> {
 }
 
 proptest! {
+    #![proptest_config(proptest::test_runner::Config {
+        rng_seed: proptest::test_runner::RngSeed::Fixed(0x5EED),
+        failure_persistence: None,
+        ..proptest::test_runner::Config::default()
+    })]
+
     #[test]
     fn edits_do_to_the_text_what_they_do_to_a_string(
         begin in any_text(60), edits in proptest::collection::vec(any_edit(), 0..30)

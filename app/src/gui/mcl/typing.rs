@@ -209,8 +209,9 @@ impl Document {
         let shift = if down { passed } else { -passed };
         let range = self.text.line_start(first)..self.text.line_end(end - 1);
         let caret = self.caret;
-        self.edit(Kind::Other, [(range, texts.join("\n"))], |_| {
-            let moved = |at: usize| at.saturating_add_signed(shift);
+        self.edit(Kind::Other, [(range, texts.join("\n"))], |text| {
+            // A selection that reached to the start of the passed line ends behind the last line now.
+            let moved = |at: usize| at.saturating_add_signed(shift).min(text.len());
             Caret::selecting(moved(caret.anchor), moved(caret.head))
         });
     }
