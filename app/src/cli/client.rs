@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use brushwork_link::SystemClock;
-use brushwork_link::device::{Addresses, DeviceHandle, Event, Identity, PollRate};
+use brushwork_link::device::{Addresses, ArmScope, DeviceHandle, Event, Identity, PollRate, Request};
 use brushwork_link::transport::{ConnectTarget, Stream};
 use crossbeam_channel::RecvTimeoutError;
 
@@ -16,6 +16,8 @@ use crate::session::{self, Session, SessionOptions, Simulation};
 
 /// How long a controller may take to be found and identified.
 const CONNECT_LIMIT: Duration = Duration::from_secs(15);
+/// How long a controller may take to answer one request.
+pub const ANSWER_LIMIT: Duration = Duration::from_secs(5);
 /// How long one look at the event queue waits, so that signals are noticed.
 const EVENT_SLICE: Duration = Duration::from_millis(20);
 
@@ -137,4 +139,63 @@ pub fn next_event(device: &DeviceHandle, interrupt: &Interrupt) -> Result<Option
             Err(Exit::NoLink)
         }
     }
+}
+
+/// Hands a request to the device thread.
+///
+/// # Errors
+/// It takes none now (said on standard error).
+pub fn ask(device: &DeviceHandle, request: Request) -> Result<(), Exit> {
+    device.request(request).map_err(|refused| {
+        say(format!("Could not ask the controller: {refused}"));
+        Exit::Refused
+    })
+}
+
+/// Arms, and says what the device thread warns of.
+///
+/// # Errors
+/// It is refused, or nobody answers; the reasons are said on standard error.
+pub fn arm(device: &DeviceHandle, scope: ArmScope, interrupt: &Interrupt) -> Result<(), Exit> {
+    device.renew();
+    ask(device, Request::Arm(scope))?;
+    let reasons = wait(device, interrupt, |event| match event {
+        Event::Armed { warnings, .. } => {
+            warnings.iter().for_each(say);
+            Some(Vec::new())
+        }
+        Event::ArmRefused { reasons, .. } => Some(reasons),
+        _ => None,
+    })?;
+    if reasons.is_empty() {
+        return Ok(());
+    }
+    reasons.iter().for_each(|reason| say(reason.to_string()));
+    Err(Exit::Refused)
+}
+
+/// Takes events until one gives an answer, renewing the dead-man meanwhile.
+///
+/// # Errors
+/// None does in [`ANSWER_LIMIT`], the link is lost, or the program was asked to end.
+pub fn wait<T>(
+    device: &DeviceHandle,
+    interrupt: &Interrupt,
+    mut answer: impl FnMut(Event) -> Option<T>,
+) -> Result<T, Exit> {
+    let deadline = Instant::now() + ANSWER_LIMIT;
+    while Instant::now() < deadline {
+        device.renew();
+        match next_event(device, interrupt)? {
+            Some(Event::Failure(failure)) => say(failure.to_string()),
+            Some(event) => {
+                if let Some(answer) = answer(event) {
+                    return Ok(answer);
+                }
+            }
+            None => {}
+        }
+    }
+    say(format!("The controller did not answer within {} s.", ANSWER_LIMIT.as_secs()));
+    Err(Exit::NoLink)
 }

@@ -9,7 +9,7 @@ use brushwork_protocol::packet_serial::{Motor, number};
 use serde_json::json;
 
 use super::args::{DriveArgs, MotorArg};
-use super::client::Client;
+use super::client::{Client, arm, ask, wait};
 use super::exit::Exit;
 use super::interrupt::Interrupt;
 use super::output::{Output, OutputError, say};
@@ -21,8 +21,6 @@ use super::stop;
 const SWEEP_INTERVAL: Duration = Duration::from_millis(20);
 /// Time between two printed lines.
 const PRINT_INTERVAL: Duration = Duration::from_millis(100);
-/// How long arming and reading a setting may take.
-const ANSWER_LIMIT: Duration = Duration::from_secs(5);
 
 /// Connects, arms, drives, stops.
 pub fn run(args: &DriveArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
@@ -31,7 +29,7 @@ pub fn run(args: &DriveArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
         Err(exit) => return exit,
     };
     let drive = match command(args, &client, interrupt).and_then(|command| {
-        arm(&client, interrupt)?;
+        arm(client.device(), ArmScope::CommandLine, interrupt)?;
         Ok(command)
     }) {
         Ok(command) => to_motors(args.motor, command),
@@ -101,8 +99,8 @@ fn qpps(motor: MotorArg, client: &Client, interrupt: &Interrupt) -> Result<u32, 
     let mut slowest = u32::MAX;
     for &command in commands {
         let request = Request::Transact { id: u64::from(command), command, values: Vec::new() };
-        ask(client, request)?;
-        let values = wait(client, interrupt, |event| match event {
+        ask(client.device(), request)?;
+        let values = wait(client.device(), interrupt, |event| match event {
             Event::Transacted { result, .. } => Some(result),
             _ => None,
         })?
@@ -121,54 +119,6 @@ fn qpps(motor: MotorArg, client: &Client, interrupt: &Interrupt) -> Result<u32, 
     Ok(slowest)
 }
 
-fn arm(client: &Client, interrupt: &Interrupt) -> Result<(), Exit> {
-    client.device().renew();
-    ask(client, Request::Arm(ArmScope::CommandLine))?;
-    let reasons = wait(client, interrupt, |event| match event {
-        Event::Armed { warnings, .. } => {
-            warnings.iter().for_each(say);
-            Some(Vec::new())
-        }
-        Event::ArmRefused { reasons, .. } => Some(reasons),
-        _ => None,
-    })?;
-    if reasons.is_empty() {
-        return Ok(());
-    }
-    reasons.iter().for_each(|reason| say(reason.to_string()));
-    Err(Exit::Refused)
-}
-
-fn ask(client: &Client, request: Request) -> Result<(), Exit> {
-    client.device().request(request).map_err(|refused| {
-        say(format!("Could not ask the controller: {refused}"));
-        Exit::Refused
-    })
-}
-
-/// Takes events until one gives an answer, renewing the dead-man meanwhile.
-fn wait<T>(
-    client: &Client,
-    interrupt: &Interrupt,
-    mut answer: impl FnMut(Event) -> Option<T>,
-) -> Result<T, Exit> {
-    let deadline = Instant::now() + ANSWER_LIMIT;
-    while Instant::now() < deadline {
-        client.device().renew();
-        match client.next_event(interrupt)? {
-            Some(Event::Failure(failure)) => say(failure.to_string()),
-            Some(event) => {
-                if let Some(answer) = answer(event) {
-                    return Ok(answer);
-                }
-            }
-            None => {}
-        }
-    }
-    say(format!("The controller did not answer within {} s.", ANSWER_LIMIT.as_secs()));
-    Err(Exit::NoLink)
-}
-
 fn keep_driving(
     args: &DriveArgs,
     drive: Drive,
@@ -178,7 +128,7 @@ fn keep_driving(
 ) -> Result<(), Exit> {
     let mut responses = Response::of(&drive);
     let commanded_at = client.device().now();
-    ask(client, Request::Drive(drive))?;
+    ask(client.device(), Request::Drive(drive))?;
     let start = Instant::now();
     let mut next_print = start;
     let mut readings = Readings::default();

@@ -4,17 +4,15 @@
 
 use std::time::{Duration, Instant};
 
-use brushwork_link::device::{ArmScope, DeviceHandle, DisarmReason, Event, Request};
+use brushwork_link::device::{ArmScope, DisarmReason, Event, Request};
 
 use super::args::{StartArgs, StopArgs};
 use super::download;
+use crate::cli::client::{ANSWER_LIMIT, arm, ask};
 use crate::cli::exit::Exit;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::output::say;
 use crate::cli::settings::controller::Controller;
-
-/// How long arming and stopping may take.
-const ANSWER_LIMIT: Duration = Duration::from_secs(5);
 
 /// Downloads if asked to, arms, starts, waits, stops.
 pub fn start(args: &StartArgs, interrupt: &Interrupt) -> Result<Exit, Exit> {
@@ -23,7 +21,7 @@ pub fn start(args: &StartArgs, interrupt: &Interrupt) -> Result<Exit, Exit> {
     if let Some(image) = image {
         download::to_controller(&controller, image, args.simulated)?;
     }
-    arm(&controller)?;
+    arm(controller.device(), ArmScope::Script, interrupt)?;
     let ran = run(&controller, args.duration);
     if ran != Err(Exit::NoLink) {
         stop_all(&controller)?;
@@ -36,27 +34,6 @@ pub fn stop(args: &StopArgs, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let controller = Controller::connect(&args.connect, interrupt)?;
     stop_all(&controller)?;
     Ok(Exit::Done)
-}
-
-fn arm(controller: &Controller<'_>) -> Result<(), Exit> {
-    ask(controller.device(), Request::Arm(ArmScope::Script))?;
-    let deadline = Instant::now() + ANSWER_LIMIT;
-    while Instant::now() < deadline {
-        controller.device().renew();
-        match controller.next_event()? {
-            Some(Event::Armed { warnings, .. }) => {
-                warnings.iter().for_each(say);
-                return Ok(());
-            }
-            Some(Event::ArmRefused { reasons, .. }) => {
-                reasons.iter().for_each(|reason| say(reason.to_string()));
-                return Err(Exit::Refused);
-            }
-            _ => {}
-        }
-    }
-    say(format!("The controller did not answer within {} s.", ANSWER_LIMIT.as_secs()));
-    Err(Exit::NoLink)
 }
 
 fn run(controller: &Controller<'_>, duration: Option<Duration>) -> Result<Exit, Exit> {
@@ -91,11 +68,4 @@ fn stop_all(controller: &Controller<'_>) -> Result<(), Exit> {
     }
     say("The controller did not confirm the stop. Cut the motor power.");
     Err(Exit::Refused)
-}
-
-fn ask(device: &DeviceHandle, request: Request) -> Result<(), Exit> {
-    device.request(request).map_err(|refused| {
-        say(format!("Could not ask the controller: {refused}"));
-        Exit::Refused
-    })
 }

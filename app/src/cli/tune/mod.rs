@@ -14,7 +14,7 @@ use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::rig::GuardOptions;
 use brushwork_tuning::tune::{Excitation, Method, Request as TuneRequest};
 
-use super::client::Client;
+use super::client::{Client, arm, ask};
 use super::exit::Exit;
 use super::interrupt::Interrupt;
 use super::output::{Output, say};
@@ -74,7 +74,7 @@ fn session(
     job(client, prepare(target, controller.subject(), &setup, &keeper), interrupt)?;
     let Some(before) = take(&setup) else { return Err(Exit::NoLink) };
     let found: Slot<Report> = Slot::default();
-    let ran = arm(client, interrupt)
+    let ran = arm(client.device(), ArmScope::CommandLine, interrupt)
         .and_then(|()| job(client, tuning_job(target, request(args, method), &found), interrupt));
     let report = take(&found);
     // A raised interrupt has ended the run; it must not keep the old gains from being put back.
@@ -138,40 +138,11 @@ fn conclude(args: &RunArgs, report: &Report, controller: &Controller<'_>, out: &
     words::exit_of(report)
 }
 
-fn arm(client: &Client, interrupt: &Interrupt) -> Result<(), Exit> {
-    client.device().renew();
-    ask(client, Request::Arm(ArmScope::CommandLine))?;
-    let deadline = Instant::now() + ANSWER_LIMIT;
-    while Instant::now() < deadline {
-        client.device().renew();
-        match client.next_event(interrupt)? {
-            Some(Event::Armed { warnings, .. }) => {
-                warnings.iter().for_each(say);
-                return Ok(());
-            }
-            Some(Event::ArmRefused { reasons, .. }) => {
-                reasons.iter().for_each(|reason| say(reason.to_string()));
-                return Err(Exit::Refused);
-            }
-            _ => {}
-        }
-    }
-    say("The controller did not answer the arming.");
-    Err(Exit::NoLink)
-}
-
-fn ask(client: &Client, request: Request) -> Result<(), Exit> {
-    client.device().request(request).map_err(|refused| {
-        say(format!("Could not ask the controller: {refused}"));
-        Exit::Refused
-    })
-}
-
 /// Runs a job to its end, renewing the dead-man. Ctrl-C stops all motors, which ends the job.
 fn job(client: &Client, job: Box<dyn Job>, interrupt: &Interrupt) -> Result<(), Exit> {
     let deaf = Interrupt::default();
     let limit = job.time_limit() + ANSWER_LIMIT;
-    ask(client, Request::Job(job))?;
+    ask(client.device(), Request::Job(job))?;
     let deadline = Instant::now() + limit;
     let mut stopped = false;
     while Instant::now() < deadline {
