@@ -61,6 +61,7 @@ fn what_does_not_fit_together_is_said_in_a_sentence() {
         (&["--model", "motion-mind-3", "--address", "0x80"][..], "an address from 1 to 98"),
         (&["--model", "motion-mind-3,mcp266"][..], "cannot share a line"),
         (&["--model", "motion-mind-3", "--can", "ascii"][..], "no CAN bus"),
+        (&["--model", "motion-mind-3", "--rts"][..], "runs no scripts"),
         (&["--mode", "3"][..], "--model motion-mind-3"),
     ] {
         let ending = Program::start(BRUSHWORK, &[&["sim"], options].concat()).finish(LIMIT);

@@ -36,12 +36,9 @@ pub fn run(args: &SimArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
     let served = if motion_mind::is_asked_for(args) {
         motion_mind::bus_of(args)
             .map_err(usage)
-            .and_then(|(bus, what)| Ok((start(args, bus)?, what)))
-            .map(|(server, what)| serve(args, &what, &server, out, interrupt))
+            .and_then(|(bus, what)| serve(args, bus, &what, out, interrupt))
     } else {
-        mcp_bus(args)
-            .and_then(|(bus, what)| Ok((start(args, bus)?, what)))
-            .map(|(server, what)| serve(args, &what, &server, out, interrupt))
+        mcp_bus(args).and_then(|(bus, what)| serve(args, bus, &what, out, interrupt))
     };
     served.unwrap_or_else(|exit| exit)
 }
@@ -116,11 +113,12 @@ fn stream_index(port: StreamArg) -> StreamIndex {
 
 fn serve<M: Machine + 'static>(
     args: &SimArgs,
+    machine: M,
     what: &str,
-    server: &SimHandle<M>,
     out: &mut Output,
     interrupt: &Interrupt,
-) -> Exit {
+) -> Result<Exit, Exit> {
+    let server = &start(args, machine)?;
     let place = server.address();
     let greeting = match args.can {
         Some(form) => {
@@ -133,7 +131,7 @@ fn serve<M: Machine + 'static>(
         None => format!("{what}, on {place}\nConnect with: brushwork --open {place}"),
     };
     if out.line(greeting).is_err() {
-        return Exit::Interrupted;
+        return Err(Exit::Interrupted);
     }
     say("Ctrl-C ends it.");
     let control = if args.control { scripting::control() } else { None };
@@ -141,7 +139,7 @@ fn serve<M: Machine + 'static>(
     while !interrupt.sleep(WATCH_INTERVAL) {
         if !server.is_running() {
             say("The simulated controller has ended by itself.");
-            return Exit::Failed;
+            return Err(Exit::Failed);
         }
         for line in control.iter().flat_map(Receiver::try_iter) {
             scripting::obey(&line, server);
@@ -152,11 +150,11 @@ fn serve<M: Machine + 'static>(
             next_truth = Instant::now() + WATCH_INTERVAL;
             if let Err(error) = write_truth(file, server) {
                 say(format!("Could not write the truth to {}: {error}.", file.display()));
-                return Exit::Failed;
+                return Err(Exit::Failed);
             }
         }
     }
-    Exit::Done
+    Ok(Exit::Done)
 }
 
 /// Replaced as a whole, so that a reader never sees half of it.
