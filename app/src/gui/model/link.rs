@@ -4,9 +4,12 @@
 //! sentence to say, a slider to put back to zero) is handed back as [`Effect`]s.
 
 use brushwork_link::Failure;
-use brushwork_link::device::{ArmScope, DisarmReason, Event, Identity, Sample, StatusReport, StopReport};
+use brushwork_link::device::{
+    ArmScope, Channel, DisarmReason, Event, Identity, Sample, StatusReport, StopReport,
+};
 use brushwork_link::exchange::LinkStatistics;
 use brushwork_link::transport::Stream;
+use brushwork_protocol::models;
 use std::time::Duration;
 
 use super::lamps::Lamps;
@@ -92,7 +95,8 @@ impl LinkView {
         match event {
             Event::Connected(identity) => self.connected(identity),
             Event::Selected { address, stream } => self.select(address, stream),
-            Event::Sample(sample) if Some(sample.address) == self.selected => {
+            Event::Sample(mut sample) if Some(sample.address) == self.selected => {
+                self.leave_out_missing_sensor(&mut sample);
                 self.readings.update(&sample);
                 vec![Effect::Sample(sample)]
             }
@@ -154,6 +158,15 @@ impl LinkView {
         self.lamps = Lamps::default();
         self.status = None;
         vec![Effect::OtherUnit]
+    }
+
+    /// Small boards have one temperature sensor and report 0 for the second: what is not there was not read.
+    fn leave_out_missing_sensor(&self, sample: &mut Sample) {
+        let listed = self.identity().and_then(|identity| models::lookup(identity.model?));
+        let second = &mut sample.values[Channel::Temperature2.index()];
+        if *second == 0.0 && listed.is_some_and(|listed| !listed.second_temperature) {
+            *second = f64::NAN;
+        }
     }
 
     fn status(&mut self, report: StatusReport) -> Vec<Effect> {

@@ -1,7 +1,6 @@
 //! The row of monitored parameters (MCP manual 1.2.2), in blocks that wrap when the window is narrow.
 
 use brushwork_link::device::Channel;
-use brushwork_protocol::models;
 use brushwork_protocol::packet_serial::Motor;
 use egui::{Label, Role, Ui, WidgetInfo, vec2};
 
@@ -133,7 +132,6 @@ fn block_ui(ui: &mut Ui, block: &Block, model: &Model, commands: &mut Commands) 
                 fixed_label_ui(ui, block.labels[row], block.label_width);
                 let channel = block.channels[row];
                 let value = model.front.link.readings.text(channel, decimals(channel));
-                let value = value.filter(|_| !is_missing_sensor(model, channel));
                 block.readout(row).ui(ui, value.as_deref());
                 if block.zero {
                     zero_ui(ui, motor, model.is_connected(), commands);
@@ -141,15 +139,6 @@ fn block_ui(ui: &mut Ui, block: &Block, model: &Model, commands: &mut Commands) 
             });
         }
     });
-}
-
-/// Small boards have one temperature sensor and report 0 for the second.
-fn is_missing_sensor(model: &Model, channel: Channel) -> bool {
-    let link = &model.front.link;
-    let listed = link.identity().and_then(|identity| models::lookup(identity.model?));
-    channel == Channel::Temperature2
-        && link.readings.get(channel) == Some(0.0)
-        && listed.is_some_and(|listed| !listed.second_temperature)
 }
 
 fn zero_ui(ui: &mut Ui, motor: Motor, connected: bool, commands: &mut Commands) {

@@ -81,12 +81,14 @@ fn record_ui(ui: &mut Ui, trace: &Trace, which: Loop, end_s: f64) {
         Loop::Velocity => vec![line("speed", trace.speeds(SPEED_OVER_S), palette.traces[2], Look::Solid)],
         Loop::Position => vec![line("position", places(trace, None), palette.traces[3], Look::Solid)],
     };
+    let (name, unit) = if which == Loop::Velocity { ("speed", "counts/s") } else { ("position", "counts") };
+    // The scale is that of what the motor did: the law probe commands speeds that no motor reaches.
+    let y = around(name, unit, &main);
     let whole = Stretch { from_s: 0.0, to_s: trace.end_s(), is_position: which == Loop::Position };
     main.insert(0, line("setpoint", setpoints(trace, &whole), palette.traces[0], Look::Dashed));
-    let (name, unit) = if which == Loop::Velocity { ("speed", "counts/s") } else { ("position", "counts") };
     let empty = "The motor is about to turn a little, to check its wiring.";
     let label = format!("Live {name} of the run");
-    chart(ui, &label, (x, around(name, unit, &main)), &main, &[], empty, vec2(room.x, heights[0]));
+    chart(ui, &label, (x, y), &main, &[], empty, vec2(room.x, heights[0]));
     let duty = [line("duty", duties(trace, None), palette.traces[1], Look::Solid)];
     chart(
         ui,
