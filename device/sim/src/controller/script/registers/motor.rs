@@ -5,93 +5,51 @@ use super::Binding;
 use crate::motion::{BUFFER_EMPTY, Channel, ChannelState, MotionSettings};
 use brushwork_protocol::packet_serial::Motor;
 
+/// A setting that a script reads and writes as it lies on the wire.
+macro_rules! setting {
+    ($name:literal, $field:ident) => {
+        (
+            $name,
+            |host, index| motion(host, index).$field,
+            Some(|host, index, value| set(host, index, |motion| motion.$field = value)),
+        )
+    };
+    ($name:literal, $field:ident, signed) => {
+        (
+            $name,
+            |host, index| motion(host, index).$field as u32,
+            Some(|host, index, value| set(host, index, |motion| motion.$field = value as i32)),
+        )
+    };
+}
+
 pub const BINDINGS: &[Binding] = &[
     ("MOTORFLAGS", flags, None),
     ("MOTORPWM", |host, index| of(host, index, |channel| i32::from(channel.duty_raw())), None),
     ("MOTORCURRENT", |host, index| current(host, index), None),
     ("MOTORTARGETPWM", |host, index| state(host, index).target_duty_raw as u32, None),
-    (
-        "MOTORVELKP",
-        |host, index| motion(host, index).velocity_p_raw,
-        Some(|host, index, value| set(host, index, |motion| motion.velocity_p_raw = value)),
-    ),
-    (
-        "MOTORVELKI",
-        |host, index| motion(host, index).velocity_i_raw,
-        Some(|host, index, value| set(host, index, |motion| motion.velocity_i_raw = value)),
-    ),
-    (
-        "MOTORVELKD",
-        |host, index| motion(host, index).velocity_d_raw,
-        Some(|host, index, value| set(host, index, |motion| motion.velocity_d_raw = value)),
-    ),
-    (
-        "MOTORVELQPPS",
-        |host, index| motion(host, index).qpps,
-        Some(|host, index, value| set(host, index, |motion| motion.qpps = value)),
-    ),
+    setting!("MOTORVELKP", velocity_p_raw),
+    setting!("MOTORVELKI", velocity_i_raw),
+    setting!("MOTORVELKD", velocity_d_raw),
+    setting!("MOTORVELQPPS", qpps),
     ("MOTORTARGETSPEED", |host, index| state(host, index).target_speed_counts_per_s as u32, None),
     ("MOTORDISTANCE", |host, index| state(host, index).distance_left_counts, None),
-    (
-        "MOTORPOSKP",
-        |host, index| motion(host, index).position_p_raw,
-        Some(|host, index, value| set(host, index, |motion| motion.position_p_raw = value)),
-    ),
-    (
-        "MOTORPOSKI",
-        |host, index| motion(host, index).position_i_raw,
-        Some(|host, index, value| set(host, index, |motion| motion.position_i_raw = value)),
-    ),
-    (
-        "MOTORPOSKIMAX",
-        |host, index| motion(host, index).position_max_i,
-        Some(|host, index, value| set(host, index, |motion| motion.position_max_i = value)),
-    ),
-    (
-        "MOTORPOSKD",
-        |host, index| motion(host, index).position_d_raw,
-        Some(|host, index, value| set(host, index, |motion| motion.position_d_raw = value)),
-    ),
-    (
-        "MOTORPOSMAX",
-        |host, index| motion(host, index).position_max_counts as u32,
-        Some(|host, index, value| set(host, index, |motion| motion.position_max_counts = value as i32)),
-    ),
-    (
-        "MOTORPOSMIN",
-        |host, index| motion(host, index).position_min_counts as u32,
-        Some(|host, index, value| set(host, index, |motion| motion.position_min_counts = value as i32)),
-    ),
-    (
-        "MOTORPOSDEADZONE",
-        |host, index| motion(host, index).position_deadzone_counts,
-        Some(|host, index, value| set(host, index, |motion| motion.position_deadzone_counts = value)),
-    ),
+    setting!("MOTORPOSKP", position_p_raw),
+    setting!("MOTORPOSKI", position_i_raw),
+    setting!("MOTORPOSKIMAX", position_max_i),
+    setting!("MOTORPOSKD", position_d_raw),
+    setting!("MOTORPOSMAX", position_max_counts, signed),
+    setting!("MOTORPOSMIN", position_min_counts, signed),
+    setting!("MOTORPOSDEADZONE", position_deadzone_counts),
     ("MOTORTARGETPOS", |host, index| state(host, index).target_position_counts as u32, None),
     ("MOTORACCEL", |host, index| state(host, index).acceleration, None),
     ("MOTORDECCEL", |host, index| state(host, index).deceleration, None),
     ("MOTORSPEED", |host, index| state(host, index).speed_setpoint_counts_per_s as u32, None),
     ("MOTORDEFAULTACCEL", |host, index| motion(host, index).default_accel_raw, Some(set_default_accel)),
-    (
-        "MOTORMAXCURRENT",
-        |host, index| motion(host, index).max_current_raw,
-        Some(|host, index, value| set(host, index, |motion| motion.max_current_raw = value)),
-    ),
-    (
-        "MOTORMINCURRENT",
-        |host, index| motion(host, index).min_current_raw as u32,
-        Some(|host, index, value| set(host, index, |motion| motion.min_current_raw = value as i32)),
-    ),
-    (
-        "MOTORL",
-        |host, index| motion(host, index).inductance_raw,
-        Some(|host, index, value| set(host, index, |motion| motion.inductance_raw = value)),
-    ),
-    (
-        "MOTORR",
-        |host, index| motion(host, index).resistance_raw,
-        Some(|host, index, value| set(host, index, |motion| motion.resistance_raw = value)),
-    ),
+    setting!("MOTORMAXCURRENT", max_current_raw),
+    setting!("MOTORMINCURRENT", min_current_raw, signed),
+    setting!("MOTORL", inductance_raw),
+    setting!("MOTORR", resistance_raw),
     (
         "MOTORENCPOS",
         |host, index| of(host, index, |channel| channel.encoder().position()),

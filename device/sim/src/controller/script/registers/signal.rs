@@ -11,6 +11,24 @@ use crate::settings::SignalSettings;
 use crate::signals::{ActionBits, Signal, SignalValues};
 use brushwork_protocol::packet_serial::Generation;
 
+/// A setting that a script reads and writes as it lies on the wire.
+macro_rules! setting {
+    ($name:literal, $field:ident) => {
+        (
+            $name,
+            |host, index| of(host, index, |signal| signal.$field),
+            Some(|host, index, value| set(host, index, |signal| signal.$field = value)),
+        )
+    };
+    ($name:literal, $field:ident, signed) => {
+        (
+            $name,
+            |host, index| of(host, index, |signal| signal.$field as u32),
+            Some(|host, index, value| set(host, index, |signal| signal.$field = value as i32)),
+        )
+    };
+}
+
 pub const BINDINGS: &[Binding] = &[
     ("SIGNALACTIVE", is_active, None),
     (
@@ -43,59 +61,19 @@ pub const BINDINGS: &[Binding] = &[
         |host, index| of(host, index, |signal| signal.low_pass.into()),
         Some(|host, index, value| set(host, index, |signal| signal.low_pass = value as u8)),
     ),
-    (
-        "SIGNALTIMEOUT",
-        |host, index| of(host, index, |signal| signal.timeout_ms),
-        Some(|host, index, value| set(host, index, |signal| signal.timeout_ms = value)),
-    ),
+    setting!("SIGNALTIMEOUT", timeout_ms),
     ("SIGNALTICK", last_activity, None),
     ("SIGNALITER", |host, index| host.unit.signals.get(index).map_or(0, Signal::updates), None),
-    (
-        "SIGNALLOADHOME",
-        |host, index| of(host, index, |signal| signal.load_home as u32),
-        Some(|host, index, value| set(host, index, |signal| signal.load_home = value as i32)),
-    ),
-    (
-        "SIGNALMIN",
-        |host, index| of(host, index, |signal| signal.min as u32),
-        Some(|host, index, value| set(host, index, |signal| signal.min = value as i32)),
-    ),
-    (
-        "SIGNALMAX",
-        |host, index| of(host, index, |signal| signal.max as u32),
-        Some(|host, index, value| set(host, index, |signal| signal.max = value as i32)),
-    ),
-    (
-        "SIGNALCENTER",
-        |host, index| of(host, index, |signal| signal.center as u32),
-        Some(|host, index, value| set(host, index, |signal| signal.center = value as i32)),
-    ),
-    (
-        "SIGNALDEADBAND",
-        |host, index| of(host, index, |signal| signal.deadband),
-        Some(|host, index, value| set(host, index, |signal| signal.deadband = value)),
-    ),
-    (
-        "SIGNALPOWEREXP",
-        |host, index| of(host, index, |signal| signal.power_exp_raw as u32),
-        Some(|host, index, value| set(host, index, |signal| signal.power_exp_raw = value as i32)),
-    ),
-    (
-        "SIGNALPOWERMIN",
-        |host, index| of(host, index, |signal| signal.power_min),
-        Some(|host, index, value| set(host, index, |signal| signal.power_min = value)),
-    ),
+    setting!("SIGNALLOADHOME", load_home, signed),
+    setting!("SIGNALMIN", min, signed),
+    setting!("SIGNALMAX", max, signed),
+    setting!("SIGNALCENTER", center, signed),
+    setting!("SIGNALDEADBAND", deadband),
+    setting!("SIGNALPOWEREXP", power_exp_raw, signed),
+    setting!("SIGNALPOWERMIN", power_min),
     ("SIGNALMODE", |host, index| of(host, index, |signal| signal.mode.into()), None),
-    (
-        "SIGNALMINOUT",
-        |host, index| of(host, index, |signal| signal.min_output as u32),
-        Some(|host, index, value| set(host, index, |signal| signal.min_output = value as i32)),
-    ),
-    (
-        "SIGNALMAXOUT",
-        |host, index| of(host, index, |signal| signal.max_output as u32),
-        Some(|host, index, value| set(host, index, |signal| signal.max_output = value as i32)),
-    ),
+    setting!("SIGNALMINOUT", min_output, signed),
+    setting!("SIGNALMAXOUT", max_output, signed),
     ("SIGNALPOSITION", |host, index| values(host, index).position as u32, None),
     ("SIGNALPERCENT", |host, index| values(host, index).percent as u32, None),
     ("SIGNALSPEED", |host, index| values(host, index).speed as u32, None),
