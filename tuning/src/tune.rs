@@ -31,8 +31,7 @@ const UNMODELLED_TICKS: f64 = 0.5;
 /// Misfit of the closed loop beyond which the model is taken as incomplete, and what is then left of the sensitivity's excess.
 const ODD_CHI_SQUARE: f64 = 2.2;
 const ODD_SHARE: f64 = 0.6;
-/// Time constants in polls below which a motor's overshoot is over before it is seen, and the overshoot that is then designed for.
-const QUICK_POLLS: f64 = 0.0;
+/// The overshoot that is then designed for.
 const SHORT_OVERSHOOT: f64 = 0.15;
 /// Misfit that speaks of play, and the shortest integral time of such a machine, in time constants.
 const LOOSE_CHI_SQUARE: f64 = 2.3;
@@ -189,11 +188,7 @@ fn run(rig: &mut Rig<'_>, request: &Request, report: &mut Report) -> Result<(), 
         noise_factor: 1.0,
         slack_counts: 0.0,
         least_integral_s: 0.0,
-        most_overshoot: if found.fit.model.tau_s < QUICK_POLLS * rig.options.poll_s {
-            SHORT_OVERSHOOT
-        } else {
-            USUAL_OVERSHOOT
-        },
+        most_overshoot: USUAL_OVERSHOOT,
     };
     rig.progress("Measuring the lag of the loop");
     let task = settle_lag(rig, request, task, report)?;
