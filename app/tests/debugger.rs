@@ -2,7 +2,7 @@
 
 mod support;
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use brushwork::gui::graph::MarkKind;
 use brushwork_protocol::packet_serial::Motor;
@@ -32,13 +32,8 @@ return a*2
 ";
 
 /// Lets frames pass until something is so; what compiles on its own thread needs real time.
-fn until(bench: &mut Bench, what: &str, mut holds: impl FnMut(&mut Bench) -> bool) {
-    let began = Instant::now();
-    while !holds(bench) {
-        assert!(began.elapsed() < Duration::from_secs(20), "{what}: {:?}", bench.model().front.debug.view);
-        bench.pass_ms(20);
-        std::thread::sleep(Duration::from_millis(1));
-    }
+fn until(bench: &mut Bench, what: &str, holds: impl FnMut(&mut Bench) -> bool) {
+    bench.until_in_time(what, holds);
 }
 
 /// The MCL screen with the debugger open and a program in the editor and in the controller.

@@ -3,7 +3,6 @@
 mod support;
 
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use brushwork::gui::graph::runs::Align;
 use brushwork::gui::graph::trigger::{TriggerMode, TriggerSource};
@@ -285,32 +284,28 @@ fn in_folder(bench: &mut Bench) -> tempfile::TempDir {
 
 /// The files in a folder once there are as many, finished by threads of the real world.
 fn files_in(bench: &mut Bench, folder: &Path, count: usize) -> Vec<PathBuf> {
-    for _ in 0..500 {
-        bench.pass_ms(100);
-        let mut found: Vec<PathBuf> = std::fs::read_dir(folder)
-            .expect("the folder is there")
-            .map(|entry| entry.expect("an entry of the folder").path())
-            .filter(|path| path.extension().is_some_and(|e| e != "part"))
-            .collect();
-        found.sort();
-        if found.len() >= count {
-            return found;
-        }
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    panic!("no {count} files in {}", folder.display());
+    let mut found = Vec::new();
+    bench.until(&format!("{count} files in {}", folder.display()), |_| {
+        found = whole_files(folder);
+        found.len() >= count
+    });
+    found
+}
+
+/// What is hidden is not finished yet.
+fn whole_files(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).expect("the folder is there");
+    let paths = entries.map(|entry| entry.expect("an entry of the folder").path());
+    let is_whole =
+        |path: &PathBuf| !path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
+    let mut found: Vec<PathBuf> = paths.filter(is_whole).collect();
+    found.sort();
+    found
 }
 
 /// Waits until a sentence is said that has these words in it.
-fn heard(bench: &mut Bench, words: &str) -> bool {
-    for _ in 0..500 {
-        if bench.model().messages.past().any(|message| message.text.contains(words)) {
-            return true;
-        }
-        bench.harness.step();
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    false
+fn hear(bench: &mut Bench, words: &str) {
+    bench.until(words, |bench| bench.said().iter().any(|text| text.contains(words)));
 }
 
 #[test]
@@ -324,7 +319,7 @@ fn what_is_recorded_is_opened_again_as_it_was_sampled_and_live_goes_on_elsewhere
     bench.set_duty(Motor::M1, "30");
     bench.pass_ms(2000);
     bench.press("Stop recording");
-    assert!(heard(&mut bench, "Recorded "));
+    hear(&mut bench, "Recorded ");
     let files = files_in(&mut bench, folder.path(), 1);
     let sampled: Vec<f64> = {
         let history = &graph(&mut bench).live.track.history;
@@ -334,13 +329,7 @@ fn what_is_recorded_is_opened_again_as_it_was_sampled_and_live_goes_on_elsewhere
             .collect()
     };
     graph(&mut bench).files.open(&files[0]);
-    for _ in 0..500 {
-        bench.pass_ms(100);
-        if graph(&mut bench).opened.is_some() {
-            break;
-        }
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    bench.until("the recording is opened", |bench| graph(bench).opened.is_some());
     assert!(bench.sees_part("Graph of the recording brushwork-"));
     let opened = &graph(&mut bench).opened.as_ref().expect("it was opened").sheet.track;
     let recorded: Vec<f64> = opened
@@ -367,7 +356,7 @@ fn a_cable_that_is_pulled_out_ends_the_recording_with_a_sentence_and_a_whole_fil
     bench.pass_ms(2000);
     bench.act(&WorldAction::Unplug { unplugged: true });
     bench.pass_ms(3000);
-    assert!(heard(&mut bench, "The recording ended with the link. Recorded "));
+    hear(&mut bench, "The recording ended with the link. Recorded ");
     let files = files_in(&mut bench, folder.path(), 1);
     let mut samples = 0;
     let damage = brushwork::recording::open::read(
@@ -389,7 +378,7 @@ fn a_foreign_file_is_refused_with_the_line_that_is_wrong() {
     let path = folder.path().join("other.csv");
     std::fs::write(&path, "time_s,speed (rpm)\n0.1,5\n0.2,fast\n").unwrap();
     graph(&mut bench).files.open(&path);
-    assert!(heard(&mut bench, "other.csv: line 3: in the column speed (rpm)"));
+    hear(&mut bench, "other.csv: line 3: in the column speed (rpm)");
     assert!(graph(&mut bench).opened.is_none());
 }
 
@@ -412,6 +401,22 @@ fn what_is_in_view_is_exported_as_csv_png_and_svg() {
     assert!(picture.width() >= 1800 && picture.height() > 840, "{}x{}", picture.width(), picture.height());
     let svg = std::fs::read_to_string(of("svg")).unwrap();
     assert!(svg.contains("2 M1 PWM") && svg.contains("<polyline"), "the legend and lines");
+}
+
+#[test]
+fn exports_that_are_asked_for_at_once_get_in_nobodys_way() {
+    use brushwork::gui::graph::GraphAction as A;
+    let mut bench = bench();
+    let folder = in_folder(&mut bench);
+    for action in [A::ExportSvg, A::ExportCsv, A::ExportCsv, A::ExportSvg, A::ExportCsv, A::ExportSvg] {
+        graph(&mut bench).act(action);
+    }
+    let files = files_in(&mut bench, folder.path(), 6);
+    assert!(files.iter().all(|path| std::fs::metadata(path).unwrap().len() > 100), "none is empty");
+    bench.until("all are told", |bench| {
+        bench.said().iter().filter(|text| text.starts_with("Wrote ")).count() == 6
+    });
+    assert_eq!(whole_files(folder.path()).len(), 6);
 }
 
 #[test]

@@ -4,6 +4,7 @@ mod support;
 
 use brushwork::gui::mcl::Document;
 use brushwork_link::device::ArmScope;
+use brushwork_link::settings::replace_file;
 use brushwork_sim::controller::ScriptRun;
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
@@ -77,24 +78,12 @@ fn keys_select_and_what_is_typed_takes_the_place_of_it() {
     assert_eq!(text(&mut bench), "a\nb");
 }
 
-/// Lets frames pass until something has come about; threads of the editor work in real time.
-fn until(bench: &mut Bench, what: &str, is_so: impl Fn(&mut Bench) -> bool) {
-    for _ in 0..400 {
-        bench.pass_ms(100);
-        if is_so(bench) {
-            return;
-        }
-        std::thread::sleep(std::time::Duration::from_millis(5));
-    }
-    panic!("{what}: {:?}", bench.model().messages.past().collect::<Vec<_>>());
-}
-
 fn open_file(bench: &mut Bench, name: &str, bytes: &[u8]) -> std::path::PathBuf {
     let path = bench.store().root().expect("a test has a folder").join(name);
     std::fs::write(&path, bytes).expect("the folder can be written");
     bench.model().mcl.open_path(path.clone());
     let wanted = path.clone();
-    until(bench, "opened", move |bench| front(bench).path.as_ref() == Some(&wanted));
+    bench.until_in_time("opened", move |bench| front(bench).path.as_ref() == Some(&wanted));
     path
 }
 
@@ -102,7 +91,7 @@ fn open_file(bench: &mut Bench, name: &str, bytes: &[u8]) -> std::path::PathBuf 
 fn errors_are_listed_while_typing_and_a_row_leads_to_its_place() {
     let mut bench = editor();
     type_in(&mut bench, "pause 10\ngoto nowhere\nend\n");
-    until(&mut bench, "checked", |bench| bench.sees_part("in line 2"));
+    bench.until_in_time("checked", |bench| bench.sees_part("in line 2"));
     let errors = front(&mut bench).findings.counts().0;
     assert_eq!(errors, 1);
     let row = bench.harness.get_by_label_contains("in line 2");
@@ -111,7 +100,7 @@ fn errors_are_listed_while_typing_and_a_row_leads_to_its_place() {
     assert_eq!(front(&mut bench).caret_line(), 1);
     assert_eq!(front(&mut bench).copied(), "nowhere");
     type_in(&mut bench, "main");
-    until(&mut bench, "checked again", |bench| bench.sees_part("main"));
+    bench.until_in_time("checked again", |bench| bench.sees_part("main"));
 }
 
 #[test]
@@ -144,7 +133,7 @@ fn words_are_completed_by_keys_and_the_syntax_line_goes_along() {
 fn names_of_the_program_are_offered_once_they_were_checked() {
     let mut bench = editor();
     type_in(&mut bench, "total_counts VAR Long\n");
-    until(&mut bench, "checked", |bench| {
+    bench.until_in_time("checked", |bench| {
         let known = front(bench).findings.checked.clone();
         known.is_some_and(|known| !known.index.symbols.is_empty())
     });
@@ -160,7 +149,10 @@ fn names_of_the_program_are_offered_once_they_were_checked() {
 fn a_word_under_the_pointer_is_explained_with_its_unit() {
     let mut bench = editor();
     type_in(&mut bench, "x VAR Word\nx = SYSMBAT\n");
-    until(&mut bench, "checked", |bench| front(bench).findings.checked.is_some());
+    bench.until_in_time("the last letter is checked", |bench| {
+        let document = front(bench);
+        document.findings.checked.as_ref().is_some_and(|known| known.revision == document.text.revision())
+    });
     let at = front(&mut bench).text.text().find("SYSMBAT").unwrap_or_default();
     let hover = front(&mut bench).hover(at + 2).expect("a register is explained");
     let help = hover.help.expect("a register is explained");
@@ -238,7 +230,7 @@ fn several_programs_are_saved_one_after_the_other_before_the_window_goes() {
     bench.press("Save and close");
     let folder = bench.store().root().expect("a test has a folder").to_owned();
     for (name, held) in [("first.mcl", "one"), ("second.mcl", "two")] {
-        until(&mut bench, "asked for a path", |bench| {
+        bench.until_in_time("asked for a path", |bench| {
             bench.harness.query_by_role_and_label(Role::TextInput, "Path").is_some()
         });
         bench.harness.get_by_role_and_label(Role::TextInput, "Path").focus();
@@ -246,9 +238,9 @@ fn several_programs_are_saved_one_after_the_other_before_the_window_goes() {
         bench.key_with(CTRL, Key::A);
         let path = folder.join(name);
         type_in(&mut bench, &format!("{}\n", path.display()));
-        until(&mut bench, "saved", move |_| std::fs::read_to_string(&path).is_ok_and(|text| text == held));
+        bench.until_in_time("saved", move |_| std::fs::read_to_string(&path).is_ok_and(|text| text == held));
     }
-    until(&mut bench, "may go", |bench| bench.model().mcl.may_exit());
+    bench.until_in_time("may go", |bench| bench.model().mcl.may_exit());
 }
 
 #[test]
@@ -260,7 +252,7 @@ fn encodings_and_line_ends_of_a_file_are_kept() {
     type_in(&mut bench, "; \u{E4}\n");
     assert!(front(&mut bench).text.is_modified());
     bench.key_with(CTRL, Key::S);
-    until(&mut bench, "saved", |bench| !front(bench).text.is_modified());
+    bench.until_in_time("saved", |bench| !front(bench).text.is_modified());
     assert_eq!(std::fs::read(&path).expect("it is there"), b"; \xFCber\r\nend\r\n; \xE4\r\n");
     type_in(&mut bench, "; \u{20AC}");
     bench.key_with(CTRL, Key::S);
@@ -273,17 +265,17 @@ fn encodings_and_line_ends_of_a_file_are_kept() {
 fn a_file_that_another_program_writes_is_noticed() {
     let mut bench = editor();
     let path = open_file(&mut bench, "shared.mcl", b"one\n");
-    std::fs::write(&path, "longer\n").expect("it can be written");
-    until(&mut bench, "loaded again", |bench| text(bench) == "longer\n");
+    replace_file(&path, b"longer\n").expect("it can be written");
+    bench.until_in_time("loaded again", |bench| text(bench) == "longer\n");
     bench.key_with(CTRL, Key::End);
     type_in(&mut bench, "mine");
-    std::fs::write(&path, "much longer\n").expect("it can be written");
-    until(&mut bench, "noticed", |bench| bench.sees_part("was changed by another program, and"));
+    replace_file(&path, b"much longer\n").expect("it can be written");
+    bench.until_in_time("noticed", |bench| bench.sees_part("was changed by another program, and"));
     assert_eq!(text(&mut bench), "longer\nmine", "what is not saved stays");
     bench.press("Keep this text");
     bench.key_with(CTRL, Key::S);
     let written = path.clone();
-    until(&mut bench, "saved", move |_| {
+    bench.until_in_time("saved", move |_| {
         std::fs::read_to_string(&written).is_ok_and(|held| held == "longer\nmine")
     });
 }
@@ -294,7 +286,7 @@ fn unsaved_text_outlives_a_crash_and_is_offered_back() {
     type_in(&mut bench, "precious");
     let folder = bench.store().root().expect("a test has a folder").to_owned();
     let kept = folder.join("unsaved-mcl");
-    until(&mut bench, "kept", move |_| {
+    bench.until_in_time("kept", move |_| {
         let folders = std::fs::read_dir(&kept).into_iter().flatten().flatten();
         folders.flat_map(|folder| std::fs::read_dir(folder.path()).into_iter().flatten().flatten()).count()
             == 2
@@ -303,7 +295,7 @@ fn unsaved_text_outlives_a_crash_and_is_offered_back() {
     let mut restored = bench.after_a_crash();
     let bench = &mut restored;
     bench.press("MCL Editor");
-    until(bench, "offered", |bench| {
+    bench.until_in_time("offered", |bench| {
         bench.sees_part("Unsaved text from an earlier time was found: Untitled 1")
     });
     bench.press("Restore");

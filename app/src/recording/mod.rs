@@ -151,14 +151,14 @@ pub enum RecordingError {
     },
 }
 
-/// A file that does not exist yet: `name` in `folder` with the extension, or with a number behind the name.
+/// A file that `is_free`: `name` in `folder` with the extension, or with a number behind the name.
 #[must_use]
-pub fn free_path(folder: &Path, name: &str, extension: &str) -> PathBuf {
+pub fn free_path(folder: &Path, name: &str, extension: &str, is_free: impl Fn(&Path) -> bool) -> PathBuf {
     let numbered = |number: u32| match number {
         1 => folder.join(format!("{name}.{extension}")),
         _ => folder.join(format!("{name}-{number}.{extension}")),
     };
-    (1..10_000).map(numbered).find(|path| !path.exists()).unwrap_or_else(|| numbered(10_000))
+    (1..10_000).map(numbered).find(|path| is_free(path)).unwrap_or_else(|| numbered(10_000))
 }
 
 /// A name for a file made now: the date and the time in UTC.
@@ -181,9 +181,10 @@ mod tests {
         let name = dated_name(SystemTime::UNIX_EPOCH + Duration::from_secs(1_800_000_000));
         assert_eq!(name, "brushwork-20270115-080000");
         let folder = tempfile::tempdir().unwrap();
-        let first = free_path(folder.path(), &name, "csv");
+        let is_free = |path: &Path| !path.exists();
+        let first = free_path(folder.path(), &name, "csv", is_free);
         std::fs::write(&first, "").unwrap();
-        let second = free_path(folder.path(), &name, "csv");
+        let second = free_path(folder.path(), &name, "csv", is_free);
         assert!(second.to_string_lossy().ends_with("080000-2.csv"), "{second:?}");
     }
 

@@ -167,18 +167,12 @@ fn give_path(bench: &mut Bench, path: &std::path::Path) {
     bench.harness.event(Event::Text(path.display().to_string()));
     bench.pass_ms(100);
     bench.key(Key::Enter);
-    for _ in 0..200 {
-        bench.pass_ms(100);
-        std::thread::sleep(std::time::Duration::from_millis(5));
-        if bench.model().mcl.front().path.as_deref() == Some(path)
-            || path.extension().is_some_and(|is| is == "pdf") && path.exists()
-        {
-            // What came in at the end of a frame is drawn in the next one.
-            bench.pass_ms(100);
-            return;
-        }
-    }
-    panic!("{}: {:?}", path.display(), bench.model().messages.past().collect::<Vec<_>>());
+    bench.until_in_time(&path.display().to_string(), |bench| {
+        let is_printed = path.extension().is_some_and(|is| is == "pdf") && path.exists();
+        bench.model().mcl.front().path.as_deref() == Some(path) || is_printed
+    });
+    // What came in at the end of a frame is drawn in the next one.
+    bench.pass_ms(100);
 }
 
 fn opened(bench: &mut Bench) {

@@ -29,9 +29,13 @@ use egui_kittest::{Harness, HarnessBuilder, Node};
 use super::cpu::Cpu;
 use super::line::Line;
 use super::lockstep::{Gate, Lockstep};
+use super::wait::{PATIENCE, Wait};
 
 /// Time between two frames, as in the real window.
 pub const FRAME: Duration = Duration::from_millis(100);
+
+/// How far the link's time may run ahead of the real one while something real is waited for.
+const AHEAD: Duration = Duration::from_secs(2);
 
 /// What connects to the second machine.
 pub const SECOND: &str = "sim:mcp236";
@@ -154,6 +158,35 @@ impl Bench {
     /// Lets time pass with the window frozen: no frame is drawn.
     pub fn freeze(&mut self, time: Duration) {
         self.turn_loop(self.line.clock.now() + time);
+    }
+
+    /// Draws frames until threads of the real world have brought something about. No time of the link passes meanwhile.
+    pub fn until(&mut self, what: &str, mut holds: impl FnMut(&mut Self) -> bool) {
+        let mut wait = Wait::new();
+        self.harness.step();
+        while !holds(self) {
+            assert!(wait.goes_on(), "waited {PATIENCE:?} for {what}, but: {:?}", self.said());
+            self.harness.step();
+        }
+    }
+
+    /// The same where the link has its part in it: its time passes too, but after the first seconds no faster than the
+    /// real one, so that it does not run away from a slow thread.
+    pub fn until_in_time(&mut self, what: &str, mut holds: impl FnMut(&mut Self) -> bool) {
+        let (mut wait, began) = (Wait::new(), self.line.clock.now());
+        while !holds(self) {
+            if self.line.clock.now() - began < AHEAD + wait.passed() {
+                self.pass(FRAME);
+            } else {
+                self.harness.step();
+            }
+            assert!(wait.goes_on(), "waited {PATIENCE:?} for {what}, but: {:?}", self.said());
+        }
+    }
+
+    /// Everything the window has said.
+    pub fn said(&mut self) -> Vec<String> {
+        self.model().messages.past().map(|message| message.text.clone()).collect()
     }
 
     fn turn_loop(&self, until: Duration) {

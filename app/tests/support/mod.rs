@@ -6,3 +6,4 @@ pub mod causes;
 pub mod cpu;
 pub mod line;
 pub mod lockstep;
+pub mod wait;

@@ -2,12 +2,14 @@
 //!
 //! Whatever takes time does so on a thread of its own; what becomes of it is said by [`LiveGraph::poll_files`].
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, SystemTime};
 
 use brushwork_link::device::{Channel, Sample};
+use brushwork_link::settings::replace_file;
 use crossbeam_channel::{Receiver, TryRecvError, bounded};
 use egui::{Rect, vec2};
 
@@ -62,6 +64,8 @@ pub struct GraphFiles {
     loading: Option<Loading>,
     working: Vec<Receiver<Said>>,
     dialog: Option<(Asked, FileDialog)>,
+    /// Files that threads make or have made. A name is taken before its file is there.
+    begun: HashSet<PathBuf>,
     /// The wall's time and the link's at one moment.
     clocks: Option<(SystemTime, Duration)>,
     dark: bool,
@@ -102,6 +106,7 @@ impl Default for GraphFiles {
             loading: None,
             working: Vec::new(),
             dialog: None,
+            begun: HashSet::new(),
             clocks: None,
             dark: true,
         }
@@ -176,8 +181,12 @@ impl GraphFiles {
         self.loading = Some(Loading { name, open_as: self.open_as, rows, given_up, answer });
     }
 
-    fn free_path(&self, extension: &str) -> PathBuf {
-        free_path(Path::new(self.folder.trim()), &dated_name(SystemTime::now()), extension)
+    fn free_path(&mut self, extension: &str) -> PathBuf {
+        let is_free = |path: &Path| !self.begun.contains(path) && !path.exists();
+        let name = dated_name(SystemTime::now());
+        let path = free_path(Path::new(self.folder.trim()), &name, extension, is_free);
+        self.begun.insert(path.clone());
+        path
     }
 
     /// The wall's time at a time of the link.
@@ -478,11 +487,8 @@ impl GraphFiles {
 
 /// The file appears whole or not at all.
 fn write_new(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let folder = path.parent().unwrap_or(Path::new("."));
-    std::fs::create_dir_all(folder)?;
-    let part = path.with_extension("part");
-    std::fs::write(&part, bytes)?;
-    std::fs::rename(&part, path)
+    std::fs::create_dir_all(path.parent().unwrap_or(Path::new(".")))?;
+    replace_file(path, bytes)
 }
 
 fn file_name(path: &Path) -> String {
