@@ -471,7 +471,7 @@ fn a_faulty_profile_is_refused_and_one_of_another_controller_is_upgraded_when_th
     let other = brushwork_link::settings::Profile {
         subject,
         firmware: "MCP236 2x30A v1.0.0".to_owned(),
-        address: brushwork_protocol::packet_serial::Address::DEFAULT,
+        address: brushwork_link::UnitAddress::DEFAULT,
         date: "2025-01-01T00:00:00Z".to_owned(),
         unit: String::new(),
         note: String::new(),

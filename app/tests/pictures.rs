@@ -34,7 +34,8 @@ fn fed(model: &mut Model, conditions: &[Condition]) {
         version_text: "MCP266 2x60A v1.0.0".to_owned(),
         model: Some("MCP266"),
         firmware: "1.0.0".to_owned(),
-        generation: Generation::Gen1,
+        generation: Generation::Gen1.into(),
+        motion_mind: None,
         also_answers: vec![0x81],
         simulated: true,
         port: "sim:mcp266".to_owned(),
@@ -42,6 +43,7 @@ fn fed(model: &mut Model, conditions: &[Condition]) {
     };
     let conditions = conditions.iter().copied().collect();
     let status = StatusReport {
+        signs: &[],
         address: 0x80,
         at: Duration::ZERO,
         word: 0x1004,

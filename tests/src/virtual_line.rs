@@ -4,6 +4,7 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use brushwork_link::UnitAddress;
 use brushwork_link::exchange::{Exchange, PacketWire};
 use brushwork_link::{Clock, HiddenSettings, Transport, TransportError, VirtualClock};
 use brushwork_protocol::packet_serial::{Address, Generation};
@@ -135,11 +136,11 @@ impl std::fmt::Debug for HiddenOf {
 }
 
 impl HiddenSettings for HiddenOf {
-    fn get(&self, _address: Address, key: &str) -> Option<i64> {
+    fn get(&self, _address: UnitAddress, key: &str) -> Option<i64> {
         self.0.with(|bus| bus.controllers()[0].settings().hidden(key).ok())
     }
 
-    fn set(&self, _address: Address, key: &str, raw: i64) -> Result<(), String> {
+    fn set(&self, _address: UnitAddress, key: &str, raw: i64) -> Result<(), String> {
         let action = brushwork_sim::world::WorldAction::SetHidden { key: key.to_owned(), value: raw };
         self.0.with(|bus| bus.controllers_mut()[0].apply(&action)).map_err(|error| format!("{error}."))
     }

@@ -83,8 +83,8 @@ fn nodes_are_found_in_both_forms_and_generations_and_nothing_moves() {
             let found = identities(&link);
             let told: Vec<_> = found.iter().map(|unit| (unit.place(), unit.model, unit.generation)).collect();
             let expected = [
-                ("node 3".to_owned(), Some("MCP266"), generation),
-                ("node 17".to_owned(), Some("MCP266"), generation),
+                ("node 3".to_owned(), Some("MCP266"), generation.into()),
+                ("node 17".to_owned(), Some("MCP266"), generation.into()),
             ];
             assert_eq!(told, expected, "{form:?}");
             assert!(

@@ -129,7 +129,7 @@ fn a_unit_on_usb_is_one_although_it_answers_all_eight_addresses() {
             })
             .collect();
         assert_eq!(found.len(), 1);
-        assert_eq!((found[0].generation, found[0].also_answers.len()), (generation, 7));
+        assert_eq!((found[0].generation, found[0].also_answers.len()), (generation.into(), 7));
         assert_eq!(found[0].notes, Vec::<String>::new());
     }
 }

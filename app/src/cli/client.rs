@@ -66,7 +66,8 @@ impl Client {
 /// Says on standard error what went wrong and gives the exit code.
 pub fn open(args: &ConnectArgs, poll: PollRate) -> Result<Session, Exit> {
     let target = target(args)?;
-    let options = SessionOptions { addresses: Addresses::Only(args.address), poll };
+    let options =
+        SessionOptions { addresses: Addresses::Only(args.address), poll, ..SessionOptions::default() };
     session::open(&target, options, SystemClock::shared(), None).map_err(|error| {
         say(error.to_string());
         Exit::NoLink

@@ -1,7 +1,7 @@
 //! `brushwork list`: serial ports, and the controllers that are simulated in this program.
 
 use brushwork_link::SystemClock;
-use brushwork_link::device::{Addresses, Event, Identity, PollRate};
+use brushwork_link::device::{Event, Identity, PollRate};
 use brushwork_link::transport::{ConnectTarget, PortInfo, list_ports};
 use brushwork_protocol::models::MODELS;
 use serde::Serialize;
@@ -79,7 +79,7 @@ fn simulated() -> Vec<SimulatedRow> {
 /// Asks all addresses of a port who is there. Reading moves no motor.
 fn scan(path: &str, interrupt: &Interrupt) -> Vec<Identity> {
     let Ok(target) = path.parse::<ConnectTarget>() else { return Vec::new() };
-    let options = SessionOptions { addresses: Addresses::Scan, poll: PollRate::Off };
+    let options = SessionOptions { poll: PollRate::Off, ..SessionOptions::default() };
     let session = match session::open(&target, options, SystemClock::shared(), None) {
         Ok(session) => session,
         Err(error) => {

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use brushwork_link::SystemClock;
-use brushwork_link::device::{Addresses, Event, Identity, PollRate};
+use brushwork_link::device::{Event, Identity, PollRate};
 use serde_json::json;
 
 use super::args::NodesArgs;
@@ -26,7 +26,7 @@ fn search(args: &NodesArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
         say(format!("Could not understand --connect {}: {error}.", args.connect));
         Exit::Usage
     })?;
-    let options = SessionOptions { addresses: Addresses::Scan, poll: PollRate::Off };
+    let options = SessionOptions { poll: PollRate::Off, ..SessionOptions::default() };
     let session = session::open(&target, options, SystemClock::shared(), None).map_err(|error| {
         say(error.to_string());
         Exit::NoLink

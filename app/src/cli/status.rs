@@ -256,7 +256,7 @@ fn dark(lamp: Lamp, client: &Client, homed: Option<[bool; 2]>) -> &'static str {
     match by_pins {
         Some(true) => "active",
         Some(false) => "OK",
-        None if lamp.is_reported(client.identity.generation, client.identity.is_mcp()) => "OK",
+        None if lamp.is_reported(client.identity.generation.layout(), client.identity.is_mcp()) => "OK",
         None => "not reported",
     }
 }

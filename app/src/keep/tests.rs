@@ -3,11 +3,12 @@
 use std::fs;
 use std::path::Path;
 
+use brushwork_link::UnitAddress;
 use brushwork_link::settings::{
     Act, Ending, Entry, Keeper, Profile, SettingValue, SettingsImage, SettingsTable, Subject,
 };
 use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::{Address, Generation};
+use brushwork_protocol::packet_serial::Generation;
 
 use super::*;
 
@@ -27,7 +28,7 @@ fn unit() -> UnitId {
 
 fn entry(act: Act, wanted: SettingsImage) -> Entry {
     let table = table();
-    Entry { act, ram: table.default_image(), table, address: Address::DEFAULT, wanted }
+    Entry { act, ram: table.default_image(), table, address: UnitAddress::DEFAULT, wanted }
 }
 
 fn one(key: &str, value: SettingValue) -> SettingsImage {
@@ -137,7 +138,7 @@ fn every_backup_can_be_opened_and_they_are_listed_newest_first() {
     let mut profile = Profile {
         subject: *table().subject(),
         firmware: String::new(),
-        address: Address::DEFAULT,
+        address: UnitAddress::DEFAULT,
         date: today(),
         unit: String::new(),
         note: String::new(),

@@ -217,7 +217,7 @@ fn read_volts(context: &mut JobContext<'_>) -> Result<f64, Failure> {
 fn reports_high(context: &mut JobContext<'_>) -> Result<bool, Failure> {
     let values = context.transact(number::READ_STATUS, &[]).map_err(|error| failed(context, &error))?;
     let word = u32::try_from(values.int("status")).unwrap_or(0);
-    let conditions = status::decode(word, context.generation());
+    let conditions = status::decode(word, context.generation().layout());
     let high = [Condition::MainBatteryHighWarning, Condition::MainBatteryHighError];
     Ok(high.into_iter().any(|condition| conditions.contains(condition)))
 }

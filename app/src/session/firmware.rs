@@ -86,10 +86,12 @@ impl LoaderPlace {
 
     fn look(&self) -> Result<Option<Box<dyn Transport>>, String> {
         let target = match &self.target {
-            ConnectTarget::Serial { baud, stream, .. } if self.changes_name => {
+            ConnectTarget::Serial { baud, stream, family, .. } if self.changes_name => {
                 let ports = list_ports().map_err(|failure| failure.to_string())?;
                 match loader_port(&ports)? {
-                    Some(path) => ConnectTarget::Serial { path, baud: *baud, stream: *stream },
+                    Some(path) => {
+                        ConnectTarget::Serial { path, baud: *baud, stream: *stream, family: *family }
+                    }
                     None => return Ok(None),
                 }
             }

@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use brushwork_link::device::can::{BusTransport, CanOpen, Monitor};
-use brushwork_link::device::{Addresses, DeviceHandle, DeviceOptions, DeviceThread, PollRate};
+use brushwork_link::device::{Addresses, DeviceHandle, DeviceOptions, DeviceThread, FamilyChoice, PollRate};
 use brushwork_link::transport::{ConnectTarget, OpenError, Stream, Transport, list_ports, ports};
 use brushwork_link::{Clock, HiddenSettings};
 use brushwork_protocol::canopen::NodeId;
@@ -32,6 +32,8 @@ pub struct Session {
 pub struct SessionOptions {
     /// Which units to look for.
     pub addresses: Addresses,
+    /// Which protocol family the units speak, where the target does not say so.
+    pub family: FamilyChoice,
     /// How often the signals are read at first.
     pub poll: PollRate,
 }
@@ -67,6 +69,7 @@ pub fn open(
             node.map_or(options, |node| SessionOptions { addresses: Addresses::Only(node.get()), ..options });
         return spawn_on_can(transport, clock, options, form, simulation);
     }
+    let options = SessionOptions { family: family_of(target, options.family), ..options };
     let stream = simulation.as_ref().map_or_else(|| stream_of(target), |running| Some(running.stream()));
     spawn(transport, clock, options, stream, simulation)
 }
@@ -125,6 +128,14 @@ fn spawn_on_can(
     Ok(Session { device: device.map_err(SessionError::Thread)?, simulation })
 }
 
+/// What the target says counts for more.
+fn family_of(target: &ConnectTarget, asked: FamilyChoice) -> FamilyChoice {
+    match target.family() {
+        FamilyChoice::Auto => asked,
+        named => named,
+    }
+}
+
 /// The stream of the controller that a port is wired to: as the user said, or as the port's name tells.
 fn stream_of(target: &ConnectTarget) -> Option<Stream> {
     target.stream().or_else(|| match target {
@@ -143,6 +154,7 @@ fn spawn(
     let hidden = simulation.clone().map(|simulation| simulation as Arc<dyn HiddenSettings>);
     let options = DeviceOptions {
         addresses: options.addresses,
+        family: options.family,
         poll: options.poll,
         stream,
         simulated: simulation.is_some(),

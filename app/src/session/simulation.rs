@@ -4,12 +4,12 @@ use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use brushwork_link::HiddenSettings;
+use brushwork_link::UnitAddress;
 use brushwork_link::script::CHECKSUM_KEY;
 use brushwork_link::transport::{ChannelTransport, Stream};
 use brushwork_protocol::canopen::NodeId;
 use brushwork_protocol::canopen::adapter::Form;
 use brushwork_protocol::crc::crc16_xmodem;
-use brushwork_protocol::packet_serial::Address;
 use brushwork_script::debug::{Request, View, Wanted};
 use brushwork_sim::controller::{Bus, BusError, Controller, ControllerConfig};
 use brushwork_sim::machine::StreamIndex;
@@ -23,7 +23,7 @@ use super::sim_spec::{SimSpec, SimSpecError, UnitSpec};
 /// One or more simulated controllers on one line, and the worlds around them.
 pub struct Simulation {
     text: String,
-    addresses: Vec<Address>,
+    addresses: Vec<UnitAddress>,
     stream: Stream,
     can_form: Option<Form>,
     nodes: Vec<NodeId>,
@@ -81,7 +81,7 @@ impl Simulation {
         let options = ServerOptions { stream: index, seed: spec.seed, ..ServerOptions::default() };
         let server = Server::spawn(bus, options, &Endpoint::Channel).map_err(SimulationError::Server)?;
         let nodes = spec.units.iter().map(|unit| unit.node).collect();
-        let addresses = spec.units.iter().map(|unit| unit.address).collect();
+        let addresses = spec.units.iter().map(|unit| unit.address.into()).collect();
         Ok(Self {
             text: text.to_owned(),
             addresses,
@@ -165,12 +165,12 @@ impl Simulation {
     pub fn unit_of(&self, id: u8) -> Option<usize> {
         match self.can_form {
             Some(_) => self.nodes.iter().position(|node| node.get() == id),
-            None => self.unit_at(Address::new(id)?),
+            None => self.unit_at(UnitAddress::new(id)?),
         }
     }
 
     /// Which unit, counted from 0, has the address it was started with.
-    pub fn unit_at(&self, address: Address) -> Option<usize> {
+    pub fn unit_at(&self, address: UnitAddress) -> Option<usize> {
         self.addresses.iter().position(|unit| *unit == address)
     }
 }
@@ -182,7 +182,7 @@ impl fmt::Debug for Simulation {
 }
 
 impl HiddenSettings for Simulation {
-    fn get(&self, address: Address, key: &str) -> Option<i64> {
+    fn get(&self, address: UnitAddress, key: &str) -> Option<i64> {
         let unit = self.unit_at(address)?;
         if key == CHECKSUM_KEY {
             let look = move |bus: &mut Bus| Some(crc16_xmodem(bus.controllers().get(unit)?.script_image()));
@@ -193,7 +193,7 @@ impl HiddenSettings for Simulation {
         self.server.inspect(look).ok().flatten()
     }
 
-    fn set(&self, address: Address, key: &str, value: i64) -> Result<(), String> {
+    fn set(&self, address: UnitAddress, key: &str, value: i64) -> Result<(), String> {
         let unit =
             self.unit_at(address).ok_or_else(|| format!("There is no simulated unit at {address}."))?;
         let action = WorldAction::SetHidden { key: key.to_owned(), value };
@@ -279,10 +279,10 @@ mod tests {
     #[test]
     fn hidden_settings_reach_the_unit_at_their_address() {
         let simulation = Simulation::start("mcp266,address=0x80,address=0x81").unwrap();
-        let address = Address::new(0x81).unwrap();
+        let address = UnitAddress::new(0x81).unwrap();
         HiddenSettings::set(&simulation, address, "unit.bridge_channels", 1).unwrap();
         assert_eq!(HiddenSettings::get(&simulation, address, "unit.bridge_channels"), Some(1));
-        assert_eq!(HiddenSettings::get(&simulation, Address::DEFAULT, "unit.bridge_channels"), Some(0));
+        assert_eq!(HiddenSettings::get(&simulation, UnitAddress::DEFAULT, "unit.bridge_channels"), Some(0));
         assert!(HiddenSettings::set(&simulation, address, "no.such", 1).is_err());
     }
 

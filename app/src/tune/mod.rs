@@ -69,7 +69,8 @@ struct JobCarrier<'a, 'b> {
 
 impl Carrier for JobCarrier<'_, '_> {
     fn transact(&mut self, command: u8, values: &[(&str, i64)]) -> Result<(Exchange, Values), AxisError> {
-        let packet = Packet::named(self.context.address(), command, self.context.generation(), values)
+        let address = self.context.address().packets().unwrap_or_default();
+        let packet = Packet::named(address, command, self.generation(), values)
             .map_err(|error| AxisError::Refused(error.to_string()))?;
         let values: Vec<i64> = packet.values.iter().filter_map(Value::as_int).collect();
         let reply = self.context.transact_timed(command, &values).map_err(|error| told(&error))?;
@@ -91,7 +92,7 @@ impl Carrier for JobCarrier<'_, '_> {
     }
 
     fn generation(&self) -> Generation {
-        self.context.generation()
+        self.context.generation().layout()
     }
 
     fn stream(&self) -> Option<usize> {

@@ -427,11 +427,11 @@ impl std::fmt::Debug for BenchHidden {
 }
 
 impl HiddenSettings for BenchHidden {
-    fn get(&self, _address: Address, key: &str) -> Option<i64> {
+    fn get(&self, _address: brushwork_link::UnitAddress, key: &str) -> Option<i64> {
         self.0.with(|bus| bus.controllers()[0].settings().hidden(key).ok())
     }
 
-    fn set(&self, _address: Address, key: &str, raw: i64) -> Result<(), String> {
+    fn set(&self, _address: brushwork_link::UnitAddress, key: &str, raw: i64) -> Result<(), String> {
         let action = WorldAction::SetHidden { key: key.to_owned(), value: raw };
         self.0.with(|bus| bus.controllers_mut()[0].apply(&action)).map_err(|error| format!("{error}."))
     }

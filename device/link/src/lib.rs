@@ -14,10 +14,12 @@ pub mod settings;
 #[cfg(test)]
 mod testing;
 pub mod transport;
+pub mod unit;
 pub mod wire;
 
 pub use clock::{Clock, SystemClock, VirtualClock};
 pub use exchange::{ExchangeError, Interruption, LinkStatistics};
 pub use failure::Failure;
 pub use transport::{ConnectTarget, Stream, Transport, TransportError};
+pub use unit::{FirmwareGeneration, UnitAddress};
 pub use wire::{HiddenSettings, Wire};

@@ -1,11 +1,13 @@
 //! What settings code and jobs see of a controller: commands to one unit, and the time.
 
 use crate::exchange::ExchangeError;
-use brushwork_protocol::packet_serial::{Address, Generation, Request, Value, Values};
+use crate::unit::{FirmwareGeneration, UnitAddress};
+use brushwork_protocol::packet_serial::{Request, Value, Values};
 use std::fmt;
 use std::time::Duration;
 
-/// Packet serial to one unit. Behind it stand deadlines, retries, the Stop flag and the arming rule.
+/// Commands to one unit, in the words of its family: packet serial's numbers and layouts, or the Motion Mind's
+/// ([`crate::device::motion_mind`]). Behind it stand deadlines, retries, the Stop flag and the arming rule.
 ///
 /// After an error whose [`ExchangeError::interruption`] is set every further call fails the same way: whoever holds the
 /// wire should return.
@@ -15,10 +17,10 @@ pub trait Wire {
     fn transact_values(&mut self, command: u8, values: Vec<Value>) -> Result<Values, ExchangeError>;
 
     /// The unit's address.
-    fn address(&self) -> Address;
+    fn address(&self) -> UnitAddress;
 
     /// The generation of the unit's firmware.
-    fn generation(&self) -> Generation;
+    fn generation(&self) -> FirmwareGeneration;
 
     /// Whether the unit is simulated in this program, so that guesses about the wire may be sent to it.
     fn is_simulated(&self) -> bool;
@@ -40,13 +42,19 @@ pub trait Wire {
     /// Sends a command whose raw numbers are given by field name, put in the order of this generation's layout; names
     /// that the layout lacks are left out.
     fn transact_named(&mut self, command: u8, named: &[(&str, i64)]) -> Result<Values, ExchangeError> {
-        let request = Request::named(self.address(), command, self.generation(), named)
+        let (Some(address), Some(generation)) = (self.address().packets(), self.generation().packet_serial())
+        else {
+            // The layouts of other families have one order.
+            return self
+                .transact_values(command, named.iter().map(|(_, value)| Value::Int(*value)).collect());
+        };
+        let request = Request::named(address, command, generation, named)
             .map_err(|source| ExchangeError::Encode { source })?;
         self.transact_values(command, request.values)
     }
 
     /// Speaks to another address from now on: the unit has just been given it. `false` when this wire cannot follow.
-    fn set_address(&mut self, _address: Address) -> bool {
+    fn set_address(&mut self, _address: UnitAddress) -> bool {
         false
     }
 
@@ -71,8 +79,8 @@ pub trait Wire {
 /// own world. A real controller has no such thing, so a guess cannot reach one.
 pub trait HiddenSettings: fmt::Debug + Send + Sync {
     /// The raw value behind a key of the settings table; `None` if the unit has no such setting.
-    fn get(&self, address: Address, key: &str) -> Option<i64>;
+    fn get(&self, address: UnitAddress, key: &str) -> Option<i64>;
 
     /// Sets it; an error is a sentence.
-    fn set(&self, address: Address, key: &str, raw: i64) -> Result<(), String>;
+    fn set(&self, address: UnitAddress, key: &str, raw: i64) -> Result<(), String>;
 }

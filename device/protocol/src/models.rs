@@ -1,16 +1,18 @@
-//! The motor controllers of the MCP / RoboClaw family: ratings, input pins and digital outputs.
+//! The motor controllers: ratings, input pins and digital outputs.
 //!
 //! One list for everybody: the client takes ranges and pin names from it, the simulated controller its
 //! limits. It holds no protocol and no settings. What the manual does not print is marked in
 //! [`Model::assumed`]; on a real unit the counts that commands 138 and 144 return win over the lists here.
 
-/// Which of the two product lines a model belongs to. They share packet serial, not all settings.
+/// Which product line a model belongs to. MCP and RoboClaw share packet serial, not all settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Family {
     /// MCP: configurable pins, streams and priority levels (commands 137 to 147).
     Mcp,
     /// RoboClaw: pins S1 to S5 and the configuration word (commands 74 to 77, 98, 99).
     RoboClaw,
+    /// Motion Mind 3: one motor, registers, protocols of its own (`motion_mind`).
+    MotionMind,
 }
 
 impl Family {
@@ -19,7 +21,13 @@ impl Family {
         match self {
             Self::Mcp => "MCP",
             Self::RoboClaw => "RoboClaw",
+            Self::MotionMind => "Motion Mind",
         }
+    }
+
+    /// Whether its controllers speak packet serial.
+    pub fn speaks_packets(self) -> bool {
+        self != Self::MotionMind
     }
 }
 
@@ -56,7 +64,10 @@ pub struct Model {
 impl Model {
     /// The model's current channels as on the label, e.g. "2x60A".
     pub fn rating(&self) -> &'static str {
-        self.title.rsplit(' ').next().unwrap_or(self.title)
+        match self.family {
+            Family::MotionMind => "1x9A",
+            Family::Mcp | Family::RoboClaw => self.title.rsplit(' ').next().unwrap_or(self.title),
+        }
     }
 
     /// Whether a stream (by the index of command 145) shares its lines with an encoder. Such a UART keeps the
@@ -122,6 +133,7 @@ pub fn lookup(name: &str) -> Option<&'static Model> {
     MODELS
         .iter()
         .chain(UNLISTED)
+        .chain([&MOTION_MIND_3])
         .find(|model| model.key.eq_ignore_ascii_case(name) || model.name.eq_ignore_ascii_case(name))
 }
 
@@ -135,7 +147,8 @@ pub fn identify(version: &str) -> Option<&'static Model> {
         MODELS.iter().find(|model| first == model.key)
     };
     let by_line = || UNLISTED.iter().find(|model| version.contains(&model.title.to_ascii_lowercase()));
-    by_title.or_else(by_name).or_else(by_line)
+    let is_motion_mind = version.starts_with(&MOTION_MIND_3.title.to_ascii_lowercase());
+    by_title.or_else(by_name).or_else(by_line).or(is_motion_mind.then_some(&MOTION_MIND_3))
 }
 
 /// Every model, MCP first, small to large.
@@ -193,6 +206,22 @@ pub static MODELS: &[Model] = &[
         assumed: "Peak current 15 A and a 6 V to 34 V main battery, as its data sheets state; not in the MCP manual.",
     },
 ];
+
+/// The one controller of the second family (Motion Mind manual 3.1). It is not in [`MODELS`], which lists what speaks packet serial.
+pub static MOTION_MIND_3: Model = Model {
+    key: "motion-mind-3",
+    name: "Motion Mind 3",
+    title: "Motion Mind 3",
+    family: Family::MotionMind,
+    max_amps: 20.46,
+    main_volts: (6.0, 24.0),
+    logic_volts: (0.0, 0.0),
+    pins: &[],
+    douts: 0,
+    streams: 0,
+    second_temperature: false,
+    assumed: "",
+};
 
 /// What stands for a board that is not in [`MODELS`]: bounds as wide as its line has them, no named pins. Its
 /// own data sheet says what it stands; commands 138, 144 and 146 say how many pins, streams and outputs it

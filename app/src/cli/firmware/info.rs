@@ -17,12 +17,12 @@ pub fn run(args: &InfoArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
     let client = Client::connect(&args.connect, PollRate::Off, interrupt)?;
     let identity = &client.identity;
     let family = models::identify(&identity.version_text).map(|model| model.family);
-    let known: Vec<&Quirk> = quirks(family, identity.generation, &identity.firmware).collect();
+    let known: Vec<&Quirk> = quirks(family, identity.generation.layout(), &identity.firmware).collect();
     let sizes = family.map(image_sizes).unwrap_or_default();
     if args.json {
         out.json(&json!({
             "identity": identity,
-            "generation": generation_text(identity.generation),
+            "generation": generation_text(identity.generation.layout()),
             "known": known,
             "image_bytes": sizes,
         }))?;
@@ -33,7 +33,7 @@ pub fn run(args: &InfoArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
     out.line(format!(
         "Generation:  {}. {}",
         identity.generation.number(),
-        generation_text(identity.generation)
+        generation_text(identity.generation.layout())
     ))?;
     for note in &identity.notes {
         out.line(format!("             {note}"))?;

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use brushwork_link::Stream;
+use brushwork_link::UnitAddress;
 use brushwork_link::device::{
     DeviceHandle, Event, FnJob, Identity, JobContext, JobEnding, JobReport, PollRate, Request,
 };
 use brushwork_link::settings::{Keeper, Profile, ReadReport, SettingsImage, Subject, WriteOptions, read_all};
 use brushwork_link::transport::list_ports;
 use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::Address;
 use crossbeam_channel::bounded;
 
 use super::unfinished;
@@ -80,8 +80,8 @@ impl<'i> Controller<'i> {
     }
 
     /// Its address when it was connected.
-    pub fn address(&self) -> Address {
-        Address::new(self.identity().address).unwrap_or(Address::DEFAULT)
+    pub fn address(&self) -> UnitAddress {
+        self.identity().unit_address()
     }
 
     /// The link.

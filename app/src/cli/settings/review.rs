@@ -1,9 +1,9 @@
 //! What a write will do, for people and as JSON: the changes with their units, and the commands that make them.
 
+use brushwork_link::UnitAddress;
 use brushwork_link::settings::{
     Plan, Refusal, SettingValue, SettingsImage, SettingsTable, WriteOptions, diff, plan,
 };
-use brushwork_protocol::packet_serial::{Address, Request, describe_request};
 use serde::Serialize;
 
 /// What a write will do.
@@ -57,7 +57,7 @@ impl Review {
         ram: &SettingsImage,
         wanted: &SettingsImage,
         options: WriteOptions,
-        address: Address,
+        address: UnitAddress,
     ) -> Result<Self, Vec<Refusal>> {
         let plan = plan(table, ram, wanted, options)?;
         let mut after = ram.clone();
@@ -128,17 +128,12 @@ pub fn settings_count(count: usize) -> String {
     if count == 1 { "1 setting".to_owned() } else { format!("{count} settings") }
 }
 
-fn commands(table: &SettingsTable, plan: &Plan, address: Address) -> Vec<PlannedCommand> {
+fn commands(table: &SettingsTable, plan: &Plan, address: UnitAddress) -> Vec<PlannedCommand> {
     let generation = table.subject().generation;
-    let planned = |step: &brushwork_link::settings::Step| {
-        let request = Request::named(address, step.command, generation, &step.arguments);
-        let bytes = step.bytes(address, generation).map_err(|error| error.to_string());
-        PlannedCommand {
-            text: request
-                .map_or_else(|error| error.to_string(), |request| describe_request(&request, generation)),
-            bytes: bytes.map_or_else(|error| error, |bytes| hexadecimal(&bytes)),
-            keys: step.keys.clone(),
-        }
+    let planned = |step: &brushwork_link::settings::Step| PlannedCommand {
+        text: step.words(address, generation),
+        bytes: step.bytes(address, generation).map_or_else(|error| error, |bytes| hexadecimal(&bytes)),
+        keys: step.keys.clone(),
     };
     plan.steps.iter().map(planned).collect()
 }

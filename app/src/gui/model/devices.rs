@@ -3,6 +3,7 @@
 use super::desk::{Desk, DeskId, place_of};
 use brushwork_link::Failure;
 use brushwork_link::device::Addresses;
+use brushwork_link::device::FamilyChoice;
 use brushwork_link::transport::target::DEFAULT_BAUD;
 use brushwork_link::transport::{ConnectTarget, PortInfo, TargetError};
 
@@ -158,7 +159,12 @@ impl Devices {
             Choice::Simulated => SIMULATED.parse(),
             Choice::Port(name) => {
                 let stream = self.chosen_port().and_then(|port| port.stream);
-                Ok(ConnectTarget::Serial { path: name.clone(), baud: self.baud, stream })
+                Ok(ConnectTarget::Serial {
+                    path: name.clone(),
+                    baud: self.baud,
+                    stream,
+                    family: FamilyChoice::Auto,
+                })
             }
             Choice::Desk(_) | Choice::Typed => {
                 let mut target = self.typed.parse()?;

@@ -4,13 +4,13 @@
 use std::path::Path;
 use std::time::Duration;
 
+use brushwork_link::UnitAddress;
 use brushwork_link::device::{Event, FnJob, Identity, Request};
 use brushwork_link::firmware::{Progress, RESUME_NOTE, Sent, risks, suit};
 use brushwork_link::settings::{Act, Profile, ReadReport, Subject, diff, read_all};
 use brushwork_link::transport::Stream;
 use brushwork_protocol::loader::{Image, SimulatedImage};
 use brushwork_protocol::models::{self, Model};
-use brushwork_protocol::packet_serial::Address;
 use crossbeam_channel::{Receiver, bounded};
 
 use crate::gui::files::{FileAnswer, FileDialog, FileKind, FileWish};
@@ -367,7 +367,7 @@ fn back_up(
     let (read, to_keep) = bounded::<Result<ReadReport, String>>(1);
     let (sender, kept) = bounded(1);
     let firmware = identity.version_text.clone();
-    let address = Address::new(identity.address).unwrap_or_default();
+    let address = identity.unit_address();
     let keep = move || {
         let report = to_keep.recv_timeout(READ_LIMIT).map_err(|_| "The settings were not read.".to_owned());
         let done = report.and_then(|report| keep(report?, firmware, address, &unit, &store));
@@ -388,7 +388,7 @@ fn back_up(
 fn keep(
     report: ReadReport,
     firmware: String,
-    address: Address,
+    address: UnitAddress,
     unit: &UnitId,
     store: &Store,
 ) -> Result<Kept, String> {

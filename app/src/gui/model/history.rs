@@ -292,6 +292,7 @@ mod tests {
 
     fn report(at_s: u64, conditions: &[Condition]) -> Event {
         Event::Status(StatusReport {
+            signs: &[],
             address: 0x80,
             at: Duration::from_secs(at_s),
             word: 0,

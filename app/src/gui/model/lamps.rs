@@ -15,8 +15,8 @@ impl Lamps {
     pub fn of(report: &StatusReport, identity: Option<&Identity>, homed: Option<[bool; 2]>) -> Self {
         let mut lamps = Self::default();
         for lamp in Lamp::ALL {
-            let told =
-                identity.is_none_or(|identity| lamp.is_reported(identity.generation, identity.is_mcp()));
+            let told = identity
+                .is_none_or(|identity| lamp.is_reported(identity.generation.layout(), identity.is_mcp()));
             let dark = if told { LampState::Ok } else { LampState::NotApplicable };
             lamps.0[lamp as usize] = report.lamp(lamp).map_or(dark, state_of);
         }
@@ -86,7 +86,8 @@ mod tests {
             version_text: model.to_owned(),
             model: Some(model),
             firmware: "1.0.0".to_owned(),
-            generation,
+            generation: generation.into(),
+            motion_mind: None,
             also_answers: Vec::new(),
             simulated: true,
             port: "sim:mcp266".to_owned(),
@@ -97,6 +98,7 @@ mod tests {
     fn report(conditions: &[Condition]) -> StatusReport {
         let conditions = conditions.iter().copied().collect();
         StatusReport {
+            signs: &[],
             address: 0x80,
             at: Duration::ZERO,
             word: 0,

@@ -77,13 +77,13 @@ fn installed_ui(ui: &mut Ui, identity: &Identity) {
     ui.label(format!(
         "{}. {}",
         capital(&identity.generation.to_string()),
-        generation_text(identity.generation)
+        generation_text(identity.generation.layout())
     ));
     ui.add_space(8.0);
     heading_ui(ui, "What is known about it");
     let family = models::identify(&identity.version_text).map(|model| model.family);
     Grid::new("known firmware").num_columns(2).striped(true).spacing(vec2(12.0, 4.0)).show(ui, |ui| {
-        for quirk in quirks(family, identity.generation, &identity.firmware) {
+        for quirk in quirks(family, identity.generation.layout(), &identity.firmware) {
             ui.label(RichText::new(quirk.topic).strong());
             let text = ui.add(egui::Label::new(quirk.text).wrap());
             text.on_hover_text(format!("From: {}", quirk.source));

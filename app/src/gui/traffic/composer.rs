@@ -45,7 +45,7 @@ pub fn composer_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 
 fn unit(desk: &Desk) -> Option<(Address, Generation)> {
     let identity = desk.link.identity()?;
-    Some((Address::new(identity.address)?, identity.generation))
+    Some((identity.unit_address().packets()?, identity.generation.packet_serial()?))
 }
 
 /// What may go out: as the device thread will judge too.

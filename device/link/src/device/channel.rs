@@ -43,6 +43,14 @@ pub enum Channel {
     M1PositionError,
     /// Motor 2's position error as the controller reports it, counts.
     M2PositionError,
+    /// Width of the R/C pulse of a Motion Mind, ms.
+    RcPulse,
+    /// Analog control input of a Motion Mind, V.
+    AnalogControl,
+    /// Analog feedback input of a Motion Mind, V.
+    AnalogFeedback,
+    /// Position at the last index pulse of a Motion Mind, counts.
+    IndexPosition,
     /// How far input 1 is in its range, %.
     Signal1,
     /// How far input 2 is in its range, %.
@@ -83,10 +91,65 @@ pub enum Channel {
 
 impl Channel {
     /// How many channels there are.
-    pub const COUNT: usize = 18 + Self::SIGNALS;
+    pub const COUNT: usize = 22 + Self::SIGNALS;
 
     /// How many of them are input pins; no model of the family has more. They come last and are read on request only.
     pub const SIGNALS: usize = 18;
+
+    /// What an MCP or RoboClaw can tell; pins as far as the model has them.
+    pub const PACKET_SERIAL: &'static [Self] = &[
+        Self::M1Setpoint,
+        Self::M1Pwm,
+        Self::M1Velocity,
+        Self::M1Position,
+        Self::M1Current,
+        Self::M2Setpoint,
+        Self::M2Pwm,
+        Self::M2Velocity,
+        Self::M2Position,
+        Self::M2Current,
+        Self::Temperature1,
+        Self::Temperature2,
+        Self::MainBattery,
+        Self::LogicBattery,
+        Self::M1SpeedError,
+        Self::M2SpeedError,
+        Self::M1PositionError,
+        Self::M2PositionError,
+        Self::Signal1,
+        Self::Signal2,
+        Self::Signal3,
+        Self::Signal4,
+        Self::Signal5,
+        Self::Signal6,
+        Self::Signal7,
+        Self::Signal8,
+        Self::Signal9,
+        Self::Signal10,
+        Self::Signal11,
+        Self::Signal12,
+        Self::Signal13,
+        Self::Signal14,
+        Self::Signal15,
+        Self::Signal16,
+        Self::Signal17,
+        Self::Signal18,
+    ];
+
+    /// What a Motion Mind can tell.
+    pub const MOTION_MIND: &'static [Self] = &[
+        Self::M1Setpoint,
+        Self::M1Pwm,
+        Self::M1Velocity,
+        Self::M1Position,
+        Self::M1Current,
+        Self::Temperature1,
+        Self::M1PositionError,
+        Self::RcPulse,
+        Self::AnalogControl,
+        Self::AnalogFeedback,
+        Self::IndexPosition,
+    ];
 
     /// All of them in the order of their index.
     pub const ALL: [Self; Self::COUNT] = [
@@ -108,6 +171,10 @@ impl Channel {
         Self::M2SpeedError,
         Self::M1PositionError,
         Self::M2PositionError,
+        Self::RcPulse,
+        Self::AnalogControl,
+        Self::AnalogFeedback,
+        Self::IndexPosition,
         Self::Signal1,
         Self::Signal2,
         Self::Signal3,
@@ -156,6 +223,10 @@ impl Channel {
             Self::M2SpeedError => "M2 Speed Error",
             Self::M1PositionError => "M1 Position Error",
             Self::M2PositionError => "M2 Position Error",
+            Self::RcPulse => "R/C Pulse",
+            Self::AnalogControl => "Analog Control",
+            Self::AnalogFeedback => "Analog Feedback",
+            Self::IndexPosition => "Index Position",
             Self::Signal1 => "DIN1",
             Self::Signal2 => "DIN2",
             Self::Signal3 => "DIN3",
@@ -180,7 +251,7 @@ impl Channel {
     /// Name for files and the command line: snake_case.
     #[must_use]
     pub fn key(self) -> String {
-        self.label().to_ascii_lowercase().replace(' ', "_")
+        self.label().to_ascii_lowercase().replace(['/', ' '], "_")
     }
 
     /// The unit of its values. A setpoint has the unit of the command it came with, so it has none here.
@@ -193,7 +264,9 @@ impl Channel {
             Self::M1Position | Self::M2Position | Self::M1PositionError | Self::M2PositionError => "counts",
             Self::M1Current | Self::M2Current => "A",
             Self::Temperature1 | Self::Temperature2 => "°C",
-            Self::MainBattery | Self::LogicBattery => "V",
+            Self::MainBattery | Self::LogicBattery | Self::AnalogControl | Self::AnalogFeedback => "V",
+            Self::IndexPosition => "counts",
+            Self::RcPulse => "ms",
             _ => "%",
         }
     }

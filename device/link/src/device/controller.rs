@@ -9,7 +9,7 @@ use super::identity::Identity;
 use super::options::DeviceOptions;
 use super::signals::Guard;
 use super::status::StatusReport;
-use super::stop::UnitStop;
+use super::stop::{StopBytes, UnitStop};
 use crate::exchange::packet::Permit;
 use crate::exchange::{Exchange, ExchangeError, RETRIES, Reply, Watch};
 use crate::failure::Failure;
@@ -71,7 +71,7 @@ pub trait Controller: Send {
     fn drive(&mut self, line: &mut Line<'_>, drive: &Drive) -> Result<(), ExchangeError>;
 
     /// The bytes that stop this unit, to be written without waiting for anything. With `scripts`, a script is stopped first.
-    fn stop_bytes(&self, scripts: bool) -> Vec<u8>;
+    fn stop_bytes(&self, scripts: bool) -> StopBytes;
 
     /// Stops the unit once more, this time asking for its confirmation, and empties its buffers.
     fn confirm_stop(&mut self, line: &mut Line<'_>, scripts: bool) -> Result<UnitStop, ExchangeError>;
@@ -152,7 +152,12 @@ pub trait Family: Send {
     ) -> Result<Vec<Box<dyn Controller>>, DiscoverError>;
 
     /// The bytes that stop every unit that may be there, for a Stop before any was found.
-    fn stop_bytes(&self) -> Vec<u8>;
+    fn stop_bytes(&self) -> StopBytes;
+
+    /// The bytes that stop all these units at once, where the family can address them all; else each is stopped by its own.
+    fn stop_all_bytes(&self, _units: &[&Identity]) -> Option<StopBytes> {
+        None
+    }
 }
 
 /// Why no unit was found.
@@ -179,12 +184,25 @@ pub struct Line<'a> {
     retries: u32,
     stopping: bool,
     moved: Cell<bool>,
+    progress: Option<&'a mut Progress<'a>>,
 }
+
+/// Takes how far a search is: done, of how many, what is looked for.
+pub type Progress<'a> = dyn FnMut(usize, usize, &str) + 'a;
 
 impl<'a> Line<'a> {
     /// A line for an act that was asked for at `asked_at`.
     pub fn new(exchange: &'a mut Exchange, guard: &'a Guard, permit: Permit, asked_at: Duration) -> Self {
-        Self { exchange, guard, permit, asked_at, retries: RETRIES, stopping: false, moved: Cell::new(false) }
+        Self {
+            exchange,
+            guard,
+            permit,
+            asked_at,
+            retries: RETRIES,
+            stopping: false,
+            moved: Cell::new(false),
+            progress: None,
+        }
     }
 
     /// A line for stopping: driving commands pass and do not count as motion. For duty zero alone.
@@ -198,6 +216,7 @@ impl<'a> Line<'a> {
             retries: STOP_RETRIES,
             stopping: true,
             moved: Cell::new(false),
+            progress: None,
         }
     }
 
@@ -206,6 +225,20 @@ impl<'a> Line<'a> {
     pub fn with_retries(mut self, retries: u32) -> Self {
         self.retries = retries;
         self
+    }
+
+    /// Tells `progress` how far a search is.
+    #[must_use]
+    pub fn with_progress(mut self, progress: &'a mut Progress<'a>) -> Self {
+        self.progress = Some(progress);
+        self
+    }
+
+    /// Tells whoever waits how far a search is.
+    pub fn report_progress(&mut self, done: usize, of: usize, what: &str) {
+        if let Some(progress) = &mut self.progress {
+            progress(done, of, what);
+        }
     }
 
     /// The exchange underneath.

@@ -18,6 +18,15 @@ use std::time::Duration;
 pub enum Event {
     /// A unit answered and was identified. One for each unit of the link, then [`Event::Selected`].
     Connected(Identity),
+    /// Units are looked for, which takes a while: so many of so many places are done.
+    Searching {
+        /// Places that were asked.
+        done: usize,
+        /// Places in all.
+        of: usize,
+        /// What is asked now.
+        what: String,
+    },
     /// The unit that requests speak of from now on.
     Selected {
         /// Its address.

@@ -3,8 +3,9 @@
 use super::channel::Sample;
 use super::drive::Drive;
 use crate::exchange::{ExchangeError, Interruption, Reply};
+use crate::unit::{FirmwareGeneration, UnitAddress};
 use crate::wire::{HiddenSettings, Wire};
-use brushwork_protocol::packet_serial::{Address, Generation, Value, Values};
+use brushwork_protocol::packet_serial::{Value, Values};
 use std::time::Duration;
 
 /// What the device thread does for a job.
@@ -16,12 +17,12 @@ pub(super) trait JobHost {
     fn progress(&mut self, fraction: Option<f32>, text: &str);
     fn sample(&mut self, sample: Sample);
     fn set_polling(&mut self, on: bool);
-    fn address(&self) -> Address;
-    fn generation(&self) -> Generation;
+    fn address(&self) -> UnitAddress;
+    fn generation(&self) -> FirmwareGeneration;
     fn is_simulated(&self) -> bool;
     fn now(&self) -> Duration;
     fn port(&self) -> String;
-    fn set_address(&mut self, address: Address) -> bool;
+    fn set_address(&mut self, address: UnitAddress) -> bool;
     fn hidden_settings(&self) -> Option<&dyn HiddenSettings>;
 }
 
@@ -75,11 +76,11 @@ impl Wire for JobContext<'_> {
         self.host.transact(command, values).map(|reply| reply.values)
     }
 
-    fn address(&self) -> Address {
+    fn address(&self) -> UnitAddress {
         self.host.address()
     }
 
-    fn generation(&self) -> Generation {
+    fn generation(&self) -> FirmwareGeneration {
         self.host.generation()
     }
 
@@ -99,7 +100,7 @@ impl Wire for JobContext<'_> {
         self.host.port()
     }
 
-    fn set_address(&mut self, address: Address) -> bool {
+    fn set_address(&mut self, address: UnitAddress) -> bool {
         self.host.set_address(address)
     }
 

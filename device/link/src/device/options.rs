@@ -1,5 +1,6 @@
 //! How a link is opened.
 
+use super::family::FamilyChoice;
 use super::request::PollRate;
 use crate::transport::Stream;
 use crate::wire::HiddenSettings;
@@ -8,7 +9,7 @@ use std::sync::Arc;
 /// Which units of a bus to look for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Addresses {
-    /// All that the family has, 0x80 to 0x87.
+    /// All that the family has: 0x80 to 0x87, or 1 to 98 for Motion Minds.
     #[default]
     Scan,
     /// This one alone.
@@ -20,6 +21,8 @@ pub enum Addresses {
 pub struct DeviceOptions {
     /// Which units to look for.
     pub addresses: Addresses,
+    /// Which protocol family the units speak.
+    pub family: FamilyChoice,
     /// Which of the controller's streams the port is wired to; `None` when nobody knows yet.
     pub stream: Option<Stream>,
     /// Whether the controller is simulated in this program: guesses about the wire may then be sent.
@@ -38,6 +41,7 @@ impl Default for DeviceOptions {
     fn default() -> Self {
         Self {
             addresses: Addresses::Scan,
+            family: FamilyChoice::Auto,
             stream: None,
             simulated: false,
             hidden: None,

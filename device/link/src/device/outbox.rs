@@ -88,6 +88,7 @@ fn can_be_missed(event: &Event) -> bool {
         Event::Sample(_)
             | Event::Traffic { .. }
             | Event::Link(_)
+            | Event::Searching { .. }
             | Event::Status(_)
             | Event::JobProgress { .. }
     )

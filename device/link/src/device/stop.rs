@@ -3,6 +3,46 @@
 use crate::failure::Failure;
 use std::time::Duration;
 
+/// The bytes of a stop, to be written without waiting for anything.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct StopBytes {
+    /// What may be written at one go; the first of them matters most.
+    pub frames: Vec<Vec<u8>>,
+    /// Silence between two of them, where the family's controllers need one.
+    pub gap: Duration,
+}
+
+impl StopBytes {
+    /// Bytes that may all be written at one go.
+    #[must_use]
+    pub fn at_once(bytes: Vec<u8>) -> Self {
+        Self { frames: vec![bytes], gap: Duration::ZERO }
+    }
+
+    /// These, then those.
+    #[must_use]
+    pub fn then(mut self, later: Self) -> Self {
+        self.gap = self.gap.max(later.gap);
+        self.frames.extend(later.frames);
+        if self.gap.is_zero() {
+            self.frames = vec![self.frames.concat()];
+        }
+        self
+    }
+
+    /// All the bytes, without the silence.
+    #[must_use]
+    pub fn concat(&self) -> Vec<u8> {
+        self.frames.concat()
+    }
+
+    /// Whether there is nothing to write.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.frames.iter().all(Vec::is_empty)
+    }
+}
+
 /// A stop, from the key to the controllers' answers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StopReport {

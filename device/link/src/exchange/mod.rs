@@ -16,6 +16,7 @@ pub use trace::Traffic;
 pub use watch::{Interruption, Unwatched, Watch};
 
 use crate::clock::Clock;
+use crate::device::StopBytes;
 use crate::transport::Transport;
 use std::sync::Arc;
 use std::time::Duration;
@@ -104,6 +105,8 @@ pub struct Exchange {
     last_reply_at: Duration,
     /// Time that every reply may take beyond what the link and its request need.
     patience: Duration,
+    /// Counts in place of the transport's own while a search is on.
+    latency: Option<Duration>,
 }
 
 impl Exchange {
@@ -121,6 +124,7 @@ impl Exchange {
             sent: false,
             last_reply_at: now,
             patience: Duration::ZERO,
+            latency: None,
         }
     }
 
@@ -161,6 +165,37 @@ impl Exchange {
         self.unsettled = true;
         self.write(bytes)?;
         Ok(self.clock.now())
+    }
+
+    /// Writes the bytes of a stop at once, with the silence between its frames that the controllers need.
+    pub fn write_stop(&mut self, stop: &StopBytes) -> Result<Duration, ExchangeError> {
+        let mut written_at = self.clock.now();
+        for (index, frame) in stop.frames.iter().enumerate() {
+            if index > 0 {
+                let before = u32::try_from(stop.frames[index - 1].len()).unwrap_or(u32::MAX);
+                let on_the_wire = self.transport.byte_time().unwrap_or_default().saturating_mul(before);
+                self.clock.sleep(on_the_wire + stop.gap);
+            }
+            written_at = self.write_now(frame)?;
+        }
+        Ok(written_at)
+    }
+
+    /// Sends a request once and waits for its reply for no longer than `patience` beyond the time on the wire: is anybody there?
+    /// Somebody who is slower than that is not heard.
+    pub fn exchange_within(
+        &mut self,
+        bytes: &[u8],
+        reply_length: usize,
+        patience: Duration,
+        watch: &dyn Watch,
+        judge: &mut dyn FnMut(&[u8]) -> Judgement,
+    ) -> Result<Span, ExchangeError> {
+        self.latency = Some(Duration::ZERO);
+        let request = Outgoing { bytes, reply_length, patience, retries: 0, once: false };
+        let span = self.exchange(&request, watch, judge);
+        self.latency = None;
+        span
     }
 
     /// Waits until the line has been quiet for [`RECOVERY`], throwing away what comes.
@@ -311,7 +346,10 @@ impl Exchange {
     fn allowance(&self, request: &Outgoing<'_>, bytes: usize) -> Duration {
         let bytes = u32::try_from(bytes).unwrap_or(u32::MAX);
         let on_the_wire = self.transport.byte_time().unwrap_or_default().saturating_mul(bytes);
-        on_the_wire + self.transport.latency() + request.patience + self.patience
+        on_the_wire
+            + self.latency.unwrap_or_else(|| self.transport.latency())
+            + request.patience
+            + self.patience
     }
 
     fn write(&mut self, bytes: &[u8]) -> Result<(), ExchangeError> {

@@ -5,6 +5,7 @@
 
 use super::watch::{Unwatched, Watch};
 use super::{Exchange, ExchangeError, Fault, Judgement, Outgoing, RETRIES, Span};
+use crate::unit::{FirmwareGeneration, UnitAddress};
 use crate::wire::{HiddenSettings, Wire};
 use brushwork_protocol::packet_serial::{
     Address, ClientUse, Command, Direction, Effect, Form, Generation, Reply as ReplyForm, ReplyProgress,
@@ -132,12 +133,12 @@ impl Wire for PacketWire {
         transact(&mut self.exchange, &Unwatched, &ask).map(|reply| reply.values)
     }
 
-    fn address(&self) -> Address {
-        self.address
+    fn address(&self) -> UnitAddress {
+        self.address.into()
     }
 
-    fn generation(&self) -> Generation {
-        self.generation
+    fn generation(&self) -> FirmwareGeneration {
+        self.generation.into()
     }
 
     fn is_simulated(&self) -> bool {
@@ -156,7 +157,8 @@ impl Wire for PacketWire {
         self.exchange.port()
     }
 
-    fn set_address(&mut self, address: Address) -> bool {
+    fn set_address(&mut self, address: UnitAddress) -> bool {
+        let Some(address) = address.packets() else { return false };
         self.address = address;
         true
     }

@@ -6,7 +6,7 @@
 
 use std::time::Duration;
 
-use brushwork_protocol::packet_serial::{Address, number};
+use brushwork_protocol::packet_serial::number;
 use serde::Serialize;
 
 use super::image::{Difference, SettingsImage, diff};
@@ -16,6 +16,7 @@ use super::table::{SettingsTable, Subject};
 use super::write::{WriteReport, write};
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
+use crate::unit::UnitAddress;
 use crate::wire::Wire;
 
 /// How long a unit may take to answer again after it wrote its memory. Public clients wait 3 s.
@@ -214,7 +215,7 @@ pub struct DefaultsReport {
     /// Rows whose value is not the default that the table gives: the table's, then the controller's.
     pub differences: Vec<Difference>,
     /// Where the controller answers now.
-    pub address: Address,
+    pub address: UnitAddress,
 }
 
 /// Restores the factory settings and reads them. The unit may come back at the factory address.
@@ -243,7 +244,7 @@ fn restore(wire: &mut dyn Wire) -> Result<(), Failure> {
     }
     let old = wire.address();
     await_unit(wire, tried).or_else(|failure| {
-        if wire.set_address(Address::DEFAULT) && answers(wire).unwrap_or(false) {
+        if wire.set_address(UnitAddress::DEFAULT) && answers(wire).unwrap_or(false) {
             return Ok(());
         }
         wire.set_address(old);

@@ -12,6 +12,7 @@ mod kind;
 mod listing;
 mod mcp;
 mod memory;
+mod motion_mind;
 mod pins;
 mod plan;
 mod profile;

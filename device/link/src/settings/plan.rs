@@ -5,16 +5,18 @@
 
 use std::collections::BTreeMap;
 
-use brushwork_protocol::packet_serial::{Address, EncodeError, Generation, Request, lookup, number};
+use brushwork_protocol::packet_serial::{Request, describe_request, lookup, number};
 use serde::Serialize;
 
 use super::check::{dangers, refused_pairs};
 use super::image::SettingsImage;
+use super::motion_mind;
 use super::pins::{Conflict, conflicts};
 use super::row::{Carrier, Row, Sink, Source};
 use super::table::SettingsTable;
 use super::value::SettingValue;
 use crate::transport::Stream;
+use crate::unit::{FirmwareGeneration, UnitAddress};
 
 /// What writing has to know besides the values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -85,13 +87,30 @@ pub struct Refusal {
 }
 
 impl Step {
-    /// The bytes that it puts on the wire.
-    pub fn bytes(&self, address: Address, generation: Generation) -> Result<Vec<u8>, EncodeError> {
-        Request::named(address, self.command, generation, &self.arguments)?.encode(generation)
+    /// The bytes that it puts on the wire of packet serial, or a Motion Mind in its binary protocol; an error is a clause.
+    pub fn bytes(&self, address: UnitAddress, generation: FirmwareGeneration) -> Result<Vec<u8>, String> {
+        let (Some(address), Some(generation)) = (address.packets(), generation.packet_serial()) else {
+            return motion_mind::step_bytes(self, address);
+        };
+        Request::named(address, self.command, generation, &self.arguments)
+            .and_then(|request| request.encode(generation))
+            .map_err(|error| error.to_string())
+    }
+
+    /// What it says, in words: the command and its values.
+    pub fn words(&self, address: UnitAddress, generation: FirmwareGeneration) -> String {
+        let (Some(address), Some(generation)) = (address.packets(), generation.packet_serial()) else {
+            return motion_mind::step_words(self, address);
+        };
+        Request::named(address, self.command, generation, &self.arguments)
+            .map_or_else(|error| error.to_string(), |request| describe_request(&request, generation))
     }
 
     /// What the command does: "M1 velocity PID (28)".
     pub fn title(&self) -> String {
+        if self.keys.first().is_some_and(|key| key.starts_with("register.") || key.starts_with("function")) {
+            return motion_mind::step_title(self);
+        }
         format!("{} ({})", super::read::title(self.command), self.command)
     }
 }
@@ -207,7 +226,13 @@ impl Planner<'_> {
         index: Option<u8>,
         changed: &[&Row],
     ) -> Result<Vec<(&'static str, i64)>, Refusal> {
-        let form = lookup(command).and_then(|command| command.form(self.table.subject().generation));
+        if self.table.is_motion_mind() {
+            let name = changed.first().and_then(|row| row.sink()).map_or("", |sink| sink.place.field);
+            let number = index.unwrap_or_default();
+            let word = self.field_value(Sink { command, index, place: place(name) }, changed)?;
+            return Ok(motion_mind::arguments(number, name, word));
+        }
+        let form = lookup(command).and_then(|command| command.form(self.table.subject().generation.layout()));
         let Some(form) = form else {
             return Err(refuse(changed, format!("This firmware has no command {command}.")));
         };
@@ -255,6 +280,9 @@ impl Planner<'_> {
     }
 
     fn stage(&self, command: u8, index: Option<u8>, changed: &[&Row]) -> Stage {
+        if self.table.is_motion_mind() {
+            return motion_mind::stage(index.unwrap_or_default());
+        }
         let own = |stream: Stream| index.is_some_and(|index| usize::from(index) == stream.index());
         match command {
             number::SET_ADDRESS_MIXED if changed.iter().any(|row| row.key == "unit.address") => {
@@ -289,6 +317,9 @@ impl Planner<'_> {
 
     /// What the steps themselves bring about besides their values.
     fn warnings(&self, steps: &[Step]) -> Vec<String> {
+        if self.table.is_motion_mind() {
+            return motion_mind::warnings(steps);
+        }
         let mut warnings = Vec::new();
         for step in steps {
             match (step.command, step.stage) {

@@ -5,10 +5,12 @@
 
 use std::fmt;
 
+use brushwork_protocol::models::MOTION_MIND_3;
 use brushwork_protocol::packet_serial::Unit;
 use serde::Serialize;
 
 use super::kind::{Coding, Kind};
+use super::motion_mind;
 use super::value::{Notation, SettingValue};
 
 /// One setting of one controller.
@@ -83,11 +85,17 @@ pub enum Group {
     Outputs,
     /// What only RoboClaw boards have.
     RoboClaw,
+    /// The PID of a Motion Mind.
+    Loop,
+    /// The bits of FUNCTION of a Motion Mind.
+    Functions,
+    /// The bits of FUNCTION2 of a Motion Mind.
+    Functions2,
 }
 
 impl Group {
     /// Every group, in screen order.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 19] = [
         Self::Unit,
         Self::VoltageLimits,
         Self::CurrentLimits,
@@ -104,6 +112,9 @@ impl Group {
         Self::Buses,
         Self::Outputs,
         Self::RoboClaw,
+        Self::Loop,
+        Self::Functions,
+        Self::Functions2,
     ];
 
     /// The group's heading.
@@ -125,6 +136,9 @@ impl Group {
             Self::Buses => "CAN and I2C",
             Self::Outputs => "Digital outputs",
             Self::RoboClaw => "RoboClaw",
+            Self::Loop => "PID",
+            Self::Functions => "FUNCTION",
+            Self::Functions2 => "FUNCTION2",
         }
     }
 }
@@ -169,7 +183,7 @@ impl Range {
 /// What carries a setting between client and controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Carrier {
-    /// Packet serial commands.
+    /// Commands of its family's protocol.
     Wire {
         /// Where it is read.
         read: Source,
@@ -279,7 +293,14 @@ impl Row {
         }
     }
 
-    /// Whether packet serial carries the row.
+    /// The register of a Motion Mind that holds the row; `None` in other families.
+    pub fn register(&self) -> Option<u8> {
+        motion_mind::register_of(self)
+            .map(|register| register.number)
+            .filter(|_| self.model == MOTION_MIND_3.name)
+    }
+
+    /// Whether a command carries the row.
     pub fn has_wire_form(&self) -> bool {
         matches!(self.carrier, Carrier::Wire { .. })
     }

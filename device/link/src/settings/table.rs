@@ -4,12 +4,13 @@ use std::collections::HashMap;
 
 use brushwork_protocol::codes::ENCODER_PIN_NONE;
 use brushwork_protocol::models::{Family, Model};
-use brushwork_protocol::packet_serial::Generation;
 
 use super::image::SettingsImage;
 use super::mcp;
+use super::motion_mind;
 use super::row::{Group, Row};
 use super::value::SettingValue;
+use crate::unit::FirmwareGeneration;
 
 /// What the table has to know about the controller in front of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,7 +18,7 @@ pub struct Subject {
     /// The model: ratings, pin names.
     pub model: &'static Model,
     /// The firmware generation: which settings there are, and in which form.
-    pub generation: Generation,
+    pub generation: FirmwareGeneration,
     /// Number of input pins, as command 144 counts them.
     pub pins: usize,
     /// Number of serial streams, as command 146 counts them.
@@ -28,8 +29,14 @@ pub struct Subject {
 
 impl Subject {
     /// A controller with the pins, streams and outputs its model is listed with.
-    pub fn new(model: &'static Model, generation: Generation) -> Self {
-        Self { model, generation, pins: model.pins.len(), streams: model.streams, douts: model.douts }
+    pub fn new(model: &'static Model, generation: impl Into<FirmwareGeneration>) -> Self {
+        Self {
+            model,
+            generation: generation.into(),
+            pins: model.pins.len(),
+            streams: model.streams,
+            douts: model.douts,
+        }
     }
 
     /// The label of pin `index` (from 0), or "Pin 7" when the unit has more pins than its model is listed
@@ -45,7 +52,7 @@ impl Subject {
                 .is_some_and(|(number, phase)| usize::from(number) == motor + 1 && phase == 'A')
         };
         match self.model.family {
-            Family::RoboClaw => 0,
+            Family::RoboClaw | Family::MotionMind => 0,
             Family::Mcp => {
                 let index = self.model.pins.iter().position(own).and_then(|index| i64::try_from(index).ok());
                 index.unwrap_or(ENCODER_PIN_NONE)
@@ -63,11 +70,21 @@ pub struct SettingsTable {
 }
 
 impl SettingsTable {
-    /// The table of an MCP or RoboClaw.
+    /// The table of a controller.
     pub fn new(subject: Subject) -> Self {
-        let rows: Vec<Row> = mcp::templates().flat_map(|template| template.expand(&subject)).collect();
+        let rows: Vec<Row> = match subject.model.family {
+            Family::MotionMind => motion_mind::rows(),
+            Family::Mcp | Family::RoboClaw => {
+                mcp::templates().flat_map(|template| template.expand(&subject)).collect()
+            }
+        };
         let by_key = rows.iter().enumerate().map(|(index, row)| (row.key.clone(), index)).collect();
         Self { subject, rows, by_key }
+    }
+
+    /// Whether it is the table of a Motion Mind.
+    pub fn is_motion_mind(&self) -> bool {
+        self.subject.model.family == Family::MotionMind
     }
 
     /// The controller the table was made for.

@@ -364,7 +364,7 @@ impl Template {
     /// The rows of `subject`, one per instance; none when the subject does not have the setting.
     pub(super) fn expand(&self, subject: &Subject) -> Vec<Row> {
         let ours = self.family.is_none_or(|family| family == subject.model.family);
-        match self.form(subject.generation) {
+        match self.form(subject.generation.layout()) {
             Some(form) if ours => self
                 .instances(subject)
                 .into_iter()
@@ -400,7 +400,9 @@ impl Template {
             Repeat::Streams => named(&streams(0, subject.streams)),
             Repeat::TtlStreams => named(&streams(2, subject.streams)),
             Repeat::RoboClawInputs => named(&[(0, "s1", "S1"), (1, "s2", "S2")]),
-            Repeat::RoboClawPins if subject.generation < Generation::Gen4 => named(&ROBOCLAW_PINS[..3]),
+            Repeat::RoboClawPins if subject.generation.layout() < Generation::Gen4 => {
+                named(&ROBOCLAW_PINS[..3])
+            }
             Repeat::RoboClawPins => named(ROBOCLAW_PINS),
         }
     }

@@ -14,8 +14,9 @@ use super::table::SettingsTable;
 use super::value::SettingValue;
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
+use crate::unit::UnitAddress;
 use crate::wire::Wire;
-use brushwork_protocol::packet_serial::{Address, number};
+use brushwork_protocol::packet_serial::number;
 
 /// Why nothing was written.
 #[derive(Clone, Debug, Error)]
@@ -54,7 +55,7 @@ pub struct WriteReport {
     /// Why writing ended early, if it did.
     pub ended_early: Option<Failure>,
     /// Where the controller answers now.
-    pub address: Address,
+    pub address: UnitAddress,
     /// Commands sent, reads included.
     pub transactions: usize,
 }
@@ -366,7 +367,7 @@ impl Writer<'_> {
     fn follow(&mut self, step: &Step, warnings: &mut Vec<String>) -> bool {
         let old = self.wire.address();
         let argument = step.arguments.iter().find(|(name, _)| *name == "address").map(|(_, value)| *value);
-        let Some(new) = argument.and_then(|byte| u8::try_from(byte).ok()).and_then(Address::new) else {
+        let Some(new) = argument.and_then(|byte| u8::try_from(byte).ok()).and_then(UnitAddress::new) else {
             return true;
         };
         if !self.wire.set_address(new) {

@@ -1,11 +1,12 @@
 //! What the user types to say where a controller is, and the sentences for when it cannot be opened.
 //!
 //! `/dev/ttyACM0`, `COM3`, `tcp:host:port` and `sim:mcp266`; serial ports take options behind a comma:
-//! `/dev/ttyUSB0,baud=115200,stream=ttl1`. `can:` in front of a port or TCP address says that a CAN adapter is there:
+//! `/dev/ttyUSB0,baud=115200,stream=ttl1`, `COM4,family=motion-mind`. `can:` in front of a port or TCP address says that a CAN adapter is there:
 //! `can:/dev/ttyUSB0,node=3,form=binary`. Any other text is taken as the path of a serial port, so that
 //! links, pseudo-terminals and names this program has never heard of work too.
 
 use super::{SerialTransport, TcpTransport, Transport};
+use crate::device::FamilyChoice;
 use brushwork_protocol::canopen::NodeId;
 use brushwork_protocol::canopen::adapter::Form;
 use serde::{Deserialize, Serialize};
@@ -14,6 +15,8 @@ use std::str::FromStr;
 
 /// Baud rate of a serial port when none is given: the default of the family (public clients, 2015-2025).
 pub const DEFAULT_BAUD: u32 = 38_400;
+/// The same of a Motion Mind, with switch 5 off.
+pub const MOTION_MIND_BAUD: u32 = 19_200;
 
 /// Baud rate of an adapter for a CAN bus when none is given. Assumed: the makers' manuals name no common one.
 pub const DEFAULT_ADAPTER_BAUD: u32 = 115_200;
@@ -85,6 +88,8 @@ pub enum ConnectTarget {
         baud: u32,
         /// Which of the controller's streams the port is wired to, when the user said so.
         stream: Option<Stream>,
+        /// Which protocol family the controllers on it speak.
+        family: FamilyChoice,
     },
     /// A TCP server.
     Tcp {
@@ -92,6 +97,8 @@ pub enum ConnectTarget {
         address: String,
         /// Which of the controller's streams the server is wired to, when the user said so.
         stream: Option<Stream>,
+        /// Which protocol family the controllers on it speak.
+        family: FamilyChoice,
     },
     /// A CAN bus behind an adapter on a serial port or a TCP server.
     Can {
@@ -117,6 +124,16 @@ impl ConnectTarget {
             },
             Self::Can { adapter, .. } => adapter.open(),
             Self::Sim(_) => Err(OpenError::SimulatedElsewhere),
+        }
+    }
+
+    /// The protocol family the user named.
+    #[must_use]
+    pub fn family(&self) -> FamilyChoice {
+        match self {
+            Self::Serial { family, .. } | Self::Tcp { family, .. } => *family,
+            Self::Can { .. } => FamilyChoice::PacketSerial,
+            Self::Sim(_) => FamilyChoice::Auto,
         }
     }
 
@@ -149,8 +166,9 @@ impl FromStr for ConnectTarget {
             Some(address) => parse_tcp(address, &options),
             None => Ok(Self::Serial {
                 path: place.to_owned(),
-                baud: options.baud.unwrap_or(DEFAULT_BAUD),
+                baud: options.baud.unwrap_or_else(|| default_baud(options.family)),
                 stream: options.stream,
+                family: options.family,
             }),
         }
     }
@@ -159,9 +177,9 @@ impl FromStr for ConnectTarget {
 impl fmt::Display for ConnectTarget {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Serial { path, baud, .. } => {
+            Self::Serial { path, baud, family, .. } => {
                 f.write_str(path)?;
-                if *baud != DEFAULT_BAUD {
+                if *baud != default_baud(*family) {
                     write!(f, ",baud={baud}")?;
                 }
             }
@@ -185,7 +203,12 @@ impl fmt::Display for ConnectTarget {
             }
             Self::Sim(what) => write!(f, "sim:{what}")?,
         }
-        self.stream().map_or(Ok(()), |stream| write!(f, ",stream={}", stream.key()))
+        self.stream().map_or(Ok(()), |stream| write!(f, ",stream={}", stream.key()))?;
+        match self.family() {
+            FamilyChoice::Auto => Ok(()),
+            _ if matches!(self, Self::Can { .. }) => Ok(()),
+            family => write!(f, ",family={family}"),
+        }
     }
 }
 
@@ -216,6 +239,12 @@ pub enum TargetError {
     /// An unknown form of adapter.
     #[error("\"{given}\" is no form of a CAN adapter. Use ascii or binary")]
     Form {
+        /// What was given.
+        given: String,
+    },
+    /// An unknown protocol family.
+    #[error("\"{given}\" is no protocol family. Use auto, mcp or motion-mind")]
+    Family {
         /// What was given.
         given: String,
     },
@@ -316,7 +345,9 @@ fn parse_can(text: &str) -> Result<ConnectTarget, TargetError> {
     }
     let adapter = match strip_scheme(place, "tcp:") {
         Some(address) => parse_tcp(address, &Options::default())?,
-        None => ConnectTarget::Serial { path: place.to_owned(), baud, stream: None },
+        None => {
+            ConnectTarget::Serial { path: place.to_owned(), baud, stream: None, family: FamilyChoice::Auto }
+        }
     };
     Ok(ConnectTarget::Can { adapter: Box::new(adapter), node, form })
 }
@@ -326,11 +357,17 @@ fn parse_node(given: &str) -> Result<NodeId, TargetError> {
     node.ok_or_else(|| TargetError::Node { given: given.to_owned() })
 }
 
+/// The baud rate of a port that none was named for. Switch 5 of a Motion Mind chooses 9600 or 19200.
+fn default_baud(family: FamilyChoice) -> u32 {
+    if family == FamilyChoice::MotionMind { MOTION_MIND_BAUD } else { DEFAULT_BAUD }
+}
+
 /// The options behind the commas.
 #[derive(Default)]
 struct Options {
     baud: Option<u32>,
     stream: Option<Stream>,
+    family: FamilyChoice,
 }
 
 /// Takes known options off the end; a comma before anything else belongs to the path.
@@ -342,6 +379,8 @@ fn split_options(text: &str) -> Result<(&str, Options), TargetError> {
             options.baud = Some(parse_baud(given)?);
         } else if let Some(given) = last.strip_prefix("stream=") {
             options.stream = Some(given.parse()?);
+        } else if let Some(given) = last.strip_prefix("family=") {
+            options.family = given.parse().map_err(|_| TargetError::Family { given: given.to_owned() })?;
         } else {
             break;
         }
@@ -365,7 +404,7 @@ fn parse_tcp(address: &str, options: &Options) -> Result<ConnectTarget, TargetEr
     if !named {
         return Err(TargetError::TcpAddress { given: address.to_owned() });
     }
-    Ok(ConnectTarget::Tcp { address: address.to_owned(), stream: options.stream })
+    Ok(ConnectTarget::Tcp { address: address.to_owned(), stream: options.stream, family: options.family })
 }
 
 /// Strips "tcp:" or "sim:" in either case. One letter before the colon would be a Windows drive, so the
@@ -380,7 +419,7 @@ mod tests {
     use super::*;
 
     fn serial(path: &str, baud: u32, stream: Option<Stream>) -> ConnectTarget {
-        ConnectTarget::Serial { path: path.to_owned(), baud, stream }
+        ConnectTarget::Serial { path: path.to_owned(), baud, stream, family: FamilyChoice::Auto }
     }
 
     fn can(adapter: ConnectTarget, node: Option<NodeId>, form: Form) -> ConnectTarget {
@@ -395,10 +434,21 @@ mod tests {
             (r"\\.\COM12,baud=9600", serial(r"\\.\COM12", 9_600, None)),
             ("/dev/ttyUSB0,baud=115200,stream=ttl1", serial("/dev/ttyUSB0", 115_200, Some(Stream::Ttl1))),
             ("my,odd,link", serial("my,odd,link", 38_400, None)),
-            ("tcp:127.0.0.1:5000", ConnectTarget::Tcp { address: "127.0.0.1:5000".into(), stream: None }),
+            (
+                "tcp:127.0.0.1:5000",
+                ConnectTarget::Tcp {
+                    address: "127.0.0.1:5000".into(),
+                    stream: None,
+                    family: FamilyChoice::Auto,
+                },
+            ),
             (
                 "TCP:[::1]:5000,stream=rs232",
-                ConnectTarget::Tcp { address: "[::1]:5000".into(), stream: Some(Stream::Rs232) },
+                ConnectTarget::Tcp {
+                    address: "[::1]:5000".into(),
+                    stream: Some(Stream::Rs232),
+                    family: FamilyChoice::Auto,
+                },
             ),
             ("sim:mcp266,generation=4", ConnectTarget::Sim("mcp266,generation=4".into())),
             ("can:COM7", can(serial("COM7", 115_200, None), None, Form::Ascii)),
@@ -409,7 +459,11 @@ mod tests {
             (
                 "CAN:tcp:localhost:4000,node=127",
                 can(
-                    ConnectTarget::Tcp { address: "localhost:4000".into(), stream: None },
+                    ConnectTarget::Tcp {
+                        address: "localhost:4000".into(),
+                        stream: None,
+                        family: FamilyChoice::Auto,
+                    },
                     NodeId::new(127),
                     Form::Ascii,
                 ),
@@ -421,11 +475,23 @@ mod tests {
     }
 
     #[test]
+    fn a_motion_mind_has_a_baud_rate_of_its_own_unless_one_is_named() {
+        let baud = |text: &str| match text.parse::<ConnectTarget>().unwrap() {
+            ConnectTarget::Serial { baud, .. } => baud,
+            other => panic!("{other}"),
+        };
+        assert_eq!(baud("COM3,family=motion-mind"), 19_200);
+        assert_eq!(baud("COM3,baud=38400,family=motion-mind"), 38_400);
+    }
+
+    #[test]
     fn a_target_prints_as_it_is_typed() {
         for text in [
             "can:/dev/ttyUSB0,baud=9600,node=3,form=binary",
             "can:tcp:[::1]:5000",
             "/dev/ttyACM0",
+            "/dev/ttyUSB0,family=motion-mind",
+            "tcp:[::1]:5000,family=mcp",
             "COM3,baud=9600,stream=usb",
             "tcp:[::1]:5000,stream=ttl3",
             "sim:mcp266",
@@ -442,6 +508,7 @@ mod tests {
         assert!(sentence("tcp:host").contains("tcp:host:port"));
         assert!(sentence("tcp::80").contains("tcp:host:port"));
         assert!(sentence("COM3,baud=12").contains("300 to 1000000"));
+        assert!(sentence("COM3,family=can").contains("motion-mind"));
         assert!(sentence("COM3,stream=can").contains("rs232"));
         assert!(sentence("can:COM3,node=0").contains("1 to 127"));
         assert!(sentence("can:COM3,form=slcan").contains("ascii or binary"));

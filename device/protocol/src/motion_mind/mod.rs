@@ -14,8 +14,10 @@ mod frame;
 mod frame_reader;
 mod line;
 mod line_reader;
+mod parts;
 mod register;
 mod reply;
+mod switches;
 
 pub use address::{Address, InvalidAddress};
 pub use bits::{Bit, FUNCTION_BITS, FUNCTION2_BITS, STATUS_BITS, function, function2, status};
@@ -25,8 +27,10 @@ pub use frame::{ACK, EncodeError, checksum, encode_frame, encode_frame_reply, pa
 pub use frame_reader::{BYTE_GAP, FrameEvent, FrameReader};
 pub use line::{encode_line, encode_line_reply, parse_line_reply};
 pub use line_reader::{LineEvent, LineReader};
+pub use parts::{COMMANDS, CommandRow, command_row, fields, numbers};
 pub use register::{Access, Kind, REGISTERS, Register, register, register_named};
 pub use reply::{BadReply, Progress, Reply, Returned, Returns};
+pub use switches::{Mode, Protocol};
 
 /// Bytes that the controller's receive buffer holds (Motion Mind manual 5.1).
 pub const RECEIVE_BUFFER: usize = 50;

@@ -42,13 +42,21 @@ impl From<&str> for Value {
 pub struct Values {
     fields: &'static [Field],
     values: Vec<Value>,
+    /// Which field each value is of; empty when they are of all in order.
+    picked: Vec<usize>,
 }
 
 impl Values {
     /// Values in the order of `fields`. Values beyond the layout are dropped.
     pub fn new(fields: &'static [Field], mut values: Vec<Value>) -> Self {
         values.truncate(fields.len());
-        Self { fields, values }
+        Self { fields, values, picked: Vec::new() }
+    }
+
+    /// Values of some fields of a layout, each by its index. What the layout does not have is dropped.
+    pub fn picked(fields: &'static [Field], values: impl IntoIterator<Item = (usize, Value)>) -> Self {
+        let (picked, values) = values.into_iter().filter(|(index, _)| *index < fields.len()).unzip();
+        Self { fields, values, picked }
     }
 
     /// The layout.
@@ -68,7 +76,8 @@ impl Values {
 
     /// Each field with its value, in wire order.
     pub fn iter(&self) -> impl Iterator<Item = (&'static Field, &Value)> {
-        self.fields.iter().zip(&self.values)
+        let field = |at: usize| &self.fields[self.picked.get(at).copied().unwrap_or(at)];
+        self.values.iter().enumerate().map(move |(at, value)| (field(at), value))
     }
 
     /// The value of the field `name`; `None` if this generation's layout has no such field.
@@ -127,7 +136,7 @@ impl Values {
     }
 
     fn names(&self) -> Vec<&'static str> {
-        self.fields.iter().map(|field| field.name).collect()
+        self.iter().map(|(field, _)| field.name).collect()
     }
 }
 

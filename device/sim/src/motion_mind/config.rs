@@ -3,7 +3,7 @@
 use crate::plant::ParamsError;
 use crate::presets;
 use crate::world::{PinSignal, World, WorldAction, WorldParams};
-use brushwork_protocol::motion_mind::Address;
+use brushwork_protocol::motion_mind::{Address, Mode, Protocol};
 use brushwork_protocol::packet_serial::Motor;
 
 /// The input pins of the unit as the simulated world counts them.
@@ -22,62 +22,6 @@ pub mod pin {
     pub const INDEX_RC: usize = 5;
     /// How many there are.
     pub const COUNT: usize = 6;
-}
-
-/// What moves the motor (Motion Mind manual, chapter 4). The switches of the board choose it at power-up.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[repr(u8)]
-pub enum Mode {
-    /// Pulses of a radio receiver.
-    RadioControl = 0,
-    /// A voltage.
-    Analog = 1,
-    /// Two buttons.
-    Buttons = 2,
-    /// Serial commands, open loop.
-    Serial = 3,
-    /// Serial commands, closed loop.
-    SerialPid = 4,
-    /// A voltage or serial commands, closed loop on a voltage or the encoder.
-    AnalogPid = 5,
-    /// Nothing; both limit inputs at ground bring back the factory's values.
-    FactoryRestore = 6,
-    /// Nothing.
-    FactoryTest = 7,
-}
-
-impl Mode {
-    /// All eight, by number.
-    pub const ALL: [Self; 8] = [
-        Self::RadioControl,
-        Self::Analog,
-        Self::Buttons,
-        Self::Serial,
-        Self::SerialPid,
-        Self::AnalogPid,
-        Self::FactoryRestore,
-        Self::FactoryTest,
-    ];
-
-    /// The mode of that number.
-    pub fn from_number(number: u8) -> Option<Self> {
-        Self::ALL.get(usize::from(number)).copied()
-    }
-
-    /// Its number in register 18.
-    pub fn number(self) -> u8 {
-        self as u8
-    }
-}
-
-/// Which protocol switch 6 of the board selects.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Protocol {
-    /// Frames with a checksum.
-    #[default]
-    Binary,
-    /// Lines of text.
-    Text,
 }
 
 /// Which edges of the encoder switch 7 of the board counts.

@@ -1,11 +1,11 @@
 //! From inputs and commands to the bridge: the open-loop modes, the limits and the protections, once a loop of 5 ms.
 
 use super::assumed::OVER_TEMPERATURE_CELSIUS;
-use super::config::Mode;
 use super::inputs::{ANALOG_FULL, Inputs, RC_CENTER};
 use super::loops::FULL_DUTY;
 use super::store::{Store, number};
 use crate::bridge::BridgeOutput;
+use brushwork_protocol::motion_mind::Mode;
 use brushwork_protocol::motion_mind::function;
 
 /// Middle of the analog input.

@@ -15,6 +15,7 @@ mod store;
 mod unit;
 mod wire;
 
+pub use brushwork_protocol::motion_mind::{Mode, Protocol};
 pub use bus::MotionMindBus;
-pub use config::{EncoderDecode, Mode, MotionMindConfig, Protocol, pin};
+pub use config::{EncoderDecode, MotionMindConfig, pin};
 pub use unit::MotionMind;

@@ -1,7 +1,7 @@
 //! One unit: its clock, its modes, what commands do to it, and its registers as they read now.
 
 use super::assumed::{BOOT_TIME, SAVE_POSITION_AFTER, STORE_TIME, VELOCITIES_IN_MEAN};
-use super::config::{EncoderDecode, Mode, MotionMindConfig, Protocol};
+use super::config::{EncoderDecode, MotionMindConfig};
 use super::drive::{Limits, OpenLoop, radio_position};
 use super::inputs::Inputs;
 use super::loops::{Goal, Loop, Turn};
@@ -13,6 +13,7 @@ use crate::world::{World, WorldAction, WorldView};
 use brushwork_protocol::motion_mind::{
     Address, Command, Part, REGISTERS, Reply, Returned, Returns, STATUS_BITS, function, function2, status,
 };
+use brushwork_protocol::motion_mind::{Mode, Protocol};
 use brushwork_protocol::packet_serial::Motor;
 use std::collections::VecDeque;
 use std::time::Duration;

@@ -1,7 +1,7 @@
 //! The serial side of one unit: commands out of bytes, replies after their delay.
 
 use super::assumed::{LONG_TEXT_REPLY_DELAY, REPLY_DELAY, TEXT_REPLY_DELAY};
-use super::config::Protocol;
+use brushwork_protocol::motion_mind::Protocol;
 use brushwork_protocol::motion_mind::{
     Address, Command, FrameEvent, FrameReader, LineEvent, LineReader, Part, Reply, encode_frame_reply,
     encode_line_reply,

@@ -5,8 +5,8 @@
 
 use std::path::Path;
 
+use brushwork_link::UnitAddress;
 use brushwork_link::settings::{OpenedProfile, Profile, ProfileFileError, SettingsImage, Strictness};
-use brushwork_protocol::packet_serial::Address;
 
 use super::{General, Sheet, Side, UnitSettings, compare};
 use crate::gui::files::{FileAnswer, FileDialog, FileKind, FileWish};
@@ -197,7 +197,7 @@ impl UnitSettings {
         Some(Profile {
             subject: *self.table().subject(),
             firmware: self.firmware().to_owned(),
-            address: Address::new(self.address()).unwrap_or(Address::DEFAULT),
+            address: UnitAddress::new(self.address()).unwrap_or_default(),
             date: crate::keep::today(),
             unit: String::new(),
             note: String::new(),

@@ -39,7 +39,7 @@ impl Transact {
 
     /// Whether it changes settings, in RAM or in EEPROM.
     pub fn changes_settings(&self, identity: &Identity) -> bool {
-        let effect = lookup(self.command).map(|row| row.effect(identity.generation));
+        let effect = lookup(self.command).map(|row| row.effect(identity.generation.layout()));
         matches!(effect, Some(Effect::Setting | Effect::Memory))
     }
 }

@@ -1,7 +1,6 @@
 //! The bytes that wait to be sent: edited settings that were not written yet, and what the sliders stand for.
 
-use brushwork_link::device::{Drive, describe_sent, preview};
-use brushwork_protocol::packet_serial::Address;
+use brushwork_link::device::Drive;
 
 use crate::gui::model::desk::Desk;
 use crate::gui::model::screen::Screen;
@@ -18,10 +17,9 @@ pub struct Pending {
 /// All packets that wait, in the order in which they would be sent; or why the settings cannot be written as they are.
 pub fn pending(desk: &Desk, screen: Screen) -> (Vec<Pending>, Vec<String>) {
     let Some(identity) = desk.link.identity() else { return (Vec::new(), Vec::new()) };
-    let Some(address) = Address::new(identity.address) else { return (Vec::new(), Vec::new()) };
-    let generation = identity.generation;
+    let (address, generation) = (identity.unit_address(), identity.generation);
     let packet = |title: String, bytes: Vec<u8>| {
-        let text = describe_sent(&bytes, generation).text;
+        let text = identity.describe_sent(&bytes).text;
         Pending { title, bytes, text }
     };
     let mut packets = Vec::new();
@@ -38,7 +36,7 @@ pub fn pending(desk: &Desk, screen: Screen) -> (Vec<Pending>, Vec<String>) {
         None => {}
     }
     if let Some(drive) = drive_of(desk, screen) {
-        let bytes = preview(&drive, address, generation);
+        let bytes = identity.preview(&drive);
         packets.extend(
             bytes.into_iter().map(|bytes| packet("Drive: what the sliders stand for".to_owned(), bytes)),
         );

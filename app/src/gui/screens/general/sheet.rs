@@ -1,9 +1,9 @@
 //! What each act will do, shown before it is done; and what did not go as wanted, after.
 
-use brushwork_link::device::describe_sent;
-use brushwork_link::settings::{Difference, Plan, Step, diff};
+use brushwork_link::UnitAddress;
+use brushwork_link::settings::{Difference, Plan, diff};
 use brushwork_link::transport::Stream;
-use brushwork_protocol::packet_serial::{Address, Generation, hex};
+use brushwork_protocol::packet_serial::hex;
 use egui::{Button, CollapsingHeader, Grid, Label, RichText, ScrollArea, Ui, vec2};
 
 use super::{compare, kept, profile};
@@ -163,13 +163,12 @@ fn write_ui(ui: &mut Ui, unit: &UnitSettings, stream: Option<Stream>) -> Vec<Off
 
 /// The packets of a plan, for who wants to see them before they are sent.
 fn bytes_ui(ui: &mut Ui, unit: &UnitSettings, plan: &Plan) {
-    let Some(address) = Address::new(unit.address()) else { return };
+    let Some(address) = UnitAddress::new(unit.address()) else { return };
     let generation = unit.table().subject().generation;
     CollapsingHeader::new("Show the bytes").show(ui, |ui| {
         for step in &plan.steps {
-            let bytes =
-                step.bytes(address, generation).map_or_else(|error| error.to_string(), |bytes| hex(&bytes));
-            ui.label(format!("{}: {}", step.title(), describe(step, address, generation)));
+            let bytes = step.bytes(address, generation).map_or_else(|error| error, |bytes| hex(&bytes));
+            ui.label(format!("{}: {}", step.title(), step.words(address, generation)));
             ui.label(RichText::new(bytes).monospace().color(Palette::of(ui).weak_text));
         }
         if !plan.hidden.is_empty() {
@@ -179,11 +178,6 @@ fn bytes_ui(ui: &mut Ui, unit: &UnitSettings, plan: &Plan) {
             ));
         }
     });
-}
-
-fn describe(step: &Step, address: Address, generation: Generation) -> String {
-    step.bytes(address, generation)
-        .map_or_else(|_| String::new(), |bytes| describe_sent(&bytes, generation).text)
 }
 
 fn save_ui(ui: &mut Ui, general: &General) -> Vec<Offer> {

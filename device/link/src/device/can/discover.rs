@@ -5,6 +5,7 @@ use super::{Monitor, Place};
 use crate::device::controller::{Controller, DiscoverError, Family, Line};
 use crate::device::mcp;
 use crate::device::options::{Addresses, DeviceOptions};
+use crate::device::stop::StopBytes;
 use crate::exchange::{ExchangeError, Judgement, Outgoing};
 use crate::failure::Failure;
 use brushwork_protocol::canopen::adapter::{Decoder, Form};
@@ -125,8 +126,8 @@ impl Family for CanOpen {
         Ok(units)
     }
 
-    fn stop_bytes(&self) -> Vec<u8> {
-        NodeId::all().flat_map(|node| self.place(node).stop_bytes(false)).collect()
+    fn stop_bytes(&self) -> StopBytes {
+        StopBytes::at_once(NodeId::all().flat_map(|node| self.place(node).stop_bytes(false)).collect())
     }
 }
 

@@ -5,6 +5,7 @@ use crate::device::can::{Monitor, Place};
 use crate::device::controller::{Controller, DiscoverError, Family, Line};
 use crate::device::identity::{CANOPEN, Identity};
 use crate::device::options::{Addresses, DeviceOptions};
+use crate::device::stop::StopBytes;
 use crate::exchange::{ExchangeError, RETRIES};
 use crate::failure::Failure;
 use crate::transport::Stream;
@@ -35,9 +36,10 @@ impl Family for PacketSerial {
         units
     }
 
-    fn stop_bytes(&self) -> Vec<u8> {
+    fn stop_bytes(&self) -> StopBytes {
         let speaker = |address| Speaker::packets(address, Generation::Gen1);
-        Address::ALL.into_iter().flat_map(|address| stopping::bytes(speaker(address), true, false)).collect()
+        let each = |address| stopping::bytes(speaker(address), true, false);
+        StopBytes::at_once(Address::ALL.into_iter().flat_map(each).collect())
     }
 }
 
@@ -206,7 +208,8 @@ fn finish(
         version_text: version.to_owned(),
         model: model.map(|model| model.name),
         firmware: firmware_of(version).to_owned(),
-        generation: speaker.generation,
+        generation: speaker.generation.into(),
+        motion_mind: None,
         also_answers: Vec::new(),
         simulated,
         port: line.exchange().port(),

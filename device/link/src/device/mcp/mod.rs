@@ -21,7 +21,7 @@ use super::controller::{ArmCheck, Controller, Described, Line, PollItem, PollLis
 use super::drive::Drive;
 use super::identity::Identity;
 use super::status::StatusReport;
-use super::stop::UnitStop;
+use super::stop::{StopBytes, UnitStop};
 use crate::exchange::packet::{Ask, gate, transact};
 use crate::exchange::{ExchangeError, Reply, Tries};
 use crate::transport::{Stream, TransportError};
@@ -148,8 +148,8 @@ impl Controller for Mcp {
         Ok(())
     }
 
-    fn stop_bytes(&self, scripts: bool) -> Vec<u8> {
-        stopping::bytes(self.speaker, scripts, self.has_buffered)
+    fn stop_bytes(&self, scripts: bool) -> StopBytes {
+        StopBytes::at_once(stopping::bytes(self.speaker, scripts, self.has_buffered))
     }
 
     fn confirm_stop(&mut self, line: &mut Line<'_>, scripts: bool) -> Result<UnitStop, ExchangeError> {

@@ -102,6 +102,7 @@ pub fn read(
     Ok(reply.values.try_int("status").filter(|_| brings_status(command)).map(|word| {
         let word = u32::try_from(word).unwrap_or(0);
         StatusReport {
+            signs: &[],
             address: speaker.id(),
             at: reply.span.replied_at,
             word,

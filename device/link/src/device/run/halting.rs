@@ -4,7 +4,7 @@ use super::reading::SILENCE_LIMIT;
 use super::{DeviceLoop, Phase};
 use crate::device::controller::Line;
 use crate::device::event::{DisarmReason, Event};
-use crate::device::stop::{StopReport, UnitStop};
+use crate::device::stop::{StopBytes, StopReport, UnitStop};
 use crate::exchange::{ExchangeError, Interruption};
 use crate::failure::Failure;
 use std::time::Duration;
@@ -54,7 +54,7 @@ impl DeviceLoop {
         let now = self.clock.now();
         let requested_at = if self.guard.stop_waits() { self.signals.stopped_at() } else { now };
         let bytes = self.stop_bytes(reason);
-        let written_at = if bytes.is_empty() { now } else { self.exchange.write_now(&bytes)? };
+        let written_at = if bytes.is_empty() { now } else { self.exchange.write_stop(&bytes)? };
         self.guard.stop_served(stops);
         Ok(Written { requested_at, written_at })
     }
@@ -103,13 +103,20 @@ impl DeviceLoop {
         all.filter(|index| everything || self.units[*index].moved || armed && *index == selected).collect()
     }
 
-    fn stop_bytes(&self, reason: &DisarmReason) -> Vec<u8> {
+    fn stop_bytes(&self, reason: &DisarmReason) -> StopBytes {
         if self.phase == Phase::Connecting {
             return self.family.stop_bytes();
         }
+        if *reason == DisarmReason::Stop && self.units.len() > 1 {
+            let units: Vec<_> = self.units.iter().map(|unit| unit.controller.identity()).collect();
+            if let Some(bytes) = self.family.stop_all_bytes(&units) {
+                return bytes;
+            }
+        }
         let scripts = |index: usize| *reason == DisarmReason::Stop || self.units[index].script_started;
         let concerned = self.concerned(reason).into_iter();
-        concerned.flat_map(|index| self.units[index].controller.stop_bytes(scripts(index))).collect()
+        let bytes = concerned.map(|index| self.units[index].controller.stop_bytes(scripts(index)));
+        bytes.reduce(StopBytes::then).unwrap_or_default()
     }
 
     fn disarm(&mut self, reason: DisarmReason) {
@@ -163,7 +170,7 @@ impl DeviceLoop {
         let unit = &self.units[index];
         let bytes = unit.controller.stop_bytes(unit.script_started);
         self.guard.set_only_stop(true);
-        let written = self.exchange.write_now(&bytes);
+        let written = self.exchange.write_stop(&bytes);
         let stop = written.and_then(|written_at| Ok((written_at, self.try_to_confirm(index, false)?)));
         self.guard.set_only_stop(false);
         let (written_at, stop) = match stop {

@@ -9,8 +9,9 @@ use crate::device::job_context::{JobContext, JobHost};
 use crate::exchange::{ExchangeError, Interruption, Reply, Watch};
 use crate::failure::Failure;
 use crate::transport::TransportError;
+use crate::unit::{FirmwareGeneration, UnitAddress};
 use crate::wire::HiddenSettings;
-use brushwork_protocol::packet_serial::{Address, Generation, Value};
+use brushwork_protocol::packet_serial::Value;
 use std::any::Any;
 use std::panic::{self, AssertUnwindSafe};
 use std::time::Duration;
@@ -242,11 +243,11 @@ impl JobHost for Host<'_> {
         self.polling = on;
     }
 
-    fn address(&self) -> Address {
-        Address::new(self.identity().address).unwrap_or_default()
+    fn address(&self) -> UnitAddress {
+        self.identity().unit_address()
     }
 
-    fn generation(&self) -> Generation {
+    fn generation(&self) -> FirmwareGeneration {
         self.identity().generation
     }
 
@@ -262,7 +263,7 @@ impl JobHost for Host<'_> {
         self.core.exchange.port()
     }
 
-    fn set_address(&mut self, address: Address) -> bool {
+    fn set_address(&mut self, address: UnitAddress) -> bool {
         self.core.readdress(address.get())
     }
 

@@ -15,8 +15,8 @@ pub use thread::DeviceThread;
 use super::controller::{Controller, Described, DiscoverError, Family, Line};
 use super::drive::ArmScope;
 use super::event::{DisarmReason, Event};
+use super::family::AnyFamily;
 use super::handle::{DeviceHandle, Envelope};
-use super::mcp::PacketSerial;
 use super::options::DeviceOptions;
 use super::outbox::Outbox;
 use super::request::PollRate;
@@ -106,7 +106,7 @@ enum Phase {
 }
 
 impl DeviceLoop {
-    /// A loop over `transport` for MCP and RoboClaw controllers, and the handle that speaks to it. Nothing is sent before
+    /// A loop over `transport` for the family that the options name, or that is found, and the handle that speaks to it. Nothing is sent before
     /// the first step.
     #[must_use]
     pub fn new(
@@ -114,7 +114,7 @@ impl DeviceLoop {
         clock: Arc<dyn Clock>,
         options: DeviceOptions,
     ) -> (Self, DeviceHandle) {
-        Self::with_family(transport, clock, options, Box::new(PacketSerial)).0
+        Self::with_family(transport, clock, options, Box::<AnyFamily>::default()).0
     }
 
     /// The same for any family.
@@ -219,7 +219,12 @@ impl DeviceLoop {
         let guesses = self.options.simulated;
         let permit = Permit { guesses, ..Permit::default() };
         let asked_at = self.clock.now();
-        let mut line = Line::new(&mut self.exchange, &self.guard, permit, asked_at);
+        let outbox = &mut self.outbox;
+        let mut tell = |done: usize, of: usize, what: &str| {
+            outbox.send(Event::Searching { done, of, what: what.to_owned() });
+            outbox.wake_window();
+        };
+        let mut line = Line::new(&mut self.exchange, &self.guard, permit, asked_at).with_progress(&mut tell);
         match self.family.discover(&mut line, &self.options) {
             Ok(units) => self.introduce(units),
             Err(DiscoverError::NothingThere(failure)) => self.end(Event::Lost(failure)),

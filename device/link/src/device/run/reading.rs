@@ -9,7 +9,6 @@ use crate::device::request::PollRate;
 use crate::device::status::StatusReport;
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
-use brushwork_protocol::packet_serial::status::Condition;
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -243,7 +242,7 @@ impl DeviceLoop {
         if self.armed.is_none() || index != self.selected {
             return;
         }
-        let faults: Vec<_> = status.faults().map(Condition::title).collect();
+        let faults: Vec<_> = status.faults().collect();
         if !faults.is_empty() {
             self.halt(DisarmReason::Fault(faults.join(", ")));
         } else if restarted {

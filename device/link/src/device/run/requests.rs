@@ -9,6 +9,7 @@ use crate::device::request::Request;
 use crate::device::signals::MOTION_LIFE;
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
+use crate::unit::UnitAddress;
 use brushwork_protocol::packet_serial::{Motor, Value};
 use std::time::Duration;
 
@@ -77,8 +78,10 @@ impl DeviceLoop {
     fn select(&mut self, address: u8) {
         let found = self.units.iter().position(|unit| unit.controller.identity().address == address);
         let Some(index) = found else {
+            let place =
+                UnitAddress::new(address).map_or_else(|| address.to_string(), |place| place.to_string());
             let failure = Failure::new(
-                format!("select the unit 0x{address:02X}"),
+                format!("select the unit {place}"),
                 self.exchange.port(),
                 "no unit answered there when the link was opened",
                 "Disconnect and connect again to look for it",

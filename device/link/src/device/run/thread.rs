@@ -4,8 +4,8 @@ use super::{DeviceLoop, Step};
 use crate::clock::Clock;
 use crate::device::controller::Family;
 use crate::device::event::{DisarmReason, Event};
+use crate::device::family::AnyFamily;
 use crate::device::handle::DeviceHandle;
-use crate::device::mcp::PacketSerial;
 use crate::device::options::DeviceOptions;
 use crate::failure::Failure;
 use crate::transport::Transport;
@@ -18,14 +18,15 @@ use std::sync::Arc;
 pub struct DeviceThread;
 
 impl DeviceThread {
-    /// Starts a thread that owns `transport` and speaks to the MCP and RoboClaw controllers on it. It fails only when the
+    /// Starts a thread that owns `transport` and speaks to the controllers on it, of the family that the options name or of
+    /// the one that is found. It fails only when the
     /// system gives no thread.
     pub fn spawn(
         transport: Box<dyn Transport>,
         clock: Arc<dyn Clock>,
         options: DeviceOptions,
     ) -> io::Result<DeviceHandle> {
-        Self::spawn_family(transport, clock, options, Box::new(PacketSerial))
+        Self::spawn_family(transport, clock, options, Box::<AnyFamily>::default())
     }
 
     /// The same for any protocol family.

@@ -18,7 +18,7 @@ pub use journal::{Act, Journal, JournalError};
 use super::image::SettingsImage;
 use super::table::SettingsTable;
 use crate::failure::Failure;
-use brushwork_protocol::packet_serial::Address;
+use crate::unit::UnitAddress;
 
 /// What is about to be done, and to what.
 #[derive(Clone, Debug)]
@@ -28,7 +28,7 @@ pub struct Entry {
     /// The table of the controller.
     pub table: SettingsTable,
     /// Where it answers.
-    pub address: Address,
+    pub address: UnitAddress,
     /// Every setting that could be read, as the controller works with it now.
     pub ram: SettingsImage,
     /// The values that it is to hold afterwards: the changes of a write, everything of a save or of the defaults.

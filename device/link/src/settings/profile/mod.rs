@@ -12,8 +12,8 @@ mod json;
 mod parse;
 mod schema;
 
+use crate::unit::{FirmwareGeneration, UnitAddress};
 use brushwork_protocol::models::Model;
-use brushwork_protocol::packet_serial::{Address, Generation};
 
 use super::image::{SettingsImage, changes};
 use super::table::{SettingsTable, Subject};
@@ -32,10 +32,10 @@ pub const FORMAT: &str = "brushwork-settings";
 pub struct Profile {
     /// The controller they were read from: model, generation, numbers of pins, streams and outputs.
     pub subject: Subject,
-    /// The reply to command 21, without the line end: "MCP266 2x60A v1.0.0".
+    /// What the unit says it is: of packet serial the reply to command 21, "MCP266 2x60A v1.0.0".
     pub firmware: String,
-    /// The packet serial address they were read at.
-    pub address: Address,
+    /// The address they were read at.
+    pub address: UnitAddress,
     /// When they were read, as the caller writes dates; ISO 8601 is advised.
     pub date: String,
     /// What tells the unit from others of its kind, as far as anything does: a serial number, or the port it was
@@ -168,6 +168,6 @@ fn model_misfit(profile: &Model, connected: &Model) -> String {
     )
 }
 
-fn generation_misfit(profile: Generation, connected: Generation) -> String {
+fn generation_misfit(profile: FirmwareGeneration, connected: FirmwareGeneration) -> String {
     format!("The profile was made for firmware {profile}, the connected controller has {connected}.")
 }

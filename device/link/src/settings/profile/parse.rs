@@ -3,8 +3,9 @@
 
 use std::collections::HashSet;
 
+use crate::unit::{FirmwareGeneration, UnitAddress};
 use brushwork_protocol::models::{self, Model};
-use brushwork_protocol::packet_serial::{Address, Generation};
+use brushwork_protocol::packet_serial::Generation;
 
 use super::super::image::SettingsImage;
 use super::super::kind::Kind;
@@ -103,8 +104,8 @@ impl Reader<'_> {
 
     fn profile(&mut self, members: &Members) -> Option<Profile> {
         let model = self.model(members);
-        let generation = self.generation(members);
-        let address = self.address(members);
+        let generation = self.generation(members, model);
+        let address = self.address(members, model);
         let firmware = self.string(members, "firmware");
         let date = self.string(members, "date");
         let (unit, note) = (self.string(members, "unit"), self.string(members, "note"));
@@ -136,21 +137,33 @@ impl Reader<'_> {
         model
     }
 
-    fn generation(&mut self, members: &Members) -> Option<Generation> {
+    fn generation(&mut self, members: &Members, model: Option<&Model>) -> Option<FirmwareGeneration> {
         let number = self.int(members, "generation")?;
-        let generation = u8::try_from(number).ok().and_then(Generation::from_number);
+        let byte = u8::try_from(number).ok();
+        if model.is_some_and(|model| !model.family.speaks_packets()) {
+            let revision = byte.map(|revision| FirmwareGeneration::MotionMind { revision });
+            if revision.is_none() {
+                self.problem(
+                    "generation",
+                    format!("{number} is no revision of firmware; there are 0 to 255."),
+                );
+            }
+            return revision;
+        }
+        let generation = byte.and_then(Generation::from_number);
         if generation.is_none() {
             self.problem("generation", format!("{number} is no firmware generation; there are 1 to 4."));
         }
-        generation
+        generation.map(FirmwareGeneration::from)
     }
 
-    fn address(&mut self, members: &Members) -> Option<Address> {
+    fn address(&mut self, members: &Members, model: Option<&Model>) -> Option<UnitAddress> {
         let text = self.string(members, "address")?;
-        let byte = text.strip_prefix("0x").and_then(|hex| u8::from_str_radix(hex, 16).ok());
-        let address = byte.and_then(Address::new);
+        let packets = model.is_none_or(|model| model.family.speaks_packets());
+        let address = UnitAddress::parse(&text).filter(|address| address.packets().is_some() == packets);
         if address.is_none() {
-            self.problem("address", format!("{} is no address; there are 0x80 to 0x87.", quote(&text)));
+            let there_are = if packets { "there are 0x80 to 0x87" } else { "there are 0 to 98" };
+            self.problem("address", format!("{} is no address; {there_are}.", quote(&text)));
         }
         address
     }

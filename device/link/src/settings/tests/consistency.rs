@@ -70,7 +70,7 @@ fn keys_are_unique_and_well_formed() {
 #[test]
 fn every_carrier_names_a_command_and_a_field_of_its_generation() {
     each_row(|table, row| {
-        let generation = table.subject().generation;
+        let generation = table.subject().generation.layout();
         let read = read_field(row, generation);
         let write = write_field(row, generation);
         // Generation 1 has no command that returns the address: it is the one the link speaks to.
@@ -86,7 +86,7 @@ fn every_carrier_names_a_command_and_a_field_of_its_generation() {
 #[test]
 fn unit_scale_and_codes_are_those_of_the_wire_field() {
     each_row(|table, row| {
-        let generation = table.subject().generation;
+        let generation = table.subject().generation.layout();
         for field in read_field(row, generation).into_iter().chain(write_field(row, generation)) {
             let bits = matches!(row.carrier, Carrier::Wire { read: Source::Reply { place, .. }, .. } if place.bits.is_some());
             if !matches!(field.unit, Unit::None | Unit::Bits) {
@@ -110,7 +110,7 @@ fn unit_scale_and_codes_are_those_of_the_wire_field() {
 #[test]
 fn every_allowed_value_fits_its_wire_fields() {
     each_row(|table, row| {
-        let generation = table.subject().generation;
+        let generation = table.subject().generation.layout();
         for field in read_field(row, generation).into_iter().chain(write_field(row, generation)) {
             let (low, high) = wire_limits(row, field);
             for value in ends(row) {
@@ -155,7 +155,7 @@ fn defaults_are_inside_their_ranges() {
 fn every_settable_field_is_carried_by_a_row_or_listed_as_not_a_setting() {
     for family in [Family::Mcp, Family::RoboClaw] {
         for table in every_table().filter(|table| table.subject().model.family == family) {
-            let generation = table.subject().generation;
+            let generation = table.subject().generation.layout();
             let sinks: Vec<_> = table.rows().iter().filter_map(Row::sink).collect();
             for command in COMMANDS {
                 let Some(form) = command.form(generation) else { continue };
@@ -186,7 +186,7 @@ fn every_settable_field_is_carried_by_a_row_or_listed_as_not_a_setting() {
 fn belongs_to_other_family(number: u8, family: Family) -> bool {
     match family {
         Family::Mcp => matches!(number, 14 | 74 | 76 | 98 | 100 | 117),
-        Family::RoboClaw => matches!(number, 137 | 139 | 141 | 143 | 145 | 150 | 246),
+        Family::RoboClaw | Family::MotionMind => matches!(number, 137 | 139 | 141 | 143 | 145 | 150 | 246),
     }
 }
 
@@ -207,7 +207,7 @@ fn all_fields_of_a_write_can_be_read_back() {
     each_row(|table, row| {
         // A write fills the fields of its neighbours from what was read: each must have a readable row.
         let Some(sink) = row.sink() else { return };
-        let form = lookup(sink.command).and_then(|command| command.form(table.subject().generation));
+        let form = lookup(sink.command).and_then(|command| command.form(table.subject().generation.layout()));
         for field in
             form.expect("checked by another test").request.iter().filter(|field| field.name != "index")
         {

@@ -6,13 +6,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Mutex;
 use std::time::Duration;
 
-use brushwork_protocol::packet_serial::{
-    Address, Field, Form, Generation, Kind, Reply, Value, Values, lookup, number,
-};
+use brushwork_protocol::packet_serial::{Address, Field, Form, Kind, Reply, Value, Values, lookup, number};
 
 use super::super::{Carrier, Row, SettingsImage, SettingsTable, Source};
 use crate::exchange::{ExchangeError, Interruption, Tries};
 use crate::transport::TransportError;
+use crate::unit::{FirmwareGeneration, UnitAddress};
 use crate::wire::{HiddenSettings, Wire};
 
 /// What a command is answered with.
@@ -34,8 +33,8 @@ pub(super) struct FakeUnit {
     pub(super) eeprom: BTreeMap<String, i64>,
     pub(super) hidden: Hidden,
     /// Where the unit answers; commands to other addresses are met with silence.
-    pub(super) unit_address: Address,
-    wire_address: Address,
+    pub(super) unit_address: UnitAddress,
+    wire_address: UnitAddress,
     pub(super) simulated: bool,
     pub(super) can_follow: bool,
     /// Commands that are never answered.
@@ -61,11 +60,11 @@ pub(super) struct FakeUnit {
 pub(super) struct Hidden(Mutex<BTreeMap<String, i64>>);
 
 impl HiddenSettings for Hidden {
-    fn get(&self, _address: Address, key: &str) -> Option<i64> {
+    fn get(&self, _address: UnitAddress, key: &str) -> Option<i64> {
         self.0.lock().expect("one thread").get(key).copied()
     }
 
-    fn set(&self, _address: Address, key: &str, raw: i64) -> Result<(), String> {
+    fn set(&self, _address: UnitAddress, key: &str, raw: i64) -> Result<(), String> {
         self.0.lock().expect("one thread").insert(key.to_owned(), raw);
         Ok(())
     }
@@ -80,15 +79,15 @@ impl FakeUnit {
         let past_the_wire = Hidden::default();
         for row in hidden {
             let (key, raw) = raw(row);
-            past_the_wire.set(Address::DEFAULT, &key, raw).expect("it takes all");
+            past_the_wire.set(Address::DEFAULT.into(), &key, raw).expect("it takes all");
         }
         Self {
             table: table.clone(),
             eeprom: ram.clone(),
             ram,
             hidden: past_the_wire,
-            unit_address: Address::DEFAULT,
-            wire_address: Address::DEFAULT,
+            unit_address: UnitAddress::DEFAULT,
+            wire_address: UnitAddress::DEFAULT,
             simulated: true,
             can_follow: true,
             silent: BTreeSet::new(),
@@ -188,7 +187,7 @@ impl FakeUnit {
         if command == number::SET_ADDRESS_MIXED
             && let Some(address) = u8::try_from(self.ram["unit.address"]).ok().and_then(Address::new)
         {
-            self.unit_address = address;
+            self.unit_address = address.into();
         }
     }
 
@@ -209,7 +208,7 @@ impl FakeUnit {
                     (row.key.clone(), row.encode(row.default).expect("defaults have a wire form"))
                 };
                 self.ram = self.table.rows().iter().filter(|row| row.has_wire_form()).map(raw).collect();
-                self.unit_address = Address::DEFAULT;
+                self.unit_address = UnitAddress::DEFAULT;
             }
             _ => self.store(command, form, arguments),
         }
@@ -226,8 +225,9 @@ impl Wire for FakeUnit {
         let turn = self.log.len();
         self.log.push((command, arguments.clone()));
         self.now += Duration::from_millis(1);
-        let form =
-            lookup(command).and_then(|row| row.form(self.generation())).expect("only commands that it has");
+        let form = lookup(command)
+            .and_then(|row| row.form(self.generation().layout()))
+            .expect("only commands that it has");
         let away = self.wire_address != self.unit_address || self.now < self.silent_until;
         if away || self.silent.contains(&command) {
             return Err(self.fail(Mishap::Silence));
@@ -243,11 +243,11 @@ impl Wire for FakeUnit {
         }
     }
 
-    fn address(&self) -> Address {
+    fn address(&self) -> UnitAddress {
         self.wire_address
     }
 
-    fn generation(&self) -> Generation {
+    fn generation(&self) -> FirmwareGeneration {
         self.table.subject().generation
     }
 
@@ -271,9 +271,11 @@ impl Wire for FakeUnit {
         "the test".to_owned()
     }
 
-    fn set_address(&mut self, address: Address) -> bool {
-        if self.can_follow {
-            self.wire_address = address;
+    fn set_address(&mut self, address: UnitAddress) -> bool {
+        if let Some(address) = address.packets()
+            && self.can_follow
+        {
+            self.wire_address = address.into();
         }
         self.can_follow
     }

@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use crate::unit::UnitAddress;
 use brushwork_protocol::packet_serial::{Address, Generation, number};
 
 use super::super::{
@@ -131,7 +132,7 @@ fn defaults_are_restored_and_the_unit_is_followed_to_its_factory_address() {
         let table = table("mcp266", generation);
         let mut unit = changed_unit(&table);
         unit.set("unit.address", "0x84");
-        let moved = Address::new(0x84).expect("an address");
+        let moved = UnitAddress::new(0x84).expect("an address");
         unit.unit_address = moved;
         assert!(unit.set_address(moved));
         let report =

@@ -41,7 +41,8 @@ fn assert_bytes(model: &str, generation: Generation, changes: &[(&str, &str)], e
     let table = table(model, generation);
     let plan = plan_of(&table, changes, SIMULATED);
     assert_eq!(plan.steps.len(), 1, "{changes:?}");
-    let bytes = plan.steps[0].bytes(Address::DEFAULT, generation).expect("the plan fits the command");
+    let bytes =
+        plan.steps[0].bytes(Address::DEFAULT.into(), generation.into()).expect("the plan fits the command");
     assert_eq!(hex(&bytes), expected.replace(' ', ""), "{changes:?} in {generation}");
 }
 
@@ -116,7 +117,7 @@ fn the_minimum_current_is_signed_in_generation_1_and_a_magnitude_in_generation_4
         let (table, ram) = ram(generation);
         let changes = image(&table, &[("motor1.current.max_amps", "20")]);
         let plan = plan(&table, &ram, &changes, REAL).expect("it can be written");
-        let bytes = plan.steps[0].bytes(Address::DEFAULT, generation).expect("it fits");
+        let bytes = plan.steps[0].bytes(Address::DEFAULT.into(), generation.into()).expect("it fits");
         assert_eq!(hex(&bytes), expected.replace(' ', ""));
     }
 }

@@ -11,7 +11,7 @@ fn profile(model: &str, generation: Generation) -> Profile {
     Profile {
         subject,
         firmware: "MCP266 2x60A v1.0.0".to_owned(),
-        address: Address::DEFAULT,
+        address: Address::DEFAULT.into(),
         date: "2026-01-05T10:00:00Z".to_owned(),
         unit: "0123456789".to_owned(),
         note: "before a write".to_owned(),

@@ -85,7 +85,7 @@ fn a_command_that_is_not_answered_costs_only_its_own_rows() {
 fn a_controller_that_never_answers_is_given_up_soon() {
     let table = table("mcp266", Generation::Gen1);
     let mut unit = FakeUnit::new(&table);
-    unit.unit_address = Address::LAST;
+    unit.unit_address = Address::LAST.into();
     let failure = read_all(&mut unit, *table.subject()).expect_err("nobody answers");
     assert!(
         failure.to_string().starts_with("Could not read the settings on 0x80 at the test: no answer"),
@@ -206,11 +206,11 @@ impl Wire for Twitching {
         self.unit.transact_values(command, values)
     }
 
-    fn address(&self) -> Address {
+    fn address(&self) -> crate::unit::UnitAddress {
         self.unit.address()
     }
 
-    fn generation(&self) -> Generation {
+    fn generation(&self) -> crate::unit::FirmwareGeneration {
         self.unit.generation()
     }
 
@@ -395,8 +395,8 @@ fn hidden_settings_reach_a_simulated_controller_only() {
     let mut unit = FakeUnit::new(&table);
     let report = write(&mut unit, &table, &changes, OPTIONS).expect("it is simulated");
     assert!(report.is_complete(), "{:?}", report.sentences(&table));
-    assert_eq!(unit.hidden.get(Address::DEFAULT, "unit.bridge_channels"), Some(1));
-    assert_eq!(unit.hidden.get(Address::DEFAULT, "pin.2.low_pass"), Some(6));
+    assert_eq!(unit.hidden.get(Address::DEFAULT.into(), "unit.bridge_channels"), Some(1));
+    assert_eq!(unit.hidden.get(Address::DEFAULT.into(), "pin.2.low_pass"), Some(6));
     assert!(unit.log.is_empty(), "nothing of it goes over the wire");
 
     let mut real = FakeUnit::new(&table);

@@ -34,7 +34,7 @@ fn each_generation_is_detected_by_the_lengths_of_its_replies() {
         let found = identities(&connect(bus, None));
         assert_eq!(found.len(), 1);
         let unit = &found[0];
-        assert_eq!((unit.generation, unit.address, unit.model), (generation, 0x80, Some("MCP266")));
+        assert_eq!((unit.generation, unit.address, unit.model), (generation.into(), 0x80, Some("MCP266")));
         assert_eq!((unit.firmware.as_str(), unit.notes.as_slice()), ("1.0.0", [].as_slice()));
     }
 }
@@ -117,7 +117,8 @@ fn a_silent_port_is_told_in_a_sentence_and_the_loop_ends() {
         link.sentences(),
         [
             "Could not find a controller on /dev/test: nothing answered at addresses 0x80 to 0x87. Check that the controller \
-          has motor power, that the cable and the port are right, and the baud rate."
+          has motor power, that the cable and the port are right, and the baud rate. For a Motion Mind at another address \
+          than 1 choose its family (family=motion-mind), so that all are asked."
         ]
     );
 }

@@ -14,7 +14,7 @@ use crate::device::options::DeviceOptions;
 use crate::device::request::Request;
 use crate::device::run::DeviceLoop;
 use crate::device::status::StatusReport;
-use crate::device::stop::UnitStop;
+use crate::device::stop::{StopBytes, UnitStop};
 use crate::exchange::{ExchangeError, Judgement, Outgoing, Reply, Span};
 use crate::testing::{Answers, ScriptedTransport, ms};
 use crate::transport::Stream;
@@ -87,8 +87,8 @@ impl Controller for Toy {
         ask(line, &format!("D {}\n", (duty * 100.0).round())).map(drop)
     }
 
-    fn stop_bytes(&self, _scripts: bool) -> Vec<u8> {
-        b"D 0\n".to_vec()
+    fn stop_bytes(&self, _scripts: bool) -> StopBytes {
+        StopBytes::at_once(b"D 0\n".to_vec())
     }
 
     fn confirm_stop(&mut self, line: &mut Line<'_>, _scripts: bool) -> Result<UnitStop, ExchangeError> {
@@ -176,7 +176,8 @@ impl Family for Toys {
             version_text: "Toy 1".to_owned(),
             model: None,
             firmware: "1".to_owned(),
-            generation: Generation::Gen1,
+            generation: Generation::Gen1.into(),
+            motion_mind: None,
             also_answers: Vec::new(),
             simulated: options.simulated,
             port: line.exchange().port(),
@@ -185,8 +186,8 @@ impl Family for Toys {
         Ok(vec![Box::new(Toy { identity })])
     }
 
-    fn stop_bytes(&self) -> Vec<u8> {
-        b"D 0\n".to_vec()
+    fn stop_bytes(&self) -> StopBytes {
+        StopBytes::at_once(b"D 0\n".to_vec())
     }
 }
 

@@ -1,0 +1,149 @@
+//! Which protocol family is on a link: as the user says, or found out.
+
+use super::controller::{Controller, DiscoverError, Family, Line};
+use super::identity::Identity;
+use super::mcp::PacketSerial;
+use super::motion_mind::MotionMinds;
+use super::options::{Addresses, DeviceOptions};
+use super::stop::StopBytes;
+use crate::failure::Failure;
+use brushwork_protocol::packet_serial::Address;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::str::FromStr;
+
+/// Which protocol family the units of a link speak.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FamilyChoice {
+    /// Packet serial is looked for first, then a Motion Mind at its factory address.
+    #[default]
+    Auto,
+    /// MCP and RoboClaw.
+    PacketSerial,
+    /// Motion Minds, in either of their protocols, at all addresses.
+    MotionMind,
+}
+
+impl FamilyChoice {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Auto, Self::PacketSerial, Self::MotionMind];
+
+    /// Name on the command line and in files.
+    #[must_use]
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::PacketSerial => "mcp",
+            Self::MotionMind => "motion-mind",
+        }
+    }
+
+    /// Name for people.
+    #[must_use]
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Auto => "Find out",
+            Self::PacketSerial => "MCP or RoboClaw",
+            Self::MotionMind => "Motion Mind",
+        }
+    }
+}
+
+impl fmt::Display for FamilyChoice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.key())
+    }
+}
+
+impl FromStr for FamilyChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|choice| choice.key().eq_ignore_ascii_case(text));
+        found.ok_or_else(|| format!("\"{text}\" is no protocol family. Use auto, mcp or motion-mind"))
+    }
+}
+
+/// Whichever family the link turns out to have.
+#[derive(Debug, Default)]
+pub struct AnyFamily {
+    found: Option<Found>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Found {
+    Packets,
+    MotionMinds,
+}
+
+impl Family for AnyFamily {
+    fn discover(
+        &mut self,
+        line: &mut Line<'_>,
+        options: &DeviceOptions,
+    ) -> Result<Vec<Box<dyn Controller>>, DiscoverError> {
+        let packets = match (options.family, options.addresses) {
+            (FamilyChoice::PacketSerial, _) => true,
+            (FamilyChoice::MotionMind, _) => false,
+            // No number is an address of both families.
+            (FamilyChoice::Auto, Addresses::Only(number)) => Address::new(number).is_some() || number > 98,
+            (FamilyChoice::Auto, Addresses::Scan) => return self.find_out(line, options),
+        };
+        self.found = Some(if packets { Found::Packets } else { Found::MotionMinds });
+        if packets {
+            PacketSerial.discover(line, options)
+        } else {
+            MotionMinds::new().discover(line, options)
+        }
+    }
+
+    fn stop_bytes(&self) -> StopBytes {
+        match self.found {
+            Some(Found::Packets) => PacketSerial.stop_bytes(),
+            Some(Found::MotionMinds) => MotionMinds::new().stop_bytes(),
+            None => PacketSerial.stop_bytes().then(MotionMinds::new().stop_bytes()),
+        }
+    }
+
+    fn stop_all_bytes(&self, units: &[&Identity]) -> Option<StopBytes> {
+        match self.found {
+            Some(Found::MotionMinds) => MotionMinds::new().stop_all_bytes(units),
+            _ => None,
+        }
+    }
+}
+
+impl AnyFamily {
+    /// MCP and RoboClaw first; where nothing of packet serial comes back, a Motion Mind at its factory address in both protocols.
+    fn find_out(
+        &mut self,
+        line: &mut Line<'_>,
+        options: &DeviceOptions,
+    ) -> Result<Vec<Box<dyn Controller>>, DiscoverError> {
+        let nothing = match PacketSerial.discover(line, options) {
+            Err(DiscoverError::NothingThere(nothing)) => nothing,
+            other => {
+                self.found = Some(Found::Packets);
+                return other;
+            }
+        };
+        match MotionMinds::new().at_the_factory_address(line, options) {
+            Ok(units) => {
+                self.found = Some(Found::MotionMinds);
+                Ok(units)
+            }
+            Err(DiscoverError::NothingThere(_)) => Err(DiscoverError::NothingThere(neither(nothing))),
+            Err(error) => Err(error),
+        }
+    }
+}
+
+/// The failure of packet serial, with what else was tried.
+fn neither(nothing: Failure) -> Failure {
+    let mend = format!(
+        "{}. For a Motion Mind at another address than 1 choose its family (family=motion-mind), so that all are asked",
+        nothing.mend
+    );
+    Failure { mend, ..nothing }
+}

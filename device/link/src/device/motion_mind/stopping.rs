@@ -1,0 +1,274 @@
+//! Stopping a unit: at once without asking, then again with its confirmation and a look at its motor, and what can still drive it.
+//!
+//! A Motion Mind has no command "stop". Mode 3 is stopped by duty 0, which follows its ramp: so the ramp is taken away first and put
+//! back when the motor stands. Modes 4 and 5 are stopped by a setpoint that stands, which their loop must follow: where it does not,
+//! the output of the loop is switched off (DISABLEPID), until the next arming. Both are writes to RAM alone.
+
+use super::speaker::{GAP, Speaker};
+use super::{MotionMind, mask, number, value_in};
+use crate::device::controller::Line;
+use crate::device::stop::{StopBytes, UnitStop};
+use crate::exchange::ExchangeError;
+use crate::failure::Failure;
+use brushwork_protocol::motion_mind::{Address, Command, Mode, Protocol, function};
+use std::time::Duration;
+
+/// A ramp that lets full drive come down within this is quick enough as it is.
+const QUICK: Duration = Duration::from_millis(250);
+/// The steepest ramp: all at once.
+const STEEPEST: i64 = 1023;
+/// A loop that holds its motor may move it by so many counts between two looks.
+const STILL_COUNTS: i64 = 2;
+/// Time between two looks at the motor.
+const LOOK_AGAIN: Duration = Duration::from_millis(20);
+/// A loop that has not brought its motor to a stand within this is switched off.
+const LOOP_LIMIT: Duration = Duration::from_millis(800);
+/// Drive in mode 3 changes at the next update of TIMER, which is at most 1.3 s away.
+const DUTY_LIMIT: Duration = Duration::from_millis(1600);
+
+const CUT_POWER: &str = "Cut the motor power now: the motor may still be running";
+
+/// A register in RAM that a stop has changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Borrowed {
+    pub register: u8,
+    /// What it held before.
+    pub value: i64,
+}
+
+/// How the drive of mode 3 changes, as last read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Ramp {
+    /// VELOCITYLIMIT; `None` while nobody knows.
+    pub step: Option<i64>,
+    /// TIMER, in 5 ms.
+    pub timer: Option<i64>,
+}
+
+impl Ramp {
+    pub fn note_write(&mut self, register: u8, value: i64) {
+        match register {
+            number::VELOCITYLIMIT => self.step = Some(value),
+            number::TIMER => self.timer = Some(value),
+            _ => {}
+        }
+    }
+
+    /// How long full drive takes to come down; `None` while nobody knows, and for ever at a step of 0.
+    pub fn time_to_zero(self) -> Option<Duration> {
+        let (step, timer) = (self.step?, self.timer?.max(1));
+        let updates = if step > 0 { (STEEPEST + step - 1) / step } else { i64::from(u32::MAX) };
+        Some(Duration::from_millis(5) * u32::try_from(updates * timer).unwrap_or(u32::MAX))
+    }
+
+    fn is_slow(self) -> bool {
+        self.time_to_zero().is_some_and(|time| time > QUICK)
+    }
+}
+
+/// What stands a motor in a mode; nothing where serial commands do not move it.
+fn commands(mode: Mode) -> Option<Command> {
+    match mode {
+        Mode::Serial => Some(Command::ChangeSpeed(0)),
+        Mode::SerialPid => Some(Command::MoveAtVelocity(0)),
+        Mode::AnalogPid => Some(Command::MoveToRelative(0)),
+        _ => None,
+    }
+}
+
+/// The frames that stop a unit. In a mode in which serial commands move nothing, duty 0 all the same: it does no harm.
+pub fn bytes(speaker: &Speaker, mode: Mode, ramp: Ramp) -> StopBytes {
+    let stop = commands(mode).unwrap_or(Command::ChangeSpeed(0));
+    let steepest = Command::Write { register: number::VELOCITYLIMIT, value: STEEPEST };
+    let ramp_away = (mode == Mode::Serial && ramp.is_slow()).then_some(steepest);
+    let frames = [Some(stop), ramp_away].into_iter().flatten();
+    // These commands fit both protocols at every address of one unit.
+    StopBytes { frames: frames.filter_map(|command| speaker.encode(&command).ok()).collect(), gap: GAP }
+}
+
+/// The frames that stop every unit of the bus in these modes, in one of the protocols: all hear them and none answers.
+pub fn broadcast(modes: &[Mode], protocol: Protocol) -> StopBytes {
+    let speaker = Speaker::new(Address::BROADCAST, protocol);
+    let mut stops: Vec<Command> = modes.iter().filter_map(|mode| commands(*mode)).collect();
+    stops.dedup();
+    StopBytes { frames: stops.iter().filter_map(|stop| speaker.encode(stop).ok()).collect(), gap: GAP }
+}
+
+/// Stops with confirmation: by the acknowledge, and by reading that the drive is 0 or the motor stands. Only what breaks in and a
+/// lost link are errors.
+pub fn confirm(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<UnitStop, ExchangeError> {
+    let on = unit.name(line);
+    let mut stop = UnitStop {
+        address: unit.identity.address,
+        confirmed: false,
+        script_ended: None,
+        buffers_empty: None,
+        still_driven_by: Vec::new(),
+        failures: Vec::new(),
+    };
+    match stand(unit, line) {
+        Ok(Ended::Stands) => stop.confirmed = true,
+        Ok(Ended::SwitchedOff) => {
+            stop.confirmed = true;
+            stop.still_driven_by.push(SWITCHED_OFF.to_owned());
+        }
+        Ok(Ended::StillDriven) => {
+            stop.failures.push(Failure::new("stop the motor", on, "its drive is not 0", CUT_POWER));
+        }
+        Err(error) => {
+            pass_on(&error)?;
+            stop.failures.push(Failure::new("stop the motor", on, error.full(), CUT_POWER));
+        }
+    }
+    Ok(stop)
+}
+
+const SWITCHED_OFF: &str = "Its loop did not hold the motor still, so its output was switched off (DISABLEPID in FUNCTION, in RAM). \
+                            Arming switches it on again.";
+
+enum Ended {
+    Stands,
+    SwitchedOff,
+    StillDriven,
+}
+
+fn stand(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<Ended, ExchangeError> {
+    let mode = unit.mode();
+    let Some(stop) = commands(mode) else {
+        // Nothing of this program moves it; that it answers is all there is to know.
+        look(unit, line)?;
+        return Ok(Ended::Stands);
+    };
+    unit.speaker.ask(line, &stop)?;
+    if mode == Mode::Serial { stand_open_loop(unit, line) } else { stand_closed_loop(unit, line) }
+}
+
+/// Mode 3: takes a slow ramp away, waits until the drive is 0, and puts the ramp back.
+fn stand_open_loop(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<Ended, ExchangeError> {
+    read_ramp(unit, line)?;
+    if unit.ramp.is_slow() {
+        let value = unit.ramp.step.unwrap_or(STEEPEST);
+        borrow(unit, line, Borrowed { register: number::VELOCITYLIMIT, value }, STEEPEST)?;
+    }
+    let begun_at = line.exchange().clock().now();
+    loop {
+        let (_, duty) = look(unit, line)?;
+        if duty == 0 {
+            give_back(unit, line, number::VELOCITYLIMIT)?;
+            return Ok(Ended::Stands);
+        }
+        if line.exchange().clock().now() >= begun_at + DUTY_LIMIT {
+            return Ok(Ended::StillDriven);
+        }
+        rest(line)?;
+    }
+}
+
+/// Modes 4 and 5: waits until the motor stands; a loop that does not bring it there is switched off.
+fn stand_closed_loop(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<Ended, ExchangeError> {
+    let begun_at = line.exchange().clock().now();
+    let (mut before, _) = look(unit, line)?;
+    loop {
+        rest(line)?;
+        let (position, duty) = look(unit, line)?;
+        if duty == 0 && unit.borrowed.iter().any(|borrowed| borrowed.register == number::FUNCTION) {
+            return Ok(Ended::SwitchedOff);
+        }
+        if (position - before).abs() <= STILL_COUNTS {
+            return Ok(Ended::Stands);
+        }
+        if line.exchange().clock().now() >= begun_at + LOOP_LIMIT {
+            break;
+        }
+        before = position;
+    }
+    let function = read(unit, line, number::FUNCTION)?;
+    let off = function | i64::from(function::DISABLEPID);
+    borrow(unit, line, Borrowed { register: number::FUNCTION, value: function }, off)?;
+    rest(line)?;
+    let (_, duty) = look(unit, line)?;
+    Ok(if duty == 0 { Ended::SwitchedOff } else { Ended::StillDriven })
+}
+
+/// POSITION and PWMOUT.
+fn look(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<(i64, i64), ExchangeError> {
+    let registers = mask(&[number::POSITION, number::PWMOUT]);
+    let (reply, _) = unit.speaker.ask(line, &Command::Read(registers))?;
+    let value = |index| value_in(&reply, index).unwrap_or(i64::MAX);
+    Ok((value(number::POSITION), value(number::PWMOUT)))
+}
+
+fn rest(line: &mut Line<'_>) -> Result<(), ExchangeError> {
+    let (exchange, watch) = line.parts();
+    exchange.wait(LOOK_AGAIN, watch)
+}
+
+pub fn read(unit: &mut MotionMind, line: &mut Line<'_>, register: u8) -> Result<i64, ExchangeError> {
+    let (reply, _) = unit.speaker.ask(line, &Command::ReadRegister(register))?;
+    value_in(&reply, register).ok_or_else(|| ExchangeError::Impossible {
+        what: format!("the reply does not hold register {register}"),
+    })
+}
+
+/// Reads VELOCITYLIMIT and TIMER.
+pub fn read_ramp(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<(), ExchangeError> {
+    let borrowed = unit.borrowed.iter().any(|borrowed| borrowed.register == number::VELOCITYLIMIT);
+    let registers = mask(&[number::VELOCITYLIMIT, number::TIMER]);
+    let (reply, _) = unit.speaker.ask(line, &Command::Read(registers))?;
+    if !borrowed {
+        unit.ramp.step = value_in(&reply, number::VELOCITYLIMIT);
+    }
+    unit.ramp.timer = value_in(&reply, number::TIMER);
+    Ok(())
+}
+
+/// Changes a register in RAM for a while. What it held before is remembered first: the write may have been done though its
+/// acknowledge is lost.
+fn borrow(
+    unit: &mut MotionMind,
+    line: &mut Line<'_>,
+    borrowed: Borrowed,
+    value: i64,
+) -> Result<(), ExchangeError> {
+    if !unit.borrowed.iter().any(|known| known.register == borrowed.register) {
+        unit.borrowed.push(borrowed);
+    }
+    unit.speaker.ask(line, &Command::Write { register: borrowed.register, value }).map(drop)
+}
+
+/// Puts a register back that a stop has changed.
+pub fn give_back(unit: &mut MotionMind, line: &mut Line<'_>, register: u8) -> Result<(), ExchangeError> {
+    let Some(at) = unit.borrowed.iter().position(|borrowed| borrowed.register == register) else {
+        return Ok(());
+    };
+    let Borrowed { register, value } = unit.borrowed[at];
+    unit.speaker.ask(line, &Command::Write { register, value })?;
+    unit.borrowed.remove(at);
+    Ok(())
+}
+
+/// What moves the motor without this program: the inputs of its mode, or the loop that holds it.
+pub fn other_drivers(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<Vec<String>, ExchangeError> {
+    let function = read(unit, line, number::FUNCTION)?;
+    let is_set = |bit: u16| function & i64::from(bit) != 0;
+    let is_off = is_set(function::DISABLEPID);
+    let told = match unit.mode() {
+        Mode::RadioControl if is_set(function::RCPOS) && is_off => None,
+        Mode::RadioControl => Some("The R/C input drives the motor (mode 0)."),
+        Mode::Analog => Some("The analog input drives the motor (mode 1)."),
+        Mode::Buttons => Some("The buttons drive the motor (mode 2)."),
+        Mode::AnalogPid if !is_off && !is_set(function::ADSERIAL) => {
+            Some("The analog input moves the motor (mode 5, ADSERIAL is off).")
+        }
+        Mode::SerialPid | Mode::AnalogPid if !is_off => {
+            Some("Its loop holds the motor where it stands, and turns it back if it is pushed.")
+        }
+        _ => None,
+    };
+    Ok(told.map(str::to_owned).into_iter().collect())
+}
+
+/// A lost link and what breaks in are not a matter of one unit.
+fn pass_on(error: &ExchangeError) -> Result<(), ExchangeError> {
+    if error.is_link_lost() || error.interruption().is_some() { Err(error.clone()) } else { Ok(()) }
+}

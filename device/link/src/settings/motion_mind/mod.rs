@@ -1,0 +1,7 @@
+//! The settings of Motion Minds: the rows, and what is particular in writing and keeping them.
+
+mod rows;
+mod steps;
+
+pub use rows::{register_of, rows};
+pub use steps::{arguments, stage, step_bytes, step_title, step_words, warnings};

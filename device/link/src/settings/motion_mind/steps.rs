@@ -1,0 +1,68 @@
+//! Writes of registers as steps of a plan.
+
+use brushwork_protocol::motion_mind::{Address, Command, describe_command, encode_frame, register};
+
+use super::super::plan::{Stage, Step};
+use crate::unit::UnitAddress;
+
+/// Names of the values of a write, in wire order; the second is the register's own.
+const INDEX: &str = "register";
+
+/// The values of a write of a register.
+pub fn arguments(index: u8, name: &'static str, word: i64) -> Vec<(&'static str, i64)> {
+    vec![(INDEX, i64::from(index)), (name, word)]
+}
+
+/// When a register is written: limits first, then what they limit, then the switches, the address last.
+pub fn stage(index: u8) -> Stage {
+    match register(index).map_or("", |row| row.name) {
+        "AMPSLIMIT" | "PWMLIMIT" | "VNLIMIT" | "VPLIMIT" => Stage::Limits,
+        "RCMAX" | "RCMIN" | "RCBAND" => Stage::Pins,
+        "FUNCTION" | "FUNCTION2" => Stage::Priorities,
+        "ADDRESS" => Stage::Address,
+        _ => Stage::Motors,
+    }
+}
+
+/// "write PTERM".
+pub fn step_title(step: &Step) -> String {
+    let name = step.arguments.get(1).map_or("a register", |(name, _)| *name);
+    format!("write {name}")
+}
+
+/// The bytes of a step in the binary protocol.
+pub fn step_bytes(step: &Step, address: UnitAddress) -> Result<Vec<u8>, String> {
+    let (address, command) = parts(step, address)?;
+    encode_frame(address, &command).map_err(|error| error.to_string())
+}
+
+/// A step in words.
+pub fn step_words(step: &Step, address: UnitAddress) -> String {
+    parts(step, address).map_or_else(|error| error, |(address, command)| describe_command(address, &command))
+}
+
+fn parts(step: &Step, address: UnitAddress) -> Result<(Address, Command), String> {
+    let address = Address::unit(address.get()).ok_or_else(|| format!("{address} is no Motion Mind's"))?;
+    let values: Vec<i64> = step.arguments.iter().map(|(_, value)| *value).collect();
+    let command = Command::from_parts(step.command, &values);
+    command.map(|command| (address, command)).ok_or_else(|| "the values do not fit the command".to_owned())
+}
+
+/// What the user should know of the steps besides their values.
+pub fn warnings(steps: &[Step]) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if steps.iter().any(|step| step.stage == Stage::Address) {
+        warnings.push(
+            "The controller answers to its new address from then on; save it, or a power cycle brings the old one back."
+                .to_owned(),
+        );
+    }
+    let baud = |key: &str| key == "function2.baud38400" || key == "function2.baud115200";
+    if steps.iter().flat_map(|step| &step.keys).any(|key| baud(key)) {
+        warnings.push(
+            "The baud rate changes at the next power-up, and only if it is saved: connect again at the new rate then."
+                .to_owned(),
+        );
+    }
+    warnings
+}
