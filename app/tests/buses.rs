@@ -3,7 +3,6 @@
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
-use std::time::{Duration, Instant};
 
 use brushwork::gui::App;
 use brushwork::gui::opener::session_opener;
@@ -24,6 +23,7 @@ use tempfile::TempDir;
 mod support;
 
 use support::cpu::Cpu;
+use support::wait::{PATIENCE, Wait};
 
 /// A unit with a small image, so that a transfer takes seconds.
 const UNIT: &str = "sim:roboclaw-2x7a";
@@ -74,34 +74,26 @@ impl Window {
 
     /// Draws frames until something holds.
     fn until(&mut self, what: &str, holds: impl Fn(&App) -> bool) {
-        let deadline = Instant::now() + Duration::from_secs(20);
-        while !holds(self.app.borrow().as_ref().expect("it was drawn")) {
-            assert!(Instant::now() < deadline, "{what}: {:?}", self.texts());
-            std::thread::sleep(Duration::from_millis(20));
-            self.harness.step();
-        }
+        self.wait_until(what, |window| holds(window.app.borrow().as_ref().expect("it was drawn")));
         self.harness.step();
     }
 
     fn until_text(&mut self, text: &str) {
-        let deadline = Instant::now() + Duration::from_secs(20);
-        while self.harness.query_all_by_label_contains(text).next().is_none() {
-            assert!(Instant::now() < deadline, "no {text:?}: {:?}", self.texts());
-            std::thread::sleep(Duration::from_millis(20));
-            self.harness.step();
-        }
+        self.wait_until(text, |window| window.harness.query_all_by_label_contains(text).next().is_some());
     }
 
     /// Draws frames until a widget is there.
     fn wait_for(&mut self, role: Role, label: &str) {
-        for _ in 0..50 {
-            if self.harness.query_by_role_and_label(role, label).is_some() {
-                return;
-            }
-            std::thread::sleep(Duration::from_millis(20));
+        let is_there = |window: &Self| window.harness.query_by_role_and_label(role, label).is_some();
+        self.wait_until(&format!("{role:?} {label:?}"), is_there);
+    }
+
+    fn wait_until(&mut self, what: &str, holds: impl Fn(&Self) -> bool) {
+        let mut wait = Wait::new();
+        while !holds(self) {
+            assert!(wait.goes_on(), "waited {PATIENCE:?} for {what}, but: {:?}", self.texts());
             self.harness.step();
         }
-        panic!("no {role:?} {label:?}: {:?}", self.texts());
     }
 
     fn click(&mut self, role: Role, label: &str) {
@@ -224,7 +216,6 @@ fn a_power_failure_is_told_with_what_to_do_and_the_update_is_resumed() {
     power(&mut window, false);
     window.until_text("resume the update with the same file");
     power(&mut window, true);
-    std::thread::sleep(Duration::from_millis(800));
     window.click(Role::Button, "Back");
     assert!(!window.is_enabled("Resume the update"), "neither accepted nor a model chosen");
     let models = window.harness.get_by_role_and_label(Role::ComboBox, "Model in its loader");

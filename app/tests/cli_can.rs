@@ -1,31 +1,19 @@
 //! The command line on a CANopen bus: simulated nodes behind an adapter on a pseudo-terminal, and in the program itself.
 #![cfg(unix)]
 
-use std::process::{Command, Stdio};
+#[path = "support/cli.rs"]
+mod cli;
 
 use brushwork_protocol::canopen::NodeId;
 use brushwork_protocol::canopen::adapter::Form;
 use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_sim::server::{Endpoint, Server, ServerOptions, SimHandle};
+use cli::{Run, program, run};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// What a run of the program gave.
-#[derive(Debug)]
-struct Run {
-    code: i32,
-    stdout: String,
-    stderr: String,
-}
-
 fn brushwork(arguments: &[&str]) -> Run {
-    let output = Command::new(env!("CARGO_BIN_EXE_brushwork"))
-        .args(arguments)
-        .stdin(Stdio::null())
-        .output()
-        .expect("the program was built for this test");
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("the program prints UTF-8");
-    Run { code: output.status.code().unwrap_or(-1), stdout: text(output.stdout), stderr: text(output.stderr) }
+    run(program().args(arguments))
 }
 
 /// Nodes behind an adapter on a pseudo-terminal, as somebody else's program would run them.

@@ -1,9 +1,14 @@
 //! `brushwork firmware` as a person or a script runs it, against a simulated controller on a pseudo-terminal.
 #![cfg(unix)]
 
+#[path = "support/cli.rs"]
+mod cli;
+#[path = "support/wait.rs"]
+#[allow(dead_code, reason = "each test file uses its own part of this")]
+mod wait;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
 
 use brushwork_link::settings::Profile;
 use brushwork_protocol::models;
@@ -11,20 +16,12 @@ use brushwork_sim::controller::{Bus, Controller, ControllerConfig, Flash};
 use brushwork_sim::machine::StreamIndex;
 use brushwork_sim::server::{Endpoint, Server, ServerOptions, SimHandle};
 use brushwork_sim::world::WorldAction;
+use cli::{Run, program, run};
 use tempfile::TempDir;
 
-/// What a run of the program gave.
-#[derive(Debug)]
-struct Run {
-    code: i32,
-    stdout: String,
-    stderr: String,
-}
-
 fn command(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_brushwork"));
+    let mut command = program();
     command
-        .env("BRUSHWORK_DATA_DIR", env!("CARGO_TARGET_TMPDIR"))
         .arg("firmware")
         .args(arguments)
         .stdin(Stdio::null())
@@ -34,9 +31,7 @@ fn command(arguments: &[&str]) -> Command {
 }
 
 fn firmware(arguments: &[&str]) -> Run {
-    let output = command(arguments).output().expect("the program was built for this test");
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("the program prints UTF-8");
-    Run { code: output.status.code().unwrap_or(-1), stdout: text(output.stdout), stderr: text(output.stderr) }
+    run(&mut command(arguments))
 }
 
 /// A RoboClaw on a pseudo-terminal, and an image for it.
@@ -76,8 +71,18 @@ impl Unit {
         self.server.inspect(|bus| bus.controllers()[0].flash().clone()).expect("it runs")
     }
 
-    fn power(&self, on: bool) {
-        self.server.apply(0, WorldAction::Power { on }).expect("it runs");
+    /// Switches it off and on; it is at the other end of the line again when this returns.
+    fn power_cycle(&self) {
+        for on in [false, true] {
+            self.server.apply(0, WorldAction::Power { on }).expect("it runs");
+            self.until(if on { "power" } else { "no power" }, move |unit| unit.unit().is_some() == on);
+        }
+        wait::until("the port", || self.path("port").exists(), || "it is not there".to_owned());
+    }
+
+    fn until(&self, what: &str, holds: impl Fn(&Controller) -> bool + Copy + Send + 'static) {
+        let look = || self.server.inspect(move |bus| holds(&bus.controllers()[0])).expect("it runs");
+        wait::until(what, look, || format!("{:?}", self.flash()));
     }
 }
 
@@ -121,7 +126,7 @@ fn an_update_needs_the_risk_accepted_and_backs_the_settings_up_first() {
     assert!(run.stdout.contains("settings diff"), "what to do next is said: {run:?}");
     assert!(unit.flash() == holds(&unit.path("new.bin")));
     assert!(Profile::load(&backup).unwrap().firmware.contains("v4.2.8"), "the backup is of the old firmware");
-    std::thread::sleep(Duration::from_secs(1));
+    unit.until("a restart", |unit| unit.unit().is_some_and(|unit| !unit.is_in_loader()));
     let info = firmware(&["info", "--connect", &port]);
     assert!(info.stdout.contains("v9.8.7"), "{info:?}");
 }
@@ -155,18 +160,11 @@ fn an_update_that_is_killed_is_resumed_after_a_power_cycle() {
         command(&["update", &image, "--connect", &port, "--simulated", "--accept-risk", "--backup", &backup])
             .spawn()
             .unwrap();
-    let deadline = Instant::now() + Duration::from_secs(60);
-    while !matches!(unit.flash(), Flash::Filling(_)) {
-        assert!(Instant::now() < deadline, "no page arrived");
-        std::thread::sleep(Duration::from_millis(2));
-    }
+    unit.until("a first page", |unit| matches!(unit.flash(), Flash::Filling(_)));
     child.kill().unwrap();
     child.wait().unwrap();
     assert!(matches!(unit.flash(), Flash::Filling(_)), "it was killed before its end");
-    unit.power(false);
-    std::thread::sleep(Duration::from_millis(200));
-    unit.power(true);
-    std::thread::sleep(Duration::from_millis(800));
+    unit.power_cycle();
     let lost = firmware(&["info", "--connect", &port]);
     assert_eq!(lost.code, 3, "in its loader it answers no packet: {lost:?}");
     let resume = [

@@ -2,6 +2,10 @@
 
 #[path = "support/cli.rs"]
 mod cli;
+#[cfg(unix)]
+#[path = "support/wait.rs"]
+#[allow(dead_code, reason = "each test file uses its own part of this")]
+mod wait;
 
 use std::path::{Path, PathBuf};
 
@@ -211,9 +215,8 @@ mod on_a_pseudo_terminal {
     #[test]
     fn a_write_that_was_killed_is_told_setting_by_setting_and_can_be_finished_or_undone() {
         for (settle, p1, deadband) in [("--finish", "7.000", "7"), ("--undo", "1.000", "0")] {
-            let (kept, unit) = (Kept::new(), Simulated::start(&["--fault", "delay=10ms"]));
-            kill_a_write(&kept, &unit);
-            assert_eq!(kept.files("journals").len(), 1);
+            let (kept, unit) = a_killed_write();
+            assert_eq!(journals(&kept).len(), 1);
             let told = at(&kept, &unit, "read", &["motor1.velocity.p"]).ended_with(DONE);
             assert!(told.stderr.contains("A write of settings begun"), "{told:#?}");
             assert!(told.stderr.contains("Motor 1: velocity P holds the"), "{told:#?}");
@@ -229,20 +232,36 @@ mod on_a_pseudo_terminal {
             assert!(told.stdout.contains("Nothing that was begun"), "{told:#?}");
             at(&kept, &unit, "read", &["motor1.velocity.p"]).ended_with(DONE).prints(p1);
             at(&kept, &unit, "read", &["pin.9.deadband"]).ended_with(DONE).prints(deadband);
-            assert_eq!(kept.files("journals").len(), 0);
+            assert_eq!(journals(&kept).len(), 0);
         }
     }
 
     #[test]
     fn what_was_cut_short_can_be_left_as_it_is() {
-        let (kept, unit) = (Kept::new(), Simulated::start(&["--fault", "delay=10ms"]));
-        kill_a_write(&kept, &unit);
+        let (kept, unit) = a_killed_write();
         at(&kept, &unit, "unfinished", &["--forget"]).ended_with(DONE).prints("A write of settings");
         let told = at(&kept, &unit, "read", &["motor1.velocity.p"]).ended_with(DONE);
         assert!(!told.stderr.contains("cut short"), "{told:#?}");
     }
 
-    /// Begins a write of many commands and kills the program once its journal is there and some may be sent.
+    /// A controller in the middle of a write whose program was killed once its journal was there and some may be sent.
+    fn a_killed_write() -> (Kept, Simulated) {
+        /// How often a busy machine may bring the signal too late.
+        const TRIES: usize = 20;
+        let killed = (0..TRIES).find_map(|_| {
+            let (kept, unit) = (Kept::new(), Simulated::start(&["--fault", "delay=10ms"]));
+            kill_a_write(&kept, &unit);
+            (!journals(&kept).is_empty()).then_some((kept, unit))
+        });
+        killed.expect("a write is killed before its end")
+    }
+
+    fn journals(kept: &Kept) -> Vec<PathBuf> {
+        let mut found = kept.files("journals");
+        found.retain(|path| path.extension().is_some_and(|name| name == "json"));
+        found
+    }
+
     fn kill_a_write(kept: &Kept, unit: &Simulated) {
         let mut changes: Vec<String> = ["velocity.p", "velocity.i", "position.p", "position.i"]
             .iter()
@@ -258,12 +277,10 @@ mod on_a_pseudo_terminal {
             .expect("the program was built for this test");
         let mut shown = BufReader::new(child.stdout.take().expect("it is piped")).lines();
         assert!(shown.next().is_some_and(|line| line.is_ok_and(|line| line.contains("->"))));
-        let limit = std::time::Instant::now() + std::time::Duration::from_secs(60);
-        while kept.files("journals").iter().all(|path| path.extension().is_none_or(|name| name != "json")) {
-            assert!(std::time::Instant::now() < limit, "no journal");
-            std::thread::sleep(std::time::Duration::from_millis(5));
-        }
-        std::thread::sleep(std::time::Duration::from_millis(400));
+        let begun = || !journals(kept).is_empty() || child.try_wait().is_ok_and(|status| status.is_some());
+        wait::until("a journal", begun, || format!("{:?}", kept.files("")));
+        // Some of it is sent. A write that has ended by now is tried again.
+        std::thread::sleep(std::time::Duration::from_millis(300));
         let _ = child.kill();
         let _ = child.wait();
     }

@@ -58,10 +58,7 @@ mod real_time {
         let arguments = ["tune", "velocity", "--connect", &target, "--dry-run", "--report", &report_text];
         let ending = Program::start(BRUSHWORK, &arguments).finish(Duration::from_secs(90));
         assert!(matches!(ending.status.code(), Some(0 | 8)), "{ending:?}");
-        assert!(
-            controller.wait_until(Duration::from_secs(3), is_at_rest).is_some(),
-            "the motors stand at the end"
-        );
+        controller.wait_until("motors at rest", is_at_rest);
         let text = std::fs::read_to_string(report).expect("the report was written");
         serde_json::from_str(&text).expect("the report reads back")
     }

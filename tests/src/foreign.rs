@@ -4,15 +4,11 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::Duration;
 
 use serde_json::Value;
 
 use crate::program::Program;
-use crate::workspace;
-
-/// A script that says nothing for so long hangs.
-const SILENCE_LIMIT: Duration = Duration::from_secs(60);
+use crate::{wait, workspace};
 
 /// Names a tool whose tests are left out because it cannot be had here; set by `tests/run`, comma-separated.
 const LEAVE_OUT: &str = "BRUSHWORK_LEAVE_OUT";
@@ -112,19 +108,19 @@ pub fn run(script: &str, port: &Path, arguments: &[&str], simulated: &mut dyn Si
     command.arg(workspace::root().join("tests/foreign").join(script)).arg(port).args(arguments);
     let mut program = Program::spawn(command);
     let mut findings = Findings::default();
-    while let Some(line) = program.next_line(SILENCE_LIMIT) {
+    while let Some(line) = program.next_line(wait::LIMIT) {
         let message: Value =
             serde_json::from_str(&line).unwrap_or_else(|error| panic!("{script} said `{line}`: {error}"));
         if let Some(answer) = answer_to(&message, simulated) {
             program.say(&answer.to_string());
         } else if message.get("finished").is_some() {
-            program.finish(SILENCE_LIMIT);
+            program.finish(wait::LIMIT);
             return findings;
         } else {
             note(&message, &mut findings);
         }
     }
-    let ending = program.finish(SILENCE_LIMIT);
+    let ending = program.finish(wait::LIMIT);
     panic!("{script} broke off: {:#?}", ending.stderr);
 }
 

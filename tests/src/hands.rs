@@ -26,6 +26,8 @@ pub enum Key {
     Enter,
     /// The space bar.
     Space,
+    /// Stop.
+    Escape,
     /// A page up.
     PageUp,
     /// The left control key.
@@ -41,6 +43,7 @@ impl Key {
             Self::Tab => 0xFF09,
             Self::Enter => 0xFF0D,
             Self::Space => 0x20,
+            Self::Escape => 0xFF1B,
             Self::PageUp => 0xFF55,
             Self::Control => 0xFFE3,
             Self::Shift => 0xFFE1,

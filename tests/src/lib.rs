@@ -13,4 +13,5 @@ pub mod simulated;
 pub mod truth;
 pub mod virtual_line;
 pub mod virtual_link;
+pub mod wait;
 pub mod workspace;

@@ -3,11 +3,12 @@
 //! Used for the built `brushwork` and for the foreign clients. Waiting always has a limit.
 
 use std::io::{BufRead, BufReader, Read, Write};
-use std::path::PathBuf;
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
 use std::time::{Duration, Instant};
+
+use tempfile::TempDir;
 
 /// Lines that may wait unread before the child has to.
 const QUEUE_LINES: usize = 10_000;
@@ -21,9 +22,9 @@ pub struct Program {
     seen: Vec<String>,
 }
 
-/// What the program keeps for its user is kept among the build products.
-fn data_folder() -> Option<PathBuf> {
-    Some(std::env::current_exe().ok()?.parent()?.parent()?.join("tmp").join("data"))
+thread_local! {
+    /// What the programs of one test keep for their user: each test has a thread and so a folder of its own.
+    static DATA: TempDir = tempfile::tempdir().expect("a temporary folder can be made");
 }
 
 /// How a program ended and what it had printed.
@@ -35,6 +36,15 @@ pub struct Ending {
     pub stdout: Vec<String>,
     /// Every line of standard error.
     pub stderr: Vec<String>,
+}
+
+impl Ending {
+    /// Whether the machine was too busy to let the program renew its motion, which then stops for safety's sake: no
+    /// fault of anybody, but the test has to be tried again.
+    #[must_use]
+    pub fn was_starved(&self) -> bool {
+        self.stderr.iter().any(|line| line.contains("did not renew the motion within"))
+    }
 }
 
 impl Program {
@@ -50,8 +60,8 @@ impl Program {
     #[must_use]
     pub fn spawn(mut command: Command) -> Self {
         let has_its_own = command.get_envs().any(|(name, _)| name == "BRUSHWORK_DATA_DIR");
-        if let Some(folder) = data_folder().filter(|_| !has_its_own) {
-            command.env("BRUSHWORK_DATA_DIR", folder);
+        if !has_its_own {
+            DATA.with(|folder| command.env("BRUSHWORK_DATA_DIR", folder.path()));
         }
         let mut child = command
             .stdin(Stdio::piped())
@@ -102,6 +112,22 @@ impl Program {
                     self.seen,
                     drain(&self.stderr)
                 ),
+            }
+        }
+    }
+
+    /// Reads on until a line of standard error contains `words`, and returns it.
+    ///
+    /// # Panics
+    /// When the program closes it or `limit` passes first.
+    pub fn wait_for_error(&mut self, words: &str, limit: Duration) -> String {
+        let deadline = Instant::now() + limit;
+        let mut others = Vec::new();
+        loop {
+            match self.stderr.recv_timeout(deadline.saturating_duration_since(Instant::now())) {
+                Ok(line) if line.contains(words) => return line,
+                Ok(line) => others.push(line),
+                Err(_) => panic!("no `{words}` on standard error within {limit:?}, but {others:#?}"),
             }
         }
     }

@@ -9,9 +9,7 @@ use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 use crate::program::Program;
-
-/// How long Xvfb may take to start.
-const START_LIMIT: Duration = Duration::from_secs(20);
+use crate::wait;
 
 /// Between two looks at the picture.
 const LOOK_INTERVAL: Duration = Duration::from_millis(100);
@@ -34,7 +32,7 @@ impl Screen {
         let frame_buffer = folder.path().to_string_lossy().into_owned();
         let arguments = ["-displayfd", "1", "-screen", "0", "1280x800x24", "-nolisten", "tcp", "-fbdir"];
         let mut server = Program::start("Xvfb", &[&arguments[..], &[&frame_buffer]].concat());
-        let number = server.next_line(START_LIMIT).expect("Xvfb names its display");
+        let number = server.next_line(wait::LIMIT).expect("Xvfb names its display");
         Self { display: format!(":{}", number.trim()), folder, _server: server }
     }
 
@@ -50,10 +48,10 @@ impl Screen {
         Picture::read(&self.folder.path().join("Xvfb_screen0"))
     }
 
-    /// Looks until the picture satisfies `is_it`; none when `limit` passes first.
+    /// Looks until the picture satisfies `is_it`; none when it never does.
     #[must_use]
-    pub fn wait_for(&self, limit: Duration, is_it: impl Fn(&Picture) -> bool) -> Option<Picture> {
-        let end = Instant::now() + limit;
+    pub fn wait_for(&self, is_it: impl Fn(&Picture) -> bool) -> Option<Picture> {
+        let end = Instant::now() + wait::LIMIT;
         while Instant::now() < end {
             if let Some(picture) = self.picture().filter(&is_it) {
                 return Some(picture);

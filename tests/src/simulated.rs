@@ -1,7 +1,7 @@
 //! A simulated controller that runs in real time on a pseudo-terminal of its own, with the test looking over its shoulder.
 
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use brushwork_protocol::canopen::NodeId;
 use brushwork_protocol::canopen::adapter::Form;
@@ -10,14 +10,24 @@ use brushwork_sim::bridge::BridgeOutput;
 use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_sim::machine::{Machine as _, StreamIndex};
 use brushwork_sim::server::{Endpoint, Server, ServerOptions, SimHandle};
+use brushwork_sim::settings::Settings;
 use brushwork_sim::world::WorldAction;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::{foreign, truth};
+use crate::{foreign, truth, wait};
 
-/// Between two looks of [`OnPty::wait_until`].
-const LOOK_INTERVAL: Duration = Duration::from_millis(2);
+/// The time-out of a [`OnPty::patient`] controller.
+pub const PATIENT_TIME_OUT: Duration = Duration::from_secs(60);
+
+/// How the motors were switched off, in the controller's own time, which does not depend on how busy the machine is.
+#[derive(Clone, Copy, Debug)]
+pub struct Off {
+    /// The longest silence on the line while the motors were still seen driven.
+    pub driven_in_silence: Duration,
+    /// How long the line had been silent when they were first seen off.
+    pub silent_for: Duration,
+}
 
 /// A controller on a pseudo-terminal; both go when this is dropped.
 pub struct OnPty {
@@ -30,6 +40,16 @@ impl OnPty {
     #[must_use]
     pub fn start(generation: Generation) -> Self {
         Self::start_with(ControllerConfig { generation, ..ControllerConfig::default() }, StreamIndex::Usb)
+    }
+
+    /// A controller with a time-out so long that it is not what stops the motors in a test.
+    #[must_use]
+    pub fn patient(generation: Generation) -> Self {
+        let mut config = ControllerConfig { generation, ..ControllerConfig::default() };
+        let mut settings = Settings::factory(config.model, config.address.get());
+        settings.streams[0].timeout_ms = PATIENT_TIME_OUT.as_millis() as u32;
+        config.settings = Some(settings);
+        Self::start_with(config, StreamIndex::Usb)
     }
 
     /// Any controller, on any of its ports.
@@ -98,17 +118,72 @@ impl OnPty {
         self.handle.inspect(receive).expect("the server runs as long as this does");
     }
 
-    /// Waits until `holds` does, and returns how long that took; none when `limit` passes first.
-    pub fn wait_until(&self, limit: Duration, holds: fn(&Controller) -> bool) -> Option<Duration> {
-        let start = Instant::now();
-        while start.elapsed() < limit {
-            if self.look(holds) {
-                return Some(start.elapsed());
-            }
-            std::thread::sleep(LOOK_INTERVAL);
-        }
-        None
+    /// Waits until `holds` does.
+    ///
+    /// # Panics
+    /// When it never does.
+    pub fn wait_until(&self, what: &str, holds: fn(&Controller) -> bool) {
+        wait::until(what, || self.look(holds), || format!("{:#?}", self.look(Controller::view)));
     }
+
+    /// Waits until so much of the controller's own time has passed.
+    ///
+    /// # Panics
+    /// When its time stands still.
+    pub fn let_pass(&self, time: Duration) {
+        let end = self.look(Controller::now) + time;
+        wait::until(
+            "the controller's time",
+            || self.look(Controller::now) >= end,
+            || format!("not {end:?} yet"),
+        );
+    }
+
+    /// Waits until both bridges are off.
+    ///
+    /// # Panics
+    /// When they never are.
+    #[must_use]
+    pub fn wait_until_off(&self) -> Off {
+        let mut driven_in_silence = Duration::ZERO;
+        let look = || {
+            let (driven, silent_for) = self.look(|unit| (is_driven(unit), silence(unit)));
+            if driven {
+                driven_in_silence = driven_in_silence.max(silent_for);
+            }
+            (!driven).then_some(silent_for)
+        };
+        let there = || format!("{:#?}", self.look(Controller::view));
+        let silent_for = wait::until_some("bridges without duty", look, there);
+        Off { driven_in_silence, silent_for }
+    }
+}
+
+impl Off {
+    /// Somebody on the line stopped the motors of a [`OnPty::patient`] controller.
+    ///
+    /// # Panics
+    /// When it was the controller's own time-out.
+    pub fn assert_by_command(self) {
+        assert!(self.silent_for < PATIENT_TIME_OUT, "only the time-out stopped the motors: {self:?}");
+    }
+
+    /// The controller stopped its motors after so much silence.
+    ///
+    /// # Panics
+    /// When somebody else did, or it waited longer.
+    pub fn assert_by_time_out(self, time_out: Duration) {
+        /// A few ticks, and the ramp to rest.
+        const RAMP: Duration = Duration::from_millis(60);
+        assert!(self.silent_for >= time_out, "not the time-out stopped the motors: {self:?}");
+        assert!(self.driven_in_silence <= time_out + RAMP, "{self:?} with a time-out of {time_out:?}");
+    }
+}
+
+/// How long the line of a controller has been silent.
+#[must_use]
+pub fn silence(controller: &Controller) -> Duration {
+    controller.unit().and_then(|unit| unit.silence()).unwrap_or_default()
 }
 
 /// Whether the bridge of either motor is driven.

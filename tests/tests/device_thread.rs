@@ -9,19 +9,18 @@ use std::time::{Duration, Instant};
 
 use brushwork_link::device::{
     Addresses, ArmScope, DeviceHandle, DeviceOptions, DeviceThread, DisarmReason, Drive, DriveCommand, Event,
-    MOTION_LIFE, PollRate, Request,
+    PollRate, Request,
 };
 use brushwork_link::transport::SerialTransport;
 use brushwork_link::{Stream, SystemClock};
 use brushwork_protocol::packet_serial::{Generation, Motor};
 use brushwork_sim::controller::Controller;
 use brushwork_sim::world::WorldAction;
-use brushwork_tests::simulated::{OnPty, is_at_rest, is_driven};
+use brushwork_tests::simulated::{Off, OnPty, is_at_rest, is_driven};
+use brushwork_tests::wait::LIMIT;
 
-const LIMIT: Duration = Duration::from_secs(10);
-
-/// What a busy test machine may add: a late thread at either end, a late look.
-const LATENESS: Duration = Duration::from_millis(250);
+/// How often a busy machine may keep the window from renewing its motion before the test gives up.
+const TRIES: usize = 20;
 
 /// A link as a window would hold it.
 struct Window {
@@ -68,18 +67,22 @@ impl Window {
 
     /// Arms, drives both motors, and keeps the motion alive for a second.
     fn drive(&self, controller: &OnPty) {
+        let driven = (0..TRIES).any(|_| self.drives_for_a_second(controller));
+        assert!(driven, "the motors run for as long as the motion is renewed");
+    }
+
+    fn drives_for_a_second(&self, controller: &OnPty) -> bool {
         self.request(Request::Arm(ArmScope::Pwm));
         self.wait_for("permission to move", |event| matches!(event, Event::Armed { .. }));
         let half = |sign: f64| Some(DriveCommand::Duty { duty: 0.5 * sign, accel_duty_per_s: None });
         self.request(Request::Drive(Drive { m1: half(1.0), m2: half(-1.0) }));
-        assert!(controller.wait_until(LIMIT, both_are_driven).is_some(), "the motors run");
-        let end = Instant::now() + Duration::from_secs(1);
-        while Instant::now() < end {
+        let end = controller.look(Controller::now) + Duration::from_secs(1);
+        while controller.look(Controller::now) < end {
             self.handle.renew();
             self.handle.events().try_iter().for_each(drop);
-            std::thread::sleep(Duration::from_millis(50));
+            std::thread::sleep(Duration::from_millis(20));
         }
-        assert!(controller.look(both_are_driven), "the motors run for as long as the motion is renewed");
+        controller.look(both_are_driven)
     }
 }
 
@@ -89,46 +92,46 @@ fn both_are_driven(controller: &Controller) -> bool {
         .all(|motor| controller.unit().is_some_and(|unit| unit.channel(motor).duty_raw() != 0))
 }
 
-fn off_within(controller: &OnPty, what: &str, allowed: Duration) {
-    let stopped = controller.wait_until(LIMIT, |unit| !is_driven(unit)).expect("the motors are switched off");
-    println!("{what}: bridges off after {stopped:?}");
-    assert!(stopped <= allowed + LATENESS, "{what}: took {stopped:?}, allowed {allowed:?}");
-    assert!(controller.wait_until(LIMIT, is_at_rest).is_some(), "{what}: the shafts come to rest");
+fn off(controller: &OnPty, what: &str) -> Off {
+    let off = controller.wait_until_off();
+    println!("{what}: {off:?}");
+    controller.wait_until("shafts at rest", is_at_rest);
+    off
 }
 
 #[test]
 fn a_frozen_window_stops_both_motors_within_the_life_of_a_motion() {
-    let controller = OnPty::start(Generation::Gen1);
+    let controller = OnPty::patient(Generation::Gen1);
     let window = Window::connect(&controller, PollRate::DEFAULT);
     window.drive(&controller);
     // From here on the window neither renews nor reads, while the thread polls on and feeds the controller's own time-out.
-    off_within(&controller, "frozen window", MOTION_LIFE);
+    off(&controller, "frozen window").assert_by_command();
     let is_dead_man = |event: &Event| matches!(event, Event::Disarmed(DisarmReason::DeadMan));
     window.wait_for("a word about it", is_dead_man);
 }
 
 #[test]
 fn stop_all_overtakes_polling_at_full_speed() {
-    let controller = OnPty::start(Generation::Gen4);
+    let controller = OnPty::patient(Generation::Gen4);
     let window = Window::connect(&controller, PollRate::Fastest);
     window.drive(&controller);
     window.handle.stop_all();
-    off_within(&controller, "stop all", Duration::ZERO);
+    off(&controller, "stop all").assert_by_command();
     let Event::Stopped(report) = window.wait_for("a report", |event| matches!(event, Event::Stopped(_)))
     else {
         unreachable!("it was waited for")
     };
     println!("stop bytes on the wire after {:?}", report.latency());
-    assert!(report.confirmed() && report.latency() < LATENESS, "{report:?}");
+    assert!(report.confirmed(), "{report:?}");
 }
 
 #[test]
 fn closing_the_window_stops_both_motors_first() {
-    let controller = OnPty::start(Generation::Gen2);
+    let controller = OnPty::patient(Generation::Gen2);
     let window = Window::connect(&controller, PollRate::DEFAULT);
     window.drive(&controller);
     drop(window); // returns when the stop is confirmed; the duty then falls at the highest acceleration
-    off_within(&controller, "closed window", Duration::ZERO);
+    off(&controller, "closed window").assert_by_command();
 }
 
 #[test]
@@ -138,7 +141,7 @@ fn a_pulled_plug_is_told_and_the_controllers_own_time_out_stops_both_motors() {
     window.drive(&controller);
     controller.apply(WorldAction::Unplug { unplugged: true });
     let factory_time_out = Duration::from_secs(1);
-    off_within(&controller, "pulled plug", factory_time_out);
+    off(&controller, "pulled plug").assert_by_time_out(factory_time_out);
     let Event::Lost(failure) = window.wait_for("the loss", |event| matches!(event, Event::Lost(_))) else {
         unreachable!("it was waited for")
     };

@@ -3,13 +3,11 @@
 
 use std::io::{Read, Write};
 use std::net::TcpStream;
-use std::time::Duration;
 
 use brushwork_tests::program::Program;
+use brushwork_tests::wait::LIMIT;
 
 const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
-const LIMIT: Duration = Duration::from_secs(20);
-
 /// A simulated unit and a client that is connected to it.
 fn served(options: &[&str]) -> (Program, TcpStream) {
     let arguments = [&["sim", "--model", "motion-mind-3", "--tcp", "127.0.0.1:0"], options].concat();

@@ -2,17 +2,15 @@
 #![cfg(unix)]
 
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use brushwork_protocol::packet_serial::Generation;
 use brushwork_sim::controller::{Content, Controller};
 use brushwork_tests::program::{Ending, Program};
 use brushwork_tests::simulated::{OnPty, is_at_rest, is_driven};
+use brushwork_tests::wait::LIMIT;
 use serde_json::Value;
 
 const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
-
-const LIMIT: Duration = Duration::from_secs(30);
 
 /// Exit codes, as `brushwork --help` lists them.
 const DONE: i32 = 0;
@@ -79,12 +77,12 @@ fn a_started_script_ends_with_its_motors_on_ctrl_c() {
     let file = text(&driving(&folder));
     let controller = OnPty::start(Generation::Gen2);
     let mut program = script(&["start", &file, "--simulated", "--to", &target(&controller)]);
-    assert!(controller.wait_until(LIMIT, is_driven).is_some(), "the script drives");
+    controller.wait_until("a script that drives", is_driven);
     assert!(program.is_running() && controller.look(runs));
     program.signal("INT");
     let ending = program.finish(LIMIT);
     assert_eq!(code(&ending), Some(INTERRUPTED), "{ending:?}");
-    assert!(controller.wait_until(LIMIT, is_at_rest).is_some());
+    controller.wait_until("motors at rest", is_at_rest);
     assert!(!controller.look(runs));
 }
 

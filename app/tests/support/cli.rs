@@ -51,9 +51,14 @@ impl Run {
     }
 }
 
-/// The program, keeping its files in a folder of the tests.
+thread_local! {
+    /// What the programs of one test keep for their user: each test has a thread and so a folder of its own.
+    static DATA: TempDir = tempfile::tempdir().expect("a temporary folder can be made");
+}
+
+/// The program, keeping its files in a folder of this test.
 pub fn program() -> Command {
-    program_keeping_in(Path::new(env!("CARGO_TARGET_TMPDIR")))
+    DATA.with(|folder| program_keeping_in(folder.path()))
 }
 
 /// The program, keeping its files in a folder.

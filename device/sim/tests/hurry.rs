@@ -7,10 +7,7 @@ use brushwork_sim::machine::{Machine, StreamIndex};
 use brushwork_sim::server::{ChannelEnds, Endpoint, Pace, Server, ServerOptions, SimHandle};
 use brushwork_sim::world::{WorldAction, WorldView};
 use std::time::{Duration, Instant};
-use support::Parrot;
-
-/// Longer than anything here takes, on a busy computer too.
-const PATIENCE: Duration = Duration::from_secs(20);
+use support::{PATIENCE, Parrot, eventually, let_turn};
 
 /// A parrot that wants to be looked at from a time on.
 struct Wanting {
@@ -84,17 +81,23 @@ fn at_ten_times_the_pace_a_machine_is_ahead_of_the_wall_clock_and_answers() {
     let client = handle.new_channel().expect("it is plugged in");
     assert_eq!(handle.pace(), Pace::REAL);
     handle.set_pace(Pace::TEN);
-    let (begun_at, began) = (now(&handle), Instant::now());
-    for byte in 1..=40 {
-        assert_eq!(exchange(&client, byte), Some(vec![byte; 4]));
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    let (passed, took) = (now(&handle) - begun_at, began.elapsed());
-    assert!(passed > took * 5 && passed < took * 11, "{passed:?} in {took:?}");
+    // A thread that has no processor for long skips time, so that not every stretch shows the pace; none is faster.
+    let is_ahead = || {
+        let (began, begun_at) = (Instant::now(), now(&handle));
+        for byte in 1..=20 {
+            assert_eq!(exchange(&client, byte), Some(vec![byte; 4]));
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        let (passed, took) = (now(&handle) - begun_at, began.elapsed());
+        assert!(passed <= took * 10, "{passed:?} in {took:?}");
+        passed > took * 5
+    };
+    assert!(eventually(is_ahead));
     handle.set_pace(Pace::REAL);
-    let (begun_at, began) = (now(&handle), Instant::now());
+    let_turn(&handle);
+    let (began, begun_at) = (Instant::now(), now(&handle));
     std::thread::sleep(Duration::from_millis(100));
-    assert!(now(&handle) - begun_at < began.elapsed() * 2);
+    assert!(now(&handle) - begun_at <= began.elapsed());
 }
 
 #[test]

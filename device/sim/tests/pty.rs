@@ -10,11 +10,9 @@ use std::fs::{File, OpenOptions, read_link, symlink_metadata};
 use std::io::{self, ErrorKind, Read, Write};
 use std::os::unix::fs::{OpenOptionsExt, symlink};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
-use support::Parrot;
+use std::time::Instant;
+use support::{PATIENCE, Parrot, eventually, let_turn};
 use tempfile::TempDir;
-
-const PATIENCE: Duration = Duration::from_secs(10);
 
 struct Bench {
     _folder: TempDir,
@@ -64,17 +62,6 @@ fn exchange(client: &mut File, byte: u8) -> io::Result<Vec<u8>> {
     read(client, 4)
 }
 
-fn eventually(mut holds: impl FnMut() -> bool) -> bool {
-    let begin = Instant::now();
-    while begin.elapsed() < PATIENCE {
-        if holds() {
-            return true;
-        }
-        std::thread::sleep(Duration::from_millis(2));
-    }
-    false
-}
-
 #[test]
 fn clients_open_close_and_reopen_the_link_and_every_byte_passes_unchanged() {
     let bench = Bench::new();
@@ -97,8 +84,8 @@ fn what_a_client_left_unread_is_not_found_by_the_next_one() {
     first.write_all(&[0x80, 1]).expect("it takes bytes");
     assert!(eventually(|| handle.inspect(|parrot| parrot.heard.len()).is_ok_and(|heard| heard == 2)));
     drop(first);
-    // Time for the server to see that nobody is there.
-    std::thread::sleep(Duration::from_millis(100));
+    // The server sees that nobody is there.
+    let_turn(&handle);
     let mut second = open(&bench.link).expect("the link leads to it");
     assert_eq!(exchange(&mut second, 2).expect("it answers"), vec![2; 4]);
 }
@@ -165,7 +152,7 @@ fn a_client_that_never_reads_does_not_stop_the_server() {
     }
     assert!(eventually(|| handle.inspect(|parrot| parrot.heard.len()).is_ok_and(|heard| heard == 12_800)));
     drop(client);
-    std::thread::sleep(Duration::from_millis(100));
+    let_turn(&handle);
     let mut next = open(&bench.link).expect("the link leads to it");
     assert_eq!(exchange(&mut next, 2).expect("it answers"), vec![2; 4]);
 }

@@ -8,7 +8,7 @@ use brushwork_sim::server::{ChannelEnds, Endpoint, Server, ServerOptions, SimHan
 use brushwork_sim::world::{Motor, WorldAction};
 use std::time::{Duration, Instant};
 
-const PATIENCE: Duration = Duration::from_secs(10);
+const PATIENCE: Duration = Duration::from_secs(60);
 const SILENCE: Duration = Duration::from_millis(200);
 const ADDRESSES: [u8; 2] = [0x80, 0x85];
 

@@ -92,6 +92,12 @@ impl<'a> UnitView<'a> {
         self.firmware.up_for()
     }
 
+    /// How long no byte has come on any port; none if there never was one.
+    pub fn silence(&self) -> Option<Duration> {
+        let last = self.firmware.ports.last_bytes.iter().flatten().max();
+        last.map(|last| self.firmware.now.saturating_sub(*last))
+    }
+
     /// When it was last powered up, in the machine's time.
     pub fn booted_at(&self) -> Duration {
         self.firmware.booted_at

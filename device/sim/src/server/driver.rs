@@ -253,7 +253,7 @@ mod tests {
 
     /// A client whose second half packet comes 14 ms after the first; the thread may oversleep.
     struct SlowLine {
-        halves: Vec<Vec<u8>>,
+        halves: Arc<Mutex<Vec<Vec<u8>>>>,
         oversleeps: bool,
         silent_for: Duration,
         sent: Arc<Mutex<Vec<u8>>>,
@@ -263,14 +263,15 @@ mod tests {
 
     impl Line for SlowLine {
         fn receive(&mut self, bytes: &mut Vec<u8>, timeout: Duration) -> Heard {
-            let first = self.halves.len() == 2;
+            let mut halves = self.halves.lock().expect("no test panics with it");
+            let first = halves.len() == 2;
             let waited = if self.oversleeps { PAUSE } else { timeout };
             if !first {
                 thread::sleep(waited);
                 self.silent_for += waited;
             }
-            if (first || self.silent_for >= PAUSE) && !self.halves.is_empty() {
-                bytes.extend(self.halves.remove(0));
+            if (first || self.silent_for >= PAUSE) && !halves.is_empty() {
+                bytes.extend(halves.remove(0));
             }
             Heard::Line
         }
@@ -291,8 +292,9 @@ mod tests {
         let stack = Paced::new(Faulty::new(Bus::single(controller, StreamIndex::Usb), Vec::new(), 0), false);
         let (_commands, commands) = bounded(COMMANDS);
         let sent = Arc::new(Mutex::new(Vec::new()));
-        let halves = vec![DUTY_ZERO[..3].to_vec(), DUTY_ZERO[3..].to_vec()];
-        let line = SlowLine { halves, oversleeps, silent_for: Duration::ZERO, sent: sent.clone() };
+        let halves = Arc::new(Mutex::new(vec![DUTY_ZERO[..3].to_vec(), DUTY_ZERO[3..].to_vec()]));
+        let line =
+            SlowLine { halves: halves.clone(), oversleeps, silent_for: Duration::ZERO, sent: sent.clone() };
         let machine_start = stack.now();
         let mut driver = Driver {
             views: Arc::new(Mutex::new(Arc::new(stack.views()))),
@@ -307,8 +309,12 @@ mod tests {
             incoming: Vec::new(),
             gap: None,
         };
-        let until = Instant::now() + 4 * PAUSE;
-        while Instant::now() < until {
+        let all_is_sent = || halves.lock().expect("no test panics with it").is_empty();
+        while !all_is_sent() {
+            assert!(driver.turn().is_continue());
+        }
+        // The answer, if there is one, leaves in the turns after that.
+        for _ in 0..4 {
             assert!(driver.turn().is_continue());
         }
         let sent = sent.lock().expect("no test panics with it");

@@ -4,11 +4,34 @@
 use brushwork_sim::bridge::BridgeOutput;
 use brushwork_sim::machine::{Machine, StreamIndex};
 use brushwork_sim::presets::{presets, world_of};
+use brushwork_sim::server::SimHandle;
 use brushwork_sim::world::{World, WorldAction, WorldView};
 use std::collections::VecDeque;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 pub const USB: StreamIndex = StreamIndex::Usb;
+
+/// Longer than anything here takes, on a busy computer with a slow disk too.
+pub const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Asks until it holds or patience ends.
+pub fn eventually(mut holds: impl FnMut() -> bool) -> bool {
+    let begin = Instant::now();
+    while begin.elapsed() < PATIENCE {
+        if holds() {
+            return true;
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    false
+}
+
+/// Lets a server take at least one whole turn: it has looked at its line after this was called.
+pub fn let_turn<M: Machine + 'static>(handle: &SimHandle<M>) {
+    for _ in 0..3 {
+        handle.inspect(|_| ()).expect("it runs");
+    }
+}
 
 #[derive(Debug)]
 pub struct Parrot {
