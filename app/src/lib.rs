@@ -7,3 +7,8 @@ pub mod motion;
 pub mod recording;
 pub mod session;
 pub mod tune;
+
+#[cfg(test)]
+#[path = "../tests/support/wait.rs"]
+#[allow(dead_code, reason = "shared with the tests of the program")]
+mod wait;

@@ -45,6 +45,8 @@ fn bench_with(text: &str, mut bench: Bench) -> Bench {
     bench.line.with(|bus| bus.controllers_mut()[0].install_script(&bytes));
     bench.model().mcl.open_new(text);
     bench.press("Debugger");
+    // Breakpoints with conditions need the names, and those a thread of the real world.
+    until(&mut bench, "it is compiled", |bench| !bench.model().front.debug.is_compiling());
     bench
 }
 
@@ -407,7 +409,9 @@ fn another_text_than_the_one_that_runs_is_told_and_values_come_back_with_it() {
     );
     start(&mut other);
     until(&mut other, "it runs", |bench| bench.model().front.debug.is_running());
-    assert!(other.sees_part("not the text in front: open its text, or download this one (F5)."));
+    until(&mut other, "it is told", |bench| {
+        bench.sees_part("not the text in front: open its text, or download this one (F5).")
+    });
 }
 
 #[test]

@@ -15,9 +15,9 @@ use super::output::say;
 use crate::session::{self, Session, SessionOptions, Simulation};
 
 /// How long a controller may take to be found and identified.
-const CONNECT_LIMIT: Duration = Duration::from_secs(15);
+const CONNECT_LIMIT: Duration = Duration::from_secs(60);
 /// How long a controller may take to answer one request.
-pub const ANSWER_LIMIT: Duration = Duration::from_secs(5);
+pub const ANSWER_LIMIT: Duration = Duration::from_secs(30);
 /// How long one look at the event queue waits, so that signals are noticed.
 const EVENT_SLICE: Duration = Duration::from_millis(20);
 

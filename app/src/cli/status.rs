@@ -19,9 +19,9 @@ use super::interrupt::Interrupt;
 use super::output::{Output, OutputError, say};
 
 /// How long the slow signals may take to come round.
-const FIRST_READING_LIMIT: Duration = Duration::from_secs(5);
+const FIRST_READING_LIMIT: Duration = Duration::from_secs(20);
 /// How long reading the settings may take.
-const SETTINGS_LIMIT: Duration = Duration::from_secs(30);
+const SETTINGS_LIMIT: Duration = Duration::from_secs(120);
 
 /// The newest of everything that has been read.
 pub struct Readings {

@@ -11,7 +11,7 @@ use brushwork_link::device::Stopper;
 use egui::Context;
 
 /// How long the window may take to close. Each link takes up to two seconds to stop its motors and end.
-const PATIENCE: Duration = Duration::from_secs(4);
+const PATIENCE: Duration = Duration::from_secs(15);
 
 /// Whether the program was asked to end, and what has to be stopped then. Clones are the same.
 #[derive(Clone, Default)]

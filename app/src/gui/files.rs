@@ -85,16 +85,11 @@ impl FileDialog {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::wait::until_some;
 
     fn settled(dialog: &FileDialog) -> FileAnswer {
-        for _ in 0..500 {
-            let answer = dialog.answer();
-            if answer != FileAnswer::Waiting {
-                return answer;
-            }
-            thread::sleep(std::time::Duration::from_millis(10));
-        }
-        FileAnswer::Waiting
+        let answer = || Some(dialog.answer()).filter(|answer| *answer != FileAnswer::Waiting);
+        until_some("an answer", answer, || "none yet".to_owned())
     }
 
     #[test]

@@ -204,6 +204,7 @@ mod tests {
 
     use super::super::{Column, Reading};
     use super::*;
+    use crate::wait::until_some;
 
     fn head() -> Head {
         Head {
@@ -223,13 +224,7 @@ mod tests {
     }
 
     fn settled(recorder: &Recorder) -> Result<(), String> {
-        for _ in 0..1000 {
-            if let Some(ended) = recorder.progress().ended {
-                return ended;
-            }
-            thread::sleep(Duration::from_millis(10));
-        }
-        panic!("the recorder did not end");
+        until_some("the end", || recorder.progress().ended, || format!("{:?}", recorder.progress()))
     }
 
     #[test]

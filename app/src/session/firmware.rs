@@ -17,7 +17,7 @@ use crossbeam_channel::{Receiver, Sender, bounded};
 use super::{Simulation, connect};
 
 /// How long a unit may take to appear as a loader on USB. Assumed; the library that is public waits for Windows to find it.
-const APPEAR_LIMIT: Duration = Duration::from_secs(20);
+const APPEAR_LIMIT: Duration = Duration::from_secs(60);
 /// How often the ports are looked through.
 const LOOK_INTERVAL: Duration = Duration::from_millis(200);
 /// How long a line that stays the same is left alone while the unit restarts.

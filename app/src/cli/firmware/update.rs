@@ -24,7 +24,7 @@ use crate::keep::Store;
 use crate::session::firmware::{LoaderPlace, Upload, UploadEvent};
 
 /// How long the controller may take to stop its motors and enter the loader.
-const ENTER_LIMIT: Duration = Duration::from_secs(10);
+const ENTER_LIMIT: Duration = Duration::from_secs(60);
 /// How long one look at the events waits.
 const SLICE: Duration = Duration::from_millis(50);
 

@@ -28,7 +28,7 @@ pub const READ_LIMIT: Duration = Duration::from_secs(120);
 /// How long writing everything may take: reading before and after, and the writing between.
 pub const WRITE_LIMIT: Duration = Duration::from_secs(300);
 /// How long a cancelled job may take to end.
-const CANCEL_LIMIT: Duration = Duration::from_secs(10);
+const CANCEL_LIMIT: Duration = Duration::from_secs(60);
 
 /// A connected controller of a known model.
 pub struct Controller<'i> {

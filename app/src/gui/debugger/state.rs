@@ -243,6 +243,11 @@ impl Debugging {
         self.loaded.of(self.view.as_ref()?.code)
     }
 
+    /// Whether the text in front is still being compiled: until then its names and conditions are not known.
+    pub fn is_compiling(&self) -> bool {
+        self.compiler.is_busy()
+    }
+
     /// Whether the text in front is not what runs in the controller.
     pub fn is_other_text(&self, id: TextId) -> bool {
         let code = self.view.as_ref().map_or(0, |view| view.code);

@@ -112,13 +112,11 @@ mod tests {
         for revision in 1..=5 {
             checker.ask(DocId(1), revision, Rope::from_str("goto nowhere\n"));
         }
-        let began = Instant::now();
-        news.recv_timeout(Duration::from_secs(10)).unwrap();
-        let took = began.elapsed();
+        news.recv_timeout(crate::wait::PATIENCE).unwrap();
         let checked = checker.answer().unwrap();
         assert_eq!((checked.id, checked.revision), (DocId(1), 5));
         assert!(checked.index.diagnostics[0].code.starts_with('E'));
         // What is waited for by design; the machine of a test may be slow beyond it.
-        assert!(PAUSE + PATIENCE < Duration::from_millis(100), "{took:?}");
+        assert!(PAUSE + PATIENCE < Duration::from_millis(100));
     }
 }

@@ -14,8 +14,8 @@ use crate::wire::Wire;
 use std::time::Duration;
 
 /// How often a keeper is asked whether it has kept everything before it counts as stuck: each time it may wait
-/// for a few milliseconds, so this is some ten seconds.
-const PATIENCE: usize = 1000;
+/// for ten milliseconds, so this is about a minute: a disk under load has taken longer than ten seconds.
+const PATIENCE: usize = 6000;
 
 /// As [`write()`], with a backup and a journal. Nothing is written when those cannot be kept.
 pub fn write_kept(
