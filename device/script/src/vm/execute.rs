@@ -1,5 +1,6 @@
 //! What each instruction does.
 
+use super::fast::step_of;
 use super::{Call, FaultKind, Host, Loop, Machine, State, element};
 use crate::arithmetic::{self, Type};
 use crate::mcl::ast::{Binary, Motion};
@@ -148,11 +149,7 @@ impl Machine {
     fn for_start(&mut self, cell: Cell, number: u32, has_step: bool) -> Done {
         let step = if has_step { Some(self.pop()?) } else { None };
         let (finish, start) = (self.pop()?, self.pop()?);
-        let kind = type_of(cell.kind);
-        let step = step.unwrap_or_else(|| {
-            let up = arithmetic::binary(Binary::LessOrEqual, kind, start, finish) == Ok(1);
-            one(kind, up)
-        });
+        let step = step.unwrap_or_else(|| step_of(type_of(cell.kind), start, finish));
         self.memory.store(cell, start);
         if let Some(counted) = self.loops.get_mut(number as usize) {
             *counted = Loop { start, step };
@@ -160,26 +157,10 @@ impl Machine {
         Ok(())
     }
 
-    /// "The FOR...NEXT loop will exit when the count value is no longer between start and finish" (MCP manual 3.4.1). The sum is looked
-    /// at before it is stored, so that a byte can count to 255.
     fn for_next(&mut self, cell: Cell, number: u32, top: u32) -> Done {
         let finish = self.pop()?;
-        let Loop { start, step } = self.loops.get(number as usize).copied().unwrap_or_default();
-        let value = self.memory.load(cell);
-        let (next, goes_on) = match type_of(cell.kind) {
-            Type::Float => {
-                let [value, step, start, finish] = [value, step, start, finish].map(f32::from_bits);
-                let next = value + step;
-                (next.to_bits(), start.min(finish) <= next && next <= start.max(finish))
-            }
-            kind => {
-                let wide =
-                    |cell: u32| if kind == Type::Signed { i64::from(cell as i32) } else { i64::from(cell) };
-                let next = wide(value) + i64::from(step as i32);
-                let (start, finish) = (wide(start), wide(finish));
-                (next as u32, start.min(finish) <= next && next <= start.max(finish))
-            }
-        };
+        let counted = self.loops.get(number as usize).copied().unwrap_or_default();
+        let (next, goes_on) = counted.next(type_of(cell.kind), self.memory.load(cell), finish);
         self.memory.store(cell, next);
         if goes_on {
             self.at = top;
@@ -282,7 +263,7 @@ fn part_of(part: Part, value: u32) -> u32 {
     part.kind.keep(value.checked_shr(part.first_bit).unwrap_or(0))
 }
 
-fn type_of(kind: VarType) -> Type {
+pub(super) fn type_of(kind: VarType) -> Type {
     match kind {
         VarType::Float => Type::Float,
         kind if kind.is_signed() => Type::Signed,
@@ -290,7 +271,7 @@ fn type_of(kind: VarType) -> Type {
     }
 }
 
-fn one(kind: Type, up: bool) -> u32 {
+pub(super) fn one(kind: Type, up: bool) -> u32 {
     match (kind, up) {
         (Type::Float, true) => 1f32.to_bits(),
         (Type::Float, false) => (-1f32).to_bits(),

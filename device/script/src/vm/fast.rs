@@ -1,14 +1,25 @@
 //! Runs regions (see `regions`): statements of plain arithmetic without going through the stack.
 
-use super::execute::{entry, outside};
-use super::memory::{cell, load, set_cell, store};
-use super::regions::{Does, LONGEST_REGION, NONE, Regions, Step};
+use super::execute::{entry, one, outside, type_of};
+use super::memory::{SPAN, cell, load, set_cell, store};
+use super::regions::{LONGEST_REGION, NONE, Regions};
+use super::steps::{FAULT, Step};
 use super::{FaultKind, Loop, Machine, element};
-use crate::arithmetic;
+use crate::arithmetic::{self, Type};
+use crate::mcl::ast::Binary;
 use crate::program::Program;
 
-/// With less left of a budget, instructions are run one by one, so that a budget is kept exactly. Turned loops count two regions.
-pub const MARGIN: u32 = 2 * LONGEST_REGION + 2;
+/// With less left of a budget, instructions are run one by one, so that a budget is kept exactly. A step stands for three regions at
+/// most, and a turned loop counts two.
+pub const MARGIN: u32 = 3 * 2 * LONGEST_REGION + 2;
+
+/// What rarer steps work on besides memory.
+pub struct Around<'a> {
+    regions: &'a Regions,
+    program: &'a Program,
+    loops: &'a mut [Loop],
+    fault: (u32, FaultKind),
+}
 
 impl Machine {
     /// Runs regions from the one that begins here until there is none or the budget is nearly used up; what is left of it.
@@ -16,152 +27,249 @@ impl Machine {
         let Some(first) = regions.entry.get(self.at as usize).copied().filter(|step| *step != NONE) else {
             return budget;
         };
-        if !regions.fits(&self.memory) {
-            return budget;
+        let Some(bytes) = self.memory.all_for(regions) else { return budget };
+        let fault = (0, FaultKind::DivisionByZero);
+        let mut around = Around { regions, program, loops: &mut self.loops, fault };
+        let steps = &regions.steps[..];
+        let (mut left, mut here, mut next) = (budget, first, first);
+        while let Some(step) = steps.get(next as usize) {
+            here = next;
+            (next, left) = (step.run)(bytes, &mut around, step, here, left);
+            if left < MARGIN {
+                break;
+            }
         }
-        let mut left = budget;
-        let mut run = Run { regions, program, bytes: self.memory.all(), loops: &mut self.loops };
-        match run.steps(first as usize, &mut left) {
-            Ok(at) => {
-                self.executed += u64::from(budget - left);
-                self.at = at;
-            }
-            Err((step, kind)) => {
-                let at = regions.at[step];
-                left -= at - regions.first[step] + 1;
-                self.executed += u64::from(budget - left);
-                self.fault(at, kind);
-            }
+        let (part, fault) = around.fault;
+        if next == FAULT {
+            let (at, first) = (regions.at[(here + part) as usize], regions.first[here as usize]);
+            left -= at - first + 1;
+            self.executed += u64::from(budget - left);
+            self.fault(at, fault);
+        } else {
+            self.executed += u64::from(budget - left);
+            self.at = regions.instruction(next);
         }
         left
     }
 }
 
-/// What steps work on.
-struct Run<'a> {
-    regions: &'a Regions,
-    program: &'a Program,
-    bytes: &'a mut [u8],
-    loops: &'a mut [Loop],
-}
-
-impl Run<'_> {
-    /// Runs until the way leads out: the next instruction, or the step at fault.
-    fn steps(&mut self, mut next: usize, budget: &mut u32) -> Result<u32, (usize, FaultKind)> {
-        let steps = &self.regions.steps[..];
-        let mut left = *budget;
-        // Ends a region: on to where it leads, or out.
-        macro_rules! go {
-            ($step:ident, $jumps:expr) => {{
-                let target = if $jumps { $step.to } else { $step.fall };
-                left -= u32::from($step.count);
-                if target >= Regions::OUT || left < MARGIN {
-                    break Ok(self.regions.instruction(target));
-                }
-                next = target as usize;
-                continue;
-            }};
-        }
-        let out = loop {
-            let Some(step) = steps.get(next) else { break Ok(0) };
-            let (a, b) = (cell(self.bytes, step.a), cell(self.bytes, step.b));
-            let value = match step.does {
-                Does::Copy => a,
-                Does::Add => a.wrapping_add(b),
-                Does::Subtract => a.wrapping_sub(b),
-                Does::Multiply => a.wrapping_mul(b),
-                Does::And => a & b,
-                Does::Or => a | b,
-                Does::Xor => a ^ b,
-                Does::ShiftLeft => a.checked_shl(b).unwrap_or(0),
-                Does::ShiftRight => a.checked_shr(b).unwrap_or(0),
-                Does::DivideUnsigned if b != 0 => a / b,
-                Does::RemainderUnsigned if b != 0 => a % b,
-                Does::DivideSigned if b != 0 => (a as i32).wrapping_div(b as i32) as u32,
-                Does::RemainderSigned if b != 0 => (a as i32).wrapping_rem(b as i32) as u32,
-                Does::Jump => go!(step, true),
-                Does::JumpIfZero => go!(step, a == 0),
-                Does::JumpIfNotZero => go!(step, a != 0),
-                Does::JumpIfLessUnsigned => go!(step, a < b),
-                Does::JumpUnlessLessUnsigned => go!(step, a >= b),
-                Does::JumpIfLessSigned => go!(step, (a as i32) < b as i32),
-                Does::JumpUnlessLessSigned => go!(step, a as i32 >= b as i32),
-                Does::JumpIfEqual => go!(step, a == b),
-                Does::JumpUnlessEqual => go!(step, a != b),
-                Does::NextUnsigned => go!(step, self.next(step, a, i64::from)),
-                Does::NextSigned => go!(step, self.next(step, a, |cell| i64::from(cell as i32))),
-                _ => match self.other(step, a, b) {
-                    Ok(Some(value)) => value,
-                    Ok(None) => go!(step, false),
-                    Err(kind) => break Err((next, kind)),
-                },
-            };
-            set_cell(self.bytes, step.d, value);
-            next += 1;
-            if step.count > 0 {
-                left -= u32::from(step.count);
-                if step.fall >= Regions::OUT || left < MARGIN {
-                    break Ok(self.regions.instruction(step.fall));
-                }
-            }
-        };
-        *budget = left;
-        out
-    }
-
-    /// Counts a loop; whether it goes on.
+impl Around<'_> {
+    /// The loop of this number.
     #[inline(always)]
-    fn next(&mut self, step: &Step, finish: u32, wide: impl Fn(u32) -> i64) -> bool {
-        let counted = self.loops.get(step.b as usize).copied().unwrap_or_default();
-        let next = wide(cell(self.bytes, step.d)) + i64::from(counted.step as i32);
-        set_cell(self.bytes, step.d, next as u32);
-        let (start, finish) = (wide(counted.start), wide(finish));
-        start.min(finish) <= next && next <= start.max(finish)
+    pub fn counted(&self, number: u16) -> Loop {
+        self.loops.get(usize::from(number)).copied().unwrap_or_default()
     }
 
-    /// Steps that are rarer: the value for `d`, or none if all is done.
-    #[inline(never)]
-    fn other(&mut self, step: &Step, a: u32, b: u32) -> Result<Option<u32>, FaultKind> {
-        let regions = self.regions;
-        Ok(Some(match step.does {
-            Does::Binary => {
-                let (operator, kind) = regions.binaries[usize::from(step.row)];
-                arithmetic::binary(operator, kind, a, b).map_err(|_| FaultKind::DivisionByZero)?
+    fn result(
+        &mut self,
+        bytes: &mut [u8; SPAN],
+        step: &Step,
+        here: u32,
+        left: u32,
+        value: Result<u32, FaultKind>,
+    ) -> (u32, u32) {
+        match value {
+            Ok(value) => {
+                set_cell(bytes, step.d[0], value);
+                step.done::<1>(here, left)
             }
-            Does::Unary => {
-                let (operator, kind) = regions.unaries[step.b as usize];
-                arithmetic::unary(operator, kind, a)
-            }
-            Does::Convert => {
-                let (from, to) = regions.converts[step.b as usize];
-                arithmetic::convert(a, from, to)
-            }
-            Does::Load => load(self.bytes, regions.cells[step.a as usize]),
-            Does::Store => {
-                store(self.bytes, regions.cells[step.b as usize], a);
-                return Ok(None);
-            }
-            Does::LoadAt => {
-                let array = regions.arrays[step.b as usize];
-                load(self.bytes, element(array, a).ok_or(outside(a, array.length))?)
-            }
-            Does::StoreAt => {
-                let array = regions.arrays[step.b as usize];
-                let place = element(array, a).ok_or(outside(a, array.length))?;
-                let value = cell(self.bytes, step.d);
-                store(self.bytes, place, value);
-                return Ok(None);
-            }
-            Does::LoadTable => entry(self.program, regions.tables[step.b as usize], a)?,
-            // Divisions by zero: all others have been done.
-            _ => return Err(FaultKind::DivisionByZero),
-        }))
+            Err(kind) => self.fault(left, 0, kind),
+        }
+    }
+
+    /// A part of a step went wrong; those before it belong to the same region.
+    #[cold]
+    pub fn fault(&mut self, left: u32, part: u32, kind: FaultKind) -> (u32, u32) {
+        self.fault = (part, kind);
+        (FAULT, left)
     }
 }
 
-impl Regions {
-    /// The instruction that a target stands for.
-    fn instruction(&self, target: u32) -> u32 {
-        if target >= Self::OUT { target & !Self::OUT } else { self.first[target as usize] }
+/// Any operator of two values, by its row.
+pub fn binary(
+    bytes: &mut [u8; SPAN],
+    around: &mut Around<'_>,
+    step: &Step,
+    here: u32,
+    left: u32,
+) -> (u32, u32) {
+    let (operator, kind) = around.regions.binaries[usize::from(step.row)];
+    let value = arithmetic::binary(operator, kind, cell(bytes, step.a[0]), cell(bytes, step.b[0]));
+    around.result(bytes, step, here, left, value.map_err(|_| FaultKind::DivisionByZero))
+}
+
+/// Division and remainder.
+pub fn divide<const SIGNED: bool, const REMAINDER: bool>(
+    bytes: &mut [u8; SPAN],
+    around: &mut Around<'_>,
+    step: &Step,
+    here: u32,
+    left: u32,
+) -> (u32, u32) {
+    let (a, b) = (cell(bytes, step.a[0]), cell(bytes, step.b[0]));
+    if b == 0 {
+        return around.fault(left, 0, FaultKind::DivisionByZero);
+    }
+    let value = match (SIGNED, REMAINDER) {
+        (false, false) => a / b,
+        (false, true) => a % b,
+        (true, false) => (a as i32).wrapping_div(b as i32) as u32,
+        (true, true) => (a as i32).wrapping_rem(b as i32) as u32,
+    };
+    set_cell(bytes, step.d[0], value);
+    step.done::<1>(here, left)
+}
+
+/// Any operator of one value.
+pub fn unary(
+    bytes: &mut [u8; SPAN],
+    around: &mut Around<'_>,
+    step: &Step,
+    here: u32,
+    left: u32,
+) -> (u32, u32) {
+    let (operator, kind) = around.regions.unaries[usize::from(step.row)];
+    let value = arithmetic::unary(operator, kind, cell(bytes, step.a[0]));
+    around.result(bytes, step, here, left, Ok(value))
+}
+
+/// A value as another type.
+pub fn convert(
+    bytes: &mut [u8; SPAN],
+    around: &mut Around<'_>,
+    step: &Step,
+    here: u32,
+    left: u32,
+) -> (u32, u32) {
+    let (from, to) = around.regions.converts[usize::from(step.row)];
+    let value = arithmetic::convert(cell(bytes, step.a[0]), from, to);
+    around.result(bytes, step, here, left, Ok(value))
+}
+
+/// A variable of less than 32 bits.
+pub fn load_part(
+    bytes: &mut [u8; SPAN],
+    around: &mut Around<'_>,
+    step: &Step,
+    here: u32,
+    left: u32,
+) -> (u32, u32) {
+    let value = load(bytes, around.regions.cells[usize::from(step.row)]);
+    around.result(bytes, step, here, left, Ok(value))
+}
+
+/// The same, stored.
+pub fn store_part(
+    bytes: &mut [u8; SPAN],
+    around: &mut Around<'_>,
+    step: &Step,
+    here: u32,
+    left: u32,
+) -> (u32, u32) {
+    let value = cell(bytes, step.a[0]);
+    store(bytes, around.regions.cells[usize::from(step.row)], value);
+    step.done::<1>(here, left)
+}
+
+/// An element of an array.
+pub fn load_at(
+    bytes: &mut [u8; SPAN],
+    around: &mut Around<'_>,
+    step: &Step,
+    here: u32,
+    left: u32,
+) -> (u32, u32) {
+    let array = around.regions.arrays[usize::from(step.row)];
+    let index = cell(bytes, step.a[0]);
+    let value = element(array, index).map(|place| load(bytes, place)).ok_or(outside(index, array.length));
+    around.result(bytes, step, here, left, value)
+}
+
+/// A value from `b` into an element.
+pub fn store_at(
+    bytes: &mut [u8; SPAN],
+    around: &mut Around<'_>,
+    step: &Step,
+    here: u32,
+    left: u32,
+) -> (u32, u32) {
+    let array = around.regions.arrays[usize::from(step.row)];
+    let index = cell(bytes, step.a[0]);
+    let Some(place) = element(array, index) else {
+        return around.fault(left, 0, outside(index, array.length));
+    };
+    let value = cell(bytes, step.b[0]);
+    store(bytes, place, value);
+    step.done::<1>(here, left)
+}
+
+/// An entry of a table.
+pub fn load_table(
+    bytes: &mut [u8; SPAN],
+    around: &mut Around<'_>,
+    step: &Step,
+    here: u32,
+    left: u32,
+) -> (u32, u32) {
+    let table = around.regions.tables[usize::from(step.row)];
+    let value = entry(around.program, table, cell(bytes, step.a[0]));
+    around.result(bytes, step, here, left, value)
+}
+
+/// Begins the loop `row`: first value at `a`, last at `b`, step in the second `a` if the second `b` is not 0, counter in the row of cells
+/// named by the second `d`.
+pub fn for_start(
+    bytes: &mut [u8; SPAN],
+    around: &mut Around<'_>,
+    step: &Step,
+    here: u32,
+    left: u32,
+) -> (u32, u32) {
+    let (start, finish) = (cell(bytes, step.a[0]), cell(bytes, step.b[0]));
+    let counter = around.regions.cells[usize::from(step.d[1])];
+    let by =
+        if step.b[1] == 0 { step_of(type_of(counter.kind), start, finish) } else { cell(bytes, step.a[1]) };
+    store(bytes, counter, start);
+    if let Some(counted) = around.loops.get_mut(usize::from(step.row)) {
+        *counted = Loop { start, step: by };
+    }
+    step.done::<1>(here, left)
+}
+
+/// The step of a loop without one, which counts towards its last value.
+pub fn step_of(kind: Type, start: u32, finish: u32) -> u32 {
+    one(kind, arithmetic::binary(Binary::LessOrEqual, kind, start, finish) == Ok(1))
+}
+
+/// Counts the loop `row` of any counter (row of cells `d`), whose last value is at `a`.
+pub fn for_next(
+    bytes: &mut [u8; SPAN],
+    around: &mut Around<'_>,
+    step: &Step,
+    here: u32,
+    left: u32,
+) -> (u32, u32) {
+    let counter = around.regions.cells[usize::from(step.d[0])];
+    let finish = cell(bytes, step.a[0]);
+    let (next, goes_on) = around.counted(step.row).next(type_of(counter.kind), load(bytes, counter), finish);
+    store(bytes, counter, next);
+    let (fall, left) = step.done::<1>(here, left);
+    (if goes_on { step.to } else { fall }, left)
+}
+
+impl Loop {
+    /// The next value of a counter, and whether the loop goes on with it: "The FOR...NEXT loop will exit when the count value is no longer
+    /// between start and finish" (MCP manual 3.4.1). The sum is looked at before it is stored, so that a byte can count to 255.
+    #[inline(always)]
+    pub fn next(self, kind: Type, value: u32, finish: u32) -> (u32, bool) {
+        let wide = |cell: u32| if kind == Type::Signed { i64::from(cell as i32) } else { i64::from(cell) };
+        if kind == Type::Float {
+            let [value, step, start, finish] = [value, self.step, self.start, finish].map(f32::from_bits);
+            let next = value + step;
+            return (next.to_bits(), start.min(finish) <= next && next <= start.max(finish));
+        }
+        let next = wide(value) + i64::from(self.step as i32);
+        let (start, finish) = (wide(self.start), wide(finish));
+        (next as u32, start.min(finish) <= next && next <= start.max(finish))
     }
 }

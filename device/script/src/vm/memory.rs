@@ -24,20 +24,21 @@ impl Memory {
     /// Zeroed memory.
     #[must_use]
     pub fn new(bytes: u32) -> Self {
-        Self::with_hidden(bytes, [])
+        Self::of(vec![0; bytes as usize])
     }
 
-    /// Zeroed memory with cells behind it that only the machine sees.
+    /// Zeroed memory with cells behind it that only the machine sees, filled up to [`SPAN`].
     pub(super) fn with_hidden(bytes: u32, cells: impl IntoIterator<Item = u32>) -> Self {
         let visible = bytes as usize;
         let mut bytes = vec![0; visible];
         bytes.extend(cells.into_iter().flat_map(u32::to_le_bytes));
+        bytes.resize(SPAN.max(bytes.len()), 0);
         Self { bytes, visible }
     }
 
-    /// Every byte, hidden ones included.
-    pub(super) fn all(&mut self) -> &mut [u8] {
-        &mut self.bytes
+    /// Every byte, hidden ones included; `None` if it has none, as memory that was lent.
+    pub(super) fn all(&mut self) -> Option<&mut [u8; SPAN]> {
+        self.bytes.as_mut_slice().try_into().ok()
     }
 
     fn seen(&mut self) -> &mut [u8] {
@@ -48,11 +49,6 @@ impl Memory {
     #[must_use]
     pub fn of(bytes: Vec<u8>) -> Self {
         Self { visible: bytes.len(), bytes }
-    }
-
-    /// How many bytes there are behind the variables.
-    pub(super) fn hidden(&self) -> usize {
-        self.bytes.len() - self.visible
     }
 
     /// Sets everything to zero.
@@ -78,23 +74,21 @@ impl Memory {
     }
 }
 
+/// Bytes of memory with hidden cells: as many as let a place of 16 bits be used without looking whether it is inside.
+pub(super) const SPAN: usize = u16::MAX as usize + 4;
+
 /// The 32 bits at a byte.
 #[inline(always)]
-pub(super) fn cell(bytes: &[u8], at: u32) -> u32 {
-    let at = at as usize;
-    match bytes.get(at..at + 4) {
-        Some(&[a, b, c, d]) => u32::from_le_bytes([a, b, c, d]),
-        _ => 0,
-    }
+pub(super) fn cell(bytes: &[u8; SPAN], at: u16) -> u32 {
+    let at = usize::from(at);
+    u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]])
 }
 
 /// Sets the 32 bits at a byte.
 #[inline(always)]
-pub(super) fn set_cell(bytes: &mut [u8], at: u32, value: u32) {
-    let at = at as usize;
-    if let Some(place) = bytes.get_mut(at..at + 4) {
-        place.copy_from_slice(&value.to_le_bytes());
-    }
+pub(super) fn set_cell(bytes: &mut [u8; SPAN], at: u16, value: u32) {
+    let at = usize::from(at);
+    bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
 }
 
 /// The value at a place, its sign spread.

@@ -8,7 +8,9 @@ mod host;
 mod memory;
 mod reading;
 mod regions;
+mod steps;
 mod streams;
+mod translate;
 
 pub use host::Host;
 pub use memory::{Memory, element};
