@@ -390,6 +390,8 @@ pub enum BenchArg {
     Sim,
     /// An hour of 16 channels: our graph against plain plot lines.
     Window,
+    /// MCL: lines compiled and instructions run per second, loops against PUC Lua 5.4 where it is installed.
+    Mcl,
     /// The tuner and every textbook rule on simulated motors, in virtual time.
     Tuning,
     /// All of them but tuning.

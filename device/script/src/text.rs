@@ -25,6 +25,12 @@ impl Span {
         Self { start: self.start, end: other.end.max(self.start) }
     }
 
+    /// Whether the whole of the other lies in it.
+    #[must_use]
+    pub fn contains(self, other: Self) -> bool {
+        self.start <= other.start && other.end <= self.end
+    }
+
     /// The piece of `text` that it covers; empty where it does not fit the text.
     #[must_use]
     pub fn of(self, text: &str) -> &str {

@@ -308,6 +308,27 @@ end
 }
 
 #[test]
+fn what_is_left_out_may_be_anything() {
+    let text = "\
+#IF 0
+it's \"half a text, $ @ \u{2192} 12ab (
+do
+#ELSE
+puts 0,[\"kept\"]
+#ENDIF
+x var byte
+while x < 3
+x = x + 1
+wend
+puts 0,[dec x]
+end
+";
+    assert_eq!(output(text), "kept3");
+    let kept = brushwork_script::mcl::compile("#IF 1\nputs 0,[\"half]\n#ENDIF\nend\n");
+    assert!(kept.diagnostics.iter().any(|told| told.code == "E104"), "{:?}", kept.diagnostics);
+}
+
+#[test]
 fn registers_and_memory_outside_the_program() {
     let text = "\
 i var byte

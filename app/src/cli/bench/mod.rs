@@ -7,6 +7,7 @@ mod editor;
 mod figure;
 mod headless;
 mod link;
+mod mcl;
 mod rig;
 mod sim;
 mod spread;
@@ -38,15 +39,23 @@ pub struct Effort {
     pub sim_rounds: usize,
     /// Frames of the graph; the plain one has a tenth of them.
     pub frames: usize,
+    /// Rounds of each loop of the script benchmark.
+    pub mcl_rounds: usize,
 }
 
 /// The figures that are quoted.
-const FULL: Effort =
-    Effort { rounds: 15, round: Duration::from_secs(1), stops: 250, sim_rounds: 24, frames: 200 };
+const FULL: Effort = Effort {
+    rounds: 15,
+    round: Duration::from_secs(1),
+    stops: 250,
+    sim_rounds: 24,
+    frames: 200,
+    mcl_rounds: 9,
+};
 
 /// A look.
 const QUICK: Effort =
-    Effort { rounds: 3, round: Duration::from_secs(1), stops: 40, sim_rounds: 6, frames: 40 };
+    Effort { rounds: 3, round: Duration::from_secs(1), stops: 40, sim_rounds: 6, frames: 40, mcl_rounds: 3 };
 
 /// Measures, prints, and fails when a promise is not kept.
 pub fn run(args: &BenchArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
@@ -83,13 +92,14 @@ fn measure(what: BenchArg, effort: Effort, interrupt: &Interrupt) -> Result<Vec<
         BenchArg::Stop => stop::measure(effort, interrupt),
         BenchArg::Sim => sim::measure(effort),
         BenchArg::Window => window::measure(effort),
+        BenchArg::Mcl => mcl::measure(effort),
         BenchArg::Tuning | BenchArg::All => unreachable!("`wanted` gives neither"),
     }
 }
 
 /// Each benchmark once, in the order of the table.
 fn wanted(asked: &[BenchArg]) -> impl Iterator<Item = BenchArg> + '_ {
-    let each = [BenchArg::Link, BenchArg::Stop, BenchArg::Sim, BenchArg::Window];
+    let each = [BenchArg::Link, BenchArg::Stop, BenchArg::Sim, BenchArg::Window, BenchArg::Mcl];
     each.into_iter().filter(|what| asked.contains(what) || asked.contains(&BenchArg::All))
 }
 
@@ -99,6 +109,7 @@ fn name_of(what: BenchArg) -> &'static str {
         BenchArg::Stop => "the stop",
         BenchArg::Sim => "the simulator",
         BenchArg::Window => "the window",
+        BenchArg::Mcl => "scripts",
         BenchArg::Tuning => "the tuner",
         BenchArg::All => "everything",
     }
@@ -138,7 +149,7 @@ mod tests {
 
     #[test]
     fn all_means_each_once_in_a_fixed_order() {
-        let each = [BenchArg::Link, BenchArg::Stop, BenchArg::Sim, BenchArg::Window];
+        let each = [BenchArg::Link, BenchArg::Stop, BenchArg::Sim, BenchArg::Window, BenchArg::Mcl];
         assert!(wanted(&[BenchArg::All]).eq(each));
         assert!(wanted(&[BenchArg::Sim, BenchArg::Link, BenchArg::Sim]).eq([BenchArg::Link, BenchArg::Sim]));
     }

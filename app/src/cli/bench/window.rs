@@ -24,7 +24,7 @@ const CONNECT_LIMIT: Duration = Duration::from_secs(10);
 pub fn measure(effort: Effort) -> Result<Vec<Figure>, String> {
     let mut figures = graph_figures(effort);
     figures.push(window_figure(effort)?);
-    figures.extend(editor::measure(effort));
+    figures.extend(editor::measure(effort)?);
     Ok(figures)
 }
 
@@ -57,7 +57,7 @@ fn graph_figures(effort: Effort) -> Vec<Figure> {
 
 /// What this thread has had of a processor, so that other programs on the machine do not count.
 #[cfg(unix)]
-fn processor_time() -> Duration {
+pub fn processor_time() -> Duration {
     use rustix::time::{ClockId, clock_gettime};
     // The time of a thread is never below zero.
     Duration::try_from(clock_gettime(ClockId::ThreadCPUTime)).unwrap_or_default()
@@ -65,7 +65,7 @@ fn processor_time() -> Duration {
 
 /// The time that passes, where nothing better is known.
 #[cfg(not(unix))]
-fn processor_time() -> Duration {
+pub fn processor_time() -> Duration {
     use std::sync::OnceLock;
     static EPOCH: OnceLock<Instant> = OnceLock::new();
     EPOCH.get_or_init(Instant::now).elapsed()

@@ -37,6 +37,7 @@ pub struct Parsed {
 #[must_use]
 pub fn parse(text: &str) -> Parsed {
     let (tokens, diagnostics) = tokens(text);
+    let of_characters = diagnostics.len();
     let heads = whiles::heads(text, &tokens);
     let mut parser = Parser {
         text,
@@ -53,7 +54,12 @@ pub fn parse(text: &str) -> Parsed {
     };
     let statements = parser.statements(&[]);
     parser.close_conditions();
-    Parsed { statements, diagnostics: parser.diagnostics, left_out: parser.left_out }
+    let Parser { mut diagnostics, left_out, .. } = parser;
+    // What is left out need not even consist of words: an apostrophe in prose is no open text.
+    let counts = |told: &Diagnostic| !left_out.iter().any(|part| part.contains(told.span));
+    let kept = diagnostics.drain(..of_characters).filter(counts).collect::<Vec<_>>();
+    diagnostics.splice(..0, kept);
+    Parsed { statements, diagnostics, left_out }
 }
 
 /// A parse that cannot go on in this line; what is wrong has been reported.
