@@ -5,14 +5,18 @@ use std::time::Duration;
 
 use brushwork::keep::TrialKeeper;
 use brushwork::tune::{Slot, Target, prepare, restore, run, take};
-use brushwork_link::device::{ArmScope, DeviceOptions, Event, Job, JobEnding, Request};
-use brushwork_link::settings::{Act, Ending, Entry, Keeper, Subject};
+use brushwork_link::device::{ArmScope, DeviceOptions, Event, FnJob, Job, JobEnding, Request};
+use brushwork_link::settings::{
+    Act, Ending, Entry, Keeper, SettingsTable, Subject, WriteOptions, save_kept,
+};
 use brushwork_link::{Failure, Stream};
 use brushwork_protocol::models;
 use brushwork_protocol::packet_serial::{Address, Generation, Motor, Request as Packet, number};
 use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_sim::machine::{Machine, StreamIndex};
 use brushwork_sim::motion::MotionSettings;
+use brushwork_sim::plant::{EncoderKind, StopKind, TravelParams};
+use brushwork_sim::presets;
 use brushwork_sim::world::WorldAction;
 use brushwork_tests::virtual_link::VirtualLink;
 use brushwork_tuning::axis::{EncoderClass, Setup};
@@ -21,14 +25,18 @@ use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::tune::{Excitation, Method, Request as Tuning};
 
 const TARGET: Target =
-    Target { motor: Motor::M1, encoder: EncoderClass::Quadrature, stream: Some(Stream::Usb) };
+    Target { motor: Motor::M1, encoder: Some(EncoderClass::Quadrature), stream: Some(Stream::Usb) };
 
 fn ms(milliseconds: u64) -> Duration {
     Duration::from_millis(milliseconds)
 }
 
 fn connected() -> VirtualLink {
-    let unit = Controller::new(ControllerConfig::default()).expect("the default world is sound");
+    connected_to(ControllerConfig::default())
+}
+
+fn connected_to(config: ControllerConfig) -> VirtualLink {
+    let unit = Controller::new(config).expect("the world is sound");
     let options = DeviceOptions { stream: Some(Stream::Usb), simulated: true, ..DeviceOptions::default() };
     let bus = Bus::single(unit, StreamIndex::Usb);
     let mut link = VirtualLink::new(bus, StreamIndex::Usb, options, Vec::new(), 1);
@@ -69,22 +77,32 @@ fn strike(link: &VirtualLink, after: Duration, action: WorldAction) {
 
 /// The three jobs, as the program runs them.
 fn tuned(link: &mut VirtualLink, request: Tuning, before_run: impl FnOnce(&VirtualLink)) -> Option<Report> {
+    tuned_as(link, TARGET, request, before_run)
+}
+
+fn tuned_as(
+    link: &mut VirtualLink,
+    target: Target,
+    request: Tuning,
+    before_run: impl FnOnce(&VirtualLink),
+) -> Option<Report> {
     let setup: Slot<Setup> = Slot::default();
     let (keeper, journal) = keeper();
-    let prepared = finish(link, prepare(TARGET, subject(), &setup, &keeper), ms(5_000));
+    let prepared = finish(link, prepare(target, subject(), &setup, &keeper), ms(5_000));
     assert!(matches!(prepared, Some(JobEnding::Done(_))), "{prepared:?}");
     let before = take(&setup).expect("it was read");
+    let target = Target { encoder: Some(before.encoder), ..target };
     assert_backed_up(link, &journal);
     assert!(link.arm(ArmScope::CommandLine), "{:?}", link.events);
     before_run(link);
     let found: Slot<Report> = Slot::default();
-    finish(link, run(TARGET, request, &found), ms(60_000));
+    finish(link, run(target, request, &found), ms(60_000));
     let report = take(&found);
     // From full duty to none at the highest acceleration takes 50 ms.
     link.line.pass(ms(60));
     assert!(link.duties(0)[0].abs() < 1e-6, "a run ends with the motor off");
     if !link.ended {
-        finish(link, restore(TARGET, before, report.as_ref(), &keeper), ms(5_000));
+        finish(link, restore(target, before, report.as_ref(), &keeper), ms(5_000));
     }
     let ending = journal.lock().expect("no test panics with it").1.clone();
     assert_eq!(ending, (!link.ended).then_some(Ending::Known), "a cut run leaves its journal open");
@@ -218,36 +236,219 @@ fn faults_in_mid_run_stop_the_motor_and_are_named() {
     }
 }
 
+/// The stages of a run, by what it says it does, each with the middle of its time after the run was asked for.
+fn stages(request: Tuning) -> Vec<(String, Duration)> {
+    let mut link = connected();
+    let setup: Slot<Setup> = Slot::default();
+    finish(&mut link, prepare(TARGET, subject(), &setup, &keeper().0), ms(5_000));
+    assert!(link.arm(ArmScope::CommandLine), "{:?}", link.events);
+    let begun = link.now();
+    link.events.clear();
+    link.ask(Request::Job(run(TARGET, request, &Slot::default())));
+    let ended = |link: &VirtualLink| link.events.iter().any(|(_, event)| matches!(event, Event::JobEnded(_)));
+    while !ended(&link) {
+        link.run_for(ms(20));
+    }
+    let mut starts: Vec<(String, Duration)> = Vec::new();
+    let mut end = begun;
+    for (at, event) in &link.events {
+        match event {
+            Event::JobProgress { text, .. } if starts.last().is_none_or(|(last, _)| last != text) => {
+                starts.push((text.clone(), *at));
+            }
+            Event::JobEnded(_) => end = *at,
+            _ => {}
+        }
+    }
+    let ends = starts.iter().skip(1).map(|start| start.1).chain([end]);
+    let middles = starts.iter().zip(ends).map(|((text, start), end)| (text.clone(), (*start + end) / 2 - begun));
+    middles.collect()
+}
+
+fn in_travel() -> Tuning {
+    let mut request = Tuning { method: Method::Pid, excitation: Excitation::Window(3_000.0), ..velocity() };
+    request.guard.travel = Some((-1_500, 1_500));
+    request
+}
+
 #[test]
-fn stop_at_every_stage_stands_the_motor_and_puts_the_old_gains_back() {
-    for after in (50..7_000).step_by(450) {
-        let mut link = connected();
-        let before = settings(&link);
-        tuned(&mut link, velocity(), |link| {
-            link.at(link.now() + ms(after), |handle| {
-                handle.stop_all();
-            });
-        });
-        assert_eq!(settings(&link), before, "stopped after {after} ms");
-        link.run_for(ms(1_000));
-        assert!(link.speeds(0)[0].abs() < 0.01, "stopped after {after} ms: it still turns");
+fn stop_and_cancel_at_every_stage_stand_the_motor_and_put_the_old_gains_back() {
+    for request in [velocity(), Tuning { method: Method::Piv, ..velocity() }, in_travel()] {
+        let stages = stages(request);
+        assert!(stages.len() >= 4, "{stages:?}");
+        for (text, after) in stages {
+            for cancels in [false, true] {
+                let place = format!("{:?}, \"{text}\", after {after:?}, cancels: {cancels}", request.method);
+                let mut link = connected();
+                let before = settings(&link);
+                let report = tuned(&mut link, request, |link| {
+                    link.at(link.now() + after, move |handle| {
+                        let asked = if cancels { handle.request(Request::CancelJob) } else { Ok(()) };
+                        asked.expect("the queue has room");
+                        if !cancels {
+                            handle.stop_all();
+                        }
+                    });
+                });
+                assert_eq!(report.map(|report| report.verdict), Some(Verdict::Refused), "{place}: it was stopped");
+                assert_eq!(settings(&link), before, "{place}");
+                link.run_for(ms(1_000));
+                assert!(link.speeds(0)[0].abs() < 0.01, "{place}: it still turns");
+            }
+        }
     }
 }
 
 #[test]
 fn a_cable_pulled_at_every_stage_leaves_the_motor_to_the_controllers_time_out() {
-    for after in (50..7_000).step_by(450) {
-        let mut link = connected();
-        let setup: Slot<Setup> = Slot::default();
-        finish(&mut link, prepare(TARGET, subject(), &setup, &keeper().0), ms(5_000));
-        assert!(link.arm(ArmScope::CommandLine), "{:?}", link.events);
-        strike(&link, ms(after), WorldAction::Unplug { unplugged: true });
-        let found: Slot<Report> = Slot::default();
-        finish(&mut link, run(TARGET, velocity(), &found), ms(20_000));
-        link.machine_alone_for(ms(400));
-        let duty = link.bus(|bus| bus.controllers()[0].view().axes[0].output.duty());
-        assert_eq!(duty, 0.0, "pulled after {after} ms");
+    for request in [velocity(), Tuning { method: Method::Piv, ..velocity() }, in_travel()] {
+        for (text, after) in stages(request) {
+            let mut link = connected();
+            let setup: Slot<Setup> = Slot::default();
+            finish(&mut link, prepare(TARGET, subject(), &setup, &keeper().0), ms(5_000));
+            assert!(link.arm(ArmScope::CommandLine), "{:?}", link.events);
+            strike(&link, after, WorldAction::Unplug { unplugged: true });
+            let found: Slot<Report> = Slot::default();
+            finish(&mut link, run(TARGET, request, &found), ms(20_000));
+            link.machine_alone_for(ms(400));
+            let duty = link.bus(|bus| bus.controllers()[0].view().axes[0].output.duty());
+            assert_eq!(duty, 0.0, "{:?}, pulled at \"{text}\"", request.method);
+            assert_eq!(take(&found).and_then(|report| report.causes.first().copied()), Some(Cause::LinkLost));
+        }
     }
+}
+
+#[test]
+fn a_slow_default_acceleration_does_not_slow_the_experiments() {
+    let model = |slow: bool| {
+        let mut link = connected();
+        if slow {
+            // 10 % of the duty range a second (commands 68 and 69, MCP manual): 3277 of 32767.
+            set(&link, number::SET_DEFAULT_ACCEL_M1, &[("accel", 3_277)]);
+            link.run_for(ms(100));
+        }
+        let report = tuned(&mut link, velocity(), |_| {}).expect("a report");
+        assert_ne!(report.verdict, Verdict::Refused, "slow: {slow}: {:?}", report.causes);
+        (report.qpps.expect("measured"), report.fit.expect("fitted").model.tau_s)
+    };
+    let ((qpps, tau_s), (slow_qpps, slow_tau_s)) = (model(false), model(true));
+    assert!((slow_qpps / qpps - 1.0).abs() < 0.01, "{qpps} {slow_qpps}");
+    assert!((slow_tau_s / tau_s - 1.0).abs() < 0.05, "{tau_s} {slow_tau_s}");
+}
+
+#[test]
+fn gains_that_were_kept_and_saved_are_there_after_a_power_cycle_and_so_is_the_users_time_out() {
+    let mut link = connected();
+    let (_, timeout_ms) = settings(&link);
+    let report = tuned(&mut link, Tuning { keep: true, ..velocity() }, |_| {}).expect("a report");
+    let new = report.velocity.expect("gains");
+    let table = SettingsTable::new(subject());
+    let options = WriteOptions { own_stream: Some(Stream::Usb), simulated: true };
+    let saving = FnJob::boxed("save the settings", ms(60_000), move |wire| {
+        save_kept(wire, &table, options, &mut Noting(Journal::default())).map(|saved| Box::new(saved) as _)
+    });
+    let saved = finish(&mut link, saving, ms(60_000));
+    assert!(matches!(saved, Some(JobEnding::Done(_))), "{saved:?}");
+    for powered in [false, true] {
+        link.apply(0, &WorldAction::SetMainPower { on: powered });
+        link.machine_alone_for(ms(1_500));
+    }
+    let (after, timeout_after_ms) = settings(&link);
+    assert_eq!((after.velocity_p_raw, after.velocity_i_raw, after.qpps), (new.p, new.i, new.qpps));
+    assert_eq!(timeout_after_ms, timeout_ms);
+}
+
+/// An axis with hard end stops so many counts on either side.
+fn between_end_stops(counts: f64) -> ControllerConfig {
+    let mut config = ControllerConfig::default();
+    let axis = &mut config.world.axes[0];
+    let radians = counts / axis.counts_per_motor_radian() / axis.gear.ratio;
+    axis.load.travel =
+        Some(TravelParams { lower_radians: -radians, upper_radians: radians, stop: StopKind::default() });
+    config
+}
+
+#[test]
+fn an_end_stop_that_nobody_told_of_stops_the_run_and_is_named() {
+    let mut link = connected_to(between_end_stops(2_500.0));
+    let before = settings(&link);
+    let report = tuned(&mut link, velocity(), |_| {}).expect("a report");
+    assert_eq!(report.causes.first(), Some(&Cause::Stalled), "{:?}", report.causes);
+    assert!(report.seconds.1 < 3.0, "{} s", report.seconds.1);
+    assert_eq!(settings(&link), before);
+}
+
+#[test]
+fn a_cable_pulled_in_mid_run_is_named_and_the_journal_stays_open() {
+    let mut link = connected();
+    let report = tuned(&mut link, velocity(), |link| {
+        strike(link, ms(900), WorldAction::Unplug { unplugged: true });
+    });
+    assert_eq!(report.and_then(|report| report.causes.first().copied()), Some(Cause::LinkLost));
+}
+
+#[test]
+fn a_travel_is_never_left_and_a_motor_that_stands_outside_is_not_moved() {
+    let counts = |link: &VirtualLink| link.bus(|bus| bus.controllers()[0].view().axes[0].encoder_counts);
+    let mut link = connected();
+    let mut narrow = in_travel();
+    narrow.guard.travel = Some((-40, 40));
+    narrow.excitation = Excitation::Window(80.0);
+    let report = tuned(&mut link, narrow, |_| {}).expect("a report");
+    assert!(counts(&link).abs() <= 40, "{:?} at {}", report.causes, counts(&link));
+    let mut elsewhere = in_travel();
+    elsewhere.guard.travel = Some((5_000, 9_000));
+    let mut link = connected();
+    let (before, start) = (settings(&link), counts(&link));
+    let report = tuned(&mut link, elsewhere, |_| {}).expect("a report");
+    assert_eq!((report.verdict, report.causes.first()), (Verdict::Refused, Some(&Cause::OutsideTravel)));
+    assert_eq!(counts(&link), start, "it was not moved");
+    assert_eq!(settings(&link), before);
+}
+
+/// The actuator with a potentiometer of the presets, or a turntable whose encoder goes on from 4095 to 0.
+fn absolute(wraps: bool) -> ControllerConfig {
+    let preset = presets::lookup("linear-actuator").expect("a preset");
+    let default = ControllerConfig::default();
+    let mut world = presets::world_of(preset, preset, default.model.pins.len());
+    if wraps {
+        let axis = &mut world.axes[0];
+        axis.load.travel = None;
+        axis.encoder.kind = EncoderKind::Pulse;
+        axis.encoder.wraps = true;
+        axis.encoder.counts_per_turn = 1_365.0;
+    }
+    ControllerConfig { world, ..default }
+}
+
+#[test]
+fn the_kind_of_encoder_is_read_from_the_controller_and_an_absolute_one_is_tuned_in_position() {
+    for method in [Method::Pd, Method::Pid, Method::Piv] {
+        let mut link = connected_to(absolute(false));
+        let before = settings(&link);
+        let asked = Target { encoder: None, ..TARGET };
+        let report = tuned_as(&mut link, asked, Tuning { method, ..velocity() }, |_| {}).expect("a report");
+        assert_eq!(report.before.map(|setup| setup.encoder), Some(EncoderClass::Absolute));
+        assert_ne!(report.verdict, Verdict::Refused, "{method:?}: {:?}", report.causes);
+        assert!(report.window.is_some() && report.free.is_none(), "it never runs freely against its ends");
+        assert_eq!(settings(&link), before, "{method:?}");
+        assert!(report.replay().is_some_and(|again| again == report), "{method:?}: the replay differs");
+    }
+}
+
+#[test]
+fn the_speed_of_an_absolute_encoder_that_wraps_is_refused_before_anything_moves() {
+    let mut link = connected_to(absolute(true));
+    let before = settings(&link);
+    let turns = |link: &VirtualLink| link.bus(|bus| bus.controllers()[0].view().axes[0].truth.motor_radians);
+    let start = turns(&link);
+    let asked = Target { encoder: Some(EncoderClass::AbsoluteWrapping), ..TARGET };
+    let report = tuned_as(&mut link, asked, velocity(), |_| {}).expect("a report");
+    assert_eq!((report.verdict, report.causes.first()), (Verdict::Refused, Some(&Cause::WrappingEncoder)));
+    assert_eq!(turns(&link), start);
+    let report = tuned_as(&mut link, asked, Tuning { method: Method::Pd, ..velocity() }, |_| {}).expect("a report");
+    assert_ne!(report.verdict, Verdict::Refused, "{:?}", report.causes);
+    assert_eq!(settings(&link), before);
 }
 
 /// What the unit's current limit and its inductance and resistance are set to.

@@ -12,6 +12,8 @@ pub enum Cause {
     EncoderDead,
     /// No current flows, nothing moves.
     MotorOpen,
+    /// Nothing moves, and the controller tells no current.
+    NothingCounted,
     /// Current as of a motor that stands, nothing moves.
     ShaftLocked,
     /// Counts stopped in mid-run while the motor went on.
@@ -81,7 +83,14 @@ impl Cause {
                 "The motor draws the current of a turning motor, but the encoder counts nothing. Check the encoder's plug, supply \
                  and input."
             }
-            Self::MotorOpen => "No current flows and nothing moves. Check the motor leads and the bridge.",
+            Self::MotorOpen => {
+                "No current flows and nothing moves. Check the motor leads and the bridge; if this controller measures no currents, \
+                 the shaft and the encoder too."
+            }
+            Self::NothingCounted => {
+                "Nothing was counted while the motor was driven, and the controller tells no current that would say why. Check the \
+                 encoder, the motor leads and whether the shaft is free."
+            }
             Self::ShaftLocked => {
                 "The motor draws the current of a standing motor and nothing is counted. Free the shaft, or release its brake."
             }

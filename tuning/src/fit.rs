@@ -168,7 +168,7 @@ impl<'a> Problem<'a> {
         let jacobian = self.jacobian_at(&self.q);
         // A parameter at its bound has no slope; it must not make the others unknown.
         let information =
-            jacobian.transpose() * &jacobian + DMatrix::<f64>::identity(self.q.len(), self.q.len()) * 1e-6;
+            jacobian.tr_mul(&jacobian) + DMatrix::<f64>::identity(self.q.len(), self.q.len()) * 1e-6;
         let scale = chi_square.max(1.0);
         let covariance = information.try_inverse();
         let sd = |n: usize| covariance.as_ref().map_or(f64::INFINITY, |c| (c[(n, n)].abs() * scale).sqrt());

@@ -32,5 +32,6 @@ pub mod tune;
 mod verify;
 pub mod watch;
 pub mod whatif;
+pub mod winding;
 
 pub use step::{Point, StepFigures};

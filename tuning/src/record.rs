@@ -146,25 +146,43 @@ impl Axis for Recorder<'_> {
 pub struct Player {
     entries: std::vec::IntoIter<Entry>,
     time: Duration,
-    strayed: bool,
+    played: usize,
+    strayed_at: Option<usize>,
 }
 
 impl Player {
     /// Plays `entries` from their start.
     #[must_use]
     pub fn new(entries: Vec<Entry>) -> Self {
-        Self { entries: entries.into_iter(), time: Duration::ZERO, strayed: false }
+        Self { entries: entries.into_iter(), time: Duration::ZERO, played: 0, strayed_at: None }
     }
 
     /// Whether the tuner asked for something else than it did when the record was made: then the record comes from another
     /// version of the program, or was changed.
     #[must_use]
     pub fn strayed(&self) -> bool {
-        self.strayed
+        self.strayed_at.is_some()
+    }
+
+    /// The entry at which that was, from 0; that of its end where the record was too short.
+    #[must_use]
+    pub fn strayed_at(&self) -> Option<usize> {
+        self.strayed_at
+    }
+
+    fn next(&mut self) -> Option<Entry> {
+        let entry = self.entries.next();
+        self.played += usize::from(entry.is_some());
+        entry
+    }
+
+    /// The entry that was played last does not fit, or there is none.
+    fn note_stray(&mut self) {
+        self.strayed_at.get_or_insert(self.played.saturating_sub(1));
     }
 
     fn stray<T>(&mut self) -> Result<T, AxisError> {
-        self.strayed = true;
+        self.note_stray();
         self.entries = Vec::new().into_iter();
         Err(AxisError::LinkLost("the record does not go on this way".into()))
     }
@@ -172,93 +190,93 @@ impl Player {
 
 impl Axis for Player {
     fn now(&mut self) -> Duration {
-        if let Some(Entry::Now(now)) = self.entries.next() {
+        if let Some(Entry::Now(now)) = self.next() {
             self.time = now;
         } else {
-            self.strayed = true;
+            self.note_stray();
         }
         self.time
     }
 
     fn wait_until(&mut self, _time: Duration) -> Result<(), AxisError> {
-        match self.entries.next() {
+        match self.next() {
             Some(Entry::Waited(answer)) => answer,
             _ => self.stray(),
         }
     }
 
     fn sample(&mut self, _want: Want) -> Result<Sample, AxisError> {
-        match self.entries.next() {
+        match self.next() {
             Some(Entry::Sampled(answer)) => answer,
             _ => self.stray(),
         }
     }
 
     fn drive_duty(&mut self, duty_raw: i16) -> Result<Exchange, AxisError> {
-        match self.entries.next() {
+        match self.next() {
             Some(Entry::Duty(was, answer)) if was == duty_raw => answer,
             _ => self.stray(),
         }
     }
 
     fn command_speed(&mut self, counts_per_s: i32) -> Result<Exchange, AxisError> {
-        match self.entries.next() {
+        match self.next() {
             Some(Entry::Speed(was, answer)) if was == counts_per_s => answer,
             _ => self.stray(),
         }
     }
 
     fn command_position(&mut self, counts: i32, speed: u32) -> Result<Exchange, AxisError> {
-        match self.entries.next() {
+        match self.next() {
             Some(Entry::Position(was, fast, answer)) if was == counts && fast == speed => answer,
             _ => self.stray(),
         }
     }
 
     fn read_setup(&mut self) -> Result<Setup, AxisError> {
-        match self.entries.next() {
+        match self.next() {
             Some(Entry::Setup(answer)) => answer,
             _ => self.stray(),
         }
     }
 
     fn write_velocity(&mut self, registers: VelocityRegisters) -> Result<(), AxisError> {
-        match self.entries.next() {
+        match self.next() {
             Some(Entry::Velocity(was, answer)) if was == registers => answer,
             _ => self.stray(),
         }
     }
 
     fn write_position(&mut self, registers: PositionRegisters) -> Result<(), AxisError> {
-        match self.entries.next() {
+        match self.next() {
             Some(Entry::PositionLoop(was, answer)) if was == registers => answer,
             _ => self.stray(),
         }
     }
 
     fn write_winding(&mut self, raw: [u32; 2]) -> Result<(), AxisError> {
-        match self.entries.next() {
+        match self.next() {
             Some(Entry::Winding(was, answer)) if was == raw => answer,
             _ => self.stray(),
         }
     }
 
     fn write_current_limits(&mut self, max_raw: u32, min_raw: i32) -> Result<(), AxisError> {
-        match self.entries.next() {
+        match self.next() {
             Some(Entry::CurrentLimits(max, min, answer)) if max == max_raw && min == min_raw => answer,
             _ => self.stray(),
         }
     }
 
     fn raw_speed(&mut self) -> Result<i32, AxisError> {
-        match self.entries.next() {
+        match self.next() {
             Some(Entry::RawSpeed(answer)) => answer,
             _ => self.stray(),
         }
     }
 
     fn set_stream_timeout(&mut self, milliseconds: u32) -> Result<(), AxisError> {
-        match self.entries.next() {
+        match self.next() {
             Some(Entry::Timeout(was, answer)) if was == milliseconds => answer,
             _ => self.stray(),
         }

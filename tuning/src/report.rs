@@ -3,14 +3,22 @@
 use crate::axis::{PositionRegisters, Setup, VelocityRegisters};
 use crate::cause::Cause;
 use crate::design::{Design, Task};
-use crate::experiment::{FreeRun, Probe, WindowRun};
+use crate::experiment::{FreeRun, Probe, Slack, WindowRun};
 use crate::fit::Fit;
 use crate::lag::LagFit;
 use crate::law_probe::LawFindings;
 use crate::record::{Entry, Player};
 use crate::rules::Classic;
 use crate::tune::{Request, tune};
+use crate::winding::Winding;
 use serde::{Deserialize, Serialize};
+
+/// Version of the form of a report. Reports without one are of the first.
+pub const FORMAT: u32 = 1;
+
+fn first_format() -> u32 {
+    FORMAT
+}
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -38,6 +46,9 @@ pub struct Measured {
 /// Everything a run found and did.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
+    /// The form of this report: what the program that wrote it calls [`FORMAT`].
+    #[serde(default = "first_format")]
+    pub format: u32,
     /// What was asked for.
     pub request: Request,
     /// How it ended.
@@ -61,6 +72,12 @@ pub struct Report {
     /// What the law probe found.
     #[serde(default)]
     pub law: Option<LawFindings>,
+    /// Resistance of the winding.
+    #[serde(default)]
+    pub winding: Option<Winding>,
+    /// Play of the mechanics, of a position run.
+    #[serde(default)]
+    pub slack: Option<Slack>,
     /// The lag of the loop.
     pub lag: Option<LagFit>,
     /// What the design was made for: the model with all that the run learned of the loop.
@@ -85,8 +102,13 @@ impl Report {
     /// to this version of the tuner.
     #[must_use]
     pub fn replay(&self) -> Option<Self> {
+        self.replay_or_stray().ok()
+    }
+
+    /// The same; an error says at which entry of the record, from 0, the tuner asked for something else than the record holds.
+    pub fn replay_or_stray(&self) -> Result<Self, usize> {
         let mut player = Player::new(self.record.clone());
         let report = tune(&mut player, &self.request);
-        (!player.strayed()).then_some(report)
+        player.strayed_at().map_or(Ok(report), Err)
     }
 }

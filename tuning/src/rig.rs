@@ -216,7 +216,7 @@ impl<'a> Rig<'a> {
     pub fn duty(&mut self, duty: f64) -> Result<(), Cause> {
         let duty = duty.clamp(-self.options.max_duty, self.options.max_duty);
         let raw = (duty * f64::from(FULL_DUTY_RAW)).round() as i16;
-        let exchange = retried(|| self.axis.drive_duty(raw))?;
+        let exchange = self.acknowledged(|axis| axis.drive_duty(raw))?;
         let t = exchange.middle_s() - self.epoch_s;
         self.drives.push(Drive { t, input: Input::Duty(f64::from(raw) / f64::from(FULL_DUTY_RAW)) });
         self.watch.drive(t, duty);
@@ -226,7 +226,7 @@ impl<'a> Rig<'a> {
     /// Commands a speed in counts/s.
     pub fn speed(&mut self, counts_per_s: f64) -> Result<(), Cause> {
         let whole = counts_per_s.round() as i32;
-        let exchange = retried(|| self.axis.command_speed(whole))?;
+        let exchange = self.acknowledged(|axis| axis.command_speed(whole))?;
         let t = exchange.middle_s() - self.epoch_s;
         self.drives.push(Drive { t, input: Input::Speed(f64::from(whole)) });
         self.watch.release(t);
@@ -237,23 +237,35 @@ impl<'a> Rig<'a> {
     pub fn position(&mut self, counts: f64, speed: u32) -> Result<(), Cause> {
         let origin = self.first_counts.unwrap_or(0);
         let whole = (origin + counts.round() as i64) as i32;
-        let exchange = retried(|| self.axis.command_position(whole, speed))?;
+        let exchange = self.acknowledged(|axis| axis.command_position(whole, speed))?;
         let t = exchange.middle_s() - self.epoch_s;
         self.drives.push(Drive { t, input: Input::Position(counts.round(), f64::from(speed)) });
         self.watch.release(t);
         Ok(())
     }
 
+    /// Up to four tries. A controller that goes on telling its counts has not lost the link: it does not take this command.
+    fn acknowledged<T>(
+        &mut self,
+        mut call: impl FnMut(&mut dyn Axis) -> Result<T, AxisError>,
+    ) -> Result<T, Cause> {
+        let result = retried(|| call(self.axis));
+        if matches!(result, Err(Cause::LinkLost)) && self.axis.sample(Want::default()).is_ok() {
+            return Err(Cause::Refused);
+        }
+        result
+    }
+
     /// Writes velocity registers to RAM; they are put back unless the run keeps them.
     pub fn write_velocity(&mut self, registers: VelocityRegisters) -> Result<(), Cause> {
         self.gains_touched = true;
-        retried(|| self.axis.write_velocity(registers))
+        self.acknowledged(|axis| axis.write_velocity(registers))
     }
 
     /// Writes position registers to RAM; they are put back unless the run keeps them.
     pub fn write_position(&mut self, registers: PositionRegisters) -> Result<(), Cause> {
         self.gains_touched = true;
-        retried(|| self.axis.write_position(registers))
+        self.acknowledged(|axis| axis.write_position(registers))
     }
 
     /// The unfiltered speed.

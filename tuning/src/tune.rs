@@ -1,12 +1,12 @@
 //! A whole tuning run: probe, experiment, fit, design, verification on the machine, and the way back when anything is wrong.
 
-use crate::axis::{Axis, EncoderClass};
+use crate::axis::{Axis, EncoderClass, Setup};
 use crate::cause::Cause;
 use crate::course::Course;
 use crate::design::{
     Design, Goal, Task, USUAL_OVERSHOOT, design_pd, design_pid, design_piv, design_velocity,
 };
-use crate::experiment::{Probe, go_to, run_free, run_probe, run_window};
+use crate::experiment::{Probe, go_to, measure_slack, run_free, run_probe, run_window};
 use crate::fit::{Fit, fit};
 use crate::lag::LagFit;
 use crate::law_probe::probe_law;
@@ -14,14 +14,17 @@ use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, Lag, LoopLaw, PlantModel};
 use crate::record::Recorder;
 use crate::registers::{position_registers, velocity_gains, velocity_registers};
-use crate::report::{Report, Verdict};
+use crate::report::{FORMAT, Report, Verdict};
 use crate::rig::{GuardOptions, Rig};
 use crate::rules::Classic;
 use crate::verify::{check_moves, measure_lag, rest};
+use crate::winding::winding_of;
 use serde::{Deserialize, Serialize};
 
 /// The lag that is assumed before it is measured, and where it cannot be: an extra tick and a filter of one.
 const USUAL_LAG: Lag = Lag { filter_s: 0.004, delay_ticks: 1.0 };
+/// The longest that it may be where an axis has no room to measure it: a filter of three ticks and a half.
+const LONGEST_LAG: Lag = Lag { filter_s: 0.010, delay_ticks: 1.5 };
 /// Highest chi-square of a fit that is believed.
 const WORST_CHI_SQUARE: f64 = 12.0;
 /// Loosest time constant, as standard deviation of its logarithm, of a motor slower than four polls.
@@ -39,6 +42,10 @@ const LOOSE_INTEGRAL: f64 = 1.2;
 /// Share of the travel window that has to be free around the axis, and the narrowest window, counts.
 const ENOUGH_ROOM: f64 = 0.8;
 const LEAST_WIDTH_COUNTS: f64 = 24.0;
+/// The readings of an absolute encoder that are used: 0 to 4095 but for a little at both ends (MCP manual 2.4.3).
+const ABSOLUTE_RANGE: (i64, i64) = (40, 4_055);
+/// Standard deviation of a count that is rounded and nothing else.
+const ROUNDED_COUNTS: f64 = 0.289;
 /// How far a lag interval may reach before the lag counts as unknown, s.
 const WIDEST_LAG_S: f64 = 0.012;
 
@@ -111,6 +118,9 @@ pub fn tune(axis: &mut dyn Axis, request: &Request) -> Report {
         Err(cause) => Err(cause),
         Ok(mut rig) => {
             report.before = Some(rig.setup);
+            let request = &confined(request, &rig.setup);
+            report.request = *request;
+            rig.options = request.guard;
             let outcome = run(&mut rig, request, &mut report);
             let keep = outcome.is_ok() && request.keep;
             if keep && let Err(cause) = write_final(&mut rig, &report) {
@@ -133,8 +143,28 @@ pub fn tune(axis: &mut dyn Axis, request: &Request) -> Report {
     report
 }
 
+/// An absolute encoder has a range, and what lies beyond its ends is not known: the axis stays within it, whatever was asked for. One
+/// that wraps stays off its seam, where the controller's own speed jumps.
+fn confined(request: &Request, setup: &Setup) -> Request {
+    if setup.encoder == EncoderClass::Quadrature {
+        return *request;
+    }
+    let held = (i64::from(setup.position.min), i64::from(setup.position.max));
+    let held = if held.0 < held.1 { held } else { ABSOLUTE_RANGE };
+    let (low, high) = request.guard.travel.unwrap_or(held);
+    let (low, high) = (low.max(ABSOLUTE_RANGE.0), high.min(ABSOLUTE_RANGE.1));
+    let width = ((high - low) as f64).max(0.0);
+    let width = match request.excitation {
+        Excitation::Free => width,
+        Excitation::Window(wanted) => width.min(wanted),
+    };
+    let guard = GuardOptions { travel: Some((low, high)), ..request.guard };
+    Request { excitation: Excitation::Window(width), guard, ..*request }
+}
+
 fn blank(request: &Request) -> Report {
     Report {
+        format: FORMAT,
         request: *request,
         verdict: Verdict::Tuned,
         causes: Vec::new(),
@@ -146,6 +176,8 @@ fn blank(request: &Request) -> Report {
         fit: None,
         qpps: None,
         law: None,
+        winding: None,
+        slack: None,
         lag: None,
         task: None,
         design: None,
@@ -177,21 +209,23 @@ fn run(rig: &mut Rig<'_>, request: &Request, report: &mut Report) -> Result<(), 
     report.fit = Some(found.fit);
     report.qpps = Some(found.qpps);
     report.seconds.0 = rig.now_s();
+    report.winding = winding_of(&rig.points, &rig.drives);
     let request = &with_law(rig, request, &probe, &found, report)?;
     let task = Task {
         plant: found.fit.model,
         law: request.law,
         lag: USUAL_LAG,
-        worst_lag: USUAL_LAG,
+        worst_lag: if request.excitation == Excitation::Free { USUAL_LAG } else { LONGEST_LAG },
         qpps: found.qpps,
         goal: Goal::of_level(request.level),
-        noise_factor: 1.0,
+        noise_factor: (probe.noise_counts / ROUNDED_COUNTS).max(1.0),
         slack_counts: 0.0,
         least_integral_s: 0.0,
         most_overshoot: USUAL_OVERSHOOT,
     };
     rig.progress("Measuring the lag of the loop");
     let task = settle_lag(rig, request, task, report)?;
+    let task = if request.method == Method::Pid { with_slack(rig, request, task, &probe, report)? } else { task };
     report.task = Some(task);
     let design = design_for(request.method, &task).ok_or(Cause::TooCoarse)?;
     propose(report, request, &task, design, rig.options.travel);
@@ -317,6 +351,24 @@ fn settle_lag(rig: &mut Rig<'_>, request: &Request, task: Task, report: &mut Rep
     };
     report.lag = Some(found);
     Ok(with_lag(Task { noise_factor, ..task }, &found))
+}
+
+/// Measures the play of a position axis by little pushes: before an integral is designed, and where a loop hunts.
+pub(crate) fn with_slack(
+    rig: &mut Rig<'_>,
+    request: &Request,
+    task: Task,
+    probe: &Probe,
+    report: &mut Report,
+) -> Result<Task, Cause> {
+    if !request.verify {
+        return Ok(task);
+    }
+    rig.progress("Looking for play at reversals");
+    rig.duty(0.0)?;
+    rest(rig, task.plant.tau_s, task.qpps)?;
+    report.slack = measure_slack(rig, probe, &task.plant)?;
+    Ok(Task { slack_counts: report.slack.map_or(0.0, |slack| slack.counts), ..task })
 }
 
 fn with_lag(task: Task, found: &LagFit) -> Task {

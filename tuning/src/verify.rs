@@ -1,7 +1,7 @@
 //! Trials of candidate gains on the machine: setpoint steps of a velocity loop, moves of a position loop.
 
 use crate::cause::Cause;
-use crate::design::{Design, Task};
+use crate::design::{Design, Task, deadzone};
 use crate::lag::{ClosedCourse, LagFit, fit_lag, predicted_course};
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, Pid};
@@ -10,7 +10,7 @@ use crate::rig::{Point, Rig};
 use crate::score::position_step;
 use crate::swing::{deviation, flank_overshoot, speed_ripple};
 use crate::ticks::{TickLoop, velocity_test};
-use crate::tune::{Excitation, Method, Request, propose};
+use crate::tune::{Excitation, Method, Request, propose, with_slack};
 
 /// Setpoint of the velocity trial, as a share of full speed.
 const MIDDLE: f64 = 0.45;
@@ -27,6 +27,8 @@ const MOST_OVERSHOOT: f64 = 0.235;
 const MOST_RIPPLE: f64 = 0.045;
 /// Swing of a place at rest over the step, beyond what rounding may show.
 const MOST_PLACE_RIPPLE: f64 = 0.010;
+/// Share of a move that a loop which works makes at the least, and of a speed.
+const LEAST_MOVE: f64 = 0.2;
 /// How long the last move is watched when it should be over, s.
 const WATCH_S: f64 = 0.6;
 /// How often the gains may be lowered.
@@ -122,6 +124,10 @@ pub fn check_moves(
         if back_offs == MOST_BACK_OFFS {
             return if is_bearable(&measured) { Ok(()) } else { Err(Cause::NotVerified) };
         }
+        if let Some(quiet) = with_deadzone(rig, request, task, &design, &measured, report)? {
+            propose(report, request, task, quiet, rig.options.travel);
+            continue;
+        }
         if !report.causes.contains(&Cause::BackedOff) {
             report.causes.push(Cause::BackedOff);
         }
@@ -132,6 +138,29 @@ pub fn check_moves(
         propose(report, request, task, Design { gains, ..design }, rig.options.travel);
     }
     Ok(())
+}
+
+/// A place that hunts is first looked at for play: within it nothing can be held (MCP manual 2.4.7, the deadzone). `None` where
+/// the deadzone covers the play already, or there is none.
+fn with_deadzone(
+    rig: &mut Rig<'_>,
+    request: &Request,
+    task: &Task,
+    design: &Design,
+    measured: &Measured,
+    report: &mut Report,
+) -> Result<Option<Design>, Cause> {
+    let hunts = design.gains.position.is_some() && measured.ripple > MOST_PLACE_RIPPLE;
+    if !hunts || report.slack.is_some() {
+        return Ok(None);
+    }
+    let Some(probe) = report.probe else { return Ok(None) };
+    let task = with_slack(rig, request, *task, &probe, report)?;
+    let deadzone_counts = deadzone(&task);
+    if deadzone_counts <= design.gains.deadzone_counts {
+        return Ok(None);
+    }
+    Ok(Some(Design { gains: Gains { deadzone_counts, ..design.gains }, ..*design }))
 }
 
 /// Whether the machine is rougher than a design promised.
@@ -188,6 +217,11 @@ pub(crate) fn try_velocity(rig: &mut Rig<'_>, task: &Task, gains: &Gains) -> Res
     let course = ClosedCourse::of(rig, from_s - 0.02, to_s);
     let stay: Vec<(f64, f64)> = course.counts.iter().copied().filter(|p| p.0 >= stay_s).collect();
     let duties: Vec<(f64, f64)> = course.duties.iter().copied().filter(|d| d.0 >= stay_s).collect();
+    if let (Some(first), Some(last)) = (stay.first(), stay.last())
+        && (last.1 - first.1) < LEAST_MOVE * high * (last.0 - first.0)
+    {
+        return Err(Cause::NotVerified);
+    }
     let seen = |course: &ClosedCourse| flank_overshoot(course, high - low, rig.options.poll_s);
     let mut twin = TickLoop::new(task.plant, task.law, task.lag, *gains, task.qpps);
     twin.start_steady(low);
@@ -267,6 +301,9 @@ pub(crate) fn try_position(
         let watch_s = if n == 3 { WATCH_S } else { 0.0 };
         rig.poll_for(dwell_s + watch_s, true)?;
         let points: Vec<Point> = rig.points.iter().copied().filter(|p| p.t > begin).collect();
+        if n == 0 && points.last().is_some_and(|p| (p.counts - start).abs() < LEAST_MOVE * step) {
+            return Err(Cause::NotVerified);
+        }
         let moved = judge_move(&points, target, target - from, begin + 0.7 * dwell_s, step);
         worst.overshoot = worst.overshoot.max(moved.overshoot);
         worst.ripple = worst.ripple.max(moved.ripple);

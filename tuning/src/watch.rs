@@ -206,7 +206,9 @@ impl Watch {
         let moved = to.counts - from.counts;
         let unseen = if self.looped { LOOP_MARGIN * self.gain * span } else { 0.0 };
         let margin = MARGIN_COUNTS + MARGIN_SPEED * speed_before.abs() * span + unseen;
-        let way = self.duty_at(to.t).signum();
+        let duty = self.duty_at(to.t);
+        // No duty has no direction, whatever the sign of its nought.
+        let way = if duty == 0.0 { 0.0 } else { duty.signum() };
         if self.keeps_its_speed(stretch, way) {
             let least = KEPT_SPEED * speed_before.abs() * span - MARGIN_COUNTS;
             if least > 0.0 && moved * way < least {

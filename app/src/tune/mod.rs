@@ -5,6 +5,8 @@
 //! is the run, which needs arming. The third moves nothing either and puts back what must be put back, on every way out on which
 //! there is still a link. What an interruption leaves of the run's own report is kept past the job.
 
+pub mod encoder;
+pub mod file;
 pub mod tap;
 
 use std::sync::{Arc, Mutex, PoisonError};
@@ -16,7 +18,7 @@ use brushwork_link::exchange::ExchangeError;
 use brushwork_link::failure::Failure;
 use brushwork_link::settings::{Ending, Subject, begin_trial};
 use brushwork_link::wire::Wire;
-use brushwork_protocol::packet_serial::{Generation, Motor, Request as Packet, Value, Values};
+use brushwork_protocol::packet_serial::{Generation, Motor, Request as Packet, Value, Values, number};
 use brushwork_tuning::axis::{Axis, AxisError, EncoderClass, Exchange, Setup};
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::rig::wait_for_rest;
@@ -40,8 +42,9 @@ pub const RESTORE: &str = "put back what the tuning changed";
 const TRIAL_LIMIT: Duration = Duration::from_secs(120);
 /// The stream's time-out during a run, ms. Assumed: it stops the motor when the program dies.
 const RUN_TIMEOUT_MS: u32 = 250;
-/// An exchange that took longer had a retry in it, so that its middle says nothing.
-const LONGEST_EXCHANGE: Duration = Duration::from_millis(40);
+/// An exchange that took so much longer than the quickest had a retry in it, or waited for this computer, so that its middle says
+/// nothing.
+const LATE: Duration = Duration::from_millis(35);
 /// How long the job before a run may take: it reads every setting for the backup.
 const PREPARE_LIMIT: Duration = Duration::from_secs(130);
 /// How long the job after a run may take.
@@ -65,6 +68,26 @@ fn put<T>(slot: &Slot<T>, value: T) {
 struct JobCarrier<'a, 'b> {
     context: &'a mut JobContext<'b>,
     stream: Option<Stream>,
+    /// The quickest exchange so far.
+    quickest: Option<Duration>,
+}
+
+impl JobCarrier<'_, '_> {
+    /// Whether the middle of an exchange is no time at which anything was read.
+    fn is_vague(&mut self, exchange: &Exchange) -> bool {
+        let took = exchange.received.saturating_sub(exchange.sent);
+        let quickest = self.quickest.map_or(took, |quickest| quickest.min(took));
+        self.quickest = Some(quickest);
+        took > quickest + LATE
+    }
+}
+
+/// Whether a command reads what is of use only with the time of its reading.
+fn needs_its_time(command: u8) -> bool {
+    matches!(
+        command,
+        number::READ_ENCODERS | number::READ_ENCODER_M1 | number::READ_ENCODER_M2 | number::READ_PWMS
+    )
 }
 
 impl Carrier for JobCarrier<'_, '_> {
@@ -75,11 +98,8 @@ impl Carrier for JobCarrier<'_, '_> {
         let values: Vec<i64> = packet.values.iter().filter_map(Value::as_int).collect();
         let reply = self.context.transact_timed(command, &values).map_err(|error| told(&error))?;
         let exchange = Exchange { sent: reply.span.requested_at, received: reply.span.replied_at };
-        if reply.values.is_empty() || exchange.received.saturating_sub(exchange.sent) < LONGEST_EXCHANGE {
-            Ok((exchange, reply.values))
-        } else {
-            Err(AxisError::NoReply)
-        }
+        let is_vague = self.is_vague(&exchange);
+        if is_vague && needs_its_time(command) { Err(AxisError::NoReply) } else { Ok((exchange, reply.values)) }
     }
 
     fn now(&mut self) -> Duration {
@@ -125,8 +145,8 @@ fn told(error: &ExchangeError) -> AxisError {
 pub struct Target {
     /// The motor.
     pub motor: Motor,
-    /// What its encoder is.
-    pub encoder: EncoderClass,
+    /// What its encoder is, as the user says; `None` for what the controller's settings say.
+    pub encoder: Option<EncoderClass>,
     /// The stream that the port is wired to, where that is known: only then can its time-out be set.
     pub stream: Option<Stream>,
 }
@@ -137,7 +157,8 @@ fn axis<'a, 'b>(
     own_timeout: bool,
 ) -> PacketAxis<JobCarrier<'a, 'b>> {
     let stream = target.stream.filter(|_| own_timeout);
-    PacketAxis::new(JobCarrier { context, stream }, target.motor, target.encoder)
+    let carrier = JobCarrier { context, stream, quickest: None };
+    PacketAxis::new(carrier, target.motor, target.encoder.unwrap_or_default())
 }
 
 /// The job before: keeps backup and journal, reads what is put back afterwards, and shortens the time-out. It moves nothing.
@@ -145,7 +166,10 @@ pub fn prepare(target: Target, subject: Subject, found: &Slot<Setup>, keeper: &T
     let (found, keeper) = (Arc::clone(found), keeper.clone());
     FnJob::boxed(PREPARE, PREPARE_LIMIT, move |context| {
         let place = context.describe();
-        begin_trial(context, subject, &|key| is_tried(target.motor, key), &mut **keeper.lock())?;
+        let is_tried = |key: &str| is_tried(target.motor, key);
+        let held = begin_trial(context, subject, &is_tried, &mut **keeper.lock())?;
+        let encoder = target.encoder.or_else(|| encoder::class(&|key| held.image.get(key), target.motor));
+        let target = Target { encoder, ..target };
         let mut axis = axis(context, target, true);
         let setup = thrice(|| axis.read_setup()).map_err(|error| failed("read the loops", &place, &error))?;
         put(&found, setup);

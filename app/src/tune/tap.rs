@@ -19,6 +19,11 @@ impl Live {
         Self(Arc::new(Mutex::new(trace)))
     }
 
+    /// Starts anew, for whoever looks on too.
+    pub fn begin(&self, trace: Trace) {
+        *self.look() = trace;
+    }
+
     /// The trace so far.
     pub fn look(&self) -> MutexGuard<'_, Trace> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)

@@ -74,6 +74,13 @@ pub fn optima(specimen: &Specimen, truth: &Truth) -> Optima {
     Optima { velocity: of(Method::Velocity), pd: of(Method::Pd), piv: of(Method::Piv) }
 }
 
+/// The optima of its position loops alone, for a plant whose speed cannot be run freely.
+#[must_use]
+pub fn position_optima(specimen: &Specimen, truth: &Truth) -> Optima {
+    let of = |method| Search { method, specimen, truth }.run();
+    Optima { velocity: None, pd: of(Method::Pd), piv: of(Method::Piv) }
+}
+
 struct Search<'a> {
     method: Method,
     specimen: &'a Specimen,

@@ -9,7 +9,11 @@ use brushwork_tuning::axis::{
     Axis, AxisError, EncoderClass, Exchange, PositionRegisters, Sample, Setup, Status, VelocityRegisters,
     Want,
 };
+use std::collections::BTreeSet;
 use std::time::Duration;
+
+/// How often a command that not every controller has is tried before its silence counts as an answer.
+const TRIES: usize = 4;
 
 /// What carries commands to one unit.
 pub trait Carrier {
@@ -35,12 +39,57 @@ pub struct PacketAxis<C> {
     motor: Motor,
     encoder: EncoderClass,
     stream: Option<Vec<i64>>,
+    /// Commands that were answered, and commands that this controller answers with silence.
+    answered: BTreeSet<u8>,
+    absent: BTreeSet<u8>,
 }
 
 impl<C: Carrier> PacketAxis<C> {
     /// The axis of one motor. What its encoder is the caller knows from the settings or the user.
     pub fn new(carrier: C, motor: Motor, encoder: EncoderClass) -> Self {
-        Self { carrier, motor, encoder, stream: None }
+        Self { carrier, motor, encoder, stream: None, answered: BTreeSet::new(), absent: BTreeSet::new() }
+    }
+
+    /// Asks for what not every controller tells; `None` where this one does not. A controller says no by silence, so only a command
+    /// that was never answered counts as missing, and only after some tries.
+    fn optional(&mut self, command: u8) -> Result<Option<(Exchange, Values)>, AxisError> {
+        if self.absent.contains(&command) {
+            return Ok(None);
+        }
+        for _ in 0..TRIES {
+            match self.carrier.transact(command, &[]) {
+                Ok(reply) => {
+                    self.answered.insert(command);
+                    return Ok(Some(reply));
+                }
+                Err(AxisError::NoReply) if self.answered.contains(&command) => {
+                    return Err(AxisError::NoReply);
+                }
+                Err(AxisError::NoReply) => {}
+                Err(AxisError::Refused(_)) => break,
+                Err(error) => return Err(error),
+            }
+        }
+        self.absent.insert(command);
+        Ok(None)
+    }
+
+    /// The same of this motor's of two commands, its values alone.
+    fn optional_of(&mut self, m1: u8, m2: u8) -> Result<Option<Values>, AxisError> {
+        Ok(self.optional(self.of(m1, m2))?.map(|(_, values)| values))
+    }
+
+    /// Counts of both motors; of this one alone where the controller does not tell both at once.
+    fn read_counts(&mut self) -> Result<(Exchange, [i32; 2]), AxisError> {
+        // The casts are the register's own wrap.
+        if let Some((at, counts)) = self.optional(number::READ_ENCODERS)? {
+            return Ok((at, [counts.int("encoder_m1") as i32, counts.int("encoder_m2") as i32]));
+        }
+        let command = self.of(number::READ_ENCODER_M1, number::READ_ENCODER_M2);
+        let (at, values) = self.carrier.transact(command, &[])?;
+        let mut counts = [0; 2];
+        counts[self.motor.index()] = values.int("count") as i32;
+        Ok((at, counts))
     }
 
     fn of(&self, m1: u8, m2: u8) -> u8 {
@@ -69,7 +118,8 @@ impl<C: Carrier> PacketAxis<C> {
     }
 
     fn read_status(&mut self) -> Result<Status, AxisError> {
-        let raw = self.carrier.transact(number::READ_STATUS, &[])?.1.int("status") as u32;
+        let Some((_, values)) = self.optional(number::READ_STATUS)? else { return Ok(Status::default()) };
+        let raw = values.int("status") as u32;
         let set = decode(raw, self.carrier.generation());
         let over_current = match self.motor {
             Motor::M1 => [Condition::M1OverCurrentWarning, Condition::M1CurrentError],
@@ -93,11 +143,7 @@ impl<C: Carrier> PacketAxis<C> {
     /// The stream's settings by command 146; `None` where the firmware or the caller does not tell which stream it is.
     fn read_stream(&mut self) -> Result<Option<u32>, AxisError> {
         let Some(index) = self.carrier.stream() else { return Ok(None) };
-        let values = match self.carrier.transact(number::READ_STREAMS, &[]) {
-            Ok((_, values)) => values,
-            Err(AxisError::Refused(_)) => return Ok(None),
-            Err(error) => return Err(error),
-        };
+        let Some((_, values)) = self.optional(number::READ_STREAMS)? else { return Ok(None) };
         let Some(record) = values.records().nth(index) else { return Ok(None) };
         self.stream = Some(vec![index as i64, record.int("type"), record.int("rate")]);
         Ok(u32::try_from(record.int("timeout")).ok())
@@ -114,27 +160,15 @@ impl<C: Carrier> Axis for PacketAxis<C> {
     }
 
     fn sample(&mut self, want: Want) -> Result<Sample, AxisError> {
-        let (counts_at, counts) = self.carrier.transact(number::READ_ENCODERS, &[])?;
-        // The cast is the register's own wrap.
-        let counts = [counts.int("encoder_m1") as i32, counts.int("encoder_m2") as i32];
-        let duty_raw = if want.duty {
-            let (at, values) = self.carrier.transact(number::READ_PWMS, &[])?;
-            Some((at, values.int(self.field("duty_m1", "duty_m2")) as i16))
-        } else {
-            None
-        };
-        let current_raw = if want.current {
-            let (_, values) = self.carrier.transact(number::READ_CURRENTS, &[])?;
-            Some(values.int(self.field("current_m1", "current_m2")) as i16)
-        } else {
-            None
-        };
-        let volts_raw = if want.volts {
-            let (_, values) = self.carrier.transact(number::READ_MAIN_BATTERY, &[])?;
-            Some(values.int("main_battery") as u16)
-        } else {
-            None
-        };
+        let (counts_at, counts) = self.read_counts()?;
+        let duty_raw = if want.duty { self.optional(number::READ_PWMS)? } else { None };
+        let duty = self.field("duty_m1", "duty_m2");
+        let duty_raw = duty_raw.map(|(at, values)| (at, values.int(duty) as i16));
+        let current_raw = if want.current { self.optional(number::READ_CURRENTS)? } else { None };
+        let current = self.field("current_m1", "current_m2");
+        let current_raw = current_raw.map(|(_, values)| values.int(current) as i16);
+        let volts_raw = if want.volts { self.optional(number::READ_MAIN_BATTERY)? } else { None };
+        let volts_raw = volts_raw.map(|(_, values)| values.int("main_battery") as u16);
         let status = self.read_status()?;
         Ok(Sample { counts_at, counts, status, duty_raw, current_raw, volts_raw })
     }
@@ -163,10 +197,10 @@ impl<C: Carrier> Axis for PacketAxis<C> {
     fn read_setup(&mut self) -> Result<Setup, AxisError> {
         let velocity = self.read(number::READ_VELOCITY_PID_M1, number::READ_VELOCITY_PID_M2)?;
         let position = self.read(number::READ_POSITION_PID_M1, number::READ_POSITION_PID_M2)?;
-        let current = self.read(number::READ_CURRENT_LIMITS_M1, number::READ_CURRENT_LIMITS_M2)?;
-        let winding =
-            self.read(number::READ_INDUCTANCE_RESISTANCE_M1, number::READ_INDUCTANCE_RESISTANCE_M2)?;
-        let volts = self.carrier.transact(number::READ_MAIN_VOLTAGES, &[])?.1;
+        let current = self.optional_of(number::READ_CURRENT_LIMITS_M1, number::READ_CURRENT_LIMITS_M2)?;
+        let winding = self
+            .optional_of(number::READ_INDUCTANCE_RESISTANCE_M1, number::READ_INDUCTANCE_RESISTANCE_M2)?;
+        let volts = self.optional(number::READ_MAIN_VOLTAGES)?.map(|(_, values)| values);
         let stream_timeout_ms = self.read_stream()?;
         let unsigned = |values: &Values, name: &str| values.int(name) as u32;
         Ok(Setup {
@@ -185,10 +219,12 @@ impl<C: Carrier> Axis for PacketAxis<C> {
                 min: position.int("min") as i32,
                 max: position.int("max") as i32,
             },
-            max_current_raw: unsigned(&current, "max"),
-            min_current_raw: current.int("min") as i32,
-            min_volts_raw: volts.int("min") as u16,
-            inductance_resistance_raw: [unsigned(&winding, "inductance"), unsigned(&winding, "resistance")],
+            max_current_raw: current.as_ref().map_or(0, |values| unsigned(values, "max")),
+            min_current_raw: current.as_ref().map_or(0, |values| values.int("min") as i32),
+            min_volts_raw: volts.map_or(0, |values| values.int("min") as u16),
+            inductance_resistance_raw: winding.map_or([0, 0], |values| {
+                [unsigned(&values, "inductance"), unsigned(&values, "resistance")]
+            }),
             stream_timeout_ms,
             encoder: self.encoder,
         })

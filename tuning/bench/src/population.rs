@@ -33,6 +33,14 @@ pub enum Kind {
     Steering,
     /// Arm joint, springy and with play.
     ArmJoint,
+    /// Actuator with a potentiometer over its travel.
+    PotActuator,
+    /// Steering with a potentiometer.
+    PotSteering,
+    /// Joint with a magnetic encoder that gives pulses.
+    PulseJoint,
+    /// Turntable with such an encoder, which goes on from 4095 to 0.
+    Turntable,
 }
 
 struct KindRow {
@@ -58,6 +66,17 @@ const KINDS: [KindRow; 8] = [
     row(Kind::Steering, 12.0, (1.5e3, 5e3), (40.0, 150.0), 4096.0, 10.0, 50.0, 1.0, 1.0, (3e-4, 2e-3)),
     row(Kind::ArmJoint, 24.0, (10e3, 50e3), (30.0, 120.0), 8192.0, 15.0, 20.0, 1.0, 0.5, (1e-4, 1e-3)),
 ];
+
+/// Machines with absolute encoders (MCP manual 2.4.3), 4096 counts a turn of the output but for the actuator's.
+const ABSOLUTE_KINDS: [KindRow; 4] = [
+    row(Kind::PotActuator, 24.0, (400.0, 1_200.0), (15.0, 60.0), 100.0, 6.0, 20.0, 0.0, 1.0, (0.0, 0.0)),
+    row(Kind::PotSteering, 12.0, (1.5e3, 6e3), (40.0, 150.0), 4096.0, 10.0, 50.0, 0.0, 1.0, (0.0, 0.0)),
+    row(Kind::PulseJoint, 24.0, (2e3, 9e3), (30.0, 120.0), 4096.0, 12.0, 60.0, 0.0, 1.0, (0.0, 0.0)),
+    row(Kind::Turntable, 12.0, (4e3, 12e3), (60.0, 200.0), 4096.0, 8.0, 30.0, 0.0, 1.0, (0.0, 0.0)),
+];
+/// Noise of their readings, counts, and where they stand at first.
+const ABSOLUTE_NOISE_COUNTS: (f64, f64) = (0.2, 0.8);
+const ABSOLUTE_START_COUNTS: (f64, f64) = (1_200.0, 2_900.0);
 
 #[expect(clippy::too_many_arguments, reason = "a row of the table above, in its order")]
 const fn row(
@@ -176,7 +195,32 @@ pub fn population(seed: u64, n: usize) -> Vec<Specimen> {
 #[must_use]
 pub fn specimen(seed: u64, number: usize) -> Specimen {
     let mut draw = Draw(ChaCha8Rng::seed_from_u64(seed.wrapping_mul(1_000_003).wrapping_add(number as u64)));
-    let row = &KINDS[number % KINDS.len()];
+    drawn(&mut draw, &KINDS[number % KINDS.len()], number)
+}
+
+/// Machines with absolute encoders, a population of its own: `n` plants, the kinds in turn.
+#[must_use]
+pub fn absolute_population(seed: u64, n: usize) -> Vec<Specimen> {
+    (0..n).map(|number| absolute_specimen(seed, number)).collect()
+}
+
+/// Plant `number` of the absolute population of a seed.
+#[must_use]
+pub fn absolute_specimen(seed: u64, number: usize) -> Specimen {
+    let stream = seed.wrapping_mul(1_000_003).wrapping_add(number as u64) ^ 0xAB50_107E;
+    let mut draw = Draw(ChaCha8Rng::seed_from_u64(stream));
+    let row = &ABSOLUTE_KINDS[number % ABSOLUTE_KINDS.len()];
+    let mut specimen = drawn(&mut draw, row, number);
+    let is_voltage = matches!(row.kind, Kind::PotActuator | Kind::PotSteering);
+    let encoder = &mut specimen.axis.encoder;
+    encoder.kind = if is_voltage { EncoderKind::Analog } else { EncoderKind::Pulse };
+    encoder.noise_counts = draw.log(ABSOLUTE_NOISE_COUNTS);
+    encoder.start_counts = draw.between(ABSOLUTE_START_COUNTS).floor() + 0.5;
+    encoder.wraps = row.kind == Kind::Turntable;
+    specimen
+}
+
+fn drawn(draw: &mut Draw, row: &KindRow, number: usize) -> Specimen {
     let qpps = draw.log(row.qpps);
     let tau_s = draw.log(row.tau_ms) * 1e-3;
     let stall_amps = row.stall_amps * draw.log((0.6, 1.6));

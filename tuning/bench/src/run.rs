@@ -9,6 +9,7 @@ use crate::trial::{Registers, linear};
 use crate::truth::Truth;
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_sim::controller::Controller;
+use brushwork_sim::plant::EncoderKind;
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::report::{Report, Verdict};
@@ -24,7 +25,17 @@ pub fn axis_of(specimen: &Specimen) -> SimulatedAxis {
     let unit = Controller::new(specimen.controller_config()).expect("every drawn figure is in its range");
     let mut line = SimulatedLine::new(unit, specimen.link);
     line.idle(std::time::Duration::from_millis(500));
-    PacketAxis::new(line, Motor::M1, EncoderClass::Quadrature)
+    PacketAxis::new(line, Motor::M1, encoder_of(specimen))
+}
+
+/// What a person would say of its encoder.
+fn encoder_of(specimen: &Specimen) -> EncoderClass {
+    let encoder = &specimen.axis.encoder;
+    match (encoder.kind, encoder.wraps) {
+        (EncoderKind::Quadrature, _) => EncoderClass::Quadrature,
+        (_, false) => EncoderClass::Absolute,
+        (_, true) => EncoderClass::AbsoluteWrapping,
+    }
 }
 
 /// What the bench asks for.

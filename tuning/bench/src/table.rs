@@ -2,8 +2,8 @@
 
 use crate::cache::{OptimaByPlant, known};
 use crate::faults::{FaultRow, fault_rows};
-use crate::oracle::{Optima, optima};
-use crate::population::{Specimen, population};
+use crate::oracle::{Optima, optima, position_optima};
+use crate::population::{Specimen, absolute_population, population};
 use crate::reject::group;
 use crate::run::{Judgement, judge, judge_report, request_of, tune_plant};
 use crate::trial::Registers;
@@ -19,6 +19,9 @@ use std::collections::BTreeMap;
 const REFUSED_COST: f64 = 1000.0;
 /// The travel window of the identification, s of full speed.
 const WINDOW_S: f64 = 0.2;
+
+/// One machine with an absolute encoder for so many others.
+const SHARE_OF_ABSOLUTE: usize = 8;
 
 /// The methods and their names in the table.
 pub const TASKS: [(&str, Method); 4] =
@@ -98,6 +101,8 @@ pub struct Table {
     pub plants: usize,
     /// Rows by task.
     pub tasks: BTreeMap<&'static str, Vec<Row>>,
+    /// Machines with absolute encoders, rows by task: they are tuned in position.
+    pub absolute: BTreeMap<&'static str, Vec<Row>>,
     /// Identification.
     pub identification: Identification,
     /// Faults.
@@ -157,7 +162,24 @@ pub fn table(seed: u64, cases: &[Case], faults: bool) -> Table {
     identification.ms_varied_p95 = tasks["velocity"].first().map_or(0.0, |row: &Row| row.ms_varied_p95);
     let plants = || cases.iter().map(|case| case.specimen.clone()).collect::<Vec<_>>();
     let faults = if faults { fault_rows(&plants()) } else { Vec::new() };
-    Table { seed, plants: cases.len(), tasks, identification, faults }
+    let absolute = absolute_rows(seed, cases.len() / SHARE_OF_ABSOLUTE);
+    Table { seed, plants: cases.len(), tasks, absolute, identification, faults }
+}
+
+/// The rows of so many machines with absolute encoders. Their optima are worked out each time.
+#[must_use]
+pub fn absolute_rows(seed: u64, plants: usize) -> BTreeMap<&'static str, Vec<Row>> {
+    let worked_out = |specimen: Specimen| {
+        let truth = truth(&specimen);
+        Case { optima: position_optima(&specimen, &truth), truth, specimen }
+    };
+    let cases: Vec<Case> = absolute_population(seed, plants).into_par_iter().map(worked_out).collect();
+    let of = |(name, method): (&'static str, Method)| {
+        let run = |case: &Case| (tune_plant(&case.specimen, &request_of(&case.specimen, method)).0, 0.0);
+        let reports: Vec<(Report, f64)> = cases.par_iter().map(run).collect();
+        (name, rows(method, &cases, &reports))
+    };
+    TASKS.into_iter().filter(|(_, method)| *method != Method::Velocity).map(of).collect()
 }
 
 fn rows(method: Method, cases: &[Case], reports: &[(Report, f64)]) -> Vec<Row> {

@@ -7,7 +7,7 @@ use brushwork_sim::motion::{
     Buffering, Channel, Conditions, EncoderInput, Measured, MotionCommand, MotionSettings, PositionMove,
     PositionTarget,
 };
-use brushwork_sim::plant::ShaftSide;
+use brushwork_sim::plant::{EncoderKind, EncoderReading, ShaftSide};
 use brushwork_sim::world::{Motor, World, WorldAction};
 use brushwork_tuning::axis::{PositionRegisters, VelocityRegisters};
 use brushwork_tuning::linear::{LoopPlant, Margins};
@@ -122,7 +122,7 @@ impl Machine {
             }
         });
         let measured = Measured {
-            encoder: EncoderInput::Quadrature(self.world.encoder(Motor::M1).counts),
+            encoder: input_of(self.world.encoder(Motor::M1)),
             current_amps: self.world.measured_amps(Motor::M1),
             bus_volts: self.world.bus_volts(),
         };
@@ -153,6 +153,13 @@ impl Machine {
                 (goal - of(self.motion()), duty)
             })
             .unzip()
+    }
+}
+
+fn input_of(reading: EncoderReading) -> EncoderInput {
+    match reading.kind {
+        EncoderKind::Quadrature => EncoderInput::Quadrature(reading.counts),
+        EncoderKind::Analog | EncoderKind::Pulse => EncoderInput::Absolute(reading.counts as i32),
     }
 }
 
@@ -194,6 +201,7 @@ pub fn position_trial(specimen: &Specimen, truth: &Truth, registers: &Registers)
     let mut machine = Machine::new(specimen, registers);
     let ticks = (horizon_s(truth.tau_s) / machine.tick_s) as usize;
     let step = position_step(truth.gain_counts_per_s, truth.tau_s);
+    let start = specimen.axis.encoder.start_counts;
     for _ in 0..3 {
         machine.tick();
     }
@@ -202,7 +210,7 @@ pub fn position_trial(specimen: &Specimen, truth: &Truth, registers: &Registers)
             acceleration: Some(0),
             speed_counts_per_s: Some(registers.velocity.qpps),
             deceleration: Some(0),
-            target: PositionTarget::Counts(step as i32),
+            target: PositionTarget::Counts(start.floor() as i32 + step as i32),
         },
         Buffering::Immediate,
     ));

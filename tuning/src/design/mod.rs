@@ -6,6 +6,7 @@
 mod position;
 mod velocity;
 
+pub(crate) use position::deadzone;
 pub use position::{design_pd, design_pid, design_piv};
 pub use velocity::design_velocity;
 

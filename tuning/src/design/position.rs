@@ -142,7 +142,7 @@ fn candidate(task: &Task, gains: Gains) -> Candidate {
 }
 
 /// Within the play nothing can be held; beyond it two counts keep the rounding quiet.
-fn deadzone(task: &Task) -> f64 {
+pub(crate) fn deadzone(task: &Task) -> f64 {
     if task.slack_counts > 0.0 { (task.slack_counts + SLACK_MARGIN).round() } else { 0.0 }
 }
 

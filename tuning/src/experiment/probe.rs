@@ -28,6 +28,9 @@ pub struct Probe {
     pub volts: Option<f64>,
     /// Highest current, A.
     pub peak_amps: f64,
+    /// Standard deviation of the counts at rest: 0 but for absolute encoders.
+    #[serde(default)]
+    pub noise_counts: f64,
 }
 
 /// Runs it. The motor is braked when it returns.
@@ -36,6 +39,7 @@ pub fn run_probe(rig: &mut Rig<'_>, direction: f64) -> Result<Probe, Cause> {
     rig.poll_for(REST_S, false)?;
     let rest = rig.points.last().map_or(0.0, |p| p.counts);
     let noise = spread(rig.points.iter().map(|p| p.counts));
+    let noise_counts = deviation(rig.points.iter().map(|p| p.counts));
     let volts = rig.mean_volts(0.0, f64::INFINITY);
     let mut readings: Vec<(f64, f64)> = Vec::new();
     let highest = LAST_DUTY.min(rig.options.max_duty);
@@ -75,7 +79,7 @@ pub fn run_probe(rig: &mut Rig<'_>, direction: f64) -> Result<Probe, Cause> {
         Some((_, by)) if by < 0.0 => Err(Cause::EncoderReversed),
         Some((start_duty, _)) => {
             rig.duty(0.0)?;
-            Ok(Probe { start_duty, stall_amps, volts, peak_amps })
+            Ok(Probe { start_duty, stall_amps, volts, peak_amps, noise_counts })
         }
         None => Err(nothing_moved(rig, &readings, peak_amps, steepest)?),
     }
@@ -88,6 +92,9 @@ fn nothing_moved(
     peak_amps: f64,
     steepest: f64,
 ) -> Result<Cause, Cause> {
+    if readings.is_empty() {
+        return Ok(Cause::NothingCounted);
+    }
     if peak_amps <= NO_CURRENT_AMPS {
         return Ok(Cause::MotorOpen);
     }
@@ -103,6 +110,12 @@ fn nothing_moved(
         rig.points.iter().filter(|p| p.t > from).filter_map(|p| p.amps).map(f64::abs).fold(0.0, f64::max);
     let turns = braking > (2.0 * NO_CURRENT_AMPS).max(0.03 * steepest * last_duty);
     Ok(if turns { Cause::EncoderDead } else { Cause::ShaftLocked })
+}
+
+fn deviation(values: impl Iterator<Item = f64> + Clone) -> f64 {
+    let n = values.clone().count().max(1) as f64;
+    let mean = values.clone().sum::<f64>() / n;
+    (values.map(|value| (value - mean).powi(2)).sum::<f64>() / n).sqrt()
 }
 
 fn spread(values: impl Iterator<Item = f64>) -> f64 {

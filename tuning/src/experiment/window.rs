@@ -16,6 +16,10 @@ const GOING_DUTY: f64 = 0.05;
 const GOING_AHEAD_S: f64 = 0.05;
 /// Longest time, s.
 const LONGEST_S: f64 = 25.0;
+/// A wide window is not used to its ends by a slow axis: longest way in one direction once the speed is steady, s, and what it
+/// changes by then at the most.
+const LONGEST_SWING_S: f64 = 0.7;
+const STEADY: f64 = 0.08;
 
 /// What the window run read off.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -80,6 +84,7 @@ fn swing(
     rig.duty(duty * direction)?;
     let mut switches = 0;
     let (mut switched_at, mut switch_speed, mut farthest) = (0.0, 0.0_f64, 0.0_f64);
+    let mut since_s = rig.now_s();
     while switches < SWITCHES {
         if rig.now_s() - run.from_s > LONGEST_S {
             return Ok(());
@@ -95,7 +100,10 @@ fn swing(
             return Err(Cause::TravelLimit);
         }
         let ahead = from_middle * direction + (speed * direction).max(0.0) * *brake_s;
-        if ahead >= SWITCH_AT * width {
+        let is_steady = rig.recent_speed(12).is_some_and(|before| (speed - before).abs() < STEADY * run.top_speed);
+        let is_long = point.t - since_s > LONGEST_SWING_S && is_steady;
+        if is_long || ahead >= SWITCH_AT * width {
+            since_s = point.t;
             if switches > 0 && switch_speed > 0.0 && farthest > 0.0 {
                 *brake_s = (0.5 * *brake_s + 0.5 * (farthest / switch_speed)).clamp(0.02, 0.6);
                 rig.watch.stopping_s = *brake_s;

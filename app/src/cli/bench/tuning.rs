@@ -56,6 +56,10 @@ fn print(table: &Table, out: &mut Output) -> Result<(), OutputError> {
     for task in ["velocity", "pd", "pid", "piv"] {
         rows.extend(table.tasks.get(task).into_iter().flatten().map(|row| cells(task, row)));
     }
+    for task in ["pd", "pid", "piv"] {
+        let name = format!("{task}, absolute");
+        rows.extend(table.absolute.get(task).into_iter().flatten().map(|row| cells(&name, row)));
+    }
     out.table(&HEADS, &rows)?;
     print_rejects(table, out)?;
     out.line("")?;

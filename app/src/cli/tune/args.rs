@@ -64,9 +64,9 @@ pub struct RunArgs {
     /// Highest duty in percent.
     #[arg(long, value_name = "PERCENT", default_value_t = 100, value_parser = clap::value_parser!(u8).range(20..=100))]
     pub max_duty: u8,
-    /// What the encoder is.
-    #[arg(long, value_enum, default_value_t = EncoderArg::Quadrature)]
-    pub encoder: EncoderArg,
+    /// What the encoder is, where the controller's settings do not say it (whether an absolute one wraps, they never do).
+    #[arg(long, value_enum)]
+    pub encoder: Option<EncoderArg>,
     /// Leave the new gains in force (RAM).
     #[arg(long, conflicts_with = "dry_run")]
     pub apply: bool,

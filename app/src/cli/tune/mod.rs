@@ -21,6 +21,7 @@ use super::output::{Output, say};
 use super::settings::controller::Controller;
 use super::settings::memory::save_to_eeprom;
 use crate::keep::TrialKeeper;
+use crate::tune::file;
 use crate::tune::{Slot, Target, prepare, restore, run as tuning_job, take};
 use args::{EncoderArg, MethodArg, RunArgs};
 pub use args::{TuneArgs, TuneCommand};
@@ -63,16 +64,17 @@ fn session(
     interrupt: &Interrupt,
 ) -> Result<Report, Exit> {
     let client = controller.client();
-    let encoder = match args.encoder {
+    let encoder = args.encoder.map(|encoder| match encoder {
         EncoderArg::Quadrature => EncoderClass::Quadrature,
         EncoderArg::Absolute => EncoderClass::Absolute,
         EncoderArg::AbsoluteWrapping => EncoderClass::AbsoluteWrapping,
-    };
+    });
     let target = Target { motor: motor(args), encoder, stream: client.stream };
     let setup = Slot::default();
     let keeper = TrialKeeper::new(controller.keeper());
     job(client, prepare(target, controller.subject(), &setup, &keeper), interrupt)?;
     let Some(before) = take(&setup) else { return Err(Exit::NoLink) };
+    let target = Target { encoder: Some(before.encoder), ..target };
     let found: Slot<Report> = Slot::default();
     let ran = arm(client.device(), ArmScope::CommandLine, interrupt)
         .and_then(|()| job(client, tuning_job(target, request(args, method), &found), interrupt));
@@ -112,11 +114,8 @@ fn request(args: &RunArgs, method: Method) -> TuneRequest {
 
 fn conclude(args: &RunArgs, report: &Report, controller: &Controller<'_>, out: &mut Output) -> Exit {
     if let Some(path) = &args.report {
-        let written = serde_json::to_string(report)
-            .map_err(|error| error.to_string())
-            .and_then(|text| std::fs::write(path, text).map_err(|error| error.to_string()));
-        if let Err(error) = written {
-            say(format!("Could not write the report to {}: {error}.", path.display()));
+        if let Err(sentence) = file::write(report, path) {
+            say(sentence);
             return Exit::Failed;
         }
     }

@@ -48,6 +48,13 @@ pub fn print(report: &Report, out: &mut Output) -> Result<(), OutputError> {
         row("time constant", format!("{:.1} ms", 1e3 * fit.model.tau_s), share(fit.sd_ln_tau));
         row("friction", format!("{:.1} % duty", 100.0 * fit.model.coulomb_duty), String::new());
     }
+    if let Some(winding) = &report.winding {
+        row("resistance R", format!("{:.3} ohm", winding.ohms), format!("+- {:.3} ohm", winding.interval_ohms));
+    }
+    if let Some(slack) = &report.slack {
+        let value = if slack.counts > 0.0 { format!("at least {:.1} counts", slack.counts) } else { "none seen".into() };
+        row("play at reversals", value, format!("+- {:.1} counts", slack.interval_counts));
+    }
     if let Some(lag) = &report.lag {
         let range = format!("{:.1} to {:.1} ms", 1e3 * lag.interval_s.0, 1e3 * lag.interval_s.1);
         row("lag of the loop", format!("{:.1} ms", 1e3 * lag.lag.total_s(&report.request.law)), range);
@@ -66,6 +73,13 @@ pub fn print(report: &Report, out: &mut Output) -> Result<(), OutputError> {
 
 fn print_gains(report: &Report, out: &mut Output) -> Result<(), OutputError> {
     let Some(before) = report.before else { return Ok(()) };
+    if let Some(winding) = report.winding.filter(|_| report.verdict != Verdict::Refused) {
+        out.line(format!(
+            "Measured R {:.3} ohm. It is not set: with L and R both other than 0, duty commands become current commands (settings \
+             motor*.resistance_ohms and motor*.inductance_henries).",
+            winding.ohms
+        ))?;
+    }
     let mut rows = Vec::new();
     if let Some(new) = report.velocity {
         let old = before.velocity;

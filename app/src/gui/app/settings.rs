@@ -16,6 +16,14 @@ impl App {
 
     pub(super) fn settings_of(&mut self, id: DeskId, wish: SettingsWish) {
         let Some(desk) = self.model.desk_mut(id) else { return };
+        if desk.tune.is_running() && !matches!(wish, SettingsWish::Cancel | SettingsWish::Read) {
+            desk.tune.waiting = Some(wish);
+            self.model.messages.note(
+                "That waits for the end of the tuning run, so that the time-out and the gains of before are written, not those of \
+                 the run.",
+            );
+            return;
+        }
         let stream = desk.link.stream;
         if let Some(request) = desk.general.begin(wish, stream)
             && !self.request_of(id, request)
@@ -100,6 +108,11 @@ impl App {
     /// Sends a command that was put together by hand; one that changes settings once a backup of them is kept.
     pub(super) fn transact(&mut self, transact: Transact) {
         let front = &mut self.model.front;
+        if front.tune.is_running() && front.link.identity().is_some_and(|identity| transact.changes_settings(identity)) {
+            let told = "A tuning run is at work, and this command changes settings. Send it when the run has ended.";
+            self.model.messages.fail(told.to_owned());
+            return;
+        }
         let identity = front.link.identity().cloned().filter(|identity| transact.changes_settings(identity));
         let Some((identity, keeper)) = identity.zip(front.general.keeper()) else {
             return self.send_transact(self.model.front.id(), transact);

@@ -11,6 +11,7 @@ use crate::gui::tune::registers::Registers;
 use crate::gui::tune::sequence::{Next, Origin};
 use crate::gui::tune::{Loop, TuneWish};
 use crate::keep::TrialKeeper;
+use crate::tune::file;
 use brushwork_link::device::Request;
 use brushwork_link::settings::{SettingValue, SettingsImage};
 use brushwork_protocol::packet_serial::Motor;
@@ -45,7 +46,7 @@ impl App {
             }
             TuneWish::Adjust(motor, registers) => self.adjust(which, motor, registers),
             TuneWish::SaveReport(path) => match front.tune.front(which).run() {
-                Some(run) => files::save(&run.report, &path)
+                Some(run) => file::write(&run.report, &path)
                     .map(|()| self.model.messages.note(format!("The report is in {}.", path.display()))),
                 None => Ok(()),
             },
@@ -67,7 +68,12 @@ impl App {
             }
             for (motor, travel) in Motor::BOTH.into_iter().zip(desk.travels()) {
                 desk.tune.adopt_travel(motor, travel);
+                desk.tune.adopt_encoder(motor, desk.loops.encoder(motor));
             }
+            if let Some(wish) = desk.tune.take_waiting() {
+                self.settings_of(id, wish);
+            }
+            let Some(desk) = self.model.desk_mut(id) else { continue };
             let refused = !desk.link.refusals.is_empty();
             let general = &desk.general;
             let origin = || {
@@ -180,7 +186,7 @@ impl App {
     }
 
     fn open_report(&mut self, path: &std::path::Path) -> Result<(), String> {
-        let report = files::open(path)?;
+        let report = file::read(path)?;
         let which = files::loop_of(&report);
         let motor = if report.request.guard.motor == 1 { Motor::M2 } else { Motor::M1 };
         let tuning = &mut self.model.front.tune;

@@ -14,10 +14,12 @@ use brushwork_link::settings::{
 use brushwork_link::transport::Stream;
 use brushwork_protocol::models;
 use brushwork_protocol::packet_serial::Motor;
+use brushwork_tuning::axis::EncoderClass;
 use crossbeam_channel::{Receiver, bounded};
 
 use super::link::Effect;
 use super::message::Gravity;
+use crate::tune::encoder;
 
 /// One setting that both motors have.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -196,6 +198,13 @@ impl LoopSettings {
         }
     }
 
+    /// Edits the resistance of a motor, as it was measured, ohm.
+    pub fn edit_resistance(&mut self, motor: Motor, ohms: f64) {
+        if let Some(column) = PWM.iter().find(|column| column.key == RESISTANCE) {
+            self.edit(motor, column, ohms);
+        }
+    }
+
     /// Edits the other motor to be like `from`.
     pub fn copy_from(&mut self, from: Motor, columns: &[Column]) {
         let to = if from == Motor::M1 { Motor::M2 } else { Motor::M1 };
@@ -222,6 +231,11 @@ impl LoopSettings {
         (low < high).then_some((low, high))
     }
 
+    /// What kind of encoder a motor has, as the controller's settings say.
+    pub fn encoder(&self, motor: Motor) -> Option<EncoderClass> {
+        encoder::class(&|key| self.ram.get(key), motor)
+    }
+
     /// Motors whose L and R, as shown, are both other than 0.
     pub fn torque_controlled(&self) -> Vec<Motor> {
         let is_set = |motor, name: &str| {
@@ -242,7 +256,8 @@ impl LoopSettings {
         let model = models::identify(&identity.version_text)?;
         let table = SettingsTable::new(Subject::new(model, identity.generation));
         self.table = Some(table.clone());
-        let keys = [keys(VELOCITY), keys(POSITION)].concat();
+        let of_encoders = table.rows().iter().map(|row| row.key.clone()).filter(|key| encoder::is_asked(key));
+        let keys = [keys(VELOCITY), keys(POSITION), of_encoders.collect()].concat();
         let (sender, outcome) = bounded(1);
         let job = FnJob::boxed(READ_JOB, READ_LIMIT, move |wire| {
             // Nobody waits for it once the unit was left.

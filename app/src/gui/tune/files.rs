@@ -18,26 +18,6 @@ pub struct Asked {
     saves: bool,
 }
 
-/// Writes a report with its raw record.
-pub fn save(report: &Report, path: &Path) -> Result<(), String> {
-    let text = serde_json::to_string(report).map_err(|error| error.to_string())?;
-    std::fs::write(path, text).map_err(|error| {
-        format!("Could not write the report to {}: {error}. Choose another place.", path.display())
-    })
-}
-
-/// Reads a report.
-pub fn open(path: &Path) -> Result<Report, String> {
-    let told = |error: &dyn std::fmt::Display| {
-        format!(
-            "Could not read a report from {}: {error}. Choose a file that a tuning run wrote.",
-            path.display()
-        )
-    };
-    let text = std::fs::read_to_string(path).map_err(|error| told(&error))?;
-    serde_json::from_str(&text).map_err(|error| told(&error))
-}
-
 /// Which loop a report is of.
 pub fn loop_of(report: &Report) -> Loop {
     match report.request.method {

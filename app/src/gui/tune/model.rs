@@ -12,6 +12,7 @@ use super::calibration::Calibration;
 use super::registers::Registers;
 use super::run::Run;
 use super::sequence::{Ended, Next, Origin, Sequence, Work};
+use crate::gui::model::general::SettingsWish;
 use crate::gui::model::link::{Arming, Effect};
 use crate::gui::model::message::Gravity;
 use crate::gui::model::screen::Screen;
@@ -95,6 +96,8 @@ pub struct Setting {
     /// The run ends above this current; 0 leaves it to the controller's own limit.
     pub max_amps: f64,
     pub encoder: EncoderClass,
+    /// Whether a person has said which; until then what was read from the controller counts.
+    pub is_encoder_chosen: bool,
     /// Whether the gains are tried on the machine at the end of the run.
     pub tries: bool,
 }
@@ -110,6 +113,7 @@ impl Setting {
             max_duty_percent: 100.0,
             max_amps: 0.0,
             encoder: EncoderClass::Quadrature,
+            is_encoder_chosen: false,
             tries: true,
         }
     }
@@ -197,6 +201,8 @@ pub struct Tuning {
     unit: Option<(u8, String)>,
     calibrations: [Calibration; 2],
     pub view: super::plots::View,
+    /// Work with the settings that was asked for during a run: it waits until what the run changed is put back.
+    pub waiting: Option<SettingsWish>,
     /// A path for a report, as it is typed.
     pub path: String,
     pub dialog: Option<super::files::Asked>,
@@ -214,6 +220,7 @@ impl Default for Tuning {
             unit: None,
             calibrations: <[Calibration; 2]>::default(),
             view: super::plots::View::default(),
+            waiting: None,
             path: String::new(),
             dialog: None,
         }
@@ -245,6 +252,17 @@ impl Tuning {
             held.filter(|(low, high)| high - low < ENDLESS_COUNTS && !setting.is_travel_chosen)
         {
             (setting.turns_freely, setting.travel) = (false, travel);
+        }
+    }
+
+    /// Takes the kind of encoder that the controller's settings tell, until a person says otherwise.
+    pub fn adopt_encoder(&mut self, motor: Motor, read: Option<EncoderClass>) {
+        let Some(read) = read else { return };
+        for which in [Loop::Velocity, Loop::Position] {
+            let setting = &mut self.panel_mut(which, motor).setting;
+            if !setting.is_encoder_chosen {
+                setting.encoder = read;
+            }
         }
     }
 
@@ -284,6 +302,11 @@ impl Tuning {
         self.running.is_some()
     }
 
+    /// What was asked for in the meantime, once nothing runs any more.
+    pub fn take_waiting(&mut self) -> Option<SettingsWish> {
+        if self.running.is_none() { self.waiting.take() } else { None }
+    }
+
     pub fn running(&self) -> Option<&Sequence> {
         self.running.as_ref().map(|(_, sequence)| sequence)
     }
@@ -318,7 +341,8 @@ impl Tuning {
             return Err("The travel has no room: its high end must be at least 40 counts above its low end."
                 .to_owned());
         }
-        let target = Target { motor, encoder: panel.setting.encoder, stream };
+        let Setting { encoder, is_encoder_chosen, .. } = panel.setting;
+        let target = Target { motor, encoder: is_encoder_chosen.then_some(encoder), stream };
         let work = work(panel, motor)?;
         self.look_at(which, motor);
         self.running = Some((which, Sequence::new(work, target, which.scope())));

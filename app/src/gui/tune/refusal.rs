@@ -20,6 +20,27 @@ fn steps(cause: Cause) -> &'static [&'static str] {
             "Or set the reverse option of the encoder under General Settings.",
             "On the PWM screen, a little positive duty must make the encoder count up.",
         ],
+        Cause::NothingCounted => &[
+            "Look at the encoder's plug at both ends, and turn the shaft by hand: the encoder figure at the top must change.",
+            "Look at both motor leads and their screws, and take brakes and jams away.",
+            "This controller tells no motor current, so the three cannot be told apart from here.",
+        ],
+        Cause::OutsideTravel => &[
+            "Move the axis by hand, or on the PWM screen with little duty, until its counts lie within the travel.",
+            "Or give a travel around where it stands.",
+        ],
+        Cause::NarrowTravel => &[
+            "Move the axis to the middle of its travel.",
+            "Widen the travel if the mechanics allow it, or use an encoder with more counts.",
+        ],
+        Cause::LimitNotTaken => &[
+            "Leave the highest current at 0: then the controller's own limit counts.",
+            "Or set the current limit under General Settings before the run.",
+        ],
+        Cause::UnknownLaw => &[
+            "Tune it by hand with the assistant below, which needs to know nothing of the loop's law.",
+            "Save the report: it holds what the controller answered.",
+        ],
         Cause::EncoderDead | Cause::EncoderLost => &[
             "Look at the encoder's plug at both ends, and at its 5 V supply.",
             "Turn the shaft by hand: the encoder figure at the top must change.",

@@ -1,6 +1,7 @@
 //! What a run has found: its verdict, the gains as current, proposed and change, what they promise, and the runs so far.
 
 use brushwork_tuning::report::{Report, Verdict};
+use brushwork_tuning::winding::Winding;
 use egui::{Button, Grid, Label, Response, RichText, Ui, vec2};
 
 use super::files::files_ui;
@@ -80,21 +81,42 @@ fn verdict_ui(ui: &mut Ui, run: &Run) {
     }
 }
 
-fn model_ui(ui: &mut Ui, model: &Model, which: Loop) {
-    let text = model.front.tune.front(which).run().and_then(|run| model_text(&run.report));
+fn model_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
+    let Some(report) = model.front.tune.front(which).run().map(|run| &run.report) else { return };
+    let (text, winding) = (model_text(report), report.winding);
     if let Some(text) = text {
         ui.add_space(4.0);
         ui.add(Label::new(RichText::new(text).small().color(Palette::of(ui).weak_text)).wrap());
     }
+    if let Some(winding) = winding {
+        winding_ui(ui, model, which, &winding);
+    }
+}
+
+/// Offers the measured resistance, and says what setting it does.
+fn winding_ui(ui: &mut Ui, model: &mut Model, which: Loop, winding: &Winding) {
+    let motor = model.front.tune.motor(which);
+    ui.horizontal_wrapped(|ui| {
+        let text = format!("Measured R {:.3} ± {:.3} Ω", winding.ohms, winding.interval_ohms);
+        ui.label(text).on_hover_text("Of the winding, its leads and the bridge, with its 95 % interval");
+        let is_free = !model.front.is_guided() && model.front.loops.is_known();
+        let enter = ui.add_enabled(is_free, Button::new("Enter as R").small());
+        let hint = "Puts it into the field R under Velocity loop. It is sent with the other edits of that table.";
+        if enter.on_hover_text(hint).clicked() {
+            model.front.loops.edit_resistance(motor, winding.ohms);
+        }
+    });
+    let warning = "With L and R both other than 0, duty commands become current (torque) commands. L cannot be measured this way.";
+    ui.add(Label::new(RichText::new(warning).small().color(Palette::of(ui).weak_text)).wrap());
 }
 
 /// What was found of the motor, in one line.
 fn model_text(report: &Report) -> Option<String> {
     let fit = report.fit?;
     let mut text = format!(
-        "Motor: {:.0} counts/s at full duty ± {:.1} %, time constant {:.1} ms ± {:.0} %, friction {:.1} % duty",
+        "Motor: {:.0} counts/s at full duty ± {:.2} %, time constant {:.1} ms ± {:.0} %, friction {:.1} % duty",
         report.qpps?,
-        200.0 * fit.sd_ln_gain,
+        100.0 * report.free.map_or(2.0 * fit.sd_ln_gain, |free| free.interval),
         1e3 * fit.model.tau_s,
         200.0 * fit.sd_ln_tau,
         100.0 * fit.model.coulomb_duty,
@@ -102,6 +124,13 @@ fn model_text(report: &Report) -> Option<String> {
     if let Some(lag) = &report.lag {
         let (low, high) = (1e3 * lag.interval_s.0, 1e3 * lag.interval_s.1);
         text += &format!(", lag {low:.1} to {high:.1} ms");
+    }
+    if let Some(slack) = report.slack {
+        text += &if slack.counts > 0.0 {
+            format!(", play of at least {:.1} ± {:.1} counts", slack.counts, slack.interval_counts)
+        } else {
+            ", no play seen".to_owned()
+        };
     }
     Some(text)
 }

@@ -92,7 +92,7 @@ pub struct Sequence {
 
 impl Sequence {
     pub fn new(work: Work, target: Target, scope: ArmScope) -> Self {
-        let live = Live::new(Trace::new(target.motor.index(), target.encoder));
+        let live = Live::new(Trace::new(target.motor.index(), target.encoder.unwrap_or_default()));
         Self {
             work,
             target,
@@ -243,7 +243,9 @@ impl Sequence {
             Stage::Preparing => {
                 self.before = take(&self.setup);
                 self.note(ending);
-                let Some(_) = self.before else { return Some(self.end(None)) };
+                let Some(before) = self.before else { return Some(self.end(None)) };
+                self.target.encoder = Some(before.encoder);
+                self.live.begin(Trace::new(self.target.motor.index(), before.encoder));
                 let goes_on = is_done && self.why.is_none();
                 self.go_to(if goes_on { Stage::Arming } else { Stage::Restoring });
             }

@@ -172,8 +172,14 @@ fn encoder_ui(ui: &mut Ui, setting: &mut Setting) {
     let combo =
         ComboBox::from_id_salt("tune encoder").selected_text(word(setting.encoder)).show_ui(ui, |ui| {
             for class in [EncoderClass::Quadrature, EncoderClass::Absolute, EncoderClass::AbsoluteWrapping] {
-                ui.selectable_value(&mut setting.encoder, class, word(class));
+                let choice = ui.selectable_value(&mut setting.encoder, class, word(class));
+                setting.is_encoder_chosen |= choice.clicked();
             }
         });
-    combo.response.labelled_by(label.id);
+    let hint = if setting.is_encoder_chosen {
+        "Chosen here. An absolute encoder gives 0 to 4095; one that wraps goes on from 4095 to 0."
+    } else {
+        "As the controller's settings say. No setting says whether an absolute encoder wraps, going on from 4095 to 0: choose that here."
+    };
+    combo.response.labelled_by(label.id).on_hover_text(hint);
 }

@@ -71,6 +71,12 @@ impl Sketch {
                 caption: "The motor leads OR the encoder's A and B are swapped (one of the two, not both)",
                 ..sound
             },
+            Cause::NothingCounted => Self {
+                signals: Wires::Cut,
+                shaft: Shaft::Blocked,
+                caption: "The encoder is open, a motor lead is open, or the shaft is held",
+                ..sound
+            },
             Cause::EncoderDead | Cause::EncoderLost => Self {
                 signals: Wires::Cut,
                 caption: "The encoder's plug, its supply or its cable is open",

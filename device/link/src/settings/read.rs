@@ -151,12 +151,20 @@ impl<'w> Reader<'w> {
         self.transactions += 1;
         let reply = self.wire.transact(command, &[]);
         if let Err(error) = &reply
-            && (is_final(error) || self.nobody_there(error))
+            && (is_final(error) || self.nobody_there(error) && !self.is_there())
         {
             return Err(error.clone());
         }
         self.replies.insert(command, reply);
         Ok(())
+    }
+
+    /// Whether there is a controller that does not know what it was asked so far: each of them tells its version.
+    fn is_there(&mut self) -> bool {
+        let reply = self.wire.transact(number::READ_VERSION, &[]);
+        let answers = reply.is_ok();
+        self.replies.insert(number::READ_VERSION, reply);
+        answers
     }
 
     /// Whether this is one silence too many.

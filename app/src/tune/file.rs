@@ -1,0 +1,152 @@
+//! Reports as files: one entry of the record in a line, so that an error can name the place; and what is wrong with a file that is none.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use brushwork_tuning::report::{FORMAT, Report};
+use serde::Deserialize;
+use serde_json::Value;
+use serde_json::error::Category;
+
+/// What of a file tells whose it is.
+#[derive(Deserialize)]
+struct Head {
+    format: Option<u32>,
+    request: Option<Value>,
+    verdict: Option<Value>,
+    record: Option<Vec<Value>>,
+}
+
+/// A report as the text of its file.
+///
+/// # Errors
+/// Says why a value cannot be written.
+pub fn text_of(report: &Report) -> Result<String, String> {
+    let told = |error: serde_json::Error| error.to_string();
+    let mut fields = serde_json::to_value(Report { record: Vec::new(), ..report.clone() }).map_err(told)?;
+    let mut text = "{\n".to_owned();
+    if let Some(fields) = fields.as_object_mut() {
+        fields.remove("record");
+        for (name, value) in fields.iter() {
+            // Writing into a string cannot fail.
+            let _ = writeln!(text, "\"{name}\":{value},");
+        }
+    }
+    text.push_str("\"record\":[\n");
+    for (number, entry) in report.record.iter().enumerate() {
+        let separator = if number == 0 { "" } else { ",\n" };
+        let _ = write!(text, "{separator}{}", serde_json::to_string(entry).map_err(told)?);
+    }
+    text.push_str("\n]}\n");
+    Ok(text)
+}
+
+/// Writes a report.
+///
+/// # Errors
+/// Says what was tried, why it failed and what to do.
+pub fn write(report: &Report, path: &Path) -> Result<(), String> {
+    let written =
+        text_of(report).and_then(|text| std::fs::write(path, text).map_err(|error| error.to_string()));
+    written.map_err(|error| {
+        format!("Could not write the report to {}: {error}. Choose another place.", path.display())
+    })
+}
+
+/// Reads a report.
+///
+/// # Errors
+/// Says what was tried, where the file is wrong, and what to do.
+pub fn read(path: &Path) -> Result<Report, String> {
+    let told = |why: String| format!("Could not read a report from {}: {why}", path.display());
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| told(format!("{error}. Choose a file that a tuning run wrote.")))?;
+    parse(&text).map_err(told)
+}
+
+fn parse(text: &str) -> Result<Report, String> {
+    let head: Head = serde_json::from_str(text).map_err(|error| no_json(text, &error))?;
+    if let Some(format) = head.format.filter(|format| *format > FORMAT) {
+        return Err(format!(
+            "it is a report of form {format}, written by a newer Brushwork; this one knows form {FORMAT}. Update Brushwork."
+        ));
+    }
+    if head.request.is_none() || head.verdict.is_none() || head.record.is_none() {
+        let missing = if head.record.is_none() { "record" } else { "request or verdict" };
+        return Err(format!("it holds no {missing}, so it is no tuning report. Choose a file that a tuning run wrote."));
+    }
+    serde_json::from_str(text).map_err(|error| {
+        let (line, column) = (error.line(), error.column());
+        let field = field_before(text, line, column).map_or_else(String::new, |field| format!(", field {field}"));
+        format!(
+            "line {line}, column {column}{field}: {}. It was changed, or written by another version.",
+            bare(&error)
+        )
+    })
+}
+
+fn no_json(text: &str, error: &serde_json::Error) -> String {
+    let (line, column) = (error.line(), error.column());
+    match error.classify() {
+        Category::Eof if text.trim().is_empty() => "it is empty. Choose a file that a tuning run wrote.".to_owned(),
+        Category::Eof => format!("it is cut short: it ends at line {line}, column {column}. Save the report again."),
+        Category::Data => format!(
+            "line {line}, column {column}: {}. It is no tuning report, or was changed.",
+            bare(error)
+        ),
+        Category::Syntax | Category::Io => {
+            format!("line {line}, column {column} is no JSON: {}. Choose a file that a tuning run wrote.", bare(error))
+        }
+    }
+}
+
+/// What is wrong, without the place that stands at the end of the error's own text.
+fn bare(error: &serde_json::Error) -> String {
+    let text = error.to_string();
+    text.split_once(" at line ").map_or(text.clone(), |(what, _)| what.to_owned())
+}
+
+/// The innermost field whose value was being read at a place: the last name before it in its line.
+fn field_before(text: &str, line: usize, column: usize) -> Option<String> {
+    let line = text.lines().nth(line.checked_sub(1)?)?;
+    let before = line.get(..column.min(line.len())).unwrap_or(line);
+    let end = before.rfind("\":")?;
+    let start = before[..end].rfind('"')? + 1;
+    Some(format!("\"{}\"", &before[start..end]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const REPORT: &str = "{\n\"request\":{\"method\":\"velocity\"},\n\"verdict\":\"tuned\",\n\"record\":[\n]}\n";
+
+    fn refused(text: &str) -> String {
+        parse(text).expect_err("it is no report")
+    }
+
+    #[test]
+    fn each_kind_of_wrong_file_has_its_sentence() {
+        for (text, said) in [
+            ("", "it is empty"),
+            ("profile: yes", "line 1, column 1 is no JSON"),
+            (&REPORT[..40], "it is cut short: it ends at line 2"),
+            ("{\"schema\": 1}", "it holds no record, so it is no tuning report"),
+            ("{\"record\": []}", "it holds no request or verdict"),
+            ("[1, 2]", "line 1"),
+            ("{\"format\": 7, \"future\": true}", "form 7, written by a newer Brushwork"),
+        ] {
+            let sentence = refused(text);
+            assert!(sentence.contains(said), "{text:?}: {sentence}");
+            assert!(sentence.ends_with('.'), "{sentence}");
+        }
+    }
+
+    #[test]
+    fn a_wrong_value_is_named_by_line_column_and_field() {
+        let text = REPORT.replace("\"velocity\"", "\"upwards\"");
+        let sentence = refused(&text);
+        assert!(sentence.starts_with("line 2, column "), "{sentence}");
+        assert!(sentence.contains("field \"method\"") && sentence.contains("upwards"), "{sentence}");
+    }
+}

@@ -1,0 +1,137 @@
+//! Play of the mechanics, read off reversals: a push the other way loses the play that a second push the same way does not.
+//!
+//! Only an encoder behind the play sees any of it; one on the motor's own shaft counts the way through it as any other. A load that
+//! coasts through the play while the motor brakes hides a part of it, so what is found is a lower bound.
+
+use super::Probe;
+use crate::cause::Cause;
+use crate::model::PlantModel;
+use crate::rig::Rig;
+use serde::{Deserialize, Serialize};
+
+/// Directions of the pushes: after each pair comes a reversal.
+const PUSHES: [f64; 7] = [1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0];
+/// Duty above the starting one, as a share of it and at the least.
+const ABOVE: (f64, f64) = (0.3, 0.03);
+/// How far a push should go, as seconds of full speed, in counts at the least, and as a share of the room.
+const PUSH_S: f64 = 0.006;
+const PUSH_COUNTS: f64 = 18.0;
+const ROOM_SHARE: f64 = 0.12;
+/// Longest push, s, and how long the motor may take to rest after one, in time constants and s.
+const LONGEST_PUSH_S: f64 = 0.35;
+const REST: (f64, f64) = (4.0, 0.08);
+const LONGEST_REST_S: f64 = 1.0;
+/// Motors slower than this are still moving when they are looked at, s.
+const SLOWEST_S: f64 = 0.3;
+/// A push moves the axis by this at the least, counts.
+const LEAST_WAY_COUNTS: f64 = 2.0;
+/// Least play that is told, counts, and how sure it must be, in standard errors.
+const LEAST_COUNTS: f64 = 1.5;
+const SURE: f64 = 3.0;
+/// Share of the push that it must be, and the standard error that rounding leaves, counts.
+const LEAST_SHARE: f64 = 0.04;
+const LEAST_ERROR_COUNTS: f64 = 0.4;
+
+/// What the reversals showed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Slack {
+    /// Counts lost at a reversal, a lower bound of the play; 0 where nothing is sure.
+    pub counts: f64,
+    /// Half of the 95 % interval, counts.
+    pub interval_counts: f64,
+    /// Reversals seen.
+    pub reversals: usize,
+}
+
+/// Pushes the axis to and fro with little duty. `None` where there is no room for it, or it did not move.
+pub fn measure_slack(rig: &mut Rig<'_>, probe: &Probe, model: &PlantModel) -> Result<Option<Slack>, Cause> {
+    let room = rig.room_counts().map_or(f64::INFINITY, |room| ROOM_SHARE * room);
+    let way = (PUSH_S * model.gain_counts_per_s).max(PUSH_COUNTS).min(room);
+    if way < 6.0 || model.tau_s > SLOWEST_S {
+        return Ok(None);
+    }
+    let duty = probe.start_duty + (ABOVE.0 * probe.start_duty).max(ABOVE.1);
+    let push_s = push_time_s(model, duty.min(rig.options.max_duty), way);
+    let rest_s = (REST.0 * model.tau_s + REST.1).min(LONGEST_REST_S);
+    // Play looks like a stall for a while. The duty is low, and a motor that does not move ends the run here.
+    let watched_duty = std::mem::take(&mut rig.watch.start_duty);
+    let ways = push(rig, duty, push_s, rest_s);
+    rig.watch.start_duty = watched_duty;
+    let ways = ways?;
+    if ways.windows(2).any(|pair| pair.iter().all(|(_, way)| *way < LEAST_WAY_COUNTS)) {
+        return Err(Cause::Stalled);
+    }
+    Ok(Some(slack_of(&ways)))
+}
+
+/// For each push: 1 for another one the same way, -1 for one after a reversal, 0 for the first; and its way, counts.
+fn push(rig: &mut Rig<'_>, duty: f64, push_s: f64, rest_s: f64) -> Result<Vec<(f64, f64)>, Cause> {
+    let mut ways = Vec::new();
+    let mut before = 0.0;
+    for direction in PUSHES {
+        rig.poll(false)?;
+        let from = place(rig);
+        rig.duty(direction * duty)?;
+        let pushed_s = rig.now_s();
+        rig.poll_for(push_s, false)?;
+        let held_s = rig.now_s() - pushed_s;
+        rig.duty(0.0)?;
+        rig.poll_for(rest_s, false)?;
+        // A computer that was late pushed for longer.
+        ways.push((before * direction, (place(rig) - from) * direction * (push_s / held_s.max(1e-3)).min(1.0)));
+        before = direction;
+    }
+    Ok(ways)
+}
+
+fn place(rig: &Rig<'_>) -> f64 {
+    let last = rig.points.iter().rev().take(3).map(|p| p.counts);
+    last.sum::<f64>() / rig.points.len().clamp(1, 3) as f64
+}
+
+/// Time for a way from rest at a duty.
+fn push_time_s(model: &PlantModel, duty: f64, way: f64) -> f64 {
+    let speed = model.gain_counts_per_s * (duty - model.coulomb_duty).max(0.02);
+    let tau = model.tau_s;
+    let mut t = 0.02;
+    while t < LONGEST_PUSH_S && speed * (t - tau * (1.0 - (-t / tau).exp())) < way {
+        t += 0.005;
+    }
+    t
+}
+
+/// What the pushes after a reversal are short of the others.
+fn slack_of(ways: &[(f64, f64)]) -> Slack {
+    let of = |turned: bool| -> Vec<f64> {
+        ways.iter().filter(|(turn, _)| if turned { *turn < 0.0 } else { *turn > 0.0 }).map(|(_, way)| *way).collect()
+    };
+    let (same, turned) = (of(false), of(true));
+    let (a, b) = (mean_and_error(&same), mean_and_error(&turned));
+    let (short, error) = (a.0 - b.0, a.1.hypot(b.1).max(LEAST_ERROR_COUNTS));
+    let is_sure = short > LEAST_COUNTS && short > SURE * error && short > LEAST_SHARE * a.0;
+    Slack { counts: if is_sure { short } else { 0.0 }, interval_counts: 1.96 * error, reversals: turned.len() }
+}
+
+fn mean_and_error(values: &[f64]) -> (f64, f64) {
+    let n = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let square = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
+    (mean, (square / n).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_lost_at_reversals_is_the_play_and_scatter_is_none() {
+        let pushes = [(0.0, 30.0), (1.0, 30.0), (-1.0, 22.0), (1.0, 31.0), (-1.0, 21.0), (1.0, 30.0), (-1.0, 23.0)];
+        let found = slack_of(&pushes);
+        assert!((found.counts - 8.33).abs() < 0.1, "{found:?}");
+        assert_eq!(found.reversals, 3);
+        let noisy = pushes.map(|(turn, way)| (turn, if turn > 0.0 { way - 6.0 * turn } else { way }));
+        assert!(slack_of(&noisy).counts < 4.0);
+        let rigid = pushes.map(|(turn, way)| (turn, if turn < 0.0 { 31.0 } else { way }));
+        assert_eq!(slack_of(&rigid).counts, 0.0);
+    }
+}

@@ -1,0 +1,193 @@
+//! Resistance of the winding, from volts, duty, current and speed of the samples of a run: `duty volts = R amps + k speed`.
+//!
+//! The inductance cannot be seen in polls: it is over within a millisecond.
+
+use crate::rig::{Drive, Input, Point};
+use nalgebra::{Matrix2, Vector2};
+use serde::{Deserialize, Serialize};
+
+/// A duty has settled in the winding this long after it was given, s: the ramp of up to 0.1 s per full duty and some.
+const SETTLED_S: f64 = 0.012;
+const RAMP_S: f64 = 0.05;
+/// Readings up to this are no current, A.
+const LEAST_AMPS: f64 = 0.05;
+/// Share of the highest speed by which it may change between the polls around a reading: a current is read later than the counts.
+const STEADY: f64 = 0.06;
+/// Share of the volts that the rest of the model leaves open.
+const MODEL: f64 = 0.01;
+/// Samples needed, and the widest interval that says anything, over the resistance.
+const LEAST_SAMPLES: usize = 12;
+const WIDEST: f64 = 0.5;
+/// Rounding of a reading of the current, A, and of the battery, V, as standard deviations.
+const ROUNDING_VOLTS: f64 = 0.03;
+const ROUNDING_AMPS: f64 = 0.003;
+
+/// The winding as a run showed it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Winding {
+    /// Resistance of winding, leads and bridge, ohm.
+    pub ohms: f64,
+    /// Half of its 95 % interval, ohm.
+    pub interval_ohms: f64,
+    /// Volts per count/s of the turning motor.
+    pub volts_per_count_per_s: f64,
+    /// Samples used.
+    pub samples: usize,
+}
+
+/// What one sample says.
+struct Row {
+    volts: f64,
+    amps: f64,
+    speed: f64,
+}
+
+/// Regresses over the polls of an open-loop run. `None` where the controller tells no currents, or they do not tell R apart.
+#[must_use]
+pub fn winding_of(points: &[Point], drives: &[Drive]) -> Option<Winding> {
+    let battery = Battery::of(points, drives)?;
+    let highest = points.windows(2).map(|pair| speed_of(&pair[0], &pair[1]).abs()).fold(0.0, f64::max);
+    let inside = 1..points.len().saturating_sub(2);
+    let rows: Vec<Row> =
+        inside.filter_map(|n| row_at(points, drives, n, &battery, STEADY * highest)).collect();
+    if rows.len() < LEAST_SAMPLES {
+        return None;
+    }
+    let scale = rows.iter().map(|row| row.speed.abs()).fold(0.0, f64::max).max(1.0);
+    let (mut normal, mut right) = (Matrix2::zeros(), Vector2::zeros());
+    for row in &rows {
+        let weight = row.weight();
+        let x = Vector2::new(row.amps, row.speed / scale) * weight;
+        normal += x * x.transpose();
+        right += x * (row.volts * weight);
+    }
+    let inverse = normal.try_inverse()?;
+    let found = inverse * right;
+    let (ohms, back_emf) = (found[0], found[1] / scale);
+    let misfit =
+        |row: &Row| ((row.volts - ohms * row.amps - back_emf * row.speed) * row.weight()).powi(2);
+    let freedom = (rows.len() - 2) as f64;
+    let variance = (rows.iter().map(misfit).sum::<f64>() / freedom).max(1.0);
+    let interval_ohms = 1.96 * (variance * inverse[(0, 0)]).sqrt();
+    let is_told = ohms > 0.0 && back_emf > 0.0 && interval_ohms < WIDEST * ohms;
+    is_told.then_some(Winding {
+        ohms,
+        interval_ohms,
+        volts_per_count_per_s: back_emf,
+        samples: rows.len(),
+    })
+}
+
+impl Row {
+    /// One over the standard deviation of its volts.
+    fn weight(&self) -> f64 {
+        1.0 / (ROUNDING_VOLTS.powi(2) + (MODEL * self.volts).powi(2) + (ROUNDING_AMPS * self.amps).powi(2)).sqrt()
+    }
+}
+
+/// The battery: its voltage without load, and how much it sags per ampere that it gives.
+struct Battery {
+    volts: f64,
+    ohms: f64,
+}
+
+impl Battery {
+    /// From the polls that read it; the current that it gives is that of the motor times the duty.
+    fn of(points: &[Point], drives: &[Drive]) -> Option<Self> {
+        let readings: Vec<(f64, f64)> = (0..points.len())
+            .filter(|n| !points[*n].limited)
+            .filter_map(|n| Some((points[n].volts?, given_amps(points, drives, n).unwrap_or(0.0))))
+            .collect();
+        let n = readings.len() as f64;
+        if readings.is_empty() {
+            return None;
+        }
+        let mean = readings.iter().fold((0.0, 0.0), |sum, r| (sum.0 + r.0 / n, sum.1 + r.1 / n));
+        let spread: f64 = readings.iter().map(|r| (r.1 - mean.1).powi(2)).sum();
+        let both: f64 = readings.iter().map(|r| (r.1 - mean.1) * (mean.0 - r.0)).sum();
+        let ohms = if spread > 0.01 { (both / spread).max(0.0) } else { 0.0 };
+        Some(Self { volts: mean.0 + ohms * mean.1, ohms })
+    }
+}
+
+/// What the battery gives at a poll, by the currents beside it.
+fn given_amps(points: &[Point], drives: &[Drive], n: usize) -> Option<f64> {
+    let at = drives.partition_point(|drive| drive.t <= points[n].t).checked_sub(1)?;
+    let Input::Duty(duty) = drives[at].input else { return None };
+    let beside = points[n.saturating_sub(1)..(n + 2).min(points.len())].iter().filter_map(|p| p.amps);
+    let (sum, count) = beside.fold((0.0, 0.0), |(sum, count), amps| (sum + amps.abs(), count + 1.0));
+    (count > 0.0).then(|| duty.abs() * sum / count)
+}
+
+fn speed_of(a: &Point, b: &Point) -> f64 {
+    (b.counts - a.counts) / (b.t - a.t).max(1e-3)
+}
+
+/// A poll under a settled duty that drives the way the motor turns, and a speed that hardly changes, with its current.
+fn row_at(points: &[Point], drives: &[Drive], n: usize, battery: &Battery, steady: f64) -> Option<Row> {
+    let (before, point, after) = (&points[n - 1], &points[n], &points[n + 1]);
+    let amps = point.amps.filter(|amps| amps.abs() >= LEAST_AMPS && !point.limited)?.abs();
+    let at = drives.partition_point(|drive| drive.t <= point.t).checked_sub(1)?;
+    let Input::Duty(duty) = drives[at].input else { return None };
+    let last = at.checked_sub(1).map_or(0.0, |at| match drives[at].input {
+        Input::Duty(duty) => duty,
+        Input::Speed(_) | Input::Position(..) => 0.0,
+    });
+    let steady_since = drives[at].t + SETTLED_S + RAMP_S * (duty - last).abs();
+    let next = drives.get(at + 1).map_or(f64::INFINITY, |drive| drive.t);
+    let speed = speed_of(before, after);
+    let changes = (speed_of(point, after) - speed_of(before, point)).abs() > steady.max(1.5 / (after.t - point.t).max(1e-3));
+    // A duty that came down brakes, and not every controller tells the sign of a current.
+    let brakes = duty.abs() < last.abs() && duty * last > 0.0;
+    if duty == 0.0 || brakes || point.t < steady_since || before.t < drives[at].t || after.t > next || speed * duty < 0.0 || changes {
+        return None;
+    }
+    let volts = battery.volts - battery.ohms * duty.abs() * amps;
+    Some(Row { volts: volts * duty.abs(), amps, speed: speed.abs() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Polls every 10 ms of a motor of 0.8 ohm and 0.002 V per count/s, driven at two duties from rest.
+    fn run(amps_at: impl Fn(f64) -> Option<f64>) -> (Vec<Point>, Vec<Drive>) {
+        let drives = vec![Drive { t: 0.0, input: Input::Duty(0.5) }, Drive { t: 1.0, input: Input::Duty(0.9) }];
+        let (mut speed, mut counts) = (0.0, 0.0);
+        let points = (0..200).map(|n| {
+            let t = 0.01 * f64::from(n);
+            let duty = if t < 1.0 { 0.5 } else { 0.9 };
+            let amps = (duty * 12.0 - 0.002 * speed) / 0.8;
+            let point = Point {
+                t,
+                counts,
+                duty: None,
+                amps: amps_at(amps),
+                volts: (n % 4 == 0).then_some(12.0),
+                limited: false,
+            };
+            counts += speed * 0.01;
+            speed += (amps - 0.4) * 30.0;
+            point
+        });
+        (points.collect(), drives)
+    }
+
+    #[test]
+    fn a_known_resistance_is_found_again() {
+        let (points, drives) = run(|amps| Some((100.0 * amps).round() / 100.0));
+        let found = winding_of(&points, &drives).expect("there are currents");
+        // The steps of this motor are coarse.
+        assert!((found.ohms / 0.8 - 1.0).abs() < 0.05, "{found:?}");
+        assert!(found.interval_ohms < 0.1, "{found:?}");
+        assert!((found.volts_per_count_per_s / 0.002 - 1.0).abs() < 0.03, "{found:?}");
+    }
+
+    #[test]
+    fn without_currents_nothing_is_claimed() {
+        for amps in [None, Some(0.0)] {
+            let (points, drives) = run(|_| amps);
+            assert_eq!(winding_of(&points, &drives), None);
+        }
+    }
+}
