@@ -198,8 +198,13 @@ fn mismatch(course: &ClosedCourse, twin: TickLoop, law: &LoopLaw, offset_s: f64,
     let (start, tick_s, duties) = (followed.start, followed.tick_s, &followed.duties);
     let ticks = duties.len();
     let mut sum = 0.0;
+    // The start from rest is the business of friction and of the current limit, not of the lag.
+    let from_s = course.setpoints.get(1).map_or(start, |second| second.0 - 0.01);
     for pair in course.counts.windows(2) {
         let ((t0, y0), (t1, y1)) = (pair[0], pair[1]);
+        if t0 < from_s {
+            continue;
+        }
         let moved = followed.place_at(t1) - followed.place_at(t0);
         let speed = (y1 - y0) / (t1 - t0).max(1e-4);
         let variance = 0.66 + (STAMP_S * speed).powi(2) + (0.01 * (y1 - y0)).powi(2);
@@ -213,7 +218,7 @@ fn mismatch(course: &ClosedCourse, twin: TickLoop, law: &LoopLaw, offset_s: f64,
             let variance = sigma_duty.powi(2) + (0.25 * (after - before)).powi(2);
             ((duty - duties[n]).powi(2) / variance).min(SOFT_SQUARE)
         };
-        course.duties.iter().map(misfit).sum()
+        course.duties.iter().filter(|duty| duty.0 > from_s).map(misfit).sum()
     };
     sum + WINDINGS_TICKS.iter().map(|&ticks| duties_with(ticks)).fold(f64::INFINITY, f64::min)
 }

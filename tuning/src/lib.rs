@@ -15,6 +15,7 @@ pub mod fit;
 pub mod lag;
 pub mod law_probe;
 pub mod linear;
+mod margin;
 pub mod model;
 pub mod record;
 pub mod registers;

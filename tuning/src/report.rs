@@ -41,6 +41,9 @@ pub struct Measured {
     pub duty_rms: f64,
     /// Peak to peak of the place or speed at rest, over the step.
     pub ripple: f64,
+    /// Multiple of the gains up to which the velocity loop stayed quiet; `None` where it was not tried.
+    #[serde(default)]
+    pub headroom: Option<f64>,
 }
 
 /// Everything a run found and did.

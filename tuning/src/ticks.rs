@@ -187,18 +187,37 @@ pub fn velocity_test(plant: &PlantModel, law: &LoopLaw, lag: Lag, gains: &Gains,
 /// The position test on the model.
 #[must_use]
 pub fn position_test(plant: &PlantModel, law: &LoopLaw, lag: Lag, gains: &Gains, qpps: f64) -> Score {
+    position_test_and_duty(plant, law, lag, gains, qpps).0
+}
+
+/// The same, and by how much the duty still changes when the step should be over: its standard deviation over the last third.
+#[must_use]
+pub(crate) fn position_test_and_duty(
+    plant: &PlantModel,
+    law: &LoopLaw,
+    lag: Lag,
+    gains: &Gains,
+    qpps: f64,
+) -> (Score, f64) {
     let tick_s = law.tick_s();
     let ticks = (horizon_s(plant.tau_s) / tick_s) as usize;
     let step = position_step(plant.gain_counts_per_s, plant.tau_s);
     let mut twin = TickLoop::new(*plant, *law, lag, *gains, qpps);
-    let mut run = |load: f64| -> Vec<f64> {
+    let mut duties = Vec::with_capacity(ticks);
+    let mut run = |load: f64, duties: &mut Vec<f64>| -> Vec<f64> {
+        duties.clear();
         (0..ticks)
             .map(|_| {
-                twin.tick(Setpoint::Place(step, qpps), load);
+                duties.push(twin.tick(Setpoint::Place(step, qpps), load));
                 step - twin.motion.place
             })
             .collect()
     };
-    let (after_step, after_load) = (run(0.0), run(LOAD_STEP_DUTY));
-    Score::of(&after_step, &after_load, tick_s, step, 0.02f64.max(3.0 / step))
+    let after_step = run(0.0, &mut duties);
+    let late = &duties[ticks * 7 / 10..];
+    let n = late.len().max(1) as f64;
+    let mean = late.iter().sum::<f64>() / n;
+    let late_duty = (late.iter().map(|duty| (duty - mean).powi(2)).sum::<f64>() / n).sqrt();
+    let after_load = run(LOAD_STEP_DUTY, &mut duties);
+    (Score::of(&after_step, &after_load, tick_s, step, 0.02f64.max(3.0 / step)), late_duty)
 }

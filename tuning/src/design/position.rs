@@ -3,10 +3,12 @@
 use super::{Candidate, Design, Goal, Loops, Task, ascend, better, finish};
 use crate::model::{Gains, Lag, Pid};
 use crate::score::POSITION_OVERSHOOT;
-use crate::ticks::position_test;
+use crate::ticks::position_test_and_duty;
 
 /// Overshoot beyond which the cost jumps.
 const OVERSHOOT_CAP: f64 = 0.06;
+/// Deviation of the duty beyond which a move is not over yet when it should be; the cost jumps there too.
+const LATE_DUTY_CAP: f64 = 0.08;
 /// Shares of the highest gain tried.
 const SHARES: [f64; 6] = [1.0, 0.85, 0.7, 0.5, 0.35, 0.2];
 /// Derivative times tried, as shares of the time constant of the motor.
@@ -136,8 +138,8 @@ fn refine(loops: &Loops, task: &Task, mut best: Candidate) -> Candidate {
 }
 
 fn candidate(task: &Task, gains: Gains) -> Candidate {
-    let score = position_test(&task.plant, &task.law, task.lag, &gains, task.qpps);
-    let excess = (score.overshoot - OVERSHOOT_CAP).max(0.0);
+    let (score, late_duty) = position_test_and_duty(&task.plant, &task.law, task.lag, &gains, task.qpps);
+    let excess = (score.overshoot - OVERSHOOT_CAP).max(0.0) + 0.5 * (late_duty - LATE_DUTY_CAP).max(0.0);
     Candidate { gains, score, cost: score.cost(POSITION_OVERSHOOT) * (1.0 + 50.0 * excess) }
 }
 

@@ -1,0 +1,108 @@
+//! How far the gain of a velocity loop can be raised on the machine before the loop gets rough: its gain margin, asked of the machine
+//! itself. A springy shaft swings faster than polls can see and no model knows of it; the duty that is read back shows it anyhow.
+
+use crate::cause::Cause;
+use crate::design::Task;
+use crate::linear::{DiscretePlant, LoopPlant};
+use crate::model::{Gains, LoopLaw, Pid};
+use crate::registers::velocity_registers;
+use crate::rig::Rig;
+use crate::swing::deviation;
+
+/// Gains tried, as multiples of the proposed ones, up to the margin that is wanted.
+const FACTORS: [f64; 5] = [1.2, 1.4, 1.6, 1.8, 2.0];
+/// The sensitivity that may really be where one was designed for: what lies beyond it is what the trial is to find.
+const MS_ALLOWED: f64 = 1.25;
+/// Setpoint of the trial and height of its steps, as shares of full speed.
+const SPEED: f64 = 0.30;
+const STEP: f64 = 0.02;
+/// How long a gain is tried, in lags of the loop, and the bounds, s.
+const LAGS: f64 = 14.0;
+const TRIED_S: (f64, f64) = (0.22, 0.40);
+/// The duty is too rough when it is so many times what was to be expected, and at least this.
+const TOO_ROUGH: f64 = 2.0;
+const LEAST_ROUGH: f64 = 0.012;
+
+/// A duty that is beyond the bound so many times over needs no second look.
+const AT_ONCE: f64 = 4.0;
+/// Predicted noise from which on nothing can be heard beside it.
+const LOUDEST: f64 = 0.15;
+
+/// What a trial of raised gains found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Headroom {
+    /// The highest multiple of the gains at which the duty was as quiet as predicted.
+    pub(crate) quiet: f64,
+    /// The multiple that was wanted.
+    pub(crate) wanted: f64,
+}
+
+/// The multiple of its gain up to which a loop with the sensitivity that is allowed stays stable.
+fn wanted_factor(ms: f64) -> f64 {
+    let allowed = MS_ALLOWED * ms;
+    (allowed / (allowed - 1.0)).min(FACTORS[FACTORS.len() - 1])
+}
+
+/// The velocity gains times a factor.
+pub(crate) fn scaled(gains: &Gains, factor: f64) -> Gains {
+    let v = gains.velocity;
+    Gains { velocity: Pid { p: factor * v.p, i: factor * v.i, d: factor * v.d }, ..*gains }
+}
+
+/// Raises the velocity gains step by step at a steady speed, as far as the duty stays quiet. The motor is braked at the end; the raised
+/// gains stand in the registers then.
+pub(crate) fn headroom(
+    rig: &mut Rig<'_>,
+    task: &Task,
+    law: &LoopLaw,
+    gains: &Gains,
+) -> Result<Headroom, Cause> {
+    let inner = Gains { velocity: gains.velocity, ..Gains::default() };
+    let wanted = wanted_factor(task.goal.ms);
+    let plant = LoopPlant::new(DiscretePlant::of(&task.plant, law.tick_s()), law, task.lag);
+    let predicted = |factor: f64| {
+        task.noise_factor.max(1.0) * plant.margins(&scaled(&inner, factor), task.qpps).noise_duty
+    };
+    let lag_s = task.lag.total_s(law) + 2.0 * law.tick_s();
+    let tried_s = (LAGS * lag_s).clamp(TRIED_S.0, TRIED_S.1);
+    let settle_s = (1.5 * task.plant.tau_s).clamp(0.15, 1.0);
+    rig.write_velocity(velocity_registers(&inner.velocity, task.qpps, law))?;
+    rig.speed((SPEED - STEP) * task.qpps)?;
+    rig.poll_for(settle_s, true)?;
+    let usual = activity(rig, (SPEED + STEP) * task.qpps, tried_s)?;
+    let mut quiet = 1.0;
+    let mut side = -1.0;
+    for factor in FACTORS.map(|factor| factor.min(wanted)) {
+        if factor <= quiet {
+            break;
+        }
+        if predicted(factor) > LOUDEST {
+            // The rounding of a coarse encoder alone makes such a noise.
+            return Ok(Headroom { quiet: wanted, wanted });
+        }
+        rig.write_velocity(velocity_registers(&scaled(&inner, factor).velocity, task.qpps, law))?;
+        let measured = activity(rig, (SPEED + side * STEP) * task.qpps, tried_s)?;
+        let expected = predicted(factor).max(usual * predicted(factor) / predicted(1.0).max(1e-4));
+        let bound = (TOO_ROUGH * expected).max(LEAST_ROUGH);
+        // Looked at twice: what swings goes on, unless it is so strong that it had better stop at once.
+        let again = measured > bound && measured <= AT_ONCE * bound;
+        let rough = if again { activity(rig, (SPEED + side * STEP) * task.qpps, tried_s)? } else { measured };
+        if rough > bound {
+            break;
+        }
+        quiet = factor;
+        side = -side;
+    }
+    rig.duty(0.0)?;
+    Ok(Headroom { quiet, wanted })
+}
+
+/// Deviation of the duty in the second half of a step.
+fn activity(rig: &mut Rig<'_>, speed: f64, tried_s: f64) -> Result<f64, Cause> {
+    rig.speed(speed)?;
+    let from_s = rig.now_s() + 0.35 * tried_s;
+    rig.poll_for(tried_s, true)?;
+    let duties: Vec<(f64, f64)> =
+        rig.points.iter().filter_map(|point| point.duty).filter(|duty| duty.0 >= from_s).collect();
+    Ok(deviation(&duties))
+}
