@@ -318,7 +318,7 @@ impl App {
             }
             Command::OpenDrawer(screen, tab) => {
                 self.show(screen);
-                if self.model.front.drawers.open(screen) != Some(tab) {
+                if self.model.front.open_tab(screen) != Some(tab) {
                     self.model.front.drawers.press(screen, tab);
                 }
             }

@@ -10,6 +10,7 @@ pub mod bench;
 pub mod command;
 pub mod debugger;
 pub mod ending;
+pub mod family;
 pub mod files;
 pub mod graph;
 pub mod help;

@@ -16,7 +16,7 @@ macro_rules! screen {
             place: place(Menu::View, 0),
             keys: ctrl(Key::$key),
             help: $help,
-            ready: always,
+            ready: |model| there_is(model, Screen::$screen),
             is_on: Some(|model| model.screen == Screen::$screen),
             command: |_| Command::Show(Screen::$screen),
         }
@@ -55,6 +55,9 @@ pub(super) const ACTIONS: &[Action] = &[
     screen!("view.velocity", Velocity, Num4, "Settings of the velocity loops, and driving by speed."),
     screen!("view.position", Position, Num5, "Settings of the position loops, and driving to positions."),
     screen!("view.mcl", MclEditor, Num6, "Programs that run in the controller."),
+    screen!("view.motion", Motion, Num7, "What moves a controller that is not driven from here."),
+    screen!("view.inputs", Inputs, Num8, "Analog inputs, switches and radio control of a Motion Mind."),
+    screen!("view.command-terminal", Terminal, Num9, "Commands to a Motion Mind by hand, with what they mean."),
     Action {
         id: "view.palette",
         title: "Command Palette…",
@@ -152,6 +155,17 @@ pub(super) const ACTIONS: &[Action] = &[
         command: |_| Command::Scale(100),
     },
 ];
+
+/// Whether the controller in front has a screen.
+fn there_is(model: &Model, screen: Screen) -> Ready {
+    let family = model.front.family();
+    match family.screens(&model.front).contains(&screen) {
+        true => Ok(()),
+        false => {
+            Err(format!("A controller like the {} has no such screen as it is set.", family.name()).into())
+        }
+    }
+}
 
 fn has_world(model: &Model) -> Ready {
     if model.front.worlds.is_some() {

@@ -7,6 +7,7 @@ use crossbeam_channel::TryRecvError;
 use egui::Context;
 
 use super::{App, OPENING_INTERVAL, waker};
+use crate::gui::family::FamilyKind;
 use crate::gui::links;
 use crate::gui::model::devices::Choice;
 use crate::gui::model::link::{Effect, LinkView};
@@ -54,6 +55,7 @@ impl App {
         let text = target.to_string();
         let front = &mut self.model.front;
         front.target = Some(text.clone());
+        front.family_kind = FamilyKind::of_target(&text).unwrap_or(front.family_kind);
         if front.phase == Phase::Closed {
             self.model.messages.dismiss();
             front.phase = Phase::Opening { target: text };

@@ -19,8 +19,7 @@ use brushwork_protocol::packet_serial::Motor;
 impl App {
     pub(super) fn tune(&mut self, wish: TuneWish) {
         let Some(which) = Loop::of(self.model.screen) else { return };
-        if matches!(wish, TuneWish::Start(_))
-            && self.model.front.drawers.open(which.screen()) != Some(Tab::Tune)
+        if matches!(wish, TuneWish::Start(_)) && self.model.front.open_tab(which.screen()) != Some(Tab::Tune)
         {
             self.model.front.drawers.press(which.screen(), Tab::Tune);
         }

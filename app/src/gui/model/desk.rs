@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
-use brushwork_link::device::{Channel, Event, Lamp, PollRate};
+use brushwork_link::device::{Channel, Event, PollRate};
 use brushwork_link::diagnosis::{Evidence, Measured, Script};
 use brushwork_link::script::MIN_AUTORUN;
 use brushwork_link::settings::SettingValue;
@@ -16,7 +16,7 @@ use brushwork_link::transport::ConnectTarget;
 use brushwork_sim::controller::ScriptRun;
 use brushwork_sim::world::WorldView;
 
-use super::drawer::Drawers;
+use super::drawer::{Drawers, Tab};
 use super::firmware::Firmware;
 use super::general::General;
 use super::generator::Generator;
@@ -24,6 +24,7 @@ use super::graph_channels;
 use super::history::History;
 use super::link::{Arming, Effect, LinkView};
 use super::loop_settings::LoopSettings;
+use super::motion_mind::MotionMindDesk;
 use super::position::Position;
 use super::pwm::Pwm;
 use super::qpps::QppsPanel;
@@ -34,6 +35,7 @@ use super::velocity::Velocity;
 use super::watch::Watch;
 use super::world::WorldPanel;
 use crate::gui::debugger::Debugging;
+use crate::gui::family::{self, Family, FamilyKind};
 use crate::gui::graph::LiveGraph;
 use crate::gui::tune::Tuning;
 
@@ -53,6 +55,8 @@ pub struct Desk {
     id: DeskId,
     /// What the link goes to, or went to last.
     pub target: Option<String>,
+    /// The family of the unit that was looked at last, or that the target names.
+    pub family_kind: FamilyKind,
     pub phase: Phase,
     /// What is known of the open link; empty while there is none.
     pub link: LinkView,
@@ -78,6 +82,8 @@ pub struct Desk {
     pub history: History,
     /// What a diagnosis needs besides the status word.
     pub watch: Watch,
+    /// What a Motion Mind 3 has of its own.
+    pub motion_mind: MotionMindDesk,
     /// The MCL debugger of a simulated controller.
     pub debug: Debugging,
     /// The traffic panel of this link.
@@ -145,6 +151,7 @@ impl Desk {
         Self {
             id,
             target: None,
+            family_kind: FamilyKind::default(),
             phase: Phase::default(),
             link: LinkView::default(),
             poll: PollRate::default(),
@@ -162,6 +169,7 @@ impl Desk {
             loops: LoopSettings::default(),
             history: History::default(),
             watch: Watch::default(),
+            motion_mind: MotionMindDesk::default(),
             debug: Debugging::default(),
             traffic: Traffic::default(),
             graph_of: Screen::Pwm,
@@ -174,6 +182,16 @@ impl Desk {
 
     pub fn id(&self) -> DeskId {
         self.id
+    }
+
+    /// What is so with the family of the controller that is, or was, connected.
+    pub fn family(&self) -> &'static dyn Family {
+        family::of(self.family_kind)
+    }
+
+    /// The tab that is open above the graph of a screen that drives.
+    pub fn open_tab(&self, screen: Screen) -> Option<Tab> {
+        self.drawers.open(screen).filter(|tab| self.family().tabs(screen).contains(tab))
     }
 
     /// Whether the link goes, or went, to that place: a port, whatever its rate, or another target's text.
@@ -300,8 +318,8 @@ impl Desk {
     }
 
     /// Since when a lamp of the unit that is looked at is as it is, as time since the connection.
-    pub fn lamp_since(&self, lamp: Lamp) -> Option<Duration> {
-        self.history.lamp_since(self.link.selected?, lamp)
+    pub fn lamp_since(&self, short: &str) -> Option<Duration> {
+        self.history.lamp_since(self.link.selected?, short)
     }
 
     /// Brings the home lamps of an MCP up to date with its pins.
@@ -334,6 +352,7 @@ impl Desk {
                 self.graph.take(&sample);
             }
             Effect::OtherUnit => {
+                self.turn_to_family();
                 self.graph.push_gap();
                 self.forget_unit();
                 self.loops.want_reading();
@@ -360,6 +379,16 @@ impl Desk {
         effects
     }
 
+    /// The unit that is looked at may be of another family than the one before.
+    fn turn_to_family(&mut self) {
+        let kind = self.link.identity().map_or(self.family_kind, FamilyKind::of_unit);
+        if kind != self.family_kind {
+            self.family_kind = kind;
+            self.graph_choices.clear();
+            self.show_channels(self.graph_of);
+        }
+    }
+
     /// What is known of one unit's motors says nothing of another's.
     fn forget_unit(&mut self) {
         self.loops.forget();
@@ -376,9 +405,15 @@ impl Desk {
         let left = std::mem::replace(&mut self.graph_of, screen);
         let channels = &mut self.graph.live.channels;
         self.graph_choices.insert(left.title(), channels.iter().map(|channel| channel.shown).collect());
+        self.show_channels(screen);
+    }
+
+    /// Shows the channels that were chosen for a screen, or those that its graph shows at first.
+    fn show_channels(&mut self, screen: Screen) {
+        let at_start = self.family().first_channels(screen);
         let chosen = self.graph_choices.get(screen.title());
-        for (index, channel) in channels.iter_mut().enumerate() {
-            let at_first = || screen.first_channels().contains(&Channel::ALL[index]);
+        for (index, channel) in self.graph.live.channels.iter_mut().enumerate() {
+            let at_first = || at_start.contains(&Channel::ALL[index]);
             channel.shown = chosen.and_then(|chosen| chosen.get(index)).copied().unwrap_or_else(at_first);
         }
         // The axis at the side is of a line that is there.

@@ -11,6 +11,8 @@ pub enum Tab {
     VelocityLoop,
     Generator,
     Qpps,
+    /// Steps with the gains turned between them (Motion Mind manual 3.14).
+    Steps,
     /// Calibration by hand, step by step.
     ByHand,
     /// Guided tuning; it takes the room of the sliders and the graph.
@@ -18,18 +20,6 @@ pub enum Tab {
 }
 
 impl Tab {
-    /// The tabs of a screen.
-    pub const fn of(screen: Screen) -> &'static [Self] {
-        match screen {
-            Screen::Pwm => &[Self::Settings, Self::Generator, Self::Qpps],
-            Screen::Velocity => &[Self::Settings, Self::Generator, Self::ByHand, Self::Tune],
-            Screen::Position => {
-                &[Self::Settings, Self::VelocityLoop, Self::Generator, Self::ByHand, Self::Tune]
-            }
-            _ => &[],
-        }
-    }
-
     pub const fn title(self, screen: Screen) -> &'static str {
         match (self, screen) {
             (Self::Settings, Screen::Pwm) => "L, R and QPPS",
@@ -37,6 +27,7 @@ impl Tab {
             (Self::Settings | Self::VelocityLoop, _) => "Velocity loop",
             (Self::Generator, _) => "Generator",
             (Self::Qpps, _) => "Measure QPPS",
+            (Self::Steps, _) => "Step response",
             (Self::ByHand, _) => "By hand",
             (Self::Tune, _) => "Tune",
         }

@@ -4,12 +4,12 @@
 //! Times are counted from the connection. The list survives the end of a link, so that one can read why it ended; it is
 //! bounded and can be cleared.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::Duration;
 
-use brushwork_link::device::{Condition, Conditions, DisarmReason, Event, Lamp, StatusReport, StopReport};
+use brushwork_link::device::{Condition, DisarmReason, Event, StatusReport, StopReport};
 
-use super::lamps::state_of;
+use crate::gui::family::{self, FamilyKind, Sign, mcp_sign};
 use crate::gui::widgets::LampState;
 
 /// Entries kept; the oldest go first.
@@ -47,8 +47,8 @@ pub struct Entry {
 /// What kind of thing happened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
-    Came(Condition),
-    Went(Condition),
+    Came(Sign),
+    Went(Sign),
     Connected,
     Armed,
     Disarmed { by_fault: bool },
@@ -63,7 +63,7 @@ impl Kind {
     /// How it is marked.
     pub fn state(self) -> LampState {
         match self {
-            Self::Came(condition) => state_of(condition.severity()),
+            Self::Came(sign) => sign.state,
             Self::Disarmed { by_fault: true } | Self::Stopped { confirmed: false } | Self::Lost => {
                 LampState::Error
             }
@@ -78,7 +78,7 @@ impl Kind {
     /// What is counted under this name; none for what is not worth counting.
     fn counted_as(self) -> Option<String> {
         Some(match self {
-            Self::Came(condition) => condition.title().to_owned(),
+            Self::Came(sign) => sign.title.to_owned(),
             Self::Disarmed { by_fault: true } => "Disarmed by a fault".to_owned(),
             Self::Disarmed { by_fault: false } => "Disarmed".to_owned(),
             Self::ArmRefused => "Arming refused".to_owned(),
@@ -94,11 +94,13 @@ impl Kind {
 /// What is so with one unit, and since when.
 #[derive(Debug, Default)]
 struct UnitState {
-    conditions: Conditions,
+    family: FamilyKind,
+    /// What its status word said last.
+    signs: BTreeSet<Sign>,
+    report: Option<StatusReport>,
     /// Homed or at a limit by its pins, where the status word has no bit for it.
-    homed: [bool; 2],
-    lamps: [(LampState, Duration); Lamp::ALL.len()],
-    is_known: bool,
+    homed: Option<[bool; 2]>,
+    lamps: BTreeMap<&'static str, (LampState, Duration)>,
 }
 
 impl History {
@@ -137,9 +139,9 @@ impl History {
     }
 
     /// Since when a unit's lamp is as it is, as time since the connection.
-    pub fn lamp_since(&self, address: u8, lamp: Lamp) -> Option<Duration> {
-        let unit = self.units.get(&address).filter(|unit| unit.is_known && self.is_open)?;
-        Some(unit.lamps[lamp as usize].1)
+    pub fn lamp_since(&self, address: u8, short: &str) -> Option<Duration> {
+        let unit = self.units.get(&address).filter(|_| self.is_open)?;
+        Some(unit.lamps.get(short)?.1)
     }
 
     /// Forgets what happened; what is so now stays known.
@@ -163,6 +165,7 @@ impl History {
                     self.connected_at = Some(self.now);
                     self.units.clear();
                 }
+                self.units.entry(identity.address).or_default().family = FamilyKind::of_unit(identity);
                 let text = format!("Connected to {} at {}", identity.title(), identity.port);
                 self.push(self.now, Some(identity.address), Kind::Connected, text);
             }
@@ -202,10 +205,10 @@ impl History {
     /// What a unit's pins say of its home and limit switches, where the status word has no bit for them.
     pub fn note_homed(&mut self, address: u8, homed: [bool; 2]) {
         let unit = self.units.entry(address).or_default();
-        let before = std::mem::replace(&mut unit.homed, homed);
+        let before = unit.homed.replace(homed).unwrap_or_default();
         for (index, condition) in [Condition::M1Home, Condition::M2Home].into_iter().enumerate() {
             if before[index] != homed[index] {
-                self.changed(address, condition, homed[index], self.now);
+                self.changed(address, mcp_sign(condition), homed[index], self.now);
             }
         }
         self.update_lamps(address, self.now);
@@ -213,40 +216,31 @@ impl History {
 
     fn note_status(&mut self, report: &StatusReport) {
         let unit = self.units.entry(report.address).or_default();
-        let before = std::mem::replace(&mut unit.conditions, report.conditions);
-        let changes: Vec<(Condition, bool)> = before
-            .union(report.conditions)
-            .iter()
-            .filter(|condition| before.contains(*condition) != report.conditions.contains(*condition))
-            .map(|condition| (condition, report.conditions.contains(condition)))
-            .collect();
-        for (condition, came) in changes {
-            self.changed(report.address, condition, came, report.at);
+        let signs: BTreeSet<Sign> = family::of(unit.family).signs(report).into_iter().collect();
+        let before = std::mem::replace(&mut unit.signs, signs.clone());
+        unit.report = Some(*report);
+        for sign in before.symmetric_difference(&signs) {
+            self.changed(report.address, *sign, signs.contains(sign), report.at);
         }
         self.update_lamps(report.address, report.at);
     }
 
-    fn changed(&mut self, address: u8, condition: Condition, came: bool, at: Duration) {
-        let (kind, word) =
-            if came { (Kind::Came(condition), "came") } else { (Kind::Went(condition), "went") };
-        self.push(at, Some(address), kind, format!("{} {word}", condition.title()));
+    fn changed(&mut self, address: u8, sign: Sign, came: bool, at: Duration) {
+        let (kind, word) = if came { (Kind::Came(sign), "came") } else { (Kind::Went(sign), "went") };
+        self.push(at, Some(address), kind, format!("{} {word}", sign.title));
     }
 
     fn update_lamps(&mut self, address: u8, at: Duration) {
         let since = self.since_connect(at);
         let Some(unit) = self.units.get_mut(&address) else { return };
-        let mut conditions = unit.conditions;
-        for (condition, homed) in [Condition::M1Home, Condition::M2Home].into_iter().zip(unit.homed) {
-            conditions.set(condition, homed || conditions.contains(condition));
-        }
-        for lamp in Lamp::ALL {
-            let state = lamp.lit_by(conditions).map_or(LampState::Ok, state_of);
-            let known = &mut unit.lamps[lamp as usize];
-            if !unit.is_known || known.0 != state {
+        let Some(report) = &unit.report else { return };
+        let family = family::of(unit.family);
+        for (info, state) in family.lamps().iter().zip(family.lit(report, None, unit.homed)) {
+            let known = unit.lamps.entry(info.short).or_insert((state, since));
+            if known.0 != state {
                 *known = (state, since);
             }
         }
-        unit.is_known = true;
     }
 
     fn note_stop(&mut self, report: &StopReport) {
@@ -328,11 +322,11 @@ mod tests {
         assert_eq!(history.from_newest(2).unwrap().at, Duration::from_secs(30));
         let counts: Vec<(String, u32)> = history.counts().map(|(_, name, count)| (name, count)).collect();
         assert_eq!(counts, [("E-Stop".to_owned(), 2), ("Temperature warning".to_owned(), 1)]);
-        assert_eq!(history.lamp_since(0x80, Lamp::EStop), Some(Duration::from_secs(40)));
-        assert_eq!(history.lamp_since(0x80, Lamp::Temperature2), Some(Duration::from_secs(1)));
+        assert_eq!(history.lamp_since(0x80, "ESTP"), Some(Duration::from_secs(40)));
+        assert_eq!(history.lamp_since(0x80, "TMP2"), Some(Duration::from_secs(1)));
         history.clear();
         assert!(history.is_empty() && history.counts().next().is_none());
-        assert_eq!(history.lamp_since(0x80, Lamp::EStop), Some(Duration::from_secs(40)));
+        assert_eq!(history.lamp_since(0x80, "ESTP"), Some(Duration::from_secs(40)));
     }
 
     #[test]
@@ -343,7 +337,7 @@ mod tests {
         history.note_homed(0x80, [false, true]);
         history.note_homed(0x80, [false, true]);
         assert_eq!(texts(&history), ["M2 home came"]);
-        assert_eq!(history.lamp_since(0x80, Lamp::M2Home), Some(Duration::from_secs(5)));
+        assert_eq!(history.lamp_since(0x80, "M2HM"), Some(Duration::from_secs(5)));
     }
 
     #[test]

@@ -1,44 +1,39 @@
-//! The states of the thirteen status lamps (MCP manual 1.2.5).
+//! The states of a controller's status lamps: thirteen of an MCP (MCP manual 1.2.5), others of other families.
 
 use brushwork_link::device::{Identity, StatusReport};
 use brushwork_protocol::packet_serial::status::{Lamp, Severity};
 
+use crate::gui::family::{Family, LampInfo};
 use crate::gui::widgets::LampState;
 
-/// The state of all lamps.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Lamps([LampState; Lamp::ALL.len()]);
+/// The states of all lamps of a family; none of them is known before the status was read.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Lamps(Vec<(&'static LampInfo, LampState)>);
 
 impl Lamps {
-    /// The lamps as a unit's status lights them; those for home and limit switches of an MCP as its pins do, where they are
-    /// known.
-    pub fn of(report: &StatusReport, identity: Option<&Identity>, homed: Option<[bool; 2]>) -> Self {
-        let mut lamps = Self::default();
-        for lamp in Lamp::ALL {
-            let told = identity
-                .is_none_or(|identity| lamp.is_reported(identity.generation.layout(), identity.is_mcp()));
-            let dark = if told { LampState::Ok } else { LampState::NotApplicable };
-            lamps.0[lamp as usize] = report.lamp(lamp).map_or(dark, state_of);
-        }
-        if identity.is_some_and(Identity::is_mcp) {
-            for (lamp, index) in [(Lamp::M1Home, 0), (Lamp::M2Home, 1)] {
-                lamps.0[lamp as usize] = match homed {
-                    None => LampState::Unknown,
-                    Some(homed) if homed[index] => LampState::Active,
-                    Some(_) => LampState::Ok,
-                };
-            }
-        }
-        lamps
+    /// The lamps as a unit's status lights them; those for home and limit switches as its pins do, where they are known.
+    pub fn of(
+        family: &dyn Family,
+        report: &StatusReport,
+        identity: Option<&Identity>,
+        homed: Option<[bool; 2]>,
+    ) -> Self {
+        Self(family.lamps().iter().zip(family.lit(report, identity, homed)).collect())
     }
 
+    /// The lamp of an MCP.
     pub fn get(&self, lamp: Lamp) -> LampState {
-        self.0[lamp as usize]
+        self.named(lamp.abbreviation())
+    }
+
+    /// The lamp with this abbreviation.
+    pub fn named(&self, short: &str) -> LampState {
+        self.0.iter().find(|(info, _)| info.short == short).map_or(LampState::Unknown, |(_, state)| *state)
     }
 
     /// The gravest state of all.
     pub fn worst(&self) -> LampState {
-        self.0.iter().copied().max().unwrap_or_default()
+        self.0.iter().map(|(_, state)| *state).max().unwrap_or_default()
     }
 }
 
@@ -51,25 +46,6 @@ pub const fn state_of(severity: Severity) -> LampState {
     }
 }
 
-/// The lamp's name in full, as the manual has it.
-pub const fn title(lamp: Lamp) -> &'static str {
-    match lamp {
-        Lamp::M1OverCurrent => "Motor 1 over current",
-        Lamp::M2OverCurrent => "Motor 2 over current",
-        Lamp::MainBatteryHigh => "Main battery over voltage",
-        Lamp::MainBatteryLow => "Main battery under voltage",
-        Lamp::LogicBatteryHigh => "Logic battery over voltage",
-        Lamp::LogicBatteryLow => "Logic battery under voltage",
-        Lamp::Temperature1 => "Temperature 1",
-        Lamp::Temperature2 => "Temperature 2",
-        Lamp::M1DriverFault => "Motor 1 driver fault",
-        Lamp::M2DriverFault => "Motor 2 driver fault",
-        Lamp::EStop => "Emergency stop",
-        Lamp::M1Home => "Motor 1 home or limit switch",
-        Lamp::M2Home => "Motor 2 home or limit switch",
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::time::Duration;
@@ -78,6 +54,11 @@ mod tests {
     use brushwork_protocol::packet_serial::status::Condition;
 
     use super::*;
+    use crate::gui::family::{self, FamilyKind};
+
+    fn lamps(report: &StatusReport, identity: Option<&Identity>, homed: Option<[bool; 2]>) -> Lamps {
+        Lamps::of(family::of(FamilyKind::Mcp), report, identity, homed)
+    }
 
     fn identity(model: &'static str, generation: Generation) -> Identity {
         Identity {
@@ -111,17 +92,17 @@ mod tests {
     #[test]
     fn of_several_reasons_the_gravest_shows() {
         let conditions = [Condition::Temperature1Error, Condition::Temperature1Warning, Condition::M1Home];
-        let lamps = Lamps::of(&report(&conditions), None, None);
-        assert_eq!(lamps.get(Lamp::Temperature1), LampState::Error);
-        assert_eq!(lamps.get(Lamp::M1Home), LampState::Active);
-        assert_eq!(lamps.get(Lamp::Temperature2), LampState::Ok);
-        assert_eq!(lamps.worst(), LampState::Error);
+        let lit = lamps(&report(&conditions), None, None);
+        assert_eq!(lit.get(Lamp::Temperature1), LampState::Error);
+        assert_eq!(lit.get(Lamp::M1Home), LampState::Active);
+        assert_eq!(lit.get(Lamp::Temperature2), LampState::Ok);
+        assert_eq!(lit.worst(), LampState::Error);
     }
 
     #[test]
     fn a_lamp_the_unit_cannot_light_says_so() {
         let state = |model, generation, lamp| {
-            Lamps::of(&report(&[]), Some(&identity(model, generation)), Some([true, false])).get(lamp)
+            lamps(&report(&[]), Some(&identity(model, generation)), Some([true, false])).get(lamp)
         };
         assert_eq!(state("MCP266", Generation::Gen1, Lamp::M1DriverFault), LampState::NotApplicable);
         assert_eq!(state("RoboClaw 2x7A", Generation::Gen1, Lamp::M1DriverFault), LampState::Ok);

@@ -15,6 +15,7 @@ use std::time::Duration;
 use super::lamps::Lamps;
 use super::message::Gravity;
 use super::readings::Readings;
+use crate::gui::family::{self, Family, FamilyKind};
 
 /// Whether motors may be moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -79,6 +80,11 @@ impl LinkView {
         self.units.iter().find(|unit| Some(unit.address) == self.selected)
     }
 
+    /// The family of the unit that is looked at.
+    fn family(&self) -> &'static dyn Family {
+        family::of(self.identity().map(FamilyKind::of_unit).unwrap_or_default())
+    }
+
     /// Takes over what the pins say of home and limit switches.
     pub fn set_homed(&mut self, homed: Option<[bool; 2]>) {
         if homed == self.homed {
@@ -86,7 +92,7 @@ impl LinkView {
         }
         self.homed = homed;
         if let Some(report) = &self.status {
-            self.lamps = Lamps::of(report, self.identity(), homed);
+            self.lamps = Lamps::of(self.family(), report, self.identity(), homed);
         }
     }
 
@@ -174,7 +180,7 @@ impl LinkView {
         if Some(report.address) != self.selected {
             return Vec::new();
         }
-        self.lamps = Lamps::of(&report, self.identity(), self.homed);
+        self.lamps = Lamps::of(self.family(), &report, self.identity(), self.homed);
         self.status = Some(report);
         Vec::new()
     }

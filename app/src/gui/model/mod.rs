@@ -20,6 +20,7 @@ pub mod lamps;
 pub mod link;
 pub mod loop_settings;
 pub mod message;
+pub mod motion_mind;
 pub mod palette;
 pub mod position;
 pub mod pwm;

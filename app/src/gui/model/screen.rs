@@ -1,4 +1,5 @@
-//! The screens, in Ion Studio's order (MCP manual 1.2.3 to 1.2.14).
+//! The screens of all families: Ion Studio's, in its order (MCP manual 1.2.3 to 1.2.14), then those of other families. Which
+//! of them a controller has, and what it calls them, its family says.
 
 use brushwork_link::device::{ArmScope, Channel};
 
@@ -12,10 +13,29 @@ pub enum Screen {
     Velocity,
     Position,
     MclEditor,
+    /// What stands in for the screens that drive while the controller is not to be driven from here.
+    Motion,
+    /// Analog inputs, radio control and switches.
+    Inputs,
+    /// Commands by hand.
+    Terminal,
 }
 
 impl Screen {
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 9] = [
+        Self::DeviceStatus,
+        Self::GeneralSettings,
+        Self::Pwm,
+        Self::Velocity,
+        Self::Position,
+        Self::MclEditor,
+        Self::Motion,
+        Self::Inputs,
+        Self::Terminal,
+    ];
+
+    /// Those of an MCP.
+    pub const MCP: [Self; 6] = [
         Self::DeviceStatus,
         Self::GeneralSettings,
         Self::Pwm,
@@ -32,6 +52,9 @@ impl Screen {
             Self::Velocity => "Velocity Settings",
             Self::Position => "Position Settings",
             Self::MclEditor => "MCL Editor",
+            Self::Motion => "Motion",
+            Self::Inputs => "Inputs",
+            Self::Terminal => "Command Terminal",
         }
     }
 
@@ -42,7 +65,7 @@ impl Screen {
             Self::Velocity => Some(ArmScope::Velocity),
             Self::Position => Some(ArmScope::Position),
             Self::MclEditor => Some(ArmScope::Script),
-            Self::DeviceStatus | Self::GeneralSettings => None,
+            Self::DeviceStatus | Self::GeneralSettings | Self::Motion | Self::Inputs | Self::Terminal => None,
         }
     }
 

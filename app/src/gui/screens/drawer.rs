@@ -15,14 +15,14 @@ use crate::gui::tune::by_hand::by_hand_ui;
 
 /// Whether guided tuning has the screen.
 pub fn is_tuning(model: &Model) -> bool {
-    model.front.drawers.open(model.screen) == Some(Tab::Tune)
+    model.front.open_tab(model.screen) == Some(Tab::Tune)
 }
 
 pub fn drawer_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let screen = model.screen;
     ui.horizontal(|ui| {
-        for tab in Tab::of(screen) {
-            let is_open = model.front.drawers.open(screen) == Some(*tab);
+        for tab in model.front.family().tabs(screen) {
+            let is_open = model.front.open_tab(screen) == Some(*tab);
             let label = ui.selectable_label(is_open, title(model, screen, *tab));
             let hint = if is_open { "Closes it and leaves its room to the graph" } else { "Opens it" };
             if label.on_hover_text(hint).clicked() {
@@ -30,7 +30,7 @@ pub fn drawer_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             }
         }
     });
-    let Some(tab) = model.front.drawers.open(screen).filter(|tab| *tab != Tab::Tune) else { return };
+    let Some(tab) = model.front.open_tab(screen).filter(|tab| *tab != Tab::Tune) else { return };
     let outline = Stroke::new(1.0, Palette::of(ui).line);
     Frame::new().stroke(outline).corner_radius(4.0).inner_margin(Margin::symmetric(10, 6)).show(ui, |ui| {
         ui.set_width(ui.available_width());
@@ -39,7 +39,7 @@ pub fn drawer_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             Tab::Generator => generator_ui(ui, model, commands),
             Tab::Qpps => qpps_ui(ui, model, commands),
             Tab::ByHand => by_hand_ui(ui, model, commands),
-            Tab::Tune => {}
+            Tab::Steps | Tab::Tune => {}
         }
     });
 }

@@ -15,17 +15,24 @@ pub mod firmware;
 mod general;
 mod generator;
 mod loops;
+pub mod motion_mind;
 mod position;
 mod pwm;
 mod qpps;
 mod status;
 mod velocity;
 
+/// The screen that is open, as the family of the controller in front draws it.
 pub fn screen_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let drives = model.screen.arm_scope().filter(|_| model.front.graph.large && model.is_connected());
     if let Some(scope) = drives.filter(|scope| scope.allows_motion()) {
         return drive::large_graph_ui(ui, scope, model, commands);
     }
+    model.front.family().screen_ui(ui, model, commands);
+}
+
+/// The screens of an MCP.
+pub fn mcp_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     match model.screen {
         Screen::DeviceStatus => status::status_ui(ui, model, commands),
         Screen::GeneralSettings => general::general_ui(ui, model, commands),
@@ -33,6 +40,9 @@ pub fn screen_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         Screen::Velocity => velocity::velocity_ui(ui, model, commands),
         Screen::Position => position::position_ui(ui, model, commands),
         Screen::MclEditor => mcl::screen_ui(ui, model, commands),
+        Screen::Motion | Screen::Inputs | Screen::Terminal => {
+            nothing_ui(ui, "This controller has no such screen. Choose another at the left.");
+        }
     }
 }
 

@@ -1,10 +1,9 @@
-//! The thirteen lamps by their abbreviations, and the figures of the link.
+//! The family's lamps by their abbreviations, and the figures of the link.
 
 use brushwork_link::exchange::LinkStatistics;
-use brushwork_protocol::packet_serial::status::Lamp;
 use egui::{Align2, Role, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
-use crate::gui::model::{Model, lamps};
+use crate::gui::model::Model;
 use crate::gui::theme::{self, Palette};
 use crate::gui::widgets::lamp;
 
@@ -14,17 +13,12 @@ const HEIGHT: f32 = 38.0;
 pub fn bottom_ui(ui: &mut Ui, model: &Model) {
     ui.spacing_mut().item_spacing.x = 4.0;
     ui.horizontal(|ui| {
-        let gaps = ui.spacing().item_spacing.x * Lamp::ALL.len() as f32;
-        let width = ((ui.available_width() - LINK_WIDTH - gaps) / Lamp::ALL.len() as f32).clamp(38.0, 72.0);
-        for lamp in Lamp::ALL {
-            let state = model.front.link.lamps.get(lamp);
-            lamp::abbreviated_ui(
-                ui,
-                vec2(width.floor(), HEIGHT),
-                lamp.abbreviation(),
-                lamps::title(lamp),
-                state,
-            );
+        let lamps = model.front.family().lamps();
+        let gaps = ui.spacing().item_spacing.x * lamps.len() as f32;
+        let width = ((ui.available_width() - LINK_WIDTH - gaps) / lamps.len() as f32).clamp(38.0, 72.0);
+        for info in lamps {
+            let state = model.front.link.lamps.named(info.short);
+            lamp::abbreviated_ui(ui, vec2(width.floor(), HEIGHT), info.short, info.title, state);
         }
         link_ui(ui, model);
     });

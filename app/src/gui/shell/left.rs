@@ -6,7 +6,6 @@ use super::devices::devices_ui;
 use super::heading_ui;
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
-use crate::gui::model::screen::Screen;
 use crate::gui::theme::Palette;
 use crate::gui::widgets::stop;
 
@@ -26,7 +25,7 @@ pub fn left_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         ScrollArea::vertical().show(ui, |ui| {
             devices_ui(ui, model, commands);
             ui.add_space(10.0);
-            screens_ui(ui, model.screen, commands);
+            screens_ui(ui, model, commands);
             if model.front.worlds.is_some() {
                 ui.add_space(10.0);
                 world_ui(ui, &mut model.front.world.open);
@@ -58,15 +57,16 @@ fn world_ui(ui: &mut Ui, open: &mut bool) {
     });
 }
 
-fn screens_ui(ui: &mut Ui, current: Screen, commands: &mut Commands) {
+fn screens_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
+    let (family, current) = (model.front.family(), model.screen);
     heading_ui(ui, "Screens");
     ui.spacing_mut().item_spacing.y = 2.0;
     ui.with_layout(Layout::top_down_justified(Align::Min), |ui| {
-        for (index, screen) in Screen::ALL.into_iter().enumerate() {
-            let shortcut = RichText::new(format!("Ctrl+{}", index + 1)).small();
-            let response = ui.add(Button::selectable(current == screen, screen.title()).right_text(shortcut));
-            response
-                .widget_info(|| WidgetInfo::selected(Role::Button, true, current == screen, screen.title()));
+        for screen in family.screens(&model.front) {
+            let (title, is_current) = (family.title(screen), current == screen);
+            let shortcut = RichText::new(format!("Ctrl+{}", screen as usize + 1)).small();
+            let response = ui.add(Button::selectable(is_current, title).right_text(shortcut));
+            response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_current, title));
             if response.clicked() {
                 commands.push(Command::Show(screen));
             }

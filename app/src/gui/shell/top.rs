@@ -1,73 +1,13 @@
 //! The row of monitored parameters (MCP manual 1.2.2), in blocks that wrap when the window is narrow.
 
-use brushwork_link::device::Channel;
 use brushwork_protocol::packet_serial::Motor;
 use egui::{Label, Role, Ui, WidgetInfo, vec2};
 
 use crate::gui::command::{Command, Commands};
+use crate::gui::family::{Figure, Figures};
 use crate::gui::model::{Model, decimals};
 use crate::gui::widgets::label::fixed_label_ui;
 use crate::gui::widgets::readout::{NO_VALUE, Readout};
-
-/// Two readouts below each other.
-struct Block {
-    channels: [Channel; 2],
-    labels: [&'static str; 2],
-    label_width: f32,
-    unit: &'static str,
-    unit_letters: usize,
-    digits: usize,
-    /// Whether a Zero button goes with each.
-    zero: bool,
-}
-
-const BLOCKS: [Block; 5] = [
-    Block {
-        channels: [Channel::Temperature1, Channel::Temperature2],
-        labels: ["Temp 1", "Temp 2"],
-        label_width: 40.0,
-        unit: "°C",
-        unit_letters: 2,
-        digits: 5,
-        zero: false,
-    },
-    Block {
-        channels: [Channel::M1Current, Channel::M2Current],
-        labels: ["M1 amps", "M2 amps"],
-        label_width: 51.0,
-        unit: "A",
-        unit_letters: 1,
-        digits: 7,
-        zero: false,
-    },
-    Block {
-        channels: [Channel::M1Position, Channel::M2Position],
-        labels: ["M1 encoder", "M2 encoder"],
-        label_width: 68.0,
-        unit: "",
-        unit_letters: 0,
-        digits: 11,
-        zero: true,
-    },
-    Block {
-        channels: [Channel::M1Velocity, Channel::M2Velocity],
-        labels: ["M1 speed", "M2 speed"],
-        label_width: 54.0,
-        unit: "counts/s",
-        unit_letters: 5,
-        digits: 8,
-        zero: false,
-    },
-    Block {
-        channels: [Channel::MainBattery, Channel::LogicBattery],
-        labels: ["Main battery", "Logic battery"],
-        label_width: 74.0,
-        unit: "V",
-        unit_letters: 1,
-        digits: 5,
-        zero: false,
-    },
-];
 
 const GAP: f32 = 4.0;
 const ZERO_WIDTH: f32 = 42.0;
@@ -77,14 +17,15 @@ const IDENTITY_WIDTH: f32 = 152.0;
 pub fn top_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     ui.spacing_mut().item_spacing = vec2(7.0, 4.0);
     // Rows are made by hand, since a wrapping layout does not know how wide a block will be.
-    let widths: Vec<f32> = BLOCKS.iter().map(|block| block.width(ui)).collect();
+    let blocks = model.front.family().figures();
+    let widths: Vec<f32> = blocks.iter().map(|block| block.width(ui)).collect();
     let (room, gap) = (ui.available_width(), ui.spacing().item_spacing.x);
     let mut start = 0;
     while start < widths.len() {
         let end = row_end(&widths, start, room, gap);
         let used: f32 = widths[start..end].iter().map(|width| width + gap).sum();
         ui.horizontal(|ui| {
-            for block in &BLOCKS[start..end] {
+            for block in &blocks[start..end] {
                 block_ui(ui, block, model, commands);
             }
             // Who the controller is stands in the device list too, so it takes no row of its own.
@@ -107,11 +48,11 @@ fn row_end(widths: &[f32], start: usize, available: f32, gap: f32) -> usize {
     end
 }
 
-impl Block {
-    fn readout(&self, row: usize) -> Readout<'static> {
+impl Figures {
+    fn readout(&self, figure: &Figure) -> Readout<'static> {
         Readout {
-            label: self.labels[row],
-            unit: self.unit,
+            label: figure.label,
+            unit: figure.unit,
             digits: self.digits,
             unit_letters: self.unit_letters,
         }
@@ -119,22 +60,21 @@ impl Block {
 
     fn width(&self, ui: &Ui) -> f32 {
         let zero = if self.zero { GAP + ZERO_WIDTH } else { 0.0 };
-        self.label_width + GAP + self.readout(0).size(ui).x + zero
+        let readout = self.rows.first().map_or(0.0, |figure| self.readout(figure).size(ui).x);
+        self.label_width + GAP + readout + zero
     }
 }
 
-fn block_ui(ui: &mut Ui, block: &Block, model: &Model, commands: &mut Commands) {
+fn block_ui(ui: &mut Ui, block: &Figures, model: &Model, commands: &mut Commands) {
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing = vec2(GAP, 2.0);
-        for motor in Motor::BOTH {
+        for figure in block.rows {
             ui.horizontal(|ui| {
-                let row = motor.index();
-                fixed_label_ui(ui, block.labels[row], block.label_width);
-                let channel = block.channels[row];
-                let value = model.front.link.readings.text(channel, decimals(channel));
-                block.readout(row).ui(ui, value.as_deref());
+                fixed_label_ui(ui, figure.label, block.label_width);
+                let value = model.front.link.readings.text(figure.channel, decimals(figure.channel));
+                block.readout(figure).ui(ui, value.as_deref());
                 if block.zero {
-                    zero_ui(ui, motor, model.is_connected(), commands);
+                    zero_ui(ui, figure.motor, model.is_connected(), commands);
                 }
             });
         }

@@ -1,0 +1,201 @@
+//! What differs between families of controllers in the window, in ONE place that the shell and the shared screens ask.
+//!
+//! A family says which screens there are, which figures stand in the top row, which lamps at the bottom, how many motors a
+//! controller has and which channels its graph. A screen that is shared asks its desk's family and never which one it is. To
+//! add a family, implement [`Family`] and name it in [`of`].
+
+use std::fmt;
+
+use brushwork_link::device::{Channel, Identity, StatusReport};
+use brushwork_protocol::packet_serial::Motor;
+use egui::Ui;
+
+use super::command::Commands;
+use super::model::Model;
+use super::model::desk::Desk;
+use super::model::drawer::Tab;
+use super::model::screen::Screen;
+use super::widgets::LampState;
+
+mod mcp;
+mod motion_mind;
+
+pub use mcp::sign_of as mcp_sign;
+
+/// Which family a controller is of, as far as the window tells them apart.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FamilyKind {
+    /// MCP and RoboClaw, over packet serial or CANopen. Shown before anything was ever connected.
+    #[default]
+    Mcp,
+    MotionMind,
+}
+
+impl FamilyKind {
+    /// The family of a unit that answered.
+    pub fn of_unit(identity: &Identity) -> Self {
+        match identity.family {
+            MOTION_MIND => Self::MotionMind,
+            _ => Self::Mcp,
+        }
+    }
+
+    /// The family that a target names before anything has answered there, if it names one.
+    pub fn of_target(target: &str) -> Option<Self> {
+        let simulated = target.strip_prefix("sim:")?;
+        Some(if simulated.starts_with("motion-mind") { Self::MotionMind } else { Self::Mcp })
+    }
+}
+
+/// What the link calls the family.
+const MOTION_MIND: &str = "Motion Mind";
+
+/// What the window has to know of a family.
+pub trait Family: Sync {
+    /// What a person calls its controllers, for sentences.
+    fn name(&self) -> &'static str;
+
+    /// The screens, in the order of the list.
+    fn screens(&self, desk: &Desk) -> Vec<Screen>;
+
+    /// What a screen is called in this family.
+    fn title(&self, screen: Screen) -> &'static str {
+        screen.title()
+    }
+
+    /// Draws a screen of [`Family::screens`].
+    fn screen_ui(&self, ui: &mut Ui, model: &mut Model, commands: &mut Commands);
+
+    /// The tabs above the graph of a screen that drives.
+    fn tabs(&self, screen: Screen) -> &'static [Tab];
+
+    /// The monitored parameters at the top.
+    fn figures(&self) -> &'static [Figures];
+
+    /// The status lamps, in order.
+    fn lamps(&self) -> &'static [LampInfo];
+
+    /// How each of [`Family::lamps`] stands. `homed` is what the input pins say of home and limit switches, where they are known.
+    fn lit(
+        &self,
+        report: &StatusReport,
+        identity: Option<&Identity>,
+        homed: Option<[bool; 2]>,
+    ) -> Vec<LampState>;
+
+    /// What the status word says, the gravest lamp first in order.
+    fn signs(&self, report: &StatusReport) -> Vec<Sign>;
+
+    /// The motors a controller has.
+    fn motors(&self) -> &'static [Motor];
+
+    /// Whether the graph can show a channel.
+    fn has_channel(&self, channel: Channel) -> bool;
+
+    /// What the graph of a screen shows at first.
+    fn first_channels(&self, screen: Screen) -> &'static [Channel] {
+        screen.first_channels()
+    }
+
+    /// Why the family lacks something that others have; `None` where it has it.
+    fn lacks(&self, ability: Ability) -> Option<&'static str>;
+}
+
+/// What one family has and another may not have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ability {
+    /// Programs that run in the controller.
+    Scripts,
+    /// Settings of loops that name a top speed, and what measures it.
+    Qpps,
+    /// The voltage clamp test.
+    ClampTest,
+    /// Setpoint profiles, played.
+    Generator,
+    /// Emergency stop that software can reset.
+    EmergencyStop,
+    /// A second motor.
+    SecondMotor,
+    /// A firmware loader that is known.
+    Firmware,
+    /// A report of what keeps the motors from running, which needs settings.
+    Diagnosis,
+    /// Raw commands out of a table.
+    Composer,
+    /// Settings that can contradict each other.
+    Conflicts,
+    /// Calibration by hand of loop gains.
+    ByHand,
+}
+
+/// Two readouts below each other in the top row.
+#[derive(Debug)]
+pub struct Figures {
+    pub rows: &'static [Figure],
+    pub label_width: f32,
+    /// Room for the units, in letters.
+    pub unit_letters: usize,
+    pub digits: usize,
+    /// Whether a Zero button goes with each.
+    pub zero: bool,
+}
+
+/// One readout.
+#[derive(Debug)]
+pub struct Figure {
+    pub channel: Channel,
+    pub label: &'static str,
+    pub unit: &'static str,
+    /// Which motor it belongs to, for its Zero button.
+    pub motor: Motor,
+}
+
+/// One status lamp.
+#[derive(Debug, PartialEq, Eq)]
+pub struct LampInfo {
+    /// A few letters, for the bottom of the window. Each lamp of a family has its own.
+    pub short: &'static str,
+    /// In full.
+    pub title: &'static str,
+}
+
+/// Something that a status word says, and how grave it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Sign {
+    /// Place among the signs of its family.
+    pub order: u8,
+    pub title: &'static str,
+    pub state: LampState,
+}
+
+/// The family behind a kind.
+pub fn of(kind: FamilyKind) -> &'static dyn Family {
+    match kind {
+        FamilyKind::Mcp => &mcp::Mcp,
+        FamilyKind::MotionMind => &motion_mind::MotionMind,
+    }
+}
+
+impl fmt::Debug for dyn Family {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn in_each_family_lamps_and_screens_have_names_of_their_own() {
+        for family in [FamilyKind::Mcp, FamilyKind::MotionMind].map(of) {
+            let shorts: BTreeSet<_> = family.lamps().iter().map(|lamp| lamp.short).collect();
+            assert_eq!(shorts.len(), family.lamps().len(), "{family:?}");
+            let screens = family.screens(&Desk::default());
+            let titles: BTreeSet<_> = screens.iter().map(|screen| family.title(*screen)).collect();
+            assert_eq!(titles.len(), screens.len(), "{family:?}");
+        }
+    }
+}

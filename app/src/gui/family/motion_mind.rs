@@ -1,0 +1,224 @@
+//! Motion Mind 3: one motor, registers in place of settings, and screens by the mode that its switches select
+//! (Motion Mind manual, chapters 4 and 6).
+
+use brushwork_link::device::{Channel, Identity, StatusReport};
+use brushwork_protocol::motion_mind::status as bit;
+use brushwork_protocol::packet_serial::Motor;
+use egui::Ui;
+
+use super::{Ability, Family, Figure, Figures, LampInfo, Sign};
+use crate::gui::command::Commands;
+use crate::gui::model::Model;
+use crate::gui::model::desk::Desk;
+use crate::gui::model::drawer::Tab;
+use crate::gui::model::screen::Screen;
+use crate::gui::screens::motion_mind;
+use crate::gui::widgets::LampState;
+
+#[derive(Debug)]
+pub(super) struct MotionMind;
+
+impl Family for MotionMind {
+    fn name(&self) -> &'static str {
+        "Motion Mind 3"
+    }
+
+    fn screens(&self, desk: &Desk) -> Vec<Screen> {
+        let mut screens = vec![Screen::DeviceStatus, Screen::GeneralSettings];
+        screens.extend_from_slice(desk.motion_mind.driven_by(desk).screens());
+        screens.extend([Screen::Inputs, Screen::Terminal]);
+        screens
+    }
+
+    fn title(&self, screen: Screen) -> &'static str {
+        match screen {
+            Screen::GeneralSettings => "Registers",
+            Screen::Pwm => "Duty",
+            Screen::Velocity => "Velocity",
+            Screen::Position => "Position",
+            Screen::Inputs => "Inputs and R/C",
+            Screen::Terminal => "Terminal",
+            other => other.title(),
+        }
+    }
+
+    fn screen_ui(&self, ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+        motion_mind::screen_ui(ui, model, commands);
+    }
+
+    fn tabs(&self, screen: Screen) -> &'static [Tab] {
+        match screen {
+            Screen::Velocity => &[Tab::Tune],
+            Screen::Position => &[Tab::Steps, Tab::Tune],
+            _ => &[],
+        }
+    }
+
+    fn figures(&self) -> &'static [Figures] {
+        &FIGURES
+    }
+
+    fn lamps(&self) -> &'static [LampInfo] {
+        &LAMPS
+    }
+
+    fn lit(
+        &self,
+        report: &StatusReport,
+        _identity: Option<&Identity>,
+        _homed: Option<[bool; 2]>,
+    ) -> Vec<LampState> {
+        let lit = |(mask, state): &(u16, LampState)| {
+            if report.word & u32::from(*mask) == 0 { LampState::Ok } else { *state }
+        };
+        SAYS.iter().map(lit).collect()
+    }
+
+    fn signs(&self, report: &StatusReport) -> Vec<Sign> {
+        let set = |(mask, _): &(u16, LampState)| report.word & u32::from(*mask) != 0;
+        let rows = (0..).zip(SAYS.iter().zip(&LAMPS)).filter(|(_, (says, _))| set(says));
+        rows.map(|(order, ((_, state), info))| Sign { order, title: info.title, state: *state }).collect()
+    }
+
+    fn motors(&self) -> &'static [Motor] {
+        &[Motor::M1]
+    }
+
+    fn has_channel(&self, channel: Channel) -> bool {
+        use Channel as C;
+        matches!(
+            channel,
+            C::M1Setpoint | C::M1Pwm | C::M1Velocity | C::M1Position | C::M1Current | C::Temperature1
+        )
+    }
+
+    fn first_channels(&self, screen: Screen) -> &'static [Channel] {
+        use Channel as C;
+        match screen {
+            Screen::Velocity => &[C::M1Setpoint, C::M1Velocity, C::M1Pwm],
+            Screen::Position => &[C::M1Setpoint, C::M1Position, C::M1Pwm],
+            _ => &[C::M1Pwm, C::M1Velocity, C::M1Current],
+        }
+    }
+
+    fn lacks(&self, ability: Ability) -> Option<&'static str> {
+        Some(match ability {
+            Ability::Scripts => "A Motion Mind 3 runs no scripts.",
+            Ability::Qpps => "A Motion Mind 3 has no register for a top speed.",
+            Ability::ClampTest => "A Motion Mind 3 has no voltage clamp.",
+            Ability::Generator => {
+                "Profiles are played on MCP controllers. Use the step assistant of the Position screen."
+            }
+            Ability::EmergencyStop => {
+                "A Motion Mind 3 has no emergency stop that software resets: its brake input acts while it is low."
+            }
+            Ability::SecondMotor => "A Motion Mind 3 drives one motor.",
+            Ability::Firmware => {
+                "The firmware loader of a Motion Mind 3 is not public. Use its maker's program."
+            }
+            Ability::Diagnosis => "What keeps a Motion Mind 3 from running is told by its lamps.",
+            Ability::Composer => "Send commands from the Terminal screen.",
+            Ability::Conflicts => "No two registers of a Motion Mind 3 contradict each other.",
+            Ability::ByHand => "Use the step assistant of the Position screen.",
+        })
+    }
+}
+
+/// What each bit of STATUS says, in the order of [`LAMPS`] (Motion Mind manual, figure 22). Brake and heat take the drive away.
+const SAYS: [(u16, LampState); 11] = [
+    (bit::TEMPFAULT, LampState::Error),
+    (bit::BRAKE, LampState::Error),
+    (bit::CURRENTLIMIT, LampState::Warning),
+    (bit::BADRC, LampState::Warning),
+    (bit::PWMLIMIT, LampState::Active),
+    (bit::NEGLIMIT, LampState::Active),
+    (bit::POSLIMIT, LampState::Active),
+    (bit::VNLIMIT, LampState::Active),
+    (bit::VPLIMIT, LampState::Active),
+    (bit::INPOSITION, LampState::Active),
+    (bit::INDEX, LampState::Active),
+];
+
+const fn lamp(short: &'static str, title: &'static str) -> LampInfo {
+    LampInfo { short, title }
+}
+
+const LAMPS: [LampInfo; SAYS.len()] = [
+    lamp("TEMP", "Over temperature: bridge off"),
+    lamp("BRK", "Brake input low: bridge off"),
+    lamp("AMPS", "Current limit: drive reduced"),
+    lamp("RC", "Bad R/C signal"),
+    lamp("PWM", "At the PWM limit"),
+    lamp("NEG", "Negative limit input"),
+    lamp("POS", "Positive limit input"),
+    lamp("VN", "Negative virtual limit"),
+    lamp("VP", "Positive virtual limit"),
+    lamp("INP", "In position"),
+    lamp("IDX", "Index input"),
+];
+
+const fn figure(channel: Channel, label: &'static str, unit: &'static str) -> Figure {
+    Figure { channel, label, unit, motor: Motor::M1 }
+}
+
+const FIGURES: [Figures; 3] = [
+    Figures {
+        rows: &[figure(Channel::M1Position, "Position", "counts")],
+        label_width: 56.0,
+        unit_letters: 6,
+        digits: 11,
+        zero: true,
+    },
+    Figures {
+        rows: &[figure(Channel::M1Velocity, "Velocity", "counts/s"), figure(Channel::M1Pwm, "PWM", "%")],
+        label_width: 54.0,
+        unit_letters: 8,
+        digits: 8,
+        zero: false,
+    },
+    Figures {
+        rows: &[figure(Channel::M1Current, "Current", "A"), figure(Channel::Temperature1, "Board", "°C")],
+        label_width: 50.0,
+        unit_letters: 2,
+        digits: 7,
+        zero: false,
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use brushwork_link::device::Conditions;
+    use brushwork_protocol::motion_mind::STATUS_BITS;
+
+    use super::*;
+
+    fn report(word: u16) -> StatusReport {
+        StatusReport {
+            address: 1,
+            at: Duration::ZERO,
+            word: word.into(),
+            conditions: Conditions::default(),
+            unknown_bits: 0,
+            running_ticks: None,
+        }
+    }
+
+    #[test]
+    fn every_bit_of_the_status_lights_one_lamp() {
+        for row in STATUS_BITS {
+            let lit = MotionMind.lit(&report(row.mask()), None, None);
+            assert_eq!(lit.iter().filter(|state| **state != LampState::Ok).count(), 1, "{}", row.name);
+            assert_eq!(MotionMind.signs(&report(row.mask())).len(), 1, "{}", row.name);
+        }
+        assert_eq!(MotionMind.signs(&report(0)), []);
+    }
+
+    #[test]
+    fn what_takes_the_drive_away_is_an_error_and_comes_first() {
+        let signs = MotionMind.signs(&report(bit::TEMPFAULT | bit::INPOSITION | bit::BRAKE));
+        let states: Vec<_> = signs.iter().map(|sign| sign.state).collect();
+        assert_eq!(states, [LampState::Error, LampState::Error, LampState::Active]);
+    }
+}
