@@ -29,6 +29,7 @@ use super::{shell, theme};
 
 mod debugging;
 mod linking;
+mod motion_mind;
 mod scripting;
 mod settings;
 mod tuning;
@@ -120,6 +121,7 @@ impl App {
         self.ask_debugger(&ctx);
         self.go_on_tuning();
         self.read_loops();
+        self.read_for_screen();
         self.end_calibrations();
         self.look_for_settings();
         self.disarm_when_left();
@@ -332,6 +334,7 @@ impl App {
                 }
             }
             Command::ClampTest => self.clamp_test(),
+            Command::Mind(wish) => self.mind(wish),
             Command::Debug(wish) => self.debug(wish),
             Command::Mcl(wish) => self.edit_mcl(wish),
             Command::DownloadMcl => self.download_mcl(),
@@ -460,18 +463,13 @@ impl App {
         let Some(scope) = self.model.arm_scope().filter(|scope| armed_for(*scope)) else { return };
         let Some(device) = self.links.device(self.model.front.id()) else { return };
         device.renew();
-        let model = &mut self.model;
-        let (drive, setpoints) = match scope {
-            ArmScope::Pwm => (model.front.pwm.to_send(), &mut model.front.pwm.setpoints),
-            ArmScope::Velocity => (model.front.velocity.to_send(), &mut model.front.velocity.setpoints),
-            ArmScope::Position => (model.front.position.to_send(), &mut model.front.position.setpoints),
-            _ => return,
-        };
+        let front = &mut self.model.front;
         // A full queue takes it in the next frame.
-        if let Some(drive) = drive
+        let setpoints = front.setpoints(scope).copied();
+        if let Some(drive) = setpoints.and_then(|asked| front.family().to_send(front, scope, asked))
             && device.request(Request::Drive(drive)).is_ok()
         {
-            setpoints.sent();
+            front.sent(scope);
         }
         ctx.request_repaint_after(FRAME_INTERVAL);
     }

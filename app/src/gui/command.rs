@@ -16,6 +16,7 @@ use super::model::general::{Section, SettingsWish, Sheet};
 pub use super::model::guided::GuidedWish;
 use super::model::help::HelpPage;
 use super::model::loop_settings::Column;
+pub use super::model::motion_mind::MindWish;
 use super::model::screen::Screen;
 pub use super::tune::TuneWish;
 
@@ -95,6 +96,8 @@ pub enum Command {
     /// The voltage clamp test.
     ClampTest,
     DismissMessage,
+    /// Something that an assistant of a Motion Mind asks for.
+    Mind(MindWish),
     /// Something to be done by the MCL debugger.
     Debug(DebugWish),
     /// Something to be done in the MCL editor.

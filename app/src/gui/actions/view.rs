@@ -57,7 +57,12 @@ pub(super) const ACTIONS: &[Action] = &[
     screen!("view.mcl", MclEditor, Num6, "Programs that run in the controller."),
     screen!("view.motion", Motion, Num7, "What moves a controller that is not driven from here."),
     screen!("view.inputs", Inputs, Num8, "Analog inputs, switches and radio control of a Motion Mind."),
-    screen!("view.command-terminal", Terminal, Num9, "Commands to a Motion Mind by hand, with what they mean."),
+    screen!(
+        "view.command-terminal",
+        Terminal,
+        Num9,
+        "Commands to a Motion Mind by hand, with what they mean."
+    ),
     Action {
         id: "view.palette",
         title: "Command Palette…",

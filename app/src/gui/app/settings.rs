@@ -82,7 +82,8 @@ impl App {
 
     /// Reads the settings of the control loops when a screen that shows them wants them.
     pub(super) fn read_loops(&mut self) {
-        if !self.model.screen.has_loops() || !self.model.front.loops.wants_reading() {
+        let has_loops = self.model.screen.has_loops() && self.model.front.family().has_loops();
+        if !has_loops || !self.model.front.loops.wants_reading() {
             return;
         }
         let Some(identity) = self.model.front.link.identity().cloned() else { return };

@@ -169,7 +169,7 @@ impl App {
     }
 
     /// Writes gains to RAM as the settings of the loops are written: with a backup before, and read back.
-    fn write_gains(&mut self, image: SettingsImage) -> Result<(), String> {
+    pub(super) fn write_gains(&mut self, image: SettingsImage) -> Result<(), String> {
         let busy = || "The settings are being read or written. Try again in a moment.".to_owned();
         let front = &mut self.model.front;
         let identity = front.link.identity().cloned().ok_or("No controller is connected.")?;

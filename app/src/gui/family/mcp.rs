@@ -1,17 +1,22 @@
 //! MCP and RoboClaw: Ion Studio's screens, thirteen lamps, two motors (MCP manual 1.2).
 
-use brushwork_link::device::{Channel, Identity, StatusReport};
+use brushwork_link::device::{ArmScope, Channel, Drive, Identity, StatusReport};
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_protocol::packet_serial::status::{Condition, Lamp};
 use egui::Ui;
 
+use super::words::{self, SettingsWords};
 use super::{Ability, Family, Figure, Figures, LampInfo, Sign};
 use crate::gui::command::Commands;
 use crate::gui::model::Model;
 use crate::gui::model::desk::Desk;
 use crate::gui::model::drawer::Tab;
 use crate::gui::model::lamps::state_of;
+use crate::gui::model::position::Position;
+use crate::gui::model::pwm::Pwm;
 use crate::gui::model::screen::Screen;
+use crate::gui::model::setpoints::Setpoints;
+use crate::gui::model::velocity::Velocity;
 use crate::gui::screens;
 use crate::gui::widgets::LampState;
 
@@ -61,8 +66,25 @@ impl Family for Mcp {
         report.conditions.iter().map(sign_of).collect()
     }
 
+    fn words(&self) -> &'static SettingsWords {
+        &words::MCP
+    }
+
     fn motors(&self) -> &'static [Motor] {
         &Motor::BOTH
+    }
+
+    fn to_send(&self, desk: &Desk, scope: ArmScope, setpoints: Setpoints) -> Option<Drive> {
+        match scope {
+            ArmScope::Pwm => Pwm { setpoints, ..desk.pwm }.to_send(),
+            ArmScope::Velocity => Velocity { setpoints, ..desk.velocity }.to_send(),
+            ArmScope::Position => Position { setpoints, ..desk.position }.to_send(),
+            _ => None,
+        }
+    }
+
+    fn has_loops(&self) -> bool {
+        true
     }
 
     fn has_channel(&self, _channel: Channel) -> bool {

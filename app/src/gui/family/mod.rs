@@ -5,8 +5,9 @@
 //! add a family, implement [`Family`] and name it in [`of`].
 
 use std::fmt;
+use std::time::Duration;
 
-use brushwork_link::device::{Channel, Identity, StatusReport};
+use brushwork_link::device::{ArmScope, Channel, Drive, Identity, Request, StatusReport};
 use brushwork_protocol::packet_serial::Motor;
 use egui::Ui;
 
@@ -15,12 +16,15 @@ use super::model::Model;
 use super::model::desk::Desk;
 use super::model::drawer::Tab;
 use super::model::screen::Screen;
+use super::model::setpoints::Setpoints;
 use super::widgets::LampState;
 
 mod mcp;
 mod motion_mind;
+mod words;
 
 pub use mcp::sign_of as mcp_sign;
+pub use words::SettingsWords;
 
 /// Which family a controller is of, as far as the window tells them apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -86,8 +90,22 @@ pub trait Family: Sync {
     /// What the status word says, the gravest lamp first in order.
     fn signs(&self, report: &StatusReport) -> Vec<Sign>;
 
+    /// How acts on its settings are told.
+    fn words(&self) -> &'static SettingsWords;
+
     /// The motors a controller has.
     fn motors(&self) -> &'static [Motor];
+
+    /// What the motors have to be told for a screen that is armed and whose sliders stand so, if anything.
+    fn to_send(&self, desk: &Desk, scope: ArmScope, setpoints: Setpoints) -> Option<Drive>;
+
+    /// What the open screen needs to have read besides the signals, when it is time for it.
+    fn wants_read(&self, _desk: &mut Desk, _screen: Screen, _now: Duration) -> Option<Request> {
+        None
+    }
+
+    /// Whether the screens that drive show settings of loops that have to be read for them.
+    fn has_loops(&self) -> bool;
 
     /// Whether the graph can show a channel.
     fn has_channel(&self, channel: Channel) -> bool;

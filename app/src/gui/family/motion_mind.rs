@@ -1,17 +1,22 @@
 //! Motion Mind 3: one motor, registers in place of settings, and screens by the mode that its switches select
 //! (Motion Mind manual, chapters 4 and 6).
 
-use brushwork_link::device::{Channel, Identity, StatusReport};
+use std::time::Duration;
+
+use brushwork_link::device::{ArmScope, Channel, Drive, Identity, Request, StatusReport};
 use brushwork_protocol::motion_mind::status as bit;
 use brushwork_protocol::packet_serial::Motor;
 use egui::Ui;
 
+use super::words::{self, SettingsWords};
 use super::{Ability, Family, Figure, Figures, LampInfo, Sign};
 use crate::gui::command::Commands;
 use crate::gui::model::Model;
 use crate::gui::model::desk::Desk;
 use crate::gui::model::drawer::Tab;
+use crate::gui::model::motion_mind::drive::to_send;
 use crate::gui::model::screen::Screen;
+use crate::gui::model::setpoints::Setpoints;
 use crate::gui::screens::motion_mind;
 use crate::gui::widgets::LampState;
 
@@ -25,7 +30,7 @@ impl Family for MotionMind {
 
     fn screens(&self, desk: &Desk) -> Vec<Screen> {
         let mut screens = vec![Screen::DeviceStatus, Screen::GeneralSettings];
-        screens.extend_from_slice(desk.motion_mind.driven_by(desk).screens());
+        screens.extend_from_slice(desk.driven().screens());
         screens.extend([Screen::Inputs, Screen::Terminal]);
         screens
     }
@@ -80,8 +85,26 @@ impl Family for MotionMind {
         rows.map(|(order, ((_, state), info))| Sign { order, title: info.title, state: *state }).collect()
     }
 
+    fn words(&self) -> &'static SettingsWords {
+        &words::MOTION_MIND
+    }
+
     fn motors(&self) -> &'static [Motor] {
         &[Motor::M1]
+    }
+
+    fn to_send(&self, _desk: &Desk, scope: ArmScope, setpoints: Setpoints) -> Option<Drive> {
+        to_send(scope, setpoints)
+    }
+
+    fn wants_read(&self, desk: &mut Desk, screen: Screen, now: Duration) -> Option<Request> {
+        let shows_registers = matches!(screen, Screen::GeneralSettings | Screen::Inputs | Screen::Motion);
+        let is_free = desk.is_connected() && !desk.is_guided() && desk.general.running().is_none();
+        (shows_registers && is_free).then(|| desk.motion_mind.live.read(now))?
+    }
+
+    fn has_loops(&self) -> bool {
+        false
     }
 
     fn has_channel(&self, channel: Channel) -> bool {

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
-use brushwork_link::device::{Channel, Event, PollRate};
+use brushwork_link::device::{ArmScope, Channel, Event, PollRate};
 use brushwork_link::diagnosis::{Evidence, Measured, Script};
 use brushwork_link::script::MIN_AUTORUN;
 use brushwork_link::settings::SettingValue;
@@ -30,6 +30,7 @@ use super::pwm::Pwm;
 use super::qpps::QppsPanel;
 use super::screen::Screen;
 use super::script::ScriptWork;
+use super::setpoints::Setpoints;
 use super::traffic::Traffic;
 use super::velocity::Velocity;
 use super::watch::Watch;
@@ -228,6 +229,27 @@ impl Desk {
         self.pwm.setpoints.stop();
         self.velocity.setpoints.stop();
         self.position.setpoints.stop();
+        self.motion_mind.steps.give_up();
+    }
+
+    /// The device thread has taken what the family's sliders asked for.
+    pub fn sent(&mut self, scope: ArmScope) {
+        match scope {
+            ArmScope::Pwm => self.pwm.setpoints.sent(),
+            ArmScope::Velocity => self.velocity.setpoints.sent(),
+            ArmScope::Position => self.position.setpoints.sent(),
+            _ => {}
+        }
+    }
+
+    /// How the sliders of a screen that drives stand.
+    pub fn setpoints(&self, scope: ArmScope) -> Option<&Setpoints> {
+        match scope {
+            ArmScope::Pwm => Some(&self.pwm.setpoints),
+            ArmScope::Velocity => Some(&self.velocity.setpoints),
+            ArmScope::Position => Some(&self.position.setpoints),
+            _ => None,
+        }
     }
 
     /// Takes over an event of this link. What it means beyond this desk is handed back: something to say, or the
@@ -236,6 +258,9 @@ impl Desk {
         self.history.note(&event);
         self.traffic.note(&event);
         self.firmware.note(&event);
+        if self.motion_mind.take(&event) {
+            return Vec::new();
+        }
         if self.watch.note(&event) {
             self.update_homed();
             return Vec::new();
@@ -349,6 +374,7 @@ impl Desk {
                 self.update_homed();
                 self.general.take_signals(&sample.signals);
                 self.tune.note_sample(&sample, self.graph_of);
+                self.motion_mind.steps.note_sample(&sample);
                 self.graph.take(&sample);
             }
             Effect::OtherUnit => {
@@ -392,6 +418,7 @@ impl Desk {
     /// What is known of one unit's motors says nothing of another's.
     fn forget_unit(&mut self) {
         self.loops.forget();
+        self.motion_mind.forget_unit();
         self.generator.forget();
         self.script.forget();
         self.qpps.forget();

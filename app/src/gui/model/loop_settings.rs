@@ -283,6 +283,11 @@ impl LoopSettings {
         self.apply_image(wanted, identity, own_stream, keeper)
     }
 
+    /// Works with a table that was not read for the loops: what a family has of them is in its other settings.
+    pub fn adopt(&mut self, table: SettingsTable) {
+        self.table.get_or_insert(table);
+    }
+
     /// What to ask of the device thread to write these values to RAM, whatever is edited.
     pub fn apply_image(
         &mut self,

@@ -4,6 +4,7 @@ use egui::{Frame, Margin, Stroke, Ui};
 
 use super::generator::generator_ui;
 use super::loops::loops_ui;
+use super::motion_mind::steps::steps_ui;
 use super::qpps::qpps_ui;
 use crate::gui::command::Commands;
 use crate::gui::model::Model;
@@ -39,7 +40,8 @@ pub fn drawer_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             Tab::Generator => generator_ui(ui, model, commands),
             Tab::Qpps => qpps_ui(ui, model, commands),
             Tab::ByHand => by_hand_ui(ui, model, commands),
-            Tab::Steps | Tab::Tune => {}
+            Tab::Steps => steps_ui(ui, model, commands),
+            Tab::Tune => {}
         }
     });
 }

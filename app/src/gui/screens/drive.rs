@@ -167,13 +167,19 @@ pub fn motor_ui(
     let mut held = None;
     let size = vec2(ui.available_width(), ROW_HEIGHT);
     ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
-        let label = Label::new(format!("Motor {}", motor.index() + 1)).selectable(false);
+        let is_only = model.front.family().motors().len() == 1;
+        let name = if is_only { "Motor".to_owned() } else { format!("Motor {}", motor.index() + 1) };
+        let label = Label::new(name.as_str()).selectable(false);
         ui.add_sized(vec2(62.0, ROW_HEIGHT), label);
         let slider_width = ui.available_width() - output.width;
         let armed = model.front.link.arming.is_armed_for(output.scope);
         ui.add_enabled_ui(armed && !model.front.is_guided(), |ui| {
             let jog = |ui: &mut Ui, direction: Direction| {
-                let name = format!("{motor} jog {}", direction.word());
+                let name = format!(
+                    "{} jog {}",
+                    if is_only { "Motor".to_owned() } else { motor.to_string() },
+                    direction.word()
+                );
                 let hint = "Runs the motor while it is held: by mouse, or by Enter while it has the focus";
                 jog_ui(ui, &name, direction == Direction::Forward, hint).then_some(direction)
             };

@@ -10,9 +10,9 @@ use super::theme::Palette;
 
 pub mod canopen;
 mod drawer;
-mod drive;
+pub(super) mod drive;
 pub mod firmware;
-mod general;
+pub(super) mod general;
 mod generator;
 mod loops;
 pub mod motion_mind;

@@ -1,15 +1,52 @@
-//! What a Motion Mind 3 has of its own in the window: what its mode lets this program drive, and the state of its assistants.
+//! What a Motion Mind 3 has of its own in the window: what its mode lets this program drive, and the state of its screens.
+
+use brushwork_link::device::Event;
+use brushwork_protocol::motion_mind::register_named;
 
 use super::desk::Desk;
 use super::screen::Screen;
 
+pub mod drive;
+pub mod radio;
 pub mod registers;
+pub mod steps;
+pub mod terminal;
+
+use brushwork_link::settings::SettingsImage;
+use drive::Reach;
+use radio::Radio;
+use registers::Live;
+use steps::StepAssistant;
+use terminal::Terminal;
 
 /// The state of a Motion Mind's screens.
 #[derive(Debug, Default)]
-pub struct MotionMindDesk {}
+pub struct MotionMindDesk {
+    /// All registers as read last, while a screen shows them.
+    pub live: Live,
+    /// The register that is explained, by its number.
+    pub register: u8,
+    /// What the sliders reach.
+    pub reach: Reach,
+    pub steps: StepAssistant,
+    pub radio: Radio,
+    pub terminal: Terminal,
+}
 
-/// What serial commands can move, by the mode and two bits (Motion Mind manual, chapter 4).
+/// What the assistants ask for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MindWish {
+    /// Writes these registers and bits to RAM, with a backup, and remembers what was there.
+    Turn(SettingsImage),
+    /// Writes these back.
+    PutBack(SettingsImage),
+    /// RCMAX and RCMIN to RAM, for measuring.
+    Radio(i64, i64),
+    /// Takes over what the R/C calibration found as edits, and shows what will be written.
+    UseRadio,
+}
+
+/// What serial commands can move, by the mode and one bit (Motion Mind manual, chapter 4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Driven {
     /// Mode 3: a duty.
@@ -20,19 +57,16 @@ pub enum Driven {
     Position,
     /// Something else moves the motor, or nothing does.
     Nothing,
-    /// The mode has not been read.
-    Unknown,
 }
 
 impl Driven {
-    /// What the mode and FUNCTION say.
-    pub fn of(mode: Option<i64>, takes_serial_setpoint: bool) -> Self {
+    /// What the mode and ADSERIAL say.
+    pub const fn of(mode: u8, takes_serial_setpoint: bool) -> Self {
         match mode {
-            None => Self::Unknown,
-            Some(3) => Self::Duty,
-            Some(4) => Self::Loop,
-            Some(5) if takes_serial_setpoint => Self::Position,
-            Some(_) => Self::Nothing,
+            3 => Self::Duty,
+            4 => Self::Loop,
+            5 if takes_serial_setpoint => Self::Position,
+            _ => Self::Nothing,
         }
     }
 
@@ -42,16 +76,53 @@ impl Driven {
             Self::Duty => &[Screen::Pwm],
             Self::Loop => &[Screen::Velocity, Screen::Position],
             Self::Position => &[Screen::Position],
-            Self::Nothing | Self::Unknown => &[Screen::Motion],
+            Self::Nothing => &[Screen::Motion],
         }
     }
 }
 
 impl MotionMindDesk {
-    /// What can be driven from here.
-    pub fn driven_by(&self, desk: &Desk) -> Driven {
-        let serial_setpoint =
-            desk.has_bit(registers::FUNCTION, brushwork_protocol::motion_mind::function::ADSERIAL);
-        Driven::of(desk.register(registers::MODE), serial_setpoint)
+    /// Takes in an event that is about the window's own reads. True where it was one.
+    pub fn take(&mut self, event: &Event) -> bool {
+        self.terminal.note(event);
+        if !self.live.take(event) {
+            return false;
+        }
+        if let Some(count) = register_named(registers::RCCOUNT).and_then(|row| self.live.get(row)) {
+            self.radio.note(count);
+        }
+        true
+    }
+
+    /// Another unit, or none.
+    pub fn forget_unit(&mut self) {
+        self.live.forget();
+        self.radio.give_up();
+        self.steps = StepAssistant::default();
+        self.terminal.link_ended();
+    }
+}
+
+impl Desk {
+    /// The mode that a Motion Mind's switches selected at power-up.
+    pub fn mode(&self) -> Option<u8> {
+        self.register("MODE").and_then(|mode| u8::try_from(mode).ok())
+    }
+
+    /// What of a Motion Mind can be driven from here.
+    pub fn driven(&self) -> Driven {
+        self.mode().map_or(Driven::Nothing, |mode| Driven::of(mode, self.has_bit("FUNCTION", "ADSERIAL")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_three_modes_are_driven_over_serial() {
+        let driven: Vec<u8> = (0..8).filter(|mode| Driven::of(*mode, true) != Driven::Nothing).collect();
+        assert_eq!(driven, [3, 4, 5]);
+        assert_eq!(Driven::of(5, false), Driven::Nothing);
     }
 }

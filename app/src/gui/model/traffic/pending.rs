@@ -46,22 +46,8 @@ pub fn pending(desk: &Desk, screen: Screen) -> (Vec<Pending>, Vec<String>) {
 
 /// What the sliders of a screen would send if both were moved.
 fn drive_of(desk: &Desk, screen: Screen) -> Option<Drive> {
-    match screen {
-        Screen::Pwm => {
-            let mut pwm = desk.pwm;
-            pwm.setpoints.touch();
-            pwm.to_send()
-        }
-        Screen::Velocity => {
-            let mut velocity = desk.velocity;
-            velocity.setpoints.touch();
-            velocity.to_send()
-        }
-        Screen::Position => {
-            let mut position = desk.position;
-            position.setpoints.touch();
-            position.to_send()
-        }
-        _ => None,
-    }
+    let scope = screen.arm_scope()?;
+    let mut setpoints = *desk.setpoints(scope)?;
+    setpoints.touch();
+    desk.family().to_send(desk, scope, setpoints)
 }

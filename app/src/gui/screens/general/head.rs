@@ -3,6 +3,7 @@
 use egui::{Button, Label, ProgressBar, RichText, Role, Ui, WidgetInfo, vec2};
 
 use crate::gui::command::{Command, Commands};
+use crate::gui::family::{Ability, Family, SettingsWords};
 use crate::gui::model::general::{General, Running, Saved, SettingsWish, Sheet, UnitSettings};
 use crate::gui::theme::Palette;
 use crate::gui::widgets::LampState;
@@ -12,16 +13,16 @@ const SEARCH_WIDTH: f32 = 190.0;
 /// So that a count in a button moves nothing.
 const BUTTON_WIDTH: f32 = 84.0;
 
-pub fn head_ui(ui: &mut Ui, general: &mut General, commands: &mut Commands) {
-    marks_ui(ui, general.unit());
-    buttons_ui(ui, general);
-    filter_ui(ui, general, commands);
+pub fn head_ui(ui: &mut Ui, general: &mut General, family: &dyn Family, commands: &mut Commands) {
+    marks_ui(ui, family.words(), general.unit());
+    buttons_ui(ui, general, family);
+    filter_ui(ui, general, family.words(), commands);
 }
 
 /// The title and the two marks: what differs from the controller, and whether it would survive a power cycle.
-fn marks_ui(ui: &mut Ui, unit: Option<&UnitSettings>) {
+fn marks_ui(ui: &mut Ui, words: &SettingsWords, unit: Option<&UnitSettings>) {
     ui.horizontal(|ui| {
-        ui.heading("General Settings");
+        ui.heading(words.title);
         let Some(unit) = unit else { return };
         let (state, text) = edits_mark(unit);
         mark_ui(ui, state, "Edits", &text);
@@ -63,7 +64,8 @@ fn mark_ui(ui: &mut Ui, state: LampState, title: &str, text: &str) {
     });
 }
 
-fn buttons_ui(ui: &mut Ui, general: &mut General) {
+fn buttons_ui(ui: &mut Ui, general: &mut General, family: &dyn Family) {
+    let words = family.words();
     let Some(unit) = general.unit() else { return };
     let idle = !general.is_busy();
     let edits = unit.edits().len();
@@ -77,8 +79,8 @@ fn buttons_ui(ui: &mut Ui, general: &mut General) {
             "Shows what will be written, old and new",
             Sheet::Write,
         ),
-        ("Save to EEPROM…", "Save to EEPROM", idle, "Keeps the settings over a power cycle", Sheet::Save),
-        ("Default…", "Default settings", idle, "Restores the factory settings", Sheet::Defaults),
+        (words.save, "Save to EEPROM", idle, "Keeps the settings over a power cycle", Sheet::Save),
+        (words.defaults, "Default settings", idle, "Restores the factory settings", Sheet::Defaults),
         (
             "Open profile…",
             "Open profile",
@@ -95,8 +97,14 @@ fn buttons_ui(ui: &mut Ui, general: &mut General) {
             Sheet::Compare,
         ),
         ("Backups…", "Backups", true, "What was there before each write, save and restore", Sheet::Backups),
-        ("Copy motor…", "Copy motor", true, "One motor's settings for the other one", Sheet::CopyMotor),
     ];
+    let copy = family.lacks(Ability::SecondMotor).is_none().then_some((
+        "Copy motor…",
+        "Copy motor",
+        true,
+        "One motor's settings for the other one",
+        Sheet::CopyMotor,
+    ));
     let unfinished = general.has_unfinished().then_some((
         "Unfinished…",
         "Unfinished",
@@ -106,7 +114,7 @@ fn buttons_ui(ui: &mut Ui, general: &mut General) {
     ));
     let mut wanted = None;
     ui.horizontal_wrapped(|ui| {
-        for (text, name, enabled, note, sheet) in buttons.into_iter().chain(unfinished) {
+        for (text, name, enabled, note, sheet) in buttons.into_iter().chain(copy).chain(unfinished) {
             let is_open = general.sheet() == Some(&sheet);
             let response = ui.add_enabled(
                 enabled,
@@ -124,7 +132,7 @@ fn buttons_ui(ui: &mut Ui, general: &mut General) {
 }
 
 /// One line, always as high: the search, and what runs or what is shown.
-fn filter_ui(ui: &mut Ui, general: &mut General, commands: &mut Commands) {
+fn filter_ui(ui: &mut Ui, general: &mut General, words: &SettingsWords, commands: &mut Commands) {
     ui.horizontal(|ui| {
         ui.set_min_height(ui.spacing().interact_size.y);
         let mut is_new = false;
@@ -148,18 +156,18 @@ fn filter_ui(ui: &mut Ui, general: &mut General, commands: &mut Commands) {
         }
         match general.running() {
             Some(running) => running_ui(ui, running, commands),
-            None => idle_ui(ui, general),
+            None => idle_ui(ui, general, words.many),
         }
     });
 }
 
-fn idle_ui(ui: &mut Ui, general: &General) {
+fn idle_ui(ui: &mut Ui, general: &General, many: &str) {
     let Some(unit) = general.unit() else { return };
     let all = unit.table().rows().len();
     let text = if general.is_filtered() {
-        format!("{} of {all} settings", general.shown().len())
+        format!("{} of {all} {many}", general.shown().len())
     } else {
-        format!("{all} settings")
+        format!("{all} {many}")
     };
     let color = Palette::of(ui).weak_text;
     ui.add(Label::new(RichText::new(text).color(color)).truncate());

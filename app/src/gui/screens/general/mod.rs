@@ -14,15 +14,15 @@ mod calibrate;
 mod clamp;
 mod compare;
 mod conflicts;
-mod editor;
+pub(super) mod editor;
 mod head;
-mod help;
+pub(super) mod help;
 mod kept;
 mod nav;
 mod pin;
 mod profile;
 mod rows;
-mod sheet;
+pub(super) mod sheet;
 mod signal_graph;
 
 /// The share of the screen that the list of sections takes, and its least and greatest width.
@@ -30,19 +30,36 @@ const NAV_SHARE: f32 = 0.25;
 const NAV_WIDTH: (f32, f32) = (176.0, 250.0);
 
 pub fn general_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    framed_ui(ui, model, commands, sections_ui);
+}
+
+/// What the settings of every family have around their list: the head, and the sheets that stand in its place.
+pub fn framed_ui(
+    ui: &mut Ui,
+    model: &mut Model,
+    commands: &mut Commands,
+    list_ui: impl FnOnce(&mut Ui, &mut Model, &mut Commands),
+) {
     let Some(identity) = model.front.link.identity() else {
         return nothing_ui(ui, &not_connected_text(&model.front.phase));
     };
+    let family = model.front.family();
     let general = &mut model.front.general;
     general.look_at(identity);
     if general.wants_reading() {
         commands.push(Command::Settings(SettingsWish::Read));
     }
-    head::head_ui(ui, general, commands);
+    head::head_ui(ui, general, family, commands);
     ui.add_space(4.0);
-    if general.sheet().is_some() {
-        return sheet::sheet_ui(ui, general, model.front.link.stream, commands);
+    match general.sheet().is_some() {
+        true => sheet::sheet_ui(ui, general, model.front.link.stream, family.words(), commands),
+        false => list_ui(ui, model, commands),
     }
+}
+
+/// The parts at the left, and what the open one has.
+fn sections_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    let general = &mut model.front.general;
     let size = ui.available_size();
     let nav_width = (size.x * NAV_SHARE).clamp(NAV_WIDTH.0, NAV_WIDTH.1);
     ui.horizontal_top(|ui| {

@@ -8,6 +8,7 @@ use egui::{Button, CollapsingHeader, Grid, Label, RichText, ScrollArea, Ui, vec2
 
 use super::{compare, kept, profile};
 use crate::gui::command::{Command, Commands};
+use crate::gui::family::SettingsWords;
 use crate::gui::model::general::{General, Saved, SettingsWish, Settle, Sheet, Take, UnitSettings};
 use crate::gui::theme::Palette;
 use crate::gui::widgets::LampState;
@@ -31,19 +32,31 @@ pub type Offer = (&'static str, Act, bool);
 /// Room for the buttons below the text.
 const BUTTONS_HEIGHT: f32 = 44.0;
 
-pub fn sheet_ui(ui: &mut Ui, general: &mut General, stream: Option<Stream>, commands: &mut Commands) {
+pub fn sheet_ui(
+    ui: &mut Ui,
+    general: &mut General,
+    stream: Option<Stream>,
+    words: &SettingsWords,
+    commands: &mut Commands,
+) {
     general.follow_dialog();
     let Some(sheet) = general.sheet().cloned() else { return };
     let height = (ui.available_height() - BUTTONS_HEIGHT).max(60.0);
     let offers = ui.scope(|ui| {
         ui.set_height(height);
         let area = ScrollArea::vertical().id_salt(format!("{sheet:?}")).auto_shrink(false);
-        area.show(ui, |ui| content_ui(ui, general, &sheet, stream)).inner
+        area.show(ui, |ui| content_ui(ui, general, &sheet, stream, words)).inner
     });
     buttons_ui(ui, general, &offers.inner, commands);
 }
 
-fn content_ui(ui: &mut Ui, general: &mut General, sheet: &Sheet, stream: Option<Stream>) -> Vec<Offer> {
+fn content_ui(
+    ui: &mut Ui,
+    general: &mut General,
+    sheet: &Sheet,
+    stream: Option<Stream>,
+    words: &SettingsWords,
+) -> Vec<Offer> {
     match sheet {
         Sheet::OpenProfile => return profile::open_ui(ui, general),
         Sheet::SaveProfile => return profile::save_ui(ui, general),
@@ -52,14 +65,14 @@ fn content_ui(ui: &mut Ui, general: &mut General, sheet: &Sheet, stream: Option<
         Sheet::Backups => return kept::backups_ui(ui, general),
         Sheet::CopyMotor => return kept::copy_motor_ui(ui, general),
         Sheet::Unfinished => return kept::unfinished_ui(ui, general),
-        Sheet::Save => return save_ui(ui, general),
+        Sheet::Save => return save_ui(ui, general, words),
         _ => {}
     }
     let Some(unit) = general.unit() else { return Vec::new() };
     match sheet {
-        Sheet::Read => read_ui(ui, unit),
+        Sheet::Read => read_ui(ui, unit, words),
         Sheet::Write => write_ui(ui, unit, stream),
-        Sheet::Defaults => defaults_ui(ui, unit),
+        Sheet::Defaults => defaults_ui(ui, unit, words),
         Sheet::Report { title, sentences } => report_ui(ui, title, sentences),
         _ => Vec::new(),
     }
@@ -106,14 +119,10 @@ fn buttons_ui(ui: &mut Ui, general: &mut General, offers: &[Offer], commands: &m
     }
 }
 
-fn read_ui(ui: &mut Ui, unit: &UnitSettings) -> Vec<Offer> {
+fn read_ui(ui: &mut Ui, unit: &UnitSettings, words: &SettingsWords) -> Vec<Offer> {
     title_ui(ui, "Read settings");
     text_ui(ui, "Read asks the controller for every setting it works with now. Nothing on it changes.");
-    text_ui(
-        ui,
-        "Load from EEPROM makes the controller take back what it saved last, then reads that. \
-         What it works with now and was not saved is lost.",
-    );
+    text_ui(ui, words.reload_text);
     if !unit.unsaved().is_empty() {
         text_ui(ui, "These come back (works with now -> in EEPROM, as last known):");
         differences_ui(ui, unit, unit.unsaved().iter().map(swapped));
@@ -180,14 +189,13 @@ fn bytes_ui(ui: &mut Ui, unit: &UnitSettings, plan: &Plan) {
     });
 }
 
-fn save_ui(ui: &mut Ui, general: &General) -> Vec<Offer> {
+fn save_ui(ui: &mut Ui, general: &General, words: &SettingsWords) -> Vec<Offer> {
     let Some(unit) = general.unit() else { return Vec::new() };
     title_ui(ui, "Save to EEPROM");
-    text_ui(
-        ui,
-        "Saves all settings that the controller works with now, loads them back and compares. The controller may \
-         restart; motors must stand still.",
-    );
+    text_ui(ui, words.save_text);
+    if let Some(warning) = words.save_warning {
+        lamp_ui(ui, LampState::Warning, warning);
+    }
     match (unit.saved(), general.known_eeprom().zip(unit.ram())) {
         (Saved::Yes, _) => text_ui(ui, "As far as known its EEPROM holds the same already."),
         (Saved::Differs(_), _) => {
@@ -221,17 +229,16 @@ fn save_ui(ui: &mut Ui, general: &General) -> Vec<Offer> {
         WearLevel::Worn => LampState::Error,
     };
     lamp_ui(ui, state, &format!("{} {limits}", wear.sentence()));
-    vec![("Save", Act::Wish(SettingsWish::Save), true)]
+    vec![(words.save_now, Act::Wish(SettingsWish::Save), true)]
 }
 
-fn defaults_ui(ui: &mut Ui, unit: &UnitSettings) -> Vec<Offer> {
+fn defaults_ui(ui: &mut Ui, unit: &UnitSettings, words: &SettingsWords) -> Vec<Offer> {
     let changes = unit.changes_to_defaults();
     title_ui(ui, "Default settings");
-    text_ui(
-        ui,
-        "Makes the controller work with its factory settings, then reads them. They last only once they are saved \
-         to EEPROM.",
-    );
+    text_ui(ui, words.defaults_text);
+    if let Some(warning) = words.defaults_warning {
+        lamp_ui(ui, LampState::Warning, warning);
+    }
     if changes.is_empty() {
         text_ui(ui, "As far as known it has its defaults already.");
     } else {
@@ -241,7 +248,7 @@ fn defaults_ui(ui: &mut Ui, unit: &UnitSettings) -> Vec<Offer> {
     if !unit.edits().is_empty() {
         text_ui(ui, "Your changes that are not written stay on this screen.");
     }
-    vec![("Restore defaults", Act::Wish(SettingsWish::RestoreDefaults), true)]
+    vec![(words.defaults_now, Act::Wish(SettingsWish::RestoreDefaults), true)]
 }
 
 fn report_ui(ui: &mut Ui, title: &str, sentences: &[String]) -> Vec<Offer> {

@@ -7,9 +7,25 @@ use crate::gui::command::Commands;
 use crate::gui::model::Model;
 use crate::gui::model::screen::Screen;
 
+mod bits;
+mod drive;
+mod inputs;
+mod registers;
+pub mod steps;
+mod terminal;
+
 pub fn screen_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     match model.screen {
         Screen::DeviceStatus => status::status_ui(ui, model, commands),
-        _ => nothing_ui(ui, "This controller has no such screen. Choose another at the left."),
+        Screen::GeneralSettings => registers::registers_ui(ui, model, commands),
+        Screen::Pwm => drive::duty_ui(ui, model, commands),
+        Screen::Velocity => drive::velocity_ui(ui, model, commands),
+        Screen::Position => drive::position_ui(ui, model, commands),
+        Screen::Motion => drive::motion_ui(ui, model, commands),
+        Screen::Inputs => inputs::inputs_ui(ui, model, commands),
+        Screen::Terminal => terminal::terminal_ui(ui, model, commands),
+        Screen::MclEditor => {
+            nothing_ui(ui, "A Motion Mind 3 runs no scripts. Choose another screen at the left.")
+        }
     }
 }

@@ -1,0 +1,337 @@
+//! The terminal: a command typed in text or in hex, what it means, what it looks like in both protocols, and its answer.
+//!
+//! What is sent goes through the link like every other command, in the protocol that the unit speaks. The self-test is never
+//! sent; commands that move the motor are sent while a screen that drives is armed, which this one is not.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use brushwork_link::device::Event;
+use brushwork_protocol::motion_mind::{
+    Address, Command, Effect, FrameEvent, FrameReader, LineEvent, LineReader, Part, checksum,
+    describe_command, encode_frame, encode_line,
+};
+use brushwork_protocol::packet_serial::{Value, Values, hex};
+
+use crate::gui::command::Command as Wish;
+
+/// Lines kept; the oldest go first.
+const KEPT: usize = 500;
+/// Answers to the terminal's commands begin with this number.
+const FIRST_ID: u64 = 1 << 41;
+
+/// How a command is typed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Form {
+    /// As a line of text: `W01 04 6000`.
+    #[default]
+    Text,
+    /// As bytes: `18 01 04 70 17 A4`.
+    Hex,
+}
+
+/// One command with its answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    id: u64,
+    /// As text and as bytes, where it has the form.
+    pub sent: String,
+    /// In words.
+    pub meaning: String,
+    pub answer: Option<Result<String, String>>,
+}
+
+/// The state of the screen.
+#[derive(Debug, Default)]
+pub struct Terminal {
+    pub typed: String,
+    pub form: Form,
+    entries: VecDeque<Entry>,
+    asked: u64,
+    /// Which of the earlier lines the up key shows.
+    recalled: Option<usize>,
+    history: Vec<String>,
+}
+
+/// What was typed, understood.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Understood {
+    pub address: Address,
+    pub command: Command,
+}
+
+impl Understood {
+    /// In words.
+    pub fn meaning(&self) -> String {
+        describe_command(self.address, &self.command)
+    }
+
+    /// As a line of text, where it has that form.
+    pub fn line(&self) -> Option<String> {
+        let command = match self.command {
+            Command::ReadRegister(number) => Command::ReadText(Part::Register(number)),
+            other => other,
+        };
+        encode_line(self.address, &command).ok().map(|line| line.trim_end().to_owned())
+    }
+
+    /// As bytes, where it has that form.
+    pub fn bytes(&self) -> Option<String> {
+        let command = match self.command {
+            Command::ReadText(Part::Register(number)) => Command::ReadRegister(number),
+            Command::ReadText(Part::All) => Command::Read(u32::MAX),
+            other => other,
+        };
+        encode_frame(self.address, &command).ok().map(|bytes| hex(&bytes))
+    }
+
+    /// Why it is not sent; `selected` is the unit that the link speaks to.
+    pub fn refusal(&self, selected: u8) -> Option<String> {
+        if self.address.is_broadcast() {
+            return Some(
+                "this goes to every unit of the bus and none answers. Send it unit by unit".to_owned(),
+            );
+        }
+        if self.address.get() != selected {
+            return Some(format!(
+                "this is for {}, and the link speaks to unit {selected}. Select the unit at the left",
+                self.address
+            ));
+        }
+        matches!(self.command.effect(), Effect::Motion | Effect::RelativeMotion)
+            .then(|| "this moves the motor. Use the screens that drive, which are armed first".to_owned())
+    }
+
+    /// What should be known before it is sent.
+    pub fn care(&self) -> Option<&'static str> {
+        match self.command {
+            Command::Write { .. } => Some("This changes a register in RAM. A backup is made first."),
+            Command::WriteStore { .. } => {
+                Some("This writes EEPROM and stops the motor. A backup is made first.")
+            }
+            Command::Restore => Some(
+                "This brings back the factory's values in RAM and EEPROM and stops the motor. A backup is made first.",
+            ),
+            Command::Reset => {
+                Some("This starts the unit anew and stops the motor: what is in RAM alone is lost.")
+            }
+            _ => None,
+        }
+    }
+
+    /// The command's byte and its values, as the link takes them.
+    fn request(&self) -> Option<(u8, Vec<i64>)> {
+        Some(match self.command {
+            Command::Write { register, value } => (0x18, vec![register.into(), value]),
+            Command::WriteStore { register, value } => (0x19, vec![register.into(), value]),
+            Command::Read(_) | Command::ReadText(Part::All) => (0x1A, vec![]),
+            Command::ReadRegister(number) | Command::ReadText(Part::Register(number)) => {
+                (0x1D, vec![number.into()])
+            }
+            Command::ReadText(Part::StatusBits) => (0x1D, vec![16]),
+            Command::ReadText(Part::FunctionBits) => (0x1D, vec![3]),
+            Command::Restore => (0x1B, vec![]),
+            Command::Reset => (0x1C, vec![]),
+            Command::ChangeSpeed(_)
+            | Command::MoveToAbsolute(_)
+            | Command::MoveToRelative(_)
+            | Command::MoveAtVelocity(_) => {
+                return None;
+            }
+        })
+    }
+}
+
+/// What a line of text means, or why it is none.
+pub fn of_text(typed: &str) -> Result<Understood, String> {
+    let mut reader = LineReader::new();
+    let mut event = None;
+    for byte in typed.trim().bytes().chain(*b"\r\n") {
+        event = event.or(reader.feed(byte));
+    }
+    match event {
+        Some(LineEvent::Command(address, command)) => Ok(Understood { address, command }),
+        Some(LineEvent::SelfTest(_)) => {
+            Err("The self-test is not sent: the unit would need a power cycle after it.".to_owned())
+        }
+        Some(LineEvent::NotUnderstood { address: None, .. }) => {
+            Err("A command is a letter and two digits of address, as in R01 04. The unit would not answer."
+                .to_owned())
+        }
+        Some(LineEvent::NotUnderstood { .. }) => Err("The unit would answer BAD COMMAND.".to_owned()),
+        None => Err("Type a command, as R01 04 or W01 04 6000.".to_owned()),
+    }
+}
+
+/// What bytes in hex mean, or why they are no command. A checksum that is missing is told.
+pub fn of_hex(typed: &str) -> Result<Understood, String> {
+    let digits: String = typed.chars().filter(|letter| !letter.is_whitespace() && *letter != ',').collect();
+    let digits = digits.replace("0x", "").replace("0X", "");
+    if digits.is_empty() {
+        return Err("Type the bytes of a command, as 1D 01 04 22.".to_owned());
+    }
+    let pair = |at: usize| digits.get(at..at + 2).and_then(|pair| u8::from_str_radix(pair, 16).ok());
+    let bytes: Option<Vec<u8>> = (0..digits.len()).step_by(2).map(pair).collect();
+    let Some(bytes) = bytes else { return Err("These are not pairs of hexadecimal digits.".to_owned()) };
+    let mut reader = FrameReader::new();
+    for (index, byte) in bytes.iter().enumerate() {
+        if let Some(FrameEvent::Command(address, command)) = reader.feed(*byte, Duration::ZERO) {
+            let rest = bytes.len() - index - 1;
+            return match rest {
+                0 => Ok(Understood { address, command }),
+                _ => Err(format!("A whole command is followed by {rest} more bytes. Send one at a time.")),
+            };
+        }
+    }
+    let mut with_sum = bytes.clone();
+    with_sum.push(checksum(&bytes));
+    let mut reader = FrameReader::new();
+    let is_whole = with_sum.iter().any(|byte| reader.feed(*byte, Duration::ZERO).is_some());
+    Err(match (is_whole, bytes.split_last()) {
+        (true, _) => format!("The checksum is missing: it is {:02X}.", checksum(&bytes)),
+        (false, Some((last, rest))) if rest.len() >= 2 && checksum(rest) != *last => {
+            format!(
+                "No command: the unit would be silent. If the last byte is the checksum, it should be {:02X}.",
+                checksum(rest)
+            )
+        }
+        _ => "No command yet: the unit would be silent.".to_owned(),
+    })
+}
+
+impl Terminal {
+    /// What stands in the field.
+    pub fn understood(&self) -> Result<Understood, String> {
+        match self.form {
+            Form::Text => of_text(&self.typed),
+            Form::Hex => of_hex(&self.typed),
+        }
+    }
+
+    pub fn entries(&self) -> &VecDeque<Entry> {
+        &self.entries
+    }
+
+    pub fn clear(&mut self) {
+        self.entries.clear();
+    }
+
+    /// Sends what stands in the field, if it can be.
+    pub fn send(&mut self, selected: u8) -> Option<Wish> {
+        let understood =
+            self.understood().ok().filter(|understood| understood.refusal(selected).is_none())?;
+        let (command, values) = understood.request()?;
+        self.asked += 1;
+        let id = FIRST_ID + self.asked;
+        let forms = [understood.line(), understood.bytes()].into_iter().flatten().collect::<Vec<_>>();
+        self.push(Entry { id, sent: forms.join("  |  "), meaning: understood.meaning(), answer: None });
+        self.history.push(std::mem::take(&mut self.typed));
+        self.recalled = None;
+        Some(Wish::Transact { id, command, values: values.into_iter().map(Value::Int).collect() })
+    }
+
+    /// The line before the one that is shown, or after it.
+    pub fn recall(&mut self, older: bool) {
+        let at = match (self.recalled, older) {
+            (None, true) => self.history.len().checked_sub(1),
+            (Some(at), true) => Some(at.saturating_sub(1)),
+            (Some(at), false) if at + 1 < self.history.len() => Some(at + 1),
+            (_, false) => None,
+        };
+        self.recalled = at;
+        self.typed = at.and_then(|at| self.history.get(at).cloned()).unwrap_or_default();
+    }
+
+    /// Takes note of an answer.
+    pub fn note(&mut self, event: &Event) {
+        let Event::Transacted { id, result } = event else { return };
+        if let Some(entry) = self.entries.iter_mut().find(|entry| entry.id == *id) {
+            entry.answer = Some(match result {
+                Ok(values) => Ok(told(values)),
+                Err(failure) => Err(failure.to_string()),
+            });
+        }
+    }
+
+    /// The link is gone: nothing more is answered.
+    pub fn link_ended(&mut self) {
+        for entry in self.entries.iter_mut().filter(|entry| entry.answer.is_none()) {
+            entry.answer = Some(Err("The link ended before an answer came.".to_owned()));
+        }
+    }
+
+    fn push(&mut self, entry: Entry) {
+        if self.entries.len() == KEPT {
+            self.entries.pop_front();
+        }
+        self.entries.push_back(entry);
+    }
+}
+
+/// "PTERM 6000, ITERM 35", or that it was taken.
+fn told(values: &Values) -> String {
+    if values.is_empty() {
+        return "OK".to_owned();
+    }
+    let each = values.iter().map(|(field, value)| match value {
+        Value::Int(value) => format!("{} {value}", field.name),
+        other => format!("{} {other:?}", field.name),
+    });
+    each.collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn meaning(result: Result<Understood, String>) -> String {
+        result.map_or_else(|why| why, |understood| understood.meaning())
+    }
+
+    #[test]
+    fn the_same_command_is_understood_in_text_and_in_hex() {
+        for (text, bytes) in [("W01 04 6000", "18 01 04 70 17 A4"), ("X01", "1B 01 1C"), ("Y01", "1c011d")] {
+            assert_eq!(of_text(text).unwrap(), of_hex(bytes).unwrap(), "{text}");
+        }
+        assert_eq!(meaning(of_text("r01 04")), "unit 1: read PTERM");
+        assert_eq!(of_text("R01 04").unwrap().bytes().as_deref(), Some("1D 01 04 22"));
+        assert_eq!(of_hex("1D 01 04 22").unwrap().line().as_deref(), Some("R01 04"));
+    }
+
+    #[test]
+    fn what_is_no_command_says_what_the_unit_would_do() {
+        assert!(meaning(of_text("W01 04")).contains("BAD COMMAND"));
+        assert!(meaning(of_text("hello")).contains("would not answer"));
+        assert!(meaning(of_hex("1D 01 04")).contains("it is 22"));
+        assert!(meaning(of_hex("1D 01 04 23")).contains("should be 22"));
+        assert!(meaning(of_hex("1D 0")).contains("pairs"));
+    }
+
+    #[test]
+    fn the_self_test_motion_and_other_units_are_not_sent() {
+        assert!(meaning(of_text("Z01")).contains("self-test"));
+        let refusal = |text: &str| of_text(text).unwrap().refusal(1).unwrap_or_default();
+        assert!(refusal("C01 100").contains("moves the motor"));
+        assert!(refusal("R02 04").contains("unit 2"));
+        assert!(refusal("W99 04 5").contains("every unit"));
+        assert_eq!(refusal("R01 04"), "");
+        let mut terminal = Terminal { typed: "P01 1000".to_owned(), ..Terminal::default() };
+        assert_eq!(terminal.send(1), None);
+    }
+
+    #[test]
+    fn lines_of_before_come_back_by_key() {
+        let mut terminal = Terminal::default();
+        for line in ["R01 04", "R01 05"] {
+            terminal.typed = line.to_owned();
+            assert!(terminal.send(1).is_some());
+        }
+        terminal.recall(true);
+        assert_eq!(terminal.typed, "R01 05");
+        terminal.recall(true);
+        terminal.recall(true);
+        assert_eq!(terminal.typed, "R01 04");
+        terminal.recall(false);
+        assert_eq!(terminal.typed, "R01 05");
+    }
+}
