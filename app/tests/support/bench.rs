@@ -17,7 +17,8 @@ use brushwork_link::{Clock as _, Failure, HiddenSettings};
 use brushwork_protocol::packet_serial::{Address, Motor};
 use brushwork_script::debug::{Request as DebugRequest, View, Wanted};
 use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
-use brushwork_sim::machine::{Machine as _, StreamIndex};
+use brushwork_sim::machine::{Machine, StreamIndex};
+use brushwork_sim::motion_mind::{Mode, MotionMind, MotionMindBus, MotionMindConfig};
 use brushwork_sim::server::Pace;
 use brushwork_sim::world::{WorldAction, WorldView};
 use crossbeam_channel::{Receiver, bounded};
@@ -40,6 +41,9 @@ const AHEAD: Duration = Duration::from_secs(2);
 /// What connects to the second machine.
 pub const SECOND: &str = "sim:mcp236";
 
+/// What connects to the Motion Minds.
+pub const MIND: &str = "sim:motion-mind-3";
+
 /// The loop of a line that is open.
 type Slot = Rc<RefCell<Option<Lockstep>>>;
 
@@ -49,7 +53,9 @@ pub struct Bench {
     pub line: Line,
     /// A second machine on a line of its own, at [`SECOND`].
     pub second: Line,
-    loops: [Slot; 2],
+    /// Motion Minds on a line of their own, at [`MIND`] and whatever follows it.
+    pub minds: Line<MotionMindBus>,
+    loops: [Slot; 3],
     ports: Rc<RefCell<Option<Vec<PortInfo>>>>,
     /// The folder of what the window keeps on the computer; gone with the bench.
     kept: Rc<tempfile::TempDir>,
@@ -96,18 +102,44 @@ impl Bench {
         Self::keeping_in(kept, Bus::single(unit, StreamIndex::Usb), [1280.0, 800.0], Theme::Dark)
     }
 
+    /// A window of 1280 by 800 with Motion Minds at [`MIND`], beside the MCP266.
+    pub fn with_minds(minds: Vec<MotionMindConfig>) -> Self {
+        Self::with_minds_sized(minds, [1280.0, 800.0], Theme::Dark)
+    }
+
+    /// A window of any size with Motion Minds at [`MIND`].
+    pub fn with_minds_sized(minds: Vec<MotionMindConfig>, size: [f32; 2], theme: Theme) -> Self {
+        let kept = Rc::new(tempfile::tempdir().expect("a temporary folder can be made"));
+        let unit = Controller::new(ControllerConfig::default()).expect("the default configuration is sound");
+        Self::made(kept, Bus::single(unit, StreamIndex::Usb), minds, size, theme)
+    }
+
     fn with_bus(bus: Bus, size: [f32; 2], theme: Theme) -> Self {
         let kept = Rc::new(tempfile::tempdir().expect("a temporary folder can be made"));
         Self::keeping_in(kept, bus, size, theme)
     }
 
     fn keeping_in(kept: Rc<tempfile::TempDir>, bus: Bus, size: [f32; 2], theme: Theme) -> Self {
+        Self::made(kept, bus, vec![MotionMindConfig::new(Mode::SerialPid)], size, theme)
+    }
+
+    fn made(
+        kept: Rc<tempfile::TempDir>,
+        bus: Bus,
+        minds: Vec<MotionMindConfig>,
+        size: [f32; 2],
+        theme: Theme,
+    ) -> Self {
+        let minds =
+            minds.into_iter().map(|config| MotionMind::new(config).expect("the configuration is sound"));
+        let minds = Line::of(MotionMindBus::new(minds.collect()), StreamIndex::Usb, MIND);
         let line = Line::new(bus);
         let unit = Controller::new(ControllerConfig::default()).expect("the default configuration is sound");
         let second = Line::new(Bus::single(unit, StreamIndex::Usb));
-        let loops = [Slot::default(), Slot::default()];
+        let loops = [Slot::default(), Slot::default(), Slot::default()];
         let ports = Rc::new(RefCell::new(Some(Vec::new())));
-        let opener = BenchOpener { lines: [line.clone(), second.clone()], loops: loops.clone() };
+        let opener =
+            BenchOpener { lines: [line.clone(), second.clone()], minds: minds.clone(), loops: loops.clone() };
         let keeping = Keeping::new(Store::at(kept.path()));
         let mut parts =
             Some(Parts { ports: Box::new(BenchPorts(ports.clone())), opener: Box::new(opener), keeping });
@@ -128,7 +160,7 @@ impl Bench {
                 },
                 None,
             );
-        Self { harness, line, second, loops, ports, kept }
+        Self { harness, line, second, minds, loops, ports, kept }
     }
 
     /// What the window keeps on the computer.
@@ -190,13 +222,9 @@ impl Bench {
     }
 
     fn turn_loop(&self, until: Duration) {
-        for (line, device_loop) in [&self.line, &self.second].into_iter().zip(&self.loops) {
-            match device_loop.borrow().as_ref() {
-                Some(device_loop) => device_loop.run_until(until),
-                None => line.clock.advance_to(until),
-            }
-            line.with(|_| ());
-        }
+        turn_one(&self.line, &self.loops[0], until);
+        turn_one(&self.second, &self.loops[1], until);
+        turn_one(&self.minds, &self.loops[2], until);
     }
 
     pub fn model(&mut self) -> &mut Model {
@@ -382,7 +410,16 @@ impl PortSource for BenchPorts {
 
 struct BenchOpener {
     lines: [Line; 2],
-    loops: [Slot; 2],
+    minds: Line<MotionMindBus>,
+    loops: [Slot; 3],
+}
+
+fn turn_one<M: Machine>(line: &Line<M>, device_loop: &Slot, until: Duration) {
+    match device_loop.borrow().as_ref() {
+        Some(device_loop) => device_loop.run_until(until),
+        None => line.clock.advance_to(until),
+    }
+    line.with(|_| ());
 }
 
 impl Opener for BenchOpener {

@@ -5,15 +5,16 @@ use std::time::Duration;
 
 use brushwork_link::{Clock as _, Transport, TransportError, VirtualClock};
 use brushwork_sim::controller::Bus;
-use brushwork_sim::machine::Machine as _;
+use brushwork_sim::machine::{Machine, StreamIndex};
 use brushwork_sim::world::WorldAction;
 
 use super::lockstep::Gate;
 
 /// A simulated bus and the clock it shares with its client. Clones are the same.
-#[derive(Clone)]
-pub struct Line {
-    bus: Arc<Mutex<Bus>>,
+pub struct Line<M = Bus> {
+    bus: Arc<Mutex<M>>,
+    stream: StreamIndex,
+    name: &'static str,
     pub clock: VirtualClock,
     rest: Vec<u8>,
     swallowed: Arc<Mutex<Option<Swallowed>>>,
@@ -35,11 +36,36 @@ struct Swallowed {
     reply: Vec<u8>,
 }
 
+impl<M> Clone for Line<M> {
+    fn clone(&self) -> Self {
+        Self {
+            bus: self.bus.clone(),
+            stream: self.stream,
+            name: self.name,
+            clock: self.clock.clone(),
+            rest: self.rest.clone(),
+            swallowed: self.swallowed.clone(),
+            cut: self.cut.clone(),
+            gate: self.gate.clone(),
+        }
+    }
+}
+
 impl Line {
     pub fn new(bus: Bus) -> Self {
+        let stream = bus.stream();
+        Self::of(bus, stream, "sim:mcp266")
+    }
+}
+
+impl<M: Machine> Line<M> {
+    /// A line to any machine, on a stream of it, as a person would name it.
+    pub fn of(bus: M, stream: StreamIndex, name: &'static str) -> Self {
         let swallowed = Arc::default();
         Self {
             bus: Arc::new(Mutex::new(bus)),
+            stream,
+            name,
             clock: VirtualClock::new(),
             rest: Vec::new(),
             swallowed,
@@ -90,17 +116,17 @@ impl Line {
     }
 
     /// Does something with the bus, which is first brought to the present.
-    pub fn with<T>(&self, act: impl FnOnce(&mut Bus) -> T) -> T {
+    pub fn with<T>(&self, act: impl FnOnce(&mut M) -> T) -> T {
         let mut bus = self.lock();
         bus.advance(self.clock.now());
         act(&mut bus)
     }
 
-    fn lock(&self) -> MutexGuard<'_, Bus> {
+    fn lock(&self) -> MutexGuard<'_, M> {
         self.bus.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn plugged(bus: &Bus) -> Result<(), TransportError> {
+    fn plugged(bus: &M) -> Result<(), TransportError> {
         let gone = || TransportError::Gone { detail: "the cable was pulled out".to_owned() };
         if bus.plugged() { Ok(()) } else { Err(gone()) }
     }
@@ -110,8 +136,7 @@ impl Line {
             let mut bus = self.lock();
             bus.advance(self.clock.now());
             Self::plugged(&bus)?;
-            let stream = bus.stream();
-            if let Some(bytes) = bus.take_output(stream) {
+            if let Some(bytes) = bus.take_output(self.stream) {
                 return Ok(bytes);
             }
             if self.clock.now() >= deadline {
@@ -125,7 +150,7 @@ impl Line {
     }
 }
 
-impl Transport for Line {
+impl<M: Machine> Transport for Line<M> {
     fn write(&mut self, bytes: &[u8]) -> Result<(), TransportError> {
         if let Some(reply) = self.instead_of(bytes) {
             self.rest.extend(reply);
@@ -133,8 +158,7 @@ impl Transport for Line {
         }
         self.with(|bus| {
             Self::plugged(bus)?;
-            let stream = bus.stream();
-            bus.receive(stream, bytes);
+            bus.receive(self.stream, bytes);
             Ok(())
         })?;
         self.cut(bytes);
@@ -154,14 +178,14 @@ impl Transport for Line {
     fn discard_input(&mut self) -> Result<usize, TransportError> {
         let kept = std::mem::take(&mut self.rest).len();
         self.with(|bus| {
-            let stream = bus.stream();
-            let late = std::iter::from_fn(|| bus.take_output(stream)).map(|bytes| bytes.len()).sum::<usize>();
+            let late =
+                std::iter::from_fn(|| bus.take_output(self.stream)).map(|bytes| bytes.len()).sum::<usize>();
             Ok(kept + late)
         })
     }
 
     fn describe(&self) -> String {
-        "sim:mcp266".to_owned()
+        self.name.to_owned()
     }
 
     fn byte_time(&self) -> Option<Duration> {

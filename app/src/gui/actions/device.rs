@@ -6,6 +6,7 @@ use egui::Key;
 
 use super::{Action, Keys, Menu, Ready, always, connected, ctrl, ctrl_shift, key, place, settings_idle};
 use crate::gui::command::Command;
+use crate::gui::family::Ability;
 use crate::gui::mcl::MclWish;
 use crate::gui::model::drawer::Tab;
 use crate::gui::model::firmware::FirmwareWish;
@@ -92,7 +93,7 @@ pub(super) const ACTIONS: &[Action] = &[
         place: place(Menu::Device, 2),
         keys: Keys::None,
         help: "Shows what firmware is installed and what is known about it, and updates it from a file of yours.",
-        ready: always,
+        ready: |model| has(model, Ability::Firmware, always),
         is_on: None,
         command: |_| Command::Firmware(FirmwareWish::Open),
     },
@@ -142,7 +143,7 @@ pub(super) const ACTIONS: &[Action] = &[
         place: place(Menu::Device, 3),
         keys: Keys::None,
         help: "Lists settings that contradict each other, with the way to each.",
-        ready: connected,
+        ready: |model| has(model, Ability::Conflicts, connected),
         is_on: None,
         command: |_| Command::ShowSettings(Section::Conflicts),
     },
@@ -152,7 +153,7 @@ pub(super) const ACTIONS: &[Action] = &[
         place: place(Menu::Device, 3),
         keys: Keys::None,
         help: "Goes to the guided test of the voltage clamp; it moves a motor once armed and started there.",
-        ready: connected,
+        ready: |model| has(model, Ability::ClampTest, connected),
         is_on: None,
         command: |_| Command::ShowSettings(Section::ClampTest),
     },
@@ -162,7 +163,7 @@ pub(super) const ACTIONS: &[Action] = &[
         place: place(Menu::Device, 3),
         keys: Keys::None,
         help: "Goes to the guided measurement of full speed; it moves a motor once armed and started there.",
-        ready: connected,
+        ready: |model| has(model, Ability::Qpps, connected),
         is_on: None,
         command: |_| Command::OpenDrawer(Screen::Pwm, Tab::Qpps),
     },
@@ -172,7 +173,7 @@ pub(super) const ACTIONS: &[Action] = &[
         place: place(Menu::Device, 3),
         keys: Keys::None,
         help: "Goes to guided tuning of the velocity loop; it moves a motor once armed and started there.",
-        ready: connected,
+        ready: |model| has_loop(model, Screen::Velocity),
         is_on: None,
         command: |_| Command::OpenDrawer(Screen::Velocity, Tab::Tune),
     },
@@ -182,7 +183,7 @@ pub(super) const ACTIONS: &[Action] = &[
         place: place(Menu::Device, 3),
         keys: Keys::None,
         help: "Goes to guided tuning of the position loop; it moves a motor once armed and started there.",
-        ready: connected,
+        ready: |model| has_loop(model, Screen::Position),
         is_on: None,
         command: |_| Command::OpenDrawer(Screen::Position, Tab::Tune),
     },
@@ -202,7 +203,7 @@ pub(super) const ACTIONS: &[Action] = &[
         place: place(Menu::Device, 3),
         keys: Keys::None,
         help: "Starts the guided tuning of motor 2 on the open and armed Velocity or Position screen.",
-        ready: can_tune,
+        ready: |model| has(model, Ability::SecondMotor, can_tune),
         is_on: None,
         command: |_| Command::Tune(TuneWish::Start(Motor::M2)),
     },
@@ -212,7 +213,7 @@ pub(super) const ACTIONS: &[Action] = &[
         place: place(Menu::Device, 3),
         keys: Keys::None,
         help: "Goes to the assistant that turns the gains with you, step by step, on the open screen or the Velocity screen.",
-        ready: connected,
+        ready: |model| has(model, Ability::ByHand, connected),
         is_on: None,
         command: |model| {
             let screen = if model.screen == Screen::Position { Screen::Position } else { Screen::Velocity };
@@ -225,7 +226,7 @@ pub(super) const ACTIONS: &[Action] = &[
         place: place(Menu::Device, 3),
         keys: Keys::None,
         help: "Goes to the generator of steps, squares, trapezoids and jogs of the open screen, or of the PWM screen.",
-        ready: connected,
+        ready: |model| has(model, Ability::Generator, connected),
         is_on: None,
         command: |model| {
             let drives = matches!(model.screen, Screen::Pwm | Screen::Velocity | Screen::Position);
@@ -248,7 +249,7 @@ pub(super) const ACTIONS: &[Action] = &[
         place: place(Menu::Device, 4),
         keys: key(Key::F5),
         help: "Downloads the MCL program to the controller's flash memory.",
-        ready: can_download,
+        ready: |model| has(model, Ability::Scripts, can_download),
         is_on: None,
         command: |_| Command::DownloadMcl,
     },
@@ -258,7 +259,7 @@ pub(super) const ACTIONS: &[Action] = &[
         place: place(Menu::Device, 4),
         keys: Keys::None,
         help: "Downloads a script that the maker's own program has compiled, for real controllers.",
-        ready: connected,
+        ready: |model| has(model, Ability::Scripts, connected),
         is_on: None,
         command: |_| Command::Mcl(MclWish::ChooseImage),
     },
@@ -268,7 +269,7 @@ pub(super) const ACTIONS: &[Action] = &[
         place: place(Menu::Device, 4),
         keys: Keys::None,
         help: "Starts the program that is in the controller.",
-        ready: can_start_script,
+        ready: |model| has(model, Ability::Scripts, can_start_script),
         is_on: None,
         command: |_| Command::StartScript,
     },
@@ -278,7 +279,7 @@ pub(super) const ACTIONS: &[Action] = &[
         place: place(Menu::Device, 4),
         keys: Keys::None,
         help: "Stops the program that runs in the controller.",
-        ready: connected,
+        ready: |model| has(model, Ability::Scripts, connected),
         is_on: None,
         command: |_| Command::StopScript,
     },
@@ -298,7 +299,7 @@ pub(super) const ACTIONS: &[Action] = &[
         place: place(Menu::Device, 5),
         keys: Keys::None,
         help: "Sets the count of encoder 2 to zero.",
-        ready: connected,
+        ready: |model| has(model, Ability::SecondMotor, connected),
         is_on: None,
         command: |_| Command::ZeroEncoder(Motor::M2),
     },
@@ -308,11 +309,28 @@ pub(super) const ACTIONS: &[Action] = &[
         place: place(Menu::Device, 5),
         keys: Keys::None,
         help: "Ends an emergency stop where the controller lets software do so.",
-        ready: connected,
+        ready: |model| has(model, Ability::EmergencyStop, connected),
         is_on: None,
         command: |_| Command::ResetEmergencyStop,
     },
 ];
+
+/// What has to be so, unless the controller in front is of a family that lacks the thing altogether.
+fn has(model: &Model, ability: Ability, ready: fn(&Model) -> Ready) -> Ready {
+    match model.front.family().lacks(ability) {
+        Some(why) => Err(why.into()),
+        None => ready(model),
+    }
+}
+
+/// Guided tuning of a loop: the mode of the controller may leave it no such loop.
+fn has_loop(model: &Model, screen: Screen) -> Ready {
+    connected(model)?;
+    match model.front.family().screens(&model.front).contains(&screen) {
+        true => Ok(()),
+        false => Err("This controller has no such loop as it is set.".into()),
+    }
+}
 
 fn can_tune(model: &Model) -> Ready {
     connected(model)?;

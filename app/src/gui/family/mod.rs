@@ -138,6 +138,8 @@ pub enum Ability {
     Firmware,
     /// A report of what keeps the motors from running, which needs settings.
     Diagnosis,
+    /// LEDs on the board whose blink codes are known.
+    Leds,
     /// Raw commands out of a table.
     Composer,
     /// Settings that can contradict each other.

@@ -140,6 +140,7 @@ impl Family for MotionMind {
                 "The firmware loader of a Motion Mind 3 is not public. Use its maker's program."
             }
             Ability::Diagnosis => "What keeps a Motion Mind 3 from running is told by its lamps.",
+            Ability::Leds => "The LEDs of a Motion Mind 3 tell its power and its traffic alone.",
             Ability::Composer => "Send commands from the Terminal screen.",
             Ability::Conflicts => "No two registers of a Motion Mind 3 contradict each other.",
             Ability::ByHand => "Use the step assistant of the Position screen.",

@@ -28,6 +28,8 @@ pub struct LiveGraph {
     pub large: bool,
     /// Input pins of the unit, for the list.
     pub pins: usize,
+    /// Channels that the controller's family does not have, by index; the list leaves them out.
+    pub left_out: Vec<bool>,
     /// Folders, names, dialogs, and what is being read and written.
     pub files: GraphFiles,
     /// The plot's size when it was drawn last, for pictures of it.
@@ -69,6 +71,7 @@ impl LiveGraph {
             rate: Rate::new(interval_s),
             large: false,
             pins: 0,
+            left_out: Vec::new(),
             files: GraphFiles::default(),
             last_plot_size: egui::vec2(800.0, 400.0),
             next_sequence: None,

@@ -410,6 +410,9 @@ impl Desk {
         let kind = self.link.identity().map_or(self.family_kind, FamilyKind::of_unit);
         if kind != self.family_kind {
             self.family_kind = kind;
+            let family = self.family();
+            self.graph.left_out =
+                Channel::ALL.into_iter().map(|channel| !family.has_channel(channel)).collect();
             self.graph_choices.clear();
             self.show_channels(self.graph_of);
         }

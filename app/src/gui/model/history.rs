@@ -38,8 +38,8 @@ pub struct Entry {
     pub number: u64,
     /// Time since the connection.
     pub at: Duration,
-    /// The unit, where it is about one.
-    pub address: Option<u8>,
+    /// Where the unit is, where it is about one: "0x80"; else empty.
+    pub place: String,
     pub kind: Kind,
     pub text: String,
 }
@@ -95,6 +95,7 @@ impl Kind {
 #[derive(Debug, Default)]
 struct UnitState {
     family: FamilyKind,
+    place: Option<String>,
     /// What its status word said last.
     signs: BTreeSet<Sign>,
     report: Option<StatusReport>,
@@ -165,7 +166,8 @@ impl History {
                     self.connected_at = Some(self.now);
                     self.units.clear();
                 }
-                self.units.entry(identity.address).or_default().family = FamilyKind::of_unit(identity);
+                let unit = self.units.entry(identity.address).or_default();
+                (unit.family, unit.place) = (FamilyKind::of_unit(identity), Some(identity.place()));
                 let text = format!("Connected to {} at {}", identity.title(), identity.port);
                 self.push(self.now, Some(identity.address), Kind::Connected, text);
             }
@@ -250,7 +252,7 @@ impl History {
         text += if confirmed { "confirmed" } else { "NOT confirmed" };
         for unit in &report.units {
             for driver in &unit.still_driven_by {
-                text += &format!(". 0x{:02X}: {driver}", unit.address);
+                text += &format!(". {}: {driver}", self.place(unit.address));
             }
         }
         self.push(report.requested_at, None, Kind::Stopped { confirmed }, text);
@@ -262,9 +264,16 @@ impl History {
             self.dropped += 1;
         }
         *self.counts.entry(kind).or_default() += 1;
-        let entry = Entry { number: self.next_number, at: self.since_connect(at), address, kind, text };
+        let place = address.map_or_else(String::new, |address| self.place(address));
+        let entry = Entry { number: self.next_number, at: self.since_connect(at), place, kind, text };
         self.next_number += 1;
         self.entries.push_back(entry);
+    }
+
+    /// Where a unit is, as its family writes it.
+    fn place(&self, address: u8) -> String {
+        let known = self.units.get(&address).and_then(|unit| unit.place.clone());
+        known.unwrap_or_else(|| format!("0x{address:02X}"))
     }
 
     fn since_connect(&self, at: Duration) -> Duration {

@@ -119,7 +119,7 @@ impl LinkView {
             }
             Event::Disarmed(reason) => self.disarmed(&reason),
             Event::ArmRefused { reasons, .. } => self.refused(reasons),
-            Event::Stopped(report) => stopped(&report),
+            Event::Stopped(report) => self.stopped(&report),
             Event::Link(statistics) => {
                 self.statistics = statistics;
                 Vec::new()
@@ -229,26 +229,35 @@ impl LinkView {
     }
 }
 
-/// What became of a stop, in one sentence per thing the user has to know.
-fn stopped(report: &StopReport) -> Vec<Effect> {
-    let mut effects = vec![Effect::AtRest];
-    for unit in &report.units {
-        for failure in &unit.failures {
-            effects.push(Effect::Say(Gravity::Error, failure.to_string()));
+impl LinkView {
+    /// What became of a stop, in one sentence per thing the user has to know.
+    fn stopped(&self, report: &StopReport) -> Vec<Effect> {
+        let mut effects = vec![Effect::AtRest];
+        for unit in &report.units {
+            for failure in &unit.failures {
+                effects.push(Effect::Say(Gravity::Error, failure.to_string()));
+            }
+            for driver in &unit.still_driven_by {
+                effects
+                    .push(Effect::Say(Gravity::Warning, format!("{}: {driver}", self.place(unit.address))));
+            }
         }
-        for driver in &unit.still_driven_by {
-            effects.push(Effect::Say(Gravity::Warning, format!("0x{:02X}: {driver}", unit.address)));
+        if report.confirmed() && effects.len() == 1 {
+            let milliseconds = report.latency().as_secs_f64() * 1000.0;
+            let text =
+                format!("Stopped. The stop was on the wire after {milliseconds:.1} ms; duty 0 is confirmed.");
+            effects.push(Effect::Say(Gravity::Note, text));
+        } else if !report.confirmed() && effects.len() == 1 {
+            let text =
+                "Stop was sent, but the controller did not confirm it. Cut the power if a motor still turns.";
+            effects.push(Effect::Say(Gravity::Error, text.to_owned()));
         }
+        effects
     }
-    if report.confirmed() && effects.len() == 1 {
-        let milliseconds = report.latency().as_secs_f64() * 1000.0;
-        let text =
-            format!("Stopped. The stop was on the wire after {milliseconds:.1} ms; duty 0 is confirmed.");
-        effects.push(Effect::Say(Gravity::Note, text));
-    } else if !report.confirmed() && effects.len() == 1 {
-        let text =
-            "Stop was sent, but the controller did not confirm it. Cut the power if a motor still turns.";
-        effects.push(Effect::Say(Gravity::Error, text.to_owned()));
+
+    /// Where a unit is, as its family writes it.
+    fn place(&self, address: u8) -> String {
+        let unit = self.units.iter().find(|unit| unit.address == address);
+        unit.map_or_else(|| format!("0x{address:02X}"), Identity::place)
     }
-    effects
 }

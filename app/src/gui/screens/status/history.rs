@@ -82,7 +82,7 @@ fn entry_ui(ui: &mut Ui, entry: &Entry) {
         );
         let (rect, _) = ui.allocate_exact_size(vec2(18.0, ROW_HEIGHT), Sense::hover());
         entry.kind.state().paint(ui, rect.center(), 5.0);
-        let unit = entry.address.map_or(String::new(), |address| format!("0x{address:02X}  "));
+        let unit = if entry.place.is_empty() { String::new() } else { format!("{}  ", entry.place) };
         let spoken = format!("{time} {unit}{}", entry.text);
         let text = ui.add(Label::new(format!("{unit}{}", entry.text)).truncate());
         text.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
