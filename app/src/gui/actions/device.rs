@@ -193,7 +193,7 @@ pub(super) const ACTIONS: &[Action] = &[
         place: place(Menu::Device, 3),
         keys: Keys::None,
         help: "Starts the guided tuning of motor 1 on the open and armed Velocity or Position screen.",
-        ready: can_tune,
+        ready: |model| has(model, Ability::GuidedTuning, can_tune),
         is_on: None,
         command: |_| Command::Tune(TuneWish::Start(Motor::M1)),
     },

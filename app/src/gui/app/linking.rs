@@ -59,7 +59,7 @@ impl App {
         if front.phase == Phase::Closed {
             self.model.messages.dismiss();
             front.phase = Phase::Opening { target: text };
-            let opening = self.parts.opener.open(target, self.model.devices.addresses);
+            let opening = self.parts.opener.open(target, self.model.devices.addresses());
             self.links.entry(front.id()).opening = Some(opening);
         }
         self.model.devices.choose_desk(&self.model.front);

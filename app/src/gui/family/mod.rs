@@ -96,6 +96,11 @@ pub trait Family: Sync {
     /// The motors a controller has.
     fn motors(&self) -> &'static [Motor];
 
+    /// Names of the input pins in the simulated world; empty where they are numbered.
+    fn world_pins(&self) -> &'static [&'static str] {
+        &[]
+    }
+
     /// What the motors have to be told for a screen that is armed and whose sliders stand so, if anything.
     fn to_send(&self, desk: &Desk, scope: ArmScope, setpoints: Setpoints) -> Option<Drive>;
 
@@ -136,6 +141,10 @@ pub enum Ability {
     SecondMotor,
     /// A firmware loader that is known.
     Firmware,
+    /// Guided tuning.
+    GuidedTuning,
+    /// Scripts' buses: I2C, CAN and RTS.
+    Buses,
     /// A report of what keeps the motors from running, which needs settings.
     Diagnosis,
     /// LEDs on the board whose blink codes are known.

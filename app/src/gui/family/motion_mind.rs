@@ -93,6 +93,10 @@ impl Family for MotionMind {
         &[Motor::M1]
     }
 
+    fn world_pins(&self) -> &'static [&'static str] {
+        &["P4 control", "P3 feedback", "P17 pos. limit", "P16 neg. limit", "P12 brake", "J6 R/C, index"]
+    }
+
     fn to_send(&self, _desk: &Desk, scope: ArmScope, setpoints: Setpoints) -> Option<Drive> {
         to_send(scope, setpoints)
     }
@@ -140,6 +144,8 @@ impl Family for MotionMind {
                 "The firmware loader of a Motion Mind 3 is not public. Use its maker's program."
             }
             Ability::Diagnosis => "What keeps a Motion Mind 3 from running is told by its lamps.",
+            Ability::GuidedTuning => "Guided tuning does not reach a Motion Mind 3 yet. Use the step response assistant of the Position screen.",
+            Ability::Buses => "A Motion Mind 3 has no buses for scripts.",
             Ability::Leds => "The LEDs of a Motion Mind 3 tell its power and its traffic alone.",
             Ability::Composer => "Send commands from the Terminal screen.",
             Ability::Conflicts => "No two registers of a Motion Mind 3 contradict each other.",

@@ -1,9 +1,9 @@
 //! The device list: what can be connected to, and what was chosen.
 
 use super::desk::{Desk, DeskId, place_of};
+use super::simulated::{FIRST, Simulated};
 use brushwork_link::Failure;
-use brushwork_link::device::Addresses;
-use brushwork_link::device::FamilyChoice;
+use brushwork_link::device::{Addresses, FamilyChoice};
 use brushwork_link::transport::target::DEFAULT_BAUD;
 use brushwork_link::transport::{ConnectTarget, PortInfo, TargetError};
 
@@ -40,6 +40,10 @@ pub struct Devices {
     pub baud: u32,
     /// Which addresses to look for when connecting.
     pub addresses: Addresses,
+    /// Which family a port's controllers are of, as far as the user knows.
+    pub family: FamilyChoice,
+    /// What the first row of the list simulates.
+    pub simulated: Simulated,
     /// What was connected to before, newest first.
     recent: Vec<String>,
 }
@@ -53,6 +57,8 @@ impl Default for Devices {
             typed: String::new(),
             baud: DEFAULT_BAUD,
             addresses: Addresses::default(),
+            family: FamilyChoice::default(),
+            simulated: Simulated::default(),
             recent: Vec::new(),
         }
     }
@@ -75,6 +81,9 @@ impl Devices {
 
     /// Chooses what a person would have typed.
     pub fn choose(&mut self, typed: &str) {
+        if typed == SIMULATED {
+            FIRST.clone_into(&mut self.simulated.model);
+        }
         self.choice = if typed == SIMULATED { Choice::Simulated } else { Choice::Typed };
         if self.choice == Choice::Typed {
             typed.clone_into(&mut self.typed);
@@ -88,7 +97,7 @@ impl Devices {
         }
         self.choice = match self.ports.iter().find(|port| desk.is_at(&port.name)) {
             Some(port) => Choice::Port(port.name.clone()),
-            None if desk.is_at(SIMULATED) => Choice::Simulated,
+            None if desk.is_at(&self.simulated.target()) => Choice::Simulated,
             None => Choice::Desk(desk.id()),
         };
     }
@@ -153,18 +162,38 @@ impl Devices {
         }
     }
 
+    /// Whether it matters which family is looked for: a simulated controller's is known.
+    pub fn family_matters(&self) -> bool {
+        match &self.choice {
+            Choice::Simulated | Choice::Desk(_) => false,
+            Choice::Port(_) => true,
+            Choice::Typed => !self.typed.trim().is_empty() && !self.typed.trim().starts_with("sim:"),
+        }
+    }
+
+    /// Whether the units that are looked for are Motion Minds for sure.
+    pub fn wants_motion_minds(&self) -> bool {
+        match &self.choice {
+            Choice::Simulated => self.simulated.is_motion_mind(),
+            _ => self.family_matters() && self.family == FamilyChoice::MotionMind,
+        }
+    }
+
+    /// The addresses to look for. An address of the other family than the one that is wanted is none.
+    pub fn addresses(&self) -> Addresses {
+        match self.addresses {
+            Addresses::Only(address) if self.wants_motion_minds() == (address > 98) => Addresses::Scan,
+            addresses => addresses,
+        }
+    }
+
     /// Where to connect to. A desk's own target is known to the desk.
     pub fn target(&self) -> Result<ConnectTarget, TargetError> {
         match &self.choice {
-            Choice::Simulated => SIMULATED.parse(),
+            Choice::Simulated => self.simulated.target().parse(),
             Choice::Port(name) => {
                 let stream = self.chosen_port().and_then(|port| port.stream);
-                Ok(ConnectTarget::Serial {
-                    path: name.clone(),
-                    baud: self.baud,
-                    stream,
-                    family: FamilyChoice::Auto,
-                })
+                Ok(ConnectTarget::Serial { path: name.clone(), baud: self.baud, stream, family: self.family })
             }
             Choice::Desk(_) | Choice::Typed => {
                 let mut target = self.typed.parse()?;
@@ -172,6 +201,12 @@ impl Devices {
                     && self.baud_matters()
                 {
                     *baud = self.baud;
+                }
+                // What was typed behind the path goes before what is chosen below it.
+                if let ConnectTarget::Serial { family, .. } | ConnectTarget::Tcp { family, .. } = &mut target
+                    && *family == FamilyChoice::Auto
+                {
+                    *family = self.family;
                 }
                 Ok(target)
             }

@@ -65,6 +65,8 @@ pub struct LinkView {
     homed: Option<[bool; 2]>,
     pub status: Option<StatusReport>,
     pub statistics: LinkStatistics,
+    /// How far the search for units is, while there is one.
+    pub searching: Option<Search>,
     pub arming: Arming,
     /// Set when the link was lost while armed: after how much silence the controller stops by itself.
     lost_while_armed: Option<Option<Duration>>,
@@ -72,6 +74,15 @@ pub struct LinkView {
     pub refusals: Vec<Failure>,
     /// What else can drive a motor while something is armed: input pins and scripts, each as a sentence.
     pub warnings: Vec<String>,
+}
+
+/// How far the search for units is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Search {
+    pub done: usize,
+    pub of: usize,
+    /// What is asked now.
+    pub what: String,
 }
 
 impl LinkView {
@@ -99,8 +110,15 @@ impl LinkView {
     /// Takes over an event.
     pub fn take(&mut self, event: Event) -> Vec<Effect> {
         match event {
+            Event::Searching { done, of, what } => {
+                self.searching = Some(Search { done, of, what });
+                Vec::new()
+            }
             Event::Connected(identity) => self.connected(identity),
-            Event::Selected { address, stream } => self.select(address, stream),
+            Event::Selected { address, stream } => {
+                self.searching = None;
+                self.select(address, stream)
+            }
             Event::Sample(mut sample) if Some(sample.address) == self.selected => {
                 self.leave_out_missing_sensor(&mut sample);
                 self.readings.update(&sample);

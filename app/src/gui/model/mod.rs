@@ -29,6 +29,7 @@ pub mod readings;
 pub mod screen;
 pub mod script;
 pub mod setpoints;
+pub mod simulated;
 pub mod traffic;
 pub mod velocity;
 pub mod watch;

@@ -1,6 +1,6 @@
 //! The device list: the simulated controller, the serial ports as they come and go, and a field for any other path.
 
-use brushwork_link::device::{Addresses, Identity};
+use brushwork_link::device::{Addresses, FamilyChoice, Identity};
 use brushwork_link::transport::PortInfo;
 use brushwork_protocol::packet_serial::Address;
 use egui::{
@@ -12,7 +12,8 @@ use egui::containers::menu::MenuButton;
 
 use super::heading_ui;
 use crate::gui::command::{Command, Commands};
-use crate::gui::model::devices::{BAUD_RATES, Choice, Devices, SIMULATED};
+use crate::gui::model::devices::{BAUD_RATES, Choice, Devices};
+use crate::gui::model::simulated::Simulated;
 use crate::gui::model::link::Arming;
 use crate::gui::model::{Desk, DeskId, Model, Phase, place_of};
 use crate::gui::theme::Palette;
@@ -62,7 +63,9 @@ struct Row {
 /// The simulated controller, the ports, then links to anything else.
 fn rows(model: &Model) -> Vec<Row> {
     let devices = &model.devices;
-    let mut rows = vec![row(model, Choice::Simulated, SIMULATED, "Simulated MCP266", "in this program")];
+    let simulated = &devices.simulated;
+    let (place, title) = (simulated.target(), format!("Simulated {}", simulated.name()));
+    let mut rows = vec![row(model, Choice::Simulated, &place, &title, "in this program")];
     for port in devices.ports() {
         rows.push(row(model, Choice::Port(port.name.clone()), &port.name, &port.name, &described(port)));
     }
@@ -264,27 +267,112 @@ fn path_ui(ui: &mut Ui, devices: &mut Devices) -> bool {
 fn options_ui(ui: &mut Ui, devices: &mut Devices) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        address_ui(ui, &mut devices.addresses);
+        if devices.choice == Choice::Simulated {
+            model_ui(ui, &mut devices.simulated);
+        }
+        if !(devices.choice == Choice::Simulated && devices.simulated.is_motion_mind()) {
+            let motion_minds = devices.wants_motion_minds();
+            let shown = devices.addresses();
+            devices.addresses = address_ui(ui, shown, motion_minds);
+        }
         if devices.baud_matters() {
             baud_ui(ui, &mut devices.baud);
         }
     });
+    if devices.choice == Choice::Simulated && devices.simulated.is_motion_mind() {
+        motion_mind_ui(ui, &mut devices.simulated);
+    }
+    if devices.family_matters() {
+        family_ui(ui, &mut devices.family);
+    }
 }
 
-fn address_ui(ui: &mut Ui, chosen: &mut Addresses) {
-    let text = |addresses: Addresses| match addresses {
-        Addresses::Scan => "Scan all".to_owned(),
-        Addresses::Only(address) => format!("0x{address:02X}"),
-    };
-    let combo = ComboBox::from_id_salt("address").width(72.0).selected_text(text(*chosen));
+/// Which model is simulated.
+fn model_ui(ui: &mut Ui, simulated: &mut Simulated) {
+    let combo = ComboBox::from_id_salt("simulated model").width(104.0).selected_text(simulated.name().to_owned());
     let response = combo.show_ui(ui, |ui| {
-        let each = Address::ALL.into_iter().map(|address| Addresses::Only(address.get()));
-        for addresses in std::iter::once(Addresses::Scan).chain(each) {
-            ui.selectable_value(chosen, addresses, text(addresses));
+        for (key, name) in Simulated::models() {
+            if ui.selectable_label(simulated.model == key, name).clicked() {
+                key.clone_into(&mut simulated.model);
+            }
         }
     });
-    let help = "Which addresses to ask when connecting: all from 0x80 to 0x87, or one";
+    name_combo(ui, &response.response, "Simulated model", "Which controller is simulated in this program");
+}
+
+/// How the switches of a simulated Motion Mind stand: they are read at its power-up, so that another choice is another unit.
+fn motion_mind_ui(ui: &mut Ui, simulated: &mut Simulated) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let text = |mode: u8| format!("{mode} {}", MODES[usize::from(mode).min(MODES.len() - 1)]);
+        let combo = ComboBox::from_id_salt("mode").width(104.0).selected_text(text(simulated.mode)).truncate();
+        let response = combo.show_ui(ui, |ui| {
+            for mode in 0..=7 {
+                ui.selectable_value(&mut simulated.mode, mode, text(mode));
+            }
+        });
+        name_combo(ui, &response.response, "Mode", "What moves the motor: switches 2 to 4 of the board");
+        let text = |is_text: bool| if is_text { "ASCII" } else { "Binary" };
+        let combo = ComboBox::from_id_salt("protocol").width(60.0).selected_text(text(simulated.is_text));
+        let response = combo.show_ui(ui, |ui| {
+            for is_text in [false, true] {
+                ui.selectable_value(&mut simulated.is_text, is_text, text(is_text));
+            }
+        });
+        name_combo(ui, &response.response, "Protocol", "Switch 6 of the board");
+    });
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let mut number = |ui: &mut Ui, label: &str, name: &str, value: &mut u8, range| {
+            ui.label(label);
+            let field = ui.add(egui::DragValue::new(value).range(range).speed(0.2));
+            ui.ctx().accesskit_node_builder(field.id, |node| node.set_label(name));
+        };
+        number(ui, "Address", "Unit address", &mut simulated.address, 1..=98);
+        number(ui, "Units", "Units on the bus", &mut simulated.units, 1..=Simulated::MOST_UNITS);
+    });
+}
+
+/// Short names of the modes, by number.
+const MODES: [&str; 8] =
+    ["R/C", "Analog", "Buttons", "Serial", "Serial PID", "Analog PID", "Factory restore", "Factory test"];
+
+/// Which family the controllers at a port are of.
+fn family_ui(ui: &mut Ui, chosen: &mut FamilyChoice) {
+    let combo = ComboBox::from_id_salt("family").width(168.0).selected_text(chosen.label());
+    let response = combo.show_ui(ui, |ui| {
+        for family in FamilyChoice::ALL {
+            ui.selectable_value(chosen, family, family.label());
+        }
+    });
+    let help = "Find out asks for MCP and RoboClaw first, then for a Motion Mind at address 1. Choose Motion Mind to ask all \
+                addresses from 1 to 98.";
+    name_combo(ui, &response.response, "Controller family", help);
+}
+
+fn address_ui(ui: &mut Ui, shown: Addresses, motion_minds: bool) -> Addresses {
+    let text = |addresses: Addresses| match addresses {
+        Addresses::Scan => "Scan all".to_owned(),
+        Addresses::Only(address) if motion_minds => format!("unit {address}"),
+        Addresses::Only(address) => format!("0x{address:02X}"),
+    };
+    let mut chosen = shown;
+    let combo = ComboBox::from_id_salt("address").width(72.0).selected_text(text(shown));
+    let response = combo.show_ui(ui, |ui| {
+        let each: Vec<u8> = match motion_minds {
+            true => (1..=98).collect(),
+            false => Address::ALL.into_iter().map(Address::get).collect(),
+        };
+        for addresses in std::iter::once(Addresses::Scan).chain(each.into_iter().map(Addresses::Only)) {
+            ui.selectable_value(&mut chosen, addresses, text(addresses));
+        }
+    });
+    let help = match motion_minds {
+        true => "Which addresses to ask when connecting: all from 1 to 98, which takes a while, or one",
+        false => "Which addresses to ask when connecting: all from 0x80 to 0x87, or one",
+    };
     name_combo(ui, &response.response, "Address", help);
+    chosen
 }
 
 fn baud_ui(ui: &mut Ui, chosen: &mut u32) {
@@ -329,9 +417,11 @@ fn connect_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     let chosen = rows(model).into_iter().find(|row| row.choice == model.devices.choice);
     let desk = chosen.and_then(|row| row.desk).and_then(|id| model.desk(id));
     let end = desk.map(|desk| Command::Disconnect(desk.id()));
+    let searching = desk.and_then(|desk| desk.link.searching.as_ref());
     let (text, command) = match desk.map(|desk| &desk.phase) {
         None | Some(Phase::Closed) => ("Connect", Some(Command::Connect)),
         Some(Phase::Opening { .. }) => ("Cancel", end),
+        Some(Phase::Open { .. }) if searching.is_some() => ("Cancel", end),
         Some(Phase::Open { .. }) => ("Disconnect", end),
         Some(Phase::Closing { .. }) => ("Disconnecting", None),
     };
@@ -340,6 +430,13 @@ fn connect_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
             commands.extend(command);
         }
     });
+    if let Some(search) = searching {
+        let bar = egui::ProgressBar::new(search.done as f32 / search.of.max(1) as f32);
+        let text = format!("{} ({} of {})", search.what, search.done, search.of);
+        let response = ui.add(bar.desired_width(ui.available_width()).text(&text));
+        let spoken = format!("Searching: {text}");
+        response.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, &spoken));
+    }
 }
 
 /// The units of a bus, when there are several.

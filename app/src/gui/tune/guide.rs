@@ -8,6 +8,7 @@ use egui::{
 use super::model::{Loop, TuneWish, Tuning};
 use super::{plots, result, setup};
 use crate::gui::command::{Command, Commands};
+use crate::gui::family::Ability;
 use crate::gui::model::Model;
 use crate::gui::theme::Palette;
 
@@ -21,6 +22,10 @@ const PICTURE_HEIGHT: f32 = 300.0;
 /// Fills what is left of `ui`.
 pub fn guide_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let Some(which) = Loop::of(model.screen) else { return };
+    if let Some(why) = model.front.family().lacks(Ability::GuidedTuning) {
+        ui.add(Label::new(why).wrap());
+        return;
+    }
     let outline = Stroke::new(1.0, Palette::of(ui).line);
     Frame::new().stroke(outline).corner_radius(4.0).inner_margin(Margin::symmetric(10, 6)).show(ui, |ui| {
         ui.set_width(ui.available_width());

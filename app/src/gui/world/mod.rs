@@ -1,10 +1,10 @@
 //! The panel for a simulated controller's world: what a person could do to the machine on the bench.
 
-use brushwork_protocol::packet_serial::Motor;
 use brushwork_sim::world::{UnitFault, WorldAction, WorldView};
 use egui::{RichText, Ui};
 
 use super::command::{Command, Commands};
+use super::family::Ability;
 use super::model::Model;
 use super::model::world::WorldPanel;
 use super::shell::heading_ui;
@@ -20,6 +20,7 @@ pub fn world_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let Some(views) = model.front.worlds.clone() else { return };
     let Some(view) = views.get(model.front.world_unit) else { return };
     model.front.world.sync(view);
+    let family = model.front.family();
     let panel = &mut model.front.world;
     let mut actions = Vec::new();
     ui.spacing_mut().item_spacing.y = 4.0;
@@ -30,11 +31,13 @@ pub fn world_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     unit_ui(ui, view, &mut actions);
     supply_ui(ui, view, panel, &mut actions);
     electronics_ui(ui, view, &mut actions);
-    for motor in Motor::BOTH {
-        motor::motor_ui(ui, motor, view, panel, &mut actions);
+    for motor in family.motors() {
+        motor::motor_ui(ui, *motor, view, panel, &mut actions);
     }
-    pins::pins_ui(ui, view, &mut actions);
-    buses::buses_ui(ui, view, &mut actions);
+    pins::pins_ui(ui, view, family.world_pins(), &mut actions);
+    if family.lacks(Ability::Buses).is_none() {
+        buses::buses_ui(ui, view, &mut actions);
+    }
     commands.extend(actions.into_iter().map(Command::World));
 }
 

@@ -9,17 +9,28 @@ use super::{Actions, number};
 use crate::gui::shell::heading_ui;
 use crate::gui::widgets::label::fixed_label_ui;
 
-pub fn pins_ui(ui: &mut Ui, view: &WorldView, actions: &mut Actions) {
+pub fn pins_ui(ui: &mut Ui, view: &WorldView, names: &[&str], actions: &mut Actions) {
     ui.separator();
     heading_ui(ui, "Input pins");
     for (pin, signal) in view.pins.iter().enumerate() {
-        ui.push_id(pin, |ui| ui.horizontal(|ui| pin_ui(ui, pin, *signal, view, actions)));
+        let label = names.get(pin).map_or_else(|| format!("Pin {}", pin + 1), |name| (*name).to_owned());
+        ui.push_id(pin, |ui| {
+            ui.horizontal(|ui| {
+                fixed_label_ui(ui, &label, if names.is_empty() { 44.0 } else { 84.0 });
+                pin_ui(ui, pin, &label, *signal, view, actions);
+            })
+        });
     }
 }
 
-fn pin_ui(ui: &mut Ui, pin: usize, signal: PinSignal, view: &WorldView, actions: &mut Actions) {
-    let label = format!("Pin {}", pin + 1);
-    fixed_label_ui(ui, &label, 44.0);
+fn pin_ui(
+    ui: &mut Ui,
+    pin: usize,
+    label: &str,
+    signal: PinSignal,
+    view: &WorldView,
+    actions: &mut Actions,
+) {
     let wired = wired_to(view, pin);
     let text = wired.clone().unwrap_or_else(|| kind_text(signal).to_owned());
     let combo = ComboBox::from_id_salt("kind").width(112.0).selected_text(text);
@@ -28,7 +39,7 @@ fn pin_ui(ui: &mut Ui, pin: usize, signal: PinSignal, view: &WorldView, actions:
         node.set_label(format!("{label} is connected to"));
     });
     if wired.is_none() {
-        value_ui(ui, pin, &label, signal, actions);
+        value_ui(ui, pin, label, signal, actions);
     }
 }
 
