@@ -223,7 +223,9 @@ fn the_top_row_has_this_familys_figures() {
     bench.arm_on("Duty");
     bench.enter("Motor duty exact", "40");
     bench.pass_ms(2000);
-    for (label, digits) in [("Position: ", true), ("Velocity: ", true), ("PWM: ", true), ("Current: ", true), ("Board: ", true)] {
+    for (label, digits) in
+        [("Position: ", true), ("Velocity: ", true), ("PWM: ", true), ("Current: ", true), ("Board: ", true)]
+    {
         let found = bench.harness.query_all_by_label_contains(label).next();
         assert!(found.is_some() == digits, "{label}");
         assert!(!bench.sees(&format!("{label}no value")), "{label}");

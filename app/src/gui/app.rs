@@ -15,6 +15,7 @@ use egui::{Context, Ui, ViewportCommand};
 use super::actions;
 use super::command::{Command, GuidedWish};
 use super::ending::EndBySignal;
+use super::family::Ability;
 use super::keys;
 use super::links::Links;
 use super::model::link::{Arming, Effect};
@@ -177,6 +178,9 @@ impl App {
     fn watch(&mut self, id: DeskId) {
         let shows_settings = self.shows_settings_of(id);
         let (Some(device), Some(desk)) = (self.links.device(id), self.model.desk_mut(id)) else { return };
+        if desk.family().lacks(Ability::Diagnosis).is_some() {
+            desk.watch.want_nothing();
+        }
         let is_quiet = desk.link.arming == Arming::Disarmed && desk.is_connected();
         if let Some(identity) = desk.link.identity().cloned().filter(|_| is_quiet)
             && let Some(request) = desk.watch.read(&identity)

@@ -11,7 +11,7 @@ use brushwork::gui::model::Model;
 use brushwork::gui::parts::{OpenLink, Opener, Parts, PortSource, SimulatedWorld};
 use brushwork::keep::{Keeping, Store};
 use brushwork::session::SessionError;
-use brushwork_link::device::{Addresses, DeviceLoop, DeviceOptions};
+use brushwork_link::device::{Addresses, DeviceLoop, DeviceOptions, FamilyChoice};
 use brushwork_link::transport::{ConnectTarget, OpenError, PortInfo, Stream};
 use brushwork_link::{Clock as _, Failure, HiddenSettings};
 use brushwork_protocol::packet_serial::{Address, Motor};
@@ -430,6 +430,7 @@ impl Opener for BenchOpener {
     ) -> Receiver<Result<OpenLink, SessionError>> {
         let (sender, receiver) = bounded(1);
         let opened = match target {
+            ConnectTarget::Sim(text) if text.starts_with("motion-mind") => Ok(self.open_minds(addresses)),
             ConnectTarget::Sim(_) => {
                 let which = usize::from(target.to_string() == SECOND);
                 let line = &self.lines[which];
@@ -452,6 +453,58 @@ impl Opener for BenchOpener {
         sender.send(opened).expect("the receiver is here");
         receiver
     }
+}
+
+impl BenchOpener {
+    /// A loop on the line with the Motion Minds.
+    fn open_minds(&self, addresses: Addresses) -> OpenLink {
+        let options = DeviceOptions {
+            addresses,
+            family: FamilyChoice::MotionMind,
+            simulated: true,
+            ..DeviceOptions::default()
+        };
+        let gate = Gate::new(self.minds.clock.clone());
+        let transport = Box::new(self.minds.through(gate.clone()));
+        let (device_loop, device) = DeviceLoop::new(transport, Arc::new(gate.clone()), options);
+        *self.loops[2].borrow_mut() = Some(Lockstep::new(gate, device_loop));
+        OpenLink { device, world: Some(Arc::new(MindWorld(self.minds.clone()))) }
+    }
+}
+
+/// The worlds around the Motion Minds.
+struct MindWorld(Line<MotionMindBus>);
+
+impl SimulatedWorld for MindWorld {
+    fn apply(&self, unit: usize, action: WorldAction) -> Result<(), Failure> {
+        self.0.with(|bus| bus.apply(unit, &action));
+        Ok(())
+    }
+
+    fn views(&self) -> Option<Arc<Vec<WorldView>>> {
+        Some(Arc::new(self.0.with(|bus| bus.views())))
+    }
+
+    fn unit_at(&self, address: u8) -> Option<usize> {
+        let number = brushwork_protocol::motion_mind::register_named("ADDRESS").map_or(0, |row| row.number);
+        self.0.with(|bus| {
+            bus.motion_minds().iter().position(|unit| unit.read_one(number) == i64::from(address))
+        })
+    }
+
+    fn debug(&self, _: usize, _: Vec<DebugRequest>, _: Wanted) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    fn script(&self) -> Option<View> {
+        None
+    }
+
+    fn pace(&self) -> Option<Pace> {
+        None
+    }
+
+    fn set_pace(&self, _: Pace) {}
 }
 
 /// The settings that packet serial does not carry.

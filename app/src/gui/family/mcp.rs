@@ -121,7 +121,8 @@ fn lit(
             Some(_) => LampState::Ok,
         };
     }
-    let told = identity.is_none_or(|identity| lamp.is_reported(identity.generation, identity.is_mcp()));
+    let told =
+        identity.is_none_or(|identity| lamp.is_reported(identity.generation.layout(), identity.is_mcp()));
     let dark = if told { LampState::Ok } else { LampState::NotApplicable };
     report.lamp(lamp).map_or(dark, state_of)
 }

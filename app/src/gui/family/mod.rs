@@ -38,10 +38,7 @@ pub enum FamilyKind {
 impl FamilyKind {
     /// The family of a unit that answered.
     pub fn of_unit(identity: &Identity) -> Self {
-        match identity.family {
-            MOTION_MIND => Self::MotionMind,
-            _ => Self::Mcp,
-        }
+        if identity.is_motion_mind() { Self::MotionMind } else { Self::Mcp }
     }
 
     /// The family that a target names before anything has answered there, if it names one.
@@ -50,9 +47,6 @@ impl FamilyKind {
         Some(if simulated.starts_with("motion-mind") { Self::MotionMind } else { Self::Mcp })
     }
 }
-
-/// What the link calls the family.
-const MOTION_MIND: &str = "Motion Mind";
 
 /// What the window has to know of a family.
 pub trait Family: Sync {

@@ -4,7 +4,6 @@
 use std::time::Duration;
 
 use brushwork_link::device::{ArmScope, Channel, Drive, Identity, Request, StatusReport};
-use brushwork_protocol::motion_mind::status as bit;
 use brushwork_protocol::packet_serial::Motor;
 use egui::Ui;
 
@@ -14,6 +13,7 @@ use crate::gui::command::Commands;
 use crate::gui::model::Model;
 use crate::gui::model::desk::Desk;
 use crate::gui::model::drawer::Tab;
+use crate::gui::model::lamps::state_of;
 use crate::gui::model::motion_mind::drive::to_send;
 use crate::gui::model::screen::Screen;
 use crate::gui::model::setpoints::Setpoints;
@@ -73,16 +73,21 @@ impl Family for MotionMind {
         _identity: Option<&Identity>,
         _homed: Option<[bool; 2]>,
     ) -> Vec<LampState> {
-        let lit = |(mask, state): &(u16, LampState)| {
-            if report.word & u32::from(*mask) == 0 { LampState::Ok } else { *state }
-        };
-        SAYS.iter().map(lit).collect()
+        LAMPS.iter().zip(KEYS).map(|(_, key)| lit_by(report, key)).collect()
     }
 
     fn signs(&self, report: &StatusReport) -> Vec<Sign> {
-        let set = |(mask, _): &(u16, LampState)| report.word & u32::from(*mask) != 0;
-        let rows = (0..).zip(SAYS.iter().zip(&LAMPS)).filter(|(_, (says, _))| set(says));
-        rows.map(|(order, ((_, state), info))| Sign { order, title: info.title, state: *state }).collect()
+        let order = |sign: &brushwork_link::device::Sign| KEYS.iter().position(|key| *key == sign.key);
+        let mut signs: Vec<Sign> = report
+            .lit()
+            .map(|sign| Sign {
+                order: order(sign).and_then(|order| u8::try_from(order).ok()).unwrap_or(u8::MAX),
+                title: sign.title,
+                state: state_of(sign.severity),
+            })
+            .collect();
+        signs.sort();
+        signs
     }
 
     fn words(&self) -> &'static SettingsWords {
@@ -112,11 +117,7 @@ impl Family for MotionMind {
     }
 
     fn has_channel(&self, channel: Channel) -> bool {
-        use Channel as C;
-        matches!(
-            channel,
-            C::M1Setpoint | C::M1Pwm | C::M1Velocity | C::M1Position | C::M1Current | C::Temperature1
-        )
+        Channel::MOTION_MIND.contains(&channel)
     }
 
     fn first_channels(&self, screen: Screen) -> &'static [Channel] {
@@ -144,7 +145,9 @@ impl Family for MotionMind {
                 "The firmware loader of a Motion Mind 3 is not public. Use its maker's program."
             }
             Ability::Diagnosis => "What keeps a Motion Mind 3 from running is told by its lamps.",
-            Ability::GuidedTuning => "Guided tuning does not reach a Motion Mind 3 yet. Use the step response assistant of the Position screen.",
+            Ability::GuidedTuning => {
+                "Guided tuning does not reach a Motion Mind 3 yet. Use the step response assistant of the Position screen."
+            }
             Ability::Buses => "A Motion Mind 3 has no buses for scripts.",
             Ability::Leds => "The LEDs of a Motion Mind 3 tell its power and its traffic alone.",
             Ability::Composer => "Send commands from the Terminal screen.",
@@ -154,35 +157,41 @@ impl Family for MotionMind {
     }
 }
 
-/// What each bit of STATUS says, in the order of [`LAMPS`] (Motion Mind manual, figure 22). Brake and heat take the drive away.
-const SAYS: [(u16, LampState); 11] = [
-    (bit::TEMPFAULT, LampState::Error),
-    (bit::BRAKE, LampState::Error),
-    (bit::CURRENTLIMIT, LampState::Warning),
-    (bit::BADRC, LampState::Warning),
-    (bit::PWMLIMIT, LampState::Active),
-    (bit::NEGLIMIT, LampState::Active),
-    (bit::POSLIMIT, LampState::Active),
-    (bit::VNLIMIT, LampState::Active),
-    (bit::VPLIMIT, LampState::Active),
-    (bit::INPOSITION, LampState::Active),
-    (bit::INDEX, LampState::Active),
+/// How the sign with that key lights its lamp.
+fn lit_by(report: &StatusReport, key: &str) -> LampState {
+    report.lit().find(|sign| sign.key == key).map_or(LampState::Ok, |sign| state_of(sign.severity))
+}
+
+/// The signs of the status that light the lamps, in the order of [`LAMPS`]: what takes the drive away comes first.
+const KEYS: [&str; 11] = [
+    "temp_fault",
+    "brake",
+    "current_limit",
+    "bad_rc",
+    "negative_limit",
+    "positive_limit",
+    "virtual_negative_limit",
+    "virtual_positive_limit",
+    "pwm_limit",
+    "in_position",
+    "index",
 ];
 
 const fn lamp(short: &'static str, title: &'static str) -> LampInfo {
     LampInfo { short, title }
 }
 
-const LAMPS: [LampInfo; SAYS.len()] = [
+/// The bits of STATUS (Motion Mind manual, figure 22).
+const LAMPS: [LampInfo; KEYS.len()] = [
     lamp("TEMP", "Over temperature: bridge off"),
     lamp("BRK", "Brake input low: bridge off"),
     lamp("AMPS", "Current limit: drive reduced"),
     lamp("RC", "Bad R/C signal"),
-    lamp("PWM", "At the PWM limit"),
     lamp("NEG", "Negative limit input"),
     lamp("POS", "Positive limit input"),
     lamp("VN", "Negative virtual limit"),
     lamp("VP", "Positive virtual limit"),
+    lamp("PWM", "At the PWM limit"),
     lamp("INP", "In position"),
     lamp("IDX", "Index input"),
 ];
@@ -220,7 +229,7 @@ mod tests {
     use std::time::Duration;
 
     use brushwork_link::device::Conditions;
-    use brushwork_protocol::motion_mind::STATUS_BITS;
+    use brushwork_protocol::motion_mind::{STATUS_BITS, status as bit};
 
     use super::*;
 
@@ -230,6 +239,7 @@ mod tests {
             at: Duration::ZERO,
             word: word.into(),
             conditions: Conditions::default(),
+            signs: brushwork_link::device::MOTION_MIND_SIGNS,
             unknown_bits: 0,
             running_ticks: None,
         }

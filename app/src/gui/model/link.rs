@@ -147,7 +147,6 @@ impl LinkView {
             Event::LoaderEntered => Vec::new(),
             Event::Closed => vec![Effect::Say(Gravity::Note, "Disconnected.".to_owned()), Effect::Ended],
             Event::Driven { .. }
-            | Event::Searching { .. }
             | Event::Transacted { .. }
             | Event::JobStarted { .. }
             | Event::JobProgress { .. }

@@ -56,6 +56,11 @@ impl Watch {
         self.wants_reading = true;
     }
 
+    /// Nothing of this unit is read for a diagnosis.
+    pub fn want_nothing(&mut self) {
+        self.wants_reading = false;
+    }
+
     /// The job that reads what is wanted, if anything is.
     pub fn read(&mut self, identity: &Identity) -> Option<Request> {
         if !self.wants_reading || self.running.is_some() {

@@ -13,8 +13,8 @@ use egui::containers::menu::MenuButton;
 use super::heading_ui;
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::devices::{BAUD_RATES, Choice, Devices};
-use crate::gui::model::simulated::Simulated;
 use crate::gui::model::link::Arming;
+use crate::gui::model::simulated::Simulated;
 use crate::gui::model::{Desk, DeskId, Model, Phase, place_of};
 use crate::gui::theme::Palette;
 use crate::gui::widgets::LampState;
@@ -289,7 +289,8 @@ fn options_ui(ui: &mut Ui, devices: &mut Devices) {
 
 /// Which model is simulated.
 fn model_ui(ui: &mut Ui, simulated: &mut Simulated) {
-    let combo = ComboBox::from_id_salt("simulated model").width(104.0).selected_text(simulated.name().to_owned());
+    let combo =
+        ComboBox::from_id_salt("simulated model").width(104.0).selected_text(simulated.name().to_owned());
     let response = combo.show_ui(ui, |ui| {
         for (key, name) in Simulated::models() {
             if ui.selectable_label(simulated.model == key, name).clicked() {
@@ -305,7 +306,8 @@ fn motion_mind_ui(ui: &mut Ui, simulated: &mut Simulated) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let text = |mode: u8| format!("{mode} {}", MODES[usize::from(mode).min(MODES.len() - 1)]);
-        let combo = ComboBox::from_id_salt("mode").width(104.0).selected_text(text(simulated.mode)).truncate();
+        let combo =
+            ComboBox::from_id_salt("mode").width(104.0).selected_text(text(simulated.mode)).truncate();
         let response = combo.show_ui(ui, |ui| {
             for mode in 0..=7 {
                 ui.selectable_value(&mut simulated.mode, mode, text(mode));
@@ -323,7 +325,7 @@ fn motion_mind_ui(ui: &mut Ui, simulated: &mut Simulated) {
     });
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        let mut number = |ui: &mut Ui, label: &str, name: &str, value: &mut u8, range| {
+        let number = |ui: &mut Ui, label: &str, name: &str, value: &mut u8, range| {
             ui.label(label);
             let field = ui.add(egui::DragValue::new(value).range(range).speed(0.2));
             ui.ctx().accesskit_node_builder(field.id, |node| node.set_label(name));

@@ -23,14 +23,7 @@ pub fn pins_ui(ui: &mut Ui, view: &WorldView, names: &[&str], actions: &mut Acti
     }
 }
 
-fn pin_ui(
-    ui: &mut Ui,
-    pin: usize,
-    label: &str,
-    signal: PinSignal,
-    view: &WorldView,
-    actions: &mut Actions,
-) {
+fn pin_ui(ui: &mut Ui, pin: usize, label: &str, signal: PinSignal, view: &WorldView, actions: &mut Actions) {
     let wired = wired_to(view, pin);
     let text = wired.clone().unwrap_or_else(|| kind_text(signal).to_owned());
     let combo = ComboBox::from_id_salt("kind").width(112.0).selected_text(text);

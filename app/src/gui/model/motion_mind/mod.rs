@@ -106,7 +106,7 @@ impl MotionMindDesk {
 impl Desk {
     /// The mode that a Motion Mind's switches selected at power-up.
     pub fn mode(&self) -> Option<u8> {
-        self.register("MODE").and_then(|mode| u8::try_from(mode).ok())
+        Some(self.link.identity().and_then(|identity| identity.motion_mind)?.mode.number())
     }
 
     /// What of a Motion Mind can be driven from here.
