@@ -57,9 +57,11 @@ fn a_disarmed_slider_moves_nothing() {
     assert!(bench.sees("Arm"));
 }
 
+type Act = fn(&mut Bench);
+
 #[test]
 fn every_way_out_stops_the_motor() {
-    let ways: [(&str, fn(&mut Bench)); 6] = [
+    let ways: [(&str, Act); 6] = [
         ("Space", |bench| bench.key(Key::Space)),
         ("Esc", |bench| bench.key(Key::Escape)),
         ("Stop All", |bench| bench.press("Stop All")),

@@ -6,9 +6,7 @@ use std::time::Duration;
 use brushwork::keep::TrialKeeper;
 use brushwork::tune::{Slot, Target, prepare, restore, run, take};
 use brushwork_link::device::{ArmScope, DeviceOptions, Event, FnJob, Job, JobEnding, Request};
-use brushwork_link::settings::{
-    Act, Ending, Entry, Keeper, SettingsTable, Subject, WriteOptions, save_kept,
-};
+use brushwork_link::settings::{Act, Ending, Entry, Keeper, SettingsTable, Subject, WriteOptions, save_kept};
 use brushwork_link::{Failure, Stream};
 use brushwork_protocol::models;
 use brushwork_protocol::packet_serial::{Address, Generation, Motor, Request as Packet, number};
@@ -261,7 +259,8 @@ fn stages(request: Tuning) -> Vec<(String, Duration)> {
         }
     }
     let ends = starts.iter().skip(1).map(|start| start.1).chain([end]);
-    let middles = starts.iter().zip(ends).map(|((text, start), end)| (text.clone(), (*start + end) / 2 - begun));
+    let middles =
+        starts.iter().zip(ends).map(|((text, start), end)| (text.clone(), (*start + end) / 2 - begun));
     middles.collect()
 }
 
@@ -290,7 +289,11 @@ fn stop_and_cancel_at_every_stage_stand_the_motor_and_put_the_old_gains_back() {
                         }
                     });
                 });
-                assert_eq!(report.map(|report| report.verdict), Some(Verdict::Refused), "{place}: it was stopped");
+                assert_eq!(
+                    report.map(|report| report.verdict),
+                    Some(Verdict::Refused),
+                    "{place}: it was stopped"
+                );
                 assert_eq!(settings(&link), before, "{place}");
                 link.run_for(ms(1_000));
                 assert!(link.speeds(0)[0].abs() < 0.01, "{place}: it still turns");
@@ -446,7 +449,8 @@ fn the_speed_of_an_absolute_encoder_that_wraps_is_refused_before_anything_moves(
     let report = tuned_as(&mut link, asked, velocity(), |_| {}).expect("a report");
     assert_eq!((report.verdict, report.causes.first()), (Verdict::Refused, Some(&Cause::WrappingEncoder)));
     assert_eq!(turns(&link), start);
-    let report = tuned_as(&mut link, asked, Tuning { method: Method::Pd, ..velocity() }, |_| {}).expect("a report");
+    let report =
+        tuned_as(&mut link, asked, Tuning { method: Method::Pd, ..velocity() }, |_| {}).expect("a report");
     assert_ne!(report.verdict, Verdict::Refused, "{:?}", report.causes);
     assert_eq!(settings(&link), before);
 }

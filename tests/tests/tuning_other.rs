@@ -121,7 +121,9 @@ impl Link {
             }
             match step {
                 Step::Again => {}
-                Step::IdleUntil(at) => self.cable.clock.advance_to(at.min(self.cable.clock.now() + s(1) / 50)),
+                Step::IdleUntil(at) => {
+                    self.cable.clock.advance_to(at.min(self.cable.clock.now() + s(1) / 50));
+                }
                 Step::Ended => return None,
             }
         }
@@ -249,10 +251,15 @@ fn every_manner_of_controller_ends_in_gains_or_in_an_honest_refusal() {
     for (name, manner) in manners() {
         for method in [Method::Velocity, Method::Pd, Method::Piv] {
             let report = tuned(manner.clone(), Motor::default(), Tuning { method, ..Tuning::default() });
-            println!("{name}, {method:?}: {:?} {:?} {:.1} s", report.verdict, report.causes, report.seconds.1);
+            println!(
+                "{name}, {method:?}: {:?} {:?} {:.1} s",
+                report.verdict, report.causes, report.seconds.1
+            );
             match refusal_of(name, method) {
                 Some(cause) => assert_eq!(report.causes.first(), Some(&cause), "{name}, {method:?}"),
-                None => assert_ne!(report.verdict, Verdict::Refused, "{name}, {method:?}: {:?}", report.causes),
+                None => {
+                    assert_ne!(report.verdict, Verdict::Refused, "{name}, {method:?}: {:?}", report.causes);
+                }
             }
         }
     }
@@ -280,7 +287,12 @@ fn what_is_wrong_is_refused_also_where_no_current_is_told() {
     let zero = Manner { tells_current: false, ..Manner::default() };
     for (name, manner, motor, cause) in [
         ("reversed", silent.clone(), Motor { reversed: true, ..Motor::default() }, Cause::EncoderReversed),
-        ("reversed, currents of 0", zero.clone(), Motor { reversed: true, ..Motor::default() }, Cause::EncoderReversed),
+        (
+            "reversed, currents of 0",
+            zero.clone(),
+            Motor { reversed: true, ..Motor::default() },
+            Cause::EncoderReversed,
+        ),
         ("held, no currents", silent, Motor { held: true, ..Motor::default() }, Cause::NothingCounted),
         ("held, currents of 0", zero, Motor { held: true, ..Motor::default() }, Cause::MotorOpen),
         ("held", Manner::default(), Motor { held: true, ..Motor::default() }, Cause::ShaftLocked),
@@ -294,7 +306,9 @@ fn what_is_wrong_is_refused_also_where_no_current_is_told() {
 
 #[test]
 fn a_command_that_is_not_known_ends_in_a_refusal_and_not_in_a_lost_link() {
-    for (command, method) in [(35, Method::Velocity), (65, Method::Pd), (28, Method::Velocity), (61, Method::Piv)] {
+    for (command, method) in
+        [(35, Method::Velocity), (65, Method::Pd), (28, Method::Velocity), (61, Method::Piv)]
+    {
         let manner = Manner { silent: vec![command], ..Manner::default() };
         let report = tuned(manner, Motor::default(), Tuning { method, ..Tuning::default() });
         assert_eq!(report.causes.first(), Some(&Cause::Refused), "command {command}: {:?}", report.causes);
@@ -303,7 +317,8 @@ fn a_command_that_is_not_known_ends_in_a_refusal_and_not_in_a_lost_link() {
 
 #[test]
 fn a_run_inside_a_travel_stays_there_on_another_controller_too() {
-    let mut request = Tuning { method: Method::Piv, excitation: Excitation::Window(1_600.0), ..Tuning::default() };
+    let mut request =
+        Tuning { method: Method::Piv, excitation: Excitation::Window(1_600.0), ..Tuning::default() };
     request.guard.travel = Some((-800, 800));
     let report = tuned(Manner::default(), Motor { end_stop: 800.0, ..Motor::default() }, request);
     assert_ne!(report.verdict, Verdict::Refused, "{:?}", report.causes);

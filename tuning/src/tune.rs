@@ -225,7 +225,8 @@ fn run(rig: &mut Rig<'_>, request: &Request, report: &mut Report) -> Result<(), 
     };
     rig.progress("Measuring the lag of the loop");
     let task = settle_lag(rig, request, task, report)?;
-    let task = if request.method == Method::Pid { with_slack(rig, request, task, &probe, report)? } else { task };
+    let task =
+        if request.method == Method::Pid { with_slack(rig, request, task, &probe, report)? } else { task };
     report.task = Some(task);
     let design = design_for(request.method, &task).ok_or(Cause::TooCoarse)?;
     propose(report, request, &task, design, rig.options.travel);

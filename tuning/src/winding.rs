@@ -64,24 +64,19 @@ pub fn winding_of(points: &[Point], drives: &[Drive]) -> Option<Winding> {
     let inverse = normal.try_inverse()?;
     let found = inverse * right;
     let (ohms, back_emf) = (found[0], found[1] / scale);
-    let misfit =
-        |row: &Row| ((row.volts - ohms * row.amps - back_emf * row.speed) * row.weight()).powi(2);
+    let misfit = |row: &Row| ((row.volts - ohms * row.amps - back_emf * row.speed) * row.weight()).powi(2);
     let freedom = (rows.len() - 2) as f64;
     let variance = (rows.iter().map(misfit).sum::<f64>() / freedom).max(1.0);
     let interval_ohms = 1.96 * (variance * inverse[(0, 0)]).sqrt();
     let is_told = ohms > 0.0 && back_emf > 0.0 && interval_ohms < WIDEST * ohms;
-    is_told.then_some(Winding {
-        ohms,
-        interval_ohms,
-        volts_per_count_per_s: back_emf,
-        samples: rows.len(),
-    })
+    is_told.then_some(Winding { ohms, interval_ohms, volts_per_count_per_s: back_emf, samples: rows.len() })
 }
 
 impl Row {
     /// One over the standard deviation of its volts.
     fn weight(&self) -> f64 {
-        1.0 / (ROUNDING_VOLTS.powi(2) + (MODEL * self.volts).powi(2) + (ROUNDING_AMPS * self.amps).powi(2)).sqrt()
+        1.0 / (ROUNDING_VOLTS.powi(2) + (MODEL * self.volts).powi(2) + (ROUNDING_AMPS * self.amps).powi(2))
+            .sqrt()
     }
 }
 
@@ -136,10 +131,18 @@ fn row_at(points: &[Point], drives: &[Drive], n: usize, battery: &Battery, stead
     let steady_since = drives[at].t + SETTLED_S + RAMP_S * (duty - last).abs();
     let next = drives.get(at + 1).map_or(f64::INFINITY, |drive| drive.t);
     let speed = speed_of(before, after);
-    let changes = (speed_of(point, after) - speed_of(before, point)).abs() > steady.max(1.5 / (after.t - point.t).max(1e-3));
+    let changes = (speed_of(point, after) - speed_of(before, point)).abs()
+        > steady.max(1.5 / (after.t - point.t).max(1e-3));
     // A duty that came down brakes, and not every controller tells the sign of a current.
     let brakes = duty.abs() < last.abs() && duty * last > 0.0;
-    if duty == 0.0 || brakes || point.t < steady_since || before.t < drives[at].t || after.t > next || speed * duty < 0.0 || changes {
+    if duty == 0.0
+        || brakes
+        || point.t < steady_since
+        || before.t < drives[at].t
+        || after.t > next
+        || speed * duty < 0.0
+        || changes
+    {
         return None;
     }
     let volts = battery.volts - battery.ohms * duty.abs() * amps;
@@ -152,7 +155,8 @@ mod tests {
 
     /// Polls every 10 ms of a motor of 0.8 ohm and 0.002 V per count/s, driven at two duties from rest.
     fn run(amps_at: impl Fn(f64) -> Option<f64>) -> (Vec<Point>, Vec<Drive>) {
-        let drives = vec![Drive { t: 0.0, input: Input::Duty(0.5) }, Drive { t: 1.0, input: Input::Duty(0.9) }];
+        let drives =
+            vec![Drive { t: 0.0, input: Input::Duty(0.5) }, Drive { t: 1.0, input: Input::Duty(0.9) }];
         let (mut speed, mut counts) = (0.0, 0.0);
         let points = (0..200).map(|n| {
             let t = 0.01 * f64::from(n);

@@ -65,10 +65,8 @@ mod tests {
             ("none", Some(EncoderClass::Quadrature)),
             ("packet_serial", None),
         ] {
-            let held = [
-                ("motor1.encoder.pin", SettingValue::Int(2)),
-                ("pin.3.type", SettingValue::Choice(kind)),
-            ];
+            let held =
+                [("motor1.encoder.pin", SettingValue::Int(2)), ("pin.3.type", SettingValue::Choice(kind))];
             assert_eq!(of(&held, Motor::M1), wanted, "{kind}");
         }
         assert_eq!(of(&[("motor1.encoder.pin", SettingValue::Int(255))], Motor::M1), None);

@@ -73,11 +73,14 @@ fn parse(text: &str) -> Result<Report, String> {
     }
     if head.request.is_none() || head.verdict.is_none() || head.record.is_none() {
         let missing = if head.record.is_none() { "record" } else { "request or verdict" };
-        return Err(format!("it holds no {missing}, so it is no tuning report. Choose a file that a tuning run wrote."));
+        return Err(format!(
+            "it holds no {missing}, so it is no tuning report. Choose a file that a tuning run wrote."
+        ));
     }
     serde_json::from_str(text).map_err(|error| {
         let (line, column) = (error.line(), error.column());
-        let field = field_before(text, line, column).map_or_else(String::new, |field| format!(", field {field}"));
+        let field =
+            field_before(text, line, column).map_or_else(String::new, |field| format!(", field {field}"));
         format!(
             "line {line}, column {column}{field}: {}. It was changed, or written by another version.",
             bare(&error)
@@ -88,14 +91,20 @@ fn parse(text: &str) -> Result<Report, String> {
 fn no_json(text: &str, error: &serde_json::Error) -> String {
     let (line, column) = (error.line(), error.column());
     match error.classify() {
-        Category::Eof if text.trim().is_empty() => "it is empty. Choose a file that a tuning run wrote.".to_owned(),
-        Category::Eof => format!("it is cut short: it ends at line {line}, column {column}. Save the report again."),
-        Category::Data => format!(
-            "line {line}, column {column}: {}. It is no tuning report, or was changed.",
-            bare(error)
-        ),
+        Category::Eof if text.trim().is_empty() => {
+            "it is empty. Choose a file that a tuning run wrote.".to_owned()
+        }
+        Category::Eof => {
+            format!("it is cut short: it ends at line {line}, column {column}. Save the report again.")
+        }
+        Category::Data => {
+            format!("line {line}, column {column}: {}. It is no tuning report, or was changed.", bare(error))
+        }
         Category::Syntax | Category::Io => {
-            format!("line {line}, column {column} is no JSON: {}. Choose a file that a tuning run wrote.", bare(error))
+            format!(
+                "line {line}, column {column} is no JSON: {}. Choose a file that a tuning run wrote.",
+                bare(error)
+            )
         }
     }
 }
@@ -119,7 +128,8 @@ fn field_before(text: &str, line: usize, column: usize) -> Option<String> {
 mod tests {
     use super::*;
 
-    const REPORT: &str = "{\n\"request\":{\"method\":\"velocity\"},\n\"verdict\":\"tuned\",\n\"record\":[\n]}\n";
+    const REPORT: &str =
+        "{\n\"request\":{\"method\":\"velocity\"},\n\"verdict\":\"tuned\",\n\"record\":[\n]}\n";
 
     fn refused(text: &str) -> String {
         parse(text).expect_err("it is no report")

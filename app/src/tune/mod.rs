@@ -99,7 +99,11 @@ impl Carrier for JobCarrier<'_, '_> {
         let reply = self.context.transact_timed(command, &values).map_err(|error| told(&error))?;
         let exchange = Exchange { sent: reply.span.requested_at, received: reply.span.replied_at };
         let is_vague = self.is_vague(&exchange);
-        if is_vague && needs_its_time(command) { Err(AxisError::NoReply) } else { Ok((exchange, reply.values)) }
+        if is_vague && needs_its_time(command) {
+            Err(AxisError::NoReply)
+        } else {
+            Ok((exchange, reply.values))
+        }
     }
 
     fn now(&mut self) -> Duration {

@@ -198,8 +198,8 @@ impl<C: Carrier> Axis for PacketAxis<C> {
         let velocity = self.read(number::READ_VELOCITY_PID_M1, number::READ_VELOCITY_PID_M2)?;
         let position = self.read(number::READ_POSITION_PID_M1, number::READ_POSITION_PID_M2)?;
         let current = self.optional_of(number::READ_CURRENT_LIMITS_M1, number::READ_CURRENT_LIMITS_M2)?;
-        let winding = self
-            .optional_of(number::READ_INDUCTANCE_RESISTANCE_M1, number::READ_INDUCTANCE_RESISTANCE_M2)?;
+        let winding =
+            self.optional_of(number::READ_INDUCTANCE_RESISTANCE_M1, number::READ_INDUCTANCE_RESISTANCE_M2)?;
         let volts = self.optional(number::READ_MAIN_VOLTAGES)?.map(|(_, values)| values);
         let stream_timeout_ms = self.read_stream()?;
         let unsigned = |values: &Values, name: &str| values.int(name) as u32;
@@ -222,9 +222,8 @@ impl<C: Carrier> Axis for PacketAxis<C> {
             max_current_raw: current.as_ref().map_or(0, |values| unsigned(values, "max")),
             min_current_raw: current.as_ref().map_or(0, |values| values.int("min") as i32),
             min_volts_raw: volts.map_or(0, |values| values.int("min") as u16),
-            inductance_resistance_raw: winding.map_or([0, 0], |values| {
-                [unsigned(&values, "inductance"), unsigned(&values, "resistance")]
-            }),
+            inductance_resistance_raw: winding
+                .map_or([0, 0], |values| [unsigned(&values, "inductance"), unsigned(&values, "resistance")]),
             stream_timeout_ms,
             encoder: self.encoder,
         })

@@ -69,7 +69,10 @@ fn play_is_seen_behind_the_gear_and_claimed_nowhere_else() {
         let turns = plant.axis.gear.backlash_radians / std::f64::consts::TAU;
         let play = turns * plant.axis.encoder.counts_per_turn;
         println!("plant {number}: {slack:?} of {play:.1} counts");
-        assert!(slack.counts - 2.0 * slack.interval_counts <= play, "plant {number}: {slack:?} of {play} counts");
+        assert!(
+            slack.counts - 2.0 * slack.interval_counts <= play,
+            "plant {number}: {slack:?} of {play} counts"
+        );
         assert!(play > 0.0, "plant {number} has none");
         let position = report.position.expect("it was tuned");
         assert!(f64::from(position.deadzone) >= slack.counts, "plant {number}: {position:?}");

@@ -78,7 +78,10 @@ fn push(rig: &mut Rig<'_>, duty: f64, push_s: f64, rest_s: f64) -> Result<Vec<(f
         rig.duty(0.0)?;
         rig.poll_for(rest_s, false)?;
         // A computer that was late pushed for longer.
-        ways.push((before * direction, (place(rig) - from) * direction * (push_s / held_s.max(1e-3)).min(1.0)));
+        ways.push((
+            before * direction,
+            (place(rig) - from) * direction * (push_s / held_s.max(1e-3)).min(1.0),
+        ));
         before = direction;
     }
     Ok(ways)
@@ -103,13 +106,20 @@ fn push_time_s(model: &PlantModel, duty: f64, way: f64) -> f64 {
 /// What the pushes after a reversal are short of the others.
 fn slack_of(ways: &[(f64, f64)]) -> Slack {
     let of = |turned: bool| -> Vec<f64> {
-        ways.iter().filter(|(turn, _)| if turned { *turn < 0.0 } else { *turn > 0.0 }).map(|(_, way)| *way).collect()
+        ways.iter()
+            .filter(|(turn, _)| if turned { *turn < 0.0 } else { *turn > 0.0 })
+            .map(|(_, way)| *way)
+            .collect()
     };
     let (same, turned) = (of(false), of(true));
     let (a, b) = (mean_and_error(&same), mean_and_error(&turned));
     let (short, error) = (a.0 - b.0, a.1.hypot(b.1).max(LEAST_ERROR_COUNTS));
     let is_sure = short > LEAST_COUNTS && short > SURE * error && short > LEAST_SHARE * a.0;
-    Slack { counts: if is_sure { short } else { 0.0 }, interval_counts: 1.96 * error, reversals: turned.len() }
+    Slack {
+        counts: if is_sure { short } else { 0.0 },
+        interval_counts: 1.96 * error,
+        reversals: turned.len(),
+    }
 }
 
 fn mean_and_error(values: &[f64]) -> (f64, f64) {
@@ -125,7 +135,8 @@ mod tests {
 
     #[test]
     fn what_is_lost_at_reversals_is_the_play_and_scatter_is_none() {
-        let pushes = [(0.0, 30.0), (1.0, 30.0), (-1.0, 22.0), (1.0, 31.0), (-1.0, 21.0), (1.0, 30.0), (-1.0, 23.0)];
+        let pushes =
+            [(0.0, 30.0), (1.0, 30.0), (-1.0, 22.0), (1.0, 31.0), (-1.0, 21.0), (1.0, 30.0), (-1.0, 23.0)];
         let found = slack_of(&pushes);
         assert!((found.counts - 8.33).abs() < 0.1, "{found:?}");
         assert_eq!(found.reversals, 3);

@@ -100,7 +100,8 @@ fn swing(
             return Err(Cause::TravelLimit);
         }
         let ahead = from_middle * direction + (speed * direction).max(0.0) * *brake_s;
-        let is_steady = rig.recent_speed(12).is_some_and(|before| (speed - before).abs() < STEADY * run.top_speed);
+        let is_steady =
+            rig.recent_speed(12).is_some_and(|before| (speed - before).abs() < STEADY * run.top_speed);
         let is_long = point.t - since_s > LONGEST_SWING_S && is_steady;
         if is_long || ahead >= SWITCH_AT * width {
             since_s = point.t;

@@ -113,11 +113,11 @@ fn request(args: &RunArgs, method: Method) -> TuneRequest {
 }
 
 fn conclude(args: &RunArgs, report: &Report, controller: &Controller<'_>, out: &mut Output) -> Exit {
-    if let Some(path) = &args.report {
-        if let Err(sentence) = file::write(report, path) {
-            say(sentence);
-            return Exit::Failed;
-        }
+    if let Some(path) = &args.report
+        && let Err(sentence) = file::write(report, path)
+    {
+        say(sentence);
+        return Exit::Failed;
     }
     let printed = if args.json { out.json(&words::summary(report)) } else { words::print(report, out) };
     if let Err(error) = printed {

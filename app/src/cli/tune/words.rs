@@ -49,10 +49,18 @@ pub fn print(report: &Report, out: &mut Output) -> Result<(), OutputError> {
         row("friction", format!("{:.1} % duty", 100.0 * fit.model.coulomb_duty), String::new());
     }
     if let Some(winding) = &report.winding {
-        row("resistance R", format!("{:.3} ohm", winding.ohms), format!("+- {:.3} ohm", winding.interval_ohms));
+        row(
+            "resistance R",
+            format!("{:.3} ohm", winding.ohms),
+            format!("+- {:.3} ohm", winding.interval_ohms),
+        );
     }
     if let Some(slack) = &report.slack {
-        let value = if slack.counts > 0.0 { format!("at least {:.1} counts", slack.counts) } else { "none seen".into() };
+        let value = if slack.counts > 0.0 {
+            format!("at least {:.1} counts", slack.counts)
+        } else {
+            "none seen".into()
+        };
         row("play at reversals", value, format!("+- {:.1} counts", slack.interval_counts));
     }
     if let Some(lag) = &report.lag {

@@ -109,8 +109,11 @@ impl App {
     /// Sends a command that was put together by hand; one that changes settings once a backup of them is kept.
     pub(super) fn transact(&mut self, transact: Transact) {
         let front = &mut self.model.front;
-        if front.tune.is_running() && front.link.identity().is_some_and(|identity| transact.changes_settings(identity)) {
-            let told = "A tuning run is at work, and this command changes settings. Send it when the run has ended.";
+        if front.tune.is_running()
+            && front.link.identity().is_some_and(|identity| transact.changes_settings(identity))
+        {
+            let told =
+                "A tuning run is at work, and this command changes settings. Send it when the run has ended.";
             self.model.messages.fail(told.to_owned());
             return;
         }

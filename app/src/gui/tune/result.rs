@@ -101,7 +101,8 @@ fn winding_ui(ui: &mut Ui, model: &mut Model, which: Loop, winding: &Winding) {
         ui.label(text).on_hover_text("Of the winding, its leads and the bridge, with its 95 % interval");
         let is_free = !model.front.is_guided() && model.front.loops.is_known();
         let enter = ui.add_enabled(is_free, Button::new("Enter as R").small());
-        let hint = "Puts it into the field R under Velocity loop. It is sent with the other edits of that table.";
+        let hint =
+            "Puts it into the field R under Velocity loop. It is sent with the other edits of that table.";
         if enter.on_hover_text(hint).clicked() {
             model.front.loops.edit_resistance(motor, winding.ohms);
         }

@@ -25,7 +25,7 @@ pub fn screen_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         Screen::Inputs => inputs::inputs_ui(ui, model, commands),
         Screen::Terminal => terminal::terminal_ui(ui, model, commands),
         Screen::MclEditor => {
-            nothing_ui(ui, "A Motion Mind 3 runs no scripts. Choose another screen at the left.")
+            nothing_ui(ui, "A Motion Mind 3 runs no scripts. Choose another screen at the left.");
         }
     }
 }
