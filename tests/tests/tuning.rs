@@ -353,7 +353,7 @@ fn gains_that_were_kept_and_saved_are_there_after_a_power_cycle_and_so_is_the_us
     let saved = finish(&mut link, saving, ms(60_000));
     assert!(matches!(saved, Some(JobEnding::Done(_))), "{saved:?}");
     for powered in [false, true] {
-        link.apply(0, &WorldAction::SetMainPower { on: powered });
+        link.apply(0, &WorldAction::Power { on: powered });
         link.machine_alone_for(ms(1_500));
     }
     let (after, timeout_after_ms) = settings(&link);
