@@ -12,10 +12,10 @@ import time
 from basicmicro import Basicmicro
 
 import harness
-from harness import truth, wait_until
+from harness import let_silence_be_noticed, truth, wait_until
 
 ADDRESS = 0x80
-RETRIES = 4  # the library sends a packet in pieces: on a busy machine the 10 ms gap may fall between two of them
+RETRIES = 20  # the library sends a packet in pieces: on a busy machine the 10 ms gap may fall between two of them
 
 LIBRARY_FLOAT = "the library computes a float duty and then shifts it, which raises TypeError before the packet is complete"
 LIBRARY_STUB = "the library keeps a stub that returns False and sends nothing"
@@ -140,7 +140,7 @@ def check_local_methods(checker):
     checker.record("crc_update", device._crc == 0x590C, f"0x{device._crc:04X}")
     random.seed(1)
     device.SendRandomData(40)
-    time.sleep(0.05)
+    let_silence_be_noticed()
     answer = device.ReadVersion(ADDRESS)
     checker.record("SendRandomData", answer[0], "the controller did not answer after 40 random bytes")
     status = dict.fromkeys(("combined_status_raw", "error_status_raw", "warning_status_raw"), 0)
@@ -300,7 +300,7 @@ def check_lists(checker):
 def check_memory(checker, factory):
     # A save keeps what RAM holds; a reload brings it back after a change.
     checker.write("WriteNVM")
-    saved = wait_until(lambda t: t["saved_settings"] == t["settings"], 5)
+    saved = wait_until(lambda t: t["saved_settings"] == t["settings"])
     checker.record("WriteNVM", saved, "the EEPROM does not hold what RAM holds")
     checker.write("SetNodeID", 99)
     checker.write("ReadNVM")
@@ -313,7 +313,7 @@ def check_memory(checker, factory):
     checker.read("ReadEeprom", lambda t: (t["user_memory"][5],), 5)
 
     checker.write("RestoreDefaults")
-    restored = wait_until(lambda t: t["settings"] == factory, 5)
+    restored = wait_until(lambda t: t["settings"] == factory)
     checker.record("RestoreDefaults", restored, "RAM does not hold the factory settings")
 
 
@@ -356,11 +356,11 @@ def stop(checker):
     checker.call("ResetEncoders")
 
 
-def moves(checker, name, arguments, reached, limit_s=4.0):
+def moves(checker, name, arguments, reached):
     """A motion command: acknowledged, and `reached(truth)` holds in time. Both motors are stopped afterwards."""
-    if checker.write(name, *arguments):
-        passed = wait_until(reached, limit_s)
-        checker.record(name, passed, f"the machine did not follow {arguments}: {truth()['motors']}")
+    go = lambda: checker.write(name, *arguments)
+    passed = harness.reached(go, reached, lambda: checker.call("ReadBuffers"))
+    checker.record(name, passed, f"the machine did not follow {arguments}: {truth()['motors']}")
     stop(checker)
 
 
@@ -409,9 +409,16 @@ def speeds(first, second):
 
 def full_speed(checker):
     """Speed at 100 % duty, as a person would find QPPS: run and look."""
-    checker.call("DutyM1M2", 32767, 32767)
-    time.sleep(1.0)
-    found = [m["speed_counts_per_s"] for m in truth()["motors"]]
+    found = [[0.0, 0.0]]
+
+    def steady(t):
+        found.append([m["speed_counts_per_s"] for m in t["motors"]])
+        time.sleep(0.1)
+        return all(near(now, before, 0.001) and now > 100 for now, before in zip(found[-1], found[-2]))
+
+    go = lambda: checker.call("DutyM1M2", 32767, 32767) is True
+    checker.record("DutyM1M2", harness.reached(go, steady, lambda: checker.call("ReadBuffers")), f"unsteady: {found[-5:]}")
+    found = found[-1]
     stop(checker)
     return int(min(found))
 
@@ -484,20 +491,22 @@ def signed(value, bits=32):
     return value - (1 << bits) if value >> (bits - 1) & 1 else value
 
 
-def sampled(wanted, samples=25):
+def sampled(checker, wanted, samples=25):
     """The lowest and the highest of each quantity over some control ticks."""
     rows = []
-    for _ in range(samples):
+    for sample in range(samples):
         rows.append(wanted(truth()))
         time.sleep(0.002)
+        if sample % 8 == 0:
+            checker.call("ReadBuffers")  # keeps the controller's own time-out from stopping the motors
     return [(min(column), max(column)) for column in zip(*rows)]
 
 
 def live_read(checker, name, found, wanted, steps):
     """A read of moving quantities. `steps` are what the wire rounds each of them to."""
-    before = sampled(wanted)
+    before = sampled(checker, wanted)
     answer = checker.call(name)
-    after = sampled(wanted)
+    after = sampled(checker, wanted)
     succeeded = isinstance(answer, tuple) and bool(answer[0])
     values = found(answer) if succeeded else []
     ranges = [(min(b[0], a[0]) - step, max(b[1], a[1]) + step) for b, a, step in zip(before, after, steps)]
@@ -597,7 +606,7 @@ def check_what_cannot_work(checker):
         answer = call_doomed(checker, name)
         worked = answer is True or (isinstance(answer, dict) and answer.get("read_success"))
         checker.record(name, worked, f"{EXPECTED_FAILURES[name]}: {answer!r}")
-    time.sleep(0.05)
+    let_silence_be_noticed()
 
 
 def call_doomed(checker, name):

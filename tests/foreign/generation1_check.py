@@ -10,11 +10,10 @@ import sys
 import time
 
 import harness
-from harness import truth, wait_until
+from harness import let_silence_be_noticed, truth, wait_until
 from packet import AppendingClient, BadReply, BytewiseClient, Client, LISTS, Port, READS, Silence, sealed
 
 REPLY_LIMIT_MS = 5.0
-LATE_SHARE = 0.04  # what a machine with other work may hold back now and then
 
 
 class Findings:
@@ -129,7 +128,7 @@ def memory(findings, client):
     findings.equal("user memory", client.read(252, bytes([9]), "H"), (0x1234,))
     findings.equal("user memory in memory", truth()["user_memory"][9], 0x1234)
     client.write(94, 0xE22EAB7A)
-    saved = wait_until(lambda t: t["saved_settings"] == t["settings"], 5)
+    saved = wait_until(lambda t: t["saved_settings"] == t["settings"])
     findings.check("94 saves", saved, "the EEPROM does not hold what RAM holds")
 
 
@@ -174,16 +173,17 @@ MOTIONS = [
 
 def motion(findings, client):
     for number, values, index, direction in MOTIONS:
-        client.write(number, *values)
         turns = lambda t: t["motors"][index]["speed_counts_per_s"] * direction > 100
-        findings.check(f"motion {number} {values}", wait_until(turns), f"{truth()['motors']}")
+        turned = harness.reached(lambda: client.write(number, *values) or True, turns, lambda: client.read(49))
+        findings.check(f"motion {number} {values}", turned, f"{truth()['motors']}")
         client.write(34, 0, 0)
         wait_until(lambda t: all(abs(m["speed_counts_per_s"]) < 20 for m in t["motors"]))
         client.write(20)
     # Mixed commands need a drive and a turn value, once each, before anything moves.
-    client.write(8, 64)
-    client.write(10, 0)
-    findings.check("motion 8 with 10", wait_until(lambda t: duty_of(0) > 8000 and duty_of(1) > 8000), f"{truth()['motors']}")
+    mixed = lambda: (client.write(8, 64), client.write(10, 0))
+    both_turn = lambda t: duty_of(0) > 8000 and duty_of(1) > 8000
+    turned = harness.reached(mixed, both_turn, lambda: client.read(49))
+    findings.check("motion 8 with 10", turned, f"{truth()['motors']}")
     client.write(12, 64)
     client.write(13, 64)
     findings.check("12 and 13 at 64 stop", wait_until(lambda t: duty_of(0) == duty_of(1) == 0), f"{truth()['motors']}")
@@ -201,7 +201,7 @@ def silence(findings, client):
         client.send(data)
         findings.check(f"{name}: silence", client.port.is_silent(), f"answered {data.hex()}")
         findings.equal(f"{name}: no motion", duty_of(0), 0)
-        time.sleep(0.02)
+        let_silence_be_noticed()
         findings.check(f"{name}: the next packet is understood", len(client.read(24)) == 1)
 
 
@@ -209,11 +209,11 @@ def gaps(findings, client):
     """More than 10 ms between two bytes discards the packet; a packet in quick pieces is one packet."""
     packet = sealed(bytes([0x80, 32, 0x10, 0x00]))
     client.send(packet[:3])
-    time.sleep(0.03)
+    let_silence_be_noticed()
     client.port.write(packet[3:])
     findings.check("a gap discards", client.port.is_silent(), "answered")
     findings.equal("a gap discards: no motion", duty_of(0), 0)
-    time.sleep(0.03)
+    let_silence_be_noticed()
     client.write(32, 0)
     findings.check("after a gap the next packet is understood", True)
 
@@ -222,7 +222,7 @@ def stub_frames(findings, client):
     """Address and command with nothing after them, as one library leaves them on the line, are forgotten in 10 ms."""
     for _ in range(3):
         client.send(bytes([0x80, 52]))
-        time.sleep(0.02)
+        let_silence_be_noticed()
         client.write(20)
     findings.check("stub frames are forgotten", True)
 
@@ -231,7 +231,7 @@ def garbage(findings, client):
     random.seed(4)
     for _ in range(20):
         client.send(bytes(random.getrandbits(8) for _ in range(random.randrange(1, 60))))
-        time.sleep(0.015)
+        let_silence_be_noticed()
     client.port.flush_input()
     client.write(34, 0, 0)
     client.write(200)
@@ -239,7 +239,7 @@ def garbage(findings, client):
 
 
 def latency(port):
-    """The limit is judged on a machine that has a core to spare; the figures are stated always."""
+    """Figures for the record. What they may be is judged by `brushwork bench link`, on a machine that has a core to spare."""
     ordered = sorted(port.latencies_ms)
     median = ordered[len(ordered) // 2]
     late_share = sum(value > REPLY_LIMIT_MS for value in ordered) / len(ordered)
@@ -250,9 +250,6 @@ def latency(port):
     harness.figure("longest gap inside a reply", max(port.gaps_ms, default=0.0), "ms")
     harness.figure("replies after more than 5 ms", late_share * 100, "%")
     harness.figure("load of the machine per core", load_per_core, "")
-    harness.report("wire: the median reply starts within 5 ms", median <= REPLY_LIMIT_MS, f"{median:.2f} ms")
-    if load_per_core < 1:
-        harness.report("wire: replies start within 5 ms", late_share <= LATE_SHARE, f"{late_share:.1%} were late")
 
 
 if __name__ == "__main__":

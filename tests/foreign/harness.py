@@ -49,12 +49,46 @@ def finish():
     _send({"finished": True})
 
 
-def wait_until(condition, limit_s=3.0):
-    """Waits until `condition(truth)` holds; returns whether it did."""
+PATIENCE_S = 60  # however slow the machine is: nothing that works takes so long
+
+
+def let_silence_be_noticed():
+    """The line is silent until the controller has noticed, however late the thread that serves it is.
+
+    Each question for the truth is answered between two looks at the line: the first ones find what was sent, the later ones nothing.
+    """
+    for _ in range(3):
+        for _ in range(3):
+            truth()
+        time.sleep(0.015)
+
+
+def reached(command, condition, meanwhile):
+    """Whether the machine comes to `condition(truth)` after a command, kept alive by talking meanwhile.
+
+    A script that a busy machine keeps from talking for a second meets the controller's own time-out: then once more.
+    """
+    tries, one_try_s = 6, 10
+    for _ in range(tries):
+        if not command():
+            return False
+        if wait_until(condition, one_try_s, meanwhile):
+            return True
+    return False
+
+
+def eventually(condition, limit_s=PATIENCE_S):
+    """Waits until `condition()` holds; returns whether it did."""
+    return wait_until(lambda _: condition(), limit_s)
+
+
+def wait_until(condition, limit_s=PATIENCE_S, meanwhile=lambda: None):
+    """Waits until `condition(truth)` holds, doing something between two looks; returns whether it did."""
     deadline = time.monotonic() + limit_s
     while True:
         if condition(truth()):
             return True
+        meanwhile()
         if time.monotonic() > deadline:
             return False
         time.sleep(0.005)
