@@ -40,7 +40,7 @@ struct Origin {
 
 enum Task {
     Begin { origin: Origin, entry: Box<Entry>, answer: Sender<Result<Begun, Failure>> },
-    End { origin: Origin, begun: Box<Begun>, ending: Ending },
+    End { origin: Origin, begun: Box<Begun>, ending: Ending, done: Sender<()> },
 }
 
 /// What was kept when an act began.
@@ -74,6 +74,7 @@ impl Keeping {
             worker: self.worker.clone(),
             answer: None,
             begun: None,
+            ended: None,
         })
     }
 }
@@ -93,6 +94,8 @@ struct UnitKeeper {
     worker: Arc<Worker>,
     answer: Option<Receiver<Result<Begun, Failure>>>,
     begun: Option<Begun>,
+    /// Closed when what ends the act is on the disk.
+    ended: Option<Receiver<()>>,
 }
 
 impl Keeper for UnitKeeper {
@@ -126,8 +129,16 @@ impl Keeper for UnitKeeper {
 
     fn end(&mut self, ending: Ending) {
         let (Some(begun), Some(tasks)) = (self.begun.take(), &self.worker.tasks) else { return };
+        let (done, ended) = bounded(1);
+        let task = Task::End { origin: self.origin.clone(), begun: Box::new(begun), ending, done };
         // A journal that stays open for want of room is looked at once more; nothing is lost by that.
-        let _ = tasks.try_send(Task::End { origin: self.origin.clone(), begun: Box::new(begun), ending });
+        let _ = tasks.try_send(task);
+        self.ended = Some(ended);
+    }
+
+    fn ended(&mut self) -> bool {
+        let Some(ended) = &self.ended else { return true };
+        !matches!(ended.recv_timeout(MOMENT), Err(RecvTimeoutError::Timeout))
     }
 }
 
@@ -139,9 +150,11 @@ fn perform(store: &Store, task: Task) {
             // Whoever asked may have been called off.
             let _ = answer.send(begun);
         }
-        Task::End { origin, begun, ending } => {
+        Task::End { origin, begun, ending, done } => {
             // What cannot be written now leaves the journal open: it is told at the next connection.
             let _ = end(store, &origin, &begun, &ending);
+            // Nobody may wait for it.
+            let _ = done.send(());
         }
     }
 }

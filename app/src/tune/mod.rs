@@ -16,7 +16,7 @@ use brushwork_link::Stream;
 use brushwork_link::device::{FnJob, Job, JobContext};
 use brushwork_link::exchange::ExchangeError;
 use brushwork_link::failure::Failure;
-use brushwork_link::settings::{Ending, Subject, begin_trial};
+use brushwork_link::settings::{Ending, Subject, begin_trial, end_act};
 use brushwork_link::wire::Wire;
 use brushwork_protocol::packet_serial::{Generation, Motor, Request as Packet, Value, Values, number};
 use brushwork_tuning::axis::{Axis, AxisError, EncoderClass, Exchange, Setup};
@@ -48,7 +48,7 @@ const LATE: Duration = Duration::from_millis(35);
 /// How long the job before a run may take: it reads every setting for the backup.
 const PREPARE_LIMIT: Duration = Duration::from_secs(130);
 /// How long the job after a run may take.
-const RESTORE_LIMIT: Duration = Duration::from_secs(10);
+const RESTORE_LIMIT: Duration = Duration::from_secs(60);
 /// What a run may take beyond its own limit.
 const GRACE: Duration = Duration::from_secs(10);
 
@@ -250,7 +250,7 @@ pub fn restore(target: Target, before: Setup, report: Option<&Report>, keeper: &
             thrice(|| axis.set_stream_timeout(timeout_ms))
                 .map_err(|error| failed("set the time-out of the port back", &place, &error))?;
         }
-        keeper.lock().end(Ending::Known);
+        end_act(context, &mut **keeper.lock(), Ending::Known);
         Ok(Box::new(()))
     })
 }

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use brushwork_link::script::{AUTORUN_JOB, Autorun, read_autorun, set_autorun};
+use brushwork_link::settings::{Ending, begin_command, end_act};
 use brushwork_link::{ExchangeError, Failure, Wire};
 use brushwork_sim::controller::{ScriptRun, ScriptView};
 use serde_json::json;
@@ -11,7 +12,7 @@ use super::args::{AutorunArgs, StatusArgs};
 use crate::cli::exit::Exit;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::output::{Output, say};
-use crate::cli::settings::controller::{Controller, Finished};
+use crate::cli::settings::controller::{Controller, Finished, WRITE_LIMIT};
 
 /// More than reading takes at the slowest rates.
 const LIMIT: Duration = Duration::from_secs(30);
@@ -23,9 +24,13 @@ const UNKNOWN: &str =
 pub fn autorun(args: &AutorunArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let controller = Controller::connect(&args.connect, interrupt)?;
     let wanted = args.delay;
-    let finished = controller.run(AUTORUN_JOB, LIMIT, move |wire| {
+    let (subject, mut keeper) = (controller.subject(), controller.keeper());
+    let finished = controller.run(AUTORUN_JOB, WRITE_LIMIT, move |wire| {
         if let Some(delay) = wanted {
-            set_autorun(wire, delay.0)?;
+            begin_command(wire, subject, false, &mut *keeper)?;
+            let set = set_autorun(wire, delay.0);
+            end_act(wire, &mut *keeper, if set.is_ok() { Ending::Known } else { Ending::Open });
+            set?;
         }
         read_autorun(wire).map_err(|error| failure(&error, wire))
     })?;

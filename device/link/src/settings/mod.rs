@@ -29,7 +29,7 @@ pub use copy::{CopiedMotor, copy_motor};
 pub use image::{Copies, Copy, Difference, SettingsImage, changes, diff};
 pub use keep::{
     Act, Aftermath, Ending, Entry, Held, Journal, JournalError, Keeper, Known, begin_command, begin_trial,
-    defaults_kept, reload_kept, save_kept, write_kept, write_kept_knowing,
+    defaults_kept, end_act, reload_kept, save_kept, write_kept, write_kept_knowing,
 };
 pub use kind::{Coding, Kind};
 pub use listing::{ListedSetting, list, list_text};

@@ -9,7 +9,7 @@ use brushwork_link::Failure;
 use brushwork_link::device::{FnJob, Job, JobContext};
 use brushwork_link::settings::{
     DefaultsReport, Ending, Keeper, ReadReport, SaveReport, SettingsImage, SettingsTable, WriteError,
-    WriteOptions, WriteReport, begin_trial, defaults_kept, read_all, reload_kept, save_kept, write,
+    WriteOptions, WriteReport, begin_trial, defaults_kept, end_act, read_all, reload_kept, save_kept, write,
     write_kept,
 };
 use brushwork_link::transport::Stream;
@@ -148,8 +148,10 @@ fn calibrating(
     }
     let result = write(context, table, wanted, options);
     match &result {
-        Ok(report) if !opens && report.is_complete() => keeper.lock().end(Ending::Known),
-        Err(_) if opens => keeper.lock().end(Ending::NotDone),
+        Ok(report) if !opens && report.is_complete() => {
+            end_act(context, &mut **keeper.lock(), Ending::Known);
+        }
+        Err(_) if opens => end_act(context, &mut **keeper.lock(), Ending::NotDone),
         _ => {}
     }
     Ok(match result {

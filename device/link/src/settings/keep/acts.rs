@@ -131,11 +131,12 @@ fn write_over(
     {
         look_again(wire, table, &before.image, report);
     }
-    keeper.end(match &result {
+    let ending = match &result {
         Ok(report) if is_conclusive(report) => Ending::Known,
         Ok(_) => Ending::Open,
         Err(_) => Ending::NotDone,
-    });
+    };
+    end_act(wire, keeper, ending);
     result
 }
 
@@ -176,10 +177,11 @@ pub fn save_kept(
     let before = read_all(wire, *table.subject())?;
     begin(wire, Act::Save, &before, before.image.clone(), keeper)?;
     let result = save_eeprom_of(wire, &before, options);
-    keeper.end(match &result {
+    let ending = match &result {
         Ok(report) => save_ending(report),
         Err(_) => Ending::NotDone,
-    });
+    };
+    end_act(wire, keeper, ending);
     result
 }
 
@@ -195,10 +197,11 @@ pub fn defaults_kept(
     let wanted = readable.map(|(key, value)| (key.to_owned(), value)).collect();
     begin(wire, Act::Defaults, &before, wanted, keeper)?;
     let result = restore_defaults(wire, subject);
-    keeper.end(match &result {
+    let ending = match &result {
         Ok(report) if report.read.failures.is_empty() => Ending::Known,
         _ => Ending::Open,
-    });
+    };
+    end_act(wire, keeper, ending);
     result
 }
 
@@ -211,10 +214,11 @@ pub fn reload_kept(
     let before = read_all(wire, *table.subject())?;
     begin(wire, Act::Reload, &before, SettingsImage::default(), keeper)?;
     let result = reload(wire, table);
-    keeper.end(match &result {
+    let ending = match &result {
         Ok(report) => Ending::EepromKnown(report.image.clone()),
         Err(_) => Ending::Open,
-    });
+    };
+    end_act(wire, keeper, ending);
     result
 }
 
@@ -247,6 +251,17 @@ fn begin(
         "the disk did not answer in time",
         "Check the disk and try again",
     ))
+}
+
+/// Has the journal closed, or left, and waits until the disk shows it: whoever looks after the act finds what became of it. Stop
+/// does not wait for that.
+pub fn end_act(wire: &mut dyn Wire, keeper: &mut dyn Keeper, ending: Ending) {
+    keeper.end(ending);
+    for _ in 0..PATIENCE {
+        if keeper.ended() || wire.sleep(Duration::ZERO).is_err() {
+            return;
+        }
+    }
 }
 
 /// Whether every row was read back, or never sent.

@@ -10,7 +10,8 @@ mod aftermath;
 mod journal;
 
 pub use acts::{
-    Known, begin_command, begin_trial, defaults_kept, reload_kept, save_kept, write_kept, write_kept_knowing,
+    Known, begin_command, begin_trial, defaults_kept, end_act, reload_kept, save_kept, write_kept,
+    write_kept_knowing,
 };
 pub use aftermath::{Aftermath, Held};
 pub use journal::{Act, Journal, JournalError};
@@ -58,4 +59,9 @@ pub trait Keeper: Send {
 
     /// Closes the journal, or leaves it. Returns at once.
     fn end(&mut self, ending: Ending);
+
+    /// Whether what [`Keeper::end`] has to write is written; waits for a few milliseconds at most.
+    fn ended(&mut self) -> bool {
+        true
+    }
 }
