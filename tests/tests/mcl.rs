@@ -73,6 +73,25 @@ fn a_motor_turns_while_a_script_runs() {
 }
 
 #[test]
+fn a_script_finds_the_devices_that_are_put_on_its_buses() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // MCP manual 3.4.1, I2COUT: the MPU-6050 answers 0x68 to WHOAMI.
+    let text = "temp var long\npause 10\ni2cout error,10,[0xd0,0x75]\ni2coutns error,10,[0xd1]\ni2cin error,10,[temp]\n\
+                puts 0,[dec temp]\nend\nerror\nputs 0,[\"I2C Error:\",dec i2cerror]\nend\n";
+    let i2c = script(folder.path(), "i2c.mcl", text);
+    assert_eq!(shown(&mcl(&["run", "-q", path(&i2c), "--i2c", "mpu6050"], "").stdout), "104");
+    assert!(shown(&mcl(&["run", "-q", path(&i2c)], "").stdout).starts_with("I2C Error:"));
+    let text = "letter var byte\nputs 1,[\"ab\"]\ngets 1,[letter]\nputs 0,[letter]\ngets 1,[letter]\nputs 0,[letter]\nend\n";
+    let can = script(folder.path(), "can.mcl", text);
+    let output = mcl(&["run", path(&can), "--can-peer", "echo", "--limit", "2s"], "");
+    assert_eq!((output.status.code(), shown(&output.stdout)), (Some(0), "ab".to_owned()));
+    assert_eq!(shown(&mcl(&["run", path(&can), "--limit", "2s"], "").stdout), "");
+    let refused = mcl(&["run", path(&i2c), "--i2c", "mpu6050", "--stream", "2"], "");
+    assert_eq!(refused.status.code(), Some(2), "{refused:?}");
+    assert!(shown(&refused.stderr).contains("the same pins"), "{refused:?}");
+}
+
+#[test]
 fn a_fault_and_an_error_end_with_their_codes_and_name_the_line() {
     let folder = tempfile::tempdir().expect("a folder");
     let file =
@@ -98,6 +117,17 @@ fn check_tells_everything_as_json_for_several_files_and_standard_input() {
     assert_eq!(report["files"][0]["ok"], true);
     let wrong = &report["files"][1]["diagnostics"][0];
     assert_eq!((wrong["code"].as_str(), wrong["line"].as_u64()), (Some("E302"), Some(1)));
+    // The form that the help promises, with a hint and without.
+    let output = mcl(&["check", "--json", "-"], "main\n\tgoto mian\nend\n");
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let expected = serde_json::json!({ "files": [{
+        "file": "standard input", "ok": false, "errors": 1, "warnings": 1, "diagnostics": [
+            { "code": "W402", "severity": "warning", "line": 1, "column": 1, "end": { "line": 1, "column": 5 },
+              "message": "Nothing jumps to `main`." },
+            { "code": "E301", "severity": "error", "line": 2, "column": 7, "end": { "line": 2, "column": 11 },
+              "message": "There is no label `mian`.", "hint": "Did you mean main?" },
+        ] }] });
+    assert_eq!(report, expected);
     assert_eq!(mcl(&["check", path(&folder.path().join("none.mcl"))], "").status.code(), Some(1));
 }
 
@@ -108,6 +138,9 @@ fn an_image_runs_and_is_listed_like_its_script() {
     let output = mcl(&["build", "--json", path(&file)], "");
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert_eq!(report["files"][0]["models"][0]["fits"], true);
+    let stack = serde_json::json!({ "values": 1024, "gosubs": 256, "assumed": true });
+    assert_eq!(report["files"][0]["stack"], stack);
+    assert!(shown(&mcl(&["build", path(&file)], "").stdout).contains("those of the stack are assumed"));
     let image = folder.path().join("f.mcli");
     assert_eq!(shown(&mcl(&["run", path(&image)], "").stdout), "image");
     assert!(shown(&mcl(&["disasm", path(&image)], "").stdout).contains("out-text"));

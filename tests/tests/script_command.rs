@@ -2,8 +2,11 @@
 #![cfg(unix)]
 
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
-use brushwork_protocol::packet_serial::Generation;
+use brushwork_link::transport::{SerialTransport, Transport as _};
+use brushwork_protocol::crc::crc16_xmodem;
+use brushwork_protocol::packet_serial::{Generation, number};
 use brushwork_sim::controller::{Content, Controller};
 use brushwork_tests::program::{Ending, Program};
 use brushwork_tests::simulated::{OnPty, is_at_rest, is_driven};
@@ -104,4 +107,57 @@ fn autorun_is_told_and_set_and_a_foreign_image_is_not_run() {
     let refused = run(&["start", "--for", "5", "--to", &target]);
     assert_eq!(code(&refused), Some(REFUSED), "{refused:?}");
     assert!(refused.stderr.join("\n").contains("holds no script that it can run"), "{refused:?}");
+}
+
+/// Sends a command without arguments to address 0x80.
+fn send(port: &mut SerialTransport, command: u8) {
+    let mut packet = vec![0x80, command];
+    packet.extend(crc16_xmodem(&packet).to_be_bytes());
+    port.write(&packet).expect("the port takes bytes");
+}
+
+/// Reads on, asking again with `ask`, until what came holds `words`.
+fn hear(port: &mut SerialTransport, words: &[u8], mut ask: impl FnMut(&mut SerialTransport)) {
+    let deadline = Instant::now() + LIMIT;
+    let mut heard = Vec::new();
+    while !heard.windows(words.len()).any(|window| window == words) {
+        assert!(Instant::now() < deadline, "heard {:?}", String::from_utf8_lossy(&heard));
+        ask(port);
+        let mut buffer = [0; 256];
+        while let count @ 1.. = port.read(&mut buffer, Duration::from_millis(200)).expect("the port is there")
+        {
+            heard.extend(&buffer[..count]);
+            if heard.len() > 4096 {
+                break;
+            }
+        }
+    }
+}
+
+#[test]
+fn rts_by_the_controls_of_a_served_controller_brings_packet_serial_back() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("talk.mcl");
+    // Takes the USB port, the stream type of MCL being 0, and talks.
+    let talks = "main\nSTREAMTYPE(0) = 0\nputs 0,[\"tick \"]\npause 20\ngoto main\n";
+    std::fs::write(&file, talks).expect("a folder of ours");
+    let link = folder.path().join("mcp");
+    let arguments = ["sim", "--pty", &text(&link), "--script", &text(&file), "--rts", "--control"];
+    let mut sim = Program::start(BRUSHWORK, &arguments);
+    sim.wait_for("Connect with", LIMIT);
+    let mut port = SerialTransport::open(&text(&link), 115_200).expect("the port opens");
+    let ask_version = |port: &mut SerialTransport| send(port, number::READ_VERSION);
+    send(&mut port, number::START_SCRIPT);
+    hear(&mut port, b"MCP266", ask_version);
+    sim.say("rts off");
+    hear(&mut port, b"tick tick", |_| {});
+    sim.say("rts on");
+    hear(&mut port, b"MCP266", ask_version);
+    sim.signal("INT");
+    let ending = sim.finish(LIMIT);
+    assert_eq!(code(&ending), Some(DONE), "{ending:?}");
+    let said = ending.stderr.join("\n");
+    for sentence in ["RTS is released", "RTS is held: the USB port speaks packet serial"] {
+        assert!(said.contains(sentence), "{said}");
+    }
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::tune::TuneArgs;
 use brushwork_protocol::canopen::adapter::Form;
 use brushwork_sim::faults::FAULT_SYNTAX;
-use brushwork_sim::world::I2cDevice;
+use brushwork_sim::world::{CanPeer, I2cDevice, WorldAction};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::exit;
@@ -287,12 +287,9 @@ pub struct SimArgs {
     /// A script that stands in the script memory from the start: a .mcl file or a compiled one. Command 248 starts it.
     #[arg(long, value_name = "FILE")]
     pub script: Option<PathBuf>,
-    /// Put a device on the controller's I2C bus.
-    #[arg(long, value_name = "mpu6050", value_parser = parse_i2c)]
-    pub i2c: Vec<I2cDevice>,
-    /// Who is at the other end of a script's CAN stream.
-    #[arg(long, value_enum, value_name = "listen|echo")]
-    pub can_peer: Option<CanPeerArg>,
+    /// What a script finds on its buses.
+    #[command(flatten)]
+    pub buses: ScriptBuses,
     /// Hold the USB port's RTS line from the start, which forces packet serial where a script has taken the port.
     #[arg(long)]
     pub rts: bool,
@@ -320,6 +317,36 @@ pub enum ProtocolArg {
     Binary,
     /// Lines of text.
     Ascii,
+}
+
+/// What a simulated controller's script finds on its I2C bus and its CAN stream.
+#[derive(Debug, Default, Args)]
+pub struct ScriptBuses {
+    /// Put a device on the controller's I2C bus.
+    #[arg(long, value_name = "mpu6050", value_parser = parse_i2c)]
+    pub i2c: Vec<I2cDevice>,
+    /// Who is at the other end of a script's CAN stream.
+    #[arg(long, value_enum, value_name = "listen|echo")]
+    pub can_peer: Option<CanPeerArg>,
+}
+
+impl ScriptBuses {
+    /// How they come into the simulated world.
+    pub fn actions(&self) -> Vec<WorldAction> {
+        let devices = self.i2c.iter().map(|device| WorldAction::AddI2cDevice { device: device.clone() });
+        let peer = self.can_peer.map(|peer| WorldAction::SetCanPeer {
+            peer: match peer {
+                CanPeerArg::Listen => CanPeer::Listening,
+                CanPeerArg::Echo => CanPeer::Echoing,
+            },
+        });
+        devices.chain(peer).collect()
+    }
+
+    /// Whether there is anything.
+    pub fn is_empty(&self) -> bool {
+        self.i2c.is_empty() && self.can_peer.is_none()
+    }
 }
 
 /// What the other end of the CAN stream does.

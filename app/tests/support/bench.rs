@@ -1,7 +1,7 @@
 //! A window on a test bench: the real window and the real device loop against a simulated controller, all in virtual
 //! time, spoken to in the words of a person.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -57,6 +57,8 @@ pub struct Bench {
     pub minds: Line<MotionMindBus>,
     loops: [Slot; 3],
     ports: Rc<RefCell<Option<Vec<PortInfo>>>>,
+    /// Whether the next device that is opened may be known to be simulated.
+    claims: Rc<Cell<bool>>,
     /// The folder of what the window keeps on the computer; gone with the bench.
     kept: Rc<tempfile::TempDir>,
 }
@@ -138,8 +140,10 @@ impl Bench {
         let second = Line::new(Bus::single(unit, StreamIndex::Usb));
         let loops = [Slot::default(), Slot::default(), Slot::default()];
         let ports = Rc::new(RefCell::new(Some(Vec::new())));
+        let claims = Rc::new(Cell::new(true));
+        let lines = [line.clone(), second.clone()];
         let opener =
-            BenchOpener { lines: [line.clone(), second.clone()], minds: minds.clone(), loops: loops.clone() };
+            BenchOpener { lines, minds: minds.clone(), loops: loops.clone(), claims: claims.clone() };
         let keeping = Keeping::new(Store::at(kept.path()));
         let mut parts =
             Some(Parts { ports: Box::new(BenchPorts(ports.clone())), opener: Box::new(opener), keeping });
@@ -160,7 +164,12 @@ impl Bench {
                 },
                 None,
             );
-        Self { harness, line, second, minds, loops, ports, kept }
+        Self { harness, line, second, minds, loops, ports, claims, kept }
+    }
+
+    /// What is opened from now on passes for a real controller: nothing tells the window that it is simulated.
+    pub fn pass_for_real(&self) {
+        self.claims.set(false);
     }
 
     /// What the window keeps on the computer.
@@ -412,6 +421,7 @@ struct BenchOpener {
     lines: [Line; 2],
     minds: Line<MotionMindBus>,
     loops: [Slot; 3],
+    claims: Rc<Cell<bool>>,
 }
 
 fn turn_one<M: Machine>(line: &Line<M>, device_loop: &Slot, until: Duration) {
@@ -435,18 +445,20 @@ impl Opener for BenchOpener {
                 let which = usize::from(target.to_string() == SECOND);
                 let line = &self.lines[which];
                 let index = line.with(|bus| bus.stream().index());
+                let simulated = self.claims.get();
                 let options = DeviceOptions {
                     addresses,
                     stream: Some(Stream::ALL[index]),
-                    simulated: true,
-                    hidden: Some(Arc::new(BenchHidden(line.clone()))),
+                    simulated,
+                    hidden: simulated.then(|| Arc::new(BenchHidden(line.clone())) as _),
                     ..DeviceOptions::default()
                 };
                 let gate = Gate::new(line.clock.clone());
                 let transport = Box::new(line.through(gate.clone()));
                 let (device_loop, device) = DeviceLoop::new(transport, Arc::new(gate.clone()), options);
                 *self.loops[which].borrow_mut() = Some(Lockstep::new(gate, device_loop));
-                Ok(OpenLink { device, world: Some(Arc::new(BenchWorld::new(line.clone()))) })
+                let world = simulated.then(|| Arc::new(BenchWorld::new(line.clone())) as _);
+                Ok(OpenLink { device, world })
             }
             other => Err(SessionError::from(OpenError::NotFound { path: other.to_string() })),
         };

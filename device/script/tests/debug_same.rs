@@ -38,7 +38,7 @@ fn free(program: &Arc<Program>) -> (Machine, Desk) {
     let (mut machine, mut desk) = (Machine::new(program.clone()), desk());
     while machine.executed() < MOST {
         let left = (MOST - machine.executed()) as u32;
-        match machine.run(&mut desk, left.min(97)) {
+        match machine.run(&mut desk, left.min(1_500)) {
             State::Pausing { until } => desk.now = *until,
             state if is_at_rest(state) => break,
             _ => {}

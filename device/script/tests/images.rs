@@ -62,7 +62,7 @@ fn damaged_images_with_a_right_checksum_are_refused_or_run_without_a_panic() {
         let Ok(program) = decode(&sealed(image)) else { continue };
         let mut desk = Desk::default();
         desk.waiting.insert(0, (0..=255).collect());
-        run_on(&mut Machine::new(Arc::new(program)), &mut desk, 1_000);
+        run_on(&mut Machine::new(Arc::new(program)), &mut desk, 4_000);
         ran += 1;
     }
     assert!(ran > runs / 20, "only {ran} of {runs} were still programs");

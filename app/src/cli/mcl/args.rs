@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::{Args, Subcommand};
 
-use crate::cli::args::parse_seconds;
+use crate::cli::args::{ScriptBuses, parse_seconds};
 
 /// Arguments of `brushwork mcl`.
 #[derive(Debug, Args)]
@@ -38,7 +38,10 @@ pub enum MclCommand {
     brushwork mcl check door.mcl\n  \
     brushwork mcl check --json scripts/*.mcl\n  \
     cat door.mcl | brushwork mcl check -\n\n\
-    Ends with 0 when no file has an error, with 9 when one has.")]
+    Ends with 0 when no file has an error, with 9 when one has, with 1 when one cannot be read.\n\n\
+    JSON is {\"files\": [{\"file\", \"ok\", \"errors\", \"warnings\", \"diagnostics\": [...]}]}. A diagnostic has \"code\" (see brushwork mcl\n\
+    reference), \"severity\" (error or warning), \"line\" and \"column\" from 1 in characters, \"end\" with both of the place after it,\n\
+    \"message\", and \"hint\" where there is one.")]
 pub struct CheckArgs {
     /// Scripts; - is standard input.
     #[arg(required = true, value_name = "FILE")]
@@ -74,7 +77,8 @@ pub struct BuildArgs {
 #[command(after_help = "Examples:\n  \
     brushwork mcl run count.mcl\n  \
     echo 42 | brushwork mcl run ask.mcl\n  \
-    brushwork mcl run --model mcp2163 --preset flywheel --limit 5s spin.mcl\n\n\
+    brushwork mcl run --model mcp2163 --preset flywheel --limit 5s spin.mcl\n  \
+    brushwork mcl run --i2c mpu6050 --can-peer echo buses.mcl\n\n\
     Standard output carries the bytes of the script's stream and nothing else; standard input is what the script reads there.\n\
     Ends with 0 at END, STOP or the limit, with 9 when the script has errors, with 10 when it stops by a fault.")]
 pub struct RunArgs {
@@ -93,6 +97,9 @@ pub struct RunArgs {
     /// Motor preset; two, separated by a comma, give motor 1 and motor 2 different ones.
     #[arg(long, value_name = "PRESET", value_delimiter = ',', num_args = 1)]
     pub preset: Vec<String>,
+    /// What it finds on its buses.
+    #[command(flatten)]
+    pub buses: ScriptBuses,
     /// Seed of noise.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,

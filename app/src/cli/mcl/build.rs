@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use brushwork_script::diagnostic::PlacedDiagnostic;
 use brushwork_script::image;
-use brushwork_script::program::{Program, ROOMS, Size};
+use brushwork_script::program::{Program, ROOMS, Size, limits};
 use serde::Serialize;
 
 use super::args::BuildArgs;
@@ -23,7 +23,21 @@ struct Built {
     image: Option<PathBuf>,
     size: Option<Size>,
     models: Vec<Fit>,
+    stack: Stack,
     diagnostics: Vec<PlacedDiagnostic>,
+}
+
+/// What a running script may have on its stack, on every model.
+#[derive(Serialize)]
+struct Stack {
+    values: usize,
+    gosubs: usize,
+    /// What models hold is not public.
+    assumed: bool,
+}
+
+impl Stack {
+    const ASSUMED: Self = Self { values: limits::STACK_CELLS, gosubs: limits::CALLS, assumed: true };
 }
 
 /// What a program takes of a model.
@@ -89,6 +103,7 @@ fn build(path: &Path, args: &BuildArgs, out: &mut Output) -> Result<Built, Exit>
         image: None,
         size: None,
         models: Vec::new(),
+        stack: Stack::ASSUMED,
         diagnostics: source.placed(&compiled),
     };
     let Some(program) = &compiled.program else { return Ok(built) };
@@ -159,5 +174,9 @@ fn print(built: &Built, out: &mut Output) -> Result<(), OutputError> {
     };
     let rows: Vec<Vec<String>> = built.models.iter().map(row).collect();
     out.table(&["MODEL", "FITS", "VARIABLES", "", "IMAGE", ""], &rows)?;
-    out.line("What models hold is not public: the figures after \"of\" are assumed.")
+    let Stack { values, gosubs, .. } = built.stack;
+    out.line(format!(
+        "While it runs: at most {values} values on the stack and {gosubs} GOSUBs within each other."
+    ))?;
+    out.line("What models hold is not public: the figures after \"of\" and those of the stack are assumed.")
 }

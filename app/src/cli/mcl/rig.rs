@@ -20,8 +20,11 @@ const WARM_UP: Duration = Duration::from_millis(10);
 const START_TIME: Duration = Duration::from_millis(1);
 /// What a stream's buffer holds (see the simulated controller's streams).
 const BUFFER_BYTES: usize = 255;
-/// A stream of type MCL (command 145).
+/// A stream of type MCL, and one that is off (command 145).
 const TYPE_MCL: u8 = 0;
+const TYPE_OFF: u8 = 2;
+/// The port that stays with packet serial, for the command that starts the script. Scripts have no number for it.
+const CONTROL: StreamIndex = StreamIndex::Uart2;
 
 /// A simulated controller with a script.
 pub struct Rig {
@@ -79,21 +82,20 @@ impl Rig {
             3 => StreamIndex::Uart0,
             _ => StreamIndex::Usb,
         };
-        // One port stays with packet serial, for the command that starts the script.
-        let control = if port == StreamIndex::Uart0 { StreamIndex::Usb } else { StreamIndex::Uart0 };
-        for (index, stream) in settings.streams.iter_mut().enumerate() {
-            if index != control.index() {
-                stream.kind = TYPE_MCL;
-            }
+        for index in StreamIndex::ALL.into_iter().filter(|index| *index != CONTROL) {
+            settings.streams[index.index()].kind = kind_of(index, args)?;
         }
         let config = ControllerConfig { settings: Some(settings), ..config };
         let mut controller = Controller::new(config).map_err(|error| told(&error))?;
+        for action in args.buses.actions() {
+            controller.apply(&action).map_err(|error| told(&error))?;
+        }
         controller.install_script(&image::encode(program));
         controller.advance(WARM_UP);
-        controller.receive(control, &start_bytes());
+        controller.receive(CONTROL, &start_bytes());
         controller.advance(WARM_UP + START_TIME);
         // Its acknowledgement is nobody's.
-        controller.take_output(control);
+        controller.take_output(CONTROL);
         let began_at = controller.now();
         let rig = Self { controller, stream: args.stream, port, began_at };
         Ok(rig)
@@ -163,6 +165,22 @@ impl Rig {
     /// What the script has sent and what has left the controller.
     pub fn take_output(&mut self) -> Vec<u8> {
         std::iter::from_fn(|| self.controller.take_output(self.port)).flatten().collect()
+    }
+}
+
+/// What a port is for: scripts, or nothing where its pins carry I2C or CAN (see the simulated controller's buses).
+fn kind_of(port: StreamIndex, args: &RunArgs) -> Result<u8, String> {
+    let (bus, stream, is_taken) = match port {
+        StreamIndex::Uart0 => ("--can-peer", 3, args.buses.can_peer.is_some()),
+        StreamIndex::Uart1 => ("--i2c", 2, !args.buses.i2c.is_empty()),
+        _ => return Ok(TYPE_MCL),
+    };
+    match is_taken {
+        false => Ok(TYPE_MCL),
+        true if args.stream == stream => {
+            Err(format!("{bus} and --stream {stream} want the same pins of the controller: leave one out."))
+        }
+        true => Ok(TYPE_OFF),
     }
 }
 

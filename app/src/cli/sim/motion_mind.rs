@@ -47,7 +47,7 @@ fn check_options(args: &SimArgs) -> Result<(), String> {
     if args.can.is_some() {
         return Err("A Motion Mind 3 has no CAN bus.".to_owned());
     }
-    if args.script.is_some() || !args.i2c.is_empty() || args.can_peer.is_some() || args.rts || args.control {
+    if args.script.is_some() || !args.buses.is_empty() || args.rts || args.control {
         return Err(
             "A Motion Mind 3 runs no scripts: leave --script, --i2c, --can-peer, --rts and --control out."
                 .to_owned(),

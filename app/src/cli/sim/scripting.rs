@@ -6,10 +6,10 @@ use std::thread;
 use brushwork_sim::controller::Bus;
 use brushwork_sim::machine::Machine;
 use brushwork_sim::server::SimHandle;
-use brushwork_sim::world::{CanPeer, WorldAction};
+use brushwork_sim::world::WorldAction;
 use crossbeam_channel::{Receiver, bounded};
 
-use super::super::args::{CanPeerArg, SimArgs};
+use super::super::args::SimArgs;
 use super::super::exit::Exit;
 use super::super::output::say;
 use super::super::script::download::image_of;
@@ -20,14 +20,7 @@ const LINES: usize = 16;
 /// Puts script, devices and peers into place before anything is served.
 pub fn prepare(args: &SimArgs, bus: &mut Bus) -> Result<(), Exit> {
     let image = args.script.as_deref().map(image_of).transpose()?;
-    let mut actions: Vec<WorldAction> =
-        args.i2c.iter().map(|device| WorldAction::AddI2cDevice { device: device.clone() }).collect();
-    actions.extend(args.can_peer.map(|peer| WorldAction::SetCanPeer {
-        peer: match peer {
-            CanPeerArg::Listen => CanPeer::Listening,
-            CanPeerArg::Echo => CanPeer::Echoing,
-        },
-    }));
+    let mut actions = args.buses.actions();
     if args.rts {
         actions.push(WorldAction::SetRts { on: true });
     }

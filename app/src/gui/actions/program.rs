@@ -57,7 +57,7 @@ pub(super) const FILE: &[Action] = &[
     row!(File 0, "file.open", "Open MCL Program…", ctrl(Key::O), always, MclWish::Open, "Opens an MCL program from a file."),
     row!(File 0, "file.save", "Save MCL Program", ctrl(Key::S), always, MclWish::Save, "Saves the open MCL program to its file."),
     row!(File 0, "file.save-as", "Save MCL Program As…", ctrl_shift(Key::S), always, MclWish::SaveAs, "Saves the open MCL program under another name."),
-    row!(File 0, "file.print", "Print MCL Program…", on_mcl_key(CTRL, Key::P), on_mcl, MclWish::Print, "Writes the open MCL program to a PDF file, with colours and line numbers."),
+    row!(File 0, "file.print", "Print MCL Program…", on_mcl_key(CTRL, Key::P), on_mcl, MclWish::Print, "Prints the open MCL program with colours and line numbers: on the system's printer or to a PDF file."),
     Action {
         id: "file.close",
         title: "Close MCL Program",

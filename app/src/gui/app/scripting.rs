@@ -137,4 +137,5 @@ impl App {
 
 /// Why no program goes to a real controller.
 const REAL: &str = "Could not download the program: the byte code of real controllers is not public, so nobody but their \
-                    maker can compile for them. Choose an image file that the maker's program has compiled.";
+                    maker can compile for them. Choose an image file that the maker's program has compiled: it is sent as it \
+                    is, and can be started, stopped and set to autorun from here.";

@@ -29,6 +29,7 @@ impl Editor {
             MclWish::Save => self.save(front),
             MclWish::SaveAs => self.save_as(front),
             MclWish::Print => self.print(front),
+            MclWish::SendToPrinter => self.send_to_printer(ctx),
             MclWish::Front(id) => self.bring_to_front(id),
             MclWish::Close(id) => self.close(id),
             MclWish::AcceptSheet => self.accept_sheet(),

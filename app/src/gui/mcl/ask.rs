@@ -40,7 +40,7 @@ fn title(sheet: &Sheet) -> &'static str {
     match sheet {
         Sheet::Open(_) => "Open an MCL program",
         Sheet::SaveAs { .. } => "Save the MCL program as",
-        Sheet::Print { .. } => "Print to a PDF file",
+        Sheet::Print { .. } => "Print the MCL program",
         Sheet::Image(_) => "Download the maker's image file",
         Sheet::GoToLine(_) => "Go to line",
         Sheet::Rename(_) => "Rename",
@@ -58,10 +58,10 @@ fn sheet_ui(ui: &mut Ui, sheet: &mut Sheet, titles: &[String], is_new: bool, wis
             path_ui(ui, field, (true, mcl_files()), is_new);
             "Save"
         }
-        Sheet::Print { field, .. } => {
+        Sheet::Print { field, printer, spooler, .. } => {
+            print_ui(ui, printer, spooler.is_some(), wishes);
             path_ui(ui, field, (true, pdf_files()), is_new);
-            ui.label("Colours, line numbers and a head with name and page. Print the file with any viewer.");
-            "Print"
+            "Print to the file"
         }
         Sheet::Image(field) => {
             ui.label(IMAGE);
@@ -98,6 +98,25 @@ fn sheet_ui(ui: &mut Ui, sheet: &mut Sheet, titles: &[String], is_new: bool, wis
             wishes.push(MclWish::DismissSheet);
         }
     });
+}
+
+/// To a printer, where the system has a command for it.
+fn print_ui(ui: &mut Ui, printer: &mut String, can_print: bool, wishes: &mut Vec<MclWish>) {
+    ui.label("Pages with colours, line numbers and a head with name and page.");
+    ui.add_space(4.0);
+    if !can_print {
+        ui.label(
+            "This system has no print command (lp or lpr): print to a PDF file, and that with any viewer.",
+        );
+        return;
+    }
+    let name = text_field_ui(ui, printer, "Printer", "Printer: the one the system takes by itself");
+    let is_entered = name.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+    if ui.button("Send to the printer").clicked() || is_entered {
+        wishes.push(MclWish::SendToPrinter);
+    }
+    ui.add_space(8.0);
+    ui.label("Or to a PDF file:");
 }
 
 const IMAGE: &str = "A real controller runs byte code of its maker's compiler, whose form is not public, so Brushwork cannot \

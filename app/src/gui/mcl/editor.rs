@@ -7,6 +7,7 @@ use super::document::{DocId, Document};
 use super::find::Find;
 use super::journal::Left;
 use super::panel::Panel;
+use super::printer::{Printing, Spooler};
 use super::services::Services;
 use super::sheet::Sheet;
 use crate::gui::model::message::Gravity;
@@ -64,6 +65,9 @@ pub struct Editor {
     pub wants_focus: bool,
     /// What earlier windows left unsaved.
     pub left: Vec<Left>,
+    /// The system's print command, looked for as the program starts.
+    pub spooler: Option<Spooler>,
+    pub(super) printing: Printing,
     /// The maker's image file that is to be downloaded.
     pub image: Option<PathBuf>,
     /// Programs that are closed as soon as they are saved.
@@ -87,6 +91,8 @@ impl Default for Editor {
             sheet_is_new: false,
             wants_focus: true,
             left: Vec::new(),
+            spooler: Spooler::find(),
+            printing: Printing::default(),
             image: None,
             closing: Vec::new(),
             exit: Exit::No,

@@ -29,6 +29,7 @@ mod paint;
 pub mod panel;
 mod popup;
 pub mod print;
+pub mod printer;
 pub mod problems;
 mod runbar;
 mod saving;

@@ -2,11 +2,14 @@
 
 use std::path::PathBuf;
 
+use egui::Context;
+
 use super::disk::encode;
 use super::document::{DocId, OnDisk};
 use super::editor::{Editor, Exit};
 use super::files::Task;
 use super::print;
+use super::printer::Job;
 use super::sheet::{PathField, Sheet};
 use crate::gui::files::FileKind;
 use crate::gui::model::message::Gravity;
@@ -51,7 +54,8 @@ impl Editor {
         let Some(document) = self.document(id) else { return };
         let path = document.path.clone().unwrap_or_else(|| PathBuf::from(&document.untitled));
         let field = PathField::of(&path.with_extension("pdf"));
-        self.open_sheet(Sheet::Print { id, field });
+        let spooler = self.spooler.clone();
+        self.open_sheet(Sheet::Print { id, field, printer: String::new(), spooler });
     }
 
     /// Writes a program. `whatever` is done even if another program has changed the file.
@@ -87,6 +91,34 @@ impl Editor {
         }
     }
 
+    /// Hands the pages of the program that the sheet names to the printer.
+    pub fn send_to_printer(&mut self, ctx: &Context) {
+        let Some(Sheet::Print { id, printer, spooler: Some(spooler), .. }) = self.sheet.take() else {
+            return;
+        };
+        self.wants_focus = true;
+        let Some(document) = self.document(id) else { return };
+        let title = document.title();
+        match print::pdf(&title, &document.text.text()) {
+            Ok(pages) => {
+                let ctx = ctx.clone();
+                let job = Job { title, printer: printer.trim().to_owned(), pages };
+                self.printing.begin(spooler, job, move || ctx.request_repaint());
+            }
+            Err(why) => self.say(Gravity::Error, format!("Could not print {title}: {why}.")),
+        }
+    }
+
+    /// Tells what became of print jobs.
+    pub(super) fn hear_of_printing(&mut self) {
+        while let Some(news) = self.printing.news() {
+            match news {
+                Ok(text) => self.say(Gravity::Note, text),
+                Err(failure) => self.say(Gravity::Error, failure.to_string()),
+            }
+        }
+    }
+
     pub(super) fn open_sheet(&mut self, sheet: Sheet) {
         self.sheet = Some(sheet);
         self.sheet_is_new = true;
@@ -109,7 +141,7 @@ impl Editor {
             Sheet::SaveAs { id, field } => {
                 field.path(Some("mcl")).into_iter().for_each(|path| self.save_to(id, path, false));
             }
-            Sheet::Print { id, field } => {
+            Sheet::Print { id, field, .. } => {
                 field.path(Some("pdf")).into_iter().for_each(|path| self.print_to(id, path));
             }
             Sheet::Image(field) => self.image = field.path(None),

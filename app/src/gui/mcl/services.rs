@@ -66,6 +66,7 @@ impl Editor {
         while let Some(done) = self.services.as_ref().and_then(|services| services.files.news()) {
             self.take(done);
         }
+        self.hear_of_printing();
         self.look_after_sheet();
         self.keep_unsaved(ctx, now_s);
         self.look_at_files(ctx, now_s, shown);

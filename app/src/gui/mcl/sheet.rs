@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::document::DocId;
+use super::printer::Spooler;
 use crate::gui::files::{FileAnswer, FileDialog, FileKind, FileWish};
 
 /// A question, in the small window above the text.
@@ -16,6 +17,10 @@ pub enum Sheet {
     Print {
         id: DocId,
         field: PathField,
+        /// The printer's name; empty for the system's own choice.
+        printer: String,
+        /// How to reach a printer; without it there is only the file.
+        spooler: Option<Spooler>,
     },
     /// The maker's image file, to be downloaded.
     Image(PathField),

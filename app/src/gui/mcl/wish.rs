@@ -15,6 +15,8 @@ pub enum MclWish {
     Save,
     SaveAs,
     Print,
+    /// Hands the pages of the sheet to the system's printer.
+    SendToPrinter,
     /// Puts a program in front.
     Front(DocId),
     Close(DocId),

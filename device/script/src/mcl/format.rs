@@ -43,6 +43,9 @@ pub fn format(text: &str) -> String {
     indented(&pieces, &depths, end)
 }
 
+/// Steps of indentation beyond which nobody counts them.
+const DEEPEST: usize = 64;
+
 /// What a line is, for its indentation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
@@ -114,7 +117,7 @@ fn indented(pieces: &[(Kind, String)], depths: &[usize], end: &str) -> String {
         steps.push(match kind {
             Kind::Label | Kind::Directive | Kind::Empty => 0,
             Kind::Definition if *depth == 0 => 0,
-            _ => depth + usize::from(under_label),
+            _ => (depth + usize::from(under_label)).min(DEEPEST),
         });
     }
     let mut after = 0;

@@ -227,6 +227,8 @@ pub fn nearest<'a>(typed: &str, words: impl IntoIterator<Item = &'a str>) -> Opt
     let limit = (typed.chars().count() / 3).clamp(1, 3);
     words
         .into_iter()
+        // A distance is at least the difference of the lengths.
+        .filter(|word| word.chars().count().abs_diff(typed.chars().count()) <= limit)
         .map(|word| (strsim::damerau_levenshtein(&typed, &word.to_ascii_lowercase()), word))
         .filter(|(distance, _)| (1..=limit).contains(distance))
         .min_by_key(|(distance, _)| *distance)

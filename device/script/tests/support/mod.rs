@@ -79,8 +79,18 @@ pub fn machine(text: &str) -> Machine {
 
 /// Runs a machine to its end or to this many instructions, jumping over pauses.
 pub fn run_on(machine: &mut Machine, desk: &mut Desk, most: u32) -> State {
-    for _ in 0..most / 100 {
-        match machine.run(desk, 100) {
+    run_in_slices(machine, desk, most, (most / 2).max(1))
+}
+
+/// The same with so many instructions at a time. With few the machine runs them one by one, with thousands several in one.
+pub fn run_in_slices(machine: &mut Machine, desk: &mut Desk, most: u32, slice: u32) -> State {
+    let most = machine.executed() + u64::from(most);
+    let mut turns = 0;
+    while machine.executed() < most {
+        turns += 1;
+        assert!(turns < 1_000_000, "it hangs");
+        let left = u32::try_from(most - machine.executed()).unwrap_or(u32::MAX);
+        match machine.run(desk, slice.min(left)) {
             State::Pausing { until } => desk.now = *until,
             State::Ready => {}
             state => return state.clone(),
@@ -89,12 +99,16 @@ pub fn run_on(machine: &mut Machine, desk: &mut Desk, most: u32) -> State {
     State::Ready
 }
 
-/// What a program sends to stream 0, with its last state.
+/// What a program sends to stream 0, with its last state; the same both ways in which a machine runs.
 pub fn run(text: &str) -> (String, State) {
-    let mut desk = Desk::default();
-    let state = run_on(&mut machine(text), &mut desk, 200_000);
-    let sent = desk.sent.remove(&0).unwrap_or_default();
-    (sent.into_iter().map(char::from).collect(), state)
+    let [one_by_one, several] = [100, 100_000].map(|slice| {
+        let mut desk = Desk::default();
+        let state = run_in_slices(&mut machine(text), &mut desk, 200_000, slice);
+        let sent = desk.sent.remove(&0).unwrap_or_default();
+        (sent.into_iter().map(char::from).collect(), state)
+    });
+    assert_eq!(one_by_one, several, "{text}");
+    several
 }
 
 /// What a program sends to stream 0 before it ends.

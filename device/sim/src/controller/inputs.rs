@@ -51,7 +51,7 @@ impl PinFunctions {
 impl Firmware {
     /// Reads every pin that has a function, and from them the encoder of each motor.
     pub(super) fn update_signals(&mut self, world: &mut World) {
-        let mut triggers = Triggers::default();
+        let (mut triggers, mut stops_script) = (Triggers::default(), None);
         let one_byte_actions = self.generation == Generation::Gen1;
         for index in 0..self.signals.len() {
             let settings = &self.settings.signals[index];
@@ -64,10 +64,14 @@ impl Firmware {
             }
             let reading = self.pin_reading(state, index);
             let settings = &self.settings.signals[index];
+            let had_stopped = triggers.stop_script;
             self.signals[index].update(reading, settings, one_byte_actions, self.now, &mut triggers);
+            if triggers.stop_script && !had_stopped {
+                stops_script = Some(index);
+            }
         }
         self.readings.encoders = Motor::BOTH.map(|motor| self.encoder_input(motor));
-        self.take_triggers(triggers);
+        self.take_triggers(triggers, stops_script);
     }
 
     /// Finds out which kind of input commands the motors, and stops them when that changes or ends.
@@ -149,7 +153,8 @@ impl Firmware {
         MotionCommand::Duty { duty_raw: clamp_raw(value), acceleration_raw: None }
     }
 
-    fn take_triggers(&mut self, triggers: Triggers) {
+    /// Does what the pins ask for; `stops_script` is the one that stops the script.
+    fn take_triggers(&mut self, triggers: Triggers, stops_script: Option<usize>) {
         self.triggers = triggers;
         for motor in Motor::BOTH {
             let asked = triggers.motors[motor.index()];
@@ -160,7 +165,7 @@ impl Firmware {
             }
         }
         if triggers.stop_script {
-            self.script.stop_for(StopCause::PinAction(None));
+            self.script.stop_for(StopCause::PinAction(stops_script));
         }
         let up_for = self.up_for();
         // There is nobody to tell of a script that does not start.

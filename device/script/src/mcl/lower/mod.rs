@@ -97,7 +97,12 @@ struct Lowering<'a> {
     diagnostics: Vec<Diagnostic>,
     jumps: Vec<Jump>,
     arguments: Vec<Argument>,
+    /// How many names were looked for that might have been meant.
+    searches: u32,
 }
+
+/// Unknown names for which the nearest known one is looked for.
+const MOST_SEARCHES: u32 = 100;
 
 /// A place to jump to inside a statement; all jumps to it are patched when it is set.
 #[derive(Default)]
@@ -122,6 +127,7 @@ impl<'a> Lowering<'a> {
             diagnostics,
             jumps: Vec::new(),
             arguments: Vec::new(),
+            searches: 0,
         }
     }
 

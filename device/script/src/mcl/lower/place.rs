@@ -6,8 +6,8 @@ use super::super::constant::Constant;
 use super::super::registers::{self, RegisterId};
 use super::super::types::{self, Part, PartError, VarType};
 use super::super::words;
-use super::Lowering;
 use super::scope::{Meaning, SymbolKind, type_of};
+use super::{Lowering, MOST_SEARCHES};
 use crate::arithmetic::{self, Type};
 use crate::op::{Array, Cell, Op, TableRef};
 
@@ -77,11 +77,10 @@ impl Lowering<'_> {
     fn meaning(&mut self, name: &Name) -> Option<Meaning> {
         let Some(entry) = self.scope.get_mut(&name.key) else {
             let registers = registers::REGISTERS.iter().map(|register| register.name);
-            let hint =
-                words::did_you_mean(&name.key, self.scope.names(false).chain(registers)).or_else(|| {
-                    let kinds = VarType::ALL.map(VarType::name);
-                    Some(format!("Define it above: {} VAR {}", name.span.of(self.text), kinds[7]))
-                });
+            let hint = self.nearest_name(&name.key, false, registers).or_else(|| {
+                let kinds = VarType::ALL.map(VarType::name);
+                Some(format!("Define it above: {} VAR {}", name.span.of(self.text), kinds[7]))
+            });
             let message = format!("`{}` is not defined.", name.span.of(self.text));
             self.report(codes::UNKNOWN_NAME, name.span, message, hint);
             return None;
@@ -384,6 +383,19 @@ impl Lowering<'_> {
         }
     }
 
+    /// The hint at a name that was meant, among those of the program and some more. A text with more mistakes than a person reads is
+    /// searched for the first of them alone, so that it is checked as quickly as any other.
+    fn nearest_name(
+        &mut self,
+        typed: &str,
+        labels: bool,
+        more: impl IntoIterator<Item = &'static str>,
+    ) -> Option<String> {
+        self.searches += 1;
+        let is_searched = self.searches <= MOST_SEARCHES;
+        is_searched.then(|| words::did_you_mean(typed, self.scope.names(labels).chain(more))).flatten()
+    }
+
     /// Notes the use of a label, or says that there is none.
     pub(super) fn use_label(&mut self, label: &Name) {
         if let Some(entry) = self.scope.get_mut(&label.key)
@@ -393,7 +405,7 @@ impl Lowering<'_> {
             return;
         }
         let written = label.span.of(self.text);
-        let hint = words::did_you_mean(written, self.scope.names(true));
+        let hint = self.nearest_name(written, true, []);
         let message = format!("There is no label `{written}`.");
         self.report(codes::UNKNOWN_LABEL, label.span, message, hint);
     }

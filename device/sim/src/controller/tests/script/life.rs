@@ -7,6 +7,7 @@ use crate::machine::{Machine, StreamIndex};
 use crate::world::{PinSignal, WorldAction};
 use brushwork_protocol::packet_serial::{Generation, Request, Value, number};
 use brushwork_protocol::script_image;
+use brushwork_script::debug::Wanted;
 use std::time::Duration;
 
 /// DIN4, which shares its line with no port.
@@ -170,6 +171,8 @@ fn pins_run_stop_and_reset_the_script() {
     assert!(count(&bench) < before && bench.script().is_running(), "reset keeps it running");
     drive(&mut bench, 0.0);
     assert!(matches!(bench.script(), ScriptRun::Stopped { .. }));
+    let why = bench.bus.controllers_mut()[0].debug(Vec::new(), &Wanted::default()).sentence();
+    assert!(why.contains("the action of input pin 4 did it"), "DIN4 is the fourth: {why}");
     drive(&mut bench, 2.5);
     drive(&mut bench, 5.1);
     assert!(matches!(bench.script(), ScriptRun::Stopped { .. }), "reset starts nothing");
