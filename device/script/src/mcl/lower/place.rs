@@ -393,6 +393,7 @@ impl Lowering<'_> {
     ) -> Option<String> {
         self.searches += 1;
         let is_searched = self.searches <= MOST_SEARCHES;
+        let more = more.into_iter().map(|word| -> &str { word });
         is_searched.then(|| words::did_you_mean(typed, self.scope.names(labels).chain(more))).flatten()
     }
 
