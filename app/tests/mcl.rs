@@ -412,3 +412,28 @@ fn leaving_the_screen_or_stop_ends_a_script_that_was_started() {
         }
     }
 }
+
+#[cfg(unix)]
+#[test]
+fn a_program_goes_to_the_printer_and_without_a_print_command_the_sheet_says_so() {
+    use brushwork::gui::mcl::printer::Spooler;
+    use std::os::unix::fs::PermissionsExt as _;
+
+    let folder = tempfile::tempdir().unwrap();
+    let (lp, seen) = (folder.path().join("lp"), folder.path().join("seen"));
+    std::fs::write(&lp, format!("#!/bin/sh\ncat >{}\n", seen.display())).unwrap();
+    std::fs::set_permissions(&lp, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let mut bench = editor();
+    bench.model().mcl.spooler = Spooler::find_in(folder.path().as_os_str());
+    type_in(&mut bench, "end");
+    bench.key_with(CTRL, Key::P);
+    bench.pass_ms(200);
+    bench.press("Send to the printer");
+    bench.until_in_time("the printer has it", |bench| bench.sees_part("Untitled 1 is with the printer"));
+    assert!(std::fs::read(&seen).unwrap().starts_with(b"%PDF-"));
+    bench.model().mcl.spooler = None;
+    bench.key_with(CTRL, Key::P);
+    bench.pass_ms(200);
+    assert!(bench.sees_part("This system has no print command (lp or lpr)"));
+    assert!(!bench.sees("Send to the printer") && bench.sees("Print to the file"));
+}
