@@ -142,8 +142,8 @@ mod tests {
 
     fn install(folder: &Path, name: &str, script: &str) {
         let path = folder.join(name);
-        fs::write(&path, format!("#!/bin/sh\n{script}\n")).unwrap();
-        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+        fs::write(&path, format!("#!/bin/sh\n{script}\n")).expect("a folder of ours");
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).expect("a file of ours");
     }
 
     fn told(spooler: Spooler, printer: &str) -> Result<String, Failure> {
