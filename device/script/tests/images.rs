@@ -12,7 +12,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::sync::Arc;
 use support::examples::{corrected, examples};
-use support::{Desk, run_on};
+use support::{Desk, run_in_slices};
 
 fn images() -> Vec<Vec<u8>> {
     let files = [include_str!("manual/registers.txt"), include_str!("manual/chapter.txt")];
@@ -62,7 +62,7 @@ fn damaged_images_with_a_right_checksum_are_refused_or_run_without_a_panic() {
         let Ok(program) = decode(&sealed(image)) else { continue };
         let mut desk = Desk::default();
         desk.waiting.insert(0, (0..=255).collect());
-        run_on(&mut Machine::new(Arc::new(program)), &mut desk, 4_000);
+        run_in_slices(&mut Machine::new(Arc::new(program)), &mut desk, 4_000, 2_000);
         ran += 1;
     }
     assert!(ran > runs / 20, "only {ran} of {runs} were still programs");

@@ -11,7 +11,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use std::sync::Arc;
 use support::mutation::{damaged, number, seeds};
-use support::{Desk, run_on};
+use support::{Desk, run_in_slices};
 
 #[test]
 fn damaged_programs_neither_panic_nor_hang() {
@@ -33,7 +33,7 @@ fn damaged_programs_neither_panic_nor_hang() {
         let mut machine = Machine::new(Arc::new(program));
         let mut desk = Desk::default();
         desk.waiting.insert(0, (0..=255).collect());
-        let state = run_on(&mut machine, &mut desk, 2_000);
+        let state = run_in_slices(&mut machine, &mut desk, 2_000, 1_000);
         assert!(state != State::Ready || machine.executed() > 0);
         ran += 1;
     }

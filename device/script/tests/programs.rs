@@ -8,7 +8,7 @@ use brushwork_script::mcl::types::{TABLES, VarType, parts};
 use brushwork_script::mcl::words::{COMMANDS, FORMATS};
 use brushwork_script::vm::State;
 use std::collections::BTreeSet;
-use support::{Desk, machine, run_on};
+use support::{Desk, machine, run_in_slices};
 
 struct Program {
     title: String,
@@ -40,7 +40,7 @@ fn prove(programs: &[Program]) {
         let mut machine = machine(&program.text);
         let mut desk = Desk::default();
         desk.waiting.insert(0, program.input.clone().into());
-        let state = run_on(&mut machine, &mut desk, 100_000);
+        let state = run_in_slices(&mut machine, &mut desk, 100_000, 50_000);
         assert_eq!(state, State::Ended, "{}\n{}", program.title, program.text);
         let sent: String = desk.sent.remove(&0).unwrap_or_default().into_iter().map(char::from).collect();
         let motions = desk.motions.iter().map(|(motion, arguments)| {

@@ -77,12 +77,19 @@ pub fn machine(text: &str) -> Machine {
     Machine::new(Arc::new(compiled.program.unwrap_or_else(|| panic!("{page}"))))
 }
 
-/// Runs a machine to its end or to this many instructions, jumping over pauses.
+/// Runs a machine one instruction after the other, a hundred or up to a pause at a time, jumping over pauses.
 pub fn run_on(machine: &mut Machine, desk: &mut Desk, most: u32) -> State {
-    run_in_slices(machine, desk, most, (most / 2).max(1))
+    for _ in 0..most / 100 {
+        match machine.run(desk, 100) {
+            State::Pausing { until } => desk.now = *until,
+            State::Ready => {}
+            state => return state.clone(),
+        }
+    }
+    State::Ready
 }
 
-/// The same with so many instructions at a time. With few the machine runs them one by one, with thousands several in one.
+/// Runs a machine to its end or to this many instructions, so many at a time: of thousands it runs several in one.
 pub fn run_in_slices(machine: &mut Machine, desk: &mut Desk, most: u32, slice: u32) -> State {
     let most = machine.executed() + u64::from(most);
     let mut turns = 0;
