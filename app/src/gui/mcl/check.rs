@@ -11,9 +11,9 @@ use ropey::Rope;
 use super::document::DocId;
 
 /// Typing that goes on within this time is waited for.
-const PAUSE: Duration = Duration::from_millis(20);
+const PAUSE: Duration = Duration::from_millis(10);
 /// But no longer than this: a list of errors that never comes is of no use.
-const PATIENCE: Duration = Duration::from_millis(60);
+const PATIENCE: Duration = Duration::from_millis(40);
 
 /// What the compiler says about a text.
 #[derive(Debug)]
