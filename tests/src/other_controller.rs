@@ -14,6 +14,8 @@ const GAP: Duration = Duration::from_millis(10);
 const POSITION_SCALE: f64 = 1024.0;
 const VELOCITY_SCALE: f64 = 65_536.0;
 const FULL_DUTY: f64 = 32_767.0;
+/// From full duty backwards to full duty forwards in 100 ms.
+const DUTY_PER_S: f64 = 20.0;
 
 /// How it differs from what the tuner would like best.
 #[derive(Clone, Debug)]
@@ -32,6 +34,8 @@ pub struct Manner {
     pub tells_status: bool,
     /// Commands that it answers with silence.
     pub silent: Vec<u8>,
+    /// Whether a duty is in force at once; else the ramp of its highest acceleration leads there (MCP manual, command 52).
+    pub is_abrupt: bool,
     /// Highest speed that it tells.
     pub speed_clip: Option<i32>,
     /// Time before it answers.
@@ -50,6 +54,7 @@ impl Default for Manner {
             tells_current: true,
             tells_status: true,
             silent: Vec::new(),
+            is_abrupt: false,
             speed_clip: None,
             delay: Duration::from_micros(700),
             loses_one_in: 0,
@@ -223,7 +228,11 @@ impl OtherController {
             self.mode = Mode::Duty(0.0);
         }
         self.duty = match self.mode {
-            Mode::Duty(duty) => duty,
+            Mode::Duty(duty) if self.manner.is_abrupt => duty,
+            Mode::Duty(duty) => {
+                let most = DUTY_PER_S / self.manner.tick_hz;
+                self.duty + (duty - self.duty).clamp(-most, most)
+            }
             Mode::Speed(goal) => self.velocity_loop(goal, speed),
             Mode::Position { goal, speed: most } => {
                 let mut error = goal - count as f64;

@@ -122,7 +122,7 @@ impl Link {
             match step {
                 Step::Again => {}
                 Step::IdleUntil(at) => {
-                    self.cable.clock.advance_to(at.min(self.cable.clock.now() + s(1) / 50));
+                    self.cable.clock.advance_to(at.min(self.cable.clock.now() + s(1) / 50))
                 }
                 Step::Ended => return None,
             }
@@ -195,6 +195,8 @@ fn tuned(manner: Manner, motor: Motor, request: Tuning) -> Report {
     let ending = link.job(run(Target { encoder: Some(old.encoder), ..TARGET }, request, &found));
     assert!(ending.is_some(), "{place}: the run hangs");
     let report = take(&found).unwrap_or_else(|| panic!("{place}: {ending:?}"));
+    // From full duty to none at the highest acceleration takes 50 ms.
+    link.cable.clock.advance_to(link.cable.clock.now() + s(6) / 100);
     assert_eq!(link.cable.unit().duty, 0.0, "{place}: the motor is off at the end");
     let restored = link.job(restore(TARGET, old, Some(&report), &keeper));
     assert!(matches!(restored, Some(JobEnding::Done(_))), "{place}: {restored:?}");
@@ -222,6 +224,7 @@ fn manners() -> Vec<(&'static str, Manner)> {
         ("625 ticks a second", Manner { tick_hz: 625.0, ..usual.clone() }),
         ("450 ticks a second", Manner { tick_hz: 450.0, ..usual.clone() }),
         ("no feed-forward", Manner { feeds_forward: false, ..usual.clone() }),
+        ("no ramp of the duty", Manner { is_abrupt: true, ..usual.clone() }),
         ("clipped speeds", Manner { speed_clip: Some(900), ..usual.clone() }),
         ("slow replies", Manner { delay: Duration::from_millis(18), ..usual.clone() }),
         ("replies get lost", Manner { loses_one_in: 37, ..usual.clone() }),
@@ -258,7 +261,7 @@ fn every_manner_of_controller_ends_in_gains_or_in_an_honest_refusal() {
             match refusal_of(name, method) {
                 Some(cause) => assert_eq!(report.causes.first(), Some(&cause), "{name}, {method:?}"),
                 None => {
-                    assert_ne!(report.verdict, Verdict::Refused, "{name}, {method:?}: {:?}", report.causes);
+                    assert_ne!(report.verdict, Verdict::Refused, "{name}, {method:?}: {:?}", report.causes)
                 }
             }
         }

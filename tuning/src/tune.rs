@@ -23,8 +23,8 @@ use serde::{Deserialize, Serialize};
 
 /// The lag that is assumed before it is measured, and where it cannot be: an extra tick and a filter of one.
 const USUAL_LAG: Lag = Lag { filter_s: 0.004, delay_ticks: 1.0 };
-/// The longest that it may be where an axis has no room to measure it: a filter of three ticks and a half.
-const LONGEST_LAG: Lag = Lag { filter_s: 0.010, delay_ticks: 1.5 };
+/// The longest that it may be where an axis has no room to measure it: a filter of three ticks.
+const LONGEST_LAG: Lag = Lag { filter_s: 0.010, delay_ticks: 1.0 };
 /// Highest chi-square of a fit that is believed.
 const WORST_CHI_SQUARE: f64 = 12.0;
 /// Loosest time constant, as standard deviation of its logarithm, of a motor slower than four polls.

@@ -15,9 +15,15 @@ const LEAST_AMPS: f64 = 0.05;
 const STEADY: f64 = 0.06;
 /// Share of the volts that the rest of the model leaves open.
 const MODEL: f64 = 0.01;
+/// Counts over which a speed is taken, and over how many polls on either side at the most.
+const CLEAR_COUNTS: f64 = 25.0;
+const WIDEST_POLLS: usize = 8;
 /// Samples needed, and the widest interval that says anything, over the resistance.
 const LEAST_SAMPLES: usize = 12;
 const WIDEST: f64 = 0.5;
+/// What does not average out: what the model leaves open, and the offset of a current reading, A.
+const MODEL_SHARE: f64 = 0.08;
+const OFFSET_AMPS: f64 = 0.01;
 /// Rounding of a reading of the current, A, and of the battery, V, as standard deviations.
 const ROUNDING_VOLTS: f64 = 0.03;
 const ROUNDING_AMPS: f64 = 0.003;
@@ -67,7 +73,9 @@ pub fn winding_of(points: &[Point], drives: &[Drive]) -> Option<Winding> {
     let misfit = |row: &Row| ((row.volts - ohms * row.amps - back_emf * row.speed) * row.weight()).powi(2);
     let freedom = (rows.len() - 2) as f64;
     let variance = (rows.iter().map(misfit).sum::<f64>() / freedom).max(1.0);
-    let interval_ohms = 1.96 * (variance * inverse[(0, 0)]).sqrt();
+    let mean_amps = rows.iter().map(|row| row.amps).sum::<f64>() / rows.len() as f64;
+    let systematic = ohms * (MODEL_SHARE + OFFSET_AMPS / mean_amps);
+    let interval_ohms = (1.96 * (variance * inverse[(0, 0)]).sqrt()).hypot(systematic);
     let is_told = ohms > 0.0 && back_emf > 0.0 && interval_ohms < WIDEST * ohms;
     is_told.then_some(Winding { ohms, interval_ohms, volts_per_count_per_s: back_emf, samples: rows.len() })
 }
@@ -120,7 +128,7 @@ fn speed_of(a: &Point, b: &Point) -> f64 {
 
 /// A poll under a settled duty that drives the way the motor turns, and a speed that hardly changes, with its current.
 fn row_at(points: &[Point], drives: &[Drive], n: usize, battery: &Battery, steady: f64) -> Option<Row> {
-    let (before, point, after) = (&points[n - 1], &points[n], &points[n + 1]);
+    let point = &points[n];
     let amps = point.amps.filter(|amps| amps.abs() >= LEAST_AMPS && !point.limited)?.abs();
     let at = drives.partition_point(|drive| drive.t <= point.t).checked_sub(1)?;
     let Input::Duty(duty) = drives[at].input else { return None };
@@ -130,19 +138,31 @@ fn row_at(points: &[Point], drives: &[Drive], n: usize, battery: &Battery, stead
     });
     let steady_since = drives[at].t + SETTLED_S + RAMP_S * (duty - last).abs();
     let next = drives.get(at + 1).map_or(f64::INFINITY, |drive| drive.t);
+    // Over as many polls as it takes for the rounding of the counts to be small; speed must not matter beside it.
+    let widths = 1..=WIDEST_POLLS.min(n).min(points.len() - 1 - n);
+    let ends = widths.map(|width| (&points[n - width], &points[n + width]));
+    let inside = ends.take_while(|(before, after)| before.t >= steady_since - SETTLED_S && after.t <= next);
+    let mut last_ends = None;
+    for (before, after) in inside {
+        last_ends = Some((before, after));
+        if (after.counts - before.counts).abs() >= CLEAR_COUNTS {
+            break;
+        }
+    }
+    let (before, after) = last_ends?;
+    let moved = (after.counts - before.counts).abs();
+    // No count for a moment is no standstill.
+    let around = &points[n.saturating_sub(WIDEST_POLLS)..(n + WIDEST_POLLS + 1).min(points.len())];
+    let stands = around.iter().all(|p| (p.counts - point.counts).abs() < 1.0);
+    if !stands && moved < CLEAR_COUNTS {
+        return None;
+    }
     let speed = speed_of(before, after);
     let changes = (speed_of(point, after) - speed_of(before, point)).abs()
-        > steady.max(1.5 / (after.t - point.t).max(1e-3));
+        > steady.max(2.0 / (after.t - point.t).max(1e-3));
     // A duty that came down brakes, and not every controller tells the sign of a current.
     let brakes = duty.abs() < last.abs() && duty * last > 0.0;
-    if duty == 0.0
-        || brakes
-        || point.t < steady_since
-        || before.t < drives[at].t
-        || after.t > next
-        || speed * duty < 0.0
-        || changes
-    {
+    if duty == 0.0 || brakes || point.t < steady_since || speed * duty < 0.0 || changes {
         return None;
     }
     let volts = battery.volts - battery.ohms * duty.abs() * amps;

@@ -232,11 +232,17 @@ pub fn restore(target: Target, before: Setup, report: Option<&Report>, keeper: &
     FnJob::boxed(RESTORE, RESTORE_LIMIT, move |context| {
         let place = context.describe();
         let mut axis = axis(context, target, true);
-        thrice(|| axis.write_velocity(velocity))
-            .and_then(|()| thrice(|| axis.write_position(position)))
-            .map_err(|error| failed("write the loops back", &place, &error))?;
         let now =
             thrice(|| axis.read_setup()).map_err(|error| failed("read the loops back", &place, &error))?;
+        // What is as it was need not be written, which a controller may not take.
+        let mut back = Ok(());
+        if now.velocity != velocity {
+            back = thrice(|| axis.write_velocity(velocity));
+        }
+        if back.is_ok() && now.position != position {
+            back = thrice(|| axis.write_position(position));
+        }
+        back.map_err(|error| failed("write the loops back", &place, &error))?;
         if (now.max_current_raw, now.min_current_raw) != (before.max_current_raw, before.min_current_raw) {
             thrice(|| axis.write_current_limits(before.max_current_raw, before.min_current_raw))
                 .map_err(|error| failed("put the current limit back", &place, &error))?;

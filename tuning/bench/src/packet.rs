@@ -88,7 +88,7 @@ impl<C: Carrier> PacketAxis<C> {
         let command = self.of(number::READ_ENCODER_M1, number::READ_ENCODER_M2);
         let (at, values) = self.carrier.transact(command, &[])?;
         let mut counts = [0; 2];
-        counts[self.motor.index()] = values.int("count") as i32;
+        counts[self.motor.index()] = values.int("encoder") as i32;
         Ok((at, counts))
     }
 

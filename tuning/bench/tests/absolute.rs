@@ -16,7 +16,7 @@ fn eight_machines_with_absolute_encoders_come_out_as_they_did() {
     for (task, accept, good, median) in [
         ("pd", (95.0, 100.0), (80.0, 100.0), (0.9, 1.20)),
         ("pid", (95.0, 100.0), (30.0, 90.0), (0.9, 1.60)),
-        ("piv", (75.0, 100.0), (50.0, 90.0), (0.8, 1.30)),
+        ("piv", (70.0, 100.0), (30.0, 90.0), (0.8, 1.50)),
     ] {
         let row = &table[task][0];
         println!("{task}: {row:?}");
@@ -45,7 +45,7 @@ fn a_speed_is_refused_where_the_encoder_wraps_and_nowhere_else() {
 
 #[test]
 fn the_resistance_of_the_winding_is_found_with_its_interval() {
-    let mut told = 0;
+    let (mut told, mut covered) = (0, 0);
     for number in 0..16 {
         let plant = absolute_specimen(7, number);
         let (report, _) = tune_plant(&plant, &request_of(&plant, Method::Pd));
@@ -54,9 +54,11 @@ fn the_resistance_of_the_winding_is_found_with_its_interval() {
         let off = (winding.ohms / plant.axis.motor.armature_ohms - 1.0).abs();
         let interval = winding.interval_ohms / winding.ohms;
         println!("plant {number}: off by {off:.3}, interval {interval:.3}");
-        assert!(off < (2.0 * interval).max(0.08), "plant {number}: off by {off}, interval {interval}");
+        assert!(off < 2.0 * interval, "plant {number}: off by {off}, interval {interval}");
+        covered += usize::from(off < interval);
     }
     assert!(told >= 12, "{told} of 16");
+    assert!(10 * covered >= 8 * told, "{covered} of {told} within their interval");
 }
 
 #[test]
