@@ -122,7 +122,7 @@ impl Link {
             match step {
                 Step::Again => {}
                 Step::IdleUntil(at) => {
-                    self.cable.clock.advance_to(at.min(self.cable.clock.now() + s(1) / 50))
+                    self.cable.clock.advance_to(at.min(self.cable.clock.now() + s(1) / 50));
                 }
                 Step::Ended => return None,
             }
@@ -261,7 +261,7 @@ fn every_manner_of_controller_ends_in_gains_or_in_an_honest_refusal() {
             match refusal_of(name, method) {
                 Some(cause) => assert_eq!(report.causes.first(), Some(&cause), "{name}, {method:?}"),
                 None => {
-                    assert_ne!(report.verdict, Verdict::Refused, "{name}, {method:?}: {:?}", report.causes)
+                    assert_ne!(report.verdict, Verdict::Refused, "{name}, {method:?}: {:?}", report.causes);
                 }
             }
         }
