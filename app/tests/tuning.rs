@@ -5,7 +5,9 @@ mod support;
 
 use std::time::Duration;
 
+use brushwork::gui::model::general::SettingsWish;
 use brushwork::gui::model::link::Arming;
+use brushwork::gui::model::loop_settings::VELOCITY;
 use brushwork::gui::tune::Loop;
 use brushwork::gui::tune::registers::Registers;
 use brushwork::gui::tune::run::Run;
@@ -14,6 +16,7 @@ use brushwork_sim::controller::{Controller, ControllerConfig};
 use brushwork_sim::motion::MotionSettings;
 use brushwork_sim::presets;
 use brushwork_sim::world::WorldAction;
+use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::report::{Report, Verdict};
 use egui::{Key, Modifiers};
 use support::bench::Bench;
@@ -479,4 +482,47 @@ fn with_l_and_r_set_a_run_is_refused_until_they_are_cleared_for_it_and_they_are_
     bench.pass_ms(3000);
     assert_ne!(run(&mut bench, Loop::Velocity).report.verdict, Verdict::Refused);
     assert_eq!(held(&bench, Motor::M1), before, "L, R and the old gains are in force");
+}
+
+#[test]
+fn saving_while_a_run_is_at_work_waits_for_its_end_and_saves_the_users_values() {
+    let (mut bench, before) = running("small-gearmotor", "Velocity Settings");
+    bench.pass_ms(1500);
+    assert_ne!(timeout_ms(&bench), timeout_of_factory(), "the run has shortened it");
+    bench.model().front.tune.waiting = Some(SettingsWish::Save);
+    bench.pass_ms(300);
+    assert_eq!(bench.model().front.tune.waiting, Some(SettingsWish::Save), "it waits");
+    bench.key(Key::Escape);
+    for _ in 0..40 {
+        bench.pass_ms(500);
+        if bench.model().front.is_idle() && bench.model().front.tune.waiting.is_none() {
+            break;
+        }
+    }
+    bench.act(&WorldAction::Power { on: false });
+    bench.pass_ms(500);
+    bench.act(&WorldAction::Power { on: true });
+    bench.pass_ms(1500);
+    assert_eq!(timeout_ms(&bench), timeout_of_factory(), "EEPROM holds the user's time-out");
+    assert_eq!(held(&bench, Motor::M1), before);
+}
+
+#[test]
+fn the_kind_of_encoder_follows_the_controller_until_a_person_chooses_another() {
+    let mut bench = opened("linear-actuator", "Position Settings");
+    bench.pass_ms(500);
+    let shown = |bench: &mut Bench| bench.model().front.tune.front(Loop::Position).setting;
+    assert_eq!(shown(&mut bench).encoder, EncoderClass::Absolute);
+    assert!(!shown(&mut bench).is_encoder_chosen);
+    bench.press("Tune M1");
+    finish(&mut bench);
+    let run = run(&mut bench, Loop::Position);
+    assert_eq!(run.report.before.map(|setup| setup.encoder), Some(EncoderClass::Absolute));
+    assert_ne!(run.report.verdict, Verdict::Refused, "{:?}", run.report.causes);
+    let winding = run.report.winding.expect("its currents were read");
+    assert!(bench.sees_part("Measured R") && bench.sees_part("become current (torque) commands"));
+    press_below(&mut bench, "Enter as R");
+    let edited = |bench: &mut Bench| bench.model().front.loops.edits(VELOCITY);
+    assert_eq!(edited(&mut bench), 1, "R alone is edited: {winding:?}");
+    assert_eq!(held(&bench, Motor::M1).resistance_raw, 0, "and nothing was sent");
 }
