@@ -299,7 +299,10 @@ impl<'a> Rig<'a> {
             Err(AxisError::NoReply) => {
                 // Counted from the first poll without a reply: between experiments nobody asks for a while.
                 let since_s = *self.silent_since_s.get_or_insert(now_s);
-                return if self.now_s() - since_s > LINK_LOST_S { Err(Cause::LinkLost) } else { Ok(None) };
+                if self.now_s() - since_s > LINK_LOST_S {
+                    return Err(Cause::LinkLost);
+                }
+                return self.check_unseen().map(|()| None);
             }
             Err(error) => return Err(cause_of(&error)),
         };
@@ -481,7 +484,11 @@ impl<'a> Rig<'a> {
         if self.points.len() == 1 && !(low..=high).contains(&point.counts) {
             return Err(Cause::OutsideTravel);
         }
-        let speed = self.recent_speed(2).unwrap_or(0.0);
+        self.check_way(point, self.recent_speed(2).unwrap_or(0.0))
+    }
+
+    fn check_way(&mut self, point: &Point, speed: f64) -> Result<(), Cause> {
+        let Some((low, high)) = self.travel_counts() else { return Ok(()) };
         let runs_on = match self.watch.stopping_counts(speed.abs(), self.options.max_duty) {
             Some(counts) => STOPPING_DOUBT * counts * speed.signum() + speed * TURNING_S,
             // From rest a motor needs no longer way back than it had.
@@ -493,6 +500,21 @@ impl<'a> Rig<'a> {
             return Err(Cause::TravelLimit);
         }
         Ok(())
+    }
+
+    /// The same while no reply comes: the motor goes on at least as it did.
+    fn check_unseen(&mut self) -> Result<(), Cause> {
+        let (Some(last), Some(speed)) = (self.points.last().copied(), self.recent_speed(2)) else {
+            return Ok(());
+        };
+        let unseen_s = (self.now_s() - last.t).max(0.0);
+        let earlier = self.points.len().checked_sub(4).and_then(|n| self.points[..=n + 1].last_chunk::<2>());
+        let before = earlier
+            .map_or(speed, |[a, b]| if b.t > a.t { (b.counts - a.counts) / (b.t - a.t) } else { speed });
+        let gained =
+            if speed * before > 0.0 { (speed - before).abs().min(speed.abs()) * speed.signum() } else { 0.0 };
+        let speed = if (speed - before) * speed > 0.0 { speed + gained } else { speed };
+        self.check_way(&Point { counts: last.counts + speed * unseen_s, ..last }, speed)
     }
 
     /// Counts gone under the first duty from rest; 0 later.

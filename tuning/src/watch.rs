@@ -37,6 +37,9 @@ const LOOP_MARGIN: f64 = 0.04;
 const NEWS_S: f64 = 0.07;
 /// Between which multiples of a time constant that was found the true one lies: a load behind a spring makes the motor alone quicker.
 const TAU_SPREAD: (f64, f64) = (0.3, 1.6);
+/// From a poll to the command that it leads to, s; and the least share of a way to rest that the motor's own slowing takes.
+const COMMAND_S: f64 = 0.012;
+const LEAST_TURN: f64 = 0.25;
 /// Highest reading that counts as no current, A: the wire's resolution.
 pub(crate) const NO_CURRENT_AMPS: f64 = 0.0151;
 
@@ -55,6 +58,8 @@ pub struct Watch {
     pub full_speed: f64,
     /// Between which values the time constant lies, s; `None` as long as nothing is known.
     pub tau_bounds_s: Option<(f64, f64)>,
+    /// Time constant that the ways of turning round so far speak of, s.
+    turning_tau_s: Option<f64>,
     /// Duties given and when, oldest first; the first is older than the memory.
     duties: VecDeque<(f64, f64)>,
     /// Whether a loop has the motor, until when one had it, and when it was given the motor, told something new, or lost it.
@@ -114,10 +119,34 @@ impl Watch {
     /// Counts that the motor runs on from a speed while it is driven the other way at a duty, and the time until that duty acts
     /// aside; `None` before anything is known.
     pub(crate) fn stopping_counts(&self, speed: f64, duty: f64) -> Option<f64> {
-        let (gain, tau_s) = self.rough_model(0.0);
-        let limit = self.drive_limit.unwrap_or(f64::INFINITY);
-        let pull = gain * duty.min(limit);
-        (self.tau_bounds_s.is_some() && pull > 0.0).then(|| tau_s * (speed - pull * (speed / pull).ln_1p()))
+        let (gain, rough_s) = self.rough_model(0.0);
+        let tau_s = self.turning_tau_s.unwrap_or(rough_s);
+        (self.tau_bounds_s.is_some() && gain * duty > 0.0)
+            .then(|| tau_s * self.way_per_tau(gain, speed, duty))
+    }
+
+    /// A motor at a speed was driven the other way at a duty and ran on for so many counts from the poll before: later ways are
+    /// computed from that.
+    pub(crate) fn turned(&mut self, speed: f64, duty: f64, counts: f64) {
+        let per_tau = self.way_per_tau(self.rough_model(0.0).0, speed, duty);
+        if per_tau <= 0.0 || speed <= 0.0 {
+            return;
+        }
+        // The command comes late, then the duty takes its time to turn its sign and to come up.
+        let acts_s = COMMAND_S + 1.5 * duty / DUTY_SLEW_PER_S;
+        let found_s = (counts - acts_s * speed).max(LEAST_TURN * counts) / per_tau;
+        self.turning_tau_s = Some(self.turning_tau_s.map_or(found_s, |known| 0.5 * (known + found_s)));
+    }
+
+    /// The way to rest over the time constant. The current limit holds the motor back at one rate as long as it acts; below it, duty
+    /// and back-EMF do.
+    fn way_per_tau(&self, gain: f64, speed: f64, duty: f64) -> f64 {
+        let pull = gain * duty;
+        let most = gain * self.drive_limit.unwrap_or(f64::INFINITY);
+        let free = speed.min((most - pull).max(0.0));
+        let held =
+            if most.is_finite() && speed > free { (speed * speed - free * free) / (2.0 * most) } else { 0.0 };
+        if pull <= 0.0 || free <= 0.0 { held } else { held + free - pull * (free / pull).ln_1p() }
     }
 
     /// A loop has the motor: its duty is what is read.

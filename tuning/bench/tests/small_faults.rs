@@ -26,9 +26,11 @@ fn each_fault_ends_with_the_motor_off_in_time_and_is_named() {
     assert_eq!(rows.len(), CLASSES.len());
     for row in rows {
         println!("{row:?}");
-        // In a window this narrow one motor in some thirty goes 2 % beyond its end before it is turned round (`MEASURED.md`).
-        let least = if row.fault == "travel_window" { 93.0 } else { 100.0 };
-        assert!(row.off_in_time >= least, "{}: off within {} s: {:?}", row.fault, row.deadline_s, row.misses);
+        assert_eq!(
+            row.off_in_time, 100.0,
+            "{}: off within {} s: {:?}",
+            row.fault, row.deadline_s, row.misses
+        );
         assert!(row.named > 93.0, "{}: named {} %: {:?}", row.fault, row.named, row.misses);
     }
 }

@@ -9,8 +9,12 @@ use serde::{Deserialize, Serialize};
 const SWITCHES: usize = 10;
 /// Duties above the starting one.
 const DUTIES: [f64; 2] = [0.22, 0.50];
-/// Where the relay switches, as a share of the window.
-const SWITCH_AT: f64 = 0.22;
+/// Where the axis is to turn round, as a share of the window: as long as nothing is known of its way, and later.
+const FIRST_TURN_AT: f64 = 0.20;
+const TURN_AT: f64 = 0.23;
+/// Time until a new duty acts, s, and the share of the way from rest that the first stop may take.
+const ACTS_S: f64 = 0.03;
+const FIRST_SHARE: f64 = 0.7;
 /// Duty above the starting one for going somewhere, and how far its end is looked ahead for, s.
 const GOING_DUTY: f64 = 0.05;
 const GOING_AHEAD_S: f64 = 0.05;
@@ -43,10 +47,10 @@ pub fn run_window(rig: &mut Rig<'_>, probe: &Probe, width: f64) -> Result<Window
     let middle = rig.points.last().map_or(0.0, |p| p.counts);
     let from_s = rig.now_s();
     let mut run = WindowRun { from_s, switches: 0, top_speed: 0.0, reach_counts: 0.0 };
-    let mut brake_s = 0.03;
+    let mut turn = Turn { acts_s: ACTS_S, last: None };
     for above in DUTIES {
         let duty = (probe.start_duty + above).min(rig.options.max_duty);
-        swing(rig, duty, middle, width, &mut run, &mut brake_s)?;
+        swing(rig, duty, middle, width, &mut run, &mut turn)?;
     }
     rig.come_to_rest()?;
     if run.switches < 4 { Err(Cause::TooCoarse) } else { Ok(run) }
@@ -71,19 +75,52 @@ pub fn go_to(rig: &mut Rig<'_>, probe: &Probe, place: f64) -> Result<(), Cause> 
     rig.come_to_rest()
 }
 
-/// Swings about the middle at one duty. The time it takes to turn round is learned from each swing.
+/// How far the axis runs on when it is turned round: what the turns so far have shown.
+#[derive(Clone, Copy, Debug)]
+struct Turn {
+    /// Time until a new duty acts, s.
+    acts_s: f64,
+    /// Speed of the last turn and the way it took, counts/s and counts.
+    last: Option<(f64, f64)>,
+}
+
+impl Turn {
+    /// The way from a speed, where the axis has come so far since it last stood.
+    fn way(&self, speed: f64, since_rest: f64) -> f64 {
+        let speed = speed.max(0.0);
+        match self.last {
+            // Between a way as the speed (a light motor) and as its square (a heavy one), whichever is longer.
+            Some((before, way)) => {
+                let ratio = speed / before;
+                way * ratio * ratio.max(1.0)
+            }
+            // It needs no longer to stop than it needed to start.
+            None => speed * self.acts_s + FIRST_SHARE * since_rest.max(0.0),
+        }
+    }
+
+    fn learn(&mut self, speed: f64, way: f64) {
+        if speed > 0.0 && way > 0.0 {
+            let expected = self.last.map_or(way, |(before, way)| way * speed / before);
+            self.last = Some((speed, way.max(0.5 * (way + expected))));
+        }
+    }
+}
+
+/// Swings about the middle at one duty. The way it takes to turn round is learned from each swing.
 fn swing(
     rig: &mut Rig<'_>,
     duty: f64,
     middle: f64,
     width: f64,
     run: &mut WindowRun,
-    brake_s: &mut f64,
+    turn: &mut Turn,
 ) -> Result<(), Cause> {
-    let mut direction = if rig.points.last().map_or(0.0, |p| p.counts) > middle { -1.0 } else { 1.0 };
+    let start = rig.points.last().map_or(middle, |p| p.counts);
+    let mut direction = if start > middle { -1.0 } else { 1.0 };
     rig.duty(duty * direction)?;
     let mut switches = 0;
-    let (mut switched_at, mut switch_speed, mut farthest) = (0.0, 0.0_f64, 0.0_f64);
+    let (mut switched_at, mut switch_speed, mut farthest) = (start, 0.0_f64, 0.0_f64);
     let mut since_s = rig.now_s();
     while switches < SWITCHES {
         if rig.now_s() - run.from_s > LONGEST_S {
@@ -99,16 +136,15 @@ fn swing(
         if from_middle.abs() > 0.5 * width {
             return Err(Cause::TravelLimit);
         }
-        let ahead = from_middle * direction + (speed * direction).max(0.0) * *brake_s;
+        let turned_at = switched_at - direction * farthest;
+        let runs_on = turn.way(speed * direction, (point.counts - turned_at) * direction);
         let is_steady =
             rig.recent_speed(12).is_some_and(|before| (speed - before).abs() < STEADY * run.top_speed);
         let is_long = point.t - since_s > LONGEST_SWING_S && is_steady;
-        if is_long || ahead >= SWITCH_AT * width {
+        if is_long || from_middle * direction + runs_on >= turn_at(turn) * width {
             since_s = point.t;
-            if switches > 0 && switch_speed > 0.0 && farthest > 0.0 {
-                *brake_s = (0.5 * *brake_s + 0.5 * (farthest / switch_speed)).clamp(0.02, 0.6);
-                rig.watch.stopping_s = *brake_s;
-                rig.watch.tau_bounds_s = Some((0.1 * *brake_s, 10.0 * *brake_s));
+            if switches > 0 {
+                learn(rig, turn, switch_speed, farthest, duty);
             }
             switched_at = point.counts;
             switch_speed = speed * direction;
@@ -120,4 +156,18 @@ fn swing(
         }
     }
     Ok(())
+}
+
+fn turn_at(turn: &Turn) -> f64 {
+    if turn.last.is_some() { TURN_AT } else { FIRST_TURN_AT }
+}
+
+fn learn(rig: &mut Rig<'_>, turn: &mut Turn, speed: f64, way: f64, duty: f64) {
+    turn.learn(speed, way);
+    if speed > 0.0 && way > 0.0 {
+        let seconds = (way / speed).clamp(0.02, 0.6);
+        rig.watch.stopping_s = seconds;
+        rig.watch.tau_bounds_s = Some((0.1 * seconds, 10.0 * seconds));
+        rig.watch.turned(speed, duty, way);
+    }
 }
