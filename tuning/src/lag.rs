@@ -25,6 +25,8 @@ const WINDINGS_TICKS: [f64; 3] = [0.0, 0.5, 1.0];
 const MODEL_DUTY: f64 = 0.006;
 /// Standard deviation of a time stamp, s.
 const STAMP_S: f64 = 0.0012;
+/// An exchange that took this much longer than the shortest says too little about when its counts were read, s.
+const LATE_S: f64 = 0.004;
 /// Residuals beyond this many standard deviations say no more.
 const SOFT_SQUARE: f64 = 25.0;
 
@@ -37,6 +39,8 @@ pub struct ClosedCourse {
     pub counts: Vec<(f64, f64)>,
     /// (time, duty).
     pub duties: Vec<(f64, f64)>,
+    /// Standard deviation of the times of counts, as far as a busy host or line makes it, s.
+    pub stamp_s: f64,
 }
 
 impl ClosedCourse {
@@ -48,11 +52,17 @@ impl ClosedCourse {
             Input::Speed(speed) => Some((d.t, speed)),
             Input::Duty(_) | Input::Position(..) => None,
         });
-        let points = || rig.points.iter().filter(|p| inside(p.t));
+        let points = || rig.points.iter().zip(&rig.exchanges).filter(|(p, _)| inside(p.t));
+        // The quickest exchanges show what the line takes by itself; when in a longer one the counts were read is open.
+        let shortest = points().map(|(_, took)| took.1).fold(f64::INFINITY, f64::min);
+        let prompt = || points().filter(|(_, took)| took.1 - shortest <= LATE_S);
+        let n = prompt().count().max(1) as f64;
+        let open = prompt().map(|(_, took)| (took.1 - shortest).powi(2)).sum::<f64>() / n;
         Self {
             setpoints: setpoints.collect(),
-            counts: points().map(|p| (p.t, p.counts)).collect(),
-            duties: points().filter_map(|p| p.duty).collect(),
+            counts: prompt().map(|(p, _)| (p.t, p.counts)).collect(),
+            duties: points().filter_map(|(p, _)| p.duty).collect(),
+            stamp_s: (open / 12.0).sqrt(),
         }
     }
 }
@@ -189,7 +199,7 @@ pub(crate) fn predicted_course(
 ) -> Option<ClosedCourse> {
     let followed = Followed::new(course, twin, law, 0.5 * law.tick_s(), Some(before))?;
     let counts = course.counts.iter().map(|&(t, _)| (t, followed.place_at(t).floor())).collect();
-    Some(ClosedCourse { setpoints: course.setpoints.clone(), counts, duties: Vec::new() })
+    Some(ClosedCourse { setpoints: course.setpoints.clone(), counts, ..ClosedCourse::default() })
 }
 
 /// Sum of the squared misfits of counts (differences between polls) and duties.
@@ -197,6 +207,7 @@ fn mismatch(course: &ClosedCourse, twin: TickLoop, law: &LoopLaw, offset_s: f64,
     let Some(followed) = Followed::new(course, twin, law, offset_s, None) else { return f64::INFINITY };
     let (start, tick_s, duties) = (followed.start, followed.tick_s, &followed.duties);
     let ticks = duties.len();
+    let stamp_s = STAMP_S.hypot(course.stamp_s);
     let mut sum = 0.0;
     // The start from rest is the business of friction and of the current limit, not of the lag.
     let from_s = course.setpoints.get(1).map_or(start, |second| second.0 - 0.01);
@@ -207,7 +218,7 @@ fn mismatch(course: &ClosedCourse, twin: TickLoop, law: &LoopLaw, offset_s: f64,
         }
         let moved = followed.place_at(t1) - followed.place_at(t0);
         let speed = (y1 - y0) / (t1 - t0).max(1e-4);
-        let variance = 0.66 + (STAMP_S * speed).powi(2) + (0.01 * (y1 - y0)).powi(2);
+        let variance = 0.66 + (stamp_s * speed).powi(2) + (0.01 * (y1 - y0)).powi(2);
         sum += ((y1 - y0 - moved).powi(2) / variance).min(SOFT_SQUARE);
     }
     let duties_with = |winding_ticks: f64| -> f64 {

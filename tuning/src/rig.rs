@@ -34,6 +34,9 @@ const BEYOND_POLLS: u32 = 3;
 /// How long a braked motor may take to stand, and how often it is looked at.
 const LONGEST_REST: Duration = Duration::from_secs(3);
 const REST_LOOK: Duration = Duration::from_millis(40);
+/// Polls whose exchanges are the usual ones, and how much longer a prompt one may take, s.
+const USUAL_POLLS: usize = 17;
+const LATE_S: f64 = 0.004;
 /// Silence after which the link counts as lost, s.
 const LINK_LOST_S: f64 = 0.15;
 
@@ -120,6 +123,8 @@ pub struct Rig<'a> {
     pub setup: Setup,
     /// Every poll.
     pub points: Vec<Point>,
+    /// How long the exchange of each poll took, s, and when it was: what its time is worth.
+    pub(crate) exchanges: Vec<(f64, f64)>,
     /// Every command.
     pub drives: Vec<Drive>,
     /// What watches for stalls and lost signals.
@@ -150,6 +155,7 @@ impl<'a> Rig<'a> {
             options,
             setup,
             points: Vec::new(),
+            exchanges: Vec::new(),
             drives: Vec::new(),
             watch: Watch::default(),
             epoch_s: now.as_secs_f64(),
@@ -219,6 +225,8 @@ impl<'a> Rig<'a> {
         let exchange = self.acknowledged(|axis| axis.drive_duty(raw))?;
         let t = exchange.middle_s() - self.epoch_s;
         self.drives.push(Drive { t, input: Input::Duty(f64::from(raw) / f64::from(FULL_DUTY_RAW)) });
+        let took_s = exchange.received.saturating_sub(exchange.sent).as_secs_f64();
+        self.watch.doubt_s = 0.5 * self.usual_exchange_s().map_or(0.0, |usual| (took_s - usual).max(0.0));
         self.watch.drive(t, duty);
         Ok(())
     }
@@ -318,11 +326,31 @@ impl<'a> Rig<'a> {
         }
         self.check_highest_current(&point)?;
         self.points.push(point);
+        let took = sample.counts_at.received.saturating_sub(sample.counts_at.sent);
+        self.exchanges.push((point.t, took.as_secs_f64()));
         self.check_travel(&point)?;
+        if !self.is_prompt(took.as_secs_f64()) {
+            self.watch.read_duty(&point);
+            return Ok(Some(point));
+        }
         match self.watch.see(&point) {
             Err(guess) => Err(self.name_fault(guess)),
             Ok(()) => Ok(Some(point)),
         }
+    }
+
+    /// Whether an exchange took hardly longer than its predecessors: when the counts of a longer one were read is open, which would
+    /// look like a jerk of the motor.
+    fn is_prompt(&self, took_s: f64) -> bool {
+        self.usual_exchange_s().is_none_or(|usual| took_s <= usual + LATE_S)
+    }
+
+    /// How long an exchange took of late, s; the middle one.
+    fn usual_exchange_s(&self) -> Option<f64> {
+        let recent = &self.exchanges[self.exchanges.len().saturating_sub(USUAL_POLLS)..];
+        let mut took: Vec<f64> = recent.iter().map(|exchange| exchange.1).collect();
+        took.sort_by(f64::total_cmp);
+        took.get(took.len() / 2).copied()
     }
 
     /// The current limit over the stall current at full duty.

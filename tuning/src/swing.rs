@@ -26,7 +26,7 @@ pub(crate) fn deviation(values: &[(f64, f64)]) -> f64 {
 }
 
 /// Root mean square of the speed about a plateau in counts/s, as far as it is more than rounding and stamps make up.
-pub(crate) fn speed_ripple(plateau: &[(f64, f64)]) -> f64 {
+pub(crate) fn speed_ripple(plateau: &[(f64, f64)], stamp_s: f64) -> f64 {
     let (Some(first), Some(last)) = (plateau.first(), plateau.last()) else { return 0.0 };
     let seconds = last.0 - first.0;
     if plateau.len() < 20 || seconds <= 0.0 {
@@ -49,7 +49,7 @@ pub(crate) fn speed_ripple(plateau: &[(f64, f64)]) -> f64 {
         .map(|w| (w, mean_square(w)))
         .collect();
     // What noise alone gives each sine: what is known of it, or what most sines show (exponentially distributed) where that is less.
-    let known = 2.0 * (ROUNDING + (STAMP_S * speed).powi(2)) / n;
+    let known = 2.0 * (ROUNDING + (STAMP_S.hypot(stamp_s) * speed).powi(2)) / n;
     let mut sorted: Vec<f64> = sines.iter().map(|sine| sine.1).collect();
     sorted.sort_by(f64::total_cmp);
     let middle = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
@@ -73,7 +73,8 @@ pub(crate) fn flank_overshoot(course: &ClosedCourse, step: f64, poll_s: f64) -> 
     }
     shares.sort_by(|a, b| a.0.total_cmp(&b.0));
     let goal = course.setpoints.iter().map(|s| s.1.abs()).fold(0.0, f64::max);
-    let noise = (2.0 * (ROUNDING + (STAMP_S * goal).powi(2))).sqrt() / poll_s / step.abs();
+    let stamp_s = STAMP_S.hypot(course.stamp_s);
+    let noise = (2.0 * (ROUNDING + (stamp_s * goal).powi(2))).sqrt() / poll_s / step.abs();
     let wanted = (noise / UNCERTAIN).powi(2).max(1.0);
     let longest = shares.last().map_or(0.0, |last| last.0);
     let flanks = course.setpoints.len().max(1) as f64;
@@ -122,14 +123,14 @@ mod tests {
     fn a_sine_on_a_plateau_has_its_root_mean_square_and_a_plain_one_next_to_none() {
         // 60 counts/s about 1500 at 8 Hz.
         let w = TAU * 8.0;
-        let swinging = speed_ripple(&plateau(|t| 1_500.0 * t - 60.0 / w * (w * t).cos()));
+        let swinging = speed_ripple(&plateau(|t| 1_500.0 * t - 60.0 / w * (w * t).cos()), 0.0);
         assert!((swinging / (60.0 / 2.0_f64.sqrt()) - 1.0).abs() < 0.2, "{swinging}");
-        assert!(speed_ripple(&plateau(|t| 1_500.0 * t)) < 10.0);
+        assert!(speed_ripple(&plateau(|t| 1_500.0 * t), 0.0) < 10.0);
     }
 
     #[test]
     fn a_speed_that_settles_slowly_is_no_swing() {
-        let settling = speed_ripple(&plateau(|t| 1_500.0 * t + 200.0 * (-t / 0.8).exp()));
+        let settling = speed_ripple(&plateau(|t| 1_500.0 * t + 200.0 * (-t / 0.8).exp()), 0.0);
         assert!(settling < 15.0, "{settling}");
     }
 
@@ -153,8 +154,11 @@ mod tests {
                 flanks.map(|&(at, goal)| (if goal > 0.0 { high } else { -high }) * place(t - at)).sum();
             (t, sum.floor())
         });
-        let course =
-            ClosedCourse { counts: counts.collect(), duties: Vec::new(), setpoints: setpoints.clone() };
+        let course = ClosedCourse {
+            counts: counts.collect(),
+            setpoints: setpoints.clone(),
+            ..ClosedCourse::default()
+        };
         let seen = flank_overshoot(&course, high, 0.013);
         assert!((seen - 0.163).abs() < 0.04, "{seen}");
     }

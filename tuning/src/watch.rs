@@ -58,6 +58,8 @@ pub struct Watch {
     pub full_speed: f64,
     /// Between which values the time constant lies, s; `None` as long as nothing is known.
     pub tau_bounds_s: Option<(f64, f64)>,
+    /// How much more than usual the stamp of the last command may be off, s.
+    pub(crate) doubt_s: f64,
     /// Time constant that the ways of turning round so far speak of, s.
     turning_tau_s: Option<f64>,
     /// Duties given and when, oldest first; the first is older than the memory.
@@ -78,6 +80,8 @@ pub struct Watch {
     running_amps: Option<f64>,
     open_since_s: Option<f64>,
     recent: VecDeque<Point>,
+    /// Duties read and when, oldest first.
+    readings: VecDeque<(f64, f64)>,
 }
 
 /// What one looks like from its counts and its duty over a time.
@@ -162,8 +166,17 @@ impl Watch {
         self.recent.iter()
     }
 
+    /// Takes the duty that a poll read, where its counts came too late to say anything.
+    pub(crate) fn read_duty(&mut self, point: &Point) {
+        self.readings.extend(point.duty);
+        while self.readings.front().is_some_and(|old| point.t - old.0 > MEMORY_S) {
+            self.readings.pop_front();
+        }
+    }
+
     /// Looks at a poll. The cause of an error is a first guess.
     pub fn see(&mut self, point: &Point) -> Result<(), Cause> {
+        self.read_duty(point);
         self.recent.push_back(*point);
         while self.recent.front().is_some_and(|old| point.t - old.t > MEMORY_S) {
             self.recent.pop_front();
@@ -185,7 +198,7 @@ impl Watch {
     /// The duty in force at a time, ramps included.
     pub(crate) fn duty_at(&self, t: f64) -> f64 {
         if self.looped || t < self.looped_until_s {
-            let read = self.recent.iter().rev().filter_map(|point| point.duty).find(|duty| duty.0 <= t);
+            let read = self.readings.iter().rev().find(|duty| duty.0 <= t);
             return read.map_or(0.0, |duty| duty.1);
         }
         let mut duty = 0.0;
@@ -201,11 +214,11 @@ impl Watch {
     /// Lowest and highest duty that may have been in force about a time.
     fn duty_range(&self, t: f64) -> (f64, f64) {
         if !self.looped {
-            // The stamp of a command is off by a few milliseconds at the most.
-            let (a, b) = (self.duty_at(t - 0.006), self.duty_at(t + 0.002));
+            // The stamp of a command is off by a few milliseconds at the most, unless its reply came late.
+            let (a, b) = (self.duty_at(t - 0.006 - self.doubt_s), self.duty_at(t + 0.002 + self.doubt_s));
             return (a.min(b), a.max(b));
         }
-        let readings = || self.recent.iter().filter_map(|point| point.duty);
+        let readings = || self.readings.iter();
         let before = readings().rev().find(|duty| duty.0 <= t);
         let after = readings().find(|duty| duty.0 > t);
         match (before, after) {

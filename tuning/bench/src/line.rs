@@ -60,6 +60,8 @@ pub struct SimulatedLine {
     pub dead_at: Option<Duration>,
     /// Where the end stops are, on either side.
     pub end_stop_radians: Option<f64>,
+    /// A busy host: the share of replies that it reads late, and by how much at the most, s.
+    pub late_reads: Option<(f64, f64)>,
 }
 
 impl SimulatedLine {
@@ -79,6 +81,7 @@ impl SimulatedLine {
             stop_at: None,
             dead_at: None,
             end_stop_radians: None,
+            late_reads: None,
         }
     }
 
@@ -148,6 +151,14 @@ impl SimulatedLine {
         Duration::from_secs_f64(seconds)
     }
 
+    fn read_late(&mut self) {
+        let Some((share, longest_s)) = self.late_reads else { return };
+        let mut draw = Draw(self.draw.clone());
+        let late_s = if draw.uniform() < share { draw.between((0.0, longest_s)) } else { 0.0 };
+        self.draw = draw.0;
+        self.advance(self.now + Duration::from_secs_f64(late_s));
+    }
+
     fn is_lost(&mut self) -> bool {
         let mut draw = Draw(self.draw.clone());
         let lost = draw.uniform() < self.params.loss;
@@ -184,6 +195,7 @@ impl Carrier for SimulatedLine {
         if arrives.is_none() {
             return Err(AxisError::NoReply);
         }
+        self.read_late();
         match parse_reply(&request, generation, &reply) {
             ReplyProgress::Done { values, .. } => Ok((Exchange { sent, received: self.now }, values)),
             _ => Err(AxisError::NoReply),
