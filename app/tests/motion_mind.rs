@@ -80,8 +80,8 @@ fn a_port_is_asked_for_the_family_that_was_chosen() {
     bench.choose("Controller family", "Motion Mind");
     let target = bench.model().devices.target().unwrap().to_string();
     assert!(target.ends_with("family=motion-mind"), "{target}");
-    bench.choose("Address", "unit 17");
-    assert!(bench.model().devices.addresses() == brushwork_link::device::Addresses::Only(17));
+    bench.choose("Address", "unit 3");
+    assert!(bench.model().devices.addresses() == brushwork_link::device::Addresses::Only(3));
 }
 
 #[test]
@@ -107,6 +107,7 @@ fn several_units_on_one_bus_are_listed_and_each_has_its_own_registers() {
     let mut bench = Bench::with_minds(vec![at(1), at(2)]);
     bench.minds.with(|bus| bus.advance(std::time::Duration::ZERO));
     choose(&mut bench);
+    bench.enter("Units on the bus", "2");
     bench.press("Connect");
     bench.pass_ms(200);
     assert!(bench.sees_part("Searching: "), "a scan of 98 addresses tells how far it is");
@@ -128,6 +129,7 @@ fn a_search_can_be_called_off() {
         ..config(Mode::SerialPid)
     }]);
     choose(&mut bench);
+    bench.enter("Units on the bus", "2");
     bench.press("Connect");
     bench.pass_ms(1000);
     bench.press("Cancel");

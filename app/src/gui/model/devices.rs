@@ -182,6 +182,13 @@ impl Devices {
     /// The addresses to look for. An address of the other family than the one that is wanted is none.
     pub fn addresses(&self) -> Addresses {
         match self.addresses {
+            // Where the simulated one is, is known; several are looked for as on any bus.
+            _ if self.choice == Choice::Simulated && self.simulated.is_motion_mind() => {
+                match self.simulated.units {
+                    1 => Addresses::Only(self.simulated.address),
+                    _ => Addresses::Scan,
+                }
+            }
             Addresses::Only(address) if self.wants_motion_minds() == (address > 98) => Addresses::Scan,
             addresses => addresses,
         }

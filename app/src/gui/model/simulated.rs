@@ -32,10 +32,14 @@ impl Simulated {
     /// Most of them on one simulated bus.
     pub const MOST_UNITS: u8 = 4;
 
-    /// All models by key and name: the MCPs, the RoboClaws, the Motion Mind.
+    /// All models by key and name: first one of each family.
     pub fn models() -> impl Iterator<Item = (&'static str, &'static str)> {
-        let listed = MODELS.iter().map(|model| (model.key, model.name));
-        listed.chain(std::iter::once((MOTION_MIND, "Motion Mind 3")))
+        let is_first = |key: &str| key == FIRST;
+        let listed = || MODELS.iter().map(|model| (model.key, model.name));
+        let first = listed().filter(move |(key, _)| is_first(key));
+        first
+            .chain(std::iter::once((MOTION_MIND, "Motion Mind 3")))
+            .chain(listed().filter(move |(key, _)| !is_first(key)))
     }
 
     pub fn is_motion_mind(&self) -> bool {
