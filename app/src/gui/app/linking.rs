@@ -55,7 +55,7 @@ impl App {
         let text = target.to_string();
         let front = &mut self.model.front;
         front.target = Some(text.clone());
-        front.family_kind = FamilyKind::of_target(&text).unwrap_or(front.family_kind);
+        front.set_family(FamilyKind::of_target(&text).unwrap_or(front.family_kind));
         if front.phase == Phase::Closed {
             self.model.messages.dismiss();
             front.phase = Phase::Opening { target: text };

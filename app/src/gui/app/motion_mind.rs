@@ -1,13 +1,11 @@
 //! What the screens of a Motion Mind ask for: reads of all registers, and writes by its assistants.
 
 use brushwork_link::device::DeviceHandle;
-use brushwork_link::settings::{SettingValue, SettingsImage};
-use brushwork_protocol::motion_mind::register_named;
+use brushwork_link::settings::SettingsImage;
 
 use super::App;
 use crate::gui::command::MindWish;
 use crate::gui::model::general::Sheet;
-use crate::gui::model::motion_mind::registers::key;
 use crate::gui::model::screen::Screen;
 
 impl App {
@@ -26,24 +24,22 @@ impl App {
         let told = match wish {
             MindWish::Turn(image) => {
                 let held = self.model.front.step_registers();
-                let told = self.write_registers(&image);
+                let told = self.write_registers(image);
                 if let (Ok(()), Some(held)) = (&told, held) {
                     self.model.front.motion_mind.steps.remember(held);
                 }
                 told
             }
             MindWish::PutBack(image) => {
-                let told = self.write_registers(&image);
+                let told = self.write_registers(image);
                 if told.is_ok() {
                     self.model.front.motion_mind.steps.is_back();
                 }
                 told
             }
             MindWish::Radio(max, min) => {
-                let ends = [("RCMAX", max), ("RCMIN", min)];
-                let rows =
-                    ends.into_iter().filter_map(|(name, value)| Some((key(register_named(name)?), value)));
-                self.write_registers(&rows.map(|(key, value)| (key, SettingValue::Int(value))).collect())
+                let ends = self.model.front.as_settings(&[("RCMAX", max), ("RCMIN", min)]);
+                self.write_registers(ends)
             }
             MindWish::UseRadio => {
                 self.use_radio();
@@ -59,7 +55,8 @@ impl App {
     fn use_radio(&mut self) {
         let front = &mut self.model.front;
         let for_position = front.has_bit("FUNCTION", "RCPOS-ENCFDBCK");
-        let Some(image) = front.motion_mind.radio.image(for_position) else { return };
+        let Some([max, min, band]) = front.motion_mind.radio.result(for_position) else { return };
+        let image = front.as_settings(&[("RCMAX", max), ("RCMIN", min), ("RCBAND", band)]);
         if let Some(unit) = front.general.unit_mut() {
             for (key, value) in image.iter() {
                 unit.set(key, value);
@@ -70,7 +67,7 @@ impl App {
     }
 
     /// Writes registers to RAM with a backup before, and reads them back.
-    fn write_registers(&mut self, image: &SettingsImage) -> Result<(), String> {
+    fn write_registers(&mut self, image: SettingsImage) -> Result<(), String> {
         let front = &mut self.model.front;
         let unit = front.general.unit().ok_or("No controller is connected.")?;
         let changed = image.iter().filter(|(key, value)| unit.on_controller(key) != Some(*value));

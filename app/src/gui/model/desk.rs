@@ -408,6 +408,11 @@ impl Desk {
     /// The unit that is looked at may be of another family than the one before.
     fn turn_to_family(&mut self) {
         let kind = self.link.identity().map_or(self.family_kind, FamilyKind::of_unit);
+        self.set_family(kind);
+    }
+
+    /// The family whose screens and channels are shown.
+    pub fn set_family(&mut self, kind: FamilyKind) {
         if kind != self.family_kind {
             self.family_kind = kind;
             let family = self.family();

@@ -1,10 +1,5 @@
 //! The R/C calibration assistant (Motion Mind manual 4.3): the stick in the middle, forward, back; what RCMAX and RCMIN come to.
 
-use brushwork_link::settings::{SettingValue, SettingsImage};
-use brushwork_protocol::motion_mind::register_named;
-
-use super::registers::key;
-
 /// Steps of RCCOUNT in 1.5 ms.
 const MIDDLE: i64 = 864;
 /// The middle should be so near to 1.5 ms before the ends are taken (manual, step 1).
@@ -112,17 +107,6 @@ impl Radio {
         let (low, high) = self.jitter?;
         let jitter = (high - MIDDLE).abs().max((low - MIDDLE).abs());
         Some([self.forward? - inside, self.backward? + inside, (jitter + 2).max(15)])
-    }
-
-    /// The result as settings.
-    pub fn image(&self, for_position: bool) -> Option<SettingsImage> {
-        let values = self.result(for_position)?;
-        let names = ["RCMAX", "RCMIN", "RCBAND"];
-        names
-            .into_iter()
-            .zip(values)
-            .map(|(name, value)| Some((key(register_named(name)?), SettingValue::Int(value))))
-            .collect()
     }
 }
 

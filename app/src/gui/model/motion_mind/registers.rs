@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use brushwork_link::device::{Event, Request};
-use brushwork_link::settings::SettingValue;
+use brushwork_link::settings::{SettingValue, SettingsImage};
 use brushwork_protocol::motion_mind::{REGISTERS, Register, register_named};
 use brushwork_protocol::packet_serial::{Value, Values};
 
@@ -127,6 +127,16 @@ impl Desk {
                 _ => None,
             }
         })
+    }
+
+    /// Raw register values as settings, as far as the unit's table has them.
+    pub fn as_settings(&self, raw: &[(&str, i64)]) -> SettingsImage {
+        let Some(unit) = self.general.unit() else { return SettingsImage::default() };
+        let setting = |(name, raw): &(&str, i64)| {
+            let row = unit.table().row(&key(register_named(name)?))?;
+            Some((row.key.clone(), row.coding.decode(row.kind, *raw)))
+        };
+        raw.iter().filter_map(setting).collect()
     }
 
     /// Whether a bit of FUNCTION or FUNCTION2 is known to be set, by the register's and the bit's name.
