@@ -24,14 +24,14 @@ impl App {
         let told = match wish {
             MindWish::Turn(image) => {
                 let held = self.model.front.step_registers();
-                let told = self.write_registers(image);
+                let told = self.write_registers(&image);
                 if let (Ok(()), Some(held)) = (&told, held) {
                     self.model.front.motion_mind.steps.remember(held);
                 }
                 told
             }
             MindWish::PutBack(image) => {
-                let told = self.write_registers(image);
+                let told = self.write_registers(&image);
                 if told.is_ok() {
                     self.model.front.motion_mind.steps.is_back();
                 }
@@ -39,7 +39,7 @@ impl App {
             }
             MindWish::Radio(max, min) => {
                 let ends = self.model.front.as_settings(&[("RCMAX", max), ("RCMIN", min)]);
-                self.write_registers(ends)
+                self.write_registers(&ends)
             }
             MindWish::UseRadio => {
                 self.use_radio();
@@ -67,7 +67,7 @@ impl App {
     }
 
     /// Writes registers to RAM with a backup before, and reads them back.
-    fn write_registers(&mut self, image: SettingsImage) -> Result<(), String> {
+    fn write_registers(&mut self, image: &SettingsImage) -> Result<(), String> {
         let front = &mut self.model.front;
         let unit = front.general.unit().ok_or("No controller is connected.")?;
         let changed = image.iter().filter(|(key, value)| unit.on_controller(key) != Some(*value));
