@@ -4,6 +4,8 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use super::tune::TuneArgs;
+use brushwork_link::UnitAddress;
+use brushwork_link::device::FamilyChoice;
 use brushwork_protocol::canopen::adapter::Form;
 use brushwork_sim::faults::FAULT_SYNTAX;
 use brushwork_sim::world::{CanPeer, I2cDevice, WorldAction};
@@ -15,7 +17,7 @@ use super::mcl::args::MclArgs;
 use super::monitor::args::MonitorArgs;
 use super::script::args::ScriptArgs;
 use super::settings::args::SettingsArgs;
-use crate::session::sim_spec::{parse_address, parse_byte};
+use crate::session::sim_spec::parse_byte;
 
 /// Configures, drives and tunes brushed-DC motor controllers.
 #[derive(Debug, Parser)]
@@ -23,7 +25,7 @@ use crate::session::sim_spec::{parse_address, parse_byte};
     name = "brushwork",
     version,
     about = "Configures, drives and tunes brushed-DC motor controllers",
-    long_about = "Configures, drives and tunes brushed-DC motor controllers (MCP / RoboClaw over packet serial).\n\
+    long_about = "Configures, drives and tunes brushed-DC motor controllers (MCP / RoboClaw over packet serial, Motion Mind 3).\n\
                   Without a command the window opens.",
     after_long_help = exit::HELP,
     args_conflicts_with_subcommands = true,
@@ -69,7 +71,9 @@ pub enum Command {
     Script(ScriptArgs),
     /// Run simulated controllers on a pseudo-terminal or a TCP port.
     Sim(SimArgs),
-    /// Print the packet serial reference.
+    /// Send commands to a Motion Mind as they are typed.
+    Terminal(TerminalArgs),
+    /// Print the reference of packet serial, or of the Motion Mind.
     Protocol(ProtocolArgs),
     /// Decode traffic: our own, another program's, or a file's.
     Monitor(MonitorArgs),
@@ -85,12 +89,16 @@ pub enum Command {
 #[derive(Debug, Clone, Args)]
 pub struct ConnectArgs {
     /// sim:mcp266[,generation=4,preset=NAME], /dev/ttyACM0, /dev/ttyUSB0,baud=115200,stream=ttl1, COM3 or
-    /// tcp:HOST:PORT; a CANopen bus as can:PORT[,node=3,form=binary].
+    /// tcp:HOST:PORT; a CANopen bus as can:PORT[,node=3,form=binary]; a Motion Mind as sim:motion-mind-3[,mode=4,protocol=ascii]
+    /// or with ,family=motion-mind behind its port.
     #[arg(long, short = 'c', alias = "to", value_name = "TARGET", default_value = "sim:mcp266")]
     pub connect: String,
-    /// Address of the controller on its line.
-    #[arg(long, value_name = "0x80..0x87", default_value = "0x80", value_parser = parse_address)]
-    pub address: u8,
+    /// Address of the controller on its line: 0x80 to 0x87, or 1 to 98 for a Motion Mind. Without it 0x80, or 1.
+    #[arg(long, value_name = "ADDRESS", value_parser = parse_connect_address)]
+    pub address: Option<u8>,
+    /// Which protocol family to look for; without it packet serial first, then a Motion Mind.
+    #[arg(long, value_name = "auto|mcp|motion-mind", default_value_t, hide_default_value = true)]
+    pub family: FamilyChoice,
 }
 
 /// One of the controller's serial streams (MCP manual 2.3.1, command 145).
@@ -162,11 +170,12 @@ pub struct StatusArgs {
 /// Arguments of `brushwork drive`.
 #[derive(Debug, Args)]
 #[command(
-    group(clap::ArgGroup::new("setpoint").required(true).args(["duty", "speed", "position"])),
+    group(clap::ArgGroup::new("setpoint").required(true).args(["duty", "speed", "position", "by"])),
     after_help = "Examples:\n  \
         brushwork drive --connect sim:mcp266 --motor 1 --duty 25 --for 2\n  \
         brushwork drive --connect /dev/ttyACM0 --motor both --speed -12000 --accel 24000 --for 5\n  \
-        brushwork drive --connect /dev/ttyACM0 --motor 2 --position 4000 --speed-limit 8000 --for 3\n\n\
+        brushwork drive --connect /dev/ttyACM0 --motor 2 --position 4000 --speed-limit 8000 --for 3\n  \
+        brushwork drive --connect /dev/ttyUSB0,family=motion-mind --by -500 --for 2\n\n\
         Both motors are stopped when the time is over, on Ctrl-C, SIGTERM, SIGHUP, a closed pipe, a fault or a lost link."
 )]
 pub struct DriveArgs {
@@ -185,14 +194,17 @@ pub struct DriveArgs {
     /// Position in encoder counts.
     #[arg(long, value_name = "COUNTS", allow_negative_numbers = true)]
     pub position: Option<i32>,
+    /// Distance in encoder counts from where the motor is.
+    #[arg(long, value_name = "COUNTS", allow_negative_numbers = true)]
+    pub by: Option<i32>,
     /// Acceleration: percent of duty per second with --duty, counts/s² with --speed and --position.
     #[arg(long, value_name = "RATE", value_parser = parse_positive)]
     pub accel: Option<f64>,
     /// Deceleration of a position move in counts/s² (default: the acceleration).
     #[arg(long, value_name = "RATE", requires = "position", value_parser = parse_positive)]
     pub decel: Option<f64>,
-    /// Highest speed of a position move in counts/s (default: the motor's QPPS).
-    #[arg(long, value_name = "COUNTS/S", requires = "position")]
+    /// Highest speed of a move in counts/s (default: the motor's QPPS).
+    #[arg(long, value_name = "COUNTS/S", conflicts_with_all = ["duty", "speed"])]
     pub speed_limit: Option<u32>,
     /// How long to drive.
     #[arg(long = "for", value_name = "SECONDS", default_value = "1", value_parser = parse_seconds)]
@@ -305,6 +317,14 @@ pub struct SimArgs {
 }
 
 /// A unit's number as typed; what numbers there are depends on the model.
+/// Reads an address of either family.
+fn parse_connect_address(text: &str) -> Result<u8, String> {
+    let number = parse_byte(text).and_then(UnitAddress::new).map(UnitAddress::get);
+    number.ok_or_else(|| {
+        format!("\"{text}\" is no address: use 0x80 to 0x87 (128 to 135), or 1 to 98 for a Motion Mind")
+    })
+}
+
 fn parse_unit_number(text: &str) -> Result<u8, String> {
     parse_byte(text)
         .ok_or_else(|| format!("\"{text}\" is no address; an example is 0x80, or 1 for a Motion Mind 3"))
@@ -362,16 +382,39 @@ fn parse_i2c(text: &str) -> Result<I2cDevice, String> {
     I2cDevice::named(text).ok_or_else(|| format!("\"{text}\" is no device that is known here: use mpu6050"))
 }
 
+/// Arguments of `brushwork terminal`.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    brushwork terminal --connect /dev/ttyUSB0,family=motion-mind 'R01 04' 'W01 04 5000'\n  \
+    brushwork terminal --connect sim:motion-mind-3 '1A 01 01 00 01 00'\n\n\
+    Without commands each line of standard input is one. A unit in ASCII takes lines, one in binary takes the bytes of a\n\
+    frame in hexadecimal without their checksum. Commands that move the motor are refused; use `brushwork drive`.")]
+pub struct TerminalArgs {
+    /// The controller.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// What to send.
+    #[arg(value_name = "COMMAND")]
+    pub commands: Vec<String>,
+    /// Print each exchange as a JSON object a line.
+    #[arg(long)]
+    pub json: bool,
+}
+
 /// Arguments of `brushwork protocol`.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
     brushwork protocol\n  \
     brushwork protocol 28 read_status\n  \
+    brushwork protocol --family motion-mind WRITE_STORE PTERM\n  \
     brushwork protocol --json")]
 pub struct ProtocolArgs {
-    /// Only these commands, by number or key.
+    /// Only these commands, by number or key; for a Motion Mind also registers by name.
     #[arg(value_name = "COMMAND")]
     pub commands: Vec<String>,
+    /// Whose protocol.
+    #[arg(long, value_name = "mcp|motion-mind", default_value_t, hide_default_value = true)]
+    pub family: FamilyChoice,
     /// Print JSON.
     #[arg(long)]
     pub json: bool,

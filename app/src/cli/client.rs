@@ -4,14 +4,18 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use brushwork_link::SystemClock;
-use brushwork_link::device::{Addresses, ArmScope, DeviceHandle, Event, Identity, PollRate, Request};
+use brushwork_link::device::{
+    Addresses, ArmScope, DeviceHandle, Event, FamilyChoice, Identity, PollRate, Request,
+};
 use brushwork_link::transport::{ConnectTarget, Stream};
+use brushwork_protocol::{motion_mind, packet_serial};
 use crossbeam_channel::RecvTimeoutError;
 
 use super::args::ConnectArgs;
 use super::exit::Exit;
 use super::interrupt::Interrupt;
 use super::output::say;
+use crate::session::motion_mind_spec::MotionMindSpec;
 use crate::session::{self, Session, SessionOptions, Simulation};
 
 /// How long a controller may take to be found and identified.
@@ -66,8 +70,7 @@ impl Client {
 /// Says on standard error what went wrong and gives the exit code.
 pub fn open(args: &ConnectArgs, poll: PollRate) -> Result<Session, Exit> {
     let target = target(args)?;
-    let options =
-        SessionOptions { addresses: Addresses::Only(args.address), poll, ..SessionOptions::default() };
+    let options = SessionOptions { addresses: addresses(&target, args), poll, family: args.family };
     session::open(&target, options, SystemClock::shared(), None).map_err(|error| {
         say(error.to_string());
         Exit::NoLink
@@ -83,17 +86,46 @@ pub fn target(args: &ConnectArgs) -> Result<ConnectTarget, Exit> {
         say(format!("Could not understand --connect {}: {error}.", args.connect));
         Exit::Usage
     })?;
-    Ok(at_address(target, args.address))
+    Ok(at_address(target, args))
+}
+
+/// The one address that is meant: as given, or the factory's of the family.
+fn addresses(target: &ConnectTarget, args: &ConnectArgs) -> Addresses {
+    let family = match target {
+        ConnectTarget::Sim(text) if MotionMindSpec::is_asked_for(text) => FamilyChoice::MotionMind,
+        target if target.family() != FamilyChoice::Auto => target.family(),
+        _ => args.family,
+    };
+    match (args.address, family) {
+        (Some(address), _) => Addresses::Only(address),
+        (None, FamilyChoice::MotionMind) => Addresses::Only(first_of(target).get()),
+        (None, FamilyChoice::PacketSerial) => Addresses::Only(packet_serial::Address::DEFAULT.get()),
+        (None, FamilyChoice::Auto) => Addresses::Factory,
+    }
+}
+
+/// The first of simulated Motion Minds, or the factory address.
+fn first_of(target: &ConnectTarget) -> motion_mind::Address {
+    let spec = match target {
+        ConnectTarget::Sim(text) => MotionMindSpec::parse(text).ok(),
+        _ => None,
+    };
+    spec.and_then(|spec| spec.addresses.first().copied()).unwrap_or(motion_mind::Address::FACTORY)
 }
 
 /// A simulated controller is made at the address that is asked for, unless the target names one itself.
-fn at_address(target: ConnectTarget, address: u8) -> ConnectTarget {
-    match target {
-        ConnectTarget::Sim(text) if !text.contains("address=") => {
+fn at_address(target: ConnectTarget, args: &ConnectArgs) -> ConnectTarget {
+    match (target, args.address) {
+        (ConnectTarget::Sim(text), Some(address))
+            if MotionMindSpec::is_asked_for(&text) && !text.contains("address=") =>
+        {
+            ConnectTarget::Sim(format!("{text},address={address}"))
+        }
+        (ConnectTarget::Sim(text), Some(address)) if !text.contains("address=") => {
             let model = if text.is_empty() { "mcp266" } else { &text };
             ConnectTarget::Sim(format!("{model},address={address:#04x}"))
         }
-        other => other,
+        (other, _) => other,
     }
 }
 

@@ -4,7 +4,9 @@
 
 use std::time::{Duration, Instant};
 
-use brushwork_link::device::{ArmScope, DisarmReason, Drive, DriveCommand, Event, PollRate, Request};
+use brushwork_link::device::{
+    ArmScope, DisarmReason, Drive, DriveCommand, Event, Identity, PollRate, Request,
+};
 use brushwork_protocol::packet_serial::{Motor, number};
 use serde_json::json;
 
@@ -45,7 +47,7 @@ fn finish(driven: Result<(), Exit>, client: &Client) -> Exit {
     if !was_lost {
         client.device().stop_all();
         match stop::wait_for_report(client) {
-            Ok(report) => stop::warnings(&report).into_iter().for_each(say),
+            Ok(report) => stop::warnings(&report, &client.identity).into_iter().for_each(say),
             Err(exit) => return exit,
         }
     }
@@ -76,8 +78,19 @@ fn command(args: &DriveArgs, client: &Client, interrupt: &Interrupt) -> Result<D
     }
     let speed_counts_per_s = match args.speed_limit {
         Some(limit) => limit,
+        // Its speed is VELOCITYLIMIT, a setting.
+        None if !client.identity.capabilities().ramps => 0,
         None => qpps(args.motor, client, interrupt)?,
     };
+    if let Some(distance) = args.by {
+        let speed = i32::try_from(speed_counts_per_s).unwrap_or(i32::MAX);
+        return Ok(DriveCommand::Distance {
+            speed_counts_per_s: if distance < 0 { -speed.max(1) } else { speed },
+            accel_counts_per_s2: args.accel.map(rate),
+            distance_counts: distance.unsigned_abs(),
+            queued: false,
+        });
+    }
     // Without a figure the move takes a quarter of a second to its full speed.
     let accel = args.accel.map_or(speed_counts_per_s.saturating_mul(4), rate);
     Ok(DriveCommand::Position {
@@ -146,7 +159,7 @@ fn keep_driving(
         }
         if Instant::now() >= next_print {
             next_print += PRINT_INTERVAL;
-            print(args, start.elapsed(), &readings, out)?;
+            print(args, start.elapsed(), &readings, &client.identity, out)?;
         }
     }
     responses.iter().filter_map(Response::sentence).for_each(say);
@@ -154,17 +167,23 @@ fn keep_driving(
 }
 
 fn disarmed(reason: &DisarmReason) -> Exit {
-    say(format!("{reason}. Both motors are being stopped."));
+    say(format!("{reason}. The motors are being stopped."));
     match reason {
         DisarmReason::LinkLost => Exit::NoLink,
         _ => Exit::Refused,
     }
 }
 
-fn print(args: &DriveArgs, at: Duration, readings: &Readings, out: &mut Output) -> Result<(), OutputError> {
+fn print(
+    args: &DriveArgs,
+    at: Duration,
+    readings: &Readings,
+    identity: &Identity,
+    out: &mut Output,
+) -> Result<(), OutputError> {
     let seconds = at.as_secs_f64();
     if args.json {
-        return out.json_line(&json!({ "time_s": seconds, "readings": readings.to_json() }));
+        return out.json_line(&json!({ "time_s": seconds, "readings": readings.to_json(identity) }));
     }
-    out.line(format!("{seconds:6.1} s  {}", line_of(readings)))
+    out.line(format!("{seconds:6.1} s  {}", line_of(readings, identity)))
 }

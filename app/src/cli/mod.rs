@@ -22,6 +22,7 @@ pub mod settings;
 mod sim;
 mod status;
 mod stop;
+mod terminal;
 pub mod tune;
 
 use std::process::ExitCode;
@@ -73,6 +74,7 @@ fn dispatch(command: &Command, out: &mut Output, interrupt: &Interrupt) -> Exit 
         Command::Sim(args) => sim::run(args, out, interrupt),
         Command::Script(args) => script::run(args, out, interrupt),
         Command::Protocol(args) => protocol::run(args, out),
+        Command::Terminal(args) => terminal::run(args, out, interrupt),
         Command::Monitor(args) => monitor::run(args, out, interrupt),
         Command::Tune(args) => tune::run(args, out, interrupt),
         Command::Mcl(args) => mcl::run(args, out, interrupt),

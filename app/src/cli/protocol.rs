@@ -1,5 +1,7 @@
-//! `brushwork protocol`: the packet serial reference, drawn from the command table.
+//! `brushwork protocol`: the reference of packet serial or of the Motion Mind, drawn from their tables.
 
+use brushwork_link::device::FamilyChoice;
+use brushwork_protocol::motion_mind;
 use brushwork_protocol::packet_serial::reference;
 use brushwork_protocol::packet_serial::{Command, lookup, lookup_key};
 
@@ -9,6 +11,9 @@ use super::output::{Output, OutputError, say};
 
 /// Prints the whole page or the commands asked for.
 pub fn run(args: &ProtocolArgs, out: &mut Output) -> Exit {
+    if args.family == FamilyChoice::MotionMind {
+        return motion_mind(args, out);
+    }
     let mut wanted = Vec::new();
     for name in &args.commands {
         match find(name) {
@@ -24,6 +29,29 @@ pub fn run(args: &ProtocolArgs, out: &mut Output) -> Exit {
         }
     }
     let printed = if args.json { print_json(&wanted, out) } else { print_text(&wanted, out) };
+    printed.map_or_else(Exit::from, |()| Exit::Done)
+}
+
+/// The page of the second family.
+fn motion_mind(args: &ProtocolArgs, out: &mut Output) -> Exit {
+    let mut entries = Vec::new();
+    for name in &args.commands {
+        match motion_mind::reference_entry(name) {
+            Some(entry) => entries.push(entry),
+            None => {
+                say(format!(
+                    "There is no command or register \"{name}\" of a Motion Mind. Use a name such as WRITE_STORE or PTERM; \
+                     `brushwork protocol --family motion-mind` prints all."
+                ));
+                return Exit::Usage;
+            }
+        }
+    }
+    let printed = match (args.json, entries.as_slice()) {
+        (true, _) => out.json(&motion_mind::reference()),
+        (false, []) => out.line(motion_mind::reference_page().trim_end()),
+        (false, entries) => entries.iter().try_for_each(|entry| out.line(entry.trim_end())),
+    };
     printed.map_or_else(Exit::from, |()| Exit::Done)
 }
 

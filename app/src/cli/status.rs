@@ -2,7 +2,10 @@
 
 use std::time::{Duration, Instant};
 
-use brushwork_link::device::{Channel, Event, FnJob, JobEnding, PollRate, Request, StatusReport};
+use brushwork_link::device::motion_mind::taken;
+use brushwork_link::device::{
+    Channel, Event, FnJob, Identity, JobEnding, PollRate, Request, Sign, StatusReport,
+};
 use brushwork_link::diagnosis::{Diagnosis, Evidence, Measured, PinEnd, diagnose, homed, pin_ends};
 use brushwork_link::settings::{SettingsImage, Subject, read_all};
 use brushwork_link::{Stream, Wire as _};
@@ -74,7 +77,11 @@ impl Readings {
         self.values[channel.index()]
     }
 
-    fn is_complete(&self) -> bool {
+    fn is_complete(&self, identity: &Identity) -> bool {
+        if identity.is_motion_mind() {
+            let wanted = [Channel::M1Position, Channel::M1Velocity, Channel::Temperature1];
+            return self.status.is_some() && wanted.into_iter().all(|channel| self.get(channel).is_some());
+        }
         let wanted = [
             Channel::M1Position,
             Channel::M1Velocity,
@@ -86,9 +93,9 @@ impl Readings {
         self.status.is_some() && wanted.into_iter().all(|channel| self.get(channel).is_some())
     }
 
-    /// All channels but the input pins as JSON, by their keys; what was not read is null.
-    pub fn to_json(&self) -> Map<String, Value> {
-        let polled = Channel::ALL.into_iter().filter(|channel| !channel.is_signal());
+    /// The channels of a unit but the input pins as JSON, by their keys; what was not read is null.
+    pub fn to_json(&self, identity: &Identity) -> Map<String, Value> {
+        let polled = identity.channels().iter().copied().filter(|channel| !channel.is_signal());
         polled.map(|channel| (channel.key(), json!(self.get(channel)))).collect()
     }
 }
@@ -102,7 +109,7 @@ fn watch(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
     let client = Client::connect(&args.connect, PollRate::DEFAULT, interrupt)?;
     let mut readings = Readings::default();
     let first_deadline = Instant::now() + FIRST_READING_LIMIT;
-    while !readings.is_complete() && Instant::now() < first_deadline {
+    while !readings.is_complete(&client.identity) && Instant::now() < first_deadline {
         if let Some(event) = client.next_event(interrupt)? {
             readings.take(event);
         }
@@ -131,8 +138,12 @@ fn read_setup(client: &Client, readings: &mut Readings, interrupt: &Interrupt) -
     let job = FnJob::boxed("read the settings", SETTINGS_LIMIT, move |context| {
         let settings = Some(read_all(context, subject)?.image);
         // A RoboClaw does not know the command; its status word has bits of its own.
-        let values = context.transact(number::READ_SIGNAL_VALUES, &[]);
-        Ok(Box::new(Setup { settings, pins: values.ok().map(|values| pin_ends(&values)) }))
+        let values = if subject.model.family.speaks_packets() {
+            context.transact(number::READ_SIGNAL_VALUES, &[]).ok()
+        } else {
+            None
+        };
+        Ok(Box::new(Setup { settings, pins: values.map(|values| pin_ends(&values)) }))
     });
     if let Err(refused) = client.device().request(Request::Job(job)) {
         say(refused.to_string());
@@ -162,7 +173,7 @@ fn setup_of(ending: JobEnding) -> Setup {
 
 /// Why the motors do not run, as far as anything is known.
 fn judge(client: &Client, readings: &Readings, setup: &Setup) -> Option<Diagnosis> {
-    let status = readings.status?;
+    let status = readings.status.filter(|_| !client.identity.is_motion_mind())?;
     Some(diagnose(&Evidence {
         settings: setup.settings.as_ref(),
         pins: setup.pins.as_deref(),
@@ -186,7 +197,7 @@ fn print(
         return if args.watch { out.json_line(&object) } else { out.json(&object) };
     }
     if args.watch {
-        return out.line(line_of(readings));
+        return out.line(line_of(readings, &client.identity));
     }
     let identity = &client.identity;
     let simulated = if identity.simulated { ", simulated" } else { "" };
@@ -198,6 +209,14 @@ fn print(
         identity.version_text,
         identity.generation
     ))?;
+    if let Some(facts) = identity.motion_mind {
+        out.line(format!(
+            "{}, {} protocol. Over the serial line it takes {}.",
+            capital(&facts.mode.to_string()),
+            facts.protocol,
+            taken(facts.mode)
+        ))?;
+    }
     for note in &identity.notes {
         out.line(format!("Note: {note}"))?;
     }
@@ -231,6 +250,9 @@ fn decimals(channel: Channel) -> usize {
 }
 
 fn lamps(readings: &Readings, client: &Client, setup: &Setup) -> Vec<LampState> {
+    if client.identity.is_motion_mind() {
+        return signs(readings, &client.identity);
+    }
     let homed =
         setup.settings.as_ref().zip(setup.pins.as_deref()).map(|(settings, ends)| homed(settings, ends));
     let state = |lamp: Lamp| match readings.status.map(|status| status.lamp(lamp)) {
@@ -244,6 +266,26 @@ fn lamps(readings: &Readings, client: &Client, setup: &Setup) -> Vec<LampState> 
         .into_iter()
         .map(|lamp| LampState { lamp: lamp.abbreviation(), title: lamp.title(), state: state(lamp) })
         .collect()
+}
+
+/// The signs of a family with a status of its own.
+fn signs(readings: &Readings, identity: &Identity) -> Vec<LampState> {
+    let state = |sign: &Sign| match (readings.status, sign.severity) {
+        (None, _) => "unknown",
+        (Some(status), _) if status.word & sign.mask == 0 => "OK",
+        (_, Severity::Signal) => "active",
+        (_, Severity::Warning) => "warning",
+        (_, Severity::Error) => "ERROR",
+    };
+    let row = |sign: &'static Sign| LampState { lamp: sign.short, title: sign.title, state: state(sign) };
+    identity.signs().iter().map(row).collect()
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters
+        .next()
+        .map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + letters.as_str())
 }
 
 /// A lamp that the status word does not light: a home lamp is lit by the actions of the pins where the word has no bit.
@@ -271,16 +313,19 @@ fn to_json(
         "diagnosis": diagnosis.map(Diagnosis::sentence),
         "findings": diagnosis.map(|diagnosis| &diagnosis.findings),
         "identity": client.identity,
-        "readings": readings.to_json(),
+        "readings": readings.to_json(&client.identity),
         "status_word": readings.status.map(|status| status.word),
         "conditions": readings.status
-            .map(|status| status.conditions.iter().map(Condition::title).collect::<Vec<_>>()),
+            .map(|status| {
+                let conditions = status.conditions.iter().map(Condition::title);
+                conditions.chain(status.lit().map(|sign| sign.title)).collect::<Vec<_>>()
+            }),
         "lamps": lamps,
     })
 }
 
 /// One line of `--watch` and of `drive`.
-pub fn line_of(readings: &Readings) -> String {
+pub fn line_of(readings: &Readings, identity: &Identity) -> String {
     let value = |channel: Channel, width: usize| {
         let digits = decimals(channel);
         readings
@@ -298,6 +343,9 @@ pub fn line_of(readings: &Readings) -> String {
         )
     };
     let first = [Channel::M1Pwm, Channel::M1Velocity, Channel::M1Position, Channel::M1Current];
+    if identity.capabilities().motors == 1 {
+        return format!("{} | {} °C", motor("M1", first), value(Channel::Temperature1, 5));
+    }
     let second = [Channel::M2Pwm, Channel::M2Velocity, Channel::M2Position, Channel::M2Current];
     format!("{} | {} | {} V", motor("M1", first), motor("M2", second), value(Channel::MainBattery, 5))
 }

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use brushwork_link::device::{Event, PollRate, StopReport};
+use brushwork_link::device::{Event, Identity, PollRate, StopReport};
 use serde_json::json;
 
 use super::args::StopArgs;
@@ -24,7 +24,8 @@ pub fn run(args: &StopArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
     match wait_for_report(&client) {
         Err(exit) => exit,
         Ok(report) => {
-            let printed = if args.json { print_json(&report, out) } else { print(&report, out) };
+            let printed =
+                if args.json { print_json(&report, out) } else { print(&report, &client.identity, out) };
             match printed {
                 Err(error) => error.into(),
                 Ok(()) if report.confirmed() => Exit::Done,
@@ -51,11 +52,14 @@ pub fn wait_for_report(client: &Client) -> Result<StopReport, Exit> {
 }
 
 /// Says what is not plainly stopped.
-pub fn warnings(report: &StopReport) -> Vec<String> {
+pub fn warnings(report: &StopReport, identity: &Identity) -> Vec<String> {
     let mut lines = Vec::new();
     for unit in &report.units {
         if !unit.confirmed {
-            lines.push(format!("{:#04x} did not confirm the stop. Cut the motor power.", unit.address));
+            lines.push(format!(
+                "{} did not confirm the stop. Cut the motor power.",
+                place(identity, unit.address)
+            ));
         }
         lines.extend(unit.still_driven_by.iter().cloned());
         lines.extend(unit.failures.iter().map(ToString::to_string));
@@ -63,7 +67,7 @@ pub fn warnings(report: &StopReport) -> Vec<String> {
     lines
 }
 
-fn print(report: &StopReport, out: &mut Output) -> Result<(), OutputError> {
+fn print(report: &StopReport, identity: &Identity, out: &mut Output) -> Result<(), OutputError> {
     for unit in report.units.iter().filter(|unit| unit.confirmed) {
         let buffers = match unit.buffers_empty {
             Some(true) => ", buffers empty",
@@ -71,13 +75,19 @@ fn print(report: &StopReport, out: &mut Output) -> Result<(), OutputError> {
             None => "",
         };
         out.line(format!(
-            "{:#04x}: both motors stopped{buffers} ({:.2} ms to the wire).",
-            unit.address,
+            "{}: {}{buffers} ({:.2} ms to the wire).",
+            place(identity, unit.address),
+            if identity.capabilities().motors == 1 { "motor stopped" } else { "both motors stopped" },
             report.latency().as_secs_f64() * 1e3
         ))?;
     }
-    warnings(report).into_iter().for_each(say);
+    warnings(report, identity).into_iter().for_each(say);
     Ok(())
+}
+
+/// Where a unit is on its bus, as its family says it.
+fn place(identity: &Identity, address: u8) -> String {
+    if identity.address == address { identity.place() } else { format!("{address:#04x}") }
 }
 
 fn print_json(report: &StopReport, out: &mut Output) -> Result<(), OutputError> {

@@ -13,6 +13,8 @@ use brushwork_protocol::canopen::NodeId;
 use brushwork_protocol::canopen::adapter::Form;
 
 pub mod firmware;
+pub mod line;
+pub mod motion_mind_spec;
 pub mod sim_spec;
 pub mod simulation;
 
@@ -69,7 +71,11 @@ pub fn open(
             node.map_or(options, |node| SessionOptions { addresses: Addresses::Only(node.get()), ..options });
         return spawn_on_can(transport, clock, options, form, simulation);
     }
-    let options = SessionOptions { family: family_of(target, options.family), ..options };
+    let named = simulation.as_deref().map_or_else(|| target.family(), Simulation::family);
+    let options = SessionOptions {
+        family: if named == FamilyChoice::Auto { options.family } else { named },
+        ..options
+    };
     let stream = simulation.as_ref().map_or_else(|| stream_of(target), |running| Some(running.stream()));
     spawn(transport, clock, options, stream, simulation)
 }
@@ -126,14 +132,6 @@ fn spawn_on_can(
     let family = Box::new(CanOpen::new(form, monitor));
     let device = DeviceThread::spawn_family(Box::new(transport), clock, options, family);
     Ok(Session { device: device.map_err(SessionError::Thread)?, simulation })
-}
-
-/// What the target says counts for more.
-fn family_of(target: &ConnectTarget, asked: FamilyChoice) -> FamilyChoice {
-    match target.family() {
-        FamilyChoice::Auto => asked,
-        named => named,
-    }
 }
 
 /// The stream of the controller that a port is wired to: as the user said, or as the port's name tells.

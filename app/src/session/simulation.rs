@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use brushwork_link::HiddenSettings;
 use brushwork_link::UnitAddress;
+use brushwork_link::device::FamilyChoice;
 use brushwork_link::script::CHECKSUM_KEY;
 use brushwork_link::transport::{ChannelTransport, Stream};
 use brushwork_protocol::canopen::NodeId;
@@ -18,6 +19,8 @@ use brushwork_sim::presets;
 use brushwork_sim::server::{ChannelEnds, Endpoint, Server, ServerError, ServerOptions, SimHandle};
 use brushwork_sim::world::{WorldAction, WorldView};
 
+use super::line::SimulatedLine;
+use super::motion_mind_spec::MotionMindSpec;
 use super::sim_spec::{SimSpec, SimSpecError, UnitSpec};
 
 /// One or more simulated controllers on one line, and the worlds around them.
@@ -27,7 +30,9 @@ pub struct Simulation {
     stream: Stream,
     can_form: Option<Form>,
     nodes: Vec<NodeId>,
-    server: SimHandle<Bus>,
+    server: SimHandle<SimulatedLine>,
+    /// The family of its units.
+    family: FamilyChoice,
     /// The last look at a script that was asked for.
     script: Arc<Mutex<Option<View>>>,
 }
@@ -43,6 +48,14 @@ pub enum SimulationError {
         /// What is wrong with it.
         #[source]
         source: SimSpecError,
+    },
+    /// The text behind `sim:motion-mind-3`.
+    #[error("Could not start the simulated controller sim:{text}: {why}.")]
+    MotionMindSpec {
+        /// As typed.
+        text: String,
+        /// What is wrong with it.
+        why: String,
     },
     /// Figures of a preset that make no sense.
     #[error("Could not start the simulated controller: {0}.")]
@@ -69,6 +82,9 @@ impl Simulation {
     /// # Errors
     /// The text names something that does not exist, or the system gives no thread.
     pub fn start(text: &str) -> Result<Self, SimulationError> {
+        if MotionMindSpec::is_asked_for(text) {
+            return Self::start_motion_minds(text);
+        }
         let spec =
             SimSpec::parse(text).map_err(|source| SimulationError::Spec { text: text.to_owned(), source })?;
         // Several units can only share a TTL wire; one alone hangs on USB.
@@ -79,7 +95,8 @@ impl Simulation {
         };
         let bus = bus_of(&spec, index)?;
         let options = ServerOptions { stream: index, seed: spec.seed, ..ServerOptions::default() };
-        let server = Server::spawn(bus, options, &Endpoint::Channel).map_err(SimulationError::Server)?;
+        let line = SimulatedLine::Packets(Box::new(bus));
+        let server = Server::spawn(line, options, &Endpoint::Channel).map_err(SimulationError::Server)?;
         let nodes = spec.units.iter().map(|unit| unit.node).collect();
         let addresses = spec.units.iter().map(|unit| unit.address.into()).collect();
         Ok(Self {
@@ -89,8 +106,33 @@ impl Simulation {
             can_form: spec.can,
             nodes,
             server,
+            family: FamilyChoice::PacketSerial,
             script: Arc::default(),
         })
+    }
+
+    fn start_motion_minds(text: &str) -> Result<Self, SimulationError> {
+        let spec = MotionMindSpec::parse(text)
+            .map_err(|why| SimulationError::MotionMindSpec { text: text.to_owned(), why })?;
+        let line = SimulatedLine::MotionMinds(Box::new(spec.bus()?));
+        let options = ServerOptions { seed: spec.seed, ..ServerOptions::default() };
+        let server = Server::spawn(line, options, &Endpoint::Channel).map_err(SimulationError::Server)?;
+        let addresses = spec.addresses.iter().filter_map(|address| UnitAddress::new(address.get())).collect();
+        Ok(Self {
+            text: text.to_owned(),
+            addresses,
+            stream: Stream::Rs232,
+            can_form: None,
+            nodes: Vec::new(),
+            server,
+            family: FamilyChoice::MotionMind,
+            script: Arc::default(),
+        })
+    }
+
+    /// The protocol family of its units.
+    pub fn family(&self) -> FamilyChoice {
+        self.family
     }
 
     /// Whether it runs and is what `text` describes.
@@ -146,7 +188,9 @@ impl Simulation {
     pub fn debug(&self, unit: usize, requests: Vec<Request>, wanted: Wanted) -> Result<(), ServerError> {
         let script = Arc::clone(&self.script);
         self.server.post(move |bus| {
-            let view = bus.controllers_mut().get_mut(unit).map(|unit| unit.debug(requests, &wanted));
+            let controllers = bus.packets_mut().map(Bus::controllers_mut);
+            let view =
+                controllers.and_then(|units| units.get_mut(unit)).map(|unit| unit.debug(requests, &wanted));
             *script.lock().unwrap_or_else(PoisonError::into_inner) = view;
         })
     }
@@ -157,7 +201,7 @@ impl Simulation {
     }
 
     /// The served machine, for those who need its truth.
-    pub fn server(&self) -> &SimHandle<Bus> {
+    pub fn server(&self) -> &SimHandle<SimulatedLine> {
         &self.server
     }
 
@@ -185,11 +229,15 @@ impl HiddenSettings for Simulation {
     fn get(&self, address: UnitAddress, key: &str) -> Option<i64> {
         let unit = self.unit_at(address)?;
         if key == CHECKSUM_KEY {
-            let look = move |bus: &mut Bus| Some(crc16_xmodem(bus.controllers().get(unit)?.script_image()));
+            let look = move |line: &mut SimulatedLine| {
+                Some(crc16_xmodem(line.packets()?.controllers().get(unit)?.script_image()))
+            };
             return self.server.inspect(look).ok().flatten().map(i64::from);
         }
         let key = key.to_owned();
-        let look = move |bus: &mut Bus| bus.controllers().get(unit)?.settings().hidden(&key).ok();
+        let look = move |line: &mut SimulatedLine| {
+            line.packets()?.controllers().get(unit)?.settings().hidden(&key).ok()
+        };
         self.server.inspect(look).ok().flatten()
     }
 
@@ -197,10 +245,13 @@ impl HiddenSettings for Simulation {
         let unit =
             self.unit_at(address).ok_or_else(|| format!("There is no simulated unit at {address}."))?;
         let action = WorldAction::SetHidden { key: key.to_owned(), value };
-        let act = move |bus: &mut Bus| bus.controllers_mut()[unit].apply(&action);
+        let act = move |line: &mut SimulatedLine| {
+            Some(line.packets_mut()?.controllers_mut().get_mut(unit)?.apply(&action))
+        };
         match self.server.inspect(act) {
-            Ok(Ok(())) => Ok(()),
-            Ok(Err(unknown)) => Err(format!("{unknown}.")),
+            Ok(Some(Ok(()))) => Ok(()),
+            Ok(Some(Err(unknown))) => Err(format!("{unknown}.")),
+            Ok(None) => Err("This simulated controller has no settings past the wire.".to_owned()),
             Err(error) => Err(format!("{error}.")),
         }
     }
@@ -306,7 +357,12 @@ mod tests {
         let mut transport = simulation.connect().unwrap();
         let program = brushwork_script::mcl::compile(DRIVER).program.unwrap();
         let image = brushwork_script::image::encode(&program);
-        simulation.server().inspect(move |bus| bus.controllers_mut()[0].install_script(&image)).unwrap();
+        simulation
+            .server()
+            .inspect(move |line| {
+                line.packets_mut().map(|bus| bus.controllers_mut()[0].install_script(&image))
+            })
+            .unwrap();
         // The thousandth round is ten seconds of the controller's time away.
         let breakpoint = Breakpoint { from_hit: 1_000, ..Breakpoint::at(3) };
         seen(&simulation, &[Request::Attach(true), Request::Breakpoints(vec![breakpoint])], |_| true);

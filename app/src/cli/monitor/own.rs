@@ -27,9 +27,9 @@ pub fn run(args: &MonitorArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
                 print(args, &Record { at: Some(at), direction, bytes: traffic.bytes, text }, out)?;
             }
             Some(Event::Connected(identity)) => say(format!(
-                "{} at {:#04x} on {} ({})",
+                "{} at {} on {} ({})",
                 identity.title(),
-                identity.address,
+                identity.place(),
                 identity.port,
                 identity.generation
             )),

@@ -57,9 +57,10 @@ impl<'i> Controller<'i> {
         let version = &client.identity.version_text;
         let Some(model) = models::identify(version) else {
             say(format!(
-                "The unit at {:#04x} on {} calls itself \"{version}\", which is no MCP or RoboClaw: its \
+                "The unit at {} on {} calls itself \"{version}\", which is no MCP, RoboClaw or Motion Mind: its \
                  settings are not known.",
-                client.identity.address, client.identity.port
+                client.identity.place(),
+                client.identity.port
             ));
             return Err(Exit::Refused);
         };

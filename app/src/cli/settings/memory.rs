@@ -57,7 +57,7 @@ pub fn save(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
         out.line(report.sentence())?;
         out.line(wear.sentence())?;
     }
-    if report.verdict != SaveVerdict::Verified {
+    if !matches!(report.verdict, SaveVerdict::Verified | SaveVerdict::Stored) {
         say(report.sentence());
     }
     Ok(exit)
@@ -76,7 +76,7 @@ pub fn save_to_eeprom(
         finished.broken.unwrap_or(Exit::Refused)
     })?;
     let exit = match report.verdict {
-        SaveVerdict::Verified | SaveVerdict::Acknowledged => Exit::Done,
+        SaveVerdict::Verified | SaveVerdict::Stored | SaveVerdict::Acknowledged => Exit::Done,
         SaveVerdict::NotSaved | SaveVerdict::Unknown => Exit::NotTaken,
     };
     Ok((report, finished.broken.unwrap_or(exit)))
@@ -124,13 +124,17 @@ fn tell_defaults(
         }))?;
         return Ok(stated.len());
     }
+    let place = if table.is_motion_mind() { "RAM and EEPROM" } else { "RAM" };
     if stated.is_empty() {
-        out.line("The factory defaults are restored in RAM; every setting was read back.")?;
+        out.line(format!("The factory defaults are restored in {place}; every setting was read back."))?;
     }
     tell_others("These are not at the factory default that the manual states:", &stated);
     tell_others("These came back other than assumed; the controller knows its defaults better:", &assumed);
     if report.address != controller.address() {
         out.line(format!("The controller answers at {} now.", report.address))?;
+    }
+    if table.is_motion_mind() {
+        return Ok(stated.len());
     }
     out.line("A power cycle brings the saved settings back unless the defaults are saved (`brushwork settings save`).")?;
     Ok(stated.len())

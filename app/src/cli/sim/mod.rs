@@ -23,7 +23,7 @@ use super::exit::Exit;
 use super::interrupt::Interrupt;
 use super::output::{Output, OutputError, say};
 use crate::session::sim_spec::SimOptions;
-use crate::session::{SimSpec, simulation};
+use crate::session::{SimSpec, motion_mind_spec, simulation};
 
 /// Time between two looks at the server, and between two writes of the truth.
 const WATCH_INTERVAL: Duration = Duration::from_millis(100);
@@ -51,7 +51,7 @@ fn usage(sentence: String) -> Exit {
 /// Controllers of the MCP family, and what they are in one line.
 fn mcp_bus(args: &SimArgs) -> Result<(Bus, String), Exit> {
     if args.mode.is_some() {
-        return Err(usage(format!("--mode is for --model {}.", motion_mind::MODEL)));
+        return Err(usage(format!("--mode is for --model {}.", motion_mind_spec::MODEL)));
     }
     let options = SimOptions {
         models: args.model.iter().map(String::as_str).collect(),
@@ -171,7 +171,9 @@ fn list(out: &mut Output) -> Result<(), OutputError> {
         .iter()
         .map(|model| vec![model.key.to_owned(), model.rating().to_owned(), model.assumed.to_owned()])
         .collect();
-    models.push([motion_mind::MODEL, motion_mind::RATING, motion_mind::ASSUMED].map(str::to_owned).to_vec());
+    models.push(
+        [motion_mind_spec::MODEL, motion_mind::RATING, motion_mind::ASSUMED].map(str::to_owned).to_vec(),
+    );
     out.table(&["MODEL", "RATING", "ASSUMED"], &models)?;
     out.line("")?;
     let rows: Vec<Vec<String>> =

@@ -1,13 +1,11 @@
 //! `brushwork sim --model motion-mind-3`: simulated units of the second family.
 
-use brushwork_protocol::motion_mind::Address;
-use brushwork_sim::motion_mind::{Mode, MotionMind, MotionMindBus, MotionMindConfig, Protocol, pin};
-use brushwork_sim::presets;
+use brushwork_protocol::motion_mind::{Address, Mode, Protocol};
+use brushwork_sim::motion_mind::MotionMindBus;
 
 use super::super::args::{ProtocolArg, SimArgs};
+use crate::session::motion_mind_spec::{MODEL, MotionMindSpec, preset};
 
-/// The name of the model in `--model`.
-pub const MODEL: &str = "motion-mind-3";
 /// What `--list` says about it.
 pub const RATING: &str = "1 motor, 6-24 V, 9 A, 25 A peak";
 /// What `--list` says is guessed.
@@ -25,19 +23,37 @@ pub fn is_asked_for(args: &SimArgs) -> bool {
 /// A sentence about what does not fit together.
 pub fn bus_of(args: &SimArgs) -> Result<(MotionMindBus, String), String> {
     check_options(args)?;
-    let mode = Mode::from_number(args.mode.unwrap_or(Mode::SerialPid.number()))
-        .ok_or_else(|| "The modes of a Motion Mind 3 are 0 to 7.".to_owned())?;
-    let addresses = if args.address.is_empty() { vec![Address::FACTORY.get()] } else { args.address.clone() };
-    let units = addresses.iter().map(|number| unit(args, mode, *number)).collect::<Result<Vec<_>, _>>()?;
-    let numbers: Vec<_> = addresses.iter().map(u8::to_string).collect();
-    let protocol = match protocol(args) {
-        Protocol::Binary => "binary",
-        Protocol::Text => "ASCII",
-    };
+    let spec = spec_of(args)?;
+    let numbers: Vec<_> = spec.addresses.iter().map(|address| address.get().to_string()).collect();
     let who = if numbers.len() == 1 { "unit" } else { "units" };
-    let line =
-        format!("simulated Motion Mind 3, mode {}, {protocol}, {who} {}", mode.number(), numbers.join(", "));
-    Ok((MotionMindBus::new(units), line))
+    let (mode, protocol) = (spec.mode.number(), spec.protocol);
+    let line = format!("simulated Motion Mind 3, mode {mode}, {protocol}, {who} {}", numbers.join(", "));
+    let bus = spec.bus().map_err(|error| format!("Could not start the simulated controller: {error}."))?;
+    Ok((bus, line))
+}
+
+fn spec_of(args: &SimArgs) -> Result<MotionMindSpec, String> {
+    let mode = args.mode.map_or(Some(Mode::SerialPid), Mode::from_number);
+    let numbers = if args.address.is_empty() { vec![Address::FACTORY.get()] } else { args.address.clone() };
+    let mut addresses = Vec::new();
+    for number in numbers {
+        let address =
+            Address::unit(number).filter(|address| address.get() > 0 && !addresses.contains(address));
+        addresses.push(address.ok_or_else(|| {
+            format!("Could not use the address {number}: each Motion Mind 3 has an address from 1 to 98 of its own.")
+        })?);
+    }
+    let preset = args.preset.first().map(|name| preset(name).map_err(|clause| format!("{clause}.")));
+    Ok(MotionMindSpec {
+        addresses,
+        mode: mode.ok_or_else(|| "The modes of a Motion Mind 3 are 0 to 7.".to_owned())?,
+        protocol: match args.protocol {
+            ProtocolArg::Binary => Protocol::Binary,
+            ProtocolArg::Ascii => Protocol::Text,
+        },
+        preset: preset.transpose()?,
+        seed: args.seed,
+    })
 }
 
 fn check_options(args: &SimArgs) -> Result<(), String> {
@@ -54,27 +70,4 @@ fn check_options(args: &SimArgs) -> Result<(), String> {
         );
     }
     Ok(())
-}
-
-fn unit(args: &SimArgs, mode: Mode, number: u8) -> Result<MotionMind, String> {
-    let address = Address::unit(number).map_or_else(
-        || Err(format!("Could not use the address {number}: a Motion Mind 3 has an address from 1 to 98.")),
-        Ok,
-    )?;
-    let mut config = MotionMindConfig { address, protocol: protocol(args), ..MotionMindConfig::new(mode) };
-    config.seed = if args.seed == 0 { 0 } else { args.seed.wrapping_add(u64::from(number)).max(1) };
-    if let Some(key) = args.preset.first() {
-        let preset = presets::lookup(key).ok_or_else(|| {
-            format!("There is no preset \"{key}\". There are: {}.", presets::keys().join(", "))
-        })?;
-        config.world = presets::world_of(preset, preset, pin::COUNT);
-    }
-    MotionMind::new(config).map_err(|error| format!("Could not start the simulated controller: {error}."))
-}
-
-fn protocol(args: &SimArgs) -> Protocol {
-    match args.protocol {
-        ProtocolArg::Binary => Protocol::Binary,
-        ProtocolArg::Ascii => Protocol::Text,
-    }
 }

@@ -147,6 +147,7 @@ impl LinkView {
             Event::LoaderEntered => Vec::new(),
             Event::Closed => vec![Effect::Say(Gravity::Note, "Disconnected.".to_owned()), Effect::Ended],
             Event::Driven { .. }
+            | Event::RawReply { .. }
             | Event::Transacted { .. }
             | Event::JobStarted { .. }
             | Event::JobProgress { .. }

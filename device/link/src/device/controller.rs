@@ -116,6 +116,17 @@ pub trait Controller: Send {
         values: Vec<Value>,
     ) -> Result<Reply, ExchangeError>;
 
+    /// Sends bytes as a person typed them, one command at a time, and gives what came back, whatever it was.
+    fn raw(&mut self, _line: &mut Line<'_>, _bytes: &[u8]) -> Result<Vec<u8>, ExchangeError> {
+        let what = "bytes are not taken as they are here; put the command together by its number".to_owned();
+        Err(ExchangeError::Impossible { what })
+    }
+
+    /// Whether typed bytes can undo what [`Controller::check_arming`] found.
+    fn raw_undermines_arming(&self, _bytes: &[u8]) -> bool {
+        false
+    }
+
     /// Speaks to another address from now on, since the unit has just been given it. `false` if the family has no such
     /// address.
     fn set_address(&mut self, address: u8) -> bool;

@@ -77,6 +77,13 @@ pub enum Event {
         /// The values, or why there are none.
         result: Result<Values, Failure>,
     },
+    /// The answer to [`Request::Raw`](super::Request::Raw): what came back, nothing where the unit is silent, or why it was not sent.
+    RawReply {
+        /// The request's.
+        id: u64,
+        /// The bytes.
+        result: Result<Vec<u8>, Failure>,
+    },
     /// The unit is in its firmware loader, or on its way there. The link ends with this.
     LoaderEntered,
     /// A job began.

@@ -88,7 +88,9 @@ impl Family for AnyFamily {
             (FamilyChoice::MotionMind, _) => false,
             // No number is an address of both families.
             (FamilyChoice::Auto, Addresses::Only(number)) => Address::new(number).is_some() || number > 98,
-            (FamilyChoice::Auto, Addresses::Scan) => return self.find_out(line, options),
+            (FamilyChoice::Auto, Addresses::Scan | Addresses::Factory) => {
+                return self.find_out(line, options);
+            }
         };
         self.found = Some(if packets { Found::Packets } else { Found::MotionMinds });
         if packets {

@@ -24,6 +24,7 @@ pub(super) trait JobHost {
     fn port(&self) -> String;
     fn set_address(&mut self, address: UnitAddress) -> bool;
     fn hidden_settings(&self) -> Option<&dyn HiddenSettings>;
+    fn byte_time(&self) -> Option<Duration>;
 }
 
 /// The device thread, as a job sees it. Use it as a [`Wire`].
@@ -57,6 +58,12 @@ impl<'a> JobContext<'a> {
     /// should end.
     pub fn drive(&mut self, drive: &Drive) -> Result<(), ExchangeError> {
         self.host.drive(drive)
+    }
+
+    /// How long a byte takes on the wire, where that is known.
+    #[must_use]
+    pub fn byte_time(&self) -> Option<Duration> {
+        self.host.byte_time()
     }
 
     /// Shows the window a reading that the job made itself.

@@ -14,6 +14,8 @@ pub enum Addresses {
     Scan,
     /// This one alone.
     Only(u8),
+    /// The factory address alone: 0x80, or 1 of a Motion Mind.
+    Factory,
 }
 
 /// What the device thread is told when it starts.

@@ -76,6 +76,13 @@ pub enum Request {
         /// Raw values in wire order.
         values: Vec<Value>,
     },
+    /// Sends bytes as they were typed, one command of the unit's protocol. Answered by [`Event::RawReply`](super::Event::RawReply).
+    Raw {
+        /// Comes back with the answer.
+        id: u64,
+        /// The bytes, line end or checksum included.
+        bytes: Vec<u8>,
+    },
     /// Runs long work. Answered by [`Event::JobStarted`](super::Event::JobStarted) and what follows it.
     Job(Box<dyn Job>),
     /// Ends the running job at its next exchange. Overtakes what is queued.

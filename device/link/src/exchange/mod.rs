@@ -259,6 +259,12 @@ impl Exchange {
         &self.clock
     }
 
+    /// How long a byte takes on the wire, where that is known.
+    #[must_use]
+    pub fn byte_time(&self) -> Option<Duration> {
+        self.transport.byte_time()
+    }
+
     /// The port as a person would name it.
     #[must_use]
     pub fn port(&self) -> String {

@@ -6,12 +6,14 @@
 
 use std::time::Duration;
 
+use brushwork_protocol::models::Family;
 use brushwork_protocol::packet_serial::number;
 use serde::Serialize;
 
 use super::image::{Difference, SettingsImage, diff};
+use super::motion_mind;
 use super::plan::WriteOptions;
-use super::read::{ReadReport, is_final, read_all, went_out};
+use super::read::{ReadReport, is_final, is_there, read_all, went_out};
 use super::table::{SettingsTable, Subject};
 use super::write::{WriteReport, write};
 use crate::exchange::ExchangeError;
@@ -36,6 +38,8 @@ pub enum SaveVerdict {
     Verified,
     /// The controller acknowledged the save, and did not answer when asked to load it back.
     Acknowledged,
+    /// The controller acknowledged each setting as stored; it has no way to read its EEPROM back.
+    Stored,
     /// EEPROM holds something else.
     NotSaved,
     /// The controller did not acknowledge, or was not there afterwards.
@@ -68,6 +72,9 @@ impl SaveReport {
             (SaveVerdict::Acknowledged, _) => "The controller acknowledged the save. It did not answer \
                                                when asked to load its EEPROM, so the save is not proven; \
                                                that happens after good saves too."
+                .to_owned(),
+            (SaveVerdict::Stored, _) => "The settings are saved: the controller acknowledged each register as stored. Its EEPROM cannot \
+                                         be read back while it works."
                 .to_owned(),
             (SaveVerdict::NotSaved, _) => {
                 let settings = if count == 1 { "1 setting".to_owned() } else { format!("{count} settings") };
@@ -113,7 +120,11 @@ pub(super) fn save_eeprom_of(
     options: WriteOptions,
 ) -> Result<SaveReport, Failure> {
     wire.set_quiet(true);
-    let report = save_and_compare(wire, before, options);
+    let report = if before.table.is_motion_mind() {
+        motion_mind::save(wire, before)
+    } else {
+        save_and_compare(wire, before, options)
+    };
     wire.set_quiet(false);
     report
 }
@@ -180,7 +191,7 @@ fn put_back(
     write(wire, &before.table, &wanted.collect(), options).ok()
 }
 
-fn unknown(failure: Failure) -> SaveReport {
+pub(super) fn unknown(failure: Failure) -> SaveReport {
     SaveReport {
         verdict: SaveVerdict::Unknown,
         differences: Vec::new(),
@@ -190,10 +201,11 @@ fn unknown(failure: Failure) -> SaveReport {
     }
 }
 
-/// Loads EEPROM into RAM and reads every setting. What was in RAM and not saved is lost.
+/// Loads EEPROM into RAM and reads every setting. What was in RAM and not saved is lost. A Motion Mind starts anew for it, which stops
+/// its motor and forgets its position unless POSPWRUP is set.
 pub fn reload(wire: &mut dyn Wire, table: &SettingsTable) -> Result<ReadReport, Failure> {
     wire.set_quiet(true);
-    let done = reload_with_patience(wire);
+    let done = if table.is_motion_mind() { restart(wire) } else { reload_with_patience(wire) };
     wire.set_quiet(false);
     if done? {
         read_all(wire, *table.subject())
@@ -205,6 +217,12 @@ pub fn reload(wire: &mut dyn Wire, table: &SettingsTable) -> Result<ReadReport, 
             "Read the settings to see what the controller works with",
         ))
     }
+}
+
+/// Starts a Motion Mind anew and waits until it answers.
+fn restart(wire: &mut dyn Wire) -> Result<bool, Failure> {
+    motion_mind::reset(wire)?;
+    await_unit(wire, "load the settings from EEPROM (RESET)").map(|()| true)
 }
 
 /// What became of restoring defaults.
@@ -220,10 +238,14 @@ pub struct DefaultsReport {
 
 /// Restores the factory settings and reads them. The unit may come back at the factory address.
 ///
-/// Assumed: command 80 changes RAM alone, and a save makes it last; the manual does not say.
+/// Assumed: command 80 changes RAM alone, and a save makes it last; the manual does not say. RESTORE of a Motion Mind changes RAM and
+/// EEPROM.
 pub fn restore_defaults(wire: &mut dyn Wire, subject: Subject) -> Result<DefaultsReport, Failure> {
     wire.set_quiet(true);
-    let done = restore(wire);
+    let done = match subject.model.family {
+        Family::MotionMind => motion_mind::restore(wire),
+        Family::Mcp | Family::RoboClaw => restore(wire),
+    };
     wire.set_quiet(false);
     done?;
     let read = read_all(wire, subject)?;
@@ -296,7 +318,7 @@ fn await_unit(wire: &mut dyn Wire, tried: &str) -> Result<(), Failure> {
 
 /// Whether the unit answers. An error only when nothing further can be asked.
 fn answers(wire: &mut dyn Wire) -> Result<bool, ExchangeError> {
-    match wire.transact(number::READ_VERSION, &[]) {
+    match is_there(wire) {
         Ok(_) => Ok(true),
         Err(error) if is_final(&error) => Err(error),
         Err(_) => Ok(false),

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use brushwork_protocol::models::Family;
+use brushwork_protocol::motion_mind::numbers;
 use brushwork_protocol::packet_serial::{Values, lookup, number};
 use serde::Serialize;
 
@@ -11,6 +12,7 @@ use super::row::{Carrier, Place, Row, Source};
 use super::table::{SettingsTable, Subject};
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
+use crate::unit::FirmwareGeneration;
 use crate::wire::Wire;
 
 /// After this many commands in a row without any answer, and none answered before, the controller counts as
@@ -96,6 +98,19 @@ pub(super) fn is_final(error: &ExchangeError) -> bool {
     error.is_link_lost() || error.interruption().is_some()
 }
 
+/// Asks the unit for something that every unit of its family tells, to see whether it answers.
+pub(super) fn is_there(wire: &mut dyn Wire) -> Result<Values, ExchangeError> {
+    match wire.generation() {
+        FirmwareGeneration::PacketSerial(_) => wire.transact(number::READ_VERSION, &[]),
+        FirmwareGeneration::MotionMind { .. } => {
+            wire.transact(numbers::READ_REGISTER, &[i64::from(REVISION)])
+        }
+    }
+}
+
+/// The register that holds the revision of a Motion Mind's firmware.
+const REVISION: u8 = 17;
+
 /// Whether a command that failed may have reached the unit. An interruption may come after it went out, so it
 /// counts.
 pub(super) fn went_out(error: &ExchangeError) -> bool {
@@ -140,7 +155,11 @@ impl<'w> Reader<'w> {
     fn read_commands(&mut self, commands: &[u8]) -> Result<(), ExchangeError> {
         for (index, command) in commands.iter().enumerate() {
             if !self.replies.contains_key(command) {
-                self.wire.report_progress(index, commands.len(), title(*command));
+                let title = match self.wire.generation() {
+                    FirmwareGeneration::PacketSerial(_) => title(*command),
+                    FirmwareGeneration::MotionMind { .. } => "read the registers",
+                };
+                self.wire.report_progress(index, commands.len(), title);
                 self.read_command(*command)?;
             }
         }
@@ -216,7 +235,7 @@ struct Failures {
 
 impl Failures {
     fn no_reply(&mut self, command: u8, row: &Row, error: &ExchangeError) {
-        let failure = || error.failure(format!("{} ({command})", title(command)), &self.on);
+        let failure = || error.failure(titled(command, row), &self.on);
         let failure = if self.knows(command) { None } else { Some(failure()) };
         self.add(command, row, failure);
     }
@@ -224,7 +243,7 @@ impl Failures {
     fn incomplete(&mut self, command: u8, row: &Row) {
         let failure = (!self.knows(command)).then(|| {
             Failure::new(
-                format!("{} ({command})", title(command)),
+                titled(command, row),
                 &self.on,
                 "the reply does not hold everything that this generation returns",
                 "Check which firmware the controller has",
@@ -254,6 +273,14 @@ fn raw_of(values: &Values, place: Place, record: Option<usize>) -> Option<i64> {
         None => values.try_int(place.field)?,
     };
     Some(place.bits.map_or(word, |bits| bits.extract(word)))
+}
+
+/// A command for sentences, with its number.
+fn titled(command: u8, row: &Row) -> String {
+    match row.register() {
+        Some(_) => "read the registers".to_owned(),
+        None => format!("{} ({command})", title(command)),
+    }
 }
 
 /// What a command does, for progress and sentences: "read M1 velocity PID".

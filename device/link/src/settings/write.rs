@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use super::image::{SettingsImage, changes};
 use super::plan::{Plan, Refusal, Stage, Step, WriteOptions, plan, rows_involved};
-use super::read::{ReadFailure, is_final, read_rows, went_out};
+use super::read::{ReadFailure, is_final, is_there, read_rows, went_out};
 use super::row::Row;
 use super::table::SettingsTable;
 use super::value::SettingValue;
@@ -16,7 +16,6 @@ use crate::exchange::ExchangeError;
 use crate::failure::Failure;
 use crate::unit::UnitAddress;
 use crate::wire::Wire;
-use brushwork_protocol::packet_serial::number;
 
 /// Why nothing was written.
 #[derive(Clone, Debug, Error)]
@@ -278,7 +277,7 @@ impl Writer<'_> {
 
     fn still_answers(&mut self) -> bool {
         self.transactions += 1;
-        self.wire.transact(number::READ_VERSION, &[]).is_ok()
+        is_there(self.wire).is_ok()
     }
 
     fn report(mut self, plan: Plan) -> WriteReport {
@@ -366,7 +365,8 @@ impl Writer<'_> {
     /// to neither.
     fn follow(&mut self, step: &Step, warnings: &mut Vec<String>) -> bool {
         let old = self.wire.address();
-        let argument = step.arguments.iter().find(|(name, _)| *name == "address").map(|(_, value)| *value);
+        let is_address = |name: &str| name == "address" || name == "ADDRESS";
+        let argument = step.arguments.iter().find(|(name, _)| is_address(name)).map(|(_, value)| *value);
         let Some(new) = argument.and_then(|byte| u8::try_from(byte).ok()).and_then(UnitAddress::new) else {
             return true;
         };

@@ -15,6 +15,7 @@ mod frame_reader;
 mod line;
 mod line_reader;
 mod parts;
+mod reference;
 mod register;
 mod reply;
 mod switches;
@@ -28,6 +29,9 @@ pub use frame_reader::{BYTE_GAP, FrameEvent, FrameReader};
 pub use line::{encode_line, encode_line_reply, parse_line_reply};
 pub use line_reader::{LineEvent, LineReader};
 pub use parts::{COMMANDS, CommandRow, command_row, fields, numbers};
+pub use reference::{
+    BitEntry, CommandEntry, Reference, RegisterEntry, reference, reference_entry, reference_page,
+};
 pub use register::{Access, Kind, REGISTERS, Register, register, register_named};
 pub use reply::{BadReply, Progress, Reply, Returned, Returns};
 pub use switches::{Mode, Protocol};

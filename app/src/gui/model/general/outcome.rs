@@ -100,7 +100,7 @@ fn not_written(error: WriteError) -> Summary {
 
 fn saved(unit: &mut UnitSettings, report: &SaveReport) -> Summary {
     let gravity = match report.verdict {
-        SaveVerdict::Verified => Gravity::Note,
+        SaveVerdict::Verified | SaveVerdict::Stored => Gravity::Note,
         SaveVerdict::Acknowledged => Gravity::Warning,
         SaveVerdict::NotSaved | SaveVerdict::Unknown => Gravity::Error,
     };

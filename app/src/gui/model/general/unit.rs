@@ -333,7 +333,7 @@ impl UnitSettings {
             None => self.copies.forget_eeprom(),
         }
         match report.verdict {
-            SaveVerdict::Verified => {
+            SaveVerdict::Verified | SaveVerdict::Stored => {
                 if let Some(eeprom) = &report.eeprom {
                     self.copies.note_ram(eeprom.clone());
                 }

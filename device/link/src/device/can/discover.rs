@@ -44,7 +44,7 @@ impl CanOpen {
     fn nodes(&self, line: &mut Line<'_>, addresses: Addresses) -> Result<Vec<NodeId>, ExchangeError> {
         match addresses {
             Addresses::Only(id) => Ok(NodeId::new(id).into_iter().collect()),
-            Addresses::Scan => {
+            Addresses::Scan | Addresses::Factory => {
                 let mut found = self.ask_all(line)?;
                 found.extend(self.monitor.nodes());
                 Ok(found.into_iter().collect())
@@ -150,7 +150,7 @@ fn identity_notes(line: &mut Line<'_>, place: Place) -> Result<Vec<String>, Exch
 fn nothing_there(line: &mut Line<'_>, addresses: Addresses, others: &[String], heard: u64) -> Failure {
     let on = line.exchange().port();
     let asked = match addresses {
-        Addresses::Scan => "no node of the bus answered".to_owned(),
+        Addresses::Scan | Addresses::Factory => "no node of the bus answered".to_owned(),
         Addresses::Only(id) => format!("node {id} did not answer"),
     };
     let (came_back, mend) = match (others, heard) {

@@ -72,6 +72,7 @@ fn scan(line: &mut Line<'_>, addresses: Addresses) -> Result<Vec<(Address, Strin
     let (candidates, patience) = match addresses {
         Addresses::Scan => (Address::ALL.to_vec(), &SCAN_PATIENCE[..]),
         Addresses::Only(byte) => (Address::new(byte).into_iter().collect(), &PATIENCE[..]),
+        Addresses::Factory => (vec![Address::DEFAULT], &PATIENCE[..]),
     };
     let mut answers = Vec::new();
     for (round, patience) in patience.iter().enumerate() {
@@ -230,6 +231,7 @@ fn nothing_there(line: &mut Line<'_>, addresses: Addresses, heard: u64) -> Failu
     let asked = match addresses {
         Addresses::Scan => "addresses 0x80 to 0x87".to_owned(),
         Addresses::Only(address) => format!("address 0x{address:02X}"),
+        Addresses::Factory => format!("address {}", Address::DEFAULT),
     };
     let came_back = match heard {
         0 => format!("nothing answered at {asked}"),

@@ -57,6 +57,7 @@ impl Family for MotionMinds {
                 Some(address) => patiently(line, address)?.into_iter().collect(),
                 None => Vec::new(),
             },
+            Addresses::Factory => patiently(line, Address::FACTORY)?.into_iter().collect(),
             Addresses::Scan => scan(line)?,
         };
         if found.is_empty() {
@@ -172,6 +173,7 @@ fn nothing_there(line: &mut Line<'_>, addresses: Addresses, heard_before: u64) -
     let asked = match addresses {
         Addresses::Scan => "addresses 1 to 98".to_owned(),
         Addresses::Only(address) => format!("address {address}"),
+        Addresses::Factory => format!("address {}", Address::FACTORY.get()),
     };
     let (came_back, mend) = match heard {
         0 => (

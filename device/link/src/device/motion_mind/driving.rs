@@ -47,6 +47,7 @@ pub fn command(mode: Mode, drive: &Drive) -> Result<Command, ExchangeError> {
 }
 
 /// What serial commands can do in a mode.
+#[must_use]
 pub fn taken(mode: Mode) -> &'static str {
     match mode {
         Mode::Serial => "duties and nothing else",

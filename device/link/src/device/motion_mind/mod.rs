@@ -11,6 +11,7 @@ mod arming;
 mod discover;
 mod driving;
 mod polling;
+mod raw;
 mod signs;
 mod speaker;
 mod stopping;
@@ -19,7 +20,7 @@ mod tests;
 mod traffic;
 
 pub use discover::MotionMinds;
-pub use driving::{COUNTS_PER_S_PER_STEP, preview};
+pub use driving::{COUNTS_PER_S_PER_STEP, preview, taken};
 pub use signs::SIGNS;
 pub use traffic::{describe_received, describe_sent};
 
@@ -189,6 +190,24 @@ impl Controller for MotionMind {
         let (reply, span) = self.speaker.ask(line, &command)?;
         self.note(&command);
         Ok(Answer { values: values_of(&command, &reply), span })
+    }
+
+    fn raw(&mut self, line: &mut Line<'_>, bytes: &[u8]) -> Result<Vec<u8>, ExchangeError> {
+        let typed = raw::look(bytes, self.speaker.protocol)?;
+        let heard = raw::send(self.speaker, line, bytes, &typed)?;
+        if let raw::Typed::Command(address, command) = typed
+            && (address == self.speaker.address || address.is_broadcast())
+        {
+            self.note(&command);
+        }
+        Ok(heard)
+    }
+
+    fn raw_undermines_arming(&self, bytes: &[u8]) -> bool {
+        match raw::look(bytes, self.speaker.protocol) {
+            Ok(raw::Typed::Command(_, command)) => command.effect() == Effect::Stopping,
+            _ => false,
+        }
     }
 
     fn set_address(&mut self, address: u8) -> bool {

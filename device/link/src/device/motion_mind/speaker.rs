@@ -1,5 +1,6 @@
 //! One command to one unit and its reply, in the unit's protocol, with the pause that both ends need.
 
+use super::raw::all_returns;
 use super::{number, returns_of};
 use crate::device::controller::Line;
 use crate::exchange::{ExchangeError, Fault, Judgement, Outgoing, Span};
@@ -171,7 +172,7 @@ impl Speaker {
         }
     }
 
-    fn work(&self, command: &Command) -> Duration {
+    pub fn work(&self, command: &Command) -> Duration {
         match command {
             Command::WriteStore { .. } => STORE_WORK,
             Command::Restore => RESTORE_WORK,
@@ -201,14 +202,6 @@ fn title(command: &Command) -> &'static str {
 
 fn width(index: u8) -> usize {
     register(index).map_or(0, |row| row.kind.bytes())
-}
-
-fn all_returns() -> [Returns; 8] {
-    std::array::from_fn(|bits| Returns {
-        position: bits & 1 != 0,
-        velocity: bits & 2 != 0,
-        time: bits & 4 != 0,
-    })
 }
 
 fn cannot(source: &EncodeError) -> ExchangeError {

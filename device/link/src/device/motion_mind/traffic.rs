@@ -1,5 +1,6 @@
 //! What bytes on the wire mean, for the traffic view and the terminal.
 
+use super::raw::all_returns;
 use crate::device::controller::Described;
 use brushwork_protocol::motion_mind::{
     Address, Command, FrameEvent, FrameReader, LineEvent, LineReader, Part, Progress, Protocol, Returns,
@@ -28,11 +29,7 @@ pub fn describe_received(sent: &[u8], reply: &[u8], protocol: Protocol) -> Descr
         Protocol::Binary => parse_frame_reply(address, &command, returns, reply),
         Protocol::Text => parse_line_reply(&command, returns, reply),
     };
-    let known = [false, true].into_iter().flat_map(|position| {
-        [false, true].into_iter().flat_map(move |velocity| {
-            [false, true].into_iter().map(move |time| Returns { position, velocity, time })
-        })
-    });
+    let known = all_returns().into_iter();
     let mut whole = known.map(parse).filter_map(|progress| match progress {
         Progress::Done { reply: said, used } if used == reply.len() => Some(said),
         _ => None,

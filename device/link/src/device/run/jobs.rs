@@ -267,6 +267,10 @@ impl JobHost for Host<'_> {
         self.core.readdress(address.get())
     }
 
+    fn byte_time(&self) -> Option<Duration> {
+        self.core.exchange.byte_time()
+    }
+
     fn hidden_settings(&self) -> Option<&dyn HiddenSettings> {
         self.core.options.hidden.as_deref()
     }

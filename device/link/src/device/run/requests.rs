@@ -67,6 +67,7 @@ impl DeviceLoop {
             Request::Transact { id, command, values } => {
                 self.transact(id, command, values, asked_at, overtaken);
             }
+            Request::Raw { id, bytes } => self.raw(id, &bytes, asked_at, overtaken),
             Request::Job(job) => self.run_job(job, asked_at, overtaken, envelope.cancels),
             // The handle turns these into signals, which are seen before any request.
             Request::Disarm => self.signals.disarm(),
@@ -258,10 +259,36 @@ impl DeviceLoop {
         }
     }
 
+    fn raw(&mut self, id: u64, bytes: &[u8], asked_at: Duration, overtaken: bool) {
+        let tried = "send what was typed";
+        let on = self.name_of(self.selected);
+        if overtaken {
+            let failure =
+                Failure::new(tried, on, "Stop was pressed after it", "Send it again when you are ready");
+            return self.outbox.send(Event::RawReply { id, result: Err(failure) });
+        }
+        let undermines = self.units[self.selected].controller.raw_undermines_arming(bytes);
+        let reply =
+            self.stop_if(undermines).and_then(|()| self.act(asked_at, |unit, line| unit.raw(line, bytes)));
+        match reply {
+            Ok(bytes) => self.outbox.send(Event::RawReply { id, result: Ok(bytes) }),
+            Err(error) => {
+                self.outbox.send(Event::RawReply { id, result: Err(error.failure(tried, on)) });
+                if error.is_link_lost() {
+                    self.lose(&error);
+                }
+            }
+        }
+    }
+
     /// Disarms before a raw command of a window or a job that may change what arming was based on. Motors are stopped before it
     /// and not after it, since the unit may listen to another address or have no time-out by then.
     pub(super) fn stop_before(&mut self, command: u8) -> Result<(), ExchangeError> {
         let undermines = self.units[self.selected].controller.undermines_arming(command);
+        self.stop_if(undermines)
+    }
+
+    fn stop_if(&mut self, undermines: bool) -> Result<(), ExchangeError> {
         if self.armed.is_none() || !undermines || self.halt_and_confirm(DisarmReason::SettingsChanged) {
             return Ok(());
         }

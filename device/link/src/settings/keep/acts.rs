@@ -271,7 +271,7 @@ fn is_conclusive(report: &WriteReport) -> bool {
 
 fn save_ending(report: &SaveReport) -> Ending {
     match (report.verdict, &report.eeprom) {
-        (SaveVerdict::Verified, Some(eeprom)) => Ending::EepromKnown(eeprom.clone()),
+        (SaveVerdict::Verified | SaveVerdict::Stored, Some(eeprom)) => Ending::EepromKnown(eeprom.clone()),
         (SaveVerdict::NotSaved, Some(eeprom)) => match &report.put_back {
             Some(put_back) if is_conclusive(put_back) => Ending::EepromKnown(eeprom.clone()),
             _ => Ending::Open,

@@ -1,0 +1,166 @@
+//! `brushwork terminal`: commands of a Motion Mind as they are typed, with what comes back and what it means.
+//!
+//! A unit in text takes lines; one in binary takes frames in hexadecimal, whose checksum is added. Nothing that moves the motor
+//! goes out: that takes arming, which a terminal does not do.
+
+use std::io::BufRead as _;
+use std::time::{Duration, Instant};
+
+use brushwork_link::device::motion_mind::{describe_received, describe_sent};
+use brushwork_link::device::{Event, MotionMindFacts, PollRate, Request};
+use brushwork_protocol::motion_mind::{Protocol, checksum};
+use brushwork_protocol::packet_serial::hex;
+use serde_json::json;
+
+use super::args::TerminalArgs;
+use super::client::{Client, ask};
+use super::exit::Exit;
+use super::interrupt::Interrupt;
+use super::output::{Output, say};
+
+/// How long a reply may take.
+const REPLY_LIMIT: Duration = Duration::from_secs(10);
+
+/// Sends each command that is given, or each line of standard input.
+pub fn run(args: &TerminalArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
+    talk(args, out, interrupt)
+        .map_or_else(|exit| exit, |failed| if failed { Exit::Refused } else { Exit::Done })
+}
+
+/// Whether one of them was not sent.
+fn talk(args: &TerminalArgs, out: &mut Output, interrupt: &Interrupt) -> Result<bool, Exit> {
+    let client = Client::connect(&args.connect, PollRate::Off, interrupt)?;
+    let Some(facts) = client.identity.motion_mind else {
+        say(format!(
+            "{} is no Motion Mind; its commands are put together in the window's Traffic screen.",
+            client.identity.title()
+        ));
+        return Err(Exit::Refused);
+    };
+    say(format!(
+        "{} {} on {}: {}, {}.",
+        client.identity.title(),
+        client.identity.place(),
+        client.identity.port,
+        facts.mode,
+        facts.protocol
+    ));
+    let mut failed = false;
+    let mut number = 0;
+    if args.commands.is_empty() {
+        for line in std::io::stdin().lock().lines().map_while(Result::ok) {
+            number += 1;
+            failed |= !exchange(&line, number, facts, args, &client, out, interrupt)?;
+        }
+    }
+    for line in &args.commands {
+        number += 1;
+        failed |= !exchange(line, number, facts, args, &client, out, interrupt)?;
+    }
+    Ok(failed)
+}
+
+/// Sends one command; whether it went out.
+fn exchange(
+    line: &str,
+    id: u64,
+    facts: MotionMindFacts,
+    args: &TerminalArgs,
+    client: &Client,
+    out: &mut Output,
+    interrupt: &Interrupt,
+) -> Result<bool, Exit> {
+    if line.trim().is_empty() {
+        return Ok(true);
+    }
+    let bytes = match bytes_of(line, facts.protocol) {
+        Ok(bytes) => bytes,
+        Err(sentence) => {
+            say(sentence);
+            return Ok(false);
+        }
+    };
+    ask(client.device(), Request::Raw { id, bytes: bytes.clone() })?;
+    let deadline = Instant::now() + REPLY_LIMIT;
+    while Instant::now() < deadline {
+        match client.next_event(interrupt)? {
+            Some(Event::RawReply { id: answered, result }) if answered == id => {
+                return match result {
+                    Ok(reply) => tell(&bytes, &reply, facts.protocol, args, out).map(|()| true),
+                    Err(failure) => {
+                        say(failure.to_string());
+                        Ok(false)
+                    }
+                };
+            }
+            Some(Event::Failure(failure)) => say(failure.to_string()),
+            _ => {}
+        }
+    }
+    say("The link gave no answer.");
+    Err(Exit::NoLink)
+}
+
+fn tell(
+    sent: &[u8],
+    reply: &[u8],
+    protocol: Protocol,
+    args: &TerminalArgs,
+    out: &mut Output,
+) -> Result<(), Exit> {
+    let asked = describe_sent(sent, protocol);
+    let (shown, meaning) = if reply.is_empty() {
+        (String::new(), "silence".to_owned())
+    } else {
+        (shown(reply, protocol), describe_received(sent, reply, protocol).text)
+    };
+    let printed = if args.json {
+        out.json_line(&json!({
+            "sent": hex(sent),
+            "asked": asked.text,
+            "received": hex(reply),
+            "meaning": meaning,
+        }))
+    } else {
+        out.line(format!("> {:<32}  {}", self::shown(sent, protocol), asked.text))
+            .and_then(|()| out.line(format!("< {shown:<32}  {meaning}")))
+    };
+    printed.map_err(Exit::from)
+}
+
+fn shown(bytes: &[u8], protocol: Protocol) -> String {
+    match protocol {
+        Protocol::Binary => hex(bytes),
+        Protocol::Text => String::from_utf8_lossy(bytes).trim_end().replace("\r\n", " | "),
+    }
+}
+
+/// The bytes of a typed command: a line gets its end, a frame its checksum.
+fn bytes_of(line: &str, protocol: Protocol) -> Result<Vec<u8>, String> {
+    match protocol {
+        Protocol::Text => Ok(format!("{}\r\n", line.trim()).into_bytes()),
+        Protocol::Binary => {
+            let parse = |byte: &str| u8::from_str_radix(byte.trim_start_matches("0x"), 16).ok();
+            let bytes: Option<Vec<u8>> =
+                line.split([' ', ',', '\t']).filter(|part| !part.is_empty()).map(parse).collect();
+            let mut bytes = bytes.ok_or_else(|| {
+                format!("Could not read \"{line}\": give the bytes of a frame in hexadecimal, for example 1D 01 04.")
+            })?;
+            bytes.push(checksum(&bytes));
+            Ok(bytes)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_gets_its_end_and_a_frame_its_checksum() {
+        assert_eq!(bytes_of(" R01 04 ", Protocol::Text).unwrap(), b"R01 04\r\n");
+        // READ REGISTER 1 of unit 1: 1D 01 01, sum 1F.
+        assert_eq!(bytes_of("1d 01,0x01", Protocol::Binary).unwrap(), [0x1D, 0x01, 0x01, 0x1F]);
+        assert!(bytes_of("1D 01 R", Protocol::Binary).unwrap_err().contains("hexadecimal"));
+    }
+}

@@ -1,0 +1,191 @@
+//! What simulated Motion Minds to make: the text behind `sim:motion-mind-3`, and the arguments of `brushwork sim`.
+//!
+//! `motion-mind-3,mode=4,protocol=ascii,address=1,address=2,preset=NAME,seed=N`; `?` and `&` may stand for the commas, and one
+//! address option may name several units: `motion-mind-3?mode=4&address=1,2`.
+
+use brushwork_protocol::motion_mind::{Address, Mode, Protocol};
+use brushwork_sim::motion_mind::{MotionMind, MotionMindBus, MotionMindConfig, pin};
+use brushwork_sim::plant::ParamsError;
+use brushwork_sim::presets;
+
+/// The name of the model.
+pub const MODEL: &str = "motion-mind-3";
+
+/// One line with one or more simulated Motion Minds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MotionMindSpec {
+    /// Addresses, one unit each.
+    pub addresses: Vec<Address>,
+    /// Switches 2 to 4.
+    pub mode: Mode,
+    /// Switch 6.
+    pub protocol: Protocol,
+    /// The motor; that of the first preset if none is named.
+    pub preset: Option<String>,
+    /// Seed of the measurement noise; 0 for none.
+    pub seed: u64,
+}
+
+impl Default for MotionMindSpec {
+    fn default() -> Self {
+        Self {
+            addresses: vec![Address::FACTORY],
+            mode: Mode::SerialPid,
+            protocol: Protocol::Binary,
+            preset: None,
+            seed: 1,
+        }
+    }
+}
+
+impl MotionMindSpec {
+    /// Whether the text behind `sim:` asks for Motion Minds.
+    #[must_use]
+    pub fn is_asked_for(text: &str) -> bool {
+        text.split(SEPARATORS).next().is_some_and(|model| model.trim().eq_ignore_ascii_case(MODEL))
+    }
+
+    /// Reads the text behind `sim:`.
+    ///
+    /// # Errors
+    /// A clause that names the part at fault and what may stand there.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let mut spec = Self { addresses: Vec::new(), ..Self::default() };
+        let mut in_addresses = false;
+        for part in text.split(SEPARATORS).map(str::trim).skip(1).filter(|part| !part.is_empty()) {
+            match part.split_once('=') {
+                Some((key, value)) => {
+                    in_addresses = key.trim() == "address";
+                    spec.set(key.trim(), value.trim())?;
+                }
+                None if in_addresses => spec.set("address", part)?,
+                None => return Err(no_option(part)),
+            }
+        }
+        if spec.addresses.is_empty() {
+            spec.addresses.push(Address::FACTORY);
+        }
+        Ok(spec)
+    }
+
+    fn set(&mut self, key: &str, value: &str) -> Result<(), String> {
+        match key {
+            "mode" => {
+                self.mode = value
+                    .parse()
+                    .ok()
+                    .and_then(Mode::from_number)
+                    .ok_or_else(|| format!("\"{value}\" is no mode of a Motion Mind 3. Use 0 to 7"))?;
+            }
+            "protocol" => {
+                self.protocol = Protocol::from_key(value).ok_or_else(|| {
+                    format!("\"{value}\" is no protocol of a Motion Mind 3. Use binary or ascii")
+                })?;
+            }
+            "address" => self.add_address(value)?,
+            "preset" => self.preset = Some(preset(value)?),
+            "seed" => {
+                self.seed =
+                    value.parse().map_err(|_| format!("\"{value}\" is no seed. Use a whole number"))?;
+            }
+            _ => return Err(no_option(key)),
+        }
+        Ok(())
+    }
+
+    fn add_address(&mut self, text: &str) -> Result<(), String> {
+        let address = text.parse().ok().and_then(Address::unit).filter(|address| address.get() > 0);
+        let address =
+            address.ok_or_else(|| format!("\"{text}\" is no address of a Motion Mind 3. Use 1 to 98"))?;
+        if self.addresses.contains(&address) {
+            return Err(format!(
+                "two simulated controllers are given the address {}; units on one line need different ones",
+                address.get()
+            ));
+        }
+        self.addresses.push(address);
+        Ok(())
+    }
+
+    /// The units on one wire.
+    ///
+    /// # Errors
+    /// Figures of a preset that make no sense.
+    pub fn bus(&self) -> Result<MotionMindBus, ParamsError> {
+        let units = self.addresses.iter().map(|address| MotionMind::new(self.config(*address)));
+        Ok(MotionMindBus::new(units.collect::<Result<_, _>>()?))
+    }
+
+    fn config(&self, address: Address) -> MotionMindConfig {
+        let mut config =
+            MotionMindConfig { address, protocol: self.protocol, ..MotionMindConfig::new(self.mode) };
+        config.seed = if self.seed == 0 { 0 } else { self.seed.wrapping_add(address.get().into()).max(1) };
+        if let Some(preset) = self.preset.as_deref().and_then(presets::lookup) {
+            config.world = presets::world_of(preset, preset, pin::COUNT);
+        }
+        config
+    }
+}
+
+const SEPARATORS: [char; 3] = [',', '?', '&'];
+
+/// The name of a preset, if there is one of that name.
+///
+/// # Errors
+/// A clause with all names.
+pub fn preset(name: &str) -> Result<String, String> {
+    match presets::lookup(name) {
+        Some(preset) => Ok(preset.key.clone()),
+        None => Err(format!("\"{name}\" is no motor preset. There are {}", presets::keys().join(", "))),
+    }
+}
+
+fn no_option(given: &str) -> String {
+    format!(
+        "\"{given}\" is no option of a simulated Motion Mind 3. There are mode=0..7, protocol=binary or ascii, address=1..98, preset=NAME \
+         and seed=N"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers(spec: &MotionMindSpec) -> Vec<u8> {
+        spec.addresses.iter().map(|address| address.get()).collect()
+    }
+
+    #[test]
+    fn both_ways_of_writing_say_the_same() {
+        let commas =
+            MotionMindSpec::parse("motion-mind-3,mode=3,protocol=ascii,address=1,address=2").unwrap();
+        let marks = MotionMindSpec::parse("motion-mind-3?mode=3&protocol=ascii&address=1,2").unwrap();
+        assert_eq!(commas, marks);
+        assert_eq!(
+            (commas.mode, commas.protocol, numbers(&commas)),
+            (Mode::Serial, Protocol::Text, vec![1, 2])
+        );
+        let plain = MotionMindSpec::parse("Motion-Mind-3").unwrap();
+        assert_eq!(plain, MotionMindSpec::default());
+        assert!(
+            MotionMindSpec::is_asked_for("motion-mind-3?mode=3") && !MotionMindSpec::is_asked_for("mcp266")
+        );
+    }
+
+    #[test]
+    fn what_cannot_be_is_told_with_what_can() {
+        for (text, clause) in [
+            ("motion-mind-3,mode=8", "0 to 7"),
+            ("motion-mind-3,protocol=can", "binary or ascii"),
+            ("motion-mind-3,address=99", "1 to 98"),
+            ("motion-mind-3,address=0", "1 to 98"),
+            ("motion-mind-3,address=5,5", "two simulated controllers"),
+            ("motion-mind-3,preset=none", "There are"),
+            ("motion-mind-3,generation=1", "mode=0..7"),
+            ("motion-mind-3,1", "mode=0..7"),
+        ] {
+            let said = MotionMindSpec::parse(text).unwrap_err();
+            assert!(said.contains(clause), "{text}: {said}");
+        }
+    }
+}
