@@ -19,7 +19,7 @@ use brushwork_sim::world::WorldAction;
 
 use crate::virtual_line::VirtualLine;
 
-type Line = VirtualLine<Paced<Faulty<Bus>>>;
+type Line<M> = VirtualLine<Paced<Faulty<M>>>;
 type Hook = Box<dyn FnOnce(&DeviceHandle) + Send>;
 type Hooks = Arc<Mutex<Vec<(Duration, Hook)>>>;
 
@@ -27,9 +27,9 @@ type Hooks = Arc<Mutex<Vec<(Duration, Hook)>>>;
 const FRAME: Duration = Duration::from_millis(16);
 
 /// The loop, its handle, the machine behind it, and the events so far.
-pub struct VirtualLink {
+pub struct VirtualLink<M: Machine = Bus> {
     /// The machine and the clock.
-    pub line: Line,
+    pub line: Line<M>,
     /// The window's end.
     pub handle: Arc<DeviceHandle>,
     /// What was told, and when the window took it.
@@ -44,8 +44,8 @@ pub struct VirtualLink {
 }
 
 /// The line as the device thread gets it: reading stops at the window's frames and at hooks.
-struct Watched {
-    line: Line,
+struct Watched<M: Machine> {
+    line: Line<M>,
     hooks: Hooks,
     handle: Arc<Mutex<Option<Arc<DeviceHandle>>>>,
     window_alive: Arc<AtomicBool>,
@@ -67,8 +67,27 @@ impl VirtualLink {
         })
     }
 
+    /// Looks at the truth of a unit of the bus, which must have power.
+    pub fn unit<T>(&self, index: usize, look: impl FnOnce(UnitView<'_>) -> T) -> T {
+        self.bus(|bus| look(bus.controllers()[index].unit().expect("the unit has power")))
+    }
+
+    /// Moves waiting in a unit's buffers, as command 47 tells them.
+    pub fn buffers(&self, index: usize) -> [u8; 2] {
+        self.unit(index, |unit| Motor::BOTH.map(|motor| unit.channel(motor).buffer_length()))
+    }
+}
+
+impl<M: Machine + 'static> VirtualLink<M> {
+    /// A loop on any machine, whose bytes take the time of its rate.
+    pub fn over(machine: M, options: DeviceOptions, faults: Vec<Fault>, seed: u64) -> Self {
+        Self::made(machine, StreamIndex::Uart0, faults, seed, |line, clock| {
+            DeviceLoop::new(line, clock, options)
+        })
+    }
+
     fn made(
-        bus: Bus,
+        bus: M,
         stream: StreamIndex,
         faults: Vec<Fault>,
         seed: u64,
@@ -163,7 +182,7 @@ impl VirtualLink {
     }
 
     /// Does something with the simulated bus.
-    pub fn bus<T>(&self, act: impl FnOnce(&mut Bus) -> T) -> T {
+    pub fn bus<T>(&self, act: impl FnOnce(&mut M) -> T) -> T {
         self.line.with(|machine| act(machine.inner_mut().inner_mut()))
     }
 
@@ -172,14 +191,9 @@ impl VirtualLink {
         self.bus(|bus| Machine::apply(bus, index, action));
     }
 
-    /// Looks at the truth of a unit of the bus, which must have power.
-    pub fn unit<T>(&self, index: usize, look: impl FnOnce(UnitView<'_>) -> T) -> T {
-        self.bus(|bus| look(bus.controllers()[index].unit().expect("the unit has power")))
-    }
-
     /// The bridge duties of a unit as they are.
     pub fn duties(&self, index: usize) -> [f64; 2] {
-        self.bus(|bus| bus.controllers()[index].view().axes.map(|axis| axis.output.duty()))
+        self.bus(|bus| bus.views().swap_remove(index).axes.map(|axis| axis.output.duty()))
     }
 
     /// The bridge duties of a unit as they will be at a time, even if the loop is then in the middle of an exchange.
@@ -187,9 +201,7 @@ impl VirtualLink {
         let seen = Arc::new(Mutex::new(None));
         let (line, into) = (self.line.clone(), Arc::clone(&seen));
         self.at(time, move |_| {
-            let look = |machine: &mut Paced<Faulty<Bus>>| {
-                machine.inner_mut().inner_mut().controllers()[index].view()
-            };
+            let look = |machine: &mut Paced<Faulty<M>>| machine.views().swap_remove(index);
             *lock(&into) = Some(line.with(look).axes.map(|axis| axis.output.duty()));
         });
         seen
@@ -197,12 +209,7 @@ impl VirtualLink {
 
     /// The speeds of a unit's motor shafts, rad/s.
     pub fn speeds(&self, index: usize) -> [f64; 2] {
-        self.bus(|bus| bus.controllers()[index].view().axes.map(|axis| axis.truth.motor_radians_per_second))
-    }
-
-    /// Moves waiting in a unit's buffers, as command 47 tells them.
-    pub fn buffers(&self, index: usize) -> [u8; 2] {
-        self.unit(index, |unit| Motor::BOTH.map(|motor| unit.channel(motor).buffer_length()))
+        self.bus(|bus| bus.views().swap_remove(index).axes.map(|axis| axis.truth.motor_radians_per_second))
     }
 
     /// Passes time while the loop idles; a hook on the way wakes it.
@@ -231,7 +238,7 @@ impl VirtualLink {
     }
 }
 
-impl Transport for Watched {
+impl<M: Machine> Transport for Watched<M> {
     fn write(&mut self, bytes: &[u8]) -> Result<(), TransportError> {
         self.line.write(bytes)
     }

@@ -62,7 +62,7 @@ fn stop_all(controller: &Controller<'_>) -> Result<(), Exit> {
     let deadline = Instant::now() + ANSWER_LIMIT;
     while Instant::now() < deadline {
         if let Some(Event::Stopped(report)) = controller.next_event_whatever()? {
-            crate::cli::stop::warnings(&report).into_iter().for_each(say);
+            crate::cli::stop::warnings(&report, controller.identity()).into_iter().for_each(say);
             return if report.confirmed() { Ok(()) } else { Err(Exit::Refused) };
         }
     }

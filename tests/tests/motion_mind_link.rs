@@ -1,0 +1,814 @@
+//! The device thread on simulated Motion Minds in virtual time: found, read, driven by mode, stopped, set and saved, in both
+//! protocols, on clean and on bad lines.
+
+use std::collections::BTreeSet;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use brushwork_link::device::{
+    Addresses, ArmScope, Channel, DeviceOptions, DisarmReason, Drive, DriveCommand, Event, FamilyChoice,
+    FnJob, Identity, JobContext, JobEnding, Request,
+};
+use brushwork_link::settings::{
+    SaveVerdict, SettingValue, SettingsImage, SettingsTable, WriteOptions, read_all, reload,
+    restore_defaults, save_eeprom, write,
+};
+use brushwork_link::{Failure, UnitAddress, Wire};
+use brushwork_protocol::motion_mind::{
+    Address, Command, FrameEvent, FrameReader, LineEvent, LineReader, Mode, Protocol, encode_frame, function,
+};
+use brushwork_protocol::packet_serial::Motor;
+use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
+use brushwork_sim::faults::Fault;
+use brushwork_sim::machine::{Machine, StreamIndex};
+use brushwork_sim::motion_mind::{MotionMind, MotionMindBus, MotionMindConfig};
+use brushwork_sim::world::{WorldAction, WorldView};
+use brushwork_tests::virtual_link::VirtualLink;
+
+/// Registers by number.
+const POSITION: u8 = 0;
+const VELOCITYLIMIT: u8 = 1;
+const FUNCTION: u8 = 3;
+const PTERM: u8 = 4;
+const ITERM: u8 = 5;
+const DTERM: u8 = 6;
+const ADDRESS: u8 = 7;
+const PIDSCALAR: u8 = 8;
+const PWMOUT: u8 = 21;
+
+type Link = VirtualLink<Tapped>;
+type Heard = Arc<Mutex<Vec<u8>>>;
+
+/// Units, and every byte that was sent to them.
+struct Tapped {
+    bus: MotionMindBus,
+    heard: Heard,
+}
+
+impl Machine for Tapped {
+    fn now(&self) -> Duration {
+        self.bus.now()
+    }
+
+    fn receive(&mut self, stream: StreamIndex, bytes: &[u8]) {
+        self.heard.lock().unwrap().extend(bytes);
+        self.bus.receive(stream, bytes);
+    }
+
+    fn advance(&mut self, to: Duration) {
+        self.bus.advance(to);
+    }
+
+    fn next_output_at(&self) -> Option<Duration> {
+        self.bus.next_output_at()
+    }
+
+    fn take_output(&mut self, stream: StreamIndex) -> Option<Vec<u8>> {
+        self.bus.take_output(stream)
+    }
+
+    fn bits_per_second(&self, stream: StreamIndex) -> u32 {
+        self.bus.bits_per_second(stream)
+    }
+
+    fn units(&self) -> usize {
+        self.bus.units()
+    }
+
+    fn apply(&mut self, unit: usize, action: &WorldAction) {
+        self.bus.apply(unit, action);
+    }
+
+    fn views(&self) -> Vec<WorldView> {
+        self.bus.views()
+    }
+
+    fn plugged(&self) -> bool {
+        self.bus.plugged()
+    }
+}
+
+fn ms(milliseconds: u64) -> Duration {
+    Duration::from_millis(milliseconds)
+}
+
+fn unit(mode: Mode, protocol: Protocol, address: u8) -> MotionMind {
+    let address = Address::unit(address).unwrap();
+    let config = MotionMindConfig { address, protocol, ..MotionMindConfig::new(mode) };
+    MotionMind::new(config).unwrap()
+}
+
+fn options(addresses: Addresses) -> DeviceOptions {
+    DeviceOptions { addresses, family: FamilyChoice::MotionMind, ..DeviceOptions::default() }
+}
+
+fn over(units: Vec<MotionMind>, options: DeviceOptions, faults: Vec<Fault>) -> (Link, Heard) {
+    let heard = Heard::default();
+    let machine = Tapped { bus: MotionMindBus::new(units), heard: Arc::clone(&heard) };
+    (VirtualLink::over(machine, options, faults, 1), heard)
+}
+
+/// A connected link to one unit at address 1.
+fn connected(mode: Mode, protocol: Protocol) -> Link {
+    let (mut link, _) = over(vec![unit(mode, protocol, 1)], options(Addresses::Only(1)), Vec::new());
+    link.run_for(ms(1_500));
+    assert_eq!(identities(&link).len(), 1, "{:?}", link.events);
+    link
+}
+
+fn identities(link: &Link) -> Vec<Identity> {
+    let found = link.events.iter().filter_map(|(_, event)| match event {
+        Event::Connected(identity) => Some(identity.clone()),
+        _ => None,
+    });
+    found.collect()
+}
+
+fn failures(link: &Link) -> Vec<String> {
+    let told = link.events.iter().filter_map(|(_, event)| match event {
+        Event::Failure(failure) | Event::Lost(failure) => Some(failure.to_string()),
+        Event::ArmRefused { reasons, .. } => {
+            Some(reasons.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "))
+        }
+        _ => None,
+    });
+    told.collect()
+}
+
+fn register(link: &Link, number: u8) -> i64 {
+    link.bus(|tapped| tapped.bus.motion_minds()[0].read_one(number))
+}
+
+fn stored(link: &Link, number: u8) -> i64 {
+    link.bus(|tapped| tapped.bus.motion_minds()[0].stored(number))
+}
+
+fn latest(link: &Link, channel: Channel) -> Option<f64> {
+    link.events.iter().rev().find_map(|(_, event)| match event {
+        Event::Sample(sample) => sample.get(channel),
+        _ => None,
+    })
+}
+
+fn drive(link: &Link, command: DriveCommand) {
+    link.ask(Request::Drive(Drive::one(Motor::M1, command)));
+}
+
+fn speed(speed_counts_per_s: i32) -> DriveCommand {
+    DriveCommand::Speed { speed_counts_per_s, accel_counts_per_s2: None }
+}
+
+fn position(position_counts: i32) -> DriveCommand {
+    DriveCommand::Position {
+        position_counts,
+        speed_counts_per_s: 0,
+        accel_counts_per_s2: 0,
+        decel_counts_per_s2: 0,
+        queued: false,
+    }
+}
+
+/// Gains with which the default motor follows well.
+fn tame(link: &Link) {
+    for (number, value) in [(PTERM, 3000), (ITERM, 20), (DTERM, 12_000), (PIDSCALAR, 9)] {
+        link.bus(|tapped| {
+            let frame =
+                encode_frame(Address::BROADCAST, &Command::Write { register: number, value }).unwrap();
+            tapped.bus.receive(StreamIndex::Usb, &frame);
+        });
+    }
+}
+
+/// Runs a job to its end and gives what it handed back.
+fn job<T: Send + 'static>(
+    link: &mut Link,
+    work: impl FnOnce(&mut JobContext<'_>) -> Result<T, Failure> + Send + 'static,
+) -> Result<T, String> {
+    link.events.clear();
+    let job = FnJob::boxed("work", Duration::from_secs(60), move |context| Ok(Box::new(work(context)?)));
+    link.ask(Request::Job(job));
+    for _ in 0..6_000 {
+        link.run_for(ms(10));
+        let ended = link.events.iter().position(|(_, event)| matches!(event, Event::JobEnded(_)));
+        if let Some(at) = ended {
+            let (_, Event::JobEnded(report)) = link.events.swap_remove(at) else { unreachable!("it is one") };
+            return match report.ending {
+                JobEnding::Done(output) => Ok(*output.downcast().expect("what the work hands back")),
+                other => Err(format!("{other:?}")),
+            };
+        }
+    }
+    Err("the job did not end".to_owned())
+}
+
+#[test]
+fn a_unit_is_found_in_either_protocol_and_mode_and_told_by_its_registers() {
+    for protocol in Protocol::ALL {
+        for mode in Mode::ALL {
+            let link = connected(mode, protocol);
+            let unit = &identities(&link)[0];
+            let facts = unit.motion_mind.unwrap();
+            assert_eq!((facts.mode, facts.protocol), (mode, protocol));
+            assert_eq!((unit.place(), unit.model), ("unit 1".to_owned(), Some("Motion Mind 3")));
+            assert_eq!(unit.generation.to_string(), "revision 10");
+            assert!(failures(&link).is_empty(), "{protocol} {mode}: {:?}", failures(&link));
+            assert!(
+                latest(&link, Channel::Temperature1).is_some_and(|celsius| (15.0..40.0).contains(&celsius))
+            );
+        }
+    }
+}
+
+#[test]
+fn without_a_family_named_the_factory_address_is_found_after_packet_serial_was_looked_for() {
+    for protocol in Protocol::ALL {
+        let options = DeviceOptions { addresses: Addresses::Scan, ..DeviceOptions::default() };
+        let (mut link, _) = over(vec![unit(Mode::Serial, protocol, 1)], options, Vec::new());
+        link.run_for(Duration::from_secs(20));
+        let found = identities(&link);
+        assert_eq!(found.len(), 1, "{:?}", link.events);
+        assert_eq!(found[0].motion_mind.unwrap().protocol, protocol);
+    }
+}
+
+#[test]
+fn a_scan_finds_every_unit_of_the_bus_with_progress_and_within_seconds() {
+    for protocol in Protocol::ALL {
+        for numbers in [&[1, 2, 98][..], &[7, 50]] {
+            let units = numbers.iter().map(|number| unit(Mode::Serial, protocol, *number)).collect();
+            let (mut link, _) = over(units, options(Addresses::Scan), Vec::new());
+            link.run_for(Duration::from_secs(20));
+            let found: Vec<u8> = identities(&link).iter().map(|unit| unit.address).collect();
+            assert_eq!(found, numbers, "{protocol}");
+            let steps: BTreeSet<_> = link
+                .events
+                .iter()
+                .filter_map(|(_, event)| match event {
+                    Event::Searching { done, of, .. } => Some((*done, *of)),
+                    _ => None,
+                })
+                .collect();
+            assert!(steps.len() > 90 && steps.iter().all(|(done, of)| done < of), "{}", steps.len());
+            let selected = link.events.iter().find(|(_, event)| matches!(event, Event::Selected { .. }));
+            let (at, _) = selected.expect("one is selected");
+            assert!(*at < Duration::from_secs(14), "{protocol} {numbers:?}: {at:?}");
+        }
+    }
+}
+
+#[test]
+fn a_scan_is_cancelled_at_once() {
+    let (mut link, _) =
+        over(vec![unit(Mode::Serial, Protocol::Binary, 98)], options(Addresses::Scan), Vec::new());
+    link.run_for(ms(1_700));
+    link.ask(Request::Disconnect);
+    link.run_for(ms(100));
+    assert!(link.ended, "{:?}", link.events);
+    assert!(matches!(link.events.last(), Some((_, Event::Closed))));
+}
+
+/// Every command in the bytes that a unit could make out, whichever protocol it speaks; the self-test counts as a text of its own.
+fn commands_in(bytes: &[u8]) -> Vec<String> {
+    let mut found = Vec::new();
+    // Frames at every offset: a unit may have lost any byte before.
+    for start in 0..bytes.len() {
+        let mut reader = FrameReader::new();
+        for byte in bytes[start..].iter().take(8) {
+            if let Some(FrameEvent::Command(_, command)) = reader.feed(*byte, Duration::ZERO) {
+                found.push(format!("{command:?}"));
+                break;
+            }
+        }
+    }
+    let mut reader = LineReader::new();
+    for byte in bytes {
+        match reader.feed(*byte) {
+            Some(LineEvent::Command(_, command)) => found.push(format!("{command:?}")),
+            Some(LineEvent::SelfTest(_)) => found.push("SelfTest".to_owned()),
+            _ => {}
+        }
+    }
+    found
+}
+
+#[test]
+fn looking_for_units_sends_reads_and_nothing_else() {
+    for family in FamilyChoice::ALL {
+        // Nobody is there, so that everything is tried.
+        let options = DeviceOptions { family, ..DeviceOptions::default() };
+        let (mut link, heard) = over(Vec::new(), options, Vec::new());
+        link.run_for(Duration::from_secs(60));
+        assert!(link.ended, "{family}");
+        let heard = heard.lock().unwrap().clone();
+        assert!(!heard.is_empty());
+        for command in commands_in(&heard) {
+            assert!(command.starts_with("Read"), "{family}: {command}");
+        }
+        assert!(!heard.contains(&b'Z') && !heard.contains(&b'z'), "{family}");
+    }
+}
+
+#[test]
+fn the_probes_of_one_family_do_nothing_to_the_other() {
+    // Motion Minds in every mode and protocol, their motors held or still, while packet serial is looked for.
+    for protocol in Protocol::ALL {
+        for mode in Mode::ALL {
+            let options = DeviceOptions { family: FamilyChoice::PacketSerial, ..DeviceOptions::default() };
+            let (mut link, _) = over(vec![unit(mode, protocol, 1)], options, Vec::new());
+            let before: Vec<i64> = (0..=30).map(|number| register(&link, number)).collect();
+            link.run_for(Duration::from_secs(10));
+            assert!(link.ended && identities(&link).is_empty(), "{mode} {protocol}");
+            for number in (0..=12).chain(23..=26).chain([28, 30]) {
+                assert_eq!(
+                    register(&link, number),
+                    before[usize::from(number)],
+                    "{mode} {protocol} {number}"
+                );
+            }
+            assert_eq!(link.bus(|tapped| tapped.bus.motion_minds()[0].eeprom_writes()), 0);
+            // It still answers.
+            let reply = link.bus(|tapped| tapped.bus.exchange(&probe(protocol), ms(200)));
+            assert!(!reply.is_empty(), "{mode} {protocol}");
+        }
+    }
+    // An MCP while Motion Minds are looked for.
+    let controller = Controller::new(ControllerConfig::default()).unwrap();
+    let bus = Bus::single(controller, StreamIndex::Uart0);
+    let mut link: VirtualLink = VirtualLink::over(bus, options(Addresses::Scan), Vec::new(), 1);
+    let settings = link.bus(|bus| format!("{:?}", bus.controllers()[0].settings()));
+    link.run_for(Duration::from_secs(60));
+    assert!(link.ended);
+    assert_eq!(link.duties(0), [0.0; 2]);
+    assert_eq!(link.bus(|bus| format!("{:?}", bus.controllers()[0].settings())), settings);
+}
+
+/// READ REGISTER 18 of unit 1, after a line end for what the probes left in a unit's line.
+fn probe(protocol: Protocol) -> Vec<u8> {
+    match protocol {
+        Protocol::Binary => vec![0x1D, 0x01, 0x12, 0x30],
+        Protocol::Text => b"\r\nR01 18\r\n".to_vec(),
+    }
+}
+
+#[test]
+fn each_mode_takes_what_it_takes_and_says_what_it_does_not() {
+    for protocol in Protocol::ALL {
+        let mut link = connected(Mode::Serial, protocol);
+        assert!(link.arm(ArmScope::Pwm), "{:?}", failures(&link));
+        drive(&link, DriveCommand::duty(0.5));
+        link.run_for(ms(600));
+        assert_eq!(register(&link, PWMOUT), 512, "{protocol}: {:?}", failures(&link));
+        assert!(latest(&link, Channel::M1Pwm).is_some_and(|pwm| (pwm - 50.0).abs() < 0.1));
+        assert!(latest(&link, Channel::M1Velocity).is_some_and(|speed| speed > 1000.0));
+        drive(&link, speed(1000));
+        link.run_for(ms(100));
+        assert!(failures(&link).iter().any(|told| told.contains("duties and nothing else")));
+
+        let mut link = connected(Mode::SerialPid, protocol);
+        tame(&link);
+        assert!(link.arm(ArmScope::Position), "{:?}", failures(&link));
+        drive(&link, position(3_000));
+        link.run_for(ms(2_500));
+        let at = register(&link, POSITION);
+        assert!((at - 3_000).abs() < 30, "{protocol}: at {at}, {:?}", failures(&link));
+        drive(
+            &link,
+            DriveCommand::Distance {
+                speed_counts_per_s: -1,
+                accel_counts_per_s2: None,
+                distance_counts: 1_000,
+                queued: false,
+            },
+        );
+        link.run_for(ms(2_500));
+        let at = register(&link, POSITION);
+        assert!((at - 2_000).abs() < 30, "{protocol}: at {at}");
+        drive(&link, speed(2_000));
+        link.run_for(ms(2_000));
+        let seen = latest(&link, Channel::M1Velocity).unwrap();
+        assert!((seen - 2_000.0).abs() <= 400.0, "{protocol}: {seen} counts/s");
+    }
+    for mode in [Mode::RadioControl, Mode::Analog, Mode::Buttons, Mode::AnalogPid, Mode::FactoryRestore] {
+        let mut link = connected(mode, Protocol::Binary);
+        assert!(!link.arm(ArmScope::Pwm), "{mode}");
+        let said = failures(&link).concat();
+        let wanted = if mode == Mode::AnalogPid { "ADSERIAL" } else { "mode 3 or 4" };
+        assert!(said.contains(wanted), "{mode}: {said}");
+    }
+}
+
+#[test]
+fn nothing_moves_unarmed_by_whatever_request() {
+    for (mode, protocol) in [(Mode::Serial, Protocol::Binary), (Mode::SerialPid, Protocol::Text)] {
+        let mut link = connected(mode, protocol);
+        drive(&link, DriveCommand::duty(0.5));
+        drive(&link, speed(2_000));
+        for (command, value) in [(0x14_u8, 500), (0x15, 5_000), (0x16, 5_000), (0x17, 50)] {
+            let values = vec![brushwork_protocol::packet_serial::Value::Int(value)];
+            link.ask(Request::Transact { id: command.into(), command, values });
+        }
+        let typed: [&[u8]; 2] = match protocol {
+            // CHANGE_SPEED 500: 14 01 F4 01, sum 0A; MOVEAT_VELOCITY 50: 17 01 32 00, sum 4A.
+            Protocol::Binary => [&[0x14, 1, 0xF4, 1, 0x0A], &[0x17, 1, 0x32, 0, 0x4A]],
+            Protocol::Text => [b"C01 500\r\n", b"V01 50\r\n"],
+        };
+        for bytes in typed {
+            link.ask(Request::Raw { id: 9, bytes: bytes.to_vec() });
+        }
+        link.run_for(ms(2_000));
+        assert_eq!((register(&link, PWMOUT), register(&link, POSITION)), (0, 0), "{mode}");
+        let told = failures(&link).len()
+            + link
+                .events
+                .iter()
+                .filter(|(_, event)| match event {
+                    Event::Transacted { result, .. } => result.is_err(),
+                    Event::RawReply { result, .. } => result.is_err(),
+                    _ => false,
+                })
+                .count();
+        assert!(told >= 8, "{mode}: {:?}", link.events);
+    }
+}
+
+#[test]
+fn stop_stands_the_motor_in_every_mode_and_is_confirmed_by_looking() {
+    for protocol in Protocol::ALL {
+        for (mode, command) in [
+            (Mode::Serial, DriveCommand::duty(1.0)),
+            (Mode::SerialPid, speed(4_000)),
+            (Mode::SerialPid, position(40_000)),
+        ] {
+            let mut link = connected(mode, protocol);
+            tame(&link);
+            assert!(link.arm(ArmScope::Pwm), "{:?}", failures(&link));
+            drive(&link, command);
+            link.run_for(ms(700));
+            assert!(link.speeds(0)[0].abs() > 1.0, "{protocol} {mode}");
+            link.events.clear();
+            link.handle.stop_all();
+            link.run_for(ms(2_500));
+            let stops = link.stops();
+            assert!(stops.len() == 1 && stops[0].confirmed(), "{protocol} {mode}: {stops:?}");
+            assert!(link.speeds(0)[0].abs() < 0.5, "{protocol} {mode}: {:?}", link.speeds(0));
+            assert!(
+                link.events.iter().any(|(_, event)| matches!(event, Event::Disarmed(DisarmReason::Stop)))
+            );
+        }
+    }
+}
+
+#[test]
+fn stop_takes_a_slow_ramp_away_and_puts_it_back() {
+    for protocol in Protocol::ALL {
+        let mut link = connected(Mode::Serial, protocol);
+        // 10 of 1023 every 50 ms: five seconds from full drive to nothing.
+        job(&mut link, |wire| {
+            wire.transact(0x18, &[VELOCITYLIMIT.into(), 10]).map_err(|error| error.failure("write", "it"))
+        })
+        .unwrap();
+        assert!(link.arm(ArmScope::Pwm));
+        let warned = link.events.iter().any(|(_, event)| {
+            matches!(event, Event::Armed { warnings, .. } if warnings.iter().any(|text| text.contains("5.2 s")))
+        });
+        assert!(warned, "{:?}", link.events);
+        drive(&link, DriveCommand::duty(1.0));
+        link.run_for(ms(3_000));
+        assert!(register(&link, PWMOUT) > 400);
+        let pressed_at = link.now();
+        link.handle.stop_all();
+        while register(&link, PWMOUT) != 0 && link.now() < pressed_at + ms(2_000) {
+            link.run_for(ms(5));
+        }
+        let took = link.now() - pressed_at;
+        assert!(took < ms(150), "{protocol}: {took:?}");
+        link.run_for(ms(1_000));
+        assert_eq!(register(&link, VELOCITYLIMIT), 10, "{protocol}");
+        assert!(link.stops().last().unwrap().confirmed());
+    }
+}
+
+#[test]
+fn a_loop_that_shakes_its_motor_is_switched_off_by_stop_and_on_again_by_arming() {
+    for protocol in Protocol::ALL {
+        let mut link = connected(Mode::SerialPid, protocol);
+        tame(&link);
+        assert!(link.arm(ArmScope::Velocity));
+        // So much gain that the loop swings for ever.
+        job(&mut link, |wire| {
+            wire.transact(0x18, &[PTERM.into(), 60_000]).map_err(|error| error.failure("write", "it"))?;
+            wire.transact(0x18, &[DTERM.into(), 0]).map_err(|error| error.failure("write", "it"))?;
+            wire.transact(0x18, &[PIDSCALAR.into(), 4]).map_err(|error| error.failure("write", "it"))
+        })
+        .unwrap();
+        link.arm(ArmScope::Velocity);
+        drive(&link, speed(4_000));
+        link.run_for(ms(700));
+        link.events.clear();
+        link.handle.stop_all();
+        link.run_for(ms(3_000));
+        let stops = link.stops();
+        assert!(stops[0].confirmed(), "{protocol}: {stops:?}");
+        assert_eq!(register(&link, PWMOUT), 0, "{protocol}");
+        if register(&link, FUNCTION) & i64::from(function::DISABLEPID) != 0 {
+            assert!(stops[0].units[0].still_driven_by.iter().any(|text| text.contains("DISABLEPID")));
+            tame(&link);
+            let before = register(&link, POSITION);
+            assert!(link.arm(ArmScope::Velocity), "{:?}", failures(&link));
+            link.run_for(ms(500));
+            assert_eq!(register(&link, FUNCTION), 0, "{protocol}: as it was");
+            assert!((register(&link, POSITION) - before).abs() < 20, "arming does not move the motor");
+        } else {
+            panic!("{protocol}: the loop was still, so the test tests nothing");
+        }
+    }
+}
+
+#[test]
+fn stop_reaches_every_unit_of_a_bus_at_once() {
+    for protocol in Protocol::ALL {
+        let units = vec![unit(Mode::Serial, protocol, 1), unit(Mode::Serial, protocol, 2)];
+        let (mut link, _) = over(units, options(Addresses::Scan), Vec::new());
+        link.run_for(Duration::from_secs(15));
+        assert_eq!(identities(&link).len(), 2);
+        // Somebody else has set both in motion.
+        let frame = |number| {
+            let command = Command::ChangeSpeed(800);
+            match protocol {
+                Protocol::Binary => encode_frame(Address::unit(number).unwrap(), &command).unwrap(),
+                Protocol::Text => format!("C{number:02} 800\r\n").into_bytes(),
+            }
+        };
+        link.run_for(ms(50));
+        link.bus(|tapped| tapped.bus.receive(StreamIndex::Usb, &[frame(1), frame(2)].concat()));
+        link.run_for(ms(500));
+        link.handle.stop_all();
+        link.run_for(ms(1_500));
+        let left =
+            link.bus(|tapped| tapped.bus.motion_minds().iter().map(|unit| unit.read_one(PWMOUT)).max());
+        assert_eq!(left, Some(0), "{protocol}");
+        let report = link.stops()[0];
+        assert!(report.confirmed() && report.units.len() == 2, "{protocol}: {report:?}");
+    }
+}
+
+#[test]
+fn a_frozen_window_stops_the_motor_after_a_quarter_second() {
+    for protocol in Protocol::ALL {
+        for (mode, command) in [(Mode::Serial, DriveCommand::duty(0.8)), (Mode::SerialPid, speed(4_000))] {
+            let mut link = connected(mode, protocol);
+            tame(&link);
+            assert!(link.arm(ArmScope::Pwm));
+            drive(&link, command);
+            link.run_for(ms(600));
+            link.freeze_window();
+            link.run_for(ms(1_500));
+            assert!(link.speeds(0)[0].abs() < 1.0, "{protocol} {mode}: {:?}", link.speeds(0));
+            link.thaw_window();
+            link.run_for(ms(50));
+            let reasons = link
+                .events
+                .iter()
+                .filter(|(_, event)| matches!(event, Event::Disarmed(DisarmReason::DeadMan)));
+            assert_eq!(reasons.count(), 1, "{protocol} {mode}");
+        }
+    }
+}
+
+#[test]
+fn arming_says_that_no_time_out_covers_the_death_of_the_program_and_refuses_what_holds_the_drive_back() {
+    let mut link = connected(Mode::Serial, Protocol::Binary);
+    assert!(link.arm(ArmScope::Pwm));
+    assert!(link.events.iter().any(|(_, event)| matches!(
+        event,
+        Event::Armed { controller_timeout: None, warnings, .. } if warnings[0].contains("no serial time-out")
+    )));
+    let mut link = connected(Mode::SerialPid, Protocol::Binary);
+    job(&mut link, |wire| {
+        let word = i64::from(function::DISABLEPID);
+        wire.transact(0x18, &[FUNCTION.into(), word]).map_err(|error| error.failure("write", "it"))
+    })
+    .unwrap();
+    assert!(!link.arm(ArmScope::Velocity));
+    assert!(failures(&link).concat().contains("DISABLEPID"), "{:?}", failures(&link));
+}
+
+#[test]
+fn return_bits_change_the_acknowledges_and_nothing_else() {
+    for protocol in Protocol::ALL {
+        let mut link = connected(Mode::Serial, protocol);
+        for word in [2_i64, 4, 8, 14, 6, 0] {
+            job(&mut link, move |wire| {
+                wire.transact(0x18, &[FUNCTION.into(), word]).map_err(|error| error.failure("write", "it"))
+            })
+            .unwrap();
+            assert!(link.arm(ArmScope::Pwm), "{protocol} {word}: {:?}", failures(&link));
+            drive(&link, DriveCommand::duty(0.3));
+            link.run_for(ms(500));
+            assert_eq!(register(&link, PWMOUT), 307, "{protocol} {word}: {:?}", failures(&link));
+            link.ask(Request::Disarm);
+            link.run_for(ms(800));
+            assert_eq!(register(&link, PWMOUT), 0, "{protocol} {word}");
+        }
+        // Somebody else sets RETPOS, and this program does not know.
+        link.bus(|tapped| {
+            let frame = Command::Write { register: FUNCTION, value: 2 };
+            let bytes = match protocol {
+                Protocol::Binary => encode_frame(Address::FACTORY, &frame).unwrap(),
+                Protocol::Text => b"W01 03 2\r\n".to_vec(),
+            };
+            tapped.bus.receive(StreamIndex::Usb, &bytes);
+        });
+        link.run_for(ms(100));
+        link.events.clear();
+        assert!(link.arm(ArmScope::Pwm), "{protocol}: {:?}", failures(&link));
+        drive(&link, DriveCommand::duty(0.3));
+        link.run_for(ms(500));
+        assert_eq!(register(&link, PWMOUT), 307, "{protocol}: {:?}", failures(&link));
+    }
+}
+
+fn table(link: &mut Link) -> SettingsTable {
+    let subject = connected_subject(link);
+    SettingsTable::new(subject)
+}
+
+fn connected_subject(link: &Link) -> brushwork_link::settings::Subject {
+    let facts = link.bus(|tapped| tapped.bus.motion_minds()[0].read_one(17));
+    let revision = u8::try_from(facts).unwrap();
+    brushwork_link::settings::Subject::new(
+        &brushwork_protocol::models::MOTION_MIND_3,
+        brushwork_link::FirmwareGeneration::MotionMind { revision },
+    )
+}
+
+const OPTIONS: WriteOptions = WriteOptions { own_stream: None, simulated: false };
+
+fn wanted(changes: &[(&str, SettingValue)]) -> SettingsImage {
+    changes.iter().map(|(key, value)| ((*key).to_owned(), *value)).collect()
+}
+
+#[test]
+fn settings_are_read_written_saved_and_survive_a_power_cycle_and_what_was_not_saved_does_not() {
+    for protocol in Protocol::ALL {
+        let mut link = connected(Mode::SerialPid, protocol);
+        let table = table(&mut link);
+        let changes = wanted(&[
+            ("register.pterm", SettingValue::Int(1_234)),
+            ("register.ampslimit", SettingValue::Number(5.0)),
+            ("function.satprot", SettingValue::Bool(true)),
+            ("function.activestop", SettingValue::Bool(true)),
+            ("function2.freqx2", SettingValue::Bool(true)),
+            ("register.vnlimit", SettingValue::Int(-123_456)),
+        ]);
+        let (copy, on) = (table.clone(), changes.clone());
+        let report = job(&mut link, move |wire| {
+            write(wire, &copy, &on, OPTIONS)
+                .map_err(|error| Failure::new("write", "it", error.to_string(), "look"))
+        })
+        .unwrap();
+        assert!(report.is_complete(), "{protocol}: {:?}", report.rows);
+        // SATPROT is bit 4, ACTIVESTOP bit 7: 0x90. FREQX2 is bit 1 of FUNCTION2.
+        assert_eq!((register(&link, FUNCTION), register(&link, 30)), (0x90, 2), "{protocol}");
+        assert_eq!((register(&link, 28), register(&link, 23)), (250, -123_456));
+        assert_eq!(stored(&link, PTERM), 6_000, "nothing went to EEPROM");
+
+        let copy = table.clone();
+        let saved = job(&mut link, move |wire| save_eeprom(wire, &copy, OPTIONS)).unwrap();
+        assert_eq!(saved.verdict, SaveVerdict::Stored, "{protocol}: {saved:?}");
+        for number in (1..=12).chain(23..=26).chain([28, 30]) {
+            assert_eq!(stored(&link, number), register(&link, number), "{protocol} {number}");
+        }
+        let copy = table.clone();
+        job(&mut link, move |wire| {
+            write(wire, &copy, &wanted(&[("register.dterm", SettingValue::Int(99))]), OPTIONS)
+                .map_err(|error| Failure::new("write", "it", error.to_string(), "look"))
+        })
+        .unwrap();
+        let subject = *table.subject();
+        let after = job(&mut link, move |wire| reload(wire, &SettingsTable::new(subject))).unwrap();
+        assert_eq!(after.image.get("register.dterm"), Some(SettingValue::Int(0)), "{protocol}");
+        assert_eq!(after.image.get("register.pterm"), Some(SettingValue::Int(1_234)), "{protocol}");
+
+        link.apply(0, &WorldAction::Power { on: false });
+        link.apply(0, &WorldAction::Power { on: true });
+        link.run_for(ms(800));
+        assert_eq!((register(&link, FUNCTION), register(&link, PTERM)), (0x90, 1_234), "{protocol}");
+    }
+}
+
+#[test]
+fn restoring_the_factory_values_changes_ram_and_eeprom_and_follows_the_unit_to_address_1() {
+    for protocol in Protocol::ALL {
+        let (mut link, _) =
+            over(vec![unit(Mode::SerialPid, protocol, 9)], options(Addresses::Only(9)), Vec::new());
+        link.run_for(ms(1_500));
+        let subject = connected_subject(&link);
+        let report = job(&mut link, move |wire| {
+            wire.transact(0x19, &[PTERM.into(), 77]).map_err(|error| error.failure("store", "it"))?;
+            restore_defaults(wire, subject)
+        })
+        .unwrap();
+        assert!(report.differences.is_empty(), "{protocol}: {:?}", report.differences);
+        assert_eq!(report.address, UnitAddress::new(1).unwrap(), "{protocol}");
+        assert_eq!((register(&link, PTERM), stored(&link, PTERM)), (6_000, 6_000));
+        link.run_for(ms(500));
+        assert!(failures(&link).is_empty(), "{:?}", failures(&link));
+    }
+}
+
+#[test]
+fn a_new_address_is_followed() {
+    for protocol in Protocol::ALL {
+        let mut link = connected(Mode::SerialPid, protocol);
+        let table = table(&mut link);
+        let report = job(&mut link, move |wire| {
+            write(wire, &table, &wanted(&[("register.address", SettingValue::Int(42))]), OPTIONS)
+                .map_err(|error| Failure::new("write", "it", error.to_string(), "look"))
+        })
+        .unwrap();
+        assert!(report.is_complete(), "{protocol}: {report:?}");
+        assert_eq!((register(&link, ADDRESS), report.address), (42, UnitAddress::new(42).unwrap()));
+        link.events.clear();
+        link.run_for(ms(1_000));
+        assert!(failures(&link).is_empty() && latest(&link, Channel::M1Position).is_some(), "{protocol}");
+    }
+}
+
+#[test]
+fn the_motor_is_stopped_before_what_stops_it_anyway() {
+    let mut link = connected(Mode::Serial, Protocol::Binary);
+    assert!(link.arm(ArmScope::Pwm));
+    drive(&link, DriveCommand::duty(0.5));
+    link.run_for(ms(500));
+    let values = [PTERM.into(), 5_000].map(brushwork_protocol::packet_serial::Value::Int).to_vec();
+    link.ask(Request::Transact { id: 1, command: 0x19, values });
+    link.run_for(ms(500));
+    assert!(
+        link.events.iter().any(|(_, event)| matches!(event, Event::Disarmed(DisarmReason::SettingsChanged))),
+        "{:?}",
+        link.events
+    );
+    assert_eq!((register(&link, PWMOUT), stored(&link, PTERM)), (0, 5_000));
+}
+
+#[test]
+fn on_a_bad_line_settings_are_right_or_said_to_be_unknown() {
+    for protocol in Protocol::ALL {
+        for fault in ["drop=0.004", "corrupt=0.004", "duplicate=0.004", "delay=25ms,share=0.1"] {
+            let fault: Fault = fault.parse().expect("the faults are of the list");
+            let (mut link, _) = over(
+                vec![unit(Mode::SerialPid, protocol, 1)],
+                options(Addresses::Only(1)),
+                vec![fault.clone()],
+            );
+            link.run_for(Duration::from_secs(5));
+            if identities(&link).is_empty() || link.ended {
+                continue;
+            }
+            let subject = connected_subject(&link);
+            let report = job(&mut link, move |wire| read_all(wire, subject));
+            let Ok(report) = report else { continue };
+            for (key, value) in report.image.iter() {
+                let row = report.table.row(key).unwrap();
+                let (number, bits) = (row.register().unwrap(), row.sink().unwrap().place.bits);
+                let raw = bits.map_or(register(&link, number), |bits| bits.extract(register(&link, number)));
+                // One wrong byte in the sum of a frame is always found; text has no sum.
+                if protocol == Protocol::Binary {
+                    assert_eq!(row.encode(value), Some(raw), "{protocol} {fault:?}: {key}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn typed_bytes_come_back_as_they_are_and_the_self_test_never_goes_out() {
+    let replies = |link: &mut Link, bytes: &[u8]| -> Result<Vec<u8>, String> {
+        link.events.clear();
+        link.ask(Request::Raw { id: 5, bytes: bytes.to_vec() });
+        link.run_for(ms(1_000));
+        let reply = link.events.drain(..).find_map(|(_, event)| match event {
+            Event::RawReply { id: 5, result } => Some(result.map_err(|failure| failure.to_string())),
+            _ => None,
+        });
+        reply.expect("it is answered")
+    };
+    let mut text = connected(Mode::SerialPid, Protocol::Text);
+    assert_eq!(replies(&mut text, b"R01 04\r\n").unwrap(), b"PTRM=6000\r\n");
+    assert_eq!(replies(&mut text, b"Q\r\n").unwrap(), b"BAD COMMAND\r\n");
+    assert_eq!(replies(&mut text, b"R02 04\r\n").unwrap(), b"", "another unit's");
+    assert!(replies(&mut text, b"R01 97\r\n").unwrap().starts_with(b"S0O"));
+    for bytes in [&b"Z01\r\n"[..], b"z01\r\n", b"  Z01\r\n", b"XZ\x0801\r\n", b"Z01", b"R01 04"] {
+        let said = replies(&mut text, bytes).unwrap_err();
+        assert!(said.contains("never") || said.contains("whole line"), "{said}");
+    }
+    let heard = text.bus(|tapped| tapped.heard.lock().unwrap().clone());
+    assert!(!heard.contains(&b'Z') && !heard.contains(&b'z'));
+
+    let mut binary = connected(Mode::SerialPid, Protocol::Binary);
+    // READ REGISTER 1 = 1023: 1D 01 01 1F -> 01 FF 03 03.
+    assert_eq!(replies(&mut binary, &[0x1D, 0x01, 0x01, 0x1F]).unwrap(), [0x01, 0xFF, 0x03, 0x03]);
+    let said = replies(&mut binary, &[0x1D, 0x01, 0x01, 0x20]).unwrap_err();
+    assert!(said.contains("no command of the manual"), "{said}");
+}
