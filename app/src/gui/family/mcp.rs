@@ -62,7 +62,7 @@ impl Family for Mcp {
         Lamp::ALL.into_iter().map(|lamp| lit(lamp, report, identity, homed)).collect()
     }
 
-    fn signs(&self, report: &StatusReport) -> Vec<Sign> {
+    fn signs(&self, report: &StatusReport, _identity: Option<&Identity>) -> Vec<Sign> {
         report.conditions.iter().map(sign_of).collect()
     }
 

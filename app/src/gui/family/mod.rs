@@ -82,7 +82,7 @@ pub trait Family: Sync {
     ) -> Vec<LampState>;
 
     /// What the status word says, the gravest lamp first in order.
-    fn signs(&self, report: &StatusReport) -> Vec<Sign>;
+    fn signs(&self, report: &StatusReport, identity: Option<&Identity>) -> Vec<Sign>;
 
     /// How acts on its settings are told.
     fn words(&self) -> &'static SettingsWords;
@@ -139,6 +139,8 @@ pub enum Ability {
     GuidedTuning,
     /// Scripts' buses: I2C, CAN and RTS.
     Buses,
+    /// Faults of bridges and start-up that a simulated one can have.
+    BridgeFaults,
     /// A report of what keeps the motors from running, which needs settings.
     Diagnosis,
     /// LEDs on the board whose blink codes are known.

@@ -4,6 +4,7 @@
 use std::time::Duration;
 
 use brushwork_link::device::{ArmScope, Channel, Drive, Identity, Request, StatusReport};
+use brushwork_protocol::motion_mind::Mode;
 use brushwork_protocol::packet_serial::Motor;
 use egui::Ui;
 
@@ -70,16 +71,17 @@ impl Family for MotionMind {
     fn lit(
         &self,
         report: &StatusReport,
-        _identity: Option<&Identity>,
+        identity: Option<&Identity>,
         _homed: Option<[bool; 2]>,
     ) -> Vec<LampState> {
-        LAMPS.iter().zip(KEYS).map(|(_, key)| lit_by(report, key)).collect()
+        KEYS.iter().map(|key| lit_by(report, key, identity)).collect()
     }
 
-    fn signs(&self, report: &StatusReport) -> Vec<Sign> {
+    fn signs(&self, report: &StatusReport, identity: Option<&Identity>) -> Vec<Sign> {
         let order = |sign: &brushwork_link::device::Sign| KEYS.iter().position(|key| *key == sign.key);
         let mut signs: Vec<Sign> = report
             .lit()
+            .filter(|sign| means_something(sign.key, identity))
             .map(|sign| Sign {
                 order: order(sign).and_then(|order| u8::try_from(order).ok()).unwrap_or(u8::MAX),
                 title: sign.title,
@@ -148,6 +150,7 @@ impl Family for MotionMind {
             Ability::GuidedTuning => {
                 "Guided tuning does not reach a Motion Mind 3 yet. Use the step response assistant of the Position screen."
             }
+            Ability::BridgeFaults => "The simulated Motion Mind 3 has no faults of its bridge.",
             Ability::Buses => "A Motion Mind 3 has no buses for scripts.",
             Ability::Leds => "The LEDs of a Motion Mind 3 tell its power and its traffic alone.",
             Ability::Composer => "Send commands from the Terminal screen.",
@@ -158,16 +161,27 @@ impl Family for MotionMind {
 }
 
 /// How the sign with that key lights its lamp.
-fn lit_by(report: &StatusReport, key: &str) -> LampState {
+fn lit_by(report: &StatusReport, key: &str, identity: Option<&Identity>) -> LampState {
+    if !means_something(key, identity) {
+        return LampState::NotApplicable;
+    }
     report.lit().find(|sign| sign.key == key).map_or(LampState::Ok, |sign| state_of(sign.severity))
 }
+
+/// Whether a sign means anything in the unit's mode: outside of mode 0 nobody misses an R/C pulse.
+fn means_something(key: &str, identity: Option<&Identity>) -> bool {
+    let facts = identity.and_then(|identity| identity.motion_mind);
+    key != BAD_RC || facts.is_none_or(|facts| facts.mode == Mode::RadioControl)
+}
+
+const BAD_RC: &str = "bad_rc";
 
 /// The signs of the status that light the lamps, in the order of [`LAMPS`]: what takes the drive away comes first.
 const KEYS: [&str; 11] = [
     "temp_fault",
     "brake",
     "current_limit",
-    "bad_rc",
+    BAD_RC,
     "negative_limit",
     "positive_limit",
     "virtual_negative_limit",
@@ -250,14 +264,14 @@ mod tests {
         for row in STATUS_BITS {
             let lit = MotionMind.lit(&report(row.mask()), None, None);
             assert_eq!(lit.iter().filter(|state| **state != LampState::Ok).count(), 1, "{}", row.name);
-            assert_eq!(MotionMind.signs(&report(row.mask())).len(), 1, "{}", row.name);
+            assert_eq!(MotionMind.signs(&report(row.mask()), None).len(), 1, "{}", row.name);
         }
-        assert_eq!(MotionMind.signs(&report(0)), []);
+        assert_eq!(MotionMind.signs(&report(0), None), []);
     }
 
     #[test]
     fn what_takes_the_drive_away_is_an_error_and_comes_first() {
-        let signs = MotionMind.signs(&report(bit::TEMPFAULT | bit::INPOSITION | bit::BRAKE));
+        let signs = MotionMind.signs(&report(bit::TEMPFAULT | bit::INPOSITION | bit::BRAKE), None);
         let states: Vec<_> = signs.iter().map(|sign| sign.state).collect();
         assert_eq!(states, [LampState::Error, LampState::Error, LampState::Active]);
     }

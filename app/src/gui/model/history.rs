@@ -7,9 +7,9 @@
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::Duration;
 
-use brushwork_link::device::{Condition, DisarmReason, Event, StatusReport, StopReport};
+use brushwork_link::device::{Condition, DisarmReason, Event, Identity, StatusReport, StopReport};
 
-use crate::gui::family::{self, FamilyKind, Sign, mcp_sign};
+use crate::gui::family::{self, Family, FamilyKind, Sign, mcp_sign};
 use crate::gui::widgets::LampState;
 
 /// Entries kept; the oldest go first.
@@ -94,14 +94,19 @@ impl Kind {
 /// What is so with one unit, and since when.
 #[derive(Debug, Default)]
 struct UnitState {
-    family: FamilyKind,
-    place: Option<String>,
+    identity: Option<Identity>,
     /// What its status word said last.
     signs: BTreeSet<Sign>,
     report: Option<StatusReport>,
     /// Homed or at a limit by its pins, where the status word has no bit for it.
     homed: Option<[bool; 2]>,
     lamps: BTreeMap<&'static str, (LampState, Duration)>,
+}
+
+impl UnitState {
+    fn family(&self) -> &'static dyn Family {
+        family::of(self.identity.as_ref().map(FamilyKind::of_unit).unwrap_or_default())
+    }
 }
 
 impl History {
@@ -167,7 +172,7 @@ impl History {
                     self.units.clear();
                 }
                 let unit = self.units.entry(identity.address).or_default();
-                (unit.family, unit.place) = (FamilyKind::of_unit(identity), Some(identity.place()));
+                unit.identity = Some(identity.clone());
                 let text = format!("Connected to {} at {}", identity.title(), identity.port);
                 self.push(self.now, Some(identity.address), Kind::Connected, text);
             }
@@ -218,7 +223,7 @@ impl History {
 
     fn note_status(&mut self, report: &StatusReport) {
         let unit = self.units.entry(report.address).or_default();
-        let signs: BTreeSet<Sign> = family::of(unit.family).signs(report).into_iter().collect();
+        let signs: BTreeSet<Sign> = unit.family().signs(report, unit.identity.as_ref()).into_iter().collect();
         let before = std::mem::replace(&mut unit.signs, signs.clone());
         unit.report = Some(*report);
         for sign in before.symmetric_difference(&signs) {
@@ -236,8 +241,9 @@ impl History {
         let since = self.since_connect(at);
         let Some(unit) = self.units.get_mut(&address) else { return };
         let Some(report) = &unit.report else { return };
-        let family = family::of(unit.family);
-        for (info, state) in family.lamps().iter().zip(family.lit(report, None, unit.homed)) {
+        let family = unit.family();
+        let of_mind = unit.identity.as_ref().filter(|identity| identity.is_motion_mind());
+        for (info, state) in family.lamps().iter().zip(family.lit(report, of_mind, unit.homed)) {
             let known = unit.lamps.entry(info.short).or_insert((state, since));
             if known.0 != state {
                 *known = (state, since);
@@ -272,8 +278,8 @@ impl History {
 
     /// Where a unit is, as its family writes it.
     fn place(&self, address: u8) -> String {
-        let known = self.units.get(&address).and_then(|unit| unit.place.clone());
-        known.unwrap_or_else(|| format!("0x{address:02X}"))
+        let known = self.units.get(&address).and_then(|unit| unit.identity.as_ref());
+        known.map_or_else(|| format!("0x{address:02X}"), Identity::place)
     }
 
     fn since_connect(&self, at: Duration) -> Duration {

@@ -238,6 +238,8 @@ pub fn decimals(channel: Channel) -> usize {
         Channel::M1Current | Channel::M2Current => 2,
         Channel::M1Setpoint | Channel::M2Setpoint | Channel::M1Pwm | Channel::M2Pwm => 1,
         Channel::Temperature1 | Channel::Temperature2 | Channel::MainBattery | Channel::LogicBattery => 1,
+        Channel::RcPulse => 3,
+        Channel::AnalogControl | Channel::AnalogFeedback => 2,
         _ => 0,
     }
 }
@@ -251,6 +253,8 @@ fn first_scale(channel: Channel) -> Scale {
         Channel::Temperature1 | Channel::Temperature2 => Scale::from_zero(100.0),
         Channel::MainBattery => Scale::from_zero(40.0),
         Channel::LogicBattery => Scale::from_zero(20.0),
+        Channel::RcPulse => Scale::from_zero(2.5),
+        Channel::AnalogControl | Channel::AnalogFeedback => Scale::from_zero(5.0),
         _ => Scale::around_zero(1000.0),
     }
 }

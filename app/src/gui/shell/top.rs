@@ -103,7 +103,10 @@ fn identity_ui(ui: &mut Ui, model: &Model) {
     });
     let version = identity.map(|identity| match identity.firmware.as_str() {
         "" => "not told".to_owned(),
-        version => format!("{version} (gen {})", identity.generation.number()),
+        version => match identity.generation.packet_serial() {
+            Some(generation) => format!("{version} (gen {})", generation.number()),
+            None => identity.generation.to_string(),
+        },
     });
     // The last block takes what is left of its row.
     let width = ui.available_width().clamp(IDENTITY_WIDTH, 2.0 * IDENTITY_WIDTH);

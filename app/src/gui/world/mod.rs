@@ -28,9 +28,11 @@ pub fn world_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let color = Palette::of(ui).weak_text;
     let note = "What you could do to a real machine by hand. None of it goes over the wire.";
     ui.label(RichText::new(note).small().color(color));
-    unit_ui(ui, view, &mut actions);
+    unit_ui(ui, view, family.lacks(Ability::EmergencyStop).is_none(), &mut actions);
     supply_ui(ui, view, panel, &mut actions);
-    electronics_ui(ui, view, &mut actions);
+    if family.lacks(Ability::BridgeFaults).is_none() {
+        electronics_ui(ui, view, &mut actions);
+    }
     for motor in family.motors() {
         motor::motor_ui(ui, *motor, view, panel, &mut actions);
     }
@@ -45,7 +47,7 @@ type Actions = Vec<WorldAction>;
 
 const LABEL_WIDTH: f32 = 100.0;
 
-fn unit_ui(ui: &mut Ui, view: &WorldView, actions: &mut Actions) {
+fn unit_ui(ui: &mut Ui, view: &WorldView, has_estop: bool, actions: &mut Actions) {
     ui.horizontal_wrapped(|ui| {
         if toggle_ui(ui, "Power", view.powered) {
             actions.push(WorldAction::Power { on: !view.powered });
@@ -54,7 +56,7 @@ fn unit_ui(ui: &mut Ui, view: &WorldView, actions: &mut Actions) {
         if ui.button(text).clicked() {
             actions.push(WorldAction::Unplug { unplugged });
         }
-        if toggle_ui(ui, "E-stop pressed", view.estop_pressed) {
+        if has_estop && toggle_ui(ui, "E-stop pressed", view.estop_pressed) {
             actions.push(WorldAction::EStop { pressed: !view.estop_pressed });
         }
     });

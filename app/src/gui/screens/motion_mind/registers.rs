@@ -27,7 +27,7 @@ const MARK_WIDTH: f32 = 16.0;
 const NUMBER_WIDTH: f32 = 20.0;
 const NAME_WIDTH: f32 = 138.0;
 const WANTED_WIDTH: f32 = 134.0;
-const VALUE_WIDTH: f32 = 88.0;
+const VALUE_WIDTH: f32 = 100.0;
 /// The share of the screen that the explanation takes, and its least and greatest width.
 const PANEL_SHARE: f32 = 0.34;
 const PANEL_WIDTH: (f32, f32) = (232.0, 460.0);
@@ -99,8 +99,12 @@ fn row_ui(ui: &mut Ui, desk: &mut Desk, register: &'static Register, is_chosen: 
         ui.set_min_height(HEIGHT);
         mark_ui(ui, desk, register);
         figure_ui(ui, &register.number.to_string(), "", NUMBER_WIDTH, true);
-        let name = Button::selectable(is_chosen, register.name).truncate().min_size(vec2(NAME_WIDTH, 0.0));
-        let name = ui.add_sized(vec2(NAME_WIDTH, HEIGHT - 5.0), name);
+        let place = vec2(NAME_WIDTH, HEIGHT - 5.0);
+        let name = ui
+            .allocate_ui_with_layout(place, Layout::top_down_justified(Align::Min), |ui| {
+                ui.add(Button::selectable(is_chosen, register.name).truncate())
+            })
+            .inner;
         let spoken = format!("Register {}", register.name);
         name.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &spoken));
         wants |= name.on_hover_text(register.help).clicked();

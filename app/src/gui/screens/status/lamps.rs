@@ -49,7 +49,8 @@ fn note(desk: &Desk) -> Option<&'static str> {
 pub fn conditions_ui(ui: &mut Ui, desk: &Desk) {
     ui.add_space(6.0);
     heading_ui(ui, "What the controller reports");
-    let signs = desk.link.status.map(|report| desk.family().signs(&report)).unwrap_or_default();
+    let signs =
+        desk.link.status.map(|report| desk.family().signs(&report, desk.link.identity())).unwrap_or_default();
     if signs.is_empty() {
         let color = Palette::of(ui).weak_text;
         ui.label(RichText::new("Nothing: neither warning nor error.").color(color));

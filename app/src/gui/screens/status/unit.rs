@@ -42,9 +42,11 @@ pub fn unit_ui(ui: &mut Ui, desk: &Desk) {
             ),
         ),
     ];
+    let switches = identity.motion_mind.map(|facts| format!("{}; {} protocol", facts.mode, facts.protocol));
+    let switches = switches.map(|text| ("Switches", text));
     let weak = Palette::of(ui).weak_text;
     Grid::new("unit").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {
-        for (label, value) in rows {
+        for (label, value) in rows.into_iter().chain(switches) {
             ui.label(RichText::new(label).color(weak));
             ui.add(Label::new(value).truncate());
             ui.end_row();
