@@ -3,6 +3,7 @@
 //! Only what the wire carries stands here, at the wire's resolution: whole counts, 0.1 V, 10 mA, duty of 32767. Whoever
 //! implements [`Axis`] puts it over a device thread or over a simulated machine in virtual time. Plant truth has no way in.
 
+use crate::motion_mind::{MotionMindRegisters, MotionMindSetup};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
@@ -134,6 +135,9 @@ pub struct Setup {
     pub stream_timeout_ms: Option<u32>,
     /// The encoder.
     pub encoder: EncoderClass,
+    /// What a Motion Mind holds instead of the two loops above.
+    #[serde(default)]
+    pub motion_mind: Option<MotionMindSetup>,
 }
 
 impl Setup {
@@ -189,6 +193,18 @@ pub trait Axis {
     fn raw_speed(&mut self) -> Result<i32, AxisError>;
     /// Sets the time-out after which the controller stops by itself, ms (command 145). Firmware without it refuses.
     fn set_stream_timeout(&mut self, milliseconds: u32) -> Result<(), AxisError>;
+    /// Writes the registers of a Motion Mind to RAM. The motor is off until the next command.
+    fn write_motion_mind(&mut self, _registers: MotionMindRegisters) -> Result<(), AxisError> {
+        Err(AxisError::Refused("registers of a Motion Mind".into()))
+    }
+    /// Ends a run on a Motion Mind: these registers, as they are, and the place where the motor is as the wanted one.
+    fn end_motion_mind(&mut self, _registers: MotionMindRegisters) -> Result<(), AxisError> {
+        Err(AxisError::Refused("registers of a Motion Mind".into()))
+    }
+    /// Between which places the motor is to stay, counts of the encoder. A controller that can watch that too is told.
+    fn set_travel(&mut self, _counts: (i64, i64)) -> Result<(), AxisError> {
+        Ok(())
+    }
     /// Tells whoever waits what is going on.
     fn progress(&mut self, _text: &str) {}
 }

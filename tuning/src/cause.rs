@@ -68,6 +68,10 @@ pub enum Cause {
     Asymmetric,
     /// The controller's loop follows no law that is known.
     UnknownLaw,
+    /// A Motion Mind is not in the mode in which it can be tuned.
+    WrongMode,
+    /// The controller has no loop of this kind.
+    NoSuchLoop,
 }
 
 impl Cause {
@@ -158,6 +162,13 @@ impl Cause {
             Self::Asymmetric => "The two directions differ by more than 5 %.",
             Self::UnknownLaw => {
                 "The controller's loop follows no law known to this program, so gains cannot be computed for it."
+            }
+            Self::WrongMode => {
+                "The Motion Mind is not in mode 4 with an encoder, the only mode that takes both a duty and a place over the wire. \
+                 Set its switches to mode 4, clear PULSEFB, and switch it off and on."
+            }
+            Self::NoSuchLoop => {
+                "This controller has no velocity loop under its position loop. Tune the position as PD or PID."
             }
         }
     }

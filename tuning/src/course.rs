@@ -1,6 +1,7 @@
 //! The record of an open-loop run as a fit needs it, and the counts that a model predicts for it.
 
 use crate::model::{Motion, PlantModel};
+use crate::motion_mind::{Limiter, LimiterState};
 use crate::rig::{Drive, Input, Point};
 
 /// Duty per second of the explicit highest acceleration: 100 % to -100 % in 100 ms (MCP manual, command 52).
@@ -22,6 +23,34 @@ pub struct Course {
     pub volts: Vec<(f64, f64)>,
     /// Speed at the first poll, counts/s.
     pub start_speed: f64,
+    /// How the controller takes a duty.
+    pub actuation: Actuation,
+}
+
+/// How a controller takes a duty.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Actuation {
+    /// Duty per second of its ramp; infinite where there is none.
+    pub slew_per_s: f64,
+    /// From the stamp of a command to its effect, with the age of a reading, s: the usual.
+    pub offset_s: f64,
+    /// AMPSLIMIT of a Motion Mind, whose limit of the current is one of the duty.
+    pub amps_limit: Option<u16>,
+}
+
+impl Default for Actuation {
+    /// A ramp of packet serial; half a tick of waiting and half a tick of age at 300 Hz.
+    fn default() -> Self {
+        Self { slew_per_s: DUTY_SLEW_PER_S, offset_s: 0.0035, amps_limit: None }
+    }
+}
+
+impl Actuation {
+    /// A Motion Mind: the next loop has the whole duty, and shows the place of the last one.
+    #[must_use]
+    pub fn motion_mind(amps_limit: u16) -> Self {
+        Self { slew_per_s: f64::INFINITY, offset_s: 0.0052, amps_limit: Some(amps_limit) }
+    }
 }
 
 impl Course {
@@ -61,6 +90,7 @@ impl Course {
             limited: inside().map(|p| p.limited).collect(),
             volts,
             start_speed,
+            actuation: Actuation::default(),
         }
     }
 
@@ -77,7 +107,14 @@ impl Course {
         volts.clear();
         let Some(&(start, _)) = self.counts.first() else { return };
         let motion = Motion { speed: self.start_speed, place: 0.0 };
-        let mut state = Cursor { t: start, duty: 0.0, goal: 0.0, motion };
+        let limiter = self.actuation.amps_limit.and_then(|amps| Limiter::new(amps, model.drive_limit));
+        // A limit of the duty leaves none of the current.
+        let model = &match self.actuation.amps_limit {
+            Some(_) => PlantModel { drive_limit: None, ..*model },
+            None => *model,
+        };
+        let mut state =
+            Cursor { t: start, duty: 0.0, goal: 0.0, motion, limiter, limit: LimiterState::default() };
         let mut next = 0;
         while let Some(&(t, duty)) = self.duties.get(next)
             && t <= start
@@ -105,6 +142,12 @@ impl Course {
     }
 
     fn advance(&self, model: &PlantModel, state: &mut Cursor, to: f64) {
+        if self.actuation.slew_per_s.is_infinite() {
+            state.duty = state.goal;
+        }
+        if let Some(limiter) = state.limiter {
+            return advance_limited(model, &limiter, state, to);
+        }
         while state.t < to - 1e-12 {
             let left = to - state.t;
             let gap = state.goal - state.duty;
@@ -112,14 +155,12 @@ impl Course {
                 let longest = if model.drive_limit.is_some() { LIMITED_STEP_S } else { left };
                 (left.min(longest), state.duty)
             } else {
-                let step = left.min(RAMP_STEP_S).min(gap.abs() / DUTY_SLEW_PER_S);
-                let change = (DUTY_SLEW_PER_S * step).min(gap.abs()) * gap.signum();
+                let slew = self.actuation.slew_per_s;
+                let step = left.min(RAMP_STEP_S).min(gap.abs() / slew);
+                let change = (slew * step).min(gap.abs()) * gap.signum();
                 let middle = state.duty + 0.5 * change;
-                state.duty = if gap.abs() <= DUTY_SLEW_PER_S * step * 1.000_001 {
-                    state.goal
-                } else {
-                    state.duty + change
-                };
+                state.duty =
+                    if gap.abs() <= slew * step * 1.000_001 { state.goal } else { state.duty + change };
                 (step.max(1e-9), middle)
             };
             model.step(&mut state.motion, duty, step);
@@ -128,9 +169,24 @@ impl Course {
     }
 }
 
+/// The same where a limiter moves the bound of the duty.
+fn advance_limited(model: &PlantModel, limiter: &Limiter, state: &mut Cursor, to: f64) {
+    while state.t < to - 1e-12 {
+        let step = (to - state.t).min(Limiter::step_s());
+        let duty = Limiter::left(&state.limit, state.duty);
+        let before = state.motion.speed;
+        model.step(&mut state.motion, duty, step);
+        let emf = 0.5 * (before + state.motion.speed) / model.gain_counts_per_s;
+        limiter.see(&mut state.limit, duty - emf, step);
+        state.t += step;
+    }
+}
+
 struct Cursor {
     t: f64,
     duty: f64,
     goal: f64,
     motion: Motion,
+    limiter: Option<Limiter>,
+    limit: LimiterState,
 }

@@ -23,8 +23,8 @@ const MOST_COULOMB: f64 = 0.35;
 const MOST_LOAD: f64 = 0.35;
 /// Prior standard deviation of the load, as duty: most axes have none.
 const LOAD_PRIOR: f64 = 0.03;
-/// Prior of the offset: half a tick of waiting, perhaps a whole tick more, and the winding; mean and standard deviation, s.
-const OFFSET_PRIOR_S: (f64, f64) = (0.0035, 0.0010);
+/// Standard deviation of the offset about the usual one: perhaps a whole tick more, and the winding, s.
+const OFFSET_SIGMA_S: f64 = 0.0010;
 /// Highest sag, and its prior; standard deviation of a battery reading over the battery.
 const MOST_SAG: f64 = 0.4;
 const SAG_PRIOR: (f64, f64) = (0.05, 0.05);
@@ -136,7 +136,7 @@ impl<'a> Problem<'a> {
         let readings = self.course.volts.iter().zip(&volts).map(|((_, v), p)| soft((v - p) / VOLTS_SIGMA));
         let prior = [
             model.load_duty / LOAD_PRIOR,
-            (offset - OFFSET_PRIOR_S.0) / OFFSET_PRIOR_S.1,
+            (offset - self.course.actuation.offset_s) / OFFSET_SIGMA_S,
             (model.sag - SAG_PRIOR.0) / SAG_PRIOR.1,
             (model.tau_s / TAU_PRIOR.0).ln() / TAU_PRIOR.1,
             q.get(6).zip(self.limit).map_or(0.0, |(ln, limit)| (ln - limit.ln()) / LIMIT_PRIOR),

@@ -13,6 +13,8 @@ use serde::{Deserialize, Serialize};
 /// Filters tried, s, and delays tried, ticks.
 const FILTERS_S: [f64; 9] = [0.0, 0.002, 0.004, 0.006, 0.008, 0.010, 0.013, 0.017, 0.022];
 const DELAYS: [f64; 6] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0];
+/// Delays tried of a Motion Mind, whose ticks are longer.
+const LONG_DELAYS: [f64; 8] = [0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0];
 /// Time constants tried, in prior standard deviations of their logarithm, and the bounds of that deviation.
 const TAU_STEPS: [f64; 9] = [-2.4, -1.8, -1.2, -0.6, 0.0, 0.6, 1.2, 1.8, 2.4];
 const TAU_PRIOR: (f64, f64) = (0.02, 0.6);
@@ -105,8 +107,13 @@ pub fn fit_lag(
     }
     let spread = (1.5 * sd_ln_tau).clamp(TAU_PRIOR.0, TAU_PRIOR.1);
     let mut cases: Vec<Case> = Vec::new();
-    for filter_s in FILTERS_S {
-        for delay_ticks in DELAYS {
+    // A Motion Mind has no speed that it could filter.
+    let (filters_s, delays) = match law.motion_mind {
+        Some(_) => (&FILTERS_S[..1], &LONG_DELAYS[..]),
+        None => (&FILTERS_S[..], &DELAYS[..]),
+    };
+    for &filter_s in filters_s {
+        for &delay_ticks in delays {
             let lag = Lag { filter_s, delay_ticks };
             // A lag that lets more of the rounding through explains a rougher duty.
             let linear = LoopPlant::new(DiscretePlant::of(plant, law.tick_s()), law, lag);

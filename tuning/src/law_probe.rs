@@ -69,7 +69,7 @@ impl LawFindings {
             None if position => return None,
             None => usual.position_scale,
         };
-        Some(LoopLaw { rate_hz, per_tick, position_scale, feed_forward })
+        Some(LoopLaw { rate_hz, per_tick, position_scale, feed_forward, ..*usual })
     }
 }
 
@@ -181,7 +181,8 @@ mod tests {
         assert_eq!(found.law(&usual, true), Some(usual));
         let other =
             LawFindings { feed_forward: 0.01, sums_per_s: 615.0, position_scale: Some(2_000.0), ..found };
-        let law = LoopLaw { rate_hz: 625, per_tick: true, position_scale: 2048.0, feed_forward: false };
+        let law =
+            LoopLaw { rate_hz: 625, per_tick: true, position_scale: 2048.0, feed_forward: false, ..usual };
         assert_eq!(other.law(&usual, true), Some(law));
         let seconds = LawFindings { sums_per_s: 1.02, position_scale: None, ..found };
         assert_eq!(seconds.law(&usual, false), Some(LoopLaw { per_tick: false, ..usual }));

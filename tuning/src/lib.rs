@@ -17,6 +17,7 @@ pub mod law_probe;
 pub mod linear;
 mod margin;
 pub mod model;
+pub mod motion_mind;
 pub mod record;
 pub mod registers;
 pub mod report;

@@ -1,5 +1,6 @@
 //! The model of an axis that identification fills and design uses, and the law the controller is taken to follow.
 
+use crate::motion_mind::{self, MotionMindLaw};
 use serde::{Deserialize, Serialize};
 
 /// Share of the damping that is viscous friction, not back-EMF. Only a current limit tells them apart; small in every motor, so one
@@ -69,12 +70,15 @@ pub struct LoopLaw {
     pub position_scale: f64,
     /// Whether the setpoint's share of QPPS is added to the duty.
     pub feed_forward: bool,
+    /// The law of a Motion Mind instead: one loop on the place, its output a duty.
+    #[serde(default)]
+    pub motion_mind: Option<MotionMindLaw>,
 }
 
 impl Default for LoopLaw {
     /// Assumed: 300 Hz, gains per tick, position gains x 1024, with feed-forward.
     fn default() -> Self {
-        Self { rate_hz: 300, per_tick: true, position_scale: 1024.0, feed_forward: true }
+        Self { rate_hz: 300, per_tick: true, position_scale: 1024.0, feed_forward: true, motion_mind: None }
     }
 }
 
@@ -89,6 +93,21 @@ impl LoopLaw {
     #[must_use]
     pub fn gain_step(&self) -> f64 {
         if self.per_tick { 1.0 } else { self.tick_s() }
+    }
+
+    /// The bounds that a position integral may be given where it needs `wanted`, counts x s.
+    #[must_use]
+    pub fn sum_bounds(&self, wanted: f64) -> Vec<f64> {
+        if self.motion_mind.is_some() { motion_mind::SUM_BOUNDS_S.to_vec() } else { vec![wanted] }
+    }
+
+    /// Gains as the registers can hold them. Those of packet serial are so fine that it makes no difference.
+    #[must_use]
+    pub fn rounded(&self, gains: &Gains, qpps: f64) -> Gains {
+        match self.motion_mind {
+            Some(_) => motion_mind::rounded(gains, qpps),
+            None => *gains,
+        }
     }
 }
 

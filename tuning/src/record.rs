@@ -4,6 +4,7 @@
 //! same decisions and the same gains to the last bit.
 
 use crate::axis::{Axis, AxisError, Exchange, PositionRegisters, Sample, Setup, VelocityRegisters, Want};
+use crate::motion_mind::MotionMindRegisters;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
@@ -37,6 +38,12 @@ pub enum Entry {
     RawSpeed(Result<i32, AxisError>),
     /// Stream time-out set.
     Timeout(u32, Result<(), AxisError>),
+    /// Registers of a Motion Mind written.
+    MotionMind(MotionMindRegisters, Result<(), AxisError>),
+    /// The run on a Motion Mind ended with these.
+    MotionMindEnd(MotionMindRegisters, Result<(), AxisError>),
+    /// Travel told.
+    Travel((i64, i64), Result<(), AxisError>),
 }
 
 /// Writes down what passes between a tuner and an axis.
@@ -134,6 +141,24 @@ impl Axis for Recorder<'_> {
     fn set_stream_timeout(&mut self, milliseconds: u32) -> Result<(), AxisError> {
         let answer = self.axis.set_stream_timeout(milliseconds);
         self.entries.push(Entry::Timeout(milliseconds, answer.clone()));
+        answer
+    }
+
+    fn write_motion_mind(&mut self, registers: MotionMindRegisters) -> Result<(), AxisError> {
+        let answer = self.axis.write_motion_mind(registers);
+        self.entries.push(Entry::MotionMind(registers, answer.clone()));
+        answer
+    }
+
+    fn end_motion_mind(&mut self, registers: MotionMindRegisters) -> Result<(), AxisError> {
+        let answer = self.axis.end_motion_mind(registers);
+        self.entries.push(Entry::MotionMindEnd(registers, answer.clone()));
+        answer
+    }
+
+    fn set_travel(&mut self, counts: (i64, i64)) -> Result<(), AxisError> {
+        let answer = self.axis.set_travel(counts);
+        self.entries.push(Entry::Travel(counts, answer.clone()));
         answer
     }
 
@@ -278,6 +303,27 @@ impl Axis for Player {
     fn set_stream_timeout(&mut self, milliseconds: u32) -> Result<(), AxisError> {
         match self.next() {
             Some(Entry::Timeout(was, answer)) if was == milliseconds => answer,
+            _ => self.stray(),
+        }
+    }
+
+    fn write_motion_mind(&mut self, registers: MotionMindRegisters) -> Result<(), AxisError> {
+        match self.entries.next() {
+            Some(Entry::MotionMind(was, answer)) if was == registers => answer,
+            _ => self.stray(),
+        }
+    }
+
+    fn end_motion_mind(&mut self, registers: MotionMindRegisters) -> Result<(), AxisError> {
+        match self.entries.next() {
+            Some(Entry::MotionMindEnd(was, answer)) if was == registers => answer,
+            _ => self.stray(),
+        }
+    }
+
+    fn set_travel(&mut self, counts: (i64, i64)) -> Result<(), AxisError> {
+        match self.entries.next() {
+            Some(Entry::Travel(was, answer)) if was == counts => answer,
             _ => self.stray(),
         }
     }

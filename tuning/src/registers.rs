@@ -2,7 +2,6 @@
 
 use crate::axis::{PositionRegisters, VelocityRegisters};
 use crate::model::{Gains, LoopLaw, Pid};
-use serde::{Deserialize, Serialize};
 
 /// Wire value of a velocity gain of 1 (MCP manual, command 28).
 const VELOCITY_SCALE: f64 = 65_536.0;
@@ -66,47 +65,6 @@ fn whole(value: f64) -> u32 {
     value.round() as u32
 }
 
-/// Registers of a Motion Mind 3 (sections 3.10 to 3.15 of its manual): `PWM = (PTERM e + ITERM sum(e) + DTERM diff(e)) / 2^PIDSCALAR
-/// + speed x VELOCITYFF / 255`, every 5 ms, 1023 = full duty.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct MotionMindRegisters {
-    /// Proportional.
-    pub pterm: u16,
-    /// Integral.
-    pub iterm: u16,
-    /// Derivative.
-    pub dterm: u16,
-    /// Power of two that the sum is divided by.
-    pub pidscalar: u8,
-    /// Feed-forward, 255 = 1 per count and loop.
-    pub velocity_ff: u8,
-    /// Share of the wanted feed-forward that the register can carry; below 1 for slow encoders.
-    pub covered_feed_forward: f64,
-}
-
-/// Position gains (counts in, counts/s out) as Motion Mind registers.
-#[must_use]
-pub fn motion_mind_registers(position: &Pid, qpps: f64) -> MotionMindRegisters {
-    const LOOP_S: f64 = 0.005;
-    const FULL_PWM: f64 = 1023.0;
-    let plain = [position.p, position.i * LOOP_S, position.d / LOOP_S].map(|gain| FULL_PWM * gain / qpps);
-    let fits =
-        |scalar: u8| plain.iter().all(|gain| (gain * 2.0_f64.powi(i32::from(scalar))).round() <= 65_535.0);
-    let pidscalar = (0..=32).rev().find(|scalar| fits(*scalar)).unwrap_or(0);
-    let scale = 2.0_f64.powi(i32::from(pidscalar));
-    let [pterm, iterm, dterm] = plain.map(|gain| (gain * scale).round() as u16);
-    let wanted = 255.0 * FULL_PWM / (qpps * LOOP_S);
-    let velocity_ff = wanted.round().min(255.0) as u8;
-    MotionMindRegisters {
-        pterm,
-        iterm,
-        dterm,
-        pidscalar,
-        velocity_ff,
-        covered_feed_forward: (255.0 / wanted).min(1.0),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -128,14 +86,5 @@ mod tests {
         let gains = velocity_gains(&factory, &law);
         assert_eq!((gains.p, gains.i), (1.0, 150.0));
         assert!((gains.d - 0.25 / 300.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn motion_mind_feed_forward_saturates_below_204600_counts_per_second() {
-        let slow = motion_mind_registers(&Pid { p: 10.0, i: 0.0, d: 0.1 }, 20_460.0);
-        assert_eq!(slow.velocity_ff, 255);
-        assert!((slow.covered_feed_forward - 0.1).abs() < 1e-9);
-        assert!(slow.pterm.max(slow.dterm) > 32_767, "the scale uses the register's range: {slow:?}");
-        assert_eq!(motion_mind_registers(&Pid::default(), 409_200.0).velocity_ff, 128);
     }
 }

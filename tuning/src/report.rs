@@ -7,6 +7,7 @@ use crate::experiment::{FreeRun, Probe, Slack, WindowRun};
 use crate::fit::Fit;
 use crate::lag::LagFit;
 use crate::law_probe::LawFindings;
+use crate::motion_mind::MotionMindRegisters;
 use crate::record::{Entry, Player};
 use crate::rules::Classic;
 use crate::tune::{Request, tune};
@@ -94,6 +95,9 @@ pub struct Report {
     pub velocity: Option<VelocityRegisters>,
     /// Position registers proposed.
     pub position: Option<PositionRegisters>,
+    /// Registers proposed for a Motion Mind; it has neither of the two above.
+    #[serde(default)]
+    pub motion_mind: Option<MotionMindRegisters>,
     /// Length of identification and of the whole run, s.
     pub seconds: (f64, f64),
     /// The raw record.

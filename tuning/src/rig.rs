@@ -9,6 +9,7 @@ use crate::axis::{
 };
 use crate::cause::Cause;
 use crate::diagnosis::{DIAGNOSIS_S, diagnose};
+use crate::motion_mind::{MotionMindRegisters, SPEED_STEP_COUNTS_PER_S};
 use crate::watch::Watch;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
@@ -37,6 +38,8 @@ const REST_LOOK: Duration = Duration::from_millis(40);
 /// Polls whose exchanges are the usual ones, and how much longer a prompt one may take, s.
 const USUAL_POLLS: usize = 17;
 const LATE_S: f64 = 0.004;
+/// Steps of 10 mA in one of AMPSLIMIT.
+const AMPSLIMIT_STEP: u32 = 2;
 /// Silence after which the link counts as lost, s.
 const LINK_LOST_S: f64 = 0.15;
 
@@ -138,6 +141,7 @@ pub struct Rig<'a> {
     /// Polls in a row with a current beyond the highest.
     beyond: u32,
     max_current_raw: u32,
+    kept: Option<MotionMindRegisters>,
     gains_touched: bool,
     timeout_touched: bool,
     limits_touched: bool,
@@ -166,6 +170,7 @@ impl<'a> Rig<'a> {
             turn: 0,
             beyond: 0,
             max_current_raw: setup.max_current_raw,
+            kept: None,
             gains_touched: false,
             timeout_touched: false,
             limits_touched: false,
@@ -182,6 +187,15 @@ impl<'a> Rig<'a> {
 
     fn get_ready(&mut self) -> Result<(), Cause> {
         let setup = self.setup;
+        if let Some(unit) = setup.motion_mind {
+            if !unit.can_be_tuned() {
+                return Err(Cause::WrongMode);
+            }
+            self.watch.is_abrupt = true;
+            if let Some(travel) = self.options.travel {
+                retried(|| self.axis.set_travel(travel))?;
+            }
+        }
         if setup.is_torque_mode() {
             if !self.options.clear_winding {
                 return Err(Cause::TorqueMode);
@@ -233,12 +247,25 @@ impl<'a> Rig<'a> {
 
     /// Commands a speed in counts/s.
     pub fn speed(&mut self, counts_per_s: f64) -> Result<(), Cause> {
-        let whole = counts_per_s.round() as i32;
+        let whole = self.whole_speed(counts_per_s) as i32;
         let exchange = self.acknowledged(|axis| axis.command_speed(whole))?;
         let t = exchange.middle_s() - self.epoch_s;
         self.drives.push(Drive { t, input: Input::Speed(f64::from(whole)) });
         self.watch.release(t);
         Ok(())
+    }
+
+    /// The nearest speed that can be commanded, counts/s.
+    #[must_use]
+    pub fn whole_speed(&self, counts_per_s: f64) -> f64 {
+        let step = self.speed_step();
+        (counts_per_s / step).round() * step
+    }
+
+    /// The step of a speed command, counts/s.
+    #[must_use]
+    pub fn speed_step(&self) -> f64 {
+        if self.setup.motion_mind.is_some() { SPEED_STEP_COUNTS_PER_S } else { 1.0 }
     }
 
     /// Commands a position in counts from the start of the run.
@@ -274,6 +301,23 @@ impl<'a> Rig<'a> {
     pub fn write_position(&mut self, registers: PositionRegisters) -> Result<(), Cause> {
         self.gains_touched = true;
         self.acknowledged(|axis| axis.write_position(registers))
+    }
+
+    /// Writes the registers of a Motion Mind to RAM; they are put back unless the run keeps its own.
+    pub fn write_motion_mind(&mut self, registers: MotionMindRegisters) -> Result<(), Cause> {
+        self.gains_touched = true;
+        retried(|| self.axis.write_motion_mind(registers))
+    }
+
+    /// AMPSLIMIT of a Motion Mind during the run, 20 mA.
+    #[must_use]
+    pub fn amps_limit(&self) -> u16 {
+        u16::try_from(self.max_current_raw / AMPSLIMIT_STEP).unwrap_or(u16::MAX)
+    }
+
+    /// What a Motion Mind holds at the end of the run.
+    pub fn keep_motion_mind(&mut self, registers: MotionMindRegisters) {
+        self.kept = Some(registers);
     }
 
     /// The unfiltered speed.
@@ -397,7 +441,11 @@ impl<'a> Rig<'a> {
     /// Puts back what the run has changed. What cannot be said now is left to whoever owns the link.
     fn put_back(&mut self, keep_gains: bool) {
         let before = self.setup;
-        if self.gains_touched && !keep_gains {
+        if let Some(unit) = before.motion_mind {
+            // Open-loop duties use the gain registers too, so that they are put back whatever the run did.
+            let registers = self.kept.filter(|_| keep_gains).unwrap_or(unit.registers);
+            let _ = retried(|| self.axis.end_motion_mind(registers));
+        } else if self.gains_touched && !keep_gains {
             let _ = retried(|| self.axis.write_velocity(before.velocity));
             let _ = retried(|| self.axis.write_position(before.position));
         }

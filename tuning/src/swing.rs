@@ -7,9 +7,9 @@ use crate::lag::ClosedCourse;
 use nalgebra::{Matrix4, Vector4};
 use std::f64::consts::TAU;
 
-/// Variance of a count's rounding, and standard deviation of its time, s.
+/// Variance of a count's rounding, and standard deviation of its time at 300 Hz, s.
 const ROUNDING: f64 = 1.0 / 12.0;
-const STAMP_S: f64 = 0.001;
+pub(crate) const STAMP_S: f64 = 0.001;
 /// The swings looked for, Hz.
 const SWINGS_HZ: (f64, f64) = (2.5, 16.0);
 /// How uncertain an average of flanks may be, as a share of the step, and the bounds of its width, s.

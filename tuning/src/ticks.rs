@@ -2,6 +2,7 @@
 //! limit and wind-up are in it; a twin of the axis for predictions.
 
 use crate::model::{Gains, Lag, LoopLaw, Motion, PlantModel};
+use crate::motion_mind::{Limiter, LimiterState, PlaceLoop};
 use crate::score::{LOAD_STEP_DUTY, Score, VELOCITY_STEP, horizon_s, position_step};
 
 /// What the loop is to do.
@@ -31,6 +32,8 @@ pub struct TickLoop {
     place_integral: f64,
     last_place_error: Option<f64>,
     last_target: f64,
+    place_loop: PlaceLoop,
+    limit: LimiterState,
     queue: [f64; 9],
     smooth: bool,
     /// The duty given in the last tick.
@@ -55,6 +58,8 @@ impl TickLoop {
             place_integral: 0.0,
             last_place_error: None,
             last_target: f64::NAN,
+            place_loop: PlaceLoop::default(),
+            limit: LimiterState::default(),
             queue: [0.0; 9],
             smooth: false,
             duty: 0.0,
@@ -78,6 +83,9 @@ impl TickLoop {
         if self.gains.velocity.i > 0.0 {
             self.integral = (duty * self.qpps - forward) / self.gains.velocity.i;
         }
+        if let Some(law) = self.law.motion_mind {
+            self.place_loop = PlaceLoop::steady(law, &self.gains, self.qpps, self.law.tick_s(), speed, duty);
+        }
         self.queue = [duty; 9];
         self.duty = duty;
     }
@@ -89,9 +97,15 @@ impl TickLoop {
         let share = tick_s / (self.lag.filter_s + tick_s);
         self.filtered += share * ((count - self.last_count) / tick_s - self.filtered);
         self.last_count = count;
-        let duty = match setpoint {
-            Setpoint::Speed(speed) => self.velocity(speed),
-            Setpoint::Place(place, bound) => self.place(place, bound, count),
+        let duty = match (self.law.motion_mind, setpoint) {
+            (Some(law), _) => {
+                let gains = (&self.gains, self.qpps, tick_s);
+                let duty = self.place_loop.turn(law, gains, setpoint, count, self.smooth);
+                self.place_loop.note_bound(self.limit.bound);
+                Limiter::left(&self.limit, duty)
+            }
+            (None, Setpoint::Speed(speed)) => self.velocity(speed),
+            (None, Setpoint::Place(place, bound)) => self.place(place, bound, count),
         };
         self.queue.rotate_right(1);
         self.queue[0] = duty;
@@ -100,7 +114,9 @@ impl TickLoop {
         self.duty = self.queue[whole] * (1.0 - part) + self.queue[whole + 1] * part;
         let mut plant = self.plant;
         plant.load_duty += load_duty;
-        if plant.drive_limit.is_some() {
+        if let Some(law) = self.law.motion_mind {
+            self.step_limited(law.amps_limit, &plant);
+        } else if plant.drive_limit.is_some() {
             for _ in 0..2 {
                 plant.step(&mut self.motion, self.duty, 0.5 * tick_s);
             }
@@ -108,6 +124,17 @@ impl TickLoop {
             plant.step(&mut self.motion, self.duty, tick_s);
         }
         self.duty
+    }
+
+    /// A tick under a limiter that follows the current with the duty.
+    fn step_limited(&mut self, amps_limit: u16, plant: &PlantModel) {
+        let tick_s = self.law.tick_s();
+        let before = self.motion.speed;
+        PlantModel { drive_limit: None, ..*plant }.step(&mut self.motion, self.duty, tick_s);
+        if let Some(limiter) = Limiter::new(amps_limit, plant.drive_limit) {
+            let emf = 0.5 * (before + self.motion.speed) / plant.gain_counts_per_s;
+            limiter.see(&mut self.limit, self.duty - emf, tick_s);
+        }
     }
 
     fn velocity(&mut self, setpoint: f64) -> f64 {

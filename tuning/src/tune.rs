@@ -2,9 +2,9 @@
 
 use crate::axis::{Axis, EncoderClass, Setup};
 use crate::cause::Cause;
-use crate::course::Course;
+use crate::course::{Actuation, Course};
 use crate::design::{
-    Design, Goal, Task, USUAL_OVERSHOOT, design_pd, design_pid, design_piv, design_velocity,
+    Design, Goal, Task, USUAL_OVERSHOOT, design_pd, design_pid, design_piv, design_velocity, unmodelled_ticks,
 };
 use crate::experiment::{Probe, go_to, measure_slack, run_free, run_probe, run_window};
 use crate::fit::{Fit, fit};
@@ -12,6 +12,7 @@ use crate::lag::LagFit;
 use crate::law_probe::probe_law;
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, Lag, LoopLaw, PlantModel};
+use crate::motion_mind::{self, MotionMindLaw};
 use crate::record::Recorder;
 use crate::registers::{position_registers, velocity_gains, velocity_registers};
 use crate::report::{FORMAT, Report, Verdict};
@@ -25,12 +26,13 @@ use serde::{Deserialize, Serialize};
 const USUAL_LAG: Lag = Lag { filter_s: 0.004, delay_ticks: 1.0 };
 /// The longest that it may be where an axis has no room to measure it: a filter of three ticks.
 const LONGEST_LAG: Lag = Lag { filter_s: 0.010, delay_ticks: 1.0 };
+/// The same of a Motion Mind, which filters nothing. Assumed: what it computes it gives in the same loop; half a tick for the winding.
+const MOTION_MIND_LAG: Lag = Lag { filter_s: 0.0, delay_ticks: 0.5 };
+const LONGEST_MOTION_MIND_LAG: Lag = Lag { filter_s: 0.0, delay_ticks: 1.5 };
 /// Highest chi-square of a fit that is believed.
 const WORST_CHI_SQUARE: f64 = 12.0;
 /// Loosest time constant, as standard deviation of its logarithm, of a motor slower than four polls.
 const LOOSEST_TAU: f64 = 0.5;
-/// Lag that the model leaves out: the winding, a springy shaft.
-const UNMODELLED_TICKS: f64 = 0.5;
 /// Misfit of the closed loop beyond which the model is taken as incomplete, and what is then left of the sensitivity's excess.
 const ODD_CHI_SQUARE: f64 = 2.2;
 const ODD_SHARE: f64 = 0.6;
@@ -136,6 +138,7 @@ pub fn tune(axis: &mut dyn Axis, request: &Request) -> Report {
         report.verdict = Verdict::Refused;
         report.velocity = None;
         report.position = None;
+        report.motion_mind = None;
     } else if !report.causes.is_empty() {
         report.verdict = Verdict::TunedWithWarnings;
     }
@@ -184,12 +187,14 @@ fn blank(request: &Request) -> Report {
         measured: None,
         velocity: None,
         position: None,
+        motion_mind: None,
         seconds: (0.0, 0.0),
         record: Vec::new(),
     }
 }
 
 fn run(rig: &mut Rig<'_>, request: &Request, report: &mut Report) -> Result<(), Cause> {
+    let request = &for_family(rig, request, report)?;
     if request.method == Method::Velocity && rig.setup.encoder == EncoderClass::AbsoluteWrapping {
         return Err(Cause::WrappingEncoder);
     }
@@ -214,8 +219,12 @@ fn run(rig: &mut Rig<'_>, request: &Request, report: &mut Report) -> Result<(), 
     let task = Task {
         plant: found.fit.model,
         law: request.law,
-        lag: USUAL_LAG,
-        worst_lag: if request.excitation == Excitation::Free { USUAL_LAG } else { LONGEST_LAG },
+        lag: usual_lag(&request.law),
+        worst_lag: if request.excitation == Excitation::Free {
+            usual_lag(&request.law)
+        } else {
+            longest_lag(&request.law)
+        },
         qpps: found.qpps,
         goal: Goal::of_level(request.level),
         noise_factor: (probe.noise_counts / ROUNDED_COUNTS).max(1.0),
@@ -237,6 +246,29 @@ fn run(rig: &mut Rig<'_>, request: &Request, report: &mut Report) -> Result<(), 
     Ok(())
 }
 
+/// The request with the law of the family.
+fn for_family(rig: &Rig<'_>, request: &Request, report: &mut Report) -> Result<Request, Cause> {
+    if rig.setup.motion_mind.is_none() {
+        return Ok(*request);
+    }
+    if request.method == Method::Piv {
+        return Err(Cause::NoSuchLoop);
+    }
+    let request = Request { law: motion_mind::law(), ..*request };
+    report.request.law = request.law;
+    Ok(request)
+}
+
+/// The lag that is assumed of a law before it is measured.
+fn usual_lag(law: &LoopLaw) -> Lag {
+    if law.motion_mind.is_some() { MOTION_MIND_LAG } else { USUAL_LAG }
+}
+
+/// The longest lag of a law where there is no room to measure it.
+fn longest_lag(law: &LoopLaw) -> Lag {
+    if law.motion_mind.is_some() { LONGEST_MOTION_MIND_LAG } else { LONGEST_LAG }
+}
+
 /// The width that fits into the travel window around where the axis stands; from near an end it goes to the middle first.
 fn usable_width(rig: &mut Rig<'_>, probe: &Probe, width: f64) -> Result<f64, Cause> {
     let Some((low, high)) = rig.travel_counts() else { return Ok(width) };
@@ -256,6 +288,13 @@ fn with_law(
     found: &Found,
     report: &mut Report,
 ) -> Result<Request, Cause> {
+    if request.law.motion_mind.is_some() {
+        // The manual tells this law; what depends on the motor is the feed-forward.
+        let mind = MotionMindLaw { amps_limit: rig.amps_limit(), ..MotionMindLaw::of_qpps(found.qpps) };
+        let law = LoopLaw { motion_mind: Some(mind), ..request.law };
+        report.request.law = law;
+        return Ok(Request { law, ..*request });
+    }
     if !request.probe_law || !request.verify {
         return Ok(*request);
     }
@@ -284,7 +323,7 @@ fn identify_free(rig: &mut Rig<'_>, probe: &Probe, report: &mut Report) -> Resul
         report.causes.push(Cause::Asymmetric);
     }
     let now_s = rig.now_s();
-    let course = Course::new(&rig.points, &rig.drives, run.from_s, now_s, probe.volts);
+    let course = course_of(rig, run.from_s, now_s, probe.volts);
     let limit = rig.drive_limit(probe.stall_amps);
     let found =
         fit(&course, full / run.full_duty, run.tau_s, limit, brake_share(rig)).ok_or(Cause::TooCoarse)?;
@@ -307,13 +346,21 @@ fn identify_window(
     let run = run_window(rig, probe, width)?;
     report.window = Some(run);
     let now_s = rig.now_s();
-    let course = Course::new(&rig.points, &rig.drives, run.from_s, now_s, probe.volts);
+    let course = course_of(rig, run.from_s, now_s, probe.volts);
     let start = run.top_speed / (probe.start_duty + 0.4);
     let limit = rig.drive_limit(probe.stall_amps);
     let found = fit(&course, start, 0.06, limit, brake_share(rig)).ok_or(Cause::TooCoarse)?;
     believe(&found, rig.options.poll_s, &course)?;
     let qpps = found.model.gain_counts_per_s * (1.0 - found.model.coulomb_duty);
     Ok(Found { fit: found, qpps })
+}
+
+fn course_of(rig: &Rig<'_>, from_s: f64, to_s: f64, volts: Option<f64>) -> Course {
+    let course = Course::new(&rig.points, &rig.drives, from_s, to_s, volts);
+    match rig.setup.motion_mind {
+        Some(_) => Course { actuation: Actuation::motion_mind(rig.amps_limit()), ..course },
+        None => course,
+    }
 }
 
 /// The current limit for braking over that for driving.
@@ -342,9 +389,7 @@ fn settle_lag(rig: &mut Rig<'_>, request: &Request, task: Task, report: &mut Rep
     }
     let careful = Task { goal: Goal { ms: 1.4, ..task.goal }, ..task };
     let Some(design) = design_velocity(&careful) else { return Ok(task) };
-    let registers = velocity_registers(&design.gains.velocity, task.qpps, &request.law);
-    let gains = Gains { velocity: velocity_gains(&registers, &request.law), ..Gains::default() };
-    rig.write_velocity(registers)?;
+    let gains = write_careful(rig, &design.gains, &task)?;
     let sd_ln_tau = report.fit.map_or(0.1, |fit| fit.sd_ln_tau);
     let Some((found, noise_factor)) = measure_lag(rig, &careful, &gains, sd_ln_tau)? else {
         report.causes.push(Cause::LagUnknown);
@@ -372,14 +417,26 @@ pub(crate) fn with_slack(
     Ok(Task { slack_counts: report.slack.map_or(0.0, |slack| slack.counts), ..task })
 }
 
+/// Writes the gains of a velocity loop, and gives them as the registers hold them.
+fn write_careful(rig: &mut Rig<'_>, gains: &Gains, task: &Task) -> Result<Gains, Cause> {
+    if let (Some(unit), Some(law)) = (rig.setup.motion_mind, task.law.motion_mind) {
+        let registers = unit.registers.with(gains, task.qpps, law);
+        rig.write_motion_mind(registers)?;
+        return Ok(registers.gains(task.qpps, false));
+    }
+    let registers = velocity_registers(&gains.velocity, task.qpps, &task.law);
+    rig.write_velocity(registers)?;
+    Ok(Gains { velocity: velocity_gains(&registers, &task.law), ..Gains::default() })
+}
+
 fn with_lag(task: Task, found: &LagFit) -> Task {
     let wide = found.interval_s.1 - found.interval_s.0 > WIDEST_LAG_S;
-    if wide && found.interval_s.0 <= USUAL_LAG.total_s(&task.law) {
+    if wide && found.interval_s.0 <= usual_lag(&task.law).total_s(&task.law) {
         return task;
     }
     let plant = PlantModel { tau_s: task.plant.tau_s * found.tau_scale, ..task.plant };
     // The winding and whatever else the model leaves out.
-    let worst_lag = Lag { delay_ticks: found.worst.delay_ticks + UNMODELLED_TICKS, ..found.worst };
+    let worst_lag = Lag { delay_ticks: found.worst.delay_ticks + unmodelled_ticks(&task.law), ..found.worst };
     let (mut goal, mut least_integral_s, mut most_overshoot) = (task.goal, 0.0, task.most_overshoot);
     if found.chi_square > ODD_CHI_SQUARE {
         // Something swings or has play that the model knows nothing of: keep more distance.
@@ -412,6 +469,11 @@ pub fn propose(
     travel: Option<(i64, i64)>,
 ) {
     let law = &request.law;
+    if let (Some(unit), Some(mind)) = (report.before.and_then(|setup| setup.motion_mind), law.motion_mind) {
+        report.motion_mind = Some(unit.registers.with(&design.gains, task.qpps, mind));
+        report.design = Some(as_loop(task, design));
+        return;
+    }
     report.velocity = Some(velocity_registers(&design.gains.velocity, task.qpps, law));
     let before = report.before.map_or((0, 0), |setup| (setup.position.min, setup.position.max));
     let travel = match travel {
@@ -420,10 +482,14 @@ pub fn propose(
         None => before,
     };
     report.position = design.gains.position.is_some().then(|| position_registers(&design.gains, law, travel));
-    let plant = LoopPlant::new(DiscretePlant::of(&task.plant, law.tick_s()), law, task.lag);
-    let mut design = design;
-    design.ms = plant.margins(&design.gains, task.qpps).ms;
-    report.design = Some(design);
+    report.design = Some(as_loop(task, design));
+}
+
+/// A design with the sensitivity that its gains have as they are.
+fn as_loop(task: &Task, design: Design) -> Design {
+    let gains = task.law.rounded(&design.gains, task.qpps);
+    let plant = LoopPlant::new(DiscretePlant::of(&task.plant, task.law.tick_s()), &task.law, task.lag);
+    Design { gains, ms: plant.margins(&gains, task.qpps).ms, ..design }
 }
 
 fn clamp(counts: i64) -> i32 {
@@ -431,6 +497,10 @@ fn clamp(counts: i64) -> i32 {
 }
 
 fn write_final(rig: &mut Rig<'_>, report: &Report) -> Result<(), Cause> {
+    if let Some(registers) = report.motion_mind {
+        rig.keep_motion_mind(registers);
+        return Ok(());
+    }
     if let Some(velocity) = report.velocity {
         rig.write_velocity(velocity)?;
     }

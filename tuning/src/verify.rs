@@ -62,7 +62,7 @@ pub fn measure_lag(
 /// Six steps about the middle speed, from rest. The motor is braked at the end.
 fn run_steps(rig: &mut Rig<'_>, task: &Task, gains: &Gains) -> Result<(f64, f64), Cause> {
     let p = gains.velocity.p;
-    let height = (0.7 / (1.0 + p)).clamp(0.03, 0.3) * task.qpps;
+    let height = ((0.7 / (1.0 + p)).clamp(0.03, 0.3) * task.qpps).max(2.0 * rig.speed_step());
     let lag_s = task.lag.total_s(&task.law) + 2.0 * task.law.tick_s();
     let dwell_s = (14.0 * lag_s + task.plant.tau_s / (1.0 + p)).clamp(0.2, 1.0);
     rig.duty(0.0)?;
@@ -155,6 +155,9 @@ fn try_design(
     if let Some(velocity) = report.velocity {
         rig.write_velocity(velocity)?;
     }
+    if let Some(registers) = report.motion_mind {
+        rig.write_motion_mind(registers)?;
+    }
     match request.method {
         Method::Velocity => match request.excitation {
             Excitation::Free => try_velocity(rig, task, &design.gains),
@@ -176,7 +179,9 @@ fn leave_room(
     task: &Task,
     report: &mut Report,
 ) -> Result<Option<f64>, Cause> {
-    let has_velocity_loop = matches!(request.method, Method::Velocity | Method::Piv);
+    // A Motion Mind has its registers written at rest only.
+    let has_velocity_loop =
+        matches!(request.method, Method::Velocity | Method::Piv) && request.law.motion_mind.is_none();
     let Some(design) = report.design.filter(|_| has_velocity_loop && request.excitation == Excitation::Free)
     else {
         return Ok(None);
@@ -258,7 +263,7 @@ const STAY_S: f64 = 1.0;
 pub(crate) fn try_velocity(rig: &mut Rig<'_>, task: &Task, gains: &Gains) -> Result<Measured, Cause> {
     let predicted = velocity_test(&task.plant, &task.law, task.lag, gains, task.qpps);
     let flank_s = (0.1 + 1.4 * predicted.settling_s).clamp(FLANK_S.0, FLANK_S.1);
-    let (low, high) = ((LOW * task.qpps).round(), (HIGH * task.qpps).round());
+    let (low, high) = (rig.whole_speed(LOW * task.qpps), rig.whole_speed(HIGH * task.qpps));
     rig.speed(low)?;
     rig.poll_for(flank_s.max(1.2 * task.plant.tau_s.min(1.0)), true)?;
     let from_s = rig.now_s();

@@ -56,6 +56,8 @@ pub struct Watch {
     pub start_duty: f64,
     /// Speed at full duty, counts/s, as far as it is known; 0 before.
     pub full_speed: f64,
+    /// Whether a duty is in force at once, without a ramp.
+    pub is_abrupt: bool,
     /// Between which values the time constant lies, s; `None` as long as nothing is known.
     pub tau_bounds_s: Option<(f64, f64)>,
     /// How much more than usual the stamp of the last command may be off, s.
@@ -205,10 +207,10 @@ impl Watch {
         let mut at = f64::NEG_INFINITY;
         let mut goal = 0.0;
         for &(next, new_goal) in self.duties.iter().take_while(|given| given.0 <= t) {
-            duty = slewed(duty, goal, next - at);
+            duty = self.slewed(duty, goal, next - at);
             (at, goal) = (next, new_goal);
         }
-        slewed(duty, goal, t - at)
+        self.slewed(duty, goal, t - at)
     }
 
     /// Lowest and highest duty that may have been in force about a time.
@@ -383,6 +385,11 @@ impl Watch {
             || self.stall_amps.is_some_and(|stall| stall * 0.015 > 2.0 * NO_CURRENT_AMPS)
     }
 
+    fn slewed(&self, duty: f64, goal: f64, seconds: f64) -> f64 {
+        let most = DUTY_SLEW_PER_S * seconds.max(0.0);
+        if most.is_finite() && !self.is_abrupt { duty + (goal - duty).clamp(-most, most) } else { goal }
+    }
+
     /// Speed per duty without any load, counts/s, and the time constant, as far as they are known.
     pub(crate) fn rough_model(&self, alarm_s: f64) -> (f64, f64) {
         // In the first run a motor that has come to some speed is not far from its time constant.
@@ -390,9 +397,4 @@ impl Watch {
         let tau_s = self.tau_bounds_s.map_or(young_s, |tau| (tau.0 * tau.1).sqrt());
         (if self.emf_gain > 0.0 { self.emf_gain } else { self.gain }, tau_s)
     }
-}
-
-fn slewed(duty: f64, goal: f64, seconds: f64) -> f64 {
-    let most = DUTY_SLEW_PER_S * seconds.max(0.0);
-    if most.is_finite() { duty + (goal - duty).clamp(-most, most) } else { goal }
 }

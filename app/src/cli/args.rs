@@ -441,12 +441,24 @@ pub struct BenchArgs {
     /// Seed that `tuning` draws them from; the optima of 7 and 11 are built in.
     #[arg(long, value_name = "SEED", default_value_t = 7)]
     pub seed: u64,
+    /// Controllers that `tuning` tunes.
+    #[arg(long, value_enum, default_value_t = BenchFamily::Mcp)]
+    pub family: BenchFamily,
     /// Of `tuning`, only the faults: they need no optima.
     #[arg(long)]
     pub faults: bool,
     /// Work the optima out anew and write them to a file instead.
     #[arg(long, value_name = "FILE")]
     pub write_oracle: Option<PathBuf>,
+}
+
+/// A family of controllers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum BenchFamily {
+    /// MCP and RoboClaw, packet serial.
+    Mcp,
+    /// Motion Mind 3, frames and lines.
+    MotionMind,
 }
 
 /// A benchmark.

@@ -6,6 +6,7 @@ use std::time::Duration;
 use brushwork_tuning::axis::{
     Axis, AxisError, Exchange, PositionRegisters, Sample, Setup, VelocityRegisters, Want,
 };
+use brushwork_tuning::motion_mind::MotionMindRegisters;
 use brushwork_tuning::record::Entry;
 use brushwork_tuning::trace::Trace;
 
@@ -112,6 +113,20 @@ impl Axis for Tap<'_> {
 
     fn set_stream_timeout(&mut self, milliseconds: u32) -> Result<(), AxisError> {
         self.axis.set_stream_timeout(milliseconds)
+    }
+
+    fn write_motion_mind(&mut self, registers: MotionMindRegisters) -> Result<(), AxisError> {
+        let answer = self.axis.write_motion_mind(registers);
+        self.live.take(&Entry::MotionMind(registers, answer.clone()));
+        answer
+    }
+
+    fn end_motion_mind(&mut self, registers: MotionMindRegisters) -> Result<(), AxisError> {
+        self.axis.end_motion_mind(registers)
+    }
+
+    fn set_travel(&mut self, counts: (i64, i64)) -> Result<(), AxisError> {
+        self.axis.set_travel(counts)
     }
 
     fn progress(&mut self, text: &str) {

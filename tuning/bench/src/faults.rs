@@ -1,12 +1,14 @@
 //! Faults put into the machine before or during a run: is the motor off in time, and is the fault named right?
 
-use crate::line::Event;
+use crate::line::{Bench, Event, SimulatedLine};
 use crate::population::{Draw, Kind, Specimen};
-use crate::run::{SimulatedAxis, axis_of, request_of, tune_plant};
+use crate::run::{SimulatedAxis, axis_of, request_of};
 use crate::table::quantile;
 use crate::truth::{Truth, truth};
+use brushwork_sim::controller::Controller;
 use brushwork_sim::plant::{StopKind, TravelParams};
 use brushwork_sim::world::{Motor, WorldAction};
+use brushwork_tuning::axis::Axis;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::tune::{Excitation, Method, Request, tune};
@@ -16,6 +18,58 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::time::Duration;
+
+/// A plant under a controller of some family, as the faults need it.
+pub trait Patient: Clone + Send + Sync {
+    /// Its axis over the wire.
+    type Axis: Axis;
+    /// Its controller.
+    type Unit: Bench;
+    /// The methods whose trials are struck, and whose runs have to be quiet.
+    const WHOLE: [Method; 2];
+    /// Whether the wire carries the battery's voltage.
+    const TELLS_VOLTS: bool;
+    /// How soon the motor must be off when the link is gone, s.
+    const LINK_DEADLINE_S: f64;
+    /// The motor.
+    fn plant(&self) -> &Specimen;
+    /// The motor, to be changed.
+    fn plant_mut(&mut self) -> &mut Specimen;
+    /// What it really is.
+    fn truth(&self) -> Truth;
+    /// A fresh axis.
+    fn axis(&self) -> Self::Axis;
+    /// The line beneath an axis.
+    fn line(axis: &mut Self::Axis) -> &mut SimulatedLine<Self::Unit>;
+}
+
+impl Patient for Specimen {
+    type Axis = SimulatedAxis;
+    type Unit = Controller;
+    const WHOLE: [Method; 2] = [Method::Velocity, Method::Piv];
+    const TELLS_VOLTS: bool = true;
+    const LINK_DEADLINE_S: f64 = 0.25;
+
+    fn plant(&self) -> &Specimen {
+        self
+    }
+
+    fn plant_mut(&mut self) -> &mut Specimen {
+        self
+    }
+
+    fn truth(&self) -> Truth {
+        truth(self)
+    }
+
+    fn axis(&self) -> SimulatedAxis {
+        axis_of(self)
+    }
+
+    fn line(axis: &mut SimulatedAxis) -> &mut SimulatedLine {
+        &mut axis.carrier
+    }
+}
 
 /// The row of runs without a fault.
 const HEALTHY: &str = "healthy";
@@ -146,24 +200,21 @@ struct Run {
 }
 
 /// A plant, what it is, and how long its identification takes.
-struct Subject {
-    specimen: Specimen,
+struct Subject<P> {
+    specimen: P,
     truth: Truth,
     /// Length of the identification, and of whole runs by method, s.
     span_s: f64,
     whole_s: [f64; 2],
 }
 
-/// The methods whose trials are struck, and whose runs have to be quiet.
-const WHOLE: [Method; 2] = [Method::Velocity, Method::Piv];
-
-impl Subject {
-    fn new(specimen: &Specimen) -> Self {
-        let whole = |method| tune_plant(specimen, &request_of(specimen, method)).0.seconds.1;
+impl<P: Patient> Subject<P> {
+    fn new(specimen: &P) -> Self {
+        let whole = |method| tune(&mut specimen.axis(), &request_of(specimen.plant(), method)).seconds.1;
         Self {
             span_s: healthy(specimen, 0, None).0.seconds.0,
-            whole_s: WHOLE.map(whole),
-            truth: truth(specimen),
+            whole_s: P::WHOLE.map(whole),
+            truth: specimen.truth(),
             specimen: specimen.clone(),
         }
     }
@@ -171,21 +222,23 @@ impl Subject {
 
 /// Every class on every plant, and the healthy runs as the last row, whose `named` is the share without alarm.
 #[must_use]
-pub fn fault_rows(plants: &[Specimen]) -> Vec<FaultRow> {
+pub fn fault_rows<P: Patient>(plants: &[P]) -> Vec<FaultRow> {
     rows_of(plants, &[])
 }
 
 /// The same of the classes named only; all of them where none is.
 #[must_use]
-pub fn rows_of(plants: &[Specimen], names: &[&str]) -> Vec<FaultRow> {
+pub fn rows_of<P: Patient>(plants: &[P], names: &[&str]) -> Vec<FaultRow> {
     let wanted = |name: &str| names.is_empty() || names.contains(&name);
-    let subjects: Vec<Subject> = plants.par_iter().map(Subject::new).collect();
-    let classes = CLASSES.iter().filter(|class| wanted(class.name));
+    let can_be = |class: &&Class| P::TELLS_VOLTS || class.fault != Fault::During(WorldChange::LowBattery);
+    let subjects: Vec<Subject<P>> = plants.par_iter().map(Subject::new).collect();
+    let classes = CLASSES.iter().filter(|class| wanted(class.name)).filter(can_be);
     let mut rows: Vec<FaultRow> = classes
         .map(|class| {
             let able = subjects.par_iter().filter(|subject| subject.span_s > 0.0);
+            let deadline_s = class.deadline_s::<P>();
             let runs: Vec<Run> = able.map(|subject| run(class, subject)).collect();
-            summary(class.name, class.deadline_s, &runs)
+            summary(class.name, deadline_s, &runs)
         })
         .collect();
     if wanted(HEALTHY) && !subjects.is_empty() {
@@ -193,9 +246,9 @@ pub fn rows_of(plants: &[Specimen], names: &[&str]) -> Vec<FaultRow> {
             .into_par_iter()
             .map(|n| {
                 let subject = &subjects[n % subjects.len()];
-                let (report, axis) =
-                    healthy(&subject.specimen, n as u64, healthy_method(n / subjects.len() + n));
-                Run::quiet(subject, &axis, &report, true)
+                let method = healthy_method::<P>(n / subjects.len() + n);
+                let (report, mut axis) = healthy(&subject.specimen, n as u64, method);
+                Run::quiet(subject, &mut axis, &report, true)
             })
             .collect();
         rows.push(summary(HEALTHY, 0.0, &quiet));
@@ -227,35 +280,37 @@ fn identification_only(specimen: &Specimen) -> Request {
 }
 
 /// Every third run is an identification alone.
-fn healthy_method(n: usize) -> Option<Method> {
-    WHOLE.get(n % 3).copied()
+fn healthy_method<P: Patient>(n: usize) -> Option<Method> {
+    P::WHOLE.get(n % 3).copied()
 }
 
-fn healthy(specimen: &Specimen, round: u64, method: Option<Method>) -> (Report, SimulatedAxis) {
+fn healthy<P: Patient>(specimen: &P, round: u64, method: Option<Method>) -> (Report, P::Axis) {
     let mut specimen = specimen.clone();
-    specimen.link.seed = specimen.link.seed.wrapping_add(round.wrapping_mul(0x9E37_79B9_7F4A_7C15));
-    let mut axis = axis_of(&specimen);
-    let request =
-        method.map_or_else(|| identification_only(&specimen), |method| request_of(&specimen, method));
+    let link = &mut specimen.plant_mut().link;
+    link.seed = link.seed.wrapping_add(round.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+    let mut axis = specimen.axis();
+    let plant = specimen.plant();
+    let request = method.map_or_else(|| identification_only(plant), |method| request_of(plant, method));
     let report = tune(&mut axis, &request);
     (report, axis)
 }
 
-fn peak(axis: &SimulatedAxis, subject: &Subject) -> f64 {
-    100.0 * axis.carrier.truth.peak_amps / subject.specimen.axis.stall_amps(subject.specimen.volts())
+fn peak<P: Patient>(axis: &mut P::Axis, subject: &Subject<P>) -> f64 {
+    let plant = subject.specimen.plant();
+    100.0 * P::line(axis).truth.peak_amps / plant.axis.stall_amps(plant.volts())
 }
 
-fn run(class: &Class, subject: &Subject) -> Run {
-    let (specimen, span_s) = (&subject.specimen, subject.span_s);
+fn run<P: Patient>(class: &Class, subject: &Subject<P>) -> Run {
+    let (specimen, span_s) = (subject.specimen.plant(), subject.span_s);
     let name_seed = class.name.bytes().map(u64::from).sum::<u64>();
     let mut draw = Draw(ChaCha8Rng::seed_from_u64(specimen.link.seed ^ name_seed));
     // The probe takes most of the first second; faults of the run strike after it.
     let probe_s: f64 = 0.12 + 0.06 * 14.0;
-    let nth = specimen.number % WHOLE.len();
+    let nth = specimen.number % P::WHOLE.len();
     let (request, strike_s) = match class.fault {
         Fault::InTrial(_) => {
             let trial_s = (subject.whole_s[nth] - span_s).max(0.1);
-            (request_of(specimen, WHOLE[nth]), span_s + draw.between(STRIKES) * trial_s)
+            (request_of(specimen, P::WHOLE[nth]), span_s + draw.between(STRIKES) * trial_s)
         }
         _ => {
             let strike_s = probe_s.min(0.5 * span_s) + draw.between(STRIKES) * (span_s - probe_s).max(0.3);
@@ -263,58 +318,68 @@ fn run(class: &Class, subject: &Subject) -> Run {
         }
     };
     let mut axis = match class.fault {
-        Fault::EndStop => axis_of(&with_end_stops(subject)),
-        _ => axis_of(specimen),
+        Fault::EndStop => with_end_stops(subject).axis(),
+        _ => subject.specimen.axis(),
     };
-    let start = axis.carrier.unit().now();
+    let line = P::line(&mut axis);
+    let start = line.unit().time();
     let strike = start + Duration::from_secs_f64(strike_s);
     let mut from = strike;
     match class.fault {
         Fault::Before(change) => {
             from = start;
-            axis.carrier.schedule(vec![Event { at: start, action: change.action(specimen) }]);
+            line.schedule(vec![Event { at: start, action: change.action(specimen) }]);
         }
         Fault::During(change) | Fault::InTrial(change) => {
-            axis.carrier.schedule(vec![Event { at: strike, action: change.action(specimen) }]);
+            line.schedule(vec![Event { at: strike, action: change.action(specimen) }]);
         }
-        Fault::LinkDrop => axis.carrier.dead_at = Some(strike),
-        Fault::EndStop => axis.carrier.end_stop_radians = Some(end_stop_radians(subject)),
+        Fault::LinkDrop => line.dead_at = Some(strike),
+        Fault::EndStop => line.end_stop_radians = Some(end_stop_radians(subject)),
         Fault::Window => {}
     }
     if class.fault == Fault::Window {
         return run_in_window(subject, axis);
     }
     let report = tune(&mut axis, &request);
-    axis.carrier.idle(Duration::from_millis(300));
+    let deadline_s = class.deadline_s::<P>();
+    P::line(&mut axis).idle(Duration::from_millis(300).max(Duration::from_secs_f64(2.0 * deadline_s)));
+    let seen = P::line(&mut axis).truth;
     if class.fault == Fault::EndStop {
-        let Some(hit) = axis.carrier.truth.stop_hit_at else {
+        let Some(hit) = seen.stop_hit_at else {
             // It never came that far: nothing happened, nothing to name.
-            return Run::quiet(subject, &axis, &report, true);
+            return Run::quiet(subject, &mut axis, &report, true);
         };
         from = hit;
     }
     if matches!(class.fault, Fault::InTrial(_)) {
         // A loop at rest shows nothing; the clock runs from when it next drives the motor.
-        from = axis.carrier.truth.driven_after.unwrap_or(from).max(from);
+        from = seen.driven_after.unwrap_or(from).max(from);
     }
-    let off_s = axis.carrier.truth.last_driven.saturating_sub(from).as_secs_f64();
+    let off_s = seen.last_driven.saturating_sub(from).as_secs_f64();
     let named = report.causes.first().is_some_and(|cause| class.causes.contains(cause));
     Run {
         plant: (specimen.number, specimen.kind),
         at_s: from.saturating_sub(start).as_secs_f64(),
         off_s,
-        in_time: off_s <= class.deadline_s + LOOK_S,
+        in_time: off_s <= deadline_s + LOOK_S,
         named,
-        peak: peak(&axis, subject),
+        peak: peak(&mut axis, subject),
         cause: first(&report),
+    }
+}
+
+impl Class {
+    fn deadline_s<P: Patient>(&self) -> f64 {
+        if self.fault == Fault::LinkDrop { P::LINK_DEADLINE_S } else { self.deadline_s }
     }
 }
 
 impl Run {
     /// A run in which nothing happened: any alarm is a false one.
-    fn quiet(subject: &Subject, axis: &SimulatedAxis, report: &Report, in_time: bool) -> Self {
+    fn quiet<P: Patient>(subject: &Subject<P>, axis: &mut P::Axis, report: &Report, in_time: bool) -> Self {
+        let plant = subject.specimen.plant();
         Self {
-            plant: (subject.specimen.number, subject.specimen.kind),
+            plant: (plant.number, plant.kind),
             at_s: 0.0,
             off_s: 0.0,
             in_time,
@@ -326,32 +391,32 @@ impl Run {
 }
 
 /// A window half as wide as the identification is judged with: it is used, or refused, but never crossed.
-fn run_in_window(subject: &Subject, mut axis: SimulatedAxis) -> Run {
+fn run_in_window<P: Patient>(subject: &Subject<P>, mut axis: P::Axis) -> Run {
     let width = (0.1 * subject.truth.qpps).round().max(40.0);
     let half = (0.5 * width) as i64;
     let mut request =
-        Request { excitation: Excitation::Window(width), ..identification_only(&subject.specimen) };
+        Request { excitation: Excitation::Window(width), ..identification_only(subject.specimen.plant()) };
     request.method = Method::Pd;
     request.guard.travel = Some((-half, half));
     let report = tune(&mut axis, &request);
-    let per_radian = subject.specimen.axis.counts_per_motor_radian();
-    let reach = axis.carrier.truth.farthest_radians * per_radian;
+    let per_radian = subject.specimen.plant().axis.counts_per_motor_radian();
+    let reach = P::line(&mut axis).truth.farthest_radians * per_radian;
     // Half a count of rounding on either side.
     let kept = reach <= half as f64 + 1.0;
-    Run::quiet(subject, &axis, &report, kept)
+    Run::quiet(subject, &mut axis, &report, kept)
 }
 
 /// End stops a quarter of a second of full speed away.
-fn end_stop_radians(subject: &Subject) -> f64 {
+fn end_stop_radians<P: Patient>(subject: &Subject<P>) -> f64 {
     let seconds = 0.25 + subject.truth.tau_s;
-    let axis = &subject.specimen.axis;
+    let axis = &subject.specimen.plant().axis;
     seconds * subject.truth.qpps / axis.counts_per_motor_radian() / axis.gear.ratio
 }
 
-fn with_end_stops(subject: &Subject) -> Specimen {
+fn with_end_stops<P: Patient>(subject: &Subject<P>) -> P {
     let mut specimen = subject.specimen.clone();
     let stop = end_stop_radians(subject);
-    specimen.axis.load.travel =
+    specimen.plant_mut().axis.load.travel =
         Some(TravelParams { lower_radians: -stop, upper_radians: stop, stop: StopKind::Hard });
     specimen
 }

@@ -5,6 +5,7 @@
 pub mod cache;
 pub mod faults;
 pub mod line;
+pub mod mind;
 pub mod oracle;
 pub mod packet;
 pub mod population;

@@ -5,7 +5,7 @@ use crate::population::{Draw, LinkParams};
 use brushwork_protocol::packet_serial::{Address, Generation, ReplyProgress, Request, Values, parse_reply};
 use brushwork_sim::controller::Controller;
 use brushwork_sim::machine::StreamIndex;
-use brushwork_sim::world::WorldAction;
+use brushwork_sim::world::{WorldAction, WorldView};
 use brushwork_tuning::axis::{AxisError, Exchange};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -44,11 +44,11 @@ pub struct Truth {
 
 /// A link to a simulated controller.
 #[derive(Debug)]
-pub struct SimulatedLine {
-    unit: Controller,
+pub struct SimulatedLine<M = Controller> {
+    pub(crate) unit: M,
     params: LinkParams,
     draw: ChaCha8Rng,
-    now: Duration,
+    pub(crate) now: Duration,
     events: Vec<Event>,
     /// What was noted.
     pub truth: Truth,
@@ -64,11 +64,42 @@ pub struct SimulatedLine {
     pub late_reads: Option<(f64, f64)>,
 }
 
-impl SimulatedLine {
+/// What a line needs of a simulated unit.
+pub trait Bench {
+    /// Its time.
+    fn time(&self) -> Duration;
+    /// Moves its time on.
+    fn pass(&mut self, to: Duration);
+    /// Its world.
+    fn look(&self) -> WorldView;
+    /// Does something to its world.
+    fn undergo(&mut self, action: &WorldAction);
+}
+
+impl Bench for Controller {
+    fn time(&self) -> Duration {
+        self.now()
+    }
+
+    fn pass(&mut self, to: Duration) {
+        self.advance(to);
+    }
+
+    fn look(&self) -> WorldView {
+        self.view()
+    }
+
+    fn undergo(&mut self, action: &WorldAction) {
+        // The actions used here name no settings.
+        let _ = self.apply(action);
+    }
+}
+
+impl<M: Bench> SimulatedLine<M> {
     /// A link to `unit`, from its present time on.
     #[must_use]
-    pub fn new(unit: Controller, params: LinkParams) -> Self {
-        let now = unit.now();
+    pub fn new(unit: M, params: LinkParams) -> Self {
+        let now = unit.time();
         let draw = ChaCha8Rng::seed_from_u64(params.seed);
         Self {
             unit,
@@ -93,7 +124,7 @@ impl SimulatedLine {
 
     /// The controller, to look at.
     #[must_use]
-    pub fn unit(&self) -> &Controller {
+    pub fn unit(&self) -> &M {
         &self.unit
     }
 
@@ -102,19 +133,18 @@ impl SimulatedLine {
         self.advance(self.now + time);
     }
 
-    fn advance(&mut self, to: Duration) {
+    pub(crate) fn advance(&mut self, to: Duration) {
         const LOOK: Duration = Duration::from_millis(5);
         while self.now < to {
             let mut next = (self.now + LOOK).min(to);
             if let Some(event) = self.events.last() {
                 next = next.min(event.at.max(self.now));
             }
-            self.unit.advance(next);
+            self.unit.pass(next);
             self.now = next;
             while self.events.last().is_some_and(|event| event.at <= self.now) {
                 if let Some(event) = self.events.pop() {
-                    // The actions used here name no settings.
-                    let _ = self.unit.apply(&event.action);
+                    self.unit.undergo(&event.action);
                     self.truth.driven_after = None;
                 }
             }
@@ -123,7 +153,7 @@ impl SimulatedLine {
     }
 
     fn note(&mut self) {
-        let view = self.unit.view();
+        let view = self.unit.look();
         let axis = &view.axes[0];
         self.truth.peak_amps = self.truth.peak_amps.max(axis.truth.amps.abs());
         // A current limit that softens the braking gives a duty too, but against the current: that drives nothing.
@@ -144,7 +174,7 @@ impl SimulatedLine {
         }
     }
 
-    fn latency(&mut self) -> Duration {
+    pub(crate) fn latency(&mut self) -> Duration {
         let mut draw = Draw(self.draw.clone());
         let seconds = self.params.latency_s * draw.between(LATENCY_SPREAD);
         self.draw = draw.0;
@@ -159,7 +189,7 @@ impl SimulatedLine {
         self.advance(self.now + Duration::from_secs_f64(late_s));
     }
 
-    fn is_lost(&mut self) -> bool {
+    pub(crate) fn is_lost(&mut self) -> bool {
         let mut draw = Draw(self.draw.clone());
         let lost = draw.uniform() < self.params.loss;
         self.draw = draw.0;
@@ -167,9 +197,28 @@ impl SimulatedLine {
     }
 }
 
+impl<M: Bench> SimulatedLine<M> {
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.stop_at.is_some_and(|at| self.now >= at)
+    }
+
+    pub(crate) fn is_dead(&self) -> bool {
+        self.dead_at.is_some_and(|at| self.now >= at)
+    }
+
+    /// Waits until a time, somewhat late.
+    pub(crate) fn wait(&mut self, time: Duration) -> Result<(), AxisError> {
+        let mut draw = Draw(self.draw.clone());
+        let late = Duration::from_secs_f64((draw.normal() * self.params.jitter_s).abs());
+        self.draw = draw.0;
+        self.advance(time + late);
+        if self.is_stopped() { Err(AxisError::Stopped) } else { Ok(()) }
+    }
+}
+
 impl Carrier for SimulatedLine {
     fn transact(&mut self, command: u8, values: &[(&str, i64)]) -> Result<(Exchange, Values), AxisError> {
-        if self.stop_at.is_some_and(|at| self.now >= at) {
+        if self.is_stopped() {
             return Err(AxisError::Stopped);
         }
         let generation = self.generation();
@@ -178,7 +227,7 @@ impl Carrier for SimulatedLine {
         let bytes = request.encode(generation).map_err(|error| AxisError::Refused(error.to_string()))?;
         let sent = self.now;
         let deadline = sent + Duration::from_secs_f64(REPLY_TIMEOUT_S);
-        let dead = self.dead_at.is_some_and(|at| self.now >= at);
+        let dead = self.is_dead();
         let (lost_request, lost_reply) = (self.is_lost() || dead, self.is_lost() || dead);
         let (up, down) = (self.latency(), self.latency());
         self.advance(sent + up);
@@ -207,11 +256,7 @@ impl Carrier for SimulatedLine {
     }
 
     fn wait_until(&mut self, time: Duration) -> Result<(), AxisError> {
-        let mut draw = Draw(self.draw.clone());
-        let late = Duration::from_secs_f64((draw.normal() * self.params.jitter_s).abs());
-        self.draw = draw.0;
-        self.advance(time + late);
-        if self.stop_at.is_some_and(|at| self.now >= at) { Err(AxisError::Stopped) } else { Ok(()) }
+        self.wait(time)
     }
 
     fn generation(&self) -> Generation {

@@ -4,7 +4,7 @@
 //! minimises the worst cost over gains moved by 2 %, so that it does not settle on a lucky point.
 
 use crate::population::Specimen;
-use crate::trial::{Outcome, Registers, linear, position_trial, velocity_trial};
+use crate::trial::{Outcome, Registers, position_trial, velocity_trial};
 use crate::truth::Truth;
 use brushwork_tuning::model::{Gains, Pid};
 use brushwork_tuning::score::{POSITION_OVERSHOOT, VELOCITY_OVERSHOOT};
@@ -16,6 +16,9 @@ const MS: f64 = 1.6;
 const NOISE_DUTY: f64 = 0.08;
 /// How far gains are moved to see whether a point is firm.
 const FIRMNESS: f64 = 0.02;
+
+/// Duty that the integral of a PID may carry.
+const INTEGRAL_DUTY: f64 = 0.5;
 
 /// The optimum of one plant for one method.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -58,6 +61,37 @@ pub fn cost(method: Method, outcome: &Outcome) -> f64 {
     outcome.score.cost(scale)
 }
 
+/// What gains are tried on.
+pub trait Bed {
+    /// What the plant is.
+    fn truth(&self) -> &Truth;
+    /// Gains as the registers hold them.
+    fn rounded(&self, gains: &Gains) -> Gains;
+    /// One trial of a method.
+    fn outcome(&self, method: Method, gains: &Gains) -> Outcome;
+}
+
+/// A plant under packet serial.
+struct PacketBed<'a> {
+    specimen: &'a Specimen,
+    truth: &'a Truth,
+}
+
+impl Bed for PacketBed<'_> {
+    fn truth(&self) -> &Truth {
+        self.truth
+    }
+
+    fn rounded(&self, gains: &Gains) -> Gains {
+        Registers::of(gains, self.truth.qpps, self.truth).gains(self.truth)
+    }
+
+    fn outcome(&self, method: Method, gains: &Gains) -> Outcome {
+        let registers = Registers::of(gains, self.truth.qpps, self.truth);
+        trial(method, self.specimen, self.truth, &registers)
+    }
+}
+
 /// One trial of a method.
 #[must_use]
 pub fn trial(method: Method, specimen: &Specimen, truth: &Truth, registers: &Registers) -> Outcome {
@@ -70,20 +104,28 @@ pub fn trial(method: Method, specimen: &Specimen, truth: &Truth, registers: &Reg
 /// Finds the optima of a plant.
 #[must_use]
 pub fn optima(specimen: &Specimen, truth: &Truth) -> Optima {
-    let of = |method| Search { method, specimen, truth }.run();
+    let bed = PacketBed { specimen, truth };
+    let of = |method| optimum(&bed, method);
     Optima { velocity: of(Method::Velocity), pd: of(Method::Pd), piv: of(Method::Piv) }
 }
 
 /// The optima of its position loops alone, for a plant whose speed cannot be run freely.
 #[must_use]
 pub fn position_optima(specimen: &Specimen, truth: &Truth) -> Optima {
-    let of = |method| Search { method, specimen, truth }.run();
+    let bed = PacketBed { specimen, truth };
+    let of = |method| optimum(&bed, method);
     Optima { velocity: None, pd: of(Method::Pd), piv: of(Method::Piv) }
+}
+
+/// Finds the optimum of one method.
+#[must_use]
+pub fn optimum(bed: &dyn Bed, method: Method) -> Option<Optimum> {
+    Search { method, bed, truth: bed.truth() }.run()
 }
 
 struct Search<'a> {
     method: Method,
-    specimen: &'a Specimen,
+    bed: &'a dyn Bed,
     truth: &'a Truth,
 }
 
@@ -95,9 +137,12 @@ impl Search<'_> {
         let [a, b, c] = *point;
         match self.method {
             Method::Velocity => Gains { velocity: Pid { p: a, i: b, d: 0.0 }, ..Gains::default() },
-            Method::Pd | Method::Pid => {
-                Gains { position: Some(Pid { p: a, i: 0.0, d: b }), deadzone_counts: 0.0, ..Gains::default() }
-            }
+            Method::Pd => Gains { position: Some(Pid { p: a, i: 0.0, d: b }), ..Gains::default() },
+            Method::Pid => Gains {
+                position: Some(Pid { p: a, i: c, d: b }),
+                max_integral: INTEGRAL_DUTY * self.truth.qpps / c.max(1e-9),
+                ..Gains::default()
+            },
             Method::Piv => Gains {
                 velocity: Pid { p: a, i: b, d: 0.0 },
                 position: (c > 0.0).then_some(Pid { p: c, i: 0.0, d: 0.0 }),
@@ -113,13 +158,13 @@ impl Search<'_> {
     }
 
     fn stable(&self, point: &Point) -> bool {
-        let registers = Registers::of(&self.gains(point), self.truth.qpps, self.truth);
-        linear(&self.truth.nominal, self.truth, &registers).1 < 1.0
+        // The rounded QPPS is nothing beside the rounding of the gains.
+        let gains = self.bed.rounded(&self.gains(point));
+        self.truth.nominal.spectral_radius(&gains, self.truth.qpps) < 1.0
     }
 
     fn cost(&self, point: &Point) -> (f64, f64) {
-        let registers = Registers::of(&self.gains(point), self.truth.qpps, self.truth);
-        let outcome = trial(self.method, self.specimen, self.truth, &registers);
+        let outcome = self.bed.outcome(self.method, &self.gains(point));
         let cap = if self.method == Method::Velocity { 0.25 } else { 0.08 };
         let mut cost = cost(self.method, &outcome);
         if outcome.score.overshoot > cap {
@@ -201,7 +246,16 @@ impl Search<'_> {
                     self.shares(|p| [p, p / time, 0.0], 400.0, &[1.0, 0.8, 0.6, 0.4, 0.2], &mut points);
                 }
             }
-            Method::Pd | Method::Pid => {
+            Method::Pid => {
+                for n in 2..10 {
+                    let derivative = 0.2 * f64::from(n) * self.truth.tau_s;
+                    for integral in [1.0, 3.0, 9.0].map(|times| times * self.truth.tau_s.max(0.05)) {
+                        let of = |p| [p, p * derivative, p / integral];
+                        self.shares(of, 2000.0, &[1.0, 0.85, 0.7, 0.5, 0.3], &mut points);
+                    }
+                }
+            }
+            Method::Pd => {
                 for n in 0..13 {
                     let time = 0.125 * f64::from(n) * self.truth.tau_s;
                     self.shares(|p| [p, p * time, 0.0], 2000.0, &[1.0, 0.85, 0.7, 0.5, 0.3], &mut points);
@@ -223,6 +277,10 @@ impl Search<'_> {
 
     fn shares(&self, of: impl Fn(f64) -> Point, top: f64, shares: &[f64], into: &mut Vec<Point>) {
         let mut p = top * 1e-4;
+        // An integral under a weak loop is two integrals: a PID has to go up before it may begin.
+        while self.method == Method::Pid && p < 0.1 * top && !self.allowed(&of(p)) {
+            p *= 1.2;
+        }
         if !self.allowed(&of(p)) {
             return;
         }

@@ -226,6 +226,7 @@ impl<C: Carrier> Axis for PacketAxis<C> {
                 .map_or([0, 0], |values| [unsigned(&values, "inductance"), unsigned(&values, "resistance")]),
             stream_timeout_ms,
             encoder: self.encoder,
+            motion_mind: None,
         })
     }
 

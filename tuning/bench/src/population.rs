@@ -43,7 +43,8 @@ pub enum Kind {
     Turntable,
 }
 
-struct KindRow {
+#[derive(Clone, Copy)]
+pub(crate) struct KindRow {
     kind: Kind,
     volts: f64,
     qpps: (f64, f64),
@@ -79,7 +80,7 @@ const ABSOLUTE_NOISE_COUNTS: (f64, f64) = (0.2, 0.8);
 const ABSOLUTE_START_COUNTS: (f64, f64) = (1_200.0, 2_900.0);
 
 #[expect(clippy::too_many_arguments, reason = "a row of the table above, in its order")]
-const fn row(
+pub(crate) const fn row(
     kind: Kind,
     volts: f64,
     qpps: (f64, f64),
@@ -194,8 +195,13 @@ pub fn population(seed: u64, n: usize) -> Vec<Specimen> {
 /// Plant `number` of a seed, whatever the size of the population.
 #[must_use]
 pub fn specimen(seed: u64, number: usize) -> Specimen {
+    drawn(&KINDS, seed, number)
+}
+
+/// Plant `number` of a seed, its kind and ranges from `kinds`.
+pub(crate) fn drawn(kinds: &[KindRow], seed: u64, number: usize) -> Specimen {
     let mut draw = Draw(ChaCha8Rng::seed_from_u64(seed.wrapping_mul(1_000_003).wrapping_add(number as u64)));
-    drawn(&mut draw, &KINDS[number % KINDS.len()], number)
+    made(&mut draw, &kinds[number % kinds.len()], number)
 }
 
 /// Machines with absolute encoders, a population of its own: `n` plants, the kinds in turn.
@@ -210,7 +216,7 @@ pub fn absolute_specimen(seed: u64, number: usize) -> Specimen {
     let stream = seed.wrapping_mul(1_000_003).wrapping_add(number as u64) ^ 0xAB50_107E;
     let mut draw = Draw(ChaCha8Rng::seed_from_u64(stream));
     let row = &ABSOLUTE_KINDS[number % ABSOLUTE_KINDS.len()];
-    let mut specimen = drawn(&mut draw, row, number);
+    let mut specimen = made(&mut draw, row, number);
     let is_voltage = matches!(row.kind, Kind::PotActuator | Kind::PotSteering);
     let encoder = &mut specimen.axis.encoder;
     encoder.kind = if is_voltage { EncoderKind::Analog } else { EncoderKind::Pulse };
@@ -220,7 +226,7 @@ pub fn absolute_specimen(seed: u64, number: usize) -> Specimen {
     specimen
 }
 
-fn drawn(draw: &mut Draw, row: &KindRow, number: usize) -> Specimen {
+fn made(draw: &mut Draw, row: &KindRow, number: usize) -> Specimen {
     let qpps = draw.log(row.qpps);
     let tau_s = draw.log(row.tau_ms) * 1e-3;
     let stall_amps = row.stall_amps * draw.log((0.6, 1.6));
@@ -308,7 +314,7 @@ impl Draw {
         low * (high / low).powf(self.uniform())
     }
 
-    fn one_of(&mut self, n: usize) -> usize {
+    pub(crate) fn one_of(&mut self, n: usize) -> usize {
         ((self.uniform() * n as f64) as usize).min(n - 1)
     }
 

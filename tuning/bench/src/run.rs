@@ -5,13 +5,14 @@ use crate::oracle::{Optimum, cost, trial};
 use crate::packet::PacketAxis;
 use crate::population::Specimen;
 use crate::reject::{MOST_MS, most_overshoot};
-use crate::trial::{Registers, linear};
+use crate::trial::{Outcome, Registers, linear};
 use crate::truth::Truth;
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_sim::controller::Controller;
 use brushwork_sim::plant::EncoderKind;
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::cause::Cause;
+use brushwork_tuning::linear::{LoopPlant, Margins};
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::rig::GuardOptions;
 use brushwork_tuning::tune::{Excitation, Method, Request, tune};
@@ -93,15 +94,26 @@ pub fn judge(
     optimum: &Optimum,
     registers: &Registers,
 ) -> Judgement {
-    let (margins, radius) = linear(&truth.nominal, truth, registers);
-    let varied = truth.varied.each_ref().map(|plant| linear(plant, truth, registers));
+    let of = |plant: &LoopPlant| linear(plant, truth, registers);
     let outcome = trial(method, specimen, truth, registers);
+    weigh(method, optimum, of(&truth.nominal), truth.varied.each_ref().map(of), &outcome)
+}
+
+/// Judges by margins and largest pole of the true loop, of the loop with less and with more inertia, and by what a trial showed.
+#[must_use]
+pub fn weigh(
+    method: Method,
+    optimum: &Optimum,
+    (margins, radius): (Margins, f64),
+    varied: [(Margins, f64); 2],
+    outcome: &Outcome,
+) -> Judgement {
     let stable = radius < 1.0;
     let most = most_overshoot(method);
     let quiet = outcome.duty_rms <= (1.5 * optimum.duty_rms).max(0.12);
     let accept =
         stable && !outcome.hunting && margins.ms <= MOST_MS && outcome.score.overshoot <= most && quiet;
-    let j = cost(method, &outcome) / optimum.cost;
+    let j = cost(method, outcome) / optimum.cost;
     Judgement {
         j,
         stable,
@@ -117,14 +129,18 @@ pub fn judge(
     }
 }
 
+/// A refusal.
+#[must_use]
+pub fn refusal(report: &Report) -> Judgement {
+    let refused = report.causes.first().copied().or(Some(Cause::TooCoarse));
+    Judgement { j: f64::INFINITY, stable: true, refused, ..Judgement::default() }
+}
+
 /// Judges a report.
 #[must_use]
 pub fn judge_report(specimen: &Specimen, truth: &Truth, optimum: &Optimum, report: &Report) -> Judgement {
     let registers = match (report.verdict, report.velocity) {
-        (Verdict::Refused, _) | (_, None) => {
-            let refused = report.causes.first().copied().or(Some(Cause::TooCoarse));
-            return Judgement { j: f64::INFINITY, stable: true, refused, ..Judgement::default() };
-        }
+        (Verdict::Refused, _) | (_, None) => return refusal(report),
         (_, Some(velocity)) => Registers { velocity, position: report.position },
     };
     judge(report.request.method, specimen, truth, optimum, &registers)

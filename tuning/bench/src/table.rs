@@ -8,7 +8,7 @@ use crate::reject::group;
 use crate::run::{Judgement, judge, judge_report, request_of, tune_plant};
 use crate::trial::Registers;
 use crate::truth::{Truth, truth};
-use brushwork_tuning::report::{Report, Verdict};
+use brushwork_tuning::report::Report;
 use brushwork_tuning::rules::{pd_rules, pid_rules, piv_rules, velocity_rules};
 use brushwork_tuning::tune::{Excitation, Method, Request};
 use rayon::prelude::*;
@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 /// Cost that stands for no gains at all.
 const REFUSED_COST: f64 = 1000.0;
 /// The travel window of the identification, s of full speed.
-const WINDOW_S: f64 = 0.2;
+pub(crate) const WINDOW_S: f64 = 0.2;
 
 /// One machine with an absolute encoder for so many others.
 const SHARE_OF_ABSOLUTE: usize = 8;
@@ -56,7 +56,7 @@ pub struct Row {
 }
 
 /// Errors of the identification in percent, and what it costs.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Identification {
     /// QPPS on a free axis.
     pub qpps_error_median: f64,
@@ -189,7 +189,7 @@ fn rows(method: Method, cases: &[Case], reports: &[(Report, f64)]) -> Vec<Row> {
         .filter_map(|(case, (report, _))| {
             let optimum = case.optima.of(method)?;
             let judged = judge_report(&case.specimen, &case.truth, &optimum, report);
-            Some(Judged::new(method, case, judged, report.seconds.1))
+            Some(Judged::new(method, &case.specimen, &case.truth, judged, report.seconds.1))
         })
         .collect();
     let mut rows = vec![row("brushwork", ours.iter())];
@@ -221,26 +221,32 @@ fn by_rules(method: Method, case: &Case, report: &Report) -> Option<Vec<(&'stati
     let judged = rules.into_iter().map(|(name, gains)| {
         let registers = Registers::of(&gains, qpps, &case.truth);
         let judged = judge(method, &case.specimen, &case.truth, &optimum, &registers);
-        (name, Judged::new(method, case, judged, report.seconds.0))
+        (name, Judged::new(method, &case.specimen, &case.truth, judged, report.seconds.0))
     });
     Some(judged.collect())
 }
 
 /// A judgement, the length of its run, and its group if it was not accepted.
-struct Judged {
+pub(crate) struct Judged {
     result: Judgement,
     seconds: f64,
     reject: Option<String>,
 }
 
 impl Judged {
-    fn new(method: Method, case: &Case, result: Judgement, seconds: f64) -> Self {
-        let reject = group(method, &case.specimen, &case.truth, &result);
+    pub(crate) fn new(
+        method: Method,
+        specimen: &Specimen,
+        truth: &Truth,
+        result: Judgement,
+        seconds: f64,
+    ) -> Self {
+        let reject = group(method, specimen, truth, &result);
         Self { result, seconds, reject }
     }
 }
 
-fn row<'a>(method: &str, judged: impl Iterator<Item = &'a Judged>) -> Row {
+pub(crate) fn row<'a>(method: &str, judged: impl Iterator<Item = &'a Judged>) -> Row {
     let all: Vec<&Judged> = judged.collect();
     let percent = |of: fn(&Judgement) -> bool| {
         100.0 * all.iter().filter(|j| of(&j.result)).count() as f64 / all.len().max(1) as f64
@@ -267,52 +273,67 @@ fn row<'a>(method: &str, judged: impl Iterator<Item = &'a Judged>) -> Row {
 }
 
 fn identification(cases: &[Case], reports: &[(Report, f64)]) -> Identification {
-    let found = || cases.iter().zip(reports).map(|(case, (report, peak))| (case, report, peak));
-    let error = |got: f64, wanted: f64| 100.0 * (got / wanted - 1.0).abs();
-    let qpps: Vec<f64> = found().filter_map(|(c, r, _)| Some(error(r.qpps?, c.truth.qpps))).collect();
-    let gain: Vec<f64> = found()
-        .filter_map(|(c, r, _)| Some(error(r.fit?.model.gain_counts_per_s, c.truth.gain_counts_per_s)))
-        .collect();
-    let tau: Vec<f64> = found()
-        .filter(|(c, _, _)| c.truth.tau_s > 0.03)
-        .filter_map(|(c, r, _)| Some(error(r.fit?.model.tau_s, c.truth.tau_s)))
-        .collect();
-    let lag: Vec<f64> = found()
-        .filter_map(|(c, r, _)| {
-            let law = &c.truth.law;
-            Some(1e3 * (r.lag?.lag.total_s(law) - c.truth.lag.total_s(law)).abs())
-        })
-        .collect();
-    let ms: Vec<f64> = found()
-        .filter(|(_, r, _)| r.verdict != Verdict::Refused)
-        .filter_map(|(c, r, _)| {
-            let registers = Registers { velocity: r.velocity?, position: None };
-            let (margins, _) = crate::trial::linear(&c.truth.nominal, &c.truth, &registers);
-            Some((margins.ms - r.design?.ms).abs())
-        })
-        .collect();
-    let windows = window_runs(cases);
-    let qpps_inside: Vec<f64> = windows.iter().filter_map(|w| w.0).collect();
-    let refused = windows.iter().filter(|w| w.0.is_none()).count() as f64 / windows.len().max(1) as f64;
-    let middle = |values: &[f64]| quantile(values.iter().copied(), 0.5);
-    let high = |values: &[f64]| quantile(values.iter().copied(), 0.95);
+    let found = || cases.iter().zip(reports).map(|(case, (report, peak))| (&case.truth, report, *peak));
+    let ms = cases.iter().zip(reports).filter_map(|(c, (r, _))| {
+        let registers = Registers { velocity: r.velocity?, position: None };
+        let (margins, _) = crate::trial::linear(&c.truth.nominal, &c.truth, &registers);
+        Some((margins.ms - r.design?.ms).abs())
+    });
+    window_summary(identification_of(found(), &ms.collect::<Vec<_>>()), &window_runs(cases))
+}
+
+pub(crate) fn error_percent(got: f64, wanted: f64) -> f64 {
+    100.0 * (got / wanted - 1.0).abs()
+}
+
+/// What the velocity runs found against the truth: (truth, report, peak current over the stall current) of each plant, and how far
+/// the predicted sensitivities were off.
+pub(crate) fn identification_of<'a>(
+    found: impl Iterator<Item = (&'a Truth, &'a Report, f64)>,
+    ms: &[f64],
+) -> Identification {
+    let found: Vec<_> = found.collect();
+    let of = |error: &dyn Fn(&Truth, &Report) -> Option<f64>, share: f64| {
+        quantile(found.iter().filter_map(|(truth, report, _)| error(truth, report)), share)
+    };
+    let qpps = |truth: &Truth, report: &Report| Some(error_percent(report.qpps?, truth.qpps));
+    let gain = |truth: &Truth, report: &Report| {
+        Some(error_percent(report.fit?.model.gain_counts_per_s, truth.gain_counts_per_s))
+    };
+    let tau = |truth: &Truth, report: &Report| {
+        let error = error_percent(report.fit?.model.tau_s, truth.tau_s);
+        (truth.tau_s > 0.03).then_some(error)
+    };
+    let lag = |truth: &Truth, report: &Report| {
+        let law = &truth.law;
+        Some(1e3 * (report.lag?.lag.total_s(law) - truth.lag.total_s(law)).abs())
+    };
     Identification {
-        qpps_error_median: round(middle(&qpps), 3),
-        qpps_error_p95: round(high(&qpps), 3),
-        gain_error_median: round(middle(&gain), 2),
-        gain_error_p95: round(high(&gain), 2),
-        tau_error_median: round(middle(&tau), 2),
-        tau_error_p95: round(high(&tau), 2),
-        lag_error_ms_median: round(middle(&lag), 2),
-        lag_error_ms_p95: round(high(&lag), 2),
-        ms_error_p95: round(high(&ms), 3),
-        ms_varied_p95: 0.0,
-        seconds_median: round(quantile(reports.iter().map(|r| r.0.seconds.0), 0.5), 2),
-        peak_current_p95: round(100.0 * quantile(reports.iter().map(|r| r.1), 0.95), 1),
-        window_qpps_error_median: round(middle(&qpps_inside), 2),
-        window_qpps_error_p95: round(high(&qpps_inside), 2),
+        qpps_error_median: round(of(&qpps, 0.5), 3),
+        qpps_error_p95: round(of(&qpps, 0.95), 3),
+        gain_error_median: round(of(&gain, 0.5), 2),
+        gain_error_p95: round(of(&gain, 0.95), 2),
+        tau_error_median: round(of(&tau, 0.5), 2),
+        tau_error_p95: round(of(&tau, 0.95), 2),
+        lag_error_ms_median: round(of(&lag, 0.5), 2),
+        lag_error_ms_p95: round(of(&lag, 0.95), 2),
+        ms_error_p95: round(quantile(ms.iter().copied(), 0.95), 3),
+        seconds_median: round(quantile(found.iter().map(|(_, report, _)| report.seconds.0), 0.5), 2),
+        peak_current_p95: round(100.0 * quantile(found.iter().map(|(_, _, peak)| *peak), 0.95), 1),
+        ..Identification::default()
+    }
+}
+
+/// With the runs inside a window: for each the error of QPPS, and the farthest reach over half the window, both in percent.
+pub(crate) fn window_summary(found: Identification, windows: &[(Option<f64>, f64)]) -> Identification {
+    let qpps: Vec<f64> = windows.iter().filter_map(|w| w.0).collect();
+    let refused = windows.iter().filter(|w| w.0.is_none()).count() as f64 / windows.len().max(1) as f64;
+    Identification {
+        window_qpps_error_median: round(quantile(qpps.iter().copied(), 0.5), 2),
+        window_qpps_error_p95: round(quantile(qpps.iter().copied(), 0.95), 2),
         window_refused: round(100.0 * refused, 1),
         window_reach_p95: round(quantile(windows.iter().map(|w| w.1), 0.95), 1),
+        ..found
     }
 }
 

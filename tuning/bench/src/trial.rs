@@ -180,9 +180,18 @@ pub fn velocity_trial(specimen: &Specimen, truth: &Truth, registers: &Registers)
     let (after_step, duties) = machine.errors(ticks, high, |motion| motion.0);
     machine.load(specimen.load_torque(LOAD_STEP_DUTY));
     let (after_load, _) = machine.errors(ticks, high, |motion| motion.0);
-    let step = high - low;
-    let score = Score::of(&after_step, &after_load, machine.tick_s, step, 0.05);
-    let late = ticks * 7 / 10;
+    velocity_outcome((&after_step, &after_load), &duties, machine.tick_s, high - low)
+}
+
+/// What the errors of a velocity test after its step and after its load, and the duties of the first, are worth.
+pub(crate) fn velocity_outcome(
+    (after_step, after_load): (&[f64], &[f64]),
+    duties: &[f64],
+    tick_s: f64,
+    step: f64,
+) -> Outcome {
+    let score = Score::of(after_step, after_load, tick_s, step, 0.05);
+    let late = after_step.len() * 7 / 10;
     // Ripple beyond what a tick's rounding makes visible at all.
     let ripple = deviation(&after_step[late..]) / step;
     Outcome {
@@ -190,8 +199,7 @@ pub fn velocity_trial(specimen: &Specimen, truth: &Truth, registers: &Registers)
         duty_rms: deviation(&duties[late..]),
         hunting: ripple > 0.05,
         ripple,
-        ripple_hz: crossings(&after_step[late..])
-            / (2.0 * (after_step.len() - late).max(1) as f64 * machine.tick_s),
+        ripple_hz: crossings(&after_step[late..]) / (2.0 * (after_step.len() - late).max(1) as f64 * tick_s),
     }
 }
 
@@ -217,8 +225,18 @@ pub fn position_trial(specimen: &Specimen, truth: &Truth, registers: &Registers)
     let (after_step, duties) = machine.errors(ticks, step, |motion| motion.1);
     machine.load(specimen.load_torque(LOAD_STEP_DUTY));
     let (after_load, _) = machine.errors(ticks, step, |motion| motion.1);
-    let score = Score::of(&after_step, &after_load, machine.tick_s, step, 0.02_f64.max(3.0 / step));
-    let late = ticks * 7 / 10;
+    position_outcome((&after_step, &after_load), &duties, machine.tick_s, step)
+}
+
+/// The same of a position test.
+pub(crate) fn position_outcome(
+    (after_step, after_load): (&[f64], &[f64]),
+    duties: &[f64],
+    tick_s: f64,
+    step: f64,
+) -> Outcome {
+    let score = Score::of(after_step, after_load, tick_s, step, 0.02_f64.max(3.0 / step));
+    let late = after_step.len() * 7 / 10;
     let swing = |errors: &[f64]| {
         let (l, h) =
             errors.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), e| (l.min(*e), h.max(*e)));
@@ -229,10 +247,9 @@ pub fn position_trial(specimen: &Specimen, truth: &Truth, registers: &Registers)
         let (height, turns) = swing(&errors[late..]);
         height > (0.02 * step).max(4.0) && turns >= 2
     };
-    let hunting = hunts(&after_step) || hunts(&after_load);
+    let hunting = hunts(after_step) || hunts(after_load);
     let ripple = swing(&after_step[late..]).0.max(swing(&after_load[late..]).0) / step;
-    let ripple_hz =
-        crossings(&after_step[late..]) / (2.0 * (after_step.len() - late).max(1) as f64 * machine.tick_s);
+    let ripple_hz = crossings(&after_step[late..]) / (2.0 * (after_step.len() - late).max(1) as f64 * tick_s);
     Outcome { score, duty_rms: deviation(&duties[late..]), hunting, ripple, ripple_hz }
 }
 

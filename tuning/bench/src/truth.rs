@@ -32,8 +32,8 @@ pub struct Truth {
 /// Works the truth of a plant out.
 #[must_use]
 pub fn truth(specimen: &Specimen) -> Truth {
-    let axis = &specimen.axis;
     let law = LoopLaw {
+        motion_mind: None,
         rate_hz: specimen.law.rate_hz,
         per_tick: specimen.law.gain_timing == GainTiming::PerTick,
         position_scale: specimen.law.position_gain_scale,
@@ -45,6 +45,12 @@ pub fn truth(specimen: &Specimen) -> Truth {
         VelocityEstimate::MovingAverage { ticks } => 0.5 * f64::from(ticks.saturating_sub(1)) * law.tick_s(),
     };
     let lag = Lag { filter_s, delay_ticks: f64::from(specimen.law.output_delay_ticks) };
+    truth_under(specimen, law, lag)
+}
+
+/// The truth of a plant under a law with a lag.
+pub(crate) fn truth_under(specimen: &Specimen, law: LoopLaw, lag: Lag) -> Truth {
+    let axis = &specimen.axis;
     let volts = specimen.volts();
     let step = axis.steady_counts_per_second(volts) - axis.steady_counts_per_second(0.9 * volts);
     let of = |inertia: f64| LoopPlant::new(discrete(specimen, inertia, law.tick_s()), &law, lag);
@@ -60,7 +66,7 @@ pub fn truth(specimen: &Specimen) -> Truth {
 }
 
 /// Steady speed at full duty with the battery sagging under the running current.
-fn full_speed(specimen: &Specimen) -> f64 {
+pub(crate) fn full_speed(specimen: &Specimen) -> f64 {
     let axis = &specimen.axis;
     let motor = &axis.motor;
     let mut volts = specimen.volts();

@@ -58,6 +58,11 @@ pub struct Task {
     pub most_overshoot: f64,
 }
 
+/// Lag that the model leaves out, ticks: the winding, a springy shaft. Ticks of 5 ms are longer than those it was found with.
+pub(crate) fn unmodelled_ticks(law: &LoopLaw) -> f64 {
+    if law.motion_mind.is_some() { 0.33 } else { 0.5 }
+}
+
 /// The overshoot of a speed step that a well-known motor may be designed for.
 pub const USUAL_OVERSHOOT: f64 = 0.20;
 

@@ -1,6 +1,6 @@
 //! Position loops: PD and PID that act on the duty directly, and P over the velocity loop (PIV).
 
-use super::{Candidate, Design, Goal, Loops, Task, ascend, better, finish};
+use super::{Candidate, Design, Goal, Loops, Task, ascend, better, finish, unmodelled_ticks};
 use crate::model::{Gains, Lag, Pid};
 use crate::score::POSITION_OVERSHOOT;
 use crate::ticks::position_test_and_duty;
@@ -20,9 +20,6 @@ const INNER_SHARES: [f64; 4] = [1.0, 0.7, 0.4, 0.2];
 /// Dead zone around the play of the mechanics, and of an integral that would hunt without one, counts.
 const SLACK_MARGIN: f64 = 2.0;
 const INTEGRAL_DEADZONE: f64 = 1.0;
-/// What the sensitivity is bounded with beside the likely lag: a tick for the winding and a springy shaft, which a difference of one
-/// tick reaches where a filtered speed does not.
-const UNMODELLED_TICKS: f64 = 0.5;
 
 /// `v = P e + D de/dt`, duty = v / QPPS (MCP manual 2.4.7, the simple PD system).
 #[must_use]
@@ -47,15 +44,19 @@ pub fn design_pid(task: &Task) -> Option<Design> {
     let proportional = best.gains.position?;
     // What friction and the load step eat, half as much again.
     let eaten = 1.5 * (task.plant.coulomb_duty + task.plant.load_duty.abs() + crate::score::LOAD_STEP_DUTY);
-    for time_s in (0..12).map(|n| 3.0 * task.plant.tau_s.max(0.03) * 0.8_f64.powi(n)) {
+    // A sum that has no fine bound has to grow slowly.
+    let (longest, ratio) = if task.law.motion_mind.is_some() { (30.0, 0.65) } else { (3.0, 0.8_f64) };
+    for time_s in (0..12).map(|n| longest * task.plant.tau_s.max(0.03) * ratio.powi(n)) {
         for share in [1.0, 0.8, 0.6] {
             let p = proportional.p * share;
             let pid = Pid { p, i: p / time_s, d: proportional.d * share };
-            let gains = Gains { position: Some(pid), max_integral: eaten * task.qpps / pid.i, ..best.gains };
-            if loops.within(task, &gains).is_some() && loops.stable(task, &gains) {
-                let other = candidate(task, gains);
-                if other.cost < best.cost {
-                    best = other;
+            for max_integral in task.law.sum_bounds(eaten * task.qpps / pid.i) {
+                let gains = Gains { position: Some(pid), max_integral, ..best.gains };
+                if loops.within(task, &gains).is_some() && loops.stable(task, &gains) {
+                    let other = candidate(task, gains);
+                    if other.cost < best.cost {
+                        best = other;
+                    }
                 }
             }
         }
@@ -138,6 +139,7 @@ fn refine(loops: &Loops, task: &Task, mut best: Candidate) -> Candidate {
 }
 
 fn candidate(task: &Task, gains: Gains) -> Candidate {
+    let gains = task.law.rounded(&gains, task.qpps);
     let (score, late_duty) = position_test_and_duty(&task.plant, &task.law, task.lag, &gains, task.qpps);
     let excess = (score.overshoot - OVERSHOOT_CAP).max(0.0) + 0.5 * (late_duty - LATE_DUTY_CAP).max(0.0);
     Candidate { gains, score, cost: score.cost(POSITION_OVERSHOOT) * (1.0 + 50.0 * excess) }
@@ -148,8 +150,10 @@ pub(crate) fn deadzone(task: &Task) -> f64 {
     if task.slack_counts > 0.0 { (task.slack_counts + SLACK_MARGIN).round() } else { 0.0 }
 }
 
-/// The task of a loop that acts on the duty directly.
+/// The task of a loop that acts on the duty directly: its sensitivity is bounded with some more lag, for the winding and a springy
+/// shaft, which a difference of one tick reaches where a filtered speed does not.
 fn direct(task: &Task) -> Task {
-    let worst_lag = Lag { delay_ticks: task.worst_lag.delay_ticks + UNMODELLED_TICKS, ..task.worst_lag };
+    let worst_lag =
+        Lag { delay_ticks: task.worst_lag.delay_ticks + unmodelled_ticks(&task.law), ..task.worst_lag };
     Task { worst_lag, ..*task }
 }

@@ -53,6 +53,7 @@ fn refine(loops: &Loops, task: &Task, mut best: Candidate) -> Candidate {
 
 /// The cost as likely, and half as much again of what it would be on a somewhat quicker motor with the worst lag.
 fn candidate(task: &Task, gains: Gains) -> Candidate {
+    let gains = task.law.rounded(&gains, task.qpps);
     let score = velocity_test(&task.plant, &task.law, task.lag, &gains, task.qpps);
     let other = PlantModel { tau_s: 0.88 * task.plant.tau_s, ..task.plant };
     let worse = velocity_test(&other, &task.law, task.worst_lag, &gains, task.qpps);

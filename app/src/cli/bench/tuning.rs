@@ -1,10 +1,11 @@
 //! `brushwork bench tuning`: the tuner and every textbook rule, side by side on the same records.
 
 use brushwork_tuning_bench::faults::{FaultRow, fault_rows};
+use brushwork_tuning_bench::mind;
 use brushwork_tuning_bench::population::population;
 use brushwork_tuning_bench::table::{Row, Table, cases, optima_of, table};
 
-use crate::cli::args::BenchArgs;
+use crate::cli::args::{BenchArgs, BenchFamily};
 use crate::cli::exit::Exit;
 use crate::cli::output::{Output, OutputError, say};
 
@@ -31,13 +32,30 @@ pub fn run(args: &BenchArgs, out: &mut Output) -> Exit {
         return Exit::Usage;
     }
     if args.faults {
-        let rows = fault_rows(&population(args.seed, args.plants));
+        let rows = match args.family {
+            BenchFamily::Mcp => fault_rows(&population(args.seed, args.plants)),
+            BenchFamily::MotionMind => {
+                mind::faults::fault_rows(&mind::population::population(args.seed, args.plants), &[])
+            }
+        };
         let printed = if args.json { out.json(&rows) } else { print_faults(&rows, out) };
         return printed.map_or_else(Exit::from, |()| Exit::Done);
     }
-    let cases = cases(args.seed, args.plants, args.write_oracle.is_some());
+    let is_fresh = args.write_oracle.is_some();
+    let (optima, table) = match args.family {
+        BenchFamily::Mcp => {
+            let cases = cases(args.seed, args.plants, is_fresh);
+            let optima = is_fresh.then(|| serde_json::to_string(&optima_of(&cases)));
+            (optima, (!is_fresh).then(|| table(args.seed, &cases, !args.quick)))
+        }
+        BenchFamily::MotionMind => {
+            let cases = mind::table::cases(args.seed, args.plants, is_fresh);
+            let optima = is_fresh.then(|| serde_json::to_string(&mind::table::optima_of(&cases)));
+            (optima, (!is_fresh).then(|| mind::table::table(args.seed, &cases, !args.quick)))
+        }
+    };
     if let Some(path) = &args.write_oracle {
-        let text = serde_json::to_string(&optima_of(&cases)).unwrap_or_default();
+        let text = optima.and_then(Result::ok).unwrap_or_default();
         return match std::fs::write(path, text) {
             Ok(()) => Exit::Done,
             Err(error) => {
@@ -46,7 +64,7 @@ pub fn run(args: &BenchArgs, out: &mut Output) -> Exit {
             }
         };
     }
-    let table = table(args.seed, &cases, !args.quick);
+    let Some(table) = table else { return Exit::Failed };
     let printed = if args.json { out.json(&table) } else { print(&table, out) };
     printed.map_or_else(Exit::from, |()| Exit::Done)
 }
@@ -63,7 +81,7 @@ fn print(table: &Table, out: &mut Output) -> Result<(), OutputError> {
     out.table(&HEADS, &rows)?;
     print_rejects(table, out)?;
     out.line("")?;
-    let found = serde_json::to_value(&table.identification).unwrap_or_default();
+    let found = serde_json::to_value(table.identification).unwrap_or_default();
     let found: Vec<Vec<String>> = found
         .as_object()
         .into_iter()

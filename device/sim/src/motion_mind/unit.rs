@@ -4,11 +4,11 @@ use super::assumed::{BOOT_TIME, SAVE_POSITION_AFTER, STORE_TIME, VELOCITIES_IN_M
 use super::config::{EncoderDecode, MotionMindConfig};
 use super::drive::{Limits, OpenLoop, radio_position};
 use super::inputs::Inputs;
-use super::loops::{Goal, Loop, Turn};
+use super::loops::{FULL_DUTY, Goal, Loop, Turn};
 use super::store::{Store, number};
 use super::wire::{Order, Wire};
 use crate::bridge::BridgeOutput;
-use crate::plant::ParamsError;
+use crate::plant::{AxisTruth, ParamsError};
 use crate::world::{World, WorldAction, WorldView};
 use brushwork_protocol::motion_mind::{
     Address, Command, Part, REGISTERS, Reply, Returned, Returns, STATUS_BITS, function, function2, status,
@@ -150,6 +150,16 @@ impl MotionMind {
     /// Its world as it is now.
     pub fn view(&self) -> WorldView {
         self.world.view(self.now)
+    }
+
+    /// Its motor as it really is.
+    pub fn truth(&self) -> AxisTruth {
+        self.world.truth(Motor::M1)
+    }
+
+    /// The duty that it gives, -1 to 1.
+    pub fn duty(&self) -> f64 {
+        self.running.duty as f64 / FULL_DUTY as f64
     }
 
     /// Whether its cable is in.

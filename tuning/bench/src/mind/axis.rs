@@ -1,0 +1,475 @@
+//! An [`Axis`] on a Motion Mind 3 in mode 4: which commands make its calls, whatever carries them.
+//!
+//! The unit has no command for a duty in this mode, and none is needed: with PTERM, ITERM and DTERM 0 and VELOCITYFF 255 a speed command
+//! of n gives a duty of n steps, since only the feed-forward is left (Motion Mind manual 3.13). DISABLEPID takes every duty away.
+//! Between the two kinds of drive the unit is off, and MOVETO_RELATIVE 0 makes it forget where it was going.
+//!
+//! The unit has no time-out on its serial line. A fence does its work: VNLIMIT and VPLIMIT are kept a little ahead of the motor,
+//! so that it goes no farther when the host has died.
+
+use super::clock::UnitClock;
+use super::fence::Fence;
+use brushwork_protocol::motion_mind::{Command, Part, Protocol, Reply, status};
+use brushwork_tuning::axis::{
+    Axis, AxisError, EncoderClass, Exchange, FULL_DUTY_RAW, PositionRegisters, Sample, Setup, Status,
+    VelocityRegisters, Want,
+};
+use brushwork_tuning::motion_mind::{FULL_FEED_FORWARD, MotionMindRegisters, MotionMindSetup, bits};
+use std::time::Duration;
+
+/// Steps of a full duty.
+const FULL_PWM: i32 = 1023;
+/// Counts in a loop for counts/s.
+const LOOPS_PER_S: i32 = 200;
+/// Steps of 10 mA in a step of AMPS.
+const CURRENT_STEP: i64 = 2;
+/// Bits per second from which on the line of all registers (up to 190 characters) takes less than three single ones.
+const QUICK_LINE: u32 = 38_400;
+/// Registers in RAM.
+const REGISTERS: usize = 32;
+
+/// Register numbers (Motion Mind manual 6.0).
+mod number {
+    pub const POSITION: u8 = 0;
+    pub const VELOCITYFF: u8 = 2;
+    pub const FUNCTION: u8 = 3;
+    pub const PTERM: u8 = 4;
+    pub const ITERM: u8 = 5;
+    pub const DTERM: u8 = 6;
+    pub const PIDSCALAR: u8 = 8;
+    pub const TIME: u8 = 15;
+    pub const STATUS: u8 = 16;
+    pub const MODE: u8 = 18;
+    pub const PWMOUT: u8 = 21;
+    pub const VNLIMIT: u8 = 23;
+    pub const VPLIMIT: u8 = 24;
+    pub const DEADBAND: u8 = 26;
+    pub const AMPSLIMIT: u8 = 28;
+    pub const AMPS: u8 = 29;
+    pub const FUNCTION2: u8 = 30;
+}
+
+/// What a run reads before it begins.
+const SETUP: [u8; 13] = [
+    number::VELOCITYFF,
+    number::FUNCTION,
+    number::PTERM,
+    number::ITERM,
+    number::DTERM,
+    number::PIDSCALAR,
+    number::MODE,
+    number::VNLIMIT,
+    number::VPLIMIT,
+    number::DEADBAND,
+    number::AMPSLIMIT,
+    number::FUNCTION2,
+    number::STATUS,
+];
+
+/// What carries commands to one unit.
+pub trait MindCarrier {
+    /// Sends a command and gives its reply. The exchange is that of the command's work: when the unit took it, as nearly as the
+    /// carrier can tell.
+    fn transact(&mut self, command: &Command) -> Result<(Exchange, Reply), AxisError>;
+    /// Which protocol the unit speaks: only frames can ask for several registers at once.
+    fn protocol(&self) -> Protocol;
+    /// Bits per second of the line, as far as they are known.
+    fn bits_per_second(&self) -> Option<u32>;
+    /// The time.
+    fn now(&mut self) -> Duration;
+    /// Waits until a time.
+    fn wait_until(&mut self, time: Duration) -> Result<(), AxisError>;
+    /// Tells whoever waits what is going on.
+    fn progress(&mut self, _text: &str) {}
+}
+
+/// What drives the motor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Driving {
+    /// Whatever was before.
+    Unknown,
+    /// Nothing: DISABLEPID is set.
+    Off,
+    /// The feed-forward alone.
+    Duty,
+    /// The loop.
+    Loop,
+}
+
+/// An axis behind a carrier.
+#[derive(Debug)]
+pub struct MindAxis<C> {
+    /// The carrier.
+    pub carrier: C,
+    before: Option<MotionMindRegisters>,
+    trial: Option<MotionMindRegisters>,
+    driving: Driving,
+    /// What is known to be in RAM.
+    known: [Option<i64>; REGISTERS],
+    fence: Fence,
+    clock: UnitClock,
+    last_status: Status,
+}
+
+impl<C: MindCarrier> MindAxis<C> {
+    /// The axis of a unit.
+    pub fn new(carrier: C) -> Self {
+        Self {
+            carrier,
+            before: None,
+            trial: None,
+            driving: Driving::Unknown,
+            known: [None; REGISTERS],
+            fence: Fence::default(),
+            clock: UnitClock::default(),
+            last_status: Status::default(),
+        }
+    }
+
+    fn registers(&mut self, wanted: &[u8]) -> Result<(Exchange, Vec<(u8, i64)>), AxisError> {
+        if self.carrier.protocol() == Protocol::Binary {
+            let mask = wanted.iter().fold(0, |mask, number| mask | 1 << number);
+            return self.read(&Command::Read(mask));
+        }
+        let mut all = Vec::with_capacity(wanted.len());
+        let mut first = None;
+        for number in wanted {
+            let (at, values) = self.read(&Command::ReadText(Part::Register(*number)))?;
+            first.get_or_insert(at);
+            all.extend(values);
+        }
+        first.map(|at| (at, all)).ok_or(AxisError::NoReply)
+    }
+
+    fn read(&mut self, command: &Command) -> Result<(Exchange, Vec<(u8, i64)>), AxisError> {
+        match self.carrier.transact(command)? {
+            (at, Reply::Registers(values)) => Ok((at, values)),
+            _ => Err(AxisError::NoReply),
+        }
+    }
+
+    /// Whether the line of all registers is as quick as a few single ones.
+    fn reads_all(&self) -> bool {
+        self.carrier.bits_per_second().is_some_and(|bits| bits >= QUICK_LINE)
+    }
+
+    /// Writes a register unless it is known to hold the value.
+    fn set(&mut self, register: u8, value: i64) -> Result<(), AxisError> {
+        if self.known[usize::from(register)] == Some(value) {
+            return Ok(());
+        }
+        self.write(register, value).map(|_| ())
+    }
+
+    fn write(&mut self, register: u8, value: i64) -> Result<Exchange, AxisError> {
+        self.known[usize::from(register)] = None;
+        let (at, _) = self.carrier.transact(&Command::Write { register, value })?;
+        self.known[usize::from(register)] = Some(value);
+        Ok(at)
+    }
+
+    fn send(&mut self, command: Command) -> Result<Exchange, AxisError> {
+        self.carrier.transact(&command).map(|(at, _)| at)
+    }
+
+    fn before(&self) -> Result<MotionMindRegisters, AxisError> {
+        self.before.ok_or_else(|| AxisError::Refused("a command before the registers were read".into()))
+    }
+
+    /// FUNCTION during the run: a duty of 0 brakes, the fence holds, moves are not slowed down.
+    fn running(function: u16) -> i64 {
+        let set = bits::ACTIVESTOP | bits::VIRTLIMIT;
+        i64::from((function | set) & !(bits::DISABLEPID | bits::VELLIMIT))
+    }
+
+    /// Takes the duty away, whatever gave it.
+    fn off(&mut self) -> Result<Exchange, AxisError> {
+        let function = self.before()?.function;
+        let at = self.write(number::FUNCTION, Self::running(function) | i64::from(bits::DISABLEPID))?;
+        self.send(Command::MoveAtVelocity(0))?;
+        self.driving = Driving::Off;
+        Ok(at)
+    }
+
+    fn write_gains(&mut self, registers: &MotionMindRegisters) -> Result<(), AxisError> {
+        let values = [
+            (number::PTERM, i64::from(registers.pterm)),
+            (number::ITERM, i64::from(registers.iterm)),
+            (number::DTERM, i64::from(registers.dterm)),
+            (number::PIDSCALAR, i64::from(registers.pidscalar)),
+            (number::VELOCITYFF, i64::from(registers.velocity_ff)),
+            (number::DEADBAND, i64::from(registers.deadband)),
+            (number::FUNCTION2, i64::from(registers.function2)),
+        ];
+        values.into_iter().try_for_each(|(register, value)| self.set(register, value))
+    }
+
+    /// Gives the motor to the loop of the registers that were written last: it holds where it is.
+    fn close(&mut self) -> Result<(), AxisError> {
+        if self.driving == Driving::Loop {
+            return Ok(());
+        }
+        let Some(trial) = self.trial else {
+            return Err(AxisError::Refused("a loop before its gains".into()));
+        };
+        if self.driving != Driving::Off {
+            self.off()?;
+        }
+        self.write_gains(&trial)?;
+        self.send(Command::MoveToRelative(0))?;
+        self.write(number::FUNCTION, Self::running(trial.function))?;
+        self.driving = Driving::Loop;
+        Ok(())
+    }
+
+    /// Moves the fence where it has come too near.
+    fn mend_fence(&mut self) -> Result<(), AxisError> {
+        let (low, high) = self.fence.due();
+        if let Some(counts) = low {
+            self.write(number::VNLIMIT, i64::from(counts))?;
+            self.fence.low = Some(counts);
+        }
+        if let Some(counts) = high {
+            self.write(number::VPLIMIT, i64::from(counts))?;
+            self.fence.high = Some(counts);
+        }
+        Ok(())
+    }
+}
+
+impl<C: MindCarrier> Axis for MindAxis<C> {
+    fn now(&mut self) -> Duration {
+        self.carrier.now()
+    }
+
+    fn wait_until(&mut self, time: Duration) -> Result<(), AxisError> {
+        self.carrier.wait_until(time)
+    }
+
+    fn sample(&mut self, want: Want) -> Result<Sample, AxisError> {
+        let mut wanted = vec![number::POSITION];
+        // A line of text carries one register or all: where that is one, the status comes with every other reading than that of
+        // the current, and the unit's time would be that of another moment.
+        let is_whole = self.carrier.protocol() == Protocol::Binary || self.reads_all();
+        wanted.extend(is_whole.then_some(number::TIME));
+        wanted.extend((is_whole || !want.current).then_some(number::STATUS));
+        wanted.extend(want.duty.then_some(number::PWMOUT));
+        wanted.extend(want.current.then_some(number::AMPS));
+        let (read_at, values) = if self.carrier.protocol() == Protocol::Text && is_whole {
+            self.read(&Command::ReadText(Part::All))?
+        } else {
+            self.registers(&wanted)?
+        };
+        let value = |wanted: u8| values.iter().find(|(number, _)| *number == wanted).map(|(_, value)| *value);
+        // The casts are those of the registers' own widths.
+        let counts = value(number::POSITION).ok_or(AxisError::NoReply)? as i32;
+        let at = match value(number::TIME) {
+            Some(time) => self.clock.stamp(read_at, time as u32),
+            None => read_at,
+        };
+        if let Some(word) = value(number::STATUS) {
+            self.last_status = status_of(word as u16);
+        }
+        let duty_raw = value(number::PWMOUT).filter(|_| want.duty).map(|steps| (at, duty_of(steps as i32)));
+        let current_raw =
+            value(number::AMPS).filter(|_| want.current).map(|steps| (steps * CURRENT_STEP) as i16);
+        self.fence.see(at.middle_s(), counts);
+        if matches!(self.driving, Driving::Duty | Driving::Loop) {
+            // A fence that cannot be moved stops the motor; the next poll tries again.
+            match self.mend_fence() {
+                Err(AxisError::NoReply) | Ok(()) => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(Sample {
+            counts_at: at,
+            counts: [counts, 0],
+            status: self.last_status,
+            duty_raw,
+            current_raw,
+            volts_raw: None,
+        })
+    }
+
+    fn drive_duty(&mut self, duty_raw: i16) -> Result<Exchange, AxisError> {
+        let steps = steps_of(duty_raw);
+        self.fence.drive(f64::from(steps) / f64::from(FULL_PWM));
+        if self.driving != Driving::Duty {
+            let at = self.off()?;
+            if steps == 0 {
+                return Ok(at);
+            }
+            let before = self.before()?;
+            self.write_gains(&MotionMindRegisters {
+                pterm: 0,
+                iterm: 0,
+                dterm: 0,
+                velocity_ff: FULL_FEED_FORWARD,
+                function2: before.function2 & !(bits::NEWVELMODE | bits::FASTPID),
+                ..before
+            })?;
+        }
+        if steps != 0 {
+            self.mend_fence()?;
+        }
+        let mut at = self.send(Command::MoveAtVelocity(steps))?;
+        if self.driving != Driving::Duty {
+            let function = self.before()?.function & !bits::ENABLEDB;
+            at = self.write(number::FUNCTION, Self::running(function))?;
+            self.driving = Driving::Duty;
+        }
+        Ok(at)
+    }
+
+    fn command_speed(&mut self, counts_per_s: i32) -> Result<Exchange, AxisError> {
+        self.close()?;
+        self.fence.head(f64::from(counts_per_s));
+        self.mend_fence()?;
+        let counts = counts_per_s.div_euclid(LOOPS_PER_S);
+        self.send(Command::MoveAtVelocity(counts.clamp(-32_768, 32_767) as i16))
+    }
+
+    fn command_position(&mut self, counts: i32, _speed: u32) -> Result<Exchange, AxisError> {
+        self.close()?;
+        self.fence.head(f64::from(counts) - self.fence.place());
+        self.mend_fence()?;
+        self.send(Command::MoveToAbsolute(counts))
+    }
+
+    fn read_setup(&mut self) -> Result<Setup, AxisError> {
+        let (_, values) = self.registers(&SETUP)?;
+        for (number, value) in &values {
+            self.known[usize::from(*number)] = Some(*value);
+        }
+        let value = |wanted: u8| {
+            let found = values.iter().find(|(number, _)| *number == wanted);
+            found.map(|(_, value)| *value).ok_or(AxisError::NoReply)
+        };
+        // The casts are those of the registers' own widths.
+        let registers = MotionMindRegisters {
+            pterm: value(number::PTERM)? as u16,
+            iterm: value(number::ITERM)? as u16,
+            dterm: value(number::DTERM)? as u16,
+            pidscalar: value(number::PIDSCALAR)? as u8,
+            velocity_ff: value(number::VELOCITYFF)? as u8,
+            deadband: value(number::DEADBAND)? as u16,
+            function: value(number::FUNCTION)? as u16,
+            function2: value(number::FUNCTION2)? as u16,
+            virtual_limits: (value(number::VNLIMIT)? as i32, value(number::VPLIMIT)? as i32),
+        };
+        self.before = Some(registers);
+        Ok(Setup {
+            max_current_raw: (value(number::AMPSLIMIT)? * CURRENT_STEP) as u32,
+            encoder: EncoderClass::Quadrature,
+            motion_mind: Some(MotionMindSetup { mode: value(number::MODE)? as u8, registers }),
+            ..Setup::default()
+        })
+    }
+
+    fn write_velocity(&mut self, _: VelocityRegisters) -> Result<(), AxisError> {
+        Err(AxisError::Refused("gains of another family".into()))
+    }
+
+    fn write_position(&mut self, _: PositionRegisters) -> Result<(), AxisError> {
+        Err(AxisError::Refused("gains of another family".into()))
+    }
+
+    fn write_winding(&mut self, _: [u32; 2]) -> Result<(), AxisError> {
+        Err(AxisError::Refused("inductance and resistance".into()))
+    }
+
+    fn write_current_limits(&mut self, max_raw: u32, _: i32) -> Result<(), AxisError> {
+        let steps = (i64::from(max_raw) / CURRENT_STEP).min(1023);
+        self.write(number::AMPSLIMIT, steps).map(|_| ())
+    }
+
+    fn raw_speed(&mut self) -> Result<i32, AxisError> {
+        Err(AxisError::Refused("a speed that is not a mean".into()))
+    }
+
+    fn set_stream_timeout(&mut self, _: u32) -> Result<(), AxisError> {
+        Err(AxisError::Refused("a time-out".into()))
+    }
+
+    fn write_motion_mind(&mut self, registers: MotionMindRegisters) -> Result<(), AxisError> {
+        self.off()?;
+        self.write_gains(&registers)?;
+        self.trial = Some(registers);
+        Ok(())
+    }
+
+    fn end_motion_mind(&mut self, registers: MotionMindRegisters) -> Result<(), AxisError> {
+        self.off()?;
+        self.write_gains(&registers)?;
+        let (low, high) = registers.virtual_limits;
+        self.write(number::VNLIMIT, i64::from(low))?;
+        self.write(number::VPLIMIT, i64::from(high))?;
+        self.send(Command::MoveToRelative(0))?;
+        self.write(number::FUNCTION, i64::from(registers.function))?;
+        self.driving = Driving::Unknown;
+        Ok(())
+    }
+
+    fn set_travel(&mut self, counts: (i64, i64)) -> Result<(), AxisError> {
+        self.fence.travel = Some(counts);
+        Ok(())
+    }
+
+    fn progress(&mut self, text: &str) {
+        self.carrier.progress(text);
+    }
+}
+
+/// What STATUS says to a run. A limit input or the brake keeps the motor from what it is told.
+fn status_of(word: u16) -> Status {
+    let has = |mask: u16| word & mask != 0;
+    Status {
+        over_current: has(status::CURRENTLIMIT),
+        battery_low: false,
+        fault: has(status::TEMPFAULT | status::BRAKE | status::NEGLIMIT | status::POSLIMIT),
+        raw: u32::from(word),
+    }
+}
+
+fn steps_of(duty_raw: i16) -> i16 {
+    let full = i32::from(FULL_DUTY_RAW);
+    let scaled = i32::from(duty_raw) * FULL_PWM;
+    ((scaled + scaled.signum() * full / 2) / full).clamp(-FULL_PWM, FULL_PWM) as i16
+}
+
+fn duty_of(steps: i32) -> i16 {
+    (steps * i32::from(FULL_DUTY_RAW) / FULL_PWM).clamp(-32_767, 32_767) as i16
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn duties_and_steps_are_each_others_inverse() {
+        for steps in -1023..=1023 {
+            assert_eq!(steps_of(duty_of(steps)), steps as i16);
+        }
+    }
+
+    #[test]
+    fn the_bits_of_the_tuner_are_those_of_the_protocol() {
+        use brushwork_protocol::motion_mind::{function, function2};
+        let own = [
+            bits::SATPROT,
+            bits::VELLIMIT,
+            bits::ACTIVESTOP,
+            bits::ENABLEDB,
+            bits::VIRTLIMIT,
+            bits::DISABLEPID,
+        ];
+        let named = ["SATPROT", "VELLIMIT", "ACTIVESTOP", "ENABLEDB", "VIRTLIMIT", "DISABLEPID"];
+        for (mask, name) in own.into_iter().zip(named) {
+            let bit = brushwork_protocol::motion_mind::FUNCTION_BITS.iter().find(|bit| bit.name == name);
+            assert_eq!(bit.map(|bit| bit.mask()), Some(mask), "{name}");
+        }
+        assert_eq!(bits::SATPROT, function::SATPROT);
+        assert_eq!((bits::NEWVELMODE, bits::FASTPID), (function2::NEWVELMODE, function2::FASTPID));
+        assert_eq!(bits::PULSEFB, function2::PULSEFB);
+    }
+}

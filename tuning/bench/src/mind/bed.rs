@@ -1,0 +1,192 @@
+//! Gains tried on the true plant: the simulated Motion Mind itself, its registers written past the wire.
+
+use super::population::{MindSpecimen, tell};
+use crate::oracle::Bed;
+use crate::trial::{Outcome, position_outcome, velocity_outcome};
+use crate::truth::{Truth, full_speed, truth_under};
+use brushwork_protocol::motion_mind::Command;
+use brushwork_sim::motion_mind::MotionMind;
+use brushwork_sim::plant::ShaftSide;
+use brushwork_sim::world::{Motor, WorldAction};
+use brushwork_tuning::model::{Gains, Lag, LoopLaw};
+use brushwork_tuning::motion_mind::{
+    LOOPS_PER_S, MotionMindLaw, MotionMindRegisters, SPEED_STEP_COUNTS_PER_S, law,
+};
+use brushwork_tuning::score::{LOAD_STEP_DUTY, VELOCITY_STEP, horizon_s, position_step};
+use brushwork_tuning::tune::Method;
+use std::time::Duration;
+
+/// Registers of a fresh unit that the gains do not touch.
+const FACTORY: MotionMindRegisters = MotionMindRegisters {
+    pterm: 6000,
+    iterm: 35,
+    dterm: 0,
+    pidscalar: 14,
+    velocity_ff: 128,
+    deadband: 15,
+    function: 0,
+    function2: 0,
+    virtual_limits: (-100_000, 100_000),
+};
+
+/// A plant under a Motion Mind.
+#[derive(Debug)]
+pub struct MindBed {
+    /// The plant.
+    pub specimen: MindSpecimen,
+    /// Its truth.
+    pub truth: Truth,
+    fresh: MotionMind,
+}
+
+impl MindBed {
+    /// The bed of a plant.
+    #[must_use]
+    pub fn new(specimen: MindSpecimen) -> Self {
+        let qpps = full_speed(&specimen.plant);
+        let law = LoopLaw { motion_mind: Some(MotionMindLaw::of_qpps(qpps)), ..law() };
+        let truth = truth_under(&specimen.plant, law, Lag::default());
+        let mut fresh = specimen.unit();
+        // To the beginning of a loop, so that every trial counts the same ones.
+        fresh.advance(fresh.now() + TICK);
+        Self { truth, fresh, specimen }
+    }
+
+    /// The factory's gains.
+    #[must_use]
+    pub fn factory(&self, method: Method) -> MotionMindRegisters {
+        let gains = FACTORY.gains(self.truth.qpps, method != Method::Velocity);
+        FACTORY.with(
+            &gains,
+            self.truth.qpps,
+            MotionMindLaw { velocity_ff: FACTORY.velocity_ff, amps_limit: 0 },
+        )
+    }
+
+    /// Gains as registers of a fresh unit.
+    #[must_use]
+    pub fn registers(&self, gains: &Gains, qpps: f64) -> MotionMindRegisters {
+        FACTORY.with(gains, qpps, MotionMindLaw::of_qpps(qpps))
+    }
+
+    /// A trial of registers.
+    #[must_use]
+    pub fn trial(&self, method: Method, registers: &MotionMindRegisters) -> Outcome {
+        let machine = Machine::new(self, registers);
+        if method == Method::Velocity { machine.velocity() } else { machine.position() }
+    }
+}
+
+impl Bed for MindBed {
+    fn truth(&self) -> &Truth {
+        &self.truth
+    }
+
+    fn rounded(&self, gains: &Gains) -> Gains {
+        let qpps = self.truth.qpps;
+        self.registers(gains, qpps).gains(qpps, gains.position.is_some())
+    }
+
+    fn outcome(&self, method: Method, gains: &Gains) -> Outcome {
+        self.trial(method, &self.registers(gains, self.truth.qpps))
+    }
+}
+
+/// A loop of the unit.
+const TICK: Duration = Duration::from_micros(1_000_000 / LOOPS_PER_S as u64);
+
+struct Machine<'a> {
+    bed: &'a MindBed,
+    unit: MotionMind,
+    per_motor_radian: f64,
+    per_load_radian: Option<f64>,
+    tick_s: f64,
+}
+
+impl<'a> Machine<'a> {
+    fn new(bed: &'a MindBed, registers: &MotionMindRegisters) -> Self {
+        let axis = &bed.specimen.plant.axis;
+        let mut unit = bed.fresh.clone();
+        let values = [
+            (2, i64::from(registers.velocity_ff)),
+            (3, i64::from(registers.function)),
+            (4, i64::from(registers.pterm)),
+            (5, i64::from(registers.iterm)),
+            (6, i64::from(registers.dterm)),
+            (8, i64::from(registers.pidscalar)),
+            (26, i64::from(registers.deadband)),
+        ];
+        for (register, value) in values {
+            tell(&mut unit, &Command::Write { register, value });
+        }
+        let load_side = axis.encoder.side == ShaftSide::Load;
+        Self {
+            bed,
+            unit,
+            per_motor_radian: axis.counts_per_motor_radian(),
+            per_load_radian: load_side.then(|| axis.encoder.counts_per_turn / std::f64::consts::TAU),
+            tick_s: TICK.as_secs_f64(),
+        }
+    }
+
+    fn ticks(&self) -> usize {
+        (horizon_s(self.bed.truth.tau_s) / self.tick_s) as usize
+    }
+
+    /// One loop; true speed and place of the shaft that the encoder sits on in counts, and the duty.
+    fn tick(&mut self) -> (f64, f64, f64) {
+        self.unit.advance(self.unit.now() + TICK);
+        let truth = self.unit.truth();
+        let (speed, place) = match self.per_load_radian {
+            Some(per) => (truth.load_radians_per_second * per, truth.load_radians * per),
+            None => (
+                truth.motor_radians_per_second * self.per_motor_radian,
+                truth.motor_radians * self.per_motor_radian,
+            ),
+        };
+        (speed, place, self.unit.duty())
+    }
+
+    fn load(&mut self) {
+        let newton_metres = self.bed.specimen.plant.load_torque(LOAD_STEP_DUTY);
+        self.unit.apply(&WorldAction::SetLoadTorque { motor: Motor::M1, newton_metres });
+    }
+
+    fn errors(&mut self, goal: f64, is_velocity: bool) -> (Vec<f64>, Vec<f64>) {
+        (0..self.ticks())
+            .map(|_| {
+                let (speed, place, duty) = self.tick();
+                (goal - if is_velocity { speed } else { place }, duty)
+            })
+            .unzip()
+    }
+
+    /// 0.15 to 0.45 of full speed in whole counts for each loop, then the load.
+    fn velocity(mut self) -> Outcome {
+        let top = self.bed.truth.gain_counts_per_s / SPEED_STEP_COUNTS_PER_S;
+        let (low, high) = ((VELOCITY_STEP.0 * top).round(), (VELOCITY_STEP.1 * top).round());
+        let tell_speed =
+            |unit: &mut MotionMind, counts: f64| tell(unit, &Command::MoveAtVelocity(counts as i16));
+        tell_speed(&mut self.unit, low);
+        for _ in 0..self.ticks() * 7 / 10 {
+            self.tick();
+        }
+        tell_speed(&mut self.unit, high);
+        let (low, high) = (low * SPEED_STEP_COUNTS_PER_S, high * SPEED_STEP_COUNTS_PER_S);
+        let (after_step, duties) = self.errors(high, true);
+        self.load();
+        let (after_load, _) = self.errors(high, true);
+        velocity_outcome((&after_step, &after_load), &duties, self.tick_s, high - low)
+    }
+
+    /// A step of a third of a time constant's way, then the load.
+    fn position(mut self) -> Outcome {
+        let step = position_step(self.bed.truth.gain_counts_per_s, self.bed.truth.tau_s);
+        self.tick();
+        tell(&mut self.unit, &Command::MoveToAbsolute(step as i32));
+        let (after_step, duties) = self.errors(step, false);
+        self.load();
+        let (after_load, _) = self.errors(step, false);
+        position_outcome((&after_step, &after_load), &duties, self.tick_s, step)
+    }
+}

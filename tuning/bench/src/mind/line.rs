@@ -1,0 +1,170 @@
+//! The link of the bench to a simulated Motion Mind: frames or lines in virtual time, at a baud rate, with latency, jitter and loss.
+
+use super::axis::MindCarrier;
+use super::population::MindSpecimen;
+use crate::line::{Bench, SimulatedLine};
+use brushwork_protocol::motion_mind::{
+    Address, Command, Part, Progress, Reply, Returns, encode_frame, encode_line, parse_frame_reply,
+    parse_line_reply,
+};
+use brushwork_sim::motion_mind::{MotionMind, Protocol};
+use brushwork_sim::world::{WorldAction, WorldView};
+use brushwork_tuning::axis::{AxisError, Exchange};
+use std::time::Duration;
+
+/// Bits of a byte on the wire.
+const BITS_PER_BYTE: f64 = 10.0;
+/// How long a reply is waited for beyond its bytes: the manual says at most 10 ms, and 50 for long lines, s.
+const REPLY_TIMEOUT_S: (f64, f64) = (0.015, 0.055);
+/// How long after a command the reply usually leaves (Motion Mind manual 5.0), in frames, in lines, and of all registers, s.
+const REPLY_DELAY_S: [f64; 3] = [0.002, 0.006, 0.020];
+
+impl Bench for MotionMind {
+    fn time(&self) -> Duration {
+        self.now()
+    }
+
+    fn pass(&mut self, to: Duration) {
+        self.advance(to);
+    }
+
+    fn look(&self) -> WorldView {
+        self.view()
+    }
+
+    fn undergo(&mut self, action: &WorldAction) {
+        self.apply(action);
+    }
+}
+
+/// A line to a unit.
+#[derive(Debug)]
+pub struct MindLine {
+    /// The line beneath.
+    pub line: SimulatedLine<MotionMind>,
+    bits_per_second: u32,
+}
+
+impl MindLine {
+    /// The line of a plant, its unit switched on half a second ago.
+    #[must_use]
+    pub fn new(specimen: &MindSpecimen) -> Self {
+        Self::of(specimen.unit(), specimen)
+    }
+
+    /// The same to a unit that is set up otherwise.
+    #[must_use]
+    pub fn of(unit: MotionMind, specimen: &MindSpecimen) -> Self {
+        let mut line = SimulatedLine::new(unit, specimen.plant.link);
+        line.idle(Duration::from_millis(500));
+        Self { line, bits_per_second: specimen.bits_per_second }
+    }
+}
+
+/// When a command did its work, from when it was sent and its reply complete: its bytes had to come first, and what nobody can
+/// place is shared out evenly.
+#[must_use]
+pub fn worked_at(
+    (sent, received): (Duration, Duration),
+    (request_bytes, reply_bytes): (usize, usize),
+    bits_per_second: u32,
+    (protocol, command): (Protocol, &Command),
+) -> Exchange {
+    let per_byte_s = BITS_PER_BYTE / f64::from(bits_per_second.max(1));
+    let (up_s, down_s) = (request_bytes as f64 * per_byte_s, reply_bytes as f64 * per_byte_s);
+    let [frame_s, line_s, all_s] = REPLY_DELAY_S;
+    let delay_s = match (protocol, command) {
+        (Protocol::Binary, _) => frame_s,
+        (Protocol::Text, Command::ReadText(Part::All)) => all_s,
+        (Protocol::Text, _) => line_s,
+    };
+    let unknown_s = (received.saturating_sub(sent).as_secs_f64() - up_s - down_s - delay_s).max(0.0);
+    let at = sent + Duration::from_secs_f64(up_s + 0.5 * unknown_s);
+    Exchange { sent: at, received: at }
+}
+
+fn parsed(protocol: Protocol, command: &Command, bytes: &[u8]) -> Option<Reply> {
+    let progress = match protocol {
+        Protocol::Binary => parse_frame_reply(Address::FACTORY, command, Returns::default(), bytes),
+        Protocol::Text => parse_line_reply(command, Returns::default(), bytes),
+    };
+    match progress {
+        Progress::Done { reply, .. } => Some(reply),
+        Progress::Incomplete | Progress::Bad(_) => None,
+    }
+}
+
+impl MindCarrier for MindLine {
+    fn transact(&mut self, command: &Command) -> Result<(Exchange, Reply), AxisError> {
+        let protocol = self.line_protocol();
+        let line = &mut self.line;
+        if line.is_stopped() {
+            return Err(AxisError::Stopped);
+        }
+        let bytes = match protocol {
+            Protocol::Binary => encode_frame(Address::FACTORY, command),
+            Protocol::Text => encode_line(Address::FACTORY, command).map(String::into_bytes),
+        };
+        let bytes = bytes.map_err(|error| AxisError::Refused(error.to_string()))?;
+        let per_byte = |count: usize| {
+            Duration::from_secs_f64(count as f64 * BITS_PER_BYTE / f64::from(self.bits_per_second))
+        };
+        let dead = line.is_dead();
+        let (lost_request, lost_reply) = (line.is_lost() || dead, line.is_lost() || dead);
+        let (up, down) = (line.latency(), line.latency());
+        let sent = line.now;
+        let arrived = sent + up + per_byte(bytes.len());
+        let timeout_s = match command {
+            Command::ReadText(Part::All) => REPLY_TIMEOUT_S.1,
+            _ => REPLY_TIMEOUT_S.0,
+        };
+        let deadline = arrived + Duration::from_secs_f64(timeout_s);
+        line.advance(arrived);
+        if lost_request {
+            line.advance(deadline);
+            return Err(AxisError::NoReply);
+        }
+        line.unit.receive(&bytes);
+        line.sent.push(bytes.clone());
+        let Some(leaves) = line.unit.next_output_at().filter(|at| *at <= deadline) else {
+            line.advance(deadline);
+            return Err(AxisError::NoReply);
+        };
+        line.advance(leaves);
+        let reply = line.unit.take_output().unwrap_or_default();
+        line.advance(leaves + per_byte(reply.len()) + down);
+        if lost_reply {
+            line.advance(deadline.max(line.now));
+            return Err(AxisError::NoReply);
+        }
+        let at = worked_at(
+            (sent, line.now),
+            (bytes.len(), reply.len()),
+            self.bits_per_second,
+            (protocol, command),
+        );
+        parsed(protocol, command, &reply).map(|reply| (at, reply)).ok_or(AxisError::NoReply)
+    }
+
+    fn protocol(&self) -> Protocol {
+        self.line_protocol()
+    }
+
+    fn bits_per_second(&self) -> Option<u32> {
+        Some(self.bits_per_second)
+    }
+
+    fn now(&mut self) -> Duration {
+        self.line.now
+    }
+
+    fn wait_until(&mut self, time: Duration) -> Result<(), AxisError> {
+        self.line.wait(time)
+    }
+}
+
+impl MindLine {
+    fn line_protocol(&self) -> Protocol {
+        self.line.unit.protocol()
+    }
+}

@@ -1,0 +1,115 @@
+//! The first plants of seed 7 under a Motion Mind, bounded on both sides: a change of method shows as a change of numbers here.
+//!
+//! `brushwork bench tuning --family motion-mind --plants 16 --seed 7` prints the same figures.
+
+use brushwork_sim::motion_mind::Mode;
+use brushwork_tuning::cause::Cause;
+use brushwork_tuning::report::{Report, Verdict};
+use brushwork_tuning::rig::GuardOptions;
+use brushwork_tuning::tune::{Method, Request, tune};
+use brushwork_tuning_bench::mind::population::specimen;
+use brushwork_tuning_bench::mind::table::{
+    SimulatedMind, axis_in, axis_of, cases, request_of, table, tune_plant,
+};
+use brushwork_tuning_bench::table::Row;
+
+/// Lowest and highest figure that is not news.
+type Range = (f64, f64);
+
+/// Method, accepted %, good %, median cost.
+const BOUNDS: [(&str, Range, Range, Range); 3] = [
+    ("velocity", (87.0, 100.0), (50.0, 90.0), (0.9, 1.40)),
+    ("pd", (93.0, 100.0), (43.0, 90.0), (1.0, 1.70)),
+    ("pid", (93.0, 100.0), (43.0, 85.0), (0.9, 1.60)),
+];
+
+fn ours(rows: &[Row]) -> &Row {
+    rows.iter().find(|row| row.method == "brushwork").expect("our row is in every table")
+}
+
+#[test]
+fn sixteen_plants_come_out_as_they_did() {
+    let table = table(7, &cases(7, 16, false), false);
+    for (task, accept, good, median) in BOUNDS {
+        let row = ours(&table.tasks[task]);
+        println!("{task}: {row:?}");
+        assert_eq!(row.unstable, 0.0, "{task}: no loop of ours is unstable");
+        assert!((accept.0..=accept.1).contains(&row.accept), "{task}: accepted {} %", row.accept);
+        assert!((good.0..=good.1).contains(&row.good), "{task}: good {} %", row.good);
+        assert!((median.0..=median.1).contains(&row.j_median), "{task}: median cost {}", row.j_median);
+    }
+    let found = &table.identification;
+    println!("{found:?}");
+    assert!(found.qpps_error_p95 <= 2.5, "QPPS: {} %", found.qpps_error_p95);
+    assert!(found.gain_error_p95 <= 2.5, "gain: {} %", found.gain_error_p95);
+    assert!(found.tau_error_p95 <= 6.0, "tau: {} %", found.tau_error_p95);
+    assert!(found.window_reach_p95 <= 100.0, "the window is never left: {} %", found.window_reach_p95);
+}
+
+#[test]
+fn a_replay_of_the_record_gives_the_same_report_to_the_last_bit_also_after_a_file() {
+    // A frame plant, a line plant, and a position loop.
+    for (number, method) in [(0, Method::Velocity), (2, Method::Pd), (4, Method::Pid)] {
+        let plant = specimen(7, number);
+        let (report, _) = tune_plant(&plant, &request_of(&plant, method));
+        assert_ne!(report.verdict, Verdict::Refused, "plant {number}: {:?}", report.causes);
+        assert!(report.motion_mind.is_some() && report.velocity.is_none() && report.position.is_none());
+        let text = serde_json::to_string(&report).expect("a report is plain data");
+        let read: Report = serde_json::from_str(&text).expect("and reads back");
+        assert!(read == report, "plant {number}: the file keeps every bit");
+        assert!(read.replay().as_ref() == Some(&report), "plant {number}: the replay differs");
+    }
+}
+
+#[test]
+fn every_register_is_as_before_after_a_run_that_keeps_nothing_and_after_one_that_is_stopped() {
+    let plant = specimen(7, 0);
+    let registers = |axis: &SimulatedMind| -> Vec<i64> {
+        [1, 2, 3, 4, 5, 6, 8, 23, 24, 25, 26, 28, 30].map(|n| axis.carrier.line.unit().read_one(n)).to_vec()
+    };
+    let before = registers(&axis_of(&plant));
+    let (report, axis) = tune_plant(&plant, &request_of(&plant, Method::Velocity));
+    assert_ne!(report.verdict, Verdict::Refused);
+    assert_eq!(registers(&axis), before);
+    let limited = Request {
+        guard: GuardOptions { time_limit_s: 2.0, ..request_of(&plant, Method::Pd).guard },
+        ..request_of(&plant, Method::Pd)
+    };
+    let (report, axis) = tune_plant(&plant, &limited);
+    assert_eq!(report.causes, vec![Cause::TimeLimit]);
+    assert_eq!(registers(&axis), before, "after the time was up");
+    assert_eq!(axis.carrier.line.unit().eeprom_writes(), axis_of(&plant).carrier.line.unit().eeprom_writes());
+}
+
+#[test]
+fn a_run_that_keeps_its_gains_leaves_them_in_ram_with_the_users_limits() {
+    let plant = specimen(7, 1);
+    let request = Request { keep: true, ..request_of(&plant, Method::Pd) };
+    let (report, axis) = tune_plant(&plant, &request);
+    let kept = report.motion_mind.expect("gains");
+    let unit = axis.carrier.line.unit();
+    assert_eq!(
+        [4, 5, 6, 8].map(|n| unit.read_one(n)),
+        [kept.pterm, kept.iterm, kept.dterm, u16::from(kept.pidscalar)].map(i64::from)
+    );
+    assert_eq!(
+        (unit.read_one(3), unit.read_one(23), unit.read_one(24)),
+        (i64::from(kept.function), -100_000, 100_000)
+    );
+    assert_eq!(unit.stored(4), 6000, "EEPROM is the user's to write");
+}
+
+#[test]
+fn another_mode_and_a_cascade_are_refused_before_anything_moves() {
+    let plant = specimen(7, 0);
+    let request = request_of(&plant, Method::Piv);
+    let (report, axis) = tune_plant(&plant, &request);
+    assert_eq!(report.causes, vec![Cause::NoSuchLoop]);
+    assert_eq!(axis.carrier.line.truth.peak_amps, 0.0);
+    for mode in [Mode::Serial, Mode::AnalogPid] {
+        let mut axis = axis_in(&plant, mode);
+        let report = tune(&mut axis, &request_of(&plant, Method::Pd));
+        assert_eq!(report.causes, vec![Cause::WrongMode], "{mode:?}");
+        assert_eq!(axis.carrier.line.truth.peak_amps, 0.0);
+    }
+}

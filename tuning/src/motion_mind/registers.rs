@@ -1,0 +1,212 @@
+//! Gains as registers of a Motion Mind 3, and back: the rounded gains are what the loop gets.
+
+use super::{FULL_PWM, MotionMindLaw, SPEED_STEP_COUNTS_PER_S, is_protected, on_place, sum_bound_s};
+use crate::model::{Gains, Pid};
+use serde::{Deserialize, Serialize};
+
+/// Largest gain register and largest power of the divisor (Motion Mind manual 6.0).
+const MOST_TERM: f64 = 65_535.0;
+const MOST_SCALAR: u8 = 32;
+
+/// Bits of FUNCTION and FUNCTION2 that concern a run (Motion Mind manual, figures 20 and 21).
+pub mod bits {
+    /// FUNCTION: the sum is bounded closely and stands while the output is saturated.
+    pub const SATPROT: u16 = 1 << 4;
+    /// FUNCTION: position moves run at VELOCITYLIMIT.
+    pub const VELLIMIT: u16 = 1 << 6;
+    /// FUNCTION: a duty of 0 brakes.
+    pub const ACTIVESTOP: u16 = 1 << 7;
+    /// FUNCTION: no duty inside DEADBAND.
+    pub const ENABLEDB: u16 = 1 << 11;
+    /// FUNCTION: VNLIMIT and VPLIMIT hold.
+    pub const VIRTLIMIT: u16 = 1 << 13;
+    /// FUNCTION: the loop gives no duty.
+    pub const DISABLEPID: u16 = 1 << 14;
+    /// FUNCTION2: feedback by pulses.
+    pub const PULSEFB: u16 = 1 << 9;
+    /// FUNCTION2: speed moves work on speeds.
+    pub const NEWVELMODE: u16 = 1 << 11;
+    /// FUNCTION2: a loop of 0.5 ms.
+    pub const FASTPID: u16 = 1 << 13;
+}
+
+/// The registers that a run writes and puts back.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MotionMindRegisters {
+    /// PTERM.
+    pub pterm: u16,
+    /// ITERM.
+    pub iterm: u16,
+    /// DTERM.
+    pub dterm: u16,
+    /// PIDSCALAR: the power of two that the sum of the terms is divided by.
+    pub pidscalar: u8,
+    /// VELOCITYFF.
+    pub velocity_ff: u8,
+    /// DEADBAND, counts.
+    pub deadband: u16,
+    /// FUNCTION.
+    pub function: u16,
+    /// FUNCTION2.
+    pub function2: u16,
+    /// VNLIMIT and VPLIMIT, counts.
+    pub virtual_limits: (i32, i32),
+}
+
+/// What a Motion Mind holds before a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MotionMindSetup {
+    /// Register 18: what moves the motor. The switches of the board choose it at power-up.
+    pub mode: u8,
+    /// What is put back.
+    pub registers: MotionMindRegisters,
+}
+
+impl MotionMindSetup {
+    /// The mode whose loops can be tuned: serial commands, encoder (Motion Mind manual 4.7).
+    pub const SERIAL_PID: u8 = 4;
+
+    /// Whether the unit is set to take what a run sends: mode 4 with an encoder.
+    #[must_use]
+    pub fn can_be_tuned(&self) -> bool {
+        self.mode == Self::SERIAL_PID && self.registers.function2 & bits::PULSEFB == 0
+    }
+}
+
+impl MotionMindRegisters {
+    /// These registers with gains in them: PIDSCALAR as large as the gains allow. DEADBAND and its bit follow the gains; NEWVELMODE,
+    /// FASTPID (not for serial commands, figure 21) and DISABLEPID are cleared, and ACTIVESTOP is set, since a duty of 0 is taken
+    /// to brake.
+    #[must_use]
+    pub fn with(&self, gains: &Gains, qpps: f64, law: MotionMindLaw) -> Self {
+        let (terms, pidscalar) = scaled(&on_place(gains), qpps);
+        let mut function = self.function | bits::ACTIVESTOP;
+        function &= !(bits::DISABLEPID | bits::ENABLEDB);
+        let deadband = gains.deadzone_counts.round().clamp(0.0, FULL_PWM) as u16;
+        if gains.position.is_some() && deadband > 0 {
+            function |= bits::ENABLEDB;
+        }
+        if terms[1] > 0 {
+            function &= !bits::SATPROT;
+            function |= if is_protected(gains.max_integral) { bits::SATPROT } else { 0 };
+        }
+        Self {
+            pterm: terms[0],
+            iterm: terms[1],
+            dterm: terms[2],
+            pidscalar,
+            velocity_ff: law.velocity_ff,
+            deadband: if deadband > 0 { deadband } else { self.deadband },
+            function,
+            function2: self.function2 & !(bits::NEWVELMODE | bits::FASTPID),
+            ..*self
+        }
+    }
+
+    /// The gains that they stand for: of position moves, or of speed moves.
+    #[must_use]
+    pub fn gains(&self, qpps: f64, is_position: bool) -> Gains {
+        let pid = unscaled([self.pterm, self.iterm, self.dterm], self.pidscalar, qpps);
+        if !is_position {
+            return Gains { velocity: Pid { p: pid.d, i: pid.p, d: 0.0 }, ..Gains::default() };
+        }
+        let has_deadband = self.function & bits::ENABLEDB != 0;
+        Gains {
+            position: Some(pid),
+            max_integral: sum_bound_s(if self.function & bits::SATPROT != 0 { 0.0 } else { f64::INFINITY }),
+            deadzone_counts: if has_deadband { f64::from(self.deadband) } else { 0.0 },
+            ..Gains::default()
+        }
+    }
+
+    /// Whether a bit of FUNCTION is set.
+    #[must_use]
+    pub fn has(&self, bit: u16) -> bool {
+        self.function & bit != 0
+    }
+}
+
+/// Gains as the registers can hold them.
+#[must_use]
+pub(crate) fn rounded(gains: &Gains, qpps: f64) -> Gains {
+    let ([pterm, iterm, dterm], pidscalar) = scaled(&on_place(gains), qpps);
+    let pid = unscaled([pterm, iterm, dterm], pidscalar, qpps);
+    if gains.position.is_none() {
+        return Gains { velocity: Pid { p: pid.d, i: pid.p, d: 0.0 }, ..*gains };
+    }
+    Gains { position: Some(pid), max_integral: sum_bound_s(gains.max_integral), ..*gains }
+}
+
+/// PTERM, ITERM, DTERM and PIDSCALAR.
+fn scaled(pid: &Pid, qpps: f64) -> ([u16; 3], u8) {
+    let tick = SPEED_STEP_COUNTS_PER_S;
+    let plain = [pid.p, pid.i / tick, pid.d * tick].map(|gain| FULL_PWM * gain.max(0.0) / qpps.max(1.0));
+    let power = |scalar: u8| 2.0_f64.powi(i32::from(scalar));
+    let fits = |scalar: &u8| plain.iter().all(|gain| (gain * power(*scalar)).round() <= MOST_TERM);
+    let pidscalar = (0..=MOST_SCALAR).rev().find(fits).unwrap_or(0);
+    // The cast saturates.
+    (plain.map(|gain| (gain * power(pidscalar)).round() as u16), pidscalar)
+}
+
+fn unscaled(terms: [u16; 3], pidscalar: u8, qpps: f64) -> Pid {
+    let tick = SPEED_STEP_COUNTS_PER_S;
+    let unit = qpps.max(1.0) / FULL_PWM / 2.0_f64.powi(i32::from(pidscalar));
+    let [p, i, d] = terms.map(|term| f64::from(term) * unit);
+    Pid { p, i: i * tick, d: d / tick }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pd(p: f64, i: f64, d: f64) -> Gains {
+        Gains { position: Some(Pid { p, i, d }), max_integral: 600.0, ..Gains::default() }
+    }
+
+    #[test]
+    fn the_factory_gains_stand_for_what_the_formula_of_the_manual_says() {
+        // 6000 / 2^14 steps of duty for each count; QPPS 1023 makes a step of duty one count/s.
+        let factory = MotionMindRegisters { pterm: 6000, iterm: 35, pidscalar: 14, ..Default::default() };
+        let gains = factory.gains(1023.0, true).position.unwrap();
+        assert!((gains.p - 6000.0 / 16_384.0).abs() < 1e-12);
+        assert!((gains.i - 35.0 / 16_384.0 * 200.0).abs() < 1e-12);
+        assert_eq!(gains.d, 0.0);
+    }
+
+    #[test]
+    fn the_scale_uses_the_range_of_the_registers_and_gains_come_back() {
+        for (qpps, gains) in [(20_460.0, pd(10.0, 2.0, 0.1)), (900.0, pd(25.0, 0.0, 0.6))] {
+            let law = MotionMindLaw::of_qpps(qpps);
+            let registers = MotionMindRegisters::default().with(&gains, qpps, law);
+            let largest = registers.pterm.max(registers.dterm).max(registers.iterm);
+            assert!(largest > 32_767, "{registers:?}");
+            let back = registers.gains(qpps, true).position.unwrap();
+            let wanted = gains.position.unwrap();
+            assert!((back.p / wanted.p - 1.0).abs() < 1e-3, "{back:?}");
+            assert!((back.d / wanted.d - 1.0).abs() < 1e-3, "{back:?}");
+            assert!((back.i - wanted.i).abs() < 0.05 * wanted.i.max(0.01), "{back:?}");
+            assert_eq!(
+                rounded(&gains, qpps).position,
+                Some(back),
+                "rounding is what a way there and back does"
+            );
+        }
+    }
+
+    #[test]
+    fn a_velocity_loop_is_dterm_and_pterm() {
+        let gains = Gains { velocity: Pid { p: 3.0, i: 40.0, d: 0.0 }, ..Gains::default() };
+        let registers = MotionMindRegisters { function: bits::ENABLEDB, ..Default::default() }.with(
+            &gains,
+            40_000.0,
+            MotionMindLaw::of_qpps(40_000.0),
+        );
+        assert_eq!(registers.iterm, 0);
+        let power = 2.0_f64.powi(i32::from(registers.pidscalar));
+        assert!((f64::from(registers.dterm) / power - 1023.0 * 3.0 * 200.0 / 40_000.0).abs() < 1e-3);
+        assert!((f64::from(registers.pterm) / power - 1023.0 * 40.0 / 40_000.0).abs() < 1e-3);
+        assert!(!registers.has(bits::ENABLEDB), "the dead band is not for speeds");
+        let back = registers.gains(40_000.0, false).velocity;
+        assert!((back.p - 3.0).abs() < 1e-3 && (back.i - 40.0).abs() < 1e-2, "{back:?}");
+    }
+}
