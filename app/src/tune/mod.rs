@@ -7,6 +7,7 @@
 
 pub mod encoder;
 pub mod file;
+mod mind;
 pub mod tap;
 
 use std::sync::{Arc, Mutex, PoisonError};
@@ -20,13 +21,16 @@ use brushwork_link::settings::{Ending, Subject, begin_trial, end_act};
 use brushwork_link::wire::Wire;
 use brushwork_protocol::packet_serial::{Generation, Motor, Request as Packet, Value, Values, number};
 use brushwork_tuning::axis::{Axis, AxisError, EncoderClass, Exchange, Setup};
+use brushwork_tuning::registers::{PositionRegisters, VelocityRegisters};
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::rig::wait_for_rest;
 use brushwork_tuning::trial::{Trial, TrialRequest, run_trial};
 use brushwork_tuning::tune::{Request, tune};
+use brushwork_tuning_bench::mind::axis::MindAxis;
 use brushwork_tuning_bench::packet::{Carrier, PacketAxis};
 
 use crate::keep::TrialKeeper;
+use mind::MindJobCarrier;
 use tap::{Live, Tap};
 
 /// Verb phrase of the job before a run.
@@ -51,6 +55,10 @@ const PREPARE_LIMIT: Duration = Duration::from_secs(130);
 const RESTORE_LIMIT: Duration = Duration::from_secs(60);
 /// What a run may take beyond its own limit.
 const GRACE: Duration = Duration::from_secs(10);
+
+/// Registers of a Motion Mind that a run writes, by their names in keys.
+const MIND_REGISTERS: [&str; 9] =
+    ["velocityff", "pterm", "iterm", "dterm", "pidscalar", "vnlimit", "vplimit", "deadband", "ampslimit"];
 
 /// What a job leaves for whoever started it, whatever became of the job.
 pub type Slot<T> = Arc<Mutex<Option<T>>>;
@@ -155,14 +163,13 @@ pub struct Target {
     pub stream: Option<Stream>,
 }
 
-fn axis<'a, 'b>(
-    context: &'a mut JobContext<'b>,
-    target: Target,
-    own_timeout: bool,
-) -> PacketAxis<JobCarrier<'a, 'b>> {
+fn axis<'a>(context: &'a mut JobContext<'_>, target: Target, own_timeout: bool) -> Box<dyn Axis + 'a> {
+    if context.generation().packet_serial().is_none() {
+        return Box::new(MindAxis::new(MindJobCarrier::new(context)));
+    }
     let stream = target.stream.filter(|_| own_timeout);
     let carrier = JobCarrier { context, stream, quickest: None };
-    PacketAxis::new(carrier, target.motor, target.encoder.unwrap_or_default())
+    Box::new(PacketAxis::new(carrier, target.motor, target.encoder.unwrap_or_default()))
 }
 
 /// The job before: keeps backup and journal, reads what is put back afterwards, and shortens the time-out. It moves nothing.
@@ -198,7 +205,7 @@ pub fn run_watched(target: Target, request: Request, found: &Slot<Report>, live:
         context.set_polling(false);
         // The time-out was set before: changing it now would undermine the arming.
         let mut axis = axis(context, target, false);
-        let report = tune(&mut Tap::new(&mut axis, live.clone()), &request);
+        let report = tune(&mut Tap::new(&mut *axis, live.clone()), &request);
         put(&found, report);
         Ok(Box::new(()))
     })
@@ -210,7 +217,7 @@ pub fn trial(target: Target, wanted: TrialRequest, found: &Slot<Trial>, live: &L
     FnJob::moving(TRIAL, TRIAL_LIMIT, move |context| {
         context.set_polling(false);
         let mut axis = axis(context, target, false);
-        let trial = run_trial(&mut Tap::new(&mut axis, live.clone()), &wanted);
+        let trial = run_trial(&mut Tap::new(&mut *axis, live.clone()), &wanted);
         put(&found, trial);
         Ok(Box::new(()))
     })
@@ -221,6 +228,9 @@ fn is_tried(motor: Motor, key: &str) -> bool {
     let of_motor = key.strip_prefix(&format!("motor{}.", motor.index() + 1));
     of_motor.is_some_and(|key| key.starts_with("velocity.") || key.starts_with("position."))
         || key.starts_with("stream.") && key.ends_with(".timeout")
+        || key.strip_prefix("register.").is_some_and(|name| MIND_REGISTERS.contains(&name))
+        || key.starts_with("function.")
+        || key.starts_with("function2.")
 }
 
 /// The job after: the old gains, unless the run's own stay, and the old time-out; the journal is closed. It moves nothing.
@@ -229,26 +239,24 @@ pub fn restore(target: Target, before: Setup, report: Option<&Report>, keeper: &
     let keeps = report.filter(|report| report.request.keep && report.verdict != Verdict::Refused);
     let velocity = keeps.and_then(|report| report.velocity).unwrap_or(before.velocity);
     let position = keeps.and_then(|report| report.position).unwrap_or(before.position);
+    let mind =
+        before.motion_mind.map(|unit| keeps.and_then(|report| report.motion_mind).unwrap_or(unit.registers));
     FnJob::boxed(RESTORE, RESTORE_LIMIT, move |context| {
         let place = context.describe();
         let mut axis = axis(context, target, true);
         let now =
             thrice(|| axis.read_setup()).map_err(|error| failed("read the loops back", &place, &error))?;
-        // What is as it was need not be written, which a controller may not take.
-        let mut back = Ok(());
-        if now.velocity != velocity {
-            back = thrice(|| axis.write_velocity(velocity));
+        match mind {
+            Some(registers) => thrice(|| axis.end_motion_mind(registers)),
+            None => put_loops_back(&mut *axis, &now, velocity, position),
         }
-        if back.is_ok() && now.position != position {
-            back = thrice(|| axis.write_position(position));
-        }
-        back.map_err(|error| failed("write the loops back", &place, &error))?;
+        .map_err(|error| failed("write the loops back", &place, &error))?;
         if (now.max_current_raw, now.min_current_raw) != (before.max_current_raw, before.min_current_raw) {
             thrice(|| axis.write_current_limits(before.max_current_raw, before.min_current_raw))
                 .map_err(|error| failed("put the current limit back", &place, &error))?;
         }
         if now.inductance_resistance_raw != before.inductance_resistance_raw {
-            wait_for_rest(&mut axis);
+            wait_for_rest(&mut *axis);
             thrice(|| axis.write_winding(before.inductance_resistance_raw))
                 .map_err(|error| failed("put inductance and resistance back", &place, &error))?;
         }
@@ -259,6 +267,22 @@ pub fn restore(target: Target, before: Setup, report: Option<&Report>, keeper: &
         end_act(context, &mut **keeper.lock(), Ending::Known);
         Ok(Box::new(()))
     })
+}
+
+/// Writes the loops that are not as they were; a controller may not take what need not be written.
+fn put_loops_back(
+    axis: &mut dyn Axis,
+    now: &Setup,
+    velocity: VelocityRegisters,
+    position: PositionRegisters,
+) -> Result<(), AxisError> {
+    if now.velocity != velocity {
+        thrice(|| axis.write_velocity(velocity))?;
+    }
+    if now.position != position {
+        thrice(|| axis.write_position(position))?;
+    }
+    Ok(())
 }
 
 fn thrice<T>(mut call: impl FnMut() -> Result<T, AxisError>) -> Result<T, AxisError> {

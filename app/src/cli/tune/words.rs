@@ -3,6 +3,7 @@
 use brushwork_tuning::report::{Report, Verdict};
 use serde_json::{Value, json};
 
+use super::mind;
 use crate::cli::exit::Exit;
 use crate::cli::output::{Output, OutputError};
 
@@ -75,6 +76,9 @@ pub fn print(report: &Report, out: &mut Output) -> Result<(), OutputError> {
             report.measured.map_or_else(String::new, |m| format!("measured {:.1} %", 100.0 * m.duty_rms));
         row("duty noise", format!("{:.1} %", 100.0 * design.noise_duty), measured);
     }
+    if let Some(share) = mind::feed_forward(report) {
+        row("feed-forward", share, String::new());
+    }
     out.table(&["", "", ""], &rows)?;
     print_gains(report, out)
 }
@@ -110,6 +114,7 @@ fn print_gains(report: &Report, out: &mut Output) -> Result<(), OutputError> {
             rows.push(vec![format!("position {name}"), old.to_string(), new.to_string(), new.to_string()]);
         }
     }
+    rows.extend(mind::rows(report));
     if rows.is_empty() {
         return Ok(());
     }

@@ -1,0 +1,182 @@
+//! Whole tuning runs of a Motion Mind through the device thread with real bytes at their rate, in virtual time: both protocols, faults,
+//! Stop and a lost cable.
+
+use std::time::Duration;
+
+use brushwork::keep::TrialKeeper;
+use brushwork::tune::{Slot, Target, prepare, restore, run, take};
+use brushwork_link::Failure;
+use brushwork_link::device::{ArmScope, DeviceOptions, Event, FamilyChoice, Job, JobEnding, Request};
+use brushwork_link::settings::{Ending, Entry, Keeper, Subject};
+use brushwork_protocol::models;
+use brushwork_protocol::packet_serial::Motor;
+use brushwork_sim::machine::{Machine, StreamIndex};
+use brushwork_sim::motion_mind::{Mode, MotionMind, MotionMindBus, MotionMindConfig, Protocol};
+use brushwork_sim::world::WorldAction;
+use brushwork_tests::virtual_link::VirtualLink;
+use brushwork_tuning::axis::{EncoderClass, Setup};
+use brushwork_tuning::cause::Cause;
+use brushwork_tuning::report::{Report, Verdict};
+use brushwork_tuning::tune::{Method, Request as Tuning};
+
+const TARGET: Target = Target { motor: Motor::M1, encoder: Some(EncoderClass::Quadrature), stream: None };
+/// The registers that a run touches.
+const TOUCHED: [u8; 11] = [2, 3, 4, 5, 6, 8, 23, 24, 26, 28, 30];
+
+type Link = VirtualLink<MotionMindBus>;
+
+fn ms(milliseconds: u64) -> Duration {
+    Duration::from_millis(milliseconds)
+}
+
+fn connected(protocol: Protocol) -> Link {
+    let config = MotionMindConfig { protocol, ..MotionMindConfig::new(Mode::SerialPid) };
+    let bus = MotionMindBus::new(vec![MotionMind::new(config).expect("the default motor is sound")]);
+    let options =
+        DeviceOptions { simulated: true, family: FamilyChoice::MotionMind, ..DeviceOptions::default() };
+    // Not the one whose bytes take no time.
+    let mut link = Link::new(bus, StreamIndex::Uart1, options, Vec::new(), 1);
+    link.run_for(ms(20_000));
+    link
+}
+
+fn registers(link: &Link) -> Vec<i64> {
+    link.bus(|bus| TOUCHED.map(|number| bus.motion_minds()[0].read_one(number)).to_vec())
+}
+
+fn eeprom_writes(link: &Link) -> u64 {
+    link.bus(|bus| bus.motion_minds()[0].eeprom_writes())
+}
+
+fn finish(link: &mut Link, job: Box<dyn Job>, longest: Duration) -> Option<JobEnding> {
+    link.events.clear();
+    link.ask(Request::Job(job));
+    let end = link.now() + longest;
+    while link.now() < end && !link.ended {
+        link.run_for(ms(20));
+        let found = link.events.iter().position(|(_, event)| matches!(event, Event::JobEnded(_)));
+        if let Some((_, Event::JobEnded(report))) = found.map(|at| link.events.remove(at)) {
+            return Some(report.ending);
+        }
+    }
+    None
+}
+
+struct Forgetful;
+
+impl Keeper for Forgetful {
+    fn begin(&mut self, _: Entry) {}
+
+    fn begun(&mut self) -> Option<Result<(), Failure>> {
+        Some(Ok(()))
+    }
+
+    fn end(&mut self, _: Ending) {}
+}
+
+fn tuned(link: &mut Link, request: Tuning, before_run: impl FnOnce(&Link)) -> Option<Report> {
+    let setup: Slot<Setup> = Slot::default();
+    let keeper = TrialKeeper::new(Box::new(Forgetful));
+    let revision = link.bus(|bus| bus.motion_minds()[0].read_one(17)) as u8;
+    let subject = Subject::new(&models::MOTION_MIND_3, revision);
+    let prepared = finish(link, prepare(TARGET, subject, &setup, &keeper), ms(30_000));
+    assert!(matches!(prepared, Some(JobEnding::Done(_))), "{prepared:?}");
+    let before = take(&setup).expect("it was read");
+    assert!(link.arm(ArmScope::CommandLine), "{:?}", link.events);
+    before_run(link);
+    let found: Slot<Report> = Slot::default();
+    finish(link, run(TARGET, request, &found), ms(120_000));
+    let report = take(&found);
+    if !link.ended {
+        assert_eq!(link.duties(0)[0], 0.0, "a run ends with the motor off");
+        let restored = finish(link, restore(TARGET, before, report.as_ref(), &keeper), ms(10_000));
+        assert!(matches!(restored, Some(JobEnding::Done(_))), "{restored:?}");
+    }
+    report
+}
+
+fn of(method: Method) -> Tuning {
+    Tuning { method, ..Tuning::default() }
+}
+
+#[test]
+fn each_loop_is_tuned_through_the_device_thread_replayed_to_the_bit_and_nothing_is_left_behind() {
+    for (protocol, method) in
+        [(Protocol::Binary, Method::Velocity), (Protocol::Binary, Method::Pd), (Protocol::Text, Method::Pd)]
+    {
+        let mut link = connected(protocol);
+        let before = registers(&link);
+        let report = tuned(&mut link, of(method), |_| {}).expect("the run left its report");
+        let place = format!("{protocol:?} {method:?}: {:?} {:?}", report.verdict, report.causes);
+        assert_ne!(report.verdict, Verdict::Refused, "{place}");
+        assert!(report.motion_mind.is_some(), "{place}");
+        assert!(report.replay().as_ref() == Some(&report), "{place}: the replay differs");
+        assert_eq!(registers(&link), before, "{place}");
+        assert_eq!(eeprom_writes(&link), 0, "{place}");
+    }
+}
+
+#[test]
+fn gains_that_are_kept_stay_in_ram_and_the_limits_are_the_users_again() {
+    let mut link = connected(Protocol::Binary);
+    let before = registers(&link);
+    let report = tuned(&mut link, Tuning { keep: true, ..of(Method::Pd) }, |_| {}).expect("a report");
+    let kept = report.motion_mind.expect("gains");
+    let now = registers(&link);
+    assert_eq!(now[2..6], [kept.pterm.into(), kept.iterm.into(), kept.dterm.into(), kept.pidscalar.into()]);
+    assert_eq!(now[1], i64::from(kept.function));
+    assert_eq!(now[6..8], before[6..8], "the virtual limits");
+    assert_eq!(eeprom_writes(&link), 0);
+}
+
+#[test]
+fn a_dead_encoder_and_a_locked_shaft_are_named_and_everything_is_put_back() {
+    let motor = Motor::M1;
+    let cases = [
+        (WorldAction::LoseEncoder { motor, on: true }, Cause::EncoderDead),
+        (WorldAction::ReverseEncoder { motor, on: true }, Cause::EncoderReversed),
+        (WorldAction::LockShaft { motor, on: true }, Cause::ShaftLocked),
+    ];
+    for (action, cause) in cases {
+        let mut link = connected(Protocol::Binary);
+        let before = registers(&link);
+        let report = tuned(&mut link, of(Method::Velocity), |link| link.apply(0, &action)).expect("a report");
+        assert_eq!(report.causes.first(), Some(&cause));
+        assert_eq!(registers(&link), before, "{cause:?}");
+    }
+}
+
+#[test]
+fn stop_at_any_stage_stands_the_motor_and_the_old_registers_come_back() {
+    for after in [400, 1_500, 3_000, 6_000] {
+        let mut link = connected(Protocol::Binary);
+        let before = registers(&link);
+        let report = tuned(&mut link, of(Method::Velocity), |link| {
+            link.at(link.now() + ms(after), brushwork_link::device::DeviceHandle::stop_all);
+        });
+        let causes = report.map(|report| report.causes);
+        assert_eq!(
+            causes.as_ref().and_then(|causes| causes.first()),
+            Some(&Cause::Stopped),
+            "after {after} ms"
+        );
+        assert_eq!(link.duties(0)[0], 0.0, "after {after} ms");
+        assert_eq!(registers(&link), before, "after {after} ms");
+    }
+}
+
+#[test]
+fn when_the_cable_is_pulled_out_the_motor_runs_up_to_the_fence_and_stops() {
+    for after in [1_800, 2_500, 5_000] {
+        let mut link = connected(Protocol::Binary);
+        tuned(&mut link, of(Method::Velocity), |link| {
+            let line = link.line.clone();
+            let pulled = WorldAction::Unplug { unplugged: true };
+            link.at(link.now() + ms(after), move |_| {
+                line.with(|machine| Machine::apply(machine.inner_mut().inner_mut(), 0, &pulled));
+            });
+        });
+        link.line.pass(ms(2_000));
+        assert_eq!(link.duties(0)[0], 0.0, "after {after} ms: nothing drives the motor on");
+    }
+}
