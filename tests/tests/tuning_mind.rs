@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use brushwork::keep::TrialKeeper;
 use brushwork::tune::{Slot, Target, prepare, restore, run, take};
-use brushwork_link::Failure;
 use brushwork_link::device::{ArmScope, DeviceOptions, Event, FamilyChoice, Job, JobEnding, Request};
 use brushwork_link::settings::{Ending, Entry, Keeper, Subject};
+use brushwork_link::{Failure, FirmwareGeneration};
 use brushwork_protocol::models;
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_sim::machine::{Machine, StreamIndex};
@@ -78,7 +78,7 @@ fn tuned(link: &mut Link, request: Tuning, before_run: impl FnOnce(&Link)) -> Op
     let setup: Slot<Setup> = Slot::default();
     let keeper = TrialKeeper::new(Box::new(Forgetful));
     let revision = link.bus(|bus| bus.motion_minds()[0].read_one(17)) as u8;
-    let subject = Subject::new(&models::MOTION_MIND_3, revision);
+    let subject = Subject::new(&models::MOTION_MIND_3, FirmwareGeneration::MotionMind { revision });
     let prepared = finish(link, prepare(TARGET, subject, &setup, &keeper), ms(30_000));
     assert!(matches!(prepared, Some(JobEnding::Done(_))), "{prepared:?}");
     let before = take(&setup).expect("it was read");
@@ -123,7 +123,8 @@ fn gains_that_are_kept_stay_in_ram_and_the_limits_are_the_users_again() {
     let report = tuned(&mut link, Tuning { keep: true, ..of(Method::Pd) }, |_| {}).expect("a report");
     let kept = report.motion_mind.expect("gains");
     let now = registers(&link);
-    assert_eq!(now[2..6], [kept.pterm.into(), kept.iterm.into(), kept.dterm.into(), kept.pidscalar.into()]);
+    let proposed = [kept.pterm, kept.iterm, kept.dterm, u16::from(kept.pidscalar)].map(i64::from);
+    assert_eq!(now[2..6], proposed);
     assert_eq!(now[1], i64::from(kept.function));
     assert_eq!(now[6..8], before[6..8], "the virtual limits");
     assert_eq!(eeprom_writes(&link), 0);
