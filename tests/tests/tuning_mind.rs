@@ -10,7 +10,7 @@ use brushwork_link::settings::{Ending, Entry, Keeper, Subject};
 use brushwork_link::{Failure, FirmwareGeneration};
 use brushwork_protocol::models;
 use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::machine::{Machine, StreamIndex};
+use brushwork_sim::machine::Machine;
 use brushwork_sim::motion_mind::{Mode, MotionMind, MotionMindBus, MotionMindConfig, Protocol};
 use brushwork_sim::world::WorldAction;
 use brushwork_tests::virtual_link::VirtualLink;
@@ -34,8 +34,7 @@ fn connected(protocol: Protocol) -> Link {
     let bus = MotionMindBus::new(vec![MotionMind::new(config).expect("the default motor is sound")]);
     let options =
         DeviceOptions { simulated: true, family: FamilyChoice::MotionMind, ..DeviceOptions::default() };
-    // Not the one whose bytes take no time.
-    let mut link = Link::new(bus, StreamIndex::Uart1, options, Vec::new(), 1);
+    let mut link = Link::over(bus, options, Vec::new(), 1);
     link.run_for(ms(20_000));
     link
 }

@@ -20,8 +20,9 @@ use brushwork_link::failure::Failure;
 use brushwork_link::settings::{Ending, Subject, begin_trial, end_act};
 use brushwork_link::wire::Wire;
 use brushwork_protocol::packet_serial::{Generation, Motor, Request as Packet, Value, Values, number};
-use brushwork_tuning::axis::{Axis, AxisError, EncoderClass, Exchange, Setup};
-use brushwork_tuning::registers::{PositionRegisters, VelocityRegisters};
+use brushwork_tuning::axis::{
+    Axis, AxisError, EncoderClass, Exchange, PositionRegisters, Setup, VelocityRegisters,
+};
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::rig::wait_for_rest;
 use brushwork_tuning::trial::{Trial, TrialRequest, run_trial};
