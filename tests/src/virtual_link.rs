@@ -238,7 +238,7 @@ impl<M: Machine + 'static> VirtualLink<M> {
     }
 }
 
-impl<M: Machine> Transport for Watched<M> {
+impl<M: Machine + 'static> Transport for Watched<M> {
     fn write(&mut self, bytes: &[u8]) -> Result<(), TransportError> {
         self.line.write(bytes)
     }

@@ -182,7 +182,7 @@ fn tame(link: &Link) {
 /// Runs a job to its end and gives what it handed back.
 fn job<T: Send + 'static>(
     link: &mut Link,
-    work: impl FnOnce(&mut JobContext<'_>) -> Result<T, Failure> + Send + 'static,
+    mut work: impl FnMut(&mut JobContext<'_>) -> Result<T, Failure> + Send + 'static,
 ) -> Result<T, String> {
     link.events.clear();
     let job = FnJob::boxed("work", Duration::from_secs(60), move |context| Ok(Box::new(work(context)?)));

@@ -265,6 +265,7 @@ pub fn restore(target: Target, before: Setup, report: Option<&Report>, keeper: &
             thrice(|| axis.set_stream_timeout(timeout_ms))
                 .map_err(|error| failed("set the time-out of the port back", &place, &error))?;
         }
+        drop(axis);
         end_act(context, &mut **keeper.lock(), Ending::Known);
         Ok(Box::new(()))
     })
