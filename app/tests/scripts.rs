@@ -7,7 +7,7 @@ use brushwork::gui::model::screen::Screen;
 use brushwork_script::image;
 use brushwork_script::mcl::compile;
 use brushwork_sim::controller::{Content, Controller, ControllerConfig};
-use brushwork_sim::world::CanPeer;
+use brushwork_sim::world::{CanPeer, WorldAction};
 use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use support::bench::Bench;
@@ -26,10 +26,14 @@ fn holds(bench: &Bench) -> Content {
 fn autorunning(text: &str) -> Controller {
     let config = ControllerConfig::default();
     let mut settings = Controller::new(config.clone()).expect("the default is sound").stored_settings();
-    settings.script_autorun_ms = 100;
+    settings.unit.script_autorun_ms = 100;
     let config = ControllerConfig { settings: Some(settings), ..config };
     let mut unit = Controller::new(config).expect("a delay is sound");
     unit.install_script(&compiled(text));
+    // Autorun is for a unit that is switched on with a script in it.
+    for on in [false, true] {
+        unit.apply(&WorldAction::Power { on }).expect("there is a switch");
+    }
     unit
 }
 
@@ -110,7 +114,8 @@ fn a_script_that_only_may_run_is_told_too() {
 
 #[test]
 fn the_world_panel_holds_rts_and_moves_sensor_and_peer() {
-    let mut bench = Bench::new();
+    // High enough for the whole panel.
+    let mut bench = Bench::sized([1280.0, 1800.0], egui::Theme::Dark);
     bench.connect();
     bench.press("Simulated world");
     bench.pass_ms(300);
