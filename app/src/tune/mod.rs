@@ -148,6 +148,8 @@ fn told(error: &ExchangeError) -> AxisError {
             | ExchangeError::BadCrc { .. }
             | ExchangeError::BadAcknowledgement { .. }
             | ExchangeError::Malformed { .. } => AxisError::NoReply,
+            // Whatever the tuner commands is absolute and at once, so that it may come twice.
+            ExchangeError::MayHaveRun { cause } => told(cause),
             other => AxisError::Refused(other.to_string()),
         }
     }
