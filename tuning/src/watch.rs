@@ -37,6 +37,8 @@ const LOOP_MARGIN: f64 = 0.04;
 const NEWS_S: f64 = 0.07;
 /// Between which multiples of a time constant that was found the true one lies: a load behind a spring makes the motor alone quicker.
 const TAU_SPREAD: (f64, f64) = (0.3, 1.6);
+/// Share of the speed at full duty that a load may sway with while the motor is off.
+const SWAYING: f64 = 0.08;
 /// From a poll to the command that it leads to, s; and the least share of a way to rest that the motor's own slowing takes.
 const COMMAND_S: f64 = 0.012;
 const LEAST_TURN: f64 = 0.25;
@@ -250,6 +252,9 @@ impl Watch {
         let moved = to.counts - from.counts;
         let unseen = if self.looped { LOOP_MARGIN * self.gain * span } else { 0.0 };
         let margin = MARGIN_COUNTS + MARGIN_SPEED * speed_before.abs() * span + unseen;
+        if self.sways(stretch) {
+            return Ok(());
+        }
         let duty = self.duty_at(to.t);
         // No duty has no direction, whatever the sign of its nought.
         let way = if duty == 0.0 { 0.0 } else { duty.signum() };
@@ -269,6 +274,19 @@ impl Watch {
             return Err(Cause::Stalled);
         }
         Ok(())
+    }
+
+    /// Whether the motor is off and all that is counted is slow: a load sways in the play of its gear.
+    fn sways(&self, stretch: &Stretch) -> bool {
+        let Stretch { from, to, speed_before } = stretch;
+        let begin = from.t - SPEED_S;
+        let given = || self.duties.iter().filter(|given| given.0 >= begin);
+        let off = !self.looped
+            && self.looped_until_s < begin
+            && self.duty_at(begin) == 0.0
+            && given().all(|given| given.1 == 0.0);
+        let slow = SWAYING * self.gain;
+        off && speed_before.abs() < slow && (to.counts - from.counts).abs() < slow * (to.t - from.t)
     }
 
     /// Whether nothing slows the motor down: its duty has stayed, and it was on its way there.
