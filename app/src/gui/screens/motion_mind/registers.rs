@@ -26,7 +26,7 @@ const HEIGHT: f32 = 27.0;
 const MARK_WIDTH: f32 = 16.0;
 const NUMBER_WIDTH: f32 = 20.0;
 const NAME_WIDTH: f32 = 138.0;
-const WANTED_WIDTH: f32 = 134.0;
+const WANTED_WIDTH: f32 = 158.0;
 const VALUE_WIDTH: f32 = 100.0;
 /// The share of the screen that the explanation takes, and its least and greatest width.
 const PANEL_SHARE: f32 = 0.34;
