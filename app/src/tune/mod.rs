@@ -246,14 +246,19 @@ pub fn restore(target: Target, before: Setup, report: Option<&Report>, keeper: &
         before.motion_mind.map(|unit| keeps.and_then(|report| report.motion_mind).unwrap_or(unit.registers));
     FnJob::boxed(RESTORE, RESTORE_LIMIT, move |context| {
         let place = context.describe();
+        if let Some(registers) = mind {
+            let mut axis = MindAxis::new(MindJobCarrier::new(context));
+            thrice(|| axis.put_back(registers))
+                .and_then(|()| thrice(|| axis.write_current_limits(before.max_current_raw, 0)))
+                .map_err(|error| failed("write the registers back", &place, &error))?;
+            end_act(context, &mut **keeper.lock(), Ending::Known);
+            return Ok(Box::new(()));
+        }
         let mut axis = axis(context, target, true);
         let now =
             thrice(|| axis.read_setup()).map_err(|error| failed("read the loops back", &place, &error))?;
-        match mind {
-            Some(registers) => thrice(|| axis.end_motion_mind(registers)),
-            None => put_loops_back(&mut *axis, &now, velocity, position),
-        }
-        .map_err(|error| failed("write the loops back", &place, &error))?;
+        put_loops_back(&mut *axis, &now, velocity, position)
+            .map_err(|error| failed("write the loops back", &place, &error))?;
         if (now.max_current_raw, now.min_current_raw) != (before.max_current_raw, before.min_current_raw) {
             thrice(|| axis.write_current_limits(before.max_current_raw, before.min_current_raw))
                 .map_err(|error| failed("put the current limit back", &place, &error))?;

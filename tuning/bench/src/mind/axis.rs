@@ -126,6 +126,25 @@ impl<C: MindCarrier> MindAxis<C> {
         }
     }
 
+    /// Puts registers back without a word that could move the motor. Where a run was cut short the loop may still want to be somewhere
+    /// else: DISABLEPID then stays set, and whoever drives next has to clear it.
+    ///
+    /// # Errors
+    /// Those of the carrier.
+    pub fn put_back(&mut self, registers: MotionMindRegisters) -> Result<(), AxisError> {
+        let found = self.read_setup()?.motion_mind.map(|unit| unit.registers);
+        if found == Some(registers) {
+            return Ok(());
+        }
+        let off = i64::from(bits::DISABLEPID);
+        let function = found.map_or(registers.function, |found| found.function);
+        self.write(number::FUNCTION, i64::from(function) | off)?;
+        self.write_gains(&registers)?;
+        self.write(number::VNLIMIT, i64::from(registers.virtual_limits.0))?;
+        self.write(number::VPLIMIT, i64::from(registers.virtual_limits.1))?;
+        self.write(number::FUNCTION, i64::from(registers.function) | off).map(|_| ())
+    }
+
     fn registers(&mut self, wanted: &[u8]) -> Result<(Exchange, Vec<(u8, i64)>), AxisError> {
         if self.carrier.protocol() == Protocol::Binary {
             let mask = wanted.iter().fold(0, |mask, number| mask | 1 << number);
