@@ -51,7 +51,7 @@ impl Machine for Tapped {
     }
 
     fn receive(&mut self, stream: StreamIndex, bytes: &[u8]) {
-        self.heard.lock().unwrap().extend(bytes);
+        self.heard.lock().expect("no test panicked").extend(bytes);
         self.bus.receive(stream, bytes);
     }
 
@@ -93,9 +93,9 @@ fn ms(milliseconds: u64) -> Duration {
 }
 
 fn unit(mode: Mode, protocol: Protocol, address: u8) -> MotionMind {
-    let address = Address::unit(address).unwrap();
+    let address = Address::unit(address).expect("an address of a unit");
     let config = MotionMindConfig { address, protocol, ..MotionMindConfig::new(mode) };
-    MotionMind::new(config).unwrap()
+    MotionMind::new(config).expect("the default motor is sound")
 }
 
 fn options(addresses: Addresses) -> DeviceOptions {
@@ -172,8 +172,8 @@ fn position(position_counts: i32) -> DriveCommand {
 fn tame(link: &Link) {
     for (number, value) in [(PTERM, 3000), (ITERM, 20), (DTERM, 12_000), (PIDSCALAR, 9)] {
         link.bus(|tapped| {
-            let frame =
-                encode_frame(Address::BROADCAST, &Command::Write { register: number, value }).unwrap();
+            let frame = encode_frame(Address::BROADCAST, &Command::Write { register: number, value })
+                .expect("a frame can be made");
             tapped.bus.receive(StreamIndex::Usb, &frame);
         });
     }
@@ -635,7 +635,7 @@ fn table(link: &mut Link) -> SettingsTable {
 
 fn connected_subject(link: &Link) -> brushwork_link::settings::Subject {
     let facts = link.bus(|tapped| tapped.bus.motion_minds()[0].read_one(17));
-    let revision = u8::try_from(facts).unwrap();
+    let revision = u8::try_from(facts).expect("a revision is small");
     brushwork_link::settings::Subject::new(
         &brushwork_protocol::models::MOTION_MIND_3,
         brushwork_link::FirmwareGeneration::MotionMind { revision },
