@@ -140,7 +140,7 @@ mod tests {
         for (text, said) in [
             ("", "it is empty"),
             ("profile: yes", "line 1, column 1 is no JSON"),
-            (&REPORT[..40], "it is cut short: it ends at line 2"),
+            (&REPORT[..40], "it is cut short: it ends at line 3, column 5"),
             ("{\"schema\": 1}", "it holds no record, so it is no tuning report"),
             ("{\"record\": []}", "it holds no request or verdict"),
             ("[1, 2]", "line 1"),
