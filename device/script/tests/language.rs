@@ -345,3 +345,18 @@ end
 ";
     assert_eq!(output(text), "120 32768 0 e 0");
 }
+
+/// A stream that never ends and never has a digit.
+#[test]
+fn a_stream_without_a_number_does_not_hold_the_machine_in_one_step() {
+    let mut machine = machine("n var long\nf var float\ngets 0,[dec n,real f]\nend\n");
+    let mut desk = Desk::default();
+    desk.waiting.insert(0, vec![b'x'; 100_000].into());
+    machine.run(&mut desk, 10);
+    let left = desk.waiting[&0].len();
+    assert!(left > 95_000 && left < 100_000, "{left}");
+    assert_eq!(machine.state(), &State::Ready);
+    desk.waiting.get_mut(&0).unwrap().extend(b"42 -1.5 ");
+    assert_eq!(run_on(&mut machine, &mut desk, 100_000), State::Ended);
+    assert_eq!(machine.memory().load(machine.program().variables[0].memory.first), 42);
+}

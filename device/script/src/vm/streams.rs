@@ -9,6 +9,9 @@ use crate::program::Program;
 
 type Done = Result<(), FaultKind>;
 
+/// Bytes that one step of GETS looks at, at most; as many as a stream holds.
+const BYTES_PER_STEP: usize = 256;
+
 impl Machine {
     pub(super) fn stream<H: Host + ?Sized>(&mut self, op: Op, program: &Program, host: &mut H) -> Done {
         match op {
@@ -128,22 +131,27 @@ impl Machine {
     }
 
     fn in_number<H: Host + ?Sized>(&mut self, format: Format, max: u32, host: &mut H) -> Done {
-        while let Some(byte) = self.byte(host) {
-            if let Some(value) = self.reading.take(format, max, byte) {
+        self.in_digits(host, |reading, byte| reading.take(format, max, byte))
+    }
+
+    fn in_real<H: Host + ?Sized>(&mut self, host: &mut H) -> Done {
+        self.in_digits(host, |reading, byte| reading.take_real(byte).map(f32::to_bits))
+    }
+
+    /// Reads until `take` has a number. A stream of anything else must not hold the caller: it is gone on with in the next step.
+    fn in_digits<H: Host + ?Sized>(
+        &mut self,
+        host: &mut H,
+        mut take: impl FnMut(&mut Reading, u8) -> Option<u32>,
+    ) -> Done {
+        for _ in 0..BYTES_PER_STEP {
+            let Some(byte) = self.byte(host) else { return Ok(()) };
+            if let Some(value) = take(&mut self.reading, byte) {
                 self.reading = Reading::default();
                 return self.push(value);
             }
         }
-        Ok(())
-    }
-
-    fn in_real<H: Host + ?Sized>(&mut self, host: &mut H) -> Done {
-        while let Some(byte) = self.byte(host) {
-            if let Some(value) = self.reading.take_real(byte) {
-                self.reading = Reading::default();
-                return self.push(value.to_bits());
-            }
-        }
+        self.at = self.at.saturating_sub(1);
         Ok(())
     }
 
