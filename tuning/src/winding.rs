@@ -18,6 +18,8 @@ const MODEL: f64 = 0.01;
 /// Counts over which a speed is taken, and over how many polls on either side at the most.
 const CLEAR_COUNTS: f64 = 25.0;
 const WIDEST_POLLS: usize = 8;
+/// How far currents must lie apart: over their median, and A.
+const SPREAD: (f64, f64) = (0.7, 0.2);
 /// Samples needed, and the widest interval that says anything, over the resistance.
 const LEAST_SAMPLES: usize = 12;
 const WIDEST: f64 = 0.5;
@@ -59,6 +61,9 @@ pub fn winding_of(points: &[Point], drives: &[Drive]) -> Option<Winding> {
     if rows.len() < LEAST_SAMPLES {
         return None;
     }
+    if !differ(&rows) {
+        return None;
+    }
     let scale = rows.iter().map(|row| row.speed.abs()).fold(0.0, f64::max).max(1.0);
     let (mut normal, mut right) = (Matrix2::zeros(), Vector2::zeros());
     for row in &rows {
@@ -78,6 +83,14 @@ pub fn winding_of(points: &[Point], drives: &[Drive]) -> Option<Winding> {
     let interval_ohms = (1.96 * (variance * inverse[(0, 0)]).sqrt()).hypot(systematic);
     let is_told = ohms > 0.0 && back_emf > 0.0 && interval_ohms < WIDEST * ohms;
     is_told.then_some(Winding { ohms, interval_ohms, volts_per_count_per_s: back_emf, samples: rows.len() })
+}
+
+/// Whether the currents differ by more than a sensor's noise: with one current alone nothing tells R from the speed's share.
+fn differ(rows: &[Row]) -> bool {
+    let mut amps: Vec<f64> = rows.iter().map(|row| row.amps).collect();
+    amps.sort_by(f64::total_cmp);
+    let at = |share: f64| amps[(share * (amps.len() - 1) as f64) as usize];
+    at(0.95) - at(0.05) > (SPREAD.0 * at(0.5)).max(SPREAD.1)
 }
 
 impl Row {

@@ -1,6 +1,7 @@
 //! How far a run is and how long it will take, from what its steps usually take and how slow this motor has shown itself.
 
-use brushwork_tuning::tune::Excitation;
+use brushwork_tuning::axis::EncoderClass;
+use brushwork_tuning::tune::{Excitation, Method};
 
 use super::sequence::{Sequence, Work};
 
@@ -13,10 +14,14 @@ pub struct Remaining {
     pub seconds: Option<f64>,
 }
 
-/// What the steps take on a motor of 0.1 s, s: probe, experiment, lag, trial.
-const FREE_S: [f64; 4] = [1.0, 5.0, 3.5, 3.5];
-/// The same within a travel, which has no step for the lag.
-const WINDOW_S: [f64; 4] = [1.0, 6.0, 0.1, 5.0];
+/// What the steps take on a motor of 0.1 s, s: probe, experiment, law, lag, trial.
+const FREE_S: [f64; 5] = [1.0, 4.0, 1.0, 3.5, 3.5];
+/// The same within a travel, where the lag is not measured.
+const WINDOW_S: [f64; 5] = [1.0, 6.0, 1.0, 0.1, 5.0];
+/// The same over the range of an absolute encoder, which is wide for its motor.
+const ABSOLUTE_S: [f64; 5] = [1.0, 16.0, 1.0, 0.1, 5.0];
+/// Play is looked for before an integral is designed.
+const PLAY_S: f64 = 4.0;
 /// Gains tried by themselves.
 const TRIAL_S: [f64; 1] = [5.0];
 
@@ -25,13 +30,18 @@ pub fn remaining(sequence: &Sequence) -> Remaining {
     if sequence.is_restoring() {
         return Remaining { fraction: 1.0, seconds: None };
     }
-    let usual: &[f64] = match &sequence.work {
-        Work::Tune(request) if request.excitation == Excitation::Free => &FREE_S,
-        Work::Tune(_) => &WINDOW_S,
-        Work::Try(_) | Work::PutBack => &TRIAL_S,
+    let is_absolute = sequence.target.encoder.is_some_and(|encoder| encoder != EncoderClass::Quadrature);
+    let mut usual: Vec<f64> = match &sequence.work {
+        Work::Tune(_) if is_absolute => ABSOLUTE_S.to_vec(),
+        Work::Tune(request) if request.excitation == Excitation::Free => FREE_S.to_vec(),
+        Work::Tune(_) => WINDOW_S.to_vec(),
+        Work::Try(_) | Work::PutBack => TRIAL_S.to_vec(),
     };
+    if matches!(&sequence.work, Work::Tune(request) if request.method == Method::Pid) {
+        usual.insert(usual.len() - 1, PLAY_S);
+    }
     match sequence.step() {
-        Some((step, since_s)) => estimate(usual, step, since_s, &sequence.durations()),
+        Some((step, since_s)) => estimate(&usual, step, since_s, &sequence.durations()),
         None => Remaining { fraction: 0.0, seconds: None },
     }
 }
@@ -54,10 +64,10 @@ mod tests {
     #[test]
     fn what_is_left_goes_down_and_a_slow_motor_is_told_as_one() {
         let begin = estimate(&FREE_S, 0, 0.0, &[]);
-        let later = estimate(&FREE_S, 2, 1.0, &[1.0, 5.0]);
+        let later = estimate(&FREE_S, 3, 1.0, &[1.0, 4.0, 1.0]);
         assert!((begin.seconds.unwrap() - 13.0).abs() < 1e-9 && (later.seconds.unwrap() - 6.0).abs() < 1e-9);
         assert!(begin.fraction == 0.0 && later.fraction > 0.5 && later.fraction < 0.6);
-        let slow = estimate(&FREE_S, 2, 0.0, &[1.0, 20.0]);
+        let slow = estimate(&FREE_S, 3, 0.0, &[1.0, 16.0, 1.0]);
         assert!((slow.seconds.unwrap() - 28.0).abs() < 1e-9);
     }
 }

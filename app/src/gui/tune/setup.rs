@@ -15,7 +15,9 @@ use crate::gui::widgets::numeric::Numeric;
 /// From these widths on both motors stand in one row, with words beside their sliders, and all options in another.
 const BOTH_IN_A_ROW: f32 = 720.0;
 const WITH_WORDS: f32 = 960.0;
-const OPTIONS_IN_A_ROW: [f32; 2] = [860.0, 1010.0];
+const OPTIONS_IN_A_ROW: [f32; 2] = [860.0, 1070.0];
+/// Room for the ends of a travel.
+const TRAVEL_WIDTH: f32 = 270.0;
 
 const WHAT_IT_DOES: &str = "Checks the wiring with little duty, measures the motor, designs gains for the level, and tries them. \
     Nothing stays in the controller until you apply it.";
@@ -87,7 +89,8 @@ fn options_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
     let motor = model.front.tune.motor(which);
     let travel = model.front.loops.travel(motor);
     let setting = &mut model.front.tune.panel_mut(which, motor).setting;
-    let is_wide = ui.available_width() >= OPTIONS_IN_A_ROW[which as usize];
+    let travel_width = if setting.turns_freely { 0.0 } else { TRAVEL_WIDTH };
+    let is_wide = ui.available_width() >= OPTIONS_IN_A_ROW[which as usize] + travel_width;
     ui.horizontal(|ui| {
         ui.label(RichText::new(format!("Motor {}:", motor.index() + 1)).strong());
         axis_ui(ui, setting, which, travel);
@@ -142,8 +145,15 @@ fn limits_ui(ui: &mut Ui, setting: &mut Setting) {
 }
 
 fn travel_ui(ui: &mut Ui, setting: &mut Setting, held: Option<(f64, f64)>) {
-    let free = ui.radio_value(&mut setting.turns_freely, true, "Turns freely");
-    let free = free.on_hover_text("The motor may run at full speed in both directions for some seconds");
+    let (word, hint) = match setting.encoder {
+        EncoderClass::Quadrature => {
+            ("Turns freely", "The motor may run at full speed in both directions for some seconds")
+        }
+        EncoderClass::Absolute | EncoderClass::AbsoluteWrapping => {
+            ("Its whole range", "The axis stays between 40 and 4055 counts, and within the position limits")
+        }
+    };
+    let free = ui.radio_value(&mut setting.turns_freely, true, word).on_hover_text(hint);
     setting.is_travel_chosen |= free.clicked();
     let bound = ui.radio_value(&mut setting.turns_freely, false, "Within");
     if bound.on_hover_text("The axis stays between two counts and never runs at full speed").clicked() {
