@@ -10,8 +10,8 @@ const SWITCHES: usize = 10;
 /// Duties above the starting one.
 const DUTIES: [f64; 2] = [0.22, 0.50];
 /// Where the axis is to turn round, as a share of the window: as long as nothing is known of its way, and later.
-const FIRST_TURN_AT: f64 = 0.22;
-const TURN_AT: f64 = 0.28;
+const FIRST_TURN_AT: f64 = 0.20;
+const TURN_AT: f64 = 0.25;
 /// Time until a new duty acts, s, and the share of the way from rest that the first stop may take.
 const ACTS_S: f64 = 0.03;
 const FIRST_SHARE: f64 = 0.7;
