@@ -138,7 +138,7 @@ pub fn lookup(name: &str) -> Option<&'static Model> {
 }
 
 /// The model that reports itself as `version` in the reply to command 21 ("MCP266 2x60A v1.0.0"). A board of
-/// either line that is not listed is one of [`UNLISTED`]; `None` means that it is none of this family.
+/// either line that is not listed is one of [`UNLISTED`]; `None` means that it is of no known family.
 pub fn identify(version: &str) -> Option<&'static Model> {
     let version = version.trim().to_ascii_lowercase();
     let by_title = MODELS.iter().find(|model| version.starts_with(&model.title.to_ascii_lowercase()));
@@ -348,7 +348,8 @@ mod tests {
         assert_eq!(identify("USB Roboclaw 2x15a v4.1.34\n").map(|model| model.key), Some("roboclaw"));
         assert_eq!(identify("MCP2999 2x1A v9").map(|model| model.key), Some("mcp"));
         assert_eq!(lookup("roboclaw").map(|model| model.family), Some(Family::RoboClaw));
-        assert_eq!(identify("Motion Mind 3"), None);
+        assert_eq!(identify("Motion Mind 3").map(|model| model.key), Some(MOTION_MIND_3.key));
+        assert_eq!(identify("Some other device"), None);
         assert_eq!(identify(""), None);
     }
 
