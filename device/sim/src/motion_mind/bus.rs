@@ -9,12 +9,14 @@ use std::time::Duration;
 #[derive(Clone, Debug)]
 pub struct MotionMindBus {
     units: Vec<MotionMind>,
+    /// The stream that stands for the wire: the one that was last written to.
+    wire: StreamIndex,
 }
 
 impl MotionMindBus {
     /// One unit or more; none makes a wire on which nobody answers.
     pub fn new(units: Vec<MotionMind>) -> Self {
-        Self { units }
+        Self { units, wire: StreamIndex::Usb }
     }
 
     /// The units.
@@ -44,13 +46,14 @@ impl MotionMindBus {
     }
 }
 
-/// The wire is the only one that a unit has, so that the stream is not looked at.
+/// A unit has one wire, whatever the stream is called that it is driven by.
 impl Machine for MotionMindBus {
     fn now(&self) -> Duration {
         self.units.first().map_or(Duration::ZERO, MotionMind::now)
     }
 
-    fn receive(&mut self, _: StreamIndex, bytes: &[u8]) {
+    fn receive(&mut self, stream: StreamIndex, bytes: &[u8]) {
+        self.wire = stream;
         self.units.iter_mut().for_each(|unit| unit.receive(bytes));
     }
 
@@ -62,7 +65,10 @@ impl Machine for MotionMindBus {
         self.units.iter().filter_map(MotionMind::next_output_at).min()
     }
 
-    fn take_output(&mut self, _: StreamIndex) -> Option<Vec<u8>> {
+    fn take_output(&mut self, stream: StreamIndex) -> Option<Vec<u8>> {
+        if stream != self.wire {
+            return None;
+        }
         self.units.iter_mut().find_map(MotionMind::take_output)
     }
 
