@@ -1,7 +1,7 @@
 //! Finding units: addresses 1 to 98 in both protocols, by reads alone. A read moves nothing, writes nothing and is the only kind
 //! of command sent here.
 
-use super::speaker::Speaker;
+use super::speaker::{GAP, Speaker};
 use super::stopping;
 use super::{MotionMind, mask, number, returns_of, value_in};
 use crate::device::controller::{Controller, DiscoverError, Family, Line};
@@ -16,7 +16,9 @@ use brushwork_protocol::motion_mind::{Address, Command, Mode, Protocol};
 use std::time::Duration;
 
 /// How long an answer may take in a scan, beyond its time on the wire: 10 ms of the controller, and what USB adapters add.
-const SCAN_PATIENCE: [Duration; 2] = [Duration::from_millis(35), Duration::from_millis(45)];
+const SCAN_PATIENCE: [Duration; 2] = [Duration::from_millis(28), Duration::from_millis(34)];
+/// How long units may complain about a line that was a frame of the other protocol.
+const COMPLAINTS: Duration = Duration::from_millis(60);
 /// How long the factory address, or the only one asked for, is waited for.
 const PATIENCE: [Duration; 2] = [Duration::from_millis(120), Duration::from_millis(500)];
 
@@ -91,6 +93,7 @@ impl Family for MotionMinds {
 fn patiently(line: &mut Line<'_>, address: Address) -> Result<Option<Speaker>, ExchangeError> {
     for patience in PATIENCE {
         for protocol in Protocol::ALL {
+            change_to(line, protocol)?;
             let speaker = Speaker::new(address, protocol);
             if is_there(line, speaker, patience)? {
                 return Ok(Some(speaker));
@@ -100,36 +103,54 @@ fn patiently(line: &mut Line<'_>, address: Address) -> Result<Option<Speaker>, E
     Ok(None)
 }
 
-/// All units: the factory address first, then every other one. Once one has answered, the others are asked in its protocol alone,
-/// since units of one bus must speak the same.
+/// All units: the factory address first, in both protocols; then every other one in the protocol that it spoke, since units of one
+/// bus must speak the same. Where nobody has the factory address, all are asked in binary, and if none answers, all in text.
 fn scan(line: &mut Line<'_>) -> Result<Vec<Speaker>, ExchangeError> {
-    let addresses = Address::UNITS.filter_map(Address::unit);
-    let of = addresses.clone().count();
-    line.report_progress(0, of, "the factory address");
-    let mut found: Vec<Speaker> = patiently(line, Address::FACTORY)?.into_iter().collect();
-    for (done, address) in addresses.enumerate().skip(1) {
-        line.report_progress(done, of, &format!("address {}", address.get()));
-        let known = found.first().map(|speaker| speaker.protocol);
-        for protocol in
-            Protocol::ALL.into_iter().filter(|protocol| known.is_none_or(|known| known == *protocol))
-        {
-            let speaker = Speaker::new(address, protocol);
-            if is_there(line, speaker, SCAN_PATIENCE[usize::from(protocol == Protocol::Text)])? {
-                found.push(speaker);
-                break;
-            }
+    line.report_progress(0, usize::from(*Address::UNITS.end()), "the factory address");
+    if let Some(first) = patiently(line, Address::FACTORY)? {
+        let mut found = vec![first];
+        found.extend(ask_each(line, first.protocol)?);
+        return Ok(found);
+    }
+    for protocol in Protocol::ALL {
+        change_to(line, protocol)?;
+        let found = ask_each(line, protocol)?;
+        if !found.is_empty() {
+            return Ok(found);
+        }
+    }
+    Ok(Vec::new())
+}
+
+/// The units at the other addresses than the factory's.
+fn ask_each(line: &mut Line<'_>, protocol: Protocol) -> Result<Vec<Speaker>, ExchangeError> {
+    let of = usize::from(*Address::UNITS.end());
+    let mut found = Vec::new();
+    for number in Address::UNITS.skip(1) {
+        line.report_progress(usize::from(number) - 1, of, &format!("address {number}, {protocol}"));
+        let Some(address) = Address::unit(number) else { continue };
+        let speaker = Speaker::new(address, protocol);
+        if is_there(line, speaker, SCAN_PATIENCE[usize::from(protocol == Protocol::Text)])? {
+            found.push(speaker);
         }
     }
     Ok(found)
 }
 
+/// Lets units in text forget what they took frames for: a line end makes a bad command of it, and all of them may say so.
+fn change_to(line: &mut Line<'_>, protocol: Protocol) -> Result<(), ExchangeError> {
+    if protocol == Protocol::Text {
+        let (exchange, watch) = line.parts();
+        exchange.wait(GAP, watch)?;
+        exchange.write_now(b"\r\n")?;
+        exchange.wait(COMPLAINTS, watch)?;
+    }
+    Ok(())
+}
+
 /// Whether a unit answers: the question must come back with the address that was asked.
 fn is_there(line: &mut Line<'_>, speaker: Speaker, patience: Duration) -> Result<bool, ExchangeError> {
     let own = i64::from(speaker.address.get());
-    if speaker.protocol == Protocol::Text {
-        // What came before stands in a unit's line still, and the first line end turns it into a bad command.
-        line.exchange().write_now(b"\r\n")?;
-    }
     Ok(speaker.probe(line, number::ADDRESS, patience)? == Some(own))
 }
 

@@ -23,6 +23,9 @@ const LONG_TEXT_WORK: Duration = Duration::from_millis(60);
 /// Characters of the longest answer in text, to all registers.
 const LONGEST_TEXT: usize = 200;
 
+/// What a unit in text says to a line that is no command.
+const BAD_COMMAND: &[u8] = b"BAD COMMAND\r\n";
+
 /// Who is spoken to and how.
 #[derive(Clone, Copy, Debug)]
 pub struct Speaker {
@@ -62,10 +65,6 @@ impl Speaker {
         let (exchange, watch) = line.parts();
         let span =
             exchange.exchange(&outgoing, watch, &mut |bytes| self.judge(&command, bytes, &mut reply))?;
-        if reply == Reply::NotUnderstood {
-            let what = format!("it answered \"BAD COMMAND\" to {}", title(&command));
-            return Err(ExchangeError::Refused { what, is_absent: true });
-        }
         if let Command::Write { register, value } | Command::WriteStore { register, value } = command {
             self.note_write(register, value);
         }
@@ -85,8 +84,16 @@ impl Speaker {
         let mut reply = Reply::Acknowledged;
         let length = self.reply_length(&command);
         let (exchange, watch) = line.parts();
+        // What a unit makes of probes in the other protocol may come first: a line that says that it is none.
         let answered = exchange.exchange_within(&bytes, length, patience, watch, &mut |bytes| {
-            self.judge(&command, bytes, &mut reply)
+            let mut stale = 0;
+            while bytes[stale..].starts_with(BAD_COMMAND) {
+                stale += BAD_COMMAND.len();
+            }
+            match self.judge(&command, &bytes[stale..], &mut reply) {
+                Judgement::Good(used) => Judgement::Good(stale + used),
+                other => other,
+            }
         });
         match answered {
             Ok(_) => Ok(super::value_in(&reply, index)),
@@ -154,6 +161,11 @@ impl Speaker {
         }
         match progress {
             Progress::Incomplete => Judgement::More(1),
+            // The command is one, so that something of it was lost, or something stood in the line before it.
+            Progress::Done { reply: Reply::NotUnderstood, .. } => {
+                let what = format!("it answered \"BAD COMMAND\" to {}", title(command));
+                Judgement::Bad(Fault::Malformed(what))
+            }
             Progress::Done { reply: done, used } => {
                 *reply = done;
                 Judgement::Good(used)

@@ -20,7 +20,9 @@ const STEEPEST: i64 = 1023;
 /// A loop that holds its motor may move it by so many counts between two looks.
 const STILL_COUNTS: i64 = 2;
 /// Time between two looks at the motor.
-const LOOK_AGAIN: Duration = Duration::from_millis(20);
+const LOOK_AGAIN: Duration = Duration::from_millis(30);
+/// So many looks in a row must find it still: a motor that swings stands still where it turns.
+const STILL_LOOKS: u32 = 4;
 /// A loop that has not brought its motor to a stand within this is switched off.
 const LOOP_LIMIT: Duration = Duration::from_millis(800);
 /// Drive in mode 3 changes at the next update of TIMER, which is at most 1.3 s away.
@@ -145,6 +147,10 @@ fn stand(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<Ended, ExchangeEr
 
 /// Mode 3: takes a slow ramp away, waits until the drive is 0, and puts the ramp back.
 fn stand_open_loop(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<Ended, ExchangeError> {
+    // The bytes of the stop have taken a ramp away that was known to be slow.
+    if let Some(value) = unit.ramp.step.filter(|_| unit.ramp.is_slow()) {
+        lend(unit, Borrowed { register: number::VELOCITYLIMIT, value });
+    }
     read_ramp(unit, line)?;
     if unit.ramp.is_slow() {
         let value = unit.ramp.step.unwrap_or(STEEPEST);
@@ -168,13 +174,15 @@ fn stand_open_loop(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<Ended, 
 fn stand_closed_loop(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<Ended, ExchangeError> {
     let begun_at = line.exchange().clock().now();
     let (mut before, _) = look(unit, line)?;
+    let mut still_looks = 0;
     loop {
         rest(line)?;
         let (position, duty) = look(unit, line)?;
         if duty == 0 && unit.borrowed.iter().any(|borrowed| borrowed.register == number::FUNCTION) {
             return Ok(Ended::SwitchedOff);
         }
-        if (position - before).abs() <= STILL_COUNTS {
+        still_looks = if (position - before).abs() <= STILL_COUNTS { still_looks + 1 } else { 0 };
+        if still_looks == STILL_LOOKS {
             return Ok(Ended::Stands);
         }
         if line.exchange().clock().now() >= begun_at + LOOP_LIMIT {
@@ -192,6 +200,10 @@ fn stand_closed_loop(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<Ended
 
 /// POSITION and PWMOUT.
 fn look(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<(i64, i64), ExchangeError> {
+    if unit.speaker.protocol == Protocol::Text {
+        // All registers at once take longer than two lines.
+        return Ok((read(unit, line, number::POSITION)?, read(unit, line, number::PWMOUT)?));
+    }
     let registers = mask(&[number::POSITION, number::PWMOUT]);
     let (reply, _) = unit.speaker.ask(line, &Command::Read(registers))?;
     let value = |index| value_in(&reply, index).unwrap_or(i64::MAX);
@@ -230,10 +242,15 @@ fn borrow(
     borrowed: Borrowed,
     value: i64,
 ) -> Result<(), ExchangeError> {
+    lend(unit, borrowed);
+    unit.speaker.ask(line, &Command::Write { register: borrowed.register, value }).map(drop)
+}
+
+/// Remembers what a register held before a stop changed it.
+fn lend(unit: &mut MotionMind, borrowed: Borrowed) {
     if !unit.borrowed.iter().any(|known| known.register == borrowed.register) {
         unit.borrowed.push(borrowed);
     }
-    unit.speaker.ask(line, &Command::Write { register: borrowed.register, value }).map(drop)
 }
 
 /// Puts a register back that a stop has changed.
