@@ -180,8 +180,8 @@ fn tame(link: &Link) {
 fn inject(link: &Link, address: Address, command: &Command) {
     link.bus(|tapped| {
         let bytes = match tapped.bus.motion_minds()[0].protocol() {
-            Protocol::Binary => encode_frame(address, command).unwrap(),
-            Protocol::Text => encode_line(address, command).unwrap().into_bytes(),
+            Protocol::Binary => encode_frame(address, command).expect("the tests send what fits"),
+            Protocol::Text => encode_line(address, command).expect("the tests send what fits").into_bytes(),
         };
         tapped.bus.receive(StreamIndex::Uart0, &bytes);
     });
