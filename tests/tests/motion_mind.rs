@@ -67,3 +67,38 @@ fn what_does_not_fit_together_is_said_in_a_sentence() {
         assert!(ending.status.code() == Some(2) && said.contains(sentence), "{options:?}: {ending:?}");
     }
 }
+
+#[test]
+fn the_command_line_drives_by_mode_reads_settings_and_talks_to_simulated_units_in_this_program() {
+    let run = |arguments: &[&str]| {
+        let mut ending = Program::start(BRUSHWORK, arguments).finish(LIMIT);
+        for _ in 0..10 {
+            if !ending.was_starved() {
+                break;
+            }
+            ending = Program::start(BRUSHWORK, arguments).finish(LIMIT);
+        }
+        (ending.status.code(), ending.stdout.join("\n"), ending.stderr.join("\n"))
+    };
+    for protocol in ["binary", "ascii"] {
+        let target = format!("sim:motion-mind-3,mode=3,protocol={protocol},address=7");
+        let (code, out, said) = run(&["drive", "--connect", &target, "--duty", "50", "--for", "1"]);
+        assert!(code == Some(0) && out.contains("50.0 %"), "{protocol}: {out} {said}");
+        assert!(said.contains("no serial time-out"), "{said}");
+        let (code, _, said) = run(&["drive", "--connect", &target, "--speed", "1000"]);
+        assert!(code == Some(4) && said.contains("duties and nothing else"), "{code:?} {said}");
+        let (code, out, said) = run(&["settings", "read", "--connect", &target]);
+        assert!(code == Some(0) && out.contains("register.pterm") && out.contains("6000"), "{out} {said}");
+        let (code, out, said) = run(&["status", "--connect", &target]);
+        assert!(code == Some(0) && out.contains("unit 7") && out.contains("TEMPFAULT"), "{out} {said}");
+        let (code, out, said) = run(&["stop", "--connect", &target]);
+        assert!(code == Some(0) && out.contains("unit 7: motor stopped"), "{out} {said}");
+    }
+    let text = "sim:motion-mind-3,protocol=ascii";
+    let (code, out, said) = run(&["terminal", "--connect", text, "R01 04", "Z01"]);
+    assert!(code == Some(4) && out.contains("PTRM=6000") && said.contains("Z is never sent"), "{out} {said}");
+    let (code, out, _) = run(&["protocol", "--family", "motion-mind"]);
+    assert!(code == Some(0) && out.contains("MOVEAT_VELOCITY") && out.contains("NEWVELMODE"));
+    let (code, out, _) = run(&["protocol", "--family", "motion-mind", "--json"]);
+    assert!(code == Some(0) && out.contains("\"registers\""));
+}

@@ -31,10 +31,19 @@ pub fn run(args: &DriveArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
         Err(exit) => return exit,
     };
     let drive = match command(args, &client, interrupt).and_then(|command| {
+        let drive = to_motors(args.motor, command);
+        if let Some(clause) = client.identity.objection(&drive) {
+            say(format!(
+                "Could not move the motor of {} on {}: {clause}.",
+                client.identity.place(),
+                client.identity.port
+            ));
+            return Err(Exit::Refused);
+        }
         arm(client.device(), ArmScope::CommandLine, interrupt)?;
-        Ok(command)
+        Ok(drive)
     }) {
-        Ok(command) => to_motors(args.motor, command),
+        Ok(drive) => drive,
         Err(exit) => return exit,
     };
     let driven = keep_driving(args, drive, &client, out, interrupt);

@@ -170,6 +170,12 @@ impl Identity {
         }
     }
 
+    /// Why it does not take a drive as it is now, as a clause; `None` where it does, or where only asking tells.
+    #[must_use]
+    pub fn objection(&self, drive: &Drive) -> Option<String> {
+        self.motion_mind.and_then(|facts| motion_mind::objection(facts.mode, drive))
+    }
+
     /// The bytes of a drive, command by command, as they would be sent.
     #[must_use]
     pub fn preview(&self, drive: &Drive) -> Vec<Vec<u8>> {

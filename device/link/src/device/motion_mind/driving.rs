@@ -57,6 +57,12 @@ pub fn taken(mode: Mode) -> &'static str {
     }
 }
 
+/// Why a drive cannot be in a mode; `None` if it can.
+#[must_use]
+pub fn objection(mode: Mode, drive: &Drive) -> Option<String> {
+    command(mode, drive).err().map(|error| error.to_string())
+}
+
 /// The bytes of a drive, as they would be sent.
 #[must_use]
 pub fn preview(drive: &Drive, address: u8, facts: MotionMindFacts) -> Vec<Vec<u8>> {

@@ -20,7 +20,7 @@ mod tests;
 mod traffic;
 
 pub use discover::MotionMinds;
-pub use driving::{COUNTS_PER_S_PER_STEP, preview, taken};
+pub use driving::{COUNTS_PER_S_PER_STEP, objection, preview, taken};
 pub use signs::SIGNS;
 pub use traffic::{describe_received, describe_sent};
 

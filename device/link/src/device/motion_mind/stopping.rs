@@ -126,7 +126,7 @@ pub fn confirm(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<UnitStop, E
 }
 
 const SWITCHED_OFF: &str = "Its loop did not hold the motor still, so its output was switched off (DISABLEPID in FUNCTION, in RAM). \
-                            Arming switches it on again.";
+                            Arming again without leaving switches it on; so does a reset of the unit.";
 
 enum Ended {
     Stands,
