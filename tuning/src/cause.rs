@@ -66,6 +66,8 @@ pub enum Cause {
     BackedOff,
     /// The two directions differ by more than 5 %.
     Asymmetric,
+    /// A constant load is stronger than the friction: the axis does not stay where it is without drive.
+    HeavyLoad,
     /// The controller's loop follows no law that is known.
     UnknownLaw,
     /// A Motion Mind is not in the mode in which it can be tuned.
@@ -160,6 +162,10 @@ impl Cause {
             }
             Self::BackedOff => "The gains were lowered, since the measured loop was rougher than predicted.",
             Self::Asymmetric => "The two directions differ by more than 5 %.",
+            Self::HeavyLoad => {
+                "A constant load, a weight or a spring, pulls harder than friction holds: without drive the axis moves. Balance it, or \
+                 tune the position as PIV, whose integral carries the load."
+            }
             Self::UnknownLaw => {
                 "The controller's loop follows no law known to this program, so gains cannot be computed for it."
             }

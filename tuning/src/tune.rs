@@ -33,6 +33,8 @@ const LONGEST_MOTION_MIND_LAG: Lag = Lag { filter_s: 0.0, delay_ticks: 1.5 };
 const WORST_CHI_SQUARE: f64 = 12.0;
 /// Loosest time constant, as standard deviation of its logarithm, of a motor slower than four polls.
 const LOOSEST_TAU: f64 = 0.5;
+/// Duty by which a load is above the friction before it is called heavy.
+const SURELY_HEAVY: f64 = 0.005;
 /// Misfit of the closed loop beyond which the model is taken as incomplete, and what is then left of the sensitivity's excess.
 const ODD_CHI_SQUARE: f64 = 2.2;
 const ODD_SHARE: f64 = 0.6;
@@ -210,9 +212,12 @@ fn run(rig: &mut Rig<'_>, request: &Request, report: &mut Report) -> Result<(), 
         }
     };
     let model = found.fit.model;
-    rig.watch.know(model.gain_counts_per_s * (1.0 - model.coulomb_duty), model.tau_s);
+    rig.watch.know(model.gain_counts_per_s * (1.0 - model.coulomb_duty), model.tau_s, model.load_duty);
     report.fit = Some(found.fit);
     report.qpps = Some(found.qpps);
+    if model.load_duty.abs() > model.coulomb_duty + SURELY_HEAVY {
+        report.causes.push(Cause::HeavyLoad);
+    }
     report.seconds.0 = rig.now_s();
     report.winding = winding_of(&rig.points, &rig.drives);
     let request = &with_law(rig, request, &probe, &found, report)?;

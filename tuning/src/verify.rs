@@ -30,6 +30,8 @@ const MOST_RIPPLE: f64 = 0.045;
 const MOST_PLACE_RIPPLE: f64 = 0.010;
 /// Share of a move that a loop which works makes at the least, and of a speed.
 const LEAST_MOVE: f64 = 0.2;
+/// Share of the way to the farther end of the travel that a move goes at the most.
+const MOST_OF_ROOM: f64 = 0.6;
 /// How long the last move is watched when it should be over, s.
 const WATCH_S: f64 = 0.6;
 /// How often the gains may be lowered.
@@ -338,7 +340,7 @@ fn plateau_activity(course: &ClosedCourse) -> f64 {
     if squares.1 > 0.0 { f64::sqrt(squares.0 / squares.1) } else { 0.0 }
 }
 
-/// Moves D, 0, 0.25 D, 0.
+/// Moves D, 0, 0.25 D, 0, towards the farther end of the travel.
 pub(crate) fn try_position(
     rig: &mut Rig<'_>,
     request: &Request,
@@ -353,6 +355,8 @@ pub(crate) fn try_position(
     rest(rig, task.plant.tau_s, task.qpps)?;
     rig.poll(false)?;
     let start = rig.points.last().map_or(0.0, |p| p.counts);
+    let (side, room) = farther_end(rig, start);
+    let step = side * step.min(MOST_OF_ROOM * room);
     let dwell_s = (0.35 + 1.6 * design.score.settling_s).min(0.5 + 5.0 * task.plant.tau_s).clamp(0.5, 8.0);
     let mut worst = Measured::default();
     let mut from = start;
@@ -363,10 +367,10 @@ pub(crate) fn try_position(
         let watch_s = if n == 3 { WATCH_S } else { 0.0 };
         rig.poll_for(dwell_s + watch_s, true)?;
         let points: Vec<Point> = rig.points.iter().copied().filter(|p| p.t > begin).collect();
-        if n == 0 && points.last().is_some_and(|p| (p.counts - start).abs() < LEAST_MOVE * step) {
+        if n == 0 && points.last().is_some_and(|p| (p.counts - start).abs() < LEAST_MOVE * step.abs()) {
             return Err(Cause::NotVerified);
         }
-        let moved = judge_move(&points, target, target - from, begin + 0.7 * dwell_s, step);
+        let moved = judge_move(&points, target, target - from, begin + 0.7 * dwell_s, step.abs());
         worst.overshoot = worst.overshoot.max(moved.overshoot);
         worst.ripple = worst.ripple.max(moved.ripple);
         worst.duty_rms = worst.duty_rms.max(moved.duty_rms);
@@ -374,6 +378,12 @@ pub(crate) fn try_position(
     }
     rig.duty(0.0)?;
     Ok(worst)
+}
+
+/// The direction in which the travel has more room, and how much, counts.
+fn farther_end(rig: &Rig<'_>, place: f64) -> (f64, f64) {
+    let Some((low, high)) = rig.travel_counts() else { return (1.0, f64::INFINITY) };
+    if high - place >= place - low { (1.0, high - place) } else { (-1.0, place - low) }
 }
 
 /// Overshoot of one move, and what goes on after `late_s` when it should be over. `step` is the longest of the moves.

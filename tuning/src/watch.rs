@@ -77,6 +77,8 @@ pub struct Watch {
     rising: bool,
     /// When the motor was first driven at a duty that it starts with.
     first_s: f64,
+    /// Duty that a constant load eats, positive when it pulls towards lower counts; 0 as long as it is not known.
+    load_duty: f64,
     /// Highest speed over duty seen, counts/s.
     gain: f64,
     /// The same by speed and current.
@@ -118,9 +120,11 @@ impl Watch {
         }
     }
 
-    /// Takes over what an identification found: speed at full duty per duty, and the time constant.
-    pub fn know(&mut self, gain_counts_per_s: f64, tau_s: f64) {
+    /// Takes over what an identification found: speed at full duty per duty, the time constant, and the duty that a constant load
+    /// eats.
+    pub fn know(&mut self, gain_counts_per_s: f64, tau_s: f64, load_duty: f64) {
         self.gain = gain_counts_per_s;
+        self.load_duty = load_duty;
         self.tau_bounds_s = Some((TAU_SPREAD.0 * tau_s, TAU_SPREAD.1 * tau_s));
     }
 
@@ -307,7 +311,7 @@ impl Watch {
         while t < stretch.to.t {
             let step = STEP_S.min(stretch.to.t - t);
             let range = self.duty_range(t + 0.5 * step);
-            let duty = if direction > 0.0 { range.0 } else { -range.1 };
+            let duty = if direction > 0.0 { range.0 - self.load_duty } else { self.load_duty - range.1 };
             let next = self.least_speed(speed, duty, step, tau);
             if t + step > stretch.from.t {
                 way += 0.5 * (speed + next) * step.min(t + step - stretch.from.t);

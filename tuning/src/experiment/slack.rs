@@ -50,12 +50,15 @@ pub fn measure_slack(rig: &mut Rig<'_>, probe: &Probe, model: &PlantModel) -> Re
     if way < 6.0 || model.tau_s > SLOWEST_S {
         return Ok(None);
     }
-    let duty = probe.start_duty + (ABOVE.0 * probe.start_duty).max(ABOVE.1);
-    let push_s = push_time_s(model, duty.min(rig.options.max_duty), way);
+    // The motor was started upwards, against the load or with it.
+    let start = (probe.start_duty - model.load_duty).max(model.coulomb_duty);
+    let most = rig.options.max_duty - model.load_duty.abs();
+    let duty = (start + (ABOVE.0 * start).max(ABOVE.1)).min(most);
+    let push_s = push_time_s(model, duty, way);
     let rest_s = (REST.0 * model.tau_s + REST.1).min(LONGEST_REST_S);
     // Play looks like a stall for a while. The duty is low, and a motor that does not move ends the run here.
     let watched_duty = std::mem::take(&mut rig.watch.start_duty);
-    let ways = push(rig, duty, push_s, rest_s);
+    let ways = push(rig, duty, model.load_duty, push_s, rest_s);
     rig.watch.start_duty = watched_duty;
     let ways = ways?;
     if ways.windows(2).any(|pair| pair.iter().all(|(_, way)| *way < LEAST_WAY_COUNTS)) {
@@ -64,14 +67,20 @@ pub fn measure_slack(rig: &mut Rig<'_>, probe: &Probe, model: &PlantModel) -> Re
     Ok(Some(slack_of(&ways)))
 }
 
-/// For each push: 1 for another one the same way, -1 for one after a reversal, 0 for the first; and its way, counts.
-fn push(rig: &mut Rig<'_>, duty: f64, push_s: f64, rest_s: f64) -> Result<Vec<(f64, f64)>, Cause> {
+/// Pushes with a duty to either side of the one that balances the load. For each push: 1 for another one the same way, -1 for one after a reversal, 0 for the first; and its way, counts.
+fn push(
+    rig: &mut Rig<'_>,
+    duty: f64,
+    load_duty: f64,
+    push_s: f64,
+    rest_s: f64,
+) -> Result<Vec<(f64, f64)>, Cause> {
     let mut ways = Vec::new();
     let mut before = 0.0;
     for direction in PUSHES {
         rig.poll(false)?;
         let from = place(rig);
-        rig.duty(direction * duty)?;
+        rig.duty(load_duty + direction * duty)?;
         let pushed_s = rig.now_s();
         rig.poll_for(push_s, false)?;
         let held_s = rig.now_s() - pushed_s;

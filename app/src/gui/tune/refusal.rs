@@ -96,7 +96,7 @@ fn steps(cause: Cause) -> &'static [&'static str] {
         Cause::PoorFit => {
             &["Look for slipping couplings, belts and set screws.", "Check that nothing else moves the axis."]
         }
-        Cause::Lopsided | Cause::Asymmetric => &[
+        Cause::Lopsided | Cause::Asymmetric | Cause::HeavyLoad => &[
             "Take the load that pulls one way off for the run, or balance it.",
             "Look for a jam in one direction.",
         ],

@@ -98,7 +98,7 @@ impl Sketch {
                 caption: "The axis stands too near to an end of its travel",
                 ..sound
             },
-            Cause::Lopsided | Cause::Asymmetric => Self {
+            Cause::Lopsided | Cause::Asymmetric | Cause::HeavyLoad => Self {
                 shaft: Shaft::Loaded,
                 caption: "Something pulls one way: a weight, a spring, a jam",
                 ..sound
