@@ -74,6 +74,8 @@ pub enum Cause {
     WrongMode,
     /// The controller has no loop of this kind.
     NoSuchLoop,
+    /// Bits of a Motion Mind are set that make another loop of its gains, or none.
+    OtherLoop,
 }
 
 impl Cause {
@@ -175,6 +177,10 @@ impl Cause {
             }
             Self::NoSuchLoop => {
                 "This controller has no velocity loop under its position loop. Tune the position as PD or PID."
+            }
+            Self::OtherLoop => {
+                "NEWVELMODE, FASTPID, PULSEFB or DISABLEPID is set, which makes another loop of these gains, or none. Clear the bit: \
+                 the gains are those of the loop that computes every 5 ms from the encoder's place."
             }
         }
     }

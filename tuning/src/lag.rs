@@ -257,6 +257,7 @@ mod tests {
     };
     const GAINS: Gains = Gains {
         velocity: Pid { p: 3.0, i: 20.0, d: 0.0 },
+        velocity_sum: 0.0,
         position: None,
         max_integral: 0.0,
         deadzone_counts: 0.0,

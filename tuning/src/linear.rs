@@ -138,7 +138,10 @@ impl LoopPlant {
     /// What the controller makes of a speed and of a place at one frequency, before the division by QPPS.
     fn controllers(&self, gains: &Gains, n: usize) -> (Complex<f64>, Complex<f64>) {
         let velocity = gains.velocity;
-        let by_speed = self.integral[n] * velocity.i + self.slope[n] * velocity.d + velocity.p;
+        let mut by_speed = self.integral[n] * velocity.i + self.slope[n] * velocity.d + velocity.p;
+        if gains.velocity_sum != 0.0 {
+            by_speed += self.integral[n] * self.integral[n] * gains.velocity_sum;
+        }
         let by_place = gains.position.map_or(Complex::new(0.0, 0.0), |position| {
             let wanted = self.integral[n] * position.i + self.slope[n] * position.d + position.p;
             let forward = if is_simple(gains) { 1.0 } else { f64::from(u8::from(self.law.feed_forward)) };
@@ -168,6 +171,9 @@ impl LoopPlant {
         }
         let new_error = &wanted - &measured;
         let new_sum = unit(sum) + &new_error * tick_s;
+        if gains.velocity_sum != 0.0 {
+            new_place_sum = unit(place_sum) + &new_sum * tick_s;
+        }
         let velocity = gains.velocity;
         let forward = if is_simple(gains) || self.law.feed_forward { 1.0 } else { 0.0 };
         let duty = if is_simple(gains) {
@@ -176,6 +182,7 @@ impl LoopPlant {
             (wanted * forward
                 + &new_error * velocity.p
                 + &new_sum * velocity.i
+                + &new_place_sum * gains.velocity_sum
                 + (&new_error - unit(error)) * (velocity.d / tick_s))
                 / qpps
         };
@@ -190,11 +197,11 @@ impl LoopPlant {
         }
         matrix.set_row(last, &y.transpose());
         matrix.set_row(filtered, &measured.transpose());
-        if velocity.i != 0.0 {
+        if velocity.i != 0.0 || gains.velocity_sum != 0.0 {
             matrix.set_row(sum, &new_sum.transpose());
         }
         matrix.set_row(error, &new_error.transpose());
-        if gains.position.is_some_and(|p| p.i != 0.0) {
+        if gains.position.is_some_and(|p| p.i != 0.0) || gains.velocity_sum != 0.0 {
             matrix.set_row(place_sum, &new_place_sum.transpose());
         }
         for k in 0..delay {
@@ -303,6 +310,21 @@ mod tests {
             let edge = plant.margins(&velocity(low, 0.0), 10_000.0).ms;
             assert!(edge > 20.0, "the sensitivity is without bound at the edge: {edge} at P {low}");
         }
+    }
+
+    #[test]
+    fn an_integral_of_the_integral_takes_phase_and_poles_and_sensitivity_agree_on_its_edge() {
+        let plant = loop_of(0.1, Lag::default());
+        let with = |velocity_sum: f64| Gains { velocity_sum, ..velocity(5.0, 20.0) };
+        assert!(plant.spectral_radius(&with(20.0), 10_000.0) < 1.0);
+        assert!(plant.margins(&with(200.0), 10_000.0).ms > plant.margins(&with(0.0), 10_000.0).ms);
+        let (mut low, mut high) = (20.0, 1e6);
+        for _ in 0..60 {
+            let middle = f64::sqrt(low * high);
+            if plant.spectral_radius(&with(middle), 10_000.0) < 1.0 { low = middle } else { high = middle }
+        }
+        let edge = plant.margins(&with(low), 10_000.0).ms;
+        assert!(edge > 20.0, "{edge} at {low}");
     }
 
     #[test]

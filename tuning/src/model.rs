@@ -127,6 +127,10 @@ pub struct Pid {
 pub struct Gains {
     /// Velocity loop: speeds in, speeds out. All zero in position modes that act on the duty directly.
     pub velocity: Pid,
+    /// On the sum of the place's errors under a speed command, per s^2: ITERM of a Motion Mind, an integral of the integral. Nothing
+    /// else has it.
+    #[serde(default)]
+    pub velocity_sum: f64,
     /// Position loop: counts in, counts/s out.
     pub position: Option<Pid>,
     /// Bound of the position integral, counts x s.

@@ -41,6 +41,7 @@ pub fn gains_of(velocity: &VelocityRegisters, position: &PositionRegisters, law:
     let scaled = |raw: u32| f64::from(raw) / law.position_scale;
     Gains {
         velocity: velocity_gains(velocity, law),
+        velocity_sum: 0.0,
         position: Some(Pid {
             p: scaled(position.p),
             i: scaled(position.i) / step_s,

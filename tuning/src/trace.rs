@@ -6,6 +6,7 @@
 use crate::axis::{AMPS_PER_RAW, EncoderClass, FULL_DUTY_RAW, PositionRegisters, Sample, VelocityRegisters};
 use crate::design::Task;
 use crate::model::Gains;
+use crate::motion_mind::MotionMindRegisters;
 use crate::record::Entry;
 use crate::rig::{Drive, Input};
 use crate::ticks::{Setpoint, TickLoop};
@@ -33,6 +34,8 @@ pub enum Written {
     Velocity(VelocityRegisters),
     /// The position loop.
     Position(PositionRegisters),
+    /// Those of a Motion Mind.
+    MotionMind(MotionMindRegisters),
 }
 
 /// A run so far.
@@ -113,6 +116,7 @@ impl Trace {
             }
             Entry::Velocity(registers, Ok(())) => self.write(Written::Velocity(*registers)),
             Entry::PositionLoop(registers, Ok(())) => self.write(Written::Position(*registers)),
+            Entry::MotionMind(registers, Ok(())) => self.write(Written::MotionMind(*registers)),
             _ => {}
         }
     }

@@ -5,6 +5,7 @@ use crate::cause::Cause;
 use crate::design::{Design, Task};
 use crate::experiment::Probe;
 use crate::model::Gains;
+use crate::motion_mind::MotionMindRegisters;
 use crate::record::{Entry, Recorder};
 use crate::registers::{gains_of, velocity_gains};
 use crate::report::Measured;
@@ -27,6 +28,8 @@ pub struct TrialRequest {
     pub velocity: VelocityRegisters,
     /// The position loop, of the methods that have one.
     pub position: Option<PositionRegisters>,
+    /// The registers of a Motion Mind, which has neither of the two above.
+    pub motion_mind: Option<MotionMindRegisters>,
 }
 
 /// What came of it.
@@ -46,7 +49,16 @@ impl TrialRequest {
     /// The gains as the registers hold them.
     #[must_use]
     pub fn gains(&self) -> Gains {
-        registers_gains(&self.velocity, self.position.as_ref(), &self.request)
+        self.on_model().1
+    }
+
+    /// The model with what the registers change of it, and the gains as the registers hold them.
+    #[must_use]
+    pub fn on_model(&self) -> (Task, Gains) {
+        match self.motion_mind {
+            Some(registers) => registers.on_model(&self.task, self.request.method != Method::Velocity),
+            None => (self.task, registers_gains(&self.velocity, self.position.as_ref(), &self.request)),
+        }
     }
 }
 
@@ -87,23 +99,34 @@ pub fn run_trial(axis: &mut dyn Axis, wanted: &TrialRequest) -> Trial {
 }
 
 fn moves(rig: &mut Rig<'_>, wanted: &TrialRequest) -> Result<(Measured, bool), Cause> {
-    let gains = wanted.gains();
-    let shown = forecast(&wanted.task, &gains);
+    let (task, gains) = wanted.on_model();
+    let shown = forecast(&task, &gains);
     let design = Design { gains, score: shown.score, ms: shown.ms, noise_duty: shown.noise_duty };
     rig.watch.start_duty = wanted.probe.start_duty;
     rig.watch.stall_amps = wanted.probe.stall_amps;
     rig.watch.full_speed = wanted.task.qpps;
     rig.watch.stopping_s = wanted.task.plant.tau_s;
-    rig.write_velocity(wanted.velocity)?;
-    let measured = match wanted.position {
-        Some(position) if wanted.request.method != Method::Velocity => {
-            rig.write_position(position)?;
-            try_position(rig, &wanted.request, &wanted.task, &design)?
+    write_loops(rig, wanted)?;
+    let measured = if gains.position.is_some() {
+        try_position(rig, &wanted.request, &task, &design)?
+    } else {
+        match wanted.request.excitation {
+            Excitation::Free => try_velocity(rig, &task, &gains)?,
+            Excitation::Window(width) => try_velocity_inside(rig, &task, &gains, width)?,
         }
-        _ => match wanted.request.excitation {
-            Excitation::Free => try_velocity(rig, &wanted.task, &gains)?,
-            Excitation::Window(width) => try_velocity_inside(rig, &wanted.task, &gains, width)?,
-        },
     };
     Ok((measured, is_rougher(&design, &measured)))
+}
+
+fn write_loops(rig: &mut Rig<'_>, wanted: &TrialRequest) -> Result<(), Cause> {
+    match wanted.motion_mind {
+        Some(registers) if !registers.is_usual_loop() => return Err(Cause::OtherLoop),
+        Some(registers) => return rig.write_motion_mind(registers),
+        None => {}
+    }
+    rig.write_velocity(wanted.velocity)?;
+    match wanted.position.filter(|_| wanted.request.method != Method::Velocity) {
+        Some(position) => rig.write_position(position),
+        None => Ok(()),
+    }
 }

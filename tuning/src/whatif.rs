@@ -5,6 +5,8 @@
 use crate::design::{Design, Goal, Task};
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::Gains;
+use crate::motion_mind::MotionMindRegisters;
+use crate::report::Report;
 use crate::score::{LOAD_STEP_DUTY, Score, VELOCITY_STEP, horizon_s, position_step};
 use crate::ticks::{Setpoint, TickLoop};
 use crate::tune::{Method, design_for};
@@ -151,7 +153,8 @@ pub fn at_level(task: &Task, was: f64, level: f64) -> Task {
 #[must_use]
 pub fn redesign(method: Method, task: &Task, was: f64, run: &Design, level: f64) -> Option<Design> {
     let design = design_for(method, &at_level(task, was, level))?;
-    let ratio = design_for(method, task).map_or(1.0, |first| share_of(&run.gains, &first.gains));
+    let as_held = |first: Design| share_of(&run.gains, &task.law.rounded(&first.gains, task.qpps));
+    let ratio = design_for(method, task).map_or(1.0, as_held);
     if ratio >= 0.999 {
         return Some(design);
     }
@@ -163,6 +166,18 @@ pub fn redesign(method: Method, task: &Task, was: f64, run: &Design, level: f64)
     }
     let forecast = forecast(task, &gains);
     Some(Design { gains, score: forecast.score, ms: forecast.ms, noise_duty: forecast.noise_duty })
+}
+
+/// The registers of a Motion Mind for another level, from the report of its run.
+#[must_use]
+pub fn redesign_motion_mind(report: &Report, level: f64) -> Option<MotionMindRegisters> {
+    let (request, task, design) = (&report.request, report.task?, report.design?);
+    let (unit, mind) = (report.before?.motion_mind?, task.law.motion_mind?);
+    if level == request.level {
+        return report.motion_mind;
+    }
+    let design = redesign(request.method, &task, request.level, &design, level)?;
+    Some(unit.registers.with(&design.gains, task.qpps, mind))
 }
 
 /// The share of the first gains that was left on the machine.

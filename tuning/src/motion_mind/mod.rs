@@ -3,7 +3,7 @@
 //! Every 5 ms `PWM = (PTERM e + ITERM sum(e) + DTERM diff(e)) / 2^PIDSCALAR + speed x VELOCITYFF / 255`, 1023 = full duty (Motion Mind
 //! manual 3.13 to 3.15). `e` is always an error of the place. Under a speed command the wanted place runs ahead by the speed in
 //! each loop, so that DTERM acts on the error of the speed and PTERM on its sum: a velocity PI under other names. ITERM has no part
-//! in it. There is one set of registers for both kinds of moves, and no cascade.
+//! in what is designed, being an integral of the integral. There is one set of registers for both kinds of moves, and no cascade.
 //!
 //! NEWVELMODE (a loop on speeds alone, its output added up) is not used: each loop drops what is less than one step of the
 //! duty, and adding up makes that a dead band of the speed.
@@ -69,7 +69,7 @@ pub fn law() -> LoopLaw {
 /// The gains on the error of the place: counts in, counts/s out, over QPPS a duty.
 #[must_use]
 pub(crate) fn on_place(gains: &Gains) -> Pid {
-    gains.position.unwrap_or(Pid { p: gains.velocity.i, i: 0.0, d: gains.velocity.p })
+    gains.position.unwrap_or(Pid { p: gains.velocity.i, i: gains.velocity_sum, d: gains.velocity.p })
 }
 
 /// The smaller bound of the sum that suffices, as counts x s: SATPROT where it does, since it keeps the sum from winding up.

@@ -1,7 +1,8 @@
 //! Gains as registers of a Motion Mind 3, and back: the rounded gains are what the loop gets.
 
 use super::{FULL_PWM, MotionMindLaw, SPEED_STEP_COUNTS_PER_S, is_protected, on_place, sum_bound_s};
-use crate::model::{Gains, Pid};
+use crate::design::Task;
+use crate::model::{Gains, LoopLaw, Pid};
 use serde::{Deserialize, Serialize};
 
 /// Largest gain register and largest power of the divisor (Motion Mind manual 6.0).
@@ -107,16 +108,29 @@ impl MotionMindRegisters {
     #[must_use]
     pub fn gains(&self, qpps: f64, is_position: bool) -> Gains {
         let pid = unscaled([self.pterm, self.iterm, self.dterm], self.pidscalar, qpps);
+        let max_integral = sum_bound_s(if self.has(bits::SATPROT) { 0.0 } else { f64::INFINITY });
         if !is_position {
-            return Gains { velocity: Pid { p: pid.d, i: pid.p, d: 0.0 }, ..Gains::default() };
+            let max_integral = if self.iterm > 0 { max_integral } else { 0.0 };
+            return Gains { max_integral, ..on_speed(pid) };
         }
-        let has_deadband = self.function & bits::ENABLEDB != 0;
-        Gains {
-            position: Some(pid),
-            max_integral: sum_bound_s(if self.function & bits::SATPROT != 0 { 0.0 } else { f64::INFINITY }),
-            deadzone_counts: if has_deadband { f64::from(self.deadband) } else { 0.0 },
-            ..Gains::default()
-        }
+        let deadzone_counts = if self.has(bits::ENABLEDB) { f64::from(self.deadband) } else { 0.0 };
+        Gains { position: Some(pid), max_integral, deadzone_counts, ..Gains::default() }
+    }
+
+    /// What they are on a run's model: the model with their feed-forward, and their gains.
+    #[must_use]
+    pub fn on_model(&self, task: &Task, is_position: bool) -> (Task, Gains) {
+        let mind = task.law.motion_mind.unwrap_or_default();
+        let mind = MotionMindLaw { velocity_ff: self.velocity_ff, ..mind };
+        let law = LoopLaw { motion_mind: Some(mind), ..task.law };
+        (Task { law, ..*task }, self.gains(task.qpps, is_position))
+    }
+
+    /// Whether the loop is the one that the gains are computed for: the one on places, every 5 ms, giving a duty.
+    #[must_use]
+    pub fn is_usual_loop(&self) -> bool {
+        self.function2 & (bits::NEWVELMODE | bits::FASTPID | bits::PULSEFB) == 0
+            && !self.has(bits::DISABLEPID)
     }
 
     /// Whether a bit of FUNCTION is set.
@@ -132,9 +146,16 @@ pub(crate) fn rounded(gains: &Gains, qpps: f64) -> Gains {
     let ([pterm, iterm, dterm], pidscalar) = scaled(&on_place(gains), qpps);
     let pid = unscaled([pterm, iterm, dterm], pidscalar, qpps);
     if gains.position.is_none() {
-        return Gains { velocity: Pid { p: pid.d, i: pid.p, d: 0.0 }, ..*gains };
+        let Gains { velocity, velocity_sum, .. } = on_speed(pid);
+        return Gains { velocity, velocity_sum, ..*gains };
     }
     Gains { position: Some(pid), max_integral: sum_bound_s(gains.max_integral), ..*gains }
+}
+
+/// Gains on the error of the place as those of a speed loop.
+fn on_speed(place: Pid) -> Gains {
+    let velocity = Pid { p: place.d, i: place.p, d: 0.0 };
+    Gains { velocity, velocity_sum: place.i, ..Gains::default() }
 }
 
 /// PTERM, ITERM, DTERM and PIDSCALAR.
@@ -191,6 +212,29 @@ mod tests {
                 "rounding is what a way there and back does"
             );
         }
+    }
+
+    #[test]
+    fn under_a_speed_command_iterm_is_the_integral_of_the_integral_and_goes_back_into_the_register() {
+        // 35 / 2^14 a loop on the sum of errors; QPPS 1023 makes a step of duty one count/s.
+        let factory = MotionMindRegisters { pterm: 6000, iterm: 35, pidscalar: 14, ..Default::default() };
+        let gains = factory.gains(1023.0, false);
+        assert!((gains.velocity_sum - 35.0 / 16_384.0 * 200.0).abs() < 1e-12);
+        assert_eq!((gains.velocity.p, gains.max_integral), (0.0, 600.0));
+        let again = factory.with(&gains, 1023.0, MotionMindLaw::of_qpps(1023.0));
+        let halves = 2.0_f64.powi(i32::from(again.pidscalar) - 14);
+        assert!((f64::from(again.iterm) / halves - 35.0).abs() < 0.1, "{again:?}");
+        assert!((f64::from(again.pterm) / halves - 6000.0).abs() < 0.1, "{again:?}");
+    }
+
+    #[test]
+    fn bits_that_make_another_loop_are_told() {
+        let usual = MotionMindRegisters { function: bits::SATPROT | bits::ACTIVESTOP, ..Default::default() };
+        assert!(usual.is_usual_loop());
+        for function2 in [bits::NEWVELMODE, bits::FASTPID, bits::PULSEFB] {
+            assert!(!MotionMindRegisters { function2, ..usual }.is_usual_loop());
+        }
+        assert!(!MotionMindRegisters { function: bits::DISABLEPID, ..usual }.is_usual_loop());
     }
 
     #[test]

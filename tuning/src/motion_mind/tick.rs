@@ -31,8 +31,10 @@ impl PlaceLoop {
     ) -> Self {
         let pid = on_place(gains);
         let left = (duty - forward(law, speed * tick_s) / FULL_PWM) * qpps;
-        let error = if pid.p > 0.0 { left / pid.p } else { 0.0 };
-        Self { ahead: Some(error - speed * tick_s), last_error: error, ..Self::default() }
+        let sum =
+            if pid.i > 0.0 { (left / pid.i).clamp(-gains.max_integral, gains.max_integral) } else { 0.0 };
+        let error = if pid.p > 0.0 { (left - pid.i * sum) / pid.p } else { 0.0 };
+        Self { ahead: Some(error - speed * tick_s), last_error: error, sum, ..Self::default() }
     }
 
     /// What the current leaves of the duty, 0 to 1.
@@ -116,6 +118,24 @@ mod tests {
         let gains = Gains { velocity: Pid { p: 2.0, i: 30.0, d: 0.0 }, ..Gains::default() };
         let (qpps, speed, duty) = (20_000.0, 4_000.0, 0.25);
         let mut place_loop = PlaceLoop::steady(law(), &gains, qpps, TICK_S, speed, duty);
+        for n in 0..20 {
+            let count = f64::from(n) * speed * TICK_S;
+            let got = place_loop.turn(law(), (&gains, qpps, TICK_S), Setpoint::Speed(speed), count, true);
+            assert!((got - duty).abs() < 1e-9, "loop {n}: {got}");
+        }
+    }
+
+    #[test]
+    fn a_steady_speed_with_an_integral_stays_too_and_its_sum_carries_what_it_may() {
+        let gains = Gains {
+            velocity: Pid { p: 2.0, i: 30.0, d: 0.0 },
+            velocity_sum: 40.0,
+            max_integral: 600.0,
+            ..Gains::default()
+        };
+        let (qpps, speed, duty) = (20_000.0, 4_000.0, 0.25);
+        let mut place_loop = PlaceLoop::steady(law(), &gains, qpps, TICK_S, speed, duty);
+        assert!(place_loop.sum > 0.0);
         for n in 0..20 {
             let count = f64::from(n) * speed * TICK_S;
             let got = place_loop.turn(law(), (&gains, qpps, TICK_S), Setpoint::Speed(speed), count, true);

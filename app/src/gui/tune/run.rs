@@ -193,6 +193,7 @@ impl Run {
             probe: self.report.probe?,
             velocity: registers.velocity,
             position: registers.position,
+            motion_mind: None,
         })
     }
 
@@ -222,6 +223,7 @@ fn tried(
         match written {
             Written::Velocity(velocity) => registers.velocity = *velocity,
             Written::Position(position) => registers.position = Some(*position),
+            Written::MotionMind(_) => {}
         }
     }
     if !stretch.is_position {
