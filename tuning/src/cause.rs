@@ -76,9 +76,31 @@ pub enum Cause {
     NoSuchLoop,
     /// Bits of a Motion Mind are set that make another loop of its gains, or none.
     OtherLoop,
+    /// The loop of a Motion Mind was left switched off at the end of a run that found something wrong with the machine.
+    LoopOff,
 }
 
 impl Cause {
+    /// Whether it says that motor, encoder or mechanics are not as a loop needs them.
+    #[must_use]
+    pub fn is_of_machine(self) -> bool {
+        matches!(
+            self,
+            Self::EncoderReversed
+                | Self::EncoderDead
+                | Self::MotorOpen
+                | Self::NothingCounted
+                | Self::ShaftLocked
+                | Self::EncoderLost
+                | Self::Stalled
+                | Self::MotorOpened
+                | Self::EncoderFlipped
+                | Self::ControllerFault
+                | Self::OverCurrent
+                | Self::NotVerified
+        )
+    }
+
     /// One sentence or two: what was seen and what to do.
     #[must_use]
     pub fn sentence(self) -> &'static str {
@@ -177,6 +199,10 @@ impl Cause {
             }
             Self::NoSuchLoop => {
                 "This controller has no velocity loop under its position loop. Tune the position as PD or PID."
+            }
+            Self::LoopOff => {
+                "The controller's loop was left switched off (DISABLEPID in FUNCTION, in RAM), since with this it could drive the \
+                 motor away. When it is mended, clear DISABLEPID, or switch the unit off and on."
             }
             Self::OtherLoop => {
                 "NEWVELMODE, FASTPID, PULSEFB or DISABLEPID is set, which makes another loop of these gains, or none. Clear the bit: \

@@ -9,7 +9,7 @@ use crate::axis::{
 };
 use crate::cause::Cause;
 use crate::diagnosis::{DIAGNOSIS_S, diagnose};
-use crate::motion_mind::{MotionMindRegisters, SPEED_STEP_COUNTS_PER_S};
+use crate::motion_mind::{MotionMindRegisters, SPEED_STEP_COUNTS_PER_S, bits};
 use crate::watch::Watch;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
@@ -142,6 +142,7 @@ pub struct Rig<'a> {
     beyond: u32,
     max_current_raw: u32,
     kept: Option<MotionMindRegisters>,
+    stays_off: bool,
     gains_touched: bool,
     timeout_touched: bool,
     limits_touched: bool,
@@ -171,6 +172,7 @@ impl<'a> Rig<'a> {
             beyond: 0,
             max_current_raw: setup.max_current_raw,
             kept: None,
+            stays_off: false,
             gains_touched: false,
             timeout_touched: false,
             limits_touched: false,
@@ -320,6 +322,14 @@ impl<'a> Rig<'a> {
         self.kept = Some(registers);
     }
 
+    /// Leaves the loop of a Motion Mind off at the end where something is wrong with the machine: it would hold the motor by a signal
+    /// that is not there, or drive it away. Whether there is such a loop, and it was on.
+    pub(crate) fn leave_off(&mut self, cause: Cause) -> bool {
+        let is_on = self.setup.motion_mind.is_some_and(|unit| !unit.registers.has(bits::DISABLEPID));
+        self.stays_off = is_on && cause.is_of_machine();
+        self.stays_off
+    }
+
     /// The unfiltered speed.
     pub fn raw_speed(&mut self) -> Result<i32, Cause> {
         retried(|| self.axis.raw_speed())
@@ -443,7 +453,8 @@ impl<'a> Rig<'a> {
         let before = self.setup;
         if let Some(unit) = before.motion_mind {
             // Open-loop duties use the gain registers too, so that they are put back whatever the run did.
-            let registers = self.kept.filter(|_| keep_gains).unwrap_or(unit.registers);
+            let mut registers = self.kept.filter(|_| keep_gains).unwrap_or(unit.registers);
+            registers.function |= if self.stays_off { bits::DISABLEPID } else { 0 };
             let _ = retried(|| self.axis.end_motion_mind(registers));
         } else if self.gains_touched && !keep_gains {
             let _ = retried(|| self.axis.write_velocity(before.velocity));

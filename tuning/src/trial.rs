@@ -88,7 +88,10 @@ pub fn run_trial(axis: &mut dyn Axis, wanted: &TrialRequest) -> Trial {
                     trial.measured = Some(measured);
                     trial.cause = rougher.then_some(Cause::NotVerified);
                 }
-                Err(cause) => trial.cause = Some(cause),
+                Err(cause) => {
+                    rig.leave_off(cause);
+                    trial.cause = Some(cause);
+                }
             }
             trial.seconds = rig.now_s();
             rig.finish(false);

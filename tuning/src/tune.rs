@@ -130,6 +130,9 @@ pub fn tune(axis: &mut dyn Axis, request: &Request) -> Report {
             if keep && let Err(cause) = write_final(&mut rig, &report) {
                 report.causes.push(cause);
             }
+            if outcome.is_err_and(|cause| rig.leave_off(cause)) {
+                report.causes.push(Cause::LoopOff);
+            }
             report.seconds.1 = rig.now_s();
             rig.finish(keep);
             outcome
