@@ -193,7 +193,7 @@ pub(super) const ACTIONS: &[Action] = &[
         place: place(Menu::Device, 3),
         keys: Keys::None,
         help: "Starts the guided tuning of motor 1 on the open and armed Velocity or Position screen.",
-        ready: |model| has(model, Ability::GuidedTuning, can_tune),
+        ready: can_tune,
         is_on: None,
         command: |_| Command::Tune(TuneWish::Start(Motor::M1)),
     },
@@ -337,6 +337,9 @@ fn can_tune(model: &Model) -> Ready {
     let Some(which) = Loop::of(model.screen) else {
         return Err("Tuning is on the Velocity and Position screens.".into());
     };
+    if let Some(why) = model.front.family().cannot_tune(&model.front) {
+        return Err(why.into());
+    }
     if model.front.is_guided() {
         return Err("A job moves the motors already.".into());
     }

@@ -67,7 +67,7 @@ impl App {
     }
 
     /// Writes registers to RAM with a backup before, and reads them back.
-    fn write_registers(&mut self, image: &SettingsImage) -> Result<(), String> {
+    pub(super) fn write_registers(&mut self, image: &SettingsImage) -> Result<(), String> {
         let front = &mut self.model.front;
         let unit = front.general.unit().ok_or("No controller is connected.")?;
         let changed = image.iter().filter(|(key, value)| unit.on_controller(key) != Some(*value));

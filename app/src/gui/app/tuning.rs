@@ -65,6 +65,7 @@ impl App {
                 desk.tune.meet(&identity);
                 desk.tune.settle_debts();
             }
+            desk.tune.adopt_methods(desk.family());
             for (motor, travel) in Motor::BOTH.into_iter().zip(desk.travels()) {
                 desk.tune.adopt_travel(motor, travel);
                 desk.tune.adopt_encoder(motor, desk.loops.encoder(motor));
@@ -139,8 +140,8 @@ impl App {
         let Some(registers) = shown.map(|shown| shown.registers) else {
             return Err("There are no gains to apply. Tune first.".to_owned());
         };
-        let held = Registers::held(&front.loops, motor, registers.position.is_some());
-        self.write_gains(registers.image(motor))?;
+        let held = front.held_gains(motor, registers.position.is_some());
+        self.write_held(registers.image(motor))?;
         self.model.front.tune.front_mut(which).undo = held.map(|held| held.image(motor));
         Ok(())
     }
@@ -163,9 +164,18 @@ impl App {
         let Some(image) = self.model.front.tune.front(which).undo.clone() else {
             return Err("Nothing was applied that could be undone.".to_owned());
         };
-        self.write_gains(image)?;
+        self.write_held(image)?;
         self.model.front.tune.front_mut(which).undo = None;
         Ok(())
+    }
+
+    /// Writes gains where the family keeps them: the loops' own settings, or registers.
+    fn write_held(&mut self, image: SettingsImage) -> Result<(), String> {
+        if self.model.front.family().has_loops() {
+            self.write_gains(image)
+        } else {
+            self.write_registers(&image)
+        }
     }
 
     /// Writes gains to RAM as the settings of the loops are written: with a backup before, and read back.

@@ -3,6 +3,7 @@
 use brushwork_link::device::{ArmScope, Channel, Drive, Identity, StatusReport};
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_protocol::packet_serial::status::{Condition, Lamp};
+use brushwork_tuning::tune::Method;
 use egui::Ui;
 
 use super::words::{self, SettingsWords};
@@ -18,6 +19,7 @@ use crate::gui::model::screen::Screen;
 use crate::gui::model::setpoints::Setpoints;
 use crate::gui::model::velocity::Velocity;
 use crate::gui::screens;
+use crate::gui::tune::Loop;
 use crate::gui::widgets::LampState;
 
 #[derive(Debug)]
@@ -72,6 +74,13 @@ impl Family for Mcp {
 
     fn motors(&self) -> &'static [Motor] {
         &Motor::BOTH
+    }
+
+    fn methods(&self, which: Loop) -> &'static [Method] {
+        match which {
+            Loop::Velocity => &[Method::Velocity],
+            Loop::Position => &[Method::Pd, Method::Pid, Method::Piv],
+        }
     }
 
     fn to_send(&self, desk: &Desk, scope: ArmScope, setpoints: Setpoints) -> Option<Drive> {

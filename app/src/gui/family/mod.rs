@@ -9,6 +9,7 @@ use std::time::Duration;
 
 use brushwork_link::device::{ArmScope, Channel, Drive, Identity, Request, StatusReport};
 use brushwork_protocol::packet_serial::Motor;
+use brushwork_tuning::tune::Method;
 use egui::Ui;
 
 use super::command::Commands;
@@ -17,6 +18,7 @@ use super::model::desk::Desk;
 use super::model::drawer::Tab;
 use super::model::screen::Screen;
 use super::model::setpoints::Setpoints;
+use super::tune::Loop;
 use super::widgets::LampState;
 
 mod mcp;
@@ -95,6 +97,14 @@ pub trait Family: Sync {
         &[]
     }
 
+    /// The ways of guided tuning for a loop, the one that is taken unless another is chosen at the end.
+    fn methods(&self, which: Loop) -> &'static [Method];
+
+    /// Why a controller cannot be tuned as it is set, where it cannot.
+    fn cannot_tune(&self, _desk: &Desk) -> Option<&'static str> {
+        None
+    }
+
     /// What the motors have to be told for a screen that is armed and whose sliders stand so, if anything.
     fn to_send(&self, desk: &Desk, scope: ArmScope, setpoints: Setpoints) -> Option<Drive>;
 
@@ -135,8 +145,6 @@ pub enum Ability {
     SecondMotor,
     /// A firmware loader that is known.
     Firmware,
-    /// Guided tuning.
-    GuidedTuning,
     /// Scripts' buses: I2C, CAN and RTS.
     Buses,
     /// Faults of bridges and start-up that a simulated one can have.
@@ -151,6 +159,8 @@ pub enum Ability {
     Conflicts,
     /// Calibration by hand of loop gains.
     ByHand,
+    /// Encoders of more than one kind.
+    AbsoluteEncoders,
 }
 
 /// Two readouts below each other in the top row.

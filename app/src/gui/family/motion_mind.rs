@@ -6,6 +6,8 @@ use std::time::Duration;
 use brushwork_link::device::{ArmScope, Channel, Drive, Identity, Request, StatusReport};
 use brushwork_protocol::motion_mind::Mode;
 use brushwork_protocol::packet_serial::Motor;
+use brushwork_tuning::motion_mind::MotionMindSetup;
+use brushwork_tuning::tune::Method;
 use egui::Ui;
 
 use super::words::{self, SettingsWords};
@@ -19,6 +21,7 @@ use crate::gui::model::motion_mind::drive::to_send;
 use crate::gui::model::screen::Screen;
 use crate::gui::model::setpoints::Setpoints;
 use crate::gui::screens::motion_mind;
+use crate::gui::tune::Loop;
 use crate::gui::widgets::LampState;
 
 #[derive(Debug)]
@@ -104,6 +107,27 @@ impl Family for MotionMind {
         &["P4 control", "P3 feedback", "P17 pos. limit", "P16 neg. limit", "P12 brake", "J6 R/C, index"]
     }
 
+    fn methods(&self, which: Loop) -> &'static [Method] {
+        match which {
+            Loop::Velocity => &[Method::Velocity],
+            // One set of registers for both kinds of moves: there is no cascade.
+            Loop::Position => &[Method::Pd, Method::Pid],
+        }
+    }
+
+    fn cannot_tune(&self, desk: &Desk) -> Option<&'static str> {
+        if desk.mode().is_some_and(|mode| mode != MotionMindSetup::SERIAL_PID) {
+            return Some(
+                "Guided tuning needs mode 4, serial PID with an encoder: no other mode takes both a duty and a place. Switch the power off, \
+                 set SW1 to mode 4 (MODE2 off, MODE1 on, MODE0 on), and switch it on again. The step response assistant works here too.",
+            );
+        }
+        desk.has_bit("FUNCTION2", "PULSEFB").then_some(
+            "Guided tuning needs an encoder, and this unit is set to pulse feedback. Clear PULSEFB in FUNCTION2 on the Registers screen, \
+             or use the step response assistant.",
+        )
+    }
+
     fn to_send(&self, _desk: &Desk, scope: ArmScope, setpoints: Setpoints) -> Option<Drive> {
         to_send(scope, setpoints)
     }
@@ -147,14 +171,12 @@ impl Family for MotionMind {
                 "The firmware loader of a Motion Mind 3 is not public. Use its maker's program."
             }
             Ability::Diagnosis => "What keeps a Motion Mind 3 from running is told by its lamps.",
-            Ability::GuidedTuning => {
-                "Guided tuning does not reach a Motion Mind 3 yet. Use the step response assistant of the Position screen."
-            }
             Ability::BridgeFaults => "The simulated Motion Mind 3 has no faults of its bridge.",
             Ability::Buses => "A Motion Mind 3 has no buses for scripts.",
             Ability::Leds => "The LEDs of a Motion Mind 3 tell its power and its traffic alone.",
             Ability::Composer => "Send commands from the Terminal screen.",
             Ability::Conflicts => "No two registers of a Motion Mind 3 contradict each other.",
+            Ability::AbsoluteEncoders => "A Motion Mind 3 is tuned with its quadrature encoder.",
             Ability::ByHand => "Use the step assistant of the Position screen.",
         })
     }

@@ -99,7 +99,10 @@ impl Desk {
     }
 
     pub fn travels(&self) -> Travels {
-        Motor::BOTH.map(|motor| self.loops.travel(motor))
+        match self.family().has_loops() {
+            true => Motor::BOTH.map(|motor| self.loops.travel(motor)),
+            false => [self.virtual_travel(), None],
+        }
     }
 
     /// Where a motor was seen last.

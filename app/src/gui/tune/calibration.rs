@@ -307,7 +307,8 @@ mod tests {
 
     fn held() -> Registers {
         let velocity = VelocityRegisters { p: 65_536, i: 0, d: 0, qpps: 10_000 };
-        Registers { velocity, position: Some(PositionRegisters { p: 2000, ..PositionRegisters::default() }) }
+        let position = PositionRegisters { p: 2000, ..PositionRegisters::default() };
+        Registers { velocity, position: Some(position), motion_mind: None }
     }
 
     #[test]

@@ -8,7 +8,6 @@ use egui::{
 use super::model::{Loop, TuneWish, Tuning};
 use super::{plots, result, setup};
 use crate::gui::command::{Command, Commands};
-use crate::gui::family::Ability;
 use crate::gui::model::Model;
 use crate::gui::theme::Palette;
 
@@ -22,7 +21,7 @@ const PICTURE_HEIGHT: f32 = 300.0;
 /// Fills what is left of `ui`.
 pub fn guide_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let Some(which) = Loop::of(model.screen) else { return };
-    if let Some(why) = model.front.family().lacks(Ability::GuidedTuning) {
+    if let Some(why) = model.front.family().cannot_tune(&model.front) {
         ui.add(Label::new(why).wrap());
         return;
     }

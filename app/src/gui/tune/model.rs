@@ -12,6 +12,7 @@ use super::calibration::Calibration;
 use super::registers::Registers;
 use super::run::Run;
 use super::sequence::{Ended, Next, Origin, Sequence, Work};
+use crate::gui::family::Family;
 use crate::gui::model::general::SettingsWish;
 use crate::gui::model::link::{Arming, Effect};
 use crate::gui::model::message::Gravity;
@@ -262,6 +263,19 @@ impl Tuning {
             let setting = &mut self.panel_mut(which, motor).setting;
             if !setting.is_encoder_chosen {
                 setting.encoder = read;
+            }
+        }
+    }
+
+    /// Leaves methods that a family does not have.
+    pub fn adopt_methods(&mut self, family: &dyn Family) {
+        for which in [Loop::Velocity, Loop::Position] {
+            let methods = family.methods(which);
+            for motor in Motor::BOTH {
+                let setting = &mut self.panel_mut(which, motor).setting;
+                if let Some(usual) = methods.last().filter(|_| !methods.contains(&setting.method)) {
+                    setting.method = *usual;
+                }
             }
         }
     }

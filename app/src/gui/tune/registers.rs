@@ -1,9 +1,14 @@
 //! The gains of a motor as a person reads them: which there are, in what unit, and where they stand in the settings.
+//!
+//! One table for both families. A field that a family does not have gives no value for its registers, so that whoever walks the
+//! table asks no family which one it is.
 
 use brushwork_link::settings::{SettingValue, SettingsImage};
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_tuning::axis::{PositionRegisters, VelocityRegisters};
+use brushwork_tuning::motion_mind::{MotionMindRegisters, bits};
 
+use crate::gui::model::desk::Desk;
 use crate::gui::model::loop_settings::{LoopSettings, key};
 
 /// Wire value of a velocity gain of 1 (MCP manual, command 28).
@@ -17,14 +22,28 @@ pub struct Registers {
     pub velocity: VelocityRegisters,
     /// Of the methods that have a position loop.
     pub position: Option<PositionRegisters>,
+    /// Of a Motion Mind, which has one set of registers for both kinds of moves and neither of the two above.
+    pub motion_mind: Option<MotionMindRegisters>,
+}
+
+/// What a field holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    Number,
+    /// A bit: 0 or 1.
+    Switch,
 }
 
 /// One of them.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
-    /// The key of its setting behind "motor1." or "motor2.".
+    /// The key of its setting: behind "motor1." or "motor2." where [`Field::of_motor`].
     pub key: &'static str,
+    of_motor: bool,
     pub label: &'static str,
+    pub form: Form,
+    /// What it does, where the name alone does not say it.
+    pub hint: &'static str,
     pub unit: &'static str,
     /// Wire value of 1.
     scale: f64,
@@ -40,13 +59,16 @@ macro_rules! velocity {
     ($key:literal, $label:literal, $field:ident) => {
         Field {
             key: $key,
+            of_motor: true,
             label: $label,
+            form: Form::Number,
+            hint: "",
             unit: "",
             scale: VELOCITY_SCALE,
             decimals: 4,
             step: 0.01,
             range: (0.0, 65_535.0),
-            get: |registers| Some(registers.velocity.$field.into()),
+            get: |registers| of_loops(registers).map(|velocity| velocity.$field.into()),
             set: |registers, raw| registers.velocity.$field = whole(raw),
         }
     };
@@ -56,7 +78,10 @@ macro_rules! position {
     ($key:literal, $label:literal, $unit:literal, $scale:expr, $decimals:literal, $field:ident) => {
         Field {
             key: $key,
+            of_motor: true,
             label: $label,
+            form: Form::Number,
+            hint: "",
             unit: $unit,
             scale: $scale,
             decimals: $decimals,
@@ -76,7 +101,10 @@ macro_rules! end {
     ($key:literal, $label:literal, $field:ident) => {
         Field {
             key: $key,
+            of_motor: true,
             label: $label,
+            form: Form::Number,
+            hint: "",
             unit: "counts",
             scale: 1.0,
             decimals: 0,
@@ -93,8 +121,56 @@ macro_rules! end {
     };
 }
 
-/// All of them: those of the position loop first, as its screen has them.
-pub const FIELDS: [Field; 11] = [
+macro_rules! mind {
+    ($key:literal, $label:literal, $range:expr, $hint:literal, $field:ident) => {
+        Field {
+            key: $key,
+            of_motor: false,
+            label: $label,
+            form: Form::Number,
+            hint: $hint,
+            unit: "",
+            scale: 1.0,
+            decimals: 0,
+            step: 1.0,
+            range: (0.0, $range),
+            get: |registers| registers.motion_mind.map(|mind| mind.$field.into()),
+            set: |registers, raw| {
+                if let Some(mind) = &mut registers.motion_mind {
+                    // The range keeps it within the register.
+                    mind.$field = raw as _;
+                }
+            },
+        }
+    };
+}
+
+macro_rules! bit {
+    ($key:literal, $label:literal, $hint:literal, $word:ident, $mask:expr) => {
+        Field {
+            key: $key,
+            of_motor: false,
+            label: $label,
+            form: Form::Switch,
+            hint: $hint,
+            unit: "",
+            scale: 1.0,
+            decimals: 0,
+            step: 1.0,
+            range: (0.0, 1.0),
+            get: |registers| registers.motion_mind.map(|mind| i64::from(mind.$word & $mask != 0)),
+            set: |registers, raw| {
+                if let Some(mind) = &mut registers.motion_mind {
+                    mind.$word = if raw == 0 { mind.$word & !$mask } else { mind.$word | $mask };
+                }
+            },
+        }
+    };
+}
+
+/// All of them: those of the position loop first, as its screen has them; then the registers of a Motion Mind and the bits of FUNCTION and
+/// FUNCTION2 that make its loop (Motion Mind manual 3.14 and figures 20 and 21).
+pub const FIELDS: [Field; 23] = [
     position!("position.p", "Position P", "", POSITION_SCALE, 3, p),
     position!("position.i", "Position I", "", POSITION_SCALE, 3, i),
     position!("position.d", "Position D", "", POSITION_SCALE, 3, d),
@@ -107,16 +183,96 @@ pub const FIELDS: [Field; 11] = [
     velocity!("velocity.d", "Velocity D", d),
     Field {
         key: "velocity.qpps",
+        of_motor: true,
         label: "QPPS",
+        form: Form::Number,
+        hint: "",
         unit: "counts/s",
         scale: 1.0,
         decimals: 0,
         step: 100.0,
         range: (0.0, 4_294_967_295.0),
-        get: |registers| Some(registers.velocity.qpps.into()),
+        get: |registers| of_loops(registers).map(|velocity| velocity.qpps.into()),
         set: |registers, raw| registers.velocity.qpps = whole(raw),
     },
+    mind!(
+        "register.pterm",
+        "PTERM",
+        65_535.0,
+        "On the error of the place; of its sum under a speed command",
+        pterm
+    ),
+    mind!(
+        "register.iterm",
+        "ITERM",
+        65_535.0,
+        "On the sum of the errors of the place; none under a speed command",
+        iterm
+    ),
+    mind!(
+        "register.dterm",
+        "DTERM",
+        65_535.0,
+        "On the change of the error: the error of the speed under a speed command",
+        dterm
+    ),
+    mind!(
+        "register.pidscalar",
+        "PIDSCALAR",
+        32.0,
+        "The sum of the terms is divided by two to this power",
+        pidscalar
+    ),
+    mind!(
+        "register.velocityff",
+        "VELOCITYFF",
+        255.0,
+        "Duty for a speed by itself: counts per loop x this / 255",
+        velocity_ff
+    ),
+    mind!(
+        "register.deadband",
+        "DEADBAND",
+        1_023.0,
+        "Errors up to this many counts are none, where ENABLEDB is set",
+        deadband
+    ),
+    bit!(
+        "function.satprot",
+        "SATPROT",
+        "Bounds the sum of the errors closely and stops it at full duty",
+        function,
+        bits::SATPROT
+    ),
+    bit!("function.enabledb", "ENABLEDB", "No duty inside DEADBAND", function, bits::ENABLEDB),
+    bit!(
+        "function.activestop",
+        "ACTIVESTOP",
+        "A duty of 0 shorts the motor instead of letting it coast",
+        function,
+        bits::ACTIVESTOP
+    ),
+    bit!("function.disablepid", "DISABLEPID", "The loop gives no duty", function, bits::DISABLEPID),
+    bit!(
+        "function2.newvelmode",
+        "NEWVELMODE",
+        "Speed moves work on speeds, and their output is added up",
+        function2,
+        bits::NEWVELMODE
+    ),
+    bit!(
+        "function2.fastpid",
+        "FASTPID",
+        "A loop of 0.5 ms, which serial commands do not have",
+        function2,
+        bits::FASTPID
+    ),
 ];
+
+/// The velocity registers of a controller that has loops of its own kind for speeds.
+fn of_loops(registers: &Registers) -> Option<&VelocityRegisters> {
+    registers.motion_mind.is_none().then_some(&registers.velocity)
+}
 
 fn whole(raw: i64) -> u32 {
     u32::try_from(raw.max(0)).unwrap_or(u32::MAX)
@@ -135,7 +291,35 @@ impl Field {
     }
 
     pub fn text(&self, value: f64) -> String {
-        format!("{value:.*}", self.decimals)
+        match self.form {
+            Form::Number => format!("{value:.*}", self.decimals),
+            Form::Switch => if value == 0.0 { "clear" } else { "set" }.to_owned(),
+        }
+    }
+
+    /// Whether it is P, I or D in these registers.
+    pub fn is_term(&self, registers: &Registers) -> bool {
+        let name = self.key.rsplit('.').next().unwrap_or_default();
+        matches!(name, "p" | "i" | "d" | "pterm" | "iterm" | "dterm") && (self.get)(registers).is_some()
+    }
+
+    /// Whether the model knows what it does, so that it can be tried there.
+    pub fn is_modelled(&self) -> bool {
+        self.form == Form::Number || matches!(self.label, "SATPROT" | "ENABLEDB")
+    }
+
+    /// The key of its setting.
+    fn key_of(&self, motor: Motor) -> String {
+        if self.of_motor { key(motor, self.key) } else { self.key.to_owned() }
+    }
+
+    /// A register's value as its setting.
+    fn setting(&self, raw: i64) -> SettingValue {
+        match (self.form, self.scale) {
+            (Form::Switch, _) => SettingValue::Bool(raw != 0),
+            (Form::Number, 1.0) => SettingValue::Int(raw),
+            (Form::Number, scale) => SettingValue::Number(raw as f64 / scale),
+        }
     }
 }
 
@@ -145,11 +329,7 @@ impl Registers {
         let mut image = SettingsImage::default();
         for field in &FIELDS {
             if let Some(raw) = (field.get)(self) {
-                let value = match field.scale {
-                    1.0 => SettingValue::Int(raw),
-                    scale => SettingValue::Number(raw as f64 / scale),
-                };
-                image.set(&key(motor, field.key), value);
+                image.set(&field.key_of(motor), field.setting(raw));
             }
         }
         image
@@ -164,6 +344,45 @@ impl Registers {
             }
         }
         Some(held)
+    }
+
+    /// The registers of a Motion Mind out of its settings; none while one of them is not known.
+    pub fn of_settings(value: impl Fn(&str) -> Option<SettingValue>) -> Option<Self> {
+        let mut found = Self { motion_mind: Some(MotionMindRegisters::default()), ..Self::default() };
+        for field in FIELDS.iter().filter(|field| !field.of_motor) {
+            let raw = match value(field.key)? {
+                SettingValue::Bool(set) => i64::from(set),
+                SettingValue::Int(raw) => raw,
+                _ => return None,
+            };
+            (field.set)(&mut found, raw);
+        }
+        Some(found)
+    }
+
+    /// Whether there is a gain at all: without any there is no loop to draw.
+    pub fn has_a_loop(&self) -> bool {
+        match (self.motion_mind, self.position) {
+            (Some(mind), _) => [mind.pterm, mind.iterm, mind.dterm].iter().any(|term| *term > 0),
+            (None, Some(position)) => position.p > 0 || position.i > 0,
+            (None, None) => true,
+        }
+    }
+
+    /// Whether both stand for the same gains, whatever else of their registers differs.
+    pub fn same_gains(&self, other: &Self) -> bool {
+        FIELDS.iter().all(|field| (field.get)(self) == (field.get)(other))
+    }
+}
+
+impl Desk {
+    /// The gains that the controller holds, as last read; of a position loop of its own where that is asked for.
+    pub fn held_gains(&self, motor: Motor, with_position: bool) -> Option<Registers> {
+        if self.family().has_loops() {
+            return Registers::held(&self.loops, motor, with_position);
+        }
+        let unit = self.general.unit()?;
+        Registers::of_settings(|key| unit.on_controller(key))
     }
 }
 
@@ -183,12 +402,44 @@ mod tests {
             max: 1_000_000,
         };
         let velocity = VelocityRegisters { p: 0x1_2345, i: 1, d: 0x4000, qpps: 44_000 };
-        let full = Registers { velocity, position: Some(position) };
+        let full = Registers { velocity, position: Some(position), motion_mind: None };
         let mut again = Registers { position: Some(PositionRegisters::default()), ..Registers::default() };
-        for field in &FIELDS {
+        for field in FIELDS.iter().filter(|field| field.of_motor) {
             field.set(&mut again, field.value(&full).unwrap());
         }
         assert_eq!(again, full);
+    }
+
+    #[test]
+    fn the_registers_of_a_motion_mind_go_into_its_settings_and_come_back() {
+        let mind = MotionMindRegisters {
+            pterm: 51_234,
+            iterm: 7,
+            dterm: 65_535,
+            pidscalar: 11,
+            velocity_ff: 255,
+            deadband: 3,
+            function: bits::SATPROT | bits::ACTIVESTOP,
+            function2: bits::NEWVELMODE,
+            virtual_limits: (0, 0),
+        };
+        let registers = Registers { motion_mind: Some(mind), ..Registers::default() };
+        let image = registers.image(Motor::M1);
+        assert_eq!(image.iter().count(), 12);
+        assert_eq!(image.get("register.pterm"), Some(SettingValue::Int(51_234)));
+        assert_eq!(image.get("function.satprot"), Some(SettingValue::Bool(true)));
+        assert_eq!(Registers::of_settings(|key| image.get(key)), Some(registers));
+        assert_eq!(Registers::of_settings(|key| image.get(key).filter(|_| key != "register.dterm")), None);
+        assert_eq!(FIELDS[7].value(&registers), None, "it has no velocity P");
+    }
+
+    #[test]
+    fn what_is_no_gain_makes_no_other_gains() {
+        let with = |mind| Registers { motion_mind: Some(mind), ..Registers::default() };
+        let mind =
+            MotionMindRegisters { pterm: 5, virtual_limits: (-9, 9), ..MotionMindRegisters::default() };
+        assert!(with(mind).same_gains(&with(MotionMindRegisters { virtual_limits: (0, 0), ..mind })));
+        assert!(!with(mind).same_gains(&with(MotionMindRegisters { pterm: 6, ..mind })));
     }
 
     #[test]

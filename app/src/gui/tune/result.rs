@@ -1,13 +1,15 @@
 //! What a run has found: its verdict, the gains as current, proposed and change, what they promise, and the runs so far.
 
+use brushwork_tuning::motion_mind::MotionMindLaw;
 use brushwork_tuning::report::{Report, Verdict};
+use brushwork_tuning::tune::Method;
 use brushwork_tuning::winding::Winding;
 use egui::{Button, Grid, Label, Response, RichText, Ui, vec2};
 
 use super::files::files_ui;
 use super::measured::Figures;
 use super::model::{Loop, TuneWish};
-use super::registers::{FIELDS, Field, Registers};
+use super::registers::{FIELDS, Field, Form, Registers};
 use super::run::{Run, Shown};
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
@@ -19,12 +21,12 @@ use crate::gui::widgets::numeric::Numeric;
 pub fn result_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands) {
     let motor = model.front.tune.motor(which);
     let with_position = model.front.tune.front(which).run().is_some_and(|run| run.report.position.is_some());
-    let held = Registers::held(&model.front.loops, motor, with_position);
+    let held = model.front.held_gains(motor, with_position);
     if let Some(run) = model.front.tune.front_mut(which).run_mut() {
         run.look_at_held(held);
     }
     if model.front.tune.front(which).run().is_none() {
-        empty_ui(ui, which);
+        empty_ui(ui, model, which);
         return files_ui(ui, &mut model.front.tune, which, commands);
     }
     super::refusal::cleared_ui(ui, model, commands);
@@ -43,9 +45,15 @@ pub fn result_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Com
     files_ui(ui, &mut model.front.tune, which, commands);
 }
 
-fn empty_ui(ui: &mut Ui, which: Loop) {
+fn empty_ui(ui: &mut Ui, model: &Model, which: Loop) {
     let palette = Palette::of(ui);
+    let has_piv = model.front.family().methods(which).contains(&Method::Piv);
     let text = match which {
+        Loop::Position if !has_piv => {
+            "Not tuned yet.\n\n1. Choose the method. PID holds against a load; PD is the simplest.\n2. If the axis has end stops, choose \
+             Within and give its travel.\n3. Arm this screen and press Tune.\n\nThere is one set of registers: gains for positions are \
+             those of velocities too. Tune last what you use."
+        }
         Loop::Velocity => {
             "Not tuned yet.\n\n1. Let the motor turn freely: lift the wheels, unhitch the load.\n2. Arm this screen and press Tune.\n\
              3. Look at what is proposed, move the level, and apply what you like."
@@ -84,7 +92,8 @@ fn verdict_ui(ui: &mut Ui, run: &Run) {
 fn model_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
     let Some(report) = model.front.tune.front(which).run().map(|run| &run.report) else { return };
     let (text, winding) = (model_text(report), report.winding);
-    if let Some(text) = text {
+    let covered = feed_forward_text(model.front.tune.front(which).run());
+    for text in text.into_iter().chain(covered) {
         ui.add_space(4.0);
         ui.add(Label::new(RichText::new(text).small().color(Palette::of(ui).weak_text)).wrap());
     }
@@ -109,6 +118,23 @@ fn winding_ui(ui: &mut Ui, model: &mut Model, which: Loop, winding: &Winding) {
     });
     let warning = "With L and R both other than 0, duty commands become current (torque) commands. L cannot be measured this way.";
     ui.add(Label::new(RichText::new(warning).small().color(Palette::of(ui).weak_text)).wrap());
+}
+
+/// How much of a speed's duty the feed-forward gives: the register of a Motion Mind is too small for all of it on most motors.
+fn feed_forward_text(run: Option<&Run>) -> Option<String> {
+    let run = run?;
+    let mind = run.shown.as_ref()?.registers.motion_mind?;
+    let law = MotionMindLaw { velocity_ff: mind.velocity_ff, ..MotionMindLaw::default() };
+    let percent = 100.0 * law.covered(run.report.qpps?).min(1.0);
+    let rest = if percent < 99.5 {
+        " The loop makes up for the rest; the design counts on no more than this."
+    } else {
+        ""
+    };
+    Some(format!(
+        "Feed-forward: VELOCITYFF {} gives {percent:.0} % of a speed's duty.{rest}",
+        mind.velocity_ff
+    ))
 }
 
 /// What was found of the motor, in one line.
@@ -148,25 +174,17 @@ fn gains_ui(ui: &mut Ui, model: &mut Model, which: Loop, held: Option<Registers>
         heads_ui(ui, "", [("current", 84.0), ("proposed", 96.0), ("change", 72.0)]);
         ui.end_row();
         for field in &FIELDS {
-            let Some(mut value) = field.value(&wanted) else { continue };
+            let Some(value) = field.value(&wanted) else { continue };
             let current = held.and_then(|held| field.value(&held));
-            ui.label(field.label);
+            if !field.is_modelled() && current == Some(value) {
+                continue;
+            }
+            let label = ui.label(field.label);
+            if !field.hint.is_empty() {
+                label.on_hover_text(field.hint);
+            }
             figure_ui(ui, &current.map_or_else(|| "–".to_owned(), |value| field.text(value)), 84.0);
-            let name = format!("{motor} proposed {}", field.label);
-            let range = field.range.0..=field.range.1;
-            let entry = Numeric {
-                name: &name,
-                unit: "",
-                range,
-                decimals: field.decimals,
-                step: field.step,
-                width: 96.0,
-            };
-            let entry = entry.ui(ui, &mut value);
-            if entry
-                .on_hover_text("Edit it to see what it would do; nothing is sent until you apply it")
-                .changed()
-            {
+            if let Some(value) = entry_ui(ui, field, &format!("{motor} proposed {}", field.label), value) {
                 field.set(&mut wanted, value);
             }
             figure_ui(ui, &change_text(field, current, field.value(&wanted)), 72.0);
@@ -178,11 +196,39 @@ fn gains_ui(ui: &mut Ui, model: &mut Model, which: Loop, held: Option<Registers>
     }
 }
 
+/// The proposed value, to be changed by hand; the new one where it was.
+fn entry_ui(ui: &mut Ui, field: &Field, name: &str, value: f64) -> Option<f64> {
+    const HINT: &str = "Edit it to see what it would do; nothing is sent until you apply it";
+    if !field.is_modelled() {
+        figure_ui(ui, &field.text(value), 96.0)
+            .on_hover_text("The loop needs it so; the model has no other form");
+        return None;
+    }
+    if field.form == Form::Switch {
+        let mut set = value != 0.0;
+        let size = vec2(96.0, ui.spacing().interact_size.y);
+        let layout = egui::Layout::right_to_left(egui::Align::Center);
+        let switch = ui.allocate_ui_with_layout(size, layout, |ui| {
+            ui.set_min_width(96.0);
+            ui.checkbox(&mut set, field.text(value))
+        });
+        let switch = switch.inner.on_hover_text(HINT);
+        ui.ctx().accesskit_node_builder(switch.id, |node| node.set_label(name));
+        return switch.changed().then_some(f64::from(u8::from(set)));
+    }
+    let range = field.range.0..=field.range.1;
+    let entry = Numeric { name, unit: "", range, decimals: field.decimals, step: field.step, width: 96.0 };
+    let mut value = value;
+    entry.ui(ui, &mut value).on_hover_text(HINT).changed().then_some(value)
+}
+
 fn change_text(field: &Field, current: Option<f64>, wanted: Option<f64>) -> String {
     let (Some(current), Some(wanted)) = (current, wanted) else { return "–".to_owned() };
     if field.text(current) == field.text(wanted) {
         "same".to_owned()
-    } else if current == 0.0 || field.unit == "counts" {
+    } else if field.form == Form::Switch {
+        "changed".to_owned()
+    } else if current == 0.0 || field.unit == "counts" || field.label == "PIDSCALAR" {
         format!("{:+.*}", field.decimals.min(2), wanted - current)
     } else {
         let percent = 100.0 * (wanted / current - 1.0);
@@ -225,7 +271,10 @@ fn acts_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands)
     let can_undo = panel.undo.is_some();
     let Some(run) = panel.run_mut() else { return };
     let has_gains = run.shown.is_some();
-    let differs = run.held() != run.shown.as_ref().map(|shown| shown.registers);
+    let differs = match (run.held(), &run.shown) {
+        (Some(held), Some(shown)) => !held.same_gains(&shown.registers),
+        _ => true,
+    };
     ui.add_space(4.0);
     ui.horizontal_wrapped(|ui| {
         let apply = ui.add_enabled(is_free && has_gains && differs, Button::new("Apply (RAM)"));
@@ -382,15 +431,10 @@ fn run_row_ui(ui: &mut Ui, run: &Run) {
         return;
     };
     figure_ui(ui, &format!("{:.0}", run.level), 30.0);
-    let loops = shown.registers.position.is_some();
-    for key in if loops {
-        ["position.p", "position.i", "position.d"]
-    } else {
-        ["velocity.p", "velocity.i", "velocity.d"]
-    } {
-        let value =
-            FIELDS.iter().find(|field| field.key == key).and_then(|field| field.value(&shown.registers));
-        figure_ui(ui, &value.map_or_else(|| "–".to_owned(), |value| format!("{value:.2}")), 46.0);
+    // The first three that there are: P, I and D of the outer loop.
+    for field in FIELDS.iter().filter(|field| field.is_term(&shown.registers)).take(3) {
+        let value = field.value(&shown.registers).unwrap_or_default();
+        figure_ui(ui, &format!("{value:.*}", field.decimals.min(2)), 46.0);
     }
     for (_, _, figure) in [FIGURES[0], FIGURES[1], FIGURES[3]] {
         figure_ui(ui, &figure(shown), 52.0);

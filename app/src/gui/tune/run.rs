@@ -7,7 +7,10 @@ use brushwork_tuning::registers::{position_registers, velocity_registers};
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::trace::{Predicted, Stretch, Trace, Written};
 use brushwork_tuning::trial::{Trial, TrialRequest, registers_gains};
-use brushwork_tuning::whatif::{Forecast, LoopPoint, forecast, frequency_response, redesign};
+use brushwork_tuning::tune::Method;
+use brushwork_tuning::whatif::{
+    Forecast, LoopPoint, forecast, frequency_response, redesign, redesign_motion_mind,
+};
 
 use super::measured::{self, Figures};
 use super::registers::Registers;
@@ -71,10 +74,10 @@ impl Run {
         let motor = report.request.guard.motor;
         let trace = Trace::of(motor, &report.record);
         let seen = (report.verdict == Verdict::Refused).then(|| trace.clone());
-        let first = report.velocity.map(|velocity| Registers { velocity, position: report.position });
+        let first = proposed(&report);
         let measured = report.measured;
         let rms = measured.and_then(|m| (m.duty_rms > 0.0).then_some(m.duty_rms));
-        let tried = tried(trace, report.before.map(|setup| setup.velocity), rms, &report);
+        let tried = tried(trace, rms, &report);
         let mut run = Self {
             number,
             tried,
@@ -103,19 +106,13 @@ impl Run {
 
     /// What gains do on this run's model.
     pub fn on_model(&self, registers: Registers) -> Option<Shown> {
-        let task = self.report.task?;
-        let gains = self.gains(&registers);
-        let task = Task { qpps: f64::from(registers.velocity.qpps).max(1.0), ..task };
+        let (task, gains) = considered(&self.report, &registers)?;
         Some(Shown {
             registers,
             gains,
             forecast: forecast(&task, &gains),
             frequency: frequency_response(&task, &gains),
         })
-    }
-
-    fn gains(&self, registers: &Registers) -> Gains {
-        registers_gains(&registers.velocity, registers.position.as_ref(), &self.report.request)
     }
 
     /// The slider was moved: the gains of that level, with no new experiment.
@@ -129,11 +126,15 @@ impl Run {
         if level == request.level {
             return self.consider(first);
         }
+        if first.motion_mind.is_some() {
+            let motion_mind = redesign_motion_mind(&self.report, level).or(first.motion_mind);
+            return self.consider(Registers { motion_mind, ..first });
+        }
         let Some(design) = redesign(request.method, &task, request.level, &design, level) else { return };
         let velocity = velocity_registers(&design.gains.velocity, task.qpps, &request.law);
         let position =
             first.position.map(|was| position_registers(&design.gains, &request.law, (was.min, was.max)));
-        self.consider(Registers { velocity, position });
+        self.consider(Registers { velocity, position, motion_mind: None });
     }
 
     /// A gain was entered by hand.
@@ -144,10 +145,11 @@ impl Run {
 
     /// What the considered gains would have made of the commands of the trial.
     fn predict_considered(&mut self) {
-        let (Some(task), Some(tried)) = (self.report.task, &mut self.tried) else { return };
-        let shown = self.shown.as_ref().filter(|shown| shown.registers != tried.registers);
+        let Some(tried) = &mut self.tried else { return };
+        let shown = self.shown.as_ref().filter(|shown| !shown.registers.same_gains(&tried.registers));
+        let with = shown.and_then(|shown| considered(&self.report, &shown.registers));
         tried.considered =
-            shown.map(|s| tried.trace.predict(&task, &s.gains, &tried.stretch)).unwrap_or_default();
+            with.map(|(task, gains)| tried.trace.predict(&task, &gains, &tried.stretch)).unwrap_or_default();
     }
 
     /// Back to what the run proposed.
@@ -167,9 +169,7 @@ impl Run {
     pub fn look_at_held(&mut self, held: Option<Registers>) {
         let wanted = held;
         if self.looked_at != wanted {
-            // Without any gain there is no loop to draw.
-            let held =
-                held.filter(|held| held.position.is_none_or(|position| position.p > 0 || position.i > 0));
+            let held = held.filter(Registers::has_a_loop);
             self.current = held.and_then(|registers| self.on_model(registers));
             self.looked_at = wanted;
         }
@@ -193,7 +193,7 @@ impl Run {
             probe: self.report.probe?,
             velocity: registers.velocity,
             position: registers.position,
-            motion_mind: None,
+            motion_mind: registers.motion_mind,
         })
     }
 
@@ -202,36 +202,54 @@ impl Run {
         self.verified = Some(trial.cause.map_or(Ok(()), Err));
         let trace = Trace::of(self.report.request.guard.motor, &trial.record);
         let rms = trial.measured.map(|measured| measured.duty_rms).filter(|rms| *rms > 0.0);
-        let before = self.report.before.map(|setup| setup.velocity);
-        if let Some(tried) = tried(trace, before, rms, &self.report) {
+        if let Some(tried) = tried(trace, rms, &self.report) {
             self.tried = Some(tried);
         }
         self.predict_considered();
     }
 }
 
+/// What a run proposes.
+fn proposed(report: &Report) -> Option<Registers> {
+    match (report.motion_mind, report.velocity) {
+        (Some(mind), _) => Some(Registers { motion_mind: Some(mind), ..Registers::default() }),
+        (None, Some(velocity)) => Some(Registers { velocity, position: report.position, motion_mind: None }),
+        (None, None) => None,
+    }
+}
+
+/// The model with what registers say of its law, and the gains that they stand for.
+fn considered(report: &Report, registers: &Registers) -> Option<(Task, Gains)> {
+    let task = report.task?;
+    let Some(mind) = registers.motion_mind else {
+        let gains = registers_gains(&registers.velocity, registers.position.as_ref(), &report.request);
+        return Some((Task { qpps: f64::from(registers.velocity.qpps).max(1.0), ..task }, gains));
+    };
+    Some(mind.on_model(&task, report.request.method != Method::Velocity))
+}
+
 /// The last stretch in which a loop held the motor, and with which gains.
-fn tried(
-    trace: Trace,
-    before: Option<brushwork_tuning::axis::VelocityRegisters>,
-    duty_rms: Option<f64>,
-    report: &Report,
-) -> Option<Tried> {
+fn tried(trace: Trace, duty_rms: Option<f64>, report: &Report) -> Option<Tried> {
     let stretch = *trace.stretches().last()?;
-    let mut registers = Registers { velocity: before.unwrap_or_default(), position: None };
+    let before = report.before.unwrap_or_default();
+    let mut registers = Registers {
+        velocity: before.velocity,
+        position: None,
+        motion_mind: before.motion_mind.map(|unit| unit.registers),
+    };
     for (_, written) in trace.writes.iter().filter(|(at, _)| *at <= stretch.from_s) {
         match written {
             Written::Velocity(velocity) => registers.velocity = *velocity,
             Written::Position(position) => registers.position = Some(*position),
-            Written::MotionMind(_) => {}
+            Written::MotionMind(mind) => registers.motion_mind = Some(*mind),
         }
     }
     if !stretch.is_position {
         registers.position = None;
     }
     let values = |place: f64, speed: f64| if stretch.is_position { place } else { speed };
-    let gains = registers_gains(&registers.velocity, registers.position.as_ref(), &report.request);
-    let predicted = report.task.map(|task| trace.predict(&task, &gains, &stretch)).unwrap_or_default();
+    let with = considered(report, &registers);
+    let predicted = with.map(|(task, gains)| trace.predict(&task, &gains, &stretch)).unwrap_or_default();
     let (measured, rounding) = if stretch.is_position {
         (trace.points.iter().map(|point| (point.t, point.counts)).collect(), 1.0)
     } else {

@@ -8,6 +8,7 @@ use egui::{Button, ComboBox, Label, RichText, Ui};
 use super::level::level_ui;
 use super::model::{Loop, Setting, TuneWish};
 use crate::gui::command::{Command, Commands};
+use crate::gui::family::Ability;
 use crate::gui::model::Model;
 use crate::gui::theme::Palette;
 use crate::gui::widgets::numeric::Numeric;
@@ -28,15 +29,17 @@ pub fn setup_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Comm
     let is_free = !model.front.is_guided();
     let can_start = is_armed && is_free;
     let is_wide = ui.available_width() >= WITH_WORDS;
+    let motors = model.front.family().motors();
     if ui.available_width() >= BOTH_IN_A_ROW {
         ui.horizontal(|ui| {
-            motor_row_ui(ui, model, (which, Motor::M1), (can_start, is_wide), commands);
-            ui.add_space(10.0);
-            motor_row_ui(ui, model, (which, Motor::M2), (can_start, is_wide), commands);
+            for motor in motors {
+                motor_row_ui(ui, model, (which, *motor), (can_start, is_wide), commands);
+                ui.add_space(10.0);
+            }
         });
     } else {
-        for motor in Motor::BOTH {
-            ui.horizontal(|ui| motor_row_ui(ui, model, (which, motor), (can_start, is_wide), commands));
+        for motor in motors {
+            ui.horizontal(|ui| motor_row_ui(ui, model, (which, *motor), (can_start, is_wide), commands));
         }
     }
     options_ui(ui, model, which);
@@ -87,40 +90,47 @@ fn motor_row_ui(
 
 fn options_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
     let motor = model.front.tune.motor(which);
-    let travel = model.front.loops.travel(motor);
+    let travel = model.front.travels()[motor.index()];
+    let family = model.front.family();
+    let methods = family.methods(which);
+    let has_encoders = family.lacks(Ability::AbsoluteEncoders).is_none();
     let setting = &mut model.front.tune.panel_mut(which, motor).setting;
     let travel_width = if setting.turns_freely { 0.0 } else { TRAVEL_WIDTH };
     let is_wide = ui.available_width() >= OPTIONS_IN_A_ROW[which as usize] + travel_width;
     ui.horizontal(|ui| {
         ui.label(RichText::new(format!("Motor {}:", motor.index() + 1)).strong());
-        axis_ui(ui, setting, which, travel);
+        methods_ui(ui, setting, methods);
+        // A velocity loop has no use for position limits, which may be left over.
+        travel_ui(ui, setting, travel.filter(|_| which == Loop::Position));
         if is_wide {
             ui.separator();
-            limits_ui(ui, setting);
+            limits_ui(ui, setting, has_encoders);
         }
     });
     if !is_wide {
-        ui.horizontal(|ui| limits_ui(ui, setting));
+        ui.horizontal(|ui| limits_ui(ui, setting, has_encoders));
     }
 }
 
-fn axis_ui(ui: &mut Ui, setting: &mut Setting, which: Loop, travel: Option<(f64, f64)>) {
-    if which == Loop::Position {
-        ui.label("Method");
-        for (method, name, hint) in [
-            (Method::Pd, "PD", "Proportional and differential, straight on the duty"),
-            (Method::Pid, "PID", "With an integral, which needs Max I and a deadzone"),
-            (Method::Piv, "PIV", "Position P over the velocity loop: both are tuned"),
-        ] {
-            ui.radio_value(&mut setting.method, method, name).on_hover_text(hint);
-        }
-        ui.separator();
+/// The ways to tune a loop, where there is a choice.
+fn methods_ui(ui: &mut Ui, setting: &mut Setting, methods: &[Method]) {
+    if methods.len() < 2 {
+        return;
     }
-    // A velocity loop has no use for position limits, which may be left over.
-    travel_ui(ui, setting, travel.filter(|_| which == Loop::Position));
+    ui.label("Method");
+    for method in methods {
+        let (name, hint) = match method {
+            Method::Velocity => ("Velocity", "The speed loop"),
+            Method::Pd => ("PD", "Proportional and differential, straight on the duty"),
+            Method::Pid => ("PID", "With an integral, which is bounded and needs a deadzone"),
+            Method::Piv => ("PIV", "Position P over the velocity loop: both are tuned"),
+        };
+        ui.radio_value(&mut setting.method, *method, name).on_hover_text(hint);
+    }
+    ui.separator();
 }
 
-fn limits_ui(ui: &mut Ui, setting: &mut Setting) {
+fn limits_ui(ui: &mut Ui, setting: &mut Setting, has_encoders: bool) {
     ui.label("Duty up to");
     let duty =
         Numeric { name: "Highest duty", unit: "%", range: 20.0..=100.0, decimals: 0, step: 5.0, width: 62.0 };
@@ -141,7 +151,9 @@ fn limits_ui(ui: &mut Ui, setting: &mut Setting) {
     tries.on_hover_text(
         "Tries them on the machine at the end of the run and lowers them if it is rougher than predicted",
     );
-    encoder_ui(ui, setting);
+    if has_encoders {
+        encoder_ui(ui, setting);
+    }
 }
 
 fn travel_ui(ui: &mut Ui, setting: &mut Setting, held: Option<(f64, f64)>) {

@@ -217,6 +217,9 @@ impl Planner<'_> {
             }
         }
         steps.sort_by_key(|step| step.stage);
+        if self.table.is_motion_mind() {
+            motion_mind::weaken_first(&mut steps, self.ram);
+        }
         (steps, refusals)
     }
 

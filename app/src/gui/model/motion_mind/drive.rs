@@ -45,7 +45,6 @@ impl Default for Reach {
 impl Desk {
     /// Where a position may be asked for: the scale of an analog or pulse feedback, the virtual limits, or what was set.
     pub fn mind_travel(&self) -> (f64, f64) {
-        let of_register = |name| self.register(name).map(|value| value as f64);
         let span = self.motion_mind.reach.span_counts;
         let has_encoder = self.has_bit(registers::FUNCTION, "RCPOS-ENCFDBCK");
         if self.mode() == Some(5) && !has_encoder {
@@ -54,12 +53,14 @@ impl Desk {
         if self.mode() == Some(4) && self.has_bit(registers::FUNCTION2, "PULSEFB") {
             return (0.0, PULSE_FULL);
         }
-        match (of_register("VNLIMIT"), of_register("VPLIMIT")) {
-            (Some(low), Some(high)) if self.has_bit(registers::FUNCTION, "VIRTLIMIT") && low < high => {
-                (low, high)
-            }
-            _ => (-span, span),
-        }
+        self.virtual_travel().unwrap_or((-span, span))
+    }
+
+    /// The virtual limits, where they act.
+    pub fn virtual_travel(&self) -> Option<(f64, f64)> {
+        let of_register = |name| self.register(name).map(|value| value as f64);
+        let limits = of_register("VNLIMIT").zip(of_register("VPLIMIT"))?;
+        (self.has_bit(registers::FUNCTION, "VIRTLIMIT") && limits.0 < limits.1).then_some(limits)
     }
 
     /// Asks for a position within the travel.

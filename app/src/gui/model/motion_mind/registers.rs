@@ -118,15 +118,18 @@ fn celsius(raw: i64) -> f64 {
 }
 
 impl Desk {
-    /// The raw value of a register, by its name, as far as it was read.
+    /// The raw value of a register, by its name, as far as it was read. A setting's is that of the settings' model, which takes note
+    /// of every write; what the unit measures was read while a screen showed it.
     pub fn register(&self, name: &str) -> Option<i64> {
         let register = register_named(name)?;
-        self.motion_mind.live.get(register).or_else(|| {
-            match self.general.unit()?.on_controller(&key(register))? {
-                SettingValue::Int(value) => Some(value),
-                _ => None,
-            }
-        })
+        self.setting(register).or_else(|| self.motion_mind.live.get(register))
+    }
+
+    fn setting(&self, register: &Register) -> Option<i64> {
+        match self.general.unit()?.on_controller(&key(register))? {
+            SettingValue::Int(value) => Some(value),
+            _ => None,
+        }
     }
 
     /// Raw register values as settings, as far as the unit's table has them.

@@ -6,4 +6,4 @@ mod steps;
 
 pub use memory::{reset, restore, save};
 pub use rows::{register_of, rows};
-pub use steps::{arguments, stage, step_bytes, step_title, step_words, warnings};
+pub use steps::{arguments, stage, step_bytes, step_title, step_words, warnings, weaken_first};

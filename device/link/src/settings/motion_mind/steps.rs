@@ -2,7 +2,9 @@
 
 use brushwork_protocol::motion_mind::{Address, Command, describe_command, encode_frame, register};
 
+use super::super::image::SettingsImage;
 use super::super::plan::{Stage, Step};
+use super::super::value::SettingValue;
 use crate::unit::UnitAddress;
 
 /// Names of the values of a write, in wire order; the second is the register's own.
@@ -21,6 +23,23 @@ pub fn stage(index: u8) -> Stage {
         "FUNCTION" | "FUNCTION2" => Stage::Priorities,
         "ADDRESS" => Stage::Address,
         _ => Stage::Motors,
+    }
+}
+
+/// Puts a PIDSCALAR that grows before the terms that it divides. They are written in the order of their numbers, the divisor last: so
+/// a mix of old and new ones is never stronger than both, and a motor that its loop holds is not kicked in between.
+pub fn weaken_first(steps: &mut [Step], ram: &SettingsImage) {
+    const TERMS: [&str; 4] = ["PTERM", "ITERM", "DTERM", "PIDSCALAR"];
+    let name = |step: &Step| step.arguments.get(1).map_or("", |(name, _)| *name);
+    let Some(scalar) = steps.iter().position(|step| name(step) == "PIDSCALAR") else { return };
+    let Some(first) = steps.iter().position(|step| TERMS.contains(&name(step))) else { return };
+    let wanted = steps[scalar].arguments.get(1).map(|(_, value)| *value);
+    let held = match ram.get("register.pidscalar") {
+        Some(SettingValue::Int(held)) => Some(held),
+        _ => None,
+    };
+    if first < scalar && wanted > held {
+        steps[first..=scalar].rotate_right(1);
     }
 }
 
@@ -65,4 +84,32 @@ pub fn warnings(steps: &[Step]) -> Vec<String> {
         );
     }
     warnings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::plan::{WriteOptions, plan};
+    use super::super::super::table::{SettingsTable, Subject};
+    use super::*;
+    use crate::unit::FirmwareGeneration;
+    use brushwork_protocol::models::MOTION_MIND_3;
+
+    /// The names of the registers that are written to get from the factory's values to these, in order.
+    fn order(values: &[(&str, i64)]) -> Vec<&'static str> {
+        let generation = FirmwareGeneration::MotionMind { revision: 3 };
+        let table = SettingsTable::new(Subject::new(&MOTION_MIND_3, generation));
+        let ram = table.default_image();
+        let changes =
+            values.iter().map(|(key, value)| ((*key).to_owned(), SettingValue::Int(*value))).collect();
+        let plan = plan(&table, &ram, &changes, WriteOptions::default()).expect("it can be written");
+        plan.steps.iter().filter_map(|step| Some(step.arguments.get(1)?.0)).collect()
+    }
+
+    #[test]
+    fn gains_never_meet_a_divisor_that_makes_them_stronger_than_both_sets_are() {
+        let terms = [("register.pterm", 50_000), ("register.dterm", 60_000)];
+        let with = |scalar| order(&[terms[0], terms[1], ("register.pidscalar", scalar)]);
+        assert_eq!(with(17), ["PIDSCALAR", "PTERM", "DTERM"], "a divisor that grows comes first");
+        assert_eq!(with(9), ["PTERM", "DTERM", "PIDSCALAR"], "one that shrinks comes last");
+    }
 }
