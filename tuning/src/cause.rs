@@ -145,7 +145,8 @@ impl Cause {
                 "The current went beyond the highest that was allowed. Allow more, or lower the highest duty."
             }
             Self::LinkLost => {
-                "The controller stopped answering. Check the cable; the controller's own time-out stops the motor."
+                "The controller stopped answering. Check the cable; the controller stops the motor by itself, by its time-out or at the \
+                 limits of the run."
             }
             Self::Stopped => "The run was stopped.",
             Self::TimeLimit => "The run took longer than it may. A very slow axis needs a higher time limit.",

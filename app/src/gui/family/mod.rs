@@ -9,6 +9,7 @@ use std::time::Duration;
 
 use brushwork_link::device::{ArmScope, Channel, Drive, Identity, Request, StatusReport};
 use brushwork_protocol::packet_serial::Motor;
+use brushwork_tuning::cause::Cause;
 use brushwork_tuning::tune::Method;
 use egui::Ui;
 
@@ -102,6 +103,11 @@ pub trait Family: Sync {
 
     /// Why a controller cannot be tuned as it is set, where it cannot.
     fn cannot_tune(&self, _desk: &Desk) -> Option<&'static str> {
+        None
+    }
+
+    /// What to do about a refused run, in the order in which it is best tried, where it is done in other places than elsewhere.
+    fn remedies(&self, _cause: Cause) -> Option<&'static [&'static str]> {
         None
     }
 

@@ -6,6 +6,7 @@ use std::time::Duration;
 use brushwork_link::device::{ArmScope, Channel, Drive, Identity, Request, StatusReport};
 use brushwork_protocol::motion_mind::Mode;
 use brushwork_protocol::packet_serial::Motor;
+use brushwork_tuning::cause::Cause;
 use brushwork_tuning::motion_mind::MotionMindSetup;
 use brushwork_tuning::tune::Method;
 use egui::Ui;
@@ -126,6 +127,10 @@ impl Family for MotionMind {
             "Guided tuning needs an encoder, and this unit is set to pulse feedback. Clear PULSEFB in FUNCTION2 on the Registers screen, \
              or use the step response assistant.",
         )
+    }
+
+    fn remedies(&self, cause: Cause) -> Option<&'static [&'static str]> {
+        words::motion_mind_remedies(cause)
     }
 
     fn to_send(&self, _desk: &Desk, scope: ArmScope, setpoints: Setpoints) -> Option<Drive> {

@@ -1,5 +1,7 @@
 //! What acts on settings are called in a family, and what they do to its controllers, in sentences.
 
+use brushwork_tuning::cause::Cause;
+
 /// The words of a family.
 #[derive(Debug)]
 pub struct SettingsWords {
@@ -59,3 +61,50 @@ pub(super) static MOTION_MIND: SettingsWords = SettingsWords {
     reload_text: "Load from EEPROM resets the unit, which loads its EEPROM as at power-up, then reads that. The motor stops. \
                   What the unit works with now and was not stored is lost.",
 };
+
+/// What to do about a refused tuning run of a Motion Mind, where it is another thing, or in another place, than with an MCP.
+pub(super) fn motion_mind_remedies(cause: Cause) -> Option<&'static [&'static str]> {
+    Some(match cause {
+        Cause::EncoderReversed => &[
+            "Swap the two motor leads at the controller, or the encoder's A and B. Not both.",
+            "In mode 3, on the Duty screen, a little positive duty must make the position count up.",
+        ],
+        Cause::EncoderDead | Cause::EncoderLost => &[
+            "Look at the encoder's plug at both ends, and at its 5 V supply.",
+            "Turn the shaft by hand: the position at the top must change.",
+        ],
+        Cause::OutsideTravel => &[
+            "Move the axis by hand, or on this screen, until its counts lie within the travel.",
+            "Or give a travel around where it stands.",
+        ],
+        Cause::LimitNotTaken => &[
+            "Leave the highest current at 0: then AMPSLIMIT counts.",
+            "Or set AMPSLIMIT on the Registers screen before the run.",
+        ],
+        Cause::CurrentLimited => &[
+            "Raise AMPSLIMIT on the Registers screen, if the motor may have it.",
+            "Take load off the motor.",
+        ],
+        Cause::LinkLost => &[
+            "Check the cable to the controller and connect again.",
+            "A Motion Mind has no time-out for serial: the virtual limits of the run have stopped the motor. The old registers are put \
+             back when it answers again.",
+        ],
+        Cause::ControllerFault => &[
+            "See the lamps at the bottom: a limit input, the brake input or the temperature keeps the bridge off.",
+            "Free the input or let the board cool down, then try again.",
+        ],
+        Cause::BatteryLow => {
+            &["Use a stronger supply, or lower the highest duty: a weak supply sags less then."]
+        }
+        Cause::WrongMode => &[
+            "Switch the power off, set SW1 to mode 4 (MODE2 off, MODE1 on, MODE0 on), and switch it on again.",
+            "Clear PULSEFB in FUNCTION2 on the Registers screen.",
+        ],
+        Cause::OtherLoop => &["Clear NEWVELMODE, FASTPID and DISABLEPID on the Registers screen."],
+        Cause::UnknownLaw => {
+            &["Use the step response assistant, which needs to know nothing of the loop's law."]
+        }
+        _ => return None,
+    })
+}

@@ -164,7 +164,8 @@ pub fn refusal_ui(ui: &mut Ui, model: &Model, which: Loop, commands: &mut Comman
         if let Some(sketch) = Sketch::of(*cause).filter(|_| index == 0) {
             sketch_ui(ui, &sketch);
         }
-        for (number, step) in steps(*cause).iter().enumerate() {
+        let steps = model.front.family().remedies(*cause).unwrap_or_else(|| steps(*cause));
+        for (number, step) in steps.iter().enumerate() {
             ui.add(Label::new(format!("{}. {step}", number + 1)).wrap());
         }
     }
