@@ -165,6 +165,10 @@ pub enum Ability {
     Conflicts,
     /// Calibration by hand of loop gains.
     ByHand,
+    /// Several serial ports, each with a time-out.
+    Streams,
+    /// A supply of its own for the logic.
+    LogicBattery,
     /// Encoders of more than one kind.
     AbsoluteEncoders,
 }

@@ -181,6 +181,10 @@ impl Family for MotionMind {
             Ability::Leds => "The LEDs of a Motion Mind 3 tell its power and its traffic alone.",
             Ability::Composer => "Send commands from the Terminal screen.",
             Ability::Conflicts => "No two registers of a Motion Mind 3 contradict each other.",
+            Ability::Streams => "A Motion Mind 3 has one serial port, and no time-out for it.",
+            Ability::LogicBattery => {
+                "A Motion Mind 3 makes the supply of its logic out of that of the motor."
+            }
             Ability::AbsoluteEncoders => "A Motion Mind 3 is tuned with its quadrature encoder.",
             Ability::ByHand => "Use the step assistant of the Position screen.",
         })

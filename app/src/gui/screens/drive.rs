@@ -11,6 +11,7 @@ use egui::{
 use super::drawer::{drawer_ui, is_tuning};
 use super::title_ui;
 use crate::gui::command::{Command, Commands, GuidedWish};
+use crate::gui::family::{Ability, Family};
 use crate::gui::graph::panel;
 use crate::gui::model::link::{Arming, LinkView};
 use crate::gui::model::setpoints::{Direction, Setpoints};
@@ -34,6 +35,8 @@ const ROOM_FOR_DRAWER: f32 = 520.0;
 const BAR_WIDTH: f32 = 10.0;
 
 const RISK: &str = "While armed, a slider moves its motor at once. Keep clear. Space or Esc stops both.";
+const RISK_OF_ONE: &str =
+    "While armed, the slider moves the motor at once. Keep clear. Space or Esc stops it.";
 /// The same where a run is started instead.
 const RISK_OF_RUN: &str = "While armed, starting the test turns the motor at up to full speed. Keep hands and cables \
                            clear. Space or Esc stops both motors.";
@@ -55,7 +58,7 @@ pub fn drive_ui(
             ui.set_max_width(room.width());
             let top = ui.cursor().top();
             title_ui(ui, title, note);
-            arm_ui(ui, scope, &model.front.link, commands);
+            arm_ui(ui, scope, &model.front.link, model.front.family(), commands);
             // A large graph takes the room of the sliders. What they asked for goes on; nobody can hold a jog button.
             if is_tuning(model) {
                 model.front.release_jogs();
@@ -86,7 +89,7 @@ pub fn drive_ui(
 }
 
 /// The switch, the risk, and what stands in the way.
-pub fn arm_ui(ui: &mut Ui, scope: ArmScope, link: &LinkView, commands: &mut Commands) {
+pub fn arm_ui(ui: &mut Ui, scope: ArmScope, link: &LinkView, family: &dyn Family, commands: &mut Commands) {
     let palette = Palette::of(ui);
     let armed = link.arming.is_armed_for(scope);
     // As thick armed as disarmed, so that nothing moves.
@@ -99,12 +102,16 @@ pub fn arm_ui(ui: &mut Ui, scope: ArmScope, link: &LinkView, commands: &mut Comm
                 commands.push(if armed { Command::Disarm } else { Command::Arm(scope) });
             }
             ui.vertical(|ui| {
-                ui.label(if scope == ArmScope::ClampTest { RISK_OF_RUN } else { RISK });
+                ui.label(match scope {
+                    ArmScope::ClampTest => RISK_OF_RUN,
+                    _ if family.motors().len() == 1 => RISK_OF_ONE,
+                    _ => RISK,
+                });
                 let color = palette.weak_text;
                 ui.label(RichText::new(fallback_text(link.arming)).small().color(color));
             });
         });
-        if link.stream.is_none() {
+        if link.stream.is_none() && family.lacks(Ability::Streams).is_none() {
             stream_ui(ui, commands);
         }
         for refusal in &link.refusals {
@@ -258,7 +265,7 @@ fn graph_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 
 /// The graph instead of the rest of a screen that drives. The arm switch stays, and so does what it says.
 pub fn large_graph_ui(ui: &mut Ui, scope: ArmScope, model: &mut Model, commands: &mut Commands) {
-    arm_ui(ui, scope, &model.front.link, commands);
+    arm_ui(ui, scope, &model.front.link, model.front.family(), commands);
     ui.add_space(6.0);
     graph_ui(ui, model, commands);
 }

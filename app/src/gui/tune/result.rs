@@ -228,7 +228,7 @@ fn change_text(field: &Field, current: Option<f64>, wanted: Option<f64>) -> Stri
         "same".to_owned()
     } else if field.form == Form::Switch {
         "changed".to_owned()
-    } else if current == 0.0 || field.unit == "counts" || field.label == "PIDSCALAR" {
+    } else if current == 0.0 || field.unit == "counts" || matches!(field.label, "PIDSCALAR" | "DEADBAND") {
         format!("{:+.*}", field.decimals.min(2), wanted - current)
     } else {
         let percent = 100.0 * (wanted / current - 1.0);

@@ -17,6 +17,8 @@ use crate::gui::widgets::numeric::Numeric;
 const BOTH_IN_A_ROW: f32 = 720.0;
 const WITH_WORDS: f32 = 960.0;
 const OPTIONS_IN_A_ROW: [f32; 2] = [860.0, 1070.0];
+/// What the choice of an encoder takes of that.
+const ENCODER_WIDTH: f32 = 190.0;
 /// Room for the ends of a travel.
 const TRAVEL_WIDTH: f32 = 270.0;
 
@@ -96,7 +98,8 @@ fn options_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
     let has_encoders = family.lacks(Ability::AbsoluteEncoders).is_none();
     let setting = &mut model.front.tune.panel_mut(which, motor).setting;
     let travel_width = if setting.turns_freely { 0.0 } else { TRAVEL_WIDTH };
-    let is_wide = ui.available_width() >= OPTIONS_IN_A_ROW[which as usize] + travel_width;
+    let encoder_width = if has_encoders { 0.0 } else { ENCODER_WIDTH };
+    let is_wide = ui.available_width() >= OPTIONS_IN_A_ROW[which as usize] + travel_width - encoder_width;
     ui.horizontal(|ui| {
         ui.label(RichText::new(format!("Motor {}:", motor.index() + 1)).strong());
         methods_ui(ui, setting, methods);

@@ -29,14 +29,14 @@ pub fn world_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let note = "What you could do to a real machine by hand. None of it goes over the wire.";
     ui.label(RichText::new(note).small().color(color));
     unit_ui(ui, view, family.lacks(Ability::EmergencyStop).is_none(), &mut actions);
-    supply_ui(ui, view, panel, &mut actions);
+    supply_ui(ui, view, panel, family.lacks(Ability::LogicBattery).is_none(), &mut actions);
     if family.lacks(Ability::BridgeFaults).is_none() {
         electronics_ui(ui, view, &mut actions);
     }
     for motor in family.motors() {
         motor::motor_ui(ui, *motor, view, panel, &mut actions);
     }
-    pins::pins_ui(ui, view, family.world_pins(), &mut actions);
+    pins::pins_ui(ui, view, family, &mut actions);
     if family.lacks(Ability::Buses).is_none() {
         buses::buses_ui(ui, view, &mut actions);
     }
@@ -77,7 +77,7 @@ fn electronics_ui(ui: &mut Ui, view: &WorldView, actions: &mut Actions) {
     });
 }
 
-fn supply_ui(ui: &mut Ui, view: &WorldView, panel: &mut WorldPanel, actions: &mut Actions) {
+fn supply_ui(ui: &mut Ui, view: &WorldView, panel: &mut WorldPanel, has_logic: bool, actions: &mut Actions) {
     ui.separator();
     heading_ui(ui, "Supply");
     let volts = number(("Main battery", "Battery voltage"), "V", 0.0..=80.0, 1);
@@ -89,7 +89,7 @@ fn supply_ui(ui: &mut Ui, view: &WorldView, panel: &mut WorldPanel, actions: &mu
         actions.push(WorldAction::SetBatteryOhms { ohms: panel.battery_ohms });
     }
     let logic = number(("Logic battery", "Logic voltage"), "V", 0.0..=40.0, 1);
-    if row_ui(ui, &logic, &mut panel.logic_volts) {
+    if has_logic && row_ui(ui, &logic, &mut panel.logic_volts) {
         actions.push(WorldAction::SetLogicVolts { volts: panel.logic_volts });
     }
     let sinks = view.battery_sinks;

@@ -6,10 +6,12 @@ use egui::{ComboBox, Ui};
 
 use super::motor::name;
 use super::{Actions, number};
+use crate::gui::family::Family;
 use crate::gui::shell::heading_ui;
 use crate::gui::widgets::label::fixed_label_ui;
 
-pub fn pins_ui(ui: &mut Ui, view: &WorldView, names: &[&str], actions: &mut Actions) {
+pub fn pins_ui(ui: &mut Ui, view: &WorldView, family: &dyn Family, actions: &mut Actions) {
+    let names = family.world_pins();
     ui.separator();
     heading_ui(ui, "Input pins");
     for (pin, signal) in view.pins.iter().enumerate() {
@@ -17,17 +19,24 @@ pub fn pins_ui(ui: &mut Ui, view: &WorldView, names: &[&str], actions: &mut Acti
         ui.push_id(pin, |ui| {
             ui.horizontal(|ui| {
                 fixed_label_ui(ui, &label, if names.is_empty() { 44.0 } else { 84.0 });
-                pin_ui(ui, pin, &label, *signal, view, actions);
+                pin_ui(ui, (pin, &label), *signal, view, family.motors(), actions);
             })
         });
     }
 }
 
-fn pin_ui(ui: &mut Ui, pin: usize, label: &str, signal: PinSignal, view: &WorldView, actions: &mut Actions) {
+fn pin_ui(
+    ui: &mut Ui,
+    (pin, label): (usize, &str),
+    signal: PinSignal,
+    view: &WorldView,
+    motors: &[Motor],
+    actions: &mut Actions,
+) {
     let wired = wired_to(view, pin);
     let text = wired.clone().unwrap_or_else(|| kind_text(signal).to_owned());
     let combo = ComboBox::from_id_salt("kind").width(112.0).selected_text(text);
-    let response = combo.show_ui(ui, |ui| choices_ui(ui, pin, view, actions));
+    let response = combo.show_ui(ui, |ui| choices_ui(ui, pin, view, motors, actions));
     ui.ctx().accesskit_node_builder(response.response.id, |node| {
         node.set_label(format!("{label} is connected to"));
     });
@@ -37,21 +46,19 @@ fn pin_ui(ui: &mut Ui, pin: usize, label: &str, signal: PinSignal, view: &WorldV
 }
 
 /// Everything that can be put on a pin.
-fn choices_ui(ui: &mut Ui, pin: usize, view: &WorldView, actions: &mut Actions) {
-    let signals = [
-        PinSignal::Open,
-        PinSignal::Volts { volts: 2.5 },
-        PinSignal::Pulse { microseconds: 1500.0 },
-        PinSignal::Encoder { motor: Motor::M1 },
-        PinSignal::Encoder { motor: Motor::M2 },
-    ];
-    for signal in signals {
+fn choices_ui(ui: &mut Ui, pin: usize, view: &WorldView, motors: &[Motor], actions: &mut Actions) {
+    let signals =
+        [PinSignal::Open, PinSignal::Volts { volts: 2.5 }, PinSignal::Pulse { microseconds: 1500.0 }];
+    // A controller of one motor has its encoder on pins of its own.
+    let encoders =
+        motors.iter().filter(|_| motors.len() > 1).map(|motor| PinSignal::Encoder { motor: *motor });
+    for signal in signals.into_iter().chain(encoders) {
         if ui.selectable_label(false, kind_text(signal)).clicked() {
             unwire(pin, view, actions);
             actions.push(WorldAction::SetPin { pin, signal });
         }
     }
-    for motor in Motor::BOTH {
+    for motor in motors.iter().copied() {
         for switch in SwitchKind::ALL {
             if ui.selectable_label(false, switch_text(motor, switch)).clicked() {
                 unwire(pin, view, actions);

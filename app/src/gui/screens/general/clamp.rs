@@ -6,6 +6,7 @@ use egui::{Button, Grid, Label, Layout, ProgressBar, RichText, Role, ScrollArea,
 
 use super::sheet::lamp_ui;
 use crate::gui::command::{Command, Commands, GuidedWish};
+use crate::gui::family::Family;
 use crate::gui::model::general::General;
 use crate::gui::model::link::LinkView;
 use crate::gui::model::message::Gravity;
@@ -20,7 +21,13 @@ const WHAT_IT_DOES: &str = "Runs the motor up to 25 % and slows it down quickly,
     limit, or where the controller has to brake the motor by itself. The motor must be free to turn \
     at full speed. MCP manual 1.7.5.";
 
-pub fn clamp_ui(ui: &mut Ui, general: &mut General, link: &LinkView, height: f32, commands: &mut Commands) {
+pub fn clamp_ui(
+    ui: &mut Ui,
+    general: &mut General,
+    (link, family): (&LinkView, &dyn Family),
+    height: f32,
+    commands: &mut Commands,
+) {
     let size = vec2(ui.available_width(), height);
     ui.allocate_ui_with_layout(size, Layout::top_down(egui::Align::Min), |ui| {
         ui.set_min_height(height);
@@ -29,7 +36,7 @@ pub fn clamp_ui(ui: &mut Ui, general: &mut General, link: &LinkView, height: f32
             ui.label(RichText::new("Voltage clamp test").size(16.0).strong());
             ui.add(Label::new(RichText::new(WHAT_IT_DOES).color(Palette::of(ui).weak_text)).wrap());
             outputs_ui(ui, general);
-            arm_ui(ui, ArmScope::ClampTest, link, commands);
+            arm_ui(ui, ArmScope::ClampTest, link, family, commands);
             ui.add_space(2.0);
             ui.add_enabled_ui(!general.clamp.is_running(), |ui| task_ui(ui, general));
             run_ui(ui, general, link, commands);

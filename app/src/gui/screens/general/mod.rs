@@ -59,6 +59,7 @@ pub fn framed_ui(
 
 /// The parts at the left, and what the open one has.
 fn sections_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    let family = model.front.family();
     let general = &mut model.front.general;
     let size = ui.available_size();
     let nav_width = (size.x * NAV_SHARE).clamp(NAV_WIDTH.0, NAV_WIDTH.1);
@@ -76,7 +77,7 @@ fn sections_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             match general.section {
                 Section::Conflicts if !general.is_filtered() => conflicts::conflicts_ui(ui, general, size.y),
                 Section::ClampTest if !general.is_filtered() => {
-                    clamp::clamp_ui(ui, general, &model.front.link, size.y, commands);
+                    clamp::clamp_ui(ui, general, (&model.front.link, family), size.y, commands);
                 }
                 _ => {
                     match general.pin() {

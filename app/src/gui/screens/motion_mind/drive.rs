@@ -245,7 +245,10 @@ fn mode_text(mode: Option<u8>) -> (&'static str, &'static str) {
             "Mode 5, analog PID: the voltage at J4 P4 is the position that is asked for.",
             "To give the position from here, set the bit ADSERIAL of FUNCTION on the Registers screen and write it.",
         ),
-        Some(6) => ("Mode 6, factory restore: nothing moves the motor.", SET),
+        Some(6) => (
+            "Mode 6, factory restore: nothing moves the motor. Both limit inputs at ground bring back the factory's values.",
+            SET,
+        ),
         Some(_) => ("Mode 7, factory test: not for use.", SET),
     }
 }

@@ -25,17 +25,22 @@ use crate::gui::widgets::readout::NO_VALUE;
 const HEIGHT: f32 = 27.0;
 const MARK_WIDTH: f32 = 16.0;
 const NUMBER_WIDTH: f32 = 20.0;
-const NAME_WIDTH: f32 = 138.0;
-const WANTED_WIDTH: f32 = 158.0;
-const VALUE_WIDTH: f32 = 100.0;
+const NAME_WIDTH: f32 = 132.0;
+const WANTED_WIDTH: f32 = 150.0;
+const VALUE_WIDTH: f32 = 94.0;
+const GAP: f32 = 6.0;
+/// All columns, with a scroll bar.
+const TABLE_WIDTH: f32 =
+    MARK_WIDTH + NUMBER_WIDTH + NAME_WIDTH + WANTED_WIDTH + 2.0 * VALUE_WIDTH + 5.0 * GAP + 10.0;
 /// The share of the screen that the explanation takes, and its least and greatest width.
 const PANEL_SHARE: f32 = 0.34;
-const PANEL_WIDTH: (f32, f32) = (232.0, 460.0);
+const PANEL_WIDTH: (f32, f32) = (208.0, 460.0);
 
 pub fn registers_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     framed_ui(ui, model, commands, |ui, model, _commands| {
         let room = ui.available_rect_before_wrap();
-        let width = (room.width() * PANEL_SHARE).clamp(PANEL_WIDTH.0, PANEL_WIDTH.1);
+        let beside = room.width() - TABLE_WIDTH;
+        let width = (room.width() * PANEL_SHARE).min(beside).clamp(PANEL_WIDTH.0, PANEL_WIDTH.1);
         let (table, panel) = room.split_left_right_at_x(room.right() - width);
         let layout = Layout::top_down(Align::Min);
         ui.scope_builder(
@@ -67,7 +72,7 @@ fn is_shown(desk: &Desk, register: &Register) -> bool {
 }
 
 fn table_ui(ui: &mut Ui, desk: &mut Desk) {
-    ui.spacing_mut().item_spacing.x = 6.0;
+    ui.spacing_mut().item_spacing.x = GAP;
     ui.horizontal(|ui| {
         ui.allocate_space(vec2(MARK_WIDTH, 1.0));
         let titles = [("#", NUMBER_WIDTH), ("Register", NAME_WIDTH), ("Wanted", WANTED_WIDTH)];

@@ -3,6 +3,7 @@
 use brushwork_link::device::StatusReport;
 use egui::{Grid, Label, RichText, Ui};
 
+use crate::gui::family::Ability;
 use crate::gui::model::desk::Desk;
 use crate::gui::shell::heading_ui;
 use crate::gui::theme::Palette;
@@ -15,12 +16,16 @@ pub fn unit_ui(ui: &mut Ui, desk: &Desk) {
         if each.is_empty() { String::new() } else { format!(", also answers {}", each.join(" ")) }
     };
     let stream = desk.link.stream.map_or("not known".to_owned(), |stream| stream.to_string());
+    let port = match desk.family().lacks(Ability::Streams) {
+        Some(_) => identity.port.clone(),
+        None => format!("{} ({stream})", identity.port),
+    };
     let figures = &desk.link.statistics;
     let rows = [
         ("Says of itself", identity.version_text.trim().to_owned()),
         ("Firmware", format!("{}, {}", or_not_told(&identity.firmware), identity.generation)),
         ("Address", format!("{}{}", identity.place(), addresses(&identity.also_answers))),
-        ("Port", format!("{} ({stream})", identity.port)),
+        ("Port", port),
         ("Status word", desk.link.status.as_ref().map_or(String::new(), word_text)),
         (
             "Traffic",
