@@ -353,11 +353,54 @@ fn the_terminal_decodes_sends_and_shows_the_answer() {
 }
 
 #[test]
+fn the_terminal_shows_both_directions_byte_for_byte_and_in_words() {
+    for (protocol, sent, back) in [
+        // READ REGISTER 4: address, 6000 with the low byte first, sum; the line and its code.
+        (Protocol::Binary, "> 1D 01 04 22", "< 01 70 17 88"),
+        (Protocol::Text, "> R01 04", "< PTRM=6000"),
+    ] {
+        let mut bench = Bench::with_minds(vec![MotionMindConfig { protocol, ..config(Mode::SerialPid) }]);
+        choose(&mut bench);
+        bench.connect();
+        bench.pass_ms(3000);
+        bench.press("Terminal");
+        type_line(&mut bench, "R01 04");
+        bench.key(Key::Enter);
+        bench.pass_ms(1000);
+        assert!(bench.sees(sent) && bench.sees(back), "{protocol:?}");
+        assert!(bench.sees_part("Answer: ") && bench.sees_part("PTERM 6000"), "{protocol:?}");
+    }
+}
+
+#[test]
+fn what_is_no_command_can_be_sent_as_typed_to_see_what_comes_back() {
+    let mut bench = connected(Mode::SerialPid);
+    bench.press("Terminal");
+    bench.choose("Form of the command", "Hex");
+    type_line(&mut bench, "1D 01 04 23");
+    assert!(bench.sees_part("should be 22"));
+    bench.press("Send as typed");
+    bench.pass_ms(1500);
+    assert!(bench.sees("> 1D 01 04 23") && bench.sees("Answer: silence"), "{:?}", bench.said());
+    let text = MotionMindConfig { protocol: Protocol::Text, ..config(Mode::SerialPid) };
+    let mut bench = Bench::with_minds(vec![text]);
+    choose(&mut bench);
+    bench.connect();
+    bench.pass_ms(3000);
+    bench.press("Terminal");
+    type_line(&mut bench, "W01 04");
+    bench.press("Send as typed");
+    bench.pass_ms(1500);
+    assert!(bench.sees("< BAD COMMAND"), "{:?}", bench.said());
+}
+
+#[test]
 fn the_terminal_sends_neither_the_self_test_nor_motion() {
     let mut bench = connected(Mode::SerialPid);
     bench.press("Terminal");
     type_line(&mut bench, "Z01");
     assert!(bench.sees_part("The self-test is not sent"));
+    assert!(!bench.sees("Send command"));
     bench.key(Key::Escape);
     let field = bench.model();
     field.front.motion_mind.terminal.typed.clear();

@@ -306,6 +306,7 @@ impl App {
             Command::ApplyLoops(columns) => self.apply_loops(columns),
             Command::World(action) => self.act_on_world(action),
             Command::Settings(wish) => self.settings(wish),
+            Command::Raw { id, bytes } => self.send_raw(id, bytes),
             Command::Transact { id, command, values } => self.transact(Transact { id, command, values }),
             Command::Guided(wish) => self.guided(wish),
             Command::Tune(wish) => self.tune(wish),

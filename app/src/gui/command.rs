@@ -60,6 +60,11 @@ pub enum Command {
         command: u8,
         values: Vec<Value>,
     },
+    /// Sends bytes as they are to a Motion Mind.
+    Raw {
+        id: u64,
+        bytes: Vec<u8>,
+    },
     /// Shows General Settings with a sheet in place of the list.
     OpenSheet(Sheet),
     /// Shows a part of General Settings.

@@ -1,6 +1,6 @@
 //! What the screens of a Motion Mind ask for: reads of all registers, and writes by its assistants.
 
-use brushwork_link::device::DeviceHandle;
+use brushwork_link::device::{DeviceHandle, Request};
 use brushwork_link::settings::SettingsImage;
 
 use super::App;
@@ -17,6 +17,14 @@ impl App {
         // A link that is busy is asked again later; nobody has to be told.
         if self.device().is_none_or(|device| device.request(request).is_err()) {
             self.model.front.motion_mind.live.not_begun();
+        }
+    }
+
+    /// Sends bytes of the terminal. Between the moves of a tuning run they would be in the way.
+    pub(super) fn send_raw(&mut self, id: u64, bytes: Vec<u8>) {
+        let is_free = !self.model.front.is_guided();
+        if !(is_free && self.request(Request::Raw { id, bytes })) {
+            self.model.front.motion_mind.terminal.not_sent(id);
         }
     }
 

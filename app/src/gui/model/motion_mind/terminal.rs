@@ -1,14 +1,17 @@
 //! The terminal: a command typed in text or in hex, what it means, what it looks like in both protocols, and its answer.
 //!
-//! What is sent goes through the link like every other command, in the protocol that the unit speaks. The self-test is never
-//! sent; commands that move the motor are sent while a screen that drives is armed, which this one is not.
+//! What is sent goes out in the protocol that the unit speaks, byte for byte, and what comes back is shown as it came and in words. Only
+//! what changes registers takes the way of every other write, with a backup before it. What is no command can be sent as it is typed, in
+//! the unit's own protocol; the link lets that through to simulated units alone, but for a line that a unit would answer with BAD COMMAND.
+//! The self-test is never sent; commands that move the motor are sent while a screen that drives is armed, which this one is not.
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use brushwork_link::device::Event;
+use brushwork_link::device::motion_mind::{describe_received, describe_sent};
+use brushwork_link::device::{Event, MotionMindFacts};
 use brushwork_protocol::motion_mind::{
-    Address, Command, Effect, FrameEvent, FrameReader, LineEvent, LineReader, Part, checksum,
+    Address, Command, Effect, FrameEvent, FrameReader, LineEvent, LineReader, Part, Protocol, checksum,
     describe_command, encode_frame, encode_line,
 };
 use brushwork_protocol::packet_serial::{Value, Values, hex};
@@ -38,6 +41,10 @@ pub struct Entry {
     pub sent: String,
     /// In words.
     pub meaning: String,
+    /// The bytes that went out, where the answer comes as bytes, and their protocol.
+    raw: Option<(Vec<u8>, Protocol)>,
+    /// What came back as it came, where it came as bytes.
+    pub received: Option<String>,
     pub answer: Option<Result<String, String>>,
 }
 
@@ -119,26 +126,43 @@ impl Understood {
         }
     }
 
-    /// The command's byte and its values, as the link takes them.
+    /// The command's byte and its values, where it changes registers: those are backed up first.
     fn request(&self) -> Option<(u8, Vec<i64>)> {
         Some(match self.command {
             Command::Write { register, value } => (0x18, vec![register.into(), value]),
             Command::WriteStore { register, value } => (0x19, vec![register.into(), value]),
-            Command::Read(_) | Command::ReadText(Part::All) => (0x1A, vec![]),
-            Command::ReadRegister(number) | Command::ReadText(Part::Register(number)) => {
-                (0x1D, vec![number.into()])
-            }
-            Command::ReadText(Part::StatusBits) => (0x1D, vec![16]),
-            Command::ReadText(Part::FunctionBits) => (0x1D, vec![3]),
             Command::Restore => (0x1B, vec![]),
             Command::Reset => (0x1C, vec![]),
-            Command::ChangeSpeed(_)
-            | Command::MoveToAbsolute(_)
-            | Command::MoveToRelative(_)
-            | Command::MoveAtVelocity(_) => {
-                return None;
-            }
+            _ => return None,
         })
+    }
+
+    /// Its bytes on a wire of the unit's protocol. A read that this protocol does not have becomes the one nearest to it.
+    fn on_wire(&self, protocol: Protocol) -> Option<Vec<u8>> {
+        let command = match (protocol, self.command) {
+            (Protocol::Binary, Command::ReadText(Part::Register(number))) => Command::ReadRegister(number),
+            (Protocol::Binary, Command::ReadText(Part::All)) => Command::Read(u32::MAX),
+            (Protocol::Binary, Command::ReadText(Part::StatusBits)) => Command::ReadRegister(16),
+            (Protocol::Binary, Command::ReadText(Part::FunctionBits)) => Command::ReadRegister(3),
+            (Protocol::Text, Command::ReadRegister(number)) => Command::ReadText(Part::Register(number)),
+            (Protocol::Text, Command::Read(mask)) if mask.count_ones() == 1 => {
+                Command::ReadText(Part::Register(mask.trailing_zeros() as u8))
+            }
+            (Protocol::Text, Command::Read(_)) => Command::ReadText(Part::All),
+            (_, command) => command,
+        };
+        match protocol {
+            Protocol::Binary => encode_frame(self.address, &command).ok(),
+            Protocol::Text => encode_line(self.address, &command).ok().map(String::into_bytes),
+        }
+    }
+}
+
+/// Bytes as a person reads them in a protocol.
+fn shown(bytes: &[u8], protocol: Protocol) -> String {
+    match protocol {
+        Protocol::Binary => hex(bytes),
+        Protocol::Text => String::from_utf8_lossy(bytes).trim_end().replace("\r\n", " | "),
     }
 }
 
@@ -165,14 +189,12 @@ pub fn of_text(typed: &str) -> Result<Understood, String> {
 
 /// What bytes in hex mean, or why they are no command. A checksum that is missing is told.
 pub fn of_hex(typed: &str) -> Result<Understood, String> {
-    let digits: String = typed.chars().filter(|letter| !letter.is_whitespace() && *letter != ',').collect();
-    let digits = digits.replace("0x", "").replace("0X", "");
-    if digits.is_empty() {
+    let Some(bytes) = bytes_of(typed) else {
+        return Err("These are not pairs of hexadecimal digits.".to_owned());
+    };
+    if bytes.is_empty() {
         return Err("Type the bytes of a command, as 1D 01 04 22.".to_owned());
     }
-    let pair = |at: usize| digits.get(at..at + 2).and_then(|pair| u8::from_str_radix(pair, 16).ok());
-    let bytes: Option<Vec<u8>> = (0..digits.len()).step_by(2).map(pair).collect();
-    let Some(bytes) = bytes else { return Err("These are not pairs of hexadecimal digits.".to_owned()) };
     let mut reader = FrameReader::new();
     for (index, byte) in bytes.iter().enumerate() {
         if let Some(FrameEvent::Command(address, command)) = reader.feed(*byte, Duration::ZERO) {
@@ -199,6 +221,14 @@ pub fn of_hex(typed: &str) -> Result<Understood, String> {
     })
 }
 
+/// Pairs of hexadecimal digits as bytes; none where they are not that.
+fn bytes_of(typed: &str) -> Option<Vec<u8>> {
+    let digits: String = typed.chars().filter(|letter| !letter.is_whitespace() && *letter != ',').collect();
+    let digits = digits.replace("0x", "").replace("0X", "");
+    let pair = |at: usize| digits.get(at..at + 2).and_then(|pair| u8::from_str_radix(pair, 16).ok());
+    (0..digits.len()).step_by(2).map(pair).collect()
+}
+
 impl Terminal {
     /// What stands in the field.
     pub fn understood(&self) -> Result<Understood, String> {
@@ -216,18 +246,61 @@ impl Terminal {
         self.entries.clear();
     }
 
-    /// Sends what stands in the field, if it can be.
-    pub fn send(&mut self, selected: u8) -> Option<Wish> {
+    /// Sends what stands in the field, if it can be. `selected` is the unit that the link speaks to.
+    pub fn send(&mut self, selected: u8, facts: MotionMindFacts) -> Option<Wish> {
         let understood =
             self.understood().ok().filter(|understood| understood.refusal(selected).is_none())?;
-        let (command, values) = understood.request()?;
+        if let Some((command, values)) = understood.request() {
+            let forms = [understood.line(), understood.bytes()].into_iter().flatten().collect::<Vec<_>>();
+            let id = self.note_sent(forms.join("  |  "), understood.meaning(), None);
+            return Some(Wish::Transact {
+                id,
+                command,
+                values: values.into_iter().map(Value::Int).collect(),
+            });
+        }
+        let bytes = understood.on_wire(facts.protocol)?;
+        Some(self.send_bytes(bytes, facts.protocol, understood.meaning()))
+    }
+
+    /// The bytes of what stands in the field where it is no command, in the unit's own protocol; why not, as a sentence.
+    pub fn as_typed(&self, facts: MotionMindFacts) -> Result<Vec<u8>, &'static str> {
+        if self.understood().is_ok() || self.typed.trim().is_empty() {
+            return Err("");
+        }
+        match (self.form, facts.protocol) {
+            (Form::Text, Protocol::Binary) => {
+                Err("The unit speaks binary: type bytes in hex to send them as they are.")
+            }
+            (Form::Hex, Protocol::Text) => Err("The unit speaks text: type a line to send it as it is."),
+            (Form::Text, Protocol::Text) if self.typed.to_ascii_uppercase().contains('Z') => Err(""),
+            (Form::Text, Protocol::Text) => Ok(format!("{}\r\n", self.typed.trim()).into_bytes()),
+            (Form::Hex, Protocol::Binary) => {
+                bytes_of(&self.typed).filter(|bytes| !bytes.is_empty()).ok_or("")
+            }
+        }
+    }
+
+    /// Sends what stands in the field as it is typed, command or not.
+    pub fn send_as_typed(&mut self, facts: MotionMindFacts) -> Option<Wish> {
+        let bytes = self.as_typed(facts).ok()?;
+        let meaning = describe_sent(&bytes, facts.protocol).text;
+        Some(self.send_bytes(bytes, facts.protocol, format!("as typed: {meaning}")))
+    }
+
+    fn send_bytes(&mut self, bytes: Vec<u8>, protocol: Protocol, meaning: String) -> Wish {
+        let id = self.note_sent(shown(&bytes, protocol), meaning, Some((bytes.clone(), protocol)));
+        Wish::Raw { id, bytes }
+    }
+
+    /// Takes what was typed into the list and the history; the number of its answer.
+    fn note_sent(&mut self, sent: String, meaning: String, raw: Option<(Vec<u8>, Protocol)>) -> u64 {
         self.asked += 1;
         let id = FIRST_ID + self.asked;
-        let forms = [understood.line(), understood.bytes()].into_iter().flatten().collect::<Vec<_>>();
-        self.push(Entry { id, sent: forms.join("  |  "), meaning: understood.meaning(), answer: None });
+        self.push(Entry { id, sent, meaning, raw, received: None, answer: None });
         self.history.push(std::mem::take(&mut self.typed));
         self.recalled = None;
-        Some(Wish::Transact { id, command, values: values.into_iter().map(Value::Int).collect() })
+        id
     }
 
     /// The line before the one that is shown, or after it.
@@ -242,14 +315,23 @@ impl Terminal {
         self.typed = at.and_then(|at| self.history.get(at).cloned()).unwrap_or_default();
     }
 
+    /// The command was not taken by the link.
+    pub fn not_sent(&mut self, id: u64) {
+        if let Some(entry) = self.entries.iter_mut().find(|entry| entry.id == id) {
+            entry.answer = Some(Err("Not sent: the link is busy. Send it again in a moment.".to_owned()));
+        }
+    }
+
     /// Takes note of an answer.
     pub fn note(&mut self, event: &Event) {
-        let Event::Transacted { id, result } = event else { return };
-        if let Some(entry) = self.entries.iter_mut().find(|entry| entry.id == *id) {
-            entry.answer = Some(match result {
-                Ok(values) => Ok(told(values)),
-                Err(failure) => Err(failure.to_string()),
-            });
+        let (Event::Transacted { id, .. } | Event::RawReply { id, .. }) = event else { return };
+        let Some(entry) = self.entries.iter_mut().find(|entry| entry.id == *id) else { return };
+        match event {
+            Event::Transacted { result, .. } => {
+                entry.answer = Some(result.as_ref().map(told).map_err(ToString::to_string));
+            }
+            Event::RawReply { result, .. } => entry.note_bytes(result.as_ref().map_err(ToString::to_string)),
+            _ => {}
         }
     }
 
@@ -265,6 +347,20 @@ impl Terminal {
             self.entries.pop_front();
         }
         self.entries.push_back(entry);
+    }
+}
+
+impl Entry {
+    fn note_bytes(&mut self, result: Result<&Vec<u8>, String>) {
+        let Some((sent, protocol)) = &self.raw else { return };
+        self.answer = Some(match result {
+            Ok(reply) if reply.is_empty() => Ok("silence".to_owned()),
+            Ok(reply) => {
+                self.received = Some(shown(reply, *protocol));
+                Ok(describe_received(sent, reply, *protocol).text)
+            }
+            Err(why) => Err(why),
+        });
     }
 }
 
@@ -316,7 +412,41 @@ mod tests {
         assert!(refusal("W99 04 5").contains("every unit"));
         assert_eq!(refusal("R01 04"), "");
         let mut terminal = Terminal { typed: "P01 1000".to_owned(), ..Terminal::default() };
-        assert_eq!(terminal.send(1), None);
+        assert_eq!(terminal.send(1, facts(Protocol::Text)), None);
+    }
+
+    #[test]
+    fn what_is_sent_is_in_the_units_protocol_and_only_writes_take_the_way_with_a_backup() {
+        let sent = |typed: &str, form, protocol| {
+            let mut terminal = Terminal { typed: typed.to_owned(), form, ..Terminal::default() };
+            terminal.send(1, facts(protocol))
+        };
+        let bytes = |wish| match wish {
+            Some(Wish::Raw { bytes, .. }) => bytes,
+            other => panic!("{other:?}"),
+        };
+        // READ REGISTER 4 of unit 1, sum 22.
+        assert_eq!(bytes(sent("R01 04", Form::Text, Protocol::Binary)), [0x1D, 0x01, 0x04, 0x22]);
+        assert_eq!(bytes(sent("1D 01 04 22", Form::Hex, Protocol::Text)), b"R01 04\r\n");
+        assert!(matches!(sent("W01 04 6000", Form::Text, Protocol::Binary), Some(Wish::Transact { .. })));
+    }
+
+    #[test]
+    fn what_is_no_command_goes_out_as_typed_in_the_units_own_protocol_and_never_z() {
+        let typed = |typed: &str, form, protocol| {
+            Terminal { typed: typed.to_owned(), form, ..Terminal::default() }.as_typed(facts(protocol))
+        };
+        assert_eq!(typed("1D 01 04 23", Form::Hex, Protocol::Binary), Ok(vec![0x1D, 0x01, 0x04, 0x23]));
+        assert_eq!(typed("hello", Form::Text, Protocol::Text), Ok(b"hello\r\n".to_vec()));
+        assert!(typed("hello", Form::Text, Protocol::Binary).unwrap_err().contains("speaks binary"));
+        for dead in ["Z01", "z01", "x Z"] {
+            assert!(typed(dead, Form::Text, Protocol::Text).is_err(), "{dead}");
+        }
+        assert!(typed("1D 01 04 22", Form::Hex, Protocol::Binary).is_err(), "a command is sent as one");
+    }
+
+    fn facts(protocol: Protocol) -> MotionMindFacts {
+        MotionMindFacts { protocol, mode: brushwork_protocol::motion_mind::Mode::SerialPid }
     }
 
     #[test]
@@ -324,7 +454,7 @@ mod tests {
         let mut terminal = Terminal::default();
         for line in ["R01 04", "R01 05"] {
             terminal.typed = line.to_owned();
-            assert!(terminal.send(1).is_some());
+            assert!(terminal.send(1, facts(Protocol::Binary)).is_some());
         }
         terminal.recall(true);
         assert_eq!(terminal.typed, "R01 05");

@@ -1,5 +1,7 @@
 //! The terminal: commands in text or hex, decoded as they are typed.
 
+use brushwork_link::device::MotionMindFacts;
+use brushwork_protocol::motion_mind::Protocol;
 use egui::{ComboBox, Key, Label, RichText, ScrollArea, Ui, vec2};
 
 use crate::gui::command::Commands;
@@ -13,10 +15,20 @@ use crate::gui::widgets::text_field::text_field_ui;
 const ENTRY_HEIGHT: f32 = 118.0;
 
 pub fn terminal_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    let Some(address) = model.front.link.identity().map(|identity| identity.address) else {
+    let unit =
+        model.front.link.identity().and_then(|identity| Some((identity.address, identity.motion_mind?)));
+    let Some((address, facts)) = unit else {
         return nothing_ui(ui, &not_connected_text(&model.front.phase));
     };
-    title_ui(ui, "Terminal", "Commands by hand. The traffic (Ctrl+T) shows every byte of the link.");
+    let note = match facts.protocol {
+        Protocol::Binary => {
+            "Commands by hand, in text or in hex. This unit speaks binary. The traffic (Ctrl+T) shows every byte."
+        }
+        Protocol::Text => {
+            "Commands by hand, in text or in hex. This unit speaks text. The traffic (Ctrl+T) shows every byte."
+        }
+    };
+    title_ui(ui, "Terminal", note);
     let terminal = &mut model.front.motion_mind.terminal;
     let height = (ui.available_height() - ENTRY_HEIGHT).max(80.0);
     ui.allocate_ui(vec2(ui.available_width(), height), |ui| {
@@ -26,9 +38,12 @@ pub fn terminal_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     ui.separator();
     let entered = field_ui(ui, terminal);
     match terminal.understood() {
-        Ok(understood) => understood_ui(ui, terminal, &understood, address, entered, commands),
+        Ok(understood) => {
+            understood_ui(ui, terminal, &understood, (address, facts), entered, commands);
+        }
         Err(why) => {
             ui.add(Label::new(RichText::new(why).color(Palette::of(ui).weak_text)).wrap());
+            as_typed_ui(ui, terminal, facts, commands);
         }
     }
 }
@@ -50,11 +65,14 @@ fn entry_ui(ui: &mut Ui, entry: &Entry) {
     ui.add(Label::new(RichText::new(format!("> {}", entry.sent)).monospace()).wrap());
     ui.indent(&entry.sent, |ui| {
         ui.add(Label::new(RichText::new(&entry.meaning).color(palette.weak_text)).wrap());
-        match &entry.answer {
-            None => ui.label("waiting for the answer …"),
-            Some(Ok(answer)) => ui.add(Label::new(format!("Answer: {answer}")).wrap()),
-            Some(Err(why)) => ui.add(Label::new(RichText::new(why).color(palette.error)).wrap()),
-        }
+    });
+    if let Some(received) = &entry.received {
+        ui.add(Label::new(RichText::new(format!("< {received}")).monospace()).wrap());
+    }
+    ui.indent((&entry.sent, "answer"), |ui| match &entry.answer {
+        None => ui.label("waiting for the answer …"),
+        Some(Ok(answer)) => ui.add(Label::new(format!("Answer: {answer}")).wrap()),
+        Some(Err(why)) => ui.add(Label::new(RichText::new(why).color(palette.error)).wrap()),
     });
 }
 
@@ -88,12 +106,30 @@ fn field_ui(ui: &mut Ui, terminal: &mut Terminal) -> bool {
     .inner
 }
 
+/// What is no command can be sent as it is, in the unit's own protocol, to see what comes back.
+fn as_typed_ui(ui: &mut Ui, terminal: &mut Terminal, facts: MotionMindFacts, commands: &mut Commands) {
+    let can = terminal.as_typed(facts);
+    if terminal.typed.trim().is_empty() {
+        return;
+    }
+    ui.horizontal(|ui| {
+        let send = ui.add_enabled(can.is_ok(), egui::Button::new("Send as typed"));
+        if send.on_hover_text("Byte for byte, though it is no command; a real unit gets only lines").clicked()
+        {
+            commands.extend(terminal.send_as_typed(facts));
+        }
+        if let Err(why) = can {
+            ui.add(Label::new(RichText::new(why).color(Palette::of(ui).weak_text)).truncate());
+        }
+    });
+}
+
 /// What will be sent, and the button that sends it.
 fn understood_ui(
     ui: &mut Ui,
     terminal: &mut Terminal,
     understood: &Understood,
-    address: u8,
+    (address, facts): (u8, MotionMindFacts),
     entered: bool,
     commands: &mut Commands,
 ) {
@@ -106,7 +142,7 @@ fn understood_ui(
     ui.horizontal(|ui| {
         let send = ui.add_enabled(refusal.is_none(), egui::Button::new("Send command")).clicked();
         if (send || entered)
-            && let Some(command) = terminal.send(address)
+            && let Some(command) = terminal.send(address, facts)
         {
             commands.push(command);
         }
