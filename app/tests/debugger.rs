@@ -108,6 +108,9 @@ fn running_needs_an_armed_screen_and_a_script_moves_its_motor() {
     until(&mut bench, "it pauses", |bench| bench.model().front.debug.is_paused());
     assert!(bench.sees_part("because Pause was asked for"));
     assert!(bench.sees("The motors go on as they were told."));
+    let line = line(&mut bench);
+    assert!(bench.sees(&format!("Script paused, line {line}")), "the left column tells the same");
+    assert!(!bench.sees_part("Script running"));
     assert!((bench.real_duty(Motor::M1) - 0.25).abs() < 0.05);
     bench.press("Continue");
     until(&mut bench, "it goes on", |bench| bench.model().front.debug.is_running());

@@ -39,7 +39,7 @@ pub struct Rig {
 pub enum Run {
     /// It runs.
     Running {
-        /// The line that comes next.
+        /// The line it stands on.
         line: u32,
     },
     /// END or STOP.

@@ -76,7 +76,7 @@ fn view_of(controller: &Controller<'_>) -> Option<ScriptView> {
 fn state_sentence(view: &ScriptView) -> String {
     match &view.run {
         ScriptRun::Idle => "No script was started since power-up.".to_owned(),
-        ScriptRun::Running { line } => format!("A script runs; line {line} comes next."),
+        ScriptRun::Running { line } => format!("A script runs; it is on line {line}."),
         ScriptRun::Ended { line } => format!("The script has ended on line {line}."),
         ScriptRun::Stopped { line } => format!("The script was stopped on line {line}."),
         ScriptRun::Faulted { line, what } => {

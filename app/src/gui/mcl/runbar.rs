@@ -60,6 +60,9 @@ fn told(model: &Model, armed: bool) -> String {
     }
     let view = front.worlds.as_ref().and_then(|views| views.get(front.world_unit)?.script.clone());
     let runs = match view.map(|view| view.run) {
+        Some(ScriptRun::Running { line }) if front.script_is_paused() => {
+            format!("The debugger holds a script in line {line}. ")
+        }
         Some(ScriptRun::Running { line }) => format!("A script runs, line {line}. "),
         Some(ScriptRun::Ended { line }) => format!("The script ended in line {line}. "),
         Some(ScriptRun::Faulted { line, what }) => format!("The script broke off in line {line}: {what}. "),

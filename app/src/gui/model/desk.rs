@@ -309,12 +309,21 @@ impl Desk {
         })
     }
 
+    /// Whether the debugger holds the script of a simulated unit.
+    pub fn script_is_paused(&self) -> bool {
+        let view = self.worlds.as_ref().and_then(|worlds| worlds.get(self.world_unit)?.script.as_ref());
+        view.is_some_and(|script| script.is_paused)
+    }
+
     /// What is said on every screen of a script that runs, or may run.
     pub fn script_notice(&self) -> Option<String> {
         if !self.is_connected() {
             return None;
         }
         match (self.script(), self.script_line()) {
+            (Script::Started, Some(Some(line))) if self.script_is_paused() => {
+                Some(format!("Script paused, line {line}"))
+            }
             (Script::Started, Some(Some(line))) => Some(format!("Script running, line {line}")),
             (Script::Started, _) => Some("Script running".to_owned()),
             (Script::NotKnown, _) if self.autoruns() => Some("Script may run (autorun)".to_owned()),

@@ -139,6 +139,13 @@ impl Debugger {
         view
     }
 
+    /// The line a script stands on.
+    #[must_use]
+    pub fn line_of(&self, machine: &Machine) -> u32 {
+        // Held by the debugger it stands where that says, though the machine's own wait may be over.
+        if self.is_paused() { line_of(machine, &self.reason) } else { machine.standing_line() }
+    }
+
     fn show_machine(&self, machine: &Machine, view: &mut View) {
         view.code = self.code;
         view.executed = machine.executed();
@@ -170,10 +177,7 @@ fn worked_out<H: Host + ?Sized>(
 fn line_of(machine: &Machine, reason: &Reason) -> u32 {
     match reason {
         Reason::Waiting(Wait::Pause { .. } | Wait::Busy { .. })
-        | Reason::Asked(Some(Wait::Pause { .. } | Wait::Busy { .. })) => {
-            let at = machine.at().saturating_sub(1) as usize;
-            machine.program().lines.get(at).copied().unwrap_or(0)
-        }
+        | Reason::Asked(Some(Wait::Pause { .. } | Wait::Busy { .. })) => machine.line_behind(),
         _ => machine.line(),
     }
 }

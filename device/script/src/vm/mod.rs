@@ -230,6 +230,21 @@ impl Machine {
         self.program.lines.get(self.at as usize).copied().unwrap_or(0)
     }
 
+    /// The line of the text it stands on: while it waits in PAUSE, or for its host, that of the instruction it waits in, which it has
+    /// behind it already.
+    #[must_use]
+    pub fn standing_line(&self) -> u32 {
+        match self.state {
+            State::Pausing { .. } => self.line_behind(),
+            _ => self.line(),
+        }
+    }
+
+    /// The line of the instruction that was run last, where none has jumped since.
+    pub(crate) fn line_behind(&self) -> u32 {
+        self.program.lines.get(self.at.saturating_sub(1) as usize).copied().unwrap_or(0)
+    }
+
     /// Subroutines that have not returned, the innermost last.
     #[must_use]
     pub fn calls(&self) -> &[Call] {

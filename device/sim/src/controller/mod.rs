@@ -183,7 +183,7 @@ impl Controller {
 
     /// What the firmware has found and decided; `None` without power.
     pub fn unit(&self) -> Option<UnitView<'_>> {
-        self.firmware.as_ref().map(UnitView::new)
+        self.firmware.as_ref().map(|firmware| UnitView::new(firmware, &self.debugger))
     }
 
     /// The settings in RAM; without power those that a start would load.

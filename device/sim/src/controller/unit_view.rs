@@ -8,6 +8,7 @@ use crate::signals::SignalValues;
 use crate::supervision::Leds;
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_protocol::packet_serial::status::Conditions;
+use brushwork_script::debug::Debugger;
 use brushwork_script::vm::Machine;
 use std::time::Duration;
 
@@ -15,11 +16,12 @@ use std::time::Duration;
 #[derive(Clone, Copy, Debug)]
 pub struct UnitView<'a> {
     firmware: &'a Firmware,
+    debugger: &'a Debugger,
 }
 
 impl<'a> UnitView<'a> {
-    pub(super) fn new(firmware: &'a Firmware) -> Self {
-        Self { firmware }
+    pub(super) fn new(firmware: &'a Firmware, debugger: &'a Debugger) -> Self {
+        Self { firmware, debugger }
     }
 
     /// The text of command 21, without its end mark.
@@ -79,7 +81,7 @@ impl<'a> UnitView<'a> {
 
     /// What the script does.
     pub fn script_view(&self) -> ScriptView {
-        self.firmware.script.view(&self.firmware.memory.script)
+        self.firmware.script.view(&self.firmware.memory.script, self.debugger)
     }
 
     /// Whether the unit waits for new firmware.

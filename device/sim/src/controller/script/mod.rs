@@ -17,7 +17,7 @@ pub use memory::{BLOCK_WRITE_TIME, Content, ERASE_TIME, STATUS_DONE, STATUS_NOT_
 pub use run::INSTRUCTION_TIME;
 pub use streams::Streams;
 
-use brushwork_script::debug::StopCause;
+use brushwork_script::debug::{Debugger, StopCause};
 use brushwork_script::image::{self, ImageError};
 use brushwork_script::vm::{Machine, State};
 use serde::Serialize;
@@ -70,6 +70,8 @@ pub struct ScriptView {
     pub holds: Content,
     /// Whether a script runs.
     pub run: ScriptRun,
+    /// Whether the debugger holds it where it is. For its controller it runs.
+    pub is_paused: bool,
 }
 
 /// How far a script is.
@@ -80,7 +82,7 @@ pub enum ScriptRun {
     Idle,
     /// It runs.
     Running {
-        /// The line that comes next.
+        /// The line it stands on: that of a PAUSE while it waits there, else the one that comes next.
         line: u32,
     },
     /// END, or the end of its text.
@@ -123,8 +125,9 @@ impl ScriptState {
     }
 
     /// How far it is.
-    pub fn view(&self, memory: &ScriptMemory) -> ScriptView {
-        ScriptView { holds: memory.content(), run: self.run_view() }
+    pub fn view(&self, memory: &ScriptMemory, debugger: &Debugger) -> ScriptView {
+        let is_paused = self.is_running() && debugger.is_paused();
+        ScriptView { holds: memory.content(), run: self.run_view(debugger), is_paused }
     }
 
     /// Starts the stored image from its beginning. Assumed: a script that runs already goes on, since there is an action of its own that
@@ -179,11 +182,11 @@ impl ScriptState {
         }
     }
 
-    fn run_view(&self) -> ScriptRun {
+    fn run_view(&self, debugger: &Debugger) -> ScriptRun {
         let Some(machine) = &self.machine else {
             return ScriptRun::Idle;
         };
-        let line = machine.line();
+        let line = debugger.line_of(machine);
         match machine.state() {
             State::Ended => ScriptRun::Ended { line },
             State::Faulted(fault) => ScriptRun::Faulted { line: fault.line, what: fault.kind.to_string() },

@@ -51,6 +51,7 @@ fn a_paused_script_does_not_pause_the_world() {
     assert!(position(&bench) > before + 1.0, "the motor goes on");
     assert_eq!(look(&mut bench).executed, view.executed, "the script does not");
     assert_eq!(bench.script(), ScriptRun::Running { line: 4 }, "for its controller it runs");
+    assert!(bench.unit().view().script.is_some_and(|script| script.is_paused), "and panels are told");
 }
 
 #[test]

@@ -36,6 +36,16 @@ fn start_and_stop_are_commands_248_and_249_and_a_start_begins_anew() {
 }
 
 #[test]
+fn a_script_that_pauses_is_told_on_the_line_of_its_pause() {
+    let mut bench = running("main\nputs 0,[dec 1,13]\npause 1000\ngoto main\n");
+    bench.wait(ms(100));
+    assert_eq!(bench.script(), ScriptRun::Running { line: 3 });
+    bench.apply(&WorldAction::SetRts { on: true });
+    bench.ask(number::STOP_SCRIPT, &[]);
+    assert_eq!(bench.script(), ScriptRun::Stopped { line: 3 });
+}
+
+#[test]
 fn what_a_script_does_does_not_depend_on_how_time_is_cut() {
     let program = "main\nputs 0,[dec SYSUSTICK,32]\npause 3\nif SYSTICK < 200 then main\nend\n";
     let said = |step: Duration| {
