@@ -28,6 +28,8 @@ mod signal_graph;
 /// The share of the screen that the list of sections takes, and its least and greatest width.
 const NAV_SHARE: f32 = 0.25;
 const NAV_WIDTH: (f32, f32) = (176.0, 250.0);
+/// Below this width the list of sections unfolds above instead.
+const SIDE_BY_SIDE: f32 = 560.0;
 
 pub fn general_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     framed_ui(ui, model, commands, sections_ui);
@@ -57,39 +59,49 @@ pub fn framed_ui(
     }
 }
 
-/// The parts at the left, and what the open one has.
+/// The parts at the left, or above in a list that unfolds where that leaves too little room, and what the open one has.
 fn sections_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    let family = model.front.family();
-    let general = &mut model.front.general;
     let size = ui.available_size();
+    if size.x < SIDE_BY_SIDE {
+        nav::choice_ui(ui, &mut model.front.general);
+        return section_ui(ui, model, commands);
+    }
     let nav_width = (size.x * NAV_SHARE).clamp(NAV_WIDTH.0, NAV_WIDTH.1);
     ui.horizontal_top(|ui| {
         ui.allocate_ui_with_layout(vec2(nav_width, size.y), Layout::top_down(Align::Min), |ui| {
             ui.set_width(nav_width);
-            nav::nav_ui(ui, general);
+            nav::nav_ui(ui, &mut model.front.general);
         });
         let width = ui.available_width();
         ui.allocate_ui_with_layout(vec2(width, size.y), Layout::top_down(Align::Min), |ui| {
             ui.set_width(width);
-            let help_height = help::height(size.y);
-            let height = size.y - help_height - ui.spacing().item_spacing.y;
-            // Pages without rows have nothing to explain.
-            match general.section {
-                Section::Conflicts if !general.is_filtered() => conflicts::conflicts_ui(ui, general, size.y),
-                Section::ClampTest if !general.is_filtered() => {
-                    clamp::clamp_ui(ui, general, (&model.front.link, family), size.y, commands);
-                }
-                _ => {
-                    match general.pin() {
-                        Some(pin) => {
-                            let signal = model.front.link.readings.signal(pin);
-                            pin::pin_ui(ui, general, pin, signal, height, commands);
-                        }
-                        None => rows::rows_ui(ui, general, height),
-                    }
-                    help::help_ui(ui, general, help_height);
-                }
-            }
+            section_ui(ui, model, commands);
         });
     });
+}
+
+/// What the open part has, and the explanation of one row.
+fn section_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    let family = model.front.family();
+    let general = &mut model.front.general;
+    let room = ui.available_height();
+    let help_height = help::height(room);
+    let height = room - help_height - ui.spacing().item_spacing.y;
+    // Pages without rows have nothing to explain.
+    match general.section {
+        Section::Conflicts if !general.is_filtered() => conflicts::conflicts_ui(ui, general, room),
+        Section::ClampTest if !general.is_filtered() => {
+            clamp::clamp_ui(ui, general, (&model.front.link, family), room, commands);
+        }
+        _ => {
+            match general.pin() {
+                Some(pin) => {
+                    let signal = model.front.link.readings.signal(pin);
+                    pin::pin_ui(ui, general, pin, signal, height, commands);
+                }
+                None => rows::rows_ui(ui, general, height),
+            }
+            help::help_ui(ui, general, help_height);
+        }
+    }
 }

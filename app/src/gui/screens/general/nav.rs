@@ -1,57 +1,91 @@
 //! The parts of the settings at the left: the unit's own, then its pins (MCP manual 1.9.2).
 
 use brushwork_link::settings::SettingsTable;
-use egui::{Align, Button, Layout, Response, RichText, Role, ScrollArea, Ui, WidgetInfo};
+use egui::{Align, Button, ComboBox, Layout, Response, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
 use crate::gui::model::general::{General, Section, UnitSettings, sections};
 use crate::gui::shell::heading_ui;
 
 /// Room that the scroll bar may take.
 const BAR_WIDTH: f32 = 10.0;
+/// The list that unfolds.
+const LIST_WIDTH: f32 = 220.0;
+const LIST_HEIGHT: f32 = 400.0;
+
+const CONFLICTS: &str = "Conflicts";
+const CLAMP_TEST: &str = "Voltage clamp test";
 
 pub fn nav_ui(ui: &mut Ui, general: &mut General) {
-    let Some(unit) = general.unit() else { return };
-    let current = (!general.is_filtered()).then_some(general.section);
-    let seeks = general.is_seeking();
-    let mut wanted = None;
-    ScrollArea::vertical().id_salt("sections").auto_shrink(false).show(ui, |ui| {
-        ui.spacing_mut().item_spacing.y = 1.0;
+    let wanted = ScrollArea::vertical().id_salt("sections").auto_shrink(false).show(ui, |ui| {
         ui.set_max_width(ui.available_width() - BAR_WIDTH);
-        let sections = sections(unit.table());
-        for (heading, pins) in [("Unit", false), ("Pin settings", true)] {
-            if sections.iter().any(|(section, _)| section.is_pin() == pins) {
-                heading_ui(ui, heading);
-            }
-            for (section, name) in sections.iter().filter(|(section, _)| section.is_pin() == pins) {
-                let function = function_of(unit, *section);
-                let mark = mark_of(unit, *section, function.as_deref());
-                let is_current = current == Some(*section);
-                let response = section_ui(ui, name, function.as_deref(), mark, is_current);
-                if is_current && seeks {
-                    response.scroll_to_me(None);
-                }
-                if response.clicked() {
-                    wanted = Some(*section);
-                }
-            }
-            if !pins {
-                let count = unit.conflicts().len();
-                let mark = if count == 0 { "none".to_owned() } else { format!("{count} found") };
-                let is_current = current == Some(Section::Conflicts);
-                if section_ui(ui, "Conflicts", None, mark, is_current).clicked() {
-                    wanted = Some(Section::Conflicts);
-                }
-                let is_current = current == Some(Section::ClampTest);
-                if section_ui(ui, "Voltage clamp test", None, String::new(), is_current).clicked() {
-                    wanted = Some(Section::ClampTest);
-                }
-            }
-            ui.add_space(6.0);
-        }
+        entries_ui(ui, general)
     });
-    if let Some(section) = wanted {
+    if let Some(section) = wanted.inner {
         general.turn_to(section);
     }
+}
+
+/// The same parts in a list that unfolds, where there is no room beside the settings.
+pub fn choice_ui(ui: &mut Ui, general: &mut General) {
+    let Some(unit) = general.unit() else { return };
+    let current = match general.section {
+        _ if general.is_filtered() => "all sections".to_owned(),
+        Section::Conflicts => CONFLICTS.to_owned(),
+        Section::ClampTest => CLAMP_TEST.to_owned(),
+        section => {
+            let named = sections(unit.table()).into_iter().find(|(other, _)| *other == section);
+            named.map_or_else(String::new, |(_, name)| name.to_owned())
+        }
+    };
+    ui.horizontal(|ui| {
+        let label = ui.label("Section");
+        let list =
+            ComboBox::from_id_salt("section").selected_text(current).width(LIST_WIDTH).height(LIST_HEIGHT);
+        let shown = list.show_ui(ui, |ui| entries_ui(ui, general));
+        shown.response.labelled_by(label.id);
+        if let Some(section) = shown.inner.flatten() {
+            general.turn_to(section);
+        }
+    });
+}
+
+/// One entry per part; the one that was pressed.
+fn entries_ui(ui: &mut Ui, general: &General) -> Option<Section> {
+    let unit = general.unit()?;
+    let current = (!general.is_filtered()).then_some(general.section);
+    let mut wanted = None;
+    ui.spacing_mut().item_spacing.y = 1.0;
+    let sections = sections(unit.table());
+    for (heading, pins) in [("Unit", false), ("Pin settings", true)] {
+        if sections.iter().any(|(section, _)| section.is_pin() == pins) {
+            heading_ui(ui, heading);
+        }
+        for (section, name) in sections.iter().filter(|(section, _)| section.is_pin() == pins) {
+            let function = function_of(unit, *section);
+            let mark = mark_of(unit, *section, function.as_deref());
+            let is_current = current == Some(*section);
+            let response = section_ui(ui, name, function.as_deref(), mark, is_current);
+            if is_current && general.is_seeking() {
+                response.scroll_to_me(None);
+            }
+            if response.clicked() {
+                wanted = Some(*section);
+            }
+        }
+        if !pins {
+            let count = unit.conflicts().len();
+            let mark = if count == 0 { "none".to_owned() } else { format!("{count} found") };
+            for (section, name, mark) in
+                [(Section::Conflicts, CONFLICTS, mark), (Section::ClampTest, CLAMP_TEST, String::new())]
+            {
+                if section_ui(ui, name, None, mark, current == Some(section)).clicked() {
+                    wanted = Some(section);
+                }
+            }
+        }
+        ui.add_space(6.0);
+    }
+    wanted
 }
 
 fn section_ui(ui: &mut Ui, name: &str, function: Option<&str>, mark: String, is_current: bool) -> Response {
