@@ -2,7 +2,7 @@
 //!
 //! Pure and quick, so that a slider or a typed gain redraws its prediction at once; nothing is sent and no motor moves.
 
-use crate::design::{Design, Goal, Task};
+use crate::design::{Design, Goal, Limit, Task, limit};
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::Gains;
 use crate::motion_mind::MotionMindRegisters;
@@ -178,6 +178,12 @@ pub fn redesign_motion_mind(report: &Report, level: f64) -> Option<MotionMindReg
     }
     let design = redesign(request.method, &task, request.level, &design, level)?;
     Some(unit.registers.with(&design.gains, task.qpps, mind))
+}
+
+/// What keeps the gains of a level from being stiffer; see [`limit`].
+#[must_use]
+pub fn limit_at(task: &Task, was: f64, level: f64, gains: &Gains) -> Option<Limit> {
+    limit(&at_level(task, was, level), gains)
 }
 
 /// The share of the first gains that was left on the machine.

@@ -3,9 +3,11 @@
 //! An unstable loop can have a small sensitivity, so each search starts at a gain near zero, where the loop is stable, goes up
 //! and stops at the first bound it meets.
 
+mod binding;
 mod position;
 mod velocity;
 
+pub use binding::{Bound, Limit, limit};
 pub(crate) use position::deadzone;
 pub use position::{design_pd, design_pid, design_piv};
 pub use velocity::design_velocity;

@@ -72,6 +72,11 @@ fn part_ui(ui: &mut Ui, place: Rect, contents: impl FnOnce(&mut Ui)) {
     ui.scope_builder(UiBuilder::new().max_rect(place).layout(Layout::top_down(Align::Min)), contents);
 }
 
+/// Whole seconds, so that the figure does not flicker.
+fn time_left(seconds: f64) -> String {
+    if seconds < 1.5 { "a moment left".to_owned() } else { format!("about {seconds:.0} s left") }
+}
+
 /// What goes on, how long it will take, and the button that ends it.
 fn progress_ui(ui: &mut Ui, tuning: &Tuning, which: Loop, commands: &mut Commands) {
     let Some(sequence) = tuning.running() else { return };
@@ -86,7 +91,7 @@ fn progress_ui(ui: &mut Ui, tuning: &Tuning, which: Loop, commands: &mut Command
         }
         let bar = ProgressBar::new(left.fraction).desired_width(220.0);
         ui.add(bar);
-        let text = left.seconds.map_or_else(String::new, |seconds| format!("about {seconds:.0} s left"));
+        let text = left.seconds.map_or_else(String::new, time_left);
         ui.add(Label::new(RichText::new(text).monospace()).selectable(false));
     });
     ui.horizontal(|ui| {

@@ -8,6 +8,7 @@ pub mod chart;
 pub mod files;
 pub mod guide;
 mod level;
+mod limits;
 pub mod measured;
 pub mod model;
 pub mod observe;

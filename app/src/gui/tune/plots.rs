@@ -10,6 +10,8 @@ use super::model::{Loop, Panel};
 use super::run::{Run, SPEED_OVER_S, Shown};
 use crate::gui::theme::Palette;
 
+/// Below this the open loop has no phase to speak of, dB.
+const LEAST_GAIN_DB: f64 = -60.0;
 /// The time that a live picture shows at least, s, and the steps in which it grows.
 const LIVE_S: f64 = 6.0;
 /// Share of the height that the duty gets.
@@ -67,11 +69,17 @@ pub struct View {
 /// The picture of a run that goes on.
 pub fn live_ui(ui: &mut Ui, trace: &Trace, which: Loop) {
     let end_s = (trace.end_s() / 3.0).ceil() * 3.0;
-    record_ui(ui, trace, which, end_s.max(LIVE_S));
+    record_ui(
+        ui,
+        trace,
+        which,
+        end_s.max(LIVE_S),
+        "The motor is about to turn a little, to check its wiring.",
+    );
 }
 
 /// The record of a run from its start to `end_s`.
-fn record_ui(ui: &mut Ui, trace: &Trace, which: Loop, end_s: f64) {
+fn record_ui(ui: &mut Ui, trace: &Trace, which: Loop, end_s: f64, empty: &str) {
     let palette = Palette::of(ui);
     let x = Axis::new("time", "s", 0.0, end_s);
     let room = ui.available_size();
@@ -85,8 +93,9 @@ fn record_ui(ui: &mut Ui, trace: &Trace, which: Loop, end_s: f64) {
     // The scale is that of what the motor did: the law probe commands speeds that no motor reaches.
     let y = around(name, unit, &main);
     let whole = Stretch { from_s: 0.0, to_s: trace.end_s(), is_position: which == Loop::Position };
-    main.insert(0, line("setpoint", setpoints(trace, &whole), palette.traces[0], Look::Dashed));
-    let empty = "The motor is about to turn a little, to check its wiring.";
+    if main.iter().any(|line| !line.points.is_empty()) {
+        main.insert(0, line("setpoint", setpoints(trace, &whole), palette.traces[0], Look::Dashed));
+    }
     let label = format!("Live {name} of the run");
     chart(ui, &label, (x, y), &main, &[], empty, vec2(room.x, heights[0]));
     let duty = [line("duty", duties(trace, None), palette.traces[1], Look::Solid)];
@@ -119,7 +128,8 @@ pub fn result_ui(ui: &mut Ui, panel: &Panel, view: &mut View, which: Loop) {
         return chart(ui, "Result of a run", axes, &[], &[], empty, size);
     };
     if let Some(seen) = &run.seen {
-        return record_ui(ui, seen, which, (1.05 * seen.end_s()).max(0.5));
+        let empty = "Nothing was measured: it was refused before the motor was driven.";
+        return record_ui(ui, seen, which, (1.05 * seen.end_s()).max(0.5), empty);
     }
     match view.kind {
         Kind::Measured => measured_ui(ui, run, which),
@@ -253,7 +263,7 @@ fn bode_ui(ui: &mut Ui, panel: &Panel, run: &Run) {
     }
     let x = Axis::new("frequency", "Hz", (top_hz * 2e-4).max(0.01), top_hz).log();
     let half = vec2(size.x, (size.y - 6.0) / 2.0);
-    let y = Axis { low: -60.0, high: 60.0, ..Axis::new("gain", "dB", 0.0, 0.0) };
+    let y = Axis { low: LEAST_GAIN_DB, high: 60.0, ..Axis::new("gain", "dB", 0.0, 0.0) };
     let empty = "There is no model yet: tune first.";
     chart(ui, "Bode gain of the open loop", (x, y), &gain, &[(0.0, "0 dB")], empty, half);
     let y = Axis::new("phase", "degrees", -270.0, 0.0);
@@ -328,7 +338,8 @@ fn over_frequency(shown: &Shown, value: impl Fn(&LoopPoint) -> f64) -> Vec<(f64,
 fn unwrapped_phase(shown: &Shown) -> Vec<(f64, f64)> {
     let mut before: Option<f64> = None;
     let mut phases = Vec::with_capacity(shown.frequency.len());
-    for point in &shown.frequency {
+    // Next to nothing has no phase: at half the tick's rate the loop is real.
+    for point in shown.frequency.iter().filter(|point| point.gain_db() > LEAST_GAIN_DB) {
         let mut phase = point.phase_deg();
         if phase > 0.0 && before.is_none() {
             phase -= 360.0;

@@ -344,6 +344,7 @@ fn figures_ui(ui: &mut Ui, model: &Model, which: Loop) {
     } else if shown.forecast.ms > 2.0 {
         lamp_ui(ui, LampState::Warning, "Ms above 2: a little more load or lag could make it swing.");
     }
+    super::limits::limits_ui(ui, run);
 }
 
 type Figure = (&'static str, &'static str, fn(&Shown) -> String);
