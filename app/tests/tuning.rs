@@ -350,6 +350,55 @@ fn after_a_refusal_is_mended_another_try_succeeds_and_both_runs_are_kept() {
 }
 
 #[test]
+fn runs_are_compared_by_what_they_were_and_the_level_that_is_shown_is_the_one_that_is_tuned() {
+    let mut bench = tuned("Velocity Settings", Loop::Velocity);
+    let first = run(&mut bench, Loop::Velocity).first.expect("gains");
+    assert!(bench.sees_part("imited by ") || bench.sees_part("No bound limits here"), "what limits is told");
+    bench.focus_label("M1 level");
+    for _ in 0..30 {
+        bench.key(Key::ArrowRight);
+    }
+    let level = run(&mut bench, Loop::Velocity).level;
+    assert!(level >= 75.0, "{level}");
+    bench.press("Arm");
+    bench.pass_ms(500);
+    bench.press("Tune M1");
+    finish(&mut bench);
+    let second = run(&mut bench, Loop::Velocity);
+    assert_eq!((second.number, second.report.request.level), (2, level));
+    let runs = bench.model().front.tune.front(Loop::Velocity).runs.clone();
+    assert_eq!(
+        runs[0].shown.as_ref().map(|shown| shown.registers),
+        Some(first),
+        "not what was considered after it"
+    );
+    assert_eq!(runs[0].level, 50.0);
+    // Each in its row, drawn beneath the one that is looked at, and left out by its box.
+    bench.press("Step");
+    assert!(bench.sees_part("Predicted step of the speed: run 1"));
+    press_below(&mut bench, "Draw run 1");
+    assert!(!bench.sees_part("Predicted step of the speed: run 1"));
+    // The row that is chosen brings its level back to the slider, and so to the next run.
+    press_below(&mut bench, "Run 1");
+    assert_eq!(bench.model().front.tune.front(Loop::Velocity).level(), 50.0);
+    bench.press("Arm");
+    bench.pass_ms(500);
+    bench.press("Tune M1");
+    finish(&mut bench);
+    assert_eq!(run(&mut bench, Loop::Velocity).report.request.level, 50.0);
+}
+
+#[test]
+fn a_refusal_before_anything_moves_says_that_there_is_nothing_to_see() {
+    let mut bench = opened("small-gearmotor", "Velocity Settings");
+    bench.act(&WorldAction::SetBatteryVolts { volts: 5.5 });
+    bench.press("Tune M1");
+    finish(&mut bench);
+    assert!(bench.sees_part("Sketch: The main battery sags or is empty"));
+    assert!(bench.sees("Live speed of the run"), "an empty picture, which says why");
+}
+
+#[test]
 fn a_report_is_saved_as_the_command_line_writes_it_and_opened_again() {
     let mut bench = tuned("Velocity Settings", Loop::Velocity);
     let folder = tempfile::tempdir().expect("a temporary folder");

@@ -26,9 +26,11 @@ use super::model::traffic::Transact;
 use super::model::{Appearance, DeskId, Model};
 use super::parts::{Parts, SimulatedWorld};
 use super::remember::Memory;
+use super::tune::model::Afterwards;
 use super::{shell, theme};
 
 mod debugging;
+mod leaving;
 mod linking;
 mod motion_mind;
 mod scripting;
@@ -53,6 +55,7 @@ pub struct App {
     shown: Option<Appearance>,
     /// The window was asked to close.
     closing: bool,
+    leaving: leaving::Leaving,
     memory: Option<Memory>,
     end: EndBySignal,
     last_frame: Arc<FrameTime>,
@@ -71,6 +74,7 @@ impl App {
             links: Links::default(),
             shown: None,
             closing: false,
+            leaving: leaving::Leaving::default(),
             memory: None,
             end: EndBySignal::default(),
             last_frame: Arc::new(FrameTime::new()),
@@ -134,10 +138,11 @@ impl App {
         self.look_after_programs(&ctx);
         self.hold_unsaved(&ctx);
         self.hold_open(&ctx);
+        self.hold_for_run(&ctx);
         if self.end.is_asked() {
             self.model.mcl.keep_all();
         }
-        if self.closing || self.end.is_asked() {
+        if (self.closing || self.end.is_asked()) && !self.is_held() {
             self.links.stop_all();
             ctx.send_viewport_cmd(ViewportCommand::Close);
         }
@@ -286,6 +291,8 @@ impl App {
                 }
             }
             Command::Disarm => self.disarm(),
+            Command::SelectUnit(address)
+                if self.waits_for_run(self.model.front.id(), Afterwards::Select(address)) => {}
             Command::SelectUnit(address) => {
                 self.disarm();
                 self.request(Request::Select(address));

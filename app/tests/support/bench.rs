@@ -79,6 +79,11 @@ impl Bench {
         Self::with_bus(Bus::single(unit, StreamIndex::Usb), [1280.0, 800.0], Theme::Dark)
     }
 
+    /// A window of 1280 by 800 with any controllers on one line behind it.
+    pub fn of_bus(bus: Bus) -> Self {
+        Self::with_bus(bus, [1280.0, 800.0], Theme::Dark)
+    }
+
     /// A window of any size with any one controller behind it.
     pub fn of_sized(unit: Controller, size: [f32; 2], theme: Theme) -> Self {
         Self::with_bus(Bus::single(unit, StreamIndex::Usb), size, theme)

@@ -14,6 +14,7 @@ use crate::gui::model::link::{Effect, LinkView};
 use crate::gui::model::message::Gravity;
 use crate::gui::model::{Desk, DeskId, Phase, place_of};
 use crate::gui::parts::OpenLink;
+use crate::gui::tune::model::Afterwards;
 
 impl App {
     /// Connects to what is chosen in the device list.
@@ -116,7 +117,12 @@ impl App {
                 self.model.messages.note("Gave up connecting.");
             }
             Phase::Open { target } => {
-                desk.phase = Phase::Closing { target: target.clone() };
+                let target = target.clone();
+                if self.waits_for_run(id, Afterwards::Disconnect) {
+                    return;
+                }
+                let Some(desk) = self.model.desk_mut(id) else { return };
+                desk.phase = Phase::Closing { target };
                 self.request_of(id, Request::Disconnect);
             }
             Phase::Closed | Phase::Closing { .. } => {}

@@ -83,19 +83,8 @@ impl App {
             if let Some(next) = desk.tune.next(desk.link.arming, refused, origin) {
                 self.ask_next(id, next);
             }
-        }
-        self.put_winding_back();
-    }
-
-    /// Writes L and R back when the run that they were cleared for has ended.
-    fn put_winding_back(&mut self) {
-        let front = &self.model.front;
-        let is_idle = !front.loops.is_busy() && !front.loops.wants_reading() && front.is_connected();
-        let Some(image) = front.tune.winding_due().filter(|_| is_idle).cloned() else { return };
-        // A write that is not taken is tried again in the next frame.
-        if self.write_gains(image).is_ok() {
-            self.model.front.tune.winding_is_back();
-            self.model.messages.note("L and R are put back as they were before the run.");
+            self.put_winding_back(id);
+            self.follow_run(id);
         }
     }
 
@@ -178,20 +167,8 @@ impl App {
         }
     }
 
-    /// Writes gains to RAM as the settings of the loops are written: with a backup before, and read back.
     pub(super) fn write_gains(&mut self, image: SettingsImage) -> Result<(), String> {
-        let busy = || "The settings are being read or written. Try again in a moment.".to_owned();
-        let front = &mut self.model.front;
-        let identity = front.link.identity().cloned().ok_or("No controller is connected.")?;
-        let stream = front.link.stream;
-        let keeper = front.general.keeper().ok_or("No controller is connected.")?;
-        let request = front.loops.apply_image(image, &identity, stream, keeper).ok_or_else(busy)?;
-        if self.request(request) {
-            Ok(())
-        } else {
-            self.model.front.loops.not_begun();
-            Err(busy())
-        }
+        self.write_gains_of(self.model.front.id(), image)
     }
 
     fn open_report(&mut self, path: &std::path::Path) -> Result<(), String> {

@@ -158,6 +158,11 @@ impl LoopSettings {
         number(self.ram.get(&key(motor, column))?)
     }
 
+    /// The same of any setting of the loops, by its whole key.
+    pub fn held_value(&self, key: &str) -> Option<SettingValue> {
+        self.ram.get(key)
+    }
+
     /// What is to be shown: the edit, or else what the controller holds.
     pub fn shown(&self, motor: Motor, column: &Column) -> Option<SettingValue> {
         let key = key(motor, column.key);

@@ -18,6 +18,7 @@ pub mod registers;
 pub mod remaining;
 pub mod result;
 pub mod run;
+mod runs;
 pub mod sequence;
 pub mod setup;
 mod sketches;

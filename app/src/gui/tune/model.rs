@@ -1,6 +1,7 @@
 //! Tuning as the window keeps it: what is set, what runs, and the runs so far, for each loop of each motor.
 
 use brushwork_link::device::{ArmScope, Event, Identity, Request, Sample};
+use brushwork_link::settings::SettingValue;
 use brushwork_link::transport::Stream;
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_tuning::axis::{EncoderClass, Setup};
@@ -18,6 +19,9 @@ use crate::gui::model::link::{Arming, Effect};
 use crate::gui::model::message::Gravity;
 use crate::gui::model::screen::Screen;
 use crate::tune::Target;
+
+/// How often L and R are written back before that is given up.
+const MOST_WRITES: u8 = 4;
 
 /// Position limits farther apart are none.
 const ENDLESS_COUNTS: f64 = 1e8;
@@ -79,6 +83,32 @@ pub enum TuneWish {
     Adjust(Motor, Registers),
     SaveReport(std::path::PathBuf),
     OpenReport(std::path::PathBuf),
+}
+
+/// What was asked for during a run and would cut it off from its controller: it follows when the run has put back what it changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Afterwards {
+    Disconnect,
+    /// The unit at this address.
+    Select(u8),
+}
+
+impl Afterwards {
+    /// Why the run ends.
+    pub const fn why(self) -> &'static str {
+        match self {
+            Self::Disconnect => "the link is being closed",
+            Self::Select(_) => "another unit was chosen",
+        }
+    }
+
+    /// What follows, as the beginning of a sentence.
+    pub const fn what(self) -> &'static str {
+        match self {
+            Self::Disconnect => "The link closes (ask again to close it at once)",
+            Self::Select(_) => "The other unit is shown",
+        }
+    }
 }
 
 /// How an axis is tuned.
@@ -164,8 +194,14 @@ impl Panel {
         self.runs.get_mut(self.chosen)
     }
 
+    /// Where the slider stands: at the level of the gains that are considered, else at that of the next run.
+    pub fn level(&self) -> f64 {
+        self.run().filter(|run| run.first.is_some()).map_or(self.setting.level, |run| run.level)
+    }
+
     pub fn add(&mut self, report: brushwork_tuning::report::Report) {
         let number = self.runs.last().map_or(1, |run| run.number + 1);
+        self.runs.iter_mut().for_each(Run::settle);
         self.runs.push(Run::new(number, report));
         self.chosen = self.runs.len() - 1;
     }
@@ -187,6 +223,8 @@ struct Winding {
     before: brushwork_link::settings::SettingsImage,
     /// The run that they were cleared for has ended.
     is_due: bool,
+    /// How often they were written back.
+    writes: u8,
 }
 
 /// Tuning on one link.
@@ -204,6 +242,7 @@ pub struct Tuning {
     pub view: super::plots::View,
     /// Work with the settings that was asked for during a run: it waits until what the run changed is put back.
     pub waiting: Option<SettingsWish>,
+    pub afterwards: Option<Afterwards>,
     /// A path for a report, as it is typed.
     pub path: String,
     pub dialog: Option<super::files::Asked>,
@@ -222,6 +261,7 @@ impl Default for Tuning {
             calibrations: <[Calibration; 2]>::default(),
             view: super::plots::View::default(),
             waiting: None,
+            afterwards: None,
             path: String::new(),
             dialog: None,
         }
@@ -327,7 +367,10 @@ impl Tuning {
 
     /// Begins a run. It goes on by [`Tuning::next`] in every frame.
     pub fn start(&mut self, which: Loop, motor: Motor, stream: Option<Stream>) -> Result<(), String> {
-        self.begin(which, motor, stream, |panel, motor| Ok(Work::Tune(panel.setting.request(motor))))
+        self.begin(which, motor, stream, |panel, motor| {
+            let setting = Setting { level: panel.level(), ..panel.setting };
+            Ok(Work::Tune(setting.request(motor)))
+        })
     }
 
     /// Begins to try the considered gains on the machine.
@@ -466,7 +509,7 @@ impl Tuning {
 
     /// L and R are cleared: what they were is put back after the run.
     pub fn winding_cleared(&mut self, motor: Motor, before: brushwork_link::settings::SettingsImage) {
-        self.winding = Some(Winding { motor, before, is_due: false });
+        self.winding = Some(Winding { motor, before, is_due: false, writes: 0 });
     }
 
     /// Whose L and R are cleared at the moment.
@@ -487,9 +530,23 @@ impl Tuning {
         Some(&winding.before)
     }
 
-    /// They have been written back.
-    pub fn winding_is_back(&mut self) {
+    /// They are being written back. It is tried a few times; what becomes of it is seen by [`Tuning::is_winding_back`].
+    pub fn winding_is_written(&mut self) {
+        if let Some(winding) = &mut self.winding {
+            winding.writes += 1;
+        }
+    }
+
+    /// Whether they are what they were, by what the controller was read to hold; `None` while that is not to be known. They are forgotten
+    /// then, and also when writing them was in vain.
+    pub fn is_winding_back(&mut self, held: impl Fn(&str) -> Option<SettingValue>) -> Option<bool> {
+        let winding = self.winding.as_ref().filter(|winding| winding.writes > 0)?;
+        let is_back = winding.before.iter().all(|(key, value)| held(key) == Some(value));
+        if !is_back && winding.writes < MOST_WRITES {
+            return None;
+        }
         self.winding = None;
+        Some(is_back)
     }
 
     /// Begins to put back what a lost link has left, if this is the unit.

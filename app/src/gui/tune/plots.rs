@@ -322,7 +322,7 @@ fn lines_of<'a>(
 ) -> impl Iterator<Item = (String, &'a Shown, Color32, Look)> {
     let others = panel.runs.iter().filter(move |other| other.number != run.number && other.is_overlaid);
     let earlier = others.filter_map(|other| {
-        let color = palette.traces[(5 + other.number) % palette.traces.len()];
+        let color = other.color(palette);
         Some((format!("run {}", other.number), other.shown.as_ref()?, color, Look::Dots))
     });
     let current = run.current().map(|shown| ("current".to_owned(), shown, palette.weak_text, Look::Dashed));

@@ -41,7 +41,7 @@ pub fn result_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Com
         gains_ui(ui, model, which, held);
         model_ui(ui, model, which);
     }
-    runs_ui(ui, model, which);
+    super::runs::runs_ui(ui, model, which);
     files_ui(ui, &mut model.front.tune, which, commands);
 }
 
@@ -395,49 +395,4 @@ fn measured(run: &Run, name: &str) -> (String, Option<String>) {
         _ => (None, None),
     };
     (measured.unwrap_or_else(|| "–".to_owned()), promised)
-}
-
-/// The runs so far: which is looked at, which are drawn beneath, their gains and figures.
-fn runs_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
-    let palette = Palette::of(ui);
-    let panel = model.front.tune.front_mut(which);
-    if panel.runs.len() < 2 {
-        return;
-    }
-    ui.add_space(6.0);
-    ui.label(RichText::new("Runs so far").strong());
-    let mut chosen = panel.chosen;
-    Grid::new("tune runs").striped(true).spacing(vec2(8.0, 2.0)).show(ui, |ui| {
-        for head in ["run", "drawn", "level", "P", "I", "D", "over", "settle", "Ms"] {
-            ui.label(RichText::new(head).small().color(palette.weak_text));
-        }
-        ui.end_row();
-        for (index, run) in panel.runs.iter_mut().enumerate() {
-            if ui.selectable_label(index == chosen, format!("Run {}", run.number)).clicked() {
-                chosen = index;
-            }
-            let drawn = ui.checkbox(&mut run.is_overlaid, "");
-            ui.ctx()
-                .accesskit_node_builder(drawn.id, |node| node.set_label(format!("Draw run {}", run.number)));
-            run_row_ui(ui, run);
-            ui.end_row();
-        }
-    });
-    panel.chosen = chosen;
-}
-
-fn run_row_ui(ui: &mut Ui, run: &Run) {
-    let Some(shown) = &run.shown else {
-        ui.label(run.report.causes.first().map_or("no gains", |_| "refused"));
-        return;
-    };
-    figure_ui(ui, &format!("{:.0}", run.level), 30.0);
-    // The first three that there are: P, I and D of the outer loop.
-    for field in FIELDS.iter().filter(|field| field.is_term(&shown.registers)).take(3) {
-        let value = field.value(&shown.registers).unwrap_or_default();
-        figure_ui(ui, &format!("{value:.*}", field.decimals.min(2)), 46.0);
-    }
-    for (_, _, figure) in [FIGURES[0], FIGURES[1], FIGURES[3]] {
-        figure_ui(ui, &figure(shown), 52.0);
-    }
 }

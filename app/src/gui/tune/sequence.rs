@@ -225,7 +225,8 @@ impl Sequence {
     pub fn take(&mut self, event: Event) -> Option<Ended> {
         match event {
             Event::JobStarted { .. } => self.has_started = true,
-            Event::JobProgress { text, .. } => {
+            // What the jobs around it say has no place among the steps of the run.
+            Event::JobProgress { text, .. } if self.stage == Stage::Running => {
                 let since_s = self.live.look().end_s();
                 if self.texts.last().is_none_or(|(last, _)| *last != text) {
                     self.texts.push((text, since_s));

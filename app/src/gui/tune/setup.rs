@@ -71,8 +71,7 @@ fn motor_row_ui(
         commands.push(Command::Tune(TuneWish::Start(motor)));
     }
     let panel = model.front.tune.panel_mut(which, motor);
-    let mut level =
-        panel.run().filter(|run| run.first.is_some()).map_or(panel.setting.level, |run| run.level);
+    let mut level = panel.level();
     ui.label("Level");
     if is_wide {
         ui.label(RichText::new("soft").small().color(Palette::of(ui).weak_text));
