@@ -96,6 +96,10 @@ impl Machine for SimulatedLine {
         self.machine().plugged()
     }
 
+    fn silence(&self) -> Duration {
+        self.machine().silence()
+    }
+
     fn wants_real_time(&self) -> bool {
         self.machine().wants_real_time()
     }

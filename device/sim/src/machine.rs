@@ -4,6 +4,7 @@
 //! the tests know no more than this.
 
 use crate::world::{WorldAction, WorldView};
+use brushwork_protocol::packet_serial::PACKET_GAP;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
@@ -88,6 +89,12 @@ pub trait Machine: Send {
     /// Whether anything is at the other end of the host's cable: false once every unit is unplugged. A unit unplugged from a wire
     /// that others share hears nothing and says nothing.
     fn plugged(&self) -> bool;
+
+    /// A pause of more than this between two bytes ends a command, whole or not. A server sees to it that a pause of its own making
+    /// is not taken for one on the line.
+    fn silence(&self) -> Duration {
+        PACKET_GAP
+    }
 
     /// Whether there is something that a person wants to look at in peace: a server that hurries goes back to real time.
     fn wants_real_time(&self) -> bool {

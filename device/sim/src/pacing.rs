@@ -145,6 +145,10 @@ impl<M: Machine> Machine for Paced<M> {
         self.inner.plugged()
     }
 
+    fn silence(&self) -> Duration {
+        self.inner.silence()
+    }
+
     fn wants_real_time(&self) -> bool {
         self.inner.wants_real_time()
     }

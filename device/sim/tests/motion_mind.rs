@@ -3,8 +3,7 @@
 use std::time::Duration;
 
 use brushwork_protocol::motion_mind::{
-    Address, Command, Part, Progress, REGISTERS, Reply, Returns, encode_frame, encode_line, function,
-    function2, parse_frame_reply, register_named, status,
+    Address, Command, Part, REGISTERS, encode_frame, encode_line, function, function2, status,
 };
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_sim::machine::{Machine, StreamIndex};
@@ -13,109 +12,11 @@ use brushwork_sim::motion_mind::{
 };
 use brushwork_sim::world::{PinSignal, WorldAction};
 
-const PATIENCE: Duration = Duration::from_millis(100);
+mod mind_bench;
+
+use mind_bench::{Bench, PATIENCE, UNIT_1, positioner};
+
 const LOOP: Duration = Duration::from_millis(5);
-const UNIT_1: Address = Address::FACTORY;
-
-/// One unit on a wire, asked in frames.
-struct Bench {
-    bus: MotionMindBus,
-}
-
-impl Bench {
-    fn new(mode: Mode) -> Self {
-        Self::of(MotionMindConfig::new(mode))
-    }
-
-    fn of(config: MotionMindConfig) -> Self {
-        Self { bus: MotionMindBus::new(vec![MotionMind::new(config).expect("the preset is sound")]) }
-    }
-
-    fn unit(&self) -> &MotionMind {
-        &self.bus.motion_minds()[0]
-    }
-
-    fn run(&mut self, for_how_long: Duration) {
-        let to = self.bus.now() + for_how_long;
-        self.bus.advance(to);
-    }
-
-    fn seconds(&mut self, seconds: f64) {
-        self.run(Duration::from_secs_f64(seconds));
-    }
-
-    /// Bytes that come back for bytes.
-    fn raw(&mut self, bytes: &[u8]) -> Vec<u8> {
-        let reply = self.bus.exchange(bytes, PATIENCE);
-        self.run(Duration::from_millis(6));
-        reply
-    }
-
-    fn tell(&mut self, command: Command) {
-        let frame = encode_frame(UNIT_1, &command).expect("it has a binary form");
-        let reply = self.raw(&frame);
-        let returns = Returns::of_function(u16::try_from(self.get("FUNCTION")).expect("16 bits"));
-        match parse_frame_reply(UNIT_1, &command, returns, &reply) {
-            Progress::Done { reply: Reply::Acknowledged | Reply::Returned(_), .. } => {}
-            other => panic!("{command:?}: {other:?}"),
-        }
-    }
-
-    fn set(&mut self, name: &str, value: i64) {
-        let register = register_named(name).expect("the register exists").number;
-        self.tell(Command::Write { register, value });
-    }
-
-    fn store(&mut self, name: &str, value: i64) {
-        let register = register_named(name).expect("the register exists").number;
-        self.tell(Command::WriteStore { register, value });
-    }
-
-    /// A register as the wire tells it.
-    fn ask(&mut self, name: &str) -> i64 {
-        let register = register_named(name).expect("the register exists");
-        let command = Command::ReadRegister(register.number);
-        let reply = self.raw(&encode_frame(UNIT_1, &command).expect("it has a binary form"));
-        match parse_frame_reply(UNIT_1, &command, Returns::default(), &reply) {
-            Progress::Done { reply: Reply::Registers(values), .. } => values[0].1,
-            other => panic!("{name}: {other:?}"),
-        }
-    }
-
-    /// A register as the unit has it.
-    fn get(&self, name: &str) -> i64 {
-        self.unit().read_one(register_named(name).expect("the register exists").number)
-    }
-
-    fn pin(&mut self, pin: usize, signal: PinSignal) {
-        self.bus.apply(0, &WorldAction::SetPin { pin, signal });
-    }
-
-    fn volts(&mut self, pin: usize, volts: f64) {
-        self.pin(pin, PinSignal::Volts { volts });
-    }
-
-    fn pulse(&mut self, milliseconds: f64) {
-        self.pin(pin::INDEX_RC, PinSignal::Pulse { microseconds: milliseconds * 1000.0 });
-    }
-
-    fn power_cycle(&mut self) {
-        self.bus.apply(0, &WorldAction::Power { on: false });
-        self.seconds(1.0);
-        self.bus.apply(0, &WorldAction::Power { on: true });
-        self.seconds(1.0);
-    }
-}
-
-/// A unit in mode 4 with gains that hold the default motor.
-fn positioner() -> Bench {
-    let mut bench = Bench::new(Mode::SerialPid);
-    bench.set("PTERM", 20_000);
-    bench.set("ITERM", 0);
-    bench.set("DTERM", 40_000);
-    bench.set("PIDSCALAR", 11);
-    bench
-}
 
 #[test]
 fn the_frames_of_the_manual_are_answered_with_its_bytes() {
@@ -570,7 +471,7 @@ fn a_self_test_needs_a_power_cycle() {
     for on in [false, true] {
         bus.apply(0, &WorldAction::Power { on });
         let now = bus.now();
-        bus.advance(now + Duration::from_secs(1));
+        bus.advance(now + Duration::from_secs(2));
     }
     assert_eq!(say(&mut bus, "R01 04\r\n"), "PTRM=6000\r\n");
 }

@@ -169,6 +169,10 @@ impl<M: Machine> Machine for Faulty<M> {
         self.inner.plugged()
     }
 
+    fn silence(&self) -> Duration {
+        self.inner.silence()
+    }
+
     fn wants_real_time(&self) -> bool {
         self.inner.wants_real_time()
     }

@@ -10,8 +10,15 @@ pub const TEXT_REPLY_DELAY: Duration = Duration::from_millis(6);
 pub const LONG_TEXT_REPLY_DELAY: Duration = Duration::from_millis(20);
 /// Assumed: writing one register to EEPROM takes the longest time that the manual allows; nothing is heard meanwhile.
 pub const STORE_TIME: Duration = Duration::from_millis(40);
-/// Assumed: from power-up or reset until the unit hears and drives, with the light blinking and without.
-pub const BOOT_TIME: [Duration; 2] = [Duration::from_millis(500), Duration::from_millis(20)];
+/// Assumed: from power-up or reset until the unit hears and drives, without the blinking of the light.
+pub const BOOT_TIME: Duration = Duration::from_millis(20);
+/// One blink of the light at power-up, of which there are MODE + 1 (Motion Mind manual 3.2). Assumed: the unit neither hears nor drives
+/// meanwhile, since DISABLEBLINK is said to quicken the power-up, and a software reset does not blink.
+pub const BLINK_TIME: Duration = Duration::from_millis(400);
+/// Assumed: an R/C receiver sends a pulse so often (Motion Mind manual 4.3: "roughly every 20 ms").
+pub const PULSE_PERIOD_LOOPS: u32 = 4;
+/// Without an R/C pulse for so long the signal is bad, in loops of 5 ms (Motion Mind manual 3.2: 50 ms).
+pub const PULSE_MISSING_LOOPS: u32 = 10;
 /// Without motion for so long, SAVEPOS stores the position (figure 20; elsewhere the manual says ten minutes).
 pub const SAVE_POSITION_AFTER: Duration = Duration::from_secs(5 * 60);
 /// Good R/C pulses whose mean replaces a bad one (register chapter; elsewhere 32).

@@ -3,6 +3,7 @@
 use super::unit::MotionMind;
 use crate::machine::{Machine, StreamIndex};
 use crate::world::{WorldAction, WorldView};
+use brushwork_protocol::motion_mind::BYTE_GAP;
 use std::time::Duration;
 
 /// Units that share a wire: each hears everything, each answers to its own address. Time is common.
@@ -92,5 +93,9 @@ impl Machine for MotionMindBus {
 
     fn plugged(&self) -> bool {
         self.units.iter().any(MotionMind::plugged)
+    }
+
+    fn silence(&self) -> Duration {
+        BYTE_GAP
     }
 }

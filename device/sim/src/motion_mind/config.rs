@@ -1,6 +1,6 @@
 //! What a simulated unit is built from.
 
-use crate::plant::ParamsError;
+use crate::plant::{EncoderKind, ParamsError};
 use crate::presets;
 use crate::world::{PinSignal, World, WorldAction, WorldParams};
 use brushwork_protocol::motion_mind::{Address, Mode, Protocol};
@@ -105,7 +105,11 @@ impl MotionMindConfig {
     pub(super) fn world(&self) -> Result<World, ParamsError> {
         let mut world = World::new(&self.world, self.seed)?;
         world.apply(&WorldAction::OpenLead { motor: Motor::M2, on: true });
-        for (pin, signal) in &self.signals {
+        // An absolute encoder that gives pulses is wired as the manual's figure 16C has it.
+        let is_pulse_encoder = self.world.axes[0].encoder.kind == EncoderKind::Pulse;
+        let encoder = PinSignal::Encoder { motor: Motor::M1 };
+        let pulses = (self.mode == Mode::SerialPid && is_pulse_encoder).then_some((pin::INDEX_RC, encoder));
+        for (pin, signal) in pulses.iter().chain(&self.signals) {
             world.apply(&WorldAction::SetPin { pin: *pin, signal: *signal });
         }
         Ok(world)

@@ -6,7 +6,7 @@ use super::loops::FULL_DUTY;
 use super::store::{Store, number};
 use crate::bridge::BridgeOutput;
 use brushwork_protocol::motion_mind::Mode;
-use brushwork_protocol::motion_mind::function;
+use brushwork_protocol::motion_mind::{function, function2};
 
 /// Middle of the analog input.
 const ANALOG_CENTER: i64 = 512;
@@ -29,7 +29,7 @@ pub struct OpenLoop {
 pub struct Limits {
     /// The most drive, lowered while the current is too high.
     pub pwm_limit: i64,
-    /// The current is above AMPSLIMIT.
+    /// The current was above AMPSLIMIT, and the drive is held down since.
     pub is_over_current: bool,
     /// The drive asked for is above the limit.
     pub is_at_pwm_limit: bool,
@@ -112,6 +112,12 @@ impl OpenLoop {
     }
 }
 
+/// At 9 and 36 kHz the bridge resolves 9 bits (Motion Mind manual 3.16).
+fn resolved(store: &Store, duty: i64) -> i64 {
+    let is_coarse = store.has2(function2::FREQ_HALF) || store.has2(function2::FREQ_DOUBLE);
+    if is_coarse { duty / 2 * 2 } else { duty }
+}
+
 /// Mode 0: 1.5 ms stops, RCMAX is full forward, RCMIN full reverse.
 fn radio_duty(store: &Store, inputs: &Inputs) -> i64 {
     let away = inputs.rc - RC_CENTER;
@@ -149,11 +155,12 @@ impl Limits {
     pub fn look(&mut self, store: &Store, amps: i64, celsius: f64, is_heat_ignored: bool) {
         let full = store.get(number::PWMLIMIT).clamp(0, FULL_DUTY);
         let amps_limit = store.get(number::AMPSLIMIT);
-        self.is_over_current = amps_limit > 0 && amps > amps_limit;
         self.pwm_limit = match amps_limit {
             0 => full,
             limit => (self.pwm_limit + (limit - amps).min(full)).clamp(0, full),
         };
+        let is_above = amps_limit > 0 && amps > amps_limit;
+        self.is_over_current = is_above || self.is_over_current && self.pwm_limit < full;
         let [off, on] = OVER_TEMPERATURE_CELSIUS;
         self.is_too_hot = !is_heat_ignored && celsius > if self.is_too_hot { on } else { off };
     }
@@ -187,7 +194,7 @@ impl Limits {
             _ if inputs.brake || self.is_too_hot => BridgeOutput::Coast,
             0 if store.has(function::ACTIVESTOP) => BridgeOutput::Brake,
             0 => BridgeOutput::Coast,
-            duty => BridgeOutput::Duty(duty as f64 / FULL_DUTY as f64),
+            duty => BridgeOutput::Duty(resolved(store, duty) as f64 / FULL_DUTY as f64),
         }
     }
 }

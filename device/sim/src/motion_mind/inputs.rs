@@ -1,10 +1,10 @@
 //! What the unit reads from its pins.
 
-use super::assumed::PULSES_IN_MEAN;
+use super::assumed::{PULSE_MISSING_LOOPS, PULSE_PERIOD_LOOPS, PULSES_IN_MEAN};
 use super::config::pin;
 use super::store::{Store, number};
 use crate::world::{PinState, World};
-use brushwork_protocol::motion_mind::function;
+use brushwork_protocol::motion_mind::{Mode, function};
 use std::collections::VecDeque;
 
 /// Steps of the converter at 5 V.
@@ -45,11 +45,13 @@ pub struct Inputs {
     pub index: bool,
     /// Pulse feedback in steps of 0.217 us, while pulses come.
     pub pulse_steps: Option<i64>,
-    /// The R/C pulse to go by, in steps of 1.736 us.
+    /// The R/C pulse to go by, in steps of 1.736 us. Measured in mode 0 alone.
     pub rc: i64,
     /// Whether the last R/C pulse was missing or bad.
     pub is_rc_bad: bool,
     good_pulses: VecDeque<i64>,
+    /// Loops since the last R/C pulse was taken or missed.
+    pulse_age: Option<u32>,
 }
 
 impl Debounced {
@@ -68,7 +70,7 @@ impl Debounced {
 
 impl Inputs {
     /// Reads all pins, once a loop of 5 ms.
-    pub fn read(&mut self, world: &mut World, store: &Store) {
+    pub fn read(&mut self, world: &mut World, store: &Store, mode: Mode) {
         let debounce = store.get(number::TIMER).max(1);
         self.control = analog(world.pin(pin::ANALOG_CONTROL));
         self.feedback = analog(world.pin(pin::ANALOG_FEEDBACK));
@@ -82,7 +84,26 @@ impl Inputs {
             _ => None,
         };
         self.pulse_steps = pulse_us.map(|microseconds| (microseconds / PULSE_STEP_US).round() as i64);
-        self.take_rc(pulse_us.map(|microseconds| (microseconds / RC_STEP_US).round() as i64), store);
+        if mode == Mode::RadioControl {
+            self.await_rc(pulse_us.map(|microseconds| (microseconds / RC_STEP_US).round() as i64), store);
+        }
+    }
+
+    /// Reads the feedback inputs alone, as the fast loop does.
+    pub fn read_feedback(&mut self, world: &mut World) {
+        self.control = analog(world.pin(pin::ANALOG_CONTROL));
+        self.feedback = analog(world.pin(pin::ANALOG_FEEDBACK));
+    }
+
+    /// A pulse is taken when it is due; where none comes, the last one holds until it counts as missing.
+    fn await_rc(&mut self, pulse: Option<i64>, store: &Store) {
+        let wait = if pulse.is_some() { PULSE_PERIOD_LOOPS } else { PULSE_MISSING_LOOPS };
+        let age = self.pulse_age.map_or(wait, |age| age + 1);
+        let is_due = age >= wait;
+        self.pulse_age = Some(if is_due && pulse.is_some() { 0 } else { age.min(PULSE_MISSING_LOOPS) });
+        if is_due {
+            self.take_rc(pulse, store);
+        }
     }
 
     /// Reads the limit inputs without debouncing, as at power-up.
@@ -91,8 +112,11 @@ impl Inputs {
     }
 
     fn take_rc(&mut self, pulse: Option<i64>, store: &Store) {
-        let good = store.get(number::RCMIN) - RC_MARGIN..=store.get(number::RCMAX) + RC_MARGIN;
-        match pulse.filter(|steps| good.contains(steps)) {
+        let (min, max) = (store.get(number::RCMIN), store.get(number::RCMAX));
+        let good = min - RC_MARGIN..=max + RC_MARGIN;
+        // Motion Mind manual 4.3: for R/C position control the count is "internally limited to RCMAX and RCMIN".
+        let limited = |steps: i64| if store.has(function::RCPOS) { steps.min(max).max(min) } else { steps };
+        match pulse.filter(|steps| good.contains(steps)).map(limited) {
             Some(steps) => {
                 self.is_rc_bad = false;
                 self.rc = steps;

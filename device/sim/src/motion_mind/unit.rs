@@ -1,6 +1,6 @@
 //! One unit: its clock, its modes, what commands do to it, and its registers as they read now.
 
-use super::assumed::{BOOT_TIME, SAVE_POSITION_AFTER, STORE_TIME, VELOCITIES_IN_MEAN};
+use super::assumed::{BLINK_TIME, BOOT_TIME, SAVE_POSITION_AFTER, STORE_TIME, VELOCITIES_IN_MEAN};
 use super::config::{EncoderDecode, MotionMindConfig};
 use super::drive::{Limits, OpenLoop, radio_position};
 use super::inputs::Inputs;
@@ -143,6 +143,7 @@ impl MotionMind {
             if self.has_power {
                 self.is_testing = false;
                 self.start();
+                self.running.ready_at += self.blinking();
             }
         }
     }
@@ -199,7 +200,12 @@ impl MotionMind {
         if is_whole_loop {
             self.sense();
         }
-        if is_whole_loop || self.store.has2(function2::FASTPID) {
+        let is_fast = self.store.has2(function2::FASTPID) && self.is_closed_loop();
+        if is_fast && !is_whole_loop {
+            self.running.inputs.read_feedback(&mut self.world);
+            self.running.position = self.measured_position();
+        }
+        if is_whole_loop || is_fast {
             self.drive(is_whole_loop);
         }
     }
@@ -215,8 +221,7 @@ impl MotionMind {
             self.store.restore();
         }
         let mut running = Running::new(self.now);
-        let boot = BOOT_TIME[usize::from(self.store.has(function::DISABLEBLINK))];
-        running.ready_at = if self.now.is_zero() { Duration::ZERO } else { self.now + boot };
+        running.ready_at = if self.now.is_zero() { Duration::ZERO } else { self.now + BOOT_TIME };
         running.baud = self.baud();
         running.uses_velocity_limit = self.store.has(function::ADSTEP);
         let start = if self.store.has(function::POSPWRUP) { self.store.stored(number::POSITION) } else { 0 };
@@ -224,7 +229,25 @@ impl MotionMind {
         running.position = start;
         running.position_before = start;
         self.running = running;
-        self.aim(Goal::Position(start));
+        if !self.has_absolute_feedback() {
+            self.aim(Goal::Position(start));
+        }
+    }
+
+    /// Whether the feedback tells where the motor is from the first moment on.
+    fn has_absolute_feedback(&self) -> bool {
+        match self.config.mode {
+            Mode::RadioControl => true,
+            Mode::AnalogPid => !self.store.has(function::RCPOS),
+            _ => self.store.has2(function2::PULSEFB),
+        }
+    }
+
+    /// How long the light blinks at power-up.
+    fn blinking(&self) -> Duration {
+        let blinks =
+            if self.store.has(function::DISABLEBLINK) { 0 } else { u32::from(self.config.mode.number()) + 1 };
+        BLINK_TIME * blinks
     }
 
     fn baud(&self) -> u32 {
@@ -254,13 +277,18 @@ impl MotionMind {
     }
 
     fn sense(&mut self) {
-        self.running.inputs.read(&mut self.world, &self.store);
+        self.running.inputs.read(&mut self.world, &self.store, self.config.mode);
         self.running.amps =
             (self.world.measured_amps(Motor::M1).abs() / AMPS_STEP).round().clamp(0.0, 1023.0) as i64;
         let celsius = self.world.board_celsius()[0];
         let is_heat_ignored = self.store.has2(function2::OVERTEMP);
         self.running.limits.look(&self.store, self.running.amps, celsius, is_heat_ignored);
         self.running.position = self.measured_position();
+        if self.running.closed_loop.goal() == Goal::Idle {
+            // Assumed: the loop holds what it finds at power-up.
+            self.aim(Goal::Position(self.running.position));
+            self.running.position_before = self.running.position;
+        }
         let velocity = self.running.position - self.running.position_before;
         self.running.position_before = self.running.position;
         self.running.velocities.truncate(VELOCITIES_IN_MEAN - 1);
@@ -456,10 +484,15 @@ impl MotionMind {
         if !Store::is_writable(register) {
             return;
         }
+        let was_absolute = self.has_absolute_feedback();
         if is_stored {
             self.store.store(register, value);
         } else {
             self.store.set(register, value);
+        }
+        if self.has_absolute_feedback() != was_absolute {
+            // Assumed: another feedback is another scale, so the loop holds what it finds on it.
+            self.aim(Goal::Idle);
         }
         if register == number::POSITION {
             self.running.origin = self.encoder_counts() - value;
@@ -475,7 +508,9 @@ impl MotionMind {
         let position = self.running.position;
         self.running.duty = 0;
         self.running.output = self.running.limits.bridge(&self.store, &self.running.inputs, 0);
-        self.aim(Goal::Position(position));
+        if self.running.closed_loop.goal() != Goal::Idle {
+            self.aim(Goal::Position(position));
+        }
         self.wire.deaf_until(self.running.storing_until);
     }
 
