@@ -112,7 +112,7 @@ fn print(listing: &Listing, out: &mut Output) -> Result<(), OutputError> {
     for port in &listing.ports {
         rows.push(vec![port.connect.clone(), port.description.clone()]);
         for unit in port.units.iter().flatten() {
-            let text = format!("{} {} ({})", unit.place().to_lowercase(), unit.version_text, unit.generation);
+            let text = format!("{} {}", unit.place().to_lowercase(), unit.version());
             rows.push(vec![String::new(), text]);
         }
     }

@@ -202,12 +202,11 @@ fn print(
     let identity = &client.identity;
     let simulated = if identity.simulated { ", simulated" } else { "" };
     out.line(format!(
-        "{} at {} on {} ({}, {}{simulated})",
+        "{} at {} on {} ({}{simulated})",
         identity.title(),
         identity.place(),
         identity.port,
-        identity.version_text,
-        identity.generation
+        identity.version(),
     ))?;
     if let Some(facts) = identity.motion_mind {
         out.line(format!(

@@ -206,6 +206,16 @@ impl Identity {
         self.family == CANOPEN
     }
 
+    /// What it says of its firmware, with the generation where the text does not hold it.
+    #[must_use]
+    pub fn version(&self) -> String {
+        let generation = self.generation.to_string();
+        if self.version_text.ends_with(&generation) {
+            return self.version_text.clone();
+        }
+        format!("{}, {generation}", self.version_text)
+    }
+
     /// Where it is on its bus: "0x80", "node 3", or "unit 1".
     #[must_use]
     pub fn place(&self) -> String {

@@ -318,7 +318,8 @@ impl Exchange {
             if count == 0 {
                 // What came while this thread had no processor has been looked for by now.
                 if now >= deadline {
-                    self.counters.totals.timeouts += 1;
+                    // That nobody is there is what a search finds out, and no fault of the link.
+                    self.counters.totals.timeouts += u64::from(!self.is_searching());
                     let waited = now.saturating_sub(requested_at);
                     return Err(ExchangeError::TimedOut { waited, tries, heard: self.received.len() });
                 }
@@ -341,11 +342,16 @@ impl Exchange {
                 Judgement::More(missing) => deadline = deadline.max(now + self.allowance(request, missing)),
                 Judgement::Elsewhere => {}
                 Judgement::Bad(fault) => {
-                    self.counters.totals.crc_errors += 1;
+                    self.counters.totals.crc_errors += u64::from(!self.is_searching());
                     return Err(fault.error(tries));
                 }
             }
         }
+    }
+
+    /// Whether it is asked whether anybody is there.
+    fn is_searching(&self) -> bool {
+        self.latency.is_some()
     }
 
     /// How long `bytes` bytes may take: their time on the wire, the link's latency and the controller's work.

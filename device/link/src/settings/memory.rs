@@ -38,7 +38,7 @@ pub enum SaveVerdict {
     Verified,
     /// The controller acknowledged the save, and did not answer when asked to load it back.
     Acknowledged,
-    /// The controller acknowledged each setting as stored; it has no way to read its EEPROM back.
+    /// The controller acknowledged each setting as stored and it reads as stored; there is no way to read EEPROM itself.
     Stored,
     /// EEPROM holds something else.
     NotSaved,
@@ -73,11 +73,14 @@ impl SaveReport {
                                                when asked to load its EEPROM, so the save is not proven; \
                                                that happens after good saves too."
                 .to_owned(),
-            (SaveVerdict::Stored, _) => "The settings are saved: the controller acknowledged each register as stored. Its EEPROM cannot \
-                                         be read back while it works."
+            (SaveVerdict::Stored, _) => "The settings are saved: each register was acknowledged as stored and read back. EEPROM itself is \
+                                         read at a new start alone: load the settings from EEPROM to prove it."
                 .to_owned(),
             (SaveVerdict::NotSaved, _) => {
                 let settings = if count == 1 { "1 setting".to_owned() } else { format!("{count} settings") };
+                if self.eeprom.is_none() {
+                    return format!("The save did not take: {settings} read otherwise afterwards. Save again.");
+                }
                 format!(
                     "The save did not take: {settings} came back from EEPROM otherwise. {}",
                     self.put_back_sentence()

@@ -83,11 +83,13 @@ fn returned_lines(returned: &Returned) -> String {
 }
 
 /// The reply to `command` at the start of `bytes`. `returns` are the return bits that the unit's FUNCTION has when it answers.
-/// The four letters in front of `=` are not looked at, since the manual names only four of them.
+/// The four letters in front of `=` are not looked at, since the manual names only four of them. Empty lines, spaces at the end of a
+/// line, a line feed alone as its end, small letters and zeros in front of a number are taken as they come.
 pub fn parse_line_reply(command: &Command, returns: Returns, bytes: &[u8]) -> Progress {
     let mut lines = Lines { bytes, used: 0 };
-    let Some(first) = lines.next() else { return Progress::Incomplete };
-    if first == NOT_UNDERSTOOD {
+    // A line end in front of an answer says nothing.
+    let Some(first) = lines.find(|line| !line.is_empty()) else { return Progress::Incomplete };
+    if first.eq_ignore_ascii_case(NOT_UNDERSTOOD) {
         return Progress::Done { reply: Reply::NotUnderstood, used: lines.used };
     }
     let reply = match *command {
@@ -95,7 +97,7 @@ pub fn parse_line_reply(command: &Command, returns: Returns, bytes: &[u8]) -> Pr
         Command::ReadText(Part::All) => all_registers(&first),
         Command::ReadText(part) => return bit_lines(part, first, lines),
         _ if command.takes_returns() && !returns.is_none() => return returned(returns, first, lines),
-        _ => (first == ACKNOWLEDGE).then_some(Reply::Acknowledged),
+        _ => first.eq_ignore_ascii_case(ACKNOWLEDGE).then_some(Reply::Acknowledged),
     };
     match reply {
         Some(reply) => Progress::Done { reply, used: lines.used },
@@ -116,8 +118,7 @@ impl Iterator for Lines<'_> {
         let rest = self.bytes.get(self.used..)?;
         let end = rest.iter().position(|byte| *byte == b'\n')?;
         self.used += end + 1;
-        let line = rest[..end].strip_suffix(b"\r").unwrap_or(&rest[..end]);
-        Some(line.iter().map(|byte| char::from(*byte)).collect())
+        Some(rest[..end].trim_ascii().iter().map(|byte| char::from(*byte)).collect())
     }
 }
 
@@ -132,13 +133,30 @@ fn coded_value(row: &Register, line: &str) -> Option<i64> {
 }
 
 fn all_registers(line: &str) -> Option<Reply> {
-    let values = line.trim_end().strip_suffix(',').unwrap_or(line);
-    let one = |(row, value): (&Register, &str)| {
-        let value = value.trim().parse().ok()?;
-        row.kind.range().contains(&value).then_some((row.number, value))
-    };
-    let values: Vec<_> = REGISTERS.iter().zip(values.split(',')).map(one).collect::<Option<_>>()?;
-    (values.len() == REGISTERS.len()).then_some(Reply::Registers(values))
+    let values = values_of_line(line)?;
+    let fits = |(row, (_, value)): (&Register, &(u8, i64))| row.kind.range().contains(value);
+    REGISTERS.iter().zip(&values).all(fits).then_some(Reply::Registers(values))
+}
+
+fn values_of_line(line: &str) -> Option<Vec<(u8, i64)>> {
+    let values: Vec<&str> = line.strip_suffix(',').unwrap_or(line).split(',').collect();
+    if values.len() != REGISTERS.len() {
+        return None;
+    }
+    let one = |(row, value): (&Register, &&str)| Some((row.number, value.trim().parse().ok()?));
+    REGISTERS.iter().zip(&values).map(one).collect()
+}
+
+/// The reply to a read of all registers at the start of `bytes`, whatever the values: simulators of other people fill them with numbers
+/// that no register can hold. Other lines in front of it are passed over.
+pub fn parse_all_loosely(bytes: &[u8]) -> Progress {
+    let mut lines = Lines { bytes, used: 0 };
+    while let Some(line) = lines.next() {
+        if let Some(values) = values_of_line(&line) {
+            return Progress::Done { reply: Reply::Registers(values), used: lines.used };
+        }
+    }
+    Progress::Incomplete
 }
 
 /// STATUS is listed with ten bits by the manual's sample and has eleven; an eleventh line is taken when it is there.
@@ -174,7 +192,7 @@ fn bit_lines(part: Part, first: String, mut lines: Lines<'_>) -> Progress {
 }
 
 fn bit_line(letter: char, number: usize, line: &str) -> Option<bool> {
-    match line.strip_prefix(letter)?.strip_prefix(&number.to_string())? {
+    match line.to_ascii_uppercase().strip_prefix(letter)?.strip_prefix(&number.to_string())? {
         "ON" => Some(true),
         "OFF" => Some(false),
         _ => None,

@@ -26,7 +26,7 @@ pub use command::{Command, Effect, Part};
 pub use describe::{describe_command, describe_reply};
 pub use frame::{ACK, EncodeError, checksum, encode_frame, encode_frame_reply, parse_frame_reply};
 pub use frame_reader::{BYTE_GAP, FrameEvent, FrameReader};
-pub use line::{encode_line, encode_line_reply, parse_line_reply};
+pub use line::{encode_line, encode_line_reply, parse_all_loosely, parse_line_reply};
 pub use line_reader::{LineEvent, LineReader};
 pub use parts::{COMMANDS, CommandRow, command_row, fields, numbers};
 pub use reference::{

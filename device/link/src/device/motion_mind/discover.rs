@@ -91,6 +91,7 @@ impl Family for MotionMinds {
 
 /// The unit at one address that is worth waiting for.
 fn patiently(line: &mut Line<'_>, address: Address) -> Result<Option<Speaker>, ExchangeError> {
+    let heard_before = line.exchange().statistics().bytes_in;
     for patience in PATIENCE {
         for protocol in Protocol::ALL {
             change_to(line, protocol)?;
@@ -100,7 +101,14 @@ fn patiently(line: &mut Line<'_>, address: Address) -> Result<Option<Speaker>, E
             }
         }
     }
-    Ok(None)
+    if line.exchange().statistics().bytes_in == heard_before {
+        return Ok(None);
+    }
+    // Somebody answers, though not as a unit does: a simulator that knows the read of all registers alone.
+    let loose = Speaker { is_loose: true, ..Speaker::new(address, Protocol::Text) };
+    change_to(line, Protocol::Text)?;
+    let [.., patience] = PATIENCE;
+    Ok(loose.probe(line, number::ADDRESS, patience)?.map(|_| loose))
 }
 
 /// All units: the factory address first, in both protocols; then every other one in the protocol that it spoke, since units of one
@@ -169,6 +177,9 @@ fn identify(line: &mut Line<'_>, mut speaker: Speaker, simulated: bool) -> Resul
             "It says that its mode is {}, which the manual does not have.",
             value(number::MODE)
         ));
+    }
+    if speaker.is_loose {
+        notes.push("It answers the read of all registers and no other: a simulator, whose values are shown as they come.".to_owned());
     }
     let identity = Identity {
         address: speaker.address.get(),

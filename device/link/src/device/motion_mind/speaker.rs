@@ -6,7 +6,7 @@ use crate::device::controller::Line;
 use crate::exchange::{ExchangeError, Fault, Judgement, Outgoing, Span};
 use brushwork_protocol::motion_mind::{
     Address, BadReply, Command, Effect, EncodeError, Part, Progress, Protocol, Reply, Returns, command_row,
-    encode_frame, encode_line, parse_frame_reply, parse_line_reply, register,
+    encode_frame, encode_line, parse_all_loosely, parse_frame_reply, parse_line_reply, register,
 };
 use std::time::Duration;
 
@@ -20,11 +20,10 @@ const STORE_WORK: Duration = Duration::from_millis(60);
 const RESTORE_WORK: Duration = Duration::from_millis(1400);
 /// The same for the long reads in text.
 const LONG_TEXT_WORK: Duration = Duration::from_millis(60);
+/// Time for the work of what only speaks like a unit: a public simulator looks at its line ten times a second.
+const LOOSE_WORK: Duration = Duration::from_millis(300);
 /// Characters of the longest answer in text, to all registers.
 const LONGEST_TEXT: usize = 200;
-
-/// What a unit in text says to a line that is no command.
-const BAD_COMMAND: &[u8] = b"BAD COMMAND\r\n";
 
 /// Who is spoken to and how.
 #[derive(Clone, Copy, Debug)]
@@ -33,11 +32,14 @@ pub struct Speaker {
     pub protocol: Protocol,
     /// The return bits of its FUNCTION; `None` while nobody knows.
     pub returns: Option<Returns>,
+    /// It is no unit of the manual but speaks like one: of all reads it answers that of all registers alone, with any values, and takes
+    /// its time.
+    pub is_loose: bool,
 }
 
 impl Speaker {
     pub fn new(address: Address, protocol: Protocol) -> Self {
-        Self { address, protocol, returns: None }
+        Self { address, protocol, returns: None, is_loose: false }
     }
 
     /// Takes note of a write to FUNCTION.
@@ -86,20 +88,27 @@ impl Speaker {
         let (exchange, watch) = line.parts();
         // What a unit makes of probes in the other protocol may come first: a line that says that it is none.
         let answered = exchange.exchange_within(&bytes, length, patience, watch, &mut |bytes| {
-            let mut stale = 0;
-            while bytes[stale..].starts_with(BAD_COMMAND) {
-                stale += BAD_COMMAND.len();
-            }
-            match self.judge(&command, &bytes[stale..], &mut reply) {
-                Judgement::Good(used) => Judgement::Good(stale + used),
-                other => other,
-            }
+            self.judge_behind_others(&command, bytes, &mut reply)
         });
         match answered {
             Ok(_) => Ok(super::value_in(&reply, index)),
             Err(error) if error.is_link_lost() || error.interruption().is_some() => Err(error),
             Err(_) => Ok(None),
         }
+    }
+
+    /// Judges the answer to a probe; in text, lines that are none may stand in front of it.
+    fn judge_behind_others(&self, command: &Command, bytes: &[u8], reply: &mut Reply) -> Judgement {
+        if self.protocol == Protocol::Binary {
+            return self.judge(command, bytes, reply);
+        }
+        let after_ends = bytes.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(at, _)| at + 1);
+        for start in std::iter::once(0).chain(after_ends).filter(|start| *start < bytes.len()) {
+            if let Judgement::Good(used) = self.judge(command, &bytes[start..], reply) {
+                return Judgement::Good(start + used);
+            }
+        }
+        Judgement::More(1)
     }
 
     /// The bytes of a command, for a stop that waits for nothing.
@@ -114,6 +123,9 @@ impl Speaker {
     /// A read as the unit's protocol has it.
     fn in_own_words(&self, command: &Command) -> Command {
         match (self.protocol, *command) {
+            (Protocol::Text, Command::ReadRegister(_) | Command::Read(_) | Command::ReadText(_)) if self.is_loose => {
+                Command::ReadText(Part::All)
+            }
             (Protocol::Text, Command::ReadRegister(index)) => Command::ReadText(Part::Register(index)),
             (Protocol::Text, Command::Read(mask)) if mask.is_power_of_two() => {
                 Command::ReadText(Part::Register(u8::try_from(mask.trailing_zeros()).unwrap_or_default()))
@@ -180,14 +192,16 @@ impl Speaker {
     fn parse(&self, command: &Command, returns: Returns, bytes: &[u8]) -> Progress {
         match self.protocol {
             Protocol::Binary => parse_frame_reply(self.address, command, returns, bytes),
+            Protocol::Text if self.is_loose && *command == Command::ReadText(Part::All) => parse_all_loosely(bytes),
             Protocol::Text => parse_line_reply(command, returns, bytes),
         }
     }
 
     pub fn work(&self, command: &Command) -> Duration {
         match command {
-            Command::WriteStore { .. } => STORE_WORK,
             Command::Restore => RESTORE_WORK,
+            _ if self.is_loose => LOOSE_WORK,
+            Command::WriteStore { .. } => STORE_WORK,
             Command::ReadText(Part::All | Part::StatusBits | Part::FunctionBits) => LONG_TEXT_WORK,
             _ => WORK[usize::from(self.protocol == Protocol::Text)],
         }

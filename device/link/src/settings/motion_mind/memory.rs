@@ -1,12 +1,14 @@
 //! The EEPROM of a Motion Mind: it is written register by register, and read by a new start alone.
 //!
 //! A write to EEPROM stops the motor for up to 40 ms. There is no command that reads EEPROM: RESET loads it, at the price of the
-//! position and of a motor that coasts, so a save is not proven that way. What is stored is known by its acknowledge.
+//! position and of a motor that coasts, so a save is not proven that way. What is stored is known by its acknowledge, and by its register
+//! in RAM, which the same command writes and which is read back.
 
 use brushwork_protocol::motion_mind::numbers;
 
+use super::super::image::{Difference, diff};
 use super::super::memory::{SaveReport, SaveVerdict, unknown};
-use super::super::read::{ReadReport, is_final, is_there, went_out};
+use super::super::read::{ReadReport, is_final, is_there, read_all, went_out};
 use super::rows::register_of;
 use crate::failure::Failure;
 use crate::unit::UnitAddress;
@@ -52,13 +54,26 @@ pub fn save(wire: &mut dyn Wire, before: &ReadReport) -> Result<SaveReport, Fail
         }
         stored_any = true;
     }
-    Ok(SaveReport {
-        verdict: SaveVerdict::Stored,
-        differences: Vec::new(),
-        eeprom: Some(before.image.clone()),
+    wire.report_progress(words.len(), words.len() + 1, "read back");
+    Ok(match read_all(wire, *before.table.subject()) {
+        Ok(after) => judge(before, &after),
+        Err(failure) => unknown(failure),
+    })
+}
+
+/// What reads otherwise than it was to be stored was not stored.
+fn judge(before: &ReadReport, after: &ReadReport) -> SaveReport {
+    let known = |difference: &Difference| difference.left.is_some() && difference.right.is_some();
+    let differences: Vec<Difference> =
+        diff(&before.table, &before.image, &after.image).into_iter().filter(known).collect();
+    let is_stored = differences.is_empty();
+    SaveReport {
+        verdict: if is_stored { SaveVerdict::Stored } else { SaveVerdict::NotSaved },
+        differences,
+        eeprom: is_stored.then(|| before.image.clone()),
         put_back: None,
         failure: None,
-    })
+    }
 }
 
 /// Starts the unit anew, which loads its EEPROM.
