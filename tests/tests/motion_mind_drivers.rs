@@ -233,7 +233,6 @@ fn player(port: &mut Port, address: u8) {
     let before = ask(position.clone(), 4);
     let _ = ask(status.clone(), 2);
     // Sets the count: the acknowledge stays in the line until the next read of it throws it away.
-    drop(ask);
     port.sleep(ms(20));
     port.write(&summed(vec![0x18, address, 0, 0x39, 0x05, 0, 0]));
     port.sleep(ms(20));
@@ -517,9 +516,8 @@ fn served(is_pty: bool, options: &[&str]) -> (Program, Option<tempfile::TempDir>
     let arguments = [&["sim", "--model", "motion-mind-3"], &place[..], options].concat();
     let mut program = Program::start(BRUSHWORK, &arguments);
     let greeting = program.next_line(LIMIT).expect("it says where it is");
-    let target = link.unwrap_or_else(|| {
-        format!("tcp:{}", greeting.rsplit("tcp:").next().expect("there is a last part"))
-    });
+    let target = link
+        .unwrap_or_else(|| format!("tcp:{}", greeting.rsplit("tcp:").next().expect("there is a last part")));
     let target: ConnectTarget = target.parse().expect("the place is a target");
     let line = target.open().expect("somebody is there");
     (program, folder, Port { line, virtual_line: None, began: Instant::now(), waiting: Vec::new() })

@@ -154,7 +154,8 @@ impl Foreign {
 
     /// Carries a write out, or does not.
     fn put(&mut self, index: usize, value: i64, is_stored: bool) -> bool {
-        let is_outside = RANGES.iter().any(|(row, low, high)| *row == index && !(*low..=*high).contains(&value));
+        let is_outside =
+            RANGES.iter().any(|(row, low, high)| *row == index && !(*low..=*high).contains(&value));
         if is_outside && self.manner == Manner::Strict {
             self.refused += 1;
             return false;
@@ -231,12 +232,18 @@ impl Foreign {
             (0x1A, 4) => {
                 let mask = four();
                 let rows = (0..32).filter(|index| mask >> index & 1 == 1).collect::<Vec<_>>();
-                return if is_all { () } else { self.send_registers(&rows) };
+                return if !is_all {
+                    self.send_registers(&rows);
+                };
             }
             (0x1D, 1) if usize::from(data[0]) < 32 => {
-                return if is_all { () } else { self.send_registers(&[usize::from(data[0])]) };
+                return if !is_all {
+                    self.send_registers(&[usize::from(data[0])]);
+                };
             }
-            (0x18 | 0x19, length) if length >= 2 && WIDTHS.get(usize::from(data[0])) == Some(&(length - 1)) => {
+            (0x18 | 0x19, length)
+                if length >= 2 && WIDTHS.get(usize::from(data[0])) == Some(&(length - 1)) =>
+            {
                 let index = usize::from(data[0]);
                 let raw = data[1..].iter().rev().fold(0_i64, |value, byte| value << 8 | i64::from(*byte));
                 let shift = 64 - 8 * (length - 1) as u32;
@@ -323,7 +330,7 @@ impl Foreign {
 
     fn coded(&self, index: usize) -> String {
         let code = match (self.manner, index) {
-            (Manner::Terse, _) => format!("{:>4}", format!("R{index}")),
+            (Manner::Terse, _) => format!("R{index}"),
             (_, 0) => "APOS".to_owned(),
             (_, 4) => "PTRM".to_owned(),
             (_, 14) => "VELO".to_owned(),
@@ -541,7 +548,7 @@ fn a_scan_finds_a_foreign_unit_at_its_address() {
         let mut unit = Foreign::new(manner, is_text, 3);
         unit.ram[7] = 57;
         let mut link = link_to(unit, FamilyChoice::Auto, Addresses::Scan);
-        link.run_for(Duration::from_secs(30));
+        link.run_for(Duration::from_secs(60));
         assert_eq!(identity(&link).address, 57, "{manner:?}");
     }
 }
@@ -549,7 +556,8 @@ fn a_scan_finds_a_foreign_unit_at_its_address() {
 #[test]
 fn settings_of_a_foreign_unit_are_read_written_and_stored() {
     for (manner, is_text) in manners() {
-        let mut link = link_to(Foreign::new(manner, is_text, 4), FamilyChoice::MotionMind, Addresses::Factory);
+        let mut link =
+            link_to(Foreign::new(manner, is_text, 4), FamilyChoice::MotionMind, Addresses::Factory);
         assert!(identity(&link).is_motion_mind());
         let table = SettingsTable::new(subject(5));
         let read = job(&mut link, |wire| read_all(wire, subject(5)));
@@ -578,7 +586,8 @@ fn settings_of_a_foreign_unit_are_read_written_and_stored() {
 #[test]
 fn a_foreign_motor_is_driven_and_stopped() {
     for (manner, is_text) in manners() {
-        let mut link = link_to(Foreign::new(manner, is_text, 3), FamilyChoice::MotionMind, Addresses::Factory);
+        let mut link =
+            link_to(Foreign::new(manner, is_text, 3), FamilyChoice::MotionMind, Addresses::Factory);
         assert!(link.arm(ArmScope::Pwm), "{manner:?}: {:?}", failures(&link));
         link.ask(Request::Drive(Drive::one(Motor::M1, DriveCommand::duty(0.5))));
         link.run_for(Duration::from_secs(1));
@@ -588,7 +597,8 @@ fn a_foreign_motor_is_driven_and_stopped() {
         assert_eq!(link.bus(|unit| unit.duty), 0, "{manner:?}");
         assert!(link.stops().last().is_some_and(|stop| stop.confirmed()), "{manner:?}: {:?}", link.stops());
 
-        let mut link = link_to(Foreign::new(manner, is_text, 4), FamilyChoice::MotionMind, Addresses::Factory);
+        let mut link =
+            link_to(Foreign::new(manner, is_text, 4), FamilyChoice::MotionMind, Addresses::Factory);
         assert!(link.arm(ArmScope::Position), "{manner:?}: {:?}", failures(&link));
         let speed_counts_per_s = -2000;
         let speed = DriveCommand::Speed { speed_counts_per_s, accel_counts_per_s2: None };
@@ -657,7 +667,7 @@ fn a_search_does_not_count_as_errors_of_the_link() {
     link.run_for(Duration::from_secs(10));
     assert_eq!(identity(&link).address, 90);
     let statistics = link.events.iter().rev().find_map(|(_, event)| match event {
-        Event::Link(statistics) => Some(*statistics),
+        Event::Link(statistics) => Some(statistics.clone()),
         _ => None,
     });
     let statistics = statistics.expect("the link tells its figures");

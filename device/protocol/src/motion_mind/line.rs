@@ -9,8 +9,6 @@ use super::reply::{BadReply, Progress, Reply, Returned, Returns};
 const END: &str = "\r\n";
 const ACKNOWLEDGE: &str = "OK";
 const NOT_UNDERSTOOD: &str = "BAD COMMAND";
-/// Letters in front of `=`.
-const CODE: usize = 4;
 
 const POSITION: u8 = 0;
 const VELOCITY: u8 = 14;
@@ -83,7 +81,7 @@ fn returned_lines(returned: &Returned) -> String {
 }
 
 /// The reply to `command` at the start of `bytes`. `returns` are the return bits that the unit's FUNCTION has when it answers.
-/// The four letters in front of `=` are not looked at, since the manual names only four of them. Empty lines, spaces at the end of a
+/// The letters in front of `=` are not looked at, since the manual names only four codes. Empty lines, spaces at the end of a
 /// line, a line feed alone as its end, small letters and zeros in front of a number are taken as they come.
 pub fn parse_line_reply(command: &Command, returns: Returns, bytes: &[u8]) -> Progress {
     let mut lines = Lines { bytes, used: 0 };
@@ -127,9 +125,9 @@ fn one_register(row: &Register, line: &str) -> Option<Reply> {
 }
 
 fn coded_value(row: &Register, line: &str) -> Option<i64> {
-    let (code, value) = line.split_once('=')?;
+    let (_, value) = line.split_once('=')?;
     let value = value.trim().parse().ok()?;
-    (code.chars().count() == CODE && row.kind.range().contains(&value)).then_some(value)
+    row.kind.range().contains(&value).then_some(value)
 }
 
 fn all_registers(line: &str) -> Option<Reply> {

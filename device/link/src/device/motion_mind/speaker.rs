@@ -123,7 +123,9 @@ impl Speaker {
     /// A read as the unit's protocol has it.
     fn in_own_words(&self, command: &Command) -> Command {
         match (self.protocol, *command) {
-            (Protocol::Text, Command::ReadRegister(_) | Command::Read(_) | Command::ReadText(_)) if self.is_loose => {
+            (Protocol::Text, Command::ReadRegister(_) | Command::Read(_) | Command::ReadText(_))
+                if self.is_loose =>
+            {
                 Command::ReadText(Part::All)
             }
             (Protocol::Text, Command::ReadRegister(index)) => Command::ReadText(Part::Register(index)),
@@ -192,7 +194,9 @@ impl Speaker {
     fn parse(&self, command: &Command, returns: Returns, bytes: &[u8]) -> Progress {
         match self.protocol {
             Protocol::Binary => parse_frame_reply(self.address, command, returns, bytes),
-            Protocol::Text if self.is_loose && *command == Command::ReadText(Part::All) => parse_all_loosely(bytes),
+            Protocol::Text if self.is_loose && *command == Command::ReadText(Part::All) => {
+                parse_all_loosely(bytes)
+            }
             Protocol::Text => parse_line_reply(command, returns, bytes),
         }
     }
