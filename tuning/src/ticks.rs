@@ -214,37 +214,57 @@ pub fn velocity_test(plant: &PlantModel, law: &LoopLaw, lag: Lag, gains: &Gains,
 /// The position test on the model.
 #[must_use]
 pub fn position_test(plant: &PlantModel, law: &LoopLaw, lag: Lag, gains: &Gains, qpps: f64) -> Score {
-    position_test_and_duty(plant, law, lag, gains, qpps).0
+    position_test_and_end(plant, law, lag, gains, qpps).0
 }
 
-/// The same, and by how much the duty still changes when the step should be over: its standard deviation over the last third.
+/// What still goes on in the last third of a test, after the step or after the load, whichever is more.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Unrest {
+    /// Standard deviation of the duty after the step, and after the load.
+    pub(crate) duty: (f64, f64),
+    /// Way from the lowest to the highest place, counts.
+    pub(crate) range_counts: f64,
+}
+
+/// The position test, and what still goes on when its halves should be over.
 #[must_use]
-pub(crate) fn position_test_and_duty(
+pub(crate) fn position_test_and_end(
     plant: &PlantModel,
     law: &LoopLaw,
     lag: Lag,
     gains: &Gains,
     qpps: f64,
-) -> (Score, f64) {
+) -> (Score, Unrest) {
     let tick_s = law.tick_s();
     let ticks = (horizon_s(plant.tau_s) / tick_s) as usize;
     let step = position_step(plant.gain_counts_per_s, plant.tau_s);
     let mut twin = TickLoop::new(*plant, *law, lag, *gains, qpps);
-    let mut duties = Vec::with_capacity(ticks);
-    let mut run = |load: f64, duties: &mut Vec<f64>| -> Vec<f64> {
-        duties.clear();
+    let mut run = |load: f64| -> (Vec<f64>, Vec<f64>) {
         (0..ticks)
             .map(|_| {
-                duties.push(twin.tick(Setpoint::Place(step, qpps), load));
-                step - twin.motion.place
+                let duty = twin.tick(Setpoint::Place(step, qpps), load);
+                (step - twin.motion.place, duty)
             })
-            .collect()
+            .unzip()
     };
-    let after_step = run(0.0, &mut duties);
-    let late = &duties[ticks * 7 / 10..];
-    let n = late.len().max(1) as f64;
-    let mean = late.iter().sum::<f64>() / n;
-    let late_duty = (late.iter().map(|duty| (duty - mean).powi(2)).sum::<f64>() / n).sqrt();
-    let after_load = run(LOAD_STEP_DUTY, &mut duties);
-    (Score::of(&after_step, &after_load, tick_s, step, 0.02f64.max(3.0 / step)), late_duty)
+    let (after_step, after_load) = (run(0.0), run(LOAD_STEP_DUTY));
+    let late = ticks * 7 / 10;
+    let unrest = Unrest {
+        duty: (spread(&after_step.1[late..]), spread(&after_load.1[late..])),
+        range_counts: range(&after_step.0[late..]).max(range(&after_load.0[late..])),
+    };
+    (Score::of(&after_step.0, &after_load.0, tick_s, step, 0.02f64.max(3.0 / step)), unrest)
+}
+
+/// Standard deviation.
+fn spread(values: &[f64]) -> f64 {
+    let n = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / n).sqrt()
+}
+
+/// From the lowest to the highest.
+fn range(values: &[f64]) -> f64 {
+    let ends = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    (ends.1 - ends.0).max(0.0)
 }

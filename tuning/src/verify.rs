@@ -1,7 +1,7 @@
 //! Trials of candidate gains on the machine: setpoint steps of a velocity loop, moves of a position loop.
 
 use crate::cause::Cause;
-use crate::design::{Design, Task, deadzone};
+use crate::design::{Design, Goal, Task, deadzone};
 use crate::lag::{ClosedCourse, LagFit, fit_lag, predicted_course};
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::margin::{headroom, scaled};
@@ -11,7 +11,7 @@ use crate::rig::{Point, Rig};
 use crate::score::position_step;
 use crate::swing::{deviation, flank_overshoot, speed_ripple};
 use crate::ticks::{TickLoop, velocity_test};
-use crate::tune::{Excitation, Method, Request, propose, with_slack};
+use crate::tune::{Excitation, Method, Request, design_for, propose, with_slack};
 
 /// Setpoint of the velocity trial, as a share of full speed.
 const MIDDLE: f64 = 0.45;
@@ -126,8 +126,12 @@ pub fn check_moves(
             let only_over = request.method == Method::Velocity
                 && measured.ripple <= MOST_RIPPLE
                 && measured.duty_rms <= design.noise_duty.max(0.04);
-            let gains = if only_over { less_integral(&design.gains) } else { lowered(&design.gains) };
-            propose(report, request, task, Design { gains, ..design }, rig.options.travel);
+            let softer = if only_over {
+                Design { gains: less_integral(&design.gains), ..design }
+            } else {
+                softer(request.method, task, &design)
+            };
+            propose(report, request, task, softer, rig.options.travel);
         }
     }
     match smoothest {
@@ -246,6 +250,17 @@ fn is_bearable(measured: &Measured) -> bool {
 /// Less integral: with the feed-forward it alone makes a speed go past its setpoint.
 fn less_integral(gains: &Gains) -> Gains {
     Gains { velocity: Pid { i: BACK_OFF * gains.velocity.i, ..gains.velocity }, ..*gains }
+}
+
+/// What lowers a design: a position loop is designed anew for a softer goal than what it promised, since gains that are merely scaled
+/// end a move in a long creep, which sticks and slips in the play of a real machine. A velocity loop is scaled.
+fn softer(method: Method, task: &Task, design: &Design) -> Design {
+    let scaled = Design { gains: lowered(&design.gains), ..*design };
+    if method == Method::Velocity {
+        return scaled;
+    }
+    let goal = Goal { ms: 1.0 + BACK_OFF * (design.ms - 1.0), noise_duty: BACK_OFF * design.noise_duty };
+    design_for(method, &Task { goal, ..*task }).unwrap_or(scaled)
 }
 
 /// Less gain, and less again of the integral.
@@ -390,17 +405,15 @@ fn farther_end(rig: &Rig<'_>, place: f64) -> (f64, f64) {
 fn judge_move(points: &[Point], target: f64, moved: f64, late_s: f64, step: f64) -> Measured {
     let over = points.iter().map(|p| (p.counts - target) * moved.signum()).fold(0.0, f64::max);
     // A short move may go past its target by as much as matters in a long one.
-    let overshoot = (over - ROUNDING_COUNTS).max(0.0) / moved.abs().max(0.25 * step).max(1.0);
+    let overshoot = (over - ROUNDING_COUNTS).max(0.0) / moved.abs().max(0.5 * step).max(1.0);
     let late = || points.iter().filter(|p| p.t > late_s);
     let places: Vec<f64> = late().map(|p| p.counts).collect();
+    let duties: Vec<(f64, f64)> = late().filter_map(|p| p.duty).collect();
+    let duty_rms = deviation(&duties);
     // A creep to the end is no swing.
     if places.windows(3).filter(|w| (w[1] - w[0]) * (w[2] - w[1]) < 0.0).count() < 2 {
-        return Measured { overshoot, ..Measured::default() };
+        return Measured { overshoot, duty_rms, ..Measured::default() };
     }
-    let duties: Vec<f64> = late().filter_map(|p| p.duty).map(|duty| duty.1).collect();
-    let n = duties.len().max(1) as f64;
-    let mean = duties.iter().sum::<f64>() / n;
-    let duty_rms = (duties.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / n).sqrt();
     let range = places.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
     let ripple = (range.1 - range.0 - ROUNDING_COUNTS).max(0.0) / step;
     Measured { overshoot, duty_rms, ripple, headroom: None }

@@ -2,13 +2,19 @@
 
 use super::{Candidate, Design, Goal, Loops, Task, ascend, better, finish, unmodelled_ticks};
 use crate::model::{Gains, Lag, Pid};
-use crate::score::POSITION_OVERSHOOT;
-use crate::ticks::position_test_and_duty;
+use crate::score::{POSITION_OVERSHOOT, position_step};
+use crate::ticks::position_test_and_end;
 
 /// Overshoot beyond which the cost jumps.
 const OVERSHOOT_CAP: f64 = 0.06;
 /// Deviation of the duty beyond which a move is not over yet when it should be; the cost jumps there too.
 const LATE_DUTY_CAP: f64 = 0.08;
+/// Way in the last third of a move or after a load beyond which it is not over yet, over the step and in counts at the least: what
+/// creeps for so long sticks and slips in the play of a real machine. How dear it is, and the most it can cost.
+const LATE_WAY_CAP: f64 = 0.01;
+const LATE_COUNTS_CAP: f64 = 2.0;
+const LATE_WAY_COST: f64 = 0.4;
+const LATE_WAY_MOST: f64 = 0.8;
 /// Shares of the highest gain tried.
 const SHARES: [f64; 6] = [1.0, 0.85, 0.7, 0.5, 0.35, 0.2];
 /// Derivative times tried, as shares of the time constant of the motor.
@@ -140,9 +146,14 @@ fn refine(loops: &Loops, task: &Task, mut best: Candidate) -> Candidate {
 
 fn candidate(task: &Task, gains: Gains) -> Candidate {
     let gains = task.law.rounded(&gains, task.qpps);
-    let (score, late_duty) = position_test_and_duty(&task.plant, &task.law, task.lag, &gains, task.qpps);
-    let excess = (score.overshoot - OVERSHOOT_CAP).max(0.0) + 0.5 * (late_duty - LATE_DUTY_CAP).max(0.0);
-    Candidate { gains, score, cost: score.cost(POSITION_OVERSHOOT) * (1.0 + 50.0 * excess) }
+    let (score, end) = position_test_and_end(&task.plant, &task.law, task.lag, &gains, task.qpps);
+    let excess =
+        (score.overshoot - OVERSHOOT_CAP).max(0.0) + 0.5 * (end.duty.0.max(end.duty.1) - LATE_DUTY_CAP).max(0.0);
+    let step = position_step(task.plant.gain_counts_per_s, task.plant.tau_s);
+    let allowed = (LATE_WAY_CAP * step).max(LATE_COUNTS_CAP);
+    let creeping = (LATE_WAY_COST * (end.range_counts / allowed - 1.0)).clamp(0.0, LATE_WAY_MOST);
+    let cost = score.cost(POSITION_OVERSHOOT) * (1.0 + 50.0 * excess) * (1.0 + creeping);
+    Candidate { gains, score, cost }
 }
 
 /// Within the play nothing can be held; beyond it two counts keep the rounding quiet.
