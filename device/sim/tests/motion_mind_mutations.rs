@@ -46,7 +46,7 @@ impl Dice {
             4 if register != 7 => Command::Write { register, value },
             5 if register != 7 => Command::WriteStore { register, value },
             6 => Command::Restore,
-            _ if protocol == Protocol::Binary && word % 2 == 0 => Command::Read(self.0.next_u32()),
+            _ if protocol == Protocol::Binary && word.is_multiple_of(2) => Command::Read(self.0.next_u32()),
             _ if protocol == Protocol::Binary => Command::ReadRegister(register),
             7 => Command::ReadText([Part::All, Part::StatusBits, Part::FunctionBits][self.below(3)]),
             _ => Command::ReadText(Part::Register(register)),

@@ -147,8 +147,8 @@ fn refine(loops: &Loops, task: &Task, mut best: Candidate) -> Candidate {
 fn candidate(task: &Task, gains: Gains) -> Candidate {
     let gains = task.law.rounded(&gains, task.qpps);
     let (score, end) = position_test_and_end(&task.plant, &task.law, task.lag, &gains, task.qpps);
-    let excess =
-        (score.overshoot - OVERSHOOT_CAP).max(0.0) + 0.5 * (end.duty.0.max(end.duty.1) - LATE_DUTY_CAP).max(0.0);
+    let excess = (score.overshoot - OVERSHOOT_CAP).max(0.0)
+        + 0.5 * (end.duty.0.max(end.duty.1) - LATE_DUTY_CAP).max(0.0);
     let step = position_step(task.plant.gain_counts_per_s, task.plant.tau_s);
     let allowed = (LATE_WAY_CAP * step).max(LATE_COUNTS_CAP);
     let creeping = (LATE_WAY_COST * (end.range_counts / allowed - 1.0)).clamp(0.0, LATE_WAY_MOST);
