@@ -12,6 +12,9 @@ use crate::watch::{NO_CURRENT_AMPS, Watch};
 pub(crate) const DIAGNOSIS_S: f64 = 0.15;
 /// Least stall current that lets currents be compared, A.
 const TELLING_STALL_AMPS: f64 = 0.2;
+/// Current of a standing motor that readings tell from that of a turning one, A, and the least duty for it.
+const TELLING_AMPS: f64 = 0.15;
+const LEAST_DUTY: f64 = 0.06;
 /// How long before the alarm a fault may have come, s.
 const BEFORE_S: f64 = 0.22;
 /// Counts that a dead encoder may give.
@@ -26,6 +29,12 @@ const AGREE: f64 = 0.9;
 const MIRROR_ERROR: (f64, f64) = (0.12, 0.6);
 /// Share of the current of a standing motor by which that of a turning one is short at the least; a battery sags by less.
 const SHORT: f64 = 0.3;
+/// A duty that drives; how much faster against it a motor must be than it was with it, as a factor and a share of the speed at full
+/// duty, and the way that it must have gone, counts.
+const DRIVEN_DUTY: f64 = 0.03;
+const OUTRUN: f64 = 1.2;
+const LEAST_OUTRUN: f64 = 0.02;
+const LEAST_OUTRUN_COUNTS: f64 = 4.5;
 /// Misfit that says nothing.
 const SAME: f64 = 3e-4;
 /// How long the duty takes to come down and the winding's current to follow, s.
@@ -34,6 +43,7 @@ const BRAKED_S: f64 = 0.066;
 /// One poll with what a story needs.
 struct Moment {
     t: f64,
+    counts: f64,
     duty: f64,
     /// Speed as counted, counts/s.
     speed: f64,
@@ -52,6 +62,9 @@ pub(crate) fn diagnose(watch: &Watch, alarm_s: f64, after: &[Point]) -> Cause {
     let (gain, tau_s) = watch.rough_model(alarm_s);
     let last = watch.recent().next_back().map_or(0.0, |point| point.counts);
     let alive = after.iter().any(|point| (point.counts - last).abs() > DEAD_COUNTS);
+    if gain > 0.0 && outruns(&moments, gain, alarm_s) {
+        return Cause::EncoderFlipped;
+    }
     if stall.is_some() && !alive {
         return if turns_unseen(watch, &moments, alarm_s) { Cause::EncoderLost } else { Cause::Stalled };
     }
@@ -65,6 +78,32 @@ pub(crate) fn diagnose(watch: &Watch, alarm_s: f64, after: &[Point]) -> Cause {
     let currents_object = stall.is_some() && flipped > OBJECTION && stopped < BETTER * flipped;
     let goes_on = likeness < if currents_agree { MIRROR_ERROR.1 } else { MIRROR_ERROR.0 };
     if goes_on && !currents_object { Cause::EncoderFlipped } else { Cause::Stalled }
+}
+
+/// Names why a motor that was pushed of late has not moved, or was counted `backwards`.
+pub(crate) fn why_unmoved(watch: &Watch, backwards: bool) -> Cause {
+    let stall = watch.stall_amps.filter(|stall| *stall > TELLING_STALL_AMPS);
+    let pushed: Vec<(f64, f64)> = watch
+        .recent()
+        .filter_map(|point| Some((watch.duty_at(point.t).abs(), point.amps?.abs())))
+        .filter(|(duty, _)| *duty > watch.start_duty)
+        .collect();
+    if watch.draws() && !pushed.is_empty() && pushed.iter().all(|(_, amps)| *amps <= NO_CURRENT_AMPS) {
+        return Cause::MotorOpened;
+    }
+    if backwards {
+        return Cause::EncoderFlipped;
+    }
+    let limit = limit_of(watch);
+    let short =
+        pushed.iter().map(|(duty, amps)| 1.0 - amps / stall.unwrap_or(f64::INFINITY) / duty.min(limit));
+    let turns = stall.is_some() && middle(short.collect()).is_some_and(|short| short > SHORT);
+    if turns { Cause::EncoderLost } else { Cause::Stalled }
+}
+
+fn middle(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
 }
 
 /// Whether no current flows: not at the duty that was given at last, nor while the motor is braked.
@@ -85,6 +124,7 @@ fn moments(watch: &Watch, polls: &[Point], from_s: f64) -> Vec<Moment> {
     let late = polls.iter().enumerate().skip(1).filter(|(_, point)| point.t > from_s);
     late.map(|(n, point)| Moment {
         t: point.t,
+        counts: point.counts,
         duty: watch.duty_at(point.t),
         speed: around(n),
         current: point.amps.zip(stall).map(|(amps, stall)| amps.abs() / stall),
@@ -96,18 +136,33 @@ fn limit_of(watch: &Watch) -> f64 {
     watch.drive_limit.unwrap_or(f64::INFINITY)
 }
 
+/// Whether the motor is counted against its duty faster than it was with it shortly before. What springs back, an end stop or a load
+/// behind a shaft, gives back no more than it was given.
+fn outruns(moments: &[Moment], gain: f64, alarm_s: f64) -> bool {
+    let before = || moments.iter().filter(|moment| moment.t < alarm_s);
+    let Some(last) = before().next_back().filter(|last| last.duty.abs() > DRIVEN_DUTY) else { return false };
+    let way = last.duty.signum();
+    let driven = || before().rev().take_while(|moment| moment.duty * way > DRIVEN_DUTY);
+    let against = driven().map(|moment| -moment.speed * way).fold(0.0, f64::max);
+    let with = before().map(|moment| moment.speed * way).fold(0.0, f64::max);
+    let gone = driven().map(|moment| (moment.counts - last.counts) * way).fold(0.0, f64::max);
+    gone > LEAST_OUTRUN_COUNTS
+        && -last.speed * way > 0.4 * against
+        && against > OUTRUN * with + LEAST_OUTRUN * gain
+}
+
 /// Whether currents are other than those of a motor that stands, while nothing is counted.
 fn turns_unseen(watch: &Watch, moments: &[Moment], alarm_s: f64) -> bool {
     let limit = limit_of(watch);
     let still = moments.iter().rposition(|moment| moment.speed != 0.0).map_or(0, |last| last + 1);
     let still = &moments[still..];
-    let mut off: Vec<f64> = still
+    let least_duty = (TELLING_AMPS / watch.stall_amps.unwrap_or(f64::INFINITY)).max(LEAST_DUTY);
+    let off: Vec<f64> = still
         .iter()
-        .filter(|moment| moment.duty.abs() >= 0.15)
+        .filter(|moment| moment.duty.abs() >= least_duty)
         .filter_map(|moment| Some(1.0 - moment.current? / moment.duty.abs().min(limit)))
         .collect();
-    off.sort_by(f64::total_cmp);
-    let driven_off = off.get(off.len() / 2).is_some_and(|middle| *middle > SHORT);
+    let driven_off = middle(off).is_some_and(|middle| middle > SHORT);
     let stall = watch.stall_amps.unwrap_or(f64::INFINITY);
     let braked = still.iter().filter(|moment| moment.duty == 0.0 && moment.t > alarm_s + BRAKED_S);
     let braked: Vec<f64> = braked.filter_map(|moment| moment.current).collect();

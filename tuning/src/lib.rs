@@ -15,6 +15,7 @@ pub mod fit;
 pub mod lag;
 pub mod law_probe;
 pub mod linear;
+mod looped;
 mod margin;
 pub mod model;
 pub mod motion_mind;

@@ -4,7 +4,7 @@ use crate::axis::{PositionRegisters, VelocityRegisters};
 use crate::model::{Gains, LoopLaw, Pid};
 
 /// Wire value of a velocity gain of 1 (MCP manual, command 28).
-const VELOCITY_SCALE: f64 = 65_536.0;
+pub(crate) const VELOCITY_SCALE: f64 = 65_536.0;
 
 /// Velocity registers of an MCP or RoboClaw.
 #[must_use]

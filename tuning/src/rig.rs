@@ -250,10 +250,11 @@ impl<'a> Rig<'a> {
     /// Commands a speed in counts/s.
     pub fn speed(&mut self, counts_per_s: f64) -> Result<(), Cause> {
         let whole = self.whole_speed(counts_per_s) as i32;
+        let first_s = self.now_s();
         let exchange = self.acknowledged(|axis| axis.command_speed(whole))?;
         let t = exchange.middle_s() - self.epoch_s;
         self.drives.push(Drive { t, input: Input::Speed(f64::from(whole)) });
-        self.watch.release(t);
+        self.watch.release(first_s, t);
         Ok(())
     }
 
@@ -274,10 +275,11 @@ impl<'a> Rig<'a> {
     pub fn position(&mut self, counts: f64, speed: u32) -> Result<(), Cause> {
         let origin = self.first_counts.unwrap_or(0);
         let whole = (origin + counts.round() as i64) as i32;
+        let first_s = self.now_s();
         let exchange = self.acknowledged(|axis| axis.command_position(whole, speed))?;
         let t = exchange.middle_s() - self.epoch_s;
         self.drives.push(Drive { t, input: Input::Position(counts.round(), f64::from(speed)) });
-        self.watch.release(t);
+        self.watch.release(first_s, t);
         Ok(())
     }
 
@@ -296,6 +298,7 @@ impl<'a> Rig<'a> {
     /// Writes velocity registers to RAM; they are put back unless the run keeps them.
     pub fn write_velocity(&mut self, registers: VelocityRegisters) -> Result<(), Cause> {
         self.gains_touched = true;
+        self.watch.hold(registers);
         self.acknowledged(|axis| axis.write_velocity(registers))
     }
 
@@ -399,12 +402,12 @@ impl<'a> Rig<'a> {
         self.usual_exchange_s().is_none_or(|usual| took_s <= usual + LATE_S)
     }
 
-    /// How long an exchange took of late, s; the middle one.
+    /// How long an exchange took of late, s: the one that a quarter were quicker than, since a busy host makes only longer ones.
     fn usual_exchange_s(&self) -> Option<f64> {
         let recent = &self.exchanges[self.exchanges.len().saturating_sub(USUAL_POLLS)..];
         let mut took: Vec<f64> = recent.iter().map(|exchange| exchange.1).collect();
         took.sort_by(f64::total_cmp);
-        took.get(took.len() / 2).copied()
+        took.get(took.len() / 4).copied()
     }
 
     /// The current limit over the stall current at full duty.

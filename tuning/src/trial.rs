@@ -109,6 +109,8 @@ fn moves(rig: &mut Rig<'_>, wanted: &TrialRequest) -> Result<(Measured, bool), C
     rig.watch.stall_amps = wanted.probe.stall_amps;
     rig.watch.full_speed = wanted.task.qpps;
     rig.watch.stopping_s = wanted.task.plant.tau_s;
+    rig.watch.drive_limit = rig.drive_limit(wanted.probe.stall_amps);
+    rig.watch.know(&wanted.task.plant);
     write_loops(rig, wanted)?;
     let measured = if gains.position.is_some() {
         try_position(rig, &wanted.request, &task, &design)?

@@ -215,7 +215,7 @@ fn run(rig: &mut Rig<'_>, request: &Request, report: &mut Report) -> Result<(), 
         }
     };
     let model = found.fit.model;
-    rig.watch.know(model.gain_counts_per_s * (1.0 - model.coulomb_duty), model.tau_s, model.load_duty);
+    rig.watch.know(&model);
     report.fit = Some(found.fit);
     report.qpps = Some(found.qpps);
     if model.load_duty.abs() > model.coulomb_duty + SURELY_HEAVY {

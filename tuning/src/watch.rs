@@ -4,8 +4,11 @@
 //! was and which duty it had. The bounds are wide, since they come from the run itself: the speeds seen so far and a rough time
 //! constant. A stretch outside them is a suspicion, which the diagnosis turns into a cause.
 
+use crate::axis::VelocityRegisters;
 use crate::cause::Cause;
 use crate::course::DUTY_SLEW_PER_S;
+use crate::looped::{Before, LoopWatch};
+use crate::model::PlantModel;
 use crate::rig::Point;
 use std::collections::VecDeque;
 
@@ -24,11 +27,16 @@ const MARGIN_COUNTS: f64 = 5.0;
 const MARGIN_SPEED: f64 = 0.3;
 /// What a motor keeps at the least of its speed while its duty stays.
 const KEPT_SPEED: f64 = 0.5;
-/// A motor that has started once starts again within this, at a clearly higher duty, s.
-const START_S: f64 = 0.13;
+/// A motor that has started once starts again within this, at a clearly higher duty, s: at the least and at the most, and how many times
+/// longer than the first time. A slow one that is turned round passes through rest with hardly a count for as long.
+const START_S: (f64, f64) = (0.13, 0.22);
+const STARTS: f64 = 1.5;
+const START_COUNTS: f64 = 2.0;
 const CLEARLY_HIGHER: f64 = 0.1;
 /// Without current for this long, the motor is open, s.
 const OPEN_S: f64 = 0.2;
+/// A push that has begun draws its current after this, s.
+const PUSHED_S: f64 = 0.02;
 /// Duty readings of a loop lie this much beside the truth between two polls.
 const LOOP_DUTY: f64 = 0.14;
 /// Share of the speed at full duty that a loop may be beside what its duty readings say.
@@ -79,10 +87,14 @@ pub struct Watch {
     first_s: f64,
     /// Duty that a constant load eats, positive when it pulls towards lower counts; 0 as long as it is not known.
     load_duty: f64,
+    /// How long the first few counts took under the first duty of a run from rest, s.
+    start_took_s: Option<f64>,
     /// Highest speed over duty seen, counts/s.
     gain: f64,
     /// The same by speed and current.
     emf_gain: f64,
+    /// What an identification has found, for the watch over loops.
+    known: Option<LoopWatch>,
     running_amps: Option<f64>,
     open_since_s: Option<f64>,
     recent: VecDeque<Point>,
@@ -102,8 +114,10 @@ impl Watch {
     /// A duty was given.
     pub fn drive(&mut self, t: f64, duty: f64) {
         if self.looped {
+            // The ramp begins at the duty that the loop had.
             let last = self.duty_at(t);
-            self.duties.push_back((t, last));
+            self.duties.clear();
+            self.duties.push_back((t - 2.0 / DUTY_SLEW_PER_S, last));
             self.looped = false;
             self.looped_until_s = t;
             self.news_s = t;
@@ -120,12 +134,21 @@ impl Watch {
         }
     }
 
-    /// Takes over what an identification found: speed at full duty per duty, the time constant, and the duty that a constant load
-    /// eats.
-    pub fn know(&mut self, gain_counts_per_s: f64, tau_s: f64, load_duty: f64) {
-        self.gain = gain_counts_per_s;
-        self.load_duty = load_duty;
-        self.tau_bounds_s = Some((TAU_SPREAD.0 * tau_s, TAU_SPREAD.1 * tau_s));
+    /// Takes over what an identification found.
+    pub fn know(&mut self, model: &PlantModel) {
+        self.load_duty = model.load_duty;
+        self.gain = model.gain_counts_per_s * (1.0 - model.coulomb_duty);
+        self.tau_bounds_s = Some((TAU_SPREAD.0 * model.tau_s, TAU_SPREAD.1 * model.tau_s));
+        // A limit that never acted in the identification may act in a trial.
+        let drive_limit = model.drive_limit.or(self.drive_limit);
+        self.known = Some(LoopWatch::new(PlantModel { drive_limit, ..*model }, self.start_duty));
+    }
+
+    /// The velocity loop is given other gains.
+    pub(crate) fn hold(&mut self, registers: VelocityRegisters) {
+        if let Some(known) = &mut self.known {
+            known.hold(registers);
+        }
     }
 
     /// Counts that the motor runs on from a speed while it is driven the other way at a duty, and the time until that duty acts
@@ -161,8 +184,16 @@ impl Watch {
         if pull <= 0.0 || free <= 0.0 { held } else { held + free - pull * (free / pull).ln_1p() }
     }
 
-    /// A loop has the motor: its duty is what is read.
-    pub fn release(&mut self, t: f64) {
+    /// A loop has the motor: its duty is what is read. It was told so first at `first_s`, and answered the try of `t`.
+    pub fn release(&mut self, first_s: f64, t: f64) {
+        if let Some(known) = &mut self.known {
+            let before = match self.duties.back() {
+                _ if self.looped => Before::Looped,
+                Some((off_s, 0.0)) => Before::Off(off_s + 2.0 / DUTY_SLEW_PER_S),
+                _ => Before::Driven,
+            };
+            known.tell(first_s, t, before);
+        }
         self.looped = true;
         self.news_s = t;
         self.since_s = t;
@@ -193,7 +224,14 @@ impl Watch {
             return Ok(());
         }
         self.check_current(point)?;
+        self.learn_start(point);
         self.check_start(point)?;
+        if self.looped
+            && let Some(known) = &self.known
+        {
+            let agrees = known.agrees(&self.recent, &self.readings);
+            return if agrees { Ok(()) } else { Err(Cause::Stalled) };
+        }
         for seconds in STRETCHES_S {
             if let Some(stretch) = self.stretch(seconds) {
                 self.check_stretch(&stretch)?;
@@ -341,16 +379,32 @@ impl Watch {
         if stops { 0.0 } else { next }
     }
 
+    fn learn_start(&mut self, point: &Point) {
+        let driven = self.duties.back().is_some_and(|given| given.1 != 0.0);
+        if self.start_took_s.is_some() || self.looped || !driven {
+            return;
+        }
+        let from = self.recent.iter().rev().find(|old| old.t <= self.since_s);
+        if from.is_some_and(|from| (point.counts - from.counts).abs() > START_COUNTS) {
+            self.start_took_s = Some(point.t - self.since_s);
+        }
+    }
+
     /// From rest, a duty clearly above the one that it started with moves it soon.
     fn check_start(&self, point: &Point) -> Result<(), Cause> {
         let duty = self.duty_at(point.t).abs();
         if self.looped || duty < self.start_duty + CLEARLY_HIGHER || self.tau_bounds_s.is_some() {
             return Ok(());
         }
-        if point.t - self.since_s < START_S + 0.05 {
+        let start_s = self.start_took_s.map_or(START_S.0, |took| (STARTS * took).clamp(START_S.0, START_S.1));
+        if point.t - self.since_s < start_s + 0.05 {
             return Ok(());
         }
-        let within = self.recent.iter().filter(|old| point.t - old.t <= START_S).map(|old| old.counts);
+        // From the poll before that time on: polls that were lost, or too late to tell anything, are no standing motor.
+        let Some(first) = self.recent.iter().rposition(|old| point.t - old.t >= start_s) else {
+            return Ok(());
+        };
+        let within = self.recent.iter().skip(first).map(|old| old.counts);
         let (low, high) = within.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), c| (l.min(c), h.max(c)));
         if high - low <= 1.0 { Err(Cause::Stalled) } else { Ok(()) }
     }
@@ -398,7 +452,34 @@ impl Watch {
             return Ok(());
         }
         let since = *self.open_since_s.get_or_insert(point.t);
-        if self.draws() && point.t - since > OPEN_S { Err(Cause::MotorOpened) } else { Ok(()) }
+        let open = self.draws() && point.t - since > OPEN_S && !self.goes_on(point.t - OPEN_S);
+        if open { Err(Cause::MotorOpened) } else { Ok(()) }
+    }
+
+    /// Whether no current was read since a push began, of a motor that draws one.
+    pub(crate) fn drew_nothing(&self, since_s: f64) -> bool {
+        let mut since = self
+            .recent
+            .iter()
+            .filter(|point| point.t > since_s + PUSHED_S)
+            .filter_map(|point| point.amps)
+            .peekable();
+        self.draws() && since.peek().is_some() && since.all(|amps| amps.abs() <= NO_CURRENT_AMPS)
+    }
+
+    /// Whether the motor has kept its speed since then, though its friction alone would have slowed it down.
+    fn goes_on(&self, since_s: f64) -> bool {
+        let (Some(tau), Some(to)) = (self.tau_bounds_s, self.recent.back()) else { return false };
+        let since = || self.recent.iter().filter(|point| point.t >= since_s - SPEED_S);
+        let middle_s = 0.5 * (since_s + to.t);
+        let (Some(from), Some(middle)) = (since().next(), since().find(|point| point.t >= middle_s)) else {
+            return false;
+        };
+        let speed = |a: &Point, b: &Point| (b.counts - a.counts) / (b.t - a.t).max(1e-3);
+        let (before, now) = (speed(from, middle), speed(middle, to));
+        let fall = 0.5 * self.gain * self.start_duty * (0.5 * (to.t - from.t) / tau.1).min(1.0);
+        let clear = 4.0 / (to.t - middle.t).max(1e-3);
+        fall > clear && before * now > 0.0 && before.abs() - now.abs() < 0.5 * fall.min(before.abs())
     }
 
     /// Whether a turning motor draws a current that can be told from none.

@@ -5,6 +5,7 @@
 
 use super::Probe;
 use crate::cause::Cause;
+use crate::diagnosis::why_unmoved;
 use crate::model::PlantModel;
 use crate::rig::Rig;
 use serde::{Deserialize, Serialize};
@@ -62,7 +63,8 @@ pub fn measure_slack(rig: &mut Rig<'_>, probe: &Probe, model: &PlantModel) -> Re
     rig.watch.start_duty = watched_duty;
     let ways = ways?;
     if ways.windows(2).any(|pair| pair.iter().all(|(_, way)| *way < LEAST_WAY_COUNTS)) {
-        return Err(Cause::Stalled);
+        let backwards = ways.iter().rev().take(2).all(|(_, way)| *way <= -LEAST_WAY_COUNTS);
+        return Err(why_unmoved(&rig.watch, backwards));
     }
     Ok(Some(slack_of(&ways)))
 }
@@ -84,6 +86,9 @@ fn push(
         let pushed_s = rig.now_s();
         rig.poll_for(push_s, false)?;
         let held_s = rig.now_s() - pushed_s;
+        if rig.watch.drew_nothing(pushed_s) {
+            return Err(Cause::MotorOpened);
+        }
         rig.duty(0.0)?;
         rig.poll_for(rest_s, false)?;
         // A computer that was late pushed for longer.

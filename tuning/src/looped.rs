@@ -1,0 +1,276 @@
+//! The watch over a motor that a loop drives: has it gone where its duty must have taken it, by the identified model?
+//!
+//! What a loop does between two polls is not seen, so that the duty is known within bounds only: those of the readings around, as wide
+//! again as readings scatter of late, and anything at all where a new setpoint fell between them. From these, and from bounds of the
+//! model, follow the least and the most that can have been counted over a stretch.
+
+use crate::axis::VelocityRegisters;
+use crate::model::PlantModel;
+use crate::registers::VELOCITY_SCALE;
+use crate::rig::Point;
+use std::collections::VecDeque;
+
+/// Stretches that are looked at, s. The long ones are for heavy motors, which show a fault late.
+const STRETCHES_S: [f64; 7] = [0.045, 0.08, 0.12, 0.17, 0.23, 0.30, 0.45];
+/// Time over which the speed before a stretch is taken, s, and as a share of the stretch.
+const SPEED_S: f64 = 0.03;
+const SPEED_SHARE: f64 = 0.3;
+/// Longest step of the bounds, s, and steps in a stretch at the least.
+const STEP_S: f64 = 0.004;
+const STEPS: f64 = 40.0;
+/// How far the gain may be beside the model, and between which multiples of its time constant the true one lies: a load behind a
+/// spring or in its play leaves the motor alone, which is quicker.
+const GAIN_DOUBT: f64 = 0.12;
+const TAU_SPREAD: (f64, f64) = (0.3, 1.6);
+/// Bounds of the friction over the model's: share, and duty on top of the higher one.
+const FRICTION: (f64, f64) = (0.5, 1.5);
+const MORE_FRICTION: f64 = 0.02;
+/// The same for what holds a motor at rest.
+const STICTION: f64 = 2.2;
+const MORE_STICTION: f64 = 0.04;
+/// Bounds of the current limit over what was set.
+const LIMIT: (f64, f64) = (0.85, 1.2);
+/// Duty that readings may be beside the truth between two polls, and how many times their middle scatter is added to it.
+const DUTY_DOUBT: f64 = 0.02;
+const SCATTERS: f64 = 2.0;
+/// Steps of the duty by one count that readings may miss, and ticks per second: the usual.
+const STEPS_UNSEEN: f64 = 0.5;
+const TICKS_PER_S: f64 = 300.0;
+/// The same with too few readings to tell a scatter.
+const UNKNOWN_DOUBT: f64 = 0.14;
+const FEW_READINGS: usize = 5;
+/// From the stamp of a setpoint to what it does, s: either side.
+const NEWS_S: (f64, f64) = (0.006, 0.012);
+/// How long news are remembered, s: longer than the polls.
+const MEMORY_S: f64 = 2.0;
+/// Counts that a stretch may be beside its bounds, time that the stamps of its ends and of the speed before it may be off, s, and shares
+/// of the speed before it and of the speed at full duty.
+const MARGIN: Margin = Margin { counts: 4.0, stamp_s: 0.0025, speed: 0.06, full: 0.012 };
+/// The same of counts that stand still: no roughness and no late stamp makes them stand.
+const STANDING_MARGIN: Margin = Margin { counts: 4.0, stamp_s: 0.0, speed: 0.1, full: 0.005 };
+/// Counts between which an encoder that stands may flicker.
+const STANDING_COUNTS: f64 = 1.0;
+
+/// What a stretch may be beside its bounds.
+struct Margin {
+    counts: f64,
+    stamp_s: f64,
+    speed: f64,
+    full: f64,
+}
+
+impl Margin {
+    /// In counts, for a stretch at a speed.
+    fn of(&self, stretch: &Stretch, full_speed: f64) -> f64 {
+        let span = stretch.to.t - stretch.from.t;
+        let of_speed = self.stamp_s * (1.0 + span / stretch.base_s) + self.speed * span;
+        self.counts + of_speed * stretch.speed_before.abs() + self.full * span * full_speed
+    }
+}
+
+/// What is known of a loop that has the motor.
+#[derive(Clone, Debug)]
+pub(crate) struct LoopWatch {
+    model: PlantModel,
+    /// Duty at which the probe saw the motor start.
+    start_duty: f64,
+    /// Duty that one count more in a tick makes.
+    step_duty: f64,
+    /// From when on its duty is known, nought or that of the loop, and when it was first told anything, s.
+    since_s: f64,
+    told_s: f64,
+    /// When it was told something new, from the first try on to the acknowledged one, oldest first, s.
+    news: VecDeque<(f64, f64)>,
+}
+
+/// What a motor had before a loop was told something.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Before {
+    /// The loop.
+    Looped,
+    /// No duty since then, s.
+    Off(f64),
+    /// Some duty.
+    Driven,
+}
+
+/// The polls of a stretch and the speed before it.
+struct Stretch {
+    from: Point,
+    to: Point,
+    speed_before: f64,
+    before_s: f64,
+    base_s: f64,
+    stands: bool,
+}
+
+impl LoopWatch {
+    /// Nothing has been told yet.
+    pub(crate) fn new(model: PlantModel, start_duty: f64) -> Self {
+        Self {
+            model,
+            start_duty,
+            step_duty: 0.0,
+            since_s: f64::INFINITY,
+            told_s: f64::INFINITY,
+            news: VecDeque::new(),
+        }
+    }
+
+    /// The loop is given the motor, or is told something new, at some time between two: a lost reply leaves open which try was heard.
+    /// `before` is how it had the motor until then.
+    pub(crate) fn tell(&mut self, from_s: f64, to_s: f64, before: Before) {
+        if before != Before::Looped {
+            self.since_s = if let Before::Off(since_s) = before { since_s } else { to_s };
+            self.told_s = from_s - NEWS_S.0;
+            self.news.clear();
+        }
+        self.news.push_back((from_s - NEWS_S.0, to_s + NEWS_S.1));
+        while self.news.front().is_some_and(|old| to_s - old.1 > MEMORY_S) {
+            self.news.pop_front();
+        }
+    }
+
+    /// The velocity loop has these gains. Where a tick sees a count or none, the duty jumps between two values, and polls in step with
+    /// the ticks may see the same one for long.
+    pub(crate) fn hold(&mut self, registers: VelocityRegisters) {
+        let gain = f64::from(registers.p) / VELOCITY_SCALE;
+        self.step_duty = gain * TICKS_PER_S / f64::from(registers.qpps.max(1));
+    }
+
+    /// Whether the counts of every stretch lie within their bounds.
+    pub(crate) fn agrees(&self, recent: &VecDeque<Point>, readings: &VecDeque<(f64, f64)>) -> bool {
+        let doubt = self.doubt(readings);
+        STRETCHES_S.iter().filter_map(|seconds| self.stretch(recent, *seconds)).all(|stretch| {
+            // A loop that sees nothing move does nothing jerky: its duty goes from one reading to the next.
+            let (doubt, calm_s) =
+                if stretch.stands { (DUTY_DOUBT, stretch.from.t) } else { (doubt, f64::INFINITY) };
+            self.within(&stretch, &Duties { readings, watch: self, doubt, calm_s })
+        })
+    }
+
+    fn stretch(&self, recent: &VecDeque<Point>, seconds: f64) -> Option<Stretch> {
+        let to = *recent.back()?;
+        let from = recent.iter().rposition(|old| to.t - old.t >= seconds)?;
+        let stands = {
+            let counts = recent.iter().skip(from).map(|point| point.counts);
+            let (low, high) =
+                counts.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), c| (l.min(c), h.max(c)));
+            high - low <= STANDING_COUNTS
+        };
+        let from = recent[from];
+        let base_s = SPEED_S.max(SPEED_SHARE * seconds);
+        let earlier = recent.iter().rev().find(|old| from.t - old.t >= base_s)?;
+        let speed_before = (from.counts - earlier.counts) / (from.t - earlier.t);
+        let before_s = 0.5 * (earlier.t + from.t);
+        let base_s = from.t - earlier.t;
+        (earlier.t >= self.since_s).then_some(Stretch { from, to, speed_before, before_s, base_s, stands })
+    }
+
+    fn within(&self, stretch: &Stretch, duties: &Duties<'_>) -> bool {
+        let moved = stretch.to.counts - stretch.from.counts;
+        let full = self.model.gain_counts_per_s;
+        let margin = if stretch.stands { STANDING_MARGIN } else { MARGIN }.of(stretch, full);
+        let least = self.least_way(stretch, duties, 1.0);
+        let most = -self.least_way(stretch, duties, -1.0);
+        moved >= least - margin && moved <= most + margin
+    }
+
+    /// How far the duty may be beside the readings: they scatter about the mean of their neighbours.
+    fn doubt(&self, readings: &VecDeque<(f64, f64)>) -> f64 {
+        let is_quiet = |from: f64, to: f64| {
+            from >= self.told_s && !self.news.iter().any(|news| news.1 > from && news.0 < to)
+        };
+        let triples = (2..readings.len()).map(|n| (readings[n - 2], readings[n - 1], readings[n]));
+        let mut beside: Vec<f64> = triples
+            .filter(|(a, _, c)| is_quiet(a.0, c.0))
+            .map(|(a, b, c)| (b.1 - 0.5 * (a.1 + c.1)).abs())
+            .collect();
+        if beside.len() < FEW_READINGS {
+            return UNKNOWN_DOUBT;
+        }
+        beside.sort_by(f64::total_cmp);
+        DUTY_DOUBT + STEPS_UNSEEN * self.step_duty + SCATTERS * beside[beside.len() / 2]
+    }
+
+    /// The least way that the motor can have gone in a direction; a way backwards is negative.
+    fn least_way(&self, stretch: &Stretch, duties: &Duties<'_>, direction: f64) -> f64 {
+        let mut speed = stretch.speed_before * direction;
+        let mut way = 0.0;
+        let mut t = stretch.before_s;
+        let longest = STEP_S.max((stretch.to.t - t) / STEPS);
+        while t < stretch.to.t - 1e-9 {
+            let step = longest.min(stretch.to.t - t);
+            let range = duties.range(t + 0.5 * step);
+            let duty = if direction > 0.0 { range.0 } else { -range.1 };
+            let next = self.least_speed(speed, duty, direction, step);
+            if t + step > stretch.from.t {
+                way += 0.5 * (speed + next) * step.min(t + step - stretch.from.t);
+            }
+            speed = next;
+            t += step;
+        }
+        way
+    }
+
+    /// The lowest speed after a step, in the direction looked at.
+    fn least_speed(&self, speed: f64, duty: f64, direction: f64, step: f64) -> f64 {
+        let model = &self.model;
+        let full = model.gain_counts_per_s;
+        let share = if duty > 0.0 { 1.0 - GAIN_DOUBT } else { 1.0 + GAIN_DOUBT };
+        let mut push = share * duty - speed / full - model.load_duty * direction;
+        if let Some(limit) = model.drive_limit {
+            let brake = model.brake_limit.unwrap_or(limit).max(limit);
+            push = push.clamp(-LIMIT.1 * brake, LIMIT.0 * limit);
+        }
+        let friction = FRICTION.1 * model.coulomb_duty + MORE_FRICTION;
+        let stiction = self.start_duty.min(STICTION * model.coulomb_duty + MORE_STICTION).max(friction);
+        let force = if speed > 0.0 {
+            push - friction
+        } else if speed < 0.0 {
+            push + FRICTION.0 * model.coulomb_duty
+        } else if push > 0.0 {
+            (push - stiction).max(0.0)
+        } else {
+            (push + FRICTION.0 * model.coulomb_duty).min(0.0)
+        };
+        let tau_s = model.tau_s * if force > 0.0 { TAU_SPREAD.1 } else { TAU_SPREAD.0 };
+        let next = speed + full * force * (1.0 - (-step / tau_s).exp());
+        // Friction stops a motor, but does not turn it.
+        if speed > 0.0 && next < 0.0 && push >= -friction { 0.0 } else { next }
+    }
+}
+
+/// The duty of a loop as far as it is known.
+struct Duties<'a> {
+    readings: &'a VecDeque<(f64, f64)>,
+    watch: &'a LoopWatch,
+    doubt: f64,
+    /// From when on news are followed without a jerk, s.
+    calm_s: f64,
+}
+
+impl Duties<'_> {
+    /// Lowest and highest duty that may have been in force at a time.
+    fn range(&self, t: f64) -> (f64, f64) {
+        if t >= self.watch.since_s && t < self.watch.told_s {
+            return (0.0, 0.0);
+        }
+        let next = self.readings.partition_point(|reading| reading.0 <= t);
+        let before =
+            next.checked_sub(1).and_then(|n| self.readings.get(n)).filter(|a| a.0 >= self.watch.since_s);
+        let from_rest = (self.watch.told_s, 0.0);
+        let a = match before {
+            Some(reading) => reading,
+            None if self.watch.since_s < self.watch.told_s => &from_rest,
+            None => return (-1.0, 1.0),
+        };
+        let b = self.readings.get(next);
+        let until = b.map_or(t, |b| b.0);
+        if t < self.calm_s && self.watch.news.iter().any(|news| news.1 > a.0 && news.0 < until) {
+            return (-1.0, 1.0);
+        }
+        let (b, doubt) = b.map_or((a, 2.0 * self.doubt), |b| (b, self.doubt));
+        ((a.1.min(b.1) - doubt).max(-1.0), (a.1.max(b.1) + doubt).min(1.0))
+    }
+}
