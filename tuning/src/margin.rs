@@ -11,20 +11,29 @@ use crate::swing::deviation;
 
 /// Gains tried, as multiples of the proposed ones, up to the margin that is wanted.
 const FACTORS: [f64; 5] = [1.2, 1.4, 1.6, 1.8, 2.0];
+/// The most that is asked of a loop that swings.
+const MOST_FACTOR: f64 = 2.5;
 /// The sensitivity that may really be where one was designed for: what lies beyond it is what the trial is to find.
 const MS_ALLOWED: f64 = 1.25;
 /// Setpoint of the trial and height of its steps, as shares of full speed.
 const SPEED: f64 = 0.30;
-const STEP: f64 = 0.02;
+const STEP: (f64, f64) = (0.02, 0.08);
+/// The duty that a step asks for at once at the highest gain tried: as much as leaves the play of a gear, where a shaft does not swing.
+const STEP_DUTY: f64 = 0.3;
 /// How long a gain is tried, in lags of the loop, and the bounds, s.
 const LAGS: f64 = 14.0;
 const TRIED_S: (f64, f64) = (0.22, 0.40);
+/// The last share of that is listened to, and how many polls it has at the least.
+const HEARD: f64 = 0.65;
+const LEAST_POLLS: f64 = 14.0;
 /// The duty is too rough when it is so many times what was to be expected, and at least this.
 const TOO_ROUGH: f64 = 2.0;
 const LEAST_ROUGH: f64 = 0.012;
 
 /// A duty that is beyond the bound so many times over needs no second look.
 const AT_ONCE: f64 = 4.0;
+/// Counts in a tick from which on a speed is laid between two whole numbers of them.
+const LEAST_PER_TICK: f64 = 6.0;
 /// Predicted noise from which on nothing can be heard beside it.
 const LOUDEST: f64 = 0.15;
 
@@ -41,6 +50,11 @@ pub(crate) struct Headroom {
 fn wanted_factor(ms: f64) -> f64 {
     let allowed = MS_ALLOWED * ms;
     (allowed / (allowed - 1.0)).min(FACTORS[FACTORS.len() - 1])
+}
+
+/// The multiple that a loop with the sensitivity that was designed for has, for one that was seen to swing below the other.
+fn full_factor(ms: f64) -> f64 {
+    (ms / (ms - 1.0)).min(MOST_FACTOR)
 }
 
 /// The velocity gains times a factor.
@@ -64,12 +78,14 @@ pub(crate) fn headroom(
         task.noise_factor.max(1.0) * plant.margins(&scaled(&inner, factor), task.qpps).noise_duty
     };
     let lag_s = task.lag.total_s(law) + 2.0 * law.tick_s();
-    let tried_s = (LAGS * lag_s).clamp(TRIED_S.0, TRIED_S.1);
+    let tried_s = (LAGS * lag_s).clamp(TRIED_S.0, TRIED_S.1).max(LEAST_POLLS * rig.options.poll_s / HEARD);
     let settle_s = (1.5 * task.plant.tau_s).clamp(0.15, 1.0);
     rig.write_velocity(velocity_registers(&inner.velocity, task.qpps, law))?;
-    rig.speed((SPEED - STEP) * task.qpps)?;
+    let step = (STEP_DUTY / (wanted * inner.velocity.p).max(1e-6)).clamp(STEP.0, STEP.1);
+    let speed = |side: f64| between_counts((SPEED + side * step) * task.qpps, law.tick_s());
+    rig.speed(speed(-1.0))?;
     rig.poll_for(settle_s, true)?;
-    let usual = activity(rig, (SPEED + STEP) * task.qpps, tried_s)?;
+    let usual = activity(rig, speed(1.0), tried_s)?;
     let mut quiet = 1.0;
     let mut side = -1.0;
     for factor in FACTORS.map(|factor| factor.min(wanted)) {
@@ -81,14 +97,15 @@ pub(crate) fn headroom(
             return Ok(Headroom { quiet: wanted, wanted });
         }
         rig.write_velocity(velocity_registers(&scaled(&inner, factor).velocity, task.qpps, law))?;
-        let measured = activity(rig, (SPEED + side * STEP) * task.qpps, tried_s)?;
+        let measured = activity(rig, speed(side), tried_s)?;
         let expected = predicted(factor).max(usual * predicted(factor) / predicted(1.0).max(1e-4));
         let bound = (TOO_ROUGH * expected).max(LEAST_ROUGH);
         // Looked at twice: what swings goes on, unless it is so strong that it had better stop at once.
         let again = measured > bound && measured <= AT_ONCE * bound;
-        let rough = if again { activity(rig, (SPEED + side * STEP) * task.qpps, tried_s)? } else { measured };
+        let rough = if again { activity(rig, speed(side), tried_s)? } else { measured };
         if rough > bound {
-            break;
+            rig.duty(0.0)?;
+            return Ok(Headroom { quiet, wanted: full_factor(task.goal.ms) });
         }
         quiet = factor;
         side = -side;
@@ -97,10 +114,17 @@ pub(crate) fn headroom(
     Ok(Headroom { quiet, wanted })
 }
 
+/// A speed near this one at which each tick counts a half more than a whole number: the difference of two ticks is never the same, and
+/// a loop that swings by less than a count shows it. At whole numbers it could stand still in the controller's eyes.
+fn between_counts(speed: f64, tick_s: f64) -> f64 {
+    let per_tick = speed * tick_s;
+    if per_tick > LEAST_PER_TICK { (per_tick.floor() + 0.5) / tick_s } else { speed }
+}
+
 /// Deviation of the duty in the second half of a step.
 fn activity(rig: &mut Rig<'_>, speed: f64, tried_s: f64) -> Result<f64, Cause> {
     rig.speed(speed)?;
-    let from_s = rig.now_s() + 0.35 * tried_s;
+    let from_s = rig.now_s() + (1.0 - HEARD) * tried_s;
     rig.poll_for(tried_s, true)?;
     let duties: Vec<(f64, f64)> =
         rig.points.iter().filter_map(|point| point.duty).filter(|duty| duty.0 >= from_s).collect();

@@ -8,7 +8,7 @@ use crate::margin::{headroom, scaled};
 use crate::model::{Gains, Pid};
 use crate::report::{Measured, Report};
 use crate::rig::{Point, Rig};
-use crate::score::position_step;
+use crate::score::{horizon_s, position_step};
 use crate::swing::{deviation, flank_overshoot, speed_ripple};
 use crate::ticks::{TickLoop, velocity_test};
 use crate::tune::{Excitation, Method, Request, design_for, propose, with_slack};
@@ -21,11 +21,20 @@ const STEPS: usize = 6;
 const INSIDE_SHARE: f64 = 0.35;
 /// Irregular dwell times, relative: no limit cycle can hide in step with them.
 const DWELLS: [f64; STEPS] = [1.0, 0.87, 1.15, 0.93, 1.17, 0.83];
-/// Counts that are no overshoot and no swing yet.
+/// Overshoot of a move that a position loop may show, and by how much it may be more than predicted.
+const MOST_PLACE_OVERSHOOT: f64 = 0.05;
+const PLACE_DOUBT: f64 = 0.04;
+/// Counts that are no overshoot yet, and no swing yet.
+const ROUNDED_COUNTS: f64 = 1.5;
 const ROUNDING_COUNTS: f64 = 2.5;
 /// Overshoot and ripple over the step that a velocity loop may show.
 const MOST_OVERSHOOT: f64 = 0.235;
 const MOST_RIPPLE: f64 = 0.045;
+/// Counts that a short move may still go in the last third of the time in which it should be over, at the least and over the step; and
+/// the counts from which on the step is long, so that a slow end is no matter of the encoder's.
+const TAIL_COUNTS: f64 = 4.0;
+const TAIL_SHARE: f64 = 0.02;
+const FINE_COUNTS: f64 = 8.0;
 /// Swing of a place at rest over the step, beyond what rounding may show.
 const MOST_PLACE_RIPPLE: f64 = 0.010;
 /// Share of a move that a loop which works makes at the least, and of a speed.
@@ -119,7 +128,7 @@ pub fn check_moves(
             continue;
         }
         warn_of_lowering(report);
-        if smoothest.is_none_or(|known| excess < known.0) {
+        if is_bearable(&measured) && smoothest.is_none_or(|known| excess < known.0) {
             smoothest = Some((excess, design, measured));
         }
         if back_offs < MOST_BACK_OFFS {
@@ -135,12 +144,12 @@ pub fn check_moves(
         }
     }
     match smoothest {
-        Some((_, design, measured)) if is_bearable(&measured) => {
+        Some((_, design, measured)) => {
             report.measured = Some(measured);
             propose(report, request, task, design, rig.options.travel);
             Ok(())
         }
-        _ => Err(Cause::NotVerified),
+        None => Err(Cause::NotVerified),
     }
 }
 
@@ -235,9 +244,12 @@ pub(crate) fn is_rougher(design: &Design, measured: &Measured) -> bool {
 /// How rough the machine is over what a design may show: the worst of duty, overshoot and swing. 1 is the bound.
 fn roughness(design: &Design, measured: &Measured) -> f64 {
     let place = design.gains.position.is_some();
-    let (least_over, doubt, ripple) =
-        if place { (0.15, 0.10, MOST_PLACE_RIPPLE) } else { (MOST_OVERSHOOT, 0.03, MOST_RIPPLE) };
-    let active = measured.duty_rms / (1.8 * design.noise_duty).clamp(0.04, 0.115);
+    let (least_over, doubt, ripple) = if place {
+        (MOST_PLACE_OVERSHOOT, PLACE_DOUBT, MOST_PLACE_RIPPLE)
+    } else {
+        (MOST_OVERSHOOT, 0.03, MOST_RIPPLE)
+    };
+    let active = measured.duty_rms / (1.8 * design.noise_duty).clamp(0.04, 0.10);
     let over = measured.overshoot / (design.score.overshoot + doubt).max(least_over);
     active.max(over).max(measured.ripple / ripple)
 }
@@ -373,6 +385,8 @@ pub(crate) fn try_position(
     let (side, room) = farther_end(rig, start);
     let step = side * step.min(MOST_OF_ROOM * room);
     let dwell_s = (0.35 + 1.6 * design.score.settling_s).min(0.5 + 5.0 * task.plant.tau_s).clamp(0.5, 8.0);
+    let horizon_s = horizon_s(task.plant.tau_s);
+    let dwell_s = dwell_s.max(horizon_s);
     let mut worst = Measured::default();
     let mut from = start;
     for (n, share) in [1.0, 0.0, 0.25, 0.0].into_iter().enumerate() {
@@ -387,7 +401,8 @@ pub(crate) fn try_position(
         }
         let moved = judge_move(&points, target, target - from, begin + 0.7 * dwell_s, step.abs());
         worst.overshoot = worst.overshoot.max(moved.overshoot);
-        worst.ripple = worst.ripple.max(moved.ripple);
+        let tail = tail_counts(&points, (begin + 0.7 * horizon_s, begin + horizon_s), step.abs());
+        worst.ripple = worst.ripple.max(moved.ripple).max(MOST_PLACE_RIPPLE * tail);
         worst.duty_rms = worst.duty_rms.max(moved.duty_rms);
         from = target;
     }
@@ -401,11 +416,22 @@ fn farther_end(rig: &Rig<'_>, place: f64) -> (f64, f64) {
     if high - place >= place - low { (1.0, high - place) } else { (-1.0, place - low) }
 }
 
+/// How far the place still goes between two times, in counts over what a move may that is over.
+fn tail_counts(points: &[Point], (from_s, to_s): (f64, f64), step: f64) -> f64 {
+    if TAIL_SHARE * step > FINE_COUNTS {
+        return 0.0;
+    }
+    let inside = points.iter().filter(|p| p.t >= from_s && p.t <= to_s);
+    let ends =
+        inside.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p.counts), h.max(p.counts)));
+    (ends.1 - ends.0).max(0.0) / TAIL_COUNTS.max(TAIL_SHARE * step)
+}
+
 /// Overshoot of one move, and what goes on after `late_s` when it should be over. `step` is the longest of the moves.
 fn judge_move(points: &[Point], target: f64, moved: f64, late_s: f64, step: f64) -> Measured {
     let over = points.iter().map(|p| (p.counts - target) * moved.signum()).fold(0.0, f64::max);
-    // A short move may go past its target by as much as matters in a long one.
-    let overshoot = (over - ROUNDING_COUNTS).max(0.0) / moved.abs().max(0.5 * step).max(1.0);
+    // A short move may go past its target by as many counts as a long one.
+    let overshoot = (over - ROUNDED_COUNTS).max(0.0) / moved.abs().max(step).max(1.0);
     let late = || points.iter().filter(|p| p.t > late_s);
     let places: Vec<f64> = late().map(|p| p.counts).collect();
     let duties: Vec<(f64, f64)> = late().filter_map(|p| p.duty).collect();

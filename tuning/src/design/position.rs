@@ -13,12 +13,14 @@ const LATE_DUTY_CAP: f64 = 0.08;
 /// creeps for so long sticks and slips in the play of a real machine. How dear it is, and the most it can cost.
 const LATE_WAY_CAP: f64 = 0.01;
 const LATE_COUNTS_CAP: f64 = 2.0;
-const LATE_WAY_COST: f64 = 0.4;
+const LATE_WAY_COST: f64 = 0.2;
 const LATE_WAY_MOST: f64 = 0.8;
 /// Shares of the highest gain tried.
 const SHARES: [f64; 6] = [1.0, 0.85, 0.7, 0.5, 0.35, 0.2];
 /// Derivative times tried, as shares of the time constant of the motor.
 const DERIVATIVE_TIMES: [f64; 14] = [0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.5];
+/// Share of the noise's budget that a cascade gets: at rest it chatters about the edge of a count, which is more than rounding at random.
+const AT_REST: f64 = 0.9;
 /// Integral times of the inner loop tried.
 const INNER_TIMES: usize = 8;
 /// Shares of the highest inner gain tried.
@@ -75,7 +77,9 @@ pub fn design_pid(task: &Task) -> Option<Design> {
 #[must_use]
 pub fn design_piv(task: &Task) -> Option<Design> {
     let loops = Loops::new(task);
-    let inner = Task { goal: Goal { ms: 1.05 * task.goal.ms, ..task.goal }, ..*task };
+    let quiet = Goal { noise_duty: AT_REST * task.goal.noise_duty, ..task.goal };
+    let task = &Task { goal: quiet, ..*task };
+    let inner = Task { goal: Goal { ms: 1.05 * quiet.ms, ..quiet }, ..*task };
     let lag_s = task.lag.total_s(&task.law) + 1.5 * task.law.tick_s();
     let shortest = (1.5 * lag_s).max(task.least_integral_s);
     let longest = (12.0 * task.plant.tau_s).max(40.0 * lag_s).max(1.5 * shortest);
