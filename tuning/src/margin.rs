@@ -11,6 +11,8 @@ use crate::swing::deviation;
 
 /// Gains tried, as multiples of the proposed ones, up to the margin that is wanted.
 const FACTORS: [f64; 5] = [1.2, 1.4, 1.6, 1.8, 2.0];
+/// The sensitivity up to which a model counts as calm.
+const CALM_MS: f64 = 2.8;
 /// The most that is asked of a loop that swings.
 const MOST_FACTOR: f64 = 2.5;
 /// The sensitivity that may really be where one was designed for: what lies beyond it is what the trial is to find.
@@ -57,6 +59,24 @@ fn full_factor(ms: f64) -> f64 {
     (ms / (ms - 1.0)).min(MOST_FACTOR)
 }
 
+/// The velocity loop of gains. A loop on the place that acts on the duty directly is one too: its derivative is a gain of the speed and
+/// its gain an integral, but for the filter on the speed, which only a velocity loop has.
+fn velocity_loop_of(gains: &Gains) -> Gains {
+    let place = gains.position.unwrap_or_default();
+    let is_direct = gains.velocity == Pid::default();
+    let velocity = if is_direct { Pid { p: place.d, i: place.p, d: 0.0 } } else { gains.velocity };
+    Gains { velocity, ..Gains::default() }
+}
+
+/// The highest multiple of gains that the model itself stays calm under.
+fn highest_calm(plant: &LoopPlant, inner: &Gains, qpps: f64) -> f64 {
+    let is_calm = |factor: &f64| {
+        let gains = scaled(inner, *factor);
+        plant.spectral_radius(&gains, qpps) < 1.0 && plant.margins(&gains, qpps).ms < CALM_MS
+    };
+    FACTORS.into_iter().chain([MOST_FACTOR]).take_while(is_calm).fold(1.0, f64::max)
+}
+
 /// The velocity gains times a factor.
 pub(crate) fn scaled(gains: &Gains, factor: f64) -> Gains {
     let v = gains.velocity;
@@ -71,9 +91,10 @@ pub(crate) fn headroom(
     law: &LoopLaw,
     gains: &Gains,
 ) -> Result<Headroom, Cause> {
-    let inner = Gains { velocity: gains.velocity, ..Gains::default() };
-    let wanted = wanted_factor(task.goal.ms);
+    let inner = velocity_loop_of(gains);
     let plant = LoopPlant::new(DiscretePlant::of(&task.plant, law.tick_s()), law, task.lag);
+    let most = highest_calm(&plant, &inner, task.qpps);
+    let wanted = wanted_factor(task.goal.ms).min(most);
     let predicted = |factor: f64| {
         task.noise_factor.max(1.0) * plant.margins(&scaled(&inner, factor), task.qpps).noise_duty
     };
@@ -105,7 +126,7 @@ pub(crate) fn headroom(
         let rough = if again { activity(rig, speed(side), tried_s)? } else { measured };
         if rough > bound {
             rig.duty(0.0)?;
-            return Ok(Headroom { quiet, wanted: full_factor(task.goal.ms) });
+            return Ok(Headroom { quiet, wanted: full_factor(task.goal.ms).min(most) });
         }
         quiet = factor;
         side = -side;

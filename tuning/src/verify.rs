@@ -194,11 +194,10 @@ fn leave_room(
     task: &Task,
     report: &mut Report,
 ) -> Result<Option<f64>, Cause> {
-    // A Motion Mind has its registers written at rest only.
-    let has_velocity_loop =
-        matches!(request.method, Method::Velocity | Method::Piv) && request.law.motion_mind.is_none();
-    let Some(design) = report.design.filter(|_| has_velocity_loop && request.excitation == Excitation::Free)
-    else {
+    // A Motion Mind has its registers written at rest only, and a loop without a gain of the speed is no velocity loop.
+    let can_be_raised = request.law.motion_mind.is_none() && request.excitation == Excitation::Free;
+    let damped = |gains: &Gains| gains.velocity.p > 0.0 || gains.position.is_some_and(|place| place.d > 0.0);
+    let Some(design) = report.design.filter(|design| can_be_raised && damped(&design.gains)) else {
         return Ok(None);
     };
     let found = headroom(rig, task, &request.law, &design.gains)?;
@@ -206,8 +205,8 @@ fn leave_room(
     if factor < 0.999 {
         warn_of_lowering(report);
         let inner = scaled(&design.gains, factor);
-        let position = inner.position.map(|place| Pid { p: factor * place.p, ..place });
-        let gains = Gains { position, ..inner };
+        let less = |place: Pid| Pid { p: factor * place.p, i: factor * place.i, d: factor * place.d };
+        let gains = Gains { position: inner.position.map(less), ..inner };
         propose(report, request, task, Design { gains, ..design }, rig.options.travel);
     }
     Ok(Some(found.quiet / factor))
