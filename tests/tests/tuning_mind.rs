@@ -135,7 +135,7 @@ fn gains_that_are_kept_stay_in_ram_and_the_limits_are_the_users_again() {
 }
 
 #[test]
-fn a_dead_encoder_and_a_locked_shaft_are_named_and_everything_is_put_back() {
+fn a_dead_encoder_and_a_locked_shaft_are_named_and_all_is_put_back_but_the_loop_stays_off() {
     let motor = Motor::M1;
     let cases = [
         (WorldAction::LoseEncoder { motor, on: true }, Cause::EncoderDead),
@@ -146,8 +146,13 @@ fn a_dead_encoder_and_a_locked_shaft_are_named_and_everything_is_put_back() {
         let mut link = connected(Protocol::Binary);
         let before = registers(&link);
         let report = tuned(&mut link, of(Method::Velocity), |link| link.apply(0, &action)).expect("a report");
-        assert_eq!(report.causes.first(), Some(&cause));
-        assert_eq!(registers(&link), before, "{cause:?}");
+        assert_eq!(report.causes, [cause, Cause::LoopOff]);
+        // With this fault the old gains would drive the motor away, or hold it by a signal that is not there.
+        let mut off = before;
+        off[1] |= 1 << 14;
+        assert_eq!(registers(&link), off, "{cause:?}");
+        link.run_for(ms(1_000));
+        assert_eq!(link.duties(0)[0], 0.0, "{cause:?}");
     }
 }
 

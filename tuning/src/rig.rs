@@ -40,8 +40,9 @@ const USUAL_POLLS: usize = 17;
 const LATE_S: f64 = 0.004;
 /// Steps of 10 mA in one of AMPSLIMIT.
 const AMPSLIMIT_STEP: u32 = 2;
-/// Silence after which the link counts as lost, s.
+/// Silence after which the link counts as lost, s, and so many polls in a row: on a slow line a few lost replies take as long.
 const LINK_LOST_S: f64 = 0.15;
+const LINK_LOST_POLLS: u32 = 5;
 
 /// What the guard is told.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -137,6 +138,7 @@ pub struct Rig<'a> {
     last_raw: i64,
     next_poll: Duration,
     silent_since_s: Option<f64>,
+    silent_polls: u32,
     turn: u8,
     /// Polls in a row with a current beyond the highest.
     beyond: u32,
@@ -168,6 +170,7 @@ impl<'a> Rig<'a> {
             last_raw: 0,
             next_poll: now,
             silent_since_s: None,
+            silent_polls: 0,
             turn: 0,
             beyond: 0,
             max_current_raw: setup.max_current_raw,
@@ -364,14 +367,15 @@ impl<'a> Rig<'a> {
             Err(AxisError::NoReply) => {
                 // Counted from the first poll without a reply: between experiments nobody asks for a while.
                 let since_s = *self.silent_since_s.get_or_insert(now_s);
-                if self.now_s() - since_s > LINK_LOST_S {
+                self.silent_polls += 1;
+                if self.now_s() - since_s > LINK_LOST_S && self.silent_polls >= LINK_LOST_POLLS {
                     return Err(Cause::LinkLost);
                 }
                 return self.check_unseen().map(|()| None);
             }
             Err(error) => return Err(cause_of(&error)),
         };
-        self.silent_since_s = None;
+        (self.silent_since_s, self.silent_polls) = (None, 0);
         let point = self.point_of(&sample);
         if sample.status.fault {
             return Err(Cause::ControllerFault);

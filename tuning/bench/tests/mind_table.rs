@@ -3,15 +3,18 @@
 //! `brushwork bench tuning --family motion-mind --plants 16 --seed 7` prints the same figures.
 
 use brushwork_sim::motion_mind::Mode;
+use brushwork_sim::world::{Motor, WorldAction};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::rig::GuardOptions;
 use brushwork_tuning::tune::{Method, Request, tune};
+use brushwork_tuning_bench::line::Event;
 use brushwork_tuning_bench::mind::population::specimen;
 use brushwork_tuning_bench::mind::table::{
     SimulatedMind, axis_in, axis_of, cases, request_of, table, tune_plant,
 };
 use brushwork_tuning_bench::table::Row;
+use std::time::Duration;
 
 /// Lowest and highest figure that is not news.
 type Range = (f64, f64);
@@ -97,6 +100,24 @@ fn a_run_that_keeps_its_gains_leaves_them_in_ram_with_the_users_limits() {
         (i64::from(kept.function), -100_000, 100_000)
     );
     assert_eq!(unit.stored(4), 6000, "EEPROM is the user's to write");
+}
+
+#[test]
+fn a_fault_of_the_machine_leaves_the_loop_off_and_a_reversed_encoder_is_not_driven_away_by_the_old_gains() {
+    let plant = specimen(7, 6);
+    let mut axis = axis_of(&plant);
+    let motor = Motor::M1;
+    let reversed = Event { at: Duration::ZERO, action: WorldAction::ReverseEncoder { motor, on: true } };
+    axis.carrier.line.schedule(vec![reversed]);
+    let report = tune(&mut axis, &request_of(&plant, Method::Velocity));
+    assert_eq!(report.causes, vec![Cause::EncoderReversed, Cause::LoopOff]);
+    let line = &mut axis.carrier.line;
+    let before = axis_of(&plant).carrier.line.unit().read_one(3);
+    assert_eq!(line.unit().read_one(3), before | 1 << 14);
+    let place = line.unit().read_one(0);
+    line.idle(Duration::from_secs(3));
+    assert_eq!(line.unit().duty(), 0.0);
+    assert!((line.unit().read_one(0) - place).abs() < 50, "it ran away");
 }
 
 #[test]

@@ -17,6 +17,14 @@ const SWITCH_AT: (f64, f64) = (0.28, 0.72);
 /// Longest time for one settling and for the relay, s.
 const LONGEST_SETTLE_S: f64 = 20.0;
 const LONGEST_RELAY_S: f64 = 12.0;
+/// Steps of the first climb to full duty: the first, the ratio, the time and polls at each, the shortest and longest time braked
+/// after it, and the share of its speed that is rest.
+const CLIMB_FROM: f64 = 0.2;
+const CLIMB_RATIO: f64 = 1.5;
+const CLIMB_S: f64 = 0.05;
+const CLIMB_POLLS: usize = 2;
+const CLIMB_REST_S: (f64, f64) = (0.1, 0.6);
+const CLIMB_STILL: f64 = 0.002;
 /// When a speed counts as settled.
 const INTERVAL: f64 = 0.01;
 const TAIL_ERROR: f64 = 0.006;
@@ -48,9 +56,13 @@ pub fn run_free(rig: &mut Rig<'_>, probe: &Probe) -> Result<FreeRun, Cause> {
     rig.watch.start_duty = probe.start_duty;
     rig.watch.stall_amps = probe.stall_amps;
     rig.watch.drive_limit = rig.drive_limit(probe.stall_amps);
-    let from_s = rig.now_s();
+    let mut from_s = rig.now_s();
+    if rig.watch.is_abrupt && climb(rig, full_duty)? {
+        from_s = rig.now_s();
+    }
+    let driven_s = rig.now_s();
     let forward = settle_at(rig, full_duty)?;
-    let rise = rise_s(rig, from_s, forward.speed);
+    let rise = rise_s(rig, driven_s, forward.speed);
     rig.watch.stopping_s = forward.tau_s.min(rise);
     rig.watch.tau_bounds_s = Some(tau_bounds(forward.tau_s, rise));
     let low_duty = (probe.start_duty + 0.06).max(0.25).min(0.6 * full_duty);
@@ -76,6 +88,33 @@ pub fn run_free(rig: &mut Rig<'_>, probe: &Probe) -> Result<FreeRun, Cause> {
         from_s,
         step: (step_from, step_to),
     })
+}
+
+/// Goes up to the full duty in steps where the controller has no ramp of its own: nobody knows yet how fast this motor is. Then it is
+/// braked, so that it goes up once more from rest, which shows its time constant. Whether it came to rest: the record that the model is
+/// fitted to begins then, since a quick motor may stick at a low duty, and no model says when.
+fn climb(rig: &mut Rig<'_>, full_duty: f64) -> Result<bool, Cause> {
+    let mut duty = (rig.watch.start_duty + 0.06).max(CLIMB_FROM);
+    let mut top: f64 = 0.0;
+    while duty < 0.9 * full_duty {
+        rig.duty(duty)?;
+        let (seen, until_s) = (rig.points.len() + CLIMB_POLLS, rig.now_s() + CLIMB_S);
+        while rig.now_s() < until_s || rig.points.len() < seen {
+            rig.poll(false)?;
+        }
+        top = top.max(rig.recent_speed(CLIMB_POLLS).map_or(0.0, f64::abs));
+        duty *= CLIMB_RATIO;
+    }
+    rig.duty(0.0)?;
+    let until_s = rig.now_s() + CLIMB_REST_S.1;
+    rig.poll_for(CLIMB_REST_S.0, false)?;
+    loop {
+        let is_still = rig.recent_speed(3).is_some_and(|speed| speed.abs() <= CLIMB_STILL * top);
+        if is_still || rig.now_s() >= until_s {
+            return Ok(is_still);
+        }
+        rig.poll(false)?;
+    }
 }
 
 /// Holds a duty until the speed it settles at is known.

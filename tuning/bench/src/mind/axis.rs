@@ -153,7 +153,7 @@ impl<C: MindCarrier> MindAxis<C> {
         let mut all = Vec::with_capacity(wanted.len());
         let mut first = None;
         for number in wanted {
-            let (at, values) = self.read(&Command::ReadText(Part::Register(*number)))?;
+            let (at, values) = self.read_line(*number)?;
             first.get_or_insert(at);
             all.extend(values);
         }
@@ -164,6 +164,15 @@ impl<C: MindCarrier> MindAxis<C> {
         match self.carrier.transact(command)? {
             (at, Reply::Registers(values)) => Ok((at, values)),
             _ => Err(AxisError::NoReply),
+        }
+    }
+
+    /// One register of a line, asked for again once: of many lines one is lost more often than not.
+    fn read_line(&mut self, register: u8) -> Result<(Exchange, Vec<(u8, i64)>), AxisError> {
+        let command = Command::ReadText(Part::Register(register));
+        match self.read(&command) {
+            Err(AxisError::NoReply) if register != number::POSITION => self.read(&command),
+            other => other,
         }
     }
 
@@ -293,6 +302,11 @@ impl<C: MindCarrier> Axis for MindAxis<C> {
         let current_raw =
             value(number::AMPS).filter(|_| want.current).map(|steps| (steps * CURRENT_STEP) as i16);
         self.fence.see(at.middle_s(), counts);
+        let word = self.last_status.raw;
+        let is_at = |mask: u16, up: bool| word & u32::from(mask) != 0 && !self.fence.is_travel(up);
+        if self.driving != Driving::Off && (is_at(status::VPLIMIT, true) || is_at(status::VNLIMIT, false)) {
+            self.fence.was_hit();
+        }
         if matches!(self.driving, Driving::Duty | Driving::Loop) {
             // A fence that cannot be moved stops the motor; the next poll tries again.
             match self.mend_fence() {
@@ -342,7 +356,7 @@ impl<C: MindCarrier> Axis for MindAxis<C> {
 
     fn command_speed(&mut self, counts_per_s: i32) -> Result<Exchange, AxisError> {
         self.close()?;
-        self.fence.head(f64::from(counts_per_s));
+        self.fence.head_at(f64::from(counts_per_s));
         self.mend_fence()?;
         let counts = counts_per_s.div_euclid(LOOPS_PER_S);
         self.send(Command::MoveAtVelocity(counts.clamp(-32_768, 32_767) as i16))

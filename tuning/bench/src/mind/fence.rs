@@ -1,22 +1,24 @@
 //! Where the virtual limits of a Motion Mind stand during a run: a little ahead of the motor, so that it stops by itself when the host
 //! is no longer there.
 
-/// How long the motor may run on at its present speed, and at the highest it has shown, s.
-const AHEAD_S: f64 = 0.45;
-const AHEAD_AT_TOP_S: f64 = 0.25;
-/// The least room, counts.
-const LEAST_COUNTS: f64 = 400.0;
-/// The room of the first drive at a higher duty, as a multiple of what the probe moved the motor by, and its bounds, counts.
-const PER_PROBE: f64 = 300.0;
-const FIRST_COUNTS: (f64, f64) = (2_000.0, 100_000.0);
-/// A duty that is still a probe.
-const PROBE_DUTY: f64 = 0.42;
-/// How long the first drive counts as new, s.
-const NEW_S: f64 = 0.3;
+/// How long the motor may run on at its present speed, and at the speed that it was told, s.
+const AHEAD_S: f64 = 0.4;
+const AHEAD_AS_TOLD_S: f64 = 0.18;
+/// The least room, and that of a motor of which nothing is known yet, counts.
+const LEAST_COUNTS: f64 = 250.0;
+const FIRST_COUNTS: f64 = 2_000.0;
+/// A duty that moves any motor, and how long one is watched under it before its speed is taken as known, s.
+const CLEAR_DUTY: f64 = 0.19;
+const KNOWN_AFTER_S: f64 = 0.06;
+/// A motor told less than what it ran at before may be so much faster than in proportion: friction takes its share.
+const IN_PROPORTION: f64 = 1.3;
 /// Share of the room below which the fence is moved.
 const MOVED_BELOW: f64 = 0.5;
 /// Multiple of the room from which on the fence is drawn in.
-const FAR: f64 = 2.5;
+const FAR: f64 = 1.5;
+/// A fence that was run into stands so much farther away from then on, up to so much.
+const WIDER: f64 = 1.6;
+const WIDEST: f64 = 5.0;
 
 /// The fence.
 #[derive(Clone, Debug, Default)]
@@ -26,14 +28,18 @@ pub(super) struct Fence {
     pub high: Option<i32>,
     /// Between which counts the motor is to stay.
     pub travel: Option<(i64, i64)>,
-    first: Option<i32>,
     last: Option<(f64, i32)>,
     speed: f64,
+    /// The highest speed seen, and the highest duty told.
     top: f64,
-    probed: f64,
-    /// When the first drive beyond the probe was seen to begin, s.
+    top_duty: f64,
+    /// The speed that it is told to have, as far as that is known, counts/s.
+    told: f64,
+    /// How much wider it stands than it should have to; 0 for not.
+    wider: f64,
+    /// When the first clear drive was seen to begin, s.
     began_s: Option<f64>,
-    is_beyond_probe: bool,
+    is_clear: bool,
     /// The way that was commanded last.
     heading: f64,
 }
@@ -41,17 +47,14 @@ pub(super) struct Fence {
 impl Fence {
     /// A place was read.
     pub(super) fn see(&mut self, t: f64, counts: i32) {
-        let first = *self.first.get_or_insert(counts);
         if let Some((before, was)) = self.last
             && t > before
         {
             self.speed = f64::from(counts.wrapping_sub(was)) / (t - before);
             self.top = self.top.max(self.speed.abs());
         }
-        if self.is_beyond_probe {
+        if self.is_clear {
             self.began_s.get_or_insert(t);
-        } else {
-            self.probed = self.probed.max(f64::from(counts.wrapping_sub(first)).abs());
         }
         self.last = Some((t, counts));
     }
@@ -63,18 +66,42 @@ impl Fence {
 
     /// A duty is about to be given.
     pub(super) fn drive(&mut self, duty: f64) {
-        self.is_beyond_probe |= duty.abs() > PROBE_DUTY;
+        self.is_clear |= duty.abs() > CLEAR_DUTY;
+        let share = IN_PROPORTION * duty.abs() / self.top_duty.max(1e-3);
+        // A duty higher than any before gives a speed higher than any before.
+        self.told = self.top * if duty.abs() > self.top_duty { share } else { share.min(1.0) };
+        self.top_duty = self.top_duty.max(duty.abs());
         if duty != 0.0 {
             self.heading = duty.signum();
         }
     }
 
-    /// A loop is about to be told something.
+    /// A loop is about to be told a speed, counts/s.
+    pub(super) fn head_at(&mut self, speed: f64) {
+        self.head(speed);
+        self.told = (IN_PROPORTION * speed.abs()).min(self.top);
+    }
+
+    /// A loop is about to be told a way to go.
     pub(super) fn head(&mut self, way: f64) {
-        self.is_beyond_probe = true;
+        self.is_clear = true;
+        self.told = self.top;
         if way != 0.0 {
             self.heading = way.signum();
         }
+    }
+
+    /// The motor was stopped by it.
+    pub(super) fn was_hit(&mut self) {
+        self.wider = (self.wider.max(1.0) * WIDER).min(WIDEST);
+    }
+
+    /// Whether an end of the travel is what stands there, counted up or down.
+    pub(super) fn is_travel(&self, up: bool) -> bool {
+        self.travel.is_some_and(|(low, high)| {
+            let (fence, end) = if up { (self.high, high) } else { (self.low, low) };
+            fence.is_some_and(|fence| i64::from(fence) == end)
+        })
     }
 
     /// Where either side has to be written now: where it is too near, and where it is far on the side that the motor heads for.
@@ -97,11 +124,9 @@ impl Fence {
     }
 
     fn room(&self, t: f64) -> f64 {
-        let is_new = self.is_beyond_probe && self.began_s.is_none_or(|began| t - began < NEW_S);
-        if is_new || !self.is_beyond_probe {
-            return (PER_PROBE * self.probed).clamp(FIRST_COUNTS.0, FIRST_COUNTS.1);
-        }
-        (AHEAD_S * self.speed.abs()).max(AHEAD_AT_TOP_S * self.top).max(LEAST_COUNTS)
+        let is_known = self.began_s.is_some_and(|began| t - began > KNOWN_AFTER_S);
+        let least = if is_known { LEAST_COUNTS } else { FIRST_COUNTS };
+        (AHEAD_S * self.speed.abs()).max(AHEAD_AS_TOLD_S * self.told).max(least) * self.wider.max(1.0)
     }
 }
 
@@ -133,7 +158,7 @@ mod tests {
             let from = 0.5 + 0.015 * f64::from(n);
             follow(&mut fence, from, from + 0.01, 20_000.0);
             let left = f64::from(fence.high.unwrap()) - 20_000.0 * from;
-            assert!((0.2 * 20_000.0..=0.46 * 20_000.0).contains(&left), "{left} counts left");
+            assert!((0.18 * 20_000.0..=0.41 * 20_000.0).contains(&left), "{left} counts left");
         }
     }
 
