@@ -4,15 +4,21 @@ use std::time::Duration;
 
 use brushwork_link::device::JobContext;
 use brushwork_link::wire::Wire;
-use brushwork_protocol::motion_mind::{Command, Protocol, Reply, register};
+use brushwork_protocol::motion_mind::{
+    Address, Command, Part, Protocol, Reply, encode_frame, encode_line, register,
+};
 use brushwork_tuning::axis::{AxisError, Exchange};
 use brushwork_tuning_bench::mind::axis::MindCarrier;
+use brushwork_tuning_bench::mind::line::worked_at;
 
 use super::told;
 
 /// An exchange that took so much longer than the quickest of its kind had a retry in it, so that nobody can say when the unit did
 /// its work.
 const LATE: Duration = Duration::from_millis(35);
+
+/// Bits of a byte on the wire.
+const BITS_PER_BYTE: f64 = 10.0;
 
 /// The wire of a job as the tuner's carrier. The device thread knows which protocol the unit speaks; here all is commands.
 pub(super) struct MindJobCarrier<'a, 'b> {
@@ -33,35 +39,70 @@ impl<'a, 'b> MindJobCarrier<'a, 'b> {
         *quickest = Some(least);
         took > least + LATE
     }
+
+    /// When a command did its work, from when it was sent and its reply complete.
+    fn worked(&self, span: (Duration, Duration), command: &Command, reply: &Reply) -> Exchange {
+        let Some(bits_per_second) = self.bits_per_second() else {
+            return Exchange { sent: span.0, received: span.1 };
+        };
+        let protocol = self.protocol();
+        worked_at(span, lengths(protocol, command, reply), bits_per_second, (protocol, command))
+    }
+}
+
+/// Bytes of a command and of its reply on the wire.
+fn lengths(protocol: Protocol, command: &Command, reply: &Reply) -> (usize, usize) {
+    let request = match protocol {
+        Protocol::Binary => encode_frame(Address::FACTORY, command).map_or(0, |frame| frame.len()),
+        Protocol::Text => encode_line(Address::FACTORY, command).map_or(0, |line| line.len()),
+    };
+    let reply = match (protocol, reply) {
+        (Protocol::Binary, Reply::Registers(values)) => {
+            2 + values.iter().filter_map(|(number, _)| Some(register(*number)?.kind.bytes())).sum::<usize>()
+        }
+        (Protocol::Binary, _) => 1,
+        // "APOS=20000" and the end of the line; all of them stand in one line, each with its comma.
+        (Protocol::Text, Reply::Registers(values)) => {
+            let digits: usize = values.iter().map(|(_, value)| value.to_string().len() + 1).sum();
+            if values.len() == 1 { digits + 6 } else { digits + 2 }
+        }
+        (Protocol::Text, _) => 4,
+    };
+    (request, reply)
 }
 
 impl MindCarrier for MindJobCarrier<'_, '_> {
     fn transact(&mut self, command: &Command) -> Result<(Exchange, Reply), AxisError> {
-        let Some(values) = values_of(command) else {
+        let Some((number, values)) = wire_form(command) else {
             return Err(AxisError::Refused("a command that no run sends".into()));
         };
-        let reply = self.context.transact_timed(command.number(), &values).map_err(|error| told(&error))?;
-        let at = Exchange { sent: reply.span.requested_at, received: reply.span.replied_at };
+        let reply = self.context.transact_timed(number, &values).map_err(|error| told(&error))?;
+        let span = (reply.span.requested_at, reply.span.replied_at);
         let mask = match command {
             Command::Read(mask) => *mask,
+            Command::ReadText(Part::Register(number)) => 1_u32.checked_shl(u32::from(*number)).unwrap_or(0),
+            Command::ReadText(Part::All) => u32::MAX,
             _ => 0,
         };
-        let is_vague = self.is_vague(mask != 0, at.received.saturating_sub(at.sent));
-        if mask == 0 {
-            return Ok((at, Reply::Acknowledged));
-        }
-        let named = |number: u8| Some((number, reply.values.try_int(register(number)?.name)?));
-        let read = (0..32).filter(|number| mask >> number & 1 == 1).filter_map(named).collect();
-        if is_vague { Err(AxisError::NoReply) } else { Ok((at, Reply::Registers(read))) }
+        let is_vague = self.is_vague(mask != 0, span.1.saturating_sub(span.0));
+        let answer = if mask == 0 {
+            Reply::Acknowledged
+        } else {
+            let named = |number: u8| Some((number, reply.values.try_int(register(number)?.name)?));
+            Reply::Registers((0..32).filter(|number| mask >> number & 1 == 1).filter_map(named).collect())
+        };
+        let at = self.worked(span, command, &answer);
+        if mask != 0 && is_vague { Err(AxisError::NoReply) } else { Ok((at, answer)) }
     }
 
-    /// Whatever it is: the device thread reads by mask in both.
     fn protocol(&self) -> Protocol {
-        Protocol::Binary
+        self.context.motion_mind().map_or(Protocol::Binary, |facts| facts.protocol)
     }
 
     fn bits_per_second(&self) -> Option<u32> {
-        None
+        let per_byte_s = self.context.byte_time()?.as_secs_f64();
+        // Ten bits a byte; the cast saturates.
+        (per_byte_s > 0.0).then(|| (BITS_PER_BYTE / per_byte_s).round() as u32)
     }
 
     fn now(&mut self) -> Duration {
@@ -78,10 +119,22 @@ impl MindCarrier for MindJobCarrier<'_, '_> {
     }
 }
 
+/// A command that a run sends as the device thread takes it, which finds the words of the unit's protocol: number and values in
+/// their order on the wire.
+fn wire_form(command: &Command) -> Option<(u8, Vec<i64>)> {
+    let asked = match *command {
+        Command::ReadText(Part::Register(number)) => Command::ReadRegister(number),
+        Command::ReadText(Part::All) => Command::Read(u32::MAX),
+        other => other,
+    };
+    Some((asked.number(), values_of(&asked)?))
+}
+
 /// The values of a command that a run sends, in their order on the wire.
 fn values_of(command: &Command) -> Option<Vec<i64>> {
     Some(match *command {
         Command::Read(mask) => vec![i64::from(mask)],
+        Command::ReadRegister(number) => vec![i64::from(number)],
         Command::Write { register, value } => vec![i64::from(register), value],
         Command::MoveAtVelocity(counts) => vec![i64::from(counts)],
         Command::MoveToAbsolute(counts) | Command::MoveToRelative(counts) => vec![i64::from(counts)],
@@ -94,10 +147,24 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_length_of_what_goes_over_the_wire_is_that_of_the_manuals_examples() {
+        let one = Reply::Registers(vec![(0, 20_000)]);
+        // "R01 00" and its end; "APOS=20000" and its end.
+        let line = Command::ReadText(Part::Register(0));
+        assert_eq!(lengths(Protocol::Text, &line, &one), (8, 12));
+        // 1A 01 mask checksum; 01 20 4E 00 00 6F.
+        assert_eq!(lengths(Protocol::Binary, &Command::Read(1), &one), (7, 6));
+        let write = Command::Write { register: 3, value: 0 };
+        assert_eq!(lengths(Protocol::Binary, &write, &Reply::Acknowledged), (6, 1));
+        assert_eq!(wire_form(&line), Some((0x1D, vec![0])));
+    }
+
+    #[test]
     fn what_a_run_sends_comes_back_as_the_same_command_and_eeprom_is_never_among_it() {
         let commands = [
             Command::Read(0b1001),
             Command::Write { register: 3, value: 0x4080 },
+            Command::ReadRegister(21),
             Command::MoveAtVelocity(-7),
             Command::MoveToAbsolute(-123_456),
             Command::MoveToRelative(0),

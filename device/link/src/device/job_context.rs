@@ -2,6 +2,7 @@
 
 use super::channel::Sample;
 use super::drive::Drive;
+use super::identity::MotionMindFacts;
 use crate::exchange::{ExchangeError, Interruption, Reply};
 use crate::unit::{FirmwareGeneration, UnitAddress};
 use crate::wire::{HiddenSettings, Wire};
@@ -19,6 +20,7 @@ pub(super) trait JobHost {
     fn set_polling(&mut self, on: bool);
     fn address(&self) -> UnitAddress;
     fn generation(&self) -> FirmwareGeneration;
+    fn motion_mind(&self) -> Option<MotionMindFacts>;
     fn is_simulated(&self) -> bool;
     fn now(&self) -> Duration;
     fn port(&self) -> String;
@@ -58,6 +60,12 @@ impl<'a> JobContext<'a> {
     /// should end.
     pub fn drive(&mut self, drive: &Drive) -> Result<(), ExchangeError> {
         self.host.drive(drive)
+    }
+
+    /// What is told of a Motion Mind alone; `None` for another family.
+    #[must_use]
+    pub fn motion_mind(&self) -> Option<MotionMindFacts> {
+        self.host.motion_mind()
     }
 
     /// How long a byte takes on the wire, where that is known.

@@ -1,6 +1,7 @@
 //! Running a job: the wire it gets, what breaks into it, and the motors stopped on every way out, a panic included.
 
 use super::{DeviceLoop, Phase};
+use crate::device::MotionMindFacts;
 use crate::device::channel::Sample;
 use crate::device::drive::Drive;
 use crate::device::event::{DisarmReason, Event};
@@ -249,6 +250,10 @@ impl JobHost for Host<'_> {
 
     fn generation(&self) -> FirmwareGeneration {
         self.identity().generation
+    }
+
+    fn motion_mind(&self) -> Option<MotionMindFacts> {
+        self.identity().motion_mind
     }
 
     fn is_simulated(&self) -> bool {
