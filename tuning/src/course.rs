@@ -36,20 +36,28 @@ pub struct Actuation {
     pub offset_s: f64,
     /// AMPSLIMIT of a Motion Mind, whose limit of the current is one of the duty.
     pub amps_limit: Option<u16>,
+    /// Standard deviation of the time stamps of readings, s.
+    pub stamp_s: f64,
 }
+
+/// The same of readings that came promptly or with their time.
+const STAMP_S: f64 = 0.0010;
+/// The same of a Motion Mind's that came without their time: the place is that of the last loop, and nobody knows when that was.
+pub(crate) const UNDATED_STAMP_S: f64 = 0.0018;
 
 impl Default for Actuation {
     /// A ramp of packet serial; half a tick of waiting and half a tick of age at 300 Hz.
     fn default() -> Self {
-        Self { slew_per_s: DUTY_SLEW_PER_S, offset_s: 0.0035, amps_limit: None }
+        Self { slew_per_s: DUTY_SLEW_PER_S, offset_s: 0.0035, amps_limit: None, stamp_s: STAMP_S }
     }
 }
 
 impl Actuation {
     /// A Motion Mind: the next loop has the whole duty, and shows the place of the last one.
     #[must_use]
-    pub fn motion_mind(amps_limit: u16) -> Self {
-        Self { slew_per_s: f64::INFINITY, offset_s: 0.0052, amps_limit: Some(amps_limit) }
+    pub fn motion_mind(amps_limit: u16, is_dated: bool) -> Self {
+        let stamp_s = if is_dated { STAMP_S } else { UNDATED_STAMP_S };
+        Self { slew_per_s: f64::INFINITY, offset_s: 0.0052, amps_limit: Some(amps_limit), stamp_s }
     }
 }
 

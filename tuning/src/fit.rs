@@ -11,8 +11,6 @@ use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
 use serde::{Deserialize, Serialize};
 
-/// Standard deviation of the time stamps' jitter, s.
-const STAMP_S: f64 = 0.0010;
 /// Variance of a count's rounding, and the speed error that the model drifts with, over the speed and the root of a second.
 const ROUNDING: f64 = 0.1;
 const DRIFT: f64 = 0.003;
@@ -106,7 +104,7 @@ impl<'a> Problem<'a> {
             .map(|pair| {
                 let dt = (pair[1].0 - pair[0].0).max(1e-4);
                 let speed = (pair[1].1 - pair[0].1) / dt;
-                (ROUNDING + (STAMP_S * speed).powi(2), (DRIFT * speed).powi(2) * dt + 1e-3)
+                (ROUNDING + (course.actuation.stamp_s * speed).powi(2), (DRIFT * speed).powi(2) * dt + 1e-3)
             })
             .collect();
         noise.insert(0, noise.first().copied().unwrap_or((1.0, 1.0)));

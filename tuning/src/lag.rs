@@ -4,6 +4,7 @@
 //! controller's own answer to the speed as it sees it: the candidate loop is simulated with each lag of a grid, and the
 //! lags under which simulated counts and duties agree with the polled ones are the likely ones.
 
+use crate::course::UNDATED_STAMP_S;
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, Lag, LoopLaw, PlantModel};
 use crate::rig::{Input, Rig};
@@ -59,12 +60,14 @@ impl ClosedCourse {
         let shortest = points().map(|(_, took)| took.1).fold(f64::INFINITY, f64::min);
         let prompt = || points().filter(|(_, took)| took.1 - shortest <= LATE_S);
         let n = prompt().count().max(1) as f64;
+        let is_undated = rig.setup.motion_mind.is_some_and(|unit| unit.is_undated);
+        let undated_s = if is_undated { UNDATED_STAMP_S } else { 0.0 };
         let open = prompt().map(|(_, took)| (took.1 - shortest).powi(2)).sum::<f64>() / n;
         Self {
             setpoints: setpoints.collect(),
             counts: prompt().map(|(p, _)| (p.t, p.counts)).collect(),
             duties: points().filter_map(|(p, _)| p.duty).collect(),
-            stamp_s: (open / 12.0).sqrt(),
+            stamp_s: (open / 12.0).sqrt().hypot(undated_s),
         }
     }
 }

@@ -366,7 +366,10 @@ fn identify_window(
 fn course_of(rig: &Rig<'_>, from_s: f64, to_s: f64, volts: Option<f64>) -> Course {
     let course = Course::new(&rig.points, &rig.drives, from_s, to_s, volts);
     match rig.setup.motion_mind {
-        Some(_) => Course { actuation: Actuation::motion_mind(rig.amps_limit()), ..course },
+        Some(unit) => {
+            let actuation = Actuation::motion_mind(rig.amps_limit(), !unit.is_undated);
+            Course { actuation, ..course }
+        }
         None => course,
     }
 }

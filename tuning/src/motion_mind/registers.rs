@@ -61,6 +61,9 @@ pub struct MotionMindSetup {
     pub mode: u8,
     /// What is put back.
     pub registers: MotionMindRegisters,
+    /// Readings come without the unit's time: one line of text for each register.
+    #[serde(default)]
+    pub is_undated: bool,
 }
 
 impl MotionMindSetup {

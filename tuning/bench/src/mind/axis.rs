@@ -23,8 +23,8 @@ const FULL_PWM: i32 = 1023;
 const LOOPS_PER_S: i32 = 200;
 /// Steps of 10 mA in a step of AMPS.
 const CURRENT_STEP: i64 = 2;
-/// Bits per second from which on the line of all registers (up to 190 characters) takes less than three single ones.
-const QUICK_LINE: u32 = 38_400;
+/// Bits per second from which on the line of all registers (up to 190 characters) takes about as long as two single ones.
+const QUICK_LINE: u32 = 115_200;
 /// Registers in RAM.
 const REGISTERS: usize = 32;
 
@@ -109,6 +109,8 @@ pub struct MindAxis<C> {
     fence: Fence,
     clock: UnitClock,
     last_status: Status,
+    /// Which line was asked for last besides the place.
+    turn: usize,
 }
 
 impl<C: MindCarrier> MindAxis<C> {
@@ -123,6 +125,7 @@ impl<C: MindCarrier> MindAxis<C> {
             fence: Fence::default(),
             clock: UnitClock::default(),
             last_status: Status::default(),
+            turn: 0,
         }
     }
 
@@ -176,9 +179,20 @@ impl<C: MindCarrier> MindAxis<C> {
         }
     }
 
-    /// Whether the line of all registers is as quick as a few single ones.
-    fn reads_all(&self) -> bool {
-        self.carrier.bits_per_second().is_some_and(|bits| bits >= QUICK_LINE)
+    /// Whether a poll is one exchange, so that all of it is of one moment, the unit's time with it: a frame, or the line of all
+    /// registers where that is as quick as two single ones.
+    fn reads_whole(&self) -> bool {
+        let is_quick = || self.carrier.bits_per_second().is_some_and(|bits| bits >= QUICK_LINE);
+        self.carrier.protocol() == Protocol::Binary || is_quick()
+    }
+
+    /// What a poll in single lines asks for: the place, and one of the others in turn, since each line takes its time.
+    fn next_lines(&mut self, want: Want) -> Vec<u8> {
+        let others =
+            [Some(number::STATUS), want.duty.then_some(number::PWMOUT), want.current.then_some(number::AMPS)];
+        let others: Vec<u8> = others.into_iter().flatten().collect();
+        self.turn = (self.turn + 1) % others.len();
+        vec![number::POSITION, others[self.turn]]
     }
 
     /// Writes a register unless it is known to hold the value.
@@ -275,14 +289,8 @@ impl<C: MindCarrier> Axis for MindAxis<C> {
     }
 
     fn sample(&mut self, want: Want) -> Result<Sample, AxisError> {
-        let mut wanted = vec![number::POSITION];
-        // A line of text carries one register or all: where that is one, the status comes with every other reading than that of
-        // the current, and the unit's time would be that of another moment.
-        let is_whole = self.carrier.protocol() == Protocol::Binary || self.reads_all();
-        wanted.extend(is_whole.then_some(number::TIME));
-        wanted.extend((is_whole || !want.current).then_some(number::STATUS));
-        wanted.extend(want.duty.then_some(number::PWMOUT));
-        wanted.extend(want.current.then_some(number::AMPS));
+        let is_whole = self.reads_whole();
+        let wanted = if is_whole { whole(want) } else { self.next_lines(want) };
         let (read_at, values) = if self.carrier.protocol() == Protocol::Text && is_whole {
             self.read(&Command::ReadText(Part::All))?
         } else {
@@ -394,7 +402,11 @@ impl<C: MindCarrier> Axis for MindAxis<C> {
         Ok(Setup {
             max_current_raw: (value(number::AMPSLIMIT)? * CURRENT_STEP) as u32,
             encoder: EncoderClass::Quadrature,
-            motion_mind: Some(MotionMindSetup { mode: value(number::MODE)? as u8, registers }),
+            motion_mind: Some(MotionMindSetup {
+                mode: value(number::MODE)? as u8,
+                registers,
+                is_undated: !self.reads_whole(),
+            }),
             ..Setup::default()
         })
     }
@@ -451,6 +463,14 @@ impl<C: MindCarrier> Axis for MindAxis<C> {
     fn progress(&mut self, text: &str) {
         self.carrier.progress(text);
     }
+}
+
+/// The registers of a poll that is one exchange.
+fn whole(want: Want) -> Vec<u8> {
+    let mut wanted = vec![number::POSITION, number::TIME, number::STATUS];
+    wanted.extend(want.duty.then_some(number::PWMOUT));
+    wanted.extend(want.current.then_some(number::AMPS));
+    wanted
 }
 
 /// What STATUS says to a run. A limit input or the brake keeps the motor from what it is told.
