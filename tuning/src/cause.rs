@@ -76,6 +76,8 @@ pub enum Cause {
     NoSuchLoop,
     /// Bits of a Motion Mind are set that make another loop of its gains, or none.
     OtherLoop,
+    /// A limit or brake input of a Motion Mind is at ground.
+    LimitInput,
     /// The loop of a Motion Mind was left switched off at the end of a run that found something wrong with the machine.
     LoopOff,
 }
@@ -200,6 +202,10 @@ impl Cause {
             }
             Self::NoSuchLoop => {
                 "This controller has no velocity loop under its position loop. Tune the position as PD or PID."
+            }
+            Self::LimitInput => {
+                "A limit input or the brake input of the controller is at ground, which takes the motor's drive away. Move the axis \
+                 off its limit switch, or release the brake; on an axis with switches give the travel between them."
             }
             Self::LoopOff => {
                 "The controller's loop was left switched off (DISABLEPID in FUNCTION, in RAM), since with this it could drive the \

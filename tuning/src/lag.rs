@@ -44,6 +44,8 @@ pub struct ClosedCourse {
     pub duties: Vec<(f64, f64)>,
     /// Standard deviation of the times of counts, as far as a busy host or line makes it, s.
     pub stamp_s: f64,
+    /// Whether each count came with its own time, so that it is known to much less than a tick.
+    pub is_dated: bool,
 }
 
 impl ClosedCourse {
@@ -60,14 +62,15 @@ impl ClosedCourse {
         let shortest = points().map(|(_, took)| took.1).fold(f64::INFINITY, f64::min);
         let prompt = || points().filter(|(_, took)| took.1 - shortest <= LATE_S);
         let n = prompt().count().max(1) as f64;
-        let is_undated = rig.setup.motion_mind.is_some_and(|unit| unit.is_undated);
-        let undated_s = if is_undated { UNDATED_STAMP_S } else { 0.0 };
+        let unit = rig.setup.motion_mind;
+        let undated_s = if unit.is_some_and(|unit| unit.is_undated) { UNDATED_STAMP_S } else { 0.0 };
         let open = prompt().map(|(_, took)| (took.1 - shortest).powi(2)).sum::<f64>() / n;
         Self {
             setpoints: setpoints.collect(),
             counts: prompt().map(|(p, _)| (p.t, p.counts)).collect(),
             duties: points().filter_map(|(p, _)| p.duty).collect(),
             stamp_s: (open / 12.0).sqrt().hypot(undated_s),
+            is_dated: unit.is_some_and(|unit| !unit.is_undated),
         }
     }
 }

@@ -378,7 +378,9 @@ impl<'a> Rig<'a> {
         (self.silent_since_s, self.silent_polls) = (None, 0);
         let point = self.point_of(&sample);
         if sample.status.fault {
-            return Err(Cause::ControllerFault);
+            let is_held =
+                self.setup.motion_mind.is_some() && sample.status.raw & u32::from(bits::INPUTS) != 0;
+            return Err(if is_held { Cause::LimitInput } else { Cause::ControllerFault });
         }
         let floor = f64::from(self.setup.min_volts_raw) * VOLTS_PER_RAW + self.options.volts_margin;
         let sagging = self.setup.min_volts_raw > 0 && point.volts.is_some_and(|volts| volts < floor);

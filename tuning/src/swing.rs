@@ -10,8 +10,9 @@ use std::f64::consts::TAU;
 /// Variance of a count's rounding, and standard deviation of its time at 300 Hz, s.
 const ROUNDING: f64 = 1.0 / 12.0;
 pub(crate) const STAMP_S: f64 = 0.001;
-/// The swings looked for, Hz.
+/// The swings looked for, Hz, and how far up counts show them that came with their time.
 const SWINGS_HZ: (f64, f64) = (2.5, 16.0);
+const DATED_SWINGS_HZ: f64 = 33.0;
 /// How uncertain an average of flanks may be, as a share of the step, and the bounds of its width, s.
 const UNCERTAIN: f64 = 0.03;
 const WIDTH_S: (f64, f64) = (0.004, 0.25);
@@ -25,8 +26,10 @@ pub(crate) fn deviation(values: &[(f64, f64)]) -> f64 {
     (rest.iter().map(|r| r.1 * r.1).sum::<f64>() / (rest.len() as f64 - 4.0)).sqrt()
 }
 
-/// Root mean square of the speed about a plateau in counts/s, as far as it is more than rounding and stamps make up.
-pub(crate) fn speed_ripple(plateau: &[(f64, f64)], stamp_s: f64) -> f64 {
+/// Root mean square of the speed about a plateau in counts/s, as far as it is more than rounding and stamps make up. `plateau` is a part
+/// of the course.
+pub(crate) fn speed_ripple(plateau: &[(f64, f64)], course: &ClosedCourse) -> f64 {
+    let highest_hz = if course.is_dated { DATED_SWINGS_HZ } else { SWINGS_HZ.1 };
     let (Some(first), Some(last)) = (plateau.first(), plateau.last()) else { return 0.0 };
     let seconds = last.0 - first.0;
     if plateau.len() < 20 || seconds <= 0.0 {
@@ -49,12 +52,12 @@ pub(crate) fn speed_ripple(plateau: &[(f64, f64)], stamp_s: f64) -> f64 {
         .map(|w| (w, mean_square(w)))
         .collect();
     // What noise alone gives each sine: what is known of it, or what most sines show (exponentially distributed) where that is less.
-    let known = 2.0 * (ROUNDING + (STAMP_S.hypot(stamp_s) * speed).powi(2)) / n;
+    let known = 2.0 * (ROUNDING + (STAMP_S.hypot(course.stamp_s) * speed).powi(2)) / n;
     let mut sorted: Vec<f64> = sines.iter().map(|sine| sine.1).collect();
     sorted.sort_by(f64::total_cmp);
     let middle = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
     let floor = known.min(middle / std::f64::consts::LN_2);
-    let looked_at = sines.iter().take_while(|(w, _)| *w <= TAU * SWINGS_HZ.1);
+    let looked_at = sines.iter().take_while(|(w, _)| *w <= TAU * highest_hz);
     looked_at.map(|(w, square)| w * w * (square - floor)).sum::<f64>().max(0.0).sqrt()
 }
 
@@ -123,14 +126,27 @@ mod tests {
     fn a_sine_on_a_plateau_has_its_root_mean_square_and_a_plain_one_next_to_none() {
         // 60 counts/s about 1500 at 8 Hz.
         let w = TAU * 8.0;
-        let swinging = speed_ripple(&plateau(|t| 1_500.0 * t - 60.0 / w * (w * t).cos()), 0.0);
+        let swinging =
+            speed_ripple(&plateau(|t| 1_500.0 * t - 60.0 / w * (w * t).cos()), &ClosedCourse::default());
         assert!((swinging / (60.0 / 2.0_f64.sqrt()) - 1.0).abs() < 0.2, "{swinging}");
-        assert!(speed_ripple(&plateau(|t| 1_500.0 * t), 0.0) < 10.0);
+        assert!(speed_ripple(&plateau(|t| 1_500.0 * t), &ClosedCourse::default()) < 10.0);
+    }
+
+    #[test]
+    fn a_quick_swing_is_looked_for_where_each_count_came_with_its_time() {
+        let w = TAU * 24.0;
+        let counts = plateau(|t| 1_500.0 * t - 300.0 / w * (w * t).cos());
+        let dated = ClosedCourse { is_dated: true, ..ClosedCourse::default() };
+        let swinging = speed_ripple(&counts, &dated);
+        assert!((swinging / (300.0 / 2.0_f64.sqrt()) - 1.0).abs() < 0.2, "{swinging}");
+        assert!(speed_ripple(&plateau(|t| 1_500.0 * t), &dated) < 40.0);
+        assert!(speed_ripple(&counts, &ClosedCourse::default()) < 0.1 * swinging);
     }
 
     #[test]
     fn a_speed_that_settles_slowly_is_no_swing() {
-        let settling = speed_ripple(&plateau(|t| 1_500.0 * t + 200.0 * (-t / 0.8).exp()), 0.0);
+        let settling =
+            speed_ripple(&plateau(|t| 1_500.0 * t + 200.0 * (-t / 0.8).exp()), &ClosedCourse::default());
         assert!(settling < 15.0, "{settling}");
     }
 

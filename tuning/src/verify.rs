@@ -319,7 +319,7 @@ pub(crate) fn try_velocity(rig: &mut Rig<'_>, task: &Task, gains: &Gains) -> Res
     Ok(Measured {
         overshoot: (predicted.overshoot + seen(&course) - expected).max(0.0),
         duty_rms: deviation(&duties),
-        ripple: speed_ripple(&stay, course.stamp_s) / (high - low),
+        ripple: speed_ripple(&stay, &course) / (high - low),
         headroom: None,
     })
 }

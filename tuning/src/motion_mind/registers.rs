@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 const MOST_TERM: f64 = 65_535.0;
 const MOST_SCALAR: u8 = 32;
 
-/// Bits of FUNCTION and FUNCTION2 that concern a run (Motion Mind manual, figures 20 and 21).
+/// Bits of FUNCTION, FUNCTION2 and STATUS that concern a run (Motion Mind manual, figures 20 to 22).
 pub mod bits {
     /// FUNCTION: the sum is bounded closely and stands while the output is saturated.
     pub const SATPROT: u16 = 1 << 4;
@@ -23,6 +23,8 @@ pub mod bits {
     pub const VIRTLIMIT: u16 = 1 << 13;
     /// FUNCTION: the loop gives no duty.
     pub const DISABLEPID: u16 = 1 << 14;
+    /// STATUS: a limit input or the brake input is at ground, which takes the drive away, one way or both.
+    pub const INPUTS: u16 = 0b111;
     /// FUNCTION2: feedback by pulses.
     pub const PULSEFB: u16 = 1 << 9;
     /// FUNCTION2: speed moves work on speeds.

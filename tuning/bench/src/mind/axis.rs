@@ -524,5 +524,6 @@ mod tests {
         assert_eq!(bits::SATPROT, function::SATPROT);
         assert_eq!((bits::NEWVELMODE, bits::FASTPID), (function2::NEWVELMODE, function2::FASTPID));
         assert_eq!(bits::PULSEFB, function2::PULSEFB);
+        assert_eq!(bits::INPUTS, status::NEGLIMIT | status::POSLIMIT | status::BRAKE);
     }
 }
