@@ -275,3 +275,82 @@ fn a_bad_digit_and_a_missing_file_are_told_in_a_sentence() {
     assert_eq!(code(&ending), Some(1), "{ending:?}");
     assert!(ending.stderr.join(" ").starts_with("Could not decode /no/such/file"), "{ending:?}");
 }
+
+/// A Motion Mind on a pseudo-terminal, a monitor in front of it, and a foreign client on the other side of that.
+fn motion_mind_behind_a_tap(protocol: &str) -> (Ending, Vec<Value>) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (unit, tap) = (text(&folder.path().join("mm")), text(&folder.path().join("tap")));
+    let _sim =
+        start(&["sim", "--model", "motion-mind-3", "--mode", "3", "--protocol", protocol, "--pty", &unit]);
+    wait::for_path(&folder.path().join("mm"));
+    let target = format!("{unit},family=motion-mind");
+    let monitor = start(&["monitor", "--connect", &target, "--pty", &tap, "--json"]);
+    wait::for_path(&folder.path().join("tap"));
+    let mut client = SerialTransport::open(&tap, 19_200).expect("the port opens");
+    let commands: [(&[u8], usize); 3] = match protocol {
+        // READ REGISTER 18, MODE; a checksum that is wrong; CHANGE_SPEED 300.
+        "binary" => [(&[0x1D, 1, 18, 0x30], 3), (&[0x1D, 1, 18, 0x31], 0), (&[0x14, 1, 0x2C, 0x01, 0x42], 1)],
+        _ => [(b"R01 18\r\n", 8), (b"Q01\r\n", 13), (b"C01 300\r\n", 4)],
+    };
+    for (bytes, length) in commands {
+        client.write(bytes).expect("the tap takes it");
+        let mut answer = Vec::new();
+        let begun = Instant::now();
+        let patience = if length == 0 { Duration::from_millis(100) } else { LIMIT };
+        while answer.len() < length.max(1) && begun.elapsed() < patience {
+            let mut buffer = [0; 64];
+            let count = client.read(&mut buffer, Duration::from_millis(20)).expect("the tap is there");
+            answer.extend_from_slice(&buffer[..count]);
+        }
+        assert_eq!(answer.len(), length, "{bytes:?}: {answer:?}");
+    }
+    monitor.signal("INT");
+    let ending = monitor.finish(LIMIT);
+    let records = records(&ending);
+    drop(client);
+    // The motor stands: PWMOUT is 0.
+    let mut port = SerialTransport::open(&unit, 19_200).expect("the unit is free again");
+    let stands = |port: &mut SerialTransport| {
+        let ask: &[u8] = if protocol == "binary" { &[0x1D, 1, 21, 0x33] } else { b"R01 21\r\n" };
+        port.write(ask).expect("the port takes it");
+        let mut buffer = [0; 64];
+        let count = port.read(&mut buffer, Duration::from_millis(500)).expect("the port is there");
+        std::thread::sleep(Duration::from_millis(20));
+        matches!(&buffer[..count], [1, 0, 0, 1] | b"PWMO=0\r\n")
+    };
+    wait::until("the motor stands", || stands(&mut port), || format!("{:?}", ending.stderr));
+    (ending, records)
+}
+
+#[test]
+fn a_tap_in_front_of_a_motion_mind_tells_both_protocols_and_stops_what_runs_on() {
+    for (protocol, wrong) in [("binary", "checksum is 0x31 and not 0x30"), ("ascii", "no command: \"Q01\"")] {
+        let (ending, records) = motion_mind_behind_a_tap(protocol);
+        let told: Vec<&str> = records.iter().filter_map(|record| record["text"].as_str()).collect();
+        for words in ["unit 1: read MODE", "MODE 3", wrong, "unit 1: drive 300 of 1023", "acknowledged"] {
+            assert!(told.iter().any(|text| text.contains(words)), "{protocol} {words}: {told:?}");
+        }
+        let said = ending.stderr.join("\n");
+        assert!(said.contains("the motor of unit 1"), "{protocol}: {said}");
+    }
+}
+
+#[test]
+fn frames_of_a_motion_mind_are_decoded_from_a_file() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("frames.txt");
+    let lines = "15 01 F0 D8 FF FF DC   # -10000\n1A 01 04 01 18 00 38\n17 63 00 00 7A\n80 15\n";
+    std::fs::write(&file, lines).expect("the folder takes it");
+    let ending = run(&["monitor", "--family", "motion-mind", "--decode", &text(&file)]);
+    assert_eq!(code(&ending), Some(0), "{ending:?}");
+    let wanted = [
+        "unit 1: move to -10000 counts",
+        "unit 1: read VELOCITYFF, PIDSCALAR, ANALOGCON, ANALOGFBCK",
+        "all units: turn at 0 counts per loop",
+        "0x80 begins none",
+    ];
+    for (line, words) in ending.stdout.iter().zip(wanted) {
+        assert!(line.contains(words), "{words}: {ending:?}");
+    }
+    assert_eq!(ending.stdout.len(), wanted.len(), "{ending:?}");
+}

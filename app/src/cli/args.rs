@@ -8,6 +8,7 @@ use brushwork_link::UnitAddress;
 use brushwork_link::device::FamilyChoice;
 use brushwork_protocol::canopen::adapter::Form;
 use brushwork_sim::faults::FAULT_SYNTAX;
+use brushwork_sim::motion_mind::EncoderDecode;
 use brushwork_sim::world::{CanPeer, I2cDevice, WorldAction};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
@@ -17,6 +18,7 @@ use super::mcl::args::MclArgs;
 use super::monitor::args::MonitorArgs;
 use super::script::args::ScriptArgs;
 use super::settings::args::SettingsArgs;
+use crate::session::motion_mind_spec;
 use crate::session::sim_spec::parse_byte;
 
 /// Configures, drives and tunes brushed-DC motor controllers.
@@ -272,6 +274,9 @@ pub struct SimArgs {
     /// Which of its two protocols a Motion Mind 3 speaks.
     #[arg(long, value_enum, value_name = "PROTOCOL", default_value = "binary")]
     pub protocol: ProtocolArg,
+    /// The other switches of a Motion Mind 3.
+    #[command(flatten)]
+    pub switches: MotionMindSwitches,
     /// Which of the controller's ports is served.
     #[arg(long, value_enum, value_name = "PORT", default_value = "usb")]
     pub port: StreamArg,
@@ -314,6 +319,34 @@ pub struct SimArgs {
     /// Name the models and presets, and end.
     #[arg(long)]
     pub list: bool,
+}
+
+/// Switches 5 and 7 of a Motion Mind 3, and its firmware.
+#[derive(Debug, Clone, Default, Args)]
+pub struct MotionMindSwitches {
+    /// Switch 5 of a Motion Mind 3; with --pace its bytes take the time of that rate. In mode 2 it is the direction too.
+    #[arg(long, value_name = "9600|19200", value_parser = parse_switched_baud)]
+    pub baud: Option<u32>,
+    /// Switch 7 of a Motion Mind 3: which edges of the encoder count.
+    #[arg(long, value_name = "1x|4x", value_parser = motion_mind_spec::decode)]
+    pub encoder: Option<EncoderDecode>,
+    /// The firmware revision that a Motion Mind 3 tells.
+    #[arg(long, value_name = "N")]
+    pub revision: Option<u8>,
+}
+
+impl MotionMindSwitches {
+    /// Whether any is given.
+    pub fn is_given(&self) -> bool {
+        self.baud.is_some() || self.encoder.is_some() || self.revision.is_some()
+    }
+}
+
+fn parse_switched_baud(text: &str) -> Result<u32, String> {
+    match text.parse() {
+        Ok(baud @ (9_600 | 19_200)) => Ok(baud),
+        _ => Err(format!("\"{text}\" is none of the rates of switch 5: use 9600 or 19200")),
+    }
 }
 
 /// A unit's number as typed; what numbers there are depends on the model.

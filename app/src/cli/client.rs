@@ -89,14 +89,18 @@ pub fn target(args: &ConnectArgs) -> Result<ConnectTarget, Exit> {
     Ok(at_address(target, args))
 }
 
-/// The one address that is meant: as given, or the factory's of the family.
-fn addresses(target: &ConnectTarget, args: &ConnectArgs) -> Addresses {
-    let family = match target {
+/// The family that is meant: as the target or `--family` says.
+pub fn family(target: &ConnectTarget, args: &ConnectArgs) -> FamilyChoice {
+    match target {
         ConnectTarget::Sim(text) if MotionMindSpec::is_asked_for(text) => FamilyChoice::MotionMind,
         target if target.family() != FamilyChoice::Auto => target.family(),
         _ => args.family,
-    };
-    match (args.address, family) {
+    }
+}
+
+/// The one address that is meant: as given, or the factory's of the family.
+fn addresses(target: &ConnectTarget, args: &ConnectArgs) -> Addresses {
+    match (args.address, family(target, args)) {
         (Some(address), _) => Addresses::Only(address),
         (None, FamilyChoice::MotionMind) => Addresses::Only(first_of(target).get()),
         (None, FamilyChoice::PacketSerial) => Addresses::Only(packet_serial::Address::DEFAULT.get()),

@@ -1,10 +1,10 @@
 //! What simulated Motion Minds to make: the text behind `sim:motion-mind-3`, and the arguments of `brushwork sim`.
 //!
-//! `motion-mind-3,mode=4,protocol=ascii,address=1,address=2,preset=NAME,seed=N`; `?` and `&` may stand for the commas, and one
-//! address option may name several units: `motion-mind-3?mode=4&address=1,2`.
+//! `motion-mind-3,mode=4,protocol=ascii,address=1,address=2,preset=NAME,baud=9600,encoder=1x,revision=5,seed=N`; `?` and `&` may stand for
+//! the commas, and one address option may name several units: `motion-mind-3?mode=4&address=1,2`.
 
 use brushwork_protocol::motion_mind::{Address, Mode, Protocol};
-use brushwork_sim::motion_mind::{MotionMind, MotionMindBus, MotionMindConfig, pin};
+use brushwork_sim::motion_mind::{EncoderDecode, MotionMind, MotionMindBus, MotionMindConfig, assumed, pin};
 use brushwork_sim::plant::ParamsError;
 use brushwork_sim::presets;
 
@@ -20,6 +20,12 @@ pub struct MotionMindSpec {
     pub mode: Mode,
     /// Switch 6.
     pub protocol: Protocol,
+    /// Switch 5: 19,200 baud, else 9,600, which in mode 2 is the direction too.
+    pub is_fast: bool,
+    /// Switch 7.
+    pub decode: EncoderDecode,
+    /// The firmware, as register 17 tells it.
+    pub revision: u8,
     /// The motor; that of the first preset if none is named.
     pub preset: Option<String>,
     /// Seed of the measurement noise; 0 for none.
@@ -32,6 +38,9 @@ impl Default for MotionMindSpec {
             addresses: vec![Address::FACTORY],
             mode: Mode::SerialPid,
             protocol: Protocol::Binary,
+            is_fast: true,
+            decode: EncoderDecode::Times4,
+            revision: assumed::REVISION,
             preset: None,
             seed: 1,
         }
@@ -82,6 +91,19 @@ impl MotionMindSpec {
                     format!("\"{value}\" is no protocol of a Motion Mind 3. Use binary or ascii")
                 })?;
             }
+            "baud" => {
+                self.is_fast = match value {
+                    "19200" => true,
+                    "9600" => false,
+                    _ => return Err(format!("switch 5 is for 9600 or 19200 baud, not for \"{value}\"")),
+                };
+            }
+            "encoder" => self.decode = decode(value)?,
+            "revision" => {
+                self.revision = value
+                    .parse()
+                    .map_err(|_| format!("\"{value}\" is no firmware revision. Use 0 to 255"))?;
+            }
             "address" => self.add_address(value)?,
             "preset" => self.preset = Some(preset(value)?),
             "seed" => {
@@ -117,8 +139,14 @@ impl MotionMindSpec {
     }
 
     fn config(&self, address: Address) -> MotionMindConfig {
-        let mut config =
-            MotionMindConfig { address, protocol: self.protocol, ..MotionMindConfig::new(self.mode) };
+        let mut config = MotionMindConfig {
+            address,
+            protocol: self.protocol,
+            is_fast: self.is_fast,
+            decode: self.decode,
+            revision: self.revision,
+            ..MotionMindConfig::new(self.mode)
+        };
         config.seed = if self.seed == 0 { 0 } else { self.seed.wrapping_add(address.get().into()).max(1) };
         if let Some(preset) = self.preset.as_deref().and_then(presets::lookup) {
             config.world = presets::world_of(preset, preset, pin::COUNT);
@@ -140,10 +168,22 @@ pub fn preset(name: &str) -> Result<String, String> {
     }
 }
 
+/// Which edges of the encoder switch 7 lets count.
+///
+/// # Errors
+/// A clause with what there is.
+pub fn decode(text: &str) -> Result<EncoderDecode, String> {
+    match text {
+        "4x" => Ok(EncoderDecode::Times4),
+        "1x" => Ok(EncoderDecode::Times1),
+        _ => Err(format!("switch 7 is for 1x or 4x, not for \"{text}\"")),
+    }
+}
+
 fn no_option(given: &str) -> String {
     format!(
-        "\"{given}\" is no option of a simulated Motion Mind 3. There are mode=0..7, protocol=binary or ascii, address=1..98, preset=NAME \
-         and seed=N"
+        "\"{given}\" is no option of a simulated Motion Mind 3. There are mode=0..7, protocol=binary or ascii, address=1..98, preset=NAME, \
+         baud=9600 or 19200, encoder=1x or 4x, revision=N and seed=N"
     )
 }
 
@@ -165,6 +205,8 @@ mod tests {
             (commas.mode, commas.protocol, numbers(&commas)),
             (Mode::Serial, Protocol::Text, vec![1, 2])
         );
+        let switched = MotionMindSpec::parse("motion-mind-3,baud=9600,encoder=1x,revision=5").unwrap();
+        assert_eq!((switched.is_fast, switched.decode, switched.revision), (false, EncoderDecode::Times1, 5));
         let plain = MotionMindSpec::parse("Motion-Mind-3").unwrap();
         assert_eq!(plain, MotionMindSpec::default());
         assert!(
@@ -181,6 +223,9 @@ mod tests {
             ("motion-mind-3,address=0", "1 to 98"),
             ("motion-mind-3,address=5,5", "two simulated controllers"),
             ("motion-mind-3,preset=none", "There are"),
+            ("motion-mind-3,baud=38400", "9600 or 19200"),
+            ("motion-mind-3,encoder=2x", "1x or 4x"),
+            ("motion-mind-3,revision=A", "0 to 255"),
             ("motion-mind-3,generation=1", "mode=0..7"),
             ("motion-mind-3,1", "mode=0..7"),
         ] {

@@ -13,7 +13,9 @@ use crate::cli::args::{ConnectArgs, parse_seconds};
     brushwork monitor --connect sim:mcp266 --for 2\n  \
     brushwork monitor --connect /dev/ttyACM0 --pty /tmp/tap     (another program opens /tmp/tap)\n  \
     brushwork monitor --connect /dev/ttyUSB0,baud=115200 --tcp 127.0.0.1:7001 --json\n  \
-    echo '80 15  80 18' | brushwork monitor --decode -\n\n\
+    echo '80 15  80 18' | brushwork monitor --decode -\n  \
+    brushwork monitor --connect /dev/ttyUSB0,family=motion-mind --pty /tmp/tap\n  \
+    brushwork monitor --family motion-mind --decode frames.txt\n\n\
     With --pty or --tcp every byte is passed on unchanged, both ways. When that ends while the other program has motors \
     running, they are stopped.\n\
     --decode reads bytes in hexadecimal, with or without 0x, separated by spaces or commas; # starts a comment. An empty \
@@ -31,7 +33,7 @@ pub struct MonitorArgs {
     /// Decode requests from FILE ("-" for standard input) instead of a live line.
     #[arg(long, value_name = "FILE", conflicts_with = "duration")]
     pub decode: Option<PathBuf>,
-    /// Firmware generation (default: told by the traffic, starting at 1).
+    /// Firmware generation of packet serial (default: told by the traffic, starting at 1).
     #[arg(long, value_name = "1..4", value_parser = clap::value_parser!(u8).range(1..=4))]
     pub generation: Option<u8>,
     /// End after this time (default: on Ctrl-C).

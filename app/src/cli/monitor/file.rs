@@ -8,8 +8,8 @@ use std::path::Path;
 use std::time::Duration;
 
 use super::args::MonitorArgs;
-use super::decoder::Decoder;
-use super::{Direction, Record, fixed_generation, print};
+use super::follower::Follower;
+use super::{Direction, Record, follower, print};
 use crate::cli::exit::Exit;
 use crate::cli::output::{Output, say};
 
@@ -22,7 +22,7 @@ pub fn run(args: &MonitorArgs, path: &Path, out: &mut Output) -> Result<(), Exit
     };
     let text = read(path).map_err(|error| failed(error.to_string()))?;
     let lines = parse(&text).map_err(|error| failed(error.to_string()))?;
-    let mut decoder = Decoder::new(fixed_generation(args));
+    let mut decoder = follower(args)?;
     for record in decode(&mut decoder, &lines) {
         print(args, &record, out)?;
     }
@@ -89,7 +89,7 @@ fn take_token(digits: &str, bytes: &mut Vec<u8>) -> Result<(), (usize, String, &
     Ok(())
 }
 
-fn decode(decoder: &mut Decoder, lines: &[Vec<u8>]) -> Vec<Record> {
+fn decode(decoder: &mut Follower, lines: &[Vec<u8>]) -> Vec<Record> {
     const PAUSE: Duration = Duration::from_secs(1);
     let mut now = Duration::ZERO;
     let mut records = Vec::new();
@@ -110,7 +110,7 @@ mod tests {
     use super::*;
 
     fn told(text: &str) -> Vec<String> {
-        let mut decoder = Decoder::new(None);
+        let mut decoder = Follower::new(false, None);
         decode(&mut decoder, &parse(text).unwrap()).into_iter().map(|record| record.text).collect()
     }
 

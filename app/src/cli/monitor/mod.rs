@@ -1,4 +1,4 @@
-//! `brushwork monitor`: packet serial traffic in words.
+//! `brushwork monitor`: traffic in words, of packet serial and of both Motion Mind protocols.
 //!
 //! Three sources: this program's own polling ([`own`]), another program's traffic that is passed on ([`tap`]), and bytes from
 //! a file ([`file`]). All of them end as [`Record`]s.
@@ -6,18 +6,23 @@
 pub mod args;
 mod decoder;
 mod file;
+mod follower;
+mod mind;
 mod own;
 mod tap;
 
 use std::time::Duration;
 
+use brushwork_link::device::FamilyChoice;
 use brushwork_protocol::packet_serial::{Generation, hex};
 use serde_json::json;
 
+use super::client;
 use super::exit::Exit;
 use super::interrupt::Interrupt;
 use super::output::{Output, OutputError};
 use args::MonitorArgs;
+use follower::Follower;
 
 /// Room for the bytes in a line of text; more push the meaning to the right.
 const HEX_COLUMN: usize = 32;
@@ -51,9 +56,17 @@ pub fn run(args: &MonitorArgs, out: &mut Output, interrupt: &Interrupt) -> Exit 
     done.map_or_else(|exit| exit, |()| Exit::Done)
 }
 
-/// The generation the user named.
-fn fixed_generation(args: &MonitorArgs) -> Option<Generation> {
-    args.generation.and_then(Generation::from_number)
+/// Who follows the traffic that the arguments ask for.
+fn follower(args: &MonitorArgs) -> Result<Follower, Exit> {
+    let target = client::target(&args.connect)?;
+    // Bytes from a file come from no target, unless one is named for its family.
+    let family = if args.decode.is_some() && args.connect.family != FamilyChoice::Auto {
+        args.connect.family
+    } else {
+        client::family(&target, &args.connect)
+    };
+    let generation = args.generation.and_then(Generation::from_number);
+    Ok(Follower::new(family == FamilyChoice::MotionMind, generation))
 }
 
 fn print(args: &MonitorArgs, record: &Record, out: &mut Output) -> Result<(), OutputError> {

@@ -11,13 +11,12 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use brushwork_link::transport::{Transport, TransportError};
-use brushwork_protocol::packet_serial::{Address, Generation, Request, number, scale};
 use brushwork_sim::server::{self, Endpoint, Heard, Line};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
 use super::args::MonitorArgs;
-use super::decoder::Decoder;
-use super::{Record, fixed_generation, print};
+use super::follower::Follower;
+use super::{Record, follower, print};
 use crate::cli::client;
 use crate::cli::exit::Exit;
 use crate::cli::interrupt::Interrupt;
@@ -56,7 +55,7 @@ pub fn run(args: &MonitorArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
     let tap = Tap {
         line,
         transport,
-        decoder: Decoder::new(fixed_generation(args)),
+        decoder: follower(args)?,
         news,
         left_out: 0,
         stop: stop.clone(),
@@ -125,7 +124,7 @@ fn show(
 struct Tap {
     line: Box<dyn Line>,
     transport: Box<dyn Transport>,
-    decoder: Decoder,
+    decoder: Follower,
     news: Sender<News>,
     left_out: u64,
     stop: Arc<AtomicBool>,
@@ -137,7 +136,7 @@ impl Tap {
         while !self.stop.load(Ordering::SeqCst) {
             self.turn()?;
         }
-        stop_moved(self.transport.as_mut(), self.decoder.moved(), self.decoder.generation())
+        stop_moved(self.transport.as_mut(), &self.decoder)
     }
 
     fn turn(&mut self) -> Result<(), TransportError> {
@@ -195,27 +194,28 @@ impl Tap {
 }
 
 /// Stops the units that the client had told to move.
-fn stop_moved(
-    transport: &mut dyn Transport,
-    moved: &[Address],
-    generation: Generation,
-) -> Result<(), TransportError> {
-    for &address in moved {
-        const DUTY_ZERO: [i64; 4] = [0, scale::MAX_DUTY_ACCEL_RAW, 0, scale::MAX_DUTY_ACCEL_RAW];
-        let request = Request::new(address, number::DUTY_ACCEL_BOTH, &DUTY_ZERO);
-        let Ok(packet) = request.encode(generation) else { continue };
-        // What the client left half sent must be over first: the controller drops it after a pause.
-        thread::sleep(2 * brushwork_protocol::packet_serial::PACKET_GAP);
-        transport.discard_input()?;
-        transport.write(&packet)?;
-        let mut answer = [0; 1];
-        let count = transport.read(&mut answer, STOP_LIMIT)?;
-        say(match answer[..count] {
-            [brushwork_protocol::packet_serial::ACK] => format!(
-                "Stopped both motors of {address}: the other program had them running and can no longer reach them."
-            ),
-            _ => format!("{address} was told to stop, but did not confirm it. Cut the motor power."),
+fn stop_moved(transport: &mut dyn Transport, follower: &Follower) -> Result<(), TransportError> {
+    for stop in follower.stops() {
+        let mut confirmed = false;
+        for bytes in &stop.writes {
+            // What the client left half sent must be over first: the controller drops it after a pause.
+            thread::sleep(follower.gap());
+            transport.discard_input()?;
+            transport.write(bytes)?;
+            confirmed |= answer_within(transport, STOP_LIMIT)?.starts_with(stop.acknowledge);
+        }
+        say(if confirmed {
+            format!("Stopped {}: the other program had it running and can no longer reach it.", stop.who)
+        } else {
+            format!("Told {} to stop, but it did not confirm that. Cut the motor power.", stop.who)
         });
     }
     Ok(())
+}
+
+/// What comes within a time, up to the first pause.
+fn answer_within(transport: &mut dyn Transport, limit: Duration) -> Result<Vec<u8>, TransportError> {
+    let mut answer = [0; 32];
+    let count = transport.read(&mut answer, limit)?;
+    Ok(answer[..count].to_vec())
 }

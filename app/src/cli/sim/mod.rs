@@ -50,8 +50,11 @@ fn usage(sentence: String) -> Exit {
 
 /// Controllers of the MCP family, and what they are in one line.
 fn mcp_bus(args: &SimArgs) -> Result<(Bus, String), Exit> {
-    if args.mode.is_some() {
-        return Err(usage(format!("--mode is for --model {}.", motion_mind_spec::MODEL)));
+    if args.mode.is_some() || args.switches.is_given() {
+        return Err(usage(format!(
+            "--mode, --baud, --encoder and --revision are for --model {}.",
+            motion_mind_spec::MODEL
+        )));
     }
     let options = SimOptions {
         models: args.model.iter().map(String::as_str).collect(),

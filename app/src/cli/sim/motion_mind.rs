@@ -1,7 +1,7 @@
 //! `brushwork sim --model motion-mind-3`: simulated units of the second family.
 
 use brushwork_protocol::motion_mind::{Address, Mode, Protocol};
-use brushwork_sim::motion_mind::MotionMindBus;
+use brushwork_sim::motion_mind::{MotionMindBus, assumed::REVISION};
 
 use super::super::args::{ProtocolArg, SimArgs};
 use crate::session::motion_mind_spec::{MODEL, MotionMindSpec, preset};
@@ -51,6 +51,9 @@ fn spec_of(args: &SimArgs) -> Result<MotionMindSpec, String> {
             ProtocolArg::Binary => Protocol::Binary,
             ProtocolArg::Ascii => Protocol::Text,
         },
+        is_fast: args.switches.baud.is_none_or(|baud| baud == 19_200),
+        decode: args.switches.encoder.unwrap_or_default(),
+        revision: args.switches.revision.unwrap_or(REVISION),
         preset: preset.transpose()?,
         seed: args.seed,
     })

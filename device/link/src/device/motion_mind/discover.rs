@@ -12,7 +12,7 @@ use crate::exchange::{ExchangeError, RETRIES};
 use crate::failure::Failure;
 use crate::unit::FirmwareGeneration;
 use brushwork_protocol::models::MOTION_MIND_3;
-use brushwork_protocol::motion_mind::{Address, Command, Mode, Protocol};
+use brushwork_protocol::motion_mind::{Address, Command, Mode, Protocol, function};
 use std::time::Duration;
 
 /// How long an answer may take in a scan, beyond its time on the wire: 10 ms of the controller, and what USB adapters add.
@@ -177,6 +177,14 @@ fn identify(line: &mut Line<'_>, mut speaker: Speaker, simulated: bool) -> Resul
             "It says that its mode is {}, which the manual does not have.",
             value(number::MODE)
         ));
+    }
+    let closes_a_loop = matches!(mode, Some(Mode::SerialPid | Mode::AnalogPid));
+    if closes_a_loop && value(number::FUNCTION) & i64::from(function::DISABLEPID) != 0 {
+        notes.push(
+            "The output of its loop is switched off (DISABLEPID in FUNCTION); a stop or a run that was cut short may have left it so. \
+             Clear the bit before driving: the motor is then held where it stands."
+                .to_owned(),
+        );
     }
     if speaker.is_loose {
         notes.push("It answers the read of all registers and no other: a simulator, whose values are shown as they come.".to_owned());
