@@ -3,6 +3,8 @@
 
 use std::io::{Read, Write};
 use std::net::TcpStream;
+use std::path::Path;
+use std::process::Command;
 
 use brushwork_tests::program::Program;
 use brushwork_tests::wait::LIMIT;
@@ -101,4 +103,97 @@ fn the_command_line_drives_by_mode_reads_settings_and_talks_to_simulated_units_i
     assert!(code == Some(0) && out.contains("MOVEAT_VELOCITY") && out.contains("NEWVELMODE"));
     let (code, out, _) = run(&["protocol", "--family", "motion-mind", "--json"]);
     assert!(code == Some(0) && out.contains("\"registers\""));
+}
+
+/// What the program says and how it ends, with what it keeps of controllers in a folder of the test.
+fn run_in(folder: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
+    let once = || {
+        let mut command = Command::new(BRUSHWORK);
+        command.args(arguments).current_dir(folder).env("BRUSHWORK_DATA_DIR", folder.join("kept"));
+        Program::spawn(command).finish(LIMIT)
+    };
+    let mut ending = once();
+    for _ in 0..10 {
+        if !ending.was_starved() {
+            break;
+        }
+        ending = once();
+    }
+    (ending.status.code(), ending.stdout.join("\n"), ending.stderr.join("\n"))
+}
+
+/// The whole life of a unit's settings on the command line, in one of its protocols.
+fn settings_through_their_life(protocol: &str) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let folder = folder.path();
+    let port = folder.join("mm").display().to_string();
+    let options = ["--protocol", protocol, "--address", "5", "--revision", "9", "--pty", &port];
+    let mut sim = Program::start(BRUSHWORK, &[&["sim", "--model", "motion-mind-3"], &options[..]].concat());
+    sim.next_line(LIMIT).expect("it says where it is");
+    let target = format!("{port},family=motion-mind");
+    let at_unit = ["--connect", &target, "--address", "5"];
+    let settings =
+        |act: &str, more: &[&str]| run_in(folder, &[&["settings", act], &at_unit[..], more].concat());
+    let expect = |wanted: i32, words: &str, (code, out, said): (Option<i32>, String, String)| {
+        let all = format!("{out}\n{said}");
+        assert!(code == Some(wanted) && all.contains(words), "{protocol} {words}: {code:?} {all}");
+        all
+    };
+    expect(0, "register.pterm", settings("read", &["register"]));
+    expect(0, "before.json", settings("export", &["before.json"]));
+    expect(
+        0,
+        "2 settings written and read back",
+        settings("write", &["register.pterm=4321", "function.satprot=on", "--yes"]),
+    );
+    expect(6, "register.pterm", settings("diff", &["before.json"]));
+    expect(5, "below the lowest value, 1", settings("write", &["register.velocitylimit=0", "--yes"]));
+    let said = expect(0, "read back", settings("save", &["--yes"]));
+    assert!(said.contains("stops the motor"), "{said}");
+    expect(0, "agree", settings("compare", &["ram", "eeprom"]));
+    expect(0, "register.dterm", settings("write", &["register.dterm=99", "--yes"]));
+    let said = expect(0, "1 setting came back otherwise", settings("reload", &["--yes"]));
+    assert!(said.contains("its motor stops") && said.contains("register.dterm"), "{said}");
+    // The profile of a unit with other firmware is taken for what both have.
+    let profile = std::fs::read_to_string(folder.join("before.json")).expect("it was exported");
+    let older = profile.replace("\"generation\": 9", "\"generation\": 5").replace("revision 9", "revision 5");
+    assert_ne!(profile, older, "{profile}");
+    std::fs::write(folder.join("older.json"), older).expect("the folder takes it");
+    expect(0, "register.pterm", settings("import", &["older.json", "--yes"]));
+    expect(0, "before-write", run_in(folder, &["settings", "backups"]));
+    expect(0, "4321", settings("restore", &["--yes"]));
+    expect(0, "nothing was cut short", lower(settings("unfinished", &[])));
+    let said = expect(0, "restored in RAM and EEPROM", settings("defaults", &["--yes"]));
+    assert!(said.contains("stops the motor") && said.contains("answers at 1 now"), "{said}");
+    expect(0, "6000", run_in(folder, &["settings", "read", "--connect", &target, "register.pterm"]));
+    // Found without its family being named, at the factory address; told once which revision it is.
+    let told = expect(0, "revision 9", run_in(folder, &["status", "--connect", &port]));
+    assert_eq!(told.matches("revision 9").count(), 1, "{told}");
+}
+
+fn lower((code, out, said): (Option<i32>, String, String)) -> (Option<i32>, String, String) {
+    (code, out.to_lowercase(), said.to_lowercase())
+}
+
+#[test]
+fn settings_live_on_the_command_line_in_binary() {
+    settings_through_their_life("binary");
+}
+
+#[test]
+fn settings_live_on_the_command_line_in_text() {
+    settings_through_their_life("ascii");
+}
+
+#[test]
+fn the_terminal_warns_before_what_stops_the_motor() {
+    for (protocol, command) in [("binary", "19 01 02 80"), ("ascii", "S01 02 128"), ("ascii", "X01")] {
+        let target = format!("sim:motion-mind-3,protocol={protocol}");
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let (code, out, said) = run_in(folder.path(), &["terminal", "--connect", &target, command]);
+        assert!(code == Some(0) && said.contains("motor is stopped"), "{protocol} {command}: {out} {said}");
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (code, _, said) = run_in(folder.path(), &["terminal", "--connect", "sim:motion-mind-3", "1D 01 04"]);
+    assert!(code == Some(0) && !said.contains("motor is stopped"), "{said}");
 }

@@ -8,7 +8,9 @@ use std::time::{Duration, Instant};
 
 use brushwork_link::device::motion_mind::{describe_received, describe_sent};
 use brushwork_link::device::{Event, MotionMindFacts, PollRate, Request};
-use brushwork_protocol::motion_mind::{Protocol, checksum};
+use brushwork_protocol::motion_mind::{
+    Command, Effect, FrameEvent, FrameReader, LineEvent, LineReader, Protocol, checksum,
+};
 use brushwork_protocol::packet_serial::hex;
 use serde_json::json;
 
@@ -80,6 +82,9 @@ fn exchange(
             return Ok(false);
         }
     };
+    if stops_the_motor(&bytes, facts.protocol) {
+        say("Note: the motor is stopped for this, and what it changes in EEPROM stays.");
+    }
     ask(client.device(), Request::Raw { id, bytes: bytes.clone() })?;
     let deadline = Instant::now() + REPLY_LIMIT;
     while Instant::now() < deadline {
@@ -99,6 +104,27 @@ fn exchange(
     }
     say("The link gave no answer.");
     Err(Exit::NoLink)
+}
+
+/// Whether the bytes are a command that writes EEPROM or starts the unit anew.
+fn stops_the_motor(bytes: &[u8], protocol: Protocol) -> bool {
+    let commands = commands_of(bytes, protocol);
+    commands.iter().any(|command| command.effect() == Effect::Stopping)
+}
+
+fn commands_of(bytes: &[u8], protocol: Protocol) -> Vec<Command> {
+    let (mut frames, mut lines) = (FrameReader::new(), LineReader::new());
+    let read = |byte: &u8| match protocol {
+        Protocol::Binary => match frames.feed(*byte, Duration::ZERO) {
+            Some(FrameEvent::Command(_, command)) => Some(command),
+            _ => None,
+        },
+        Protocol::Text => match lines.feed(*byte) {
+            Some(LineEvent::Command(_, command)) => Some(command),
+            _ => None,
+        },
+    };
+    bytes.iter().filter_map(read).collect()
 }
 
 fn tell(

@@ -42,6 +42,10 @@ pub fn save(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
         )?,
     }
     tell_wear(controller.unit());
+    tell_stop(
+        &ram.table,
+        "Each write to EEPROM stops the motor for up to 40 ms; in mode 3 it does not start again by itself.",
+    );
     let question = format!("Save all settings of {} to EEPROM?", controller.describe());
     ask::agreed(&question, args.yes, &controller)?;
     let (report, exit) = save_to_eeprom(&controller, &ram.table)?;
@@ -53,7 +57,7 @@ pub fn save(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
             "save": report,
             "saves_counted": wear,
         }))?;
-    } else if report.verdict == SaveVerdict::Verified {
+    } else if matches!(report.verdict, SaveVerdict::Verified | SaveVerdict::Stored) {
         out.line(report.sentence())?;
         out.line(wear.sentence())?;
     }
@@ -88,6 +92,10 @@ pub fn defaults(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> R
     let ram = controller.read()?;
     let list = changes(&ram.table, &ram.image, &known_defaults(&ram.table, &ram.image));
     show(args, out, "What would change, as far as the factory defaults are known:", &list, AT_DEFAULT)?;
+    tell_stop(
+        &ram.table,
+        "RESTORE writes RAM and EEPROM and stops the motor; the unit answers at address 1 afterwards.",
+    );
     let question = format!("Restore the factory defaults of {}?", controller.describe());
     ask::agreed(&question, args.yes, &controller)?;
     let (subject, mut keeper) = (controller.subject(), controller.keeper());
@@ -152,6 +160,10 @@ pub fn reload(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Res
         }
         None => say("What EEPROM holds is not known. What was written and not saved is lost."),
     }
+    tell_stop(
+        &ram.table,
+        "A Motion Mind starts anew for it: its motor stops, and its position is 0 unless POSPWRUP is set.",
+    );
     let question = format!("Load the EEPROM of {} over its RAM?", controller.describe());
     ask::agreed(&question, args.yes, &controller)?;
     let (table, mut keeper) = (ram.table.clone(), controller.keeper());
@@ -173,6 +185,13 @@ pub fn reload(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Res
         }
     }
     Ok(finished.broken.unwrap_or(if report.failures.is_empty() { Exit::Done } else { Exit::NotTaken }))
+}
+
+/// Says what an act on the memory of a Motion Mind does to its motor.
+fn tell_stop(table: &SettingsTable, what: &str) {
+    if table.is_motion_mind() {
+        say(format!("Note: {what}"));
+    }
 }
 
 fn tell_others(head: &str, changes: &[Change]) {
