@@ -55,6 +55,8 @@ const FRAMES: &[(Command, &[u8])] = &[
     (Command::Write { register: 28, value: 512 }, &[0x18, 0x01, 0x1C, 0x00, 0x02, 0x37]),
     (Command::Write { register: 23, value: -123_456 }, &[0x18, 0x01, 0x17, 0xC0, 0x1D, 0xFE, 0xFF, 0x0A]),
     (Command::ReadRegister(27), &[0x1D, 0x01, 0x1B, 0x39]),
+    // 3.11: -1 is eight times F.
+    (Command::MoveToAbsolute(-1), &[0x15, 0x01, 0xFF, 0xFF, 0xFF, 0xFF, 0x12]),
 ];
 
 /// Replies with the commands and return bits they answer.
@@ -137,6 +139,20 @@ fn every_frame_of_the_manual_is_written_and_read() {
         assert_eq!(encode_frame(UNIT_1, command).as_deref(), Ok(*bytes), "{command:?}");
         assert_eq!(frames_in(bytes), [FrameEvent::Command(UNIT_1, *command)], "{command:?}");
     }
+}
+
+#[test]
+fn a_broadcast_has_the_address_99_and_those_above_it_in_frames() {
+    // MOVEAT_VELOCITY 0 to 99: 17 63 00 00, sum 7A.
+    let stop = Command::MoveAtVelocity(0);
+    assert_eq!(encode_frame(Address::BROADCAST, &stop).unwrap(), [0x17, 0x63, 0x00, 0x00, 0x7A]);
+    for address in 99..=255 {
+        let bytes = [0x17, address, 0, 0, 0x17_u8.wrapping_add(address)];
+        assert_eq!(frames_in(&bytes), [FrameEvent::Command(Address::from_wire(address), stop)]);
+        assert!(Address::from_wire(address).is_broadcast());
+    }
+    assert!(!Address::from_wire(98).is_broadcast());
+    assert_eq!(encode_line(Address::BROADCAST, &stop).as_deref(), Ok("V99 0\r\n"));
 }
 
 #[test]

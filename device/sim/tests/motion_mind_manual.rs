@@ -9,7 +9,7 @@ use brushwork_protocol::motion_mind::{Command, REGISTERS, encode_frame, function
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_sim::bridge::BridgeOutput;
 use brushwork_sim::machine::{Machine, StreamIndex};
-use brushwork_sim::motion_mind::{Mode, MotionMindConfig, assumed, pin};
+use brushwork_sim::motion_mind::{Mode, MotionMindConfig, Protocol, assumed, pin};
 use brushwork_sim::plant::{EncoderKind, ShaftSide};
 use brushwork_sim::presets;
 use brushwork_sim::world::{PinSignal, WorldAction};
@@ -554,4 +554,45 @@ fn faults_of_the_plant_are_those_of_the_other_family() {
     bench.seconds(1.0);
     assert!(bench.ask("VELOCITY") > running / 2);
     assert_eq!(assumed::PULSES_IN_MEAN, 64);
+}
+
+#[test]
+fn read_97_has_the_negative_limit_first_and_ten_lines() {
+    let config = MotionMindConfig { protocol: Protocol::Text, ..MotionMindConfig::new(Mode::SerialPid) };
+    let mut bench = Bench::of(config);
+    bench.volts(pin::NEGATIVE_LIMIT, 0.0);
+    bench.seconds(0.2);
+    let lines = String::from_utf8(bench.bus.exchange(b"R01 97\r\n", PATIENCE)).expect("text");
+    let lines: Vec<&str> = lines.lines().collect();
+    assert_eq!((lines.len(), lines[0], lines[1], lines[9]), (10, "S0ON", "S1OFF", "S9ON"), "{lines:?}");
+}
+
+#[test]
+fn the_dead_band_of_rc_positions_is_deadband_and_not_rcband() {
+    let mut config = MotionMindConfig::new(Mode::RadioControl);
+    config.signals = vec![
+        (pin::INDEX_RC, PinSignal::Pulse { microseconds: 1600.0 }),
+        (pin::ANALOG_FEEDBACK, PinSignal::Volts { volts: 2.5 }),
+    ];
+    let mut bench = Bench::of(config);
+    bench.set("FUNCTION", bit(function::RCPOS | function::ENABLEDB));
+    bench.set("RCBAND", 500);
+    bench.set("DEADBAND", 0);
+    bench.seconds(0.5);
+    assert_ne!(bench.ask("PWMOUT"), 0, "103 steps away");
+    bench.set("DEADBAND", 200);
+    bench.seconds(0.1);
+    assert_eq!(bench.ask("PWMOUT"), 0);
+}
+
+#[test]
+fn twenty_steps_of_deadband_are_a_tenth_of_a_volt_in_mode_1() {
+    let mut bench = Bench::new(Mode::Analog);
+    bench.set("DEADBAND", 20);
+    for (volts, stands) in [(2.5 + 0.09, true), (2.5 - 0.09, true), (2.5 + 0.12, false), (2.5 - 0.12, false)]
+    {
+        bench.volts(pin::ANALOG_CONTROL, volts);
+        bench.seconds(0.3);
+        assert_eq!(bench.ask("PWMOUT") == 0, stands, "{volts} V");
+    }
 }

@@ -9,6 +9,7 @@
 mod address;
 mod bits;
 mod command;
+mod contradictions;
 mod describe;
 mod frame;
 mod frame_reader;
@@ -23,6 +24,7 @@ mod switches;
 pub use address::{Address, InvalidAddress};
 pub use bits::{Bit, FUNCTION_BITS, FUNCTION2_BITS, STATUS_BITS, function, function2, status};
 pub use command::{Command, Effect, Part};
+pub use contradictions::{CONTRADICTIONS, Contradiction};
 pub use describe::{describe_command, describe_reply};
 pub use frame::{ACK, EncodeError, checksum, encode_frame, encode_frame_reply, parse_frame_reply};
 pub use frame_reader::{BYTE_GAP, FrameEvent, FrameReader};

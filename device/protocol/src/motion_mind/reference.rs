@@ -1,6 +1,7 @@
 //! The reference page of both protocols, drawn from the tables of commands, registers and bits.
 
 use super::bits::{Bit, FUNCTION_BITS, FUNCTION2_BITS, STATUS_BITS};
+use super::contradictions::{CONTRADICTIONS, Contradiction};
 use super::parts::{COMMANDS, CommandRow};
 use super::register::{REGISTERS, Register};
 use serde::Serialize;
@@ -15,6 +16,8 @@ pub struct Reference {
     pub registers: Vec<RegisterEntry>,
     /// The bits of FUNCTION, FUNCTION2 and STATUS, by register.
     pub bits: Vec<BitEntry>,
+    /// Where the manual contradicts itself.
+    pub contradictions: &'static [Contradiction],
 }
 
 /// One command.
@@ -84,6 +87,7 @@ pub fn reference() -> Reference {
             .into_iter()
             .flat_map(|(register, bits)| bits.iter().map(move |bit| bit_entry(register, bit)))
             .collect(),
+        contradictions: CONTRADICTIONS,
     }
 }
 
@@ -102,6 +106,10 @@ pub fn reference_page() -> String {
             push(&mut text, format_args!("\nBits of {of}\n"));
         }
         push(&mut text, format_args!("  {:>2}  {:<14} {}\n", bit.bit, bit.name, bit.set_means));
+    }
+    text.push_str("\nWhere the manual contradicts itself, and what counts here\n--------------------------------------------------------\n");
+    for Contradiction { number, at, says, counts } in page.contradictions {
+        push(&mut text, format_args!("  {number:>2}  {at}: {says}.\n      Here: {counts}.\n"));
     }
     text
 }
@@ -221,6 +229,11 @@ mod tests {
         for bit in FUNCTION_BITS.iter().chain(FUNCTION2_BITS).chain(STATUS_BITS) {
             assert!(text.contains(bit.name) && text.contains(bit.set_means), "{}", bit.name);
         }
+        for (index, row) in CONTRADICTIONS.iter().enumerate() {
+            assert_eq!(usize::from(row.number), index + 1);
+            assert!(text.contains(row.says) && text.contains(row.counts), "{}", row.number);
+        }
+        assert_eq!(CONTRADICTIONS.len(), 23);
         assert!(text.contains("18 address register value sum") && text.contains("W01 nn <value>"));
     }
 
