@@ -162,17 +162,13 @@ fn settings_through_their_life(protocol: &str) {
     expect(0, "register.pterm", settings("import", &["older.json", "--yes"]));
     expect(0, "before-write", run_in(folder, &["settings", "backups"]));
     expect(0, "4321", settings("restore", &["--yes"]));
-    expect(0, "nothing was cut short", lower(settings("unfinished", &[])));
+    expect(0, "was cut short", settings("unfinished", &[]));
     let said = expect(0, "restored in RAM and EEPROM", settings("defaults", &["--yes"]));
     assert!(said.contains("stops the motor") && said.contains("answers at 1 now"), "{said}");
     expect(0, "6000", run_in(folder, &["settings", "read", "--connect", &target, "register.pterm"]));
     // Found without its family being named, at the factory address; told once which revision it is.
     let told = expect(0, "revision 9", run_in(folder, &["status", "--connect", &port]));
     assert_eq!(told.matches("revision 9").count(), 1, "{told}");
-}
-
-fn lower((code, out, said): (Option<i32>, String, String)) -> (Option<i32>, String, String) {
-    (code, out.to_lowercase(), said.to_lowercase())
 }
 
 #[test]

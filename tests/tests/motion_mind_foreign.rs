@@ -547,8 +547,8 @@ fn a_scan_finds_a_foreign_unit_at_its_address() {
     for (manner, is_text) in manners() {
         let mut unit = Foreign::new(manner, is_text, 3);
         unit.ram[7] = 57;
-        let mut link = link_to(unit, FamilyChoice::Auto, Addresses::Scan);
-        link.run_for(Duration::from_secs(60));
+        let mut link = link_to(unit, FamilyChoice::MotionMind, Addresses::Scan);
+        link.run_for(Duration::from_secs(20));
         assert_eq!(identity(&link).address, 57, "{manner:?}");
     }
 }

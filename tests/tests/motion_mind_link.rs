@@ -240,6 +240,16 @@ fn without_a_family_named_the_factory_address_is_found_after_packet_serial_was_l
 }
 
 #[test]
+fn without_a_family_named_a_scan_goes_on_from_the_factory_address_to_the_rest_of_the_bus() {
+    let units = [1, 2, 40].map(|number| unit(Mode::SerialPid, Protocol::Binary, number)).to_vec();
+    let scan = DeviceOptions { addresses: Addresses::Scan, ..DeviceOptions::default() };
+    let (mut link, _) = over(units, scan, Vec::new());
+    link.run_for(Duration::from_secs(40));
+    let found: Vec<u8> = identities(&link).iter().map(|unit| unit.address).collect();
+    assert_eq!(found, [1, 2, 40]);
+}
+
+#[test]
 fn a_scan_finds_every_unit_of_the_bus_with_progress_and_within_seconds() {
     for protocol in Protocol::ALL {
         for numbers in [&[1, 2, 98][..], &[7, 50]] {
@@ -803,4 +813,119 @@ fn typed_bytes_come_back_as_they_are_and_the_self_test_never_goes_out() {
     assert_eq!(replies(&mut binary, &[0x1D, 0x01, 0x01, 0x1F]).unwrap(), [0x01, 0xFF, 0x03, 0x03]);
     let said = replies(&mut binary, &[0x1D, 0x01, 0x01, 0x20]).unwrap_err();
     assert!(said.contains("no command of the manual"), "{said}");
+}
+
+/// What is asked of the link, and the frame and the line that the manual has for it: mode, command, values.
+type Vector = (Mode, u8, &'static [i64], &'static [u8], &'static str);
+
+/// The examples of chapter 5, and some by its rules.
+const VECTORS: &[Vector] = &[
+    // 5.1.1, 5.2.1
+    (Mode::SerialPid, 0x15, &[-10_000], &[0x15, 0x01, 0xF0, 0xD8, 0xFF, 0xFF, 0xDC], "P01 -10000"),
+    (Mode::Serial, 0x14, &[128], &[0x14, 0x01, 0x80, 0x00, 0x95], "C01 128"),
+    (Mode::SerialPid, 0x15, &[1000], &[0x15, 0x01, 0xE8, 0x03, 0x00, 0x00, 0x01], "P01 1000"),
+    // 5.3.1 to 5.6.1
+    (Mode::Serial, 0x14, &[763], &[0x14, 0x01, 0xFB, 0x02, 0x12], "C01 763"),
+    (Mode::SerialPid, 0x15, &[-100_046], &[0x15, 0x01, 0x32, 0x79, 0xFE, 0xFF, 0xBE], "P01 -100046"),
+    (Mode::SerialPid, 0x16, &[100_000], &[0x16, 0x01, 0xA0, 0x86, 0x01, 0x00, 0x3E], "M01 100000"),
+    (Mode::SerialPid, 0x17, &[-200], &[0x17, 0x01, 0x38, 0xFF, 0x4F], "V01 -200"),
+    // 5.7.1
+    (
+        Mode::SerialPid,
+        0x18,
+        &[0, -10_000],
+        &[0x18, 0x01, 0x00, 0xF0, 0xD8, 0xFF, 0xFF, 0xDF],
+        "W01 00 -10000",
+    ),
+    (Mode::SerialPid, 0x18, &[1, 100], &[0x18, 0x01, 0x01, 0x64, 0x00, 0x7E], "W01 01 100"),
+    (Mode::SerialPid, 0x18, &[2, 128], &[0x18, 0x01, 0x02, 0x80, 0x9B], "W01 02 128"),
+    // 5.8.1
+    (
+        Mode::SerialPid,
+        0x19,
+        &[0, -10_000],
+        &[0x19, 0x01, 0x00, 0xF0, 0xD8, 0xFF, 0xFF, 0xE0],
+        "S01 00 -10000",
+    ),
+    (Mode::SerialPid, 0x19, &[1, 100], &[0x19, 0x01, 0x01, 0x64, 0x00, 0x7F], "S01 01 100"),
+    (Mode::SerialPid, 0x19, &[2, 128], &[0x19, 0x01, 0x02, 0x80, 0x9C], "S01 02 128"),
+    // 5.9.1: in text several registers are read with all of them.
+    (Mode::SerialPid, 0x1A, &[0x0018_0104], &[0x1A, 0x01, 0x04, 0x01, 0x18, 0x00, 0x38], "R01 99"),
+    (Mode::SerialPid, 0x1A, &[1], &[0x1A, 0x01, 0x01, 0x00, 0x00, 0x00, 0x1C], "R01 00"),
+    (Mode::SerialPid, 0x1A, &[0xFFFF_FFFF], &[0x1A, 0x01, 0xFF, 0xFF, 0xFF, 0xFF, 0x17], "R01 99"),
+    (Mode::SerialPid, 0x1A, &[0x0001_0001], &[0x1A, 0x01, 0x01, 0x00, 0x01, 0x00, 0x1D], "R01 99"),
+    // 5.10.1
+    (Mode::SerialPid, 0x1D, &[1], &[0x1D, 0x01, 0x01, 0x1F], "R01 01"),
+    (Mode::SerialPid, 0x1D, &[0], &[0x1D, 0x01, 0x00, 0x1E], "R01 00"),
+    (Mode::SerialPid, 0x1D, &[27], &[0x1D, 0x01, 0x1B, 0x39], "R01 27"),
+    // By the same rules.
+    (Mode::Serial, 0x14, &[-512], &[0x14, 0x01, 0x00, 0xFE, 0x13], "C01 -512"),
+    (Mode::SerialPid, 0x18, &[3, 0x0890], &[0x18, 0x01, 0x03, 0x90, 0x08, 0xB4], "W01 03 2192"),
+    (Mode::SerialPid, 0x19, &[30, 0x0012], &[0x19, 0x01, 0x1E, 0x12, 0x00, 0x4A], "S01 30 18"),
+    (Mode::SerialPid, 0x18, &[28, 512], &[0x18, 0x01, 0x1C, 0x00, 0x02, 0x37], "W01 28 512"),
+    (
+        Mode::SerialPid,
+        0x18,
+        &[23, -123_456],
+        &[0x18, 0x01, 0x17, 0xC0, 0x1D, 0xFE, 0xFF, 0x0A],
+        "W01 23 -123456",
+    ),
+    // 5.11.1, 5.12.1
+    (Mode::SerialPid, 0x1B, &[], &[0x1B, 0x01, 0x1C], "X01"),
+    (Mode::SerialPid, 0x1C, &[], &[0x1C, 0x01, 0x1D], "Y01"),
+];
+
+#[test]
+fn every_example_of_the_manual_goes_through_the_link_as_its_bytes_and_is_answered_by_the_unit() {
+    for protocol in Protocol::ALL {
+        for (mode, command, values, frame, line) in VECTORS {
+            let (mut link, heard) =
+                over(vec![unit(*mode, protocol, 1)], options(Addresses::Only(1)), Vec::new());
+            link.run_for(ms(1_500));
+            if (0x14..=0x17).contains(command) {
+                assert!(link.arm(ArmScope::Position), "{line}: {:?}", failures(&link));
+            }
+            link.events.clear();
+            heard.lock().unwrap().clear();
+            let values =
+                values.iter().map(|value| brushwork_protocol::packet_serial::Value::Int(*value)).collect();
+            link.ask(Request::Transact { id: 7, command: *command, values });
+            link.run_for(ms(400));
+            let result = link.events.iter().find_map(|(_, event)| match event {
+                Event::Transacted { id: 7, result, .. } => Some(result.is_ok()),
+                _ => None,
+            });
+            assert_eq!(result, Some(true), "{protocol} {line}: {:?}", link.events);
+            let wanted = match protocol {
+                Protocol::Binary => frame.to_vec(),
+                Protocol::Text => format!("{line}\r\n").into_bytes(),
+            };
+            let heard = heard.lock().unwrap();
+            assert!(
+                heard.windows(wanted.len()).any(|bytes| bytes == wanted),
+                "{protocol} {line}: {}",
+                heard.escape_ascii()
+            );
+        }
+    }
+}
+
+#[test]
+fn a_loop_that_is_switched_off_is_told_when_its_unit_is_found() {
+    for protocol in Protocol::ALL {
+        let (mut link, _) =
+            over(vec![unit(Mode::SerialPid, protocol, 1)], options(Addresses::Only(1)), Vec::new());
+        inject(
+            &link,
+            Address::FACTORY,
+            &Command::Write { register: FUNCTION, value: function::DISABLEPID.into() },
+        );
+        link.run_for(ms(1_500));
+        let notes = identities(&link)[0].notes.concat();
+        assert!(notes.contains("DISABLEPID"), "{protocol}: {notes}");
+        assert!(
+            !link.arm(ArmScope::Position) && failures(&link).concat().contains("DISABLEPID"),
+            "{protocol}"
+        );
+    }
 }

@@ -16,7 +16,7 @@ use std::str::FromStr;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FamilyChoice {
-    /// Packet serial is looked for first, then Motion Minds: at all addresses in a scan, else at the factory address.
+    /// Packet serial is looked for first, then a Motion Mind at its factory address; where one is, a scan goes on to the others.
     #[default]
     Auto,
     /// MCP and RoboClaw.
@@ -117,8 +117,8 @@ impl Family for AnyFamily {
 }
 
 impl AnyFamily {
-    /// MCP and RoboClaw first; where nothing of packet serial comes back, Motion Minds in both protocols: at the factory address, and at
-    /// every other in a scan.
+    /// MCP and RoboClaw first; where nothing of packet serial comes back, a Motion Mind at its factory address in both protocols. All 98
+    /// addresses are asked of a bus that is known to have one: of a silent port that would take seconds for nothing.
     fn find_out(
         &mut self,
         line: &mut Line<'_>,
@@ -131,31 +131,25 @@ impl AnyFamily {
                 return other;
             }
         };
-        let found = match options.addresses {
-            Addresses::Scan => MotionMinds::new().discover(line, options),
-            _ => MotionMinds::new().at_the_factory_address(line, options),
-        };
+        let mut found = MotionMinds::new().at_the_factory_address(line, options);
+        if found.is_ok() && options.addresses == Addresses::Scan {
+            found = MotionMinds::new().discover(line, options);
+        }
         match found {
             Ok(units) => {
                 self.found = Some(Found::MotionMinds);
                 Ok(units)
             }
-            Err(DiscoverError::NothingThere(_)) => {
-                Err(DiscoverError::NothingThere(neither(nothing, options.addresses)))
-            }
+            Err(DiscoverError::NothingThere(_)) => Err(DiscoverError::NothingThere(neither(nothing))),
             Err(error) => Err(error),
         }
     }
 }
 
 /// The failure of packet serial, with what else was tried.
-fn neither(nothing: Failure, asked: Addresses) -> Failure {
-    if asked == Addresses::Scan {
-        let came_back = format!("{}; nor is there a Motion Mind at addresses 1 to 98", nothing.came_back);
-        return Failure { came_back, ..nothing };
-    }
+fn neither(nothing: Failure) -> Failure {
     let mend = format!(
-        "{}. For a Motion Mind at another address than 1 choose its family (family=motion-mind) and its address",
+        "{}. For a Motion Mind at another address than 1 choose its family (family=motion-mind), so that all are asked",
         nothing.mend
     );
     Failure { mend, ..nothing }
