@@ -39,6 +39,14 @@ pub(super) const ACTIONS: &[Action] = &[
         "How the tuner works, what its figures mean, and what it refuses."
     ),
     page!(
+        "help.motion-mind",
+        "Motion Mind 3",
+        0,
+        Keys::None,
+        MotionMind,
+        "How to connect, drive and tune a Motion Mind 3; its commands, registers and bits."
+    ),
+    page!(
         "help.settings",
         "Settings Reference",
         1,

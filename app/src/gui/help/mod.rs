@@ -8,6 +8,7 @@ use super::theme::Palette;
 use super::widgets::text_field::text_field_ui;
 
 mod mcl;
+mod motion_mind;
 mod pages;
 mod reference;
 mod tuning;
@@ -49,6 +50,7 @@ fn page_ui(ui: &mut Ui, page: HelpPage, help: &mut Help) {
     match page {
         HelpPage::FirstSteps => scrolled_ui(ui, pages::first_steps_ui),
         HelpPage::Tuning => scrolled_ui(ui, tuning::tuning_ui),
+        HelpPage::MotionMind => motion_mind::motion_mind_ui(ui, help),
         HelpPage::Settings => reference::settings_ui(ui, help),
         HelpPage::PacketSerial => reference::packet_serial_ui(ui, help),
         HelpPage::Mcl => mcl::mcl_ui(ui, help),

@@ -6,6 +6,7 @@ pub enum HelpPage {
     #[default]
     FirstSteps,
     Tuning,
+    MotionMind,
     Settings,
     PacketSerial,
     Mcl,
@@ -14,9 +15,10 @@ pub enum HelpPage {
 }
 
 impl HelpPage {
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::FirstSteps,
         Self::Tuning,
+        Self::MotionMind,
         Self::Settings,
         Self::PacketSerial,
         Self::Mcl,
@@ -28,6 +30,7 @@ impl HelpPage {
         match self {
             Self::FirstSteps => "First Steps",
             Self::Tuning => "Tuning",
+            Self::MotionMind => "Motion Mind 3",
             Self::Settings => "Settings Reference",
             Self::PacketSerial => "Packet Serial Reference",
             Self::Mcl => "MCL Reference",
@@ -38,7 +41,7 @@ impl HelpPage {
 
     /// Whether the page is long enough to be searched.
     pub const fn is_searched(self) -> bool {
-        matches!(self, Self::Settings | Self::PacketSerial | Self::Mcl | Self::Shortcuts)
+        matches!(self, Self::MotionMind | Self::Settings | Self::PacketSerial | Self::Mcl | Self::Shortcuts)
     }
 }
 
