@@ -24,6 +24,8 @@ pub struct Line<M = Bus> {
 
 /// Something done to the machine right after a command has reached it.
 struct Cut {
+    /// Where in a request its number stands.
+    place: usize,
     command: u8,
     /// Commands of that number that pass before.
     passing: usize,
@@ -95,12 +97,20 @@ impl<M: Machine> Line<M> {
     /// Does something to the machine as soon as a command has reached it so many times.
     pub fn after(&self, command: u8, times: usize, action: WorldAction) {
         *self.cut.lock().unwrap_or_else(PoisonError::into_inner) =
-            Some(Cut { command, passing: times.saturating_sub(1), action });
+            Some(Cut { place: 1, command, passing: times.saturating_sub(1), action });
+    }
+
+    /// The same for the binary frames of a Motion Mind, which begin with their command.
+    pub fn after_frame(&self, command: u8, times: usize, action: WorldAction) {
+        *self.cut.lock().unwrap_or_else(PoisonError::into_inner) =
+            Some(Cut { place: 0, command, passing: times.saturating_sub(1), action });
     }
 
     fn cut(&self, request: &[u8]) {
         let mut planned = self.cut.lock().unwrap_or_else(PoisonError::into_inner);
-        let Some(cut) = planned.as_mut().filter(|cut| request.get(1) == Some(&cut.command)) else { return };
+        let Some(cut) = planned.as_mut().filter(|cut| request.get(cut.place) == Some(&cut.command)) else {
+            return;
+        };
         if cut.passing > 0 {
             cut.passing -= 1;
         } else if let Some(cut) = planned.take() {
