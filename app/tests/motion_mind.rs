@@ -80,6 +80,10 @@ fn a_port_is_asked_for_the_family_that_was_chosen() {
     bench.choose("Controller family", "Motion Mind");
     let target = bench.model().devices.target().unwrap().to_string();
     assert!(target.ends_with("family=motion-mind"), "{target}");
+    assert_eq!(bench.model().devices.baud, 19_200, "the rate of switch 5 as delivered");
+    bench.choose("Baud rate", "9600");
+    let target = bench.model().devices.target().unwrap().to_string();
+    assert!(target.contains("baud=9600"), "{target}");
     bench.choose("Address", "unit 3");
     assert!(bench.model().devices.addresses() == brushwork_link::device::Addresses::Only(3));
 }

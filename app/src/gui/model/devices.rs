@@ -4,7 +4,7 @@ use super::desk::{Desk, DeskId, place_of};
 use super::simulated::{FIRST, Simulated};
 use brushwork_link::Failure;
 use brushwork_link::device::{Addresses, FamilyChoice};
-use brushwork_link::transport::target::DEFAULT_BAUD;
+use brushwork_link::transport::target::{DEFAULT_BAUD, MOTION_MIND_BAUD};
 use brushwork_link::transport::{ConnectTarget, PortInfo, TargetError};
 
 /// The simulated controller that is always there.
@@ -171,6 +171,15 @@ impl Devices {
         }
     }
 
+    /// Looks for units of a family from now on. A rate that nobody has changed becomes that of the family.
+    pub fn look_for(&mut self, family: FamilyChoice) {
+        let usual = |family| if family == FamilyChoice::MotionMind { MOTION_MIND_BAUD } else { DEFAULT_BAUD };
+        if self.baud == usual(self.family) {
+            self.baud = usual(family);
+        }
+        self.family = family;
+    }
+
     /// Whether the units that are looked for are Motion Minds for sure.
     pub fn wants_motion_minds(&self) -> bool {
         match &self.choice {
@@ -206,6 +215,8 @@ impl Devices {
                 let mut target = self.typed.parse()?;
                 if let ConnectTarget::Serial { baud, .. } = &mut target
                     && self.baud_matters()
+                    // The rate of a family that was typed behind the path is that of the family, unless another is chosen.
+                    && (self.baud != DEFAULT_BAUD || !self.typed.contains("family="))
                 {
                     *baud = self.baud;
                 }
@@ -242,8 +253,22 @@ mod tests {
         };
         assert_eq!(baud_of("/dev/ttyUSB7"), 115_200);
         assert_eq!(baud_of("/dev/ttyUSB7,baud=9600"), 9_600);
+        let motion_mind = Devices { baud: DEFAULT_BAUD, ..devices("COM3,family=motion-mind") };
+        assert!(matches!(motion_mind.target(), Ok(ConnectTarget::Serial { baud: 19_200, .. })));
         assert!(!devices("tcp:127.0.0.1:4000").baud_matters());
         assert!(devices("  ").target().is_err());
+    }
+
+    #[test]
+    fn the_rate_follows_the_family_until_somebody_says_otherwise() {
+        let mut devices = Devices::default();
+        devices.look_for(FamilyChoice::MotionMind);
+        assert_eq!(devices.baud, 19_200);
+        devices.look_for(FamilyChoice::Auto);
+        assert_eq!(devices.baud, DEFAULT_BAUD);
+        devices.baud = 9_600;
+        devices.look_for(FamilyChoice::MotionMind);
+        assert_eq!(devices.baud, 9_600, "switch 5 is on");
     }
 
     #[test]

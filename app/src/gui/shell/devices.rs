@@ -283,7 +283,11 @@ fn options_ui(ui: &mut Ui, devices: &mut Devices) {
         motion_mind_ui(ui, &mut devices.simulated);
     }
     if devices.family_matters() {
-        family_ui(ui, &mut devices.family);
+        let mut family = devices.family;
+        family_ui(ui, &mut family);
+        if family != devices.family {
+            devices.look_for(family);
+        }
     }
 }
 
