@@ -429,3 +429,55 @@ fn mind_duty(bench: &Bench) -> f64 {
         _ => 0.0,
     }
 }
+
+// ---- the simulated world ----
+
+#[test]
+fn the_world_panel_turns_pins_load_and_switches_which_count_from_the_next_power_up_on() {
+    let mut bench = connected(Mode::SerialPid);
+    bench.key_with(egui::Modifiers::COMMAND, Key::B);
+    bench.pass_ms(500);
+    for name in
+        ["P4 control", "P3 feedback", "P17 pos. limit", "P16 neg. limit", "P12 brake", "J6 R/C, index"]
+    {
+        assert!(bench.sees(&format!("{name} is connected to")), "{name}");
+    }
+    assert!(
+        !bench.sees("Logic voltage") && !bench.sees("E-stop pressed"),
+        "what it does not have is not shown"
+    );
+    bench.choose("P12 brake is connected to", "a voltage");
+    bench.enter("P12 brake value", "0");
+    bench.pass_ms(1500);
+    assert!(bench.sees("BRK: error"), "a pin at ground acts");
+    bench.choose("P12 brake is connected to", "nothing");
+    bench.choose("Mode switches", "3 Serial");
+    bench.press("Text protocol (6)");
+    bench.pass_ms(1500);
+    assert_eq!(ram(&bench, 0, "MODE"), 4, "they are read at power-up");
+    bench.press("Power");
+    bench.pass_ms(1500);
+    bench.press("Power");
+    bench.pass_ms(8000);
+    assert_eq!(ram(&bench, 0, "MODE"), 3);
+    if bench.model().is_connected() {
+        bench.press("Disconnect");
+        bench.pass_ms(3000);
+    }
+    bench.connect();
+    bench.pass_ms(4000);
+    assert!(has_screen(&bench, "Duty") && !has_screen(&bench, "Velocity"), "{:?}", bench.said());
+}
+
+#[test]
+fn the_registers_look_as_they_did() {
+    let mut bench = Bench::with_minds_sized(vec![config(Mode::SerialPid)], [1024.0, 700.0], Theme::Dark);
+    choose(&mut bench);
+    bench.connect();
+    bench.press("Registers");
+    bench.pass_ms(3000);
+    bench.press("Bits of FUNCTION");
+    bench.harness.set_render_cursor(false);
+    bench.pass_ms(200);
+    bench.harness.snapshot("motion_mind_registers");
+}

@@ -15,6 +15,7 @@ use super::widgets::numeric::Numeric;
 mod buses;
 mod motor;
 mod pins;
+mod switches;
 
 pub fn world_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let Some(views) = model.front.worlds.clone() else { return };
@@ -37,6 +38,7 @@ pub fn world_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         motor::motor_ui(ui, *motor, view, panel, &mut actions);
     }
     pins::pins_ui(ui, view, family, &mut actions);
+    switches::switches_ui(ui, view, &mut actions);
     if family.lacks(Ability::Buses).is_none() {
         buses::buses_ui(ui, view, &mut actions);
     }

@@ -2,7 +2,7 @@
 
 use crate::plant::{EncoderKind, ParamsError};
 use crate::presets;
-use crate::world::{PinSignal, World, WorldAction, WorldParams};
+use crate::world::{BoardSwitches, PinSignal, World, WorldAction, WorldParams};
 use brushwork_protocol::motion_mind::{Address, Mode, Protocol};
 use brushwork_protocol::packet_serial::Motor;
 
@@ -98,12 +98,30 @@ impl MotionMindConfig {
         };
     }
 
+    /// How the switches of the board stand.
+    fn switches(&self) -> BoardSwitches {
+        BoardSwitches {
+            mode: self.mode.number(),
+            is_fast: self.is_fast,
+            is_text: self.protocol == Protocol::Text,
+            counts_lines: self.decode == EncoderDecode::Times1,
+        }
+    }
+
+    /// Takes over how the switches stand, as the unit does at power-up.
+    pub(super) fn read_switches(&mut self, switches: BoardSwitches) {
+        self.mode = switches.mode();
+        self.protocol = switches.protocol();
+        self.is_fast = switches.is_fast;
+        self.decode = if switches.counts_lines { EncoderDecode::Times1 } else { EncoderDecode::Times4 };
+    }
+
     /// The world that the unit stands in.
     ///
     /// # Errors
     /// A figure of the motor that is out of its range, by name.
     pub(super) fn world(&self) -> Result<World, ParamsError> {
-        let mut world = World::new(&self.world, self.seed)?;
+        let mut world = World::new(&self.world, self.seed)?.with_board_switches(self.switches());
         world.apply(&WorldAction::OpenLead { motor: Motor::M2, on: true });
         // An absolute encoder that gives pulses is wired as the manual's figure 16C has it.
         let is_pulse_encoder = self.world.axes[0].encoder.kind == EncoderKind::Pulse;

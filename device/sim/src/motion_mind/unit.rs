@@ -142,6 +142,10 @@ impl MotionMind {
             self.wire.forget();
             if self.has_power {
                 self.is_testing = false;
+                if let Some(switches) = self.world.board_switches() {
+                    self.config.read_switches(switches);
+                    self.wire = Wire::new(self.config.protocol);
+                }
                 self.start();
                 self.running.ready_at += self.blinking();
             }

@@ -2,6 +2,7 @@
 
 use super::Motor;
 use super::UnitFault;
+use super::board_switches::BoardSwitches;
 use super::can_peer::CanPeer;
 use super::i2c::I2cDevice;
 use super::pins::{PinSignal, SwitchKind};
@@ -154,6 +155,11 @@ pub enum WorldAction {
         /// The values of this and the following ones.
         values: Vec<u8>,
     },
+    /// Sets the switches of the board, where it has any. They are read at power-up.
+    SetBoardSwitches {
+        /// How they stand then.
+        switches: BoardSwitches,
+    },
     /// Who is at the other end of a script's CAN stream.
     SetCanPeer {
         /// What it does.
@@ -231,6 +237,9 @@ impl World {
                     device.set(first, values);
                 }
             }
+            WorldAction::SetBoardSwitches { switches } => {
+                self.board_switches = self.board_switches.map(|_| switches);
+            }
             WorldAction::SetCanPeer { peer } => self.can_line.set_peer(peer),
             WorldAction::SetRts { on } => self.rts = on,
             WorldAction::Power { on } => self.powered = on,
@@ -291,6 +300,7 @@ impl WorldAction {
                 let known = before.i2c.iter().find(|known| known.address == address)?;
                 Self::AddI2cDevice { device: known.clone() }
             }
+            Self::SetBoardSwitches { .. } => Self::SetBoardSwitches { switches: before.board_switches? },
             Self::SetCanPeer { .. } => Self::SetCanPeer { peer: before.can_peer },
             Self::SendCan { .. } => return None,
             Self::SetRts { .. } => Self::SetRts { on: before.rts },

@@ -5,6 +5,7 @@
 //! [`WorldAction`]s and looks at it through [`WorldView`]s. It knows nothing of bytes and settings.
 
 mod action;
+mod board_switches;
 mod can_peer;
 mod i2c;
 mod pins;
@@ -12,6 +13,7 @@ mod unit_fault;
 mod view;
 
 pub use action::WorldAction;
+pub use board_switches::BoardSwitches;
 pub use brushwork_protocol::packet_serial::Motor;
 pub use can_peer::{CanLine, CanPeer};
 pub use i2c::I2cDevice;
@@ -79,6 +81,8 @@ pub struct World {
     pub(crate) can_line: CanLine,
     /// Whether the host holds the USB port's RTS line.
     rts: bool,
+    /// Those of a board that has them.
+    board_switches: Option<BoardSwitches>,
     powered: bool,
     plugged: bool,
 }
@@ -108,6 +112,7 @@ impl World {
             i2c: params.i2c.clone(),
             can_line,
             rts: false,
+            board_switches: None,
             powered: true,
             plugged: true,
         })
@@ -198,6 +203,16 @@ impl World {
     /// Whether the host holds the USB port's RTS line, which forces packet serial on it (MCP manual 1.9.3).
     pub fn rts(&self) -> bool {
         self.rts
+    }
+
+    /// How the switches of the board stand, where it has any.
+    pub fn board_switches(&self) -> Option<BoardSwitches> {
+        self.board_switches
+    }
+
+    /// Builds a board that has switches.
+    pub(crate) fn with_board_switches(self, switches: BoardSwitches) -> Self {
+        Self { board_switches: Some(switches), ..self }
     }
 
     /// Whether the unit has power.

@@ -3,6 +3,7 @@
 use super::Motor;
 use super::UnitFaults;
 use super::World;
+use super::board_switches::BoardSwitches;
 use super::can_peer::CanPeer;
 use super::i2c::I2cDevice;
 use super::pins::{PinSignal, SwitchKind, Wiring};
@@ -66,6 +67,9 @@ pub struct WorldView {
     pub can_heard: Vec<u8>,
     /// Whether the host holds the USB port's RTS line.
     pub rts: bool,
+    /// How the switches of the board stand; none where it has none.
+    #[serde(default)]
+    pub board_switches: Option<BoardSwitches>,
     /// What the unit's script does; none without power.
     pub script: Option<ScriptView>,
 }
@@ -116,6 +120,7 @@ impl World {
             can_peer: self.can_line.peer(),
             can_heard: self.can_line.heard(),
             rts: self.rts,
+            board_switches: self.board_switches,
             script: None,
         }
     }
