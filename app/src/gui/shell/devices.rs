@@ -351,8 +351,8 @@ fn family_ui(ui: &mut Ui, chosen: &mut FamilyChoice) {
             ui.selectable_value(chosen, family, family.label());
         }
     });
-    let help = "Find out asks for MCP and RoboClaw first, then for a Motion Mind at address 1. Choose Motion Mind to ask all \
-                addresses from 1 to 98.";
+    let help = "Find out asks for MCP and RoboClaw first, then for Motion Minds, at one bit rate. Choosing the family is quicker, and \
+                brings its usual bit rate.";
     name_combo(ui, &response.response, "Controller family", help);
 }
 
