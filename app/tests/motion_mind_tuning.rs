@@ -331,3 +331,33 @@ fn tuning_needs_an_armed_screen() {
     bench.pass_ms(1000);
     assert!(!bench.model().front.tune.is_running() && stands(&bench));
 }
+
+#[test]
+fn a_loop_that_a_refused_run_left_off_is_seen_in_the_registers_and_switched_on_again() {
+    let configs = vec![MotionMindConfig::new(Mode::SerialPid)];
+    let mut bench = Bench::with_minds_sized(configs, [1920.0, 1080.0], egui::Theme::Dark);
+    bench.pass_ms(200);
+    bench.choose("Simulated model", "Motion Mind 3");
+    bench.connect();
+    bench.pass_ms(3000);
+    bench.arm_on("Velocity");
+    bench.press("Tune");
+    let wrong = |on| WorldAction::ReverseEncoder { motor: Motor::M1, on };
+    bench.minds.with(|bus| bus.apply(0, &wrong(true)));
+    bench.press("Tune M1");
+    finish(&mut bench);
+    assert_eq!(read(&bench, "FUNCTION") & i64::from(bits::DISABLEPID), i64::from(bits::DISABLEPID));
+    bench.minds.with(|bus| bus.apply(0, &wrong(false)));
+    bench.press("Registers");
+    bench.pass_ms(3000);
+    assert!(bench.sees("FUNCTION in RAM: 0x4000"));
+    for act in ["Bits of FUNCTION", "FUNCTION DISABLEPID", "Write settings", "Write to controller"] {
+        bench.press(act);
+    }
+    bench.pass_ms(4000);
+    assert_eq!(read(&bench, "FUNCTION"), 0, "{:?}", bench.said());
+    bench.arm_on("Velocity");
+    bench.press("Tune M1");
+    finish(&mut bench);
+    assert_ne!(run(&mut bench, Loop::Velocity).report.verdict, Verdict::Refused);
+}

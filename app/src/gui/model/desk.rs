@@ -265,11 +265,18 @@ impl Desk {
             self.update_homed();
             return Vec::new();
         }
+        if matches!(event, Event::Stopped(_)) && !self.family().has_loops() {
+            // A stop may have switched a loop off by a register.
+            self.general.ram_changes();
+        }
         let effects = if self.tune.awaits(&event) {
             let effects = self.tune.take(event);
             if !self.tune.is_running() {
                 // A run has written gains and put others back.
                 self.loops.want_reading();
+                if !self.family().has_loops() {
+                    self.general.ram_changes();
+                }
             }
             effects
         } else if self.awaits_guided(&event) {
