@@ -18,7 +18,7 @@ use brushwork_sim::presets;
 use brushwork_sim::world::WorldAction;
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::winding::Winding;
+use brushwork_tuning::winding::{NotTold, Winding};
 use egui::{Key, Modifiers};
 use support::bench::Bench;
 
@@ -350,6 +350,25 @@ fn after_a_refusal_is_mended_another_try_succeeds_and_both_runs_are_kept() {
 }
 
 #[test]
+fn a_resistance_that_is_not_told_says_why_and_what_would_tell_it() {
+    let mut bench = tuned("Velocity Settings", Loop::Velocity);
+    let mut report = run(&mut bench, Loop::Velocity).report;
+    for (why, word) in [
+        (NotTold::NoCurrents, "no motor current"),
+        (NotTold::TooFew, "too few readings"),
+        (NotTold::Alike, "about the same current all the time"),
+        (NotTold::Vague, "scatter too much"),
+    ] {
+        (report.winding, report.winding_unknown) = (None, Some(why));
+        bench.model().front.tune.panel_mut(Loop::Velocity, Motor::M1).add(report.clone());
+        bench.pass_ms(200);
+        assert!(bench.sees_part("R of the winding was not told") && bench.sees_part(word), "{why:?}");
+        assert!(bench.sees_part("measure R with a meter") || why == NotTold::TooFew);
+        assert!(!bench.sees_part("Enter as R"));
+    }
+}
+
+#[test]
 fn runs_are_compared_by_what_they_were_and_the_level_that_is_shown_is_the_one_that_is_tuned() {
     let mut bench = tuned("Velocity Settings", Loop::Velocity);
     let first = run(&mut bench, Loop::Velocity).first.expect("gains");
@@ -580,7 +599,7 @@ fn the_measured_resistance_is_offered_as_an_edit_and_not_sent() {
     let mut bench = tuned("Velocity Settings", Loop::Velocity);
     let mut report = run(&mut bench, Loop::Velocity).report;
     let winding = Winding { ohms: 0.75, interval_ohms: 0.05, volts_per_count_per_s: 0.001, samples: 40 };
-    report.winding = Some(winding);
+    (report.winding, report.winding_unknown) = (Some(winding), None);
     bench.model().front.tune.panel_mut(Loop::Velocity, Motor::M1).add(report);
     bench.pass_ms(300);
     assert!(bench.sees_part("Measured R 0.750") && bench.sees_part("become current (torque) commands"));

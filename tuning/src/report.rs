@@ -11,7 +11,7 @@ use crate::motion_mind::MotionMindRegisters;
 use crate::record::{Entry, Player};
 use crate::rules::Classic;
 use crate::tune::{Request, tune};
-use crate::winding::Winding;
+use crate::winding::{NotTold, Winding};
 use serde::{Deserialize, Serialize};
 
 /// Version of the form of a report. Reports without one are of the first.
@@ -79,6 +79,9 @@ pub struct Report {
     /// Resistance of the winding.
     #[serde(default)]
     pub winding: Option<Winding>,
+    /// Why that was not told, where an open-loop run could have.
+    #[serde(default)]
+    pub winding_unknown: Option<NotTold>,
     /// Play of the mechanics, of a position run.
     #[serde(default)]
     pub slack: Option<Slack>,

@@ -185,6 +185,7 @@ fn blank(request: &Request) -> Report {
         qpps: None,
         law: None,
         winding: None,
+        winding_unknown: None,
         slack: None,
         lag: None,
         task: None,
@@ -222,7 +223,10 @@ fn run(rig: &mut Rig<'_>, request: &Request, report: &mut Report) -> Result<(), 
         report.causes.push(Cause::HeavyLoad);
     }
     report.seconds.0 = rig.now_s();
-    report.winding = winding_of(&rig.points, &rig.drives);
+    match winding_of(&rig.points, &rig.drives) {
+        Ok(winding) => report.winding = Some(winding),
+        Err(why) => report.winding_unknown = Some(why),
+    }
     let request = &with_law(rig, request, &probe, &found, report)?;
     let task = Task {
         plant: found.fit.model,

@@ -43,6 +43,42 @@ pub struct Winding {
     pub samples: usize,
 }
 
+/// Why a run does not tell the resistance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NotTold {
+    /// The controller measures no current, or none above its noise.
+    NoCurrents,
+    /// Too few polls lay under a steady duty with a current.
+    TooFew,
+    /// All currents were about the same, so that nothing tells the resistance from the speed's share: a motor that turns freely.
+    Alike,
+    /// It came out with too wide an interval.
+    Vague,
+}
+
+impl NotTold {
+    /// Why, and what to do to have it, as the end of a sentence.
+    #[must_use]
+    pub const fn sentence(self) -> &'static str {
+        match self {
+            Self::NoCurrents => {
+                "the controller measured no motor current to speak of. Tune with a load on the shaft, or measure R with a meter."
+            }
+            Self::TooFew => {
+                "too few readings lay under a steady duty. A run that turns freely at more duty has more of them."
+            }
+            Self::Alike => {
+                "a motor that turns freely draws about the same current all the time. Tune with a load or a flywheel on the shaft, \
+                 or measure R with a meter."
+            }
+            Self::Vague => {
+                "the readings scatter too much. Try again with more load or more duty, or measure R with a meter."
+            }
+        }
+    }
+}
+
 /// What one sample says.
 struct Row {
     volts: f64,
@@ -50,19 +86,25 @@ struct Row {
     speed: f64,
 }
 
-/// Regresses over the polls of an open-loop run. `None` where the controller tells no currents, or they do not tell R apart.
-#[must_use]
-pub fn winding_of(points: &[Point], drives: &[Drive]) -> Option<Winding> {
-    let battery = Battery::of(points, drives)?;
+/// Regresses over the polls of an open-loop run.
+///
+/// # Errors
+/// Why it is not told: no currents, or ones that do not tell R apart.
+pub fn winding_of(points: &[Point], drives: &[Drive]) -> Result<Winding, NotTold> {
+    let has_current = |point: &Point| point.amps.is_some_and(|amps| amps.abs() >= LEAST_AMPS);
+    if !points.iter().any(has_current) {
+        return Err(NotTold::NoCurrents);
+    }
+    let battery = Battery::of(points, drives).ok_or(NotTold::TooFew)?;
     let highest = points.windows(2).map(|pair| speed_of(&pair[0], &pair[1]).abs()).fold(0.0, f64::max);
     let inside = 1..points.len().saturating_sub(2);
     let rows: Vec<Row> =
         inside.filter_map(|n| row_at(points, drives, n, &battery, STEADY * highest)).collect();
     if rows.len() < LEAST_SAMPLES {
-        return None;
+        return Err(NotTold::TooFew);
     }
     if !differ(&rows) {
-        return None;
+        return Err(NotTold::Alike);
     }
     let scale = rows.iter().map(|row| row.speed.abs()).fold(0.0, f64::max).max(1.0);
     let (mut normal, mut right) = (Matrix2::zeros(), Vector2::zeros());
@@ -72,7 +114,7 @@ pub fn winding_of(points: &[Point], drives: &[Drive]) -> Option<Winding> {
         normal += x * x.transpose();
         right += x * (row.volts * weight);
     }
-    let inverse = normal.try_inverse()?;
+    let inverse = normal.try_inverse().ok_or(NotTold::Alike)?;
     let found = inverse * right;
     let (ohms, back_emf) = (found[0], found[1] / scale);
     let misfit = |row: &Row| ((row.volts - ohms * row.amps - back_emf * row.speed) * row.weight()).powi(2);
@@ -82,7 +124,8 @@ pub fn winding_of(points: &[Point], drives: &[Drive]) -> Option<Winding> {
     let systematic = ohms * (MODEL_SHARE + OFFSET_AMPS / mean_amps);
     let interval_ohms = (1.96 * (variance * inverse[(0, 0)]).sqrt()).hypot(systematic);
     let is_told = ohms > 0.0 && back_emf > 0.0 && interval_ohms < WIDEST * ohms;
-    is_told.then_some(Winding { ohms, interval_ohms, volts_per_count_per_s: back_emf, samples: rows.len() })
+    let winding = Winding { ohms, interval_ohms, volts_per_count_per_s: back_emf, samples: rows.len() };
+    is_told.then_some(winding).ok_or(NotTold::Vague)
 }
 
 /// Whether the currents differ by more than a sensor's noise: with one current alone nothing tells R from the speed's share.
@@ -224,7 +267,15 @@ mod tests {
     fn without_currents_nothing_is_claimed() {
         for amps in [None, Some(0.0)] {
             let (points, drives) = run(|_| amps);
-            assert_eq!(winding_of(&points, &drives), None);
+            assert_eq!(winding_of(&points, &drives), Err(NotTold::NoCurrents));
         }
+    }
+
+    #[test]
+    fn one_current_alone_tells_nothing_and_says_so() {
+        let (points, drives) = run(|_| Some(0.8));
+        assert_eq!(winding_of(&points, &drives), Err(NotTold::Alike));
+        let (points, drives) = run(|amps| Some(amps));
+        assert_eq!(winding_of(&points[..20], &drives), Err(NotTold::TooFew));
     }
 }

@@ -13,7 +13,17 @@ use crate::cli::args::ConnectArgs;
     brushwork tune position --motor 1 --method piv --travel -2000..2000 --max-current 10 --apply\n  \
     brushwork tune replay run.json\n\n\
     The motor turns both ways at up to full duty (--max-duty), or within --travel at less. Ctrl-C stops both motors at once and \
-    puts the old gains back. Exit codes: 0 tuned, 4 refused, 8 tuned with warnings, 3 no link, 130 interrupted.")]
+    puts the old gains back. A report is written whatever the verdict.\n\n\
+    Exit codes:\n  \
+    0  TUNED\n  \
+    8  TUNED WITH WARNINGS: gains were found, with something to know about them\n  \
+    4  REFUSED, with the cause; the old gains are in force\n  \
+    1  the report could not be written, or a replay differs from its report\n  \
+    2  the command line could not be understood\n  \
+    3  no controller could be reached, or the link was lost\n  \
+    5  the gains are in RAM, but saving them to EEPROM did not take\n  \
+    130  ended by Ctrl-C, after both motors were stopped and the old gains put back\n\
+    A replay ends with the code of the verdict in its report.")]
 pub struct TuneArgs {
     /// What to do.
     #[command(subcommand)]

@@ -51,19 +51,30 @@ fn tune(args: &RunArgs, method: Method, out: &mut Output, interrupt: &Interrupt)
         Ok(controller) => controller,
         Err(exit) => return exit,
     };
-    match session(args, method, &controller, interrupt) {
-        Ok(report) => conclude(args, &report, &controller, out),
-        Err(exit) => exit,
+    let mut report = None;
+    let ended = session(args, method, &controller, &mut report, interrupt);
+    // What an interrupted run has seen is kept too.
+    if let (Some(path), Some(report)) = (&args.report, &report)
+        && let Err(sentence) = file::write(report, path)
+    {
+        say(sentence);
+        return ended.err().unwrap_or(Exit::Failed);
+    }
+    match (ended, report) {
+        (Ok(()), Some(report)) => conclude(args, &report, &controller, out),
+        (Ok(()), None) => Exit::Failed,
+        (Err(exit), _) => exit,
     }
 }
 
-/// The three jobs. The last one runs whatever became of the second.
+/// The three jobs. The last one runs whatever became of the others, once anything may have been changed.
 fn session(
     args: &RunArgs,
     method: Method,
     controller: &Controller<'_>,
+    found_report: &mut Option<Report>,
     interrupt: &Interrupt,
-) -> Result<Report, Exit> {
+) -> Result<(), Exit> {
     let client = controller.client();
     let encoder = args.encoder.map(|encoder| match encoder {
         EncoderArg::Quadrature => EncoderClass::Quadrature,
@@ -73,18 +84,22 @@ fn session(
     let target = Target { motor: motor(args), encoder, stream: client.stream };
     let setup = Slot::default();
     let keeper = TrialKeeper::new(controller.keeper());
-    job(client, prepare(target, controller.subject(), &setup, &keeper), interrupt)?;
-    let Some(before) = take(&setup) else { return Err(Exit::NoLink) };
+    let prepared = job(client, prepare(target, controller.subject(), &setup, &keeper), interrupt);
+    let Some(before) = take(&setup) else { return prepared.and(Err(Exit::NoLink)) };
     let target = Target { encoder: Some(before.encoder), ..target };
     let found: Slot<Report> = Slot::default();
-    let ran = arm(client.device(), ArmScope::CommandLine, interrupt)
+    let ran = prepared
+        .and_then(|()| arm(client.device(), ArmScope::CommandLine, interrupt))
         .and_then(|()| job(client, tuning_job(target, request(args, method), &found), interrupt));
-    let report = take(&found);
+    *found_report = take(&found);
     // A raised interrupt has ended the run; it must not keep the old gains from being put back.
-    let restored = job(client, restore(target, before, report.as_ref(), &keeper), &Interrupt::default());
-    ran?;
-    restored?;
-    report.ok_or(Exit::Failed)
+    let kept = found_report.as_ref().filter(|_| ran.is_ok());
+    let restoring = restore(target, before, kept, &keeper);
+    let restored = job(client, restoring, &Interrupt::default());
+    if restored.is_ok() && ran.is_err() {
+        say("The old gains and settings are in force again.");
+    }
+    ran.and(restored)
 }
 
 fn motor(args: &RunArgs) -> Motor {
@@ -114,12 +129,6 @@ fn request(args: &RunArgs, method: Method) -> TuneRequest {
 }
 
 fn conclude(args: &RunArgs, report: &Report, controller: &Controller<'_>, out: &mut Output) -> Exit {
-    if let Some(path) = &args.report
-        && let Err(sentence) = file::write(report, path)
-    {
-        say(sentence);
-        return Exit::Failed;
-    }
     let printed = if args.json { out.json(&words::summary(report)) } else { words::print(report, out) };
     if let Err(error) = printed {
         return error.into();
@@ -158,7 +167,7 @@ fn job(client: &Client, job: Box<dyn Job>, interrupt: &Interrupt) -> Result<(), 
                 return match report.ending {
                     JobEnding::Done(_) => Ok(()),
                     JobEnding::Interrupted(cause) => {
-                        say(format!("{cause}. Both motors were stopped and the old gains are put back."));
+                        say(format!("{cause}. Both motors were stopped."));
                         Err(Exit::Interrupted)
                     }
                     JobEnding::Failed(failure) => {

@@ -92,6 +92,9 @@ fn print_gains(report: &Report, out: &mut Output) -> Result<(), OutputError> {
             winding.ohms
         ))?;
     }
+    if let Some(why) = report.winding_unknown {
+        out.line(format!("R of the winding was not told: {}", why.sentence()))?;
+    }
     let mut rows = Vec::new();
     if let Some(new) = report.velocity {
         let old = before.velocity;

@@ -22,5 +22,6 @@ mod runs;
 pub mod sequence;
 pub mod setup;
 mod sketches;
+mod winding;
 
 pub use model::{Loop, TuneWish, Tuning};

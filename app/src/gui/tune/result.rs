@@ -3,7 +3,6 @@
 use brushwork_tuning::motion_mind::MotionMindLaw;
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::tune::Method;
-use brushwork_tuning::winding::Winding;
 use egui::{Button, Grid, Label, Response, RichText, Ui, vec2};
 
 use super::files::files_ui;
@@ -11,6 +10,7 @@ use super::measured::Figures;
 use super::model::{Loop, TuneWish};
 use super::registers::{FIELDS, Field, Form, Registers};
 use super::run::{Run, Shown};
+use super::winding::{unknown_ui, winding_ui};
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
 use crate::gui::model::general::Sheet;
@@ -91,50 +91,17 @@ fn verdict_ui(ui: &mut Ui, run: &Run) {
 
 fn model_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
     let Some(report) = model.front.tune.front(which).run().map(|run| &run.report) else { return };
-    let (text, winding) = (model_text(report), report.winding);
+    let (text, winding, unknown) = (model_text(report), report.winding, report.winding_unknown);
     let covered = feed_forward_text(model.front.tune.front(which).run());
     for text in text.into_iter().chain(covered) {
         ui.add_space(4.0);
         ui.add(Label::new(RichText::new(text).small().color(Palette::of(ui).weak_text)).wrap());
     }
-    if let Some(winding) = winding {
-        winding_ui(ui, model, which, &winding);
+    match (winding, unknown) {
+        (Some(winding), _) => winding_ui(ui, model, which, &winding),
+        (None, Some(why)) => unknown_ui(ui, why),
+        (None, None) => {}
     }
-}
-
-/// Offers the measured resistance, and says what setting it does.
-fn winding_ui(ui: &mut Ui, model: &mut Model, which: Loop, winding: &Winding) {
-    let motor = model.front.tune.motor(which);
-    ui.horizontal_wrapped(|ui| {
-        let text = format!("Measured R {:.3} ± {:.3} Ω", winding.ohms, winding.interval_ohms);
-        ui.label(text).on_hover_text("Of the winding, its leads and the bridge, with its 95 % interval");
-        let is_free = !model.front.is_guided() && model.front.loops.is_known();
-        let enter = ui.add_enabled(is_free, Button::new("Enter as R").small());
-        let hint =
-            "Puts it into the field R under Velocity loop. It is sent with the other edits of that table.";
-        if enter.on_hover_text(hint).clicked() {
-            model.front.loops.edit_resistance(motor, winding.ohms);
-        }
-    });
-    let warning = "With L and R both other than 0, duty commands become current (torque) commands. L cannot be measured this way.";
-    ui.add(Label::new(RichText::new(warning).small().color(Palette::of(ui).weak_text)).wrap());
-}
-
-/// How much of a speed's duty the feed-forward gives: the register of a Motion Mind is too small for all of it on most motors.
-fn feed_forward_text(run: Option<&Run>) -> Option<String> {
-    let run = run?;
-    let mind = run.shown.as_ref()?.registers.motion_mind?;
-    let law = MotionMindLaw { velocity_ff: mind.velocity_ff, ..MotionMindLaw::default() };
-    let percent = 100.0 * law.covered(run.report.qpps?).min(1.0);
-    let rest = if percent < 99.5 {
-        " The loop makes up for the rest; the design counts on no more than this."
-    } else {
-        ""
-    };
-    Some(format!(
-        "Feed-forward: VELOCITYFF {} gives {percent:.0} % of a speed's duty.{rest}",
-        mind.velocity_ff
-    ))
 }
 
 /// What was found of the motor, in one line.

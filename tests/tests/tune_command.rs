@@ -1,0 +1,204 @@
+//! `brushwork tune` from outside, against a controller on a pseudo-terminal in real time: what is left in RAM and in EEPROM, exit codes,
+//! Ctrl-C at every stage. Which verdict a run comes to on a busy machine is not asked here; that it is told alike everywhere is.
+#![cfg(unix)]
+
+use std::path::{Path, PathBuf};
+
+use brushwork::tune::file;
+use brushwork_protocol::packet_serial::{Generation, Motor};
+use brushwork_sim::controller::ControllerConfig;
+use brushwork_sim::machine::StreamIndex;
+use brushwork_sim::motion::MotionSettings;
+use brushwork_sim::settings::Settings;
+use brushwork_sim::world::WorldAction;
+use brushwork_tests::program::{Ending, Program};
+use brushwork_tests::simulated::{OnPty, is_driven};
+use brushwork_tests::wait::LIMIT;
+use brushwork_tuning::cause::Cause;
+use brushwork_tuning::report::{Report, Verdict};
+use tempfile::TempDir;
+
+const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
+
+/// Exit codes, as `brushwork tune --help` lists them.
+const TUNED: i32 = 0;
+const FAILED: i32 = 1;
+const REFUSED: i32 = 4;
+const TUNED_WITH_WARNINGS: i32 = 8;
+const INTERRUPTED: i32 = 130;
+
+/// The user's time-out of the port, ms.
+const USERS_MS: u32 = 1_300;
+
+/// A controller and a folder for what is kept and written.
+struct Bench {
+    controller: OnPty,
+    folder: TempDir,
+}
+
+impl Bench {
+    fn new(change: impl FnOnce(&mut Settings)) -> Self {
+        let mut config = ControllerConfig { generation: Generation::Gen2, ..ControllerConfig::default() };
+        let mut settings = Settings::factory(config.model, config.address.get());
+        settings.streams[0].timeout_ms = USERS_MS;
+        change(&mut settings);
+        config.settings = Some(settings);
+        let controller = OnPty::start_with(config, StreamIndex::Usb);
+        Self { controller, folder: tempfile::tempdir().expect("a folder") }
+    }
+
+    fn report_path(&self) -> PathBuf {
+        self.folder.path().join("out.json")
+    }
+
+    /// `brushwork tune velocity` with a report, and what a run keeps in the folder of this test.
+    fn tune(&self, arguments: &[&str]) -> Program {
+        let target = format!("{},stream=usb", self.controller.port().display());
+        let mut command = std::process::Command::new(BRUSHWORK);
+        command.args(["tune", "velocity", "-c", &target, "--report"]).arg(self.report_path()).args(arguments);
+        for name in ["HOME", "XDG_DATA_HOME", "XDG_CONFIG_HOME", "XDG_STATE_HOME"] {
+            command.env(name, self.folder.path());
+        }
+        Program::spawn(command)
+    }
+
+    fn report(&self) -> Report {
+        file::read(&self.report_path()).expect("the report was written")
+    }
+
+    /// Gains of motor 1 and the time-out of the port, in RAM and in EEPROM.
+    fn held(&self) -> [(MotionSettings, u32); 2] {
+        self.controller.look(|unit| {
+            let of = |settings: &Settings| (settings.motors[0].motion, settings.streams[0].timeout_ms);
+            [of(&unit.settings()), of(&unit.stored_settings())]
+        })
+    }
+}
+
+fn code(ending: &Ending) -> Option<i32> {
+    ending.status.code()
+}
+
+fn code_of(report: &Report) -> i32 {
+    match report.verdict {
+        Verdict::Tuned => TUNED,
+        Verdict::TunedWithWarnings => TUNED_WITH_WARNINGS,
+        Verdict::Refused => REFUSED,
+    }
+}
+
+fn gains(motion: &MotionSettings) -> [u32; 4] {
+    [motion.velocity_p_raw, motion.velocity_i_raw, motion.velocity_d_raw, motion.qpps]
+}
+
+fn replayed(path: &Path) -> Ending {
+    Program::start(BRUSHWORK, &["tune", "replay", &path.to_string_lossy()]).finish(LIMIT)
+}
+
+#[test]
+fn saved_gains_are_in_ram_and_in_eeprom_with_the_users_time_out_and_the_report_replays() {
+    let bench = Bench::new(|_| {});
+    let before = bench.held();
+    let ending = bench.tune(&["--save", "--level", "40"]).finish(LIMIT);
+    let report = bench.report();
+    assert_eq!(code(&ending), Some(code_of(&report)), "{ending:?}");
+    assert!(bench.controller.look(|unit| !is_driven(unit)));
+    let [ram, eeprom] = bench.held();
+    assert_eq!((ram.1, eeprom.1), (USERS_MS, USERS_MS));
+    match report.velocity {
+        Some(new) if report.verdict != Verdict::Refused => {
+            assert_eq!(gains(&ram.0), [new.p, new.i, new.d, new.qpps]);
+            assert_eq!(gains(&eeprom.0), gains(&ram.0));
+        }
+        _ => assert_eq!([ram, eeprom], before),
+    }
+    let again = replayed(&bench.report_path());
+    assert_eq!(code(&again), Some(code_of(&report)), "{again:?}");
+    assert!(again.stderr.join("\n").contains("to the last bit"), "{again:?}");
+}
+
+#[test]
+fn torque_mode_is_refused_before_anything_moves_and_the_report_says_so() {
+    let bench = Bench::new(|settings| {
+        let motion = &mut settings.motors[0].motion;
+        (motion.inductance_raw, motion.resistance_raw) = (67_109, 134_217_728);
+    });
+    let before = bench.held();
+    let ending = bench.tune(&["--apply"]).finish(LIMIT);
+    assert_eq!(code(&ending), Some(REFUSED), "{ending:?}");
+    assert_eq!(bench.report().causes, [Cause::TorqueMode]);
+    assert_eq!(bench.held(), before);
+    assert!(bench.controller.look(|unit| unit.view().axes[0].encoder_counts.abs() < 3));
+}
+
+#[test]
+fn a_reversed_encoder_is_refused_and_its_report_replays_to_the_same_code() {
+    let bench = Bench::new(|_| {});
+    let before = bench.held();
+    bench.controller.apply(WorldAction::ReverseEncoder { motor: Motor::M1, on: true });
+    let ending = bench.tune(&["--dry-run", "--json"]).finish(LIMIT);
+    assert_eq!(code(&ending), Some(REFUSED), "{ending:?}");
+    let told: serde_json::Value = serde_json::from_str(&ending.stdout.join("\n")).expect("JSON");
+    assert_eq!(told["verdict"], "refused", "{told}");
+    assert_eq!(bench.held(), before);
+    assert_eq!(code(&replayed(&bench.report_path())), Some(REFUSED));
+    let text = std::fs::read_to_string(bench.report_path()).expect("written");
+    let damaged = bench.folder.path().join("damaged.json");
+    std::fs::write(&damaged, text.replace("\"velocity\"", "\"upwards\"")).expect("a folder of ours");
+    let wrong = replayed(&damaged);
+    assert_eq!(code(&wrong), Some(FAILED), "{wrong:?}");
+    let said = wrong.stderr.join("\n");
+    assert!(said.contains("damaged.json: line ") && said.contains("field \""), "{said}");
+}
+
+/// What is said when a stage begins, from the first settings that are read to the last gains that are tried.
+const STAGES: [&str; 6] = [
+    "read M1 velocity PID",
+    "keep a backup",
+    "Checking the wiring",
+    "Measuring the motor",
+    "Measuring the lag",
+    "Trying the gains",
+];
+
+#[test]
+fn ctrl_c_at_every_stage_stops_the_motors_and_puts_the_old_gains_back() {
+    std::thread::scope(|scope| {
+        for stage in STAGES {
+            scope.spawn(move || {
+                let bench = Bench::new(|_| {});
+                let before = bench.held();
+                let mut program = bench.tune(&["--apply"]);
+                program.wait_for_error(stage, LIMIT);
+                program.signal("INT");
+                let ending = program.finish(LIMIT);
+                assert_eq!(code(&ending), Some(INTERRUPTED), "{stage}: {ending:?}");
+                bench.controller.wait_until("both bridges off", |unit| !is_driven(unit));
+                assert_eq!(bench.held(), before, "{stage}: {ending:?}");
+            });
+        }
+    });
+}
+
+#[test]
+fn the_exit_code_of_each_verdict_is_in_the_help() {
+    let help = Program::start(BRUSHWORK, &["tune", "--help"]).finish(LIMIT).stdout.join("\n");
+    for line in ["0  TUNED", "8  TUNED WITH WARNINGS", "4  REFUSED", "130  ended by Ctrl-C"] {
+        assert!(help.contains(line), "{line}: {help}");
+    }
+}
+
+#[test]
+fn arguments_that_make_no_sense_are_told_before_anything_is_opened() {
+    for (arguments, word) in [
+        (&["--level", "101"][..], "101"),
+        (&["--travel", "10..5"], "no travel"),
+        (&["--max-current", "0"], "no current"),
+        (&["--apply", "--dry-run"], "--dry-run"),
+        (&["--motor", "3"], "3"),
+    ] {
+        let ending = Program::start(BRUSHWORK, &[&["tune", "position"], arguments].concat()).finish(LIMIT);
+        assert_eq!(code(&ending), Some(2), "{arguments:?}: {ending:?}");
+        assert!(ending.stderr.join("\n").contains(word), "{arguments:?}: {ending:?}");
+    }
+}
