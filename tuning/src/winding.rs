@@ -275,7 +275,7 @@ mod tests {
     fn one_current_alone_tells_nothing_and_says_so() {
         let (points, drives) = run(|_| Some(0.8));
         assert_eq!(winding_of(&points, &drives), Err(NotTold::Alike));
-        let (points, drives) = run(|amps| Some(amps));
+        let (points, drives) = run(Some);
         assert_eq!(winding_of(&points[..20], &drives), Err(NotTold::TooFew));
     }
 }

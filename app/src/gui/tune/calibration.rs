@@ -12,6 +12,8 @@ use super::registers::{FIELDS, Registers};
 const FIRST_POSITION_P: f64 = 2000.0 / 1024.0;
 /// Travel of an axis without end stops (MCP manual 2.4.7).
 const NO_STOPS: f64 = 2_000_000_000.0;
+/// Hardly moved: what is left of the way, as a share.
+const HARDLY: f64 = 0.9;
 /// Near enough to the setpoint to go on, as a share.
 const NEAR: f64 = 0.05;
 /// Exact, as a share.
@@ -219,17 +221,50 @@ impl Calibration {
     /// What to do now.
     pub fn advice(&self, which: Loop, held: Option<Registers>) -> Advice {
         let Some(held) = held else { return Advice::Wait("The settings have not been read yet.") };
-        let has_speed = held.velocity.qpps >= 1;
-        match (which, self.step) {
-            (_, 0) if !has_speed => Advice::Change("QPPS is 0. Measure or enter it first.".to_owned()),
-            (_, 0) => {
-                Advice::Good(format!("QPPS is {} counts/s. If that is right, go on.", held.velocity.qpps))
-            }
-            _ => match self.observers[self.motor.index()].observe(which) {
-                None => Advice::Wait("Arm the screen and move the slider; then wait a second."),
-                Some(seen) => advise(which, self.step, &seen),
-            },
+        if let Some(missing) = missing(which, self.step, &held) {
+            return Advice::Change(missing.to_owned());
         }
+        let observer = &self.observers[self.motor.index()];
+        match (self.step, observer.observe(which)) {
+            (0, _) => Advice::Good(ready(&held)),
+            (_, Some(seen)) => advise(which, self.step, &seen),
+            (_, None) if observer.is_asked(which) => {
+                Advice::Wait("Watching the motor: leave the slider where it is for a moment.")
+            }
+            (_, None) => Advice::Wait("Arm the screen and move the slider; then wait a second."),
+        }
+    }
+}
+
+/// What must be there before the motor can be moved, or is in the way of the procedure.
+fn missing(which: Loop, step: usize, held: &Registers) -> Option<&'static str> {
+    if held.velocity.qpps < 1 {
+        return Some("QPPS is 0. Measure or enter it first.");
+    }
+    let position = held.position.filter(|_| which == Loop::Position)?;
+    let velocity = held.velocity;
+    if position.max <= position.min {
+        Some(
+            "Min and Max leave no travel, so the slider has nowhere to go. Set them under Position loop, or press No end stops in the \
+             first step.",
+        )
+    } else if step == 0 && (velocity.p, velocity.i, velocity.d) != (0, 0, 0) {
+        Some(
+            "P, I or D of the velocity loop are not 0. Set them to 0, or leave them if that loop is tuned already, and go on.",
+        )
+    } else {
+        None
+    }
+}
+
+fn ready(held: &Registers) -> String {
+    let qpps = held.velocity.qpps;
+    match held.position {
+        Some(position) => format!(
+            "QPPS is {qpps} counts/s and the travel goes from {} to {} counts. If that is right, go on.",
+            position.min, position.max
+        ),
+        None => format!("QPPS is {qpps} counts/s. If that is right, go on."),
     }
 }
 
@@ -254,7 +289,7 @@ fn advise_velocity(step: usize, seen: &Observation) -> Advice {
         (1 | 2, true) => Advice::Change(format!("{vibration} Take P to two thirds.")),
         (3, true) => Advice::Change(format!("{vibration} Take I back.")),
         (_, true) => Advice::Change(format!("{vibration} Take D back, or I and P if D is 0.")),
-        (1, false) if seen.error > 0.9 => Advice::Change("It hardly moves. Raise P.".to_owned()),
+        (1, false) if seen.error > HARDLY => Advice::Change("It hardly moves. Raise P.".to_owned()),
         (1, false) => Advice::Good("It turns and the loop has it. Go on to P.".to_owned()),
         (2, false) if seen.error.abs() <= NEAR => {
             Advice::Good(format!("Smooth, and {below:.1} % off. Go on to I."))
@@ -280,6 +315,9 @@ fn advise_position(step: usize, seen: &Observation) -> Advice {
     match (step, seen.vibrates) {
         (1 | 2, true) => Advice::Change(format!("{hunting} Take D back, then P.")),
         (_, true) => Advice::Change(format!("{hunting} Widen the deadzone, or take I back.")),
+        (1, false) if seen.way.is_some_and(|way| seen.error.abs() > HARDLY * way.abs()) => {
+            Advice::Change("It hardly moves. Go on to P, and raise it.".to_owned())
+        }
         (1, false) => Advice::Good("It goes and stops. Go on to P and D.".to_owned()),
         (2, false) if over > MUCH_OVERSHOOT => Advice::Change(format!("{overshot} Raise D.")),
         (2, false) if over > SOME_OVERSHOOT => {
@@ -327,6 +365,27 @@ mod tests {
         assert_eq!(up, 6554);
         let d = POSITION_STEPS[2].changes[2].made(held()).position.unwrap().d;
         assert_eq!(d, 10_000);
+    }
+
+    #[test]
+    fn what_is_missing_is_told_in_whatever_step() {
+        let mut calibration = Calibration::default();
+        let position = |min, max| Some(PositionRegisters { min, max, ..PositionRegisters::default() });
+        let slow = Registers { velocity: VelocityRegisters { qpps: 0, ..held().velocity }, ..held() };
+        let stuck = Registers { position: position(0, 0), ..held() };
+        for step in 0..5 {
+            calibration.go_to(Loop::Position, step);
+            let advice = |held| calibration.advice(Loop::Position, Some(held));
+            assert!(matches!(advice(slow), Advice::Change(text) if text.contains("QPPS is 0")));
+            assert!(matches!(advice(stuck), Advice::Change(text) if text.contains("no travel")));
+        }
+        calibration.go_to(Loop::Position, 0);
+        let cascaded = Registers { position: position(-100, 100), ..held() };
+        let advice = calibration.advice(Loop::Position, Some(cascaded));
+        assert!(matches!(advice, Advice::Change(text) if text.contains("velocity loop are not 0")));
+        let simple = Registers { velocity: VelocityRegisters { p: 0, ..held().velocity }, ..cascaded };
+        let advice = calibration.advice(Loop::Position, Some(simple));
+        assert!(matches!(advice, Advice::Good(text) if text.contains("from -100 to 100 counts")));
     }
 
     #[test]

@@ -59,6 +59,8 @@ pub struct Observation {
     pub runs_away: bool,
     /// Beyond the setpoint after its last change, over that change.
     pub overshoot: Option<f64>,
+    /// From where it stood at the last change to the setpoint, in its unit.
+    pub way: Option<f64>,
 }
 
 impl Observer {
@@ -121,6 +123,7 @@ impl Observer {
             duty_swing_percent,
             turns_per_s,
             overshoot: self.overshoot(which),
+            way: self.last_way(which).map(|(_, _, way)| way),
             ..Observation::default()
         };
         let turns_enough = turns_per_s >= FEWEST_TURNS_PER_S[which as usize];
@@ -145,14 +148,22 @@ impl Observer {
         Some(seen)
     }
 
-    fn overshoot(&self, which: Loop) -> Option<f64> {
+    /// Whether something was asked of the motor that it can be watched at.
+    pub fn is_asked(&self, which: Loop) -> bool {
+        self.readings.back().is_some_and(|last| which == Loop::Position || last.setpoint != 0.0)
+    }
+
+    /// When the setpoint changed last, what it is, and how far it was to go.
+    fn last_way(&self, which: Loop) -> Option<(f64, f64, f64)> {
         let (at, _, goal) = self.last_change()?;
         let start = self.readings.iter().rev().find(|reading| reading.t < at)?.value;
         let way = goal - start;
         let least = if which == Loop::Velocity { 1.0 } else { 10.0 };
-        if way.abs() < least {
-            return None;
-        }
+        (way.abs() >= least).then_some((at, goal, way))
+    }
+
+    fn overshoot(&self, which: Loop) -> Option<f64> {
+        let (at, goal, way) = self.last_way(which)?;
         let after = self.readings.iter().filter(|reading| reading.t >= at);
         let most = after.map(|reading| (reading.value - goal) * way.signum()).fold(0.0, f64::max);
         Some(most / way.abs())

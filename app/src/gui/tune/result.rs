@@ -104,6 +104,23 @@ fn model_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
     }
 }
 
+/// How much of a speed's duty the feed-forward gives: the register of a Motion Mind is too small for all of it on most motors.
+fn feed_forward_text(run: Option<&Run>) -> Option<String> {
+    let run = run?;
+    let mind = run.shown.as_ref()?.registers.motion_mind?;
+    let law = MotionMindLaw { velocity_ff: mind.velocity_ff, ..MotionMindLaw::default() };
+    let percent = 100.0 * law.covered(run.report.qpps?).min(1.0);
+    let rest = if percent < 99.5 {
+        " The loop makes up for the rest; the design counts on no more than this."
+    } else {
+        ""
+    };
+    Some(format!(
+        "Feed-forward: VELOCITYFF {} gives {percent:.0} % of a speed's duty.{rest}",
+        mind.velocity_ff
+    ))
+}
+
 /// What was found of the motor, in one line.
 fn model_text(report: &Report) -> Option<String> {
     let fit = report.fit?;
