@@ -522,3 +522,29 @@ fn a_unit_that_was_given_another_address_keeps_its_edits_here() {
     write(&mut bench);
     assert_eq!((truth(&bench).unit.address, truth(&bench).unit.mixed), (130, 1));
 }
+
+#[test]
+fn beside_the_simulated_world_in_the_smallest_window_nothing_is_cut_off() {
+    let mut bench = Bench::sized([1024.0, 700.0], egui::Theme::Light);
+    bench.connect();
+    bench.press("General Settings");
+    bench.pass_ms(4000);
+    bench.press("Simulated world");
+    bench.pass_ms(300);
+    let edge = bench
+        .see("What you could do to a real machine by hand. None of it goes over the wire.")
+        .rect()
+        .left();
+    let help =
+        bench.see("Point at a setting, or move the keyboard focus to it, to read what it does.").rect();
+    assert!(help.right() <= edge, "{help:?} {edge}");
+    for node in bench.harness.get_all_by_label("PWM mode") {
+        assert!(node.rect().right() <= edge, "{:?} {edge}", node.rect());
+    }
+    // The sections unfold from a list instead.
+    bench.press("Section");
+    bench.press("Section Voltage limits");
+    bench.pass_ms(300);
+    let section = bench.model().front.general.section;
+    assert_eq!(format!("{section:?}"), "Group(VoltageLimits)");
+}

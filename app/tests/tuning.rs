@@ -607,3 +607,172 @@ fn the_measured_resistance_is_offered_as_an_edit_and_not_sent() {
     assert_eq!(bench.model().front.loops.edits(VELOCITY), 1, "R alone is edited");
     assert_eq!(held(&bench, Motor::M1).resistance_raw, 0, "and nothing was sent");
 }
+
+#[test]
+fn a_travel_that_is_wrong_is_refused_with_its_sketch_before_the_axis_moves() {
+    for (low, high, word) in [("5000", "9000", "stands outside"), ("-30", "400", "too near to an end")] {
+        let mut bench = opened("small-gearmotor", "Position Settings");
+        bench.press("Within");
+        bench.enter("Travel low", low);
+        bench.enter("Travel high", high);
+        bench.press("Tune M1");
+        finish(&mut bench);
+        let run = run(&mut bench, Loop::Position);
+        assert_eq!(run.report.verdict, Verdict::Refused);
+        assert!(bench.sees_part(word), "{low} to {high}: {:?}", run.report.causes);
+        assert!(bench.sees_part("Sketch: "), "{:?}", run.report.causes);
+        assert!(bench.sees("Try again"));
+        assert!(bench.truth().axes[0].encoder_counts.abs() < 400, "{}", bench.truth().axes[0].encoder_counts);
+    }
+}
+
+#[test]
+fn a_link_that_is_lost_in_a_run_teaches_too_and_another_try_succeeds() {
+    let (mut bench, before) = running("small-gearmotor", "Velocity Settings");
+    bench.pass_ms(2600);
+    bench.act(&WorldAction::Unplug { unplugged: true });
+    bench.pass_ms(1500);
+    assert!(bench.both_stand());
+    let said = bench.said();
+    assert!(said.iter().any(|text| text.contains("M1 was not tuned: the link was lost.")), "{said:?}");
+    assert!(said[0].contains("put back when it answers again"), "{said:?}");
+    assert!(
+        !said.iter().any(|text| text.contains("the old gains are in force")),
+        "nobody can know: {said:?}"
+    );
+    bench.act(&WorldAction::Unplug { unplugged: false });
+    bench.press("Connect");
+    bench.pass_ms(5000);
+    assert_eq!(held(&bench, Motor::M1), before);
+    assert!(bench.said().iter().any(|text| text.contains("The gains of M1 from before the run are back.")));
+    bench.press("Velocity Settings");
+    assert!(bench.sees_part("M1 was not tuned"), "{:?}", bench.said());
+    assert!(bench.sees_part("Sketch: The cable to the controller is open"));
+    assert!(bench.sees_part("Check the cable to the controller and connect again."));
+    bench.press("Arm");
+    bench.pass_ms(500);
+    bench.press("Try again");
+    finish(&mut bench);
+    assert_ne!(run(&mut bench, Loop::Velocity).report.verdict, Verdict::Refused);
+}
+
+/// What EEPROM holds for motor 1.
+fn stored(bench: &Bench) -> MotionSettings {
+    bench.line.with(|bus| bus.controllers()[0].stored_settings().motors[0].motion)
+}
+
+fn save(bench: &mut Bench) {
+    bench.press("Save…");
+    for _ in 0..40 {
+        bench.pass_ms(500);
+        if bench.sees("Save") {
+            break;
+        }
+    }
+    bench.press("Save");
+    for _ in 0..40 {
+        bench.pass_ms(500);
+        if bench.model().front.is_idle() {
+            break;
+        }
+    }
+}
+
+#[test]
+fn saved_gains_stay_in_eeprom_when_they_are_undone_in_ram_and_undo_outlives_the_link() {
+    let mut bench = tuned("Velocity Settings", Loop::Velocity);
+    let before = held(&bench, Motor::M1);
+    bench.press("Apply (RAM)");
+    bench.pass_ms(4000);
+    let applied = held(&bench, Motor::M1);
+    assert_ne!(applied, before);
+    save(&mut bench);
+    assert_eq!(stored(&bench), applied, "{:?}", bench.said());
+    // The cable is out and in again: the run, its picture and Undo are still there.
+    bench.act(&WorldAction::Unplug { unplugged: true });
+    bench.pass_ms(1500);
+    bench.act(&WorldAction::Unplug { unplugged: false });
+    bench.press("Connect");
+    bench.pass_ms(5000);
+    bench.press("Velocity Settings");
+    bench.pass_ms(2000);
+    bench.press("Undo");
+    bench.pass_ms(3000);
+    assert_eq!(held(&bench, Motor::M1), before);
+    assert_eq!(stored(&bench), applied, "EEPROM is written by Save alone");
+}
+
+#[test]
+fn the_settings_screen_saves_after_the_run_that_it_ended_and_what_it_saves_is_the_users() {
+    let (mut bench, before) = running("small-gearmotor", "Velocity Settings");
+    bench.pass_ms(1500);
+    assert_ne!(timeout_ms(&bench), timeout_of_factory(), "the run has shortened it");
+    bench.press("General Settings");
+    bench.pass_ms(300);
+    bench.press("Save to EEPROM");
+    for _ in 0..40 {
+        bench.pass_ms(500);
+        if bench.sees("Save") {
+            break;
+        }
+    }
+    bench.press("Save");
+    for _ in 0..60 {
+        bench.pass_ms(500);
+        if bench.model().front.is_idle() && bench.model().front.tune.waiting.is_none() {
+            break;
+        }
+    }
+    let of_stream = bench.line.with(|bus| bus.controllers()[0].stored_settings().streams[0].timeout_ms);
+    assert_eq!((of_stream, timeout_ms(&bench)), (timeout_of_factory(), timeout_of_factory()));
+    assert_eq!((stored(&bench), held(&bench, Motor::M1)), (before, before));
+}
+
+/// The armed screen of a controller in torque mode whose L and R were cleared for a run.
+fn cleared() -> (Bench, MotionSettings) {
+    let mut config = config("small-gearmotor");
+    let mut settings = Controller::new(config.clone()).expect("the preset is sound").stored_settings();
+    (settings.motors[0].motion.inductance_raw, settings.motors[0].motion.resistance_raw) =
+        (67_109, 134_217_728);
+    config.settings = Some(settings);
+    let mut bench = Bench::of(Controller::new(config).expect("the configuration is sound"));
+    bench.connect();
+    bench.arm_on("Velocity Settings");
+    bench.press("Tune");
+    let before = held(&bench, Motor::M1);
+    bench.press("Tune M1");
+    finish(&mut bench);
+    bench.press("Clear L and R for the run");
+    bench.pass_ms(4000);
+    assert_eq!(held(&bench, Motor::M1).resistance_raw, 0);
+    (bench, before)
+}
+
+#[test]
+fn l_and_r_that_were_cleared_are_put_back_on_leaving_by_the_button_and_after_a_lost_link() {
+    let (mut bench, before) = cleared();
+    bench.press("Device Status");
+    bench.pass_ms(4000);
+    assert_eq!(held(&bench, Motor::M1), before, "{:?}", bench.said());
+    assert!(bench.said().iter().any(|text| text.contains("L and R are put back")));
+
+    let (mut bench, before) = cleared();
+    bench.press("Put L and R back");
+    bench.pass_ms(4000);
+    assert_eq!(held(&bench, Motor::M1), before, "{:?}", bench.said());
+
+    let (mut bench, before) = cleared();
+    bench.act(&WorldAction::Unplug { unplugged: true });
+    bench.pass_ms(1500);
+    bench.act(&WorldAction::Unplug { unplugged: false });
+    bench.press("Connect");
+    bench.pass_ms(6000);
+    assert_eq!(held(&bench, Motor::M1), before, "{:?}", bench.said());
+
+    // A stop that breaks into the writing: it is written again.
+    let (mut bench, before) = cleared();
+    bench.press("Put L and R back");
+    bench.key(Key::Escape);
+    bench.pass_ms(6000);
+    assert_eq!(held(&bench, Motor::M1), before, "{:?}", bench.said());
+}

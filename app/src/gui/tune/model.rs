@@ -446,8 +446,8 @@ impl Tuning {
 
     fn ended(&mut self, which: Loop, target: Target, ended: Ended) -> Vec<Effect> {
         let mut effects = Vec::new();
+        let is_owed = ended.owed.is_some();
         if let Some(before) = ended.owed {
-            effects.push(owed_effect());
             let unit = self.unit.clone().unwrap_or_default();
             self.owed = Some(Owed { target, which, unit, before });
         }
@@ -457,7 +457,7 @@ impl Tuning {
                     winding.is_due = true;
                 }
                 let panel = self.panel_mut(which, target.motor);
-                let said = said_of(target.motor, &report, ended.why.as_deref());
+                let said = said_of(target.motor, &report, ended.why.as_deref(), is_owed);
                 panel.add(report);
                 said
             }
@@ -468,6 +468,7 @@ impl Tuning {
                 }
                 said
             }
+            (Work::PutBack, ..) if is_owed => owed_effect(),
             (Work::PutBack, ..) => Effect::Say(
                 Gravity::Note,
                 format!("The gains of {} from before the run are back.", target.motor),
@@ -481,6 +482,10 @@ impl Tuning {
                 ),
             ),
         });
+        // What matters most is said last, which is what stays in view.
+        if is_owed && !matches!(ended.work, Work::PutBack) {
+            effects.push(owed_effect());
+        }
         effects
     }
 
@@ -562,17 +567,22 @@ impl Tuning {
 }
 
 fn owed_effect() -> Effect {
-    let text = "The gains from before the run could not be put back. They are put back when this controller answers again; \
-                switching it off and on brings back those of its EEPROM.";
+    let text = "The run was cut off from the controller, whose own time-out stops the motors. The gains from before are put back when it \
+                answers again: connect again. Switching it off and on brings back those of its EEPROM.";
     Effect::Say(Gravity::Error, text.to_owned())
 }
 
-fn said_of(motor: Motor, report: &brushwork_tuning::report::Report, why: Option<&str>) -> Effect {
+fn said_of(
+    motor: Motor,
+    report: &brushwork_tuning::report::Report,
+    why: Option<&str>,
+    is_owed: bool,
+) -> Effect {
     match (report.verdict, report.causes.first()) {
         (Verdict::Refused, Some(cause)) => {
             let why = why.map_or_else(|| cause.sentence().to_owned(), |why| format!("{why}."));
-            let back = "The motors were stopped and the old gains are in force.";
-            Effect::Say(Gravity::Warning, format!("{motor} was not tuned: {why} {back}"))
+            let back = if is_owed { "" } else { " The motors were stopped and the old gains are in force." };
+            Effect::Say(Gravity::Warning, format!("{motor} was not tuned: {why}{back}"))
         }
         (Verdict::TunedWithWarnings, Some(cause)) => Effect::Say(
             Gravity::Warning,

@@ -98,6 +98,17 @@ impl Sketch {
                 caption: "The axis stands too near to an end of its travel",
                 ..sound
             },
+            Cause::OutsideTravel => Self {
+                shaft: Shaft::EndOfTravel,
+                caption: "The axis stands outside the travel that was given",
+                ..sound
+            },
+            Cause::NarrowTravel => Self {
+                shaft: Shaft::EndOfTravel,
+                caption: "The travel is too narrow, or the axis too near to one of its ends",
+                ..sound
+            },
+            Cause::LimitNotTaken => unit("A ?", "The controller did not take the highest current of the run"),
             Cause::Lopsided | Cause::Asymmetric | Cause::HeavyLoad => Self {
                 shaft: Shaft::Loaded,
                 caption: "Something pulls one way: a weight, a spring, a jam",
