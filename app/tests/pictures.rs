@@ -7,8 +7,12 @@ mod support;
 
 use std::time::Duration;
 
+use brushwork::gui::model::drawer::Tab;
 use brushwork::gui::model::screen::Screen;
 use brushwork::gui::model::{Model, Phase};
+use brushwork::gui::tune::Loop;
+use brushwork::gui::tune::plots::Kind;
+use brushwork::tune::file;
 use brushwork_link::device::{ArmScope, Channel, Condition, Event, Identity, Sample, StatusReport};
 use brushwork_link::exchange::LinkStatistics;
 use brushwork_link::transport::Stream;
@@ -120,4 +124,38 @@ fn the_pwm_screen_while_it_is_armed() {
     });
     model.front.pwm.set_duty(Motor::M1, 55.5);
     picture(bench, "pwm");
+}
+
+/// Guided tuning with a report of `tests/reports` shown: what it is made of does not change with the tuner.
+fn tuning(name: &str, theme: Theme) -> Bench {
+    let mut bench = Bench::sized([1280.0, 800.0], theme);
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reports").join(name);
+    let report = file::read(&path).expect("it is in the repository");
+    let model = bench.model();
+    fed(model, &[]);
+    model.screen = Screen::Velocity;
+    model.front.drawers.press(Screen::Velocity, Tab::Tune);
+    model.front.tune.panel_mut(Loop::Velocity, Motor::M1).add(report);
+    model.front.tune.view.kind = Kind::Step;
+    bench
+}
+
+#[test]
+fn guided_tuning_with_a_result_in_the_dark() {
+    picture(tuning("tuned.json", Theme::Dark), "tuned_dark");
+}
+
+#[test]
+fn guided_tuning_with_a_result_in_the_light() {
+    picture(tuning("tuned.json", Theme::Light), "tuned_light");
+}
+
+#[test]
+fn guided_tuning_with_a_refusal_in_the_dark() {
+    picture(tuning("refused.json", Theme::Dark), "refused_dark");
+}
+
+#[test]
+fn guided_tuning_with_a_refusal_in_the_light() {
+    picture(tuning("refused.json", Theme::Light), "refused_light");
 }
