@@ -117,7 +117,12 @@ pub fn check_moves(
     let mut smoothest: Option<(f64, Design, Measured)> = None;
     for back_offs in 0..=MOST_BACK_OFFS {
         let Some(design) = report.design else { return Ok(()) };
-        let measured = Measured { headroom: room, ..try_design(rig, request, task, report, &design)? };
+        let measured = match try_design(rig, request, task, report, &design) {
+            Ok(measured) => Measured { headroom: room, ..measured },
+            // Lowered so far that friction holds it: what was tried before was better.
+            Err(Cause::NotVerified) if smoothest.is_some() => break,
+            Err(cause) => return Err(cause),
+        };
         report.measured = Some(measured);
         let excess = roughness(&design, &measured);
         if excess <= 1.0 {
