@@ -119,8 +119,8 @@ pub fn check_moves(
         let Some(design) = report.design else { return Ok(()) };
         let measured = match try_design(rig, request, task, report, &design) {
             Ok(measured) => Measured { headroom: room, ..measured },
-            // Lowered so far that friction holds it: what was tried before was better.
-            Err(Cause::NotVerified) if smoothest.is_some() => break,
+            // Lowered so far that friction holds it, or that a load pulls it away: what was tried before was better.
+            Err(Cause::NotVerified | Cause::TravelLimit) if smoothest.is_some() => break,
             Err(cause) => return Err(cause),
         };
         report.measured = Some(measured);
@@ -405,8 +405,11 @@ pub(crate) fn try_position(
         }
         let moved = judge_move(&points, target, target - from, begin + 0.7 * dwell_s, step.abs());
         worst.overshoot = worst.overshoot.max(moved.overshoot);
-        let tail = tail_counts(&points, (begin + 0.7 * horizon_s, begin + horizon_s), step.abs());
-        worst.ripple = worst.ripple.max(moved.ripple).max(MOST_PLACE_RIPPLE * tail);
+        worst.ripple = worst.ripple.max(moved.ripple);
+        if request.excitation == Excitation::Free {
+            let tail = tail_counts(&points, (begin + 0.7 * horizon_s, begin + horizon_s), step.abs());
+            worst.ripple = worst.ripple.max(MOST_PLACE_RIPPLE * tail);
+        }
         worst.duty_rms = worst.duty_rms.max(moved.duty_rms);
         from = target;
     }
