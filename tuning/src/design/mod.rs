@@ -17,6 +17,9 @@ use crate::model::{Gains, Lag, LoopLaw, PlantModel};
 use crate::score::Score;
 use serde::{Deserialize, Serialize};
 
+/// Duty noise that a design of the default level may have.
+const USUAL_NOISE: f64 = 0.08;
+
 /// How far a design may go.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Goal {
@@ -31,7 +34,12 @@ impl Goal {
     #[must_use]
     pub fn of_level(level: f64) -> Self {
         let level = level.clamp(0.0, 100.0);
-        Self { ms: 1.2 + 0.008 * level, noise_duty: 0.08 * 4.0_f64.powf((level - 50.0) / 100.0) }
+        Self { ms: 1.2 + 0.008 * level, noise_duty: USUAL_NOISE * 4.0_f64.powf((level - 50.0) / 100.0) }
+    }
+
+    /// How much stiffer than the default a level is in all that has no bound of its own: 0.7 to 1.4.
+    pub(crate) fn pace(&self) -> f64 {
+        (self.noise_duty / USUAL_NOISE).sqrt()
     }
 }
 

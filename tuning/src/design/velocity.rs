@@ -57,9 +57,11 @@ fn candidate(task: &Task, gains: Gains) -> Candidate {
     let score = velocity_test(&task.plant, &task.law, task.lag, &gains, task.qpps);
     let other = PlantModel { tau_s: 0.88 * task.plant.tau_s, ..task.plant };
     let worse = velocity_test(&other, &task.law, task.worst_lag, &gains, task.qpps);
+    // A quick motor meets no other bound: what its level changes is how far a step may go past its end.
+    let pace = task.goal.pace();
     let capped = |score: &Score| {
-        let excess = (score.overshoot - task.most_overshoot).max(0.0);
-        score.cost(VELOCITY_OVERSHOOT) * (1.0 + 30.0 * excess)
+        let excess = (score.overshoot - pace * task.most_overshoot).max(0.0);
+        score.cost(pace * VELOCITY_OVERSHOOT) * (1.0 + 30.0 * excess)
     };
     Candidate { gains, score, cost: capped(&score) + 0.5 * capped(&worse) }
 }

@@ -12,6 +12,9 @@ const DUTIES: [f64; 2] = [0.22, 0.50];
 /// Where the axis is to turn round, as a share of the window: as long as nothing is known of its way, and later.
 const FIRST_TURN_AT: f64 = 0.20;
 const TURN_AT: f64 = 0.25;
+/// How often a run that the guard ended is begun anew, and what it then uses of the width, over what it used before.
+const NARROWER: usize = 2;
+const NARROWER_SHARE: f64 = 0.8;
 /// Time until a new duty acts, s, and the share of the way from rest that the first stop may take.
 const ACTS_S: f64 = 0.03;
 const FIRST_SHARE: f64 = 0.7;
@@ -45,12 +48,32 @@ pub fn run_window(rig: &mut Rig<'_>, probe: &Probe, width: f64) -> Result<Window
     rig.watch.drive_limit = rig.drive_limit(probe.stall_amps);
     rig.poll_for(0.05, false)?;
     let middle = rig.points.last().map_or(0.0, |p| p.counts);
-    let from_s = rig.now_s();
-    let mut run = WindowRun { from_s, switches: 0, top_speed: 0.0, reach_counts: 0.0 };
-    let mut turn = Turn { acts_s: ACTS_S, last: None };
+    let mut turn = Turn { acts_s: ACTS_S, last: None, share: 1.0 };
+    for _ in 0..NARROWER {
+        match swings(rig, probe, (middle, width), &mut turn) {
+            Err(Cause::TravelLimit) => {
+                // The guard brought it to rest before the end. What it learned of the way stays, and it keeps farther away.
+                rig.come_to_rest()?;
+                go_to(rig, probe, middle)?;
+                turn.share *= NARROWER_SHARE;
+            }
+            other => return other,
+        }
+    }
+    swings(rig, probe, (middle, width), &mut turn)
+}
+
+/// Swings about the middle of a width at both duties.
+fn swings(
+    rig: &mut Rig<'_>,
+    probe: &Probe,
+    (middle, width): (f64, f64),
+    turn: &mut Turn,
+) -> Result<WindowRun, Cause> {
+    let mut run = WindowRun { from_s: rig.now_s(), switches: 0, top_speed: 0.0, reach_counts: 0.0 };
     for above in DUTIES {
         let duty = (probe.start_duty + above).min(rig.options.max_duty);
-        swing(rig, duty, middle, width, &mut run, &mut turn)?;
+        swing(rig, duty, middle, width, &mut run, turn)?;
     }
     rig.come_to_rest()?;
     if run.switches < 4 { Err(Cause::TooCoarse) } else { Ok(run) }
@@ -80,6 +103,8 @@ pub fn go_to(rig: &mut Rig<'_>, probe: &Probe, place: f64) -> Result<(), Cause> 
 struct Turn {
     /// Time until a new duty acts, s.
     acts_s: f64,
+    /// What is used of the width, over the usual.
+    share: f64,
     /// Speed of the last turn and the way it took, counts/s and counts.
     last: Option<(f64, f64)>,
 }
@@ -159,7 +184,7 @@ fn swing(
 }
 
 fn turn_at(turn: &Turn) -> f64 {
-    if turn.last.is_some() { TURN_AT } else { FIRST_TURN_AT }
+    turn.share * if turn.last.is_some() { TURN_AT } else { FIRST_TURN_AT }
 }
 
 fn learn(rig: &mut Rig<'_>, turn: &mut Turn, speed: f64, way: f64, duty: f64) {
