@@ -109,9 +109,14 @@ fn of(method: Method) -> Tuning {
 
 #[test]
 fn each_loop_is_tuned_through_the_device_thread_replayed_to_the_bit_and_nothing_is_left_behind() {
-    for (protocol, method) in
-        [(Protocol::Binary, Method::Velocity), (Protocol::Binary, Method::Pd), (Protocol::Text, Method::Pd)]
-    {
+    // At the 9600 baud that the switches set at first.
+    for (protocol, method) in [
+        (Protocol::Binary, Method::Velocity),
+        (Protocol::Binary, Method::Pd),
+        (Protocol::Binary, Method::Pid),
+        (Protocol::Text, Method::Velocity),
+        (Protocol::Text, Method::Pd),
+    ] {
         let mut link = connected(protocol);
         let before = registers(&link);
         let report = tuned(&mut link, of(method), |_| {}).expect("the run left its report");
@@ -142,65 +147,105 @@ fn gains_that_are_kept_stay_in_ram_and_the_limits_are_the_users_again() {
 fn a_dead_encoder_and_a_locked_shaft_are_named_and_all_is_put_back_but_the_loop_stays_off() {
     let motor = Motor::M1;
     let cases = [
-        (WorldAction::LoseEncoder { motor, on: true }, Cause::EncoderDead),
-        (WorldAction::ReverseEncoder { motor, on: true }, Cause::EncoderReversed),
-        (WorldAction::LockShaft { motor, on: true }, Cause::ShaftLocked),
+        (Protocol::Binary, WorldAction::LoseEncoder { motor, on: true }, Cause::EncoderDead),
+        (Protocol::Binary, WorldAction::ReverseEncoder { motor, on: true }, Cause::EncoderReversed),
+        (Protocol::Binary, WorldAction::LockShaft { motor, on: true }, Cause::ShaftLocked),
+        (Protocol::Binary, WorldAction::OpenLead { motor, on: true }, Cause::MotorOpen),
+        (Protocol::Text, WorldAction::ReverseEncoder { motor, on: true }, Cause::EncoderReversed),
+        (Protocol::Text, WorldAction::LoseEncoder { motor, on: true }, Cause::EncoderDead),
     ];
-    for (action, cause) in cases {
-        let mut link = connected(Protocol::Binary);
+    for (protocol, action, cause) in cases {
+        let mut link = connected(protocol);
         let before = registers(&link);
         let report = tuned(&mut link, of(Method::Velocity), |link| link.apply(0, &action)).expect("a report");
-        assert_eq!(report.causes, [cause, Cause::LoopOff]);
-        // With this fault the old gains would drive the motor away, or hold it by a signal that is not there.
-        let mut off = before;
-        off[1] |= 1 << 14;
-        assert_eq!(registers(&link), off, "{cause:?}");
-        link.run_for(ms(1_000));
-        assert_eq!(link.duties(0)[0], 0.0, "{cause:?}");
+        assert_eq!(report.causes, [cause, Cause::LoopOff], "{protocol:?}");
+        assert_off(&mut link, &before, &format!("{protocol:?} {cause:?}"));
     }
 }
 
 #[test]
-fn stop_at_any_stage_stands_the_motor_and_the_old_registers_come_back() {
-    for after in [400, 1_500, 3_000, 4_500] {
+fn what_breaks_in_mid_run_is_named_and_the_loop_stays_off() {
+    let motor = Motor::M1;
+    let cases = [
+        (WorldAction::LoseEncoder { motor, on: true }, Cause::EncoderLost),
+        (WorldAction::LockShaft { motor, on: true }, Cause::Stalled),
+        (WorldAction::OpenLead { motor, on: true }, Cause::MotorOpened),
+    ];
+    for (action, cause) in cases {
         let mut link = connected(Protocol::Binary);
         let before = registers(&link);
+        let report = tuned(&mut link, of(Method::Velocity), |link| strike(link, ms(2_600), &action));
+        let causes = report.expect("a report").causes;
+        assert_eq!(causes, [cause, Cause::LoopOff]);
+        assert_off(&mut link, &before, &format!("{cause:?}"));
+    }
+}
+
+/// All is as before but for the output of the loop, which is off: with a fault the old gains would drive the motor away, or hold it by
+/// a signal that is not there.
+fn assert_off(link: &mut Link, before: &[i64], place: &str) {
+    let mut off = before.to_vec();
+    off[1] |= 1 << 14;
+    assert_eq!(registers(link), off, "{place}");
+    link.run_for(ms(1_000));
+    assert_eq!(link.duties(0)[0], 0.0, "{place}");
+}
+
+fn strike(link: &Link, after: Duration, action: &WorldAction) {
+    let (line, action) = (link.line.clone(), action.clone());
+    link.at(link.now() + after, move |_| {
+        line.with(|machine| Machine::apply(machine.inner_mut().inner_mut(), 0, &action));
+    });
+}
+
+#[test]
+fn stop_and_cancel_at_any_stage_stand_the_motor_and_the_old_registers_come_back() {
+    let moments = [250, 900, 1_500, 2_200, 3_000, 3_700, 4_500, 5_200, 6_000];
+    let plan = moments
+        .into_iter()
+        .flat_map(|after| [(Protocol::Binary, after, false), (Protocol::Binary, after, true)]);
+    let in_text = [900, 3_000, 6_000].into_iter().map(|after| (Protocol::Text, after, false));
+    for (protocol, after, cancels) in plan.chain(in_text) {
+        let mut link = connected(protocol);
+        let before = registers(&link);
         let report = tuned(&mut link, of(Method::Velocity), |link| {
-            link.at(link.now() + ms(after), brushwork_link::device::DeviceHandle::stop_all);
+            link.at(link.now() + ms(after), move |handle| {
+                if cancels {
+                    handle.request(Request::CancelJob).expect("there is room");
+                } else {
+                    handle.stop_all();
+                }
+            });
         });
-        // The loop may still want to be elsewhere: its output stays off until somebody arms again.
+        let place = format!("{protocol:?} after {after} ms, cancel {cancels}");
+        let causes = report.expect("the run left its report").causes;
+        assert_eq!(causes.first(), Some(&Cause::Stopped), "{place}");
+        assert_eq!(link.duties(0)[0], 0.0, "{place}");
+        // The loop may still want to be elsewhere: its output stays off until it is switched on by hand.
         let mut off = before;
         off[1] |= 1 << 14;
-        let causes = report.map(|report| report.causes);
-        assert_eq!(
-            causes.as_ref().and_then(|causes| causes.first()),
-            Some(&Cause::Stopped),
-            "after {after} ms"
-        );
-        assert_eq!(link.duties(0)[0], 0.0, "after {after} ms");
-        assert_eq!(registers(&link), off, "after {after} ms");
+        assert_eq!(registers(&link), off, "{place}");
+        assert_eq!(eeprom_writes(&link), 0, "{place}");
     }
 }
 
 #[test]
 fn when_the_cable_is_pulled_out_the_motor_runs_up_to_the_fence_and_stops() {
-    for after in [1_800, 2_500, 5_000] {
-        let mut link = connected(Protocol::Binary);
+    let moments = [300, 1_000, 1_500, 1_800, 2_500, 3_500, 4_200, 5_000, 6_000];
+    let plan = moments.into_iter().map(|after| (Protocol::Binary, after));
+    for (protocol, after) in plan.chain([(Protocol::Text, 2_000), (Protocol::Text, 6_000)]) {
+        let mut link = connected(protocol);
         let (keeper, setup) = (TrialKeeper::new(Box::new(Forgetful)), Slot::<Setup>::default());
         let subject = subject(&link);
         finish(&mut link, prepare(TARGET, subject, &setup, &keeper), ms(30_000));
         assert!(link.arm(ArmScope::CommandLine), "{:?}", link.events);
-        let line = link.line.clone();
-        let pulled = WorldAction::Unplug { unplugged: true };
-        link.at(link.now() + ms(after), move |_| {
-            line.with(|machine| Machine::apply(machine.inner_mut().inner_mut(), 0, &pulled));
-        });
+        strike(&link, ms(after), &WorldAction::Unplug { unplugged: true });
         finish(&mut link, run(TARGET, of(Method::Velocity), &Slot::<Report>::default()), ms(after + 3_000));
         link.line.pass(ms(2_000));
         let place = registers_of(&link, 0);
         link.line.pass(ms(1_000));
         // A loop that was told to stand goes on holding the motor where it is.
-        assert!(link.duties(0)[0].abs() < 0.05, "after {after} ms: {:?}", link.duties(0));
-        assert!((registers_of(&link, 0) - place).abs() < 20, "after {after} ms: it goes on");
+        assert!(link.duties(0)[0].abs() < 0.05, "{protocol:?} after {after} ms: {:?}", link.duties(0));
+        assert!((registers_of(&link, 0) - place).abs() < 20, "{protocol:?} after {after} ms: it goes on");
     }
 }
