@@ -53,7 +53,7 @@ pub fn taken(mode: Mode) -> &'static str {
         Mode::Serial => "duties and nothing else",
         Mode::SerialPid => "speeds and moves; duties take mode 3",
         Mode::AnalogPid => "moves and nothing else",
-        _ => "no motion over the serial line; modes 3, 4 and 5 do, by switches 2 to 4 at power-up",
+        _ => "no motion commands; modes 3, 4 and 5 do, by switches 2 to 4 at power-up",
     }
 }
 

@@ -29,7 +29,7 @@ fn a_drive_is_the_command_of_its_mode_or_a_sentence() {
     for (mode, drive, clause) in [
         (Mode::SerialPid, half, "duties take mode 3"),
         (Mode::Serial, speed, "duties and nothing else"),
-        (Mode::Buttons, half, "no motion over the serial line"),
+        (Mode::Buttons, half, "no motion commands"),
         (Mode::Serial, Drive::both(DriveCommand::duty(0.0)), "one motor"),
         (Mode::Serial, one(DriveCommand::duty(1.5)), "-100 % to 100 %"),
     ] {
