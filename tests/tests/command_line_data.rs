@@ -224,7 +224,8 @@ fn list_names_every_simulated_model() {
         .flatten()
         .filter_map(|row| row["connect"].as_str())
         .collect();
-    let wanted: Vec<String> = MODELS.iter().map(|model| format!("sim:{}", model.key)).collect();
+    let keys = MODELS.iter().map(|model| model.key).chain(["motion-mind-3"]);
+    let wanted: Vec<String> = keys.map(|key| format!("sim:{key}")).collect();
     assert_eq!(named, wanted);
     assert!(list["ports"].is_array());
 }

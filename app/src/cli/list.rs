@@ -3,13 +3,14 @@
 use brushwork_link::SystemClock;
 use brushwork_link::device::{Event, Identity, PollRate};
 use brushwork_link::transport::{ConnectTarget, PortInfo, list_ports};
-use brushwork_protocol::models::MODELS;
+use brushwork_protocol::models::{MODELS, MOTION_MIND_3};
 use serde::Serialize;
 
 use super::args::ListArgs;
 use super::exit::Exit;
 use super::interrupt::Interrupt;
 use super::output::{Output, OutputError, say};
+use super::sim::motion_mind;
 use crate::session::{self, SessionOptions};
 
 #[derive(Debug, Serialize)]
@@ -73,7 +74,13 @@ fn simulated() -> Vec<SimulatedRow> {
         rating: model.rating(),
         assumed: model.assumed,
     };
-    MODELS.iter().map(row).collect()
+    let motion_mind = SimulatedRow {
+        connect: format!("sim:{}", MOTION_MIND_3.key),
+        model: MOTION_MIND_3.name,
+        rating: motion_mind::RATING,
+        assumed: motion_mind::ASSUMED,
+    };
+    MODELS.iter().map(row).chain([motion_mind]).collect()
 }
 
 /// Asks all addresses of a port who is there. Reading moves no motor.

@@ -1,6 +1,6 @@
 //! `brushwork sim`: simulated controllers for other programs, on a pseudo-terminal or a TCP port.
 
-mod motion_mind;
+pub mod motion_mind;
 mod scripting;
 
 use std::net::SocketAddr;
