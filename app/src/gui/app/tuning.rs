@@ -130,6 +130,11 @@ impl App {
             return Err("There are no gains to apply. Tune first.".to_owned());
         };
         let held = front.held_gains(motor, registers.position.is_some());
+        if held.is_none() && registers.motion_mind.is_some() {
+            return Err(
+                "The registers are being read, so that they can be put back. Apply in a moment.".to_owned()
+            );
+        }
         self.write_held(registers.image(motor))?;
         self.model.front.tune.front_mut(which).undo = held.map(|held| held.image(motor));
         Ok(())
