@@ -5,6 +5,7 @@ mod support;
 use brushwork::gui::model::link::Arming;
 use brushwork::gui::model::screen::Screen;
 use brushwork_protocol::packet_serial::Motor;
+use brushwork_sim::motion_mind::{Mode, MotionMindConfig};
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use support::bench::Bench;
@@ -97,6 +98,38 @@ fn connect_change_a_limit_write_save_arm_drive_and_stop_by_keys_alone() {
     bench.pass_ms(500);
     assert!(bench.both_stand());
     assert_eq!(bench.model().front.link.arming, Arming::Disarmed);
+}
+
+#[test]
+fn a_motion_mind_is_connected_changed_armed_tuned_and_stopped_by_keys_alone() {
+    let mut bench = Bench::with_minds(vec![MotionMindConfig::new(Mode::SerialPid)]);
+    bench.pass_ms(200);
+    bench.choose("Simulated model", "Motion Mind 3");
+    press(&mut bench, "Connect");
+    bench.pass_ms(3_000);
+    assert!(bench.model().is_connected());
+    bench.key_with(Modifiers::COMMAND, Key::Num2);
+    bench.pass_ms(2_000);
+    enter(&mut bench, "P", "6500");
+    press(&mut bench, "Write settings");
+    press(&mut bench, "Write to controller");
+    bench.pass_ms(4_000);
+    let pterm = |bench: &Bench| bench.minds.with(|bus| bus.motion_minds()[0].read_one(4));
+    assert_eq!(pterm(&bench), 6_500);
+
+    bench.key_with(Modifiers::COMMAND, Key::Num4);
+    assert_eq!(bench.model().screen, Screen::Velocity);
+    press(&mut bench, "Arm");
+    bench.pass_ms(500);
+    press(&mut bench, "Tune");
+    press(&mut bench, "Tune M1");
+    bench.pass_ms(1_500);
+    assert!(bench.model().front.tune.is_running());
+    bench.key(Key::Space);
+    bench.pass_ms(4_000);
+    assert!(!bench.model().front.tune.is_running());
+    assert_eq!(bench.model().front.link.arming, Arming::Disarmed);
+    assert_eq!(pterm(&bench), 6_500, "the old gains are back");
 }
 
 #[test]

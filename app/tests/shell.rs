@@ -7,6 +7,7 @@ use brushwork::gui::model::link::Arming;
 use brushwork::gui::model::screen::Screen;
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_sim::machine::Machine as _;
+use brushwork_sim::motion_mind::{Mode, MotionMindConfig};
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Theme};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
@@ -421,6 +422,37 @@ fn everything_that_can_be_used_has_a_name_on_every_screen() {
     }
     press_keys(&mut bench, CTRL_SHIFT, Key::P);
     assert_eq!(without_a_name(&bench), [] as [String; 0], "the palette");
+}
+
+#[test]
+fn everything_that_can_be_used_has_a_name_on_every_screen_of_a_motion_mind_and_in_its_tabs() {
+    for mode in [Mode::RadioControl, Mode::Serial, Mode::SerialPid] {
+        let mut bench =
+            Bench::with_minds_sized(vec![MotionMindConfig::new(mode)], [1024.0, 700.0], Theme::Dark);
+        bench.pass_ms(200);
+        bench.choose("Simulated model", "Motion Mind 3");
+        bench.connect();
+        bench.pass_ms(3000);
+        let family = bench.model().front.family();
+        for screen in family.screens(&bench.model().front) {
+            let title = family.title(screen);
+            bench.press(title);
+            bench.pass_ms(1000);
+            assert_eq!(without_a_name(&bench), [] as [String; 0], "{title} in {mode:?}");
+            for tab in family.tabs(screen) {
+                bench.press(tab.title(screen));
+                assert_eq!(without_a_name(&bench), [] as [String; 0], "{} of {title}", tab.title(screen));
+            }
+            for label in ["Stop All", "BRK: OK", "IDX: OK", "Zero M1 encoder", "Disconnect"] {
+                let window = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1024.0, 700.0));
+                let mut found = bench.harness.query_all_by_label(label);
+                assert!(found.any(|node| window.contains_rect(node.rect())), "{label} is cut off on {title}");
+            }
+        }
+        bench.key_with(Modifiers::COMMAND, Key::B);
+        bench.pass_ms(300);
+        assert_eq!(without_a_name(&bench), [] as [String; 0], "the world");
+    }
 }
 
 #[test]
