@@ -311,3 +311,36 @@ fn the_run_that_was_ended_is_kept_with_its_reason() {
     assert!(run.is_refused());
     assert!(bench.sees_part("M1 was not tuned") && bench.sees("The run was stopped."));
 }
+
+#[test]
+fn an_apply_that_is_stopped_or_cut_off_moves_nothing_is_told_and_can_be_undone() {
+    for after_ms in [0, 300, 700, 1200, 1800] {
+        for unplugs in [false, true] {
+            let mut bench = tune_velocity();
+            finish(&mut bench);
+            bench.press("Apply (RAM)");
+            bench.pass_ms(after_ms);
+            let place = format!("after {after_ms} ms, unplugged: {unplugs}");
+            if unplugs {
+                bench.act(&WorldAction::Unplug { unplugged: true });
+                bench.pass_ms(1500);
+                bench.act(&WorldAction::Unplug { unplugged: false });
+                bench.press("Connect");
+                bench.pass_ms(5000);
+                bench.press("Velocity Settings");
+            } else {
+                bench.key(Key::Escape);
+            }
+            bench.pass_ms(4000);
+            assert!(bench.both_stand(), "{place}");
+            assert_eq!(bench.model().front.link.arming, Arming::Disarmed, "{place}");
+            let (now, timeout_ms) = held(&bench);
+            assert_eq!(timeout_ms, USERS_MS, "{place}");
+            if now != fresh().0 {
+                bench.press("Undo");
+                bench.pass_ms(4000);
+            }
+            assert_eq!(held(&bench), fresh(), "{place}: {:?}", bench.said());
+        }
+    }
+}
