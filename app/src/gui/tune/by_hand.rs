@@ -101,8 +101,11 @@ fn held_ui(ui: &mut Ui, which: Loop, held: Option<Registers>) {
     };
     for field in FIELDS.iter().filter(|field| keys.contains(&field.key)) {
         if let Some(value) = field.value(&held) {
-            ui.label(RichText::new(field.label).small().color(palette.weak_text));
-            ui.label(RichText::new(field.text(value)).text_style(theme::figures()));
+            // Name and figure stay on one line.
+            ui.horizontal(|ui| {
+                ui.label(RichText::new(field.label).small().color(palette.weak_text));
+                ui.label(RichText::new(field.text(value)).text_style(theme::figures()));
+            });
         }
     }
 }

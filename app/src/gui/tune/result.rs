@@ -213,7 +213,13 @@ fn change_text(field: &Field, current: Option<f64>, wanted: Option<f64>) -> Stri
     } else if field.form == Form::Switch {
         "changed".to_owned()
     } else if current == 0.0 || field.unit == "counts" || matches!(field.label, "PIDSCALAR" | "DEADBAND") {
-        format!("{:+.*}", field.decimals.min(2), wanted - current)
+        let change = wanted - current;
+        // The ends of an axis without stops are longer than the column.
+        if change.abs() < 1e6 {
+            format!("{change:+.*}", field.decimals.min(2))
+        } else {
+            format!("{change:+.1e}")
+        }
     } else {
         let percent = 100.0 * (wanted / current - 1.0);
         if percent.abs() < 1000.0 {
