@@ -40,8 +40,9 @@ pub fn by_hand_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         if which == Loop::Position && at == 0 {
             travel_speed_ui(ui, model, motor);
         }
-        held_ui(ui, which, held);
     });
+    // A row of its own, so that no figure is parted from its name.
+    ui.horizontal(|ui| held_ui(ui, which, held));
     advice_ui(ui, &model.front.tune.calibration(which).advice(which, held));
 }
 
@@ -93,7 +94,6 @@ fn travel_speed_ui(ui: &mut Ui, model: &mut Model, motor: Motor) {
 fn held_ui(ui: &mut Ui, which: Loop, held: Option<Registers>) {
     let palette = Palette::of(ui);
     let Some(held) = held else { return };
-    ui.separator();
     ui.label(RichText::new("In the controller:").small().color(palette.weak_text));
     let keys: &[&str] = match which {
         Loop::Velocity => &["velocity.p", "velocity.i", "velocity.d"],
@@ -101,11 +101,8 @@ fn held_ui(ui: &mut Ui, which: Loop, held: Option<Registers>) {
     };
     for field in FIELDS.iter().filter(|field| keys.contains(&field.key)) {
         if let Some(value) = field.value(&held) {
-            // Name and figure stay on one line.
-            ui.horizontal(|ui| {
-                ui.label(RichText::new(field.label).small().color(palette.weak_text));
-                ui.label(RichText::new(field.text(value)).text_style(theme::figures()));
-            });
+            ui.label(RichText::new(field.label).small().color(palette.weak_text));
+            ui.label(RichText::new(field.text(value)).text_style(theme::figures()));
         }
     }
 }
