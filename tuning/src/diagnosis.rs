@@ -14,7 +14,7 @@ pub(crate) const DIAGNOSIS_S: f64 = 0.15;
 const TELLING_STALL_AMPS: f64 = 0.2;
 /// Current of a standing motor that readings tell from that of a turning one, A, and the least duty for it.
 const TELLING_AMPS: f64 = 0.15;
-const LEAST_DUTY: f64 = 0.06;
+const LEAST_DUTY: f64 = 0.10;
 /// How long before the alarm a fault may have come, s.
 const BEFORE_S: f64 = 0.22;
 /// Counts that a dead encoder may give.
@@ -109,10 +109,11 @@ fn middle(mut values: Vec<f64>) -> Option<f64> {
 /// Whether no current flows: not at the duty that was given at last, nor while the motor is braked.
 fn is_open(watch: &Watch, polls: &[Point], alarm_s: f64) -> bool {
     let none = |amps: f64| amps.abs() <= NO_CURRENT_AMPS;
-    let driven = |point: &&Point| point.t < alarm_s && watch.duty_at(point.t).abs() > watch.start_duty;
-    let mut before = polls.iter().rev().filter(driven).filter_map(|point| point.amps).take(2).peekable();
+    let least_duty = watch.start_duty.max(DRIVEN_DUTY);
+    let driven = |point: &&Point| point.t < alarm_s && watch.duty_at(point.t).abs() > least_duty;
+    let before = polls.iter().rev().filter(driven).find_map(|point| point.amps);
     let mut after = polls.iter().filter(|point| point.t >= alarm_s).filter_map(|point| point.amps);
-    watch.draws() && before.peek().is_some() && before.all(none) && after.all(none)
+    watch.draws() && before.is_some_and(none) && after.all(none)
 }
 
 fn moments(watch: &Watch, polls: &[Point], from_s: f64) -> Vec<Moment> {

@@ -48,6 +48,8 @@ const MEMORY_S: f64 = 2.0;
 const MARGIN: Margin = Margin { counts: 4.0, stamp_s: 0.0025, speed: 0.06, full: 0.012 };
 /// The same of counts that stand still: no roughness and no late stamp makes them stand.
 const STANDING_MARGIN: Margin = Margin { counts: 4.0, stamp_s: 0.0, speed: 0.1, full: 0.005 };
+/// Share of the friction that a load which helps makes up for at the least.
+const HELPING: f64 = 0.4;
 /// Counts between which an encoder that stands may flicker.
 const STANDING_COUNTS: f64 = 1.0;
 
@@ -136,6 +138,11 @@ impl LoopWatch {
     pub(crate) fn hold(&mut self, registers: VelocityRegisters) {
         let gain = f64::from(registers.p) / VELOCITY_SCALE;
         self.step_duty = gain * TICKS_PER_S / f64::from(registers.qpps.max(1));
+    }
+
+    /// Whether a load pulls that could keep the motor going without a current.
+    pub(crate) fn is_helped(&self) -> bool {
+        self.model.load_duty.abs() > HELPING * self.model.coulomb_duty
     }
 
     /// Whether the counts of every stretch lie within their bounds.

@@ -469,7 +469,10 @@ impl Watch {
 
     /// Whether the motor has kept its speed since then, though its friction alone would have slowed it down.
     fn goes_on(&self, since_s: f64) -> bool {
-        let (Some(tau), Some(to)) = (self.tau_bounds_s, self.recent.back()) else { return false };
+        let Some(to) = self.recent.back() else { return false };
+        if self.known.as_ref().is_some_and(|known| !known.is_helped()) {
+            return false;
+        }
         let since = || self.recent.iter().filter(|point| point.t >= since_s - SPEED_S);
         let middle_s = 0.5 * (since_s + to.t);
         let (Some(from), Some(middle)) = (since().next(), since().find(|point| point.t >= middle_s)) else {
@@ -477,9 +480,10 @@ impl Watch {
         };
         let speed = |a: &Point, b: &Point| (b.counts - a.counts) / (b.t - a.t).max(1e-3);
         let (before, now) = (speed(from, middle), speed(middle, to));
-        let fall = 0.5 * self.gain * self.start_duty * (0.5 * (to.t - from.t) / tau.1).min(1.0);
+        let tau_s = 2.0 * self.rough_model(to.t).1;
+        let fall = 0.5 * self.gain * self.start_duty * (0.5 * (to.t - from.t) / tau_s).min(1.0);
         let clear = 4.0 / (to.t - middle.t).max(1e-3);
-        fall > clear && before * now > 0.0 && before.abs() - now.abs() < 0.5 * fall.min(before.abs())
+        fall > clear && before * now > 0.0 && before.abs() - now.abs() < 0.6 * fall.min(before.abs())
     }
 
     /// Whether a turning motor draws a current that can be told from none.

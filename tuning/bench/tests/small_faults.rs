@@ -34,3 +34,18 @@ fn each_fault_ends_with_the_motor_off_in_time_and_is_named() {
         assert!(row.named > 93.0, "{}: named {} %: {:?}", row.fault, row.named, row.misses);
     }
 }
+
+/// While a loop has the motor. The clock runs from when the loop next drives the motor; between two polls a loop does more than is read.
+#[test]
+fn each_fault_in_a_trial_ends_with_the_motor_off_and_is_named() {
+    let classes =
+        ["encoder_lost_in_trial", "stall_in_trial", "motor_opened_in_trial", "encoder_flipped_in_trial"];
+    let rows = rows_of(&population(5, 16), &classes);
+    assert_eq!(rows.len(), classes.len());
+    for row in rows {
+        println!("{row:?}");
+        assert!(row.off_in_time > 93.0, "{}: off in time {} %: {:?}", row.fault, row.off_in_time, row.misses);
+        assert!(row.off_max_s < 1.5, "{}: off after {} s: {:?}", row.fault, row.off_max_s, row.misses);
+        assert!(row.named > 93.0, "{}: named {} %: {:?}", row.fault, row.named, row.misses);
+    }
+}

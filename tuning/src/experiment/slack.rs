@@ -62,11 +62,16 @@ pub fn measure_slack(rig: &mut Rig<'_>, probe: &Probe, model: &PlantModel) -> Re
     let ways = push(rig, duty, model.load_duty, push_s, rest_s);
     rig.watch.start_duty = watched_duty;
     let ways = ways?;
-    if ways.windows(2).any(|pair| pair.iter().all(|(_, way)| *way < LEAST_WAY_COUNTS)) {
+    if did_not_move(&ways) {
         let backwards = ways.iter().rev().take(2).all(|(_, way)| *way <= -LEAST_WAY_COUNTS);
         return Err(why_unmoved(&rig.watch, backwards));
     }
     Ok(Some(slack_of(&ways)))
+}
+
+/// Whether two pushes in a row moved nothing: one may end in the play.
+fn did_not_move(ways: &[(f64, f64)]) -> bool {
+    ways.windows(2).any(|pair| pair.iter().all(|(_, way)| *way < LEAST_WAY_COUNTS))
 }
 
 /// Pushes with a duty to either side of the one that balances the load. For each push: 1 for another one the same way, -1 for one after a reversal, 0 for the first; and its way, counts.
@@ -97,6 +102,9 @@ fn push(
             (place(rig) - from) * direction * (push_s / held_s.max(1e-3)).min(1.0),
         ));
         before = direction;
+        if did_not_move(&ways) {
+            break;
+        }
     }
     Ok(ways)
 }
