@@ -62,7 +62,7 @@ pub(crate) fn diagnose(watch: &Watch, alarm_s: f64, after: &[Point]) -> Cause {
     let (gain, tau_s) = watch.rough_model(alarm_s);
     let last = watch.recent().next_back().map_or(0.0, |point| point.counts);
     let alive = after.iter().any(|point| (point.counts - last).abs() > DEAD_COUNTS);
-    if gain > 0.0 && outruns(&moments, gain, alarm_s) {
+    if gain > 0.0 && outruns(&moments, gain, watch.load_duty, alarm_s) {
         return Cause::EncoderFlipped;
     }
     if stall.is_some() && !alive {
@@ -139,13 +139,20 @@ fn limit_of(watch: &Watch) -> f64 {
 
 /// Whether the motor is counted against its duty faster than it was with it shortly before. What springs back, an end stop or a load
 /// behind a shaft, gives back no more than it was given.
-fn outruns(moments: &[Moment], gain: f64, alarm_s: f64) -> bool {
+fn outruns(moments: &[Moment], gain: f64, load_duty: f64, alarm_s: f64) -> bool {
+    // A load may turn the motor against its duty.
+    let pull = |moment: &Moment| moment.duty - 1.5 * load_duty.abs() * moment.duty.signum();
     let before = || moments.iter().filter(|moment| moment.t < alarm_s);
-    let Some(last) = before().next_back().filter(|last| last.duty.abs() > DRIVEN_DUTY) else { return false };
+    let Some(last) = before().next_back().filter(|last| pull(last) * last.duty.signum() > DRIVEN_DUTY) else {
+        return false;
+    };
     let way = last.duty.signum();
-    let driven = || before().rev().take_while(|moment| moment.duty * way > DRIVEN_DUTY);
+    let driven = || before().rev().take_while(|moment| pull(moment) * way > DRIVEN_DUTY);
     let against = driven().map(|moment| -moment.speed * way).fold(0.0, f64::max);
     let with = before().map(|moment| moment.speed * way).fold(0.0, f64::max);
+    // Nor is one that is just being turned round.
+    let began = driven().last().map_or(0.0, |first| -first.speed * way);
+    let with = with.max(began);
     let gone = driven().map(|moment| (moment.counts - last.counts) * way).fold(0.0, f64::max);
     gone > LEAST_OUTRUN_COUNTS
         && -last.speed * way > 0.4 * against

@@ -22,6 +22,8 @@ const STEPS: f64 = 40.0;
 /// spring or in its play leaves the motor alone, which is quicker.
 const GAIN_DOUBT: f64 = 0.12;
 const TAU_SPREAD: (f64, f64) = (0.3, 1.6);
+/// How far a constant load may be beside the model, as a share of it.
+const LOAD_DOUBT: f64 = 0.25;
 /// Bounds of the friction over the model's: share, and duty on top of the higher one.
 const FRICTION: (f64, f64) = (0.5, 1.5);
 const MORE_FRICTION: f64 = 0.02;
@@ -225,7 +227,8 @@ impl LoopWatch {
         let model = &self.model;
         let full = model.gain_counts_per_s;
         let share = if duty > 0.0 { 1.0 - GAIN_DOUBT } else { 1.0 + GAIN_DOUBT };
-        let mut push = share * duty - speed / full - model.load_duty * direction;
+        let mut push =
+            share * duty - speed / full - model.load_duty * direction - LOAD_DOUBT * model.load_duty.abs();
         if let Some(limit) = model.drive_limit {
             let brake = model.brake_limit.unwrap_or(limit).max(limit);
             push = push.clamp(-LIMIT.1 * brake, LIMIT.0 * limit);

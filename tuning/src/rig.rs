@@ -664,6 +664,8 @@ impl<'a> Rig<'a> {
             }
         }
         let _ = self.axis.drive_duty(0);
+        let now_s = self.now_s();
+        self.watch.forget(now_s);
     }
 }
 

@@ -86,7 +86,7 @@ pub struct Watch {
     /// When the motor was first driven at a duty that it starts with.
     first_s: f64,
     /// Duty that a constant load eats, positive when it pulls towards lower counts; 0 as long as it is not known.
-    load_duty: f64,
+    pub(crate) load_duty: f64,
     /// How long the first few counts took under the first duty of a run from rest, s.
     start_took_s: Option<f64>,
     /// Highest speed over duty seen, counts/s.
@@ -132,6 +132,14 @@ impl Watch {
         while self.duties.get(1).is_some_and(|next| t - next.0 > MEMORY_S) {
             self.duties.pop_front();
         }
+    }
+
+    /// The motor was driven elsewhere and braked at last: what was seen before says nothing about what comes.
+    pub(crate) fn forget(&mut self, t: f64) {
+        self.recent.clear();
+        self.duties.clear();
+        self.drive(t, 0.0);
+        self.news_s = t;
     }
 
     /// Takes over what an identification found.
