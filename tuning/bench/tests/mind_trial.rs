@@ -72,8 +72,8 @@ fn what_a_run_proposed_is_verified_again_and_so_is_less_of_it_by_hand() {
 fn far_too_much_gain_is_found_on_the_machine_and_foretold_by_the_model() {
     let (plant, report) = tuned(1, Method::Pd);
     let proposed = report.motion_mind.expect("registers");
-    // Eight times the loop.
-    let wild = MotionMindRegisters { pidscalar: proposed.pidscalar - 3, ..proposed };
+    // Thirty-two times the loop.
+    let wild = MotionMindRegisters { pidscalar: proposed.pidscalar - 5, ..proposed };
     let wanted = wanted(&report, wild);
     let (task, gains) = wanted.on_model();
     assert!(!forecast(&task, &gains).is_stable);

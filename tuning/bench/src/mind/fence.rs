@@ -7,10 +7,9 @@ const AHEAD_AS_TOLD_S: f64 = 0.18;
 /// The least room, and that of a motor of which nothing is known yet, counts.
 const LEAST_COUNTS: f64 = 250.0;
 const FIRST_COUNTS: f64 = 2_000.0;
-/// A duty that moves any motor, and how long and over how many counts one is watched under it before its speed is taken as known, s.
+/// A duty that moves any motor, and how long one is watched under it before its speed is taken as known, s.
 const CLEAR_DUTY: f64 = 0.19;
 const KNOWN_AFTER_S: f64 = 0.06;
-const KNOWN_AFTER_COUNTS: u32 = 20;
 /// A motor told less than what it ran at before may be so much faster than in proportion: friction takes its share.
 const IN_PROPORTION: f64 = 1.3;
 /// Share of the room below which the fence is moved.
@@ -38,10 +37,9 @@ pub(super) struct Fence {
     told: f64,
     /// How much wider it stands than it should have to; 0 for not.
     wider: f64,
-    /// When and where the first clear drive was seen to begin, s and counts.
-    began: Option<(f64, i32)>,
+    /// When the first clear drive was seen to begin, s.
+    began_s: Option<f64>,
     is_clear: bool,
-    is_known: bool,
     /// The way that was commanded last.
     heading: f64,
 }
@@ -56,9 +54,7 @@ impl Fence {
             self.top = self.top.max(self.speed.abs());
         }
         if self.is_clear {
-            let (since, from) = *self.began.get_or_insert((t, counts));
-            let is_far = counts.wrapping_sub(from).unsigned_abs() >= KNOWN_AFTER_COUNTS;
-            self.is_known |= is_far && t - since > KNOWN_AFTER_S;
+            self.began_s.get_or_insert(t);
         }
         self.last = Some((t, counts));
     }
@@ -110,8 +106,8 @@ impl Fence {
 
     /// Where either side has to be written now: where it is too near, and where it is far on the side that the motor heads for.
     pub(super) fn due(&self) -> (Option<i32>, Option<i32>) {
-        let Some((_, counts)) = self.last else { return (None, None) };
-        let room = self.room();
+        let Some((t, counts)) = self.last else { return (None, None) };
+        let room = self.room(t);
         let place = f64::from(counts);
         let (lowest, highest) =
             self.travel.map_or((f64::from(i32::MIN), f64::from(i32::MAX)), |(l, h)| (l as f64, h as f64));
@@ -127,10 +123,9 @@ impl Fence {
         (low, due(self.high, (place + room).min(highest), 1.0))
     }
 
-    fn room(&self) -> f64 {
-        // What a probe moves is next to nothing: it ends with the first counts.
-        let is_new = self.is_clear && !self.is_known;
-        let least = if is_new { FIRST_COUNTS } else { LEAST_COUNTS };
+    fn room(&self, t: f64) -> f64 {
+        let is_known = self.began_s.is_some_and(|began| t - began > KNOWN_AFTER_S);
+        let least = if is_known { LEAST_COUNTS } else { FIRST_COUNTS };
         (AHEAD_S * self.speed.abs()).max(AHEAD_AS_TOLD_S * self.told).max(least) * self.wider.max(1.0)
     }
 }
@@ -179,7 +174,6 @@ mod tests {
     #[test]
     fn it_stays_inside_the_travel() {
         let mut fence = Fence { travel: Some((-500, 900)), ..Fence::default() };
-        fence.drive(1.0);
         fence.see(0.0, 0);
         assert_eq!(fence.due(), (Some(-500), Some(900)));
     }
