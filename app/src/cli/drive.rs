@@ -158,6 +158,11 @@ fn keep_driving(
         client.device().renew();
         match client.next_event(interrupt)? {
             Some(Event::Disarmed(reason)) => return Err(disarmed(&reason)),
+            // The command never went out, on a line that was busy with faults for instance: nothing will move.
+            Some(Event::Failure(failure)) if failure.tried.starts_with("move the motor") => {
+                say(failure.to_string());
+                return Err(Exit::Refused);
+            }
             Some(event) => {
                 if let Event::Sample(sample) = &event {
                     responses.iter_mut().for_each(|response| response.take(sample, commanded_at));
