@@ -140,6 +140,8 @@ pub struct Rig<'a> {
     silent_since_s: Option<f64>,
     silent_polls: u32,
     turn: u8,
+    /// Where the guard last had driven a motor back, counts.
+    turned_at_counts: f64,
     /// Polls in a row with a current beyond the highest.
     beyond: u32,
     max_current_raw: u32,
@@ -172,6 +174,7 @@ impl<'a> Rig<'a> {
             silent_since_s: None,
             silent_polls: 0,
             turn: 0,
+            turned_at_counts: 0.0,
             beyond: 0,
             max_current_raw: setup.max_current_raw,
             kept: None,
@@ -574,6 +577,11 @@ impl<'a> Rig<'a> {
         Some(((low - origin) as f64, (high - origin) as f64))
     }
 
+    /// Where the guard last turned a motor back, counts.
+    pub(crate) fn turned_at_counts(&self) -> f64 {
+        self.turned_at_counts
+    }
+
     /// Ends the run before the window is left: where the motor would come to rest if it were driven back now counts.
     fn check_travel(&mut self, point: &Point) -> Result<(), Cause> {
         let Some((low, high)) = self.travel_counts() else { return Ok(()) };
@@ -653,6 +661,7 @@ impl<'a> Rig<'a> {
                     if before.is_some_and(|before| (now.counts - before.counts) * speed <= 0.0) {
                         break;
                     }
+                    self.turned_at_counts = now.counts;
                     before = Some(now);
                 }
                 Err(AxisError::NoReply) => {}

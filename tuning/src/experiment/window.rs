@@ -15,6 +15,8 @@ const TURN_AT: f64 = 0.25;
 /// How often a run that the guard ended is begun anew, and what it then uses of the width, over what it used before.
 const NARROWER: usize = 2;
 const NARROWER_SHARE: f64 = 0.8;
+/// How near to the end it may have come for that, as a share of the width from the middle.
+const NEAREST_SHARE: f64 = 0.45;
 /// Time until a new duty acts, s, and the share of the way from rest that the first stop may take.
 const ACTS_S: f64 = 0.03;
 const FIRST_SHARE: f64 = 0.7;
@@ -51,7 +53,7 @@ pub fn run_window(rig: &mut Rig<'_>, probe: &Probe, width: f64) -> Result<Window
     let mut turn = Turn { acts_s: ACTS_S, last: None, share: 1.0 };
     for _ in 0..NARROWER {
         match swings(rig, probe, (middle, width), &mut turn) {
-            Err(Cause::TravelLimit) => {
+            Err(Cause::TravelLimit) if (rig.turned_at_counts() - middle).abs() < NEAREST_SHARE * width => {
                 // The guard brought it to rest before the end. What it learned of the way stays, and it keeps farther away.
                 rig.come_to_rest()?;
                 go_to(rig, probe, middle)?;
