@@ -23,6 +23,8 @@ const TURNING_S: f64 = 0.03;
 const LONGEST_TURN_S: f64 = 2.0;
 /// How much longer than computed a way to rest may be.
 const STOPPING_DOUBT: f64 = 1.15;
+/// Time that a lost command costs before it is sent again, s.
+const RETRY_S: f64 = 0.010;
 /// A motor that runs on for longer than this is heavy, s; the duty above the starting one that brings it to rest, and how long it
 /// is watched then, s.
 const HEAVY_S: f64 = 0.05;
@@ -598,7 +600,7 @@ impl<'a> Rig<'a> {
             // From rest a motor needs no longer way back than it had.
             None => 0.7 * self.way_since_drive(point) + speed * TURNING_S.max(self.watch.stopping_s),
         };
-        let rest = point.counts + speed * self.options.poll_s + runs_on;
+        let rest = point.counts + speed * (self.options.poll_s + RETRY_S) + runs_on;
         if (rest > high && speed > 0.0) || (rest < low && speed < 0.0) {
             self.turn_back(speed);
             return Err(Cause::TravelLimit);
@@ -606,19 +608,30 @@ impl<'a> Rig<'a> {
         Ok(())
     }
 
-    /// The same while no reply comes: the motor goes on at least as it did.
+    /// The same while no reply comes: the motor goes on at least as it did, and gains speed as it did, up to what its duty gives.
     fn check_unseen(&mut self) -> Result<(), Cause> {
         let (Some(last), Some(speed)) = (self.points.last().copied(), self.recent_speed(2)) else {
             return Ok(());
         };
-        let unseen_s = (self.now_s() - last.t).max(0.0);
-        let earlier = self.points.len().checked_sub(4).and_then(|n| self.points[..=n + 1].last_chunk::<2>());
-        let before = earlier
-            .map_or(speed, |[a, b]| if b.t > a.t { (b.counts - a.counts) / (b.t - a.t) } else { speed });
-        let gained =
-            if speed * before > 0.0 { (speed - before).abs().min(speed.abs()) * speed.signum() } else { 0.0 };
-        let speed = if (speed - before) * speed > 0.0 { speed + gained } else { speed };
+        let now_s = self.now_s();
+        let unseen_s = (now_s - last.t).max(0.0);
+        let gained = self.pull(speed).map_or(0.0, |(pull, over_s)| pull * unseen_s.max(over_s));
+        let (gain, _) = self.watch.rough_model(0.0);
+        let most = if gain > 0.0 { gain * self.watch.duty_at(now_s).abs() } else { f64::INFINITY };
+        let speed = speed + gained.min((most - speed.abs()).max(0.0)) * speed.signum();
         self.check_way(&Point { counts: last.counts + speed * unseen_s, ..last }, speed)
+    }
+
+    /// By how much a speed, that of the last two polls, grows in a second, and over which time that was seen, s. `None` where it does not.
+    fn pull(&self, speed: f64) -> Option<(f64, f64)> {
+        let [a, b, c, d] = self.points.last_chunk::<4>()?;
+        if b.t <= a.t {
+            return None;
+        }
+        let before = (b.counts - a.counts) / (b.t - a.t);
+        let over_s = 0.5 * (c.t + d.t - a.t - b.t);
+        let grown = (speed - before) * speed.signum();
+        (grown > 0.0 && over_s > 0.0).then(|| (grown / over_s, over_s))
     }
 
     /// Counts gone under the first duty from rest; 0 later.

@@ -13,7 +13,7 @@ const DUTIES: [f64; 2] = [0.22, 0.50];
 const FIRST_TURN_AT: f64 = 0.20;
 const TURN_AT: f64 = 0.25;
 /// How often a run that the guard ended is begun anew, and what it then uses of the width, over what it used before.
-const NARROWER: usize = 2;
+const NARROWER: usize = 1;
 const NARROWER_SHARE: f64 = 0.8;
 /// How near to the end it may have come for that, as a share of the width from the middle.
 const NEAREST_SHARE: f64 = 0.45;
