@@ -159,10 +159,11 @@ impl LinkView {
     fn connected(&mut self, identity: Identity) -> Vec<Effect> {
         let mut said =
             format!("Connected to {} at {}, {}", identity.title(), identity.port, identity.named_place());
-        if !identity.firmware.is_empty() {
-            said += &format!(", firmware {}", identity.firmware);
-        }
-        said += &format!(" ({}).", identity.generation);
+        said += &match identity.firmware.as_str() {
+            _ if identity.is_motion_mind() => format!(", {}.", identity.generation),
+            "" => format!(" ({}).", identity.generation),
+            firmware => format!(", firmware {firmware} ({}).", identity.generation),
+        };
         let mut effects = vec![Effect::Say(Gravity::Note, said)];
         // A node's notes are its CANopen identity, which is nothing odd.
         let gravity = if identity.is_node() { Gravity::Note } else { Gravity::Warning };

@@ -37,7 +37,7 @@ pub enum Form {
 /// One of them.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
-    /// The key of its setting: behind "motor1." or "motor2." where [`Field::of_motor`].
+    /// The key of its setting: behind "motor1." or "motor2." where it is one of a motor.
     pub key: &'static str,
     of_motor: bool,
     pub label: &'static str,
