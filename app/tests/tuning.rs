@@ -523,8 +523,8 @@ fn calibration_by_hand_makes_the_changes_of_the_manual_and_says_what_the_motor_d
     assert_at_rest(&mut bench);
 }
 
-#[test]
-fn with_l_and_r_set_a_run_is_refused_until_they_are_cleared_for_it_and_they_are_put_back_after() {
+/// A controller in torque mode, since L and R are both set, whose run was refused for that; and its settings.
+fn refused_for_its_winding() -> (Bench, MotionSettings) {
     let mut config = config("small-gearmotor");
     let mut settings = Controller::new(config.clone()).expect("the preset is sound").stored_settings();
     (settings.motors[0].motion.inductance_raw, settings.motors[0].motion.resistance_raw) =
@@ -537,6 +537,12 @@ fn with_l_and_r_set_a_run_is_refused_until_they_are_cleared_for_it_and_they_are_
     let before = held(&bench, Motor::M1);
     bench.press("Tune M1");
     finish(&mut bench);
+    (bench, before)
+}
+
+#[test]
+fn with_l_and_r_set_a_run_is_refused_until_they_are_cleared_for_it_and_they_are_put_back_after() {
+    let (mut bench, before) = refused_for_its_winding();
     assert!(bench.sees_part("Sketch: L and R are both set"));
     assert_eq!(held(&bench, Motor::M1), before);
     bench.press("Clear L and R for the run");
@@ -730,18 +736,7 @@ fn the_settings_screen_saves_after_the_run_that_it_ended_and_what_it_saves_is_th
 
 /// The armed screen of a controller in torque mode whose L and R were cleared for a run.
 fn cleared() -> (Bench, MotionSettings) {
-    let mut config = config("small-gearmotor");
-    let mut settings = Controller::new(config.clone()).expect("the preset is sound").stored_settings();
-    (settings.motors[0].motion.inductance_raw, settings.motors[0].motion.resistance_raw) =
-        (67_109, 134_217_728);
-    config.settings = Some(settings);
-    let mut bench = Bench::of(Controller::new(config).expect("the configuration is sound"));
-    bench.connect();
-    bench.arm_on("Velocity Settings");
-    bench.press("Tune");
-    let before = held(&bench, Motor::M1);
-    bench.press("Tune M1");
-    finish(&mut bench);
+    let (mut bench, before) = refused_for_its_winding();
     bench.press("Clear L and R for the run");
     bench.pass_ms(4000);
     assert_eq!(held(&bench, Motor::M1).resistance_raw, 0);

@@ -213,17 +213,21 @@ fn faults_of_the_wiring_are_named_before_any_loop_is_closed() {
     }
 }
 
-#[test]
-fn faults_in_mid_run_stop_the_motor_and_are_named() {
+/// What can break while a motor is driven, and how it is to be named.
+fn faults_in_motion() -> [(WorldAction, Cause); 5] {
     let motor = Motor::M1;
-    let faults = [
+    [
         (WorldAction::LoseEncoder { motor, on: true }, Cause::EncoderLost),
         (WorldAction::LockShaft { motor, on: true }, Cause::Stalled),
         (WorldAction::OpenLead { motor, on: true }, Cause::MotorOpened),
         (WorldAction::ReverseEncoder { motor, on: true }, Cause::EncoderFlipped),
         (WorldAction::SetBatteryVolts { volts: 5.5 }, Cause::BatteryLow),
-    ];
-    for (action, cause) in faults {
+    ]
+}
+
+#[test]
+fn faults_in_mid_run_stop_the_motor_and_are_named() {
+    for (action, cause) in faults_in_motion() {
         let mut link = connected();
         let before = settings(&link);
         let report =
@@ -236,27 +240,19 @@ fn faults_in_mid_run_stop_the_motor_and_are_named() {
 
 #[test]
 fn faults_while_a_loop_has_the_motor_stop_it_and_are_named() {
-    let motor = Motor::M1;
-    let faults = [
-        (WorldAction::LoseEncoder { motor, on: true }, Cause::EncoderLost),
-        (WorldAction::LockShaft { motor, on: true }, Cause::Stalled),
-        (WorldAction::OpenLead { motor, on: true }, Cause::MotorOpened),
-        (WorldAction::ReverseEncoder { motor, on: true }, Cause::EncoderFlipped),
-        (WorldAction::SetBatteryVolts { volts: 5.5 }, Cause::BatteryLow),
-    ];
     let in_loops = |stage: &str| stage.contains("lag of the loop") || stage.contains("Trying the gains");
     for method in [Method::Velocity, Method::Piv] {
         let request = Tuning { method, ..velocity() };
         let stages: Vec<_> = stages(request).into_iter().filter(|stage| in_loops(&stage.0)).collect();
         assert_eq!(stages.len(), 2, "{stages:?}");
         for (stage, at) in stages {
-            for (action, cause) in &faults {
+            for (action, cause) in faults_in_motion() {
                 let mut link = connected();
                 let before = settings(&link);
                 let report =
                     tuned(&mut link, request, |link| strike(link, at, action.clone())).expect("a report");
                 let said = format!("{method:?}, {stage} at {at:?}, {action:?}");
-                assert_eq!(report.causes.first(), Some(cause), "{said}: {:?}", report.causes);
+                assert_eq!(report.causes.first(), Some(&cause), "{said}: {:?}", report.causes);
                 // A loop that holds a place shows some faults with its next move.
                 let went_on_s = report.seconds.1 - at.as_secs_f64();
                 assert!(went_on_s < 1.5, "{said}: the run went on for {went_on_s} s");
