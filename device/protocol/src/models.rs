@@ -70,6 +70,11 @@ impl Model {
         }
     }
 
+    /// Whether it runs scripts: MCL is the MCP's alone (MCP manual 3.0.1).
+    pub fn runs_scripts(&self) -> bool {
+        self.family == Family::Mcp
+    }
+
     /// Whether a stream (by the index of command 145) shares its lines with an encoder. Such a UART keeps the
     /// encoder from counting while it is in use (MCP manual 1.9.7). Assumed: it is disabled when the unit
     /// leaves the factory.

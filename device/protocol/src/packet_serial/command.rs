@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::field::{Field, width_of};
 use super::identity::Generation;
+use crate::models::Family;
 
 /// A command of packet serial: one row of [`COMMANDS`](super::COMMANDS).
 #[derive(Debug, Clone, Copy)]
@@ -22,6 +23,8 @@ pub struct Command {
     pub simulated: Simulated,
     /// What our own client does with it.
     pub client: ClientUse,
+    /// The product line that has it, where the other one does not: to that one it is an unknown command.
+    pub only: Option<Family>,
     /// Where it is described.
     pub source: &'static str,
     /// Contradictions and traps; empty if there are none.
@@ -206,6 +209,7 @@ impl Command {
             also_accepted: &[],
             simulated: Simulated::Acts,
             client: ClientUse::Sends,
+            only: None,
             source,
             note: "",
         }
@@ -226,6 +230,11 @@ impl Command {
         self
     }
 
+    pub(super) const fn only(mut self, family: Family) -> Self {
+        self.only = Some(family);
+        self
+    }
+
     pub(super) const fn note(mut self, note: &'static str) -> Self {
         self.note = note;
         self
@@ -234,6 +243,11 @@ impl Command {
     /// What goes over the wire in this generation; `None` if the generation does not have the command.
     pub fn form(&self, generation: Generation) -> Option<&'static Form> {
         self.forms.iter().find(|form| form.covers(generation))
+    }
+
+    /// Whether controllers of this product line have it.
+    pub fn is_known_to(&self, family: Family) -> bool {
+        self.only.is_none_or(|only| only == family)
     }
 
     /// What it does in this generation; a query where the generation does not have it.

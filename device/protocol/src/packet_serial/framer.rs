@@ -30,6 +30,7 @@ use super::request::Request;
 use super::table::lookup;
 use super::value::Values;
 use crate::crc::crc16_xmodem;
+use crate::models::Family;
 
 /// A longer pause between two bytes discards the packet they are in (MCP manual 2.2.4).
 pub const PACKET_GAP: Duration = Duration::from_millis(10);
@@ -46,6 +47,8 @@ const CRC: usize = 2;
 #[derive(Debug, Clone)]
 pub struct RequestFramer {
     generation: Generation,
+    /// Whose commands it knows; those of both product lines if `None`.
+    family: Option<Family>,
     state: State,
     bytes: RawBytes,
     appended: Option<AppendedCrc>,
@@ -152,11 +155,19 @@ impl RequestFramer {
     pub const fn new(generation: Generation) -> Self {
         Self {
             generation,
+            family: None,
             state: State::Idle,
             bytes: RawBytes::EMPTY,
             appended: None,
             last_byte_at: Duration::ZERO,
         }
+    }
+
+    /// The same for a controller of one product line, to which the commands of the other are unknown.
+    pub const fn for_family(generation: Generation, family: Family) -> Self {
+        let mut framer = Self::new(generation);
+        framer.family = Some(family);
+        framer
     }
 
     /// The generation whose commands it knows.
@@ -191,7 +202,7 @@ impl RequestFramer {
 
     /// Forgets everything that has come so far, as at power on.
     pub fn reset(&mut self) {
-        *self = Self::new(self.generation);
+        *self = Self { family: self.family, ..Self::new(self.generation) };
     }
 
     fn take(&mut self, byte: u8, now: Duration) -> Option<FramerEvent> {
@@ -283,7 +294,8 @@ impl RequestFramer {
         let &[address, number, ..] = &*packet else {
             return Verdict::Unfinished;
         };
-        let (Some(address), Some(command)) = (Address::new(address), lookup(number)) else {
+        let known = |command: &&Command| self.family.is_none_or(|family| command.is_known_to(family));
+        let (Some(address), Some(command)) = (Address::new(address), lookup(number).filter(known)) else {
             return Verdict::Skip(DiscardReason::UnknownCommand);
         };
         match direction(command, self.generation) {

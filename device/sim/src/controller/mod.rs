@@ -83,7 +83,7 @@ impl Controller {
         let memory = Memory::holding(&config.stored_settings());
         let mut controller = Self {
             law: config.law.repaired(),
-            ports: std::array::from_fn(|_| Port::new(config.generation)),
+            ports: std::array::from_fn(|_| Port::new(config.generation, config.model.family)),
             config,
             world,
             firmware: None,
@@ -271,7 +271,7 @@ impl Controller {
         if let Some(image) = self.memory.flash.installed() {
             self.config.options.version = Some(image.version);
             self.config.generation = image.generation;
-            self.ports = std::array::from_fn(|_| Port::new(image.generation));
+            self.ports = std::array::from_fn(|_| Port::new(image.generation, self.config.model.family));
         }
         let readings = Readings::take(&mut self.world);
         let firmware = Firmware::boot(&self.config, self.memory.clone(), readings, self.unit_now());

@@ -1,6 +1,7 @@
 //! One serial stream: bytes in, requests out; replies in, with the time at which they leave.
 
 use crate::machine::StreamIndex;
+use brushwork_protocol::models::Family;
 use brushwork_protocol::packet_serial::{Framed, FramerEvent, Generation, RequestFramer};
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -29,8 +30,12 @@ pub fn turnaround(stream: StreamIndex, rate_bps: u32) -> Duration {
 }
 
 impl Port {
-    pub fn new(generation: Generation) -> Self {
-        Self { framer: RequestFramer::new(generation), outbox: VecDeque::new(), said: Vec::new() }
+    pub fn new(generation: Generation, family: Family) -> Self {
+        Self {
+            framer: RequestFramer::for_family(generation, family),
+            outbox: VecDeque::new(),
+            said: Vec::new(),
+        }
     }
 
     /// Takes one byte; a request that is whole now comes back.
@@ -87,7 +92,7 @@ mod tests {
 
     #[test]
     fn writes_leave_in_order_and_not_before_their_time() {
-        let mut port = Port::new(Generation::Gen1);
+        let mut port = Port::new(Generation::Gen1, Family::Mcp);
         let ms = Duration::from_millis;
         port.send(vec![1], ms(5));
         port.send(vec![2], ms(3));

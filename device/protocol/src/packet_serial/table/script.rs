@@ -4,6 +4,7 @@ use super::super::command::{ClientUse, Command, Effect, Form, Reply, Simulated};
 use super::super::field::{Field, Kind, Unit, byte};
 use super::super::number;
 use super::{CLIENTS, G1, G4, MANUAL_ADVANCED, fields, forms, read, write, write_for};
+use crate::models::Family;
 
 pub(super) const ROWS: &[Command] = &[
     manual(
@@ -21,11 +22,12 @@ pub(super) const ROWS: &[Command] = &[
     ),
     manual(number::START_SCRIPT, "start_script", "start script", forms![write(G1, G4, Effect::Script, &[])]),
     manual(number::STOP_SCRIPT, "stop_script", "stop script", forms![write(G1, G4, Effect::Stop, &[])]),
-    Command::new(number::ERASE_SCRIPT, "erase_script", "erase script", CLIENTS, ERASE),
-    Command::new(number::WRITE_SCRIPT, "write_script", "write script", CLIENTS, WRITE),
+    Command::new(number::ERASE_SCRIPT, "erase_script", "erase script", CLIENTS, ERASE).only(Family::Mcp),
+    Command::new(number::WRITE_SCRIPT, "write_script", "write script", CLIENTS, WRITE).only(Family::Mcp),
     Command::new(number::READ_SCRIPT, "read_script", "read script", CLIENTS, &[])
         .simulated(Simulated::Silent("only the number is public, not the layout"))
-        .client(ClientUse::Never("only the number is public, not the layout")),
+        .client(ClientUse::Never("only the number is public, not the layout"))
+        .only(Family::Mcp),
     Command::new(
         number::ENTER_LOADER,
         "enter_loader",
@@ -70,5 +72,6 @@ const LOADER: &[Field] = fields![
 ];
 
 const fn manual(number: u8, key: &'static str, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, key, title, MANUAL_ADVANCED, forms)
+    // MCL is the MCP's (MCP manual 3.0.1): no RoboClaw manual has these numbers.
+    Command::new(number, key, title, MANUAL_ADVANCED, forms).only(Family::Mcp)
 }

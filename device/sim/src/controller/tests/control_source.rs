@@ -5,7 +5,7 @@ use crate::bridge::BridgeOutput;
 use crate::controller::ControllerConfig;
 use crate::machine::{Machine, StreamIndex};
 use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::{Generation, Motor, number};
+use brushwork_protocol::packet_serial::{Address, Generation, Motor, Request, number};
 use std::time::Duration;
 
 fn duty(bench: &Bench, motor: Motor) -> i16 {
@@ -121,6 +121,32 @@ fn the_roboclaw_speaks_as_the_captured_one_did() {
     let mut expected = b"USB Roboclaw 2x7a v4.2.8\n\0".to_vec();
     expected.extend([0xac, 0x9e]);
     assert_eq!(bench.raw(&[0x80, 0x15, 0x59, 0x0c]), expected); // with the CRC that client appended
+}
+
+#[test]
+fn a_roboclaw_knows_no_script_command_and_drops_what_follows_one_until_the_line_was_silent() {
+    let model = models::lookup("roboclaw-2x7a").expect("in the list");
+    for generation in Generation::ALL {
+        let mut bench = Bench::of(ControllerConfig { generation, ..ControllerConfig::of(model) });
+        for command in [number::SET_SCRIPT_AUTORUN, number::START_SCRIPT, number::STOP_SCRIPT] {
+            let request = Request::new(bench.address, command, if command == 246 { &[0] } else { &[] });
+            assert!(bench.try_send(&request).is_none(), "{command} in {generation}");
+            bench.wait(Duration::from_millis(11));
+        }
+        bench.ask(number::DUTY_M1, &[16_000]);
+        let encode = |command, args: &[i64]| {
+            Request::new(Address::DEFAULT, command, args).encode(generation).expect("known")
+        };
+        let stop = encode(number::DUTY_ACCEL_BOTH, &[0, 655_359, 0, 655_359]);
+        let unknown_first = [encode(number::STOP_SCRIPT, &[]), stop.clone()].concat();
+        assert_eq!(bench.raw(&unknown_first), [0; 0], "{generation}");
+        bench.wait(Duration::from_millis(50));
+        assert_eq!(duty(&bench, Motor::M1), 16_000, "the stop behind it was dropped");
+        let stop_first = [stop, encode(number::STOP_SCRIPT, &[])].concat();
+        assert_eq!(bench.raw(&stop_first), [0xFF]);
+        bench.wait(Duration::from_millis(60));
+        assert_eq!(duty(&bench, Motor::M1), 0);
+    }
 }
 
 #[test]
