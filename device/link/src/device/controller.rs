@@ -6,7 +6,7 @@
 use super::channel::Sample;
 use super::drive::Drive;
 use super::identity::Identity;
-use super::options::DeviceOptions;
+use super::options::{Addresses, DeviceOptions};
 use super::signals::Guard;
 use super::status::StatusReport;
 use super::stop::{StopBytes, UnitStop};
@@ -162,8 +162,8 @@ pub trait Family: Send {
         options: &DeviceOptions,
     ) -> Result<Vec<Box<dyn Controller>>, DiscoverError>;
 
-    /// The bytes that stop every unit that may be there, for a Stop before any was found.
-    fn stop_bytes(&self) -> StopBytes;
+    /// The bytes that stop every unit that may be there, for a Stop before any was found; with [`Addresses::These`] those alone.
+    fn stop_bytes(&self, addresses: Addresses) -> StopBytes;
 
     /// The bytes that stop all these units at once, where the family can address them all; else each is stopped by its own.
     fn stop_all_bytes(&self, _units: &[&Identity]) -> Option<StopBytes> {

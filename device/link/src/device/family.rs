@@ -87,7 +87,8 @@ impl Family for AnyFamily {
             (FamilyChoice::PacketSerial, _) => true,
             (FamilyChoice::MotionMind, _) => false,
             // No number is an address of both families.
-            (FamilyChoice::Auto, Addresses::Only(number)) => Address::new(number).is_some() || number > 98,
+            (FamilyChoice::Auto, Addresses::Only(number)) => is_packet_address(number),
+            (FamilyChoice::Auto, Addresses::These(set)) => set.iter().all(is_packet_address),
             (FamilyChoice::Auto, Addresses::Scan | Addresses::Factory) => {
                 return self.find_out(line, options);
             }
@@ -100,11 +101,13 @@ impl Family for AnyFamily {
         }
     }
 
-    fn stop_bytes(&self) -> StopBytes {
+    fn stop_bytes(&self, addresses: Addresses) -> StopBytes {
+        let packets = || PacketSerial.stop_bytes(addresses);
+        let motion_minds = || MotionMinds::new().stop_bytes(addresses);
         match self.found {
-            Some(Found::Packets) => PacketSerial.stop_bytes(),
-            Some(Found::MotionMinds) => MotionMinds::new().stop_bytes(),
-            None => PacketSerial.stop_bytes().then(MotionMinds::new().stop_bytes()),
+            Some(Found::Packets) => packets(),
+            Some(Found::MotionMinds) => motion_minds(),
+            None => packets().with(motion_minds()),
         }
     }
 
@@ -144,6 +147,11 @@ impl AnyFamily {
             Err(error) => Err(error),
         }
     }
+}
+
+/// Whether a number that is asked for without a family is one of packet serial.
+fn is_packet_address(number: u8) -> bool {
+    Address::new(number).is_some() || number > 98
 }
 
 /// The failure of packet serial, with what else was tried.

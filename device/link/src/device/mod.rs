@@ -35,7 +35,7 @@ pub use identity::{Capabilities, Identity, MotionMindFacts};
 pub use job::{FnJob, Job, JobContext, JobEnding, JobOutput, JobReport};
 pub use mcp::{PacketSerial, describe_sent, preview};
 pub use motion_mind::SIGNS as MOTION_MIND_SIGNS;
-pub use options::{Addresses, DeviceOptions};
+pub use options::{AddressSet, Addresses, DeviceOptions};
 pub use request::{PollRate, Request, RequestRefused};
 pub use run::{DeviceLoop, DeviceThread, Step};
 pub use signals::MOTION_LIFE;

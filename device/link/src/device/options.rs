@@ -14,8 +14,35 @@ pub enum Addresses {
     Scan,
     /// This one alone.
     Only(u8),
+    /// These, and no other is told anything, not even by a stop.
+    These(AddressSet),
     /// The factory address alone: 0x80, or 1 of a Motion Mind.
     Factory,
+}
+
+/// Numbers of units.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AddressSet([u64; 4]);
+
+impl AddressSet {
+    /// Whether it holds a number.
+    #[must_use]
+    pub fn contains(self, address: u8) -> bool {
+        self.0[usize::from(address / 64)] >> (address % 64) & 1 == 1
+    }
+
+    /// The numbers, the lowest first.
+    pub fn iter(self) -> impl Iterator<Item = u8> {
+        (0..=u8::MAX).filter(move |address| self.contains(*address))
+    }
+}
+
+impl FromIterator<u8> for AddressSet {
+    fn from_iter<T: IntoIterator<Item = u8>>(addresses: T) -> Self {
+        let mut set = Self::default();
+        addresses.into_iter().for_each(|address| set.0[usize::from(address / 64)] |= 1 << (address % 64));
+        set
+    }
 }
 
 /// What the device thread is told when it starts.
@@ -50,6 +77,19 @@ impl Default for DeviceOptions {
             poll: PollRate::DEFAULT,
             event_capacity: 1024,
             request_capacity: 64,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_set_holds_what_was_put_in_and_nothing_else() {
+        for numbers in [vec![], vec![0], vec![255], vec![1, 63, 64, 127, 128, 135, 191, 192]] {
+            let set: AddressSet = numbers.iter().copied().collect();
+            assert_eq!(set.iter().collect::<Vec<_>>(), numbers);
         }
     }
 }

@@ -6,40 +6,54 @@ use std::time::Duration;
 /// The bytes of a stop, to be written without waiting for anything.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct StopBytes {
-    /// What may be written at one go; the first of them matters most.
-    pub frames: Vec<Vec<u8>>,
-    /// Silence between two of them, where the family's controllers need one.
+    /// The frames that take the drive off the motors, one or more for each unit.
+    pub first: Vec<Vec<u8>>,
+    /// What sees to it that nothing brings the drive back. A unit may fall silent at one that its neighbour alone knows, so
+    /// these go out after the first frames of all units.
+    pub after: Vec<Vec<u8>>,
+    /// Silence between two frames, where the family's controllers need one; without it all are written at one go.
     pub gap: Duration,
 }
 
 impl StopBytes {
-    /// Bytes that may all be written at one go.
+    /// Frames that take the drive off and need nothing after them.
     #[must_use]
-    pub fn at_once(bytes: Vec<u8>) -> Self {
-        Self { frames: vec![bytes], gap: Duration::ZERO }
+    pub fn at_once(first: Vec<Vec<u8>>) -> Self {
+        Self { first, ..Self::default() }
     }
 
-    /// These, then those.
+    /// These and those of others.
     #[must_use]
-    pub fn then(mut self, later: Self) -> Self {
-        self.gap = self.gap.max(later.gap);
-        self.frames.extend(later.frames);
-        if self.gap.is_zero() {
-            self.frames = vec![self.frames.concat()];
+    pub fn with(mut self, others: Self) -> Self {
+        self.first.extend(others.first);
+        self.after.extend(others.after);
+        Self { gap: self.gap.max(others.gap), ..self }
+    }
+
+    /// What is written at one go each, in order.
+    #[must_use]
+    pub fn writes(&self) -> Vec<Vec<u8>> {
+        if self.gap.is_zero() && !self.is_empty() {
+            vec![self.concat()]
+        } else {
+            self.frames().cloned().collect()
         }
-        self
     }
 
-    /// All the bytes, without the silence.
+    /// All the bytes in order, without the silence.
     #[must_use]
     pub fn concat(&self) -> Vec<u8> {
-        self.frames.concat()
+        self.frames().flatten().copied().collect()
     }
 
     /// Whether there is nothing to write.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.frames.iter().all(Vec::is_empty)
+        self.frames().all(Vec::is_empty)
+    }
+
+    fn frames(&self) -> impl Iterator<Item = &Vec<u8>> {
+        self.first.iter().chain(&self.after)
     }
 }
 

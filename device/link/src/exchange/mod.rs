@@ -3,7 +3,9 @@
 //! This layer knows neither commands nor motors: a request is bytes, and whoever sends it judges the reply. What the
 //! bytes of packet serial mean is added in [`packet`].
 
+pub mod between;
 pub mod error;
+mod given_up;
 pub mod packet;
 pub mod statistics;
 pub mod trace;
@@ -18,6 +20,7 @@ pub use watch::{Interruption, Unwatched, Watch};
 use crate::clock::Clock;
 use crate::device::StopBytes;
 use crate::transport::Transport;
+use given_up::GivenUp;
 use std::sync::Arc;
 use std::time::Duration;
 use trace::Trace;
@@ -34,6 +37,8 @@ pub const RETRIES: u32 = 2;
 const STOLEN: Duration = Duration::from_millis(10);
 /// No reply gets much more than this for that reason.
 const STOLEN_MOST: Duration = Duration::from_millis(300);
+/// Of what is heard without a request that it answers, no more is kept: the longest reply, thrice.
+const MOST_HEARD: usize = 2048;
 /// Waiting for bytes is cut into slices of this, so that a Stop is seen in time.
 const SLICE: Duration = Duration::from_millis(1);
 
@@ -100,6 +105,8 @@ pub struct Exchange {
     received: Vec<u8>,
     /// Something may still be on its way that answers nothing any more.
     unsettled: bool,
+    /// Requests whose replies were given up and may still come, long after the line was quiet once.
+    given_up: GivenUp,
     /// Whether the request of the present attempt went out.
     sent: bool,
     last_reply_at: Duration,
@@ -121,6 +128,7 @@ impl Exchange {
             trace: Trace::default(),
             received: Vec::new(),
             unsettled: false,
+            given_up: GivenUp::default(),
             sent: false,
             last_reply_at: now,
             patience: Duration::ZERO,
@@ -170,13 +178,14 @@ impl Exchange {
     /// Writes the bytes of a stop at once, with the silence between its frames that the controllers need.
     pub fn write_stop(&mut self, stop: &StopBytes) -> Result<Duration, ExchangeError> {
         let mut written_at = self.clock.now();
-        for (index, frame) in stop.frames.iter().enumerate() {
-            if index > 0 {
-                let before = u32::try_from(stop.frames[index - 1].len()).unwrap_or(u32::MAX);
+        let mut before = 0;
+        for bytes in stop.writes() {
+            if before > 0 {
                 let on_the_wire = self.transport.byte_time().unwrap_or_default().saturating_mul(before);
                 self.clock.sleep(on_the_wire + stop.gap);
             }
-            written_at = self.write_now(frame)?;
+            written_at = self.write_now(&bytes)?;
+            before = u32::try_from(bytes.len()).unwrap_or(u32::MAX);
         }
         Ok(written_at)
     }
@@ -200,14 +209,18 @@ impl Exchange {
 
     /// Waits until the line has been quiet for [`RECOVERY`], throwing away what comes.
     pub fn settle(&mut self, watch: &dyn Watch) -> Result<(), ExchangeError> {
+        self.wait_for_silence(RECOVERY, watch)
+    }
+
+    fn wait_for_silence(&mut self, quiet: Duration, watch: &dyn Watch) -> Result<(), ExchangeError> {
         let begun_at = self.clock.now();
         let mut quiet_since = begun_at;
         let mut buffer = [0; 512];
         loop {
             let now = self.clock.now();
             self.look(watch, now)?;
-            let quiet_until = quiet_since + RECOVERY;
-            if now >= quiet_until || now >= begun_at + RECOVERY_LIMIT {
+            let quiet_until = quiet_since + quiet;
+            if now >= quiet_until || now >= begun_at + quiet.max(RECOVERY_LIMIT) {
                 self.unsettled = false;
                 return Ok(());
             }
@@ -217,6 +230,26 @@ impl Exchange {
                 self.stray(&buffer[..count], quiet_since);
             }
         }
+    }
+
+    /// Whether the reply to an earlier request may still come. A reply without a checksum, such as an acknowledgement, proves nothing
+    /// then: the byte may be one of that reply.
+    #[must_use]
+    pub fn may_hear_late_replies(&self) -> bool {
+        self.given_up.may_come(self.clock.now())
+    }
+
+    /// Takes note that the reply to `request`, which carries a checksum over it, has come: controllers answer in order, so that
+    /// nothing asked before can come any more.
+    pub fn is_in_step(&mut self, request: &[u8]) {
+        self.given_up.answered(request);
+    }
+
+    /// Waits until the line was quiet for `quiet`, throwing away what comes, and expects no late reply any more.
+    pub fn drain(&mut self, quiet: Duration, watch: &dyn Watch) -> Result<(), ExchangeError> {
+        self.wait_for_silence(quiet, watch)?;
+        self.given_up.forget();
+        Ok(())
     }
 
     /// Waits for `time`, or until something more urgent comes.
@@ -292,7 +325,13 @@ impl Exchange {
         self.unsettled = true;
         self.write(request.bytes)?;
         self.sent = true;
-        let replied_at = self.receive(request, watch, judge, requested_at, tries)?;
+        let replied_at = match self.receive(request, watch, judge, requested_at, tries) {
+            Ok(replied_at) => replied_at,
+            Err(error) => {
+                self.given_up.note(request.bytes, request.reply_length, self.clock.now());
+                return Err(error);
+            }
+        };
         self.unsettled = false;
         self.last_reply_at = replied_at;
         self.counters.replied(requested_at, replied_at);
@@ -376,6 +415,22 @@ impl Exchange {
         self.counters.read(bytes.len());
         self.counters.totals.stray_bytes += bytes.len() as u64;
         self.trace.record(now, false, bytes);
+    }
+
+    /// Waits for more bytes until `until`, a slice at the most, and keeps them behind those at hand.
+    fn hear(&mut self, watch: &dyn Watch, until: Duration) -> Result<(), ExchangeError> {
+        let now = self.clock.now();
+        self.look(watch, now)?;
+        let mut buffer = [0; 1024];
+        let count = self.transport.read(&mut buffer, self.slice(watch, now, until))?;
+        if count > 0 {
+            self.counters.read(count);
+            self.trace.record(self.clock.now(), false, &buffer[..count]);
+            let surplus = (self.received.len() + count).saturating_sub(MOST_HEARD);
+            self.received.drain(..surplus.min(self.received.len()));
+            self.received.extend_from_slice(&buffer[..count]);
+        }
+        Ok(())
     }
 
     /// Lets something more urgent break in.

@@ -92,6 +92,9 @@ pub fn transact(exchange: &mut Exchange, watch: &dyn Watch, ask: &Ask<'_>) -> Re
     let span = exchange.exchange(&outgoing, watch, &mut |bytes| {
         judge(parse_reply(ask.request, ask.generation, bytes), bytes.len(), &mut values)
     })?;
+    if matches!(form.reply, ReplyForm::Data(_)) {
+        exchange.is_in_step(&bytes);
+    }
     Ok(Reply { values, span })
 }
 

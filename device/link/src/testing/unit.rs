@@ -2,6 +2,7 @@
 //! How a controller behaves is the simulator's business and is tested against it elsewhere.
 
 use super::{Answers, ms};
+use brushwork_protocol::models::Family;
 use brushwork_protocol::packet_serial::{
     Address, Direction, Field, FramerEvent, Generation, Kind, Request, RequestFramer, Value, encode_reply,
     number,
@@ -43,6 +44,8 @@ pub struct Bus {
     pub delay: Duration,
     /// Everything that was taken.
     pub taken: Vec<Taken>,
+    /// When the last reply left: one that is slow holds up those behind it, as controllers answer in order.
+    replied_at: Duration,
     framer: RequestFramer,
 }
 
@@ -62,6 +65,7 @@ impl Bus {
             slow: BTreeMap::new(),
             delay: ms(1),
             taken: Vec::new(),
+            replied_at: Duration::ZERO,
             framer: RequestFramer::new(Generation::Gen1),
         };
         bus.set(number::READ_PRIORITIES, &[1, 0, 0]);
@@ -120,7 +124,8 @@ impl Bus {
         let values = if form.direction == Direction::Write { Vec::new() } else { values };
         let reply = encode_reply(request, self.generation, &values).ok()?;
         let delay = self.slow.get(&request.command).copied().unwrap_or(self.delay);
-        Some((delay, reply))
+        self.replied_at = self.replied_at.max(now + delay);
+        Some((self.replied_at - now, reply))
     }
 
     fn default_of(&self, field: &Field) -> Value {
@@ -139,6 +144,13 @@ pub fn of_generation(bus: &SharedBus, generation: Generation) {
     let mut bus = bus.lock().unwrap();
     bus.generation = generation;
     bus.framer = RequestFramer::new(generation);
+}
+
+/// Makes the units RoboClaws that throw away what they do not know and all that follows it, until the line was silent for 10 ms.
+pub fn of_roboclaws(bus: &SharedBus) {
+    let mut bus = bus.lock().unwrap();
+    bus.version = "USB Roboclaw 2x7a v4.2.8".to_owned();
+    bus.framer = RequestFramer::for_family(bus.generation, Family::RoboClaw);
 }
 
 /// All eight addresses answer, as over USB.

@@ -44,6 +44,7 @@ impl CanOpen {
     fn nodes(&self, line: &mut Line<'_>, addresses: Addresses) -> Result<Vec<NodeId>, ExchangeError> {
         match addresses {
             Addresses::Only(id) => Ok(NodeId::new(id).into_iter().collect()),
+            Addresses::These(set) => Ok(set.iter().filter_map(NodeId::new).collect()),
             Addresses::Scan | Addresses::Factory => {
                 let mut found = self.ask_all(line)?;
                 found.extend(self.monitor.nodes());
@@ -126,8 +127,13 @@ impl Family for CanOpen {
         Ok(units)
     }
 
-    fn stop_bytes(&self) -> StopBytes {
-        StopBytes::at_once(NodeId::all().flat_map(|node| self.place(node).stop_bytes(false)).collect())
+    fn stop_bytes(&self, addresses: Addresses) -> StopBytes {
+        let told = |node: &NodeId| match addresses {
+            Addresses::These(set) => set.contains(node.get()),
+            Addresses::Scan | Addresses::Only(_) | Addresses::Factory => true,
+        };
+        let each = |node| self.place(node).stop_bytes(false);
+        NodeId::all().filter(told).map(each).reduce(StopBytes::with).unwrap_or_default()
     }
 }
 
@@ -152,6 +158,10 @@ fn nothing_there(line: &mut Line<'_>, addresses: Addresses, others: &[String], h
     let asked = match addresses {
         Addresses::Scan | Addresses::Factory => "no node of the bus answered".to_owned(),
         Addresses::Only(id) => format!("node {id} did not answer"),
+        Addresses::These(set) => {
+            let each: Vec<_> = set.iter().map(|id| id.to_string()).collect();
+            format!("none of the nodes {} answered", each.join(", "))
+        }
     };
     let (came_back, mend) = match (others, heard) {
         ([], 0) => (

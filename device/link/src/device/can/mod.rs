@@ -22,6 +22,7 @@ use brushwork_protocol::packet_serial::{hex, number};
 use std::time::Duration;
 
 use super::controller::{Described, Line};
+use super::stop::StopBytes;
 use crate::exchange::ExchangeError;
 
 /// The node that this program is on the bus, by its heartbeat: the highest, since other masters take low ones. Assumed free.
@@ -45,14 +46,19 @@ impl Place {
         self.form.encode(&frame).expect("both forms have frames with standard identifiers, a test says so")
     }
 
-    /// The frames that stop the node's motors: end of script, then duty 0 on each. Each is one frame and waits for no answer.
+    /// The frames that stop the node's motors: duty 0 on each; with `scripts` the end of the script and duty 0 again follow. Each waits
+    /// for no answer.
     #[must_use]
-    pub fn stop_bytes(self, scripts: bool) -> Vec<u8> {
+    pub fn stop_bytes(self, scripts: bool) -> StopBytes {
         use brushwork_protocol::canopen::objects::{TRIGGER, index_of};
-        let end = scripts.then(|| Transfer::download(index_of(number::STOP_SCRIPT), 0, &TRIGGER));
-        let duties =
-            [number::DUTY_M1, number::DUTY_M2].map(|duty| Transfer::download(index_of(duty), 0, &[0; 2]));
-        end.into_iter().chain(duties).flat_map(|transfer| self.request(transfer.begin())).collect()
+        let frame = |transfer: Transfer| self.request(transfer.begin());
+        let duty_zero: Vec<u8> = [number::DUTY_M1, number::DUTY_M2]
+            .into_iter()
+            .flat_map(|duty| frame(Transfer::download(index_of(duty), 0, &[0; 2])))
+            .collect();
+        let end_script = || frame(Transfer::download(index_of(number::STOP_SCRIPT), 0, &TRIGGER));
+        let after = if scripts { vec![end_script(), duty_zero.clone()] } else { Vec::new() };
+        StopBytes { first: vec![duty_zero], after, gap: Duration::ZERO }
     }
 
     /// Makes the node watch this program's heartbeat, and sees whether it does.
@@ -91,13 +97,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn stop_is_one_frame_for_the_script_and_one_for_each_motor() {
+    fn stop_is_one_frame_for_each_motor_then_one_for_the_script_and_each_motor_again() {
         let place = Place { node: NodeId::new(3).unwrap(), form: Form::Ascii };
         // 603: SDO to node 3. 2F: one byte; object 20F9 (249), subindex 0, a byte 0.
         // 2B: two bytes; objects 2020 (32) and 2021 (33), subindex 0, duty 0.
-        let expected = ":S603N2FF9200000000000;:S603N2B20200000000000;:S603N2B21200000000000;";
-        assert_eq!(String::from_utf8(place.stop_bytes(true)).unwrap(), expected);
-        assert_eq!(place.stop_bytes(false).len(), 2 * 23);
+        let duty_zero = ":S603N2B20200000000000;:S603N2B21200000000000;";
+        let expected = [duty_zero, ":S603N2FF9200000000000;", duty_zero].concat();
+        assert_eq!(String::from_utf8(place.stop_bytes(true).concat()).unwrap(), expected);
+        assert_eq!(String::from_utf8(place.stop_bytes(false).concat()).unwrap(), duty_zero);
     }
 
     #[test]

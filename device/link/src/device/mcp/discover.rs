@@ -9,7 +9,7 @@ use crate::device::stop::StopBytes;
 use crate::exchange::{ExchangeError, RETRIES};
 use crate::failure::Failure;
 use crate::transport::Stream;
-use brushwork_protocol::models;
+use brushwork_protocol::models::{self, Model};
 use brushwork_protocol::packet_serial::{Address, Generation, number};
 use std::time::Duration;
 
@@ -36,10 +36,15 @@ impl Family for PacketSerial {
         units
     }
 
-    fn stop_bytes(&self) -> StopBytes {
+    fn stop_bytes(&self, addresses: Addresses) -> StopBytes {
         let speaker = |address| Speaker::packets(address, Generation::Gen1);
-        let each = |address| stopping::bytes(speaker(address), true, false);
-        StopBytes::at_once(Address::ALL.into_iter().flat_map(each).collect())
+        // Nobody knows yet who runs scripts; the device thread ends them once it does.
+        let each = |address| stopping::bytes(speaker(address), false, false);
+        let told = |address: &Address| match addresses {
+            Addresses::These(set) => set.contains(address.get()),
+            Addresses::Scan | Addresses::Only(_) | Addresses::Factory => true,
+        };
+        Address::ALL.into_iter().filter(told).map(each).reduce(StopBytes::with).unwrap_or_default()
     }
 }
 
@@ -72,6 +77,7 @@ fn scan(line: &mut Line<'_>, addresses: Addresses) -> Result<Vec<(Address, Strin
     let (candidates, patience) = match addresses {
         Addresses::Scan => (Address::ALL.to_vec(), &SCAN_PATIENCE[..]),
         Addresses::Only(byte) => (Address::new(byte).into_iter().collect(), &PATIENCE[..]),
+        Addresses::These(set) => (set.iter().filter_map(Address::new).collect(), &SCAN_PATIENCE[..]),
         Addresses::Factory => (vec![Address::DEFAULT], &PATIENCE[..]),
     };
     let mut answers = Vec::new();
@@ -117,11 +123,14 @@ fn is_one_unit(
     stream: Option<Stream>,
 ) -> Result<bool, ExchangeError> {
     let Some((first, version)) = answers.first() else { return Ok(false) };
-    if answers.len() < Address::ALL.len() || answers.iter().any(|(_, other)| other != version) {
+    if answers.len() < 2 || answers.iter().any(|(_, other)| other != version) {
         return Ok(false);
     }
     if stream == Some(Stream::Usb) {
         return Ok(true);
+    }
+    if answers.len() < Address::ALL.len() {
+        return Ok(false);
     }
     for (address, _) in &answers[1..] {
         // Read next to each other, so that what moves has moved little.
@@ -216,7 +225,8 @@ fn finish(
         port: line.exchange().port(),
         notes,
     };
-    Ok(Mcp { speaker, identity, model, polls, has_buffered: false, monitor })
+    let runs_scripts = model.is_some_and(Model::runs_scripts);
+    Ok(Mcp { speaker, identity, model, polls, runs_scripts, has_buffered: false, monitor })
 }
 
 /// The version behind the last " v" of the text: "1.0.0" of "MCP266 2x60A v1.0.0".
@@ -231,6 +241,10 @@ fn nothing_there(line: &mut Line<'_>, addresses: Addresses, heard: u64) -> Failu
     let asked = match addresses {
         Addresses::Scan => "addresses 0x80 to 0x87".to_owned(),
         Addresses::Only(address) => format!("address 0x{address:02X}"),
+        Addresses::These(set) => {
+            let each: Vec<_> = set.iter().map(|address| format!("0x{address:02X}")).collect();
+            format!("the addresses {}", each.join(", "))
+        }
         Addresses::Factory => format!("address {}", Address::DEFAULT),
     };
     let came_back = match heard {

@@ -115,6 +115,8 @@ pub struct Mcp {
     identity: Identity,
     model: Option<&'static Model>,
     polls: PollList,
+    /// Whether it is known to run scripts: by its model, or since it has started one.
+    runs_scripts: bool,
     /// Whether this program has sent moves that can wait in the unit's buffers.
     has_buffered: bool,
     /// What is heard of the nodes, on a CAN bus.
@@ -149,12 +151,16 @@ impl Controller for Mcp {
     }
 
     fn stop_bytes(&self, scripts: bool) -> StopBytes {
-        StopBytes::at_once(stopping::bytes(self.speaker, scripts, self.has_buffered))
+        stopping::bytes(self.speaker, scripts && self.runs_scripts, self.has_buffered)
     }
 
     fn confirm_stop(&mut self, line: &mut Line<'_>, scripts: bool) -> Result<UnitStop, ExchangeError> {
         let on = self.name(line);
-        let stop = stopping::confirm(self.speaker, line, scripts, &on)?;
+        let reads = polling::commands(&self.polls);
+        let mut stop = stopping::confirm(self.speaker, line, &reads, scripts && self.runs_scripts, &on)?;
+        if scripts && !self.runs_scripts && self.model.is_none() {
+            stop.still_driven_by.push(UNKNOWN_SCRIPT.to_owned());
+        }
         if stop.buffers_empty == Some(true) {
             self.has_buffered = false;
         }
@@ -200,10 +206,17 @@ impl Controller for Mcp {
     }
 
     fn start_script(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError> {
-        self.speaker.ask(line, number::START_SCRIPT, &[]).map(drop)
+        self.speaker.ask(line, number::START_SCRIPT, &[])?;
+        self.runs_scripts = true;
+        Ok(())
     }
 
     fn stop_script(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError> {
+        if let Some(model) = self.model.filter(|model| !model.runs_scripts()) {
+            return Err(ExchangeError::Impossible {
+                what: format!("a {} runs no scripts", model.family.name()),
+            });
+        }
         self.speaker.ask(line, number::STOP_SCRIPT, &[]).map(drop)
     }
 
@@ -327,6 +340,9 @@ impl Mcp {
         lookup(command).map_or(Effect::Query, |row| row.effect(self.speaker.generation))
     }
 }
+
+const UNKNOWN_SCRIPT: &str =
+    "A script may still run: which model this is is not known, so no script was ended.";
 
 /// Commands that change what arming was based on: time-outs, streams, priorities, address, or all settings at once.
 const UNDERMINING: [u8; 7] = [

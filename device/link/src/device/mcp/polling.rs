@@ -5,7 +5,7 @@ use crate::device::channel::{Channel, PinSignal, Sample};
 use crate::device::controller::{Line, PollItem, PollList};
 use crate::device::status::StatusReport;
 use crate::exchange::{ExchangeError, Reply};
-use brushwork_protocol::packet_serial::{number, scale, status};
+use brushwork_protocol::packet_serial::{Effect, Generation, lookup, number, scale, status};
 
 /// Signals that change quickly, each read in every sweep.
 const FAST: [(u8, &str); 6] = [
@@ -53,6 +53,12 @@ pub fn find(speaker: Speaker, line: &mut Line<'_>) -> Result<PollList, ExchangeE
     Ok(PollList { fast, slow, status, signals: None })
 }
 
+/// Reads that the unit is known to answer: its version, by which it was found, and all that is polled.
+pub fn commands(polls: &PollList) -> Vec<u8> {
+    let polled = polls.fast.iter().chain(&polls.slow).filter_map(|item| u8::try_from(item.id).ok());
+    std::iter::once(number::READ_VERSION).chain(polled).collect()
+}
+
 /// What reads the input pins of an MCP.
 pub fn signals() -> PollItem {
     item(number::READ_SIGNAL_VALUES, "input signals")
@@ -82,7 +88,7 @@ pub fn read(
     item: PollItem,
     sample: &mut Sample,
 ) -> Result<Option<StatusReport>, ExchangeError> {
-    let command = u8::try_from(item.id).unwrap_or(0);
+    let command = read_command(item, speaker.generation)?;
     let reply = speaker.ask(line, command, &[])?;
     match command {
         number::READ_SPEED_M1 => signed_speed(sample, &reply, Channel::M1Velocity),
@@ -111,6 +117,13 @@ pub fn read(
             running_ticks: reply.values.try_int("tick").and_then(|ticks| u32::try_from(ticks).ok()),
         }
     }))
+}
+
+/// The command of an item. Whatever else came here must never go out: command 0 drives motor 1 forward.
+fn read_command(item: PollItem, generation: Generation) -> Result<u8, ExchangeError> {
+    let reads = |command: &u8| lookup(*command).is_some_and(|row| row.effect(generation) == Effect::Query);
+    let what = || format!("nothing can be read under the number {} ({})", item.id, item.name);
+    u8::try_from(item.id).ok().filter(reads).ok_or_else(|| ExchangeError::Impossible { what: what() })
 }
 
 /// The fields of the replies above and the channels they are. In 18 and 19 a field "status" is the direction.
@@ -171,4 +184,25 @@ fn pin_signals(sample: &mut Sample, reply: &Reply) {
 
 fn item(command: u8, name: &'static str) -> PollItem {
     PollItem { id: u16::from(command), name }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_item_that_is_no_read_has_no_command_and_none_is_put_in_its_place() {
+        for id in 0..=u16::MAX {
+            let item = PollItem { id, name: "anything" };
+            for generation in Generation::ALL {
+                let Ok(command) = read_command(item, generation) else { continue };
+                assert_eq!(u16::from(command), id);
+                let row = lookup(command).expect("it was found");
+                assert_eq!(row.effect(generation), Effect::Query, "{id}");
+            }
+        }
+        let driving = PollItem { id: 256, name: "a number that fits no command" };
+        let refused = read_command(driving, Generation::Gen1).unwrap_err().to_string();
+        assert_eq!(refused, "nothing can be read under the number 256 (a number that fits no command)");
+    }
 }

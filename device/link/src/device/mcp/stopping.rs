@@ -2,12 +2,15 @@
 
 use super::{Speaker, Wire};
 use crate::device::controller::Line;
-use crate::device::stop::UnitStop;
+use crate::device::stop::{StopBytes, UnitStop};
 use crate::exchange::ExchangeError;
+use crate::exchange::between::transact_between;
+use crate::exchange::packet::Ask;
 use crate::failure::Failure;
 use brushwork_protocol::codes::{self, Code};
 use brushwork_protocol::models::Model;
 use brushwork_protocol::packet_serial::{Generation, Record, Request, number, scale};
+use std::time::Duration;
 
 /// Duty 0 on both motors at the highest acceleration (command 54).
 const DUTY_ZERO: [i64; 4] = [0, scale::MAX_DUTY_ACCEL_RAW, 0, scale::MAX_DUTY_ACCEL_RAW];
@@ -16,37 +19,45 @@ const DROP_BUFFERS: [i64; 5] = [0, 0, 0, 0, 1];
 /// Buffer length that means "empty" (MCP manual 2.4.9, command 47).
 const EMPTY: i64 = 0x80;
 
+/// An acknowledgement that did not come at once is asked for in the way that no late reply can disturb.
+const QUICK_RETRIES: u32 = 1;
+
 /// What to do when a stop is not confirmed.
 const CUT_POWER: &str = "Cut the motor power now: the motors may still be running";
 
-/// The packets that stop a unit, back to back. With `buffered` the moves that wait are dropped too; duty 0 follows once
-/// more, since dropping is itself a move.
+/// The packets that stop a unit, back to back: duty 0, since that is what every unit knows and nothing may come before it. A unit
+/// discards what follows a packet that it does not know (MCP manual 2.2.4). With `scripts` the script is ended then, with
+/// `buffered` the moves that wait are dropped; duty 0 follows once more, since a script may have driven in between and dropping is
+/// itself a move.
 ///
 /// Assumed: a duty command ends the move that runs, and leaves open whether it drops those that wait.
-pub fn bytes(speaker: Speaker, scripts: bool, buffered: bool) -> Vec<u8> {
+pub fn bytes(speaker: Speaker, scripts: bool, buffered: bool) -> StopBytes {
     if let Wire::Objects(place) = speaker.wire {
         // Dropping buffers takes several accesses; the confirmation does that.
         return place.stop_bytes(scripts);
     }
-    let mut packets: Vec<(u8, &[i64])> = Vec::new();
-    if scripts {
-        packets.push((number::STOP_SCRIPT, &[]));
+    let end_script = scripts.then_some((number::STOP_SCRIPT, [].as_slice()));
+    let drop_buffers = buffered.then_some((number::SPEED_DISTANCE_BOTH, DROP_BUFFERS.as_slice()));
+    let duty_zero = encode(speaker, number::DUTY_ACCEL_BOTH, &DUTY_ZERO);
+    let with_duty_zero =
+        |(command, values): (u8, &[i64])| [encode(speaker, command, values), duty_zero.clone()];
+    StopBytes {
+        first: vec![duty_zero.clone()],
+        after: [end_script, drop_buffers].into_iter().flatten().flat_map(with_duty_zero).collect(),
+        gap: Duration::ZERO,
     }
-    packets.push((number::DUTY_ACCEL_BOTH, &DUTY_ZERO));
-    if buffered {
-        packets.push((number::SPEED_DISTANCE_BOTH, &DROP_BUFFERS));
-        packets.push((number::DUTY_ACCEL_BOTH, &DUTY_ZERO));
-    }
-    packets.into_iter().flat_map(|(command, values)| encode(speaker, command, values)).collect()
 }
 
-/// Stops with confirmation and empties the buffers. Only what breaks in and a lost link are errors.
+/// Stops with confirmation and empties the buffers. `reads` are commands that the unit is known to answer. Only what breaks in and
+/// a lost link are errors.
 pub fn confirm(
     speaker: Speaker,
     line: &mut Line<'_>,
+    reads: &[u8],
     scripts: bool,
     on: &str,
 ) -> Result<UnitStop, ExchangeError> {
+    let stand = |line: &mut Line<'_>| ask_surely(speaker, line, reads, number::DUTY_ACCEL_BOTH, &DUTY_ZERO);
     let mut stop = UnitStop {
         address: speaker.id(),
         confirmed: false,
@@ -55,15 +66,15 @@ pub fn confirm(
         still_driven_by: Vec::new(),
         failures: Vec::new(),
     };
-    if let Err(error) = speaker.ask(line, number::DUTY_ACCEL_BOTH, &DUTY_ZERO) {
+    if let Err(error) = stand(line) {
         pass_on(&error)?;
         stop.failures.push(Failure::new("stop the motors", on, error.full(), CUT_POWER));
         return Ok(stop);
     }
     stop.confirmed = true;
-    if scripts && stop_script(speaker, line, &mut stop)? {
+    if scripts && stop_script(speaker, line, reads, &mut stop)? {
         // It may have driven the motors again since they were told to stand.
-        if let Err(error) = speaker.ask(line, number::DUTY_ACCEL_BOTH, &DUTY_ZERO) {
+        if let Err(error) = stand(line) {
             pass_on(&error)?;
             stop.confirmed = false;
             stop.failures.push(Failure::new("stop the motors", on, error.full(), CUT_POWER));
@@ -145,11 +156,13 @@ fn lower_first(text: &str) -> String {
 
 /// Stops the script and says whether that was confirmed. A unit without scripts does not answer, which is no failure; then nobody knows
 /// whether one runs.
-fn stop_script(speaker: Speaker, line: &mut Line<'_>, stop: &mut UnitStop) -> Result<bool, ExchangeError> {
-    let retries = line.retries();
-    line.set_retries(1);
-    let stopped = speaker.ask(line, number::STOP_SCRIPT, &[]);
-    line.set_retries(retries);
+fn stop_script(
+    speaker: Speaker,
+    line: &mut Line<'_>,
+    reads: &[u8],
+    stop: &mut UnitStop,
+) -> Result<bool, ExchangeError> {
+    let stopped = ask_surely(speaker, line, reads, number::STOP_SCRIPT, &[]);
     stop.script_ended = Some(stopped.is_ok());
     if let Err(error) = stopped {
         pass_on(&error)?;
@@ -158,6 +171,36 @@ fn stop_script(speaker: Speaker, line: &mut Line<'_>, stop: &mut UnitStop) -> Re
         return Ok(false);
     }
     Ok(true)
+}
+
+/// Sends a command that may be repeated, until its acknowledgement is certain: no byte of a late reply counts as one, and none is taken
+/// for a refusal.
+fn ask_surely(
+    speaker: Speaker,
+    line: &mut Line<'_>,
+    reads: &[u8],
+    command: u8,
+    values: &[i64],
+) -> Result<(), ExchangeError> {
+    if matches!(speaker.wire, Wire::Objects(_)) {
+        // The answers of a node name the object that they answer for.
+        return speaker.ask(line, command, values).map(drop);
+    }
+    if !line.exchange().may_hear_late_replies() {
+        let retries = line.retries();
+        line.set_retries(QUICK_RETRIES);
+        let asked = speaker.ask(line, command, values);
+        line.set_retries(retries);
+        match asked {
+            Err(error) if error.is_unusable_answer() => {}
+            done => return done.map(drop),
+        }
+    }
+    let request = Request::new(speaker.address, command, values);
+    let (permit, retries) = (line.permit(), line.retries());
+    let ask = Ask { request: &request, generation: speaker.generation, permit, retries };
+    let (exchange, watch) = line.parts();
+    transact_between(exchange, watch, &ask, reads)
 }
 
 /// Whether the buffers are empty at the end; `None` if the unit does not tell.
@@ -212,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn stop_is_end_of_script_then_duty_zero_then_empty_buffers_then_duty_zero() {
+    fn stop_is_duty_zero_then_end_of_script_and_duty_zero_then_empty_buffers_and_duty_zero() {
         let speaker = Speaker::packets(Address::DEFAULT, Generation::Gen1);
         // 0x80, command 54, duty 0, accel 655359 (0009 FFFF), twice, CRC.
         let duty_zero =
@@ -221,9 +264,11 @@ mod tests {
         let end_script = crate::testing::with_crc(&[0x80, 249]);
         // 0x80, command 43, speed and distance 0 for both, buffer byte 1, CRC.
         let drop = crate::testing::with_crc(&[[0x80, 43].as_slice(), &[0; 16], &[1]].concat());
-        assert_eq!(bytes(speaker, false, false), duty_zero);
-        assert_eq!(bytes(speaker, true, false), [end_script.clone(), duty_zero.clone()].concat());
-        assert_eq!(bytes(speaker, true, true), [end_script, duty_zero.clone(), drop, duty_zero].concat());
+        let bytes = |scripts, buffered| bytes(speaker, scripts, buffered).concat();
+        assert_eq!(bytes(false, false), duty_zero);
+        assert_eq!(bytes(true, false), [&*duty_zero, &end_script, &duty_zero].concat());
+        assert_eq!(bytes(false, true), [&*duty_zero, &drop, &duty_zero].concat());
+        assert_eq!(bytes(true, true), [&*duty_zero, &end_script, &duty_zero, &drop, &duty_zero].concat());
     }
 
     #[test]

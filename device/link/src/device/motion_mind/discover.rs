@@ -60,6 +60,13 @@ impl Family for MotionMinds {
                 None => Vec::new(),
             },
             Addresses::Factory => patiently(line, Address::FACTORY)?.into_iter().collect(),
+            Addresses::These(set) => {
+                let mut found = Vec::new();
+                for address in set.iter().filter_map(Address::unit) {
+                    found.extend(patiently(line, address)?);
+                }
+                found
+            }
             Addresses::Scan => scan(line)?,
         };
         if found.is_empty() {
@@ -72,9 +79,17 @@ impl Family for MotionMinds {
         Ok(units)
     }
 
-    fn stop_bytes(&self) -> StopBytes {
+    fn stop_bytes(&self, addresses: Addresses) -> StopBytes {
+        let told = match addresses {
+            Addresses::These(set) => set.iter().filter_map(Address::unit).collect(),
+            Addresses::Scan | Addresses::Only(_) | Addresses::Factory => vec![Address::BROADCAST],
+        };
         let modes = [Mode::Serial, Mode::SerialPid];
-        stopping::broadcast(&modes, Protocol::Binary).then(stopping::broadcast(&modes, Protocol::Text))
+        let each = |address| {
+            let stop = |protocol| stopping::of_modes(&Speaker::new(address, protocol), &modes);
+            stop(Protocol::Binary).with(stop(Protocol::Text))
+        };
+        told.into_iter().map(each).reduce(StopBytes::with).unwrap_or_default()
     }
 
     fn stop_all_bytes(&self, units: &[&Identity]) -> Option<StopBytes> {
@@ -85,7 +100,7 @@ impl Family for MotionMinds {
             stopping::broadcast(&modes, protocol)
         });
         let [binary, text] = bytes;
-        Some(binary.then(text)).filter(|bytes| !bytes.is_empty())
+        Some(binary.with(text)).filter(|bytes| !bytes.is_empty())
     }
 }
 
@@ -213,6 +228,10 @@ fn nothing_there(line: &mut Line<'_>, addresses: Addresses, heard_before: u64) -
     let asked = match addresses {
         Addresses::Scan => "addresses 1 to 98".to_owned(),
         Addresses::Only(address) => format!("address {address}"),
+        Addresses::These(set) => {
+            let each: Vec<_> = set.iter().map(|address| address.to_string()).collect();
+            format!("the addresses {}", each.join(", "))
+        }
         Addresses::Factory => format!("address {}", Address::FACTORY.get()),
     };
     let (came_back, mend) = match heard {

@@ -28,6 +28,9 @@ const LOOP_LIMIT: Duration = Duration::from_millis(800);
 /// Drive in mode 3 changes at the next update of TIMER, which is at most 1.3 s away.
 const DUTY_LIMIT: Duration = Duration::from_millis(1600);
 
+/// The longest reply is done within this: all registers in text, about 500 characters at 19,200 baud.
+const LATE_REPLY: Duration = Duration::from_millis(300);
+
 const CUT_POWER: &str = "Cut the motor power now: the motor may still be running";
 
 /// A register in RAM that a stop has changed.
@@ -83,17 +86,26 @@ pub fn bytes(speaker: &Speaker, mode: Mode, ramp: Ramp) -> StopBytes {
     let stop = commands(mode).unwrap_or(Command::ChangeSpeed(0));
     let steepest = Command::Write { register: number::VELOCITYLIMIT, value: STEEPEST };
     let ramp_away = (mode == Mode::Serial && ramp.is_slow()).then_some(steepest);
-    let frames = [Some(stop), ramp_away].into_iter().flatten();
     // These commands fit both protocols at every address of one unit.
-    StopBytes { frames: frames.filter_map(|command| speaker.encode(&command).ok()).collect(), gap: GAP }
+    let frame = |command: Command| speaker.encode(&command).ok();
+    StopBytes {
+        first: frame(stop).into_iter().collect(),
+        after: ramp_away.and_then(frame).into_iter().collect(),
+        gap: GAP,
+    }
 }
 
 /// The frames that stop every unit of the bus in these modes, in one of the protocols: all hear them and none answers.
 pub fn broadcast(modes: &[Mode], protocol: Protocol) -> StopBytes {
-    let speaker = Speaker::new(Address::BROADCAST, protocol);
+    of_modes(&Speaker::new(Address::BROADCAST, protocol), modes)
+}
+
+/// The frames that stop a unit, or all of them, in whichever of these modes it is.
+pub fn of_modes(speaker: &Speaker, modes: &[Mode]) -> StopBytes {
     let mut stops: Vec<Command> = modes.iter().filter_map(|mode| commands(*mode)).collect();
     stops.dedup();
-    StopBytes { frames: stops.iter().filter_map(|stop| speaker.encode(stop).ok()).collect(), gap: GAP }
+    let first = stops.iter().filter_map(|stop| speaker.encode(stop).ok()).collect();
+    StopBytes { first, after: Vec::new(), gap: GAP }
 }
 
 /// Stops with confirmation: by the acknowledge, and by reading that the drive is 0 or the motor stands. Only what breaks in and a
@@ -108,6 +120,11 @@ pub fn confirm(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<UnitStop, E
         still_driven_by: Vec::new(),
         failures: Vec::new(),
     };
+    // The answers of the unit do not say which question they answer, so none may be late any more.
+    if line.exchange().may_hear_late_replies() {
+        let (exchange, watch) = line.parts();
+        exchange.drain(LATE_REPLY, watch)?;
+    }
     match stand(unit, line) {
         Ok(Ended::Stands) => stop.confirmed = true,
         Ok(Ended::SwitchedOff) => {

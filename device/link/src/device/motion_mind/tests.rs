@@ -42,7 +42,7 @@ fn a_drive_is_the_command_of_its_mode_or_a_sentence() {
 fn a_broadcast_stop_is_one_frame_for_each_way_of_moving() {
     let stop = broadcast(&[Mode::Serial, Mode::Serial, Mode::SerialPid], Protocol::Binary);
     // CHANGE_SPEED 0 to 99: 14 63 00 00, sum 77. MOVEAT_VELOCITY 0: 17 63 00 00, sum 7A.
-    assert_eq!(stop.frames, [vec![0x14, 0x63, 0, 0, 0x77], vec![0x17, 0x63, 0, 0, 0x7A]]);
+    assert_eq!(stop.writes(), [vec![0x14, 0x63, 0, 0, 0x77], vec![0x17, 0x63, 0, 0, 0x7A]]);
     assert!(stop.gap > Duration::from_millis(5), "5 ms of silence end a frame");
     let text = broadcast(&[Mode::Serial, Mode::SerialPid], Protocol::Text);
     assert_eq!(text.concat(), b"C99 0\r\nV99 0\r\n");

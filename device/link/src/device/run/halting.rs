@@ -105,7 +105,7 @@ impl DeviceLoop {
 
     fn stop_bytes(&self, reason: &DisarmReason) -> StopBytes {
         if self.phase == Phase::Connecting {
-            return self.family.stop_bytes();
+            return self.family.stop_bytes(self.options.addresses);
         }
         if *reason == DisarmReason::Stop && self.units.len() > 1 {
             let units: Vec<_> = self.units.iter().map(|unit| unit.controller.identity()).collect();
@@ -116,7 +116,7 @@ impl DeviceLoop {
         let scripts = |index: usize| *reason == DisarmReason::Stop || self.units[index].script_started;
         let concerned = self.concerned(reason).into_iter();
         let bytes = concerned.map(|index| self.units[index].controller.stop_bytes(scripts(index)));
-        bytes.reduce(StopBytes::then).unwrap_or_default()
+        bytes.reduce(StopBytes::with).unwrap_or_default()
     }
 
     fn disarm(&mut self, reason: DisarmReason) {
@@ -130,13 +130,14 @@ impl DeviceLoop {
 
     /// Asks one unit to confirm that it stands. A new Stop on the way writes the bytes again and begins anew.
     fn confirm(&mut self, index: usize, all_scripts: bool) -> Result<UnitStop, ExchangeError> {
+        let begun_at = self.clock.now();
         loop {
             match self.try_to_confirm(index, all_scripts) {
                 Err(error) if error.interruption() == Some(Interruption::Stop) => {
                     self.write_stop(&DisarmReason::Stop)?;
                 }
                 Ok(stop) => {
-                    self.note_confirmation(index, &stop);
+                    self.note_confirmation(index, &stop, begun_at);
                     return Ok(stop);
                 }
                 Err(error) => return Err(error),
@@ -145,7 +146,7 @@ impl DeviceLoop {
     }
 
     /// A script that this program has started has to confirm its end too, or it may drive the motors again.
-    fn note_confirmation(&mut self, index: usize, stop: &UnitStop) {
+    fn note_confirmation(&mut self, index: usize, stop: &UnitStop, begun_at: Duration) {
         let now = self.clock.now();
         let unit = &mut self.units[index];
         let script_may_run = unit.script_started && stop.script_ended != Some(true);
@@ -153,7 +154,7 @@ impl DeviceLoop {
             (unit.moved, unit.script_started, unit.stop_again) = (false, false, None);
             unit.setpoints = [Some(0.0); 2];
         } else if unit.moved {
-            let since = unit.stop_again.map_or(now, |again| again.since);
+            let since = unit.stop_again.map_or(begun_at, |again| again.since);
             unit.stop_again = Some(StopAgain { at: now + STOP_AGAIN_INTERVAL, since });
         }
     }
@@ -179,7 +180,7 @@ impl DeviceLoop {
             Err(error) if error.interruption().is_some() => return,
             Err(error) => return self.lose(&error),
         };
-        self.note_confirmation(index, &stop);
+        self.note_confirmation(index, &stop, requested_at);
         let ended_at = self.clock.now();
         if self.units[index].stop_again.is_none() {
             let units = vec![stop];

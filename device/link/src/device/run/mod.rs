@@ -72,6 +72,8 @@ pub struct DeviceLoop {
     sweep: Sweep,
     statistics_at: Duration,
     phase: Phase,
+    /// Whether Stop came while units were looked for: it is served in full, scripts included, once they are known.
+    stopped_while_connecting: bool,
     /// The last bytes sent, to read their answer by when traffic is shown, and what has come of it.
     last_sent: Vec<u8>,
     last_received: Vec<u8>,
@@ -155,6 +157,7 @@ impl DeviceLoop {
             sweep: Sweep::new(now),
             statistics_at: now + STATISTICS_INTERVAL,
             phase: Phase::Connecting,
+            stopped_while_connecting: false,
             last_sent: Vec::new(),
             last_received: Vec::new(),
             clock,
@@ -241,11 +244,17 @@ impl DeviceLoop {
         self.phase = Phase::Running;
         self.sweep = Sweep::new(self.clock.now());
         self.tell_selection();
+        if std::mem::take(&mut self.stopped_while_connecting) {
+            self.halt(DisarmReason::Stop);
+        }
     }
 
     fn break_off_connecting(&mut self, error: &ExchangeError) {
         match error.interruption() {
-            Some(Interruption::Stop) => self.halt(DisarmReason::Stop),
+            Some(Interruption::Stop) => {
+                self.stopped_while_connecting = true;
+                self.halt(DisarmReason::Stop);
+            }
             Some(_) => self.close(),
             None => self.lose(error),
         }

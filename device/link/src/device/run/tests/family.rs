@@ -10,7 +10,7 @@ use crate::device::controller::{
 use crate::device::drive::{ArmScope, Drive, DriveCommand};
 use crate::device::event::{DisarmReason, Event};
 use crate::device::identity::Identity;
-use crate::device::options::DeviceOptions;
+use crate::device::options::{Addresses, DeviceOptions};
 use crate::device::request::Request;
 use crate::device::run::DeviceLoop;
 use crate::device::status::StatusReport;
@@ -88,7 +88,7 @@ impl Controller for Toy {
     }
 
     fn stop_bytes(&self, _scripts: bool) -> StopBytes {
-        StopBytes::at_once(b"D 0\n".to_vec())
+        StopBytes::at_once(vec![b"D 0\n".to_vec()])
     }
 
     fn confirm_stop(&mut self, line: &mut Line<'_>, _scripts: bool) -> Result<UnitStop, ExchangeError> {
@@ -186,8 +186,8 @@ impl Family for Toys {
         Ok(vec![Box::new(Toy { identity })])
     }
 
-    fn stop_bytes(&self) -> StopBytes {
-        StopBytes::at_once(b"D 0\n".to_vec())
+    fn stop_bytes(&self, _: Addresses) -> StopBytes {
+        StopBytes::at_once(vec![b"D 0\n".to_vec()])
     }
 }
 

@@ -8,18 +8,19 @@ use crate::device::options::DeviceOptions;
 use crate::device::request::{PollRate, Request};
 use crate::device::stop::StopReport;
 use crate::testing::ms;
-use crate::testing::unit::Bus;
+use crate::testing::unit::{Bus, SharedBus, of_roboclaws};
 use crate::transport::Stream;
 use brushwork_protocol::packet_serial::{Motor, Value, number};
 use std::collections::BTreeSet;
 
 #[test]
-fn stop_all_is_end_of_script_and_duty_zero_armed_or_not() {
+fn stop_all_is_duty_zero_then_end_of_script_and_duty_zero_armed_or_not() {
     let mut link = Link::connected();
     link.handle.stop_all();
     link.run_for(ms(200));
     let commands = link.bus().commands();
-    assert_eq!(commands[..2], [number::STOP_SCRIPT, number::DUTY_ACCEL_BOTH]);
+    let burst = [number::DUTY_ACCEL_BOTH, number::STOP_SCRIPT, number::DUTY_ACCEL_BOTH];
+    assert_eq!(commands[..3], burst);
     assert_eq!(link.taken(number::DUTY_ACCEL_BOTH)[0].values, DUTY_ZERO);
     let report = &link.stops()[0];
     assert!(report.confirmed() && report.latency() == ms(0));
@@ -151,9 +152,14 @@ fn buffers_that_are_not_empty_are_emptied() {
     link.handle.stop_all();
     link.run_for(ms(200));
     let commands = link.bus().commands();
-    let blind =
-        [number::STOP_SCRIPT, number::DUTY_ACCEL_BOTH, number::SPEED_DISTANCE_BOTH, number::DUTY_ACCEL_BOTH];
-    assert_eq!(commands[..4], blind, "a move was queued, so the buffers go in the first write");
+    let blind = [
+        number::DUTY_ACCEL_BOTH,
+        number::STOP_SCRIPT,
+        number::DUTY_ACCEL_BOTH,
+        number::SPEED_DISTANCE_BOTH,
+        number::DUTY_ACCEL_BOTH,
+    ];
+    assert_eq!(commands[..5], blind, "a move was queued, so the buffers go in the first write");
     assert_eq!(link.taken(number::SPEED_DISTANCE_BOTH)[0].values, [0, 0, 0, 0, 1]);
     assert_eq!(link.stops()[0].units[0].buffers_empty, Some(false), "the bus says that one is not");
 }
@@ -202,10 +208,128 @@ fn stop_while_units_are_still_looked_for_goes_to_all_addresses() {
     let writes = link.tap.writes();
     let (at, bytes) = writes.iter().find(|(_, bytes)| bytes.len() > 100).unwrap();
     assert_eq!(*at, ms(5));
-    // Eight times 249 with CRC (4 bytes) and 54 with its 12 bytes and CRC (16 bytes).
-    assert_eq!(bytes.len(), 8 * (4 + 16));
-    assert_eq!(bytes[..2], [0x80, number::STOP_SCRIPT]);
+    // Eight times 54 with its 12 bytes and CRC (16 bytes), and no 249 while nobody knows who runs scripts.
+    assert_eq!(bytes.chunks(16).map(|packet| packet[1]).collect::<Vec<_>>(), [number::DUTY_ACCEL_BOTH; 8]);
     assert!(link.has(|event| matches!(event, Event::Connected(_))), "the search goes on after it");
+    // It is an MCP, so the Stop is finished: its script is ended too.
+    assert_eq!(link.taken(number::STOP_SCRIPT).first().map(|taken| taken.address), Some(0x80));
+    assert_eq!(link.stops().last().map(|report| (report.confirmed(), report.units.len())), Some((true, 1)));
+}
+
+/// All commands in the bytes that were written, known or not: packets of a Stop have a length that is known.
+fn holds(writes: &[(std::time::Duration, Vec<u8>)], address: u8, command: u8) -> bool {
+    let packet = crate::testing::with_crc(&[address, command]);
+    writes.iter().any(|(_, bytes)| bytes.windows(packet.len()).any(|window| window == packet))
+}
+
+fn strict_roboclaw(version: Option<&str>) -> (SharedBus, Link) {
+    let bus = Bus::shared();
+    of_roboclaws(&bus);
+    if let Some(version) = version {
+        version.clone_into(&mut bus.lock().unwrap().version);
+    }
+    let link =
+        Link::with(bus.clone(), DeviceOptions { stream: Some(Stream::Usb), ..DeviceOptions::default() });
+    (bus, link)
+}
+
+#[test]
+fn a_roboclaw_that_drops_all_behind_an_unknown_packet_is_stopped_by_the_first_and_never_told_to_end_a_script()
+{
+    let (_, mut link) = strict_roboclaw(None);
+    link.run_for(ms(500));
+    link.ask(Request::Arm(ArmScope::Pwm));
+    link.drive(0.5);
+    link.run_for(ms(50));
+    link.forget();
+    link.handle.stop_all();
+    let stop_at = link.clock.now();
+    link.run_for(ms(500));
+    let first = link.bus().taken[0].clone();
+    assert_eq!((first.command, first.at, first.values.as_slice()), (54, stop_at, DUTY_ZERO.as_slice()));
+    let report = &link.stops()[0];
+    assert!(report.confirmed(), "{report:?}");
+    assert_eq!(report.units[0].script_ended, None);
+    assert_eq!(report.units[0].still_driven_by, Vec::<String>::new());
+    assert!(!holds(&link.tap.writes(), 0x80, number::STOP_SCRIPT));
+}
+
+#[test]
+fn a_unit_of_which_nobody_knows_whether_it_runs_scripts_is_not_told_to_end_one_and_that_is_said() {
+    let (_, mut link) = strict_roboclaw(Some("Motor board v9"));
+    link.run_for(ms(500));
+    link.handle.stop_all();
+    link.run_for(ms(500));
+    let report = &link.stops()[0];
+    assert!(report.confirmed(), "{report:?}");
+    assert!(report.units[0].still_driven_by[0].starts_with("A script may still run"), "{report:?}");
+    assert!(!holds(&link.tap.writes(), 0x80, number::STOP_SCRIPT));
+}
+
+/// A link on which 144 was asked and given up while the motors ran; its reply of nothing but `byte` comes 400 ms after it was asked.
+fn link_with_a_late_reply(byte: i64) -> Link {
+    let mut link = Link::armed();
+    link.drive(0.5);
+    link.run_for(ms(50));
+    let pins = Value::Records(vec![vec![byte; 15]; 18]);
+    link.bus().values.insert(number::READ_SIGNALS, vec![pins]);
+    link.bus().slow.insert(number::READ_SIGNALS, ms(400));
+    link.ask(Request::Transact { id: 1, command: number::READ_SIGNALS, values: Vec::new() });
+    // Given up three times by now, its first reply not yet there.
+    link.run_for(ms(230));
+    assert!(link.sentences().iter().any(|sentence| sentence.contains("no answer")), "{:?}", link.sentences());
+    link.forget();
+    link
+}
+
+#[test]
+fn bytes_of_a_reply_that_was_given_up_never_confirm_a_stop_that_nobody_heard() {
+    // Bytes of 0xFF look like acknowledgements.
+    for byte in [-1, 0xFF] {
+        let mut link = link_with_a_late_reply(byte);
+        // The unit hears nothing from here on; what it was asked before still comes.
+        link.bus().addresses.clear();
+        link.handle.stop_all();
+        link.run_for(ms(1_500));
+        assert!(!link.stops().is_empty());
+        assert!(link.stops().iter().all(|report| !report.confirmed()), "{:?}", link.stops());
+        assert!(link.sentences().is_empty() || !link.sentences()[0].contains("confirmed"));
+    }
+}
+
+#[test]
+fn bytes_of_a_reply_that_was_given_up_never_raise_an_alarm_while_the_motors_stand() {
+    for byte in [0, 1, 0x55, -1] {
+        let mut link = link_with_a_late_reply(byte);
+        link.handle.stop_all();
+        let stop_at = link.clock.now();
+        link.run_for(ms(3_000));
+        let first = &link.taken(number::DUTY_ACCEL_BOTH)[0];
+        assert_eq!(first.at, stop_at, "the bytes wait for nothing");
+        let reports = link.stops();
+        assert_eq!(reports.len(), 1, "{reports:?}");
+        assert!(reports[0].confirmed() && reports[0].units[0].failures.is_empty(), "{reports:?}");
+        assert_eq!(reports[0].units[0].script_ended, Some(true));
+        assert_eq!(link.sentences(), Vec::<String>::new());
+        link.forget();
+        link.run_for(ms(1_000));
+        assert!(link.has(|event| matches!(event, Event::Sample(_))), "the line works on");
+    }
+}
+
+#[test]
+fn a_unit_that_answers_late_by_nearly_half_a_second_confirms_its_stop_without_an_alarm() {
+    for delay in [100, 250, 400] {
+        let mut link = Link::armed();
+        link.drive(0.5);
+        link.run_for(ms(50));
+        link.forget();
+        link.bus().delay = ms(delay);
+        link.handle.stop_all();
+        link.run_for(ms(4_000));
+        let first = &link.stops()[0];
+        assert!(first.confirmed() && first.units[0].failures.is_empty(), "{delay} ms: {first:?}");
+    }
 }
 
 #[test]

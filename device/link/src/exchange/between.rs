@@ -1,0 +1,156 @@
+//! An acknowledgement that nothing else can be, on a line on which late replies may come.
+//!
+//! The acknowledgement of packet serial is one byte 0xFF without a checksum (MCP manual 2.2.5), and any byte of a reply that was given up
+//! looks like it, or like a refusal. So the request is put between two reads: controllers answer in order, and a 0xFF between the
+//! replies to both reads, which carry checksums over their requests, answers what was between the reads. Nothing that comes is thrown
+//! away on the way there, since what is waited for may be behind it.
+
+use super::packet::{Ask, gate};
+use super::watch::Watch;
+use super::{Exchange, ExchangeError, RECOVERY, Tries};
+use brushwork_protocol::packet_serial::{ACK, ReplyProgress, Request, parse_reply};
+use std::time::Duration;
+
+/// Pause between two tries, beyond their time on the wire: as often as a stop is repeated that nobody confirms.
+const AGAIN: Duration = Duration::from_millis(100);
+/// How long an answer is waited for beyond what late replies take: radio links and serial servers are 50 to 400 ms late.
+const LIMIT: Duration = Duration::from_millis(450);
+/// Late replies are waited for no longer than this.
+const LONGEST: Duration = Duration::from_secs(6);
+/// A byte at 2400 bit/s, the slowest rate of a RoboClaw, where the rate of the line is not known.
+const SLOWEST_BYTE: Duration = Duration::from_micros(4167);
+/// Both reads answered and nothing between them: so often, and the unit does not acknowledge the request.
+const UNACKNOWLEDGED_TRIES: u32 = 3;
+/// Bytes of one try with its answers, at least: two reads, two packets of duties, the shortest replies.
+const TRY_BYTES: u32 = 48;
+
+/// The reads around a request, as they were written.
+struct Try {
+    before: Request,
+    after: Request,
+}
+
+/// Sends a request that may be repeated until its acknowledgement is certain. It comes first in each try, then once more between two
+/// reads, so that a stop is never later than by itself. `reads` are commands without arguments that the unit is
+/// known to answer, two or more, so that the tries can be told apart.
+///
+/// # Errors
+/// No acknowledgement in time, or whatever breaks in.
+pub fn transact_between(
+    exchange: &mut Exchange,
+    watch: &dyn Watch,
+    ask: &Ask<'_>,
+    reads: &[u8],
+) -> Result<(), ExchangeError> {
+    gate(ask)?;
+    let request = ask.request.encode(ask.generation).map_err(|source| ExchangeError::Encode { source })?;
+    let reads = reads_to_be_told_apart(exchange, ask, reads);
+    let begun_at = exchange.clock.now();
+    let byte_time = exchange.byte_time().unwrap_or(SLOWEST_BYTE);
+    let late = byte_time * u32::try_from(exchange.given_up.reply_bytes()).unwrap_or(u32::MAX);
+    let until = begun_at + (LIMIT + late).min(LONGEST);
+    let pause = AGAIN + exchange.byte_time().unwrap_or_default() * TRY_BYTES;
+    exchange.received.clear();
+    exchange.unsettled = true;
+    // A unit that has lost the thread finds it after a silence.
+    while exchange.clock.now() < begun_at + RECOVERY {
+        exchange.hear(watch, begun_at + RECOVERY)?;
+    }
+
+    let mut tries: Vec<Try> = Vec::new();
+    let mut next_try_at = exchange.clock.now();
+    let mut acknowledged_until = None;
+    let mut unacknowledged = 0;
+    loop {
+        let now = exchange.clock.now();
+        match acknowledged_until {
+            // Heard, but what was sent after that may still be answered.
+            Some(until) if now >= until => {
+                give_up(exchange, &tries, &request);
+                return Ok(());
+            }
+            None if now >= until || unacknowledged >= UNACKNOWLEDGED_TRIES => {
+                give_up(exchange, &tries, &request);
+                exchange.counters.totals.timeouts += 1;
+                let (waited, heard) = (now.saturating_sub(begun_at), exchange.received.len());
+                let tries = Tries(u32::try_from(tries.len()).unwrap_or(u32::MAX));
+                return Err(ExchangeError::TimedOut { waited, tries, heard });
+            }
+            None if now >= next_try_at => {
+                let pair = pair(&reads, tries.len());
+                let bytes =
+                    [&*request, &encode(&pair.before, ask), &request, &encode(&pair.after, ask)].concat();
+                exchange.write_now(&bytes)?;
+                tries.push(pair);
+                next_try_at = now + pause;
+            }
+            Some(_) | None => {}
+        }
+        exchange.hear(watch, acknowledged_until.unwrap_or(next_try_at.min(until)))?;
+        let Some((index, is_acknowledged)) = newest_answer(&tries, ask, &exchange.received) else { continue };
+        exchange.received.clear();
+        let now = exchange.clock.now();
+        match is_acknowledged {
+            false => unacknowledged += 1,
+            true if index + 1 == tries.len() => {
+                exchange.given_up.forget();
+                exchange.unsettled = false;
+                exchange.last_reply_at = now;
+                return Ok(());
+            }
+            // The later tries are answered as late as this one was.
+            true => {
+                acknowledged_until =
+                    acknowledged_until.or(Some(now + now.saturating_sub(begun_at).max(AGAIN)))
+            }
+        }
+    }
+}
+
+/// The reads whose replies cannot be late ones; all of them where there is no such read.
+fn reads_to_be_told_apart(exchange: &Exchange, ask: &Ask<'_>, reads: &[u8]) -> Vec<Request> {
+    let requests = || reads.iter().map(|command| Request::new(ask.request.address, *command, &[]));
+    let fresh: Vec<_> = requests().filter(|read| !exchange.given_up.holds(&encode(read, ask))).collect();
+    if fresh.is_empty() { requests().collect() } else { fresh }
+}
+
+/// The reads around the try of this number: no two tries in a row, and as many as there are reads squared, have the same ones.
+fn pair(reads: &[Request], index: usize) -> Try {
+    let read = |index: usize| reads[index % reads.len().max(1)].clone();
+    Try { before: read(index), after: read(index + index / reads.len().max(1)) }
+}
+
+fn encode(read: &Request, ask: &Ask<'_>) -> Vec<u8> {
+    read.encode(ask.generation).unwrap_or_default()
+}
+
+/// The latest try of which both reads were answered, and whether an acknowledgement stands between the two replies.
+fn newest_answer(tries: &[Try], ask: &Ask<'_>, bytes: &[u8]) -> Option<(usize, bool)> {
+    tries.iter().enumerate().rev().find_map(|(index, pair)| {
+        let end_of =
+            |read: &Request, start: usize| match parse_reply(read, ask.generation, bytes.get(start..)?) {
+                ReplyProgress::Done { used, .. } => Some(start + used),
+                _ => None,
+            };
+        (0..bytes.len()).find_map(|start| {
+            let middle = end_of(&pair.before, start)?;
+            let acknowledged =
+                (bytes.get(middle) == Some(&ACK)).then(|| end_of(&pair.after, middle + 1)).flatten();
+            if acknowledged.is_some() {
+                return Some((index, true));
+            }
+            end_of(&pair.after, middle).map(|_| (index, false))
+        })
+    })
+}
+
+/// Nobody waits for what these tries may still bring.
+fn give_up(exchange: &mut Exchange, tries: &[Try], request: &[u8]) {
+    let now = exchange.clock.now();
+    for pair in tries {
+        let bytes = |read: &Request| [read.address.get(), read.command];
+        exchange.given_up.note(&bytes(&pair.before), 0, now);
+        exchange.given_up.note(request, 0, now);
+        exchange.given_up.note(&bytes(&pair.after), 0, now);
+    }
+}
