@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use brushwork_protocol::canopen::NodeId;
 use brushwork_protocol::canopen::adapter::Form;
-use brushwork_protocol::packet_serial::{Generation, Motor};
+use brushwork_protocol::packet_serial::{Address, Generation, Motor, Request, number};
 use brushwork_sim::bridge::BridgeOutput;
 use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_sim::machine::{Machine as _, StreamIndex};
@@ -60,6 +60,60 @@ impl OnPty {
     pub fn start_with(config: ControllerConfig, stream: StreamIndex) -> Self {
         let controller = Controller::new(config).expect("the presets make a controller");
         Self::serve(Bus::single(controller, stream), stream)
+    }
+
+    /// MCP266s at these addresses on one TTL line, with the time-out of a [`OnPty::patient`] one.
+    ///
+    /// # Panics
+    /// When the system gives no pseudo-terminal.
+    #[must_use]
+    pub fn line(addresses: &[u8]) -> Self {
+        let unit = |address: &u8| {
+            let mut config = ControllerConfig::default();
+            config.address = Address::new(*address).expect("an address of packet serial");
+            let mut settings = Settings::factory(config.model, *address);
+            settings.streams[StreamIndex::Uart1.index()].timeout_ms = PATIENT_TIME_OUT.as_millis() as u32;
+            config.settings = Some(settings);
+            Controller::new(config).expect("the presets make a controller")
+        };
+        let bus = Bus::new(addresses.iter().map(unit).collect(), StreamIndex::Uart1);
+        Self::serve(bus.expect("a TTL line takes several"), StreamIndex::Uart1)
+    }
+
+    /// Has both motors of every unit of a [`OnPty::line`] driven at half duty, as if another program had done it.
+    ///
+    /// # Panics
+    /// When the server has ended.
+    pub fn set_all_going(&self) {
+        let units = self.handle.inspect(|bus| bus.controllers().len()).expect("the server runs");
+        for index in 0..units {
+            let packet = move |bus: &mut Bus| {
+                let unit = &mut bus.controllers_mut()[index];
+                let address = Address::new(unit.settings().unit.address).expect("it was given one");
+                let generation = unit.config().generation;
+                let request = Request::new(address, number::DUTY_BOTH, &[16_000, 16_000]);
+                unit.receive(
+                    StreamIndex::Uart1,
+                    &request.encode(generation).expect("every generation has it"),
+                );
+            };
+            self.handle.inspect(packet).expect("the server runs as long as this does");
+        }
+        wait::until(
+            "driven motors",
+            || self.driven() == vec![true; units],
+            || format!("{:?}", self.driven()),
+        );
+    }
+
+    /// Which units of a line have a bridge that is driven.
+    ///
+    /// # Panics
+    /// When the server has ended.
+    #[must_use]
+    pub fn driven(&self) -> Vec<bool> {
+        let look = |bus: &mut Bus| bus.controllers().iter().map(is_driven).collect();
+        self.handle.inspect(look).expect("the server runs as long as this does")
     }
 
     /// An MCP266 as a node of a CAN bus, behind an adapter.

@@ -104,6 +104,72 @@ fn several_units_share_one_line() {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
+// brushwork stop
+
+#[test]
+fn stop_without_an_address_stops_every_unit_of_the_line_and_says_which_and_who_did_not_answer() {
+    let line = OnPty::line(&[0x80, 0x81, 0x85]);
+    line.set_all_going();
+    let ending = run(&["stop", "--connect", &text(&line.port())]);
+    assert_eq!(ending.status.code(), Some(DONE), "{ending:?}");
+    wait::until("bridges at rest", || line.driven() == [false; 3], || format!("{:?}", line.driven()));
+    for place in ["0x80", "0x81", "0x85"] {
+        let told = format!("{place}: both motors stopped");
+        assert!(ending.stdout.iter().any(|sentence| sentence.starts_with(&told)), "{ending:?}");
+    }
+    let said = ending.stderr.join(" ");
+    assert!(said.contains("Nobody answered at 0x82 to 0x84, 0x86, 0x87"), "{said}");
+    line.set_all_going();
+    let told = json(&run(&["stop", "--connect", &text(&line.port()), "--json"]));
+    assert_eq!(told["confirmed"], true);
+    let addresses: Vec<_> =
+        told["units"].as_array().into_iter().flatten().map(|unit| &unit["address"]).collect();
+    assert_eq!(addresses, [0x80, 0x81, 0x85]);
+    wait::until("bridges at rest", || line.driven() == [false; 3], || format!("{:?}", line.driven()));
+}
+
+#[test]
+fn stop_with_addresses_stops_these_alone_and_names_the_one_that_does_not_answer() {
+    let line = OnPty::line(&[0x80, 0x81, 0x82]);
+    line.set_all_going();
+    let port = text(&line.port());
+    let ending = run(&["stop", "--connect", &port, "--address", "0x81,0x82"]);
+    assert_eq!(ending.status.code(), Some(DONE), "{ending:?}");
+    wait::until("two at rest", || line.driven() == [true, false, false], || format!("{:?}", line.driven()));
+    let ending = run(&["stop", "--connect", &port, "--address", "0x80,0x86"]);
+    assert_eq!(ending.status.code(), Some(NO_LINK), "{ending:?}");
+    wait::until("all at rest", || line.driven() == [false; 3], || format!("{:?}", line.driven()));
+    let said = ending.stderr.join(" ");
+    assert!(said.contains("Nobody answered at 0x86: the stop was written there too"), "{said}");
+    let ending = run(&["stop", "--connect", &port, "--address", "0x80,5"]);
+    assert_eq!(ending.status.code(), Some(USAGE), "{ending:?}");
+}
+
+#[test]
+fn ctrl_c_of_a_drive_without_an_address_stops_the_other_units_of_the_line_too() {
+    let line = OnPty::line(&[0x80, 0x81]);
+    line.set_all_going();
+    let target = format!("{},stream=ttl1", line.port().display());
+    for (address, after) in [(Some("0x80"), [false, true]), (None, [false, false])] {
+        let ending = (0..TRIES).find_map(|_| {
+            line.set_all_going();
+            let more = address.map_or(vec![], |address| vec!["--address", address]);
+            let drive = ["drive", "--connect", &target, "--duty", "25", "--for", "600"];
+            let mut program = start(&[&drive[..], &more].concat());
+            program.wait_for(" s  ", LIMIT);
+            program.signal("INT");
+            let ending = program.finish(LIMIT);
+            (!ending.was_starved()).then_some(ending)
+        });
+        let ending = ending.expect("the program has the processor now and then");
+        assert_eq!(ending.status.code(), Some(INTERRUPTED), "{ending:?}");
+        wait::until("the bridges", || line.driven() == after, || format!("{:?} {ending:?}", line.driven()));
+        let said = ending.stderr.join(" ");
+        assert_eq!(said.contains("0x81: both motors stopped"), address.is_none(), "{said}");
+    }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
 // brushwork drive
 
 fn drive_arguments(port: &Path, seconds: &str) -> Vec<String> {

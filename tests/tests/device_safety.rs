@@ -11,7 +11,7 @@ use brushwork_link::device::{
 use brushwork_link::settings::{Subject, read_all};
 use brushwork_link::{Interruption, Wire};
 use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::{Address, Generation, Motor, Value, number};
+use brushwork_protocol::packet_serial::{Address, Generation, Motor, Request as Packet, Value, number};
 use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_sim::faults::{Direction, Fault, FaultEffect};
 use brushwork_sim::machine::StreamIndex;
@@ -114,6 +114,40 @@ fn stop_in_the_middle_of_the_longest_reply_stands_the_motors_at_once() {
     assert!(link.stops()[0].confirmed(), "{:?}", link.stops());
     assert!(link.stops()[0].ended_at > stop_at + ms(40), "the rest of the reply was waited out");
     assert_standing(&mut link, 0);
+}
+
+#[test]
+fn a_roboclaw_stands_by_the_first_bytes_of_a_stop_alone_and_beside_an_mcp() {
+    let roboclaw = models::lookup("roboclaw-2x7a").expect("in the list");
+    for generation in Generation::ALL {
+        for neighbour in [None, Some(0x81), Some(0x87)] {
+            let claw = ControllerConfig { generation, ..ControllerConfig::of(roboclaw) };
+            let mut units = vec![Controller::new(claw).expect("the default world is sound")];
+            if let Some(address) = neighbour.and_then(Address::new) {
+                let mcp = ControllerConfig { address, ..config(generation) };
+                units.push(Controller::new(mcp).expect("the default world is sound"));
+            }
+            let bus = Bus::new(units, StreamIndex::Uart1).expect("a TTL line takes several");
+            let options =
+                DeviceOptions { stream: Some(Stream::Ttl1), simulated: true, ..DeviceOptions::default() };
+            let mut link = VirtualLink::new(bus, StreamIndex::Uart1, options, Vec::new(), 1);
+            link.run_for(ms(4_000));
+            let duty = Packet::new(Address::DEFAULT, number::DUTY_BOTH, &[16_000, 16_000]);
+            let bytes = duty.encode(generation).expect("every generation has it");
+            link.bus(|bus| bus.controllers_mut()[0].receive(StreamIndex::Uart1, &bytes));
+            link.run_for(ms(500));
+            assert!(link.duties(0)[0] > 0.4, "{generation}: {:?}", link.duties(0));
+            let stop_at = link.now();
+            // At 38400 bit/s 16 bytes take 4.2 ms, those of the neighbour as long; then the ramp, in ticks of 3.3 ms.
+            let after = link.duties_at(stop_at + ms(12) + RAMP_DOWN / 2, 0);
+            link.handle.stop_all();
+            link.run_for(ms(900));
+            let duties = *after.lock().expect("nothing panicked");
+            assert_eq!(duties, Some([0.0, 0.0]), "{generation}, neighbour {neighbour:?}");
+            assert!(link.stops()[0].confirmed(), "{generation}: {:?}", link.stops());
+            assert_standing(&mut link, 0);
+        }
+    }
 }
 
 #[test]

@@ -56,6 +56,32 @@ fn a_served_unit_answers_in_lines() {
 }
 
 #[test]
+fn stop_finds_and_stops_units_at_other_addresses_than_the_factorys_without_being_told_the_family() {
+    let (program, mut stream) = served(&["--address", "3,7", "--mode", "3"]);
+    let port = stream.peer_addr().expect("it is connected").to_string();
+    for unit in [3, 7] {
+        // CHANGE_SPEED 763: the motor runs on until somebody stops it.
+        ask(&mut stream, &[0x14, unit, 0xFB, 0x02, 0x11 + unit], &[0x06]);
+    }
+    drop(stream);
+    let ending = Program::start(BRUSHWORK, &["stop", "--connect", &format!("tcp:{port}")]).finish(LIMIT);
+    assert_eq!(ending.status.code(), Some(0), "{ending:?}");
+    for unit in [3, 7] {
+        let told = format!("unit {unit}: motor stopped");
+        assert!(ending.stdout.iter().any(|sentence| sentence.starts_with(&told)), "{ending:?}");
+    }
+    let mut stream = TcpStream::connect(port).expect("it is still served");
+    stream.set_read_timeout(Some(LIMIT)).expect("a timeout can be set");
+    for unit in [3, 7] {
+        // READ REGISTER 21, PWMOUT.
+        let request = [0x1D, unit, 21];
+        let sum = request.iter().fold(0_u8, |sum, byte| sum.wrapping_add(*byte));
+        ask(&mut stream, &[&request[..], &[sum]].concat(), &[unit, 0, 0, unit]);
+    }
+    drop(program);
+}
+
+#[test]
 fn what_does_not_fit_together_is_said_in_a_sentence() {
     for (options, sentence) in [
         (&["--model", "motion-mind-3", "--address", "0x80"][..], "an address from 1 to 98"),

@@ -103,6 +103,27 @@ pub struct ConnectArgs {
     pub family: FamilyChoice,
 }
 
+/// A line with all its controllers, or some of them.
+#[derive(Debug, Args)]
+pub struct LineArgs {
+    /// As for the other commands: sim:mcp266, /dev/ttyACM0, /dev/ttyUSB0,baud=115200,stream=ttl1, COM3, tcp:HOST:PORT or can:PORT.
+    #[arg(long, short = 'c', alias = "to", value_name = "TARGET", default_value = "sim:mcp266")]
+    pub connect: String,
+    /// Addresses, or node ids on a CAN bus, with commas between them: 0x80,0x81. Without it all that the line has.
+    #[arg(long, value_name = "ADDRESS", value_delimiter = ',', value_parser = parse_line_address)]
+    pub address: Vec<u8>,
+    /// Which protocol family to look for; without it packet serial first, then a Motion Mind.
+    #[arg(long, value_name = "auto|mcp|motion-mind", default_value_t, hide_default_value = true)]
+    pub family: FamilyChoice,
+}
+
+impl ConnectArgs {
+    /// The whole line that the controller is on.
+    pub fn line(&self) -> LineArgs {
+        LineArgs { connect: self.connect.clone(), address: Vec::new(), family: self.family }
+    }
+}
+
 /// One of the controller's serial streams (MCP manual 2.3.1, command 145).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum StreamArg {
@@ -233,11 +254,12 @@ pub enum MotorArg {
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
     brushwork stop --connect /dev/ttyACM0\n  \
-    brushwork stop --connect /dev/ttyUSB0,baud=115200 --address 0x81")]
+    brushwork stop --connect /dev/ttyUSB0,baud=115200 --address 0x81,0x83\n\n\
+    Without --address every controller on the line is told to stop, and asked to confirm it.")]
 pub struct StopArgs {
-    /// The controller.
+    /// The line.
     #[command(flatten)]
-    pub connect: ConnectArgs,
+    pub line: LineArgs,
     /// Print JSON.
     #[arg(long)]
     pub json: bool,
@@ -355,6 +377,15 @@ fn parse_connect_address(text: &str) -> Result<u8, String> {
     let number = parse_byte(text).and_then(UnitAddress::new).map(UnitAddress::get);
     number.ok_or_else(|| {
         format!("\"{text}\" is no address: use 0x80 to 0x87 (128 to 135), or 1 to 98 for a Motion Mind")
+    })
+}
+
+/// Reads an address of either family or a node id.
+fn parse_line_address(text: &str) -> Result<u8, String> {
+    parse_byte(text).filter(|number| (1..=0x87).contains(number)).ok_or_else(|| {
+        format!(
+            "\"{text}\" is no address: use 0x80 to 0x87 (128 to 135), 1 to 98 for a Motion Mind, or 1 to 127 for a CANopen node"
+        )
     })
 }
 

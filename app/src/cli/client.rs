@@ -3,15 +3,15 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use brushwork_link::SystemClock;
 use brushwork_link::device::{
     Addresses, ArmScope, DeviceHandle, Event, FamilyChoice, Identity, PollRate, Request,
 };
 use brushwork_link::transport::{ConnectTarget, Stream};
+use brushwork_link::{Failure, SystemClock};
 use brushwork_protocol::{motion_mind, packet_serial};
 use crossbeam_channel::RecvTimeoutError;
 
-use super::args::ConnectArgs;
+use super::args::{ConnectArgs, LineArgs};
 use super::exit::Exit;
 use super::interrupt::Interrupt;
 use super::output::say;
@@ -19,7 +19,7 @@ use crate::session::motion_mind_spec::MotionMindSpec;
 use crate::session::{self, Session, SessionOptions, Simulation};
 
 /// How long a controller may take to be found and identified.
-const CONNECT_LIMIT: Duration = Duration::from_secs(60);
+pub const CONNECT_LIMIT: Duration = Duration::from_secs(60);
 /// How long a controller may take to answer one request.
 pub const ANSWER_LIMIT: Duration = Duration::from_secs(30);
 /// How long one look at the event queue waits, so that signals are noticed.
@@ -82,11 +82,33 @@ pub fn open(args: &ConnectArgs, poll: PollRate) -> Result<Session, Exit> {
 /// # Errors
 /// Says on standard error what cannot be understood.
 pub fn target(args: &ConnectArgs) -> Result<ConnectTarget, Exit> {
-    let target = args.connect.parse().map_err(|error| {
-        say(format!("Could not understand --connect {}: {error}.", args.connect));
+    Ok(at_addresses(parse(&args.connect)?, args.address.as_slice()))
+}
+
+/// What `--connect` and `--address` of a whole line name.
+///
+/// # Errors
+/// Says on standard error what cannot be understood.
+pub fn line_target(args: &LineArgs) -> Result<ConnectTarget, Exit> {
+    let target = parse(&args.connect)?;
+    let on_can = matches!(target, ConnectTarget::Can { .. });
+    let is_packet_address = |address: &u8| packet_serial::Address::new(*address).is_some();
+    let is_unit = |address: &u8| motion_mind::Address::unit(*address).is_some();
+    let one_family = args.address.iter().all(is_packet_address) || args.address.iter().all(is_unit);
+    if !on_can && !one_family {
+        say(
+            "Could not understand --address: a line has controllers of one family, MCP or RoboClaw at 0x80 to 0x87 or Motion Minds at 1 to 98.",
+        );
+        return Err(Exit::Usage);
+    }
+    Ok(at_addresses(target, &args.address))
+}
+
+fn parse(target: &str) -> Result<ConnectTarget, Exit> {
+    target.parse().map_err(|error| {
+        say(format!("Could not understand --connect {target}: {error}."));
         Exit::Usage
-    })?;
-    Ok(at_address(target, args))
+    })
 }
 
 /// The family that is meant: as the target or `--family` says.
@@ -117,19 +139,15 @@ fn first_of(target: &ConnectTarget) -> motion_mind::Address {
     spec.and_then(|spec| spec.addresses.first().copied()).unwrap_or(motion_mind::Address::FACTORY)
 }
 
-/// A simulated controller is made at the address that is asked for, unless the target names one itself.
-fn at_address(target: ConnectTarget, args: &ConnectArgs) -> ConnectTarget {
-    match (target, args.address) {
-        (ConnectTarget::Sim(text), Some(address))
-            if MotionMindSpec::is_asked_for(&text) && !text.contains("address=") =>
-        {
-            ConnectTarget::Sim(format!("{text},address={address}"))
-        }
-        (ConnectTarget::Sim(text), Some(address)) if !text.contains("address=") => {
+/// Simulated controllers are made at the addresses that are asked for, unless the target names some itself.
+fn at_addresses(target: ConnectTarget, addresses: &[u8]) -> ConnectTarget {
+    match target {
+        ConnectTarget::Sim(text) if !text.contains("address=") && !addresses.is_empty() => {
             let model = if text.is_empty() { "mcp266" } else { &text };
-            ConnectTarget::Sim(format!("{model},address={address:#04x}"))
+            let options = addresses.iter().map(|address| format!(",address={address}"));
+            ConnectTarget::Sim(format!("{model}{}", options.collect::<String>()))
         }
-        (other, _) => other,
+        other => other,
     }
 }
 
@@ -161,16 +179,27 @@ fn wait_for_identity(
 /// # Errors
 /// The link is lost (said on standard error) or the program was asked to end.
 pub fn next_event(device: &DeviceHandle, interrupt: &Interrupt) -> Result<Option<Event>, Exit> {
+    look_for_event(device, interrupt)?.map_err(|failure| {
+        say(failure.to_string());
+        Exit::NoLink
+    })
+}
+
+/// The same, with the loss of the link as the failure that it is.
+///
+/// # Errors
+/// The link was closed (said on standard error) or the program was asked to end.
+pub fn look_for_event(
+    device: &DeviceHandle,
+    interrupt: &Interrupt,
+) -> Result<Result<Option<Event>, Failure>, Exit> {
     if interrupt.is_raised() {
         return Err(Exit::Interrupted);
     }
     match device.events().recv_timeout(EVENT_SLICE) {
-        Ok(Event::Lost(failure)) => {
-            say(failure.to_string());
-            Err(Exit::NoLink)
-        }
-        Ok(event) => Ok(Some(event)),
-        Err(RecvTimeoutError::Timeout) => Ok(None),
+        Ok(Event::Lost(failure)) => Ok(Err(failure)),
+        Ok(event) => Ok(Ok(Some(event))),
+        Err(RecvTimeoutError::Timeout) => Ok(Ok(None)),
         Err(RecvTimeoutError::Disconnected) => {
             say("The link was closed.");
             Err(Exit::NoLink)

@@ -47,7 +47,14 @@ pub fn run(args: &DriveArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
         Err(exit) => return exit,
     };
     let driven = keep_driving(args, drive, &client, out, interrupt);
-    finish(driven, &client)
+    let exit = finish(driven, &client);
+    if exit == Exit::Interrupted && args.connect.address.is_none() && client.simulation().is_none() {
+        // Whoever presses Ctrl-C and has named no unit wants the line to stand, whoever set it in motion.
+        let own = client.identity.clone();
+        drop(client);
+        stop::stop_the_rest(&args.connect.line(), &own);
+    }
+    exit
 }
 
 /// Stops whatever the driving came to, then gives its exit code.

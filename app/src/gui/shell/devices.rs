@@ -359,6 +359,7 @@ fn family_ui(ui: &mut Ui, chosen: &mut FamilyChoice) {
 fn address_ui(ui: &mut Ui, shown: Addresses, motion_minds: bool) -> Addresses {
     let text = |addresses: Addresses| match addresses {
         Addresses::Scan => "Scan all".to_owned(),
+        Addresses::These(_) => "Several".to_owned(),
         Addresses::Factory => "Factory".to_owned(),
         Addresses::Only(address) if motion_minds => format!("unit {address}"),
         Addresses::Only(address) => format!("0x{address:02X}"),
