@@ -158,3 +158,59 @@ fn fmt_rewrites_files_once_and_check_names_those_that_would_change() {
     assert_eq!(mcl(&["fmt", "--check", path(&file)], "").status.code(), Some(0));
     assert_eq!(shown(&mcl(&["fmt", "-"], "a  =  1\n").stdout), "a = 1\n");
 }
+
+/// Runs `brushwork mcl` with an input and at most 1 GiB of addresses, beyond which it is ended by a signal.
+fn mcl_in_a_gigabyte(arguments: &[&str], input: Stdio) -> Output {
+    Command::new("sh")
+        .args(["-c", "ulimit -v 1048576 && exec \"$0\" mcl \"$@\"", BRUSHWORK])
+        .args(arguments)
+        .stdin(input)
+        .output()
+        .expect("the program starts")
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn input_without_end_is_refused_with_a_sentence() {
+    for command in ["check", "build", "run", "disasm", "fmt"] {
+        let zeros = std::fs::File::open("/dev/zero").expect("the device is there");
+        let by_input = mcl_in_a_gigabyte(&[command, "-"], zeros.into());
+        let by_name = mcl_in_a_gigabyte(&[command, "/dev/zero"], Stdio::null());
+        for (output, name) in [(by_input, "-"), (by_name, "/dev/zero")] {
+            assert_eq!(output.status.code(), Some(1), "{command} {name}: {}", shown(&output.stderr));
+            let expected =
+                format!("Could not read {name}: it goes on after 16 MiB, and no script or image is as long.");
+            assert!(shown(&output.stderr).starts_with(&expected), "{command}: {}", shown(&output.stderr));
+        }
+    }
+}
+
+#[test]
+fn hostile_scripts_are_answered_in_a_gigabyte() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let long = format!("x var long\nx = x{}\nend\n", "+x".repeat(39_999));
+    let longer = "end\n".repeat(600_000);
+    for (name, text, code, said) in [
+        ("nuls", "\0".repeat(50_000), 9, "49900 more errors than the 100 that are listed"),
+        ("more-nuls", "\0".repeat(1_000_000), 9, "999900 more errors than the 100 that are listed"),
+        ("sum", long, 0, "0 errors"),
+        ("deep", "(".repeat(1_000_000), 9, "A statement cannot begin with `(`"),
+        ("deeper", format!("a = {}", "(".repeat(1_000_000)), 9, "nested more than 100 levels deep"),
+        (
+            "long",
+            longer,
+            9,
+            "long.mcl:524289:1: error E317: The text has 2400000 bytes; a program has at most 2097152",
+        ),
+    ] {
+        let file = script(folder.path(), &format!("{name}.mcl"), &text);
+        let output = mcl_in_a_gigabyte(&["check", path(&file)], Stdio::null());
+        assert_eq!(output.status.code(), Some(code), "{name}: {}", shown(&output.stderr));
+        assert!(shown(&output.stdout).contains(said), "{name}: {}", shown(&output.stdout));
+        // A hundred errors with their lines, none of them drawn in full.
+        assert!(output.stdout.len() < 200_000, "{name}: {} bytes", output.stdout.len());
+    }
+    let file = folder.path().join("long.mcl");
+    let output = mcl_in_a_gigabyte(&["fmt", path(&file)], Stdio::null());
+    assert_eq!(output.status.code(), Some(9), "{}", shown(&output.stderr));
+}

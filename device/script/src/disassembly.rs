@@ -5,16 +5,22 @@ use crate::mcl::types::VarType;
 use crate::op::{Array, Cell, Op, TableRef};
 use crate::program::Program;
 use crate::text::Lines;
+use std::collections::{BTreeSet, HashMap};
 use std::fmt::Write as _;
 
 /// The listing of a program; with its text, each line of that stands above its instructions.
 #[must_use]
 pub fn disassemble(program: &Program, text: Option<&str>) -> String {
-    let listing = Listing { program, source: text.map(|text| (text, Lines::of(text))) };
+    let mut labels: HashMap<u32, Vec<&str>> = HashMap::new();
+    for (label, at) in &program.labels {
+        labels.entry(*at).or_default().push(label);
+    }
+    let source = text.map(|text| (text, Lines::of(text)));
+    let listing = Listing { program, source, labels, owners: owners(program) };
     let mut page = listing.head();
     let mut line = 0;
     for (at, op) in program.ops.iter().enumerate() {
-        for (label, _) in program.labels.iter().filter(|(_, to)| *to as usize == at) {
+        for label in listing.labels_at(at as u32) {
             let _ = writeln!(page, "{label}:");
         }
         let here = program.lines.get(at).copied().unwrap_or(0);
@@ -31,6 +37,37 @@ pub fn disassemble(program: &Program, text: Option<&str>) -> String {
 struct Listing<'a> {
     program: &'a Program,
     source: Option<(&'a str, Lines)>,
+    /// Labels by their instructions.
+    labels: HashMap<u32, Vec<&'a str>>,
+    /// For each bit of memory the first variable that lies there.
+    owners: Vec<Option<u32>>,
+}
+
+/// For each bit of memory the first variable, in the order of the program, that lies there; aliases lie across others.
+fn owners(program: &Program) -> Vec<Option<u32>> {
+    let bits = program.ram_bytes as usize * 8;
+    let mut begin: Vec<(u32, u32)> = Vec::with_capacity(program.variables.len());
+    let mut end: Vec<(u32, u32)> = Vec::with_capacity(program.variables.len());
+    for (index, variable) in (0u32..).zip(&program.variables) {
+        let Array { first, stride, length } = variable.memory;
+        let past = first.at + (length.max(1) - 1) * stride + first.kind.bits();
+        begin.push((first.at, index));
+        end.push((past, index));
+    }
+    begin.sort_unstable();
+    end.sort_unstable();
+    let (mut begin, mut end) = (begin.into_iter().peekable(), end.into_iter().peekable());
+    let mut here = BTreeSet::new();
+    let mut owner = |bit: u32| {
+        while let Some((_, index)) = begin.next_if(|(at, _)| *at <= bit) {
+            here.insert(index);
+        }
+        while let Some((_, index)) = end.next_if(|(at, _)| *at <= bit) {
+            here.remove(&index);
+        }
+        here.first().copied()
+    };
+    (0..bits as u32).map(&mut owner).collect()
 }
 
 impl Listing<'_> {
@@ -55,18 +92,18 @@ impl Listing<'_> {
 
     /// A place with the variable that lies there.
     fn cell(&self, place: Cell) -> String {
-        let inside = |memory: Array| {
-            let end = memory.first.at + (memory.length.max(1) - 1) * memory.stride + memory.first.kind.bits();
-            (memory.first.at..end).contains(&place.at)
-        };
-        let found = self.program.variables.iter().find(|variable| inside(variable.memory));
+        let owner = self.owners.get(place.at as usize).copied().flatten();
+        let found = owner.and_then(|index| self.program.variables.get(index as usize));
         let name = found.map(|variable| format!(" ; {}", variable.name)).unwrap_or_default();
         format!("{}{name}", cell(place))
     }
 
+    fn labels_at(&self, at: u32) -> &[&str] {
+        self.labels.get(&at).map_or(&[], Vec::as_slice)
+    }
+
     fn label(&self, to: u32) -> String {
-        let found = self.program.labels.iter().find(|(_, at)| *at == to);
-        found.map_or_else(|| to.to_string(), |(name, _)| format!("{to} ; {name}"))
+        self.labels_at(to).first().map_or_else(|| to.to_string(), |name| format!("{to} ; {name}"))
     }
 
     fn text(&self, at: u32, count: u32) -> String {

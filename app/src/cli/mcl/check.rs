@@ -1,6 +1,7 @@
 //! `brushwork mcl check`: what is wrong with scripts.
 
 use brushwork_script::diagnostic::{PlacedDiagnostic, Severity};
+use brushwork_script::mcl::codes;
 use serde::Serialize;
 
 use super::args::CheckArgs;
@@ -40,7 +41,11 @@ pub fn run(args: &CheckArgs, out: &mut Output) -> Exit {
         let compiled = source.compile();
         page += &source.rendered(&compiled);
         let diagnostics = source.placed(&compiled);
-        let count = |severity| diagnostics.iter().filter(|said| said.severity == severity).count();
+        // What says how many more there are is none of them.
+        let is_one =
+            |said: &PlacedDiagnostic| ![codes::MORE_ERRORS, codes::MORE_WARNINGS].contains(&said.code);
+        let listed = || diagnostics.iter().filter(|said| is_one(said));
+        let count = |severity| listed().filter(|said| said.severity == severity).count();
         let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
         files.push(Checked { file: source.name, ok: errors == 0, errors, warnings, diagnostics });
     }

@@ -3,6 +3,8 @@
 use std::path::Path;
 
 use brushwork_script::mcl::format::format;
+use brushwork_script::mcl::{LONGEST_TEXT, too_long};
+use brushwork_script::text::Lines;
 
 use super::args::FmtArgs;
 use super::source::{Source, is_standard};
@@ -29,7 +31,17 @@ fn one(path: &Path, args: &FmtArgs, out: &mut Output) -> Result<bool, Exit> {
         Exit::Failed
     };
     let source = Source::read(path).map_err(|error| failed(error.to_string()))?;
+    if let Some(refused) = too_long(&source.text) {
+        say(refused.render(&source.name, &source.text, &Lines::of(&source.text)).trim_end());
+        return Err(Exit::ScriptWrong);
+    }
     let formatted = format(&source.text);
+    if too_long(&formatted).is_some() {
+        return Err(failed(format!(
+            "Could not format {}: with its indentation it would be longer than the {LONGEST_TEXT} bytes that a program has at most.",
+            source.name
+        )));
+    }
     let changes = formatted != source.text;
     if args.check {
         if changes {

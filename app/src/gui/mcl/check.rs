@@ -104,6 +104,22 @@ mod tests {
     use super::*;
 
     #[test]
+    fn what_is_deep_long_or_wrong_throughout_ends_neither_the_thread_nor_the_program() {
+        let (told, news) = bounded(8);
+        let checker = Checker::start(move || {
+            let _ = told.try_send(());
+        });
+        let sum = format!("x var long\nx = x{}\n", "+x".repeat(40_000));
+        for (revision, text) in (1..).zip([sum, "(".repeat(100_000), "\0".repeat(50_000)]) {
+            checker.ask(DocId(1), revision, Rope::from_str(&text));
+            news.recv_timeout(crate::wait::PATIENCE).unwrap();
+            let checked = checker.answer().unwrap();
+            assert_eq!(checked.revision, revision);
+            assert!((1..=202).contains(&checked.index.diagnostics.len()));
+        }
+    }
+
+    #[test]
     fn the_newest_text_is_checked_within_a_tenth_of_a_second_after_the_last_key() {
         let (told, news) = bounded(8);
         let checker = Checker::start(move || {

@@ -1,7 +1,7 @@
 //! Programs in files: their encoding and line ends, which are kept, and how a file is written.
 
-use std::fs;
-use std::io;
+use std::fs::{self, File};
+use std::io::{self, Read as _};
 use std::path::Path;
 use std::time::SystemTime;
 
@@ -185,10 +185,20 @@ pub fn read(path: &Path) -> Result<Loaded, Failure> {
         Failure::new("open", path.display().to_string(), error, "Check the path and your rights")
     };
     let stamp = Stamp::of(path).map_err(|error| failed(error.to_string()))?;
+    let too_long = || failed("it is longer than 16 MB and can be no MCL program".to_owned());
     if stamp.length > LONGEST_BYTES {
-        return Err(failed("it is longer than 16 MB and can be no MCL program".to_owned()));
+        return Err(too_long());
     }
-    let bytes = fs::read(path).map_err(|error| failed(error.to_string()))?;
+    // A device or a pipe may never end.
+    if !fs::metadata(path).is_ok_and(|found| found.is_file()) {
+        return Err(failed("it is no file, but a folder, a device or a pipe".to_owned()));
+    }
+    let mut bytes = Vec::new();
+    let reading = File::open(path).and_then(|file| file.take(LONGEST_BYTES + 1).read_to_end(&mut bytes));
+    reading.map_err(|error| failed(error.to_string()))?;
+    if bytes.len() as u64 > LONGEST_BYTES {
+        return Err(too_long());
+    }
     let (text, format) = decode(&bytes);
     Ok(Loaded { text, format, stamp: Some(stamp) })
 }
@@ -265,5 +275,14 @@ mod tests {
         fs::write(&path, "longer").unwrap();
         assert_ne!(read(&path).unwrap().stamp, stamp);
         assert!(read(&folder.path().join("none")).is_err());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_never_ends_is_not_opened() {
+        for path in ["/dev/zero", "/tmp"] {
+            let failure = read(Path::new(path)).unwrap_err().to_string();
+            assert!(failure.contains("it is no file, but a folder, a device or a pipe"), "{failure}");
+        }
     }
 }

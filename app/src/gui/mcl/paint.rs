@@ -41,8 +41,7 @@ pub struct Line {
 impl Line {
     pub fn of(ui: &Ui, text: &str, metrics: &Metrics, is_left_out: bool) -> Self {
         let palette = Palette::of(ui);
-        let mut shown = String::with_capacity(text.len());
-        let mut bytes = Vec::with_capacity(text.len() + 1);
+        let (mut shown, mut bytes) = (String::new(), Vec::new());
         let mut starts = Vec::new();
         for (at, letter) in text.char_indices().take(LONGEST) {
             starts.push((at, shown.len()));
@@ -70,7 +69,7 @@ impl Line {
                 drawn = to;
             }
         };
-        for (range, class) in classes(text) {
+        for (range, class) in classes(&text[..end]) {
             append(&mut job, shown_at(range.start), palette.text);
             let color =
                 if is_left_out { palette.weak_text } else { color_of(&palette.syntax, class, palette) };

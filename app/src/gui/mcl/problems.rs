@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use brushwork_script::diagnostic::Severity;
+use brushwork_script::mcl::codes;
 use brushwork_script::mcl::index::Index;
 
 use super::buffer::Edit;
@@ -98,8 +99,12 @@ impl Findings {
 
     /// Errors and warnings.
     pub fn counts(&self) -> (usize, usize) {
-        let errors = self.problems.iter().filter(|problem| problem.severity == Severity::Error).count();
-        (errors, self.problems.len() - errors)
+        // What says how many more there are is none of them.
+        let is_one = |problem: &Problem| ![codes::MORE_ERRORS, codes::MORE_WARNINGS].contains(&problem.code);
+        let of = |severity| {
+            self.problems.iter().filter(|problem| problem.severity == severity && is_one(problem)).count()
+        };
+        (of(Severity::Error), of(Severity::Warning))
     }
 
     /// The problems at a byte, errors first.

@@ -2,12 +2,13 @@
 
 use super::types::VarType;
 use crate::text::Span;
+use std::sync::Arc;
 
 /// A name as it stands in the text; `key` is it in small letters.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Name {
-    /// For look-ups.
-    pub key: String,
+    /// For look-ups; one for all places of a name.
+    pub key: Arc<str>,
     /// Where it stands.
     pub span: Span,
 }
@@ -21,16 +22,16 @@ pub struct Statement {
     pub span: Span,
 }
 
-/// What a statement is.
+/// What a statement is. It is small, since a text can hold one in every two bytes: large parts are boxed.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(missing_docs, reason = "the line above each variant shows its parts")]
 pub enum StatementKind {
     /// `name VAR type` or `name VAR type(size)`.
-    Variable { name: Name, kind: VarType, size: Option<Expr> },
+    Variable { name: Name, kind: VarType, size: Option<Box<Expr>> },
     /// `name VAR other.modifier`.
     Alias { name: Name, of: Place },
     /// `name CON value`, or FCON.
-    Constant { name: Name, value: Expr, float: bool },
+    Constant { name: Name, value: Box<Expr>, float: bool },
     /// `name ByteTable values`.
     Table { name: Name, kind: VarType, values: Vec<Expr> },
     /// A label, with the variables that a subroutine takes.
@@ -40,33 +41,33 @@ pub enum StatementKind {
     /// `IF` with its branches, in order; the last may have no condition.
     If { branches: Vec<(Option<Expr>, Vec<Statement>)>, end: Span },
     /// `IF condition THEN label`, or GOTO or GOSUB on the line.
-    IfJump { condition: Expr, then: Box<Statement> },
+    IfJump { condition: Box<Expr>, then: Box<Statement> },
     /// `WHILE` to `WEND`.
-    While { condition: Expr, body: Vec<Statement>, end: Span },
+    While { condition: Box<Expr>, body: Vec<Statement>, end: Span },
     /// `DO` to `WHILE`, or `REPEAT` to `UNTIL`.
-    Repeat { body: Vec<Statement>, condition: Expr, until: bool },
+    Repeat { body: Vec<Statement>, condition: Box<Expr>, until: bool },
     /// `FOR` to `NEXT`.
-    For { variable: Place, start: Expr, finish: Expr, step: Option<Expr>, body: Vec<Statement>, end: Span },
+    For(Box<For>),
     /// `GOTO label`.
     Goto(Name),
     /// `GOSUB label[arguments], result`.
-    Gosub { label: Name, arguments: Vec<Expr>, result: Option<Place> },
+    Gosub { label: Name, arguments: Vec<Expr>, result: Option<Box<Place>> },
     /// `RETURN value`.
     Return(Option<Expr>),
     /// `BRANCH index, [labels]`.
-    Branch { index: Expr, labels: Vec<Name> },
+    Branch { index: Box<Expr>, labels: Vec<Name> },
     /// `PUTS stream, [items]`.
-    Puts { stream: Expr, items: Vec<Item> },
+    Puts { stream: Box<Expr>, items: Vec<Item> },
     /// `GETS stream, [items]`.
-    Gets { stream: Expr, items: Vec<Item> },
+    Gets { stream: Box<Expr>, items: Vec<Item> },
     /// `READ address, place`.
-    Read { address: Expr, to: Place },
+    Read { address: Box<Expr>, to: Place },
     /// `WRITE address, value`.
-    Write { address: Expr, value: Expr },
+    Write { address: Box<Expr>, value: Box<Expr> },
     /// `I2COUT` and `I2COUTNS`.
-    I2cOut { otherwise: Option<(Name, Expr)>, bytes: Vec<Expr>, stop: bool },
+    I2cOut { otherwise: Option<Box<(Name, Expr)>>, bytes: Vec<Expr>, stop: bool },
     /// `I2CIN`.
-    I2cIn { otherwise: Option<(Name, Expr)>, to: Vec<Place> },
+    I2cIn { otherwise: Option<Box<(Name, Expr)>>, to: Vec<Place> },
     /// `PAUSE time`.
     Pause(Expr),
     /// A motion command.
@@ -75,6 +76,18 @@ pub enum StatementKind {
     Clear,
     /// `END` and `STOP`.
     End,
+}
+
+/// `FOR variable = start TO finish STEP step`, its body and its `NEXT`.
+#[derive(Clone, Debug, PartialEq)]
+#[expect(missing_docs, reason = "the line above shows its parts")]
+pub struct For {
+    pub variable: Place,
+    pub start: Expr,
+    pub finish: Expr,
+    pub step: Option<Expr>,
+    pub body: Vec<Statement>,
+    pub end: Span,
 }
 
 /// A motion command.
@@ -154,7 +167,7 @@ pub struct Place {
     /// `(index)`.
     pub index: Option<Box<Expr>>,
     /// `.modifier`.
-    pub modifier: Option<Name>,
+    pub modifier: Option<Box<Name>>,
     /// All of it.
     pub span: Span,
 }
@@ -181,10 +194,31 @@ pub enum ExprKind {
     Place(Place),
     /// An operator before its operand.
     Unary(Unary, Box<Expr>),
-    /// An operator between its operands.
-    Binary(Binary, Box<Expr>, Box<Expr>),
+    /// Operators of one order, worked out from left to right. They stand side by side and not within each other, so that the tree of a long
+    /// sum is no deeper than that of a short one.
+    Chain(Box<Expr>, Vec<Link>),
     /// Something in parentheses.
     Group(Box<Expr>),
+}
+
+/// An operator of a chain and what stands to its right.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Link {
+    /// The operator.
+    pub operator: Binary,
+    /// Its right operand.
+    pub right: Expr,
+}
+
+impl ExprKind {
+    /// The order of the operators of a chain; `None` for everything else.
+    #[must_use]
+    pub fn order(&self) -> Option<u8> {
+        match self {
+            Self::Chain(_, links) => links.first().map(|link| link.operator.order()),
+            _ => None,
+        }
+    }
 }
 
 /// Operators of one operand; all bind tighter than any other (MCP manual 3.2.5).
@@ -501,4 +535,16 @@ pub struct Item {
     pub arguments: Vec<Expr>,
     /// Where it stands.
     pub span: Span,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_parts_of_a_tree_are_small() {
+        // A text holds a statement in every two bytes at most, and an operand.
+        assert!(size_of::<Statement>() <= 88, "{}", size_of::<Statement>());
+        assert!(size_of::<Expr>() <= 64, "{}", size_of::<Expr>());
+    }
 }

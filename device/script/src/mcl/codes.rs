@@ -39,8 +39,9 @@ codes! {
     NO_FLOATS = "E314", "A floating point number where only whole numbers work.";
     LONG_TEXT = "E315", "A text where one character or a number is wanted.";
     BAD_OUTPUT = "E316", "A modifier that does not fit here, or with the wrong arguments.";
-    TOO_LARGE = "E317", "A program that does not fit the format: too much memory, code or tables.";
+    TOO_LARGE = "E317", "A program that does not fit the format: too long, or too much memory, code or tables.";
     DIVISION_BY_ZERO = "E318", "A division by a constant zero.";
+    MORE_ERRORS = "E319", "More errors than are listed.";
     UNUSED_VARIABLE = "W401", "A variable that is never read.";
     UNUSED_LABEL = "W402", "A label that nothing jumps to.";
     DOES_NOT_FIT = "W403", "A constant that loses bits where it is stored.";
@@ -63,6 +64,7 @@ codes! {
     READ_ONLY = "W420", "A system register that can only be read is set: nothing is stored.";
     GOSUB_ARGUMENTS = "W421", "GOSUB with another number of arguments than its subroutine takes: the stack overflows or underflows.";
     DISPUTED_VALUE = "W422", "A value of a system register about which pages of the manual disagree.";
+    MORE_WARNINGS = "W423", "More warnings than are listed.";
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Values known when a program is compiled.
 
-use super::ast::{Expr, ExprKind, Unary};
+use super::ast::{Binary, Expr, ExprKind, Link, Unary};
 use super::codes;
 use crate::arithmetic::{self, Type};
 use crate::text::Span;
@@ -81,14 +81,28 @@ impl NotConstant {
     /// The sentence and hint for it; `what` is what should have been constant.
     #[must_use]
     pub fn told(&self, what: &str) -> (String, Option<String>) {
-        match self.why {
-            Why::Varies => (
+        self.why.told(what)
+    }
+
+    /// The code of the diagnostic.
+    #[must_use]
+    pub fn code(&self) -> &'static str {
+        self.why.code()
+    }
+}
+
+impl Why {
+    /// The sentence and hint for it; `what` is what should have been constant.
+    #[must_use]
+    pub fn told(self, what: &str) -> (String, Option<String>) {
+        match self {
+            Self::Varies => (
                 format!("{what} must be known when the program is compiled."),
                 Some("Use numbers and names defined with CON or FCON above.".to_owned()),
             ),
-            Why::LongText => ("A text of one character is a number, a longer one is not.".to_owned(), None),
-            Why::Division => ("This divides by zero.".to_owned(), None),
-            Why::Floats => {
+            Self::LongText => ("A text of one character is a number, a longer one is not.".to_owned(), None),
+            Self::Division => ("This divides by zero.".to_owned(), None),
+            Self::Floats => {
                 ("This operator takes whole numbers only.".to_owned(), Some("Convert with TOINT.".to_owned()))
             }
         }
@@ -96,12 +110,12 @@ impl NotConstant {
 
     /// The code of the diagnostic.
     #[must_use]
-    pub fn code(&self) -> &'static str {
-        match self.why {
-            Why::Varies => codes::NOT_CONSTANT,
-            Why::LongText => codes::LONG_TEXT,
-            Why::Division => codes::DIVISION_BY_ZERO,
-            Why::Floats => codes::NO_FLOATS,
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::Varies => codes::NOT_CONSTANT,
+            Self::LongText => codes::LONG_TEXT,
+            Self::Division => codes::DIVISION_BY_ZERO,
+            Self::Floats => codes::NO_FLOATS,
         }
     }
 }
@@ -125,22 +139,39 @@ pub fn evaluate(expr: &Expr, lookup: &dyn Fn(&str) -> Option<Constant>) -> Resul
         }
         ExprKind::Place(_) => return Err(not(Why::Varies)),
         ExprKind::Unary(operator, operand) => unary(*operator, evaluate(operand, lookup)?).map_err(not)?,
-        ExprKind::Binary(operator, left, right) => {
-            let (left, left_kind) = evaluate(left, lookup)?.cell();
-            let (right, right_kind) = evaluate(right, lookup)?.cell();
-            let kind = arithmetic::common(left_kind, right_kind);
-            if kind == Type::Float && !arithmetic::takes_floats(*operator) {
-                return Err(not(Why::Floats));
+        ExprKind::Chain(first, links) => {
+            let mut value = evaluate(first, lookup)?;
+            for Link { operator, right } in links {
+                let so_far = expr.span.start;
+                let not = |why| NotConstant { span: Span { start: so_far, end: right.span.end }, why };
+                value = binary(*operator, value, evaluate(right, lookup)?).map_err(not)?;
             }
-            let left = arithmetic::convert(left, left_kind, kind);
-            let right = arithmetic::convert(right, right_kind, kind);
-            let value = arithmetic::binary(*operator, kind, left, right).map_err(|_| not(Why::Division))?;
-            Constant::of(value, arithmetic::result_of(*operator, kind))
+            value
         }
     })
 }
 
-fn unary(operator: Unary, operand: Constant) -> Result<Constant, Why> {
+/// What an operator makes of two known values.
+///
+/// # Errors
+/// It takes no floats, or divides by zero.
+pub fn binary(operator: Binary, left: Constant, right: Constant) -> Result<Constant, Why> {
+    let ((left, left_kind), (right, right_kind)) = (left.cell(), right.cell());
+    let kind = arithmetic::common(left_kind, right_kind);
+    if kind == Type::Float && !arithmetic::takes_floats(operator) {
+        return Err(Why::Floats);
+    }
+    let left = arithmetic::convert(left, left_kind, kind);
+    let right = arithmetic::convert(right, right_kind, kind);
+    let value = arithmetic::binary(operator, kind, left, right).map_err(|_| Why::Division)?;
+    Ok(Constant::of(value, arithmetic::result_of(operator, kind)))
+}
+
+/// What an operator makes of a known value.
+///
+/// # Errors
+/// It takes no floats.
+pub fn unary(operator: Unary, operand: Constant) -> Result<Constant, Why> {
     let (mut value, mut kind) = operand.cell();
     let either = matches!(operator, Unary::Negative | Unary::Not | Unary::ToInt | Unary::ToFloat);
     if operator.is_float() {

@@ -5,20 +5,27 @@
 
 use super::index::{Block, BlockKind, blocks};
 use super::lexer::{Token, TokenKind, tokens};
+use super::lower::too_long;
 use super::types::{TABLES, VarType};
 use super::words::{self, Known};
 use crate::text::Lines;
+use std::collections::HashSet;
 
 const STEP: usize = 4;
 /// Between code and a comment behind it.
 const BEFORE_COMMENT: &str = "  ";
 
-/// The text in our style. Formatting it again changes nothing, and it compiles to the same program.
+/// The text in our style. Formatting it again changes nothing, and it compiles to the same program. One that is too long for a program comes
+/// back as it is.
 #[must_use]
 pub fn format(text: &str) -> String {
-    let (tokens, diagnostics) = tokens(text);
+    if too_long(text).is_some() {
+        return text.to_owned();
+    }
+    let (tokens, wrong) = tokens(text);
     let lines = Lines::of(text);
-    let broken: Vec<u32> = diagnostics.iter().map(|wrong| lines.line_of(wrong.span.start)).collect();
+    let broken: HashSet<u32> = wrong.iter().map(|wrong| lines.line_of(wrong.span.start)).collect();
+    drop(wrong);
     let depths = depths(text, &tokens, &lines);
     let end = if text.contains("\r\n") { "\r\n" } else { "\n" };
     let mut pieces: Vec<(Kind, String)> = Vec::new();
@@ -43,8 +50,8 @@ pub fn format(text: &str) -> String {
     indented(&pieces, &depths, end)
 }
 
-/// Steps of indentation beyond which nobody counts them.
-const DEEPEST: usize = 64;
+/// Steps of indentation beyond which a line would begin outside of a window of 80 columns, and a text of short lines would be many times as long.
+const DEEPEST: usize = 20;
 
 /// What a line is, for its indentation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
-//! Text into tokens (MCP manual 3.1, 3.2.2). Nothing is refused twice: a bad character becomes one diagnostic and is skipped.
+//! Text into tokens (MCP manual 3.1, 3.2.2). Nothing is refused twice: a bad character is noted once and skipped.
 
 use super::codes;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, excerpt};
 use crate::text::Span;
 
 /// What a token is.
@@ -34,6 +34,68 @@ pub struct Token {
     pub span: Span,
 }
 
+/// Something wrong with a piece of the text. A text of nothing else holds one at each of its bytes, so it stays small: what there is to say is
+/// worked out for those that are told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wrong {
+    /// Which error, or warning.
+    pub code: &'static str,
+    /// Where.
+    pub span: Span,
+}
+
+impl Wrong {
+    /// What there is to say; `text` is the whole text.
+    #[must_use]
+    pub fn told(self, text: &str) -> Diagnostic {
+        let Self { code, span } = self;
+        let piece = span.of(text);
+        let shown = excerpt(piece);
+        let (message, hint) = match code {
+            codes::NAME_TOO_LONG => {
+                (format!("This name is {} characters long; {LONGEST_NAME} are allowed.", piece.len()), None)
+            }
+            codes::NUMBER_TOO_LARGE => {
+                (format!("`{shown}` does not fit in 32 bits."), Some("The largest number is 4294967295."))
+            }
+            codes::BAD_NUMBER if piece.starts_with('%') => (format!("`{shown}` is no binary number."), None),
+            codes::BAD_NUMBER if piece.starts_with("0x") || piece.starts_with("0X") => {
+                (format!("`{shown}` is no hexadecimal number."), None)
+            }
+            codes::BAD_NUMBER => {
+                (format!("`{shown}` is neither a number nor a name."), Some("A name begins with a letter."))
+            }
+            codes::OPEN_TEXT => {
+                ("This text has no end.".to_owned(), Some("Close it with a quote on the same line."))
+            }
+            codes::WIDE_CHARACTER => {
+                let wide = piece.chars().find(|letter| u8::try_from(*letter).is_err()).unwrap_or('?');
+                (format!("`{wide}` is more than a byte; a character of a text is one."), None)
+            }
+            codes::MISSPELT => {
+                ("The directive is #ELSEIF; only a heading of the manual has #ELSIF.".to_owned(), None)
+            }
+            _ => of_character(piece.chars().next().unwrap_or('?')),
+        };
+        Diagnostic { code, span, message, hint: hint.map(str::to_owned) }
+    }
+}
+
+/// The sentence and hint for a character that means nothing.
+fn of_character(letter: char) -> (String, Option<&'static str>) {
+    let hint = match letter {
+        '“' | '”' | '„' | '‘' | '’' | '\'' => Some("Texts stand between straight double quotes."),
+        '{' | '}' => Some("Braces in the manual mark what may be left out; they are not written."),
+        '%' => Some("A binary number is % and its digits, as in %1010."),
+        '$' => Some("Hexadecimal numbers are written 0x1F."),
+        _ => None,
+    };
+    if letter.is_control() {
+        return (format!("The control character U+{:04X} means nothing here.", u32::from(letter)), hint);
+    }
+    (format!("`{letter}` means nothing here."), hint)
+}
+
 /// Longest first, so that `*/` is not `*` and `/`.
 const SIGNS: [&str; 31] = [
     "<<", ">>", "<>", "<=", ">=", "**", "*/", "//", "&/", "|/", "^/", "+", "-", "*", "/", "&", "|", "^", "=",
@@ -45,21 +107,21 @@ pub const LONGEST_NAME: usize = 1024;
 
 /// All tokens of a text, and what is wrong with it. The last one is [`TokenKind::End`].
 #[must_use]
-pub fn tokens(text: &str) -> (Vec<Token>, Vec<Diagnostic>) {
-    let mut lexer = Lexer { text, at: 0, tokens: Vec::new(), diagnostics: Vec::new() };
+pub fn tokens(text: &str) -> (Vec<Token>, Vec<Wrong>) {
+    let mut lexer = Lexer { text, at: 0, tokens: Vec::new(), wrong: Vec::new() };
     while lexer.at < text.len() {
         lexer.next();
     }
     lexer.push(TokenKind::Newline, text.len());
     lexer.push(TokenKind::End, text.len());
-    (lexer.tokens, lexer.diagnostics)
+    (lexer.tokens, lexer.wrong)
 }
 
 struct Lexer<'a> {
     text: &'a str,
     at: usize,
     tokens: Vec<Token>,
-    diagnostics: Vec<Diagnostic>,
+    wrong: Vec<Wrong>,
 }
 
 impl Lexer<'_> {
@@ -88,8 +150,8 @@ impl Lexer<'_> {
         self.tokens.push(Token { kind, span: Span::new(start, self.at) });
     }
 
-    fn report(&mut self, code: &'static str, start: usize, message: String, hint: Option<String>) {
-        self.diagnostics.push(Diagnostic { code, span: Span::new(start, self.at), message, hint });
+    fn report(&mut self, code: &'static str, start: usize) {
+        self.wrong.push(Wrong { code, span: Span::new(start, self.at) });
     }
 
     /// How many bytes from here on are letters, digits or underscores.
@@ -102,9 +164,7 @@ impl Lexer<'_> {
         let start = self.at;
         self.at += self.name_length(start);
         if self.at - start > LONGEST_NAME {
-            let message =
-                format!("This name is {} characters long; {LONGEST_NAME} are allowed.", self.at - start);
-            self.report(codes::NAME_TOO_LONG, start, message, None);
+            self.report(codes::NAME_TOO_LONG, start);
         }
         self.push(TokenKind::Word, start);
     }
@@ -120,9 +180,7 @@ impl Lexer<'_> {
             Ok(Err(_)) => self.too_large(start),
             Err(error) if *error.kind() == std::num::IntErrorKind::PosOverflow => self.too_large(start),
             Err(_) => {
-                let name = if radix == 2 { "binary" } else { "hexadecimal" };
-                let message = format!("`{}` is no {name} number.", &self.text[start..self.at]);
-                self.report(codes::BAD_NUMBER, start, message, None);
+                self.report(codes::BAD_NUMBER, start);
                 0
             }
         };
@@ -130,13 +188,7 @@ impl Lexer<'_> {
     }
 
     fn too_large(&mut self, start: usize) -> u32 {
-        let message = format!("`{}` does not fit in 32 bits.", &self.text[start..self.at]);
-        self.report(
-            codes::NUMBER_TOO_LARGE,
-            start,
-            message,
-            Some("The largest number is 4294967295.".into()),
-        );
+        self.report(codes::NUMBER_TOO_LARGE, start);
         0
     }
 
@@ -159,8 +211,7 @@ impl Lexer<'_> {
         let tail = self.name_length(self.at);
         if tail > 0 {
             self.at += tail;
-            let message = format!("`{}` is neither a number nor a name.", &self.text[start..self.at]);
-            self.report(codes::BAD_NUMBER, start, message, Some("A name begins with a letter.".into()));
+            self.report(codes::BAD_NUMBER, start);
             return self.push(TokenKind::Integer(0), start);
         }
         let value = self.text[start..self.at].parse().unwrap_or_else(|_| self.too_large(start));
@@ -180,26 +231,18 @@ impl Lexer<'_> {
     fn text_token(&mut self) {
         let start = self.at;
         let rest = &self.text[start + 1..];
-        let line = &rest[..rest.find('\n').unwrap_or(rest.len())];
-        let inside = if let Some(length) = line.find('"') {
+        let length = rest.find(['"', '\n']).unwrap_or(rest.len());
+        let mut inside = &rest[..length];
+        if rest[length..].starts_with('"') {
             self.at = start + length + 2;
-            &line[..length]
         } else {
-            let line = line.trim_end_matches('\r');
-            self.at = start + 1 + line.len();
-            let hint = "Close it with a quote on the same line.".to_owned();
-            self.report(codes::OPEN_TEXT, start, "This text has no end.".into(), Some(hint));
-            line
-        };
-        let mut bytes = Vec::new();
-        for letter in inside.chars() {
-            if let Ok(byte) = u8::try_from(letter) {
-                bytes.push(byte);
-            } else {
-                let message = format!("`{letter}` is more than a byte; a character of a text is one.");
-                self.report(codes::WIDE_CHARACTER, start, message, None);
-                bytes.push(b'?');
-            }
+            inside = inside.trim_end_matches('\r');
+            self.at = start + 1 + inside.len();
+            self.report(codes::OPEN_TEXT, start);
+        }
+        let bytes: Vec<u8> = inside.chars().map(|letter| u8::try_from(letter).unwrap_or(b'?')).collect();
+        if inside.chars().any(|letter| u8::try_from(letter).is_err()) {
+            self.report(codes::WIDE_CHARACTER, start);
         }
         self.push(TokenKind::Text(bytes), start);
     }
@@ -209,8 +252,7 @@ impl Lexer<'_> {
         self.at += 1 + self.name_length(start + 1);
         let mut name = self.text[start + 1..self.at].to_ascii_lowercase();
         if name == "elsif" {
-            let message = "The directive is #ELSEIF; only a heading of the manual has #ELSIF.".to_owned();
-            self.report(codes::MISSPELT, start, message, None);
+            self.report(codes::MISSPELT, start);
             name = "elseif".to_owned();
         }
         self.push(TokenKind::Directive(name), start);
@@ -219,8 +261,7 @@ impl Lexer<'_> {
     /// `$1F`, as other languages write it.
     fn dollar(&mut self, start: usize) {
         self.at += self.name_length(self.at);
-        let hint = Some("Hexadecimal numbers are written 0x1F.".to_owned());
-        self.report(codes::BAD_CHARACTER, start, "`$` means nothing here.".to_owned(), hint);
+        self.report(codes::BAD_CHARACTER, start);
         self.push(TokenKind::Integer(0), start);
     }
 
@@ -234,17 +275,7 @@ impl Lexer<'_> {
         if letter == '$' {
             return self.dollar(start);
         }
-        let hint = match letter {
-            '“' | '”' | '„' | '‘' | '’' | '\'' => {
-                Some("Texts stand between straight double quotes.".to_owned())
-            }
-            '{' | '}' => {
-                Some("Braces in the manual mark what may be left out; they are not written.".to_owned())
-            }
-            '%' => Some("A binary number is % and its digits, as in %1010.".to_owned()),
-            _ => None,
-        };
-        self.report(codes::BAD_CHARACTER, start, format!("`{letter}` means nothing here."), hint);
+        self.report(codes::BAD_CHARACTER, start);
     }
 }
 
@@ -293,8 +324,8 @@ mod tests {
             ("a = “b”", codes::BAD_CHARACTER),
             ("a = \"€\"", codes::WIDE_CHARACTER),
         ] {
-            let (tokens, diagnostics) = tokens(text);
-            assert_eq!(diagnostics[0].code, code, "{text}");
+            let (tokens, wrong) = tokens(text);
+            assert_eq!(wrong[0].code, code, "{text}");
             assert_eq!(tokens.last().unwrap().kind, TokenKind::End);
         }
     }

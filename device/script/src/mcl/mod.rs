@@ -18,5 +18,5 @@ pub mod registers;
 pub mod types;
 pub mod words;
 
-pub use lower::{Compiled, Names, Symbol, SymbolKind, compile};
+pub use lower::{Compiled, LONGEST_TEXT, Names, Symbol, SymbolKind, compile, too_long};
 pub use parser::{Parsed, parse};

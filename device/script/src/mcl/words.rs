@@ -223,16 +223,34 @@ pub fn is_reserved(name: &str) -> bool {
 /// The word nearest to what was typed, if one is near.
 #[must_use]
 pub fn nearest<'a>(typed: &str, words: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    if typed.len() > LONGEST_GUESS {
+        return None;
+    }
     let typed = typed.to_ascii_lowercase();
-    let limit = (typed.chars().count() / 3).clamp(1, 3);
+    let length = typed.chars().count();
+    let limit = (length / 3).clamp(1, 3);
+    let letters = letters(&typed);
+    let is_far = |word: &str| {
+        let others = self::letters(word);
+        (letters & !others).count_ones().max((others & !letters).count_ones()) as usize > limit
+    };
     words
         .into_iter()
-        // A distance is at least the difference of the lengths.
-        .filter(|word| word.chars().count().abs_diff(typed.chars().count()) <= limit)
+        // A distance is at least the difference of the lengths, and the number of letters that one of them alone has.
+        .filter(|word| word.len() <= 4 * LONGEST_GUESS && word.chars().count().abs_diff(length) <= limit)
+        .filter(|word| !is_far(word))
         .map(|word| (strsim::damerau_levenshtein(&typed, &word.to_ascii_lowercase()), word))
         .filter(|(distance, _)| (1..=limit).contains(distance))
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, word)| word)
+}
+
+/// Longer words are compared with none: the time for that goes with the square of the length, and nobody types them by hand.
+const LONGEST_GUESS: usize = 64;
+
+/// Which bytes a word has, small and capital letters alike, as bits; some share one.
+fn letters(word: &str) -> u64 {
+    word.bytes().fold(0, |bits, byte| bits | 1 << (byte.to_ascii_lowercase() % 64))
 }
 
 /// "Did you mean ...?" for the nearest of these words.

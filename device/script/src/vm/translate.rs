@@ -87,6 +87,8 @@ pub fn translate(program: &Program, regions: &mut Regions) -> Vec<Plan> {
 /// Where instructions jump to: a region may begin there and cannot go over it.
 fn starts(program: &Program) -> Vec<bool> {
     let mut starts = vec![false; program.ops.len() + 1];
+    // Up to where the tables of BRANCHes have been marked: those of an image may lie across each other.
+    let mut branched = 0;
     let mut mark = |to: u32| {
         if let Some(start) = starts.get_mut(to as usize) {
             *start = true;
@@ -101,7 +103,9 @@ fn starts(program: &Program) -> Vec<bool> {
             | Op::ForNext(_, _, to) => mark(*to),
             Op::I2cOut(_, _, Some(to)) | Op::I2cIn(_, Some(to)) => mark(*to),
             Op::Branch(count) => {
-                (0..=*count).take(program.ops.len()).for_each(|skipped| mark(at.saturating_add(1 + skipped)));
+                let end = at.saturating_add(1).saturating_add(*count).min(program.ops.len() as u32);
+                (branched.max(at + 1)..=end).for_each(&mut mark);
+                branched = branched.max(end + 1);
             }
             _ => {}
         }

@@ -4,6 +4,7 @@
 
 pub mod examples;
 pub mod mutation;
+pub mod worst;
 
 use brushwork_script::mcl::ast::Motion;
 use brushwork_script::mcl::{self, registers::RegisterId};

@@ -47,11 +47,12 @@ pub struct Fold {
 pub fn blocks(text: &str, tokens: &[Token]) -> Vec<Block> {
     let heads = while_heads(text, tokens);
     let mut finder = Finder::default();
+    let mut thens = Thens { text, tokens, at: 0 };
     for (index, token) in tokens.iter().enumerate() {
         match &token.kind {
             TokenKind::Word => {
                 let word = token.span.of(text).to_ascii_lowercase();
-                finder.word(&word, token.span, heads.contains(&index), || is_block_if(text, tokens, index));
+                finder.word(&word, token.span, heads.contains(&index), || thens.is_block_if(index));
             }
             TokenKind::Directive(name) => finder.directive(name, token.span),
             _ => {}
@@ -63,12 +64,16 @@ pub fn blocks(text: &str, tokens: &[Token]) -> Vec<Block> {
 #[derive(Default)]
 struct Finder {
     open: Vec<Block>,
+    /// Which of those are IFs.
+    ifs: Vec<usize>,
+    /// How many there are of each kind.
+    counts: [usize; 6],
     directives: Vec<Block>,
     done: Vec<Block>,
 }
 
 impl Finder {
-    fn word(&mut self, word: &str, span: Span, begins_loop: bool, is_block_if: impl Fn() -> bool) {
+    fn word(&mut self, word: &str, span: Span, begins_loop: bool, mut is_block_if: impl FnMut() -> bool) {
         match word {
             "if" if is_block_if() => self.begin(BlockKind::If, span),
             "for" => self.begin(BlockKind::For, span),
@@ -81,8 +86,8 @@ impl Finder {
             "until" => self.end(BlockKind::Repeat, span),
             "endif" => self.end(BlockKind::If, span),
             "else" | "elseif" => {
-                if let Some(block) = self.open.iter_mut().rfind(|block| block.kind == BlockKind::If) {
-                    block.words.push(span);
+                if let Some(at) = self.ifs.last() {
+                    self.open[*at].words.push(span);
                 }
             }
             _ => {}
@@ -115,17 +120,30 @@ impl Finder {
     }
 
     fn begin(&mut self, kind: BlockKind, span: Span) {
+        if kind == BlockKind::If {
+            self.ifs.push(self.open.len());
+        }
+        self.counts[kind as usize] += 1;
         self.open.push(Block { kind, words: vec![span], is_closed: false });
     }
 
     /// Closes the innermost block of this kind; blocks inside it that are still open stay unclosed.
     fn end(&mut self, kind: BlockKind, span: Span) {
-        let Some(at) = self.open.iter().rposition(|block| block.kind == kind) else { return };
-        self.done.extend(self.open.drain(at + 1..));
-        if let Some(mut block) = self.open.pop() {
-            block.words.push(span);
-            block.is_closed = true;
+        if self.counts[kind as usize] == 0 {
+            return;
+        }
+        while let Some(mut block) = self.open.pop() {
+            self.counts[block.kind as usize] -= 1;
+            self.ifs.pop_if(|at| *at == self.open.len());
+            let is_it = block.kind == kind;
+            if is_it {
+                block.words.push(span);
+                block.is_closed = true;
+            }
             self.done.push(block);
+            if is_it {
+                break;
+            }
         }
     }
 
@@ -137,17 +155,33 @@ impl Finder {
     }
 }
 
-/// Whether this IF is closed by ENDIF: a jump after THEN on its own line makes it one that is not.
-fn is_block_if(text: &str, tokens: &[Token], at: usize) -> bool {
-    let line = tokens[at..].iter().take_while(|token| token.kind != TokenKind::Newline);
-    let mut after = line.skip_while(|token| !token.span.of(text).eq_ignore_ascii_case("then")).skip(1);
-    let Some(first) = after.next() else { return true };
-    let word = first.span.of(text);
-    if word.eq_ignore_ascii_case("goto") || word.eq_ignore_ascii_case("gosub") {
-        return false;
+/// Finds the THEN of each IF.
+struct Thens<'a> {
+    text: &'a str,
+    tokens: &'a [Token],
+    /// Where the search for the last IF ended: at its THEN or at the end of its line. Until there it is the same for the next ones.
+    at: usize,
+}
+
+impl Thens<'_> {
+    /// Whether the IF of a token is closed by ENDIF: a jump after THEN on its own line makes it one that is not. Asked from left to right.
+    fn is_block_if(&mut self, index: usize) -> bool {
+        let is_then = |token: &Token| token.span.of(self.text).eq_ignore_ascii_case("then");
+        let ends = |token: &Token| token.kind == TokenKind::Newline || is_then(token);
+        if self.at <= index {
+            let found = self.tokens[index..].iter().position(ends);
+            self.at = found.map_or(self.tokens.len(), |found| index + found);
+        }
+        let mut after =
+            self.tokens[self.at..].iter().take_while(|token| token.kind != TokenKind::Newline).skip(1);
+        let Some(first) = after.next() else { return true };
+        let word = first.span.of(self.text);
+        if word.eq_ignore_ascii_case("goto") || word.eq_ignore_ascii_case("gosub") {
+            return false;
+        }
+        let is_label = first.kind == TokenKind::Word && !words::is_reserved(word);
+        !is_label || after.next().is_some()
     }
-    let is_label = first.kind == TokenKind::Word && !words::is_reserved(word);
-    !is_label || after.next().is_some()
 }
 
 /// What can be folded: blocks, subroutines and other stretches under a label, comments of several lines.

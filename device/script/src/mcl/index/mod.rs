@@ -18,7 +18,7 @@ pub use help::{Help, help};
 pub use rename::RenameError;
 
 use super::lexer::{Token, TokenKind, tokens};
-use super::lower::{Symbol, compile};
+use super::lower::{Symbol, compile, too_long};
 use crate::diagnostic::Diagnostic;
 use crate::text::{Lines, Span};
 use std::collections::HashMap;
@@ -50,9 +50,14 @@ impl Index {
     /// Of a text.
     #[must_use]
     pub fn of(text: &str) -> Self {
-        let compiled = compile(text);
-        let (tokens, _) = tokens(text);
+        let mut compiled = compile(text);
+        // Of the program itself nothing is asked here.
+        compiled.program = None;
         let lines = Lines::of(text);
+        let (tokens, _) = match too_long(text) {
+            None => tokens(text),
+            Some(_) => tokens(""),
+        };
         let mut symbols = compiled.symbols;
         find_uses(text, &tokens, &mut symbols);
         let blocks = blocks(text, &tokens);

@@ -92,6 +92,7 @@ impl Lowering<'_> {
     }
 
     pub(super) fn i2c_out(&mut self, otherwise: Option<&(Name, Expr)>, bytes: &[Expr], stop: bool) {
+        self.check_count(bytes.iter().map(|byte| byte.span));
         for byte in bytes {
             self.warn_of_byte(byte);
             self.whole_number(byte);
@@ -101,6 +102,7 @@ impl Lowering<'_> {
     }
 
     pub(super) fn i2c_in(&mut self, otherwise: Option<&(Name, Expr)>, to: &[Place]) {
+        self.check_count(to.iter().map(|place| place.span));
         let count = u32::try_from(to.len()).unwrap_or(u32::MAX);
         self.i2c(otherwise, |target| Op::I2cIn(count, target));
         for place in to {

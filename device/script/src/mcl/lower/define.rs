@@ -22,7 +22,9 @@ impl Lowering<'_> {
         } else {
             self.ram_bits = self.ram_bits.next_multiple_of(u64::from(bits));
         }
-        let at = u32::try_from(self.ram_bits).unwrap_or(u32::MAX);
+        // A program that needs more than there is is refused; its places stay where they can be reckoned with.
+        let most = u64::from(limits::RAM_BYTES) * 8;
+        let at = u32::try_from(self.ram_bits.min(most)).unwrap_or(0);
         self.ram_bits += u64::from(bits) * u64::from(length);
         Array { first: Cell { kind, at }, stride: bits, length }
     }

@@ -1,8 +1,8 @@
 //! Expressions onto the stack.
 
-use super::super::ast::{Binary, Expr, ExprKind, Unary};
+use super::super::ast::{Binary, Expr, ExprKind, Link, Unary};
 use super::super::codes;
-use super::super::constant::Why;
+use super::super::constant::{self, Constant, Why};
 use super::super::registers::{self, RegisterId};
 use super::Lowering;
 use crate::arithmetic::{self, Type};
@@ -13,37 +13,73 @@ impl Lowering<'_> {
     /// Puts the value of an expression on the stack and says how to read it.
     pub(super) fn expression(&mut self, expr: &Expr) -> Type {
         self.warn_of_precedence(expr);
-        self.value(expr)
+        self.value(expr).kind
     }
 
-    fn value(&mut self, expr: &Expr) -> Type {
-        match self.folded(expr) {
-            Ok(known) => {
-                self.use_constants(expr);
-                let (cell, kind) = known.cell();
-                self.emit(Op::Push(cell));
-                return kind;
-            }
-            Err(error) if error.why != Why::Varies && error.span == expr.span => {
-                let (message, hint) = error.told("");
-                self.report(error.code(), error.span, message, hint);
-                self.emit(Op::Push(0));
-                return Type::Unsigned;
-            }
-            Err(_) => {}
+    /// The value on the stack, worked out as far as it is known now: then it is one [`Op::Push`].
+    fn value(&mut self, expr: &Expr) -> Value {
+        let mut expr = expr;
+        while let ExprKind::Group(inner) = &expr.kind {
+            expr = inner;
         }
         match &expr.kind {
-            ExprKind::Group(inner) => self.value(inner),
-            ExprKind::Place(place) => self.load(place),
-            ExprKind::Unary(operator, operand) => self.unary(*operator, operand),
-            ExprKind::Binary(operator, left, right) => self.binary(*operator, left, right, expr.span),
-            // Constants have been folded above.
-            ExprKind::Integer(_) | ExprKind::Float(_) | ExprKind::Text(_) => Type::Unsigned,
+            ExprKind::Integer(value) => self.push(Constant::Whole(*value, Type::Unsigned)),
+            ExprKind::Float(value) => self.push(Constant::Float(*value)),
+            ExprKind::Text(bytes) => match bytes[..] {
+                [byte] => self.push(Constant::Whole(byte.into(), Type::Unsigned)),
+                _ => self.refused(Why::LongText, expr.span),
+            },
+            ExprKind::Place(place) => match constant::evaluate(expr, &|key| self.scope.constant(key)) {
+                Ok(known) => {
+                    self.use_constants(expr);
+                    self.push(known)
+                }
+                Err(_) => Value::of(self.load(place)),
+            },
+            ExprKind::Unary(operator, operand) => self.unary(*operator, operand, expr.span),
+            ExprKind::Chain(first, links) => {
+                let mut left = self.value(first);
+                let mut before = Before { span: first.span, place: Some(first) };
+                for link in links {
+                    left = self.binary(left, &before, link);
+                    before = Before { span: before.span.to(link.right.span), place: None };
+                }
+                left
+            }
+            ExprKind::Group(_) => Value::of(Type::Unsigned),
         }
     }
 
-    fn unary(&mut self, operator: Unary, operand: &Expr) -> Type {
-        let from = self.value(operand);
+    fn push(&mut self, known: Constant) -> Value {
+        let (cell, kind) = known.cell();
+        self.emit(Op::Push(cell));
+        Value { kind, known: Some(known) }
+    }
+
+    /// Something that cannot be worked out: it is said, and a number stands for it.
+    fn refused(&mut self, why: Why, span: Span) -> Value {
+        let (message, hint) = why.told("");
+        self.report(why.code(), span, message, hint);
+        self.emit(Op::Push(0));
+        Value::of(Type::Unsigned)
+    }
+
+    /// Takes back the instructions of so many known values, each of which is one.
+    fn unpush(&mut self, count: usize) {
+        for _ in 0..count {
+            self.unemit();
+        }
+    }
+
+    fn unary(&mut self, operator: Unary, operand: &Expr, span: Span) -> Value {
+        let Value { kind: from, known } = self.value(operand);
+        if let Some(known) = known {
+            self.unpush(1);
+            return match constant::unary(operator, known) {
+                Ok(known) => self.push(known),
+                Err(why) => self.refused(why, span),
+            };
+        }
         let mut kind = from;
         if operator.is_float() {
             if from != Type::Float {
@@ -60,10 +96,10 @@ impl Lowering<'_> {
                 Unary::Sqr => self.no_floats_but(operand.span, "FSQRT takes a float."),
                 _ => self.no_floats(operand.span),
             }
-            return from;
+            return Value::of(from);
         }
         self.emit(Op::Unary(operator, kind));
-        arithmetic::result_of_unary(operator, kind)
+        Value::of(arithmetic::result_of_unary(operator, kind))
     }
 
     fn no_floats(&mut self, span: Span) {
@@ -75,51 +111,63 @@ impl Lowering<'_> {
         self.report(codes::NO_FLOATS, span, "Only whole numbers work here.".to_owned(), hint);
     }
 
-    fn binary(&mut self, operator: Binary, left: &Expr, right: &Expr, span: Span) -> Type {
-        self.warn_of_disputed_operand(operator, left, right);
-        self.warn_of_disputed_operand(operator, right, left);
-        let left_kind = self.value(left);
+    /// An operator of a chain; the value of what stands before it is on the stack already.
+    fn binary(&mut self, left: Value, before: &Before<'_>, link: &Link) -> Value {
+        let Link { operator, right: right_expr } = link;
+        let (operator, span) = (*operator, before.span.to(right_expr.span));
         let after_left = self.ops.len();
-        let right_kind = self.value(right);
-        let kind = arithmetic::common(left_kind, right_kind);
+        let right = self.value(right_expr);
+        if let (Some(known), Some(other)) = (left.known, right.known) {
+            self.unpush(2);
+            return match constant::binary(operator, known, other) {
+                Ok(known) => self.push(known),
+                Err(why) => self.refused(why, span),
+            };
+        }
+        self.warn_of_disputed_operand(operator, before.place, right.known, right_expr.span);
+        self.warn_of_disputed_operand(operator, Some(right_expr), left.known, before.span);
+        let kind = arithmetic::common(left.kind, right.kind);
         if kind == Type::Float {
             if !arithmetic::takes_floats(operator) {
-                self.no_floats(if left_kind == Type::Float { left.span } else { right.span });
+                self.no_floats(if left.kind == Type::Float { before.span } else { right_expr.span });
                 self.emit(Op::Drop);
-                return Type::Unsigned;
+                return Value::of(Type::Unsigned);
             }
-            if left_kind != right_kind {
+            if left.kind != right.kind {
                 self.warn_of_mixing(span);
             }
-            if left_kind != Type::Float {
-                self.insert(after_left, Op::Convert(left_kind, kind));
+            if left.kind != Type::Float {
+                self.insert(after_left, Op::Convert(left.kind, kind));
             }
-            self.convert(right_kind, kind);
+            self.convert(right.kind, kind);
         }
-        if matches!(operator, Binary::Divide | Binary::Remainder)
-            && kind != Type::Float
-            && self.folded(right).is_ok_and(|known| known.as_whole() == 0)
-        {
-            self.report(codes::DIVISION_BY_ZERO, right.span, "This divides by zero.".to_owned(), None);
+        let divides = matches!(operator, Binary::Divide | Binary::Remainder) && kind != Type::Float;
+        if divides && right.known.is_some_and(|known| known.as_whole() == 0) {
+            self.report(codes::DIVISION_BY_ZERO, right_expr.span, "This divides by zero.".to_owned(), None);
         }
         self.emit(Op::Binary(operator, kind));
-        arithmetic::result_of(operator, kind)
+        Value::of(arithmetic::result_of(operator, kind))
     }
 
     /// Looks at a register beside a constant: comparisons and masks depend on what its values mean.
-    fn warn_of_disputed_operand(&mut self, operator: Binary, place: &Expr, other: &Expr) {
-        if !(operator.compares() || operator.order() == 8) {
+    fn warn_of_disputed_operand(
+        &mut self,
+        operator: Binary,
+        place: Option<&Expr>,
+        other: Option<Constant>,
+        span: Span,
+    ) {
+        let (Some(mut inner), Some(known)) = (place, other) else { return };
+        if !(operator.compares() || operator.order() == MASKS) {
             return;
         }
-        let mut inner = place;
         while let ExprKind::Group(deeper) = &inner.kind {
             inner = deeper;
         }
         if let ExprKind::Place(place) = &inner.kind
             && let Some(id) = self.register_of(place)
-            && let Ok(known) = self.folded(other)
         {
-            self.warn_of_dispute(id, known.as_whole(), other.span);
+            self.warn_of_dispute(id, known.as_whole(), span);
         }
     }
 
@@ -128,13 +176,6 @@ impl Lowering<'_> {
         if let Some(dispute) = registers::dispute(id, value) {
             self.report(codes::DISPUTED_VALUE, span, dispute.to_owned(), None);
         }
-    }
-
-    /// Puts an instruction between those of one expression, where no jump leads.
-    fn insert(&mut self, at: usize, op: Op) {
-        self.ops.insert(at, op);
-        self.lines.insert(at, self.line);
-        self.spans.insert(at, self.span);
     }
 
     fn warn_of_mixing(&mut self, span: Span) {
@@ -168,45 +209,65 @@ impl Lowering<'_> {
                 }
             }
             ExprKind::Unary(_, inner) | ExprKind::Group(inner) => self.use_constants(inner),
-            ExprKind::Binary(_, left, right) => {
-                self.use_constants(left);
-                self.use_constants(right);
+            ExprKind::Chain(first, links) => {
+                self.use_constants(first);
+                links.iter().for_each(|link| self.use_constants(&link.right));
             }
             _ => {}
         }
     }
 
-    /// Says where the order of operators is not what other languages, or the manual's own examples, suggest.
-    fn warn_of_precedence(&mut self, expr: &Expr) {
-        let ExprKind::Binary(operator, left, right) = &expr.kind else {
-            match &expr.kind {
-                ExprKind::Unary(_, inner) | ExprKind::Group(inner) => self.warn_of_precedence(inner),
-                ExprKind::Place(place) => {
-                    place.index.iter().for_each(|index| self.warn_of_precedence(index));
-                }
-                _ => {}
-            }
-            return;
+    /// Says where the order of operators is not what other languages, or the manual's own examples, suggest. An index is an expression of its
+    /// own, which is looked at by itself.
+    pub(super) fn warn_of_precedence(&mut self, expr: &Expr) {
+        let (first, links) = match &expr.kind {
+            ExprKind::Unary(_, inner) | ExprKind::Group(inner) => return self.warn_of_precedence(inner),
+            ExprKind::Chain(first, links) => (first, links),
+            _ => return,
         };
-        if operator.order() == 8 {
-            for side in [left, right] {
-                if let ExprKind::Binary(inner, ..) = &side.kind
-                    && inner.compares()
-                {
-                    let message = "The comparison is worked out before & | ^.".to_owned();
-                    let hint = Some("Put the part with & | ^ in parentheses.".to_owned());
-                    self.report(codes::COMPARISON_FIRST, side.span, message, hint);
-                }
+        let sides = || std::iter::once(&**first).chain(links.iter().map(|link| &link.right));
+        if expr.kind.order() == Some(MASKS) {
+            for side in sides().filter(|side| side.kind.order() == Some(COMPARISONS)) {
+                let message = "The comparison is worked out before & | ^.".to_owned();
+                let hint = Some("Put the part with & | ^ in parentheses.".to_owned());
+                self.report(codes::COMPARISON_FIRST, side.span, message, hint);
             }
         }
-        if operator.compares()
-            && let ExprKind::Unary(Unary::Not, _) = &left.kind
+        if let (Some(COMPARISONS), ExprKind::Unary(Unary::Not, _), [link, ..]) =
+            (expr.kind.order(), &first.kind, &links[..])
         {
             let message = "NOT is worked out before the comparison.".to_owned();
             let hint = Some("Put the comparison in parentheses: NOT (a < b).".to_owned());
-            self.report(codes::NOT_FIRST, left.span.to(right.span), message, hint);
+            self.report(codes::NOT_FIRST, first.span.to(link.right.span), message, hint);
         }
-        self.warn_of_precedence(left);
-        self.warn_of_precedence(right);
+        sides().for_each(|side| self.warn_of_precedence(side));
+    }
+}
+
+/// The order of comparisons (MCP manual 3.2.5).
+const COMPARISONS: u8 = 7;
+/// The order of `& | ^` and their kin (MCP manual 3.2.5).
+const MASKS: u8 = 8;
+
+/// What stands before an operator of a chain.
+struct Before<'a> {
+    span: Span,
+    /// The expression, where it is the first of the chain.
+    place: Option<&'a Expr>,
+}
+
+/// A value on the stack.
+#[derive(Clone, Copy)]
+struct Value {
+    /// How it is read.
+    kind: Type,
+    /// What it is, if that is known now.
+    known: Option<Constant>,
+}
+
+impl Value {
+    /// One that the program works out when it runs.
+    fn of(kind: Type) -> Self {
+        Self { kind, known: None }
     }
 }

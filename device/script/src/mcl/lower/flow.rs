@@ -1,6 +1,6 @@
 //! Labels, jumps, subroutines, conditions and loops.
 
-use super::super::ast::{Expr, Name, Place, Statement};
+use super::super::ast::{Expr, For, Name, Place, Statement};
 use super::super::codes;
 use super::super::constant::Constant;
 use super::super::registers::{self, RegisterId};
@@ -9,6 +9,7 @@ use super::place::Target;
 use super::scope::{Meaning, type_of};
 use super::{Argument, Lowering, Mark};
 use crate::arithmetic::Type;
+use crate::diagnostic::excerpt;
 use crate::op::{Cell, Op};
 use crate::text::Span;
 
@@ -97,14 +98,8 @@ impl Lowering<'_> {
         Some(known.is_true())
     }
 
-    pub(super) fn for_loop(
-        &mut self,
-        variable: &Place,
-        [start, finish]: [&Expr; 2],
-        step: Option<&Expr>,
-        body: &[Statement],
-        end: Span,
-    ) {
+    pub(super) fn for_loop(&mut self, parts: &For) {
+        let For { variable, start, finish, step, body, end } = parts;
         let cell = self.counter(variable);
         let kind = type_of(cell.kind);
         let number = self.loops;
@@ -182,11 +177,12 @@ impl Lowering<'_> {
     pub(super) fn gosub(&mut self, label: &Name, arguments: &[Expr], result: Option<&Place>) {
         let wanted = self.scope.get(&label.key).and_then(|entry| entry.argument_count);
         if let Some(wanted) = wanted.filter(|wanted| *wanted != arguments.len()) {
-            let name = label.span.of(self.text);
+            let name = excerpt(label.span.of(self.text));
             let message = format!("`{name}` takes {wanted} arguments, not {}.", arguments.len());
             let hint = Some("By the manual the stack overflows or underflows then.".to_owned());
             self.report(codes::GOSUB_ARGUMENTS, label.span, message, hint);
         }
+        self.check_count(arguments.iter().map(|argument| argument.span));
         for (index, argument) in arguments.iter().enumerate() {
             let from = self.expression(argument);
             self.arguments.push(Argument { op: self.ops.len(), label: label.key.clone(), index, from });

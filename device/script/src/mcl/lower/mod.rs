@@ -18,12 +18,13 @@ use super::ast::{Name, Statement, StatementKind};
 use super::codes;
 use super::parser::{Parsed, parse};
 use crate::arithmetic::Type;
-use crate::diagnostic::{Diagnostic, Severity};
+use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::op::Op;
 use crate::program::{Program, Variable, limits};
 use crate::text::{Lines, Span};
 use scope::Scope;
 pub use scope::{Symbol, SymbolKind};
+use std::sync::Arc;
 pub use watch::Names;
 
 /// What became of a program.
@@ -31,7 +32,7 @@ pub use watch::Names;
 pub struct Compiled {
     /// The program, unless there are errors.
     pub program: Option<Program>,
-    /// Everything there is to say, in the order of the text.
+    /// What there is to say, in the order of the text; at last how much more there is than is listed.
     pub diagnostics: Vec<Diagnostic>,
     /// Every name with its places, for editors.
     pub symbols: Vec<Symbol>,
@@ -55,6 +56,9 @@ pub fn compile(text: &str) -> Compiled {
 
 /// Compiles a program and hands its names out besides.
 fn compile_whole(text: &str) -> (Compiled, Scope) {
+    if let Some(refused) = too_long(text) {
+        return (Compiled { diagnostics: vec![refused], ..Compiled::default() }, Scope::default());
+    }
     let Parsed { statements, diagnostics, left_out } = parse(text);
     let mut lowering = Lowering::new(text, diagnostics);
     lowering.scope.collect(&statements, &mut lowering.diagnostics);
@@ -67,16 +71,38 @@ fn compile_whole(text: &str) -> (Compiled, Scope) {
     lowering.finish(left_out)
 }
 
+/// Bytes of a program's text. By the manual's examples an instruction takes some 9 bytes of text, comments included, so that the 256 KiB of
+/// the largest controller's image are filled by half of this.
+pub const LONGEST_TEXT: usize = 2 * 1024 * 1024;
+
+/// What is said of a text that is too long for a program. It is not read: what a reader keeps is many times as long.
+#[must_use]
+pub fn too_long(text: &str) -> Option<Diagnostic> {
+    if text.len() <= LONGEST_TEXT {
+        return None;
+    }
+    let end = text.floor_char_boundary(LONGEST_TEXT);
+    Some(Diagnostic {
+        code: codes::TOO_LARGE,
+        span: Span::new(end, end),
+        message: format!(
+            "The text has {} bytes; a program has at most {LONGEST_TEXT}, which end here.",
+            text.len()
+        ),
+        hint: None,
+    })
+}
+
 /// A jump whose target is not known yet: instruction, label.
 struct Jump {
     op: usize,
-    label: String,
+    label: Arc<str>,
 }
 
 /// An argument whose type is known only when its subroutine has been seen.
 struct Argument {
     op: usize,
-    label: String,
+    label: Arc<str>,
     index: usize,
     from: Type,
 }
@@ -90,19 +116,22 @@ struct Lowering<'a> {
     /// The statement of each instruction; none for those that nobody wrote, such as the jump over an ELSE.
     spans: Vec<Option<Span>>,
     span: Option<Span>,
+    /// Instructions beyond those that a program may have, and the place of the first.
+    surplus: usize,
+    full_at: Option<Span>,
     data: Vec<u8>,
     ram_bits: u64,
     loops: u32,
     scope: Scope,
-    diagnostics: Vec<Diagnostic>,
+    diagnostics: Diagnostics,
     jumps: Vec<Jump>,
     arguments: Vec<Argument>,
-    /// How many names were looked for that might have been meant.
-    searches: u32,
+    /// How many names were compared with unknown ones, to find what might have been meant.
+    compared: usize,
 }
 
-/// Unknown names for which the nearest known one is looked for.
-const MOST_SEARCHES: u32 = 100;
+/// Comparisons of names after which no name is looked for that might have been meant: a tenth of a second's worth.
+const MOST_COMPARED: usize = 100_000;
 
 /// A place to jump to inside a statement; all jumps to it are patched when it is set.
 #[derive(Default)]
@@ -111,7 +140,7 @@ struct Mark {
 }
 
 impl<'a> Lowering<'a> {
-    fn new(text: &'a str, diagnostics: Vec<Diagnostic>) -> Self {
+    fn new(text: &'a str, diagnostics: Diagnostics) -> Self {
         Self {
             text,
             text_lines: Lines::of(text),
@@ -120,6 +149,8 @@ impl<'a> Lowering<'a> {
             lines: Vec::new(),
             spans: Vec::new(),
             span: None,
+            surplus: 0,
+            full_at: None,
             data: Vec::new(),
             ram_bits: 0,
             loops: 0,
@@ -127,7 +158,7 @@ impl<'a> Lowering<'a> {
             diagnostics,
             jumps: Vec::new(),
             arguments: Vec::new(),
-            searches: 0,
+            compared: 0,
         }
     }
 
@@ -141,7 +172,7 @@ impl<'a> Lowering<'a> {
     fn statement(&mut self, statement: &Statement) {
         use StatementKind as Kind;
         match &statement.kind {
-            Kind::Variable { name, kind, size } => self.variable(name, *kind, size.as_ref()),
+            Kind::Variable { name, kind, size } => self.variable(name, *kind, size.as_deref()),
             Kind::Alias { name, of } => self.alias(name, of),
             Kind::Constant { name, value, float } => self.constant(name, value, *float),
             Kind::Table { name, kind, values } => self.table(name, *kind, values),
@@ -151,19 +182,17 @@ impl<'a> Lowering<'a> {
             Kind::IfJump { condition, then } => self.if_jump(condition, then),
             Kind::While { condition, body, end } => self.while_loop(condition, body, *end),
             Kind::Repeat { body, condition, until } => self.repeat_loop(body, condition, *until),
-            Kind::For { variable, start, finish, step, body, end } => {
-                self.for_loop(variable, [start, finish], step.as_ref(), body, *end);
-            }
+            Kind::For(parts) => self.for_loop(parts),
             Kind::Goto(label) => self.jump_to_label(Op::Jump(0), label),
-            Kind::Gosub { label, arguments, result } => self.gosub(label, arguments, result.as_ref()),
+            Kind::Gosub { label, arguments, result } => self.gosub(label, arguments, result.as_deref()),
             Kind::Return(value) => self.return_value(value.as_ref()),
             Kind::Branch { index, labels } => self.branch(index, labels),
             Kind::Puts { stream, items } => self.puts(stream, items),
             Kind::Gets { stream, items } => self.gets(stream, items),
             Kind::Read { address, to } => self.read(address, to),
             Kind::Write { address, value } => self.write(address, value),
-            Kind::I2cOut { otherwise, bytes, stop } => self.i2c_out(otherwise.as_ref(), bytes, *stop),
-            Kind::I2cIn { otherwise, to } => self.i2c_in(otherwise.as_ref(), to),
+            Kind::I2cOut { otherwise, bytes, stop } => self.i2c_out(otherwise.as_deref(), bytes, *stop),
+            Kind::I2cIn { otherwise, to } => self.i2c_in(otherwise.as_deref(), to),
             Kind::Pause(time) => self.pause(time),
             Kind::Motion { command, arguments } => self.motion(*command, arguments),
             Kind::Clear => self.emit(Op::Clear),
@@ -178,9 +207,32 @@ impl<'a> Lowering<'a> {
     }
 
     fn emit(&mut self, op: Op) {
-        self.ops.push(op);
-        self.lines.push(self.line);
-        self.spans.push(self.span);
+        self.insert(self.ops.len(), op);
+    }
+
+    /// Puts an instruction between those of one expression, where no jump leads. A program that is full takes none: it is refused.
+    fn insert(&mut self, at: usize, op: Op) {
+        if self.ops.len() > limits::INSTRUCTIONS {
+            self.surplus += 1;
+            return;
+        }
+        if self.ops.len() == limits::INSTRUCTIONS {
+            self.full_at = self.span;
+        }
+        self.ops.insert(at, op);
+        self.lines.insert(at, self.line);
+        self.spans.insert(at, self.span);
+    }
+
+    /// Takes the last instruction back.
+    fn unemit(&mut self) {
+        if self.surplus > 0 {
+            self.surplus -= 1;
+            return;
+        }
+        self.ops.pop();
+        self.lines.pop();
+        self.spans.pop();
     }
 
     /// An instruction that nobody wrote: it is not missed where nothing leads to it.
@@ -230,6 +282,15 @@ impl<'a> Lowering<'a> {
         self.emit(op);
     }
 
+    /// Says that an instruction takes more values at once than the stack holds; `spans` are theirs.
+    fn check_count(&mut self, mut spans: impl Iterator<Item = Span>) {
+        if let Some(span) = spans.nth(limits::STACK_CELLS) {
+            let message =
+                format!("At most {} values are taken at once; this is one more.", limits::STACK_CELLS);
+            self.report(codes::TOO_LARGE, span, message, None);
+        }
+    }
+
     fn report(&mut self, code: &'static str, span: Span, message: String, hint: Option<String>) {
         self.diagnostics.push(Diagnostic { code, span, message, hint });
     }
@@ -250,30 +311,33 @@ impl<'a> Lowering<'a> {
         for argument in std::mem::take(&mut self.arguments) {
             let to = self.scope.argument_type(&argument.label, argument.index).unwrap_or(argument.from);
             let op = if to == argument.from { Op::Nop } else { Op::Convert(argument.from, to) };
-            self.ops[argument.op] = op;
+            if let Some(place) = self.ops.get_mut(argument.op) {
+                *place = op;
+            }
         }
     }
 
+    /// Says what of the program does not fit, where the bound is met if that is known.
     fn check_size(&mut self) {
         let whole = Span::new(0, self.text.find('\n').unwrap_or(self.text.len()));
-        for (what, is, most) in [
-            ("bytes of variables", self.ram_bits.div_ceil(8), u64::from(limits::RAM_BYTES)),
-            ("instructions", self.ops.len() as u64, limits::INSTRUCTIONS as u64),
-            ("bytes of tables and texts", self.data.len() as u64, limits::DATA_BYTES as u64),
-            ("FOR loops", u64::from(self.loops), u64::from(limits::LOOPS)),
-            ("names", self.scope.count() as u64, limits::NAMES as u64),
+        let instructions = self.ops.len() + self.surplus;
+        for (what, is, most, at) in [
+            ("bytes of variables", self.ram_bits.div_ceil(8), u64::from(limits::RAM_BYTES), None),
+            ("instructions", instructions as u64, limits::INSTRUCTIONS as u64, self.full_at),
+            ("bytes of tables and texts", self.data.len() as u64, limits::DATA_BYTES as u64, None),
+            ("FOR loops", u64::from(self.loops), u64::from(limits::LOOPS), None),
+            ("names", self.scope.count() as u64, limits::NAMES as u64, self.scope.full_at()),
         ] {
             if is > most {
                 let message = format!("The program has {is} {what}; {most} are allowed.");
-                self.report(codes::TOO_LARGE, whole, message, None);
+                self.report(codes::TOO_LARGE, at.unwrap_or(whole), message, None);
             }
         }
     }
 
     fn finish(mut self, left_out: Vec<Span>) -> (Compiled, Scope) {
-        self.diagnostics.sort_by_key(|diagnostic| (diagnostic.span.start, diagnostic.code));
-        self.diagnostics.dedup();
-        let is_wrong = self.diagnostics.iter().any(|diagnostic| diagnostic.severity() == Severity::Error);
+        let is_wrong = self.diagnostics.has_errors();
+        let diagnostics = std::mem::take(&mut self.diagnostics).finish();
         let symbols = self.scope.symbols(self.text);
         let program = (!is_wrong).then(|| Program {
             variables: self.scope.variables(self.text),
@@ -284,7 +348,7 @@ impl<'a> Lowering<'a> {
             loops: self.loops,
             ram_bytes: u32::try_from(self.ram_bits.div_ceil(8)).unwrap_or(u32::MAX),
         });
-        (Compiled { program, diagnostics: self.diagnostics, symbols, left_out }, self.scope)
+        (Compiled { program, diagnostics, symbols, left_out }, self.scope)
     }
 }
 

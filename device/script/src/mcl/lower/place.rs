@@ -7,19 +7,21 @@ use super::super::registers::{self, RegisterId};
 use super::super::types::{self, Part, PartError, VarType};
 use super::super::words;
 use super::scope::{Meaning, SymbolKind, type_of};
-use super::{Lowering, MOST_SEARCHES};
+use super::{Lowering, MOST_COMPARED};
 use crate::arithmetic::{self, Type};
+use crate::diagnostic::excerpt;
 use crate::op::{Array, Cell, Op, TableRef};
+use std::sync::Arc;
 
 /// Something that can be read, and mostly set.
 #[derive(Clone, Debug)]
 pub enum Target {
     /// A value at a known place.
-    Cell { cell: Cell, root: String },
+    Cell { cell: Cell, root: Arc<str> },
     /// An element whose index is worked out when the program runs.
-    Element { array: Array, root: String },
+    Element { array: Array, root: Arc<str> },
     /// An array without an index.
-    Whole { memory: Array, root: String },
+    Whole { memory: Array, root: Arc<str> },
     /// A register; `None` with an index that is worked out.
     Register { id: RegisterId, element: Option<u8>, part: Option<Part> },
     /// A table entry; `None` with an index that is worked out.
@@ -65,7 +67,7 @@ impl Lowering<'_> {
             Meaning::Constant(constant) => self.constant_target(place, constant),
             Meaning::Register { id, element, part } => self.register_alias(place, id, element, part),
             Meaning::Label { .. } => {
-                let message = format!("`{}` is a label, not a value.", place.name.key);
+                let message = format!("`{}` is a label, not a value.", excerpt(&place.name.key));
                 self.report(codes::UNKNOWN_NAME, place.name.span, message, None);
                 None
             }
@@ -76,18 +78,21 @@ impl Lowering<'_> {
     /// What a name means here.
     fn meaning(&mut self, name: &Name) -> Option<Meaning> {
         let Some(entry) = self.scope.get_mut(&name.key) else {
+            if self.scope.full_at().is_some() {
+                return None;
+            }
             let registers = registers::REGISTERS.iter().map(|register| register.name);
             let hint = self.nearest_name(&name.key, false, registers).or_else(|| {
                 let kinds = VarType::ALL.map(VarType::name);
-                Some(format!("Define it above: {} VAR {}", name.span.of(self.text), kinds[7]))
+                Some(format!("Define it above: {} VAR {}", excerpt(name.span.of(self.text)), kinds[7]))
             });
-            let message = format!("`{}` is not defined.", name.span.of(self.text));
+            let message = format!("`{}` is not defined.", excerpt(name.span.of(self.text)));
             self.report(codes::UNKNOWN_NAME, name.span, message, hint);
             return None;
         };
         entry.symbol.uses.push(name.span);
         if entry.meaning.is_none() {
-            let message = format!("`{}` is used above its definition.", name.span.of(self.text));
+            let message = format!("`{}` is used above its definition.", excerpt(name.span.of(self.text)));
             let hint = Some("Definitions stand before the first use.".to_owned());
             self.report(codes::USED_BEFORE, name.span, message, hint);
             return None;
@@ -95,7 +100,7 @@ impl Lowering<'_> {
         entry.meaning.clone()
     }
 
-    fn memory(&mut self, place: &Place, memory: Array, is_array: bool, root: String) -> Option<Target> {
+    fn memory(&mut self, place: &Place, memory: Array, is_array: bool, root: Arc<str>) -> Option<Target> {
         let mut memory = memory;
         if let Some(modifier) = &place.modifier {
             let part = self.part(modifier, memory.first.kind)?;
@@ -120,7 +125,7 @@ impl Lowering<'_> {
     }
 
     fn no_index<T>(&mut self, place: &Place) -> Option<T> {
-        let name = place.name.span.of(self.text);
+        let name = excerpt(place.name.span.of(self.text));
         let is_variable = self.register_of(place).is_none();
         let hint = is_variable.then(|| format!("An array is defined with its size: {name} VAR Byte(10)"));
         self.report(
@@ -136,6 +141,7 @@ impl Lowering<'_> {
     fn known_index(&mut self, index: &Expr, length: u32) -> Option<Option<u32>> {
         let Ok(known) = self.folded(index) else { return Some(None) };
         self.use_constants(index);
+        self.warn_of_precedence(index);
         let value = known.as_whole();
         match u32::try_from(value) {
             Ok(value) if value < length => Some(Some(value)),
@@ -153,14 +159,18 @@ impl Lowering<'_> {
         match types::part(of, &written) {
             Ok(part) => Some(part),
             Err(PartError::Outside) => {
-                let message = format!("A {} has no {written}.", of.name());
+                let message = format!("A {} has no {}.", of.name(), excerpt(&written));
                 self.report(codes::NO_SUCH_PART, modifier.span, message, None);
                 None
             }
             Err(PartError::Unknown) => {
                 let parts = types::parts(of);
-                let hint = words::did_you_mean(&written, parts.iter().map(String::as_str));
-                let message = format!("`{written}` is no modifier.");
+                self.compared += parts.len();
+                let is_searched = self.compared <= MOST_COMPARED;
+                let hint =
+                    is_searched.then(|| words::did_you_mean(&written, parts.iter().map(String::as_str)));
+                let hint = hint.flatten();
+                let message = format!("`{}` is no modifier.", excerpt(&written));
                 self.report(codes::UNKNOWN_MODIFIER, modifier.span, message, hint);
                 None
             }
@@ -221,7 +231,7 @@ impl Lowering<'_> {
     }
 
     fn warn_of_whole(&mut self, place: &Place) {
-        let name = place.name.span.of(self.text);
+        let name = excerpt(place.name.span.of(self.text));
         let message = format!("`{name}` is an array; without an index its first element is taken.");
         self.report(codes::WHOLE_ARRAY, place.span, message, Some(format!("Write {name}(0).")));
     }
@@ -330,7 +340,7 @@ impl Lowering<'_> {
     /// The type that a place is set with; nothing is reported.
     pub(super) fn settable(&mut self, place: &Place) -> Option<Target> {
         let target = self.target(place)?;
-        let name = place.name.span.of(self.text);
+        let name = excerpt(place.name.span.of(self.text));
         let what = match &target {
             Target::Table { .. } | Target::WholeTable(_) => "an entry of a table",
             Target::Constant(_) => "a constant",
@@ -391,8 +401,8 @@ impl Lowering<'_> {
         labels: bool,
         more: impl IntoIterator<Item = &'static str>,
     ) -> Option<String> {
-        self.searches += 1;
-        let is_searched = self.searches <= MOST_SEARCHES;
+        self.compared += self.scope.count();
+        let is_searched = self.compared <= MOST_COMPARED;
         let more = more.into_iter().map(|word| -> &str { word });
         is_searched.then(|| words::did_you_mean(typed, self.scope.names(labels).chain(more))).flatten()
     }
@@ -405,9 +415,12 @@ impl Lowering<'_> {
             entry.symbol.uses.push(label.span);
             return;
         }
+        if self.scope.full_at().is_some() {
+            return;
+        }
         let written = label.span.of(self.text);
         let hint = self.nearest_name(written, true, []);
-        let message = format!("There is no label `{written}`.");
+        let message = format!("There is no label `{}`.", excerpt(written));
         self.report(codes::UNKNOWN_LABEL, label.span, message, hint);
     }
 }

@@ -2,37 +2,35 @@
 
 use super::super::codes;
 use super::Lowering;
-use crate::diagnostic::Severity;
+use crate::diagnostic::excerpt;
 use crate::op::Op;
 use crate::text::Span;
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-/// Steps after which the search for growing stacks gives up: programs that need more are not written by hand.
+/// Steps after which the way by which a stack grows is not looked for any more: programs that need more are not written by hand.
 const MOST_STEPS: usize = 4_000_000;
 
 impl Lowering<'_> {
     /// Says what is wrong with the way through the program. Programs with errors are left alone: not all of their jumps lead somewhere.
     pub(super) fn warn_of_flow(&mut self) {
-        if self.diagnostics.iter().any(|diagnostic| diagnostic.severity() == Severity::Error) {
+        if self.diagnostics.has_errors() {
             return;
         }
         let graph = Graph { ops: &self.ops };
+        let names = self.scope.label_names(self.text);
         let all = graph.reached(0, true);
         let main = graph.reached(0, false);
         let mut found = unreachable(&all, &self.spans);
-        found.extend(self.missing_ends(&graph, &all, &main));
-        found.extend(self.growing(&graph, &main));
+        found.extend(self.missing_ends(&graph, &names, &all, &main));
+        found.extend(self.growing(&graph, &names, &main));
         for (code, span, message, hint) in found {
             self.report(code, span, message, hint);
         }
     }
 
-    fn name_of(&self, at: usize) -> String {
-        self.scope.label_name(self.text, at).unwrap_or_default()
-    }
-
     /// The end of the text, and subroutines that the program runs into.
-    fn missing_ends(&self, graph: &Graph<'_>, all: &[bool], main: &[bool]) -> Vec<Found> {
+    fn missing_ends(&self, graph: &Graph<'_>, names: &Names<'_>, all: &[bool], main: &[bool]) -> Vec<Found> {
         let mut found = Vec::new();
         let last = self.ops.len().saturating_sub(1);
         let falls_into = |at: usize| at > 0 && graph.falls_through(at - 1);
@@ -45,7 +43,7 @@ impl Lowering<'_> {
                 && !jumped.contains(&to)
                 && let Some(span) = span_before(to)
             {
-                let message = format!("The program runs into the subroutine `{}` here.", self.name_of(to));
+                let message = format!("The program runs into the subroutine `{}` here.", name_of(names, to));
                 found.push((codes::MISSING_END, span, message, Some("Write END before it.".to_owned())));
             }
         }
@@ -58,22 +56,26 @@ impl Lowering<'_> {
         found
     }
 
-    /// Subroutines that can be called again before they return.
-    fn growing(&self, graph: &Graph<'_>, main: &[bool]) -> Vec<Found> {
-        let bodies = graph.bodies();
-        let calls = |from: usize| bodies.get(&from).map_or(&[][..], |body| &body.calls);
+    /// Subroutines that can be called again before they return: those that a call leads to from where they lead themselves.
+    fn growing(&self, graph: &Graph<'_>, names: &Names<'_>, main: &[bool]) -> Vec<Found> {
+        let group = graph.groups();
+        let mut entries: BTreeMap<usize, usize> = BTreeMap::new();
+        for (at, to) in graph.calls().filter(|(at, to)| group[*at] == group[*to]) {
+            entries.entry(to).or_insert(at);
+        }
         let mut found = Vec::new();
-        let mut steps = 0;
-        for (entry, body) in &bodies {
-            let closing = body.calls.iter().find(|(_, to)| reaches(calls, *to, *entry, &mut steps));
-            let Some((at, to)) = closing else { continue };
-            let name = self.name_of(*entry);
-            let (site, message) = match body.way_out(main).filter(|_| main[*at] && !main[*entry]) {
-                Some(jump) => {
+        let mut search = Search::new(graph);
+        for (entry, site) in entries {
+            let name = name_of(names, entry);
+            let (site, message) = match search.body(entry, &group, main) {
+                None => (site, format!("`{name}` can be called again before it returns.")),
+                Some(Body { call: (at, _), way_out: Some(jump) }) if main[at] && !main[entry] => {
                     (jump, format!("The subroutine `{name}` leaves by GOTO and can be called again."))
                 }
-                None if to == entry => (*at, format!("`{name}` calls itself.")),
-                None => (*at, format!("`{name}` calls itself by way of `{}`.", self.name_of(*to))),
+                Some(Body { call: (at, to), .. }) if to == entry => (at, format!("`{name}` calls itself.")),
+                Some(Body { call: (at, to), .. }) => {
+                    (at, format!("`{name}` calls itself by way of `{}`.", name_of(names, to)))
+                }
             };
             let hint = Some("Each call that does not return takes room on the stack.".to_owned());
             if let Some(span) = self.spans.get(site).copied().flatten() {
@@ -82,6 +84,13 @@ impl Lowering<'_> {
         }
         found
     }
+}
+
+/// Labels by their instructions.
+type Names<'t> = HashMap<usize, &'t str>;
+
+fn name_of<'t>(names: &Names<'t>, at: usize) -> Cow<'t, str> {
+    names.get(&at).map_or(Cow::Borrowed(""), |name| excerpt(name))
 }
 
 type Found = (&'static str, Span, String, Option<String>);
@@ -106,48 +115,57 @@ fn unreachable(all: &[bool], spans: &[Option<Span>]) -> Vec<Found> {
     found
 }
 
-/// Whether calls lead from one subroutine to another.
-fn reaches<'a>(
-    calls: impl Fn(usize) -> &'a [(usize, usize)],
-    from: usize,
-    to: usize,
-    steps: &mut usize,
-) -> bool {
-    let mut seen = HashSet::from([from]);
-    let mut open = vec![from];
-    while let Some(at) = open.pop() {
-        if at == to {
-            return true;
-        }
-        for (_, next) in calls(at) {
-            *steps += 1;
-            if *steps > MOST_STEPS {
-                return false;
-            }
-            if seen.insert(*next) {
-                open.push(*next);
-            }
-        }
-    }
-    false
-}
-
 struct Graph<'a> {
     ops: &'a [Op],
 }
 
-/// What a subroutine does before it returns; what it calls is left out.
+/// How a subroutine comes to be called again. What it calls is left out.
 struct Body {
-    /// GOSUBs in it: instruction and subroutine.
-    calls: Vec<(usize, usize)>,
-    /// Jumps in it: instruction and where to.
-    jumps: Vec<(usize, usize)>,
+    /// The first call in it that leads back to it: instruction and subroutine.
+    call: (usize, usize),
+    /// The first jump out of it into the main program.
+    way_out: Option<usize>,
 }
 
-impl Body {
-    /// The first jump out of the subroutine into the main program.
-    fn way_out(&self, main: &[bool]) -> Option<usize> {
-        self.jumps.iter().find(|(at, to)| !main[*at] && main[*to]).map(|(at, _)| *at)
+/// Looks through subroutines, a bounded number of steps in all.
+struct Search<'a> {
+    graph: &'a Graph<'a>,
+    /// The subroutine that saw an instruction last.
+    seen: Vec<usize>,
+    steps: usize,
+}
+
+impl<'a> Search<'a> {
+    fn new(graph: &'a Graph<'a>) -> Self {
+        Self { graph, seen: vec![usize::MAX; graph.ops.len()], steps: 0 }
+    }
+
+    /// `None` when there are no steps left.
+    fn body(&mut self, entry: usize, group: &[u32], main: &[bool]) -> Option<Body> {
+        let (mut call, mut way_out) = (None, None);
+        let mut open = vec![entry];
+        while let Some(at) = open.pop() {
+            if at >= self.graph.ops.len() || std::mem::replace(&mut self.seen[at], entry) == entry {
+                continue;
+            }
+            self.steps += 1;
+            if self.steps > MOST_STEPS {
+                return None;
+            }
+            if let Op::Gosub(to, _) = self.graph.ops[at]
+                && group[to as usize] == group[entry]
+            {
+                let here = (at, to as usize);
+                call = Some(call.map_or(here, |first: (usize, usize)| first.min(here)));
+            }
+            self.graph.next(at, |next| {
+                if next != at + 1 && !main[at] && main[next] {
+                    way_out = Some(way_out.map_or(at, |first: usize| first.min(at)));
+                }
+                open.push(next);
+            });
+        }
+        call.map(|call| Body { call, way_out })
     }
 }
 
@@ -211,36 +229,57 @@ impl Graph<'_> {
         reached
     }
 
-    /// Every subroutine that is called somewhere, by its first instruction.
-    fn bodies(&self) -> BTreeMap<usize, Body> {
-        let mut bodies = BTreeMap::new();
-        let mut stamps: HashMap<usize, usize> = HashMap::new();
-        let mut steps = 0;
-        for (_, entry) in self.calls() {
-            if bodies.contains_key(&entry) {
-                continue;
+    /// For each instruction the number of its group: those that lead to each other, by calls too (Tarjan's strongly connected components).
+    fn groups(&self) -> Vec<u32> {
+        const NONE: u32 = u32::MAX;
+        let count = self.ops.len();
+        let mut starts = Vec::with_capacity(count + 1);
+        let mut edges: Vec<u32> = Vec::with_capacity(count);
+        for at in 0..count {
+            starts.push(edges.len());
+            let mut tell = |to: usize| edges.extend((to < count).then_some(to as u32));
+            self.next(at, &mut tell);
+            if let Op::Gosub(to, _) = self.ops[at] {
+                tell(to as usize);
             }
-            let mut body = Body { calls: Vec::new(), jumps: Vec::new() };
-            let mut open = vec![entry];
-            while let Some(at) = open.pop().filter(|_| steps < MOST_STEPS) {
-                if at >= self.ops.len() || stamps.insert(at, entry) == Some(entry) {
+        }
+        starts.push(edges.len());
+        let (mut group, mut order, mut low) = (vec![NONE; count], vec![NONE; count], vec![NONE; count]);
+        let (mut stack, mut path) = (Vec::new(), Vec::new());
+        let mut seen = 0;
+        for root in 0..count {
+            if order[root] == NONE {
+                path.push((root, starts[root]));
+            }
+            while let Some((at, edge)) = path.pop() {
+                if order[at] == NONE {
+                    (order[at], low[at]) = (seen, seen);
+                    seen += 1;
+                    stack.push(at);
+                }
+                if edge < starts[at + 1] {
+                    let to = edges[edge] as usize;
+                    path.push((at, edge + 1));
+                    if order[to] == NONE {
+                        path.push((to, starts[to]));
+                    } else if group[to] == NONE {
+                        low[at] = low[at].min(order[to]);
+                    }
                     continue;
                 }
-                steps += 1;
-                if let Op::Gosub(to, _) = self.ops[at] {
-                    body.calls.push((at, to as usize));
-                }
-                self.next(at, |next| {
-                    if next != at + 1 {
-                        body.jumps.push((at, next));
+                if low[at] == order[at] {
+                    while let Some(member) = stack.pop() {
+                        group[member] = at as u32;
+                        if member == at {
+                            break;
+                        }
                     }
-                    open.push(next);
-                });
+                }
+                if let Some((parent, _)) = path.last() {
+                    low[*parent] = low[*parent].min(low[at]);
+                }
             }
-            body.calls.sort_unstable();
-            body.jumps.sort_unstable();
-            bodies.insert(entry, body);
         }
-        bodies
+        group
     }
 }

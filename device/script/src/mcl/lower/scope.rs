@@ -7,12 +7,13 @@ use super::super::registers::RegisterId;
 use super::super::types::{Part, VarType};
 use super::variable;
 use crate::arithmetic::Type;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Diagnostics, excerpt};
 use crate::op::{Array, TableRef};
-use crate::program::Variable;
+use crate::program::{Variable, limits};
 use crate::text::Span;
 use serde::Serialize;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// What a name is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -53,7 +54,7 @@ pub struct Symbol {
 #[derive(Clone, Debug)]
 pub enum Meaning {
     /// A variable or an alias; `root` is the variable whose memory it is.
-    Memory { memory: Array, is_array: bool, root: String },
+    Memory { memory: Array, is_array: bool, root: Arc<str> },
     /// A constant.
     Constant(Constant),
     /// Another name for a register, for an element or for a part of one.
@@ -80,13 +81,16 @@ pub struct Entry {
 /// All names.
 #[derive(Clone, Debug, Default)]
 pub struct Scope {
-    entries: HashMap<String, Entry>,
-    order: Vec<String>,
+    entries: HashMap<Arc<str>, Entry>,
+    order: Vec<Arc<str>>,
+    /// The first definition for which there is no room, and how many there are.
+    full_at: Option<Span>,
+    surplus: usize,
 }
 
 impl Scope {
     /// Notes every definition, wherever it stands.
-    pub fn collect(&mut self, statements: &[Statement], diagnostics: &mut Vec<Diagnostic>) {
+    pub fn collect(&mut self, statements: &[Statement], diagnostics: &mut Diagnostics) {
         for statement in statements {
             match &statement.kind {
                 StatementKind::Variable { name, .. } => self.define(name, SymbolKind::Variable, diagnostics),
@@ -107,17 +111,18 @@ impl Scope {
                         self.collect(body, diagnostics);
                     }
                 }
-                StatementKind::While { body, .. }
-                | StatementKind::Repeat { body, .. }
-                | StatementKind::For { body, .. } => self.collect(body, diagnostics),
+                StatementKind::While { body, .. } | StatementKind::Repeat { body, .. } => {
+                    self.collect(body, diagnostics);
+                }
+                StatementKind::For(parts) => self.collect(&parts.body, diagnostics),
                 _ => {}
             }
         }
     }
 
-    fn define(&mut self, name: &Name, kind: SymbolKind, diagnostics: &mut Vec<Diagnostic>) {
+    fn define(&mut self, name: &Name, kind: SymbolKind, diagnostics: &mut Diagnostics) {
         if let Some(entry) = self.entries.get(&name.key) {
-            let message = format!("`{}` is defined already.", name.key);
+            let message = format!("`{}` is defined already.", excerpt(&name.key));
             let kind = match entry.symbol.kind {
                 SymbolKind::Variable => "variable",
                 SymbolKind::Alias => "alias",
@@ -129,9 +134,14 @@ impl Scope {
             diagnostics.push(Diagnostic { code: codes::DEFINED_TWICE, span: name.span, message, hint });
             return;
         }
+        if self.order.len() >= limits::NAMES {
+            self.full_at.get_or_insert(name.span);
+            self.surplus += 1;
+            return;
+        }
         let symbol = Symbol {
-            key: name.key.clone(),
-            name: name.key.clone(),
+            key: name.key.to_string(),
+            name: String::new(),
             kind,
             value: None,
             length: None,
@@ -178,7 +188,7 @@ impl Scope {
 
     /// Names of these kinds, for "did you mean".
     pub fn names(&self, labels: bool) -> impl Iterator<Item = &str> {
-        self.order.iter().map(String::as_str).filter(move |key| {
+        self.order.iter().map(|key| &**key).filter(move |key| {
             self.entries.get(*key).is_some_and(|entry| (entry.symbol.kind == SymbolKind::Label) == labels)
         })
     }
@@ -198,10 +208,13 @@ impl Scope {
         }
     }
 
-    /// The label of an instruction as it is written.
-    pub fn label_name(&self, text: &str, at: usize) -> Option<String> {
-        let is_there = |entry: &&Entry| matches!(entry.meaning, Some(Meaning::Label { at: Some(to), .. }) if to as usize == at);
-        self.entries().filter(is_there).last().map(|entry| entry.symbol.defined.of(text).to_owned())
+    /// The labels of instructions as they are written; of several at one instruction the last.
+    pub fn label_names<'t>(&self, text: &'t str) -> HashMap<usize, &'t str> {
+        let of = |entry: &Entry| match entry.meaning {
+            Some(Meaning::Label { at: Some(at), .. }) => Some((at as usize, entry.symbol.defined.of(text))),
+            _ => None,
+        };
+        self.entries().filter_map(of).collect()
     }
 
     /// The type that a subroutine's argument is stored as.
@@ -214,7 +227,12 @@ impl Scope {
 
     /// How many names there are.
     pub fn count(&self) -> usize {
-        self.order.len()
+        self.order.len() + self.surplus
+    }
+
+    /// The first definition for which there is no room. Names after that are not known.
+    pub fn full_at(&self) -> Option<Span> {
+        self.full_at
     }
 
     /// All entries in the order of the text.

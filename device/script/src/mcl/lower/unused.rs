@@ -3,13 +3,14 @@
 use super::super::codes;
 use super::Lowering;
 use super::scope::SymbolKind;
+use crate::diagnostic::excerpt;
 
 impl Lowering<'_> {
     /// Names that nothing uses.
     pub(super) fn warn_of_unused(&mut self) {
         let mut found = Vec::new();
         for entry in self.scope.entries() {
-            let name = entry.symbol.defined.of(self.text);
+            let name = excerpt(entry.symbol.defined.of(self.text));
             let (code, message) = match entry.symbol.kind {
                 SymbolKind::Variable if !entry.is_read && entry.is_written => {
                     (codes::UNUSED_VARIABLE, format!("`{name}` is set but never read."))

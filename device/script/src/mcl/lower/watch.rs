@@ -131,9 +131,9 @@ impl Lowering<'_> {
         if place.index.is_some() || place.modifier.is_some() {
             return None;
         }
-        let before = self.diagnostics.len();
+        let said = std::mem::take(&mut self.diagnostics);
         let target = self.target(place);
-        self.diagnostics.truncate(before);
+        self.diagnostics = said;
         match target {
             Some(Target::Whole { memory, .. }) => Some(memory),
             _ => None,

@@ -1,7 +1,7 @@
 //! Statements that hold others: IF, FOR, WHILE, DO, REPEAT.
 
 use super::{Parse, Parser};
-use crate::mcl::ast::{Statement, StatementKind};
+use crate::mcl::ast::{For, Statement, StatementKind};
 use crate::mcl::codes;
 use crate::mcl::lexer::TokenKind;
 use crate::text::Span;
@@ -40,7 +40,7 @@ impl Parser<'_> {
             return self.fail(codes::UNEXPECTED, message, None);
         }
         if let Some(jump) = self.jump_on_this_line()? {
-            return Ok(StatementKind::IfJump { condition, then: Box::new(jump) });
+            return Ok(StatementKind::IfJump { condition: Box::new(condition), then: Box::new(jump) });
         }
         let mut branches = vec![(Some(condition), self.body(&["endif", "else", "elseif"])?)];
         loop {
@@ -94,7 +94,7 @@ impl Parser<'_> {
         let step = if self.skip_word("step") { Some(self.expression()?) } else { None };
         let body = self.body(&["next"])?;
         let end = self.close("next", "FOR", opened_at);
-        Ok(StatementKind::For { variable, start, finish, step, body, end })
+        Ok(StatementKind::For(Box::new(For { variable, start, finish, step, body, end })))
     }
 
     pub(super) fn while_statement(&mut self) -> Parse<StatementKind> {
@@ -104,7 +104,7 @@ impl Parser<'_> {
             let hint = Some("The manual advises against it: use REPEAT for one of the two.".to_owned());
             self.report(codes::NESTED_WHILE, opened_at, message, hint);
         }
-        let condition = self.expression()?;
+        let condition = Box::new(self.expression()?);
         let body = self.body(&["wend"])?;
         let end = self.close("wend", "WHILE", opened_at);
         Ok(StatementKind::While { condition, body, end })
@@ -132,7 +132,7 @@ impl Parser<'_> {
         if !is_closed {
             return Err(super::Broken);
         }
-        let condition = self.expression()?;
+        let condition = Box::new(self.expression()?);
         Ok(StatementKind::Repeat { body, condition, until })
     }
 }

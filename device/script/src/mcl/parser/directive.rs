@@ -1,10 +1,10 @@
 //! Compile-time directives (MCP manual 3.4.2, second of that number): what they leave out is skipped as tokens.
 
 use super::Parser;
+use crate::diagnostic::excerpt;
 use crate::mcl::codes;
 use crate::mcl::constant;
 use crate::mcl::lexer::TokenKind;
-use crate::mcl::words;
 
 const NAMES: [&str; 8] = ["if", "ifdef", "ifndef", "else", "elseif", "elseifdef", "elseifndef", "endif"];
 
@@ -21,7 +21,7 @@ impl Parser<'_> {
                 }
             }
             "else" | "elseif" | "elseifdef" | "elseifndef" | "endif" if self.conditions.is_empty() => {
-                let message = format!("#{} without #IF.", name.to_uppercase());
+                let message = format!("#{} without #IF.", excerpt(&name).to_uppercase());
                 self.report(codes::BAD_DIRECTIVE, span, message, None);
                 self.skip_line();
             }
@@ -32,8 +32,8 @@ impl Parser<'_> {
             // The branch before was compiled, so the rest up to #ENDIF is not.
             "else" | "elseif" | "elseifdef" | "elseifndef" => self.skip_to_end(),
             _ => {
-                let hint = words::did_you_mean(&name, NAMES).map(|hint| hint.replace("mean ", "mean #"));
-                let message = format!("`#{name}` is no directive.");
+                let hint = self.did_you_mean(&name, NAMES).map(|hint| hint.replace("mean ", "mean #"));
+                let message = format!("`#{}` is no directive.", excerpt(&name));
                 self.report(codes::BAD_DIRECTIVE, span, message, hint);
                 self.skip_line();
             }
@@ -49,7 +49,7 @@ impl Parser<'_> {
                 self.report(codes::BAD_DIRECTIVE, span, "A name should follow.".into(), None);
                 return false;
             };
-            let known = self.defined.contains(&word.to_ascii_lowercase())
+            let known = self.defined.contains(word.to_ascii_lowercase().as_str())
                 || crate::mcl::registers::lookup(word).is_some();
             self.advance();
             return known != name.ends_with("ndef");

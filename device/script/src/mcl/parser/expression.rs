@@ -1,31 +1,28 @@
 //! Expressions, by the precedence of MCP manual 3.2.5: from left to right, unary operators first.
 
-use super::{Parse, Parser};
-use crate::mcl::ast::{Binary, Expr, ExprKind, Name, Place, Unary};
+use super::{DEEPEST, Parse, Parser};
+use crate::mcl::ast::{Binary, Expr, ExprKind, Link, Name, Place, Unary};
 use crate::mcl::codes;
 use crate::mcl::lexer::TokenKind;
 use crate::mcl::words;
-
-/// The loosest order of all.
-const LOOSEST: u8 = 9;
+use crate::text::Span;
 
 impl Parser<'_> {
-    /// A whole expression.
+    /// A whole expression. Left operands wait in a list for their right ones, each with an operator that binds tighter than the one before:
+    /// the list is no longer than there are orders, and no operator takes room on the stack of whoever calls this.
     pub(super) fn expression(&mut self) -> Parse<Expr> {
-        self.binary(LOOSEST)
-    }
-
-    /// An expression of operators that bind as tightly as `order` or tighter.
-    fn binary(&mut self, order: u8) -> Parse<Expr> {
-        let mut left = self.unary()?;
+        let mut waiting: Vec<(Expr, Binary)> = Vec::new();
+        let mut value = self.unary()?;
         loop {
-            let Some(operator) = self.operator().filter(|operator| operator.order() <= order) else {
-                return Ok(left);
-            };
+            let next = self.operator();
+            let is_done = |operator: Binary| next.is_none_or(|next| operator.order() <= next.order());
+            while let Some((left, operator)) = waiting.pop_if(|(_, operator)| is_done(*operator)) {
+                value = joined(left, operator, value);
+            }
+            let Some(operator) = next else { return Ok(value) };
             self.advance();
-            let right = self.deeper(|parser| parser.binary(operator.order() - 1))?;
-            let span = left.span.to(right.span);
-            left = Expr { kind: ExprKind::Binary(operator, Box::new(left), Box::new(right)), span };
+            waiting.push((value, operator));
+            value = self.unary()?;
         }
     }
 
@@ -37,21 +34,33 @@ impl Parser<'_> {
         }
     }
 
+    /// A value with the operators before it.
     fn unary(&mut self) -> Parse<Expr> {
-        let start = self.span();
-        let operator = match self.kind() {
+        let mut operators = Vec::new();
+        while let Some(operator) = self.unary_operator() {
+            operators.push((operator, self.span()));
+            if self.depth + operators.len() > DEEPEST {
+                return self.too_deep();
+            }
+            self.advance();
+        }
+        self.depth += operators.len();
+        let operand = self.primary();
+        self.depth -= operators.len();
+        let around = |operand: Expr, (operator, start): (Unary, Span)| {
+            let span = start.to(operand.span);
+            Expr { kind: ExprKind::Unary(operator, Box::new(operand)), span }
+        };
+        Ok(operators.into_iter().rev().fold(operand?, around))
+    }
+
+    fn unary_operator(&self) -> Option<Unary> {
+        match self.kind() {
             TokenKind::Sign("-") => Some(Unary::Negative),
             TokenKind::Sign("~" | "!") => Some(Unary::BitNot),
             TokenKind::Word => self.word_here().and_then(Unary::of_word),
             _ => None,
-        };
-        if let Some(operator) = operator {
-            self.advance();
-            let operand = self.deeper(Self::unary)?;
-            let span = start.to(operand.span);
-            return Ok(Expr { kind: ExprKind::Unary(operator, Box::new(operand)), span });
         }
-        self.primary()
     }
 
     fn primary(&mut self) -> Parse<Expr> {
@@ -107,7 +116,7 @@ impl Parser<'_> {
             };
             let part = self.any_name(word);
             span = span.to(part.span);
-            modifier = Some(part);
+            modifier = Some(Box::new(part));
         }
         Ok(Place { name, index, modifier, span })
     }
@@ -130,4 +139,17 @@ impl Parser<'_> {
         let hint = "CAN is stream 1 of GETS and PUTS.".to_owned();
         self.fail(codes::NO_PUBLIC_SYNTAX, message, Some(hint))
     }
+}
+
+/// An operator with its operands; operators of one order become one chain.
+fn joined(mut left: Expr, operator: Binary, right: Expr) -> Expr {
+    let span = left.span.to(right.span);
+    let link = Link { operator, right };
+    if left.kind.order() == Some(operator.order())
+        && let ExprKind::Chain(_, links) = &mut left.kind
+    {
+        links.push(link);
+        return Expr { kind: left.kind, span };
+    }
+    Expr { kind: ExprKind::Chain(Box::new(left), vec![link]), span }
 }

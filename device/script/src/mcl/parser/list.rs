@@ -1,6 +1,7 @@
 //! Lists: arguments, labels, and what PUTS, GETS and array assignments take (MCP manual 3.3).
 
 use super::{Parse, Parser};
+use crate::diagnostic::excerpt;
 use crate::mcl::ast::{Expr, ExprKind, Format, Item, Name, Place};
 use crate::mcl::codes;
 use crate::mcl::lexer::TokenKind;
@@ -86,13 +87,13 @@ impl Parser<'_> {
         let letters = word.trim_end_matches(|letter: char| letter.is_ascii_digit());
         if starts_value && crate::mcl::ast::Binary::of_word(self.word_at(self.at + 1).unwrap_or("")).is_none()
         {
-            let hint = words::OTHER_PRODUCT
-                .iter()
-                .any(|other| other.eq_ignore_ascii_case(letters))
-                .then(|| "Use DEC or HEX.".to_owned())
-                .or_else(|| words::did_you_mean(letters, words::FORMATS.iter().map(|format| format.name)));
+            let is_other = words::OTHER_PRODUCT.iter().any(|other| other.eq_ignore_ascii_case(letters));
+            let hint = match is_other {
+                true => Some("Use DEC or HEX.".to_owned()),
+                false => self.did_you_mean(letters, words::FORMATS.iter().map(|format| format.name)),
+            };
             if crate::mcl::ast::Unary::of_word(word).is_none() {
-                let message = format!("`{word}` is no output modifier.");
+                let message = format!("`{}` is no output modifier.", excerpt(word));
                 self.report_here(codes::BAD_OUTPUT, message, hint);
                 self.advance();
             }

@@ -15,12 +15,19 @@ use super::codes;
 use super::constant::Constant;
 use super::lexer::{Token, TokenKind, tokens};
 use super::words;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Diagnostics, excerpt};
+use crate::program::limits;
 use crate::text::Span;
 use std::collections::{BTreeSet, HashMap, HashSet};
+use std::sync::Arc;
 
-/// How deep blocks and parentheses may be nested.
+/// How deep blocks, parentheses and operators before a value may be nested, all together. The tree is walked by functions that call themselves
+/// so often and no oftener, whatever the length of the text: a test compiles the deepest programs on a stack of 512 KiB. C promises a
+/// programmer 127 levels of blocks and 63 of parentheses (ISO/IEC 9899:2011, 5.2.4.1).
 const DEEPEST: usize = 100;
+
+/// Statements of a program. Each makes an instruction or a name, so that one with more of them cannot fit.
+const MOST_STATEMENTS: usize = limits::INSTRUCTIONS + limits::NAMES;
 
 /// A program as it was read.
 #[derive(Clone, Debug, Default)]
@@ -28,7 +35,7 @@ pub struct Parsed {
     /// Its statements.
     pub statements: Vec<Statement>,
     /// What is wrong with it so far.
-    pub diagnostics: Vec<Diagnostic>,
+    pub diagnostics: Diagnostics,
     /// What compile-time directives left out.
     pub left_out: Vec<Span>,
 }
@@ -36,29 +43,35 @@ pub struct Parsed {
 /// Reads a program.
 #[must_use]
 pub fn parse(text: &str) -> Parsed {
-    let (tokens, diagnostics) = tokens(text);
-    let of_characters = diagnostics.len();
+    let (tokens, wrong) = tokens(text);
     let heads = whiles::heads(text, &tokens);
     let mut parser = Parser {
         text,
         tokens,
         at: 0,
-        diagnostics,
+        diagnostics: Diagnostics::default(),
         depth: 0,
         open: Vec::new(),
         heads,
         conditions: Vec::new(),
         left_out: Vec::new(),
+        names: HashSet::new(),
         constants: HashMap::new(),
         defined: HashSet::new(),
+        count: 0,
+        guesses: 0,
     };
     let statements = parser.statements(&[]);
     parser.close_conditions();
     let Parser { mut diagnostics, left_out, .. } = parser;
-    // What is left out need not even consist of words: an apostrophe in prose is no open text.
-    let counts = |told: &Diagnostic| !left_out.iter().any(|part| part.contains(told.span));
-    let kept = diagnostics.drain(..of_characters).filter(counts).collect::<Vec<_>>();
-    diagnostics.splice(..0, kept);
+    // What is left out need not even consist of words: an apostrophe in prose is no open text. The parts stand in their order.
+    let counts = |span: Span| {
+        let part = left_out.partition_point(|part| part.start <= span.start).checked_sub(1);
+        part.is_none_or(|part| !left_out[part].contains(span))
+    };
+    for wrong in wrong.into_iter().filter(|wrong| counts(wrong.span)) {
+        diagnostics.note(wrong.span.start, wrong.code, || wrong.told(text));
+    }
     Parsed { statements, diagnostics, left_out }
 }
 
@@ -74,7 +87,7 @@ struct Parser<'a> {
     text: &'a str,
     tokens: Vec<Token>,
     at: usize,
-    diagnostics: Vec<Diagnostic>,
+    diagnostics: Diagnostics,
     depth: usize,
     /// The words that end each open block, outermost first.
     open: Vec<&'static [&'static str]>,
@@ -83,11 +96,20 @@ struct Parser<'a> {
     /// Open #IFs: where they stand.
     conditions: Vec<Span>,
     left_out: Vec<Span>,
+    /// Every name in small letters, once.
+    names: HashSet<Arc<str>>,
     /// Constants defined so far, for #IF.
-    constants: HashMap<String, Constant>,
+    constants: HashMap<Arc<str>, Constant>,
     /// Everything defined so far, for #IFDEF.
-    defined: HashSet<String>,
+    defined: HashSet<Arc<str>>,
+    /// Statements so far.
+    count: usize,
+    /// How often a word was looked for that might have been meant.
+    guesses: u32,
 }
+
+/// Unknown words for which the nearest known one is looked for.
+const MOST_GUESSES: u32 = 100;
 
 /// Words that end a block.
 const CLOSERS: [&str; 6] = ["endif", "else", "elseif", "next", "wend", "until"];
@@ -100,6 +122,11 @@ impl<'a> Parser<'a> {
         loop {
             self.skip_newlines();
             if self.is_end() || self.is_closed() {
+                break;
+            }
+            self.count += 1;
+            if self.count > MOST_STATEMENTS {
+                self.give_up();
                 break;
             }
             let before = self.at;
@@ -116,6 +143,13 @@ impl<'a> Parser<'a> {
         }
         self.open.pop();
         statements
+    }
+
+    /// The program has too many statements: the rest is not read.
+    fn give_up(&mut self) {
+        let message = format!("A program has at most {MOST_STATEMENTS} statements; this is one more.");
+        self.report_here(codes::TOO_LARGE, message, None);
+        self.at = self.tokens.len() - 1;
     }
 
     /// Whether the word here ends this block or one around it.
@@ -264,7 +298,18 @@ impl<'a> Parser<'a> {
     fn any_name(&mut self, word: &str) -> Name {
         let span = self.span();
         self.advance();
-        Name { key: word.to_ascii_lowercase(), span }
+        Name { key: self.key(word), span }
+    }
+
+    /// A word in small letters, which all places of it share.
+    fn key(&mut self, word: &str) -> Arc<str> {
+        let small = word.to_ascii_lowercase();
+        if let Some(known) = self.names.get(small.as_str()) {
+            return known.clone();
+        }
+        let key: Arc<str> = small.into();
+        self.names.insert(key.clone());
+        key
     }
 
     /// What stands here, for messages.
@@ -272,7 +317,7 @@ impl<'a> Parser<'a> {
         match self.kind() {
             TokenKind::Newline => "the end of the line".to_owned(),
             TokenKind::End => "the end of the program".to_owned(),
-            _ => format!("`{}`", self.span().of(self.text)),
+            _ => format!("`{}`", excerpt(self.span().of(self.text))),
         }
     }
 
@@ -286,6 +331,10 @@ impl<'a> Parser<'a> {
     }
 
     fn report(&mut self, code: &'static str, span: Span, message: String, hint: Option<String>) {
+        // What would be missing of a program that is not read to its end is not missing.
+        if self.count > MOST_STATEMENTS && code != codes::TOO_LARGE {
+            return;
+        }
         self.diagnostics.push(Diagnostic { code, span, message, hint });
     }
 
@@ -303,16 +352,23 @@ impl<'a> Parser<'a> {
     /// Goes one level deeper for `inner`.
     fn deeper<T>(&mut self, inner: impl FnOnce(&mut Self) -> Parse<T>) -> Parse<T> {
         if self.depth >= DEEPEST {
-            let message = format!("This is nested more than {DEEPEST} levels deep.");
-            return self.fail(
-                codes::TOO_DEEP,
-                message,
-                Some("Use a subroutine or a variable in between.".into()),
-            );
+            return self.too_deep();
         }
         self.depth += 1;
         let result = inner(self);
         self.depth -= 1;
         result
+    }
+
+    fn too_deep<T>(&mut self) -> Parse<T> {
+        let message = format!("This is nested more than {DEEPEST} levels deep.");
+        self.fail(codes::TOO_DEEP, message, Some("Use a subroutine or a variable in between.".into()))
+    }
+
+    /// The hint at a word of the language that was meant. A text with more mistakes than a person reads is searched for the first of them
+    /// alone, so that it is checked as quickly as any other.
+    fn did_you_mean<'w>(&mut self, typed: &str, words: impl IntoIterator<Item = &'w str>) -> Option<String> {
+        self.guesses += 1;
+        (self.guesses <= MOST_GUESSES).then(|| words::did_you_mean(typed, words)).flatten()
     }
 }

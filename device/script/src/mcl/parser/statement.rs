@@ -1,6 +1,7 @@
 //! Single statements: definitions, labels, assignments and commands.
 
 use super::{Broken, CLOSERS, Parse, Parser};
+use crate::diagnostic::excerpt;
 use crate::mcl::ast::{Motion, Name, Place, Statement, StatementKind};
 use crate::mcl::codes;
 use crate::mcl::constant::{self, Constant};
@@ -108,8 +109,8 @@ impl Parser<'_> {
             TokenKind::Word if self.is_label_before_statement() => self.label(),
             _ => {
                 let commands = words::COMMANDS.iter().map(|command| command.name);
-                let hint = words::did_you_mean(word, commands);
-                self.fail(codes::UNKNOWN_COMMAND, format!("`{word}` is no command."), hint)
+                let hint = self.did_you_mean(word, commands);
+                self.fail(codes::UNKNOWN_COMMAND, format!("`{}` is no command.", excerpt(word)), hint)
             }
         }
     }
@@ -161,7 +162,7 @@ impl Parser<'_> {
         self.advance();
         let mut size = None;
         if self.skip_sign("(") {
-            size = Some(self.expression()?);
+            size = Some(Box::new(self.expression()?));
             self.expect_sign(")", "after the size")?;
         }
         Ok(StatementKind::Variable { name, kind, size })
@@ -171,7 +172,7 @@ impl Parser<'_> {
         let name = self.name("The name of a constant")?;
         self.define(&name);
         self.advance();
-        let value = self.expression()?;
+        let value = Box::new(self.expression()?);
         let constants = &self.constants;
         if let Ok(known) = constant::evaluate(&value, &|key| constants.get(key).copied()) {
             let known = if float { Constant::Float(known.as_float()) } else { known };
@@ -199,7 +200,7 @@ impl Parser<'_> {
         let label = self.label_name()?;
         let arguments =
             if self.is_sign("[") { self.bracketed("after the label", Self::expression)? } else { Vec::new() };
-        let result = if self.skip_sign(",") { Some(self.variable_place()?) } else { None };
+        let result = if self.skip_sign(",") { Some(Box::new(self.variable_place()?)) } else { None };
         Ok(StatementKind::Gosub { label, arguments, result })
     }
 
@@ -213,39 +214,39 @@ impl Parser<'_> {
     }
 
     fn branch(&mut self) -> Parse<StatementKind> {
-        let index = self.expression()?;
+        let index = Box::new(self.expression()?);
         self.expect_sign(",", "after the index")?;
         let labels = self.bracketed("before the labels", Self::label_name)?;
         Ok(StatementKind::Branch { index, labels })
     }
 
     fn puts(&mut self) -> Parse<StatementKind> {
-        let stream = self.expression()?;
+        let stream = Box::new(self.expression()?);
         self.expect_sign(",", "after the stream")?;
         let items = self.bracketed("before what is sent", Self::output_item)?;
         Ok(StatementKind::Puts { stream, items })
     }
 
     fn gets(&mut self) -> Parse<StatementKind> {
-        let stream = self.expression()?;
+        let stream = Box::new(self.expression()?);
         self.expect_sign(",", "after the stream")?;
         let items = self.bracketed("before the variables", Self::input_item)?;
         Ok(StatementKind::Gets { stream, items })
     }
 
     fn read(&mut self) -> Parse<StatementKind> {
-        let address = self.expression()?;
+        let address = Box::new(self.expression()?);
         self.expect_sign(",", "after the address")?;
         Ok(StatementKind::Read { address, to: self.variable_place()? })
     }
 
     fn write(&mut self) -> Parse<StatementKind> {
-        let address = self.expression()?;
+        let address = Box::new(self.expression()?);
         self.expect_sign(",", "after the address")?;
-        Ok(StatementKind::Write { address, value: self.expression()? })
+        Ok(StatementKind::Write { address, value: Box::new(self.expression()?) })
     }
 
-    fn i2c_otherwise(&mut self) -> Parse<Option<(Name, crate::mcl::ast::Expr)>> {
+    fn i2c_otherwise(&mut self) -> Parse<Option<Box<(Name, crate::mcl::ast::Expr)>>> {
         // "{label,timeout}, [...]": with the first part left out the comma may stay.
         self.skip_sign(",");
         if self.is_sign("[") {
@@ -255,7 +256,7 @@ impl Parser<'_> {
         self.expect_sign(",", "between label and timeout")?;
         let timeout = self.expression()?;
         self.expect_sign(",", "after the timeout")?;
-        Ok(Some((label, timeout)))
+        Ok(Some(Box::new((label, timeout))))
     }
 
     fn i2c_out(&mut self, stop: bool) -> Parse<StatementKind> {

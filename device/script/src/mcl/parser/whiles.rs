@@ -17,7 +17,7 @@ enum Open {
 pub fn heads(text: &str, tokens: &[Token]) -> BTreeSet<usize> {
     let mut heads = BTreeSet::new();
     let mut open: Vec<Open> = Vec::new();
-    // WHILEs that were taken for the end of a DO, and how many blocks were open after that.
+    // WHILEs that were taken for the end of a DO, and how many blocks were open after that: never fewer than at the one before.
     let mut closers: Vec<(usize, usize)> = Vec::new();
     for (index, token) in tokens.iter().enumerate().filter(|(_, token)| token.kind == TokenKind::Word) {
         match token.span.of(text).to_ascii_lowercase().as_str() {
@@ -26,6 +26,7 @@ pub fn heads(text: &str, tokens: &[Token]) -> BTreeSet<usize> {
             "until" | "next" => close(&mut open, Open::Other),
             "while" if open.last() == Some(&Open::Do) => {
                 open.pop();
+                close_inner(&mut closers, open.len());
                 closers.push((index, open.len()));
             }
             "while" => {
@@ -36,9 +37,14 @@ pub fn heads(text: &str, tokens: &[Token]) -> BTreeSet<usize> {
             "wend" => reopen(&mut heads, &mut open, &mut closers),
             _ => {}
         }
-        closers.retain(|(_, depth)| *depth <= open.len());
+        close_inner(&mut closers, open.len());
     }
     heads
+}
+
+/// Forgets those in blocks that are closed.
+fn close_inner(closers: &mut Vec<(usize, usize)>, depth: usize) {
+    while closers.pop_if(|(_, inner)| *inner > depth).is_some() {}
 }
 
 fn close(open: &mut Vec<Open>, kind: Open) {
@@ -49,9 +55,8 @@ fn close(open: &mut Vec<Open>, kind: Open) {
 
 /// A WEND without a WHILE: the last WHILE that ended a DO at this depth was the beginning of a loop in that DO.
 fn reopen(heads: &mut BTreeSet<usize>, open: &mut Vec<Open>, closers: &mut Vec<(usize, usize)>) {
-    if let Some(at) = closers.iter().rposition(|(_, depth)| *depth == open.len()) {
-        heads.insert(closers[at].0);
-        closers.truncate(at);
+    if let Some((index, _)) = closers.pop_if(|(_, depth)| *depth == open.len()) {
+        heads.insert(index);
         open.push(Open::Do);
     }
 }
