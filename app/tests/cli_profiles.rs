@@ -117,7 +117,7 @@ fn a_full_disk_and_a_folder_that_cannot_be_written_are_sentences_and_the_old_fil
     {
         // A limit of one block per file stands for a full disk: the write fails midway.
         let full = format!(
-            "trap '' XFSZ; ulimit -f 8; exec '{}' settings export '{}'",
+            "trap '' XFSZ; ulimit -f 8; exec '{}' settings export '{}' --force",
             env!("CARGO_BIN_EXE_brushwork"),
             name(&file)
         );

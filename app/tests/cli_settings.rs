@@ -167,12 +167,12 @@ fn an_export_replaces_the_whole_file_or_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("profile.json");
     std::fs::write(&file, "x".repeat(1_000_000)).unwrap();
-    settings(&["export", name(&file)]).ended_with(DONE);
+    settings(&["export", name(&file), "--force"]).ended_with(DONE);
     settings(&["diff", name(&file)]).ended_with(DONE);
     // A folder of that name cannot be replaced by a file.
     let in_the_way = folder.path().join("folder.json");
     std::fs::create_dir(&in_the_way).unwrap();
-    settings(&["export", name(&in_the_way)]).ended_with(1).explains("Writing the profile");
+    settings(&["export", name(&in_the_way), "--force"]).ended_with(1).explains("is a folder");
     assert!(in_the_way.is_dir());
     let left = std::fs::read_dir(folder.path()).unwrap().count();
     assert_eq!(left, 2, "nothing but the profile and the folder is left behind");
@@ -191,7 +191,7 @@ fn a_faulty_profile_is_refused_with_the_place_of_the_fault() {
         ),
         (
             "\"limits.main_battery.max_volts\": { \"value\": 60.0",
-            "\"limits.main_battery.max_volts\": { \"value\": 600",
+            "\"limits.main_battery.max_volts\": { \"value\": \"600\"",
             "settings.limits.main_battery.max_volts",
         ),
     ];

@@ -8,6 +8,8 @@ use brushwork::gui::model::screen::Screen;
 use brushwork::keep::UnitId;
 use brushwork_link::settings::{Act, SettingValue};
 use brushwork_protocol::packet_serial::{Motor, number};
+use brushwork_sim::controller::{Controller, ControllerConfig};
+use brushwork_sim::settings::Settings;
 use brushwork_sim::world::WorldAction;
 use egui::Key;
 use egui::accesskit::Role;
@@ -87,6 +89,42 @@ fn the_list_of_backups_compares_and_restores() {
     bench.pass_ms(3000);
     assert_eq!(bench.model().front.general.unit().unwrap().on_controller(P), Some(number(1.0)));
     assert_eq!(bench.store().backups(Some(&unit)).len(), 2, "restoring is a write and leaves a backup too");
+}
+
+#[test]
+fn what_a_unit_had_out_of_range_is_restored_with_a_warning_and_typed_it_is_refused() {
+    const MIN: &str = "limits.main_battery.min_volts";
+    let mut config = ControllerConfig::default();
+    let mut settings = Settings::factory(config.model, config.address.get());
+    settings.battery.main_min_tenths = 84;
+    config.settings = Some(settings);
+    let mut bench = Bench::of(Controller::new(config).expect("the preset is valid"));
+    bench.connect();
+    open(&mut bench);
+    want(&mut bench, &[(MIN, number(12.0))]);
+    write(&mut bench);
+    let unit = unit(&mut bench);
+    let title = bench.store().backups(Some(&unit))[0].title();
+    bench.press("Backups");
+    bench.press(&format!("Restore backup {title}"));
+    assert!(
+        bench.sees_part(
+            "Main battery minimum 8.4 V is below the MCP266's 10.0 V. It is written as it was read."
+        )
+    );
+    // Chosen beside what is taken over, a value has to be right.
+    want(&mut bench, &[(MIN, number(8.2))]);
+    let refused = bench.model().front.general.unit().unwrap().plan(None).unwrap_err();
+    assert!(refused[0].sentence.contains("8.2 V is below the MCP266's 10.0 V."), "{refused:?}");
+    write(&mut bench);
+    let controller = |bench: &mut Bench| bench.model().front.general.unit().unwrap().on_controller(MIN);
+    assert_eq!(controller(&mut bench), Some(number(12.0)));
+
+    bench.press("Backups");
+    bench.press(&format!("Restore backup {title}"));
+    bench.press("Write to controller");
+    bench.pass_ms(3000);
+    assert_eq!(controller(&mut bench), Some(number(8.4)));
 }
 
 #[test]

@@ -182,7 +182,7 @@ fn settings_written_over_can_take_and_are_read_back() {
     wanted.set("motor1.velocity.qpps", SettingValue::Int(12_345));
     let table = report.table.clone();
     let written = run(&mut link, move |wire| {
-        write(wire, &table, &wanted, WriteOptions { own_stream: None, simulated: true })
+        write(wire, &table, &wanted, WriteOptions { own_stream: None, simulated: true, as_read: false })
     });
     assert!(written.is_ok(), "{:?}", written.err().map(|failure| failure.to_string()));
     let qpps = link.bus(|bus| bus.controllers()[0].settings().motors[0].motion.qpps);

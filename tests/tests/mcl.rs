@@ -140,7 +140,9 @@ fn an_image_runs_and_is_listed_like_its_script() {
     assert_eq!(report["files"][0]["models"][0]["fits"], true);
     let stack = serde_json::json!({ "values": 1024, "gosubs": 256, "assumed": true });
     assert_eq!(report["files"][0]["stack"], stack);
-    assert!(shown(&mcl(&["build", path(&file)], "").stdout).contains("those of the stack are assumed"));
+    assert!(
+        shown(&mcl(&["build", "--force", path(&file)], "").stdout).contains("those of the stack are assumed")
+    );
     let image = folder.path().join("f.mcli");
     assert_eq!(shown(&mcl(&["run", path(&image)], "").stdout), "image");
     assert!(shown(&mcl(&["disasm", path(&image)], "").stdout).contains("out-text"));

@@ -513,7 +513,7 @@ fn subject(revision: u8) -> Subject {
     Subject::new(&brushwork_protocol::models::MOTION_MIND_3, FirmwareGeneration::MotionMind { revision })
 }
 
-const OPTIONS: WriteOptions = WriteOptions { own_stream: None, simulated: false };
+const OPTIONS: WriteOptions = WriteOptions { own_stream: None, simulated: false, as_read: false };
 
 fn manners() -> impl Iterator<Item = (Manner, bool)> {
     let text = [Manner::Strict, Manner::Sprawling, Manner::Terse, Manner::Slow].map(|manner| (manner, true));

@@ -644,7 +644,7 @@ fn connected_subject(link: &Link) -> brushwork_link::settings::Subject {
     )
 }
 
-const OPTIONS: WriteOptions = WriteOptions { own_stream: None, simulated: false };
+const OPTIONS: WriteOptions = WriteOptions { own_stream: None, simulated: false, as_read: false };
 
 fn wanted(changes: &[(&str, SettingValue)]) -> SettingsImage {
     changes.iter().map(|(key, value)| ((*key).to_owned(), *value)).collect()

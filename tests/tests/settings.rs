@@ -18,7 +18,7 @@ use brushwork_sim::machine::StreamIndex;
 use brushwork_sim::world::{PinSignal, WorldAction};
 use brushwork_tests::virtual_line::{HiddenOf, VirtualLine};
 
-const OPTIONS: WriteOptions = WriteOptions { own_stream: Some(Stream::Usb), simulated: true };
+const OPTIONS: WriteOptions = WriteOptions { own_stream: Some(Stream::Usb), simulated: true, as_read: false };
 
 fn config(model: &'static Model, generation: Generation) -> ControllerConfig {
     ControllerConfig { model, generation, ..ControllerConfig::default() }

@@ -20,7 +20,8 @@ use brushwork_sim::settings::{Image, ROW_BYTES, ROW_WRITE_TIME};
 use brushwork_sim::world::WorldAction;
 use brushwork_tests::virtual_line::VirtualLine;
 
-const OPTIONS: WriteOptions = WriteOptions { own_stream: Some(Stream::Usb), simulated: false };
+const OPTIONS: WriteOptions =
+    WriteOptions { own_stream: Some(Stream::Usb), simulated: false, as_read: false };
 const GENERATION: Generation = Generation::Gen1;
 /// In RAM and not in EEPROM when everything begins, and not to be written: a power loss takes it away.
 const UNSAVED: (&str, SettingValue) = ("motor1.velocity.p", SettingValue::Number(5.0));

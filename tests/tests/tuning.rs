@@ -385,7 +385,7 @@ fn gains_that_were_kept_and_saved_are_there_after_a_power_cycle_and_so_is_the_us
     let report = tuned(&mut link, Tuning { keep: true, ..velocity() }, |_| {}).expect("a report");
     let new = report.velocity.expect("gains");
     let table = SettingsTable::new(subject());
-    let options = WriteOptions { own_stream: Some(Stream::Usb), simulated: true };
+    let options = WriteOptions { own_stream: Some(Stream::Usb), simulated: true, as_read: false };
     let saving = FnJob::boxed("save the settings", ms(60_000), move |wire| {
         save_kept(wire, &table, options, &mut Noting(Journal::default())).map(|saved| Box::new(saved) as _)
     });

@@ -16,6 +16,7 @@ use super::exit;
 use super::firmware::args::FirmwareArgs;
 use super::mcl::args::MclArgs;
 use super::monitor::args::MonitorArgs;
+use super::new_file::Replace;
 use super::script::args::ScriptArgs;
 use super::settings::args::SettingsArgs;
 use crate::session::motion_mind_spec;
@@ -338,6 +339,9 @@ pub struct SimArgs {
     /// Write the simulator's own truth to FILE as JSON ten times a second.
     #[arg(long, value_name = "FILE")]
     pub truth: Option<PathBuf>,
+    /// Whether an older truth is replaced.
+    #[command(flatten)]
+    pub replace: Replace,
     /// Name the models and presets, and end.
     #[arg(long)]
     pub list: bool,
@@ -514,6 +518,9 @@ pub struct BenchArgs {
     /// Work the optima out anew and write them to a file instead.
     #[arg(long, value_name = "FILE")]
     pub write_oracle: Option<PathBuf>,
+    /// Whether an older file of optima is replaced.
+    #[command(flatten)]
+    pub replace: Replace,
 }
 
 /// A family of controllers.

@@ -13,6 +13,7 @@ mod interrupt;
 mod list;
 mod mcl;
 mod monitor;
+mod new_file;
 mod nodes;
 mod output;
 mod protocol;

@@ -1,16 +1,19 @@
-//! Backups: one profile for each act that changes settings, named by date and reason, kept within bounds.
+//! Backups: one profile for each act that changes settings, named by number, date and reason, kept within bounds.
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use brushwork_link::settings::{Act, OpenedProfile, Profile, Strictness};
 
+use super::sequence;
 use super::store::{KeepError, Store};
 use super::unit::UnitId;
 
 const FOLDER: &str = "backups";
+/// Held while a backup is made; in the root of the store.
+const LOCK: &str = ".lock";
 /// The newest of a unit that are all kept.
 const NEWEST: usize = 40;
 /// Of older ones the first of each day is kept, for so many days.
@@ -21,7 +24,7 @@ const DAYS: usize = 60;
 pub struct Backup {
     /// Its file.
     pub path: PathBuf,
-    /// What names it in commands: "2026-01-05T10-00-00.000Z-before-write".
+    /// What names it in commands: "000012-2026-01-05T10-00-00.000Z-before-write".
     pub name: String,
 }
 
@@ -33,10 +36,21 @@ impl Backup {
 
     /// "2026-01-05 10:00:00 UTC, before write".
     pub fn title(&self) -> String {
-        let (date, reason) = self.name.split_at_checked(STAMP_LENGTH).unwrap_or((&self.name, ""));
+        let dated = sequence::split(&self.name).1;
+        let (date, reason) = dated.split_at_checked(STAMP_LENGTH).unwrap_or((dated, ""));
         let (day, time) = date.split_once('T').unwrap_or((date, ""));
         let time = time.split('.').next().unwrap_or_default().replace('-', ":");
         format!("{day} {time} UTC, {}", reason.trim_start_matches('-').replace('-', " "))
+    }
+
+    /// Whether its name begins so, with its number or with its date.
+    pub fn begins_with(&self, name: &str) -> bool {
+        self.name.starts_with(name) || sequence::split(&self.name).1.starts_with(name)
+    }
+
+    /// When it was made among others.
+    fn order(&self) -> (u64, &str) {
+        sequence::split(&self.name)
     }
 
     /// The unit's folder.
@@ -55,17 +69,33 @@ impl Backup {
 impl Store {
     /// Keeps a profile as a backup of a unit, made before an act. Old backups give way.
     pub fn back_up(&self, unit: &UnitId, act: Act, profile: &Profile) -> Result<Backup, KeepError> {
-        let reason = act.label().replace(' ', "-");
-        let name = format!("{}-before-{reason}", stamp(SystemTime::now()));
+        self.back_up_at(SystemTime::now(), unit, act, profile)
+    }
+
+    /// As [`Store::back_up`], at the time that the computer's clock shows, whatever time it is.
+    pub(super) fn back_up_at(
+        &self,
+        clock: SystemTime,
+        unit: &UnitId,
+        act: Act,
+        profile: &Profile,
+    ) -> Result<Backup, KeepError> {
+        let rest = format!("{}-before-{}", stamp(clock), act.label().replace(' ', "-"));
         let folder = unit.file_name();
-        let mut path = self.path(&[FOLDER, &folder, &format!("{name}.json")])?;
-        let mut again = 2;
+        let lock = sequence::lock(&self.path(&[LOCK])?);
+        // One sequence for all units, so that a number names one backup.
+        let all = self.backups(None);
+        let mut number = sequence::next(all.iter().map(|backup| backup.name.as_str()));
+        let path_of =
+            |number| self.path(&[FOLDER, &folder, &format!("{}.json", sequence::numbered(number, &rest))]);
+        let mut path = path_of(number)?;
         while path.exists() {
-            path = self.path(&[FOLDER, &folder, &format!("{name}-{again}.json")])?;
-            again += 1;
+            number += 1;
+            path = path_of(number)?;
         }
         self.put(&path, &profile.to_json())?;
-        self.thin(&folder);
+        self.thin(unit, &path);
+        drop(lock);
         Backup::new(path.clone())
             .ok_or_else(|| KeepError::Read { path, what: "its name is not readable".to_owned() })
     }
@@ -78,7 +108,7 @@ impl Store {
         };
         let files = folders.iter().flat_map(|folder| self.files(&[FOLDER, folder]));
         let mut backups: Vec<Backup> = files.filter_map(Backup::new).collect();
-        backups.sort_by(|left, right| right.name.cmp(&left.name));
+        backups.sort_by(|left, right| right.order().cmp(&left.order()));
         backups
     }
 
@@ -91,16 +121,16 @@ impl Store {
         entries.flatten().filter_map(|entry| entry.file_name().into_string().ok()).collect()
     }
 
-    fn thin(&self, folder: &str) {
-        let files = self.files(&[FOLDER, folder]);
-        let names: Vec<String> = files
-            .iter()
-            .map(|path| path.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned()))
-            .collect();
-        for (path, name) in files.iter().zip(&names) {
-            if !kept(&names).contains(name) {
+    /// Removes what is too much of a unit, never the file that was just made.
+    fn thin(&self, unit: &UnitId, just_made: &Path) {
+        let mut backups = self.backups(Some(unit));
+        backups.reverse();
+        let names: Vec<String> = backups.iter().map(|backup| backup.name.clone()).collect();
+        let kept = kept(&names);
+        for backup in backups.iter().filter(|backup| backup.path != just_made) {
+            if !kept.contains(&backup.name) {
                 // One backup too many harms nothing; the next time it is tried again.
-                let _ = fs::remove_file(path);
+                let _ = fs::remove_file(&backup.path);
             }
         }
     }
@@ -112,7 +142,8 @@ fn kept(names: &[String]) -> BTreeSet<String> {
     let mut kept: BTreeSet<String> = newest.iter().cloned().collect();
     let mut days: Vec<&String> = Vec::new();
     for name in old {
-        let is_new_day = days.last().is_none_or(|last| last.get(..10) != name.get(..10));
+        let day = |name: &str| sequence::split(name).1.get(..10).map(str::to_owned);
+        let is_new_day = days.last().is_none_or(|last| day(last) != day(name));
         if is_new_day {
             days.push(name);
         }
@@ -149,11 +180,14 @@ mod tests {
 
     #[test]
     fn a_backup_is_named_by_date_and_reason() {
-        let backup = Backup {
-            path: PathBuf::from("x"),
-            name: "2026-01-05T10-02-03.456Z-before-firmware-change".to_owned(),
-        };
-        assert_eq!(backup.title(), "2026-01-05 10:02:03 UTC, before firmware change");
+        for name in [
+            "2026-01-05T10-02-03.456Z-before-firmware-change",
+            "000007-2026-01-05T10-02-03.456Z-before-firmware-change",
+        ] {
+            let backup = Backup { path: PathBuf::from("x"), name: name.to_owned() };
+            assert_eq!(backup.title(), "2026-01-05 10:02:03 UTC, before firmware change");
+            assert!(backup.begins_with("2026-01-05T10") && backup.begins_with(name));
+        }
         assert_eq!(stamp(SystemTime::UNIX_EPOCH), "1970-01-01T00-00-00.000Z");
     }
 }

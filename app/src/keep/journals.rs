@@ -7,6 +7,7 @@ use std::time::SystemTime;
 use brushwork_link::settings::{Aftermath, Journal, SettingValue, SettingsImage, SettingsTable};
 
 use super::backups::stamp;
+use super::sequence;
 use super::store::{KeepError, Store};
 use super::unit::{OWNER, UnitId};
 
@@ -33,15 +34,28 @@ impl OpenJournal {
 impl Store {
     /// Keeps a journal; it is there until it is closed.
     pub fn open_journal(&self, unit: &UnitId, journal: &Journal) -> Result<PathBuf, KeepError> {
-        let name = format!("{}{}-{}", unit.owner(), stamp(SystemTime::now()), unit.file_name());
+        let mut files = self.journal_files();
+        let number = sequence::next(files.iter().map(|path| after_owner(sequence::stem(path))));
+        let dated = format!("{}-{}", stamp(SystemTime::now()), unit.file_name());
+        let name = format!("{}{}", unit.owner(), sequence::numbered(number, &dated));
         let path = self.path(&[FOLDER, &format!("{name}.json")])?;
         self.put(&path, &journal.to_json())?;
-        let files = self.files(&[FOLDER]);
-        for old in files.iter().take(files.len().saturating_sub(MOST)) {
+        files.retain(|file| *file != path);
+        for old in files.iter().take((files.len() + 1).saturating_sub(MOST)) {
             // One too many harms nothing.
             let _ = fs::remove_file(old);
         }
         Ok(path)
+    }
+
+    /// The files of all journals, in the order in which they were made.
+    fn journal_files(&self) -> Vec<PathBuf> {
+        let mut files = self.files(&[FOLDER]);
+        files.sort_by_cached_key(|path| {
+            let (number, rest) = sequence::split(after_owner(sequence::stem(path)));
+            (number, rest.to_owned())
+        });
+        files
     }
 
     /// Its act has ended, or was told to the user.
@@ -57,7 +71,7 @@ impl Store {
     /// The journals of a unit that were not closed, oldest first, and what is wrong with those that cannot be read.
     pub fn open_journals(&self, unit: &UnitId) -> (Vec<OpenJournal>, Vec<KeepError>) {
         let (mut journals, mut faults) = (Vec::new(), Vec::new());
-        for path in self.files(&[FOLDER]).into_iter().filter(|path| is_owned(path, unit)) {
+        for path in self.journal_files().into_iter().filter(|path| is_owned(path, unit)) {
             match read(&path) {
                 Ok(journal) if concerns(&journal, unit) => journals.push(OpenJournal { path, journal }),
                 Ok(_) => {}
@@ -67,6 +81,12 @@ impl Store {
         }
         (journals, faults)
     }
+}
+
+/// A journal's name without the process that it is for.
+fn after_owner(name: &str) -> &str {
+    let owned = name.strip_prefix(OWNER).and_then(|rest| rest.split_once('-'));
+    owned.map_or(name, |(_, rest)| rest)
 }
 
 fn is_owned(path: &Path, unit: &UnitId) -> bool {

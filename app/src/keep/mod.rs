@@ -8,6 +8,7 @@ mod backups;
 pub mod folder;
 mod journals;
 mod memory;
+mod sequence;
 mod store;
 mod trial;
 mod unit;

@@ -154,3 +154,92 @@ fn every_backup_can_be_opened_and_they_are_listed_newest_first() {
     assert_eq!(newest.settings.get("motor1.velocity.qpps"), Some(SettingValue::Int(59)));
     assert!(backups.iter().all(|backup| backup.open().is_ok() && Path::exists(&backup.path)));
 }
+
+/// A clock that starts at the epoch with each start of the computer, as on a board without a battery for it.
+const CLOCK_BEHIND: std::time::SystemTime = std::time::SystemTime::UNIX_EPOCH;
+
+fn numbered_profile(number: i64) -> Profile {
+    Profile {
+        subject: *table().subject(),
+        firmware: String::new(),
+        address: UnitAddress::DEFAULT,
+        date: today(),
+        unit: String::new(),
+        note: String::new(),
+        settings: one("motor1.velocity.qpps", SettingValue::Int(number)),
+    }
+}
+
+fn number_of(backup: &Backup) -> i64 {
+    match backup.open().unwrap().profile.settings.get("motor1.velocity.qpps") {
+        Some(SettingValue::Int(number)) => number,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn with_the_clock_behind_a_new_backup_is_kept_and_is_the_newest() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::at(folder.path());
+    let ours = folder.path().join("backups").join(unit().file_name());
+    fs::create_dir_all(&ours).unwrap();
+    // What version 0.1 left, more than is kept, with the clock right.
+    for number in 0..120 {
+        let name =
+            format!("2026-{:02}-{:02}T10-00-00.000Z-before-write.json", 1 + number / 28, 1 + number % 28);
+        fs::write(ours.join(name), numbered_profile(number).to_json()).unwrap();
+    }
+    assert_eq!(number_of(&store.backups(Some(&unit()))[0]), 119, "old names sort by their date");
+    for number in 1000..1100 {
+        let made = store.back_up_at(CLOCK_BEHIND, &unit(), Act::Write, &numbered_profile(number)).unwrap();
+        assert!(made.path.exists(), "{}", made.name);
+        let listed = store.backups(Some(&unit()));
+        assert_eq!((&listed[0], number_of(&listed[0])), (&made, number));
+        assert!(listed.len() <= 101, "bounded: {}", listed.len());
+    }
+    // The clock is set at last, and the newest was deleted by hand.
+    fs::remove_file(&store.backups(None)[0].path).unwrap();
+    let made = store.back_up(&unit(), Act::Write, &numbered_profile(2000)).unwrap();
+    let order: Vec<i64> = store.backups(Some(&unit())).iter().take(3).map(number_of).collect();
+    assert_eq!(order, [2000, 1098, 1097], "{}", made.name);
+}
+
+#[test]
+fn programs_that_make_backups_at_once_get_a_number_each() {
+    let folder = tempfile::tempdir().unwrap();
+    std::thread::scope(|scope| {
+        for program in 0..4 {
+            // Each has a store of its own, as another program has.
+            let store = Store::at(folder.path());
+            scope.spawn(move || {
+                for _ in 0..8 {
+                    let made =
+                        store.back_up_at(CLOCK_BEHIND, &unit(), Act::Write, &numbered_profile(program));
+                    made.unwrap();
+                }
+            });
+        }
+    });
+    let mut numbers: Vec<String> =
+        Store::at(folder.path()).backups(None).iter().map(|backup| backup.name[..6].to_owned()).collect();
+    numbers.sort();
+    let expected: Vec<String> = (1..=32).map(|number| format!("{number:06}")).collect();
+    assert_eq!(numbers, expected);
+}
+
+#[test]
+fn the_newest_journal_is_the_one_begun_last_whatever_the_clock_shows() {
+    let folder = tempfile::tempdir().unwrap();
+    let keeping = Keeping::new(Store::at(folder.path()));
+    let mut keeper = keeping.keeper(unit(), "");
+    begin(&mut *keeper, entry(Act::Write, SettingsImage::default())).unwrap();
+    let store = keeping.store().clone();
+    let first = store.open_journals(&unit()).0[0].path.clone();
+    // As version 0.1 names it, with a clock that was ahead.
+    fs::rename(&first, first.with_file_name(format!("2099-01-01T00-00-00.000Z-{}.json", unit().file_name())))
+        .unwrap();
+    begin(&mut *keeper, entry(Act::Trial, SettingsImage::default())).unwrap();
+    let (journals, faults) = store.open_journals(&unit());
+    assert_eq!((journals.len(), faults.len()), (2, 0));
+    assert_eq!(journals[1].journal.act, Act::Trial);
+}

@@ -7,6 +7,7 @@ use brushwork_tuning_bench::table::{Row, Table, cases, optima_of, table};
 
 use crate::cli::args::{BenchArgs, BenchFamily};
 use crate::cli::exit::Exit;
+use crate::cli::new_file::NewFile;
 use crate::cli::output::{Output, OutputError, say};
 
 const HEADS: [&str; 11] = [
@@ -42,6 +43,11 @@ pub fn run(args: &BenchArgs, out: &mut Output) -> Exit {
         return printed.map_or_else(Exit::from, |()| Exit::Done);
     }
     let is_fresh = args.write_oracle.is_some();
+    // The optima take an hour.
+    let file = args.write_oracle.as_deref().map(|path| NewFile::new(path, args.replace));
+    if let Some(Err(error)) = file.as_ref().map(NewFile::check) {
+        return error.into();
+    }
     let (optima, table) = match args.family {
         BenchFamily::Mcp => {
             let cases = cases(args.seed, args.plants, is_fresh);
@@ -56,13 +62,9 @@ pub fn run(args: &BenchArgs, out: &mut Output) -> Exit {
     };
     if let Some(path) = &args.write_oracle {
         let text = optima.and_then(Result::ok).unwrap_or_default();
-        return match std::fs::write(path, text) {
-            Ok(()) => Exit::Done,
-            Err(error) => {
-                say(format!("Could not write {}: {error}.", path.display()));
-                Exit::Failed
-            }
-        };
+        return NewFile::new(path, args.replace)
+            .write(text.as_bytes())
+            .map_or_else(Exit::from, |()| Exit::Done);
     }
     let Some(table) = table else { return Exit::Failed };
     let printed = if args.json { out.json(&table) } else { print(&table, out) };

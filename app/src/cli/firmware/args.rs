@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 
 use crate::cli::args::ConnectArgs;
+use crate::cli::new_file::Replace;
 
 /// Arguments of `brushwork firmware`.
 #[derive(Debug, Args)]
@@ -59,6 +60,9 @@ pub struct UpdateArgs {
     /// Where the settings are backed up to, as a profile (default: beside the image, with model and time in its name).
     #[arg(long, value_name = "FILE", conflicts_with = "resume")]
     pub backup: Option<PathBuf>,
+    /// Whether an older backup of that name is replaced.
+    #[command(flatten)]
+    pub replace: Replace,
     /// Accept the risks without being asked.
     #[arg(long)]
     pub accept_risk: bool,
@@ -82,6 +86,9 @@ pub struct ImageArgs {
     /// Where it is written.
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
+    /// Whether an older image is replaced.
+    #[command(flatten)]
+    pub replace: Replace,
     /// The model it is for.
     #[arg(long, value_name = "MODEL", default_value = "mcp266")]
     pub model: String,

@@ -6,6 +6,7 @@ use brushwork_protocol::packet_serial::Generation;
 
 use super::args::ImageArgs;
 use crate::cli::exit::Exit;
+use crate::cli::new_file::NewFile;
 use crate::cli::output::{Output, say};
 
 /// Writes the image.
@@ -20,10 +21,7 @@ pub fn run(args: &ImageArgs, out: &mut Output) -> Result<Exit, Exit> {
     let generation = Generation::from_number(args.generation).unwrap_or(Generation::Gen1);
     let image = SimulatedImage { model, version: args.version.clone(), generation };
     let bytes = image.bytes().map_err(|error| usage(format!("Could not make the image: {error}.")))?;
-    std::fs::write(&args.file, &bytes).map_err(|error| {
-        say(format!("Could not write {}: {error}.", args.file.display()));
-        Exit::Failed
-    })?;
+    NewFile::new(&args.file, args.replace).write(&bytes)?;
     out.line(format!(
         "{} holds {} bytes that make a simulated {} report version {} ({generation}). No real controller can use them.",
         args.file.display(),

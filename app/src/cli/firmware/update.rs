@@ -17,6 +17,7 @@ use super::args::UpdateArgs;
 use crate::cli::client;
 use crate::cli::exit::Exit;
 use crate::cli::interrupt::Interrupt;
+use crate::cli::new_file::NewFile;
 use crate::cli::output::{Output, say};
 use crate::cli::settings::ask;
 use crate::cli::settings::controller::Controller;
@@ -41,6 +42,9 @@ pub fn run(args: &UpdateArgs, out: &mut Output, interrupt: &Interrupt) -> Result
         let upload = start(LoaderPlace::of(&target, None), image)?;
         let sent = follow(&upload, interrupt)?;
         return done(&sent, None, args, out);
+    }
+    if let Some(path) = &args.backup {
+        backup_file(path, args).check()?;
     }
     let controller = Controller::connect(&args.connect, interrupt)?;
     let image = fresh_image(args, bytes, &controller)?;
@@ -113,6 +117,10 @@ fn interrupted(interrupt: &Interrupt) -> Result<(), Exit> {
     if interrupt.sleep(SLICE) { Err(Exit::Interrupted) } else { Ok(()) }
 }
 
+fn backup_file<'p>(path: &'p Path, args: &UpdateArgs) -> NewFile<'p> {
+    NewFile::new(path, args.replace).apart_from(&args.file)
+}
+
 /// Reads the settings into a profile. Without a whole backup nothing is erased.
 fn back_up(args: &UpdateArgs, controller: &Controller<'_>, out: &mut Output) -> Result<PathBuf, Exit> {
     let report = controller.read()?;
@@ -133,7 +141,7 @@ fn back_up(args: &UpdateArgs, controller: &Controller<'_>, out: &mut Output) -> 
         let name = format!("backup-{model}-{}.json", date.replace(':', ""));
         args.file.parent().unwrap_or_else(|| Path::new("")).join(name)
     });
-    profile.save(&path).map_err(|error| {
+    backup_file(&path, args).write(profile.to_json().as_bytes()).map_err(|error| {
         say(format!("{error} Nothing was sent."));
         Exit::Failed
     })?;

@@ -6,6 +6,7 @@ use std::time::Duration;
 use clap::{Args, Subcommand};
 
 use crate::cli::args::{ScriptBuses, parse_seconds};
+use crate::cli::new_file::Replace;
 
 /// Arguments of `brushwork mcl`.
 #[derive(Debug, Args)]
@@ -67,6 +68,9 @@ pub struct BuildArgs {
     /// Where the image of the one script goes; - is standard output. Otherwise beside the script, ending in .mcli.
     #[arg(long, short = 'o', value_name = "IMAGE")]
     pub output: Option<PathBuf>,
+    /// Whether an older image is replaced.
+    #[command(flatten)]
+    pub replace: Replace,
     /// Print JSON: every file with its diagnostics, its size and the models it fits.
     #[arg(long)]
     pub json: bool,

@@ -1,6 +1,5 @@
 //! `brushwork mcl build`: scripts into images, with what they take of each model.
 
-use std::io;
 use std::path::{Path, PathBuf};
 
 use brushwork_script::diagnostic::PlacedDiagnostic;
@@ -11,6 +10,7 @@ use serde::Serialize;
 use super::args::BuildArgs;
 use super::source::{Source, is_standard};
 use crate::cli::exit::Exit;
+use crate::cli::new_file::{NewFile, Replace};
 use crate::cli::output::{Output, OutputError, say};
 
 /// What an image file's name ends with.
@@ -108,7 +108,7 @@ fn build(path: &Path, args: &BuildArgs, out: &mut Output) -> Result<Built, Exit>
     };
     let Some(program) = &compiled.program else { return Ok(built) };
     let target = target(path, args)?;
-    write(&target, &image::to_file(&image::encode(program)), out)?;
+    write(&target, path, args.replace, &image::to_file(&image::encode(program)), out)?;
     let size = program.size();
     built.models = fits(program);
     built.size = Some(size);
@@ -132,12 +132,11 @@ fn target(path: &Path, args: &BuildArgs) -> Result<PathBuf, Exit> {
     }
 }
 
-fn write(target: &Path, bytes: &[u8], out: &mut Output) -> Result<(), Exit> {
+fn write(target: &Path, source: &Path, replace: Replace, bytes: &[u8], out: &mut Output) -> Result<(), Exit> {
     if is_standard(target) {
         return out.bytes(bytes).map_err(Exit::from);
     }
-    let told = |error: io::Error| failed(&format!("Could not write {}: {error}.", target.display()));
-    std::fs::write(target, bytes).map_err(told)
+    Ok(NewFile::new(target, replace).apart_from(source).write(bytes)?)
 }
 
 fn fits(program: &Program) -> Vec<Fit> {

@@ -7,6 +7,7 @@ use clap::{Args, Subcommand};
 
 use super::compare::SideName;
 use crate::cli::args::ConnectArgs;
+use crate::cli::new_file::Replace;
 
 /// Arguments of `brushwork settings`.
 #[derive(Debug, Args)]
@@ -246,9 +247,12 @@ pub struct ExportArgs {
     /// The controller.
     #[command(flatten)]
     pub connect: ConnectArgs,
-    /// The profile to write; an existing one is replaced whole or not at all.
+    /// The profile to write; with --force an existing one is replaced, whole or not at all.
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
+    /// Whether an older profile is replaced.
+    #[command(flatten)]
+    pub replace: Replace,
 }
 
 /// Arguments of `brushwork settings reference`.

@@ -30,7 +30,8 @@ pub fn list(args: &BackupsArgs, out: &mut Output) -> Result<Exit, Exit> {
     }
     let mut unit = String::new();
     let mut sorted = backups;
-    sorted.sort_by(|left, right| (left.unit(), &right.name).cmp(&(right.unit(), &left.name)));
+    // Stable: newest first within each unit.
+    sorted.sort_by_key(Backup::unit);
     for backup in &sorted {
         if backup.unit() != unit {
             unit = backup.unit();
@@ -63,7 +64,7 @@ pub fn restore(args: &RestoreArgs, out: &mut Output, interrupt: &Interrupt) -> R
 pub fn find(name: &str) -> Result<Backup, Exit> {
     let name = name.trim_end_matches(".json");
     let all = Store::of_user().backups(None);
-    let mut found = all.iter().filter(|backup| backup.name.starts_with(name));
+    let mut found = all.iter().filter(|backup| backup.begins_with(name));
     match (all.iter().find(|backup| backup.name == name), found.next(), found.next()) {
         (Some(exact), ..) => Ok(exact.clone()),
         (None, Some(only), None) => Ok(only.clone()),

@@ -112,7 +112,7 @@ impl<'i> Controller<'i> {
 
     /// What writing has to know of the way to this controller.
     pub fn write_options(&self) -> WriteOptions {
-        WriteOptions { own_stream: self.client.stream, simulated: self.identity().simulated }
+        WriteOptions { own_stream: self.client.stream, simulated: self.identity().simulated, as_read: false }
     }
 
     /// Which settings it has, as far as known before it was read.

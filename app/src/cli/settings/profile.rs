@@ -2,23 +2,29 @@
 
 use std::path::Path;
 
-use brushwork_link::settings::{OpenedProfile, Profile, Strictness};
+use brushwork_link::settings::{OpenedProfile, Profile, ProfileFileError, Strictness};
 
 use super::args::ExportArgs;
 use super::controller::Controller;
 use super::review::settings_count;
 use crate::cli::exit::Exit;
 use crate::cli::interrupt::Interrupt;
+use crate::cli::new_file::{NewFile, NewFileError};
 use crate::cli::output::{Output, say};
 
 /// Reads the controller and writes the profile.
 pub fn export(args: &ExportArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let mut file = NewFile::new(&args.file, args.replace);
+    file.check()?;
     let controller = Controller::connect(&args.connect, interrupt)?;
     let report = controller.read()?;
     let profile = controller.profile_of(&report, report.image.clone());
-    profile.save(&args.file).map_err(|error| {
-        say(error.to_string());
-        Exit::Failed
+    file.write(profile.to_json().as_bytes()).map_err(|error| match error {
+        NewFileError::System { path, source } => {
+            say(ProfileFileError::Write { path, source }.to_string());
+            Exit::Failed
+        }
+        refused => refused.into(),
     })?;
     let count = settings_count(profile.settings.len());
     out.line(format!("{count} of {} are in {}.", controller.describe(), args.file.display()))?;

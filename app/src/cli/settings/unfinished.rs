@@ -56,7 +56,7 @@ pub fn run(args: &UnfinishedArgs, out: &mut Output, interrupt: &Interrupt) -> Re
     let writable = remedy.iter().filter(|(key, _)| {
         ram.table.row(key).is_some_and(|row| row.locked(controller.identity().simulated).is_none())
     });
-    let wanted = Wanted::of(writable.map(|(key, value)| (key.to_owned(), value)).collect());
+    let wanted = Wanted::read(writable.map(|(key, value)| (key.to_owned(), value)).collect());
     let how = write::how(args, newest.journal.act == Act::Save);
     let exit = write::carry_out(&controller, &ram, &wanted, &how, out)?;
     if exit == Exit::Done && !args.dry_run {

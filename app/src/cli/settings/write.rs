@@ -1,8 +1,8 @@
 //! `brushwork settings write` and `import`: shows the changes, asks, writes, and names what did not take.
 
 use brushwork_link::settings::{
-    OpenedProfile, Profile, ReadReport, SaveReport, SaveVerdict, SettingsImage, SettingsTable, WriteReport,
-    changes, write_kept,
+    OpenedProfile, Profile, ReadReport, Refusal, SaveReport, SaveVerdict, SettingsImage, SettingsTable,
+    WriteOptions, WriteReport, changes, plan, write_kept,
 };
 use serde_json::{Value, json};
 
@@ -40,12 +40,23 @@ pub struct Wanted {
     pub left_out_lines: Vec<String>,
     /// What fitting a profile to this controller changed, a sentence each.
     upgraded: Vec<String>,
+    /// Whether values were read from a unit once, so that they are written as they are.
+    as_read: bool,
 }
 
 impl Wanted {
     /// Changes that leave nothing out.
     pub fn of(changes: SettingsImage) -> Self {
         Self { changes, ..Self::default() }
+    }
+
+    fn options(&self, controller: &Controller<'_>) -> WriteOptions {
+        WriteOptions { as_read: self.as_read, ..controller.write_options() }
+    }
+
+    /// Values that the unit had once.
+    pub fn read(changes: SettingsImage) -> Self {
+        Self { as_read: true, ..Self::of(changes) }
     }
 }
 
@@ -91,7 +102,7 @@ pub fn carry_out(
         ask::agreed(&question(controller, count, how.save), how.yes, controller)?;
     }
     let mut results = Results::default();
-    let exit = perform(controller, &ram.table, wanted.changes.clone(), how, &mut results);
+    let exit = perform(controller, &ram.table, wanted, how, &mut results);
     tell(&ram.table, &results, how, out)?;
     print_json(controller, &review, wanted, how, &results, out)?;
     exit
@@ -140,9 +151,15 @@ fn wanted(
         })?;
         let left_out_lines = left_out_lines(controller, ram, &profile);
         let changes = only(&ram.table, &asked.wanted, &how.only)?;
-        wanted = Wanted { changes, left_out: asked.left_out, left_out_lines, upgraded };
+        wanted = Wanted { changes, left_out: asked.left_out, left_out_lines, upgraded, as_read: true };
     }
     let typed = keys::parse(&ram.table, assignments).map_err(|problems| refused(&problems))?;
+    if wanted.as_read {
+        // A profile may hold what a unit held once; what somebody types has to be right.
+        let typed = changes(&ram.table, &ram.image, &merged(&ram.image, &typed));
+        let beside = merged(&ram.image, &wanted.changes);
+        plan(&ram.table, &beside, &typed, controller.write_options()).map_err(cannot_be)?;
+    }
     wanted.changes.merge(&typed);
     wanted.changes = changes(&ram.table, &ram.image, &merged(&ram.image, &wanted.changes));
     Ok(wanted)
@@ -185,11 +202,9 @@ pub fn merged(ram: &SettingsImage, changes: &SettingsImage) -> SettingsImage {
 }
 
 fn review(controller: &Controller<'_>, ram: &ReadReport, wanted: &Wanted) -> Result<Review, Exit> {
-    let options = controller.write_options();
+    let options = wanted.options(controller);
     let mut review = Review::new(&ram.table, &ram.image, &wanted.changes, options, controller.address())
-        .map_err(|refusals| {
-            refused(&refusals.into_iter().map(|refusal| refusal.sentence).collect::<Vec<_>>())
-        })?;
+        .map_err(cannot_be)?;
     let touches_streams = review.changes.iter().any(|change| change.key.starts_with("stream."));
     if touches_streams && !controller.knows_own_stream() {
         review.warnings.push(
@@ -199,6 +214,10 @@ fn review(controller: &Controller<'_>, ram: &ReadReport, wanted: &Wanted) -> Res
         );
     }
     Ok(review)
+}
+
+fn cannot_be(refusals: Vec<Refusal>) -> Exit {
+    refused(&refusals.into_iter().map(|refusal| refusal.sentence).collect::<Vec<_>>())
 }
 
 fn refused(problems: &[String]) -> Exit {
@@ -244,14 +263,15 @@ fn question(controller: &Controller<'_>, count: usize, save: bool) -> String {
 fn perform(
     controller: &Controller<'_>,
     table: &SettingsTable,
-    changes: SettingsImage,
+    wanted: &Wanted,
     how: &WriteHow,
     results: &mut Results,
 ) -> Result<Exit, Exit> {
     let mut exit = Exit::Done;
+    let changes = wanted.changes.clone();
     if !changes.is_empty() {
         let (options, job_table, mut keeper) =
-            (controller.write_options(), table.clone(), controller.keeper());
+            (wanted.options(controller), table.clone(), controller.keeper());
         let finished = controller.run("write the settings", WRITE_LIMIT, move |wire| {
             write_kept(wire, &job_table, &changes, options, &mut *keeper)
         })?;

@@ -21,6 +21,7 @@ use crossbeam_channel::Receiver;
 use super::args::{SimArgs, StreamArg};
 use super::exit::Exit;
 use super::interrupt::Interrupt;
+use super::new_file::NewFile;
 use super::output::{Output, OutputError, say};
 use crate::session::sim_spec::SimOptions;
 use crate::session::{SimSpec, motion_mind_spec, simulation};
@@ -121,6 +122,8 @@ fn serve<M: Machine + 'static>(
     out: &mut Output,
     interrupt: &Interrupt,
 ) -> Result<Exit, Exit> {
+    let mut truth = args.truth.as_deref().map(|path| truth_file(path, args));
+    truth.as_ref().map_or(Ok(()), NewFile::check)?;
     let server = &start(args, machine)?;
     let place = server.address();
     let greeting = match args.can {
@@ -147,26 +150,24 @@ fn serve<M: Machine + 'static>(
         for line in control.iter().flat_map(Receiver::try_iter) {
             scripting::obey(&line, server);
         }
-        if let Some(file) = &args.truth
+        if let Some(file) = &mut truth
             && Instant::now() >= next_truth
         {
             next_truth = Instant::now() + WATCH_INTERVAL;
-            if let Err(error) = write_truth(file, server) {
-                say(format!("Could not write the truth to {}: {error}.", file.display()));
-                return Err(Exit::Failed);
-            }
+            let text = serde_json::to_string_pretty(&*server.views()).unwrap_or_default();
+            // Replaced as a whole, so that a reader never sees half of it.
+            file.write(text.as_bytes())?;
         }
     }
     Ok(Exit::Done)
 }
 
-/// Replaced as a whole, so that a reader never sees half of it.
-fn write_truth<M: Machine + 'static>(file: &Path, server: &SimHandle<M>) -> std::io::Result<()> {
-    let text = serde_json::to_string_pretty(&*server.views())?;
-    let mut beside = file.as_os_str().to_owned();
-    beside.push(".new");
-    std::fs::write(&beside, text)?;
-    std::fs::rename(&beside, file)
+fn truth_file<'p>(path: &'p Path, args: &SimArgs) -> NewFile<'p> {
+    let file = NewFile::new(path, args.replace);
+    match &args.script {
+        Some(script) => file.apart_from(script),
+        None => file,
+    }
 }
 
 fn list(out: &mut Output) -> Result<(), OutputError> {

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand, ValueEnum};
 
 use crate::cli::args::ConnectArgs;
+use crate::cli::new_file::Replace;
 
 /// Arguments of `brushwork tune`.
 #[derive(Debug, Args)]
@@ -89,6 +90,9 @@ pub struct RunArgs {
     /// Write the report with its raw record to a file.
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
+    /// Whether an older report is replaced.
+    #[command(flatten)]
+    pub replace: Replace,
     /// Print JSON.
     #[arg(long)]
     pub json: bool,

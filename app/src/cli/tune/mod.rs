@@ -18,6 +18,7 @@ use brushwork_tuning::tune::{Excitation, Method, Request as TuneRequest};
 use super::client::{Client, arm, ask};
 use super::exit::Exit;
 use super::interrupt::Interrupt;
+use super::new_file::NewFile;
 use super::output::{Output, say};
 use super::settings::controller::Controller;
 use super::settings::memory::save_to_eeprom;
@@ -47,6 +48,10 @@ pub fn run(args: &TuneArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
 }
 
 fn tune(args: &RunArgs, method: Method, out: &mut Output, interrupt: &Interrupt) -> Exit {
+    let mut file = args.report.as_deref().map(|path| NewFile::new(path, args.replace));
+    if let Some(Err(error)) = file.as_ref().map(NewFile::check) {
+        return error.into();
+    }
     let controller = match Controller::connect(&args.connect, interrupt) {
         Ok(controller) => controller,
         Err(exit) => return exit,
@@ -54,17 +59,24 @@ fn tune(args: &RunArgs, method: Method, out: &mut Output, interrupt: &Interrupt)
     let mut report = None;
     let ended = session(args, method, &controller, &mut report, interrupt);
     // What an interrupted run has seen is kept too.
-    if let (Some(path), Some(report)) = (&args.report, &report)
-        && let Err(sentence) = file::write(report, path)
+    if let (Some(file), Some(report)) = (&mut file, &report)
+        && let Err(exit) = keep(report, file)
     {
-        say(sentence);
-        return ended.err().unwrap_or(Exit::Failed);
+        return ended.err().unwrap_or(exit);
     }
     match (ended, report) {
         (Ok(()), Some(report)) => conclude(args, &report, &controller, out),
         (Ok(()), None) => Exit::Failed,
         (Err(exit), _) => exit,
     }
+}
+
+fn keep(report: &Report, file: &mut NewFile<'_>) -> Result<(), Exit> {
+    let text = file::text_of(report).map_err(|why| {
+        say(format!("Could not write the report: {why}."));
+        Exit::Failed
+    })?;
+    Ok(file.write(text.as_bytes())?)
 }
 
 /// The three jobs. The last one runs whatever became of the others, once anything may have been changed.

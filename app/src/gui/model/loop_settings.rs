@@ -305,7 +305,7 @@ impl LoopSettings {
         if wanted.is_empty() {
             return None;
         }
-        let options = WriteOptions { own_stream, simulated: identity.simulated };
+        let options = WriteOptions { own_stream, simulated: identity.simulated, as_read: false };
         let (sender, outcome) = bounded(1);
         let mut known = std::mem::take(&mut self.known);
         let job = FnJob::boxed(WRITE_JOB, WRITE_LIMIT, move |wire| {

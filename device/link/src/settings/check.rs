@@ -25,7 +25,7 @@ pub const BRIDGE_WARNING: &str = "Bridged channels drive one motor with both out
 pub const SHORTEST_AUTORUN_MS: i64 = 100;
 
 /// Pairs that `after` holds the wrong way round, if `changes` touches them.
-pub(super) fn refused_pairs(
+pub(super) fn wrong_pairs(
     table: &SettingsTable,
     after: &SettingsImage,
     changes: &SettingsImage,

@@ -19,7 +19,7 @@ pub enum Kind {
         /// Decimals shown at least.
         decimals: usize,
     },
-    /// One of a list of named values. Other numbers are kept as they are read, never written.
+    /// One of a list of named values. Other numbers are kept as they are read; nobody may choose them.
     Choice(&'static [Code]),
 }
 
@@ -78,7 +78,11 @@ impl Coding {
     /// The logical value of a wire number of a setting of `kind`.
     pub fn decode(self, kind: Kind, raw: i64) -> SettingValue {
         match kind {
-            Kind::Bool => SettingValue::Bool(raw != 0),
+            Kind::Bool => match raw {
+                0 => SettingValue::Bool(false),
+                1 => SettingValue::Bool(true),
+                _ => SettingValue::UnknownCode(raw),
+            },
             Kind::Int => SettingValue::Int(raw),
             Kind::Fixed { .. } => SettingValue::Number(self.to_physical(raw)),
             Kind::Choice(codes) => match codes.iter().find(|code| code.raw == raw) {
@@ -100,7 +104,7 @@ impl Coding {
             (Kind::Choice(codes), SettingValue::Choice(key)) => {
                 codes.iter().find(|code| code.key == key).map(|code| code.raw)
             }
-            (Kind::Choice(_), SettingValue::UnknownCode(raw)) => Some(raw),
+            (Kind::Bool | Kind::Choice(_), SettingValue::UnknownCode(raw)) => Some(raw),
             _ => None,
         }
     }

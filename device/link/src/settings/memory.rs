@@ -191,7 +191,7 @@ fn put_back(
     options: WriteOptions,
 ) -> Option<WriteReport> {
     let wanted = differences.iter().filter_map(|difference| Some((difference.key.clone(), difference.left?)));
-    write(wire, &before.table, &wanted.collect(), options).ok()
+    write(wire, &before.table, &wanted.collect(), WriteOptions { as_read: true, ..options }).ok()
 }
 
 pub(super) fn unknown(failure: Failure) -> SaveReport {

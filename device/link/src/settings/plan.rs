@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use brushwork_protocol::packet_serial::{Request, describe_request, lookup, number};
 use serde::Serialize;
 
-use super::check::{dangers, refused_pairs};
+use super::check::{dangers, wrong_pairs};
 use super::image::SettingsImage;
 use super::motion_mind;
 use super::pins::{Conflict, conflicts};
@@ -26,6 +26,9 @@ pub struct WriteOptions {
     pub own_stream: Option<Stream>,
     /// Whether the controller is simulated, so that settings without a public wire form can be set.
     pub simulated: bool,
+    /// Whether the values were read from such a unit once, so that one that nobody may choose there, out of range or without a
+    /// name, is written as it was, with a warning.
+    pub as_read: bool,
 }
 
 /// The commands that bring about some changes.
@@ -97,6 +100,13 @@ impl Step {
             .map_err(|error| error.to_string())
     }
 
+    /// Whether the controller's command has room for the values; an error is a clause.
+    fn fits(&self, table: &SettingsTable) -> Result<(), String> {
+        let mind = UnitAddress::new(1).filter(|_| table.is_motion_mind());
+        let address = mind.unwrap_or(UnitAddress::DEFAULT);
+        self.bytes(address, table.subject().generation).map(drop)
+    }
+
     /// What it says, in words: the command and its values.
     pub fn words(&self, address: UnitAddress, generation: FirmwareGeneration) -> String {
         let (Some(address), Some(generation)) = (address.packets(), generation.packet_serial()) else {
@@ -124,21 +134,30 @@ pub fn plan(
     options: WriteOptions,
 ) -> Result<Plan, Vec<Refusal>> {
     let mut refusals: Vec<Refusal> =
-        changes.iter().filter_map(|(key, value)| refusal(table, key, value, options.simulated)).collect();
+        changes.iter().filter_map(|(key, value)| refusal(table, key, value, options)).collect();
     let mut after = ram.clone();
     after.merge(changes);
-    refusals.extend(refused_pairs(table, &after, changes));
+    let pairs = wrong_pairs(table, &after, changes);
     let planner = Planner { table, ram, changes, options };
     let (steps, missing) = planner.steps();
     refusals.extend(missing);
+    let mut warnings = planner.unusual();
+    match options.as_read {
+        true => {
+            warnings.extend(pairs.into_iter().map(|pair| format!("{} {AS_READ_PAIR}", pair.sentence)));
+        }
+        false => refusals.extend(pairs),
+    }
     if !refusals.is_empty() {
         return Err(refusals);
     }
-    let mut warnings = planner.warnings(&steps);
+    warnings.extend(planner.warnings(&steps));
     warnings.extend(dangers(table, &after, changes));
     warnings.extend(new_conflicts(table, &after, changes));
     Ok(Plan { hidden: planner.hidden(), steps, warnings })
 }
+
+const AS_READ_PAIR: &str = "Both are written as they were read.";
 
 /// The contradictions that some of the changes take part in.
 fn new_conflicts(table: &SettingsTable, after: &SettingsImage, changes: &SettingsImage) -> Vec<String> {
@@ -172,15 +191,16 @@ fn whole_word_of(row: &Row) -> Option<&'static str> {
     }
 }
 
-fn refusal(table: &SettingsTable, key: &str, value: SettingValue, simulated: bool) -> Option<Refusal> {
+fn refusal(table: &SettingsTable, key: &str, value: SettingValue, options: WriteOptions) -> Option<Refusal> {
     let sentence = match table.row(key) {
         None => Some(format!(
             "The {} with firmware {} has no setting {key}.",
             table.subject().model.name,
             table.subject().generation
         )),
-        Some(row) => match row.locked(simulated) {
+        Some(row) => match row.locked(options.simulated) {
             Some(reason) => Some(format!("{} is not written. {reason}", row.title())),
+            None if options.as_read => row.check_as_read(value).err(),
             None => row.check(value).err(),
         },
     };
@@ -207,12 +227,18 @@ impl Planner<'_> {
         let mut refusals = Vec::new();
         for ((command, index), changed) in groups {
             match self.arguments(command, index, &changed) {
-                Ok(arguments) => steps.push(Step {
-                    command,
-                    arguments,
-                    keys: changed.iter().map(|row| row.key.clone()).collect(),
-                    stage: self.stage(command, index, &changed),
-                }),
+                Ok(arguments) => {
+                    let step = Step {
+                        command,
+                        arguments,
+                        keys: changed.iter().map(|row| row.key.clone()).collect(),
+                        stage: self.stage(command, index, &changed),
+                    };
+                    match step.fits(self.table) {
+                        Ok(()) => steps.push(step),
+                        Err(why) => refusals.push(no_room(&changed, &why)),
+                    }
+                }
                 Err(refusal) => refusals.push(refusal),
             }
         }
@@ -271,7 +297,13 @@ impl Planner<'_> {
             let value = change.or_else(|| self.ram.get(&row.key));
             let raw =
                 value.and_then(|value| row.encode(value)).ok_or_else(|| unknown_neighbour(row, changed))?;
-            word = row.sink().and_then(|sink| sink.place.bits).map_or(raw, |bits| bits.insert(word, raw));
+            word = match row.sink().and_then(|sink| sink.place.bits) {
+                Some(bits) if bits.extract(bits.insert(0, raw)) != raw => {
+                    return Err(no_room(&[row], &format!("{raw} takes more than {} bits", bits.width)));
+                }
+                Some(bits) => bits.insert(word, raw),
+                None => raw,
+            };
         }
         Ok(word)
     }
@@ -316,6 +348,12 @@ impl Planner<'_> {
     fn hidden(&self) -> Vec<(String, i64)> {
         let hidden = self.table.rows().iter().filter(|row| !row.has_wire_form());
         hidden.filter_map(|row| Some((row.key.clone(), row.encode(self.changes.get(&row.key)?)?))).collect()
+    }
+
+    /// Values that nobody may choose and that are written as they were read.
+    fn unusual(&self) -> Vec<String> {
+        let changed = self.table.rows().iter().filter_map(|row| Some((row, self.changes.get(&row.key)?)));
+        changed.filter_map(|(row, value)| row.check_as_read(value).ok()?).collect()
     }
 
     /// What the steps themselves bring about besides their values.
@@ -392,6 +430,12 @@ fn place(field: &'static str) -> super::row::Place {
 
 fn refuse(changed: &[&Row], sentence: String) -> Refusal {
     Refusal { key: changed.first().map_or_else(String::new, |row| row.key.clone()), sentence }
+}
+
+/// A value that the fields of its command cannot hold: no unit has ever had it.
+fn no_room(changed: &[&Row], why: &str) -> Refusal {
+    let titles: Vec<String> = changed.iter().map(|row| row.title()).collect();
+    refuse(changed, format!("{} cannot be written: {why}.", titles.join(", ")))
 }
 
 fn unknown_neighbour(row: &Row, changed: &[&Row]) -> Refusal {

@@ -353,6 +353,20 @@ impl Row {
         }
     }
 
+    /// What to know before a value that a unit held once is written as it was: that it is out of range, or a number without a
+    /// name. Refuses, in a sentence, what no unit can hold in this row.
+    pub fn check_as_read(&self, value: SettingValue) -> Result<Option<String>, String> {
+        let Err(why) = self.check(value) else { return Ok(None) };
+        match (self.encode(value), value) {
+            (None, _) => Err(why),
+            (Some(_), SettingValue::UnknownCode(raw)) => Ok(Some(format!(
+                "{}: {raw} is none of the values known for it. It is written as it was read.",
+                self.title()
+            ))),
+            (Some(_), _) => Ok(Some(format!("{why} It is written as it was read."))),
+        }
+    }
+
     /// The value rounded to the row's step and moved into its range, with a sentence for each thing that had
     /// to change. A value of another kind becomes the default.
     pub fn repair(&self, value: SettingValue) -> (SettingValue, Option<String>) {

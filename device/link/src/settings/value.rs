@@ -20,7 +20,8 @@ pub enum SettingValue {
     Number(f64),
     /// The key of a named value.
     Choice(&'static str),
-    /// A number that has no name in the row's list: kept and shown, never written.
+    /// A number that is neither yes nor no, or has no name in the row's list: kept and shown, and written only where it was
+    /// read from a unit.
     UnknownCode(i64),
 }
 

@@ -236,5 +236,7 @@ fn left_open(unit: &mut UnitSettings, run: &Run, name: &str, sentences: Vec<Stri
 
 fn want_back(unit: &mut UnitSettings, run: &Run) {
     unit.put_back(run.kept.clone());
-    unit.set_all(&run.before);
+    for (key, value) in run.before.iter() {
+        unit.take(key, value);
+    }
 }

@@ -194,7 +194,7 @@ impl General {
                 };
                 let is_writable = unit.table().row(&difference.key).is_some_and(|row| unit.is_writable(row));
                 if let (true, true, Some(value)) = (is_wanted, is_writable, difference.right) {
-                    unit.set(&difference.key, value);
+                    unit.take(&difference.key, value);
                 }
             }
         }

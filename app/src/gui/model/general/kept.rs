@@ -165,7 +165,7 @@ impl General {
         for (key, value) in remedy.iter() {
             let is_writable = unit.table().row(key).is_some_and(|row| unit.is_writable(row));
             if is_writable {
-                unit.set(key, value);
+                unit.take(key, value);
             }
         }
         match (unit.edits().is_empty(), newest.act) {

@@ -22,6 +22,8 @@ pub struct UnitSettings {
     copies: Copies,
     /// Wanted values that differ from the controller's.
     edits: SettingsImage,
+    /// Those edits that were read from a unit once and not typed: they may be out of range.
+    taken: BTreeSet<String>,
     /// What stands in fields and is no value yet, by key.
     typed: BTreeMap<String, Typed>,
     /// What went wrong with a row last, by key.
@@ -35,6 +37,7 @@ pub struct UnitSettings {
 #[derive(Clone, Debug)]
 pub(super) struct Kept {
     edits: SettingsImage,
+    taken: BTreeSet<String>,
     written: BTreeSet<String>,
 }
 
@@ -69,6 +72,7 @@ impl UnitSettings {
             firmware: identity.version_text.trim_end().to_owned(),
             copies: Copies::default(),
             edits: SettingsImage::default(),
+            taken: BTreeSet::new(),
             typed: BTreeMap::new(),
             troubles: BTreeMap::new(),
             written: BTreeSet::new(),
@@ -172,10 +176,19 @@ impl UnitSettings {
     pub fn set(&mut self, key: &str, value: SettingValue) {
         self.typed.remove(key);
         self.troubles.remove(key);
+        self.taken.remove(key);
         if self.on_controller(key) == Some(value) {
             self.edits.remove(key);
         } else {
             self.edits.set(key, value);
+        }
+    }
+
+    /// Wants a value of a profile, a backup or a journal: it was read from a unit once and may be written as it was.
+    pub fn take(&mut self, key: &str, value: SettingValue) {
+        self.set(key, value);
+        if self.edits.get(key).is_some() {
+            self.taken.insert(key.to_owned());
         }
     }
 
@@ -207,6 +220,7 @@ impl UnitSettings {
     /// Back to what the controller has.
     pub fn revert(&mut self, key: &str) {
         self.edits.remove(key);
+        self.taken.remove(key);
         self.typed.remove(key);
         self.troubles.remove(key);
     }
@@ -216,6 +230,7 @@ impl UnitSettings {
             self.revert(&key);
         }
         self.edits = SettingsImage::default();
+        self.taken.clear();
         self.typed.clear();
     }
 
@@ -247,13 +262,22 @@ impl UnitSettings {
 
     /// The commands that the edits need, or why they cannot be written.
     pub fn plan(&self, own_stream: Option<Stream>) -> Result<Plan, Vec<Refusal>> {
-        let nothing = SettingsImage::default();
-        let ram = self.copies.ram().unwrap_or(&nothing);
-        plan(&self.table, ram, &self.edits, self.options(own_stream))
+        plan(&self.table, &self.ram_or_nothing(), &self.edits, self.options(own_stream))
     }
 
+    /// How the edits are written. Those that were typed have to be right for those that were taken over to be written as they are.
     pub fn options(&self, own_stream: Option<Stream>) -> WriteOptions {
-        WriteOptions { own_stream, simulated: self.is_simulated }
+        let options = WriteOptions { own_stream, simulated: self.is_simulated, as_read: false };
+        let (mut beside, mut typed) = (self.ram_or_nothing(), SettingsImage::default());
+        for (key, value) in self.edits.iter() {
+            if self.taken.contains(key) { &mut beside } else { &mut typed }.set(key, value);
+        }
+        let is_right = || plan(&self.table, &beside, &typed, options).is_ok();
+        WriteOptions { as_read: !self.taken.is_empty() && is_right(), ..options }
+    }
+
+    fn ram_or_nothing(&self) -> SettingsImage {
+        self.copies.ram().cloned().unwrap_or_default()
     }
 
     pub fn saved(&self) -> Saved {
@@ -275,12 +299,13 @@ impl UnitSettings {
 
     /// The edits and what was written, as they are.
     pub(super) fn keep(&self) -> Kept {
-        Kept { edits: self.edits.clone(), written: self.written.clone() }
+        Kept { edits: self.edits.clone(), taken: self.taken.clone(), written: self.written.clone() }
     }
 
     /// Edits and what was written as they were.
     pub(super) fn put_back(&mut self, kept: Kept) {
         self.edits = kept.edits;
+        self.taken = kept.taken;
         self.written = kept.written;
         self.drop_fulfilled();
     }
@@ -356,6 +381,7 @@ impl UnitSettings {
             .collect();
         for key in fulfilled {
             self.edits.remove(&key);
+            self.taken.remove(&key);
         }
     }
 }

@@ -146,6 +146,8 @@ fn calibrating(
         let is_changed = |key: &str| wanted.get(key).is_some();
         begin_trial(context, *table.subject(), &is_changed, &mut **keeper.lock())?;
     }
+    // What is put back was read from the unit.
+    let options = WriteOptions { as_read: !opens, ..options };
     let result = write(context, table, wanted, options);
     match &result {
         Ok(report) if !opens && report.is_complete() => {

@@ -122,6 +122,10 @@ pub(super) static ROWS: &[Template] = &[
             "From 0 for address 0x80 to 7 for 0x87; it counts at once. In RC mode bit 0 is the flip switch \
              and bit 1 the time-out. Command 98, bits 8 to 10.",
         ),
+    roboclaw("roboclaw.config.bit_11", "Configuration bit 11")
+        .forms(&[config(11, 1)])
+        .assumed_default(DefaultValue::Bool(false))
+        .help(UNNAMED_BIT),
     roboclaw("roboclaw.config.slave_select", "Slave select")
         .forms(&[config(12, 1)])
         .assumed_default(DefaultValue::Bool(false))
@@ -130,11 +134,18 @@ pub(super) static ROWS: &[Template] = &[
         .forms(&[config(13, 1)])
         .assumed_default(DefaultValue::Bool(false))
         .help("Relay mode on old boards, exchanged encoder inputs on later ones. Command 98, bit 13."),
+    roboclaw("roboclaw.config.bit_14", "Configuration bit 14")
+        .forms(&[config(14, 1)])
+        .assumed_default(DefaultValue::Bool(false))
+        .help(UNNAMED_BIT),
     roboclaw("roboclaw.config.open_drain", "Multi-unit mode")
         .forms(&[config(15, 1)])
         .assumed_default(DefaultValue::Bool(false))
         .help("Open-drain output, so that several boards share one receive line. Command 98, bit 15."),
 ];
+
+/// A row of its own all the same, so that a backup brings back the whole word.
+const UNNAMED_BIT: &str = "What this bit does is not published. Leave it as it is. Command 98.";
 
 static CONTROL_MODES: &[Code] = &[
     Code { raw: 0, key: "rc", label: "RC" },

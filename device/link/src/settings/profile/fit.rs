@@ -23,7 +23,7 @@ pub struct Fitted {
 impl Profile {
     /// Fits the profile to the controller of `table`. Inputs go by their printed name and encoders by their
     /// channel, not by their place in the list; what does not exist there is left out; what is out of range
-    /// there is moved into range. Nothing is changed where the profile fits already.
+    /// there is moved into range. Nothing is changed where the profile was made for that model and generation.
     pub fn fitted_to(&self, table: &SettingsTable) -> Fitted {
         let mut fitter = Fitter::new(self, table);
         fitter.tell_kind();
@@ -164,7 +164,9 @@ impl<'f> Fitter<'f> {
             self.image.set(&there.key, SettingValue::Choice("none"));
             return;
         }
-        if matches!(value, SettingValue::UnknownCode(_)) && self.from.subject() == self.to.subject() {
+        let (from, to) = self.subjects();
+        if (from.model, from.generation) == (to.model, to.generation) {
+            // The same registers: whatever one unit held, the next one can.
             self.image.set(&there.key, value);
             return;
         }

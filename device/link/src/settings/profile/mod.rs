@@ -83,8 +83,8 @@ impl Profile {
     }
 
     /// The profile in `text`, with what reading it changed: an older schema is brought to the newest, and with
-    /// [`Strictness::Repair`] settings that are unknown, of a wrong type or out of range are left out or moved
-    /// into range. What is wrong with the file as a whole refuses it either way.
+    /// [`Strictness::Repair`] settings that are unknown or of a wrong type are left out. A value out of range is
+    /// no fault: a unit may hold it. What is wrong with the file as a whole refuses it either way.
     pub fn read(text: &str, strictness: Strictness) -> Result<OpenedProfile, ProfileError> {
         parse::parse(text, strictness)
     }
@@ -107,8 +107,8 @@ impl Profile {
         SettingsTable::new(self.subject)
     }
 
-    /// What brings a controller to this profile. Refuses, with every reason, when the profile was made for
-    /// another model or generation, or holds what that controller does not have or allow.
+    /// What brings a controller to this profile, values out of range as they stand. Refuses, with every reason, when the profile
+    /// was made for another model or generation, or holds what that controller does not have or cannot hold.
     pub fn changes_for(
         &self,
         table: &SettingsTable,
@@ -116,6 +116,7 @@ impl Profile {
         simulated: bool,
     ) -> Result<ProfileChanges, ProfileError> {
         let mut problems = self.misfits(table.subject());
+        let is_foreign = !problems.is_empty();
         let mut left_out = Vec::new();
         let mut wanted = changes(table, ram, &self.settings);
         for (key, value) in self.settings.iter() {
@@ -131,7 +132,11 @@ impl Profile {
                         ));
                         wanted.remove(key);
                     }
-                    None => problems.extend(row.check(value).err().map(|why| Problem::at_key(key, why))),
+                    None => {
+                        let why =
+                            if is_foreign { row.check(value).err() } else { row.check_as_read(value).err() };
+                        problems.extend(why.map(|why| Problem::at_key(key, why)));
+                    }
                 },
             }
         }

@@ -220,7 +220,7 @@ impl Reader<'_> {
         Some(image)
     }
 
-    /// One setting: its form, its unit, its kind, its range.
+    /// One setting: its form, its unit, its kind.
     fn setting(&mut self, row: &Row, node: &Node) -> Option<SettingValue> {
         let path = setting_path(&row.key);
         let value = match read_entry(row, node) {
@@ -230,18 +230,11 @@ impl Reader<'_> {
                 return None;
             }
         };
-        // A code that no list names may stand in a controller, so it may stand in a profile too.
-        if matches!(value, SettingValue::UnknownCode(_)) {
-            return Some(value);
-        }
-        match (row.repair(value), self.strictness) {
-            ((value, None), _) => Some(value),
-            ((value, Some(why)), Strictness::Repair) => {
+        // What may stand in a controller, out of range or without a name, may stand in a profile too.
+        match row.check_as_read(value) {
+            Ok(_) => Some(row.settle(value)),
+            Err(why) => {
                 self.minor(&path, why);
-                Some(value)
-            }
-            ((_, Some(_)), Strictness::Refuse) => {
-                self.minor(&path, row.check(value).err().unwrap_or_default());
                 None
             }
         }
@@ -295,7 +288,7 @@ fn read_entry(row: &Row, node: &Node) -> Result<SettingValue, String> {
     {
         return Err(format!("A setting has no member {}.", quote(name)));
     }
-    if let (Some(Node::Int(raw)), Kind::Choice(_)) = (find(members, "code"), row.kind) {
+    if let (Some(Node::Int(raw)), Kind::Bool | Kind::Choice(_)) = (find(members, "code"), row.kind) {
         return Ok(row.decode(*raw));
     }
     check_unit(row, find(members, "unit"))?;

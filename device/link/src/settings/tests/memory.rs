@@ -12,7 +12,7 @@ use super::fake::{FakeUnit, Mishap};
 use super::table;
 use crate::wire::Wire;
 
-const OPTIONS: WriteOptions = WriteOptions { own_stream: None, simulated: true };
+const OPTIONS: WriteOptions = WriteOptions { own_stream: None, simulated: true, as_read: false };
 
 fn changed_unit(table: &SettingsTable) -> FakeUnit {
     let mut unit = FakeUnit::new(table);

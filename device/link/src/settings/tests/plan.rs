@@ -10,8 +10,8 @@ use super::super::{Plan, Refusal, SettingValue, SettingsImage, SettingsTable, St
 use super::table;
 use crate::transport::Stream;
 
-const SIMULATED: WriteOptions = WriteOptions { own_stream: None, simulated: true };
-const REAL: WriteOptions = WriteOptions { own_stream: None, simulated: false };
+const SIMULATED: WriteOptions = WriteOptions { own_stream: None, simulated: true, as_read: false };
+const REAL: WriteOptions = WriteOptions { own_stream: None, simulated: false, as_read: false };
 
 fn image(table: &SettingsTable, values: &[(&str, &str)]) -> SettingsImage {
     let parse = |(key, text): &(&str, &str)| {
@@ -276,7 +276,7 @@ fn limits_are_written_first_and_the_way_to_the_controller_last() {
         ("motor1.velocity.p", "2"),
         ("motor2.current.max_amps", "10"),
     ];
-    let options = WriteOptions { own_stream: Some(Stream::Rs232), simulated: false };
+    let options = WriteOptions { own_stream: Some(Stream::Rs232), simulated: false, as_read: false };
     let plan = plan_of(&table, &changes, options);
     let order: Vec<(u8, Stage)> = plan.steps.iter().map(|step| (step.command, step.stage)).collect();
     assert_eq!(
@@ -311,7 +311,7 @@ fn limits_are_written_first_and_the_way_to_the_controller_last() {
 
 #[test]
 fn what_keeps_this_program_from_arming_or_changes_what_duty_means_is_told() {
-    let usb = WriteOptions { own_stream: Some(Stream::Usb), simulated: false };
+    let usb = WriteOptions { own_stream: Some(Stream::Usb), simulated: false, as_read: false };
     let warnings = |changes: &[(&str, &str)]| plan_of(&table("mcp266", ONE), changes, usb).warnings;
     assert_eq!(
         warnings(&[("stream.usb.timeout", "0")]),
@@ -386,7 +386,7 @@ fn what_has_no_wire_form_is_planned_past_the_wire_on_a_simulated_controller_only
 
 #[test]
 fn bridging_the_channels_comes_with_its_wiring_warning() {
-    let options = WriteOptions { own_stream: Some(Stream::Usb), simulated: true };
+    let options = WriteOptions { own_stream: Some(Stream::Usb), simulated: true, as_read: false };
     let warnings =
         |on: &str| plan_of(&table("mcp266", ONE), &[("unit.bridge_channels", on)], options).warnings;
     assert!(warnings("yes")[0].contains("only after this is written and saved to EEPROM"));

@@ -3,7 +3,9 @@
 use brushwork_protocol::models;
 use brushwork_protocol::packet_serial::{Address, Generation};
 
-use super::super::{OpenedProfile, Profile, SettingValue, SettingsTable, Strictness, Subject, diff};
+use super::super::{
+    OpenedProfile, Profile, SettingValue, SettingsTable, Strictness, Subject, WriteOptions, diff,
+};
 use super::table;
 
 fn profile(model: &str, generation: Generation) -> Profile {
@@ -131,12 +133,6 @@ fn each_fault_is_told_with_its_place() {
         ),
         (
             "24.3",
-            "80",
-            "settings.limits.main_battery.max_volts (line 14, column 5): Main battery maximum 80.0 V is \
-             above the MCP266's 60.0 V.",
-        ),
-        (
-            "24.3",
             "\"24.3\"",
             "settings.limits.main_battery.max_volts (line 14, column 5): Expected a number, got a text.",
         ),
@@ -172,7 +168,7 @@ fn each_fault_is_told_with_its_place() {
 #[test]
 fn several_faults_are_told_at_once() {
     let text = SMALL
-        .replace("24.3", "99")
+        .replace("24.3", "\"99\"")
         .replace("true", "\"yes\"")
         .replace("\"generation\": 1", "\"generation\": 1,\n\"x\": 1");
     let error = Profile::parse(&text).expect_err("it is broken");
@@ -236,22 +232,72 @@ fn a_profile_with_a_few_bytes_changed_is_refused_or_read_as_what_it_then_says() 
 
 #[test]
 fn single_faults_can_be_mended_with_a_warning_each() {
-    let text = SMALL.replace("24.3", "80").replace("unit.mixing", "unit.mixxing");
+    let text = SMALL.replace("24.3", "\"80\"").replace("unit.mixing", "unit.mixxing");
     let opened = Profile::read(&text, Strictness::Repair).expect("the file as a whole is right");
     let OpenedProfile { profile, mended: warnings, upgraded } = opened;
     assert!(upgraded.is_empty(), "{upgraded:?}");
-    assert_eq!(profile.settings.len(), 1);
-    assert_eq!(profile.settings.get("limits.main_battery.max_volts"), Some(SettingValue::Number(60.0)));
+    assert!(profile.settings.is_empty());
     let told: Vec<String> = warnings.iter().map(ToString::to_string).collect();
     assert_eq!(
         told,
         [
             "settings.unit.mixxing (line 13, column 5): The MCP266 with firmware generation 1 has no such \
              setting.",
-            "settings.limits.main_battery.max_volts (line 14, column 5): Main battery maximum 80.0 V is \
-             above the MCP266's 60.0 V. 60.0 V is used instead.",
+            "settings.limits.main_battery.max_volts (line 14, column 5): Expected a number, got a text.",
         ]
     );
+}
+
+#[test]
+fn what_a_unit_held_out_of_range_is_kept_as_it_was_and_told_before_it_is_written() {
+    let mut stored = Profile::parse(&SMALL.replace("24.3", "80")).expect("a unit may hold 80 V");
+    stored.settings.set("unit.mixing", SettingValue::UnknownCode(5));
+    stored.settings.set("dout.1.action", SettingValue::UnknownCode(99));
+    stored.settings.set("motor1.position.min", SettingValue::Int(9));
+    stored.settings.set("motor1.position.max", SettingValue::Int(-9));
+    for strictness in [Strictness::Refuse, Strictness::Repair] {
+        let opened = Profile::read(&stored.to_json(), strictness).expect("nothing is wrong with it");
+        assert_eq!((&opened.profile, opened.mended.len()), (&stored, 0));
+    }
+    let here = table("mcp266", Generation::Gen1);
+    assert_eq!(stored.fitted_to(&here).changes, [""; 0]);
+    let ram = here.default_image();
+    let wanted = stored.changes_for(&here, &ram, false).expect("it fits").wanted;
+    assert_eq!(wanted, stored.settings);
+    let options = WriteOptions { as_read: true, ..WriteOptions::default() };
+    let plan = super::super::plan(&here, &ram, &wanted, options).expect("it is written as it was");
+    assert_eq!(
+        plan.warnings[..4],
+        [
+            "Control mixing: 5 is none of the values known for it. It is written as it was read.",
+            "Main battery maximum 80.0 V is above the MCP266's 60.0 V. It is written as it was read.",
+            "DOUT1: action: 99 is none of the values known for it. It is written as it was read.",
+            "Motor 1: minimum position 9 counts would be above Motor 1: maximum position -9 counts. Both are written as \
+             they were read.",
+        ]
+    );
+    // What somebody types is refused as ever.
+    let refusals =
+        super::super::plan(&here, &ram, &wanted, WriteOptions::default()).expect_err("out of range");
+    assert_eq!(refusals.len(), 4, "{refusals:?}");
+}
+
+#[test]
+fn what_no_unit_can_hold_is_refused_whoever_says_so() {
+    let here = table("mcp266", Generation::Gen4);
+    let ram = here.default_image();
+    for (key, value, expected) in [
+        ("limits.main_battery.max_volts", SettingValue::Number(10_000.0), "holds 0 to 65535"),
+        ("motor1.idle.delay_seconds", SettingValue::Number(20.0), "200 takes more than 7 bits"),
+        ("unit.pwm_mode", SettingValue::Int(1), "has no setting"),
+        ("motor1.pwm_mode", SettingValue::UnknownCode(256), "holds 0 to 255"),
+        ("motor1.velocity.qpps", SettingValue::UnknownCode(1), "none of the values"),
+    ] {
+        let wanted = [(key.to_owned(), value)].into_iter().collect();
+        let options = WriteOptions { as_read: true, ..WriteOptions::default() };
+        let refusals = super::super::plan(&here, &ram, &wanted, options).expect_err(key);
+        assert!(refusals.iter().any(|refusal| refusal.sentence.contains(expected)), "{key}: {refusals:?}");
+    }
 }
 
 #[test]

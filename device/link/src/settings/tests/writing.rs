@@ -11,7 +11,7 @@ use super::fake::{FakeUnit, Mishap};
 use super::{every_table, table};
 use crate::wire::{HiddenSettings, Wire};
 
-const OPTIONS: WriteOptions = WriteOptions { own_stream: None, simulated: true };
+const OPTIONS: WriteOptions = WriteOptions { own_stream: None, simulated: true, as_read: false };
 
 fn image(table: &SettingsTable, values: &[(&str, &str)]) -> SettingsImage {
     let parse = |(key, text): &(&str, &str)| {
