@@ -3,6 +3,7 @@
 #![cfg(unix)]
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use brushwork::tune::file;
 use brushwork_protocol::packet_serial::{Generation, Motor};
@@ -178,6 +179,28 @@ fn ctrl_c_at_every_stage_stops_the_motors_and_puts_the_old_gains_back() {
             });
         }
     });
+}
+
+/// How long a program that gets no processor stands still: longer than a motion lives.
+const STALLED: Duration = Duration::from_millis(700);
+
+#[test]
+fn a_run_that_this_computer_was_too_late_for_says_so_and_ends_as_no_signal_does() {
+    let bench = Bench::new(|_| {});
+    let before = bench.held();
+    let mut program = bench.tune(&["--dry-run"]);
+    program.wait_for_error("Measuring the motor", LIMIT);
+    program.signal("STOP");
+    std::thread::sleep(STALLED);
+    program.signal("CONT");
+    let ending = program.finish(LIMIT);
+    assert!([Some(TUNED), Some(TUNED_WITH_WARNINGS), Some(REFUSED)].contains(&code(&ending)), "{ending:?}");
+    if code(&ending) == Some(REFUSED) {
+        let said = [ending.stdout.join("\n"), ending.stderr.join("\n")].concat();
+        assert!(said.contains("his computer answered late"), "{ending:?}");
+    }
+    bench.controller.wait_until("both bridges off", |unit| !is_driven(unit));
+    assert_eq!(bench.held(), before, "{ending:?}");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use brushwork::keep::TrialKeeper;
-use brushwork::tune::{Slot, Target, prepare, restore, run, take};
+use brushwork::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
 use brushwork_link::device::{ArmScope, DeviceOptions, Event, FnJob, Job, JobEnding, Request};
 use brushwork_link::settings::{Act, Ending, Entry, Keeper, SettingsTable, Subject, WriteOptions, save_kept};
 use brushwork_link::{Failure, Stream};
@@ -100,7 +100,11 @@ fn tuned_as(
     link.line.pass(ms(60));
     assert!(link.duties(0)[0].abs() < 1e-6, "a run ends with the motor off");
     if !link.ended {
-        finish(link, restore(target, before, report.as_ref(), &keeper), ms(5_000));
+        finish(
+            link,
+            restore(target, before, report.as_ref(), leaves_off(report.as_ref(), None), &keeper),
+            ms(5_000),
+        );
     }
     let ending = journal.lock().expect("no test panics with it").1.clone();
     assert_eq!(ending, (!link.ended).then_some(Ending::Known), "a cut run leaves its journal open");

@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use brushwork::keep::TrialKeeper;
-use brushwork::tune::{Slot, Target, prepare, restore, run, take};
+use brushwork::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
 use brushwork_link::device::{ArmScope, DeviceOptions, Event, FamilyChoice, Job, JobEnding, Request};
 use brushwork_link::settings::{Ending, Entry, Keeper, Subject};
 use brushwork_link::{Failure, FirmwareGeneration};
@@ -95,9 +95,13 @@ fn tuned(link: &mut Link, request: Tuning, before_run: impl FnOnce(&Link)) -> Op
     finish(link, run(TARGET, request, &found), ms(120_000));
     let report = take(&found);
     if !link.ended {
-        // After a Stop in a loop the unit holds the motor where it is until the job after.
+        // After a Stop in a loop the unit holds the motor where it is.
         assert!(link.duties(0)[0].abs() < 0.05, "a run ends with the motor at rest");
-        let restored = finish(link, restore(TARGET, before, report.as_ref(), &keeper), ms(10_000));
+        let restored = finish(
+            link,
+            restore(TARGET, before, report.as_ref(), leaves_off(report.as_ref(), None), &keeper),
+            ms(10_000),
+        );
         assert!(matches!(restored, Some(JobEnding::Done(_))), "{restored:?}");
     }
     report
@@ -220,11 +224,12 @@ fn stop_and_cancel_at_any_stage_stand_the_motor_and_the_old_registers_come_back(
         let place = format!("{protocol:?} after {after} ms, cancel {cancels}");
         let causes = report.expect("the run left its report").causes;
         assert_eq!(causes.first(), Some(&Cause::Stopped), "{place}");
-        assert_eq!(link.duties(0)[0], 0.0, "{place}");
-        // The loop may still want to be elsewhere: its output stays off until it is switched on by hand.
-        let mut off = before;
-        off[1] |= 1 << 14;
-        assert_eq!(registers(&link), off, "{place}");
+        // All of them, DISABLEPID too: the loop holds the motor where it stands, and drives it nowhere.
+        assert_eq!(registers(&link), before, "{place}");
+        let stood = registers_of(&link, 0);
+        link.run_for(ms(1_000));
+        assert!((registers_of(&link, 0) - stood).abs() <= 4, "{place}: it moved");
+        assert!(link.duties(0)[0].abs() < 0.05, "{place}");
         assert_eq!(eeprom_writes(&link), 0, "{place}");
     }
 }

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
 use brushwork::keep::TrialKeeper;
-use brushwork::tune::{Slot, Target, prepare, restore, run, take};
+use brushwork::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
 use brushwork_link::device::{
     Addresses, ArmScope, DeviceHandle, DeviceLoop, DeviceOptions, Event, Identity, Job, JobEnding, Request,
     Step,
@@ -198,7 +198,7 @@ fn tuned(manner: Manner, motor: Motor, request: Tuning) -> Report {
     // From full duty to none at the highest acceleration takes 50 ms.
     link.cable.clock.advance_to(link.cable.clock.now() + s(6) / 100);
     assert_eq!(link.cable.unit().duty, 0.0, "{place}: the motor is off at the end");
-    let restored = link.job(restore(TARGET, old, Some(&report), &keeper));
+    let restored = link.job(restore(TARGET, old, Some(&report), leaves_off(Some(&report), None), &keeper));
     assert!(matches!(restored, Some(JobEnding::Done(_))), "{place}: {restored:?}");
     assert_eq!(held(&link), before, "{place}: the old gains are in force");
     assert!(report.replay().is_some_and(|again| again == report), "{place}: the replay differs");

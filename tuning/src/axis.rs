@@ -154,6 +154,9 @@ pub enum AxisError {
     /// This exchange had no reply; the next may have one.
     #[error("no reply")]
     NoReply,
+    /// The reply came so long after the request that nobody can say when it was read; the next may be in time.
+    #[error("the reply came too late")]
+    Late,
     /// Someone stopped the run: the user, the window, the device thread.
     #[error("the run was stopped")]
     Stopped,

@@ -1,6 +1,7 @@
 //! Why a run ended without a result, or what its result must be taken with.
 
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// What ended a run, or what its reader must know.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -80,6 +81,13 @@ pub enum Cause {
     LimitInput,
     /// The loop of a Motion Mind was left switched off at the end of a run that found something wrong with the machine.
     LoopOff,
+    /// Nothing moves, and the current cannot be told from its own noise.
+    CurrentUnclear,
+    /// What was seen says nothing about the machine, since the answers came too late.
+    AnsweredLate {
+        /// The longest time between two answers, ms.
+        longest_gap_ms: u32,
+    },
 }
 
 impl Cause {
@@ -103,10 +111,62 @@ impl Cause {
         )
     }
 
+    /// Whether it is concluded from how the motor moved, or did not, between the polls.
+    #[must_use]
+    pub(crate) fn is_of_motion(self) -> bool {
+        matches!(
+            self,
+            Self::EncoderReversed
+                | Self::EncoderDead
+                | Self::MotorOpen
+                | Self::NothingCounted
+                | Self::ShaftLocked
+                | Self::EncoderLost
+                | Self::Stalled
+                | Self::MotorOpened
+                | Self::EncoderFlipped
+                | Self::TravelLimit
+                | Self::NarrowTravel
+                | Self::TooCoarse
+                | Self::PoorFit
+                | Self::Lopsided
+                | Self::CurrentLimited
+                | Self::NotVerified
+                | Self::UnknownLaw
+                | Self::TimeLimit
+                | Self::Refused
+        )
+    }
+
+    /// Whether it is told from others by the motor's current.
+    #[must_use]
+    pub(crate) fn is_by_current(self) -> bool {
+        matches!(
+            self,
+            Self::EncoderDead
+                | Self::MotorOpen
+                | Self::ShaftLocked
+                | Self::EncoderLost
+                | Self::Stalled
+                | Self::MotorOpened
+        )
+    }
+
     /// One sentence or two: what was seen and what to do.
     #[must_use]
-    pub fn sentence(self) -> &'static str {
-        match self {
+    pub fn sentence(self) -> Cow<'static, str> {
+        Cow::Borrowed(match self {
+            Self::AnsweredLate { longest_gap_ms } => {
+                return Cow::Owned(format!(
+                    "This computer answered late (the longest gap between two samples was {longest_gap_ms} ms), so the run says \
+                     nothing about the machine. Try again with fewer programs running; if the gap stays, look for lost replies on \
+                     the line."
+                ));
+            }
+            Self::CurrentUnclear => {
+                "The motor was driven and not seen to move, and its current is no higher than the noise of its readings, so it does \
+                 not say why. Check the motor leads, the encoder's plug, and whether the shaft is free or at an end stop."
+            }
             Self::EncoderReversed => {
                 "The encoder counts down while the motor is driven up. Swap the encoder's A and B, or the motor leads, or set the \
                  encoder's reverse option."
@@ -209,12 +269,12 @@ impl Cause {
             }
             Self::LoopOff => {
                 "The controller's loop was left switched off (DISABLEPID in FUNCTION, in RAM), since with this it could drive the \
-                 motor away. When it is mended, clear DISABLEPID, or switch the unit off and on."
+                 motor away. When it is mended, arm or drive again: that switches the loop on where the motor stands."
             }
             Self::OtherLoop => {
                 "NEWVELMODE, FASTPID, PULSEFB or DISABLEPID is set, which makes another loop of these gains, or none. Clear the bit: \
                  the gains are those of the loop that computes every 5 ms from the encoder's place."
             }
-        }
+        })
     }
 }

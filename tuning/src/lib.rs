@@ -19,6 +19,7 @@ mod looped;
 mod margin;
 pub mod model;
 pub mod motion_mind;
+mod pace;
 pub mod record;
 pub mod registers;
 pub mod report;

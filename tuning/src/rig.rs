@@ -10,7 +10,8 @@ use crate::axis::{
 use crate::cause::Cause;
 use crate::diagnosis::{DIAGNOSIS_S, diagnose};
 use crate::motion_mind::{MotionMindRegisters, SPEED_STEP_COUNTS_PER_S, bits};
-use crate::watch::Watch;
+use crate::pace::Pace;
+use crate::watch::{NO_CURRENT_AMPS, Watch};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
@@ -45,6 +46,10 @@ const AMPSLIMIT_STEP: u32 = 2;
 /// Silence after which the link counts as lost, s, and so many polls in a row: on a slow line a few lost replies take as long.
 const LINK_LOST_S: f64 = 0.15;
 const LINK_LOST_POLLS: u32 = 5;
+/// Readings of the current that are looked at before a fault is told by it, and how far above the highest one at rest they must be:
+/// noise that reached 1 among the dozen readings at rest does not have its middle at 3.
+const DRIVEN_READINGS: usize = 6;
+const ABOVE_REST: f64 = 3.0;
 
 /// What the guard is told.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -66,6 +71,10 @@ pub struct GuardOptions {
     /// Whether inductance and resistance, where both are set, may be cleared for the run. They are put back after it.
     #[serde(default)]
     pub clear_winding: bool,
+    /// Whether a refusal names the machine only where answers were on time and currents clear of their noise. Reports from before
+    /// this was looked at do not have it, and replay as they were.
+    #[serde(default)]
+    pub weighs_evidence: bool,
 }
 
 impl Default for GuardOptions {
@@ -79,6 +88,7 @@ impl Default for GuardOptions {
             volts_margin: 0.2,
             max_amps: None,
             clear_winding: false,
+            weighs_evidence: true,
         }
     }
 }
@@ -135,6 +145,7 @@ pub struct Rig<'a> {
     pub drives: Vec<Drive>,
     /// What watches for stalls and lost signals.
     pub watch: Watch,
+    pace: Pace,
     epoch_s: f64,
     first_counts: Option<i64>,
     last_raw: i64,
@@ -169,6 +180,7 @@ impl<'a> Rig<'a> {
             exchanges: Vec::new(),
             drives: Vec::new(),
             watch: Watch::default(),
+            pace: Pace::default(),
             epoch_s: now.as_secs_f64(),
             first_counts: None,
             last_raw: 0,
@@ -234,7 +246,53 @@ impl<'a> Rig<'a> {
 
     /// Tells whoever waits what is going on.
     pub fn progress(&mut self, text: &str) {
+        // Between two stages the run computes.
+        self.pause();
         self.axis.progress(text);
+    }
+
+    /// The run computes before it speaks to the axis again: the time that takes is its own, and no answer is late for it.
+    pub(crate) fn pause(&mut self) {
+        self.pace.pause();
+    }
+
+    /// A Motion Mind that is told another kind of command first has all its registers written, with its motor off.
+    fn pause_for(&mut self, input: Input) {
+        let kind = |input: &Input| std::mem::discriminant(input);
+        let is_another = self.drives.last().is_none_or(|last| kind(&last.input) != kind(&input));
+        if self.setup.motion_mind.is_some() && is_another {
+            self.pause();
+        }
+    }
+
+    /// What a run is refused for. A cause that names the machine stands only if all answers were on time, since the bounds of the guard
+    /// and the model come from the whole run; and one that was told by the current only if that was clear of its noise.
+    pub(crate) fn concluded(&self, cause: Cause) -> Cause {
+        if !self.options.weighs_evidence {
+            return cause;
+        }
+        let late_s = self.pace.longest_late_s().filter(|_| cause.is_of_motion());
+        if let Some(longest_s) = late_s {
+            return Cause::AnsweredLate { longest_gap_ms: (1e3 * longest_s).round() as u32 };
+        }
+        if cause.is_by_current() && self.is_current_unclear() { Cause::CurrentUnclear } else { cause }
+    }
+
+    /// Whether the current of the driven motor, as last read, could be the noise of readings at rest.
+    fn is_current_unclear(&self) -> bool {
+        let driven_s = self.drives.iter().find(|drive| drive.input != Input::Duty(0.0)).map(|drive| drive.t);
+        let driven_s = driven_s.unwrap_or(f64::INFINITY);
+        let at_rest =
+            self.points.iter().take_while(|point| point.t < driven_s).filter_map(|point| point.amps);
+        let noise_amps = at_rest.map(f64::abs).fold(0.0, f64::max);
+        if noise_amps <= NO_CURRENT_AMPS {
+            return false;
+        }
+        let is_driven = |point: &&Point| self.watch.duty_at(point.t).abs() > self.watch.start_duty.max(0.03);
+        let driven = self.points.iter().rev().filter(is_driven).filter_map(|point| point.amps);
+        let mut driven: Vec<f64> = driven.map(f64::abs).take(DRIVEN_READINGS).collect();
+        driven.sort_by(f64::total_cmp);
+        driven.get(driven.len() / 2).is_none_or(|amps| *amps <= ABOVE_REST * noise_amps)
     }
 
     /// Time from the start of the run, s.
@@ -246,7 +304,9 @@ impl<'a> Rig<'a> {
     pub fn duty(&mut self, duty: f64) -> Result<(), Cause> {
         let duty = duty.clamp(-self.options.max_duty, self.options.max_duty);
         let raw = (duty * f64::from(FULL_DUTY_RAW)).round() as i16;
+        self.pause_for(Input::Duty(duty));
         let exchange = self.acknowledged(|axis| axis.drive_duty(raw))?;
+        self.pace.answered(&exchange);
         let t = exchange.middle_s() - self.epoch_s;
         self.drives.push(Drive { t, input: Input::Duty(f64::from(raw) / f64::from(FULL_DUTY_RAW)) });
         let took_s = exchange.received.saturating_sub(exchange.sent).as_secs_f64();
@@ -258,8 +318,10 @@ impl<'a> Rig<'a> {
     /// Commands a speed in counts/s.
     pub fn speed(&mut self, counts_per_s: f64) -> Result<(), Cause> {
         let whole = self.whole_speed(counts_per_s) as i32;
+        self.pause_for(Input::Speed(counts_per_s));
         let first_s = self.now_s();
         let exchange = self.acknowledged(|axis| axis.command_speed(whole))?;
+        self.pace.answered(&exchange);
         let t = exchange.middle_s() - self.epoch_s;
         self.drives.push(Drive { t, input: Input::Speed(f64::from(whole)) });
         self.watch.release(first_s, t);
@@ -283,8 +345,10 @@ impl<'a> Rig<'a> {
     pub fn position(&mut self, counts: f64, speed: u32) -> Result<(), Cause> {
         let origin = self.first_counts.unwrap_or(0);
         let whole = (origin + counts.round() as i64) as i32;
+        self.pause_for(Input::Position(counts, f64::from(speed)));
         let first_s = self.now_s();
         let exchange = self.acknowledged(|axis| axis.command_position(whole, speed))?;
+        self.pace.answered(&exchange);
         let t = exchange.middle_s() - self.epoch_s;
         self.drives.push(Drive { t, input: Input::Position(counts.round(), f64::from(speed)) });
         self.watch.release(first_s, t);
@@ -319,6 +383,7 @@ impl<'a> Rig<'a> {
     /// Writes the registers of a Motion Mind to RAM; they are put back unless the run keeps its own.
     pub fn write_motion_mind(&mut self, registers: MotionMindRegisters) -> Result<(), Cause> {
         self.gains_touched = true;
+        self.pause();
         retried(|| self.axis.write_motion_mind(registers))
     }
 
@@ -369,12 +434,17 @@ impl<'a> Rig<'a> {
         };
         let sample = match self.axis.sample(want) {
             Ok(sample) => sample,
-            Err(AxisError::NoReply) => {
+            Err(error @ (AxisError::NoReply | AxisError::Late)) => {
+                if error == AxisError::Late {
+                    self.pace.came_late();
+                }
                 // Counted from the first poll without a reply: between experiments nobody asks for a while.
                 let since_s = *self.silent_since_s.get_or_insert(now_s);
                 self.silent_polls += 1;
-                if self.now_s() - since_s > LINK_LOST_S && self.silent_polls >= LINK_LOST_POLLS {
-                    return Err(Cause::LinkLost);
+                let silent_s = self.now_s() - since_s;
+                if silent_s > LINK_LOST_S && self.silent_polls >= LINK_LOST_POLLS {
+                    let late = Cause::AnsweredLate { longest_gap_ms: (1e3 * silent_s).round() as u32 };
+                    return Err(if self.pace.is_coming_late() { late } else { Cause::LinkLost });
                 }
                 return self.check_unseen().map(|()| None);
             }
@@ -538,7 +608,7 @@ impl<'a> Rig<'a> {
             let next = self.axis.now() + Duration::from_secs_f64(self.options.poll_s);
             match self.axis.sample(Want { current: true, ..Want::default() }) {
                 Ok(sample) => after.push(self.point_of(&sample)),
-                Err(AxisError::NoReply) => {}
+                Err(AxisError::NoReply | AxisError::Late) => {}
                 Err(error) => return cause_of(&error),
             }
             if let Err(error) = self.axis.wait_until(next) {
@@ -549,6 +619,7 @@ impl<'a> Rig<'a> {
     }
 
     fn point_of(&mut self, sample: &Sample) -> Point {
+        self.pace.answered(&sample.counts_at);
         let counts = self.unwrap(sample.counts[self.options.motor.min(1)]);
         let epoch_s = self.epoch_s;
         Point {
@@ -677,7 +748,7 @@ impl<'a> Rig<'a> {
                     self.turned_at_counts = now.counts;
                     before = Some(now);
                 }
-                Err(AxisError::NoReply) => {}
+                Err(AxisError::NoReply | AxisError::Late) => {}
                 Err(_) => break,
             }
             let next = self.axis.now() + Duration::from_secs_f64(0.5 * self.options.poll_s);
@@ -712,16 +783,16 @@ pub fn wait_for_rest(axis: &mut dyn Axis) {
 fn retried<T>(mut call: impl FnMut() -> Result<T, AxisError>) -> Result<T, Cause> {
     for _ in 0..3 {
         match call() {
-            Err(AxisError::NoReply) => {}
+            Err(AxisError::NoReply | AxisError::Late) => {}
             other => return other.map_err(|error| cause_of(&error)),
         }
     }
-    call().map_err(|error| if error == AxisError::NoReply { Cause::LinkLost } else { cause_of(&error) })
+    call().map_err(|error| cause_of(&error))
 }
 
 fn cause_of(error: &AxisError) -> Cause {
     match error {
-        AxisError::NoReply | AxisError::LinkLost(_) => Cause::LinkLost,
+        AxisError::NoReply | AxisError::Late | AxisError::LinkLost(_) => Cause::LinkLost,
         AxisError::Stopped => Cause::Stopped,
         AxisError::Refused(_) => Cause::Refused,
     }

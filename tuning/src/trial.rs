@@ -86,9 +86,10 @@ pub fn run_trial(axis: &mut dyn Axis, wanted: &TrialRequest) -> Trial {
             match moves(&mut rig, wanted) {
                 Ok((measured, rougher)) => {
                     trial.measured = Some(measured);
-                    trial.cause = rougher.then_some(Cause::NotVerified);
+                    trial.cause = rougher.then(|| rig.concluded(Cause::NotVerified));
                 }
                 Err(cause) => {
+                    let cause = rig.concluded(cause);
                     rig.leave_off(cause);
                     trial.cause = Some(cause);
                 }

@@ -125,7 +125,7 @@ pub fn tune(axis: &mut dyn Axis, request: &Request) -> Report {
             let request = &confined(request, &rig.setup);
             report.request = *request;
             rig.options = request.guard;
-            let outcome = run(&mut rig, request, &mut report);
+            let outcome = run(&mut rig, request, &mut report).map_err(|cause| rig.concluded(cause));
             let keep = outcome.is_ok() && request.keep;
             if keep && let Err(cause) = write_final(&mut rig, &report) {
                 report.causes.push(cause);

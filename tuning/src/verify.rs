@@ -172,6 +172,8 @@ fn try_design(
     report: &Report,
     design: &Design,
 ) -> Result<Measured, Cause> {
+    // The design before it was computed.
+    rig.pause();
     if let Some(velocity) = report.velocity {
         rig.write_velocity(velocity)?;
     }

@@ -63,7 +63,13 @@ fn finish(driven: Result<(), Exit>, client: &Client) -> Exit {
     if !was_lost {
         client.device().stop_all();
         match stop::wait_for_report(client) {
-            Ok(report) => stop::warnings(&report, &client.identity).into_iter().for_each(say),
+            Ok(report) => {
+                stop::warnings(&report, &client.identity).into_iter().for_each(say);
+                // The motion was carried out, but nothing holds the motor now.
+                if driven.is_ok() && report.left_a_loop_off() {
+                    return Exit::Refused;
+                }
+            }
             Err(exit) => return exit,
         }
     }

@@ -92,7 +92,7 @@ impl MindCarrier for MindJobCarrier<'_, '_> {
             Reply::Registers((0..32).filter(|number| mask >> number & 1 == 1).filter_map(named).collect())
         };
         let at = self.worked(span, command, &answer);
-        if mask != 0 && is_vague { Err(AxisError::NoReply) } else { Ok((at, answer)) }
+        if mask != 0 && is_vague { Err(AxisError::Late) } else { Ok((at, answer)) }
     }
 
     fn protocol(&self) -> Protocol {

@@ -23,11 +23,12 @@ use brushwork_protocol::packet_serial::{Generation, Motor, Request as Packet, Va
 use brushwork_tuning::axis::{
     Axis, AxisError, EncoderClass, Exchange, PositionRegisters, Setup, VelocityRegisters,
 };
+use brushwork_tuning::cause::Cause;
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::rig::wait_for_rest;
 use brushwork_tuning::trial::{Trial, TrialRequest, run_trial};
 use brushwork_tuning::tune::{Request, tune};
-use brushwork_tuning_bench::mind::axis::MindAxis;
+use brushwork_tuning_bench::mind::axis::{LoopAfter, MindAxis};
 use brushwork_tuning_bench::packet::{Carrier, PacketAxis};
 
 use crate::keep::TrialKeeper;
@@ -108,11 +109,7 @@ impl Carrier for JobCarrier<'_, '_> {
         let reply = self.context.transact_timed(command, &values).map_err(|error| told(&error))?;
         let exchange = Exchange { sent: reply.span.requested_at, received: reply.span.replied_at };
         let is_vague = self.is_vague(&exchange);
-        if is_vague && needs_its_time(command) {
-            Err(AxisError::NoReply)
-        } else {
-            Ok((exchange, reply.values))
-        }
+        if is_vague && needs_its_time(command) { Err(AxisError::Late) } else { Ok((exchange, reply.values)) }
     }
 
     fn now(&mut self) -> Duration {
@@ -236,8 +233,33 @@ fn is_tried(motor: Motor, key: &str) -> bool {
         || key.starts_with("function2.")
 }
 
-/// The job after: the old gains, unless the run's own stay, and the old time-out; the journal is closed. It moves nothing.
-pub fn restore(target: Target, before: Setup, report: Option<&Report>, keeper: &TrialKeeper) -> Box<dyn Job> {
+/// What the job after a run tells its owner.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Restored {
+    /// The loop of a Motion Mind did not hold the motor still and was left without output: [`LEFT_OFF`] says so.
+    pub loop_left_off: bool,
+}
+
+/// What is said of a loop that was left off.
+pub const LEFT_OFF: &str = "The controller's loop did not hold the motor still with the old gains, so its output is left switched off \
+                            (DISABLEPID in FUNCTION, in RAM): the motor stands, but nothing holds it. The next Arm or `drive` switches \
+                            the loop on again, and so does a reset of the unit.";
+
+/// Whether a run has left the loop of a Motion Mind off, since it found the machine to be such that a loop could drive the motor away.
+pub fn leaves_off(report: Option<&Report>, trial: Option<&Trial>) -> bool {
+    report.is_some_and(|report| report.causes.contains(&Cause::LoopOff))
+        || trial.and_then(|trial| trial.cause).is_some_and(Cause::is_of_machine)
+}
+
+/// The job after: the old gains, unless the run's own stay, and the old time-out, proven by reading them; the journal is closed. It
+/// moves nothing, and leaves a loop off where the run has for a reason. It tells [`Restored`].
+pub fn restore(
+    target: Target,
+    before: Setup,
+    report: Option<&Report>,
+    leaves_off: bool,
+    keeper: &TrialKeeper,
+) -> Box<dyn Job> {
     let keeper = keeper.clone();
     let keeps = report.filter(|report| report.request.keep && report.verdict != Verdict::Refused);
     let velocity = keeps.and_then(|report| report.velocity).unwrap_or(before.velocity);
@@ -248,11 +270,11 @@ pub fn restore(target: Target, before: Setup, report: Option<&Report>, keeper: &
         let place = context.describe();
         if let Some(registers) = mind {
             let mut axis = MindAxis::new(MindJobCarrier::new(context));
-            thrice(|| axis.put_back(registers))
-                .and_then(|()| thrice(|| axis.write_current_limits(before.max_current_raw, 0)))
+            let put_back = thrice(|| axis.write_current_limits(before.max_current_raw, 0))
+                .and_then(|()| thrice(|| axis.put_back(registers, leaves_off)))
                 .map_err(|error| failed("write the registers back", &place, &error))?;
             end_act(context, &mut **keeper.lock(), Ending::Known);
-            return Ok(Box::new(()));
+            return Ok(Box::new(Restored { loop_left_off: put_back == LoopAfter::LeftOff }));
         }
         let mut axis = axis(context, target, true);
         let now =
@@ -272,9 +294,19 @@ pub fn restore(target: Target, before: Setup, report: Option<&Report>, keeper: &
             thrice(|| axis.set_stream_timeout(timeout_ms))
                 .map_err(|error| failed("set the time-out of the port back", &place, &error))?;
         }
+        let held =
+            thrice(|| axis.read_setup()).map_err(|error| failed("read the loops back", &place, &error))?;
+        if (held.velocity, held.position) != (velocity, position)
+            || held.max_current_raw != before.max_current_raw
+            || held.inductance_resistance_raw != before.inductance_resistance_raw
+            || (before.stream_timeout_ms.is_some() && held.stream_timeout_ms != before.stream_timeout_ms)
+        {
+            let error = AxisError::Refused("settings that read otherwise than they were written".into());
+            return Err(failed("put the loops back", &place, &error));
+        }
         drop(axis);
         end_act(context, &mut **keeper.lock(), Ending::Known);
-        Ok(Box::new(()))
+        Ok(Box::new(Restored { loop_left_off: false }))
     })
 }
 
@@ -297,7 +329,7 @@ fn put_loops_back(
 fn thrice<T>(mut call: impl FnMut() -> Result<T, AxisError>) -> Result<T, AxisError> {
     for _ in 0..2 {
         match call() {
-            Err(AxisError::NoReply) => {}
+            Err(AxisError::NoReply | AxisError::Late) => {}
             other => return other,
         }
     }

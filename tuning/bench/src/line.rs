@@ -62,6 +62,8 @@ pub struct SimulatedLine<M = Controller> {
     pub end_stop_radians: Option<f64>,
     /// A busy host: the share of replies that it reads late, and by how much at the most, s.
     pub late_reads: Option<(f64, f64)>,
+    /// A host without a processor for a while: from when on and for how long, the latest first.
+    pub stalls: Vec<(Duration, Duration)>,
 }
 
 /// What a line needs of a simulated unit.
@@ -113,6 +115,7 @@ impl<M: Bench> SimulatedLine<M> {
             dead_at: None,
             end_stop_radians: None,
             late_reads: None,
+            stalls: Vec::new(),
         }
     }
 
@@ -181,7 +184,15 @@ impl<M: Bench> SimulatedLine<M> {
         Duration::from_secs_f64(seconds)
     }
 
-    fn read_late(&mut self) {
+    /// Lets the host go without a processor where that is due: it neither sends nor reads meanwhile.
+    fn stall(&mut self) {
+        if let Some((_, long)) = self.stalls.pop_if(|(at, _)| *at <= self.now) {
+            self.advance(self.now + long);
+        }
+    }
+
+    pub(crate) fn read_late(&mut self) {
+        self.stall();
         let Some((share, longest_s)) = self.late_reads else { return };
         let mut draw = Draw(self.draw.clone());
         let late_s = if draw.uniform() < share { draw.between((0.0, longest_s)) } else { 0.0 };
@@ -212,6 +223,7 @@ impl<M: Bench> SimulatedLine<M> {
         let late = Duration::from_secs_f64((draw.normal() * self.params.jitter_s).abs());
         self.draw = draw.0;
         self.advance(time + late);
+        self.stall();
         if self.is_stopped() { Err(AxisError::Stopped) } else { Ok(()) }
     }
 }

@@ -201,7 +201,8 @@ fn follow(upload: &Upload, interrupt: &Interrupt) -> Result<Sent, Exit> {
             Ok(UploadEvent::Ended(Ok(sent))) => return Ok(sent),
             Ok(UploadEvent::Ended(Err(failure))) => {
                 say(format!("\n{failure}"));
-                return Err(if erasing { Exit::NoLink } else { Exit::Interrupted });
+                // Before the erase a signal ends it; nothing else has that code.
+                return Err(if warned && !erasing { Exit::Interrupted } else { Exit::NoLink });
             }
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => {

@@ -18,7 +18,7 @@ use super::unfinished;
 use crate::cli::args::ConnectArgs;
 use crate::cli::client::Client;
 use crate::cli::exit::Exit;
-use crate::cli::interrupt::Interrupt;
+use crate::cli::interrupt::{Interrupt, exit_of_interruption};
 use crate::cli::output::say;
 use crate::keep::{self, Keeping, Store, UnitId};
 use crate::session::Simulation;
@@ -186,7 +186,7 @@ impl<'i> Controller<'i> {
             Exit::Refused
         })?;
         let report = self.wait_for_end(name, limit)?;
-        let broken = explain(&report);
+        let broken = explain(&report, self.interrupt.is_raised());
         match (receiver.try_recv(), broken) {
             (Ok(value), broken) => Ok(Finished { value, broken }),
             (Err(_), broken) => Err(broken.unwrap_or(Exit::Failed)),
@@ -242,13 +242,13 @@ impl<'i> Controller<'i> {
 }
 
 /// Says why a job did not run to its end, and gives the exit code for that.
-fn explain(report: &JobReport) -> Option<Exit> {
+fn explain(report: &JobReport, by_signal: bool) -> Option<Exit> {
     let name = &report.name;
     match &report.ending {
         JobEnding::Done(_) => None,
         JobEnding::Interrupted(cause) => {
             say(format!("Could not {name} to the end: {cause}."));
-            Some(Exit::Interrupted)
+            Some(exit_of_interruption(*cause, by_signal))
         }
         JobEnding::Failed(failure) => {
             say(failure.to_string());

@@ -7,7 +7,7 @@ mod words;
 
 use std::time::{Duration, Instant};
 
-use brushwork_link::device::{ArmScope, Event, Job, JobEnding, Request};
+use brushwork_link::device::{ArmScope, Event, Job, JobEnding, JobOutput, Request};
 use brushwork_link::settings::SettingsTable;
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_tuning::axis::EncoderClass;
@@ -17,14 +17,14 @@ use brushwork_tuning::tune::{Excitation, Method, Request as TuneRequest};
 
 use super::client::{Client, arm, ask};
 use super::exit::Exit;
-use super::interrupt::Interrupt;
+use super::interrupt::{Interrupt, exit_of_interruption};
 use super::new_file::NewFile;
 use super::output::{Output, say};
 use super::settings::controller::Controller;
 use super::settings::memory::save_to_eeprom;
 use crate::keep::TrialKeeper;
 use crate::tune::file;
-use crate::tune::{Slot, Target, prepare, restore, run as tuning_job, take};
+use crate::tune::{LEFT_OFF, Restored, Slot, Target, leaves_off, prepare, restore, run as tuning_job, take};
 use args::{EncoderArg, MethodArg, RunArgs};
 pub use args::{TuneArgs, TuneCommand};
 
@@ -65,8 +65,8 @@ fn tune(args: &RunArgs, method: Method, out: &mut Output, interrupt: &Interrupt)
         return ended.err().unwrap_or(exit);
     }
     match (ended, report) {
-        (Ok(()), Some(report)) => conclude(args, &report, &controller, out),
-        (Ok(()), None) => Exit::Failed,
+        (Ok(restored), Some(report)) => conclude(args, &report, restored, &controller, out),
+        (Ok(_), None) => Exit::Failed,
         (Err(exit), _) => exit,
     }
 }
@@ -86,7 +86,7 @@ fn session(
     controller: &Controller<'_>,
     found_report: &mut Option<Report>,
     interrupt: &Interrupt,
-) -> Result<(), Exit> {
+) -> Result<Restored, Exit> {
     let client = controller.client();
     let encoder = args.encoder.map(|encoder| match encoder {
         EncoderArg::Quadrature => EncoderClass::Quadrature,
@@ -97,19 +97,24 @@ fn session(
     let setup = Slot::default();
     let keeper = TrialKeeper::new(controller.keeper());
     let prepared = job(client, prepare(target, controller.subject(), &setup, &keeper), interrupt);
-    let Some(before) = take(&setup) else { return prepared.and(Err(Exit::NoLink)) };
+    let Some(before) = take(&setup) else { return Err(prepared.err().unwrap_or(Exit::NoLink)) };
     let target = Target { encoder: Some(before.encoder), ..target };
     let found: Slot<Report> = Slot::default();
     let ran = prepared
-        .and_then(|()| arm(client.device(), ArmScope::CommandLine, interrupt))
+        .and_then(|_| arm(client.device(), ArmScope::CommandLine, interrupt))
         .and_then(|()| job(client, tuning_job(target, request(args, method), &found), interrupt));
     *found_report = take(&found);
     // A raised interrupt has ended the run; it must not keep the old gains from being put back.
     let kept = found_report.as_ref().filter(|_| ran.is_ok());
-    let restoring = restore(target, before, kept, &keeper);
+    let restoring = restore(target, before, kept, leaves_off(found_report.as_ref(), None), &keeper);
     let restored = job(client, restoring, &Interrupt::default());
+    let restored = restored
+        .map(|output| output.downcast::<Restored>().map_or_else(|_| Restored::default(), |told| *told));
     if restored.is_ok() && ran.is_err() {
-        say("The old gains and settings are in force again.");
+        say("The old gains and settings are in force again, as reading them back has shown.");
+    }
+    if restored.is_ok_and(|restored| restored.loop_left_off) {
+        say(LEFT_OFF);
     }
     ran.and(restored)
 }
@@ -140,7 +145,13 @@ fn request(args: &RunArgs, method: Method) -> TuneRequest {
     }
 }
 
-fn conclude(args: &RunArgs, report: &Report, controller: &Controller<'_>, out: &mut Output) -> Exit {
+fn conclude(
+    args: &RunArgs,
+    report: &Report,
+    restored: Restored,
+    controller: &Controller<'_>,
+    out: &mut Output,
+) -> Exit {
     let printed = if args.json { out.json(&words::summary(report)) } else { words::print(report, out) };
     if let Err(error) = printed {
         return error.into();
@@ -156,11 +167,14 @@ fn conclude(args: &RunArgs, report: &Report, controller: &Controller<'_>, out: &
             Err(exit) => return exit,
         }
     }
-    words::exit_of(report)
+    match words::exit_of(report) {
+        Exit::Done if restored.loop_left_off => Exit::TunedWithWarnings,
+        exit => exit,
+    }
 }
 
 /// Runs a job to its end, renewing the dead-man. Ctrl-C stops all motors, which ends the job.
-fn job(client: &Client, job: Box<dyn Job>, interrupt: &Interrupt) -> Result<(), Exit> {
+fn job(client: &Client, job: Box<dyn Job>, interrupt: &Interrupt) -> Result<JobOutput, Exit> {
     let deaf = Interrupt::default();
     let limit = job.time_limit() + ANSWER_LIMIT;
     ask(client.device(), Request::Job(job))?;
@@ -177,10 +191,10 @@ fn job(client: &Client, job: Box<dyn Job>, interrupt: &Interrupt) -> Result<(), 
             Some(Event::Failure(failure)) => say(failure.to_string()),
             Some(Event::JobEnded(report)) => {
                 return match report.ending {
-                    JobEnding::Done(_) => Ok(()),
+                    JobEnding::Done(output) => Ok(output),
                     JobEnding::Interrupted(cause) => {
-                        say(format!("{cause}. Both motors were stopped."));
-                        Err(Exit::Interrupted)
+                        say(format!("The run was ended: {cause}. The motors were stopped."));
+                        Err(exit_of_interruption(cause, stopped))
                     }
                     JobEnding::Failed(failure) => {
                         say(failure.to_string());

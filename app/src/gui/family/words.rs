@@ -101,10 +101,10 @@ pub(super) fn motion_mind_remedies(cause: Cause) -> Option<&'static [&'static st
             "Switch the power off, set SW1 to mode 4 (MODE2 off, MODE1 on, MODE0 on), and switch it on again.",
             "Clear PULSEFB in FUNCTION2 on the Registers screen.",
         ],
-        Cause::LoopOff => &[
-            "When it is mended, clear DISABLEPID in FUNCTION on the Registers screen and write it; then arm and try again.",
-        ],
-        Cause::OtherLoop => &["Clear NEWVELMODE, FASTPID and DISABLEPID on the Registers screen."],
+        Cause::LoopOff => {
+            &["When it is mended, arm and try again: arming switches the loop on where the motor stands."]
+        }
+        Cause::OtherLoop => &["Clear NEWVELMODE, FASTPID, PULSEFB and DISABLEPID on the Registers screen."],
         Cause::UnknownLaw => {
             &["Use the step response assistant, which needs to know nothing of the loop's law."]
         }

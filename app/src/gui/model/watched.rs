@@ -96,7 +96,9 @@ fn ending_text(name: &str, ending: &JobEnding) -> String {
         JobEnding::Interrupted(cause) => {
             let why = match cause {
                 Interruption::Stop => "Stop was pressed",
-                Interruption::DeadMan => "the window did not renew the motion within 250 ms",
+                Interruption::DeadMan => {
+                    "this computer answered late: the window did not renew the motion within 250 ms"
+                }
                 Interruption::Disarm => "it was disarmed",
                 Interruption::Closing => "the link was closed",
                 Interruption::Cancelled => "it was cancelled",

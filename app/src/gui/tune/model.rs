@@ -486,6 +486,9 @@ impl Tuning {
         if is_owed && !matches!(ended.work, Work::PutBack) {
             effects.push(owed_effect());
         }
+        if ended.loop_left_off {
+            effects.push(Effect::Say(Gravity::Warning, crate::tune::LEFT_OFF.to_owned()));
+        }
         effects
     }
 
@@ -554,6 +557,11 @@ impl Tuning {
         Some(is_back)
     }
 
+    /// Whether a run has left something that is not put back.
+    pub fn is_owing(&self) -> bool {
+        self.owed.is_some()
+    }
+
     /// Begins to put back what a lost link has left, if this is the unit.
     pub fn settle_debts(&mut self) {
         if self.running.is_some() || self.owed.as_ref().map(|owed| &owed.unit) != self.unit.as_ref() {
@@ -580,7 +588,7 @@ fn said_of(
 ) -> Effect {
     match (report.verdict, report.causes.first()) {
         (Verdict::Refused, Some(cause)) => {
-            let why = why.map_or_else(|| cause.sentence().to_owned(), |why| format!("{why}."));
+            let why = why.map_or_else(|| cause.sentence().into_owned(), |why| format!("{why}."));
             let back = if is_owed { "" } else { " The motors were stopped and the old gains are in force." };
             Effect::Say(Gravity::Warning, format!("{motor} was not tuned: {why}{back}"))
         }

@@ -25,6 +25,15 @@ fn steps(cause: Cause) -> &'static [&'static str] {
             "Look at both motor leads and their screws, and take brakes and jams away.",
             "This controller tells no motor current, so the three cannot be told apart from here.",
         ],
+        Cause::CurrentUnclear => &[
+            "Look at both motor leads and their screws.",
+            "Look at the encoder's plug, and turn the shaft by hand: the encoder figure at the top must change.",
+            "Take brakes and jams away, and move the axis off its end stop.",
+        ],
+        Cause::AnsweredLate { .. } => &[
+            "Close other programs that keep this computer busy, and try again.",
+            "If it stays, look at the link's figures for lost replies, and check the cable.",
+        ],
         Cause::OutsideTravel => &[
             "Move the axis by hand, or on the PWM screen with little duty, until its counts lie within the travel.",
             "Or give a travel around where it stands.",
@@ -160,7 +169,7 @@ pub fn refusal_ui(ui: &mut Ui, model: &Model, which: Loop, commands: &mut Comman
         }
     });
     for (index, cause) in run.report.causes.iter().enumerate() {
-        ui.add(Label::new(cause.sentence()).wrap());
+        ui.add(Label::new(cause.sentence().into_owned()).wrap());
         if let Some(sketch) = Sketch::of(*cause).filter(|_| index == 0) {
             sketch_ui(ui, &sketch);
         }
@@ -169,5 +178,7 @@ pub fn refusal_ui(ui: &mut Ui, model: &Model, which: Loop, commands: &mut Comman
             ui.add(Label::new(format!("{}. {step}", number + 1)).wrap());
         }
     }
-    ui.label(RichText::new("The motors were stopped and the old gains are in force.").color(weak));
+    if !model.front.tune.is_owing() {
+        ui.label(RichText::new("The motors were stopped and the old gains are in force.").color(weak));
+    }
 }

@@ -85,7 +85,7 @@ fn verdict_ui(ui: &mut Ui, run: &Run) {
     };
     lamp_ui(ui, state, &format!("{word} · run {} · {:.1} s", run.number, report.seconds.1));
     for cause in &report.causes {
-        lamp_ui(ui, LampState::Warning, cause.sentence());
+        lamp_ui(ui, LampState::Warning, &cause.sentence());
     }
 }
 
@@ -304,7 +304,7 @@ fn acts_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands)
     }
     match run.verified {
         Some(Ok(())) => lamp_ui(ui, LampState::Ok, "Verified: the machine behaves as predicted."),
-        Some(Err(cause)) => lamp_ui(ui, LampState::Warning, cause.sentence()),
+        Some(Err(cause)) => lamp_ui(ui, LampState::Warning, &cause.sentence()),
         None => {}
     }
 }

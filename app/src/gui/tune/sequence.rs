@@ -4,6 +4,8 @@
 //! by hand when the run was asked for, so it is armed again for the second, which moves the motor. The third puts back what must be put
 //! back, on every way out, and is asked for again until it has been done.
 
+use std::sync::PoisonError;
+
 use brushwork_link::device::{ArmScope, Event, Job, JobEnding, Request};
 use brushwork_link::exchange::Interruption;
 use brushwork_link::settings::Subject;
@@ -16,7 +18,7 @@ use brushwork_tuning::tune;
 use crate::gui::model::link::Arming;
 use crate::keep::TrialKeeper;
 use crate::tune::tap::Live;
-use crate::tune::{self as jobs, Slot, Target, take};
+use crate::tune::{self as jobs, Restored, Slot, Target, take};
 
 /// How often putting the gains back is asked for again when something breaks into it.
 const MOST_RESTORES: u8 = 4;
@@ -51,6 +53,8 @@ pub struct Ended {
     pub why: Option<String>,
     /// What the controller held before and does not hold again.
     pub owed: Option<(Setup, Origin)>,
+    /// A loop did not hold its motor still with what was put back, and was left off.
+    pub loop_left_off: bool,
 }
 
 /// What a run's backup and journal need.
@@ -88,6 +92,7 @@ pub struct Sequence {
     /// What it does at the moment, and since when on the trace.
     texts: Vec<(String, f64)>,
     why: Option<String>,
+    loop_left_off: bool,
 }
 
 impl Sequence {
@@ -109,6 +114,7 @@ impl Sequence {
             live,
             texts: Vec::new(),
             why: None,
+            loop_left_off: false,
         }
     }
 
@@ -190,9 +196,18 @@ impl Sequence {
                 Work::Try(wanted) => jobs::trial(self.target, **wanted, &self.tried, &self.live),
                 Work::PutBack => return None,
             },
-            Stage::Restoring => jobs::restore(self.target, self.before?, None, &keeper),
+            Stage::Restoring => {
+                jobs::restore(self.target, self.before?, None, self.leaves_loop_off(), &keeper)
+            }
         };
         Some(Next::Job(Request::Job(job)))
+    }
+
+    /// Whether the run has left a loop off, for a reason that its result tells.
+    fn leaves_loop_off(&self) -> bool {
+        let report = self.found.lock().unwrap_or_else(PoisonError::into_inner);
+        let trial = self.tried.lock().unwrap_or_else(PoisonError::into_inner);
+        jobs::leaves_off(report.as_ref(), trial.as_ref())
     }
 
     /// The device thread did not take what was asked for: it is asked again.
@@ -254,7 +269,13 @@ impl Sequence {
                 self.note(ending);
                 self.go_to(Stage::Restoring);
             }
-            Stage::Restoring if is_done => return Some(self.end(None)),
+            Stage::Restoring if is_done => {
+                if let JobEnding::Done(output) = ending {
+                    let told = output.downcast_ref::<Restored>();
+                    self.loop_left_off = told.is_some_and(|told| told.loop_left_off);
+                }
+                return Some(self.end(None));
+            }
             Stage::Restoring if self.restores >= MOST_RESTORES => {
                 self.note(ending);
                 let owed = self.before;
@@ -287,6 +308,7 @@ impl Sequence {
             trial: take(&self.tried),
             why: self.why.take(),
             owed: owed.zip(self.origin.clone()),
+            loop_left_off: self.loop_left_off,
         }
     }
 
@@ -302,7 +324,9 @@ impl Sequence {
 fn interruption(cause: Interruption) -> &'static str {
     match cause {
         Interruption::Stop => "Stop was pressed",
-        Interruption::DeadMan => "the window did not renew the motion within 250 ms",
+        Interruption::DeadMan => {
+            "this computer answered late: the window did not renew the motion within 250 ms"
+        }
         Interruption::Disarm => "it was disarmed",
         Interruption::Closing => "the link was closed",
         Interruption::Cancelled => "it was cancelled",

@@ -153,7 +153,9 @@ impl fmt::Display for DisarmReason {
         match self {
             Self::Asked => f.write_str("Disarmed"),
             Self::Stop => f.write_str("Disarmed: Stop was pressed"),
-            Self::DeadMan => f.write_str("Disarmed: the window did not renew the motion within 250 ms"),
+            Self::DeadMan => f.write_str(
+                "Disarmed: this computer answered late: the program did not renew the motion within 250 ms",
+            ),
             Self::Fault(what) => write!(f, "Disarmed: the controller reports {what}"),
             Self::ScopeChange => f.write_str("Disarmed: another screen was opened"),
             Self::Selection => f.write_str("Disarmed: another unit was selected"),

@@ -83,6 +83,8 @@ pub struct UnitStop {
     pub buffers_empty: Option<bool>,
     /// What can still drive a motor now: input pins and scripts, each as a sentence.
     pub still_driven_by: Vec<String>,
+    /// Whether its loop was left without output, since it did not hold the motor still: the motor is not held.
+    pub loop_left_off: bool,
     /// What went wrong.
     pub failures: Vec<Failure>,
 }
@@ -92,6 +94,12 @@ impl StopReport {
     #[must_use]
     pub fn latency(&self) -> Duration {
         self.written_at.saturating_sub(self.requested_at)
+    }
+
+    /// Whether a loop was left without output.
+    #[must_use]
+    pub fn left_a_loop_off(&self) -> bool {
+        self.units.iter().any(|unit| unit.loop_left_off)
     }
 
     /// Whether every unit confirmed.

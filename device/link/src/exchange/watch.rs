@@ -26,7 +26,9 @@ impl fmt::Display for Interruption {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Stop => "Stop came first",
-            Self::DeadMan => "the program did not renew the motion in time",
+            Self::DeadMan => {
+                "this computer answered late: the program did not renew the motion within 250 ms. Try again with fewer programs running"
+            }
             Self::Disarm => "the motors were disarmed first",
             Self::Closing => "the link is being closed",
             Self::Cancelled => "it was cancelled",

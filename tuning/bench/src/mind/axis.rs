@@ -27,6 +27,17 @@ const CURRENT_STEP: i64 = 2;
 const QUICK_LINE: u32 = 115_200;
 /// Registers in RAM.
 const REGISTERS: usize = 32;
+/// Time between two looks at a motor that is to stand, and how long it may take to.
+const LOOK_AGAIN: Duration = Duration::from_millis(30);
+const STAND_LIMIT: Duration = Duration::from_secs(2);
+/// It stands when so many looks in a row find it within so many counts of each other, and a loop holds it when it stays for so many
+/// within so many of where it stood. The device thread's Stop looks as long.
+const STILL_LOOKS: u32 = 4;
+const STILL_COUNTS: i64 = 2;
+const HELD_LOOKS: u32 = 10;
+const HELD_COUNTS: i64 = 4;
+/// How often a look is tried: of many one is lost more often than not.
+const LOOK_TRIES: usize = 4;
 
 /// Register numbers (Motion Mind manual 6.0).
 mod number {
@@ -96,6 +107,15 @@ enum Driving {
     Loop,
 }
 
+/// What became of the loop when the registers were put back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LoopAfter {
+    /// It is as it was before the run, or as arming has made it: on.
+    AsBefore,
+    /// It did not hold the motor still, so that DISABLEPID is set.
+    LeftOff,
+}
+
 /// An axis behind a carrier.
 #[derive(Debug)]
 pub struct MindAxis<C> {
@@ -129,23 +149,88 @@ impl<C: MindCarrier> MindAxis<C> {
         }
     }
 
-    /// Puts registers back without a word that could move the motor. Where a run was cut short the loop may still want to be somewhere
-    /// else: DISABLEPID then stays set, and whoever drives next has to clear it.
+    /// Puts registers back, proven by reading them, without moving the motor. Where a run was cut short the loop may still want to be
+    /// somewhere else: it is off meanwhile, and on again once the motor stands, to hold it there. `leaves_off` is for a run that has
+    /// found the machine to be such that a loop could drive the motor away.
     ///
     /// # Errors
-    /// Those of the carrier.
-    pub fn put_back(&mut self, registers: MotionMindRegisters) -> Result<(), AxisError> {
-        let found = self.read_setup()?.motion_mind.map(|unit| unit.registers);
-        if found == Some(registers) {
-            return Ok(());
+    /// Those of the carrier, and registers that read otherwise than they were written.
+    pub fn put_back(
+        &mut self,
+        registers: MotionMindRegisters,
+        leaves_off: bool,
+    ) -> Result<LoopAfter, AxisError> {
+        let off = bits::DISABLEPID;
+        // A loop that was off before the run was switched on by arming, if anything was changed at all.
+        let on = MotionMindRegisters { function: registers.function & !off, ..registers };
+        let was_off = MotionMindRegisters { function: on.function | off, ..on };
+        let found = self.held()?;
+        if found == registers || found == on || (leaves_off && found == was_off) {
+            return Ok(LoopAfter::AsBefore);
         }
-        let off = i64::from(bits::DISABLEPID);
-        let function = found.map_or(registers.function, |found| found.function);
-        self.write(number::FUNCTION, i64::from(function) | off)?;
+        self.write(number::FUNCTION, i64::from(found.function | off))?;
         self.write_gains(&registers)?;
         self.write(number::VNLIMIT, i64::from(registers.virtual_limits.0))?;
         self.write(number::VPLIMIT, i64::from(registers.virtual_limits.1))?;
-        self.write(number::FUNCTION, i64::from(registers.function) | off).map(|_| ())
+        self.write(number::FUNCTION, i64::from(was_off.function))?;
+        let is_on = !leaves_off && self.switch_on(on.function)?;
+        if self.held()? != if is_on { on } else { was_off } {
+            return Err(AxisError::Refused("registers that read otherwise than they were written".into()));
+        }
+        Ok(if is_on || leaves_off { LoopAfter::AsBefore } else { LoopAfter::LeftOff })
+    }
+
+    /// The registers as they are.
+    fn held(&mut self) -> Result<MotionMindRegisters, AxisError> {
+        let unit = self.read_setup()?.motion_mind;
+        unit.map(|unit| unit.registers).ok_or(AxisError::NoReply)
+    }
+
+    /// Switches the loop on where the motor stands, and off again if it moves the motor. Gives whether it is on.
+    fn switch_on(&mut self, function: u16) -> Result<bool, AxisError> {
+        let Some(here) = self.place_at_rest()? else { return Ok(false) };
+        // A write to POSITION makes it the setpoint; the count stays what it is.
+        self.write(number::POSITION, here)?;
+        self.write(number::FUNCTION, i64::from(function))?;
+        for _ in 0..HELD_LOOKS {
+            if (self.look_again()? - here).abs() > HELD_COUNTS {
+                self.write(number::FUNCTION, i64::from(function | bits::DISABLEPID))?;
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Where a motor without drive stands; `None` where it does not.
+    fn place_at_rest(&mut self) -> Result<Option<i64>, AxisError> {
+        let until = self.carrier.now() + STAND_LIMIT;
+        let mut before = self.look_again()?;
+        let mut still_looks = 0;
+        while self.carrier.now() < until {
+            let place = self.look_again()?;
+            still_looks = if (place - before).abs() <= STILL_COUNTS { still_looks + 1 } else { 0 };
+            if still_looks == STILL_LOOKS {
+                return Ok(Some(place));
+            }
+            before = place;
+        }
+        Ok(None)
+    }
+
+    /// POSITION, a moment later.
+    fn look_again(&mut self) -> Result<i64, AxisError> {
+        let at = self.carrier.now() + LOOK_AGAIN;
+        self.carrier.wait_until(at)?;
+        for _ in 0..LOOK_TRIES {
+            match self.registers(&[number::POSITION]) {
+                Err(AxisError::NoReply | AxisError::Late) => {}
+                other => {
+                    let (_, values) = other?;
+                    return values.first().map(|(_, place)| *place).ok_or(AxisError::NoReply);
+                }
+            }
+        }
+        Err(AxisError::NoReply)
     }
 
     fn registers(&mut self, wanted: &[u8]) -> Result<(Exchange, Vec<(u8, i64)>), AxisError> {
@@ -174,7 +259,7 @@ impl<C: MindCarrier> MindAxis<C> {
     fn read_line(&mut self, register: u8) -> Result<(Exchange, Vec<(u8, i64)>), AxisError> {
         let command = Command::ReadText(Part::Register(register));
         match self.read(&command) {
-            Err(AxisError::NoReply) if register != number::POSITION => self.read(&command),
+            Err(AxisError::NoReply | AxisError::Late) if register != number::POSITION => self.read(&command),
             other => other,
         }
     }
@@ -318,7 +403,7 @@ impl<C: MindCarrier> Axis for MindAxis<C> {
         if matches!(self.driving, Driving::Duty | Driving::Loop) {
             // A fence that cannot be moved stops the motor; the next poll tries again.
             match self.mend_fence() {
-                Err(AxisError::NoReply) | Ok(()) => {}
+                Err(AxisError::NoReply | AxisError::Late) | Ok(()) => {}
                 Err(error) => return Err(error),
             }
         }

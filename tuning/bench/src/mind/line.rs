@@ -137,6 +137,7 @@ impl MindCarrier for MindLine {
             line.advance(deadline.max(line.now));
             return Err(AxisError::NoReply);
         }
+        line.read_late();
         let at = worked_at(
             (sent, line.now),
             (bytes.len(), reply.len()),

@@ -64,6 +64,7 @@ pub fn confirm(
         script_ended: None,
         buffers_empty: None,
         still_driven_by: Vec::new(),
+        loop_left_off: false,
         failures: Vec::new(),
     };
     if let Err(error) = stand(line) {

@@ -1,6 +1,6 @@
 //! Whether motion may be allowed: the mode must take serial commands, and nothing may hold the drive back.
 
-use super::stopping::{give_back, read_ramp};
+use super::stopping::{give_back, read_ramp, switch_on};
 use super::{MotionMind, driving, mask, number, value_in};
 use crate::device::controller::{ArmCheck, Line};
 use crate::exchange::ExchangeError;
@@ -14,23 +14,47 @@ const LONG_RAMP: Duration = Duration::from_millis(300);
 const NO_TIME_OUT: &str = "A Motion Mind has no serial time-out: if this program or the cable dies, the motor goes on with what it \
                            was last told. Have a switch for the motor power at hand.";
 
+const SWITCHED_ON: &str = "The output of its loop was switched off (DISABLEPID in FUNCTION). It was switched on again, in RAM: the loop \
+                           holds the motor where it stands.";
+
+/// What became of a loop whose output was switched off.
+enum Hold {
+    /// It was not off, or the mode has no loop.
+    AsItWas,
+    SwitchedOn,
+    /// The motor did not stand still, before or after.
+    Moves,
+}
+
 /// Reads all that arming depends on, and lists what speaks against it. Nothing is changed unless nothing does.
 pub fn check(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<ArmCheck, ExchangeError> {
     let on = unit.name(line);
     let wanted = mask(&[number::FUNCTION, number::STATUS, number::MODE]);
     let (reply, _) = unit.speaker.ask(line, &Command::Read(wanted))?;
     let word = |index: u8| value_in(&reply, index).unwrap_or_default();
-    let objections = objections(unit, word(number::MODE), word(number::FUNCTION), word(number::STATUS));
-    let reasons: Vec<_> = objections
-        .into_iter()
-        .map(|(came_back, mend)| Failure::new("arm the motor", on.as_str(), came_back, mend))
-        .collect();
+    let function = word(number::FUNCTION);
+    let mut objections = objections(unit, word(number::MODE), function, word(number::STATUS));
     let mut warnings = Vec::new();
-    if reasons.is_empty() {
-        switch_on(unit, line)?;
+    if objections.is_empty() {
+        match hold(unit, line, function)? {
+            Hold::AsItWas => {}
+            Hold::SwitchedOn => warnings.push(SWITCHED_ON.to_owned()),
+            Hold::Moves => objections.push((
+                "its loop is switched off (DISABLEPID in FUNCTION), and the motor does not stand still when it is switched on"
+                    .to_owned(),
+                "See that nothing turns the motor, and lower PTERM and ITERM",
+            )),
+        }
+    }
+    if objections.is_empty() {
+        give_back(unit, line, number::VELOCITYLIMIT)?;
         warnings.push(NO_TIME_OUT.to_owned());
         warnings.extend(ramp_warning(unit, line)?);
     }
+    let reasons = objections
+        .into_iter()
+        .map(|(came_back, mend)| Failure::new("arm the motor", on.as_str(), came_back, mend))
+        .collect();
     Ok(ArmCheck { reasons, controller_timeout: None, warnings })
 }
 
@@ -57,13 +81,6 @@ fn objections(unit: &MotionMind, mode: i64, function: i64, status: i64) -> Vec<(
             "Set switches 2 to 4 for mode 3 or 4, and switch the power off and on",
         )),
     }
-    let is_ours = unit.borrowed.iter().any(|borrowed| borrowed.register == number::FUNCTION);
-    if unit.mode() != Mode::Serial && is_function(function::DISABLEPID) && !is_ours {
-        found.push((
-            "the output of its loop is switched off".to_owned(),
-            "Clear DISABLEPID in FUNCTION: the motor is held where it then stands",
-        ));
-    }
     if is_status(status::BRAKE) {
         found.push(("its brake input is at ground".to_owned(), "Release the brake input, J4 pin 12"));
     }
@@ -73,15 +90,14 @@ fn objections(unit: &MotionMind, mode: i64, function: i64, status: i64) -> Vec<(
     found
 }
 
-/// Puts back what an earlier stop switched off. The setpoint is set to where the motor stands first, so that it does not move.
-fn switch_on(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<(), ExchangeError> {
-    if unit.borrowed.iter().any(|borrowed| borrowed.register == number::FUNCTION) {
-        let here = super::stopping::read(unit, line, number::POSITION)?;
-        // A write to POSITION makes it the setpoint; the count stays what it is.
-        unit.speaker.ask(line, &Command::Write { register: number::POSITION, value: here })?;
-        give_back(unit, line, number::FUNCTION)?;
+/// Switches a loop on that a stop, a run or somebody else has switched off: who arms asks for motion.
+fn hold(unit: &mut MotionMind, line: &mut Line<'_>, function: i64) -> Result<Hold, ExchangeError> {
+    let off = i64::from(function::DISABLEPID);
+    if unit.mode() == Mode::Serial || function & off == 0 {
+        unit.borrowed.retain(|borrowed| borrowed.register != number::FUNCTION);
+        return Ok(Hold::AsItWas);
     }
-    give_back(unit, line, number::VELOCITYLIMIT)
+    Ok(if switch_on(unit, line, function & !off)? { Hold::SwitchedOn } else { Hold::Moves })
 }
 
 fn ramp_warning(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<Option<String>, ExchangeError> {

@@ -197,7 +197,7 @@ fn identify(line: &mut Line<'_>, mut speaker: Speaker, simulated: bool) -> Resul
     if closes_a_loop && value(number::FUNCTION) & i64::from(function::DISABLEPID) != 0 {
         notes.push(
             "The output of its loop is switched off (DISABLEPID in FUNCTION); a stop or a run that was cut short may have left it so. \
-             Clear the bit before driving: the motor is then held where it stands."
+             Arming, or `drive`, switches it on again: the motor is then held where it stands."
                 .to_owned(),
         );
     }

@@ -2,7 +2,8 @@
 //!
 //! A Motion Mind has no command "stop". Mode 3 is stopped by duty 0, which follows its ramp: so the ramp is taken away first and put
 //! back when the motor stands. Modes 4 and 5 are stopped by a setpoint that stands, which their loop must follow: where it does not,
-//! the output of the loop is switched off (DISABLEPID), until the next arming. Both are writes to RAM alone.
+//! the output of the loop is switched off (DISABLEPID) until the motor stands, and is left so, until the next arming, where the loop
+//! does not hold the motor still then either. Both are writes to RAM alone.
 
 use super::speaker::{GAP, Speaker};
 use super::{MotionMind, mask, number, value_in};
@@ -25,6 +26,12 @@ const LOOK_AGAIN: Duration = Duration::from_millis(30);
 const STILL_LOOKS: u32 = 4;
 /// A loop that has not brought its motor to a stand within this is switched off.
 const LOOP_LIMIT: Duration = Duration::from_millis(800);
+/// How long a motor may take to stand once its loop is off: it coasts, or something turns it.
+const STAND_LIMIT: Duration = Duration::from_secs(2);
+/// A loop that was switched on again must hold its motor for so many looks, within so many counts of where it stood. A loop that swings
+/// needs a few turns to show it: more looks than a motor that is only stopped.
+const HELD_LOOKS: u32 = 10;
+const HELD_COUNTS: i64 = 4;
 /// Drive in mode 3 changes at the next update of TIMER, which is at most 1.3 s away.
 const DUTY_LIMIT: Duration = Duration::from_millis(1600);
 
@@ -118,6 +125,7 @@ pub fn confirm(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<UnitStop, E
         script_ended: None,
         buffers_empty: None,
         still_driven_by: Vec::new(),
+        loop_left_off: false,
         failures: Vec::new(),
     };
     // The answers of the unit do not say which question they answer, so none may be late any more.
@@ -129,7 +137,12 @@ pub fn confirm(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<UnitStop, E
         Ok(Ended::Stands) => stop.confirmed = true,
         Ok(Ended::SwitchedOff) => {
             stop.confirmed = true;
+            stop.loop_left_off = true;
             stop.still_driven_by.push(SWITCHED_OFF.to_owned());
+        }
+        Ok(Ended::Calmed) => {
+            stop.confirmed = true;
+            stop.still_driven_by.push(CALMED.to_owned());
         }
         Ok(Ended::StillDriven) => {
             stop.failures.push(Failure::new("stop the motor", on, "its drive is not 0", CUT_POWER));
@@ -142,12 +155,18 @@ pub fn confirm(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<UnitStop, E
     Ok(stop)
 }
 
-const SWITCHED_OFF: &str = "Its loop did not hold the motor still, so its output was switched off (DISABLEPID in FUNCTION, in RAM). \
-                            Arming again without leaving switches it on; so does a reset of the unit.";
+const SWITCHED_OFF: &str = "Its loop did not hold the motor still, so its output was left switched off (DISABLEPID in FUNCTION, in RAM): \
+                            the motor stands, but nothing holds it. The next Arm or `drive` switches the loop on again, and so does \
+                            a reset of the unit. A loop that shakes its motor needs other gains: lower PTERM and ITERM, or tune it.";
+
+const CALMED: &str = "Its loop did not bring the motor to a stand, so its output was switched off until the motor stood \
+                      (DISABLEPID in FUNCTION). It is on again.";
 
 enum Ended {
     Stands,
     SwitchedOff,
+    /// It was switched off for a while.
+    Calmed,
     StillDriven,
 }
 
@@ -195,7 +214,7 @@ fn stand_closed_loop(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<Ended
     loop {
         rest(line)?;
         let (position, duty) = look(unit, line)?;
-        if duty == 0 && unit.borrowed.iter().any(|borrowed| borrowed.register == number::FUNCTION) {
+        if duty == 0 && was_switched_off(unit, line)? {
             return Ok(Ended::SwitchedOff);
         }
         still_looks = if (position - before).abs() <= STILL_COUNTS { still_looks + 1 } else { 0 };
@@ -212,7 +231,54 @@ fn stand_closed_loop(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<Ended
     borrow(unit, line, Borrowed { register: number::FUNCTION, value: function }, off)?;
     rest(line)?;
     let (_, duty) = look(unit, line)?;
-    Ok(if duty == 0 { Ended::SwitchedOff } else { Ended::StillDriven })
+    if duty != 0 {
+        return Ok(Ended::StillDriven);
+    }
+    Ok(if switch_on(unit, line, function)? { Ended::Calmed } else { Ended::SwitchedOff })
+}
+
+/// Switches on a loop whose output is off, by writing FUNCTION as it is then to be. The motor must stand, its setpoint is first set to
+/// where it stands, and it is watched for not moving: a loop that moves it is switched off again. Gives whether it is on.
+pub fn switch_on(unit: &mut MotionMind, line: &mut Line<'_>, function: i64) -> Result<bool, ExchangeError> {
+    let Some(here) = place_at_rest(unit, line)? else { return Ok(false) };
+    // A write to POSITION makes it the setpoint; the count stays what it is.
+    unit.speaker.ask(line, &Command::Write { register: number::POSITION, value: here })?;
+    lend(unit, Borrowed { register: number::FUNCTION, value: function });
+    unit.speaker.ask(line, &Command::Write { register: number::FUNCTION, value: function })?;
+    for _ in 0..HELD_LOOKS {
+        rest(line)?;
+        let (position, _) = look(unit, line)?;
+        if (position - here).abs() > HELD_COUNTS {
+            let off = function | i64::from(function::DISABLEPID);
+            unit.speaker.ask(line, &Command::Write { register: number::FUNCTION, value: off })?;
+            return Ok(false);
+        }
+    }
+    unit.borrowed.retain(|borrowed| borrowed.register != number::FUNCTION);
+    Ok(true)
+}
+
+/// Whether an earlier stop has left the loop off.
+fn was_switched_off(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<bool, ExchangeError> {
+    let is_ours = unit.borrowed.iter().any(|borrowed| borrowed.register == number::FUNCTION);
+    Ok(is_ours && read(unit, line, number::FUNCTION)? & i64::from(function::DISABLEPID) != 0)
+}
+
+/// Where a motor without drive stands; `None` where it does not.
+fn place_at_rest(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<Option<i64>, ExchangeError> {
+    let begun_at = line.exchange().clock().now();
+    let (mut before, _) = look(unit, line)?;
+    let mut still_looks = 0;
+    while line.exchange().clock().now() < begun_at + STAND_LIMIT {
+        rest(line)?;
+        let (position, _) = look(unit, line)?;
+        still_looks = if (position - before).abs() <= STILL_COUNTS { still_looks + 1 } else { 0 };
+        if still_looks == STILL_LOOKS {
+            return Ok(Some(position));
+        }
+        before = position;
+    }
+    Ok(None)
 }
 
 /// POSITION and PWMOUT.

@@ -101,6 +101,7 @@ impl Controller for Toy {
             script_ended: None,
             buffers_empty: None,
             still_driven_by,
+            loop_left_off: false,
             failures,
         })
     }

@@ -1,0 +1,90 @@
+//! A host that stands still for 0.1 to 0.9 s in mid-run: whatever it sees then is no fault of the machine, and no refusal says so.
+
+use brushwork_tuning::cause::Cause;
+use brushwork_tuning::report::{Report, Verdict};
+use brushwork_tuning::tune::{Method, tune};
+use brushwork_tuning_bench::mind::population::specimen as mind_specimen;
+use brushwork_tuning_bench::mind::table as mind;
+use brushwork_tuning_bench::population::specimen;
+use brushwork_tuning_bench::run::{axis_of, request_of};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use std::time::Duration;
+
+/// How long the host stands still, ms.
+const STALL_MS: (u64, u64) = (100, 900);
+/// Runs of each family.
+const RUNS: u64 = 36;
+/// Plants of a seed that are taken in turn.
+const PLANTS: usize = 12;
+/// How often it stands still in a run, at the most, and until when in it, ms.
+const MOST_STALLS: u64 = 4;
+const LAST_MS: u64 = 9_000;
+
+/// Stalls at moments of a run, the latest first.
+fn stalls(draw: &mut ChaCha8Rng, from: Duration) -> Vec<(Duration, Duration)> {
+    let mut between = |low: u64, high: u64| low + draw.next_u64() % (high - low);
+    let count = 1 + between(0, MOST_STALLS);
+    let mut stalls: Vec<(Duration, Duration)> = (0..count)
+        .map(|_| {
+            let at = from + Duration::from_millis(between(50, LAST_MS));
+            (at, Duration::from_millis(between(STALL_MS.0, STALL_MS.1)))
+        })
+        .collect();
+    stalls.sort_by_key(|stall| std::cmp::Reverse(stall.0));
+    stalls
+}
+
+/// The first cause of a refusal, which may say that the computer was late, or that somebody set a limit, and nothing else.
+#[track_caller]
+fn assert_blames_no_machine(report: &Report, place: &str) -> bool {
+    if report.verdict != Verdict::Refused {
+        return false;
+    }
+    let cause = report.causes.first().copied();
+    let Some(Cause::AnsweredLate { longest_gap_ms }) = cause else {
+        panic!("{place}: {:?}", report.causes);
+    };
+    assert!(longest_gap_ms >= 85, "{place}: {longest_gap_ms} ms");
+    let sentence = Cause::AnsweredLate { longest_gap_ms }.sentence();
+    assert!(
+        sentence.contains("This computer answered late") && sentence.contains(&longest_gap_ms.to_string())
+    );
+    true
+}
+
+#[test]
+fn no_refusal_of_a_late_host_names_the_machine() {
+    let mut refused = 0;
+    for seed in 0..RUNS {
+        let plant = specimen(31, seed as usize % PLANTS);
+        let method = [Method::Velocity, Method::Pd, Method::Piv][seed as usize % 3];
+        let mut axis = axis_of(&plant);
+        let mut draw = ChaCha8Rng::seed_from_u64(seed);
+        axis.carrier.stalls = stalls(&mut draw, Duration::from_millis(500));
+        let place = format!("seed {seed}, {method:?}, stalls {:?}", axis.carrier.stalls);
+        let report = tune(&mut axis, &request_of(&plant, method));
+        refused += usize::from(assert_blames_no_machine(&report, &place));
+        assert!(report.replay().as_ref() == Some(&report), "{place}: the replay differs");
+    }
+    println!("{refused} of {RUNS} were refused");
+    assert!(refused > 0, "a run in which nothing was late enough tests nothing");
+}
+
+#[test]
+fn no_refusal_of_a_late_host_names_the_machine_of_a_motion_mind() {
+    let mut refused = 0;
+    for seed in 0..RUNS {
+        let plant = mind_specimen(7, seed as usize % PLANTS);
+        let method = [Method::Velocity, Method::Pd, Method::Pid][seed as usize % 3];
+        let mut axis = mind::axis_of(&plant);
+        let mut draw = ChaCha8Rng::seed_from_u64(seed);
+        axis.carrier.line.stalls = stalls(&mut draw, Duration::from_millis(500));
+        let place = format!("seed {seed}, {method:?}, stalls {:?}", axis.carrier.line.stalls);
+        let report = tune(&mut axis, &mind::request_of(&plant, method));
+        refused += usize::from(assert_blames_no_machine(&report, &place));
+        assert!(report.replay().as_ref() == Some(&report), "{place}: the replay differs");
+    }
+    println!("{refused} of {RUNS} were refused");
+    assert!(refused > 0, "a run in which nothing was late enough tests nothing");
+}
