@@ -2,15 +2,16 @@
 #![cfg(unix)]
 
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Command;
 
+use brushwork_child::Program;
 use brushwork_link::settings::{Profile, SettingValue};
 use brushwork_protocol::models;
 use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_sim::machine::StreamIndex;
 use brushwork_sim::server::{Endpoint, Server, ServerOptions, SimHandle};
 use brushwork_sim::settings::Settings;
-use cli::{DONE, exported, name, program_keeping_in, run};
+use cli::{DONE, LIMIT, exported, name, program_keeping_in, run};
 use tempfile::TempDir;
 
 #[path = "support/cli.rs"]
@@ -107,7 +108,7 @@ fn every_command_that_changes_settings_leaves_a_backup_of_what_was_there() {
     for arguments in COMMANDS {
         let bench = Bench::new("mcp266");
         bench.prepare("mcp266");
-        run(&mut bench.command(&bench.kept(), arguments)).ended_with(DONE);
+        run(&bench.command(&bench.kept(), arguments)).ended_with(DONE);
         let backups = bench.backups();
         let first = backups.first().unwrap_or_else(|| panic!("{arguments:?} left no backup"));
         assert_eq!(p_of(first), Some(SettingValue::Number(P_BEFORE)), "{arguments:?}");
@@ -124,7 +125,7 @@ fn no_command_changes_anything_where_no_backup_can_be_kept() {
         std::fs::write(&in_the_way, "").expect("the folder is ours");
         let (before, saved) =
             (bench.settings(), bench.unit.inspect(|bus| format!("{:?}", bus.controllers()[0].eeprom())).ok());
-        let refused = run(&mut bench.command(&in_the_way, arguments));
+        let refused = run(&bench.command(&in_the_way, arguments));
         assert_ne!(refused.code, DONE, "{arguments:?}: {refused:?}");
         assert!(refused.stderr.contains("backup"), "{arguments:?}: {refused:?}");
         assert_eq!(bench.settings(), before, "{arguments:?}");
@@ -139,8 +140,8 @@ fn no_command_changes_anything_where_no_backup_can_be_kept() {
 #[test]
 fn a_restored_backup_a_finished_write_and_an_update_of_the_firmware_leave_one_too() {
     let bench = Bench::new("mcp266");
-    run(&mut bench.command(&bench.kept(), COMMANDS[0])).ended_with(DONE);
-    run(&mut bench.command(&bench.kept(), &["settings", "restore", "--yes", "-c", "PORT"])).ended_with(DONE);
+    run(&bench.command(&bench.kept(), COMMANDS[0])).ended_with(DONE);
+    run(&bench.command(&bench.kept(), &["settings", "restore", "--yes", "-c", "PORT"])).ended_with(DONE);
     let backups = bench.backups();
     assert_eq!(backups.len(), 2);
     assert_eq!(p_of(&backups[1]), Some(SettingValue::Number(7.0)), "of what the restore wrote over");
@@ -148,24 +149,19 @@ fn a_restored_backup_a_finished_write_and_an_update_of_the_firmware_leave_one_to
     let bench = Bench::new("roboclaw-2x7a");
     bench.prepare("roboclaw-2x7a");
     let update = ["firmware", "update", "FOLDER/new.bin", "--simulated", "--accept-risk", "-c", "PORT"];
-    run(&mut bench.command(&bench.kept(), &update)).ended_with(DONE);
+    run(&bench.command(&bench.kept(), &update)).ended_with(DONE);
     assert_eq!(bench.backups().iter().map(p_of).collect::<Vec<_>>(), [Some(SettingValue::Number(P_BEFORE))]);
 }
 
 #[test]
 fn tuning_keeps_a_backup_before_it_moves_anything() {
     let bench = Bench::new("mcp266");
-    let mut child = bench
-        .command(&bench.kept(), &["tune", "velocity", "--apply", "-c", "PORT,stream=usb"])
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program was built for this test");
+    let command = bench.command(&bench.kept(), &["tune", "velocity", "--apply", "-c", "PORT,stream=usb"]);
+    let program = Program::spawn(command);
     wait::until("a backup", || !bench.backups().is_empty(), || "none".to_owned());
     assert_eq!(p_of(&bench.backups()[0]), Some(SettingValue::Number(P_BEFORE)));
-    let status = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-    assert!(status.is_ok_and(|status| status.success()));
-    wait::until("its end", || child.try_wait().is_ok_and(|status| status.is_some()), || "it runs".to_owned());
+    program.signal("INT");
+    program.finish(LIMIT);
 }
 
 #[test]
@@ -180,7 +176,7 @@ fn what_only_reads_leaves_none() {
         &["status", "-c", "PORT"],
         &["firmware", "info", "-c", "PORT"],
     ] {
-        run(&mut bench.command(&bench.kept(), arguments)).ended_with(DONE);
+        run(&bench.command(&bench.kept(), arguments)).ended_with(DONE);
         assert!(bench.backups().is_empty(), "{arguments:?}");
     }
 }

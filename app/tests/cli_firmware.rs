@@ -8,8 +8,9 @@ mod cli;
 mod wait;
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 
+use brushwork_child::Program;
 use brushwork_link::settings::Profile;
 use brushwork_protocol::models;
 use brushwork_sim::controller::{Bus, Controller, ControllerConfig, Flash};
@@ -21,17 +22,12 @@ use tempfile::TempDir;
 
 fn command(arguments: &[&str]) -> Command {
     let mut command = program();
-    command
-        .arg("firmware")
-        .args(arguments)
-        .stdin(Stdio::null())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped());
+    command.arg("firmware").args(arguments);
     command
 }
 
 fn firmware(arguments: &[&str]) -> Run {
-    run(&mut command(arguments))
+    run(&command(arguments))
 }
 
 /// A RoboClaw on a pseudo-terminal, and an image for it.
@@ -156,13 +152,11 @@ fn an_update_that_is_killed_is_resumed_after_a_power_cycle() {
     let unit = Unit::start();
     let (image, port) = (unit.image(), unit.port());
     let backup = unit.path("backup.json").display().to_string();
-    let mut child =
-        command(&["update", &image, "--connect", &port, "--simulated", "--accept-risk", "--backup", &backup])
-            .spawn()
-            .unwrap();
+    let update =
+        command(&["update", &image, "--connect", &port, "--simulated", "--accept-risk", "--backup", &backup]);
+    let program = Program::spawn(update);
     unit.until("a first page", |unit| matches!(unit.flash(), Flash::Filling(_)));
-    child.kill().unwrap();
-    child.wait().unwrap();
+    drop(program);
     assert!(matches!(unit.flash(), Flash::Filling(_)), "it was killed before its end");
     unit.power_cycle();
     let lost = firmware(&["info", "--connect", &port]);

@@ -123,7 +123,7 @@ fn a_full_disk_and_a_folder_that_cannot_be_written_are_sentences_and_the_old_fil
         );
         let mut shell = std::process::Command::new("sh");
         shell.args(["-c", &full]).env("BRUSHWORK_DATA_DIR", folder.path().join("kept"));
-        run(&mut shell)
+        run(&shell)
             .ended_with(1)
             .explains("Writing the profile")
             .explains("A file of that name is unchanged.");
@@ -138,10 +138,9 @@ fn a_full_disk_and_a_folder_that_cannot_be_written_are_sentences_and_the_old_fil
 
 #[cfg(unix)]
 mod on_a_pseudo_terminal {
-    use std::io::{BufRead as _, BufReader};
-    use std::process::Stdio;
+    use brushwork_child::Program;
 
-    use super::cli::Simulated;
+    use super::cli::{LIMIT, Simulated};
     use super::*;
 
     fn at(kept: &Kept, unit: &Simulated, action: &str, arguments: &[&str]) -> Run {
@@ -268,21 +267,15 @@ mod on_a_pseudo_terminal {
             .flat_map(|key| [format!("motor1.{key}=7"), format!("motor2.{key}=7")])
             .collect();
         changes.extend((1..=10).map(|pin| format!("pin.{pin}.deadband=7")));
-        let mut child = program_keeping_in(kept.0.path())
-            .args(["settings", "write", "--yes", "--connect", &unit.port()])
-            .args(&changes)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("the program was built for this test");
-        let mut shown = BufReader::new(child.stdout.take().expect("it is piped")).lines();
-        assert!(shown.next().is_some_and(|line| line.is_ok_and(|line| line.contains("->"))));
-        let begun = || !journals(kept).is_empty() || child.try_wait().is_ok_and(|status| status.is_some());
+        let mut command = program_keeping_in(kept.0.path());
+        command.args(["settings", "write", "--yes", "--connect", &unit.port()]).args(&changes);
+        let mut program = Program::spawn(command);
+        assert!(program.next_line(LIMIT).is_some_and(|line| line.contains("->")));
+        let begun = || !journals(kept).is_empty() || !program.is_running();
         wait::until("a journal", begun, || format!("{:?}", kept.files("")));
         // Some of it is sent. A write that has ended by now is tried again.
         std::thread::sleep(std::time::Duration::from_millis(300));
-        let _ = child.kill();
-        let _ = child.wait();
+        drop(program);
     }
 
     #[test]

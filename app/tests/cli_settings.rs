@@ -7,8 +7,6 @@ mod cli;
 #[allow(dead_code, reason = "each test file uses its own part of this")]
 mod wait;
 
-use std::process::{Command, Stdio};
-
 use cli::{DIFFERENT, DONE, NO_LINK, NOT_TAKEN, REFUSED, USAGE, edit, exported, name, program, settings};
 use serde_json::Value;
 
@@ -235,15 +233,14 @@ fn a_profile_that_is_not_there_is_told_by_name() {
 
 #[cfg(unix)]
 mod on_a_pseudo_terminal {
-    use std::io::{BufRead as _, BufReader};
     use std::path::Path;
-    use std::process::Child;
 
+    use brushwork_child::Program;
     use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
     use brushwork_sim::machine::StreamIndex;
     use brushwork_sim::server::{Endpoint, Server, ServerOptions, SimHandle};
 
-    use super::cli::Simulated;
+    use super::cli::{LIMIT, Simulated};
     use super::*;
 
     #[test]
@@ -336,35 +333,24 @@ mod on_a_pseudo_terminal {
     /// How often a busy machine may bring a signal too late before a test gives up.
     const TRIES: usize = 20;
 
-    fn interrupt(child: &Child) {
-        let status = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-        assert!(status.is_ok_and(|status| status.success()), "the program has ended before");
-    }
-
     #[test]
     fn an_interrupted_write_ends_soon_and_says_what_was_not_done() {
         let keys = ["velocity.p", "velocity.i", "position.p", "position.i"];
         let changes = keys.map(|key| [format!("motor1.{key}=7"), format!("motor2.{key}=7")]).concat();
         let interrupted = (0..TRIES).any(|_| {
             let unit = Simulated::start(&["--fault", "delay=20ms"]);
-            let mut child = program()
-                .args(["settings", "write", "--yes", "--connect", &unit.port()])
-                .args(&changes)
-                .stdout(Stdio::piped())
-                .stderr(Stdio::piped())
-                .spawn()
-                .unwrap();
+            let mut command = program();
+            command.args(["settings", "write", "--yes", "--connect", &unit.port()]).args(&changes);
+            let mut program = Program::spawn(command);
             // The changes are shown before the first of them is written.
-            let mut shown = BufReader::new(child.stdout.take().unwrap()).lines();
-            assert!(shown.next().unwrap().unwrap().contains("->"));
-            interrupt(&child);
-            let all_written = shown.map(Result::unwrap).any(|line| line.starts_with("8 settings written"));
-            let output = child.wait_with_output().unwrap();
-            if all_written {
+            assert!(program.next_line(LIMIT).unwrap().contains("->"));
+            program.signal("INT");
+            let ending = program.finish(LIMIT);
+            if ending.stdout.iter().any(|line| line.starts_with("8 settings written")) {
                 return false;
             }
-            assert_eq!(output.status.code(), Some(130), "{output:?}");
-            assert!(String::from_utf8_lossy(&output.stderr).contains("it was cancelled"), "{output:?}");
+            assert_eq!(ending.status.code(), Some(130), "{ending:?}");
+            assert!(ending.stderr.join("\n").contains("it was cancelled"), "{ending:?}");
             true
         });
         assert!(interrupted, "every write went on to its end");
@@ -384,22 +370,19 @@ mod on_a_pseudo_terminal {
         let interrupted = (0..TRIES).any(|_| {
             let folder = tempfile::tempdir().unwrap();
             let unit = slow_unit(&folder.path().join("port"));
-            let child = program()
-                .args(["settings", "read", "--connect", name(&folder.path().join("port"))])
-                .stdout(Stdio::piped())
-                .stderr(Stdio::piped())
-                .spawn()
-                .unwrap();
+            let mut command = program();
+            command.args(["settings", "read", "--connect", name(&folder.path().join("port"))]);
+            let program = Program::spawn(command);
             let is_asked =
                 |bus: &mut Bus| bus.controllers()[0].unit().is_some_and(|unit| unit.silence().is_some());
             wait::until("a first question", || unit.inspect(is_asked).unwrap(), || "silence".to_owned());
-            interrupt(&child);
-            let output = child.wait_with_output().unwrap();
-            if output.status.success() {
+            program.signal("INT");
+            let ending = program.finish(LIMIT);
+            if ending.status.success() {
                 return false;
             }
-            assert_eq!(output.status.code(), Some(130), "{output:?}");
-            assert!(output.stdout.is_empty(), "{output:?}");
+            assert_eq!(ending.status.code(), Some(130), "{ending:?}");
+            assert!(ending.stdout.is_empty(), "{ending:?}");
             true
         });
         assert!(interrupted, "every reading went on to its end");

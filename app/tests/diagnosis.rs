@@ -3,14 +3,16 @@
 mod support;
 
 use std::net::SocketAddr;
-use std::process::{Command, Stdio};
+use std::process::Command;
 use std::time::Duration;
 
+use brushwork_child::Child;
 use brushwork_sim::controller::Bus;
 use brushwork_sim::machine::{Machine as _, StreamIndex};
 use brushwork_sim::server::{Endpoint, Server, ServerOptions};
 use serde_json::Value;
 use support::causes::{self, Cause};
+use support::wait::PATIENCE;
 
 /// What `brushwork status` says of a controller in the state of a cause.
 fn status_of(cause: &Cause) -> Value {
@@ -22,11 +24,9 @@ fn status_of(cause: &Cause) -> Value {
     bus.advance(Duration::from_secs(2));
     let served = Server::spawn(bus, ServerOptions::default(), &endpoint).expect("loopback has a free port");
     let target = format!("tcp:{}", served.address().trim_start_matches("tcp:"));
-    let output = Command::new(env!("CARGO_BIN_EXE_brushwork"))
-        .args(["status", "--json", "--connect", &target])
-        .stdin(Stdio::null())
-        .output()
-        .expect("the program was built for this test");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_brushwork"));
+    command.args(["status", "--json", "--connect", &target]);
+    let output = Child::output(&command, b"", PATIENCE);
     serde_json::from_slice(&output.stdout).unwrap_or_else(|error| {
         panic!("{}: {error}: {}", cause.name, String::from_utf8_lossy(&output.stderr))
     })

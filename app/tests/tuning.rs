@@ -91,6 +91,21 @@ fn tuned(screen: &str, which: Loop) -> Bench {
     bench
 }
 
+/// Looks each 100 ms at a run until it has ended.
+#[track_caller]
+fn while_running(bench: &mut Bench, mut look: impl FnMut(&Bench)) {
+    /// Ten minutes: no run goes on for so long.
+    const LOOKS: usize = 6000;
+    for _ in 0..LOOKS {
+        if !bench.model().front.tune.is_running() {
+            return;
+        }
+        bench.pass_ms(100);
+        look(bench);
+    }
+    panic!("it does not end by itself: {:?}", bench.said());
+}
+
 #[track_caller]
 fn run(bench: &mut Bench, which: Loop) -> Run {
     let said: Vec<String> = bench.model().messages.past().map(|message| message.text.clone()).collect();
@@ -195,11 +210,10 @@ fn within_its_travel_an_actuator_is_tuned_without_leaving_it() {
     bench.enter("Travel high", &(start + 600).to_string());
     bench.press("Tune M1");
     let (mut low, mut high) = (start, start);
-    while bench.model().front.tune.is_running() {
-        bench.pass_ms(100);
+    while_running(&mut bench, |bench| {
         let now = bench.truth().axes[0].encoder_counts;
         (low, high) = (low.min(now), high.max(now));
-    }
+    });
     assert!(low >= start - 600 && high <= start + 600, "{low} {high} about {start}");
     let tuned = run(&mut bench, Loop::Position);
     assert_ne!(tuned.report.verdict, Verdict::Refused, "{:?}", tuned.report.causes);
@@ -471,10 +485,9 @@ fn an_axis_with_position_limits_stays_within_them_unless_a_person_says_otherwise
     bench.press("Tune");
     bench.press("Tune M2");
     let mut farthest = 0;
-    while bench.model().front.tune.is_running() {
-        bench.pass_ms(100);
+    while_running(&mut bench, |bench| {
         farthest = farthest.max(bench.truth().axes[1].encoder_counts.abs());
-    }
+    });
     assert!(farthest > 20 && farthest <= 3000, "{farthest}");
     assert_ne!(run(&mut bench, Loop::Position).report.verdict, Verdict::Refused);
     bench.press("Turns freely");

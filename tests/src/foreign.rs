@@ -4,10 +4,11 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::{Duration, Instant};
 
+use brushwork_child::{Child, Program};
 use serde_json::Value;
 
-use crate::program::Program;
 use crate::{wait, workspace};
 
 /// Names a tool whose tests are left out because it cannot be had here; set by `tests/run`, comma-separated.
@@ -24,6 +25,12 @@ pub fn is_left_out(tool: &str) -> bool {
     left_out
 }
 
+/// How long pip may take to fetch the pinned packages over a slow line, for the first test and all that wait for it.
+const INSTALLATION_LIMIT: Duration = Duration::from_secs(20 * 60);
+
+/// How long a script may take as a whole; each of its lines has a limit of its own.
+const SCRIPT_LIMIT: Duration = Duration::from_secs(15 * 60);
+
 /// The Python that has the pinned packages; made on first use.
 ///
 /// # Panics
@@ -31,8 +38,7 @@ pub fn is_left_out(tool: &str) -> bool {
 #[must_use]
 pub fn python() -> PathBuf {
     let script = workspace::root().join("tests/foreign/python");
-    let output =
-        Command::new(&script).output().unwrap_or_else(|error| panic!("{}: {error}", script.display()));
+    let output = Child::output(&Command::new(script), b"", INSTALLATION_LIMIT);
     assert!(
         output.status.success(),
         "no Python environment ({LEAVE_OUT}=python leaves it out): {}",
@@ -108,9 +114,11 @@ pub fn run(script: &str, port: &Path, arguments: &[&str], simulated: &mut dyn Si
     command.arg(workspace::root().join("tests/foreign").join(script)).arg(port).args(arguments);
     let mut program = Program::spawn(command);
     let mut findings = Findings::default();
+    let end = Instant::now() + SCRIPT_LIMIT;
     while let Some(line) = program.next_line(wait::LIMIT) {
         let message: Value =
             serde_json::from_str(&line).unwrap_or_else(|error| panic!("{script} said `{line}`: {error}"));
+        assert!(Instant::now() < end, "{script} has not finished after {SCRIPT_LIMIT:?}, but says `{line}`");
         if let Some(answer) = answer_to(&message, simulated) {
             program.say(&answer.to_string());
         } else if message.get("finished").is_some() {

@@ -7,7 +7,6 @@ pub mod foreign;
 #[cfg(target_os = "linux")]
 pub mod hands;
 pub mod other_controller;
-pub mod program;
 pub mod rust_source;
 pub mod screen;
 pub mod simulated;
@@ -16,3 +15,5 @@ pub mod virtual_line;
 pub mod virtual_link;
 pub mod wait;
 pub mod workspace;
+
+pub use brushwork_child as program;

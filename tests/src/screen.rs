@@ -32,7 +32,9 @@ impl Screen {
         let frame_buffer = folder.path().to_string_lossy().into_owned();
         let arguments = ["-displayfd", "1", "-screen", "0", "1280x800x24", "-nolisten", "tcp", "-fbdir"];
         let mut server = Program::start("Xvfb", &[&arguments[..], &[&frame_buffer]].concat());
-        let number = server.next_line(wait::LIMIT).expect("Xvfb names its display");
+        let Some(number) = server.next_line(wait::LIMIT) else {
+            panic!("Xvfb names no display: {:?}", server.finish(wait::LIMIT))
+        };
         Self { display: format!(":{}", number.trim()), folder, _server: server }
     }
 

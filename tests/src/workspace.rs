@@ -4,7 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use brushwork_child::Child;
 use serde_json::Value;
+
+use crate::wait;
 
 /// The folder that holds the workspace's `Cargo.toml`.
 #[must_use]
@@ -73,11 +76,9 @@ impl Metadata {
     /// Asks cargo, offline: what is not in the lock file is not part of the workspace.
     #[must_use]
     pub fn load() -> Self {
-        let output = Command::new(env!("CARGO"))
-            .args(["metadata", "--format-version", "1", "--locked"])
-            .current_dir(root())
-            .output()
-            .expect("cargo runs these tests, so cargo can be started");
+        let mut command = Command::new(env!("CARGO"));
+        command.args(["metadata", "--format-version", "1", "--locked"]).current_dir(root());
+        let output = Child::output(&command, b"", wait::LIMIT);
         assert!(output.status.success(), "cargo metadata: {}", String::from_utf8_lossy(&output.stderr));
         let json: Value = serde_json::from_slice(&output.stdout).expect("cargo metadata answers in JSON");
         Self::from_json(&json)

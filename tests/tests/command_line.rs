@@ -10,7 +10,7 @@ use brushwork_protocol::packet_serial::Generation;
 use brushwork_sim::controller::ControllerConfig;
 use brushwork_sim::machine::StreamIndex;
 use brushwork_sim::settings::Settings;
-use brushwork_tests::program::{Ending, Program};
+use brushwork_tests::program::{Child, Ending, Program};
 use brushwork_tests::simulated::{OnPty, PATIENT_TIME_OUT, is_at_rest, is_driven};
 use brushwork_tests::wait::{self, LIMIT};
 use brushwork_tests::{foreign, workspace};
@@ -218,29 +218,16 @@ fn a_closed_terminal_stops_both_motors_before_the_program_ends() {
 #[test]
 fn a_closed_pipe_stops_both_motors_before_the_program_ends() {
     let controller = OnPty::patient(Generation::Gen1);
-    let mut program = Command::new(BRUSHWORK)
-        .args(drive_arguments(&controller.port(), "600"))
-        .stdin(Stdio::null())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("the program starts");
+    let mut command = Command::new(BRUSHWORK);
+    command.args(drive_arguments(&controller.port(), "600"));
+    let mut program = Child::spawn(&command, [Stdio::null(), Stdio::piped(), Stdio::null()]);
     controller.wait_until("driven motors", is_driven);
-    drop(program.stdout.take());
+    program.close_stdout();
     let off = controller.wait_until_off();
     println!("closed pipe: {off:?}");
     off.assert_by_command();
-    let mut status = None;
-    wait::until(
-        "the program's end",
-        || {
-            status = program.try_wait().ok().flatten();
-            status.is_some()
-        },
-        || "it runs".to_owned(),
-    );
     // Refused: a machine that was too busy kept it from renewing the motion before it could write.
-    let code = status.and_then(|status| status.code());
+    let code = program.finish(LIMIT).code();
     assert!(matches!(code, Some(INTERRUPTED | REFUSED)), "{code:?}");
 }
 

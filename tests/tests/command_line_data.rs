@@ -322,7 +322,13 @@ fn a_target_that_makes_no_sense_is_told_in_a_sentence() {
 
 /// Answers every request with bytes that mean nothing, by a generator with a fixed seed.
 fn babble(listener: &TcpListener) {
-    let Ok((mut client, _)) = listener.accept() else { return };
+    // The test waits for this to end, also when the program never comes or no longer reads.
+    listener.set_nonblocking(true).expect("a listener can be asked without waiting");
+    let (mut client, _) =
+        wait::until_some("a client", || listener.accept().ok(), || "none has come".to_owned());
+    client.set_nonblocking(false).expect("a client can be waited for");
+    client.set_read_timeout(Some(LIMIT)).expect("a time-out can be set");
+    client.set_write_timeout(Some(LIMIT)).expect("a time-out can be set");
     let mut state = 0x2545_F491_4F6C_DD1D_u64;
     let mut request = [0; 256];
     while client.read(&mut request).is_ok_and(|count| count > 0) {

@@ -8,7 +8,7 @@ use brushwork_tests::rust_source::{code_lines, without_tests};
 use brushwork_tests::workspace::{self, DependencyKind, Member, Metadata};
 
 /// The arrows that ship: a crate and the crates of this workspace it may use.
-const ARROWS: [(&str, &[&str]); 9] = [
+const ARROWS: [(&str, &[&str]); 10] = [
     (
         "brushwork",
         &[
@@ -28,10 +28,12 @@ const ARROWS: [(&str, &[&str]); 9] = [
     ("brushwork-protocol", &[]),
     ("brushwork-script", &[]),
     ("brushwork-raster", &[]),
+    ("brushwork-child", &[]),
     (
         "brushwork-tests",
         &[
             "brushwork",
+            "brushwork-child",
             "brushwork-link",
             "brushwork-protocol",
             "brushwork-script",
@@ -42,8 +44,9 @@ const ARROWS: [(&str, &[&str]); 9] = [
     ),
 ];
 
-/// Arrows for tests alone: the client is tried against the simulated controller.
-const TEST_ARROWS: [(&str, &[&str]); 1] = [("brushwork-link", &["brushwork-sim"])];
+/// Arrows for tests alone: the client is tried against the simulated controller, the program from outside.
+const TEST_ARROWS: [(&str, &[&str]); 2] =
+    [("brushwork", &["brushwork-child"]), ("brushwork-link", &["brushwork-sim"])];
 
 /// Crates from outside that only some of ours may use, by the start of their name.
 const KEPT_TO: [(&str, &[&str]); 7] = [

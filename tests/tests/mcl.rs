@@ -1,9 +1,11 @@
 //! `brushwork mcl` from outside: what stands on standard output, the exit codes, input, faults, files in their places.
 #![cfg(unix)]
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Output};
+
+use brushwork_tests::program::Child;
+use brushwork_tests::wait::LIMIT;
 
 const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
 
@@ -11,17 +13,7 @@ const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
 fn mcl(arguments: &[&str], input: &str) -> Output {
     let mut command = Command::new(BRUSHWORK);
     command.arg("mcl").args(arguments);
-    let mut child = command
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program starts");
-    let mut stdin = child.stdin.take().expect("it has an input");
-    // A program that reads nothing closes it.
-    let _ = stdin.write_all(input.as_bytes());
-    drop(stdin);
-    child.wait_with_output().expect("it ends")
+    Child::output(&command, input.as_bytes(), LIMIT)
 }
 
 fn shown(bytes: &[u8]) -> String {

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use brushwork_link::transport::{SerialTransport, Transport as _};
 use brushwork_protocol::packet_serial::Generation;
-use brushwork_tests::program::{Ending, Program};
+use brushwork_tests::program::{Child, Ending, Program};
 use brushwork_tests::simulated::{OnPty, is_driven};
 use brushwork_tests::wait::{self, LIMIT};
 use serde_json::Value;
@@ -189,17 +189,13 @@ fn a_tap_whose_reader_goes_ends_and_removes_its_link() {
     let controller = OnPty::start(Generation::Gen1);
     let folder = tempfile::tempdir().expect("a temporary folder");
     let tap = folder.path().join("tap");
-    let mut monitor = Command::new(BRUSHWORK)
-        .args(["monitor", "--connect", &text(&controller.port()), "--pty", &text(&tap)])
-        .stdin(Stdio::null())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("the program starts");
+    let mut command = Command::new(BRUSHWORK);
+    command.args(["monitor", "--connect", &text(&controller.port()), "--pty", &text(&tap)]);
+    let mut monitor = Child::spawn(&command, [Stdio::null(), Stdio::piped(), Stdio::null()]);
     wait::for_path(&tap);
-    drop(monitor.stdout.take());
+    monitor.close_stdout();
     let client = run(&["status", "--connect", &text(&tap)]);
-    let status = monitor.wait().expect("the program ends");
+    let status = monitor.finish(LIMIT);
     assert_eq!(status.code(), Some(130), "{client:?}");
     assert!(Tapped::is_gone(folder.path()));
 }

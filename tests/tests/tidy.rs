@@ -1,5 +1,7 @@
 //! Keeps the house rules that neither rustfmt nor clippy can see.
 
+use std::collections::BTreeSet;
+
 use brushwork_tests::rust_source::{Function, functions, without_tests};
 use brushwork_tests::workspace;
 
@@ -123,4 +125,45 @@ fn no_file_names_a_folder_of_somebodys_machine() {
         }
     }
     assert_none("a path that exists on one machine only", &faults);
+}
+
+/// The programs that tests start by name, and what has them: packages that every Debian has, or that `tests/run` installs.
+const PROGRAMS: [(&str, &str); 4] =
+    [("Xvfb", "tests/run"), ("sh", "dash"), ("sleep", "coreutils"), ("true", "coreutils")];
+
+#[test]
+fn tests_start_only_programs_that_a_bare_debian_has_or_the_test_command_installs() {
+    const OF_PYTHON: [&str; 4] = ["subprocess", "os.system", "os.popen", "os.exec"];
+    let starts = ["Command::new", "Program::start"].map(|call| format!("{call}({}", '"'));
+    let mut named = BTreeSet::new();
+    let mut faults = Vec::new();
+    for path in workspace::text_files() {
+        let text = workspace::read(&path);
+        if path.ends_with(".py") {
+            faults.extend(
+                OF_PYTHON.iter().filter(|word| text.contains(**word)).map(|word| format!("{path}: {word}")),
+            );
+        } else if path.ends_with(".rs") {
+            for start in &starts {
+                // The first part is before the first start.
+                let names = text.split(start.as_str()).skip(1).filter_map(|rest| rest.split('"').next());
+                named.extend(names.map(str::to_owned));
+            }
+        }
+    }
+    for name in &named {
+        if !PROGRAMS.iter().any(|(program, _)| program == name) {
+            faults.push(format!("`{name}` is started, and no package is named that has it"));
+        }
+    }
+    let run = workspace::read("tests/run");
+    for (program, package) in PROGRAMS {
+        if !named.contains(program) {
+            faults.push(format!("`{program}` is in the list and nothing starts it"));
+        }
+        if package == "tests/run" && !run.contains(&format!("command -v {program} ")) {
+            faults.push(format!("tests/run does not look for `{program}`"));
+        }
+    }
+    assert_none("programs that may not be there", &faults);
 }

@@ -2,10 +2,11 @@
 
 #![allow(dead_code)]
 
-use std::io::{BufRead as _, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::Command;
+use std::time::Duration;
 
+use brushwork_child::{Child, Program};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -15,6 +16,9 @@ pub const NO_LINK: i32 = 3;
 pub const REFUSED: i32 = 4;
 pub const NOT_TAKEN: i32 = 5;
 pub const DIFFERENT: i32 = 6;
+
+/// How long a command may take on a machine that is busy with everything else: none takes more than some seconds of its own.
+pub const LIMIT: Duration = Duration::from_secs(300);
 
 /// What a run of the program gave.
 #[derive(Debug)]
@@ -64,7 +68,7 @@ pub fn program() -> Command {
 /// The program, keeping its files in a folder.
 pub fn program_keeping_in(folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_brushwork"));
-    command.env("BRUSHWORK_DATA_DIR", folder).stdin(Stdio::null());
+    command.env("BRUSHWORK_DATA_DIR", folder);
     command
 }
 
@@ -73,9 +77,9 @@ pub fn settings(arguments: &[&str]) -> Run {
     run(program().arg("settings").args(arguments))
 }
 
-/// Runs to the end.
-pub fn run(command: &mut Command) -> Run {
-    let output = command.output().expect("the program was built for this test");
+/// Runs to the end, with nothing on standard input.
+pub fn run(command: &Command) -> Run {
+    let output = Child::output(command, b"", LIMIT);
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("the program prints UTF-8");
     Run { code: output.status.code().unwrap_or(-1), stdout: text(output.stdout), stderr: text(output.stderr) }
 }
@@ -99,30 +103,21 @@ pub fn edit(file: &Path, from: &str, to: &str) {
     std::fs::write(file, text.replacen(from, to, 1)).expect("the profile can be written");
 }
 
-/// `brushwork sim` in the background: a controller that outlives one command.
+/// `brushwork sim` in the background: a controller that outlives one command, and ends with this.
 pub struct Simulated {
-    pub child: Child,
+    _program: Program,
     pub folder: TempDir,
 }
 
 impl Simulated {
     pub fn start(arguments: &[&str]) -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder can be made");
-        let mut child = program()
-            .args(["sim", "--pty"])
-            .arg(folder.path().join("port"))
-            .args(arguments)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("the program was built for this test");
-        let mut lines = BufReader::new(child.stdout.take().expect("it is piped")).lines();
-        let first = lines.next().expect("it says where it is").expect("it prints UTF-8");
+        let mut command = program();
+        command.args(["sim", "--pty"]).arg(folder.path().join("port")).args(arguments);
+        let mut program = Program::spawn(command);
+        let first = program.next_line(LIMIT).expect("it says where it is");
         assert!(first.contains("port"), "{first}");
-        // The rest is read to its end, so that the program never finds its standard output closed.
-        let reader = std::thread::Builder::new().name("sim output".to_owned());
-        reader.spawn(move || lines.for_each(drop)).expect("a thread can be started");
-        Self { child, folder }
+        Self { _program: program, folder }
     }
 
     pub fn port(&self) -> String {
@@ -131,12 +126,5 @@ impl Simulated {
 
     pub fn settings(&self, action: &str, arguments: &[&str]) -> Run {
         settings(&[&[action, "--connect", &self.port()], arguments].concat())
-    }
-}
-
-impl Drop for Simulated {
-    fn drop(&mut self) {
-        let _ = Command::new("kill").arg(self.child.id().to_string()).status();
-        let _ = self.child.wait();
     }
 }

@@ -110,8 +110,11 @@ impl Lockstep {
         let thread = self.thread.take().expect("taken once, here");
         let mut state = self.gate.lock();
         (state.hand_over, state.limit, state.turn) = (true, Duration::MAX, Turn::Loop);
-        drop(state);
         self.gate.state.1.notify_all();
+        let waited = self.gate.state.1.wait_timeout_while(state, PATIENCE, |state| !state.ended);
+        let (state, waited) = waited.unwrap_or_else(PoisonError::into_inner);
+        drop(state);
+        assert!(!waited.timed_out(), "the device loop hangs");
         thread.join().expect("the loop does not panic").expect("the link is open")
     }
 }

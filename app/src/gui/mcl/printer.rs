@@ -50,7 +50,9 @@ impl Spooler {
             command.args([if self.is_lp { "-d" } else { "-P" }, &job.printer]);
         }
         let piped = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        let mut child = match piped.spawn() {
+        #[expect(clippy::disallowed_methods, reason = "a person may wait for a printer as long as they like")]
+        let spawned = piped.spawn();
+        let mut child = match spawned {
             Ok(child) => child,
             Err(error) => return failed(error.to_string()),
         };

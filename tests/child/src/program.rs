@@ -1,19 +1,22 @@
-//! A program under test as a child process: started, watched line by line, signalled, and never left behind.
+//! A program under test: started, watched line by line, signalled.
 //!
-//! Used for the built `brushwork` and for the foreign clients. Waiting always has a limit.
+//! Used for the built `brushwork` and for the foreign clients.
 
 use std::io::{BufRead, BufReader, Read, Write};
-use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
+use std::process::{ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
+use crate::Child;
+
 /// Lines that may wait unread before the child has to.
 const QUEUE_LINES: usize = 10_000;
 
 /// A running child whose output is read by two threads; killed when dropped.
+#[derive(Debug)]
 pub struct Program {
     child: Child,
     stdin: Option<ChildStdin>,
@@ -63,15 +66,10 @@ impl Program {
         if !has_its_own {
             DATA.with(|folder| command.env("BRUSHWORK_DATA_DIR", folder.path()));
         }
-        let mut child = command
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap_or_else(|error| panic!("{command:?}: {error}"));
-        let stdin = child.stdin.take();
-        let stdout = read_lines("stdout", child.stdout.take().expect("stdout is piped"));
-        let stderr = read_lines("stderr", child.stderr.take().expect("stderr is piped"));
+        let mut child = Child::spawn(&command, [Stdio::piped(), Stdio::piped(), Stdio::piped()]);
+        let stdin = child.0.stdin.take();
+        let stdout = read_lines("stdout", child.0.stdout.take().expect("stdout is piped"));
+        let stderr = read_lines("stderr", child.0.stderr.take().expect("stderr is piped"));
         Self { child, stdin, stdout, stderr, seen: Vec::new() }
     }
 
@@ -141,10 +139,10 @@ impl Program {
         writeln!(stdin, "{line}").and_then(|()| stdin.flush()).expect("the program reads its input");
     }
 
-    /// Sends a signal by its short name: `INT`, `TERM`, `HUP`, `KILL`.
+    /// Sends a signal by its short name; see [`Child::signal`].
+    #[cfg(unix)]
     pub fn signal(&self, name: &str) {
-        let status = Command::new("kill").arg(format!("-{name}")).arg(self.child.id().to_string()).status();
-        assert!(status.is_ok_and(|status| status.success()), "kill -{name} {} failed", self.child.id());
+        self.child.signal(name);
     }
 
     /// The process number.
@@ -155,7 +153,7 @@ impl Program {
 
     /// Whether the program is still running.
     pub fn is_running(&mut self) -> bool {
-        matches!(self.child.try_wait(), Ok(None))
+        self.child.is_running()
     }
 
     /// Waits for the end.
@@ -170,7 +168,7 @@ impl Program {
             // A program that prints more than the queues hold would otherwise wait for ever.
             self.seen.extend(self.stdout.try_iter());
             stderr.extend(self.stderr.try_iter());
-            if let Ok(Some(status)) = self.child.try_wait() {
+            if let Ok(Some(status)) = self.child.0.try_wait() {
                 let mut stdout = std::mem::take(&mut self.seen);
                 stdout.extend(drain_to_end(&self.stdout));
                 stderr.extend(drain_to_end(&self.stderr));
@@ -182,15 +180,6 @@ impl Program {
                 self.seen
             );
             thread::sleep(Duration::from_millis(5));
-        }
-    }
-}
-
-impl Drop for Program {
-    fn drop(&mut self) {
-        if self.is_running() {
-            self.child.kill().ok();
-            self.child.wait().ok();
         }
     }
 }
