@@ -122,10 +122,21 @@ impl OnPty {
     /// When the system gives no pseudo-terminal.
     #[must_use]
     pub fn on_can(node: NodeId, form: Form) -> Self {
-        let mut config = ControllerConfig::default();
-        config.set_node(node);
-        let controller = Controller::new(config).expect("the presets make a controller");
-        let bus = Bus::on_can(vec![controller], form).expect("there is a unit");
+        Self::nodes(&[node], form)
+    }
+
+    /// Several of them on one bus.
+    ///
+    /// # Panics
+    /// When the system gives no pseudo-terminal.
+    #[must_use]
+    pub fn nodes(nodes: &[NodeId], form: Form) -> Self {
+        let unit = |node: &NodeId| {
+            let mut config = ControllerConfig::default();
+            config.set_node(*node);
+            Controller::new(config).expect("the presets make a controller")
+        };
+        let bus = Bus::on_can(nodes.iter().map(unit).collect(), form).expect("there is a unit");
         Self::serve(bus, StreamIndex::Usb)
     }
 

@@ -6,6 +6,8 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
+use brushwork_protocol::canopen::NodeId;
+use brushwork_protocol::canopen::adapter::Form;
 use brushwork_protocol::packet_serial::Generation;
 use brushwork_sim::controller::ControllerConfig;
 use brushwork_sim::machine::StreamIndex;
@@ -143,6 +145,25 @@ fn stop_with_addresses_stops_these_alone_and_names_the_one_that_does_not_answer(
     assert!(said.contains("Nobody answered at 0x86: the stop was written there too"), "{said}");
     let ending = run(&["stop", "--connect", &port, "--address", "0x80,5"]);
     assert_eq!(ending.status.code(), Some(USAGE), "{ending:?}");
+}
+
+#[test]
+fn stop_on_a_can_bus_stops_every_node_that_is_a_controller() {
+    let nodes = [3, 5].map(|id| NodeId::new(id).expect("from 1 to 127"));
+    let bus = OnPty::nodes(&nodes, Form::Ascii);
+    for id in [3, 5] {
+        // SDO to the node, 2B: two bytes; objects 2020 and 2021 (commands 32 and 33), duty 0x3E80 of 0x7FFF.
+        bus.receive(format!(":S60{id}N2B202000803E0000;:S60{id}N2B212000803E0000;").into_bytes());
+    }
+    wait::until("driven motors", || bus.driven() == [true; 2], || format!("{:?}", bus.driven()));
+    let ending = run(&["stop", "--connect", &format!("can:{}", bus.port().display())]);
+    assert_eq!(ending.status.code(), Some(DONE), "{ending:?}");
+    wait::until("bridges at rest", || bus.driven() == [false; 2], || format!("{:?}", bus.driven()));
+    for node in ["node 3", "node 5"] {
+        let told = format!("{node}: both motors stopped");
+        assert!(ending.stdout.iter().any(|sentence| sentence.starts_with(&told)), "{ending:?}");
+    }
+    assert!(ending.stderr.join(" ").contains("Nodes that do not answer"), "{ending:?}");
 }
 
 #[test]

@@ -153,23 +153,20 @@ fn fmt_rewrites_files_once_and_check_names_those_that_would_change() {
     assert_eq!(shown(&mcl(&["fmt", "-"], "a  =  1\n").stdout), "a = 1\n");
 }
 
-/// Runs `brushwork mcl` with an input and at most 1 GiB of addresses, beyond which it is ended by a signal.
-fn mcl_in_a_gigabyte(arguments: &[&str], input: Stdio) -> Output {
-    Command::new("sh")
-        .args(["-c", "ulimit -v 1048576 && exec \"$0\" mcl \"$@\"", BRUSHWORK])
-        .args(arguments)
-        .stdin(input)
-        .output()
-        .expect("the program starts")
+/// Runs `brushwork mcl` with a file as its input and at most 1 GiB of addresses, beyond which it is ended by a signal.
+fn mcl_in_a_gigabyte(arguments: &[&str], input: &str) -> Output {
+    let mut command = Command::new("sh");
+    command.args(["-c", "ulimit -v 1048576 && exec \"$0\" mcl \"$@\" <\"$INPUT\"", BRUSHWORK]);
+    command.args(arguments).env("INPUT", input);
+    Child::output(&command, b"", LIMIT)
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn input_without_end_is_refused_with_a_sentence() {
     for command in ["check", "build", "run", "disasm", "fmt"] {
-        let zeros = std::fs::File::open("/dev/zero").expect("the device is there");
-        let by_input = mcl_in_a_gigabyte(&[command, "-"], zeros.into());
-        let by_name = mcl_in_a_gigabyte(&[command, "/dev/zero"], Stdio::null());
+        let by_input = mcl_in_a_gigabyte(&[command, "-"], "/dev/zero");
+        let by_name = mcl_in_a_gigabyte(&[command, "/dev/zero"], "/dev/null");
         for (output, name) in [(by_input, "-"), (by_name, "/dev/zero")] {
             assert_eq!(output.status.code(), Some(1), "{command} {name}: {}", shown(&output.stderr));
             let expected =
@@ -198,13 +195,13 @@ fn hostile_scripts_are_answered_in_a_gigabyte() {
         ),
     ] {
         let file = script(folder.path(), &format!("{name}.mcl"), &text);
-        let output = mcl_in_a_gigabyte(&["check", path(&file)], Stdio::null());
+        let output = mcl_in_a_gigabyte(&["check", path(&file)], "/dev/null");
         assert_eq!(output.status.code(), Some(code), "{name}: {}", shown(&output.stderr));
         assert!(shown(&output.stdout).contains(said), "{name}: {}", shown(&output.stdout));
         // A hundred errors with their lines, none of them drawn in full.
         assert!(output.stdout.len() < 200_000, "{name}: {} bytes", output.stdout.len());
     }
     let file = folder.path().join("long.mcl");
-    let output = mcl_in_a_gigabyte(&["fmt", path(&file)], Stdio::null());
+    let output = mcl_in_a_gigabyte(&["fmt", path(&file)], "/dev/null");
     assert_eq!(output.status.code(), Some(9), "{}", shown(&output.stderr));
 }
