@@ -494,9 +494,9 @@ fn a_faulty_profile_is_refused_and_one_of_another_controller_is_upgraded_when_th
     bench.press("Take over group Current limits");
     assert!(bench.sees("Edits: 4 not written"), "{:?}", bench.model().front.general.unit().unwrap().edits());
     bench.press("Revert all");
-    // One value beyond every range: refused at first, opened without it on request.
+    // One value that is no number: refused at first, opened without it on request.
     let mut broken = other.to_json();
-    broken = broken.replacen("128", "9999", 1);
+    broken = broken.replacen("128", "\"9999\"", 1);
     std::fs::write(&path, broken).unwrap();
     bench.press("Open profile");
     bench.press("Open");

@@ -156,13 +156,7 @@ impl Cause {
     #[must_use]
     pub fn sentence(self) -> Cow<'static, str> {
         Cow::Borrowed(match self {
-            Self::AnsweredLate { longest_gap_ms } => {
-                return Cow::Owned(format!(
-                    "This computer answered late (the longest gap between two samples was {longest_gap_ms} ms), so the run says \
-                     nothing about the machine. Try again with fewer programs running; if the gap stays, look for lost replies on \
-                     the line."
-                ));
-            }
+            Self::AnsweredLate { longest_gap_ms } => return answered_late(longest_gap_ms).into(),
             Self::CurrentUnclear => {
                 "The motor was driven and not seen to move, and its current is no higher than the noise of its readings, so it does \
                  not say why. Check the motor leads, the encoder's plug, and whether the shaft is free or at an end stop."
@@ -277,4 +271,10 @@ impl Cause {
             }
         })
     }
+}
+fn answered_late(longest_gap_ms: u32) -> String {
+    format!(
+        "This computer answered late (the longest gap between two samples was {longest_gap_ms} ms), so the run says nothing about the \
+         machine. Try again with fewer programs running; if the gap stays, look for lost replies on the line."
+    )
 }

@@ -152,6 +152,8 @@ pub struct Rig<'a> {
     next_poll: Duration,
     silent_since_s: Option<f64>,
     silent_polls: u32,
+    /// Whether the controller was found to tell no duty, current or voltage.
+    untold: [bool; 3],
     turn: u8,
     /// Where the guard last had driven a motor back, counts.
     turned_at_counts: f64,
@@ -187,6 +189,7 @@ impl<'a> Rig<'a> {
             next_poll: now,
             silent_since_s: None,
             silent_polls: 0,
+            untold: [false; 3],
             turn: 0,
             turned_at_counts: 0.0,
             beyond: 0,
@@ -256,10 +259,13 @@ impl<'a> Rig<'a> {
         self.pace.pause();
     }
 
-    /// A Motion Mind that is told another kind of command first has all its registers written, with its motor off.
+    /// A Motion Mind that is told another kind of command, or has had no duty, first has all its registers written, with its motor off.
     fn pause_for(&mut self, input: Input) {
         let kind = |input: &Input| std::mem::discriminant(input);
-        let is_another = self.drives.last().is_none_or(|last| kind(&last.input) != kind(&input));
+        let is_another = self
+            .drives
+            .last()
+            .is_none_or(|last| last.input == Input::Duty(0.0) || kind(&last.input) != kind(&input));
         if self.setup.motion_mind.is_some() && is_another {
             self.pause();
         }
@@ -451,6 +457,17 @@ impl<'a> Rig<'a> {
             Err(error) => return Err(cause_of(&error)),
         };
         (self.silent_since_s, self.silent_polls) = (None, 0);
+        let untold = [
+            want.duty && sample.duty_raw.is_none(),
+            want.current && sample.current_raw.is_none(),
+            want.volts && sample.volts_raw.is_none(),
+        ];
+        for (known, found) in self.untold.iter_mut().zip(untold) {
+            if found && !std::mem::replace(known, true) {
+                // It was asked in vain, several times over, which is nobody's lateness.
+                self.pace.pause();
+            }
+        }
         let point = self.point_of(&sample);
         if sample.status.fault {
             let is_held =

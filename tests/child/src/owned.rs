@@ -104,7 +104,7 @@ impl Child {
         self.0.stdout = None;
     }
 
-    /// Sends a signal by its short name: `INT`, `TERM`, `HUP`, `KILL`, `STOP`.
+    /// Sends a signal by its short name: `INT`, `TERM`, `HUP`, `KILL`, `STOP`, `CONT`.
     ///
     /// # Panics
     /// When there is no such signal, or the child was already seen to have ended.
@@ -117,6 +117,7 @@ impl Child {
             "HUP" => Signal::HUP,
             "KILL" => Signal::KILL,
             "STOP" => Signal::STOP,
+            "CONT" => Signal::CONT,
             _ => panic!("no test has needed the signal {name} yet"),
         };
         kill_process(Pid::from_child(&self.0), signal)

@@ -39,7 +39,8 @@ pub enum MclCommand {
     brushwork mcl check door.mcl\n  \
     brushwork mcl check --json scripts/*.mcl\n  \
     cat door.mcl | brushwork mcl check -\n\n\
-    Ends with 0 when no file has an error, with 9 when one has, with 1 when one cannot be read.\n\n\
+    Ends with 0 when no file has an error, with 9 when one has, with 1 when one cannot be read. A script has at most 2 MiB.\n\
+    The first 100 errors and 100 warnings of a file are listed; E319 and W423 say how many more there are.\n\n\
     JSON is {\"files\": [{\"file\", \"ok\", \"errors\", \"warnings\", \"diagnostics\": [...]}]}. A diagnostic has \"code\" (see brushwork mcl\n\
     reference), \"severity\" (error or warning), \"line\" and \"column\" from 1 in characters, \"end\" with both of the place after it,\n\
     \"message\", and \"hint\" where there is one.")]

@@ -149,8 +149,8 @@ fn give_up(exchange: &mut Exchange, tries: &[Try], request: &[u8]) {
     let now = exchange.clock.now();
     for pair in tries {
         let bytes = |read: &Request| [read.address.get(), read.command];
-        exchange.given_up.note(&bytes(&pair.before), 0, now);
-        exchange.given_up.note(request, 0, now);
-        exchange.given_up.note(&bytes(&pair.after), 0, now);
+        exchange.given_up.note(&bytes(&pair.before), 0, now, true);
+        exchange.given_up.note(request, 0, now, true);
+        exchange.given_up.note(&bytes(&pair.after), 0, now, true);
     }
 }

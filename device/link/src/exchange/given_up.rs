@@ -22,21 +22,28 @@ struct Unanswered {
     request: Vec<u8>,
     reply_length: usize,
     at: Duration,
+    /// Its time was over; otherwise something more urgent broke in, and the reply is just on its way.
+    timed_out: bool,
 }
 
 impl GivenUp {
     /// Takes note that nobody waits for the reply to `request` any more.
-    pub fn note(&mut self, request: &[u8], reply_length: usize, now: Duration) {
+    pub fn note(&mut self, request: &[u8], reply_length: usize, now: Duration, timed_out: bool) {
         self.requests.retain(|unanswered| now < unanswered.at + LATEST);
         if self.requests.len() == MOST {
             self.requests.pop_front();
         }
-        self.requests.push_back(Unanswered { request: request.to_vec(), reply_length, at: now });
+        self.requests.push_back(Unanswered { request: request.to_vec(), reply_length, at: now, timed_out });
     }
 
     /// Whether one of the replies may still come.
     pub fn may_come(&self, now: Duration) -> bool {
         self.requests.iter().any(|unanswered| now < unanswered.at + LATEST)
+    }
+
+    /// Whether one may still come although its time was over.
+    pub fn timed_out(&self, now: Duration) -> bool {
+        self.requests.iter().any(|unanswered| unanswered.timed_out && now < unanswered.at + LATEST)
     }
 
     /// Whether the reply to this very request may still come.
@@ -75,7 +82,7 @@ mod tests {
 
     fn of(requests: &[u8]) -> GivenUp {
         let mut given_up = GivenUp::default();
-        requests.iter().for_each(|request| given_up.note(&[*request], 10, SECOND));
+        requests.iter().for_each(|request| given_up.note(&[*request], 10, SECOND, true));
         given_up
     }
 
@@ -104,7 +111,11 @@ mod tests {
     fn nothing_comes_after_the_latest_time_and_the_memory_is_bounded() {
         let mut given_up = of(b"a");
         assert!(!given_up.may_come(SECOND + LATEST));
-        (0..1000).for_each(|_| given_up.note(b"x", 1, SECOND));
+        (0..1000).for_each(|_| given_up.note(b"x", 1, SECOND, false));
         assert_eq!(given_up.reply_bytes(), MOST);
+        assert!(
+            given_up.may_come(SECOND) && !given_up.timed_out(SECOND),
+            "those broken into are not late yet"
+        );
     }
 }

@@ -245,6 +245,12 @@ impl Exchange {
         self.given_up.answered(request);
     }
 
+    /// Whether one of them may still come although its time was over, so that the line is slower than was thought.
+    #[must_use]
+    pub fn is_slow_to_reply(&self) -> bool {
+        self.given_up.timed_out(self.clock.now())
+    }
+
     /// Waits until the line was quiet for `quiet`, throwing away what comes, and expects no late reply any more.
     pub fn drain(&mut self, quiet: Duration, watch: &dyn Watch) -> Result<(), ExchangeError> {
         self.wait_for_silence(quiet, watch)?;
@@ -328,7 +334,8 @@ impl Exchange {
         let replied_at = match self.receive(request, watch, judge, requested_at, tries) {
             Ok(replied_at) => replied_at,
             Err(error) => {
-                self.given_up.note(request.bytes, request.reply_length, self.clock.now());
+                let timed_out = error.interruption().is_none();
+                self.given_up.note(request.bytes, request.reply_length, self.clock.now(), timed_out);
                 return Err(error);
             }
         };

@@ -35,6 +35,8 @@ const HELD_COUNTS: i64 = 4;
 /// Drive in mode 3 changes at the next update of TIMER, which is at most 1.3 s away.
 const DUTY_LIMIT: Duration = Duration::from_millis(1600);
 
+/// A reply that was on its way when the stop broke in is done within this: 10 ms of the controller, a line of text, a USB adapter.
+const BROKEN_INTO: Duration = Duration::from_millis(40);
 /// The longest reply is done within this: all registers in text, about 500 characters at 19,200 baud.
 const LATE_REPLY: Duration = Duration::from_millis(300);
 
@@ -131,7 +133,7 @@ pub fn confirm(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<UnitStop, E
     // The answers of the unit do not say which question they answer, so none may be late any more.
     if line.exchange().may_hear_late_replies() {
         let (exchange, watch) = line.parts();
-        exchange.drain(LATE_REPLY, watch)?;
+        exchange.drain(if exchange.is_slow_to_reply() { LATE_REPLY } else { BROKEN_INTO }, watch)?;
     }
     match stand(unit, line) {
         Ok(Ended::Stands) => stop.confirmed = true,

@@ -71,8 +71,8 @@ fn compile_whole(text: &str) -> (Compiled, Scope) {
     lowering.finish(left_out)
 }
 
-/// Bytes of a program's text. By the manual's examples an instruction takes some 9 bytes of text, comments included, so that the 256 KiB of
-/// the largest controller's image are filled by half of this.
+/// Bytes of a program's text. In our examples, comments included, two bytes of text make a byte of the image, in the manual's less: the
+/// 256 KiB of the largest controller are full at a quarter of this.
 pub const LONGEST_TEXT: usize = 2 * 1024 * 1024;
 
 /// What is said of a text that is too long for a program. It is not read: what a reader keeps is many times as long.
