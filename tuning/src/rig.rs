@@ -457,6 +457,7 @@ impl<'a> Rig<'a> {
             Err(error) => return Err(cause_of(&error)),
         };
         (self.silent_since_s, self.silent_polls) = (None, 0);
+        let point = self.point_of(&sample);
         let untold = [
             want.duty && sample.duty_raw.is_none(),
             want.current && sample.current_raw.is_none(),
@@ -464,11 +465,10 @@ impl<'a> Rig<'a> {
         ];
         for (known, found) in self.untold.iter_mut().zip(untold) {
             if found && !std::mem::replace(known, true) {
-                // It was asked in vain, several times over, which is nobody's lateness.
+                // It was asked in vain, several times after the counts, which is nobody's lateness.
                 self.pace.pause();
             }
         }
-        let point = self.point_of(&sample);
         if sample.status.fault {
             let is_held =
                 self.setup.motion_mind.is_some() && sample.status.raw & u32::from(bits::INPUTS) != 0;
