@@ -69,8 +69,8 @@ impl OnPty {
     #[must_use]
     pub fn line(addresses: &[u8]) -> Self {
         let unit = |address: &u8| {
-            let mut config = ControllerConfig::default();
-            config.address = Address::new(*address).expect("an address of packet serial");
+            let address_of_unit = Address::new(*address).expect("an address of packet serial");
+            let mut config = ControllerConfig { address: address_of_unit, ..ControllerConfig::default() };
             let mut settings = Settings::factory(config.model, *address);
             settings.streams[StreamIndex::Uart1.index()].timeout_ms = PATIENT_TIME_OUT.as_millis() as u32;
             config.settings = Some(settings);

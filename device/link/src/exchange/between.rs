@@ -101,7 +101,7 @@ pub fn transact_between(
             // The later tries are answered as late as this one was.
             true => {
                 acknowledged_until =
-                    acknowledged_until.or(Some(now + now.saturating_sub(begun_at).max(AGAIN)))
+                    acknowledged_until.or(Some(now + now.saturating_sub(begun_at).max(AGAIN)));
             }
         }
     }
