@@ -20,7 +20,7 @@ fn unit_below_its_range() -> (Simulated, std::path::PathBuf) {
     unit.settings("import", &[name(&file), "--yes"]).ended_with(DONE).prints(WARNING);
     let held = unit.folder.path().join("held.json");
     unit.settings("export", &[name(&held)]).ended_with(DONE);
-    assert!(std::fs::read_to_string(&held).unwrap().contains("\"value\": 8.4"));
+    assert!(std::fs::read_to_string(&held).expect("it was exported").contains("\"value\": 8.4"));
     (unit, held)
 }
 

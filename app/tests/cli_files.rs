@@ -4,6 +4,7 @@
 use std::fs;
 use std::os::unix::fs::{MetadataExt as _, symlink};
 use std::path::{Path, PathBuf};
+use std::process::Stdio;
 
 #[path = "support/cli.rs"]
 mod cli;
@@ -11,6 +12,7 @@ mod cli;
 #[allow(dead_code, reason = "each test file uses its own part of this")]
 mod wait;
 
+use brushwork_child::Child;
 use cli::{DONE, Run, Simulated, name, program, run};
 use tempfile::TempDir;
 
@@ -25,14 +27,14 @@ fn brushwork(arguments: &[&str]) -> Run {
 fn folder() -> (TempDir, PathBuf, PathBuf) {
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
     let [file, link] = ["precious", "link"].map(|name| folder.path().join(name));
-    fs::write(&file, PRECIOUS).unwrap();
-    symlink(&file, &link).unwrap();
+    fs::write(&file, PRECIOUS).expect("the folder is the test's");
+    symlink(&file, &link).expect("the folder is the test's");
     (folder, file, link)
 }
 
 fn script(folder: &Path) -> PathBuf {
     let path = folder.join("door.mcl");
-    fs::write(&path, "end\n").unwrap();
+    fs::write(&path, "end\n").expect("the folder is the test's");
     path
 }
 
@@ -110,7 +112,9 @@ fn standard_output_and_devices_are_written_to() {
     let (folder, ..) = folder();
     // A file behind standard output gets it before what is said of it.
     let into = fs::File::create(folder.path().join("out")).unwrap();
-    let ended = program().args(["settings", "export", "/dev/stdout"]).stdout(into).status().unwrap();
+    let mut export = program();
+    export.args(["settings", "export", "/dev/stdout"]);
+    let ended = Child::spawn(&export, [Stdio::null(), into.into(), Stdio::null()]).finish(wait::PATIENCE);
     assert!(ended.success());
     let out = fs::read_to_string(folder.path().join("out")).unwrap();
     assert!(out.starts_with('{') && out.ends_with("are in /dev/stdout.\n"), "{out}");

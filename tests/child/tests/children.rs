@@ -35,14 +35,14 @@ fn shell(script: &str) -> Command {
 
 /// Whether there is a process of that number, be it one that has ended and was not waited for.
 fn exists(id: u32) -> bool {
-    let id = Pid::from_raw(i32::try_from(id).unwrap()).unwrap();
+    let id = Pid::from_raw(i32::try_from(id).expect("a process number")).expect("it is not 0");
     test_kill_process(id).is_ok()
 }
 
 /// What a panic said.
 fn panic_of<T>(act: impl FnOnce() -> T) -> String {
     let Err(panic) = catch_unwind(AssertUnwindSafe(act)) else { panic!("it does not panic") };
-    *panic.downcast::<String>().unwrap()
+    *panic.downcast::<String>().expect("a panic with a sentence")
 }
 
 #[test]
