@@ -500,7 +500,7 @@ fn a_faulty_profile_is_refused_and_one_of_another_controller_is_upgraded_when_th
     std::fs::write(&path, broken).unwrap();
     bench.press("Open profile");
     bench.press("Open");
-    assert!(bench.sees_part("9999"));
+    assert!(bench.sees_part("Expected a whole number, got a text"));
     bench.press("Open without what is wrong");
     assert_eq!(bench.model().front.general.sheet(), Some(&Sheet::Upgrade));
 }
