@@ -113,8 +113,8 @@ fn a_link_that_somebody_else_made_meanwhile_is_left_alone() {
 #[test]
 fn a_path_that_is_taken_is_refused_but_a_dead_link_is_replaced() {
     let bench = Bench::new();
-    symlink("/nowhere/at/all", &bench.link).expect("the place is free");
-    let handle = bench.serve().expect("a dead link is no hindrance");
+    symlink("/dev/nowhere/at/all", &bench.link).expect("the place is free");
+    let handle = bench.serve().expect("a link to a device that is gone is no hindrance");
     let refusal = bench.serve().map(drop).expect_err("another one serves there").to_string();
     assert!(refusal.contains("is already there (a link to /dev/"), "{refusal}");
     handle.stop();
@@ -122,6 +122,12 @@ fn a_path_that_is_taken_is_refused_but_a_dead_link_is_replaced() {
     let refusal = bench.serve().map(drop).expect_err("a file is there").to_string();
     assert!(refusal.contains("(it is no link): remove it, or choose another path"), "{refusal}");
     assert_eq!(std::fs::read_to_string(&bench.link).expect("it is there"), "my notes");
+    std::fs::remove_file(&bench.link).expect("it is there");
+    symlink("/nowhere/at/all", &bench.link).expect("the place is free");
+    let refusal = bench.serve().map(drop).expect_err("somebody means to put a file there").to_string();
+    assert!(refusal.contains("(a link to a file that is not there)"), "{refusal}");
+    std::fs::remove_file(&bench.link).expect("it was left");
+    std::fs::write(&bench.link, "my notes").expect("the place is free");
     let nowhere = Endpoint::Pty { link: bench.link.join("deeper") };
     assert!(Server::spawn(Parrot::new(), ServerOptions::default(), &nowhere).is_err());
 }

@@ -150,7 +150,7 @@ fn open_client_side(path: &Path) -> Result<OwnedFd, Errno> {
     rustix::fs::open(path, OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC | OFlags::NONBLOCK, Mode::empty())
 }
 
-/// Makes sure that nothing is where the link goes. A link that leads nowhere is left over from a program that was killed.
+/// Makes sure that nothing is where the link goes. A link to a device that is gone is left over from a program that was killed.
 fn make_room(link: &Path) -> Result<(), ServerError> {
     let taken = |what: String| ServerError::LinkTaken { link: link.to_owned(), what };
     match fs::symlink_metadata(link) {
@@ -160,6 +160,9 @@ fn make_room(link: &Path) -> Result<(), ServerError> {
         Ok(_) if link.exists() => {
             let target = fs::read_link(link).unwrap_or_default();
             Err(taken(format!("a link to {}, where another simulated controller may be", target.display())))
+        }
+        Ok(_) if !fs::read_link(link).is_ok_and(|target| target.starts_with("/dev")) => {
+            Err(taken("a link to a file that is not there".to_owned()))
         }
         Ok(_) => fs::remove_file(link).map_err(|source| ServerError::Link { link: link.to_owned(), source }),
     }
