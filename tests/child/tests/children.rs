@@ -17,9 +17,13 @@ const SHORT: Duration = Duration::from_millis(100);
 /// Set for a copy of this file's process that is to be killed.
 const TO_BE_KILLED: &str = "BRUSHWORK_CHILD_TO_BE_KILLED";
 
+/// Under nohup these tests inherit that a signal is ignored, which on Linux alone a program can be started without.
 fn sleeps() -> Command {
-    let mut command = Command::new("sleep");
-    command.arg("600");
+    let mut command = Command::new("env");
+    if cfg!(target_os = "linux") {
+        command.arg("--default-signal=HUP");
+    }
+    command.args(["sleep", "600"]);
     command
 }
 
