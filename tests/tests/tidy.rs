@@ -128,8 +128,13 @@ fn no_file_names_a_folder_of_somebodys_machine() {
 }
 
 /// The programs that tests start by name, and what has them: packages that every Debian has, or that `tests/run` installs.
-const PROGRAMS: [(&str, &str); 4] =
-    [("Xvfb", "tests/run"), ("env", "coreutils"), ("sh", "dash"), ("true", "coreutils")];
+const PROGRAMS: [(&str, &str); 5] = [
+    ("Xvfb", "tests/run"),
+    ("env", "coreutils"),
+    ("sh", "dash"),
+    ("sleep", "coreutils"),
+    ("true", "coreutils"),
+];
 
 #[test]
 fn tests_start_only_programs_that_a_bare_debian_has_or_the_test_command_installs() {

@@ -17,13 +17,9 @@ const SHORT: Duration = Duration::from_millis(100);
 /// Set for a copy of this file's process that is to be killed.
 const TO_BE_KILLED: &str = "BRUSHWORK_CHILD_TO_BE_KILLED";
 
-/// Under nohup these tests inherit that a signal is ignored, which on Linux alone a program can be started without.
 fn sleeps() -> Command {
-    let mut command = Command::new("env");
-    if cfg!(target_os = "linux") {
-        command.arg("--default-signal=HUP");
-    }
-    command.args(["sleep", "600"]);
+    let mut command = Command::new("sleep");
+    command.arg("600");
     command
 }
 
@@ -116,9 +112,16 @@ fn arguments_folder_and_environment_reach_the_child() {
 fn each_signal_arrives() {
     use std::os::unix::process::ExitStatusExt as _;
     for (name, number) in [("HUP", 1), ("INT", 2), ("KILL", 9), ("TERM", 15)] {
-        let child = Child::spawn(&sleeps(), nothing());
-        child.signal(name);
-        assert_eq!(child.finish(LIMIT).signal(), Some(number), "{name}");
+        let mut command = shell("echo here; exec sleep 600");
+        if cfg!(target_os = "linux") {
+            // Under nohup these tests inherit that SIGHUP is ignored, which `env` of Linux alone takes back.
+            let shell = std::mem::replace(&mut command, Command::new("env"));
+            command.arg("--default-signal=HUP").arg(shell.get_program()).args(shell.get_args());
+        }
+        let mut program = Program::spawn(command);
+        program.wait_for("here", LIMIT);
+        program.signal(name);
+        assert_eq!(program.finish(LIMIT).status.signal(), Some(number), "{name}");
     }
     let mut child = Child::spawn(&sleeps(), nothing());
     child.signal("STOP");
