@@ -272,9 +272,12 @@ impl Cause {
         })
     }
 }
+
+/// That it is the computer is shown by trying again with less to do; what stays then is the line's.
 fn answered_late(longest_gap_ms: u32) -> String {
     format!(
         "This computer answered late (the longest gap between two samples was {longest_gap_ms} ms), so the run says nothing about the \
-         machine. Try again with fewer programs running; if the gap stays, look for lost replies on the line."
+         machine. Try again with fewer programs running; if the gap stays, it is the line: look for lost replies, a radio \
+         or a network on the way, or an adapter that holds bytes back."
     )
 }

@@ -22,8 +22,6 @@ pub(crate) struct Pace {
     last_s: Option<f64>,
     /// How long each gap was, s, oldest first.
     gaps_s: Vec<f64>,
-    /// How long each exchange took, s, oldest first.
-    took_s: Vec<f64>,
     /// Whether the polls that failed last came, but too late to be of use.
     came_late: bool,
 }
@@ -35,7 +33,6 @@ impl Pace {
         if let Some(last_s) = self.last_s {
             self.gaps_s.push(now_s - last_s);
         }
-        self.took_s.push(exchange.received.saturating_sub(exchange.sent).as_secs_f64());
         self.last_s = Some(now_s);
         self.came_late = false;
     }
@@ -55,21 +52,22 @@ impl Pace {
         self.last_s = None;
     }
 
-    /// The longest gap, s, where it was a late one, or where each exchange took another time, so that nobody knows when what was read.
-    pub(crate) fn longest_late_s(&self) -> Option<f64> {
+    /// The longest gap, s, where it was a late one, or where each of the exchanges, which took so long, took another time, so that nobody
+    /// knows when what was read.
+    pub(crate) fn longest_late_s(&self, took_s: &[f64]) -> Option<f64> {
         let longest_s = self.gaps_s.iter().copied().fold(0.0, f64::max);
-        let limit_s = LATE_S.max(LATE_RATIO * quantile(&self.gaps_s, 0.5));
-        let spread_s = quantile(&self.took_s, 0.9) - quantile(&self.took_s, 0.1);
-        (longest_s > limit_s || spread_s > UNSTEADY_S).then_some(longest_s)
+        let limit_s = LATE_S.max(LATE_RATIO * quantile(&self.gaps_s, 0.5).unwrap_or_default());
+        let spread_s =
+            quantile(took_s, 0.9).zip(quantile(took_s, 0.1)).map_or(0.0, |(slow, quick)| slow - quick);
+        (longest_s > limit_s || spread_s > UNSTEADY_S).then_some(longest_s.max(spread_s))
     }
 }
 
-/// The time that a share of times are shorter than, s; 0 of none.
-fn quantile(times_s: &[f64], share: f64) -> f64 {
+/// The time that a share of times are shorter than, s; `None` of none.
+pub(crate) fn quantile(times_s: &[f64], share: f64) -> Option<f64> {
     let mut sorted_s = times_s.to_vec();
     sorted_s.sort_by(f64::total_cmp);
-    let at = (share * sorted_s.len() as f64) as usize;
-    sorted_s.get(at).copied().unwrap_or(0.0)
+    sorted_s.get((share * sorted_s.len() as f64) as usize).copied()
 }
 
 #[cfg(test)]
@@ -94,28 +92,28 @@ mod tests {
 
     #[test]
     fn a_gap_is_late_beyond_what_a_standstill_is_read_from_and_beyond_the_usual() {
-        assert_eq!(polled(&[10; 30]).longest_late_s(), None);
-        assert_eq!(polled(&[10, 10, 10, 55, 10, 10]).longest_late_s(), None);
+        assert_eq!(polled(&[10; 30]).longest_late_s(&[]), None);
+        assert_eq!(polled(&[10, 10, 10, 55, 10, 10]).longest_late_s(&[]), None);
         let late = polled(&[10, 10, 10, 200, 10, 10]);
-        assert!(late.longest_late_s().is_some_and(|gap_s| (gap_s - 0.2).abs() < 1e-9));
-        assert_eq!(polled(&[100, 90, 110, 300, 100]).longest_late_s(), None, "a slow line");
-        assert!(polled(&[100, 90, 110, 450, 100]).longest_late_s().is_some());
+        assert!(late.longest_late_s(&[]).is_some_and(|gap_s| (gap_s - 0.2).abs() < 1e-9));
+        assert_eq!(polled(&[100, 90, 110, 300, 100]).longest_late_s(&[]), None, "a slow line");
+        assert!(polled(&[100, 90, 110, 450, 100]).longest_late_s(&[]).is_some());
     }
 
     #[test]
     fn exchanges_that_spread_by_half_a_poll_are_late_and_slow_ones_are_not() {
-        let polled = |took_ms: &dyn Fn(u64) -> u64| {
-            let mut pace = Pace::default();
-            for number in 0..40 {
-                let sent = Duration::from_millis(25 * number);
-                pace.answered(&Exchange { sent, received: sent + Duration::from_millis(took_ms(number)) });
-            }
-            pace.longest_late_s()
+        let late = |took_ms: &dyn Fn(u32) -> u32| {
+            let took_s: Vec<f64> = (0..40).map(|number| 1e-3 * f64::from(took_ms(number))).collect();
+            polled(&[25; 40]).longest_late_s(&took_s)
         };
-        assert_eq!(polled(&|number| 15 + number % 5), None, "a slow line");
-        assert_eq!(polled(&|number| if number % 20 == 3 { 24 } else { 1 }), None, "one in twenty");
-        let busy = polled(&|number| 4 * (number % 5)).expect("a time slice of 4 ms, and up to four of them");
-        assert!((busy - 0.029).abs() < 1e-9, "{busy}");
+        assert_eq!(late(&|number| 15 + number % 5), None, "a slow line");
+        assert_eq!(late(&|number| if number % 20 == 3 { 24 } else { 1 }), None, "one in twenty");
+        let busy = late(&|number| 4 * (number % 5)).expect("a time slice of 4 ms, and up to four of them");
+        assert!((busy - 0.025).abs() < 1e-9, "{busy}");
+        assert!(
+            Pace::default().longest_late_s(&[0.0, 0.016]).is_some_and(|gap_s| gap_s > 0.015),
+            "no gap is told as 0 ms"
+        );
     }
 
     #[test]
@@ -124,7 +122,7 @@ mod tests {
         pace.pause();
         pace.answered(&at(5_000));
         pace.answered(&at(5_010));
-        assert_eq!(pace.longest_late_s(), None);
+        assert_eq!(pace.longest_late_s(&[]), None);
     }
 
     #[test]

@@ -10,7 +10,7 @@ use crate::axis::{
 use crate::cause::Cause;
 use crate::diagnosis::{DIAGNOSIS_S, diagnose};
 use crate::motion_mind::{MotionMindRegisters, SPEED_STEP_COUNTS_PER_S, bits};
-use crate::pace::Pace;
+use crate::pace::{Pace, quantile};
 use crate::watch::{NO_CURRENT_AMPS, Watch};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
@@ -277,7 +277,8 @@ impl<'a> Rig<'a> {
         if !self.options.weighs_evidence {
             return cause;
         }
-        let late_s = self.pace.longest_late_s().filter(|_| cause.is_of_motion());
+        let took_s: Vec<f64> = self.exchanges.iter().map(|exchange| exchange.1).collect();
+        let late_s = self.pace.longest_late_s(&took_s).filter(|_| cause.is_of_motion());
         if let Some(longest_s) = late_s {
             return Cause::AnsweredLate { longest_gap_ms: (1e3 * longest_s).round() as u32 };
         }
@@ -503,9 +504,8 @@ impl<'a> Rig<'a> {
     /// How long an exchange took of late, s: the one that a quarter were quicker than, since a busy host makes only longer ones.
     fn usual_exchange_s(&self) -> Option<f64> {
         let recent = &self.exchanges[self.exchanges.len().saturating_sub(USUAL_POLLS)..];
-        let mut took: Vec<f64> = recent.iter().map(|exchange| exchange.1).collect();
-        took.sort_by(f64::total_cmp);
-        took.get(took.len() / 4).copied()
+        let took_s: Vec<f64> = recent.iter().map(|exchange| exchange.1).collect();
+        quantile(&took_s, 0.25)
     }
 
     /// The current limit over the stall current at full duty.

@@ -135,23 +135,12 @@ fn a_damaged_journal_is_told_and_hides_no_other() {
 fn every_backup_can_be_opened_and_they_are_listed_newest_first() {
     let folder = tempfile::tempdir().unwrap();
     let store = Store::at(folder.path());
-    let mut profile = Profile {
-        subject: *table().subject(),
-        firmware: String::new(),
-        address: UnitAddress::DEFAULT,
-        date: today(),
-        unit: String::new(),
-        note: String::new(),
-        settings: SettingsImage::default(),
-    };
     for number in 0..60 {
-        profile.settings.set("motor1.velocity.qpps", SettingValue::Int(number));
-        store.back_up(&unit(), Act::Defaults, &profile).unwrap();
+        store.back_up(&unit(), Act::Defaults, &numbered_profile(number)).unwrap();
     }
     let backups = store.backups(None);
     assert!((40..=41).contains(&backups.len()), "bounded: {}", backups.len());
-    let newest = backups[0].open().unwrap().profile;
-    assert_eq!(newest.settings.get("motor1.velocity.qpps"), Some(SettingValue::Int(59)));
+    assert_eq!(number_of(&backups[0]), 59);
     assert!(backups.iter().all(|backup| backup.open().is_ok() && Path::exists(&backup.path)));
 }
 

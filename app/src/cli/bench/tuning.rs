@@ -44,7 +44,7 @@ pub fn run(args: &BenchArgs, out: &mut Output) -> Exit {
     }
     let is_fresh = args.write_oracle.is_some();
     // The optima take an hour.
-    let file = args.write_oracle.as_deref().map(|path| NewFile::new(path, args.replace));
+    let mut file = args.write_oracle.as_deref().map(|path| NewFile::new(path, args.replace));
     if let Some(Err(error)) = file.as_ref().map(NewFile::check) {
         return error.into();
     }
@@ -60,11 +60,9 @@ pub fn run(args: &BenchArgs, out: &mut Output) -> Exit {
             (optima, (!is_fresh).then(|| mind::table::table(args.seed, &cases, !args.quick)))
         }
     };
-    if let Some(path) = &args.write_oracle {
+    if let Some(file) = &mut file {
         let text = optima.and_then(Result::ok).unwrap_or_default();
-        return NewFile::new(path, args.replace)
-            .write(text.as_bytes())
-            .map_or_else(Exit::from, |()| Exit::Done);
+        return file.write(text.as_bytes()).map_or_else(Exit::from, |()| Exit::Done);
     }
     let Some(table) = table else { return Exit::Failed };
     let printed = if args.json { out.json(&table) } else { print(&table, out) };

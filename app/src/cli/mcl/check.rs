@@ -41,10 +41,7 @@ pub fn run(args: &CheckArgs, out: &mut Output) -> Exit {
         let compiled = source.compile();
         page += &source.rendered(&compiled);
         let diagnostics = source.placed(&compiled);
-        // What says how many more there are is none of them.
-        let is_one =
-            |said: &PlacedDiagnostic| ![codes::MORE_ERRORS, codes::MORE_WARNINGS].contains(&said.code);
-        let listed = || diagnostics.iter().filter(|said| is_one(said));
+        let listed = || diagnostics.iter().filter(|said| !codes::is_count(said.code));
         let count = |severity| listed().filter(|said| said.severity == severity).count();
         let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
         files.push(Checked { file: source.name, ok: errors == 0, errors, warnings, diagnostics });

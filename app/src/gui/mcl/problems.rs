@@ -99,11 +99,8 @@ impl Findings {
 
     /// Errors and warnings.
     pub fn counts(&self) -> (usize, usize) {
-        // What says how many more there are is none of them.
-        let is_one = |problem: &Problem| ![codes::MORE_ERRORS, codes::MORE_WARNINGS].contains(&problem.code);
-        let of = |severity| {
-            self.problems.iter().filter(|problem| problem.severity == severity && is_one(problem)).count()
-        };
+        let listed = || self.problems.iter().filter(|problem| !codes::is_count(problem.code));
+        let of = |severity| listed().filter(|problem| problem.severity == severity).count();
         (of(Severity::Error), of(Severity::Warning))
     }
 

@@ -94,18 +94,22 @@ fn ending_text(name: &str, ending: &JobEnding) -> String {
         JobEnding::Failed(failure) => failure.to_string(),
         JobEnding::Panicked(word) => format!("Could not {name}: Brushwork had a bug. Its last word: {word}"),
         JobEnding::Interrupted(cause) => {
-            let why = match cause {
-                Interruption::Stop => "Stop was pressed",
-                Interruption::DeadMan => {
-                    "this computer answered late: the window did not renew the motion within 250 ms"
-                }
-                Interruption::Disarm => "it was disarmed",
-                Interruption::Closing => "the link was closed",
-                Interruption::Cancelled => "it was cancelled",
-                Interruption::TimeLimit => "it took too long",
-            };
-            format!("Did not {name} to the end: {why}. The motors were stopped.")
+            format!("Did not {name} to the end: {}. The motors were stopped.", interruption(*cause))
         }
+    }
+}
+
+/// What broke into a job, as a clause.
+pub fn interruption(cause: Interruption) -> &'static str {
+    match cause {
+        Interruption::Stop => "Stop was pressed",
+        Interruption::DeadMan => {
+            "this computer answered late: the window did not renew the motion within 250 ms"
+        }
+        Interruption::Disarm => "it was disarmed",
+        Interruption::Closing => "the link was closed",
+        Interruption::Cancelled => "it was cancelled",
+        Interruption::TimeLimit => "it took too long",
     }
 }
 

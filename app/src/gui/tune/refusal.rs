@@ -32,7 +32,8 @@ fn steps(cause: Cause) -> &'static [&'static str] {
         ],
         Cause::AnsweredLate { .. } => &[
             "Close other programs that keep this computer busy, and try again.",
-            "If it stays, look at the link's figures for lost replies, and check the cable.",
+            "If it stays, it is the line: look at the link's figures for lost replies, check the cable, and try without a radio, a network or \
+             an adapter on the way.",
         ],
         Cause::OutsideTravel => &[
             "Move the axis by hand, or on the PWM screen with little duty, until its counts lie within the travel.",

@@ -7,7 +7,6 @@
 use std::sync::PoisonError;
 
 use brushwork_link::device::{ArmScope, Event, Job, JobEnding, Request};
-use brushwork_link::exchange::Interruption;
 use brushwork_link::settings::Subject;
 use brushwork_tuning::axis::Setup;
 use brushwork_tuning::report::Report;
@@ -16,6 +15,7 @@ use brushwork_tuning::trial::{Trial, TrialRequest};
 use brushwork_tuning::tune;
 
 use crate::gui::model::link::Arming;
+use crate::gui::model::watched::interruption;
 use crate::keep::TrialKeeper;
 use crate::tune::tap::Live;
 use crate::tune::{self as jobs, Restored, Slot, Target, take};
@@ -318,18 +318,5 @@ impl Sequence {
         self.before = self.before.or_else(|| take(&self.setup));
         let owed = self.before;
         self.end(owed)
-    }
-}
-
-fn interruption(cause: Interruption) -> &'static str {
-    match cause {
-        Interruption::Stop => "Stop was pressed",
-        Interruption::DeadMan => {
-            "this computer answered late: the window did not renew the motion within 250 ms"
-        }
-        Interruption::Disarm => "it was disarmed",
-        Interruption::Closing => "the link was closed",
-        Interruption::Cancelled => "it was cancelled",
-        Interruption::TimeLimit => "it took too long",
     }
 }

@@ -67,6 +67,12 @@ codes! {
     MORE_WARNINGS = "W423", "More warnings than are listed.";
 }
 
+/// Whether a code only counts further errors or warnings, so that what has it is none of them.
+#[must_use]
+pub fn is_count(code: &str) -> bool {
+    [MORE_ERRORS, MORE_WARNINGS].contains(&code)
+}
+
 #[cfg(test)]
 mod tests {
     #[test]

@@ -262,22 +262,23 @@ impl UnitSettings {
 
     /// The commands that the edits need, or why they cannot be written.
     pub fn plan(&self, own_stream: Option<Stream>) -> Result<Plan, Vec<Refusal>> {
-        plan(&self.table, &self.ram_or_nothing(), &self.edits, self.options(own_stream))
+        let nothing = SettingsImage::default();
+        let ram = self.copies.ram().unwrap_or(&nothing);
+        plan(&self.table, ram, &self.edits, self.options(own_stream))
     }
 
     /// How the edits are written. Those that were typed have to be right for those that were taken over to be written as they are.
     pub fn options(&self, own_stream: Option<Stream>) -> WriteOptions {
         let options = WriteOptions { own_stream, simulated: self.is_simulated, as_read: false };
-        let (mut beside, mut typed) = (self.ram_or_nothing(), SettingsImage::default());
+        if self.taken.is_empty() {
+            return options;
+        }
+        let (mut beside, mut typed) =
+            (self.copies.ram().cloned().unwrap_or_default(), SettingsImage::default());
         for (key, value) in self.edits.iter() {
             if self.taken.contains(key) { &mut beside } else { &mut typed }.set(key, value);
         }
-        let is_right = || plan(&self.table, &beside, &typed, options).is_ok();
-        WriteOptions { as_read: !self.taken.is_empty() && is_right(), ..options }
-    }
-
-    fn ram_or_nothing(&self) -> SettingsImage {
-        self.copies.ram().cloned().unwrap_or_default()
+        WriteOptions { as_read: plan(&self.table, &beside, &typed, options).is_ok(), ..options }
     }
 
     pub fn saved(&self) -> Saved {
