@@ -119,13 +119,28 @@ impl Program {
     /// # Panics
     /// When the program closes it or `limit` passes first.
     pub fn wait_for_error(&mut self, words: &str, limit: Duration) -> String {
+        self.reach_error(words, limit)
+            .unwrap_or_else(|others| panic!("ended without `{words}` on standard error: {others:#?}"))
+    }
+
+    /// Reads on until a line of standard error contains `words`, and returns it.
+    ///
+    /// # Errors
+    /// All lines read, when the program closes its standard error first.
+    ///
+    /// # Panics
+    /// When `limit` passes first.
+    pub fn reach_error(&mut self, words: &str, limit: Duration) -> Result<String, Vec<String>> {
         let deadline = Instant::now() + limit;
         let mut others = Vec::new();
         loop {
             match self.stderr.recv_timeout(deadline.saturating_duration_since(Instant::now())) {
-                Ok(line) if line.contains(words) => return line,
+                Ok(line) if line.contains(words) => return Ok(line),
                 Ok(line) => others.push(line),
-                Err(_) => panic!("no `{words}` on standard error within {limit:?}, but {others:#?}"),
+                Err(RecvTimeoutError::Disconnected) => return Err(others),
+                Err(RecvTimeoutError::Timeout) => {
+                    panic!("no `{words}` on standard error within {limit:?}, but {others:#?}")
+                }
             }
         }
     }
