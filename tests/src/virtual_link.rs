@@ -41,7 +41,11 @@ pub struct VirtualLink<M: Machine = Bus> {
     device_loop: DeviceLoop,
     hooks: Hooks,
     frame_at: Duration,
+    written: Written,
 }
+
+/// What the loop has written, each write by itself.
+type Written = Arc<Mutex<Vec<Vec<u8>>>>;
 
 /// The line as the device thread gets it: reading stops at the window's frames and at hooks.
 struct Watched<M: Machine> {
@@ -50,6 +54,7 @@ struct Watched<M: Machine> {
     handle: Arc<Mutex<Option<Arc<DeviceHandle>>>>,
     window_alive: Arc<AtomicBool>,
     byte_time: Option<Duration>,
+    written: Written,
 }
 
 impl VirtualLink {
@@ -105,12 +110,24 @@ impl<M: Machine + 'static> VirtualLink<M> {
             handle: Arc::clone(&handle_for_hooks),
             window_alive: Arc::clone(&window_alive),
             byte_time,
+            written: Written::default(),
         };
+        let written = Arc::clone(&watched.written);
         let (device_loop, handle) = open(Box::new(watched), Arc::new(line.clock().clone()));
         let handle = Arc::new(handle);
         *lock(&handle_for_hooks) = Some(Arc::clone(&handle));
         let frame_at = line.clock().now();
-        Self { line, handle, events: Vec::new(), window_alive, ended: false, device_loop, hooks, frame_at }
+        Self {
+            line,
+            handle,
+            events: Vec::new(),
+            window_alive,
+            ended: false,
+            device_loop,
+            hooks,
+            frame_at,
+            written,
+        }
     }
 
     /// The window hangs: it renews nothing and takes nothing.
@@ -127,6 +144,11 @@ impl<M: Machine + 'static> VirtualLink<M> {
     /// Time now.
     pub fn now(&self) -> Duration {
         self.line.clock().now()
+    }
+
+    /// What the loop has written since this was asked last, each write by itself.
+    pub fn take_written(&self) -> Vec<Vec<u8>> {
+        std::mem::take(&mut *lock(&self.written))
     }
 
     /// Lets the loop and the machine run for a time.
@@ -240,6 +262,7 @@ impl<M: Machine + 'static> VirtualLink<M> {
 
 impl<M: Machine + 'static> Transport for Watched<M> {
     fn write(&mut self, bytes: &[u8]) -> Result<(), TransportError> {
+        lock(&self.written).push(bytes.to_vec());
         self.line.write(bytes)
     }
 
