@@ -9,6 +9,6 @@ pub mod session;
 pub mod tune;
 
 #[cfg(test)]
-#[path = "../tests/support/wait.rs"]
+#[path = "../tests/gui/support/wait.rs"]
 #[allow(dead_code, reason = "shared with the tests of the program")]
 mod wait;

@@ -3,6 +3,7 @@
 //!
 //! A short run by default; `BRUSHWORK_SOAK_HOURS=8 cargo test -p brushwork --test soak` runs them all.
 
+#[path = "gui/support/mod.rs"]
 mod support;
 
 use std::time::Duration;

@@ -3,6 +3,7 @@
 //! They have 50 kB, and those that take the most 1 MB too: `BRUSHWORK_MCL_LONG=n` so many of them (1000 is all), `BRUSHWORK_SEED=n` takes
 //! other random ones.
 
+#[path = "script/support/mod.rs"]
 mod support;
 
 use brushwork_script::mcl::compile;

@@ -1,0 +1,85 @@
+//! The command line on a CANopen bus: simulated nodes behind an adapter on a pseudo-terminal, and in the program itself.
+#![cfg(unix)]
+
+use crate::cli::{Run, program, run};
+use brushwork_protocol::canopen::NodeId;
+use brushwork_protocol::canopen::adapter::Form;
+use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
+use brushwork_sim::server::{Endpoint, Server, ServerOptions, SimHandle};
+use serde_json::Value;
+use tempfile::TempDir;
+
+fn brushwork(arguments: &[&str]) -> Run {
+    run(program().args(arguments))
+}
+
+/// Nodes behind an adapter on a pseudo-terminal, as somebody else's program would run them.
+fn served(form: Form, nodes: &[u8]) -> (SimHandle<Bus>, TempDir, String) {
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    let units = nodes.iter().map(|id| {
+        let mut config = ControllerConfig::default();
+        config.set_node(NodeId::new(*id).expect("a node id"));
+        Controller::new(config).expect("the preset is valid")
+    });
+    let bus = Bus::on_can(units.collect(), form).expect("there are units");
+    let endpoint = Endpoint::Pty { link: folder.path().join("adapter") };
+    let server = Server::spawn(bus, ServerOptions::default(), &endpoint).expect("there are pseudo-terminals");
+    let target = format!("can:{},form={}", folder.path().join("adapter").display(), form.key());
+    (server, folder, target)
+}
+
+#[test]
+fn nodes_behind_either_form_of_adapter_are_listed_with_their_identity() {
+    for form in Form::ALL {
+        let (_server, _folder, target) = served(form, &[3, 17]);
+        let run = brushwork(&["nodes", "--json", "--connect", &target]);
+        assert_eq!(run.code, 0, "{run:?}");
+        let json: Value = serde_json::from_str(&run.stdout).unwrap();
+        let ids: Vec<_> =
+            json["nodes"].as_array().unwrap().iter().map(|node| node["address"].clone()).collect();
+        assert_eq!(ids, [3, 17], "{form:?}");
+        assert_eq!(json["nodes"][0]["model"], "MCP266");
+    }
+}
+
+#[test]
+fn the_wrong_form_of_adapter_and_a_node_that_is_not_there_are_told() {
+    let (_server, folder, _target) = served(Form::Ascii, &[3]);
+    let adapter = folder.path().join("adapter").display().to_string();
+    let run = brushwork(&["nodes", "--connect", &format!("can:{adapter},form=binary")]);
+    assert_eq!(run.code, 3, "{run:?}");
+    assert!(run.stderr.contains("no node of the bus answered"), "{run:?}");
+    let run = brushwork(&["status", "--connect", &format!("can:{adapter},node=9")]);
+    assert_eq!(run.code, 3, "{run:?}");
+    assert!(run.stderr.contains("node 9 did not answer"), "{run:?}");
+}
+
+#[test]
+fn settings_are_written_over_can_and_a_drive_is_refused_with_its_reason() {
+    let (server, _folder, target) = served(Form::Ascii, &[3]);
+    let node = format!("{target},node=3");
+    let run = brushwork(&["settings", "write", "-c", &node, "motor1.velocity.qpps=12345", "--yes"]);
+    assert_eq!(run.code, 0, "{run:?}");
+    let qpps = server.inspect(|bus| bus.controllers()[0].settings().motors[0].motion.qpps).unwrap();
+    assert_eq!(qpps, 12_345);
+    let run = brushwork(&["drive", "-c", &node, "--duty", "20", "--for", "0.5"]);
+    assert_eq!(run.code, 4, "{run:?}");
+    assert!(run.stderr.contains("over CANopen the controller has no time-out"), "{run:?}");
+}
+
+#[test]
+fn a_node_simulated_in_the_program_drives() {
+    let run = brushwork(&["drive", "-c", "sim:mcp266,can,node=5", "--duty", "20", "--for", "0.5"]);
+    assert_eq!(run.code, 0, "{run:?}");
+    assert!(run.stdout.contains("20.0 %"), "{run:?}");
+}
+
+#[test]
+fn firmware_is_not_updated_over_can() {
+    let folder = tempfile::tempdir().unwrap();
+    let image = folder.path().join("new.bin").display().to_string();
+    assert_eq!(brushwork(&["firmware", "image", &image]).code, 0);
+    let run = brushwork(&["firmware", "update", &image, "-c", "sim:mcp266,can", "--accept-risk"]);
+    assert_eq!(run.code, 4, "{run:?}");
+    assert!(run.stderr.contains("connect over USB"), "{run:?}");
+}

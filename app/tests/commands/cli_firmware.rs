@@ -1,0 +1,173 @@
+//! `brushwork firmware` as a person or a script runs it, against a simulated controller on a pseudo-terminal.
+#![cfg(unix)]
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::cli::{Run, program, run};
+use brushwork_child::Program;
+use brushwork_link::settings::Profile;
+use brushwork_protocol::models;
+use brushwork_sim::controller::{Bus, Controller, ControllerConfig, Flash};
+use brushwork_sim::machine::StreamIndex;
+use brushwork_sim::server::{Endpoint, Server, ServerOptions, SimHandle};
+use brushwork_sim::world::WorldAction;
+use tempfile::TempDir;
+
+fn command(arguments: &[&str]) -> Command {
+    let mut command = program();
+    command.arg("firmware").args(arguments);
+    command
+}
+
+fn firmware(arguments: &[&str]) -> Run {
+    run(&command(arguments))
+}
+
+/// A RoboClaw on a pseudo-terminal, and an image for it.
+struct Unit {
+    server: SimHandle<Bus>,
+    folder: TempDir,
+}
+
+impl Unit {
+    fn start() -> Self {
+        let folder = tempfile::tempdir().expect("a temporary folder can be made");
+        let model = models::lookup("roboclaw-2x7a").expect("it is listed");
+        let unit = Controller::new(ControllerConfig::of(model)).expect("the preset is valid");
+        let endpoint = Endpoint::Pty { link: folder.path().join("port") };
+        let bus = Bus::single(unit, StreamIndex::Usb);
+        let server =
+            Server::spawn(bus, ServerOptions::default(), &endpoint).expect("there are pseudo-terminals");
+        let this = Self { server, folder };
+        let made = firmware(&["image", &this.image(), "--model", "roboclaw-2x7a", "--version", "9.8.7"]);
+        assert_eq!(made.code, 0, "{made:?}");
+        this
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn port(&self) -> String {
+        self.path("port").display().to_string()
+    }
+
+    fn image(&self) -> String {
+        self.path("new.bin").display().to_string()
+    }
+
+    fn flash(&self) -> Flash {
+        self.server.inspect(|bus| bus.controllers()[0].flash().clone()).expect("it runs")
+    }
+
+    /// Switches it off and on; it is at the other end of the line again when this returns.
+    fn power_cycle(&self) {
+        for on in [false, true] {
+            self.server.apply(0, WorldAction::Power { on }).expect("it runs");
+            self.until(if on { "power" } else { "no power" }, move |unit| unit.unit().is_some() == on);
+        }
+        crate::wait::until("the port", || self.path("port").exists(), || "it is not there".to_owned());
+    }
+
+    fn until(&self, what: &str, holds: impl Fn(&Controller) -> bool + Copy + Send + 'static) {
+        let look = || self.server.inspect(move |bus| holds(&bus.controllers()[0])).expect("it runs");
+        crate::wait::until(what, look, || format!("{:?}", self.flash()));
+    }
+}
+
+fn holds(path: &Path) -> Flash {
+    Flash::Image(std::fs::read(path).expect("the image is there"))
+}
+
+#[test]
+fn info_tells_what_is_installed_and_what_is_known_about_it() {
+    let run = firmware(&["info", "--connect", "sim:mcp266"]);
+    assert_eq!(run.code, 0, "{run:?}");
+    for words in ["MCP266 2x60A v1.0.0", "Generation:  1", "983040 bytes", "no image is published", "16 bits"]
+    {
+        assert!(run.stdout.contains(words), "{words}: {run:?}");
+    }
+    let run = firmware(&["info", "--json", "--connect", "sim:mcp266,generation=4"]);
+    let json: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!(json["image_bytes"][0], 983_040);
+    assert!(json["known"].as_array().unwrap().iter().any(|row| row["topic"] == "restart"));
+}
+
+#[test]
+fn an_update_needs_the_risk_accepted_and_backs_the_settings_up_first() {
+    let unit = Unit::start();
+    let (image, port) = (unit.image(), unit.port());
+    let unasked = firmware(&["update", &image, "--connect", &port, "--simulated"]);
+    assert_eq!(unasked.code, 4, "{unasked:?}");
+    assert!(
+        unasked.stderr.contains("dead for good") && unasked.stderr.contains("--accept-risk"),
+        "{unasked:?}"
+    );
+    assert_eq!(unit.flash(), Flash::Factory);
+
+    let backup = unit.path("backup.json");
+    let backup_name = backup.display().to_string();
+    let arguments =
+        ["update", &image, "--connect", &port, "--simulated", "--accept-risk", "--backup", &backup_name];
+    let run = firmware(&arguments);
+    assert_eq!(run.code, 0, "{run:?}");
+    assert!(run.stdout.contains("128 pages were sent and confirmed"), "{run:?}");
+    assert!(run.stdout.contains("settings diff"), "what to do next is said: {run:?}");
+    assert!(unit.flash() == holds(&unit.path("new.bin")));
+    assert!(Profile::load(&backup).unwrap().firmware.contains("v4.2.8"), "the backup is of the old firmware");
+    unit.until("a restart", |unit| unit.unit().is_some_and(|unit| !unit.is_in_loader()));
+    let info = firmware(&["info", "--connect", &port]);
+    assert!(info.stdout.contains("v9.8.7"), "{info:?}");
+}
+
+#[test]
+fn an_image_for_simulated_controllers_is_not_sent_to_what_could_be_a_real_one() {
+    let unit = Unit::start();
+    let run = firmware(&["update", &unit.image(), "--connect", &unit.port(), "--accept-risk"]);
+    assert_eq!(run.code, 4, "{run:?}");
+    assert!(run.stderr.contains("would leave a real one without firmware"), "{run:?}");
+    assert_eq!(unit.flash(), Flash::Factory);
+}
+
+#[test]
+fn a_file_of_another_size_is_not_sent() {
+    let unit = Unit::start();
+    let file = unit.path("short.bin");
+    std::fs::write(&file, [1, 2, 3]).unwrap();
+    let name = file.display().to_string();
+    let run = firmware(&["update", &name, "--connect", &unit.port(), "--accept-risk"]);
+    assert_eq!(run.code, 4, "{run:?}");
+    assert!(run.stderr.contains("32768 or 65536 bytes"), "{run:?}");
+}
+
+#[test]
+fn an_update_that_is_killed_is_resumed_after_a_power_cycle() {
+    let unit = Unit::start();
+    let (image, port) = (unit.image(), unit.port());
+    let backup = unit.path("backup.json").display().to_string();
+    let update =
+        command(&["update", &image, "--connect", &port, "--simulated", "--accept-risk", "--backup", &backup]);
+    let program = Program::spawn(update);
+    unit.until("a first page", |unit| matches!(unit.flash(), Flash::Filling(_)));
+    drop(program);
+    assert!(matches!(unit.flash(), Flash::Filling(_)), "it was killed before its end");
+    unit.power_cycle();
+    let lost = firmware(&["info", "--connect", &port]);
+    assert_eq!(lost.code, 3, "in its loader it answers no packet: {lost:?}");
+    let resume = [
+        "update",
+        &image,
+        "--connect",
+        &port,
+        "--simulated",
+        "--accept-risk",
+        "--resume",
+        "--model",
+        "roboclaw-2x7a",
+    ];
+    let run = firmware(&resume);
+    assert_eq!(run.code, 0, "{run:?}");
+    assert!(run.stderr.contains("after the controller was switched off and on"), "{run:?}");
+    assert!(unit.flash() == holds(&unit.path("new.bin")));
+}

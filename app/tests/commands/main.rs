@@ -1,0 +1,13 @@
+//! Commands of the program that need no other program beside it.
+
+mod cli;
+mod cli_as_read;
+mod cli_backups;
+mod cli_can;
+mod cli_files;
+mod cli_firmware;
+mod cli_profiles;
+mod cli_settings;
+#[path = "../gui/support/wait.rs"]
+#[allow(dead_code, reason = "each suite uses its own part of this")]
+mod wait;

@@ -1,0 +1,15 @@
+//! The MCL compiler, its machine and its debugger, by programs and by what is said about them.
+
+mod bounds;
+mod debug;
+mod debug_same;
+mod formatting;
+mod images;
+mod language;
+mod manual;
+mod messages;
+mod mutations;
+mod precedence;
+mod programs;
+mod speed_same;
+mod support;

@@ -1,0 +1,7 @@
+//! The house rules: layers, the map, licences, and what neither rustfmt nor clippy can see.
+
+mod layers;
+mod licences;
+mod limited;
+mod map;
+mod tidy;

@@ -1,0 +1,14 @@
+//! The tuner against plants whose truth is known, small enough for every run of the tests.
+
+mod absolute;
+mod busy_host;
+mod late_host;
+mod laws;
+mod loads;
+mod mind_guard;
+mod mind_table;
+mod mind_trial;
+mod noisy_current;
+mod small_faults;
+mod small_table;
+mod ways_out;
