@@ -1,7 +1,7 @@
 //! What the end-to-end tests share: the workspace as a test sees it, the built program, foreign clients.
 //!
 //! The tests themselves are in `tests/tests`. Nothing here knows the window or the protocol; a test that needs
-//! a controller brings one up through `brushwork-sim`.
+//! a controller brings one up through `brushwork-mcp-sim`.
 
 pub mod foreign;
 #[cfg(target_os = "linux")]

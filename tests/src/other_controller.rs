@@ -1,10 +1,10 @@
-//! A motor controller that shares nothing with `brushwork-sim`: a few commands of packet serial, a first-order motor, another tick.
+//! A motor controller that shares nothing with `brushwork-mcp-sim`: a few commands of packet serial, a first-order motor, another tick.
 //!
 //! It is what the tuner meets when somebody else's controller is on the line: it may tell no current, answer optional commands with
 //! silence, have no status bits, and be slow. Only the CRC is taken from the protocol crate. Leaves out: buffers, ramps, two motors
 //! (the second one stands), priorities.
 
-use brushwork_protocol::crc::crc16_xmodem;
+use brushwork_mcp_wire::crc::crc16_xmodem;
 use std::collections::VecDeque;
 use std::time::Duration;
 

@@ -2,8 +2,8 @@
 //!
 //! The families' own types are narrower; these are what settings, profiles and screens carry.
 
-use brushwork_protocol::motion_mind;
-use brushwork_protocol::packet_serial::{Address, Generation};
+use brushwork_mcp_wire::packet_serial::{Address, Generation};
+use brushwork_motion_mind_wire as motion_mind;
 use serde::{Serialize, Serializer};
 use std::fmt;
 

@@ -2,7 +2,8 @@
 
 use crate::exchange::ExchangeError;
 use crate::unit::{FirmwareGeneration, UnitAddress};
-use brushwork_protocol::packet_serial::{Request, Value, Values};
+use brushwork_mcp_wire::packet_serial::Request;
+use brushwork_values::{Value, Values};
 use std::fmt;
 use std::time::Duration;
 

@@ -8,25 +8,44 @@ use brushwork_tests::rust_source::{code_lines, without_tests};
 use brushwork_tests::workspace::{self, DependencyKind, Member, Metadata};
 
 /// The arrows that ship: a crate and the crates of this workspace it may use.
-const ARROWS: [(&str, &[&str]); 10] = [
+const ARROWS: [(&str, &[&str]); 14] = [
     (
         "brushwork",
         &[
             "brushwork-link",
-            "brushwork-protocol",
+            "brushwork-mcp-sim",
+            "brushwork-mcp-wire",
+            "brushwork-motion-mind-sim",
+            "brushwork-motion-mind-wire",
+            "brushwork-plant",
             "brushwork-raster",
             "brushwork-script",
-            "brushwork-sim",
             "brushwork-tuning",
             "brushwork-tuning-bench",
+            "brushwork-values",
         ],
     ),
     ("brushwork-tuning", &[]),
-    ("brushwork-tuning-bench", &["brushwork-protocol", "brushwork-sim", "brushwork-tuning"]),
-    ("brushwork-link", &["brushwork-protocol"]),
-    ("brushwork-sim", &["brushwork-protocol", "brushwork-script"]),
-    ("brushwork-protocol", &[]),
+    (
+        "brushwork-tuning-bench",
+        &[
+            "brushwork-mcp-sim",
+            "brushwork-mcp-wire",
+            "brushwork-motion-mind-sim",
+            "brushwork-motion-mind-wire",
+            "brushwork-plant",
+            "brushwork-tuning",
+            "brushwork-values",
+        ],
+    ),
+    ("brushwork-link", &["brushwork-mcp-wire", "brushwork-motion-mind-wire", "brushwork-values"]),
+    ("brushwork-plant", &["brushwork-values"]),
+    ("brushwork-mcp-wire", &["brushwork-values"]),
+    ("brushwork-mcp-sim", &["brushwork-mcp-wire", "brushwork-plant", "brushwork-script", "brushwork-values"]),
+    ("brushwork-motion-mind-wire", &["brushwork-values"]),
+    ("brushwork-motion-mind-sim", &["brushwork-motion-mind-wire", "brushwork-plant", "brushwork-values"]),
     ("brushwork-script", &[]),
+    ("brushwork-values", &[]),
     ("brushwork-raster", &[]),
     ("brushwork-child", &[]),
     (
@@ -35,18 +54,21 @@ const ARROWS: [(&str, &[&str]); 10] = [
             "brushwork",
             "brushwork-child",
             "brushwork-link",
-            "brushwork-protocol",
+            "brushwork-mcp-sim",
+            "brushwork-mcp-wire",
+            "brushwork-motion-mind-sim",
+            "brushwork-motion-mind-wire",
+            "brushwork-plant",
             "brushwork-script",
-            "brushwork-sim",
             "brushwork-tuning",
             "brushwork-tuning-bench",
+            "brushwork-values",
         ],
     ),
 ];
 
-/// Arrows for tests alone: the client is tried against the simulated controller, the program from outside.
-const TEST_ARROWS: [(&str, &[&str]); 2] =
-    [("brushwork", &["brushwork-child"]), ("brushwork-link", &["brushwork-sim"])];
+/// Arrows for tests alone: the program is tried from outside.
+const TEST_ARROWS: [(&str, &[&str]); 1] = [("brushwork", &["brushwork-child"])];
 
 /// Crates from outside that only some of ours may use, by the start of their name.
 const KEPT_TO: [(&str, &[&str]); 7] = [
@@ -76,10 +98,14 @@ const IMPURE: [&str; 9] = [
 ];
 
 /// The pure parts: a source folder and the modules in it that are the named exception.
-const PURE: [(&str, &[&str]); 4] = [
-    ("device/protocol/src", &[]),
+const PURE: [(&str, &[&str]); 8] = [
+    ("device/values/src", &[]),
+    ("device/mcp/wire/src", &[]),
+    ("device/mcp/sim/src", &[]),
+    ("device/motion_mind/wire/src", &[]),
+    ("device/motion_mind/sim/src", &[]),
+    ("device/plant/src", &["server"]),
     ("device/script/src", &[]),
-    ("device/sim/src", &["server"]),
     ("tuning/src", &[]),
 ];
 

@@ -117,19 +117,19 @@ fn backups_are_listed_compared_and_restored() {
     ] {
         let work = kept();
         let backups = listed(&work, &["settings", "backups", "--json"], DONE);
-        let oldest = backups
-            .iter()
-            .filter(|backup| backup["unit"] == unit)
-            .filter_map(|backup| backup["path"].as_str())
-            .find(|path| path.contains("before-write"))
-            .unwrap_or_else(|| panic!("no path in {backups:?}"));
+        let of_this = |backup: &&Value| {
+            backup["unit"] == unit
+                && backup["name"].as_str().is_some_and(|name| name.contains("before-write"))
+        };
+        let oldest = backups.iter().find(of_this).unwrap_or_else(|| panic!("none of {unit} in {backups:?}"));
+        let [name, profile] =
+            ["name", "path"].map(|key| oldest[key].as_str().expect("it is text").to_owned());
         brushwork(&work, &["settings", "write", "--connect", target, "--yes", changed], DONE);
         // A controller within the program is a new one each time: what the backup holds are its factory values.
-        let profile = oldest.to_owned();
         let printed =
             brushwork(&work, &["settings", "compare", "--connect", target, "defaults", &profile], DONE);
         assert!(!printed.contains(setting), "{printed}");
-        brushwork(&work, &["settings", "restore", "--connect", target, "--yes", &profile], DONE);
+        brushwork(&work, &["settings", "restore", "--connect", target, "--yes", &name], DONE);
     }
 }
 

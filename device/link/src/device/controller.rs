@@ -14,7 +14,7 @@ use crate::exchange::packet::Permit;
 use crate::exchange::{Exchange, ExchangeError, RETRIES, Reply, Watch};
 use crate::failure::Failure;
 use crate::transport::Stream;
-use brushwork_protocol::packet_serial::{Motor, Value};
+use brushwork_values::{Motor, Value};
 use std::cell::Cell;
 use std::time::Duration;
 

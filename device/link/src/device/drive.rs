@@ -1,6 +1,6 @@
 //! What a screen can be armed for, and how motors are told to move.
 
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 

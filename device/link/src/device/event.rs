@@ -9,7 +9,7 @@ use super::stop::StopReport;
 use crate::exchange::{LinkStatistics, Traffic};
 use crate::failure::Failure;
 use crate::transport::Stream;
-use brushwork_protocol::packet_serial::Values;
+use brushwork_values::Values;
 use std::fmt;
 use std::time::Duration;
 

@@ -7,7 +7,7 @@ use super::motion_mind::MotionMinds;
 use super::options::{Addresses, DeviceOptions};
 use super::stop::StopBytes;
 use crate::failure::Failure;
-use brushwork_protocol::packet_serial::Address;
+use brushwork_mcp_wire::packet_serial::Address;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;

@@ -7,8 +7,8 @@ use super::status::Sign;
 use super::{mcp, motion_mind};
 use crate::settings::Subject;
 use crate::unit::{FirmwareGeneration, UnitAddress};
-use brushwork_protocol::models;
-use brushwork_protocol::motion_mind::{Mode, Protocol};
+use brushwork_mcp_wire::models;
+use brushwork_motion_mind_wire::{Mode, Protocol};
 use serde::Serialize;
 
 /// The family's name of units on a CAN bus.

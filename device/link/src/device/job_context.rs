@@ -6,7 +6,7 @@ use super::identity::MotionMindFacts;
 use crate::exchange::{ExchangeError, Interruption, Reply};
 use crate::unit::{FirmwareGeneration, UnitAddress};
 use crate::wire::{HiddenSettings, Wire};
-use brushwork_protocol::packet_serial::{Value, Values};
+use brushwork_values::{Value, Values};
 use std::time::Duration;
 
 /// What the device thread does for a job.

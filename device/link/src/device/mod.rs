@@ -24,7 +24,7 @@ mod signals;
 mod status;
 mod stop;
 
-pub use brushwork_protocol::packet_serial::status::{Condition, Conditions, Lamp, Severity};
+pub use brushwork_mcp_wire::packet_serial::status::{Condition, Conditions, Lamp, Severity};
 pub use channel::{Channel, PinSignal, Sample};
 pub use controller::Described;
 pub use drive::{ArmScope, Drive, DriveCommand};

@@ -4,7 +4,7 @@ use super::drive::{ArmScope, Drive};
 use super::job::Job;
 use crate::firmware::RiskAccepted;
 use crate::transport::Stream;
-use brushwork_protocol::packet_serial::{Motor, Value};
+use brushwork_values::{Motor, Value};
 use std::time::Duration;
 
 /// How often the signals are read.

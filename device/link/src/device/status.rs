@@ -1,6 +1,6 @@
 //! A controller's status at one moment.
 
-use brushwork_protocol::packet_serial::status::{Condition, Conditions, Lamp, Severity};
+use brushwork_mcp_wire::packet_serial::status::{Condition, Conditions, Lamp, Severity};
 use std::time::Duration;
 
 /// What a status word says at one moment.

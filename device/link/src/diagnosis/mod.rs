@@ -15,8 +15,9 @@ pub use pins::{PinEnd, has_actions, homed, pin_ends};
 use crate::device::{Channel, Identity, StatusReport};
 use crate::settings::SettingsImage;
 use crate::transport::Stream;
-use brushwork_protocol::models::{self, Model};
-use brushwork_protocol::packet_serial::status::Conditions;
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::models::Model;
+use brushwork_mcp_wire::packet_serial::status::Conditions;
 use serde::Serialize;
 
 /// How much a finding keeps the motors from.

@@ -4,7 +4,7 @@
 use super::Hindrance::{BlocksAll, BlocksSome};
 use super::{Evidence, Finding, finding};
 use crate::settings::{SettingValue, SettingsImage};
-use brushwork_protocol::packet_serial::Values;
+use brushwork_values::Values;
 
 /// Where an input stands within its range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 use super::Hindrance::{BlocksAll, BlocksSome, Limits};
 use super::{Evidence, Finding, finding};
 use crate::settings::SettingValue;
-use brushwork_protocol::packet_serial::status::{Condition, Severity};
+use brushwork_mcp_wire::packet_serial::status::{Condition, Severity};
 
 /// What a condition means for the motors; none for a signal that says nothing about them.
 pub fn of(condition: Condition, evidence: &Evidence<'_>) -> Option<Finding> {

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::settings::SettingValue;
-use brushwork_protocol::packet_serial::status::{CONDITIONS, Condition, Severity};
+use brushwork_mcp_wire::packet_serial::status::{CONDITIONS, Condition, Severity};
 
 fn settings(pairs: &[(&str, SettingValue)]) -> SettingsImage {
     pairs.iter().map(|(key, value)| ((*key).to_owned(), *value)).collect()
@@ -180,7 +180,7 @@ fn bridged_channels_are_told_to_whoever_commands_motor_2() {
 #[test]
 fn every_key_that_is_judged_is_in_the_table_and_among_those_to_read() {
     use crate::settings::{SettingsTable, Subject};
-    use brushwork_protocol::packet_serial::Generation;
+    use brushwork_mcp_wire::packet_serial::Generation;
     for generation in Generation::ALL {
         let model = models::lookup("MCP266").expect("it is in the list");
         let table = SettingsTable::new(Subject::new(model, generation));
@@ -206,5 +206,5 @@ fn every_key_that_is_judged_is_in_the_table_and_among_those_to_read() {
         }
         assert!(keys.len() < table.rows().len());
     }
-    assert!(brushwork_protocol::codes::PRIORITY_SIGNALS.iter().any(|code| code.key == "serial"));
+    assert!(brushwork_mcp_wire::codes::PRIORITY_SIGNALS.iter().any(|code| code.key == "serial"));
 }

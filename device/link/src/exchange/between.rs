@@ -8,7 +8,7 @@
 use super::packet::{Ask, gate};
 use super::watch::Watch;
 use super::{Exchange, ExchangeError, RECOVERY, Tries};
-use brushwork_protocol::packet_serial::{ACK, ReplyProgress, Request, parse_reply};
+use brushwork_mcp_wire::packet_serial::{ACK, ReplyProgress, Request, parse_reply};
 use std::time::Duration;
 
 /// Pause between two tries, beyond their time on the wire: as often as a stop is repeated that nobody confirms.

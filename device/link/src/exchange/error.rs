@@ -3,7 +3,7 @@
 use super::watch::Interruption;
 use crate::failure::Failure;
 use crate::transport::TransportError;
-use brushwork_protocol::packet_serial::{EncodeError, Generation};
+use brushwork_mcp_wire::packet_serial::{EncodeError, Generation};
 use std::time::Duration;
 
 /// Why a request has no reply that could be used.

@@ -7,10 +7,11 @@ use super::watch::{Unwatched, Watch};
 use super::{Exchange, ExchangeError, Fault, Judgement, Outgoing, RETRIES, Span};
 use crate::unit::{FirmwareGeneration, UnitAddress};
 use crate::wire::{HiddenSettings, Wire};
-use brushwork_protocol::packet_serial::{
+use brushwork_mcp_wire::packet_serial::{
     Address, ClientUse, Command, Direction, Effect, Form, Generation, Reply as ReplyForm, ReplyProgress,
-    Request, Value, Values, parse_reply,
+    Request, parse_reply,
 };
+use brushwork_values::{Value, Values};
 use std::sync::Arc;
 use std::time::Duration;
 

@@ -5,7 +5,7 @@ use super::*;
 use crate::TransportError;
 use crate::clock::VirtualClock;
 use crate::testing::{Answers, ScriptedTransport, Wiretap, ms, reply_to, script, with_crc};
-use brushwork_protocol::packet_serial::{Address, Generation, Request, number};
+use brushwork_mcp_wire::packet_serial::{Address, Generation, Request, number};
 use std::cell::Cell;
 
 /// Read main battery of 0x80: no CRC.
@@ -218,7 +218,7 @@ fn no_relative_or_buffered_motion_is_sent_twice_after_it_may_have_run() {
     // Every command that moves by an amount or queues a move, with values that fit its layout.
     let once = [41, 42, 43, 44, 45, 46, 51, 65, 66, 67, 119, 120, 121, 122, 123, 124, 125, 126, 127];
     for command in once {
-        let row = brushwork_protocol::packet_serial::lookup(command).unwrap();
+        let row = brushwork_mcp_wire::packet_serial::lookup(command).unwrap();
         let form = row.form(Generation::Gen3).unwrap_or_else(|| panic!("{command} is in generation 3"));
         let values = vec![0; form.request.len()];
         for answer in [Vec::new(), vec![(ms(1), vec![0xFE])]] {
@@ -300,7 +300,7 @@ fn an_unplugged_port_is_told_at_once_and_not_retried() {
 
 #[test]
 fn nothing_that_moves_a_motor_passes_without_arming_and_no_guess_reaches_a_real_controller() {
-    use brushwork_protocol::packet_serial::COMMANDS;
+    use brushwork_mcp_wire::packet_serial::COMMANDS;
     let mut guarded = 0;
     for row in COMMANDS {
         for form in row.forms {

@@ -1,7 +1,7 @@
 //! Whether an image may be sent to a unit.
 
-use brushwork_protocol::loader::{Image, ImageError, SimulatedImage};
-use brushwork_protocol::models::Model;
+use brushwork_mcp_wire::loader::{Image, ImageError, SimulatedImage};
+use brushwork_mcp_wire::models::Model;
 
 use crate::device::Identity;
 use crate::transport::Stream;
@@ -70,8 +70,8 @@ pub fn suit(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use brushwork_protocol::models;
-    use brushwork_protocol::packet_serial::Generation;
+    use brushwork_mcp_wire::models;
+    use brushwork_mcp_wire::packet_serial::Generation;
 
     fn unit(simulated: bool) -> Identity {
         Identity {

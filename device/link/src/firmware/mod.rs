@@ -2,7 +2,7 @@
 //!
 //! An update is: settings backed up, motors stopped and the loader entered (`Request::EnterLoader` on the device thread, which
 //! ends that link), then [`send`] over a fresh line, since the unit comes back as another USB device. What was learned about the
-//! loader is in `brushwork_protocol::loader`.
+//! loader is in `brushwork_mcp_wire::loader`.
 
 mod check;
 mod error;

@@ -3,7 +3,7 @@
 use super::error::{Left, SendError};
 use crate::clock::Clock;
 use crate::transport::Transport;
-use brushwork_protocol::loader::{Advance, ERASE_LIMIT, Image, Stage, Transfer};
+use brushwork_mcp_wire::loader::{Advance, ERASE_LIMIT, Image, Stage, Transfer};
 use serde::Serialize;
 use std::time::Duration;
 

@@ -4,7 +4,7 @@ use crate::device::{FnJob, Job, JobContext};
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
 use crate::wire::Wire;
-use brushwork_protocol::packet_serial::number;
+use brushwork_mcp_wire::packet_serial::number;
 use std::time::Duration;
 
 /// What the job is called while it runs.

@@ -7,8 +7,9 @@ use crate::device::{FnJob, Job, JobContext};
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
 use crate::wire::Wire;
-use brushwork_protocol::packet_serial::{Value, number};
-use brushwork_protocol::script_image::Block;
+use brushwork_mcp_wire::packet_serial::number;
+use brushwork_mcp_wire::script_image::Block;
+use brushwork_values::Value;
 use std::collections::BTreeSet;
 use std::time::Duration;
 
@@ -181,7 +182,7 @@ fn repeated(
     wire: &mut dyn Wire,
     command: u8,
     values: impl Fn() -> Vec<Value>,
-) -> Result<brushwork_protocol::packet_serial::Values, ExchangeError> {
+) -> Result<brushwork_values::Values, ExchangeError> {
     let mut tries = 1;
     loop {
         match wire.transact_values(command, values()) {

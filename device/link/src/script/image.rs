@@ -1,7 +1,8 @@
 //! A compiled script: whose format it is, and to whom it may be sent.
 
-use brushwork_protocol::crc::crc16_xmodem;
-use brushwork_protocol::script_image::{self, Block, MOST_BYTES};
+use brushwork_mcp_wire::crc::crc16_xmodem;
+use brushwork_mcp_wire::script_image;
+use brushwork_mcp_wire::script_image::{Block, MOST_BYTES};
 
 /// A compiled script, without the header that is not sent.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -90,7 +91,7 @@ impl ScriptImage {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use brushwork_protocol::script_image::{HEADER_BYTES, OWN_MAGIC};
+    use brushwork_mcp_wire::script_image::{HEADER_BYTES, OWN_MAGIC};
 
     #[test]
     fn whose_an_image_is_shows_in_its_first_bytes() {

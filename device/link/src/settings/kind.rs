@@ -2,8 +2,8 @@
 //!
 //! The only place where the number on the wire becomes a physical value and back: [`Coding`].
 
-use brushwork_protocol::codes::Code;
-use brushwork_protocol::packet_serial::Unit;
+use brushwork_values::Code;
+use brushwork_values::Unit;
 
 use super::value::SettingValue;
 

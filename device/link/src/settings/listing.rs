@@ -83,8 +83,8 @@ fn listed(table: &SettingsTable, row: &Row, value: Option<SettingValue>, simulat
 mod tests {
     use super::super::Subject;
     use super::*;
-    use brushwork_protocol::models;
-    use brushwork_protocol::packet_serial::Generation;
+    use brushwork_mcp_wire::models;
+    use brushwork_mcp_wire::packet_serial::Generation;
 
     #[test]
     fn the_list_marks_what_is_changed_unknown_or_locked() {

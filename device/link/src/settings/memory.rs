@@ -6,8 +6,8 @@
 
 use std::time::Duration;
 
-use brushwork_protocol::models::Family;
-use brushwork_protocol::packet_serial::number;
+use brushwork_mcp_wire::models::Family;
+use brushwork_mcp_wire::packet_serial::number;
 use serde::Serialize;
 
 use super::image::{Difference, SettingsImage, diff};

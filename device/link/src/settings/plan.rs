@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use brushwork_protocol::packet_serial::{Request, describe_request, lookup, number};
+use brushwork_mcp_wire::packet_serial::{Request, describe_request, lookup, number};
 use serde::Serialize;
 
 use super::check::{dangers, wrong_pairs};

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use brushwork_protocol::models::Family;
-use brushwork_protocol::motion_mind::numbers;
-use brushwork_protocol::packet_serial::{Values, lookup, number};
+use brushwork_mcp_wire::models::Family;
+use brushwork_mcp_wire::packet_serial::{lookup, number};
+use brushwork_motion_mind_wire::numbers;
+use brushwork_values::Values;
 use serde::Serialize;
 
 use super::image::SettingsImage;

@@ -2,8 +2,9 @@
 
 use std::fmt::Write as _;
 
-use brushwork_protocol::models::{self, Family, Model};
-use brushwork_protocol::packet_serial::Generation;
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::models::{Family, Model};
+use brushwork_mcp_wire::packet_serial::Generation;
 use serde::Serialize;
 
 use super::kind::Kind;

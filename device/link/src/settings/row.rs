@@ -5,8 +5,8 @@
 
 use std::fmt;
 
-use brushwork_protocol::models::MOTION_MIND_3;
-use brushwork_protocol::packet_serial::Unit;
+use brushwork_mcp_wire::models::MOTION_MIND_3;
+use brushwork_values::Unit;
 use serde::Serialize;
 
 use super::kind::{Coding, Kind};

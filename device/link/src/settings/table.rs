@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use brushwork_protocol::codes::ENCODER_PIN_NONE;
-use brushwork_protocol::models::{Family, Model};
+use brushwork_mcp_wire::codes::ENCODER_PIN_NONE;
+use brushwork_mcp_wire::models::{Family, Model};
 
 use super::image::SettingsImage;
 use super::mcp;
@@ -47,7 +47,7 @@ impl Subject {
 
     /// The signal number of phase A of a motor's own encoder; on a RoboClaw, encoder mode 0.
     pub(super) fn encoder_pin(&self, motor: usize) -> i64 {
-        let own = |pin: &brushwork_protocol::models::Pin| {
+        let own = |pin: &brushwork_mcp_wire::models::Pin| {
             pin.encoder_channel()
                 .is_some_and(|(number, phase)| usize::from(number) == motor + 1 && phase == 'A')
         };

@@ -3,9 +3,11 @@
 //! A [`Template`] stands for one setting of every motor, pin, stream or output at once and for all four
 //! firmware generations; [`Template::expand`] fills in a subject's numbers, names and ratings.
 
-use brushwork_protocol::codes::{self, Code};
-use brushwork_protocol::models::Family;
-use brushwork_protocol::packet_serial::{Generation, Unit};
+use brushwork_mcp_wire::codes;
+use brushwork_mcp_wire::models::Family;
+use brushwork_mcp_wire::packet_serial::Generation;
+use brushwork_values::Code;
+use brushwork_values::Unit;
 
 use super::kind::{Coding, Kind};
 use super::row::{Access, Bits, Bound, Carrier, Group, Instance, Place, Range, Row, Sink, Source};

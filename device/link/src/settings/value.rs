@@ -1,6 +1,6 @@
 //! The value of one setting, and its text form: what a person types and reads.
 
-use brushwork_protocol::packet_serial::Unit;
+use brushwork_values::Unit;
 use serde::Serialize;
 
 use super::kind::{Coding, Kind, unit_forms};

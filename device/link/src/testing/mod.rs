@@ -179,7 +179,7 @@ pub fn script(steps: Vec<(Vec<u8>, Answers)>) -> impl FnMut(&[u8], Duration) -> 
 
 /// Bytes followed by their CRC.
 pub fn with_crc(bytes: &[u8]) -> Vec<u8> {
-    let crc = brushwork_protocol::crc::crc16_xmodem(bytes);
+    let crc = brushwork_mcp_wire::crc::crc16_xmodem(bytes);
     [bytes, &crc.to_be_bytes()].concat()
 }
 

@@ -2,11 +2,11 @@
 //! How a controller behaves is the simulator's business and is tested against it elsewhere.
 
 use super::{Answers, ms};
-use brushwork_protocol::models::Family;
-use brushwork_protocol::packet_serial::{
-    Address, Direction, Field, FramerEvent, Generation, Kind, Request, RequestFramer, Value, encode_reply,
-    number,
+use brushwork_mcp_wire::models::Family;
+use brushwork_mcp_wire::packet_serial::{
+    Address, Direction, FramerEvent, Generation, Request, RequestFramer, encode_reply, number,
 };
+use brushwork_values::{Field, Kind, Value};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;

@@ -3,7 +3,7 @@
 use super::serial;
 use super::target::Stream;
 use crate::failure::Failure;
-use brushwork_protocol::loader::USB_NAME_PART;
+use brushwork_mcp_wire::loader::USB_NAME_PART;
 use serde::Serialize;
 use std::panic;
 use std::path::Path;

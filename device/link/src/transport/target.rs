@@ -7,8 +7,8 @@
 
 use super::{SerialTransport, TcpTransport, Transport};
 use crate::device::FamilyChoice;
-use brushwork_protocol::canopen::NodeId;
-use brushwork_protocol::canopen::adapter::Form;
+use brushwork_mcp_wire::canopen::NodeId;
+use brushwork_mcp_wire::canopen::adapter::Form;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;

@@ -5,11 +5,10 @@
 
 use brushwork_link::Failure;
 use brushwork_link::exchange::packet::{Ask, Permit, gate};
-use brushwork_protocol::codes;
-use brushwork_protocol::packet_serial::{
-    Address, COMMANDS, Command, Effect, Field, Generation, Kind, Request, Value, Values, describe_reply,
-    describe_request, lookup,
+use brushwork_mcp_wire::packet_serial::{
+    Address, COMMANDS, Command, Effect, Generation, Request, describe_reply, describe_request, lookup,
 };
+use brushwork_values::{Field, Kind, Value, Values};
 
 /// Numbers of requests made here, apart from those of other parts of the window.
 const FIRST_ID: u64 = 1 << 40;
@@ -151,7 +150,7 @@ fn number_of(field: &Field, text: &str) -> Result<i64, String> {
         Some(hex) => i64::from_str_radix(hex, 16).ok(),
         None => digits.parse().ok(),
     };
-    let named = || codes::by_key(field.codes, text).map(|code| code.raw);
+    let named = || brushwork_values::by_key(field.codes, text).map(|code| code.raw);
     let Some(number) = plain.map(|number: i64| sign * number).or_else(named) else {
         return Err(format!("{}: \"{text}\" is no number.", field.name));
     };
@@ -174,7 +173,7 @@ fn bytes_of(text: &str, count: usize) -> Option<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use brushwork_protocol::packet_serial::number;
+    use brushwork_mcp_wire::packet_serial::number;
 
     const G1: Generation = Generation::Gen1;
 

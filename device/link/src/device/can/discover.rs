@@ -8,12 +8,12 @@ use crate::device::options::{Addresses, DeviceOptions};
 use crate::device::stop::StopBytes;
 use crate::exchange::{ExchangeError, Judgement, Outgoing};
 use crate::failure::Failure;
-use brushwork_protocol::canopen::adapter::{Decoder, Form};
-use brushwork_protocol::canopen::nmt::objects;
-use brushwork_protocol::canopen::objects::{TEXT, index_of};
-use brushwork_protocol::canopen::sdo::Transfer;
-use brushwork_protocol::canopen::{Function, NodeId};
-use brushwork_protocol::packet_serial::number;
+use brushwork_mcp_wire::canopen::adapter::{Decoder, Form};
+use brushwork_mcp_wire::canopen::nmt::objects;
+use brushwork_mcp_wire::canopen::objects::{TEXT, index_of};
+use brushwork_mcp_wire::canopen::sdo::Transfer;
+use brushwork_mcp_wire::canopen::{Function, NodeId};
+use brushwork_mcp_wire::packet_serial::number;
 use std::collections::BTreeSet;
 use std::time::Duration;
 

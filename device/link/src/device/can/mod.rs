@@ -1,7 +1,7 @@
 //! MCP controllers as nodes of a CANopen bus, through an adapter on a serial port.
 //!
 //! [`CanOpen`] finds nodes. Each is driven by the same code as over packet serial (module `mcp`): only how a command and its values
-//! reach the unit differs, and that is here. Commands are objects (`brushwork_protocol::canopen::objects`), read and written by
+//! reach the unit differs, and that is here. Commands are objects (`brushwork_mcp_wire::canopen::objects`), read and written by
 //! SDO; heartbeats are listened for on the way.
 
 mod access;
@@ -14,11 +14,11 @@ pub use discover::CanOpen;
 pub use monitor::{BusTransport, Monitor};
 
 use access::{read, write};
-use brushwork_protocol::canopen::adapter::{Decoder, Form};
-use brushwork_protocol::canopen::nmt::objects;
-use brushwork_protocol::canopen::sdo::Transfer;
-use brushwork_protocol::canopen::{Frame, Function, NodeId, describe_frame};
-use brushwork_protocol::packet_serial::{hex, number};
+use brushwork_mcp_wire::canopen::adapter::{Decoder, Form};
+use brushwork_mcp_wire::canopen::nmt::objects;
+use brushwork_mcp_wire::canopen::sdo::Transfer;
+use brushwork_mcp_wire::canopen::{Frame, Function, NodeId, describe_frame};
+use brushwork_mcp_wire::packet_serial::{hex, number};
 use std::time::Duration;
 
 use super::controller::{Described, Line};
@@ -50,7 +50,7 @@ impl Place {
     /// for no answer.
     #[must_use]
     pub fn stop_bytes(self, scripts: bool) -> StopBytes {
-        use brushwork_protocol::canopen::objects::{TRIGGER, index_of};
+        use brushwork_mcp_wire::canopen::objects::{TRIGGER, index_of};
         let frame = |transfer: Transfer| self.request(transfer.begin());
         let duty_zero: Vec<u8> = [number::DUTY_M1, number::DUTY_M2]
             .into_iter()

@@ -3,9 +3,9 @@
 use super::{MASTER, MASTER_LIMIT};
 use crate::clock::Clock;
 use crate::transport::{Transport, TransportError};
-use brushwork_protocol::canopen::adapter::{Decoder, Form};
-use brushwork_protocol::canopen::nmt::State;
-use brushwork_protocol::canopen::{Emergency, Frame, NodeId};
+use brushwork_mcp_wire::canopen::adapter::{Decoder, Form};
+use brushwork_mcp_wire::canopen::nmt::State;
+use brushwork_mcp_wire::canopen::{Emergency, Frame, NodeId};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;

@@ -9,8 +9,9 @@ use crate::device::stop::StopBytes;
 use crate::exchange::{ExchangeError, RETRIES};
 use crate::failure::Failure;
 use crate::transport::Stream;
-use brushwork_protocol::models::{self, Model};
-use brushwork_protocol::packet_serial::{Address, Generation, number};
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::models::Model;
+use brushwork_mcp_wire::packet_serial::{Address, Generation, number};
 use std::time::Duration;
 
 /// MCP and RoboClaw controllers.

@@ -2,7 +2,8 @@
 
 use crate::device::drive::{Drive, DriveCommand};
 use crate::exchange::ExchangeError;
-use brushwork_protocol::packet_serial::{Address, Generation, Motor, Request, number, scale};
+use brushwork_mcp_wire::packet_serial::{Address, Generation, Request, number, scale};
+use brushwork_values::Motor;
 
 /// A command number and its raw values.
 pub type Packet = (u8, Vec<i64>);

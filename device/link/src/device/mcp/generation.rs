@@ -6,8 +6,8 @@
 use crate::device::can::{self, Place};
 use crate::device::controller::Line;
 use crate::exchange::{ExchangeError, Fault, Judgement, Outgoing};
-use brushwork_protocol::crc::crc16_xmodem;
-use brushwork_protocol::packet_serial::{Address, Generation, number};
+use brushwork_mcp_wire::crc::crc16_xmodem;
+use brushwork_mcp_wire::packet_serial::{Address, Generation, number};
 use std::time::Duration;
 
 /// What was found out.

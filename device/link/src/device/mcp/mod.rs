@@ -25,11 +25,10 @@ use super::stop::{StopBytes, UnitStop};
 use crate::exchange::packet::{Ask, gate, transact};
 use crate::exchange::{ExchangeError, Reply, Tries};
 use crate::transport::{Stream, TransportError};
-use brushwork_protocol::models::{Family, Model};
-use brushwork_protocol::packet_serial::status::Condition;
-use brushwork_protocol::packet_serial::{
-    Address, Effect, Generation, Motor, Request, Value, lookup, number, status,
-};
+use brushwork_mcp_wire::models::{Family, Model};
+use brushwork_mcp_wire::packet_serial::status::Condition;
+use brushwork_mcp_wire::packet_serial::{Address, Effect, Generation, Request, lookup, number, status};
+use brushwork_values::{Motor, Value};
 
 /// Who is spoken to and in which widths.
 #[derive(Clone, Copy, Debug)]

@@ -5,7 +5,7 @@ use crate::device::channel::{Channel, PinSignal, Sample};
 use crate::device::controller::{Line, PollItem, PollList};
 use crate::device::status::StatusReport;
 use crate::exchange::{ExchangeError, Reply};
-use brushwork_protocol::packet_serial::{Effect, Generation, lookup, number, scale, status};
+use brushwork_mcp_wire::packet_serial::{Effect, Generation, lookup, number, scale, status};
 
 /// Signals that change quickly, each read in every sweep.
 const FAST: [(u8, &str); 6] = [

@@ -7,9 +7,11 @@ use crate::exchange::ExchangeError;
 use crate::exchange::between::transact_between;
 use crate::exchange::packet::Ask;
 use crate::failure::Failure;
-use brushwork_protocol::codes::{self, Code};
-use brushwork_protocol::models::Model;
-use brushwork_protocol::packet_serial::{Generation, Record, Request, number, scale};
+use brushwork_mcp_wire::codes;
+use brushwork_mcp_wire::models::Model;
+use brushwork_mcp_wire::packet_serial::{Generation, Request, number, scale};
+use brushwork_values::Code;
+use brushwork_values::Record;
 use std::time::Duration;
 
 /// Duty 0 on both motors at the highest acceleration (command 54).
@@ -115,11 +117,12 @@ pub fn other_drivers(
 
 /// The sentences about one pin.
 fn drivers_of(pin: &str, record: &Record<'_>, levels: &[i64]) -> Vec<String> {
-    let kind = codes::by_raw(codes::SIGNAL_TYPES, record.int("type")).map_or("", |code| code.key);
+    let kind = brushwork_values::by_raw(codes::SIGNAL_TYPES, record.int("type")).map_or("", |code| code.key);
     let mut sentences = Vec::new();
     let target = record.int("target");
     if target != 0 && levels.iter().any(|level| level_key(*level) == kind) {
-        let motors = codes::by_raw(codes::SIGNAL_TARGETS, target).map_or("a motor", |code| code.label);
+        let motors =
+            brushwork_values::by_raw(codes::SIGNAL_TARGETS, target).map_or("a motor", |code| code.label);
         sentences.push(format!("The {kind} input {pin} can drive {}.", lower_first(motors)));
     }
     let starts = |name: &str| action_key(record, name) == Some("run_script");
@@ -132,7 +135,7 @@ fn drivers_of(pin: &str, record: &Record<'_>, levels: &[i64]) -> Vec<String> {
 /// The key of an action in whichever numbering its width has.
 fn action_key(record: &Record<'_>, name: &str) -> Option<&'static str> {
     let field = record.fields().iter().find(|field| field.name == name)?;
-    codes::by_raw(field.codes, record.int(name)).map(|code: &Code| code.key)
+    brushwork_values::by_raw(field.codes, record.int(name)).map(|code: &Code| code.key)
 }
 
 fn pin_name(model: Option<&'static Model>, index: usize) -> String {
@@ -143,7 +146,7 @@ fn pin_name(model: Option<&'static Model>, index: usize) -> String {
 
 /// The name of what drives the motors at a priority level; the pin levels are named as the signal types are.
 fn level_key(level: i64) -> &'static str {
-    codes::by_raw(codes::PRIORITY_SIGNALS, level).map_or("", |code| code.key)
+    brushwork_values::by_raw(codes::PRIORITY_SIGNALS, level).map_or("", |code| code.key)
 }
 
 fn is_pin_level(level: i64) -> bool {
@@ -242,7 +245,7 @@ fn encode(speaker: Speaker, command: u8, values: &[i64]) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use brushwork_protocol::packet_serial::Address;
+    use brushwork_mcp_wire::packet_serial::Address;
 
     #[test]
     fn the_stop_bytes_are_the_same_in_every_generation() {
@@ -274,13 +277,13 @@ mod tests {
 
     #[test]
     fn no_read_request_can_swallow_the_head_of_a_stop_as_its_own_crc() {
-        use brushwork_protocol::packet_serial::{COMMANDS, Direction};
+        use brushwork_mcp_wire::packet_serial::{COMMANDS, Direction};
         for address in Address::ALL {
             let reads = COMMANDS.iter().filter(|row| {
                 row.forms.iter().any(|form| form.direction == Direction::Read && form.request.is_empty())
             });
             for row in reads {
-                let crc = brushwork_protocol::crc::crc16_xmodem(&[address.get(), row.number]);
+                let crc = brushwork_mcp_wire::crc::crc16_xmodem(&[address.get(), row.number]);
                 for head in [number::STOP_SCRIPT, number::DUTY_ACCEL_BOTH] {
                     let collides =
                         Address::ALL.iter().any(|unit| crc == u16::from_be_bytes([unit.get(), head]));

@@ -1,10 +1,10 @@
 //! What bytes on the wire mean, for the traffic view.
 
 use crate::device::controller::Described;
-use brushwork_protocol::packet_serial::{
+use brushwork_mcp_wire::packet_serial::{
     ACK, FramerEvent, Generation, ReplyProgress, Request, RequestFramer, parse_reply,
 };
-use brushwork_protocol::packet_serial::{describe_event, describe_reply, hex};
+use brushwork_mcp_wire::packet_serial::{describe_event, describe_reply, hex};
 use std::time::Duration;
 
 /// The requests that a write holds, in words; a stop is several.

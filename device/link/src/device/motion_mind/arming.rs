@@ -5,7 +5,7 @@ use super::{MotionMind, driving, mask, number, value_in};
 use crate::device::controller::{ArmCheck, Line};
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
-use brushwork_protocol::motion_mind::{Command, Mode, function, status};
+use brushwork_motion_mind_wire::{Command, Mode, function, status};
 use std::time::Duration;
 
 /// A ramp that takes longer is worth knowing.

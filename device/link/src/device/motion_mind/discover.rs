@@ -11,8 +11,8 @@ use crate::device::stop::StopBytes;
 use crate::exchange::{ExchangeError, RETRIES};
 use crate::failure::Failure;
 use crate::unit::FirmwareGeneration;
-use brushwork_protocol::models::MOTION_MIND_3;
-use brushwork_protocol::motion_mind::{Address, Command, Mode, Protocol, function};
+use brushwork_mcp_wire::models::MOTION_MIND_3;
+use brushwork_motion_mind_wire::{Address, Command, Mode, Protocol, function};
 use std::time::Duration;
 
 /// How long an answer may take in a scan, beyond its time on the wire: 10 ms of the controller, and what USB adapters add.

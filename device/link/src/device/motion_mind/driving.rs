@@ -3,7 +3,7 @@
 use crate::device::drive::{Drive, DriveCommand};
 use crate::device::identity::MotionMindFacts;
 use crate::exchange::ExchangeError;
-use brushwork_protocol::motion_mind::{Address, Command, Mode, Protocol, encode_frame, encode_line};
+use brushwork_motion_mind_wire::{Address, Command, Mode, Protocol, encode_frame, encode_line};
 
 /// Full drive.
 const FULL_DUTY: f64 = 1023.0;

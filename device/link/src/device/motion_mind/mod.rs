@@ -4,7 +4,7 @@
 //! each. Nothing outside this folder and the settings of the family knows a register.
 //!
 //! Commands by number ([`Controller::transact`]) are those of the binary protocol with their values in order
-//! (`brushwork_protocol::motion_mind::COMMANDS`), whichever protocol the unit speaks. The self-test of the text protocol has no
+//! (`brushwork_motion_mind_wire::COMMANDS`), whichever protocol the unit speaks. The self-test of the text protocol has no
 //! number: nothing here can send it.
 
 mod arming;
@@ -32,10 +32,10 @@ use super::status::StatusReport;
 use super::stop::{StopBytes, UnitStop};
 use crate::exchange::{ExchangeError, Reply as Answer};
 use crate::transport::Stream;
-use brushwork_protocol::motion_mind::{
+use brushwork_motion_mind_wire::{
     Address, Command, Effect, Mode, Protocol, Reply, Returns, fields, numbers, register,
 };
-use brushwork_protocol::packet_serial::{Motor, Value, Values};
+use brushwork_values::{Motor, Value, Values};
 use speaker::Speaker;
 
 /// Registers by number.

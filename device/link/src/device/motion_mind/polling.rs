@@ -9,8 +9,8 @@ use crate::device::controller::{Line, PollItem, PollList};
 use crate::device::identity::MotionMindFacts;
 use crate::device::status::StatusReport;
 use crate::exchange::{ExchangeError, Span};
-use brushwork_protocol::motion_mind::{Command, Mode, Protocol, Reply, register};
-use brushwork_protocol::packet_serial::status::Conditions;
+use brushwork_mcp_wire::packet_serial::status::Conditions;
+use brushwork_motion_mind_wire::{Command, Mode, Protocol, Reply, register};
 
 /// What moves: one read of several registers.
 const MOTION: PollItem = PollItem { id: 0, name: "position, velocity, drive, current, status" };

@@ -6,7 +6,7 @@
 use super::speaker::{GAP, Speaker};
 use crate::device::controller::Line;
 use crate::exchange::{ExchangeError, Judgement, Outgoing};
-use brushwork_protocol::motion_mind::{
+use brushwork_motion_mind_wire::{
     Address, Command, Effect, FrameEvent, FrameReader, LineEvent, LineReader, Progress, Protocol, Returns,
     parse_frame_reply, parse_line_reply,
 };

@@ -1,8 +1,8 @@
 //! The bits of STATUS as signs.
 
 use crate::device::status::Sign;
-use brushwork_protocol::motion_mind::status;
-use brushwork_protocol::packet_serial::status::Severity;
+use brushwork_mcp_wire::packet_serial::status::Severity;
+use brushwork_motion_mind_wire::status;
 
 /// Every bit of STATUS (Motion Mind manual, figure 22). What takes the drive away is an error, what limits it a warning, the rest is
 /// nothing but news.
@@ -57,7 +57,7 @@ const fn sign(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use brushwork_protocol::motion_mind::STATUS_BITS;
+    use brushwork_motion_mind_wire::STATUS_BITS;
 
     #[test]
     fn every_bit_of_status_is_a_sign_by_its_name() {

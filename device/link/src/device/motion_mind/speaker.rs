@@ -4,7 +4,7 @@ use super::raw::all_returns;
 use super::{number, returns_of};
 use crate::device::controller::Line;
 use crate::exchange::{ExchangeError, Fault, Judgement, Outgoing, Span};
-use brushwork_protocol::motion_mind::{
+use brushwork_motion_mind_wire::{
     Address, BadReply, Command, Effect, EncodeError, Part, Progress, Protocol, Reply, Returns, command_row,
     encode_frame, encode_line, parse_all_loosely, parse_frame_reply, parse_line_reply, register,
 };

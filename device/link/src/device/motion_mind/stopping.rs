@@ -11,7 +11,7 @@ use crate::device::controller::Line;
 use crate::device::stop::{StopBytes, UnitStop};
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
-use brushwork_protocol::motion_mind::{Address, Command, Mode, Protocol, function};
+use brushwork_motion_mind_wire::{Address, Command, Mode, Protocol, function};
 use std::time::Duration;
 
 /// A ramp that lets full drive come down within this is quick enough as it is.

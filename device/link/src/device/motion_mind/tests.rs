@@ -3,8 +3,8 @@
 use super::driving::command;
 use super::stopping::{Ramp, broadcast};
 use crate::device::drive::{Drive, DriveCommand};
-use brushwork_protocol::motion_mind::{Command, Mode, Protocol};
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_motion_mind_wire::{Command, Mode, Protocol};
+use brushwork_values::Motor;
 use std::time::Duration;
 
 fn one(wanted: DriveCommand) -> Drive {

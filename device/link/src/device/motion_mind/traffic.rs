@@ -2,11 +2,11 @@
 
 use super::raw::all_returns;
 use crate::device::controller::Described;
-use brushwork_protocol::motion_mind::{
+use brushwork_mcp_wire::packet_serial::hex;
+use brushwork_motion_mind_wire::{
     Address, Command, FrameEvent, FrameReader, LineEvent, LineReader, Part, Progress, Protocol, Returns,
     describe_command, describe_reply, parse_frame_reply, parse_line_reply,
 };
-use brushwork_protocol::packet_serial::hex;
 use std::time::Duration;
 
 /// The commands that a write holds, in words.

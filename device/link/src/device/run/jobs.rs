@@ -12,7 +12,7 @@ use crate::failure::Failure;
 use crate::transport::TransportError;
 use crate::unit::{FirmwareGeneration, UnitAddress};
 use crate::wire::HiddenSettings;
-use brushwork_protocol::packet_serial::Value;
+use brushwork_values::Value;
 use std::any::Any;
 use std::panic::{self, AssertUnwindSafe};
 use std::time::Duration;

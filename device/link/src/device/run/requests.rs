@@ -10,7 +10,7 @@ use crate::device::signals::MOTION_LIFE;
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
 use crate::unit::UnitAddress;
-use brushwork_protocol::packet_serial::{Motor, Value};
+use brushwork_values::{Motor, Value};
 use std::time::Duration;
 
 /// How far requests are looked ahead to find one that replaces an earlier one.

@@ -11,7 +11,7 @@ mod ports;
 mod roboclaw;
 mod unit;
 
-use brushwork_protocol::packet_serial::{Generation, scale};
+use brushwork_mcp_wire::packet_serial::{Generation, scale};
 
 use super::kind::Coding;
 use super::template::{Limits, Template};

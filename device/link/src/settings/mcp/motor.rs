@@ -1,8 +1,9 @@
 //! One motor: current limits, encoder, gains, travel, acceleration, error limits, homing (MCP manual 1.2.10
 //! to 1.2.13).
 
-use brushwork_protocol::models::Family;
-use brushwork_protocol::packet_serial::{Unit, number, scale};
+use brushwork_mcp_wire::models::Family;
+use brushwork_mcp_wire::packet_serial::{number, scale};
+use brushwork_values::Unit;
 
 use super::super::kind::Coding;
 use super::super::row::Group;

@@ -1,10 +1,11 @@
 //! Input pins and digital outputs (MCP manual 1.9.8 to 1.9.11).
 
-use brushwork_protocol::codes::{
+use brushwork_mcp_wire::codes::{
     DOUT_ACTIONS, SIGNAL_ACTIONS, SIGNAL_ACTIONS_GENERATION_1, SIGNAL_MODES, SIGNAL_TARGETS, SIGNAL_TYPES,
 };
-use brushwork_protocol::models::Family;
-use brushwork_protocol::packet_serial::{Unit, number, scale};
+use brushwork_mcp_wire::models::Family;
+use brushwork_mcp_wire::packet_serial::{number, scale};
+use brushwork_values::Unit;
 
 use super::super::kind::{Coding, Kind};
 use super::super::row::Group;

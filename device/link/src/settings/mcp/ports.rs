@@ -1,8 +1,9 @@
 //! Serial streams and the CAN and I2C buses that share their pins (MCP manual 1.9.3 to 1.9.7).
 
-use brushwork_protocol::codes::STREAM_TYPES;
-use brushwork_protocol::models::Family;
-use brushwork_protocol::packet_serial::{Unit, number};
+use brushwork_mcp_wire::codes::STREAM_TYPES;
+use brushwork_mcp_wire::models::Family;
+use brushwork_mcp_wire::packet_serial::number;
+use brushwork_values::Unit;
 
 use super::super::row::Group;
 use super::super::template::{DefaultValue, Form, Limits, Repeat, Template};

@@ -2,9 +2,10 @@
 //! configuration word (public clients, 2015-2025). What the numbers of a function mean differs by firmware
 //! and is not repeated here.
 
-use brushwork_protocol::codes::Code;
-use brushwork_protocol::models::Family;
-use brushwork_protocol::packet_serial::{Unit, number, scale};
+use brushwork_mcp_wire::models::Family;
+use brushwork_mcp_wire::packet_serial::{number, scale};
+use brushwork_values::Code;
+use brushwork_values::Unit;
 
 use super::super::kind::Coding;
 use super::super::row::Group;

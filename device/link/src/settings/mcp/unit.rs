@@ -1,9 +1,10 @@
 //! The unit as a whole: address, mixing, E-Stop, voltage limits, priority levels, scripting (MCP manual
 //! 1.2.10).
 
-use brushwork_protocol::codes::{ESTOP_RESETS, ESTOP_RESETS_GENERATION_4, PRIORITY_SIGNALS, PWM_MODES};
-use brushwork_protocol::models::Family;
-use brushwork_protocol::packet_serial::{Unit, number};
+use brushwork_mcp_wire::codes::{ESTOP_RESETS, ESTOP_RESETS_GENERATION_4, PRIORITY_SIGNALS, PWM_MODES};
+use brushwork_mcp_wire::models::Family;
+use brushwork_mcp_wire::packet_serial::number;
+use brushwork_values::Unit;
 
 use super::super::kind::Kind;
 use super::super::row::Group;

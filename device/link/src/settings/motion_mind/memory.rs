@@ -4,7 +4,7 @@
 //! position and of a motor that coasts, so a save is not proven that way. What is stored is known by its acknowledge, and by its register
 //! in RAM, which the same command writes and which is read back.
 
-use brushwork_protocol::motion_mind::numbers;
+use brushwork_motion_mind_wire::numbers;
 
 use super::super::image::{Difference, diff};
 use super::super::memory::{SaveReport, SaveVerdict, unknown};

@@ -3,11 +3,11 @@
 //! Ranges, defaults and widths are those of the protocol's register table. POSITION can be written too and is no setting: it is where
 //! the motor is. What is measured is no setting either.
 
-use brushwork_protocol::models::MOTION_MIND_3;
-use brushwork_protocol::motion_mind::{
+use brushwork_mcp_wire::models::MOTION_MIND_3;
+use brushwork_motion_mind_wire::{
     Bit, FUNCTION_BITS, FUNCTION2_BITS, Register, numbers, register, register_named,
 };
-use brushwork_protocol::packet_serial::Unit;
+use brushwork_values::Unit;
 
 use super::super::kind::{Coding, Kind};
 use super::super::row::{Access, Bits, Bound, Carrier, Group, Place, Range, Row, Sink, Source};
@@ -296,7 +296,7 @@ pub fn register_of(row: &Row) -> Option<&'static Register> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use brushwork_protocol::motion_mind::REGISTERS;
+    use brushwork_motion_mind_wire::REGISTERS;
 
     #[test]
     fn every_writable_register_is_a_row_or_has_a_reason_and_every_bit_is_one() {

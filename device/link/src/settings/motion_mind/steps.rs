@@ -1,6 +1,6 @@
 //! Writes of registers as steps of a plan.
 
-use brushwork_protocol::motion_mind::{Address, Command, describe_command, encode_frame, register};
+use brushwork_motion_mind_wire::{Address, Command, describe_command, encode_frame, register};
 
 use super::super::image::SettingsImage;
 use super::super::plan::{Stage, Step};
@@ -92,7 +92,7 @@ mod tests {
     use super::super::super::table::{SettingsTable, Subject};
     use super::*;
     use crate::unit::FirmwareGeneration;
-    use brushwork_protocol::models::MOTION_MIND_3;
+    use brushwork_mcp_wire::models::MOTION_MIND_3;
 
     /// The names of the registers that are written to get from the factory's values to these, in order.
     fn order(values: &[(&str, i64)]) -> Vec<&'static str> {

@@ -1,7 +1,7 @@
 //! Settings that contradict each other: each one is allowed alone, together they do not do what they look like.
 
-use brushwork_protocol::codes::{ENCODER_PIN_NONE, STREAMS};
-use brushwork_protocol::models::{Family, Pin};
+use brushwork_mcp_wire::codes::{ENCODER_PIN_NONE, STREAMS};
+use brushwork_mcp_wire::models::{Family, Pin};
 use serde::Serialize;
 
 use super::super::table::SettingsTable;

@@ -81,7 +81,7 @@ impl PinMode {
     }
 
     /// Whether a pin with that label has the function.
-    pub fn is_on(self, pin: brushwork_protocol::models::Pin) -> bool {
+    pub fn is_on(self, pin: brushwork_mcp_wire::models::Pin) -> bool {
         match self {
             Self::None | Self::PacketSerial => true,
             Self::Digital => pin.functions().any(|function| function.starts_with("DIN")),
@@ -160,8 +160,8 @@ pub fn open_range(pin: usize, mode: PinMode) -> SettingsImage {
 
 #[cfg(test)]
 mod tests {
-    use brushwork_protocol::models;
-    use brushwork_protocol::packet_serial::Generation;
+    use brushwork_mcp_wire::models;
+    use brushwork_mcp_wire::packet_serial::Generation;
 
     use super::super::SignalShape;
     use super::*;

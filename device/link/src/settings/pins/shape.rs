@@ -5,7 +5,7 @@
 //! x^(1+|e|) below; the power minimum is added after the curve, in the units of the input, and the ends of the range
 //! limit the sum.
 
-use brushwork_protocol::packet_serial::scale;
+use brushwork_mcp_wire::packet_serial::scale;
 
 use super::{Lookup, PinValues};
 

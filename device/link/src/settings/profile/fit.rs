@@ -1,8 +1,8 @@
 //! A profile made for one controller, fitted to another: other model, other firmware generation, other numbers
 //! of pins, streams and outputs. Every change is told in a sentence.
 
-use brushwork_protocol::codes::ENCODER_PIN_NONE;
-use brushwork_protocol::models::Pin;
+use brushwork_mcp_wire::codes::ENCODER_PIN_NONE;
+use brushwork_mcp_wire::models::Pin;
 
 use super::super::image::SettingsImage;
 use super::super::kind::Kind;

@@ -13,7 +13,7 @@ mod parse;
 mod schema;
 
 use crate::unit::{FirmwareGeneration, UnitAddress};
-use brushwork_protocol::models::Model;
+use brushwork_mcp_wire::models::Model;
 
 use super::image::{SettingsImage, changes};
 use super::table::{SettingsTable, Subject};

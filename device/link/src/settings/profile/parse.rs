@@ -4,8 +4,9 @@
 use std::collections::HashSet;
 
 use crate::unit::{FirmwareGeneration, UnitAddress};
-use brushwork_protocol::models::{self, Model};
-use brushwork_protocol::packet_serial::Generation;
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::models::Model;
+use brushwork_mcp_wire::packet_serial::Generation;
 
 use super::super::image::SettingsImage;
 use super::super::kind::Kind;

@@ -1,7 +1,8 @@
 //! One test per kind of conflict; and none where nothing is wrong.
 
-use brushwork_protocol::models::{self, Family};
-use brushwork_protocol::packet_serial::Generation;
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::models::Family;
+use brushwork_mcp_wire::packet_serial::Generation;
 
 use crate::settings::{ConflictKind, SettingValue, SettingsImage, SettingsTable, Subject, conflicts};
 

@@ -2,10 +2,9 @@
 
 use std::collections::{BTreeMap, HashSet};
 
-use brushwork_protocol::models::Family;
-use brushwork_protocol::packet_serial::{
-    COMMANDS, Effect, Field, Generation, Kind as WireKind, Reply, Unit, lookup,
-};
+use brushwork_mcp_wire::models::Family;
+use brushwork_mcp_wire::packet_serial::{COMMANDS, Effect, Generation, Reply, lookup};
+use brushwork_values::{Field, Kind as WireKind, Unit};
 
 use super::super::mcp::{NOT_SETTINGS, templates};
 use super::super::{

@@ -1,6 +1,6 @@
 //! The copies of one controller's settings: what is known of each, and what differs.
 
-use brushwork_protocol::packet_serial::Generation;
+use brushwork_mcp_wire::packet_serial::Generation;
 
 use super::super::{Copies, Copy, SettingValue};
 use super::table;

@@ -6,7 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Mutex;
 use std::time::Duration;
 
-use brushwork_protocol::packet_serial::{Address, Field, Form, Kind, Reply, Value, Values, lookup, number};
+use brushwork_mcp_wire::packet_serial::{Address, Form, Reply, lookup, number};
+use brushwork_values::{Field, Kind, Value, Values};
 
 use super::super::{Carrier, Row, SettingsImage, SettingsTable, Source};
 use crate::exchange::{ExchangeError, Interruption, Tries};

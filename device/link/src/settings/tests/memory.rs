@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use crate::unit::UnitAddress;
-use brushwork_protocol::packet_serial::{Address, Generation, number};
+use brushwork_mcp_wire::packet_serial::{Address, Generation, number};
 
 use super::super::{
     SaveReport, SaveVerdict, SettingsTable, WriteOptions, reload, restore_defaults, save_eeprom,

@@ -11,8 +11,8 @@ mod upgrade;
 mod values;
 mod writing;
 
-use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::Generation;
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::packet_serial::Generation;
 
 use super::{SettingsTable, Subject};
 

@@ -4,7 +4,7 @@
 //! The bytes are written by hand from the manual and from public clients; their CRCs come from another
 //! implementation.
 
-use brushwork_protocol::packet_serial::{Address, Generation};
+use brushwork_mcp_wire::packet_serial::{Address, Generation};
 
 use super::super::{Plan, Refusal, SettingValue, SettingsImage, SettingsTable, Stage, WriteOptions, plan};
 use super::table;

@@ -1,7 +1,7 @@
 //! Profiles: a round trip, and everything that can be wrong with one.
 
-use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::{Address, Generation};
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::packet_serial::{Address, Generation};
 
 use super::super::{
     OpenedProfile, Profile, SettingValue, SettingsTable, Strictness, Subject, WriteOptions, diff,

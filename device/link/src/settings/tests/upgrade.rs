@@ -1,6 +1,6 @@
 //! Profiles of older schemas, other models, other generations: what becomes of them, told in sentences.
 
-use brushwork_protocol::packet_serial::Generation;
+use brushwork_mcp_wire::packet_serial::Generation;
 
 use super::super::{Profile, SCHEMA, SettingValue, SettingsTable, Strictness};
 use super::{every_table, table};

@@ -1,6 +1,6 @@
 //! Values: raw to physical and back, text, ranges and their sentences.
 
-use brushwork_protocol::packet_serial::Generation;
+use brushwork_mcp_wire::packet_serial::Generation;
 
 use super::super::{Kind, Row, SettingValue};
 use super::{every_table, table};

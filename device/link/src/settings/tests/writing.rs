@@ -1,7 +1,7 @@
 //! Reading and writing against a fake controller: how few commands, and what is told when something goes
 //! wrong.
 
-use brushwork_protocol::packet_serial::{Address, Generation};
+use brushwork_mcp_wire::packet_serial::{Address, Generation};
 
 use super::super::{
     RowState, SettingValue, SettingsImage, SettingsTable, WriteError, WriteOptions, WriteReport, diff,
@@ -199,8 +199,8 @@ impl Wire for Twitching {
     fn transact_values(
         &mut self,
         command: u8,
-        values: Vec<brushwork_protocol::packet_serial::Value>,
-    ) -> Result<brushwork_protocol::packet_serial::Values, crate::exchange::ExchangeError> {
+        values: Vec<brushwork_values::Value>,
+    ) -> Result<brushwork_values::Values, crate::exchange::ExchangeError> {
         if self.unit.log.len() == self.at {
             self.unit.set("motor1.velocity.d", "3");
         }

@@ -9,7 +9,8 @@ use crate::device::request::{PollRate, Request};
 use crate::testing::ms;
 use crate::testing::unit::{Bus, SharedBus};
 use crate::transport::Stream;
-use brushwork_protocol::packet_serial::{Motor, Value, number};
+use brushwork_mcp_wire::packet_serial::number;
+use brushwork_values::{Motor, Value};
 use std::collections::BTreeSet;
 use std::time::Duration;
 
@@ -132,7 +133,7 @@ fn arming_is_refused_when_the_controller_does_not_tell_its_time_out() {
 fn a_roboclaw_is_judged_by_its_one_serial_time_out() {
     for (raw, timeout) in [(0, None), (5, Some(ms(500)))] {
         let bus = Bus::shared();
-        crate::testing::unit::of_generation(&bus, brushwork_protocol::packet_serial::Generation::Gen3);
+        crate::testing::unit::of_generation(&bus, brushwork_mcp_wire::packet_serial::Generation::Gen3);
         bus.lock().unwrap().mute = BTreeSet::from([number::READ_STREAMS, number::READ_PRIORITIES]);
         bus.lock().unwrap().set(number::READ_SERIAL_TIMEOUT, &[raw]);
         let mut link = Link::with(bus, DeviceOptions::default());

@@ -9,7 +9,7 @@ use crate::device::request::Request;
 use crate::testing::ms;
 use crate::testing::unit::{Bus, answer_all_eight, of_generation};
 use crate::transport::Stream;
-use brushwork_protocol::packet_serial::{Effect, Generation, lookup, number};
+use brushwork_mcp_wire::packet_serial::{Effect, Generation, lookup, number};
 use std::collections::BTreeSet;
 
 fn identities(link: &Link) -> Vec<Identity> {

@@ -18,7 +18,8 @@ use crate::device::stop::{StopBytes, UnitStop};
 use crate::exchange::{ExchangeError, Judgement, Outgoing, Reply, Span};
 use crate::testing::{Answers, ScriptedTransport, ms};
 use crate::transport::Stream;
-use brushwork_protocol::packet_serial::{Generation, Motor, Value};
+use brushwork_mcp_wire::packet_serial::Generation;
+use brushwork_values::{Motor, Value};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 

@@ -11,7 +11,8 @@ use crate::exchange::{ExchangeError, Interruption};
 use crate::failure::Failure;
 use crate::testing::ms;
 use crate::wire::Wire;
-use brushwork_protocol::packet_serial::{Motor, number};
+use brushwork_mcp_wire::packet_serial::number;
+use brushwork_values::Motor;
 use std::time::Duration;
 
 type Outcome = Result<JobOutput, Failure>;

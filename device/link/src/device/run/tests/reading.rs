@@ -8,7 +8,8 @@ use crate::device::options::DeviceOptions;
 use crate::device::request::{PollRate, Request};
 use crate::testing::ms;
 use crate::testing::unit::{Bus, of_generation};
-use brushwork_protocol::packet_serial::{Generation, Value, number};
+use brushwork_mcp_wire::packet_serial::{Generation, number};
+use brushwork_values::Value;
 
 fn samples(link: &Link) -> Vec<Sample> {
     let samples = link.events.iter().filter_map(|(_, event)| match event {

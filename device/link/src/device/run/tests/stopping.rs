@@ -10,7 +10,8 @@ use crate::device::stop::StopReport;
 use crate::testing::ms;
 use crate::testing::unit::{Bus, SharedBus, of_roboclaws};
 use crate::transport::Stream;
-use brushwork_protocol::packet_serial::{Motor, Value, number};
+use brushwork_mcp_wire::packet_serial::number;
+use brushwork_values::{Motor, Value};
 use std::collections::BTreeSet;
 
 #[test]

@@ -1,0 +1,174 @@
+//! What is on the wire: silence, timing, addresses, several units.
+
+use super::support::Bench;
+use crate::controller::{Bus, BusError, Controller, ControllerConfig, FAST_TURNAROUND, SLOW_TURNAROUND};
+use brushwork_mcp_wire::packet_serial::{Address, Generation, number};
+use brushwork_plant::machine::{Machine, StreamIndex};
+use brushwork_plant::world::WorldAction;
+use brushwork_values::Motor;
+use std::time::Duration;
+
+fn unit_at(address: Address) -> Controller {
+    Controller::new(ControllerConfig { address, ..ControllerConfig::default() }).expect("the preset is valid")
+}
+
+#[test]
+fn the_version_is_answered_byte_for_byte() {
+    let mut bench = Bench::new(Generation::Gen1);
+    let reply = bench.raw(&[0x80, 0x15]); // address, command 21
+    let (text, crc) = reply.split_at(reply.len() - 2);
+    assert_eq!(text, b"MCP266 2x60A v1.0.0\n\0");
+    let covered: Vec<u8> = [0x80, 0x15].iter().chain(text).copied().collect();
+    assert_eq!(crc, brushwork_mcp_wire::crc::crc16_xmodem(&covered).to_be_bytes());
+}
+
+#[test]
+fn a_duty_command_is_acknowledged_and_turns_the_motor() {
+    let mut bench = Bench::new(Generation::Gen1);
+    assert!(bench.ask(number::DUTY_M1, &[16_384]).is_empty());
+    bench.wait_talking(Duration::from_millis(500));
+    assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), 16_384);
+    assert!(bench.read(number::READ_ENCODER_M1, "encoder") > 100);
+    assert!(bench.read(number::READ_SPEED_M1, "speed") > 100);
+    assert_eq!(bench.read(number::READ_PWMS, "duty_m2"), 0);
+}
+
+#[test]
+fn a_bad_crc_an_unknown_command_and_a_stub_are_met_with_silence() {
+    let mut bench = Bench::new(Generation::Gen1);
+    assert!(bench.raw(&[0x80, 32, 0x40, 0x00, 0x12, 0x34]).is_empty()); // duty with a wrong CRC
+    assert!(bench.raw(&[0x80, 240]).is_empty()); // no such command
+    assert!(bench.raw(&[0x80, 52]).is_empty()); // nothing after the command
+    assert!(bench.raw(&[0x12, 0x34]).is_empty()); // no address
+    assert!(!bench.raw(&[0x80, 90]).is_empty());
+    assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), 0);
+}
+
+#[test]
+fn a_request_in_pieces_is_one_request_unless_the_pieces_are_more_than_10_ms_apart() {
+    let mut bench = Bench::new(Generation::Gen1);
+    bench.bus.receive(StreamIndex::Usb, &[0x80]);
+    bench.wait(Duration::from_millis(10));
+    assert!(!bench.raw(&[24]).is_empty());
+    bench.bus.receive(StreamIndex::Usb, &[0x80]);
+    bench.wait(Duration::from_millis(11));
+    assert!(bench.raw(&[24]).is_empty());
+}
+
+#[test]
+fn an_appended_crc_is_swallowed_even_after_the_reply_has_left() {
+    let mut bench = Bench::new(Generation::Gen1);
+    assert!(!bench.raw(&[0x80, 90]).is_empty());
+    bench.bus.receive(StreamIndex::Usb, &[0xe0, 0x27]); // CRC of 80 5A
+    assert!(!bench.raw(&[0x80, 24]).is_empty());
+}
+
+#[test]
+fn usb_answers_all_eight_addresses_and_a_uart_only_its_own() {
+    let config = ControllerConfig { address: Address::ALL[3], ..ControllerConfig::default() };
+    let mut usb = Bench::of(config.clone());
+    let mut uart = Bench::on(config, StreamIndex::Uart1);
+    for address in Address::ALL {
+        let request = [address.get(), 24];
+        assert!(!usb.raw(&request).is_empty(), "{address}");
+        assert_eq!(!uart.raw(&request).is_empty(), address == Address::ALL[3], "{address}");
+    }
+}
+
+#[test]
+fn slow_ports_wait_a_millisecond_before_they_answer() {
+    for (rate, turnaround) in [(38_400, SLOW_TURNAROUND), (115_200, FAST_TURNAROUND)] {
+        let mut bench = Bench::on(ControllerConfig::default(), StreamIndex::Uart0);
+        bench.ask(number::SET_STREAM, &[1, 1, rate, 0]);
+        let asked_at = bench.bus.now();
+        bench.bus.receive(StreamIndex::Uart0, &[0x80, 24]);
+        assert_eq!(bench.bus.next_output_at(), Some(asked_at + turnaround), "{rate} bit/s");
+        assert_eq!(bench.bus.take_output(StreamIndex::Uart0), None);
+    }
+}
+
+#[test]
+fn requests_sent_in_a_row_are_answered_in_order_one_write_each() {
+    let mut bench = Bench::new(Generation::Gen1);
+    bench.bus.receive(StreamIndex::Usb, &[0x80, 24, 0x80, 90, 0x80, 21]);
+    bench.wait(Duration::from_millis(1));
+    let replies: Vec<usize> =
+        std::iter::from_fn(|| bench.bus.take_output(StreamIndex::Usb)).map(|reply| reply.len()).collect();
+    assert_eq!(replies, [4, 4, 23]); // u16 + CRC, u16 + CRC, 21 bytes of text + CRC
+}
+
+#[test]
+fn units_on_one_wire_answer_each_to_their_own_address() {
+    let units = vec![unit_at(Address::ALL[0]), unit_at(Address::ALL[5])];
+    let mut bus = Bus::new(units, StreamIndex::Uart1).expect("a TTL wire");
+    let timeout = Duration::from_millis(20);
+    for (address, answers) in [(0x80, true), (0x85, true), (0x81, false)] {
+        assert_eq!(!bus.exchange(&[address, 24], timeout).is_empty(), answers, "{address:02x}");
+    }
+    assert_eq!(bus.next_output_at(), None, "nobody else had anything to say");
+}
+
+#[test]
+fn a_bus_of_several_needs_a_wire_that_takes_several() {
+    let units = || vec![unit_at(Address::ALL[0]), unit_at(Address::ALL[1])];
+    assert_eq!(Bus::new(units(), StreamIndex::Usb).err(), Some(BusError::NotABus(StreamIndex::Usb)));
+    assert_eq!(Bus::new(units(), StreamIndex::Uart0).err(), Some(BusError::NotABus(StreamIndex::Uart0)));
+    assert_eq!(Bus::new(Vec::new(), StreamIndex::Uart1).err(), Some(BusError::Empty));
+}
+
+#[test]
+fn a_stream_in_mcl_mode_or_disabled_does_not_answer() {
+    for kind in [0, 2] {
+        let mut bench = Bench::new(Generation::Gen1);
+        bench.ask(number::SET_STREAM, &[2, kind, 115_200, 1000]); // TTL UART1
+        bench.bus.receive(StreamIndex::Uart1, &[0x80, 24]);
+        bench.wait(Duration::from_millis(20));
+        assert_eq!(bench.bus.take_output(StreamIndex::Uart1), None);
+        assert!(!bench.raw(&[0x80, 24]).is_empty(), "USB still does");
+    }
+}
+
+#[test]
+fn nothing_is_answered_without_power_or_with_the_plug_out() {
+    let mut bench = Bench::new(Generation::Gen1);
+    bench.apply(&WorldAction::Power { on: false });
+    assert!(bench.raw(&[0x80, 24]).is_empty());
+    bench.apply(&WorldAction::Power { on: true });
+    assert!(!bench.raw(&[0x80, 24]).is_empty());
+    bench.apply(&WorldAction::Unplug { unplugged: true });
+    assert!(bench.raw(&[0x80, 24]).is_empty());
+    bench.apply(&WorldAction::Unplug { unplugged: false });
+    assert!(!bench.raw(&[0x80, 24]).is_empty());
+}
+
+#[test]
+fn legacy_commands_drive_silently_where_the_firmware_is_of_that_kind() {
+    let mut config = ControllerConfig::default();
+    config.options.acknowledges_legacy = false;
+    let mut bench = Bench::of(config);
+    assert!(bench.try_ask(number::FORWARD_M1, &[127]).is_none());
+    bench.wait(Duration::from_millis(300));
+    assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), 32_767);
+    assert!(Bench::new(Generation::Gen1).try_ask(number::FORWARD_M1, &[127]).is_some());
+}
+
+#[test]
+fn what_is_read_is_what_the_unit_knows() {
+    let mut bench = Bench::new(Generation::Gen4);
+    bench.ask(number::DUTY_BOTH, &[16_384, -8_000]);
+    bench.wait_talking(Duration::from_millis(700));
+    let [main, logic, first, second] = bench.unit().unit().expect("it has power").supply_raw();
+    let all = bench.ask(number::READ_ALL_STATUS, &[]);
+    let unit = bench.unit().unit().expect("it has power");
+    assert_eq!((all.int("main_battery"), all.int("logic_battery")), (main, logic));
+    assert_eq!((all.int("temperature_1"), all.int("temperature_2")), (first, second));
+    for (motor, name) in [(Motor::M1, "m1"), (Motor::M2, "m2")] {
+        let channel = unit.channel(motor);
+        assert_eq!(all.int(&format!("duty_{name}")), i64::from(channel.duty_raw()));
+        assert_eq!(all.int(&format!("encoder_{name}")), i64::from(channel.encoder().position()));
+        assert_eq!(all.int(&format!("speed_{name}")), i64::from(channel.speeds().filtered));
+        assert_eq!(all.int(&format!("current_{name}")), unit.current_raw(motor));
+    }
+    assert_eq!(all.int("status"), i64::from(unit.status_word()));
+    assert!(main > 200 && all.int("encoder_m1") > 0 && all.int("encoder_m2") < 0);
+}

@@ -1,0 +1,79 @@
+//! A request: what a client sends and a controller takes.
+
+use super::command::{Command, Form};
+use super::encode::{EncodeError, encode_request, request_values};
+use super::identity::{Address, Generation};
+use super::table::lookup;
+use brushwork_values::{Value, Values};
+
+/// A request to one unit. It names no generation: [`Request::encode`] takes the one of the receiver.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Request {
+    /// The unit.
+    pub address: Address,
+    /// The command byte.
+    pub command: u8,
+    /// The arguments in wire order. Constants such as keys may be left out.
+    pub values: Vec<Value>,
+}
+
+impl Request {
+    /// A request whose arguments are the raw numbers `values`, in wire order.
+    pub fn new(address: Address, command: u8, values: &[i64]) -> Self {
+        Self { address, command, values: values.iter().map(|&value| Value::Int(value)).collect() }
+    }
+
+    /// A request whose arguments are put in the order that `generation` has them. Names that the generation's layout
+    /// lacks are left out, so that one call serves all widths.
+    ///
+    /// # Errors
+    /// If the generation does not have the command, or an argument of its layout is not among `named`.
+    pub fn named(
+        address: Address,
+        command: u8,
+        generation: Generation,
+        named: &[(&str, i64)],
+    ) -> Result<Self, EncodeError> {
+        let form = form_of(command, generation)?;
+        let value_of =
+            |name: &str| named.iter().find(|(given, _)| *given == name).map(|(_, value)| Value::Int(*value));
+        let values = form
+            .request
+            .iter()
+            .map(|field| {
+                value_of(field.name)
+                    .or_else(|| field.fixed.map(Value::Int))
+                    .ok_or(EncodeError::MissingValue { command, field: field.name })
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(Self { address, command, values })
+    }
+
+    /// Its row in the table; `None` for a number that the table does not have.
+    pub fn row(&self) -> Option<&'static Command> {
+        lookup(self.command)
+    }
+
+    /// The arguments with their names, keys filled in.
+    ///
+    /// # Errors
+    /// As [`Request::encode`].
+    pub fn arguments(&self, generation: Generation) -> Result<Values, EncodeError> {
+        let form = form_of(self.command, generation)?;
+        Ok(Values::new(form.request, request_values(self, form)?))
+    }
+
+    /// The bytes on the wire: with CRC for a write, without for a read.
+    ///
+    /// # Errors
+    /// If the generation does not have the command, or the values do not fit its layout.
+    pub fn encode(&self, generation: Generation) -> Result<Vec<u8>, EncodeError> {
+        encode_request(self, form_of(self.command, generation)?)
+    }
+}
+
+/// What goes over the wire for `command` in `generation`.
+pub(super) fn form_of(command: u8, generation: Generation) -> Result<&'static Form, EncodeError> {
+    let row = lookup(command).ok_or(EncodeError::UnknownCommand { command })?;
+    row.form(generation).ok_or(EncodeError::NotInGeneration { command, generation })
+}

@@ -1,0 +1,78 @@
+//! Scripts and the firmware loader. The format of a compiled script is not public.
+
+use super::super::command::{ClientUse, Command, Effect, Form, Reply, Simulated};
+use super::super::field::byte;
+use super::super::number;
+use super::{CLIENTS, G1, G4, MANUAL_ADVANCED, fields, forms, read, write, write_for};
+use crate::models::Family;
+use brushwork_values::{Field, Kind, Unit};
+
+pub(super) const ROWS: &[Command] = &[
+    manual(
+        number::SET_SCRIPT_AUTORUN,
+        "set_script_autorun",
+        "script autorun delay",
+        forms![write(G1, G4, Effect::Setting, fields![DELAY])],
+    )
+    .note("A client of 2025 refuses to send 1 to 99."),
+    manual(
+        number::READ_SCRIPT_AUTORUN,
+        "read_script_autorun",
+        "read script autorun delay",
+        forms![read(G1, G4, fields![DELAY])],
+    ),
+    manual(number::START_SCRIPT, "start_script", "start script", forms![write(G1, G4, Effect::Script, &[])]),
+    manual(number::STOP_SCRIPT, "stop_script", "stop script", forms![write(G1, G4, Effect::Stop, &[])]),
+    Command::new(number::ERASE_SCRIPT, "erase_script", "erase script", CLIENTS, ERASE).only(Family::Mcp),
+    Command::new(number::WRITE_SCRIPT, "write_script", "write script", CLIENTS, WRITE).only(Family::Mcp),
+    Command::new(number::READ_SCRIPT, "read_script", "read script", CLIENTS, &[])
+        .simulated(Simulated::Silent("only the number is public, not the layout"))
+        .client(ClientUse::Never("only the number is public, not the layout"))
+        .only(Family::Mcp),
+    Command::new(
+        number::ENTER_LOADER,
+        "enter_loader",
+        "enter firmware loader",
+        CLIENTS,
+        forms![write(G1, G4, Effect::Loader, LOADER)],
+    )
+    .note(
+        "It ends packet serial: the unit restarts as a USB device of another name and waits for an image. Libraries do not \
+         insist on the acknowledgement.",
+    ),
+];
+
+const DELAY: Field = Field::new("delay", Kind::U32, "time after a reset; below 100 the script is not run")
+    .unit(Unit::Milliseconds);
+
+/// The reply's second byte comes when the work is done; what it says is not public.
+const STATUS: &[Field] = fields![byte("status", "comes when the work is done; its meaning is not public")];
+
+const ERASE: &[Form] = forms![write_for(
+    G1,
+    G4,
+    Effect::Memory,
+    fields![Field::new("key", Kind::U16, "the key 55AA").unit(Unit::Bits).fixed(0x55AA)],
+    Reply::AckThenStatus(STATUS)
+)];
+
+const WRITE: &[Form] = forms![write_for(
+    G1,
+    G4,
+    Effect::Memory,
+    fields![
+        Field::new("address", Kind::U24, "place in the script memory").unit(Unit::Bits),
+        Field::new("data", Kind::Bytes(16), "four words of the compiled file, the bytes of each reversed"),
+    ],
+    Reply::AckThenStatus(STATUS)
+)];
+
+const LOADER: &[Field] = fields![
+    byte("mark", "always FF").unit(Unit::Bits).fixed(0xFF),
+    Field::new("key", Kind::U32, "the key A5A51234").unit(Unit::Bits).fixed(0xA5A5_1234),
+];
+
+const fn manual(number: u8, key: &'static str, title: &'static str, forms: &'static [Form]) -> Command {
+    // MCL is the MCP's (MCP manual 3.0.1): no RoboClaw manual has these numbers.
+    Command::new(number, key, title, MANUAL_ADVANCED, forms).only(Family::Mcp)
+}

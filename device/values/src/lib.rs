@@ -1,0 +1,14 @@
+//! How a value of any controller is described: its field, unit and named codes, and which motor it is of.
+//!
+//! Client, simulator and settings table of every family speak in these words. Numbers as they lie on the wire are *raw*;
+//! [`Field::physical`] and [`Field::raw`] lead to physical ones and back.
+
+mod code;
+mod field;
+mod motor;
+mod value;
+
+pub use code::{Code, by_key, by_raw};
+pub use field::{Field, Kind, SERIAL_BYTES, Unit, width_of};
+pub use motor::Motor;
+pub use value::{Record, Value, Values};
