@@ -17,6 +17,7 @@ mod real_time {
     use std::process::ExitCode;
     use std::time::Duration;
 
+    use brushwork_mcp_axis::PacketAxis;
     use brushwork_mcp_sim::controller::ControllerConfig;
     use brushwork_mcp_wire::packet_serial::Generation;
     use brushwork_plant::machine::StreamIndex;
@@ -26,7 +27,6 @@ mod real_time {
     use brushwork_tuning::rig::GuardOptions;
     use brushwork_tuning::tune::{Request, tune};
     use brushwork_tuning_bench::line::SimulatedLine;
-    use brushwork_tuning_bench::packet::PacketAxis;
     use brushwork_tuning_bench::population::LinkParams;
 
     const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");

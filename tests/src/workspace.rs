@@ -41,6 +41,8 @@ pub struct Dependency {
     pub name: String,
     /// The table it stands in.
     pub kind: DependencyKind,
+    /// Whether only a feature asks for it.
+    pub is_optional: bool,
 }
 
 /// One crate of this workspace.
@@ -182,7 +184,7 @@ fn dependency(line: &Value) -> Dependency {
         Some("build") => DependencyKind::Build,
         _ => DependencyKind::Normal,
     };
-    Dependency { name: text(line, "name").to_owned(), kind }
+    Dependency { name: text(line, "name").to_owned(), kind, is_optional: line["optional"] == true }
 }
 
 fn array<'a>(value: &'a Value, key: &str) -> &'a [Value] {

@@ -4,6 +4,7 @@
 //! [`crate::session`] like the window does; they print data on standard output and words on standard error.
 
 pub mod args;
+#[cfg(feature = "bench")]
 mod bench;
 mod client;
 mod drive;
@@ -79,6 +80,7 @@ fn dispatch(command: &Command, out: &mut Output, interrupt: &Interrupt) -> Exit 
         Command::Monitor(args) => monitor::run(args, out, interrupt),
         Command::Tune(args) => tune::run(args, out, interrupt),
         Command::Mcl(args) => mcl::run(args, out, interrupt),
+        #[cfg(feature = "bench")]
         Command::Bench(args) => bench::run(args, out, interrupt),
     }
 }

@@ -4,21 +4,17 @@ use std::time::Duration;
 
 use brushwork_link::device::JobContext;
 use brushwork_link::wire::Wire;
+use brushwork_motion_mind_axis::{BITS_PER_BYTE, MindCarrier, worked_at};
 use brushwork_motion_mind_wire::{
     Address, Command, Part, Protocol, Reply, encode_frame, encode_line, register,
 };
 use brushwork_tuning::axis::{AxisError, Exchange};
-use brushwork_tuning_bench::mind::axis::MindCarrier;
-use brushwork_tuning_bench::mind::line::worked_at;
 
 use super::told;
 
 /// An exchange that took so much longer than the quickest of its kind had a retry in it, so that nobody can say when the unit did
 /// its work.
 const LATE: Duration = Duration::from_millis(35);
-
-/// Bits of a byte on the wire.
-const BITS_PER_BYTE: f64 = 10.0;
 
 /// The wire of a job as the tuner's carrier. The device thread knows which protocol the unit speaks; here all is commands.
 pub(super) struct MindJobCarrier<'a, 'b> {

@@ -19,17 +19,17 @@ use brushwork_link::exchange::ExchangeError;
 use brushwork_link::failure::Failure;
 use brushwork_link::settings::{Ending, Subject, begin_trial, end_act};
 use brushwork_link::wire::Wire;
+use brushwork_mcp_axis::{Carrier, PacketAxis};
 use brushwork_mcp_wire::packet_serial::{Generation, Request as Packet, number};
+use brushwork_motion_mind_axis::{LoopAfter, MindAxis};
 use brushwork_tuning::axis::{
     Axis, AxisError, EncoderClass, Exchange, PositionRegisters, Setup, VelocityRegisters,
 };
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::rig::wait_for_rest;
+use brushwork_tuning::rig::{RUN_STREAM_TIMEOUT_MS, wait_for_rest};
 use brushwork_tuning::trial::{Trial, TrialRequest, run_trial};
 use brushwork_tuning::tune::{Request, tune};
-use brushwork_tuning_bench::mind::axis::{LoopAfter, MindAxis};
-use brushwork_tuning_bench::packet::{Carrier, PacketAxis};
 use brushwork_values::{Motor, Value, Values};
 
 use crate::keep::TrialKeeper;
@@ -47,8 +47,6 @@ pub const RESTORE: &str = "put back what the tuning changed";
 
 /// What a trial of gains may take.
 const TRIAL_LIMIT: Duration = Duration::from_secs(120);
-/// The stream's time-out during a run, ms. Assumed: it stops the motor when the program dies.
-const RUN_TIMEOUT_MS: u32 = 250;
 /// An exchange that took so much longer than the quickest had a retry in it, or waited for this computer, so that its middle says
 /// nothing.
 const LATE: Duration = Duration::from_millis(35);
@@ -186,7 +184,7 @@ pub fn prepare(target: Target, subject: Subject, found: &Slot<Setup>, keeper: &T
         let setup = thrice(|| axis.read_setup()).map_err(|error| failed("read the loops", &place, &error))?;
         put(&found, setup);
         if setup.stream_timeout_ms.is_some() {
-            thrice(|| axis.set_stream_timeout(RUN_TIMEOUT_MS))
+            thrice(|| axis.set_stream_timeout(RUN_STREAM_TIMEOUT_MS))
                 .map_err(|error| failed("set the time-out of the port", &place, &error))?;
         }
         Ok(Box::new(()))

@@ -8,13 +8,15 @@ use brushwork_tests::rust_source::{code_lines, without_tests};
 use brushwork_tests::workspace::{self, DependencyKind, Member, Metadata};
 
 /// The arrows that ship: a crate and the crates of this workspace it may use.
-const ARROWS: [(&str, &[&str]); 14] = [
+const ARROWS: [(&str, &[&str]); 16] = [
     (
         "brushwork",
         &[
             "brushwork-link",
+            "brushwork-mcp-axis",
             "brushwork-mcp-sim",
             "brushwork-mcp-wire",
+            "brushwork-motion-mind-axis",
             "brushwork-motion-mind-sim",
             "brushwork-motion-mind-wire",
             "brushwork-plant",
@@ -29,8 +31,10 @@ const ARROWS: [(&str, &[&str]); 14] = [
     (
         "brushwork-tuning-bench",
         &[
+            "brushwork-mcp-axis",
             "brushwork-mcp-sim",
             "brushwork-mcp-wire",
+            "brushwork-motion-mind-axis",
             "brushwork-motion-mind-sim",
             "brushwork-motion-mind-wire",
             "brushwork-plant",
@@ -41,8 +45,10 @@ const ARROWS: [(&str, &[&str]); 14] = [
     ("brushwork-link", &["brushwork-mcp-wire", "brushwork-motion-mind-wire", "brushwork-values"]),
     ("brushwork-plant", &["brushwork-values"]),
     ("brushwork-mcp-wire", &["brushwork-values"]),
+    ("brushwork-mcp-axis", &["brushwork-mcp-wire", "brushwork-tuning", "brushwork-values"]),
     ("brushwork-mcp-sim", &["brushwork-mcp-wire", "brushwork-plant", "brushwork-script", "brushwork-values"]),
     ("brushwork-motion-mind-wire", &["brushwork-values"]),
+    ("brushwork-motion-mind-axis", &["brushwork-motion-mind-wire", "brushwork-tuning"]),
     ("brushwork-motion-mind-sim", &["brushwork-motion-mind-wire", "brushwork-plant", "brushwork-values"]),
     ("brushwork-script", &[]),
     ("brushwork-values", &[]),
@@ -54,8 +60,10 @@ const ARROWS: [(&str, &[&str]); 14] = [
             "brushwork",
             "brushwork-child",
             "brushwork-link",
+            "brushwork-mcp-axis",
             "brushwork-mcp-sim",
             "brushwork-mcp-wire",
+            "brushwork-motion-mind-axis",
             "brushwork-motion-mind-sim",
             "brushwork-motion-mind-wire",
             "brushwork-plant",
@@ -98,10 +106,12 @@ const IMPURE: [&str; 9] = [
 ];
 
 /// The pure parts: a source folder and the modules in it that are the named exception.
-const PURE: [(&str, &[&str]); 8] = [
+const PURE: [(&str, &[&str]); 10] = [
     ("device/values/src", &[]),
+    ("device/mcp/axis/src", &[]),
     ("device/mcp/wire/src", &[]),
     ("device/mcp/sim/src", &[]),
+    ("device/motion_mind/axis/src", &[]),
     ("device/motion_mind/wire/src", &[]),
     ("device/motion_mind/sim/src", &[]),
     ("device/plant/src", &["server"]),
@@ -136,6 +146,17 @@ fn crates_know_only_the_crates_below_them() {
                 may.extend(allowed(&TEST_ARROWS, &member.name));
             }
             assert!(may.contains(target), "{} may not depend on {target} ({kind:?})", member.name);
+        }
+    }
+}
+
+/// What judges the tuner is a tool of the developers: it comes into the program with a feature that what is packaged goes without.
+#[test]
+fn nothing_that_ships_needs_the_bench() {
+    let metadata = Metadata::load();
+    for member in &metadata.members {
+        for line in member.dependencies.iter().filter(|line| line.name == "brushwork-tuning-bench") {
+            assert!(line.is_optional || member.name == "brushwork-tests", "{} needs the bench", member.name);
         }
     }
 }

@@ -7,7 +7,6 @@ pub mod faults;
 pub mod line;
 pub mod mind;
 pub mod oracle;
-pub mod packet;
 pub mod population;
 pub mod reject;
 pub mod run;

@@ -1,7 +1,7 @@
 //! The link of the benchmark: packet serial bytes to a simulated controller in virtual time, with latency, jitter and loss.
 
-use crate::packet::Carrier;
 use crate::population::{Draw, LinkParams};
+use brushwork_mcp_axis::Carrier;
 use brushwork_mcp_sim::controller::Controller;
 use brushwork_mcp_wire::packet_serial::{Address, Generation, ReplyProgress, Request, parse_reply};
 use brushwork_plant::machine::StreamIndex;

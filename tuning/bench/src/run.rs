@@ -2,11 +2,11 @@
 
 use crate::line::SimulatedLine;
 use crate::oracle::{Optimum, cost, trial};
-use crate::packet::PacketAxis;
 use crate::population::Specimen;
 use crate::reject::{MOST_MS, most_overshoot};
 use crate::trial::{Outcome, Registers, linear};
 use crate::truth::Truth;
+use brushwork_mcp_axis::PacketAxis;
 use brushwork_mcp_sim::controller::Controller;
 use brushwork_plant::EncoderKind;
 use brushwork_tuning::axis::EncoderClass;

@@ -3,6 +3,7 @@
 //! Everything runs in this process, against simulated controllers; nothing here is drawn on a screen. The figures hold for
 //! the machine and the build they were taken on: use a release build on a quiet machine.
 
+pub mod arguments;
 mod editor;
 mod figure;
 mod headless;
@@ -20,10 +21,10 @@ use std::time::Duration;
 
 use serde_json::json;
 
-use super::args::{BenchArg, BenchArgs};
 use super::exit::Exit;
 use super::interrupt::Interrupt;
 use super::output::{Output, OutputError, say};
+use arguments::{BenchArg, BenchArgs};
 use figure::{Figure, MARKS};
 
 /// How long and how often to measure.

@@ -5,7 +5,7 @@ use brushwork_tuning_bench::mind;
 use brushwork_tuning_bench::population::population;
 use brushwork_tuning_bench::table::{Row, Table, cases, optima_of, table};
 
-use crate::cli::args::{BenchArgs, BenchFamily};
+use super::arguments::{BenchArgs, BenchFamily};
 use crate::cli::exit::Exit;
 use crate::cli::new_file::NewFile;
 use crate::cli::output::{Output, OutputError, say};

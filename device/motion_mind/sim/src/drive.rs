@@ -3,8 +3,9 @@
 use super::assumed::OVER_TEMPERATURE_CELSIUS;
 use super::inputs::{ANALOG_FULL, Inputs, RC_CENTER};
 use super::loops::FULL_DUTY;
-use super::store::{Store, number};
+use super::store::Store;
 use brushwork_motion_mind_wire::Mode;
+use brushwork_motion_mind_wire::register_number as number;
 use brushwork_motion_mind_wire::{function, function2};
 use brushwork_plant::bridge::BridgeOutput;
 

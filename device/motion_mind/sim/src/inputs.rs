@@ -2,7 +2,8 @@
 
 use super::assumed::{PULSE_MISSING_LOOPS, PULSE_PERIOD_LOOPS, PULSES_IN_MEAN};
 use super::config::pin;
-use super::store::{Store, number};
+use super::store::Store;
+use brushwork_motion_mind_wire::register_number as number;
 use brushwork_motion_mind_wire::{Mode, function};
 use brushwork_plant::world::{PinState, World};
 use std::collections::VecDeque;

@@ -1,7 +1,8 @@
 //! The closed loop: the PID of the manual on counts, every 5 ms or every 500 us (Motion Mind manual 3.11 to 3.14, 6.3).
 
 use super::assumed::INTEGRAL_LIMIT;
-use super::store::{Store, number};
+use super::store::Store;
+use brushwork_motion_mind_wire::register_number as number;
 use brushwork_motion_mind_wire::{function, function2};
 
 /// Full drive.

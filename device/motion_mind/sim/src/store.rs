@@ -1,44 +1,8 @@
 //! The registers in RAM and in EEPROM.
 
-use brushwork_motion_mind_wire::{REGISTERS, Register, register};
+use brushwork_motion_mind_wire::{REGISTERS, Register, register, register_number as number};
 
 const COUNT: usize = REGISTERS.len();
-
-/// Register numbers.
-pub mod number {
-    pub const POSITION: u8 = 0;
-    pub const VELOCITYLIMIT: u8 = 1;
-    pub const VELOCITYFF: u8 = 2;
-    pub const FUNCTION: u8 = 3;
-    pub const PTERM: u8 = 4;
-    pub const ITERM: u8 = 5;
-    pub const DTERM: u8 = 6;
-    pub const ADDRESS: u8 = 7;
-    pub const PIDSCALAR: u8 = 8;
-    pub const TIMER: u8 = 9;
-    pub const RCMAX: u8 = 10;
-    pub const RCMIN: u8 = 11;
-    pub const RCBAND: u8 = 12;
-    pub const RCCOUNT: u8 = 13;
-    pub const VELOCITY: u8 = 14;
-    pub const TIME: u8 = 15;
-    pub const STATUS: u8 = 16;
-    pub const REVISION: u8 = 17;
-    pub const MODE: u8 = 18;
-    pub const ANALOGCON: u8 = 19;
-    pub const ANALOGFBCK: u8 = 20;
-    pub const PWMOUT: u8 = 21;
-    pub const INDEXPOS: u8 = 22;
-    pub const VNLIMIT: u8 = 23;
-    pub const VPLIMIT: u8 = 24;
-    pub const PWMLIMIT: u8 = 25;
-    pub const DEADBAND: u8 = 26;
-    pub const DESIREDPOSITION: u8 = 27;
-    pub const AMPSLIMIT: u8 = 28;
-    pub const AMPS: u8 = 29;
-    pub const FUNCTION2: u8 = 30;
-    pub const THERMISTOR: u8 = 31;
-}
 
 /// Both copies of all registers.
 #[derive(Clone, Debug)]

@@ -5,8 +5,9 @@ use super::config::{EncoderDecode, MotionMindConfig};
 use super::drive::{Limits, OpenLoop, radio_position};
 use super::inputs::Inputs;
 use super::loops::{FULL_DUTY, Goal, Loop, Turn};
-use super::store::{Store, number};
+use super::store::Store;
 use super::wire::{Order, Wire};
+use brushwork_motion_mind_wire::register_number as number;
 use brushwork_motion_mind_wire::{
     Address, Command, Part, REGISTERS, Reply, Returned, Returns, STATUS_BITS, function, function2, status,
 };

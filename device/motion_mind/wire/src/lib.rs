@@ -34,7 +34,7 @@ pub use parts::{COMMANDS, CommandRow, command_row, fields, numbers};
 pub use reference::{
     BitEntry, CommandEntry, Reference, RegisterEntry, reference, reference_entry, reference_page,
 };
-pub use register::{Access, Kind, REGISTERS, Register, register, register_named};
+pub use register::{Access, Kind, REGISTERS, Register, register, register_named, register_number};
 pub use reply::{BadReply, Progress, Reply, Returned, Returns};
 pub use switches::{Mode, Protocol};
 

@@ -3,16 +3,12 @@
 use super::address::Address;
 use super::command::{Command, Part};
 use super::frame::{EncodeError, fitting};
-use super::register::{REGISTERS, Register, register};
+use super::register::{REGISTERS, Register, register, register_number as number};
 use super::reply::{BadReply, Progress, Reply, Returned, Returns};
 
 const END: &str = "\r\n";
 const ACKNOWLEDGE: &str = "OK";
 const NOT_UNDERSTOOD: &str = "BAD COMMAND";
-
-const POSITION: u8 = 0;
-const VELOCITY: u8 = 14;
-const TIME: u8 = 15;
 
 /// A command as it is sent, with its line end.
 ///
@@ -73,9 +69,9 @@ fn coded(index: u8, value: i64) -> Option<String> {
 /// Assumed: several return bits give one line each.
 fn returned_lines(returned: &Returned) -> String {
     let values = [
-        (POSITION, returned.position.map(i64::from)),
-        (VELOCITY, returned.velocity.map(i64::from)),
-        (TIME, returned.time.map(i64::from)),
+        (number::POSITION, returned.position.map(i64::from)),
+        (number::VELOCITY, returned.velocity.map(i64::from)),
+        (number::TIME, returned.time.map(i64::from)),
     ];
     values.into_iter().filter_map(|(index, value)| coded(index, value?)).collect()
 }
@@ -198,7 +194,11 @@ fn bit_line(letter: char, number: usize, line: &str) -> Option<bool> {
 }
 
 fn returned(returns: Returns, first: String, mut lines: Lines<'_>) -> Progress {
-    let wanted = [(returns.position, POSITION), (returns.velocity, VELOCITY), (returns.time, TIME)];
+    let wanted = [
+        (returns.position, number::POSITION),
+        (returns.velocity, number::VELOCITY),
+        (returns.time, number::TIME),
+    ];
     let mut values = [None; 3];
     let mut line = Some(first);
     for (slot, (is_wanted, index)) in values.iter_mut().zip(wanted) {

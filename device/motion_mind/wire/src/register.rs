@@ -127,49 +127,54 @@ const DUTY_PERCENT: f64 = 100.0 / 1023.0;
 const AMPS: f64 = 0.02;
 
 macro_rules! registers {
-    ($($number:literal $name:literal $code:literal $access:ident $kind:ident $range:expr, $default:expr, $unit:literal $scale:expr, $help:literal;)*) => {
+    ($($number:literal $name:ident $code:literal $access:ident $kind:ident $range:expr, $default:expr, $unit:literal $scale:expr, $help:literal;)*) => {
         /// All registers, by number.
         pub static REGISTERS: [Register; 32] = [$(Register {
-            number: $number, name: $name, code: $code, access: Access::$access, kind: Kind::$kind, range: $range,
+            number: $number, name: stringify!($name), code: $code, access: Access::$access, kind: Kind::$kind, range: $range,
             default: $default, unit: $unit, scale: $scale, help: $help,
         }),*];
+
+        /// The registers' numbers, by name.
+        pub mod register_number {
+            $(#[doc = $help] pub const $name: u8 = $number;)*
+        }
     };
 }
 
 registers! {
-    0 "POSITION" "APOS" ReadWrite I32 I32_MIN..=I32_MAX, Some(0), "counts" 1.0,
+    0 POSITION "APOS" ReadWrite I32 I32_MIN..=I32_MAX, Some(0), "counts" 1.0,
         "where the motor is: encoder counts, 0 to 1023 of an analog feedback, or 0.217 us steps of a pulse feedback";
-    1 "VELOCITYLIMIT" "VLIM" ReadWrite U16 1..=1023, Some(1023), "" 1.0,
+    1 VELOCITYLIMIT "VLIM" ReadWrite U16 1..=1023, Some(1023), "" 1.0,
         "modes 0 to 3: change of the drive per update; mode 4 with VELLIMIT: counts per PID loop";
-    2 "VELOCITYFF" "VLFF" ReadWrite U8 0..=255, Some(128), "" 1.0 / 255.0, "feed-forward of the commanded velocity";
-    3 "FUNCTION" "FUNC" ReadWrite U16 0..=U16_MAX, Some(0), "" 1.0, "switches of the controller's functions";
-    4 "PTERM" "PTRM" ReadWrite U16 0..=U16_MAX, Some(6000), "" 1.0, "proportional gain, before 2^PIDSCALAR divides it";
-    5 "ITERM" "ITRM" ReadWrite U16 0..=U16_MAX, Some(35), "" 1.0, "integral gain, before 2^PIDSCALAR divides it";
-    6 "DTERM" "DTRM" ReadWrite U16 0..=U16_MAX, Some(0), "" 1.0, "derivative gain, before 2^PIDSCALAR divides it";
-    7 "ADDRESS" "ADDR" ReadWrite U8 0..=255, Some(1), "" 1.0, "what the unit answers to: 1 to 98; from 99 on it never answers";
-    8 "PIDSCALAR" "PIDS" ReadWrite U8 0..=32, Some(14), "" 1.0, "the output of the PID is divided by 2 to this power";
-    9 "TIMER" "TIMR" ReadWrite U8 1..=255, Some(10), "s" TICK_S, "time between updates of the speed; debounce of buttons and limits";
-    10 "RCMAX" "RCMX" ReadWrite U16 0..=U16_MAX, Some(1152), "ms" RC_MS, "R/C pulse of full speed forward";
-    11 "RCMIN" "RCMN" ReadWrite U16 0..=U16_MAX, Some(576), "ms" RC_MS, "R/C pulse of full speed reverse";
-    12 "RCBAND" "RCBD" ReadWrite U16 0..=U16_MAX, Some(15), "ms" RC_MS, "R/C pulses this near to 1.5 ms stop the motor";
-    13 "RCCOUNT" "RCCT" ReadOnly U16 0..=U16_MAX, None, "ms" RC_MS, "the R/C pulse as measured";
-    14 "VELOCITY" "VELO" ReadOnly I16 -32_768..=32_767, None, "counts per loop" 1.0, "velocity, the mean of 64 loops";
-    15 "TIME" "TIME" ReadOnly U32 0..=U32_MAX, None, "s" TICK_S, "time since power-up";
-    16 "STATUS" "STAT" ReadOnly U16 0..=U16_MAX, None, "" 1.0, "inputs, limits and faults";
-    17 "REVISION" "REVN" ReadOnly U8 0..=255, None, "" 1.0, "the firmware";
-    18 "MODE" "MODE" ReadOnly U8 0..=7, None, "" 1.0, "what moves the motor, by the switches at power-up";
-    19 "ANALOGCON" "ACON" ReadOnly U16 0..=1023, None, "V" ANALOG_VOLTS, "the analog control input, J4 P4";
-    20 "ANALOGFBCK" "AFBK" ReadOnly U16 0..=1023, None, "V" ANALOG_VOLTS, "the analog feedback input, J4 P3";
-    21 "PWMOUT" "PWMO" ReadOnly I16 -1023..=1023, None, "%" DUTY_PERCENT, "drive of the motor, with its sign";
-    22 "INDEXPOS" "IPOS" ReadOnly I32 I32_MIN..=I32_MAX, None, "counts" 1.0, "POSITION at the last index pulse";
-    23 "VNLIMIT" "VNLM" ReadWrite I32 I32_MIN..=I32_MAX, Some(-100_000), "counts" 1.0, "negative virtual limit, with VIRTLIMIT";
-    24 "VPLIMIT" "VPLM" ReadWrite I32 I32_MIN..=I32_MAX, Some(100_000), "counts" 1.0, "positive virtual limit, with VIRTLIMIT";
-    25 "PWMLIMIT" "PWML" ReadWrite U16 1..=1023, Some(1023), "%" DUTY_PERCENT, "the most drive that the motor gets";
-    26 "DEADBAND" "DBND" ReadWrite U16 0..=1023, Some(15), "" 1.0,
+    2 VELOCITYFF "VLFF" ReadWrite U8 0..=255, Some(128), "" 1.0 / 255.0, "feed-forward of the commanded velocity";
+    3 FUNCTION "FUNC" ReadWrite U16 0..=U16_MAX, Some(0), "" 1.0, "switches of the controller's functions";
+    4 PTERM "PTRM" ReadWrite U16 0..=U16_MAX, Some(6000), "" 1.0, "proportional gain, before 2^PIDSCALAR divides it";
+    5 ITERM "ITRM" ReadWrite U16 0..=U16_MAX, Some(35), "" 1.0, "integral gain, before 2^PIDSCALAR divides it";
+    6 DTERM "DTRM" ReadWrite U16 0..=U16_MAX, Some(0), "" 1.0, "derivative gain, before 2^PIDSCALAR divides it";
+    7 ADDRESS "ADDR" ReadWrite U8 0..=255, Some(1), "" 1.0, "what the unit answers to: 1 to 98; from 99 on it never answers";
+    8 PIDSCALAR "PIDS" ReadWrite U8 0..=32, Some(14), "" 1.0, "the output of the PID is divided by 2 to this power";
+    9 TIMER "TIMR" ReadWrite U8 1..=255, Some(10), "s" TICK_S, "time between updates of the speed; debounce of buttons and limits";
+    10 RCMAX "RCMX" ReadWrite U16 0..=U16_MAX, Some(1152), "ms" RC_MS, "R/C pulse of full speed forward";
+    11 RCMIN "RCMN" ReadWrite U16 0..=U16_MAX, Some(576), "ms" RC_MS, "R/C pulse of full speed reverse";
+    12 RCBAND "RCBD" ReadWrite U16 0..=U16_MAX, Some(15), "ms" RC_MS, "R/C pulses this near to 1.5 ms stop the motor";
+    13 RCCOUNT "RCCT" ReadOnly U16 0..=U16_MAX, None, "ms" RC_MS, "the R/C pulse as measured";
+    14 VELOCITY "VELO" ReadOnly I16 -32_768..=32_767, None, "counts per loop" 1.0, "velocity, the mean of 64 loops";
+    15 TIME "TIME" ReadOnly U32 0..=U32_MAX, None, "s" TICK_S, "time since power-up";
+    16 STATUS "STAT" ReadOnly U16 0..=U16_MAX, None, "" 1.0, "inputs, limits and faults";
+    17 REVISION "REVN" ReadOnly U8 0..=255, None, "" 1.0, "the firmware";
+    18 MODE "MODE" ReadOnly U8 0..=7, None, "" 1.0, "what moves the motor, by the switches at power-up";
+    19 ANALOGCON "ACON" ReadOnly U16 0..=1023, None, "V" ANALOG_VOLTS, "the analog control input, J4 P4";
+    20 ANALOGFBCK "AFBK" ReadOnly U16 0..=1023, None, "V" ANALOG_VOLTS, "the analog feedback input, J4 P3";
+    21 PWMOUT "PWMO" ReadOnly I16 -1023..=1023, None, "%" DUTY_PERCENT, "drive of the motor, with its sign";
+    22 INDEXPOS "IPOS" ReadOnly I32 I32_MIN..=I32_MAX, None, "counts" 1.0, "POSITION at the last index pulse";
+    23 VNLIMIT "VNLM" ReadWrite I32 I32_MIN..=I32_MAX, Some(-100_000), "counts" 1.0, "negative virtual limit, with VIRTLIMIT";
+    24 VPLIMIT "VPLM" ReadWrite I32 I32_MIN..=I32_MAX, Some(100_000), "counts" 1.0, "positive virtual limit, with VIRTLIMIT";
+    25 PWMLIMIT "PWML" ReadWrite U16 1..=1023, Some(1023), "%" DUTY_PERCENT, "the most drive that the motor gets";
+    26 DEADBAND "DBND" ReadWrite U16 0..=1023, Some(15), "" 1.0,
         "mode 1: steps of 4.88 mV around 2.5 V that stop the motor; with ENABLEDB: counts around the setpoint";
-    27 "DESIREDPOSITION" "DPOS" ReadOnly I32 I32_MIN..=I32_MAX, None, "counts" 1.0, "where the motor is sent";
-    28 "AMPSLIMIT" "AMPL" ReadWrite U16 0..=1023, Some(512), "A" AMPS, "current at which the drive is reduced; 0: never";
-    29 "AMPS" "AMPS" ReadOnly U16 0..=1023, None, "A" AMPS, "current of the motor";
-    30 "FUNCTION2" "FUN2" ReadWrite U16 0..=U16_MAX, Some(0), "" 1.0, "more switches";
-    31 "THERMISTOR" "THRM" ReadOnly U16 0..=1023, None, "" 1.0, "temperature of the bridge: (raw - 1104) x -0.165 degrees Celsius";
+    27 DESIREDPOSITION "DPOS" ReadOnly I32 I32_MIN..=I32_MAX, None, "counts" 1.0, "where the motor is sent";
+    28 AMPSLIMIT "AMPL" ReadWrite U16 0..=1023, Some(512), "A" AMPS, "current at which the drive is reduced; 0: never";
+    29 AMPS "AMPS" ReadOnly U16 0..=1023, None, "A" AMPS, "current of the motor";
+    30 FUNCTION2 "FUN2" ReadWrite U16 0..=U16_MAX, Some(0), "" 1.0, "more switches";
+    31 THERMISTOR "THRM" ReadOnly U16 0..=1023, None, "" 1.0, "temperature of the bridge: (raw - 1104) x -0.165 degrees Celsius";
 }

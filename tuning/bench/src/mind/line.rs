@@ -1,8 +1,8 @@
 //! The link of the bench to a simulated Motion Mind: frames or lines in virtual time, at a baud rate, with latency, jitter and loss.
 
-use super::axis::MindCarrier;
 use super::population::MindSpecimen;
 use crate::line::{Bench, SimulatedLine};
+use brushwork_motion_mind_axis::{BITS_PER_BYTE, MindCarrier, worked_at};
 use brushwork_motion_mind_sim::{MotionMind, Protocol};
 use brushwork_motion_mind_wire::{
     Address, Command, Part, Progress, Reply, Returns, encode_frame, encode_line, parse_frame_reply,
@@ -12,13 +12,8 @@ use brushwork_plant::world::{WorldAction, WorldView};
 use brushwork_tuning::axis::{AxisError, Exchange};
 use std::time::Duration;
 
-/// Bits of a byte on the wire.
-const BITS_PER_BYTE: f64 = 10.0;
 /// How long a reply is waited for beyond its bytes: the manual says at most 10 ms, and 50 for long lines, s.
 const REPLY_TIMEOUT_S: (f64, f64) = (0.015, 0.055);
-/// How long after a command the reply usually leaves (Motion Mind manual 5.0), in frames, in lines, and of all registers, s.
-const REPLY_DELAY_S: [f64; 3] = [0.002, 0.006, 0.020];
-
 impl Bench for MotionMind {
     fn time(&self) -> Duration {
         self.now()
@@ -59,28 +54,6 @@ impl MindLine {
         line.idle(Duration::from_millis(500));
         Self { line, bits_per_second: specimen.bits_per_second }
     }
-}
-
-/// When a command did its work, from when it was sent and its reply complete: its bytes had to come first, and what nobody can
-/// place is shared out evenly.
-#[must_use]
-pub fn worked_at(
-    (sent, received): (Duration, Duration),
-    (request_bytes, reply_bytes): (usize, usize),
-    bits_per_second: u32,
-    (protocol, command): (Protocol, &Command),
-) -> Exchange {
-    let per_byte_s = BITS_PER_BYTE / f64::from(bits_per_second.max(1));
-    let (up_s, down_s) = (request_bytes as f64 * per_byte_s, reply_bytes as f64 * per_byte_s);
-    let [frame_s, line_s, all_s] = REPLY_DELAY_S;
-    let delay_s = match (protocol, command) {
-        (Protocol::Binary, _) => frame_s,
-        (Protocol::Text, Command::ReadText(Part::All)) => all_s,
-        (Protocol::Text, _) => line_s,
-    };
-    let unknown_s = (received.saturating_sub(sent).as_secs_f64() - up_s - down_s - delay_s).max(0.0);
-    let at = sent + Duration::from_secs_f64(up_s + 0.5 * unknown_s);
-    Exchange { sent: at, received: at }
 }
 
 fn parsed(protocol: Protocol, command: &Command, bytes: &[u8]) -> Option<Reply> {

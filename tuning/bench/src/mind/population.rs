@@ -2,6 +2,7 @@
 
 use crate::population::{Draw, Kind, KindRow, Specimen, drawn, row};
 use brushwork_motion_mind_sim::{Mode, MotionMind, MotionMindConfig, Protocol};
+use brushwork_motion_mind_wire::register_number as number;
 use brushwork_motion_mind_wire::{Address, Command, encode_frame, encode_line, function2};
 use brushwork_plant::BoardParams;
 use brushwork_plant::world::{Wiring, WorldParams};
@@ -11,11 +12,8 @@ use std::time::Duration;
 
 /// Highest current of the board, A (Motion Mind manual 1.0).
 const PEAK_AMPS: f64 = 25.0;
-/// One step of AMPSLIMIT, A.
+/// One step of number::AMPSLIMIT, A.
 const AMPS_STEP: f64 = 0.02;
-/// Registers that set the unit up, by number.
-const AMPSLIMIT: u8 = 28;
-const FUNCTION2: u8 = 30;
 /// Longer than a write to EEPROM.
 const STORE: Duration = Duration::from_millis(100);
 
@@ -67,7 +65,7 @@ pub fn specimen(seed: u64, number: usize) -> MindSpecimen {
 }
 
 impl MindSpecimen {
-    /// The unit with this motor, as its owner has set it up: baud and AMPSLIMIT in EEPROM.
+    /// The unit with this motor, as its owner has set it up: baud and number::AMPSLIMIT in EEPROM.
     #[must_use]
     pub fn unit(&self) -> MotionMind {
         self.unit_in(Mode::SerialPid)
@@ -92,7 +90,7 @@ impl MindSpecimen {
             _ => 0,
         };
         let steps = (self.plant.current_limit_amps / AMPS_STEP).round().clamp(1.0, 1023.0);
-        for (register, value) in [(FUNCTION2, i64::from(baud)), (AMPSLIMIT, steps as i64)] {
+        for (register, value) in [(number::FUNCTION2, i64::from(baud)), (number::AMPSLIMIT, steps as i64)] {
             tell(&mut unit, &Command::WriteStore { register, value });
             unit.advance(unit.now() + STORE);
             while unit.take_output().is_some() {}

@@ -1,6 +1,5 @@
 //! The table of the benchmark for the Motion Mind: our methods and the textbook rules on the same records.
 
-use super::axis::MindAxis;
 use super::bed::MindBed;
 use super::faults::fault_rows;
 use super::line::MindLine;
@@ -12,6 +11,7 @@ use crate::run::{Judgement, refusal, weigh};
 use crate::table::{
     Identification, Judged, Row, Table, WINDOW_S, error_percent, identification_of, row, window_summary,
 };
+use brushwork_motion_mind_axis::MindAxis;
 use brushwork_motion_mind_sim::Mode;
 use brushwork_tuning::linear::LoopPlant;
 use brushwork_tuning::model::Gains;

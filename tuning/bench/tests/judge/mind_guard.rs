@@ -1,5 +1,6 @@
 //! What a run on a Motion Mind does about its modes, its inputs, its protections and a host that dies.
 
+use brushwork_motion_mind_axis::MindAxis;
 use brushwork_motion_mind_sim::{MotionMind, pin};
 use brushwork_motion_mind_wire::{Address, Command, encode_frame, function2, status};
 use brushwork_plant::world::{PinSignal, WorldAction};
@@ -8,7 +9,6 @@ use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::rig::GuardOptions;
 use brushwork_tuning::tune::{Method, Request, tune};
 use brushwork_tuning_bench::line::Event;
-use brushwork_tuning_bench::mind::axis::MindAxis;
 use brushwork_tuning_bench::mind::line::MindLine;
 use brushwork_tuning_bench::mind::population::{MindSpecimen, specimen};
 use brushwork_tuning_bench::mind::table::{SimulatedMind, axis_of, request_of};

@@ -1,5 +1,6 @@
 //! A current whose readings are noise, as real ones are: a refusal names a cause by the current only where the current is clear of it.
 
+use brushwork_mcp_axis::PacketAxis;
 use brushwork_mcp_sim::controller::{Controller, ControllerConfig};
 use brushwork_plant::world::WorldAction;
 use brushwork_tuning::axis::EncoderClass;
@@ -8,7 +9,6 @@ use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::rig::GuardOptions;
 use brushwork_tuning::tune::{Method, Request, tune};
 use brushwork_tuning_bench::line::{Event, SimulatedLine};
-use brushwork_tuning_bench::packet::PacketAxis;
 use brushwork_tuning_bench::population::specimen;
 use brushwork_tuning_bench::run::request_of;
 use brushwork_values::Motor;

@@ -34,31 +34,10 @@ use crate::exchange::{ExchangeError, Reply as Answer};
 use crate::transport::Stream;
 use brushwork_motion_mind_wire::{
     Address, Command, Effect, Mode, Protocol, Reply, Returns, fields, numbers, register,
+    register_number as number,
 };
 use brushwork_values::{Motor, Value, Values};
 use speaker::Speaker;
-
-/// Registers by number.
-mod number {
-    pub const POSITION: u8 = 0;
-    pub const VELOCITYLIMIT: u8 = 1;
-    pub const FUNCTION: u8 = 3;
-    pub const ADDRESS: u8 = 7;
-    pub const TIMER: u8 = 9;
-    pub const RCCOUNT: u8 = 13;
-    pub const VELOCITY: u8 = 14;
-    pub const TIME: u8 = 15;
-    pub const STATUS: u8 = 16;
-    pub const REVISION: u8 = 17;
-    pub const MODE: u8 = 18;
-    pub const ANALOGCON: u8 = 19;
-    pub const ANALOGFBCK: u8 = 20;
-    pub const PWMOUT: u8 = 21;
-    pub const INDEXPOS: u8 = 22;
-    pub const DESIREDPOSITION: u8 = 27;
-    pub const AMPS: u8 = 29;
-    pub const THERMISTOR: u8 = 31;
-}
 
 /// One Motion Mind 3.
 pub struct MotionMind {

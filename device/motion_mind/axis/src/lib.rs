@@ -7,14 +7,20 @@
 //! The unit has no time-out on its serial line. A fence does its work: VNLIMIT and VPLIMIT are kept a little ahead of the motor,
 //! so that it goes no farther when the host has died.
 
-use super::clock::UnitClock;
-use super::fence::Fence;
-use brushwork_motion_mind_wire::{Command, Part, Protocol, Reply, status};
+mod clock;
+mod fence;
+mod timing;
+
+pub use timing::{BITS_PER_BYTE, worked_at};
+
+use brushwork_motion_mind_wire::{Command, Part, Protocol, Reply, register_number as number, status};
 use brushwork_tuning::axis::{
     Axis, AxisError, EncoderClass, Exchange, FULL_DUTY_RAW, PositionRegisters, Sample, Setup, Status,
     VelocityRegisters, Want,
 };
 use brushwork_tuning::motion_mind::{FULL_FEED_FORWARD, MotionMindRegisters, MotionMindSetup, bits};
+use clock::UnitClock;
+use fence::Fence;
 use std::time::Duration;
 
 /// Steps of a full duty.
@@ -38,27 +44,6 @@ const HELD_LOOKS: u32 = 10;
 const HELD_COUNTS: i64 = 4;
 /// How often a look is tried: of many one is lost more often than not.
 const LOOK_TRIES: usize = 4;
-
-/// Register numbers (Motion Mind manual 6.0).
-mod number {
-    pub const POSITION: u8 = 0;
-    pub const VELOCITYFF: u8 = 2;
-    pub const FUNCTION: u8 = 3;
-    pub const PTERM: u8 = 4;
-    pub const ITERM: u8 = 5;
-    pub const DTERM: u8 = 6;
-    pub const PIDSCALAR: u8 = 8;
-    pub const TIME: u8 = 15;
-    pub const STATUS: u8 = 16;
-    pub const MODE: u8 = 18;
-    pub const PWMOUT: u8 = 21;
-    pub const VNLIMIT: u8 = 23;
-    pub const VPLIMIT: u8 = 24;
-    pub const DEADBAND: u8 = 26;
-    pub const AMPSLIMIT: u8 = 28;
-    pub const AMPS: u8 = 29;
-    pub const FUNCTION2: u8 = 30;
-}
 
 /// What a run reads before it begins.
 const SETUP: [u8; 13] = [

@@ -1,6 +1,6 @@
 //! An [`Axis`] in packet serial: which commands make its calls, whatever carries them.
 //!
-//! The device thread of the program and the simulated link of the benchmark both carry them, so that what is measured is what is
+//! The device thread of the program and the simulated link of the tuning bench both carry them, so that what is measured is what is
 //! shipped.
 
 use brushwork_mcp_wire::packet_serial::status::{Condition, decode};
