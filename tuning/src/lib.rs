@@ -7,7 +7,6 @@
 
 pub mod axis;
 pub mod cause;
-pub mod course;
 pub mod design;
 mod diagnosis;
 pub mod experiment;
@@ -19,6 +18,7 @@ mod looped;
 mod margin;
 pub mod model;
 pub mod motion_mind;
+pub mod open_loop_record;
 mod pace;
 pub mod record;
 pub mod registers;

@@ -187,9 +187,6 @@ impl TickLoop {
     }
 }
 
-/// A predicted response for a picture: (time, value, duty).
-pub type Course = Vec<(f64, f64, f64)>;
-
 /// The velocity test on the model: the score and the root mean square of the last quarter's speed ripple over the step.
 #[must_use]
 pub fn velocity_test(plant: &PlantModel, law: &LoopLaw, lag: Lag, gains: &Gains, qpps: f64) -> Score {

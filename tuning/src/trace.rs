@@ -217,7 +217,7 @@ impl Trace {
         let start = self.points.iter().rev().find(|point| point.t <= stretch.from_s);
         let origin = start.or(self.points.first()).map_or(0.0, |point| point.counts);
         let mut twin = TickLoop::new(task.plant, task.law, task.lag, *gains, task.qpps);
-        let mut course = Vec::new();
+        let mut response = Vec::new();
         let ticks = ((stretch.to_s - stretch.from_s) / tick_s).clamp(0.0, 60_000.0) as usize;
         let commands: Vec<&Drive> =
             self.drives.iter().filter(|drive| drive.t >= stretch.from_s && drive.t <= stretch.to_s).collect();
@@ -239,9 +239,9 @@ impl Trace {
                 twin.tick(goal, 0.0);
             }
             let (counts, speed, duty) = (origin + twin.motion.place, twin.motion.speed, twin.duty);
-            course.push(Predicted { t: t + tick_s, counts, speed, duty });
+            response.push(Predicted { t: t + tick_s, counts, speed, duty });
         }
-        course
+        response
     }
 }
 

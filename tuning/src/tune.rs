@@ -2,7 +2,6 @@
 
 use crate::axis::{Axis, EncoderClass, Setup};
 use crate::cause::Cause;
-use crate::course::{Actuation, Course};
 use crate::design::{
     Design, Goal, Task, USUAL_OVERSHOOT, design_pd, design_pid, design_piv, design_velocity, unmodelled_ticks,
 };
@@ -13,6 +12,7 @@ use crate::law_probe::probe_law;
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, Lag, LoopLaw, PlantModel};
 use crate::motion_mind::{self, MotionMindLaw};
+use crate::open_loop_record::{Actuation, OpenLoopRecord};
 use crate::record::Recorder;
 use crate::registers::{position_registers, velocity_gains, velocity_registers};
 use crate::report::{FORMAT, Report, Verdict};
@@ -335,11 +335,11 @@ fn identify_free(rig: &mut Rig<'_>, probe: &Probe, report: &mut Report) -> Resul
         report.causes.push(Cause::Asymmetric);
     }
     let now_s = rig.now_s();
-    let course = course_of(rig, run.from_s, now_s, probe.volts);
+    let record = open_loop_record_of(rig, run.from_s, now_s, probe.volts);
     let limit = rig.drive_limit(probe.stall_amps);
     let found =
-        fit(&course, full / run.full_duty, run.tau_s, limit, brake_share(rig)).ok_or(Cause::TooCoarse)?;
-    believe(&found, rig.options.poll_s, &course)?;
+        fit(&record, full / run.full_duty, run.tau_s, limit, brake_share(rig)).ok_or(Cause::TooCoarse)?;
+    believe(&found, rig.options.poll_s, &record)?;
     // With less than full duty the model says what full duty would give.
     let qpps = if run.full_duty > 0.999 {
         full
@@ -358,23 +358,23 @@ fn identify_window(
     let run = run_window(rig, probe, width)?;
     report.window = Some(run);
     let now_s = rig.now_s();
-    let course = course_of(rig, run.from_s, now_s, probe.volts);
+    let record = open_loop_record_of(rig, run.from_s, now_s, probe.volts);
     let start = run.top_speed / (probe.start_duty + 0.4);
     let limit = rig.drive_limit(probe.stall_amps);
-    let found = fit(&course, start, 0.06, limit, brake_share(rig)).ok_or(Cause::TooCoarse)?;
-    believe(&found, rig.options.poll_s, &course)?;
+    let found = fit(&record, start, 0.06, limit, brake_share(rig)).ok_or(Cause::TooCoarse)?;
+    believe(&found, rig.options.poll_s, &record)?;
     let qpps = found.model.gain_counts_per_s * (1.0 - found.model.coulomb_duty);
     Ok(Found { fit: found, qpps })
 }
 
-fn course_of(rig: &Rig<'_>, from_s: f64, to_s: f64, volts: Option<f64>) -> Course {
-    let course = Course::new(&rig.points, &rig.drives, from_s, to_s, volts);
+fn open_loop_record_of(rig: &Rig<'_>, from_s: f64, to_s: f64, volts: Option<f64>) -> OpenLoopRecord {
+    let record = OpenLoopRecord::new(&rig.points, &rig.drives, from_s, to_s, volts);
     match rig.setup.motion_mind {
         Some(unit) => {
             let actuation = Actuation::motion_mind(rig.amps_limit(), !unit.is_undated);
-            Course { actuation, ..course }
+            OpenLoopRecord { actuation, ..record }
         }
-        None => course,
+        None => record,
     }
 }
 
@@ -384,8 +384,8 @@ fn brake_share(rig: &Rig<'_>) -> f64 {
     if drive > 0.0 && brake > 0.0 { brake / drive } else { 1.0 }
 }
 
-fn believe(fit: &Fit, poll_s: f64, course: &Course) -> Result<(), Cause> {
-    if course.limited_share() > 0.5 {
+fn believe(fit: &Fit, poll_s: f64, record: &OpenLoopRecord) -> Result<(), Cause> {
+    if record.limited_share() > 0.5 {
         return Err(Cause::CurrentLimited);
     }
     if fit.chi_square > WORST_CHI_SQUARE {

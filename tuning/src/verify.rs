@@ -2,7 +2,7 @@
 
 use crate::cause::Cause;
 use crate::design::{Design, Goal, Task, deadzone};
-use crate::lag::{ClosedCourse, LagFit, fit_lag, predicted_course};
+use crate::lag::{ClosedLoopRecord, LagFit, fit_lag, predicted_record};
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::margin::{headroom, scaled};
 use crate::model::{Gains, Pid};
@@ -56,15 +56,15 @@ pub fn measure_lag(
     sd_ln_tau: f64,
 ) -> Result<Option<(LagFit, f64)>, Cause> {
     let (from_s, to_s) = run_steps(rig, task, gains)?;
-    let course = ClosedCourse::of(rig, from_s, to_s);
-    let Some(found) = fit_lag(&course, &task.plant, &task.law, gains, task.qpps, sd_ln_tau) else {
+    let record = ClosedLoopRecord::of(rig, from_s, to_s);
+    let Some(found) = fit_lag(&record, &task.plant, &task.law, gains, task.qpps, sd_ln_tau) else {
         return Ok(None);
     };
     let noise = LoopPlant::new(DiscretePlant::of(&task.plant, task.law.tick_s()), &task.law, found.lag)
         .margins(gains, task.qpps)
         .noise_duty;
     let settled = from_s + (2.5 * task.plant.tau_s).clamp(0.3, 2.0);
-    let measured = plateau_activity(&ClosedCourse::of(rig, settled, to_s));
+    let measured = plateau_activity(&ClosedLoopRecord::of(rig, settled, to_s));
     // Readings of the duty are whole steps of 1/32767, and a quiet loop tells nothing about its noise.
     let factor = if noise > 0.004 { (measured / noise).clamp(0.9, 3.0) } else { 1.0 };
     Ok(Some((found, factor)))
@@ -310,23 +310,23 @@ pub(crate) fn try_velocity(rig: &mut Rig<'_>, task: &Task, gains: &Gains) -> Res
     rig.poll_for(STAY_S, true)?;
     let to_s = rig.now_s();
     rig.duty(0.0)?;
-    let course = ClosedCourse::of(rig, from_s - 0.02, to_s);
-    let stay: Vec<(f64, f64)> = course.counts.iter().copied().filter(|p| p.0 >= stay_s).collect();
-    let duties: Vec<(f64, f64)> = course.duties.iter().copied().filter(|d| d.0 >= stay_s).collect();
+    let record = ClosedLoopRecord::of(rig, from_s - 0.02, to_s);
+    let stay: Vec<(f64, f64)> = record.counts.iter().copied().filter(|p| p.0 >= stay_s).collect();
+    let duties: Vec<(f64, f64)> = record.duties.iter().copied().filter(|d| d.0 >= stay_s).collect();
     if let (Some(first), Some(last)) = (stay.first(), stay.last())
         && (last.1 - first.1) < LEAST_MOVE * high * (last.0 - first.0)
     {
         return Err(Cause::NotVerified);
     }
-    let seen = |course: &ClosedCourse| flank_overshoot(course, high - low, rig.options.poll_s);
+    let seen = |record: &ClosedLoopRecord| flank_overshoot(record, high - low, rig.options.poll_s);
     let mut twin = TickLoop::new(task.plant, task.law, task.lag, *gains, task.qpps);
     twin.start_steady(low);
     // Polls flatten a peak; they flatten that of the model just so.
-    let expected = predicted_course(&course, twin, &task.law, low).map_or(0.0, |course| seen(&course));
+    let expected = predicted_record(&record, twin, &task.law, low).map_or(0.0, |record| seen(&record));
     Ok(Measured {
-        overshoot: (predicted.overshoot + seen(&course) - expected).max(0.0),
+        overshoot: (predicted.overshoot + seen(&record) - expected).max(0.0),
         duty_rms: deviation(&duties),
-        ripple: speed_ripple(&stay, &course) / (high - low),
+        ripple: speed_ripple(&stay, &record) / (high - low),
         headroom: None,
     })
 }
@@ -354,17 +354,17 @@ pub(crate) fn try_velocity_inside(
     }
     let to_s = rig.now_s();
     rig.come_to_rest()?;
-    let course = ClosedCourse::of(rig, from_s, to_s);
-    Ok(Measured { overshoot: 0.0, duty_rms: plateau_activity(&course), ..Measured::default() })
+    let record = ClosedLoopRecord::of(rig, from_s, to_s);
+    Ok(Measured { overshoot: 0.0, duty_rms: plateau_activity(&record), ..Measured::default() })
 }
 
 /// Duty activity in the second half of each plateau.
-fn plateau_activity(course: &ClosedCourse) -> f64 {
+fn plateau_activity(record: &ClosedLoopRecord) -> f64 {
     let mut squares = (0.0, 0.0);
-    for pair in course.setpoints.windows(2) {
+    for pair in record.setpoints.windows(2) {
         let half = 0.5 * (pair[0].0 + pair[1].0);
         let duties: Vec<(f64, f64)> =
-            course.duties.iter().copied().filter(|d| d.0 > half && d.0 < pair[1].0).collect();
+            record.duties.iter().copied().filter(|d| d.0 > half && d.0 < pair[1].0).collect();
         if duties.len() >= 8 {
             squares.0 += deviation(&duties).powi(2) * duties.len() as f64;
             squares.1 += duties.len() as f64;

@@ -6,9 +6,9 @@
 
 use crate::axis::VelocityRegisters;
 use crate::cause::Cause;
-use crate::course::DUTY_SLEW_PER_S;
 use crate::looped::{Before, LoopWatch};
 use crate::model::PlantModel;
+use crate::open_loop_record::DUTY_SLEW_PER_S;
 use crate::rig::Point;
 use std::collections::VecDeque;
 

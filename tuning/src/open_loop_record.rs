@@ -12,7 +12,7 @@ const LIMITED_STEP_S: f64 = 0.002;
 
 /// Duties, counts and battery voltage over time.
 #[derive(Clone, Debug, Default)]
-pub struct Course {
+pub struct OpenLoopRecord {
     /// (time, duty) of each command.
     pub duties: Vec<(f64, f64)>,
     /// (time, counts) of each poll.
@@ -61,7 +61,7 @@ impl Actuation {
     }
 }
 
-impl Course {
+impl OpenLoopRecord {
     /// The part of a run between two times, from the last poll before the first of them on, with the duty in force there, which must
     /// have been reached. Voltages are taken relative to `reference`.
     #[must_use]
