@@ -5,8 +5,8 @@
 //! encoder is right; the encoder is dead since then; it counts the other way since then) is held against the currents.
 
 use crate::cause::Cause;
+use crate::motor_monitor::{MotorMonitor, NO_CURRENT_AMPS};
 use crate::rig::Point;
-use crate::watch::{NO_CURRENT_AMPS, Watch};
 
 /// How long the motor is watched with its duty taken away, s.
 pub(crate) const DIAGNOSIS_S: f64 = 0.15;
@@ -52,26 +52,26 @@ struct Moment {
 }
 
 /// Names what is wrong. `after` are the polls since `alarm_s`, when the duty was taken away.
-pub(crate) fn diagnose(watch: &Watch, alarm_s: f64, after: &[Point]) -> Cause {
-    let polls: Vec<Point> = watch.recent().copied().chain(after.iter().copied()).collect();
-    if is_open(watch, &polls, alarm_s) {
+pub(crate) fn diagnose(monitor: &MotorMonitor, alarm_s: f64, after: &[Point]) -> Cause {
+    let polls: Vec<Point> = monitor.recent().copied().chain(after.iter().copied()).collect();
+    if is_open(monitor, &polls, alarm_s) {
         return Cause::MotorOpened;
     }
-    let moments = moments(watch, &polls, alarm_s - BEFORE_S);
-    let stall = watch.stall_amps.filter(|stall| *stall > TELLING_STALL_AMPS);
-    let (gain, tau_s) = watch.rough_model(alarm_s);
-    let last = watch.recent().next_back().map_or(0.0, |point| point.counts);
+    let moments = moments(monitor, &polls, alarm_s - BEFORE_S);
+    let stall = monitor.stall_amps.filter(|stall| *stall > TELLING_STALL_AMPS);
+    let (gain, tau_s) = monitor.rough_model(alarm_s);
+    let last = monitor.recent().next_back().map_or(0.0, |point| point.counts);
     let alive = after.iter().any(|point| (point.counts - last).abs() > DEAD_COUNTS);
-    if gain > 0.0 && outruns(&moments, gain, watch.load_duty, alarm_s) {
+    if gain > 0.0 && outruns(&moments, gain, monitor.load_duty, alarm_s) {
         return Cause::EncoderFlipped;
     }
     if stall.is_some() && !alive {
-        return if turns_unseen(watch, &moments, alarm_s) { Cause::EncoderLost } else { Cause::Stalled };
+        return if turns_unseen(monitor, &moments, alarm_s) { Cause::EncoderLost } else { Cause::Stalled };
     }
     if !alive || gain <= 0.0 {
         return Cause::Stalled;
     }
-    let story = Story { moments: &moments, gain, tau_s, limit: limit_of(watch), alarm_s };
+    let story = Story { moments: &moments, gain, tau_s, limit: limit_of(monitor), alarm_s };
     let (stopped, flipped) = (story.as_counted().min(story.stands()), story.flipped());
     let likeness = story.likeness_of_mirror();
     let currents_agree = stall.is_some() && stopped > OBJECTION && flipped < AGREE * stopped;
@@ -81,20 +81,20 @@ pub(crate) fn diagnose(watch: &Watch, alarm_s: f64, after: &[Point]) -> Cause {
 }
 
 /// Names why a motor that was pushed of late has not moved, or was counted `backwards`.
-pub(crate) fn why_unmoved(watch: &Watch, backwards: bool) -> Cause {
-    let stall = watch.stall_amps.filter(|stall| *stall > TELLING_STALL_AMPS);
-    let pushed: Vec<(f64, f64)> = watch
+pub(crate) fn why_unmoved(monitor: &MotorMonitor, backwards: bool) -> Cause {
+    let stall = monitor.stall_amps.filter(|stall| *stall > TELLING_STALL_AMPS);
+    let pushed: Vec<(f64, f64)> = monitor
         .recent()
-        .filter_map(|point| Some((watch.duty_at(point.t).abs(), point.amps?.abs())))
-        .filter(|(duty, _)| *duty > watch.start_duty)
+        .filter_map(|point| Some((monitor.duty_at(point.t).abs(), point.amps?.abs())))
+        .filter(|(duty, _)| *duty > monitor.start_duty)
         .collect();
-    if watch.draws() && !pushed.is_empty() && pushed.iter().all(|(_, amps)| *amps <= NO_CURRENT_AMPS) {
+    if monitor.draws() && !pushed.is_empty() && pushed.iter().all(|(_, amps)| *amps <= NO_CURRENT_AMPS) {
         return Cause::MotorOpened;
     }
     if backwards {
         return Cause::EncoderFlipped;
     }
-    let limit = limit_of(watch);
+    let limit = limit_of(monitor);
     let short =
         pushed.iter().map(|(duty, amps)| 1.0 - amps / stall.unwrap_or(f64::INFINITY) / duty.min(limit));
     let turns = stall.is_some() && middle(short.collect()).is_some_and(|short| short > SHORT);
@@ -107,17 +107,17 @@ fn middle(mut values: Vec<f64>) -> Option<f64> {
 }
 
 /// Whether no current flows: not at the duty that was given at last, nor while the motor is braked.
-fn is_open(watch: &Watch, polls: &[Point], alarm_s: f64) -> bool {
+fn is_open(monitor: &MotorMonitor, polls: &[Point], alarm_s: f64) -> bool {
     let none = |amps: f64| amps.abs() <= NO_CURRENT_AMPS;
-    let least_duty = watch.start_duty.max(DRIVEN_DUTY);
-    let driven = |point: &&Point| point.t < alarm_s && watch.duty_at(point.t).abs() > least_duty;
+    let least_duty = monitor.start_duty.max(DRIVEN_DUTY);
+    let driven = |point: &&Point| point.t < alarm_s && monitor.duty_at(point.t).abs() > least_duty;
     let before = polls.iter().rev().filter(driven).find_map(|point| point.amps);
     let mut after = polls.iter().filter(|point| point.t >= alarm_s).filter_map(|point| point.amps);
-    watch.draws() && before.is_some_and(none) && after.all(none)
+    monitor.draws() && before.is_some_and(none) && after.all(none)
 }
 
-fn moments(watch: &Watch, polls: &[Point], from_s: f64) -> Vec<Moment> {
-    let stall = watch.stall_amps.filter(|stall| *stall > 0.0);
+fn moments(monitor: &MotorMonitor, polls: &[Point], from_s: f64) -> Vec<Moment> {
+    let stall = monitor.stall_amps.filter(|stall| *stall > 0.0);
     let around = |n: usize| {
         let (a, b) = (&polls[n - 1], &polls[(n + 1).min(polls.len() - 1)]);
         if b.t > a.t { (b.counts - a.counts) / (b.t - a.t) } else { 0.0 }
@@ -126,15 +126,15 @@ fn moments(watch: &Watch, polls: &[Point], from_s: f64) -> Vec<Moment> {
     late.map(|(n, point)| Moment {
         t: point.t,
         counts: point.counts,
-        duty: watch.duty_at(point.t),
+        duty: monitor.duty_at(point.t),
         speed: around(n),
         current: point.amps.zip(stall).map(|(amps, stall)| amps.abs() / stall),
     })
     .collect()
 }
 
-fn limit_of(watch: &Watch) -> f64 {
-    watch.drive_limit.unwrap_or(f64::INFINITY)
+fn limit_of(monitor: &MotorMonitor) -> f64 {
+    monitor.drive_limit.unwrap_or(f64::INFINITY)
 }
 
 /// Whether the motor is counted against its duty faster than it was with it shortly before. What springs back, an end stop or a load
@@ -160,18 +160,18 @@ fn outruns(moments: &[Moment], gain: f64, load_duty: f64, alarm_s: f64) -> bool 
 }
 
 /// Whether currents are other than those of a motor that stands, while nothing is counted.
-fn turns_unseen(watch: &Watch, moments: &[Moment], alarm_s: f64) -> bool {
-    let limit = limit_of(watch);
+fn turns_unseen(monitor: &MotorMonitor, moments: &[Moment], alarm_s: f64) -> bool {
+    let limit = limit_of(monitor);
     let still = moments.iter().rposition(|moment| moment.speed != 0.0).map_or(0, |last| last + 1);
     let still = &moments[still..];
-    let least_duty = (TELLING_AMPS / watch.stall_amps.unwrap_or(f64::INFINITY)).max(LEAST_DUTY);
+    let least_duty = (TELLING_AMPS / monitor.stall_amps.unwrap_or(f64::INFINITY)).max(LEAST_DUTY);
     let off: Vec<f64> = still
         .iter()
         .filter(|moment| moment.duty.abs() >= least_duty)
         .filter_map(|moment| Some(1.0 - moment.current? / moment.duty.abs().min(limit)))
         .collect();
     let driven_off = middle(off).is_some_and(|middle| middle > SHORT);
-    let stall = watch.stall_amps.unwrap_or(f64::INFINITY);
+    let stall = monitor.stall_amps.unwrap_or(f64::INFINITY);
     let braked = still.iter().filter(|moment| moment.duty == 0.0 && moment.t > alarm_s + BRAKED_S);
     let braked: Vec<f64> = braked.filter_map(|moment| moment.current).collect();
     let first = braked.iter().take(2).sum::<f64>() / braked.len().clamp(1, 2) as f64;

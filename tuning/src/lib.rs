@@ -7,6 +7,7 @@
 
 pub mod axis;
 pub mod cause;
+mod closed_loop_monitor;
 pub mod design;
 mod diagnosis;
 pub mod experiment;
@@ -14,10 +15,10 @@ pub mod fit;
 pub mod lag;
 pub mod law_probe;
 pub mod linear;
-mod looped;
 mod margin;
 pub mod model;
 pub mod motion_mind;
+pub mod motor_monitor;
 pub mod open_loop_record;
 mod pace;
 pub mod record;
@@ -34,7 +35,6 @@ pub mod trace;
 pub mod trial;
 pub mod tune;
 mod verify;
-pub mod watch;
 pub mod whatif;
 pub mod winding;
 

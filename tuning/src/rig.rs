@@ -10,8 +10,8 @@ use crate::axis::{
 use crate::cause::Cause;
 use crate::diagnosis::{DIAGNOSIS_S, diagnose};
 use crate::motion_mind::{MotionMindRegisters, SPEED_STEP_COUNTS_PER_S, bits};
+use crate::motor_monitor::{MotorMonitor, NO_CURRENT_AMPS};
 use crate::pace::{Pace, quantile};
-use crate::watch::{NO_CURRENT_AMPS, Watch};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
@@ -143,8 +143,8 @@ pub struct Rig<'a> {
     pub(crate) exchanges: Vec<(f64, f64)>,
     /// Every command.
     pub drives: Vec<Drive>,
-    /// What watches for stalls and lost signals.
-    pub watch: Watch,
+    /// What monitors it for stalls and lost signals.
+    pub monitor: MotorMonitor,
     pace: Pace,
     epoch_s: f64,
     first_counts: Option<i64>,
@@ -181,7 +181,7 @@ impl<'a> Rig<'a> {
             points: Vec::new(),
             exchanges: Vec::new(),
             drives: Vec::new(),
-            watch: Watch::default(),
+            monitor: MotorMonitor::default(),
             pace: Pace::default(),
             epoch_s: now.as_secs_f64(),
             first_counts: None,
@@ -216,7 +216,7 @@ impl<'a> Rig<'a> {
             if !unit.can_be_tuned() {
                 return Err(Cause::WrongMode);
             }
-            self.watch.is_abrupt = true;
+            self.monitor.is_abrupt = true;
             if let Some(travel) = self.options.travel {
                 retried(|| self.axis.set_travel(travel))?;
             }
@@ -295,7 +295,8 @@ impl<'a> Rig<'a> {
         if noise_amps <= NO_CURRENT_AMPS {
             return false;
         }
-        let is_driven = |point: &&Point| self.watch.duty_at(point.t).abs() > self.watch.start_duty.max(0.03);
+        let is_driven =
+            |point: &&Point| self.monitor.duty_at(point.t).abs() > self.monitor.start_duty.max(0.03);
         let driven = self.points.iter().rev().filter(is_driven).filter_map(|point| point.amps);
         let mut driven: Vec<f64> = driven.map(f64::abs).take(DRIVEN_READINGS).collect();
         driven.sort_by(f64::total_cmp);
@@ -317,8 +318,8 @@ impl<'a> Rig<'a> {
         let t = exchange.middle_s() - self.epoch_s;
         self.drives.push(Drive { t, input: Input::Duty(f64::from(raw) / f64::from(FULL_DUTY_RAW)) });
         let took_s = exchange.received.saturating_sub(exchange.sent).as_secs_f64();
-        self.watch.doubt_s = 0.5 * self.usual_exchange_s().map_or(0.0, |usual| (took_s - usual).max(0.0));
-        self.watch.drive(t, duty);
+        self.monitor.doubt_s = 0.5 * self.usual_exchange_s().map_or(0.0, |usual| (took_s - usual).max(0.0));
+        self.monitor.drive(t, duty);
         Ok(())
     }
 
@@ -331,7 +332,7 @@ impl<'a> Rig<'a> {
         self.pace.answered(&exchange);
         let t = exchange.middle_s() - self.epoch_s;
         self.drives.push(Drive { t, input: Input::Speed(f64::from(whole)) });
-        self.watch.release(first_s, t);
+        self.monitor.release(first_s, t);
         Ok(())
     }
 
@@ -358,7 +359,7 @@ impl<'a> Rig<'a> {
         self.pace.answered(&exchange);
         let t = exchange.middle_s() - self.epoch_s;
         self.drives.push(Drive { t, input: Input::Position(counts.round(), f64::from(speed)) });
-        self.watch.release(first_s, t);
+        self.monitor.release(first_s, t);
         Ok(())
     }
 
@@ -377,7 +378,7 @@ impl<'a> Rig<'a> {
     /// Writes velocity registers to RAM; they are put back unless the run keeps them.
     pub fn write_velocity(&mut self, registers: VelocityRegisters) -> Result<(), Cause> {
         self.gains_touched = true;
-        self.watch.hold(registers);
+        self.monitor.hold(registers);
         self.acknowledged(|axis| axis.write_velocity(registers))
     }
 
@@ -486,10 +487,10 @@ impl<'a> Rig<'a> {
         self.exchanges.push((point.t, took.as_secs_f64()));
         self.check_travel(&point)?;
         if !self.is_prompt(took.as_secs_f64()) {
-            self.watch.read_duty(&point);
+            self.monitor.read_duty(&point);
             return Ok(Some(point));
         }
-        match self.watch.see(&point) {
+        match self.monitor.see(&point) {
             Err(guess) => Err(self.name_fault(guess)),
             Ok(()) => Ok(Some(point)),
         }
@@ -619,7 +620,7 @@ impl<'a> Rig<'a> {
             Ok(exchange) => exchange.middle_s() - self.epoch_s,
             Err(cause) => return cause,
         };
-        self.watch.drive(alarm_s, 0.0);
+        self.monitor.drive(alarm_s, 0.0);
         let mut after: Vec<Point> = self.points.last().copied().into_iter().collect();
         while self.now_s() < alarm_s + DIAGNOSIS_S {
             let next = self.axis.now() + Duration::from_secs_f64(self.options.poll_s);
@@ -632,7 +633,7 @@ impl<'a> Rig<'a> {
                 return cause_of(&error);
             }
         }
-        diagnose(&self.watch, alarm_s, &after)
+        diagnose(&self.monitor, alarm_s, &after)
     }
 
     fn point_of(&mut self, sample: &Sample) -> Point {
@@ -683,10 +684,10 @@ impl<'a> Rig<'a> {
 
     fn check_way(&mut self, point: &Point, speed: f64) -> Result<(), Cause> {
         let Some((low, high)) = self.travel_counts() else { return Ok(()) };
-        let runs_on = match self.watch.stopping_counts(speed.abs(), self.options.max_duty) {
+        let runs_on = match self.monitor.stopping_counts(speed.abs(), self.options.max_duty) {
             Some(counts) => STOPPING_DOUBT * counts * speed.signum() + speed * TURNING_S,
             // From rest a motor needs no longer way back than it had.
-            None => 0.7 * self.way_since_drive(point) + speed * TURNING_S.max(self.watch.stopping_s),
+            None => 0.7 * self.way_since_drive(point) + speed * TURNING_S.max(self.monitor.stopping_s),
         };
         let rest = point.counts + speed * (self.options.poll_s + RETRY_S) + runs_on;
         if (rest > high && speed > 0.0) || (rest < low && speed < 0.0) {
@@ -704,8 +705,8 @@ impl<'a> Rig<'a> {
         let now_s = self.now_s();
         let unseen_s = (now_s - last.t).max(0.0);
         let gained = self.pull(speed).map_or(0.0, |(pull, over_s)| pull * unseen_s.max(over_s));
-        let (gain, _) = self.watch.rough_model(0.0);
-        let most = if gain > 0.0 { gain * self.watch.duty_at(now_s).abs() } else { f64::INFINITY };
+        let (gain, _) = self.monitor.rough_model(0.0);
+        let most = if gain > 0.0 { gain * self.monitor.duty_at(now_s).abs() } else { f64::INFINITY };
         let speed = speed + gained.min((most - speed.abs()).max(0.0)) * speed.signum();
         self.check_way(&Point { counts: last.counts + speed * unseen_s, ..last }, speed)
     }
@@ -735,9 +736,9 @@ impl<'a> Rig<'a> {
     pub fn come_to_rest(&mut self) -> Result<(), Cause> {
         let speed = self.recent_speed(2).unwrap_or(0.0);
         let heavy =
-            self.watch.stopping_s > HEAVY_S || self.watch.tau_bounds_s.is_some_and(|tau| tau.1 > HEAVY_S);
-        if heavy && speed.abs() > 0.02 * self.watch.full_speed {
-            let duty = (self.watch.start_duty + RESTING_DUTY).min(self.options.max_duty);
+            self.monitor.stopping_s > HEAVY_S || self.monitor.tau_bounds_s.is_some_and(|tau| tau.1 > HEAVY_S);
+        if heavy && speed.abs() > 0.02 * self.monitor.full_speed {
+            let duty = (self.monitor.start_duty + RESTING_DUTY).min(self.options.max_duty);
             self.duty(-speed.signum() * duty)?;
             let until = self.now_s() + LONGEST_TURN_S;
             while self.now_s() < until && self.recent_speed(2).is_some_and(|now| now * speed > 0.0) {
@@ -775,7 +776,7 @@ impl<'a> Rig<'a> {
         }
         let _ = self.axis.drive_duty(0);
         let now_s = self.now_s();
-        self.watch.forget(now_s);
+        self.monitor.forget(now_s);
     }
 }
 

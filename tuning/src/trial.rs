@@ -106,12 +106,12 @@ fn moves(rig: &mut Rig<'_>, wanted: &TrialRequest) -> Result<(Measured, bool), C
     let (task, gains) = wanted.on_model();
     let shown = forecast(&task, &gains);
     let design = Design { gains, score: shown.score, ms: shown.ms, noise_duty: shown.noise_duty };
-    rig.watch.start_duty = wanted.probe.start_duty;
-    rig.watch.stall_amps = wanted.probe.stall_amps;
-    rig.watch.full_speed = wanted.task.qpps;
-    rig.watch.stopping_s = wanted.task.plant.tau_s;
-    rig.watch.drive_limit = rig.drive_limit(wanted.probe.stall_amps);
-    rig.watch.know(&wanted.task.plant);
+    rig.monitor.start_duty = wanted.probe.start_duty;
+    rig.monitor.stall_amps = wanted.probe.stall_amps;
+    rig.monitor.full_speed = wanted.task.qpps;
+    rig.monitor.stopping_s = wanted.task.plant.tau_s;
+    rig.monitor.drive_limit = rig.drive_limit(wanted.probe.stall_amps);
+    rig.monitor.know(&wanted.task.plant);
     write_loops(rig, wanted)?;
     let measured = if gains.position.is_some() {
         try_position(rig, &wanted.request, &task, &design)?

@@ -216,7 +216,7 @@ fn run(rig: &mut Rig<'_>, request: &Request, report: &mut Report) -> Result<(), 
         }
     };
     let model = found.fit.model;
-    rig.watch.know(&model);
+    rig.monitor.know(&model);
     report.fit = Some(found.fit);
     report.qpps = Some(found.qpps);
     if model.load_duty.abs() > model.coulomb_duty + SURELY_HEAVY {

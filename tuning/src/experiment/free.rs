@@ -53,18 +53,18 @@ pub struct FreeRun {
 /// Runs it. The motor is braked when it returns.
 pub fn run_free(rig: &mut Rig<'_>, probe: &Probe) -> Result<FreeRun, Cause> {
     let full_duty = rig.options.max_duty;
-    rig.watch.start_duty = probe.start_duty;
-    rig.watch.stall_amps = probe.stall_amps;
-    rig.watch.drive_limit = rig.drive_limit(probe.stall_amps);
+    rig.monitor.start_duty = probe.start_duty;
+    rig.monitor.stall_amps = probe.stall_amps;
+    rig.monitor.drive_limit = rig.drive_limit(probe.stall_amps);
     let mut from_s = rig.now_s();
-    if rig.watch.is_abrupt && climb(rig, full_duty)? {
+    if rig.monitor.is_abrupt && climb(rig, full_duty)? {
         from_s = rig.now_s();
     }
     let driven_s = rig.now_s();
     let forward = settle_at(rig, full_duty)?;
     let rise = rise_s(rig, driven_s, forward.speed);
-    rig.watch.stopping_s = forward.tau_s.min(rise);
-    rig.watch.tau_bounds_s = Some(tau_bounds(forward.tau_s, rise));
+    rig.monitor.stopping_s = forward.tau_s.min(rise);
+    rig.monitor.tau_bounds_s = Some(tau_bounds(forward.tau_s, rise));
     let low_duty = (probe.start_duty + 0.06).max(0.25).min(0.6 * full_duty);
     let high_duty = (probe.start_duty + 0.35).max(0.6).min(0.9 * full_duty);
     let step_from = rig.now_s();
@@ -94,7 +94,7 @@ pub fn run_free(rig: &mut Rig<'_>, probe: &Probe) -> Result<FreeRun, Cause> {
 /// braked, so that it goes up once more from rest, which shows its time constant. Whether it came to rest: the record that the model is
 /// fitted to begins then, since a quick motor may stick at a low duty, and no model says when.
 fn climb(rig: &mut Rig<'_>, full_duty: f64) -> Result<bool, Cause> {
-    let mut duty = (rig.watch.start_duty + 0.06).max(CLIMB_FROM);
+    let mut duty = (rig.monitor.start_duty + 0.06).max(CLIMB_FROM);
     let mut top: f64 = 0.0;
     while duty < 0.9 * full_duty {
         rig.duty(duty)?;
@@ -122,7 +122,7 @@ fn settle_at(rig: &mut Rig<'_>, duty: f64) -> Result<Settled, Cause> {
     rig.duty(duty)?;
     // The duty ramp of up to 0.1 s is no part of the exponential.
     let mut start =
-        rig.now_s() + 0.02 + 0.05 * duty.abs() * if rig.watch.full_speed > 0.0 { 1.4 } else { 1.0 };
+        rig.now_s() + 0.02 + 0.05 * duty.abs() * if rig.monitor.full_speed > 0.0 { 1.4 } else { 1.0 };
     let begin = start;
     let mut polls = 0;
     loop {
@@ -132,7 +132,7 @@ fn settle_at(rig: &mut Rig<'_>, duty: f64) -> Result<Settled, Cause> {
             start = rig.now_s();
         }
         if let Some(speed) = rig.recent_speed(4) {
-            rig.watch.full_speed = rig.watch.full_speed.max(speed.abs());
+            rig.monitor.full_speed = rig.monitor.full_speed.max(speed.abs());
         }
         polls += 1;
         let t = rig.now_s() - start;
@@ -204,5 +204,5 @@ fn run_relay(rig: &mut Rig<'_>, duties: (f64, f64), full_speed: f64) -> Result<(
 
 /// A guess of the duty that friction eats: somewhat less than it took to start.
 fn probe_share(rig: &Rig<'_>) -> f64 {
-    0.6 * rig.watch.start_duty
+    0.6 * rig.monitor.start_duty
 }

@@ -58,13 +58,13 @@ pub fn measure_slack(rig: &mut Rig<'_>, probe: &Probe, model: &PlantModel) -> Re
     let push_s = push_time_s(model, duty, way);
     let rest_s = (REST.0 * model.tau_s + REST.1).min(LONGEST_REST_S);
     // Play looks like a stall for a while. The duty is low, and a motor that does not move ends the run here.
-    let watched_duty = std::mem::take(&mut rig.watch.start_duty);
+    let kept_start_duty = std::mem::take(&mut rig.monitor.start_duty);
     let ways = push(rig, duty, model.load_duty, push_s, rest_s);
-    rig.watch.start_duty = watched_duty;
+    rig.monitor.start_duty = kept_start_duty;
     let ways = ways?;
     if did_not_move(&ways) {
         let backwards = ways.iter().rev().take(2).all(|(_, way)| *way <= -LEAST_WAY_COUNTS);
-        return Err(why_unmoved(&rig.watch, backwards));
+        return Err(why_unmoved(&rig.monitor, backwards));
     }
     Ok(Some(slack_of(&ways)))
 }
@@ -91,7 +91,7 @@ fn push(
         let pushed_s = rig.now_s();
         rig.poll_for(push_s, false)?;
         let held_s = rig.now_s() - pushed_s;
-        if rig.watch.drew_nothing(pushed_s) {
+        if rig.monitor.drew_nothing(pushed_s) {
             return Err(Cause::MotorOpened);
         }
         rig.duty(0.0)?;

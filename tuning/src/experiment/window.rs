@@ -45,9 +45,9 @@ pub struct WindowRun {
 
 /// Runs it inside `width` counts around where the axis is now. The motor is braked when it returns.
 pub fn run_window(rig: &mut Rig<'_>, probe: &Probe, width: f64) -> Result<WindowRun, Cause> {
-    rig.watch.start_duty = probe.start_duty;
-    rig.watch.stall_amps = probe.stall_amps;
-    rig.watch.drive_limit = rig.drive_limit(probe.stall_amps);
+    rig.monitor.start_duty = probe.start_duty;
+    rig.monitor.stall_amps = probe.stall_amps;
+    rig.monitor.drive_limit = rig.drive_limit(probe.stall_amps);
     rig.poll_for(0.05, false)?;
     let middle = rig.points.last().map_or(0.0, |p| p.counts);
     let mut turn = Turn { acts_s: ACTS_S, last: None, share: 1.0 };
@@ -157,7 +157,7 @@ fn swing(
         let speed = rig.recent_speed(2).unwrap_or(0.0);
         let from_middle = point.counts - middle;
         run.top_speed = run.top_speed.max(speed.abs());
-        rig.watch.full_speed = rig.watch.full_speed.max(speed.abs());
+        rig.monitor.full_speed = rig.monitor.full_speed.max(speed.abs());
         run.reach_counts = run.reach_counts.max(from_middle.abs());
         farthest = farthest.max((point.counts - switched_at) * -direction);
         if from_middle.abs() > 0.5 * width {
@@ -193,8 +193,8 @@ fn learn(rig: &mut Rig<'_>, turn: &mut Turn, speed: f64, way: f64, duty: f64) {
     turn.learn(speed, way);
     if speed > 0.0 && way > 0.0 {
         let seconds = (way / speed).clamp(0.02, 0.6);
-        rig.watch.stopping_s = seconds;
-        rig.watch.tau_bounds_s = Some((0.1 * seconds, 10.0 * seconds));
-        rig.watch.turned(speed, duty, way);
+        rig.monitor.stopping_s = seconds;
+        rig.monitor.tau_bounds_s = Some((0.1 * seconds, 10.0 * seconds));
+        rig.monitor.turned(speed, duty, way);
     }
 }

@@ -1,4 +1,4 @@
-//! The watch over a motor that a loop drives: has it gone where its duty must have taken it, by the identified model?
+//! Monitors a motor that a loop drives: has it gone where its duty must have taken it, by the identified model?
 //!
 //! What a loop does between two polls is not seen, so that the duty is known within bounds only: those of the readings around, as wide
 //! again as readings scatter of late, and anything at all where a new setpoint fell between them. From these, and from bounds of the
@@ -74,7 +74,7 @@ impl Margin {
 
 /// What is known of a loop that has the motor.
 #[derive(Clone, Debug)]
-pub(crate) struct LoopWatch {
+pub(crate) struct ClosedLoopMonitor {
     model: PlantModel,
     /// Duty at which the probe saw the motor start.
     start_duty: f64,
@@ -91,7 +91,7 @@ pub(crate) struct LoopWatch {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Before {
     /// The loop.
-    Looped,
+    ClosedLoop,
     /// No duty since then, s.
     Off(f64),
     /// Some duty.
@@ -108,7 +108,7 @@ struct Stretch {
     stands: bool,
 }
 
-impl LoopWatch {
+impl ClosedLoopMonitor {
     /// Nothing has been told yet.
     pub(crate) fn new(model: PlantModel, start_duty: f64) -> Self {
         Self {
@@ -124,7 +124,7 @@ impl LoopWatch {
     /// The loop is given the motor, or is told something new, at some time between two: a lost reply leaves open which try was heard.
     /// `before` is how it had the motor until then.
     pub(crate) fn tell(&mut self, from_s: f64, to_s: f64, before: Before) {
-        if before != Before::Looped {
+        if before != Before::ClosedLoop {
             self.since_s = if let Before::Off(since_s) = before { since_s } else { to_s };
             self.told_s = from_s - NEWS_S.0;
             self.news.clear();
@@ -154,7 +154,7 @@ impl LoopWatch {
             // A loop that sees nothing move does nothing jerky: its duty goes from one reading to the next.
             let (doubt, calm_s) =
                 if stretch.stands { (DUTY_DOUBT, stretch.from.t) } else { (doubt, f64::INFINITY) };
-            self.within(&stretch, &Duties { readings, watch: self, doubt, calm_s })
+            self.within(&stretch, &Duties { readings, monitor: self, doubt, calm_s })
         })
     }
 
@@ -254,7 +254,7 @@ impl LoopWatch {
 /// The duty of a loop as far as it is known.
 struct Duties<'a> {
     readings: &'a VecDeque<(f64, f64)>,
-    watch: &'a LoopWatch,
+    monitor: &'a ClosedLoopMonitor,
     doubt: f64,
     /// From when on news are followed without a jerk, s.
     calm_s: f64,
@@ -263,21 +263,21 @@ struct Duties<'a> {
 impl Duties<'_> {
     /// Lowest and highest duty that may have been in force at a time.
     fn range(&self, t: f64) -> (f64, f64) {
-        if t >= self.watch.since_s && t < self.watch.told_s {
+        if t >= self.monitor.since_s && t < self.monitor.told_s {
             return (0.0, 0.0);
         }
         let next = self.readings.partition_point(|reading| reading.0 <= t);
         let before =
-            next.checked_sub(1).and_then(|n| self.readings.get(n)).filter(|a| a.0 >= self.watch.since_s);
-        let from_rest = (self.watch.told_s, 0.0);
+            next.checked_sub(1).and_then(|n| self.readings.get(n)).filter(|a| a.0 >= self.monitor.since_s);
+        let from_rest = (self.monitor.told_s, 0.0);
         let a = match before {
             Some(reading) => reading,
-            None if self.watch.since_s < self.watch.told_s => &from_rest,
+            None if self.monitor.since_s < self.monitor.told_s => &from_rest,
             None => return (-1.0, 1.0),
         };
         let b = self.readings.get(next);
         let until = b.map_or(t, |b| b.0);
-        if t < self.calm_s && self.watch.news.iter().any(|news| news.1 > a.0 && news.0 < until) {
+        if t < self.calm_s && self.monitor.news.iter().any(|news| news.1 > a.0 && news.0 < until) {
             return (-1.0, 1.0);
         }
         let (b, doubt) = b.map_or((a, 2.0 * self.doubt), |b| (b, self.doubt));
