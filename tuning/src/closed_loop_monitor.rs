@@ -5,9 +5,9 @@
 //! model, follow the least and the most that can have been counted over a stretch.
 
 use crate::axis::VelocityRegisters;
+use crate::experiment_guard::Point;
 use crate::model::PlantModel;
 use crate::registers::VELOCITY_SCALE;
-use crate::rig::Point;
 use std::collections::VecDeque;
 
 /// Stretches that are looked at, s. The long ones are for heavy motors, which show a fault late.

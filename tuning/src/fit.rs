@@ -243,7 +243,7 @@ fn unbounded(value: f64, (low, high): (f64, f64)) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::{Drive, Input, Point};
+    use crate::experiment_guard::{Drive, Input, Point};
 
     /// A record of steps over four seconds, its counts made by a known model and rounded.
     fn known_record(model: &PlantModel, offset_s: f64) -> OpenLoopRecord {

@@ -4,10 +4,10 @@
 //! controller's own answer to the speed as it sees it: the candidate loop is simulated with each lag of a grid, and the
 //! lags under which simulated counts and duties agree with the polled ones are the likely ones.
 
+use crate::experiment_guard::{ExperimentGuard, Input};
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, Lag, LoopLaw, PlantModel};
 use crate::open_loop_record::UNDATED_STAMP_S;
-use crate::rig::{Input, Rig};
 use crate::ticks::{Setpoint, TickLoop};
 use serde::{Deserialize, Serialize};
 
@@ -49,20 +49,20 @@ pub struct ClosedLoopRecord {
 }
 
 impl ClosedLoopRecord {
-    /// What a rig recorded between two times under speed commands.
+    /// What the experiment guard recorded between two times under speed commands.
     #[must_use]
-    pub fn of(rig: &Rig<'_>, from_s: f64, to_s: f64) -> Self {
+    pub fn of(guard: &ExperimentGuard<'_>, from_s: f64, to_s: f64) -> Self {
         let inside = |t: f64| t >= from_s && t <= to_s;
-        let setpoints = rig.drives.iter().filter(|d| inside(d.t)).filter_map(|d| match d.input {
+        let setpoints = guard.drives.iter().filter(|d| inside(d.t)).filter_map(|d| match d.input {
             Input::Speed(speed) => Some((d.t, speed)),
             Input::Duty(_) | Input::Position(..) => None,
         });
-        let points = || rig.points.iter().zip(&rig.exchanges).filter(|(p, _)| inside(p.t));
+        let points = || guard.points.iter().zip(&guard.exchanges).filter(|(p, _)| inside(p.t));
         // The quickest exchanges show what the line takes by itself; when in a longer one the counts were read is open.
         let shortest = points().map(|(_, took)| took.1).fold(f64::INFINITY, f64::min);
         let prompt = || points().filter(|(_, took)| took.1 - shortest <= LATE_S);
         let n = prompt().count().max(1) as f64;
-        let unit = rig.setup.motion_mind;
+        let unit = guard.setup.motion_mind;
         let undated_s = if unit.is_some_and(|unit| unit.is_undated) { UNDATED_STAMP_S } else { 0.0 };
         let open = prompt().map(|(_, took)| (took.1 - shortest).powi(2)).sum::<f64>() / n;
         Self {

@@ -3,10 +3,10 @@
 
 use crate::cause::Cause;
 use crate::design::Task;
+use crate::experiment_guard::ExperimentGuard;
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, LoopLaw, Pid};
 use crate::registers::velocity_registers;
-use crate::rig::Rig;
 use crate::swing::deviation;
 
 /// Gains tried, as multiples of the proposed ones, up to the margin that is wanted.
@@ -86,7 +86,7 @@ pub(crate) fn scaled(gains: &Gains, factor: f64) -> Gains {
 /// Raises the velocity gains step by step at a steady speed, as far as the duty stays quiet. The motor is braked at the end; the raised
 /// gains stand in the registers then.
 pub(crate) fn headroom(
-    rig: &mut Rig<'_>,
+    guard: &mut ExperimentGuard<'_>,
     task: &Task,
     law: &LoopLaw,
     gains: &Gains,
@@ -99,14 +99,14 @@ pub(crate) fn headroom(
         task.noise_factor.max(1.0) * plant.margins(&scaled(&inner, factor), task.qpps).noise_duty
     };
     let lag_s = task.lag.total_s(law) + 2.0 * law.tick_s();
-    let tried_s = (LAGS * lag_s).clamp(TRIED_S.0, TRIED_S.1).max(LEAST_POLLS * rig.options.poll_s / HEARD);
+    let tried_s = (LAGS * lag_s).clamp(TRIED_S.0, TRIED_S.1).max(LEAST_POLLS * guard.options.poll_s / HEARD);
     let settle_s = (1.5 * task.plant.tau_s).clamp(0.15, 1.0);
-    rig.write_velocity(velocity_registers(&inner.velocity, task.qpps, law))?;
+    guard.write_velocity(velocity_registers(&inner.velocity, task.qpps, law))?;
     let step = (STEP_DUTY / (wanted * inner.velocity.p).max(1e-6)).clamp(STEP.0, STEP.1);
     let speed = |side: f64| between_counts((SPEED + side * step) * task.qpps, law.tick_s());
-    rig.speed(speed(-1.0))?;
-    rig.poll_for(settle_s, true)?;
-    let usual = activity(rig, speed(1.0), tried_s)?;
+    guard.speed(speed(-1.0))?;
+    guard.poll_for(settle_s, true)?;
+    let usual = activity(guard, speed(1.0), tried_s)?;
     let mut quiet = 1.0;
     let mut side = -1.0;
     for factor in FACTORS.map(|factor| factor.min(wanted)) {
@@ -117,21 +117,21 @@ pub(crate) fn headroom(
             // The rounding of a coarse encoder alone makes such a noise.
             return Ok(Headroom { quiet: wanted, wanted });
         }
-        rig.write_velocity(velocity_registers(&scaled(&inner, factor).velocity, task.qpps, law))?;
-        let measured = activity(rig, speed(side), tried_s)?;
+        guard.write_velocity(velocity_registers(&scaled(&inner, factor).velocity, task.qpps, law))?;
+        let measured = activity(guard, speed(side), tried_s)?;
         let expected = predicted(factor).max(usual * predicted(factor) / predicted(1.0).max(1e-4));
         let bound = (TOO_ROUGH * expected).max(LEAST_ROUGH);
         // Looked at twice: what swings goes on, unless it is so strong that it had better stop at once.
         let again = measured > bound && measured <= AT_ONCE * bound;
-        let rough = if again { activity(rig, speed(side), tried_s)? } else { measured };
+        let rough = if again { activity(guard, speed(side), tried_s)? } else { measured };
         if rough > bound {
-            rig.duty(0.0)?;
+            guard.duty(0.0)?;
             return Ok(Headroom { quiet, wanted: full_factor(task.goal.ms).min(most) });
         }
         quiet = factor;
         side = -side;
     }
-    rig.duty(0.0)?;
+    guard.duty(0.0)?;
     Ok(Headroom { quiet, wanted })
 }
 
@@ -143,11 +143,11 @@ fn between_counts(speed: f64, tick_s: f64) -> f64 {
 }
 
 /// Deviation of the duty in the second half of a step.
-fn activity(rig: &mut Rig<'_>, speed: f64, tried_s: f64) -> Result<f64, Cause> {
-    rig.speed(speed)?;
-    let from_s = rig.now_s() + (1.0 - HEARD) * tried_s;
-    rig.poll_for(tried_s, true)?;
+fn activity(guard: &mut ExperimentGuard<'_>, speed: f64, tried_s: f64) -> Result<f64, Cause> {
+    guard.speed(speed)?;
+    let from_s = guard.now_s() + (1.0 - HEARD) * tried_s;
+    guard.poll_for(tried_s, true)?;
     let duties: Vec<(f64, f64)> =
-        rig.points.iter().filter_map(|point| point.duty).filter(|duty| duty.0 >= from_s).collect();
+        guard.points.iter().filter_map(|point| point.duty).filter(|duty| duty.0 >= from_s).collect();
     Ok(deviation(&duties))
 }

@@ -5,10 +5,10 @@
 
 use crate::axis::{AMPS_PER_RAW, EncoderClass, FULL_DUTY_RAW, PositionRegisters, Sample, VelocityRegisters};
 use crate::design::Task;
+use crate::experiment_guard::{Drive, Input};
 use crate::model::Gains;
 use crate::motion_mind::MotionMindRegisters;
 use crate::record::Entry;
-use crate::rig::{Drive, Input};
 use crate::ticks::{Setpoint, TickLoop};
 
 /// Counts of an absolute encoder for one turn (MCP manual 2.4.9, command 16).

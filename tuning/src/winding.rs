@@ -2,7 +2,7 @@
 //!
 //! The inductance cannot be seen in polls: it is over within a millisecond.
 
-use crate::rig::{Drive, Input, Point};
+use crate::experiment_guard::{Drive, Input, Point};
 use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
 

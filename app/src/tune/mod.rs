@@ -24,8 +24,8 @@ use brushwork_tuning::axis::{
     Axis, AxisError, EncoderClass, Exchange, PositionRegisters, Setup, VelocityRegisters,
 };
 use brushwork_tuning::cause::Cause;
+use brushwork_tuning::experiment_guard::wait_for_rest;
 use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::rig::wait_for_rest;
 use brushwork_tuning::trial::{Trial, TrialRequest, run_trial};
 use brushwork_tuning::tune::{Request, tune};
 use brushwork_tuning_bench::mind::axis::{LoopAfter, MindAxis};

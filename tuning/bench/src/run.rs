@@ -12,9 +12,9 @@ use brushwork_sim::controller::Controller;
 use brushwork_sim::plant::EncoderKind;
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::cause::Cause;
+use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::linear::{LoopPlant, Margins};
 use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::rig::GuardOptions;
 use brushwork_tuning::tune::{Excitation, Method, Request, tune};
 
 /// An axis over the simulated machine.

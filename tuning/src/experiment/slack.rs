@@ -6,8 +6,8 @@
 use super::Probe;
 use crate::cause::Cause;
 use crate::diagnosis::why_unmoved;
+use crate::experiment_guard::ExperimentGuard;
 use crate::model::PlantModel;
-use crate::rig::Rig;
 use serde::{Deserialize, Serialize};
 
 /// Directions of the pushes: after each pair comes a reversal.
@@ -45,26 +45,30 @@ pub struct Slack {
 }
 
 /// Pushes the axis to and fro with little duty. `None` where there is no room for it, or it did not move.
-pub fn measure_slack(rig: &mut Rig<'_>, probe: &Probe, model: &PlantModel) -> Result<Option<Slack>, Cause> {
-    let room = rig.room_counts().map_or(f64::INFINITY, |room| ROOM_SHARE * room);
+pub fn measure_slack(
+    guard: &mut ExperimentGuard<'_>,
+    probe: &Probe,
+    model: &PlantModel,
+) -> Result<Option<Slack>, Cause> {
+    let room = guard.room_counts().map_or(f64::INFINITY, |room| ROOM_SHARE * room);
     let way = (PUSH_S * model.gain_counts_per_s).max(PUSH_COUNTS).min(room);
     if way < 6.0 || model.tau_s > SLOWEST_S {
         return Ok(None);
     }
     // The motor was started upwards, against the load or with it.
     let start = (probe.start_duty - model.load_duty).max(model.coulomb_duty);
-    let most = rig.options.max_duty - model.load_duty.abs();
+    let most = guard.options.max_duty - model.load_duty.abs();
     let duty = (start + (ABOVE.0 * start).max(ABOVE.1)).min(most);
     let push_s = push_time_s(model, duty, way);
     let rest_s = (REST.0 * model.tau_s + REST.1).min(LONGEST_REST_S);
     // Play looks like a stall for a while. The duty is low, and a motor that does not move ends the run here.
-    let kept_start_duty = std::mem::take(&mut rig.monitor.start_duty);
-    let ways = push(rig, duty, model.load_duty, push_s, rest_s);
-    rig.monitor.start_duty = kept_start_duty;
+    let kept_start_duty = std::mem::take(&mut guard.monitor.start_duty);
+    let ways = push(guard, duty, model.load_duty, push_s, rest_s);
+    guard.monitor.start_duty = kept_start_duty;
     let ways = ways?;
     if did_not_move(&ways) {
         let backwards = ways.iter().rev().take(2).all(|(_, way)| *way <= -LEAST_WAY_COUNTS);
-        return Err(why_unmoved(&rig.monitor, backwards));
+        return Err(why_unmoved(&guard.monitor, backwards));
     }
     Ok(Some(slack_of(&ways)))
 }
@@ -76,7 +80,7 @@ fn did_not_move(ways: &[(f64, f64)]) -> bool {
 
 /// Pushes with a duty to either side of the one that balances the load. For each push: 1 for another one the same way, -1 for one after a reversal, 0 for the first; and its way, counts.
 fn push(
-    rig: &mut Rig<'_>,
+    guard: &mut ExperimentGuard<'_>,
     duty: f64,
     load_duty: f64,
     push_s: f64,
@@ -85,21 +89,21 @@ fn push(
     let mut ways = Vec::new();
     let mut before = 0.0;
     for direction in PUSHES {
-        rig.poll(false)?;
-        let from = place(rig);
-        rig.duty(load_duty + direction * duty)?;
-        let pushed_s = rig.now_s();
-        rig.poll_for(push_s, false)?;
-        let held_s = rig.now_s() - pushed_s;
-        if rig.monitor.drew_nothing(pushed_s) {
+        guard.poll(false)?;
+        let from = place(guard);
+        guard.duty(load_duty + direction * duty)?;
+        let pushed_s = guard.now_s();
+        guard.poll_for(push_s, false)?;
+        let held_s = guard.now_s() - pushed_s;
+        if guard.monitor.drew_nothing(pushed_s) {
             return Err(Cause::MotorOpened);
         }
-        rig.duty(0.0)?;
-        rig.poll_for(rest_s, false)?;
+        guard.duty(0.0)?;
+        guard.poll_for(rest_s, false)?;
         // A computer that was late pushed for longer.
         ways.push((
             before * direction,
-            (place(rig) - from) * direction * (push_s / held_s.max(1e-3)).min(1.0),
+            (place(guard) - from) * direction * (push_s / held_s.max(1e-3)).min(1.0),
         ));
         before = direction;
         if did_not_move(&ways) {
@@ -109,9 +113,9 @@ fn push(
     Ok(ways)
 }
 
-fn place(rig: &Rig<'_>) -> f64 {
-    let last = rig.points.iter().rev().take(3).map(|p| p.counts);
-    last.sum::<f64>() / rig.points.len().clamp(1, 3) as f64
+fn place(guard: &ExperimentGuard<'_>) -> f64 {
+    let last = guard.points.iter().rev().take(3).map(|p| p.counts);
+    last.sum::<f64>() / guard.points.len().clamp(1, 3) as f64
 }
 
 /// Time for a way from rest at a duty.

@@ -2,7 +2,7 @@
 
 use super::Probe;
 use crate::cause::Cause;
-use crate::rig::Rig;
+use crate::experiment_guard::ExperimentGuard;
 use serde::{Deserialize, Serialize};
 
 /// Switches at each of the two duties.
@@ -44,60 +44,60 @@ pub struct WindowRun {
 }
 
 /// Runs it inside `width` counts around where the axis is now. The motor is braked when it returns.
-pub fn run_window(rig: &mut Rig<'_>, probe: &Probe, width: f64) -> Result<WindowRun, Cause> {
-    rig.monitor.start_duty = probe.start_duty;
-    rig.monitor.stall_amps = probe.stall_amps;
-    rig.monitor.drive_limit = rig.drive_limit(probe.stall_amps);
-    rig.poll_for(0.05, false)?;
-    let middle = rig.points.last().map_or(0.0, |p| p.counts);
+pub fn run_window(guard: &mut ExperimentGuard<'_>, probe: &Probe, width: f64) -> Result<WindowRun, Cause> {
+    guard.monitor.start_duty = probe.start_duty;
+    guard.monitor.stall_amps = probe.stall_amps;
+    guard.monitor.drive_limit = guard.drive_limit(probe.stall_amps);
+    guard.poll_for(0.05, false)?;
+    let middle = guard.points.last().map_or(0.0, |p| p.counts);
     let mut turn = Turn { acts_s: ACTS_S, last: None, share: 1.0 };
     for _ in 0..NARROWER {
-        match swings(rig, probe, (middle, width), &mut turn) {
-            Err(Cause::TravelLimit) if (rig.turned_at_counts() - middle).abs() < NEAREST_SHARE * width => {
+        match swings(guard, probe, (middle, width), &mut turn) {
+            Err(Cause::TravelLimit) if (guard.turned_at_counts() - middle).abs() < NEAREST_SHARE * width => {
                 // The guard brought it to rest before the end. What it learned of the way stays, and it keeps farther away.
-                rig.come_to_rest()?;
-                go_to(rig, probe, middle)?;
+                guard.come_to_rest()?;
+                go_to(guard, probe, middle)?;
                 turn.share *= NARROWER_SHARE;
             }
             other => return other,
         }
     }
-    swings(rig, probe, (middle, width), &mut turn)
+    swings(guard, probe, (middle, width), &mut turn)
 }
 
 /// Swings about the middle of a width at both duties.
 fn swings(
-    rig: &mut Rig<'_>,
+    guard: &mut ExperimentGuard<'_>,
     probe: &Probe,
     (middle, width): (f64, f64),
     turn: &mut Turn,
 ) -> Result<WindowRun, Cause> {
-    let mut run = WindowRun { from_s: rig.now_s(), switches: 0, top_speed: 0.0, reach_counts: 0.0 };
+    let mut run = WindowRun { from_s: guard.now_s(), switches: 0, top_speed: 0.0, reach_counts: 0.0 };
     for above in DUTIES {
-        let duty = (probe.start_duty + above).min(rig.options.max_duty);
-        swing(rig, duty, middle, width, &mut run, turn)?;
+        let duty = (probe.start_duty + above).min(guard.options.max_duty);
+        swing(guard, duty, middle, width, &mut run, turn)?;
     }
-    rig.come_to_rest()?;
+    guard.come_to_rest()?;
     if run.switches < 4 { Err(Cause::TooCoarse) } else { Ok(run) }
 }
 
 /// Drives to a place with little duty, and lets the axis come to rest there.
-pub fn go_to(rig: &mut Rig<'_>, probe: &Probe, place: f64) -> Result<(), Cause> {
-    let begin = rig.now_s();
-    let here = |rig: &Rig<'_>| rig.points.last().map_or(0.0, |p| p.counts);
-    let direction = (place - here(rig)).signum();
-    rig.duty((probe.start_duty + GOING_DUTY).min(rig.options.max_duty) * direction)?;
+pub fn go_to(guard: &mut ExperimentGuard<'_>, probe: &Probe, place: f64) -> Result<(), Cause> {
+    let begin = guard.now_s();
+    let here = |guard: &ExperimentGuard<'_>| guard.points.last().map_or(0.0, |p| p.counts);
+    let direction = (place - here(guard)).signum();
+    guard.duty((probe.start_duty + GOING_DUTY).min(guard.options.max_duty) * direction)?;
     loop {
-        rig.poll(false)?;
-        let ahead = rig.recent_speed(2).unwrap_or(0.0) * GOING_AHEAD_S;
-        if (place - here(rig) - ahead) * direction <= 0.0 {
+        guard.poll(false)?;
+        let ahead = guard.recent_speed(2).unwrap_or(0.0) * GOING_AHEAD_S;
+        if (place - here(guard) - ahead) * direction <= 0.0 {
             break;
         }
-        if rig.now_s() - begin > LONGEST_S {
+        if guard.now_s() - begin > LONGEST_S {
             return Err(Cause::TimeLimit);
         }
     }
-    rig.come_to_rest()
+    guard.come_to_rest()
 }
 
 /// How far the axis runs on when it is turned round: what the turns so far have shown.
@@ -136,28 +136,28 @@ impl Turn {
 
 /// Swings about the middle at one duty. The way it takes to turn round is learned from each swing.
 fn swing(
-    rig: &mut Rig<'_>,
+    guard: &mut ExperimentGuard<'_>,
     duty: f64,
     middle: f64,
     width: f64,
     run: &mut WindowRun,
     turn: &mut Turn,
 ) -> Result<(), Cause> {
-    let start = rig.points.last().map_or(middle, |p| p.counts);
+    let start = guard.points.last().map_or(middle, |p| p.counts);
     let mut direction = if start > middle { -1.0 } else { 1.0 };
-    rig.duty(duty * direction)?;
+    guard.duty(duty * direction)?;
     let mut switches = 0;
     let (mut switched_at, mut switch_speed, mut farthest) = (start, 0.0_f64, 0.0_f64);
-    let mut since_s = rig.now_s();
+    let mut since_s = guard.now_s();
     while switches < SWITCHES {
-        if rig.now_s() - run.from_s > LONGEST_S {
+        if guard.now_s() - run.from_s > LONGEST_S {
             return Ok(());
         }
-        let Some(point) = rig.poll(false)? else { continue };
-        let speed = rig.recent_speed(2).unwrap_or(0.0);
+        let Some(point) = guard.poll(false)? else { continue };
+        let speed = guard.recent_speed(2).unwrap_or(0.0);
         let from_middle = point.counts - middle;
         run.top_speed = run.top_speed.max(speed.abs());
-        rig.monitor.full_speed = rig.monitor.full_speed.max(speed.abs());
+        guard.monitor.full_speed = guard.monitor.full_speed.max(speed.abs());
         run.reach_counts = run.reach_counts.max(from_middle.abs());
         farthest = farthest.max((point.counts - switched_at) * -direction);
         if from_middle.abs() > 0.5 * width {
@@ -166,18 +166,18 @@ fn swing(
         let turned_at = switched_at - direction * farthest;
         let runs_on = turn.way(speed * direction, (point.counts - turned_at) * direction);
         let is_steady =
-            rig.recent_speed(12).is_some_and(|before| (speed - before).abs() < STEADY * run.top_speed);
+            guard.recent_speed(12).is_some_and(|before| (speed - before).abs() < STEADY * run.top_speed);
         let is_long = point.t - since_s > LONGEST_SWING_S && is_steady;
         if is_long || from_middle * direction + runs_on >= turn_at(turn) * width {
             since_s = point.t;
             if switches > 0 {
-                learn(rig, turn, switch_speed, farthest, duty);
+                learn(guard, turn, switch_speed, farthest, duty);
             }
             switched_at = point.counts;
             switch_speed = speed * direction;
             farthest = 0.0;
             direction = -direction;
-            rig.duty(duty * direction)?;
+            guard.duty(duty * direction)?;
             switches += 1;
             run.switches += 1;
         }
@@ -189,12 +189,12 @@ fn turn_at(turn: &Turn) -> f64 {
     turn.share * if turn.last.is_some() { TURN_AT } else { FIRST_TURN_AT }
 }
 
-fn learn(rig: &mut Rig<'_>, turn: &mut Turn, speed: f64, way: f64, duty: f64) {
+fn learn(guard: &mut ExperimentGuard<'_>, turn: &mut Turn, speed: f64, way: f64, duty: f64) {
     turn.learn(speed, way);
     if speed > 0.0 && way > 0.0 {
         let seconds = (way / speed).clamp(0.02, 0.6);
-        rig.monitor.stopping_s = seconds;
-        rig.monitor.tau_bounds_s = Some((0.1 * seconds, 10.0 * seconds));
-        rig.monitor.turned(speed, duty, way);
+        guard.monitor.stopping_s = seconds;
+        guard.monitor.tau_bounds_s = Some((0.1 * seconds, 10.0 * seconds));
+        guard.monitor.turned(speed, duty, way);
     }
 }

@@ -11,8 +11,8 @@ use brushwork_link::device::{ArmScope, Event, Job, JobEnding, JobOutput, Request
 use brushwork_link::settings::SettingsTable;
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_tuning::axis::EncoderClass;
+use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::rig::GuardOptions;
 use brushwork_tuning::tune::{Excitation, Method, Request as TuneRequest};
 
 use super::client::{Client, arm, ask};

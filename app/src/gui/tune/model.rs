@@ -5,8 +5,8 @@ use brushwork_link::settings::SettingValue;
 use brushwork_link::transport::Stream;
 use brushwork_protocol::packet_serial::Motor;
 use brushwork_tuning::axis::{EncoderClass, Setup};
+use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::report::Verdict;
-use brushwork_tuning::rig::GuardOptions;
 use brushwork_tuning::tune::{self, Excitation, Method};
 
 use super::calibration::Calibration;

@@ -13,11 +13,11 @@ use crate::table::{
     Identification, Judged, Row, Table, WINDOW_S, error_percent, identification_of, row, window_summary,
 };
 use brushwork_sim::motion_mind::Mode;
+use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::linear::LoopPlant;
 use brushwork_tuning::model::Gains;
 use brushwork_tuning::motion_mind::MotionMindRegisters;
 use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::rig::GuardOptions;
 use brushwork_tuning::rules::{pd_rules, pid_rules, velocity_rules};
 use brushwork_tuning::tune::{Excitation, Method, Request, tune};
 use rayon::prelude::*;

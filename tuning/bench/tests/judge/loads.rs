@@ -2,8 +2,8 @@
 //! it does not hold is named.
 
 use brushwork_tuning::cause::Cause;
+use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::rig::GuardOptions;
 use brushwork_tuning::tune::{Excitation, Method, Request};
 use brushwork_tuning_bench::population::{Specimen, specimen};
 use brushwork_tuning_bench::run::{request_of, tune_plant};

@@ -5,8 +5,8 @@
 use brushwork_sim::motion_mind::Mode;
 use brushwork_sim::world::{Motor, WorldAction};
 use brushwork_tuning::cause::Cause;
+use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::rig::GuardOptions;
 use brushwork_tuning::tune::{Method, Request, tune};
 use brushwork_tuning_bench::line::Event;
 use brushwork_tuning_bench::mind::population::specimen;

@@ -1,7 +1,7 @@
 //! The guard around every experiment: polls, remembers, and ends the run when anything is wrong.
 //!
-//! An experiment drives only through a [`Rig`]. Each poll is checked for the link, the status, the battery, the travel window,
-//! stalls, lost encoders and open motors before the experiment sees it.
+//! An experiment drives only through an [`ExperimentGuard`]. Each poll is checked for the link, the status, the battery, the travel
+//! window, stalls, lost encoders and open motors before the experiment sees it.
 
 use crate::axis::{
     AMPS_PER_RAW, Axis, AxisError, EncoderClass, FULL_DUTY_RAW, PositionRegisters, Sample, Setup,
@@ -130,8 +130,8 @@ pub struct Drive {
     pub input: Input,
 }
 
-/// An axis under guard.
-pub struct Rig<'a> {
+/// The guard around an experiment on an axis.
+pub struct ExperimentGuard<'a> {
     axis: &'a mut dyn Axis,
     /// What it was told.
     pub options: GuardOptions,
@@ -168,13 +168,13 @@ pub struct Rig<'a> {
     winding_touched: bool,
 }
 
-impl<'a> Rig<'a> {
+impl<'a> ExperimentGuard<'a> {
     /// Takes an axis over: reads its setup, refuses torque mode unless it may be left, makes the controller stop by itself when
     /// the host dies, and gives it the highest current. What was changed is put back when it fails.
     pub fn new(axis: &'a mut dyn Axis, options: GuardOptions) -> Result<Self, Cause> {
         let setup = retried(|| axis.read_setup())?;
         let now = axis.now();
-        let mut rig = Self {
+        let mut guard = Self {
             axis,
             options,
             setup,
@@ -201,10 +201,10 @@ impl<'a> Rig<'a> {
             limits_touched: false,
             winding_touched: false,
         };
-        match rig.get_ready() {
-            Ok(()) => Ok(rig),
+        match guard.get_ready() {
+            Ok(()) => Ok(guard),
             Err(cause) => {
-                rig.put_back(false);
+                guard.put_back(false);
                 Err(cause)
             }
         }
