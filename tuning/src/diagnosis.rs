@@ -214,7 +214,7 @@ impl Story<'_> {
         self.misfit(|moment| moment.speed)
     }
 
-    /// The motor stands while a load swings that the encoder sees.
+    /// The motor stands while a load oscillates that the encoder sees.
     fn stands(&self) -> f64 {
         self.since_best(|_| 0.0)
     }

@@ -1,26 +1,26 @@
 //! How far the gain of a velocity loop can be raised on the machine before the loop gets rough: its gain margin, asked of the machine
-//! itself. A springy shaft swings faster than polls can see and no model knows of it; the duty that is read back shows it anyhow.
+//! itself. A springy shaft oscillates faster than polls can see and no model knows of it; the duty that is read back shows it anyhow.
 
 use crate::cause::Cause;
 use crate::design::Task;
 use crate::experiment_guard::ExperimentGuard;
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, LoopLaw, Pid};
+use crate::oscillation::deviation;
 use crate::registers::velocity_registers;
-use crate::swing::deviation;
 
 /// Gains tried, as multiples of the proposed ones, up to the margin that is wanted.
 const FACTORS: [f64; 5] = [1.2, 1.4, 1.6, 1.8, 2.0];
 /// The sensitivity up to which a model counts as calm.
 const CALM_MS: f64 = 2.8;
-/// The most that is asked of a loop that swings.
+/// The most that is asked of a loop that oscillates.
 const MOST_FACTOR: f64 = 2.5;
 /// The sensitivity that may really be where one was designed for: what lies beyond it is what the trial is to find.
 const MS_ALLOWED: f64 = 1.25;
 /// Setpoint of the trial and height of its steps, as shares of full speed.
 const SPEED: f64 = 0.30;
 const STEP: (f64, f64) = (0.02, 0.08);
-/// The duty that a step asks for at once at the highest gain tried: as much as leaves the play of a gear, where a shaft does not swing.
+/// The duty that a step asks for at once at the highest gain tried: as much as leaves the play of a gear, where a shaft does not oscillate.
 const STEP_DUTY: f64 = 0.3;
 /// How long a gain is tried, in lags of the loop, and the bounds, s.
 const LAGS: f64 = 14.0;
@@ -54,7 +54,7 @@ fn wanted_factor(ms: f64) -> f64 {
     (allowed / (allowed - 1.0)).min(FACTORS[FACTORS.len() - 1])
 }
 
-/// The multiple that a loop with the sensitivity that was designed for has, for one that was seen to swing below the other.
+/// The multiple that a loop with the sensitivity that was designed for has, for one that was seen to oscillate below the other.
 fn full_factor(ms: f64) -> f64 {
     (ms / (ms - 1.0)).min(MOST_FACTOR)
 }
@@ -121,7 +121,7 @@ pub(crate) fn headroom(
         let measured = activity(guard, speed(side), tried_s)?;
         let expected = predicted(factor).max(usual * predicted(factor) / predicted(1.0).max(1e-4));
         let bound = (TOO_ROUGH * expected).max(LEAST_ROUGH);
-        // Looked at twice: what swings goes on, unless it is so strong that it had better stop at once.
+        // Looked at twice: what oscillates goes on, unless it is so strong that it had better stop at once.
         let again = measured > bound && measured <= AT_ONCE * bound;
         let rough = if again { activity(guard, speed(side), tried_s)? } else { measured };
         if rough > bound {
@@ -136,7 +136,7 @@ pub(crate) fn headroom(
 }
 
 /// A speed near this one at which each tick counts a half more than a whole number: the difference of two ticks is never the same, and
-/// a loop that swings by less than a count shows it. At whole numbers it could stand still in the controller's eyes.
+/// a loop that oscillates by less than a count shows it. At whole numbers it could stand still in the controller's eyes.
 fn between_counts(speed: f64, tick_s: f64) -> f64 {
     let per_tick = speed * tick_s;
     if per_tick > LEAST_PER_TICK { (per_tick.floor() + 0.5) / tick_s } else { speed }

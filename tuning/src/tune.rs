@@ -469,7 +469,7 @@ fn with_lag(task: Task, found: &LagFit) -> Task {
     let worst_lag = Lag { delay_ticks: found.worst.delay_ticks + unmodelled_ticks(&task.law), ..found.worst };
     let (mut goal, mut least_integral_s, mut most_overshoot) = (task.goal, 0.0, task.most_overshoot);
     if found.chi_square > ODD_CHI_SQUARE {
-        // Something swings or has play that the model knows nothing of: keep more distance.
+        // Something oscillates or has play that the model knows nothing of: keep more distance.
         goal.ms = 1.0 + ODD_SHARE * (goal.ms - 1.0);
         most_overshoot = SHORT_OVERSHOOT;
     }

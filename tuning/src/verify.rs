@@ -7,9 +7,9 @@ use crate::lag::{ClosedLoopRecord, LagFit, fit_lag, predicted_record};
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::margin::{headroom, scaled};
 use crate::model::{Gains, Pid};
+use crate::oscillation::{deviation, flank_overshoot, speed_ripple};
 use crate::report::{Measured, Report};
 use crate::score::{horizon_s, position_step};
-use crate::swing::{deviation, flank_overshoot, speed_ripple};
 use crate::ticks::{TickLoop, velocity_test};
 use crate::tune::{Excitation, Method, Request, design_for, propose, with_slack};
 
@@ -24,7 +24,7 @@ const DWELLS: [f64; STEPS] = [1.0, 0.87, 1.15, 0.93, 1.17, 0.83];
 /// Overshoot of a move that a position loop may show, and by how much it may be more than predicted.
 const MOST_PLACE_OVERSHOOT: f64 = 0.05;
 const PLACE_DOUBT: f64 = 0.04;
-/// Counts that are no overshoot yet, and no swing yet.
+/// Counts that are no overshoot yet, and no oscillation yet.
 const ROUNDED_COUNTS: f64 = 1.5;
 const ROUNDING_COUNTS: f64 = 2.5;
 /// Overshoot and ripple over the step that a velocity loop may show.
@@ -35,7 +35,7 @@ const MOST_RIPPLE: f64 = 0.045;
 const TAIL_COUNTS: f64 = 4.0;
 const TAIL_SHARE: f64 = 0.02;
 const FINE_COUNTS: f64 = 8.0;
-/// Swing of a place at rest over the step, beyond what rounding may show.
+/// Oscillation of a place at rest over the step, beyond what rounding may show.
 const MOST_PLACE_RIPPLE: f64 = 0.010;
 /// Share of a move that a loop which works makes at the least, and of a speed.
 const LEAST_MOVE: f64 = 0.2;
@@ -247,7 +247,7 @@ pub(crate) fn is_rougher(design: &Design, measured: &Measured) -> bool {
     roughness(design, measured) > 1.0
 }
 
-/// How rough the machine is over what a design may show: the worst of duty, overshoot and swing. 1 is the bound.
+/// How rough the machine is over what a design may show: the worst of duty, overshoot and oscillation. 1 is the bound.
 fn roughness(design: &Design, measured: &Measured) -> f64 {
     let place = design.gains.position.is_some();
     let (least_over, doubt, ripple) = if place {
@@ -350,7 +350,7 @@ pub(crate) fn try_velocity_inside(
     guard.duty(0.0)?;
     rest(guard, task.plant.tau_s, task.qpps)?;
     let from_s = guard.now_s();
-    // Half a way out first, so that the rest swings about the middle.
+    // Half a way out first, so that the rest oscillates about the middle.
     for (n, share) in [0.5, 1.0, 1.0, 1.0, 1.0, 0.5].into_iter().enumerate() {
         let side = if n % 2 == 0 { 1.0 } else { -1.0 };
         guard.speed(side * speed)?;
@@ -449,7 +449,7 @@ fn judge_move(points: &[Point], target: f64, moved: f64, late_s: f64, step: f64)
     let places: Vec<f64> = late().map(|p| p.counts).collect();
     let duties: Vec<(f64, f64)> = late().filter_map(|p| p.duty).collect();
     let duty_rms = deviation(&duties);
-    // A creep to the end is no swing.
+    // A creep to the end is no oscillation.
     if places.windows(3).filter(|w| (w[1] - w[0]) * (w[2] - w[1]) < 0.0).count() < 2 {
         return Measured { overshoot, duty_rms, ..Measured::default() };
     }

@@ -73,7 +73,7 @@ pub struct Judgement {
     pub overshoot: f64,
     /// Duty at rest, root mean square.
     pub duty_rms: f64,
-    /// Goes on swinging.
+    /// Goes on oscillating: a limit cycle.
     pub hunting: bool,
     /// By how much of the step, and how often, Hz.
     pub ripple: (f64, f64),

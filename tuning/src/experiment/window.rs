@@ -27,7 +27,7 @@ const GOING_AHEAD_S: f64 = 0.05;
 const LONGEST_S: f64 = 25.0;
 /// A wide window is not used to its ends by a slow axis: longest way in one direction once the speed is steady, s, and what it
 /// changes by then at the most.
-const LONGEST_SWING_S: f64 = 0.7;
+const LONGEST_HALF_CYCLE_S: f64 = 0.7;
 const STEADY: f64 = 0.08;
 
 /// What the window run read off.
@@ -52,7 +52,7 @@ pub fn run_window(guard: &mut ExperimentGuard<'_>, probe: &Probe, width: f64) ->
     let middle = guard.points.last().map_or(0.0, |p| p.counts);
     let mut turn = Turn { acts_s: ACTS_S, last: None, share: 1.0 };
     for _ in 0..NARROWER {
-        match swings(guard, probe, (middle, width), &mut turn) {
+        match oscillate(guard, probe, (middle, width), &mut turn) {
             Err(Cause::TravelLimit) if (guard.turned_at_counts() - middle).abs() < NEAREST_SHARE * width => {
                 // The guard brought it to rest before the end. What it learned of the way stays, and it keeps farther away.
                 guard.come_to_rest()?;
@@ -62,11 +62,11 @@ pub fn run_window(guard: &mut ExperimentGuard<'_>, probe: &Probe, width: f64) ->
             other => return other,
         }
     }
-    swings(guard, probe, (middle, width), &mut turn)
+    oscillate(guard, probe, (middle, width), &mut turn)
 }
 
-/// Swings about the middle of a width at both duties.
-fn swings(
+/// Oscillates about the middle of a width at both duties.
+fn oscillate(
     guard: &mut ExperimentGuard<'_>,
     probe: &Probe,
     (middle, width): (f64, f64),
@@ -75,7 +75,7 @@ fn swings(
     let mut run = WindowRun { from_s: guard.now_s(), switches: 0, top_speed: 0.0, reach_counts: 0.0 };
     for above in DUTIES {
         let duty = (probe.start_duty + above).min(guard.options.max_duty);
-        swing(guard, duty, middle, width, &mut run, turn)?;
+        oscillate_at(guard, duty, middle, width, &mut run, turn)?;
     }
     guard.come_to_rest()?;
     if run.switches < 4 { Err(Cause::TooCoarse) } else { Ok(run) }
@@ -134,8 +134,8 @@ impl Turn {
     }
 }
 
-/// Swings about the middle at one duty. The way it takes to turn round is learned from each swing.
-fn swing(
+/// Oscillates about the middle at one duty. The way it takes to turn round is learned from each half cycle.
+fn oscillate_at(
     guard: &mut ExperimentGuard<'_>,
     duty: f64,
     middle: f64,
@@ -167,7 +167,7 @@ fn swing(
         let runs_on = turn.way(speed * direction, (point.counts - turned_at) * direction);
         let is_steady =
             guard.recent_speed(12).is_some_and(|before| (speed - before).abs() < STEADY * run.top_speed);
-        let is_long = point.t - since_s > LONGEST_SWING_S && is_steady;
+        let is_long = point.t - since_s > LONGEST_HALF_CYCLE_S && is_steady;
         if is_long || from_middle * direction + runs_on >= turn_at(turn) * width {
             since_s = point.t;
             if switches > 0 {

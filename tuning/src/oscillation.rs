@@ -1,4 +1,4 @@
-//! Overshoot and swing of a velocity loop, read off polls that see neither well.
+//! Overshoot and oscillation of a velocity loop, read off polls that see neither well.
 //!
 //! A difference of two polls is a poor speed: a count is rounded, and the register it comes from is up to a tick old. Flanks are
 //! therefore laid over each other by their commands, and a plateau is searched for sines, whose counts grow as they get slower.
@@ -10,9 +10,9 @@ use std::f64::consts::TAU;
 /// Variance of a count's rounding, and standard deviation of its time at 300 Hz, s.
 const ROUNDING: f64 = 1.0 / 12.0;
 pub(crate) const STAMP_S: f64 = 0.001;
-/// The swings looked for, Hz, and how far up counts show them that came with their time.
-const SWINGS_HZ: (f64, f64) = (2.5, 16.0);
-const DATED_SWINGS_HZ: f64 = 33.0;
+/// The oscillations looked for, Hz, and how far up counts show them that came with their time.
+const OSCILLATIONS_HZ: (f64, f64) = (2.5, 16.0);
+const DATED_OSCILLATIONS_HZ: f64 = 33.0;
 /// How uncertain an average of flanks may be, as a share of the step, and the bounds of its width, s.
 const UNCERTAIN: f64 = 0.03;
 const WIDTH_S: (f64, f64) = (0.004, 0.25);
@@ -29,7 +29,7 @@ pub(crate) fn deviation(values: &[(f64, f64)]) -> f64 {
 /// Root mean square of the speed about a plateau in counts/s, as far as it is more than rounding and stamps make up. `plateau` is a part
 /// of the record.
 pub(crate) fn speed_ripple(plateau: &[(f64, f64)], record: &ClosedLoopRecord) -> f64 {
-    let highest_hz = if record.is_dated { DATED_SWINGS_HZ } else { SWINGS_HZ.1 };
+    let highest_hz = if record.is_dated { DATED_OSCILLATIONS_HZ } else { OSCILLATIONS_HZ.1 };
     let (Some(first), Some(last)) = (plateau.first(), plateau.last()) else { return 0.0 };
     let seconds = last.0 - first.0;
     if plateau.len() < 20 || seconds <= 0.0 {
@@ -45,7 +45,7 @@ pub(crate) fn speed_ripple(plateau: &[(f64, f64)], record: &ClosedLoopRecord) ->
         let (c, s) = rest.iter().fold((0.0, 0.0), project);
         2.0 * (c * c + s * s) / (n * n)
     };
-    let first = (SWINGS_HZ.0 * seconds).ceil().max(3.0) as usize;
+    let first = (OSCILLATIONS_HZ.0 * seconds).ceil().max(3.0) as usize;
     let sines: Vec<(f64, f64)> = (first..)
         .map(|k| TAU * k as f64 / seconds)
         .take_while(|w| *w <= TAU * nyquist)
@@ -96,7 +96,7 @@ pub(crate) fn flank_overshoot(record: &ClosedLoopRecord, step: f64, poll_s: f64)
     most
 }
 
-/// The values less the cubic that fits them best, over the time from their middle: what settles slowly is no swing.
+/// The values less the cubic that fits them best, over the time from their middle: what settles slowly is no oscillation.
 fn detrended(values: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let (Some(first), Some(last)) = (values.first(), values.last()) else { return Vec::new() };
     let (middle, half) = (0.5 * (first.0 + last.0), (0.5 * (last.0 - first.0)).max(1e-6));
@@ -126,25 +126,25 @@ mod tests {
     fn a_sine_on_a_plateau_has_its_root_mean_square_and_a_plain_one_next_to_none() {
         // 60 counts/s about 1500 at 8 Hz.
         let w = TAU * 8.0;
-        let swinging =
+        let oscillating =
             speed_ripple(&plateau(|t| 1_500.0 * t - 60.0 / w * (w * t).cos()), &ClosedLoopRecord::default());
-        assert!((swinging / (60.0 / 2.0_f64.sqrt()) - 1.0).abs() < 0.2, "{swinging}");
+        assert!((oscillating / (60.0 / 2.0_f64.sqrt()) - 1.0).abs() < 0.2, "{oscillating}");
         assert!(speed_ripple(&plateau(|t| 1_500.0 * t), &ClosedLoopRecord::default()) < 10.0);
     }
 
     #[test]
-    fn a_quick_swing_is_looked_for_where_each_count_came_with_its_time() {
+    fn a_quick_oscillation_is_looked_for_where_each_count_came_with_its_time() {
         let w = TAU * 24.0;
         let counts = plateau(|t| 1_500.0 * t - 300.0 / w * (w * t).cos());
         let dated = ClosedLoopRecord { is_dated: true, ..ClosedLoopRecord::default() };
-        let swinging = speed_ripple(&counts, &dated);
-        assert!((swinging / (300.0 / 2.0_f64.sqrt()) - 1.0).abs() < 0.2, "{swinging}");
+        let oscillating = speed_ripple(&counts, &dated);
+        assert!((oscillating / (300.0 / 2.0_f64.sqrt()) - 1.0).abs() < 0.2, "{oscillating}");
         assert!(speed_ripple(&plateau(|t| 1_500.0 * t), &dated) < 40.0);
-        assert!(speed_ripple(&counts, &ClosedLoopRecord::default()) < 0.1 * swinging);
+        assert!(speed_ripple(&counts, &ClosedLoopRecord::default()) < 0.1 * oscillating);
     }
 
     #[test]
-    fn a_speed_that_settles_slowly_is_no_swing() {
+    fn a_speed_that_settles_slowly_is_no_oscillation() {
         let settling =
             speed_ripple(&plateau(|t| 1_500.0 * t + 200.0 * (-t / 0.8).exp()), &ClosedLoopRecord::default());
         assert!(settling < 15.0, "{settling}");
