@@ -19,7 +19,7 @@ const SPEED_SHARE: f64 = 0.3;
 const STEP_S: f64 = 0.004;
 const STEPS: f64 = 40.0;
 /// How far the gain may be beside the model, and between which multiples of its time constant the true one lies: a load behind a
-/// spring or in its play leaves the motor alone, which is quicker.
+/// spring or within its backlash leaves the motor alone, which is quicker.
 const GAIN_DOUBT: f64 = 0.12;
 const TAU_SPREAD: (f64, f64) = (0.3, 1.6);
 /// How far a constant load may be beside the model, as a share of it.

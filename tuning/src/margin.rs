@@ -20,7 +20,7 @@ const MS_ALLOWED: f64 = 1.25;
 /// Setpoint of the trial and height of its steps, as shares of full speed.
 const SPEED: f64 = 0.30;
 const STEP: (f64, f64) = (0.02, 0.08);
-/// The duty that a step asks for at once at the highest gain tried: as much as leaves the play of a gear, where a shaft does not oscillate.
+/// The duty that a step asks for at once at the highest gain tried: as much as leaves the backlash of a gear, where a shaft does not oscillate.
 const STEP_DUTY: f64 = 0.3;
 /// How long a gain is tried, in lags of the loop, and the bounds, s.
 const LAGS: f64 = 14.0;

@@ -327,7 +327,7 @@ impl MotorMonitor {
         Ok(())
     }
 
-    /// Whether the motor is off and all that is counted is slow: a load sways in the play of its gear.
+    /// Whether the motor is off and all that is counted is slow: a load sways in the backlash of its gear.
     fn sways(&self, stretch: &Stretch) -> bool {
         let Stretch { from, to, speed_before } = stretch;
         let begin = from.t - SPEED_S;

@@ -3,7 +3,7 @@
 use crate::axis::{PositionRegisters, Setup, VelocityRegisters};
 use crate::cause::Cause;
 use crate::design::{Design, Task};
-use crate::experiment::{FreeRun, Probe, Slack, WindowRun};
+use crate::experiment::{Backlash, FreeRun, Probe, WindowRun};
 use crate::fit::Fit;
 use crate::lag::LagFit;
 use crate::law_probe::LawFindings;
@@ -82,9 +82,9 @@ pub struct Report {
     /// Why that was not told, where an open-loop run could have.
     #[serde(default)]
     pub winding_unknown: Option<NotTold>,
-    /// Play of the mechanics, of a position run.
-    #[serde(default)]
-    pub slack: Option<Slack>,
+    /// Backlash of the mechanics, of a position run.
+    #[serde(default, rename = "slack")]
+    pub backlash: Option<Backlash>,
     /// The lag of the loop.
     pub lag: Option<LagFit>,
     /// What the design was made for: the model with all that the run learned of the loop.

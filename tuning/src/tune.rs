@@ -5,7 +5,7 @@ use crate::cause::Cause;
 use crate::design::{
     Design, Goal, Task, USUAL_OVERSHOOT, design_pd, design_pid, design_piv, design_velocity, unmodelled_ticks,
 };
-use crate::experiment::{Probe, go_to, measure_slack, run_free, run_probe, run_window};
+use crate::experiment::{Probe, go_to, measure_backlash, run_free, run_probe, run_window};
 use crate::experiment_guard::{ExperimentGuard, GuardOptions};
 use crate::fit::{Fit, fit};
 use crate::lag::LagFit;
@@ -40,7 +40,7 @@ const ODD_CHI_SQUARE: f64 = 2.2;
 const ODD_SHARE: f64 = 0.6;
 /// The overshoot that is then designed for.
 const SHORT_OVERSHOOT: f64 = 0.15;
-/// Misfit that speaks of play, and the shortest integral time of such a machine, in time constants.
+/// Misfit that speaks of backlash, and the shortest integral time of such a machine, in time constants.
 const LOOSE_CHI_SQUARE: f64 = 2.3;
 const LOOSE_INTEGRAL: f64 = 1.2;
 /// Share of the travel window that has to be free around the axis, and the narrowest window, counts.
@@ -186,7 +186,7 @@ fn blank(request: &Request) -> Report {
         law: None,
         winding: None,
         winding_unknown: None,
-        slack: None,
+        backlash: None,
         lag: None,
         task: None,
         design: None,
@@ -240,14 +240,17 @@ fn run(guard: &mut ExperimentGuard<'_>, request: &Request, report: &mut Report) 
         qpps: found.qpps,
         goal: Goal::of_level(request.level),
         noise_factor: (probe.noise_counts / ROUNDED_COUNTS).max(1.0),
-        slack_counts: 0.0,
+        backlash_counts: 0.0,
         least_integral_s: 0.0,
         most_overshoot: USUAL_OVERSHOOT,
     };
     guard.progress("Measuring the lag of the loop");
     let task = settle_lag(guard, request, task, report)?;
-    let task =
-        if request.method == Method::Pid { with_slack(guard, request, task, &probe, report)? } else { task };
+    let task = if request.method == Method::Pid {
+        with_backlash(guard, request, task, &probe, report)?
+    } else {
+        task
+    };
     report.task = Some(task);
     let design = design_for(request.method, &task).ok_or(Cause::TooCoarse)?;
     propose(report, request, &task, design, guard.options.travel);
@@ -429,8 +432,8 @@ fn settle_lag(
     Ok(with_lag(Task { noise_factor, ..task }, &found))
 }
 
-/// Measures the play of a position axis by little pushes: before an integral is designed, and where a loop hunts.
-pub(crate) fn with_slack(
+/// Measures the backlash of a position axis by little pushes: before an integral is designed, and where a loop hunts.
+pub(crate) fn with_backlash(
     guard: &mut ExperimentGuard<'_>,
     request: &Request,
     task: Task,
@@ -440,11 +443,11 @@ pub(crate) fn with_slack(
     if !request.verify {
         return Ok(task);
     }
-    guard.progress("Looking for play at reversals");
+    guard.progress("Looking for backlash at reversals");
     guard.duty(0.0)?;
     rest(guard, task.plant.tau_s, task.qpps)?;
-    report.slack = measure_slack(guard, probe, &task.plant)?;
-    Ok(Task { slack_counts: report.slack.map_or(0.0, |slack| slack.counts), ..task })
+    report.backlash = measure_backlash(guard, probe, &task.plant)?;
+    Ok(Task { backlash_counts: report.backlash.map_or(0.0, |backlash| backlash.counts), ..task })
 }
 
 /// Writes the gains of a velocity loop, and gives them as the registers hold them.
@@ -469,7 +472,7 @@ fn with_lag(task: Task, found: &LagFit) -> Task {
     let worst_lag = Lag { delay_ticks: found.worst.delay_ticks + unmodelled_ticks(&task.law), ..found.worst };
     let (mut goal, mut least_integral_s, mut most_overshoot) = (task.goal, 0.0, task.most_overshoot);
     if found.chi_square > ODD_CHI_SQUARE {
-        // Something oscillates or has play that the model knows nothing of: keep more distance.
+        // Something oscillates or has backlash that the model knows nothing of: keep more distance.
         goal.ms = 1.0 + ODD_SHARE * (goal.ms - 1.0);
         most_overshoot = SHORT_OVERSHOOT;
     }

@@ -11,7 +11,7 @@ use crate::oscillation::{deviation, flank_overshoot, speed_ripple};
 use crate::report::{Measured, Report};
 use crate::score::{horizon_s, position_step};
 use crate::ticks::{TickLoop, velocity_test};
-use crate::tune::{Excitation, Method, Request, design_for, propose, with_slack};
+use crate::tune::{Excitation, Method, Request, design_for, propose, with_backlash};
 
 /// Setpoint of the velocity trial, as a share of full speed.
 const MIDDLE: f64 = 0.45;
@@ -219,8 +219,8 @@ fn leave_room(
     Ok(Some(found.quiet / factor))
 }
 
-/// A place that hunts is first looked at for play: within it nothing can be held (MCP manual 2.4.7, the deadzone). `None` where
-/// the deadzone covers the play already, or there is none.
+/// A place that hunts is first looked at for backlash: within it nothing can be held (MCP manual 2.4.7, the deadzone). `None` where
+/// the deadzone covers the backlash already, or there is none.
 fn with_deadzone(
     guard: &mut ExperimentGuard<'_>,
     request: &Request,
@@ -230,11 +230,11 @@ fn with_deadzone(
     report: &mut Report,
 ) -> Result<Option<Design>, Cause> {
     let hunts = design.gains.position.is_some() && measured.ripple > MOST_PLACE_RIPPLE;
-    if !hunts || report.slack.is_some() {
+    if !hunts || report.backlash.is_some() {
         return Ok(None);
     }
     let Some(probe) = report.probe else { return Ok(None) };
-    let task = with_slack(guard, request, *task, &probe, report)?;
+    let task = with_backlash(guard, request, *task, &probe, report)?;
     let deadzone_counts = deadzone(&task);
     if deadzone_counts <= design.gains.deadzone_counts {
         return Ok(None);
@@ -271,7 +271,7 @@ fn less_integral(gains: &Gains) -> Gains {
 }
 
 /// What lowers a design: a position loop is designed anew for a softer goal than what it promised, since gains that are merely scaled
-/// end a move in a long creep, which sticks and slips in the play of a real machine. A velocity loop is scaled.
+/// end a move in a long creep, which sticks and slips in the backlash of a real machine. A velocity loop is scaled.
 fn softer(method: Method, task: &Task, design: &Design) -> Design {
     let scaled = Design { gains: lowered(&design.gains), ..*design };
     if method == Method::Velocity {

@@ -215,7 +215,7 @@ mod tests {
             qpps: 30_000.0,
             goal: Goal::of_level(50.0),
             noise_factor: 1.0,
-            slack_counts: 0.0,
+            backlash_counts: 0.0,
             least_integral_s: 0.0,
             most_overshoot: crate::design::USUAL_OVERSHOOT,
         }

@@ -10,7 +10,7 @@ const OVERSHOOT_CAP: f64 = 0.06;
 /// Deviation of the duty beyond which a move is not over yet when it should be; the cost jumps there too.
 const LATE_DUTY_CAP: f64 = 0.08;
 /// Way in the last third of a move or after a load beyond which it is not over yet, over the step and in counts at the least: what
-/// creeps for so long sticks and slips in the play of a real machine. How dear it is, and the most it can cost.
+/// creeps for so long sticks and slips in the backlash of a real machine. How dear it is, and the most it can cost.
 const LATE_WAY_CAP: f64 = 0.01;
 const LATE_COUNTS_CAP: f64 = 2.0;
 const LATE_WAY_COST: f64 = 0.2;
@@ -25,8 +25,8 @@ const AT_REST: f64 = 0.9;
 const INNER_TIMES: usize = 8;
 /// Shares of the highest inner gain tried.
 const INNER_SHARES: [f64; 4] = [1.0, 0.7, 0.4, 0.2];
-/// Dead zone around the play of the mechanics, and of an integral that would hunt without one, counts.
-const SLACK_MARGIN: f64 = 2.0;
+/// Dead zone around the backlash of the mechanics, and of an integral that would hunt without one, counts.
+const BACKLASH_MARGIN: f64 = 2.0;
 const INTEGRAL_DEADZONE: f64 = 1.0;
 
 /// `v = P e + D de/dt`, duty = v / QPPS (MCP manual 2.4.7, the simple PD system).
@@ -160,9 +160,9 @@ fn candidate(task: &Task, gains: Gains) -> Candidate {
     Candidate { gains, score, cost }
 }
 
-/// Within the play nothing can be held; beyond it two counts keep the rounding quiet.
+/// Within the backlash nothing can be held; beyond it two counts keep the rounding quiet.
 pub(crate) fn deadzone(task: &Task) -> f64 {
-    if task.slack_counts > 0.0 { (task.slack_counts + SLACK_MARGIN).round() } else { 0.0 }
+    if task.backlash_counts > 0.0 { (task.backlash_counts + BACKLASH_MARGIN).round() } else { 0.0 }
 }
 
 /// The task of a loop that acts on the duty directly: its sensitivity is bounded with some more lag, for the winding and a springy

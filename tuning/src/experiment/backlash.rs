@@ -1,7 +1,7 @@
-//! Play of the mechanics, read off reversals: a push the other way loses the play that a second push the same way does not.
+//! Backlash of the mechanics, read off reversals: a push the other way loses the backlash that a second push the same way does not.
 //!
-//! Only an encoder behind the play sees any of it; one on the motor's own shaft counts the way through it as any other. A load that
-//! coasts through the play while the motor brakes hides a part of it, so what is found is a lower bound.
+//! Only an encoder behind the backlash sees any of it; one on the motor's own shaft counts the way through it as any other. A load that
+//! coasts through the backlash while the motor brakes hides a part of it, so what is found is a lower bound.
 
 use super::Probe;
 use crate::cause::Cause;
@@ -26,7 +26,7 @@ const LONGEST_REST_S: f64 = 1.0;
 const SLOWEST_S: f64 = 0.3;
 /// A push moves the axis by this at the least, counts.
 const LEAST_WAY_COUNTS: f64 = 2.0;
-/// Least play that is told, counts, and how sure it must be, in standard errors.
+/// Least backlash that is reported, counts, and how sure it must be, in standard errors.
 const LEAST_COUNTS: f64 = 1.5;
 const SURE: f64 = 3.0;
 /// Share of the push that it must be, and the standard error that rounding leaves, counts.
@@ -35,8 +35,8 @@ const LEAST_ERROR_COUNTS: f64 = 0.4;
 
 /// What the reversals showed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Slack {
-    /// Counts lost at a reversal, a lower bound of the play; 0 where nothing is sure.
+pub struct Backlash {
+    /// Counts lost at a reversal, a lower bound of the backlash; 0 where nothing is sure.
     pub counts: f64,
     /// Half of the 95 % interval, counts.
     pub interval_counts: f64,
@@ -45,11 +45,11 @@ pub struct Slack {
 }
 
 /// Pushes the axis to and fro with little duty. `None` where there is no room for it, or it did not move.
-pub fn measure_slack(
+pub fn measure_backlash(
     guard: &mut ExperimentGuard<'_>,
     probe: &Probe,
     model: &PlantModel,
-) -> Result<Option<Slack>, Cause> {
+) -> Result<Option<Backlash>, Cause> {
     let room = guard.room_counts().map_or(f64::INFINITY, |room| ROOM_SHARE * room);
     let way = (PUSH_S * model.gain_counts_per_s).max(PUSH_COUNTS).min(room);
     if way < 6.0 || model.tau_s > SLOWEST_S {
@@ -61,7 +61,7 @@ pub fn measure_slack(
     let duty = (start + (ABOVE.0 * start).max(ABOVE.1)).min(most);
     let push_s = push_time_s(model, duty, way);
     let rest_s = (REST.0 * model.tau_s + REST.1).min(LONGEST_REST_S);
-    // Play looks like a stall for a while. The duty is low, and a motor that does not move ends the run here.
+    // Backlash looks like a stall for a while. The duty is low, and a motor that does not move ends the run here.
     let kept_start_duty = std::mem::take(&mut guard.monitor.start_duty);
     let ways = push(guard, duty, model.load_duty, push_s, rest_s);
     guard.monitor.start_duty = kept_start_duty;
@@ -70,10 +70,10 @@ pub fn measure_slack(
         let backwards = ways.iter().rev().take(2).all(|(_, way)| *way <= -LEAST_WAY_COUNTS);
         return Err(why_unmoved(&guard.monitor, backwards));
     }
-    Ok(Some(slack_of(&ways)))
+    Ok(Some(backlash_of(&ways)))
 }
 
-/// Whether two pushes in a row moved nothing: one may end in the play.
+/// Whether two pushes in a row moved nothing: one may end in the backlash.
 fn did_not_move(ways: &[(f64, f64)]) -> bool {
     ways.windows(2).any(|pair| pair.iter().all(|(_, way)| *way < LEAST_WAY_COUNTS))
 }
@@ -130,7 +130,7 @@ fn push_time_s(model: &PlantModel, duty: f64, way: f64) -> f64 {
 }
 
 /// What the pushes after a reversal are short of the others.
-fn slack_of(ways: &[(f64, f64)]) -> Slack {
+fn backlash_of(ways: &[(f64, f64)]) -> Backlash {
     let of = |turned: bool| -> Vec<f64> {
         ways.iter()
             .filter(|(turn, _)| if turned { *turn < 0.0 } else { *turn > 0.0 })
@@ -141,7 +141,7 @@ fn slack_of(ways: &[(f64, f64)]) -> Slack {
     let (a, b) = (mean_and_error(&same), mean_and_error(&turned));
     let (short, error) = (a.0 - b.0, a.1.hypot(b.1).max(LEAST_ERROR_COUNTS));
     let is_sure = short > LEAST_COUNTS && short > SURE * error && short > LEAST_SHARE * a.0;
-    Slack {
+    Backlash {
         counts: if is_sure { short } else { 0.0 },
         interval_counts: 1.96 * error,
         reversals: turned.len(),
@@ -160,15 +160,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_lost_at_reversals_is_the_play_and_scatter_is_none() {
+    fn what_is_lost_at_reversals_is_the_backlash_and_scatter_is_none() {
         let pushes =
             [(0.0, 30.0), (1.0, 30.0), (-1.0, 22.0), (1.0, 31.0), (-1.0, 21.0), (1.0, 30.0), (-1.0, 23.0)];
-        let found = slack_of(&pushes);
+        let found = backlash_of(&pushes);
         assert!((found.counts - 8.33).abs() < 0.1, "{found:?}");
         assert_eq!(found.reversals, 3);
         let noisy = pushes.map(|(turn, way)| (turn, if turn > 0.0 { way - 6.0 * turn } else { way }));
-        assert!(slack_of(&noisy).counts < 4.0);
+        assert!(backlash_of(&noisy).counts < 4.0);
         let rigid = pushes.map(|(turn, way)| (turn, if turn < 0.0 { 31.0 } else { way }));
-        assert_eq!(slack_of(&rigid).counts, 0.0);
+        assert_eq!(backlash_of(&rigid).counts, 0.0);
     }
 }
