@@ -200,11 +200,11 @@ pub trait Axis {
     fn write_motion_mind(&mut self, _registers: MotionMindRegisters) -> Result<(), AxisError> {
         Err(AxisError::Refused("registers of a Motion Mind".into()))
     }
-    /// Ends a run on a Motion Mind: these registers, as they are, and the place where the motor is as the wanted one.
+    /// Ends a run on a Motion Mind: these registers, as they are, and the position of the motor as the wanted one.
     fn end_motion_mind(&mut self, _registers: MotionMindRegisters) -> Result<(), AxisError> {
         Err(AxisError::Refused("registers of a Motion Mind".into()))
     }
-    /// Between which places the motor is to stay, counts of the encoder. A controller that can watch that too is told.
+    /// Between which positions the motor is to stay, counts of the encoder. A controller that can watch that too is told.
     fn set_travel(&mut self, _counts: (i64, i64)) -> Result<(), AxisError> {
         Ok(())
     }

@@ -251,7 +251,7 @@ impl Cause {
                 "The controller's loop follows no law known to this program, so gains cannot be computed for it."
             }
             Self::WrongMode => {
-                "The Motion Mind is not in mode 4 with an encoder, the only mode that takes both a duty and a place over the wire. \
+                "The Motion Mind is not in mode 4 with an encoder, the only mode that takes both a duty and a position over the wire. \
                  Set its switches to mode 4, clear PULSEFB, and switch it off and on."
             }
             Self::NoSuchLoop => {
@@ -267,7 +267,7 @@ impl Cause {
             }
             Self::OtherLoop => {
                 "NEWVELMODE, FASTPID, PULSEFB or DISABLEPID is set, which makes another loop of these gains, or none. Clear the bit: \
-                 the gains are those of the loop that computes every 5 ms from the encoder's place."
+                 the gains are those of the loop that computes every 5 ms from the encoder's position."
             }
         })
     }

@@ -140,7 +140,7 @@ pub fn fit_lag(
     let best = cases.iter().min_by(|a, b| a.cost.total_cmp(&b.cost))?;
     let readings = (record.counts.len() + record.duties.len()) as f64;
     let chi_square = best.misfit / readings;
-    // What the model explains badly it also places badly.
+    // What the model explains badly it also locates badly.
     let likely = best.cost + 4.0 * chi_square.max(1.0).powi(2);
     let total = |case: &&Case| case.lag.total_s(law);
     let within = || cases.iter().filter(|case| case.cost < likely);
@@ -159,7 +159,7 @@ pub fn fit_lag(
 struct Followed {
     start: f64,
     tick_s: f64,
-    places: Vec<f64>,
+    positions: Vec<f64>,
     duties: Vec<f64>,
 }
 
@@ -176,7 +176,7 @@ impl Followed {
         let tick_s = law.tick_s();
         let (start, end) = (record.counts.first()?.0, record.counts.last()?.0);
         let ticks = ((end - start) / tick_s) as usize + 2;
-        let (mut places, mut duties) = (Vec::with_capacity(ticks), Vec::with_capacity(ticks));
+        let (mut positions, mut duties) = (Vec::with_capacity(ticks), Vec::with_capacity(ticks));
         let (mut next, mut goal) = (0, before);
         for n in 0..ticks {
             let t = start + n as f64 * tick_s;
@@ -186,20 +186,20 @@ impl Followed {
                 goal = Some(speed);
                 next += 1;
             }
-            places.push(twin.motion.place);
+            positions.push(twin.motion.position);
             if let Some(speed) = goal {
                 twin.tick(Setpoint::Speed(speed), 0.0);
             }
             duties.push(twin.duty);
         }
-        Some(Self { start, tick_s, places, duties })
+        Some(Self { start, tick_s, positions, duties })
     }
 
-    fn place_at(&self, t: f64) -> f64 {
+    fn position_at(&self, t: f64) -> f64 {
         // Assumed: the register is refreshed once a tick, so a reading is half a tick old on average.
         let x = ((t - self.start) / self.tick_s - 0.5).max(0.0);
-        let n = (x as usize).min(self.places.len() - 2);
-        self.places[n] + (self.places[n + 1] - self.places[n]) * (x - n as f64).min(1.0)
+        let n = (x as usize).min(self.positions.len() - 2);
+        self.positions[n] + (self.positions[n + 1] - self.positions[n]) * (x - n as f64).min(1.0)
     }
 }
 
@@ -211,7 +211,7 @@ pub(crate) fn predicted_record(
     before: f64,
 ) -> Option<ClosedLoopRecord> {
     let followed = Followed::new(record, twin, law, 0.5 * law.tick_s(), Some(before))?;
-    let counts = record.counts.iter().map(|&(t, _)| (t, followed.place_at(t).floor())).collect();
+    let counts = record.counts.iter().map(|&(t, _)| (t, followed.position_at(t).floor())).collect();
     Some(ClosedLoopRecord { setpoints: record.setpoints.clone(), counts, ..ClosedLoopRecord::default() })
 }
 
@@ -229,7 +229,7 @@ fn mismatch(record: &ClosedLoopRecord, twin: TickLoop, law: &LoopLaw, offset_s: 
         if t0 < from_s {
             continue;
         }
-        let moved = followed.place_at(t1) - followed.place_at(t0);
+        let moved = followed.position_at(t1) - followed.position_at(t0);
         let speed = (y1 - y0) / (t1 - t0).max(1e-4);
         let variance = 0.66 + (stamp_s * speed).powi(2) + (0.01 * (y1 - y0)).powi(2);
         sum += ((y1 - y0 - moved).powi(2) / variance).min(SOFT_SQUARE);
@@ -282,13 +282,13 @@ mod tests {
         for tick in 0..540 {
             let t = f64::from(tick) * law.tick_s();
             let goal = record.setpoints.iter().rev().find(|s| s.0 <= t).map(|s| s.1);
-            let place = twin.motion.place;
+            let position = twin.motion.position;
             if let Some(goal) = goal {
                 twin.tick(Setpoint::Speed(goal), 0.0);
             }
             if t >= poll {
                 // A reading is half a tick old.
-                record.counts.push((t + 0.5 * law.tick_s(), place.floor()));
+                record.counts.push((t + 0.5 * law.tick_s(), position.floor()));
                 record.duties.push((t + 0.5 * law.tick_s(), twin.duty));
                 poll += 0.0123;
             }

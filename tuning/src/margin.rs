@@ -59,12 +59,12 @@ fn full_factor(ms: f64) -> f64 {
     (ms / (ms - 1.0)).min(MOST_FACTOR)
 }
 
-/// The velocity loop of gains. A loop on the place that acts on the duty directly is one too: its derivative is a gain of the speed and
+/// The velocity loop of gains. A loop on the position that acts on the duty directly is one too: its derivative is a gain of the speed and
 /// its gain an integral, but for the filter on the speed, which only a velocity loop has.
 fn velocity_loop_of(gains: &Gains) -> Gains {
-    let place = gains.position.unwrap_or_default();
+    let position = gains.position.unwrap_or_default();
     let is_direct = gains.velocity == Pid::default();
-    let velocity = if is_direct { Pid { p: place.d, i: place.p, d: 0.0 } } else { gains.velocity };
+    let velocity = if is_direct { Pid { p: position.d, i: position.p, d: 0.0 } } else { gains.velocity };
     Gains { velocity, ..Gains::default() }
 }
 

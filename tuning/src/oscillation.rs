@@ -118,8 +118,8 @@ mod tests {
     use super::*;
 
     /// Counts of a speed, polled every 13 ms for a second, rounded.
-    fn plateau(place: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
-        (0..80).map(|n| f64::from(n) * 0.013).map(|t| (t, place(t).floor())).collect()
+    fn plateau(position: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+        (0..80).map(|n| f64::from(n) * 0.013).map(|t| (t, position(t).floor())).collect()
     }
 
     #[test]
@@ -155,8 +155,8 @@ mod tests {
         // A second-order step up and down again, damping 0.5: it goes past by 16.3 % of the step.
         let (zeta, omega, high) = (0.5_f64, 40.0, 9_000.0);
         let damped = omega * (1.0 - zeta * zeta).sqrt();
-        // Place of a unit step of speed.
-        let place = |t: f64| {
+        // Position of a unit step of speed.
+        let position = |t: f64| {
             let decay = (-zeta * omega * t).exp();
             let (c, s) = ((damped * t).cos(), (damped * t).sin());
             t - 2.0 * zeta / omega
@@ -167,7 +167,7 @@ mod tests {
         let counts = (0..185).map(|n| f64::from(n) * 0.013).map(|t| {
             let flanks = setpoints.iter().filter(|s| s.0 <= t);
             let sum: f64 =
-                flanks.map(|&(at, goal)| (if goal > 0.0 { high } else { -high }) * place(t - at)).sum();
+                flanks.map(|&(at, goal)| (if goal > 0.0 { high } else { -high }) * position(t - at)).sum();
             (t, sum.floor())
         });
         let record = ClosedLoopRecord {

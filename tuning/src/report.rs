@@ -40,7 +40,7 @@ pub struct Measured {
     pub overshoot: f64,
     /// Root mean square of the duty on plateaus.
     pub duty_rms: f64,
-    /// Peak to peak of the place or speed at rest, over the step.
+    /// Peak to peak of the position or speed at rest, over the step.
     pub ripple: f64,
     /// Multiple of the gains up to which the velocity loop stayed quiet; `None` where it was not tried.
     #[serde(default)]

@@ -230,7 +230,7 @@ impl Trace {
             {
                 goal = match drive.input {
                     Input::Speed(speed) => Some(Setpoint::Speed(speed)),
-                    Input::Position(place, bound) => Some(Setpoint::Place(place - origin, bound)),
+                    Input::Position(position, bound) => Some(Setpoint::Position(position - origin, bound)),
                     Input::Duty(_) => goal,
                 };
                 next += 1;
@@ -238,7 +238,7 @@ impl Trace {
             if let Some(goal) = goal {
                 twin.tick(goal, 0.0);
             }
-            let (counts, speed, duty) = (origin + twin.motion.place, twin.motion.speed, twin.duty);
+            let (counts, speed, duty) = (origin + twin.motion.position, twin.motion.speed, twin.duty);
             response.push(Predicted { t: t + tick_s, counts, speed, duty });
         }
         response

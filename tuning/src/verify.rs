@@ -22,8 +22,8 @@ const INSIDE_SHARE: f64 = 0.35;
 /// Irregular dwell times, relative: no limit cycle can hide in step with them.
 const DWELLS: [f64; STEPS] = [1.0, 0.87, 1.15, 0.93, 1.17, 0.83];
 /// Overshoot of a move that a position loop may show, and by how much it may be more than predicted.
-const MOST_PLACE_OVERSHOOT: f64 = 0.05;
-const PLACE_DOUBT: f64 = 0.04;
+const MOST_POSITION_OVERSHOOT: f64 = 0.05;
+const POSITION_DOUBT: f64 = 0.04;
 /// Counts that are no overshoot yet, and no oscillation yet.
 const ROUNDED_COUNTS: f64 = 1.5;
 const ROUNDING_COUNTS: f64 = 2.5;
@@ -35,8 +35,8 @@ const MOST_RIPPLE: f64 = 0.045;
 const TAIL_COUNTS: f64 = 4.0;
 const TAIL_SHARE: f64 = 0.02;
 const FINE_COUNTS: f64 = 8.0;
-/// Oscillation of a place at rest over the step, beyond what rounding may show.
-const MOST_PLACE_RIPPLE: f64 = 0.010;
+/// Oscillation of a position at rest over the step, beyond what rounding may show.
+const MOST_POSITION_RIPPLE: f64 = 0.010;
 /// Share of a move that a loop which works makes at the least, and of a speed.
 const LEAST_MOVE: f64 = 0.2;
 /// Share of the way to the farther end of the travel that a move goes at the most.
@@ -203,7 +203,8 @@ fn leave_room(
 ) -> Result<Option<f64>, Cause> {
     // A Motion Mind has its registers written at rest only, and a loop without a gain of the speed is no velocity loop.
     let can_be_raised = request.law.motion_mind.is_none() && request.excitation == Excitation::Free;
-    let damped = |gains: &Gains| gains.velocity.p > 0.0 || gains.position.is_some_and(|place| place.d > 0.0);
+    let damped =
+        |gains: &Gains| gains.velocity.p > 0.0 || gains.position.is_some_and(|position| position.d > 0.0);
     let Some(design) = report.design.filter(|design| can_be_raised && damped(&design.gains)) else {
         return Ok(None);
     };
@@ -212,14 +213,15 @@ fn leave_room(
     if factor < 0.999 {
         warn_of_lowering(report);
         let inner = scaled(&design.gains, factor);
-        let less = |place: Pid| Pid { p: factor * place.p, i: factor * place.i, d: factor * place.d };
+        let less =
+            |position: Pid| Pid { p: factor * position.p, i: factor * position.i, d: factor * position.d };
         let gains = Gains { position: inner.position.map(less), ..inner };
         propose(report, request, task, Design { gains, ..design }, guard.options.travel);
     }
     Ok(Some(found.quiet / factor))
 }
 
-/// A place that hunts is first looked at for backlash: within it nothing can be held (MCP manual 2.4.7, the deadzone). `None` where
+/// A position that hunts is first looked at for backlash: within it nothing can be held (MCP manual 2.4.7, the deadzone). `None` where
 /// the deadzone covers the backlash already, or there is none.
 fn with_deadzone(
     guard: &mut ExperimentGuard<'_>,
@@ -229,7 +231,7 @@ fn with_deadzone(
     measured: &Measured,
     report: &mut Report,
 ) -> Result<Option<Design>, Cause> {
-    let hunts = design.gains.position.is_some() && measured.ripple > MOST_PLACE_RIPPLE;
+    let hunts = design.gains.position.is_some() && measured.ripple > MOST_POSITION_RIPPLE;
     if !hunts || report.backlash.is_some() {
         return Ok(None);
     }
@@ -249,9 +251,9 @@ pub(crate) fn is_rougher(design: &Design, measured: &Measured) -> bool {
 
 /// How rough the machine is over what a design may show: the worst of duty, overshoot and oscillation. 1 is the bound.
 fn roughness(design: &Design, measured: &Measured) -> f64 {
-    let place = design.gains.position.is_some();
-    let (least_over, doubt, ripple) = if place {
-        (MOST_PLACE_OVERSHOOT, PLACE_DOUBT, MOST_PLACE_RIPPLE)
+    let is_position = design.gains.position.is_some();
+    let (least_over, doubt, ripple) = if is_position {
+        (MOST_POSITION_OVERSHOOT, POSITION_DOUBT, MOST_POSITION_RIPPLE)
     } else {
         (MOST_OVERSHOOT, 0.03, MOST_RIPPLE)
     };
@@ -414,7 +416,7 @@ pub(crate) fn try_position(
         worst.ripple = worst.ripple.max(moved.ripple);
         if request.excitation == Excitation::Free {
             let tail = tail_counts(&points, (begin + 0.7 * horizon_s, begin + horizon_s), step.abs());
-            worst.ripple = worst.ripple.max(MOST_PLACE_RIPPLE * tail);
+            worst.ripple = worst.ripple.max(MOST_POSITION_RIPPLE * tail);
         }
         worst.duty_rms = worst.duty_rms.max(moved.duty_rms);
         from = target;
@@ -424,12 +426,12 @@ pub(crate) fn try_position(
 }
 
 /// The direction in which the travel has more room, and how much, counts.
-fn farther_end(guard: &ExperimentGuard<'_>, place: f64) -> (f64, f64) {
+fn farther_end(guard: &ExperimentGuard<'_>, position: f64) -> (f64, f64) {
     let Some((low, high)) = guard.travel_counts() else { return (1.0, f64::INFINITY) };
-    if high - place >= place - low { (1.0, high - place) } else { (-1.0, place - low) }
+    if high - position >= position - low { (1.0, high - position) } else { (-1.0, position - low) }
 }
 
-/// How far the place still goes between two times, in counts over what a move may that is over.
+/// How far the position still goes between two times, in counts over what a move may that is over.
 fn tail_counts(points: &[Point], (from_s, to_s): (f64, f64), step: f64) -> f64 {
     if TAIL_SHARE * step > FINE_COUNTS {
         return 0.0;
@@ -446,14 +448,14 @@ fn judge_move(points: &[Point], target: f64, moved: f64, late_s: f64, step: f64)
     // A short move may go past its target by as many counts as a long one.
     let overshoot = (over - ROUNDED_COUNTS).max(0.0) / moved.abs().max(step).max(1.0);
     let late = || points.iter().filter(|p| p.t > late_s);
-    let places: Vec<f64> = late().map(|p| p.counts).collect();
+    let positions: Vec<f64> = late().map(|p| p.counts).collect();
     let duties: Vec<(f64, f64)> = late().filter_map(|p| p.duty).collect();
     let duty_rms = deviation(&duties);
     // A creep to the end is no oscillation.
-    if places.windows(3).filter(|w| (w[1] - w[0]) * (w[2] - w[1]) < 0.0).count() < 2 {
+    if positions.windows(3).filter(|w| (w[1] - w[0]) * (w[2] - w[1]) < 0.0).count() < 2 {
         return Measured { overshoot, duty_rms, ..Measured::default() };
     }
-    let range = places.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let range = positions.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
     let ripple = (range.1 - range.0 - ROUNDING_COUNTS).max(0.0) / step;
     Measured { overshoot, duty_rms, ripple, headroom: None }
 }

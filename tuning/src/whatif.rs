@@ -92,11 +92,11 @@ pub fn forecast(task: &Task, gains: &Gains) -> Forecast {
     if !is_position {
         twin.start_steady(from);
     }
-    let goal = if is_position { Setpoint::Place(to, task.qpps) } else { Setpoint::Speed(to) };
+    let goal = if is_position { Setpoint::Position(to, task.qpps) } else { Setpoint::Speed(to) };
     let mut run = |load: f64| -> Vec<Reply> {
         let reply = |n: usize| {
             let duty = twin.tick(goal, load);
-            let value = if is_position { twin.motion.place } else { twin.motion.speed };
+            let value = if is_position { twin.motion.position } else { twin.motion.speed };
             Reply { t: (n + 1) as f64 * tick_s, value, duty }
         };
         (0..ticks).map(reply).collect()

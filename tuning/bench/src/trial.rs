@@ -129,7 +129,7 @@ impl Machine {
         channel.tick(&measured, &self.conditions, &self.settings).duty()
     }
 
-    /// True speed and place of the shaft that the encoder sits on, in counts.
+    /// True speed and position of the shaft that the encoder sits on, in counts.
     fn motion(&self) -> (f64, f64) {
         let truth = self.world.truth(Motor::M1);
         match self.per_load_radian {

@@ -93,10 +93,11 @@ pub fn design_piv(task: &Task) -> Option<Design> {
         };
         let Some(top) = ascend(&loops, &inner, 400.0, pi) else { continue };
         for share in INNER_SHARES {
-            let with_place = |p: f64| Gains { position: Some(Pid { p, i: 0.0, d: 0.0 }), ..pi(top * share) };
-            let Some(highest) = ascend(&loops, task, 300.0, with_place) else { continue };
+            let with_position =
+                |p: f64| Gains { position: Some(Pid { p, i: 0.0, d: 0.0 }), ..pi(top * share) };
+            let Some(highest) = ascend(&loops, task, 300.0, with_position) else { continue };
             for outer in SHARES {
-                best = better(best, candidate(task, with_place(highest * outer)));
+                best = better(best, candidate(task, with_position(highest * outer)));
             }
         }
     }

@@ -90,7 +90,7 @@ fn push(
     let mut before = 0.0;
     for direction in PUSHES {
         guard.poll(false)?;
-        let from = place(guard);
+        let from = position(guard);
         guard.duty(load_duty + direction * duty)?;
         let pushed_s = guard.now_s();
         guard.poll_for(push_s, false)?;
@@ -103,7 +103,7 @@ fn push(
         // A computer that was late pushed for longer.
         ways.push((
             before * direction,
-            (place(guard) - from) * direction * (push_s / held_s.max(1e-3)).min(1.0),
+            (position(guard) - from) * direction * (push_s / held_s.max(1e-3)).min(1.0),
         ));
         before = direction;
         if did_not_move(&ways) {
@@ -113,7 +113,7 @@ fn push(
     Ok(ways)
 }
 
-fn place(guard: &ExperimentGuard<'_>) -> f64 {
+fn position(guard: &ExperimentGuard<'_>) -> f64 {
     let last = guard.points.iter().rev().take(3).map(|p| p.counts);
     last.sum::<f64>() / guard.points.len().clamp(1, 3) as f64
 }

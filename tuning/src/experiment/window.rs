@@ -81,16 +81,16 @@ fn oscillate(
     if run.switches < 4 { Err(Cause::TooCoarse) } else { Ok(run) }
 }
 
-/// Drives to a place with little duty, and lets the axis come to rest there.
-pub fn go_to(guard: &mut ExperimentGuard<'_>, probe: &Probe, place: f64) -> Result<(), Cause> {
+/// Drives to a position with little duty, and lets the axis come to rest there.
+pub fn go_to(guard: &mut ExperimentGuard<'_>, probe: &Probe, position: f64) -> Result<(), Cause> {
     let begin = guard.now_s();
     let here = |guard: &ExperimentGuard<'_>| guard.points.last().map_or(0.0, |p| p.counts);
-    let direction = (place - here(guard)).signum();
+    let direction = (position - here(guard)).signum();
     guard.duty((probe.start_duty + GOING_DUTY).min(guard.options.max_duty) * direction)?;
     loop {
         guard.poll(false)?;
         let ahead = guard.recent_speed(2).unwrap_or(0.0) * GOING_AHEAD_S;
-        if (place - here(guard) - ahead) * direction <= 0.0 {
+        if (position - here(guard) - ahead) * direction <= 0.0 {
             break;
         }
         if guard.now_s() - begin > LONGEST_S {

@@ -133,18 +133,18 @@ impl<'a> Machine<'a> {
         (horizon_s(self.bed.truth.tau_s) / self.tick_s) as usize
     }
 
-    /// One loop; true speed and place of the shaft that the encoder sits on in counts, and the duty.
+    /// One loop; true speed and position of the shaft that the encoder sits on in counts, and the duty.
     fn tick(&mut self) -> (f64, f64, f64) {
         self.unit.advance(self.unit.now() + TICK);
         let truth = self.unit.truth();
-        let (speed, place) = match self.per_load_radian {
+        let (speed, position) = match self.per_load_radian {
             Some(per) => (truth.load_radians_per_second * per, truth.load_radians * per),
             None => (
                 truth.motor_radians_per_second * self.per_motor_radian,
                 truth.motor_radians * self.per_motor_radian,
             ),
         };
-        (speed, place, self.unit.duty())
+        (speed, position, self.unit.duty())
     }
 
     fn load(&mut self) {
@@ -155,8 +155,8 @@ impl<'a> Machine<'a> {
     fn errors(&mut self, goal: f64, is_velocity: bool) -> (Vec<f64>, Vec<f64>) {
         (0..self.ticks())
             .map(|_| {
-                let (speed, place, duty) = self.tick();
-                (goal - if is_velocity { speed } else { place }, duty)
+                let (speed, position, duty) = self.tick();
+                (goal - if is_velocity { speed } else { position }, duty)
             })
             .unzip()
     }

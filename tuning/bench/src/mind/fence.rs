@@ -45,7 +45,7 @@ pub(super) struct Fence {
 }
 
 impl Fence {
-    /// A place was read.
+    /// A position was read.
     pub(super) fn see(&mut self, t: f64, counts: i32) {
         if let Some((before, was)) = self.last
             && t > before
@@ -60,7 +60,7 @@ impl Fence {
     }
 
     /// Where the motor was last seen, counts.
-    pub(super) fn place(&self) -> f64 {
+    pub(super) fn position(&self) -> f64 {
         self.last.map_or(0.0, |(_, counts)| f64::from(counts))
     }
 
@@ -108,19 +108,19 @@ impl Fence {
     pub(super) fn due(&self) -> (Option<i32>, Option<i32>) {
         let Some((t, counts)) = self.last else { return (None, None) };
         let room = self.room(t);
-        let place = f64::from(counts);
+        let position = f64::from(counts);
         let (lowest, highest) =
             self.travel.map_or((f64::from(i32::MIN), f64::from(i32::MAX)), |(l, h)| (l as f64, h as f64));
         let due = |fence: Option<i32>, wanted: f64, side: f64| {
             // The cast saturates.
             let wanted = wanted as i32;
             let Some(fence) = fence else { return Some(wanted) };
-            let distance = (f64::from(fence) - place) * side;
+            let distance = (f64::from(fence) - position) * side;
             let is_far = distance > FAR * room && self.heading * side > 0.0;
             (fence != wanted && (distance < MOVED_BELOW * room || is_far)).then_some(wanted)
         };
-        let low = due(self.low, (place - room).max(lowest), -1.0);
-        (low, due(self.high, (place + room).min(highest), 1.0))
+        let low = due(self.low, (position - room).max(lowest), -1.0);
+        (low, due(self.high, (position + room).min(highest), 1.0))
     }
 
     fn room(&self, t: f64) -> f64 {

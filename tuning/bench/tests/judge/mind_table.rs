@@ -114,10 +114,10 @@ fn a_fault_of_the_machine_leaves_the_loop_off_and_a_reversed_encoder_is_not_driv
     let line = &mut axis.carrier.line;
     let before = axis_of(&plant).carrier.line.unit().read_one(3);
     assert_eq!(line.unit().read_one(3), before | 1 << 14);
-    let place = line.unit().read_one(0);
+    let position = line.unit().read_one(0);
     line.idle(Duration::from_secs(3));
     assert_eq!(line.unit().duty(), 0.0);
-    assert!((line.unit().read_one(0) - place).abs() < 50, "it ran away");
+    assert!((line.unit().read_one(0) - position).abs() < 50, "it ran away");
 }
 
 #[test]
