@@ -180,8 +180,8 @@ impl ClosedLoopMonitor {
         let moved = stretch.to.counts - stretch.from.counts;
         let full = self.model.gain_counts_per_s;
         let margin = if stretch.stands { STANDING_MARGIN } else { MARGIN }.of(stretch, full);
-        let least = self.least_way(stretch, duties, 1.0);
-        let most = -self.least_way(stretch, duties, -1.0);
+        let least = self.least_distance(stretch, duties, 1.0);
+        let most = -self.least_distance(stretch, duties, -1.0);
         moved >= least - margin && moved <= most + margin
     }
 
@@ -202,10 +202,10 @@ impl ClosedLoopMonitor {
         DUTY_DOUBT + STEPS_UNSEEN * self.step_duty + SCATTERS * beside[beside.len() / 2]
     }
 
-    /// The least way that the motor can have gone in a direction; a way backwards is negative.
-    fn least_way(&self, stretch: &Stretch, duties: &Duties<'_>, direction: f64) -> f64 {
+    /// The least distance that the motor can have gone in a direction; one backwards is negative.
+    fn least_distance(&self, stretch: &Stretch, duties: &Duties<'_>, direction: f64) -> f64 {
         let mut speed = stretch.speed_before * direction;
-        let mut way = 0.0;
+        let mut distance = 0.0;
         let mut t = stretch.before_s;
         let longest = STEP_S.max((stretch.to.t - t) / STEPS);
         while t < stretch.to.t - 1e-9 {
@@ -214,12 +214,12 @@ impl ClosedLoopMonitor {
             let duty = if direction > 0.0 { range.0 } else { -range.1 };
             let next = self.least_speed(speed, duty, direction, step);
             if t + step > stretch.from.t {
-                way += 0.5 * (speed + next) * step.min(t + step - stretch.from.t);
+                distance += 0.5 * (speed + next) * step.min(t + step - stretch.from.t);
             }
             speed = next;
             t += step;
         }
-        way
+        distance
     }
 
     /// The lowest speed after a step, in the direction looked at.

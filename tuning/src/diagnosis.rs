@@ -30,7 +30,7 @@ const MIRROR_ERROR: (f64, f64) = (0.12, 0.6);
 /// Share of the current of a standing motor by which that of a turning one is short at the least; a battery sags by less.
 const SHORT: f64 = 0.3;
 /// A duty that drives; how much faster against it a motor must be than it was with it, as a factor and a share of the speed at full
-/// duty, and the way that it must have gone, counts.
+/// duty, and the distance that it must have gone, counts.
 const DRIVEN_DUTY: f64 = 0.03;
 const OUTRUN: f64 = 1.2;
 const LEAST_OUTRUN: f64 = 0.02;
@@ -146,16 +146,16 @@ fn outruns(moments: &[Moment], gain: f64, load_duty: f64, alarm_s: f64) -> bool 
     let Some(last) = before().next_back().filter(|last| pull(last) * last.duty.signum() > DRIVEN_DUTY) else {
         return false;
     };
-    let way = last.duty.signum();
-    let driven = || before().rev().take_while(|moment| pull(moment) * way > DRIVEN_DUTY);
-    let against = driven().map(|moment| -moment.speed * way).fold(0.0, f64::max);
-    let with = before().map(|moment| moment.speed * way).fold(0.0, f64::max);
+    let direction = last.duty.signum();
+    let driven = || before().rev().take_while(|moment| pull(moment) * direction > DRIVEN_DUTY);
+    let against = driven().map(|moment| -moment.speed * direction).fold(0.0, f64::max);
+    let with = before().map(|moment| moment.speed * direction).fold(0.0, f64::max);
     // Nor is one that is just being turned round.
-    let began = driven().last().map_or(0.0, |first| -first.speed * way);
+    let began = driven().last().map_or(0.0, |first| -first.speed * direction);
     let with = with.max(began);
-    let gone = driven().map(|moment| (moment.counts - last.counts) * way).fold(0.0, f64::max);
+    let gone = driven().map(|moment| (moment.counts - last.counts) * direction).fold(0.0, f64::max);
     gone > LEAST_OUTRUN_COUNTS
-        && -last.speed * way > 0.4 * against
+        && -last.speed * direction > 0.4 * against
         && against > OUTRUN * with + LEAST_OUTRUN * gain
 }
 

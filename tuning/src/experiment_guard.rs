@@ -19,10 +19,10 @@ use std::time::Duration;
 const ABSOLUTE_COUNTS: i64 = 4096;
 /// The stream time-out during a run, ms: the bridge is off this long after the host died.
 const RUN_STREAM_TIMEOUT_MS: u32 = 150;
-/// Time a duty takes to change its sign, as far as it counts for the way, s; and the longest that a motion is driven against.
+/// Time a duty takes to change its sign, as far as it counts for the stopping distance, s; and the longest that a motion is driven against.
 const TURNING_S: f64 = 0.03;
 const LONGEST_TURN_S: f64 = 2.0;
-/// How much longer than computed a way to rest may be.
+/// How much longer than computed a stopping distance may be.
 const STOPPING_DOUBT: f64 = 1.15;
 /// Time that a lost command costs before it is sent again, s.
 const RETRY_S: f64 = 0.010;
@@ -652,7 +652,7 @@ impl<'a> ExperimentGuard<'a> {
         }
     }
 
-    /// How much room there is on either side, as twice the shorter way to an end of the travel window, counts.
+    /// How much room there is on either side, as twice the shorter distance to an end of the travel window, counts.
     #[must_use]
     pub fn room_counts(&self) -> Option<f64> {
         let (low, high) = self.travel_counts()?;
@@ -679,15 +679,15 @@ impl<'a> ExperimentGuard<'a> {
         if self.points.len() == 1 && !(low..=high).contains(&point.counts) {
             return Err(Cause::OutsideTravel);
         }
-        self.check_way(point, self.recent_speed(2).unwrap_or(0.0))
+        self.check_stopping_distance(point, self.recent_speed(2).unwrap_or(0.0))
     }
 
-    fn check_way(&mut self, point: &Point, speed: f64) -> Result<(), Cause> {
+    fn check_stopping_distance(&mut self, point: &Point, speed: f64) -> Result<(), Cause> {
         let Some((low, high)) = self.travel_counts() else { return Ok(()) };
         let runs_on = match self.monitor.stopping_counts(speed.abs(), self.options.max_duty) {
             Some(counts) => STOPPING_DOUBT * counts * speed.signum() + speed * TURNING_S,
-            // From rest a motor needs no longer way back than it had.
-            None => 0.7 * self.way_since_drive(point) + speed * TURNING_S.max(self.monitor.stopping_s),
+            // From rest a motor needs no longer distance to stop than it had to start.
+            None => 0.7 * self.distance_since_drive(point) + speed * TURNING_S.max(self.monitor.stopping_s),
         };
         let rest = point.counts + speed * (self.options.poll_s + RETRY_S) + runs_on;
         if (rest > high && speed > 0.0) || (rest < low && speed < 0.0) {
@@ -708,7 +708,7 @@ impl<'a> ExperimentGuard<'a> {
         let (gain, _) = self.monitor.rough_model(0.0);
         let most = if gain > 0.0 { gain * self.monitor.duty_at(now_s).abs() } else { f64::INFINITY };
         let speed = speed + gained.min((most - speed.abs()).max(0.0)) * speed.signum();
-        self.check_way(&Point { counts: last.counts + speed * unseen_s, ..last }, speed)
+        self.check_stopping_distance(&Point { counts: last.counts + speed * unseen_s, ..last }, speed)
     }
 
     /// By how much a speed, that of the last two polls, grows in a second, and over which time that was seen, s. `None` where it does not.
@@ -724,7 +724,7 @@ impl<'a> ExperimentGuard<'a> {
     }
 
     /// Counts gone under the first duty from rest; 0 later.
-    fn way_since_drive(&self, point: &Point) -> f64 {
+    fn distance_since_drive(&self, point: &Point) -> f64 {
         let [.., Drive { input: Input::Duty(0.0), .. }, Drive { t: since, .. }] = self.drives[..] else {
             return 0.0;
         };

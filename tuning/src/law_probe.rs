@@ -161,15 +161,15 @@ fn scale_under(guard: &mut ExperimentGuard<'_>, duty: f64) -> Result<Option<f64>
     let here = guard.points.last().map_or(0.0, |p| p.counts);
     // Away from the upper limit, which would shorten the error.
     let room = f64::from(max) - (guard.origin_counts() as f64 + here);
-    let way = if room < 2.0 * ERROR_COUNTS { -1.0 } else { 1.0 };
-    let target = here + way * ERROR_COUNTS;
+    let direction = if room < 2.0 * ERROR_COUNTS { -1.0 } else { 1.0 };
+    let target = here + direction * ERROR_COUNTS;
     guard.position(target, QPPS as u32)?;
     let from_s = guard.now_s() + 0.012;
     guard.poll_for(0.012 + READ_S, true)?;
     guard.duty(0.0)?;
     let ratios = guard.points.iter().filter_map(|point| {
         let (t, read) = point.duty?;
-        let (error, read) = (way * (target - point.counts), way * read);
+        let (error, read) = (direction * (target - point.counts), direction * read);
         (t > from_s && read > 1e-4 && error > 0.0).then(|| p * error / (read * QPPS))
     });
     let mut ratios: Vec<f64> = ratios.collect();

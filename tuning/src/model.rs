@@ -254,7 +254,7 @@ mod tests {
     fn friction_stops_the_motor_where_the_equation_says_and_holds_it() {
         let mut motion = Motion { speed: 5_000.0, position: 0.0 };
         plant().step(&mut motion, 0.0, 1.0);
-        // v = -500 + 5500 exp(-t/tau) is zero at tau ln 11; the way is tau (5000 - 500 ln 11).
+        // v = -500 + 5500 exp(-t/tau) is zero at tau ln 11; the distance is tau (5000 - 500 ln 11).
         assert_eq!(motion.speed, 0.0);
         assert!((motion.position - 0.1 * (5_000.0 - 500.0 * 11.0_f64.ln())).abs() < 1e-9);
         plant().step(&mut motion, 0.049, 1.0);

@@ -47,7 +47,7 @@ const NEWS_S: f64 = 0.07;
 const TAU_SPREAD: (f64, f64) = (0.3, 1.6);
 /// Share of the speed at full duty that a load may sway with while the motor is off.
 const SWAYING: f64 = 0.08;
-/// From a poll to the command that it leads to, s; and the least share of a way to rest that the motor's own slowing takes.
+/// From a poll to the command that it leads to, s; and the least share of a stopping distance that the motor's own slowing takes.
 const COMMAND_S: f64 = 0.012;
 const LEAST_TURN: f64 = 0.25;
 /// Highest reading that counts as no current, A: the wire's resolution.
@@ -72,7 +72,7 @@ pub struct MotorMonitor {
     pub tau_bounds_s: Option<(f64, f64)>,
     /// How much more than usual the stamp of the last command may be off, s.
     pub(crate) doubt_s: f64,
-    /// Time constant that the ways of turning round so far speak of, s.
+    /// Time constant that the stopping distances so far speak of, s.
     turning_tau_s: Option<f64>,
     /// Duties given and when, oldest first; the first is older than the memory.
     duties: VecDeque<(f64, f64)>,
@@ -166,13 +166,13 @@ impl MotorMonitor {
         let (gain, rough_s) = self.rough_model(0.0);
         let tau_s = self.turning_tau_s.unwrap_or(rough_s);
         (self.tau_bounds_s.is_some() && gain * duty > 0.0)
-            .then(|| tau_s * self.way_per_tau(gain, speed, duty))
+            .then(|| tau_s * self.stopping_distance_per_tau(gain, speed, duty))
     }
 
-    /// A motor at a speed was driven the other way at a duty and ran on for so many counts from the poll before: later ways are
-    /// computed from that.
+    /// A motor at a speed was driven the other way at a duty and ran on for so many counts from the poll before: later stopping distances
+    /// are computed from that.
     pub(crate) fn turned(&mut self, speed: f64, duty: f64, counts: f64) {
-        let per_tau = self.way_per_tau(self.rough_model(0.0).0, speed, duty);
+        let per_tau = self.stopping_distance_per_tau(self.rough_model(0.0).0, speed, duty);
         if per_tau <= 0.0 || speed <= 0.0 {
             return;
         }
@@ -182,9 +182,9 @@ impl MotorMonitor {
         self.turning_tau_s = Some(self.turning_tau_s.map_or(found_s, |known| 0.5 * (known + found_s)));
     }
 
-    /// The way to rest over the time constant. The current limit holds the motor back at one rate as long as it acts; below it, duty
+    /// The stopping distance over the time constant. The current limit holds the motor back at one rate as long as it acts; below it, duty
     /// and back-EMF do.
-    fn way_per_tau(&self, gain: f64, speed: f64, duty: f64) -> f64 {
+    fn stopping_distance_per_tau(&self, gain: f64, speed: f64, duty: f64) -> f64 {
         let pull = gain * duty;
         let most = gain * self.drive_limit.unwrap_or(f64::INFINITY);
         let free = speed.min((most - pull).max(0.0));
@@ -308,10 +308,10 @@ impl MotorMonitor {
         }
         let duty = self.duty_at(to.t);
         // No duty has no direction, whatever the sign of its nought.
-        let way = if duty == 0.0 { 0.0 } else { duty.signum() };
-        if self.keeps_its_speed(stretch, way) {
+        let direction = if duty == 0.0 { 0.0 } else { duty.signum() };
+        if self.keeps_its_speed(stretch, direction) {
             let least = KEPT_SPEED * speed_before.abs() * span - MARGIN_COUNTS;
-            if least > 0.0 && moved * way < least {
+            if least > 0.0 && moved * direction < least {
                 return Err(Cause::Stalled);
             }
         }
@@ -319,8 +319,8 @@ impl MotorMonitor {
         if self.gain <= 0.0 {
             return Ok(());
         }
-        let least = self.least_way(stretch, 1.0, tau);
-        let most = -self.least_way(stretch, -1.0, tau);
+        let least = self.least_distance(stretch, 1.0, tau);
+        let most = -self.least_distance(stretch, -1.0, tau);
         if moved < least - margin || moved > most + margin {
             return Err(Cause::Stalled);
         }
@@ -341,18 +341,18 @@ impl MotorMonitor {
     }
 
     /// Whether nothing slows the motor down: its duty has stayed, and it was on its way there.
-    fn keeps_its_speed(&self, stretch: &Stretch, way: f64) -> bool {
+    fn keeps_its_speed(&self, stretch: &Stretch, direction: f64) -> bool {
         let settled_s = self.tau_bounds_s.map_or(0.0, |tau| 3.0 * tau.1);
         let steady = stretch.from.t - SPEED_S > self.since_s + 0.11 + settled_s;
         let rising = self.tau_bounds_s.is_none() && stretch.from.t - SPEED_S > self.since_s + 0.02;
-        !self.in_loop && (steady || rising) && stretch.speed_before * way > 0.0
+        !self.in_loop && (steady || rising) && stretch.speed_before * direction > 0.0
     }
 
-    /// The least way that the motor can have gone in a direction: with the lowest duty, the most friction, and the time constant
-    /// that suits it. A way backwards is negative.
-    fn least_way(&self, stretch: &Stretch, direction: f64, tau: (f64, f64)) -> f64 {
+    /// The least distance that the motor can have gone in a direction: with the lowest duty, the most friction, and the time constant
+    /// that suits it. One backwards is negative.
+    fn least_distance(&self, stretch: &Stretch, direction: f64, tau: (f64, f64)) -> f64 {
         let mut speed = stretch.speed_before * direction;
-        let mut way = 0.0;
+        let mut distance = 0.0;
         let mut t = stretch.from.t - 0.5 * SPEED_S;
         // The speed before was that of the middle of its own time.
         while t < stretch.to.t {
@@ -361,12 +361,12 @@ impl MotorMonitor {
             let duty = if direction > 0.0 { range.0 - self.load_duty } else { self.load_duty - range.1 };
             let next = self.least_speed(speed, duty, step, tau);
             if t + step > stretch.from.t {
-                way += 0.5 * (speed + next) * step.min(t + step - stretch.from.t);
+                distance += 0.5 * (speed + next) * step.min(t + step - stretch.from.t);
             }
             speed = next;
             t += step;
         }
-        way
+        distance
     }
 
     /// The lowest speed after a step.

@@ -220,7 +220,7 @@ pub fn position_test(plant: &PlantModel, law: &LoopLaw, lag: Lag, gains: &Gains,
 pub(crate) struct Unrest {
     /// Standard deviation of the duty after the step, and after the load.
     pub(crate) duty: (f64, f64),
-    /// Way from the lowest to the highest position, counts.
+    /// Distance from the lowest to the highest position, counts.
     pub(crate) range_counts: f64,
 }
 

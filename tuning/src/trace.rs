@@ -52,7 +52,7 @@ pub struct Trace {
     epoch_s: Option<f64>,
     last_raw: Option<i64>,
     first_raw: i64,
-    way: i64,
+    travelled: i64,
 }
 
 /// A stretch of a run in which a loop held the motor.
@@ -169,8 +169,8 @@ impl Trace {
         } else if step < -(turn / 2) {
             step += turn;
         }
-        self.way += step;
-        self.way
+        self.travelled += step;
+        self.travelled
     }
 
     /// Speeds between polls that lie at least `over_s` apart: (time in the middle, counts/s).

@@ -39,7 +39,7 @@ const FINE_COUNTS: f64 = 8.0;
 const MOST_POSITION_RIPPLE: f64 = 0.010;
 /// Share of a move that a loop which works makes at the least, and of a speed.
 const LEAST_MOVE: f64 = 0.2;
-/// Share of the way to the farther end of the travel that a move goes at the most.
+/// Share of the distance to the farther end of the travel that a move goes at the most.
 const MOST_OF_ROOM: f64 = 0.6;
 /// How long the last move is watched when it should be over, s.
 const WATCH_S: f64 = 0.6;
@@ -352,7 +352,7 @@ pub(crate) fn try_velocity_inside(
     guard.duty(0.0)?;
     rest(guard, task.plant.tau_s, task.qpps)?;
     let from_s = guard.now_s();
-    // Half a way out first, so that the rest oscillates about the middle.
+    // Half the distance out first, so that the rest oscillates about the middle.
     for (n, share) in [0.5, 1.0, 1.0, 1.0, 1.0, 0.5].into_iter().enumerate() {
         let side = if n % 2 == 0 { 1.0 } else { -1.0 };
         guard.speed(side * speed)?;

@@ -203,7 +203,7 @@ pub(crate) fn velocity_outcome(
     }
 }
 
-/// The position test: a step of a third of a time constant's way, then the load.
+/// The position test: a step of a third of a time constant's travel, then the load.
 #[must_use]
 pub fn position_trial(specimen: &Specimen, truth: &Truth, registers: &Registers) -> Outcome {
     let mut machine = Machine::new(specimen, registers);

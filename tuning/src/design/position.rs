@@ -9,12 +9,12 @@ use crate::ticks::position_test_and_end;
 const OVERSHOOT_CAP: f64 = 0.06;
 /// Deviation of the duty beyond which a move is not over yet when it should be; the cost jumps there too.
 const LATE_DUTY_CAP: f64 = 0.08;
-/// Way in the last third of a move or after a load beyond which it is not over yet, over the step and in counts at the least: what
+/// Distance gone in the last third of a move or after a load beyond which it is not over yet, over the step and in counts at the least: what
 /// creeps for so long sticks and slips in the backlash of a real machine. How dear it is, and the most it can cost.
-const LATE_WAY_CAP: f64 = 0.01;
+const LATE_DISTANCE_CAP: f64 = 0.01;
 const LATE_COUNTS_CAP: f64 = 2.0;
-const LATE_WAY_COST: f64 = 0.2;
-const LATE_WAY_MOST: f64 = 0.8;
+const LATE_DISTANCE_COST: f64 = 0.2;
+const LATE_DISTANCE_MOST: f64 = 0.8;
 /// Shares of the highest gain tried.
 const SHARES: [f64; 6] = [1.0, 0.85, 0.7, 0.5, 0.35, 0.2];
 /// Derivative times tried, as shares of the time constant of the motor.
@@ -155,8 +155,8 @@ fn candidate(task: &Task, gains: Gains) -> Candidate {
     let excess = (score.overshoot - OVERSHOOT_CAP).max(0.0)
         + 0.5 * (end.duty.0.max(end.duty.1) - LATE_DUTY_CAP).max(0.0);
     let step = position_step(task.plant.gain_counts_per_s, task.plant.tau_s);
-    let allowed = (LATE_WAY_CAP * step).max(LATE_COUNTS_CAP);
-    let creeping = (LATE_WAY_COST * (end.range_counts / allowed - 1.0)).clamp(0.0, LATE_WAY_MOST);
+    let allowed = (LATE_DISTANCE_CAP * step).max(LATE_COUNTS_CAP);
+    let creeping = (LATE_DISTANCE_COST * (end.range_counts / allowed - 1.0)).clamp(0.0, LATE_DISTANCE_MOST);
     let cost = score.cost(POSITION_OVERSHOOT) * (1.0 + 50.0 * excess) * (1.0 + creeping);
     Candidate { gains, score, cost }
 }

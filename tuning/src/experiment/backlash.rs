@@ -1,6 +1,6 @@
 //! Backlash of the mechanics, read off reversals: a push the other way loses the backlash that a second push the same way does not.
 //!
-//! Only an encoder behind the backlash sees any of it; one on the motor's own shaft counts the way through it as any other. A load that
+//! Only an encoder behind the backlash sees any of it; one on the motor's own shaft counts the travel through it as any other. A load that
 //! coasts through the backlash while the motor brakes hides a part of it, so what is found is a lower bound.
 
 use super::Probe;
@@ -25,7 +25,7 @@ const LONGEST_REST_S: f64 = 1.0;
 /// Motors slower than this are still moving when they are looked at, s.
 const SLOWEST_S: f64 = 0.3;
 /// A push moves the axis by this at the least, counts.
-const LEAST_WAY_COUNTS: f64 = 2.0;
+const LEAST_DISTANCE_COUNTS: f64 = 2.0;
 /// Least backlash that is reported, counts, and how sure it must be, in standard errors.
 const LEAST_COUNTS: f64 = 1.5;
 const SURE: f64 = 3.0;
@@ -51,34 +51,36 @@ pub fn measure_backlash(
     model: &PlantModel,
 ) -> Result<Option<Backlash>, Cause> {
     let room = guard.room_counts().map_or(f64::INFINITY, |room| ROOM_SHARE * room);
-    let way = (PUSH_S * model.gain_counts_per_s).max(PUSH_COUNTS).min(room);
-    if way < 6.0 || model.tau_s > SLOWEST_S {
+    let distance = (PUSH_S * model.gain_counts_per_s).max(PUSH_COUNTS).min(room);
+    if distance < 6.0 || model.tau_s > SLOWEST_S {
         return Ok(None);
     }
     // The motor was started upwards, against the load or with it.
     let start = (probe.start_duty - model.load_duty).max(model.coulomb_duty);
     let most = guard.options.max_duty - model.load_duty.abs();
     let duty = (start + (ABOVE.0 * start).max(ABOVE.1)).min(most);
-    let push_s = push_time_s(model, duty, way);
+    let push_s = push_time_s(model, duty, distance);
     let rest_s = (REST.0 * model.tau_s + REST.1).min(LONGEST_REST_S);
     // Backlash looks like a stall for a while. The duty is low, and a motor that does not move ends the run here.
     let kept_start_duty = std::mem::take(&mut guard.monitor.start_duty);
-    let ways = push(guard, duty, model.load_duty, push_s, rest_s);
+    let distances = push(guard, duty, model.load_duty, push_s, rest_s);
     guard.monitor.start_duty = kept_start_duty;
-    let ways = ways?;
-    if did_not_move(&ways) {
-        let backwards = ways.iter().rev().take(2).all(|(_, way)| *way <= -LEAST_WAY_COUNTS);
+    let distances = distances?;
+    if did_not_move(&distances) {
+        let backwards =
+            distances.iter().rev().take(2).all(|(_, distance)| *distance <= -LEAST_DISTANCE_COUNTS);
         return Err(why_unmoved(&guard.monitor, backwards));
     }
-    Ok(Some(backlash_of(&ways)))
+    Ok(Some(backlash_of(&distances)))
 }
 
 /// Whether two pushes in a row moved nothing: one may end in the backlash.
-fn did_not_move(ways: &[(f64, f64)]) -> bool {
-    ways.windows(2).any(|pair| pair.iter().all(|(_, way)| *way < LEAST_WAY_COUNTS))
+fn did_not_move(distances: &[(f64, f64)]) -> bool {
+    distances.windows(2).any(|pair| pair.iter().all(|(_, distance)| *distance < LEAST_DISTANCE_COUNTS))
 }
 
-/// Pushes with a duty to either side of the one that balances the load. For each push: 1 for another one the same way, -1 for one after a reversal, 0 for the first; and its way, counts.
+/// Pushes with a duty to either side of the one that balances the load. For each push: 1 for another one in the same
+/// direction, -1 for one after a reversal, 0 for the first; and its distance, counts.
 fn push(
     guard: &mut ExperimentGuard<'_>,
     duty: f64,
@@ -86,7 +88,7 @@ fn push(
     push_s: f64,
     rest_s: f64,
 ) -> Result<Vec<(f64, f64)>, Cause> {
-    let mut ways = Vec::new();
+    let mut distances = Vec::new();
     let mut before = 0.0;
     for direction in PUSHES {
         guard.poll(false)?;
@@ -101,16 +103,16 @@ fn push(
         guard.duty(0.0)?;
         guard.poll_for(rest_s, false)?;
         // A computer that was late pushed for longer.
-        ways.push((
+        distances.push((
             before * direction,
             (position(guard) - from) * direction * (push_s / held_s.max(1e-3)).min(1.0),
         ));
         before = direction;
-        if did_not_move(&ways) {
+        if did_not_move(&distances) {
             break;
         }
     }
-    Ok(ways)
+    Ok(distances)
 }
 
 fn position(guard: &ExperimentGuard<'_>) -> f64 {
@@ -118,23 +120,24 @@ fn position(guard: &ExperimentGuard<'_>) -> f64 {
     last.sum::<f64>() / guard.points.len().clamp(1, 3) as f64
 }
 
-/// Time for a way from rest at a duty.
-fn push_time_s(model: &PlantModel, duty: f64, way: f64) -> f64 {
+/// Time for a distance from rest at a duty.
+fn push_time_s(model: &PlantModel, duty: f64, distance: f64) -> f64 {
     let speed = model.gain_counts_per_s * (duty - model.coulomb_duty).max(0.02);
     let tau = model.tau_s;
     let mut t = 0.02;
-    while t < LONGEST_PUSH_S && speed * (t - tau * (1.0 - (-t / tau).exp())) < way {
+    while t < LONGEST_PUSH_S && speed * (t - tau * (1.0 - (-t / tau).exp())) < distance {
         t += 0.005;
     }
     t
 }
 
 /// What the pushes after a reversal are short of the others.
-fn backlash_of(ways: &[(f64, f64)]) -> Backlash {
+fn backlash_of(distances: &[(f64, f64)]) -> Backlash {
     let of = |turned: bool| -> Vec<f64> {
-        ways.iter()
+        distances
+            .iter()
             .filter(|(turn, _)| if turned { *turn < 0.0 } else { *turn > 0.0 })
-            .map(|(_, way)| *way)
+            .map(|(_, distance)| *distance)
             .collect()
     };
     let (same, turned) = (of(false), of(true));
@@ -166,9 +169,10 @@ mod tests {
         let found = backlash_of(&pushes);
         assert!((found.counts - 8.33).abs() < 0.1, "{found:?}");
         assert_eq!(found.reversals, 3);
-        let noisy = pushes.map(|(turn, way)| (turn, if turn > 0.0 { way - 6.0 * turn } else { way }));
+        let noisy =
+            pushes.map(|(turn, distance)| (turn, if turn > 0.0 { distance - 6.0 * turn } else { distance }));
         assert!(backlash_of(&noisy).counts < 4.0);
-        let rigid = pushes.map(|(turn, way)| (turn, if turn < 0.0 { 31.0 } else { way }));
+        let rigid = pushes.map(|(turn, distance)| (turn, if turn < 0.0 { 31.0 } else { distance }));
         assert_eq!(backlash_of(&rigid).counts, 0.0);
     }
 }

@@ -12,7 +12,7 @@ const SWITCHES: usize = 8;
 /// A slow axis shows itself in fewer, when they took this long, s.
 const FEW_SWITCHES: usize = 2;
 const ENOUGH_S: f64 = 1.5;
-/// Where the relay switches, as shares of the way between its two speeds.
+/// Where the relay switches, as shares of the difference between its two speeds.
 const SWITCH_AT: (f64, f64) = (0.28, 0.72);
 /// Longest time for one settling and for the relay, s.
 const LONGEST_SETTLE_S: f64 = 20.0;
@@ -34,7 +34,7 @@ const EARLY: (f64, f64) = (2.2, 0.002);
 /// What the free run read off.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FreeRun {
-    /// Speed at the highest allowed duty, each way, counts/s, both positive.
+    /// Speed at the highest allowed duty, in each direction, counts/s, both positive.
     pub full_speeds: (f64, f64),
     /// Half of the 95 % interval of their mean, relative.
     pub interval: f64,

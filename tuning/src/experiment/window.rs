@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 const SWITCHES: usize = 10;
 /// Duties above the starting one.
 const DUTIES: [f64; 2] = [0.22, 0.50];
-/// Where the axis is to turn round, as a share of the window: as long as nothing is known of its way, and later.
+/// Where the axis is to turn round, as a share of the window: as long as nothing is known of its stopping distance, and later.
 const FIRST_TURN_AT: f64 = 0.20;
 const TURN_AT: f64 = 0.25;
 /// How often a run that the guard ended is begun anew, and what it then uses of the width, over what it used before.
@@ -17,7 +17,7 @@ const NARROWER: usize = 1;
 const NARROWER_SHARE: f64 = 0.8;
 /// How near to the end it may have come for that, as a share of the width from the middle.
 const NEAREST_SHARE: f64 = 0.45;
-/// Time until a new duty acts, s, and the share of the way from rest that the first stop may take.
+/// Time until a new duty acts, s, and the share of the distance from rest that the first stop may take.
 const ACTS_S: f64 = 0.03;
 const FIRST_SHARE: f64 = 0.7;
 /// Duty above the starting one for going somewhere, and how far its end is looked ahead for, s.
@@ -25,7 +25,7 @@ const GOING_DUTY: f64 = 0.05;
 const GOING_AHEAD_S: f64 = 0.05;
 /// Longest time, s.
 const LONGEST_S: f64 = 25.0;
-/// A wide window is not used to its ends by a slow axis: longest way in one direction once the speed is steady, s, and what it
+/// A wide window is not used to its ends by a slow axis: longest travel in one direction once the speed is steady, s, and what it
 /// changes by then at the most.
 const LONGEST_HALF_CYCLE_S: f64 = 0.7;
 const STEADY: f64 = 0.08;
@@ -39,7 +39,7 @@ pub struct WindowRun {
     pub switches: usize,
     /// Highest speed seen, counts/s.
     pub top_speed: f64,
-    /// Farthest way from the middle, counts.
+    /// Farthest distance from the middle, counts.
     pub reach_counts: f64,
 }
 
@@ -54,7 +54,7 @@ pub fn run_window(guard: &mut ExperimentGuard<'_>, probe: &Probe, width: f64) ->
     for _ in 0..NARROWER {
         match oscillate(guard, probe, (middle, width), &mut turn) {
             Err(Cause::TravelLimit) if (guard.turned_at_counts() - middle).abs() < NEAREST_SHARE * width => {
-                // The guard brought it to rest before the end. What it learned of the way stays, and it keeps farther away.
+                // The guard brought it to rest before the end. What it learned of the stopping distance stays, and it keeps farther away.
                 guard.come_to_rest()?;
                 go_to(guard, probe, middle)?;
                 turn.share *= NARROWER_SHARE;
@@ -107,34 +107,34 @@ struct Turn {
     acts_s: f64,
     /// What is used of the width, over the usual.
     share: f64,
-    /// Speed of the last turn and the way it took, counts/s and counts.
+    /// Speed of the last turn and the distance it took, counts/s and counts.
     last: Option<(f64, f64)>,
 }
 
 impl Turn {
-    /// The way from a speed, where the axis has come so far since it last stood.
-    fn way(&self, speed: f64, since_rest: f64) -> f64 {
+    /// The stopping distance from a speed, where the axis has come so far since it last stood.
+    fn stopping_distance(&self, speed: f64, since_rest: f64) -> f64 {
         let speed = speed.max(0.0);
         match self.last {
-            // Between a way as the speed (a light motor) and as its square (a heavy one), whichever is longer.
-            Some((before, way)) => {
+            // Between a distance as the speed (a light motor) and as its square (a heavy one), whichever is longer.
+            Some((before, distance)) => {
                 let ratio = speed / before;
-                way * ratio * ratio.max(1.0)
+                distance * ratio * ratio.max(1.0)
             }
             // It needs no longer to stop than it needed to start.
             None => speed * self.acts_s + FIRST_SHARE * since_rest.max(0.0),
         }
     }
 
-    fn learn(&mut self, speed: f64, way: f64) {
-        if speed > 0.0 && way > 0.0 {
-            let expected = self.last.map_or(way, |(before, way)| way * speed / before);
-            self.last = Some((speed, way.max(0.5 * (way + expected))));
+    fn learn(&mut self, speed: f64, distance: f64) {
+        if speed > 0.0 && distance > 0.0 {
+            let expected = self.last.map_or(distance, |(before, distance)| distance * speed / before);
+            self.last = Some((speed, distance.max(0.5 * (distance + expected))));
         }
     }
 }
 
-/// Oscillates about the middle at one duty. The way it takes to turn round is learned from each half cycle.
+/// Oscillates about the middle at one duty. The distance it takes to turn round is learned from each half cycle.
 fn oscillate_at(
     guard: &mut ExperimentGuard<'_>,
     duty: f64,
@@ -164,7 +164,7 @@ fn oscillate_at(
             return Err(Cause::TravelLimit);
         }
         let turned_at = switched_at - direction * farthest;
-        let runs_on = turn.way(speed * direction, (point.counts - turned_at) * direction);
+        let runs_on = turn.stopping_distance(speed * direction, (point.counts - turned_at) * direction);
         let is_steady =
             guard.recent_speed(12).is_some_and(|before| (speed - before).abs() < STEADY * run.top_speed);
         let is_long = point.t - since_s > LONGEST_HALF_CYCLE_S && is_steady;
@@ -189,12 +189,12 @@ fn turn_at(turn: &Turn) -> f64 {
     turn.share * if turn.last.is_some() { TURN_AT } else { FIRST_TURN_AT }
 }
 
-fn learn(guard: &mut ExperimentGuard<'_>, turn: &mut Turn, speed: f64, way: f64, duty: f64) {
-    turn.learn(speed, way);
-    if speed > 0.0 && way > 0.0 {
-        let seconds = (way / speed).clamp(0.02, 0.6);
+fn learn(guard: &mut ExperimentGuard<'_>, turn: &mut Turn, speed: f64, distance: f64, duty: f64) {
+    turn.learn(speed, distance);
+    if speed > 0.0 && distance > 0.0 {
+        let seconds = (distance / speed).clamp(0.02, 0.6);
         guard.monitor.stopping_s = seconds;
         guard.monitor.tau_bounds_s = Some((0.1 * seconds, 10.0 * seconds));
-        guard.monitor.turned(speed, duty, way);
+        guard.monitor.turned(speed, duty, distance);
     }
 }

@@ -179,7 +179,7 @@ impl<'a> Machine<'a> {
         velocity_outcome((&after_step, &after_load), &duties, self.tick_s, high - low)
     }
 
-    /// A step of a third of a time constant's way, then the load.
+    /// A step of a third of a time constant's travel, then the load.
     fn position(mut self) -> Outcome {
         let step = position_step(self.bed.truth.gain_counts_per_s, self.bed.truth.tau_s);
         self.tick();

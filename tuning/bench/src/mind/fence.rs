@@ -40,7 +40,7 @@ pub(super) struct Fence {
     /// When the first clear drive was seen to begin, s.
     began_s: Option<f64>,
     is_clear: bool,
-    /// The way that was commanded last.
+    /// The direction that was commanded last.
     heading: f64,
 }
 
@@ -82,12 +82,12 @@ impl Fence {
         self.told = (IN_PROPORTION * speed.abs()).min(self.top);
     }
 
-    /// A loop is about to be told a way to go.
-    pub(super) fn head(&mut self, way: f64) {
+    /// A loop is about to be told to go in a direction: the sign says which.
+    pub(super) fn head(&mut self, direction: f64) {
         self.is_clear = true;
         self.told = self.top;
-        if way != 0.0 {
-            self.heading = way.signum();
+        if direction != 0.0 {
+            self.heading = direction.signum();
         }
     }
 

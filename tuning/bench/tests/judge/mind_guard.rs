@@ -127,8 +127,8 @@ fn a_host_that_dies_at_any_moment_leaves_a_motor_that_stands_soon_by_the_fence()
         line.idle(Duration::from_secs(2));
         let position = line.unit().read_one(0);
         line.idle(Duration::from_secs(2));
-        let way = line.unit().read_one(0) - position;
-        assert!(way.abs() < 30, "{nth}/12 of the run: it went on by {way} counts");
+        let travelled = line.unit().read_one(0) - position;
+        assert!(travelled.abs() < 30, "{nth}/12 of the run: it went on by {travelled} counts");
         assert!(line.unit().duty().abs() < 0.1, "{nth}/12 of the run: {}", line.unit().duty());
     }
 }
