@@ -263,7 +263,7 @@ impl Cause {
             }
             Self::LoopOff => {
                 "The controller's loop was left switched off (DISABLEPID in FUNCTION, in RAM), since with this it could drive the \
-                 motor away. When it is mended, arm or drive again: that switches the loop on where the motor stands."
+                 motor away. When the fault is remedied, arm or drive again: that switches the loop on where the motor stands."
             }
             Self::OtherLoop => {
                 "NEWVELMODE, FASTPID, PULSEFB or DISABLEPID is set, which makes another loop of these gains, or none. Clear the bit: \
