@@ -13,7 +13,7 @@ pub enum Cause {
     EncoderDead,
     /// No current flows, nothing moves.
     MotorOpen,
-    /// Nothing moves, and the controller tells no current.
+    /// Nothing moves, and the controller reports no current.
     NothingCounted,
     /// Current as of a motor that stands, nothing moves.
     ShaftLocked,
@@ -81,7 +81,7 @@ pub enum Cause {
     LimitInput,
     /// The loop of a Motion Mind was left switched off at the end of a run that found something wrong with the machine.
     LoopOff,
-    /// Nothing moves, and the current cannot be told from its own noise.
+    /// Nothing moves, and the current cannot be distinguished from its own noise.
     CurrentUnclear,
     /// What was seen says nothing about the machine, since the answers came too late.
     AnsweredLate {
@@ -138,7 +138,7 @@ impl Cause {
         )
     }
 
-    /// Whether it is told from others by the motor's current.
+    /// Whether it is distinguished from others by the motor's current.
     #[must_use]
     pub(crate) fn is_by_current(self) -> bool {
         matches!(
@@ -174,7 +174,7 @@ impl Cause {
                  the shaft and the encoder too."
             }
             Self::NothingCounted => {
-                "Nothing was counted while the motor was driven, and the controller tells no current that would say why. Check the \
+                "Nothing was counted while the motor was driven, and the controller reports no current that would say why. Check the \
                  encoder, the motor leads and whether the shaft is free."
             }
             Self::ShaftLocked => {

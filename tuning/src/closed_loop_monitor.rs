@@ -80,14 +80,14 @@ pub(crate) struct ClosedLoopMonitor {
     start_duty: f64,
     /// Duty that one count more in a tick makes.
     step_duty: f64,
-    /// From when on its duty is known, nought or that of the loop, and when it was first told anything, s.
+    /// From when on its duty is known, nought or that of the loop, and when it was first commanded anything, s.
     since_s: f64,
-    told_s: f64,
-    /// When it was told something new, from the first try on to the acknowledged one, oldest first, s.
+    commanded_s: f64,
+    /// When it was given a new setpoint, from the first try on to the acknowledged one, oldest first, s.
     news: VecDeque<(f64, f64)>,
 }
 
-/// What a motor had before a loop was told something.
+/// What a motor had before a loop was given a setpoint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Before {
     /// The loop.
@@ -109,24 +109,24 @@ struct Stretch {
 }
 
 impl ClosedLoopMonitor {
-    /// Nothing has been told yet.
+    /// No setpoint has been given yet.
     pub(crate) fn new(model: PlantModel, start_duty: f64) -> Self {
         Self {
             model,
             start_duty,
             step_duty: 0.0,
             since_s: f64::INFINITY,
-            told_s: f64::INFINITY,
+            commanded_s: f64::INFINITY,
             news: VecDeque::new(),
         }
     }
 
-    /// The loop is given the motor, or is told something new, at some time between two: a lost reply leaves open which try was heard.
+    /// The loop is given the motor, or a new setpoint, at some time between two: a lost reply leaves open which try was heard.
     /// `before` is how it had the motor until then.
-    pub(crate) fn tell(&mut self, from_s: f64, to_s: f64, before: Before) {
+    pub(crate) fn command(&mut self, from_s: f64, to_s: f64, before: Before) {
         if before != Before::ClosedLoop {
             self.since_s = if let Before::Off(since_s) = before { since_s } else { to_s };
-            self.told_s = from_s - NEWS_S.0;
+            self.commanded_s = from_s - NEWS_S.0;
             self.news.clear();
         }
         self.news.push_back((from_s - NEWS_S.0, to_s + NEWS_S.1));
@@ -188,7 +188,7 @@ impl ClosedLoopMonitor {
     /// How far the duty may be beside the readings: they scatter about the mean of their neighbours.
     fn doubt(&self, readings: &VecDeque<(f64, f64)>) -> f64 {
         let is_quiet = |from: f64, to: f64| {
-            from >= self.told_s && !self.news.iter().any(|news| news.1 > from && news.0 < to)
+            from >= self.commanded_s && !self.news.iter().any(|news| news.1 > from && news.0 < to)
         };
         let triples = (2..readings.len()).map(|n| (readings[n - 2], readings[n - 1], readings[n]));
         let mut beside: Vec<f64> = triples
@@ -263,16 +263,16 @@ struct Duties<'a> {
 impl Duties<'_> {
     /// Lowest and highest duty that may have been in force at a time.
     fn range(&self, t: f64) -> (f64, f64) {
-        if t >= self.monitor.since_s && t < self.monitor.told_s {
+        if t >= self.monitor.since_s && t < self.monitor.commanded_s {
             return (0.0, 0.0);
         }
         let next = self.readings.partition_point(|reading| reading.0 <= t);
         let before =
             next.checked_sub(1).and_then(|n| self.readings.get(n)).filter(|a| a.0 >= self.monitor.since_s);
-        let from_rest = (self.monitor.told_s, 0.0);
+        let from_rest = (self.monitor.commanded_s, 0.0);
         let a = match before {
             Some(reading) => reading,
-            None if self.monitor.since_s < self.monitor.told_s => &from_rest,
+            None if self.monitor.since_s < self.monitor.commanded_s => &from_rest,
             None => return (-1.0, 1.0),
         };
         let b = self.readings.get(next);

@@ -46,12 +46,12 @@ const AMPSLIMIT_STEP: u32 = 2;
 /// Silence after which the link counts as lost, s, and so many polls in a row: on a slow line a few lost replies take as long.
 const LINK_LOST_S: f64 = 0.15;
 const LINK_LOST_POLLS: u32 = 5;
-/// Readings of the current that are looked at before a fault is told by it, and how far above the highest one at rest they must be:
+/// Readings of the current that are looked at before a fault is named by it, and how far above the highest one at rest they must be:
 /// noise that reached 1 among the dozen readings at rest does not have its middle at 3.
 const DRIVEN_READINGS: usize = 6;
 const ABOVE_REST: f64 = 3.0;
 
-/// What the guard is told.
+/// What the guard has to keep to.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GuardOptions {
     /// Which of the two motors, 0 or 1.
@@ -66,7 +66,7 @@ pub struct GuardOptions {
     pub time_limit_s: f64,
     /// Volts above the controller's lower limit at which the run ends.
     pub volts_margin: f64,
-    /// Highest current, A. The controller is told, and the run ends when it is exceeded nevertheless.
+    /// Highest current, A. The controller is set to it, and the run ends when it is exceeded nevertheless.
     pub max_amps: Option<f64>,
     /// Whether inductance and resistance, where both are set, may be cleared for the run. They are put back after it.
     #[serde(default)]
@@ -110,7 +110,7 @@ pub struct Point {
     pub limited: bool,
 }
 
-/// What the axis was told.
+/// What the axis was commanded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Input {
     /// Duty, -1 to 1.
@@ -133,7 +133,7 @@ pub struct Drive {
 /// The guard around an experiment on an axis.
 pub struct ExperimentGuard<'a> {
     axis: &'a mut dyn Axis,
-    /// What it was told.
+    /// What it has to keep to.
     pub options: GuardOptions,
     /// What the controller held at the start.
     pub setup: Setup,
@@ -152,8 +152,8 @@ pub struct ExperimentGuard<'a> {
     next_poll: Duration,
     silent_since_s: Option<f64>,
     silent_polls: u32,
-    /// Whether the controller was found to tell no duty, current or voltage.
-    untold: [bool; 3],
+    /// Whether the controller was found to report no duty, current or voltage.
+    unreported: [bool; 3],
     turn: u8,
     /// Where the guard last had driven a motor back, counts.
     turned_at_counts: f64,
@@ -189,7 +189,7 @@ impl<'a> ExperimentGuard<'a> {
             next_poll: now,
             silent_since_s: None,
             silent_polls: 0,
-            untold: [false; 3],
+            unreported: [false; 3],
             turn: 0,
             turned_at_counts: 0.0,
             beyond: 0,
@@ -259,7 +259,7 @@ impl<'a> ExperimentGuard<'a> {
         self.pace.pause();
     }
 
-    /// A Motion Mind that is told another kind of command, or has had no duty, first has all its registers written, with its motor off.
+    /// A Motion Mind that is given another kind of command, or has had no duty, first has all its registers written, with its motor off.
     fn pause_for(&mut self, input: Input) {
         let kind = |input: &Input| std::mem::discriminant(input);
         let is_another = self
@@ -272,7 +272,7 @@ impl<'a> ExperimentGuard<'a> {
     }
 
     /// What a run is refused for. A cause that names the machine stands only if all answers were on time, since the bounds of the guard
-    /// and the model come from the whole run; and one that was told by the current only if that was clear of its noise.
+    /// and the model come from the whole run; and one that was named by the current only if that was clear of its noise.
     pub(crate) fn concluded(&self, cause: Cause) -> Cause {
         if !self.options.weighs_evidence {
             return cause;
@@ -363,7 +363,7 @@ impl<'a> ExperimentGuard<'a> {
         Ok(())
     }
 
-    /// Up to four tries. A controller that goes on telling its counts has not lost the link: it does not take this command.
+    /// Up to four tries. A controller that goes on reporting its counts has not lost the link: it does not take this command.
     fn acknowledged<T>(
         &mut self,
         mut call: impl FnMut(&mut dyn Axis) -> Result<T, AxisError>,
@@ -460,12 +460,12 @@ impl<'a> ExperimentGuard<'a> {
         };
         (self.silent_since_s, self.silent_polls) = (None, 0);
         let point = self.point_of(&sample);
-        let untold = [
+        let unreported = [
             want.duty && sample.duty_raw.is_none(),
             want.current && sample.current_raw.is_none(),
             want.volts && sample.volts_raw.is_none(),
         ];
-        for (known, found) in self.untold.iter_mut().zip(untold) {
+        for (known, found) in self.unreported.iter_mut().zip(unreported) {
             if found && !std::mem::replace(known, true) {
                 // It was asked in vain, several times after the counts, which is nobody's lateness.
                 self.pace.pause();
@@ -610,7 +610,7 @@ impl<'a> ExperimentGuard<'a> {
         self.last_raw - first
     }
 
-    /// Takes the duty away and watches what the motor does then, which tells the faults apart. `guess` stands where nothing more
+    /// Takes the duty away and watches what the motor does then, which distinguishes the faults. `guess` stands where nothing more
     /// is heard.
     fn name_fault(&mut self, guess: Cause) -> Cause {
         if guess == Cause::MotorOpened {

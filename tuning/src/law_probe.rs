@@ -77,7 +77,7 @@ fn near(found: f64, known: f64) -> bool {
     (found / known - 1.0).abs() < TOLERANCE
 }
 
-/// Looks at the loops of a motor that stands; `start_duty` is the duty that moves it. `None` where the controller tells no duty.
+/// Looks at the loops of a motor that stands; `start_duty` is the duty that moves it. `None` where the controller reports no duty.
 pub fn probe_law(
     guard: &mut ExperimentGuard<'_>,
     start_duty: f64,
@@ -118,7 +118,7 @@ fn duty_under(
     Ok(duties.get(duties.len() / 2).copied())
 }
 
-/// How much the duty grows for each count that the motor stays behind the speed it is told.
+/// How much the duty grows for each count that the motor stays behind the commanded speed.
 fn growth_under(
     guard: &mut ExperimentGuard<'_>,
     speed: f64,

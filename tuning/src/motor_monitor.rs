@@ -41,7 +41,7 @@ const PUSHED_S: f64 = 0.02;
 const LOOP_DUTY: f64 = 0.14;
 /// Share of the speed at full duty that a loop may be beside what its duty readings say.
 const LOOP_MARGIN: f64 = 0.04;
-/// A loop that was told something new does what no poll sees for this long, s.
+/// A loop that was given a new setpoint does what no poll sees for this long, s.
 const NEWS_S: f64 = 0.07;
 /// Between which multiples of a time constant that was found the true one lies: a load behind a spring makes the motor alone quicker.
 const TAU_SPREAD: (f64, f64) = (0.3, 1.6);
@@ -76,7 +76,7 @@ pub struct MotorMonitor {
     turning_tau_s: Option<f64>,
     /// Duties given and when, oldest first; the first is older than the memory.
     duties: VecDeque<(f64, f64)>,
-    /// Whether a loop has the motor, until when one had it, and when it was given the motor, told something new, or lost it.
+    /// Whether a loop has the motor, until when one had it, and when it was given the motor or a new setpoint, or lost it.
     in_loop: bool,
     loop_until_s: f64,
     news_s: f64,
@@ -193,7 +193,7 @@ impl MotorMonitor {
         if pull <= 0.0 || free <= 0.0 { held } else { held + free - pull * (free / pull).ln_1p() }
     }
 
-    /// A loop has the motor: its duty is what is read. It was told so first at `first_s`, and answered the try of `t`.
+    /// A loop has the motor: its duty is what is read. It was commanded so first at `first_s`, and answered the try of `t`.
     pub fn release(&mut self, first_s: f64, t: f64) {
         if let Some(closed_loop) = &mut self.closed_loop {
             let before = match self.duties.back() {
@@ -201,7 +201,7 @@ impl MotorMonitor {
                 Some((off_s, 0.0)) => Before::Off(off_s + 2.0 / DUTY_SLEW_PER_S),
                 _ => Before::Driven,
             };
-            closed_loop.tell(first_s, t, before);
+            closed_loop.command(first_s, t, before);
         }
         self.in_loop = true;
         self.news_s = t;
@@ -495,7 +495,7 @@ impl MotorMonitor {
         fall > clear && before * now > 0.0 && before.abs() - now.abs() < 0.6 * fall.min(before.abs())
     }
 
-    /// Whether a turning motor draws a current that can be told from none.
+    /// Whether a turning motor draws a current that can be distinguished from none.
     pub(crate) fn draws(&self) -> bool {
         self.running_amps.is_some_and(|running| running > 2.5 * NO_CURRENT_AMPS)
             || self.stall_amps.is_some_and(|stall| stall * 0.015 > 2.0 * NO_CURRENT_AMPS)

@@ -11,7 +11,7 @@ use crate::motion_mind::MotionMindRegisters;
 use crate::record::{Entry, Player};
 use crate::rules::Classic;
 use crate::tune::{Request, tune};
-use crate::winding::{NotTold, Winding};
+use crate::winding::{Winding, WindingUnknown};
 use serde::{Deserialize, Serialize};
 
 /// Version of the form of a report. Reports without one are of the first.
@@ -79,9 +79,9 @@ pub struct Report {
     /// Resistance of the winding.
     #[serde(default)]
     pub winding: Option<Winding>,
-    /// Why that was not told, where an open-loop run could have.
+    /// Why that is not known, where an open-loop run could have.
     #[serde(default)]
-    pub winding_unknown: Option<NotTold>,
+    pub winding_unknown: Option<WindingUnknown>,
     /// Backlash of the mechanics, of a position run.
     #[serde(default, rename = "slack")]
     pub backlash: Option<Backlash>,

@@ -1,4 +1,4 @@
-//! What happened in a run, as a picture shows it: where the axis was, what it was told, and which gains held when.
+//! What happened in a run, as a picture shows it: where the axis was, what it was commanded, and which gains held when.
 //!
 //! It grows call by call from a live axis, or comes whole from the raw record of a report. Nothing is computed from it here but
 //! speeds, and the response that a model predicts for the same commands.
@@ -121,7 +121,7 @@ impl Trace {
         }
     }
 
-    /// Seconds since the first time that was told.
+    /// Seconds since the first time that was reported.
     fn since_start(&mut self, at_s: f64) -> f64 {
         at_s - *self.epoch_s.get_or_insert(at_s)
     }

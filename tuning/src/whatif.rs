@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn too_much_gain_is_told_as_unstable() {
+    fn too_much_gain_is_reported_as_unstable() {
         let gains = Gains { velocity: Pid { p: 400.0, i: 0.0, d: 0.0 }, ..Gains::default() };
         assert!(!forecast(&task(), &gains).is_stable);
     }

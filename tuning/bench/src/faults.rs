@@ -28,7 +28,7 @@ pub trait Patient: Clone + Send + Sync {
     /// The methods whose trials are struck, and whose runs have to be quiet.
     const WHOLE: [Method; 2];
     /// Whether the wire carries the battery's voltage.
-    const TELLS_VOLTS: bool;
+    const REPORTS_VOLTS: bool;
     /// How soon the motor must be off when the link is gone, s.
     const LINK_DEADLINE_S: f64;
     /// The motor.
@@ -47,7 +47,7 @@ impl Patient for Specimen {
     type Axis = SimulatedAxis;
     type Unit = Controller;
     const WHOLE: [Method; 2] = [Method::Velocity, Method::Piv];
-    const TELLS_VOLTS: bool = true;
+    const REPORTS_VOLTS: bool = true;
     const LINK_DEADLINE_S: f64 = 0.25;
 
     fn plant(&self) -> &Specimen {
@@ -230,7 +230,7 @@ pub fn fault_rows<P: Patient>(plants: &[P]) -> Vec<FaultRow> {
 #[must_use]
 pub fn rows_of<P: Patient>(plants: &[P], names: &[&str]) -> Vec<FaultRow> {
     let wanted = |name: &str| names.is_empty() || names.contains(&name);
-    let can_be = |class: &&Class| P::TELLS_VOLTS || class.fault != Fault::During(WorldChange::LowBattery);
+    let can_be = |class: &&Class| P::REPORTS_VOLTS || class.fault != Fault::During(WorldChange::LowBattery);
     let subjects: Vec<Subject<P>> = plants.par_iter().map(Subject::new).collect();
     let classes = CLASSES.iter().filter(|class| wanted(class.name)).filter(can_be);
     let mut rows: Vec<FaultRow> = classes

@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn a_limit_is_told_exactly_where_the_search_would_not_go_on() {
+    fn a_limit_is_reported_exactly_where_the_search_would_not_go_on() {
         for (tau_s, gain) in
             [(0.01, 3_000.0), (0.03, 10_000.0), (0.1, 30_000.0), (1.0, 30_000.0), (0.3, 600.0)]
         {
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn an_integral_as_quick_as_the_play_allows_is_told() {
+    fn an_integral_as_quick_as_the_backlash_allows_is_reported() {
         let task = Task { least_integral_s: 0.5, ..task(0.1, 30_000.0, 50.0) };
         let gains = Gains { velocity: Pid { p: 0.1, i: 0.2, d: 0.0 }, ..Gains::default() };
         assert_eq!(limit(&task, &gains).unwrap().by, Bound::Backlash);

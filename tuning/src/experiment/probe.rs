@@ -85,7 +85,7 @@ pub fn run_probe(guard: &mut ExperimentGuard<'_>, direction: f64) -> Result<Prob
     }
 }
 
-/// Tells an open motor, a locked shaft and a dead encoder apart, by the current.
+/// Distinguishes an open motor, a locked shaft and a dead encoder by the current.
 fn nothing_moved(
     guard: &mut ExperimentGuard<'_>,
     readings: &[(f64, f64)],

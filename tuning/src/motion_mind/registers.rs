@@ -233,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn bits_that_make_another_loop_are_told() {
+    fn bits_that_make_another_loop_are_reported() {
         let usual = MotionMindRegisters { function: bits::SATPROT | bits::ACTIVESTOP, ..Default::default() };
         assert!(usual.is_usual_loop());
         for function2 in [bits::NEWVELMODE, bits::FASTPID, bits::PULSEFB] {

@@ -558,7 +558,7 @@ fn whole(want: Want) -> Vec<u8> {
     wanted
 }
 
-/// What STATUS says to a run. A limit input or the brake keeps the motor from what it is told.
+/// What STATUS says to a run. A limit input or the brake keeps the motor from what it is commanded.
 fn status_of(word: u16) -> Status {
     let has = |mask: u16| word & mask != 0;
     Status {

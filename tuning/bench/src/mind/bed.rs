@@ -1,6 +1,6 @@
 //! Gains tried on the true plant: the simulated Motion Mind itself, its registers written past the wire.
 
-use super::population::{MindSpecimen, tell};
+use super::population::{MindSpecimen, command_unit};
 use crate::oracle::Bed;
 use crate::trial::{Outcome, position_outcome, velocity_outcome};
 use crate::truth::{Truth, full_speed, truth_under};
@@ -117,7 +117,7 @@ impl<'a> Machine<'a> {
             (26, i64::from(registers.deadband)),
         ];
         for (register, value) in values {
-            tell(&mut unit, &Command::Write { register, value });
+            command_unit(&mut unit, &Command::Write { register, value });
         }
         let load_side = axis.encoder.side == ShaftSide::Load;
         Self {
@@ -166,7 +166,7 @@ impl<'a> Machine<'a> {
         let top = self.bed.truth.gain_counts_per_s / SPEED_STEP_COUNTS_PER_S;
         let (low, high) = ((VELOCITY_STEP.0 * top).round(), (VELOCITY_STEP.1 * top).round());
         let tell_speed =
-            |unit: &mut MotionMind, counts: f64| tell(unit, &Command::MoveAtVelocity(counts as i16));
+            |unit: &mut MotionMind, counts: f64| command_unit(unit, &Command::MoveAtVelocity(counts as i16));
         tell_speed(&mut self.unit, low);
         for _ in 0..self.ticks() * 7 / 10 {
             self.tick();
@@ -183,7 +183,7 @@ impl<'a> Machine<'a> {
     fn position(mut self) -> Outcome {
         let step = position_step(self.bed.truth.gain_counts_per_s, self.bed.truth.tau_s);
         self.tick();
-        tell(&mut self.unit, &Command::MoveToAbsolute(step as i32));
+        command_unit(&mut self.unit, &Command::MoveToAbsolute(step as i32));
         let (after_step, duties) = self.errors(step, false);
         self.load();
         let (after_load, _) = self.errors(step, false);

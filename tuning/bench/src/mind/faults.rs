@@ -14,7 +14,7 @@ impl Patient for MindSpecimen {
     type Axis = SimulatedMind;
     type Unit = MotionMind;
     const WHOLE: [Method; 2] = [Method::Velocity, Method::Pd];
-    const TELLS_VOLTS: bool = false;
+    const REPORTS_VOLTS: bool = false;
     /// The unit has no time-out: the motor runs up to the fence, half a second of it at its speed.
     const LINK_DEADLINE_S: f64 = 1.0;
 

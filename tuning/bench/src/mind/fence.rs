@@ -1,16 +1,16 @@
 //! Where the virtual limits of a Motion Mind stand during a run: a little ahead of the motor, so that it stops by itself when the host
 //! is no longer there.
 
-/// How long the motor may run on at its present speed, and at the speed that it was told, s.
+/// How long the motor may run on at its present speed, and at the commanded speed, s.
 const AHEAD_S: f64 = 0.4;
-const AHEAD_AS_TOLD_S: f64 = 0.18;
+const AHEAD_AS_COMMANDED_S: f64 = 0.18;
 /// The least room, and that of a motor of which nothing is known yet, counts.
 const LEAST_COUNTS: f64 = 250.0;
 const FIRST_COUNTS: f64 = 2_000.0;
 /// A duty that moves any motor, and how long one is watched under it before its speed is taken as known, s.
 const CLEAR_DUTY: f64 = 0.19;
 const KNOWN_AFTER_S: f64 = 0.06;
-/// A motor told less than what it ran at before may be so much faster than in proportion: friction takes its share.
+/// A motor commanded to less than what it ran at before may be so much faster than in proportion: friction takes its share.
 const IN_PROPORTION: f64 = 1.3;
 /// Share of the room below which the fence is moved.
 const MOVED_BELOW: f64 = 0.5;
@@ -30,11 +30,11 @@ pub(super) struct Fence {
     pub travel: Option<(i64, i64)>,
     last: Option<(f64, i32)>,
     speed: f64,
-    /// The highest speed seen, and the highest duty told.
+    /// The highest speed seen, and the highest duty commanded.
     top: f64,
     top_duty: f64,
-    /// The speed that it is told to have, as far as that is known, counts/s.
-    told: f64,
+    /// The commanded speed, as far as that is known, counts/s.
+    commanded: f64,
     /// How much wider it stands than it should have to; 0 for not.
     wider: f64,
     /// When the first clear drive was seen to begin, s.
@@ -69,23 +69,23 @@ impl Fence {
         self.is_clear |= duty.abs() > CLEAR_DUTY;
         let share = IN_PROPORTION * duty.abs() / self.top_duty.max(1e-3);
         // A duty higher than any before gives a speed higher than any before.
-        self.told = self.top * if duty.abs() > self.top_duty { share } else { share.min(1.0) };
+        self.commanded = self.top * if duty.abs() > self.top_duty { share } else { share.min(1.0) };
         self.top_duty = self.top_duty.max(duty.abs());
         if duty != 0.0 {
             self.heading = duty.signum();
         }
     }
 
-    /// A loop is about to be told a speed, counts/s.
+    /// A loop is about to be given a speed, counts/s.
     pub(super) fn head_at(&mut self, speed: f64) {
         self.head(speed);
-        self.told = (IN_PROPORTION * speed.abs()).min(self.top);
+        self.commanded = (IN_PROPORTION * speed.abs()).min(self.top);
     }
 
-    /// A loop is about to be told to go in a direction: the sign says which.
+    /// A loop is about to be commanded to go in a direction: the sign says which.
     pub(super) fn head(&mut self, direction: f64) {
         self.is_clear = true;
-        self.told = self.top;
+        self.commanded = self.top;
         if direction != 0.0 {
             self.heading = direction.signum();
         }
@@ -126,7 +126,8 @@ impl Fence {
     fn room(&self, t: f64) -> f64 {
         let is_known = self.began_s.is_some_and(|began| t - began > KNOWN_AFTER_S);
         let least = if is_known { LEAST_COUNTS } else { FIRST_COUNTS };
-        (AHEAD_S * self.speed.abs()).max(AHEAD_AS_TOLD_S * self.told).max(least) * self.wider.max(1.0)
+        (AHEAD_S * self.speed.abs()).max(AHEAD_AS_COMMANDED_S * self.commanded).max(least)
+            * self.wider.max(1.0)
     }
 }
 

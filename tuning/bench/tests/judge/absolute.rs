@@ -45,20 +45,20 @@ fn a_speed_is_refused_where_the_encoder_wraps_and_nowhere_else() {
 
 #[test]
 fn the_resistance_of_the_winding_is_found_with_its_interval() {
-    let (mut told, mut covered) = (0, 0);
+    let (mut reported, mut covered) = (0, 0);
     for number in 0..16 {
         let plant = absolute_specimen(7, number);
         let (report, _) = tune_plant(&plant, &request_of(&plant, Method::Pd));
         let Some(winding) = report.winding else { continue };
-        told += 1;
+        reported += 1;
         let off = (winding.ohms / plant.axis.motor.armature_ohms - 1.0).abs();
         let interval = winding.interval_ohms / winding.ohms;
         println!("plant {number}: off by {off:.3}, interval {interval:.3}");
         assert!(off < 2.0 * interval, "plant {number}: off by {off}, interval {interval}");
         covered += usize::from(off < interval);
     }
-    assert!(told >= 6, "{told} of 16");
-    assert!(10 * covered >= 8 * told, "{covered} of {told} within their interval");
+    assert!(reported >= 6, "{reported} of 16");
+    assert!(10 * covered >= 8 * reported, "{covered} of {reported} within their interval");
 }
 
 #[test]

@@ -62,7 +62,7 @@ fn a_load_of_6_percent_is_tuned_as_piv_or_called_heavy() {
 }
 
 #[test]
-fn a_load_that_friction_does_not_hold_is_told() {
+fn a_load_that_friction_does_not_hold_is_reported() {
     let report = tuned_inside(&pulled(6, 0.1), Method::Piv);
     assert_ne!(report.verdict, Verdict::Refused, "{:?}", report.causes);
     assert!(report.causes.contains(&Cause::HeavyLoad), "{:?}", report.causes);

@@ -78,7 +78,7 @@ fn the_highest_current_of_a_run_is_amps_limit_and_the_users_is_put_back() {
             && bytes[2] == AMPSLIMIT
             && i64::from(bytes[3]) + 256 * i64::from(bytes[4]) == steps
     });
-    assert!(written, "the unit was told");
+    assert!(written, "the limit was written");
     assert_eq!(unit(&axis).read_one(AMPSLIMIT), users);
 }
 
