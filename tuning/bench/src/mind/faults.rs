@@ -1,16 +1,16 @@
 //! Faults on a Motion Mind: the classes of the other family, but for the battery, whose voltage its wire does not carry.
 
-use super::bed::MindBed;
+use super::plant_under_test::MindPlantUnderTest;
 use super::population::MindSpecimen;
 use super::table::{SimulatedMind, axis_of};
-use crate::faults::{FaultRow, Patient, rows_of};
+use crate::faults::{FaultRow, FaultyPlant, rows_of};
 use crate::line::SimulatedLine;
 use crate::population::Specimen;
 use crate::truth::Truth;
 use brushwork_sim::motion_mind::MotionMind;
 use brushwork_tuning::tune::Method;
 
-impl Patient for MindSpecimen {
+impl FaultyPlant for MindSpecimen {
     type Axis = SimulatedMind;
     type Unit = MotionMind;
     const WHOLE: [Method; 2] = [Method::Velocity, Method::Pd];
@@ -27,7 +27,7 @@ impl Patient for MindSpecimen {
     }
 
     fn truth(&self) -> Truth {
-        MindBed::new(self.clone()).truth
+        MindPlantUnderTest::new(self.clone()).truth
     }
 
     fn axis(&self) -> SimulatedMind {
