@@ -42,8 +42,8 @@ const TICKS_PER_S: f64 = 300.0;
 const UNKNOWN_DOUBT: f64 = 0.14;
 const FEW_READINGS: usize = 5;
 /// From the stamp of a setpoint to what it does, s: either side.
-const NEWS_S: (f64, f64) = (0.006, 0.012);
-/// How long news are remembered, s: longer than the polls.
+const SETPOINT_ACTS_S: (f64, f64) = (0.006, 0.012);
+/// How long setpoints are remembered, s: longer than the polls.
 const MEMORY_S: f64 = 2.0;
 /// Counts that a stretch may be beside its bounds, time that the stamps of its ends and of the speed before it may be off, s, and shares
 /// of the speed before it and of the speed at full duty.
@@ -84,7 +84,7 @@ pub(crate) struct ClosedLoopMonitor {
     since_s: f64,
     commanded_s: f64,
     /// When it was given a new setpoint, from the first try on to the acknowledged one, oldest first, s.
-    news: VecDeque<(f64, f64)>,
+    setpoints: VecDeque<(f64, f64)>,
 }
 
 /// What a motor had before a loop was given a setpoint.
@@ -117,7 +117,7 @@ impl ClosedLoopMonitor {
             step_duty: 0.0,
             since_s: f64::INFINITY,
             commanded_s: f64::INFINITY,
-            news: VecDeque::new(),
+            setpoints: VecDeque::new(),
         }
     }
 
@@ -126,12 +126,12 @@ impl ClosedLoopMonitor {
     pub(crate) fn command(&mut self, from_s: f64, to_s: f64, before: Before) {
         if before != Before::ClosedLoop {
             self.since_s = if let Before::Off(since_s) = before { since_s } else { to_s };
-            self.commanded_s = from_s - NEWS_S.0;
-            self.news.clear();
+            self.commanded_s = from_s - SETPOINT_ACTS_S.0;
+            self.setpoints.clear();
         }
-        self.news.push_back((from_s - NEWS_S.0, to_s + NEWS_S.1));
-        while self.news.front().is_some_and(|old| to_s - old.1 > MEMORY_S) {
-            self.news.pop_front();
+        self.setpoints.push_back((from_s - SETPOINT_ACTS_S.0, to_s + SETPOINT_ACTS_S.1));
+        while self.setpoints.front().is_some_and(|old| to_s - old.1 > MEMORY_S) {
+            self.setpoints.pop_front();
         }
     }
 
@@ -188,7 +188,7 @@ impl ClosedLoopMonitor {
     /// How far the duty may be beside the readings: they scatter about the mean of their neighbours.
     fn doubt(&self, readings: &VecDeque<(f64, f64)>) -> f64 {
         let is_quiet = |from: f64, to: f64| {
-            from >= self.commanded_s && !self.news.iter().any(|news| news.1 > from && news.0 < to)
+            from >= self.commanded_s && !self.setpoints.iter().any(|given| given.1 > from && given.0 < to)
         };
         let triples = (2..readings.len()).map(|n| (readings[n - 2], readings[n - 1], readings[n]));
         let mut beside: Vec<f64> = triples
@@ -256,7 +256,7 @@ struct Duties<'a> {
     readings: &'a VecDeque<(f64, f64)>,
     monitor: &'a ClosedLoopMonitor,
     doubt: f64,
-    /// From when on news are followed without a jerk, s.
+    /// From when on setpoints are followed without a jerk, s.
     calm_s: f64,
 }
 
@@ -277,7 +277,7 @@ impl Duties<'_> {
         };
         let b = self.readings.get(next);
         let until = b.map_or(t, |b| b.0);
-        if t < self.calm_s && self.monitor.news.iter().any(|news| news.1 > a.0 && news.0 < until) {
+        if t < self.calm_s && self.monitor.setpoints.iter().any(|given| given.1 > a.0 && given.0 < until) {
             return (-1.0, 1.0);
         }
         let (b, doubt) = b.map_or((a, 2.0 * self.doubt), |b| (b, self.doubt));

@@ -42,7 +42,7 @@ const LOOP_DUTY: f64 = 0.14;
 /// Share of the speed at full duty that a loop may be beside what its duty readings say.
 const LOOP_MARGIN: f64 = 0.04;
 /// A loop that was given a new setpoint does what no poll sees for this long, s.
-const NEWS_S: f64 = 0.07;
+const UNSEEN_SETPOINT_S: f64 = 0.07;
 /// Between which multiples of a time constant that was found the true one lies: a load behind a spring makes the motor alone quicker.
 const TAU_SPREAD: (f64, f64) = (0.3, 1.6);
 /// Share of the speed at full duty that a load may sway with while the motor is off.
@@ -79,7 +79,7 @@ pub struct MotorMonitor {
     /// Whether a loop has the motor, until when one had it, and when it was given the motor or a new setpoint, or lost it.
     in_loop: bool,
     loop_until_s: f64,
-    news_s: f64,
+    changed_s: f64,
     /// When the duty last changed, and whether it went up or round: a speed that still falls says nothing about the gain.
     since_s: f64,
     rising: bool,
@@ -120,7 +120,7 @@ impl MotorMonitor {
             self.duties.push_back((t - 2.0 / DUTY_SLEW_PER_S, last));
             self.in_loop = false;
             self.loop_until_s = t;
-            self.news_s = t;
+            self.changed_s = t;
         }
         let before = self.duties.back().map_or(0.0, |given| given.1);
         self.rising = before * duty <= 0.0 || duty.abs() >= before.abs();
@@ -139,7 +139,7 @@ impl MotorMonitor {
         self.recent.clear();
         self.duties.clear();
         self.drive(t, 0.0);
-        self.news_s = t;
+        self.changed_s = t;
     }
 
     /// Takes over what an identification found.
@@ -204,7 +204,7 @@ impl MotorMonitor {
             closed_loop.command(first_s, t, before);
         }
         self.in_loop = true;
-        self.news_s = t;
+        self.changed_s = t;
         self.since_s = t;
         self.duties.clear();
     }
@@ -295,7 +295,7 @@ impl MotorMonitor {
     /// Compares a stretch with what the motor can have done.
     fn check_stretch(&self, stretch: &Stretch) -> Result<(), Cause> {
         let Stretch { from, to, speed_before } = stretch;
-        let unclear_s = self.news_s + if self.in_loop { NEWS_S } else { 0.0 };
+        let unclear_s = self.changed_s + if self.in_loop { UNSEEN_SETPOINT_S } else { 0.0 };
         if unclear_s > from.t - SPEED_S {
             return Ok(());
         }

@@ -16,7 +16,7 @@ use brushwork_tuning_bench::mind::table::{
 use brushwork_tuning_bench::table::Row;
 use std::time::Duration;
 
-/// Lowest and highest figure that is not news.
+/// Lowest and highest figure that is as usual.
 type Range = (f64, f64);
 
 /// Method, accepted %, good %, median cost.
