@@ -1,7 +1,7 @@
 //! What is wrong with a motor that did not do what motors do: stopped, or its encoder lost or turned round?
 //!
 //! The duty is taken away first; what currents and counts do while it goes down, and did just before, tells the rest. The current
-//! of a motor follows from its duty and its true speed, whatever the encoder says. So each story (the motor was stopped and the
+//! of a motor follows from its duty and its true speed, whatever the encoder says. So each hypothesis (the motor was stopped and the
 //! encoder is right; the encoder is dead since then; it counts the other way since then) is held against the currents.
 
 use crate::cause::Cause;
@@ -21,7 +21,7 @@ const BEFORE_S: f64 = 0.22;
 const DEAD_COUNTS: f64 = 1.5;
 /// A current that is off by more than this share of the stall current is just wrong.
 const WRONG: f64 = 0.3;
-/// Misfit from which on the currents may object, and how much better the other story must then be.
+/// Misfit from which on the currents may object, and how much better the other hypothesis must then be.
 const OBJECTION: f64 = 0.05;
 const BETTER: f64 = 0.6;
 const AGREE: f64 = 0.9;
@@ -40,7 +40,7 @@ const SAME: f64 = 3e-4;
 /// How long the duty takes to come down and the winding's current to follow, s.
 const BRAKED_S: f64 = 0.066;
 
-/// One poll with what a story needs.
+/// One poll with what a hypothesis needs.
 struct Moment {
     t: f64,
     counts: f64,
@@ -71,9 +71,9 @@ pub(crate) fn diagnose(monitor: &MotorMonitor, alarm_s: f64, after: &[Point]) ->
     if !alive || gain <= 0.0 {
         return Cause::Stalled;
     }
-    let story = Story { moments: &moments, gain, tau_s, limit: limit_of(monitor), alarm_s };
-    let (stopped, flipped) = (story.as_counted().min(story.stands()), story.flipped());
-    let likeness = story.likeness_of_mirror();
+    let hypotheses = Hypotheses { moments: &moments, gain, tau_s, limit: limit_of(monitor), alarm_s };
+    let (stopped, flipped) = (hypotheses.as_counted().min(hypotheses.stands()), hypotheses.flipped());
+    let likeness = hypotheses.likeness_of_mirror();
     let currents_agree = stall.is_some() && stopped > OBJECTION && flipped < AGREE * stopped;
     let currents_object = stall.is_some() && flipped > OBJECTION && stopped < BETTER * flipped;
     let goes_on = likeness < if currents_agree { MIRROR_ERROR.1 } else { MIRROR_ERROR.0 };
@@ -180,8 +180,8 @@ fn turns_unseen(monitor: &MotorMonitor, moments: &[Moment], alarm_s: f64) -> boo
     driven_off || first > 0.08 || least > (2.0 * NO_CURRENT_AMPS / stall).max(0.02)
 }
 
-/// What the currents are held against.
-struct Story<'a> {
+/// What may have happened, held against the currents.
+struct Hypotheses<'a> {
     moments: &'a [Moment],
     gain: f64,
     tau_s: f64,
@@ -189,7 +189,7 @@ struct Story<'a> {
     alarm_s: f64,
 }
 
-impl Story<'_> {
+impl Hypotheses<'_> {
     fn miss(&self, moment: &Moment, speed: f64) -> f64 {
         let Some(current) = moment.current else { return 0.0 };
         let expected = (moment.duty - speed / self.gain).abs().min(self.limit);

@@ -217,7 +217,7 @@ pub fn position_test(plant: &PlantModel, law: &LoopLaw, lag: Lag, gains: &Gains,
 
 /// What still goes on in the last third of a test, after the step or after the load, whichever is more.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Unrest {
+pub(crate) struct Residual {
     /// Standard deviation of the duty after the step, and after the load.
     pub(crate) duty: (f64, f64),
     /// Distance from the lowest to the highest position, counts.
@@ -232,7 +232,7 @@ pub(crate) fn position_test_and_end(
     lag: Lag,
     gains: &Gains,
     qpps: f64,
-) -> (Score, Unrest) {
+) -> (Score, Residual) {
     let tick_s = law.tick_s();
     let ticks = (horizon_s(plant.tau_s) / tick_s) as usize;
     let step = position_step(plant.gain_counts_per_s, plant.tau_s);
@@ -247,11 +247,11 @@ pub(crate) fn position_test_and_end(
     };
     let (after_step, after_load) = (run(0.0), run(LOAD_STEP_DUTY));
     let late = ticks * 7 / 10;
-    let unrest = Unrest {
+    let residual = Residual {
         duty: (spread(&after_step.1[late..]), spread(&after_load.1[late..])),
         range_counts: range(&after_step.0[late..]).max(range(&after_load.0[late..])),
     };
-    (Score::of(&after_step.0, &after_load.0, tick_s, step, 0.02f64.max(3.0 / step)), unrest)
+    (Score::of(&after_step.0, &after_load.0, tick_s, step, 0.02f64.max(3.0 / step)), residual)
 }
 
 /// Standard deviation.
