@@ -14,7 +14,7 @@ mod tap;
 use std::time::Duration;
 
 use brushwork_link::device::FamilyChoice;
-use brushwork_protocol::packet_serial::{Generation, hex};
+use brushwork_mcp_wire::packet_serial::{Generation, hex};
 use serde_json::json;
 
 use super::client;

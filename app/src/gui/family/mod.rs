@@ -8,9 +8,9 @@ use std::fmt;
 use std::time::Duration;
 
 use brushwork_link::device::{ArmScope, Channel, Drive, Identity, Request, StatusReport};
-use brushwork_protocol::packet_serial::Motor;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::tune::Method;
+use brushwork_values::Motor;
 use egui::Ui;
 
 use super::command::Commands;

@@ -4,11 +4,11 @@
 use std::time::Duration;
 
 use brushwork_link::device::{ArmScope, Channel, Drive, Identity, Request, StatusReport};
-use brushwork_protocol::motion_mind::Mode;
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_motion_mind_wire::Mode;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::motion_mind::MotionMindSetup;
 use brushwork_tuning::tune::Method;
+use brushwork_values::Motor;
 use egui::Ui;
 
 use super::words::{self, SettingsWords};
@@ -274,7 +274,7 @@ mod tests {
     use std::time::Duration;
 
     use brushwork_link::device::Conditions;
-    use brushwork_protocol::motion_mind::{STATUS_BITS, status as bit};
+    use brushwork_motion_mind_wire::{STATUS_BITS, status as bit};
 
     use super::*;
 

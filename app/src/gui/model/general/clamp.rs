@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use brushwork_link::device::{ArmScope, Event, JobEnding, Request};
 use brushwork_link::settings::{Group, SettingValue};
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 use crossbeam_channel::{Receiver, bounded};
 
 use super::super::link::Effect;

@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use brushwork_link::device::{ArmScope, Drive, DriveCommand};
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 
 use super::registers;
 use crate::gui::model::desk::Desk;
