@@ -23,8 +23,8 @@ mod real_time {
     use brushwork_plant::machine::StreamIndex;
     use brushwork_tests::program::Program;
     use brushwork_tests::simulated::{OnPty, is_at_rest};
+    use brushwork_tuning::experiment_guard::GuardOptions;
     use brushwork_tuning::report::{Report, Verdict};
-    use brushwork_tuning::rig::GuardOptions;
     use brushwork_tuning::tune::{Request, tune};
     use brushwork_tuning_bench::line::SimulatedLine;
     use brushwork_tuning_bench::population::LinkParams;

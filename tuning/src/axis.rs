@@ -41,7 +41,7 @@ pub struct Want {
     pub volts: bool,
 }
 
-/// What the status word says (command 90), its bits told apart by whoever knows the firmware generation.
+/// What the status word says (command 90), its bits distinguished by whoever knows the firmware generation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Status {
     /// The current limit of this motor holds its power back.
@@ -131,7 +131,7 @@ pub struct Setup {
     pub min_volts_raw: u16,
     /// Inductance and resistance of commands 128 to 131: both non-zero make duty a current command.
     pub inductance_resistance_raw: [u32; 2],
-    /// Time-out of the stream, ms (command 145); 0 = none, `None` = not told by this firmware.
+    /// Time-out of the stream, ms (command 145); 0 = none, `None` = not reported by this firmware.
     pub stream_timeout_ms: Option<u32>,
     /// The encoder.
     pub encoder: EncoderClass,
@@ -200,11 +200,11 @@ pub trait Axis {
     fn write_motion_mind(&mut self, _registers: MotionMindRegisters) -> Result<(), AxisError> {
         Err(AxisError::Refused("registers of a Motion Mind".into()))
     }
-    /// Ends a run on a Motion Mind: these registers, as they are, and the place where the motor is as the wanted one.
+    /// Ends a run on a Motion Mind: these registers, as they are, and the position of the motor as the wanted one.
     fn end_motion_mind(&mut self, _registers: MotionMindRegisters) -> Result<(), AxisError> {
         Err(AxisError::Refused("registers of a Motion Mind".into()))
     }
-    /// Between which places the motor is to stay, counts of the encoder. A controller that can watch that too is told.
+    /// Between which positions the motor is to stay, counts of the encoder. A controller that can watch that too is given them.
     fn set_travel(&mut self, _counts: (i64, i64)) -> Result<(), AxisError> {
         Ok(())
     }

@@ -13,7 +13,7 @@ pub enum Cause {
     EncoderDead,
     /// No current flows, nothing moves.
     MotorOpen,
-    /// Nothing moves, and the controller tells no current.
+    /// Nothing moves, and the controller reports no current.
     NothingCounted,
     /// Current as of a motor that stands, nothing moves.
     ShaftLocked,
@@ -81,7 +81,7 @@ pub enum Cause {
     LimitInput,
     /// The loop of a Motion Mind was left switched off at the end of a run that found something wrong with the machine.
     LoopOff,
-    /// Nothing moves, and the current cannot be told from its own noise.
+    /// Nothing moves, and the current cannot be distinguished from its own noise.
     CurrentUnclear,
     /// What was seen says nothing about the machine, since the answers came too late.
     AnsweredLate {
@@ -138,7 +138,7 @@ impl Cause {
         )
     }
 
-    /// Whether it is told from others by the motor's current.
+    /// Whether it is distinguished from others by the motor's current.
     #[must_use]
     pub(crate) fn is_by_current(self) -> bool {
         matches!(
@@ -174,7 +174,7 @@ impl Cause {
                  the shaft and the encoder too."
             }
             Self::NothingCounted => {
-                "Nothing was counted while the motor was driven, and the controller tells no current that would say why. Check the \
+                "Nothing was counted while the motor was driven, and the controller reports no current that would say why. Check the \
                  encoder, the motor leads and whether the shaft is free."
             }
             Self::ShaftLocked => {
@@ -251,7 +251,7 @@ impl Cause {
                 "The controller's loop follows no law known to this program, so gains cannot be computed for it."
             }
             Self::WrongMode => {
-                "The Motion Mind is not in mode 4 with an encoder, the only mode that takes both a duty and a place over the wire. \
+                "The Motion Mind is not in mode 4 with an encoder, the only mode that takes both a duty and a position over the wire. \
                  Set its switches to mode 4, clear PULSEFB, and switch it off and on."
             }
             Self::NoSuchLoop => {
@@ -263,11 +263,11 @@ impl Cause {
             }
             Self::LoopOff => {
                 "The controller's loop was left switched off (DISABLEPID in FUNCTION, in RAM), since with this it could drive the \
-                 motor away. When it is mended, arm or drive again: that switches the loop on where the motor stands."
+                 motor away. When the fault is remedied, arm or drive again: that switches the loop on where the motor stands."
             }
             Self::OtherLoop => {
                 "NEWVELMODE, FASTPID, PULSEFB or DISABLEPID is set, which makes another loop of these gains, or none. Clear the bit: \
-                 the gains are those of the loop that computes every 5 ms from the encoder's place."
+                 the gains are those of the loop that computes every 5 ms from the encoder's position."
             }
         })
     }

@@ -1,12 +1,12 @@
 //! What is wrong with a motor that did not do what motors do: stopped, or its encoder lost or turned round?
 //!
 //! The duty is taken away first; what currents and counts do while it goes down, and did just before, tells the rest. The current
-//! of a motor follows from its duty and its true speed, whatever the encoder says. So each story (the motor was stopped and the
+//! of a motor follows from its duty and its true speed, whatever the encoder says. So each hypothesis (the motor was stopped and the
 //! encoder is right; the encoder is dead since then; it counts the other way since then) is held against the currents.
 
 use crate::cause::Cause;
-use crate::rig::Point;
-use crate::watch::{NO_CURRENT_AMPS, Watch};
+use crate::experiment_guard::Point;
+use crate::motor_monitor::{MotorMonitor, NO_CURRENT_AMPS};
 
 /// How long the motor is watched with its duty taken away, s.
 pub(crate) const DIAGNOSIS_S: f64 = 0.15;
@@ -21,7 +21,7 @@ const BEFORE_S: f64 = 0.22;
 const DEAD_COUNTS: f64 = 1.5;
 /// A current that is off by more than this share of the stall current is just wrong.
 const WRONG: f64 = 0.3;
-/// Misfit from which on the currents may object, and how much better the other story must then be.
+/// Misfit from which on the currents may object, and how much better the other hypothesis must then be.
 const OBJECTION: f64 = 0.05;
 const BETTER: f64 = 0.6;
 const AGREE: f64 = 0.9;
@@ -30,7 +30,7 @@ const MIRROR_ERROR: (f64, f64) = (0.12, 0.6);
 /// Share of the current of a standing motor by which that of a turning one is short at the least; a battery sags by less.
 const SHORT: f64 = 0.3;
 /// A duty that drives; how much faster against it a motor must be than it was with it, as a factor and a share of the speed at full
-/// duty, and the way that it must have gone, counts.
+/// duty, and the distance that it must have gone, counts.
 const DRIVEN_DUTY: f64 = 0.03;
 const OUTRUN: f64 = 1.2;
 const LEAST_OUTRUN: f64 = 0.02;
@@ -40,7 +40,7 @@ const SAME: f64 = 3e-4;
 /// How long the duty takes to come down and the winding's current to follow, s.
 const BRAKED_S: f64 = 0.066;
 
-/// One poll with what a story needs.
+/// One poll with what a hypothesis needs.
 struct Moment {
     t: f64,
     counts: f64,
@@ -52,28 +52,28 @@ struct Moment {
 }
 
 /// Names what is wrong. `after` are the polls since `alarm_s`, when the duty was taken away.
-pub(crate) fn diagnose(watch: &Watch, alarm_s: f64, after: &[Point]) -> Cause {
-    let polls: Vec<Point> = watch.recent().copied().chain(after.iter().copied()).collect();
-    if is_open(watch, &polls, alarm_s) {
+pub(crate) fn diagnose(monitor: &MotorMonitor, alarm_s: f64, after: &[Point]) -> Cause {
+    let polls: Vec<Point> = monitor.recent().copied().chain(after.iter().copied()).collect();
+    if is_open(monitor, &polls, alarm_s) {
         return Cause::MotorOpened;
     }
-    let moments = moments(watch, &polls, alarm_s - BEFORE_S);
-    let stall = watch.stall_amps.filter(|stall| *stall > TELLING_STALL_AMPS);
-    let (gain, tau_s) = watch.rough_model(alarm_s);
-    let last = watch.recent().next_back().map_or(0.0, |point| point.counts);
+    let moments = moments(monitor, &polls, alarm_s - BEFORE_S);
+    let stall = monitor.stall_amps.filter(|stall| *stall > TELLING_STALL_AMPS);
+    let (gain, tau_s) = monitor.rough_model(alarm_s);
+    let last = monitor.recent().next_back().map_or(0.0, |point| point.counts);
     let alive = after.iter().any(|point| (point.counts - last).abs() > DEAD_COUNTS);
-    if gain > 0.0 && outruns(&moments, gain, watch.load_duty, alarm_s) {
+    if gain > 0.0 && outruns(&moments, gain, monitor.load_duty, alarm_s) {
         return Cause::EncoderFlipped;
     }
     if stall.is_some() && !alive {
-        return if turns_unseen(watch, &moments, alarm_s) { Cause::EncoderLost } else { Cause::Stalled };
+        return if turns_unseen(monitor, &moments, alarm_s) { Cause::EncoderLost } else { Cause::Stalled };
     }
     if !alive || gain <= 0.0 {
         return Cause::Stalled;
     }
-    let story = Story { moments: &moments, gain, tau_s, limit: limit_of(watch), alarm_s };
-    let (stopped, flipped) = (story.as_counted().min(story.stands()), story.flipped());
-    let likeness = story.likeness_of_mirror();
+    let hypotheses = Hypotheses { moments: &moments, gain, tau_s, limit: limit_of(monitor), alarm_s };
+    let (stopped, flipped) = (hypotheses.as_counted().min(hypotheses.stands()), hypotheses.flipped());
+    let likeness = hypotheses.likeness_of_mirror();
     let currents_agree = stall.is_some() && stopped > OBJECTION && flipped < AGREE * stopped;
     let currents_object = stall.is_some() && flipped > OBJECTION && stopped < BETTER * flipped;
     let goes_on = likeness < if currents_agree { MIRROR_ERROR.1 } else { MIRROR_ERROR.0 };
@@ -81,20 +81,20 @@ pub(crate) fn diagnose(watch: &Watch, alarm_s: f64, after: &[Point]) -> Cause {
 }
 
 /// Names why a motor that was pushed of late has not moved, or was counted `backwards`.
-pub(crate) fn why_unmoved(watch: &Watch, backwards: bool) -> Cause {
-    let stall = watch.stall_amps.filter(|stall| *stall > TELLING_STALL_AMPS);
-    let pushed: Vec<(f64, f64)> = watch
+pub(crate) fn why_unmoved(monitor: &MotorMonitor, backwards: bool) -> Cause {
+    let stall = monitor.stall_amps.filter(|stall| *stall > TELLING_STALL_AMPS);
+    let pushed: Vec<(f64, f64)> = monitor
         .recent()
-        .filter_map(|point| Some((watch.duty_at(point.t).abs(), point.amps?.abs())))
-        .filter(|(duty, _)| *duty > watch.start_duty)
+        .filter_map(|point| Some((monitor.duty_at(point.t).abs(), point.amps?.abs())))
+        .filter(|(duty, _)| *duty > monitor.start_duty)
         .collect();
-    if watch.draws() && !pushed.is_empty() && pushed.iter().all(|(_, amps)| *amps <= NO_CURRENT_AMPS) {
+    if monitor.draws() && !pushed.is_empty() && pushed.iter().all(|(_, amps)| *amps <= NO_CURRENT_AMPS) {
         return Cause::MotorOpened;
     }
     if backwards {
         return Cause::EncoderFlipped;
     }
-    let limit = limit_of(watch);
+    let limit = limit_of(monitor);
     let short =
         pushed.iter().map(|(duty, amps)| 1.0 - amps / stall.unwrap_or(f64::INFINITY) / duty.min(limit));
     let turns = stall.is_some() && middle(short.collect()).is_some_and(|short| short > SHORT);
@@ -107,17 +107,17 @@ fn middle(mut values: Vec<f64>) -> Option<f64> {
 }
 
 /// Whether no current flows: not at the duty that was given at last, nor while the motor is braked.
-fn is_open(watch: &Watch, polls: &[Point], alarm_s: f64) -> bool {
+fn is_open(monitor: &MotorMonitor, polls: &[Point], alarm_s: f64) -> bool {
     let none = |amps: f64| amps.abs() <= NO_CURRENT_AMPS;
-    let least_duty = watch.start_duty.max(DRIVEN_DUTY);
-    let driven = |point: &&Point| point.t < alarm_s && watch.duty_at(point.t).abs() > least_duty;
+    let least_duty = monitor.start_duty.max(DRIVEN_DUTY);
+    let driven = |point: &&Point| point.t < alarm_s && monitor.duty_at(point.t).abs() > least_duty;
     let before = polls.iter().rev().filter(driven).find_map(|point| point.amps);
     let mut after = polls.iter().filter(|point| point.t >= alarm_s).filter_map(|point| point.amps);
-    watch.draws() && before.is_some_and(none) && after.all(none)
+    monitor.draws() && before.is_some_and(none) && after.all(none)
 }
 
-fn moments(watch: &Watch, polls: &[Point], from_s: f64) -> Vec<Moment> {
-    let stall = watch.stall_amps.filter(|stall| *stall > 0.0);
+fn moments(monitor: &MotorMonitor, polls: &[Point], from_s: f64) -> Vec<Moment> {
+    let stall = monitor.stall_amps.filter(|stall| *stall > 0.0);
     let around = |n: usize| {
         let (a, b) = (&polls[n - 1], &polls[(n + 1).min(polls.len() - 1)]);
         if b.t > a.t { (b.counts - a.counts) / (b.t - a.t) } else { 0.0 }
@@ -126,15 +126,15 @@ fn moments(watch: &Watch, polls: &[Point], from_s: f64) -> Vec<Moment> {
     late.map(|(n, point)| Moment {
         t: point.t,
         counts: point.counts,
-        duty: watch.duty_at(point.t),
+        duty: monitor.duty_at(point.t),
         speed: around(n),
         current: point.amps.zip(stall).map(|(amps, stall)| amps.abs() / stall),
     })
     .collect()
 }
 
-fn limit_of(watch: &Watch) -> f64 {
-    watch.drive_limit.unwrap_or(f64::INFINITY)
+fn limit_of(monitor: &MotorMonitor) -> f64 {
+    monitor.drive_limit.unwrap_or(f64::INFINITY)
 }
 
 /// Whether the motor is counted against its duty faster than it was with it shortly before. What springs back, an end stop or a load
@@ -146,32 +146,32 @@ fn outruns(moments: &[Moment], gain: f64, load_duty: f64, alarm_s: f64) -> bool 
     let Some(last) = before().next_back().filter(|last| pull(last) * last.duty.signum() > DRIVEN_DUTY) else {
         return false;
     };
-    let way = last.duty.signum();
-    let driven = || before().rev().take_while(|moment| pull(moment) * way > DRIVEN_DUTY);
-    let against = driven().map(|moment| -moment.speed * way).fold(0.0, f64::max);
-    let with = before().map(|moment| moment.speed * way).fold(0.0, f64::max);
+    let direction = last.duty.signum();
+    let driven = || before().rev().take_while(|moment| pull(moment) * direction > DRIVEN_DUTY);
+    let against = driven().map(|moment| -moment.speed * direction).fold(0.0, f64::max);
+    let with = before().map(|moment| moment.speed * direction).fold(0.0, f64::max);
     // Nor is one that is just being turned round.
-    let began = driven().last().map_or(0.0, |first| -first.speed * way);
+    let began = driven().last().map_or(0.0, |first| -first.speed * direction);
     let with = with.max(began);
-    let gone = driven().map(|moment| (moment.counts - last.counts) * way).fold(0.0, f64::max);
+    let gone = driven().map(|moment| (moment.counts - last.counts) * direction).fold(0.0, f64::max);
     gone > LEAST_OUTRUN_COUNTS
-        && -last.speed * way > 0.4 * against
+        && -last.speed * direction > 0.4 * against
         && against > OUTRUN * with + LEAST_OUTRUN * gain
 }
 
 /// Whether currents are other than those of a motor that stands, while nothing is counted.
-fn turns_unseen(watch: &Watch, moments: &[Moment], alarm_s: f64) -> bool {
-    let limit = limit_of(watch);
+fn turns_unseen(monitor: &MotorMonitor, moments: &[Moment], alarm_s: f64) -> bool {
+    let limit = limit_of(monitor);
     let still = moments.iter().rposition(|moment| moment.speed != 0.0).map_or(0, |last| last + 1);
     let still = &moments[still..];
-    let least_duty = (TELLING_AMPS / watch.stall_amps.unwrap_or(f64::INFINITY)).max(LEAST_DUTY);
+    let least_duty = (TELLING_AMPS / monitor.stall_amps.unwrap_or(f64::INFINITY)).max(LEAST_DUTY);
     let off: Vec<f64> = still
         .iter()
         .filter(|moment| moment.duty.abs() >= least_duty)
         .filter_map(|moment| Some(1.0 - moment.current? / moment.duty.abs().min(limit)))
         .collect();
     let driven_off = middle(off).is_some_and(|middle| middle > SHORT);
-    let stall = watch.stall_amps.unwrap_or(f64::INFINITY);
+    let stall = monitor.stall_amps.unwrap_or(f64::INFINITY);
     let braked = still.iter().filter(|moment| moment.duty == 0.0 && moment.t > alarm_s + BRAKED_S);
     let braked: Vec<f64> = braked.filter_map(|moment| moment.current).collect();
     let first = braked.iter().take(2).sum::<f64>() / braked.len().clamp(1, 2) as f64;
@@ -180,8 +180,8 @@ fn turns_unseen(watch: &Watch, moments: &[Moment], alarm_s: f64) -> bool {
     driven_off || first > 0.08 || least > (2.0 * NO_CURRENT_AMPS / stall).max(0.02)
 }
 
-/// What the currents are held against.
-struct Story<'a> {
+/// What may have happened, held against the currents.
+struct Hypotheses<'a> {
     moments: &'a [Moment],
     gain: f64,
     tau_s: f64,
@@ -189,7 +189,7 @@ struct Story<'a> {
     alarm_s: f64,
 }
 
-impl Story<'_> {
+impl Hypotheses<'_> {
     fn miss(&self, moment: &Moment, speed: f64) -> f64 {
         let Some(current) = moment.current else { return 0.0 };
         let expected = (moment.duty - speed / self.gain).abs().min(self.limit);
@@ -214,7 +214,7 @@ impl Story<'_> {
         self.misfit(|moment| moment.speed)
     }
 
-    /// The motor stands while a load swings that the encoder sees.
+    /// The motor stands while a load oscillates that the encoder sees.
     fn stands(&self) -> f64 {
         self.since_best(|_| 0.0)
     }

@@ -4,8 +4,8 @@
 //! Counts are fitted, not speeds: the quantisation of a count does not grow with the poll rate. Residuals are differences
 //! of successive errors, so that a slow drift of the model costs little; outliers are softened.
 
-use crate::course::Course;
 use crate::model::PlantModel;
+use crate::open_loop_record::OpenLoopRecord;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
@@ -52,19 +52,25 @@ pub struct Fit {
     pub sd_coulomb: f64,
 }
 
-/// Fits a course. `gain` and `tau_s` are start values; `limit` is what current limit and stall current say of the drive limit,
+/// Fits an open-loop record. `gain` and `tau_s` are start values; `limit` is what current limit and stall current say of the drive limit,
 /// `brake_share` the limit for braking over that.
 #[must_use]
-pub fn fit(course: &Course, gain: f64, tau_s: f64, limit: Option<f64>, brake_share: f64) -> Option<Fit> {
-    if course.counts.len() < 12 {
+pub fn fit(
+    record: &OpenLoopRecord,
+    gain: f64,
+    tau_s: f64,
+    limit: Option<f64>,
+    brake_share: f64,
+) -> Option<Fit> {
+    if record.counts.len() < 12 {
         return None;
     }
-    let seen = course.limited_share() > 0.01;
+    let seen = record.limited_share() > 0.01;
     let limit = limit.filter(|limit| seen || *limit < LIMIT_OF_INTEREST).or(seen.then_some(0.5));
     let mut best: Option<(f64, Problem<'_>)> = None;
     for tau in std::iter::once(tau_s).chain(STARTS_S) {
         let start = Parameters { ln_gain: gain.ln(), ln_tau: tau.clamp(0.003, 5.0).ln(), limit, brake_share };
-        let problem = Problem::new(course, &start);
+        let problem = Problem::new(record, &start);
         let (problem, report) = LevenbergMarquardt::new().with_patience(25).minimize(problem);
         let cost = report.objective_function;
         if cost.is_finite() && best.as_ref().is_none_or(|b| cost < b.0) {
@@ -84,7 +90,7 @@ struct Parameters {
 
 /// Parameters: ln gain, ln tau, friction, load, offset, sag (each through a bounded map but the first two), ln limit.
 struct Problem<'a> {
-    course: &'a Course,
+    record: &'a OpenLoopRecord,
     /// For each poll: variance of its count, and of what the model drifts by since the poll before.
     noise: Vec<(f64, f64)>,
     q: DVector<f64>,
@@ -93,22 +99,22 @@ struct Problem<'a> {
 }
 
 impl<'a> Problem<'a> {
-    fn new(course: &'a Course, start: &Parameters) -> Self {
+    fn new(record: &'a OpenLoopRecord, start: &Parameters) -> Self {
         let mut q = vec![start.ln_gain, start.ln_tau, unbounded(0.05, (0.0, MOST_COULOMB)), 0.0];
         q.push(unbounded(0.004, OFFSET_S));
         q.push(unbounded(SAG_PRIOR.0, (0.0, MOST_SAG)));
         q.extend(start.limit.map(f64::ln));
-        let mut noise: Vec<(f64, f64)> = course
+        let mut noise: Vec<(f64, f64)> = record
             .counts
             .windows(2)
             .map(|pair| {
                 let dt = (pair[1].0 - pair[0].0).max(1e-4);
                 let speed = (pair[1].1 - pair[0].1) / dt;
-                (ROUNDING + (course.actuation.stamp_s * speed).powi(2), (DRIFT * speed).powi(2) * dt + 1e-3)
+                (ROUNDING + (record.actuation.stamp_s * speed).powi(2), (DRIFT * speed).powi(2) * dt + 1e-3)
             })
             .collect();
         noise.insert(0, noise.first().copied().unwrap_or((1.0, 1.0)));
-        Self { course, noise, q: DVector::from_vec(q), limit: start.limit, brake_share: start.brake_share }
+        Self { record, noise, q: DVector::from_vec(q), limit: start.limit, brake_share: start.brake_share }
     }
 
     fn model(&self, q: &DVector<f64>) -> (PlantModel, f64) {
@@ -127,14 +133,14 @@ impl<'a> Problem<'a> {
 
     fn evaluate(&self, q: &DVector<f64>) -> DVector<f64> {
         let (model, offset) = self.model(q);
-        let (mut predicted, mut volts) = (Vec::with_capacity(self.course.counts.len()), Vec::new());
-        self.course.predict(&model, offset, &mut predicted, &mut volts);
-        let errors: Vec<f64> = self.course.counts.iter().zip(&predicted).map(|((_, y), p)| y - p).collect();
+        let (mut predicted, mut volts) = (Vec::with_capacity(self.record.counts.len()), Vec::new());
+        self.record.predict(&model, offset, &mut predicted, &mut volts);
+        let errors: Vec<f64> = self.record.counts.iter().zip(&predicted).map(|((_, y), p)| y - p).collect();
         let steps = self.innovations(&errors);
-        let readings = self.course.volts.iter().zip(&volts).map(|((_, v), p)| soft((v - p) / VOLTS_SIGMA));
+        let readings = self.record.volts.iter().zip(&volts).map(|((_, v), p)| soft((v - p) / VOLTS_SIGMA));
         let prior = [
             model.load_duty / LOAD_PRIOR,
-            (offset - self.course.actuation.offset_s) / OFFSET_SIGMA_S,
+            (offset - self.record.actuation.offset_s) / OFFSET_SIGMA_S,
             (model.sag - SAG_PRIOR.0) / SAG_PRIOR.1,
             (model.tau_s / TAU_PRIOR.0).ln() / TAU_PRIOR.1,
             q.get(6).zip(self.limit).map_or(0.0, |(ln, limit)| (ln - limit.ln()) / LIMIT_PRIOR),
@@ -237,10 +243,10 @@ fn unbounded(value: f64, (low, high): (f64, f64)) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::{Drive, Input, Point};
+    use crate::experiment_guard::{Drive, Input, Point};
 
-    /// A course of steps over four seconds, its counts made by a known model and rounded.
-    fn course(model: &PlantModel, offset_s: f64) -> Course {
+    /// A record of steps over four seconds, its counts made by a known model and rounded.
+    fn known_record(model: &PlantModel, offset_s: f64) -> OpenLoopRecord {
         let steps = [(0.05, 1.0), (0.9, 0.3), (1.3, 0.65), (1.6, 0.3), (1.9, 0.65), (2.2, -1.0), (3.2, 0.0)];
         let drives: Vec<Drive> =
             steps.iter().map(|&(t, duty)| Drive { t, input: Input::Duty(duty) }).collect();
@@ -254,13 +260,13 @@ mod tests {
                 limited: false,
             })
             .collect();
-        let empty = Course::new(&points, &drives, 0.0, 4.0, None);
+        let empty = OpenLoopRecord::new(&points, &drives, 0.0, 4.0, None);
         let (mut counts, mut volts) = (Vec::new(), Vec::new());
         empty.predict(model, offset_s, &mut counts, &mut volts);
         for (point, count) in points.iter_mut().zip(&counts) {
             point.counts = count.floor();
         }
-        Course::new(&points, &drives, 0.0, 4.0, None)
+        OpenLoopRecord::new(&points, &drives, 0.0, 4.0, None)
     }
 
     #[test]
@@ -274,9 +280,9 @@ mod tests {
             brake_limit: None,
             sag: 0.05,
         };
-        let course = course(&truth, 0.005);
+        let record = known_record(&truth, 0.005);
         for start_s in [0.01, 0.09, 1.5] {
-            let found = fit(&course, 6_000.0, start_s, None, 1.0).expect("enough polls");
+            let found = fit(&record, 6_000.0, start_s, None, 1.0).expect("enough polls");
             let model = &found.model;
             assert!((model.gain_counts_per_s / 8_000.0 - 1.0).abs() < 0.01, "{found:?}");
             assert!((model.tau_s / 0.09 - 1.0).abs() < 0.02, "{found:?}");
@@ -297,9 +303,9 @@ mod tests {
             brake_limit: Some(2.0),
             sag: 0.04,
         };
-        let mut course = course(&truth, 0.0035);
-        course.limited = course.counts.iter().map(|(t, _)| *t < 0.3).collect();
-        let found = fit(&course, 7_000.0, 0.05, Some(0.39), 5.0).expect("enough polls");
+        let mut record = known_record(&truth, 0.0035);
+        record.limited = record.counts.iter().map(|(t, _)| *t < 0.3).collect();
+        let found = fit(&record, 7_000.0, 0.05, Some(0.39), 5.0).expect("enough polls");
         assert!((found.model.tau_s / 0.12 - 1.0).abs() < 0.02, "{found:?}");
         assert!((found.model.gain_counts_per_s / 8_000.0 - 1.0).abs() < 0.01, "{found:?}");
         assert!((found.model.drive_limit.unwrap() / 0.4 - 1.0).abs() < 0.03, "{found:?}");
@@ -316,7 +322,7 @@ mod tests {
             brake_limit: None,
             sag: 0.0,
         };
-        let mut turning = course(&truth, 0.0035);
+        let mut turning = known_record(&truth, 0.0035);
         turning.start_speed = 600.0;
         let (mut counts, mut volts) = (Vec::new(), Vec::new());
         turning.predict(&truth, 0.0035, &mut counts, &mut volts);
@@ -338,7 +344,7 @@ mod tests {
             brake_limit: None,
             sag: 0.05,
         };
-        let found = fit(&course(&truth, 0.004), 600.0, 0.05, None, 1.0).expect("enough polls");
+        let found = fit(&known_record(&truth, 0.004), 600.0, 0.05, None, 1.0).expect("enough polls");
         let off = (found.model.tau_s / 0.02).ln().abs();
         assert!(off < 3.0 * found.sd_ln_tau, "{off} of {}", found.sd_ln_tau);
     }

@@ -4,10 +4,10 @@
 //! controller's own answer to the speed as it sees it: the candidate loop is simulated with each lag of a grid, and the
 //! lags under which simulated counts and duties agree with the polled ones are the likely ones.
 
-use crate::course::UNDATED_STAMP_S;
+use crate::experiment_guard::{ExperimentGuard, Input};
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, Lag, LoopLaw, PlantModel};
-use crate::rig::{Input, Rig};
+use crate::open_loop_record::UNDATED_STAMP_S;
 use crate::ticks::{Setpoint, TickLoop};
 use serde::{Deserialize, Serialize};
 
@@ -35,7 +35,7 @@ const SOFT_SQUARE: f64 = 25.0;
 
 /// The closed-loop record.
 #[derive(Clone, Debug, Default)]
-pub struct ClosedCourse {
+pub struct ClosedLoopRecord {
     /// (time, setpoint speed).
     pub setpoints: Vec<(f64, f64)>,
     /// (time, counts).
@@ -48,21 +48,21 @@ pub struct ClosedCourse {
     pub is_dated: bool,
 }
 
-impl ClosedCourse {
-    /// What a rig recorded between two times under speed commands.
+impl ClosedLoopRecord {
+    /// What the experiment guard recorded between two times under speed commands.
     #[must_use]
-    pub fn of(rig: &Rig<'_>, from_s: f64, to_s: f64) -> Self {
+    pub fn of(guard: &ExperimentGuard<'_>, from_s: f64, to_s: f64) -> Self {
         let inside = |t: f64| t >= from_s && t <= to_s;
-        let setpoints = rig.drives.iter().filter(|d| inside(d.t)).filter_map(|d| match d.input {
+        let setpoints = guard.drives.iter().filter(|d| inside(d.t)).filter_map(|d| match d.input {
             Input::Speed(speed) => Some((d.t, speed)),
             Input::Duty(_) | Input::Position(..) => None,
         });
-        let points = || rig.points.iter().zip(&rig.exchanges).filter(|(p, _)| inside(p.t));
+        let points = || guard.points.iter().zip(&guard.exchanges).filter(|(p, _)| inside(p.t));
         // The quickest exchanges show what the line takes by itself; when in a longer one the counts were read is open.
         let shortest = points().map(|(_, took)| took.1).fold(f64::INFINITY, f64::min);
         let prompt = || points().filter(|(_, took)| took.1 - shortest <= LATE_S);
         let n = prompt().count().max(1) as f64;
-        let unit = rig.setup.motion_mind;
+        let unit = guard.setup.motion_mind;
         let undated_s = if unit.is_some_and(|unit| unit.is_undated) { UNDATED_STAMP_S } else { 0.0 };
         let open = prompt().map(|(_, took)| (took.1 - shortest).powi(2)).sum::<f64>() / n;
         Self {
@@ -101,14 +101,14 @@ struct Case {
 /// Fits the lag. `sd_ln_tau` is how loosely the time constant is known.
 #[must_use]
 pub fn fit_lag(
-    course: &ClosedCourse,
+    record: &ClosedLoopRecord,
     plant: &PlantModel,
     law: &LoopLaw,
     gains: &Gains,
     qpps: f64,
     sd_ln_tau: f64,
 ) -> Option<LagFit> {
-    if course.setpoints.len() < 3 || course.duties.len() < 20 {
+    if record.setpoints.len() < 3 || record.duties.len() < 20 {
         return None;
     }
     let spread = (1.5 * sd_ln_tau).clamp(TAU_PRIOR.0, TAU_PRIOR.1);
@@ -124,23 +124,23 @@ pub fn fit_lag(
             // A lag that lets more of the rounding through explains a rougher duty.
             let linear = LoopPlant::new(DiscretePlant::of(plant, law.tick_s()), law, lag);
             let sigma_duty = linear.margins(gains, qpps).noise_duty.hypot(MODEL_DUTY);
-            let spread_cost = 2.0 * course.duties.len() as f64 * (sigma_duty / MODEL_DUTY).ln();
+            let spread_cost = 2.0 * record.duties.len() as f64 * (sigma_duty / MODEL_DUTY).ln();
             for step in TAU_STEPS {
                 let tau_scale = (step * spread).exp();
                 let model = PlantModel { tau_s: plant.tau_s * tau_scale, ..*plant };
                 for offset_s in OFFSETS_S {
                     let twin = TickLoop::new(model, *law, lag, *gains, qpps).smooth();
                     let mut cost = step.powi(2) + ((offset_s - OFFSET_PRIOR_S.0) / OFFSET_PRIOR_S.1).powi(2);
-                    cost += mismatch(course, twin, law, offset_s, sigma_duty);
+                    cost += mismatch(record, twin, law, offset_s, sigma_duty);
                     cases.push(Case { lag, tau_scale, cost: cost + spread_cost, misfit: cost });
                 }
             }
         }
     }
     let best = cases.iter().min_by(|a, b| a.cost.total_cmp(&b.cost))?;
-    let readings = (course.counts.len() + course.duties.len()) as f64;
+    let readings = (record.counts.len() + record.duties.len()) as f64;
     let chi_square = best.misfit / readings;
-    // What the model explains badly it also places badly.
+    // What the model explains badly it also locates badly.
     let likely = best.cost + 4.0 * chi_square.max(1.0).powi(2);
     let total = |case: &&Case| case.lag.total_s(law);
     let within = || cases.iter().filter(|case| case.cost < likely);
@@ -155,81 +155,81 @@ pub fn fit_lag(
     })
 }
 
-/// What a loop does under the setpoints of a course, tick by tick from its first poll on.
+/// What a loop does under the setpoints of a record, tick by tick from its first poll on.
 struct Followed {
     start: f64,
     tick_s: f64,
-    places: Vec<f64>,
+    positions: Vec<f64>,
     duties: Vec<f64>,
 }
 
 impl Followed {
-    /// `started` says whether the loop is at work before the first setpoint of the course. `offset_s` is how long after its stamp a
+    /// `started` says whether the loop is at work before the first setpoint of the record. `offset_s` is how long after its stamp a
     /// setpoint takes effect.
     fn new(
-        course: &ClosedCourse,
+        record: &ClosedLoopRecord,
         mut twin: TickLoop,
         law: &LoopLaw,
         offset_s: f64,
         before: Option<f64>,
     ) -> Option<Self> {
         let tick_s = law.tick_s();
-        let (start, end) = (course.counts.first()?.0, course.counts.last()?.0);
+        let (start, end) = (record.counts.first()?.0, record.counts.last()?.0);
         let ticks = ((end - start) / tick_s) as usize + 2;
-        let (mut places, mut duties) = (Vec::with_capacity(ticks), Vec::with_capacity(ticks));
+        let (mut positions, mut duties) = (Vec::with_capacity(ticks), Vec::with_capacity(ticks));
         let (mut next, mut goal) = (0, before);
         for n in 0..ticks {
             let t = start + n as f64 * tick_s;
-            while let Some(&(at, speed)) = course.setpoints.get(next)
+            while let Some(&(at, speed)) = record.setpoints.get(next)
                 && at + offset_s <= t
             {
                 goal = Some(speed);
                 next += 1;
             }
-            places.push(twin.motion.place);
+            positions.push(twin.motion.position);
             if let Some(speed) = goal {
                 twin.tick(Setpoint::Speed(speed), 0.0);
             }
             duties.push(twin.duty);
         }
-        Some(Self { start, tick_s, places, duties })
+        Some(Self { start, tick_s, positions, duties })
     }
 
-    fn place_at(&self, t: f64) -> f64 {
+    fn position_at(&self, t: f64) -> f64 {
         // Assumed: the register is refreshed once a tick, so a reading is half a tick old on average.
         let x = ((t - self.start) / self.tick_s - 0.5).max(0.0);
-        let n = (x as usize).min(self.places.len() - 2);
-        self.places[n] + (self.places[n + 1] - self.places[n]) * (x - n as f64).min(1.0)
+        let n = (x as usize).min(self.positions.len() - 2);
+        self.positions[n] + (self.positions[n + 1] - self.positions[n]) * (x - n as f64).min(1.0)
     }
 }
 
-/// The course that a loop, at work at the speed `before`, would have given under the same setpoints and polls.
-pub(crate) fn predicted_course(
-    course: &ClosedCourse,
+/// The record that a loop, at work at the speed `before`, would have given under the same setpoints and polls.
+pub(crate) fn predicted_record(
+    record: &ClosedLoopRecord,
     twin: TickLoop,
     law: &LoopLaw,
     before: f64,
-) -> Option<ClosedCourse> {
-    let followed = Followed::new(course, twin, law, 0.5 * law.tick_s(), Some(before))?;
-    let counts = course.counts.iter().map(|&(t, _)| (t, followed.place_at(t).floor())).collect();
-    Some(ClosedCourse { setpoints: course.setpoints.clone(), counts, ..ClosedCourse::default() })
+) -> Option<ClosedLoopRecord> {
+    let followed = Followed::new(record, twin, law, 0.5 * law.tick_s(), Some(before))?;
+    let counts = record.counts.iter().map(|&(t, _)| (t, followed.position_at(t).floor())).collect();
+    Some(ClosedLoopRecord { setpoints: record.setpoints.clone(), counts, ..ClosedLoopRecord::default() })
 }
 
 /// Sum of the squared misfits of counts (differences between polls) and duties.
-fn mismatch(course: &ClosedCourse, twin: TickLoop, law: &LoopLaw, offset_s: f64, sigma_duty: f64) -> f64 {
-    let Some(followed) = Followed::new(course, twin, law, offset_s, None) else { return f64::INFINITY };
+fn mismatch(record: &ClosedLoopRecord, twin: TickLoop, law: &LoopLaw, offset_s: f64, sigma_duty: f64) -> f64 {
+    let Some(followed) = Followed::new(record, twin, law, offset_s, None) else { return f64::INFINITY };
     let (start, tick_s, duties) = (followed.start, followed.tick_s, &followed.duties);
     let ticks = duties.len();
-    let stamp_s = STAMP_S.hypot(course.stamp_s);
+    let stamp_s = STAMP_S.hypot(record.stamp_s);
     let mut sum = 0.0;
     // The start from rest is the business of friction and of the current limit, not of the lag.
-    let from_s = course.setpoints.get(1).map_or(start, |second| second.0 - 0.01);
-    for pair in course.counts.windows(2) {
+    let from_s = record.setpoints.get(1).map_or(start, |second| second.0 - 0.01);
+    for pair in record.counts.windows(2) {
         let ((t0, y0), (t1, y1)) = (pair[0], pair[1]);
         if t0 < from_s {
             continue;
         }
-        let moved = followed.place_at(t1) - followed.place_at(t0);
+        let moved = followed.position_at(t1) - followed.position_at(t0);
         let speed = (y1 - y0) / (t1 - t0).max(1e-4);
         let variance = 0.66 + (stamp_s * speed).powi(2) + (0.01 * (y1 - y0)).powi(2);
         sum += ((y1 - y0 - moved).powi(2) / variance).min(SOFT_SQUARE);
@@ -242,7 +242,7 @@ fn mismatch(course: &ClosedCourse, twin: TickLoop, law: &LoopLaw, offset_s: f64,
             let variance = sigma_duty.powi(2) + (0.25 * (after - before)).powi(2);
             ((duty - duties[n]).powi(2) / variance).min(SOFT_SQUARE)
         };
-        course.duties.iter().filter(|duty| duty.0 > from_s).map(misfit).sum()
+        record.duties.iter().filter(|duty| duty.0 > from_s).map(misfit).sum()
     };
     sum + WINDINGS_TICKS.iter().map(|&ticks| duties_with(ticks)).fold(f64::INFINITY, f64::min)
 }
@@ -270,30 +270,30 @@ mod tests {
     };
 
     /// Steps of a loop with a known lag, polled every 12.3 ms.
-    fn course(lag: Lag) -> ClosedCourse {
+    fn known_record(lag: Lag) -> ClosedLoopRecord {
         let law = LoopLaw::default();
         let mut twin = TickLoop::new(PLANT, law, lag, GAINS, 40_000.0);
-        let mut course = ClosedCourse::default();
+        let mut record = ClosedLoopRecord::default();
         for n in 0..5 {
             let speed = if n % 2 == 0 { 15_000.0 } else { 20_000.0 };
-            course.setpoints.push((0.02 + 0.35 * f64::from(n), speed));
+            record.setpoints.push((0.02 + 0.35 * f64::from(n), speed));
         }
         let mut poll = 0.0;
         for tick in 0..540 {
             let t = f64::from(tick) * law.tick_s();
-            let goal = course.setpoints.iter().rev().find(|s| s.0 <= t).map(|s| s.1);
-            let place = twin.motion.place;
+            let goal = record.setpoints.iter().rev().find(|s| s.0 <= t).map(|s| s.1);
+            let position = twin.motion.position;
             if let Some(goal) = goal {
                 twin.tick(Setpoint::Speed(goal), 0.0);
             }
             if t >= poll {
                 // A reading is half a tick old.
-                course.counts.push((t + 0.5 * law.tick_s(), place.floor()));
-                course.duties.push((t + 0.5 * law.tick_s(), twin.duty));
+                record.counts.push((t + 0.5 * law.tick_s(), position.floor()));
+                record.duties.push((t + 0.5 * law.tick_s(), twin.duty));
                 poll += 0.0123;
             }
         }
-        course
+        record
     }
 
     #[test]
@@ -305,7 +305,8 @@ mod tests {
             Lag { filter_s: 0.010, delay_ticks: 0.0 },
             Lag { filter_s: 0.010, delay_ticks: 1.0 },
         ] {
-            let found = fit_lag(&course(lag), &PLANT, &law, &GAINS, 40_000.0, 0.03).expect("enough readings");
+            let found =
+                fit_lag(&known_record(lag), &PLANT, &law, &GAINS, 40_000.0, 0.03).expect("enough readings");
             let (got, wanted) = (found.lag.total_s(&law), lag.total_s(&law));
             assert!((got - wanted).abs() < 0.0025, "{got} s instead of {wanted} s: {found:?}");
             assert!(found.chi_square < 1.5, "{found:?}");
@@ -315,7 +316,8 @@ mod tests {
     #[test]
     fn a_record_without_steps_says_nothing() {
         assert!(
-            fit_lag(&ClosedCourse::default(), &PLANT, &LoopLaw::default(), &GAINS, 40_000.0, 0.1).is_none()
+            fit_lag(&ClosedLoopRecord::default(), &PLANT, &LoopLaw::default(), &GAINS, 40_000.0, 0.1)
+                .is_none()
         );
     }
 }

@@ -6,8 +6,8 @@
 
 use crate::axis::{PositionRegisters, VelocityRegisters};
 use crate::cause::Cause;
+use crate::experiment_guard::{ExperimentGuard, Point};
 use crate::model::LoopLaw;
-use crate::rig::{Point, Rig};
 use serde::{Deserialize, Serialize};
 
 /// QPPS while probing: so high that the command is large beside whatever the motor still creeps.
@@ -77,24 +77,28 @@ fn near(found: f64, known: f64) -> bool {
     (found / known - 1.0).abs() < TOLERANCE
 }
 
-/// Looks at the loops of a motor that stands; `start_duty` is the duty that moves it. `None` where the controller tells no duty.
-pub fn probe_law(rig: &mut Rig<'_>, start_duty: f64, position: bool) -> Result<Option<LawFindings>, Cause> {
+/// Looks at the loops of a motor that stands; `start_duty` is the duty that moves it. `None` where the controller reports no duty.
+pub fn probe_law(
+    guard: &mut ExperimentGuard<'_>,
+    start_duty: f64,
+    position: bool,
+) -> Result<Option<LawFindings>, Cause> {
     let duty = (DUTY_SHARE * start_duty).clamp(DUTY.0, DUTY.1);
     let speed = (duty * QPPS).round();
-    let Some(feed) = duty_under(rig, speed, gains(0.0, 0.0))? else { return Ok(None) };
+    let Some(feed) = duty_under(guard, speed, gains(0.0, 0.0))? else { return Ok(None) };
     let feed_forward = feed * QPPS / speed;
-    let Some(with_p) = duty_under(rig, speed, gains(1.0, 0.0))? else { return Ok(None) };
+    let Some(with_p) = duty_under(guard, speed, gains(1.0, 0.0))? else { return Ok(None) };
     let proportional = (with_p - feed) * QPPS / speed;
     let mut sums_per_s = 0.0;
     for integral in INTEGRALS {
-        let share = growth_under(rig, speed, gains(0.0, integral))?;
+        let share = growth_under(guard, speed, gains(0.0, integral))?;
         sums_per_s = share * QPPS / integral;
         if share * speed * SUM_S > 0.15 * duty {
             break;
         }
     }
-    let position_scale = if position { scale_under(rig, duty)? } else { None };
-    rig.write_velocity(gains(0.0, 0.0))?;
+    let position_scale = if position { scale_under(guard, duty)? } else { None };
+    guard.write_velocity(gains(0.0, 0.0))?;
     Ok(Some(LawFindings { feed_forward, proportional, sums_per_s, position_scale }))
 }
 
@@ -103,16 +107,24 @@ fn gains(p: f64, i: f64) -> VelocityRegisters {
 }
 
 /// The middle of the duties under a speed command.
-fn duty_under(rig: &mut Rig<'_>, speed: f64, registers: VelocityRegisters) -> Result<Option<f64>, Cause> {
-    let points = under(rig, speed, registers, READ_S)?;
+fn duty_under(
+    guard: &mut ExperimentGuard<'_>,
+    speed: f64,
+    registers: VelocityRegisters,
+) -> Result<Option<f64>, Cause> {
+    let points = under(guard, speed, registers, READ_S)?;
     let mut duties: Vec<f64> = points.iter().filter_map(|p| p.duty).map(|duty| duty.1).collect();
     duties.sort_by(f64::total_cmp);
     Ok(duties.get(duties.len() / 2).copied())
 }
 
-/// How much the duty grows for each count that the motor stays behind the speed it is told.
-fn growth_under(rig: &mut Rig<'_>, speed: f64, registers: VelocityRegisters) -> Result<f64, Cause> {
-    let points = under(rig, speed, registers, SUM_S)?;
+/// How much the duty grows for each count that the motor stays behind the commanded speed.
+fn growth_under(
+    guard: &mut ExperimentGuard<'_>,
+    speed: f64,
+    registers: VelocityRegisters,
+) -> Result<f64, Cause> {
+    let points = under(guard, speed, registers, SUM_S)?;
     let pairs = points.iter().filter_map(|p| p.duty.map(|(t, duty)| (speed * t - p.counts, duty)));
     let pairs: Vec<(f64, f64)> = pairs.collect();
     let n = pairs.len().max(1) as f64;
@@ -124,40 +136,40 @@ fn growth_under(rig: &mut Rig<'_>, speed: f64, registers: VelocityRegisters) -> 
 
 /// The polls under a speed command; the first may come before the loop has acted.
 fn under(
-    rig: &mut Rig<'_>,
+    guard: &mut ExperimentGuard<'_>,
     speed: f64,
     registers: VelocityRegisters,
     seconds: f64,
 ) -> Result<Vec<Point>, Cause> {
-    rig.write_velocity(registers)?;
-    rig.speed(speed)?;
-    let from_s = rig.now_s() + 0.012;
-    rig.poll_for(0.012 + seconds, true)?;
-    rig.duty(0.0)?;
-    Ok(rig.points.iter().copied().filter(|p| p.duty.is_some_and(|duty| duty.0 > from_s)).collect())
+    guard.write_velocity(registers)?;
+    guard.speed(speed)?;
+    let from_s = guard.now_s() + 0.012;
+    guard.poll_for(0.012 + seconds, true)?;
+    guard.duty(0.0)?;
+    Ok(guard.points.iter().copied().filter(|p| p.duty.is_some_and(|duty| duty.0 > from_s)).collect())
 }
 
 /// The position scale: P alone acts on the duty directly (MCP manual 2.4.7).
-fn scale_under(rig: &mut Rig<'_>, duty: f64) -> Result<Option<f64>, Cause> {
+fn scale_under(guard: &mut ExperimentGuard<'_>, duty: f64) -> Result<Option<f64>, Cause> {
     let wanted = 1.6 * duty;
     let p = (wanted * QPPS * SCALES[0] / ERROR_COUNTS).round();
-    let (min, max) = (rig.setup.position.min, rig.setup.position.max);
+    let (min, max) = (guard.setup.position.min, guard.setup.position.max);
     let (min, max) = if min < max { (min, max) } else { (i32::MIN / 2, i32::MAX / 2) };
-    rig.write_velocity(gains(0.0, 0.0))?;
-    rig.write_position(PositionRegisters { p: p as u32, min, max, ..PositionRegisters::default() })?;
-    rig.poll(false)?;
-    let here = rig.points.last().map_or(0.0, |p| p.counts);
+    guard.write_velocity(gains(0.0, 0.0))?;
+    guard.write_position(PositionRegisters { p: p as u32, min, max, ..PositionRegisters::default() })?;
+    guard.poll(false)?;
+    let here = guard.points.last().map_or(0.0, |p| p.counts);
     // Away from the upper limit, which would shorten the error.
-    let room = f64::from(max) - (rig.origin_counts() as f64 + here);
-    let way = if room < 2.0 * ERROR_COUNTS { -1.0 } else { 1.0 };
-    let target = here + way * ERROR_COUNTS;
-    rig.position(target, QPPS as u32)?;
-    let from_s = rig.now_s() + 0.012;
-    rig.poll_for(0.012 + READ_S, true)?;
-    rig.duty(0.0)?;
-    let ratios = rig.points.iter().filter_map(|point| {
+    let room = f64::from(max) - (guard.origin_counts() as f64 + here);
+    let direction = if room < 2.0 * ERROR_COUNTS { -1.0 } else { 1.0 };
+    let target = here + direction * ERROR_COUNTS;
+    guard.position(target, QPPS as u32)?;
+    let from_s = guard.now_s() + 0.012;
+    guard.poll_for(0.012 + READ_S, true)?;
+    guard.duty(0.0)?;
+    let ratios = guard.points.iter().filter_map(|point| {
         let (t, read) = point.duty?;
-        let (error, read) = (way * (target - point.counts), way * read);
+        let (error, read) = (direction * (target - point.counts), direction * read);
         (t > from_s && read > 1e-4 && error > 0.0).then(|| p * error / (read * QPPS))
     });
     let mut ratios: Vec<f64> = ratios.collect();

@@ -57,7 +57,7 @@ pub struct LoopPlant {
     slope: Vec<Complex<f64>>,
     /// z / (z - 1) times the tick: an integral that counts the present tick.
     integral: Vec<Complex<f64>>,
-    place: Vec<Complex<f64>>,
+    position: Vec<Complex<f64>>,
     speed: Vec<Complex<f64>>,
     filter: Vec<Complex<f64>>,
     delay: Vec<Complex<f64>>,
@@ -87,11 +87,11 @@ impl LoopPlant {
         let slope: Vec<_> = z.iter().map(|z| (one - one / z) / tick_s).collect();
         let share = tick_s / (lag.filter_s + tick_s);
         let filter: Vec<_> = z.iter().map(|z| one * share / (one - one / z * (1.0 - share))).collect();
-        let place: Vec<_> = z.iter().map(|z| plant.response(*z)).collect();
-        let speed = place.iter().zip(&slope).zip(&filter).map(|((p, s), f)| p * s * f).collect();
+        let position: Vec<_> = z.iter().map(|z| plant.response(*z)).collect();
+        let speed = position.iter().zip(&slope).zip(&filter).map(|((p, s), f)| p * s * f).collect();
         let delay = omega.iter().map(|w| Complex::from_polar(1.0, -w * tick_s * lag.delay_ticks)).collect();
         let integral = slope.iter().map(|s| one / s).collect();
-        Self { law: *law, lag, plant, omega, slope, integral, place, speed, filter, delay }
+        Self { law: *law, lag, plant, omega, slope, integral, position, speed, filter, delay }
     }
 
     /// Maximum sensitivity and noise of a loop; the loop must be stable for them to mean anything.
@@ -101,12 +101,12 @@ impl LoopPlant {
         let mut noise = 0.0;
         let mut before: Option<(f64, f64)> = None;
         for n in 0..self.omega.len() {
-            let (by_speed, by_place) = self.controllers(gains, n);
-            let open = (by_speed * self.speed[n] + by_place * self.place[n]) * self.delay[n] / qpps;
+            let (by_speed, by_position) = self.controllers(gains, n);
+            let open = (by_speed * self.speed[n] + by_position * self.position[n]) * self.delay[n] / qpps;
             let sensitivity = (open + 1.0).norm().recip();
             ms = ms.max(sensitivity);
             // What a rounding error of the count does to the duty.
-            let path = (by_speed * self.slope[n] * self.filter[n] + by_place) / qpps * sensitivity;
+            let path = (by_speed * self.slope[n] * self.filter[n] + by_position) / qpps * sensitivity;
             let power = path.norm_sqr();
             if let Some((w, p)) = before {
                 noise += 0.5 * (p + power) * (self.omega[n] - w);
@@ -121,8 +121,8 @@ impl LoopPlant {
     #[must_use]
     pub fn open_loop(&self, gains: &Gains, qpps: f64) -> Vec<(f64, Complex<f64>)> {
         let at = |n: usize| {
-            let (by_speed, by_place) = self.controllers(gains, n);
-            let open = (by_speed * self.speed[n] + by_place * self.place[n]) * self.delay[n] / qpps;
+            let (by_speed, by_position) = self.controllers(gains, n);
+            let open = (by_speed * self.speed[n] + by_position * self.position[n]) * self.delay[n] / qpps;
             (self.omega[n], open)
         };
         (0..self.omega.len()).map(at).collect()
@@ -135,19 +135,19 @@ impl LoopPlant {
         matrix.complex_eigenvalues().iter().map(|pole| pole.norm()).fold(0.0, f64::max)
     }
 
-    /// What the controller makes of a speed and of a place at one frequency, before the division by QPPS.
+    /// What the controller makes of a speed and of a position at one frequency, before the division by QPPS.
     fn controllers(&self, gains: &Gains, n: usize) -> (Complex<f64>, Complex<f64>) {
         let velocity = gains.velocity;
         let mut by_speed = self.integral[n] * velocity.i + self.slope[n] * velocity.d + velocity.p;
         if gains.velocity_sum != 0.0 {
             by_speed += self.integral[n] * self.integral[n] * gains.velocity_sum;
         }
-        let by_place = gains.position.map_or(Complex::new(0.0, 0.0), |position| {
+        let by_position = gains.position.map_or(Complex::new(0.0, 0.0), |position| {
             let wanted = self.integral[n] * position.i + self.slope[n] * position.d + position.p;
             let forward = if is_simple(gains) { 1.0 } else { f64::from(u8::from(self.law.feed_forward)) };
             wanted * (by_speed + forward)
         });
-        (by_speed, by_place)
+        (by_speed, by_position)
     }
 
     /// The closed loop as one matrix over: plant, last count, filtered speed, velocity integral, last velocity error, position
@@ -157,22 +157,22 @@ impl LoopPlant {
         let delay = self.lag.delay_ticks.ceil() as usize;
         let tick_s = self.law.tick_s();
         let size = n + 5 + delay;
-        let (last, filtered, sum, error, place_sum, queue) = (n, n + 1, n + 2, n + 3, n + 4, n + 5);
+        let (last, filtered, sum, error, position_sum, queue) = (n, n + 1, n + 2, n + 3, n + 4, n + 5);
         let unit = |k: usize| DVector::from_fn(size, |r, _| f64::from(u8::from(r == k)));
         let mut y = DVector::zeros(size);
         y.rows_mut(0, n).copy_from(&self.plant.c);
         let share = tick_s / (self.lag.filter_s + tick_s);
         let measured = unit(filtered) * (1.0 - share) + (&y - unit(last)) * (share / tick_s);
-        let (mut wanted, mut new_place_sum) = (DVector::zeros(size), DVector::zeros(size));
+        let (mut wanted, mut new_position_sum) = (DVector::zeros(size), DVector::zeros(size));
         if let Some(position) = gains.position {
-            new_place_sum = unit(place_sum) - &y * tick_s;
+            new_position_sum = unit(position_sum) - &y * tick_s;
             wanted =
-                &y * -position.p + &new_place_sum * position.i - (&y - unit(last)) * (position.d / tick_s);
+                &y * -position.p + &new_position_sum * position.i - (&y - unit(last)) * (position.d / tick_s);
         }
         let new_error = &wanted - &measured;
         let new_sum = unit(sum) + &new_error * tick_s;
         if gains.velocity_sum != 0.0 {
-            new_place_sum = unit(place_sum) + &new_sum * tick_s;
+            new_position_sum = unit(position_sum) + &new_sum * tick_s;
         }
         let velocity = gains.velocity;
         let forward = if is_simple(gains) || self.law.feed_forward { 1.0 } else { 0.0 };
@@ -182,7 +182,7 @@ impl LoopPlant {
             (wanted * forward
                 + &new_error * velocity.p
                 + &new_sum * velocity.i
-                + &new_place_sum * gains.velocity_sum
+                + &new_position_sum * gains.velocity_sum
                 + (&new_error - unit(error)) * (velocity.d / tick_s))
                 / qpps
         };
@@ -202,25 +202,25 @@ impl LoopPlant {
         }
         matrix.set_row(error, &new_error.transpose());
         if gains.position.is_some_and(|p| p.i != 0.0) || gains.velocity_sum != 0.0 {
-            matrix.set_row(place_sum, &new_place_sum.transpose());
+            matrix.set_row(position_sum, &new_position_sum.transpose());
         }
         for k in 0..delay {
             let row = if k + 1 < delay { unit(queue + k + 1) } else { duty.clone() };
             matrix.set_row(queue + k, &row.transpose());
         }
         if gains.position.is_none() {
-            // The place itself is under no control: its pole at 1 is no fault. A velocity loop sees differences only.
+            // The position itself is under no control: its pole at 1 is no fault. A velocity loop sees differences only.
             return self.speed_loop(matrix, n, last);
         }
         matrix.iter().all(|x| x.is_finite()).then_some(matrix)
     }
 
-    /// The loop in differences of successive states, so that the free place drops out.
+    /// The loop in differences of successive states, so that the free position drops out.
     fn speed_loop(&self, matrix: DMatrix<f64>, n: usize, last: usize) -> Option<DMatrix<f64>> {
         if !matrix.iter().all(|x| x.is_finite()) {
             return None;
         }
-        // States shift by a common place: project that direction out. `e` is the place of every plant state and the last count.
+        // States shift by a common position: project that direction out. `e` is the position of every plant state and the last count.
         let size = matrix.nrows();
         let shift = self.free_shift(n, size, last);
         let scale = shift.norm_squared();
@@ -232,7 +232,7 @@ impl LoopPlant {
         Some(&matrix - &image * (shift.transpose() / scale))
     }
 
-    /// The direction in which every place moves by one count.
+    /// The direction in which every position moves by one count.
     fn free_shift(&self, n: usize, size: usize, last: usize) -> DVector<f64> {
         let mut best = DVector::zeros(size);
         let identity = DMatrix::identity(n, n);

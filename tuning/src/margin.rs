@@ -1,26 +1,26 @@
 //! How far the gain of a velocity loop can be raised on the machine before the loop gets rough: its gain margin, asked of the machine
-//! itself. A springy shaft swings faster than polls can see and no model knows of it; the duty that is read back shows it anyhow.
+//! itself. A springy shaft oscillates faster than polls can see and no model knows of it; the duty that is read back shows it anyhow.
 
 use crate::cause::Cause;
 use crate::design::Task;
+use crate::experiment_guard::ExperimentGuard;
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, LoopLaw, Pid};
+use crate::oscillation::deviation;
 use crate::registers::velocity_registers;
-use crate::rig::Rig;
-use crate::swing::deviation;
 
 /// Gains tried, as multiples of the proposed ones, up to the margin that is wanted.
 const FACTORS: [f64; 5] = [1.2, 1.4, 1.6, 1.8, 2.0];
 /// The sensitivity up to which a model counts as calm.
 const CALM_MS: f64 = 2.8;
-/// The most that is asked of a loop that swings.
+/// The most that is asked of a loop that oscillates.
 const MOST_FACTOR: f64 = 2.5;
 /// The sensitivity that may really be where one was designed for: what lies beyond it is what the trial is to find.
 const MS_ALLOWED: f64 = 1.25;
 /// Setpoint of the trial and height of its steps, as shares of full speed.
 const SPEED: f64 = 0.30;
 const STEP: (f64, f64) = (0.02, 0.08);
-/// The duty that a step asks for at once at the highest gain tried: as much as leaves the play of a gear, where a shaft does not swing.
+/// The duty that a step asks for at once at the highest gain tried: as much as leaves the backlash of a gear, where a shaft does not oscillate.
 const STEP_DUTY: f64 = 0.3;
 /// How long a gain is tried, in lags of the loop, and the bounds, s.
 const LAGS: f64 = 14.0;
@@ -54,17 +54,17 @@ fn wanted_factor(ms: f64) -> f64 {
     (allowed / (allowed - 1.0)).min(FACTORS[FACTORS.len() - 1])
 }
 
-/// The multiple that a loop with the sensitivity that was designed for has, for one that was seen to swing below the other.
+/// The multiple that a loop with the sensitivity that was designed for has, for one that was seen to oscillate below the other.
 fn full_factor(ms: f64) -> f64 {
     (ms / (ms - 1.0)).min(MOST_FACTOR)
 }
 
-/// The velocity loop of gains. A loop on the place that acts on the duty directly is one too: its derivative is a gain of the speed and
+/// The velocity loop of gains. A loop on the position that acts on the duty directly is one too: its derivative is a gain of the speed and
 /// its gain an integral, but for the filter on the speed, which only a velocity loop has.
 fn velocity_loop_of(gains: &Gains) -> Gains {
-    let place = gains.position.unwrap_or_default();
+    let position = gains.position.unwrap_or_default();
     let is_direct = gains.velocity == Pid::default();
-    let velocity = if is_direct { Pid { p: place.d, i: place.p, d: 0.0 } } else { gains.velocity };
+    let velocity = if is_direct { Pid { p: position.d, i: position.p, d: 0.0 } } else { gains.velocity };
     Gains { velocity, ..Gains::default() }
 }
 
@@ -86,7 +86,7 @@ pub(crate) fn scaled(gains: &Gains, factor: f64) -> Gains {
 /// Raises the velocity gains step by step at a steady speed, as far as the duty stays quiet. The motor is braked at the end; the raised
 /// gains stand in the registers then.
 pub(crate) fn headroom(
-    rig: &mut Rig<'_>,
+    guard: &mut ExperimentGuard<'_>,
     task: &Task,
     law: &LoopLaw,
     gains: &Gains,
@@ -99,14 +99,14 @@ pub(crate) fn headroom(
         task.noise_factor.max(1.0) * plant.margins(&scaled(&inner, factor), task.qpps).noise_duty
     };
     let lag_s = task.lag.total_s(law) + 2.0 * law.tick_s();
-    let tried_s = (LAGS * lag_s).clamp(TRIED_S.0, TRIED_S.1).max(LEAST_POLLS * rig.options.poll_s / HEARD);
+    let tried_s = (LAGS * lag_s).clamp(TRIED_S.0, TRIED_S.1).max(LEAST_POLLS * guard.options.poll_s / HEARD);
     let settle_s = (1.5 * task.plant.tau_s).clamp(0.15, 1.0);
-    rig.write_velocity(velocity_registers(&inner.velocity, task.qpps, law))?;
+    guard.write_velocity(velocity_registers(&inner.velocity, task.qpps, law))?;
     let step = (STEP_DUTY / (wanted * inner.velocity.p).max(1e-6)).clamp(STEP.0, STEP.1);
     let speed = |side: f64| between_counts((SPEED + side * step) * task.qpps, law.tick_s());
-    rig.speed(speed(-1.0))?;
-    rig.poll_for(settle_s, true)?;
-    let usual = activity(rig, speed(1.0), tried_s)?;
+    guard.speed(speed(-1.0))?;
+    guard.poll_for(settle_s, true)?;
+    let usual = activity(guard, speed(1.0), tried_s)?;
     let mut quiet = 1.0;
     let mut side = -1.0;
     for factor in FACTORS.map(|factor| factor.min(wanted)) {
@@ -117,37 +117,37 @@ pub(crate) fn headroom(
             // The rounding of a coarse encoder alone makes such a noise.
             return Ok(Headroom { quiet: wanted, wanted });
         }
-        rig.write_velocity(velocity_registers(&scaled(&inner, factor).velocity, task.qpps, law))?;
-        let measured = activity(rig, speed(side), tried_s)?;
+        guard.write_velocity(velocity_registers(&scaled(&inner, factor).velocity, task.qpps, law))?;
+        let measured = activity(guard, speed(side), tried_s)?;
         let expected = predicted(factor).max(usual * predicted(factor) / predicted(1.0).max(1e-4));
         let bound = (TOO_ROUGH * expected).max(LEAST_ROUGH);
-        // Looked at twice: what swings goes on, unless it is so strong that it had better stop at once.
+        // Looked at twice: what oscillates goes on, unless it is so strong that it had better stop at once.
         let again = measured > bound && measured <= AT_ONCE * bound;
-        let rough = if again { activity(rig, speed(side), tried_s)? } else { measured };
+        let rough = if again { activity(guard, speed(side), tried_s)? } else { measured };
         if rough > bound {
-            rig.duty(0.0)?;
+            guard.duty(0.0)?;
             return Ok(Headroom { quiet, wanted: full_factor(task.goal.ms).min(most) });
         }
         quiet = factor;
         side = -side;
     }
-    rig.duty(0.0)?;
+    guard.duty(0.0)?;
     Ok(Headroom { quiet, wanted })
 }
 
 /// A speed near this one at which each tick counts a half more than a whole number: the difference of two ticks is never the same, and
-/// a loop that swings by less than a count shows it. At whole numbers it could stand still in the controller's eyes.
+/// a loop that oscillates by less than a count shows it. At whole numbers it could stand still in the controller's eyes.
 fn between_counts(speed: f64, tick_s: f64) -> f64 {
     let per_tick = speed * tick_s;
     if per_tick > LEAST_PER_TICK { (per_tick.floor() + 0.5) / tick_s } else { speed }
 }
 
 /// Deviation of the duty in the second half of a step.
-fn activity(rig: &mut Rig<'_>, speed: f64, tried_s: f64) -> Result<f64, Cause> {
-    rig.speed(speed)?;
-    let from_s = rig.now_s() + (1.0 - HEARD) * tried_s;
-    rig.poll_for(tried_s, true)?;
+fn activity(guard: &mut ExperimentGuard<'_>, speed: f64, tried_s: f64) -> Result<f64, Cause> {
+    guard.speed(speed)?;
+    let from_s = guard.now_s() + (1.0 - HEARD) * tried_s;
+    guard.poll_for(tried_s, true)?;
     let duties: Vec<(f64, f64)> =
-        rig.points.iter().filter_map(|point| point.duty).filter(|duty| duty.0 >= from_s).collect();
+        guard.points.iter().filter_map(|point| point.duty).filter(|duty| duty.0 >= from_s).collect();
     Ok(deviation(&duties))
 }

@@ -70,7 +70,7 @@ pub struct LoopLaw {
     pub position_scale: f64,
     /// Whether the setpoint's share of QPPS is added to the duty.
     pub feed_forward: bool,
-    /// The law of a Motion Mind instead: one loop on the place, its output a duty.
+    /// The law of a Motion Mind instead: one loop on the position, its output a duty.
     #[serde(default)]
     pub motion_mind: Option<MotionMindLaw>,
 }
@@ -127,7 +127,7 @@ pub struct Pid {
 pub struct Gains {
     /// Velocity loop: speeds in, speeds out. All zero in position modes that act on the duty directly.
     pub velocity: Pid,
-    /// On the sum of the place's errors under a speed command, per s^2: ITERM of a Motion Mind, an integral of the integral. Nothing
+    /// On the sum of the position's errors under a speed command, per s^2: ITERM of a Motion Mind, an integral of the integral. Nothing
     /// else has it.
     #[serde(default)]
     pub velocity_sum: f64,
@@ -145,7 +145,7 @@ pub struct Motion {
     /// Counts/s.
     pub speed: f64,
     /// Counts.
-    pub place: f64,
+    pub position: f64,
 }
 
 impl PlantModel {
@@ -178,13 +178,13 @@ impl PlantModel {
             let decay = (-left / tau_s).exp();
             let end = goal + (motion.speed - goal) * decay;
             if motion.speed == 0.0 || end * motion.speed > 0.0 {
-                motion.place += goal * left + (motion.speed - goal) * tau_s * (1.0 - decay);
+                motion.position += goal * left + (motion.speed - goal) * tau_s * (1.0 - decay);
                 motion.speed = end;
                 return;
             }
             let stop_s = (tau_s * ((motion.speed - goal) / -goal).ln()).clamp(0.0, left);
             let decay = (-stop_s / tau_s).exp();
-            motion.place += goal * stop_s + (motion.speed - goal) * tau_s * (1.0 - decay);
+            motion.position += goal * stop_s + (motion.speed - goal) * tau_s * (1.0 - decay);
             motion.speed = 0.0;
             left -= stop_s;
         }
@@ -212,12 +212,12 @@ impl PlantModel {
     fn slide(&self, motion: &mut Motion, slope: f64, dt: f64) -> Option<f64> {
         let end = motion.speed + slope * dt;
         if motion.speed == 0.0 || end * motion.speed > 0.0 {
-            motion.place += 0.5 * (motion.speed + end) * dt;
+            motion.position += 0.5 * (motion.speed + end) * dt;
             motion.speed = end;
             return None;
         }
         let used = (-motion.speed / slope).clamp(0.0, dt);
-        motion.place += 0.5 * motion.speed * used;
+        motion.position += 0.5 * motion.speed * used;
         motion.speed = 0.0;
         Some(used)
     }
@@ -247,23 +247,23 @@ mod tests {
             plant().step(&mut cut, 0.55, 0.004);
         }
         assert!((whole.speed - 5_000.0 * (1.0 - (-2.0_f64).exp())).abs() < 1e-9);
-        assert!((whole.speed - cut.speed).abs() < 1e-8 && (whole.place - cut.place).abs() < 1e-8);
+        assert!((whole.speed - cut.speed).abs() < 1e-8 && (whole.position - cut.position).abs() < 1e-8);
     }
 
     #[test]
     fn friction_stops_the_motor_where_the_equation_says_and_holds_it() {
-        let mut motion = Motion { speed: 5_000.0, place: 0.0 };
+        let mut motion = Motion { speed: 5_000.0, position: 0.0 };
         plant().step(&mut motion, 0.0, 1.0);
-        // v = -500 + 5500 exp(-t/tau) is zero at tau ln 11; the way is tau (5000 - 500 ln 11).
+        // v = -500 + 5500 exp(-t/tau) is zero at tau ln 11; the distance is tau (5000 - 500 ln 11).
         assert_eq!(motion.speed, 0.0);
-        assert!((motion.place - 0.1 * (5_000.0 - 500.0 * 11.0_f64.ln())).abs() < 1e-9);
+        assert!((motion.position - 0.1 * (5_000.0 - 500.0 * 11.0_f64.ln())).abs() < 1e-9);
         plant().step(&mut motion, 0.049, 1.0);
         assert_eq!(motion.speed, 0.0);
     }
 
     #[test]
     fn a_reversal_passes_through_rest() {
-        let mut motion = Motion { speed: 5_000.0, place: 0.0 };
+        let mut motion = Motion { speed: 5_000.0, position: 0.0 };
         plant().step(&mut motion, -0.55, 2.0);
         assert!((motion.speed + 5_000.0).abs() < 1.0);
     }

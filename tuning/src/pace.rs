@@ -112,7 +112,7 @@ mod tests {
         assert!((busy - 0.025).abs() < 1e-9, "{busy}");
         assert!(
             Pace::default().longest_late_s(&[0.0, 0.016]).is_some_and(|gap_s| gap_s > 0.015),
-            "no gap is told as 0 ms"
+            "no gap is reported as 0 ms"
         );
     }
 

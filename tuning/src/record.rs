@@ -42,7 +42,7 @@ pub enum Entry {
     MotionMind(MotionMindRegisters, Result<(), AxisError>),
     /// The run on a Motion Mind ended with these.
     MotionMindEnd(MotionMindRegisters, Result<(), AxisError>),
-    /// Travel told.
+    /// Travel given.
     Travel((i64, i64), Result<(), AxisError>),
 }
 

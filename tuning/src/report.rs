@@ -3,7 +3,7 @@
 use crate::axis::{PositionRegisters, Setup, VelocityRegisters};
 use crate::cause::Cause;
 use crate::design::{Design, Task};
-use crate::experiment::{FreeRun, Probe, Slack, WindowRun};
+use crate::experiment::{Backlash, FreeRun, Probe, WindowRun};
 use crate::fit::Fit;
 use crate::lag::LagFit;
 use crate::law_probe::LawFindings;
@@ -11,7 +11,7 @@ use crate::motion_mind::MotionMindRegisters;
 use crate::record::{Entry, Player};
 use crate::rules::Classic;
 use crate::tune::{Request, tune};
-use crate::winding::{NotTold, Winding};
+use crate::winding::{Winding, WindingUnknown};
 use serde::{Deserialize, Serialize};
 
 /// Version of the form of a report. Reports without one are of the first.
@@ -40,7 +40,7 @@ pub struct Measured {
     pub overshoot: f64,
     /// Root mean square of the duty on plateaus.
     pub duty_rms: f64,
-    /// Peak to peak of the place or speed at rest, over the step.
+    /// Peak to peak of the position or speed at rest, over the step.
     pub ripple: f64,
     /// Multiple of the gains up to which the velocity loop stayed quiet; `None` where it was not tried.
     #[serde(default)]
@@ -79,12 +79,12 @@ pub struct Report {
     /// Resistance of the winding.
     #[serde(default)]
     pub winding: Option<Winding>,
-    /// Why that was not told, where an open-loop run could have.
+    /// Why that is not known, where an open-loop run could have.
     #[serde(default)]
-    pub winding_unknown: Option<NotTold>,
-    /// Play of the mechanics, of a position run.
-    #[serde(default)]
-    pub slack: Option<Slack>,
+    pub winding_unknown: Option<WindingUnknown>,
+    /// Backlash of the mechanics, of a position run.
+    #[serde(default, rename = "slack")]
+    pub backlash: Option<Backlash>,
     /// The lag of the loop.
     pub lag: Option<LagFit>,
     /// What the design was made for: the model with all that the run learned of the loop.

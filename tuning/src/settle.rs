@@ -3,7 +3,7 @@
 //! For each time constant of a grid, `y = y0 + v t + a (1 - exp(-t/tau))` is linear in the rest, so the best of all is found
 //! without a start value.
 
-use crate::rig::Point;
+use crate::experiment_guard::Point;
 use nalgebra::{Matrix3, Vector3};
 
 /// A speed that a drive settles at.
@@ -101,7 +101,7 @@ fn fit(points: &[Point], t0: f64, tau: f64, span: f64) -> Option<(f64, f64, f64)
 mod tests {
     use super::*;
 
-    fn course(speed: f64, tau: f64, seconds: f64) -> Vec<Point> {
+    fn first_order_rise(speed: f64, tau: f64, seconds: f64) -> Vec<Point> {
         let polls = (seconds / 0.012) as usize;
         (0..polls)
             .map(|n| {
@@ -113,9 +113,9 @@ mod tests {
     }
 
     #[test]
-    fn a_known_course_gives_its_speed_long_before_it_has_settled() {
+    fn a_known_rise_gives_its_speed_long_before_it_has_settled() {
         for (speed, tau) in [(9_000.0, 0.02), (4_000.0, 0.15), (-30_000.0, 1.2)] {
-            let found = settled(&course(speed, tau, 2.2 * tau + 0.2)).unwrap();
+            let found = settled(&first_order_rise(speed, tau, 2.2 * tau + 0.2)).unwrap();
             assert!((found.speed / speed - 1.0).abs() < 0.02, "{found:?}");
             assert!(found.interval < 0.1, "{found:?}");
         }
@@ -123,7 +123,7 @@ mod tests {
 
     #[test]
     fn the_interval_covers_the_truth() {
-        let found = settled(&course(800.0, 0.3, 0.5)).unwrap();
+        let found = settled(&first_order_rise(800.0, 0.3, 0.5)).unwrap();
         assert!((found.speed - 800.0).abs() <= 800.0 * found.interval * 1.5, "{found:?}");
     }
 }

@@ -2,7 +2,7 @@
 //! limit and wind-up are in it; a twin of the axis for predictions.
 
 use crate::model::{Gains, Lag, LoopLaw, Motion, PlantModel};
-use crate::motion_mind::{Limiter, LimiterState, PlaceLoop};
+use crate::motion_mind::{Limiter, LimiterState, PositionLoop};
 use crate::score::{LOAD_STEP_DUTY, Score, VELOCITY_STEP, horizon_s, position_step};
 
 /// What the loop is to do.
@@ -10,8 +10,8 @@ use crate::score::{LOAD_STEP_DUTY, Score, VELOCITY_STEP, horizon_s, position_ste
 pub enum Setpoint {
     /// Speed, counts/s.
     Speed(f64),
-    /// Place and speed bound.
-    Place(f64, f64),
+    /// Position and speed bound.
+    Position(f64, f64),
 }
 
 /// A loop in simulation.
@@ -29,10 +29,10 @@ pub struct TickLoop {
     filtered: f64,
     integral: f64,
     last_error: f64,
-    place_integral: f64,
-    last_place_error: Option<f64>,
+    position_integral: f64,
+    last_position_error: Option<f64>,
     last_target: f64,
-    place_loop: PlaceLoop,
+    position_loop: PositionLoop,
     limit: LimiterState,
     queue: [f64; 9],
     smooth: bool,
@@ -55,10 +55,10 @@ impl TickLoop {
             filtered: 0.0,
             integral: 0.0,
             last_error: 0.0,
-            place_integral: 0.0,
-            last_place_error: None,
+            position_integral: 0.0,
+            last_position_error: None,
             last_target: f64::NAN,
-            place_loop: PlaceLoop::default(),
+            position_loop: PositionLoop::default(),
             limit: LimiterState::default(),
             queue: [0.0; 9],
             smooth: false,
@@ -74,7 +74,7 @@ impl TickLoop {
 
     /// Puts a velocity loop into the steady state of a speed.
     pub fn start_steady(&mut self, speed: f64) {
-        self.motion = Motion { speed, place: 0.0 };
+        self.motion = Motion { speed, position: 0.0 };
         self.last_count = (-speed * self.law.tick_s()).floor();
         self.filtered = speed;
         let plant = &self.plant;
@@ -84,7 +84,8 @@ impl TickLoop {
             self.integral = (duty * self.qpps - forward) / self.gains.velocity.i;
         }
         if let Some(law) = self.law.motion_mind {
-            self.place_loop = PlaceLoop::steady(law, &self.gains, self.qpps, self.law.tick_s(), speed, duty);
+            self.position_loop =
+                PositionLoop::steady(law, &self.gains, self.qpps, self.law.tick_s(), speed, duty);
         }
         self.queue = [duty; 9];
         self.duty = duty;
@@ -93,19 +94,19 @@ impl TickLoop {
     /// One tick: measures, computes, moves on. Returns the duty that the bridge held.
     pub fn tick(&mut self, setpoint: Setpoint, load_duty: f64) -> f64 {
         let tick_s = self.law.tick_s();
-        let count = if self.smooth { self.motion.place } else { self.motion.place.floor() };
+        let count = if self.smooth { self.motion.position } else { self.motion.position.floor() };
         let share = tick_s / (self.lag.filter_s + tick_s);
         self.filtered += share * ((count - self.last_count) / tick_s - self.filtered);
         self.last_count = count;
         let duty = match (self.law.motion_mind, setpoint) {
             (Some(law), _) => {
                 let gains = (&self.gains, self.qpps, tick_s);
-                let duty = self.place_loop.turn(law, gains, setpoint, count, self.smooth);
-                self.place_loop.note_bound(self.limit.bound);
+                let duty = self.position_loop.turn(law, gains, setpoint, count, self.smooth);
+                self.position_loop.note_bound(self.limit.bound);
                 Limiter::left(&self.limit, duty)
             }
             (None, Setpoint::Speed(speed)) => self.velocity(speed),
-            (None, Setpoint::Place(place, bound)) => self.place(place, bound, count),
+            (None, Setpoint::Position(position, bound)) => self.position(position, bound, count),
         };
         self.queue.rotate_right(1);
         self.queue[0] = duty;
@@ -164,20 +165,20 @@ impl TickLoop {
         (down.clamp(-1.0, 1.0), up.clamp(-1.0, 1.0))
     }
 
-    fn place(&mut self, target: f64, bound: f64, count: f64) -> f64 {
+    fn position(&mut self, target: f64, bound: f64, count: f64) -> f64 {
         let tick_s = self.law.tick_s();
         let Some(gains) = self.gains.position else { return 0.0 };
         if target != self.last_target {
-            self.last_place_error = None;
+            self.last_position_error = None;
             self.last_target = target;
         }
         let error = target - count;
-        let slope = self.last_place_error.map_or(0.0, |before| (error - before) / tick_s);
-        self.last_place_error = Some(error);
+        let slope = self.last_position_error.map_or(0.0, |before| (error - before) / tick_s);
+        self.last_position_error = Some(error);
         let acting = if error.abs() <= self.gains.deadzone_counts { 0.0 } else { error };
         let most = self.gains.max_integral;
-        self.place_integral = (self.place_integral + acting * tick_s).clamp(-most, most);
-        let wanted = gains.p * acting + gains.i * self.place_integral + gains.d * slope;
+        self.position_integral = (self.position_integral + acting * tick_s).clamp(-most, most);
+        let wanted = gains.p * acting + gains.i * self.position_integral + gains.d * slope;
         let speed = wanted.clamp(-bound, bound);
         let v = self.gains.velocity;
         if v.p == 0.0 && v.i == 0.0 && v.d == 0.0 {
@@ -186,9 +187,6 @@ impl TickLoop {
         self.velocity(speed)
     }
 }
-
-/// A predicted response for a picture: (time, value, duty).
-pub type Course = Vec<(f64, f64, f64)>;
 
 /// The velocity test on the model: the score and the root mean square of the last quarter's speed ripple over the step.
 #[must_use]
@@ -219,10 +217,10 @@ pub fn position_test(plant: &PlantModel, law: &LoopLaw, lag: Lag, gains: &Gains,
 
 /// What still goes on in the last third of a test, after the step or after the load, whichever is more.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Unrest {
+pub(crate) struct Residual {
     /// Standard deviation of the duty after the step, and after the load.
     pub(crate) duty: (f64, f64),
-    /// Way from the lowest to the highest place, counts.
+    /// Distance from the lowest to the highest position, counts.
     pub(crate) range_counts: f64,
 }
 
@@ -234,7 +232,7 @@ pub(crate) fn position_test_and_end(
     lag: Lag,
     gains: &Gains,
     qpps: f64,
-) -> (Score, Unrest) {
+) -> (Score, Residual) {
     let tick_s = law.tick_s();
     let ticks = (horizon_s(plant.tau_s) / tick_s) as usize;
     let step = position_step(plant.gain_counts_per_s, plant.tau_s);
@@ -242,18 +240,18 @@ pub(crate) fn position_test_and_end(
     let mut run = |load: f64| -> (Vec<f64>, Vec<f64>) {
         (0..ticks)
             .map(|_| {
-                let duty = twin.tick(Setpoint::Place(step, qpps), load);
-                (step - twin.motion.place, duty)
+                let duty = twin.tick(Setpoint::Position(step, qpps), load);
+                (step - twin.motion.position, duty)
             })
             .unzip()
     };
     let (after_step, after_load) = (run(0.0), run(LOAD_STEP_DUTY));
     let late = ticks * 7 / 10;
-    let unrest = Unrest {
+    let residual = Residual {
         duty: (spread(&after_step.1[late..]), spread(&after_load.1[late..])),
         range_counts: range(&after_step.0[late..]).max(range(&after_load.0[late..])),
     };
-    (Score::of(&after_step.0, &after_load.0, tick_s, step, 0.02f64.max(3.0 / step)), unrest)
+    (Score::of(&after_step.0, &after_load.0, tick_s, step, 0.02f64.max(3.0 / step)), residual)
 }
 
 /// Standard deviation.

@@ -1,14 +1,14 @@
-//! What happened in a run, as a picture shows it: where the axis was, what it was told, and which gains held when.
+//! What happened in a run, as a picture shows it: where the axis was, what it was commanded, and which gains held when.
 //!
 //! It grows call by call from a live axis, or comes whole from the raw record of a report. Nothing is computed from it here but
 //! speeds, and the response that a model predicts for the same commands.
 
 use crate::axis::{AMPS_PER_RAW, EncoderClass, FULL_DUTY_RAW, PositionRegisters, Sample, VelocityRegisters};
 use crate::design::Task;
+use crate::experiment_guard::{Drive, Input};
 use crate::model::Gains;
 use crate::motion_mind::MotionMindRegisters;
 use crate::record::Entry;
-use crate::rig::{Drive, Input};
 use crate::ticks::{Setpoint, TickLoop};
 
 /// Counts of an absolute encoder for one turn (MCP manual 2.4.9, command 16).
@@ -52,7 +52,7 @@ pub struct Trace {
     epoch_s: Option<f64>,
     last_raw: Option<i64>,
     first_raw: i64,
-    way: i64,
+    travelled: i64,
 }
 
 /// A stretch of a run in which a loop held the motor.
@@ -121,7 +121,7 @@ impl Trace {
         }
     }
 
-    /// Seconds since the first time that was told.
+    /// Seconds since the first time that was reported.
     fn since_start(&mut self, at_s: f64) -> f64 {
         at_s - *self.epoch_s.get_or_insert(at_s)
     }
@@ -169,8 +169,8 @@ impl Trace {
         } else if step < -(turn / 2) {
             step += turn;
         }
-        self.way += step;
-        self.way
+        self.travelled += step;
+        self.travelled
     }
 
     /// Speeds between polls that lie at least `over_s` apart: (time in the middle, counts/s).
@@ -217,7 +217,7 @@ impl Trace {
         let start = self.points.iter().rev().find(|point| point.t <= stretch.from_s);
         let origin = start.or(self.points.first()).map_or(0.0, |point| point.counts);
         let mut twin = TickLoop::new(task.plant, task.law, task.lag, *gains, task.qpps);
-        let mut course = Vec::new();
+        let mut response = Vec::new();
         let ticks = ((stretch.to_s - stretch.from_s) / tick_s).clamp(0.0, 60_000.0) as usize;
         let commands: Vec<&Drive> =
             self.drives.iter().filter(|drive| drive.t >= stretch.from_s && drive.t <= stretch.to_s).collect();
@@ -230,7 +230,7 @@ impl Trace {
             {
                 goal = match drive.input {
                     Input::Speed(speed) => Some(Setpoint::Speed(speed)),
-                    Input::Position(place, bound) => Some(Setpoint::Place(place - origin, bound)),
+                    Input::Position(position, bound) => Some(Setpoint::Position(position - origin, bound)),
                     Input::Duty(_) => goal,
                 };
                 next += 1;
@@ -238,10 +238,10 @@ impl Trace {
             if let Some(goal) = goal {
                 twin.tick(goal, 0.0);
             }
-            let (counts, speed, duty) = (origin + twin.motion.place, twin.motion.speed, twin.duty);
-            course.push(Predicted { t: t + tick_s, counts, speed, duty });
+            let (counts, speed, duty) = (origin + twin.motion.position, twin.motion.speed, twin.duty);
+            response.push(Predicted { t: t + tick_s, counts, speed, duty });
         }
-        course
+        response
     }
 }
 

@@ -4,12 +4,12 @@ use crate::axis::{Axis, PositionRegisters, VelocityRegisters};
 use crate::cause::Cause;
 use crate::design::{Design, Task};
 use crate::experiment::Probe;
+use crate::experiment_guard::ExperimentGuard;
 use crate::model::Gains;
 use crate::motion_mind::MotionMindRegisters;
 use crate::record::{Entry, Recorder};
 use crate::registers::{gains_of, velocity_gains};
 use crate::report::Measured;
-use crate::rig::Rig;
 use crate::tune::{Excitation, Method, Request};
 use crate::verify::{is_rougher, try_position, try_velocity, try_velocity_inside};
 use crate::whatif::forecast;
@@ -79,60 +79,60 @@ pub fn registers_gains(
 pub fn run_trial(axis: &mut dyn Axis, wanted: &TrialRequest) -> Trial {
     let mut recorder = Recorder::new(axis);
     let mut trial = Trial { cause: None, measured: None, seconds: 0.0, record: Vec::new() };
-    match Rig::new(&mut recorder, wanted.request.guard) {
+    match ExperimentGuard::new(&mut recorder, wanted.request.guard) {
         Err(cause) => trial.cause = Some(cause),
-        Ok(mut rig) => {
-            rig.progress("Trying the gains on the machine");
-            match moves(&mut rig, wanted) {
+        Ok(mut guard) => {
+            guard.progress("Trying the gains on the machine");
+            match moves(&mut guard, wanted) {
                 Ok((measured, rougher)) => {
                     trial.measured = Some(measured);
-                    trial.cause = rougher.then(|| rig.concluded(Cause::NotVerified));
+                    trial.cause = rougher.then(|| guard.concluded(Cause::NotVerified));
                 }
                 Err(cause) => {
-                    let cause = rig.concluded(cause);
-                    rig.leave_off(cause);
+                    let cause = guard.concluded(cause);
+                    guard.leave_off(cause);
                     trial.cause = Some(cause);
                 }
             }
-            trial.seconds = rig.now_s();
-            rig.finish(false);
+            trial.seconds = guard.now_s();
+            guard.finish(false);
         }
     }
     trial.record = recorder.into_entries();
     trial
 }
 
-fn moves(rig: &mut Rig<'_>, wanted: &TrialRequest) -> Result<(Measured, bool), Cause> {
+fn moves(guard: &mut ExperimentGuard<'_>, wanted: &TrialRequest) -> Result<(Measured, bool), Cause> {
     let (task, gains) = wanted.on_model();
     let shown = forecast(&task, &gains);
     let design = Design { gains, score: shown.score, ms: shown.ms, noise_duty: shown.noise_duty };
-    rig.watch.start_duty = wanted.probe.start_duty;
-    rig.watch.stall_amps = wanted.probe.stall_amps;
-    rig.watch.full_speed = wanted.task.qpps;
-    rig.watch.stopping_s = wanted.task.plant.tau_s;
-    rig.watch.drive_limit = rig.drive_limit(wanted.probe.stall_amps);
-    rig.watch.know(&wanted.task.plant);
-    write_loops(rig, wanted)?;
+    guard.monitor.start_duty = wanted.probe.start_duty;
+    guard.monitor.stall_amps = wanted.probe.stall_amps;
+    guard.monitor.full_speed = wanted.task.qpps;
+    guard.monitor.stopping_s = wanted.task.plant.tau_s;
+    guard.monitor.drive_limit = guard.drive_limit(wanted.probe.stall_amps);
+    guard.monitor.know(&wanted.task.plant);
+    write_loops(guard, wanted)?;
     let measured = if gains.position.is_some() {
-        try_position(rig, &wanted.request, &task, &design)?
+        try_position(guard, &wanted.request, &task, &design)?
     } else {
         match wanted.request.excitation {
-            Excitation::Free => try_velocity(rig, &task, &gains)?,
-            Excitation::Window(width) => try_velocity_inside(rig, &task, &gains, width)?,
+            Excitation::Free => try_velocity(guard, &task, &gains)?,
+            Excitation::Window(width) => try_velocity_inside(guard, &task, &gains, width)?,
         }
     };
     Ok((measured, is_rougher(&design, &measured)))
 }
 
-fn write_loops(rig: &mut Rig<'_>, wanted: &TrialRequest) -> Result<(), Cause> {
+fn write_loops(guard: &mut ExperimentGuard<'_>, wanted: &TrialRequest) -> Result<(), Cause> {
     match wanted.motion_mind {
         Some(registers) if !registers.is_usual_loop() => return Err(Cause::OtherLoop),
-        Some(registers) => return rig.write_motion_mind(registers),
+        Some(registers) => return guard.write_motion_mind(registers),
         None => {}
     }
-    rig.write_velocity(wanted.velocity)?;
+    guard.write_velocity(wanted.velocity)?;
     match wanted.position.filter(|_| wanted.request.method != Method::Velocity) {
-        Some(position) => rig.write_position(position),
+        Some(position) => guard.write_position(position),
         None => Ok(()),
     }
 }

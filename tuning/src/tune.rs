@@ -2,21 +2,21 @@
 
 use crate::axis::{Axis, EncoderClass, Setup};
 use crate::cause::Cause;
-use crate::course::{Actuation, Course};
 use crate::design::{
     Design, Goal, Task, USUAL_OVERSHOOT, design_pd, design_pid, design_piv, design_velocity, unmodelled_ticks,
 };
-use crate::experiment::{Probe, go_to, measure_slack, run_free, run_probe, run_window};
+use crate::experiment::{Probe, go_to, measure_backlash, run_free, run_probe, run_window};
+use crate::experiment_guard::{ExperimentGuard, GuardOptions};
 use crate::fit::{Fit, fit};
 use crate::lag::LagFit;
 use crate::law_probe::probe_law;
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, Lag, LoopLaw, PlantModel};
 use crate::motion_mind::{self, MotionMindLaw};
+use crate::open_loop_record::{Actuation, OpenLoopRecord};
 use crate::record::Recorder;
 use crate::registers::{position_registers, velocity_gains, velocity_registers};
 use crate::report::{FORMAT, Report, Verdict};
-use crate::rig::{GuardOptions, Rig};
 use crate::rules::Classic;
 use crate::verify::{check_moves, measure_lag, rest};
 use crate::winding::winding_of;
@@ -40,7 +40,7 @@ const ODD_CHI_SQUARE: f64 = 2.2;
 const ODD_SHARE: f64 = 0.6;
 /// The overshoot that is then designed for.
 const SHORT_OVERSHOOT: f64 = 0.15;
-/// Misfit that speaks of play, and the shortest integral time of such a machine, in time constants.
+/// Misfit that speaks of backlash, and the shortest integral time of such a machine, in time constants.
 const LOOSE_CHI_SQUARE: f64 = 2.3;
 const LOOSE_INTEGRAL: f64 = 1.2;
 /// Share of the travel window that has to be free around the axis, and the narrowest window, counts.
@@ -118,23 +118,23 @@ impl Default for Request {
 pub fn tune(axis: &mut dyn Axis, request: &Request) -> Report {
     let mut recorder = Recorder::new(axis);
     let mut report = blank(request);
-    let outcome = match Rig::new(&mut recorder, request.guard) {
+    let outcome = match ExperimentGuard::new(&mut recorder, request.guard) {
         Err(cause) => Err(cause),
-        Ok(mut rig) => {
-            report.before = Some(rig.setup);
-            let request = &confined(request, &rig.setup);
+        Ok(mut guard) => {
+            report.before = Some(guard.setup);
+            let request = &confined(request, &guard.setup);
             report.request = *request;
-            rig.options = request.guard;
-            let outcome = run(&mut rig, request, &mut report).map_err(|cause| rig.concluded(cause));
+            guard.options = request.guard;
+            let outcome = run(&mut guard, request, &mut report).map_err(|cause| guard.concluded(cause));
             let keep = outcome.is_ok() && request.keep;
-            if keep && let Err(cause) = write_final(&mut rig, &report) {
+            if keep && let Err(cause) = write_final(&mut guard, &report) {
                 report.causes.push(cause);
             }
-            if outcome.is_err_and(|cause| rig.leave_off(cause)) {
+            if outcome.is_err_and(|cause| guard.leave_off(cause)) {
                 report.causes.push(Cause::LoopOff);
             }
-            report.seconds.1 = rig.now_s();
-            rig.finish(keep);
+            report.seconds.1 = guard.now_s();
+            guard.finish(keep);
             outcome
         }
     };
@@ -186,7 +186,7 @@ fn blank(request: &Request) -> Report {
         law: None,
         winding: None,
         winding_unknown: None,
-        slack: None,
+        backlash: None,
         lag: None,
         task: None,
         design: None,
@@ -199,35 +199,35 @@ fn blank(request: &Request) -> Report {
     }
 }
 
-fn run(rig: &mut Rig<'_>, request: &Request, report: &mut Report) -> Result<(), Cause> {
-    let request = &for_family(rig, request, report)?;
-    if request.method == Method::Velocity && rig.setup.encoder == EncoderClass::AbsoluteWrapping {
+fn run(guard: &mut ExperimentGuard<'_>, request: &Request, report: &mut Report) -> Result<(), Cause> {
+    let request = &for_family(guard, request, report)?;
+    if request.method == Method::Velocity && guard.setup.encoder == EncoderClass::AbsoluteWrapping {
         return Err(Cause::WrappingEncoder);
     }
-    rig.progress("Checking the wiring with a little duty");
-    let probe = run_probe(rig, 1.0)?;
-    rig.progress("Measuring the motor");
+    guard.progress("Checking the wiring with a little duty");
+    let probe = run_probe(guard, 1.0)?;
+    guard.progress("Measuring the motor");
     report.probe = Some(probe);
     let found = match request.excitation {
-        Excitation::Free => identify_free(rig, &probe, report)?,
+        Excitation::Free => identify_free(guard, &probe, report)?,
         Excitation::Window(width) => {
-            let width = usable_width(rig, &probe, width)?;
-            identify_window(rig, &probe, width, report)?
+            let width = usable_width(guard, &probe, width)?;
+            identify_window(guard, &probe, width, report)?
         }
     };
     let model = found.fit.model;
-    rig.watch.know(&model);
+    guard.monitor.know(&model);
     report.fit = Some(found.fit);
     report.qpps = Some(found.qpps);
     if model.load_duty.abs() > model.coulomb_duty + SURELY_HEAVY {
         report.causes.push(Cause::HeavyLoad);
     }
-    report.seconds.0 = rig.now_s();
-    match winding_of(&rig.points, &rig.drives) {
+    report.seconds.0 = guard.now_s();
+    match winding_of(&guard.points, &guard.drives) {
         Ok(winding) => report.winding = Some(winding),
         Err(why) => report.winding_unknown = Some(why),
     }
-    let request = &with_law(rig, request, &probe, &found, report)?;
+    let request = &with_law(guard, request, &probe, &found, report)?;
     let task = Task {
         plant: found.fit.model,
         law: request.law,
@@ -240,27 +240,30 @@ fn run(rig: &mut Rig<'_>, request: &Request, report: &mut Report) -> Result<(), 
         qpps: found.qpps,
         goal: Goal::of_level(request.level),
         noise_factor: (probe.noise_counts / ROUNDED_COUNTS).max(1.0),
-        slack_counts: 0.0,
+        backlash_counts: 0.0,
         least_integral_s: 0.0,
         most_overshoot: USUAL_OVERSHOOT,
     };
-    rig.progress("Measuring the lag of the loop");
-    let task = settle_lag(rig, request, task, report)?;
-    let task =
-        if request.method == Method::Pid { with_slack(rig, request, task, &probe, report)? } else { task };
+    guard.progress("Measuring the lag of the loop");
+    let task = settle_lag(guard, request, task, report)?;
+    let task = if request.method == Method::Pid {
+        with_backlash(guard, request, task, &probe, report)?
+    } else {
+        task
+    };
     report.task = Some(task);
     let design = design_for(request.method, &task).ok_or(Cause::TooCoarse)?;
-    propose(report, request, &task, design, rig.options.travel);
+    propose(report, request, &task, design, guard.options.travel);
     if request.verify {
-        rig.progress("Trying the gains on the machine");
-        check_moves(rig, request, &task, report)?;
+        guard.progress("Trying the gains on the machine");
+        check_moves(guard, request, &task, report)?;
     }
     Ok(())
 }
 
 /// The request with the law of the family.
-fn for_family(rig: &Rig<'_>, request: &Request, report: &mut Report) -> Result<Request, Cause> {
-    if rig.setup.motion_mind.is_none() {
+fn for_family(guard: &ExperimentGuard<'_>, request: &Request, report: &mut Report) -> Result<Request, Cause> {
+    if guard.setup.motion_mind.is_none() {
         return Ok(*request);
     }
     if request.method == Method::Piv {
@@ -282,19 +285,19 @@ fn longest_lag(law: &LoopLaw) -> Lag {
 }
 
 /// The width that fits into the travel window around where the axis stands; from near an end it goes to the middle first.
-fn usable_width(rig: &mut Rig<'_>, probe: &Probe, width: f64) -> Result<f64, Cause> {
-    let Some((low, high)) = rig.travel_counts() else { return Ok(width) };
-    if rig.room_counts().is_some_and(|room| room < ENOUGH_ROOM * (high - low)) {
-        rig.progress("Going to the middle of the travel");
-        go_to(rig, probe, 0.5 * (low + high))?;
+fn usable_width(guard: &mut ExperimentGuard<'_>, probe: &Probe, width: f64) -> Result<f64, Cause> {
+    let Some((low, high)) = guard.travel_counts() else { return Ok(width) };
+    if guard.room_counts().is_some_and(|room| room < ENOUGH_ROOM * (high - low)) {
+        guard.progress("Going to the middle of the travel");
+        go_to(guard, probe, 0.5 * (low + high))?;
     }
-    let room = rig.room_counts().unwrap_or(0.0).min(width);
+    let room = guard.room_counts().unwrap_or(0.0).min(width);
     if room < LEAST_WIDTH_COUNTS { Err(Cause::NarrowTravel) } else { Ok(room) }
 }
 
 /// The request with the law that the controller follows. A run that may not move by loops keeps the law that it was given.
 fn with_law(
-    rig: &mut Rig<'_>,
+    guard: &mut ExperimentGuard<'_>,
     request: &Request,
     probe: &Probe,
     found: &Found,
@@ -302,7 +305,7 @@ fn with_law(
 ) -> Result<Request, Cause> {
     if request.law.motion_mind.is_some() {
         // The manual tells this law; what depends on the motor is the feed-forward.
-        let mind = MotionMindLaw { amps_limit: rig.amps_limit(), ..MotionMindLaw::of_qpps(found.qpps) };
+        let mind = MotionMindLaw { amps_limit: guard.amps_limit(), ..MotionMindLaw::of_qpps(found.qpps) };
         let law = LoopLaw { motion_mind: Some(mind), ..request.law };
         report.request.law = law;
         return Ok(Request { law, ..*request });
@@ -310,10 +313,10 @@ fn with_law(
     if !request.probe_law || !request.verify {
         return Ok(*request);
     }
-    rig.progress("Finding out the law of the loop");
-    rest(rig, found.fit.model.tau_s, found.qpps)?;
+    guard.progress("Finding out the law of the loop");
+    rest(guard, found.fit.model.tau_s, found.qpps)?;
     let position = request.method != Method::Velocity;
-    let Some(findings) = probe_law(rig, probe.start_duty, position)? else { return Ok(*request) };
+    let Some(findings) = probe_law(guard, probe.start_duty, position)? else { return Ok(*request) };
     report.law = Some(findings);
     let law = findings.law(&request.law, position).ok_or(Cause::UnknownLaw)?;
     report.request.law = law;
@@ -326,20 +329,24 @@ struct Found {
     qpps: f64,
 }
 
-fn identify_free(rig: &mut Rig<'_>, probe: &Probe, report: &mut Report) -> Result<Found, Cause> {
-    let run = run_free(rig, probe)?;
+fn identify_free(
+    guard: &mut ExperimentGuard<'_>,
+    probe: &Probe,
+    report: &mut Report,
+) -> Result<Found, Cause> {
+    let run = run_free(guard, probe)?;
     report.free = Some(run);
-    report.classic = Classic::of(&rig.points, &rig.drives, &run);
+    report.classic = Classic::of(&guard.points, &guard.drives, &run);
     let full = 0.5 * (run.full_speeds.0 + run.full_speeds.1);
     if (run.full_speeds.0 - run.full_speeds.1).abs() > 0.05 * full {
         report.causes.push(Cause::Asymmetric);
     }
-    let now_s = rig.now_s();
-    let course = course_of(rig, run.from_s, now_s, probe.volts);
-    let limit = rig.drive_limit(probe.stall_amps);
+    let now_s = guard.now_s();
+    let record = open_loop_record_of(guard, run.from_s, now_s, probe.volts);
+    let limit = guard.drive_limit(probe.stall_amps);
     let found =
-        fit(&course, full / run.full_duty, run.tau_s, limit, brake_share(rig)).ok_or(Cause::TooCoarse)?;
-    believe(&found, rig.options.poll_s, &course)?;
+        fit(&record, full / run.full_duty, run.tau_s, limit, brake_share(guard)).ok_or(Cause::TooCoarse)?;
+    believe(&found, guard.options.poll_s, &record)?;
     // With less than full duty the model says what full duty would give.
     let qpps = if run.full_duty > 0.999 {
         full
@@ -350,42 +357,48 @@ fn identify_free(rig: &mut Rig<'_>, probe: &Probe, report: &mut Report) -> Resul
 }
 
 fn identify_window(
-    rig: &mut Rig<'_>,
+    guard: &mut ExperimentGuard<'_>,
     probe: &Probe,
     width: f64,
     report: &mut Report,
 ) -> Result<Found, Cause> {
-    let run = run_window(rig, probe, width)?;
+    let run = run_window(guard, probe, width)?;
     report.window = Some(run);
-    let now_s = rig.now_s();
-    let course = course_of(rig, run.from_s, now_s, probe.volts);
+    let now_s = guard.now_s();
+    let record = open_loop_record_of(guard, run.from_s, now_s, probe.volts);
     let start = run.top_speed / (probe.start_duty + 0.4);
-    let limit = rig.drive_limit(probe.stall_amps);
-    let found = fit(&course, start, 0.06, limit, brake_share(rig)).ok_or(Cause::TooCoarse)?;
-    believe(&found, rig.options.poll_s, &course)?;
+    let limit = guard.drive_limit(probe.stall_amps);
+    let found = fit(&record, start, 0.06, limit, brake_share(guard)).ok_or(Cause::TooCoarse)?;
+    believe(&found, guard.options.poll_s, &record)?;
     let qpps = found.model.gain_counts_per_s * (1.0 - found.model.coulomb_duty);
     Ok(Found { fit: found, qpps })
 }
 
-fn course_of(rig: &Rig<'_>, from_s: f64, to_s: f64, volts: Option<f64>) -> Course {
-    let course = Course::new(&rig.points, &rig.drives, from_s, to_s, volts);
-    match rig.setup.motion_mind {
+fn open_loop_record_of(
+    guard: &ExperimentGuard<'_>,
+    from_s: f64,
+    to_s: f64,
+    volts: Option<f64>,
+) -> OpenLoopRecord {
+    let record = OpenLoopRecord::new(&guard.points, &guard.drives, from_s, to_s, volts);
+    match guard.setup.motion_mind {
         Some(unit) => {
-            let actuation = Actuation::motion_mind(rig.amps_limit(), !unit.is_undated);
-            Course { actuation, ..course }
+            let actuation = Actuation::motion_mind(guard.amps_limit(), !unit.is_undated);
+            OpenLoopRecord { actuation, ..record }
         }
-        None => course,
+        None => record,
     }
 }
 
 /// The current limit for braking over that for driving.
-fn brake_share(rig: &Rig<'_>) -> f64 {
-    let (drive, brake) = (f64::from(rig.setup.max_current_raw), f64::from(rig.setup.min_current_raw).abs());
+fn brake_share(guard: &ExperimentGuard<'_>) -> f64 {
+    let (drive, brake) =
+        (f64::from(guard.setup.max_current_raw), f64::from(guard.setup.min_current_raw).abs());
     if drive > 0.0 && brake > 0.0 { brake / drive } else { 1.0 }
 }
 
-fn believe(fit: &Fit, poll_s: f64, course: &Course) -> Result<(), Cause> {
-    if course.limited_share() > 0.5 {
+fn believe(fit: &Fit, poll_s: f64, record: &OpenLoopRecord) -> Result<(), Cause> {
+    if record.limited_share() > 0.5 {
         return Err(Cause::CurrentLimited);
     }
     if fit.chi_square > WORST_CHI_SQUARE {
@@ -398,15 +411,20 @@ fn believe(fit: &Fit, poll_s: f64, course: &Course) -> Result<(), Cause> {
 }
 
 /// Measures the lag with a careful velocity loop where the axis may turn freely.
-fn settle_lag(rig: &mut Rig<'_>, request: &Request, task: Task, report: &mut Report) -> Result<Task, Cause> {
+fn settle_lag(
+    guard: &mut ExperimentGuard<'_>,
+    request: &Request,
+    task: Task,
+    report: &mut Report,
+) -> Result<Task, Cause> {
     if !request.verify || request.excitation != Excitation::Free {
         return Ok(task);
     }
     let careful = Task { goal: Goal { ms: 1.4, ..task.goal }, ..task };
     let Some(design) = design_velocity(&careful) else { return Ok(task) };
-    let gains = write_careful(rig, &design.gains, &task)?;
+    let gains = write_careful(guard, &design.gains, &task)?;
     let sd_ln_tau = report.fit.map_or(0.1, |fit| fit.sd_ln_tau);
-    let Some((found, noise_factor)) = measure_lag(rig, &careful, &gains, sd_ln_tau)? else {
+    let Some((found, noise_factor)) = measure_lag(guard, &careful, &gains, sd_ln_tau)? else {
         report.causes.push(Cause::LagUnknown);
         return Ok(task);
     };
@@ -414,9 +432,9 @@ fn settle_lag(rig: &mut Rig<'_>, request: &Request, task: Task, report: &mut Rep
     Ok(with_lag(Task { noise_factor, ..task }, &found))
 }
 
-/// Measures the play of a position axis by little pushes: before an integral is designed, and where a loop hunts.
-pub(crate) fn with_slack(
-    rig: &mut Rig<'_>,
+/// Measures the backlash of a position axis by little pushes: before an integral is designed, and where a loop hunts.
+pub(crate) fn with_backlash(
+    guard: &mut ExperimentGuard<'_>,
     request: &Request,
     task: Task,
     probe: &Probe,
@@ -425,22 +443,22 @@ pub(crate) fn with_slack(
     if !request.verify {
         return Ok(task);
     }
-    rig.progress("Looking for play at reversals");
-    rig.duty(0.0)?;
-    rest(rig, task.plant.tau_s, task.qpps)?;
-    report.slack = measure_slack(rig, probe, &task.plant)?;
-    Ok(Task { slack_counts: report.slack.map_or(0.0, |slack| slack.counts), ..task })
+    guard.progress("Looking for backlash at reversals");
+    guard.duty(0.0)?;
+    rest(guard, task.plant.tau_s, task.qpps)?;
+    report.backlash = measure_backlash(guard, probe, &task.plant)?;
+    Ok(Task { backlash_counts: report.backlash.map_or(0.0, |backlash| backlash.counts), ..task })
 }
 
 /// Writes the gains of a velocity loop, and gives them as the registers hold them.
-fn write_careful(rig: &mut Rig<'_>, gains: &Gains, task: &Task) -> Result<Gains, Cause> {
-    if let (Some(unit), Some(law)) = (rig.setup.motion_mind, task.law.motion_mind) {
+fn write_careful(guard: &mut ExperimentGuard<'_>, gains: &Gains, task: &Task) -> Result<Gains, Cause> {
+    if let (Some(unit), Some(law)) = (guard.setup.motion_mind, task.law.motion_mind) {
         let registers = unit.registers.with(gains, task.qpps, law);
-        rig.write_motion_mind(registers)?;
+        guard.write_motion_mind(registers)?;
         return Ok(registers.gains(task.qpps, false));
     }
     let registers = velocity_registers(&gains.velocity, task.qpps, &task.law);
-    rig.write_velocity(registers)?;
+    guard.write_velocity(registers)?;
     Ok(Gains { velocity: velocity_gains(&registers, &task.law), ..Gains::default() })
 }
 
@@ -454,7 +472,7 @@ fn with_lag(task: Task, found: &LagFit) -> Task {
     let worst_lag = Lag { delay_ticks: found.worst.delay_ticks + unmodelled_ticks(&task.law), ..found.worst };
     let (mut goal, mut least_integral_s, mut most_overshoot) = (task.goal, 0.0, task.most_overshoot);
     if found.chi_square > ODD_CHI_SQUARE {
-        // Something swings or has play that the model knows nothing of: keep more distance.
+        // Something oscillates or has backlash that the model knows nothing of: keep more distance.
         goal.ms = 1.0 + ODD_SHARE * (goal.ms - 1.0);
         most_overshoot = SHORT_OVERSHOOT;
     }
@@ -511,16 +529,16 @@ fn clamp(counts: i64) -> i32 {
     counts.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32
 }
 
-fn write_final(rig: &mut Rig<'_>, report: &Report) -> Result<(), Cause> {
+fn write_final(guard: &mut ExperimentGuard<'_>, report: &Report) -> Result<(), Cause> {
     if let Some(registers) = report.motion_mind {
-        rig.keep_motion_mind(registers);
+        guard.keep_motion_mind(registers);
         return Ok(());
     }
     if let Some(velocity) = report.velocity {
-        rig.write_velocity(velocity)?;
+        guard.write_velocity(velocity)?;
     }
     if let Some(position) = report.position {
-        rig.write_position(position)?;
+        guard.write_position(position)?;
     }
     Ok(())
 }

@@ -2,16 +2,16 @@
 
 use crate::cause::Cause;
 use crate::design::{Design, Goal, Task, deadzone};
-use crate::lag::{ClosedCourse, LagFit, fit_lag, predicted_course};
+use crate::experiment_guard::{ExperimentGuard, Point};
+use crate::lag::{ClosedLoopRecord, LagFit, fit_lag, predicted_record};
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::margin::{headroom, scaled};
 use crate::model::{Gains, Pid};
+use crate::oscillation::{deviation, flank_overshoot, speed_ripple};
 use crate::report::{Measured, Report};
-use crate::rig::{Point, Rig};
 use crate::score::{horizon_s, position_step};
-use crate::swing::{deviation, flank_overshoot, speed_ripple};
 use crate::ticks::{TickLoop, velocity_test};
-use crate::tune::{Excitation, Method, Request, design_for, propose, with_slack};
+use crate::tune::{Excitation, Method, Request, design_for, propose, with_backlash};
 
 /// Setpoint of the velocity trial, as a share of full speed.
 const MIDDLE: f64 = 0.45;
@@ -22,9 +22,9 @@ const INSIDE_SHARE: f64 = 0.35;
 /// Irregular dwell times, relative: no limit cycle can hide in step with them.
 const DWELLS: [f64; STEPS] = [1.0, 0.87, 1.15, 0.93, 1.17, 0.83];
 /// Overshoot of a move that a position loop may show, and by how much it may be more than predicted.
-const MOST_PLACE_OVERSHOOT: f64 = 0.05;
-const PLACE_DOUBT: f64 = 0.04;
-/// Counts that are no overshoot yet, and no swing yet.
+const MOST_POSITION_OVERSHOOT: f64 = 0.05;
+const POSITION_DOUBT: f64 = 0.04;
+/// Counts that are no overshoot yet, and no oscillation yet.
 const ROUNDED_COUNTS: f64 = 1.5;
 const ROUNDING_COUNTS: f64 = 2.5;
 /// Overshoot and ripple over the step that a velocity loop may show.
@@ -35,11 +35,11 @@ const MOST_RIPPLE: f64 = 0.045;
 const TAIL_COUNTS: f64 = 4.0;
 const TAIL_SHARE: f64 = 0.02;
 const FINE_COUNTS: f64 = 8.0;
-/// Swing of a place at rest over the step, beyond what rounding may show.
-const MOST_PLACE_RIPPLE: f64 = 0.010;
+/// Oscillation of a position at rest over the step, beyond what rounding may show.
+const MOST_POSITION_RIPPLE: f64 = 0.010;
 /// Share of a move that a loop which works makes at the least, and of a speed.
 const LEAST_MOVE: f64 = 0.2;
-/// Share of the way to the farther end of the travel that a move goes at the most.
+/// Share of the distance to the farther end of the travel that a move goes at the most.
 const MOST_OF_ROOM: f64 = 0.6;
 /// How long the last move is watched when it should be over, s.
 const WATCH_S: f64 = 0.6;
@@ -50,54 +50,54 @@ const BACK_OFF: f64 = 0.7;
 
 /// Runs setpoint steps with gains that are already written, and fits the lag. `None` where the record says nothing.
 pub fn measure_lag(
-    rig: &mut Rig<'_>,
+    guard: &mut ExperimentGuard<'_>,
     task: &Task,
     gains: &Gains,
     sd_ln_tau: f64,
 ) -> Result<Option<(LagFit, f64)>, Cause> {
-    let (from_s, to_s) = run_steps(rig, task, gains)?;
-    let course = ClosedCourse::of(rig, from_s, to_s);
-    let Some(found) = fit_lag(&course, &task.plant, &task.law, gains, task.qpps, sd_ln_tau) else {
+    let (from_s, to_s) = run_steps(guard, task, gains)?;
+    let record = ClosedLoopRecord::of(guard, from_s, to_s);
+    let Some(found) = fit_lag(&record, &task.plant, &task.law, gains, task.qpps, sd_ln_tau) else {
         return Ok(None);
     };
     let noise = LoopPlant::new(DiscretePlant::of(&task.plant, task.law.tick_s()), &task.law, found.lag)
         .margins(gains, task.qpps)
         .noise_duty;
     let settled = from_s + (2.5 * task.plant.tau_s).clamp(0.3, 2.0);
-    let measured = plateau_activity(&ClosedCourse::of(rig, settled, to_s));
+    let measured = plateau_activity(&ClosedLoopRecord::of(guard, settled, to_s));
     // Readings of the duty are whole steps of 1/32767, and a quiet loop tells nothing about its noise.
     let factor = if noise > 0.004 { (measured / noise).clamp(0.9, 3.0) } else { 1.0 };
     Ok(Some((found, factor)))
 }
 
 /// Six steps about the middle speed, from rest. The motor is braked at the end.
-fn run_steps(rig: &mut Rig<'_>, task: &Task, gains: &Gains) -> Result<(f64, f64), Cause> {
+fn run_steps(guard: &mut ExperimentGuard<'_>, task: &Task, gains: &Gains) -> Result<(f64, f64), Cause> {
     let p = gains.velocity.p;
-    let height = ((0.7 / (1.0 + p)).clamp(0.03, 0.3) * task.qpps).max(2.0 * rig.speed_step());
+    let height = ((0.7 / (1.0 + p)).clamp(0.03, 0.3) * task.qpps).max(2.0 * guard.speed_step());
     let lag_s = task.lag.total_s(&task.law) + 2.0 * task.law.tick_s();
     let dwell_s = (14.0 * lag_s + task.plant.tau_s / (1.0 + p)).clamp(0.2, 1.0);
-    rig.duty(0.0)?;
-    rest(rig, task.plant.tau_s, task.qpps)?;
-    let from_s = rig.now_s();
-    rig.poll(true)?;
-    rig.speed(MIDDLE * task.qpps - 0.5 * height)?;
-    rig.poll_for((2.5 * task.plant.tau_s).clamp(0.3, 2.0), true)?;
+    guard.duty(0.0)?;
+    rest(guard, task.plant.tau_s, task.qpps)?;
+    let from_s = guard.now_s();
+    guard.poll(true)?;
+    guard.speed(MIDDLE * task.qpps - 0.5 * height)?;
+    guard.poll_for((2.5 * task.plant.tau_s).clamp(0.3, 2.0), true)?;
     for (n, dwell) in DWELLS.iter().enumerate() {
         let side = if n % 2 == 0 { 0.5 } else { -0.5 };
-        rig.speed(MIDDLE * task.qpps + side * height)?;
-        rig.poll_for(dwell_s * dwell, true)?;
+        guard.speed(MIDDLE * task.qpps + side * height)?;
+        guard.poll_for(dwell_s * dwell, true)?;
     }
-    let to_s = rig.now_s();
-    rig.duty(0.0)?;
+    let to_s = guard.now_s();
+    guard.duty(0.0)?;
     Ok((from_s, to_s))
 }
 
 /// Waits until the motor stands.
-pub(crate) fn rest(rig: &mut Rig<'_>, tau_s: f64, qpps: f64) -> Result<(), Cause> {
-    let until = rig.now_s() + 0.1 + 6.0 * tau_s;
-    while rig.now_s() < until {
-        rig.poll(false)?;
-        let slow = rig.recent_speed(6).is_some_and(|speed| speed.abs() < 0.004 * qpps);
+pub(crate) fn rest(guard: &mut ExperimentGuard<'_>, tau_s: f64, qpps: f64) -> Result<(), Cause> {
+    let until = guard.now_s() + 0.1 + 6.0 * tau_s;
+    while guard.now_s() < until {
+        guard.poll(false)?;
+        let slow = guard.recent_speed(6).is_some_and(|speed| speed.abs() < 0.004 * qpps);
         if slow {
             return Ok(());
         }
@@ -108,16 +108,16 @@ pub(crate) fn rest(rig: &mut Rig<'_>, tau_s: f64, qpps: f64) -> Result<(), Cause
 /// Tries the proposed gains and lowers them while the machine is rougher than predicted. Where none are as smooth as predicted, the
 /// smoothest of those tried stay proposed.
 pub fn check_moves(
-    rig: &mut Rig<'_>,
+    guard: &mut ExperimentGuard<'_>,
     request: &Request,
     task: &Task,
     report: &mut Report,
 ) -> Result<(), Cause> {
-    let room = leave_room(rig, request, task, report)?;
+    let room = leave_room(guard, request, task, report)?;
     let mut smoothest: Option<(f64, Design, Measured)> = None;
     for back_offs in 0..=MOST_BACK_OFFS {
         let Some(design) = report.design else { return Ok(()) };
-        let measured = match try_design(rig, request, task, report, &design) {
+        let measured = match try_design(guard, request, task, report, &design) {
             Ok(measured) => Measured { headroom: room, ..measured },
             // Lowered so far that friction holds it, or that a load pulls it away: what was tried before was better.
             Err(Cause::NotVerified | Cause::TravelLimit) if smoothest.is_some() => break,
@@ -128,8 +128,8 @@ pub fn check_moves(
         if excess <= 1.0 {
             return Ok(());
         }
-        if let Some(quiet) = with_deadzone(rig, request, task, &design, &measured, report)? {
-            propose(report, request, task, quiet, rig.options.travel);
+        if let Some(quiet) = with_deadzone(guard, request, task, &design, &measured, report)? {
+            propose(report, request, task, quiet, guard.options.travel);
             continue;
         }
         warn_of_lowering(report);
@@ -145,13 +145,13 @@ pub fn check_moves(
             } else {
                 softer(request.method, task, &design)
             };
-            propose(report, request, task, softer, rig.options.travel);
+            propose(report, request, task, softer, guard.options.travel);
         }
     }
     match smoothest {
         Some((_, design, measured)) => {
             report.measured = Some(measured);
-            propose(report, request, task, design, rig.options.travel);
+            propose(report, request, task, design, guard.options.travel);
             Ok(())
         }
         None => Err(Cause::NotVerified),
@@ -166,75 +166,77 @@ fn warn_of_lowering(report: &mut Report) {
 
 /// Writes the registers of a design and tries it.
 fn try_design(
-    rig: &mut Rig<'_>,
+    guard: &mut ExperimentGuard<'_>,
     request: &Request,
     task: &Task,
     report: &Report,
     design: &Design,
 ) -> Result<Measured, Cause> {
     // The design before it was computed.
-    rig.pause();
+    guard.pause();
     if let Some(velocity) = report.velocity {
-        rig.write_velocity(velocity)?;
+        guard.write_velocity(velocity)?;
     }
     if let Some(registers) = report.motion_mind {
-        rig.write_motion_mind(registers)?;
+        guard.write_motion_mind(registers)?;
     }
     match request.method {
         Method::Velocity => match request.excitation {
-            Excitation::Free => try_velocity(rig, task, &design.gains),
-            Excitation::Window(width) => try_velocity_inside(rig, task, &design.gains, width),
+            Excitation::Free => try_velocity(guard, task, &design.gains),
+            Excitation::Window(width) => try_velocity_inside(guard, task, &design.gains, width),
         },
         Method::Pd | Method::Pid | Method::Piv => {
             if let Some(position) = report.position {
-                rig.write_position(position)?;
+                guard.write_position(position)?;
             }
-            try_position(rig, request, task, design)
+            try_position(guard, request, task, design)
         }
     }
 }
 
 /// Raises the gain of the velocity loop on the machine, and lowers the proposed gains where less of it is left than they promise.
 fn leave_room(
-    rig: &mut Rig<'_>,
+    guard: &mut ExperimentGuard<'_>,
     request: &Request,
     task: &Task,
     report: &mut Report,
 ) -> Result<Option<f64>, Cause> {
     // A Motion Mind has its registers written at rest only, and a loop without a gain of the speed is no velocity loop.
     let can_be_raised = request.law.motion_mind.is_none() && request.excitation == Excitation::Free;
-    let damped = |gains: &Gains| gains.velocity.p > 0.0 || gains.position.is_some_and(|place| place.d > 0.0);
+    let damped =
+        |gains: &Gains| gains.velocity.p > 0.0 || gains.position.is_some_and(|position| position.d > 0.0);
     let Some(design) = report.design.filter(|design| can_be_raised && damped(&design.gains)) else {
         return Ok(None);
     };
-    let found = headroom(rig, task, &request.law, &design.gains)?;
+    let found = headroom(guard, task, &request.law, &design.gains)?;
     let factor = found.quiet / found.wanted;
     if factor < 0.999 {
         warn_of_lowering(report);
         let inner = scaled(&design.gains, factor);
-        let less = |place: Pid| Pid { p: factor * place.p, i: factor * place.i, d: factor * place.d };
+        let less =
+            |position: Pid| Pid { p: factor * position.p, i: factor * position.i, d: factor * position.d };
         let gains = Gains { position: inner.position.map(less), ..inner };
-        propose(report, request, task, Design { gains, ..design }, rig.options.travel);
+        propose(report, request, task, Design { gains, ..design }, guard.options.travel);
     }
     Ok(Some(found.quiet / factor))
 }
 
-/// A place that hunts is first looked at for play: within it nothing can be held (MCP manual 2.4.7, the deadzone). `None` where
-/// the deadzone covers the play already, or there is none.
+/// A position that hunts is first looked at for backlash: within it nothing can be held (MCP manual 2.4.7, the deadzone). `None` where
+/// the deadzone covers the backlash already, or there is none.
 fn with_deadzone(
-    rig: &mut Rig<'_>,
+    guard: &mut ExperimentGuard<'_>,
     request: &Request,
     task: &Task,
     design: &Design,
     measured: &Measured,
     report: &mut Report,
 ) -> Result<Option<Design>, Cause> {
-    let hunts = design.gains.position.is_some() && measured.ripple > MOST_PLACE_RIPPLE;
-    if !hunts || report.slack.is_some() {
+    let hunts = design.gains.position.is_some() && measured.ripple > MOST_POSITION_RIPPLE;
+    if !hunts || report.backlash.is_some() {
         return Ok(None);
     }
     let Some(probe) = report.probe else { return Ok(None) };
-    let task = with_slack(rig, request, *task, &probe, report)?;
+    let task = with_backlash(guard, request, *task, &probe, report)?;
     let deadzone_counts = deadzone(&task);
     if deadzone_counts <= design.gains.deadzone_counts {
         return Ok(None);
@@ -247,11 +249,11 @@ pub(crate) fn is_rougher(design: &Design, measured: &Measured) -> bool {
     roughness(design, measured) > 1.0
 }
 
-/// How rough the machine is over what a design may show: the worst of duty, overshoot and swing. 1 is the bound.
+/// How rough the machine is over what a design may show: the worst of duty, overshoot and oscillation. 1 is the bound.
 fn roughness(design: &Design, measured: &Measured) -> f64 {
-    let place = design.gains.position.is_some();
-    let (least_over, doubt, ripple) = if place {
-        (MOST_PLACE_OVERSHOOT, PLACE_DOUBT, MOST_PLACE_RIPPLE)
+    let is_position = design.gains.position.is_some();
+    let (least_over, doubt, ripple) = if is_position {
+        (MOST_POSITION_OVERSHOOT, POSITION_DOUBT, MOST_POSITION_RIPPLE)
     } else {
         (MOST_OVERSHOOT, 0.03, MOST_RIPPLE)
     };
@@ -271,7 +273,7 @@ fn less_integral(gains: &Gains) -> Gains {
 }
 
 /// What lowers a design: a position loop is designed anew for a softer goal than what it promised, since gains that are merely scaled
-/// end a move in a long creep, which sticks and slips in the play of a real machine. A velocity loop is scaled.
+/// end a move in a long creep, which sticks and slips in the backlash of a real machine. A velocity loop is scaled.
 fn softer(method: Method, task: &Task, design: &Design) -> Design {
     let scaled = Design { gains: lowered(&design.gains), ..*design };
     if method == Method::Velocity {
@@ -295,38 +297,42 @@ const FLANKS: usize = 5;
 const FLANK_S: (f64, f64) = (0.15, 1.2);
 const STAY_S: f64 = 1.0;
 
-pub(crate) fn try_velocity(rig: &mut Rig<'_>, task: &Task, gains: &Gains) -> Result<Measured, Cause> {
+pub(crate) fn try_velocity(
+    guard: &mut ExperimentGuard<'_>,
+    task: &Task,
+    gains: &Gains,
+) -> Result<Measured, Cause> {
     let predicted = velocity_test(&task.plant, &task.law, task.lag, gains, task.qpps);
     let flank_s = (0.1 + 1.4 * predicted.settling_s).clamp(FLANK_S.0, FLANK_S.1);
-    let (low, high) = (rig.whole_speed(LOW * task.qpps), rig.whole_speed(HIGH * task.qpps));
-    rig.speed(low)?;
-    rig.poll_for(flank_s.max(1.2 * task.plant.tau_s.min(1.0)), true)?;
-    let from_s = rig.now_s();
+    let (low, high) = (guard.whole_speed(LOW * task.qpps), guard.whole_speed(HIGH * task.qpps));
+    guard.speed(low)?;
+    guard.poll_for(flank_s.max(1.2 * task.plant.tau_s.min(1.0)), true)?;
+    let from_s = guard.now_s();
     for n in 0..FLANKS {
-        rig.speed(if n % 2 == 0 { high } else { low })?;
-        rig.poll_for(flank_s, true)?;
+        guard.speed(if n % 2 == 0 { high } else { low })?;
+        guard.poll_for(flank_s, true)?;
     }
-    let stay_s = rig.now_s();
-    rig.poll_for(STAY_S, true)?;
-    let to_s = rig.now_s();
-    rig.duty(0.0)?;
-    let course = ClosedCourse::of(rig, from_s - 0.02, to_s);
-    let stay: Vec<(f64, f64)> = course.counts.iter().copied().filter(|p| p.0 >= stay_s).collect();
-    let duties: Vec<(f64, f64)> = course.duties.iter().copied().filter(|d| d.0 >= stay_s).collect();
+    let stay_s = guard.now_s();
+    guard.poll_for(STAY_S, true)?;
+    let to_s = guard.now_s();
+    guard.duty(0.0)?;
+    let record = ClosedLoopRecord::of(guard, from_s - 0.02, to_s);
+    let stay: Vec<(f64, f64)> = record.counts.iter().copied().filter(|p| p.0 >= stay_s).collect();
+    let duties: Vec<(f64, f64)> = record.duties.iter().copied().filter(|d| d.0 >= stay_s).collect();
     if let (Some(first), Some(last)) = (stay.first(), stay.last())
         && (last.1 - first.1) < LEAST_MOVE * high * (last.0 - first.0)
     {
         return Err(Cause::NotVerified);
     }
-    let seen = |course: &ClosedCourse| flank_overshoot(course, high - low, rig.options.poll_s);
+    let seen = |record: &ClosedLoopRecord| flank_overshoot(record, high - low, guard.options.poll_s);
     let mut twin = TickLoop::new(task.plant, task.law, task.lag, *gains, task.qpps);
     twin.start_steady(low);
     // Polls flatten a peak; they flatten that of the model just so.
-    let expected = predicted_course(&course, twin, &task.law, low).map_or(0.0, |course| seen(&course));
+    let expected = predicted_record(&record, twin, &task.law, low).map_or(0.0, |record| seen(&record));
     Ok(Measured {
-        overshoot: (predicted.overshoot + seen(&course) - expected).max(0.0),
+        overshoot: (predicted.overshoot + seen(&record) - expected).max(0.0),
         duty_rms: deviation(&duties),
-        ripple: speed_ripple(&stay, &course) / (high - low),
+        ripple: speed_ripple(&stay, &record) / (high - low),
         headroom: None,
     })
 }
@@ -334,37 +340,37 @@ pub(crate) fn try_velocity(rig: &mut Rig<'_>, task: &Task, gains: &Gains) -> Res
 /// The same inside a travel window: to and fro about where the axis stands, as fast as the room allows. The motor is braked at the
 /// end.
 pub(crate) fn try_velocity_inside(
-    rig: &mut Rig<'_>,
+    guard: &mut ExperimentGuard<'_>,
     task: &Task,
     gains: &Gains,
     width: f64,
 ) -> Result<Measured, Cause> {
     let lag_s = task.lag.total_s(&task.law) + 2.0 * task.law.tick_s();
     let dwell_s = (14.0 * lag_s + task.plant.tau_s / (1.0 + gains.velocity.p)).clamp(0.12, 0.4);
-    let room = rig.room_counts().unwrap_or(width).min(width);
+    let room = guard.room_counts().unwrap_or(width).min(width);
     let speed = (INSIDE_SHARE * room / dwell_s).min(MIDDLE * task.qpps);
-    rig.duty(0.0)?;
-    rest(rig, task.plant.tau_s, task.qpps)?;
-    let from_s = rig.now_s();
-    // Half a way out first, so that the rest swings about the middle.
+    guard.duty(0.0)?;
+    rest(guard, task.plant.tau_s, task.qpps)?;
+    let from_s = guard.now_s();
+    // Half the distance out first, so that the rest oscillates about the middle.
     for (n, share) in [0.5, 1.0, 1.0, 1.0, 1.0, 0.5].into_iter().enumerate() {
         let side = if n % 2 == 0 { 1.0 } else { -1.0 };
-        rig.speed(side * speed)?;
-        rig.poll_for(share * dwell_s, true)?;
+        guard.speed(side * speed)?;
+        guard.poll_for(share * dwell_s, true)?;
     }
-    let to_s = rig.now_s();
-    rig.come_to_rest()?;
-    let course = ClosedCourse::of(rig, from_s, to_s);
-    Ok(Measured { overshoot: 0.0, duty_rms: plateau_activity(&course), ..Measured::default() })
+    let to_s = guard.now_s();
+    guard.come_to_rest()?;
+    let record = ClosedLoopRecord::of(guard, from_s, to_s);
+    Ok(Measured { overshoot: 0.0, duty_rms: plateau_activity(&record), ..Measured::default() })
 }
 
 /// Duty activity in the second half of each plateau.
-fn plateau_activity(course: &ClosedCourse) -> f64 {
+fn plateau_activity(record: &ClosedLoopRecord) -> f64 {
     let mut squares = (0.0, 0.0);
-    for pair in course.setpoints.windows(2) {
+    for pair in record.setpoints.windows(2) {
         let half = 0.5 * (pair[0].0 + pair[1].0);
         let duties: Vec<(f64, f64)> =
-            course.duties.iter().copied().filter(|d| d.0 > half && d.0 < pair[1].0).collect();
+            record.duties.iter().copied().filter(|d| d.0 > half && d.0 < pair[1].0).collect();
         if duties.len() >= 8 {
             squares.0 += deviation(&duties).powi(2) * duties.len() as f64;
             squares.1 += duties.len() as f64;
@@ -375,7 +381,7 @@ fn plateau_activity(course: &ClosedCourse) -> f64 {
 
 /// Moves D, 0, 0.25 D, 0, towards the farther end of the travel.
 pub(crate) fn try_position(
-    rig: &mut Rig<'_>,
+    guard: &mut ExperimentGuard<'_>,
     request: &Request,
     task: &Task,
     design: &Design,
@@ -384,11 +390,11 @@ pub(crate) fn try_position(
     if let Excitation::Window(width) = request.excitation {
         step = step.min(0.35 * width);
     }
-    rig.duty(0.0)?;
-    rest(rig, task.plant.tau_s, task.qpps)?;
-    rig.poll(false)?;
-    let start = rig.points.last().map_or(0.0, |p| p.counts);
-    let (side, room) = farther_end(rig, start);
+    guard.duty(0.0)?;
+    rest(guard, task.plant.tau_s, task.qpps)?;
+    guard.poll(false)?;
+    let start = guard.points.last().map_or(0.0, |p| p.counts);
+    let (side, room) = farther_end(guard, start);
     let step = side * step.min(MOST_OF_ROOM * room);
     let dwell_s = (0.35 + 1.6 * design.score.settling_s).min(0.5 + 5.0 * task.plant.tau_s).clamp(0.5, 8.0);
     let horizon_s = horizon_s(task.plant.tau_s);
@@ -397,11 +403,11 @@ pub(crate) fn try_position(
     let mut from = start;
     for (n, share) in [1.0, 0.0, 0.25, 0.0].into_iter().enumerate() {
         let target = start + (share * step).round();
-        let begin = rig.now_s();
-        rig.position(target, task.qpps as u32)?;
+        let begin = guard.now_s();
+        guard.position(target, task.qpps as u32)?;
         let watch_s = if n == 3 { WATCH_S } else { 0.0 };
-        rig.poll_for(dwell_s + watch_s, true)?;
-        let points: Vec<Point> = rig.points.iter().copied().filter(|p| p.t > begin).collect();
+        guard.poll_for(dwell_s + watch_s, true)?;
+        let points: Vec<Point> = guard.points.iter().copied().filter(|p| p.t > begin).collect();
         if n == 0 && points.last().is_some_and(|p| (p.counts - start).abs() < LEAST_MOVE * step.abs()) {
             return Err(Cause::NotVerified);
         }
@@ -410,22 +416,22 @@ pub(crate) fn try_position(
         worst.ripple = worst.ripple.max(moved.ripple);
         if request.excitation == Excitation::Free {
             let tail = tail_counts(&points, (begin + 0.7 * horizon_s, begin + horizon_s), step.abs());
-            worst.ripple = worst.ripple.max(MOST_PLACE_RIPPLE * tail);
+            worst.ripple = worst.ripple.max(MOST_POSITION_RIPPLE * tail);
         }
         worst.duty_rms = worst.duty_rms.max(moved.duty_rms);
         from = target;
     }
-    rig.duty(0.0)?;
+    guard.duty(0.0)?;
     Ok(worst)
 }
 
 /// The direction in which the travel has more room, and how much, counts.
-fn farther_end(rig: &Rig<'_>, place: f64) -> (f64, f64) {
-    let Some((low, high)) = rig.travel_counts() else { return (1.0, f64::INFINITY) };
-    if high - place >= place - low { (1.0, high - place) } else { (-1.0, place - low) }
+fn farther_end(guard: &ExperimentGuard<'_>, position: f64) -> (f64, f64) {
+    let Some((low, high)) = guard.travel_counts() else { return (1.0, f64::INFINITY) };
+    if high - position >= position - low { (1.0, high - position) } else { (-1.0, position - low) }
 }
 
-/// How far the place still goes between two times, in counts over what a move may that is over.
+/// How far the position still goes between two times, in counts over what a move may that is over.
 fn tail_counts(points: &[Point], (from_s, to_s): (f64, f64), step: f64) -> f64 {
     if TAIL_SHARE * step > FINE_COUNTS {
         return 0.0;
@@ -442,14 +448,14 @@ fn judge_move(points: &[Point], target: f64, moved: f64, late_s: f64, step: f64)
     // A short move may go past its target by as many counts as a long one.
     let overshoot = (over - ROUNDED_COUNTS).max(0.0) / moved.abs().max(step).max(1.0);
     let late = || points.iter().filter(|p| p.t > late_s);
-    let places: Vec<f64> = late().map(|p| p.counts).collect();
+    let positions: Vec<f64> = late().map(|p| p.counts).collect();
     let duties: Vec<(f64, f64)> = late().filter_map(|p| p.duty).collect();
     let duty_rms = deviation(&duties);
-    // A creep to the end is no swing.
-    if places.windows(3).filter(|w| (w[1] - w[0]) * (w[2] - w[1]) < 0.0).count() < 2 {
+    // A creep to the end is no oscillation.
+    if positions.windows(3).filter(|w| (w[1] - w[0]) * (w[2] - w[1]) < 0.0).count() < 2 {
         return Measured { overshoot, duty_rms, ..Measured::default() };
     }
-    let range = places.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let range = positions.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
     let ripple = (range.1 - range.0 - ROUNDING_COUNTS).max(0.0) / step;
     Measured { overshoot, duty_rms, ripple, headroom: None }
 }

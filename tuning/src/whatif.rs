@@ -92,11 +92,11 @@ pub fn forecast(task: &Task, gains: &Gains) -> Forecast {
     if !is_position {
         twin.start_steady(from);
     }
-    let goal = if is_position { Setpoint::Place(to, task.qpps) } else { Setpoint::Speed(to) };
+    let goal = if is_position { Setpoint::Position(to, task.qpps) } else { Setpoint::Speed(to) };
     let mut run = |load: f64| -> Vec<Reply> {
         let reply = |n: usize| {
             let duty = twin.tick(goal, load);
-            let value = if is_position { twin.motion.place } else { twin.motion.speed };
+            let value = if is_position { twin.motion.position } else { twin.motion.speed };
             Reply { t: (n + 1) as f64 * tick_s, value, duty }
         };
         (0..ticks).map(reply).collect()
@@ -215,7 +215,7 @@ mod tests {
             qpps: 30_000.0,
             goal: Goal::of_level(50.0),
             noise_factor: 1.0,
-            slack_counts: 0.0,
+            backlash_counts: 0.0,
             least_integral_s: 0.0,
             most_overshoot: crate::design::USUAL_OVERSHOOT,
         }
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn too_much_gain_is_told_as_unstable() {
+    fn too_much_gain_is_reported_as_unstable() {
         let gains = Gains { velocity: Pid { p: 400.0, i: 0.0, d: 0.0 }, ..Gains::default() };
         assert!(!forecast(&task(), &gains).is_stable);
     }

@@ -2,7 +2,7 @@
 //!
 //! The inductance cannot be seen in polls: it is over within a millisecond.
 
-use crate::rig::{Drive, Input, Point};
+use crate::experiment_guard::{Drive, Input, Point};
 use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
 
@@ -43,21 +43,21 @@ pub struct Winding {
     pub samples: usize,
 }
 
-/// Why a run does not tell the resistance.
+/// Why a run does not show the resistance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum NotTold {
+pub enum WindingUnknown {
     /// The controller measures no current, or none above its noise.
     NoCurrents,
     /// Too few polls lay under a steady duty with a current.
     TooFew,
-    /// All currents were about the same, so that nothing tells the resistance from the speed's share: a motor that turns freely.
+    /// All currents were about the same, so that nothing distinguishes the resistance from the speed's share: a motor that turns freely.
     Alike,
     /// It came out with too wide an interval.
     Vague,
 }
 
-impl NotTold {
+impl WindingUnknown {
     /// Why, and what to do to have it, as the end of a sentence.
     #[must_use]
     pub const fn sentence(self) -> &'static str {
@@ -89,22 +89,22 @@ struct Row {
 /// Regresses over the polls of an open-loop run.
 ///
 /// # Errors
-/// Why it is not told: no currents, or ones that do not tell R apart.
-pub fn winding_of(points: &[Point], drives: &[Drive]) -> Result<Winding, NotTold> {
+/// Why it is not known: no currents, or ones that do not distinguish R.
+pub fn winding_of(points: &[Point], drives: &[Drive]) -> Result<Winding, WindingUnknown> {
     let has_current = |point: &Point| point.amps.is_some_and(|amps| amps.abs() >= LEAST_AMPS);
     if !points.iter().any(has_current) {
-        return Err(NotTold::NoCurrents);
+        return Err(WindingUnknown::NoCurrents);
     }
-    let battery = Battery::of(points, drives).ok_or(NotTold::TooFew)?;
+    let battery = Battery::of(points, drives).ok_or(WindingUnknown::TooFew)?;
     let highest = points.windows(2).map(|pair| speed_of(&pair[0], &pair[1]).abs()).fold(0.0, f64::max);
     let inside = 1..points.len().saturating_sub(2);
     let rows: Vec<Row> =
         inside.filter_map(|n| row_at(points, drives, n, &battery, STEADY * highest)).collect();
     if rows.len() < LEAST_SAMPLES {
-        return Err(NotTold::TooFew);
+        return Err(WindingUnknown::TooFew);
     }
     if !differ(&rows) {
-        return Err(NotTold::Alike);
+        return Err(WindingUnknown::Alike);
     }
     let scale = rows.iter().map(|row| row.speed.abs()).fold(0.0, f64::max).max(1.0);
     let (mut normal, mut right) = (Matrix2::zeros(), Vector2::zeros());
@@ -114,7 +114,7 @@ pub fn winding_of(points: &[Point], drives: &[Drive]) -> Result<Winding, NotTold
         normal += x * x.transpose();
         right += x * (row.volts * weight);
     }
-    let inverse = normal.try_inverse().ok_or(NotTold::Alike)?;
+    let inverse = normal.try_inverse().ok_or(WindingUnknown::Alike)?;
     let found = inverse * right;
     let (ohms, back_emf) = (found[0], found[1] / scale);
     let misfit = |row: &Row| ((row.volts - ohms * row.amps - back_emf * row.speed) * row.weight()).powi(2);
@@ -123,12 +123,12 @@ pub fn winding_of(points: &[Point], drives: &[Drive]) -> Result<Winding, NotTold
     let mean_amps = rows.iter().map(|row| row.amps).sum::<f64>() / rows.len() as f64;
     let systematic = ohms * (MODEL_SHARE + OFFSET_AMPS / mean_amps);
     let interval_ohms = (1.96 * (variance * inverse[(0, 0)]).sqrt()).hypot(systematic);
-    let is_told = ohms > 0.0 && back_emf > 0.0 && interval_ohms < WIDEST * ohms;
+    let is_known = ohms > 0.0 && back_emf > 0.0 && interval_ohms < WIDEST * ohms;
     let winding = Winding { ohms, interval_ohms, volts_per_count_per_s: back_emf, samples: rows.len() };
-    is_told.then_some(winding).ok_or(NotTold::Vague)
+    is_known.then_some(winding).ok_or(WindingUnknown::Vague)
 }
 
-/// Whether the currents differ by more than a sensor's noise: with one current alone nothing tells R from the speed's share.
+/// Whether the currents differ by more than a sensor's noise: with one current alone nothing distinguishes R from the speed's share.
 fn differ(rows: &[Row]) -> bool {
     let mut amps: Vec<f64> = rows.iter().map(|row| row.amps).collect();
     amps.sort_by(f64::total_cmp);
@@ -216,7 +216,7 @@ fn row_at(points: &[Point], drives: &[Drive], n: usize, battery: &Battery, stead
     let speed = speed_of(before, after);
     let changes = (speed_of(point, after) - speed_of(before, point)).abs()
         > steady.max(2.0 / (after.t - point.t).max(1e-3));
-    // A duty that came down brakes, and not every controller tells the sign of a current.
+    // A duty that came down brakes, and not every controller reports the sign of a current.
     let brakes = duty.abs() < last.abs() && duty * last > 0.0;
     if duty == 0.0 || brakes || point.t < steady_since || speed * duty < 0.0 || changes {
         return None;
@@ -267,15 +267,15 @@ mod tests {
     fn without_currents_nothing_is_claimed() {
         for amps in [None, Some(0.0)] {
             let (points, drives) = run(|_| amps);
-            assert_eq!(winding_of(&points, &drives), Err(NotTold::NoCurrents));
+            assert_eq!(winding_of(&points, &drives), Err(WindingUnknown::NoCurrents));
         }
     }
 
     #[test]
     fn one_current_alone_tells_nothing_and_says_so() {
         let (points, drives) = run(|_| Some(0.8));
-        assert_eq!(winding_of(&points, &drives), Err(NotTold::Alike));
+        assert_eq!(winding_of(&points, &drives), Err(WindingUnknown::Alike));
         let (points, drives) = run(Some);
-        assert_eq!(winding_of(&points[..20], &drives), Err(NotTold::TooFew));
+        assert_eq!(winding_of(&points[..20], &drives), Err(WindingUnknown::TooFew));
     }
 }

@@ -26,8 +26,8 @@ use brushwork_tuning::axis::{
     Axis, AxisError, EncoderClass, Exchange, PositionRegisters, Setup, VelocityRegisters,
 };
 use brushwork_tuning::cause::Cause;
+use brushwork_tuning::experiment_guard::{RUN_STREAM_TIMEOUT_MS, wait_for_rest};
 use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::rig::{RUN_STREAM_TIMEOUT_MS, wait_for_rest};
 use brushwork_tuning::trial::{Trial, TrialRequest, run_trial};
 use brushwork_tuning::tune::{Request, tune};
 use brushwork_values::{Motor, Value, Values};

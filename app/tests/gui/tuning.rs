@@ -16,7 +16,7 @@ use brushwork_plant::presets;
 use brushwork_plant::world::WorldAction;
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::winding::{NotTold, Winding};
+use brushwork_tuning::winding::{Winding, WindingUnknown};
 use brushwork_values::Motor;
 use egui::{Key, Modifiers};
 
@@ -366,16 +366,16 @@ fn a_resistance_that_is_not_told_says_why_and_what_would_tell_it() {
     let mut bench = tuned("Velocity Settings", Loop::Velocity);
     let mut report = run(&mut bench, Loop::Velocity).report;
     for (why, word) in [
-        (NotTold::NoCurrents, "no motor current"),
-        (NotTold::TooFew, "too few readings"),
-        (NotTold::Alike, "about the same current all the time"),
-        (NotTold::Vague, "scatter too much"),
+        (WindingUnknown::NoCurrents, "no motor current"),
+        (WindingUnknown::TooFew, "too few readings"),
+        (WindingUnknown::Alike, "about the same current all the time"),
+        (WindingUnknown::Vague, "scatter too much"),
     ] {
         (report.winding, report.winding_unknown) = (None, Some(why));
         bench.model().front.tune.panel_mut(Loop::Velocity, Motor::M1).add(report.clone());
         bench.pass_ms(200);
         assert!(bench.sees_part("R of the winding was not told") && bench.sees_part(word), "{why:?}");
-        assert!(bench.sees_part("measure R with a meter") || why == NotTold::TooFew);
+        assert!(bench.sees_part("measure R with a meter") || why == WindingUnknown::TooFew);
         assert!(!bench.sees_part("Enter as R"));
     }
 }

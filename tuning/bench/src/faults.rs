@@ -20,8 +20,8 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// A plant under a controller of some family, as the faults need it.
-pub trait Patient: Clone + Send + Sync {
+/// The plant under test that faults strike, under a controller of some family.
+pub trait FaultyPlant: Clone + Send + Sync {
     /// Its axis over the wire.
     type Axis: Axis;
     /// Its controller.
@@ -29,7 +29,7 @@ pub trait Patient: Clone + Send + Sync {
     /// The methods whose trials are struck, and whose runs have to be quiet.
     const WHOLE: [Method; 2];
     /// Whether the wire carries the battery's voltage.
-    const TELLS_VOLTS: bool;
+    const REPORTS_VOLTS: bool;
     /// How soon the motor must be off when the link is gone, s.
     const LINK_DEADLINE_S: f64;
     /// The motor.
@@ -44,11 +44,11 @@ pub trait Patient: Clone + Send + Sync {
     fn line(axis: &mut Self::Axis) -> &mut SimulatedLine<Self::Unit>;
 }
 
-impl Patient for Specimen {
+impl FaultyPlant for Specimen {
     type Axis = SimulatedAxis;
     type Unit = Controller;
     const WHOLE: [Method; 2] = [Method::Velocity, Method::Piv];
-    const TELLS_VOLTS: bool = true;
+    const REPORTS_VOLTS: bool = true;
     const LINK_DEADLINE_S: f64 = 0.25;
 
     fn plant(&self) -> &Specimen {
@@ -209,7 +209,7 @@ struct Subject<P> {
     whole_s: [f64; 2],
 }
 
-impl<P: Patient> Subject<P> {
+impl<P: FaultyPlant> Subject<P> {
     fn new(specimen: &P) -> Self {
         let whole = |method| tune(&mut specimen.axis(), &request_of(specimen.plant(), method)).seconds.1;
         Self {
@@ -223,15 +223,15 @@ impl<P: Patient> Subject<P> {
 
 /// Every class on every plant, and the healthy runs as the last row, whose `named` is the share without alarm.
 #[must_use]
-pub fn fault_rows<P: Patient>(plants: &[P]) -> Vec<FaultRow> {
+pub fn fault_rows<P: FaultyPlant>(plants: &[P]) -> Vec<FaultRow> {
     rows_of(plants, &[])
 }
 
 /// The same of the classes named only; all of them where none is.
 #[must_use]
-pub fn rows_of<P: Patient>(plants: &[P], names: &[&str]) -> Vec<FaultRow> {
+pub fn rows_of<P: FaultyPlant>(plants: &[P], names: &[&str]) -> Vec<FaultRow> {
     let wanted = |name: &str| names.is_empty() || names.contains(&name);
-    let can_be = |class: &&Class| P::TELLS_VOLTS || class.fault != Fault::During(WorldChange::LowBattery);
+    let can_be = |class: &&Class| P::REPORTS_VOLTS || class.fault != Fault::During(WorldChange::LowBattery);
     let subjects: Vec<Subject<P>> = plants.par_iter().map(Subject::new).collect();
     let classes = CLASSES.iter().filter(|class| wanted(class.name)).filter(can_be);
     let mut rows: Vec<FaultRow> = classes
@@ -281,11 +281,11 @@ fn identification_only(specimen: &Specimen) -> Request {
 }
 
 /// Every third run is an identification alone.
-fn healthy_method<P: Patient>(n: usize) -> Option<Method> {
+fn healthy_method<P: FaultyPlant>(n: usize) -> Option<Method> {
     P::WHOLE.get(n % 3).copied()
 }
 
-fn healthy<P: Patient>(specimen: &P, round: u64, method: Option<Method>) -> (Report, P::Axis) {
+fn healthy<P: FaultyPlant>(specimen: &P, round: u64, method: Option<Method>) -> (Report, P::Axis) {
     let mut specimen = specimen.clone();
     let link = &mut specimen.plant_mut().link;
     link.seed = link.seed.wrapping_add(round.wrapping_mul(0x9E37_79B9_7F4A_7C15));
@@ -296,12 +296,12 @@ fn healthy<P: Patient>(specimen: &P, round: u64, method: Option<Method>) -> (Rep
     (report, axis)
 }
 
-fn peak<P: Patient>(axis: &mut P::Axis, subject: &Subject<P>) -> f64 {
+fn peak<P: FaultyPlant>(axis: &mut P::Axis, subject: &Subject<P>) -> f64 {
     let plant = subject.specimen.plant();
     100.0 * P::line(axis).truth.peak_amps / plant.axis.stall_amps(plant.volts())
 }
 
-fn run<P: Patient>(class: &Class, subject: &Subject<P>) -> Run {
+fn run<P: FaultyPlant>(class: &Class, subject: &Subject<P>) -> Run {
     let (specimen, span_s) = (subject.specimen.plant(), subject.span_s);
     let name_seed = class.name.bytes().map(u64::from).sum::<u64>();
     let mut draw = Draw(ChaCha8Rng::seed_from_u64(specimen.link.seed ^ name_seed));
@@ -370,14 +370,19 @@ fn run<P: Patient>(class: &Class, subject: &Subject<P>) -> Run {
 }
 
 impl Class {
-    fn deadline_s<P: Patient>(&self) -> f64 {
+    fn deadline_s<P: FaultyPlant>(&self) -> f64 {
         if self.fault == Fault::LinkDrop { P::LINK_DEADLINE_S } else { self.deadline_s }
     }
 }
 
 impl Run {
     /// A run in which nothing happened: any alarm is a false one.
-    fn quiet<P: Patient>(subject: &Subject<P>, axis: &mut P::Axis, report: &Report, in_time: bool) -> Self {
+    fn quiet<P: FaultyPlant>(
+        subject: &Subject<P>,
+        axis: &mut P::Axis,
+        report: &Report,
+        in_time: bool,
+    ) -> Self {
         let plant = subject.specimen.plant();
         Self {
             plant: (plant.number, plant.kind),
@@ -392,7 +397,7 @@ impl Run {
 }
 
 /// A window half as wide as the identification is judged with: it is used, or refused, but never crossed.
-fn run_in_window<P: Patient>(subject: &Subject<P>, mut axis: P::Axis) -> Run {
+fn run_in_window<P: FaultyPlant>(subject: &Subject<P>, mut axis: P::Axis) -> Run {
     let width = (0.1 * subject.truth.qpps).round().max(40.0);
     let half = (0.5 * width) as i64;
     let mut request =
@@ -408,13 +413,13 @@ fn run_in_window<P: Patient>(subject: &Subject<P>, mut axis: P::Axis) -> Run {
 }
 
 /// End stops a quarter of a second of full speed away.
-fn end_stop_radians<P: Patient>(subject: &Subject<P>) -> f64 {
+fn end_stop_radians<P: FaultyPlant>(subject: &Subject<P>) -> f64 {
     let seconds = 0.25 + subject.truth.tau_s;
     let axis = &subject.specimen.plant().axis;
     seconds * subject.truth.qpps / axis.counts_per_motor_radian() / axis.gear.ratio
 }
 
-fn with_end_stops<P: Patient>(subject: &Subject<P>) -> P {
+fn with_end_stops<P: FaultyPlant>(subject: &Subject<P>) -> P {
     let mut specimen = subject.specimen.clone();
     let stop = end_stop_radians(subject);
     specimen.plant_mut().axis.load.travel =

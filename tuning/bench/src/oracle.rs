@@ -61,8 +61,8 @@ pub fn cost(method: Method, outcome: &Outcome) -> f64 {
     outcome.score.cost(scale)
 }
 
-/// What gains are tried on.
-pub trait Bed {
+/// The plant that gains are tried on.
+pub trait PlantUnderTest {
     /// What the plant is.
     fn truth(&self) -> &Truth;
     /// Gains as the registers hold them.
@@ -72,12 +72,12 @@ pub trait Bed {
 }
 
 /// A plant under packet serial.
-struct PacketBed<'a> {
+struct PacketPlantUnderTest<'a> {
     specimen: &'a Specimen,
     truth: &'a Truth,
 }
 
-impl Bed for PacketBed<'_> {
+impl PlantUnderTest for PacketPlantUnderTest<'_> {
     fn truth(&self) -> &Truth {
         self.truth
     }
@@ -104,28 +104,28 @@ pub fn trial(method: Method, specimen: &Specimen, truth: &Truth, registers: &Reg
 /// Finds the optima of a plant.
 #[must_use]
 pub fn optima(specimen: &Specimen, truth: &Truth) -> Optima {
-    let bed = PacketBed { specimen, truth };
-    let of = |method| optimum(&bed, method);
+    let under_test = PacketPlantUnderTest { specimen, truth };
+    let of = |method| optimum(&under_test, method);
     Optima { velocity: of(Method::Velocity), pd: of(Method::Pd), piv: of(Method::Piv) }
 }
 
 /// The optima of its position loops alone, for a plant whose speed cannot be run freely.
 #[must_use]
 pub fn position_optima(specimen: &Specimen, truth: &Truth) -> Optima {
-    let bed = PacketBed { specimen, truth };
-    let of = |method| optimum(&bed, method);
+    let under_test = PacketPlantUnderTest { specimen, truth };
+    let of = |method| optimum(&under_test, method);
     Optima { velocity: None, pd: of(Method::Pd), piv: of(Method::Piv) }
 }
 
 /// Finds the optimum of one method.
 #[must_use]
-pub fn optimum(bed: &dyn Bed, method: Method) -> Option<Optimum> {
-    Search { method, bed, truth: bed.truth() }.run()
+pub fn optimum(under_test: &dyn PlantUnderTest, method: Method) -> Option<Optimum> {
+    Search { method, under_test, truth: under_test.truth() }.run()
 }
 
 struct Search<'a> {
     method: Method,
-    bed: &'a dyn Bed,
+    under_test: &'a dyn PlantUnderTest,
     truth: &'a Truth,
 }
 
@@ -159,12 +159,12 @@ impl Search<'_> {
 
     fn stable(&self, point: &Point) -> bool {
         // The rounded QPPS is nothing beside the rounding of the gains.
-        let gains = self.bed.rounded(&self.gains(point));
+        let gains = self.under_test.rounded(&self.gains(point));
         self.truth.nominal.spectral_radius(&gains, self.truth.qpps) < 1.0
     }
 
     fn cost(&self, point: &Point) -> (f64, f64) {
-        let outcome = self.bed.outcome(self.method, &self.gains(point));
+        let outcome = self.under_test.outcome(self.method, &self.gains(point));
         let cap = if self.method == Method::Velocity { 0.25 } else { 0.08 };
         let mut cost = cost(self.method, &outcome);
         if outcome.score.overshoot > cap {

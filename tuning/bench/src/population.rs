@@ -29,9 +29,9 @@ pub enum Kind {
     LinearActuator,
     /// Flywheel.
     Flywheel,
-    /// Steering with the encoder behind the play.
+    /// Steering with the encoder behind the backlash.
     Steering,
-    /// Arm joint, springy and with play.
+    /// Arm joint, springy and with backlash.
     ArmJoint,
     /// Actuator with a potentiometer over its travel.
     PotActuator,

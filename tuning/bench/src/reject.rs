@@ -44,9 +44,9 @@ pub fn group(method: Method, specimen: &Specimen, truth: &Truth, judged: &Judgem
 
 fn machine(specimen: &Specimen, truth: &Truth) -> &'static str {
     let axis = &specimen.axis;
-    let play = axis.gear.backlash_radians > 0.0;
+    let has_backlash = axis.gear.backlash_radians > 0.0;
     match (axis.is_two_mass(), axis.encoder.side) {
-        (true, ShaftSide::Load) if play => "encoder behind play",
+        (true, ShaftSide::Load) if has_backlash => "encoder behind backlash",
         (true, _) => "springy shaft",
         _ if truth.tau_s < QUICK_S => "time constant below 20 ms",
         _ if truth.qpps < COARSE_COUNTS_PER_S => "coarse encoder",

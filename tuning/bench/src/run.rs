@@ -11,9 +11,9 @@ use brushwork_mcp_sim::controller::Controller;
 use brushwork_plant::EncoderKind;
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::cause::Cause;
+use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::linear::{LoopPlant, Margins};
 use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::rig::GuardOptions;
 use brushwork_tuning::tune::{Excitation, Method, Request, tune};
 use brushwork_values::Motor;
 
@@ -73,7 +73,7 @@ pub struct Judgement {
     pub overshoot: f64,
     /// Duty at rest, root mean square.
     pub duty_rms: f64,
-    /// Goes on swinging.
+    /// Goes on oscillating: a limit cycle.
     pub hunting: bool,
     /// By how much of the step, and how often, Hz.
     pub ripple: (f64, f64),

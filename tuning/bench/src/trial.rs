@@ -51,11 +51,11 @@ pub struct Outcome {
     pub score: Score,
     /// Duty on the settled plateau, root mean square about its mean.
     pub duty_rms: f64,
-    /// Whether it goes on swinging when it should be settled.
+    /// Whether it goes on oscillating, in a limit cycle, when it should be settled.
     pub hunting: bool,
-    /// Deviation of the settled speed over the step (velocity), or height of the swing over the step (position).
+    /// Deviation of the settled speed over the step (velocity), or peak to peak of the oscillation over the step (position).
     pub ripple: f64,
-    /// How often it swings, Hz.
+    /// How often it oscillates, Hz.
     pub ripple_hz: f64,
 }
 
@@ -130,7 +130,7 @@ impl Machine {
         channel.tick(&measured, &self.conditions, &self.settings).duty()
     }
 
-    /// True speed and place of the shaft that the encoder sits on, in counts.
+    /// True speed and position of the shaft that the encoder sits on, in counts.
     fn motion(&self) -> (f64, f64) {
         let truth = self.world.truth(Motor::M1);
         match self.per_load_radian {
@@ -204,7 +204,7 @@ pub(crate) fn velocity_outcome(
     }
 }
 
-/// The position test: a step of a third of a time constant's way, then the load.
+/// The position test: a step of a third of a time constant's travel, then the load.
 #[must_use]
 pub fn position_trial(specimen: &Specimen, truth: &Truth, registers: &Registers) -> Outcome {
     let mut machine = Machine::new(specimen, registers);
@@ -238,18 +238,18 @@ pub(crate) fn position_outcome(
 ) -> Outcome {
     let score = Score::of(after_step, after_load, tick_s, step, 0.02_f64.max(3.0 / step));
     let late = after_step.len() * 7 / 10;
-    let swing = |errors: &[f64]| {
+    let peak_to_peak = |errors: &[f64]| {
         let (l, h) =
             errors.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), e| (l.min(*e), h.max(*e)));
         let turns = errors.windows(3).filter(|w| (w[1] - w[0]) * (w[2] - w[1]) < 0.0).count();
         (h - l, turns)
     };
     let hunts = |errors: &[f64]| {
-        let (height, turns) = swing(&errors[late..]);
+        let (height, turns) = peak_to_peak(&errors[late..]);
         height > (0.02 * step).max(4.0) && turns >= 2
     };
     let hunting = hunts(after_step) || hunts(after_load);
-    let ripple = swing(&after_step[late..]).0.max(swing(&after_load[late..]).0) / step;
+    let ripple = peak_to_peak(&after_step[late..]).0.max(peak_to_peak(&after_load[late..]).0) / step;
     let ripple_hz = crossings(&after_step[late..]) / (2.0 * (after_step.len() - late).max(1) as f64 * tick_s);
     Outcome { score, duty_rms: deviation(&duties[late..]), hunting, ripple, ripple_hz }
 }

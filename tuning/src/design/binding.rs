@@ -15,8 +15,8 @@ pub enum Bound {
     LightLoad,
     /// What the rounding of counts does to the duty.
     DutyNoise,
-    /// The shortest integral time that the play of the mechanics allows.
-    Play,
+    /// The shortest integral time that the backlash of the mechanics allows.
+    Backlash,
 }
 
 /// A bound and how much of it is used.
@@ -56,7 +56,7 @@ fn shares(task: &Task, loops: &Loops, gains: &Gains) -> [(Bound, f64); 5] {
         (Bound::Lag, ms(&loops.worst) / (WORST_MS * task.goal.ms)),
         (Bound::LightLoad, ms(&loops.light) / (LIGHT_MS * task.goal.ms)),
         (Bound::DutyNoise, nominal.noise_duty * task.noise_factor / task.goal.noise_duty),
-        (Bound::Play, integral),
+        (Bound::Backlash, integral),
     ]
 }
 
@@ -93,14 +93,14 @@ mod tests {
             qpps: gain_counts_per_s,
             goal: Goal::of_level(level),
             noise_factor: 1.0,
-            slack_counts: 0.0,
+            backlash_counts: 0.0,
             least_integral_s: 0.0,
             most_overshoot: USUAL_OVERSHOOT,
         }
     }
 
     #[test]
-    fn a_limit_is_told_exactly_where_the_search_would_not_go_on() {
+    fn a_limit_is_reported_exactly_where_the_search_would_not_go_on() {
         for (tau_s, gain) in
             [(0.01, 3_000.0), (0.03, 10_000.0), (0.1, 30_000.0), (1.0, 30_000.0), (0.3, 600.0)]
         {
@@ -125,15 +125,15 @@ mod tests {
         assert!(noisy.by == Bound::DutyNoise && noisy.used > 1.0, "{noisy:?}");
         let stiff = Gains { velocity: Pid { p: 12.0, i: 60.0, d: 0.0 }, ..Gains::default() };
         let tense = limit(&task(0.1, 3_000_000.0, 0.0), &stiff).unwrap();
-        assert!(!matches!(tense.by, Bound::DutyNoise | Bound::Play) && tense.used > 1.0, "{tense:?}");
+        assert!(!matches!(tense.by, Bound::DutyNoise | Bound::Backlash) && tense.used > 1.0, "{tense:?}");
         let soft = Gains { velocity: Pid { p: 0.05, i: 0.05, d: 0.0 }, ..Gains::default() };
         assert_eq!(limit(&task(0.1, 30_000.0, 50.0), &soft), None);
     }
 
     #[test]
-    fn an_integral_as_quick_as_the_play_allows_is_told() {
+    fn an_integral_as_quick_as_the_backlash_allows_is_reported() {
         let task = Task { least_integral_s: 0.5, ..task(0.1, 30_000.0, 50.0) };
         let gains = Gains { velocity: Pid { p: 0.1, i: 0.2, d: 0.0 }, ..Gains::default() };
-        assert_eq!(limit(&task, &gains).unwrap().by, Bound::Play);
+        assert_eq!(limit(&task, &gains).unwrap().by, Bound::Backlash);
     }
 }

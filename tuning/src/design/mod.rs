@@ -60,9 +60,10 @@ pub struct Task {
     pub goal: Goal,
     /// What the measured duty noise is to the predicted one.
     pub noise_factor: f64,
-    /// Play of the mechanics, counts.
-    pub slack_counts: f64,
-    /// Shortest integral time of the velocity loop, s: play turns a quick integral into a limit cycle.
+    /// Backlash of the mechanics, counts.
+    #[serde(rename = "slack_counts")]
+    pub backlash_counts: f64,
+    /// Shortest integral time of the velocity loop, s: backlash turns a quick integral into a limit cycle.
     pub least_integral_s: f64,
     /// Overshoot of a speed step beyond which the cost jumps, over the step.
     pub most_overshoot: f64,
@@ -191,7 +192,7 @@ mod tests {
             qpps: 28_000.0,
             goal: Goal::of_level(level),
             noise_factor: 1.0,
-            slack_counts: 0.0,
+            backlash_counts: 0.0,
             least_integral_s: 0.0,
             most_overshoot: USUAL_OVERSHOOT,
         }

@@ -9,12 +9,12 @@ use crate::ticks::position_test_and_end;
 const OVERSHOOT_CAP: f64 = 0.06;
 /// Deviation of the duty beyond which a move is not over yet when it should be; the cost jumps there too.
 const LATE_DUTY_CAP: f64 = 0.08;
-/// Way in the last third of a move or after a load beyond which it is not over yet, over the step and in counts at the least: what
-/// creeps for so long sticks and slips in the play of a real machine. How dear it is, and the most it can cost.
-const LATE_WAY_CAP: f64 = 0.01;
+/// Distance gone in the last third of a move or after a load beyond which it is not over yet, over the step and in counts at the least: what
+/// creeps for so long sticks and slips in the backlash of a real machine. How dear it is, and the most it can cost.
+const LATE_DISTANCE_CAP: f64 = 0.01;
 const LATE_COUNTS_CAP: f64 = 2.0;
-const LATE_WAY_COST: f64 = 0.2;
-const LATE_WAY_MOST: f64 = 0.8;
+const LATE_DISTANCE_COST: f64 = 0.2;
+const LATE_DISTANCE_MOST: f64 = 0.8;
 /// Shares of the highest gain tried.
 const SHARES: [f64; 6] = [1.0, 0.85, 0.7, 0.5, 0.35, 0.2];
 /// Derivative times tried, as shares of the time constant of the motor.
@@ -25,8 +25,8 @@ const AT_REST: f64 = 0.9;
 const INNER_TIMES: usize = 8;
 /// Shares of the highest inner gain tried.
 const INNER_SHARES: [f64; 4] = [1.0, 0.7, 0.4, 0.2];
-/// Dead zone around the play of the mechanics, and of an integral that would hunt without one, counts.
-const SLACK_MARGIN: f64 = 2.0;
+/// Dead zone around the backlash of the mechanics, and of an integral that would hunt without one, counts.
+const BACKLASH_MARGIN: f64 = 2.0;
 const INTEGRAL_DEADZONE: f64 = 1.0;
 
 /// `v = P e + D de/dt`, duty = v / QPPS (MCP manual 2.4.7, the simple PD system).
@@ -93,10 +93,11 @@ pub fn design_piv(task: &Task) -> Option<Design> {
         };
         let Some(top) = ascend(&loops, &inner, 400.0, pi) else { continue };
         for share in INNER_SHARES {
-            let with_place = |p: f64| Gains { position: Some(Pid { p, i: 0.0, d: 0.0 }), ..pi(top * share) };
-            let Some(highest) = ascend(&loops, task, 300.0, with_place) else { continue };
+            let with_position =
+                |p: f64| Gains { position: Some(Pid { p, i: 0.0, d: 0.0 }), ..pi(top * share) };
+            let Some(highest) = ascend(&loops, task, 300.0, with_position) else { continue };
             for outer in SHARES {
-                best = better(best, candidate(task, with_place(highest * outer)));
+                best = better(best, candidate(task, with_position(highest * outer)));
             }
         }
     }
@@ -154,15 +155,15 @@ fn candidate(task: &Task, gains: Gains) -> Candidate {
     let excess = (score.overshoot - OVERSHOOT_CAP).max(0.0)
         + 0.5 * (end.duty.0.max(end.duty.1) - LATE_DUTY_CAP).max(0.0);
     let step = position_step(task.plant.gain_counts_per_s, task.plant.tau_s);
-    let allowed = (LATE_WAY_CAP * step).max(LATE_COUNTS_CAP);
-    let creeping = (LATE_WAY_COST * (end.range_counts / allowed - 1.0)).clamp(0.0, LATE_WAY_MOST);
+    let allowed = (LATE_DISTANCE_CAP * step).max(LATE_COUNTS_CAP);
+    let creeping = (LATE_DISTANCE_COST * (end.range_counts / allowed - 1.0)).clamp(0.0, LATE_DISTANCE_MOST);
     let cost = score.cost(POSITION_OVERSHOOT) * (1.0 + 50.0 * excess) * (1.0 + creeping);
     Candidate { gains, score, cost }
 }
 
-/// Within the play nothing can be held; beyond it two counts keep the rounding quiet.
+/// Within the backlash nothing can be held; beyond it two counts keep the rounding quiet.
 pub(crate) fn deadzone(task: &Task) -> f64 {
-    if task.slack_counts > 0.0 { (task.slack_counts + SLACK_MARGIN).round() } else { 0.0 }
+    if task.backlash_counts > 0.0 { (task.backlash_counts + BACKLASH_MARGIN).round() } else { 0.0 }
 }
 
 /// The task of a loop that acts on the duty directly: its sensitivity is bounded with some more lag, for the winding and a springy

@@ -3,7 +3,7 @@
 
 use super::Probe;
 use crate::cause::Cause;
-use crate::rig::Rig;
+use crate::experiment_guard::ExperimentGuard;
 use crate::settle::{Settled, settled};
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +12,7 @@ const SWITCHES: usize = 8;
 /// A slow axis shows itself in fewer, when they took this long, s.
 const FEW_SWITCHES: usize = 2;
 const ENOUGH_S: f64 = 1.5;
-/// Where the relay switches, as shares of the way between its two speeds.
+/// Where the relay switches, as shares of the difference between its two speeds.
 const SWITCH_AT: (f64, f64) = (0.28, 0.72);
 /// Longest time for one settling and for the relay, s.
 const LONGEST_SETTLE_S: f64 = 20.0;
@@ -34,7 +34,7 @@ const EARLY: (f64, f64) = (2.2, 0.002);
 /// What the free run read off.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FreeRun {
-    /// Speed at the highest allowed duty, each way, counts/s, both positive.
+    /// Speed at the highest allowed duty, in each direction, counts/s, both positive.
     pub full_speeds: (f64, f64),
     /// Half of the 95 % interval of their mean, relative.
     pub interval: f64,
@@ -51,28 +51,28 @@ pub struct FreeRun {
 }
 
 /// Runs it. The motor is braked when it returns.
-pub fn run_free(rig: &mut Rig<'_>, probe: &Probe) -> Result<FreeRun, Cause> {
-    let full_duty = rig.options.max_duty;
-    rig.watch.start_duty = probe.start_duty;
-    rig.watch.stall_amps = probe.stall_amps;
-    rig.watch.drive_limit = rig.drive_limit(probe.stall_amps);
-    let mut from_s = rig.now_s();
-    if rig.watch.is_abrupt && climb(rig, full_duty)? {
-        from_s = rig.now_s();
+pub fn run_free(guard: &mut ExperimentGuard<'_>, probe: &Probe) -> Result<FreeRun, Cause> {
+    let full_duty = guard.options.max_duty;
+    guard.monitor.start_duty = probe.start_duty;
+    guard.monitor.stall_amps = probe.stall_amps;
+    guard.monitor.drive_limit = guard.drive_limit(probe.stall_amps);
+    let mut from_s = guard.now_s();
+    if guard.monitor.is_abrupt && climb(guard, full_duty)? {
+        from_s = guard.now_s();
     }
-    let driven_s = rig.now_s();
-    let forward = settle_at(rig, full_duty)?;
-    let rise = rise_s(rig, driven_s, forward.speed);
-    rig.watch.stopping_s = forward.tau_s.min(rise);
-    rig.watch.tau_bounds_s = Some(tau_bounds(forward.tau_s, rise));
+    let driven_s = guard.now_s();
+    let forward = settle_at(guard, full_duty)?;
+    let rise = rise_s(guard, driven_s, forward.speed);
+    guard.monitor.stopping_s = forward.tau_s.min(rise);
+    guard.monitor.tau_bounds_s = Some(tau_bounds(forward.tau_s, rise));
     let low_duty = (probe.start_duty + 0.06).max(0.25).min(0.6 * full_duty);
     let high_duty = (probe.start_duty + 0.35).max(0.6).min(0.9 * full_duty);
-    let step_from = rig.now_s();
-    run_relay(rig, (low_duty, high_duty), forward.speed)?;
-    let step_to = rig.now_s();
-    let backward = settle_at(rig, -full_duty)?;
-    rig.duty(0.0)?;
-    rig.poll_for((3.0 * forward.tau_s).clamp(0.06, 0.5), false)?;
+    let step_from = guard.now_s();
+    run_relay(guard, (low_duty, high_duty), forward.speed)?;
+    let step_to = guard.now_s();
+    let backward = settle_at(guard, -full_duty)?;
+    guard.duty(0.0)?;
+    guard.poll_for((3.0 * forward.tau_s).clamp(0.06, 0.5), false)?;
     let full_speeds = (forward.speed.abs(), backward.speed.abs());
     let mean = 0.5 * (full_speeds.0 + full_speeds.1);
     if (full_speeds.0 - full_speeds.1).abs() > 0.25 * mean {
@@ -93,61 +93,61 @@ pub fn run_free(rig: &mut Rig<'_>, probe: &Probe) -> Result<FreeRun, Cause> {
 /// Goes up to the full duty in steps where the controller has no ramp of its own: nobody knows yet how fast this motor is. Then it is
 /// braked, so that it goes up once more from rest, which shows its time constant. Whether it came to rest: the record that the model is
 /// fitted to begins then, since a quick motor may stick at a low duty, and no model says when.
-fn climb(rig: &mut Rig<'_>, full_duty: f64) -> Result<bool, Cause> {
-    let mut duty = (rig.watch.start_duty + 0.06).max(CLIMB_FROM);
+fn climb(guard: &mut ExperimentGuard<'_>, full_duty: f64) -> Result<bool, Cause> {
+    let mut duty = (guard.monitor.start_duty + 0.06).max(CLIMB_FROM);
     let mut top: f64 = 0.0;
     while duty < 0.9 * full_duty {
-        rig.duty(duty)?;
-        let (seen, until_s) = (rig.points.len() + CLIMB_POLLS, rig.now_s() + CLIMB_S);
-        while rig.now_s() < until_s || rig.points.len() < seen {
-            rig.poll(false)?;
+        guard.duty(duty)?;
+        let (seen, until_s) = (guard.points.len() + CLIMB_POLLS, guard.now_s() + CLIMB_S);
+        while guard.now_s() < until_s || guard.points.len() < seen {
+            guard.poll(false)?;
         }
-        top = top.max(rig.recent_speed(CLIMB_POLLS).map_or(0.0, f64::abs));
+        top = top.max(guard.recent_speed(CLIMB_POLLS).map_or(0.0, f64::abs));
         duty *= CLIMB_RATIO;
     }
-    rig.duty(0.0)?;
-    let until_s = rig.now_s() + CLIMB_REST_S.1;
-    rig.poll_for(CLIMB_REST_S.0, false)?;
+    guard.duty(0.0)?;
+    let until_s = guard.now_s() + CLIMB_REST_S.1;
+    guard.poll_for(CLIMB_REST_S.0, false)?;
     loop {
-        let is_still = rig.recent_speed(3).is_some_and(|speed| speed.abs() <= CLIMB_STILL * top);
-        if is_still || rig.now_s() >= until_s {
+        let is_still = guard.recent_speed(3).is_some_and(|speed| speed.abs() <= CLIMB_STILL * top);
+        if is_still || guard.now_s() >= until_s {
             return Ok(is_still);
         }
-        rig.poll(false)?;
+        guard.poll(false)?;
     }
 }
 
 /// Holds a duty until the speed it settles at is known.
-fn settle_at(rig: &mut Rig<'_>, duty: f64) -> Result<Settled, Cause> {
-    rig.duty(duty)?;
+fn settle_at(guard: &mut ExperimentGuard<'_>, duty: f64) -> Result<Settled, Cause> {
+    guard.duty(duty)?;
     // The duty ramp of up to 0.1 s is no part of the exponential.
     let mut start =
-        rig.now_s() + 0.02 + 0.05 * duty.abs() * if rig.watch.full_speed > 0.0 { 1.4 } else { 1.0 };
+        guard.now_s() + 0.02 + 0.05 * duty.abs() * if guard.monitor.full_speed > 0.0 { 1.4 } else { 1.0 };
     let begin = start;
     let mut polls = 0;
     loop {
-        let point = rig.poll(false)?;
+        let point = guard.poll(false)?;
         if point.is_some_and(|point| point.limited) {
             // Nor is the climb at the current limit.
-            start = rig.now_s();
+            start = guard.now_s();
         }
-        if let Some(speed) = rig.recent_speed(4) {
-            rig.watch.full_speed = rig.watch.full_speed.max(speed.abs());
+        if let Some(speed) = guard.recent_speed(4) {
+            guard.monitor.full_speed = guard.monitor.full_speed.max(speed.abs());
         }
         polls += 1;
-        let t = rig.now_s() - start;
+        let t = guard.now_s() - start;
         if polls % 5 != 0 || t < 0.1 {
             continue;
         }
-        let from = rig.points.partition_point(|p| p.t < start);
-        let Some(found) = settled(&rig.points[from..]) else { continue };
+        let from = guard.points.partition_point(|p| p.t < start);
+        let Some(found) = settled(&guard.points[from..]) else { continue };
         let level = (found.speed - found.tail_speed).abs() < TAIL_ERROR * found.speed.abs();
         let settled = level && t > 3.0 * found.tau_s && found.interval < INTERVAL;
         let clear = t > EARLY.0 * found.tau_s && t > 0.5 && found.interval < EARLY.1;
         if settled || clear {
             return Ok(found);
         }
-        if rig.now_s() - begin > LONGEST_SETTLE_S {
+        if guard.now_s() - begin > LONGEST_SETTLE_S {
             return Err(if found.interval < 0.05 { Cause::TimeLimit } else { Cause::TooCoarse });
         }
     }
@@ -160,9 +160,9 @@ fn tau_bounds(fitted: f64, rise: f64) -> (f64, f64) {
 }
 
 /// Time to 63 % of a speed: no time constant is longer.
-fn rise_s(rig: &Rig<'_>, from_s: f64, speed: f64) -> f64 {
-    let driven = rig.points.iter().filter(|p| p.t >= from_s);
-    let pairs = rig.points.windows(2).filter(|w| w[0].t >= from_s);
+fn rise_s(guard: &ExperimentGuard<'_>, from_s: f64, speed: f64) -> f64 {
+    let driven = guard.points.iter().filter(|p| p.t >= from_s);
+    let pairs = guard.points.windows(2).filter(|w| w[0].t >= from_s);
     let risen =
         pairs.into_iter().find(|w| (w[1].counts - w[0].counts) / (w[1].t - w[0].t).max(1e-3) >= 0.63 * speed);
     match (driven.map(|p| p.t).next(), risen) {
@@ -172,27 +172,27 @@ fn rise_s(rig: &Rig<'_>, from_s: f64, speed: f64) -> f64 {
 }
 
 /// Switches between two duties whenever the speed has come most of the way.
-fn run_relay(rig: &mut Rig<'_>, duties: (f64, f64), full_speed: f64) -> Result<(), Cause> {
-    let start = probe_share(rig);
-    let speed_at = |duty: f64| full_speed * (duty - start) / (rig.options.max_duty - start).max(0.05);
+fn run_relay(guard: &mut ExperimentGuard<'_>, duties: (f64, f64), full_speed: f64) -> Result<(), Cause> {
+    let start = probe_share(guard);
+    let speed_at = |duty: f64| full_speed * (duty - start) / (guard.options.max_duty - start).max(0.05);
     let (low, high) = (speed_at(duties.0), speed_at(duties.1));
     let down = low + SWITCH_AT.0 * (high - low);
     let up = low + SWITCH_AT.1 * (high - low);
     let mut rising = false;
-    rig.duty(duties.0)?;
-    let begin = rig.now_s();
+    guard.duty(duties.0)?;
+    let begin = guard.now_s();
     let mut since = begin;
     let mut switches = 0;
     while switches < SWITCHES {
-        rig.poll(false)?;
-        let now = rig.now_s();
-        let Some(speed) = rig.recent_speed(2) else { continue };
+        guard.poll(false)?;
+        let now = guard.now_s();
+        let Some(speed) = guard.recent_speed(2) else { continue };
         if now - since < 0.025 {
             continue;
         }
         if (rising && speed >= up) || (!rising && speed <= down) {
             rising = !rising;
-            rig.duty(if rising { duties.1 } else { duties.0 })?;
+            guard.duty(if rising { duties.1 } else { duties.0 })?;
             since = now;
             switches += 1;
         } else if now - begin > LONGEST_RELAY_S || (switches >= FEW_SWITCHES && now - begin > ENOUGH_S) {
@@ -203,6 +203,6 @@ fn run_relay(rig: &mut Rig<'_>, duties: (f64, f64), full_speed: f64) -> Result<(
 }
 
 /// A guess of the duty that friction eats: somewhat less than it took to start.
-fn probe_share(rig: &Rig<'_>) -> f64 {
-    0.6 * rig.watch.start_duty
+fn probe_share(guard: &ExperimentGuard<'_>) -> f64 {
+    0.6 * guard.monitor.start_duty
 }

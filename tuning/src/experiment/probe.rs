@@ -2,7 +2,7 @@
 //! closed, and the duty at which the motor starts.
 
 use crate::cause::Cause;
-use crate::rig::Rig;
+use crate::experiment_guard::ExperimentGuard;
 use serde::{Deserialize, Serialize};
 
 /// Time at rest first, s.
@@ -34,16 +34,16 @@ pub struct Probe {
 }
 
 /// Runs it. The motor is braked when it returns.
-pub fn run_probe(rig: &mut Rig<'_>, direction: f64) -> Result<Probe, Cause> {
-    rig.duty(0.0)?;
-    rig.poll_for(REST_S, false)?;
-    let rest = rig.points.last().map_or(0.0, |p| p.counts);
-    let noise = spread(rig.points.iter().map(|p| p.counts));
-    let noise_counts = deviation(rig.points.iter().map(|p| p.counts));
-    let volts = rig.mean_volts(0.0, f64::INFINITY);
+pub fn run_probe(guard: &mut ExperimentGuard<'_>, direction: f64) -> Result<Probe, Cause> {
+    guard.duty(0.0)?;
+    guard.poll_for(REST_S, false)?;
+    let rest = guard.points.last().map_or(0.0, |p| p.counts);
+    let noise = spread(guard.points.iter().map(|p| p.counts));
+    let noise_counts = deviation(guard.points.iter().map(|p| p.counts));
+    let volts = guard.mean_volts(0.0, f64::INFINITY);
     let mut readings: Vec<(f64, f64)> = Vec::new();
-    let highest = LAST_DUTY.min(rig.options.max_duty);
-    let begin = rig.now_s();
+    let highest = LAST_DUTY.min(guard.options.max_duty);
+    let begin = guard.now_s();
     let mut moved = None;
     let mut step = 0;
     // By the clock: slow polls make coarser steps, not a longer ramp.
@@ -52,17 +52,17 @@ pub fn run_probe(rig: &mut Rig<'_>, direction: f64) -> Result<Probe, Cause> {
         if duty > highest + 1e-9 {
             break;
         }
-        rig.duty(duty * direction)?;
+        guard.duty(duty * direction)?;
         let mut latest = None;
         loop {
-            if let Some(point) = rig.poll(false)? {
+            if let Some(point) = guard.poll(false)? {
                 latest = point.amps.map(f64::abs).or(latest);
                 let by = (point.counts - rest) * direction;
                 if by.abs() >= MOTION_COUNTS.max(3.0 * noise) {
                     moved = Some((duty, by));
                 }
             }
-            let due = ((rig.now_s() - begin) / STEP_S) as i32;
+            let due = ((guard.now_s() - begin) / STEP_S) as i32;
             if due > step || moved.is_some() {
                 step = due;
                 break;
@@ -78,16 +78,16 @@ pub fn run_probe(rig: &mut Rig<'_>, direction: f64) -> Result<Probe, Cause> {
     match moved {
         Some((_, by)) if by < 0.0 => Err(Cause::EncoderReversed),
         Some((start_duty, _)) => {
-            rig.duty(0.0)?;
+            guard.duty(0.0)?;
             Ok(Probe { start_duty, stall_amps, volts, peak_amps, noise_counts })
         }
-        None => Err(nothing_moved(rig, &readings, peak_amps, steepest)?),
+        None => Err(nothing_moved(guard, &readings, peak_amps, steepest)?),
     }
 }
 
-/// Tells an open motor, a locked shaft and a dead encoder apart, by the current.
+/// Distinguishes an open motor, a locked shaft and a dead encoder by the current.
 fn nothing_moved(
-    rig: &mut Rig<'_>,
+    guard: &mut ExperimentGuard<'_>,
     readings: &[(f64, f64)],
     peak_amps: f64,
     steepest: f64,
@@ -103,11 +103,11 @@ fn nothing_moved(
         return Ok(Cause::EncoderDead);
     }
     // A heavy motor has hardly begun to turn. Braked, it gives a current; a locked one does not.
-    rig.duty(0.0)?;
-    let from = rig.now_s() + 0.03;
-    rig.poll_for(0.09, false)?;
+    guard.duty(0.0)?;
+    let from = guard.now_s() + 0.03;
+    guard.poll_for(0.09, false)?;
     let braking =
-        rig.points.iter().filter(|p| p.t > from).filter_map(|p| p.amps).map(f64::abs).fold(0.0, f64::max);
+        guard.points.iter().filter(|p| p.t > from).filter_map(|p| p.amps).map(f64::abs).fold(0.0, f64::max);
     let turns = braking > (2.0 * NO_CURRENT_AMPS).max(0.03 * steepest * last_duty);
     Ok(if turns { Cause::EncoderDead } else { Cause::ShaftLocked })
 }

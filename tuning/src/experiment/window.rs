@@ -2,14 +2,14 @@
 
 use super::Probe;
 use crate::cause::Cause;
-use crate::rig::Rig;
+use crate::experiment_guard::ExperimentGuard;
 use serde::{Deserialize, Serialize};
 
 /// Switches at each of the two duties.
 const SWITCHES: usize = 10;
 /// Duties above the starting one.
 const DUTIES: [f64; 2] = [0.22, 0.50];
-/// Where the axis is to turn round, as a share of the window: as long as nothing is known of its way, and later.
+/// Where the axis is to turn round, as a share of the window: as long as nothing is known of its stopping distance, and later.
 const FIRST_TURN_AT: f64 = 0.20;
 const TURN_AT: f64 = 0.25;
 /// How often a run that the guard ended is begun anew, and what it then uses of the width, over what it used before.
@@ -17,7 +17,7 @@ const NARROWER: usize = 1;
 const NARROWER_SHARE: f64 = 0.8;
 /// How near to the end it may have come for that, as a share of the width from the middle.
 const NEAREST_SHARE: f64 = 0.45;
-/// Time until a new duty acts, s, and the share of the way from rest that the first stop may take.
+/// Time until a new duty acts, s, and the share of the distance from rest that the first stop may take.
 const ACTS_S: f64 = 0.03;
 const FIRST_SHARE: f64 = 0.7;
 /// Duty above the starting one for going somewhere, and how far its end is looked ahead for, s.
@@ -25,9 +25,9 @@ const GOING_DUTY: f64 = 0.05;
 const GOING_AHEAD_S: f64 = 0.05;
 /// Longest time, s.
 const LONGEST_S: f64 = 25.0;
-/// A wide window is not used to its ends by a slow axis: longest way in one direction once the speed is steady, s, and what it
+/// A wide window is not used to its ends by a slow axis: longest travel in one direction once the speed is steady, s, and what it
 /// changes by then at the most.
-const LONGEST_SWING_S: f64 = 0.7;
+const LONGEST_HALF_CYCLE_S: f64 = 0.7;
 const STEADY: f64 = 0.08;
 
 /// What the window run read off.
@@ -39,65 +39,65 @@ pub struct WindowRun {
     pub switches: usize,
     /// Highest speed seen, counts/s.
     pub top_speed: f64,
-    /// Farthest way from the middle, counts.
+    /// Farthest distance from the middle, counts.
     pub reach_counts: f64,
 }
 
 /// Runs it inside `width` counts around where the axis is now. The motor is braked when it returns.
-pub fn run_window(rig: &mut Rig<'_>, probe: &Probe, width: f64) -> Result<WindowRun, Cause> {
-    rig.watch.start_duty = probe.start_duty;
-    rig.watch.stall_amps = probe.stall_amps;
-    rig.watch.drive_limit = rig.drive_limit(probe.stall_amps);
-    rig.poll_for(0.05, false)?;
-    let middle = rig.points.last().map_or(0.0, |p| p.counts);
+pub fn run_window(guard: &mut ExperimentGuard<'_>, probe: &Probe, width: f64) -> Result<WindowRun, Cause> {
+    guard.monitor.start_duty = probe.start_duty;
+    guard.monitor.stall_amps = probe.stall_amps;
+    guard.monitor.drive_limit = guard.drive_limit(probe.stall_amps);
+    guard.poll_for(0.05, false)?;
+    let middle = guard.points.last().map_or(0.0, |p| p.counts);
     let mut turn = Turn { acts_s: ACTS_S, last: None, share: 1.0 };
     for _ in 0..NARROWER {
-        match swings(rig, probe, (middle, width), &mut turn) {
-            Err(Cause::TravelLimit) if (rig.turned_at_counts() - middle).abs() < NEAREST_SHARE * width => {
-                // The guard brought it to rest before the end. What it learned of the way stays, and it keeps farther away.
-                rig.come_to_rest()?;
-                go_to(rig, probe, middle)?;
+        match oscillate(guard, probe, (middle, width), &mut turn) {
+            Err(Cause::TravelLimit) if (guard.turned_at_counts() - middle).abs() < NEAREST_SHARE * width => {
+                // The guard brought it to rest before the end. What it learned of the stopping distance stays, and it keeps farther away.
+                guard.come_to_rest()?;
+                go_to(guard, probe, middle)?;
                 turn.share *= NARROWER_SHARE;
             }
             other => return other,
         }
     }
-    swings(rig, probe, (middle, width), &mut turn)
+    oscillate(guard, probe, (middle, width), &mut turn)
 }
 
-/// Swings about the middle of a width at both duties.
-fn swings(
-    rig: &mut Rig<'_>,
+/// Oscillates about the middle of a width at both duties.
+fn oscillate(
+    guard: &mut ExperimentGuard<'_>,
     probe: &Probe,
     (middle, width): (f64, f64),
     turn: &mut Turn,
 ) -> Result<WindowRun, Cause> {
-    let mut run = WindowRun { from_s: rig.now_s(), switches: 0, top_speed: 0.0, reach_counts: 0.0 };
+    let mut run = WindowRun { from_s: guard.now_s(), switches: 0, top_speed: 0.0, reach_counts: 0.0 };
     for above in DUTIES {
-        let duty = (probe.start_duty + above).min(rig.options.max_duty);
-        swing(rig, duty, middle, width, &mut run, turn)?;
+        let duty = (probe.start_duty + above).min(guard.options.max_duty);
+        oscillate_at(guard, duty, middle, width, &mut run, turn)?;
     }
-    rig.come_to_rest()?;
+    guard.come_to_rest()?;
     if run.switches < 4 { Err(Cause::TooCoarse) } else { Ok(run) }
 }
 
-/// Drives to a place with little duty, and lets the axis come to rest there.
-pub fn go_to(rig: &mut Rig<'_>, probe: &Probe, place: f64) -> Result<(), Cause> {
-    let begin = rig.now_s();
-    let here = |rig: &Rig<'_>| rig.points.last().map_or(0.0, |p| p.counts);
-    let direction = (place - here(rig)).signum();
-    rig.duty((probe.start_duty + GOING_DUTY).min(rig.options.max_duty) * direction)?;
+/// Drives to a position with little duty, and lets the axis come to rest there.
+pub fn go_to(guard: &mut ExperimentGuard<'_>, probe: &Probe, position: f64) -> Result<(), Cause> {
+    let begin = guard.now_s();
+    let here = |guard: &ExperimentGuard<'_>| guard.points.last().map_or(0.0, |p| p.counts);
+    let direction = (position - here(guard)).signum();
+    guard.duty((probe.start_duty + GOING_DUTY).min(guard.options.max_duty) * direction)?;
     loop {
-        rig.poll(false)?;
-        let ahead = rig.recent_speed(2).unwrap_or(0.0) * GOING_AHEAD_S;
-        if (place - here(rig) - ahead) * direction <= 0.0 {
+        guard.poll(false)?;
+        let ahead = guard.recent_speed(2).unwrap_or(0.0) * GOING_AHEAD_S;
+        if (position - here(guard) - ahead) * direction <= 0.0 {
             break;
         }
-        if rig.now_s() - begin > LONGEST_S {
+        if guard.now_s() - begin > LONGEST_S {
             return Err(Cause::TimeLimit);
         }
     }
-    rig.come_to_rest()
+    guard.come_to_rest()
 }
 
 /// How far the axis runs on when it is turned round: what the turns so far have shown.
@@ -107,77 +107,77 @@ struct Turn {
     acts_s: f64,
     /// What is used of the width, over the usual.
     share: f64,
-    /// Speed of the last turn and the way it took, counts/s and counts.
+    /// Speed of the last turn and the distance it took, counts/s and counts.
     last: Option<(f64, f64)>,
 }
 
 impl Turn {
-    /// The way from a speed, where the axis has come so far since it last stood.
-    fn way(&self, speed: f64, since_rest: f64) -> f64 {
+    /// The stopping distance from a speed, where the axis has come so far since it last stood.
+    fn stopping_distance(&self, speed: f64, since_rest: f64) -> f64 {
         let speed = speed.max(0.0);
         match self.last {
-            // Between a way as the speed (a light motor) and as its square (a heavy one), whichever is longer.
-            Some((before, way)) => {
+            // Between a distance as the speed (a light motor) and as its square (a heavy one), whichever is longer.
+            Some((before, distance)) => {
                 let ratio = speed / before;
-                way * ratio * ratio.max(1.0)
+                distance * ratio * ratio.max(1.0)
             }
             // It needs no longer to stop than it needed to start.
             None => speed * self.acts_s + FIRST_SHARE * since_rest.max(0.0),
         }
     }
 
-    fn learn(&mut self, speed: f64, way: f64) {
-        if speed > 0.0 && way > 0.0 {
-            let expected = self.last.map_or(way, |(before, way)| way * speed / before);
-            self.last = Some((speed, way.max(0.5 * (way + expected))));
+    fn learn(&mut self, speed: f64, distance: f64) {
+        if speed > 0.0 && distance > 0.0 {
+            let expected = self.last.map_or(distance, |(before, distance)| distance * speed / before);
+            self.last = Some((speed, distance.max(0.5 * (distance + expected))));
         }
     }
 }
 
-/// Swings about the middle at one duty. The way it takes to turn round is learned from each swing.
-fn swing(
-    rig: &mut Rig<'_>,
+/// Oscillates about the middle at one duty. The distance it takes to turn round is learned from each half cycle.
+fn oscillate_at(
+    guard: &mut ExperimentGuard<'_>,
     duty: f64,
     middle: f64,
     width: f64,
     run: &mut WindowRun,
     turn: &mut Turn,
 ) -> Result<(), Cause> {
-    let start = rig.points.last().map_or(middle, |p| p.counts);
+    let start = guard.points.last().map_or(middle, |p| p.counts);
     let mut direction = if start > middle { -1.0 } else { 1.0 };
-    rig.duty(duty * direction)?;
+    guard.duty(duty * direction)?;
     let mut switches = 0;
     let (mut switched_at, mut switch_speed, mut farthest) = (start, 0.0_f64, 0.0_f64);
-    let mut since_s = rig.now_s();
+    let mut since_s = guard.now_s();
     while switches < SWITCHES {
-        if rig.now_s() - run.from_s > LONGEST_S {
+        if guard.now_s() - run.from_s > LONGEST_S {
             return Ok(());
         }
-        let Some(point) = rig.poll(false)? else { continue };
-        let speed = rig.recent_speed(2).unwrap_or(0.0);
+        let Some(point) = guard.poll(false)? else { continue };
+        let speed = guard.recent_speed(2).unwrap_or(0.0);
         let from_middle = point.counts - middle;
         run.top_speed = run.top_speed.max(speed.abs());
-        rig.watch.full_speed = rig.watch.full_speed.max(speed.abs());
+        guard.monitor.full_speed = guard.monitor.full_speed.max(speed.abs());
         run.reach_counts = run.reach_counts.max(from_middle.abs());
         farthest = farthest.max((point.counts - switched_at) * -direction);
         if from_middle.abs() > 0.5 * width {
             return Err(Cause::TravelLimit);
         }
         let turned_at = switched_at - direction * farthest;
-        let runs_on = turn.way(speed * direction, (point.counts - turned_at) * direction);
+        let runs_on = turn.stopping_distance(speed * direction, (point.counts - turned_at) * direction);
         let is_steady =
-            rig.recent_speed(12).is_some_and(|before| (speed - before).abs() < STEADY * run.top_speed);
-        let is_long = point.t - since_s > LONGEST_SWING_S && is_steady;
+            guard.recent_speed(12).is_some_and(|before| (speed - before).abs() < STEADY * run.top_speed);
+        let is_long = point.t - since_s > LONGEST_HALF_CYCLE_S && is_steady;
         if is_long || from_middle * direction + runs_on >= turn_at(turn) * width {
             since_s = point.t;
             if switches > 0 {
-                learn(rig, turn, switch_speed, farthest, duty);
+                learn(guard, turn, switch_speed, farthest, duty);
             }
             switched_at = point.counts;
             switch_speed = speed * direction;
             farthest = 0.0;
             direction = -direction;
-            rig.duty(duty * direction)?;
+            guard.duty(duty * direction)?;
             switches += 1;
             run.switches += 1;
         }
@@ -189,12 +189,12 @@ fn turn_at(turn: &Turn) -> f64 {
     turn.share * if turn.last.is_some() { TURN_AT } else { FIRST_TURN_AT }
 }
 
-fn learn(rig: &mut Rig<'_>, turn: &mut Turn, speed: f64, way: f64, duty: f64) {
-    turn.learn(speed, way);
-    if speed > 0.0 && way > 0.0 {
-        let seconds = (way / speed).clamp(0.02, 0.6);
-        rig.watch.stopping_s = seconds;
-        rig.watch.tau_bounds_s = Some((0.1 * seconds, 10.0 * seconds));
-        rig.watch.turned(speed, duty, way);
+fn learn(guard: &mut ExperimentGuard<'_>, turn: &mut Turn, speed: f64, distance: f64, duty: f64) {
+    turn.learn(speed, distance);
+    if speed > 0.0 && distance > 0.0 {
+        let seconds = (distance / speed).clamp(0.02, 0.6);
+        guard.monitor.stopping_s = seconds;
+        guard.monitor.tau_bounds_s = Some((0.1 * seconds, 10.0 * seconds));
+        guard.monitor.turned(speed, duty, distance);
     }
 }

@@ -1,7 +1,7 @@
 //! The Motion Mind 3: its loop as a law of the model, its registers, and what a run must know of it.
 //!
 //! Every 5 ms `PWM = (PTERM e + ITERM sum(e) + DTERM diff(e)) / 2^PIDSCALAR + speed x VELOCITYFF / 255`, 1023 = full duty (Motion Mind
-//! manual 3.13 to 3.15). `e` is always an error of the place. Under a speed command the wanted place runs ahead by the speed in
+//! manual 3.13 to 3.15). `e` is always an error of the position. Under a speed command the wanted position runs ahead by the speed in
 //! each loop, so that DTERM acts on the error of the speed and PTERM on its sum: a velocity PI under other names. ITERM has no part
 //! in what is designed, being an integral of the integral. There is one set of registers for both kinds of moves, and no cascade.
 //!
@@ -15,7 +15,7 @@ mod tick;
 pub(crate) use limiter::{Limiter, LimiterState};
 pub(crate) use registers::rounded;
 pub use registers::{MotionMindRegisters, MotionMindSetup, bits};
-pub(crate) use tick::PlaceLoop;
+pub(crate) use tick::PositionLoop;
 
 use crate::model::{Gains, LoopLaw, Pid};
 use serde::{Deserialize, Serialize};
@@ -66,9 +66,9 @@ pub fn law() -> LoopLaw {
     LoopLaw { rate_hz: LOOPS_PER_S, per_tick: true, position_scale: 1.0, feed_forward: true, motion_mind }
 }
 
-/// The gains on the error of the place: counts in, counts/s out, over QPPS a duty.
+/// The gains on the error of the position: counts in, counts/s out, over QPPS a duty.
 #[must_use]
-pub(crate) fn on_place(gains: &Gains) -> Pid {
+pub(crate) fn on_position(gains: &Gains) -> Pid {
     gains.position.unwrap_or(Pid { p: gains.velocity.i, i: gains.velocity_sum, d: gains.velocity.p })
 }
 

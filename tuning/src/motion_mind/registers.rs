@@ -1,6 +1,6 @@
 //! Gains as registers of a Motion Mind 3, and back: the rounded gains are what the loop gets.
 
-use super::{FULL_PWM, MotionMindLaw, SPEED_STEP_COUNTS_PER_S, is_protected, on_place, sum_bound_s};
+use super::{FULL_PWM, MotionMindLaw, SPEED_STEP_COUNTS_PER_S, is_protected, on_position, sum_bound_s};
 use crate::design::Task;
 use crate::model::{Gains, LoopLaw, Pid};
 use serde::{Deserialize, Serialize};
@@ -85,7 +85,7 @@ impl MotionMindRegisters {
     /// to brake.
     #[must_use]
     pub fn with(&self, gains: &Gains, qpps: f64, law: MotionMindLaw) -> Self {
-        let (terms, pidscalar) = scaled(&on_place(gains), qpps);
+        let (terms, pidscalar) = scaled(&on_position(gains), qpps);
         let mut function = self.function | bits::ACTIVESTOP;
         function &= !(bits::DISABLEPID | bits::ENABLEDB);
         let deadband = gains.deadzone_counts.round().clamp(0.0, FULL_PWM) as u16;
@@ -131,7 +131,7 @@ impl MotionMindRegisters {
         (Task { law, ..*task }, self.gains(task.qpps, is_position))
     }
 
-    /// Whether the loop is the one that the gains are computed for: the one on places, every 5 ms, giving a duty.
+    /// Whether the loop is the one that the gains are computed for: the one on positions, every 5 ms, giving a duty.
     #[must_use]
     pub fn is_usual_loop(&self) -> bool {
         self.function2 & (bits::NEWVELMODE | bits::FASTPID | bits::PULSEFB) == 0
@@ -148,7 +148,7 @@ impl MotionMindRegisters {
 /// Gains as the registers can hold them.
 #[must_use]
 pub(crate) fn rounded(gains: &Gains, qpps: f64) -> Gains {
-    let ([pterm, iterm, dterm], pidscalar) = scaled(&on_place(gains), qpps);
+    let ([pterm, iterm, dterm], pidscalar) = scaled(&on_position(gains), qpps);
     let pid = unscaled([pterm, iterm, dterm], pidscalar, qpps);
     if gains.position.is_none() {
         let Gains { velocity, velocity_sum, .. } = on_speed(pid);
@@ -157,10 +157,10 @@ pub(crate) fn rounded(gains: &Gains, qpps: f64) -> Gains {
     Gains { position: Some(pid), max_integral: sum_bound_s(gains.max_integral), ..*gains }
 }
 
-/// Gains on the error of the place as those of a speed loop.
-fn on_speed(place: Pid) -> Gains {
-    let velocity = Pid { p: place.d, i: place.p, d: 0.0 };
-    Gains { velocity, velocity_sum: place.i, ..Gains::default() }
+/// Gains on the error of the position as those of a speed loop.
+fn on_speed(position: Pid) -> Gains {
+    let velocity = Pid { p: position.d, i: position.p, d: 0.0 };
+    Gains { velocity, velocity_sum: position.i, ..Gains::default() }
 }
 
 /// PTERM, ITERM, DTERM and PIDSCALAR.
@@ -233,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn bits_that_make_another_loop_are_told() {
+    fn bits_that_make_another_loop_are_reported() {
         let usual = MotionMindRegisters { function: bits::SATPROT | bits::ACTIVESTOP, ..Default::default() };
         assert!(usual.is_usual_loop());
         for function2 in [bits::NEWVELMODE, bits::FASTPID, bits::PULSEFB] {

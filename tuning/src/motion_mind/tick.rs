@@ -1,12 +1,12 @@
-//! One loop of the Motion Mind after the other, for predictions: what its registers make of the places it sees.
+//! One loop of the Motion Mind after the other, for predictions: what its registers make of the positions it sees.
 
-use super::{FULL_FEED_FORWARD, FULL_PWM, MotionMindLaw, is_protected, on_place};
+use super::{FULL_FEED_FORWARD, FULL_PWM, MotionMindLaw, is_protected, on_position};
 use crate::model::Gains;
 use crate::ticks::Setpoint;
 
 /// The state of the loop.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct PlaceLoop {
+pub(crate) struct PositionLoop {
     /// Where a speed command wants the motor to be; `None` before the first.
     ahead: Option<f64>,
     /// Where a position command sends it; `None` before the first.
@@ -19,8 +19,8 @@ pub(crate) struct PlaceLoop {
     is_saturated: bool,
 }
 
-impl PlaceLoop {
-    /// The steady state of a speed, with the motor at place 0 and its next loop to come: `duty` is what the speed takes.
+impl PositionLoop {
+    /// The steady state of a speed, with the motor at position 0 and its next loop to come: `duty` is what the speed takes.
     pub(crate) fn steady(
         law: MotionMindLaw,
         gains: &Gains,
@@ -29,7 +29,7 @@ impl PlaceLoop {
         speed: f64,
         duty: f64,
     ) -> Self {
-        let pid = on_place(gains);
+        let pid = on_position(gains);
         let left = (duty - forward(law, speed * tick_s) / FULL_PWM) * qpps;
         let sum =
             if pid.i > 0.0 { (left / pid.i).clamp(-gains.max_integral, gains.max_integral) } else { 0.0 };
@@ -58,14 +58,14 @@ impl PlaceLoop {
                 *ahead += speed * tick_s;
                 (*ahead - count, forward(law, speed * tick_s))
             }
-            Setpoint::Place(place, _) => {
-                if self.target != Some(place) {
-                    *self = Self { target: Some(place), ..Self::default() };
+            Setpoint::Position(position, _) => {
+                if self.target != Some(position) {
+                    *self = Self { target: Some(position), ..Self::default() };
                 }
-                (place - count, 0.0)
+                (position - count, 0.0)
             }
         };
-        let pid = on_place(gains);
+        let pid = on_position(gains);
         let is_held = is_protected(gains.max_integral) && self.is_saturated;
         if !is_held {
             self.sum = (self.sum + error * tick_s).clamp(-gains.max_integral, gains.max_integral);
@@ -102,9 +102,9 @@ mod tests {
         // One step of duty is one count/s at QPPS 1023: P 0.5 of 41 counts are 20.5 steps, cut to 20; no D from a standing error.
         let pid = Pid { p: 0.5, i: 0.0, d: 0.1 };
         let gains = Gains { position: Some(pid), max_integral: 600.0, ..Gains::default() };
-        let mut place_loop = PlaceLoop::default();
+        let mut position_loop = PositionLoop::default();
         let mut turn = |count| {
-            place_loop.turn(law(), (&gains, 1023.0, TICK_S), Setpoint::Place(41.0, 0.0), count, false)
+            position_loop.turn(law(), (&gains, 1023.0, TICK_S), Setpoint::Position(41.0, 0.0), count, false)
         };
         // The first loop sees the whole error come: 0.1 s over 5 ms of it, and is saturated.
         assert_eq!(turn(0.0), (20.5_f64 + 20.0 * 41.0).trunc() / 1023.0);
@@ -117,10 +117,10 @@ mod tests {
     fn a_speed_command_runs_ahead_and_a_steady_state_stays() {
         let gains = Gains { velocity: Pid { p: 2.0, i: 30.0, d: 0.0 }, ..Gains::default() };
         let (qpps, speed, duty) = (20_000.0, 4_000.0, 0.25);
-        let mut place_loop = PlaceLoop::steady(law(), &gains, qpps, TICK_S, speed, duty);
+        let mut position_loop = PositionLoop::steady(law(), &gains, qpps, TICK_S, speed, duty);
         for n in 0..20 {
             let count = f64::from(n) * speed * TICK_S;
-            let got = place_loop.turn(law(), (&gains, qpps, TICK_S), Setpoint::Speed(speed), count, true);
+            let got = position_loop.turn(law(), (&gains, qpps, TICK_S), Setpoint::Speed(speed), count, true);
             assert!((got - duty).abs() < 1e-9, "loop {n}: {got}");
         }
     }
@@ -134,11 +134,11 @@ mod tests {
             ..Gains::default()
         };
         let (qpps, speed, duty) = (20_000.0, 4_000.0, 0.25);
-        let mut place_loop = PlaceLoop::steady(law(), &gains, qpps, TICK_S, speed, duty);
-        assert!(place_loop.sum > 0.0);
+        let mut position_loop = PositionLoop::steady(law(), &gains, qpps, TICK_S, speed, duty);
+        assert!(position_loop.sum > 0.0);
         for n in 0..20 {
             let count = f64::from(n) * speed * TICK_S;
-            let got = place_loop.turn(law(), (&gains, qpps, TICK_S), Setpoint::Speed(speed), count, true);
+            let got = position_loop.turn(law(), (&gains, qpps, TICK_S), Setpoint::Speed(speed), count, true);
             assert!((got - duty).abs() < 1e-9, "loop {n}: {got}");
         }
     }
@@ -148,12 +148,18 @@ mod tests {
         let sum_after = |max_integral: f64| {
             let pid = Pid { p: 1_000.0, i: 1.0, d: 0.0 };
             let gains = Gains { position: Some(pid), max_integral, ..Gains::default() };
-            let mut place_loop = PlaceLoop::default();
+            let mut position_loop = PositionLoop::default();
             for _ in 0..100 {
-                place_loop.turn(law(), (&gains, 1023.0, TICK_S), Setpoint::Place(500.0, 0.0), 0.0, false);
-                place_loop.note_bound(1.0);
+                position_loop.turn(
+                    law(),
+                    (&gains, 1023.0, TICK_S),
+                    Setpoint::Position(500.0, 0.0),
+                    0.0,
+                    false,
+                );
+                position_loop.note_bound(1.0);
             }
-            place_loop.sum
+            position_loop.sum
         };
         assert!((sum_after(20.48) - 2.5).abs() < 1e-9, "the first loop alone is summed");
         assert!((sum_after(600.0) - 250.0).abs() < 1e-9);

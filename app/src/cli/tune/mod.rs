@@ -10,8 +10,8 @@ use std::time::{Duration, Instant};
 use brushwork_link::device::{ArmScope, Event, Job, JobEnding, JobOutput, Request};
 use brushwork_link::settings::SettingsTable;
 use brushwork_tuning::axis::EncoderClass;
+use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::rig::GuardOptions;
 use brushwork_tuning::tune::{Excitation, Method, Request as TuneRequest};
 use brushwork_values::Motor;
 

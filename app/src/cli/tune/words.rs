@@ -56,7 +56,7 @@ pub fn print(report: &Report, out: &mut Output) -> Result<(), OutputError> {
             format!("+- {:.3} ohm", winding.interval_ohms),
         );
     }
-    if let Some(slack) = &report.slack {
+    if let Some(slack) = &report.backlash {
         let value = if slack.counts > 0.0 {
             format!("at least {:.1} counts", slack.counts)
         } else {

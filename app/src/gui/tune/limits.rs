@@ -46,10 +46,10 @@ fn limited(limit: &Limit, level: f64) -> String {
         Bound::Lag => "the lag of the loop: Ms with the largest lag that is likely",
         Bound::LightLoad => "a lighter load: Ms at half the inertia",
         Bound::DutyNoise => "the duty noise, which the rounding of counts makes",
-        Bound::Play => "the play of the mechanics: a quicker integral would make it hunt",
+        Bound::Backlash => "the play of the mechanics: a quicker integral would make it hunt",
     };
     match limit.by {
-        Bound::Play => format!("{verb} {what}."),
+        Bound::Backlash => format!("{verb} {what}."),
         _ => format!("{verb} {what}; {percent:.0} % of what level {level:.0} allows."),
     }
 }
@@ -60,7 +60,7 @@ mod tests {
 
     #[test]
     fn each_bound_has_its_own_words() {
-        let bounds = [Bound::Sensitivity, Bound::Lag, Bound::LightLoad, Bound::DutyNoise, Bound::Play];
+        let bounds = [Bound::Sensitivity, Bound::Lag, Bound::LightLoad, Bound::DutyNoise, Bound::Backlash];
         let said: Vec<String> =
             bounds.iter().map(|by| limited(&Limit { by: *by, used: 0.9 }, 50.0)).collect();
         for (n, text) in said.iter().enumerate() {

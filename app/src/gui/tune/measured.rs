@@ -1,6 +1,6 @@
 //! Figures of what a loop did in a stretch: overshoot and settling of its steps, as measured and as predicted for the same commands.
 
-use brushwork_tuning::rig::Input;
+use brushwork_tuning::experiment_guard::Input;
 use brushwork_tuning::trace::{Stretch, Trace};
 
 /// Band of a settled speed, as a share of the step; that of a position, and the counts that are rounding.
@@ -83,7 +83,7 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
 mod tests {
     use super::*;
     use brushwork_tuning::axis::EncoderClass;
-    use brushwork_tuning::rig::Drive;
+    use brushwork_tuning::experiment_guard::Drive;
 
     #[test]
     fn the_median_of_the_steps_counts_and_the_first_from_rest_does_not() {

@@ -4,8 +4,8 @@ use brushwork_link::device::{ArmScope, Event, Identity, Request, Sample};
 use brushwork_link::settings::SettingValue;
 use brushwork_link::transport::Stream;
 use brushwork_tuning::axis::{EncoderClass, Setup};
+use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::report::Verdict;
-use brushwork_tuning::rig::GuardOptions;
 use brushwork_tuning::tune::{self, Excitation, Method};
 use brushwork_values::Motor;
 

@@ -1,6 +1,6 @@
 //! The pictures of tuning: what goes on, what was measured over what was predicted, steps, load steps, and the loop over frequency.
 
-use brushwork_tuning::rig::{Drive, Input};
+use brushwork_tuning::experiment_guard::{Drive, Input};
 use brushwork_tuning::trace::{Predicted, Stretch, Trace};
 use brushwork_tuning::whatif::{LoopPoint, Reply};
 use egui::{Color32, RichText, Ui, vec2};

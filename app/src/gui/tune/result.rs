@@ -136,7 +136,7 @@ fn model_text(report: &Report) -> Option<String> {
         let (low, high) = (1e3 * lag.interval_s.0, 1e3 * lag.interval_s.1);
         text += &format!(", lag {low:.1} to {high:.1} ms");
     }
-    if let Some(slack) = report.slack {
+    if let Some(slack) = report.backlash {
         text += &if slack.counts > 0.0 {
             format!(", play of at least {:.1} ± {:.1} counts", slack.counts, slack.interval_counts)
         } else {

@@ -1,6 +1,6 @@
 //! The resistance of the winding as a run measured it, offered as a setting; or why it was not told and what would.
 
-use brushwork_tuning::winding::{NotTold, Winding};
+use brushwork_tuning::winding::{Winding, WindingUnknown};
 use egui::{Button, Label, RichText, Ui};
 
 use super::model::Loop;
@@ -26,7 +26,7 @@ pub fn winding_ui(ui: &mut Ui, model: &mut Model, which: Loop, winding: &Winding
 }
 
 /// Says why there is none.
-pub fn unknown_ui(ui: &mut Ui, why: NotTold) {
+pub fn unknown_ui(ui: &mut Ui, why: WindingUnknown) {
     weak_ui(ui, &format!("R of the winding was not told: {}", why.sentence()));
 }
 

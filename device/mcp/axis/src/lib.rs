@@ -51,7 +51,7 @@ impl<C: Carrier> PacketAxis<C> {
         Self { carrier, motor, encoder, stream: None, answered: BTreeSet::new(), absent: BTreeSet::new() }
     }
 
-    /// Asks for what not every controller tells; `None` where this one does not. A controller says no by silence, so only a command
+    /// Asks for what not every controller reports; `None` where this one does not. A controller says no by silence, so only a command
     /// that was never answered counts as missing, and only after some tries.
     fn optional(&mut self, command: u8) -> Result<Option<(Exchange, Values)>, AxisError> {
         if self.absent.contains(&command) {
@@ -80,7 +80,7 @@ impl<C: Carrier> PacketAxis<C> {
         Ok(self.optional(self.of(m1, m2))?.map(|(_, values)| values))
     }
 
-    /// Counts of both motors; of this one alone where the controller does not tell both at once.
+    /// Counts of both motors; of this one alone where the controller does not report both at once.
     fn read_counts(&mut self) -> Result<(Exchange, [i32; 2]), AxisError> {
         // The casts are the register's own wrap.
         if let Some((at, counts)) = self.optional(number::READ_ENCODERS)? {
@@ -268,7 +268,7 @@ impl<C: Carrier> Axis for PacketAxis<C> {
     fn raw_speed(&mut self) -> Result<i32, AxisError> {
         let values = self.read(number::READ_RAW_SPEED_M1, number::READ_RAW_SPEED_M2)?;
         let magnitude = values.int("speed") as u32 as i32;
-        // Generations that tell the direction beside the speed set the lowest bit of the status byte for backwards.
+        // Generations that report the direction beside the speed set the lowest bit of the status byte for backwards.
         let backwards = magnitude > 0 && values.try_int("status").is_some_and(|status| status & 1 != 0);
         Ok(if backwards { -magnitude } else { magnitude })
     }

@@ -1,4 +1,4 @@
-//! When a place was taken, by the unit's own clock.
+//! When a position was taken, by the unit's own clock.
 //!
 //! POSITION is that of the last loop, so that a reading is up to 5 ms old and nobody can tell how much from outside. TIME counts the
 //! loops (Motion Mind manual 6.0) and comes in the same frame: with it each reading has its loop.

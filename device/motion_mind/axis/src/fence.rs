@@ -1,16 +1,16 @@
 //! Where the virtual limits of a Motion Mind stand during a run: a little ahead of the motor, so that it stops by itself when the host
 //! is no longer there.
 
-/// How long the motor may run on at its present speed, and at the speed that it was told, s.
+/// How long the motor may run on at its present speed, and at the commanded speed, s.
 const AHEAD_S: f64 = 0.4;
-const AHEAD_AS_TOLD_S: f64 = 0.18;
+const AHEAD_AS_COMMANDED_S: f64 = 0.18;
 /// The least room, and that of a motor of which nothing is known yet, counts.
 const LEAST_COUNTS: f64 = 250.0;
 const FIRST_COUNTS: f64 = 2_000.0;
 /// A duty that moves any motor, and how long one is watched under it before its speed is taken as known, s.
 const CLEAR_DUTY: f64 = 0.19;
 const KNOWN_AFTER_S: f64 = 0.06;
-/// A motor told less than what it ran at before may be so much faster than in proportion: friction takes its share.
+/// A motor commanded to less than what it ran at before may be so much faster than in proportion: friction takes its share.
 const IN_PROPORTION: f64 = 1.3;
 /// Share of the room below which the fence is moved.
 const MOVED_BELOW: f64 = 0.5;
@@ -30,22 +30,22 @@ pub(super) struct Fence {
     pub travel: Option<(i64, i64)>,
     last: Option<(f64, i32)>,
     speed: f64,
-    /// The highest speed seen, and the highest duty told.
+    /// The highest speed seen, and the highest duty commanded.
     top: f64,
     top_duty: f64,
-    /// The speed that it is told to have, as far as that is known, counts/s.
-    told: f64,
+    /// The commanded speed, as far as that is known, counts/s.
+    commanded: f64,
     /// How much wider it stands than it should have to; 0 for not.
     wider: f64,
     /// When the first clear drive was seen to begin, s.
     began_s: Option<f64>,
     is_clear: bool,
-    /// The way that was commanded last.
+    /// The direction that was commanded last.
     heading: f64,
 }
 
 impl Fence {
-    /// A place was read.
+    /// A position was read.
     pub(super) fn see(&mut self, t: f64, counts: i32) {
         if let Some((before, was)) = self.last
             && t > before
@@ -60,7 +60,7 @@ impl Fence {
     }
 
     /// Where the motor was last seen, counts.
-    pub(super) fn place(&self) -> f64 {
+    pub(super) fn position(&self) -> f64 {
         self.last.map_or(0.0, |(_, counts)| f64::from(counts))
     }
 
@@ -69,25 +69,25 @@ impl Fence {
         self.is_clear |= duty.abs() > CLEAR_DUTY;
         let share = IN_PROPORTION * duty.abs() / self.top_duty.max(1e-3);
         // A duty higher than any before gives a speed higher than any before.
-        self.told = self.top * if duty.abs() > self.top_duty { share } else { share.min(1.0) };
+        self.commanded = self.top * if duty.abs() > self.top_duty { share } else { share.min(1.0) };
         self.top_duty = self.top_duty.max(duty.abs());
         if duty != 0.0 {
             self.heading = duty.signum();
         }
     }
 
-    /// A loop is about to be told a speed, counts/s.
+    /// A loop is about to be given a speed, counts/s.
     pub(super) fn head_at(&mut self, speed: f64) {
         self.head(speed);
-        self.told = (IN_PROPORTION * speed.abs()).min(self.top);
+        self.commanded = (IN_PROPORTION * speed.abs()).min(self.top);
     }
 
-    /// A loop is about to be told a way to go.
-    pub(super) fn head(&mut self, way: f64) {
+    /// A loop is about to be commanded to go in a direction: the sign says which.
+    pub(super) fn head(&mut self, direction: f64) {
         self.is_clear = true;
-        self.told = self.top;
-        if way != 0.0 {
-            self.heading = way.signum();
+        self.commanded = self.top;
+        if direction != 0.0 {
+            self.heading = direction.signum();
         }
     }
 
@@ -108,25 +108,26 @@ impl Fence {
     pub(super) fn due(&self) -> (Option<i32>, Option<i32>) {
         let Some((t, counts)) = self.last else { return (None, None) };
         let room = self.room(t);
-        let place = f64::from(counts);
+        let position = f64::from(counts);
         let (lowest, highest) =
             self.travel.map_or((f64::from(i32::MIN), f64::from(i32::MAX)), |(l, h)| (l as f64, h as f64));
         let due = |fence: Option<i32>, wanted: f64, side: f64| {
             // The cast saturates.
             let wanted = wanted as i32;
             let Some(fence) = fence else { return Some(wanted) };
-            let distance = (f64::from(fence) - place) * side;
+            let distance = (f64::from(fence) - position) * side;
             let is_far = distance > FAR * room && self.heading * side > 0.0;
             (fence != wanted && (distance < MOVED_BELOW * room || is_far)).then_some(wanted)
         };
-        let low = due(self.low, (place - room).max(lowest), -1.0);
-        (low, due(self.high, (place + room).min(highest), 1.0))
+        let low = due(self.low, (position - room).max(lowest), -1.0);
+        (low, due(self.high, (position + room).min(highest), 1.0))
     }
 
     fn room(&self, t: f64) -> f64 {
         let is_known = self.began_s.is_some_and(|began| t - began > KNOWN_AFTER_S);
         let least = if is_known { LEAST_COUNTS } else { FIRST_COUNTS };
-        (AHEAD_S * self.speed.abs()).max(AHEAD_AS_TOLD_S * self.told).max(least) * self.wider.max(1.0)
+        (AHEAD_S * self.speed.abs()).max(AHEAD_AS_COMMANDED_S * self.commanded).max(least)
+            * self.wider.max(1.0)
     }
 }
 

@@ -114,7 +114,7 @@ pub struct MindAxis<C> {
     fence: Fence,
     clock: UnitClock,
     last_status: Status,
-    /// Which line was asked for last besides the place.
+    /// Which line was asked for last besides the position.
     turn: usize,
 }
 
@@ -173,7 +173,7 @@ impl<C: MindCarrier> MindAxis<C> {
 
     /// Switches the loop on where the motor stands, and off again if it moves the motor. Gives whether it is on.
     fn switch_on(&mut self, function: u16) -> Result<bool, AxisError> {
-        let Some(here) = self.place_at_rest()? else { return Ok(false) };
+        let Some(here) = self.position_at_rest()? else { return Ok(false) };
         // A write to POSITION makes it the setpoint; the count stays what it is.
         self.write(number::POSITION, here)?;
         self.write(number::FUNCTION, i64::from(function))?;
@@ -187,17 +187,17 @@ impl<C: MindCarrier> MindAxis<C> {
     }
 
     /// Where a motor without drive stands; `None` where it does not.
-    fn place_at_rest(&mut self) -> Result<Option<i64>, AxisError> {
+    fn position_at_rest(&mut self) -> Result<Option<i64>, AxisError> {
         let until = self.carrier.now() + STAND_LIMIT;
         let mut before = self.look_again()?;
         let mut still_looks = 0;
         while self.carrier.now() < until {
-            let place = self.look_again()?;
-            still_looks = if (place - before).abs() <= STILL_COUNTS { still_looks + 1 } else { 0 };
+            let position = self.look_again()?;
+            still_looks = if (position - before).abs() <= STILL_COUNTS { still_looks + 1 } else { 0 };
             if still_looks == STILL_LOOKS {
-                return Ok(Some(place));
+                return Ok(Some(position));
             }
-            before = place;
+            before = position;
         }
         Ok(None)
     }
@@ -211,7 +211,7 @@ impl<C: MindCarrier> MindAxis<C> {
                 Err(AxisError::NoReply | AxisError::Late) => {}
                 other => {
                     let (_, values) = other?;
-                    return values.first().map(|(_, place)| *place).ok_or(AxisError::NoReply);
+                    return values.first().map(|(_, position)| *position).ok_or(AxisError::NoReply);
                 }
             }
         }
@@ -256,7 +256,7 @@ impl<C: MindCarrier> MindAxis<C> {
         self.carrier.protocol() == Protocol::Binary || is_quick()
     }
 
-    /// What a poll in single lines asks for: the place, and one of the others in turn, since each line takes its time.
+    /// What a poll in single lines asks for: the position, and one of the others in turn, since each line takes its time.
     fn next_lines(&mut self, want: Want) -> Vec<u8> {
         let others =
             [Some(number::STATUS), want.duty.then_some(number::PWMOUT), want.current.then_some(number::AMPS)];
@@ -442,7 +442,7 @@ impl<C: MindCarrier> Axis for MindAxis<C> {
 
     fn command_position(&mut self, counts: i32, _speed: u32) -> Result<Exchange, AxisError> {
         self.close()?;
-        self.fence.head(f64::from(counts) - self.fence.place());
+        self.fence.head(f64::from(counts) - self.fence.position());
         self.mend_fence()?;
         self.send(Command::MoveToAbsolute(counts))
     }
@@ -543,7 +543,7 @@ fn whole(want: Want) -> Vec<u8> {
     wanted
 }
 
-/// What STATUS says to a run. A limit input or the brake keeps the motor from what it is told.
+/// What STATUS says to a run. A limit input or the brake keeps the motor from what it is commanded.
 fn status_of(word: u16) -> Status {
     let has = |mask: u16| word & mask != 0;
     Status {

@@ -1,20 +1,20 @@
 //! Faults on a Motion Mind: the classes of the other family, but for the battery, whose voltage its wire does not carry.
 
-use super::bed::MindBed;
+use super::plant_under_test::MindPlantUnderTest;
 use super::population::MindSpecimen;
 use super::table::{SimulatedMind, axis_of};
-use crate::faults::{FaultRow, Patient, rows_of};
+use crate::faults::{FaultRow, FaultyPlant, rows_of};
 use crate::line::SimulatedLine;
 use crate::population::Specimen;
 use crate::truth::Truth;
 use brushwork_motion_mind_sim::MotionMind;
 use brushwork_tuning::tune::Method;
 
-impl Patient for MindSpecimen {
+impl FaultyPlant for MindSpecimen {
     type Axis = SimulatedMind;
     type Unit = MotionMind;
     const WHOLE: [Method; 2] = [Method::Velocity, Method::Pd];
-    const TELLS_VOLTS: bool = false;
+    const REPORTS_VOLTS: bool = false;
     /// The unit has no time-out: the motor runs up to the fence, half a second of it at its speed.
     const LINK_DEADLINE_S: f64 = 1.0;
 
@@ -27,7 +27,7 @@ impl Patient for MindSpecimen {
     }
 
     fn truth(&self) -> Truth {
-        MindBed::new(self.clone()).truth
+        MindPlantUnderTest::new(self.clone()).truth
     }
 
     fn axis(&self) -> SimulatedMind {

@@ -91,7 +91,7 @@ impl MindSpecimen {
         };
         let steps = (self.plant.current_limit_amps / AMPS_STEP).round().clamp(1.0, 1023.0);
         for (register, value) in [(number::FUNCTION2, i64::from(baud)), (number::AMPSLIMIT, steps as i64)] {
-            tell(&mut unit, &Command::WriteStore { register, value });
+            command_unit(&mut unit, &Command::WriteStore { register, value });
             unit.advance(unit.now() + STORE);
             while unit.take_output().is_some() {}
         }
@@ -100,7 +100,7 @@ impl MindSpecimen {
 }
 
 /// Sends a command past any line. Its answer waits to be taken.
-pub(crate) fn tell(unit: &mut MotionMind, command: &Command) {
+pub(crate) fn command_unit(unit: &mut MotionMind, command: &Command) {
     let bytes = match unit.protocol() {
         Protocol::Binary => encode_frame(Address::FACTORY, command),
         Protocol::Text => encode_line(Address::FACTORY, command).map(String::into_bytes),

@@ -1,23 +1,23 @@
 //! The table of the benchmark for the Motion Mind: our methods and the textbook rules on the same records.
 
-use super::bed::MindBed;
 use super::faults::fault_rows;
 use super::line::MindLine;
+use super::plant_under_test::MindPlantUnderTest;
 use super::population::{MindSpecimen, population};
 use crate::cache::{MindOptima, known_mind};
 use crate::faults::FaultRow;
-use crate::oracle::{Bed, Optimum, optimum};
+use crate::oracle::{Optimum, PlantUnderTest, optimum};
 use crate::run::{Judgement, refusal, weigh};
 use crate::table::{
     Identification, Judged, Row, Table, WINDOW_S, error_percent, identification_of, row, window_summary,
 };
 use brushwork_motion_mind_axis::MindAxis;
 use brushwork_motion_mind_sim::Mode;
+use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::linear::LoopPlant;
 use brushwork_tuning::model::Gains;
 use brushwork_tuning::motion_mind::MotionMindRegisters;
 use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::rig::GuardOptions;
 use brushwork_tuning::rules::{pd_rules, pid_rules, velocity_rules};
 use brushwork_tuning::tune::{Excitation, Method, Request, tune};
 use rayon::prelude::*;
@@ -33,7 +33,7 @@ pub type SimulatedMind = MindAxis<MindLine>;
 /// One plant with its optima, in the order of [`TASKS`].
 pub struct Case {
     /// The plant and its truth.
-    pub bed: MindBed,
+    pub under_test: MindPlantUnderTest,
     /// Its optima.
     pub optima: [Option<Optimum>; 3],
 }
@@ -46,10 +46,10 @@ pub fn cases(seed: u64, plants: usize, fresh: bool) -> Vec<Case> {
         .into_par_iter()
         .map(|specimen| {
             let number = specimen.plant.number;
-            let bed = MindBed::new(specimen);
-            let work_out = || TASKS.map(|(_, method)| optimum(&bed, method));
+            let under_test = MindPlantUnderTest::new(specimen);
+            let work_out = || TASKS.map(|(_, method)| optimum(&under_test, method));
             let optima = cached.get(&number).copied().unwrap_or_else(work_out);
-            Case { bed, optima }
+            Case { under_test, optima }
         })
         .collect()
 }
@@ -57,7 +57,7 @@ pub fn cases(seed: u64, plants: usize, fresh: bool) -> Vec<Case> {
 /// The optima of cases, to be kept.
 #[must_use]
 pub fn optima_of(cases: &[Case]) -> MindOptima {
-    cases.iter().map(|case| (case.bed.specimen.plant.number, case.optima)).collect()
+    cases.iter().map(|case| (case.under_test.specimen.plant.number, case.optima)).collect()
 }
 
 /// The axis of a plant.
@@ -96,7 +96,7 @@ pub fn table(seed: u64, cases: &[Case], faults: bool) -> Table {
         let reports: Vec<(Report, f64)> = cases
             .par_iter()
             .map(|case| {
-                let specimen = &case.bed.specimen;
+                let specimen = &case.under_test.specimen;
                 let (report, axis) = tune_plant(specimen, &request_of(specimen, method));
                 let stall = specimen.plant.axis.stall_amps(specimen.plant.volts());
                 (report, axis.carrier.line.truth.peak_amps / stall)
@@ -109,7 +109,7 @@ pub fn table(seed: u64, cases: &[Case], faults: bool) -> Table {
     }
     let mut identification = identify(cases, &velocity_reports);
     identification.ms_varied_p95 = tasks["velocity"].first().map_or(0.0, |row: &Row| row.ms_varied_p95);
-    let plants = || cases.iter().map(|case| case.bed.specimen.clone()).collect::<Vec<_>>();
+    let plants = || cases.iter().map(|case| case.under_test.specimen.clone()).collect::<Vec<_>>();
     let faults: Vec<FaultRow> = if faults { fault_rows(&plants(), &[]) } else { Vec::new() };
     Table { seed, plants: cases.len(), tasks, absolute: BTreeMap::new(), identification, faults }
 }
@@ -117,14 +117,14 @@ pub fn table(seed: u64, cases: &[Case], faults: bool) -> Table {
 fn rows(nth: usize, cases: &[Case], reports: &[(Report, f64)]) -> Vec<Row> {
     let (_, method) = TASKS[nth];
     let judged = |case: &Case, result: Judgement, seconds: f64| {
-        Judged::new(method, &case.bed.specimen.plant, &case.bed.truth, result, seconds)
+        Judged::new(method, &case.under_test.specimen.plant, &case.under_test.truth, result, seconds)
     };
     let ours: Vec<Judged> = cases
         .par_iter()
         .zip(reports)
         .filter_map(|(case, (report, _))| {
             let optimum = case.optima[nth]?;
-            Some(judged(case, judge_report(&case.bed, &optimum, report), report.seconds.1))
+            Some(judged(case, judge_report(&case.under_test, &optimum, report), report.seconds.1))
         })
         .collect();
     let mut rows = vec![row("brushwork", ours.iter())];
@@ -134,10 +134,10 @@ fn rows(nth: usize, cases: &[Case], reports: &[(Report, f64)]) -> Vec<Row> {
         .filter_map(|(case, (report, _))| {
             let optimum = case.optima[nth]?;
             let of = |(name, registers)| {
-                let result = judge(method, &case.bed, &optimum, &registers);
+                let result = judge(method, &case.under_test, &optimum, &registers);
                 (name, judged(case, result, report.seconds.0))
             };
-            Some(by_rules(method, &case.bed, report)?.into_iter().map(of).collect())
+            Some(by_rules(method, &case.under_test, report)?.into_iter().map(of).collect())
         })
         .collect();
     let names: Vec<&str> =
@@ -151,63 +151,70 @@ fn rows(nth: usize, cases: &[Case], reports: &[(Report, f64)]) -> Vec<Row> {
 /// What each rule makes of the record of a run, as registers. The factory's are those of this family.
 fn by_rules(
     method: Method,
-    bed: &MindBed,
+    under_test: &MindPlantUnderTest,
     report: &Report,
 ) -> Option<Vec<(&'static str, MotionMindRegisters)>> {
     let (classic, qpps) = (report.classic?, report.qpps?);
-    let law = &bed.truth.law;
+    let law = &under_test.truth.law;
     let rules = match method {
         Method::Velocity => velocity_rules(&classic, law, qpps),
         Method::Pd | Method::Piv => pd_rules(&classic, law, qpps),
         Method::Pid => pid_rules(&classic, law, qpps),
     };
     let of_rules = rules.into_iter().filter(|rule| rule.0 != "factory");
-    let factory = std::iter::once(("factory", bed.factory(method)));
-    Some(factory.chain(of_rules.map(|(name, gains)| (name, bed.registers(&gains, qpps)))).collect())
+    let factory = std::iter::once(("factory", under_test.factory(method)));
+    Some(factory.chain(of_rules.map(|(name, gains)| (name, under_test.registers(&gains, qpps)))).collect())
 }
 
 /// Judges registers on the true plant.
 #[must_use]
-pub fn judge(method: Method, bed: &MindBed, optimum: &Optimum, registers: &MotionMindRegisters) -> Judgement {
-    let truth = bed.truth();
+pub fn judge(
+    method: Method,
+    under_test: &MindPlantUnderTest,
+    optimum: &Optimum,
+    registers: &MotionMindRegisters,
+) -> Judgement {
+    let truth = under_test.truth();
     let gains: Gains = registers.gains(truth.qpps, method != Method::Velocity);
     let of =
         |plant: &LoopPlant| (plant.margins(&gains, truth.qpps), plant.spectral_radius(&gains, truth.qpps));
-    let outcome = bed.trial(method, registers);
+    let outcome = under_test.trial(method, registers);
     weigh(method, optimum, of(&truth.nominal), truth.varied.each_ref().map(of), &outcome)
 }
 
 /// Judges a report.
 #[must_use]
-pub fn judge_report(bed: &MindBed, optimum: &Optimum, report: &Report) -> Judgement {
+pub fn judge_report(under_test: &MindPlantUnderTest, optimum: &Optimum, report: &Report) -> Judgement {
     match report.motion_mind {
         Some(registers) if report.verdict != Verdict::Refused => {
-            judge(report.request.method, bed, optimum, &registers)
+            judge(report.request.method, under_test, optimum, &registers)
         }
         _ => refusal(report),
     }
 }
 
 fn identify(cases: &[Case], reports: &[(Report, f64)]) -> Identification {
-    let found = || cases.iter().zip(reports).map(|(case, (report, peak))| (&case.bed.truth, report, *peak));
+    let found =
+        || cases.iter().zip(reports).map(|(case, (report, peak))| (&case.under_test.truth, report, *peak));
     let ms = cases.iter().zip(reports).filter_map(|(case, (report, _))| {
-        let truth = &case.bed.truth;
+        let truth = &case.under_test.truth;
         let gains = report.motion_mind?.gains(truth.qpps, false);
         Some((truth.nominal.margins(&gains, truth.qpps).ms - report.design?.ms).abs())
     });
-    let windows: Vec<(Option<f64>, f64)> = cases.par_iter().map(|case| window_run(&case.bed)).collect();
+    let windows: Vec<(Option<f64>, f64)> =
+        cases.par_iter().map(|case| window_run(&case.under_test)).collect();
     window_summary(identification_of(found(), &ms.collect::<Vec<_>>()), &windows)
 }
 
 /// The error of QPPS found inside the window, and the farthest reach over half the window, both in percent.
-fn window_run(bed: &MindBed) -> (Option<f64>, f64) {
-    let width = (WINDOW_S * bed.truth.qpps).round();
+fn window_run(under_test: &MindPlantUnderTest) -> (Option<f64>, f64) {
+    let width = (WINDOW_S * under_test.truth.qpps).round();
     let request = Request {
         excitation: Excitation::Window(width),
         verify: false,
-        ..request_of(&bed.specimen, Method::Pd)
+        ..request_of(&under_test.specimen, Method::Pd)
     };
-    let (report, _) = tune_plant(&bed.specimen, &request);
-    let error = report.qpps.map(|qpps| error_percent(qpps, bed.truth.qpps));
+    let (report, _) = tune_plant(&under_test.specimen, &request);
+    let error = report.qpps.map(|qpps| error_percent(qpps, under_test.truth.qpps));
     (error, report.window.map_or(0.0, |window| 200.0 * window.reach_counts / width))
 }

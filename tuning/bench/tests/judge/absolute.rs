@@ -1,5 +1,5 @@
 //! Machines with absolute encoders, a population of its own (MCP manual 2.4.3): tuned in position inside one turn, bounded on both
-//! sides; and what runs read off beside the loops: the winding's resistance, the play.
+//! sides; and what runs read off beside the loops: the winding's resistance, the backlash.
 
 use brushwork_plant::EncoderKind;
 use brushwork_tuning::cause::Cause;
@@ -45,39 +45,39 @@ fn a_speed_is_refused_where_the_encoder_wraps_and_nowhere_else() {
 
 #[test]
 fn the_resistance_of_the_winding_is_found_with_its_interval() {
-    let (mut told, mut covered) = (0, 0);
+    let (mut reported, mut covered) = (0, 0);
     for number in 0..16 {
         let plant = absolute_specimen(7, number);
         let (report, _) = tune_plant(&plant, &request_of(&plant, Method::Pd));
         let Some(winding) = report.winding else { continue };
-        told += 1;
+        reported += 1;
         let off = (winding.ohms / plant.axis.motor.armature_ohms - 1.0).abs();
         let interval = winding.interval_ohms / winding.ohms;
         println!("plant {number}: off by {off:.3}, interval {interval:.3}");
         assert!(off < 2.0 * interval, "plant {number}: off by {off}, interval {interval}");
         covered += usize::from(off < interval);
     }
-    assert!(told >= 6, "{told} of 16");
-    assert!(10 * covered >= 8 * told, "{covered} of {told} within their interval");
+    assert!(reported >= 6, "{reported} of 16");
+    assert!(10 * covered >= 8 * reported, "{covered} of {reported} within their interval");
 }
 
 #[test]
-fn play_is_seen_behind_the_gear_and_claimed_nowhere_else() {
+fn backlash_is_seen_behind_the_gear_and_claimed_nowhere_else() {
     let mut seen = 0;
     for number in (0..40).filter(|number| !matches!(number % 8, 3 | 5)) {
         let plant = specimen(7, number);
         let (report, _) = tune_plant(&plant, &request_of(&plant, Method::Pid));
-        let Some(slack) = report.slack.filter(|slack| slack.counts > 0.0) else { continue };
+        let Some(found) = report.backlash.filter(|found| found.counts > 0.0) else { continue };
         let turns = plant.axis.gear.backlash_radians / std::f64::consts::TAU;
-        let play = turns * plant.axis.encoder.counts_per_turn;
-        println!("plant {number}: {slack:?} of {play:.1} counts");
+        let true_counts = turns * plant.axis.encoder.counts_per_turn;
+        println!("plant {number}: {found:?} of {true_counts:.1} counts");
         assert!(
-            slack.counts - 2.0 * slack.interval_counts <= play,
-            "plant {number}: {slack:?} of {play} counts"
+            found.counts - 2.0 * found.interval_counts <= true_counts,
+            "plant {number}: {found:?} of {true_counts} counts"
         );
-        assert!(play > 0.0, "plant {number} has none");
+        assert!(true_counts > 0.0, "plant {number} has none");
         let position = report.position.expect("it was tuned");
-        assert!(f64::from(position.deadzone) >= slack.counts, "plant {number}: {position:?}");
+        assert!(f64::from(position.deadzone) >= found.counts, "plant {number}: {position:?}");
         seen += 1;
     }
     assert!(seen >= 1);

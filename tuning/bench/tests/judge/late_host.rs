@@ -37,13 +37,13 @@ fn stalls(draw: &mut ChaCha8Rng, from: Duration) -> Vec<(Duration, Duration)> {
 
 /// The first cause of a refusal, which may say that the computer was late, or that somebody set a limit, and nothing else.
 #[track_caller]
-fn assert_blames_no_machine(report: &Report, place: &str) -> bool {
+fn assert_blames_no_machine(report: &Report, case: &str) -> bool {
     if report.verdict != Verdict::Refused {
         return false;
     }
     let cause = report.causes.first().copied();
     let Some(Cause::AnsweredLate { longest_gap_ms }) = cause else {
-        panic!("{place}: {:?}", report.causes);
+        panic!("{case}: {:?}", report.causes);
     };
     let sentence = Cause::AnsweredLate { longest_gap_ms }.sentence();
     assert!(
@@ -61,10 +61,10 @@ fn no_refusal_of_a_late_host_names_the_machine() {
         let mut axis = axis_of(&plant);
         let mut draw = ChaCha8Rng::seed_from_u64(seed);
         axis.carrier.stalls = stalls(&mut draw, Duration::from_millis(500));
-        let place = format!("seed {seed}, {method:?}, stalls {:?}", axis.carrier.stalls);
+        let case = format!("seed {seed}, {method:?}, stalls {:?}", axis.carrier.stalls);
         let report = tune(&mut axis, &request_of(&plant, method));
-        refused += usize::from(assert_blames_no_machine(&report, &place));
-        assert!(report.replay().as_ref() == Some(&report), "{place}: the replay differs");
+        refused += usize::from(assert_blames_no_machine(&report, &case));
+        assert!(report.replay().as_ref() == Some(&report), "{case}: the replay differs");
     }
     println!("{refused} of {RUNS} were refused");
     assert!(refused > 0, "a run in which nothing was late enough tests nothing");
@@ -81,9 +81,9 @@ fn no_refusal_of_a_crowded_host_names_the_machine() {
         let method = [Method::Velocity, Method::Pd, Method::Piv][seed as usize % 3];
         let mut axis = axis_of(&plant);
         axis.carrier.late_reads = Some(CROWDED);
-        let place = format!("seed {seed}, {method:?}");
+        let case = format!("seed {seed}, {method:?}");
         let report = tune(&mut axis, &request_of(&plant, method));
-        refused += usize::from(assert_blames_no_machine(&report, &place));
+        refused += usize::from(assert_blames_no_machine(&report, &case));
     }
     println!("{refused} of {RUNS} were refused");
     assert!(refused > 0, "a run in which nothing was late enough tests nothing");
@@ -98,10 +98,10 @@ fn no_refusal_of_a_late_host_names_the_machine_of_a_motion_mind() {
         let mut axis = mind::axis_of(&plant);
         let mut draw = ChaCha8Rng::seed_from_u64(seed);
         axis.carrier.line.stalls = stalls(&mut draw, Duration::from_millis(500));
-        let place = format!("seed {seed}, {method:?}, stalls {:?}", axis.carrier.line.stalls);
+        let case = format!("seed {seed}, {method:?}, stalls {:?}", axis.carrier.line.stalls);
         let report = tune(&mut axis, &mind::request_of(&plant, method));
-        refused += usize::from(assert_blames_no_machine(&report, &place));
-        assert!(report.replay().as_ref() == Some(&report), "{place}: the replay differs");
+        refused += usize::from(assert_blames_no_machine(&report, &case));
+        assert!(report.replay().as_ref() == Some(&report), "{case}: the replay differs");
     }
     println!("{refused} of {RUNS} were refused");
     assert!(refused > 0, "a run in which nothing was late enough tests nothing");

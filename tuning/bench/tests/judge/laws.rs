@@ -43,20 +43,20 @@ fn each_law_is_found_and_its_gains_hold_on_the_true_plant() {
             let plant = under(number, law);
             let truth = truth(&plant);
             let (report, _) = tune_plant(&plant, &request_of(&plant, method));
-            let place = format!("{name}, plant {number}, {method:?}: {:?} {:?}", report.causes, report.law);
-            assert_ne!(report.verdict, Verdict::Refused, "{place}");
+            let case = format!("{name}, plant {number}, {method:?}: {:?} {:?}", report.causes, report.law);
+            assert_ne!(report.verdict, Verdict::Refused, "{case}");
             let found = report.request.law;
-            assert_eq!(found.per_tick, truth.law.per_tick, "{place}");
-            assert_eq!(found.feed_forward, truth.law.feed_forward, "{place}");
+            assert_eq!(found.per_tick, truth.law.per_tick, "{case}");
+            assert_eq!(found.feed_forward, truth.law.feed_forward, "{case}");
             if found.per_tick {
-                assert_eq!(found.rate_hz, truth.law.rate_hz, "{place}");
+                assert_eq!(found.rate_hz, truth.law.rate_hz, "{case}");
             }
             if method != Method::Velocity {
-                assert_eq!(found.position_scale, truth.law.position_scale, "{place}");
+                assert_eq!(found.position_scale, truth.law.position_scale, "{case}");
             }
             let optimum = Optimum { cost: 1.0, duty_rms: 0.08, gains: Gains::default() };
             let judged = judge_report(&plant, &truth, &optimum, &report);
-            assert!(judged.accept, "{place}: {judged:?}");
+            assert!(judged.accept, "{case}: {judged:?}");
         }
     }
 }

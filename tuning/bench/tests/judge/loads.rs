@@ -2,8 +2,8 @@
 //! it does not hold is named.
 
 use brushwork_tuning::cause::Cause;
+use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::rig::GuardOptions;
 use brushwork_tuning::tune::{Excitation, Method, Request};
 use brushwork_tuning_bench::population::{Specimen, specimen};
 use brushwork_tuning_bench::run::{request_of, tune_plant};
@@ -62,7 +62,7 @@ fn a_load_of_6_percent_is_tuned_as_piv_or_called_heavy() {
 }
 
 #[test]
-fn a_load_that_friction_does_not_hold_is_told() {
+fn a_load_that_friction_does_not_hold_is_reported() {
     let report = tuned_inside(&pulled(6, 0.1), Method::Piv);
     assert_ne!(report.verdict, Verdict::Refused, "{:?}", report.causes);
     assert!(report.causes.contains(&Cause::HeavyLoad), "{:?}", report.causes);

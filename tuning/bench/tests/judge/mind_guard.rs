@@ -5,8 +5,8 @@ use brushwork_motion_mind_sim::{MotionMind, pin};
 use brushwork_motion_mind_wire::{Address, Command, encode_frame, function2, status};
 use brushwork_plant::world::{PinSignal, WorldAction};
 use brushwork_tuning::cause::Cause;
+use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::rig::GuardOptions;
 use brushwork_tuning::tune::{Method, Request, tune};
 use brushwork_tuning_bench::line::Event;
 use brushwork_tuning_bench::mind::line::MindLine;
@@ -78,7 +78,7 @@ fn the_highest_current_of_a_run_is_amps_limit_and_the_users_is_put_back() {
             && bytes[2] == AMPSLIMIT
             && i64::from(bytes[3]) + 256 * i64::from(bytes[4]) == steps
     });
-    assert!(written, "the unit was told");
+    assert!(written, "the limit was written");
     assert_eq!(unit(&axis).read_one(AMPSLIMIT), users);
 }
 
@@ -125,10 +125,10 @@ fn a_host_that_dies_at_any_moment_leaves_a_motor_that_stands_soon_by_the_fence()
         tune(&mut axis, &request);
         let line = &mut axis.carrier.line;
         line.idle(Duration::from_secs(2));
-        let place = line.unit().read_one(0);
+        let position = line.unit().read_one(0);
         line.idle(Duration::from_secs(2));
-        let way = line.unit().read_one(0) - place;
-        assert!(way.abs() < 30, "{nth}/12 of the run: it went on by {way} counts");
+        let travelled = line.unit().read_one(0) - position;
+        assert!(travelled.abs() < 30, "{nth}/12 of the run: it went on by {travelled} counts");
         assert!(line.unit().duty().abs() < 0.1, "{nth}/12 of the run: {}", line.unit().duty());
     }
 }

@@ -5,8 +5,8 @@
 use brushwork_motion_mind_sim::Mode;
 use brushwork_plant::world::WorldAction;
 use brushwork_tuning::cause::Cause;
+use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::rig::GuardOptions;
 use brushwork_tuning::tune::{Method, Request, tune};
 use brushwork_tuning_bench::line::Event;
 use brushwork_tuning_bench::mind::population::specimen;
@@ -17,7 +17,7 @@ use brushwork_tuning_bench::table::Row;
 use brushwork_values::Motor;
 use std::time::Duration;
 
-/// Lowest and highest figure that is not news.
+/// Lowest and highest figure that is as usual.
 type Range = (f64, f64);
 
 /// Method, accepted %, good %, median cost.
@@ -115,10 +115,10 @@ fn a_fault_of_the_machine_leaves_the_loop_off_and_a_reversed_encoder_is_not_driv
     let line = &mut axis.carrier.line;
     let before = axis_of(&plant).carrier.line.unit().read_one(3);
     assert_eq!(line.unit().read_one(3), before | 1 << 14);
-    let place = line.unit().read_one(0);
+    let position = line.unit().read_one(0);
     line.idle(Duration::from_secs(3));
     assert_eq!(line.unit().duty(), 0.0);
-    assert!((line.unit().read_one(0) - place).abs() < 50, "it ran away");
+    assert!((line.unit().read_one(0) - position).abs() < 50, "it ran away");
 }
 
 #[test]

@@ -92,7 +92,7 @@ fn bits_that_make_another_loop_are_refused_before_anything_moves() {
             Trace::of(0, &trial.record)
                 .drives
                 .iter()
-                .all(|drive| { drive.input == brushwork_tuning::rig::Input::Duty(0.0) })
+                .all(|drive| { drive.input == brushwork_tuning::experiment_guard::Input::Duty(0.0) })
         );
     }
 }

@@ -8,7 +8,7 @@ use brushwork_tuning_bench::population::specimen;
 use brushwork_tuning_bench::run::{request_of, tune_plant};
 use brushwork_tuning_bench::table::{Row, cases, table};
 
-/// Lowest and highest figure that is not news.
+/// Lowest and highest figure that is as usual.
 type Range = (f64, f64);
 
 /// Method, accepted %, good %, median cost.

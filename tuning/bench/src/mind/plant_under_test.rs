@@ -1,7 +1,7 @@
 //! Gains tried on the true plant: the simulated Motion Mind itself, its registers written past the wire.
 
-use super::population::{MindSpecimen, tell};
-use crate::oracle::Bed;
+use super::population::{MindSpecimen, command_unit};
+use crate::oracle::PlantUnderTest;
 use crate::trial::{Outcome, position_outcome, velocity_outcome};
 use crate::truth::{Truth, full_speed, truth_under};
 use brushwork_motion_mind_sim::MotionMind;
@@ -32,7 +32,7 @@ const FACTORY: MotionMindRegisters = MotionMindRegisters {
 
 /// A plant under a Motion Mind.
 #[derive(Debug)]
-pub struct MindBed {
+pub struct MindPlantUnderTest {
     /// The plant.
     pub specimen: MindSpecimen,
     /// Its truth.
@@ -40,8 +40,8 @@ pub struct MindBed {
     fresh: MotionMind,
 }
 
-impl MindBed {
-    /// The bed of a plant.
+impl MindPlantUnderTest {
+    /// This plant under test.
     #[must_use]
     pub fn new(specimen: MindSpecimen) -> Self {
         let qpps = full_speed(&specimen.plant);
@@ -78,7 +78,7 @@ impl MindBed {
     }
 }
 
-impl Bed for MindBed {
+impl PlantUnderTest for MindPlantUnderTest {
     fn truth(&self) -> &Truth {
         &self.truth
     }
@@ -97,7 +97,7 @@ impl Bed for MindBed {
 const TICK: Duration = Duration::from_micros(1_000_000 / LOOPS_PER_S as u64);
 
 struct Machine<'a> {
-    bed: &'a MindBed,
+    under_test: &'a MindPlantUnderTest,
     unit: MotionMind,
     per_motor_radian: f64,
     per_load_radian: Option<f64>,
@@ -105,9 +105,9 @@ struct Machine<'a> {
 }
 
 impl<'a> Machine<'a> {
-    fn new(bed: &'a MindBed, registers: &MotionMindRegisters) -> Self {
-        let axis = &bed.specimen.plant.axis;
-        let mut unit = bed.fresh.clone();
+    fn new(under_test: &'a MindPlantUnderTest, registers: &MotionMindRegisters) -> Self {
+        let axis = &under_test.specimen.plant.axis;
+        let mut unit = under_test.fresh.clone();
         let values = [
             (2, i64::from(registers.velocity_ff)),
             (3, i64::from(registers.function)),
@@ -118,11 +118,11 @@ impl<'a> Machine<'a> {
             (26, i64::from(registers.deadband)),
         ];
         for (register, value) in values {
-            tell(&mut unit, &Command::Write { register, value });
+            command_unit(&mut unit, &Command::Write { register, value });
         }
         let load_side = axis.encoder.side == ShaftSide::Load;
         Self {
-            bed,
+            under_test,
             unit,
             per_motor_radian: axis.counts_per_motor_radian(),
             per_load_radian: load_side.then(|| axis.encoder.counts_per_turn / std::f64::consts::TAU),
@@ -131,43 +131,43 @@ impl<'a> Machine<'a> {
     }
 
     fn ticks(&self) -> usize {
-        (horizon_s(self.bed.truth.tau_s) / self.tick_s) as usize
+        (horizon_s(self.under_test.truth.tau_s) / self.tick_s) as usize
     }
 
-    /// One loop; true speed and place of the shaft that the encoder sits on in counts, and the duty.
+    /// One loop; true speed and position of the shaft that the encoder sits on in counts, and the duty.
     fn tick(&mut self) -> (f64, f64, f64) {
         self.unit.advance(self.unit.now() + TICK);
         let truth = self.unit.truth();
-        let (speed, place) = match self.per_load_radian {
+        let (speed, position) = match self.per_load_radian {
             Some(per) => (truth.load_radians_per_second * per, truth.load_radians * per),
             None => (
                 truth.motor_radians_per_second * self.per_motor_radian,
                 truth.motor_radians * self.per_motor_radian,
             ),
         };
-        (speed, place, self.unit.duty())
+        (speed, position, self.unit.duty())
     }
 
     fn load(&mut self) {
-        let newton_metres = self.bed.specimen.plant.load_torque(LOAD_STEP_DUTY);
+        let newton_metres = self.under_test.specimen.plant.load_torque(LOAD_STEP_DUTY);
         self.unit.apply(&WorldAction::SetLoadTorque { motor: Motor::M1, newton_metres });
     }
 
     fn errors(&mut self, goal: f64, is_velocity: bool) -> (Vec<f64>, Vec<f64>) {
         (0..self.ticks())
             .map(|_| {
-                let (speed, place, duty) = self.tick();
-                (goal - if is_velocity { speed } else { place }, duty)
+                let (speed, position, duty) = self.tick();
+                (goal - if is_velocity { speed } else { position }, duty)
             })
             .unzip()
     }
 
     /// 0.15 to 0.45 of full speed in whole counts for each loop, then the load.
     fn velocity(mut self) -> Outcome {
-        let top = self.bed.truth.gain_counts_per_s / SPEED_STEP_COUNTS_PER_S;
+        let top = self.under_test.truth.gain_counts_per_s / SPEED_STEP_COUNTS_PER_S;
         let (low, high) = ((VELOCITY_STEP.0 * top).round(), (VELOCITY_STEP.1 * top).round());
         let tell_speed =
-            |unit: &mut MotionMind, counts: f64| tell(unit, &Command::MoveAtVelocity(counts as i16));
+            |unit: &mut MotionMind, counts: f64| command_unit(unit, &Command::MoveAtVelocity(counts as i16));
         tell_speed(&mut self.unit, low);
         for _ in 0..self.ticks() * 7 / 10 {
             self.tick();
@@ -180,11 +180,11 @@ impl<'a> Machine<'a> {
         velocity_outcome((&after_step, &after_load), &duties, self.tick_s, high - low)
     }
 
-    /// A step of a third of a time constant's way, then the load.
+    /// A step of a third of a time constant's travel, then the load.
     fn position(mut self) -> Outcome {
-        let step = position_step(self.bed.truth.gain_counts_per_s, self.bed.truth.tau_s);
+        let step = position_step(self.under_test.truth.gain_counts_per_s, self.under_test.truth.tau_s);
         self.tick();
-        tell(&mut self.unit, &Command::MoveToAbsolute(step as i32));
+        command_unit(&mut self.unit, &Command::MoveToAbsolute(step as i32));
         let (after_step, duties) = self.errors(step, false);
         self.load();
         let (after_load, _) = self.errors(step, false);

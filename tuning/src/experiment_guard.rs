@@ -1,7 +1,7 @@
 //! The guard around every experiment: polls, remembers, and ends the run when anything is wrong.
 //!
-//! An experiment drives only through a [`Rig`]. Each poll is checked for the link, the status, the battery, the travel window,
-//! stalls, lost encoders and open motors before the experiment sees it.
+//! An experiment drives only through an [`ExperimentGuard`]. Each poll is checked for the link, the status, the battery, the travel
+//! window, stalls, lost encoders and open motors before the experiment sees it.
 
 use crate::axis::{
     AMPS_PER_RAW, Axis, AxisError, EncoderClass, FULL_DUTY_RAW, PositionRegisters, Sample, Setup,
@@ -10,8 +10,8 @@ use crate::axis::{
 use crate::cause::Cause;
 use crate::diagnosis::{DIAGNOSIS_S, diagnose};
 use crate::motion_mind::{MotionMindRegisters, SPEED_STEP_COUNTS_PER_S, bits};
+use crate::motor_monitor::{MotorMonitor, NO_CURRENT_AMPS};
 use crate::pace::{Pace, quantile};
-use crate::watch::{NO_CURRENT_AMPS, Watch};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
@@ -20,10 +20,10 @@ const ABSOLUTE_COUNTS: i64 = 4096;
 /// The stream time-out during a run, ms: assumed to take the drive from the motor this long after the program died. As long as a motion
 /// command lives with a device thread whose window hangs, so that a late computer trips neither before the other.
 pub const RUN_STREAM_TIMEOUT_MS: u32 = 250;
-/// Time a duty takes to change its sign, as far as it counts for the way, s; and the longest that a motion is driven against.
+/// Time a duty takes to change its sign, as far as it counts for the stopping distance, s; and the longest that a motion is driven against.
 const TURNING_S: f64 = 0.03;
 const LONGEST_TURN_S: f64 = 2.0;
-/// How much longer than computed a way to rest may be.
+/// How much longer than computed a stopping distance may be.
 const STOPPING_DOUBT: f64 = 1.15;
 /// Time that a lost command costs before it is sent again, s.
 const RETRY_S: f64 = 0.010;
@@ -47,12 +47,12 @@ const AMPSLIMIT_STEP: u32 = 2;
 /// Silence after which the link counts as lost, s, and so many polls in a row: on a slow line a few lost replies take as long.
 const LINK_LOST_S: f64 = 0.15;
 const LINK_LOST_POLLS: u32 = 5;
-/// Readings of the current that are looked at before a fault is told by it, and how far above the highest one at rest they must be:
+/// Readings of the current that are looked at before a fault is named by it, and how far above the highest one at rest they must be:
 /// noise that reached 1 among the dozen readings at rest does not have its middle at 3.
 const DRIVEN_READINGS: usize = 6;
 const ABOVE_REST: f64 = 3.0;
 
-/// What the guard is told.
+/// What the guard has to keep to.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GuardOptions {
     /// Which of the two motors, 0 or 1.
@@ -67,7 +67,7 @@ pub struct GuardOptions {
     pub time_limit_s: f64,
     /// Volts above the controller's lower limit at which the run ends.
     pub volts_margin: f64,
-    /// Highest current, A. The controller is told, and the run ends when it is exceeded nevertheless.
+    /// Highest current, A. The controller is set to it, and the run ends when it is exceeded nevertheless.
     pub max_amps: Option<f64>,
     /// Whether inductance and resistance, where both are set, may be cleared for the run. They are put back after it.
     #[serde(default)]
@@ -111,7 +111,7 @@ pub struct Point {
     pub limited: bool,
 }
 
-/// What the axis was told.
+/// What the axis was commanded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Input {
     /// Duty, -1 to 1.
@@ -131,10 +131,10 @@ pub struct Drive {
     pub input: Input,
 }
 
-/// An axis under guard.
-pub struct Rig<'a> {
+/// The guard around an experiment on an axis.
+pub struct ExperimentGuard<'a> {
     axis: &'a mut dyn Axis,
-    /// What it was told.
+    /// What it has to keep to.
     pub options: GuardOptions,
     /// What the controller held at the start.
     pub setup: Setup,
@@ -144,8 +144,8 @@ pub struct Rig<'a> {
     pub(crate) exchanges: Vec<(f64, f64)>,
     /// Every command.
     pub drives: Vec<Drive>,
-    /// What watches for stalls and lost signals.
-    pub watch: Watch,
+    /// What monitors it for stalls and lost signals.
+    pub monitor: MotorMonitor,
     pace: Pace,
     epoch_s: f64,
     first_counts: Option<i64>,
@@ -153,8 +153,8 @@ pub struct Rig<'a> {
     next_poll: Duration,
     silent_since_s: Option<f64>,
     silent_polls: u32,
-    /// Whether the controller was found to tell no duty, current or voltage.
-    untold: [bool; 3],
+    /// Whether the controller was found to report no duty, current or voltage.
+    unreported: [bool; 3],
     turn: u8,
     /// Where the guard last had driven a motor back, counts.
     turned_at_counts: f64,
@@ -169,20 +169,20 @@ pub struct Rig<'a> {
     winding_touched: bool,
 }
 
-impl<'a> Rig<'a> {
+impl<'a> ExperimentGuard<'a> {
     /// Takes an axis over: reads its setup, refuses torque mode unless it may be left, makes the controller stop by itself when
     /// the host dies, and gives it the highest current. What was changed is put back when it fails.
     pub fn new(axis: &'a mut dyn Axis, options: GuardOptions) -> Result<Self, Cause> {
         let setup = retried(|| axis.read_setup())?;
         let now = axis.now();
-        let mut rig = Self {
+        let mut guard = Self {
             axis,
             options,
             setup,
             points: Vec::new(),
             exchanges: Vec::new(),
             drives: Vec::new(),
-            watch: Watch::default(),
+            monitor: MotorMonitor::default(),
             pace: Pace::default(),
             epoch_s: now.as_secs_f64(),
             first_counts: None,
@@ -190,7 +190,7 @@ impl<'a> Rig<'a> {
             next_poll: now,
             silent_since_s: None,
             silent_polls: 0,
-            untold: [false; 3],
+            unreported: [false; 3],
             turn: 0,
             turned_at_counts: 0.0,
             beyond: 0,
@@ -202,10 +202,10 @@ impl<'a> Rig<'a> {
             limits_touched: false,
             winding_touched: false,
         };
-        match rig.get_ready() {
-            Ok(()) => Ok(rig),
+        match guard.get_ready() {
+            Ok(()) => Ok(guard),
             Err(cause) => {
-                rig.put_back(false);
+                guard.put_back(false);
                 Err(cause)
             }
         }
@@ -217,7 +217,7 @@ impl<'a> Rig<'a> {
             if !unit.can_be_tuned() {
                 return Err(Cause::WrongMode);
             }
-            self.watch.is_abrupt = true;
+            self.monitor.is_abrupt = true;
             if let Some(travel) = self.options.travel {
                 retried(|| self.axis.set_travel(travel))?;
             }
@@ -260,7 +260,7 @@ impl<'a> Rig<'a> {
         self.pace.pause();
     }
 
-    /// A Motion Mind that is told another kind of command, or has had no duty, first has all its registers written, with its motor off.
+    /// A Motion Mind that is given another kind of command, or has had no duty, first has all its registers written, with its motor off.
     fn pause_for(&mut self, input: Input) {
         let kind = |input: &Input| std::mem::discriminant(input);
         let is_another = self
@@ -273,7 +273,7 @@ impl<'a> Rig<'a> {
     }
 
     /// What a run is refused for. A cause that names the machine stands only if all answers were on time, since the bounds of the guard
-    /// and the model come from the whole run; and one that was told by the current only if that was clear of its noise.
+    /// and the model come from the whole run; and one that was named by the current only if that was clear of its noise.
     pub(crate) fn concluded(&self, cause: Cause) -> Cause {
         if !self.options.weighs_evidence {
             return cause;
@@ -296,7 +296,8 @@ impl<'a> Rig<'a> {
         if noise_amps <= NO_CURRENT_AMPS {
             return false;
         }
-        let is_driven = |point: &&Point| self.watch.duty_at(point.t).abs() > self.watch.start_duty.max(0.03);
+        let is_driven =
+            |point: &&Point| self.monitor.duty_at(point.t).abs() > self.monitor.start_duty.max(0.03);
         let driven = self.points.iter().rev().filter(is_driven).filter_map(|point| point.amps);
         let mut driven: Vec<f64> = driven.map(f64::abs).take(DRIVEN_READINGS).collect();
         driven.sort_by(f64::total_cmp);
@@ -318,8 +319,8 @@ impl<'a> Rig<'a> {
         let t = exchange.middle_s() - self.epoch_s;
         self.drives.push(Drive { t, input: Input::Duty(f64::from(raw) / f64::from(FULL_DUTY_RAW)) });
         let took_s = exchange.received.saturating_sub(exchange.sent).as_secs_f64();
-        self.watch.doubt_s = 0.5 * self.usual_exchange_s().map_or(0.0, |usual| (took_s - usual).max(0.0));
-        self.watch.drive(t, duty);
+        self.monitor.doubt_s = 0.5 * self.usual_exchange_s().map_or(0.0, |usual| (took_s - usual).max(0.0));
+        self.monitor.drive(t, duty);
         Ok(())
     }
 
@@ -332,7 +333,7 @@ impl<'a> Rig<'a> {
         self.pace.answered(&exchange);
         let t = exchange.middle_s() - self.epoch_s;
         self.drives.push(Drive { t, input: Input::Speed(f64::from(whole)) });
-        self.watch.release(first_s, t);
+        self.monitor.release(first_s, t);
         Ok(())
     }
 
@@ -359,11 +360,11 @@ impl<'a> Rig<'a> {
         self.pace.answered(&exchange);
         let t = exchange.middle_s() - self.epoch_s;
         self.drives.push(Drive { t, input: Input::Position(counts.round(), f64::from(speed)) });
-        self.watch.release(first_s, t);
+        self.monitor.release(first_s, t);
         Ok(())
     }
 
-    /// Up to four tries. A controller that goes on telling its counts has not lost the link: it does not take this command.
+    /// Up to four tries. A controller that goes on reporting its counts has not lost the link: it does not take this command.
     fn acknowledged<T>(
         &mut self,
         mut call: impl FnMut(&mut dyn Axis) -> Result<T, AxisError>,
@@ -378,7 +379,7 @@ impl<'a> Rig<'a> {
     /// Writes velocity registers to RAM; they are put back unless the run keeps them.
     pub fn write_velocity(&mut self, registers: VelocityRegisters) -> Result<(), Cause> {
         self.gains_touched = true;
-        self.watch.hold(registers);
+        self.monitor.hold(registers);
         self.acknowledged(|axis| axis.write_velocity(registers))
     }
 
@@ -460,12 +461,12 @@ impl<'a> Rig<'a> {
         };
         (self.silent_since_s, self.silent_polls) = (None, 0);
         let point = self.point_of(&sample);
-        let untold = [
+        let unreported = [
             want.duty && sample.duty_raw.is_none(),
             want.current && sample.current_raw.is_none(),
             want.volts && sample.volts_raw.is_none(),
         ];
-        for (known, found) in self.untold.iter_mut().zip(untold) {
+        for (known, found) in self.unreported.iter_mut().zip(unreported) {
             if found && !std::mem::replace(known, true) {
                 // It was asked in vain, several times after the counts, which is nobody's lateness.
                 self.pace.pause();
@@ -487,10 +488,10 @@ impl<'a> Rig<'a> {
         self.exchanges.push((point.t, took.as_secs_f64()));
         self.check_travel(&point)?;
         if !self.is_prompt(took.as_secs_f64()) {
-            self.watch.read_duty(&point);
+            self.monitor.read_duty(&point);
             return Ok(Some(point));
         }
-        match self.watch.see(&point) {
+        match self.monitor.see(&point) {
             Err(guess) => Err(self.name_fault(guess)),
             Ok(()) => Ok(Some(point)),
         }
@@ -610,7 +611,7 @@ impl<'a> Rig<'a> {
         self.last_raw - first
     }
 
-    /// Takes the duty away and watches what the motor does then, which tells the faults apart. `guess` stands where nothing more
+    /// Takes the duty away and watches what the motor does then, which distinguishes the faults. `guess` stands where nothing more
     /// is heard.
     fn name_fault(&mut self, guess: Cause) -> Cause {
         if guess == Cause::MotorOpened {
@@ -620,7 +621,7 @@ impl<'a> Rig<'a> {
             Ok(exchange) => exchange.middle_s() - self.epoch_s,
             Err(cause) => return cause,
         };
-        self.watch.drive(alarm_s, 0.0);
+        self.monitor.drive(alarm_s, 0.0);
         let mut after: Vec<Point> = self.points.last().copied().into_iter().collect();
         while self.now_s() < alarm_s + DIAGNOSIS_S {
             let next = self.axis.now() + Duration::from_secs_f64(self.options.poll_s);
@@ -633,7 +634,7 @@ impl<'a> Rig<'a> {
                 return cause_of(&error);
             }
         }
-        diagnose(&self.watch, alarm_s, &after)
+        diagnose(&self.monitor, alarm_s, &after)
     }
 
     fn point_of(&mut self, sample: &Sample) -> Point {
@@ -652,7 +653,7 @@ impl<'a> Rig<'a> {
         }
     }
 
-    /// How much room there is on either side, as twice the shorter way to an end of the travel window, counts.
+    /// How much room there is on either side, as twice the shorter distance to an end of the travel window, counts.
     #[must_use]
     pub fn room_counts(&self) -> Option<f64> {
         let (low, high) = self.travel_counts()?;
@@ -679,15 +680,15 @@ impl<'a> Rig<'a> {
         if self.points.len() == 1 && !(low..=high).contains(&point.counts) {
             return Err(Cause::OutsideTravel);
         }
-        self.check_way(point, self.recent_speed(2).unwrap_or(0.0))
+        self.check_stopping_distance(point, self.recent_speed(2).unwrap_or(0.0))
     }
 
-    fn check_way(&mut self, point: &Point, speed: f64) -> Result<(), Cause> {
+    fn check_stopping_distance(&mut self, point: &Point, speed: f64) -> Result<(), Cause> {
         let Some((low, high)) = self.travel_counts() else { return Ok(()) };
-        let runs_on = match self.watch.stopping_counts(speed.abs(), self.options.max_duty) {
+        let runs_on = match self.monitor.stopping_counts(speed.abs(), self.options.max_duty) {
             Some(counts) => STOPPING_DOUBT * counts * speed.signum() + speed * TURNING_S,
-            // From rest a motor needs no longer way back than it had.
-            None => 0.7 * self.way_since_drive(point) + speed * TURNING_S.max(self.watch.stopping_s),
+            // From rest a motor needs no longer distance to stop than it had to start.
+            None => 0.7 * self.distance_since_drive(point) + speed * TURNING_S.max(self.monitor.stopping_s),
         };
         let rest = point.counts + speed * (self.options.poll_s + RETRY_S) + runs_on;
         if (rest > high && speed > 0.0) || (rest < low && speed < 0.0) {
@@ -705,10 +706,10 @@ impl<'a> Rig<'a> {
         let now_s = self.now_s();
         let unseen_s = (now_s - last.t).max(0.0);
         let gained = self.pull(speed).map_or(0.0, |(pull, over_s)| pull * unseen_s.max(over_s));
-        let (gain, _) = self.watch.rough_model(0.0);
-        let most = if gain > 0.0 { gain * self.watch.duty_at(now_s).abs() } else { f64::INFINITY };
+        let (gain, _) = self.monitor.rough_model(0.0);
+        let most = if gain > 0.0 { gain * self.monitor.duty_at(now_s).abs() } else { f64::INFINITY };
         let speed = speed + gained.min((most - speed.abs()).max(0.0)) * speed.signum();
-        self.check_way(&Point { counts: last.counts + speed * unseen_s, ..last }, speed)
+        self.check_stopping_distance(&Point { counts: last.counts + speed * unseen_s, ..last }, speed)
     }
 
     /// By how much a speed, that of the last two polls, grows in a second, and over which time that was seen, s. `None` where it does not.
@@ -724,7 +725,7 @@ impl<'a> Rig<'a> {
     }
 
     /// Counts gone under the first duty from rest; 0 later.
-    fn way_since_drive(&self, point: &Point) -> f64 {
+    fn distance_since_drive(&self, point: &Point) -> f64 {
         let [.., Drive { input: Input::Duty(0.0), .. }, Drive { t: since, .. }] = self.drives[..] else {
             return 0.0;
         };
@@ -736,9 +737,9 @@ impl<'a> Rig<'a> {
     pub fn come_to_rest(&mut self) -> Result<(), Cause> {
         let speed = self.recent_speed(2).unwrap_or(0.0);
         let heavy =
-            self.watch.stopping_s > HEAVY_S || self.watch.tau_bounds_s.is_some_and(|tau| tau.1 > HEAVY_S);
-        if heavy && speed.abs() > 0.02 * self.watch.full_speed {
-            let duty = (self.watch.start_duty + RESTING_DUTY).min(self.options.max_duty);
+            self.monitor.stopping_s > HEAVY_S || self.monitor.tau_bounds_s.is_some_and(|tau| tau.1 > HEAVY_S);
+        if heavy && speed.abs() > 0.02 * self.monitor.full_speed {
+            let duty = (self.monitor.start_duty + RESTING_DUTY).min(self.options.max_duty);
             self.duty(-speed.signum() * duty)?;
             let until = self.now_s() + LONGEST_TURN_S;
             while self.now_s() < until && self.recent_speed(2).is_some_and(|now| now * speed > 0.0) {
@@ -776,7 +777,7 @@ impl<'a> Rig<'a> {
         }
         let _ = self.axis.drive_duty(0);
         let now_s = self.now_s();
-        self.watch.forget(now_s);
+        self.monitor.forget(now_s);
     }
 }
 

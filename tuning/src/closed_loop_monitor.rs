@@ -1,13 +1,13 @@
-//! The watch over a motor that a loop drives: has it gone where its duty must have taken it, by the identified model?
+//! Monitors a motor that a loop drives: has it gone where its duty must have taken it, by the identified model?
 //!
 //! What a loop does between two polls is not seen, so that the duty is known within bounds only: those of the readings around, as wide
 //! again as readings scatter of late, and anything at all where a new setpoint fell between them. From these, and from bounds of the
 //! model, follow the least and the most that can have been counted over a stretch.
 
 use crate::axis::VelocityRegisters;
+use crate::experiment_guard::Point;
 use crate::model::PlantModel;
 use crate::registers::VELOCITY_SCALE;
-use crate::rig::Point;
 use std::collections::VecDeque;
 
 /// Stretches that are looked at, s. The long ones are for heavy motors, which show a fault late.
@@ -19,7 +19,7 @@ const SPEED_SHARE: f64 = 0.3;
 const STEP_S: f64 = 0.004;
 const STEPS: f64 = 40.0;
 /// How far the gain may be beside the model, and between which multiples of its time constant the true one lies: a load behind a
-/// spring or in its play leaves the motor alone, which is quicker.
+/// spring or within its backlash leaves the motor alone, which is quicker.
 const GAIN_DOUBT: f64 = 0.12;
 const TAU_SPREAD: (f64, f64) = (0.3, 1.6);
 /// How far a constant load may be beside the model, as a share of it.
@@ -42,8 +42,8 @@ const TICKS_PER_S: f64 = 300.0;
 const UNKNOWN_DOUBT: f64 = 0.14;
 const FEW_READINGS: usize = 5;
 /// From the stamp of a setpoint to what it does, s: either side.
-const NEWS_S: (f64, f64) = (0.006, 0.012);
-/// How long news are remembered, s: longer than the polls.
+const SETPOINT_ACTS_S: (f64, f64) = (0.006, 0.012);
+/// How long setpoints are remembered, s: longer than the polls.
 const MEMORY_S: f64 = 2.0;
 /// Counts that a stretch may be beside its bounds, time that the stamps of its ends and of the speed before it may be off, s, and shares
 /// of the speed before it and of the speed at full duty.
@@ -74,24 +74,24 @@ impl Margin {
 
 /// What is known of a loop that has the motor.
 #[derive(Clone, Debug)]
-pub(crate) struct LoopWatch {
+pub(crate) struct ClosedLoopMonitor {
     model: PlantModel,
     /// Duty at which the probe saw the motor start.
     start_duty: f64,
     /// Duty that one count more in a tick makes.
     step_duty: f64,
-    /// From when on its duty is known, nought or that of the loop, and when it was first told anything, s.
+    /// From when on its duty is known, nought or that of the loop, and when it was first commanded anything, s.
     since_s: f64,
-    told_s: f64,
-    /// When it was told something new, from the first try on to the acknowledged one, oldest first, s.
-    news: VecDeque<(f64, f64)>,
+    commanded_s: f64,
+    /// When it was given a new setpoint, from the first try on to the acknowledged one, oldest first, s.
+    setpoints: VecDeque<(f64, f64)>,
 }
 
-/// What a motor had before a loop was told something.
+/// What a motor had before a loop was given a setpoint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Before {
     /// The loop.
-    Looped,
+    ClosedLoop,
     /// No duty since then, s.
     Off(f64),
     /// Some duty.
@@ -108,30 +108,30 @@ struct Stretch {
     stands: bool,
 }
 
-impl LoopWatch {
-    /// Nothing has been told yet.
+impl ClosedLoopMonitor {
+    /// No setpoint has been given yet.
     pub(crate) fn new(model: PlantModel, start_duty: f64) -> Self {
         Self {
             model,
             start_duty,
             step_duty: 0.0,
             since_s: f64::INFINITY,
-            told_s: f64::INFINITY,
-            news: VecDeque::new(),
+            commanded_s: f64::INFINITY,
+            setpoints: VecDeque::new(),
         }
     }
 
-    /// The loop is given the motor, or is told something new, at some time between two: a lost reply leaves open which try was heard.
+    /// The loop is given the motor, or a new setpoint, at some time between two: a lost reply leaves open which try was heard.
     /// `before` is how it had the motor until then.
-    pub(crate) fn tell(&mut self, from_s: f64, to_s: f64, before: Before) {
-        if before != Before::Looped {
+    pub(crate) fn command(&mut self, from_s: f64, to_s: f64, before: Before) {
+        if before != Before::ClosedLoop {
             self.since_s = if let Before::Off(since_s) = before { since_s } else { to_s };
-            self.told_s = from_s - NEWS_S.0;
-            self.news.clear();
+            self.commanded_s = from_s - SETPOINT_ACTS_S.0;
+            self.setpoints.clear();
         }
-        self.news.push_back((from_s - NEWS_S.0, to_s + NEWS_S.1));
-        while self.news.front().is_some_and(|old| to_s - old.1 > MEMORY_S) {
-            self.news.pop_front();
+        self.setpoints.push_back((from_s - SETPOINT_ACTS_S.0, to_s + SETPOINT_ACTS_S.1));
+        while self.setpoints.front().is_some_and(|old| to_s - old.1 > MEMORY_S) {
+            self.setpoints.pop_front();
         }
     }
 
@@ -154,7 +154,7 @@ impl LoopWatch {
             // A loop that sees nothing move does nothing jerky: its duty goes from one reading to the next.
             let (doubt, calm_s) =
                 if stretch.stands { (DUTY_DOUBT, stretch.from.t) } else { (doubt, f64::INFINITY) };
-            self.within(&stretch, &Duties { readings, watch: self, doubt, calm_s })
+            self.within(&stretch, &Duties { readings, monitor: self, doubt, calm_s })
         })
     }
 
@@ -180,15 +180,15 @@ impl LoopWatch {
         let moved = stretch.to.counts - stretch.from.counts;
         let full = self.model.gain_counts_per_s;
         let margin = if stretch.stands { STANDING_MARGIN } else { MARGIN }.of(stretch, full);
-        let least = self.least_way(stretch, duties, 1.0);
-        let most = -self.least_way(stretch, duties, -1.0);
+        let least = self.least_distance(stretch, duties, 1.0);
+        let most = -self.least_distance(stretch, duties, -1.0);
         moved >= least - margin && moved <= most + margin
     }
 
     /// How far the duty may be beside the readings: they scatter about the mean of their neighbours.
     fn doubt(&self, readings: &VecDeque<(f64, f64)>) -> f64 {
         let is_quiet = |from: f64, to: f64| {
-            from >= self.told_s && !self.news.iter().any(|news| news.1 > from && news.0 < to)
+            from >= self.commanded_s && !self.setpoints.iter().any(|given| given.1 > from && given.0 < to)
         };
         let triples = (2..readings.len()).map(|n| (readings[n - 2], readings[n - 1], readings[n]));
         let mut beside: Vec<f64> = triples
@@ -202,10 +202,10 @@ impl LoopWatch {
         DUTY_DOUBT + STEPS_UNSEEN * self.step_duty + SCATTERS * beside[beside.len() / 2]
     }
 
-    /// The least way that the motor can have gone in a direction; a way backwards is negative.
-    fn least_way(&self, stretch: &Stretch, duties: &Duties<'_>, direction: f64) -> f64 {
+    /// The least distance that the motor can have gone in a direction; one backwards is negative.
+    fn least_distance(&self, stretch: &Stretch, duties: &Duties<'_>, direction: f64) -> f64 {
         let mut speed = stretch.speed_before * direction;
-        let mut way = 0.0;
+        let mut distance = 0.0;
         let mut t = stretch.before_s;
         let longest = STEP_S.max((stretch.to.t - t) / STEPS);
         while t < stretch.to.t - 1e-9 {
@@ -214,12 +214,12 @@ impl LoopWatch {
             let duty = if direction > 0.0 { range.0 } else { -range.1 };
             let next = self.least_speed(speed, duty, direction, step);
             if t + step > stretch.from.t {
-                way += 0.5 * (speed + next) * step.min(t + step - stretch.from.t);
+                distance += 0.5 * (speed + next) * step.min(t + step - stretch.from.t);
             }
             speed = next;
             t += step;
         }
-        way
+        distance
     }
 
     /// The lowest speed after a step, in the direction looked at.
@@ -254,30 +254,30 @@ impl LoopWatch {
 /// The duty of a loop as far as it is known.
 struct Duties<'a> {
     readings: &'a VecDeque<(f64, f64)>,
-    watch: &'a LoopWatch,
+    monitor: &'a ClosedLoopMonitor,
     doubt: f64,
-    /// From when on news are followed without a jerk, s.
+    /// From when on setpoints are followed without a jerk, s.
     calm_s: f64,
 }
 
 impl Duties<'_> {
     /// Lowest and highest duty that may have been in force at a time.
     fn range(&self, t: f64) -> (f64, f64) {
-        if t >= self.watch.since_s && t < self.watch.told_s {
+        if t >= self.monitor.since_s && t < self.monitor.commanded_s {
             return (0.0, 0.0);
         }
         let next = self.readings.partition_point(|reading| reading.0 <= t);
         let before =
-            next.checked_sub(1).and_then(|n| self.readings.get(n)).filter(|a| a.0 >= self.watch.since_s);
-        let from_rest = (self.watch.told_s, 0.0);
+            next.checked_sub(1).and_then(|n| self.readings.get(n)).filter(|a| a.0 >= self.monitor.since_s);
+        let from_rest = (self.monitor.commanded_s, 0.0);
         let a = match before {
             Some(reading) => reading,
-            None if self.watch.since_s < self.watch.told_s => &from_rest,
+            None if self.monitor.since_s < self.monitor.commanded_s => &from_rest,
             None => return (-1.0, 1.0),
         };
         let b = self.readings.get(next);
         let until = b.map_or(t, |b| b.0);
-        if t < self.calm_s && self.watch.news.iter().any(|news| news.1 > a.0 && news.0 < until) {
+        if t < self.calm_s && self.monitor.setpoints.iter().any(|given| given.1 > a.0 && given.0 < until) {
             return (-1.0, 1.0);
         }
         let (b, doubt) = b.map_or((a, 2.0 * self.doubt), |b| (b, self.doubt));

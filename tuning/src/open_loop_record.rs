@@ -1,8 +1,8 @@
 //! The record of an open-loop run as a fit needs it, and the counts that a model predicts for it.
 
+use crate::experiment_guard::{Drive, Input, Point};
 use crate::model::{Motion, PlantModel};
 use crate::motion_mind::{Limiter, LimiterState};
-use crate::rig::{Drive, Input, Point};
 
 /// Duty per second of the explicit highest acceleration: 100 % to -100 % in 100 ms (MCP manual, command 52).
 pub(crate) const DUTY_SLEW_PER_S: f64 = 20.0;
@@ -12,7 +12,7 @@ const LIMITED_STEP_S: f64 = 0.002;
 
 /// Duties, counts and battery voltage over time.
 #[derive(Clone, Debug, Default)]
-pub struct Course {
+pub struct OpenLoopRecord {
     /// (time, duty) of each command.
     pub duties: Vec<(f64, f64)>,
     /// (time, counts) of each poll.
@@ -42,7 +42,7 @@ pub struct Actuation {
 
 /// The same of readings that came promptly or with their time.
 const STAMP_S: f64 = 0.0010;
-/// The same of a Motion Mind's that came without their time: the place is that of the last loop, and nobody knows when that was.
+/// The same of a Motion Mind's that came without their time: the position is that of the last loop, and nobody knows when that was.
 pub(crate) const UNDATED_STAMP_S: f64 = 0.0018;
 
 impl Default for Actuation {
@@ -53,7 +53,7 @@ impl Default for Actuation {
 }
 
 impl Actuation {
-    /// A Motion Mind: the next loop has the whole duty, and shows the place of the last one.
+    /// A Motion Mind: the next loop has the whole duty, and shows the position of the last one.
     #[must_use]
     pub fn motion_mind(amps_limit: u16, is_dated: bool) -> Self {
         let stamp_s = if is_dated { STAMP_S } else { UNDATED_STAMP_S };
@@ -61,7 +61,7 @@ impl Actuation {
     }
 }
 
-impl Course {
+impl OpenLoopRecord {
     /// The part of a run between two times, from the last poll before the first of them on, with the duty in force there, which must
     /// have been reached. Voltages are taken relative to `reference`.
     #[must_use]
@@ -114,7 +114,7 @@ impl Course {
         counts.clear();
         volts.clear();
         let Some(&(start, _)) = self.counts.first() else { return };
-        let motion = Motion { speed: self.start_speed, place: 0.0 };
+        let motion = Motion { speed: self.start_speed, position: 0.0 };
         let limiter = self.actuation.amps_limit.and_then(|amps| Limiter::new(amps, model.drive_limit));
         // A limit of the duty leaves none of the current.
         let model = &match self.actuation.amps_limit {
@@ -139,7 +139,7 @@ impl Course {
                 next += 1;
             }
             self.advance(model, &mut state, t);
-            counts.push(state.motion.place);
+            counts.push(state.motion.position);
             if self.volts.get(volts.len()).is_some_and(|reading| reading.0 <= t) {
                 let limit = model.push_limit(state.duty, state.motion.speed).unwrap_or(f64::INFINITY);
                 let emf = state.motion.speed / model.gain_counts_per_s;

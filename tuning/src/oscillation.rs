@@ -1,23 +1,23 @@
-//! Overshoot and swing of a velocity loop, read off polls that see neither well.
+//! Overshoot and oscillation of a velocity loop, read off polls that see neither well.
 //!
 //! A difference of two polls is a poor speed: a count is rounded, and the register it comes from is up to a tick old. Flanks are
 //! therefore laid over each other by their commands, and a plateau is searched for sines, whose counts grow as they get slower.
 
-use crate::lag::ClosedCourse;
+use crate::lag::ClosedLoopRecord;
 use nalgebra::{Matrix4, Vector4};
 use std::f64::consts::TAU;
 
 /// Variance of a count's rounding, and standard deviation of its time at 300 Hz, s.
 const ROUNDING: f64 = 1.0 / 12.0;
 pub(crate) const STAMP_S: f64 = 0.001;
-/// The swings looked for, Hz, and how far up counts show them that came with their time.
-const SWINGS_HZ: (f64, f64) = (2.5, 16.0);
-const DATED_SWINGS_HZ: f64 = 33.0;
+/// The oscillations looked for, Hz, and how far up counts show them that came with their time.
+const OSCILLATIONS_HZ: (f64, f64) = (2.5, 16.0);
+const DATED_OSCILLATIONS_HZ: f64 = 33.0;
 /// How uncertain an average of flanks may be, as a share of the step, and the bounds of its width, s.
 const UNCERTAIN: f64 = 0.03;
 const WIDTH_S: (f64, f64) = (0.004, 0.25);
 
-/// Standard deviation about a slow course.
+/// Standard deviation about a slow trend.
 pub(crate) fn deviation(values: &[(f64, f64)]) -> f64 {
     if values.len() < 8 {
         return 0.0;
@@ -27,9 +27,9 @@ pub(crate) fn deviation(values: &[(f64, f64)]) -> f64 {
 }
 
 /// Root mean square of the speed about a plateau in counts/s, as far as it is more than rounding and stamps make up. `plateau` is a part
-/// of the course.
-pub(crate) fn speed_ripple(plateau: &[(f64, f64)], course: &ClosedCourse) -> f64 {
-    let highest_hz = if course.is_dated { DATED_SWINGS_HZ } else { SWINGS_HZ.1 };
+/// of the record.
+pub(crate) fn speed_ripple(plateau: &[(f64, f64)], record: &ClosedLoopRecord) -> f64 {
+    let highest_hz = if record.is_dated { DATED_OSCILLATIONS_HZ } else { OSCILLATIONS_HZ.1 };
     let (Some(first), Some(last)) = (plateau.first(), plateau.last()) else { return 0.0 };
     let seconds = last.0 - first.0;
     if plateau.len() < 20 || seconds <= 0.0 {
@@ -45,14 +45,14 @@ pub(crate) fn speed_ripple(plateau: &[(f64, f64)], course: &ClosedCourse) -> f64
         let (c, s) = rest.iter().fold((0.0, 0.0), project);
         2.0 * (c * c + s * s) / (n * n)
     };
-    let first = (SWINGS_HZ.0 * seconds).ceil().max(3.0) as usize;
+    let first = (OSCILLATIONS_HZ.0 * seconds).ceil().max(3.0) as usize;
     let sines: Vec<(f64, f64)> = (first..)
         .map(|k| TAU * k as f64 / seconds)
         .take_while(|w| *w <= TAU * nyquist)
         .map(|w| (w, mean_square(w)))
         .collect();
     // What noise alone gives each sine: what is known of it, or what most sines show (exponentially distributed) where that is less.
-    let known = 2.0 * (ROUNDING + (STAMP_S.hypot(course.stamp_s) * speed).powi(2)) / n;
+    let known = 2.0 * (ROUNDING + (STAMP_S.hypot(record.stamp_s) * speed).powi(2)) / n;
     let mut sorted: Vec<f64> = sines.iter().map(|sine| sine.1).collect();
     sorted.sort_by(f64::total_cmp);
     let middle = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
@@ -61,13 +61,13 @@ pub(crate) fn speed_ripple(plateau: &[(f64, f64)], course: &ClosedCourse) -> f64
     looked_at.map(|(w, square)| w * w * (square - floor)).sum::<f64>().max(0.0).sqrt()
 }
 
-/// How far the speed goes past its setpoint after a flank, over the step: the flanks of the course laid over each other.
-pub(crate) fn flank_overshoot(course: &ClosedCourse, step: f64, poll_s: f64) -> f64 {
+/// How far the speed goes past its setpoint after a flank, over the step: the flanks of the record laid over each other.
+pub(crate) fn flank_overshoot(record: &ClosedLoopRecord, step: f64, poll_s: f64) -> f64 {
     let mut shares: Vec<(f64, f64)> = Vec::new();
-    for (n, &(at, goal)) in course.setpoints.iter().enumerate() {
-        let until = course.setpoints.get(n + 1).map_or(f64::INFINITY, |next| next.0);
+    for (n, &(at, goal)) in record.setpoints.iter().enumerate() {
+        let until = record.setpoints.get(n + 1).map_or(f64::INFINITY, |next| next.0);
         let up = if n % 2 == 0 { 1.0 } else { -1.0 };
-        for pair in course.counts.windows(2) {
+        for pair in record.counts.windows(2) {
             let ((t0, y0), (t1, y1)) = (pair[0], pair[1]);
             if t0 > at && t1 < until && t1 - t0 < 2.5 * poll_s {
                 shares.push((0.5 * (t0 + t1) - at, up * ((y1 - y0) / (t1 - t0) - goal) / step));
@@ -75,12 +75,12 @@ pub(crate) fn flank_overshoot(course: &ClosedCourse, step: f64, poll_s: f64) -> 
         }
     }
     shares.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let goal = course.setpoints.iter().map(|s| s.1.abs()).fold(0.0, f64::max);
-    let stamp_s = STAMP_S.hypot(course.stamp_s);
+    let goal = record.setpoints.iter().map(|s| s.1.abs()).fold(0.0, f64::max);
+    let stamp_s = STAMP_S.hypot(record.stamp_s);
     let noise = (2.0 * (ROUNDING + (stamp_s * goal).powi(2))).sqrt() / poll_s / step.abs();
     let wanted = (noise / UNCERTAIN).powi(2).max(1.0);
     let longest = shares.last().map_or(0.0, |last| last.0);
-    let flanks = course.setpoints.len().max(1) as f64;
+    let flanks = record.setpoints.len().max(1) as f64;
     let half_s =
         (0.5 * wanted * poll_s / flanks).clamp(WIDTH_S.0, WIDTH_S.1.min(0.25 * longest).max(WIDTH_S.0));
     let mut most: f64 = 0.0;
@@ -96,7 +96,7 @@ pub(crate) fn flank_overshoot(course: &ClosedCourse, step: f64, poll_s: f64) -> 
     most
 }
 
-/// The values less the cubic that fits them best, over the time from their middle: what settles slowly is no swing.
+/// The values less the cubic that fits them best, over the time from their middle: what settles slowly is no oscillation.
 fn detrended(values: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let (Some(first), Some(last)) = (values.first(), values.last()) else { return Vec::new() };
     let (middle, half) = (0.5 * (first.0 + last.0), (0.5 * (last.0 - first.0)).max(1e-6));
@@ -118,35 +118,35 @@ mod tests {
     use super::*;
 
     /// Counts of a speed, polled every 13 ms for a second, rounded.
-    fn plateau(place: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
-        (0..80).map(|n| f64::from(n) * 0.013).map(|t| (t, place(t).floor())).collect()
+    fn plateau(position: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+        (0..80).map(|n| f64::from(n) * 0.013).map(|t| (t, position(t).floor())).collect()
     }
 
     #[test]
     fn a_sine_on_a_plateau_has_its_root_mean_square_and_a_plain_one_next_to_none() {
         // 60 counts/s about 1500 at 8 Hz.
         let w = TAU * 8.0;
-        let swinging =
-            speed_ripple(&plateau(|t| 1_500.0 * t - 60.0 / w * (w * t).cos()), &ClosedCourse::default());
-        assert!((swinging / (60.0 / 2.0_f64.sqrt()) - 1.0).abs() < 0.2, "{swinging}");
-        assert!(speed_ripple(&plateau(|t| 1_500.0 * t), &ClosedCourse::default()) < 10.0);
+        let oscillating =
+            speed_ripple(&plateau(|t| 1_500.0 * t - 60.0 / w * (w * t).cos()), &ClosedLoopRecord::default());
+        assert!((oscillating / (60.0 / 2.0_f64.sqrt()) - 1.0).abs() < 0.2, "{oscillating}");
+        assert!(speed_ripple(&plateau(|t| 1_500.0 * t), &ClosedLoopRecord::default()) < 10.0);
     }
 
     #[test]
-    fn a_quick_swing_is_looked_for_where_each_count_came_with_its_time() {
+    fn a_quick_oscillation_is_looked_for_where_each_count_came_with_its_time() {
         let w = TAU * 24.0;
         let counts = plateau(|t| 1_500.0 * t - 300.0 / w * (w * t).cos());
-        let dated = ClosedCourse { is_dated: true, ..ClosedCourse::default() };
-        let swinging = speed_ripple(&counts, &dated);
-        assert!((swinging / (300.0 / 2.0_f64.sqrt()) - 1.0).abs() < 0.2, "{swinging}");
+        let dated = ClosedLoopRecord { is_dated: true, ..ClosedLoopRecord::default() };
+        let oscillating = speed_ripple(&counts, &dated);
+        assert!((oscillating / (300.0 / 2.0_f64.sqrt()) - 1.0).abs() < 0.2, "{oscillating}");
         assert!(speed_ripple(&plateau(|t| 1_500.0 * t), &dated) < 40.0);
-        assert!(speed_ripple(&counts, &ClosedCourse::default()) < 0.1 * swinging);
+        assert!(speed_ripple(&counts, &ClosedLoopRecord::default()) < 0.1 * oscillating);
     }
 
     #[test]
-    fn a_speed_that_settles_slowly_is_no_swing() {
+    fn a_speed_that_settles_slowly_is_no_oscillation() {
         let settling =
-            speed_ripple(&plateau(|t| 1_500.0 * t + 200.0 * (-t / 0.8).exp()), &ClosedCourse::default());
+            speed_ripple(&plateau(|t| 1_500.0 * t + 200.0 * (-t / 0.8).exp()), &ClosedLoopRecord::default());
         assert!(settling < 15.0, "{settling}");
     }
 
@@ -155,8 +155,8 @@ mod tests {
         // A second-order step up and down again, damping 0.5: it goes past by 16.3 % of the step.
         let (zeta, omega, high) = (0.5_f64, 40.0, 9_000.0);
         let damped = omega * (1.0 - zeta * zeta).sqrt();
-        // Place of a unit step of speed.
-        let place = |t: f64| {
+        // Position of a unit step of speed.
+        let position = |t: f64| {
             let decay = (-zeta * omega * t).exp();
             let (c, s) = ((damped * t).cos(), (damped * t).sin());
             t - 2.0 * zeta / omega
@@ -167,20 +167,20 @@ mod tests {
         let counts = (0..185).map(|n| f64::from(n) * 0.013).map(|t| {
             let flanks = setpoints.iter().filter(|s| s.0 <= t);
             let sum: f64 =
-                flanks.map(|&(at, goal)| (if goal > 0.0 { high } else { -high }) * place(t - at)).sum();
+                flanks.map(|&(at, goal)| (if goal > 0.0 { high } else { -high }) * position(t - at)).sum();
             (t, sum.floor())
         });
-        let course = ClosedCourse {
+        let record = ClosedLoopRecord {
             counts: counts.collect(),
             setpoints: setpoints.clone(),
-            ..ClosedCourse::default()
+            ..ClosedLoopRecord::default()
         };
-        let seen = flank_overshoot(&course, high, 0.013);
+        let seen = flank_overshoot(&record, high, 0.013);
         assert!((seen - 0.163).abs() < 0.04, "{seen}");
     }
 
     #[test]
-    fn a_deviation_leaves_a_slow_course_out() {
+    fn a_deviation_leaves_a_slow_trend_out() {
         let values: Vec<(f64, f64)> = (0..200)
             .map(|n| f64::from(n) * 0.01)
             .map(|t| (t, 0.3 + 0.1 * t + 0.02 * (TAU * 7.0 * t).sin()))

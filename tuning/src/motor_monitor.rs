@@ -1,4 +1,4 @@
-//! Watches a driven motor poll by poll: does it still do what a motor does?
+//! Monitors a driven motor poll by poll: does it still do what a motor does?
 //!
 //! What was counted over a short stretch is compared with the least that a motor of this kind could have moved, given how fast it
 //! was and which duty it had. The bounds are wide, since they come from the run itself: the speeds seen so far and a rough time
@@ -6,10 +6,10 @@
 
 use crate::axis::VelocityRegisters;
 use crate::cause::Cause;
-use crate::course::DUTY_SLEW_PER_S;
-use crate::looped::{Before, LoopWatch};
+use crate::closed_loop_monitor::{Before, ClosedLoopMonitor};
+use crate::experiment_guard::Point;
 use crate::model::PlantModel;
-use crate::rig::Point;
+use crate::open_loop_record::DUTY_SLEW_PER_S;
 use std::collections::VecDeque;
 
 /// Stretches that are looked at, s.
@@ -41,21 +41,21 @@ const PUSHED_S: f64 = 0.02;
 const LOOP_DUTY: f64 = 0.14;
 /// Share of the speed at full duty that a loop may be beside what its duty readings say.
 const LOOP_MARGIN: f64 = 0.04;
-/// A loop that was told something new does what no poll sees for this long, s.
-const NEWS_S: f64 = 0.07;
+/// A loop that was given a new setpoint does what no poll sees for this long, s.
+const UNSEEN_SETPOINT_S: f64 = 0.07;
 /// Between which multiples of a time constant that was found the true one lies: a load behind a spring makes the motor alone quicker.
 const TAU_SPREAD: (f64, f64) = (0.3, 1.6);
 /// Share of the speed at full duty that a load may sway with while the motor is off.
 const SWAYING: f64 = 0.08;
-/// From a poll to the command that it leads to, s; and the least share of a way to rest that the motor's own slowing takes.
+/// From a poll to the command that it leads to, s; and the least share of a stopping distance that the motor's own slowing takes.
 const COMMAND_S: f64 = 0.012;
 const LEAST_TURN: f64 = 0.25;
 /// Highest reading that counts as no current, A: the wire's resolution.
 pub(crate) const NO_CURRENT_AMPS: f64 = 0.0151;
 
-/// The watch over one motor.
+/// The monitor of one motor.
 #[derive(Clone, Debug, Default)]
-pub struct Watch {
+pub struct MotorMonitor {
     /// Time from braking to rest, s: how long a speed runs on.
     pub stopping_s: f64,
     /// Amperes at full duty with the shaft at rest; `None` before the probe.
@@ -72,14 +72,14 @@ pub struct Watch {
     pub tau_bounds_s: Option<(f64, f64)>,
     /// How much more than usual the stamp of the last command may be off, s.
     pub(crate) doubt_s: f64,
-    /// Time constant that the ways of turning round so far speak of, s.
+    /// Time constant that the stopping distances so far speak of, s.
     turning_tau_s: Option<f64>,
     /// Duties given and when, oldest first; the first is older than the memory.
     duties: VecDeque<(f64, f64)>,
-    /// Whether a loop has the motor, until when one had it, and when it was given the motor, told something new, or lost it.
-    looped: bool,
-    looped_until_s: f64,
-    news_s: f64,
+    /// Whether a loop has the motor, until when one had it, and when it was given the motor or a new setpoint, or lost it.
+    in_loop: bool,
+    loop_until_s: f64,
+    changed_s: f64,
     /// When the duty last changed, and whether it went up or round: a speed that still falls says nothing about the gain.
     since_s: f64,
     rising: bool,
@@ -93,8 +93,8 @@ pub struct Watch {
     gain: f64,
     /// The same by speed and current.
     emf_gain: f64,
-    /// What an identification has found, for the watch over loops.
-    known: Option<LoopWatch>,
+    /// What an identification has found, for the closed-loop monitor.
+    closed_loop: Option<ClosedLoopMonitor>,
     running_amps: Option<f64>,
     open_since_s: Option<f64>,
     recent: VecDeque<Point>,
@@ -110,17 +110,17 @@ struct Stretch {
     speed_before: f64,
 }
 
-impl Watch {
+impl MotorMonitor {
     /// A duty was given.
     pub fn drive(&mut self, t: f64, duty: f64) {
-        if self.looped {
+        if self.in_loop {
             // The ramp begins at the duty that the loop had.
             let last = self.duty_at(t);
             self.duties.clear();
             self.duties.push_back((t - 2.0 / DUTY_SLEW_PER_S, last));
-            self.looped = false;
-            self.looped_until_s = t;
-            self.news_s = t;
+            self.in_loop = false;
+            self.loop_until_s = t;
+            self.changed_s = t;
         }
         let before = self.duties.back().map_or(0.0, |given| given.1);
         self.rising = before * duty <= 0.0 || duty.abs() >= before.abs();
@@ -139,7 +139,7 @@ impl Watch {
         self.recent.clear();
         self.duties.clear();
         self.drive(t, 0.0);
-        self.news_s = t;
+        self.changed_s = t;
     }
 
     /// Takes over what an identification found.
@@ -149,13 +149,14 @@ impl Watch {
         self.tau_bounds_s = Some((TAU_SPREAD.0 * model.tau_s, TAU_SPREAD.1 * model.tau_s));
         // A limit that never acted in the identification may act in a trial.
         let drive_limit = model.drive_limit.or(self.drive_limit);
-        self.known = Some(LoopWatch::new(PlantModel { drive_limit, ..*model }, self.start_duty));
+        self.closed_loop =
+            Some(ClosedLoopMonitor::new(PlantModel { drive_limit, ..*model }, self.start_duty));
     }
 
     /// The velocity loop is given other gains.
     pub(crate) fn hold(&mut self, registers: VelocityRegisters) {
-        if let Some(known) = &mut self.known {
-            known.hold(registers);
+        if let Some(closed_loop) = &mut self.closed_loop {
+            closed_loop.hold(registers);
         }
     }
 
@@ -165,13 +166,13 @@ impl Watch {
         let (gain, rough_s) = self.rough_model(0.0);
         let tau_s = self.turning_tau_s.unwrap_or(rough_s);
         (self.tau_bounds_s.is_some() && gain * duty > 0.0)
-            .then(|| tau_s * self.way_per_tau(gain, speed, duty))
+            .then(|| tau_s * self.stopping_distance_per_tau(gain, speed, duty))
     }
 
-    /// A motor at a speed was driven the other way at a duty and ran on for so many counts from the poll before: later ways are
-    /// computed from that.
+    /// A motor at a speed was driven the other way at a duty and ran on for so many counts from the poll before: later stopping distances
+    /// are computed from that.
     pub(crate) fn turned(&mut self, speed: f64, duty: f64, counts: f64) {
-        let per_tau = self.way_per_tau(self.rough_model(0.0).0, speed, duty);
+        let per_tau = self.stopping_distance_per_tau(self.rough_model(0.0).0, speed, duty);
         if per_tau <= 0.0 || speed <= 0.0 {
             return;
         }
@@ -181,9 +182,9 @@ impl Watch {
         self.turning_tau_s = Some(self.turning_tau_s.map_or(found_s, |known| 0.5 * (known + found_s)));
     }
 
-    /// The way to rest over the time constant. The current limit holds the motor back at one rate as long as it acts; below it, duty
+    /// The stopping distance over the time constant. The current limit holds the motor back at one rate as long as it acts; below it, duty
     /// and back-EMF do.
-    fn way_per_tau(&self, gain: f64, speed: f64, duty: f64) -> f64 {
+    fn stopping_distance_per_tau(&self, gain: f64, speed: f64, duty: f64) -> f64 {
         let pull = gain * duty;
         let most = gain * self.drive_limit.unwrap_or(f64::INFINITY);
         let free = speed.min((most - pull).max(0.0));
@@ -192,18 +193,18 @@ impl Watch {
         if pull <= 0.0 || free <= 0.0 { held } else { held + free - pull * (free / pull).ln_1p() }
     }
 
-    /// A loop has the motor: its duty is what is read. It was told so first at `first_s`, and answered the try of `t`.
+    /// A loop has the motor: its duty is what is read. It was commanded so first at `first_s`, and answered the try of `t`.
     pub fn release(&mut self, first_s: f64, t: f64) {
-        if let Some(known) = &mut self.known {
+        if let Some(closed_loop) = &mut self.closed_loop {
             let before = match self.duties.back() {
-                _ if self.looped => Before::Looped,
+                _ if self.in_loop => Before::ClosedLoop,
                 Some((off_s, 0.0)) => Before::Off(off_s + 2.0 / DUTY_SLEW_PER_S),
                 _ => Before::Driven,
             };
-            known.tell(first_s, t, before);
+            closed_loop.command(first_s, t, before);
         }
-        self.looped = true;
-        self.news_s = t;
+        self.in_loop = true;
+        self.changed_s = t;
         self.since_s = t;
         self.duties.clear();
     }
@@ -234,10 +235,10 @@ impl Watch {
         self.check_current(point)?;
         self.learn_start(point);
         self.check_start(point)?;
-        if self.looped
-            && let Some(known) = &self.known
+        if self.in_loop
+            && let Some(closed_loop) = &self.closed_loop
         {
-            let agrees = known.agrees(&self.recent, &self.readings);
+            let agrees = closed_loop.agrees(&self.recent, &self.readings);
             return if agrees { Ok(()) } else { Err(Cause::Stalled) };
         }
         for seconds in STRETCHES_S {
@@ -251,7 +252,7 @@ impl Watch {
 
     /// The duty in force at a time, ramps included.
     pub(crate) fn duty_at(&self, t: f64) -> f64 {
-        if self.looped || t < self.looped_until_s {
+        if self.in_loop || t < self.loop_until_s {
             let read = self.readings.iter().rev().find(|duty| duty.0 <= t);
             return read.map_or(0.0, |duty| duty.1);
         }
@@ -267,7 +268,7 @@ impl Watch {
 
     /// Lowest and highest duty that may have been in force about a time.
     fn duty_range(&self, t: f64) -> (f64, f64) {
-        if !self.looped {
+        if !self.in_loop {
             // The stamp of a command is off by a few milliseconds at the most, unless its reply came late.
             let (a, b) = (self.duty_at(t - 0.006 - self.doubt_s), self.duty_at(t + 0.002 + self.doubt_s));
             return (a.min(b), a.max(b));
@@ -294,23 +295,23 @@ impl Watch {
     /// Compares a stretch with what the motor can have done.
     fn check_stretch(&self, stretch: &Stretch) -> Result<(), Cause> {
         let Stretch { from, to, speed_before } = stretch;
-        let unclear_s = self.news_s + if self.looped { NEWS_S } else { 0.0 };
+        let unclear_s = self.changed_s + if self.in_loop { UNSEEN_SETPOINT_S } else { 0.0 };
         if unclear_s > from.t - SPEED_S {
             return Ok(());
         }
         let span = to.t - from.t;
         let moved = to.counts - from.counts;
-        let unseen = if self.looped { LOOP_MARGIN * self.gain * span } else { 0.0 };
+        let unseen = if self.in_loop { LOOP_MARGIN * self.gain * span } else { 0.0 };
         let margin = MARGIN_COUNTS + MARGIN_SPEED * speed_before.abs() * span + unseen;
         if self.sways(stretch) {
             return Ok(());
         }
         let duty = self.duty_at(to.t);
         // No duty has no direction, whatever the sign of its nought.
-        let way = if duty == 0.0 { 0.0 } else { duty.signum() };
-        if self.keeps_its_speed(stretch, way) {
+        let direction = if duty == 0.0 { 0.0 } else { duty.signum() };
+        if self.keeps_its_speed(stretch, direction) {
             let least = KEPT_SPEED * speed_before.abs() * span - MARGIN_COUNTS;
-            if least > 0.0 && moved * way < least {
+            if least > 0.0 && moved * direction < least {
                 return Err(Cause::Stalled);
             }
         }
@@ -318,21 +319,21 @@ impl Watch {
         if self.gain <= 0.0 {
             return Ok(());
         }
-        let least = self.least_way(stretch, 1.0, tau);
-        let most = -self.least_way(stretch, -1.0, tau);
+        let least = self.least_distance(stretch, 1.0, tau);
+        let most = -self.least_distance(stretch, -1.0, tau);
         if moved < least - margin || moved > most + margin {
             return Err(Cause::Stalled);
         }
         Ok(())
     }
 
-    /// Whether the motor is off and all that is counted is slow: a load sways in the play of its gear.
+    /// Whether the motor is off and all that is counted is slow: a load sways in the backlash of its gear.
     fn sways(&self, stretch: &Stretch) -> bool {
         let Stretch { from, to, speed_before } = stretch;
         let begin = from.t - SPEED_S;
         let given = || self.duties.iter().filter(|given| given.0 >= begin);
-        let off = !self.looped
-            && self.looped_until_s < begin
+        let off = !self.in_loop
+            && self.loop_until_s < begin
             && self.duty_at(begin) == 0.0
             && given().all(|given| given.1 == 0.0);
         let slow = SWAYING * self.gain;
@@ -340,18 +341,18 @@ impl Watch {
     }
 
     /// Whether nothing slows the motor down: its duty has stayed, and it was on its way there.
-    fn keeps_its_speed(&self, stretch: &Stretch, way: f64) -> bool {
+    fn keeps_its_speed(&self, stretch: &Stretch, direction: f64) -> bool {
         let settled_s = self.tau_bounds_s.map_or(0.0, |tau| 3.0 * tau.1);
         let steady = stretch.from.t - SPEED_S > self.since_s + 0.11 + settled_s;
         let rising = self.tau_bounds_s.is_none() && stretch.from.t - SPEED_S > self.since_s + 0.02;
-        !self.looped && (steady || rising) && stretch.speed_before * way > 0.0
+        !self.in_loop && (steady || rising) && stretch.speed_before * direction > 0.0
     }
 
-    /// The least way that the motor can have gone in a direction: with the lowest duty, the most friction, and the time constant
-    /// that suits it. A way backwards is negative.
-    fn least_way(&self, stretch: &Stretch, direction: f64, tau: (f64, f64)) -> f64 {
+    /// The least distance that the motor can have gone in a direction: with the lowest duty, the most friction, and the time constant
+    /// that suits it. One backwards is negative.
+    fn least_distance(&self, stretch: &Stretch, direction: f64, tau: (f64, f64)) -> f64 {
         let mut speed = stretch.speed_before * direction;
-        let mut way = 0.0;
+        let mut distance = 0.0;
         let mut t = stretch.from.t - 0.5 * SPEED_S;
         // The speed before was that of the middle of its own time.
         while t < stretch.to.t {
@@ -360,12 +361,12 @@ impl Watch {
             let duty = if direction > 0.0 { range.0 - self.load_duty } else { self.load_duty - range.1 };
             let next = self.least_speed(speed, duty, step, tau);
             if t + step > stretch.from.t {
-                way += 0.5 * (speed + next) * step.min(t + step - stretch.from.t);
+                distance += 0.5 * (speed + next) * step.min(t + step - stretch.from.t);
             }
             speed = next;
             t += step;
         }
-        way
+        distance
     }
 
     /// The lowest speed after a step.
@@ -389,7 +390,7 @@ impl Watch {
 
     fn learn_start(&mut self, point: &Point) {
         let driven = self.duties.back().is_some_and(|given| given.1 != 0.0);
-        if self.start_took_s.is_some() || self.looped || !driven {
+        if self.start_took_s.is_some() || self.in_loop || !driven {
             return;
         }
         let from = self.recent.iter().rev().find(|old| old.t <= self.since_s);
@@ -401,7 +402,7 @@ impl Watch {
     /// From rest, a duty clearly above the one that it started with moves it soon.
     fn check_start(&self, point: &Point) -> Result<(), Cause> {
         let duty = self.duty_at(point.t).abs();
-        if self.looped || duty < self.start_duty + CLEARLY_HIGHER || self.tau_bounds_s.is_some() {
+        if self.in_loop || duty < self.start_duty + CLEARLY_HIGHER || self.tau_bounds_s.is_some() {
             return Ok(());
         }
         let start_s = self.start_took_s.map_or(START_S.0, |took| (STARTS * took).clamp(START_S.0, START_S.1));
@@ -421,7 +422,7 @@ impl Watch {
     fn learn(&mut self) {
         let Some(stretch) = self.stretch(STRETCHES_S[0]) else { return };
         let duty = self.duty_at(stretch.to.t);
-        if self.looped
+        if self.in_loop
             || !self.rising
             || duty.abs() < self.start_duty + 0.03
             || stretch.from.t < self.since_s + 0.06
@@ -478,7 +479,7 @@ impl Watch {
     /// Whether the motor has kept its speed since then, though its friction alone would have slowed it down.
     fn goes_on(&self, since_s: f64) -> bool {
         let Some(to) = self.recent.back() else { return false };
-        if self.known.as_ref().is_some_and(|known| !known.is_helped()) {
+        if self.closed_loop.as_ref().is_some_and(|closed_loop| !closed_loop.is_helped()) {
             return false;
         }
         let since = || self.recent.iter().filter(|point| point.t >= since_s - SPEED_S);
@@ -494,7 +495,7 @@ impl Watch {
         fall > clear && before * now > 0.0 && before.abs() - now.abs() < 0.6 * fall.min(before.abs())
     }
 
-    /// Whether a turning motor draws a current that can be told from none.
+    /// Whether a turning motor draws a current that can be distinguished from none.
     pub(crate) fn draws(&self) -> bool {
         self.running_amps.is_some_and(|running| running > 2.5 * NO_CURRENT_AMPS)
             || self.stall_amps.is_some_and(|stall| stall * 0.015 > 2.0 * NO_CURRENT_AMPS)

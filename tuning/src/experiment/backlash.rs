@@ -1,0 +1,178 @@
+//! Backlash of the mechanics, read off reversals: a push the other way loses the backlash that a second push the same way does not.
+//!
+//! Only an encoder behind the backlash sees any of it; one on the motor's own shaft counts the travel through it as any other. A load that
+//! coasts through the backlash while the motor brakes hides a part of it, so what is found is a lower bound.
+
+use super::Probe;
+use crate::cause::Cause;
+use crate::diagnosis::why_unmoved;
+use crate::experiment_guard::ExperimentGuard;
+use crate::model::PlantModel;
+use serde::{Deserialize, Serialize};
+
+/// Directions of the pushes: after each pair comes a reversal.
+const PUSHES: [f64; 7] = [1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0];
+/// Duty above the starting one, as a share of it and at the least.
+const ABOVE: (f64, f64) = (0.3, 0.03);
+/// How far a push should go, as seconds of full speed, in counts at the least, and as a share of the room.
+const PUSH_S: f64 = 0.006;
+const PUSH_COUNTS: f64 = 18.0;
+const ROOM_SHARE: f64 = 0.12;
+/// Longest push, s, and how long the motor may take to rest after one, in time constants and s.
+const LONGEST_PUSH_S: f64 = 0.35;
+const REST: (f64, f64) = (4.0, 0.08);
+const LONGEST_REST_S: f64 = 1.0;
+/// Motors slower than this are still moving when they are looked at, s.
+const SLOWEST_S: f64 = 0.3;
+/// A push moves the axis by this at the least, counts.
+const LEAST_DISTANCE_COUNTS: f64 = 2.0;
+/// Least backlash that is reported, counts, and how sure it must be, in standard errors.
+const LEAST_COUNTS: f64 = 1.5;
+const SURE: f64 = 3.0;
+/// Share of the push that it must be, and the standard error that rounding leaves, counts.
+const LEAST_SHARE: f64 = 0.04;
+const LEAST_ERROR_COUNTS: f64 = 0.4;
+
+/// What the reversals showed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Backlash {
+    /// Counts lost at a reversal, a lower bound of the backlash; 0 where nothing is sure.
+    pub counts: f64,
+    /// Half of the 95 % interval, counts.
+    pub interval_counts: f64,
+    /// Reversals seen.
+    pub reversals: usize,
+}
+
+/// Pushes the axis to and fro with little duty. `None` where there is no room for it, or it did not move.
+pub fn measure_backlash(
+    guard: &mut ExperimentGuard<'_>,
+    probe: &Probe,
+    model: &PlantModel,
+) -> Result<Option<Backlash>, Cause> {
+    let room = guard.room_counts().map_or(f64::INFINITY, |room| ROOM_SHARE * room);
+    let distance = (PUSH_S * model.gain_counts_per_s).max(PUSH_COUNTS).min(room);
+    if distance < 6.0 || model.tau_s > SLOWEST_S {
+        return Ok(None);
+    }
+    // The motor was started upwards, against the load or with it.
+    let start = (probe.start_duty - model.load_duty).max(model.coulomb_duty);
+    let most = guard.options.max_duty - model.load_duty.abs();
+    let duty = (start + (ABOVE.0 * start).max(ABOVE.1)).min(most);
+    let push_s = push_time_s(model, duty, distance);
+    let rest_s = (REST.0 * model.tau_s + REST.1).min(LONGEST_REST_S);
+    // Backlash looks like a stall for a while. The duty is low, and a motor that does not move ends the run here.
+    let kept_start_duty = std::mem::take(&mut guard.monitor.start_duty);
+    let distances = push(guard, duty, model.load_duty, push_s, rest_s);
+    guard.monitor.start_duty = kept_start_duty;
+    let distances = distances?;
+    if did_not_move(&distances) {
+        let backwards =
+            distances.iter().rev().take(2).all(|(_, distance)| *distance <= -LEAST_DISTANCE_COUNTS);
+        return Err(why_unmoved(&guard.monitor, backwards));
+    }
+    Ok(Some(backlash_of(&distances)))
+}
+
+/// Whether two pushes in a row moved nothing: one may end in the backlash.
+fn did_not_move(distances: &[(f64, f64)]) -> bool {
+    distances.windows(2).any(|pair| pair.iter().all(|(_, distance)| *distance < LEAST_DISTANCE_COUNTS))
+}
+
+/// Pushes with a duty to either side of the one that balances the load. For each push: 1 for another one in the same
+/// direction, -1 for one after a reversal, 0 for the first; and its distance, counts.
+fn push(
+    guard: &mut ExperimentGuard<'_>,
+    duty: f64,
+    load_duty: f64,
+    push_s: f64,
+    rest_s: f64,
+) -> Result<Vec<(f64, f64)>, Cause> {
+    let mut distances = Vec::new();
+    let mut before = 0.0;
+    for direction in PUSHES {
+        guard.poll(false)?;
+        let from = position(guard);
+        guard.duty(load_duty + direction * duty)?;
+        let pushed_s = guard.now_s();
+        guard.poll_for(push_s, false)?;
+        let held_s = guard.now_s() - pushed_s;
+        if guard.monitor.drew_nothing(pushed_s) {
+            return Err(Cause::MotorOpened);
+        }
+        guard.duty(0.0)?;
+        guard.poll_for(rest_s, false)?;
+        // A computer that was late pushed for longer.
+        distances.push((
+            before * direction,
+            (position(guard) - from) * direction * (push_s / held_s.max(1e-3)).min(1.0),
+        ));
+        before = direction;
+        if did_not_move(&distances) {
+            break;
+        }
+    }
+    Ok(distances)
+}
+
+fn position(guard: &ExperimentGuard<'_>) -> f64 {
+    let last = guard.points.iter().rev().take(3).map(|p| p.counts);
+    last.sum::<f64>() / guard.points.len().clamp(1, 3) as f64
+}
+
+/// Time for a distance from rest at a duty.
+fn push_time_s(model: &PlantModel, duty: f64, distance: f64) -> f64 {
+    let speed = model.gain_counts_per_s * (duty - model.coulomb_duty).max(0.02);
+    let tau = model.tau_s;
+    let mut t = 0.02;
+    while t < LONGEST_PUSH_S && speed * (t - tau * (1.0 - (-t / tau).exp())) < distance {
+        t += 0.005;
+    }
+    t
+}
+
+/// What the pushes after a reversal are short of the others.
+fn backlash_of(distances: &[(f64, f64)]) -> Backlash {
+    let of = |turned: bool| -> Vec<f64> {
+        distances
+            .iter()
+            .filter(|(turn, _)| if turned { *turn < 0.0 } else { *turn > 0.0 })
+            .map(|(_, distance)| *distance)
+            .collect()
+    };
+    let (same, turned) = (of(false), of(true));
+    let (a, b) = (mean_and_error(&same), mean_and_error(&turned));
+    let (short, error) = (a.0 - b.0, a.1.hypot(b.1).max(LEAST_ERROR_COUNTS));
+    let is_sure = short > LEAST_COUNTS && short > SURE * error && short > LEAST_SHARE * a.0;
+    Backlash {
+        counts: if is_sure { short } else { 0.0 },
+        interval_counts: 1.96 * error,
+        reversals: turned.len(),
+    }
+}
+
+fn mean_and_error(values: &[f64]) -> (f64, f64) {
+    let n = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let square = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
+    (mean, (square / n).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_lost_at_reversals_is_the_backlash_and_scatter_is_none() {
+        let pushes =
+            [(0.0, 30.0), (1.0, 30.0), (-1.0, 22.0), (1.0, 31.0), (-1.0, 21.0), (1.0, 30.0), (-1.0, 23.0)];
+        let found = backlash_of(&pushes);
+        assert!((found.counts - 8.33).abs() < 0.1, "{found:?}");
+        assert_eq!(found.reversals, 3);
+        let noisy =
+            pushes.map(|(turn, distance)| (turn, if turn > 0.0 { distance - 6.0 * turn } else { distance }));
+        assert!(backlash_of(&noisy).counts < 4.0);
+        let rigid = pushes.map(|(turn, distance)| (turn, if turn < 0.0 { 31.0 } else { distance }));
+        assert_eq!(backlash_of(&rigid).counts, 0.0);
+    }
+}
