@@ -1,5 +1,6 @@
-//! Simulated motor controllers and the machines they drive: deterministic, with their own clock, free of IO at the core.
-//! See `ARCHITECTURE.md`.
+//! Simulated motor controllers and the machines they drive: deterministic, in a time that the caller moves, free of IO at the core.
+//!
+#![doc = include_str!("../README.md")]
 
 pub mod bridge;
 pub mod controller;
