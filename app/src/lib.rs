@@ -1,4 +1,4 @@
-//! See `ARCHITECTURE.md`.
+//! The program: a window and a command line over device threads and simulated controllers. See `ARCHITECTURE.md`.
 
 pub mod cli;
 pub mod gui;

@@ -150,6 +150,7 @@ impl Setup {
 
 /// Why a call to the axis gave nothing.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
+#[non_exhaustive]
 pub enum AxisError {
     /// This exchange had no reply; the next may have one.
     #[error("no reply")]

@@ -6,6 +6,7 @@ use std::borrow::Cow;
 /// What ended a run, or what its reader must know.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Cause {
     /// Counts go down while duty goes up.
     EncoderReversed,

@@ -1,7 +1,7 @@
 //! What a motor axis does, in figures, and the gains that make it do better. Knows no serial port, no window, no clock and no
 //! simulator.
 //!
-//! Times are in seconds, positions in counts, speeds in counts per second, duties from -1 to 1.
+#![doc = include_str!("../README.md")]
 //!
 #![doc = include_str!("../MEASURED.md")]
 

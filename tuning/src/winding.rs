@@ -46,6 +46,7 @@ pub struct Winding {
 /// Why a run does not show the resistance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum WindingUnknown {
     /// The controller measures no current, or none above its noise.
     NoCurrents,

@@ -1,4 +1,7 @@
-//! The window.
+//! The window: its model, screens, widgets and graph.
+//!
+//! `model` is plain data, `screens` and `shell` draw it and ask for changes by `command`, and `app` makes them. What differs between families of
+//! controllers stands in `family`. `mcl` is the editor for scripts, `debugger` runs them step by step, `tune` is guided tuning.
 #![allow(
     missing_docs,
     reason = "the window is no library: only the program and its own tests see these items"

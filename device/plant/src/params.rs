@@ -183,6 +183,7 @@ pub struct CurrentSensorParams {
 
 /// Why a machine cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ParamsError {
     /// A figure is out of its range or not a number.
     #[error("{name} is {got}: it must be {needed}")]

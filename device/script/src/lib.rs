@@ -1,6 +1,6 @@
 //! Script languages of motor controllers: front ends, one byte code, one virtual machine.
 //!
-//! Nothing here has a clock or does IO: text goes in, a program comes out; the machine takes steps when it is told to.
+#![doc = include_str!("../README.md")]
 
 pub mod arithmetic;
 pub mod debug;

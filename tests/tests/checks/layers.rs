@@ -137,7 +137,7 @@ fn crates_know_only_the_crates_below_them() {
     for member in &metadata.members {
         assert!(
             ARROWS.iter().any(|(name, _)| *name == member.name),
-            "{} is not in the table of arrows: give it its line here and in ARCHITECTURE.md",
+            "{} is not in the table of arrows: give it its line here and in the map of ARCHITECTURE.md",
             member.name
         );
         for (target, kind) in ours(member, &metadata) {

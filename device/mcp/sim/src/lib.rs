@@ -1,6 +1,6 @@
 //! The simulated MCP and RoboClaw controllers: deterministic, with their own clock, free of IO.
 //!
-//! A [`controller::Controller`] takes bytes and time and gives bytes; [`brushwork_plant`] is what it drives.
+#![doc = include_str!("../README.md")]
 
 pub mod controller;
 pub mod motion;

@@ -4,6 +4,8 @@
 //! motor 1 is the unit's motor, motor 2 is not connected, and the input pins are those of [`pin`].
 //!
 //! What the manual leaves open stands in [`assumed`].
+//!
+#![doc = include_str!("../README.md")]
 
 pub mod assumed;
 mod bus;

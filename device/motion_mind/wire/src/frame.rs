@@ -24,6 +24,7 @@ pub(super) mod number {
 
 /// Why a command has no form on the wire.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum EncodeError {
     /// A read in text has no binary form, a read by mask none in text.
     #[error("this read belongs to the other protocol")]

@@ -5,6 +5,8 @@
 //! Registers, their widths and their bits are data: [`REGISTERS`], [`FUNCTION_BITS`], [`FUNCTION2_BITS`], [`STATUS_BITS`].
 //!
 //! The self-test line `Z` can be read, by a simulated controller, but not written: a unit needs a power cycle after it.
+//!
+#![doc = include_str!("../README.md")]
 
 mod address;
 mod bits;

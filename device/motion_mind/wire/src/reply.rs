@@ -57,6 +57,7 @@ pub enum Progress {
 
 /// Why bytes are no reply to a command.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum BadReply {
     /// A binary reply that is neither an acknowledge nor starts with the unit's address.
     #[error("the reply starts with 0x{got:02X}, not with 0x{expected:02X}")]

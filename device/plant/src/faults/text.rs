@@ -33,6 +33,7 @@ Without FROM a fault is there from the start, without TO it stays. Times: 2s, 2.
 /// A fault that cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("fault \"{text}\", column {column}: {problem}")]
+#[non_exhaustive]
 pub struct FaultTextError {
     /// The text as given.
     pub text: String,
@@ -44,6 +45,7 @@ pub struct FaultTextError {
 
 /// What is wrong in the text of a fault.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FaultProblem {
     /// No fault of this name.
     #[error("there is no fault \"{0}\"; \"brushwork sim --help\" lists them")]

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 /// Why a simulated machine cannot be served.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ServerError {
     /// This system has none.
     #[error("this system has no pseudo-terminals, so --pty cannot be used: use --tcp 127.0.0.1:PORT")]

@@ -44,6 +44,7 @@ const HEADER_BYTES: usize = 20;
 
 /// Why bytes are no program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ImageError {
     /// The first bytes are not those of an image.
     #[error("this is no MCL image of Brushwork: the header is missing")]

@@ -99,6 +99,7 @@ pub struct Fault {
 
 /// What can go wrong in a running program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FaultKind {
     /// An index outside its array.
     #[error("index {index} is outside the array, which has elements 0 to {last}", last = length.saturating_sub(1))]

@@ -21,6 +21,7 @@ pub struct Bus {
 
 /// Why controllers cannot be put on one wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum BusError {
     /// A wire without a controller.
     #[error("a bus needs at least one controller")]

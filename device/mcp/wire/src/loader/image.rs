@@ -11,6 +11,7 @@ pub struct Image {
 
 /// Why bytes are no image for a controller.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ImageError {
     /// Another length than any known image of the family.
     #[error("it has {bytes} bytes, and images for {} controllers have {}", family.name(), Sizes(*family))]

@@ -27,6 +27,7 @@ pub struct SimulatedImage {
 
 /// Why an image cannot be made.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MarkError {
     /// The version has other letters than digits and dots, or is too long.
     #[error("\"{given}\" is no firmware version: use digits and dots, for example 1.2.0")]

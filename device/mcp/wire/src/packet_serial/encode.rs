@@ -14,6 +14,7 @@ pub const ACK: u8 = 0xFF;
 
 /// Why values cannot be put on the wire.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum EncodeError {
     /// The number stands for no command.
     #[error("there is no packet serial command {command}")]

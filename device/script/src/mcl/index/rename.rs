@@ -7,6 +7,7 @@ use crate::text::Span;
 
 /// Why a name cannot be changed so.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RenameError {
     /// No name of the program stands there.
     #[error("there is no name of the program here")]

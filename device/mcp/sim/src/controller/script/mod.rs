@@ -54,6 +54,7 @@ pub struct ScriptState {
 
 /// Why a script was not started.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StartRefused {
     /// Nothing is stored.
     #[error("no script is stored")]
