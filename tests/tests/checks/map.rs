@@ -57,10 +57,12 @@ fn every_line_of_the_map_names_something_that_exists() {
     let mut gone = Vec::new();
     for (folder, modules) in map() {
         for module in modules {
-            let below = ["src", "tests", "tests/checks", "tests/program", "benches", "fuzz", "."].iter().any(|part| {
-                let path = root.join(&folder).join(part).join(&module);
-                path.exists() || path.with_extension("rs").exists()
-            });
+            let below = ["src", "tests", "tests/checks", "tests/program", "benches", "fuzz", "."].iter().any(
+                |part| {
+                    let path = root.join(&folder).join(part).join(&module);
+                    path.exists() || path.with_extension("rs").exists()
+                },
+            );
             if !below {
                 gone.push(format!("{folder}: {module}"));
             }
