@@ -7,12 +7,12 @@ use brushwork_tuning::tune::Method;
 use egui::Ui;
 
 use super::words::{self, SettingsWords};
-use super::{Ability, Family, Figure, Figures, LampInfo, Sign};
+use super::{Ability, Family, Figure, Figures, Sign};
 use crate::gui::command::Commands;
 use crate::gui::model::Model;
 use crate::gui::model::desk::Desk;
 use crate::gui::model::drawer::Tab;
-use crate::gui::model::lamps::state_of;
+use crate::gui::model::lamp::{LampInfo, LampState, state_of};
 use crate::gui::model::position::Position;
 use crate::gui::model::pwm::Pwm;
 use crate::gui::model::screen::Screen;
@@ -20,7 +20,6 @@ use crate::gui::model::setpoints::Setpoints;
 use crate::gui::model::velocity::Velocity;
 use crate::gui::screens;
 use crate::gui::tune::Loop;
-use crate::gui::widgets::LampState;
 
 #[derive(Debug)]
 pub(super) struct Mcp;

@@ -17,10 +17,10 @@ use super::command::Commands;
 use super::model::Model;
 use super::model::desk::Desk;
 use super::model::drawer::Tab;
+use super::model::lamp::{LampInfo, LampState};
 use super::model::screen::Screen;
 use super::model::setpoints::Setpoints;
 use super::tune::Loop;
-use super::widgets::LampState;
 
 mod mcp;
 mod motion_mind;
@@ -193,15 +193,6 @@ pub struct Figure {
     pub unit: &'static str,
     /// Which motor it belongs to, for its Zero button.
     pub motor: Motor,
-}
-
-/// One status lamp.
-#[derive(Debug, PartialEq, Eq)]
-pub struct LampInfo {
-    /// A few letters, for the bottom of the window. Each lamp of a family has its own.
-    pub short: &'static str,
-    /// In full.
-    pub title: &'static str,
 }
 
 /// Something that a status word says, and how grave it is.

@@ -12,18 +12,17 @@ use brushwork_tuning::tune::Method;
 use egui::Ui;
 
 use super::words::{self, SettingsWords};
-use super::{Ability, Family, Figure, Figures, LampInfo, Sign};
+use super::{Ability, Family, Figure, Figures, Sign};
 use crate::gui::command::Commands;
 use crate::gui::model::Model;
 use crate::gui::model::desk::Desk;
 use crate::gui::model::drawer::Tab;
-use crate::gui::model::lamps::state_of;
+use crate::gui::model::lamp::{LampInfo, LampState, state_of};
 use crate::gui::model::motion_mind::drive::to_send;
 use crate::gui::model::screen::Screen;
 use crate::gui::model::setpoints::Setpoints;
 use crate::gui::screens::motion_mind;
 use crate::gui::tune::Loop;
-use crate::gui::widgets::LampState;
 
 #[derive(Debug)]
 pub(super) struct MotionMind;

@@ -16,11 +16,11 @@ use brushwork_link::transport::ConnectTarget;
 use brushwork_sim::controller::ScriptRun;
 use brushwork_sim::world::WorldView;
 
+use super::channels::graph_channels;
 use super::drawer::{Drawers, Tab};
 use super::firmware::Firmware;
 use super::general::General;
 use super::generator::Generator;
-use super::graph_channels;
 use super::history::History;
 use super::link::{Arming, Effect, LinkView};
 use super::loop_settings::LoopSettings;

@@ -11,9 +11,9 @@ use super::result::lamp_ui;
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
 use crate::gui::model::drawer::Tab;
+use crate::gui::model::lamp::LampState;
 use crate::gui::model::screen::Screen;
 use crate::gui::theme::{self, Palette};
-use crate::gui::widgets::LampState;
 
 pub fn by_hand_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let Some(which) = Loop::of(model.screen) else { return };

@@ -9,8 +9,8 @@ use super::run::Run;
 use super::sketches::{Sketch, sketch_ui};
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
+use crate::gui::model::lamp::LampState;
 use crate::gui::theme::Palette;
-use crate::gui::widgets::LampState;
 
 /// What to do, in the order in which it is best tried.
 fn steps(cause: Cause) -> &'static [&'static str] {

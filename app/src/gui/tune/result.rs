@@ -14,8 +14,8 @@ use super::winding::{unknown_ui, winding_ui};
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
 use crate::gui::model::general::Sheet;
+use crate::gui::model::lamp::LampState;
 use crate::gui::theme::{self, Palette};
-use crate::gui::widgets::LampState;
 use crate::gui::widgets::numeric::Numeric;
 
 pub fn result_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands) {

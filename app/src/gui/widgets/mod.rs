@@ -10,5 +10,3 @@ pub mod setpoint;
 pub mod steps;
 pub mod stop;
 pub mod text_field;
-
-pub use lamp::LampState;

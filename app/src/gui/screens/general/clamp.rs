@@ -8,11 +8,11 @@ use super::sheet::lamp_ui;
 use crate::gui::command::{Command, Commands, GuidedWish};
 use crate::gui::family::Family;
 use crate::gui::model::general::General;
+use crate::gui::model::lamp::LampState;
 use crate::gui::model::link::LinkView;
 use crate::gui::model::message::Gravity;
 use crate::gui::screens::drive::arm_ui;
 use crate::gui::theme::Palette;
-use crate::gui::widgets::LampState;
 use crate::gui::widgets::numeric::Numeric;
 use crate::motion::clamp::Step;
 

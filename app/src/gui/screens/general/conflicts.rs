@@ -5,7 +5,7 @@ use egui::{Button, Label, Layout, RichText, Role, ScrollArea, Ui, WidgetInfo, ve
 
 use super::sheet::text_ui;
 use crate::gui::model::general::General;
-use crate::gui::widgets::LampState;
+use crate::gui::model::lamp::LampState;
 
 pub fn conflicts_ui(ui: &mut Ui, general: &mut General, height: f32) {
     let Some(unit) = general.unit() else { return };

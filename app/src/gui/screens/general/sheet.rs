@@ -10,8 +10,8 @@ use super::{compare, kept, profile};
 use crate::gui::command::{Command, Commands};
 use crate::gui::family::SettingsWords;
 use crate::gui::model::general::{General, Saved, SettingsWish, Settle, Sheet, Take, UnitSettings};
+use crate::gui::model::lamp::LampState;
 use crate::gui::theme::Palette;
-use crate::gui::widgets::LampState;
 use crate::keep::WearLevel;
 
 /// What a button of a sheet does.
