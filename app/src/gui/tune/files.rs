@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use brushwork_tuning::report::Report;
 use egui::{Button, Ui, vec2};
 
-use super::model::{Loop, TuneWish, Tuning};
+use super::model::{TuneWish, Tuning};
+use super::which::Loop;
 use crate::gui::app::FRAME_INTERVAL;
 use crate::gui::command::{Command, Commands};
 use crate::gui::files::{FileAnswer, FileDialog, FileKind, FileWish};

@@ -22,6 +22,8 @@ mod runs;
 pub mod sequence;
 pub mod setup;
 mod sketches;
+pub mod which;
 mod winding;
 
-pub use model::{Loop, TuneWish, Tuning};
+pub use model::{TuneWish, Tuning};
+pub use which::Loop;

@@ -1,6 +1,6 @@
 //! Tuning as the window keeps it: what is set, what runs, and the runs so far, for each loop of each motor.
 
-use brushwork_link::device::{ArmScope, Event, Identity, Request, Sample};
+use brushwork_link::device::{Event, Identity, Request, Sample};
 use brushwork_link::settings::SettingValue;
 use brushwork_link::transport::Stream;
 use brushwork_protocol::packet_serial::Motor;
@@ -13,6 +13,7 @@ use super::calibration::Calibration;
 use super::registers::Registers;
 use super::run::Run;
 use super::sequence::{Ended, Next, Origin, Sequence, Work};
+use super::which::Loop;
 use crate::gui::family::Family;
 use crate::gui::model::general::SettingsWish;
 use crate::gui::model::link::{Arming, Effect};
@@ -25,45 +26,6 @@ const MOST_WRITES: u8 = 4;
 
 /// Position limits farther apart are none.
 const ENDLESS_COUNTS: f64 = 1e8;
-
-/// Which loop is tuned: each has its screen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Loop {
-    Velocity,
-    Position,
-}
-
-impl Loop {
-    pub const fn of(screen: Screen) -> Option<Self> {
-        match screen {
-            Screen::Velocity => Some(Self::Velocity),
-            Screen::Position => Some(Self::Position),
-            _ => None,
-        }
-    }
-
-    pub const fn screen(self) -> Screen {
-        match self {
-            Self::Velocity => Screen::Velocity,
-            Self::Position => Screen::Position,
-        }
-    }
-
-    pub const fn scope(self) -> ArmScope {
-        match self {
-            Self::Velocity => ArmScope::Velocity,
-            Self::Position => ArmScope::Position,
-        }
-    }
-
-    /// Unit of what it holds.
-    pub const fn unit(self) -> &'static str {
-        match self {
-            Self::Velocity => "counts/s",
-            Self::Position => "counts",
-        }
-    }
-}
 
 /// What is asked for.
 #[derive(Clone, Debug, PartialEq)]

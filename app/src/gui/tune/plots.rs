@@ -6,8 +6,9 @@ use brushwork_tuning::whatif::{LoopPoint, Reply};
 use egui::{Color32, RichText, Ui, vec2};
 
 use super::chart::{Axis, Chart, Line, Look};
-use super::model::{Loop, Panel};
+use super::model::Panel;
 use super::run::{Run, SPEED_OVER_S, Shown};
+use super::which::Loop;
 use crate::gui::theme::Palette;
 
 /// Below this the open loop has no phase to speak of, dB.

@@ -3,10 +3,11 @@
 use brushwork_tuning::cause::Cause;
 use egui::{Button, Label, RichText, Ui};
 
-use super::model::{Loop, TuneWish};
+use super::model::TuneWish;
 use super::result::lamp_ui;
 use super::run::Run;
 use super::sketches::{Sketch, sketch_ui};
+use super::which::Loop;
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
 use crate::gui::model::lamp::LampState;

@@ -7,9 +7,10 @@ use egui::{Button, Grid, Label, Response, RichText, Ui, vec2};
 
 use super::files::files_ui;
 use super::measured::Figures;
-use super::model::{Loop, TuneWish};
+use super::model::TuneWish;
 use super::registers::{FIELDS, Field, Form, Registers};
 use super::run::{Run, Shown};
+use super::which::Loop;
 use super::winding::{unknown_ui, winding_ui};
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;

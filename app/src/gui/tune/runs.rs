@@ -2,10 +2,10 @@
 
 use egui::{Align, Grid, Label, Layout, RichText, Sense, Ui, vec2};
 
-use super::model::Loop;
 use super::registers::FIELDS;
 use super::result::{FIGURES, figure_ui};
 use super::run::Run;
+use super::which::Loop;
 use crate::gui::model::Model;
 use crate::gui::theme::Palette;
 

@@ -3,7 +3,7 @@
 use brushwork_tuning::winding::{NotTold, Winding};
 use egui::{Button, Label, RichText, Ui};
 
-use super::model::Loop;
+use super::which::Loop;
 use crate::gui::model::Model;
 use crate::gui::theme::Palette;
 
