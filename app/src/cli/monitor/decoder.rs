@@ -12,7 +12,7 @@ use brushwork_protocol::packet_serial::{
     Request, RequestFramer, describe_event, describe_reply, parse_reply,
 };
 
-use super::{Direction, Record};
+use super::record::{Direction, Record};
 
 /// A controller that has not answered after this time will not.
 const REPLY_LIMIT: Duration = Duration::from_millis(250);
