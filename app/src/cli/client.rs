@@ -11,10 +11,10 @@ use brushwork_link::{Failure, SystemClock};
 use brushwork_protocol::{motion_mind, packet_serial};
 use crossbeam_channel::RecvTimeoutError;
 
-use super::args::{ConnectArgs, LineArgs};
 use super::exit::Exit;
 use super::interrupt::Interrupt;
 use super::output::say;
+use super::shared_args::{ConnectArgs, LineArgs};
 use crate::session::motion_mind_spec::MotionMindSpec;
 use crate::session::{self, Session, SessionOptions, Simulation};
 

@@ -20,6 +20,7 @@ mod protocol;
 mod response;
 mod script;
 pub mod settings;
+pub mod shared_args;
 mod sim;
 mod status;
 mod stop;
