@@ -11,7 +11,7 @@ use brushwork_tuning::axis::{AxisError, Exchange};
 use brushwork_tuning_bench::mind::axis::MindCarrier;
 use brushwork_tuning_bench::mind::line::worked_at;
 
-use super::told;
+use super::told::told;
 
 /// An exchange that took so much longer than the quickest of its kind had a retry in it, so that nobody can say when the unit did
 /// its work.
