@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use super::complete::Completion;
-use super::document::{DocId, Document};
+use super::doc_id::DocId;
+use super::document::Document;
 use super::find::Find;
 use super::journal::Left;
 use super::panel::Panel;

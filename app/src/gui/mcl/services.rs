@@ -8,7 +8,8 @@ use egui::Context;
 
 use super::check::Checker;
 use super::disk::{self, Loaded};
-use super::document::{DocId, Document, OnDisk};
+use super::doc_id::DocId;
+use super::document::{Document, OnDisk};
 use super::editor::Editor;
 use super::files::{Done, Files, SaveError, Task};
 use super::journal::Kept;

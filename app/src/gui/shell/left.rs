@@ -3,10 +3,10 @@
 use egui::{Align, Button, Label, Layout, Panel, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
 use super::devices::devices_ui;
-use super::heading_ui;
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
 use crate::gui::theme::Palette;
+use crate::gui::widgets::heading::heading_ui;
 use crate::gui::widgets::stop;
 
 pub fn left_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {

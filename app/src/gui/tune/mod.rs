@@ -7,6 +7,7 @@ pub mod calibration;
 pub mod chart;
 pub mod files;
 pub mod guide;
+mod held;
 mod level;
 mod limits;
 pub mod measured;

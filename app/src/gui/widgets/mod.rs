@@ -1,6 +1,7 @@
 //! Widgets of our own: each draws one thing and knows nothing of controllers.
 
 pub mod arm_switch;
+pub mod heading;
 pub mod jog;
 pub mod label;
 pub mod lamp;

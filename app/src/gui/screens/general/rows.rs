@@ -7,8 +7,8 @@ use super::editor;
 use super::sheet::lamp_ui;
 use crate::gui::model::general::{General, Section, UnitSettings};
 use crate::gui::model::lamp::LampState;
-use crate::gui::shell::heading_ui;
 use crate::gui::theme::Palette;
+use crate::gui::widgets::heading::heading_ui;
 use crate::gui::widgets::readout::NO_VALUE;
 
 const HEIGHT: f32 = 28.0;
