@@ -6,7 +6,7 @@ use brushwork_link::settings::{
 };
 
 use super::super::message::Gravity;
-use super::Summary;
+use super::summary::Summary;
 use super::unit::UnitSettings;
 use super::work::{Outcome, Running};
 

@@ -15,8 +15,8 @@ use brushwork_link::settings::{
 use brushwork_link::transport::Stream;
 use crossbeam_channel::{Receiver, bounded};
 
-use super::UnitKey;
 use super::unit::UnitSettings;
+use super::unit_key::UnitKey;
 use crate::keep::TrialKeeper;
 
 /// What can be asked of the settings' controller.
