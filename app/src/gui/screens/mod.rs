@@ -18,6 +18,7 @@ mod generator;
 mod loops;
 pub mod motion_mind;
 mod position;
+mod progress;
 mod pwm;
 mod qpps;
 mod status;

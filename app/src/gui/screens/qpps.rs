@@ -3,7 +3,7 @@
 use brushwork_protocol::packet_serial::Motor;
 use egui::{Button, Label, RichText, Ui};
 
-use super::drive::progress_ui;
+use super::progress::progress_ui;
 use crate::gui::command::{Command, Commands, GuidedWish};
 use crate::gui::model::Model;
 use crate::gui::model::lamp::LampState;

@@ -3,7 +3,7 @@
 use brushwork_link::settings::CalibrationStage;
 use egui::{Button, ProgressBar, RichText, Role, Ui, WidgetInfo, vec2};
 
-use super::sheet::{lamp_ui, text_ui};
+use super::sheet_parts::{lamp_ui, text_ui};
 use crate::gui::model::general::General;
 use crate::gui::model::lamp::LampState;
 use crate::gui::widgets::readout::Readout;

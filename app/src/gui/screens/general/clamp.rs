@@ -4,7 +4,7 @@ use brushwork_link::device::{ArmScope, Channel};
 use brushwork_protocol::packet_serial::Motor;
 use egui::{Button, Grid, Label, Layout, ProgressBar, RichText, Role, ScrollArea, Ui, WidgetInfo, vec2};
 
-use super::sheet::lamp_ui;
+use super::sheet_parts::lamp_ui;
 use crate::gui::command::{Command, Commands, GuidedWish};
 use crate::gui::family::Family;
 use crate::gui::model::general::General;

@@ -3,7 +3,7 @@
 use brushwork_link::settings::Row;
 use egui::{Button, Label, Layout, RichText, Role, ScrollArea, Ui, WidgetInfo, vec2};
 
-use super::sheet::text_ui;
+use super::sheet_parts::text_ui;
 use crate::gui::model::general::General;
 use crate::gui::model::lamp::LampState;
 

@@ -2,7 +2,7 @@
 
 use egui::{Button, Ui, vec2};
 
-use super::sheet::{Act, Offer, lamp_ui, text_ui, title_ui};
+use super::sheet_parts::{Act, Offer, lamp_ui, text_ui, title_ui};
 use crate::gui::app::FRAME_INTERVAL;
 use crate::gui::model::general::{General, Purpose, Told, UnitSettings};
 use crate::gui::model::lamp::LampState;
