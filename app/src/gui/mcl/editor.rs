@@ -9,8 +9,8 @@ use super::find::Find;
 use super::journal::Left;
 use super::panel::Panel;
 use super::printer::{Printing, Spooler};
-use super::services::Services;
 use super::sheet::Sheet;
+use super::threads::Services;
 use crate::gui::model::message::Gravity;
 
 /// What is shown of a program besides its text.

@@ -42,6 +42,7 @@ pub mod sheet;
 mod squiggle;
 mod strip;
 mod tabs;
+mod threads;
 mod toolbar;
 mod typing;
 mod view;
