@@ -1,7 +1,7 @@
 //! The MCL editor (MCP manual 1.2.14): programs in tabs, checked as they are typed, downloaded, started and stopped.
 //!
-//! The text and what is done to it (`buffer`, `caret`, `typing`, `find`, `fold`, `marks`, `disk`, `journal`) know nothing of egui; `view`
-//! draws a program, `screen` puts everything together, `services` keeps the threads that check, read and write.
+//! The text and what is done to it (`buffer`, `caret`, `moves`, `typing`, `find`, `fold`, `marks`, `disk`, `journal`) know nothing of egui;
+//! `view` draws a program, `screen` puts everything together, `services` speaks to the threads that check, read and write.
 
 mod access;
 mod act;
