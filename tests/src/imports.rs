@@ -90,7 +90,9 @@ impl Crate {
     fn read(files: &[(&str, &str)]) -> Self {
         let mut tree = Self::default();
         let mut tests = Vec::new();
-        for (file, source) in files {
+        // Beside a library the program is a crate of its own.
+        let has_library = files.iter().any(|(file, _)| *file == "lib.rs");
+        for (file, source) in files.iter().filter(|(file, _)| !(has_library && *file == "main.rs")) {
             let module = module_of(file);
             let mut reader = Reader::new(file, source, &mut tree, &mut tests);
             reader.read(module);
