@@ -18,3 +18,8 @@ impl Summary {
         Self { gravity: Gravity::Note, summary, sentences: Vec::new(), address: None }
     }
 }
+
+/// "1 setting", "7 settings".
+pub(super) fn settings(count: usize) -> String {
+    if count == 1 { "1 setting".to_owned() } else { format!("{count} settings") }
+}

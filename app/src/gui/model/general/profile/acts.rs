@@ -7,8 +7,8 @@ use brushwork_link::settings::{OpenedProfile, Profile, Strictness};
 use super::{Opened, Purpose, Told};
 use crate::gui::model::general::General;
 use crate::gui::model::general::compare::{self, Side};
-use crate::gui::model::general::outcome;
 use crate::gui::model::general::sheet::Sheet;
+use crate::gui::model::general::summary::settings;
 
 impl General {
     /// Looks whether the desktop's dialog gave a file, and opens or saves it then. Never waits for the user.
@@ -47,7 +47,7 @@ impl General {
             if Path::new(typed).extension().is_some() { typed.to_owned() } else { format!("{typed}.json") };
         match profile.save(Path::new(&path)) {
             Ok(()) => {
-                let settings = outcome::settings(profile.settings.len());
+                let settings = settings(profile.settings.len());
                 self.profiles.told = Told::Done(format!("{settings} are in {path}."));
             }
             Err(error) => self.profiles.fail(&error, false),
