@@ -5,9 +5,9 @@ use brushwork_protocol::packet_serial::Motor;
 use egui::{Button, Label, RichText, Ui};
 
 use super::calibration::{Advice, Calibration};
+use super::figures::lamp_ui;
 use super::model::TuneWish;
 use super::registers::{FIELDS, Registers};
-use super::result::lamp_ui;
 use super::which::Loop;
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;

@@ -2,14 +2,17 @@
 //!
 //! State and screens stand together here; `crate::tune` has the jobs, `brushwork_tuning` the method.
 
+pub mod asked;
 pub mod by_hand;
 pub mod calibration;
 pub mod chart;
+mod figures;
 pub mod files;
 pub mod guide;
 mod held;
 mod level;
 mod limits;
+pub mod looked_at;
 pub mod measured;
 pub mod model;
 pub mod observe;

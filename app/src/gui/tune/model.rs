@@ -9,7 +9,9 @@ use brushwork_tuning::report::Verdict;
 use brushwork_tuning::rig::GuardOptions;
 use brushwork_tuning::tune::{self, Excitation, Method};
 
+use super::asked::Asked;
 use super::calibration::Calibration;
+use super::looked_at::View;
 use super::registers::Registers;
 use super::run::Run;
 use super::sequence::{Ended, Next, Origin, Sequence, Work};
@@ -201,13 +203,13 @@ pub struct Tuning {
     winding: Option<Winding>,
     unit: Option<(u8, String)>,
     calibrations: [Calibration; 2],
-    pub view: super::plots::View,
+    pub view: View,
     /// Work with the settings that was asked for during a run: it waits until what the run changed is put back.
     pub waiting: Option<SettingsWish>,
     pub afterwards: Option<Afterwards>,
     /// A path for a report, as it is typed.
     pub path: String,
-    pub dialog: Option<super::files::Asked>,
+    pub dialog: Option<Asked>,
 }
 
 impl Default for Tuning {
@@ -221,7 +223,7 @@ impl Default for Tuning {
             winding: None,
             unit: None,
             calibrations: <[Calibration; 2]>::default(),
-            view: super::plots::View::default(),
+            view: View::default(),
             waiting: None,
             afterwards: None,
             path: String::new(),

@@ -3,8 +3,8 @@
 use brushwork_tuning::cause::Cause;
 use egui::{Button, Label, RichText, Ui};
 
+use super::figures::lamp_ui;
 use super::model::TuneWish;
-use super::result::lamp_ui;
 use super::run::Run;
 use super::sketches::{Sketch, sketch_ui};
 use super::which::Loop;

@@ -2,8 +2,8 @@
 
 use egui::{Align, Color32, Grid, Label, Layout, RichText, Sense, Ui, vec2};
 
+use super::figures::{FIGURES, figure_ui};
 use super::registers::FIELDS;
-use super::result::{FIGURES, figure_ui};
 use super::run::Run;
 use super::which::Loop;
 use crate::gui::model::Model;
