@@ -1,6 +1,7 @@
 //! Which file of a crate imports from which, and where the imports run in a circle.
 //!
-//! Only `use` counts, outside `#[cfg(test)]`; a name that a file passes on leads to the file that holds it.
+//! What counts is `use`, and a path in code that begins with `crate`, `self` or `super`; both outside `#[cfg(test)]`. A name that a
+//! file passes on leads to the file that holds it.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -240,6 +241,7 @@ impl<'a> Reader<'a> {
                         here = outside;
                     }
                 }
+                "crate" | "super" | "self" if self.word(1) == "::" => self.read_path(&here),
                 "macro_rules" => self.add_item(&here, 2),
                 word if is_module && ITEMS.contains(&word) => self.add_item(&here, 1),
                 _ => {}
@@ -289,6 +291,18 @@ impl<'a> Reader<'a> {
             self.read_branch(&[], &mut found);
         }
         self.tree.modules.entry(module.to_owned()).or_default().uses.extend(found);
+    }
+
+    /// A path in the midst of code, up to its last name.
+    fn read_path(&mut self, module: &str) {
+        let line = self.words.get(self.at).map_or(0, |(_, line)| *line);
+        let mut path = vec![self.word(0).to_owned()];
+        while self.word(1) == "::" && self.word(2).starts_with(char::is_alphabetic) {
+            self.at += 2;
+            path.push(self.word(0).to_owned());
+        }
+        let name = String::new();
+        self.tree.modules.entry(module.to_owned()).or_default().uses.push(Use { path, name, line });
     }
 
     fn read_branch(&mut self, stem: &[String], found: &mut Vec<Use>) {
@@ -400,11 +414,18 @@ mod tests {
             ("lib.rs", "pub mod a;\nmod b;\nuse b::Bee;\nuse std::fmt;\n"),
             ("a/mod.rs", "mod c;\nuse self::c::See;\nfn f() { use super::b::{self, Bee as Other}; }\n"),
             ("a/c.rs", "use crate::{b::Bee, a::*};\npub struct See;\n"),
-            ("b.rs", "pub struct Bee;\n"),
+            ("b.rs", "pub struct Bee;\nfn f() -> u8 { crate::a::c::See::default() }\n"),
         ];
         assert_eq!(
             edges(&files),
-            ["a/c.rs a/mod.rs", "a/c.rs b.rs", "a/mod.rs a/c.rs", "a/mod.rs b.rs", "lib.rs b.rs"]
+            [
+                "a/c.rs a/mod.rs",
+                "a/c.rs b.rs",
+                "a/mod.rs a/c.rs",
+                "a/mod.rs b.rs",
+                "b.rs a/c.rs",
+                "lib.rs b.rs"
+            ]
         );
     }
 
