@@ -17,9 +17,9 @@ mod real_time {
     use std::process::ExitCode;
     use std::time::Duration;
 
-    use brushwork_protocol::packet_serial::Generation;
-    use brushwork_sim::controller::ControllerConfig;
-    use brushwork_sim::machine::StreamIndex;
+    use brushwork_mcp_sim::controller::ControllerConfig;
+    use brushwork_mcp_wire::packet_serial::Generation;
+    use brushwork_plant::machine::StreamIndex;
     use brushwork_tests::program::Program;
     use brushwork_tests::simulated::{OnPty, is_at_rest};
     use brushwork_tuning::report::{Report, Verdict};
@@ -39,13 +39,14 @@ mod real_time {
     }
 
     fn in_virtual_time() -> Report {
-        let unit = brushwork_sim::controller::Controller::new(config()).expect("the default world is sound");
+        let unit =
+            brushwork_mcp_sim::controller::Controller::new(config()).expect("the default world is sound");
         let link = LinkParams { poll_s: 0.010, jitter_s: 0.001, latency_s: 0.001, loss: 0.0, seed: 1 };
         let mut line = SimulatedLine::new(unit, link);
         line.idle(Duration::from_millis(500));
         let mut axis = PacketAxis::new(
             line,
-            brushwork_protocol::packet_serial::Motor::M1,
+            brushwork_values::Motor::M1,
             brushwork_tuning::axis::EncoderClass::Quadrature,
         );
         tune(&mut axis, &Request { guard: GuardOptions::default(), ..Request::default() })

@@ -4,7 +4,7 @@
 //! silence, have no status bits, and be slow. Only the CRC is taken from the protocol crate. Leaves out: buffers, ramps, two motors
 //! (the second one stands), priorities.
 
-use brushwork_protocol::crc::crc16_xmodem;
+use brushwork_mcp_wire::crc::crc16_xmodem;
 use std::collections::VecDeque;
 use std::time::Duration;
 

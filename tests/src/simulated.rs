@@ -3,15 +3,16 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use brushwork_protocol::canopen::NodeId;
-use brushwork_protocol::canopen::adapter::Form;
-use brushwork_protocol::packet_serial::{Address, Generation, Motor, Request, number};
-use brushwork_sim::bridge::BridgeOutput;
-use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
-use brushwork_sim::machine::{Machine as _, StreamIndex};
-use brushwork_sim::server::{Endpoint, Server, ServerOptions, SimHandle};
-use brushwork_sim::settings::Settings;
-use brushwork_sim::world::WorldAction;
+use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
+use brushwork_mcp_sim::settings::Settings;
+use brushwork_mcp_wire::canopen::NodeId;
+use brushwork_mcp_wire::canopen::adapter::Form;
+use brushwork_mcp_wire::packet_serial::{Address, Generation, Request, number};
+use brushwork_plant::bridge::BridgeOutput;
+use brushwork_plant::machine::{Machine as _, StreamIndex};
+use brushwork_plant::server::{Endpoint, Server, ServerOptions, SimHandle};
+use brushwork_plant::world::WorldAction;
+use brushwork_values::Motor;
 use serde_json::Value;
 use tempfile::TempDir;
 

@@ -4,14 +4,14 @@
 
 use std::f64::consts::TAU;
 
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::bridge::BridgeOutput;
-use brushwork_sim::controller::{Controller, UnitView};
-use brushwork_sim::plant::ShaftSide;
-use brushwork_sim::settings::{
+use brushwork_mcp_sim::controller::{Controller, UnitView};
+use brushwork_mcp_sim::settings::{
     ControlInput, MotorRegisters, Settings, SignalSettings, StreamSettings, USER_WORDS,
 };
-use brushwork_sim::signals::SignalValues;
+use brushwork_mcp_sim::signals::SignalValues;
+use brushwork_plant::ShaftSide;
+use brushwork_plant::bridge::BridgeOutput;
+use brushwork_values::Motor;
 use serde_json::{Value, json};
 
 /// Everything: settings, EEPROM, and what the machine does at this moment.

@@ -7,8 +7,8 @@ use std::time::Duration;
 use brushwork_link::UnitAddress;
 use brushwork_link::exchange::{Exchange, PacketWire};
 use brushwork_link::{Clock, HiddenSettings, Transport, TransportError, VirtualClock};
-use brushwork_protocol::packet_serial::{Address, Generation};
-use brushwork_sim::machine::{Machine, StreamIndex};
+use brushwork_mcp_wire::packet_serial::{Address, Generation};
+use brushwork_plant::machine::{Machine, StreamIndex};
 
 /// A machine and the clock that it shares with its clients. Clones are the same machine.
 pub struct VirtualLine<M> {
@@ -127,7 +127,7 @@ impl<M: Machine + 'static> Transport for VirtualLine<M> {
 }
 
 /// The hidden settings of one simulated unit, whatever its address.
-pub struct HiddenOf(pub VirtualLine<brushwork_sim::controller::Bus>);
+pub struct HiddenOf(pub VirtualLine<brushwork_mcp_sim::controller::Bus>);
 
 impl std::fmt::Debug for HiddenOf {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -141,7 +141,7 @@ impl HiddenSettings for HiddenOf {
     }
 
     fn set(&self, _address: UnitAddress, key: &str, raw: i64) -> Result<(), String> {
-        let action = brushwork_sim::world::WorldAction::SetHidden { key: key.to_owned(), value: raw };
+        let action = brushwork_plant::world::WorldAction::SetHidden { key: key.to_owned(), value: raw };
         self.0.with(|bus| bus.controllers_mut()[0].apply(&action)).map_err(|error| format!("{error}."))
     }
 }

@@ -9,13 +9,13 @@ use brushwork_link::device::{
     ArmScope, DeviceHandle, DeviceLoop, DeviceOptions, Drive, DriveCommand, Event, Request, Step, StopReport,
 };
 use brushwork_link::{Clock, Transport, TransportError};
-use brushwork_protocol::canopen::adapter::Form;
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::controller::{Bus, UnitView};
-use brushwork_sim::faults::{Fault, Faulty};
-use brushwork_sim::machine::{Machine, StreamIndex};
-use brushwork_sim::pacing::{Paced, byte_time};
-use brushwork_sim::world::WorldAction;
+use brushwork_mcp_sim::controller::{Bus, UnitView};
+use brushwork_mcp_wire::canopen::adapter::Form;
+use brushwork_plant::faults::{Fault, Faulty};
+use brushwork_plant::machine::{Machine, StreamIndex};
+use brushwork_plant::pacing::{Paced, byte_time};
+use brushwork_plant::world::WorldAction;
+use brushwork_values::Motor;
 
 use crate::virtual_line::VirtualLine;
 

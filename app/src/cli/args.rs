@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use super::tune::TuneArgs;
 use brushwork_link::device::FamilyChoice;
-use brushwork_protocol::canopen::adapter::Form;
-use brushwork_sim::faults::FAULT_SYNTAX;
-use brushwork_sim::motion_mind::EncoderDecode;
+use brushwork_mcp_wire::canopen::adapter::Form;
+use brushwork_motion_mind_sim::EncoderDecode;
+use brushwork_plant::faults::FAULT_SYNTAX;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::exit;

@@ -8,7 +8,8 @@ use brushwork_link::device::{
 };
 use brushwork_link::transport::{ConnectTarget, Stream};
 use brushwork_link::{Failure, SystemClock};
-use brushwork_protocol::{motion_mind, packet_serial};
+use brushwork_mcp_wire::packet_serial;
+use brushwork_motion_mind_wire as motion_mind;
 use crossbeam_channel::RecvTimeoutError;
 
 use super::exit::Exit;

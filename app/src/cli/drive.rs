@@ -7,7 +7,8 @@ use std::time::{Duration, Instant};
 use brushwork_link::device::{
     ArmScope, DisarmReason, Drive, DriveCommand, Event, Identity, PollRate, Request,
 };
-use brushwork_protocol::packet_serial::{Motor, number};
+use brushwork_mcp_wire::packet_serial::number;
+use brushwork_values::Motor;
 use serde_json::json;
 
 use super::args::{DriveArgs, MotorArg};

@@ -3,7 +3,7 @@
 use brushwork_link::SystemClock;
 use brushwork_link::device::{Event, Identity, PollRate};
 use brushwork_link::transport::{ConnectTarget, PortInfo, list_ports};
-use brushwork_protocol::models::{MODELS, MOTION_MIND_3};
+use brushwork_mcp_wire::models::{MODELS, MOTION_MIND_3};
 use serde::Serialize;
 
 use super::args::ListArgs;
@@ -68,7 +68,7 @@ fn describe(port: &PortInfo) -> String {
 }
 
 fn simulated() -> Vec<SimulatedRow> {
-    let row = |model: &'static brushwork_protocol::models::Model| SimulatedRow {
+    let row = |model: &'static brushwork_mcp_wire::models::Model| SimulatedRow {
         connect: format!("sim:{}", model.key),
         model: model.name,
         rating: model.rating(),

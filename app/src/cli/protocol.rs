@@ -1,9 +1,9 @@
 //! `brushwork protocol`: the reference of packet serial or of the Motion Mind, drawn from their tables.
 
 use brushwork_link::device::FamilyChoice;
-use brushwork_protocol::motion_mind;
-use brushwork_protocol::packet_serial::reference;
-use brushwork_protocol::packet_serial::{Command, lookup, lookup_key};
+use brushwork_mcp_wire::packet_serial::reference;
+use brushwork_mcp_wire::packet_serial::{Command, lookup, lookup_key};
+use brushwork_motion_mind_wire as motion_mind;
 
 use super::args::ProtocolArgs;
 use super::exit::Exit;

@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use brushwork_link::device::{Channel, Drive, DriveCommand, Sample};
-use brushwork_protocol::packet_serial::Motor;
 use brushwork_tuning::{Point, StepFigures};
+use brushwork_values::Motor;
 
 /// The response of one motor, from the first sample before the command on.
 pub struct Response {

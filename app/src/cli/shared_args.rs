@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use brushwork_link::UnitAddress;
 use brushwork_link::device::FamilyChoice;
-use brushwork_sim::world::{CanPeer, I2cDevice, WorldAction};
+use brushwork_plant::world::{CanPeer, I2cDevice, WorldAction};
 use clap::{Args, ValueEnum};
 
 use crate::session::sim_spec::parse_byte;

@@ -9,9 +9,9 @@ use brushwork_link::device::{
 use brushwork_link::diagnosis::{Diagnosis, Evidence, Measured, PinEnd, diagnose, homed, pin_ends};
 use brushwork_link::settings::{SettingsImage, Subject, read_all};
 use brushwork_link::{Stream, Wire as _};
-use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::number;
-use brushwork_protocol::packet_serial::status::{Condition, Lamp, Severity};
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::packet_serial::number;
+use brushwork_mcp_wire::packet_serial::status::{Condition, Lamp, Severity};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 

@@ -9,7 +9,8 @@ use brushwork_link::device::{
     Addresses, DeviceHandle, Event, FamilyChoice, Identity, PollRate, StopReport, UnitStop,
 };
 use brushwork_link::transport::ConnectTarget;
-use brushwork_protocol::{motion_mind, packet_serial};
+use brushwork_mcp_wire::packet_serial;
+use brushwork_motion_mind_wire as motion_mind;
 use serde_json::json;
 
 use super::args::StopArgs;

@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 
 use brushwork_link::device::motion_mind::{describe_received, describe_sent};
 use brushwork_link::device::{Event, MotionMindFacts, PollRate, Request};
-use brushwork_protocol::motion_mind::{
+use brushwork_mcp_wire::packet_serial::hex;
+use brushwork_motion_mind_wire::{
     Command, Effect, FrameEvent, FrameReader, LineEvent, LineReader, Protocol, checksum,
 };
-use brushwork_protocol::packet_serial::hex;
 use serde_json::json;
 
 use super::args::TerminalArgs;

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use brushwork_link::device::{ArmScope, DeviceHandle, Event, PollRate, Request};
-use brushwork_sim::world::WorldAction;
+use brushwork_plant::world::WorldAction;
 use crossbeam_channel::TryRecvError;
 use egui::{Context, Ui, ViewportCommand};
 

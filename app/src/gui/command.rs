@@ -2,8 +2,8 @@
 
 use brushwork_link::device::{ArmScope, PollRate};
 use brushwork_link::transport::Stream;
-use brushwork_protocol::packet_serial::{Motor, Value};
-use brushwork_sim::world::WorldAction;
+use brushwork_plant::world::WorldAction;
+use brushwork_values::{Motor, Value};
 use egui::ThemePreference;
 
 use super::debugger::DebugWish;

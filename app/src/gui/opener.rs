@@ -6,9 +6,9 @@ use std::time::Duration;
 use brushwork_link::device::Addresses;
 use brushwork_link::transport::{ConnectTarget, PortInfo, list_ports};
 use brushwork_link::{Clock, Failure, SystemClock};
+use brushwork_plant::server::Pace;
+use brushwork_plant::world::{WorldAction, WorldView};
 use brushwork_script::debug::{Request, View, Wanted};
-use brushwork_sim::server::Pace;
-use brushwork_sim::world::{WorldAction, WorldView};
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 use egui::Context;
 

@@ -7,9 +7,9 @@ use std::sync::Arc;
 use brushwork_link::Failure;
 use brushwork_link::device::{Addresses, DeviceHandle};
 use brushwork_link::transport::{ConnectTarget, PortInfo};
+use brushwork_plant::server::Pace;
+use brushwork_plant::world::{WorldAction, WorldView};
 use brushwork_script::debug::{Request, View, Wanted};
-use brushwork_sim::server::Pace;
-use brushwork_sim::world::{WorldAction, WorldView};
 use crossbeam_channel::Receiver;
 
 use crate::keep::Keeping;

@@ -7,8 +7,8 @@ use brushwork_link::UnitAddress;
 use brushwork_link::settings::{
     Act, Ending, Entry, Keeper, Profile, SettingValue, SettingsImage, SettingsTable, Subject,
 };
-use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::Generation;
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::packet_serial::Generation;
 
 use super::*;
 

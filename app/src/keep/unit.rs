@@ -3,7 +3,7 @@
 use brushwork_link::device::Identity;
 use brushwork_link::settings::Profile;
 use brushwork_link::transport::PortInfo;
-use brushwork_protocol::models;
+use brushwork_mcp_wire::models;
 
 /// How the names of files begin that are for one process alone.
 pub(super) const OWNER: &str = "process-";

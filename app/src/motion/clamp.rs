@@ -10,8 +10,10 @@ use std::time::Duration;
 use brushwork_link::device::{Drive, DriveCommand, FnJob, Job, JobContext, JobOutput};
 use brushwork_link::exchange::ExchangeError;
 use brushwork_link::{Failure, Wire};
-use brushwork_protocol::packet_serial::status::{self, Condition};
-use brushwork_protocol::packet_serial::{Motor, number};
+use brushwork_mcp_wire::packet_serial::number;
+use brushwork_mcp_wire::packet_serial::status;
+use brushwork_mcp_wire::packet_serial::status::Condition;
+use brushwork_values::Motor;
 use crossbeam_channel::Sender;
 
 /// Verb phrase of the job.

@@ -8,8 +8,8 @@ use std::time::Duration;
 use brushwork_link::device::{Drive, DriveCommand, FnJob, Job, JobContext, JobOutput};
 use brushwork_link::exchange::ExchangeError;
 use brushwork_link::{Failure, Wire};
-use brushwork_protocol::packet_serial::Motor;
 use brushwork_tuning::{Point, StepFigures};
+use brushwork_values::Motor;
 use crossbeam_channel::Sender;
 
 use super::profile::{Leg, Mode, WAY_LIMIT, setpoint_text};

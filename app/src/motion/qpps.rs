@@ -9,7 +9,8 @@ use std::time::Duration;
 use brushwork_link::device::{Drive, DriveCommand, FnJob, Job, JobContext, JobOutput};
 use brushwork_link::exchange::ExchangeError;
 use brushwork_link::{Failure, Wire};
-use brushwork_protocol::packet_serial::{Motor, number};
+use brushwork_mcp_wire::packet_serial::number;
+use brushwork_values::Motor;
 use crossbeam_channel::Sender;
 
 use super::reader::{Encoders, INTERVAL, Power, read_power};

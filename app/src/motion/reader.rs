@@ -3,7 +3,8 @@
 use brushwork_link::Wire;
 use brushwork_link::device::JobContext;
 use brushwork_link::exchange::ExchangeError;
-use brushwork_protocol::packet_serial::{Motor, number};
+use brushwork_mcp_wire::packet_serial::number;
+use brushwork_values::Motor;
 use std::time::Duration;
 
 use super::speed::Reading;

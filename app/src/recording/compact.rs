@@ -544,7 +544,7 @@ mod tests {
 
     #[test]
     fn the_steps_are_those_of_the_protocol() {
-        use brushwork_protocol::packet_serial::scale;
+        use brushwork_mcp_wire::packet_serial::scale;
         let of_protocol = [scale::VOLTAGE_VOLTS, scale::CURRENT_AMPS, scale::DUTY_PERCENT];
         assert_eq!([STEPS[1], STEPS[2], STEPS[4]], of_protocol);
     }

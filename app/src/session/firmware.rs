@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use brushwork_link::firmware::{Progress, Sent, send};
 use brushwork_link::transport::{ConnectTarget, PortInfo, Transport, list_ports};
 use brushwork_link::{Clock, Failure};
-use brushwork_protocol::loader::Image;
+use brushwork_mcp_wire::loader::Image;
 use crossbeam_channel::{Receiver, Sender, bounded};
 
 use super::{Simulation, connect};

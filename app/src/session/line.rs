@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use brushwork_sim::controller::Bus;
-use brushwork_sim::machine::{Machine, StreamIndex};
-use brushwork_sim::motion_mind::MotionMindBus;
-use brushwork_sim::world::{WorldAction, WorldView};
+use brushwork_mcp_sim::controller::Bus;
+use brushwork_motion_mind_sim::MotionMindBus;
+use brushwork_plant::machine::{Machine, StreamIndex};
+use brushwork_plant::world::{WorldAction, WorldView};
 
 /// One or more simulated units on one wire.
 pub enum SimulatedLine {

@@ -9,8 +9,8 @@ use brushwork_link::device::can::{BusTransport, CanOpen, Monitor};
 use brushwork_link::device::{Addresses, DeviceHandle, DeviceOptions, DeviceThread, FamilyChoice, PollRate};
 use brushwork_link::transport::{ConnectTarget, OpenError, Stream, Transport, list_ports, ports};
 use brushwork_link::{Clock, HiddenSettings};
-use brushwork_protocol::canopen::NodeId;
-use brushwork_protocol::canopen::adapter::Form;
+use brushwork_mcp_wire::canopen::NodeId;
+use brushwork_mcp_wire::canopen::adapter::Form;
 
 pub mod firmware;
 pub mod line;

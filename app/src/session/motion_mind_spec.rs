@@ -3,10 +3,10 @@
 //! `motion-mind-3,mode=4,protocol=ascii,address=1,address=2,preset=NAME,baud=9600,encoder=1x,revision=5,seed=N`; `?` and `&` may stand for
 //! the commas, and one address option may name several units: `motion-mind-3?mode=4&address=1,2`.
 
-use brushwork_protocol::motion_mind::{Address, Mode, Protocol};
-use brushwork_sim::motion_mind::{EncoderDecode, MotionMind, MotionMindBus, MotionMindConfig, assumed, pin};
-use brushwork_sim::plant::ParamsError;
-use brushwork_sim::presets;
+use brushwork_motion_mind_sim::{EncoderDecode, MotionMind, MotionMindBus, MotionMindConfig, assumed, pin};
+use brushwork_motion_mind_wire::{Address, Mode, Protocol};
+use brushwork_plant::ParamsError;
+use brushwork_plant::presets;
 
 /// The name of the model.
 pub const MODEL: &str = "motion-mind-3";

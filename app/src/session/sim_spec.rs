@@ -2,10 +2,11 @@
 
 use std::fmt;
 
-use brushwork_protocol::canopen::NodeId;
-use brushwork_protocol::canopen::adapter::Form;
-use brushwork_protocol::models::{self, Model};
-use brushwork_protocol::packet_serial::{Address, Generation};
+use brushwork_mcp_wire::canopen::NodeId;
+use brushwork_mcp_wire::canopen::adapter::Form;
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::models::Model;
+use brushwork_mcp_wire::packet_serial::{Address, Generation};
 
 /// One line with one or more simulated controllers on it.
 #[derive(Debug, Clone, PartialEq)]
@@ -274,12 +275,17 @@ fn model_of(name: &str) -> Result<&'static Model, SimSpecError> {
 
 fn presets_of(names: &[&str]) -> Result<[String; 2], SimSpecError> {
     let check = |name: &str| {
-        brushwork_sim::presets::lookup(name).map(|preset| preset.key.clone()).ok_or_else(|| {
-            SimSpecError::Preset { given: name.to_owned(), known: brushwork_sim::presets::keys().join(", ") }
+        brushwork_plant::presets::lookup(name).map(|preset| preset.key.clone()).ok_or_else(|| {
+            SimSpecError::Preset {
+                given: name.to_owned(),
+                known: brushwork_plant::presets::keys().join(", "),
+            }
         })
     };
     match names {
-        [] => Ok([brushwork_sim::presets::DEFAULT.to_owned(), brushwork_sim::presets::DEFAULT.to_owned()]),
+        [] => {
+            Ok([brushwork_plant::presets::DEFAULT.to_owned(), brushwork_plant::presets::DEFAULT.to_owned()])
+        }
         [both] => Ok([check(both)?, check(both)?]),
         [first, second] => Ok([check(first)?, check(second)?]),
         more => Err(SimSpecError::Presets { given: more.len() }),

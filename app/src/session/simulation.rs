@@ -8,16 +8,16 @@ use brushwork_link::UnitAddress;
 use brushwork_link::device::FamilyChoice;
 use brushwork_link::script::CHECKSUM_KEY;
 use brushwork_link::transport::{ChannelTransport, Stream};
-use brushwork_protocol::canopen::NodeId;
-use brushwork_protocol::canopen::adapter::Form;
-use brushwork_protocol::crc::crc16_xmodem;
+use brushwork_mcp_sim::controller::{Bus, BusError, Controller, ControllerConfig};
+use brushwork_mcp_wire::canopen::NodeId;
+use brushwork_mcp_wire::canopen::adapter::Form;
+use brushwork_mcp_wire::crc::crc16_xmodem;
+use brushwork_plant::ParamsError;
+use brushwork_plant::machine::StreamIndex;
+use brushwork_plant::presets;
+use brushwork_plant::server::{ChannelEnds, Endpoint, Server, ServerError, ServerOptions, SimHandle};
+use brushwork_plant::world::{WorldAction, WorldView};
 use brushwork_script::debug::{Request, View, Wanted};
-use brushwork_sim::controller::{Bus, BusError, Controller, ControllerConfig};
-use brushwork_sim::machine::StreamIndex;
-use brushwork_sim::plant::ParamsError;
-use brushwork_sim::presets;
-use brushwork_sim::server::{ChannelEnds, Endpoint, Server, ServerError, ServerOptions, SimHandle};
-use brushwork_sim::world::{WorldAction, WorldView};
 
 use super::line::SimulatedLine;
 use super::motion_mind_spec::MotionMindSpec;
@@ -297,9 +297,9 @@ mod tests {
     use super::*;
     use crate::wait::{PATIENCE, until_some};
     use brushwork_link::Transport as _;
-    use brushwork_protocol::crc::crc16_xmodem;
+    use brushwork_mcp_wire::crc::crc16_xmodem;
+    use brushwork_plant::server::Pace;
     use brushwork_script::debug::{Breakpoint, Reason};
-    use brushwork_sim::server::Pace;
     use std::time::Duration;
 
     /// Command 21 to 0x80; the reply begins with the name.

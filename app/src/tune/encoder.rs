@@ -1,8 +1,8 @@
 //! What kind of encoder a motor has, as the controller's settings say.
 
 use brushwork_link::settings::{PinMode, SettingValue};
-use brushwork_protocol::packet_serial::Motor;
 use brushwork_tuning::axis::EncoderClass;
+use brushwork_values::Motor;
 
 /// Bit of a RoboClaw's encoder mode that stands for an absolute encoder (public clients, 2015-2025, command 92).
 const ABSOLUTE_BIT: i64 = 1;

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use brushwork_link::device::JobContext;
 use brushwork_link::wire::Wire;
-use brushwork_protocol::motion_mind::{
+use brushwork_motion_mind_wire::{
     Address, Command, Part, Protocol, Reply, encode_frame, encode_line, register,
 };
 use brushwork_tuning::axis::{AxisError, Exchange};

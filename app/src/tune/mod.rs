@@ -19,7 +19,7 @@ use brushwork_link::device::{FnJob, Job, JobContext};
 use brushwork_link::failure::Failure;
 use brushwork_link::settings::{Ending, Subject, begin_trial, end_act};
 use brushwork_link::wire::Wire;
-use brushwork_protocol::packet_serial::{Generation, Motor, Request as Packet, Value, Values, number};
+use brushwork_mcp_wire::packet_serial::{Generation, Request as Packet, number};
 use brushwork_tuning::axis::{
     Axis, AxisError, EncoderClass, Exchange, PositionRegisters, Setup, VelocityRegisters,
 };
@@ -30,6 +30,7 @@ use brushwork_tuning::trial::{Trial, TrialRequest, run_trial};
 use brushwork_tuning::tune::{Request, tune};
 use brushwork_tuning_bench::mind::axis::{LoopAfter, MindAxis};
 use brushwork_tuning_bench::packet::{Carrier, PacketAxis};
+use brushwork_values::{Motor, Value, Values};
 
 use crate::keep::TrialKeeper;
 use mind::MindJobCarrier;

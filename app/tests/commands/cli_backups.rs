@@ -7,11 +7,11 @@ use std::process::Command;
 use crate::cli::{DONE, LIMIT, exported, name, program_keeping_in, run};
 use brushwork_child::Program;
 use brushwork_link::settings::{Profile, SettingValue};
-use brushwork_protocol::models;
-use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
-use brushwork_sim::machine::StreamIndex;
-use brushwork_sim::server::{Endpoint, Server, ServerOptions, SimHandle};
-use brushwork_sim::settings::Settings;
+use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
+use brushwork_mcp_sim::settings::Settings;
+use brushwork_mcp_wire::models;
+use brushwork_plant::machine::StreamIndex;
+use brushwork_plant::server::{Endpoint, Server, ServerOptions, SimHandle};
 use tempfile::TempDir;
 
 /// A controller on a pseudo-terminal whose settings are not those of the factory, and a folder for what is kept of it.

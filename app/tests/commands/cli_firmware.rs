@@ -7,11 +7,11 @@ use std::process::Command;
 use crate::cli::{Run, program, run};
 use brushwork_child::Program;
 use brushwork_link::settings::Profile;
-use brushwork_protocol::models;
-use brushwork_sim::controller::{Bus, Controller, ControllerConfig, Flash};
-use brushwork_sim::machine::StreamIndex;
-use brushwork_sim::server::{Endpoint, Server, ServerOptions, SimHandle};
-use brushwork_sim::world::WorldAction;
+use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig, Flash};
+use brushwork_mcp_wire::models;
+use brushwork_plant::machine::StreamIndex;
+use brushwork_plant::server::{Endpoint, Server, ServerOptions, SimHandle};
+use brushwork_plant::world::WorldAction;
 use tempfile::TempDir;
 
 fn command(arguments: &[&str]) -> Command {

@@ -232,9 +232,9 @@ mod on_a_pseudo_terminal {
     use std::path::Path;
 
     use brushwork_child::Program;
-    use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
-    use brushwork_sim::machine::StreamIndex;
-    use brushwork_sim::server::{Endpoint, Server, ServerOptions, SimHandle};
+    use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
+    use brushwork_plant::machine::StreamIndex;
+    use brushwork_plant::server::{Endpoint, Server, ServerOptions, SimHandle};
 
     use super::*;
     use crate::cli::{LIMIT, Simulated};

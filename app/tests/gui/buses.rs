@@ -11,10 +11,10 @@ use brushwork::keep::{Keeping, Store};
 use brushwork_link::Failure;
 use brushwork_link::device::{Drive, DriveCommand, Request};
 use brushwork_link::transport::PortInfo;
-use brushwork_protocol::loader::SimulatedImage;
-use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::Generation;
-use brushwork_sim::world::WorldAction;
+use brushwork_mcp_wire::loader::SimulatedImage;
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::packet_serial::Generation;
+use brushwork_plant::world::WorldAction;
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_kittest::{Harness, HarnessBuilder};
@@ -179,8 +179,8 @@ fn settings_that_differ_after_an_update_are_listed_and_can_be_restored() {
     window.app.borrow_mut().as_mut().unwrap().model.front.firmware.open = true;
     let request = Request::Transact {
         id: 1,
-        command: brushwork_protocol::packet_serial::number::SET_VELOCITY_PID_M1,
-        values: [0x4000, 0x10000, 0x8000, 12_345].map(brushwork_protocol::packet_serial::Value::Int).to_vec(),
+        command: brushwork_mcp_wire::packet_serial::number::SET_VELOCITY_PID_M1,
+        values: [0x4000, 0x10000, 0x8000, 12_345].map(brushwork_values::Value::Int).to_vec(),
     };
     window.app.borrow().as_ref().unwrap().device().unwrap().request(request).unwrap();
     let path = window.image();

@@ -4,12 +4,12 @@
 use crate::support::bench::Bench;
 use brushwork::gui::model::link::Arming;
 use brushwork::gui::model::message::Gravity;
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::controller::{Controller, ControllerConfig};
-use brushwork_sim::plant::{BrakeResistorParams, SupplyParams};
-use brushwork_sim::presets;
-use brushwork_sim::settings::Settings;
-use brushwork_sim::world::WorldAction;
+use brushwork_mcp_sim::controller::{Controller, ControllerConfig};
+use brushwork_mcp_sim::settings::Settings;
+use brushwork_plant::presets;
+use brushwork_plant::world::WorldAction;
+use brushwork_plant::{BrakeResistorParams, SupplyParams};
+use brushwork_values::Motor;
 use egui::Key;
 
 const OVER_VOLTAGE: u8 = 7;

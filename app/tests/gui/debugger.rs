@@ -4,10 +4,10 @@ use std::time::Duration;
 
 use crate::support::bench::Bench;
 use brushwork::gui::graph::MarkKind;
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_plant::machine::{Machine as _, StreamIndex};
 use brushwork_script::debug::Wanted;
 use brushwork_script::{image, mcl};
-use brushwork_sim::machine::{Machine as _, StreamIndex};
+use brushwork_values::Motor;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
@@ -368,7 +368,7 @@ fn a_frozen_world_is_not_left_behind_on_other_screens() {
     bench.pass_ms(300);
     // Command 248 by somebody else, as autorun or a pin would start it: this window is not armed.
     let mut start = vec![0x80, 248];
-    start.extend(brushwork_protocol::crc::crc16_xmodem(&start).to_be_bytes());
+    start.extend(brushwork_mcp_wire::crc::crc16_xmodem(&start).to_be_bytes());
     bench.line.with(|bus| {
         bus.receive(StreamIndex::Uart0, &start);
         bus.advance(bus.now() + Duration::from_millis(2));
@@ -390,7 +390,7 @@ fn the_pace_of_time_is_chosen_and_marked_in_the_graph() {
     let mut bench = paused(PROGRAM);
     bench.choose("Time", "×10");
     bench.pass_ms(100);
-    assert_eq!(bench.model().front.debug.pace, Some(brushwork_sim::server::Pace::TEN));
+    assert_eq!(bench.model().front.debug.pace, Some(brushwork_plant::server::Pace::TEN));
     let marks = bench.model().front.graph.live.track.marks.clone();
     assert!(marks.iter().any(|mark| mark.text == "time ×10"));
 }

@@ -7,9 +7,9 @@ use std::time::Duration;
 use crate::support::causes::{self, Cause};
 use crate::support::wait::PATIENCE;
 use brushwork_child::Child;
-use brushwork_sim::controller::Bus;
-use brushwork_sim::machine::{Machine as _, StreamIndex};
-use brushwork_sim::server::{Endpoint, Server, ServerOptions};
+use brushwork_mcp_sim::controller::Bus;
+use brushwork_plant::machine::{Machine as _, StreamIndex};
+use brushwork_plant::server::{Endpoint, Server, ServerOptions};
 use serde_json::Value;
 
 /// What `brushwork status` says of a controller in the state of a cause.

@@ -7,8 +7,8 @@ use brushwork::gui::model::general::{Sheet, sections};
 use brushwork::gui::model::link::Arming;
 use brushwork::gui::model::message::Gravity;
 use brushwork::gui::model::screen::Screen;
-use brushwork_protocol::packet_serial::number;
-use brushwork_sim::settings::Settings;
+use brushwork_mcp_sim::settings::Settings;
+use brushwork_mcp_wire::packet_serial::number;
 use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
@@ -463,9 +463,9 @@ fn a_faulty_profile_is_refused_and_one_of_another_controller_is_upgraded_when_th
     bench.press("Open");
     assert!(bench.sees_part("Reading the profile"));
     let path = folder.path().join("other.json");
-    let model = brushwork_protocol::models::lookup("mcp236").unwrap();
+    let model = brushwork_mcp_wire::models::lookup("mcp236").unwrap();
     let subject =
-        brushwork_link::settings::Subject::new(model, brushwork_protocol::packet_serial::Generation::Gen2);
+        brushwork_link::settings::Subject::new(model, brushwork_mcp_wire::packet_serial::Generation::Gen2);
     let other = brushwork_link::settings::Profile {
         subject,
         firmware: "MCP236 2x30A v1.0.0".to_owned(),

@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use crate::support::bench::Bench;
 use brushwork::gui::model::link::Arming;
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::world::WorldAction;
+use brushwork_plant::world::WorldAction;
+use brushwork_values::Motor;
 use egui::Key;
 
 /// An armed screen with its generator open.

@@ -7,8 +7,8 @@ use brushwork::gui::graph::runs::Align;
 use brushwork::gui::graph::trigger::{TriggerMode, TriggerSource};
 use brushwork::gui::graph::{LiveGraph, MarkKind};
 use brushwork_link::device::Channel;
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::world::WorldAction;
+use brushwork_plant::world::WorldAction;
+use brushwork_values::Motor;
 use egui::{Key, Modifiers, MouseWheelUnit, Pos2, TouchPhase, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 

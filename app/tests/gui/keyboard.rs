@@ -3,8 +3,8 @@
 use crate::support::bench::Bench;
 use brushwork::gui::model::link::Arming;
 use brushwork::gui::model::screen::Screen;
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::motion_mind::{Mode, MotionMindConfig};
+use brushwork_motion_mind_sim::{Mode, MotionMindConfig};
+use brushwork_values::Motor;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 

@@ -4,7 +4,7 @@ use crate::support::bench::Bench;
 use brushwork::gui::mcl::Document;
 use brushwork_link::device::ArmScope;
 use brushwork_link::settings::replace_file;
-use brushwork_sim::controller::ScriptRun;
+use brushwork_plant::world::ScriptRun;
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};

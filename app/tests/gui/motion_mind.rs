@@ -4,11 +4,11 @@
 use crate::support::bench::{Bench, FRAME};
 use brushwork::gui::model::screen::Screen;
 use brushwork_link::exchange::LinkStatistics;
-use brushwork_protocol::motion_mind::{Address, function, register_named};
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::machine::Machine as _;
-use brushwork_sim::motion_mind::{Mode, MotionMindConfig, Protocol, pin};
-use brushwork_sim::world::{PinSignal, WorldAction};
+use brushwork_motion_mind_sim::{Mode, MotionMindConfig, Protocol, pin};
+use brushwork_motion_mind_wire::{Address, function, register_named};
+use brushwork_plant::machine::Machine as _;
+use brushwork_plant::world::{PinSignal, WorldAction};
+use brushwork_values::Motor;
 use egui::accesskit::Role;
 use egui::{Key, Theme};
 use egui_kittest::kittest::Queryable as _;
@@ -255,7 +255,7 @@ fn all_32_registers_are_shown_with_ram_and_eeprom() {
     bench.connect();
     bench.press("Registers");
     bench.pass_ms(4000);
-    for register in &brushwork_protocol::motion_mind::REGISTERS {
+    for register in &brushwork_motion_mind_wire::REGISTERS {
         assert!(bench.sees(&format!("Register {}", register.name)), "{}", register.name);
         assert!(!bench.sees(&format!("{} in RAM: –", register.name)), "{} was read", register.name);
     }
@@ -424,7 +424,7 @@ fn type_line(bench: &mut Bench, line: &str) {
 /// The duty that the motor of the first unit gets.
 fn mind_duty(bench: &Bench) -> f64 {
     match bench.minds.with(|bus| bus.views().remove(0)).axes[Motor::M1.index()].output {
-        brushwork_sim::bridge::BridgeOutput::Duty(duty) => duty,
+        brushwork_plant::bridge::BridgeOutput::Duty(duty) => duty,
         _ => 0.0,
     }
 }

@@ -3,11 +3,11 @@
 
 use crate::support::bench::Bench;
 use brushwork::gui::model::link::Arming;
-use brushwork_protocol::motion_mind::register_named;
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::machine::Machine as _;
-use brushwork_sim::motion_mind::{Mode, MotionMindConfig, pin};
-use brushwork_sim::world::{PinSignal, WorldAction};
+use brushwork_motion_mind_sim::{Mode, MotionMindConfig, pin};
+use brushwork_motion_mind_wire::register_named;
+use brushwork_plant::machine::Machine as _;
+use brushwork_plant::world::{PinSignal, WorldAction};
+use brushwork_values::Motor;
 use egui::Key;
 
 /// A window connected to one Motion Mind in a mode.
@@ -22,7 +22,7 @@ fn connected(mode: Mode) -> Bench {
 
 fn duty(bench: &Bench) -> f64 {
     match bench.minds.with(|bus| bus.views().remove(0)).axes[Motor::M1.index()].output {
-        brushwork_sim::bridge::BridgeOutput::Duty(duty) => duty,
+        brushwork_plant::bridge::BridgeOutput::Duty(duty) => duty,
         _ => 0.0,
     }
 }

@@ -6,11 +6,11 @@ use brushwork::gui::model::general::Sheet;
 use brushwork::keep::UnitId;
 use brushwork_link::FirmwareGeneration;
 use brushwork_link::settings::{Act, Profile, SettingValue, SettingsTable, Subject};
-use brushwork_protocol::models::MOTION_MIND_3;
-use brushwork_protocol::motion_mind::register_named;
-use brushwork_sim::machine::Machine as _;
-use brushwork_sim::motion_mind::{Mode, MotionMindConfig};
-use brushwork_sim::world::WorldAction;
+use brushwork_mcp_wire::models::MOTION_MIND_3;
+use brushwork_motion_mind_sim::{Mode, MotionMindConfig};
+use brushwork_motion_mind_wire::register_named;
+use brushwork_plant::machine::Machine as _;
+use brushwork_plant::world::WorldAction;
 use egui::Theme;
 use egui_kittest::kittest::Queryable as _;
 
@@ -118,8 +118,8 @@ fn a_profile_of_another_family_is_refused_and_one_of_another_revision_is_taken_o
     assert!(bench.sees_part("6000 -> 4321"));
 
     let mcp = Subject::new(
-        brushwork_protocol::models::lookup("mcp236").unwrap(),
-        brushwork_protocol::packet_serial::Generation::Gen2,
+        brushwork_mcp_wire::models::lookup("mcp236").unwrap(),
+        brushwork_mcp_wire::packet_serial::Generation::Gen2,
     );
     let address = brushwork_link::UnitAddress::DEFAULT;
     let foreign =

@@ -7,13 +7,13 @@ use crate::support::bench::Bench;
 use brushwork::gui::model::link::Arming;
 use brushwork::gui::tune::Loop;
 use brushwork::gui::tune::run::Run;
-use brushwork_protocol::motion_mind::register_named;
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::machine::Machine as _;
-use brushwork_sim::motion_mind::{Mode, MotionMindConfig, Protocol};
-use brushwork_sim::world::WorldAction;
+use brushwork_motion_mind_sim::{Mode, MotionMindConfig, Protocol};
+use brushwork_motion_mind_wire::register_named;
+use brushwork_plant::machine::Machine as _;
+use brushwork_plant::world::WorldAction;
 use brushwork_tuning::motion_mind::{MotionMindRegisters, bits};
 use brushwork_tuning::report::Verdict;
+use brushwork_values::Motor;
 use egui::{Key, Modifiers};
 
 /// The registers that a run touches, by number.
@@ -51,7 +51,7 @@ fn eeprom_writes(bench: &Bench) -> u64 {
 
 fn duty(bench: &Bench) -> f64 {
     match bench.minds.with(|bus| bus.views().remove(0)).axes[Motor::M1.index()].output {
-        brushwork_sim::bridge::BridgeOutput::Duty(duty) => duty,
+        brushwork_plant::bridge::BridgeOutput::Duty(duty) => duty,
         _ => 0.0,
     }
 }

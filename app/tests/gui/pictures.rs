@@ -15,7 +15,8 @@ use brushwork::tune::file;
 use brushwork_link::device::{ArmScope, Channel, Condition, Event, Identity, Sample, StatusReport};
 use brushwork_link::exchange::LinkStatistics;
 use brushwork_link::transport::Stream;
-use brushwork_protocol::packet_serial::{Generation, Motor};
+use brushwork_mcp_wire::packet_serial::Generation;
+use brushwork_values::Motor;
 use egui::Theme;
 
 const SMALLEST: [f32; 2] = [1024.0, 700.0];

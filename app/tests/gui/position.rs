@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use crate::support::bench::Bench;
 use brushwork::gui::model::link::Arming;
-use brushwork_protocol::packet_serial::{Motor, scale};
+use brushwork_mcp_wire::packet_serial::scale;
+use brushwork_values::Motor;
 use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};

@@ -5,11 +5,11 @@ use std::time::Duration;
 
 use crate::support::bench::Bench;
 use brushwork::gui::model::link::Arming;
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::bridge::BridgeOutput;
-use brushwork_sim::controller::{Controller, ControllerConfig};
-use brushwork_sim::presets;
-use brushwork_sim::world::{World, WorldAction};
+use brushwork_mcp_sim::controller::{Controller, ControllerConfig};
+use brushwork_plant::bridge::BridgeOutput;
+use brushwork_plant::presets;
+use brushwork_plant::world::{World, WorldAction};
+use brushwork_values::Motor;
 use egui::Key;
 
 fn config(preset: &str) -> ControllerConfig {

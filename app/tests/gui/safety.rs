@@ -5,8 +5,8 @@ use std::time::Duration;
 use crate::support::bench::Bench;
 use brushwork::gui::model::link::Arming;
 use brushwork_link::Clock as _;
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::world::WorldAction;
+use brushwork_plant::world::WorldAction;
+use brushwork_values::Motor;
 use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
@@ -230,13 +230,13 @@ fn closing_the_window_stops_the_motors() {
     }
     line.clock.advance(Duration::from_millis(50));
     let duties = line.with(|bus| {
-        use brushwork_sim::machine::Machine as _;
+        use brushwork_plant::machine::Machine as _;
         bus.views().remove(0).axes.map(|axis| axis.output)
     });
     assert!(
-        duties
-            .iter()
-            .all(|output| !matches!(output, brushwork_sim::bridge::BridgeOutput::Duty(duty) if *duty != 0.0)),
+        duties.iter().all(
+            |output| !matches!(output, brushwork_plant::bridge::BridgeOutput::Duty(duty) if *duty != 0.0)
+        ),
         "{duties:?}"
     );
 }

@@ -3,10 +3,11 @@
 
 use crate::support::bench::Bench;
 use brushwork::gui::model::screen::Screen;
+use brushwork_mcp_sim::controller::{Controller, ControllerConfig};
+use brushwork_plant::world::Content;
+use brushwork_plant::world::{CanPeer, WorldAction};
 use brushwork_script::image;
 use brushwork_script::mcl::compile;
-use brushwork_sim::controller::{Content, Controller, ControllerConfig};
-use brushwork_sim::world::{CanPeer, WorldAction};
 use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 

@@ -4,9 +4,9 @@ use crate::support::bench::{Bench, FRAME, SECOND};
 use brushwork::gui::actions;
 use brushwork::gui::model::link::Arming;
 use brushwork::gui::model::screen::Screen;
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::machine::Machine as _;
-use brushwork_sim::motion_mind::{Mode, MotionMindConfig};
+use brushwork_motion_mind_sim::{Mode, MotionMindConfig};
+use brushwork_plant::machine::Machine as _;
+use brushwork_values::Motor;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Theme};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
@@ -14,7 +14,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 /// The duty that a motor of the second machine gets.
 fn second_duty(bench: &Bench, motor: Motor) -> f64 {
     match bench.second.with(|bus| bus.views().remove(0)).axes[motor.index()].output {
-        brushwork_sim::bridge::BridgeOutput::Duty(duty) => duty,
+        brushwork_plant::bridge::BridgeOutput::Duty(duty) => duty,
         _ => 0.0,
     }
 }
@@ -74,12 +74,12 @@ fn stop_all_stops_every_open_device() {
     bench.pass_ms(1000);
     assert!(second_duty(&bench, Motor::M1) > 0.35);
     // The one behind is driven by somebody else on its line.
-    let duty_of_m1 = brushwork_protocol::packet_serial::Request::new(
-        brushwork_protocol::packet_serial::Address::new(0x80).unwrap(),
+    let duty_of_m1 = brushwork_mcp_wire::packet_serial::Request::new(
+        brushwork_mcp_wire::packet_serial::Address::new(0x80).unwrap(),
         32,
         &[16_384],
     );
-    let bytes = duty_of_m1.encode(brushwork_protocol::packet_serial::Generation::Gen1).unwrap();
+    let bytes = duty_of_m1.encode(brushwork_mcp_wire::packet_serial::Generation::Gen1).unwrap();
     bench.line.with(|bus| {
         let stream = bus.stream();
         bus.receive(stream, &bytes);
@@ -99,7 +99,7 @@ fn a_device_that_is_frozen_delays_the_stop_of_no_other() {
     bench.set_duty(Motor::M1, "40");
     bench.pass_ms(1000);
     // The first controller loses its power: its link waits for answers that never come.
-    bench.act(&brushwork_sim::world::WorldAction::Power { on: false });
+    bench.act(&brushwork_plant::world::WorldAction::Power { on: false });
     bench.pass_ms(150);
     bench.key(Key::Space);
     bench.pass_ms(100);
@@ -164,7 +164,7 @@ fn one_device_is_disconnected_and_the_other_goes_on() {
 #[test]
 fn what_a_device_in_the_background_says_names_it() {
     let mut bench = both_open();
-    bench.act(&brushwork_sim::world::WorldAction::Unplug { unplugged: true });
+    bench.act(&brushwork_plant::world::WorldAction::Unplug { unplugged: true });
     bench.pass_ms(1000);
     assert!(bench.sees_part("sim:mcp266: "));
     assert!(bench.model().is_connected(), "the one in front is not touched");

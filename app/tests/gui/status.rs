@@ -3,11 +3,11 @@
 use crate::support::bench::Bench;
 use crate::support::causes;
 use brushwork_link::diagnosis::diagnose;
-use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::Generation;
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::controller::{Controller, ControllerConfig};
-use brushwork_sim::world::{PinSignal, UnitFault, WorldAction};
+use brushwork_mcp_sim::controller::{Controller, ControllerConfig};
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::packet_serial::Generation;
+use brushwork_plant::world::{PinSignal, UnitFault, WorldAction};
+use brushwork_values::Motor;
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 

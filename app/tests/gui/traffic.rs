@@ -4,7 +4,8 @@ use crate::support::bench::Bench;
 use brushwork::gui::model::traffic::Tab;
 use brushwork::keep::UnitId;
 use brushwork_link::settings::SettingValue;
-use brushwork_protocol::packet_serial::{Motor, number};
+use brushwork_mcp_wire::packet_serial::number;
+use brushwork_values::Motor;
 use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
@@ -108,7 +109,7 @@ fn a_command_is_shown_as_bytes_then_sent_and_answered() {
 fn a_command_that_changes_settings_is_sent_once_a_backup_of_them_is_kept() {
     let mut bench = open();
     bench.press("Send a command");
-    let generation = brushwork_protocol::packet_serial::Generation::Gen1;
+    let generation = brushwork_mcp_wire::packet_serial::Generation::Gen1;
     let unit = UnitId::new(bench.model().front.link.identity().unwrap(), &[]);
     let composer = &mut bench.model().front.traffic.composer;
     composer.choose(number::SET_VELOCITY_PID_M1, generation);
@@ -144,7 +145,7 @@ fn a_command_that_changes_settings_is_sent_once_a_backup_of_them_is_kept() {
 fn a_motion_command_is_refused_until_a_screen_is_armed_and_space_stops_it() {
     let mut bench = open();
     bench.press("Send a command");
-    let generation = brushwork_protocol::packet_serial::Generation::Gen1;
+    let generation = brushwork_mcp_wire::packet_serial::Generation::Gen1;
     let composer = &mut bench.model().front.traffic.composer;
     composer.choose(number::DUTY_M1, generation);
     composer.arguments = vec!["8000".to_owned()];

@@ -10,14 +10,14 @@ use brushwork::gui::model::loop_settings::VELOCITY;
 use brushwork::gui::tune::Loop;
 use brushwork::gui::tune::registers::Registers;
 use brushwork::gui::tune::run::Run;
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::controller::{Controller, ControllerConfig};
-use brushwork_sim::motion::MotionSettings;
-use brushwork_sim::presets;
-use brushwork_sim::world::WorldAction;
+use brushwork_mcp_sim::controller::{Controller, ControllerConfig};
+use brushwork_mcp_sim::motion::MotionSettings;
+use brushwork_plant::presets;
+use brushwork_plant::world::WorldAction;
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::winding::{NotTold, Winding};
+use brushwork_values::Motor;
 use egui::{Key, Modifiers};
 
 fn config(preset: &str) -> ControllerConfig {

@@ -4,11 +4,11 @@ use crate::support::bench::Bench;
 use brushwork::gui::tune::Loop;
 use brushwork::gui::tune::calibration::Advice;
 use brushwork::gui::tune::registers::Registers;
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::controller::{Controller, ControllerConfig};
-use brushwork_sim::motion::MotionSettings;
-use brushwork_sim::presets;
-use brushwork_sim::world::WorldAction;
+use brushwork_mcp_sim::controller::{Controller, ControllerConfig};
+use brushwork_mcp_sim::motion::MotionSettings;
+use brushwork_plant::presets;
+use brushwork_plant::world::WorldAction;
+use brushwork_values::Motor;
 use egui::Key;
 
 /// Full speed of the preset, counts/s, as measured.

@@ -4,12 +4,12 @@
 use crate::support::bench::Bench;
 use brushwork::gui::model::link::Arming;
 use brushwork::gui::tune::Loop;
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
-use brushwork_sim::machine::StreamIndex;
-use brushwork_sim::motion::MotionSettings;
-use brushwork_sim::presets;
-use brushwork_sim::world::WorldAction;
+use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
+use brushwork_mcp_sim::motion::MotionSettings;
+use brushwork_plant::machine::StreamIndex;
+use brushwork_plant::presets;
+use brushwork_plant::world::WorldAction;
+use brushwork_values::Motor;
 use egui::{Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId};
 
 /// The user's time-out of the port and what the run makes of it, ms.
@@ -275,7 +275,7 @@ fn a_window_with_nothing_to_put_back_closes_at_once() {
 #[test]
 fn another_unit_that_is_chosen_in_a_run_is_not_given_the_gains_of_this_one() {
     let unit = |address| {
-        let address = brushwork_protocol::packet_serial::Address::new(address).expect("an address");
+        let address = brushwork_mcp_wire::packet_serial::Address::new(address).expect("an address");
         let config = ControllerConfig { address, settings: None, ..config() };
         Controller::new(config).expect("the configuration is sound")
     };

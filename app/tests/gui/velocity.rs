@@ -3,9 +3,9 @@
 use crate::support::bench::Bench;
 use brushwork::gui::model::link::Arming;
 use brushwork::gui::model::screen::Screen;
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::machine::Machine as _;
-use brushwork_sim::world::WorldAction;
+use brushwork_plant::machine::Machine as _;
+use brushwork_plant::world::WorldAction;
+use brushwork_values::Motor;
 use egui::Key;
 use egui_kittest::kittest::NodeT as _;
 

@@ -3,8 +3,8 @@
 use crate::support::bench::Bench;
 use brushwork::gui::model::message::Gravity;
 use brushwork::gui::model::screen::Screen;
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::world::WorldAction;
+use brushwork_plant::world::WorldAction;
+use brushwork_values::Motor;
 use egui::Theme;
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
@@ -286,7 +286,7 @@ fn the_panel_of_the_world_acts_on_the_unit_that_is_looked_at() {
     bench.press("Simulated world");
     bench.press("E-stop pressed");
     let pressed = bench.line.with(|bus| {
-        use brushwork_sim::machine::Machine as _;
+        use brushwork_plant::machine::Machine as _;
         bus.views().iter().map(|view| view.estop_pressed).collect::<Vec<_>>()
     });
     assert_eq!(pressed, [false, true]);
@@ -319,7 +319,7 @@ fn a_limit_switch_is_wired_to_a_pin_and_held_closed() {
     assert_eq!(bench.truth().axes[0].switches_closed, [true, false, false]);
     bench.press("Pin 3 is connected to");
     bench.press("a voltage");
-    assert_eq!(bench.truth().pins[2], brushwork_sim::world::PinSignal::Volts { volts: 2.5 });
+    assert_eq!(bench.truth().pins[2], brushwork_plant::world::PinSignal::Volts { volts: 2.5 });
     assert!(bench.truth().wiring.switches.is_empty());
 }
 

@@ -14,17 +14,18 @@ use brushwork_link::settings::{
     reload, save_eeprom, write,
 };
 use brushwork_link::{Failure, FirmwareGeneration, Stream};
-use brushwork_protocol::canopen::adapter::Form;
-use brushwork_protocol::models;
-use brushwork_protocol::motion_mind::{Mode, Protocol};
-use brushwork_protocol::packet_serial::{Generation, Motor};
-use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
-use brushwork_sim::machine::{Machine, StreamIndex};
-use brushwork_sim::motion_mind::{MotionMind, MotionMindBus, MotionMindConfig};
+use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
+use brushwork_mcp_wire::canopen::adapter::Form;
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::packet_serial::Generation;
+use brushwork_motion_mind_sim::{MotionMind, MotionMindBus, MotionMindConfig};
+use brushwork_motion_mind_wire::{Mode, Protocol};
+use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_tests::virtual_link::VirtualLink;
 use brushwork_tuning::axis::{EncoderClass, Setup};
 use brushwork_tuning::report::Report;
 use brushwork_tuning::tune::{Excitation, Method, Request as Tuning};
+use brushwork_values::Motor;
 
 use crate::assert_kept;
 

@@ -11,14 +11,14 @@ use brushwork_link::device::{
 use brushwork_link::settings::{
     ReadReport, SettingValue, SettingsImage, Subject, WriteOptions, read_all, write,
 };
-use brushwork_protocol::canopen::adapter::Form;
-use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::Generation;
-use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
-use brushwork_sim::faults::{Direction, Fault, FaultEffect};
-use brushwork_sim::machine::{Machine as _, StreamIndex};
-use brushwork_sim::settings::Settings;
-use brushwork_sim::world::WorldAction;
+use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
+use brushwork_mcp_sim::settings::Settings;
+use brushwork_mcp_wire::canopen::adapter::Form;
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::packet_serial::Generation;
+use brushwork_plant::faults::{Direction, Fault, FaultEffect};
+use brushwork_plant::machine::{Machine as _, StreamIndex};
+use brushwork_plant::world::WorldAction;
 use brushwork_tests::virtual_link::VirtualLink;
 
 fn ms(milliseconds: u64) -> Duration {

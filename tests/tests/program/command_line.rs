@@ -6,12 +6,12 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use brushwork_protocol::canopen::NodeId;
-use brushwork_protocol::canopen::adapter::Form;
-use brushwork_protocol::packet_serial::Generation;
-use brushwork_sim::controller::ControllerConfig;
-use brushwork_sim::machine::StreamIndex;
-use brushwork_sim::settings::Settings;
+use brushwork_mcp_sim::controller::ControllerConfig;
+use brushwork_mcp_sim::settings::Settings;
+use brushwork_mcp_wire::canopen::NodeId;
+use brushwork_mcp_wire::canopen::adapter::Form;
+use brushwork_mcp_wire::packet_serial::Generation;
+use brushwork_plant::machine::StreamIndex;
 use brushwork_tests::program::{Child, Ending, Program};
 use brushwork_tests::simulated::{OnPty, PATIENT_TIME_OUT, is_at_rest, is_driven};
 use brushwork_tests::wait::{self, LIMIT};

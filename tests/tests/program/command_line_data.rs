@@ -9,11 +9,11 @@ use std::path::Path;
 use std::process::Command;
 
 use brushwork_link::transport::{SerialTransport, Transport as _};
-use brushwork_protocol::models::MODELS;
-use brushwork_protocol::packet_serial::{Address, COMMANDS, Generation, Request, number};
-use brushwork_sim::controller::ControllerConfig;
-use brushwork_sim::machine::StreamIndex;
-use brushwork_sim::settings::Settings;
+use brushwork_mcp_sim::controller::ControllerConfig;
+use brushwork_mcp_sim::settings::Settings;
+use brushwork_mcp_wire::models::MODELS;
+use brushwork_mcp_wire::packet_serial::{Address, COMMANDS, Generation, Request, number};
+use brushwork_plant::machine::StreamIndex;
 use brushwork_tests::program::{Ending, Program};
 use brushwork_tests::simulated::{OnPty, is_driven};
 use brushwork_tests::wait::{self, LIMIT};

@@ -8,11 +8,12 @@ use brushwork_link::device::{
     PollRate, Request,
 };
 use brushwork_link::{Stream, Wire};
-use brushwork_protocol::packet_serial::{Address, Generation, Motor, Value, number};
-use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
-use brushwork_sim::machine::StreamIndex;
-use brushwork_sim::world::WorldAction;
+use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
+use brushwork_mcp_wire::packet_serial::{Address, Generation, number};
+use brushwork_plant::machine::StreamIndex;
+use brushwork_plant::world::WorldAction;
 use brushwork_tests::virtual_link::VirtualLink;
+use brushwork_values::{Motor, Value};
 
 /// From full duty to none at the highest acceleration, 655359 of 32768 per full duty and second, and the ticks around it.
 const RAMP_DOWN: Duration = Duration::from_millis(58);

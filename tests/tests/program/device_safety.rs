@@ -10,13 +10,14 @@ use brushwork_link::device::{
 };
 use brushwork_link::settings::{Subject, read_all};
 use brushwork_link::{Interruption, Wire};
-use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::{Address, Generation, Motor, Request as Packet, Value, number};
-use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
-use brushwork_sim::faults::{Direction, Fault, FaultEffect};
-use brushwork_sim::machine::StreamIndex;
-use brushwork_sim::world::WorldAction;
+use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::packet_serial::{Address, Generation, Request as Packet, number};
+use brushwork_plant::faults::{Direction, Fault, FaultEffect};
+use brushwork_plant::machine::StreamIndex;
+use brushwork_plant::world::WorldAction;
 use brushwork_tests::virtual_link::VirtualLink;
+use brushwork_values::{Motor, Value};
 
 fn ms(milliseconds: u64) -> Duration {
     Duration::from_millis(milliseconds)

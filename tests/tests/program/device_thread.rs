@@ -13,11 +13,12 @@ use brushwork_link::device::{
 };
 use brushwork_link::transport::SerialTransport;
 use brushwork_link::{Stream, SystemClock};
-use brushwork_protocol::packet_serial::{Generation, Motor};
-use brushwork_sim::controller::Controller;
-use brushwork_sim::world::WorldAction;
+use brushwork_mcp_sim::controller::Controller;
+use brushwork_mcp_wire::packet_serial::Generation;
+use brushwork_plant::world::WorldAction;
 use brushwork_tests::simulated::{Off, OnPty, is_at_rest, is_driven};
 use brushwork_tests::wait::LIMIT;
+use brushwork_values::Motor;
 
 /// How often a busy machine may keep the window from renewing its motion before the test gives up.
 const TRIES: usize = 20;

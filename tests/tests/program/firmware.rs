@@ -6,12 +6,12 @@ use std::time::Duration;
 use brushwork_link::device::{DeviceOptions, Event, Request};
 use brushwork_link::firmware::{Left, Progress, RiskAccepted, SendError, Sent, send};
 use brushwork_link::{Clock as _, Stream, Transport, TransportError};
-use brushwork_protocol::loader::{Image, PAGE_BYTES, SimulatedImage};
-use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::{Address, Generation, number};
-use brushwork_sim::controller::{Bus, Controller, ControllerConfig, ERASE_TIME, Flash};
-use brushwork_sim::machine::{Machine, StreamIndex};
-use brushwork_sim::world::WorldAction;
+use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig, ERASE_TIME, Flash};
+use brushwork_mcp_wire::loader::{Image, PAGE_BYTES, SimulatedImage};
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::packet_serial::{Address, Generation, number};
+use brushwork_plant::machine::{Machine, StreamIndex};
+use brushwork_plant::world::WorldAction;
 use brushwork_tests::virtual_line::VirtualLine;
 use brushwork_tests::virtual_link::VirtualLink;
 
@@ -305,7 +305,7 @@ fn without_power_or_firmware_the_loader_keeps_the_motors_still_and_the_leds_turn
     let second = leds(&line);
     assert!(first.stat1 != first.stat2 && second.stat1 == first.stat2, "{first:?} {second:?}");
     // Packets move nothing: 0x80, command 32, duty 0x4000, CRC.
-    let duty = brushwork_protocol::packet_serial::Request::new(Address::DEFAULT, number::DUTY_M1, &[0x4000]);
+    let duty = brushwork_mcp_wire::packet_serial::Request::new(Address::DEFAULT, number::DUTY_M1, &[0x4000]);
     line.clone().write(&duty.encode(Generation::Gen1).unwrap()).unwrap();
     line.pass(Duration::from_millis(200));
     let view = line.with(|bus| bus.views().remove(0));

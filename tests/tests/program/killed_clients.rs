@@ -4,7 +4,7 @@
 
 use std::time::Duration;
 
-use brushwork_protocol::packet_serial::Generation;
+use brushwork_mcp_wire::packet_serial::Generation;
 use brushwork_tests::foreign;
 use brushwork_tests::program::Program;
 use brushwork_tests::simulated::{OnPty, is_at_rest, is_driven};

@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use brushwork_link::transport::{SerialTransport, Transport as _};
-use brushwork_protocol::packet_serial::Generation;
+use brushwork_mcp_wire::packet_serial::Generation;
 use brushwork_tests::program::{Child, Ending, Program};
 use brushwork_tests::simulated::{OnPty, is_driven};
 use brushwork_tests::wait::{self, LIMIT};

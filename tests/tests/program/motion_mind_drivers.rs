@@ -18,9 +18,9 @@ use std::time::{Duration, Instant};
 
 use brushwork_link::Transport;
 use brushwork_link::transport::ConnectTarget;
-use brushwork_sim::machine::StreamIndex;
-use brushwork_sim::motion_mind::{Mode, MotionMind, MotionMindBus, MotionMindConfig, Protocol};
-use brushwork_sim::pacing::Paced;
+use brushwork_motion_mind_sim::{Mode, MotionMind, MotionMindBus, MotionMindConfig, Protocol};
+use brushwork_plant::machine::StreamIndex;
+use brushwork_plant::pacing::Paced;
 use brushwork_tests::program::Program;
 use brushwork_tests::virtual_line::VirtualLine;
 use brushwork_tests::wait::LIMIT;
@@ -44,7 +44,7 @@ impl Port {
     /// Units in virtual time, their bytes at 19,200 baud.
     fn in_virtual_time(mode: Mode, protocol: Protocol, addresses: &[u8]) -> Self {
         let unit = |number: &u8| {
-            let address = brushwork_protocol::motion_mind::Address::unit(*number).expect("a unit's address");
+            let address = brushwork_motion_mind_wire::Address::unit(*number).expect("a unit's address");
             let config = MotionMindConfig { address, protocol, ..MotionMindConfig::new(mode) };
             MotionMind::new(config).expect("the preset is sound")
         };

@@ -17,11 +17,11 @@ use brushwork_link::settings::{
     SaveVerdict, SettingValue, SettingsTable, Subject, WriteOptions, read_all, save_eeprom, write,
 };
 use brushwork_link::{Failure, FirmwareGeneration};
-use brushwork_protocol::motion_mind::Protocol;
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::machine::{Machine, StreamIndex};
-use brushwork_sim::world::{WorldAction, WorldView};
+use brushwork_motion_mind_wire::Protocol;
+use brushwork_plant::machine::{Machine, StreamIndex};
+use brushwork_plant::world::{WorldAction, WorldView};
 use brushwork_tests::virtual_link::VirtualLink;
+use brushwork_values::Motor;
 
 /// Bytes of each register, by index (manual, figure 18).
 const WIDTHS: [usize; 32] =
@@ -510,7 +510,7 @@ fn job<T: Send + 'static>(
 }
 
 fn subject(revision: u8) -> Subject {
-    Subject::new(&brushwork_protocol::models::MOTION_MIND_3, FirmwareGeneration::MotionMind { revision })
+    Subject::new(&brushwork_mcp_wire::models::MOTION_MIND_3, FirmwareGeneration::MotionMind { revision })
 }
 
 const OPTIONS: WriteOptions = WriteOptions { own_stream: None, simulated: false, as_read: false };

@@ -14,17 +14,17 @@ use brushwork_link::settings::{
     restore_defaults, save_eeprom, write,
 };
 use brushwork_link::{Failure, UnitAddress, Wire};
-use brushwork_protocol::motion_mind::{
+use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
+use brushwork_motion_mind_sim::{MotionMind, MotionMindBus, MotionMindConfig};
+use brushwork_motion_mind_wire::{
     Address, Command, FrameEvent, FrameReader, LineEvent, LineReader, Mode, Protocol, encode_frame,
     encode_line, function,
 };
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
-use brushwork_sim::faults::Fault;
-use brushwork_sim::machine::{Machine, StreamIndex};
-use brushwork_sim::motion_mind::{MotionMind, MotionMindBus, MotionMindConfig};
-use brushwork_sim::world::{WorldAction, WorldView};
+use brushwork_plant::faults::Fault;
+use brushwork_plant::machine::{Machine, StreamIndex};
+use brushwork_plant::world::{WorldAction, WorldView};
 use brushwork_tests::virtual_link::VirtualLink;
+use brushwork_values::Motor;
 
 /// Registers by number.
 const POSITION: u8 = 0;
@@ -421,7 +421,7 @@ fn nothing_moves_unarmed_by_whatever_request() {
         drive(&link, DriveCommand::duty(0.5));
         drive(&link, speed(2_000));
         for (command, value) in [(0x14_u8, 500), (0x15, 5_000), (0x16, 5_000), (0x17, 50)] {
-            let values = vec![brushwork_protocol::packet_serial::Value::Int(value)];
+            let values = vec![brushwork_values::Value::Int(value)];
             link.ask(Request::Transact { id: command.into(), command, values });
         }
         let typed: [&[u8]; 2] = match protocol {
@@ -723,7 +723,7 @@ fn connected_subject(link: &Link) -> brushwork_link::settings::Subject {
     let facts = link.bus(|tapped| tapped.bus.motion_minds()[0].read_one(17));
     let revision = u8::try_from(facts).expect("a revision is small");
     brushwork_link::settings::Subject::new(
-        &brushwork_protocol::models::MOTION_MIND_3,
+        &brushwork_mcp_wire::models::MOTION_MIND_3,
         brushwork_link::FirmwareGeneration::MotionMind { revision },
     )
 }
@@ -827,7 +827,7 @@ fn the_motor_is_stopped_before_what_stops_it_anyway() {
     assert!(link.arm(ArmScope::Pwm));
     drive(&link, DriveCommand::duty(0.5));
     link.run_for(ms(500));
-    let values = [PTERM.into(), 5_000].map(brushwork_protocol::packet_serial::Value::Int).to_vec();
+    let values = [PTERM.into(), 5_000].map(brushwork_values::Value::Int).to_vec();
     link.ask(Request::Transact { id: 1, command: 0x19, values });
     link.run_for(ms(500));
     assert!(
@@ -971,8 +971,7 @@ fn every_example_of_the_manual_goes_through_the_link_as_its_bytes_and_is_answere
             }
             link.events.clear();
             heard.lock().unwrap().clear();
-            let values =
-                values.iter().map(|value| brushwork_protocol::packet_serial::Value::Int(*value)).collect();
+            let values = values.iter().map(|value| brushwork_values::Value::Int(*value)).collect();
             link.ask(Request::Transact { id: 7, command: *command, values });
             link.run_for(ms(400));
             let result = link.events.iter().find_map(|(_, event)| match event {

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use brushwork_link::transport::{SerialTransport, Transport as _};
-use brushwork_protocol::crc::crc16_xmodem;
-use brushwork_protocol::packet_serial::{Generation, number};
-use brushwork_sim::controller::{Content, Controller};
+use brushwork_mcp_sim::controller::Controller;
+use brushwork_mcp_wire::crc::crc16_xmodem;
+use brushwork_mcp_wire::packet_serial::{Generation, number};
+use brushwork_plant::world::Content;
 use brushwork_tests::program::{Ending, Program};
 use brushwork_tests::simulated::{OnPty, is_at_rest, is_driven};
 use brushwork_tests::wait::LIMIT;

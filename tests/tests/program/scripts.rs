@@ -7,13 +7,15 @@ use std::time::Duration;
 use brushwork_link::device::{ArmScope, DeviceOptions, DisarmReason, Event, JobEnding, JobReport, Request};
 use brushwork_link::script::{Autorun, Downloaded, Origin, ScriptImage, Verified, autorun_job, download_job};
 use brushwork_link::{Failure, Interruption, Stream};
-use brushwork_protocol::packet_serial::{Generation, Value, number};
+use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
+use brushwork_mcp_wire::packet_serial::{Generation, number};
+use brushwork_plant::faults::Fault;
+use brushwork_plant::machine::StreamIndex;
+use brushwork_plant::world::WorldAction;
+use brushwork_plant::world::{Content, ScriptRun};
 use brushwork_script::{image, mcl};
-use brushwork_sim::controller::{Bus, Content, Controller, ControllerConfig, ScriptRun};
-use brushwork_sim::faults::Fault;
-use brushwork_sim::machine::StreamIndex;
-use brushwork_sim::world::WorldAction;
 use brushwork_tests::virtual_link::VirtualLink;
+use brushwork_values::Value;
 
 /// Drives both motors at 30 % and says so again each millisecond.
 const DRIVES: &str = "main\npower2 9830,655359,9830,655359\npause 1\ngoto main\n";

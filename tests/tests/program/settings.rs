@@ -10,12 +10,13 @@ use brushwork_link::settings::{
     Subject, WriteOptions, diff, read_all, reload, restore_defaults, save_eeprom, write,
 };
 use brushwork_link::{Stream, Wire};
-use brushwork_protocol::models::{self, Family, Model};
-use brushwork_protocol::packet_serial::{Address, Generation, number};
-use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
-use brushwork_sim::faults::{Fault, Faulty};
-use brushwork_sim::machine::StreamIndex;
-use brushwork_sim::world::{PinSignal, WorldAction};
+use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::models::{Family, Model};
+use brushwork_mcp_wire::packet_serial::{Address, Generation, number};
+use brushwork_plant::faults::{Fault, Faulty};
+use brushwork_plant::machine::StreamIndex;
+use brushwork_plant::world::{PinSignal, WorldAction};
 use brushwork_tests::virtual_line::{HiddenOf, VirtualLine};
 
 const OPTIONS: WriteOptions = WriteOptions { own_stream: Some(Stream::Usb), simulated: true, as_read: false };

@@ -14,15 +14,17 @@ use brushwork_link::settings::{
     restore_defaults, write,
 };
 use brushwork_link::{Failure, FirmwareGeneration, Stream, UnitAddress, Wire};
-use brushwork_protocol::models::{self, MOTION_MIND_3, Model};
-use brushwork_protocol::motion_mind::{Address as MindAddress, Mode, Protocol, REGISTERS, Register};
-use brushwork_protocol::packet_serial::{Address, Generation, Kind, lookup};
-use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
-use brushwork_sim::machine::StreamIndex;
-use brushwork_sim::motion_mind::{MotionMind, MotionMindBus, MotionMindConfig};
-use brushwork_sim::settings::Settings;
+use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
+use brushwork_mcp_sim::settings::Settings;
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::models::{MOTION_MIND_3, Model};
+use brushwork_mcp_wire::packet_serial::{Address, Generation, lookup};
+use brushwork_motion_mind_sim::{MotionMind, MotionMindBus, MotionMindConfig};
+use brushwork_motion_mind_wire::{Address as MindAddress, Mode, Protocol, REGISTERS, Register};
+use brushwork_plant::machine::StreamIndex;
 use brushwork_tests::virtual_line::{HiddenOf, VirtualLine};
 use brushwork_tests::virtual_link::VirtualLink;
+use brushwork_values::Kind;
 
 /// Random states of each model and generation.
 const STATES: u64 = 3;

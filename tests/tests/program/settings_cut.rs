@@ -11,13 +11,13 @@ use brushwork_link::settings::{
     SettingsImage, SettingsTable, Subject, WriteOptions, WriteReport, read_all, save_kept, write, write_kept,
 };
 use brushwork_link::{Clock, Failure, Stream, Transport, TransportError};
-use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::{Address, Generation, number};
-use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
-use brushwork_sim::faults::{Direction, Fault, FaultEffect, Faulty};
-use brushwork_sim::machine::{Machine as _, StreamIndex};
-use brushwork_sim::settings::{Image, ROW_BYTES, ROW_WRITE_TIME};
-use brushwork_sim::world::WorldAction;
+use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
+use brushwork_mcp_sim::settings::{Image, ROW_BYTES, ROW_WRITE_TIME};
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::packet_serial::{Address, Generation, number};
+use brushwork_plant::faults::{Direction, Fault, FaultEffect, Faulty};
+use brushwork_plant::machine::{Machine as _, StreamIndex};
+use brushwork_plant::world::WorldAction;
 use brushwork_tests::virtual_line::VirtualLine;
 
 const OPTIONS: WriteOptions =

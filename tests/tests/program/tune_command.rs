@@ -6,17 +6,18 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use brushwork::tune::file;
-use brushwork_protocol::packet_serial::{Generation, Motor};
-use brushwork_sim::controller::ControllerConfig;
-use brushwork_sim::machine::StreamIndex;
-use brushwork_sim::motion::MotionSettings;
-use brushwork_sim::settings::Settings;
-use brushwork_sim::world::WorldAction;
+use brushwork_mcp_sim::controller::ControllerConfig;
+use brushwork_mcp_sim::motion::MotionSettings;
+use brushwork_mcp_sim::settings::Settings;
+use brushwork_mcp_wire::packet_serial::Generation;
+use brushwork_plant::machine::StreamIndex;
+use brushwork_plant::world::WorldAction;
 use brushwork_tests::program::{Ending, Program};
 use brushwork_tests::simulated::{OnPty, is_driven};
 use brushwork_tests::wait::LIMIT;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::report::{Report, Verdict};
+use brushwork_values::Motor;
 use tempfile::TempDir;
 
 const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");

@@ -8,19 +8,20 @@ use brushwork::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
 use brushwork_link::device::{ArmScope, DeviceOptions, Event, FnJob, Job, JobEnding, Request};
 use brushwork_link::settings::{Act, Ending, Entry, Keeper, SettingsTable, Subject, WriteOptions, save_kept};
 use brushwork_link::{Failure, Stream};
-use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::{Address, Generation, Motor, Request as Packet, number};
-use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
-use brushwork_sim::machine::{Machine, StreamIndex};
-use brushwork_sim::motion::MotionSettings;
-use brushwork_sim::plant::{EncoderKind, StopKind, TravelParams};
-use brushwork_sim::presets;
-use brushwork_sim::world::WorldAction;
+use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
+use brushwork_mcp_sim::motion::MotionSettings;
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::packet_serial::{Address, Generation, Request as Packet, number};
+use brushwork_plant::machine::{Machine, StreamIndex};
+use brushwork_plant::presets;
+use brushwork_plant::world::WorldAction;
+use brushwork_plant::{EncoderKind, StopKind, TravelParams};
 use brushwork_tests::virtual_link::VirtualLink;
 use brushwork_tuning::axis::{EncoderClass, Setup};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::tune::{Excitation, Method, Request as Tuning};
+use brushwork_values::Motor;
 
 const TARGET: Target =
     Target { motor: Motor::M1, encoder: Some(EncoderClass::Quadrature), stream: Some(Stream::Usb) };

@@ -8,16 +8,16 @@ use brushwork::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
 use brushwork_link::device::{ArmScope, DeviceOptions, Event, FamilyChoice, Job, JobEnding, Request};
 use brushwork_link::settings::{Ending, Entry, Keeper, Subject};
 use brushwork_link::{Failure, FirmwareGeneration};
-use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::machine::Machine;
-use brushwork_sim::motion_mind::{Mode, MotionMind, MotionMindBus, MotionMindConfig, Protocol};
-use brushwork_sim::world::WorldAction;
+use brushwork_mcp_wire::models;
+use brushwork_motion_mind_sim::{Mode, MotionMind, MotionMindBus, MotionMindConfig, Protocol};
+use brushwork_plant::machine::Machine;
+use brushwork_plant::world::WorldAction;
 use brushwork_tests::virtual_link::VirtualLink;
 use brushwork_tuning::axis::{EncoderClass, Setup};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::tune::{Method, Request as Tuning};
+use brushwork_values::Motor;
 
 const TARGET: Target = Target { motor: Motor::M1, encoder: Some(EncoderClass::Quadrature), stream: None };
 /// The registers that a run touches.

@@ -12,13 +12,13 @@ use brushwork_link::device::{
 };
 use brushwork_link::settings::{Keeper, Subject};
 use brushwork_link::{Clock, Transport, TransportError, VirtualClock};
-use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::Motor as Channel;
+use brushwork_mcp_wire::models;
 use brushwork_tests::other_controller::{Manner, Motor, OtherController};
 use brushwork_tuning::axis::Setup;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::tune::{Excitation, Method, Request as Tuning};
+use brushwork_values::Motor as Channel;
 
 const TARGET: Target = Target { motor: Channel::M1, encoder: None, stream: None };
 

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
-use brushwork_protocol::packet_serial::{Address, Generation, Request};
+use brushwork_mcp_wire::packet_serial::{Address, Generation, Request};
 use brushwork_tests::foreign::is_left_out;
 use brushwork_tests::hands::{Hands, Key};
 use brushwork_tests::program::{Ending, Program};

@@ -2,11 +2,12 @@
 
 use crate::packet::Carrier;
 use crate::population::{Draw, LinkParams};
-use brushwork_protocol::packet_serial::{Address, Generation, ReplyProgress, Request, Values, parse_reply};
-use brushwork_sim::controller::Controller;
-use brushwork_sim::machine::StreamIndex;
-use brushwork_sim::world::{WorldAction, WorldView};
+use brushwork_mcp_sim::controller::Controller;
+use brushwork_mcp_wire::packet_serial::{Address, Generation, ReplyProgress, Request, parse_reply};
+use brushwork_plant::machine::StreamIndex;
+use brushwork_plant::world::{WorldAction, WorldView};
 use brushwork_tuning::axis::{AxisError, Exchange};
+use brushwork_values::Values;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use std::time::Duration;

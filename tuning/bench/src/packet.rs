@@ -3,12 +3,13 @@
 //! The device thread of the program and the simulated link of the benchmark both carry them, so that what is measured is what is
 //! shipped.
 
-use brushwork_protocol::packet_serial::status::{Condition, decode};
-use brushwork_protocol::packet_serial::{Generation, Motor, Values, number, scale};
+use brushwork_mcp_wire::packet_serial::status::{Condition, decode};
+use brushwork_mcp_wire::packet_serial::{Generation, number, scale};
 use brushwork_tuning::axis::{
     Axis, AxisError, EncoderClass, Exchange, PositionRegisters, Sample, Setup, Status, VelocityRegisters,
     Want,
 };
+use brushwork_values::{Motor, Values};
 use std::collections::BTreeSet;
 use std::time::Duration;
 

@@ -1,14 +1,14 @@
 //! The motors of the benchmark: eight kinds of machines, their figures drawn log-uniformly from the ranges of the field.
 
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::controller::{Controller, ControllerConfig};
-use brushwork_sim::motion::{ControlLaw, VelocityEstimate};
-use brushwork_sim::plant::{
+use brushwork_mcp_sim::controller::{Controller, ControllerConfig};
+use brushwork_mcp_sim::motion::{ControlLaw, VelocityEstimate};
+use brushwork_mcp_sim::settings::Settings;
+use brushwork_plant::world::{Wiring, WorldParams};
+use brushwork_plant::{
     AxisParams, BoardParams, CouplingParams, Datasheet, EncoderKind, EncoderParams, GearParams, ShaftSide,
     SupplyParams,
 };
-use brushwork_sim::settings::Settings;
-use brushwork_sim::world::{Wiring, WorldParams};
+use brushwork_values::Motor;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use serde::{Deserialize, Serialize};

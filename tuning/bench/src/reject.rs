@@ -3,7 +3,7 @@
 use crate::population::Specimen;
 use crate::run::Judgement;
 use crate::truth::Truth;
-use brushwork_sim::plant::ShaftSide;
+use brushwork_plant::ShaftSide;
 use brushwork_tuning::tune::Method;
 
 /// Highest true sensitivity and duty noise that are accepted.

@@ -7,15 +7,15 @@ use crate::population::Specimen;
 use crate::reject::{MOST_MS, most_overshoot};
 use crate::trial::{Outcome, Registers, linear};
 use crate::truth::Truth;
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::controller::Controller;
-use brushwork_sim::plant::EncoderKind;
+use brushwork_mcp_sim::controller::Controller;
+use brushwork_plant::EncoderKind;
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::linear::{LoopPlant, Margins};
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::rig::GuardOptions;
 use brushwork_tuning::tune::{Excitation, Method, Request, tune};
+use brushwork_values::Motor;
 
 /// An axis over the simulated machine.
 pub type SimulatedAxis = PacketAxis<SimulatedLine>;

@@ -2,18 +2,19 @@
 
 use crate::population::Specimen;
 use crate::truth::Truth;
-use brushwork_sim::bridge::BridgeOutput;
-use brushwork_sim::motion::{
+use brushwork_mcp_sim::motion::{
     Buffering, Channel, Conditions, EncoderInput, Measured, MotionCommand, MotionSettings, PositionMove,
     PositionTarget,
 };
-use brushwork_sim::plant::{EncoderKind, EncoderReading, ShaftSide};
-use brushwork_sim::world::{Motor, World, WorldAction};
+use brushwork_plant::bridge::BridgeOutput;
+use brushwork_plant::world::{World, WorldAction};
+use brushwork_plant::{EncoderKind, EncoderReading, ShaftSide};
 use brushwork_tuning::axis::{PositionRegisters, VelocityRegisters};
 use brushwork_tuning::linear::{LoopPlant, Margins};
 use brushwork_tuning::model::Gains;
 use brushwork_tuning::registers::{gains_of, position_registers, velocity_registers};
 use brushwork_tuning::score::{LOAD_STEP_DUTY, Score, VELOCITY_STEP, horizon_s, position_step};
+use brushwork_values::Motor;
 
 /// Registers to be tried.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,8 @@
 //! What a plant really is, linearly: the detailed axis, its battery, its firmware's filter and delay, exact at the tick.
 
 use crate::population::Specimen;
-use brushwork_sim::motion::{GainTiming, VelocityEstimate};
-use brushwork_sim::plant::{AxisParams, ShaftSide};
+use brushwork_mcp_sim::motion::{GainTiming, VelocityEstimate};
+use brushwork_plant::{AxisParams, ShaftSide};
 use brushwork_tuning::linear::{DiscretePlant, LoopPlant};
 use brushwork_tuning::model::{Lag, LoopLaw};
 use nalgebra::{DMatrix, DVector};

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use brushwork_link::device::Event;
-use brushwork_protocol::packet_serial::Generation;
+use brushwork_mcp_wire::packet_serial::Generation;
 
 use super::super::interrupt::Interrupt;
 use super::Effort;

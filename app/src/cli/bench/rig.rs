@@ -7,10 +7,10 @@ use std::time::{Duration, Instant};
 use brushwork_link::device::{Addresses, DeviceHandle, DeviceOptions, DeviceThread, Event, PollRate};
 use brushwork_link::transport::{SerialTransport, Stream, TcpTransport, Transport};
 use brushwork_link::{Clock, SystemClock};
-use brushwork_protocol::packet_serial::{Address, Generation};
-use brushwork_sim::controller::{Bus, Controller, ControllerConfig, turnaround};
-use brushwork_sim::machine::StreamIndex;
-use brushwork_sim::server::{Endpoint, Server, ServerOptions, SimHandle};
+use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig, turnaround};
+use brushwork_mcp_wire::packet_serial::{Address, Generation};
+use brushwork_plant::machine::StreamIndex;
+use brushwork_plant::server::{Endpoint, Server, ServerOptions, SimHandle};
 
 use super::super::interrupt::Interrupt;
 use super::tap::{Log, Tap};

@@ -2,12 +2,14 @@
 
 use std::time::Duration;
 
-use brushwork_protocol::packet_serial::{Address, Generation, Motor, Request, number};
+use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
+use brushwork_mcp_wire::packet_serial::{Address, Generation, Request, number};
+use brushwork_plant::machine::{Machine as _, StreamIndex};
+use brushwork_plant::presets;
+use brushwork_plant::presets::Preset;
+use brushwork_plant::server::measure_speed;
 use brushwork_script::{image, mcl};
-use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
-use brushwork_sim::machine::{Machine as _, StreamIndex};
-use brushwork_sim::presets::{self, Preset};
-use brushwork_sim::server::measure_speed;
+use brushwork_values::Motor;
 
 use super::Effort;
 use super::figure::{Figure, Target};

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use brushwork_link::Failure;
 use brushwork_link::device::{Addresses, DeviceHandle, PollRate, Request};
 use brushwork_link::transport::{ConnectTarget, PortInfo};
-use brushwork_protocol::packet_serial::{Generation, number};
+use brushwork_mcp_wire::packet_serial::{Generation, number};
 use crossbeam_channel::{Receiver, bounded};
 use egui::Key;
 
@@ -213,7 +213,7 @@ fn commands(noted: &Noted) -> Option<u8> {
 
 /// Whether a write holds duty 0 for both motors, alone or behind the end of a script.
 fn is_stop(noted: &Noted) -> bool {
-    let start = [brushwork_protocol::packet_serial::Address::DEFAULT.get(), number::DUTY_ACCEL_BOTH];
+    let start = [brushwork_mcp_wire::packet_serial::Address::DEFAULT.get(), number::DUTY_ACCEL_BOTH];
     noted.request.windows(start.len()).any(|bytes| bytes == start)
 }
 

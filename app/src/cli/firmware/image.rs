@@ -1,8 +1,8 @@
 //! `brushwork firmware image`: an image for simulated controllers.
 
-use brushwork_protocol::loader::SimulatedImage;
-use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::Generation;
+use brushwork_mcp_wire::loader::SimulatedImage;
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::packet_serial::Generation;
 
 use super::args::ImageArgs;
 use crate::cli::exit::Exit;

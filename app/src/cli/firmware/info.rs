@@ -1,9 +1,9 @@
 //! `brushwork firmware info`: what is installed and what is known about it.
 
 use brushwork_link::device::PollRate;
-use brushwork_protocol::loader::image_sizes;
-use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::known::{Quirk, generation_text, quirks};
+use brushwork_mcp_wire::loader::image_sizes;
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::packet_serial::known::{Quirk, generation_text, quirks};
 use serde_json::json;
 
 use super::args::InfoArgs;

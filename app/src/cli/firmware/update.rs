@@ -9,8 +9,8 @@ use brushwork_link::device::{Event, Request};
 use brushwork_link::firmware::{Progress, RESUME_NOTE, RiskAccepted, Sent, risks, suit};
 use brushwork_link::settings::Act;
 use brushwork_link::transport::ConnectTarget;
-use brushwork_protocol::loader::{Image, SimulatedImage};
-use brushwork_protocol::models;
+use brushwork_mcp_wire::loader::{Image, SimulatedImage};
+use brushwork_mcp_wire::models;
 use crossbeam_channel::RecvTimeoutError;
 
 use super::args::UpdateArgs;

@@ -2,13 +2,14 @@
 
 use std::time::Duration;
 
-use brushwork_protocol::crc::crc16_xmodem;
-use brushwork_protocol::packet_serial::{Address, number};
+use brushwork_mcp_sim::controller::{Controller, ControllerConfig};
+use brushwork_mcp_wire::crc::crc16_xmodem;
+use brushwork_mcp_wire::packet_serial::{Address, number};
+use brushwork_plant::machine::StreamIndex;
+use brushwork_plant::world::ScriptRun;
 use brushwork_script::image;
 use brushwork_script::program::Program;
 use brushwork_script::vm::{Machine, State};
-use brushwork_sim::controller::{Controller, ControllerConfig, ScriptRun};
-use brushwork_sim::machine::StreamIndex;
 
 use super::args::RunArgs;
 use crate::session::sim_spec::{SimOptions, SimSpec};

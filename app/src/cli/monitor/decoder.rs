@@ -6,10 +6,11 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use brushwork_protocol::crc::crc16_xmodem;
-use brushwork_protocol::packet_serial::{
-    self, Address, DiscardReason, Effect, Framed, FramerEvent, Generation, PACKET_GAP, ReplyProgress,
-    Request, RequestFramer, describe_event, describe_reply, parse_reply,
+use brushwork_mcp_wire::crc::crc16_xmodem;
+use brushwork_mcp_wire::packet_serial;
+use brushwork_mcp_wire::packet_serial::{
+    Address, DiscardReason, Effect, Framed, FramerEvent, Generation, PACKET_GAP, ReplyProgress, Request,
+    RequestFramer, describe_event, describe_reply, parse_reply,
 };
 
 use super::record::{Direction, Record};
@@ -348,7 +349,8 @@ fn record(at: Duration, direction: Direction, bytes: Vec<u8>, text: String) -> R
 
 #[cfg(test)]
 mod tests {
-    use brushwork_protocol::packet_serial::{Value, encode_reply, number};
+    use brushwork_mcp_wire::packet_serial::{encode_reply, number};
+    use brushwork_values::Value;
 
     use super::*;
 

@@ -139,7 +139,7 @@ mod tests {
     #[test]
     fn a_packet_may_go_over_lines_and_a_bad_one_costs_only_its_own() {
         // 0x80, command 28 with D 0.25, P 1, I 0.5, QPPS 44000 and its CRC, over three lines.
-        let crc = brushwork_protocol::crc::crc16_xmodem(&[
+        let crc = brushwork_mcp_wire::crc::crc16_xmodem(&[
             0x80, 28, 0, 0, 0x40, 0, 0, 1, 0, 0, 0, 0, 0x80, 0, 0, 0, 0xAB, 0xE0,
         ]);
         let text =

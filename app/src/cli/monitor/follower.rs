@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use brushwork_link::device::FamilyChoice;
-use brushwork_protocol::motion_mind::ACK as MIND_ACK;
-use brushwork_protocol::packet_serial::{ACK, Address, Generation, PACKET_GAP, Request, number, scale};
+use brushwork_mcp_wire::packet_serial::{ACK, Address, Generation, PACKET_GAP, Request, number, scale};
+use brushwork_motion_mind_wire::ACK as MIND_ACK;
 
 use super::args::MonitorArgs;
 use super::decoder::Decoder;

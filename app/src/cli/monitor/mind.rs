@@ -6,7 +6,7 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use brushwork_protocol::motion_mind::{
+use brushwork_motion_mind_wire::{
     Address, Command, Effect, FrameEvent, FrameReader, LineEvent, LineReader, Progress, Protocol, Returns,
     checksum, describe_command, describe_reply, encode_frame, encode_line, function, parse_frame_reply,
     parse_line_reply, register_named,

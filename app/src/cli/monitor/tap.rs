@@ -11,7 +11,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use brushwork_link::transport::{Transport, TransportError};
-use brushwork_sim::server::{self, Endpoint, Heard, Line};
+use brushwork_plant::server;
+use brushwork_plant::server::{Endpoint, Heard, Line};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
 use super::args::MonitorArgs;

@@ -11,7 +11,7 @@ use brushwork_link::device::{
 };
 use brushwork_link::settings::{Keeper, Profile, ReadReport, SettingsImage, Subject, WriteOptions, read_all};
 use brushwork_link::transport::list_ports;
-use brushwork_protocol::models;
+use brushwork_mcp_wire::models;
 use crossbeam_channel::bounded;
 
 use super::cut_short;

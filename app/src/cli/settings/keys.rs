@@ -64,8 +64,8 @@ fn closest<'t>(table: &'t SettingsTable, key: &str) -> Option<&'t str> {
 #[cfg(test)]
 mod tests {
     use brushwork_link::settings::{SettingValue, Subject};
-    use brushwork_protocol::models;
-    use brushwork_protocol::packet_serial::Generation;
+    use brushwork_mcp_wire::models;
+    use brushwork_mcp_wire::packet_serial::Generation;
 
     use super::*;
 

@@ -7,14 +7,14 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use brushwork_protocol::canopen::adapter::Form;
-use brushwork_protocol::models::MODELS;
-use brushwork_protocol::packet_serial::Address;
-use brushwork_sim::controller::Bus;
-use brushwork_sim::faults::{FAULT_SYNTAX, Fault};
-use brushwork_sim::machine::{Machine, StreamIndex};
-use brushwork_sim::presets::presets;
-use brushwork_sim::server::{Endpoint, Server, ServerOptions, SimHandle};
+use brushwork_mcp_sim::controller::Bus;
+use brushwork_mcp_wire::canopen::adapter::Form;
+use brushwork_mcp_wire::models::MODELS;
+use brushwork_mcp_wire::packet_serial::Address;
+use brushwork_plant::faults::{FAULT_SYNTAX, Fault};
+use brushwork_plant::machine::{Machine, StreamIndex};
+use brushwork_plant::presets::presets;
+use brushwork_plant::server::{Endpoint, Server, ServerOptions, SimHandle};
 
 use crossbeam_channel::Receiver;
 

@@ -1,7 +1,8 @@
 //! `brushwork sim --model motion-mind-3`: simulated units of the second family.
 
-use brushwork_protocol::motion_mind::{Address, Mode, Protocol};
-use brushwork_sim::motion_mind::{MotionMindBus, assumed::REVISION};
+use brushwork_motion_mind_sim::MotionMindBus;
+use brushwork_motion_mind_sim::assumed::REVISION;
+use brushwork_motion_mind_wire::{Address, Mode, Protocol};
 
 use super::super::args::{ProtocolArg, SimArgs};
 use crate::session::motion_mind_spec::{MODEL, MotionMindSpec, preset};

@@ -3,10 +3,10 @@
 use std::io;
 use std::thread;
 
-use brushwork_sim::controller::Bus;
-use brushwork_sim::machine::Machine;
-use brushwork_sim::server::SimHandle;
-use brushwork_sim::world::WorldAction;
+use brushwork_mcp_sim::controller::Bus;
+use brushwork_plant::machine::Machine;
+use brushwork_plant::server::SimHandle;
+use brushwork_plant::world::WorldAction;
 use crossbeam_channel::{Receiver, bounded};
 
 use super::super::args::SimArgs;

@@ -1,6 +1,6 @@
 //! The registers of a Motion Mind in a report: what is there, what is proposed.
 
-use brushwork_protocol::motion_mind::FUNCTION_BITS;
+use brushwork_motion_mind_wire::FUNCTION_BITS;
 use brushwork_tuning::motion_mind::MotionMindLaw;
 use brushwork_tuning::report::Report;
 

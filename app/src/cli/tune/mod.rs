@@ -9,11 +9,11 @@ use std::time::{Duration, Instant};
 
 use brushwork_link::device::{ArmScope, Event, Job, JobEnding, JobOutput, Request};
 use brushwork_link::settings::SettingsTable;
-use brushwork_protocol::packet_serial::Motor;
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::rig::GuardOptions;
 use brushwork_tuning::tune::{Excitation, Method, Request as TuneRequest};
+use brushwork_values::Motor;
 
 use super::client::{Client, arm, ask};
 use super::exit::Exit;

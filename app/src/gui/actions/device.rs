@@ -1,7 +1,7 @@
 //! The Device menu (MCP manual 1.2.8) with Ion Studio's keys, and what is new: links, arming, encoders.
 
 use brushwork_link::device::ArmScope;
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 use egui::Key;
 
 use super::{Action, Keys, Menu, Ready, always, connected, ctrl, ctrl_shift, key, place, settings_idle};

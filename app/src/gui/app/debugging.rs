@@ -149,7 +149,7 @@ impl App {
         self.model.mcl.front_mut()
     }
 
-    fn set_pace(&mut self, pace: brushwork_sim::server::Pace) {
+    fn set_pace(&mut self, pace: brushwork_plant::server::Pace) {
         let id = self.model.front.id();
         let now_s = self.links.device(id).map_or(0.0, |device| device.now().as_secs_f64());
         if let Some(world) = self.links.get(id).and_then(|link| link.world.as_ref()) {

@@ -14,7 +14,7 @@ use crate::keep::TrialKeeper;
 use crate::tune::file;
 use brushwork_link::device::Request;
 use brushwork_link::settings::{SettingValue, SettingsImage};
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 
 impl App {
     pub(super) fn tune(&mut self, wish: TuneWish) {

@@ -1,7 +1,7 @@
 //! Run, pause, step; the world's time; and the sentence that says why the script is where it is.
 
+use brushwork_plant::server::Pace;
 use brushwork_script::debug::{Reason, StepKind};
-use brushwork_sim::server::Pace;
 use egui::{ComboBox, RichText, Ui};
 
 use super::wish::DebugWish;

@@ -1,7 +1,7 @@
 //! What a person can ask of the debugger.
 
+use brushwork_plant::server::Pace;
 use brushwork_script::debug::StepKind;
-use brushwork_sim::server::Pace;
 
 /// One wish.
 #[derive(Clone, Copy, Debug, PartialEq)]

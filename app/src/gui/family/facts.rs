@@ -3,9 +3,9 @@
 use std::fmt;
 
 use brushwork_link::device::{ArmScope, Channel, Drive, Identity, StatusReport};
-use brushwork_protocol::packet_serial::Motor;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::tune::Method;
+use brushwork_values::Motor;
 
 use super::words::SettingsWords;
 use crate::gui::model::drawer::Tab;

@@ -1,9 +1,9 @@
 //! MCP and RoboClaw: Ion Studio's screens, thirteen lamps, two motors (MCP manual 1.2).
 
 use brushwork_link::device::{ArmScope, Channel, Drive, Identity, StatusReport};
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_protocol::packet_serial::status::{Condition, Lamp};
+use brushwork_mcp_wire::packet_serial::status::{Condition, Lamp};
 use brushwork_tuning::tune::Method;
+use brushwork_values::Motor;
 
 use super::facts::{Ability, Family, Figure, Figures, Sign, Sliders};
 use super::words::{self, SettingsWords};

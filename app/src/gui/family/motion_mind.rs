@@ -2,10 +2,10 @@
 //! (Motion Mind manual, chapters 4 and 6).
 
 use brushwork_link::device::{ArmScope, Channel, Drive, Identity, StatusReport};
-use brushwork_protocol::motion_mind::Mode;
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_motion_mind_wire::Mode;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::tune::Method;
+use brushwork_values::Motor;
 
 use super::facts::{Ability, Family, Figure, Figures, Sign, Sliders};
 use super::words::{self, SettingsWords};
@@ -252,7 +252,7 @@ mod tests {
     use std::time::Duration;
 
     use brushwork_link::device::Conditions;
-    use brushwork_protocol::motion_mind::{STATUS_BITS, status as bit};
+    use brushwork_motion_mind_wire::{STATUS_BITS, status as bit};
 
     use super::*;
 

@@ -1,8 +1,8 @@
 //! What the link tells the graph: samples with their own times, and events that become marks.
 
 use brushwork_link::device::{Channel, Drive, DriveCommand, Event, Sample};
-use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_mcp_wire::models;
+use brushwork_values::Motor;
 
 use super::live::LiveGraph;
 use super::marks::MarkKind;

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use brushwork_protocol::motion_mind::{BitEntry, CommandEntry, RegisterEntry, reference};
+use brushwork_motion_mind_wire::{BitEntry, CommandEntry, RegisterEntry, reference};
 use egui::{Label, RichText, Ui};
 
 use super::reference::{Entry, list_ui};

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use brushwork_link::settings::{ReferenceForm, ReferenceRow, reference};
-use brushwork_protocol::packet_serial::{COMMANDS, reference as protocol};
+use brushwork_mcp_wire::packet_serial::{COMMANDS, reference as protocol};
 use egui::{Atom, Button, Grid, Label, Panel, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
 use super::{note_ui, scrolled_ui};
@@ -96,7 +96,7 @@ const STATUS: &str = "status word";
 pub fn packet_serial_ui(ui: &mut Ui, help: &mut Help) {
     static ENTRIES: OnceLock<Vec<Entry>> = OnceLock::new();
     let entries = ENTRIES.get_or_init(|| {
-        let of_command = |command: &brushwork_protocol::packet_serial::Command| Entry {
+        let of_command = |command: &brushwork_mcp_wire::packet_serial::Command| Entry {
             key: command.key.to_owned(),
             title: format!("{} {}", command.number, command.title),
             words: format!("{} {} {}", command.number, command.title, command.key).to_lowercase(),

@@ -3,7 +3,7 @@
 use brushwork_link::device::ArmScope;
 use brushwork_link::diagnosis::Script;
 use brushwork_link::transport::Stream;
-use brushwork_sim::controller::ScriptRun;
+use brushwork_plant::world::ScriptRun;
 use egui::{ComboBox, Label, ProgressBar, RichText, Ui};
 
 use crate::gui::command::{Command, Commands};

@@ -2,8 +2,8 @@
 
 use brushwork_link::transport::PortInfo;
 use brushwork_link::transport::target::DEFAULT_ADAPTER_BAUD;
-use brushwork_protocol::canopen::NodeId;
-use brushwork_protocol::canopen::adapter::Form;
+use brushwork_mcp_wire::canopen::NodeId;
+use brushwork_mcp_wire::canopen::adapter::Form;
 
 /// Baud rates that adapters are often set to.
 pub const ADAPTER_BAUD_RATES: [u32; 6] = [38_400, 57_600, 115_200, 230_400, 460_800, 1_000_000];

@@ -13,8 +13,8 @@ use brushwork_link::diagnosis::{Evidence, Measured, Script};
 use brushwork_link::script::MIN_AUTORUN;
 use brushwork_link::settings::SettingValue;
 use brushwork_link::transport::ConnectTarget;
-use brushwork_sim::controller::ScriptRun;
-use brushwork_sim::world::WorldView;
+use brushwork_plant::world::ScriptRun;
+use brushwork_plant::world::WorldView;
 
 use super::channels::graph_channels;
 use super::drawer::{Drawers, Tab};

@@ -9,8 +9,9 @@ use brushwork_link::device::{Event, FnJob, Identity, Request};
 use brushwork_link::firmware::{Progress, RESUME_NOTE, Sent, risks, suit};
 use brushwork_link::settings::{Act, Profile, ReadReport, Subject, diff, read_all};
 use brushwork_link::transport::Stream;
-use brushwork_protocol::loader::{Image, SimulatedImage};
-use brushwork_protocol::models::{self, Model};
+use brushwork_mcp_wire::loader::{Image, SimulatedImage};
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::models::Model;
 use crossbeam_channel::{Receiver, bounded};
 
 use crate::gui::files::{FileAnswer, FileDialog, FileKind, FileWish};

@@ -1,7 +1,7 @@
 //! The profile generator of the screens that drive: what is set, what runs, and the figures of its last steps.
 
 use brushwork_link::device::{ArmScope, Event, Request};
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 
 use super::watched::Watched;
 use crate::motion::player::{self, JudgedStep, Played};

@@ -1,7 +1,7 @@
 //! What the screens that drive ask of a desk beyond its sliders: a profile to be played, QPPS to be measured.
 
 use brushwork_link::device::{Channel, Event, Request};
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 
 use super::desk::Desk;
 use super::drawer::Tab;

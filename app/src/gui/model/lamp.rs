@@ -1,6 +1,6 @@
 //! One status lamp of a controller: its name and what it says.
 
-use brushwork_protocol::packet_serial::status::Severity;
+use brushwork_mcp_wire::packet_serial::status::Severity;
 
 /// One status lamp.
 #[derive(Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! The states of a controller's status lamps: thirteen of an MCP (MCP manual 1.2.5), others of other families.
 
 use brushwork_link::device::{Identity, StatusReport};
-use brushwork_protocol::packet_serial::status::Lamp;
+use brushwork_mcp_wire::packet_serial::status::Lamp;
 
 use super::lamp::{LampInfo, LampState};
 use crate::gui::family::Family;
@@ -41,8 +41,8 @@ impl Lamps {
 mod tests {
     use std::time::Duration;
 
-    use brushwork_protocol::packet_serial::Generation;
-    use brushwork_protocol::packet_serial::status::Condition;
+    use brushwork_mcp_wire::packet_serial::Generation;
+    use brushwork_mcp_wire::packet_serial::status::Condition;
 
     use super::*;
     use crate::gui::family::{self, FamilyKind};

@@ -9,7 +9,7 @@ use brushwork_link::device::{
 };
 use brushwork_link::exchange::LinkStatistics;
 use brushwork_link::transport::Stream;
-use brushwork_protocol::models;
+use brushwork_mcp_wire::models;
 use std::time::Duration;
 
 use super::lamps::Lamps;

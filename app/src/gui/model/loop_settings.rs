@@ -12,9 +12,9 @@ use brushwork_link::settings::{
     WriteError, WriteOptions, WriteReport, read_some, write_kept_knowing,
 };
 use brushwork_link::transport::Stream;
-use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_mcp_wire::models;
 use brushwork_tuning::axis::EncoderClass;
+use brushwork_values::Motor;
 use crossbeam_channel::{Receiver, bounded};
 
 use super::link::Effect;

@@ -1,7 +1,7 @@
 //! The Position screen's state: where each motor is to go, and how.
 
 use brushwork_link::device::{Drive, DriveCommand};
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 
 use super::setpoints::{Direction, Setpoints};
 

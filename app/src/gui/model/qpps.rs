@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use brushwork_link::device::{Event, Request};
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 
 use super::watched::Watched;
 use crate::motion::qpps::{self, Measured, Task};

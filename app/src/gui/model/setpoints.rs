@@ -1,7 +1,7 @@
 //! What the two sliders of a screen that drives ask for, and when it is sent.
 
 use brushwork_link::device::{Drive, DriveCommand};
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 
 /// Which way a motor is jogged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

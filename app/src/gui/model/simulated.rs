@@ -1,6 +1,7 @@
 //! Which simulated controller the device list offers: a model of either family, and how a Motion Mind's switches stand.
 
-use brushwork_protocol::models::{self, MODELS};
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::models::MODELS;
 
 /// The model that is offered at first.
 pub const FIRST: &str = "mcp266";

@@ -1,7 +1,7 @@
 //! The Velocity screen's state: what speed is asked for, and how fast it may change.
 
 use brushwork_link::device::{Drive, DriveCommand};
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 
 use super::setpoints::{Direction, Setpoints};
 

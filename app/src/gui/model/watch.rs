@@ -9,7 +9,7 @@ use std::time::Duration;
 use brushwork_link::device::{Event, FnJob, Identity, PinSignal, Request, Sample};
 use brushwork_link::diagnosis::{self, PinEnd, Script};
 use brushwork_link::settings::{SettingsImage, SettingsTable, Subject, read_some};
-use brushwork_protocol::models;
+use brushwork_mcp_wire::models;
 use crossbeam_channel::{Receiver, bounded};
 
 /// What the job is called while it runs.

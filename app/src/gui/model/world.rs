@@ -1,6 +1,6 @@
 //! The panel for a simulated controller's world: what its fields hold.
 
-use brushwork_sim::world::WorldView;
+use brushwork_plant::world::WorldView;
 
 /// The panel's own state. What is so in the world is read from its view; the numbers that are typed or dragged are kept
 /// here too, since a view that is a moment old would fight with the hand.

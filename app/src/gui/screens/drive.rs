@@ -2,7 +2,7 @@
 
 use brushwork_link::device::{ArmScope, Channel};
 use brushwork_link::transport::Stream;
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 use egui::{
     Align, ComboBox, Frame, Label, Layout, Margin, RichText, ScrollArea, Stroke, Ui, UiBuilder, vec2,
 };

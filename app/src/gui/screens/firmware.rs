@@ -1,8 +1,9 @@
 //! The firmware window: what is installed and known, an update from a file with its risks, and what became of it.
 
 use brushwork_link::device::Identity;
-use brushwork_protocol::models::{self, MODELS};
-use brushwork_protocol::packet_serial::known::{generation_text, quirks};
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::models::MODELS;
+use brushwork_mcp_wire::packet_serial::known::{generation_text, quirks};
 use egui::{
     Align, Button, ComboBox, Context, Grid, Layout, ProgressBar, Rect, RichText, ScrollArea, Ui, Window, vec2,
 };

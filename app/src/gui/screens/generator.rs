@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 use egui::{Button, ComboBox, Grid, Label, RichText, Ui, vec2};
 
 use super::progress::progress_ui;

@@ -1,7 +1,7 @@
 //! The settings of the control loops: a row for each motor, read when the screen opens, applied to RAM by a button.
 
 use brushwork_link::settings::{Kind, SettingValue};
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 use egui::{Button, Grid, RichText, Ui, vec2};
 
 use crate::gui::command::{Command, Commands};

@@ -2,7 +2,7 @@
 //! the live graph.
 
 use brushwork_link::device::{ArmScope, Channel};
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 use egui::{Label, Ui};
 
 use super::drive::{Output, drive_ui, motor_ui, on_release_ui, options_ui, pace_ui};

@@ -1,7 +1,7 @@
 //! PWM Settings (MCP manual 1.2.11): two duty sliders behind an arm switch, and the live graph.
 
 use brushwork_link::device::{ArmScope, Channel};
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 use egui::Ui;
 
 use super::drive::{Output, drive_ui, motor_ui, on_release_ui, options_ui, pace_ui, sync_ui};

@@ -1,6 +1,6 @@
 //! The guided measurement of QPPS (MCP manual 2.4.5): what it will do, its limits, how far it is, what it found.
 
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 use egui::{Button, Label, RichText, Ui};
 
 use super::progress::progress_ui;

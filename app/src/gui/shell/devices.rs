@@ -2,7 +2,7 @@
 
 use brushwork_link::device::{Addresses, FamilyChoice, Identity};
 use brushwork_link::transport::PortInfo;
-use brushwork_protocol::packet_serial::Address;
+use brushwork_mcp_wire::packet_serial::Address;
 use egui::{
     Align2, ComboBox, Key, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui,
     WidgetInfo, pos2, vec2,

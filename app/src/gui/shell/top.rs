@@ -1,6 +1,6 @@
 //! The row of monitored parameters (MCP manual 1.2.2), in blocks that wrap when the window is narrow.
 
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 use egui::{Label, Role, Ui, WidgetInfo, vec2};
 
 use crate::gui::command::{Command, Commands};

@@ -1,7 +1,8 @@
 //! One raw command of the table: its arguments, the bytes it will send, and what came back.
 
 use brushwork_link::exchange::packet::Permit;
-use brushwork_protocol::packet_serial::{Address, Effect, Field, Generation, hex};
+use brushwork_mcp_wire::packet_serial::{Address, Effect, Generation, hex};
+use brushwork_values::Field;
 use egui::{Grid, Label, RichText, ScrollArea, TextEdit, Ui, vec2};
 
 use crate::gui::command::Commands;

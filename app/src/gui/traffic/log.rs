@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use brushwork_protocol::packet_serial::lookup;
+use brushwork_mcp_wire::packet_serial::lookup;
 use egui::{
     Align2, ComboBox, FontId, Label, RichText, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2,
 };

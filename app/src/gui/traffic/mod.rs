@@ -41,6 +41,6 @@ pub fn traffic_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 }
 
 /// What a screen command is called here, so that others need not know it.
-pub fn send(id: u64, request: brushwork_protocol::packet_serial::Request) -> Command {
+pub fn send(id: u64, request: brushwork_mcp_wire::packet_serial::Request) -> Command {
     Command::Transact { id, command: request.command, values: request.values }
 }

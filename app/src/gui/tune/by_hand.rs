@@ -1,7 +1,7 @@
 //! The assistant for calibration by hand, above the sliders and the graph.
 
 use brushwork_link::device::PollRate;
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 use egui::{Button, Label, RichText, Ui};
 
 use super::calibration::{Advice, Calibration};

@@ -2,7 +2,7 @@
 //!
 //! Each step says what to do, offers the changes it is made of, and says what the motor's last moves speak for.
 
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 
 use super::observe::{Observation, Observer};
 use super::registers::{FIELDS, Registers};

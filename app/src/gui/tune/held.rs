@@ -1,6 +1,6 @@
 //! The gains that the controller of a desk holds.
 
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 
 use super::registers::Registers;
 use crate::gui::model::desk::Desk;

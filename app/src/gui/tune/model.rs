@@ -3,11 +3,11 @@
 use brushwork_link::device::{Event, Identity, Request, Sample};
 use brushwork_link::settings::SettingValue;
 use brushwork_link::transport::Stream;
-use brushwork_protocol::packet_serial::Motor;
 use brushwork_tuning::axis::{EncoderClass, Setup};
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::rig::GuardOptions;
 use brushwork_tuning::tune::{self, Excitation, Method};
+use brushwork_values::Motor;
 
 use super::asked::Asked;
 use super::calibration::Calibration;

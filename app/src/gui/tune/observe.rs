@@ -6,7 +6,7 @@
 use std::collections::VecDeque;
 
 use brushwork_link::device::{Channel, Sample};
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 
 use super::which::Loop;
 

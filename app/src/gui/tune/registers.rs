@@ -4,9 +4,9 @@
 //! table asks no family which one it is.
 
 use brushwork_link::settings::{SettingValue, SettingsImage};
-use brushwork_protocol::packet_serial::Motor;
 use brushwork_tuning::axis::{PositionRegisters, VelocityRegisters};
 use brushwork_tuning::motion_mind::{MotionMindRegisters, bits};
+use brushwork_values::Motor;
 
 use crate::gui::model::loop_settings::{LoopSettings, key};
 

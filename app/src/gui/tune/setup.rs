@@ -1,8 +1,8 @@
 //! What is set before a run: which motor, how stiff, by which method, and how far the axis may go.
 
-use brushwork_protocol::packet_serial::Motor;
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::tune::Method;
+use brushwork_values::Motor;
 use egui::{Button, ComboBox, Label, RichText, Ui};
 
 use super::level::level_ui;

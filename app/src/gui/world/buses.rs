@@ -1,6 +1,6 @@
 //! What scripts talk to: the port's RTS line, the I2C bus, the other end of the CAN stream.
 
-use brushwork_sim::world::{CanPeer, I2cDevice, WorldAction, WorldView};
+use brushwork_plant::world::{CanPeer, I2cDevice, WorldAction, WorldView};
 use egui::{ComboBox, Ui};
 
 use super::{Actions, LABEL_WIDTH, figures_ui, toggle_ui};

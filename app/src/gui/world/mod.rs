@@ -1,6 +1,6 @@
 //! The panel for a simulated controller's world: what a person could do to the machine on the bench.
 
-use brushwork_sim::world::{UnitFault, WorldAction, WorldView};
+use brushwork_plant::world::{UnitFault, WorldAction, WorldView};
 use egui::{RichText, Ui};
 
 use super::command::{Command, Commands};

@@ -1,7 +1,7 @@
 //! One motor of the simulated world: its load, its faults, its limit switches, and the truth about it.
 
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::world::{SwitchKind, WorldAction, WorldView};
+use brushwork_plant::world::{SwitchKind, WorldAction, WorldView};
+use brushwork_values::Motor;
 use egui::{Checkbox, Ui};
 
 use super::{Actions, figures_ui, number, row_ui, toggle_ui};

@@ -1,7 +1,7 @@
 //! The input pins of the simulated world: what is connected to each.
 
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::world::{PinSignal, SwitchKind, WorldAction, WorldView};
+use brushwork_plant::world::{PinSignal, SwitchKind, WorldAction, WorldView};
+use brushwork_values::Motor;
 use egui::{ComboBox, Ui};
 
 use super::motor::name;

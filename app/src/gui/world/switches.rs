@@ -1,6 +1,6 @@
 //! The switches on the board of a simulated controller that has some.
 
-use brushwork_sim::world::{BoardSwitches, WorldAction, WorldView};
+use brushwork_plant::world::{BoardSwitches, WorldAction, WorldView};
 use egui::{ComboBox, Label, RichText, Ui};
 
 use super::{Actions, LABEL_WIDTH, toggle_ui};

@@ -1,6 +1,6 @@
 //! Sliders and what belongs to them, against what the motors really do.
 
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, pos2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};

@@ -10,7 +10,7 @@ mod tuning;
 
 use crate::support::bench::Bench;
 use brushwork::gui::model::screen::Screen;
-use brushwork_sim::settings::Settings;
+use brushwork_mcp_sim::settings::Settings;
 use egui::accesskit::Role;
 use egui::{Key, Theme};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
@@ -329,7 +329,7 @@ fn value_of(settings: &Settings, key: &str) -> i64 {
     }
 }
 
-fn loop_value(motion: &brushwork_sim::motion::MotionSettings, key: &str) -> i64 {
+fn loop_value(motion: &brushwork_mcp_sim::motion::MotionSettings, key: &str) -> i64 {
     match key {
         "velocity_p" => motion.velocity_p_raw.into(),
         "velocity_i" => motion.velocity_i_raw.into(),

@@ -1,11 +1,12 @@
 //! What is done with the widgets that take no value: connection, status, menus, pins.
 
-use brushwork_protocol::codes::{Code, DOUT_ACTIONS, SIGNAL_ACTIONS_GENERATION_1};
-use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::Motor;
-use brushwork_sim::controller::{Controller, ControllerConfig};
-use brushwork_sim::settings::Settings;
-use brushwork_sim::world::{PinSignal, WorldAction};
+use brushwork_mcp_sim::controller::{Controller, ControllerConfig};
+use brushwork_mcp_sim::settings::Settings;
+use brushwork_mcp_wire::codes::{DOUT_ACTIONS, SIGNAL_ACTIONS_GENERATION_1};
+use brushwork_mcp_wire::models;
+use brushwork_plant::world::{PinSignal, WorldAction};
+use brushwork_values::Code;
+use brushwork_values::Motor;
 use egui::Key;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
@@ -73,7 +74,8 @@ fn stop(bench: &mut Bench, row: &Row, name: &str) {
 
 fn zero(bench: &mut Bench, row: &Row, motor: Motor) {
     let count = |bench: &Bench| {
-        let count = |unit: &brushwork_sim::controller::UnitView<'_>| unit.channel(motor).encoder().count();
+        let count =
+            |unit: &brushwork_mcp_sim::controller::UnitView<'_>| unit.channel(motor).encoder().count();
         bench.line.with(|bus| bus.controllers()[0].unit().as_ref().map(count))
     };
     bench.arm();

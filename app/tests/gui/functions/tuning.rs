@@ -2,9 +2,9 @@
 
 use brushwork::gui::model::screen::Screen;
 use brushwork::gui::tune::Loop;
-use brushwork_protocol::packet_serial::Motor;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::Method;
+use brushwork_values::Motor;
 use egui::Key;
 
 use super::{Row, arm};
@@ -65,7 +65,7 @@ fn method(bench: &mut Bench, row: &Row) {
     assert_eq!(chosen, wanted, "{row:?}");
 }
 
-fn settings(bench: &Bench) -> [brushwork_sim::motion::MotionSettings; 2] {
+fn settings(bench: &Bench) -> [brushwork_mcp_sim::motion::MotionSettings; 2] {
     let settings = bench.line.with(|bus| bus.controllers()[0].settings());
     [settings.motors[0].motion, settings.motors[1].motion]
 }

@@ -14,13 +14,14 @@ use brushwork::session::SessionError;
 use brushwork_link::device::{Addresses, DeviceLoop, DeviceOptions, FamilyChoice};
 use brushwork_link::transport::{ConnectTarget, OpenError, PortInfo, Stream};
 use brushwork_link::{Clock as _, Failure, HiddenSettings};
-use brushwork_protocol::packet_serial::{Address, Motor};
+use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
+use brushwork_mcp_wire::packet_serial::Address;
+use brushwork_motion_mind_sim::{Mode, MotionMind, MotionMindBus, MotionMindConfig};
+use brushwork_plant::machine::{Machine, StreamIndex};
+use brushwork_plant::server::Pace;
+use brushwork_plant::world::{WorldAction, WorldView};
 use brushwork_script::debug::{Request as DebugRequest, View, Wanted};
-use brushwork_sim::controller::{Bus, Controller, ControllerConfig};
-use brushwork_sim::machine::{Machine, StreamIndex};
-use brushwork_sim::motion_mind::{Mode, MotionMind, MotionMindBus, MotionMindConfig};
-use brushwork_sim::server::Pace;
-use brushwork_sim::world::{WorldAction, WorldView};
+use brushwork_values::Motor;
 use crossbeam_channel::{Receiver, bounded};
 use egui::Theme;
 use egui::accesskit::Role;
@@ -253,7 +254,7 @@ impl Bench {
     /// The duty of a motor of any unit of the bus.
     pub fn real_duty_of(&self, unit: usize, motor: Motor) -> f64 {
         match self.line.with(|bus| bus.views().remove(unit)).axes[motor.index()].output {
-            brushwork_sim::bridge::BridgeOutput::Duty(duty) => duty,
+            brushwork_plant::bridge::BridgeOutput::Duty(duty) => duty,
             _ => 0.0,
         }
     }
@@ -261,7 +262,7 @@ impl Bench {
     /// The duty a motor's bridge really gets, -1 to 1; 0 for brake and coast.
     pub fn real_duty(&self, motor: Motor) -> f64 {
         match self.truth().axes[motor.index()].output {
-            brushwork_sim::bridge::BridgeOutput::Duty(duty) => duty,
+            brushwork_plant::bridge::BridgeOutput::Duty(duty) => duty,
             _ => 0.0,
         }
     }
@@ -503,7 +504,7 @@ impl SimulatedWorld for MindWorld {
     }
 
     fn unit_at(&self, address: u8) -> Option<usize> {
-        let number = brushwork_protocol::motion_mind::register_named("ADDRESS").map_or(0, |row| row.number);
+        let number = brushwork_motion_mind_wire::register_named("ADDRESS").map_or(0, |row| row.number);
         self.0.with(|bus| {
             bus.motion_minds().iter().position(|unit| unit.read_one(number) == i64::from(address))
         })

@@ -1,10 +1,10 @@
 //! Every cause of standing motors, as a state of the simulated controller: what is done to it and what must be said.
 
-use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::Generation;
-use brushwork_sim::controller::{Controller, ControllerConfig};
-use brushwork_sim::settings::Settings;
-use brushwork_sim::world::{PinSignal, UnitFault, WorldAction};
+use brushwork_mcp_sim::controller::{Controller, ControllerConfig};
+use brushwork_mcp_sim::settings::Settings;
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::packet_serial::Generation;
+use brushwork_plant::world::{PinSignal, UnitFault, WorldAction};
 
 /// One cause.
 pub struct Cause {

@@ -4,9 +4,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use brushwork_link::{Clock as _, Transport, TransportError, VirtualClock};
-use brushwork_sim::controller::Bus;
-use brushwork_sim::machine::{Machine, StreamIndex};
-use brushwork_sim::world::WorldAction;
+use brushwork_mcp_sim::controller::Bus;
+use brushwork_plant::machine::{Machine, StreamIndex};
+use brushwork_plant::world::WorldAction;
 
 use super::lockstep::Gate;
 

@@ -9,7 +9,7 @@
 
 use super::clock::UnitClock;
 use super::fence::Fence;
-use brushwork_protocol::motion_mind::{Command, Part, Protocol, Reply, status};
+use brushwork_motion_mind_wire::{Command, Part, Protocol, Reply, status};
 use brushwork_tuning::axis::{
     Axis, AxisError, EncoderClass, Exchange, FULL_DUTY_RAW, PositionRegisters, Sample, Setup, Status,
     VelocityRegisters, Want,
@@ -592,7 +592,7 @@ mod tests {
 
     #[test]
     fn the_bits_of_the_tuner_are_those_of_the_protocol() {
-        use brushwork_protocol::motion_mind::{function, function2};
+        use brushwork_motion_mind_wire::{function, function2};
         let own = [
             bits::SATPROT,
             bits::VELLIMIT,
@@ -603,7 +603,7 @@ mod tests {
         ];
         let named = ["SATPROT", "VELLIMIT", "ACTIVESTOP", "ENABLEDB", "VIRTLIMIT", "DISABLEPID"];
         for (mask, name) in own.into_iter().zip(named) {
-            let bit = brushwork_protocol::motion_mind::FUNCTION_BITS.iter().find(|bit| bit.name == name);
+            let bit = brushwork_motion_mind_wire::FUNCTION_BITS.iter().find(|bit| bit.name == name);
             assert_eq!(bit.map(|bit| bit.mask()), Some(mask), "{name}");
         }
         assert_eq!(bits::SATPROT, function::SATPROT);

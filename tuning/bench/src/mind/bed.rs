@@ -4,16 +4,17 @@ use super::population::{MindSpecimen, tell};
 use crate::oracle::Bed;
 use crate::trial::{Outcome, position_outcome, velocity_outcome};
 use crate::truth::{Truth, full_speed, truth_under};
-use brushwork_protocol::motion_mind::Command;
-use brushwork_sim::motion_mind::MotionMind;
-use brushwork_sim::plant::ShaftSide;
-use brushwork_sim::world::{Motor, WorldAction};
+use brushwork_motion_mind_sim::MotionMind;
+use brushwork_motion_mind_wire::Command;
+use brushwork_plant::ShaftSide;
+use brushwork_plant::world::WorldAction;
 use brushwork_tuning::model::{Gains, Lag, LoopLaw};
 use brushwork_tuning::motion_mind::{
     LOOPS_PER_S, MotionMindLaw, MotionMindRegisters, SPEED_STEP_COUNTS_PER_S, law,
 };
 use brushwork_tuning::score::{LOAD_STEP_DUTY, VELOCITY_STEP, horizon_s, position_step};
 use brushwork_tuning::tune::Method;
+use brushwork_values::Motor;
 use std::time::Duration;
 
 /// Registers of a fresh unit that the gains do not touch.

@@ -7,7 +7,7 @@ use crate::faults::{FaultRow, Patient, rows_of};
 use crate::line::SimulatedLine;
 use crate::population::Specimen;
 use crate::truth::Truth;
-use brushwork_sim::motion_mind::MotionMind;
+use brushwork_motion_mind_sim::MotionMind;
 use brushwork_tuning::tune::Method;
 
 impl Patient for MindSpecimen {

@@ -3,12 +3,12 @@
 use super::axis::MindCarrier;
 use super::population::MindSpecimen;
 use crate::line::{Bench, SimulatedLine};
-use brushwork_protocol::motion_mind::{
+use brushwork_motion_mind_sim::{MotionMind, Protocol};
+use brushwork_motion_mind_wire::{
     Address, Command, Part, Progress, Reply, Returns, encode_frame, encode_line, parse_frame_reply,
     parse_line_reply,
 };
-use brushwork_sim::motion_mind::{MotionMind, Protocol};
-use brushwork_sim::world::{WorldAction, WorldView};
+use brushwork_plant::world::{WorldAction, WorldView};
 use brushwork_tuning::axis::{AxisError, Exchange};
 use std::time::Duration;
 

@@ -1,10 +1,10 @@
 //! Motors for a Motion Mind: 12 or 24 V, at most 25 A, encoders that give a loop of 5 ms something to count; and how they are wired.
 
 use crate::population::{Draw, Kind, KindRow, Specimen, drawn, row};
-use brushwork_protocol::motion_mind::{Address, Command, encode_frame, encode_line, function2};
-use brushwork_sim::motion_mind::{Mode, MotionMind, MotionMindConfig, Protocol};
-use brushwork_sim::plant::BoardParams;
-use brushwork_sim::world::{Wiring, WorldParams};
+use brushwork_motion_mind_sim::{Mode, MotionMind, MotionMindConfig, Protocol};
+use brushwork_motion_mind_wire::{Address, Command, encode_frame, encode_line, function2};
+use brushwork_plant::BoardParams;
+use brushwork_plant::world::{Wiring, WorldParams};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use std::time::Duration;

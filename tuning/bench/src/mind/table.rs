@@ -12,7 +12,7 @@ use crate::run::{Judgement, refusal, weigh};
 use crate::table::{
     Identification, Judged, Row, Table, WINDOW_S, error_percent, identification_of, row, window_summary,
 };
-use brushwork_sim::motion_mind::Mode;
+use brushwork_motion_mind_sim::Mode;
 use brushwork_tuning::linear::LoopPlant;
 use brushwork_tuning::model::Gains;
 use brushwork_tuning::motion_mind::MotionMindRegisters;

@@ -1,7 +1,7 @@
 //! Machines with absolute encoders, a population of its own (MCP manual 2.4.3): tuned in position inside one turn, bounded on both
 //! sides; and what runs read off beside the loops: the winding's resistance, the play.
 
-use brushwork_sim::plant::EncoderKind;
+use brushwork_plant::EncoderKind;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::Method;

@@ -1,6 +1,6 @@
 //! Firmware laws other than the usual one: the probe finds which, the design uses it, and an unknown one is refused.
 
-use brushwork_sim::motion::{ControlLaw, GainTiming, VelocityEstimate};
+use brushwork_mcp_sim::motion::{ControlLaw, GainTiming, VelocityEstimate};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::model::Gains;
 use brushwork_tuning::report::Verdict;

@@ -1,8 +1,8 @@
 //! What a run on a Motion Mind does about its modes, its inputs, its protections and a host that dies.
 
-use brushwork_protocol::motion_mind::{Address, Command, encode_frame, function2, status};
-use brushwork_sim::motion_mind::{MotionMind, pin};
-use brushwork_sim::world::{PinSignal, WorldAction};
+use brushwork_motion_mind_sim::{MotionMind, pin};
+use brushwork_motion_mind_wire::{Address, Command, encode_frame, function2, status};
+use brushwork_plant::world::{PinSignal, WorldAction};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::rig::GuardOptions;

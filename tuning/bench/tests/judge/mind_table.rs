@@ -2,8 +2,8 @@
 //!
 //! `brushwork bench tuning --family motion-mind --plants 16 --seed 7` prints the same figures.
 
-use brushwork_sim::motion_mind::Mode;
-use brushwork_sim::world::{Motor, WorldAction};
+use brushwork_motion_mind_sim::Mode;
+use brushwork_plant::world::WorldAction;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::rig::GuardOptions;
@@ -14,6 +14,7 @@ use brushwork_tuning_bench::mind::table::{
     SimulatedMind, axis_in, axis_of, cases, request_of, table, tune_plant,
 };
 use brushwork_tuning_bench::table::Row;
+use brushwork_values::Motor;
 use std::time::Duration;
 
 /// Lowest and highest figure that is not news.

@@ -1,7 +1,7 @@
 //! A current whose readings are noise, as real ones are: a refusal names a cause by the current only where the current is clear of it.
 
-use brushwork_sim::controller::{Controller, ControllerConfig};
-use brushwork_sim::world::{Motor, WorldAction};
+use brushwork_mcp_sim::controller::{Controller, ControllerConfig};
+use brushwork_plant::world::WorldAction;
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::report::{Report, Verdict};
@@ -11,6 +11,7 @@ use brushwork_tuning_bench::line::{Event, SimulatedLine};
 use brushwork_tuning_bench::packet::PacketAxis;
 use brushwork_tuning_bench::population::specimen;
 use brushwork_tuning_bench::run::request_of;
+use brushwork_values::Motor;
 use std::time::Duration;
 
 /// Standard deviation of the readings, A: three steps of the wire.

@@ -1,12 +1,13 @@
 //! What goes over the wire at the end of a run, byte by byte, on each way out.
 
-use brushwork_sim::world::{Motor, WorldAction};
+use brushwork_plant::world::WorldAction;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::{Method, Request, tune};
 use brushwork_tuning_bench::line::Event;
 use brushwork_tuning_bench::population::specimen;
 use brushwork_tuning_bench::run::{axis_of, request_of};
+use brushwork_values::Motor;
 use std::time::Duration;
 
 /// Address, command 52, duty 0 (2 bytes), acceleration 655359 = 0x0009FFFF: the highest (4 bytes); the checksum follows.

@@ -71,8 +71,8 @@ fn choice(value: Option<SettingValue>) -> Option<&'static str> {
 #[cfg(test)]
 mod tests {
     use brushwork_link::settings::{SettingsImage, SettingsTable, Subject};
-    use brushwork_protocol::models;
-    use brushwork_protocol::packet_serial::Generation;
+    use brushwork_mcp_wire::models;
+    use brushwork_mcp_wire::packet_serial::Generation;
 
     use super::*;
 

@@ -2,7 +2,7 @@
 
 use brushwork_link::device::{Event, JobEnding};
 use brushwork_link::settings::SettingValue;
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 use crossbeam_channel::Receiver;
 
 use super::super::link::Effect;

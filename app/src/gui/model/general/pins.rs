@@ -5,7 +5,7 @@ use brushwork_link::settings::{
     Behind, Conflict, Group, Kind, PinMode, SettingValue, SettingsImage, SignalShape, change_mode, conflicts,
     function_text, modes,
 };
-use brushwork_protocol::packet_serial::scale;
+use brushwork_mcp_wire::packet_serial::scale;
 
 use super::section::Section;
 use super::unit::UnitSettings;

@@ -8,7 +8,7 @@ use brushwork_link::settings::{
     SettingsTable, Subject, WriteOptions, WriteReport, diff, plan,
 };
 use brushwork_link::transport::Stream;
-use brushwork_protocol::models;
+use brushwork_mcp_wire::models;
 
 use super::applicable;
 

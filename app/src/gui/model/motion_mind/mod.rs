@@ -1,7 +1,7 @@
 //! What a Motion Mind 3 has of its own in the window: what its mode lets this program drive, and the state of its screens.
 
 use brushwork_link::device::Event;
-use brushwork_protocol::motion_mind::register_named;
+use brushwork_motion_mind_wire::register_named;
 
 use super::screen::Screen;
 

@@ -4,8 +4,8 @@
 use std::time::Duration;
 
 use brushwork_link::device::{Event, Request};
-use brushwork_protocol::motion_mind::{REGISTERS, Register, register_named};
-use brushwork_protocol::packet_serial::{Value, Values};
+use brushwork_motion_mind_wire::{REGISTERS, Register, register_named};
+use brushwork_values::{Value, Values};
 
 pub const POSITION: &str = "POSITION";
 pub const VELOCITYLIMIT: &str = "VELOCITYLIMIT";

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use brushwork_link::device::{Channel, Sample};
 use brushwork_link::settings::{SettingValue, SettingsImage};
-use brushwork_protocol::motion_mind::register_named;
+use brushwork_motion_mind_wire::register_named;
 use brushwork_tuning::{Point, StepFigures};
 
 use super::registers::{bit_key, key};

@@ -10,11 +10,12 @@ use std::time::Duration;
 
 use brushwork_link::device::motion_mind::{describe_received, describe_sent};
 use brushwork_link::device::{Event, MotionMindFacts};
-use brushwork_protocol::motion_mind::{
+use brushwork_mcp_wire::packet_serial::hex;
+use brushwork_motion_mind_wire::{
     Address, Command, Effect, FrameEvent, FrameReader, LineEvent, LineReader, Part, Protocol, checksum,
     describe_command, encode_frame, encode_line,
 };
-use brushwork_protocol::packet_serial::{Value, Values, hex};
+use brushwork_values::{Value, Values};
 
 /// Lines kept; the oldest go first.
 const KEPT: usize = 500;
@@ -453,7 +454,7 @@ mod tests {
     }
 
     fn facts(protocol: Protocol) -> MotionMindFacts {
-        MotionMindFacts { protocol, mode: brushwork_protocol::motion_mind::Mode::SerialPid }
+        MotionMindFacts { protocol, mode: brushwork_motion_mind_wire::Mode::SerialPid }
     }
 
     #[test]

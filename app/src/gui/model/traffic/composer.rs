@@ -5,11 +5,11 @@
 
 use brushwork_link::Failure;
 use brushwork_link::exchange::packet::{Ask, Permit, gate};
-use brushwork_protocol::codes;
-use brushwork_protocol::packet_serial::{
-    Address, COMMANDS, Command, Effect, Field, Generation, Kind, Request, Value, Values, describe_reply,
-    describe_request, lookup,
+use brushwork_mcp_wire::codes;
+use brushwork_mcp_wire::packet_serial::{
+    Address, COMMANDS, Command, Effect, Generation, Request, describe_reply, describe_request, lookup,
 };
+use brushwork_values::{Field, Kind, Value, Values};
 
 /// Numbers of requests made here, apart from those of other parts of the window.
 const FIRST_ID: u64 = 1 << 40;
@@ -174,7 +174,7 @@ fn bytes_of(text: &str, count: usize) -> Option<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use brushwork_protocol::packet_serial::number;
+    use brushwork_mcp_wire::packet_serial::number;
 
     const G1: Generation = Generation::Gen1;
 

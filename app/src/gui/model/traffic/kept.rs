@@ -5,8 +5,9 @@ use std::time::Duration;
 use brushwork_link::Failure;
 use brushwork_link::device::{FnJob, Identity, Request};
 use brushwork_link::settings::{Ending, Keeper, Subject, begin_command};
-use brushwork_protocol::models;
-use brushwork_protocol::packet_serial::{Effect, Value, Values, lookup, number};
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::packet_serial::{Effect, lookup, number};
+use brushwork_values::{Value, Values};
 use crossbeam_channel::{Receiver, TryRecvError, bounded};
 
 use crate::keep::TrialKeeper;

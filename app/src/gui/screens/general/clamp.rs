@@ -1,7 +1,7 @@
 //! The voltage clamp test (MCP manual 1.7.5): what it does, within what, how far it is, what it found.
 
 use brushwork_link::device::{ArmScope, Channel};
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 use egui::{Button, Grid, Label, Layout, ProgressBar, RichText, Role, ScrollArea, Ui, WidgetInfo, vec2};
 
 use super::sheet_parts::lamp_ui;

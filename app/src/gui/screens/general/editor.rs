@@ -1,7 +1,8 @@
 //! The field of one setting: a box, a list, or an exact number.
 
 use brushwork_link::settings::{Kind, Row, SettingValue};
-use brushwork_protocol::codes::{Code, ENCODER_PIN_NONE};
+use brushwork_mcp_wire::codes::ENCODER_PIN_NONE;
+use brushwork_values::Code;
 use egui::text::{CCursor, CCursorRange};
 use egui::{ComboBox, Id, Key, Response, RichText, Stroke, TextEdit, Ui, vec2};
 

@@ -4,7 +4,7 @@
 
 use brushwork_link::device::PinSignal;
 use brushwork_link::settings::{Behind, PinMode, Row};
-use brushwork_protocol::packet_serial::scale;
+use brushwork_mcp_wire::packet_serial::scale;
 use egui::{
     Align, Button, ComboBox, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, UiBuilder, WidgetInfo,
     vec2,

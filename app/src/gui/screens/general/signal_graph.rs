@@ -3,7 +3,7 @@
 
 use brushwork_link::device::PinSignal;
 use brushwork_link::settings::{Behind, SignalShape};
-use brushwork_protocol::packet_serial::scale;
+use brushwork_mcp_wire::packet_serial::scale;
 use egui::accesskit::Action;
 use egui::{
     Align2, Id, Pos2, Rect, Response, Role, Sense, Shape, Stroke, StrokeKind, TextStyle, Ui, Vec2,

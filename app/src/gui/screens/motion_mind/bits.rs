@@ -1,7 +1,7 @@
 //! The bits of FUNCTION, FUNCTION2 and STATUS, each with its name and what it means when it is set.
 
 use brushwork_link::settings::SettingValue;
-use brushwork_protocol::motion_mind::{Bit, FUNCTION_BITS, FUNCTION2_BITS, Register, STATUS_BITS};
+use brushwork_motion_mind_wire::{Bit, FUNCTION_BITS, FUNCTION2_BITS, Register, STATUS_BITS};
 use egui::{Button, Label, RichText, Role, Sense, Ui, WidgetInfo, vec2};
 
 use crate::gui::model::desk::Desk;

@@ -2,7 +2,7 @@
 //! (Motion Mind manual, chapter 4).
 
 use brushwork_link::device::{ArmScope, Channel};
-use brushwork_protocol::packet_serial::Motor;
+use brushwork_values::Motor;
 use egui::{Button, Label, RichText, Ui};
 
 use crate::gui::command::{Command, Commands};

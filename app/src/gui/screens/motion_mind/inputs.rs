@@ -1,7 +1,7 @@
 //! The inputs as the unit measures them, what each pin means in the present mode, and the R/C calibration assistant
 //! (Motion Mind manual 4.3).
 
-use brushwork_protocol::motion_mind::{register_named, status};
+use brushwork_motion_mind_wire::{register_named, status};
 use egui::{Button, Frame, Label, Margin, ProgressBar, RichText, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 use crate::gui::command::{Command, Commands, MindWish};

@@ -4,7 +4,7 @@
 //! are those of every family. What the unit measures stands among them and is read again and again.
 
 use brushwork_link::settings::{Difference, Row, SettingValue, diff};
-use brushwork_protocol::motion_mind::{REGISTERS, Register};
+use brushwork_motion_mind_wire::{REGISTERS, Register};
 use egui::{
     Align, Button, Frame, Label, Layout, Margin, RichText, Role, ScrollArea, Sense, Stroke, Ui, UiBuilder,
     WidgetInfo, vec2,

@@ -1,6 +1,6 @@
 //! The step-response assistant above the graph (Motion Mind manual 3.14).
 
-use brushwork_protocol::motion_mind::register_named;
+use brushwork_motion_mind_wire::register_named;
 use egui::{Button, Label, RichText, Ui};
 
 use crate::gui::command::{Command, Commands, MindWish};

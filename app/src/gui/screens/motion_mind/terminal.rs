@@ -1,7 +1,7 @@
 //! The terminal: commands in text or hex, decoded as they are typed.
 
 use brushwork_link::device::MotionMindFacts;
-use brushwork_protocol::motion_mind::Protocol;
+use brushwork_motion_mind_wire::Protocol;
 use egui::{ComboBox, Key, Label, RichText, ScrollArea, Ui, vec2};
 
 use crate::gui::command::{Command, Commands};

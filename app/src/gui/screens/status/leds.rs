@@ -6,7 +6,7 @@
 use std::time::Duration;
 
 use brushwork_link::device::Channel;
-use brushwork_protocol::packet_serial::led::{BlinkCode, Light, blink_code};
+use brushwork_mcp_wire::packet_serial::led::{BlinkCode, Light, blink_code};
 use egui::{Align2, Color32, RichText, Role, Sense, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
 use crate::gui::model::desk::Desk;
