@@ -6,6 +6,7 @@
 pub mod foreign;
 #[cfg(target_os = "linux")]
 pub mod hands;
+pub mod imports;
 pub mod other_controller;
 pub mod rust_source;
 pub mod screen;

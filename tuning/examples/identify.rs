@@ -1,15 +1,15 @@
 //! A motor and its gains from a record: `cargo run -p brushwork-tuning --example identify -- record.csv`.
 //!
 //! The record has the columns `time_s,duty,counts`. A line with a duty (-1 to 1) is a command, a line with counts is a poll. Without an
-//! argument it takes one that it brings along, made by the example `record` of `brushwork-sim`.
+//! argument it takes one that it brings along, made by the example `record` of `brushwork-mcp-sim`.
 #![expect(clippy::print_stdout, reason = "an example talks to the terminal")]
 
-use brushwork_tuning::course::Course;
 use brushwork_tuning::design::{Goal, Task, USUAL_OVERSHOOT, design_velocity};
+use brushwork_tuning::experiment_guard::{Drive, Input, Point};
 use brushwork_tuning::fit::{Fit, fit};
 use brushwork_tuning::model::{Lag, LoopLaw};
+use brushwork_tuning::open_loop_record::OpenLoopRecord;
 use brushwork_tuning::registers::velocity_registers;
-use brushwork_tuning::rig::{Drive, Input, Point};
 use brushwork_tuning::whatif::forecast;
 use std::error::Error;
 
@@ -71,14 +71,14 @@ fn read(text: &str) -> Result<(Vec<Point>, Vec<Drive>), Box<dyn Error>> {
 fn identify(points: &[Point], drives: &[Drive]) -> Result<Fit, Box<dyn Error>> {
     let end_s = points.last().map_or(0.0, |point| point.t);
     let from_s = points.first().map_or(0.0, |point| point.t);
-    let course = Course::new(points, drives, from_s, end_s, None);
+    let record = OpenLoopRecord::new(points, drives, from_s, end_s, None);
     // The fastest tenth of a second is a start value that is near enough.
     let speeds = points.windows(11).filter_map(|run| {
         let (first, last) = (run.first()?, run.last()?);
         Some((last.counts - first.counts).abs() / (last.t - first.t))
     });
     let top = speeds.fold(1.0, f64::max);
-    fit(&course, top, 0.05, None, 1.0).ok_or_else(|| "a record needs at least twelve polls".into())
+    fit(&record, top, 0.05, None, 1.0).ok_or_else(|| "a record needs at least twelve polls".into())
 }
 
 /// A row of the table.
@@ -92,7 +92,7 @@ fn gains_of_level(found: &Fit, level: f64) {
         qpps: found.model.steady_speed(1.0),
         goal: Goal::of_level(level),
         noise_factor: 1.0,
-        slack_counts: 0.0,
+        backlash_counts: 0.0,
         least_integral_s: 0.0,
         most_overshoot: USUAL_OVERSHOOT,
     };

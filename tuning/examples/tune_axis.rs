@@ -116,7 +116,7 @@ impl Desk {
 
     /// The firmware: counts in, duty out.
     fn tick(&mut self, tick_s: f64) {
-        let count = self.motion.place.floor();
+        let count = self.motion.position.floor();
         let speed = (count - self.last_count) / tick_s;
         self.filtered_speed += tick_s / (FILTER_S + tick_s) * (speed - self.filtered_speed);
         self.last_count = count;
@@ -166,7 +166,7 @@ impl Axis for Desk {
 
     /// Commands 78 and 90, and 48, 49 and 24 as wanted.
     fn sample(&mut self, want: Want) -> Result<Sample, AxisError> {
-        let counts = self.motion.place.floor() as i32;
+        let counts = self.motion.position.floor() as i32;
         let counts_at = self.exchange();
         let amps = STALL_AMPS * (self.duty - self.motion.speed / MOTOR.gain_counts_per_s);
         let duty_raw = (self.duty * f64::from(FULL_DUTY_RAW)).round() as i16;

@@ -6,14 +6,16 @@
 //!
 //! It is a crate of its own so that it can be optimised in debug builds, where tests take their pictures.
 
+mod canvas;
 mod texture;
 mod triangle;
 
 use std::collections::HashMap;
 
 use egui::epaint::{ClippedPrimitive, Primitive};
-use egui::{Color32, Rect, TextureId, TexturesDelta};
+use egui::{Color32, TextureId, TexturesDelta};
 
+use canvas::{Canvas, Clip};
 use texture::Texture;
 use triangle::Triangle;
 
@@ -63,57 +65,10 @@ impl Painter {
     }
 }
 
-/// The picture being drawn.
-struct Canvas {
-    width: usize,
-    height: usize,
-    pixels: Vec<Color32>,
-}
-
-impl Canvas {
-    fn row(&mut self, y: usize) -> &mut [Color32] {
-        let start = y * self.width;
-        &mut self.pixels[start..start + self.width]
-    }
-}
-
-/// The pixels a primitive may touch: `left..right`, `top..bottom`.
-struct Clip {
-    left: i64,
-    right: i64,
-    top: i64,
-    bottom: i64,
-}
-
-impl Clip {
-    fn new(rect: Rect, canvas: &Canvas) -> Self {
-        let inside = |value: f32, end: usize| (value.round().max(0.0) as i64).min(end as i64);
-        Self {
-            left: inside(rect.min.x, canvas.width),
-            right: inside(rect.max.x, canvas.width),
-            top: inside(rect.min.y, canvas.height),
-            bottom: inside(rect.max.y, canvas.height),
-        }
-    }
-}
-
-/// `over` on top of `under`, both premultiplied.
-fn blend(under: Color32, over: Color32) -> Color32 {
-    let keep = 255 - u32::from(over.a());
-    let channel =
-        |under: u8, over: u8| (u32::from(over) + (u32::from(under) * keep + 127) / 255).min(255) as u8;
-    Color32::from_rgba_premultiplied(
-        channel(under.r(), over.r()),
-        channel(under.g(), over.g()),
-        channel(under.b(), over.b()),
-        channel(under.a(), over.a()),
-    )
-}
-
 #[cfg(test)]
 mod tests {
     use egui::epaint::{ColorImage, ImageDelta, Mesh, Vertex};
-    use egui::{TextureOptions, pos2};
+    use egui::{Rect, TextureOptions, pos2};
 
     use super::*;
 

@@ -7,8 +7,8 @@ use egui::Color32;
 use egui::epaint::Vertex;
 use egui::{Pos2, pos2};
 
+use crate::canvas::{Canvas, Clip, blend};
 use crate::texture::Texture;
-use crate::{Canvas, Clip, blend};
 
 /// Steps per pixel that corners are snapped to.
 const STEPS: i64 = 256;

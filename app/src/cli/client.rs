@@ -12,10 +12,10 @@ use brushwork_mcp_wire::packet_serial;
 use brushwork_motion_mind_wire as motion_mind;
 use crossbeam_channel::RecvTimeoutError;
 
-use super::args::{ConnectArgs, LineArgs};
 use super::exit::Exit;
 use super::interrupt::Interrupt;
 use super::output::say;
+use super::shared_args::{ConnectArgs, LineArgs};
 use crate::session::motion_mind_spec::MotionMindSpec;
 use crate::session::{self, Session, SessionOptions, Simulation};
 

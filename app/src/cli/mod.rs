@@ -21,6 +21,7 @@ mod protocol;
 mod response;
 mod script;
 pub mod settings;
+pub mod shared_args;
 mod sim;
 mod status;
 mod stop;

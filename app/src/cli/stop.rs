@@ -13,11 +13,12 @@ use brushwork_mcp_wire::packet_serial;
 use brushwork_motion_mind_wire as motion_mind;
 use serde_json::json;
 
-use super::args::{LineArgs, StopArgs};
+use super::args::StopArgs;
 use super::client::{self, CONNECT_LIMIT, Client};
 use super::exit::Exit;
 use super::interrupt::Interrupt;
 use super::output::{Output, OutputError, say};
+use super::shared_args::LineArgs;
 use crate::session::{self, Session, SessionOptions};
 
 /// How long the controllers may take to confirm: late replies at 2400 bit/s take 6 s.

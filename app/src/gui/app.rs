@@ -477,8 +477,7 @@ impl App {
         device.renew();
         let front = &mut self.model.front;
         // A full queue takes it in the next frame.
-        let setpoints = front.setpoints(scope).copied();
-        if let Some(drive) = setpoints.and_then(|asked| front.family().to_send(front, scope, asked))
+        if let Some(drive) = front.family().to_send(scope, front.sliders())
             && device.request(Request::Drive(drive)).is_ok()
         {
             front.sent(scope);

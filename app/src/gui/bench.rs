@@ -10,7 +10,7 @@ use egui_plot::{Line, Plot, PlotPoint, PlotPoints};
 use serde::Serialize;
 
 use super::graph::{LiveGraph, plot};
-use super::model::graph_channels;
+use super::model::channels::graph_channels;
 use super::theme;
 
 /// Samples of an hour at 100 Hz.

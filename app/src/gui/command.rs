@@ -17,6 +17,7 @@ pub use super::model::guided::GuidedWish;
 use super::model::help::HelpPage;
 use super::model::loop_settings::Column;
 pub use super::model::motion_mind::MindWish;
+use super::model::motion_mind::terminal::Sending;
 use super::model::screen::Screen;
 pub use super::tune::TuneWish;
 
@@ -117,3 +118,12 @@ pub enum Command {
 
 /// The wishes of one frame, in order.
 pub type Commands = Vec<Command>;
+
+impl From<Sending> for Command {
+    fn from(sending: Sending) -> Self {
+        match sending {
+            Sending::Transact { id, command, values } => Self::Transact { id, command, values },
+            Sending::Raw { id, bytes } => Self::Raw { id, bytes },
+        }
+    }
+}

@@ -10,6 +10,7 @@ mod journals;
 mod memory;
 mod sequence;
 mod store;
+mod today;
 mod trial;
 mod unit;
 mod worker;
@@ -18,14 +19,10 @@ pub use backups::Backup;
 pub use journals::OpenJournal;
 pub use memory::{Wear, WearLevel};
 pub use store::{KeepError, Store};
+pub use today::today;
 pub use trial::TrialKeeper;
 pub use unit::UnitId;
 pub use worker::Keeping;
-
-/// Now, as files write it: "2026-01-05T10:00:00Z".
-pub fn today() -> String {
-    humantime::format_rfc3339_seconds(std::time::SystemTime::now()).to_string()
-}
 
 #[cfg(test)]
 mod tests;

@@ -10,7 +10,7 @@ use brushwork_link::settings::{Act, Ending, Entry, Journal, Keeper, Profile, Set
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
 use super::store::{KeepError, Store};
-use super::today;
+use super::today::today;
 use super::unit::UnitId;
 
 /// Tasks that may wait. An act has two, one after the other.

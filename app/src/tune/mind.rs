@@ -10,7 +10,7 @@ use brushwork_motion_mind_wire::{
 };
 use brushwork_tuning::axis::{AxisError, Exchange};
 
-use super::told;
+use super::told::told;
 
 /// An exchange that took so much longer than the quickest of its kind had a retry in it, so that nobody can say when the unit did
 /// its work.

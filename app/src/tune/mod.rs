@@ -9,13 +9,13 @@ pub mod encoder;
 pub mod file;
 mod mind;
 pub mod tap;
+mod told;
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use brushwork_link::Stream;
 use brushwork_link::device::{FnJob, Job, JobContext};
-use brushwork_link::exchange::ExchangeError;
 use brushwork_link::failure::Failure;
 use brushwork_link::settings::{Ending, Subject, begin_trial, end_act};
 use brushwork_link::wire::Wire;
@@ -35,6 +35,7 @@ use brushwork_values::{Motor, Value, Values};
 use crate::keep::TrialKeeper;
 use mind::MindJobCarrier;
 use tap::{Live, Tap};
+use told::told;
 
 /// Verb phrase of the job before a run.
 pub const PREPARE: &str = "get ready to tune";
@@ -130,24 +131,6 @@ impl Carrier for JobCarrier<'_, '_> {
 
     fn progress(&mut self, text: &str) {
         self.context.progress(None, text);
-    }
-}
-
-fn told(error: &ExchangeError) -> AxisError {
-    if error.interruption().is_some() {
-        AxisError::Stopped
-    } else if error.is_link_lost() {
-        AxisError::LinkLost(error.to_string())
-    } else {
-        match error {
-            ExchangeError::TimedOut { .. }
-            | ExchangeError::BadCrc { .. }
-            | ExchangeError::BadAcknowledgement { .. }
-            | ExchangeError::Malformed { .. } => AxisError::NoReply,
-            // Whatever the tuner commands is absolute and at once, so that it may come twice.
-            ExchangeError::MayHaveRun { cause } => told(cause),
-            other => AxisError::Refused(other.to_string()),
-        }
     }
 }
 

@@ -10,7 +10,7 @@ use brushwork::gui::model::drawer::Tab;
 use brushwork::gui::model::screen::Screen;
 use brushwork::gui::model::{Model, Phase};
 use brushwork::gui::tune::Loop;
-use brushwork::gui::tune::plots::Kind;
+use brushwork::gui::tune::looked_at::Kind;
 use brushwork::tune::file;
 use brushwork_link::device::{ArmScope, Channel, Condition, Event, Identity, Sample, StatusReport};
 use brushwork_link::exchange::LinkStatistics;

@@ -432,7 +432,7 @@ fn everything_that_can_be_used_has_a_name_on_every_screen_of_a_motion_mind_and_i
         bench.connect();
         bench.pass_ms(3000);
         let family = bench.model().front.family();
-        for screen in family.screens(&bench.model().front) {
+        for screen in bench.model().front.screens() {
             let title = family.title(screen);
             bench.press(title);
             bench.pass_ms(1000);

@@ -1,8 +1,9 @@
 //! The window's own widgets, by role and label, and one small picture of them in both themes.
 
+use brushwork::gui::model::lamp::LampState;
 use brushwork::gui::theme;
 use brushwork::gui::widgets::{
-    LampState, lamp, numeric::Numeric, readout::Readout, setpoint::Setpoint, stop, text_field,
+    lamp, numeric::Numeric, readout::Readout, setpoint::Setpoint, stop, text_field,
 };
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Theme, Ui, vec2};

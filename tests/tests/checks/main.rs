@@ -1,5 +1,6 @@
 //! The house rules: layers, the map, licences, and what neither rustfmt nor clippy can see.
 
+mod circles;
 mod layers;
 mod licences;
 mod limited;

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
-use crate::cli::args::ConnectArgs;
 use crate::cli::new_file::Replace;
+use crate::cli::shared_args::ConnectArgs;
 
 /// Arguments of `brushwork firmware`.
 #[derive(Debug, Args)]

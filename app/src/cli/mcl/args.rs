@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use clap::{Args, Subcommand};
 
-use crate::cli::args::{ScriptBuses, parse_seconds};
 use crate::cli::new_file::Replace;
+use crate::cli::shared_args::{ScriptBuses, parse_seconds};
 
 /// Arguments of `brushwork mcl`.
 #[derive(Debug, Args)]

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::Args;
 
-use crate::cli::args::{ConnectArgs, parse_seconds};
+use crate::cli::shared_args::{ConnectArgs, parse_seconds};
 
 /// Arguments of `brushwork monitor`.
 #[derive(Debug, Args)]

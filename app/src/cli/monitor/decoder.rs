@@ -13,7 +13,7 @@ use brushwork_mcp_wire::packet_serial::{
     RequestFramer, describe_event, describe_reply, parse_reply,
 };
 
-use super::{Direction, Record};
+use super::record::{Direction, Record};
 
 /// A controller that has not answered after this time will not.
 const REPLY_LIMIT: Duration = Duration::from_millis(250);

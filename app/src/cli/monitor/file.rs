@@ -8,8 +8,8 @@ use std::path::Path;
 use std::time::Duration;
 
 use super::args::MonitorArgs;
-use super::follower::Follower;
-use super::{Direction, Record, follower, print};
+use super::follower::{Follower, follower};
+use super::record::{Direction, Record, print};
 use crate::cli::exit::Exit;
 use crate::cli::output::{Output, say};
 

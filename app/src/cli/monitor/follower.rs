@@ -2,12 +2,16 @@
 
 use std::time::Duration;
 
+use brushwork_link::device::FamilyChoice;
 use brushwork_mcp_wire::packet_serial::{ACK, Address, Generation, PACKET_GAP, Request, number, scale};
 use brushwork_motion_mind_wire::ACK as MIND_ACK;
 
-use super::Record;
+use super::args::MonitorArgs;
 use super::decoder::Decoder;
 use super::mind::MindDecoder;
+use super::record::Record;
+use crate::cli::client;
+use crate::cli::exit::Exit;
 
 /// Follows a conversation of either family.
 pub enum Follower {
@@ -125,4 +129,17 @@ fn stop_of(address: Address, generation: Generation) -> Option<Stop> {
     let request = Request::new(address, number::DUTY_ACCEL_BOTH, &DUTY_ZERO);
     let writes = vec![request.encode(generation).ok()?];
     Some(Stop { who: format!("both motors of {address}"), writes, acknowledge: &[ACK] })
+}
+
+/// Who follows the traffic that the arguments ask for.
+pub fn follower(args: &MonitorArgs) -> Result<Follower, Exit> {
+    let target = client::target(&args.connect)?;
+    // Bytes from a file come from no target, unless one is named for its family.
+    let family = if args.decode.is_some() && args.connect.family != FamilyChoice::Auto {
+        args.connect.family
+    } else {
+        client::family(&target, &args.connect)
+    };
+    let generation = args.generation.and_then(Generation::from_number);
+    Ok(Follower::new(family == FamilyChoice::MotionMind, generation))
 }

@@ -12,7 +12,7 @@ use brushwork_motion_mind_wire::{
     parse_line_reply, register_named,
 };
 
-use super::{Direction, Record};
+use super::record::{Direction, Record};
 
 /// A unit that has not answered after this time will not.
 const REPLY_LIMIT: Duration = Duration::from_millis(250);

@@ -5,7 +5,7 @@ use std::time::Instant;
 use brushwork_link::device::{Event, PollRate, Request};
 
 use super::args::MonitorArgs;
-use super::{Direction, Record, print};
+use super::record::{Direction, Record, print};
 use crate::cli::client;
 use crate::cli::exit::Exit;
 use crate::cli::interrupt::Interrupt;

@@ -16,8 +16,8 @@ use brushwork_plant::server::{Endpoint, Heard, Line};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
 use super::args::MonitorArgs;
-use super::follower::Follower;
-use super::{Record, follower, print};
+use super::follower::{Follower, follower};
+use super::record::{Record, print};
 use crate::cli::client;
 use crate::cli::exit::Exit;
 use crate::cli::interrupt::Interrupt;

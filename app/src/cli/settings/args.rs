@@ -5,9 +5,9 @@ use std::str::FromStr;
 
 use clap::{Args, Subcommand};
 
-use super::compare::SideName;
-use crate::cli::args::ConnectArgs;
+use super::side_name::SideName;
 use crate::cli::new_file::Replace;
+use crate::cli::shared_args::ConnectArgs;
 
 /// Arguments of `brushwork settings`.
 #[derive(Debug, Args)]

@@ -1,57 +1,16 @@
 //! `brushwork settings compare`: any two of RAM, EEPROM as last known, profile, defaults, backup.
 
-use std::path::PathBuf;
-use std::str::FromStr;
-
 use brushwork_link::settings::Profile;
 
 use super::args::CompareArgs;
 use super::controller::Controller;
 use super::diff::{self, Side};
+use super::side_name::SideName;
 use super::{backups, profile};
 use crate::cli::exit::Exit;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::output::{Output, say};
 use crate::keep::{Store, today};
-
-/// One of the copies of a controller's settings.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum SideName {
-    /// What the controller works with.
-    Ram,
-    /// What its EEPROM held when that was proven last.
-    Eeprom,
-    /// What restoring the defaults would give, as far as known.
-    Default,
-    /// The newest backup, or the one of that name.
-    Backup(Option<String>),
-    /// A profile's file.
-    File(PathBuf),
-}
-
-impl FromStr for SideName {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        Ok(match text {
-            "ram" => Self::Ram,
-            "eeprom" => Self::Eeprom,
-            "default" | "defaults" => Self::Default,
-            "backup" => Self::Backup(None),
-            _ => match text.strip_prefix("backup:") {
-                Some(name) => Self::Backup(Some(name.to_owned())),
-                None => Self::File(PathBuf::from(text)),
-            },
-        })
-    }
-}
-
-impl SideName {
-    /// Whether the controller itself has to be asked.
-    fn needs_controller(&self) -> bool {
-        matches!(self, Self::Ram | Self::Eeprom | Self::Backup(None))
-    }
-}
 
 /// Compares and prints.
 pub fn run(args: &CompareArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
@@ -150,18 +109,4 @@ fn fitted(left: &Side, right: Side) -> Side {
     say(format!("{} is compared as it would be on the controller of {}:", right.name, left.name));
     fitted.changes.iter().for_each(say);
     Side::new(right.name, fitted.profile)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_side_is_a_copy_a_backup_or_a_file() {
-        let parse = |text: &str| text.parse::<SideName>().unwrap();
-        assert_eq!(parse("ram"), SideName::Ram);
-        assert_eq!(parse("backup"), SideName::Backup(None));
-        assert_eq!(parse("backup:x"), SideName::Backup(Some("x".to_owned())));
-        assert_eq!(parse("cart.json"), SideName::File(PathBuf::from("cart.json")));
-    }
 }

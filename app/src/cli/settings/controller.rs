@@ -14,12 +14,12 @@ use brushwork_link::transport::list_ports;
 use brushwork_mcp_wire::models;
 use crossbeam_channel::bounded;
 
-use super::unfinished;
-use crate::cli::args::ConnectArgs;
+use super::cut_short;
 use crate::cli::client::Client;
 use crate::cli::exit::Exit;
 use crate::cli::interrupt::{Interrupt, exit_of_interruption};
 use crate::cli::output::say;
+use crate::cli::shared_args::ConnectArgs;
 use crate::keep::{self, Keeping, Store, UnitId};
 use crate::session::Simulation;
 
@@ -146,7 +146,7 @@ impl<'i> Controller<'i> {
     /// Reads every setting; says what could not be read, and what an act that was cut short has left of them.
     pub fn read(&self) -> Result<ReadReport, Exit> {
         let report = self.read_quietly()?;
-        unfinished::tell(self, &report);
+        cut_short::tell(&self.unit, &report);
         Ok(report)
     }
 

@@ -9,12 +9,14 @@ mod backups;
 mod compare;
 pub(super) mod controller;
 mod copy;
+mod cut_short;
 mod diff;
 mod keys;
 pub(super) mod memory;
 mod profile;
 mod read;
 mod review;
+mod side_name;
 mod unfinished;
 mod write;
 

@@ -110,6 +110,13 @@ pub fn changes(table: &SettingsTable, before: &SettingsImage, after: &SettingsIm
     diff(table, before, after).into_iter().filter_map(change).collect()
 }
 
+/// `ram` with `changes`.
+pub fn merged(ram: &SettingsImage, changes: &SettingsImage) -> SettingsImage {
+    let mut after = ram.clone();
+    after.merge(changes);
+    after
+}
+
 /// One line for each change: key, old -> new.
 pub fn change_lines(changes: &[Change]) -> Vec<String> {
     let width = |text: fn(&Change) -> &str| {

@@ -5,45 +5,18 @@ use serde_json::json;
 
 use super::args::UnfinishedArgs;
 use super::controller::Controller;
+use super::cut_short::journals;
 use super::write::{self, Wanted};
 use crate::cli::exit::Exit;
 use crate::cli::interrupt::Interrupt;
 use crate::cli::output::{Output, say};
 use crate::keep::{OpenJournal, Store};
 
-/// More sentences than this are told by `unfinished` alone.
-const TOLD_IN_PASSING: usize = 30;
-
-/// Says on standard error what an act that was cut short has left of the settings just read.
-pub fn tell(controller: &Controller<'_>, ram: &ReadReport) {
-    let journals = journals(controller);
-    for open in &journals {
-        let aftermath = open.aftermath(&ram.table, &ram.image);
-        say(aftermath.headline());
-        let sentences = aftermath.sentences(&ram.table);
-        sentences.iter().take(TOLD_IN_PASSING).for_each(|sentence| say(format!("  {sentence}")));
-        if sentences.len() > TOLD_IN_PASSING {
-            say(format!("  ... and {} more.", sentences.len() - TOLD_IN_PASSING));
-        }
-    }
-    if !journals.is_empty() {
-        say(
-            "`brushwork settings unfinished` shows all of it and settles it with --finish, --undo or --forget.",
-        );
-    }
-}
-
-fn journals(controller: &Controller<'_>) -> Vec<OpenJournal> {
-    let (journals, faults) = Store::of_user().open_journals(controller.unit());
-    faults.iter().for_each(|fault| say(fault.to_string()));
-    journals
-}
-
 /// Shows what was cut short, and settles it when asked to.
 pub fn run(args: &UnfinishedArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let controller = Controller::connect(&args.connect, interrupt)?;
     let ram = controller.read_quietly()?;
-    let journals = journals(&controller);
+    let journals = journals(controller.unit());
     let aftermaths: Vec<Aftermath> =
         journals.iter().map(|open| open.aftermath(&ram.table, &ram.image)).collect();
     show(args, &ram, &aftermaths, out)?;

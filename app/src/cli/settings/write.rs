@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use super::args::{Assignment, ImportArgs, UnfinishedArgs, WriteArgs, WriteHow};
 use super::ask;
 use super::controller::{Controller, WRITE_LIMIT};
-use super::review::{Review, settings_count};
+use super::review::{Review, merged, settings_count};
 use super::{keys, memory, profile, read};
 use crate::cli::exit::Exit;
 use crate::cli::interrupt::Interrupt;
@@ -192,13 +192,6 @@ fn left_out_lines(controller: &Controller<'_>, ram: &ReadReport, profile: &Profi
         );
     }
     lines
-}
-
-/// `ram` with `changes`.
-pub fn merged(ram: &SettingsImage, changes: &SettingsImage) -> SettingsImage {
-    let mut after = ram.clone();
-    after.merge(changes);
-    after
 }
 
 fn review(controller: &Controller<'_>, ram: &ReadReport, wanted: &Wanted) -> Result<Review, Exit> {

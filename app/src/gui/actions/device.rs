@@ -326,7 +326,7 @@ fn has(model: &Model, ability: Ability, ready: fn(&Model) -> Ready) -> Ready {
 /// Guided tuning of a loop: the mode of the controller may leave it no such loop.
 fn has_loop(model: &Model, screen: Screen) -> Ready {
     connected(model)?;
-    match model.front.family().screens(&model.front).contains(&screen) {
+    match model.front.screens().contains(&screen) {
         true => Ok(()),
         false => Err("This controller has no such loop as it is set.".into()),
     }
@@ -337,7 +337,7 @@ fn can_tune(model: &Model) -> Ready {
     let Some(which) = Loop::of(model.screen) else {
         return Err("Tuning is on the Velocity and Position screens.".into());
     };
-    if let Some(why) = model.front.family().cannot_tune(&model.front) {
+    if let Some(why) = model.front.cannot_tune() {
         return Err(why.into());
     }
     if model.front.is_guided() {

@@ -9,7 +9,7 @@ use std::borrow::Cow;
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use super::command::{Command, Commands};
-use super::mcl;
+use super::mcl::has_keyboard;
 use super::model::Model;
 use super::model::screen::Screen;
 
@@ -135,7 +135,7 @@ impl Action {
 pub fn shortcuts(ctx: &Context, model: &mut Model) -> Commands {
     let mut pressed: Vec<&Action> = Vec::new();
     let on_mcl = model.screen == Screen::MclEditor && model.palette.is_none();
-    let in_text = on_mcl && mcl::has_keyboard(ctx, &model.mcl);
+    let in_text = on_mcl && has_keyboard(ctx, &model.mcl);
     // Ctrl+Shift+S would also pass for Ctrl+S: more modifiers go first.
     for count in (0..=3).rev() {
         // What is for the program that is edited goes before what is for the whole window.

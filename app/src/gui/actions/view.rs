@@ -163,12 +163,13 @@ pub(super) const ACTIONS: &[Action] = &[
 
 /// Whether the controller in front has a screen.
 fn there_is(model: &Model, screen: Screen) -> Ready {
-    let family = model.front.family();
-    match family.screens(&model.front).contains(&screen) {
+    match model.front.screens().contains(&screen) {
         true => Ok(()),
-        false => {
-            Err(format!("A controller like the {} has no such screen as it is set.", family.name()).into())
-        }
+        false => Err(format!(
+            "A controller like the {} has no such screen as it is set.",
+            model.front.family().name()
+        )
+        .into()),
     }
 }
 

@@ -13,7 +13,9 @@ impl App {
     pub(super) fn read_for_screen(&mut self) {
         let Some(now) = self.device().map(DeviceHandle::now) else { return };
         let (screen, front) = (self.model.screen, &mut self.model.front);
-        let Some(request) = front.family().wants_read(front, screen, now) else { return };
+        let is_free = front.is_connected() && !front.is_guided() && front.general.running().is_none();
+        let wants_read = is_free && front.family().shows_registers(screen);
+        let Some(request) = wants_read.then(|| front.motion_mind.live.read(now)).flatten() else { return };
         // A link that is busy is asked again later; nobody has to be told.
         if self.device().is_none_or(|device| device.request(request).is_err()) {
             self.model.front.motion_mind.live.not_begun();

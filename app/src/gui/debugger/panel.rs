@@ -2,7 +2,8 @@
 
 use egui::{Label, RichText, ScrollArea, Ui};
 
-use super::{stack, toolbar, values, watches, why_not};
+use super::needs::why_not;
+use super::{stack, toolbar, values, watches};
 use crate::gui::command::Commands;
 use crate::gui::debugger::state::NO_NAMES;
 use crate::gui::model::Model;

@@ -7,8 +7,8 @@ use super::state::Debugging;
 use super::watches::remove_ui;
 use super::wish::DebugWish;
 use crate::gui::command::{Command, Commands};
-use crate::gui::shell::heading_ui;
 use crate::gui::theme::Palette;
+use crate::gui::widgets::heading::heading_ui;
 use crate::gui::widgets::text_field::text_field_ui;
 
 pub fn stack_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {

@@ -2,8 +2,8 @@
 
 use egui::{ComboBox, Label, RichText, ScrollArea, TextEdit, Ui};
 
+use super::needs::why_not;
 use super::terminal::{LineEnd, Terminal};
-use super::why_not;
 use super::wish::DebugWish;
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;

@@ -7,8 +7,8 @@ use egui::{ComboBox, RichText, Ui};
 use super::wish::DebugWish;
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
+use crate::gui::model::lamp::LampState;
 use crate::gui::theme::Palette;
-use crate::gui::widgets::LampState;
 
 pub fn toolbar_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     let debug = &model.front.debug;

@@ -9,6 +9,7 @@ use egui::{CollapsingHeader, ComboBox, Label, RichText, Sense, Ui};
 
 use super::state::{Debugging, RegisterGroup};
 use crate::gui::theme::Palette;
+use crate::gui::widgets::heading::heading_ui;
 
 /// Elements of an array that are listed.
 const LISTED: u32 = 256;
@@ -28,12 +29,12 @@ struct Row<'a> {
 
 pub fn values_ui(ui: &mut Ui, debug: &mut Debugging) {
     ui.horizontal(|ui| {
-        crate::gui::shell::heading_ui(ui, "Variables");
+        heading_ui(ui, "Variables");
         show_ui(ui, "Number form", &mut debug.show);
     });
     variables_ui(ui, debug);
     ui.add_space(6.0);
-    crate::gui::shell::heading_ui(ui, "Registers");
+    heading_ui(ui, "Registers");
     for group in RegisterGroup::ALL {
         let shown = CollapsingHeader::new(group.title()).id_salt(("registers", group)).show(ui, |ui| {
             registers_ui(ui, debug, group);

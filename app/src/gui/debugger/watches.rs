@@ -6,8 +6,8 @@ use super::state::Debugging;
 use super::values::show_ui;
 use super::wish::DebugWish;
 use crate::gui::command::{Command, Commands};
-use crate::gui::shell::heading_ui;
 use crate::gui::theme::Palette;
+use crate::gui::widgets::heading::heading_ui;
 use crate::gui::widgets::text_field::text_field_ui;
 
 /// A column that has room for a watch and its form side by side.

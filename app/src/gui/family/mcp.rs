@@ -4,23 +4,14 @@ use brushwork_link::device::{ArmScope, Channel, Drive, Identity, StatusReport};
 use brushwork_mcp_wire::packet_serial::status::{Condition, Lamp};
 use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
-use egui::Ui;
 
+use super::facts::{Ability, Family, Figure, Figures, Sign, Sliders};
 use super::words::{self, SettingsWords};
-use super::{Ability, Family, Figure, Figures, LampInfo, Sign};
-use crate::gui::command::Commands;
-use crate::gui::model::Model;
-use crate::gui::model::desk::Desk;
 use crate::gui::model::drawer::Tab;
-use crate::gui::model::lamps::state_of;
-use crate::gui::model::position::Position;
-use crate::gui::model::pwm::Pwm;
+use crate::gui::model::lamp::{LampInfo, LampState, state_of};
+use crate::gui::model::motion_mind::Driven;
 use crate::gui::model::screen::Screen;
-use crate::gui::model::setpoints::Setpoints;
-use crate::gui::model::velocity::Velocity;
-use crate::gui::screens;
 use crate::gui::tune::Loop;
-use crate::gui::widgets::LampState;
 
 #[derive(Debug)]
 pub(super) struct Mcp;
@@ -30,12 +21,8 @@ impl Family for Mcp {
         "MCP"
     }
 
-    fn screens(&self, _desk: &Desk) -> Vec<Screen> {
+    fn screens(&self, _driven: Driven) -> Vec<Screen> {
         Screen::MCP.to_vec()
-    }
-
-    fn screen_ui(&self, ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-        screens::mcp_ui(ui, model, commands);
     }
 
     fn tabs(&self, screen: Screen) -> &'static [Tab] {
@@ -83,11 +70,11 @@ impl Family for Mcp {
         }
     }
 
-    fn to_send(&self, desk: &Desk, scope: ArmScope, setpoints: Setpoints) -> Option<Drive> {
+    fn to_send(&self, scope: ArmScope, sliders: Sliders) -> Option<Drive> {
         match scope {
-            ArmScope::Pwm => Pwm { setpoints, ..desk.pwm }.to_send(),
-            ArmScope::Velocity => Velocity { setpoints, ..desk.velocity }.to_send(),
-            ArmScope::Position => Position { setpoints, ..desk.position }.to_send(),
+            ArmScope::Pwm => sliders.pwm.to_send(),
+            ArmScope::Velocity => sliders.velocity.to_send(),
+            ArmScope::Position => sliders.position.to_send(),
             _ => None,
         }
     }

@@ -1,29 +1,20 @@
 //! Motion Mind 3: one motor, registers in place of settings, and screens by the mode that its switches select
 //! (Motion Mind manual, chapters 4 and 6).
 
-use std::time::Duration;
-
-use brushwork_link::device::{ArmScope, Channel, Drive, Identity, Request, StatusReport};
+use brushwork_link::device::{ArmScope, Channel, Drive, Identity, StatusReport};
 use brushwork_motion_mind_wire::Mode;
 use brushwork_tuning::cause::Cause;
-use brushwork_tuning::motion_mind::MotionMindSetup;
 use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
-use egui::Ui;
 
+use super::facts::{Ability, Family, Figure, Figures, Sign, Sliders};
 use super::words::{self, SettingsWords};
-use super::{Ability, Family, Figure, Figures, LampInfo, Sign};
-use crate::gui::command::Commands;
-use crate::gui::model::Model;
-use crate::gui::model::desk::Desk;
 use crate::gui::model::drawer::Tab;
-use crate::gui::model::lamps::state_of;
+use crate::gui::model::lamp::{LampInfo, LampState, state_of};
+use crate::gui::model::motion_mind::Driven;
 use crate::gui::model::motion_mind::drive::to_send;
 use crate::gui::model::screen::Screen;
-use crate::gui::model::setpoints::Setpoints;
-use crate::gui::screens::motion_mind;
 use crate::gui::tune::Loop;
-use crate::gui::widgets::LampState;
 
 #[derive(Debug)]
 pub(super) struct MotionMind;
@@ -33,9 +24,9 @@ impl Family for MotionMind {
         "Motion Mind 3"
     }
 
-    fn screens(&self, desk: &Desk) -> Vec<Screen> {
+    fn screens(&self, driven: Driven) -> Vec<Screen> {
         let mut screens = vec![Screen::DeviceStatus, Screen::GeneralSettings];
-        screens.extend_from_slice(desk.driven().screens());
+        screens.extend_from_slice(driven.screens());
         screens.extend([Screen::Inputs, Screen::Terminal]);
         screens
     }
@@ -50,10 +41,6 @@ impl Family for MotionMind {
             Screen::Terminal => "Terminal",
             other => other.title(),
         }
-    }
-
-    fn screen_ui(&self, ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-        motion_mind::screen_ui(ui, model, commands);
     }
 
     fn tabs(&self, screen: Screen) -> &'static [Tab] {
@@ -116,31 +103,22 @@ impl Family for MotionMind {
         }
     }
 
-    fn cannot_tune(&self, desk: &Desk) -> Option<&'static str> {
-        if desk.mode().is_some_and(|mode| mode != MotionMindSetup::SERIAL_PID) {
-            return Some(
-                "Guided tuning needs mode 4, serial PID with an encoder: no other mode takes both a duty and a place. Switch the power off, \
-                 set SW1 to mode 4 (MODE2 off, MODE1 on, MODE0 on), and switch it on again. The step response assistant works here too.",
-            );
-        }
-        desk.has_bit("FUNCTION2", "PULSEFB").then_some(
-            "Guided tuning needs an encoder, and this unit is set to pulse feedback. Clear PULSEFB in FUNCTION2 on the Registers screen, \
-             or use the step response assistant.",
-        )
-    }
-
     fn remedies(&self, cause: Cause) -> Option<&'static [&'static str]> {
         words::motion_mind_remedies(cause)
     }
 
-    fn to_send(&self, _desk: &Desk, scope: ArmScope, setpoints: Setpoints) -> Option<Drive> {
+    fn to_send(&self, scope: ArmScope, sliders: Sliders) -> Option<Drive> {
+        let setpoints = match scope {
+            ArmScope::Pwm => sliders.pwm.setpoints,
+            ArmScope::Velocity => sliders.velocity.setpoints,
+            ArmScope::Position => sliders.position.setpoints,
+            _ => return None,
+        };
         to_send(scope, setpoints)
     }
 
-    fn wants_read(&self, desk: &mut Desk, screen: Screen, now: Duration) -> Option<Request> {
-        let shows_registers = matches!(screen, Screen::GeneralSettings | Screen::Inputs | Screen::Motion);
-        let is_free = desk.is_connected() && !desk.is_guided() && desk.general.running().is_none();
-        (shows_registers && is_free).then(|| desk.motion_mind.live.read(now))?
+    fn shows_registers(&self, screen: Screen) -> bool {
+        matches!(screen, Screen::GeneralSettings | Screen::Inputs | Screen::Motion)
     }
 
     fn has_loops(&self) -> bool {

@@ -66,7 +66,7 @@ mod tests {
     use std::time::Duration;
 
     use super::*;
-    use crate::gui::model::graph_channels;
+    use crate::gui::model::channels::graph_channels;
 
     const MS: fn(u64) -> Duration = Duration::from_millis;
 

@@ -8,7 +8,7 @@ use super::marks::{Mark, MarkKind};
 use super::scale::Scale;
 use super::series::NOT_READ;
 use super::track::{ChannelInfo, Track};
-use crate::gui::model::graph_channels;
+use crate::gui::model::channels::graph_channels;
 use crate::recording::csv::{CsvWriter, Times};
 use crate::recording::{Column, Head, Reading, Record, open};
 

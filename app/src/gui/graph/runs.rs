@@ -6,7 +6,7 @@ use super::marks::MarkKind;
 use super::memo::Memo;
 use super::sheet::Sheet;
 use super::track::Track;
-use super::trigger::{TriggerSettings, TriggerSource, Watcher};
+use super::trigger::{TriggerSettings, TriggerSource, first_crossing_s};
 
 /// What of a run and of the present picture lies at the same place.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -82,27 +82,6 @@ impl Run {
         self.found.set(Some((*trigger, found)));
         found
     }
-}
-
-/// The first time after `from_s` that a channel passes the trigger's level.
-pub fn first_crossing_s(
-    track: &Track,
-    channel: usize,
-    settings: &TriggerSettings,
-    from_s: f64,
-) -> Option<f64> {
-    let mut watcher = Watcher::default();
-    for reading in track.readings(channel) {
-        match reading {
-            None => watcher.lost(),
-            Some((time_s, value)) => {
-                if let Some(at_s) = watcher.feed(settings, time_s, value).filter(|at_s| *at_s > from_s) {
-                    return Some(at_s);
-                }
-            }
-        }
-    }
-    None
 }
 
 fn first_command_s(track: &Track) -> Option<f64> {

@@ -7,11 +7,10 @@ use std::cell::RefCell;
 
 use super::cursors::{Cursors, Measure};
 use super::memo::Memo;
-use super::runs::first_crossing_s;
 use super::scale::Scale;
 use super::trace::{Columns, Trace, View};
 use super::track::{ChannelInfo, Track};
-use super::trigger::{Trigger, TriggerMode, TriggerSource};
+use super::trigger::{Trigger, TriggerMode, TriggerSource, first_crossing_s};
 
 /// Stretches of time that zooming steps through, in seconds. Ten seconds have Ion Studio's divisions of one second.
 pub const SPANS_S: [f64; 17] =

@@ -3,6 +3,8 @@
 //! What was sampled is always kept; a trigger only decides which part of it is in view. The crossing lies between two
 //! readings, where the straight line between them passes the level. Nothing is found across lost data.
 
+use super::track::Track;
+
 /// When the picture is taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TriggerMode {
@@ -198,6 +200,27 @@ impl Trigger {
             TriggerMode::Normal | TriggerMode::Single => true,
         })
     }
+}
+
+/// The first time after `from_s` that a channel passes the trigger's level.
+pub fn first_crossing_s(
+    track: &Track,
+    channel: usize,
+    settings: &TriggerSettings,
+    from_s: f64,
+) -> Option<f64> {
+    let mut watcher = Watcher::default();
+    for reading in track.readings(channel) {
+        match reading {
+            None => watcher.lost(),
+            Some((time_s, value)) => {
+                if let Some(at_s) = watcher.feed(settings, time_s, value).filter(|at_s| *at_s > from_s) {
+                    return Some(at_s);
+                }
+            }
+        }
+    }
+    None
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use brushwork_script::mcl::index::Index;
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use ropey::Rope;
 
-use super::document::DocId;
+use super::doc_id::DocId;
 
 /// Typing that goes on within this time is waited for.
 const PAUSE: Duration = Duration::from_millis(10);

@@ -7,15 +7,12 @@ use egui::Vec2;
 
 use super::buffer::{Buffer, Edit, Kind};
 use super::caret::Caret;
+use super::composing::Composing;
 use super::disk::{Format, LineEnds, Stamp};
+use super::doc_id::DocId;
 use super::fold::Folds;
-use super::input::Composing;
 use super::marks::Marks;
 use super::problems::Findings;
-
-/// Which program, for as long as the window is open.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct DocId(pub u64);
 
 /// One open program.
 #[derive(Debug)]

@@ -3,13 +3,14 @@
 use std::path::PathBuf;
 
 use super::complete::Completion;
-use super::document::{DocId, Document};
+use super::doc_id::DocId;
+use super::document::Document;
 use super::find::Find;
 use super::journal::Left;
 use super::panel::Panel;
 use super::printer::{Printing, Spooler};
-use super::services::Services;
 use super::sheet::Sheet;
+use super::threads::Services;
 use crate::gui::model::message::Gravity;
 
 /// What is shown of a program besides its text.

@@ -7,7 +7,7 @@ use brushwork_link::Failure;
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 
 use super::disk::{self, Loaded, Stamp};
-use super::document::DocId;
+use super::doc_id::DocId;
 use super::journal::{Journal, Kept, Left};
 
 /// Tasks that may wait; a person does not do more at once.

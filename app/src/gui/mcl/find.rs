@@ -52,7 +52,7 @@ pub struct Find {
 /// Where the query is found, and in what.
 #[derive(Debug, Default)]
 struct Found {
-    of: Option<(super::document::DocId, u64, Query)>,
+    of: Option<(super::doc_id::DocId, u64, Query)>,
     matches: Vec<Range<usize>>,
     failure: Option<String>,
     expression: Option<Regex>,
@@ -175,7 +175,7 @@ impl Find {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gui::mcl::document::DocId;
+    use crate::gui::mcl::doc_id::DocId;
 
     fn document(text: &str) -> Document {
         Document::new(DocId(1), "a".into(), text)

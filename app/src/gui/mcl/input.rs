@@ -3,20 +3,15 @@
 use egui::{Event, EventFilter, Id, ImeEvent, Key, Modifiers, Ui};
 
 use super::buffer::Kind;
-use super::caret::{Caret, Move, moved};
+use super::caret::Caret;
 use super::complete::Completion;
+use super::composing::Composing;
 use super::document::{Document, Reveal};
+use super::moves::{Move, moved};
 
 /// The keys that stay with the text instead of moving the focus. Esc leaves the text, unless it has a list of words to close.
 pub const fn filter(list_is_open: bool) -> EventFilter {
     EventFilter { tab: true, horizontal_arrows: true, vertical_arrows: true, escape: list_is_open }
-}
-
-/// What an input method is composing, and where it stands in the text.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Composing {
-    pub start: usize,
-    pub length: usize,
 }
 
 /// Does what was typed since the last frame. `page` is how many rows are in view. The list of words goes along with what is typed.

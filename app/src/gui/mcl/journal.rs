@@ -9,7 +9,7 @@ use brushwork_link::settings::replace_file;
 use serde::{Deserialize, Serialize};
 
 use super::disk::Format;
-use super::document::DocId;
+use super::doc_id::DocId;
 
 const LOCK: &str = "lock";
 

@@ -7,9 +7,10 @@ use brushwork_script::mcl::index::{self, Help, SyntaxHint, syntax_at};
 use brushwork_script::text::Span;
 
 use super::buffer::Kind;
-use super::caret::{Caret, word_at};
+use super::caret::Caret;
 use super::check::{Checked, check};
 use super::document::Document;
+use super::moves::word_at;
 
 /// What is shown where the pointer rests.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

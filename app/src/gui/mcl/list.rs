@@ -7,8 +7,8 @@ use brushwork_script::diagnostic::Severity;
 use super::document::Document;
 use super::problems::Problem;
 use super::wish::MclWish;
+use crate::gui::model::lamp::LampState;
 use crate::gui::theme::Palette;
-use crate::gui::widgets::LampState;
 
 const ROW: f32 = 22.0;
 

@@ -1,7 +1,7 @@
 //! The MCL editor (MCP manual 1.2.14): programs in tabs, checked as they are typed, downloaded, started and stopped.
 //!
-//! The text and what is done to it (`buffer`, `caret`, `typing`, `find`, `fold`, `marks`, `disk`, `journal`) know nothing of egui; `view`
-//! draws a program, `screen` puts everything together, `services` keeps the threads that check, read and write.
+//! The text and what is done to it (`buffer`, `caret`, `moves`, `typing`, `find`, `fold`, `marks`, `disk`, `journal`) know nothing of egui;
+//! `view` draws a program, `screen` puts everything together, `services` speaks to the threads that check, read and write.
 
 mod access;
 mod act;
@@ -10,7 +10,9 @@ pub mod buffer;
 pub mod caret;
 pub mod check;
 pub mod complete;
+mod composing;
 pub mod disk;
+pub mod doc_id;
 pub mod document;
 pub mod editor;
 pub mod examples;
@@ -24,6 +26,7 @@ pub mod journal;
 pub mod language;
 mod list;
 pub mod marks;
+pub mod moves;
 mod notices;
 mod paint;
 pub mod panel;
@@ -39,12 +42,14 @@ pub mod sheet;
 mod squiggle;
 mod strip;
 mod tabs;
+mod threads;
 mod toolbar;
 mod typing;
 mod view;
 pub mod wish;
 
-pub use document::{DocId, Document};
+pub use doc_id::DocId;
+pub use document::Document;
 pub use editor::Editor;
 pub use screen::screen_ui;
 pub use view::has_keyboard;

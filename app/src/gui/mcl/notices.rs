@@ -5,8 +5,8 @@ use egui::{Frame, Label, Margin, Stroke, Ui, vec2};
 use super::document::OnDisk;
 use super::editor::Editor;
 use super::wish::MclWish;
+use crate::gui::model::lamp::LampState;
 use crate::gui::theme::Palette;
-use crate::gui::widgets::LampState;
 
 pub fn notices_ui(ui: &mut Ui, editor: &Editor, wishes: &mut Vec<MclWish>) {
     if !editor.left.is_empty() {

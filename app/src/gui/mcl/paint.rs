@@ -6,7 +6,7 @@ use brushwork_script::mcl::index::{Class, classes};
 use egui::text::{CCursor, LayoutJob, TextFormat};
 use egui::{FontId, Galley, Ui, Vec2};
 
-use super::caret::TAB_CELLS;
+use super::moves::TAB_CELLS;
 use crate::gui::theme::{Palette, Syntax};
 
 /// What is drawn of a line at most, in characters: nobody reads on, and laying it out takes time.

@@ -11,7 +11,7 @@ use krilla::paint::Fill;
 use krilla::surface::Surface;
 use krilla::text::{Font, TextDirection};
 
-use super::caret::TAB_CELLS;
+use super::moves::TAB_CELLS;
 use super::paint::color_of;
 use crate::gui::theme::Palette;
 use crate::keep::today;

@@ -8,9 +8,9 @@ use egui::{ComboBox, Label, ProgressBar, RichText, Ui};
 
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
+use crate::gui::model::lamp::LampState;
 use crate::gui::model::link::Arming;
 use crate::gui::theme::Palette;
-use crate::gui::widgets::LampState;
 use crate::gui::widgets::arm_switch::arm_switch_ui;
 
 /// The switch with a line of what can happen, or how far a download is.

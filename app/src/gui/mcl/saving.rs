@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use egui::Context;
 
 use super::disk::encode;
-use super::document::{DocId, OnDisk};
+use super::doc_id::DocId;
+use super::document::OnDisk;
 use super::editor::{Editor, Exit};
 use super::files::Task;
 use super::print;

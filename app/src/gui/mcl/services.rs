@@ -8,10 +8,12 @@ use egui::Context;
 
 use super::check::Checker;
 use super::disk::{self, Loaded};
-use super::document::{DocId, Document, OnDisk};
+use super::doc_id::DocId;
+use super::document::{Document, OnDisk};
 use super::editor::Editor;
 use super::files::{Done, Files, SaveError, Task};
 use super::journal::Kept;
+use super::threads::Services;
 use crate::gui::model::message::Gravity;
 use crate::keep::today;
 
@@ -19,15 +21,6 @@ use crate::keep::today;
 const KEEP_AFTER_S: f64 = 1.0;
 /// How often files are looked at, seconds.
 const LOOK_EVERY_S: f64 = 2.0;
-
-/// The threads of the editor, and what they were asked last.
-#[derive(Debug)]
-pub struct Services {
-    checker: Checker,
-    files: Files,
-    asked: Option<(DocId, u64)>,
-    looked_at_s: f64,
-}
 
 impl Editor {
     /// Starts the threads. Unsaved text is kept in the folder `data`, if there is one.

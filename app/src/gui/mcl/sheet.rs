@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::document::DocId;
+use super::doc_id::DocId;
 use super::printer::Spooler;
 use crate::gui::files::{FileAnswer, FileDialog, FileKind, FileWish};
 

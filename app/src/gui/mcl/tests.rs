@@ -4,8 +4,10 @@ use proptest::prelude::*;
 use unicode_segmentation::UnicodeSegmentation as _;
 
 use super::buffer::{Buffer, Kind};
-use super::caret::{Caret, Move, byte_at_cell, cell_of, moved, word_at};
-use super::document::{DocId, Document};
+use super::caret::Caret;
+use super::doc_id::DocId;
+use super::document::Document;
+use super::moves::{Move, byte_at_cell, cell_of, moved, word_at};
 
 /// Letters of one to four bytes, joined ones, line ends and blanks.
 const LETTERS: [&str; 14] =

@@ -3,8 +3,10 @@
 use std::ops::Range;
 
 use super::buffer::Kind;
-use super::caret::{self, Caret, Move, TAB_CELLS, indent_of, moved};
+use super::caret::Caret;
 use super::document::Document;
+use super::moves;
+use super::moves::{Move, TAB_CELLS, indent_of, moved};
 
 /// One step of indent.
 const INDENT: &str = "    ";
@@ -97,7 +99,7 @@ impl Document {
         }
         let at = self.caret.range().start;
         let line = self.text.line_of(at);
-        let cell = caret::cell_of(&self.text.line(line), at - self.text.line_start(line));
+        let cell = moves::cell_of(&self.text.line(line), at - self.text.line_start(line));
         self.insert(Kind::Other, &" ".repeat(TAB_CELLS - cell % TAB_CELLS));
     }
 

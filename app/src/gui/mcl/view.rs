@@ -11,9 +11,10 @@ use egui::{
 };
 
 use super::buffer::Buffer;
-use super::caret::{Caret, word_at};
+use super::caret::Caret;
 use super::document::{Document, Reveal};
 use super::editor::{Editor, Options};
+use super::moves::word_at;
 use super::paint::{Line, Metrics};
 use super::wish::MclWish;
 use super::{access, gutter, input, popup, squiggle};

@@ -1,7 +1,7 @@
 //! What a person can ask of the editor.
 
 use super::disk::{Encoding, LineEnds};
-use super::document::DocId;
+use super::doc_id::DocId;
 use super::panel::Tab;
 
 /// One wish. What is done to a program is done to the one in front.

@@ -16,11 +16,11 @@ use brushwork_link::transport::ConnectTarget;
 use brushwork_plant::world::ScriptRun;
 use brushwork_plant::world::WorldView;
 
+use super::channels::graph_channels;
 use super::drawer::{Drawers, Tab};
 use super::firmware::Firmware;
 use super::general::General;
 use super::generator::Generator;
-use super::graph_channels;
 use super::history::History;
 use super::link::{Arming, Effect, LinkView};
 use super::loop_settings::LoopSettings;
@@ -30,13 +30,12 @@ use super::pwm::Pwm;
 use super::qpps::QppsPanel;
 use super::screen::Screen;
 use super::script::ScriptWork;
-use super::setpoints::Setpoints;
 use super::traffic::Traffic;
 use super::velocity::Velocity;
 use super::watch::Watch;
 use super::world::WorldPanel;
 use crate::gui::debugger::Debugging;
-use crate::gui::family::{self, Family, FamilyKind};
+use crate::gui::family::{self, Family, FamilyKind, Sliders};
 use crate::gui::graph::LiveGraph;
 use crate::gui::tune::Tuning;
 
@@ -190,6 +189,11 @@ impl Desk {
         family::of(self.family_kind)
     }
 
+    /// The screens of that controller, in the order of the list.
+    pub fn screens(&self) -> Vec<Screen> {
+        self.family().screens(self.driven())
+    }
+
     /// The tab that is open above the graph of a screen that drives.
     pub fn open_tab(&self, screen: Screen) -> Option<Tab> {
         self.drawers.open(screen).filter(|tab| self.family().tabs(screen).contains(tab))
@@ -242,14 +246,9 @@ impl Desk {
         }
     }
 
-    /// How the sliders of a screen that drives stand.
-    pub fn setpoints(&self, scope: ArmScope) -> Option<&Setpoints> {
-        match scope {
-            ArmScope::Pwm => Some(&self.pwm.setpoints),
-            ArmScope::Velocity => Some(&self.velocity.setpoints),
-            ArmScope::Position => Some(&self.position.setpoints),
-            _ => None,
-        }
+    /// What is set on the screens that drive.
+    pub fn sliders(&self) -> Sliders {
+        Sliders { pwm: self.pwm, velocity: self.velocity, position: self.position }
     }
 
     /// Takes over an event of this link. What it means beyond this desk is handed back: something to say, or the

@@ -10,7 +10,7 @@ use std::time::Duration;
 use brushwork_link::device::{Condition, DisarmReason, Event, Identity, StatusReport, StopReport};
 
 use crate::gui::family::{self, Family, FamilyKind, Sign, mcp_sign};
-use crate::gui::widgets::LampState;
+use crate::gui::model::lamp::LampState;
 
 /// Entries kept; the oldest go first.
 pub const KEPT: usize = 2000;

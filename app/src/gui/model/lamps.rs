@@ -1,10 +1,10 @@
 //! The states of a controller's status lamps: thirteen of an MCP (MCP manual 1.2.5), others of other families.
 
 use brushwork_link::device::{Identity, StatusReport};
-use brushwork_mcp_wire::packet_serial::status::{Lamp, Severity};
+use brushwork_mcp_wire::packet_serial::status::Lamp;
 
-use crate::gui::family::{Family, LampInfo};
-use crate::gui::widgets::LampState;
+use super::lamp::{LampInfo, LampState};
+use crate::gui::family::Family;
 
 /// The states of all lamps of a family; none of them is known before the status was read.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -34,15 +34,6 @@ impl Lamps {
     /// The gravest state of all.
     pub fn worst(&self) -> LampState {
         self.0.iter().map(|(_, state)| *state).max().unwrap_or_default()
-    }
-}
-
-/// How a condition of this severity is shown.
-pub const fn state_of(severity: Severity) -> LampState {
-    match severity {
-        Severity::Signal => LampState::Active,
-        Severity::Warning => LampState::Warning,
-        Severity::Error => LampState::Error,
     }
 }
 

@@ -1,12 +1,12 @@
 //! The window's state as plain data. Screens read it and ask for changes; nothing here draws or waits.
 
-use brushwork_link::device::{ArmScope, Channel};
+use brushwork_link::device::ArmScope;
 use egui::ThemePreference;
 
-use super::graph::{ChannelInfo, Scale};
 use super::mcl::Editor;
 
 pub mod canopen;
+pub mod channels;
 pub mod desk;
 pub mod devices;
 pub mod drawer;
@@ -16,6 +16,7 @@ pub mod generator;
 pub mod guided;
 pub mod help;
 pub mod history;
+pub mod lamp;
 pub mod lamps;
 pub mod link;
 pub mod loop_settings;
@@ -218,47 +219,6 @@ impl Model {
     }
 }
 
-/// Every channel of a controller with the scale it begins with; those of the PWM screen are shown at first.
-pub fn graph_channels() -> Vec<ChannelInfo> {
-    let info = |channel: Channel| ChannelInfo {
-        key: channel.key(),
-        label: channel.label().to_owned(),
-        unit: channel.unit().to_owned(),
-        decimals: decimals(channel),
-        scale: first_scale(channel),
-        shown: Screen::Pwm.first_channels().contains(&channel),
-        is_pin: channel.is_signal(),
-    };
-    Channel::ALL.into_iter().map(info).collect()
-}
-
-/// Digits after the point that a channel's readings have.
-pub fn decimals(channel: Channel) -> usize {
-    match channel {
-        Channel::M1Current | Channel::M2Current => 2,
-        Channel::M1Setpoint | Channel::M2Setpoint | Channel::M1Pwm | Channel::M2Pwm => 1,
-        Channel::Temperature1 | Channel::Temperature2 | Channel::MainBattery | Channel::LogicBattery => 1,
-        Channel::RcPulse => 3,
-        Channel::AnalogControl | Channel::AnalogFeedback => 2,
-        _ => 0,
-    }
-}
-
-fn first_scale(channel: Channel) -> Scale {
-    match channel {
-        Channel::M1Setpoint | Channel::M2Setpoint | Channel::M1Pwm | Channel::M2Pwm => {
-            Scale::around_zero(100.0)
-        }
-        Channel::M1Current | Channel::M2Current => Scale::around_zero(1.0),
-        Channel::Temperature1 | Channel::Temperature2 => Scale::from_zero(100.0),
-        Channel::MainBattery => Scale::from_zero(40.0),
-        Channel::LogicBattery => Scale::from_zero(20.0),
-        Channel::RcPulse => Scale::from_zero(2.5),
-        Channel::AnalogControl | Channel::AnalogFeedback => Scale::from_zero(5.0),
-        _ => Scale::around_zero(1000.0),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -267,7 +227,7 @@ mod tests {
     fn of_links_that_were_closed_the_newest_stay_and_so_do_those_with_something_to_lose() {
         let mut model = Model::default();
         for number in 0..12 {
-            let values = vec![0.0; graph_channels().len()];
+            let values = vec![0.0; channels::graph_channels().len()];
             model.front.target = Some(format!("tcp:host:{number}"));
             model.front.graph.push(f64::from(number), &values);
             if number == 1 {

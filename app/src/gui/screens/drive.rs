@@ -4,21 +4,21 @@ use brushwork_link::device::{ArmScope, Channel};
 use brushwork_link::transport::Stream;
 use brushwork_values::Motor;
 use egui::{
-    Align, ComboBox, Frame, Label, Layout, Margin, ProgressBar, RichText, ScrollArea, Stroke, Ui, UiBuilder,
-    vec2,
+    Align, ComboBox, Frame, Label, Layout, Margin, RichText, ScrollArea, Stroke, Ui, UiBuilder, vec2,
 };
 
 use super::drawer::{drawer_ui, is_tuning};
 use super::title_ui;
-use crate::gui::command::{Command, Commands, GuidedWish};
+use crate::gui::command::{Command, Commands};
 use crate::gui::family::{Ability, Family};
 use crate::gui::graph::panel;
+use crate::gui::model::Model;
+use crate::gui::model::channels::decimals;
+use crate::gui::model::lamp::LampState;
 use crate::gui::model::link::{Arming, LinkView};
 use crate::gui::model::setpoints::{Direction, Setpoints};
-use crate::gui::model::{Model, decimals};
 use crate::gui::theme::Palette;
 use crate::gui::tune::guide::guide_ui;
-use crate::gui::widgets::LampState;
 use crate::gui::widgets::arm_switch::arm_switch_ui;
 use crate::gui::widgets::jog::{self, jog_ui};
 use crate::gui::widgets::numeric::Numeric;
@@ -219,16 +219,6 @@ pub fn pace_ui(ui: &mut Ui, label: &str, hint: &str, field: &Numeric<'_>, value:
         ui.label(label);
         field.ui(ui, value).on_hover_text(hint);
     });
-}
-
-/// How far a job is, with the button that ends it.
-pub fn progress_ui(ui: &mut Ui, progress: Option<(f32, &str)>, commands: &mut Commands) {
-    let (fraction, text) = progress.unwrap_or((0.0, "Another job moves the motors"));
-    ui.add(ProgressBar::new(fraction).desired_width(180.0));
-    if ui.button("Cancel").on_hover_text("Stops the motors").clicked() {
-        commands.push(Command::Guided(GuidedWish::Cancel));
-    }
-    ui.add(Label::new(text).truncate());
 }
 
 /// What stands at the right of the sliders.

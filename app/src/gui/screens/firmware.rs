@@ -12,8 +12,8 @@ use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
 use crate::gui::model::firmware::{Firmware, FirmwareWish, LISTED, Stage};
 use crate::gui::model::general::Sheet;
-use crate::gui::shell::heading_ui;
 use crate::gui::theme::Palette;
+use crate::gui::widgets::heading::heading_ui;
 use crate::gui::widgets::text_field::text_field_ui;
 
 /// Draws the window, if it is open, within `room`.

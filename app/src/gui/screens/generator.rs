@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use brushwork_values::Motor;
 use egui::{Button, ComboBox, Grid, Label, RichText, Ui, vec2};
 
-use super::drive::progress_ui;
+use super::progress::progress_ui;
 use crate::gui::command::{Command, Commands, GuidedWish};
 use crate::gui::model::Model;
 use crate::gui::model::generator::{duration_text, mode_of};

@@ -3,6 +3,7 @@
 use egui::{Align, Layout, RichText, Ui};
 
 use super::command::Commands;
+use super::family::FamilyKind;
 use super::mcl;
 use super::model::screen::Screen;
 use super::model::{Model, Phase};
@@ -17,6 +18,7 @@ mod generator;
 mod loops;
 pub mod motion_mind;
 mod position;
+mod progress;
 mod pwm;
 mod qpps;
 mod status;
@@ -28,11 +30,14 @@ pub fn screen_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     if let Some(scope) = drives.filter(|scope| scope.allows_motion()) {
         return drive::large_graph_ui(ui, scope, model, commands);
     }
-    model.front.family().screen_ui(ui, model, commands);
+    match model.front.family_kind {
+        FamilyKind::Mcp => mcp_ui(ui, model, commands),
+        FamilyKind::MotionMind => motion_mind::screen_ui(ui, model, commands),
+    }
 }
 
 /// The screens of an MCP.
-pub fn mcp_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+fn mcp_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     match model.screen {
         Screen::DeviceStatus => status::status_ui(ui, model, commands),
         Screen::GeneralSettings => general::general_ui(ui, model, commands),

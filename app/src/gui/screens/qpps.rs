@@ -3,12 +3,12 @@
 use brushwork_values::Motor;
 use egui::{Button, Label, RichText, Ui};
 
-use super::drive::progress_ui;
+use super::progress::progress_ui;
 use crate::gui::command::{Command, Commands, GuidedWish};
 use crate::gui::model::Model;
+use crate::gui::model::lamp::LampState;
 use crate::gui::model::qpps::lines;
 use crate::gui::theme::Palette;
-use crate::gui::widgets::LampState;
 use crate::gui::widgets::numeric::Numeric;
 
 const WHAT_IT_DOES: &str = "Checks with little duty that the encoder counts up when the motor goes forward, then runs it at \

@@ -10,14 +10,14 @@ use egui::{
 
 use egui::containers::menu::MenuButton;
 
-use super::heading_ui;
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::devices::{BAUD_RATES, Choice, Devices};
+use crate::gui::model::lamp::LampState;
 use crate::gui::model::link::Arming;
 use crate::gui::model::simulated::Simulated;
 use crate::gui::model::{Desk, DeskId, Model, Phase, place_of};
 use crate::gui::theme::Palette;
-use crate::gui::widgets::LampState;
+use crate::gui::widgets::heading::heading_ui;
 use crate::gui::widgets::text_field::text_field_ui;
 
 const ROW_HEIGHT: f32 = 54.0;

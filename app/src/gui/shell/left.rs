@@ -3,10 +3,10 @@
 use egui::{Align, Button, Label, Layout, Panel, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
 use super::devices::devices_ui;
-use super::heading_ui;
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
 use crate::gui::theme::Palette;
+use crate::gui::widgets::heading::heading_ui;
 use crate::gui::widgets::stop;
 
 pub fn left_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
@@ -66,7 +66,7 @@ fn screens_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     heading_ui(ui, "Screens");
     ui.spacing_mut().item_spacing.y = 2.0;
     ui.with_layout(Layout::top_down_justified(Align::Min), |ui| {
-        for screen in family.screens(&model.front) {
+        for screen in model.front.screens() {
             let (title, is_current) = (family.title(screen), current == screen);
             let shortcut = RichText::new(format!("Ctrl+{}", screen as usize + 1)).small();
             let response = ui.add(Button::selectable(is_current, title).right_text(shortcut));

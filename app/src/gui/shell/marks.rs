@@ -6,9 +6,9 @@ use egui::{Align2, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, p
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
 use crate::gui::model::general::Saved;
+use crate::gui::model::lamp::LampState;
 use crate::gui::model::screen::Screen;
 use crate::gui::theme::Palette;
-use crate::gui::widgets::LampState;
 
 pub const WIDTH: f32 = 206.0;
 const HEIGHT: f32 = 36.0;

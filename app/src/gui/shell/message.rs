@@ -5,9 +5,9 @@ use egui::{Align, Label, Layout, RichText, Role, Ui, WidgetInfo, vec2};
 use super::marks;
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
+use crate::gui::model::lamp::LampState;
 use crate::gui::model::message::{Gravity, Message};
 use crate::gui::theme::Palette;
-use crate::gui::widgets::LampState;
 
 const HEIGHT: f32 = 36.0;
 const BUTTON_WIDTH: f32 = 76.0;

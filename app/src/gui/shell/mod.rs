@@ -1,6 +1,6 @@
 //! What is always in view: devices and screens at the left, monitored parameters at the top, lamps at the bottom.
 
-use egui::{CentralPanel, Frame, Margin, Panel, RichText, ScrollArea, Ui};
+use egui::{CentralPanel, Frame, Margin, Panel, ScrollArea, Ui};
 
 use super::command::Commands;
 use super::model::{Layout, Model};
@@ -58,10 +58,4 @@ pub fn shell_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     screens::firmware::firmware_ui(ui.ctx(), model, commands, room);
     screens::canopen::canopen_ui(ui.ctx(), model, commands, room);
     palette::palette_ui(ui.ctx(), model, commands);
-}
-
-/// The heading of a group.
-pub fn heading_ui(ui: &mut Ui, text: &str) {
-    let color = Palette::of(ui).weak_text;
-    ui.label(RichText::new(text.to_uppercase()).small().color(color));
 }

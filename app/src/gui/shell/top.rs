@@ -5,7 +5,8 @@ use egui::{Label, Role, Ui, WidgetInfo, vec2};
 
 use crate::gui::command::{Command, Commands};
 use crate::gui::family::{Figure, Figures};
-use crate::gui::model::{Model, decimals};
+use crate::gui::model::Model;
+use crate::gui::model::channels::decimals;
 use crate::gui::widgets::label::fixed_label_ui;
 use crate::gui::widgets::readout::{NO_VALUE, Readout};
 

@@ -10,9 +10,9 @@ use egui::{
 use crate::gui::command::Commands;
 use crate::gui::files::{FileAnswer, FileDialog, FileKind, FileWish};
 use crate::gui::model::Model;
+use crate::gui::model::lamp::LampState;
 use crate::gui::model::traffic::{Filter, Log, Outcome, Traffic, Transaction};
 use crate::gui::theme::{self, Palette};
-use crate::gui::widgets::LampState;
 use crate::gui::widgets::text_field::text_field_ui;
 
 const ROW_HEIGHT: f32 = 18.0;

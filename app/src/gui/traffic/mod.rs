@@ -6,7 +6,7 @@ use egui::{Key, Ui};
 use super::command::{Command, Commands};
 use super::model::Model;
 use super::model::traffic::Tab;
-use super::shell::heading_ui;
+use super::widgets::heading::heading_ui;
 
 mod composer;
 mod log;

@@ -4,7 +4,7 @@ use brushwork_mcp_wire::packet_serial::hex;
 use egui::{Label, RichText, ScrollArea, Ui};
 
 use crate::gui::model::Model;
-use crate::gui::model::traffic::pending;
+use crate::gui::model::traffic::pending::pending;
 use crate::gui::theme::Palette;
 
 pub fn pending_ui(ui: &mut Ui, model: &Model) {

@@ -5,15 +5,16 @@ use brushwork_values::Motor;
 use egui::{Button, Label, RichText, Ui};
 
 use super::calibration::{Advice, Calibration};
-use super::model::{Loop, TuneWish};
+use super::figures::lamp_ui;
+use super::model::TuneWish;
 use super::registers::{FIELDS, Registers};
-use super::result::lamp_ui;
+use super::which::Loop;
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
 use crate::gui::model::drawer::Tab;
+use crate::gui::model::lamp::LampState;
 use crate::gui::model::screen::Screen;
 use crate::gui::theme::{self, Palette};
-use crate::gui::widgets::LampState;
 
 pub fn by_hand_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let Some(which) = Loop::of(model.screen) else { return };

@@ -4,9 +4,9 @@
 
 use brushwork_values::Motor;
 
-use super::model::Loop;
 use super::observe::{Observation, Observer};
 use super::registers::{FIELDS, Registers};
+use super::which::Loop;
 
 /// P of the position loop to begin with, 2000 on the wire (MCP manual 2.4.7), which is about 2 counts/s per count.
 const FIRST_POSITION_P: f64 = 2000.0 / 1024.0;

@@ -5,18 +5,13 @@ use std::path::{Path, PathBuf};
 use brushwork_tuning::report::Report;
 use egui::{Button, Ui, vec2};
 
-use super::model::{Loop, TuneWish, Tuning};
+use super::asked::Asked;
+use super::model::{TuneWish, Tuning};
+use super::which::Loop;
 use crate::gui::app::FRAME_INTERVAL;
 use crate::gui::command::{Command, Commands};
 use crate::gui::files::{FileAnswer, FileDialog, FileKind, FileWish};
 use crate::gui::widgets::text_field::text_field_ui;
-
-/// The desktop's own dialog, and what its answer is for.
-#[derive(Debug)]
-pub struct Asked {
-    dialog: FileDialog,
-    saves: bool,
-}
 
 /// Which loop a report is of.
 pub fn loop_of(report: &Report) -> Loop {

@@ -5,7 +5,8 @@ use egui::{
     UiBuilder, vec2,
 };
 
-use super::model::{Loop, TuneWish, Tuning};
+use super::model::{TuneWish, Tuning};
+use super::which::Loop;
 use super::{plots, result, setup};
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
@@ -21,7 +22,7 @@ const PICTURE_HEIGHT: f32 = 300.0;
 /// Fills what is left of `ui`.
 pub fn guide_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let Some(which) = Loop::of(model.screen) else { return };
-    if let Some(why) = model.front.family().cannot_tune(&model.front) {
+    if let Some(why) = model.front.cannot_tune() {
         ui.add(Label::new(why).wrap());
         return;
     }

@@ -2,13 +2,17 @@
 //!
 //! State and screens stand together here; `crate::tune` has the jobs, `brushwork_tuning` the method.
 
+pub mod asked;
 pub mod by_hand;
 pub mod calibration;
 pub mod chart;
+mod figures;
 pub mod files;
 pub mod guide;
+mod held;
 mod level;
 mod limits;
+pub mod looked_at;
 pub mod measured;
 pub mod model;
 pub mod observe;
@@ -22,6 +26,8 @@ mod runs;
 pub mod sequence;
 pub mod setup;
 mod sketches;
+pub mod which;
 mod winding;
 
-pub use model::{Loop, TuneWish, Tuning};
+pub use model::{TuneWish, Tuning};
+pub use which::Loop;

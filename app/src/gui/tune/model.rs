@@ -1,6 +1,6 @@
 //! Tuning as the window keeps it: what is set, what runs, and the runs so far, for each loop of each motor.
 
-use brushwork_link::device::{ArmScope, Event, Identity, Request, Sample};
+use brushwork_link::device::{Event, Identity, Request, Sample};
 use brushwork_link::settings::SettingValue;
 use brushwork_link::transport::Stream;
 use brushwork_tuning::axis::{EncoderClass, Setup};
@@ -9,10 +9,13 @@ use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::{self, Excitation, Method};
 use brushwork_values::Motor;
 
+use super::asked::Asked;
 use super::calibration::Calibration;
+use super::looked_at::View;
 use super::registers::Registers;
 use super::run::Run;
 use super::sequence::{Ended, Next, Origin, Sequence, Work};
+use super::which::Loop;
 use crate::gui::family::Family;
 use crate::gui::model::general::SettingsWish;
 use crate::gui::model::link::{Arming, Effect};
@@ -25,45 +28,6 @@ const MOST_WRITES: u8 = 4;
 
 /// Position limits farther apart are none.
 const ENDLESS_COUNTS: f64 = 1e8;
-
-/// Which loop is tuned: each has its screen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Loop {
-    Velocity,
-    Position,
-}
-
-impl Loop {
-    pub const fn of(screen: Screen) -> Option<Self> {
-        match screen {
-            Screen::Velocity => Some(Self::Velocity),
-            Screen::Position => Some(Self::Position),
-            _ => None,
-        }
-    }
-
-    pub const fn screen(self) -> Screen {
-        match self {
-            Self::Velocity => Screen::Velocity,
-            Self::Position => Screen::Position,
-        }
-    }
-
-    pub const fn scope(self) -> ArmScope {
-        match self {
-            Self::Velocity => ArmScope::Velocity,
-            Self::Position => ArmScope::Position,
-        }
-    }
-
-    /// Unit of what it holds.
-    pub const fn unit(self) -> &'static str {
-        match self {
-            Self::Velocity => "counts/s",
-            Self::Position => "counts",
-        }
-    }
-}
 
 /// What is asked for.
 #[derive(Clone, Debug, PartialEq)]
@@ -239,13 +203,13 @@ pub struct Tuning {
     winding: Option<Winding>,
     unit: Option<(u8, String)>,
     calibrations: [Calibration; 2],
-    pub view: super::plots::View,
+    pub view: View,
     /// Work with the settings that was asked for during a run: it waits until what the run changed is put back.
     pub waiting: Option<SettingsWish>,
     pub afterwards: Option<Afterwards>,
     /// A path for a report, as it is typed.
     pub path: String,
-    pub dialog: Option<super::files::Asked>,
+    pub dialog: Option<Asked>,
 }
 
 impl Default for Tuning {
@@ -259,7 +223,7 @@ impl Default for Tuning {
             winding: None,
             unit: None,
             calibrations: <[Calibration; 2]>::default(),
-            view: super::plots::View::default(),
+            view: View::default(),
             waiting: None,
             afterwards: None,
             path: String::new(),

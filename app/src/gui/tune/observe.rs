@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 use brushwork_link::device::{Channel, Sample};
 use brushwork_values::Motor;
 
-use super::model::Loop;
+use super::which::Loop;
 
 /// How far back it looks, s.
 const MEMORY_S: f64 = 12.0;

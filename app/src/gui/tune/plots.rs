@@ -6,8 +6,10 @@ use brushwork_tuning::whatif::{LoopPoint, Reply};
 use egui::{Color32, RichText, Ui, vec2};
 
 use super::chart::{Axis, Chart, Line, Look};
-use super::model::{Loop, Panel};
+use super::looked_at::{Kind, View};
+use super::model::Panel;
 use super::run::{Run, SPEED_OVER_S, Shown};
+use super::which::Loop;
 use crate::gui::theme::Palette;
 
 /// Below this the open loop has no phase to speak of, dB.
@@ -18,53 +20,6 @@ const LIVE_S: f64 = 6.0;
 const DUTY_SHARE: f32 = 0.3;
 /// Least height of a picture that has the duty under it.
 const ROOM_FOR_DUTY: f32 = 180.0;
-
-/// Which picture of a result is looked at.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Kind {
-    #[default]
-    Measured,
-    Step,
-    Load,
-    Bode,
-    Nyquist,
-    Sensitivity,
-}
-
-impl Kind {
-    pub const ALL: [Self; 6] =
-        [Self::Measured, Self::Step, Self::Load, Self::Bode, Self::Nyquist, Self::Sensitivity];
-
-    pub const fn title(self) -> &'static str {
-        match self {
-            Self::Measured => "Measured",
-            Self::Step => "Step",
-            Self::Load => "Load",
-            Self::Bode => "Bode",
-            Self::Nyquist => "Nyquist",
-            Self::Sensitivity => "Sensitivity",
-        }
-    }
-
-    pub const fn hint(self) -> &'static str {
-        match self {
-            Self::Measured => {
-                "What the machine did with the gains that were tried, over what the model predicts"
-            }
-            Self::Step => "What the gains do to a step of the setpoint, on the model",
-            Self::Load => "What a load of 15 % of the stall torque does, on the model",
-            Self::Bode => "Gain and phase of the open loop over frequency",
-            Self::Nyquist => "The open loop in the complex plane; it keeps out of the Ms circle",
-            Self::Sensitivity => "How much the loop enlarges what disturbs it; its peak is Ms",
-        }
-    }
-}
-
-/// What is looked at.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct View {
-    pub kind: Kind,
-}
 
 /// The picture of a run that goes on.
 pub fn live_ui(ui: &mut Ui, trace: &Trace, which: Loop) {

@@ -3,14 +3,15 @@
 use brushwork_tuning::cause::Cause;
 use egui::{Button, Label, RichText, Ui};
 
-use super::model::{Loop, TuneWish};
-use super::result::lamp_ui;
+use super::figures::lamp_ui;
+use super::model::TuneWish;
 use super::run::Run;
 use super::sketches::{Sketch, sketch_ui};
+use super::which::Loop;
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
+use crate::gui::model::lamp::LampState;
 use crate::gui::theme::Palette;
-use crate::gui::widgets::LampState;
 
 /// What to do, in the order in which it is best tried.
 fn steps(cause: Cause) -> &'static [&'static str] {

@@ -8,7 +8,6 @@ use brushwork_tuning::axis::{PositionRegisters, VelocityRegisters};
 use brushwork_tuning::motion_mind::{MotionMindRegisters, bits};
 use brushwork_values::Motor;
 
-use crate::gui::model::desk::Desk;
 use crate::gui::model::loop_settings::{LoopSettings, key};
 
 /// Wire value of a velocity gain of 1 (MCP manual, command 28).
@@ -372,17 +371,6 @@ impl Registers {
     /// Whether both stand for the same gains, whatever else of their registers differs.
     pub fn same_gains(&self, other: &Self) -> bool {
         FIELDS.iter().all(|field| (field.get)(self) == (field.get)(other))
-    }
-}
-
-impl Desk {
-    /// The gains that the controller holds, as last read; of a position loop of its own where that is asked for.
-    pub fn held_gains(&self, motor: Motor, with_position: bool) -> Option<Registers> {
-        if self.family().has_loops() {
-            return Registers::held(&self.loops, motor, with_position);
-        }
-        let unit = self.general.unit()?;
-        Registers::of_settings(|key| unit.on_controller(key))
     }
 }
 

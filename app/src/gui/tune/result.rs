@@ -3,19 +3,21 @@
 use brushwork_tuning::motion_mind::MotionMindLaw;
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::tune::Method;
-use egui::{Button, Grid, Label, Response, RichText, Ui, vec2};
+use egui::{Button, Grid, Label, RichText, Ui, vec2};
 
+use super::figures::{FIGURES, figure_ui, lamp_ui};
 use super::files::files_ui;
 use super::measured::Figures;
-use super::model::{Loop, TuneWish};
+use super::model::TuneWish;
 use super::registers::{FIELDS, Field, Form, Registers};
-use super::run::{Run, Shown};
+use super::run::Run;
+use super::which::Loop;
 use super::winding::{unknown_ui, winding_ui};
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
 use crate::gui::model::general::Sheet;
-use crate::gui::theme::{self, Palette};
-use crate::gui::widgets::LampState;
+use crate::gui::model::lamp::LampState;
+use crate::gui::theme::Palette;
 use crate::gui::widgets::numeric::Numeric;
 
 pub fn result_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands) {
@@ -66,14 +68,6 @@ fn empty_ui(ui: &mut Ui, model: &Model, which: Loop) {
     ui.add_space(6.0);
     ui.add(Label::new(RichText::new(text).color(palette.weak_text)).wrap());
     ui.add_space(6.0);
-}
-
-pub fn lamp_ui(ui: &mut Ui, state: LampState, text: &str) {
-    ui.horizontal(|ui| {
-        let (rect, _) = ui.allocate_exact_size(vec2(18.0, 18.0), egui::Sense::hover());
-        state.paint(ui, rect.center(), 6.0);
-        ui.add(Label::new(text).wrap());
-    });
 }
 
 fn verdict_ui(ui: &mut Ui, run: &Run) {
@@ -230,16 +224,6 @@ fn change_text(field: &Field, current: Option<f64>, wanted: Option<f64>) -> Stri
     }
 }
 
-/// A figure at the right of a place of fixed width.
-pub fn figure_ui(ui: &mut Ui, text: &str, width: f32) -> Response {
-    let size = vec2(width, ui.spacing().interact_size.y);
-    ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), |ui| {
-        ui.set_min_width(width);
-        ui.add(Label::new(RichText::new(text).text_style(theme::figures())).truncate())
-    })
-    .inner
-}
-
 /// Words above columns of figures, at their right as those are.
 fn heads_ui(ui: &mut Ui, first: &str, others: [(&str, f32); 3]) {
     let weak = Palette::of(ui).weak_text;
@@ -335,37 +319,6 @@ fn figures_ui(ui: &mut Ui, model: &Model, which: Loop) {
         lamp_ui(ui, LampState::Warning, "Ms above 2: a little more load or lag could make it swing.");
     }
     super::limits::limits_ui(ui, run);
-}
-
-type Figure = (&'static str, &'static str, fn(&Shown) -> String);
-
-/// Figures of a forecast, by name, with what they mean.
-pub const FIGURES: [Figure; 5] = [
-    ("Overshoot", "How far a step goes beyond its setpoint, over the step", |shown| {
-        if_stable(shown, || format!("{:.1} %", 100.0 * shown.forecast.overshoot))
-    }),
-    (
-        "Settling",
-        "How long a step takes to stay near its setpoint: 5 % of a speed, 2 % of a position",
-        |shown| {
-            if_stable(shown, || {
-                shown.forecast.settling_s.map_or_else(|| "never".to_owned(), |s| format!("{:.0} ms", 1e3 * s))
-            })
-        },
-    ),
-    ("Load dip", "How far a load of 15 % of the stall torque drives it off, over the step", |shown| {
-        if_stable(shown, || format!("{:.1} %", 100.0 * shown.forecast.load_dip))
-    }),
-    ("Ms", "Maximum sensitivity: 1.2 is very tame, 1.6 is firm, above 2 is close to swinging", |shown| {
-        if_stable(shown, || format!("{:.2}", shown.forecast.ms))
-    }),
-    ("Duty noise", "What the rounding of counts alone does to the duty", |shown| {
-        if_stable(shown, || format!("{:.2} %", 100.0 * shown.forecast.noise_duty))
-    }),
-];
-
-fn if_stable(shown: &Shown, text: impl FnOnce() -> String) -> String {
-    if shown.forecast.is_stable { text() } else { "unstable".to_owned() }
 }
 
 /// A figure as measured, and what the model gives for the same moves.

@@ -12,11 +12,8 @@ use brushwork_tuning::whatif::{
     Forecast, LoopPoint, forecast, frequency_response, redesign, redesign_motion_mind,
 };
 
-use egui::Color32;
-
 use super::measured::{self, Figures};
 use super::registers::Registers;
-use crate::gui::theme::Palette;
 
 /// Speeds are taken over this long while counts are coarse, s.
 pub const SPEED_OVER_S: f64 = 0.02;
@@ -97,11 +94,6 @@ impl Run {
         run.shown = first.and_then(|registers| run.on_model(registers));
         run.predict_considered();
         run
-    }
-
-    /// Of its line beneath other runs.
-    pub fn color(&self, palette: &Palette) -> Color32 {
-        palette.traces[(5 + self.number) % palette.traces.len()]
     }
 
     /// Another run has come: this one shows what it was, not what was considered after it, unless the machine has tried that.

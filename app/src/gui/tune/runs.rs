@@ -1,13 +1,20 @@
 //! The runs so far: which is looked at, which are drawn beneath it and in what colour, their gains and figures.
 
-use egui::{Align, Grid, Label, Layout, RichText, Sense, Ui, vec2};
+use egui::{Align, Color32, Grid, Label, Layout, RichText, Sense, Ui, vec2};
 
-use super::model::Loop;
+use super::figures::{FIGURES, figure_ui};
 use super::registers::FIELDS;
-use super::result::{FIGURES, figure_ui};
 use super::run::Run;
+use super::which::Loop;
 use crate::gui::model::Model;
 use crate::gui::theme::Palette;
+
+impl Run {
+    /// Of its line beneath other runs.
+    pub fn color(&self, palette: &Palette) -> Color32 {
+        palette.traces[(5 + self.number) % palette.traces.len()]
+    }
+}
 
 /// Heads and widths of the columns of figures, which fit beside the picture.
 const COLUMNS: [(&str, f32); 7] = [

@@ -6,7 +6,8 @@ use brushwork_values::Motor;
 use egui::{Button, ComboBox, Label, RichText, Ui};
 
 use super::level::level_ui;
-use super::model::{Loop, Setting, TuneWish};
+use super::model::{Setting, TuneWish};
+use super::which::Loop;
 use crate::gui::command::{Command, Commands};
 use crate::gui::family::Ability;
 use crate::gui::model::Model;

@@ -3,7 +3,7 @@
 use brushwork_tuning::winding::{Winding, WindingUnknown};
 use egui::{Button, Label, RichText, Ui};
 
-use super::model::Loop;
+use super::which::Loop;
 use crate::gui::model::Model;
 use crate::gui::theme::Palette;
 

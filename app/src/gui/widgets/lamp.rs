@@ -7,35 +7,10 @@ use egui::{
     Vec2, WidgetInfo, pos2, vec2,
 };
 
+use crate::gui::model::lamp::LampState;
 use crate::gui::theme::{self, Palette};
 
-/// What a lamp says.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum LampState {
-    /// Nothing is known: no controller, or it was not asked yet.
-    #[default]
-    Unknown,
-    /// The connected controller cannot tell.
-    NotApplicable,
-    Ok,
-    /// Something is so that is neither good nor bad, such as a closed limit switch.
-    Active,
-    Warning,
-    Error,
-}
-
 impl LampState {
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Unknown => "unknown",
-            Self::NotApplicable => "not reported",
-            Self::Ok => "OK",
-            Self::Active => "active",
-            Self::Warning => "warning",
-            Self::Error => "error",
-        }
-    }
-
     pub const fn color(self, palette: &Palette) -> Color32 {
         match self {
             Self::Unknown | Self::NotApplicable => palette.weak_text,

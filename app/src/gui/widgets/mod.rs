@@ -1,6 +1,7 @@
 //! Widgets of our own: each draws one thing and knows nothing of controllers.
 
 pub mod arm_switch;
+pub mod heading;
 pub mod jog;
 pub mod label;
 pub mod lamp;
@@ -10,5 +11,3 @@ pub mod setpoint;
 pub mod steps;
 pub mod stop;
 pub mod text_field;
-
-pub use lamp::LampState;

@@ -4,7 +4,7 @@ use brushwork_plant::world::{CanPeer, I2cDevice, WorldAction, WorldView};
 use egui::{ComboBox, Ui};
 
 use super::{Actions, LABEL_WIDTH, figures_ui, toggle_ui};
-use crate::gui::shell::heading_ui;
+use crate::gui::widgets::heading::heading_ui;
 use crate::gui::widgets::label::fixed_label_ui;
 
 /// Registers of a device that are shown.

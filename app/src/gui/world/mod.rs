@@ -7,8 +7,8 @@ use super::command::{Command, Commands};
 use super::family::Ability;
 use super::model::Model;
 use super::model::world::WorldPanel;
-use super::shell::heading_ui;
 use super::theme::Palette;
+use super::widgets::heading::heading_ui;
 use super::widgets::label::fixed_label_ui;
 use super::widgets::numeric::Numeric;
 

@@ -6,7 +6,7 @@ use egui::{Checkbox, Ui};
 
 use super::{Actions, figures_ui, number, row_ui, toggle_ui};
 use crate::gui::model::world::WorldPanel;
-use crate::gui::shell::heading_ui;
+use crate::gui::widgets::heading::heading_ui;
 use crate::gui::widgets::label::fixed_label_ui;
 
 pub fn motor_ui(ui: &mut Ui, motor: Motor, view: &WorldView, panel: &mut WorldPanel, actions: &mut Actions) {

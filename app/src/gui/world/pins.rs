@@ -7,7 +7,7 @@ use egui::{ComboBox, Ui};
 use super::motor::name;
 use super::{Actions, number};
 use crate::gui::family::Family;
-use crate::gui::shell::heading_ui;
+use crate::gui::widgets::heading::heading_ui;
 use crate::gui::widgets::label::fixed_label_ui;
 
 pub fn pins_ui(ui: &mut Ui, view: &WorldView, family: &dyn Family, actions: &mut Actions) {

@@ -4,8 +4,8 @@ use brushwork_plant::world::{BoardSwitches, WorldAction, WorldView};
 use egui::{ComboBox, Label, RichText, Ui};
 
 use super::{Actions, LABEL_WIDTH, toggle_ui};
-use crate::gui::shell::heading_ui;
 use crate::gui::theme::Palette;
+use crate::gui::widgets::heading::heading_ui;
 use crate::gui::widgets::label::fixed_label_ui;
 
 const MODES: [&str; 8] =

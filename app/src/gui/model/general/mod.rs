@@ -11,17 +11,23 @@ use brushwork_link::transport::Stream;
 use super::link::Effect;
 use super::message::Gravity;
 use kept::{Came, Kept};
+use summary::Summary;
+use unit_key::UnitKey;
 
 mod applicable;
 mod calibrate;
 mod clamp;
 mod compare;
 mod kept;
+mod list;
 mod outcome;
 mod pins;
 mod profile;
 mod section;
+mod sheet;
+mod summary;
 mod unit;
+mod unit_key;
 mod work;
 
 pub use calibrate::Run as CalibrationRun;
@@ -30,6 +36,7 @@ pub use compare::{Comparing, Comparison, Side, Take};
 pub use kept::Settle;
 pub use profile::{Profiles, Purpose, Told};
 pub use section::{Section, sections};
+pub use sheet::Sheet;
 pub use unit::{Saved, UnitSettings};
 pub use work::{Running, SettingsWish};
 
@@ -65,48 +72,6 @@ pub struct General {
     quiet_failures: usize,
     /// Opened as soon as the settings were read.
     waiting_sheet: Option<Sheet>,
-}
-
-/// What stands in place of the list until it is answered.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Sheet {
-    Read,
-    Write,
-    Save,
-    Defaults,
-    OpenProfile,
-    SaveProfile,
-    /// What has to be changed of a profile before it fits.
-    Upgrade,
-    /// Any two copies side by side.
-    Compare,
-    Backups,
-    CopyMotor,
-    /// What was cut short on this controller.
-    Unfinished,
-    /// What did not go as wanted, a sentence each.
-    Report {
-        title: String,
-        sentences: Vec<String>,
-    },
-}
-
-/// Which unit settings belong to.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct UnitKey {
-    port: String,
-    address: u8,
-    version_text: String,
-}
-
-impl UnitKey {
-    fn of(identity: &Identity) -> Self {
-        Self {
-            port: identity.port.clone(),
-            address: identity.address,
-            version_text: identity.version_text.clone(),
-        }
-    }
 }
 
 impl General {
@@ -375,22 +340,5 @@ impl General {
             }
             self.units.insert(new, unit.at(address));
         }
-    }
-}
-
-/// What became of some work, for the user.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct Summary {
-    gravity: Gravity,
-    summary: String,
-    /// More than fits the message line.
-    sentences: Vec<String>,
-    /// Where the unit answers now, if the work can have changed that.
-    address: Option<u8>,
-}
-
-impl Summary {
-    fn note(summary: String) -> Self {
-        Self { gravity: Gravity::Note, summary, sentences: Vec::new(), address: None }
     }
 }

@@ -6,7 +6,7 @@ use brushwork_link::settings::{
 };
 
 use super::super::message::Gravity;
-use super::Summary;
+use super::summary::{Summary, settings};
 use super::unit::UnitSettings;
 use super::work::{Outcome, Running};
 
@@ -39,11 +39,6 @@ pub(super) fn nothing_came(running: &Running, ending: &JobEnding) -> Summary {
         JobEnding::Done(_) => (Gravity::Error, format!("Could not {}: no result came.", running.name())),
     };
     Summary { gravity, summary, sentences: Vec::new(), address: None }
-}
-
-/// "1 setting", "7 settings".
-pub(super) fn settings(count: usize) -> String {
-    if count == 1 { "1 setting".to_owned() } else { format!("{count} settings") }
 }
 
 fn read(unit: &mut UnitSettings, report: ReadReport, from_eeprom: bool) -> Summary {

@@ -3,8 +3,6 @@
 
 use brushwork_link::settings::{Group, Row, SettingsTable};
 
-use super::General;
-
 /// A part of the settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Section {
@@ -72,34 +70,4 @@ pub fn sections(table: &SettingsTable) -> Vec<(Section, &str)> {
     };
     found.sort_by_key(|(section, _)| place(*section));
     found
-}
-
-impl General {
-    /// Whether rows are picked from all sections.
-    pub fn is_filtered(&self) -> bool {
-        self.only_changed || !self.search.trim().is_empty()
-    }
-
-    /// The keys of the rows to show, in screen order.
-    pub fn shown(&self) -> Vec<String> {
-        let Some(unit) = self.unit() else { return Vec::new() };
-        let words: Vec<String> = self.search.split_whitespace().map(str::to_lowercase).collect();
-        let is_shown = |row: &&Row| {
-            if self.is_filtered() {
-                (!self.only_changed || unit.is_edited(&row.key)) && matches(row, &words)
-            } else {
-                Section::of(row) == self.section
-            }
-        };
-        unit.table().rows().iter().filter(is_shown).map(|row| row.key.clone()).collect()
-    }
-}
-
-/// Whether a row has every word in its name, its key or its group.
-fn matches(row: &Row, words: &[String]) -> bool {
-    if words.is_empty() {
-        return true;
-    }
-    let text = format!("{} {} {}", row.title(), row.key, row.group.label()).to_lowercase();
-    words.iter().all(|word| text.contains(word))
 }

@@ -15,8 +15,9 @@ use brushwork_link::settings::{
 use brushwork_link::transport::Stream;
 use crossbeam_channel::{Receiver, bounded};
 
-use super::UnitKey;
+use super::summary::settings;
 use super::unit::UnitSettings;
+use super::unit_key::UnitKey;
 use crate::keep::TrialKeeper;
 
 /// What can be asked of the settings' controller.
@@ -105,7 +106,7 @@ pub(super) fn begin(
             })
         }
         SettingsWish::Write => {
-            let name = format!("write {}", super::outcome::settings(unit.edits().len()));
+            let name = format!("write {}", settings(unit.edits().len()));
             writing(key, name, unit, unit.edits().clone(), options, keeper)
         }
         SettingsWish::OpenInput | SettingsWish::CloseInput => {

@@ -3,9 +3,9 @@
 use brushwork_link::device::Event;
 use brushwork_motion_mind_wire::register_named;
 
-use super::desk::Desk;
 use super::screen::Screen;
 
+pub mod desk;
 pub mod drive;
 pub mod radio;
 pub mod registers;
@@ -100,18 +100,6 @@ impl MotionMindDesk {
         self.radio.give_up();
         self.steps = StepAssistant::default();
         self.terminal.link_ended();
-    }
-}
-
-impl Desk {
-    /// The mode that a Motion Mind's switches selected at power-up.
-    pub fn mode(&self) -> Option<u8> {
-        Some(self.link.identity().and_then(|identity| identity.motion_mind)?.mode.number())
-    }
-
-    /// What of a Motion Mind can be driven from here.
-    pub fn driven(&self) -> Driven {
-        self.mode().map_or(Driven::Nothing, |mode| Driven::of(mode, self.has_bit("FUNCTION", "ADSERIAL")))
     }
 }
 

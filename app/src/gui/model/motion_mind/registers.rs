@@ -4,11 +4,8 @@
 use std::time::Duration;
 
 use brushwork_link::device::{Event, Request};
-use brushwork_link::settings::{SettingValue, SettingsImage};
 use brushwork_motion_mind_wire::{REGISTERS, Register, register_named};
 use brushwork_values::{Value, Values};
-
-use crate::gui::model::desk::Desk;
 
 pub const POSITION: &str = "POSITION";
 pub const VELOCITYLIMIT: &str = "VELOCITYLIMIT";
@@ -115,39 +112,6 @@ pub fn in_unit(register: &Register, raw: i64) -> Option<String> {
 /// The board's temperature from the thermistor (Motion Mind manual 3.18: the line through its two points).
 fn celsius(raw: i64) -> f64 {
     (raw as f64 - 1104.0) * -0.165
-}
-
-impl Desk {
-    /// The raw value of a register, by its name, as far as it was read. A setting's is that of the settings' model, which takes note
-    /// of every write; what the unit measures was read while a screen showed it.
-    pub fn register(&self, name: &str) -> Option<i64> {
-        let register = register_named(name)?;
-        self.setting(register).or_else(|| self.motion_mind.live.get(register))
-    }
-
-    fn setting(&self, register: &Register) -> Option<i64> {
-        match self.general.unit()?.on_controller(&key(register))? {
-            SettingValue::Int(value) => Some(value),
-            _ => None,
-        }
-    }
-
-    /// Raw register values as settings, as far as the unit's table has them.
-    pub fn as_settings(&self, raw: &[(&str, i64)]) -> SettingsImage {
-        let Some(unit) = self.general.unit() else { return SettingsImage::default() };
-        let setting = |(name, raw): &(&str, i64)| {
-            let row = unit.table().row(&key(register_named(name)?))?;
-            Some((row.key.clone(), row.coding.decode(row.kind, *raw)))
-        };
-        raw.iter().filter_map(setting).collect()
-    }
-
-    /// Whether a bit of FUNCTION or FUNCTION2 is known to be set, by the register's and the bit's name.
-    pub fn has_bit(&self, register: &str, bit: &str) -> bool {
-        let key = bit_key(register, bit);
-        let of_settings = self.general.unit().and_then(|unit| unit.on_controller(&key));
-        of_settings == Some(SettingValue::Bool(true))
-    }
 }
 
 /// The key of a bit in the settings table.

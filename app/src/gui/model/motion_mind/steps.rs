@@ -8,7 +8,6 @@ use brushwork_motion_mind_wire::register_named;
 use brushwork_tuning::{Point, StepFigures};
 
 use super::registers::{bit_key, key};
-use crate::gui::model::desk::Desk;
 
 /// How long a response is recorded.
 const RECORD: Duration = Duration::from_secs(4);
@@ -119,10 +118,10 @@ impl Change {
         (wanted != held).then_some(wanted)
     }
 
-    /// The change as settings; none where the register is not known or at its end.
-    pub fn image(&self, desk: &Desk) -> Option<SettingsImage> {
+    /// The change as settings of what the registers hold; none where the register is not known or at its end.
+    pub fn image(&self, held: impl Fn(&str) -> Option<i64>) -> Option<SettingsImage> {
         let row = register_named(self.register)?;
-        let wanted = self.made(desk.register(self.register)?)?;
+        let wanted = self.made(held(self.register)?)?;
         Some(std::iter::once((key(row), SettingValue::Int(wanted))).collect())
     }
 }
@@ -136,7 +135,7 @@ pub fn prepared() -> SettingsImage {
 }
 
 /// The keys that the assistant may change, to be put back.
-fn touched() -> impl Iterator<Item = String> {
+pub(super) fn touched() -> impl Iterator<Item = String> {
     let registers =
         ["VELOCITYFF", "PTERM", "ITERM", "DTERM", "PIDSCALAR"].into_iter().filter_map(register_named);
     registers.map(key).chain(["VELLIMIT", "SATPROT"].map(|bit| bit_key("FUNCTION", bit)))
@@ -265,14 +264,6 @@ impl Recording {
         let sides: Vec<bool> = sides.collect();
         let swings = sides.windows(2).filter(|pair| pair[0] != pair[1]).count();
         Some(Outcome { step_counts: step, figures, swings })
-    }
-}
-
-impl Desk {
-    /// What the registers of the assistant hold now.
-    pub fn step_registers(&self) -> Option<SettingsImage> {
-        let ram = self.general.unit()?.ram()?;
-        touched().map(|key| Some((key.clone(), ram.get(&key)?))).collect()
     }
 }
 

@@ -17,8 +17,6 @@ use brushwork_motion_mind_wire::{
 };
 use brushwork_values::{Value, Values};
 
-use crate::gui::command::Command as Wish;
-
 /// Lines kept; the oldest go first.
 const KEPT: usize = 500;
 /// Answers to the terminal's commands begin with this number.
@@ -32,6 +30,15 @@ pub enum Form {
     Text,
     /// As bytes: `18 01 04 70 17 A4`.
     Hex,
+}
+
+/// What is to be sent; the answer comes with `id`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Sending {
+    /// A command with its values.
+    Transact { id: u64, command: u8, values: Vec<Value> },
+    /// Bytes as they are.
+    Raw { id: u64, bytes: Vec<u8> },
 }
 
 /// One command with its answer.
@@ -248,13 +255,13 @@ impl Terminal {
     }
 
     /// Sends what stands in the field, if it can be. `selected` is the unit that the link speaks to.
-    pub fn send(&mut self, selected: u8, facts: MotionMindFacts) -> Option<Wish> {
+    pub fn send(&mut self, selected: u8, facts: MotionMindFacts) -> Option<Sending> {
         let understood =
             self.understood().ok().filter(|understood| understood.refusal(selected).is_none())?;
         if let Some((command, values)) = understood.request() {
             let forms = [understood.line(), understood.bytes()].into_iter().flatten().collect::<Vec<_>>();
             let id = self.note_sent(forms.join("  |  "), understood.meaning(), None);
-            return Some(Wish::Transact {
+            return Some(Sending::Transact {
                 id,
                 command,
                 values: values.into_iter().map(Value::Int).collect(),
@@ -283,15 +290,15 @@ impl Terminal {
     }
 
     /// Sends what stands in the field as it is typed, command or not.
-    pub fn send_as_typed(&mut self, facts: MotionMindFacts) -> Option<Wish> {
+    pub fn send_as_typed(&mut self, facts: MotionMindFacts) -> Option<Sending> {
         let bytes = self.as_typed(facts).ok()?;
         let meaning = describe_sent(&bytes, facts.protocol).text;
         Some(self.send_bytes(bytes, facts.protocol, format!("as typed: {meaning}")))
     }
 
-    fn send_bytes(&mut self, bytes: Vec<u8>, protocol: Protocol, meaning: String) -> Wish {
+    fn send_bytes(&mut self, bytes: Vec<u8>, protocol: Protocol, meaning: String) -> Sending {
         let id = self.note_sent(shown(&bytes, protocol), meaning, Some((bytes.clone(), protocol)));
-        Wish::Raw { id, bytes }
+        Sending::Raw { id, bytes }
     }
 
     /// Takes what was typed into the list and the history; the number of its answer.
@@ -423,13 +430,13 @@ mod tests {
             terminal.send(1, facts(protocol))
         };
         let bytes = |wish| match wish {
-            Some(Wish::Raw { bytes, .. }) => bytes,
+            Some(Sending::Raw { bytes, .. }) => bytes,
             other => panic!("{other:?}"),
         };
         // READ REGISTER 4 of unit 1, sum 22.
         assert_eq!(bytes(sent("R01 04", Form::Text, Protocol::Binary)), [0x1D, 0x01, 0x04, 0x22]);
         assert_eq!(bytes(sent("1D 01 04 22", Form::Hex, Protocol::Text)), b"R01 04\r\n");
-        assert!(matches!(sent("W01 04 6000", Form::Text, Protocol::Binary), Some(Wish::Transact { .. })));
+        assert!(matches!(sent("W01 04 6000", Form::Text, Protocol::Binary), Some(Sending::Transact { .. })));
     }
 
     #[test]

@@ -3,12 +3,11 @@
 mod composer;
 mod kept;
 mod log;
-mod pending;
+pub mod pending;
 
 pub use composer::{Composer, Prepared};
 pub use kept::{KeptCommand, Transact};
 pub use log::{Filter, Log, MOST, MOST_BYTES, Outcome, Transaction};
-pub use pending::{Pending, pending};
 
 use std::path::PathBuf;
 

@@ -47,7 +47,11 @@ pub fn pending(desk: &Desk, screen: Screen) -> (Vec<Pending>, Vec<String>) {
 /// What the sliders of a screen would send if both were moved.
 fn drive_of(desk: &Desk, screen: Screen) -> Option<Drive> {
     let scope = screen.arm_scope()?;
-    let mut setpoints = *desk.setpoints(scope)?;
-    setpoints.touch();
-    desk.family().to_send(desk, scope, setpoints)
+    let mut sliders = desk.sliders();
+    for setpoints in
+        [&mut sliders.pwm.setpoints, &mut sliders.velocity.setpoints, &mut sliders.position.setpoints]
+    {
+        setpoints.touch();
+    }
+    desk.family().to_send(scope, sliders)
 }

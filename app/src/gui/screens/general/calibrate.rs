@@ -3,9 +3,9 @@
 use brushwork_link::settings::CalibrationStage;
 use egui::{Button, ProgressBar, RichText, Role, Ui, WidgetInfo, vec2};
 
-use super::sheet::{lamp_ui, text_ui};
+use super::sheet_parts::{lamp_ui, text_ui};
 use crate::gui::model::general::General;
-use crate::gui::widgets::LampState;
+use crate::gui::model::lamp::LampState;
 use crate::gui::widgets::readout::Readout;
 
 pub fn calibrate_ui(ui: &mut Ui, general: &mut General) {

@@ -4,15 +4,15 @@ use brushwork_link::device::{ArmScope, Channel};
 use brushwork_values::Motor;
 use egui::{Button, Grid, Label, Layout, ProgressBar, RichText, Role, ScrollArea, Ui, WidgetInfo, vec2};
 
-use super::sheet::lamp_ui;
+use super::sheet_parts::lamp_ui;
 use crate::gui::command::{Command, Commands, GuidedWish};
 use crate::gui::family::Family;
 use crate::gui::model::general::General;
+use crate::gui::model::lamp::LampState;
 use crate::gui::model::link::LinkView;
 use crate::gui::model::message::Gravity;
 use crate::gui::screens::drive::arm_ui;
 use crate::gui::theme::Palette;
-use crate::gui::widgets::LampState;
 use crate::gui::widgets::numeric::Numeric;
 use crate::motion::clamp::Step;
 

@@ -3,10 +3,10 @@
 use brushwork_link::settings::{Difference, Group};
 use egui::{Button, ComboBox, Grid, RichText, Role, Ui, WidgetInfo};
 
-use super::sheet::{Act, Offer, lamp_ui, text_ui, title_ui};
+use super::sheet_parts::{Act, Offer, lamp_ui, text_ui, title_ui};
 use crate::gui::model::general::{Comparison, General, Side, Take, UnitSettings};
+use crate::gui::model::lamp::LampState;
 use crate::gui::theme::Palette;
-use crate::gui::widgets::LampState;
 
 /// Room for the longest name of a backup.
 const SIDE_WIDTH: f32 = 300.0;

@@ -3,9 +3,9 @@
 use brushwork_link::settings::Row;
 use egui::{Button, Label, Layout, RichText, Role, ScrollArea, Ui, WidgetInfo, vec2};
 
-use super::sheet::text_ui;
+use super::sheet_parts::text_ui;
 use crate::gui::model::general::General;
-use crate::gui::widgets::LampState;
+use crate::gui::model::lamp::LampState;
 
 pub fn conflicts_ui(ui: &mut Ui, general: &mut General, height: f32) {
     let Some(unit) = general.unit() else { return };

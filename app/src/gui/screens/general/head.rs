@@ -5,8 +5,8 @@ use egui::{Button, Label, ProgressBar, RichText, Role, Ui, WidgetInfo, vec2};
 use crate::gui::command::{Command, Commands};
 use crate::gui::family::{Ability, Family, SettingsWords};
 use crate::gui::model::general::{General, Running, Saved, SettingsWish, Sheet, UnitSettings};
+use crate::gui::model::lamp::LampState;
 use crate::gui::theme::Palette;
-use crate::gui::widgets::LampState;
 use crate::gui::widgets::text_field::text_field_ui;
 
 const SEARCH_WIDTH: f32 = 190.0;

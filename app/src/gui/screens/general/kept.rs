@@ -3,10 +3,10 @@
 use brushwork_link::settings::{Aftermath, Difference, Held, Row};
 use egui::{Button, Grid, RichText, Role, Ui, WidgetInfo};
 
-use super::sheet::{Act, Offer, differences_ui, lamp_ui, text_ui, title_ui};
+use super::sheet_parts::{Act, Offer, differences_ui, lamp_ui, text_ui, title_ui};
 use crate::gui::model::general::{General, Settle, Sheet, Side, UnitSettings};
+use crate::gui::model::lamp::LampState;
 use crate::gui::theme::Palette;
-use crate::gui::widgets::LampState;
 
 pub fn backups_ui(ui: &mut Ui, general: &mut General) -> Vec<Offer> {
     title_ui(ui, "Backups");

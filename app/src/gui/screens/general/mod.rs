@@ -23,6 +23,7 @@ mod pin;
 mod profile;
 mod rows;
 pub(super) mod sheet;
+mod sheet_parts;
 mod signal_graph;
 
 /// The share of the screen that the list of sections takes, and its least and greatest width.

@@ -4,7 +4,7 @@ use brushwork_link::settings::SettingsTable;
 use egui::{Align, Button, ComboBox, Layout, Response, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
 use crate::gui::model::general::{General, Section, UnitSettings, sections};
-use crate::gui::shell::heading_ui;
+use crate::gui::widgets::heading::heading_ui;
 
 /// Room that the scroll bar may take.
 const BAR_WIDTH: f32 = 10.0;

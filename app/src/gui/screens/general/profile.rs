@@ -2,10 +2,10 @@
 
 use egui::{Button, Ui, vec2};
 
-use super::sheet::{Act, Offer, lamp_ui, text_ui, title_ui};
+use super::sheet_parts::{Act, Offer, lamp_ui, text_ui, title_ui};
 use crate::gui::app::FRAME_INTERVAL;
 use crate::gui::model::general::{General, Purpose, Told, UnitSettings};
-use crate::gui::widgets::LampState;
+use crate::gui::model::lamp::LampState;
 use crate::gui::widgets::text_field::text_field_ui;
 
 pub fn open_ui(ui: &mut Ui, general: &mut General) -> Vec<Offer> {

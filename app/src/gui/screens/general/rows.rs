@@ -4,11 +4,11 @@ use brushwork_link::settings::{BRIDGE_WARNING, Group, Row, SHORTEST_AUTORUN_MS, 
 use egui::{Align, Button, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
 use super::editor;
-use super::sheet::lamp_ui;
+use super::sheet_parts::lamp_ui;
 use crate::gui::model::general::{General, Section, UnitSettings};
-use crate::gui::shell::heading_ui;
+use crate::gui::model::lamp::LampState;
 use crate::gui::theme::Palette;
-use crate::gui::widgets::LampState;
+use crate::gui::widgets::heading::heading_ui;
 use crate::gui::widgets::readout::NO_VALUE;
 
 const HEIGHT: f32 = 28.0;

@@ -4,30 +4,16 @@ use brushwork_link::UnitAddress;
 use brushwork_link::settings::{Difference, Plan, diff};
 use brushwork_link::transport::Stream;
 use brushwork_mcp_wire::packet_serial::hex;
-use egui::{Button, CollapsingHeader, Grid, Label, RichText, ScrollArea, Ui, vec2};
+use egui::{Button, CollapsingHeader, RichText, ScrollArea, Ui, vec2};
 
+use super::sheet_parts::{Act, Offer, differences_ui, lamp_ui, text_ui, title_ui};
 use super::{compare, kept, profile};
 use crate::gui::command::{Command, Commands};
 use crate::gui::family::SettingsWords;
-use crate::gui::model::general::{General, Saved, SettingsWish, Settle, Sheet, Take, UnitSettings};
+use crate::gui::model::general::{General, Saved, SettingsWish, Sheet, Take, UnitSettings};
+use crate::gui::model::lamp::LampState;
 use crate::gui::theme::Palette;
-use crate::gui::widgets::LampState;
 use crate::keep::WearLevel;
-
-/// What a button of a sheet does.
-#[derive(Clone, Copy, Debug)]
-pub enum Act {
-    Wish(SettingsWish),
-    OpenProfile { mending: bool },
-    SaveProfile,
-    TakeOverAll,
-    UseUpgraded,
-    CopyMotor,
-    Settle(Settle),
-}
-
-/// A button: its text, what it does, whether it can be pressed.
-pub type Offer = (&'static str, Act, bool);
 
 /// Room for the buttons below the text.
 const BUTTONS_HEIGHT: f32 = 44.0;
@@ -257,38 +243,4 @@ fn report_ui(ui: &mut Ui, title: &str, sentences: &[String]) -> Vec<Offer> {
         lamp_ui(ui, LampState::Error, sentence);
     }
     Vec::new()
-}
-
-pub fn title_ui(ui: &mut Ui, text: &str) {
-    ui.label(RichText::new(text).size(16.0).strong());
-}
-
-pub fn text_ui(ui: &mut Ui, text: &str) {
-    ui.add(Label::new(text).wrap());
-}
-
-pub fn lamp_ui(ui: &mut Ui, state: LampState, text: &str) {
-    ui.horizontal_top(|ui| {
-        let (rect, _) = ui.allocate_exact_size(vec2(18.0, 18.0), egui::Sense::hover());
-        state.paint(ui, rect.center(), 6.0);
-        ui.add(Label::new(text).wrap());
-    });
-}
-
-/// Old and new of each setting, with units.
-pub fn differences_ui(ui: &mut Ui, unit: &UnitSettings, differences: impl Iterator<Item = Difference>) {
-    let weak = Palette::of(ui).weak_text;
-    Grid::new("differences").num_columns(4).spacing([16.0, 3.0]).show(ui, |ui| {
-        for difference in differences {
-            let Some(row) = unit.table().row(&difference.key) else { continue };
-            let text =
-                |value: Option<_>| value.map_or_else(|| "not known".to_owned(), |value| row.format(value));
-            ui.label(row.title());
-            ui.label(RichText::new(text(difference.left)).color(weak));
-            ui.label("->");
-            let new = ui.label(RichText::new(text(difference.right)).strong());
-            new.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, difference.describe(row)));
-            ui.end_row();
-        }
-    });
 }

@@ -5,9 +5,9 @@ use brushwork_motion_mind_wire::{Bit, FUNCTION_BITS, FUNCTION2_BITS, Register, S
 use egui::{Button, Label, RichText, Role, Sense, Ui, WidgetInfo, vec2};
 
 use crate::gui::model::desk::Desk;
+use crate::gui::model::lamp::LampState;
 use crate::gui::model::motion_mind::registers::bit_key;
 use crate::gui::theme::Palette;
-use crate::gui::widgets::LampState;
 
 /// The bits of a register, where it has named ones.
 pub fn bits_of(register: &Register) -> &'static [Bit] {

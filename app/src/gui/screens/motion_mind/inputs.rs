@@ -7,11 +7,11 @@ use egui::{Button, Frame, Label, Margin, ProgressBar, RichText, Role, Sense, Str
 use crate::gui::command::{Command, Commands, MindWish};
 use crate::gui::model::Model;
 use crate::gui::model::desk::Desk;
+use crate::gui::model::lamp::LampState;
 use crate::gui::model::motion_mind::radio::{STEP_MS, Stage, WIDE};
 use crate::gui::model::motion_mind::registers::in_unit;
 use crate::gui::screens::{not_connected_text, nothing_ui, title_ui};
 use crate::gui::theme::{self, Palette};
-use crate::gui::widgets::LampState;
 use crate::gui::widgets::label::fixed_label_ui;
 
 const NAME_WIDTH: f32 = 150.0;

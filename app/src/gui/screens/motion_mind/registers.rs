@@ -15,10 +15,10 @@ use crate::gui::command::Commands;
 use crate::gui::model::Model;
 use crate::gui::model::desk::Desk;
 use crate::gui::model::general::UnitSettings;
+use crate::gui::model::lamp::LampState;
 use crate::gui::model::motion_mind::registers::{in_unit, key};
 use crate::gui::screens::general::{editor, framed_ui};
 use crate::gui::theme::{self, Palette};
-use crate::gui::widgets::LampState;
 use crate::gui::widgets::label::fixed_label_ui;
 use crate::gui::widgets::readout::NO_VALUE;
 

@@ -22,7 +22,7 @@ pub fn steps_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             }
         }
         for change in stage.changes {
-            let image = change.image(&model.front);
+            let image = change.image(|name| model.front.register(name));
             let button = ui.add_enabled(is_free && image.is_some(), Button::new(change.label));
             if button.on_hover_text(change.hint).clicked()
                 && let Some(image) = image

@@ -4,7 +4,7 @@ use brushwork_link::device::MotionMindFacts;
 use brushwork_motion_mind_wire::Protocol;
 use egui::{ComboBox, Key, Label, RichText, ScrollArea, Ui, vec2};
 
-use crate::gui::command::Commands;
+use crate::gui::command::{Command, Commands};
 use crate::gui::model::Model;
 use crate::gui::model::motion_mind::terminal::{Entry, Form, Terminal, Understood};
 use crate::gui::screens::{not_connected_text, nothing_ui, title_ui};
@@ -116,7 +116,7 @@ fn as_typed_ui(ui: &mut Ui, terminal: &mut Terminal, facts: MotionMindFacts, com
         let send = ui.add_enabled(can.is_ok(), egui::Button::new("Send as typed"));
         if send.on_hover_text("Byte for byte, though it is no command; a real unit gets only lines").clicked()
         {
-            commands.extend(terminal.send_as_typed(facts));
+            commands.extend(terminal.send_as_typed(facts).map(Command::from));
         }
         if let Err(why) = can {
             ui.add(Label::new(RichText::new(why).color(Palette::of(ui).weak_text)).truncate());
@@ -142,9 +142,9 @@ fn understood_ui(
     ui.horizontal(|ui| {
         let send = ui.add_enabled(refusal.is_none(), egui::Button::new("Send command")).clicked();
         if (send || entered)
-            && let Some(command) = terminal.send(address, facts)
+            && let Some(sending) = terminal.send(address, facts)
         {
-            commands.push(command);
+            commands.push(sending.into());
         }
         if let Some(why) = &refusal {
             ui.add(Label::new(RichText::new(format!("Not sent: {why}.")).color(palette.error)).truncate());

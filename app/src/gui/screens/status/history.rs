@@ -3,8 +3,8 @@
 use egui::{Align, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
 use crate::gui::model::history::{Entry, History, clock_text};
-use crate::gui::shell::heading_ui;
 use crate::gui::theme::{self, Palette};
+use crate::gui::widgets::heading::heading_ui;
 
 /// The list is at least this high, however small the window.
 pub const LEAST_HEIGHT: f32 = 300.0;

@@ -4,9 +4,10 @@ use egui::{RichText, Ui};
 
 use crate::gui::model::desk::Desk;
 use crate::gui::model::history::clock_text;
-use crate::gui::shell::heading_ui;
+use crate::gui::model::lamp::LampState;
 use crate::gui::theme::Palette;
-use crate::gui::widgets::{LampState, lamp};
+use crate::gui::widgets::heading::heading_ui;
+use crate::gui::widgets::lamp;
 
 pub fn lamps_ui(ui: &mut Ui, desk: &Desk, columns: usize) {
     ui.columns(columns, |ui| {

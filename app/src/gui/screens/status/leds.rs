@@ -10,8 +10,8 @@ use brushwork_mcp_wire::packet_serial::led::{BlinkCode, Light, blink_code};
 use egui::{Align2, Color32, RichText, Role, Sense, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
 use crate::gui::model::desk::Desk;
-use crate::gui::shell::heading_ui;
 use crate::gui::theme::Palette;
+use crate::gui::widgets::heading::heading_ui;
 
 const LED_WIDTH: f32 = 92.0;
 const HEIGHT: f32 = 30.0;

@@ -7,7 +7,7 @@ use super::{not_connected_text, nothing_ui, title_ui};
 use crate::gui::command::Commands;
 use crate::gui::family::Ability;
 use crate::gui::model::Model;
-use crate::gui::widgets::LampState;
+use crate::gui::model::lamp::LampState;
 
 mod history;
 mod lamps;

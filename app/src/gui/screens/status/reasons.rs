@@ -6,8 +6,8 @@ use egui::{Frame, Label, Margin, RichText, Role, Sense, Stroke, Ui, WidgetInfo, 
 
 use crate::gui::command::{Command, Commands};
 use crate::gui::model::desk::Desk;
+use crate::gui::model::lamp::LampState;
 use crate::gui::theme::Palette;
-use crate::gui::widgets::LampState;
 
 pub fn reasons_ui(ui: &mut Ui, desk: &Desk, commands: &mut Commands) {
     let Some(evidence) = desk.evidence() else { return };

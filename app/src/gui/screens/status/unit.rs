@@ -5,8 +5,8 @@ use egui::{Grid, Label, RichText, Ui};
 
 use crate::gui::family::Ability;
 use crate::gui::model::desk::Desk;
-use crate::gui::shell::heading_ui;
 use crate::gui::theme::Palette;
+use crate::gui::widgets::heading::heading_ui;
 
 pub fn unit_ui(ui: &mut Ui, desk: &Desk) {
     let Some(identity) = desk.link.identity() else { return };
