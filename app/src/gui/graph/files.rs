@@ -1,6 +1,6 @@
 //! Files of the graph: recordings under way and opened ones, exported data and pictures.
 //!
-//! Whatever takes time does so on a thread of its own; what becomes of it is said by [`LiveGraph::poll_files`].
+//! Whatever takes time does so on a thread of its own; what becomes of it is said by `LiveGraph::poll_files`.
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
