@@ -1,14 +1,22 @@
-//! The program: a window and a command line over device threads and simulated controllers. See `ARCHITECTURE.md`.
+//! The program `brushwork`: the window, the command line, and with the feature `bench` what measures them.
 
-pub mod cli;
-pub mod gui;
-pub mod keep;
-pub mod motion;
-pub mod recording;
-pub mod session;
-pub mod tune;
+#[cfg(feature = "bench")]
+mod bench;
 
-#[cfg(test)]
-#[path = "../tests/gui/support/wait.rs"]
-#[allow(dead_code, reason = "shared with the tests of the program")]
-mod wait;
+use brushwork_gui::run::{WindowOptions, run as open_window};
+use std::process::ExitCode;
+
+/// Runs the program: a command, or the window where none is given.
+#[must_use]
+pub fn run() -> ExitCode {
+    brushwork_cli::run(
+        |window| {
+            let options = WindowOptions { open: window.open.clone(), plain: window.plain };
+            open_window(options).map_err(|error| error.to_string())
+        },
+        &[
+            #[cfg(feature = "bench")]
+            bench::tool(),
+        ],
+    )
+}

@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    brushwork::cli::run()
+    brushwork::run()
 }

@@ -1,5 +1,8 @@
 //! Commands of the program that need no other program beside it.
 
+#[path = "../../gui/tests/gui/support/causes.rs"]
+#[allow(dead_code, reason = "each suite uses its own part of this")]
+mod causes;
 mod cli;
 mod cli_as_read;
 mod cli_backups;
@@ -8,6 +11,7 @@ mod cli_files;
 mod cli_firmware;
 mod cli_profiles;
 mod cli_settings;
-#[path = "../gui/support/wait.rs"]
+mod diagnosis;
+#[path = "../../gui/tests/gui/support/wait.rs"]
 #[allow(dead_code, reason = "each suite uses its own part of this")]
 mod wait;

@@ -8,9 +8,39 @@ use brushwork_tests::rust_source::{code_lines, without_tests};
 use brushwork_tests::workspace::{self, DependencyKind, Member, Metadata};
 
 /// The arrows that ship: a crate and the crates of this workspace it may use.
-const ARROWS: [(&str, &[&str]); 16] = [
+const ARROWS: [(&str, &[&str]); 19] = [
     (
         "brushwork",
+        &[
+            "brushwork-cli",
+            "brushwork-core",
+            "brushwork-gui",
+            "brushwork-link",
+            "brushwork-mcp-sim",
+            "brushwork-mcp-wire",
+            "brushwork-plant",
+            "brushwork-script",
+            "brushwork-tuning-bench",
+            "brushwork-values",
+        ],
+    ),
+    (
+        "brushwork-cli",
+        &[
+            "brushwork-core",
+            "brushwork-link",
+            "brushwork-mcp-sim",
+            "brushwork-mcp-wire",
+            "brushwork-motion-mind-sim",
+            "brushwork-motion-mind-wire",
+            "brushwork-plant",
+            "brushwork-script",
+            "brushwork-tuning",
+            "brushwork-values",
+        ],
+    ),
+    (
+        "brushwork-core",
         &[
             "brushwork-link",
             "brushwork-mcp-axis",
@@ -20,10 +50,22 @@ const ARROWS: [(&str, &[&str]); 16] = [
             "brushwork-motion-mind-sim",
             "brushwork-motion-mind-wire",
             "brushwork-plant",
+            "brushwork-script",
+            "brushwork-tuning",
+            "brushwork-values",
+        ],
+    ),
+    (
+        "brushwork-gui",
+        &[
+            "brushwork-core",
+            "brushwork-link",
+            "brushwork-mcp-wire",
+            "brushwork-motion-mind-wire",
+            "brushwork-plant",
             "brushwork-raster",
             "brushwork-script",
             "brushwork-tuning",
-            "brushwork-tuning-bench",
             "brushwork-values",
         ],
     ),
@@ -59,6 +101,8 @@ const ARROWS: [(&str, &[&str]); 16] = [
         &[
             "brushwork",
             "brushwork-child",
+            "brushwork-core",
+            "brushwork-gui",
             "brushwork-link",
             "brushwork-mcp-axis",
             "brushwork-mcp-sim",
@@ -75,17 +119,21 @@ const ARROWS: [(&str, &[&str]); 16] = [
     ),
 ];
 
-/// Arrows for tests alone: the program is tried from outside.
-const TEST_ARROWS: [(&str, &[&str]); 1] = [("brushwork", &["brushwork-child"])];
+/// Arrows for tests alone: the window is tried against simulated controllers, the program from outside.
+const TEST_ARROWS: [(&str, &[&str]); 2] = [
+    ("brushwork", &["brushwork-child"]),
+    ("brushwork-gui", &["brushwork-child", "brushwork-mcp-sim", "brushwork-motion-mind-sim"]),
+];
 
 /// Crates from outside that only some of ours may use, by the start of their name.
 const KEPT_TO: [(&str, &[&str]); 7] = [
-    ("egui", &["brushwork", "brushwork-raster"]),
-    ("epaint", &["brushwork", "brushwork-raster"]),
-    ("eframe", &["brushwork"]),
-    ("winit", &["brushwork"]),
-    ("rfd", &["brushwork"]),
-    ("clap", &["brushwork"]),
+    // The program itself draws what it measures the cost of.
+    ("egui", &["brushwork", "brushwork-gui", "brushwork-raster"]),
+    ("epaint", &["brushwork-gui", "brushwork-raster"]),
+    ("eframe", &["brushwork-gui"]),
+    ("winit", &["brushwork-gui"]),
+    ("rfd", &["brushwork-gui"]),
+    ("clap", &["brushwork", "brushwork-cli"]),
     ("serialport", &["brushwork-link"]),
 ];
 

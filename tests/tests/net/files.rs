@@ -4,10 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use brushwork::gui::mcl::journal::Journal;
-use brushwork::gui::model::Model;
-use brushwork::gui::remember::Memory;
-use brushwork::recording::{Head, Record, open};
+use brushwork_core::recording::{Head, Record, open};
+use brushwork_gui::mcl::journal::Journal;
+use brushwork_gui::model::Model;
+use brushwork_gui::remember::Memory;
 use brushwork_tests::program::{Child, Program};
 use brushwork_tests::wait::LIMIT;
 use serde_json::Value;

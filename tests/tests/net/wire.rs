@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::time::Duration;
 
-use brushwork::keep::TrialKeeper;
-use brushwork::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
+use brushwork_core::keep::TrialKeeper;
+use brushwork_core::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
 use brushwork_link::device::{
     ArmScope, DeviceOptions, Event, FamilyChoice, FnJob, Job, JobContext, JobEnding, Request,
 };

@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use brushwork::tune::file;
+use brushwork_core::tune::file;
 use brushwork_mcp_sim::controller::ControllerConfig;
 use brushwork_mcp_sim::motion::MotionSettings;
 use brushwork_mcp_sim::settings::Settings;

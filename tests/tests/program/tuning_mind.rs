@@ -3,8 +3,8 @@
 
 use std::time::Duration;
 
-use brushwork::keep::TrialKeeper;
-use brushwork::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
+use brushwork_core::keep::TrialKeeper;
+use brushwork_core::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
 use brushwork_link::device::{ArmScope, DeviceOptions, Event, FamilyChoice, Job, JobEnding, Request};
 use brushwork_link::settings::{Ending, Entry, Keeper, Subject};
 use brushwork_link::{Failure, FirmwareGeneration};

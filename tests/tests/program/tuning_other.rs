@@ -4,8 +4,8 @@
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
-use brushwork::keep::TrialKeeper;
-use brushwork::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
+use brushwork_core::keep::TrialKeeper;
+use brushwork_core::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
 use brushwork_link::device::{
     Addresses, ArmScope, DeviceHandle, DeviceLoop, DeviceOptions, Event, Identity, Job, JobEnding, Request,
     Step,

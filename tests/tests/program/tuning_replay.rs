@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use brushwork::tune::file;
+use brushwork_core::tune::file;
 use brushwork_tests::program::Program;
 use brushwork_tests::wait::LIMIT;
 use brushwork_tuning::report::{Report, Verdict};

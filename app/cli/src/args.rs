@@ -1,0 +1,443 @@
+//! The command line as clap sees it. No behaviour here: each subcommand's own file acts on its arguments.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use super::tune::TuneArgs;
+use brushwork_link::device::FamilyChoice;
+use brushwork_mcp_wire::canopen::adapter::Form;
+use brushwork_motion_mind_sim::EncoderDecode;
+use brushwork_plant::faults::FAULT_SYNTAX;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use super::exit;
+use super::firmware::args::FirmwareArgs;
+use super::mcl::args::MclArgs;
+use super::monitor::args::MonitorArgs;
+use super::new_file::Replace;
+use super::script::args::ScriptArgs;
+use super::settings::args::SettingsArgs;
+use super::shared_args::{ConnectArgs, LineArgs, ScriptBuses, parse_seconds};
+use brushwork_core::session::motion_mind_spec;
+use brushwork_core::session::sim_spec::parse_byte;
+
+/// Configures, drives and tunes brushed-DC motor controllers.
+#[derive(Debug, Parser)]
+#[command(
+    name = "brushwork",
+    version,
+    about = "Configures, drives and tunes brushed-DC motor controllers",
+    long_about = "Configures, drives and tunes brushed-DC motor controllers (MCP / RoboClaw over packet serial, Motion Mind 3).\n\
+                  Without a command the window opens.",
+    after_long_help = exit::HELP,
+    args_conflicts_with_subcommands = true,
+)]
+pub struct Cli {
+    /// How the window opens.
+    #[command(flatten)]
+    pub window: WindowArgs,
+    /// What to do; the window opens when this is left out.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
+
+/// How the window opens.
+#[derive(Debug, Clone, Default, Args)]
+pub struct WindowArgs {
+    /// Connect at once: sim:mcp266, a port such as /dev/ttyACM0 or COM3, or tcp:HOST:PORT.
+    #[arg(long, value_name = "TARGET")]
+    pub open: Option<String>,
+    /// Draw without smoothing, which spares the processor where there is no graphics card.
+    #[arg(long)]
+    pub plain: bool,
+}
+
+/// What `brushwork` can do without a window.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// List serial ports and simulated controllers.
+    List(ListArgs),
+    /// List the nodes of a CANopen bus.
+    Nodes(NodesArgs),
+    /// Show measurements, lamps and why the motors do not run.
+    Status(StatusArgs),
+    /// Drive a motor until the time is over or you stop it.
+    Drive(DriveArgs),
+    /// Stop both motors at once.
+    Stop(StopArgs),
+    /// Read, write, compare and save a controller's settings.
+    Settings(SettingsArgs),
+    /// Show what firmware is installed, and update it from a file of yours.
+    Firmware(FirmwareArgs),
+    /// Download, start and stop a controller's script.
+    Script(ScriptArgs),
+    /// Run simulated controllers on a pseudo-terminal or a TCP port.
+    Sim(SimArgs),
+    /// Send commands to a Motion Mind as they are typed.
+    Terminal(TerminalArgs),
+    /// Print the reference of packet serial, or of the Motion Mind.
+    Protocol(ProtocolArgs),
+    /// Decode traffic: our own, another program's, or a file's.
+    Monitor(MonitorArgs),
+    /// Tune a motor's velocity or position loop on the machine.
+    Tune(TuneArgs),
+    /// Check, build, run, list and format MCL scripts; print the language reference.
+    Mcl(MclArgs),
+}
+
+/// One of the controller's serial streams (MCP manual 2.3.1, command 145).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum StreamArg {
+    /// The USB port.
+    Usb,
+    /// UART0, with RS-232 levels.
+    Rs232,
+    /// UART1, TTL levels.
+    Ttl1,
+    /// UART2, TTL levels.
+    Ttl2,
+    /// UART3, TTL levels.
+    Ttl3,
+}
+
+/// Arguments of `brushwork list`.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    brushwork list\n  \
+    brushwork list --scan --json")]
+pub struct ListArgs {
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+    /// Also open each port and ask the addresses 0x80 to 0x87 who is there.
+    #[arg(long)]
+    pub scan: bool,
+}
+
+/// Arguments of `brushwork nodes`.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    brushwork nodes --connect can:/dev/ttyUSB0\n  \
+    brushwork nodes --connect can:COM5,form=binary,baud=230400 --json\n  \
+    brushwork nodes --connect sim:mcp266,can,node=3,node=5\n\n\
+    Every node id is asked for its device type, and heartbeats are listened for. The bus rate is the adapter's own setting.")]
+pub struct NodesArgs {
+    /// The adapter: can:PORT[,baud=115200,form=ascii|binary], or simulated nodes.
+    #[arg(long, short = 'c', value_name = "TARGET", default_value = "sim:mcp266,can")]
+    pub connect: String,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `brushwork status`.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    brushwork status --connect sim:mcp266\n  \
+    brushwork status --connect /dev/ttyACM0 --watch\n  \
+    brushwork status --connect tcp:127.0.0.1:7000 --address 0x81 --json")]
+pub struct StatusArgs {
+    /// The controller.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// Print JSON (one object a line with --watch).
+    #[arg(long)]
+    pub json: bool,
+    /// Go on until interrupted.
+    #[arg(long)]
+    pub watch: bool,
+    /// Time between two lines of --watch.
+    #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = parse_seconds, requires = "watch")]
+    pub interval: Duration,
+}
+
+/// Arguments of `brushwork drive`.
+#[derive(Debug, Args)]
+#[command(
+    group(clap::ArgGroup::new("setpoint").required(true).args(["duty", "speed", "position", "by"])),
+    after_help = "Examples:\n  \
+        brushwork drive --connect sim:mcp266 --motor 1 --duty 25 --for 2\n  \
+        brushwork drive --connect /dev/ttyACM0 --motor both --speed -12000 --accel 24000 --for 5\n  \
+        brushwork drive --connect /dev/ttyACM0 --motor 2 --position 4000 --speed-limit 8000 --for 3\n  \
+        brushwork drive --connect /dev/ttyUSB0,family=motion-mind --by -500 --for 2\n\n\
+        Both motors are stopped when the time is over, on Ctrl-C, SIGTERM, SIGHUP, a closed pipe, a fault or a lost link."
+)]
+pub struct DriveArgs {
+    /// The controller.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// Which motor.
+    #[arg(long, value_enum, value_name = "1|2|both", default_value = "1")]
+    pub motor: MotorArg,
+    /// Duty cycle in percent, -100 to 100.
+    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true, value_parser = parse_duty_percent)]
+    pub duty: Option<f64>,
+    /// Speed in encoder counts per second.
+    #[arg(long, value_name = "COUNTS/S", allow_negative_numbers = true)]
+    pub speed: Option<i32>,
+    /// Position in encoder counts.
+    #[arg(long, value_name = "COUNTS", allow_negative_numbers = true)]
+    pub position: Option<i32>,
+    /// Distance in encoder counts from where the motor is.
+    #[arg(long, value_name = "COUNTS", allow_negative_numbers = true)]
+    pub by: Option<i32>,
+    /// Acceleration: percent of duty per second with --duty, counts/s² with --speed and --position.
+    #[arg(long, value_name = "RATE", value_parser = parse_positive)]
+    pub accel: Option<f64>,
+    /// Deceleration of a position move in counts/s² (default: the acceleration).
+    #[arg(long, value_name = "RATE", requires = "position", value_parser = parse_positive)]
+    pub decel: Option<f64>,
+    /// Highest speed of a move in counts/s (default: the motor's QPPS).
+    #[arg(long, value_name = "COUNTS/S", conflicts_with_all = ["duty", "speed"])]
+    pub speed_limit: Option<u32>,
+    /// How long to drive.
+    #[arg(long = "for", value_name = "SECONDS", default_value = "1", value_parser = parse_seconds)]
+    pub duration: Duration,
+    /// Print each sample as a JSON object a line.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// One motor or both.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum MotorArg {
+    /// Motor 1.
+    #[value(name = "1")]
+    M1,
+    /// Motor 2.
+    #[value(name = "2")]
+    M2,
+    /// Both motors.
+    Both,
+}
+
+/// Arguments of `brushwork stop`.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    brushwork stop --connect /dev/ttyACM0\n  \
+    brushwork stop --connect /dev/ttyUSB0,baud=115200 --address 0x81,0x83\n\n\
+    Without --address every controller on the line is told to stop, and asked to confirm it.")]
+pub struct StopArgs {
+    /// The line.
+    #[command(flatten)]
+    pub line: LineArgs,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+const SIM_EXAMPLES: &str = "Examples:\n  \
+    brushwork sim --pty /tmp/mcp\n  \
+    brushwork sim --model mcp2166 --generation 4 --preset flywheel --tcp 127.0.0.1:7000\n  \
+    brushwork sim --port ttl1 --pace --address 0x80,0x81,0x82 --pty /tmp/bus\n  \
+    brushwork sim --can ascii --node 3,5 --pty /tmp/can\n  \
+    brushwork sim --model motion-mind-3 --mode 4 --protocol ascii --address 1,2 --pty /tmp/mm\n  \
+    brushwork sim --pty /tmp/mcp --fault drop=0.01 --fault 'plant:locked-shaft@4s,motor=1'\n\n\
+    Ctrl-C ends it. `brushwork sim --list` names the models and presets.";
+
+/// Arguments of `brushwork sim`.
+#[derive(Debug, Args)]
+#[command(after_help = format!("{SIM_EXAMPLES}\n\nFaults: {FAULT_SYNTAX}"))]
+pub struct SimArgs {
+    /// Controller model; a comma-separated list makes a bus of several models.
+    #[arg(long, value_name = "MODEL", default_value = "mcp266", value_delimiter = ',')]
+    pub model: Vec<String>,
+    /// Firmware generation, 1 to 4: widths and meanings of the replies.
+    #[arg(long, value_name = "1..4", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=4))]
+    pub generation: u8,
+    /// Motor preset; two, separated by a comma, give motor 1 and motor 2 different ones.
+    #[arg(long, value_name = "PRESET", value_delimiter = ',', num_args = 1)]
+    pub preset: Vec<String>,
+    /// Address, or a comma-separated list: one simulated unit for each, on one line. 0x80 to 0x87, or 1 to 98 for a Motion Mind 3.
+    #[arg(long, value_name = "ADDRESS", value_delimiter = ',', value_parser = parse_unit_number)]
+    pub address: Vec<u8>,
+    /// What moves the motor of a Motion Mind 3, as its switches say; 4 if not given.
+    #[arg(long, value_name = "0..7", value_parser = clap::value_parser!(u8).range(0..=7))]
+    pub mode: Option<u8>,
+    /// Which of its two protocols a Motion Mind 3 speaks.
+    #[arg(long, value_enum, value_name = "PROTOCOL", default_value = "binary")]
+    pub protocol: ProtocolArg,
+    /// The other switches of a Motion Mind 3.
+    #[command(flatten)]
+    pub switches: MotionMindSwitches,
+    /// Which of the controller's ports is served.
+    #[arg(long, value_enum, value_name = "PORT", default_value = "usb")]
+    pub port: StreamArg,
+    /// Make a pseudo-terminal and a symbolic link to it at PATH.
+    #[arg(long, value_name = "PATH", conflicts_with = "tcp")]
+    pub pty: Option<PathBuf>,
+    /// Listen on this TCP address instead; port 0 picks a free one.
+    #[arg(long, value_name = "127.0.0.1:PORT")]
+    pub tcp: Option<String>,
+    /// Put the units on a CAN bus behind a GridConnect adapter that writes frames this way; the line is the adapter's.
+    #[arg(long, value_name = "ascii|binary", value_parser = parse_form, conflicts_with_all = ["port", "pace"])]
+    pub can: Option<Form>,
+    /// Node id on the CAN bus, or a comma-separated list: one simulated unit for each.
+    #[arg(long, value_name = "1..127", value_delimiter = ',', requires = "can", value_parser = clap::value_parser!(u8).range(1..=127))]
+    pub node: Vec<u8>,
+    /// Send and take bytes at the port's set baud rate.
+    #[arg(long)]
+    pub pace: bool,
+    /// A fault on the wire or in the plant; may be given more than once.
+    #[arg(long, value_name = "FAULT")]
+    pub fault: Vec<String>,
+    /// Seed of noise and faults.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// A script that stands in the script memory from the start: a .mcl file or a compiled one. Command 248 starts it.
+    #[arg(long, value_name = "FILE")]
+    pub script: Option<PathBuf>,
+    /// What a script finds on its buses.
+    #[command(flatten)]
+    pub buses: ScriptBuses,
+    /// Hold the USB port's RTS line from the start, which forces packet serial where a script has taken the port.
+    #[arg(long)]
+    pub rts: bool,
+    /// Take commands on standard input while it runs: "rts on", "rts off".
+    #[arg(long)]
+    pub control: bool,
+    /// Write the simulator's own truth to FILE as JSON ten times a second.
+    #[arg(long, value_name = "FILE")]
+    pub truth: Option<PathBuf>,
+    /// Whether an older truth is replaced.
+    #[command(flatten)]
+    pub replace: Replace,
+    /// Name the models and presets, and end.
+    #[arg(long)]
+    pub list: bool,
+}
+
+/// Switches 5 and 7 of a Motion Mind 3, and its firmware.
+#[derive(Debug, Clone, Default, Args)]
+pub struct MotionMindSwitches {
+    /// Switch 5 of a Motion Mind 3; with --pace its bytes take the time of that rate. In mode 2 it is the direction too.
+    #[arg(long, value_name = "9600|19200", value_parser = parse_switched_baud)]
+    pub baud: Option<u32>,
+    /// Switch 7 of a Motion Mind 3: which edges of the encoder count.
+    #[arg(long, value_name = "1x|4x", value_parser = motion_mind_spec::decode)]
+    pub encoder: Option<EncoderDecode>,
+    /// The firmware revision that a Motion Mind 3 tells.
+    #[arg(long, value_name = "N")]
+    pub revision: Option<u8>,
+}
+
+impl MotionMindSwitches {
+    /// Whether any is given.
+    pub fn is_given(&self) -> bool {
+        self.baud.is_some() || self.encoder.is_some() || self.revision.is_some()
+    }
+}
+
+fn parse_switched_baud(text: &str) -> Result<u32, String> {
+    match text.parse() {
+        Ok(baud @ (9_600 | 19_200)) => Ok(baud),
+        _ => Err(format!("\"{text}\" is none of the rates of switch 5: use 9600 or 19200")),
+    }
+}
+
+/// A unit's number as typed; what numbers there are depends on the model.
+fn parse_unit_number(text: &str) -> Result<u8, String> {
+    parse_byte(text)
+        .ok_or_else(|| format!("\"{text}\" is no address; an example is 0x80, or 1 for a Motion Mind 3"))
+}
+
+/// A protocol of the Motion Mind 3.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ProtocolArg {
+    /// Frames with a checksum.
+    Binary,
+    /// Lines of text.
+    Ascii,
+}
+
+/// Arguments of `brushwork terminal`.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    brushwork terminal --connect /dev/ttyUSB0,family=motion-mind 'R01 04' 'W01 04 5000'\n  \
+    brushwork terminal --connect sim:motion-mind-3 '1A 01 01 00 01 00'\n\n\
+    Without commands each line of standard input is one. A unit in ASCII takes lines, one in binary takes the bytes of a\n\
+    frame in hexadecimal without their checksum. Commands that move the motor are refused; use `brushwork drive`.")]
+pub struct TerminalArgs {
+    /// The controller.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// What to send.
+    #[arg(value_name = "COMMAND")]
+    pub commands: Vec<String>,
+    /// Print each exchange as a JSON object a line.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `brushwork protocol`.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    brushwork protocol\n  \
+    brushwork protocol 28 read_status\n  \
+    brushwork protocol --family motion-mind WRITE_STORE PTERM\n  \
+    brushwork protocol --json")]
+pub struct ProtocolArgs {
+    /// Only these commands, by number or key; for a Motion Mind also registers by name.
+    #[arg(value_name = "COMMAND")]
+    pub commands: Vec<String>,
+    /// Whose protocol.
+    #[arg(long, value_name = "mcp|motion-mind", default_value_t, hide_default_value = true)]
+    pub family: FamilyChoice,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+fn parse_form(text: &str) -> Result<Form, String> {
+    Form::from_key(text).ok_or_else(|| format!("\"{text}\" is no form of a CAN adapter: use ascii or binary"))
+}
+
+fn parse_duty_percent(text: &str) -> Result<f64, String> {
+    text.trim()
+        .trim_end_matches('%')
+        .parse::<f64>()
+        .ok()
+        .filter(|percent| (-100.0..=100.0).contains(percent))
+        .ok_or_else(|| format!("\"{text}\" is no duty cycle: use -100 to 100 percent"))
+}
+
+fn parse_positive(text: &str) -> Result<f64, String> {
+    text.trim()
+        .parse::<f64>()
+        .ok()
+        .filter(|value| *value > 0.0 && value.is_finite())
+        .ok_or_else(|| format!("\"{text}\" is no rate: use a number above zero"))
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+
+    #[test]
+    fn the_definition_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn the_window_can_be_opened_connected_but_not_beside_a_command() {
+        let cli = Cli::try_parse_from(["brushwork", "--open", "sim:mcp266", "--plain"]).unwrap();
+        assert!(cli.command.is_none() && cli.window.plain);
+        assert_eq!(cli.window.open.as_deref(), Some("sim:mcp266"));
+        assert!(Cli::try_parse_from(["brushwork", "--plain", "list"]).is_err());
+    }
+
+    #[test]
+    fn a_duty_beyond_full_is_refused_with_its_range() {
+        let error = Cli::try_parse_from(["brushwork", "drive", "--duty", "120"]).unwrap_err();
+        assert!(error.to_string().contains("-100 to 100"), "{error}");
+    }
+
+    #[test]
+    fn drive_wants_exactly_one_setpoint() {
+        assert!(Cli::try_parse_from(["brushwork", "drive"]).is_err());
+        assert!(Cli::try_parse_from(["brushwork", "drive", "--duty", "5", "--speed", "100"]).is_err());
+        assert!(Cli::try_parse_from(["brushwork", "drive", "--duty", "-5"]).is_ok());
+    }
+}

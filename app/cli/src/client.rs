@@ -1,0 +1,269 @@
+//! A controller as a command sees it: connected and identified, or a sentence and an exit code.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use brushwork_link::device::{
+    Addresses, ArmScope, DeviceHandle, Event, FamilyChoice, Identity, PollRate, Request,
+};
+use brushwork_link::transport::{ConnectTarget, Stream};
+use brushwork_link::{Failure, SystemClock};
+use brushwork_mcp_wire::packet_serial;
+use brushwork_motion_mind_wire as motion_mind;
+use crossbeam_channel::RecvTimeoutError;
+
+use super::exit::Exit;
+use super::interrupt::Interrupt;
+use super::output::say;
+use super::shared_args::{ConnectArgs, LineArgs};
+use brushwork_core::session;
+use brushwork_core::session::motion_mind_spec::MotionMindSpec;
+use brushwork_core::session::{Session, SessionOptions, Simulation};
+
+/// How long a controller may take to be found and identified.
+pub const CONNECT_LIMIT: Duration = Duration::from_secs(60);
+/// How long a controller may take to answer one request.
+pub const ANSWER_LIMIT: Duration = Duration::from_secs(30);
+/// How long one look at the event queue waits, so that signals are noticed.
+const EVENT_SLICE: Duration = Duration::from_millis(20);
+
+/// A connected controller.
+pub struct Client {
+    session: Session,
+    /// Who answered.
+    pub identity: Identity,
+    /// Which of its streams the port is wired to, where that is known.
+    pub stream: Option<Stream>,
+}
+
+impl Client {
+    /// Opens the target and waits until the unit at the address has said who it is.
+    ///
+    /// # Errors
+    /// Says on standard error what went wrong and gives the exit code.
+    pub fn connect(args: &ConnectArgs, poll: PollRate, interrupt: &Interrupt) -> Result<Self, Exit> {
+        let session = open(args, poll)?;
+        let (identity, stream) = wait_for_identity(&session.device, interrupt)?;
+        Ok(Self { session, identity, stream })
+    }
+
+    /// The device thread.
+    pub fn device(&self) -> &DeviceHandle {
+        &self.session.device
+    }
+
+    /// The simulated machine behind it, if it runs in this program.
+    pub fn simulation(&self) -> Option<Arc<Simulation>> {
+        self.session.simulation.clone()
+    }
+
+    /// The next event, or `None` when there was none for a moment.
+    ///
+    /// # Errors
+    /// The link is lost (said on standard error) or the program was asked to end.
+    pub fn next_event(&self, interrupt: &Interrupt) -> Result<Option<Event>, Exit> {
+        next_event(&self.session.device, interrupt)
+    }
+}
+
+/// Opens the target and looks at its one address; what becomes of that comes as events.
+///
+/// # Errors
+/// Says on standard error what went wrong and gives the exit code.
+pub fn open(args: &ConnectArgs, poll: PollRate) -> Result<Session, Exit> {
+    let target = target(args)?;
+    let options = SessionOptions { addresses: addresses(&target, args), poll, family: args.family };
+    session::open(&target, options, SystemClock::shared(), None).map_err(|error| {
+        say(error.to_string());
+        Exit::NoLink
+    })
+}
+
+/// What `--connect` and `--address` name.
+///
+/// # Errors
+/// Says on standard error what cannot be understood.
+pub fn target(args: &ConnectArgs) -> Result<ConnectTarget, Exit> {
+    Ok(at_addresses(parse(&args.connect)?, args.address.as_slice()))
+}
+
+/// What `--connect` and `--address` of a whole line name.
+///
+/// # Errors
+/// Says on standard error what cannot be understood.
+pub fn line_target(args: &LineArgs) -> Result<ConnectTarget, Exit> {
+    let target = parse(&args.connect)?;
+    let on_can = matches!(target, ConnectTarget::Can { .. });
+    let is_packet_address = |address: &u8| packet_serial::Address::new(*address).is_some();
+    let is_unit = |address: &u8| motion_mind::Address::unit(*address).is_some();
+    let one_family = args.address.iter().all(is_packet_address) || args.address.iter().all(is_unit);
+    if !on_can && !one_family {
+        say(
+            "Could not understand --address: a line has controllers of one family, MCP or RoboClaw at 0x80 to 0x87 or Motion Minds at 1 to 98.",
+        );
+        return Err(Exit::Usage);
+    }
+    Ok(at_addresses(target, &args.address))
+}
+
+fn parse(target: &str) -> Result<ConnectTarget, Exit> {
+    target.parse().map_err(|error| {
+        say(format!("Could not understand --connect {target}: {error}."));
+        Exit::Usage
+    })
+}
+
+/// The family that is meant: as the target or `--family` says.
+pub fn family(target: &ConnectTarget, args: &ConnectArgs) -> FamilyChoice {
+    match target {
+        ConnectTarget::Sim(text) if MotionMindSpec::is_asked_for(text) => FamilyChoice::MotionMind,
+        target if target.family() != FamilyChoice::Auto => target.family(),
+        _ => args.family,
+    }
+}
+
+/// The one address that is meant: as given, or the factory's of the family.
+fn addresses(target: &ConnectTarget, args: &ConnectArgs) -> Addresses {
+    match (args.address, family(target, args)) {
+        (Some(address), _) => Addresses::Only(address),
+        (None, FamilyChoice::MotionMind) => Addresses::Only(first_of(target).get()),
+        (None, FamilyChoice::PacketSerial) => Addresses::Only(packet_serial::Address::DEFAULT.get()),
+        (None, FamilyChoice::Auto) => Addresses::Factory,
+    }
+}
+
+/// The first of simulated Motion Minds, or the factory address.
+fn first_of(target: &ConnectTarget) -> motion_mind::Address {
+    let spec = match target {
+        ConnectTarget::Sim(text) => MotionMindSpec::parse(text).ok(),
+        _ => None,
+    };
+    spec.and_then(|spec| spec.addresses.first().copied()).unwrap_or(motion_mind::Address::FACTORY)
+}
+
+/// Simulated controllers are made at the addresses that are asked for, unless the target names some itself.
+fn at_addresses(target: ConnectTarget, addresses: &[u8]) -> ConnectTarget {
+    match target {
+        ConnectTarget::Sim(text) if !text.contains("address=") && !addresses.is_empty() => {
+            let model = if text.is_empty() { "mcp266" } else { &text };
+            let options = addresses.iter().map(|address| format!(",address={address}"));
+            ConnectTarget::Sim(format!("{model}{}", options.collect::<String>()))
+        }
+        other => other,
+    }
+}
+
+fn wait_for_identity(
+    device: &DeviceHandle,
+    interrupt: &Interrupt,
+) -> Result<(Identity, Option<Stream>), Exit> {
+    let deadline = Instant::now() + CONNECT_LIMIT;
+    let mut found: Vec<Identity> = Vec::new();
+    while Instant::now() < deadline {
+        match next_event(device, interrupt)? {
+            Some(Event::Connected(identity)) => found.push(identity),
+            Some(Event::Selected { address, stream }) => {
+                let selected = found.iter().find(|identity| identity.address == address).cloned();
+                if let Some(identity) = selected {
+                    return Ok((identity, stream));
+                }
+            }
+            Some(Event::Failure(failure)) => say(failure.to_string()),
+            _ => {}
+        }
+    }
+    say(format!("Could not connect: no controller identified itself within {} s.", CONNECT_LIMIT.as_secs()));
+    Err(Exit::NoLink)
+}
+
+/// The next event, or `None` when there was none for a moment.
+///
+/// # Errors
+/// The link is lost (said on standard error) or the program was asked to end.
+pub fn next_event(device: &DeviceHandle, interrupt: &Interrupt) -> Result<Option<Event>, Exit> {
+    look_for_event(device, interrupt)?.map_err(|failure| {
+        say(failure.to_string());
+        Exit::NoLink
+    })
+}
+
+/// The same, with the loss of the link as the failure that it is.
+///
+/// # Errors
+/// The link was closed (said on standard error) or the program was asked to end.
+pub fn look_for_event(
+    device: &DeviceHandle,
+    interrupt: &Interrupt,
+) -> Result<Result<Option<Event>, Failure>, Exit> {
+    if interrupt.is_raised() {
+        return Err(Exit::Interrupted);
+    }
+    match device.events().recv_timeout(EVENT_SLICE) {
+        Ok(Event::Lost(failure)) => Ok(Err(failure)),
+        Ok(event) => Ok(Ok(Some(event))),
+        Err(RecvTimeoutError::Timeout) => Ok(Ok(None)),
+        Err(RecvTimeoutError::Disconnected) => {
+            say("The link was closed.");
+            Err(Exit::NoLink)
+        }
+    }
+}
+
+/// Hands a request to the device thread.
+///
+/// # Errors
+/// It takes none now (said on standard error).
+pub fn ask(device: &DeviceHandle, request: Request) -> Result<(), Exit> {
+    device.request(request).map_err(|refused| {
+        say(format!("Could not ask the controller: {refused}"));
+        Exit::Refused
+    })
+}
+
+/// Arms, and says what the device thread warns of.
+///
+/// # Errors
+/// It is refused, or nobody answers; the reasons are said on standard error.
+pub fn arm(device: &DeviceHandle, scope: ArmScope, interrupt: &Interrupt) -> Result<(), Exit> {
+    device.renew();
+    ask(device, Request::Arm(scope))?;
+    let reasons = wait(device, interrupt, |event| match event {
+        Event::Armed { warnings, .. } => {
+            warnings.iter().for_each(say);
+            Some(Vec::new())
+        }
+        Event::ArmRefused { reasons, .. } => Some(reasons),
+        _ => None,
+    })?;
+    if reasons.is_empty() {
+        return Ok(());
+    }
+    reasons.iter().for_each(|reason| say(reason.to_string()));
+    Err(Exit::Refused)
+}
+
+/// Takes events until one gives an answer, renewing the dead-man meanwhile.
+///
+/// # Errors
+/// None does in [`ANSWER_LIMIT`], the link is lost, or the program was asked to end.
+pub fn wait<T>(
+    device: &DeviceHandle,
+    interrupt: &Interrupt,
+    mut answer: impl FnMut(Event) -> Option<T>,
+) -> Result<T, Exit> {
+    let deadline = Instant::now() + ANSWER_LIMIT;
+    while Instant::now() < deadline {
+        device.renew();
+        match next_event(device, interrupt)? {
+            Some(Event::Failure(failure)) => say(failure.to_string()),
+            Some(event) => {
+                if let Some(answer) = answer(event) {
+                    return Ok(answer);
+                }
+            }
+            None => {}
+        }
+    }
+    say(format!("The controller did not answer within {} s.", ANSWER_LIMIT.as_secs()));
+    Err(Exit::NoLink)
+}

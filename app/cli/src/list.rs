@@ -1,0 +1,132 @@
+//! `brushwork list`: serial ports, and the controllers that are simulated in this program.
+
+use brushwork_link::SystemClock;
+use brushwork_link::device::{Event, Identity, PollRate};
+use brushwork_link::transport::{ConnectTarget, PortInfo, list_ports};
+use brushwork_mcp_wire::models::{MODELS, MOTION_MIND_3};
+use serde::Serialize;
+
+use super::args::ListArgs;
+use super::exit::Exit;
+use super::interrupt::Interrupt;
+use super::output::{Output, OutputError, say};
+use super::sim::motion_mind;
+use brushwork_core::session;
+use brushwork_core::session::SessionOptions;
+
+#[derive(Debug, Serialize)]
+struct Listing {
+    ports: Vec<PortRow>,
+    simulated: Vec<SimulatedRow>,
+}
+
+#[derive(Debug, Serialize)]
+struct PortRow {
+    connect: String,
+    description: String,
+    units: Option<Vec<Identity>>,
+}
+
+#[derive(Debug, Serialize)]
+struct SimulatedRow {
+    connect: String,
+    model: &'static str,
+    rating: &'static str,
+    assumed: &'static str,
+}
+
+/// Lists and prints.
+pub fn run(args: &ListArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
+    let ports = match list_ports() {
+        Ok(ports) => ports,
+        Err(failure) => {
+            say(failure.to_string());
+            Vec::new()
+        }
+    };
+    let mut rows = Vec::new();
+    for port in ports {
+        let units = args.scan.then(|| scan(&port.name, interrupt));
+        rows.push(PortRow { description: describe(&port), connect: port.name, units });
+        if interrupt.is_raised() {
+            return Exit::Interrupted;
+        }
+    }
+    let listing = Listing { ports: rows, simulated: simulated() };
+    let printed = if args.json { out.json(&listing) } else { print(&listing, out) };
+    printed.map_or_else(Exit::from, |()| Exit::Done)
+}
+
+/// What the operating system knows of a port.
+fn describe(port: &PortInfo) -> String {
+    let words = [port.manufacturer.as_deref(), port.product.as_deref(), port.serial_number.as_deref()];
+    let text = words.into_iter().flatten().collect::<Vec<_>>().join(" ");
+    match (text.is_empty(), port.usb_id) {
+        (false, _) => text,
+        (true, Some((vendor, product))) => format!("USB {vendor:04x}:{product:04x}"),
+        (true, None) => "serial port".to_owned(),
+    }
+}
+
+fn simulated() -> Vec<SimulatedRow> {
+    let row = |model: &'static brushwork_mcp_wire::models::Model| SimulatedRow {
+        connect: format!("sim:{}", model.key),
+        model: model.name,
+        rating: model.rating(),
+        assumed: model.assumed,
+    };
+    let motion_mind = SimulatedRow {
+        connect: format!("sim:{}", MOTION_MIND_3.key),
+        model: MOTION_MIND_3.name,
+        rating: motion_mind::RATING,
+        assumed: motion_mind::ASSUMED,
+    };
+    MODELS.iter().map(row).chain([motion_mind]).collect()
+}
+
+/// Asks all addresses of a port who is there. Reading moves no motor.
+fn scan(path: &str, interrupt: &Interrupt) -> Vec<Identity> {
+    let Ok(target) = path.parse::<ConnectTarget>() else { return Vec::new() };
+    let options = SessionOptions { poll: PollRate::Off, ..SessionOptions::default() };
+    let session = match session::open(&target, options, SystemClock::shared(), None) {
+        Ok(session) => session,
+        Err(error) => {
+            say(error.to_string());
+            return Vec::new();
+        }
+    };
+    let mut units = Vec::new();
+    while !interrupt.is_raised() {
+        match session.device.events().recv() {
+            Ok(Event::Connected(identity)) => units.push(identity),
+            Ok(Event::Lost(failure)) => {
+                say(failure.to_string());
+                break;
+            }
+            Ok(Event::Selected { .. }) | Err(_) => break,
+            Ok(_) => {}
+        }
+    }
+    units
+}
+
+fn print(listing: &Listing, out: &mut Output) -> Result<(), OutputError> {
+    if listing.ports.is_empty() {
+        out.line(
+            "No serial port was found. A path may be typed all the same, for example --connect /dev/pts/3.",
+        )?;
+    }
+    let mut rows = Vec::new();
+    for port in &listing.ports {
+        rows.push(vec![port.connect.clone(), port.description.clone()]);
+        for unit in port.units.iter().flatten() {
+            let text = format!("{} {}", unit.place().to_lowercase(), unit.version());
+            rows.push(vec![String::new(), text]);
+        }
+    }
+    for row in &listing.simulated {
+        let assumed = if row.assumed.is_empty() { "" } else { " (figures partly assumed)" };
+        rows.push(vec![row.connect.clone(), format!("simulated {} {}{assumed}", row.model, row.rating)]);
+    }
+    out.table(&["CONNECT", "WHAT"], &rows)
+}

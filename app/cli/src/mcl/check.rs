@@ -1,0 +1,66 @@
+//! `brushwork mcl check`: what is wrong with scripts.
+
+use brushwork_script::diagnostic::{PlacedDiagnostic, Severity};
+use brushwork_script::mcl::codes;
+use serde::Serialize;
+
+use super::args::CheckArgs;
+use super::source::Source;
+use crate::exit::Exit;
+use crate::output::{Output, say};
+
+/// What is said of one file.
+#[derive(Serialize)]
+struct Checked {
+    file: String,
+    ok: bool,
+    errors: usize,
+    warnings: usize,
+    diagnostics: Vec<PlacedDiagnostic>,
+}
+
+#[derive(Serialize)]
+struct Report {
+    files: Vec<Checked>,
+}
+
+/// Checks every file, also after one that cannot be read.
+pub fn run(args: &CheckArgs, out: &mut Output) -> Exit {
+    let mut files = Vec::new();
+    let mut page = String::new();
+    let mut unread = false;
+    for path in &args.files {
+        let source = match Source::read(path) {
+            Ok(source) => source,
+            Err(error) => {
+                say(error.to_string());
+                unread = true;
+                continue;
+            }
+        };
+        let compiled = source.compile();
+        page += &source.rendered(&compiled);
+        let diagnostics = source.placed(&compiled);
+        let listed = || diagnostics.iter().filter(|said| !codes::is_count(said.code));
+        let count = |severity| listed().filter(|said| said.severity == severity).count();
+        let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
+        files.push(Checked { file: source.name, ok: errors == 0, errors, warnings, diagnostics });
+    }
+    let is_wrong = files.iter().any(|file| !file.ok || args.deny_warnings && file.warnings > 0);
+    for file in &files {
+        let (errors, warnings) = (counted(file.errors, "error"), counted(file.warnings, "warning"));
+        page += &format!("{}: {errors}, {warnings}\n", file.file);
+    }
+    let printed = if args.json { out.json(&Report { files }) } else { out.line(page.trim_end()) };
+    match printed {
+        Err(error) => error.into(),
+        Ok(()) if unread => Exit::Failed,
+        Ok(()) if is_wrong => Exit::ScriptWrong,
+        Ok(()) => Exit::Done,
+    }
+}
+
+/// "1 error", "2 errors".
+pub fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}

@@ -1,0 +1,59 @@
+//! `brushwork mcl fmt`: scripts in one style.
+
+use std::path::Path;
+
+use brushwork_script::mcl::format::format;
+use brushwork_script::mcl::{LONGEST_TEXT, too_long};
+use brushwork_script::text::Lines;
+
+use super::args::FmtArgs;
+use super::source::{Source, is_standard};
+use crate::exit::Exit;
+use crate::output::{Output, say};
+
+/// Formats every file in its place.
+pub fn run(args: &FmtArgs, out: &mut Output) -> Exit {
+    let mut exit = Exit::Done;
+    for path in &args.files {
+        match one(path, args, out) {
+            Ok(false) => {}
+            Ok(true) => exit = if exit == Exit::Done { Exit::Different } else { exit },
+            Err(failed) => exit = failed,
+        }
+    }
+    exit
+}
+
+/// Whether a file would change, which only matters when it is not written.
+fn one(path: &Path, args: &FmtArgs, out: &mut Output) -> Result<bool, Exit> {
+    let failed = |sentence: String| {
+        say(sentence);
+        Exit::Failed
+    };
+    let source = Source::read(path).map_err(|error| failed(error.to_string()))?;
+    if let Some(refused) = too_long(&source.text) {
+        say(refused.render(&source.name, &source.text, &Lines::of(&source.text)).trim_end());
+        return Err(Exit::ScriptWrong);
+    }
+    let formatted = format(&source.text);
+    if too_long(&formatted).is_some() {
+        return Err(failed(format!(
+            "Could not format {}: with its indentation it would be longer than the {LONGEST_TEXT} bytes that a program has at most.",
+            source.name
+        )));
+    }
+    let changes = formatted != source.text;
+    if args.check {
+        if changes {
+            out.line(&source.name).map_err(Exit::from)?;
+        }
+        return Ok(changes);
+    }
+    if is_standard(path) {
+        out.bytes(&source.encoded(&formatted)).map_err(Exit::from)?;
+    } else if changes {
+        let write = std::fs::write(path, source.encoded(&formatted));
+        write.map_err(|error| failed(format!("Could not write {}: {error}.", path.display())))?;
+    }
+    Ok(false)
+}

@@ -1,0 +1,120 @@
+//! `brushwork script download`.
+
+use std::path::Path;
+use std::time::Duration;
+
+use brushwork_link::Wire as _;
+use brushwork_link::script::{DOWNLOAD_JOB, Downloaded, Origin, ScriptImage, Verified, download};
+use brushwork_script::diagnostic::Severity;
+use brushwork_script::image;
+use serde_json::json;
+
+use super::args::DownloadArgs;
+use crate::exit::Exit;
+use crate::interrupt::Interrupt;
+use crate::mcl::source::{Source, read_bytes};
+use crate::output::{Output, say};
+use crate::settings::controller::Controller;
+
+/// How long a download may take: the largest memory at the slowest rates.
+const LIMIT: Duration = Duration::from_secs(1_200);
+
+/// Downloads and tells how far it is known to have arrived.
+pub fn run(args: &DownloadArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let image = image_of(&args.file)?;
+    let controller = Controller::connect(&args.connect, interrupt)?;
+    let done = to_controller(&controller, image, args.simulated)?;
+    let printed = if args.json { print_json(&done, out) } else { out.line(sentence(&done)) };
+    printed?;
+    if !args.json {
+        warnings(&done).into_iter().for_each(say);
+    }
+    Ok(Exit::Done)
+}
+
+/// The image in a compiled file, or of a script that is compiled here.
+pub fn image_of(file: &Path) -> Result<ScriptImage, Exit> {
+    let bytes = read_bytes(file).map_err(|error| {
+        say(error.to_string());
+        Exit::Failed
+    })?;
+    let is_text = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcl"));
+    let bytes = if is_text { compiled(file, bytes)? } else { bytes };
+    ScriptImage::from_file(&bytes).map_err(|error| {
+        say(format!("Could not use {}: {error}.", file.display()));
+        Exit::Failed
+    })
+}
+
+fn compiled(file: &Path, bytes: Vec<u8>) -> Result<Vec<u8>, Exit> {
+    let source = Source::of(file.display().to_string(), bytes);
+    let mut compiled = source.compile();
+    compiled.diagnostics.retain(|said| said.severity() == Severity::Error);
+    let said = source.rendered(&compiled);
+    if !said.is_empty() {
+        say(said.trim_end());
+    }
+    let program = compiled.program.ok_or(Exit::ScriptWrong)?;
+    Ok(image::to_file(&image::encode(&program)))
+}
+
+/// Downloads to a connected controller.
+pub fn to_controller(
+    controller: &Controller<'_>,
+    image: ScriptImage,
+    simulated_elsewhere: bool,
+) -> Result<Downloaded, Exit> {
+    let is_refused =
+        image.origin() == Origin::Own && !controller.identity().simulated && !simulated_elsewhere;
+    let finished = controller.run(DOWNLOAD_JOB, LIMIT, move |wire| {
+        let is_simulated = wire.is_simulated() || simulated_elsewhere;
+        download(wire, &image, is_simulated)
+    })?;
+    match (finished.value, finished.broken) {
+        (Ok(done), None) => Ok(done),
+        (Err(failure), broken) => {
+            say(failure.to_string());
+            Err(broken.unwrap_or(if is_refused { Exit::Refused } else { Exit::Failed }))
+        }
+        (Ok(_), Some(exit)) => Err(exit),
+    }
+}
+
+fn sentence(done: &Downloaded) -> String {
+    let verified = match done.verified {
+        Verified::Content => "the controller holds exactly that".to_owned(),
+        Verified::Status => "every block was answered with \"done\"".to_owned(),
+        Verified::Alike(status) => {
+            format!("every block was acknowledged with status {status:02X}; no command reads it back")
+        }
+    };
+    let seconds = done.took.as_secs_f64();
+    format!("Downloaded {} bytes in {} blocks ({seconds:.1} s): {verified}.", done.bytes, done.blocks)
+}
+
+fn warnings(done: &Downloaded) -> Vec<String> {
+    let autorun = done.autorun.map(|delay| {
+        format!("Autorun is on: the controller runs it {} ms after its next power-up.", delay.as_millis())
+    });
+    let foreign = done.is_foreign.then(|| {
+        "It is no image of Brushwork's compiler: what is in it is not public, and simulated controllers do not run it.".to_owned()
+    });
+    autorun.into_iter().chain(foreign).collect()
+}
+
+fn print_json(done: &Downloaded, out: &mut Output) -> Result<(), crate::output::OutputError> {
+    let (verified, status) = match done.verified {
+        Verified::Content => ("content", None),
+        Verified::Status => ("status", Some(0xFF)),
+        Verified::Alike(status) => ("acknowledged", Some(status)),
+    };
+    out.json(&json!({
+        "bytes": done.bytes,
+        "blocks": done.blocks,
+        "took_s": done.took.as_secs_f64(),
+        "verified": verified,
+        "status": status,
+        "autorun_delay_ms": done.autorun.map(|delay| delay.as_millis() as u64),
+        "warnings": warnings(done),
+    }))
+}

@@ -1,0 +1,71 @@
+//! `brushwork script start` and `stop`.
+//!
+//! Starting needs arming, as driving does, and the arming is this loop's: a terminal that hangs ends the script too.
+
+use std::time::{Duration, Instant};
+
+use brushwork_link::device::{ArmScope, DisarmReason, Event, Request};
+
+use super::args::{StartArgs, StopArgs};
+use super::download;
+use crate::client::{ANSWER_LIMIT, arm, ask};
+use crate::exit::Exit;
+use crate::interrupt::Interrupt;
+use crate::output::say;
+use crate::settings::controller::Controller;
+
+/// Downloads if asked to, arms, starts, waits, stops.
+pub fn start(args: &StartArgs, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let image = args.file.as_deref().map(download::image_of).transpose()?;
+    let controller = Controller::connect(&args.connect, interrupt)?;
+    if let Some(image) = image {
+        download::to_controller(&controller, image, args.simulated)?;
+    }
+    arm(controller.device(), ArmScope::Script, interrupt)?;
+    let ran = run(&controller, args.duration);
+    if ran != Err(Exit::NoLink) {
+        stop_all(&controller)?;
+    }
+    ran
+}
+
+/// Stops the script and the motors.
+pub fn stop(args: &StopArgs, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let controller = Controller::connect(&args.connect, interrupt)?;
+    stop_all(&controller)?;
+    Ok(Exit::Done)
+}
+
+fn run(controller: &Controller<'_>, duration: Option<Duration>) -> Result<Exit, Exit> {
+    ask(controller.device(), Request::StartScript)?;
+    let begun_at = Instant::now();
+    while duration.is_none_or(|duration| begun_at.elapsed() < duration) {
+        controller.device().renew();
+        match controller.next_event()? {
+            Some(Event::Failure(failure)) => {
+                say(failure.to_string());
+                return Err(Exit::Refused);
+            }
+            Some(Event::Disarmed(reason)) => {
+                say(format!("{reason}. The script and both motors are being stopped."));
+                return Err(if reason == DisarmReason::LinkLost { Exit::NoLink } else { Exit::Refused });
+            }
+            _ => {}
+        }
+    }
+    Ok(Exit::Done)
+}
+
+/// Stops both, and says what is not plainly stopped. A signal does not cut this short.
+fn stop_all(controller: &Controller<'_>) -> Result<(), Exit> {
+    controller.device().stop_all();
+    let deadline = Instant::now() + ANSWER_LIMIT;
+    while Instant::now() < deadline {
+        if let Some(Event::Stopped(report)) = controller.next_event_whatever()? {
+            crate::stop::warnings(&report, controller.identity()).into_iter().for_each(say);
+            return if report.confirmed() { Ok(()) } else { Err(Exit::Refused) };
+        }
+    }
+    say("The controller did not confirm the stop. Cut the motor power.");
+    Err(Exit::Refused)
+}

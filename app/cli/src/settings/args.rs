@@ -1,0 +1,286 @@
+//! The arguments of `brushwork settings`.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::{Args, Subcommand};
+
+use super::side_name::SideName;
+use crate::new_file::Replace;
+use crate::shared_args::ConnectArgs;
+
+/// Arguments of `brushwork settings`.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    brushwork settings read --connect /dev/ttyACM0 motor1\n  \
+    brushwork settings write --connect /dev/ttyACM0 motor1.velocity.qpps=12000 --dry-run\n\n\
+    `brushwork settings help ACTION` has more.")]
+pub struct SettingsArgs {
+    /// What to do.
+    #[command(subcommand)]
+    pub action: SettingsAction,
+}
+
+/// What to do with the settings.
+#[derive(Debug, Subcommand)]
+pub enum SettingsAction {
+    /// Read the settings in the controller's RAM.
+    Read(ReadArgs),
+    /// Show what would change, write it to RAM, read it back and name what did not take.
+    Write(WriteArgs),
+    /// Compare the controller with a profile, or two profiles.
+    Diff(DiffArgs),
+    /// Save the controller's RAM settings to its EEPROM.
+    Save(MemoryArgs),
+    /// Restore the controller's factory defaults in RAM.
+    Defaults(MemoryArgs),
+    /// Make the controller load its EEPROM, then read that; what was in RAM alone is lost.
+    Reload(MemoryArgs),
+    /// Read the controller's settings into a profile.
+    Export(ExportArgs),
+    /// Check a profile and write it to the controller (as `write --profile`).
+    Import(ImportArgs),
+    /// Compare any two of: RAM, EEPROM as last known, a profile, the defaults, a backup.
+    Compare(CompareArgs),
+    /// List the backups; one is made before every write, restore of defaults and save.
+    Backups(BackupsArgs),
+    /// Write what a backup holds, after showing the changes.
+    Restore(RestoreArgs),
+    /// Copy one motor's settings to the other motor.
+    CopyMotor(CopyMotorArgs),
+    /// Show what was cut short on this controller, setting by setting, and settle it.
+    Unfinished(UnfinishedArgs),
+    /// Print every setting with unit, range, default and help.
+    Reference(ReferenceArgs),
+}
+
+/// Arguments of `brushwork settings compare`.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    brushwork settings compare ram cart.json -c /dev/ttyACM0\n  \
+    brushwork settings compare eeprom ram -c /dev/ttyACM0\n  \
+    brushwork settings compare backup default -c /dev/ttyACM0\n  \
+    brushwork settings compare old.json new.json\n\n\
+    Each side is one of: ram, eeprom (as last known on this computer), default, backup (the newest), \
+    backup:NAME, or the path of a profile.")]
+pub struct CompareArgs {
+    /// The controller; not asked where both sides are files.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// The first side.
+    #[arg(value_name = "A")]
+    pub left: SideName,
+    /// The second side.
+    #[arg(value_name = "B")]
+    pub right: SideName,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `brushwork settings backups`.
+#[derive(Debug, Args)]
+pub struct BackupsArgs {
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `brushwork settings restore`.
+#[derive(Debug, Args)]
+pub struct RestoreArgs {
+    /// The controller.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// The backup's name or the beginning of it; without a name the newest of this controller.
+    #[arg(value_name = "BACKUP")]
+    pub name: Option<String>,
+    /// How to go about it.
+    #[command(flatten)]
+    pub how: WriteHow,
+}
+
+/// Arguments of `brushwork settings copy-motor`.
+#[derive(Debug, Args)]
+pub struct CopyMotorArgs {
+    /// The controller.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// The motor whose settings are copied to the other one.
+    #[arg(value_name = "FROM", value_parser = clap::value_parser!(u8).range(1..=2), default_value = "1")]
+    pub from: u8,
+    /// How to go about it.
+    #[command(flatten)]
+    pub how: WriteHow,
+}
+
+/// Arguments of `brushwork settings unfinished`.
+#[derive(Debug, Args)]
+#[allow(clippy::struct_excessive_bools)]
+pub struct UnfinishedArgs {
+    /// The controller.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// Write the values that were to come; a save is done again.
+    #[arg(long, conflicts_with_all = ["undo", "forget"])]
+    pub finish: bool,
+    /// Write the values from before.
+    #[arg(long, conflicts_with = "forget")]
+    pub undo: bool,
+    /// Leave the controller as it is and do not tell it any more.
+    #[arg(long)]
+    pub forget: bool,
+    /// Do it without asking.
+    #[arg(long, short = 'y')]
+    pub yes: bool,
+    /// Show the changes and write nothing.
+    #[arg(long)]
+    pub dry_run: bool,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `brushwork settings read`.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example:\n  brushwork settings read --connect /dev/ttyACM0 motor1 limits.main_battery"
+)]
+pub struct ReadArgs {
+    /// The controller.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// Only keys that begin with one of these, for example motor1 or pin.3.
+    #[arg(value_name = "KEY")]
+    pub keys: Vec<String>,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `brushwork settings write`.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    brushwork settings write --connect sim:mcp266 motor1.velocity.p=2.5 --yes\n  \
+    brushwork settings write --connect /dev/ttyACM0 limits.main_battery.max_volts=28V motor1.velocity.qpps=12000 --dry-run\n\n\
+    `brushwork settings read` shows the keys, `brushwork settings reference` explains them.")]
+pub struct WriteArgs {
+    /// The controller.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// Settings to change, each value in the setting's unit.
+    #[arg(value_name = "KEY=VALUE", required_unless_present = "profile")]
+    pub changes: Vec<Assignment>,
+    /// Write what this profile says; changes given besides win over it.
+    #[arg(long, value_name = "FILE")]
+    pub profile: Option<PathBuf>,
+    /// How to go about it.
+    #[command(flatten)]
+    pub how: WriteHow,
+}
+
+/// Arguments of `brushwork settings import`.
+#[derive(Debug, Args)]
+pub struct ImportArgs {
+    /// The controller.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// The profile to read.
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// How to go about it.
+    #[command(flatten)]
+    pub how: WriteHow,
+}
+
+/// How settings are written.
+#[derive(Debug, Args)]
+pub struct WriteHow {
+    /// Write without asking.
+    #[arg(long, short = 'y')]
+    pub yes: bool,
+    /// Show the changes, the commands and their bytes, and write nothing.
+    #[arg(long)]
+    pub dry_run: bool,
+    /// Save to EEPROM when everything took.
+    #[arg(long)]
+    pub save: bool,
+    /// Of a profile or backup, take only keys that begin with this, for example motor1; may be given again.
+    #[arg(long, value_name = "KEY")]
+    pub only: Vec<String>,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `brushwork settings diff`.
+#[derive(Debug, Args)]
+pub struct DiffArgs {
+    /// The controller.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// One profile is compared with the controller's RAM, two with each other.
+    #[arg(value_name = "PROFILE", num_args = 1..=2, required = true)]
+    pub profiles: Vec<PathBuf>,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `brushwork settings save` and `defaults`.
+#[derive(Debug, Args)]
+pub struct MemoryArgs {
+    /// The controller.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// Do it without asking.
+    #[arg(long, short = 'y')]
+    pub yes: bool,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `brushwork settings export`.
+#[derive(Debug, Args)]
+pub struct ExportArgs {
+    /// The controller.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// The profile to write; with --force an existing one is replaced, whole or not at all.
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// Whether an older profile is replaced.
+    #[command(flatten)]
+    pub replace: Replace,
+}
+
+/// Arguments of `brushwork settings reference`.
+#[derive(Debug, Args)]
+pub struct ReferenceArgs {
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// One KEY=VALUE as it was typed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Assignment {
+    /// The setting's key.
+    pub key: String,
+    /// The value's text.
+    pub value: String,
+}
+
+impl FromStr for Assignment {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once('=') {
+            Some((key, value)) if !key.trim().is_empty() => {
+                Ok(Self { key: key.trim().to_owned(), value: value.trim().to_owned() })
+            }
+            _ => Err(format!("\"{text}\" is no KEY=VALUE: use for example motor1.velocity.p=2.5")),
+        }
+    }
+}

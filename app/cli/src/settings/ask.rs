@@ -1,0 +1,75 @@
+//! Asking before something is written, without losing sight of Ctrl-C and the link meanwhile.
+
+use std::io::{self, BufRead as _, IsTerminal as _, Write as _};
+
+use crossbeam_channel::{TryRecvError, bounded};
+
+use super::controller::Controller;
+use crate::exit::Exit;
+use crate::output::say;
+
+/// Returns when `question` was answered with yes, here or by `--yes` beforehand.
+///
+/// # Errors
+/// The answer was no, or there is nobody to ask: that is said on standard error. Ctrl-C and a lost link end
+/// the waiting.
+pub fn agreed(question: &str, yes: bool, controller: &Controller<'_>) -> Result<(), Exit> {
+    if yes {
+        return Ok(());
+    }
+    if !io::stdin().is_terminal() {
+        say(format!("{question} Nobody can be asked here: give --yes to do it. Nothing was written."));
+        return Err(Exit::Refused);
+    }
+    let _ = write!(io::stderr(), "{question} [y/N] ");
+    let breathe = || controller.breathe().inspect_err(|_| say("\nNothing was written."));
+    if is_yes(&line(&breathe)?) {
+        return Ok(());
+    }
+    say("Nothing was written.");
+    Err(Exit::Refused)
+}
+
+/// One line from the terminal. It is read on a thread of its own, since reading cannot be called off; `breathe` is called
+/// meanwhile and can end the waiting.
+///
+/// # Errors
+/// What `breathe` said, or that nobody can be asked.
+pub fn line(breathe: &dyn Fn() -> Result<(), Exit>) -> Result<String, Exit> {
+    let (sender, receiver) = bounded(1);
+    let reader = std::thread::Builder::new().name("answer".to_owned()).spawn(move || {
+        let mut line = String::new();
+        // Standard input that cannot be read gives no yes.
+        let _ = io::stdin().lock().read_line(&mut line);
+        let _ = sender.send(line);
+    });
+    if let Err(error) = reader {
+        say(format!("Could not ask: {error}. Nothing was written."));
+        return Err(Exit::Failed);
+    }
+    loop {
+        match receiver.try_recv() {
+            Ok(line) => return Ok(line),
+            Err(TryRecvError::Disconnected) => return Ok(String::new()),
+            Err(TryRecvError::Empty) => breathe()?,
+        }
+    }
+}
+
+fn is_yes(line: &str) -> bool {
+    matches!(line.trim().to_lowercase().as_str(), "y" | "yes")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_plain_yes_is_a_yes() {
+        assert!(is_yes("y\n"));
+        assert!(is_yes(" YES \r\n"));
+        for no in ["", "\n", "n\n", "yeah\n", "j\n"] {
+            assert!(!is_yes(no), "{no:?}");
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! `brushwork settings backups` and `restore`.
+
+use serde_json::json;
+
+use super::args::{BackupsArgs, RestoreArgs};
+use super::controller::Controller;
+use super::{profile, write};
+use crate::exit::Exit;
+use crate::interrupt::Interrupt;
+use crate::output::{Output, say};
+use brushwork_core::keep::{Backup, Store};
+
+/// Lists the backups of every unit; no controller is needed.
+pub fn list(args: &BackupsArgs, out: &mut Output) -> Result<Exit, Exit> {
+    let store = Store::of_user();
+    let backups = store.backups(None);
+    if args.json {
+        let list: Vec<_> = backups
+            .iter()
+            .map(|backup| json!({ "name": backup.name, "unit": backup.unit(), "path": backup.path }))
+            .collect();
+        out.json(&list)?;
+        return Ok(Exit::Done);
+    }
+    let folder = store.root().map_or_else(|| "nowhere".to_owned(), |root| root.display().to_string());
+    if backups.is_empty() {
+        out.line(format!(
+            "There are no backups in {folder}. One is made before every write, default and save."
+        ))?;
+    }
+    let mut unit = String::new();
+    let mut sorted = backups;
+    // Stable: newest first within each unit.
+    sorted.sort_by_key(Backup::unit);
+    for backup in &sorted {
+        if backup.unit() != unit {
+            unit = backup.unit();
+            out.line(format!("{unit}:"))?;
+        }
+        out.line(format!("  {}", backup.name))?;
+    }
+    Ok(Exit::Done)
+}
+
+/// Writes what a backup holds, as an import does: shown first, asked, backed up, read back.
+pub fn restore(args: &RestoreArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let controller = Controller::connect(&args.connect, interrupt)?;
+    let backup = match &args.name {
+        Some(name) => find(name)?,
+        None => {
+            let newest = Store::of_user().backups(Some(controller.unit())).into_iter().next();
+            newest.ok_or_else(|| {
+                say("There is no backup of this controller yet. `brushwork settings backups` lists those of others.");
+                Exit::Refused
+            })?
+        }
+    };
+    say(format!("Backup {} ({}).", backup.name, backup.unit()));
+    let opened = profile::open(&backup.path)?;
+    write::bring_about(&controller, Some(opened), &[], &args.how, out)
+}
+
+/// The backup of that name, or the only one whose name begins so.
+pub fn find(name: &str) -> Result<Backup, Exit> {
+    let name = name.trim_end_matches(".json");
+    let all = Store::of_user().backups(None);
+    let mut found = all.iter().filter(|backup| backup.begins_with(name));
+    match (all.iter().find(|backup| backup.name == name), found.next(), found.next()) {
+        (Some(exact), ..) => Ok(exact.clone()),
+        (None, Some(only), None) => Ok(only.clone()),
+        (None, None, _) => {
+            say(format!("There is no backup {name}. `brushwork settings backups` lists them."));
+            Err(Exit::Refused)
+        }
+        (None, Some(_), Some(_)) => {
+            say(format!("More than one backup begins with {name}. `brushwork settings backups` lists them."));
+            Err(Exit::Refused)
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! `brushwork settings compare`: any two of RAM, EEPROM as last known, profile, defaults, backup.
+
+use brushwork_link::settings::Profile;
+
+use super::args::CompareArgs;
+use super::controller::Controller;
+use super::diff::{self, Side};
+use super::side_name::SideName;
+use super::{backups, profile};
+use crate::exit::Exit;
+use crate::interrupt::Interrupt;
+use crate::output::{Output, say};
+use brushwork_core::keep::{Store, today};
+
+/// Compares and prints.
+pub fn run(args: &CompareArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let names = [&args.left, &args.right];
+    // The defaults of a file's own controller need no controller.
+    let needs_controller = names.iter().any(|name| name.needs_controller())
+        || names.iter().all(|name| matches!(name, SideName::Default));
+    let controller = needs_controller.then(|| Controller::connect(&args.connect, interrupt)).transpose()?;
+    let mut sides = [None, None];
+    // Defaults come last: they are those of the other side where no controller is asked.
+    for is_default in [false, true] {
+        for index in 0..2 {
+            if matches!(names[index], SideName::Default) == is_default {
+                let other = sides[1 - index].clone();
+                sides[index] = Some(side(names[index], controller.as_ref(), other)?);
+            }
+        }
+    }
+    let [Some(left), Some(right)] = sides else { return Err(Exit::Failed) };
+    diff::compare(&left, &fitted(&left, right), args.json, out)
+}
+
+fn side(name: &SideName, controller: Option<&Controller<'_>>, other: Option<Side>) -> Result<Side, Exit> {
+    let refuse = |why: &str| {
+        say(why);
+        Exit::Refused
+    };
+    match (name, controller) {
+        (SideName::File(path), _) => Ok(Side::new(path.display().to_string(), opened(profile::open(path)?))),
+        (SideName::Backup(Some(name)), _) => backup(name),
+        (SideName::Backup(None), Some(controller)) => {
+            let store = Store::of_user();
+            let newest = store.backups(Some(controller.unit())).into_iter().next();
+            let newest = newest.ok_or_else(|| refuse("There is no backup of this controller yet."))?;
+            backup(&newest.name)
+        }
+        (SideName::Ram, Some(controller)) => {
+            let report = controller.read()?;
+            let name = format!("RAM of {}", controller.describe());
+            Ok(Side::new(name, controller.profile_of(&report, report.image.clone())))
+        }
+        (SideName::Eeprom, Some(controller)) => {
+            let known = Store::of_user().eeprom(controller.unit());
+            let known = known.ok_or_else(|| {
+                refuse(
+                    "What the EEPROM of this controller holds is not known: it is known after a save or a reload \
+                     that was proven on this computer.",
+                )
+            })?;
+            Ok(Side::new(format!("EEPROM as known since {}", known.date_text()), known))
+        }
+        (SideName::Default, None) => {
+            let other = other.ok_or(Exit::Failed)?;
+            let profile = defaults_of(&other.profile);
+            Ok(Side::new("defaults".to_owned(), profile))
+        }
+        (SideName::Default, Some(controller)) => {
+            let report = controller.read()?;
+            let ram = controller.profile_of(&report, report.image.clone());
+            Ok(Side::new("defaults".to_owned(), defaults_of(&ram)))
+        }
+        (SideName::Ram | SideName::Eeprom | SideName::Backup(None), None) => Err(Exit::Failed),
+    }
+}
+
+/// Every default of the settings that the profile has.
+fn defaults_of(profile: &Profile) -> Profile {
+    let table = profile.table();
+    let rows = table.rows().iter().filter(|row| profile.settings.get(&row.key).is_some());
+    let settings = rows.map(|row| (row.key.clone(), row.default)).collect();
+    Profile { settings, date: today(), note: "defaults".to_owned(), ..profile.clone() }
+}
+
+fn backup(name: &str) -> Result<Side, Exit> {
+    let backup = backups::find(name)?;
+    let title = format!("backup {}", backup.name);
+    let opened = backup.open().map_err(|error| {
+        say(error.to_string());
+        Exit::NotTaken
+    })?;
+    Ok(Side::new(title, opened.profile))
+}
+
+/// The profile that was opened; what reading it changed is a note here, since nothing is written.
+fn opened(opened: brushwork_link::settings::OpenedProfile) -> Profile {
+    opened.upgraded.iter().for_each(say);
+    opened.profile
+}
+
+/// The right side as it would be on the left side's controller, so that like is compared with like.
+fn fitted(left: &Side, right: Side) -> Side {
+    let fitted = right.profile.fitted_to(&left.profile.table());
+    if fitted.changes.is_empty() {
+        return right;
+    }
+    say(format!("{} is compared as it would be on the controller of {}:", right.name, left.name));
+    fitted.changes.iter().for_each(say);
+    Side::new(right.name, fitted.profile)
+}

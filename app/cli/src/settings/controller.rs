@@ -1,0 +1,292 @@
+//! A connected controller whose settings are to be read or written: work runs as jobs on its device thread.
+
+use std::io::{self, IsTerminal as _, Write as _};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use brushwork_link::Stream;
+use brushwork_link::UnitAddress;
+use brushwork_link::device::{
+    DeviceHandle, Event, FnJob, Identity, JobContext, JobEnding, JobReport, PollRate, Request,
+};
+use brushwork_link::settings::{Keeper, Profile, ReadReport, SettingsImage, Subject, WriteOptions, read_all};
+use brushwork_link::transport::list_ports;
+use brushwork_mcp_wire::models;
+use crossbeam_channel::bounded;
+
+use super::cut_short;
+use crate::client::Client;
+use crate::exit::Exit;
+use crate::interrupt::{Interrupt, exit_of_interruption};
+use crate::output::say;
+use crate::shared_args::ConnectArgs;
+use brushwork_core::keep;
+use brushwork_core::keep::{Keeping, Store, UnitId};
+use brushwork_core::session::Simulation;
+
+/// How long reading everything may take: a hundred commands at the slowest baud rates, with retries.
+pub const READ_LIMIT: Duration = Duration::from_secs(120);
+/// How long writing everything may take: reading before and after, and the writing between.
+pub const WRITE_LIMIT: Duration = Duration::from_secs(300);
+/// How long a cancelled job may take to end.
+const CANCEL_LIMIT: Duration = Duration::from_secs(60);
+
+/// A connected controller of a known model.
+pub struct Controller<'i> {
+    client: Client,
+    interrupt: &'i Interrupt,
+    subject: Subject,
+    keeping: Keeping,
+    unit: UnitId,
+}
+
+/// What a job handed back.
+pub struct Finished<T> {
+    /// Its result, which tells how far it came when something broke in.
+    pub value: T,
+    /// The exit code, when something broke in.
+    pub broken: Option<Exit>,
+}
+
+impl<'i> Controller<'i> {
+    /// Connects and finds out which settings the controller has.
+    ///
+    /// # Errors
+    /// Says on standard error what went wrong and gives the exit code.
+    pub fn connect(args: &ConnectArgs, interrupt: &'i Interrupt) -> Result<Self, Exit> {
+        let client = Client::connect(args, PollRate::Off, interrupt)?;
+        let version = &client.identity.version_text;
+        let Some(model) = models::identify(version) else {
+            say(format!(
+                "The unit at {} on {} calls itself \"{version}\", which is no MCP, RoboClaw or Motion Mind: its \
+                 settings are not known.",
+                client.identity.place(),
+                client.identity.port
+            ));
+            return Err(Exit::Refused);
+        };
+        let subject = Subject::new(model, client.identity.generation);
+        // Without a list of ports a unit is told by the name of its port.
+        let unit = UnitId::new(&client.identity, &list_ports().unwrap_or_default());
+        Ok(Self { client, interrupt, subject, keeping: Keeping::new(Store::of_user()), unit })
+    }
+
+    /// Who it is.
+    pub fn identity(&self) -> &Identity {
+        &self.client.identity
+    }
+
+    /// "0x80 at /dev/ttyACM0".
+    pub fn describe(&self) -> String {
+        format!("{} at {}", self.identity().place(), self.identity().port)
+    }
+
+    /// Its address when it was connected.
+    pub fn address(&self) -> UnitAddress {
+        self.identity().unit_address()
+    }
+
+    /// The link.
+    pub fn client(&self) -> &Client {
+        &self.client
+    }
+
+    /// The device thread.
+    pub fn device(&self) -> &DeviceHandle {
+        self.client.device()
+    }
+
+    /// Which of its streams the port is wired to, where that is known.
+    pub fn stream(&self) -> Option<Stream> {
+        self.client.stream
+    }
+
+    /// The simulated machine behind it, if it runs in this program.
+    pub fn simulation(&self) -> Option<Arc<Simulation>> {
+        self.client.simulation()
+    }
+
+    /// Whether the port's place among the controller's streams is known.
+    pub fn knows_own_stream(&self) -> bool {
+        self.client.stream.is_some()
+    }
+
+    /// What writing has to know of the way to this controller.
+    pub fn write_options(&self) -> WriteOptions {
+        WriteOptions { own_stream: self.client.stream, simulated: self.identity().simulated, as_read: false }
+    }
+
+    /// Which settings it has, as far as known before it was read.
+    pub fn subject(&self) -> Subject {
+        self.subject
+    }
+
+    /// What it is known as on this computer.
+    pub fn unit(&self) -> &UnitId {
+        &self.unit
+    }
+
+    /// What keeps backup and journal of an act on it.
+    pub fn keeper(&self) -> Box<dyn Keeper> {
+        self.keeping.keeper(self.unit.clone(), &self.identity().version_text)
+    }
+
+    /// Values as a profile of this controller.
+    pub fn profile_of(&self, report: &ReadReport, settings: SettingsImage) -> Profile {
+        Profile {
+            subject: *report.table.subject(),
+            firmware: self.identity().version_text.clone(),
+            address: self.address(),
+            date: keep::today(),
+            unit: self.unit.place.clone(),
+            note: String::new(),
+            settings,
+        }
+    }
+
+    /// Reads every setting; says what could not be read, and what an act that was cut short has left of them.
+    pub fn read(&self) -> Result<ReadReport, Exit> {
+        let report = self.read_quietly()?;
+        cut_short::tell(&self.unit, &report);
+        Ok(report)
+    }
+
+    /// Reads every setting; says what could not be read.
+    pub fn read_quietly(&self) -> Result<ReadReport, Exit> {
+        let subject = self.subject;
+        let finished = self.run("read the settings", READ_LIMIT, move |wire| read_all(wire, subject))?;
+        if let Some(exit) = finished.broken {
+            return Err(exit);
+        }
+        let report = finished.value.map_err(|failure| {
+            say(failure.to_string());
+            Exit::NoLink
+        })?;
+        for unread in &report.failures {
+            say(format!("Not read: {}. {}", unread.keys.join(", "), unread.failure));
+        }
+        Ok(report)
+    }
+
+    /// Runs work on the device thread and waits for its end. Ctrl-C cancels it; what it had to say by then
+    /// comes back all the same.
+    pub fn run<T: Send + 'static>(
+        &self,
+        name: &str,
+        limit: Duration,
+        mut work: impl FnMut(&mut JobContext<'_>) -> T + Send + 'static,
+    ) -> Result<Finished<T>, Exit> {
+        let (sender, receiver) = bounded(1);
+        let job = FnJob::boxed(name, limit, move |wire| {
+            // The receiver lives until the job has ended; without it nobody wants the result.
+            let _ = sender.try_send(work(wire));
+            Ok(Box::new(()))
+        });
+        self.client.device().request(Request::Job(job)).map_err(|refused| {
+            say(format!("Could not {name}: {refused}"));
+            Exit::Refused
+        })?;
+        let report = self.wait_for_end(name, limit)?;
+        let broken = explain(&report, self.interrupt.is_raised());
+        match (receiver.try_recv(), broken) {
+            (Ok(value), broken) => Ok(Finished { value, broken }),
+            (Err(_), broken) => Err(broken.unwrap_or(Exit::Failed)),
+        }
+    }
+
+    /// Lets events pass for a moment.
+    ///
+    /// # Errors
+    /// The link is lost or the program was asked to end.
+    pub fn breathe(&self) -> Result<(), Exit> {
+        self.client.next_event(self.interrupt).map(|_| ())
+    }
+
+    /// The next event, or `None` when there was none for a moment.
+    ///
+    /// # Errors
+    /// The link is lost or the program was asked to end.
+    pub fn next_event(&self) -> Result<Option<Event>, Exit> {
+        self.client.next_event(self.interrupt)
+    }
+
+    /// The same for what has to be done to its end.
+    ///
+    /// # Errors
+    /// The link is lost.
+    pub fn next_event_whatever(&self) -> Result<Option<Event>, Exit> {
+        self.client.next_event(&Interrupt::default())
+    }
+
+    fn wait_for_end(&self, name: &str, limit: Duration) -> Result<JobReport, Exit> {
+        let deaf = Interrupt::default();
+        let mut progress = Progress::new();
+        let mut deadline = Instant::now() + limit + CANCEL_LIMIT;
+        let mut cancelled = false;
+        while Instant::now() < deadline {
+            if self.interrupt.is_raised() && !cancelled {
+                cancelled = true;
+                deadline = Instant::now() + CANCEL_LIMIT;
+                // A full queue cannot refuse this one: it overtakes what is queued.
+                let _ = self.client.device().request(Request::CancelJob);
+            }
+            match self.client.next_event(&deaf)? {
+                Some(Event::JobProgress { fraction, text }) => progress.show(fraction, &text),
+                Some(Event::Failure(failure)) => say(failure.to_string()),
+                Some(Event::JobEnded(report)) => return Ok(report),
+                _ => {}
+            }
+        }
+        say(format!("Could not {name}: the work did not end in time."));
+        Err(if cancelled { Exit::Interrupted } else { Exit::Failed })
+    }
+}
+
+/// Says why a job did not run to its end, and gives the exit code for that.
+fn explain(report: &JobReport, by_signal: bool) -> Option<Exit> {
+    let name = &report.name;
+    match &report.ending {
+        JobEnding::Done(_) => None,
+        JobEnding::Interrupted(cause) => {
+            say(format!("Could not {name} to the end: {cause}."));
+            Some(exit_of_interruption(*cause, by_signal))
+        }
+        JobEnding::Failed(failure) => {
+            say(failure.to_string());
+            Some(Exit::Failed)
+        }
+        JobEnding::Panicked(word) => {
+            say(format!("Could not {name}: an internal error ({word}). Please report it."));
+            Some(Exit::Failed)
+        }
+    }
+}
+
+/// One line on a terminal that is overwritten as work goes on; nothing where standard error is no terminal.
+struct Progress {
+    on_terminal: bool,
+    is_shown: bool,
+}
+
+impl Progress {
+    fn new() -> Self {
+        Self { on_terminal: io::stderr().is_terminal(), is_shown: false }
+    }
+
+    fn show(&mut self, fraction: Option<f32>, text: &str) {
+        if !self.on_terminal {
+            return;
+        }
+        self.is_shown = true;
+        let percent = fraction.map_or_else(String::new, |fraction| format!("{:3.0} % ", fraction * 100.0));
+        let _ = write!(io::stderr(), "\r\x1b[K{percent}{text}");
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if self.is_shown {
+            let _ = write!(io::stderr(), "\r\x1b[K");
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! `brushwork settings copy-motor`: one motor's settings for the other.
+
+use brushwork_link::settings::copy_motor;
+
+use super::args::CopyMotorArgs;
+use super::controller::Controller;
+use super::write::{self, Wanted};
+use crate::exit::Exit;
+use crate::interrupt::Interrupt;
+use crate::output::Output;
+
+/// Shows, asks, writes, reads back.
+pub fn run(args: &CopyMotorArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let controller = Controller::connect(&args.connect, interrupt)?;
+    let ram = controller.read()?;
+    let copied = copy_motor(&ram.table, &ram.image, usize::from(args.from), controller.identity().simulated);
+    let mut wanted = Wanted::of(copied.wanted);
+    wanted.left_out_lines.clone_from(&copied.left_out);
+    wanted.left_out = copied.left_out;
+    write::carry_out(&controller, &ram, &wanted, &args.how, out)
+}

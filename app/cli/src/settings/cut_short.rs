@@ -1,0 +1,35 @@
+//! What acts that were cut short have left on a controller, told whenever its settings were read.
+
+use brushwork_link::settings::ReadReport;
+
+use crate::output::say;
+use brushwork_core::keep::{OpenJournal, Store, UnitId};
+
+/// More sentences than this are told by `unfinished` alone.
+const TOLD_IN_PASSING: usize = 30;
+
+/// Says on standard error what an act that was cut short has left of the settings just read.
+pub fn tell(unit: &UnitId, ram: &ReadReport) {
+    let journals = journals(unit);
+    for open in &journals {
+        let aftermath = open.aftermath(&ram.table, &ram.image);
+        say(aftermath.headline());
+        let sentences = aftermath.sentences(&ram.table);
+        sentences.iter().take(TOLD_IN_PASSING).for_each(|sentence| say(format!("  {sentence}")));
+        if sentences.len() > TOLD_IN_PASSING {
+            say(format!("  ... and {} more.", sentences.len() - TOLD_IN_PASSING));
+        }
+    }
+    if !journals.is_empty() {
+        say(
+            "`brushwork settings unfinished` shows all of it and settles it with --finish, --undo or --forget.",
+        );
+    }
+}
+
+/// What was begun on a unit and not ended; files that cannot be read are told.
+pub fn journals(unit: &UnitId) -> Vec<OpenJournal> {
+    let (journals, faults) = Store::of_user().open_journals(unit);
+    faults.iter().for_each(|fault| say(fault.to_string()));
+    journals
+}

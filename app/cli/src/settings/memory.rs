@@ -1,0 +1,241 @@
+//! `brushwork settings save` and `defaults`: acts on the controller's own memory, asked for and proven.
+
+use std::time::Duration;
+
+use brushwork_link::settings::{
+    DefaultsReport, SaveReport, SaveVerdict, SettingsImage, SettingsTable, defaults_kept, reload_kept,
+    save_kept,
+};
+use serde_json::json;
+
+use super::args::MemoryArgs;
+use super::ask;
+use super::controller::Controller;
+use super::review::{Change, change_lines, changes, merged, settings_count};
+use crate::exit::Exit;
+use crate::interrupt::Interrupt;
+use crate::output::{Output, OutputError, say};
+use brushwork_core::keep::{Store, UnitId, WearLevel};
+
+/// How long a save or a restore may take with its readings before and after.
+const MEMORY_LIMIT: Duration = Duration::from_secs(300);
+
+/// Saves RAM to EEPROM and proves it.
+pub fn save(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let controller = Controller::connect(&args.connect, interrupt)?;
+    let ram = controller.read()?;
+    let list = changes(&ram.table, &known_defaults(&ram.table, &ram.image), &ram.image);
+    match Store::of_user().eeprom(controller.unit()) {
+        Some(known) => {
+            let head = format!("What would change in EEPROM, as known since {}:", known.date_text());
+            let unsaved = changes(&ram.table, &known.settings, &merged(&known.settings, &ram.image));
+            show(args, out, &head, &unsaved, "nothing: it holds the same already")?;
+        }
+        None => show(
+            args,
+            out,
+            "What EEPROM holds cannot be read without loading it over RAM. What would be saved, against the factory \
+             defaults:",
+            &list,
+            AT_DEFAULT,
+        )?,
+    }
+    tell_wear(controller.unit());
+    tell_stop(
+        &ram.table,
+        "Each write to EEPROM stops the motor for up to 40 ms; in mode 3 it does not start again by itself.",
+    );
+    let question = format!("Save all settings of {} to EEPROM?", controller.describe());
+    ask::agreed(&question, args.yes, &controller)?;
+    let (report, exit) = save_to_eeprom(&controller, &ram.table)?;
+    let wear = Store::of_user().wear(controller.unit());
+    if args.json {
+        out.json(&json!({
+            "identity": controller.identity(),
+            "not_default": list,
+            "save": report,
+            "saves_counted": wear,
+        }))?;
+    } else if matches!(report.verdict, SaveVerdict::Verified | SaveVerdict::Stored) {
+        out.line(report.sentence())?;
+        out.line(wear.sentence())?;
+    }
+    if !matches!(report.verdict, SaveVerdict::Verified | SaveVerdict::Stored) {
+        say(report.sentence());
+    }
+    Ok(exit)
+}
+
+/// Saves to EEPROM; the caller tells what the report says.
+pub fn save_to_eeprom(
+    controller: &Controller<'_>,
+    table: &SettingsTable,
+) -> Result<(SaveReport, Exit), Exit> {
+    let (options, table, mut keeper) = (controller.write_options(), table.clone(), controller.keeper());
+    let finished = controller
+        .run("save the settings", MEMORY_LIMIT, move |wire| save_kept(wire, &table, options, &mut *keeper))?;
+    let report = finished.value.map_err(|failure| {
+        say(format!("Nothing was saved. {failure}"));
+        finished.broken.unwrap_or(Exit::Refused)
+    })?;
+    let exit = match report.verdict {
+        SaveVerdict::Verified | SaveVerdict::Stored | SaveVerdict::Acknowledged => Exit::Done,
+        SaveVerdict::NotSaved | SaveVerdict::Unknown => Exit::NotTaken,
+    };
+    Ok((report, finished.broken.unwrap_or(exit)))
+}
+
+/// Restores the factory settings in RAM and proves it.
+pub fn defaults(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let controller = Controller::connect(&args.connect, interrupt)?;
+    let ram = controller.read()?;
+    let list = changes(&ram.table, &ram.image, &known_defaults(&ram.table, &ram.image));
+    show(args, out, "What would change, as far as the factory defaults are known:", &list, AT_DEFAULT)?;
+    tell_stop(
+        &ram.table,
+        "RESTORE writes RAM and EEPROM and stops the motor; the unit answers at address 1 afterwards.",
+    );
+    let question = format!("Restore the factory defaults of {}?", controller.describe());
+    ask::agreed(&question, args.yes, &controller)?;
+    let (subject, mut keeper) = (controller.subject(), controller.keeper());
+    let finished = controller
+        .run("restore the defaults", MEMORY_LIMIT, move |wire| defaults_kept(wire, subject, &mut *keeper))?;
+    let report = finished.value.map_err(|failure| {
+        say(failure.to_string());
+        finished.broken.unwrap_or(Exit::Refused)
+    })?;
+    let others = tell_defaults(args, &controller, &list, &report, out)?;
+    Ok(finished.broken.unwrap_or(if others == 0 { Exit::Done } else { Exit::NotTaken }))
+}
+
+/// Prints what came of it. How many settings are not at a default that the manual states.
+fn tell_defaults(
+    args: &MemoryArgs,
+    controller: &Controller<'_>,
+    list: &[Change],
+    report: &DefaultsReport,
+    out: &mut Output,
+) -> Result<usize, OutputError> {
+    let table = &report.read.table;
+    let image = &report.read.image;
+    let found = changes(table, &known_defaults(table, image), image);
+    let is_assumed = |change: &Change| table.row(&change.key).is_some_and(|row| row.default_assumed);
+    let (assumed, stated): (Vec<Change>, Vec<Change>) = found.into_iter().partition(is_assumed);
+    if args.json {
+        out.json(&json!({
+            "identity": controller.identity(),
+            "changes": list,
+            "address": report.address,
+            "not_at_default": stated,
+            "not_at_assumed_default": assumed,
+        }))?;
+        return Ok(stated.len());
+    }
+    let place = if table.is_motion_mind() { "RAM and EEPROM" } else { "RAM" };
+    if stated.is_empty() {
+        out.line(format!("The factory defaults are restored in {place}; every setting was read back."))?;
+    }
+    tell_others("These are not at the factory default that the manual states:", &stated);
+    tell_others("These came back other than assumed; the controller knows its defaults better:", &assumed);
+    if report.address != controller.address() {
+        out.line(format!("The controller answers at {} now.", report.address))?;
+    }
+    if table.is_motion_mind() {
+        return Ok(stated.len());
+    }
+    out.line("A power cycle brings the saved settings back unless the defaults are saved (`brushwork settings save`).")?;
+    Ok(stated.len())
+}
+
+/// Loads EEPROM over RAM and reads it.
+pub fn reload(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let controller = Controller::connect(&args.connect, interrupt)?;
+    let ram = controller.read()?;
+    match Store::of_user().eeprom(controller.unit()) {
+        Some(known) => {
+            let head = format!("What comes back, as EEPROM is known since {}:", known.date_text());
+            let list = changes(&ram.table, &ram.image, &merged(&ram.image, &known.settings));
+            show(args, out, &head, &list, "nothing: RAM holds the same")?;
+        }
+        None => say("What EEPROM holds is not known. What was written and not saved is lost."),
+    }
+    tell_stop(
+        &ram.table,
+        "A Motion Mind starts anew for it: its motor stops, and its position is 0 unless POSPWRUP is set.",
+    );
+    let question = format!("Load the EEPROM of {} over its RAM?", controller.describe());
+    ask::agreed(&question, args.yes, &controller)?;
+    let (table, mut keeper) = (ram.table.clone(), controller.keeper());
+    let finished = controller.run("load the settings from EEPROM", MEMORY_LIMIT, move |wire| {
+        reload_kept(wire, &table, &mut *keeper)
+    })?;
+    let report = finished.value.map_err(|failure| {
+        say(failure.to_string());
+        finished.broken.unwrap_or(Exit::Refused)
+    })?;
+    let came_back = changes(&ram.table, &ram.image, &merged(&ram.image, &report.image));
+    if args.json {
+        out.json(&json!({ "identity": controller.identity(), "changes": came_back }))?;
+    } else {
+        let count = settings_count(came_back.len());
+        out.line(format!("EEPROM is loaded and read: {count} came back otherwise."))?;
+        for line in change_lines(&came_back) {
+            out.line(line)?;
+        }
+    }
+    Ok(finished.broken.unwrap_or(if report.failures.is_empty() { Exit::Done } else { Exit::NotTaken }))
+}
+
+/// Says what an act on the memory of a Motion Mind does to its motor.
+fn tell_stop(table: &SettingsTable, what: &str) {
+    if table.is_motion_mind() {
+        say(format!("Note: {what}"));
+    }
+}
+
+fn tell_others(head: &str, changes: &[Change]) {
+    if !changes.is_empty() {
+        say(head);
+        change_lines(changes).into_iter().for_each(say);
+    }
+}
+
+/// The default of every setting whose value was read.
+fn known_defaults(table: &SettingsTable, image: &SettingsImage) -> SettingsImage {
+    let known = table.rows().iter().filter(|row| image.get(&row.key).is_some());
+    known.map(|row| (row.key.clone(), row.default)).collect()
+}
+
+const AT_DEFAULT: &str = "nothing: every setting is at its default";
+
+/// Says how often the EEPROM was written where that begins to matter.
+pub fn tell_wear(unit: &UnitId) {
+    let wear = Store::of_user().wear(unit);
+    if wear.level() > WearLevel::Fine {
+        say(format!("Note: {} {}", wear.sentence(), unit.limits()));
+    }
+}
+
+fn show(
+    args: &MemoryArgs,
+    out: &mut Output,
+    head: &str,
+    list: &[Change],
+    none: &str,
+) -> Result<(), OutputError> {
+    let mut lines = vec![head.to_owned()];
+    lines.extend(change_lines(list));
+    if list.is_empty() {
+        lines.push(format!("  {none}"));
+    } else {
+        lines.push(format!("  ({})", settings_count(list.len())));
+    }
+    for line in lines {
+        if !args.json {
+            out.line(line)?;
+        } else if !args.yes {
+            say(line);
+        }
+    }
+    Ok(())
+}

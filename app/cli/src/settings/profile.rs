@@ -1,0 +1,44 @@
+//! `brushwork settings export`, and profiles as files.
+
+use std::path::Path;
+
+use brushwork_link::settings::{OpenedProfile, Profile, ProfileFileError, Strictness};
+
+use super::args::ExportArgs;
+use super::controller::Controller;
+use super::review::settings_count;
+use crate::exit::Exit;
+use crate::interrupt::Interrupt;
+use crate::new_file::{NewFile, NewFileError};
+use crate::output::{Output, say};
+
+/// Reads the controller and writes the profile.
+pub fn export(args: &ExportArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let mut file = NewFile::new(&args.file, args.replace);
+    file.check()?;
+    let controller = Controller::connect(&args.connect, interrupt)?;
+    let report = controller.read()?;
+    let profile = controller.profile_of(&report, report.image.clone());
+    file.write(profile.to_json().as_bytes()).map_err(|error| match error {
+        NewFileError::System { path, source } => {
+            say(ProfileFileError::Write { path, source }.to_string());
+            Exit::Failed
+        }
+        refused => refused.into(),
+    })?;
+    let count = settings_count(profile.settings.len());
+    out.line(format!("{count} of {} are in {}.", controller.describe(), args.file.display()))?;
+    if report.failures.is_empty() {
+        return Ok(Exit::Done);
+    }
+    say("What could not be read is not in the profile.");
+    Ok(Exit::NotTaken)
+}
+
+/// The profile in a file; what is wrong with it is said on standard error.
+pub fn open(path: &Path) -> Result<OpenedProfile, Exit> {
+    Profile::open(path, Strictness::Refuse).map_err(|error| {
+        say(error.to_string());
+        Exit::NotTaken
+    })
+}

@@ -1,0 +1,80 @@
+//! `brushwork settings unfinished`: acts that were cut short, told at every connection until they are settled.
+
+use brushwork_link::settings::{Act, Aftermath, ReadReport};
+use serde_json::json;
+
+use super::args::UnfinishedArgs;
+use super::controller::Controller;
+use super::cut_short::journals;
+use super::write::{self, Wanted};
+use crate::exit::Exit;
+use crate::interrupt::Interrupt;
+use crate::output::{Output, say};
+use brushwork_core::keep::{OpenJournal, Store};
+
+/// Shows what was cut short, and settles it when asked to.
+pub fn run(args: &UnfinishedArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let controller = Controller::connect(&args.connect, interrupt)?;
+    let ram = controller.read_quietly()?;
+    let journals = journals(controller.unit());
+    let aftermaths: Vec<Aftermath> =
+        journals.iter().map(|open| open.aftermath(&ram.table, &ram.image)).collect();
+    show(args, &ram, &aftermaths, out)?;
+    // The newest alone is finished or undone; the ones before it were overtaken by it.
+    let Some(newest) = journals.last() else { return Ok(Exit::Done) };
+    if !args.finish && !args.undo {
+        return if args.forget { close(&journals) } else { Ok(Exit::Different) };
+    }
+    let remedy = newest.journal.remedy(&ram.image, args.undo);
+    let writable = remedy.iter().filter(|(key, _)| {
+        ram.table.row(key).is_some_and(|row| row.locked(controller.identity().simulated).is_none())
+    });
+    let wanted = Wanted::read(writable.map(|(key, value)| (key.to_owned(), value)).collect());
+    let how = write::how(args, newest.journal.act == Act::Save);
+    let exit = write::carry_out(&controller, &ram, &wanted, &how, out)?;
+    if exit == Exit::Done && !args.dry_run {
+        return close(&journals);
+    }
+    Ok(exit)
+}
+
+fn close(journals: &[OpenJournal]) -> Result<Exit, Exit> {
+    for open in journals {
+        Store::of_user().close_journal(&open.path).map_err(|error| {
+            say(error.to_string());
+            Exit::Failed
+        })?;
+    }
+    Ok(Exit::Done)
+}
+
+fn show(
+    args: &UnfinishedArgs,
+    ram: &ReadReport,
+    aftermaths: &[Aftermath],
+    out: &mut Output,
+) -> Result<(), Exit> {
+    if args.json {
+        let list: Vec<_> = aftermaths
+            .iter()
+            .map(|aftermath| {
+                json!({
+                    "aftermath": aftermath,
+                    "headline": aftermath.headline(),
+                    "sentences": aftermath.sentences(&ram.table),
+                })
+            })
+            .collect();
+        return Ok(out.json(&list)?);
+    }
+    if aftermaths.is_empty() {
+        out.line("Nothing that was begun on this controller was cut short.")?;
+    }
+    for aftermath in aftermaths {
+        out.line(aftermath.headline())?;
+        for sentence in aftermath.sentences(&ram.table) {
+            out.line(format!("  {sentence}"))?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,339 @@
+//! `brushwork settings write` and `import`: shows the changes, asks, writes, and names what did not take.
+
+use brushwork_link::settings::{
+    OpenedProfile, Profile, ReadReport, Refusal, SaveReport, SaveVerdict, SettingsImage, SettingsTable,
+    WriteOptions, WriteReport, changes, plan, write_kept,
+};
+use serde_json::{Value, json};
+
+use super::args::{Assignment, ImportArgs, UnfinishedArgs, WriteArgs, WriteHow};
+use super::ask;
+use super::controller::{Controller, WRITE_LIMIT};
+use super::review::{Review, merged, settings_count};
+use super::{keys, memory, profile, read};
+use crate::exit::Exit;
+use crate::interrupt::Interrupt;
+use crate::output::{Output, say};
+
+/// Writes the changes given, and those of a profile.
+pub fn run(args: &WriteArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let profile = args.profile.as_deref().map(profile::open).transpose()?;
+    let controller = Controller::connect(&args.connect, interrupt)?;
+    bring_about(&controller, profile, &args.changes, &args.how, out)
+}
+
+/// Writes what a profile says.
+pub fn import(args: &ImportArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let profile = profile::open(&args.file)?;
+    let controller = Controller::connect(&args.connect, interrupt)?;
+    bring_about(&controller, Some(profile), &[], &args.how, out)
+}
+
+/// What is to be written, and what of the profile cannot be.
+#[derive(Default)]
+pub struct Wanted {
+    /// The values that differ.
+    pub changes: SettingsImage,
+    /// A sentence for each setting of the profile that cannot be written here.
+    pub left_out: Vec<String>,
+    /// The same as lines, with those that share a reason put together.
+    pub left_out_lines: Vec<String>,
+    /// What fitting a profile to this controller changed, a sentence each.
+    upgraded: Vec<String>,
+    /// Whether values were read from a unit once, so that they are written as they are.
+    as_read: bool,
+}
+
+impl Wanted {
+    /// Changes that leave nothing out.
+    pub fn of(changes: SettingsImage) -> Self {
+        Self { changes, ..Self::default() }
+    }
+
+    fn options(&self, controller: &Controller<'_>) -> WriteOptions {
+        WriteOptions { as_read: self.as_read, ..controller.write_options() }
+    }
+
+    /// Values that the unit had once.
+    pub fn read(changes: SettingsImage) -> Self {
+        Self { as_read: true, ..Self::of(changes) }
+    }
+}
+
+/// What came of it.
+#[derive(Default)]
+struct Results {
+    write: Option<WriteReport>,
+    save: Option<SaveReport>,
+}
+
+/// Writes what a profile says, and assignments over it.
+pub fn bring_about(
+    controller: &Controller<'_>,
+    profile: Option<OpenedProfile>,
+    assignments: &[Assignment],
+    how: &WriteHow,
+    out: &mut Output,
+) -> Result<Exit, Exit> {
+    let ram = controller.read()?;
+    let wanted = wanted(controller, &ram, profile, assignments, how)?;
+    carry_out(controller, &ram, &wanted, how, out)
+}
+
+/// Shows the changes, asks, writes, reads back and tells.
+pub fn carry_out(
+    controller: &Controller<'_>,
+    ram: &ReadReport,
+    wanted: &Wanted,
+    how: &WriteHow,
+    out: &mut Output,
+) -> Result<Exit, Exit> {
+    let review = review(controller, ram, wanted)?;
+    show(&review, wanted, how, out)?;
+    if how.dry_run {
+        print_json(controller, &review, wanted, how, &Results::default(), out)?;
+        return Ok(Exit::Done);
+    }
+    let count = review.changes.len();
+    if how.save {
+        memory::tell_wear(controller.unit());
+    }
+    if count > 0 || how.save {
+        ask::agreed(&question(controller, count, how.save), how.yes, controller)?;
+    }
+    let mut results = Results::default();
+    let exit = perform(controller, &ram.table, wanted, how, &mut results);
+    tell(&ram.table, &results, how, out)?;
+    print_json(controller, &review, wanted, how, &results, out)?;
+    exit
+}
+
+/// How something that was cut short is settled.
+pub fn how(args: &UnfinishedArgs, save: bool) -> WriteHow {
+    WriteHow { yes: args.yes, dry_run: args.dry_run, save, only: Vec::new(), json: args.json }
+}
+
+/// The profile as it is for this controller. Every change is told, and asked about before it is used.
+fn upgraded(
+    controller: &Controller<'_>,
+    ram: &ReadReport,
+    opened: OpenedProfile,
+    how: &WriteHow,
+) -> Result<(Profile, Vec<String>), Exit> {
+    let fitted = opened.profile.fitted_to(&ram.table);
+    let sentences: Vec<String> = opened.upgraded.into_iter().chain(fitted.changes).collect();
+    if sentences.is_empty() {
+        return Ok((opened.profile, sentences));
+    }
+    say("The profile has to be changed to fit this controller:");
+    sentences.iter().for_each(|sentence| say(format!("  {sentence}")));
+    if !how.dry_run {
+        ask::agreed("Use the profile with these changes?", how.yes, controller)?;
+    }
+    Ok((fitted.profile, sentences))
+}
+
+/// The changes that profile and assignments ask for.
+fn wanted(
+    controller: &Controller<'_>,
+    ram: &ReadReport,
+    profile: Option<OpenedProfile>,
+    assignments: &[Assignment],
+    how: &WriteHow,
+) -> Result<Wanted, Exit> {
+    let mut wanted = Wanted::default();
+    if let Some(opened) = profile {
+        let (profile, upgraded) = upgraded(controller, ram, opened, how)?;
+        let asked = profile.changes_for(&ram.table, &ram.image, controller.identity().simulated);
+        let asked = asked.map_err(|error| {
+            say(format!("The profile does not fit {}, nothing was changed:\n{error}", controller.describe()));
+            Exit::NotTaken
+        })?;
+        let left_out_lines = left_out_lines(controller, ram, &profile);
+        let changes = only(&ram.table, &asked.wanted, &how.only)?;
+        wanted = Wanted { changes, left_out: asked.left_out, left_out_lines, upgraded, as_read: true };
+    }
+    let typed = keys::parse(&ram.table, assignments).map_err(|problems| refused(&problems))?;
+    if wanted.as_read {
+        // A profile may hold what a unit held once; what somebody types has to be right.
+        let typed = changes(&ram.table, &ram.image, &merged(&ram.image, &typed));
+        let beside = merged(&ram.image, &wanted.changes);
+        plan(&ram.table, &beside, &typed, controller.write_options()).map_err(cannot_be)?;
+    }
+    wanted.changes.merge(&typed);
+    wanted.changes = changes(&ram.table, &ram.image, &merged(&ram.image, &wanted.changes));
+    Ok(wanted)
+}
+
+/// The changes whose keys begin with one of `starts`; all of them where there are none.
+fn only(table: &SettingsTable, changes: &SettingsImage, starts: &[String]) -> Result<SettingsImage, Exit> {
+    if let Some(problem) = keys::unmatched(table, starts) {
+        say(problem);
+        return Err(Exit::NotTaken);
+    }
+    let is_meant = |key: &str| starts.is_empty() || starts.iter().any(|start| keys::begins_with(key, start));
+    Ok(changes.iter().filter(|(key, _)| is_meant(key)).map(|(key, value)| (key.to_owned(), value)).collect())
+}
+
+/// What of the profile differs and cannot be written on this controller. A value is shown where it matters:
+/// where it is not the default.
+fn left_out_lines(controller: &Controller<'_>, ram: &ReadReport, profile: &Profile) -> Vec<String> {
+    let differing = changes(&ram.table, &ram.image, &profile.settings);
+    let locked = ram.table.rows().iter().filter_map(|row| {
+        let (value, reason) = (differing.get(&row.key)?, row.locked(controller.identity().simulated)?);
+        let shown = if value == row.default { String::new() } else { format!(" ({})", row.format(value)) };
+        Some((reason, format!("{}{shown}", row.key)))
+    });
+    let mut lines = read::by_reason(locked);
+    if !lines.is_empty() {
+        lines.insert(
+            0,
+            "Left out of the profile, since they cannot be written on this controller:".to_owned(),
+        );
+    }
+    lines
+}
+
+fn review(controller: &Controller<'_>, ram: &ReadReport, wanted: &Wanted) -> Result<Review, Exit> {
+    let options = wanted.options(controller);
+    let mut review = Review::new(&ram.table, &ram.image, &wanted.changes, options, controller.address())
+        .map_err(cannot_be)?;
+    let touches_streams = review.changes.iter().any(|change| change.key.starts_with("stream."));
+    if touches_streams && !controller.knows_own_stream() {
+        review.warnings.push(
+            "It is not known which of the controller's streams this port is wired to; if it is one that \
+             changes, the link may be lost. A target such as /dev/ttyUSB0,stream=ttl1 says it."
+                .to_owned(),
+        );
+    }
+    Ok(review)
+}
+
+fn cannot_be(refusals: Vec<Refusal>) -> Exit {
+    refused(&refusals.into_iter().map(|refusal| refusal.sentence).collect::<Vec<_>>())
+}
+
+fn refused(problems: &[String]) -> Exit {
+    say("Nothing was written:");
+    problems.iter().for_each(say);
+    Exit::NotTaken
+}
+
+/// The changes before anything is done: on standard output, or beside it where that carries JSON.
+fn show(review: &Review, wanted: &Wanted, how: &WriteHow, out: &mut Output) -> Result<(), Exit> {
+    let mut lines = Vec::new();
+    if review.changes.is_empty() {
+        lines.push("The controller holds these values already: there is nothing to write.".to_owned());
+    }
+    lines.extend(review.lines());
+    lines.extend(wanted.left_out_lines.iter().cloned());
+    if how.dry_run && !review.changes.is_empty() {
+        lines.push("Commands that would be sent:".to_owned());
+        lines.extend(review.command_lines());
+    }
+    for line in lines {
+        if !how.json {
+            out.line(line)?;
+        } else if !how.yes && !how.dry_run {
+            say(line);
+        }
+    }
+    Ok(())
+}
+
+fn question(controller: &Controller<'_>, count: usize, save: bool) -> String {
+    let place = controller.describe();
+    match (count, save) {
+        (0, _) => format!("Save all settings of {place} to EEPROM?"),
+        (count, false) => format!("Write {} to RAM of {place}?", settings_count(count)),
+        (count, true) => {
+            format!("Write {} to RAM of {place} and save all settings to EEPROM?", settings_count(count))
+        }
+    }
+}
+
+/// Writes, then saves if that was asked for and everything took.
+fn perform(
+    controller: &Controller<'_>,
+    table: &SettingsTable,
+    wanted: &Wanted,
+    how: &WriteHow,
+    results: &mut Results,
+) -> Result<Exit, Exit> {
+    let mut exit = Exit::Done;
+    let changes = wanted.changes.clone();
+    if !changes.is_empty() {
+        let (options, job_table, mut keeper) =
+            (wanted.options(controller), table.clone(), controller.keeper());
+        let finished = controller.run("write the settings", WRITE_LIMIT, move |wire| {
+            write_kept(wire, &job_table, &changes, options, &mut *keeper)
+        })?;
+        let report = finished.value.map_err(|error| {
+            say(error.to_string());
+            finished.broken.unwrap_or(Exit::NotTaken)
+        })?;
+        let is_complete = report.is_complete();
+        results.write = Some(report);
+        exit = finished.broken.unwrap_or(if is_complete { Exit::Done } else { Exit::NotTaken });
+    }
+    if !how.save {
+        return Ok(exit);
+    }
+    if exit != Exit::Done {
+        say("The settings were not saved to EEPROM, since not all of them took.");
+        return Ok(exit);
+    }
+    let (report, exit) = memory::save_to_eeprom(controller, table)?;
+    results.save = Some(report);
+    Ok(exit)
+}
+
+fn tell(table: &SettingsTable, results: &Results, how: &WriteHow, out: &mut Output) -> Result<(), Exit> {
+    if let Some(report) = &results.write {
+        report.sentences(table).iter().for_each(say);
+        if !report.is_complete() {
+            report.warnings.iter().for_each(say);
+        }
+        if let Some(failure) = &report.ended_early {
+            say(format!("Writing ended early. {failure}"));
+        }
+        let taken = report.rows.len() - report.did_not_take().count();
+        if !how.json {
+            out.line(format!("{} written and read back.", settings_count(taken)))?;
+            if report.is_complete() && !how.save {
+                out.line("A power cycle brings the old values back unless they are saved (`brushwork settings save`).")?;
+            }
+        }
+    }
+    match &results.save {
+        Some(report) if report.verdict == SaveVerdict::Verified && !how.json => {
+            out.line(report.sentence())?;
+        }
+        Some(report) if report.verdict != SaveVerdict::Verified => say(report.sentence()),
+        _ => {}
+    }
+    Ok(())
+}
+
+fn print_json(
+    controller: &Controller<'_>,
+    review: &Review,
+    wanted: &Wanted,
+    how: &WriteHow,
+    results: &Results,
+    out: &mut Output,
+) -> Result<(), Exit> {
+    if !how.json {
+        return Ok(());
+    }
+    let mut object = json!(review);
+    if let Value::Object(members) = &mut object {
+        members.insert("identity".to_owned(), json!(controller.identity()));
+        members.insert("dry_run".to_owned(), json!(how.dry_run));
+        members.insert("left_out".to_owned(), json!(wanted.left_out));
+        members.insert("upgraded".to_owned(), json!(wanted.upgraded));
+        members.insert("write".to_owned(), json!(results.write));
+        members.insert("save".to_owned(), json!(results.save));
+    }
+    Ok(out.json(&object)?)
+}

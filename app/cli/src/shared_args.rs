@@ -1,0 +1,118 @@
+//! Arguments that several commands have: which controller, on which line, for how long, and what a script finds on its buses.
+
+use std::time::Duration;
+
+use brushwork_link::UnitAddress;
+use brushwork_link::device::FamilyChoice;
+use brushwork_plant::world::{CanPeer, I2cDevice, WorldAction};
+use clap::{Args, ValueEnum};
+
+use brushwork_core::session::sim_spec::parse_byte;
+
+/// Which controller, and how to reach it.
+#[derive(Debug, Clone, Args)]
+pub struct ConnectArgs {
+    /// sim:mcp266[,generation=4,preset=NAME], /dev/ttyACM0, /dev/ttyUSB0,baud=115200,stream=ttl1, COM3 or
+    /// tcp:HOST:PORT; a CANopen bus as can:PORT[,node=3,form=binary]; a Motion Mind as sim:motion-mind-3[,mode=4,protocol=ascii]
+    /// or with ,family=motion-mind behind its port.
+    #[arg(long, short = 'c', alias = "to", value_name = "TARGET", default_value = "sim:mcp266")]
+    pub connect: String,
+    /// Address of the controller on its line: 0x80 to 0x87, or 1 to 98 for a Motion Mind. Without it 0x80, or 1.
+    #[arg(long, value_name = "ADDRESS", value_parser = parse_connect_address)]
+    pub address: Option<u8>,
+    /// Which protocol family to look for; without it packet serial first, then a Motion Mind.
+    #[arg(long, value_name = "auto|mcp|motion-mind", default_value_t, hide_default_value = true)]
+    pub family: FamilyChoice,
+}
+
+/// A line with all its controllers, or some of them.
+#[derive(Debug, Args)]
+pub struct LineArgs {
+    /// As for the other commands: sim:mcp266, /dev/ttyACM0, /dev/ttyUSB0,baud=115200,stream=ttl1, COM3, tcp:HOST:PORT or can:PORT.
+    #[arg(long, short = 'c', alias = "to", value_name = "TARGET", default_value = "sim:mcp266")]
+    pub connect: String,
+    /// Addresses, or node ids on a CAN bus, with commas between them: 0x80,0x81. Without it all that the line has.
+    #[arg(long, value_name = "ADDRESS", value_delimiter = ',', value_parser = parse_line_address)]
+    pub address: Vec<u8>,
+    /// Which protocol family to look for; without it packet serial first, then a Motion Mind.
+    #[arg(long, value_name = "auto|mcp|motion-mind", default_value_t, hide_default_value = true)]
+    pub family: FamilyChoice,
+}
+
+impl ConnectArgs {
+    /// The whole line that the controller is on.
+    pub fn line(&self) -> LineArgs {
+        LineArgs { connect: self.connect.clone(), address: Vec::new(), family: self.family }
+    }
+}
+
+/// What a simulated controller's script finds on its I2C bus and its CAN stream.
+#[derive(Debug, Default, Args)]
+pub struct ScriptBuses {
+    /// Put a device on the controller's I2C bus.
+    #[arg(long, value_name = "mpu6050", value_parser = parse_i2c)]
+    pub i2c: Vec<I2cDevice>,
+    /// Who is at the other end of a script's CAN stream.
+    #[arg(long, value_enum, value_name = "listen|echo")]
+    pub can_peer: Option<CanPeerArg>,
+}
+
+impl ScriptBuses {
+    /// How they come into the simulated world.
+    pub fn actions(&self) -> Vec<WorldAction> {
+        let devices = self.i2c.iter().map(|device| WorldAction::AddI2cDevice { device: device.clone() });
+        let peer = self.can_peer.map(|peer| WorldAction::SetCanPeer {
+            peer: match peer {
+                CanPeerArg::Listen => CanPeer::Listening,
+                CanPeerArg::Echo => CanPeer::Echoing,
+            },
+        });
+        devices.chain(peer).collect()
+    }
+
+    /// Whether there is anything.
+    pub fn is_empty(&self) -> bool {
+        self.i2c.is_empty() && self.can_peer.is_none()
+    }
+}
+
+/// What the other end of the CAN stream does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CanPeerArg {
+    /// It listens.
+    Listen,
+    /// It sends back what it hears.
+    Echo,
+}
+
+fn parse_i2c(text: &str) -> Result<I2cDevice, String> {
+    I2cDevice::named(text).ok_or_else(|| format!("\"{text}\" is no device that is known here: use mpu6050"))
+}
+
+/// Reads a time in seconds.
+pub fn parse_seconds(text: &str) -> Result<Duration, String> {
+    let number = text.trim().trim_end_matches('s');
+    number
+        .parse::<f64>()
+        .ok()
+        .filter(|seconds| (0.0..=1e7).contains(seconds))
+        .map(Duration::from_secs_f64)
+        .ok_or_else(|| format!("\"{text}\" is no time in seconds: use for example 2 or 0.5"))
+}
+
+/// Reads an address of either family.
+fn parse_connect_address(text: &str) -> Result<u8, String> {
+    let number = parse_byte(text).and_then(UnitAddress::new).map(UnitAddress::get);
+    number.ok_or_else(|| {
+        format!("\"{text}\" is no address: use 0x80 to 0x87 (128 to 135), or 1 to 98 for a Motion Mind")
+    })
+}
+
+/// Reads an address of either family or a node id.
+fn parse_line_address(text: &str) -> Result<u8, String> {
+    parse_byte(text).filter(|number| (1..=0x87).contains(number)).ok_or_else(|| {
+        format!(
+            "\"{text}\" is no address: use 0x80 to 0x87 (128 to 135), 1 to 98 for a Motion Mind, or 1 to 127 for a CANopen node"
+        )
+    })
+}

@@ -1,0 +1,290 @@
+//! `brushwork stop`: all motors on a line off, at once, and what could still drive them.
+//!
+//! The stop goes out before anybody is looked for, to whoever may be there; then the units are found and each is asked to confirm.
+
+use std::time::{Duration, Instant};
+
+use brushwork_link::SystemClock;
+use brushwork_link::device::{
+    Addresses, DeviceHandle, Event, FamilyChoice, Identity, PollRate, StopReport, UnitStop,
+};
+use brushwork_link::transport::ConnectTarget;
+use brushwork_mcp_wire::packet_serial;
+use brushwork_motion_mind_wire as motion_mind;
+use serde_json::json;
+
+use super::args::StopArgs;
+use super::client::{self, CONNECT_LIMIT, Client};
+use super::exit::Exit;
+use super::interrupt::Interrupt;
+use super::output::{Output, OutputError, say};
+use super::shared_args::LineArgs;
+use brushwork_core::session;
+use brushwork_core::session::{Session, SessionOptions};
+
+/// How long the controllers may take to confirm: late replies at 2400 bit/s take 6 s.
+const STOP_LIMIT: Duration = Duration::from_secs(10);
+
+/// Stops the line and prints what became of it.
+pub fn run(args: &StopArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
+    let stopped = match stop_line(&args.line, interrupt) {
+        Ok(stopped) => stopped,
+        Err(exit) => return exit,
+    };
+    let printed = if args.json { stopped.print_json(out) } else { stopped.print(out) };
+    printed.map_or_else(Exit::from, |()| stopped.exit())
+}
+
+/// Stops what else is on a line, after its own unit was stopped, and says on standard error what became of it. Nobody else there is
+/// nothing to speak of.
+pub fn stop_the_rest(line: &LineArgs, own: &Identity) {
+    let Ok(stopped) = stop_line(line, &Interrupt::default()) else { return };
+    for unit in stopped.report.units.iter().filter(|unit| unit.address != own.address && unit.confirmed) {
+        say(stopped.sentence(unit));
+    }
+    stopped.warnings().into_iter().for_each(say);
+}
+
+/// What became of the stop of a line.
+struct LineStop {
+    units: Vec<Identity>,
+    report: StopReport,
+    asked: Addresses,
+    /// From the request to the last byte handed to the port.
+    latency: Duration,
+}
+
+fn stop_line(line: &LineArgs, interrupt: &Interrupt) -> Result<LineStop, Exit> {
+    let target = client::line_target(line)?;
+    let asked = match line.address.is_empty() {
+        true => Addresses::Scan,
+        false => Addresses::These(line.address.iter().copied().collect()),
+    };
+    let open = |family| {
+        let options = SessionOptions { addresses: asked, poll: PollRate::Off, family };
+        session::open(&target, options, SystemClock::shared(), None).map_err(|error| {
+            say(error.to_string());
+            Exit::NoLink
+        })
+    };
+    let on_can = matches!(target, ConnectTarget::Can { .. });
+    let is_unknown = line.family == FamilyChoice::Auto && target.family() == FamilyChoice::Auto && !on_can;
+    let mut session = open(line.family)?;
+    let mut found = stop_and_find(&session, on_can, interrupt)?;
+    if found.is_err() && is_unknown && asked == Addresses::Scan {
+        // A line that is not known to have a Motion Mind is not searched for all 98 of them when it is opened.
+        drop(session);
+        session = open(FamilyChoice::MotionMind)?;
+        found = stop_and_find(&session, on_can, interrupt)?;
+    }
+    let (units, first) = found.map_err(|sentence| {
+        say(sentence);
+        if !on_can {
+            say("The stop was written to all of them, but nobody confirmed it. If a motor runs, cut its power.");
+        }
+        Exit::NoLink
+    })?;
+    if on_can {
+        session.device.stop_all();
+    }
+    let report = wait_for_report_of(&session.device)?;
+    let latency = first.as_ref().unwrap_or(&report).latency();
+    Ok(LineStop { units, report, asked, latency })
+}
+
+/// Who is on the line, and the report of the stop that went out before; or a sentence on why nobody was found.
+type Found = Result<(Vec<Identity>, Option<StopReport>), String>;
+
+/// Has the stop written at once, and finds the units. On a CAN bus the nodes are found first: there are others than controllers
+/// there, to which a stop would be a write to some object of their own.
+fn stop_and_find(session: &Session, on_can: bool, interrupt: &Interrupt) -> Result<Found, Exit> {
+    let device = &session.device;
+    if !on_can {
+        device.stop_all();
+    }
+    let (mut units, mut first) = (Vec::new(), None);
+    let deadline = Instant::now() + CONNECT_LIMIT;
+    while Instant::now() < deadline {
+        match client::look_for_event(device, interrupt)? {
+            Ok(Some(Event::Connected(identity))) => units.push(identity),
+            Ok(Some(Event::Stopped(report))) if units.is_empty() => first = first.or(Some(report)),
+            Ok(Some(Event::Selected { .. })) => return Ok(Ok((units, first))),
+            Ok(Some(Event::Failure(failure))) => say(failure.to_string()),
+            Ok(_) => {}
+            Err(failure) => return Ok(Err(failure.to_string())),
+        }
+    }
+    Ok(Err(format!("No controller identified itself within {} s.", CONNECT_LIMIT.as_secs())))
+}
+
+/// Waits for the stop that was asked for; a signal does not cut this short, since it ends by itself.
+pub fn wait_for_report(client: &Client) -> Result<StopReport, Exit> {
+    wait_for_report_of(client.device())
+}
+
+fn wait_for_report_of(device: &DeviceHandle) -> Result<StopReport, Exit> {
+    let deadline = Instant::now() + STOP_LIMIT;
+    let deaf = Interrupt::default();
+    while Instant::now() < deadline {
+        if let Some(Event::Stopped(report)) = client::next_event(device, &deaf)? {
+            return Ok(report);
+        }
+    }
+    say(format!(
+        "Stop was sent, but the controller did not confirm it within {} s. Cut the motor power.",
+        STOP_LIMIT.as_secs()
+    ));
+    Err(Exit::Refused)
+}
+
+/// Says what is not plainly stopped.
+pub fn warnings(report: &StopReport, identity: &Identity) -> Vec<String> {
+    warnings_of(report, std::slice::from_ref(identity))
+}
+
+fn warnings_of(report: &StopReport, units: &[Identity]) -> Vec<String> {
+    let mut lines = Vec::new();
+    for unit in &report.units {
+        let place = place(units, unit.address);
+        if !unit.confirmed {
+            lines.push(format!("{place} did not confirm the stop. Cut the motor power."));
+        }
+        let several = report.units.len() > 1;
+        let driven = unit.still_driven_by.iter();
+        lines.extend(driven.map(|text| if several { format!("{place}: {text}") } else { text.clone() }));
+        lines.extend(unit.failures.iter().map(ToString::to_string));
+    }
+    lines
+}
+
+impl LineStop {
+    fn exit(&self) -> Exit {
+        match (self.report.confirmed(), self.asked) {
+            (false, _) => Exit::Refused,
+            (true, Addresses::These(_)) if !self.silent().is_empty() => Exit::NoLink,
+            (true, _) => Exit::Done,
+        }
+    }
+
+    /// The addresses at which nobody answered: of those that were asked for, or of all that packet serial has.
+    fn silent(&self) -> Vec<u8> {
+        let answered = |address: &u8| {
+            self.units.iter().any(|unit| unit.address == *address || unit.also_answers.contains(address))
+        };
+        let asked: Vec<u8> = match self.asked {
+            Addresses::These(set) => set.iter().collect(),
+            _ if self.units.iter().any(|unit| unit.is_motion_mind() || unit.is_node()) => Vec::new(),
+            _ => packet_serial::Address::ALL.map(packet_serial::Address::get).to_vec(),
+        };
+        asked.into_iter().filter(|address| !answered(address)).collect()
+    }
+
+    fn sentence(&self, unit: &UnitStop) -> String {
+        let identity = self.units.iter().find(|identity| identity.address == unit.address);
+        let buffers = match unit.buffers_empty {
+            Some(true) => ", buffers empty",
+            Some(false) => ", buffers not empty",
+            None => "",
+        };
+        let one_motor = identity.is_some_and(|identity| identity.capabilities().motors == 1);
+        format!(
+            "{}: {}{buffers} ({:.2} ms to the wire).",
+            place(&self.units, unit.address),
+            if one_motor { "motor stopped" } else { "both motors stopped" },
+            self.latency.as_secs_f64() * 1e3
+        )
+    }
+
+    /// What is not plainly stopped, and what was not reached.
+    fn warnings(&self) -> Vec<String> {
+        let mut lines = warnings_of(&self.report, &self.units);
+        let silent = self.silent();
+        let is_node = self.units.iter().any(Identity::is_node);
+        let is_motion_mind = self.units.iter().any(Identity::is_motion_mind);
+        match self.asked {
+            Addresses::These(_) if !silent.is_empty() => lines.push(format!(
+                "Nobody answered at {}: the stop was written there too, and whether it was heard is not known. If a motor runs there, cut its power.",
+                in_words(&silent)
+            )),
+            Addresses::These(_) => {}
+            _ if is_node => lines.push(
+                "Nodes that do not answer as a controller that this program knows were told nothing.".to_owned(),
+            ),
+            _ if is_motion_mind => lines.push(
+                "Units that do not answer were told to stop by a broadcast, which nobody confirms.".to_owned(),
+            ),
+            _ if !silent.is_empty() => lines.push(format!(
+                "Nobody answered at {}; the stop was written to these addresses too.",
+                in_words(&silent)
+            )),
+            _ => {}
+        }
+        lines
+    }
+
+    fn print(&self, out: &mut Output) -> Result<(), OutputError> {
+        for unit in self.report.units.iter().filter(|unit| unit.confirmed) {
+            out.line(self.sentence(unit))?;
+        }
+        self.warnings().into_iter().for_each(say);
+        Ok(())
+    }
+
+    fn print_json(&self, out: &mut Output) -> Result<(), OutputError> {
+        let model = |address| self.units.iter().find(|unit| unit.address == address).map(Identity::title);
+        let units: Vec<_> = self
+            .report
+            .units
+            .iter()
+            .map(|unit| {
+                json!({
+                    "address": unit.address,
+                    "model": model(unit.address),
+                    "confirmed": unit.confirmed,
+                    "buffers_empty": unit.buffers_empty,
+                    "still_driven_by": unit.still_driven_by,
+                    "failures": unit.failures,
+                })
+            })
+            .collect();
+        out.json(&json!({
+            "confirmed": self.report.confirmed(),
+            "latency_s": self.latency.as_secs_f64(),
+            "units": units,
+            "no_answer_from": self.silent(),
+        }))
+    }
+}
+
+/// Where a unit is on its bus, as its family says it.
+fn place(units: &[Identity], address: u8) -> String {
+    let identity = units.iter().find(|identity| identity.address == address);
+    identity.map_or_else(|| format!("{address:#04x}"), Identity::place)
+}
+
+/// Addresses with runs drawn together: "0x81, 0x83 to 0x87".
+fn in_words(addresses: &[u8]) -> String {
+    let name = |address: u8| match motion_mind::Address::unit(address) {
+        Some(_) => address.to_string(),
+        None => format!("0x{address:02X}"),
+    };
+    let runs = addresses.chunk_by(|left, right| left + 1 == *right);
+    let words = runs.map(|run| match run {
+        [first, .., last] if run.len() > 2 => format!("{} to {}", name(*first), name(*last)),
+        run => run.iter().map(|address| name(*address)).collect::<Vec<_>>().join(", "),
+    });
+    words.collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_words;
+
+    #[test]
+    fn runs_of_addresses_are_drawn_together() {
+        assert_eq!(in_words(&[0x80]), "0x80");
+        assert_eq!(in_words(&[0x80, 0x82, 0x83]), "0x80, 0x82, 0x83");
+        assert_eq!(in_words(&[0x81, 0x83, 0x84, 0x85, 0x87]), "0x81, 0x83 to 0x85, 0x87");
+        assert_eq!(in_words(&[3, 7]), "3, 7");
+    }
+}

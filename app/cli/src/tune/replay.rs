@@ -1,0 +1,59 @@
+//! `brushwork tune replay`: same record in, same gains out.
+
+use std::path::Path;
+
+use brushwork_tuning::report::Report;
+
+use super::words;
+use crate::exit::Exit;
+use crate::output::{Output, say};
+use brushwork_core::tune::file;
+
+/// Reads a report, runs the tuner on its record and compares.
+pub fn run(path: &Path, json: bool, out: &mut Output) -> Exit {
+    let report = match file::read(path) {
+        Ok(report) => report,
+        Err(sentence) => {
+            say(sentence);
+            return Exit::Failed;
+        }
+    };
+    let again = match report.replay_or_stray() {
+        Ok(again) => again,
+        Err(entry) => {
+            say(format!(
+                "The record in {} does not belong to this version of the tuner, or was changed: at its entry {} of {} the tuner \
+                 asks for another step. Tune again.",
+                path.display(),
+                entry + 1,
+                report.record.len()
+            ));
+            return Exit::Failed;
+        }
+    };
+    let printed = if json { out.json(&words::summary(&again)) } else { words::print(&again, out) };
+    if let Err(error) = printed {
+        return error.into();
+    }
+    if again == report {
+        say("The replay gives the same result to the last bit.");
+        words::exit_of(&again)
+    } else {
+        say(format!(
+            "The replay gives another result than {} holds: it differs in {}. The report was changed, or was made on another \
+             kind of computer.",
+            path.display(),
+            differing(&report, &again)
+        ));
+        Exit::Failed
+    }
+}
+
+/// The names of the fields that differ.
+fn differing(held: &Report, found: &Report) -> String {
+    let (held, found) = (words::summary(held), words::summary(found));
+    let Some(fields) = held.as_object() else { return "all of it".to_owned() };
+    let names = fields.iter().filter(|(name, value)| found.get(name.as_str()) != Some(*value));
+    let names: Vec<String> = names.map(|(name, _)| format!("\"{name}\"")).collect();
+    if names.is_empty() { "its record".to_owned() } else { names.join(", ") }
+}

@@ -1,0 +1,125 @@
+//! A report in words and figures.
+
+use brushwork_tuning::report::{Report, Verdict};
+use serde_json::{Value, json};
+
+use super::mind;
+use crate::exit::Exit;
+use crate::output::{Output, OutputError};
+
+/// The exit code of a verdict.
+pub fn exit_of(report: &Report) -> Exit {
+    match report.verdict {
+        Verdict::Tuned => Exit::Done,
+        Verdict::TunedWithWarnings => Exit::TunedWithWarnings,
+        Verdict::Refused => Exit::Refused,
+    }
+}
+
+/// The report without its raw record.
+pub fn summary(report: &Report) -> Value {
+    let mut value = serde_json::to_value(report).unwrap_or_else(|_| json!({}));
+    if let Some(fields) = value.as_object_mut() {
+        fields.remove("record");
+    }
+    value
+}
+
+/// Prints verdict, model, prediction and gains.
+pub fn print(report: &Report, out: &mut Output) -> Result<(), OutputError> {
+    let verdict = match report.verdict {
+        Verdict::Tuned => "TUNED",
+        Verdict::TunedWithWarnings => "TUNED WITH WARNINGS",
+        Verdict::Refused => "REFUSED",
+    };
+    out.line(format!("{verdict} after {:.1} s", report.seconds.1))?;
+    for cause in &report.causes {
+        out.line(format!("  {}", cause.sentence()))?;
+    }
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    let mut row = |what: &str, value: String, range: String| rows.push(vec![what.to_owned(), value, range]);
+    if let Some(qpps) = report.qpps {
+        let interval =
+            report.free.map_or_else(String::new, |free| format!("+- {:.2} %", 100.0 * free.interval));
+        row("QPPS", format!("{qpps:.0} counts/s"), interval);
+    }
+    if let Some(fit) = &report.fit {
+        let share = |sd: f64| format!("+- {:.1} %", 200.0 * sd);
+        row("gain", format!("{:.0} counts/s", fit.model.gain_counts_per_s), share(fit.sd_ln_gain));
+        row("time constant", format!("{:.1} ms", 1e3 * fit.model.tau_s), share(fit.sd_ln_tau));
+        row("friction", format!("{:.1} % duty", 100.0 * fit.model.coulomb_duty), String::new());
+    }
+    if let Some(winding) = &report.winding {
+        row(
+            "resistance R",
+            format!("{:.3} ohm", winding.ohms),
+            format!("+- {:.3} ohm", winding.interval_ohms),
+        );
+    }
+    if let Some(slack) = &report.backlash {
+        let value = if slack.counts > 0.0 {
+            format!("at least {:.1} counts", slack.counts)
+        } else {
+            "none seen".into()
+        };
+        row("play at reversals", value, format!("+- {:.1} counts", slack.interval_counts));
+    }
+    if let Some(lag) = &report.lag {
+        let range = format!("{:.1} to {:.1} ms", 1e3 * lag.interval_s.0, 1e3 * lag.interval_s.1);
+        row("lag of the loop", format!("{:.1} ms", 1e3 * lag.lag.total_s(&report.request.law)), range);
+    }
+    if let Some(design) = &report.design {
+        row("sensitivity Ms", format!("{:.2}", design.ms), String::new());
+        row("predicted overshoot", format!("{:.0} %", 100.0 * design.score.overshoot), String::new());
+        row("predicted settling", format!("{:.0} ms", 1e3 * design.score.settling_s), String::new());
+        let measured =
+            report.measured.map_or_else(String::new, |m| format!("measured {:.1} %", 100.0 * m.duty_rms));
+        row("duty noise", format!("{:.1} %", 100.0 * design.noise_duty), measured);
+    }
+    if let Some(share) = mind::feed_forward(report) {
+        row("feed-forward", share, String::new());
+    }
+    out.table(&["", "", ""], &rows)?;
+    print_gains(report, out)
+}
+
+fn print_gains(report: &Report, out: &mut Output) -> Result<(), OutputError> {
+    let Some(before) = report.before else { return Ok(()) };
+    if let Some(winding) = report.winding.filter(|_| report.verdict != Verdict::Refused) {
+        out.line(format!(
+            "Measured R {:.3} ohm. It is not set: with L and R both other than 0, duty commands become current commands (settings \
+             motor*.resistance_ohms and motor*.inductance_henries).",
+            winding.ohms
+        ))?;
+    }
+    if let Some(why) = report.winding_unknown {
+        out.line(format!("R of the winding was not told: {}", why.sentence()))?;
+    }
+    let mut rows = Vec::new();
+    if let Some(new) = report.velocity {
+        let old = before.velocity;
+        let pairs = [("P", old.p, new.p), ("I", old.i, new.i), ("D", old.d, new.d)];
+        for (name, old, new) in pairs {
+            let shown = |raw: u32| format!("{:.4}", f64::from(raw) / 65_536.0);
+            rows.push(vec![format!("velocity {name}"), shown(old), shown(new), new.to_string()]);
+        }
+        rows.push(vec!["QPPS".into(), old.qpps.to_string(), new.qpps.to_string(), new.qpps.to_string()]);
+    }
+    if let Some(new) = report.position {
+        let old = before.position;
+        let scale = report.request.law.position_scale;
+        let pairs = [("P", old.p, new.p), ("I", old.i, new.i), ("D", old.d, new.d)];
+        for (name, old, new) in pairs {
+            let shown = |raw: u32| format!("{:.4}", f64::from(raw) / scale);
+            rows.push(vec![format!("position {name}"), shown(old), shown(new), new.to_string()]);
+        }
+        for (name, old, new) in [("max I", old.max_i, new.max_i), ("deadzone", old.deadzone, new.deadzone)] {
+            rows.push(vec![format!("position {name}"), old.to_string(), new.to_string(), new.to_string()]);
+        }
+    }
+    rows.extend(mind::rows(report));
+    if rows.is_empty() {
+        return Ok(());
+    }
+    out.table(&["gain", "current", "proposed", "on the wire"], &rows)
+}

@@ -1,0 +1,13 @@
+//! What the window and the command line both do: open what the user names, keep backups and journals, record samples, measure and
+//! tune. Knows no toolkit and no arguments.
+
+pub mod keep;
+pub mod motion;
+pub mod recording;
+pub mod session;
+pub mod tune;
+
+#[cfg(test)]
+#[path = "../../gui/tests/gui/support/wait.rs"]
+#[allow(dead_code, reason = "shared with the tests of the window")]
+mod wait;

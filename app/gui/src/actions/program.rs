@@ -1,0 +1,260 @@
+//! The rows for MCL programs in the File, Edit and View menus (MCP manual 1.2.6, 1.2.7, 1.2.14).
+
+use egui::{Key, Modifiers};
+
+use super::{Action, Keys, Menu, Ready, always, ctrl, ctrl_shift, in_text_key, on_mcl, on_mcl_key, place};
+use crate::command::Command;
+use crate::mcl::panel::Tab;
+use crate::mcl::{Editor, MclWish};
+use crate::model::Model;
+
+const CTRL: Modifiers = Modifiers::COMMAND;
+const SHIFT: Modifiers = Modifiers::SHIFT;
+const ALT: Modifiers = Modifiers::ALT;
+const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+const NONE: Modifiers = Modifiers::NONE;
+
+/// One row whose command is a wish that depends on nothing.
+macro_rules! row {
+    ($menu:ident $group:literal, $id:literal, $title:literal, $keys:expr, $ready:expr, $wish:expr, $help:literal) => {
+        Action {
+            id: $id,
+            title: $title,
+            place: place(Menu::$menu, $group),
+            keys: $keys,
+            help: $help,
+            ready: $ready,
+            is_on: None,
+            command: |_| Command::Mcl($wish),
+        }
+    };
+}
+
+/// One row for something that is on or off.
+macro_rules! switch {
+    ($id:literal, $title:literal, $keys:expr, $wish:expr, $is_on:expr, $help:literal) => {
+        Action {
+            id: $id,
+            title: $title,
+            place: place(Menu::View, 4),
+            keys: $keys,
+            help: $help,
+            ready: on_mcl,
+            is_on: Some($is_on),
+            command: |_| Command::Mcl($wish),
+        }
+    };
+}
+
+macro_rules! example {
+    ($index:literal, $id:literal, $title:literal, $help:literal) => {
+        row!(File 1, $id, $title, Keys::None, always, MclWish::Example($index), $help)
+    };
+}
+
+pub(super) const FILE: &[Action] = &[
+    row!(File 0, "file.new", "New MCL Program", ctrl(Key::N), always, MclWish::New, "Begins an empty MCL program."),
+    row!(File 0, "file.open", "Open MCL Program…", ctrl(Key::O), always, MclWish::Open, "Opens an MCL program from a file."),
+    row!(File 0, "file.save", "Save MCL Program", ctrl(Key::S), always, MclWish::Save, "Saves the open MCL program to its file."),
+    row!(File 0, "file.save-as", "Save MCL Program As…", ctrl_shift(Key::S), always, MclWish::SaveAs, "Saves the open MCL program under another name."),
+    row!(File 0, "file.print", "Print MCL Program…", on_mcl_key(CTRL, Key::P), on_mcl, MclWish::Print, "Prints the open MCL program with colours and line numbers: on the system's printer or to a PDF file."),
+    Action {
+        id: "file.close",
+        title: "Close MCL Program",
+        place: place(Menu::File, 0),
+        keys: on_mcl_key(CTRL, Key::W),
+        help: "Closes the tab in front; unsaved text is asked for first.",
+        ready: on_mcl,
+        is_on: None,
+        command: |model| Command::Mcl(MclWish::Close(model.mcl.front().id())),
+    },
+    Action {
+        id: "file.next-program",
+        title: "Next MCL Program",
+        place: place(Menu::File, 0),
+        keys: on_mcl_key(CTRL, Key::Tab),
+        help: "Puts the next tab in front.",
+        ready: on_mcl,
+        is_on: None,
+        command: |model| Command::Mcl(MclWish::Front(model.mcl.neighbour(true))),
+    },
+    Action {
+        id: "file.previous-program",
+        title: "Previous MCL Program",
+        place: place(Menu::File, 0),
+        keys: on_mcl_key(CTRL_SHIFT, Key::Tab),
+        help: "Puts the previous tab in front.",
+        ready: on_mcl,
+        is_on: None,
+        command: |model| Command::Mcl(MclWish::Front(model.mcl.neighbour(false))),
+    },
+    example!(
+        0,
+        "file.example-hello",
+        "Example: Hello",
+        "Says time, battery and temperature on the USB stream."
+    ),
+    example!(1, "file.example-blink", "Example: Blink", "Switches an output on and off."),
+    example!(2, "file.example-ramp", "Example: Ramp", "Ramps motor 1 up and down."),
+    example!(
+        3,
+        "file.example-there-and-back",
+        "Example: There and Back",
+        "Turns motor 1 by counts of its encoder."
+    ),
+    example!(
+        4,
+        "file.example-keys",
+        "Example: Drive by Keys",
+        "Drives both motors by letters from the terminal."
+    ),
+    example!(
+        5,
+        "file.example-melody",
+        "Example: Table of Steps",
+        "Plays a table of duties and times on motor 1."
+    ),
+    example!(
+        6,
+        "file.example-eeprom",
+        "Example: Starts in EEPROM",
+        "Counts its own starts in the user EEPROM."
+    ),
+];
+
+pub(super) const EDIT: &[Action] = &[
+    row!(Edit 0, "edit.undo", "Undo", in_text_key(CTRL, Key::Z), can_undo, MclWish::Undo, "Takes back the last edit of the MCL program."),
+    row!(Edit 0, "edit.redo", "Redo", in_text_key(CTRL, Key::Y), can_redo, MclWish::Redo, "Does the last edit that was taken back again."),
+    row!(Edit 0, "edit.cut", "Cut", Keys::Elsewhere("Ctrl+X"), on_mcl, MclWish::Cut, "Cuts the selected text, or the line, out of the MCL program."),
+    row!(Edit 0, "edit.copy", "Copy", Keys::Elsewhere("Ctrl+C"), on_mcl, MclWish::Copy, "Copies the selected text, or the line, of the MCL program."),
+    row!(Edit 0, "edit.paste", "Paste", Keys::Elsewhere("Ctrl+V"), on_mcl, MclWish::Paste, "Pastes text into the MCL program."),
+    row!(Edit 0, "edit.select-all", "Select All", in_text_key(CTRL, Key::A), on_mcl, MclWish::SelectAll, "Selects the whole MCL program."),
+    row!(Edit 1, "edit.find", "Find…", on_mcl_key(CTRL, Key::F), on_mcl, MclWish::Find, "Looks for text in the MCL program: case, whole words, regular expressions."),
+    row!(Edit 1, "edit.find-next", "Find Next", on_mcl_key(NONE, Key::F3), on_mcl, MclWish::FindNext, "Goes to the next match."),
+    row!(Edit 1, "edit.find-previous", "Find Previous", on_mcl_key(SHIFT, Key::F3), on_mcl, MclWish::FindPrevious, "Goes to the match before."),
+    row!(Edit 1, "edit.replace", "Replace…", on_mcl_key(CTRL, Key::H), on_mcl, MclWish::Replace, "Looks for text and puts other text in its place."),
+    row!(Edit 1, "edit.go-to-line", "Go to Line…", on_mcl_key(CTRL, Key::G), on_mcl, MclWish::GoToLine, "Goes to a line by its number."),
+    row!(Edit 2, "edit.bookmark", "Toggle Bookmark", on_mcl_key(CTRL, Key::F2), on_mcl, MclWish::ToggleBookmark, "Adds a bookmark to the line of the caret, or removes it."),
+    row!(Edit 2, "edit.next-bookmark", "Next Bookmark", on_mcl_key(NONE, Key::F2), has_bookmarks, MclWish::NextBookmark, "Goes to the next bookmark."),
+    row!(Edit 2, "edit.previous-bookmark", "Previous Bookmark", on_mcl_key(SHIFT, Key::F2), has_bookmarks, MclWish::PreviousBookmark, "Goes to the bookmark before."),
+    row!(Edit 2, "edit.clear-bookmarks", "Remove All Bookmarks", Keys::None, has_bookmarks, MclWish::ClearBookmarks, "Removes every bookmark of the program."),
+    row!(Edit 3, "edit.complete", "Complete Word", Keys::Elsewhere("Ctrl+Space"), on_mcl, MclWish::Complete, "Lists the words that could be typed."),
+    row!(Edit 3, "edit.definition", "Go to Definition", on_mcl_key(CTRL, Key::J), on_mcl, MclWish::Definition, "Goes to where the name at the caret is defined; Ctrl+click does the same."),
+    row!(Edit 3, "edit.rename", "Rename…", on_mcl_key(CTRL_SHIFT, Key::R), on_mcl, MclWish::Rename, "Gives the name at the caret another, in all its places."),
+    row!(Edit 3, "edit.match", "Go to Matching Word", on_mcl_key(CTRL, Key::M), on_mcl, MclWish::Matching, "Goes from IF over ELSE to ENDIF, from FOR to NEXT, and round."),
+    row!(Edit 3, "edit.next-problem", "Next Problem", on_mcl_key(NONE, Key::F4), has_problems, MclWish::NextProblem, "Goes to the next error or warning."),
+    row!(Edit 3, "edit.previous-problem", "Previous Problem", on_mcl_key(SHIFT, Key::F4), has_problems, MclWish::PreviousProblem, "Goes to the error or warning before."),
+    row!(Edit 4, "edit.comment", "Toggle Comment", in_text_key(CTRL, Key::Slash), on_mcl, MclWish::ToggleComment, "Makes comments of the selected lines, or code again."),
+    row!(Edit 4, "edit.tidy", "Format Program", on_mcl_key(CTRL_SHIFT, Key::F), on_mcl, MclWish::Tidy, "Writes the program in the usual form: indents, blanks, one way to write each word."),
+    row!(Edit 4, "edit.indent", "Indent Lines", Keys::Elsewhere("Tab"), on_mcl, MclWish::Indent { further: true }, "Moves the selected lines to the right."),
+    row!(Edit 4, "edit.unindent", "Unindent Lines", Keys::Elsewhere("Shift+Tab"), on_mcl, MclWish::Indent { further: false }, "Moves the selected lines to the left."),
+    row!(Edit 4, "edit.duplicate", "Duplicate Lines", in_text_key(CTRL, Key::D), on_mcl, MclWish::DuplicateLines, "Puts a copy of the selected lines below them."),
+    row!(Edit 4, "edit.delete-lines", "Delete Lines", in_text_key(CTRL_SHIFT, Key::K), on_mcl, MclWish::DeleteLines, "Takes the selected lines away."),
+    row!(Edit 4, "edit.lines-up", "Move Lines Up", in_text_key(ALT, Key::ArrowUp), on_mcl, MclWish::MoveLines { down: false }, "Moves the selected lines over the line above."),
+    row!(Edit 4, "edit.lines-down", "Move Lines Down", in_text_key(ALT, Key::ArrowDown), on_mcl, MclWish::MoveLines { down: true }, "Moves the selected lines over the line below."),
+];
+
+pub(super) const VIEW: &[Action] = &[
+    switch!(
+        "view.hidden",
+        "Hidden Characters",
+        Keys::None,
+        MclWish::ToggleHidden,
+        |model| model.mcl.options.hidden,
+        "Shows spaces, tabs, line ends and characters that nobody sees in the MCL program."
+    ),
+    switch!(
+        "view.current-line",
+        "Highlight Current Line",
+        Keys::None,
+        MclWish::ToggleCurrentLine,
+        |model| model.mcl.options.current_line,
+        "Highlights the line of the caret."
+    ),
+    switch!(
+        "view.folding",
+        "Folding Lines",
+        Keys::None,
+        MclWish::ToggleFolding,
+        |model| model.mcl.options.folding,
+        "Shows beside the text what can be folded away."
+    ),
+    row!(View 4, "view.fold", "Fold or Unfold Block", in_text_key(CTRL, Key::OpenBracket), on_mcl, MclWish::ToggleFoldHere, "Folds the block of the caret away, or brings it back."),
+    row!(View 4, "view.fold-all", "Fold All", Keys::None, on_mcl, MclWish::FoldAll, "Folds every block away."),
+    row!(View 4, "view.unfold-all", "Unfold All", Keys::None, on_mcl, MclWish::UnfoldAll, "Brings every block back."),
+    Action {
+        id: "view.zoom-in",
+        title: "Text Larger",
+        place: place(Menu::View, 5),
+        keys: on_mcl_key(ALT, Key::Plus),
+        help: "Makes the text of MCL programs larger; Ctrl+wheel does the same.",
+        ready: on_mcl,
+        is_on: None,
+        command: |model| Command::Mcl(MclWish::Zoom(zoom(&model.mcl).saturating_add(10))),
+    },
+    Action {
+        id: "view.zoom-out",
+        title: "Text Smaller",
+        place: place(Menu::View, 5),
+        keys: on_mcl_key(ALT, Key::Minus),
+        help: "Makes the text of MCL programs smaller.",
+        ready: on_mcl,
+        is_on: None,
+        command: |model| Command::Mcl(MclWish::Zoom(zoom(&model.mcl).saturating_sub(10))),
+    },
+    row!(View 5, "view.zoom-normal", "Text Zoom 100 %", on_mcl_key(ALT, Key::Num0), on_mcl, MclWish::Zoom(100), "Makes the text of MCL programs as large as at first."),
+    Action {
+        id: "view.problems",
+        title: "Problems",
+        place: place(Menu::View, 6),
+        keys: Keys::None,
+        help: "Shows and hides the list of errors and warnings.",
+        ready: on_mcl,
+        is_on: Some(|model| shows(&model.mcl, Tab::Problems)),
+        command: |_| Command::Mcl(MclWish::ShowPanel(Tab::Problems)),
+    },
+    Action {
+        id: "view.terminal",
+        title: "Terminal",
+        place: place(Menu::View, 6),
+        keys: on_mcl_key(CTRL, Key::Backtick),
+        help: "Shows and hides the terminal for what a script sends and gets.",
+        ready: on_mcl,
+        is_on: Some(|model| shows(&model.mcl, Tab::Terminal)),
+        command: |_| Command::Mcl(MclWish::ShowPanel(Tab::Terminal)),
+    },
+];
+
+fn zoom(editor: &Editor) -> u16 {
+    editor.options.zoom_percent
+}
+
+fn shows(editor: &Editor, tab: Tab) -> bool {
+    editor.panel.open && editor.panel.tab == tab
+}
+
+fn can_undo(model: &Model) -> Ready {
+    on_mcl(model)?;
+    if model.mcl.front().text.can_undo() { Ok(()) } else { Err("There is nothing to undo.".into()) }
+}
+
+fn can_redo(model: &Model) -> Ready {
+    on_mcl(model)?;
+    if model.mcl.front().text.can_redo() { Ok(()) } else { Err("There is nothing to redo.".into()) }
+}
+
+fn has_bookmarks(model: &Model) -> Ready {
+    on_mcl(model)?;
+    match model.mcl.front().bookmarks.is_empty() {
+        true => Err("The program has no bookmarks. Toggle Bookmark sets one.".into()),
+        false => Ok(()),
+    }
+}
+
+fn has_problems(model: &Model) -> Ready {
+    on_mcl(model)?;
+    match model.mcl.front().findings.problems.is_empty() {
+        true => Err("The program has no errors and no warnings.".into()),
+        false => Ok(()),
+    }
+}

@@ -1,0 +1,154 @@
+//! What must wait until a tuning run has put back what it changed: closing the window, closing the link, turning to another unit.
+//!
+//! The motors do not wait: they are stopped at once. Asked for a second time it happens at once too.
+
+use super::App;
+use crate::model::DeskId;
+use crate::tune::model::Afterwards;
+use crate::tune::sequence::Sequence;
+use brushwork_link::device::Request;
+use brushwork_link::settings::SettingsImage;
+use egui::{Context, ViewportCommand};
+
+/// Whether the window waits for a run before it closes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Leaving {
+    #[default]
+    No,
+    /// The motors were stopped; the old gains are being put back.
+    WhenPutBack,
+    /// It waits no longer.
+    AtOnce,
+}
+
+impl App {
+    /// Keeps the window open while a run has something to put back, and closes it then.
+    pub(super) fn hold_for_run(&mut self, ctx: &Context) {
+        let is_asked = self.closing || ctx.input(|input| input.viewport().close_requested());
+        let by_signal = self.end.is_asked();
+        match self.leaving {
+            Leaving::AtOnce => {}
+            _ if !self.has_to_put_back() => {
+                self.closing |= self.leaving == Leaving::WhenPutBack;
+            }
+            Leaving::No if is_asked || by_signal => {
+                self.leaving = Leaving::WhenPutBack;
+                self.closing = false;
+                ctx.send_viewport_cmd(ViewportCommand::CancelClose);
+                self.links.stop_all();
+                for desk in self.model.desks_mut() {
+                    desk.tune.abort("the window is being closed");
+                    desk.tune.want_winding_back();
+                    desk.rest();
+                }
+                self.model.messages.warn(
+                    "The motors are stopped. The window closes as soon as what the tuning run changed is put back; close it again to \
+                     close it at once.",
+                );
+            }
+            Leaving::WhenPutBack if is_asked => self.leaving = Leaving::AtOnce,
+            Leaving::No | Leaving::WhenPutBack => {}
+        }
+        if self.leaving == Leaving::AtOnce {
+            self.closing = true;
+        }
+        if self.leaving == Leaving::WhenPutBack {
+            ctx.request_repaint_after(super::FRAME_INTERVAL);
+        }
+    }
+
+    /// Whether closing waits.
+    pub(super) fn is_held(&self) -> bool {
+        self.leaving == Leaving::WhenPutBack && self.has_to_put_back()
+    }
+
+    fn has_to_put_back(&self) -> bool {
+        let is_leaving = self.leaving == Leaving::WhenPutBack;
+        self.model.desks().any(|desk| {
+            let owes_winding = desk.tune.cleared_winding().is_some() || is_leaving && desk.loops.is_busy();
+            desk.tune.is_running() || desk.is_connected() && owes_winding
+        })
+    }
+
+    /// Whether an act that would cut a run off from its controller is put off until the run has put back what it changed. The run is
+    /// ended.
+    pub(super) fn waits_for_run(&mut self, id: DeskId, afterwards: Afterwards) -> bool {
+        let Some(desk) = self.model.desk_mut(id).filter(|desk| desk.tune.is_running()) else { return false };
+        let again = desk.tune.afterwards.replace(afterwards) == Some(afterwards);
+        // Another unit in mid-act would be given the gains of this one.
+        if again && afterwards == Afterwards::Disconnect {
+            desk.tune.afterwards = None;
+            return false;
+        }
+        let is_restoring = desk.tune.running().is_some_and(Sequence::is_restoring);
+        desk.tune.abort(afterwards.why());
+        desk.rest();
+        if !is_restoring {
+            self.request_of(id, Request::CancelJob);
+        }
+        self.request_of(id, Request::Disarm);
+        self.model.messages.note(format!(
+            "The motors are stopped. {} as soon as what the run changed is put back.",
+            afterwards.what()
+        ));
+        true
+    }
+
+    /// Does what was put off, once nothing runs any more.
+    pub(super) fn follow_run(&mut self, id: DeskId) {
+        let Some(desk) = self.model.desk_mut(id).filter(|desk| !desk.tune.is_running()) else { return };
+        match desk.tune.afterwards.take() {
+            Some(Afterwards::Disconnect) => self.disconnect(id),
+            Some(Afterwards::Select(address)) => {
+                self.request_of(id, Request::Select(address));
+            }
+            None => {}
+        }
+    }
+
+    /// Writes L and R back when the run that they were cleared for has ended.
+    pub(super) fn put_winding_back(&mut self, id: DeskId) {
+        let Some(desk) = self.model.desk_mut(id) else { return };
+        if desk.loops.is_busy() || !desk.is_connected() {
+            return;
+        }
+        let (tune, loops) = (&mut desk.tune, &desk.loops);
+        match tune.is_winding_back(|key| loops.held_value(key)) {
+            Some(true) => {
+                return self.model.messages.note("L and R are put back as they were before the run.");
+            }
+            Some(false) => {
+                return self.model.messages.fail(
+                    "L and R could not be put back as they were before the run. Set them under Velocity loop, or switch the controller \
+                     off and on: its EEPROM still has them.",
+                );
+            }
+            None => {}
+        }
+        let Some(image) = desk.tune.winding_due().cloned() else { return };
+        // A write that is not taken is tried again in the next frame.
+        if self.write_gains_of(id, image).is_ok()
+            && let Some(desk) = self.model.desk_mut(id)
+        {
+            desk.tune.winding_is_written();
+        }
+    }
+
+    /// Writes gains of a unit to RAM as the settings of the loops are written: with a backup before, and read back.
+    pub(super) fn write_gains_of(&mut self, id: DeskId, image: SettingsImage) -> Result<(), String> {
+        let busy = || "The settings are being read or written. Try again in a moment.".to_owned();
+        let none = "No controller is connected.";
+        let desk = self.model.desk_mut(id).ok_or(none)?;
+        let identity = desk.link.identity().cloned().ok_or(none)?;
+        let stream = desk.link.stream;
+        let keeper = desk.general.keeper().ok_or(none)?;
+        let request = desk.loops.apply_image(image, &identity, stream, keeper).ok_or_else(busy)?;
+        if self.request_of(id, request) {
+            return Ok(());
+        }
+        if let Some(desk) = self.model.desk_mut(id) {
+            desk.loops.not_begun();
+        }
+        Err(busy())
+    }
+}

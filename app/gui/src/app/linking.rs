@@ -1,0 +1,161 @@
+//! Links as the window opens, brings to the front and ends them.
+
+use brushwork_link::Failure;
+use brushwork_link::device::{PollRate, Request};
+use brushwork_link::transport::{ConnectTarget, TargetError};
+use crossbeam_channel::TryRecvError;
+use egui::Context;
+
+use super::{App, OPENING_INTERVAL, waker};
+use crate::family::FamilyKind;
+use crate::links;
+use crate::model::devices::Choice;
+use crate::model::link::{Effect, LinkView};
+use crate::model::message::Gravity;
+use crate::model::{Desk, DeskId, Phase, place_of};
+use crate::parts::OpenLink;
+use crate::tune::model::Afterwards;
+
+impl App {
+    /// Connects to what is chosen in the device list.
+    pub(super) fn connect(&mut self) {
+        let chosen = match self.model.devices.choice {
+            Choice::Desk(id) => self.model.desk(id).and_then(|desk| desk.target.clone()),
+            _ => None,
+        };
+        let target = match &chosen {
+            Some(target) => target.parse(),
+            None => self.model.devices.target(),
+        };
+        let typed = chosen.unwrap_or_else(|| self.model.devices.typed.trim().to_owned());
+        self.connect_to(&typed, target);
+    }
+
+    /// Opens a link on a desk of its own, or brings the one that is open to the front.
+    pub(super) fn connect_to(&mut self, typed: &str, target: Result<ConnectTarget, TargetError>) {
+        let target = match target {
+            Ok(target) => target,
+            Err(error) => {
+                let mend = "Type a path such as /dev/ttyUSB0 or COM3, or tcp:host:port";
+                return self.model.messages.fail(Failure::new("connect", typed, error, mend).to_string());
+            }
+        };
+        let place = place_of(&target.to_string());
+        match self.model.desk_at(&place).map(Desk::id) {
+            Some(desk) => self.bring_to_front(desk),
+            None => {
+                self.disarm();
+                self.model.add_desk();
+                self.model.closed_too_many().into_iter().for_each(|desk| self.forget(desk));
+            }
+        }
+        self.open_front(target);
+    }
+
+    fn open_front(&mut self, target: ConnectTarget) {
+        let text = target.to_string();
+        let front = &mut self.model.front;
+        front.target = Some(text.clone());
+        front.set_family(FamilyKind::of_target(&text).unwrap_or(front.family_kind));
+        if front.phase == Phase::Closed {
+            self.model.messages.dismiss();
+            front.phase = Phase::Opening { target: text };
+            let opening = self.parts.opener.open(target, self.model.devices.addresses());
+            self.links.entry(front.id()).opening = Some(opening);
+        }
+        self.model.devices.choose_desk(&self.model.front);
+    }
+
+    pub(super) fn finish_opening(&mut self, id: DeskId, ctx: &Context) {
+        let Some(opening) = self.links.get(id).and_then(|link| link.opening.as_ref()) else { return };
+        let why = match opening.try_recv() {
+            Ok(Ok(link)) => return self.opened(id, link, ctx),
+            Ok(Err(error)) => error.to_string(),
+            Err(TryRecvError::Empty) => return ctx.request_repaint_after(OPENING_INTERVAL),
+            Err(TryRecvError::Disconnected) => {
+                "Could not open the link: the system gave no thread. Try again.".to_owned()
+            }
+        };
+        self.links.entry(id).opening = None;
+        if let Some(desk) = self.model.desk_mut(id) {
+            desk.phase = Phase::Closed;
+        }
+        self.say(id, Gravity::Error, why);
+    }
+
+    fn opened(&mut self, id: DeskId, opened: OpenLink, ctx: &Context) {
+        let ports = self.model.devices.ports().to_vec();
+        self.links.entry(id).opening = None;
+        // A desk that was given up meanwhile: the link is closed again by being dropped.
+        let Some(desk) = self.model.desk_mut(id) else { return };
+        let target = desk.phase.target().unwrap_or_default().to_owned();
+        desk.phase = Phase::Open { target: target.clone() };
+        desk.link = LinkView::default();
+        desk.general.keep_in(self.parts.keeping.clone(), ports);
+        desk.world.forget();
+        let poll = desk.poll;
+        self.model.devices.remember(&target);
+        self.model.devices.opened(&target);
+        opened.device.set_waker(waker(ctx.clone(), self.last_frame.clone()));
+        let link = self.links.entry(id);
+        link.world = opened.world;
+        link.device = Some(opened.device);
+        link.reads_signals = false;
+        link.traced = false;
+        self.end.watch(self.links.stoppers().collect());
+        if poll != PollRate::default() {
+            self.request_of(id, Request::Poll(poll));
+        }
+    }
+
+    pub(super) fn disconnect(&mut self, id: DeskId) {
+        let Some(desk) = self.model.desk_mut(id) else { return };
+        match &desk.phase {
+            Phase::Opening { .. } => {
+                self.links.entry(id).opening = None;
+                desk.phase = Phase::Closed;
+                self.model.messages.note("Gave up connecting.");
+            }
+            Phase::Open { target } => {
+                let target = target.clone();
+                if self.waits_for_run(id, Afterwards::Disconnect) {
+                    return;
+                }
+                let Some(desk) = self.model.desk_mut(id) else { return };
+                desk.phase = Phase::Closing { target };
+                self.request_of(id, Request::Disconnect);
+            }
+            Phase::Closed | Phase::Closing { .. } => {}
+        }
+    }
+
+    /// A link is gone, by wish or not. A simulated world lives on.
+    pub(super) fn ended(&mut self, id: DeskId) {
+        if let Some(device) = self.links.entry(id).device.take() {
+            links::close(device);
+        }
+        let effects = self.model.desk_mut(id).map(Desk::link_ended).unwrap_or_default();
+        for effect in effects {
+            if let Effect::Say(gravity, text) = effect {
+                self.say(id, gravity, text);
+            }
+        }
+    }
+
+    /// Another link comes to the front. What is armed is disarmed and stopped first: only the front can be armed.
+    pub(super) fn bring_to_front(&mut self, id: DeskId) {
+        if id == self.model.front.id() || self.model.desk(id).is_none() {
+            return;
+        }
+        self.disarm();
+        self.model.bring_to_front(id);
+        self.model.devices.choose_desk(&self.model.front);
+        self.model.front.loops.want_reading();
+    }
+
+    pub(super) fn forget(&mut self, id: DeskId) {
+        self.links.remove(id);
+        self.model.remove_desk(id);
+        self.model.devices.choose_desk(&self.model.front);
+    }
+}

@@ -1,0 +1,141 @@
+//! Programs and scripts, as far as the window's one place for change has to do with them.
+
+use std::path::Path;
+
+use brushwork_link::Failure;
+use brushwork_link::device::{ArmScope, Request};
+use brushwork_link::diagnosis::Script;
+use brushwork_link::script::ScriptImage;
+use brushwork_script::image;
+use brushwork_script::mcl::compile;
+use egui::{Context, ViewportCommand};
+
+use super::App;
+use crate::mcl::MclWish;
+use crate::model::screen::Screen;
+use crate::model::script::Source;
+
+impl App {
+    /// Does what is wished of the MCL editor. What opens or asks something shows its screen.
+    pub(super) fn edit_mcl(&mut self, wish: MclWish) {
+        let shows = matches!(
+            wish,
+            MclWish::New
+                | MclWish::Open
+                | MclWish::Example(_)
+                | MclWish::SaveAs
+                | MclWish::Check
+                | MclWish::ChooseImage
+        );
+        let asks = wish == MclWish::Save && self.model.mcl.front().path.is_none();
+        if shows || asks {
+            self.show(Screen::MclEditor);
+        }
+        let ctx = self.ctx.clone();
+        self.model.mcl.act(wish, &ctx);
+    }
+
+    /// Takes in what the editor's threads have done.
+    pub(super) fn look_after_programs(&mut self, ctx: &Context) {
+        let now_s = ctx.input(|input| input.time);
+        let shown = self.model.screen == Screen::MclEditor;
+        for (gravity, text) in self.model.mcl.update(ctx, now_s, shown) {
+            self.model.messages.say(gravity, text);
+        }
+        if let Some(path) = self.model.mcl.image.take() {
+            self.download_image(&path);
+        }
+    }
+
+    /// Keeps the window open while programs have unsaved text, and asks what is to become of it.
+    pub(super) fn hold_unsaved(&mut self, ctx: &Context) {
+        if self.model.mcl.may_exit() {
+            self.closing = true;
+        }
+        let asked = self.closing || ctx.input(|input| input.viewport().close_requested());
+        if !asked || self.model.mcl.may_exit() {
+            return;
+        }
+        if self.model.mcl.ask_exit() {
+            self.model.mcl.end();
+            return;
+        }
+        self.closing = false;
+        ctx.send_viewport_cmd(ViewportCommand::CancelClose);
+        self.show(Screen::MclEditor);
+    }
+
+    /// Compiles the program in front and sends it to the controller.
+    pub(super) fn download_mcl(&mut self) {
+        self.show(Screen::MclEditor);
+        let simulated = self.model.front.link.identity().is_some_and(|identity| identity.simulated);
+        if !simulated {
+            self.model.messages.fail(REAL);
+            return self.edit_mcl(MclWish::ChooseImage);
+        }
+        let document = self.model.mcl.front_mut();
+        document.known();
+        if document.findings.counts().0 > 0 {
+            return self.edit_mcl(MclWish::Check);
+        }
+        let title = document.title();
+        let text = Some((document.id(), document.text.revision()));
+        let Some(program) = compile(&document.text.text()).program else {
+            return self.edit_mcl(MclWish::Check);
+        };
+        self.send_image(&image::encode(&program), Source { title, text });
+    }
+
+    /// Downloads a file that the maker's own compiler has written.
+    fn download_image(&mut self, path: &Path) {
+        let title = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        match std::fs::read(path) {
+            Ok(bytes) => self.send_image(&bytes, Source { title, text: None }),
+            Err(error) => {
+                let mend = "Check the path and your rights";
+                let failure = Failure::new("read", path.display().to_string(), error, mend);
+                self.model.messages.fail(failure.to_string());
+            }
+        }
+    }
+
+    fn send_image(&mut self, bytes: &[u8], source: Source) {
+        let image = match ScriptImage::from_file(bytes) {
+            Ok(image) => image,
+            Err(error) => {
+                let failure = Failure::new("download", source.title, error, "Choose another file");
+                return self.model.messages.fail(failure.to_string());
+            }
+        };
+        match self.model.front.script.begin(image, source) {
+            Some(request) => {
+                if !self.request(request) {
+                    self.model.front.script.not_begun();
+                }
+            }
+            None => self.model.messages.warn("A download runs already. Wait for it or cancel it."),
+        }
+    }
+
+    /// Starts the stored script. It may move motors, so it needs the armed screen.
+    pub(super) fn start_script(&mut self) {
+        if !self.model.front.link.arming.is_armed_for(ArmScope::Script) {
+            let text = "A script can move motors: arm the MCL Editor first, then press Run again.";
+            return self.model.messages.warn(text);
+        }
+        if self.request(Request::StartScript) {
+            self.model.front.watch.note_script(Script::Started);
+        }
+    }
+
+    pub(super) fn stop_script(&mut self) {
+        if self.request(Request::StopScript) {
+            self.model.front.watch.note_script(Script::Stopped);
+        }
+    }
+}
+
+/// Why no program goes to a real controller.
+const REAL: &str = "Could not download the program: the byte code of real controllers is not public, so nobody but their \
+                    maker can compile for them. Choose an image file that the maker's program has compiled: it is sent as it \
+                    is, and can be started, stopped and set to autorun from here.";

@@ -1,0 +1,190 @@
+//! Guided tuning: its jobs one after the other, its gains into RAM and back, its reports on the disk.
+
+use super::App;
+use crate::model::DeskId;
+use crate::model::drawer::Tab;
+use crate::model::link::Arming;
+use crate::model::loop_settings::key;
+use crate::tune::files;
+use crate::tune::model::as_request;
+use crate::tune::registers::Registers;
+use crate::tune::sequence::{Next, Origin};
+use crate::tune::{Loop, TuneWish};
+use brushwork_core::keep::TrialKeeper;
+use brushwork_core::tune::file;
+use brushwork_link::device::Request;
+use brushwork_link::settings::{SettingValue, SettingsImage};
+use brushwork_values::Motor;
+
+impl App {
+    pub(super) fn tune(&mut self, wish: TuneWish) {
+        let Some(which) = Loop::of(self.model.screen) else { return };
+        if matches!(wish, TuneWish::Start(_)) && self.model.front.open_tab(which.screen()) != Some(Tab::Tune)
+        {
+            self.model.front.drawers.press(which.screen(), Tab::Tune);
+        }
+        let front = &mut self.model.front;
+        let stream = front.link.stream;
+        let told = match wish {
+            TuneWish::Start(_) | TuneWish::Verify if front.is_guided() => {
+                Err("A job runs already. Wait for it or cancel it.".to_owned())
+            }
+            TuneWish::Start(motor) => front.tune.start(which, motor, stream),
+            TuneWish::Verify => front.tune.verify(which, stream),
+            TuneWish::Cancel => {
+                front.tune.abort("it was cancelled");
+                self.request(Request::CancelJob);
+                Ok(())
+            }
+            TuneWish::Apply => self.apply_gains(which),
+            TuneWish::Undo => self.undo_gains(which),
+            TuneWish::ClearWinding => self.clear_winding(which),
+            TuneWish::PutWindingBack => {
+                front.tune.want_winding_back();
+                Ok(())
+            }
+            TuneWish::Adjust(motor, registers) => self.adjust(which, motor, registers),
+            TuneWish::SaveReport(path) => match front.tune.front(which).run() {
+                Some(run) => file::write(&run.report, &path)
+                    .map(|()| self.model.messages.note(format!("The report is in {}.", path.display()))),
+                None => Ok(()),
+            },
+            TuneWish::OpenReport(path) => self.open_report(&path),
+        };
+        if let Err(sentence) = told {
+            self.model.messages.fail(sentence);
+        }
+    }
+
+    /// Asks for what comes next in each run that goes on, on whatever desk it is.
+    pub(super) fn go_on_tuning(&mut self) {
+        for id in self.links.ids() {
+            let Some(desk) = self.model.desk_mut(id) else { continue };
+            if let Some(identity) = desk.link.identity() {
+                let identity = identity.clone();
+                desk.tune.meet(&identity);
+                desk.tune.settle_debts();
+            }
+            desk.tune.adopt_methods(desk.family());
+            for (motor, travel) in Motor::BOTH.into_iter().zip(desk.travels()) {
+                desk.tune.adopt_travel(motor, travel);
+                desk.tune.adopt_encoder(motor, desk.loops.encoder(motor));
+            }
+            if let Some(wish) = desk.tune.take_waiting() {
+                self.settings_of(id, wish);
+            }
+            let Some(desk) = self.model.desk_mut(id) else { continue };
+            let refused = !desk.link.refusals.is_empty();
+            let general = &desk.general;
+            let origin = || {
+                let subject = *general.unit()?.table().subject();
+                Some(Origin { subject, keeper: TrialKeeper::new(general.keeper()?) })
+            };
+            if let Some(next) = desk.tune.next(desk.link.arming, refused, origin) {
+                self.ask_next(id, next);
+            }
+            self.put_winding_back(id);
+            self.follow_run(id);
+        }
+    }
+
+    /// L and R to 0, with the user's word, so that a duty is a duty.
+    fn clear_winding(&mut self, which: Loop) -> Result<(), String> {
+        let front = &self.model.front;
+        let motor = front.tune.motor(which);
+        let (mut before, mut cleared) = (SettingsImage::default(), SettingsImage::default());
+        for name in ["inductance_henries", "resistance_ohms"] {
+            let Some(value) = front.loops.held(motor, name) else {
+                return Err("L and R have not been read. Read the settings again first.".to_owned());
+            };
+            before.set(&key(motor, name), SettingValue::Number(value));
+            cleared.set(&key(motor, name), SettingValue::Number(0.0));
+        }
+        self.write_gains(cleared)?;
+        self.model.front.tune.winding_cleared(motor, before);
+        Ok(())
+    }
+
+    fn ask_next(&mut self, id: DeskId, next: Next) {
+        let scope = match &next {
+            Next::Arm(scope) => Some(*scope),
+            Next::Job(_) => None,
+        };
+        if let (Some(_), Some(desk)) = (scope, self.model.desk_mut(id)) {
+            desk.link.refusals.clear();
+        }
+        let is_taken = self.request_of(id, as_request(next));
+        let Some(desk) = self.model.desk_mut(id) else { return };
+        match scope {
+            _ if !is_taken => desk.tune.not_begun(),
+            Some(scope) => desk.link.arming = Arming::Asked(scope),
+            None => {}
+        }
+    }
+
+    fn apply_gains(&mut self, which: Loop) -> Result<(), String> {
+        let front = &mut self.model.front;
+        let motor = front.tune.motor(which);
+        let shown = front.tune.front(which).run().and_then(|run| run.shown.as_ref());
+        let Some(registers) = shown.map(|shown| shown.registers) else {
+            return Err("There are no gains to apply. Tune first.".to_owned());
+        };
+        let held = front.held_gains(motor, registers.position.is_some());
+        if held.is_none() && registers.motion_mind.is_some() {
+            return Err(
+                "The registers are being read, so that they can be put back. Apply in a moment.".to_owned()
+            );
+        }
+        self.write_held(registers.image(motor))?;
+        self.model.front.tune.front_mut(which).undo = held.map(|held| held.image(motor));
+        Ok(())
+    }
+
+    /// Writes what was turned by hand, and nothing else.
+    fn adjust(&mut self, which: Loop, motor: Motor, registers: Registers) -> Result<(), String> {
+        let loops = &self.model.front.loops;
+        let held = Registers::held(loops, motor, which == Loop::Position).map(|held| held.image(motor));
+        let wanted = registers.image(motor);
+        let changed =
+            wanted.iter().filter(|(key, value)| held.as_ref().and_then(|held| held.get(key)) != Some(*value));
+        let image: SettingsImage = changed.map(|(key, value)| (key.to_owned(), value)).collect();
+        if image.is_empty() {
+            return Err("That changes nothing: the value is at its end already.".to_owned());
+        }
+        self.write_gains(image)
+    }
+
+    fn undo_gains(&mut self, which: Loop) -> Result<(), String> {
+        let Some(image) = self.model.front.tune.front(which).undo.clone() else {
+            return Err("Nothing was applied that could be undone.".to_owned());
+        };
+        self.write_held(image)?;
+        self.model.front.tune.front_mut(which).undo = None;
+        Ok(())
+    }
+
+    /// Writes gains where the family keeps them: the loops' own settings, or registers.
+    fn write_held(&mut self, image: SettingsImage) -> Result<(), String> {
+        if self.model.front.family().has_loops() {
+            self.write_gains(image)
+        } else {
+            self.write_registers(&image)
+        }
+    }
+
+    pub(super) fn write_gains(&mut self, image: SettingsImage) -> Result<(), String> {
+        self.write_gains_of(self.model.front.id(), image)
+    }
+
+    fn open_report(&mut self, path: &std::path::Path) -> Result<(), String> {
+        let report = file::read(path)?;
+        let which = files::loop_of(&report);
+        let motor = if report.request.guard.motor == 1 { Motor::M2 } else { Motor::M1 };
+        let tuning = &mut self.model.front.tune;
+        tuning.panel_mut(which, motor).add(report);
+        tuning.look_at(which, motor);
+        let screen = which.screen().title();
+        self.model.messages.note(format!("The report of {motor} is shown on {screen}."));
+        Ok(())
+    }
+}

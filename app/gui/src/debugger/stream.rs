@@ -1,0 +1,105 @@
+//! The terminal on the screen: what the script sent, and the line that is typed to it.
+
+use egui::{ComboBox, Label, RichText, ScrollArea, TextEdit, Ui};
+
+use super::needs::why_not;
+use super::terminal::{LineEnd, Terminal};
+use super::wish::DebugWish;
+use crate::command::{Command, Commands};
+use crate::model::Model;
+use crate::theme::Palette;
+use crate::widgets::text_field::keep_space;
+
+/// Streams of GETS and PUTS.
+const STREAMS: u32 = 5;
+
+/// Draws the terminal.
+pub fn terminal_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    let why = why_not(model);
+    let waiting = model.front.debug.view.as_ref().map_or(0, |view| view.typed_waiting);
+    let terminal = &mut model.front.debug.terminal;
+    if let Some(why) = &why
+        && terminal.streams().is_empty()
+    {
+        ui.add_space(6.0);
+        ui.add(Label::new(why.as_ref()).wrap());
+        return;
+    }
+    ui.add_space(4.0);
+    head_ui(ui, terminal);
+    let height = (ui.available_height() - 52.0).max(24.0);
+    let scroll = ScrollArea::vertical().id_salt("script terminal").auto_shrink(false).stick_to_bottom(true);
+    scroll.max_height(height).show(ui, |ui| {
+        let text = terminal.text();
+        let shown = if text.is_empty() { "Nothing was sent yet." } else { text };
+        let response = ui.add(Label::new(RichText::new(shown).monospace()).wrap().selectable(true));
+        let received = text.to_owned();
+        response.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Label, true, format!("Script output: {received}"))
+        });
+    });
+    ui.add_enabled_ui(why.is_none(), |ui| input_ui(ui, terminal, waiting, commands));
+}
+
+fn head_ui(ui: &mut Ui, terminal: &mut Terminal) {
+    ui.horizontal_wrapped(|ui| {
+        let label = ui.label("Shows");
+        let name = |stream: Option<u32>| {
+            stream.map_or("all streams".to_owned(), |stream| format!("stream {stream}"))
+        };
+        let streams: Vec<Option<u32>> = std::iter::once(None).chain((0..STREAMS).map(Some)).collect();
+        let combo = ComboBox::from_id_salt("terminal stream").selected_text(name(terminal.stream));
+        let response = combo.show_ui(ui, |ui| {
+            for stream in streams {
+                ui.selectable_value(&mut terminal.stream, stream, name(stream));
+            }
+        });
+        response.response.labelled_by(label.id);
+        ui.checkbox(&mut terminal.hex, "Output in hex");
+        if ui.button("Clear terminal").clicked() {
+            terminal.clear();
+        }
+    });
+}
+
+fn input_ui(ui: &mut Ui, terminal: &mut Terminal, waiting: usize, commands: &mut Commands) {
+    ui.horizontal(|ui| {
+        let label = ui.label("To stream");
+        let combo =
+            ComboBox::from_id_salt("terminal to").width(40.0).selected_text(terminal.to_stream.to_string());
+        let response = combo.show_ui(ui, |ui| {
+            for stream in 0..STREAMS {
+                ui.selectable_value(&mut terminal.to_stream, stream, stream.to_string());
+            }
+        });
+        response.response.labelled_by(label.id);
+        let combo = ComboBox::from_id_salt("line end").width(84.0).selected_text(terminal.line_end.name());
+        let response = combo.show_ui(ui, |ui| {
+            for end in LineEnd::ALL {
+                ui.selectable_value(&mut terminal.line_end, end, end.name());
+            }
+        });
+        response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Line end"));
+        ui.checkbox(&mut terminal.hex_input, "Hex");
+        let width = (ui.available_width() - 60.0).max(60.0);
+        let hint = if terminal.hex_input { "48 65 6c 6c 6f" } else { "for GETS" };
+        let field = ui.add(TextEdit::singleline(&mut terminal.input).desired_width(width).hint_text(hint));
+        ui.ctx().accesskit_node_builder(field.id, |node| node.set_label("Input for the script"));
+        if field.has_focus() {
+            keep_space(ui, field.id);
+        }
+        let entered = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+        if ui.button("Send").clicked() || entered {
+            commands.push(Command::Debug(DebugWish::Send));
+        }
+        if entered {
+            field.request_focus();
+        }
+    });
+    let palette = Palette::of(ui);
+    match (&terminal.refused, waiting) {
+        (Some(why), _) => drop(ui.label(RichText::new(why).color(palette.error))),
+        (None, 0) => {}
+        (None, waiting) => drop(ui.weak(format!("{waiting} bytes wait for GETS."))),
+    }
+}

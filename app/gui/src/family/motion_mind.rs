@@ -1,0 +1,287 @@
+//! Motion Mind 3: one motor, registers in place of settings, and screens by the mode that its switches select
+//! (Motion Mind manual, chapters 4 and 6).
+
+use brushwork_link::device::{ArmScope, Channel, Drive, Identity, StatusReport};
+use brushwork_motion_mind_wire::Mode;
+use brushwork_tuning::cause::Cause;
+use brushwork_tuning::tune::Method;
+use brushwork_values::Motor;
+
+use super::facts::{Ability, Family, Figure, Figures, Sign, Sliders};
+use super::words::{self, SettingsWords};
+use crate::model::drawer::Tab;
+use crate::model::lamp::{LampInfo, LampState, state_of};
+use crate::model::motion_mind::Driven;
+use crate::model::motion_mind::drive::to_send;
+use crate::model::screen::Screen;
+use crate::tune::Loop;
+
+#[derive(Debug)]
+pub(super) struct MotionMind;
+
+impl Family for MotionMind {
+    fn name(&self) -> &'static str {
+        "Motion Mind 3"
+    }
+
+    fn screens(&self, driven: Driven) -> Vec<Screen> {
+        let mut screens = vec![Screen::DeviceStatus, Screen::GeneralSettings];
+        screens.extend_from_slice(driven.screens());
+        screens.extend([Screen::Inputs, Screen::Terminal]);
+        screens
+    }
+
+    fn title(&self, screen: Screen) -> &'static str {
+        match screen {
+            Screen::GeneralSettings => "Registers",
+            Screen::Pwm => "Duty",
+            Screen::Velocity => "Velocity",
+            Screen::Position => "Position",
+            Screen::Inputs => "Inputs and R/C",
+            Screen::Terminal => "Terminal",
+            other => other.title(),
+        }
+    }
+
+    fn tabs(&self, screen: Screen) -> &'static [Tab] {
+        match screen {
+            Screen::Velocity => &[Tab::Tune],
+            Screen::Position => &[Tab::Steps, Tab::Tune],
+            _ => &[],
+        }
+    }
+
+    fn figures(&self) -> &'static [Figures] {
+        &FIGURES
+    }
+
+    fn lamps(&self) -> &'static [LampInfo] {
+        &LAMPS
+    }
+
+    fn lit(
+        &self,
+        report: &StatusReport,
+        identity: Option<&Identity>,
+        _homed: Option<[bool; 2]>,
+    ) -> Vec<LampState> {
+        KEYS.iter().map(|key| lit_by(report, key, identity)).collect()
+    }
+
+    fn signs(&self, report: &StatusReport, identity: Option<&Identity>) -> Vec<Sign> {
+        let order = |sign: &brushwork_link::device::Sign| KEYS.iter().position(|key| *key == sign.key);
+        let mut signs: Vec<Sign> = report
+            .lit()
+            .filter(|sign| means_something(sign.key, identity))
+            .map(|sign| Sign {
+                order: order(sign).and_then(|order| u8::try_from(order).ok()).unwrap_or(u8::MAX),
+                title: sign.title,
+                state: state_of(sign.severity),
+            })
+            .collect();
+        signs.sort();
+        signs
+    }
+
+    fn words(&self) -> &'static SettingsWords {
+        &words::MOTION_MIND
+    }
+
+    fn motors(&self) -> &'static [Motor] {
+        &[Motor::M1]
+    }
+
+    fn world_pins(&self) -> &'static [&'static str] {
+        &["P4 control", "P3 feedback", "P17 pos. limit", "P16 neg. limit", "P12 brake", "J6 R/C, index"]
+    }
+
+    fn methods(&self, which: Loop) -> &'static [Method] {
+        match which {
+            Loop::Velocity => &[Method::Velocity],
+            // One set of registers for both kinds of moves: there is no cascade.
+            Loop::Position => &[Method::Pd, Method::Pid],
+        }
+    }
+
+    fn remedies(&self, cause: Cause) -> Option<&'static [&'static str]> {
+        words::motion_mind_remedies(cause)
+    }
+
+    fn to_send(&self, scope: ArmScope, sliders: Sliders) -> Option<Drive> {
+        let setpoints = match scope {
+            ArmScope::Pwm => sliders.pwm.setpoints,
+            ArmScope::Velocity => sliders.velocity.setpoints,
+            ArmScope::Position => sliders.position.setpoints,
+            _ => return None,
+        };
+        to_send(scope, setpoints)
+    }
+
+    fn shows_registers(&self, screen: Screen) -> bool {
+        matches!(screen, Screen::GeneralSettings | Screen::Inputs | Screen::Motion)
+    }
+
+    fn has_loops(&self) -> bool {
+        false
+    }
+
+    fn has_channel(&self, channel: Channel) -> bool {
+        Channel::MOTION_MIND.contains(&channel)
+    }
+
+    fn first_channels(&self, screen: Screen) -> &'static [Channel] {
+        use Channel as C;
+        match screen {
+            Screen::Velocity => &[C::M1Setpoint, C::M1Velocity, C::M1Pwm],
+            Screen::Position => &[C::M1Setpoint, C::M1Position, C::M1Pwm],
+            _ => &[C::M1Pwm, C::M1Velocity, C::M1Current],
+        }
+    }
+
+    fn lacks(&self, ability: Ability) -> Option<&'static str> {
+        Some(match ability {
+            Ability::Scripts => "A Motion Mind 3 runs no scripts.",
+            Ability::Qpps => "A Motion Mind 3 has no register for a top speed.",
+            Ability::ClampTest => "A Motion Mind 3 has no voltage clamp.",
+            Ability::Generator => {
+                "Profiles are played on MCP controllers. Use the step assistant of the Position screen."
+            }
+            Ability::EmergencyStop => {
+                "A Motion Mind 3 has no emergency stop that software resets: its brake input acts while it is low."
+            }
+            Ability::SecondMotor => "A Motion Mind 3 drives one motor.",
+            Ability::Firmware => {
+                "The firmware loader of a Motion Mind 3 is not public. Use its maker's program."
+            }
+            Ability::Diagnosis => "What keeps a Motion Mind 3 from running is told by its lamps.",
+            Ability::BridgeFaults => "The simulated Motion Mind 3 has no faults of its bridge.",
+            Ability::Buses => "A Motion Mind 3 has no buses for scripts.",
+            Ability::Leds => "The LEDs of a Motion Mind 3 tell its power and its traffic alone.",
+            Ability::Composer => "Send commands from the Terminal screen.",
+            Ability::Conflicts => "No two registers of a Motion Mind 3 contradict each other.",
+            Ability::Streams => "A Motion Mind 3 has one serial port, and no time-out for it.",
+            Ability::LogicBattery => {
+                "A Motion Mind 3 makes the supply of its logic out of that of the motor."
+            }
+            Ability::AbsoluteEncoders => "A Motion Mind 3 is tuned with its quadrature encoder.",
+            Ability::ByHand => "Use the step assistant of the Position screen.",
+        })
+    }
+}
+
+/// How the sign with that key lights its lamp.
+fn lit_by(report: &StatusReport, key: &str, identity: Option<&Identity>) -> LampState {
+    if !means_something(key, identity) {
+        return LampState::NotApplicable;
+    }
+    report.lit().find(|sign| sign.key == key).map_or(LampState::Ok, |sign| state_of(sign.severity))
+}
+
+/// Whether a sign means anything in the unit's mode: outside of mode 0 nobody misses an R/C pulse.
+fn means_something(key: &str, identity: Option<&Identity>) -> bool {
+    let facts = identity.and_then(|identity| identity.motion_mind);
+    key != BAD_RC || facts.is_none_or(|facts| facts.mode == Mode::RadioControl)
+}
+
+const BAD_RC: &str = "bad_rc";
+
+/// The signs of the status that light the lamps, in the order of [`LAMPS`]: what takes the drive away comes first.
+const KEYS: [&str; 11] = [
+    "temp_fault",
+    "brake",
+    "current_limit",
+    BAD_RC,
+    "negative_limit",
+    "positive_limit",
+    "virtual_negative_limit",
+    "virtual_positive_limit",
+    "pwm_limit",
+    "in_position",
+    "index",
+];
+
+const fn lamp(short: &'static str, title: &'static str) -> LampInfo {
+    LampInfo { short, title }
+}
+
+/// The bits of STATUS (Motion Mind manual, figure 22).
+const LAMPS: [LampInfo; KEYS.len()] = [
+    lamp("TEMP", "Over temperature: bridge off"),
+    lamp("BRK", "Brake input low: bridge off"),
+    lamp("AMPS", "Current limit: drive reduced"),
+    lamp("RC", "Bad R/C signal"),
+    lamp("NEG", "Negative limit input"),
+    lamp("POS", "Positive limit input"),
+    lamp("VN", "Negative virtual limit"),
+    lamp("VP", "Positive virtual limit"),
+    lamp("PWM", "At the PWM limit"),
+    lamp("INP", "In position"),
+    lamp("IDX", "Index input"),
+];
+
+const fn figure(channel: Channel, label: &'static str, unit: &'static str) -> Figure {
+    Figure { channel, label, unit, motor: Motor::M1 }
+}
+
+const FIGURES: [Figures; 3] = [
+    Figures {
+        rows: &[figure(Channel::M1Position, "Position", "counts")],
+        label_width: 56.0,
+        unit_letters: 6,
+        digits: 11,
+        zero: true,
+    },
+    Figures {
+        rows: &[figure(Channel::M1Velocity, "Velocity", "counts/s"), figure(Channel::M1Pwm, "PWM", "%")],
+        label_width: 54.0,
+        unit_letters: 8,
+        digits: 8,
+        zero: false,
+    },
+    Figures {
+        rows: &[figure(Channel::M1Current, "Current", "A"), figure(Channel::Temperature1, "Board", "°C")],
+        label_width: 50.0,
+        unit_letters: 2,
+        digits: 7,
+        zero: false,
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use brushwork_link::device::Conditions;
+    use brushwork_motion_mind_wire::{STATUS_BITS, status as bit};
+
+    use super::*;
+
+    fn report(word: u16) -> StatusReport {
+        StatusReport {
+            address: 1,
+            at: Duration::ZERO,
+            word: word.into(),
+            conditions: Conditions::default(),
+            signs: brushwork_link::device::MOTION_MIND_SIGNS,
+            unknown_bits: 0,
+            running_ticks: None,
+        }
+    }
+
+    #[test]
+    fn every_bit_of_the_status_lights_one_lamp() {
+        for row in STATUS_BITS {
+            let lit = MotionMind.lit(&report(row.mask()), None, None);
+            assert_eq!(lit.iter().filter(|state| **state != LampState::Ok).count(), 1, "{}", row.name);
+            assert_eq!(MotionMind.signs(&report(row.mask()), None).len(), 1, "{}", row.name);
+        }
+        assert_eq!(MotionMind.signs(&report(0), None), []);
+    }
+
+    #[test]
+    fn what_takes_the_drive_away_is_an_error_and_comes_first() {
+        let signs = MotionMind.signs(&report(bit::TEMPFAULT | bit::INPOSITION | bit::BRAKE), None);
+        let states: Vec<_> = signs.iter().map(|sign| sign.state).collect();
+        assert_eq!(states, [LampState::Error, LampState::Error, LampState::Active]);
+    }
+}

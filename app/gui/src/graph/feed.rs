@@ -1,0 +1,111 @@
+//! What the link tells the graph: samples with their own times, and events that become marks.
+
+use brushwork_link::device::{Channel, Drive, DriveCommand, Event, Sample};
+use brushwork_mcp_wire::models;
+use brushwork_values::Motor;
+
+use super::live::LiveGraph;
+use super::marks::MarkKind;
+
+impl LiveGraph {
+    /// Takes a sample of the unit that is looked at.
+    pub fn take(&mut self, sample: &Sample) {
+        let replied_s = sample.replied_at.as_secs_f64();
+        if let Some(expected) = self.next_sequence
+            && sample.sequence > expected
+        {
+            self.lost(sample.sequence - expected);
+        }
+        self.next_sequence = Some(sample.sequence + 1);
+        self.record_sample(sample);
+        self.push_read(replied_s, &sample.values, |index| {
+            let at = Channel::ALL.get(index).and_then(|channel| sample.read_at(*channel));
+            at.map_or(replied_s, |at| at.as_secs_f64())
+        });
+    }
+
+    /// Leaves a mark for an event that is one, at the event's own time or else at `now_s`.
+    pub fn note(&mut self, event: &Event, now_s: f64) {
+        match event {
+            Event::Driven { sent_at, drive, .. } => {
+                self.mark(sent_at.as_secs_f64(), MarkKind::Drive, drive_text(drive));
+            }
+            Event::Stopped(report) => self.mark(report.written_at.as_secs_f64(), MarkKind::Stop, "Stop"),
+            Event::Armed { scope, .. } => self.mark(now_s, MarkKind::Arm, format!("Armed for {scope}")),
+            Event::Disarmed(reason) => self.mark(now_s, MarkKind::Arm, reason.to_string()),
+            Event::Connected(identity) => {
+                identity.title().clone_into(&mut self.files.device);
+                let model = identity.model.and_then(models::lookup);
+                self.pins = model.map_or(Channel::SIGNALS, |model| model.pins.len());
+            }
+            Event::Lost(_) => self.mark(now_s, MarkKind::Note, "Link lost"),
+            _ => {}
+        }
+    }
+}
+
+/// A motion command in a few words.
+fn drive_text(drive: &Drive) -> String {
+    let of = |motor: Motor| drive.of(motor).map(|command| format!("{motor} {}", command_text(&command)));
+    Motor::BOTH.into_iter().filter_map(of).collect::<Vec<_>>().join(", ")
+}
+
+fn command_text(command: &DriveCommand) -> String {
+    match command {
+        DriveCommand::Duty { duty, .. } => format!("duty {:.1} %", duty * 100.0 + 0.0),
+        DriveCommand::Speed { speed_counts_per_s, .. } => format!("speed {speed_counts_per_s} counts/s"),
+        DriveCommand::Distance { distance_counts, speed_counts_per_s, .. } => {
+            format!("distance {distance_counts} counts at {speed_counts_per_s} counts/s")
+        }
+        DriveCommand::Position { position_counts, .. } => format!("position {position_counts} counts"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+    use crate::model::channels::graph_channels;
+
+    const MS: fn(u64) -> Duration = Duration::from_millis;
+
+    #[test]
+    fn each_reading_keeps_the_time_of_its_own_exchange() {
+        let mut graph = LiveGraph::new(graph_channels(), 0.1);
+        let mut sample = Sample::new(0x80);
+        sample.set(Channel::M1Pwm, 10.0, MS(1000), MS(1002));
+        sample.set(Channel::MainBattery, 24.0, MS(1010), MS(1014));
+        graph.take(&sample);
+        let history = &graph.live.track.history;
+        let (pwm_s, _) = history.reading(Channel::M1Pwm.index(), 0).unwrap();
+        let (battery_s, volts) = history.reading(Channel::MainBattery.index(), 0).unwrap();
+        assert!((pwm_s - 1.001).abs() < 2e-5 && (battery_s - 1.012).abs() < 2e-5, "{pwm_s} {battery_s}");
+        assert_eq!(volts, 24.0);
+        assert_eq!(history.reading(Channel::M2Pwm.index(), 0), None);
+    }
+
+    #[test]
+    fn samples_that_were_thrown_away_are_counted_and_leave_a_gap() {
+        let mut graph = LiveGraph::new(graph_channels(), 0.1);
+        for sequence in [7, 8, 12] {
+            let mut sample = Sample::new(0x80);
+            sample.sequence = sequence;
+            sample.set(Channel::M1Pwm, 1.0, MS(sequence * 100), MS(sequence * 100));
+            graph.take(&sample);
+        }
+        assert_eq!(graph.rate.lost, 3);
+        assert_eq!(graph.live.track.history.rows(), 0..4);
+    }
+
+    #[test]
+    fn commands_leave_marks_at_the_time_they_were_sent() {
+        let mut graph = LiveGraph::new(graph_channels(), 0.1);
+        let drive = Drive::one(Motor::M2, DriveCommand::duty(0.255));
+        graph.note(&Event::Driven { address: 0x80, sent_at: MS(1500), drive }, 9.0);
+        graph.note(&Event::Disarmed(brushwork_link::device::DisarmReason::Asked), 9.0);
+        let marks: Vec<_> = graph.live.track.marks.iter().collect();
+        assert_eq!((marks[0].at_s, marks[0].text.as_str()), (1.5, "M2 duty 25.5 %"));
+        assert_eq!((marks[1].at_s, marks[1].kind), (9.0, MarkKind::Arm));
+    }
+}

@@ -1,0 +1,253 @@
+//! Files of the graph: recordings under way and opened ones, exported data and pictures.
+//!
+//! Whatever takes time does so on a thread of its own; what becomes of it is said by `LiveGraph::poll_files`.
+
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::{Duration, SystemTime};
+
+use brushwork_link::settings::replace_file;
+use crossbeam_channel::{Receiver, bounded};
+use egui::vec2;
+
+use crate::files::{FileDialog, FileKind, FileWish};
+use crate::model::message::Gravity;
+use brushwork_core::recording::recorder::Recorder;
+use brushwork_core::recording::{Record, dated_name, free_path};
+
+use super::load;
+
+mod live;
+
+/// Pictures are no smaller than this.
+const LEAST_PICTURE: egui::Vec2 = vec2(900.0, 420.0);
+
+/// What is written of the present picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Export {
+    Csv,
+    Png,
+    Svg,
+}
+
+/// What an opened file becomes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OpenAs {
+    /// Looked at by itself.
+    #[default]
+    Recording,
+    /// Drawn beneath.
+    Run,
+}
+
+/// Something to say.
+type Said = (Gravity, String);
+
+/// The graph's files.
+#[derive(Debug)]
+pub struct GraphFiles {
+    /// Where recordings and exports go.
+    pub folder: String,
+    /// What is to be opened, as typed.
+    pub open_path: String,
+    pub open_as: OpenAs,
+    /// What is recorded from, in the recording's head.
+    pub device: String,
+    recording: Option<Recording>,
+    loading: Option<Loading>,
+    working: Vec<Receiver<Said>>,
+    dialog: Option<(Asked, FileDialog)>,
+    /// Files that threads make or have made. A name is taken before its file is there.
+    begun: HashSet<PathBuf>,
+    /// The wall's time and the link's at one moment.
+    clocks: Option<(SystemTime, Duration)>,
+    dark: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Asked {
+    Folder,
+    Open,
+}
+
+#[derive(Debug)]
+struct Recording {
+    recorder: Recorder,
+    /// The link's time at the recording's beginning.
+    base: Duration,
+    stopping: Option<&'static str>,
+}
+
+#[derive(Debug)]
+struct Loading {
+    name: String,
+    open_as: OpenAs,
+    rows: Arc<AtomicU64>,
+    given_up: Arc<AtomicBool>,
+    answer: Receiver<Result<load::Loaded, String>>,
+}
+
+impl Default for GraphFiles {
+    fn default() -> Self {
+        let home = std::env::home_dir().unwrap_or_else(std::env::temp_dir);
+        Self {
+            folder: home.join("Brushwork").display().to_string(),
+            open_path: String::new(),
+            open_as: OpenAs::default(),
+            device: String::new(),
+            recording: None,
+            loading: None,
+            working: Vec::new(),
+            dialog: None,
+            begun: HashSet::new(),
+            clocks: None,
+            dark: true,
+        }
+    }
+}
+
+impl GraphFiles {
+    pub fn is_recording(&self) -> bool {
+        self.recording.as_ref().is_some_and(|recording| recording.stopping.is_none())
+    }
+
+    /// Something is going on that will have to be told.
+    pub fn is_busy(&self) -> bool {
+        self.recording.is_some()
+            || self.loading.is_some()
+            || self.dialog.is_some()
+            || !self.working.is_empty()
+    }
+
+    /// What is being recorded, in a few words.
+    pub fn recording_text(&self) -> Option<String> {
+        let recording = self.recording.as_ref()?;
+        let progress = recording.recorder.progress();
+        let name = file_name(recording.recorder.path());
+        let mut text = format!("{name}: {} samples, {}", progress.samples, size_text(progress.bytes));
+        if progress.dropped > 0 {
+            text += &format!(", {} lost: the disk is too slow", progress.dropped);
+        }
+        Some(text)
+    }
+
+    /// What is being read, in a few words.
+    pub fn loading_text(&self) -> Option<String> {
+        let loading = self.loading.as_ref()?;
+        Some(format!("Reading {}: {} rows", loading.name, loading.rows.load(Ordering::Relaxed)))
+    }
+
+    pub fn give_up_loading(&mut self) {
+        if let Some(loading) = self.loading.take() {
+            loading.given_up.store(true, Ordering::Relaxed);
+        }
+    }
+
+    pub fn choose_folder(&mut self) {
+        self.dialog = Some((Asked::Folder, FileDialog::ask_folder()));
+    }
+
+    pub fn choose_recording(&mut self) {
+        let kind = FileKind { title: "Recording".to_owned(), extension: "bwr,csv,txt".to_owned() };
+        self.dialog = Some((Asked::Open, FileDialog::ask(FileWish::Open, kind)));
+    }
+
+    /// Reads the file that was typed.
+    pub fn open_typed(&mut self) {
+        let path = PathBuf::from(self.open_path.trim());
+        self.open(&path);
+    }
+
+    /// Begins to read a file.
+    pub fn open(&mut self, path: &Path) {
+        self.give_up_loading();
+        let (sender, answer) = bounded(1);
+        let (rows, given_up) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicBool::new(false)));
+        let (path, counted, stop) = (path.to_owned(), rows.clone(), given_up.clone());
+        let name = file_name(&path);
+        let read = move || {
+            // Nobody waits any more if it was given up.
+            let _ = sender.send(load::load(&path, &counted, &stop));
+        };
+        // Without a thread the channel is closed, which is told as a failure.
+        let _ = std::thread::Builder::new().name("read recording".to_owned()).spawn(read);
+        self.loading = Some(Loading { name, open_as: self.open_as, rows, given_up, answer });
+    }
+
+    fn free_path(&mut self, extension: &str) -> PathBuf {
+        let is_free = |path: &Path| !self.begun.contains(path) && !path.exists();
+        let name = dated_name(SystemTime::now());
+        let path = free_path(Path::new(self.folder.trim()), &name, extension, is_free);
+        self.begun.insert(path.clone());
+        path
+    }
+
+    /// The wall's time at a time of the link.
+    fn wall(&self, at: Duration) -> SystemTime {
+        let (wall, link) = self.clocks.unwrap_or((SystemTime::now(), at));
+        if at >= link { wall + (at - link) } else { wall.checked_sub(link - at).unwrap_or(wall) }
+    }
+
+    fn record_record(&self, make: impl FnOnce(Duration) -> Option<Record>) {
+        if let Some(recording) = self.recording.as_ref().filter(|recording| recording.stopping.is_none())
+            && let Some(record) = make(recording.base)
+        {
+            recording.recorder.record(record);
+        }
+    }
+}
+
+impl GraphFiles {
+    fn say(&mut self, gravity: Gravity, text: String) {
+        let (sender, receiver) = bounded(1);
+        // The channel has room for one.
+        let _ = sender.send((gravity, text));
+        self.working.push(receiver);
+    }
+
+    /// Makes a file on a thread of its own.
+    fn write(&mut self, path: PathBuf, make: impl FnOnce() -> Result<Vec<u8>, String> + Send + 'static) {
+        let (sender, receiver) = bounded(1);
+        let work = move || {
+            let shown = path.display().to_string();
+            let written =
+                make().and_then(|bytes| write_new(&path, &bytes).map_err(|error| error.to_string()));
+            let said = match written {
+                Ok(()) => (Gravity::Note, format!("Wrote {shown}.")),
+                Err(error) => {
+                    (Gravity::Error, format!("Could not write {shown}: {error}. Choose another folder."))
+                }
+            };
+            // The window may be gone.
+            let _ = sender.send(said);
+        };
+        // Without a thread the channel is closed and nothing was written.
+        match std::thread::Builder::new().name("export".to_owned()).spawn(work) {
+            Ok(_) => self.working.push(receiver),
+            Err(error) => self.say(
+                Gravity::Error,
+                format!("Could not export: {error}. Close other programs and try again."),
+            ),
+        }
+    }
+}
+
+/// The file appears whole or not at all.
+fn write_new(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    std::fs::create_dir_all(path.parent().unwrap_or(Path::new(".")))?;
+    replace_file(path, bytes)
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
+}
+
+fn size_text(bytes: u64) -> String {
+    match bytes as f64 {
+        b if b < 1e3 => format!("{b:.0} bytes"),
+        b if b < 1e6 => format!("{:.1} kB", b / 1e3),
+        b => format!("{:.1} MB", b / 1e6),
+    }
+}

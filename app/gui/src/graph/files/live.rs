@@ -1,0 +1,268 @@
+//! What the graph of a link does with files, once per frame and when it is asked to.
+
+use std::time::{Duration, SystemTime};
+
+use brushwork_link::device::{Channel, Sample};
+use crossbeam_channel::TryRecvError;
+use egui::Rect;
+
+use super::{Asked, Export, LEAST_PICTURE, OpenAs, Recording, Said, size_text};
+use crate::files::FileAnswer;
+use crate::graph::live::{LiveGraph, Opened};
+use crate::graph::load;
+use crate::graph::marks::Mark;
+use crate::graph::picture::draw::Scene;
+use crate::graph::picture::frame::Frame;
+use crate::graph::picture::{legend, png, svg};
+use crate::graph::runs::Run;
+use crate::graph::sheet::Sheet;
+use crate::model::message::Gravity;
+use crate::theme::Palette;
+use brushwork_core::recording::recorder::Recorder;
+use brushwork_core::recording::{Form, Head, Reading, Record};
+
+impl LiveGraph {
+    /// Looks after files: once per frame. `now` is the link's time, while there is a link.
+    pub fn poll_files(&mut self, now: Option<Duration>, dark: bool) -> Vec<Said> {
+        self.files.dark = dark;
+        self.files.clocks = now.map(|now| (SystemTime::now(), now)).or(self.files.clocks);
+        let mut said = Vec::new();
+        self.poll_recording(&mut said);
+        self.poll_loading(&mut said);
+        self.files.working.retain(|working| match working.try_recv() {
+            Ok(text) => {
+                said.push(text);
+                false
+            }
+            Err(error) => error == TryRecvError::Empty,
+        });
+        self.poll_dialog();
+        said
+    }
+
+    fn poll_recording(&mut self, said: &mut Vec<Said>) {
+        let Some(recording) = &self.files.recording else { return };
+        let progress = recording.recorder.progress();
+        let Some(ended) = progress.ended else { return };
+        let path = recording.recorder.path().display();
+        said.push(match ended {
+            Err(sentence) => (Gravity::Error, sentence),
+            Ok(()) if progress.dropped > 0 => (
+                Gravity::Warning,
+                format!(
+                    "Recorded {} samples to {path}, but {} were lost: the disk was too slow.",
+                    progress.samples, progress.dropped
+                ),
+            ),
+            Ok(()) => {
+                let why = recording.stopping.unwrap_or_default();
+                (
+                    Gravity::Note,
+                    format!(
+                        "{why}Recorded {} samples to {path} ({}).",
+                        progress.samples,
+                        size_text(progress.bytes)
+                    ),
+                )
+            }
+        });
+        self.files.recording = None;
+    }
+
+    fn poll_loading(&mut self, said: &mut Vec<Said>) {
+        let Some(loading) = &self.files.loading else { return };
+        let answer = match loading.answer.try_recv() {
+            Err(TryRecvError::Empty) => return,
+            Err(TryRecvError::Disconnected) => {
+                Err("Could not open the recording: the system gave no thread.".to_owned())
+            }
+            Ok(answer) => answer,
+        };
+        let (name, open_as) = (loading.name.clone(), loading.open_as);
+        self.files.loading = None;
+        match answer {
+            Err(sentence) => said.push((Gravity::Error, sentence)),
+            Ok(loaded) => {
+                if let Some(note) = &loaded.note {
+                    said.push((Gravity::Warning, note.clone()));
+                }
+                match open_as {
+                    OpenAs::Run => self.runs.push(Run::new(name, loaded.track)),
+                    OpenAs::Recording => self.show_recording(name, loaded),
+                }
+            }
+        }
+    }
+
+    fn show_recording(&mut self, name: String, loaded: load::Loaded) {
+        let load::Loaded { track, began, note, left_out } = loaded;
+        let mut sheet = Sheet::new(track);
+        let shown_live = |key: &str| self.live.channels.iter().any(|live| live.shown && live.info.key == key);
+        let has_data =
+            |index: usize| !sheet.track.history.summary(index, f64::NEG_INFINITY, f64::INFINITY).0.is_empty();
+        let with_data: Vec<usize> = (0..sheet.channels.len()).filter(|index| has_data(*index)).collect();
+        let same: Vec<usize> =
+            with_data.iter().copied().filter(|index| shown_live(&sheet.channels[*index].info.key)).collect();
+        let shown = if same.is_empty() { with_data.into_iter().take(4).collect() } else { same };
+        for (index, channel) in sheet.channels.iter_mut().enumerate() {
+            channel.shown = shown.contains(&index);
+        }
+        sheet.selected = shown.first().copied().unwrap_or(0);
+        sheet.look_at_all();
+        sheet.fit_shown();
+        self.opened = Some(Opened { name, sheet, began, note, left_out });
+    }
+
+    fn poll_dialog(&mut self) {
+        let Some((asked, dialog)) = &self.files.dialog else { return };
+        let asked = *asked;
+        match dialog.answer() {
+            FileAnswer::Waiting => return,
+            FileAnswer::None => {}
+            FileAnswer::Chosen(path) if asked == Asked::Folder => {
+                self.files.folder = path.display().to_string();
+            }
+            FileAnswer::Chosen(path) => {
+                self.files.open_path = path.display().to_string();
+                self.files.open(&path);
+            }
+        }
+        self.files.dialog = None;
+    }
+
+    /// The recording that is looked at goes; the live graph was sampled all the time.
+    pub fn close_recording(&mut self) {
+        self.opened = None;
+    }
+
+    /// Begins to record what comes in from now on.
+    pub fn record(&mut self, form: Form) {
+        if self.files.recording.is_some() {
+            return;
+        }
+        let base = self
+            .files
+            .clocks
+            .map_or(Duration::from_secs_f64(self.live.newest_s().max(0.0)), |(_, link)| link);
+        let columns = self.live.track.channels.iter().map(load::column_of).collect();
+        let head = Head { columns, began: self.files.wall(base), device: self.files.device.clone() };
+        let path = self.files.free_path(form.extension());
+        match Recorder::start(&path, form, head) {
+            Ok(recorder) => self.files.recording = Some(Recording { recorder, base, stopping: None }),
+            Err(error) => self.files.say(
+                Gravity::Error,
+                format!("Could not record: {error}. Close other programs and try again."),
+            ),
+        }
+    }
+
+    pub fn stop_recording(&mut self) {
+        self.end_recording("");
+    }
+
+    /// The link is gone: so is what could be recorded.
+    pub fn link_ended(&mut self) {
+        self.push_gap();
+        self.end_recording("The recording ended with the link. ");
+    }
+
+    fn end_recording(&mut self, why: &'static str) {
+        if let Some(recording) =
+            self.files.recording.as_mut().filter(|recording| recording.stopping.is_none())
+        {
+            recording.stopping = Some(why);
+            recording.recorder.stop();
+        }
+    }
+
+    pub(in crate::graph) fn record_sample(&self, sample: &Sample) {
+        self.files.record_record(|base| {
+            let since = |at: Duration| u64::try_from(at.saturating_sub(base).as_micros()).unwrap_or(u64::MAX);
+            let reading = |(column, channel): (usize, Channel)| {
+                let (requested_at, replied_at) = sample.span(channel)?;
+                let (requested_us, replied_us) = (since(requested_at), since(replied_at));
+                Some(Reading { column, value: sample.get(channel)?, requested_us, replied_us })
+            };
+            let readings: Vec<_> = Channel::ALL.into_iter().enumerate().filter_map(reading).collect();
+            (!readings.is_empty()).then_some(Record::Sample(readings))
+        });
+    }
+
+    pub(in crate::graph) fn record_mark(&self, mark: &Mark) {
+        self.files.record_record(|base| {
+            let since_s = (mark.at_s - base.as_secs_f64()).max(0.0);
+            let at_us = (since_s * 1e6).round() as u64;
+            Some(Record::Mark { at_us, kind: mark.kind.word().to_owned(), text: mark.text.clone() })
+        });
+    }
+
+    pub(in crate::graph) fn record_gap(&self, at_s: f64) {
+        self.files.record_record(|base| {
+            let since_s = (at_s - base.as_secs_f64()).max(0.0);
+            Some(Record::Gap { at_us: (since_s * 1e6).round() as u64 })
+        });
+    }
+
+    /// Writes what is in view to a new file.
+    pub fn export(&mut self, what: Export) {
+        let extension = match what {
+            Export::Csv => "csv",
+            Export::Png => "png",
+            Export::Svg => "svg",
+        };
+        let path = self.files.free_path(extension);
+        let make: Box<dyn FnOnce() -> Result<Vec<u8>, String> + Send> = match what {
+            Export::Csv => {
+                let sheet = self.sheet();
+                let (start_s, end_s) = sheet.window();
+                let shown: Vec<String> =
+                    sheet.channels.iter().filter(|c| c.shown).map(|c| c.info.key.clone()).collect();
+                let track = sheet.track.cut(start_s, end_s);
+                let zero_s = sheet.track.began_s.unwrap_or(0.0);
+                let began = match &self.opened {
+                    Some(opened) => opened.began.unwrap_or(SystemTime::UNIX_EPOCH),
+                    None => self.files.wall(Duration::from_secs_f64(zero_s.max(0.0))),
+                };
+                Box::new(move || {
+                    load::csv_of(&track, &shown, zero_s, began).map_err(|error| error.to_string())
+                })
+            }
+            Export::Png | Export::Svg => self.picture(what),
+        };
+        self.files.write(path, make);
+    }
+
+    /// The picture with a head and a legend, ready to be drawn elsewhere.
+    fn picture(&self, what: Export) -> Box<dyn FnOnce() -> Result<Vec<u8>, String> + Send> {
+        let palette: &'static Palette =
+            Palette::of_theme(if self.files.dark { egui::Theme::Dark } else { egui::Theme::Light });
+        let sheet = self.sheet();
+        let size = self.last_plot_size.max(LEAST_PICTURE);
+        let head = legend::Legend::of(
+            self,
+            palette,
+            self.files.wall(Duration::from_secs_f64(sheet.newest_s().max(0.0))),
+        );
+        let height = legend::height(&head, size.x);
+        let plot = Rect::from_min_size(egui::pos2(0.0, height), size);
+        let frame = Frame::new(plot, sheet.window());
+        let is_recording = self.opened.is_some();
+        let scene = Scene {
+            sheet,
+            runs: &self.runs,
+            align: self.align,
+            palette,
+            frame,
+            pixels_per_point: 2.0,
+            is_recording,
+        };
+        let mut picture = scene.picture();
+        let whole = Rect::from_min_max(egui::Pos2::ZERO, plot.max);
+        picture.push(legend::layer(&head, palette, whole));
+        let title = head.title.clone();
+        Box::new(move || match what {
+            Export::Png => png::png(&picture, whole, palette.panel).map_err(|error| error.to_string()),
+            _ => Ok(svg::svg(&picture, whole, palette.panel, &title).into_bytes()),
+        })
+    }
+}

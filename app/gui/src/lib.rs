@@ -1,0 +1,40 @@
+//! The window: its model, screens, widgets and graph.
+//!
+//! `model` is plain data, `screens` and `shell` draw it and ask for changes by `command`, and `app` makes them. What differs between families of
+//! controllers stands in `family`. `mcl` is the editor for scripts, `debugger` runs them step by step, `tune` is guided tuning.
+#![allow(
+    missing_docs,
+    reason = "the window is no library: only the program and its own tests see these items"
+)]
+
+pub mod actions;
+pub mod app;
+pub mod command;
+pub mod debugger;
+pub mod ending;
+pub mod family;
+pub mod files;
+pub mod graph;
+pub mod help;
+pub mod keys;
+pub mod links;
+pub mod mcl;
+pub mod model;
+pub mod opener;
+pub mod parts;
+pub mod remember;
+pub mod run;
+pub mod screens;
+pub mod shell;
+pub mod theme;
+pub mod traffic;
+pub mod tune;
+pub mod widgets;
+pub mod world;
+
+pub use app::App;
+
+#[cfg(test)]
+#[path = "../tests/gui/support/wait.rs"]
+#[allow(dead_code, reason = "shared with the tests of the window")]
+mod wait;

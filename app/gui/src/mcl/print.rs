@@ -1,0 +1,171 @@
+//! A program on paper: pages of PDF with line numbers, the colours of the words, and a head with name and page.
+
+use brushwork_script::mcl::index::{Class, classes};
+use egui::{Color32, FontDefinitions};
+use krilla::Document;
+use krilla::color::rgb;
+use krilla::geom::Point;
+use krilla::num::NormalizedF32;
+use krilla::page::PageSettings;
+use krilla::paint::Fill;
+use krilla::surface::Surface;
+use krilla::text::{Font, TextDirection};
+
+use super::moves::TAB_CELLS;
+use super::paint::color_of;
+use crate::theme::Palette;
+use brushwork_core::keep::today;
+
+/// A4, in points.
+const PAGE: (f32, f32) = (595.0, 842.0);
+const MARGIN: f32 = 50.0;
+const SIZE: f32 = 8.5;
+const ROW: f32 = 11.5;
+/// Width of a letter of the fixed font, in sizes.
+const ADVANCE: f32 = 0.602;
+/// The family and the name of the window's fixed font.
+const FONT: &str = "Hack";
+
+/// A stretch of a row in one colour: the cell where it begins, and its letters.
+type Piece = (usize, String, Color32);
+
+/// One row on paper: its line number, unless it goes on with the line before.
+struct Row {
+    number: Option<usize>,
+    pieces: Vec<Piece>,
+}
+
+/// The pages of a program.
+///
+/// # Errors
+/// What the writer of the file says, without a full stop.
+pub fn pdf(title: &str, text: &str) -> Result<Vec<u8>, String> {
+    let font = font().ok_or("the window's fixed font is missing")?;
+    let digits = text.lines().count().max(1).to_string().len();
+    let left = MARGIN + (digits + 2) as f32 * SIZE * ADVANCE;
+    let cells = ((PAGE.0 - MARGIN - left) / (SIZE * ADVANCE)) as usize;
+    let rows: Vec<Row> =
+        text.split('\n').enumerate().flat_map(|(index, line)| rows_of(index + 1, line, cells)).collect();
+    let per_page = ((PAGE.1 - 2.0 * MARGIN - 2.0 * ROW) / ROW) as usize;
+    let pages = rows.len().div_ceil(per_page);
+    let date = today();
+    let mut document = Document::new();
+    for (index, rows) in rows.chunks(per_page).enumerate() {
+        let settings = PageSettings::from_wh(PAGE.0, PAGE.1).ok_or("the page has no size")?;
+        let mut page = document.start_page_with(settings);
+        let mut surface = page.surface();
+        let mut pen = Pen { surface: &mut surface, font: &font };
+        pen.head(title, date.get(..10).unwrap_or(&date), index + 1, pages);
+        for (row, contents) in rows.iter().enumerate() {
+            pen.row(contents, left, digits, MARGIN + 3.0 * ROW + row as f32 * ROW);
+        }
+        surface.finish();
+        page.finish();
+    }
+    document.finish().map_err(|error| format!("the pages could not be written ({error:?})"))
+}
+
+fn font() -> Option<Font> {
+    let fonts = FontDefinitions::default();
+    let data = fonts.font_data.get(FONT)?;
+    let bytes: &[u8] = (*data.font).as_ref();
+    Font::new(bytes.to_vec().into(), data.index)
+}
+
+/// A line as rows that fit the page.
+fn rows_of(number: usize, line: &str, cells: usize) -> Vec<Row> {
+    let line = line.trim_end_matches('\r');
+    let palette = Palette::of_theme(egui::Theme::Light);
+    let pieces = classes(line);
+    let class_at =
+        |byte: usize| pieces.iter().find(|(range, _)| range.contains(&byte)).map(|(_, class)| *class);
+    let mut rows = vec![Row { number: Some(number), pieces: Vec::new() }];
+    let mut cell = 0;
+    for (byte, letter) in line.char_indices() {
+        if letter == '\t' {
+            cell = (cell / TAB_CELLS + 1) * TAB_CELLS;
+            continue;
+        }
+        if cell >= cells {
+            rows.push(Row { number: None, pieces: Vec::new() });
+            cell = 0;
+        }
+        let color = color_of(&palette.syntax, class_at(byte).unwrap_or(Class::Punctuation), palette);
+        let letter = if letter.is_control() { ' ' } else { letter };
+        let last = rows.last_mut().and_then(|row| row.pieces.last_mut());
+        match last.filter(|(start, text, used)| *used == color && start + text.chars().count() == cell) {
+            Some((_, text, _)) => text.push(letter),
+            None => {
+                rows.last_mut()
+                    .into_iter()
+                    .for_each(|row| row.pieces.push((cell, letter.to_string(), color)));
+            }
+        }
+        cell += 1;
+    }
+    rows
+}
+
+/// Writes on one page.
+struct Pen<'a, 'b> {
+    surface: &'a mut Surface<'b>,
+    font: &'a Font,
+}
+
+impl Pen<'_, '_> {
+    fn text(&mut self, x: f32, y: f32, text: &str, color: Color32) {
+        let paint = rgb::Color::new(color.r(), color.g(), color.b()).into();
+        self.surface.set_fill(Some(Fill { paint, opacity: NormalizedF32::ONE, rule: Default::default() }));
+        let at = Point::from_xy(x, y);
+        self.surface.draw_text(at, self.font.clone(), SIZE, text, false, TextDirection::LeftToRight);
+    }
+
+    fn head(&mut self, title: &str, date: &str, page: usize, pages: usize) {
+        let palette = Palette::of_theme(egui::Theme::Light);
+        self.text(MARGIN, MARGIN, title, palette.text);
+        let right = format!("{date}   page {page} of {pages}");
+        let width = right.chars().count() as f32 * SIZE * ADVANCE;
+        self.text(PAGE.0 - MARGIN - width, MARGIN, &right, palette.weak_text);
+    }
+
+    fn row(&mut self, row: &Row, left: f32, digits: usize, y: f32) {
+        let palette = Palette::of_theme(egui::Theme::Light);
+        if let Some(number) = row.number {
+            self.text(MARGIN, y, &format!("{number:>digits$}"), palette.weak_text);
+        }
+        for (cell, text, color) in &row.pieces {
+            self.text(left + *cell as f32 * SIZE * ADVANCE, y, text, *color);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pages_are_written_for_any_text() {
+        for text in
+            ["", "goto main\n\tpause 10 ; ä € \u{4e2d}\r\n", &"x = 1 ".repeat(100), &"end\n".repeat(200)]
+        {
+            let pdf = pdf("a.mcl", text).unwrap();
+            assert!(pdf.starts_with(b"%PDF-") && pdf.len() > 500, "{}", pdf.len());
+        }
+    }
+
+    #[test]
+    fn a_line_that_is_too_long_goes_on_in_the_next_row_without_a_number() {
+        let rows = rows_of(7, &"a".repeat(25), 10);
+        let numbers: Vec<Option<usize>> = rows.iter().map(|row| row.number).collect();
+        assert_eq!(numbers, [Some(7), None, None]);
+        assert_eq!(rows[2].pieces[0].1, "aaaaa");
+    }
+
+    #[test]
+    fn words_keep_their_colours_on_paper() {
+        let rows = rows_of(1, "goto main ; away", 80);
+        let colors: Vec<Color32> = rows[0].pieces.iter().map(|(_, _, color)| *color).collect();
+        let syntax = Palette::of_theme(egui::Theme::Light).syntax;
+        assert!(colors.contains(&syntax.command) && colors.contains(&syntax.comment), "{colors:?}");
+    }
+}

@@ -1,0 +1,104 @@
+//! The arm switch and what the script does: starting a script can move motors, so it needs arming like any other motion.
+
+use brushwork_link::device::ArmScope;
+use brushwork_link::diagnosis::Script;
+use brushwork_link::transport::Stream;
+use brushwork_plant::world::ScriptRun;
+use egui::{ComboBox, Label, ProgressBar, RichText, Ui};
+
+use crate::command::{Command, Commands};
+use crate::model::Model;
+use crate::model::lamp::LampState;
+use crate::model::link::Arming;
+use crate::theme::Palette;
+use crate::widgets::arm_switch::arm_switch_ui;
+
+/// The switch with a line of what can happen, or how far a download is.
+pub fn runbar_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
+    let link = &model.front.link;
+    let armed = link.arming.is_armed_for(ArmScope::Script);
+    let waiting = matches!(link.arming, Arming::Asked(_));
+    ui.add_enabled_ui(model.is_connected(), |ui| {
+        if arm_switch_ui(ui, armed, waiting).clicked() {
+            commands.push(if armed { Command::Disarm } else { Command::Arm(ArmScope::Script) });
+        }
+    });
+    if let Some((fraction, text)) = model.front.script.progress() {
+        ui.add(ProgressBar::new(fraction).desired_width(120.0));
+        if ui.button("Cancel download").clicked() {
+            commands.push(Command::CancelDownload);
+        }
+        ui.add(Label::new(text).truncate());
+        return;
+    }
+    let palette = Palette::of(ui);
+    let text = told(model, armed);
+    let color = if armed { palette.text } else { palette.weak_text };
+    ui.add(Label::new(RichText::new(&text).color(color)).truncate()).on_hover_text(text);
+}
+
+/// What stands in the way of arming, and what to mind while armed.
+pub fn reasons_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
+    let link = &model.front.link;
+    if model.is_connected() && link.stream.is_none() {
+        stream_ui(ui, commands);
+    }
+    for refusal in &link.refusals {
+        reason_ui(ui, LampState::Error, &refusal.to_string());
+    }
+    if link.arming.is_armed_for(ArmScope::Script) {
+        link.warnings.iter().for_each(|warning| reason_ui(ui, LampState::Warning, warning));
+    }
+}
+
+/// What the script does, as far as that is known, and what can happen.
+fn told(model: &Model, armed: bool) -> String {
+    let front = &model.front;
+    if !model.is_connected() {
+        return "Not connected. Programs can be written and checked; running them needs a controller."
+            .to_owned();
+    }
+    let view = front.worlds.as_ref().and_then(|views| views.get(front.world_unit)?.script.clone());
+    let runs = match view.map(|view| view.run) {
+        Some(ScriptRun::Running { line }) if front.script_is_paused() => {
+            format!("The debugger holds a script in line {line}. ")
+        }
+        Some(ScriptRun::Running { line }) => format!("A script runs, line {line}. "),
+        Some(ScriptRun::Ended { line }) => format!("The script ended in line {line}. "),
+        Some(ScriptRun::Faulted { line, what }) => format!("The script broke off in line {line}: {what}. "),
+        Some(_) => String::new(),
+        None if front.watch.script() == Script::Started => "A script was started. ".to_owned(),
+        None => String::new(),
+    };
+    let can = match (armed, front.script.on_board()) {
+        (true, _) => "Start Script runs the program, which can move motors. Keep clear; Esc stops.",
+        (false, None) => "Download sends the program in front to the controller; it does not start it.",
+        (false, Some(_)) => "Arm to start the script: it can move motors.",
+    };
+    format!("{runs}{can}")
+}
+
+/// Asked for when the port does not tell by its name which of the controller's streams it is.
+fn stream_ui(ui: &mut Ui, commands: &mut Commands) {
+    ui.horizontal(|ui| {
+        let label = ui.label("This port goes to the controller's");
+        let list = ComboBox::from_id_salt("mcl stream").selected_text("choose …");
+        let shown = list.show_ui(ui, |ui| {
+            for stream in Stream::ALL {
+                if ui.selectable_label(false, stream.label()).clicked() {
+                    commands.push(Command::SetStream(stream));
+                }
+            }
+        });
+        shown.response.labelled_by(label.id);
+        ui.label("port.");
+    });
+}
+
+fn reason_ui(ui: &mut Ui, state: LampState, text: &str) {
+    ui.horizontal(|ui| {
+        let (rect, _) = ui.allocate_exact_size(egui::vec2(18.0, 18.0), egui::Sense::hover());
+        state.paint(ui, rect.center(), 6.0);
+        ui.add(Label::new(text).wrap());
+    });
+}

@@ -1,0 +1,476 @@
+//! One link and all that belongs to it: what is known of its controllers, their settings, what its screens hold, and
+//! what its graph has recorded.
+//!
+//! Several desks are open at once; one is in front. Switching swaps whole desks, so nothing of one controller can
+//! end up in another.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::Duration;
+
+use brushwork_link::device::{ArmScope, Channel, Event, PollRate};
+use brushwork_link::diagnosis::{Evidence, Measured, Script};
+use brushwork_link::script::MIN_AUTORUN;
+use brushwork_link::settings::SettingValue;
+use brushwork_link::transport::ConnectTarget;
+use brushwork_plant::world::ScriptRun;
+use brushwork_plant::world::WorldView;
+
+use super::channels::graph_channels;
+use super::drawer::{Drawers, Tab};
+use super::firmware::Firmware;
+use super::general::General;
+use super::generator::Generator;
+use super::history::History;
+use super::link::{Arming, Effect, LinkView};
+use super::loop_settings::LoopSettings;
+use super::motion_mind::MotionMindDesk;
+use super::position::Position;
+use super::pwm::Pwm;
+use super::qpps::QppsPanel;
+use super::screen::Screen;
+use super::script::ScriptWork;
+use super::traffic::Traffic;
+use super::velocity::Velocity;
+use super::watch::Watch;
+use super::world::WorldPanel;
+use crate::debugger::Debugging;
+use crate::family;
+use crate::family::{Family, FamilyKind, Sliders};
+use crate::graph::LiveGraph;
+use crate::tune::Tuning;
+
+/// Which desk, for as long as the window is open.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct DeskId(u32);
+
+impl DeskId {
+    pub fn next(self) -> Self {
+        Self(self.0 + 1)
+    }
+}
+
+/// One link and all that belongs to it.
+#[derive(Debug)]
+pub struct Desk {
+    id: DeskId,
+    /// What the link goes to, or went to last.
+    pub target: Option<String>,
+    /// The family of the unit that was looked at last, or that the target names.
+    pub family_kind: FamilyKind,
+    pub phase: Phase,
+    /// What is known of the open link; empty while there is none.
+    pub link: LinkView,
+    pub poll: PollRate,
+    pub graph: LiveGraph,
+    pub pwm: Pwm,
+    /// The settings of the units met so far, and what is being done with them.
+    pub general: General,
+    pub velocity: Velocity,
+    /// The firmware window and the update that runs.
+    pub firmware: Firmware,
+    /// The download of a script, and which one the controller holds.
+    pub script: ScriptWork,
+    pub position: Position,
+    pub generator: Generator,
+    pub qpps: QppsPanel,
+    /// Guided tuning.
+    pub tune: Tuning,
+    /// What the screens that drive have open above their graphs.
+    pub drawers: Drawers,
+    pub loops: LoopSettings,
+    /// What happened since the connection.
+    pub history: History,
+    /// What a diagnosis needs besides the status word.
+    pub watch: Watch,
+    /// What a Motion Mind 3 has of its own.
+    pub motion_mind: MotionMindDesk,
+    /// The MCL debugger of a simulated controller.
+    pub debug: Debugging,
+    /// The traffic panel of this link.
+    pub traffic: Traffic,
+    /// The screen whose channels the graph shows.
+    graph_of: Screen,
+    /// Which channels the graph showed when another screen that drives was left.
+    graph_choices: BTreeMap<&'static str, Vec<bool>>,
+    pub world: WorldPanel,
+    /// The worlds of the simulated units, while they run.
+    pub worlds: Option<Arc<Vec<WorldView>>>,
+    /// Which of them is looked at.
+    pub world_unit: usize,
+}
+
+/// The place that a target names: two links cannot go to the same one.
+pub fn place_of(target: &str) -> String {
+    match target.parse() {
+        Ok(ConnectTarget::Serial { path, .. }) => path,
+        Ok(other) => other.to_string(),
+        Err(_) => target.to_owned(),
+    }
+}
+
+/// Where a link is between closed and open.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Phase {
+    #[default]
+    Closed,
+    Opening {
+        target: String,
+    },
+    Open {
+        target: String,
+    },
+    /// Asked to close; the motors are being stopped.
+    Closing {
+        target: String,
+    },
+}
+
+impl Phase {
+    pub fn is_open(&self) -> bool {
+        matches!(self, Self::Open { .. })
+    }
+
+    /// What the link goes to.
+    pub fn target(&self) -> Option<&str> {
+        match self {
+            Self::Closed => None,
+            Self::Opening { target } | Self::Open { target } | Self::Closing { target } => Some(target),
+        }
+    }
+}
+
+impl Default for Desk {
+    fn default() -> Self {
+        Self::new(DeskId::default())
+    }
+}
+
+impl Desk {
+    /// A desk without a link.
+    pub fn new(id: DeskId) -> Self {
+        Self {
+            id,
+            target: None,
+            family_kind: FamilyKind::default(),
+            phase: Phase::default(),
+            link: LinkView::default(),
+            poll: PollRate::default(),
+            graph: LiveGraph::new(graph_channels(), 0.1),
+            pwm: Pwm::default(),
+            general: General::default(),
+            velocity: Velocity::default(),
+            firmware: Firmware::default(),
+            script: ScriptWork::default(),
+            position: Position::default(),
+            generator: Generator::default(),
+            qpps: QppsPanel::default(),
+            tune: Tuning::default(),
+            drawers: Drawers::default(),
+            loops: LoopSettings::default(),
+            history: History::default(),
+            watch: Watch::default(),
+            motion_mind: MotionMindDesk::default(),
+            debug: Debugging::default(),
+            traffic: Traffic::default(),
+            graph_of: Screen::Pwm,
+            graph_choices: BTreeMap::new(),
+            world: WorldPanel::default(),
+            worlds: None,
+            world_unit: 0,
+        }
+    }
+
+    pub fn id(&self) -> DeskId {
+        self.id
+    }
+
+    /// What is so with the family of the controller that is, or was, connected.
+    pub fn family(&self) -> &'static dyn Family {
+        family::of(self.family_kind)
+    }
+
+    /// The screens of that controller, in the order of the list.
+    pub fn screens(&self) -> Vec<Screen> {
+        self.family().screens(self.driven())
+    }
+
+    /// The tab that is open above the graph of a screen that drives.
+    pub fn open_tab(&self, screen: Screen) -> Option<Tab> {
+        self.drawers.open(screen).filter(|tab| self.family().tabs(screen).contains(tab))
+    }
+
+    /// Whether the link goes, or went, to that place: a port, whatever its rate, or another target's text.
+    pub fn is_at(&self, place: &str) -> bool {
+        self.target.as_deref().is_some_and(|target| place_of(target) == place)
+    }
+
+    /// Whether there is nothing here that anybody would miss: no link, no record, no edits.
+    pub fn is_blank(&self) -> bool {
+        self.phase == Phase::Closed
+            && self.graph.sheet().track.history.is_empty()
+            && !self.general.has_edits()
+    }
+
+    /// Whether a unit has answered on the open link.
+    pub fn is_connected(&self) -> bool {
+        self.phase.is_open() && self.link.identity().is_some()
+    }
+
+    /// Whether nothing is armed, asked for or at work.
+    pub fn is_idle(&self) -> bool {
+        self.link.arming == Arming::Disarmed
+            && self.is_connected()
+            && !self.watch.is_busy()
+            && !self.loops.is_busy()
+            && !self.general.is_busy()
+            && !self.is_guided()
+            && self.tune.running().is_none()
+            && !self.firmware.stage.is_running()
+    }
+
+    /// The sliders of every screen go back to rest, with nothing left to send.
+    pub fn rest(&mut self) {
+        self.pwm.setpoints.stop();
+        self.velocity.setpoints.stop();
+        self.position.setpoints.stop();
+        self.motion_mind.steps.give_up();
+    }
+
+    /// The device thread has taken what the family's sliders asked for.
+    pub fn sent(&mut self, scope: ArmScope) {
+        match scope {
+            ArmScope::Pwm => self.pwm.setpoints.sent(),
+            ArmScope::Velocity => self.velocity.setpoints.sent(),
+            ArmScope::Position => self.position.setpoints.sent(),
+            _ => {}
+        }
+    }
+
+    /// What is set on the screens that drive.
+    pub fn sliders(&self) -> Sliders {
+        Sliders { pwm: self.pwm, velocity: self.velocity, position: self.position }
+    }
+
+    /// Takes over an event of this link. What it means beyond this desk is handed back: something to say, or the
+    /// end of the link.
+    pub fn take(&mut self, event: Event) -> Vec<Effect> {
+        self.history.note(&event);
+        self.traffic.note(&event);
+        self.firmware.note(&event);
+        if self.motion_mind.take(&event) {
+            return Vec::new();
+        }
+        if self.watch.note(&event) {
+            self.update_homed();
+            return Vec::new();
+        }
+        if matches!(event, Event::Stopped(_)) && !self.family().has_loops() {
+            // A stop may have switched a loop off by a register.
+            self.general.ram_changes();
+        }
+        let effects = if self.tune.awaits(&event) {
+            let effects = self.tune.take(event);
+            if !self.tune.is_running() {
+                // A run has written gains and put others back.
+                self.loops.want_reading();
+                if !self.family().has_loops() {
+                    self.general.ram_changes();
+                }
+            }
+            effects
+        } else if self.awaits_guided(&event) {
+            self.take_guided(event)
+        } else if self.script.awaits(&event) {
+            self.script.take(event)
+        } else if self.general.awaits(&event) {
+            self.general.take(event)
+        } else if self.loops.awaits(&event) {
+            let effects = self.loops.take(event);
+            if let Some(written) = self.loops.take_written() {
+                self.general.note_written_elsewhere(&written);
+            }
+            effects
+        } else {
+            self.link.take(event)
+        };
+        effects.into_iter().filter_map(|effect| self.settle(effect)).collect()
+    }
+
+    /// What is known of the unit's script. A simulated controller in this program tells; of others nothing is known but what went over
+    /// this link, since no command asks for it.
+    pub fn script(&self) -> Script {
+        match self.script_line() {
+            Some(Some(_)) => Script::Started,
+            Some(None) => Script::Stopped,
+            None => self.watch.script(),
+        }
+    }
+
+    /// The line of the script that runs on a simulated unit; the outer `None` where nobody can tell.
+    fn script_line(&self) -> Option<Option<u32>> {
+        let view = self.worlds.as_ref()?.get(self.world_unit)?;
+        Some(match view.script.as_ref()?.run {
+            ScriptRun::Running { line } => Some(line),
+            _ => None,
+        })
+    }
+
+    /// Whether the debugger holds the script of a simulated unit.
+    pub fn script_is_paused(&self) -> bool {
+        let view = self.worlds.as_ref().and_then(|worlds| worlds.get(self.world_unit)?.script.as_ref());
+        view.is_some_and(|script| script.is_paused)
+    }
+
+    /// What is said on every screen of a script that runs, or may run.
+    pub fn script_notice(&self) -> Option<String> {
+        if !self.is_connected() {
+            return None;
+        }
+        match (self.script(), self.script_line()) {
+            (Script::Started, Some(Some(line))) if self.script_is_paused() => {
+                Some(format!("Script paused, line {line}"))
+            }
+            (Script::Started, Some(Some(line))) => Some(format!("Script running, line {line}")),
+            (Script::Started, _) => Some("Script running".to_owned()),
+            (Script::NotKnown, _) if self.autoruns() => Some("Script may run (autorun)".to_owned()),
+            _ => None,
+        }
+    }
+
+    /// Whether the unit starts its script by itself, as far as its settings were read.
+    fn autoruns(&self) -> bool {
+        let delay = self.watch.settings().and_then(|settings| settings.get("script.autorun_delay"));
+        matches!(delay, Some(SettingValue::Int(delay_ms)) if delay_ms >= MIN_AUTORUN.as_millis() as i64)
+    }
+
+    /// All that is known for a diagnosis; `None` before the status was read.
+    pub fn evidence(&self) -> Option<Evidence<'_>> {
+        let identity = self.link.identity()?;
+        let status = self.link.status.as_ref()?;
+        Some(Evidence {
+            settings: self.watch.settings(),
+            pins: self.watch.pins(),
+            stream: self.link.stream,
+            measured: Measured::of(|channel| self.link.readings.get(channel)),
+            script: self.script(),
+            ..Evidence::of(status, identity)
+        })
+    }
+
+    /// Since when a lamp of the unit that is looked at is as it is, as time since the connection.
+    pub fn lamp_since(&self, short: &str) -> Option<Duration> {
+        self.history.lamp_since(self.link.selected?, short)
+    }
+
+    /// Brings the home lamps of an MCP up to date with its pins.
+    fn update_homed(&mut self) {
+        let Some(identity) = self.link.identity().filter(|identity| identity.is_mcp()) else { return };
+        let (address, homed) = (identity.address, self.watch.homed());
+        self.link.set_homed(homed);
+        if let Some(homed) = homed {
+            self.history.note_homed(address, homed);
+        }
+    }
+
+    /// Whether the live signals of the input pins are in view: on the settings screen, or in the graph.
+    pub fn shows_signals(&self, settings_are_shown: bool) -> bool {
+        let channels = self.graph.live.channels.iter();
+        let in_graph = channels.zip(Channel::ALL).any(|(shown, channel)| channel.is_signal() && shown.shown);
+        self.is_connected() && (in_graph || settings_are_shown && self.general.wants_signals())
+    }
+
+    /// Does what an effect means for this desk.
+    fn settle(&mut self, effect: Effect) -> Option<Effect> {
+        match effect {
+            Effect::Say(..) | Effect::Ended => return Some(effect),
+            Effect::AtRest => self.rest(),
+            Effect::Sample(sample) => {
+                self.watch.note_sample(&sample);
+                self.update_homed();
+                self.general.take_signals(&sample.signals);
+                self.tune.note_sample(&sample, self.graph_of);
+                self.motion_mind.steps.note_sample(&sample);
+                self.graph.take(&sample);
+            }
+            Effect::OtherUnit => {
+                self.turn_to_family();
+                self.graph.push_gap();
+                self.forget_unit();
+                self.loops.want_reading();
+                self.watch.forget();
+                self.debug.forget();
+            }
+        }
+        None
+    }
+
+    /// The link is gone, by wish or not. A simulated world lives on. What there is to say of it is handed back.
+    pub fn link_ended(&mut self) -> Vec<Effect> {
+        let effects = self.tune.link_ended();
+        self.phase = Phase::Closed;
+        self.link = LinkView::default();
+        self.watch = Watch::default();
+        self.traffic.link_ended();
+        self.debug.forget();
+        self.firmware.not_entered("the link was lost.");
+        self.general.link_ended();
+        self.forget_unit();
+        self.rest();
+        self.graph.link_ended();
+        effects
+    }
+
+    /// The unit that is looked at may be of another family than the one before.
+    fn turn_to_family(&mut self) {
+        let kind = self.link.identity().map_or(self.family_kind, FamilyKind::of_unit);
+        self.set_family(kind);
+    }
+
+    /// The family whose screens and channels are shown.
+    pub fn set_family(&mut self, kind: FamilyKind) {
+        if kind != self.family_kind {
+            self.family_kind = kind;
+            let family = self.family();
+            self.graph.left_out =
+                Channel::ALL.into_iter().map(|channel| !family.has_channel(channel)).collect();
+            self.graph_choices.clear();
+            self.show_channels(self.graph_of);
+        }
+    }
+
+    /// What is known of one unit's motors says nothing of another's.
+    fn forget_unit(&mut self) {
+        self.loops.forget();
+        self.motion_mind.forget_unit();
+        self.generator.forget();
+        self.script.forget();
+        self.qpps.forget();
+    }
+
+    /// The graph shows the channels of a screen that drives; for other screens it stays as it is.
+    pub(super) fn graph_for(&mut self, screen: Screen) {
+        if screen.arm_scope().is_none() || screen == self.graph_of {
+            return;
+        }
+        let left = std::mem::replace(&mut self.graph_of, screen);
+        let channels = &mut self.graph.live.channels;
+        self.graph_choices.insert(left.title(), channels.iter().map(|channel| channel.shown).collect());
+        self.show_channels(screen);
+    }
+
+    /// Shows the channels that were chosen for a screen, or those that its graph shows at first.
+    fn show_channels(&mut self, screen: Screen) {
+        let at_start = self.family().first_channels(screen);
+        let chosen = self.graph_choices.get(screen.title());
+        for (index, channel) in self.graph.live.channels.iter_mut().enumerate() {
+            let at_first = || at_start.contains(&Channel::ALL[index]);
+            channel.shown = chosen.and_then(|chosen| chosen.get(index)).copied().unwrap_or_else(at_first);
+        }
+        // The axis at the side is of a line that is there.
+        let sheet = &mut self.graph.live;
+        if !sheet.channels.get(sheet.selected).is_some_and(|channel| channel.shown) {
+            sheet.selected = sheet.channels.iter().position(|channel| channel.shown).unwrap_or_default();
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! Calibrating an input on the controller: its range there is opened wide, so that its bare readings can be seen, and put
+//! back on every way out. While it is open the input commands nothing.
+
+use brushwork_link::settings::{Calibrated, Calibration, Keeper, SettingsImage, open_range};
+
+use super::super::message::Gravity;
+use super::summary::Summary;
+use super::unit::{Kept, UnitSettings};
+use super::unit_key::UnitKey;
+use super::work::SettingsWish;
+use brushwork_core::keep::TrialKeeper;
+
+mod acts;
+
+/// A calibration of one input.
+#[derive(Debug)]
+pub struct Run {
+    pub(super) unit: UnitKey,
+    pub(super) pin: usize,
+    phase: Phase,
+    /// Why the last step was not taken, for the user.
+    pub told: Option<String>,
+    /// What the pin had before.
+    before: SettingsImage,
+    kept: Kept,
+    /// From the write that opens the input to the one that closes it.
+    keeper: Option<TrialKeeper>,
+    found: Option<Calibrated>,
+}
+
+#[derive(Debug)]
+enum Phase {
+    Opening,
+    Moving(Calibration),
+    Closing,
+}
+
+impl Run {
+    pub fn pin(&self) -> usize {
+        self.pin
+    }
+
+    /// The calibration, while readings come.
+    pub fn moving(&self) -> Option<&Calibration> {
+        match &self.phase {
+            Phase::Moving(calibration) => Some(calibration),
+            Phase::Opening | Phase::Closing => None,
+        }
+    }
+
+    /// Whether the input is to be put back.
+    pub fn is_closing(&self) -> bool {
+        matches!(self.phase, Phase::Closing)
+    }
+
+    /// What to write for a wish of a calibration.
+    pub(super) fn image(&self, wish: SettingsWish) -> SettingsImage {
+        match wish {
+            SettingsWish::CloseInput => self.before.clone(),
+            _ => self.opened(),
+        }
+    }
+
+    /// What keeps the journal of the whole calibration; `make` makes one at its beginning.
+    pub(super) fn keeper(&mut self, make: impl FnOnce() -> Option<Box<dyn Keeper>>) -> Option<TrialKeeper> {
+        if self.keeper.is_none() {
+            self.keeper = make().map(TrialKeeper::new);
+        }
+        self.keeper.clone()
+    }
+
+    fn opened(&self) -> SettingsImage {
+        let mode = brushwork_link::settings::PinMode::of(&|key| self.before.get(key), self.pin);
+        mode.map(|mode| open_range(self.pin, mode)).unwrap_or_default()
+    }
+}
+
+/// The input is as it was. What was found is wanted.
+fn closed(unit: &mut UnitSettings, run: &Run, name: &str) -> String {
+    unit.put_back(run.kept.clone());
+    let Some(found) = run.found else {
+        return format!("{name} is as it was before the calibration.");
+    };
+    for (field, value) in [("min", found.min), ("center", found.center), ("max", found.max)] {
+        unit.set_number(&format!("pin.{}.{field}", run.pin), value);
+    }
+    let rest = if found.noise > 0.0 {
+        format!(" At rest it differs by up to {}: a deadband of twice that keeps it still.", found.noise)
+    } else {
+        String::new()
+    };
+    format!(
+        "{name} runs from {} over {} to {}.{rest} Write to give it to the controller.",
+        found.min, found.center, found.max
+    )
+}
+
+fn left_open(unit: &mut UnitSettings, run: &Run, name: &str, sentences: Vec<String>) -> Summary {
+    want_back(unit, run);
+    Summary {
+        gravity: Gravity::Error,
+        summary: format!(
+            "{name} could not be put back as it was: it commands nothing now. Its old settings stand here as changes; \
+             write them."
+        ),
+        sentences,
+        address: None,
+    }
+}
+
+fn want_back(unit: &mut UnitSettings, run: &Run) {
+    unit.put_back(run.kept.clone());
+    for (key, value) in run.before.iter() {
+        unit.take(key, value);
+    }
+}

@@ -1,0 +1,167 @@
+//! The voltage clamp test on the settings screen: what is set, what runs, what was found.
+
+use brushwork_link::device::{Event, JobEnding};
+use brushwork_link::settings::SettingValue;
+use brushwork_values::Motor;
+use crossbeam_channel::Receiver;
+
+use super::super::link::Effect;
+use super::super::message::Gravity;
+use super::unit::UnitSettings;
+use brushwork_core::motion::clamp;
+use brushwork_core::motion::clamp::{STEPS, Step, Task};
+
+mod acts;
+
+/// How far above the controller's own limit the test's is set at first: a clamp acts at the controller's limit.
+const ABOVE_MAXIMUM_VOLTS: f64 = 2.0;
+
+/// The test of one link.
+#[derive(Debug)]
+pub struct ClampTest {
+    pub motor: Motor,
+    /// Set by hand; else what follows from the unit's settings.
+    pub limit_volts: Option<f64>,
+    pub down_percent_per_s: f64,
+    pub hold_s: f64,
+    running: Option<Running>,
+    /// What was found in the last run.
+    pub steps: Vec<Step>,
+    /// How the last run ended.
+    pub verdict: Option<Verdict>,
+}
+
+/// How a run ended, as a sentence.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Verdict {
+    pub gravity: Gravity,
+    pub sentence: String,
+}
+
+#[derive(Debug)]
+struct Running {
+    task: Task,
+    has_started: bool,
+    fraction: f32,
+    text: String,
+    found: Receiver<Step>,
+}
+
+impl Default for ClampTest {
+    fn default() -> Self {
+        Self {
+            motor: Motor::M1,
+            limit_volts: None,
+            down_percent_per_s: 300.0,
+            hold_s: 1.5,
+            running: None,
+            steps: Vec::new(),
+            verdict: None,
+        }
+    }
+}
+
+impl ClampTest {
+    pub fn is_running(&self) -> bool {
+        self.running.is_some()
+    }
+
+    pub fn progress(&self) -> Option<(f32, &str)> {
+        self.running.as_ref().map(|running| (running.fraction, running.text.as_str()))
+    }
+
+    /// The limit of the test: as set, or from the unit's own maximum.
+    pub fn limit(&self, unit: Option<&UnitSettings>) -> f64 {
+        self.limit_volts.or_else(|| unit.and_then(first_limit)).unwrap_or(30.0)
+    }
+
+    fn awaits(&self, event: &Event) -> bool {
+        let Some(running) = &self.running else { return false };
+        match event {
+            Event::JobStarted { name } => name == clamp::JOB,
+            Event::JobProgress { .. } => running.has_started,
+            Event::JobEnded(report) => report.name == clamp::JOB,
+            _ => false,
+        }
+    }
+
+    fn take(&mut self, event: Event) -> Vec<Effect> {
+        let Some(running) = &mut self.running else { return Vec::new() };
+        self.steps.extend(running.found.try_iter());
+        match event {
+            Event::JobStarted { .. } => running.has_started = true,
+            Event::JobProgress { fraction, text } => {
+                running.fraction = fraction.unwrap_or(running.fraction);
+                running.text = text;
+            }
+            Event::JobEnded(report) => {
+                let task = running.task;
+                self.running = None;
+                let verdict = verdict(&task, &self.steps, &report.ending);
+                self.verdict = Some(verdict.clone());
+                return vec![Effect::Say(verdict.gravity, verdict.sentence)];
+            }
+            _ => {}
+        }
+        Vec::new()
+    }
+}
+
+/// A little above the unit's own maximum, and not above what its model stands.
+fn first_limit(unit: &UnitSettings) -> Option<f64> {
+    let row = unit.table().row("limits.main_battery.max_volts")?;
+    match unit.on_controller(&row.key)? {
+        SettingValue::Number(volts) => Some((volts + ABOVE_MAXIMUM_VOLTS).min(row.range.max)),
+        _ => None,
+    }
+}
+
+fn verdict(task: &Task, steps: &[Step], ending: &JobEnding) -> Verdict {
+    let highest = steps.iter().map(|step| step.peak_volts).fold(f64::NEG_INFINITY, f64::max);
+    let over = steps.last().filter(|step| step.is_over);
+    let braked = steps.last().filter(|step| step.is_braked());
+    let (gravity, sentence) = match (ending, over) {
+        (JobEnding::Done(_), Some(step)) => (
+            Gravity::Error,
+            format!(
+                "Stopped at {:.0} %: the main battery reached {:.1} V, the limit is {:.1} V. Use a resistor of fewer \
+                 ohms, or add capacitance across B+ and B-. MCP manual 1.7.5.",
+                step.duty * 100.0,
+                step.peak_volts,
+                task.limit_volts
+            ),
+        ),
+        (JobEnding::Done(_), None) if braked.is_some() => {
+            (Gravity::Error, format!("{} MCP manual 1.7.5.", braked.map(braked_text).unwrap_or_default()))
+        }
+        (JobEnding::Done(_), None) if steps.len() == STEPS => (
+            Gravity::Note,
+            format!(
+                "The main battery stayed below {:.1} V from every speed: {highest:.1} V at most.",
+                task.limit_volts
+            ),
+        ),
+        (JobEnding::Done(_), None) => {
+            (Gravity::Error, "The test ended without a result. Try again.".to_owned())
+        }
+        (JobEnding::Failed(failure), _) => (Gravity::Error, failure.to_string()),
+        (JobEnding::Interrupted(cause), _) => {
+            (Gravity::Warning, format!("The test did not run to its end: {cause}. The motors were stopped."))
+        }
+        (JobEnding::Panicked(word), _) => {
+            (Gravity::Error, format!("The test did not run: the program has a fault ({word})."))
+        }
+    };
+    Verdict { gravity, sentence }
+}
+
+fn braked_text(step: &Step) -> String {
+    format!(
+        "Stopped at {:.0} %: the main battery was above the controller's maximum for {:.0} ms, {:.1} V at most, so that \
+         the controller braked the motor by itself. The clamp does not take the energy: check its wiring and its output, \
+         or use a resistor of fewer ohms.",
+        step.duty * 100.0,
+        step.high_s * 1000.0,
+        step.peak_volts
+    )
+}

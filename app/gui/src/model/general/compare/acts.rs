@@ -1,0 +1,169 @@
+//! What General Settings does to set two copies side by side.
+
+use brushwork_link::settings::{CopiedMotor, OpenedProfile, SettingsImage, copy_motor, diff};
+
+use super::{Comparison, Fitted, Side, Take};
+use crate::model::general::General;
+use brushwork_core::keep::Backup;
+
+impl General {
+    /// What a side is called.
+    pub fn side_title(&self, side: &Side) -> String {
+        match side {
+            Side::Ram => "Controller (RAM)".to_owned(),
+            Side::Eeprom => match self.known_eeprom() {
+                Some(known) => format!("EEPROM as known since {}", known.date_text()),
+                None => "EEPROM (not known)".to_owned(),
+            },
+            Side::Profile => match self.profiles.opened() {
+                Some(opened) => format!("Profile {}", opened.name),
+                None => "Profile (none is open)".to_owned(),
+            },
+            Side::Default => "Defaults".to_owned(),
+            Side::Backup(name) => {
+                let backup = self.backups().iter().find(|backup| backup.name == *name);
+                format!("Backup {}", backup.map_or_else(|| name.clone(), Backup::title))
+            }
+        }
+    }
+
+    /// Every side that there is.
+    pub fn sides(&self) -> Vec<Side> {
+        let mut sides = vec![Side::Ram, Side::Eeprom, Side::Profile, Side::Default];
+        sides.extend(self.backups().iter().map(|backup| Side::Backup(backup.name.clone())));
+        sides
+    }
+
+    /// Sets a side; a backup is read now.
+    pub fn compare_with(&mut self, left: Side, right: Side) {
+        for side in [&left, &right] {
+            if let Side::Backup(name) = side {
+                let fitted = self.fit_backup(name);
+                self.comparing.opened.insert(name.clone(), fitted);
+            }
+        }
+        self.comparing.left = left;
+        self.comparing.right = right;
+    }
+
+    fn fit_backup(&self, name: &str) -> Result<Fitted, String> {
+        let backup = self.backups().iter().find(|backup| backup.name == name);
+        let Some((backup, unit)) = backup.zip(self.unit()) else {
+            return Err("The backup is not there any more.".to_owned());
+        };
+        let OpenedProfile { profile, upgraded, mended } = backup.open().map_err(|error| error.to_string())?;
+        let fitted = profile.fitted_to(unit.table());
+        let mended = mended.iter().map(ToString::to_string);
+        let changes = upgraded.into_iter().chain(mended).chain(fitted.changes).collect();
+        Ok(Fitted { image: fitted.profile.settings, changes })
+    }
+
+    /// The two sides that are chosen, side by side.
+    pub fn comparison(&self) -> Comparison {
+        let Some(unit) = self.unit() else { return Comparison::default() };
+        let mut comparison = Comparison::default();
+        let mut images = Vec::new();
+        for side in [&self.comparing.left, &self.comparing.right] {
+            match self.image_of(side) {
+                Ok(fitted) => {
+                    comparison.notes.extend(fitted.changes);
+                    images.push(fitted.image);
+                }
+                Err(why) => comparison.missing.push(why),
+            }
+        }
+        let [left, right] = &images[..] else { return comparison };
+        for difference in diff(unit.table(), left, right).into_iter().filter(|each| each.right.is_some()) {
+            let Some(row) = unit.table().row(&difference.key) else { continue };
+            match comparison.groups.last_mut().filter(|(group, _)| *group == row.group) {
+                Some((_, list)) => list.push(difference),
+                None => comparison.groups.push((row.group, vec![difference])),
+            }
+        }
+        comparison
+    }
+
+    fn image_of(&self, side: &Side) -> Result<Fitted, String> {
+        let plain = |image: &SettingsImage| Fitted { image: image.clone(), changes: Vec::new() };
+        let unit = self.unit().ok_or("No controller is looked at.")?;
+        match side {
+            Side::Ram => unit.ram().map(plain).ok_or("The settings have not been read.".to_owned()),
+            Side::Eeprom => match (unit.eeprom(), self.known_eeprom()) {
+                (Some(image), _) => Ok(plain(image)),
+                (None, Some(known)) => Ok(plain(&known.fitted_to(unit.table()).profile.settings)),
+                (None, None) => Err(
+                    "What the EEPROM holds is not known: it is known after a save that was proven, or after it was \
+                     loaded (Read, Load from EEPROM)."
+                        .to_owned(),
+                ),
+            },
+            Side::Profile => {
+                let opened = self.profiles.opened();
+                opened.map(|opened| plain(&opened.profile.settings)).ok_or("No profile is open.".to_owned())
+            }
+            Side::Default => {
+                // What is not readable here cannot be compared either.
+                let known = |key: &str| unit.ram().is_none_or(|ram| ram.get(key).is_some());
+                let defaults = unit.table().default_image();
+                let defaults = defaults.iter().filter(|(key, _)| known(key));
+                let image = defaults.map(|(key, value)| (key.to_owned(), value)).collect();
+                Ok(Fitted { image, changes: Vec::new() })
+            }
+            Side::Backup(name) => {
+                let opened = self.comparing.opened.get(name).cloned();
+                opened.unwrap_or_else(|| Err("The backup was not opened.".to_owned()))
+            }
+        }
+    }
+
+    /// Makes values of the right side changes here, to be written like any others. What cannot be written stays.
+    pub fn take_over(&mut self, what: &Take) {
+        let comparison = self.comparison();
+        let Some(unit) = self.unit_mut() else { return };
+        for (group, differences) in comparison.groups {
+            for difference in differences {
+                let is_wanted = match what {
+                    Take::All => true,
+                    Take::Group(wanted) => *wanted == group,
+                    Take::Key(wanted) => *wanted == difference.key,
+                };
+                let is_writable = unit.table().row(&difference.key).is_some_and(|row| unit.is_writable(row));
+                if let (true, true, Some(value)) = (is_wanted, is_writable, difference.right) {
+                    unit.take(&difference.key, value);
+                }
+            }
+        }
+    }
+
+    /// Brings back a backup: its values become changes here, shown in the write sheet.
+    pub fn restore(&mut self, name: &str) -> bool {
+        self.compare_with(Side::Ram, Side::Backup(name.to_owned()));
+        if !self.comparison().missing.is_empty() {
+            return false;
+        }
+        self.take_over(&Take::All);
+        true
+    }
+
+    /// What copying a motor to the other one would change.
+    pub fn motor_copy(&self) -> Option<CopiedMotor> {
+        let unit = self.unit()?;
+        let mut image = unit.ram()?.clone();
+        image.merge(unit.edits());
+        Some(copy_motor(unit.table(), &image, self.motor_to_copy(), unit.is_simulated()))
+    }
+
+    /// The motor that is copied: 1 or 2.
+    pub fn motor_to_copy(&self) -> usize {
+        if self.copied_motor == 2 { 2 } else { 1 }
+    }
+
+    /// Makes one motor's settings changes of the other's.
+    pub fn copy_motor(&mut self) {
+        let Some(copied) = self.motor_copy() else { return };
+        let Some(unit) = self.unit_mut() else { return };
+        for (key, value) in copied.wanted.iter() {
+            unit.set(key, value);
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! What is kept on this computer of the unit that is looked at: backups, what was cut short, its EEPROM as last known.
+
+use std::collections::BTreeMap;
+
+use brushwork_link::settings::{Keeper, Profile, SaveVerdict, SettingsImage};
+use brushwork_link::transport::PortInfo;
+
+use super::unit_key::UnitKey;
+use super::work::Outcome;
+use brushwork_core::keep::{Backup, Keeping, OpenJournal, UnitId, Wear};
+
+mod acts;
+
+/// What is kept of the unit that is looked at.
+#[derive(Debug, Default)]
+pub(super) struct Kept {
+    keeping: Option<Keeping>,
+    ports: Vec<PortInfo>,
+    /// Every unit met, as files know it.
+    units: BTreeMap<UnitKey, UnitId>,
+    /// The one that is looked at.
+    unit: Option<UnitId>,
+    backups: Vec<Backup>,
+    unfinished: Vec<OpenJournal>,
+    /// EEPROM as it was proven last, in this session or an earlier one.
+    eeprom: Option<Profile>,
+    wear: Wear,
+}
+
+/// How something that was cut short is settled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Settle {
+    /// The new values become changes here, to be written.
+    Finish,
+    /// The old values become changes here, to be written.
+    Undo,
+    /// All stays as it is, and it is not told again.
+    Leave,
+}
+
+/// What an outcome means for what is kept.
+pub(super) enum Came {
+    Read,
+    Reloaded(SettingsImage),
+    Written,
+    Saved { verified: bool },
+    Other,
+}
+
+impl Came {
+    pub(super) fn of(outcome: &Outcome) -> Self {
+        match outcome {
+            Outcome::Read(_) => Self::Read,
+            Outcome::Reloaded(report) => Self::Reloaded(report.image.clone()),
+            Outcome::Written(report) if report.is_complete() => Self::Written,
+            Outcome::Saved(report) => Self::Saved { verified: report.verdict == SaveVerdict::Verified },
+            _ => Self::Other,
+        }
+    }
+}
+
+impl Kept {
+    pub(super) fn keeper(&self, unit: &UnitKey, firmware: &str) -> Option<Box<dyn Keeper>> {
+        Some(self.keeping.as_ref()?.keeper(self.units.get(unit)?.clone(), firmware))
+    }
+
+    /// A unit has another address.
+    pub(super) fn follow_address(&mut self, old: &UnitKey, new: UnitKey) {
+        let Some(unit) = self.units.remove(old) else { return };
+        let moved = UnitId { address: new.address, ..unit.clone() };
+        if self.unit.as_ref() == Some(&unit) {
+            self.unit = Some(moved.clone());
+        }
+        self.units.insert(new, moved);
+    }
+
+    pub(super) fn forget_unit(&mut self) {
+        self.unit = None;
+        self.unfinished.clear();
+        self.backups.clear();
+        self.eeprom = None;
+    }
+}

@@ -1,0 +1,134 @@
+//! The open profile, and the way to it: a path that was typed or chosen, and what came of it.
+//!
+//! Opening a profile changes nothing but this screen; taking its values over makes them edits, to be written like any
+//! other.
+
+use brushwork_link::UnitAddress;
+use brushwork_link::settings::{Profile, ProfileFileError, SettingsImage};
+
+use super::unit::UnitSettings;
+use crate::files::{FileAnswer, FileDialog, FileKind, FileWish};
+
+mod acts;
+
+/// Profiles as files.
+#[derive(Debug, Default)]
+pub struct Profiles {
+    /// The path that stands in the field.
+    pub path: String,
+    /// Whether a saved profile has the edits that are not written instead of what the controller has.
+    pub with_edits: bool,
+    dialog: Option<(FileDialog, Purpose)>,
+    opened: Option<Opened>,
+    /// A profile that has to be changed before it fits, until that is agreed to.
+    pending: Option<(Opened, Vec<String>)>,
+    /// What came of the last attempt.
+    told: Told,
+}
+
+/// What a path is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    Open,
+    Save,
+}
+
+/// What came of opening or saving.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Told {
+    #[default]
+    Nothing,
+    Done(String),
+    Failed {
+        sentences: Vec<String>,
+        /// Whether the file can be opened without its faulty settings.
+        can_be_mended: bool,
+    },
+}
+
+/// A profile that was opened.
+#[derive(Debug)]
+pub struct Opened {
+    pub name: String,
+    pub profile: Profile,
+    /// What was mended or left out in reading it.
+    pub mended: Vec<String>,
+}
+
+impl Profiles {
+    pub fn opened(&self) -> Option<&Opened> {
+        self.opened.as_ref()
+    }
+
+    /// What would be changed of the profile that was read, a sentence each, and its name.
+    pub fn pending(&self) -> Option<(&str, &[String])> {
+        self.pending.as_ref().map(|(opened, changes)| (opened.name.as_str(), changes.as_slice()))
+    }
+
+    pub fn told(&self) -> &Told {
+        &self.told
+    }
+
+    pub fn forget_told(&mut self) {
+        self.told = Told::Nothing;
+    }
+
+    /// Whether the desktop's own dialog is open.
+    pub fn is_browsing(&self) -> bool {
+        self.dialog.is_some()
+    }
+
+    /// Opens the desktop's own dialog.
+    pub fn browse(&mut self, purpose: Purpose) {
+        let wish = match purpose {
+            Purpose::Open => FileWish::Open,
+            Purpose::Save => FileWish::Save { name: "controller.json".to_owned() },
+        };
+        let kind = FileKind { title: "Profile".to_owned(), extension: "json".to_owned() };
+        self.dialog = Some((FileDialog::ask(wish, kind), purpose));
+    }
+
+    fn answer(&mut self) -> Option<Purpose> {
+        let (dialog, purpose) = self.dialog.as_ref()?;
+        let (answer, purpose) = (dialog.answer(), *purpose);
+        match answer {
+            FileAnswer::Waiting => return None,
+            FileAnswer::None => self.dialog = None,
+            FileAnswer::Chosen(path) => {
+                self.dialog = None;
+                self.path = path.display().to_string();
+                return Some(purpose);
+            }
+        }
+        None
+    }
+
+    fn fail(&mut self, error: &ProfileFileError, can_be_mended: bool) {
+        let sentences = error.to_string().lines().map(str::to_owned).collect();
+        self.told = Told::Failed { sentences, can_be_mended };
+    }
+}
+
+impl UnitSettings {
+    /// What a file can keep of the controller: what it has, or what is wanted of it.
+    fn profile(&self, with_edits: bool) -> Option<Profile> {
+        let mut settings = self.ram()?.clone();
+        if with_edits {
+            settings.merge(self.edits());
+        }
+        self.profile_of(settings)
+    }
+
+    /// Values as a profile of this controller.
+    pub(super) fn profile_of(&self, settings: SettingsImage) -> Option<Profile> {
+        Some(Profile {
+            subject: *self.table().subject(),
+            firmware: self.firmware().to_owned(),
+            address: UnitAddress::new(self.address()).unwrap_or_default(),
+            date: brushwork_core::keep::today(),
+            unit: String::new(),
+            note: String::new(),
+            settings,
+        })
+    }
+}

@@ -1,0 +1,374 @@
+//! What happened to a controller: every condition that came or went, armings, disarmings, stops and losses, with times and
+//! counts.
+//!
+//! Times are counted from the connection. The list survives the end of a link, so that one can read why it ended; it is
+//! bounded and can be cleared.
+
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::time::Duration;
+
+use brushwork_link::device::{Condition, DisarmReason, Event, Identity, StatusReport, StopReport};
+
+use crate::family;
+use crate::family::{Family, FamilyKind, Sign, mcp_sign};
+use crate::model::lamp::LampState;
+
+/// Entries kept; the oldest go first.
+pub const KEPT: usize = 2000;
+
+/// The history of one link.
+#[derive(Debug, Default)]
+pub struct History {
+    entries: VecDeque<Entry>,
+    /// Entries that had to go.
+    dropped: u64,
+    next_number: u64,
+    counts: BTreeMap<Kind, u32>,
+    units: BTreeMap<u8, UnitState>,
+    connected_at: Option<Duration>,
+    /// By the link's clock, as last looked at.
+    now: Duration,
+    /// Between connecting and the end of the link.
+    is_open: bool,
+}
+
+/// One thing that happened.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// Counts up over the whole history.
+    pub number: u64,
+    /// Time since the connection.
+    pub at: Duration,
+    /// Where the unit is, where it is about one: "0x80"; else empty.
+    pub place: String,
+    pub kind: Kind,
+    pub text: String,
+}
+
+/// What kind of thing happened.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    Came(Sign),
+    Went(Sign),
+    Connected,
+    Armed,
+    Disarmed { by_fault: bool },
+    ArmRefused,
+    Stopped { confirmed: bool },
+    Failed,
+    Lost,
+    Closed,
+}
+
+impl Kind {
+    /// How it is marked.
+    pub fn state(self) -> LampState {
+        match self {
+            Self::Came(sign) => sign.state,
+            Self::Disarmed { by_fault: true } | Self::Stopped { confirmed: false } | Self::Lost => {
+                LampState::Error
+            }
+            Self::Armed | Self::ArmRefused | Self::Failed => LampState::Warning,
+            Self::Went(_) | Self::Connected => LampState::Ok,
+            Self::Disarmed { by_fault: false } | Self::Stopped { confirmed: true } | Self::Closed => {
+                LampState::Active
+            }
+        }
+    }
+
+    /// What is counted under this name; none for what is not worth counting.
+    fn counted_as(self) -> Option<String> {
+        Some(match self {
+            Self::Came(sign) => sign.title.to_owned(),
+            Self::Disarmed { by_fault: true } => "Disarmed by a fault".to_owned(),
+            Self::Disarmed { by_fault: false } => "Disarmed".to_owned(),
+            Self::ArmRefused => "Arming refused".to_owned(),
+            Self::Stopped { confirmed: true } => "Stopped".to_owned(),
+            Self::Stopped { confirmed: false } => "Stop not confirmed".to_owned(),
+            Self::Failed => "Something failed".to_owned(),
+            Self::Lost => "Link lost".to_owned(),
+            Self::Went(_) | Self::Connected | Self::Armed | Self::Closed => return None,
+        })
+    }
+}
+
+/// What is so with one unit, and since when.
+#[derive(Debug, Default)]
+struct UnitState {
+    identity: Option<Identity>,
+    /// What its status word said last.
+    signs: BTreeSet<Sign>,
+    report: Option<StatusReport>,
+    /// Homed or at a limit by its pins, where the status word has no bit for it.
+    homed: Option<[bool; 2]>,
+    lamps: BTreeMap<&'static str, (LampState, Duration)>,
+}
+
+impl UnitState {
+    fn family(&self) -> &'static dyn Family {
+        family::of(self.identity.as_ref().map(FamilyKind::of_unit).unwrap_or_default())
+    }
+}
+
+impl History {
+    /// The newest first.
+    pub fn entries(&self) -> impl ExactSizeIterator<Item = &Entry> {
+        self.entries.iter().rev()
+    }
+
+    /// The entry so many places from the newest.
+    pub fn from_newest(&self, index: usize) -> Option<&Entry> {
+        self.entries.get(self.entries.len().checked_sub(index + 1)?)
+    }
+
+    pub fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+
+    /// Entries that had to make room.
+    pub fn dropped(&self) -> u64 {
+        self.dropped
+    }
+
+    /// How often each kind of thing happened since the history was cleared: its state, its name, its count.
+    pub fn counts(&self) -> impl Iterator<Item = (LampState, String, u32)> {
+        let named = |(kind, count): (&Kind, &u32)| Some((kind.state(), kind.counted_as()?, *count));
+        self.counts.iter().filter_map(named)
+    }
+
+    /// Time since the connection, while there is one.
+    pub fn connected_for(&self) -> Option<Duration> {
+        self.connected_at.filter(|_| self.is_open).map(|at| self.now.saturating_sub(at))
+    }
+
+    /// Since when a unit's lamp is as it is, as time since the connection.
+    pub fn lamp_since(&self, address: u8, short: &str) -> Option<Duration> {
+        let unit = self.units.get(&address).filter(|_| self.is_open)?;
+        Some(unit.lamps.get(short)?.1)
+    }
+
+    /// Forgets what happened; what is so now stays known.
+    pub fn clear(&mut self) {
+        self.entries.clear();
+        self.counts.clear();
+        self.dropped = 0;
+    }
+
+    /// The link's clock goes on.
+    pub fn tick(&mut self, now: Duration) {
+        self.now = now;
+    }
+
+    /// Takes note of an event of the link.
+    pub fn note(&mut self, event: &Event) {
+        match event {
+            Event::Connected(identity) => {
+                if !self.is_open {
+                    self.is_open = true;
+                    self.connected_at = Some(self.now);
+                    self.units.clear();
+                }
+                let unit = self.units.entry(identity.address).or_default();
+                unit.identity = Some(identity.clone());
+                let text = format!("Connected to {} at {}", identity.title(), identity.port);
+                self.push(self.now, Some(identity.address), Kind::Connected, text);
+            }
+            Event::Status(report) => self.note_status(report),
+            Event::Armed { address, scope, .. } => {
+                self.push(self.now, Some(*address), Kind::Armed, format!("Armed for {scope}"));
+            }
+            Event::Disarmed(reason) => {
+                let by_fault = matches!(
+                    reason,
+                    DisarmReason::Fault(_)
+                        | DisarmReason::Restarted
+                        | DisarmReason::NoAnswer
+                        | DisarmReason::LinkLost
+                        | DisarmReason::DeadMan
+                );
+                self.push(self.now, None, Kind::Disarmed { by_fault }, reason.to_string());
+            }
+            Event::ArmRefused { reasons, .. } => {
+                let text = reasons.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
+                self.push(self.now, None, Kind::ArmRefused, text);
+            }
+            Event::Stopped(report) => self.note_stop(report),
+            Event::Failure(failure) => self.push(self.now, None, Kind::Failed, failure.to_string()),
+            Event::Lost(failure) => {
+                self.push(self.now, None, Kind::Lost, failure.to_string());
+                self.is_open = false;
+            }
+            Event::Closed => {
+                self.push(self.now, None, Kind::Closed, "Disconnected".to_owned());
+                self.is_open = false;
+            }
+            _ => {}
+        }
+    }
+
+    /// What a unit's pins say of its home and limit switches, where the status word has no bit for them.
+    pub fn note_homed(&mut self, address: u8, homed: [bool; 2]) {
+        let unit = self.units.entry(address).or_default();
+        let before = unit.homed.replace(homed).unwrap_or_default();
+        for (index, condition) in [Condition::M1Home, Condition::M2Home].into_iter().enumerate() {
+            if before[index] != homed[index] {
+                self.changed(address, mcp_sign(condition), homed[index], self.now);
+            }
+        }
+        self.update_lamps(address, self.now);
+    }
+
+    fn note_status(&mut self, report: &StatusReport) {
+        let unit = self.units.entry(report.address).or_default();
+        let signs: BTreeSet<Sign> = unit.family().signs(report, unit.identity.as_ref()).into_iter().collect();
+        let before = std::mem::replace(&mut unit.signs, signs.clone());
+        unit.report = Some(*report);
+        for sign in before.symmetric_difference(&signs) {
+            self.changed(report.address, *sign, signs.contains(sign), report.at);
+        }
+        self.update_lamps(report.address, report.at);
+    }
+
+    fn changed(&mut self, address: u8, sign: Sign, came: bool, at: Duration) {
+        let (kind, word) = if came { (Kind::Came(sign), "came") } else { (Kind::Went(sign), "went") };
+        self.push(at, Some(address), kind, format!("{} {word}", sign.title));
+    }
+
+    fn update_lamps(&mut self, address: u8, at: Duration) {
+        let since = self.since_connect(at);
+        let Some(unit) = self.units.get_mut(&address) else { return };
+        let Some(report) = &unit.report else { return };
+        let family = unit.family();
+        let of_mind = unit.identity.as_ref().filter(|identity| identity.is_motion_mind());
+        for (info, state) in family.lamps().iter().zip(family.lit(report, of_mind, unit.homed)) {
+            let known = unit.lamps.entry(info.short).or_insert((state, since));
+            if known.0 != state {
+                *known = (state, since);
+            }
+        }
+    }
+
+    fn note_stop(&mut self, report: &StopReport) {
+        let confirmed = report.confirmed();
+        let latency_ms = report.latency().as_secs_f64() * 1000.0;
+        let mut text = format!("Stop on the wire after {latency_ms:.1} ms, ");
+        text += if confirmed { "confirmed" } else { "NOT confirmed" };
+        for unit in &report.units {
+            for driver in &unit.still_driven_by {
+                text += &format!(". {}: {driver}", self.place(unit.address));
+            }
+        }
+        self.push(report.requested_at, None, Kind::Stopped { confirmed }, text);
+    }
+
+    fn push(&mut self, at: Duration, address: Option<u8>, kind: Kind, text: String) {
+        if self.entries.len() == KEPT {
+            self.entries.pop_front();
+            self.dropped += 1;
+        }
+        *self.counts.entry(kind).or_default() += 1;
+        let place = address.map_or_else(String::new, |address| self.place(address));
+        let entry = Entry { number: self.next_number, at: self.since_connect(at), place, kind, text };
+        self.next_number += 1;
+        self.entries.push_back(entry);
+    }
+
+    /// Where a unit is, as its family writes it.
+    fn place(&self, address: u8) -> String {
+        let known = self.units.get(&address).and_then(|unit| unit.identity.as_ref());
+        known.map_or_else(|| format!("0x{address:02X}"), Identity::place)
+    }
+
+    fn since_connect(&self, at: Duration) -> Duration {
+        self.connected_at.map_or(Duration::ZERO, |connected_at| at.saturating_sub(connected_at))
+    }
+}
+
+/// A time as hours, minutes and seconds with tenths: "0:01:23.4".
+pub fn clock_text(time: Duration) -> String {
+    let tenths = time.as_millis() / 100;
+    let (seconds, tenth) = (tenths / 10, tenths % 10);
+    format!("{}:{:02}:{:02}.{tenth}", seconds / 3600, seconds / 60 % 60, seconds % 60)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use brushwork_link::Failure;
+
+    fn report(at_s: u64, conditions: &[Condition]) -> Event {
+        Event::Status(StatusReport {
+            signs: &[],
+            address: 0x80,
+            at: Duration::from_secs(at_s),
+            word: 0,
+            conditions: conditions.iter().copied().collect(),
+            unknown_bits: 0,
+            running_ticks: None,
+        })
+    }
+
+    fn texts(history: &History) -> Vec<&str> {
+        history.entries().map(|entry| entry.text.as_str()).collect()
+    }
+
+    #[test]
+    fn conditions_come_and_go_with_their_times_and_are_counted() {
+        let mut history =
+            History { is_open: true, connected_at: Some(Duration::from_secs(100)), ..History::default() };
+        history.note(&report(101, &[]));
+        history.note(&report(110, &[Condition::EStop]));
+        history.note(&report(111, &[Condition::EStop, Condition::Temperature1Warning]));
+        history.note(&report(130, &[Condition::Temperature1Warning]));
+        history.note(&report(140, &[Condition::EStop]));
+        assert_eq!(
+            texts(&history),
+            [
+                "Temperature warning went",
+                "E-Stop came",
+                "E-Stop went",
+                "Temperature warning came",
+                "E-Stop came"
+            ]
+        );
+        assert_eq!(history.from_newest(2).unwrap().at, Duration::from_secs(30));
+        let counts: Vec<(String, u32)> = history.counts().map(|(_, name, count)| (name, count)).collect();
+        assert_eq!(counts, [("E-Stop".to_owned(), 2), ("Temperature warning".to_owned(), 1)]);
+        assert_eq!(history.lamp_since(0x80, "ESTP"), Some(Duration::from_secs(40)));
+        assert_eq!(history.lamp_since(0x80, "TMP2"), Some(Duration::from_secs(1)));
+        history.clear();
+        assert!(history.is_empty() && history.counts().next().is_none());
+        assert_eq!(history.lamp_since(0x80, "ESTP"), Some(Duration::from_secs(40)));
+    }
+
+    #[test]
+    fn a_home_switch_that_only_the_pins_know_comes_and_goes_too() {
+        let mut history = History { is_open: true, connected_at: Some(Duration::ZERO), ..History::default() };
+        history.note(&report(1, &[]));
+        history.tick(Duration::from_secs(5));
+        history.note_homed(0x80, [false, true]);
+        history.note_homed(0x80, [false, true]);
+        assert_eq!(texts(&history), ["M2 home came"]);
+        assert_eq!(history.lamp_since(0x80, "M2HM"), Some(Duration::from_secs(5)));
+    }
+
+    #[test]
+    fn the_history_is_bounded_and_says_how_much_is_gone() {
+        let mut history = History::default();
+        for number in 0..KEPT + 50 {
+            history.note(&Event::Failure(Failure::new("read", "0x80", number.to_string(), "Wait")));
+        }
+        assert_eq!((history.len(), history.dropped()), (KEPT, 50));
+        assert_eq!(history.counts().next().map(|(.., count)| count), Some(KEPT as u32 + 50));
+    }
+
+    #[test]
+    fn times_read_as_clocks_do() {
+        assert_eq!(clock_text(Duration::from_millis(83_456)), "0:01:23.4");
+        assert_eq!(clock_text(Duration::from_secs(36_000)), "10:00:00.0");
+    }
+}

@@ -1,0 +1,106 @@
+//! The states of a controller's status lamps: thirteen of an MCP (MCP manual 1.2.5), others of other families.
+
+use brushwork_link::device::{Identity, StatusReport};
+use brushwork_mcp_wire::packet_serial::status::Lamp;
+
+use super::lamp::{LampInfo, LampState};
+use crate::family::Family;
+
+/// The states of all lamps of a family; none of them is known before the status was read.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Lamps(Vec<(&'static LampInfo, LampState)>);
+
+impl Lamps {
+    /// The lamps as a unit's status lights them; those for home and limit switches as its pins do, where they are known.
+    pub fn of(
+        family: &dyn Family,
+        report: &StatusReport,
+        identity: Option<&Identity>,
+        homed: Option<[bool; 2]>,
+    ) -> Self {
+        Self(family.lamps().iter().zip(family.lit(report, identity, homed)).collect())
+    }
+
+    /// The lamp of an MCP.
+    pub fn get(&self, lamp: Lamp) -> LampState {
+        self.named(lamp.abbreviation())
+    }
+
+    /// The lamp with this abbreviation.
+    pub fn named(&self, short: &str) -> LampState {
+        self.0.iter().find(|(info, _)| info.short == short).map_or(LampState::Unknown, |(_, state)| *state)
+    }
+
+    /// The gravest state of all.
+    pub fn worst(&self) -> LampState {
+        self.0.iter().map(|(_, state)| *state).max().unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use brushwork_mcp_wire::packet_serial::Generation;
+    use brushwork_mcp_wire::packet_serial::status::Condition;
+
+    use super::*;
+    use crate::family;
+    use crate::family::FamilyKind;
+
+    fn lamps(report: &StatusReport, identity: Option<&Identity>, homed: Option<[bool; 2]>) -> Lamps {
+        Lamps::of(family::of(FamilyKind::Mcp), report, identity, homed)
+    }
+
+    fn identity(model: &'static str, generation: Generation) -> Identity {
+        Identity {
+            address: 0x80,
+            family: "packet serial",
+            version_text: model.to_owned(),
+            model: Some(model),
+            firmware: "1.0.0".to_owned(),
+            generation: generation.into(),
+            motion_mind: None,
+            also_answers: Vec::new(),
+            simulated: true,
+            port: "sim:mcp266".to_owned(),
+            notes: Vec::new(),
+        }
+    }
+
+    fn report(conditions: &[Condition]) -> StatusReport {
+        let conditions = conditions.iter().copied().collect();
+        StatusReport {
+            signs: &[],
+            address: 0x80,
+            at: Duration::ZERO,
+            word: 0,
+            conditions,
+            unknown_bits: 0,
+            running_ticks: None,
+        }
+    }
+
+    #[test]
+    fn of_several_reasons_the_gravest_shows() {
+        let conditions = [Condition::Temperature1Error, Condition::Temperature1Warning, Condition::M1Home];
+        let lit = lamps(&report(&conditions), None, None);
+        assert_eq!(lit.get(Lamp::Temperature1), LampState::Error);
+        assert_eq!(lit.get(Lamp::M1Home), LampState::Active);
+        assert_eq!(lit.get(Lamp::Temperature2), LampState::Ok);
+        assert_eq!(lit.worst(), LampState::Error);
+    }
+
+    #[test]
+    fn a_lamp_the_unit_cannot_light_says_so() {
+        let state = |model, generation, lamp| {
+            lamps(&report(&[]), Some(&identity(model, generation)), Some([true, false])).get(lamp)
+        };
+        assert_eq!(state("MCP266", Generation::Gen1, Lamp::M1DriverFault), LampState::NotApplicable);
+        assert_eq!(state("RoboClaw 2x7A", Generation::Gen1, Lamp::M1DriverFault), LampState::Ok);
+        assert_eq!(state("MCP266", Generation::Gen1, Lamp::EStop), LampState::Ok);
+        // Where the status word has a bit, the pins are not asked.
+        assert_eq!(state("MCP266", Generation::Gen1, Lamp::M1Home), LampState::Active);
+        assert_eq!(state("RoboClaw 2x7A", Generation::Gen1, Lamp::M1Home), LampState::Ok);
+    }
+}

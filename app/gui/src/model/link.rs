@@ -1,0 +1,283 @@
+//! The link as the window sees it: closed, opening, open, closing, and what is known of the controller.
+//!
+//! Everything here follows from the device thread's events. What an event means for the rest of the window (a
+//! sentence to say, a slider to put back to zero) is handed back as [`Effect`]s.
+
+use brushwork_link::Failure;
+use brushwork_link::device::{
+    ArmScope, Channel, DisarmReason, Event, Identity, Sample, StatusReport, StopReport,
+};
+use brushwork_link::exchange::LinkStatistics;
+use brushwork_link::transport::Stream;
+use brushwork_mcp_wire::models;
+use std::time::Duration;
+
+use super::lamps::Lamps;
+use super::message::Gravity;
+use super::readings::Readings;
+use crate::family;
+use crate::family::{Family, FamilyKind};
+
+/// Whether motors may be moved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Arming {
+    #[default]
+    Disarmed,
+    /// Asked for; the device thread checks.
+    Asked(ArmScope),
+    Armed {
+        scope: ArmScope,
+        /// After how much silence the controller stops by itself.
+        controller_timeout: Option<Duration>,
+    },
+}
+
+impl Arming {
+    pub fn is_armed_for(self, wanted: ArmScope) -> bool {
+        matches!(self, Self::Armed { scope, .. } if scope == wanted)
+    }
+}
+
+/// What an event means beyond this module.
+#[derive(Debug)]
+pub enum Effect {
+    Say(Gravity, String),
+    /// Sliders go to zero: nothing may move any more.
+    AtRest,
+    /// A new sample of the selected unit.
+    Sample(Box<Sample>),
+    /// Another unit's samples follow.
+    OtherUnit,
+    /// The link has ended.
+    Ended,
+}
+
+/// What is known of an open link.
+#[derive(Debug, Default)]
+pub struct LinkView {
+    /// Every unit that answered.
+    pub units: Vec<Identity>,
+    pub selected: Option<u8>,
+    /// Which of the controller's ports this is, where it is known.
+    pub stream: Option<Stream>,
+    pub readings: Readings,
+    pub lamps: Lamps,
+    /// Whether the pins hold a motor at a home or limit switch, where they are known.
+    homed: Option<[bool; 2]>,
+    pub status: Option<StatusReport>,
+    pub statistics: LinkStatistics,
+    /// How far the search for units is, while there is one.
+    pub searching: Option<Search>,
+    pub arming: Arming,
+    /// Set when the link was lost while armed: after how much silence the controller stops by itself.
+    lost_while_armed: Option<Option<Duration>>,
+    /// Why arming was refused the last time.
+    pub refusals: Vec<Failure>,
+    /// What else can drive a motor while something is armed: input pins and scripts, each as a sentence.
+    pub warnings: Vec<String>,
+}
+
+/// How far the search for units is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Search {
+    pub done: usize,
+    pub of: usize,
+    /// What is asked now.
+    pub what: String,
+}
+
+impl LinkView {
+    /// The unit that is looked at.
+    pub fn identity(&self) -> Option<&Identity> {
+        self.units.iter().find(|unit| Some(unit.address) == self.selected)
+    }
+
+    /// The family of the unit that is looked at.
+    fn family(&self) -> &'static dyn Family {
+        family::of(self.identity().map(FamilyKind::of_unit).unwrap_or_default())
+    }
+
+    /// Takes over what the pins say of home and limit switches.
+    pub fn set_homed(&mut self, homed: Option<[bool; 2]>) {
+        if homed == self.homed {
+            return;
+        }
+        self.homed = homed;
+        if let Some(report) = &self.status {
+            self.lamps = Lamps::of(self.family(), report, self.identity(), homed);
+        }
+    }
+
+    /// Takes over an event.
+    pub fn take(&mut self, event: Event) -> Vec<Effect> {
+        match event {
+            Event::Searching { done, of, what } => {
+                self.searching = Some(Search { done, of, what });
+                Vec::new()
+            }
+            Event::Connected(identity) => self.connected(identity),
+            Event::Selected { address, stream } => {
+                self.searching = None;
+                self.select(address, stream)
+            }
+            Event::Sample(mut sample) if Some(sample.address) == self.selected => {
+                self.leave_out_missing_sensor(&mut sample);
+                self.readings.update(&sample);
+                vec![Effect::Sample(sample)]
+            }
+            Event::Sample(_) => Vec::new(),
+            Event::Status(report) => self.status(report),
+            Event::Armed { scope, controller_timeout, warnings, .. } => {
+                self.arming = Arming::Armed { scope, controller_timeout };
+                self.warnings = warnings;
+                self.refusals.clear();
+                vec![
+                    Effect::AtRest,
+                    Effect::Say(Gravity::Warning, format!("Armed for {scope}. Space or Esc stops.")),
+                ]
+            }
+            Event::Disarmed(reason) => self.disarmed(&reason),
+            Event::ArmRefused { reasons, .. } => self.refused(reasons),
+            Event::Stopped(report) => self.stopped(&report),
+            Event::Link(statistics) => {
+                self.statistics = statistics;
+                Vec::new()
+            }
+            Event::Failure(failure) => vec![Effect::Say(Gravity::Error, failure.to_string())],
+            Event::Lost(failure) => self.lost(&failure),
+            Event::LoaderEntered => Vec::new(),
+            Event::Closed => vec![Effect::Say(Gravity::Note, "Disconnected.".to_owned()), Effect::Ended],
+            Event::Driven { .. }
+            | Event::RawReply { .. }
+            | Event::Transacted { .. }
+            | Event::JobStarted { .. }
+            | Event::JobProgress { .. }
+            | Event::JobEnded(_)
+            | Event::Traffic { .. } => Vec::new(),
+        }
+    }
+
+    fn connected(&mut self, identity: Identity) -> Vec<Effect> {
+        let mut said =
+            format!("Connected to {} at {}, {}", identity.title(), identity.port, identity.named_place());
+        said += &match identity.firmware.as_str() {
+            _ if identity.is_motion_mind() => format!(", {}.", identity.generation),
+            "" => format!(" ({}).", identity.generation),
+            firmware => format!(", firmware {firmware} ({}).", identity.generation),
+        };
+        let mut effects = vec![Effect::Say(Gravity::Note, said)];
+        // A node's notes are its CANopen identity, which is nothing odd.
+        let gravity = if identity.is_node() { Gravity::Note } else { Gravity::Warning };
+        let notes = identity.notes.iter().map(|note| Effect::Say(gravity, note.clone()));
+        effects.extend(notes);
+        self.units.retain(|unit| unit.address != identity.address);
+        self.units.push(identity);
+        effects
+    }
+
+    fn select(&mut self, address: u8, stream: Option<Stream>) -> Vec<Effect> {
+        let changed = self.selected.replace(address) != Some(address);
+        self.stream = stream.or(if changed { None } else { self.stream });
+        if !changed {
+            return Vec::new();
+        }
+        self.readings = Readings::default();
+        self.lamps = Lamps::default();
+        self.status = None;
+        vec![Effect::OtherUnit]
+    }
+
+    /// Small boards have one temperature sensor and report 0 for the second: what is not there was not read.
+    fn leave_out_missing_sensor(&self, sample: &mut Sample) {
+        let listed = self.identity().and_then(|identity| models::lookup(identity.model?));
+        let second = &mut sample.values[Channel::Temperature2.index()];
+        if *second == 0.0 && listed.is_some_and(|listed| !listed.second_temperature) {
+            *second = f64::NAN;
+        }
+    }
+
+    fn status(&mut self, report: StatusReport) -> Vec<Effect> {
+        if Some(report.address) != self.selected {
+            return Vec::new();
+        }
+        self.lamps = Lamps::of(self.family(), &report, self.identity(), self.homed);
+        self.status = Some(report);
+        Vec::new()
+    }
+
+    fn disarmed(&mut self, reason: &DisarmReason) -> Vec<Effect> {
+        if let (DisarmReason::LinkLost, Arming::Armed { controller_timeout, .. }) = (reason, self.arming) {
+            self.lost_while_armed = Some(controller_timeout);
+        }
+        self.arming = Arming::Disarmed;
+        self.warnings.clear();
+        let gravity = match reason {
+            DisarmReason::Fault(_)
+            | DisarmReason::Restarted
+            | DisarmReason::NoAnswer
+            | DisarmReason::LinkLost => Gravity::Error,
+            DisarmReason::DeadMan => Gravity::Warning,
+            _ => Gravity::Note,
+        };
+        vec![Effect::AtRest, Effect::Say(gravity, format!("{reason}. The motors are being stopped."))]
+    }
+
+    fn refused(&mut self, reasons: Vec<Failure>) -> Vec<Effect> {
+        self.arming = Arming::Disarmed;
+        let first = reasons.first().map(ToString::to_string).unwrap_or_default();
+        self.refusals = reasons;
+        vec![Effect::AtRest, Effect::Say(Gravity::Error, first)]
+    }
+
+    fn lost(&mut self, failure: &Failure) -> Vec<Effect> {
+        let mut text = failure.to_string();
+        if let Arming::Armed { controller_timeout, .. } = self.arming {
+            self.lost_while_armed = Some(controller_timeout);
+        }
+        match self.lost_while_armed {
+            Some(Some(timeout)) => {
+                text += &format!(
+                    " The screen was armed: the controller stops its motors by itself after {:.1} s of silence.",
+                    timeout.as_secs_f64()
+                );
+            }
+            Some(None) => text += " The screen was armed: make sure that the motors stand still.",
+            None => {}
+        }
+        self.arming = Arming::Disarmed;
+        vec![Effect::AtRest, Effect::Say(Gravity::Error, text), Effect::Ended]
+    }
+}
+
+impl LinkView {
+    /// What became of a stop, in one sentence per thing the user has to know.
+    fn stopped(&self, report: &StopReport) -> Vec<Effect> {
+        let mut effects = vec![Effect::AtRest];
+        for unit in &report.units {
+            for failure in &unit.failures {
+                effects.push(Effect::Say(Gravity::Error, failure.to_string()));
+            }
+            for driver in &unit.still_driven_by {
+                effects
+                    .push(Effect::Say(Gravity::Warning, format!("{}: {driver}", self.place(unit.address))));
+            }
+        }
+        if report.confirmed() && effects.len() == 1 {
+            let milliseconds = report.latency().as_secs_f64() * 1000.0;
+            let text =
+                format!("Stopped. The stop was on the wire after {milliseconds:.1} ms; duty 0 is confirmed.");
+            effects.push(Effect::Say(Gravity::Note, text));
+        } else if !report.confirmed() && effects.len() == 1 {
+            let text =
+                "Stop was sent, but the controller did not confirm it. Cut the power if a motor still turns.";
+            effects.push(Effect::Say(Gravity::Error, text.to_owned()));
+        }
+        effects
+    }
+
+    /// Where a unit is, as its family writes it.
+    fn place(&self, address: u8) -> String {
+        let unit = self.units.iter().find(|unit| unit.address == address);
+        unit.map_or_else(|| format!("0x{address:02X}"), Identity::place)
+    }
+}

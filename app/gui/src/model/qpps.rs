@@ -1,0 +1,125 @@
+//! The guided measurement of QPPS on the PWM screen: what is set, what runs, and what was found.
+
+use std::time::Duration;
+
+use brushwork_link::device::{Event, Request};
+use brushwork_values::Motor;
+
+use super::watched::Watched;
+use brushwork_core::motion::qpps;
+use brushwork_core::motion::qpps::{Measured, Task};
+
+/// Directions that differ by more than this share are told.
+const ASYMMETRY: f64 = 0.05;
+
+/// The measurement of one link.
+#[derive(Debug)]
+pub struct QppsPanel {
+    pub motor: Motor,
+    pub travel_limit_counts: f64,
+    pub time_limit_s: f64,
+    job: Watched<Measured>,
+    measured: Option<Measured>,
+    /// Why nothing was found the last time.
+    refusal: Option<String>,
+}
+
+impl Default for QppsPanel {
+    fn default() -> Self {
+        Self {
+            motor: Motor::M1,
+            travel_limit_counts: 2_000_000.0,
+            time_limit_s: 15.0,
+            job: Watched::default(),
+            measured: None,
+            refusal: None,
+        }
+    }
+}
+
+impl QppsPanel {
+    /// What to ask of the device thread; none while a measurement runs. The duty changes at `accel_percent_per_s`, where
+    /// 0 is at once.
+    pub fn begin(&mut self, accel_percent_per_s: f64) -> Option<Request> {
+        let outcome = self.job.begin(qpps::JOB)?;
+        (self.measured, self.refusal) = (None, None);
+        let accel_duty_per_s = if accel_percent_per_s > 0.0 { accel_percent_per_s / 100.0 } else { 20.0 };
+        let task = Task {
+            motor: self.motor,
+            travel_limit_counts: self.travel_limit_counts,
+            time_limit: Duration::from_secs_f64(self.time_limit_s.clamp(1.0, 600.0)),
+            accel_duty_per_s: accel_duty_per_s.clamp(0.05, 20.0),
+        };
+        Some(Request::Job(qpps::job(task, outcome)))
+    }
+
+    /// The request was not taken.
+    pub fn not_begun(&mut self) {
+        self.job.forget();
+    }
+
+    /// Another unit, or none.
+    pub fn forget(&mut self) {
+        self.job.forget();
+        (self.measured, self.refusal) = (None, None);
+    }
+
+    pub fn is_running(&self) -> bool {
+        self.job.is_running()
+    }
+
+    pub fn progress(&self) -> Option<(f32, &str)> {
+        self.job.progress()
+    }
+
+    pub fn measured(&self) -> Option<&Measured> {
+        self.measured.as_ref()
+    }
+
+    pub fn refusal(&self) -> Option<&str> {
+        self.refusal.as_deref()
+    }
+
+    pub fn awaits(&self, event: &Event) -> bool {
+        self.job.awaits(event)
+    }
+
+    /// Takes in an event that it awaits; a sentence if nothing was found.
+    pub fn take(&mut self, event: Event) -> Option<String> {
+        match self.job.take(event)? {
+            Ok(measured) => {
+                self.measured = Some(measured);
+                None
+            }
+            Err(sentence) => {
+                self.refusal = Some(sentence.clone());
+                Some(sentence)
+            }
+        }
+    }
+}
+
+/// What was found, line by line.
+pub fn lines(measured: &Measured) -> Vec<String> {
+    let mut lines = vec![format!(
+        "{}: QPPS {:.0} counts/s · forward {:.0}, reverse {:.0} · spread {:.2} %",
+        measured.motor,
+        measured.qpps(),
+        measured.forward.speed.counts_per_s.abs(),
+        measured.reverse.speed.counts_per_s.abs(),
+        measured.spread() * 100.0,
+    )];
+    let volts = (measured.forward.power.volts + measured.reverse.power.volts) / 2.0;
+    let amps = measured.forward.power.amps.abs().max(measured.reverse.power.amps.abs());
+    lines.push(format!(
+        "Battery {volts:.1} V under load, {:.1} V at rest · up to {amps:.2} A · went {:.0} and {:.0} counts",
+        measured.rest_volts, measured.forward.travel_counts, measured.reverse.travel_counts,
+    ));
+    if measured.asymmetry() > ASYMMETRY {
+        lines.push(format!(
+            "The directions differ by {:.0} %: something drags or pulls. The mean is offered.",
+            measured.asymmetry() * 100.0
+        ));
+    }
+    lines
+}

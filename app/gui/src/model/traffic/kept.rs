@@ -1,0 +1,101 @@
+//! A command put together by hand that changes settings: it waits until a backup of them is kept.
+
+use std::time::Duration;
+
+use brushwork_link::Failure;
+use brushwork_link::device::{FnJob, Identity, Request};
+use brushwork_link::settings::{Ending, Keeper, Subject, begin_command};
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::packet_serial::{Effect, lookup, number};
+use brushwork_values::{Value, Values};
+use crossbeam_channel::{Receiver, TryRecvError, bounded};
+
+use brushwork_core::keep::TrialKeeper;
+
+const JOB: &str = "keep a backup before the command";
+/// A serial line of 2400 bit/s takes most of it.
+const LIMIT: Duration = Duration::from_secs(120);
+
+/// The command that waits for its backup, or for its answer.
+#[derive(Debug, Default)]
+pub struct KeptCommand {
+    waiting: Option<(Transact, Receiver<Result<(), Failure>>)>,
+    sent: Option<(u64, TrialKeeper)>,
+    keeper: Option<TrialKeeper>,
+}
+
+/// A command with the number its answer will have.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Transact {
+    pub id: u64,
+    pub command: u8,
+    pub values: Vec<Value>,
+}
+
+impl Transact {
+    /// As a request to the device thread.
+    pub fn request(self) -> Request {
+        Request::Transact { id: self.id, command: self.command, values: self.values }
+    }
+
+    /// Whether it changes settings, in RAM or in EEPROM.
+    pub fn changes_settings(&self, identity: &Identity) -> bool {
+        let effect = lookup(self.command).map(|row| row.effect(identity.generation.layout()));
+        matches!(effect, Some(Effect::Setting | Effect::Memory))
+    }
+}
+
+impl KeptCommand {
+    /// The job that keeps a backup before `transact` is sent.
+    pub fn keep_first(
+        &mut self,
+        transact: Transact,
+        identity: &Identity,
+        keeper: Box<dyn Keeper>,
+    ) -> Option<Request> {
+        let listed = identity.model.and_then(models::lookup);
+        let model = listed.or_else(|| models::identify(&identity.version_text))?;
+        let subject = Subject::new(model, identity.generation);
+        let saves = transact.command == number::SAVE_SETTINGS;
+        let (sender, kept) = bounded(1);
+        let keeper = TrialKeeper::new(keeper);
+        self.keeper = Some(keeper.clone());
+        self.waiting = Some((transact, kept));
+        Some(Request::Job(FnJob::boxed(JOB, LIMIT, move |context| {
+            let begun = begin_command(context, subject, saves, &mut **keeper.lock());
+            // Nobody waits for it when the link was closed meanwhile.
+            let _ = sender.try_send(begun);
+            Ok(Box::new(()))
+        })))
+    }
+
+    /// The request was not taken, or the link is gone.
+    pub fn forget(&mut self) {
+        *self = Self::default();
+    }
+
+    /// The command whose backup is kept now, once; or, with its number, why there is none.
+    pub fn ready(&mut self) -> Option<Result<Transact, (u64, Failure)>> {
+        let (_, kept) = self.waiting.as_ref()?;
+        let kept = match kept.try_recv() {
+            Err(TryRecvError::Empty) => return None,
+            Ok(kept) => kept,
+            Err(TryRecvError::Disconnected) => Err(Failure::new(
+                JOB,
+                "this computer",
+                "something more urgent came first",
+                "Send it again when you are ready",
+            )),
+        };
+        let (transact, _) = self.waiting.take()?;
+        self.sent = kept.is_ok().then_some(transact.id).zip(self.keeper.take());
+        Some(kept.map_err(|failure| (transact.id, failure)).map(|()| transact))
+    }
+
+    /// The answer has come: the journal is closed, unless nobody knows what became of a save.
+    pub fn answered(&mut self, id: u64, result: &Result<Values, Failure>) {
+        if let Some((_, keeper)) = self.sent.take_if(|(sent, _)| *sent == id) {
+            keeper.lock().end(if result.is_ok() { Ending::Known } else { Ending::Open });
+        }
+    }
+}

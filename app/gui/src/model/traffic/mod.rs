@@ -1,0 +1,74 @@
+//! The traffic panel's state: what went over the wire, a composer for one command, and the bytes that wait to be sent.
+
+mod composer;
+mod kept;
+mod log;
+pub mod pending;
+
+pub use composer::{Composer, Prepared};
+pub use kept::{KeptCommand, Transact};
+pub use log::{Filter, Log, MOST, MOST_BYTES, Outcome, Transaction};
+
+use std::path::PathBuf;
+
+use brushwork_link::device::Event;
+
+use crate::files::FileDialog;
+
+/// What the panel shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Tab {
+    #[default]
+    Log,
+    Composer,
+    Pending,
+}
+
+/// The state of the panel.
+#[derive(Debug, Default)]
+pub struct Traffic {
+    /// Whether the panel is shown; traffic is recorded while it is.
+    pub open: bool,
+    pub tab: Tab,
+    pub log: Log,
+    pub composer: Composer,
+    /// A command that changes settings and waits for their backup.
+    pub kept: KeptCommand,
+    /// The name that was typed for a file, while one is asked for.
+    pub saving: Option<String>,
+    pub dialog: Option<FileDialog>,
+}
+
+impl Traffic {
+    /// Takes note of an event of the link.
+    pub fn note(&mut self, event: &Event) {
+        match event {
+            Event::Traffic { traffic, text, sound } => self.log.take(traffic, text, *sound),
+            Event::Transacted { id, result } => {
+                self.kept.answered(*id, result);
+                self.composer.answered(*id, result);
+            }
+            _ => {}
+        }
+    }
+
+    /// The link is gone: a request that waits for its answer waits for nothing.
+    pub fn link_ended(&mut self) {
+        self.log.link_ended();
+        self.composer.forget_waiting();
+        self.kept.forget();
+    }
+
+    /// Writes what the filter lets through to a file; what became of it, as a sentence.
+    pub fn save(&self, path: &PathBuf) -> Result<String, String> {
+        let text = self.log.to_text();
+        let lines = self.log.shown_len();
+        match std::fs::write(path, text) {
+            Ok(()) => Ok(format!("Saved {lines} transactions to {}.", path.display())),
+            Err(error) => Err(format!(
+                "Could not save the traffic to {}: {error}. Choose another folder or name.",
+                path.display()
+            )),
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! The bytes that wait to be sent: edited settings that were not written yet, and what the sliders stand for.
+
+use brushwork_link::device::Drive;
+
+use crate::model::desk::Desk;
+use crate::model::screen::Screen;
+
+/// One packet that waits.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Pending {
+    pub title: String,
+    pub bytes: Vec<u8>,
+    /// In words.
+    pub text: String,
+}
+
+/// All packets that wait, in the order in which they would be sent; or why the settings cannot be written as they are.
+pub fn pending(desk: &Desk, screen: Screen) -> (Vec<Pending>, Vec<String>) {
+    let Some(identity) = desk.link.identity() else { return (Vec::new(), Vec::new()) };
+    let (address, generation) = (identity.unit_address(), identity.generation);
+    let packet = |title: String, bytes: Vec<u8>| {
+        let text = identity.describe_sent(&bytes).text;
+        Pending { title, bytes, text }
+    };
+    let mut packets = Vec::new();
+    let mut refusals = Vec::new();
+    match desk.general.unit().filter(|unit| !unit.edits().is_empty()).map(|unit| unit.plan(desk.link.stream))
+    {
+        Some(Ok(plan)) => {
+            let steps = plan.steps.iter().filter_map(|step| {
+                Some(packet(format!("Write: {}", step.title()), step.bytes(address, generation).ok()?))
+            });
+            packets.extend(steps);
+        }
+        Some(Err(reasons)) => refusals.extend(reasons.into_iter().map(|refusal| refusal.sentence)),
+        None => {}
+    }
+    if let Some(drive) = drive_of(desk, screen) {
+        let bytes = identity.preview(&drive);
+        packets.extend(
+            bytes.into_iter().map(|bytes| packet("Drive: what the sliders stand for".to_owned(), bytes)),
+        );
+    }
+    (packets, refusals)
+}
+
+/// What the sliders of a screen would send if both were moved.
+fn drive_of(desk: &Desk, screen: Screen) -> Option<Drive> {
+    let scope = screen.arm_scope()?;
+    let mut sliders = desk.sliders();
+    for setpoints in
+        [&mut sliders.pwm.setpoints, &mut sliders.velocity.setpoints, &mut sliders.position.setpoints]
+    {
+        setpoints.touch();
+    }
+    desk.family().to_send(scope, sliders)
+}

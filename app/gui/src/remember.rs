@@ -1,0 +1,361 @@
+//! What the window remembers from one time to the next: a small JSON file in the user's configuration folder.
+//!
+//! The file is replaced as a whole. One that cannot be read is a sentence and the defaults; it is put aside, not
+//! overwritten. Values that make no sense count as not given.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::thread::{self, JoinHandle};
+
+use brushwork_link::Failure;
+use brushwork_link::settings::replace_file;
+use crossbeam_channel::{Receiver, Sender, bounded};
+use egui::{Context, Rect, ThemePreference, ViewportInfo};
+use serde::{Deserialize, Serialize};
+
+use super::model::Model;
+use super::model::screen::Screen;
+use brushwork_core::keep::folder;
+
+/// How long a change waits, so that a window being dragged does not write a file for each step, seconds.
+const SETTLE_S: f64 = 1.0;
+/// Nobody has a desk further out than that, points.
+const FARTHEST: f32 = 30_000.0;
+
+/// All that is remembered. What a file does not have is as it is at first.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Remembered {
+    /// 1.
+    pub version: u32,
+    pub window: Option<Placed>,
+    pub theme: ThemeWord,
+    pub plain: bool,
+    pub scale_percent: u16,
+    /// The screen's title.
+    pub screen: String,
+    /// Connections, newest first.
+    pub recent: Vec<String>,
+    pub left_width: f32,
+    pub world_width: f32,
+}
+
+/// Where the window was, in points.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Placed {
+    /// Left and top. None where the desktop does not tell.
+    pub at: Option<[f32; 2]>,
+    pub size: [f32; 2],
+    pub maximized: bool,
+}
+
+/// The theme as the file has it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ThemeWord {
+    #[default]
+    System,
+    Light,
+    Dark,
+}
+
+impl Default for Remembered {
+    fn default() -> Self {
+        let mut remembered = Self {
+            version: 1,
+            window: None,
+            theme: ThemeWord::System,
+            plain: false,
+            scale_percent: 0,
+            screen: String::new(),
+            recent: Vec::new(),
+            left_width: 0.0,
+            world_width: 0.0,
+        };
+        remembered.look_at(&Model::default());
+        remembered
+    }
+}
+
+impl Remembered {
+    /// Takes over what the window is like now.
+    fn look_at(&mut self, model: &Model) {
+        self.theme = match model.appearance.theme {
+            ThemePreference::System => ThemeWord::System,
+            ThemePreference::Light => ThemeWord::Light,
+            ThemePreference::Dark => ThemeWord::Dark,
+        };
+        self.plain = model.appearance.plain;
+        self.scale_percent = model.appearance.scale_percent;
+        model.screen.title().clone_into(&mut self.screen);
+        self.recent = model.devices.recent().to_vec();
+        self.left_width = model.layout.left_width.round();
+        self.world_width = model.layout.world_width.round();
+    }
+
+    /// Makes the window like it was.
+    pub fn recall(&self, model: &mut Model) {
+        model.appearance.theme = match self.theme {
+            ThemeWord::System => ThemePreference::System,
+            ThemeWord::Light => ThemePreference::Light,
+            ThemeWord::Dark => ThemePreference::Dark,
+        };
+        model.appearance.plain = self.plain;
+        model.appearance.set_scale(self.scale_percent);
+        let screen = Screen::ALL.into_iter().find(|screen| screen.title() == self.screen);
+        if let Some(screen) = screen {
+            model.turn_to(screen);
+        }
+        model.devices.set_recent(self.recent.clone());
+        model.layout.set(self.left_width, self.world_width);
+    }
+}
+
+/// The file, and when it is written.
+pub struct Memory {
+    saved: Remembered,
+    current: Remembered,
+    changed_at_s: Option<f64>,
+    writer: Writer,
+}
+
+impl Memory {
+    /// Reads the file in the user's configuration folder; beside it what is to be said about it.
+    pub fn open() -> (Self, Option<Failure>) {
+        Self::at(folder::config().map(|folder| folder.join("window.json")))
+    }
+
+    /// Reads the file at `path`; without one nothing is kept.
+    pub fn at(path: Option<PathBuf>) -> (Self, Option<Failure>) {
+        let (remembered, failure) = match path.as_deref().map(read) {
+            None => (Remembered::default(), None),
+            Some(Ok(remembered)) => (remembered, None),
+            Some(Err(failure)) => (Remembered::default(), Some(failure)),
+        };
+        let memory = Self {
+            saved: remembered.clone(),
+            current: remembered,
+            changed_at_s: None,
+            writer: Writer::start(path),
+        };
+        (memory, failure)
+    }
+
+    pub fn remembered(&self) -> &Remembered {
+        &self.current
+    }
+
+    /// Looks at the window in each frame, and keeps what has changed once it has settled. A failure is given once.
+    pub fn look(&mut self, ctx: &Context, model: &Model) -> Option<Failure> {
+        let before = self.current.clone();
+        self.current.look_at(model);
+        let zoom = ctx.zoom_factor();
+        let placed = ctx.input(|input| placed(input.viewport(), zoom, before.window));
+        self.current.window = placed.or(before.window);
+        let now_s = ctx.input(|input| input.time);
+        if self.current != before {
+            self.changed_at_s = Some(now_s);
+        }
+        let settled = self.changed_at_s.is_none_or(|changed| now_s - changed >= SETTLE_S);
+        if settled && self.current != self.saved && self.writer.write(&self.current) {
+            self.saved = self.current.clone();
+            self.changed_at_s = None;
+        }
+        self.writer.failure()
+    }
+}
+
+impl Drop for Memory {
+    fn drop(&mut self) {
+        if self.current != self.saved {
+            self.writer.finish(&self.current);
+        }
+    }
+}
+
+/// Where the window is, as far as the desktop tells: in the points of a desktop, whatever the window's own scale.
+fn placed(viewport: &ViewportInfo, zoom: f32, before: Option<Placed>) -> Option<Placed> {
+    let is = |flag: Option<bool>| flag.unwrap_or(false);
+    if is(viewport.minimized) {
+        return before;
+    }
+    let inner = viewport.inner_rect.filter(Rect::is_positive)?;
+    let now = Placed {
+        at: viewport.outer_rect.map(|outer| [outer.left() * zoom, outer.top() * zoom].map(f32::round)),
+        size: [inner.width() * zoom, inner.height() * zoom].map(f32::round),
+        maximized: is(viewport.maximized) || is(viewport.fullscreen),
+    };
+    // A maximised window keeps the place it will go back to.
+    Some(if now.maximized { Placed { maximized: true, ..before.unwrap_or(now) } } else { now })
+}
+
+fn read(path: &Path) -> Result<Remembered, Failure> {
+    let text = match fs::read_to_string(path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Remembered::default()),
+        Err(error) => return Err(unread(path, error, "Brushwork starts as it is at first")),
+    };
+    match serde_json::from_str::<Remembered>(&text) {
+        Ok(remembered) => Ok(sane(remembered)),
+        Err(error) => {
+            let aside = path.with_extension("json.broken");
+            // If it cannot be put aside, it is overwritten: nothing in it is worth more than starting.
+            let _ = fs::rename(path, &aside);
+            let mend = format!("Brushwork starts as it is at first. The old file is {}", aside.display());
+            Err(unread(path, error, &mend))
+        }
+    }
+}
+
+fn unread(path: &Path, error: impl std::fmt::Display, mend: &str) -> Failure {
+    Failure::new("read the window's state", path.display().to_string(), error, mend)
+}
+
+/// A window that is nowhere or has no size is as good as none.
+fn sane(mut remembered: Remembered) -> Remembered {
+    let near = |value: f32| value.is_finite() && value.abs() <= FARTHEST;
+    if let Some(window) = &mut remembered.window {
+        window.at = window.at.filter(|at| at.iter().all(|value| near(*value)));
+    }
+    remembered.window =
+        remembered.window.filter(|window| window.size.iter().all(|size| near(*size) && *size >= 100.0));
+    remembered
+}
+
+/// Writes on a thread of its own, so that a slow disk does not hold up the window.
+struct Writer {
+    path: Option<PathBuf>,
+    sender: Option<Sender<Remembered>>,
+    failures: Receiver<Failure>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Writer {
+    fn start(path: Option<PathBuf>) -> Self {
+        let (sender, wanted) = bounded::<Remembered>(1);
+        let (tell, failures) = bounded(1);
+        let own = path.clone();
+        let work = move || {
+            let Some(path) = own else { return };
+            for remembered in wanted {
+                if let Err(failure) = write(&path, &remembered) {
+                    // One sentence is enough; the next one has to wait until it was read.
+                    let _ = tell.try_send(failure);
+                }
+            }
+        };
+        let thread = thread::Builder::new().name("window state".to_owned()).spawn(work).ok();
+        Self { path, sender: Some(sender), failures, thread }
+    }
+
+    /// False if the one before is still being written.
+    fn write(&self, remembered: &Remembered) -> bool {
+        let Some(sender) = self.sender.as_ref().filter(|_| self.path.is_some() && self.thread.is_some())
+        else {
+            return true;
+        };
+        !matches!(sender.try_send(remembered.clone()), Err(crossbeam_channel::TrySendError::Full(_)))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.failures.try_recv().ok()
+    }
+
+    /// The window closes: what is still to be written is written, last of all `remembered`.
+    fn finish(&mut self, remembered: &Remembered) {
+        self.sender = None;
+        if let Some(thread) = self.thread.take() {
+            // A panic there has been reported by its own thread.
+            let _ = thread.join();
+        }
+        if let Some(path) = &self.path {
+            // There is no window left to say it in.
+            let _ = write(path, remembered);
+        }
+    }
+}
+
+fn write(path: &Path, remembered: &Remembered) -> Result<(), Failure> {
+    let failed = |error: &dyn std::fmt::Display| {
+        let mend = "The next start will be as the last one was. Look at the folder's permissions";
+        Failure::new("keep the window's state", path.display().to_string(), error, mend)
+    };
+    let text = serde_json::to_string_pretty(remembered).map_err(|error| failed(&error))?;
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder).map_err(|error| failed(&error))?;
+    }
+    replace_file(path, text.as_bytes()).map_err(|error| failed(&error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file() -> (tempfile::TempDir, PathBuf) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("config").join("window.json");
+        (folder, path)
+    }
+
+    #[test]
+    fn what_the_window_was_like_comes_back() {
+        let (_folder, path) = file();
+        let mut model = Model::default();
+        model.appearance.theme = ThemePreference::Dark;
+        model.appearance.set_scale(130);
+        model.turn_to(Screen::Velocity);
+        model.devices.remember("/dev/ttyACM0");
+        model.layout.set(250.0, 300.0);
+        let (mut memory, failure) = Memory::at(Some(path.clone()));
+        assert!(failure.is_none());
+        memory.current.look_at(&model);
+        drop(memory);
+        let (memory, failure) = Memory::at(Some(path));
+        assert!(failure.is_none());
+        let mut again = Model::default();
+        memory.remembered().recall(&mut again);
+        assert_eq!(again.appearance, model.appearance);
+        assert_eq!(again.screen, Screen::Velocity);
+        assert_eq!(again.devices.recent(), ["/dev/ttyACM0"]);
+        assert_eq!(again.layout, model.layout);
+    }
+
+    #[test]
+    fn a_broken_file_is_a_sentence_and_the_defaults_and_is_put_aside() {
+        let (_folder, path) = file();
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(&path, "{ \"theme\": \"purple\" ").unwrap();
+        let (memory, failure) = Memory::at(Some(path.clone()));
+        assert_eq!(*memory.remembered(), Remembered::default());
+        let told = failure.unwrap().to_string();
+        assert!(told.contains("window.json") && told.contains("broken"), "{told}");
+        assert!(path.with_extension("json.broken").exists() && !path.exists());
+    }
+
+    #[test]
+    fn values_that_make_no_sense_count_as_not_given() {
+        let (_folder, path) = file();
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        let text = r#"{ "scale_percent": 9999, "left_width": -1e30, "screen": "Kitchen", "new": 1,
+            "window": { "at": [1e20, 0], "size": [0, 0], "maximized": false } }"#;
+        fs::write(&path, text).unwrap();
+        let (memory, failure) = Memory::at(Some(path));
+        assert!(failure.is_none());
+        assert_eq!(memory.remembered().window, None);
+        let mut model = Model::default();
+        memory.remembered().recall(&mut model);
+        assert_eq!(model.appearance.scale_percent, 250);
+        assert_eq!(model.screen, Screen::DeviceStatus);
+        assert!(model.layout.left_width >= 200.0);
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_written_to_is_a_sentence() {
+        let folder = tempfile::tempdir().unwrap();
+        let in_the_way = folder.path().join("config");
+        fs::write(&in_the_way, "a file where a folder should be").unwrap();
+        let told = write(&in_the_way.join("window.json"), &Remembered::default()).unwrap_err().to_string();
+        assert!(told.contains("window.json"), "{told}");
+    }
+}

@@ -1,0 +1,103 @@
+//! The window for connecting to a CANopen bus (MCP manual 1.2.8, "Connect CANOpen Bus").
+
+use brushwork_mcp_wire::canopen::NodeId;
+use brushwork_mcp_wire::canopen::adapter::Form;
+use egui::{ComboBox, Context, DragValue, Grid, Rect, Response, RichText, Ui, Window, vec2};
+
+use crate::command::{Command, Commands};
+use crate::model::Model;
+use crate::model::canopen::ADAPTER_BAUD_RATES;
+use crate::theme::Palette;
+
+const SIMULATED: &str = "Simulated bus, in this program";
+
+/// Draws the window, if it is open, within `room`.
+pub fn canopen_ui(ctx: &Context, model: &mut Model, commands: &mut Commands, room: Rect) {
+    if !model.canopen.open {
+        return;
+    }
+    let mut open = true;
+    let size = vec2(440.0, 250.0).min(room.size() - vec2(24.0, 60.0));
+    Window::new("CANopen bus")
+        .open(&mut open)
+        .collapsible(false)
+        .resizable(false)
+        .default_pos(room.center() - size / 2.0)
+        .default_width(size.x)
+        .constrain_to(room)
+        .show(ctx, |ui| contents_ui(ui, model, commands));
+    if !open || ctx.input(|input| input.key_pressed(egui::Key::Escape)) {
+        model.canopen.open = false;
+    }
+}
+
+fn contents_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    weak_ui(ui, "Controllers on a CANopen bus are reached through a GridConnect adapter on a serial port.");
+    Grid::new("canopen").num_columns(2).spacing(vec2(12.0, 6.0)).show(ui, |ui| {
+        ui.label("Adapter");
+        adapter_ui(ui, model);
+        ui.end_row();
+        let choice = &mut model.canopen;
+        ui.label("Its form");
+        ui.horizontal(|ui| {
+            ui.radio_value(&mut choice.form, Form::Ascii, "ASCII").on_hover_text(":S601N40;");
+            ui.radio_value(&mut choice.form, Form::Binary, "Binary")
+                .on_hover_text("FF 00, flags, identifier, data");
+        });
+        ui.end_row();
+        if choice.port.is_some() {
+            ui.label("Its baud rate");
+            let combo = ComboBox::from_id_salt("adapter baud").selected_text(choice.baud.to_string());
+            let response = combo.show_ui(ui, |ui| {
+                for baud in ADAPTER_BAUD_RATES {
+                    ui.selectable_value(&mut choice.baud, baud, baud.to_string());
+                }
+            });
+            name(ui, &response.response, "Adapter baud rate");
+            ui.end_row();
+        }
+        ui.label("Nodes");
+        ui.horizontal(|ui| {
+            let mut all = choice.node.is_none();
+            if ui.checkbox(&mut all, "All that answer").changed() {
+                choice.node = if all { None } else { Some(NodeId::DEFAULT.get()) };
+            }
+            if let Some(node) = &mut choice.node {
+                let response = ui.add(DragValue::new(node).range(1..=NodeId::MAX).prefix("node "));
+                name(ui, &response, "Node id");
+            }
+        });
+        ui.end_row();
+    });
+    weak_ui(
+        ui,
+        "The bus rate is set at the adapter: 250 kbit/s unless the controller was set to another one. Settings and readings work as over \
+         USB. Motors of a real controller are not armed here: over CANopen it has no time-out that would stop them.",
+    );
+    if ui.button("Connect to the bus").clicked() {
+        model.canopen.open = false;
+        commands.push(Command::ConnectTo(model.canopen.target()));
+    }
+}
+
+fn adapter_ui(ui: &mut Ui, model: &mut Model) {
+    let ports: Vec<_> = model.devices.ports().iter().map(|port| port.name.clone()).collect();
+    let chosen = &mut model.canopen.port;
+    let text = chosen.clone().unwrap_or_else(|| SIMULATED.to_owned());
+    let response = ComboBox::from_id_salt("can adapter").width(240.0).selected_text(text).show_ui(ui, |ui| {
+        ui.selectable_value(chosen, None, SIMULATED);
+        for port in ports {
+            ui.selectable_value(chosen, Some(port.clone()), port);
+        }
+    });
+    name(ui, &response.response, "CAN adapter");
+}
+
+fn name(ui: &Ui, response: &Response, text: &str) {
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(text));
+}
+
+fn weak_ui(ui: &mut Ui, text: &str) {
+    let color = Palette::of(ui).weak_text;
+    ui.add(egui::Label::new(RichText::new(text).color(color)).wrap());
+}

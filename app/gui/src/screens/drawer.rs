@@ -1,0 +1,62 @@
+//! The drawer above the graph: its tabs, and what the open one shows.
+
+use egui::{Frame, Margin, Stroke, Ui};
+
+use super::generator::generator_ui;
+use super::loops::loops_ui;
+use super::motion_mind::steps::steps_ui;
+use super::qpps::qpps_ui;
+use crate::command::Commands;
+use crate::model::Model;
+use crate::model::drawer::Tab;
+use crate::model::loop_settings::{Column, POSITION, PWM, VELOCITY};
+use crate::model::screen::Screen;
+use crate::theme::Palette;
+use crate::tune::by_hand::by_hand_ui;
+
+/// Whether guided tuning has the screen.
+pub fn is_tuning(model: &Model) -> bool {
+    model.front.open_tab(model.screen) == Some(Tab::Tune)
+}
+
+pub fn drawer_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    let screen = model.screen;
+    ui.horizontal(|ui| {
+        for tab in model.front.family().tabs(screen) {
+            let is_open = model.front.open_tab(screen) == Some(*tab);
+            let label = ui.selectable_label(is_open, title(model, screen, *tab));
+            let hint = if is_open { "Closes it and leaves its room to the graph" } else { "Opens it" };
+            if label.on_hover_text(hint).clicked() {
+                model.front.drawers.press(screen, *tab);
+            }
+        }
+    });
+    let Some(tab) = model.front.open_tab(screen).filter(|tab| *tab != Tab::Tune) else { return };
+    let outline = Stroke::new(1.0, Palette::of(ui).line);
+    Frame::new().stroke(outline).corner_radius(4.0).inner_margin(Margin::symmetric(10, 6)).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        match tab {
+            Tab::Settings | Tab::VelocityLoop => loops_ui(ui, model, columns(screen, tab), commands),
+            Tab::Generator => generator_ui(ui, model, commands),
+            Tab::Qpps => qpps_ui(ui, model, commands),
+            Tab::ByHand => by_hand_ui(ui, model, commands),
+            Tab::Steps => steps_ui(ui, model, commands),
+            Tab::Tune => {}
+        }
+    });
+}
+
+/// The title, with a star while edits behind it wait to be applied.
+fn title(model: &Model, screen: Screen, tab: Tab) -> String {
+    let has_edits =
+        matches!(tab, Tab::Settings | Tab::VelocityLoop) && model.front.loops.edits(columns(screen, tab)) > 0;
+    format!("{}{}", tab.title(screen), if has_edits { " *" } else { "" })
+}
+
+const fn columns(screen: Screen, tab: Tab) -> &'static [Column] {
+    match (screen, tab) {
+        (Screen::Pwm, _) => PWM,
+        (Screen::Position, Tab::Settings) => POSITION,
+        _ => VELOCITY,
+    }
+}

@@ -1,0 +1,60 @@
+//! The explanation of one row, below the list and always as high.
+
+use brushwork_link::settings::{Bound, Row};
+use egui::{Frame, Label, Margin, RichText, ScrollArea, Stroke, Ui};
+
+use crate::model::general::{General, UnitSettings};
+use crate::theme::Palette;
+
+/// Its height on a screen of `available` points: less where the settings themselves have little room.
+pub fn height(available: f32) -> f32 {
+    if available < 460.0 { 74.0 } else { 116.0 }
+}
+
+pub fn help_ui(ui: &mut Ui, general: &General, height: f32) {
+    let palette = Palette::of(ui);
+    let frame = Frame::new().stroke(Stroke::new(1.0, palette.line)).corner_radius(4.0);
+    frame.inner_margin(Margin::symmetric(10, 6)).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        ui.set_height(height - 14.0);
+        ScrollArea::vertical().id_salt("help").auto_shrink(false).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 3.0;
+            let explained = general.explained.as_deref();
+            match general.unit().and_then(|unit| Some((unit, unit.table().row(explained?)?))) {
+                Some((unit, row)) => row_ui(ui, unit, row),
+                None => {
+                    let hint = "Point at a setting, or move the keyboard focus to it, to read what it does.";
+                    ui.label(RichText::new(hint).color(palette.weak_text));
+                }
+            }
+        });
+    });
+}
+
+fn row_ui(ui: &mut Ui, unit: &UnitSettings, row: &Row) {
+    let palette = Palette::of(ui);
+    ui.label(RichText::new(row.title()).strong());
+    if let Some(trouble) = unit.trouble(&row.key) {
+        ui.add(Label::new(RichText::new(trouble).color(palette.error)).wrap());
+    }
+    if let Some(reason) = unit.locked(row) {
+        ui.add(Label::new(RichText::new(reason).color(palette.warning)).wrap());
+    }
+    ui.add(Label::new(row.help).wrap());
+    ui.add(Label::new(RichText::new(figures(unit, row)).color(palette.weak_text)).wrap());
+}
+
+/// Range, default, and what the value means besides its text.
+fn figures(unit: &UnitSettings, row: &Row) -> String {
+    let mut text = String::new();
+    if row.range.bound != Bound::Unbounded {
+        text += &format!("Range {}. ", row.range_text());
+    }
+    let assumed = if row.default_assumed { " (assumed)" } else { "" };
+    text += &format!("Default {}{assumed}.", row.format(row.default));
+    let note = unit.wanted(&row.key).and_then(|value| unit.table().note(row, value));
+    if let Some(note) = note {
+        text += &format!(" The number is {note}.");
+    }
+    text + &format!(" Name in files and on the command line: {}.", row.key)
+}

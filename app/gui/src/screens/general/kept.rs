@@ -1,0 +1,139 @@
+//! The sheets of what is kept on this computer: backups, what was cut short; and the one that copies a motor.
+
+use brushwork_link::settings::{Aftermath, Difference, Held, Row};
+use egui::{Button, Grid, RichText, Role, Ui, WidgetInfo};
+
+use super::sheet_parts::{Act, Offer, differences_ui, lamp_ui, text_ui, title_ui};
+use crate::model::general::{General, Settle, Sheet, Side, UnitSettings};
+use crate::model::lamp::LampState;
+use crate::theme::Palette;
+
+pub fn backups_ui(ui: &mut Ui, general: &mut General) -> Vec<Offer> {
+    title_ui(ui, "Backups");
+    let folder = general.backup_folder().unwrap_or_else(|| "nowhere: there is no home folder".to_owned());
+    text_ui(
+        ui,
+        "Before every write, save, restore of defaults and firmware change the settings are kept here, newest first. \
+         Restoring one makes its values changes, to be looked at and written.",
+    );
+    ui.label(RichText::new(format!("Kept in {folder}")).color(Palette::of(ui).weak_text));
+    if general.backups().is_empty() {
+        lamp_ui(
+            ui,
+            LampState::Unknown,
+            "There is no backup of this controller yet. The first is made before the first write.",
+        );
+        return Vec::new();
+    }
+    let mut wanted = None;
+    Grid::new("backups").num_columns(3).striped(true).spacing([16.0, 4.0]).show(ui, |ui| {
+        for backup in general.backups() {
+            ui.label(backup.title());
+            for (text, restores) in [("Compare", false), ("Restore…", true)] {
+                let response = ui.add(Button::new(text).small());
+                let name = format!("{} backup {}", text.trim_end_matches('…'), backup.title());
+                response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+                if response.clicked() {
+                    wanted = Some((backup.name.clone(), restores));
+                }
+            }
+            ui.end_row();
+        }
+    });
+    match wanted {
+        Some((name, true)) if general.restore(&name) => general.open(Sheet::Write),
+        Some((name, _)) => {
+            general.compare_with(Side::Ram, Side::Backup(name));
+            general.open(Sheet::Compare);
+        }
+        None => {}
+    }
+    Vec::new()
+}
+
+pub fn copy_motor_ui(ui: &mut Ui, general: &mut General) -> Vec<Offer> {
+    title_ui(ui, "Copy motor");
+    text_ui(ui, "Makes one motor's settings those of the other. They become changes here; Write sends them.");
+    ui.horizontal(|ui| {
+        let from = general.motor_to_copy();
+        for (motor, text) in [(1, "Motor 1 to motor 2"), (2, "Motor 2 to motor 1")] {
+            if ui.radio(from == motor, text).clicked() {
+                general.copied_motor = motor;
+            }
+        }
+    });
+    let (Some(copied), Some(unit)) = (general.motor_copy(), general.unit()) else {
+        lamp_ui(ui, LampState::Unknown, "The settings have not been read.");
+        return Vec::new();
+    };
+    if copied.wanted.is_empty() {
+        lamp_ui(ui, LampState::Ok, "The other motor has the same settings already.");
+    }
+    let difference = |row: &Row| {
+        let right = Some(copied.wanted.get(&row.key)?);
+        Some(Difference { key: row.key.clone(), left: unit.wanted(&row.key), right })
+    };
+    differences_ui(ui, unit, unit.table().rows().iter().filter_map(difference));
+    for sentence in &copied.left_out {
+        lamp_ui(ui, LampState::Unknown, sentence);
+    }
+    vec![("Copy", Act::CopyMotor, !copied.wanted.is_empty())]
+}
+
+pub fn unfinished_ui(ui: &mut Ui, general: &General) -> Vec<Offer> {
+    title_ui(ui, "Unfinished");
+    let aftermaths = general.aftermaths();
+    let Some(unit) = general.unit() else { return Vec::new() };
+    if aftermaths.is_empty() {
+        let text = if general.has_unfinished() {
+            "Something was cut short on this controller. Read the settings to see what became of it."
+        } else {
+            "Nothing that was begun on this controller was cut short."
+        };
+        lamp_ui(ui, LampState::Unknown, text);
+        return Vec::new();
+    }
+    // The newest decides; those before it were overtaken by it.
+    for aftermath in aftermaths.iter().rev() {
+        lamp_ui(ui, LampState::Error, &aftermath.headline());
+        lists_ui(ui, unit, aftermath);
+    }
+    let newest = aftermaths.last();
+    let can_undo = newest.is_some_and(|aftermath| {
+        aftermath
+            .new
+            .iter()
+            .chain(&aftermath.other)
+            .chain(&aftermath.disturbed)
+            .any(|held| held.old.is_some())
+    });
+    vec![
+        ("Finish with the new values", Act::Settle(Settle::Finish), true),
+        ("Go back to the old values", Act::Settle(Settle::Undo), can_undo),
+        ("Leave as it is", Act::Settle(Settle::Leave), true),
+    ]
+}
+
+fn lists_ui(ui: &mut Ui, unit: &UnitSettings, aftermath: &Aftermath) {
+    for (title, list) in aftermath.lists() {
+        ui.add_space(4.0);
+        ui.label(RichText::new(format!("{title} ({})", list.len())).strong());
+        Grid::new((title, aftermath.begun.as_str())).num_columns(4).spacing([16.0, 3.0]).show(ui, |ui| {
+            for held in list {
+                held_ui(ui, unit, held);
+            }
+        });
+    }
+}
+
+fn held_ui(ui: &mut Ui, unit: &UnitSettings, held: &Held) {
+    let Some(row) = unit.table().row(&held.key) else { return };
+    let weak = Palette::of(ui).weak_text;
+    let text = |value: Option<_>| value.map_or_else(|| "not known".to_owned(), |value| row.format(value));
+    ui.label(row.title());
+    let now = ui.label(RichText::new(text(held.now)).strong());
+    now.widget_info(|| WidgetInfo::labeled(Role::Label, true, held.sentence(row)));
+    ui.label(RichText::new(format!("old {}", text(held.old))).color(weak));
+    ui.label(RichText::new(format!("new {}", text(held.new.or(held.old)))).color(weak));
+    ui.end_row();
+}

@@ -1,0 +1,108 @@
+//! General Settings (MCP manual 1.2.10 and 1.9): every setting of the controller, grouped as Ion Studio groups them.
+//!
+//! Changing a row changes nothing on the controller; the write sheet shows what will be written, old and new. Sheets
+//! stand in place of the list and not above the window, so that nothing ever covers Stop All.
+
+use egui::{Align, Layout, Ui, vec2};
+
+use super::{not_connected_text, nothing_ui};
+use crate::command::{Command, Commands};
+use crate::model::Model;
+use crate::model::general::{Section, SettingsWish};
+
+mod calibrate;
+mod clamp;
+mod compare;
+mod conflicts;
+pub(super) mod editor;
+mod head;
+pub(super) mod help;
+mod kept;
+mod nav;
+mod pin;
+mod profile;
+mod rows;
+pub(super) mod sheet;
+mod sheet_parts;
+mod signal_graph;
+
+/// The share of the screen that the list of sections takes, and its least and greatest width.
+const NAV_SHARE: f32 = 0.25;
+const NAV_WIDTH: (f32, f32) = (176.0, 250.0);
+/// Below this width the list of sections unfolds above instead.
+const SIDE_BY_SIDE: f32 = 560.0;
+
+pub fn general_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    framed_ui(ui, model, commands, sections_ui);
+}
+
+/// What the settings of every family have around their list: the head, and the sheets that stand in its place.
+pub fn framed_ui(
+    ui: &mut Ui,
+    model: &mut Model,
+    commands: &mut Commands,
+    list_ui: impl FnOnce(&mut Ui, &mut Model, &mut Commands),
+) {
+    let Some(identity) = model.front.link.identity() else {
+        return nothing_ui(ui, &not_connected_text(&model.front.phase));
+    };
+    let family = model.front.family();
+    let general = &mut model.front.general;
+    general.look_at(identity);
+    if general.wants_reading() {
+        commands.push(Command::Settings(SettingsWish::Read));
+    }
+    head::head_ui(ui, general, family, commands);
+    ui.add_space(4.0);
+    match general.sheet().is_some() {
+        true => sheet::sheet_ui(ui, general, model.front.link.stream, family.words(), commands),
+        false => list_ui(ui, model, commands),
+    }
+}
+
+/// The parts at the left, or above in a list that unfolds where that leaves too little room, and what the open one has.
+fn sections_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    let size = ui.available_size();
+    if size.x < SIDE_BY_SIDE {
+        nav::choice_ui(ui, &mut model.front.general);
+        return section_ui(ui, model, commands);
+    }
+    let nav_width = (size.x * NAV_SHARE).clamp(NAV_WIDTH.0, NAV_WIDTH.1);
+    ui.horizontal_top(|ui| {
+        ui.allocate_ui_with_layout(vec2(nav_width, size.y), Layout::top_down(Align::Min), |ui| {
+            ui.set_width(nav_width);
+            nav::nav_ui(ui, &mut model.front.general);
+        });
+        let width = ui.available_width();
+        ui.allocate_ui_with_layout(vec2(width, size.y), Layout::top_down(Align::Min), |ui| {
+            ui.set_width(width);
+            section_ui(ui, model, commands);
+        });
+    });
+}
+
+/// What the open part has, and the explanation of one row.
+fn section_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    let family = model.front.family();
+    let general = &mut model.front.general;
+    let room = ui.available_height();
+    let help_height = help::height(room);
+    let height = room - help_height - ui.spacing().item_spacing.y;
+    // Pages without rows have nothing to explain.
+    match general.section {
+        Section::Conflicts if !general.is_filtered() => conflicts::conflicts_ui(ui, general, room),
+        Section::ClampTest if !general.is_filtered() => {
+            clamp::clamp_ui(ui, general, (&model.front.link, family), room, commands);
+        }
+        _ => {
+            match general.pin() {
+                Some(pin) => {
+                    let signal = model.front.link.readings.signal(pin);
+                    pin::pin_ui(ui, general, pin, signal, height, commands);
+                }
+                None => rows::rows_ui(ui, general, height),
+            }
+            help::help_ui(ui, general, help_height);
+        }
+    }
+}

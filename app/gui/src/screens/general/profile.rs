@@ -1,0 +1,102 @@
+//! The sheets of profiles: opening and saving a file, and a profile beside the controller.
+
+use egui::{Button, Ui, vec2};
+
+use super::sheet_parts::{Act, Offer, lamp_ui, text_ui, title_ui};
+use crate::app::FRAME_INTERVAL;
+use crate::model::general::{General, Purpose, Told, UnitSettings};
+use crate::model::lamp::LampState;
+use crate::widgets::text_field::text_field_ui;
+
+pub fn open_ui(ui: &mut Ui, general: &mut General) -> Vec<Offer> {
+    title_ui(ui, "Open profile");
+    text_ui(
+        ui,
+        "Reads a profile file and shows it beside the controller. Nothing is written; you choose what to take over.",
+    );
+    path_ui(ui, general, Purpose::Open);
+    let can_be_mended = told_ui(ui, general.profiles.told());
+    let has_path = !general.profiles.path.trim().is_empty();
+    let mut acts = vec![("Open", Act::OpenProfile { mending: false }, has_path)];
+    if can_be_mended {
+        acts.push(("Open without what is wrong", Act::OpenProfile { mending: true }, has_path));
+    }
+    acts
+}
+
+pub fn save_ui(ui: &mut Ui, general: &mut General) -> Vec<Offer> {
+    title_ui(ui, "Save profile");
+    text_ui(
+        ui,
+        "Keeps the settings that were read from the controller in a file. A file of that name is replaced.",
+    );
+    path_ui(ui, general, Purpose::Save);
+    let edits = general.unit().map_or(0, |unit| unit.edits().len());
+    if edits > 0 {
+        let text = format!("Include what is changed here and not written ({edits})");
+        ui.checkbox(&mut general.profiles.with_edits, text);
+    } else {
+        general.profiles.with_edits = false;
+    }
+    told_ui(ui, general.profiles.told());
+    let is_read = general.unit().is_some_and(UnitSettings::is_read);
+    if !is_read {
+        lamp_ui(ui, LampState::Warning, "The settings have not been read, so there is nothing to save yet.");
+    }
+    let has_path = !general.profiles.path.trim().is_empty();
+    vec![("Save profile", Act::SaveProfile, is_read && has_path)]
+}
+
+/// The path, and the desktop's own dialog for it.
+fn path_ui(ui: &mut Ui, general: &mut General, purpose: Purpose) {
+    ui.horizontal(|ui| {
+        let width = (ui.available_width() - 110.0).clamp(120.0, 620.0);
+        ui.allocate_ui(vec2(width, ui.spacing().interact_size.y), |ui| {
+            let response =
+                text_field_ui(ui, &mut general.profiles.path, "Profile file", "Path of a .json file");
+            if response.changed() {
+                general.profiles.forget_told();
+            }
+        });
+        let is_free = !general.profiles.is_browsing();
+        if ui.add_enabled(is_free, Button::new("Browse…")).clicked() {
+            general.profiles.forget_told();
+            general.profiles.browse(purpose);
+        }
+    });
+    if general.profiles.is_browsing() {
+        ui.request_repaint_after(FRAME_INTERVAL);
+    }
+}
+
+/// What came of the last attempt; true when the file can be opened without what is wrong with it.
+fn told_ui(ui: &mut Ui, told: &Told) -> bool {
+    match told {
+        Told::Nothing => false,
+        Told::Done(sentence) => {
+            lamp_ui(ui, LampState::Ok, sentence);
+            false
+        }
+        Told::Failed { sentences, can_be_mended } => {
+            for sentence in sentences {
+                lamp_ui(ui, LampState::Error, sentence);
+            }
+            *can_be_mended
+        }
+    }
+}
+
+/// What has to be changed of a profile before it fits; nothing is used before that is agreed to.
+pub fn upgrade_ui(ui: &mut Ui, general: &General) -> Vec<Offer> {
+    let Some((name, changes)) = general.profiles.pending() else { return Vec::new() };
+    title_ui(ui, &format!("Upgrade profile {name}"));
+    text_ui(
+        ui,
+        "The profile was made for another controller, another firmware generation or by an older program. To fit the \
+         controller here it is changed as follows; the file stays as it is, and nothing is written yet.",
+    );
+    for change in changes {
+        lamp_ui(ui, LampState::Warning, change);
+    }
+    vec![("Use with these changes", Act::UseUpgraded, true)]
+}

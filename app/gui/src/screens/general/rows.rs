@@ -1,0 +1,256 @@
+//! The list of settings: name, field, what the controller has, the default, revert.
+
+use brushwork_link::settings::{BRIDGE_WARNING, Group, Row, SHORTEST_AUTORUN_MS, SettingValue};
+use egui::{Align, Button, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
+
+use super::editor;
+use super::sheet_parts::lamp_ui;
+use crate::model::general::{General, Section, UnitSettings};
+use crate::model::lamp::LampState;
+use crate::theme::Palette;
+use crate::widgets::heading::heading_ui;
+use crate::widgets::readout::NO_VALUE;
+
+const HEIGHT: f32 = 28.0;
+const MARK_WIDTH: f32 = 14.0;
+const FIELD_WIDTH: f32 = 184.0;
+const VALUE_WIDTH: f32 = 110.0;
+const REVERT_WIDTH: f32 = 62.0;
+const EXTRA_WIDTH: f32 = 46.0;
+/// Room a name needs at least; columns are left out for it, the default first.
+const NAME_WIDTH: f32 = 140.0;
+
+/// Which columns there is room for.
+#[derive(Clone, Copy)]
+pub struct Columns {
+    name: f32,
+    /// Room beside the field for what belongs to it.
+    extra: f32,
+    controller: bool,
+    default: bool,
+}
+
+/// Draws what stands beside the field of a row.
+pub type Extra<'a> = &'a mut dyn FnMut(&mut Ui, &mut UnitSettings, &Row);
+
+impl Columns {
+    fn fit(width: f32, gap: f32) -> Self {
+        Self::with(width, gap, 0.0)
+    }
+
+    /// With room for a small button beside each field.
+    pub fn with_extra(width: f32, gap: f32) -> Self {
+        Self::with(width, gap, EXTRA_WIDTH)
+    }
+
+    fn with(width: f32, gap: f32, extra: f32) -> Self {
+        let extra_gap = if extra > 0.0 { gap } else { 0.0 };
+        let fixed = MARK_WIDTH + FIELD_WIDTH + extra + extra_gap + REVERT_WIDTH + 4.0 * gap;
+        let with = |values: f32| width - fixed - values * (VALUE_WIDTH + gap);
+        let controller = with(1.0) >= NAME_WIDTH;
+        let default = with(2.0) >= NAME_WIDTH;
+        let values = f32::from(u8::from(controller) + u8::from(default));
+        Self { name: with(values).clamp(80.0, 320.0), extra, controller, default }
+    }
+}
+
+/// Room that the scroll bar may take.
+const BAR_WIDTH: f32 = 14.0;
+
+pub fn rows_ui(ui: &mut Ui, general: &mut General, height: f32) {
+    let shown = general.shown();
+    let is_filtered = general.is_filtered();
+    let gap = ui.spacing().item_spacing.x;
+    let columns = Columns::fit(ui.available_width() - BAR_WIDTH, gap);
+    let header_height = ui.spacing().interact_size.y;
+    header_ui(ui, columns);
+    let list_height = (height - header_height - ui.spacing().item_spacing.y).max(HEIGHT);
+    ui.allocate_ui_with_layout(vec2(ui.available_width(), list_height), Layout::top_down(Align::Min), |ui| {
+        ui.set_min_height(list_height);
+        let salt = ("settings", format!("{:?}", general.section), is_filtered);
+        ScrollArea::vertical().id_salt(salt).auto_shrink(false).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            if shown.is_empty() {
+                ui.label("No setting of this controller fits.");
+            }
+            if general.section == Section::Group(Group::Scripting) && !is_filtered {
+                autorun_ui(ui, general);
+            }
+            list_ui(ui, general, &shown, columns, &mut |_, _, _| {});
+            if general.section == Section::Group(Group::Unit) && !is_filtered {
+                bridge_ui(ui, general.unit());
+            }
+        });
+    });
+}
+
+/// Ion Studio's box over the delay (MCP manual 1.2.10): a delay too short for a start is none.
+fn autorun_ui(ui: &mut Ui, general: &mut General) {
+    const DELAY: &str = "script.autorun_delay";
+    let Some(unit) = general.unit_mut() else { return };
+    let Some(SettingValue::Int(delay_ms)) = unit.wanted(DELAY) else { return };
+    let mut runs = delay_ms >= SHORTEST_AUTORUN_MS;
+    ui.horizontal(|ui| {
+        ui.allocate_space(vec2(MARK_WIDTH, HEIGHT));
+        if ui.checkbox(&mut runs, "Execute script on power up").changed() {
+            unit.set_number(DELAY, if runs { SHORTEST_AUTORUN_MS as f64 } else { 0.0 });
+        }
+    });
+}
+
+/// The wiring warning of bridged channels, while they are wanted (MCP manual 1.8).
+fn bridge_ui(ui: &mut Ui, unit: Option<&UnitSettings>) {
+    let is_on = |unit: &UnitSettings| unit.wanted("unit.bridge_channels") == Some(SettingValue::Bool(true));
+    if unit.is_some_and(is_on) {
+        ui.add_space(6.0);
+        lamp_ui(ui, LampState::Warning, BRIDGE_WARNING);
+    }
+}
+
+/// The rows one below the other, under their sections where several are shown.
+pub fn list_ui(ui: &mut Ui, general: &mut General, shown: &[String], columns: Columns, extra: Extra<'_>) {
+    let is_filtered = general.is_filtered();
+    let sought = general.take_sought();
+    let mut explained = None;
+    let Some(unit) = general.unit_mut() else { return };
+    let mut section = None;
+    for key in shown {
+        let Some(row) = unit.table().row(key).cloned() else { continue };
+        if is_filtered && section.replace(Section::of(&row)) != Some(Section::of(&row)) {
+            section_heading_ui(ui, &row);
+        }
+        // The key as identity: rows come and go with the filter.
+        if ui.push_id(key, |ui| row_ui(ui, unit, &row, columns, is_filtered, extra)).inner {
+            explained = Some(key.clone());
+        }
+        if sought.as_deref() == Some(key) {
+            ui.scroll_to_cursor(None);
+        }
+    }
+    if explained.is_some() {
+        general.explained = explained;
+    }
+}
+
+fn section_heading_ui(ui: &mut Ui, row: &Row) {
+    ui.add_space(6.0);
+    let name = match (Section::of(row), &row.instance) {
+        (Section::One(..), Some(instance)) => instance.name.as_str(),
+        _ => row.group.label(),
+    };
+    heading_ui(ui, name);
+}
+
+pub fn header_ui(ui: &mut Ui, columns: Columns) {
+    ui.horizontal(|ui| {
+        ui.set_min_height(ui.spacing().interact_size.y);
+        ui.allocate_space(vec2(MARK_WIDTH, 1.0));
+        let mut titles = vec![("Setting", columns.name), ("Wanted", FIELD_WIDTH)];
+        titles.extend((columns.extra > 0.0).then_some(("", columns.extra)));
+        titles.extend(columns.controller.then_some(("On the controller", VALUE_WIDTH)));
+        titles.extend(columns.default.then_some(("Default", VALUE_WIDTH)));
+        for (title, width) in titles {
+            crate::widgets::label::fixed_label_ui(ui, title, width);
+        }
+    });
+}
+
+/// Draws a row; true when it is the one to explain.
+fn row_ui(
+    ui: &mut Ui,
+    unit: &mut UnitSettings,
+    row: &Row,
+    columns: Columns,
+    is_filtered: bool,
+    extra: Extra<'_>,
+) -> bool {
+    let locked = unit.locked(row);
+    let width = ui.available_width();
+    let response =
+        ui.allocate_ui_with_layout(vec2(width, HEIGHT), Layout::left_to_right(Align::Center), |ui| {
+            ui.set_min_height(HEIGHT);
+            mark_ui(ui, unit, row);
+            let is_one = matches!(Section::of(row), Section::One(..)) && !is_filtered;
+            let title = if is_one { row.label.to_owned() } else { row.title() };
+            text_ui(ui, &title, &title, columns.name, locked.is_some());
+            let field = ui.allocate_ui_with_layout(
+                vec2(FIELD_WIDTH, HEIGHT),
+                Layout::left_to_right(Align::Center),
+                |ui| {
+                    ui.set_min_width(FIELD_WIDTH);
+                    ui.add_enabled_ui(locked.is_none(), |ui| editor::editor_ui(ui, unit, row)).inner
+                },
+            );
+            if columns.extra > 0.0 {
+                let place = vec2(columns.extra, HEIGHT);
+                ui.allocate_ui_with_layout(place, Layout::left_to_right(Align::Center), |ui| {
+                    ui.set_min_width(columns.extra);
+                    extra(ui, unit, row);
+                });
+            }
+            if columns.controller {
+                let text = unit.on_controller(&row.key).map(|value| row.format(value));
+                let text = text.unwrap_or_else(|| NO_VALUE.to_owned());
+                let spoken = format!("{} on the controller: {text}", row.title());
+                text_ui(ui, &text, &spoken, VALUE_WIDTH, true);
+            }
+            if columns.default {
+                let text = row.format(row.default);
+                let spoken = format!("{} default: {text}", row.title());
+                text_ui(ui, &text, &spoken, VALUE_WIDTH, true);
+            }
+            match locked {
+                Some(reason) if !unit.is_edited(&row.key) => locked_ui(ui, row, reason),
+                _ => revert_ui(ui, unit, row),
+            }
+            field.inner
+        });
+    response.inner || ui.rect_contains_pointer(response.response.rect)
+}
+
+/// A dot before what was changed, a cross before what went wrong.
+fn mark_ui(ui: &mut Ui, unit: &UnitSettings, row: &Row) {
+    let (rect, response) = ui.allocate_exact_size(vec2(MARK_WIDTH, HEIGHT), Sense::hover());
+    let (state, spoken) = match unit.trouble(&row.key) {
+        Some(trouble) => (LampState::Error, format!("{}: {trouble}", row.title())),
+        None if unit.is_edited(&row.key) => (LampState::Warning, format!("{} is changed", row.title())),
+        None => return,
+    };
+    state.paint(ui, rect.center(), 5.0);
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
+    response.on_hover_text(spoken);
+}
+
+/// Text in a place of fixed width; what does not fit is cut off and shown by a pointer over it.
+fn text_ui(ui: &mut Ui, text: &str, spoken: &str, width: f32, is_weak: bool) {
+    let color = if is_weak { Palette::of(ui).weak_text } else { Palette::of(ui).text };
+    ui.allocate_ui_with_layout(vec2(width, HEIGHT), Layout::left_to_right(Align::Center), |ui| {
+        ui.set_min_width(width);
+        let label = Label::new(RichText::new(text).color(color)).selectable(false).truncate();
+        let response = ui.add(label);
+        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, spoken));
+    });
+}
+
+fn locked_ui(ui: &mut Ui, row: &Row, reason: &str) {
+    let (rect, response) = ui.allocate_exact_size(vec2(REVERT_WIDTH, HEIGHT), Sense::hover());
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let color = Palette::of(ui).weak_text;
+    ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, "locked", font, color);
+    let spoken = format!("{} is locked: {reason}", row.title());
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
+    response.on_hover_text(reason);
+}
+
+fn revert_ui(ui: &mut Ui, unit: &mut UnitSettings, row: &Row) {
+    if !unit.is_edited(&row.key) {
+        ui.allocate_space(vec2(REVERT_WIDTH, HEIGHT));
+        return;
+    }
+    let name = format!("Revert {}", row.title());
+    let response = ui.add_sized(vec2(REVERT_WIDTH, HEIGHT - 6.0), Button::new("Revert").small());
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+    if response.on_hover_text("Back to what the controller has").clicked() {
+        unit.revert(&row.key);
+    }
+}

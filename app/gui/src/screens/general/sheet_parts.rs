@@ -1,0 +1,57 @@
+//! What sheets are made of: texts, lamps, differences, and the buttons that they offer.
+
+use brushwork_link::settings::Difference;
+use egui::{Grid, Label, RichText, Ui, vec2};
+
+use crate::model::general::{SettingsWish, Settle, UnitSettings};
+use crate::model::lamp::LampState;
+use crate::theme::Palette;
+
+/// What a button of a sheet does.
+#[derive(Clone, Copy, Debug)]
+pub enum Act {
+    Wish(SettingsWish),
+    OpenProfile { mending: bool },
+    SaveProfile,
+    TakeOverAll,
+    UseUpgraded,
+    CopyMotor,
+    Settle(Settle),
+}
+
+/// A button: its text, what it does, whether it can be pressed.
+pub type Offer = (&'static str, Act, bool);
+
+pub fn title_ui(ui: &mut Ui, text: &str) {
+    ui.label(RichText::new(text).size(16.0).strong());
+}
+
+pub fn text_ui(ui: &mut Ui, text: &str) {
+    ui.add(Label::new(text).wrap());
+}
+
+pub fn lamp_ui(ui: &mut Ui, state: LampState, text: &str) {
+    ui.horizontal_top(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(18.0, 18.0), egui::Sense::hover());
+        state.paint(ui, rect.center(), 6.0);
+        ui.add(Label::new(text).wrap());
+    });
+}
+
+/// Old and new of each setting, with units.
+pub fn differences_ui(ui: &mut Ui, unit: &UnitSettings, differences: impl Iterator<Item = Difference>) {
+    let weak = Palette::of(ui).weak_text;
+    Grid::new("differences").num_columns(4).spacing([16.0, 3.0]).show(ui, |ui| {
+        for difference in differences {
+            let Some(row) = unit.table().row(&difference.key) else { continue };
+            let text =
+                |value: Option<_>| value.map_or_else(|| "not known".to_owned(), |value| row.format(value));
+            ui.label(row.title());
+            ui.label(RichText::new(text(difference.left)).color(weak));
+            ui.label("->");
+            let new = ui.label(RichText::new(text(difference.right)).strong());
+            new.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, difference.describe(row)));
+            ui.end_row();
+        }
+    });
+}

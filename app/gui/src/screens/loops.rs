@@ -1,0 +1,130 @@
+//! The settings of the control loops: a row for each motor, read when the screen opens, applied to RAM by a button.
+
+use brushwork_link::settings::{Kind, SettingValue};
+use brushwork_values::Motor;
+use egui::{Button, Grid, RichText, Ui, vec2};
+
+use crate::command::{Command, Commands};
+use crate::model::Model;
+use crate::model::loop_settings::{Column, LoopSettings, counted, number};
+use crate::theme::Palette;
+use crate::widgets::numeric::Numeric;
+use crate::widgets::readout::NO_VALUE;
+
+/// Where no row says otherwise.
+const GREATEST: f64 = u32::MAX as f64;
+
+pub fn loops_ui(ui: &mut Ui, model: &mut Model, columns: &'static [Column], commands: &mut Commands) {
+    let palette = Palette::of(ui);
+    let is_free = !model.front.is_guided();
+    let loops = &mut model.front.loops;
+    Grid::new(("loops", columns[0].key)).spacing(vec2(8.0, 4.0)).show(ui, |ui| {
+        ui.label("");
+        for column in columns {
+            ui.label(RichText::new(column.label).small().color(palette.weak_text));
+        }
+        ui.end_row();
+        for motor in Motor::BOTH {
+            motor_row_ui(ui, loops, motor, columns);
+            ui.end_row();
+        }
+    });
+    ui.add_space(2.0);
+    ui.horizontal_wrapped(|ui| buttons_ui(ui, loops, columns, is_free, commands));
+    for motor in torque_controlled(loops, columns) {
+        let text = format!(
+            "Motor {}: with L and R both other than 0 the controller switches from duty to current (torque) \
+             control.",
+            motor.index() + 1
+        );
+        ui.label(RichText::new(text).color(palette.warning));
+    }
+    if is_free && loops.wants_applying() {
+        commands.push(Command::ApplyLoops(columns));
+    }
+}
+
+/// Told where L and R stand.
+fn torque_controlled(loops: &LoopSettings, columns: &[Column]) -> Vec<Motor> {
+    let has_inductance = columns.iter().any(|column| column.key == "inductance_henries");
+    if has_inductance { loops.torque_controlled() } else { Vec::new() }
+}
+
+fn motor_row_ui(ui: &mut Ui, loops: &mut LoopSettings, motor: Motor, columns: &[Column]) {
+    ui.label(format!("Motor {}", motor.index() + 1));
+    for column in columns {
+        field_ui(ui, loops, motor, column);
+    }
+}
+
+fn field_ui(ui: &mut Ui, loops: &mut LoopSettings, motor: Motor, column: &Column) {
+    let Some(value) = loops.shown(motor, column) else {
+        ui.label(NO_VALUE).on_hover_text("Not read, or not a setting of this controller");
+        return;
+    };
+    let Some((row, mut shown)) = loops.row(motor, column).zip(number(value)) else { return };
+    let name = format!("{motor} {}", row.label);
+    let help = row.help;
+    let range = row.range.min.max(-GREATEST)..=row.range.max.min(GREATEST);
+    let decimals = decimals_of(&row.format_bare(value), row.kind, value);
+    let edited = loops.is_edited(motor, column);
+    let response = ui
+        .scope(|ui| {
+            if edited {
+                ui.visuals_mut().override_text_color = Some(Palette::of(ui).accent);
+            }
+            let field =
+                Numeric { name: &name, unit: "", range, decimals, step: column.step, width: column.width };
+            field.ui(ui, &mut shown)
+        })
+        .inner;
+    if response.on_hover_text(help).changed() {
+        loops.edit(motor, column, shown);
+    }
+}
+
+/// As many decimals as the value has, so that leaving a field does not round it.
+fn decimals_of(text: &str, kind: Kind, value: SettingValue) -> usize {
+    match (kind, value) {
+        (Kind::Int, _) | (_, SettingValue::Int(_)) => 0,
+        _ => text.split_once('.').map_or(0, |(_, decimals)| decimals.len()),
+    }
+}
+
+fn buttons_ui(
+    ui: &mut Ui,
+    loops: &mut LoopSettings,
+    columns: &'static [Column],
+    is_free: bool,
+    commands: &mut Commands,
+) {
+    let edits = loops.edits(columns);
+    let is_ready = is_free && loops.is_known() && !loops.is_busy();
+    let apply = ui.add_enabled(is_ready && edits > 0, Button::new("Apply to RAM"));
+    if apply.on_hover_text("Writes the changes to the controller and reads them back").clicked() {
+        commands.push(Command::ApplyLoops(columns));
+    }
+    let at_once = ui.checkbox(&mut loops.at_once, "At once");
+    at_once.on_hover_text("Applies each change as soon as it is entered, so that its effect can be watched");
+    let revert = ui.add_enabled(edits > 0, Button::new("Revert"));
+    if revert.on_hover_text("Drops the changes that were not applied").clicked() {
+        loops.revert(columns);
+    }
+    let read = ui.add_enabled(is_free && !loops.is_busy(), Button::new("Read again"));
+    if read.on_hover_text("Reads the settings from the controller; changes here stay").clicked() {
+        commands.push(Command::ReadLoops);
+    }
+    ui.separator();
+    for (from, label) in [(Motor::M1, "Copy M1 to M2"), (Motor::M2, "Copy M2 to M1")] {
+        if ui.add_enabled(is_ready, Button::new(label)).clicked() {
+            loops.copy_from(from, columns);
+        }
+    }
+    let state = match edits {
+        _ if loops.is_busy() => "Asking the controller …".to_owned(),
+        _ if !loops.is_known() => "Not read yet.".to_owned(),
+        0 => "As the controller holds them.".to_owned(),
+        _ => format!("{} changed and not applied yet.", counted(edits)),
+    };
+    ui.label(RichText::new(state).small().color(Palette::of(ui).weak_text));
+}

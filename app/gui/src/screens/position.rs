@@ -1,0 +1,111 @@
+//! Position Settings (MCP manual 1.2.13): the position loop's settings, two position sliders behind an arm switch, and
+//! the live graph.
+
+use brushwork_link::device::{ArmScope, Channel};
+use brushwork_values::Motor;
+use egui::{Label, Ui};
+
+use super::drive::{Output, drive_ui, motor_ui, on_release_ui, options_ui, pace_ui};
+use super::{not_connected_text, nothing_ui};
+use crate::command::Commands;
+use crate::model::Model;
+use crate::model::desk::Desk;
+use crate::model::position::PACE_RANGE;
+use crate::model::setpoints::Direction;
+use crate::widgets::numeric::Numeric;
+use crate::widgets::setpoint::Setpoint;
+
+const OUTPUT: Output = Output {
+    scope: ArmScope::Position,
+    word: "measured",
+    channels: [Channel::M1Position, Channel::M2Position],
+    unit: "counts",
+    digits: 11,
+    unit_letters: 5,
+    width: 224.0,
+};
+
+pub fn position_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    if model.front.link.identity().is_none() {
+        return nothing_ui(ui, &not_connected_text(&model.front.phase));
+    }
+    let note = "Closed loop: the controller goes to a count of the encoder and holds it.";
+    drive_ui(ui, model, ("Position Settings", note, ArmScope::Position), commands, controls_ui);
+}
+
+fn controls_ui(ui: &mut Ui, model: &mut Model) {
+    for motor in Motor::BOTH {
+        let held = motor_ui(ui, model, motor, &OUTPUT, |ui, model| slider_ui(ui, model, motor));
+        jog(&mut model.front, motor, held);
+    }
+    options_ui(ui, |ui| {
+        let position = &mut model.front.position;
+        // Coupling alone moves nothing: the motors may have different travels.
+        ui.checkbox(&mut position.setpoints.sync, "Sync motors").on_hover_text("Both sliders move together");
+        on_release_ui(ui, &mut position.setpoints);
+        ui.separator();
+        for (label, name, unit, hint, value) in [
+            (
+                "Accel",
+                "Acceleration",
+                "counts/s²",
+                "How fast a move gathers speed",
+                &mut position.accel_counts_per_s2,
+            ),
+            (
+                "Decel",
+                "Deceleration",
+                "counts/s²",
+                "How fast a move loses speed",
+                &mut position.decel_counts_per_s2,
+            ),
+            (
+                "Speed",
+                "Travel speed",
+                "counts/s",
+                "The greatest speed on the way",
+                &mut position.speed_counts_per_s,
+            ),
+        ] {
+            let field = Numeric { name, unit, range: PACE_RANGE, decimals: 0, step: 1000.0, width: 130.0 };
+            pace_ui(ui, label, hint, &field, value);
+        }
+    });
+}
+
+fn slider_ui(ui: &mut Ui, model: &mut Model, motor: Motor) {
+    let desk = &mut model.front;
+    let travels = desk.travels();
+    let Some((low, high)) = travels[motor.index()] else {
+        ui.add(Label::new(why_no_slider(desk.loops.is_known())).truncate());
+        return;
+    };
+    // Where the motor is, until a hand asks for something.
+    desk.position.setpoints.show(motor, desk.seen(motor).counts);
+    let name = format!("{motor} position");
+    let slider = Setpoint { name: &name, unit: "", range: low..=high, decimals: 0, step: 1.0 };
+    let shown = desk.position.setpoints.values[motor.index()].clamp(low, high);
+    let mut counts = shown;
+    let moved = slider.ui(ui, &mut counts);
+    if !ui.is_enabled() {
+        return;
+    }
+    desk.position.setpoints.hold(motor, moved.held);
+    // Outside the travel the slider stands at its end; only a hand moves the motor.
+    if counts != shown {
+        desk.position.set_position(motor, counts, travels);
+    }
+}
+
+fn why_no_slider(is_known: bool) -> &'static str {
+    if is_known {
+        "No travel: set Min and Max below and apply them."
+    } else {
+        "Min and Max have not been read."
+    }
+}
+
+fn jog(desk: &mut Desk, motor: Motor, held: Option<Direction>) {
+    let (travels, seen) = (desk.travels(), Motor::BOTH.map(|motor| desk.seen(motor)));
+    desk.position.jog(motor, held, travels, seen);
+}

@@ -1,0 +1,96 @@
+//! The guided measurement of QPPS (MCP manual 2.4.5): what it will do, its limits, how far it is, what it found.
+
+use brushwork_values::Motor;
+use egui::{Button, Label, RichText, Ui};
+
+use super::progress::progress_ui;
+use crate::command::{Command, Commands, GuidedWish};
+use crate::model::Model;
+use crate::model::lamp::LampState;
+use crate::model::qpps::lines;
+use crate::theme::Palette;
+use crate::widgets::numeric::Numeric;
+
+const WHAT_IT_DOES: &str = "Checks with little duty that the encoder counts up when the motor goes forward, then runs it at \
+    100 % in both directions at Accel until its speed holds. Lift the wheels or unhitch the load first.";
+
+pub fn qpps_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    let palette = Palette::of(ui);
+    ui.add(Label::new(RichText::new(WHAT_IT_DOES).small().color(palette.weak_text)).wrap());
+    let is_running = model.front.is_guided();
+    ui.horizontal(|ui| {
+        ui.add_enabled_ui(!is_running, |ui| task_ui(ui, model));
+        if is_running {
+            return progress_ui(ui, model.front.qpps.progress(), commands);
+        }
+        let scope = model.screen.arm_scope();
+        let is_armed = scope.is_some_and(|scope| model.front.link.arming.is_armed_for(scope));
+        let label = format!("Measure {}", model.front.qpps.motor);
+        let measure = ui.add_enabled(is_armed, Button::new(label));
+        if measure.on_disabled_hover_text("Arm this screen first").clicked() {
+            commands.push(Command::Guided(GuidedWish::MeasureQpps));
+        }
+        if !is_armed {
+            let hint = RichText::new("Arm this screen to measure.").small().color(palette.weak_text);
+            ui.add(Label::new(hint).truncate());
+        }
+    });
+    result_ui(ui, model);
+}
+
+fn task_ui(ui: &mut Ui, model: &mut Model) {
+    let panel = &mut model.front.qpps;
+    for motor in Motor::BOTH {
+        ui.radio_value(&mut panel.motor, motor, motor.to_string());
+    }
+    ui.separator();
+    ui.label("Travel up to");
+    let travel = Numeric {
+        name: "Travel limit",
+        unit: "counts",
+        range: 100.0..=2e9,
+        decimals: 0,
+        step: 1000.0,
+        width: 130.0,
+    };
+    travel.ui(ui, &mut panel.travel_limit_counts).on_hover_text("How far it may go in one direction");
+    ui.label("Time up to");
+    let time =
+        Numeric { name: "Time limit", unit: "s", range: 1.0..=120.0, decimals: 0, step: 1.0, width: 60.0 };
+    time.ui(ui, &mut panel.time_limit_s).on_hover_text("How long it may run in one direction");
+    ui.separator();
+}
+
+fn result_ui(ui: &mut Ui, model: &mut Model) {
+    let palette = Palette::of(ui);
+    let mut taken_over = None;
+    match (model.front.qpps.measured(), model.front.qpps.refusal()) {
+        (Some(measured), _) => {
+            let lines = lines(measured);
+            ui.horizontal(|ui| {
+                ui.label(&lines[0]);
+                let label = format!("Set QPPS of {}", measured.motor);
+                let hint = "Puts it into the settings beside L and R, where it is applied";
+                if ui.button(label).on_hover_text(hint).clicked() {
+                    taken_over = Some((measured.motor, measured.qpps()));
+                }
+            });
+            for line in &lines[1..] {
+                ui.label(RichText::new(line).small().color(palette.weak_text));
+            }
+        }
+        (None, Some(refusal)) => {
+            ui.horizontal(|ui| {
+                let (rect, _) = ui.allocate_exact_size(egui::vec2(18.0, 18.0), egui::Sense::hover());
+                LampState::Error.paint(ui, rect.center(), 6.0);
+                ui.add(Label::new(refusal).wrap());
+            });
+        }
+        (None, None) => {
+            ui.label(RichText::new("Nothing measured yet.").small().color(palette.weak_text));
+        }
+    }
+    if let Some((motor, qpps)) = taken_over {
+        model.front.take_over_qpps(motor, qpps);
+    }
+}

@@ -1,0 +1,66 @@
+//! The family's lamps in full, and what the status word says in words.
+
+use egui::{RichText, Ui};
+
+use crate::model::desk::Desk;
+use crate::model::history::clock_text;
+use crate::model::lamp::LampState;
+use crate::theme::Palette;
+use crate::widgets::heading::heading_ui;
+use crate::widgets::lamp;
+
+pub fn lamps_ui(ui: &mut Ui, desk: &Desk, columns: usize) {
+    ui.columns(columns, |ui| {
+        let lamps = desk.family().lamps();
+        for (index, info) in lamps.iter().enumerate() {
+            let column = &mut ui[usize::from(index >= lamps.len().div_ceil(2)).min(columns - 1)];
+            column.spacing_mut().item_spacing.y = 4.0;
+            let state = desk.link.lamps.named(info.short);
+            let since = desk.lamp_since(info.short).filter(|_| state >= LampState::Ok).map(|since| {
+                let clock = clock_text(since);
+                format!("since {}", clock.split('.').next().unwrap_or_default())
+            });
+            lamp::full_ui(column, info.short, info.title, state, since.as_deref());
+        }
+    });
+    if let Some(note) = note(desk) {
+        ui.label(RichText::new(note).small().color(Palette::of(ui).weak_text));
+    }
+}
+
+/// What the home lamps go by.
+fn note(desk: &Desk) -> Option<&'static str> {
+    let identity = desk.link.identity()?;
+    if !identity.is_mcp() {
+        return None;
+    }
+    Some(match desk.watch.homed() {
+        Some(_) => {
+            "M1HM and M2HM follow the actions of the input pins: this controller's status word has no bits for them. \
+             Times are counted from the connection."
+        }
+        None => {
+            "M1HM and M2HM follow the actions of the input pins, which have not been read yet: this controller's status \
+             word has no bits for them. Times are counted from the connection."
+        }
+    })
+}
+
+/// What the status word says, in words.
+pub fn conditions_ui(ui: &mut Ui, desk: &Desk) {
+    ui.add_space(6.0);
+    heading_ui(ui, "What the controller reports");
+    let signs =
+        desk.link.status.map(|report| desk.family().signs(&report, desk.link.identity())).unwrap_or_default();
+    if signs.is_empty() {
+        let color = Palette::of(ui).weak_text;
+        ui.label(RichText::new("Nothing: neither warning nor error.").color(color));
+    }
+    for sign in signs {
+        ui.horizontal(|ui| {
+            let (rect, _) = ui.allocate_exact_size(egui::vec2(18.0, 18.0), egui::Sense::hover());
+            sign.state.paint(ui, rect.center(), 6.0);
+            ui.label(format!("{} ({})", sign.title, sign.state.word()));
+        });
+    }
+}

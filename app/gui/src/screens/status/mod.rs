@@ -1,0 +1,67 @@
+//! Device Status (MCP manual 1.2.3 to 1.2.5): why the motors do not run, thirteen lamps in full, the LEDs, who the unit is,
+//! and what happened since the connection.
+
+use egui::{Align, Layout, ScrollArea, Ui};
+
+use super::{not_connected_text, nothing_ui, title_ui};
+use crate::command::Commands;
+use crate::family::Ability;
+use crate::model::Model;
+use crate::model::lamp::LampState;
+
+mod history;
+mod lamps;
+mod leds;
+mod reasons;
+mod unit;
+
+/// Width from which two columns fit.
+const TWO_COLUMNS_FROM: f32 = 600.0;
+
+pub fn status_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    if model.front.link.identity().is_none() {
+        let hint = not_connected_text(&model.front.phase);
+        if model.front.history.is_empty() {
+            return nothing_ui(ui, &hint);
+        }
+        // What happened before the link ended can still be read.
+        title_ui(ui, "Device Status", hint.lines().next().unwrap_or_default());
+        return history::history_ui(ui, &mut model.front.history, ui.available_height());
+    }
+    title_ui(ui, "Device Status", headline(model));
+    // Side by side where there is room, else below each other.
+    let columns = if ui.available_width() < TWO_COLUMNS_FROM { 1 } else { 2 };
+    let family = model.front.family();
+    ScrollArea::vertical().show(ui, |ui| {
+        if family.lacks(Ability::Diagnosis).is_none() {
+            reasons::reasons_ui(ui, &model.front, commands);
+            ui.add_space(8.0);
+        }
+        lamps::lamps_ui(ui, &model.front, columns);
+        ui.add_space(8.0);
+        let height = ui.available_height().max(history::LEAST_HEIGHT);
+        ui.columns(columns, |ui| {
+            // Columns stretch their text from edge to edge, which no paragraph is read by.
+            let left = Layout::top_down(Align::Min);
+            ui[0].with_layout(left, |ui| history::history_ui(ui, &mut model.front.history, height));
+            ui[columns - 1].with_layout(left, |ui| {
+                if family.lacks(Ability::Leds).is_none() {
+                    leds::leds_ui(ui, &model.front);
+                }
+                lamps::conditions_ui(ui, &model.front);
+                ui.add_space(6.0);
+                unit::unit_ui(ui, &model.front);
+            });
+        });
+    });
+}
+
+fn headline(model: &Model) -> &'static str {
+    match model.front.link.lamps.worst() {
+        LampState::Error => "At least one error: the controller has stopped a motor or both.",
+        LampState::Warning => "At least one warning: a limit is close.",
+        LampState::Active => "No warning and no error; a signal is active.",
+        LampState::Ok => "No warning and no error.",
+        LampState::Unknown | LampState::NotApplicable => "The status has not been read yet.",
+    }
+}

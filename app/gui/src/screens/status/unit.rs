@@ -1,0 +1,68 @@
+//! Who the unit is, and how its link does.
+
+use brushwork_link::device::StatusReport;
+use egui::{Grid, Label, RichText, Ui};
+
+use crate::family::Ability;
+use crate::model::desk::Desk;
+use crate::theme::Palette;
+use crate::widgets::heading::heading_ui;
+
+pub fn unit_ui(ui: &mut Ui, desk: &Desk) {
+    let Some(identity) = desk.link.identity() else { return };
+    heading_ui(ui, "Unit and link");
+    let addresses = |addresses: &[u8]| {
+        let each: Vec<_> = addresses.iter().map(|address| format!("0x{address:02X}")).collect();
+        if each.is_empty() { String::new() } else { format!(", also answers {}", each.join(" ")) }
+    };
+    let stream = desk.link.stream.map_or("not known".to_owned(), |stream| stream.to_string());
+    let port = match desk.family().lacks(Ability::Streams) {
+        Some(_) => identity.port.clone(),
+        None => format!("{} ({stream})", identity.port),
+    };
+    let figures = &desk.link.statistics;
+    let rows = [
+        ("Says of itself", identity.version_text.trim().to_owned()),
+        ("Firmware", format!("{}, {}", or_not_told(&identity.firmware), identity.generation)),
+        ("Address", format!("{}{}", identity.place(), addresses(&identity.also_answers))),
+        ("Port", port),
+        ("Status word", desk.link.status.as_ref().map_or(String::new(), word_text)),
+        (
+            "Traffic",
+            format!("{:.1} kbit/s, {:.0} requests/s", figures.kbit_per_s, figures.transactions_per_s),
+        ),
+        (
+            "Round trip",
+            format!(
+                "{:.2} ms median, {:.2} ms for 99 %",
+                figures.round_trip_median_s * 1000.0,
+                figures.round_trip_p99_s * 1000.0
+            ),
+        ),
+        (
+            "Link errors",
+            format!(
+                "{} time-outs, {} bad CRC, {} retries",
+                figures.timeouts, figures.crc_errors, figures.retries
+            ),
+        ),
+    ];
+    let switches = identity.motion_mind.map(|facts| format!("{}; {} protocol", facts.mode, facts.protocol));
+    let switches = switches.map(|text| ("Switches", text));
+    let weak = Palette::of(ui).weak_text;
+    Grid::new("unit").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {
+        for (label, value) in rows.into_iter().chain(switches) {
+            ui.label(RichText::new(label).color(weak));
+            ui.add(Label::new(value).truncate());
+            ui.end_row();
+        }
+    });
+}
+
+fn or_not_told(text: &str) -> &str {
+    if text.is_empty() { "not told" } else { text }
+}
+
+fn word_text(report: &StatusReport) -> String {
+    format!("0x{:04X}", report.word)
+}

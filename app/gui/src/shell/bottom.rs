@@ -1,0 +1,81 @@
+//! The family's lamps by their abbreviations, and the figures of the link.
+
+use brushwork_link::exchange::LinkStatistics;
+use egui::{Align2, Role, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
+
+use crate::model::Model;
+use crate::theme;
+use crate::theme::Palette;
+use crate::widgets::lamp;
+
+const LINK_WIDTH: f32 = 226.0;
+const HEIGHT: f32 = 38.0;
+
+pub fn bottom_ui(ui: &mut Ui, model: &Model) {
+    ui.spacing_mut().item_spacing.x = 4.0;
+    ui.horizontal(|ui| {
+        let lamps = model.front.family().lamps();
+        let gaps = ui.spacing().item_spacing.x * lamps.len() as f32;
+        let width = ((ui.available_width() - LINK_WIDTH - gaps) / lamps.len() as f32).clamp(38.0, 72.0);
+        for info in lamps {
+            let state = model.front.link.lamps.named(info.short);
+            lamp::abbreviated_ui(ui, vec2(width.floor(), HEIGHT), info.short, info.title, state);
+        }
+        link_ui(ui, model);
+    });
+}
+
+/// Two lines of figures at fixed places.
+fn link_ui(ui: &mut Ui, model: &Model) {
+    let palette = Palette::of(ui);
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
+    let figures = model.is_connected().then_some(&model.front.link.statistics);
+    let (first, second) = lines(figures);
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("Link: {first}, {second}")));
+    let font = egui::FontId::new(12.0, theme::figures().resolve(ui.style()).family);
+    let color = if figures.is_some() { palette.text } else { palette.weak_text };
+    let painter = ui.painter().with_clip_rect(rect);
+    painter.text(pos2(rect.right(), rect.top() + 2.0), Align2::RIGHT_TOP, first, font.clone(), color);
+    let color = if figures.is_some_and(has_errors) { palette.warning } else { palette.weak_text };
+    painter.text(pos2(rect.right(), rect.bottom() - 2.0), Align2::RIGHT_BOTTOM, second, font, color);
+    if let Some(figures) = figures {
+        let body = TextStyle::Body.resolve(ui.style());
+        response.on_hover_text(egui::RichText::new(in_full(figures)).font(body));
+    }
+}
+
+fn has_errors(figures: &LinkStatistics) -> bool {
+    figures.timeouts + figures.crc_errors > 0
+}
+
+/// Fixed-width figures: right-aligned, they stand still.
+fn lines(figures: Option<&LinkStatistics>) -> (String, String) {
+    let Some(figures) = figures else { return ("no link".to_owned(), String::new()) };
+    let first = format!("{:7.1} kbit/s {:6.0} req/s", figures.kbit_per_s, figures.transactions_per_s);
+    let errors = figures.timeouts + figures.crc_errors;
+    let round_trip = milliseconds(figures.round_trip_median_s);
+    let second = format!("{round_trip} ms {errors:6} errors");
+    (first, second)
+}
+
+fn milliseconds(seconds: f64) -> String {
+    format!("{:6.2}", seconds * 1000.0)
+}
+
+/// All figures, one per line.
+pub fn in_full(figures: &LinkStatistics) -> String {
+    format!(
+        "{:.1} kbit/s, {:.0} requests per second\n\
+         Round trip: median {:.2} ms, 99 % within {:.2} ms\n\
+         Time-outs {}, CRC errors {}, retries {}, stray bytes {}, samples dropped {}",
+        figures.kbit_per_s,
+        figures.transactions_per_s,
+        figures.round_trip_median_s * 1000.0,
+        figures.round_trip_p99_s * 1000.0,
+        figures.timeouts,
+        figures.crc_errors,
+        figures.retries,
+        figures.stray_bytes,
+        figures.dropped_samples,
+    )
+}

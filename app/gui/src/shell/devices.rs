@@ -1,0 +1,466 @@
+//! The device list: the simulated controller, the serial ports as they come and go, and a field for any other path.
+
+use brushwork_link::device::{Addresses, FamilyChoice, Identity};
+use brushwork_link::transport::PortInfo;
+use brushwork_mcp_wire::packet_serial::Address;
+use egui::{
+    Align2, ComboBox, Key, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui,
+    WidgetInfo, pos2, vec2,
+};
+
+use egui::containers::menu::MenuButton;
+
+use crate::command::{Command, Commands};
+use crate::model::devices::{BAUD_RATES, Choice, Devices};
+use crate::model::lamp::LampState;
+use crate::model::link::Arming;
+use crate::model::simulated::Simulated;
+use crate::model::{Desk, DeskId, Model, Phase, place_of};
+use crate::theme::Palette;
+use crate::widgets::heading::heading_ui;
+use crate::widgets::text_field::text_field_ui;
+
+const ROW_HEIGHT: f32 = 54.0;
+const RECENT_WIDTH: f32 = 70.0;
+
+pub fn devices_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    heading_ui(ui, "Attached devices");
+    ui.spacing_mut().item_spacing.y = 4.0;
+    for row in rows(model) {
+        row_ui(ui, &row, model, commands);
+    }
+    if model.devices.ports().is_empty() {
+        hint_ui(ui, &model.devices);
+    }
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let room = vec2(ui.available_width() - RECENT_WIDTH - 4.0, ui.spacing().interact_size.y);
+        let entered = ui.allocate_ui(room, |ui| path_ui(ui, &mut model.devices)).inner;
+        recent_ui(ui, &model.devices, commands);
+        if entered {
+            commands.push(Command::Connect);
+        }
+    });
+    options_ui(ui, &mut model.devices);
+    connect_ui(ui, model, commands);
+    units_ui(ui, model, commands);
+}
+
+/// One line of the list: something that can be connected to, or is.
+struct Row {
+    choice: Choice,
+    title: String,
+    /// What it is, or who answered there.
+    detail: String,
+    state: State,
+    simulated: bool,
+    desk: Option<DeskId>,
+    is_open: bool,
+    /// It is there only because of its desk, and can be taken off the list.
+    can_be_forgotten: bool,
+}
+
+/// The simulated controller, the ports, then links to anything else.
+fn rows(model: &Model) -> Vec<Row> {
+    let devices = &model.devices;
+    let simulated = &devices.simulated;
+    let (place, title) = (simulated.target(), format!("Simulated {}", simulated.name()));
+    let mut rows = vec![row(model, Choice::Simulated, &place, &title, "in this program")];
+    for port in devices.ports() {
+        rows.push(row(model, Choice::Port(port.name.clone()), &port.name, &port.name, &described(port)));
+    }
+    if let (Choice::Port(name), true) = (&devices.choice, devices.choice_is_gone()) {
+        let mut gone = row(model, devices.choice.clone(), name, name, "unplugged");
+        gone.state = State::GONE;
+        rows.push(gone);
+    }
+    let mut desks: Vec<&Desk> = model.desks().filter(|desk| desk.target.is_some()).collect();
+    desks.sort_by_key(|desk| desk.id());
+    for desk in desks {
+        let target = desk.target.as_deref().unwrap_or_default();
+        if !rows.iter().any(|row| row.desk == Some(desk.id())) {
+            let mut other = row(model, Choice::Desk(desk.id()), &place_of(target), target, "named below");
+            other.can_be_forgotten = !other.is_open;
+            rows.push(other);
+        }
+    }
+    rows
+}
+
+fn row(model: &Model, choice: Choice, place: &str, title: &str, detail: &str) -> Row {
+    let desk = model.desk_at(place);
+    let identity = desk.and_then(|desk| desk.link.identity());
+    Row {
+        choice,
+        title: title.to_owned(),
+        detail: identity.map_or_else(|| detail.to_owned(), answered),
+        state: desk.map_or(State::AVAILABLE, State::of),
+        simulated: place.starts_with("sim:"),
+        desk: desk.map(Desk::id),
+        is_open: desk.is_some_and(|desk| desk.phase != Phase::Closed),
+        can_be_forgotten: false,
+    }
+}
+
+/// Model, address and firmware of who answered.
+fn answered(identity: &Identity) -> String {
+    let firmware = match identity.firmware.as_str() {
+        "" => "firmware?".to_owned(),
+        version => format!("v{version}"),
+    };
+    format!("{} · {} · {firmware}", identity.title(), identity.place())
+}
+
+/// What is so with a device: a word, and a lamp that says the same by colour and shape.
+#[derive(Clone, Copy)]
+struct State(&'static str, LampState);
+
+impl State {
+    const AVAILABLE: Self = Self("available", LampState::Unknown);
+    const GONE: Self = Self("gone", LampState::Warning);
+
+    fn of(desk: &Desk) -> Self {
+        match &desk.phase {
+            Phase::Closed => Self::AVAILABLE,
+            Phase::Opening { .. } => Self("connecting", LampState::Active),
+            Phase::Closing { .. } => Self("disconnecting", LampState::Active),
+            Phase::Open { .. } if desk.link.identity().is_none() => {
+                Self("looking for controllers", LampState::Active)
+            }
+            Phase::Open { .. } => Self::of_unit(desk),
+        }
+    }
+
+    fn of_unit(desk: &Desk) -> Self {
+        match (desk.link.lamps.worst(), desk.link.arming) {
+            (LampState::Error, _) => Self("connected, error", LampState::Error),
+            (_, Arming::Armed { .. }) => Self("connected, armed", LampState::Active),
+            (LampState::Warning, _) => Self("connected, warning", LampState::Warning),
+            _ => Self("connected", LampState::Ok),
+        }
+    }
+}
+
+fn row_ui(ui: &mut Ui, row: &Row, model: &mut Model, commands: &mut Commands) {
+    let chosen = model.devices.choice == row.choice;
+    let in_front = row.is_open && row.desk == Some(model.front.id());
+    let several = model.desks().filter(|desk| desk.phase != Phase::Closed).count() > 1;
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::click());
+    let front = if in_front && several { ", in front" } else { "" };
+    let spoken = format!("{}: {}, {}{front}", row.title, row.detail, row.state.0);
+    response.widget_info(|| WidgetInfo::selected(Role::Button, true, chosen, &spoken));
+    paint_row(ui, rect, row, (chosen, in_front && several), &response);
+    end_ui(ui, rect, row, commands);
+    if response.clicked() {
+        model.devices.choice = row.choice.clone();
+        commands.extend(row.desk.filter(|_| row.is_open).map(Command::Front));
+    }
+    if response.double_clicked() && !row.is_open {
+        commands.push(Command::Connect);
+    }
+    response.on_hover_text(format!("{}\n{}\n{}{front}", row.title, row.detail, row.state.0));
+}
+
+/// The small button in the row's corner: ends the link, or takes a closed one off the list.
+fn end_ui(ui: &mut Ui, rect: Rect, row: &Row, commands: &mut Commands) {
+    let Some(desk) = row.desk.filter(|_| row.is_open || row.can_be_forgotten) else { return };
+    let (verb, command) = match row.is_open {
+        true => ("Disconnect from", Command::Disconnect(desk)),
+        false => ("Forget", Command::Forget(desk)),
+    };
+    let at = Rect::from_center_size(pos2(rect.right() - 13.0, rect.bottom() - 11.0), vec2(20.0, 16.0));
+    let name = format!("{verb} {}", row.title);
+    let response = ui.interact(at, ui.scope_id().with((&row.title, "end")), Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+    let palette = Palette::of(ui);
+    let ring =
+        if response.has_focus() { Stroke::new(2.0, palette.accent) } else { Stroke::new(1.0, palette.line) };
+    let fill = if response.hovered() { palette.line } else { palette.raised };
+    ui.painter().rect(at, 3.0, fill, ring, StrokeKind::Inside);
+    let font = TextStyle::Button.resolve(ui.style());
+    ui.painter().text(at.center(), Align2::CENTER_CENTER, "×", font, palette.text);
+    if response.on_hover_text(&name).clicked() {
+        commands.push(command);
+    }
+}
+
+fn paint_row(ui: &Ui, rect: Rect, row: &Row, (chosen, in_front): (bool, bool), response: &Response) {
+    let palette = Palette::of(ui);
+    let outline = match (chosen || response.has_focus(), response.hovered()) {
+        (true, _) => Stroke::new(if response.has_focus() { 2.0 } else { 1.5 }, palette.accent),
+        (false, true) => Stroke::new(1.0, palette.weak_text),
+        (false, false) => Stroke::new(1.0, palette.line),
+    };
+    let fill = if chosen { palette.raised } else { palette.panel };
+    let painter = ui.painter().with_clip_rect(rect);
+    painter.rect(rect, 4.0, fill, outline, StrokeKind::Inside);
+    if in_front {
+        let bar = Rect::from_min_max(
+            rect.left_top() + vec2(2.0, 4.0),
+            pos2(rect.left() + 5.0, rect.bottom() - 4.0),
+        );
+        painter.rect_filled(bar, 1.0, palette.accent);
+    }
+    row.state.1.paint(ui, pos2(rect.left() + 16.0, rect.top() + 14.0), 5.0);
+    let (body, small) = (TextStyle::Body.resolve(ui.style()), TextStyle::Small.resolve(ui.style()));
+    let left = rect.left() + 28.0;
+    let mut room = rect.shrink(4.0);
+    if row.simulated {
+        let at = pos2(rect.right() - 8.0, rect.top() + 7.0);
+        let tag = painter.text(at, Align2::RIGHT_TOP, "SIM", small.clone(), palette.accent);
+        let frame = tag.expand2(vec2(3.0, 1.0));
+        painter.rect_stroke(frame, 3.0, Stroke::new(1.0, palette.accent), StrokeKind::Outside);
+        room.max.x = frame.left() - 4.0;
+    }
+    let title = painter.with_clip_rect(room);
+    title.text(pos2(left, rect.top() + 5.0), Align2::LEFT_TOP, &row.title, body, palette.text);
+    let below = painter.with_clip_rect(rect.shrink(4.0));
+    below.text(
+        pos2(left, rect.top() + 23.0),
+        Align2::LEFT_TOP,
+        &row.detail,
+        small.clone(),
+        palette.weak_text,
+    );
+    below.text(pos2(left, rect.bottom() - 5.0), Align2::LEFT_BOTTOM, row.state.0, small, palette.text);
+}
+
+/// What a port is, as far as its USB names tell.
+fn described(port: &PortInfo) -> String {
+    match (&port.product, port.is_usb) {
+        (Some(product), _) if port.is_loader() => {
+            format!("{product}: waits for firmware, see Device > Firmware")
+        }
+        (Some(product), _) => product.clone(),
+        (None, true) => "USB".to_owned(),
+        (None, false) => "serial port".to_owned(),
+    }
+}
+
+fn hint_ui(ui: &mut Ui, devices: &Devices) {
+    let text = match &devices.listing_failure {
+        Some(failure) => failure.to_string(),
+        None => "No serial port found. Plug in a controller, or type a path below.".to_owned(),
+    };
+    let color = Palette::of(ui).weak_text;
+    ui.label(RichText::new(text).small().color(color));
+}
+
+/// The field for a path; true when Enter was pressed in it.
+fn path_ui(ui: &mut Ui, devices: &mut Devices) -> bool {
+    let response = text_field_ui(ui, &mut devices.typed, "Other device", "Path, tcp:, sim:");
+    if response.changed() {
+        devices.choice = if devices.typed.trim().is_empty() { Choice::Simulated } else { Choice::Typed };
+    }
+    if response.gained_focus() && !devices.typed.trim().is_empty() {
+        devices.choice = Choice::Typed;
+    }
+    let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+    let response = response.on_hover_text(
+        "/dev/ttyUSB0, /dev/pts/4, COM3, tcp:127.0.0.1:5000, sim:mcp266,generation=4. Enter connects.",
+    );
+    let _ = response;
+    entered && devices.choice == Choice::Typed
+}
+
+/// Address, and the rate where it matters.
+fn options_ui(ui: &mut Ui, devices: &mut Devices) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        if devices.choice == Choice::Simulated {
+            model_ui(ui, &mut devices.simulated);
+        }
+        if !(devices.choice == Choice::Simulated && devices.simulated.is_motion_mind()) {
+            let motion_minds = devices.wants_motion_minds();
+            let shown = devices.addresses();
+            devices.addresses = address_ui(ui, shown, motion_minds);
+        }
+        if devices.baud_matters() {
+            baud_ui(ui, &mut devices.baud);
+        }
+    });
+    if devices.choice == Choice::Simulated && devices.simulated.is_motion_mind() {
+        motion_mind_ui(ui, &mut devices.simulated);
+    }
+    if devices.family_matters() {
+        let mut family = devices.family;
+        family_ui(ui, &mut family);
+        if family != devices.family {
+            devices.look_for(family);
+        }
+    }
+}
+
+/// Which model is simulated.
+fn model_ui(ui: &mut Ui, simulated: &mut Simulated) {
+    let combo =
+        ComboBox::from_id_salt("simulated model").width(104.0).selected_text(simulated.name().to_owned());
+    let response = combo.show_ui(ui, |ui| {
+        for (key, name) in Simulated::models() {
+            if ui.selectable_label(simulated.model == key, name).clicked() {
+                key.clone_into(&mut simulated.model);
+            }
+        }
+    });
+    name_combo(ui, &response.response, "Simulated model", "Which controller is simulated in this program");
+}
+
+/// How the switches of a simulated Motion Mind stand: they are read at its power-up, so that another choice is another unit.
+fn motion_mind_ui(ui: &mut Ui, simulated: &mut Simulated) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let text = |mode: u8| format!("{mode} {}", MODES[usize::from(mode).min(MODES.len() - 1)]);
+        let combo =
+            ComboBox::from_id_salt("mode").width(104.0).selected_text(text(simulated.mode)).truncate();
+        let response = combo.show_ui(ui, |ui| {
+            for mode in 0..=7 {
+                ui.selectable_value(&mut simulated.mode, mode, text(mode));
+            }
+        });
+        name_combo(ui, &response.response, "Mode", "What moves the motor: switches 2 to 4 of the board");
+        let text = |is_text: bool| if is_text { "ASCII" } else { "Binary" };
+        let combo = ComboBox::from_id_salt("protocol").width(60.0).selected_text(text(simulated.is_text));
+        let response = combo.show_ui(ui, |ui| {
+            for is_text in [false, true] {
+                ui.selectable_value(&mut simulated.is_text, is_text, text(is_text));
+            }
+        });
+        name_combo(ui, &response.response, "Protocol", "Switch 6 of the board");
+    });
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let number = |ui: &mut Ui, label: &str, name: &str, value: &mut u8, range| {
+            ui.label(label);
+            let field = ui.add(egui::DragValue::new(value).range(range).speed(0.2));
+            ui.ctx().accesskit_node_builder(field.id, |node| node.set_label(name));
+        };
+        number(ui, "Address", "Unit address", &mut simulated.address, 1..=98);
+        number(ui, "Units", "Units on the bus", &mut simulated.units, 1..=Simulated::MOST_UNITS);
+    });
+}
+
+/// Short names of the modes, by number.
+const MODES: [&str; 8] =
+    ["R/C", "Analog", "Buttons", "Serial", "Serial PID", "Analog PID", "Factory restore", "Factory test"];
+
+/// Which family the controllers at a port are of.
+fn family_ui(ui: &mut Ui, chosen: &mut FamilyChoice) {
+    let combo = ComboBox::from_id_salt("family").width(168.0).selected_text(chosen.label());
+    let response = combo.show_ui(ui, |ui| {
+        for family in FamilyChoice::ALL {
+            ui.selectable_value(chosen, family, family.label());
+        }
+    });
+    let help = "Find out asks for MCP and RoboClaw first, then for Motion Minds, at one bit rate. Choosing the family is quicker, and \
+                brings its usual bit rate.";
+    name_combo(ui, &response.response, "Controller family", help);
+}
+
+fn address_ui(ui: &mut Ui, shown: Addresses, motion_minds: bool) -> Addresses {
+    let text = |addresses: Addresses| match addresses {
+        Addresses::Scan => "Scan all".to_owned(),
+        Addresses::These(_) => "Several".to_owned(),
+        Addresses::Factory => "Factory".to_owned(),
+        Addresses::Only(address) if motion_minds => format!("unit {address}"),
+        Addresses::Only(address) => format!("0x{address:02X}"),
+    };
+    let mut chosen = shown;
+    let combo = ComboBox::from_id_salt("address").width(72.0).selected_text(text(shown));
+    let response = combo.show_ui(ui, |ui| {
+        let each: Vec<u8> = match motion_minds {
+            true => (1..=98).collect(),
+            false => Address::ALL.into_iter().map(Address::get).collect(),
+        };
+        for addresses in std::iter::once(Addresses::Scan).chain(each.into_iter().map(Addresses::Only)) {
+            ui.selectable_value(&mut chosen, addresses, text(addresses));
+        }
+    });
+    let help = match motion_minds {
+        true => "Which addresses to ask when connecting: all from 1 to 98, which takes a while, or one",
+        false => "Which addresses to ask when connecting: all from 0x80 to 0x87, or one",
+    };
+    name_combo(ui, &response.response, "Address", help);
+    chosen
+}
+
+fn baud_ui(ui: &mut Ui, chosen: &mut u32) {
+    let combo = ComboBox::from_id_salt("baud").width(64.0).selected_text(chosen.to_string());
+    let response = combo.show_ui(ui, |ui| {
+        for baud in BAUD_RATES {
+            ui.selectable_value(chosen, baud, baud.to_string());
+        }
+    });
+    name_combo(ui, &response.response, "Baud rate", "The rate the controller's serial port is set to");
+}
+
+fn recent_ui(ui: &mut Ui, devices: &Devices, commands: &mut Commands) {
+    let recent = devices.recent();
+    let menu = ui.add_enabled_ui(!recent.is_empty(), |ui| {
+        let button = egui::Button::new("Recent").min_size(vec2(RECENT_WIDTH, 0.0));
+        MenuButton::from_button(button).ui(ui, |ui| {
+            ui.set_min_width(200.0);
+            for target in recent {
+                if ui.button(target).clicked() {
+                    commands.push(Command::ConnectTo(target.clone()));
+                    ui.close();
+                }
+            }
+            ui.separator();
+            if ui.button("Forget all").clicked() {
+                commands.extend(recent.iter().cloned().map(Command::ForgetRecent));
+                ui.close();
+            }
+        })
+    });
+    menu.inner.0.on_hover_text("Connections of before");
+}
+
+fn name_combo(ui: &Ui, response: &Response, name: &str, help: &str) {
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name));
+    response.clone().on_hover_text(help);
+}
+
+/// Connects to what is chosen, or ends the link to it.
+fn connect_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
+    let chosen = rows(model).into_iter().find(|row| row.choice == model.devices.choice);
+    let desk = chosen.and_then(|row| row.desk).and_then(|id| model.desk(id));
+    let end = desk.map(|desk| Command::Disconnect(desk.id()));
+    let searching = desk.and_then(|desk| desk.link.searching.as_ref());
+    let (text, command) = match desk.map(|desk| &desk.phase) {
+        None | Some(Phase::Closed) => ("Connect", Some(Command::Connect)),
+        Some(Phase::Opening { .. }) => ("Cancel", end),
+        Some(Phase::Open { .. }) if searching.is_some() => ("Cancel", end),
+        Some(Phase::Open { .. }) => ("Disconnect", end),
+        Some(Phase::Closing { .. }) => ("Disconnecting", None),
+    };
+    ui.add_enabled_ui(command.is_some(), |ui| {
+        if ui.add_sized(vec2(ui.available_width(), 30.0), egui::Button::new(text)).clicked() {
+            commands.extend(command);
+        }
+    });
+    if let Some(search) = searching {
+        let bar = egui::ProgressBar::new(search.done as f32 / search.of.max(1) as f32);
+        let text = format!("{} ({} of {})", search.what, search.done, search.of);
+        let response = ui.add(bar.desired_width(ui.available_width()).text(&text));
+        let spoken = format!("Searching: {text}");
+        response.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, &spoken));
+    }
+}
+
+/// The units of a bus, when there are several.
+fn units_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
+    if model.front.link.units.len() < 2 {
+        return;
+    }
+    heading_ui(ui, "Units on this link");
+    for unit in &model.front.link.units {
+        let selected = model.front.link.selected == Some(unit.address);
+        if ui.selectable_label(selected, unit_text(unit)).clicked() && !selected {
+            commands.push(Command::SelectUnit(unit.address));
+        }
+    }
+}
+
+fn unit_text(unit: &Identity) -> String {
+    format!("{}  {}", unit.place(), unit.title())
+}

@@ -1,0 +1,79 @@
+//! The left side: devices, screens, and Stop All at the bottom.
+
+use egui::{Align, Button, Label, Layout, Panel, RichText, Role, ScrollArea, Ui, WidgetInfo};
+
+use super::devices::devices_ui;
+use crate::command::{Command, Commands};
+use crate::model::Model;
+use crate::theme::Palette;
+use crate::widgets::heading::heading_ui;
+use crate::widgets::stop;
+
+pub fn left_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    Panel::bottom("stop").resizable(false).show_separator_line(false).frame(egui::Frame::new()).show(
+        ui,
+        |ui| {
+            script_ui(ui, model);
+            ui.add_space(6.0);
+            let response = stop::stop_ui(ui, model.is_connected());
+            if stop::pressed(&response) {
+                commands.push(Command::Stop);
+            }
+        },
+    );
+    egui::CentralPanel::no_frame().show(ui, |ui| {
+        ScrollArea::vertical().show(ui, |ui| {
+            devices_ui(ui, model, commands);
+            ui.add_space(10.0);
+            screens_ui(ui, model, commands);
+            if model.front.worlds.is_some() {
+                ui.add_space(10.0);
+                world_ui(ui, &mut model.front.world.open);
+            }
+        });
+    });
+}
+
+/// A script that runs is told on every screen, above what ends it.
+fn script_ui(ui: &mut Ui, model: &Model) {
+    let Some(notice) = model.front.script_notice() else { return };
+    ui.add_space(4.0);
+    let color = Palette::of(ui).warning;
+    let note = if model.front.script_is_paused() {
+        "The debugger holds the script where it is. What it told the motors stays in force: Stop All stops them and ends it."
+    } else {
+        "A script commands the motors by itself. Stop All ends it; so does leaving the MCL screen it was started from."
+    };
+    ui.add(Label::new(RichText::new(notice).strong().color(color)).truncate()).on_hover_text(note);
+}
+
+/// Shows and hides the panel of the simulated controller's world.
+fn world_ui(ui: &mut Ui, open: &mut bool) {
+    heading_ui(ui, "Simulator");
+    ui.with_layout(Layout::top_down_justified(Align::Min), |ui| {
+        let button = Button::selectable(*open, "Simulated world").right_text(RichText::new("Ctrl+B").small());
+        let note = "Load, batteries, switches, inputs and faults of the simulated controller";
+        let response = ui.add(button);
+        response.widget_info(|| WidgetInfo::selected(Role::Button, true, *open, "Simulated world"));
+        if response.on_hover_text(note).clicked() {
+            *open = !*open;
+        }
+    });
+}
+
+fn screens_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
+    let (family, current) = (model.front.family(), model.screen);
+    heading_ui(ui, "Screens");
+    ui.spacing_mut().item_spacing.y = 2.0;
+    ui.with_layout(Layout::top_down_justified(Align::Min), |ui| {
+        for screen in model.front.screens() {
+            let (title, is_current) = (family.title(screen), current == screen);
+            let shortcut = RichText::new(format!("Ctrl+{}", screen as usize + 1)).small();
+            let response = ui.add(Button::selectable(is_current, title).right_text(shortcut));
+            response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_current, title));
+            if response.clicked() {
+                commands.push(Command::Show(screen));
+            }
+        }
+    });
+}

@@ -1,0 +1,72 @@
+//! The message line: always there and always as high, so that a message moves nothing.
+
+use egui::{Align, Label, Layout, RichText, Role, Ui, WidgetInfo, vec2};
+
+use super::marks;
+use crate::command::{Command, Commands};
+use crate::model::Model;
+use crate::model::lamp::LampState;
+use crate::model::message::{Gravity, Message};
+use crate::theme::Palette;
+
+const HEIGHT: f32 = 36.0;
+const BUTTON_WIDTH: f32 = 76.0;
+
+pub fn message_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
+    ui.allocate_ui_with_layout(
+        vec2(ui.available_width(), HEIGHT),
+        Layout::left_to_right(Align::Center),
+        |ui| {
+            ui.set_min_height(HEIGHT);
+            let width = ui.available_width() - marks::WIDTH - ui.spacing().item_spacing.x;
+            ui.allocate_ui_with_layout(vec2(width, HEIGHT), Layout::left_to_right(Align::Center), |ui| {
+                ui.set_min_size(vec2(width, HEIGHT));
+                match model.messages.shown() {
+                    Some(message) => shown_ui(ui, message, commands),
+                    None => quiet_ui(ui, model),
+                }
+            });
+            marks::marks_ui(ui, model, commands);
+        },
+    );
+}
+
+fn shown_ui(ui: &mut Ui, message: &Message, commands: &mut Commands) {
+    let state = match message.gravity {
+        Gravity::Note => LampState::Ok,
+        Gravity::Warning => LampState::Warning,
+        Gravity::Error => LampState::Error,
+    };
+    let (rect, _) = ui.allocate_exact_size(vec2(20.0, HEIGHT), egui::Sense::hover());
+    state.paint(ui, rect.center(), 7.0);
+    let text_width = (ui.available_width() - BUTTON_WIDTH - 8.0).max(60.0);
+    ui.allocate_ui_with_layout(vec2(text_width, HEIGHT), Layout::left_to_right(Align::Center), |ui| {
+        ui.set_min_size(vec2(text_width, HEIGHT));
+        // Two lines fit; what is longer is shown in full by a pointer over it.
+        let text = ui.add(Label::new(&message.text).wrap()).on_hover_text(&message.text);
+        let spoken = format!("{}: {}", word(message.gravity), message.text);
+        text.widget_info(|| WidgetInfo::labeled(Role::Alert, true, &spoken));
+    });
+    if ui.button("Dismiss").clicked() {
+        commands.push(Command::DismissMessage);
+    }
+}
+
+fn quiet_ui(ui: &mut Ui, model: &Model) {
+    let text = match model.is_connected() {
+        true => "Nothing to report.",
+        false => {
+            "No controller is connected. Choose one at the left and press Connect; the simulated one is always there."
+        }
+    };
+    let color = Palette::of(ui).weak_text;
+    ui.add(Label::new(RichText::new(text).color(color)).wrap());
+}
+
+const fn word(gravity: Gravity) -> &'static str {
+    match gravity {
+        Gravity::Note => "Note",
+        Gravity::Warning => "Warning",
+        Gravity::Error => "Error",
+    }
+}

@@ -1,0 +1,146 @@
+//! The command palette: everything that can be done, searched by name and run by key.
+
+use egui::{
+    Align2, Area, Button, Context, Frame, Id, Key, Modifiers, Order, Role, ScrollArea, Ui, WidgetInfo, vec2,
+};
+
+use crate::actions;
+use crate::actions::Ready;
+use crate::command::{Command, Commands};
+use crate::model::palette::{Palette, fitting};
+use crate::model::{Desk, Model};
+use crate::theme::Palette as Colours;
+use crate::widgets::text_field::text_field_ui;
+
+const WIDTH: f32 = 540.0;
+const LIST_HEIGHT: f32 = 340.0;
+const FROM_TOP: f32 = 60.0;
+
+/// One row of the palette.
+struct Row {
+    name: String,
+    keys: String,
+    ready: Ready,
+    command: Command,
+}
+
+pub fn palette_ui(ctx: &Context, model: &mut Model, commands: &mut Commands) {
+    let Some(mut palette) = model.palette.take() else { return };
+    let area = Area::new(Id::unique("command palette")).order(Order::Foreground);
+    let area = area.anchor(Align2::CENTER_TOP, vec2(0.0, FROM_TOP)).constrain(true);
+    let rows = rows(ctx, model);
+    let shown = area.show(ctx, |ui| {
+        Frame::popup(ui.style()).show(ui, |ui| {
+            ui.set_width(WIDTH);
+            contents_ui(ui, &mut palette, &rows)
+        })
+    });
+    let done = shown.inner.inner;
+    let left = !palette.is_new && shown.response.clicked_elsewhere();
+    palette.is_new = false;
+    match done {
+        Some(Done::Run(index)) => run(&rows[index], model, commands),
+        Some(Done::Close) => {}
+        None if left => {}
+        None => model.palette = Some(palette),
+    }
+}
+
+/// How the palette ends.
+enum Done {
+    Close,
+    Run(usize),
+}
+
+fn run(row: &Row, model: &mut Model, commands: &mut Commands) {
+    match &row.ready {
+        Ok(()) => commands.push(row.command.clone()),
+        Err(why) => model.messages.warn(format!("{}: {why}", row.name)),
+    }
+}
+
+/// Every action, then the other open devices and the recent connections.
+fn rows(ctx: &Context, model: &Model) -> Vec<Row> {
+    let of_action = |action: &actions::Action| Row {
+        name: format!("{}: {}", action.place.menu.title(), action.title.trim_end_matches('…')),
+        keys: action.keys_text(ctx),
+        ready: (action.ready)(model),
+        command: (action.command)(model),
+    };
+    let of_desk = |desk: &Desk| {
+        let target = desk.target.as_deref()?;
+        let (name, command) = (format!("Device: Bring {target} to the Front"), Command::Front(desk.id()));
+        Some(Row { name, keys: String::new(), ready: Ok(()), command })
+    };
+    let of_recent = |target: &String| Row {
+        name: format!("Device: Connect to {target}"),
+        keys: String::new(),
+        ready: Ok(()),
+        command: Command::ConnectTo(target.clone()),
+    };
+    let actions = actions::all().map(of_action);
+    actions
+        .chain(model.others.iter().filter_map(of_desk))
+        .chain(model.devices.recent().iter().map(of_recent))
+        .collect()
+}
+
+fn contents_ui(ui: &mut Ui, palette: &mut Palette, rows: &[Row]) -> Option<Done> {
+    let names: Vec<String> = rows.iter().map(|row| row.name.clone()).collect();
+    let (up, down, enter, escape) = ui.input_mut(|input| {
+        let mut pressed = |key| input.consume_key(Modifiers::NONE, key);
+        (pressed(Key::ArrowUp), pressed(Key::ArrowDown), pressed(Key::Enter), input.key_pressed(Key::Escape))
+    });
+    let field = text_field_ui(ui, &mut palette.query, "Command", "Type what you want to do");
+    if palette.is_new || enter {
+        field.request_focus();
+    }
+    if field.changed() {
+        palette.chosen = 0;
+    }
+    let found = fitting(&palette.query, &names);
+    let last = found.len().saturating_sub(1);
+    palette.chosen = match (up, down) {
+        (true, _) => palette.chosen.saturating_sub(1),
+        (_, true) => (palette.chosen + 1).min(last),
+        _ => palette.chosen.min(last),
+    };
+    let clicked = list_ui(ui, rows, &found, palette.chosen, up || down);
+    if escape {
+        return Some(Done::Close);
+    }
+    let entered = found.get(palette.chosen).copied().filter(|_| enter);
+    clicked.or(entered).map(Done::Run)
+}
+
+/// The rows that fit; the one that was clicked.
+fn list_ui(ui: &mut Ui, rows: &[Row], found: &[usize], chosen: usize, moved: bool) -> Option<usize> {
+    let mut clicked = None;
+    ScrollArea::vertical().max_height(LIST_HEIGHT).min_scrolled_height(LIST_HEIGHT).show(ui, |ui| {
+        ui.set_min_width(WIDTH - 16.0);
+        if found.is_empty() {
+            ui.label("Nothing is called that. Try fewer letters.");
+        }
+        for (place, index) in found.iter().enumerate() {
+            let row = &rows[*index];
+            let color = if row.ready.is_ok() { Colours::of(ui).text } else { Colours::of(ui).weak_text };
+            let text = egui::RichText::new(&row.name).color(color);
+            let button = Button::selectable(place == chosen, text).shortcut_text(row.keys.as_str());
+            let response = ui.add_sized(vec2(ui.available_width(), 24.0), button);
+            response.widget_info(|| {
+                WidgetInfo::selected(Role::ListBoxOption, row.ready.is_ok(), place == chosen, &row.name)
+            });
+            if moved && place == chosen {
+                response.scroll_to_me(None);
+            }
+            let response = match &row.ready {
+                Ok(()) => response,
+                Err(why) => response.on_hover_text(&**why),
+            };
+            if response.clicked() {
+                clicked = Some(*index);
+            }
+        }
+    });
+    clicked
+}

@@ -1,0 +1,56 @@
+//! Figures of a forecast, and how figures and verdicts are shown.
+
+use egui::{Label, Response, RichText, Ui, vec2};
+
+use super::run::Shown;
+use crate::model::lamp::LampState;
+use crate::theme;
+
+type Figure = (&'static str, &'static str, fn(&Shown) -> String);
+
+/// Figures of a forecast, by name, with what they mean.
+pub const FIGURES: [Figure; 5] = [
+    ("Overshoot", "How far a step goes beyond its setpoint, over the step", |shown| {
+        if_stable(shown, || format!("{:.1} %", 100.0 * shown.forecast.overshoot))
+    }),
+    (
+        "Settling",
+        "How long a step takes to stay near its setpoint: 5 % of a speed, 2 % of a position",
+        |shown| {
+            if_stable(shown, || {
+                shown.forecast.settling_s.map_or_else(|| "never".to_owned(), |s| format!("{:.0} ms", 1e3 * s))
+            })
+        },
+    ),
+    ("Load dip", "How far a load of 15 % of the stall torque drives it off, over the step", |shown| {
+        if_stable(shown, || format!("{:.1} %", 100.0 * shown.forecast.load_dip))
+    }),
+    ("Ms", "Maximum sensitivity: 1.2 is very tame, 1.6 is firm, above 2 is close to swinging", |shown| {
+        if_stable(shown, || format!("{:.2}", shown.forecast.ms))
+    }),
+    ("Duty noise", "What the rounding of counts alone does to the duty", |shown| {
+        if_stable(shown, || format!("{:.2} %", 100.0 * shown.forecast.noise_duty))
+    }),
+];
+
+fn if_stable(shown: &Shown, text: impl FnOnce() -> String) -> String {
+    if shown.forecast.is_stable { text() } else { "unstable".to_owned() }
+}
+
+/// A figure at the right of a place of fixed width.
+pub fn figure_ui(ui: &mut Ui, text: &str, width: f32) -> Response {
+    let size = vec2(width, ui.spacing().interact_size.y);
+    ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        ui.set_min_width(width);
+        ui.add(Label::new(RichText::new(text).text_style(theme::figures())).truncate())
+    })
+    .inner
+}
+
+pub fn lamp_ui(ui: &mut Ui, state: LampState, text: &str) {
+    ui.horizontal(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(18.0, 18.0), egui::Sense::hover());
+        state.paint(ui, rect.center(), 6.0);
+        ui.add(Label::new(text).wrap());
+    });
+}

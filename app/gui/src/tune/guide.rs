@@ -1,0 +1,103 @@
+//! The guide: buttons and levels at the top, what is found at the left, its picture at the right.
+
+use egui::{
+    Align, Button, Frame, Label, Layout, Margin, ProgressBar, Rect, RichText, ScrollArea, Stroke, Ui,
+    UiBuilder, vec2,
+};
+
+use super::model::{TuneWish, Tuning};
+use super::which::Loop;
+use super::{plots, result, setup};
+use crate::command::{Command, Commands};
+use crate::model::Model;
+use crate::theme::Palette;
+
+/// Width of the figures; the picture has the rest.
+const LEFT_WIDTH: f32 = 412.0;
+/// Below this width the picture stands under the figures.
+const SIDE_BY_SIDE: f32 = 720.0;
+/// Height of the picture where it stands below.
+const PICTURE_HEIGHT: f32 = 300.0;
+
+/// Fills what is left of `ui`.
+pub fn guide_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    let Some(which) = Loop::of(model.screen) else { return };
+    if let Some(why) = model.front.cannot_tune() {
+        ui.add(Label::new(why).wrap());
+        return;
+    }
+    let outline = Stroke::new(1.0, Palette::of(ui).line);
+    Frame::new().stroke(outline).corner_radius(4.0).inner_margin(Margin::symmetric(10, 6)).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        if model.front.tune.is_running() {
+            progress_ui(ui, &model.front.tune, which, commands);
+        } else {
+            setup::setup_ui(ui, model, which, commands);
+        }
+    });
+    ui.add_space(4.0);
+    let room = ui.available_rect_before_wrap();
+    if model.front.tune.is_running() {
+        return part_ui(ui, room, |ui| {
+            if let Some(sequence) = model.front.tune.running() {
+                plots::live_ui(ui, &sequence.live.look(), which);
+            }
+        });
+    }
+    if room.width() < SIDE_BY_SIDE {
+        ScrollArea::vertical().id_salt("tune").auto_shrink(false).show(ui, |ui| {
+            result::result_ui(ui, model, which, commands);
+            let (place, _) =
+                ui.allocate_exact_size(vec2(ui.available_width(), PICTURE_HEIGHT), egui::Sense::hover());
+            part_ui(ui, place, |ui| picture_ui(ui, &mut model.front.tune, which));
+        });
+        return;
+    }
+    let (left, right) = room.split_left_right_at_x(room.left() + LEFT_WIDTH);
+    part_ui(ui, left, |ui| {
+        ScrollArea::vertical().id_salt("tune").auto_shrink(false).show(ui, |ui| {
+            ui.set_max_width(LEFT_WIDTH - 14.0);
+            result::result_ui(ui, model, which, commands);
+        });
+    });
+    part_ui(ui, right.with_min_x(right.left() + 6.0), |ui| picture_ui(ui, &mut model.front.tune, which));
+}
+
+fn picture_ui(ui: &mut Ui, tuning: &mut Tuning, which: Loop) {
+    let mut view = tuning.view;
+    plots::result_ui(ui, tuning.front(which), &mut view, which);
+    tuning.view = view;
+}
+
+fn part_ui(ui: &mut Ui, place: Rect, contents: impl FnOnce(&mut Ui)) {
+    ui.scope_builder(UiBuilder::new().max_rect(place).layout(Layout::top_down(Align::Min)), contents);
+}
+
+/// Whole seconds, so that the figure does not flicker.
+fn time_left(seconds: f64) -> String {
+    if seconds < 1.5 { "a moment left".to_owned() } else { format!("about {seconds:.0} s left") }
+}
+
+/// What goes on, how long it will take, and the button that ends it.
+fn progress_ui(ui: &mut Ui, tuning: &Tuning, which: Loop, commands: &mut Commands) {
+    let Some(sequence) = tuning.running() else { return };
+    let palette = Palette::of(ui);
+    let left = super::remaining::remaining(sequence);
+    ui.horizontal(|ui| {
+        ui.heading(format!("Tuning {}", tuning.motor(which)));
+        let stop = Button::new(RichText::new("Stop the run").strong());
+        let hint = "Stops at once and puts the old gains back. Space and Esc do the same.";
+        if ui.add(stop).on_hover_text(hint).clicked() {
+            commands.push(Command::Tune(TuneWish::Cancel));
+        }
+        let bar = ProgressBar::new(left.fraction).desired_width(220.0);
+        ui.add(bar);
+        let text = left.seconds.map_or_else(String::new, time_left);
+        ui.add(Label::new(RichText::new(text).monospace()).selectable(false));
+    });
+    ui.horizontal(|ui| {
+        ui.label(sequence.text());
+        let note = "The gains are tried in RAM only; the old ones are put back at the end, whatever happens.";
+        ui.label(RichText::new(note).small().color(palette.weak_text));
+    });
+}

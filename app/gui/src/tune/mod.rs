@@ -1,0 +1,33 @@
+//! Tuning in the window: a guided run for each loop of each motor, what its gains would do, and calibration by hand.
+//!
+//! State and screens stand together here; `brushwork_core::tune` has the jobs, `brushwork_tuning` the method.
+
+pub mod asked;
+pub mod by_hand;
+pub mod calibration;
+pub mod chart;
+mod figures;
+pub mod files;
+pub mod guide;
+mod held;
+mod level;
+mod limits;
+pub mod looked_at;
+pub mod measured;
+pub mod model;
+pub mod observe;
+pub mod plots;
+pub mod refusal;
+pub mod registers;
+pub mod remaining;
+pub mod result;
+pub mod run;
+mod runs;
+pub mod sequence;
+pub mod setup;
+mod sketches;
+pub mod which;
+mod winding;
+
+pub use model::{TuneWish, Tuning};
+pub use which::Loop;

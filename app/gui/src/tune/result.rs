@@ -1,0 +1,341 @@
+//! What a run has found: its verdict, the gains as current, proposed and change, what they promise, and the runs so far.
+
+use brushwork_tuning::motion_mind::MotionMindLaw;
+use brushwork_tuning::report::{Report, Verdict};
+use brushwork_tuning::tune::Method;
+use egui::{Button, Grid, Label, RichText, Ui, vec2};
+
+use super::figures::{FIGURES, figure_ui, lamp_ui};
+use super::files::files_ui;
+use super::measured::Figures;
+use super::model::TuneWish;
+use super::registers::{FIELDS, Field, Form, Registers};
+use super::run::Run;
+use super::which::Loop;
+use super::winding::{unknown_ui, winding_ui};
+use crate::command::{Command, Commands};
+use crate::model::Model;
+use crate::model::general::Sheet;
+use crate::model::lamp::LampState;
+use crate::theme::Palette;
+use crate::widgets::numeric::Numeric;
+
+pub fn result_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands) {
+    let motor = model.front.tune.motor(which);
+    let with_position = model.front.tune.front(which).run().is_some_and(|run| run.report.position.is_some());
+    let held = model.front.held_gains(motor, with_position);
+    if let Some(run) = model.front.tune.front_mut(which).run_mut() {
+        run.look_at_held(held);
+    }
+    if model.front.tune.front(which).run().is_none() {
+        empty_ui(ui, model, which);
+        return files_ui(ui, &mut model.front.tune, which, commands);
+    }
+    super::refusal::cleared_ui(ui, model, commands);
+    let Some(run) = model.front.tune.front(which).run() else { return };
+    if run.is_refused() {
+        super::refusal::refusal_ui(ui, model, which, commands);
+    } else {
+        verdict_ui(ui, run);
+        acts_ui(ui, model, which, commands);
+        ui.spacing_mut().interact_size.y = 20.0;
+        figures_ui(ui, model, which);
+        gains_ui(ui, model, which, held);
+        model_ui(ui, model, which);
+    }
+    super::runs::runs_ui(ui, model, which);
+    files_ui(ui, &mut model.front.tune, which, commands);
+}
+
+fn empty_ui(ui: &mut Ui, model: &Model, which: Loop) {
+    let palette = Palette::of(ui);
+    let has_piv = model.front.family().methods(which).contains(&Method::Piv);
+    let text = match which {
+        Loop::Position if !has_piv => {
+            "Not tuned yet.\n\n1. Choose the method. PID holds against a load; PD is the simplest.\n2. If the axis has end stops, choose \
+             Within and give its travel.\n3. Arm this screen and press Tune.\n\nThere is one set of registers: gains for positions are \
+             those of velocities too. Tune last what you use."
+        }
+        Loop::Velocity => {
+            "Not tuned yet.\n\n1. Let the motor turn freely: lift the wheels, unhitch the load.\n2. Arm this screen and press Tune.\n\
+             3. Look at what is proposed, move the level, and apply what you like."
+        }
+        Loop::Position => {
+            "Not tuned yet.\n\n1. Choose the method. PIV holds best; PD is the simplest.\n2. If the axis has end stops, choose Within \
+             and give its travel.\n3. Arm this screen and press Tune."
+        }
+    };
+    ui.add_space(6.0);
+    ui.add(Label::new(RichText::new(text).color(palette.weak_text)).wrap());
+    ui.add_space(6.0);
+}
+
+fn verdict_ui(ui: &mut Ui, run: &Run) {
+    let report = &run.report;
+    let (state, word) = match report.verdict {
+        Verdict::Tuned => (LampState::Ok, "Tuned"),
+        Verdict::TunedWithWarnings => (LampState::Warning, "Tuned with warnings"),
+        Verdict::Refused => (LampState::Error, "Refused"),
+    };
+    lamp_ui(ui, state, &format!("{word} · run {} · {:.1} s", run.number, report.seconds.1));
+    for cause in &report.causes {
+        lamp_ui(ui, LampState::Warning, &cause.sentence());
+    }
+}
+
+fn model_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
+    let Some(report) = model.front.tune.front(which).run().map(|run| &run.report) else { return };
+    let (text, winding, unknown) = (model_text(report), report.winding, report.winding_unknown);
+    let covered = feed_forward_text(model.front.tune.front(which).run());
+    for text in text.into_iter().chain(covered) {
+        ui.add_space(4.0);
+        ui.add(Label::new(RichText::new(text).small().color(Palette::of(ui).weak_text)).wrap());
+    }
+    match (winding, unknown) {
+        (Some(winding), _) => winding_ui(ui, model, which, &winding),
+        (None, Some(why)) => unknown_ui(ui, why),
+        (None, None) => {}
+    }
+}
+
+/// How much of a speed's duty the feed-forward gives: the register of a Motion Mind is too small for all of it on most motors.
+fn feed_forward_text(run: Option<&Run>) -> Option<String> {
+    let run = run?;
+    let mind = run.shown.as_ref()?.registers.motion_mind?;
+    let law = MotionMindLaw { velocity_ff: mind.velocity_ff, ..MotionMindLaw::default() };
+    let percent = 100.0 * law.covered(run.report.qpps?).min(1.0);
+    let rest = if percent < 99.5 {
+        " The loop makes up for the rest; the design counts on no more than this."
+    } else {
+        ""
+    };
+    Some(format!(
+        "Feed-forward: VELOCITYFF {} gives {percent:.0} % of a speed's duty.{rest}",
+        mind.velocity_ff
+    ))
+}
+
+/// What was found of the motor, in one line.
+fn model_text(report: &Report) -> Option<String> {
+    let fit = report.fit?;
+    let mut text = format!(
+        "Motor: {:.0} counts/s at full duty ± {:.2} %, time constant {:.1} ms ± {:.0} %, friction {:.1} % duty",
+        report.qpps?,
+        100.0 * report.free.map_or(2.0 * fit.sd_ln_gain, |free| free.interval),
+        1e3 * fit.model.tau_s,
+        200.0 * fit.sd_ln_tau,
+        100.0 * fit.model.coulomb_duty,
+    );
+    if let Some(lag) = &report.lag {
+        let (low, high) = (1e3 * lag.interval_s.0, 1e3 * lag.interval_s.1);
+        text += &format!(", lag {low:.1} to {high:.1} ms");
+    }
+    if let Some(slack) = report.backlash {
+        text += &if slack.counts > 0.0 {
+            format!(", play of at least {:.1} ± {:.1} counts", slack.counts, slack.interval_counts)
+        } else {
+            ", no play seen".to_owned()
+        };
+    }
+    Some(text)
+}
+
+/// Gains: current, proposed (to be edited), change.
+fn gains_ui(ui: &mut Ui, model: &mut Model, which: Loop, held: Option<Registers>) {
+    let tuning = &mut model.front.tune;
+    let motor = tuning.motor(which);
+    let Some(run) = tuning.front_mut(which).run_mut() else { return };
+    let Some(mut wanted) = run.shown.as_ref().map(|shown| shown.registers) else { return };
+    let before = wanted;
+    ui.add_space(4.0);
+    Grid::new("tune gains").striped(true).num_columns(4).spacing(vec2(12.0, 2.0)).show(ui, |ui| {
+        heads_ui(ui, "", [("current", 84.0), ("proposed", 96.0), ("change", 72.0)]);
+        ui.end_row();
+        for field in &FIELDS {
+            let Some(value) = field.value(&wanted) else { continue };
+            let current = held.and_then(|held| field.value(&held));
+            if !field.is_modelled() && current == Some(value) {
+                continue;
+            }
+            let label = ui.label(field.label);
+            if !field.hint.is_empty() {
+                label.on_hover_text(field.hint);
+            }
+            figure_ui(ui, &current.map_or_else(|| "–".to_owned(), |value| field.text(value)), 84.0);
+            if let Some(value) = entry_ui(ui, field, &format!("{motor} proposed {}", field.label), value) {
+                field.set(&mut wanted, value);
+            }
+            figure_ui(ui, &change_text(field, current, field.value(&wanted)), 72.0);
+            ui.end_row();
+        }
+    });
+    if wanted != before {
+        run.consider(wanted);
+    }
+}
+
+/// The proposed value, to be changed by hand; the new one where it was.
+fn entry_ui(ui: &mut Ui, field: &Field, name: &str, value: f64) -> Option<f64> {
+    const HINT: &str = "Edit it to see what it would do; nothing is sent until you apply it";
+    if !field.is_modelled() {
+        figure_ui(ui, &field.text(value), 96.0)
+            .on_hover_text("The loop needs it so; the model has no other form");
+        return None;
+    }
+    if field.form == Form::Switch {
+        let mut set = value != 0.0;
+        let size = vec2(96.0, ui.spacing().interact_size.y);
+        let layout = egui::Layout::right_to_left(egui::Align::Center);
+        let switch = ui.allocate_ui_with_layout(size, layout, |ui| {
+            ui.set_min_width(96.0);
+            ui.checkbox(&mut set, field.text(value))
+        });
+        let switch = switch.inner.on_hover_text(HINT);
+        ui.ctx().accesskit_node_builder(switch.id, |node| node.set_label(name));
+        return switch.changed().then_some(f64::from(u8::from(set)));
+    }
+    let range = field.range.0..=field.range.1;
+    let entry = Numeric { name, unit: "", range, decimals: field.decimals, step: field.step, width: 96.0 };
+    let mut value = value;
+    entry.ui(ui, &mut value).on_hover_text(HINT).changed().then_some(value)
+}
+
+fn change_text(field: &Field, current: Option<f64>, wanted: Option<f64>) -> String {
+    let (Some(current), Some(wanted)) = (current, wanted) else { return "–".to_owned() };
+    if field.text(current) == field.text(wanted) {
+        "same".to_owned()
+    } else if field.form == Form::Switch {
+        "changed".to_owned()
+    } else if current == 0.0 || field.unit == "counts" || matches!(field.label, "PIDSCALAR" | "DEADBAND") {
+        let change = wanted - current;
+        // The ends of an axis without stops are longer than the column.
+        if change.abs() < 1e6 {
+            format!("{change:+.*}", field.decimals.min(2))
+        } else {
+            format!("{change:+.1e}")
+        }
+    } else {
+        let percent = 100.0 * (wanted / current - 1.0);
+        if percent.abs() < 1000.0 {
+            format!("{percent:+.0} %")
+        } else {
+            format!("× {:.0}", wanted / current)
+        }
+    }
+}
+
+/// Words above columns of figures, at their right as those are.
+fn heads_ui(ui: &mut Ui, first: &str, others: [(&str, f32); 3]) {
+    let weak = Palette::of(ui).weak_text;
+    let word = |text: &str| Label::new(RichText::new(text).small().color(weak));
+    ui.add(word(first));
+    for (text, width) in others {
+        let size = vec2(width, 14.0);
+        ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.set_min_width(width);
+            ui.add(word(text));
+        });
+    }
+}
+
+fn acts_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands) {
+    let is_armed = model.front.link.arming.is_armed_for(which.scope());
+    let is_free = !model.front.is_guided() && !model.front.loops.is_busy() && model.front.is_connected();
+    let panel = model.front.tune.front_mut(which);
+    let can_undo = panel.undo.is_some();
+    let Some(run) = panel.run_mut() else { return };
+    let has_gains = run.shown.is_some();
+    let differs = match (run.held(), &run.shown) {
+        (Some(held), Some(shown)) => !held.same_gains(&shown.registers),
+        _ => true,
+    };
+    ui.add_space(4.0);
+    ui.horizontal_wrapped(|ui| {
+        let apply = ui.add_enabled(is_free && has_gains && differs, Button::new("Apply (RAM)"));
+        if apply
+            .on_hover_text("Writes the proposed gains into the controller's RAM and reads them back")
+            .clicked()
+        {
+            commands.push(Command::Tune(TuneWish::Apply));
+        }
+        let verify = ui.add_enabled(is_free && is_armed && has_gains, Button::new("Verify"));
+        let verify = verify.on_disabled_hover_text("Arm this screen first");
+        if verify
+            .on_hover_text("Moves the motor with the proposed gains and compares it with the prediction")
+            .clicked()
+        {
+            commands.push(Command::Tune(TuneWish::Verify));
+        }
+        let save = ui.add_enabled(is_free, Button::new("Save…"));
+        if save.on_hover_text("Shows what is not in EEPROM yet and saves it there").clicked() {
+            commands.push(Command::OpenSheet(Sheet::Save));
+        }
+        let undo = ui.add_enabled(is_free && can_undo, Button::new("Undo"));
+        if undo.on_hover_text("Writes back what RAM held before the gains were applied").clicked() {
+            commands.push(Command::Tune(TuneWish::Undo));
+        }
+        let reset = ui.add_enabled(!run.is_as_proposed(), Button::new("As proposed"));
+        if reset.on_hover_text("Back to the gains and the level of the run").clicked() {
+            run.reset();
+        }
+    });
+    if !run.is_as_proposed() {
+        let text = format!(
+            "Considered on the model only: level {:.0}, or gains by hand. Nothing was sent.",
+            run.level
+        );
+        ui.label(RichText::new(text).small().color(Palette::of(ui).accent));
+    }
+    match run.verified {
+        Some(Ok(())) => lamp_ui(ui, LampState::Ok, "Verified: the machine behaves as predicted."),
+        Some(Err(cause)) => lamp_ui(ui, LampState::Warning, &cause.sentence()),
+        None => {}
+    }
+}
+
+/// What the gains promise, and what was measured.
+fn figures_ui(ui: &mut Ui, model: &Model, which: Loop) {
+    let Some(run) = model.front.tune.front(which).run() else { return };
+    let Some(shown) = &run.shown else { return };
+    ui.add_space(4.0);
+    Grid::new("tune figures").striped(true).num_columns(4).spacing(vec2(12.0, 2.0)).show(ui, |ui| {
+        heads_ui(ui, "predicted", [("current", 84.0), ("proposed", 96.0), ("measured", 72.0)]);
+        ui.end_row();
+        for (name, hint, figure) in FIGURES {
+            ui.label(name).on_hover_text(hint);
+            figure_ui(ui, &run.current().map_or_else(|| "–".to_owned(), figure), 84.0);
+            figure_ui(ui, &figure(shown), 96.0);
+            let (measured, promised) = measured(run, name);
+            let response = figure_ui(ui, &measured, 72.0);
+            if let Some(promised) = promised {
+                response.on_hover_text(format!("The model gives {promised} for the same moves"));
+            }
+            ui.end_row();
+        }
+    });
+    if !shown.forecast.is_stable {
+        lamp_ui(ui, LampState::Error, "Unstable on the model: the motor would swing up. Lower the gains.");
+    } else if shown.forecast.ms > 2.0 {
+        lamp_ui(ui, LampState::Warning, "Ms above 2: a little more load or lag could make it swing.");
+    }
+    super::limits::limits_ui(ui, run);
+}
+
+/// A figure as measured, and what the model gives for the same moves.
+fn measured(run: &Run, name: &str) -> (String, Option<String>) {
+    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    let time = |figures: &Figures| {
+        figures.settling_s.map_or_else(|| "never".to_owned(), |s| format!("{:.0} ms", 1e3 * s))
+    };
+    let Some(tried) = &run.tried else { return ("–".to_owned(), None) };
+    let (measured, promised) = match name {
+        "Overshoot" => {
+            let of = |figures: Option<Figures>| figures.map(|figures| percent(figures.overshoot));
+            (of(tried.figures), of(tried.promised))
+        }
+        "Settling" => (tried.figures.as_ref().map(time), tried.promised.as_ref().map(time)),
+        "Duty noise" => (tried.duty_rms.map(|rms| format!("{:.2} %", 100.0 * rms)), None),
+        _ => (None, None),
+    };
+    (measured.unwrap_or_else(|| "–".to_owned()), promised)
+}

@@ -1,0 +1,210 @@
+//! What is set before a run: which motor, how stiff, by which method, and how far the axis may go.
+
+use brushwork_tuning::axis::EncoderClass;
+use brushwork_tuning::tune::Method;
+use brushwork_values::Motor;
+use egui::{Button, ComboBox, Label, RichText, Ui};
+
+use super::level::level_ui;
+use super::model::{Setting, TuneWish};
+use super::which::Loop;
+use crate::command::{Command, Commands};
+use crate::family::Ability;
+use crate::model::Model;
+use crate::theme::Palette;
+use crate::widgets::numeric::Numeric;
+
+/// From these widths on both motors stand in one row, with words beside their sliders, and all options in another.
+const BOTH_IN_A_ROW: f32 = 720.0;
+const WITH_WORDS: f32 = 960.0;
+const OPTIONS_IN_A_ROW: [f32; 2] = [860.0, 1070.0];
+/// What the choice of an encoder takes of that.
+const ENCODER_WIDTH: f32 = 190.0;
+/// Room for the ends of a travel.
+const TRAVEL_WIDTH: f32 = 270.0;
+
+const WHAT_IT_DOES: &str = "Checks the wiring with little duty, measures the motor, designs gains for the level, and tries them. \
+    Nothing stays in the controller until you apply it.";
+
+pub fn setup_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands) {
+    let palette = Palette::of(ui);
+    let is_armed = model.front.link.arming.is_armed_for(which.scope());
+    let is_free = !model.front.is_guided();
+    let can_start = is_armed && is_free;
+    let is_wide = ui.available_width() >= WITH_WORDS;
+    let motors = model.front.family().motors();
+    if ui.available_width() >= BOTH_IN_A_ROW {
+        ui.horizontal(|ui| {
+            for motor in motors {
+                motor_row_ui(ui, model, (which, *motor), (can_start, is_wide), commands);
+                ui.add_space(10.0);
+            }
+        });
+    } else {
+        for motor in motors {
+            ui.horizontal(|ui| motor_row_ui(ui, model, (which, *motor), (can_start, is_wide), commands));
+        }
+    }
+    options_ui(ui, model, which);
+    let hint = if is_armed {
+        WHAT_IT_DOES
+    } else {
+        "Arm this screen to tune. Looking at results and trying gains on the model needs no arming."
+    };
+    ui.add(Label::new(RichText::new(hint).small().color(palette.weak_text)).wrap());
+}
+
+fn motor_row_ui(
+    ui: &mut Ui,
+    model: &mut Model,
+    (which, motor): (Loop, Motor),
+    (can_start, is_wide): (bool, bool),
+    commands: &mut Commands,
+) {
+    let is_front = model.front.tune.motor(which) == motor;
+    let look = ui.selectable_label(is_front, format!("Motor {}", motor.index() + 1));
+    if look.on_hover_text("Shows its results below").clicked() {
+        model.front.tune.look_at(which, motor);
+    }
+    let tune = ui.add_enabled(can_start, Button::new(format!("Tune {motor}")));
+    let tune = tune.on_disabled_hover_text("Arm this screen first");
+    if tune.on_hover_text("Moves the motor, at up to the highest duty").clicked() {
+        commands.push(Command::Tune(TuneWish::Start(motor)));
+    }
+    let panel = model.front.tune.panel_mut(which, motor);
+    let mut level = panel.level();
+    ui.label("Level");
+    if is_wide {
+        ui.label(RichText::new("soft").small().color(Palette::of(ui).weak_text));
+    }
+    let hint = "How stiff the loop is made. After a run it redraws what the gains of another level would do, without moving anything.";
+    if level_ui(ui, &format!("{motor} level"), hint, if is_wide { 136.0 } else { 104.0 }, &mut level) {
+        panel.setting.level = level;
+        if let Some(run) = panel.run_mut() {
+            run.set_level(level);
+        }
+        model.front.tune.look_at(which, motor);
+    }
+    if is_wide {
+        ui.label(RichText::new("stiff").small().color(Palette::of(ui).weak_text));
+    }
+}
+
+fn options_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
+    let motor = model.front.tune.motor(which);
+    let travel = model.front.travels()[motor.index()];
+    let family = model.front.family();
+    let methods = family.methods(which);
+    let has_encoders = family.lacks(Ability::AbsoluteEncoders).is_none();
+    let setting = &mut model.front.tune.panel_mut(which, motor).setting;
+    let travel_width = if setting.turns_freely { 0.0 } else { TRAVEL_WIDTH };
+    let encoder_width = if has_encoders { 0.0 } else { ENCODER_WIDTH };
+    let is_wide = ui.available_width() >= OPTIONS_IN_A_ROW[which as usize] + travel_width - encoder_width;
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(format!("Motor {}:", motor.index() + 1)).strong());
+        methods_ui(ui, setting, methods);
+        // A velocity loop has no use for position limits, which may be left over.
+        travel_ui(ui, setting, travel.filter(|_| which == Loop::Position));
+        if is_wide {
+            ui.separator();
+            limits_ui(ui, setting, has_encoders);
+        }
+    });
+    if !is_wide {
+        ui.horizontal(|ui| limits_ui(ui, setting, has_encoders));
+    }
+}
+
+/// The ways to tune a loop, where there is a choice.
+fn methods_ui(ui: &mut Ui, setting: &mut Setting, methods: &[Method]) {
+    if methods.len() < 2 {
+        return;
+    }
+    ui.label("Method");
+    for method in methods {
+        let (name, hint) = match method {
+            Method::Velocity => ("Velocity", "The speed loop"),
+            Method::Pd => ("PD", "Proportional and differential, straight on the duty"),
+            Method::Pid => ("PID", "With an integral, which is bounded and needs a deadzone"),
+            Method::Piv => ("PIV", "Position P over the velocity loop: both are tuned"),
+        };
+        ui.radio_value(&mut setting.method, *method, name).on_hover_text(hint);
+    }
+    ui.separator();
+}
+
+fn limits_ui(ui: &mut Ui, setting: &mut Setting, has_encoders: bool) {
+    ui.label("Duty up to");
+    let duty =
+        Numeric { name: "Highest duty", unit: "%", range: 20.0..=100.0, decimals: 0, step: 5.0, width: 62.0 };
+    duty.ui(ui, &mut setting.max_duty_percent).on_hover_text("The run never gives more");
+    ui.label("Current up to");
+    let amps = Numeric {
+        name: "Highest current",
+        unit: "A",
+        range: 0.0..=200.0,
+        decimals: 1,
+        step: 0.5,
+        width: 70.0,
+    };
+    amps.ui(ui, &mut setting.max_amps)
+        .on_hover_text("The run ends above it; 0 leaves it to the controller's own limit");
+    ui.separator();
+    let tries = ui.checkbox(&mut setting.tries, "Try the gains");
+    tries.on_hover_text(
+        "Tries them on the machine at the end of the run and lowers them if it is rougher than predicted",
+    );
+    if has_encoders {
+        encoder_ui(ui, setting);
+    }
+}
+
+fn travel_ui(ui: &mut Ui, setting: &mut Setting, held: Option<(f64, f64)>) {
+    let (word, hint) = match setting.encoder {
+        EncoderClass::Quadrature => {
+            ("Turns freely", "The motor may run at full speed in both directions for some seconds")
+        }
+        EncoderClass::Absolute | EncoderClass::AbsoluteWrapping => {
+            ("Its whole range", "The axis stays between 40 and 4055 counts, and within the position limits")
+        }
+    };
+    let free = ui.radio_value(&mut setting.turns_freely, true, word).on_hover_text(hint);
+    setting.is_travel_chosen |= free.clicked();
+    let bound = ui.radio_value(&mut setting.turns_freely, false, "Within");
+    if bound.on_hover_text("The axis stays between two counts and never runs at full speed").clicked() {
+        setting.is_travel_chosen = true;
+        setting.travel = held.unwrap_or(setting.travel);
+    }
+    if !setting.turns_freely {
+        let field =
+            |name| Numeric { name, unit: "", range: -2e9..=2e9, decimals: 0, step: 100.0, width: 88.0 };
+        let before = setting.travel;
+        field("Travel low").ui(ui, &mut setting.travel.0);
+        ui.label("to");
+        field("Travel high").ui(ui, &mut setting.travel.1);
+        setting.is_travel_chosen |= setting.travel != before;
+        ui.label("counts");
+    }
+}
+
+fn encoder_ui(ui: &mut Ui, setting: &mut Setting) {
+    let label = ui.label("Encoder");
+    let word = |class| match class {
+        EncoderClass::Quadrature => "quadrature",
+        EncoderClass::Absolute => "absolute",
+        EncoderClass::AbsoluteWrapping => "absolute, wraps",
+    };
+    let combo =
+        ComboBox::from_id_salt("tune encoder").selected_text(word(setting.encoder)).show_ui(ui, |ui| {
+            for class in [EncoderClass::Quadrature, EncoderClass::Absolute, EncoderClass::AbsoluteWrapping] {
+                let choice = ui.selectable_value(&mut setting.encoder, class, word(class));
+                setting.is_encoder_chosen |= choice.clicked();
+            }
+        });
+    let hint = if setting.is_encoder_chosen {
+        "Chosen here. An absolute encoder gives 0 to 4095; one that wraps goes on from 4095 to 0."
+    } else {
+        "As the controller's settings say. No setting says whether an absolute encoder wraps, going on from 4095 to 0: choose that here."
+    };
+    combo.response.labelled_by(label.id).on_hover_text(hint);
+}

@@ -1,0 +1,51 @@
+//! The Stop All button.
+
+use egui::{Align2, FontId, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
+
+use crate::theme::Palette;
+
+/// Height in points: big enough to hit in a hurry.
+const HEIGHT: f32 = 64.0;
+
+/// Fills the width. `connected` only changes how it looks: pressing it is never refused.
+pub fn stop_ui(ui: &mut Ui, connected: bool) -> Response {
+    let palette = Palette::of(ui);
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Stop All"));
+    let (fill, text) =
+        if connected { (palette.stop, palette.on_stop) } else { (palette.raised, palette.weak_text) };
+    let fill = if response.is_pointer_button_down_on() { fill.gamma_multiply(0.8) } else { fill };
+    let ring = if response.has_focus() {
+        Stroke::new(3.0, palette.accent)
+    } else if response.hovered() {
+        Stroke::new(2.0, palette.text)
+    } else {
+        Stroke::new(1.0, palette.line)
+    };
+    let painter = ui.painter();
+    painter.rect(rect, 6.0, fill, ring, StrokeKind::Inside);
+    painter.text(
+        rect.center() - vec2(0.0, 8.0),
+        Align2::CENTER_CENTER,
+        "STOP ALL",
+        FontId::proportional(22.0),
+        text,
+    );
+    painter.text(
+        rect.center() + vec2(0.0, 16.0),
+        Align2::CENTER_CENTER,
+        "Space or Esc",
+        FontId::proportional(11.5),
+        text,
+    );
+    response
+}
+
+/// Whether it was pressed: the pointer going down is enough, so that a hand that slips off still stops.
+pub fn pressed(response: &Response) -> bool {
+    let (down_now, up_now) =
+        response.ctx.input(|input| (input.pointer.any_pressed(), input.pointer.any_released()));
+    let by_pointer = down_now && response.is_pointer_button_down_on();
+    let by_key_or_reader = response.clicked() && !up_now;
+    by_pointer || by_key_or_reader
+}

@@ -1,0 +1,32 @@
+//! The window without a display, against simulated controllers in virtual time.
+
+mod buses;
+mod clamp;
+mod debugger;
+mod functions;
+mod general;
+mod generator;
+mod graph;
+mod kept;
+mod keyboard;
+mod mcl;
+mod motion_mind;
+mod motion_mind_driving;
+mod motion_mind_kept;
+mod motion_mind_tuning;
+mod pictures;
+mod pins;
+mod position;
+mod qpps;
+mod safety;
+mod scripts;
+mod shell;
+mod status;
+mod support;
+mod traffic;
+mod tuning;
+mod tuning_by_hand;
+mod tuning_ends;
+mod velocity;
+mod widgets;
+mod window;

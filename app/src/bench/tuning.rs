@@ -1,0 +1,146 @@
+//! `brushwork bench tuning`: the tuner and every textbook rule, side by side on the same records.
+
+use brushwork_tuning_bench::faults::{FaultRow, fault_rows};
+use brushwork_tuning_bench::mind;
+use brushwork_tuning_bench::population::population;
+use brushwork_tuning_bench::table::{Row, Table, cases, optima_of, table};
+
+use super::arguments::{BenchArgs, BenchFamily};
+use brushwork_cli::Exit;
+use brushwork_cli::new_file::NewFile;
+use brushwork_cli::output::{Output, OutputError, say};
+
+const HEADS: [&str; 11] = [
+    "task",
+    "method",
+    "accept %",
+    "good %",
+    "J med",
+    "J p95",
+    "unstable %",
+    "Ms p95",
+    "Ms inertia p95",
+    "overshoot p95 %",
+    "s",
+];
+const FAULT_HEADS: [&str; 8] =
+    ["fault", "runs", "off in time %", "named %", "off med s", "off max s", "deadline s", "peak current %"];
+
+/// Runs the benchmark, or writes its optima.
+pub fn run(args: &BenchArgs, out: &mut Output) -> Exit {
+    if args.plants == 0 {
+        say("A benchmark needs at least one motor: use --plants 200.");
+        return Exit::Usage;
+    }
+    if args.faults {
+        let rows = match args.family {
+            BenchFamily::Mcp => fault_rows(&population(args.seed, args.plants)),
+            BenchFamily::MotionMind => {
+                mind::faults::fault_rows(&mind::population::population(args.seed, args.plants), &[])
+            }
+        };
+        let printed = if args.json { out.json(&rows) } else { print_faults(&rows, out) };
+        return printed.map_or_else(Exit::from, |()| Exit::Done);
+    }
+    let is_fresh = args.write_oracle.is_some();
+    // The optima take an hour.
+    let mut file = args.write_oracle.as_deref().map(|path| NewFile::new(path, args.replace));
+    if let Some(Err(error)) = file.as_ref().map(NewFile::check) {
+        return error.into();
+    }
+    let (optima, table) = match args.family {
+        BenchFamily::Mcp => {
+            let cases = cases(args.seed, args.plants, is_fresh);
+            let optima = is_fresh.then(|| serde_json::to_string(&optima_of(&cases)));
+            (optima, (!is_fresh).then(|| table(args.seed, &cases, !args.quick)))
+        }
+        BenchFamily::MotionMind => {
+            let cases = mind::table::cases(args.seed, args.plants, is_fresh);
+            let optima = is_fresh.then(|| serde_json::to_string(&mind::table::optima_of(&cases)));
+            (optima, (!is_fresh).then(|| mind::table::table(args.seed, &cases, !args.quick)))
+        }
+    };
+    if let Some(file) = &mut file {
+        let text = optima.and_then(Result::ok).unwrap_or_default();
+        return file.write(text.as_bytes()).map_or_else(Exit::from, |()| Exit::Done);
+    }
+    let Some(table) = table else { return Exit::Failed };
+    let printed = if args.json { out.json(&table) } else { print(&table, out) };
+    printed.map_or_else(Exit::from, |()| Exit::Done)
+}
+
+fn print(table: &Table, out: &mut Output) -> Result<(), OutputError> {
+    let mut rows = Vec::new();
+    for task in ["velocity", "pd", "pid", "piv"] {
+        rows.extend(table.tasks.get(task).into_iter().flatten().map(|row| cells(task, row)));
+    }
+    for task in ["pd", "pid", "piv"] {
+        let name = format!("{task}, absolute");
+        rows.extend(table.absolute.get(task).into_iter().flatten().map(|row| cells(&name, row)));
+    }
+    out.table(&HEADS, &rows)?;
+    print_rejects(table, out)?;
+    out.line("")?;
+    let found = serde_json::to_value(table.identification).unwrap_or_default();
+    let found: Vec<Vec<String>> = found
+        .as_object()
+        .into_iter()
+        .flatten()
+        .map(|(name, value)| vec![name.replace('_', " "), value.to_string()])
+        .collect();
+    out.table(&["identification", ""], &found)?;
+    if table.faults.is_empty() {
+        return Ok(());
+    }
+    out.line("")?;
+    print_faults(&table.faults, out)
+}
+
+/// What our own methods did not get accepted, the largest groups first.
+fn print_rejects(table: &Table, out: &mut Output) -> Result<(), OutputError> {
+    let mut groups: Vec<(&str, &String, usize)> = Vec::new();
+    for (task, rows) in &table.tasks {
+        let ours = rows.iter().filter(|row| row.method == "brushwork");
+        groups.extend(ours.flat_map(|row| &row.rejects).map(|(group, count)| (*task, group, *count)));
+    }
+    groups.sort_by_key(|(_, _, count)| std::cmp::Reverse(*count));
+    let rows: Vec<Vec<String>> = groups
+        .iter()
+        .map(|(task, group, count)| vec![(*task).to_owned(), (*group).clone(), count.to_string()])
+        .collect();
+    out.line("")?;
+    out.table(&["task", "not accepted", "runs"], &rows)
+}
+
+fn print_faults(rows: &[FaultRow], out: &mut Output) -> Result<(), OutputError> {
+    let cells = |row: &FaultRow| {
+        vec![
+            row.fault.to_owned(),
+            row.plants.to_string(),
+            row.off_in_time.to_string(),
+            row.named.to_string(),
+            row.off_median_s.to_string(),
+            row.off_max_s.to_string(),
+            row.deadline_s.to_string(),
+            row.peak_current_max.to_string(),
+        ]
+    };
+    out.table(&FAULT_HEADS, &rows.iter().map(cells).collect::<Vec<_>>())
+}
+
+fn cells(task: &str, row: &Row) -> Vec<String> {
+    let figures = [
+        row.accept,
+        row.good,
+        row.j_median,
+        row.j_p95,
+        row.unstable,
+        row.ms_p95,
+        row.ms_varied_p95,
+        row.overshoot_p95,
+        row.seconds_median,
+    ];
+    let mut cells = vec![task.to_owned(), row.method.clone()];
+    cells.extend(figures.iter().map(ToString::to_string));
+    cells
+}
