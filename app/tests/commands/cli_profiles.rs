@@ -1,6 +1,5 @@
 //! Settings that cannot be lost, from the command line: backups, comparisons, copies, what was cut short.
 
-#[cfg(unix)]
 use std::path::{Path, PathBuf};
 
 use crate::cli::{

@@ -1,6 +1,5 @@
 //! `brushwork settings` as a person or a script runs it: the built program, its output and its exit codes.
 
-#[cfg(unix)]
 use crate::cli::{
     DIFFERENT, DONE, NO_LINK, NOT_TAKEN, REFUSED, USAGE, edit, exported, name, program, settings,
 };
