@@ -8,7 +8,9 @@ use brushwork_core::recording::{Head, Record, open};
 use brushwork_gui::mcl::journal::Journal;
 use brushwork_gui::model::Model;
 use brushwork_gui::remember::Memory;
-use brushwork_tests::program::{Child, Program};
+use brushwork_tests::program::Child;
+#[cfg(unix)]
+use brushwork_tests::program::Program;
 use brushwork_tests::wait::LIMIT;
 use serde_json::Value;
 use tempfile::TempDir;
@@ -16,6 +18,7 @@ use tempfile::TempDir;
 use crate::folder;
 
 const DONE: i32 = 0;
+#[cfg(unix)]
 const DIFFERENT: i32 = 6;
 
 fn file(name: &str) -> PathBuf {
@@ -43,6 +46,7 @@ fn copy(from: &Path, to: &Path) {
 }
 
 /// What 0.1 kept of a controller at a port of its own, as if it had been at this one.
+#[cfg(unix)]
 fn kept_at(port: &Path) -> TempDir {
     const PORT: &str = "/tmp/netport";
     let slug = |path: &str| {
