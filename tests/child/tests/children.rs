@@ -114,9 +114,9 @@ fn each_signal_arrives() {
     for (name, number) in [("HUP", 1), ("INT", 2), ("KILL", 9), ("TERM", 15)] {
         let mut command = shell("echo here; exec sleep 600");
         if cfg!(target_os = "linux") {
-            // Under nohup these tests inherit that SIGHUP is ignored, which `env` of Linux alone takes back.
+            // Under nohup or in the background these tests inherit that SIGHUP or SIGINT is ignored, which `env` of Linux alone takes back.
             let shell = std::mem::replace(&mut command, Command::new("env"));
-            command.arg("--default-signal=HUP").arg(shell.get_program()).args(shell.get_args());
+            command.arg("--default-signal=HUP,INT").arg(shell.get_program()).args(shell.get_args());
         }
         let mut program = Program::spawn(command);
         program.wait_for("here", LIMIT);

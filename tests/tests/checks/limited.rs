@@ -7,9 +7,10 @@ use brushwork_tests::program::{Child, Program};
 use brushwork_tests::wait::LIMIT;
 use brushwork_tests::workspace;
 
-/// A shell script under a limit.
+/// A shell script under a limit. Under nohup or in the background these tests inherit that a signal is ignored, which no shell can undo.
 fn limited(seconds: &str, script: &str) -> Command {
-    let mut command = Command::new(workspace::root().join("tests/limited"));
+    let mut command = Command::new("env");
+    command.arg("--default-signal=HUP,INT,TERM").arg(workspace::root().join("tests/limited"));
     command.args([seconds, "sh", "-c", script]);
     command
 }
@@ -37,11 +38,7 @@ fn what_a_command_leaves_running_is_ended_and_its_exit_code_is_kept() {
 #[test]
 fn an_interrupt_ends_the_command_with_all_that_it_started() {
     for (signal, code) in [("HUP", 129), ("INT", 130), ("TERM", 143)] {
-        // Under nohup these tests inherit that a signal is ignored, which no shell can undo.
-        let mut command = Command::new("env");
-        let script = limited("600", "sleep 600 & echo begun; wait");
-        command.arg("--default-signal=HUP,INT,TERM").arg(script.get_program()).args(script.get_args());
-        let mut program = Program::spawn(command);
+        let mut program = Program::spawn(limited("600", "sleep 600 & echo begun; wait"));
         program.wait_for("begun", LIMIT);
         program.signal(signal);
         assert_eq!(program.next_line(LIMIT), None, "the end of everything that could print");
