@@ -5,7 +5,7 @@
 
 use crate::axis::Exchange;
 
-/// A gap that long is a late one, s: less than the 130 ms after which a driven motor is said not to have started and than the 150 ms
+/// A gap that long is a late one, s: less than the 130 ms after which a driven motor is said not to have started and than the 200 ms
 /// after which the controller stops it; more than four lost replies in a row make of polls every 10 ms (67 ms on the plants of the bench).
 const LATE_S: f64 = 0.085;
 /// On a slow line it is one that is so many times the usual: two lost replies of those plants make up to 2.8.

@@ -149,7 +149,7 @@ fn assert_backed_up(link: &VirtualLink, journal: &Journal) {
     let kept_timeout = entry.wanted.get("stream.usb.timeout");
     assert_ne!(kept_timeout, None);
     assert_eq!(entry.ram.get("stream.usb.timeout"), kept_timeout);
-    assert_eq!(timeout_ms, 250, "shortened after the backup: {kept_timeout:?}");
+    assert_eq!(timeout_ms, 200, "shortened after the backup: {kept_timeout:?}");
     for key in ["motor1.velocity.p", "motor1.velocity.qpps", "motor1.position.p", "motor1.position.max"] {
         assert_eq!(entry.wanted.get(key), entry.ram.get(key), "{key}");
         assert!(entry.wanted.get(key).is_some(), "{key}");

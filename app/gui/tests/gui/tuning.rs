@@ -140,7 +140,7 @@ fn assert_holds(bench: &Bench, wanted: Registers) {
 #[test]
 fn a_velocity_loop_is_tuned_applied_verified_and_undone_and_nothing_stays_by_itself() {
     let (mut bench, before) = running("small-gearmotor", "Velocity Settings");
-    let timeout = timeout_ms(&bench);
+    let shortened = timeout_ms(&bench);
     bench.pass_ms(2500);
     assert!(bench.sees_part("Live speed of the run"));
     assert!(bench.sees_part("s left"));
@@ -148,7 +148,7 @@ fn a_velocity_loop_is_tuned_applied_verified_and_undone_and_nothing_stays_by_its
     let tuned = run(&mut bench, Loop::Velocity);
     assert_ne!(tuned.report.verdict, Verdict::Refused, "{:?}", tuned.report.causes);
     assert_eq!(held(&bench, Motor::M1), before, "nothing stays in the controller by itself");
-    assert!(timeout >= 250, "the time-out is the user's again: {timeout}");
+    assert_eq!((shortened, timeout_ms(&bench)), (200, 1000), "for the run, and the user's again after it");
     assert!(bench.sees_part("Measured speed over the predicted one: predicted"));
     bench.press("Apply (RAM)");
     bench.pass_ms(4000);

@@ -71,7 +71,7 @@ fn each_way_out_ends_with_duty_0_three_times_the_old_gains_and_the_old_time_out(
             .filter(|request| request[1] == 145)
             .map(|request| u32::from_be_bytes([request[8], request[9], request[10], request[11]]))
             .collect();
-        assert_eq!(timeouts.first(), Some(&150), "{strike:?}: shortened first");
+        assert_eq!(timeouts.first(), Some(&200), "{strike:?}: shortened first");
         assert_eq!(timeouts.last(), Some(&1000), "{strike:?}: the user's own at the end");
         let first_145 = sent.iter().position(|request| request[1] == 145);
         let first_drive = sent.iter().position(|request| is_drive(request));
