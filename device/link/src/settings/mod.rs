@@ -13,6 +13,7 @@ mod listing;
 mod mcp;
 mod memory;
 mod motion_mind;
+mod notation;
 mod pins;
 mod plan;
 mod profile;

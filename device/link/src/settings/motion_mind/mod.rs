@@ -5,5 +5,5 @@ mod rows;
 mod steps;
 
 pub use memory::{reset, restore, save};
-pub use rows::{register_of, rows};
+pub use rows::rows;
 pub use steps::{arguments, stage, step_bytes, step_title, step_words, warnings, weaken_first};
