@@ -1,6 +1,6 @@
 //! How a link is opened.
 
-use super::family::FamilyChoice;
+use super::family_choice::FamilyChoice;
 use super::request::PollRate;
 use crate::transport::Stream;
 use crate::wire::HiddenSettings;
