@@ -21,7 +21,8 @@ use brushwork_mcp_wire::canopen::{Frame, Function, NodeId, describe_frame};
 use brushwork_mcp_wire::packet_serial::{hex, number};
 use std::time::Duration;
 
-use super::controller::{Described, Line};
+use super::controller::Line;
+use super::described::Described;
 use super::stop::StopBytes;
 use crate::exchange::ExchangeError;
 

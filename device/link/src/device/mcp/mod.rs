@@ -17,7 +17,8 @@ pub use traffic::describe_sent;
 
 use super::can::{self, Monitor, Place};
 use super::channel::Sample;
-use super::controller::{ArmCheck, Controller, Described, Line, PollItem, PollList};
+use super::controller::{ArmCheck, Controller, Line, PollItem, PollList};
+use super::described::Described;
 use super::drive::Drive;
 use super::identity::Identity;
 use super::status::StatusReport;

@@ -1,11 +1,12 @@
 //! Finding units: addresses 1 to 98 in both protocols, by reads alone. A read moves nothing, writes nothing and is the only kind
 //! of command sent here.
 
+use super::facts::MotionMindFacts;
 use super::speaker::{GAP, Speaker};
 use super::stopping;
 use super::{MotionMind, mask, number, returns_of, value_in};
 use crate::device::controller::{Controller, DiscoverError, Family, Line};
-use crate::device::identity::{Identity, MOTION_MIND, MotionMindFacts};
+use crate::device::identity::{Identity, MOTION_MIND};
 use crate::device::options::{Addresses, DeviceOptions};
 use crate::device::stop::StopBytes;
 use crate::exchange::{ExchangeError, RETRIES};

@@ -10,6 +10,7 @@
 mod arming;
 mod discover;
 mod driving;
+mod facts;
 mod polling;
 mod raw;
 mod signs;
@@ -21,13 +22,15 @@ mod traffic;
 
 pub use discover::MotionMinds;
 pub use driving::{COUNTS_PER_S_PER_STEP, objection, preview, taken};
+pub use facts::MotionMindFacts;
 pub use signs::SIGNS;
 pub use traffic::{describe_received, describe_sent};
 
 use super::channel::Sample;
-use super::controller::{ArmCheck, Controller, Described, Line, PollItem, PollList};
+use super::controller::{ArmCheck, Controller, Line, PollItem, PollList};
+use super::described::Described;
 use super::drive::Drive;
-use super::identity::{Identity, MotionMindFacts};
+use super::identity::Identity;
 use super::status::StatusReport;
 use super::stop::{StopBytes, UnitStop};
 use crate::exchange::{ExchangeError, Reply as Answer};

@@ -1,12 +1,12 @@
 //! What is read from a unit in a sweep, and which signal each register is.
 
 use super::driving::COUNTS_PER_S_PER_STEP;
+use super::facts::MotionMindFacts;
 use super::signs::SIGNS;
 use super::speaker::Speaker;
 use super::{mask, number, value_in};
 use crate::device::channel::{Channel, Sample};
 use crate::device::controller::{Line, PollItem, PollList};
-use crate::device::identity::MotionMindFacts;
 use crate::device::status::StatusReport;
 use crate::exchange::{ExchangeError, Span};
 use brushwork_mcp_wire::packet_serial::status::Conditions;

@@ -19,7 +19,7 @@ use super::family::AnyFamily;
 use super::handle::{DeviceHandle, Envelope};
 use super::options::DeviceOptions;
 use super::outbox::Outbox;
-use super::request::PollRate;
+use super::poll_rate::PollRate;
 use super::signals::{Guard, Signals};
 use crate::clock::Clock;
 use crate::exchange::packet::Permit;

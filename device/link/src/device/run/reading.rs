@@ -5,7 +5,7 @@ use super::DeviceLoop;
 use crate::device::channel::{Channel, Sample};
 use crate::device::controller::{PollItem, PollList};
 use crate::device::event::{DisarmReason, Event};
-use crate::device::request::PollRate;
+use crate::device::poll_rate::PollRate;
 use crate::device::status::StatusReport;
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
