@@ -20,6 +20,7 @@ mod profile;
 mod read;
 mod reference;
 mod row;
+mod subject;
 mod table;
 mod template;
 mod value;
@@ -47,7 +48,8 @@ pub use profile::{
 pub use read::{ReadFailure, ReadReport, read_all, read_some};
 pub use reference::{ReferenceForm, ReferenceRow, reference, reference_text};
 pub use row::{Access, Bits, Bound, Carrier, Group, Instance, Place, Range, Row, Sink, Source};
-pub use table::{SettingsTable, Subject};
+pub use subject::Subject;
+pub use table::SettingsTable;
 pub use value::SettingValue;
 pub use write::{RowOutcome, RowState, WriteError, WriteReport, write};
 

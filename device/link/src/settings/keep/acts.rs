@@ -6,7 +6,8 @@ use super::super::memory::{
 };
 use super::super::plan::{WriteOptions, rows_involved};
 use super::super::read::{ReadReport, read_all, read_rows};
-use super::super::table::{SettingsTable, Subject};
+use super::super::subject::Subject;
+use super::super::table::SettingsTable;
 use super::super::write::{RowState, WriteError, WriteReport, write};
 use super::{Act, Ending, Entry, Keeper};
 use crate::failure::Failure;

@@ -16,7 +16,8 @@ use crate::unit::{FirmwareGeneration, UnitAddress};
 use brushwork_mcp_wire::models::Model;
 
 use super::image::{SettingsImage, changes};
-use super::table::{SettingsTable, Subject};
+use super::subject::Subject;
+use super::table::SettingsTable;
 
 pub use error::{Problem, ProfileError, ProfileFileError};
 pub use file::replace_file;
