@@ -10,7 +10,8 @@ use brushwork_mcp_wire::models::Family;
 use brushwork_mcp_wire::packet_serial::number;
 use serde::Serialize;
 
-use super::image::{Difference, SettingsImage, diff};
+use super::difference::{Difference, diff};
+use super::image::SettingsImage;
 use super::motion_mind;
 use super::plan::WriteOptions;
 use super::read::{ReadReport, is_final, is_there, read_all, went_out};

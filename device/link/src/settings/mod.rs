@@ -5,7 +5,9 @@
 //! tells RAM, EEPROM and profile apart. Motion, status and the script are not settings.
 
 mod check;
+mod copies;
 mod copy;
+mod difference;
 mod image;
 mod keep;
 mod kind;
@@ -27,8 +29,10 @@ mod value;
 mod write;
 
 pub use check::{BRIDGE_WARNING, SHORTEST_AUTORUN_MS};
+pub use copies::{Copies, Copy};
 pub use copy::{CopiedMotor, copy_motor};
-pub use image::{Copies, Copy, Difference, SettingsImage, changes, diff};
+pub use difference::{Difference, changes, diff};
+pub use image::SettingsImage;
 pub use keep::{
     Act, Aftermath, Ending, Entry, Held, Journal, JournalError, Keeper, Known, begin_command, begin_trial,
     defaults_kept, end_act, reload_kept, save_kept, write_kept, write_kept_knowing,

@@ -6,7 +6,8 @@
 use serde::Serialize;
 use thiserror::Error;
 
-use super::image::{SettingsImage, changes};
+use super::difference::changes;
+use super::image::SettingsImage;
 use super::plan::{Plan, Refusal, Stage, Step, WriteOptions, plan, rows_involved};
 use super::read::{ReadFailure, is_final, is_there, read_rows, went_out};
 use super::row::Row;

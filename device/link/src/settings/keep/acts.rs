@@ -1,6 +1,7 @@
 //! Write, save and restore, each between the beginning and the end of a journal.
 
-use super::super::image::{Difference, SettingsImage, diff};
+use super::super::difference::{Difference, diff};
+use super::super::image::SettingsImage;
 use super::super::memory::{
     DefaultsReport, SaveReport, SaveVerdict, reload, restore_defaults, save_eeprom_of,
 };

@@ -6,7 +6,7 @@
 
 use brushwork_motion_mind_wire::numbers;
 
-use super::super::image::{Difference, diff};
+use super::super::difference::{Difference, diff};
 use super::super::memory::{SaveReport, SaveVerdict, unknown};
 use super::super::read::{ReadReport, is_final, is_there, read_all, went_out};
 use super::super::row::register_of;

@@ -15,7 +15,8 @@ mod schema;
 use crate::unit::{FirmwareGeneration, UnitAddress};
 use brushwork_mcp_wire::models::Model;
 
-use super::image::{SettingsImage, changes};
+use super::difference::changes;
+use super::image::SettingsImage;
 use super::subject::Subject;
 use super::table::SettingsTable;
 
