@@ -22,6 +22,8 @@ mod profile;
 mod read;
 mod reference;
 mod row;
+mod save_report;
+mod step;
 mod subject;
 mod table;
 mod template;
@@ -39,12 +41,12 @@ pub use keep::{
 };
 pub use kind::{Coding, Kind};
 pub use listing::{ListedSetting, list, list_text};
-pub use memory::{DefaultsReport, SaveReport, SaveVerdict, reload, restore_defaults, save_eeprom};
+pub use memory::{DefaultsReport, reload, restore_defaults, save_eeprom};
 pub use pins::{
     Behind, Calibrated, Calibration, CalibrationStage, Conflict, ConflictKind, PinMode, SignalShape,
     change_mode, conflicts, function_text, modes, open_range,
 };
-pub use plan::{Plan, Refusal, Stage, Step, WriteOptions, plan};
+pub use plan::{Plan, WriteOptions, plan};
 pub use profile::{
     FORMAT, Fitted, OpenedProfile, Problem, Profile, ProfileChanges, ProfileError, ProfileFileError, SCHEMA,
     Strictness, replace_file,
@@ -52,6 +54,8 @@ pub use profile::{
 pub use read::{ReadFailure, ReadReport, read_all, read_some};
 pub use reference::{ReferenceForm, ReferenceRow, reference, reference_text};
 pub use row::{Access, Bits, Bound, Carrier, Group, Instance, Place, Range, Row, Sink, Source};
+pub use save_report::{SaveReport, SaveVerdict};
+pub use step::{Refusal, Stage, Step};
 pub use subject::Subject;
 pub use table::SettingsTable;
 pub use value::SettingValue;

@@ -7,7 +7,7 @@ use brushwork_mcp_wire::models::Family;
 
 use super::image::SettingsImage;
 use super::mcp;
-use super::motion_mind;
+use super::motion_mind::rows as motion_mind;
 use super::row::{Group, Row};
 use super::subject::Subject;
 use super::value::SettingValue;

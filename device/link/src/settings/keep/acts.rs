@@ -2,11 +2,10 @@
 
 use super::super::difference::{Difference, diff};
 use super::super::image::SettingsImage;
-use super::super::memory::{
-    DefaultsReport, SaveReport, SaveVerdict, reload, restore_defaults, save_eeprom_of,
-};
+use super::super::memory::{DefaultsReport, reload, restore_defaults, save_eeprom_of};
 use super::super::plan::{WriteOptions, rows_involved};
 use super::super::read::{ReadReport, read_all, read_rows};
+use super::super::save_report::{SaveReport, SaveVerdict};
 use super::super::subject::Subject;
 use super::super::table::SettingsTable;
 use super::super::write::{RowState, WriteError, WriteReport, write};

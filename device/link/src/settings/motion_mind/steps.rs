@@ -3,7 +3,7 @@
 use brushwork_motion_mind_wire::{Address, Command, describe_command, encode_frame, register};
 
 use super::super::image::SettingsImage;
-use super::super::plan::{Stage, Step};
+use super::super::step::{Stage, Step};
 use super::super::value::SettingValue;
 use crate::unit::UnitAddress;
 
