@@ -10,7 +10,8 @@ use super::super::row::{Group, Row};
 use super::super::subject::Subject;
 use super::super::table::SettingsTable;
 use super::super::value::SettingValue;
-use super::{Profile, generation_misfit, model_misfit};
+use super::changes::{generation_misfit, model_misfit};
+use super::content::Profile;
 
 /// A profile fitted to another controller.
 #[derive(Clone, Debug, PartialEq)]
