@@ -3,6 +3,8 @@
 //! The thread knows when and whether; a family knows which bytes. MCP and RoboClaw (packet serial) are the first; a
 //! family with other bytes, one motor and registers fits behind the same trait.
 
+pub use super::described::Described;
+
 use super::channel::Sample;
 use super::drive::Drive;
 use super::identity::Identity;
@@ -142,15 +144,6 @@ pub trait Controller: Send {
 
     /// What bytes on the wire mean: a request alone, or what came after it.
     fn describe_traffic(&self, request: &[u8], reply: Option<&[u8]>) -> Described;
-}
-
-/// What bytes on the wire mean.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Described {
-    /// In words; the bytes themselves where they mean nothing.
-    pub text: String,
-    /// Whether they are a request as it should be, or the whole and undamaged reply to one.
-    pub sound: bool,
 }
 
 /// A protocol family: how its units are found.

@@ -1,14 +1,17 @@
 //! Who a unit is.
 
 use super::channel::Channel;
-use super::controller::Described;
+use super::described::Described;
 use super::drive::Drive;
+use super::mcp::{describe_sent as describe_packets, preview as preview_packets};
+use super::motion_mind::{
+    MotionMindFacts, SIGNS, describe_sent as describe_commands, objection, preview as preview_command,
+};
 use super::status::Sign;
-use super::{mcp, motion_mind};
 use crate::settings::Subject;
 use crate::unit::{FirmwareGeneration, UnitAddress};
 use brushwork_mcp_wire::models;
-use brushwork_motion_mind_wire::{Mode, Protocol};
+use brushwork_motion_mind_wire::Mode;
 use serde::Serialize;
 
 /// The family's name of units on a CAN bus.
@@ -114,15 +117,6 @@ pub struct Identity {
     pub notes: Vec<String>,
 }
 
-/// What the switches of a Motion Mind say, as far as they can be found out over the wire.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct MotionMindFacts {
-    /// What moves its motor, from switches 2 to 4 at power-up.
-    pub mode: Mode,
-    /// Which protocol it speaks, switch 6.
-    pub protocol: Protocol,
-}
-
 impl Identity {
     /// Its address as settings and profiles carry it. A node of a CAN bus has that of packet serial.
     #[must_use]
@@ -158,32 +152,32 @@ impl Identity {
     /// The bits of its status word; empty in a family whose status is that of packet serial.
     #[must_use]
     pub fn signs(&self) -> &'static [Sign] {
-        if self.is_motion_mind() { motion_mind::SIGNS } else { &[] }
+        if self.is_motion_mind() { SIGNS } else { &[] }
     }
 
     /// The requests that a write holds, in words.
     #[must_use]
     pub fn describe_sent(&self, bytes: &[u8]) -> Described {
         match self.motion_mind {
-            Some(facts) => motion_mind::describe_sent(bytes, facts.protocol),
-            None => mcp::describe_sent(bytes, self.generation.layout()),
+            Some(facts) => describe_commands(bytes, facts.protocol),
+            None => describe_packets(bytes, self.generation.layout()),
         }
     }
 
     /// Why it does not take a drive as it is now, as a clause; `None` where it does, or where only asking tells.
     #[must_use]
     pub fn objection(&self, drive: &Drive) -> Option<String> {
-        self.motion_mind.and_then(|facts| motion_mind::objection(facts.mode, drive))
+        self.motion_mind.and_then(|facts| objection(facts.mode, drive))
     }
 
     /// The bytes of a drive, command by command, as they would be sent.
     #[must_use]
     pub fn preview(&self, drive: &Drive) -> Vec<Vec<u8>> {
         match self.motion_mind {
-            Some(facts) => motion_mind::preview(drive, self.address, facts),
+            Some(facts) => preview_command(drive, self.address, facts),
             None => {
                 let address = self.unit_address().packets().unwrap_or_default();
-                mcp::preview(drive, address, self.generation.layout())
+                preview_packets(drive, address, self.generation.layout())
             }
         }
     }

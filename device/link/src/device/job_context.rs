@@ -2,7 +2,7 @@
 
 use super::channel::Sample;
 use super::drive::Drive;
-use super::identity::MotionMindFacts;
+use super::motion_mind::MotionMindFacts;
 use crate::exchange::{ExchangeError, Interruption, Reply};
 use crate::unit::{FirmwareGeneration, UnitAddress};
 use crate::wire::{HiddenSettings, Wire};

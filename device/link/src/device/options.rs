@@ -1,7 +1,7 @@
 //! How a link is opened.
 
-use super::family::FamilyChoice;
-use super::request::PollRate;
+use super::family_choice::FamilyChoice;
+use super::poll_rate::PollRate;
 use crate::transport::Stream;
 use crate::wire::HiddenSettings;
 use std::sync::Arc;

@@ -2,32 +2,10 @@
 
 use super::drive::{ArmScope, Drive};
 use super::job::Job;
+use super::poll_rate::PollRate;
 use crate::firmware::RiskAccepted;
 use crate::transport::Stream;
 use brushwork_values::{Motor, Value};
-use std::time::Duration;
-
-/// How often the signals are read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PollRate {
-    /// Not at all, except while something is armed.
-    Off,
-    /// One sweep in each such time.
-    Every(Duration),
-    /// As fast as the link allows.
-    Fastest,
-}
-
-impl PollRate {
-    /// The rate of Ion Studio: ten sweeps a second.
-    pub const DEFAULT: Self = Self::Every(Duration::from_millis(100));
-}
-
-impl Default for PollRate {
-    fn default() -> Self {
-        Self::DEFAULT
-    }
-}
 
 /// A request to the device thread. All but [`Request::Select`] speak of the selected unit.
 #[derive(Debug)]

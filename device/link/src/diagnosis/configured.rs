@@ -1,7 +1,8 @@
 //! Settings that keep the motors from running.
 
-use super::Hindrance::{BlocksAll, BlocksSome, Limits};
-use super::{Evidence, Finding, Script, finding};
+use super::evidence::{Evidence, Script};
+use super::finding::Hindrance::{BlocksAll, BlocksSome, Limits};
+use super::finding::{Finding, finding};
 use crate::settings::{SettingValue, SettingsImage, SettingsTable};
 use crate::transport::Stream;
 

@@ -1,44 +1,11 @@
 //! What the input pins do to the motors: actions at the ends of their ranges (MCP manual 1.9.8), and inputs that hold the
 //! motors at a higher priority level.
 
-use super::Hindrance::{BlocksAll, BlocksSome};
-use super::{Evidence, Finding, finding};
+use super::evidence::Evidence;
+use super::finding::Hindrance::{BlocksAll, BlocksSome};
+use super::finding::{Finding, finding};
+use super::pin_end::PinEnd;
 use crate::settings::{SettingValue, SettingsImage};
-use brushwork_values::Values;
-
-/// Where an input stands within its range.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PinEnd {
-    /// At its minimum or below.
-    Lowest,
-    /// In between.
-    Between,
-    /// At its maximum or above.
-    Highest,
-}
-
-/// Full scale of a signal's percent (MCP manual 1.9.12).
-const FULL_SCALE: i64 = 32_767;
-
-/// Where each pin stands, from a reply to command 147.
-///
-/// Assumed: percent reaches full scale exactly at the ends; with a curve that ends early it may say so a little before.
-#[must_use]
-pub fn pin_ends(values: &Values) -> Vec<PinEnd> {
-    values.records().map(|record| PinEnd::of_percent(record.int("percent"))).collect()
-}
-
-impl PinEnd {
-    /// From the raw percent of command 147.
-    #[must_use]
-    pub fn of_percent(percent_raw: i64) -> Self {
-        match percent_raw {
-            percent if percent <= -FULL_SCALE => Self::Lowest,
-            percent if percent >= FULL_SCALE => Self::Highest,
-            _ => Self::Between,
-        }
-    }
-}
 
 /// Whether any input pin that is in use has an action, so that it can stop a motor.
 #[must_use]

@@ -1,7 +1,8 @@
 //! What the status word says, made exact by what was measured and set (MCP manual 1.6.3 and command 90).
 
-use super::Hindrance::{BlocksAll, BlocksSome, Limits};
-use super::{Evidence, Finding, finding};
+use super::evidence::Evidence;
+use super::finding::Hindrance::{BlocksAll, BlocksSome, Limits};
+use super::finding::{Finding, finding};
 use crate::settings::SettingValue;
 use brushwork_mcp_wire::packet_serial::status::{Condition, Severity};
 

@@ -1,7 +1,9 @@
 //! Which sentence each cause of standing motors gives.
 
 use super::*;
-use crate::settings::SettingValue;
+use crate::Stream;
+use crate::settings::{SettingValue, SettingsImage};
+use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::packet_serial::status::{CONDITIONS, Condition, Severity};
 
 fn settings(pairs: &[(&str, SettingValue)]) -> SettingsImage {

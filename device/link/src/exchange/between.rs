@@ -5,9 +5,10 @@
 //! replies to both reads, which carry checksums over their requests, answers what was between the reads. Nothing that comes is thrown
 //! away on the way there, since what is waited for may be behind it.
 
+use super::error::{ExchangeError, Tries};
+use super::link::{Exchange, RECOVERY};
 use super::packet::{Ask, gate};
 use super::watch::Watch;
-use super::{Exchange, ExchangeError, RECOVERY, Tries};
 use brushwork_mcp_wire::packet_serial::{ACK, ReplyProgress, Request, parse_reply};
 use std::time::Duration;
 
@@ -45,7 +46,7 @@ pub fn transact_between(
     gate(ask)?;
     let request = ask.request.encode(ask.generation).map_err(|source| ExchangeError::Encode { source })?;
     let reads = reads_to_be_told_apart(exchange, ask, reads);
-    let begun_at = exchange.clock.now();
+    let begun_at = exchange.clock().now();
     let byte_time = exchange.byte_time().unwrap_or(SLOWEST_BYTE);
     let late = byte_time * u32::try_from(exchange.given_up.reply_bytes()).unwrap_or(u32::MAX);
     let until = begun_at + (LIMIT + late).min(LONGEST);
@@ -53,16 +54,16 @@ pub fn transact_between(
     exchange.received.clear();
     exchange.unsettled = true;
     // A unit that has lost the thread finds it after a silence.
-    while exchange.clock.now() < begun_at + RECOVERY {
+    while exchange.clock().now() < begun_at + RECOVERY {
         exchange.hear(watch, begun_at + RECOVERY)?;
     }
 
     let mut tries: Vec<Try> = Vec::new();
-    let mut next_try_at = exchange.clock.now();
+    let mut next_try_at = exchange.clock().now();
     let mut acknowledged_until = None;
     let mut unacknowledged = 0;
     loop {
-        let now = exchange.clock.now();
+        let now = exchange.clock().now();
         match acknowledged_until {
             // Heard, but what was sent after that may still be answered.
             Some(until) if now >= until => {
@@ -89,7 +90,7 @@ pub fn transact_between(
         exchange.hear(watch, acknowledged_until.unwrap_or(next_try_at.min(until)))?;
         let Some((index, is_acknowledged)) = newest_answer(&tries, ask, &exchange.received) else { continue };
         exchange.received.clear();
-        let now = exchange.clock.now();
+        let now = exchange.clock().now();
         match is_acknowledged {
             false => unacknowledged += 1,
             true if index + 1 == tries.len() => {
@@ -146,7 +147,7 @@ fn newest_answer(tries: &[Try], ask: &Ask<'_>, bytes: &[u8]) -> Option<(usize, b
 
 /// Nobody waits for what these tries may still bring.
 fn give_up(exchange: &mut Exchange, tries: &[Try], request: &[u8]) {
-    let now = exchange.clock.now();
+    let now = exchange.clock().now();
     for pair in tries {
         let bytes = |read: &Request| [read.address.get(), read.command];
         exchange.given_up.note(&bytes(&pair.before), 0, now, true);

@@ -3,8 +3,10 @@
 //! Two gates stand here, since every packet passes: what can move a motor needs arming, and what is a guess about the
 //! wire goes to simulated controllers only.
 
+use super::error::ExchangeError;
+use super::link::Exchange;
+use super::request::{Fault, Judgement, Outgoing, RETRIES, Span};
 use super::watch::{Unwatched, Watch};
-use super::{Exchange, ExchangeError, Fault, Judgement, Outgoing, RETRIES, Span};
 use crate::unit::{FirmwareGeneration, UnitAddress};
 use crate::wire::{HiddenSettings, Wire};
 use brushwork_mcp_wire::packet_serial::{

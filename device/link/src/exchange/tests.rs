@@ -2,11 +2,13 @@
 
 use super::packet::{Ask, Permit, gate, transact};
 use super::*;
-use crate::TransportError;
-use crate::clock::VirtualClock;
+use crate::clock::{Clock, VirtualClock};
 use crate::testing::{Answers, ScriptedTransport, Wiretap, ms, reply_to, script, with_crc};
+use crate::{Transport, TransportError};
 use brushwork_mcp_wire::packet_serial::{Address, Generation, Request, number};
 use std::cell::Cell;
+use std::sync::Arc;
+use std::time::Duration;
 
 /// Read main battery of 0x80: no CRC.
 const READ_BATTERY: [u8; 2] = [0x80, 24];

@@ -1,8 +1,7 @@
 //! Erasing the script memory and writing an image into it, block by block.
 
-use super::autorun::read_autorun;
+use super::autorun::{Autorun, read_autorun};
 use super::image::{Origin, ScriptImage};
-use super::{Autorun, CHECKSUM_KEY};
 use crate::device::{FnJob, Job, JobContext};
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
@@ -17,6 +16,9 @@ use std::time::Duration;
 pub const DOWNLOAD_JOB: &str = "download the script";
 /// What a download that was cut short leaves.
 pub const CUT_SHORT: &str = "The script memory now holds a part of the image. Download again before the script is started or the controller is switched on";
+/// The key under which a simulated controller tells the CRC-16 of what its script memory holds
+/// ([`HiddenSettings`](crate::HiddenSettings)).
+pub const CHECKSUM_KEY: &str = "script.checksum";
 /// Key of the erase command (public clients, 2015-2020).
 const ERASE_KEY: i64 = 0x55AA;
 /// How often a block is sent again whose answer did not come. The same bytes at the same place do no harm.

@@ -9,9 +9,5 @@ mod download;
 mod image;
 
 pub use autorun::{AUTORUN_JOB, Autorun, MIN_AUTORUN, autorun_job, read_autorun, set_autorun};
-pub use download::{CUT_SHORT, DOWNLOAD_JOB, Downloaded, Verified, download, download_job};
+pub use download::{CHECKSUM_KEY, CUT_SHORT, DOWNLOAD_JOB, Downloaded, Verified, download, download_job};
 pub use image::{ImageError, Origin, ScriptImage};
-
-/// The key under which a simulated controller tells the CRC-16 of what its script memory holds
-/// ([`HiddenSettings`](crate::HiddenSettings)).
-pub const CHECKSUM_KEY: &str = "script.checksum";

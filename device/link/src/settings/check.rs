@@ -1,7 +1,7 @@
 //! Settings judged together: pairs that contradict each other, and changes that can set a motor in motion.
 
 use super::image::SettingsImage;
-use super::plan::Refusal;
+use super::step::Refusal;
 use super::table::SettingsTable;
 use super::value::SettingValue;
 

@@ -8,13 +8,14 @@ use std::time::Duration;
 
 use brushwork_mcp_wire::models::Family;
 use brushwork_mcp_wire::packet_serial::number;
-use serde::Serialize;
 
-use super::image::{Difference, SettingsImage, diff};
-use super::motion_mind;
+use super::difference::{Difference, diff};
+use super::motion_mind::memory as motion_mind;
 use super::plan::WriteOptions;
 use super::read::{ReadReport, is_final, is_there, read_all, went_out};
-use super::table::{SettingsTable, Subject};
+use super::save_report::{SaveReport, SaveVerdict, unknown};
+use super::subject::Subject;
+use super::table::SettingsTable;
 use super::write::{WriteReport, write};
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
@@ -29,82 +30,6 @@ const SETTLE_TIME: Duration = Duration::from_millis(300);
 const ASK_AGAIN: Duration = Duration::from_millis(200);
 /// Reloads tried after a save; the first one after a restart may go unanswered.
 const RELOAD_TRIES: usize = 3;
-
-/// What is known of a save.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum SaveVerdict {
-    /// The settings were loaded back from EEPROM and are the ones that were to be saved.
-    Verified,
-    /// The controller acknowledged the save, and did not answer when asked to load it back.
-    Acknowledged,
-    /// The controller acknowledged each setting as stored and it reads as stored; there is no way to read EEPROM itself.
-    Stored,
-    /// EEPROM holds something else.
-    NotSaved,
-    /// The controller did not acknowledge, or was not there afterwards.
-    Unknown,
-}
-
-/// What became of a save.
-#[derive(Clone, Debug, Serialize)]
-pub struct SaveReport {
-    /// What is known.
-    pub verdict: SaveVerdict,
-    /// Rows whose value in EEPROM is not the one that was to be saved: wanted, then found.
-    pub differences: Vec<Difference>,
-    /// What EEPROM holds, where that was read.
-    pub eeprom: Option<SettingsImage>,
-    /// Putting RAM back to what it was, when loading EEPROM had changed it.
-    pub put_back: Option<WriteReport>,
-    /// The last failure, where there was one.
-    pub failure: Option<Failure>,
-}
-
-impl SaveReport {
-    /// What became of the save, in a sentence or two.
-    pub fn sentence(&self) -> String {
-        let count = self.differences.len();
-        match (self.verdict, &self.failure) {
-            (SaveVerdict::Verified, _) => {
-                "The settings are saved; they were read back from EEPROM.".to_owned()
-            }
-            (SaveVerdict::Acknowledged, _) => "The controller acknowledged the save. It did not answer \
-                                               when asked to load its EEPROM, so the save is not proven; \
-                                               that happens after good saves too."
-                .to_owned(),
-            (SaveVerdict::Stored, _) => "The settings are saved: each register was acknowledged as stored and read back. EEPROM itself is \
-                                         read at a new start alone: load the settings from EEPROM to prove it."
-                .to_owned(),
-            (SaveVerdict::NotSaved, _) => {
-                let settings = if count == 1 { "1 setting".to_owned() } else { format!("{count} settings") };
-                if self.eeprom.is_none() {
-                    return format!("The save did not take: {settings} read otherwise afterwards. Save again.");
-                }
-                format!(
-                    "The save did not take: {settings} came back from EEPROM otherwise. {}",
-                    self.put_back_sentence()
-                )
-            }
-            (SaveVerdict::Unknown, Some(failure)) => {
-                format!("It is not known whether the settings are saved. {failure} Save again to be sure.")
-            }
-            (SaveVerdict::Unknown, None) => {
-                "It is not known whether the settings are saved. Save again to be sure.".to_owned()
-            }
-        }
-    }
-
-    fn put_back_sentence(&self) -> &'static str {
-        match &self.put_back {
-            Some(report) if report.is_complete() => {
-                "The controller works on with the settings that were to be saved."
-            }
-            Some(_) => "Not all of them could be written to the controller again.",
-            None => "The controller works on with what EEPROM held.",
-        }
-    }
-}
 
 /// Saves RAM to EEPROM, loads it back and compares. An error means that nothing was saved.
 pub fn save_eeprom(
@@ -192,16 +117,6 @@ fn put_back(
 ) -> Option<WriteReport> {
     let wanted = differences.iter().filter_map(|difference| Some((difference.key.clone(), difference.left?)));
     write(wire, &before.table, &wanted.collect(), WriteOptions { as_read: true, ..options }).ok()
-}
-
-pub(super) fn unknown(failure: Failure) -> SaveReport {
-    SaveReport {
-        verdict: SaveVerdict::Unknown,
-        differences: Vec::new(),
-        eeprom: None,
-        put_back: None,
-        failure: Some(failure),
-    }
 }
 
 /// Loads EEPROM into RAM and reads every setting. What was in RAM and not saved is lost. A Motion Mind starts anew for it, which stops

@@ -10,9 +10,10 @@ use serde::Serialize;
 
 use super::check::{dangers, wrong_pairs};
 use super::image::SettingsImage;
-use super::motion_mind;
+use super::motion_mind::steps as motion_mind;
 use super::pins::{Conflict, conflicts};
-use super::row::{Carrier, Row, Sink, Source};
+use super::row::{Carrier, Place, Row, Sink, Source};
+use super::step::{Refusal, Stage, Step};
 use super::table::SettingsTable;
 use super::value::SettingValue;
 use crate::transport::Stream;
@@ -40,53 +41,6 @@ pub struct Plan {
     pub steps: Vec<Step>,
     /// What the user should know before it is done, a sentence each.
     pub warnings: Vec<String>,
-}
-
-/// One command of a plan.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Step {
-    /// Command number.
-    pub command: u8,
-    /// Raw arguments by field name, in wire order.
-    pub arguments: Vec<(&'static str, i64)>,
-    /// The rows that it changes.
-    pub keys: Vec<String>,
-    /// When it is sent.
-    pub stage: Stage,
-}
-
-/// The order of writing: limits before what they limit, inputs before the levels that let them act, and last
-/// what changes the way to the controller itself.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Stage {
-    /// Voltage, current and error limits.
-    Limits,
-    /// Gains, travel, accelerations, encoder pins, PWM mode, mixing.
-    Motors,
-    /// Digital outputs.
-    Outputs,
-    /// Input pins.
-    Pins,
-    /// Serial ports other than our own, CAN node.
-    Ports,
-    /// Which inputs may act.
-    Priorities,
-    /// What starts by itself: script autorun, E-Stop reset.
-    Autonomy,
-    /// The unit's address.
-    Address,
-    /// The port that this program is connected through.
-    OwnPort,
-}
-
-/// Why a change is not planned.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Refusal {
-    /// The row.
-    pub key: String,
-    /// The reason as a sentence.
-    pub sentence: String,
 }
 
 impl Step {
@@ -424,8 +378,8 @@ impl Planner<'_> {
     }
 }
 
-fn place(field: &'static str) -> super::row::Place {
-    super::row::Place { field, bits: None }
+fn place(field: &'static str) -> Place {
+    Place { field, bits: None }
 }
 
 fn refuse(changed: &[&Row], sentence: String) -> Refusal {

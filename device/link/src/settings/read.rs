@@ -10,7 +10,8 @@ use serde::Serialize;
 
 use super::image::SettingsImage;
 use super::row::{Carrier, Place, Row, Source};
-use super::table::{SettingsTable, Subject};
+use super::subject::Subject;
+use super::table::SettingsTable;
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
 use crate::unit::FirmwareGeneration;

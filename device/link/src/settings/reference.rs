@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::kind::Kind;
 use super::mcp::{NOT_SETTINGS, templates};
 use super::row::{Access, Bits, Bound, Carrier, Group, Place, Row, Source};
-use super::table::Subject;
+use super::subject::Subject;
 use super::template::Template;
 
 /// One setting of the reference. Ranges and defaults that depend on the model are those of

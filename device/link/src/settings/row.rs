@@ -6,12 +6,13 @@
 use std::fmt;
 
 use brushwork_mcp_wire::models::MOTION_MIND_3;
+use brushwork_motion_mind_wire::{Register, register};
 use brushwork_values::Unit;
 use serde::Serialize;
 
 use super::kind::{Coding, Kind};
-use super::motion_mind;
-use super::value::{Notation, SettingValue};
+use super::notation::Notation;
+use super::value::SettingValue;
 
 /// One setting of one controller.
 #[derive(Clone, Debug)]
@@ -295,9 +296,7 @@ impl Row {
 
     /// The register of a Motion Mind that holds the row; `None` in other families.
     pub fn register(&self) -> Option<u8> {
-        motion_mind::register_of(self)
-            .map(|register| register.number)
-            .filter(|_| self.model == MOTION_MIND_3.name)
+        register_of(self).map(|register| register.number).filter(|_| self.model == MOTION_MIND_3.name)
     }
 
     /// Whether a command carries the row.
@@ -461,6 +460,11 @@ impl fmt::Display for Side {
             Self::Below => "below",
         })
     }
+}
+
+/// The register behind a row of a Motion Mind.
+pub(super) fn register_of(row: &Row) -> Option<&'static Register> {
+    register(row.sink()?.index?)
 }
 
 /// "Velocity P" within a sentence; "QPPS" and "L" keep their capitals.

@@ -11,7 +11,7 @@ use brushwork_values::Unit;
 
 use super::kind::{Coding, Kind};
 use super::row::{Access, Bits, Bound, Carrier, Group, Instance, Place, Range, Row, Sink, Source};
-use super::table::Subject;
+use super::subject::Subject;
 use super::value::SettingValue;
 
 /// One line of the table.

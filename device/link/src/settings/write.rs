@@ -6,10 +6,12 @@
 use serde::Serialize;
 use thiserror::Error;
 
-use super::image::{SettingsImage, changes};
-use super::plan::{Plan, Refusal, Stage, Step, WriteOptions, plan, rows_involved};
+use super::difference::changes;
+use super::image::SettingsImage;
+use super::plan::{Plan, WriteOptions, plan, rows_involved};
 use super::read::{ReadFailure, is_final, is_there, read_rows, went_out};
 use super::row::Row;
+use super::step::{Refusal, Stage, Step};
 use super::table::SettingsTable;
 use super::value::SettingValue;
 use crate::exchange::ExchangeError;

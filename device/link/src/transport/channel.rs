@@ -1,6 +1,6 @@
 //! Bytes through a pair of bounded channels, to a simulated controller in the same program.
 
-use super::{Transport, TransportError, WRITE_TIMEOUT};
+use super::byte_stream::{Transport, TransportError, WRITE_TIMEOUT};
 use crossbeam_channel::{Receiver, RecvTimeoutError, SendTimeoutError, Sender, bounded};
 use std::time::Duration;
 

@@ -1,9 +1,9 @@
-//! Serial ports and pseudo-terminals. The only file that knows the `serialport` crate.
+//! Serial ports and pseudo-terminals. Only this file and that of the list know the `serialport` crate.
 
-use super::ports::{self, PortInfo};
-use super::target::{OpenError, Stream};
-use super::{Transport, TransportError, WRITE_TIMEOUT};
-use serialport::{ClearBuffer, ErrorKind, SerialPort, SerialPortType};
+use super::byte_stream::{Transport, TransportError, WRITE_TIMEOUT};
+use super::error::OpenError;
+use super::refused;
+use serialport::{ClearBuffer, ErrorKind, SerialPort};
 use std::io;
 use std::time::Duration;
 
@@ -83,29 +83,6 @@ impl Transport for SerialTransport {
     }
 }
 
-/// The ports the system lists; see [`ports::list_ports`], which guards this call.
-pub(super) fn listed() -> Result<Vec<PortInfo>, io::Error> {
-    let found = serialport::available_ports().map_err(io::Error::from)?;
-    Ok(found.into_iter().map(|port| port_info(port.port_name, port.port_type)).collect())
-}
-
-fn port_info(name: String, kind: SerialPortType) -> PortInfo {
-    let mut info = PortInfo { name, ..PortInfo::default() };
-    match kind {
-        SerialPortType::UsbPort(usb) => {
-            info.is_usb = true;
-            info.usb_id = Some((usb.vid, usb.pid));
-            info.product = usb.product;
-            info.manufacturer = usb.manufacturer;
-            info.serial_number = usb.serial_number;
-        }
-        SerialPortType::BluetoothPort => info.product = Some("Bluetooth".to_owned()),
-        SerialPortType::PciPort | SerialPortType::Unknown => {}
-    }
-    info.stream = info.names_a_controller().then_some(Stream::Usb);
-    info
-}
-
 fn open_port(path: &str, baud: u32) -> serialport::Result<Box<dyn SerialPort>> {
     let builder = serialport::new(path, baud).timeout(WRITE_TIMEOUT);
     match builder.clone().open() {
@@ -123,14 +100,15 @@ fn explain(path: &str, baud: u32, error: &serialport::Error) -> OpenError {
     let detail = error.description.clone();
     match error.kind {
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => {
-            OpenError::Permission { mend: ports::permission_mend(&path), path }
+            OpenError::Permission { mend: refused::permission_mend(&path), path }
         }
         ErrorKind::Io(io::ErrorKind::NotFound) => OpenError::NotFound { path },
-        ErrorKind::NoDevice if ports::exists(&path) => {
-            OpenError::Busy { holder: ports::holder(&path).unwrap_or_else(|| "another program".into()), path }
-        }
+        ErrorKind::NoDevice if refused::exists(&path) => OpenError::Busy {
+            holder: refused::holder(&path).unwrap_or_else(|| "another program".into()),
+            path,
+        },
         ErrorKind::NoDevice => OpenError::NotFound { path },
-        _ if ports::is_no_device(&path) => OpenError::NotASerialPort { path, detail },
+        _ if refused::is_no_device(&path) => OpenError::NotASerialPort { path, detail },
         _ => OpenError::Port { path, baud, detail },
     }
 }

@@ -1,15 +1,19 @@
-//! What the user types to say where a controller is, and the sentences for when it cannot be opened.
+//! What the user types to say where a controller is.
 //!
 //! `/dev/ttyACM0`, `COM3`, `tcp:host:port` and `sim:mcp266`; serial ports take options behind a comma:
 //! `/dev/ttyUSB0,baud=115200,stream=ttl1`, `COM4,family=motion-mind`. `can:` in front of a port or TCP address says that a CAN adapter is there:
 //! `can:/dev/ttyUSB0,node=3,form=binary`. Any other text is taken as the path of a serial port, so that
 //! links, pseudo-terminals and names this program has never heard of work too.
 
-use super::{SerialTransport, TcpTransport, Transport};
+pub use super::error::{OpenError, TargetError};
+pub use super::stream::Stream;
+
+use super::byte_stream::Transport;
+use super::serial::SerialTransport;
+use super::tcp::TcpTransport;
 use crate::device::FamilyChoice;
 use brushwork_mcp_wire::canopen::NodeId;
 use brushwork_mcp_wire::canopen::adapter::Form;
-use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
@@ -20,62 +24,6 @@ pub const MOTION_MIND_BAUD: u32 = 19_200;
 
 /// Baud rate of an adapter for a CAN bus when none is given. Assumed: the makers' manuals name no common one.
 pub const DEFAULT_ADAPTER_BAUD: u32 = 115_200;
-
-/// One of the controller's serial streams, as commands 145 and 146 count them (MCP manual 2.3.1, command 145).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Stream {
-    /// The USB connector.
-    Usb,
-    /// RS-232, UART0.
-    Rs232,
-    /// TTL, UART1.
-    Ttl1,
-    /// TTL, UART2.
-    Ttl2,
-    /// TTL, UART3.
-    Ttl3,
-}
-
-impl Stream {
-    /// All of them in the order of their index.
-    pub const ALL: [Self; 5] = [Self::Usb, Self::Rs232, Self::Ttl1, Self::Ttl2, Self::Ttl3];
-
-    /// Index in the records of commands 145 and 146.
-    #[must_use]
-    pub fn index(self) -> usize {
-        self as usize
-    }
-
-    /// Name on the command line and in files: "usb", "rs232", "ttl1".
-    #[must_use]
-    pub fn key(self) -> &'static str {
-        ["usb", "rs232", "ttl1", "ttl2", "ttl3"][self.index()]
-    }
-
-    /// Name for people, as Ion Studio writes it.
-    #[must_use]
-    pub fn label(self) -> &'static str {
-        ["USB", "RS232 UART0", "TTL UART1", "TTL UART2", "TTL UART3"][self.index()]
-    }
-}
-
-impl fmt::Display for Stream {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.label())
-    }
-}
-
-impl FromStr for Stream {
-    type Err = TargetError;
-
-    fn from_str(text: &str) -> Result<Self, TargetError> {
-        Self::ALL
-            .into_iter()
-            .find(|stream| stream.key().eq_ignore_ascii_case(text))
-            .ok_or_else(|| TargetError::Stream { given: text.to_owned() })
-    }
-}
 
 /// Where a controller is to be found.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -210,118 +158,6 @@ impl fmt::Display for ConnectTarget {
             family => write!(f, ",family={family}"),
         }
     }
-}
-
-/// Text that names no target.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum TargetError {
-    /// Nothing was typed.
-    #[error("no port was named. Give a path such as /dev/ttyACM0 or COM3, tcp:host:port, or sim:mcp266")]
-    Empty,
-    /// "tcp:" without host or port.
-    #[error("\"{given}\" is no TCP address. Write tcp:host:port, for example tcp:127.0.0.1:5000")]
-    TcpAddress {
-        /// What stood behind "tcp:".
-        given: String,
-    },
-    /// A baud rate out of range.
-    #[error("\"{given}\" is no baud rate. Packet serial takes 300 to 1000000")]
-    Baud {
-        /// What was given.
-        given: String,
-    },
-    /// A node id out of range.
-    #[error("\"{given}\" is no node id. CANopen has 1 to 127")]
-    Node {
-        /// What was given.
-        given: String,
-    },
-    /// An unknown form of adapter.
-    #[error("\"{given}\" is no form of a CAN adapter. Use ascii or binary")]
-    Form {
-        /// What was given.
-        given: String,
-    },
-    /// An unknown protocol family.
-    #[error("\"{given}\" is no protocol family. Use auto, mcp or motion-mind")]
-    Family {
-        /// What was given.
-        given: String,
-    },
-    /// An unknown stream.
-    #[error("\"{given}\" is no stream of the controller. Use usb, rs232, ttl1, ttl2 or ttl3")]
-    Stream {
-        /// What was given.
-        given: String,
-    },
-}
-
-/// Why a target could not be opened; each says how to mend it.
-#[derive(Debug, thiserror::Error)]
-pub enum OpenError {
-    /// The user may not open the device.
-    #[error("Could not open {path}: permission denied. {mend}")]
-    Permission {
-        /// The device.
-        path: String,
-        /// Which group to join and how.
-        mend: String,
-    },
-    /// Another program holds the port.
-    #[error(
-        "Could not open {path}: {holder} is using it. Close that program (or its connection) and try again."
-    )]
-    Busy {
-        /// The device.
-        path: String,
-        /// The program and its process number where they can be found out, else "another program".
-        holder: String,
-    },
-    /// There is no such device.
-    #[error(
-        "Could not open {path}: there is no such port. Check the cable and the name; `brushwork list` shows the ports that are there."
-    )]
-    NotFound {
-        /// The path as typed.
-        path: String,
-    },
-    /// The path is a file of another kind.
-    #[error(
-        "Could not open {path}: it is not a serial port ({detail}). Give the path of a serial port or pseudo-terminal."
-    )]
-    NotASerialPort {
-        /// The path as typed.
-        path: String,
-        /// What the operating system said.
-        detail: String,
-    },
-    /// Any other refusal by the system.
-    #[error(
-        "Could not open {path} at {baud} baud: {detail}. Check that the port takes this baud rate, unplug the adapter and plug it in again."
-    )]
-    Port {
-        /// The path as typed.
-        path: String,
-        /// The baud rate asked for.
-        baud: u32,
-        /// What the operating system said.
-        detail: String,
-    },
-    /// The TCP connection was not made.
-    #[error(
-        "Could not connect to tcp:{address}: {source}. Check that the server runs and that host and port are right."
-    )]
-    Tcp {
-        /// "host:port".
-        address: String,
-        /// The operating system's error.
-        source: std::io::Error,
-    },
-    /// A simulated controller was asked of this crate.
-    #[error(
-        "Could not open the simulated controller here: the application starts it. Open it from the device list."
-    )]
-    SimulatedElsewhere,
 }
 
 /// Reads what stands behind "can:".

@@ -3,7 +3,7 @@
 //! A named thread reads, so that waiting for a byte has the resolution of a channel and not that of
 //! a socket time-out (which some systems round up to several milliseconds).
 
-use super::{Transport, TransportError, WRITE_TIMEOUT};
+use super::byte_stream::{Transport, TransportError, WRITE_TIMEOUT};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use std::io::{self, Read, Write};
 use std::net::{Shutdown, TcpStream, ToSocketAddrs};

@@ -1,6 +1,6 @@
 //! One access to an object of a node, over an exchange: frames out, frames of that node back, everything else passed by.
 
-use super::Place;
+use super::place::Place;
 use crate::device::controller::Line;
 use crate::exchange::{ExchangeError, Judgement, Outgoing, Span, Tries};
 use brushwork_mcp_wire::canopen::Function;

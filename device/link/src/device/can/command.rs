@@ -1,7 +1,7 @@
 //! A packet serial command as accesses to its object.
 
-use super::Place;
 use super::access::{read, run, write};
+use super::place::Place;
 use crate::device::controller::Line;
 use crate::exchange::packet::{Ask, Reply, gate};
 use crate::exchange::{ExchangeError, Span};

@@ -1,9 +1,10 @@
 //! Finding the nodes of a bus: by their heartbeats, and by asking every node id at once.
 
 use super::access::read;
-use super::{Monitor, Place};
+use super::monitor::Monitor;
+use super::place::Place;
 use crate::device::controller::{Controller, DiscoverError, Family, Line};
-use crate::device::mcp;
+use crate::device::mcp::identify_node;
 use crate::device::options::{Addresses, DeviceOptions};
 use crate::device::stop::StopBytes;
 use crate::exchange::{ExchangeError, Judgement, Outgoing};
@@ -98,7 +99,7 @@ impl CanOpen {
         if let Some(state) = self.monitor.state(node) {
             notes.push(format!("Its heartbeat says: {state}."));
         }
-        let unit = mcp::identify_node(line, place, &self.monitor, &version, simulated, notes)?;
+        let unit = identify_node(line, place, &self.monitor, &version, simulated, notes)?;
         Ok(Some(Ok(Box::new(unit))))
     }
 }

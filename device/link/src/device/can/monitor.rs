@@ -1,6 +1,6 @@
 //! Listening to the bus on the way: boot-ups, heartbeats and emergencies in what a transport reads, and this program's own heartbeat.
 
-use super::{MASTER, MASTER_LIMIT};
+use super::master::{MASTER, MASTER_LIMIT};
 use crate::clock::Clock;
 use crate::transport::{Transport, TransportError};
 use brushwork_mcp_wire::canopen::adapter::{Decoder, Form};

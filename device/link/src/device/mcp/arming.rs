@@ -3,7 +3,7 @@
 //! Assumed: that a stream's time-out stops the motors when no lower priority level is active. The manual says only that the
 //! next level takes over (MCP manual 1.9.3, commands 139 and 145); this is our reading of "none takes over".
 
-use super::{Speaker, Wire};
+use super::speaker::{Speaker, Wire};
 use crate::device::can::{MASTER_LIMIT, Monitor, Place};
 use crate::device::controller::{ArmCheck, Line};
 use crate::exchange::ExchangeError;

@@ -1,6 +1,8 @@
 //! Finding the units of a link: which addresses answer, whether they are one unit, and who each is.
 
-use super::{Mcp, Speaker, Wire, generation, polling, stopping};
+use super::speaker::{Speaker, Wire};
+use super::unit::Mcp;
+use super::{generation, polling, stopping};
 use crate::device::can::{Monitor, Place};
 use crate::device::controller::{Controller, DiscoverError, Family, Line};
 use crate::device::identity::{CANOPEN, Identity};

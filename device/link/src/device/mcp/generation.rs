@@ -3,7 +3,7 @@
 //! Nothing on the wire names the generation (public clients, 2015-2025). Five reads have replies whose length changed; a
 //! unit need not answer all of them. A reply counts with the length at which its CRC fits.
 
-use crate::device::can::{self, Place};
+use crate::device::can::{Place, Probe as Found, probe as probe_object};
 use crate::device::controller::Line;
 use crate::exchange::{ExchangeError, Fault, Judgement, Outgoing};
 use brushwork_mcp_wire::crc::crc16_xmodem;
@@ -87,13 +87,11 @@ pub fn detect(line: &mut Line<'_>, address: Address) -> Result<Finding, Exchange
 pub fn detect_node(line: &mut Line<'_>, place: Place) -> Result<Finding, ExchangeError> {
     let mut observations = [None; PROBES.len()];
     for (observation, probe) in observations.iter_mut().zip(&PROBES) {
-        let part = can::probe(line, place, probe.command, probe.subindex)?;
+        let part = probe_object(line, place, probe.command, probe.subindex)?;
         // Where the part is missing the object itself may be too, which tells nothing.
         *observation = match part {
-            can::Probe::Wide(width) => Some(width >= probe.long_width),
-            can::Probe::Absent => {
-                (can::probe(line, place, probe.command, 0)? != can::Probe::Absent).then_some(false)
-            }
+            Found::Wide(width) => Some(width >= probe.long_width),
+            Found::Absent => (probe_object(line, place, probe.command, 0)? != Found::Absent).then_some(false),
         };
     }
     Ok(judge(&observations))

@@ -1,6 +1,6 @@
 //! What is read from a unit in a sweep, and which signal each reply carries.
 
-use super::Speaker;
+use super::speaker::Speaker;
 use crate::device::channel::{Channel, PinSignal, Sample};
 use crate::device::controller::{Line, PollItem, PollList};
 use crate::device::status::StatusReport;

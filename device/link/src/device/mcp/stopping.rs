@@ -1,6 +1,6 @@
 //! Stopping a unit: at once without asking, then again with its confirmation, and what can still drive it after that.
 
-use super::{Speaker, Wire};
+use super::speaker::{Speaker, Wire};
 use crate::device::controller::Line;
 use crate::device::stop::{StopBytes, UnitStop};
 use crate::exchange::ExchangeError;

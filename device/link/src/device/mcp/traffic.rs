@@ -1,6 +1,6 @@
 //! What bytes on the wire mean, for the traffic view.
 
-use crate::device::controller::Described;
+use crate::device::described::Described;
 use brushwork_mcp_wire::packet_serial::{
     ACK, FramerEvent, Generation, ReplyProgress, Request, RequestFramer, parse_reply,
 };

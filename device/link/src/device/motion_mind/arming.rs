@@ -1,11 +1,13 @@
 //! Whether motion may be allowed: the mode must take serial commands, and nothing may hold the drive back.
 
+use super::driving;
+use super::registers::{mask, value_in};
 use super::stopping::{give_back, read_ramp, switch_on};
-use super::{MotionMind, driving, mask, number, value_in};
+use super::unit::MotionMind;
 use crate::device::controller::{ArmCheck, Line};
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
-use brushwork_motion_mind_wire::{Command, Mode, function, status};
+use brushwork_motion_mind_wire::{Command, Mode, function, register_number as number, status};
 use std::time::Duration;
 
 /// A ramp that takes longer is worth knowing.

@@ -1,18 +1,20 @@
 //! Finding units: addresses 1 to 98 in both protocols, by reads alone. A read moves nothing, writes nothing and is the only kind
 //! of command sent here.
 
+use super::facts::MotionMindFacts;
+use super::registers::{mask, returns_of, value_in};
 use super::speaker::{GAP, Speaker};
 use super::stopping;
-use super::{MotionMind, mask, number, returns_of, value_in};
+use super::unit::MotionMind;
 use crate::device::controller::{Controller, DiscoverError, Family, Line};
-use crate::device::identity::{Identity, MOTION_MIND, MotionMindFacts};
+use crate::device::identity::{Identity, MOTION_MIND};
 use crate::device::options::{Addresses, DeviceOptions};
 use crate::device::stop::StopBytes;
 use crate::exchange::{ExchangeError, RETRIES};
 use crate::failure::Failure;
 use crate::unit::FirmwareGeneration;
 use brushwork_mcp_wire::models::MOTION_MIND_3;
-use brushwork_motion_mind_wire::{Address, Command, Mode, Protocol, function};
+use brushwork_motion_mind_wire::{Address, Command, Mode, Protocol, function, register_number as number};
 use std::time::Duration;
 
 /// How long an answer may take in a scan, beyond its time on the wire: 10 ms of the controller, and what USB adapters add.

@@ -1,7 +1,7 @@
 //! What a drive is in commands of a Motion Mind: one for each mode that serial commands can move a motor in.
 
+use super::facts::MotionMindFacts;
 use crate::device::drive::{Drive, DriveCommand};
-use crate::device::identity::MotionMindFacts;
 use crate::exchange::ExchangeError;
 use brushwork_motion_mind_wire::{Address, Command, Mode, Protocol, encode_frame, encode_line};
 

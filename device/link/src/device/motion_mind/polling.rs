@@ -1,16 +1,16 @@
 //! What is read from a unit in a sweep, and which signal each register is.
 
 use super::driving::COUNTS_PER_S_PER_STEP;
+use super::facts::MotionMindFacts;
+use super::registers::{mask, value_in};
 use super::signs::SIGNS;
 use super::speaker::Speaker;
-use super::{mask, number, value_in};
 use crate::device::channel::{Channel, Sample};
 use crate::device::controller::{Line, PollItem, PollList};
-use crate::device::identity::MotionMindFacts;
 use crate::device::status::StatusReport;
 use crate::exchange::{ExchangeError, Span};
 use brushwork_mcp_wire::packet_serial::status::Conditions;
-use brushwork_motion_mind_wire::{Command, Mode, Protocol, Reply, register};
+use brushwork_motion_mind_wire::{Command, Mode, Protocol, Reply, register, register_number as number};
 
 /// What moves: one read of several registers.
 const MOTION: PollItem = PollItem { id: 0, name: "position, velocity, drive, current, status" };

@@ -3,6 +3,7 @@
 //! The self-test of the text protocol is never sent: a unit needs a power cycle after it. What is no command of the manual goes to
 //! simulated units alone, but for a line that cannot be one, which a unit in text answers with BAD COMMAND.
 
+use super::registers::all_returns;
 use super::speaker::{GAP, Speaker};
 use crate::device::controller::Line;
 use crate::exchange::{ExchangeError, Judgement, Outgoing};
@@ -135,14 +136,6 @@ fn judge(protocol: Protocol, typed: &Typed, bytes: &[u8]) -> Judgement {
         (Protocol::Text, Typed::BadLine) if bytes.ends_with(b"\n") => Judgement::Good(bytes.len()),
         _ => Judgement::More(1),
     }
-}
-
-pub fn all_returns() -> [Returns; 8] {
-    std::array::from_fn(|bits| Returns {
-        position: bits & 1 != 0,
-        velocity: bits & 2 != 0,
-        time: bits & 4 != 0,
-    })
 }
 
 fn impossible<T>(what: &str) -> Result<T, ExchangeError> {

@@ -1,12 +1,12 @@
 //! One command to one unit and its reply, in the unit's protocol, with the pause that both ends need.
 
-use super::raw::all_returns;
-use super::{number, returns_of};
+use super::registers::{all_returns, returns_of, value_in};
 use crate::device::controller::Line;
 use crate::exchange::{ExchangeError, Fault, Judgement, Outgoing, Span};
 use brushwork_motion_mind_wire::{
     Address, BadReply, Command, Effect, EncodeError, Part, Progress, Protocol, Reply, Returns, command_row,
     encode_frame, encode_line, parse_all_loosely, parse_frame_reply, parse_line_reply, register,
+    register_number as number,
 };
 use std::time::Duration;
 
@@ -91,7 +91,7 @@ impl Speaker {
             self.judge_behind_others(&command, bytes, &mut reply)
         });
         match answered {
-            Ok(_) => Ok(super::value_in(&reply, index)),
+            Ok(_) => Ok(value_in(&reply, index)),
             Err(error) if error.is_link_lost() || error.interruption().is_some() => Err(error),
             Err(_) => Ok(None),
         }

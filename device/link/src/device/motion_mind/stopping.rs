@@ -5,19 +5,17 @@
 //! the output of the loop is switched off (DISABLEPID) until the motor stands, and is left so, until the next arming, where the loop
 //! does not hold the motor still then either. Both are writes to RAM alone.
 
+use super::borrowed::{Borrowed, Ramp, STEEPEST};
+use super::registers::{mask, value_in};
 use super::speaker::{GAP, Speaker};
-use super::{MotionMind, mask, number, value_in};
+use super::unit::MotionMind;
 use crate::device::controller::Line;
 use crate::device::stop::{StopBytes, UnitStop};
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
-use brushwork_motion_mind_wire::{Address, Command, Mode, Protocol, function};
+use brushwork_motion_mind_wire::{Address, Command, Mode, Protocol, function, register_number as number};
 use std::time::Duration;
 
-/// A ramp that lets full drive come down within this is quick enough as it is.
-const QUICK: Duration = Duration::from_millis(250);
-/// The steepest ramp: all at once.
-const STEEPEST: i64 = 1023;
 /// A loop that holds its motor may move it by so many counts between two looks.
 const STILL_COUNTS: i64 = 2;
 /// Time between two looks at the motor.
@@ -41,44 +39,6 @@ const BROKEN_INTO: Duration = Duration::from_millis(40);
 const LATE_REPLY: Duration = Duration::from_millis(300);
 
 const CUT_POWER: &str = "Cut the motor power now: the motor may still be running";
-
-/// A register in RAM that a stop has changed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Borrowed {
-    pub register: u8,
-    /// What it held before.
-    pub value: i64,
-}
-
-/// How the drive of mode 3 changes, as last read.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Ramp {
-    /// VELOCITYLIMIT; `None` while nobody knows.
-    pub step: Option<i64>,
-    /// TIMER, in 5 ms.
-    pub timer: Option<i64>,
-}
-
-impl Ramp {
-    pub fn note_write(&mut self, register: u8, value: i64) {
-        match register {
-            number::VELOCITYLIMIT => self.step = Some(value),
-            number::TIMER => self.timer = Some(value),
-            _ => {}
-        }
-    }
-
-    /// How long full drive takes to come down; `None` while nobody knows, and for ever at a step of 0.
-    pub fn time_to_zero(self) -> Option<Duration> {
-        let (step, timer) = (self.step?, self.timer?.max(1));
-        let updates = if step > 0 { (STEEPEST + step - 1) / step } else { i64::from(u32::MAX) };
-        Some(Duration::from_millis(5) * u32::try_from(updates * timer).unwrap_or(u32::MAX))
-    }
-
-    fn is_slow(self) -> bool {
-        self.time_to_zero().is_some_and(|time| time > QUICK)
-    }
-}
 
 /// What stands a motor in a mode; nothing where serial commands do not move it.
 fn commands(mode: Mode) -> Option<Command> {

@@ -1,7 +1,8 @@
 //! Units on a scripted line: what goes out for each act, byte by byte.
 
+use super::borrowed::Ramp;
 use super::driving::command;
-use super::stopping::{Ramp, broadcast};
+use super::stopping::broadcast;
 use crate::device::drive::{Drive, DriveCommand};
 use brushwork_motion_mind_wire::{Command, Mode, Protocol};
 use brushwork_values::Motor;

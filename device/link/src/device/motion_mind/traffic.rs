@@ -1,7 +1,7 @@
 //! What bytes on the wire mean, for the traffic view and the terminal.
 
-use super::raw::all_returns;
-use crate::device::controller::Described;
+use super::registers::all_returns;
+use crate::device::described::Described;
 use brushwork_mcp_wire::packet_serial::hex;
 use brushwork_motion_mind_wire::{
     Address, Command, FrameEvent, FrameReader, LineEvent, LineReader, Part, Progress, Protocol, Returns,

@@ -1,7 +1,8 @@
 //! Stopping motors: the bytes first, whatever is under way; then the line is settled and each unit is asked to confirm.
 
 use super::reading::SILENCE_LIMIT;
-use super::{DeviceLoop, Phase};
+use super::state::{DeviceLoop, Phase};
+use super::stop_again::StopAgain;
 use crate::device::controller::Line;
 use crate::device::event::{DisarmReason, Event};
 use crate::device::stop::{StopBytes, StopReport, UnitStop};
@@ -13,15 +14,6 @@ use std::time::Duration;
 const STOP_AGAIN_INTERVAL: Duration = Duration::from_millis(100);
 /// On a bus of several units one that does not confirm is given up after this long.
 const GIVE_UP_AFTER: Duration = Duration::from_secs(3);
-
-/// A stop that nobody confirmed, although this program may have set motors in motion.
-#[derive(Clone, Copy, Debug)]
-pub struct StopAgain {
-    /// When it is tried next.
-    pub at: Duration,
-    /// When it was first tried.
-    pub since: Duration,
-}
 
 /// When a stop was asked for and when its bytes had been written.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,6 @@
 //! Running a job: the wire it gets, what breaks into it, and the motors stopped on every way out, a panic included.
 
-use super::{DeviceLoop, Phase};
+use super::state::{DeviceLoop, Phase};
 use crate::device::MotionMindFacts;
 use crate::device::channel::Sample;
 use crate::device::drive::Drive;

@@ -1,6 +1,6 @@
 //! Leaving for the firmware loader: motors first, and nothing else on this link afterwards.
 
-use super::{DeviceLoop, Phase};
+use super::state::{DeviceLoop, Phase};
 use crate::device::controller::Line;
 use crate::device::event::{DisarmReason, Event};
 use crate::exchange::packet::Permit;

@@ -8,30 +8,33 @@ mod jobs;
 mod loader;
 mod reading;
 mod requests;
+mod state;
+mod stop_again;
+mod sweep;
 mod thread;
 
+pub use state::{DeviceLoop, Step};
 pub use thread::DeviceThread;
 
 use super::controller::{Controller, Described, DiscoverError, Family, Line};
 use super::drive::ArmScope;
 use super::event::{DisarmReason, Event};
 use super::family::AnyFamily;
-use super::handle::{DeviceHandle, Envelope};
+use super::handle::DeviceHandle;
 use super::options::DeviceOptions;
 use super::outbox::Outbox;
-use super::request::PollRate;
 use super::signals::{Guard, Signals};
 use crate::clock::Clock;
 use crate::exchange::packet::Permit;
 use crate::exchange::{Exchange, ExchangeError, Interruption, Watch};
 use crate::failure::Failure;
-use crate::transport::{Stream, Transport};
+use crate::transport::Transport;
 use crossbeam_channel::{Receiver, bounded};
-use halting::StopAgain;
-use reading::{Plan, Sweep};
+use state::{Phase, Unit};
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
+use sweep::Sweep;
 
 /// How often the link's figures are told.
 const STATISTICS_INTERVAL: Duration = Duration::from_millis(500);
@@ -39,73 +42,6 @@ const STATISTICS_INTERVAL: Duration = Duration::from_millis(500);
 const LONGEST_REPLY: usize = 4096;
 /// How soon a full event channel is tried again.
 const FLUSH_INTERVAL: Duration = Duration::from_millis(5);
-
-/// What a step leaves to do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
-    /// More is due now.
-    Again,
-    /// Nothing is due before this time, unless a request or a signal comes.
-    IdleUntil(Duration),
-    /// The link is closed or lost.
-    Ended,
-}
-
-/// A link and all that is done over it.
-pub struct DeviceLoop {
-    exchange: Exchange,
-    clock: Arc<dyn Clock>,
-    signals: Arc<Signals>,
-    guard: Guard,
-    inbox: Receiver<Envelope>,
-    waiting: VecDeque<Envelope>,
-    outbox: Outbox,
-    family: Box<dyn Family>,
-    options: DeviceOptions,
-    stream: Option<Stream>,
-    units: Vec<Unit>,
-    selected: usize,
-    armed: Option<Armed>,
-    poll: PollRate,
-    /// Whether sweeps read the input pins too.
-    reads_signals: bool,
-    sweep: Sweep,
-    statistics_at: Duration,
-    phase: Phase,
-    /// Whether Stop came while units were looked for: it is served in full, scripts included, once they are known.
-    stopped_while_connecting: bool,
-    /// The last bytes sent, to read their answer by when traffic is shown, and what has come of it.
-    last_sent: Vec<u8>,
-    last_received: Vec<u8>,
-}
-
-/// One unit of the link.
-struct Unit {
-    controller: Box<dyn Controller>,
-    plan: Plan,
-    /// What each motor was last told, in the unit of the command.
-    setpoints: [Option<f64>; 2],
-    /// Whether a motion command may be in effect that came from this program.
-    moved: bool,
-    /// Whether this program has started the unit's script.
-    script_started: bool,
-    /// Set while a stop of what this program moved is not confirmed.
-    stop_again: Option<StopAgain>,
-}
-
-/// What is armed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Armed {
-    scope: ArmScope,
-    controller_timeout: Option<Duration>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Phase {
-    Connecting,
-    Running,
-    Ended,
-}
 
 impl DeviceLoop {
     /// A loop over `transport` for the family that the options name, or that is found, and the handle that speaks to it. Nothing is sent before
@@ -400,13 +336,6 @@ impl DeviceLoop {
             let address = unit.controller.identity().address;
             self.outbox.send(Event::Selected { address, stream: self.stream });
         }
-    }
-}
-
-impl Unit {
-    fn new(controller: Box<dyn Controller>) -> Self {
-        let plan = Plan::new(controller.poll_list());
-        Self { controller, plan, setpoints: [None; 2], moved: false, script_started: false, stop_again: None }
     }
 }
 

@@ -1,131 +1,23 @@
 //! Reading the signals: a sweep of the selected unit's fast ones with one slow one in turn, and one look at one of the
 //! other units of the bus.
 
-use super::DeviceLoop;
+use super::state::DeviceLoop;
+use super::sweep::SUSPENSION;
 use crate::device::channel::{Channel, Sample};
-use crate::device::controller::{PollItem, PollList};
+use crate::device::controller::PollItem;
 use crate::device::event::{DisarmReason, Event};
-use crate::device::request::PollRate;
+use crate::device::poll_rate::PollRate;
 use crate::device::status::StatusReport;
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
-use std::collections::VecDeque;
 use std::time::Duration;
 
 /// A status that does not change is told this often.
 const STATUS_INTERVAL: Duration = Duration::from_secs(1);
-/// A slow signal is read this often at most, so that fast sweeps have room for the fast ones.
-const SLOW_INTERVAL: Duration = Duration::from_millis(20);
-/// A reading that failed this often in a row while others worked is left out for a while.
-const MISSES_TO_SUSPEND: u32 = 2;
-/// For how long it is left out.
-const SUSPENSION: Duration = Duration::from_secs(30);
 /// A link on which nothing has answered for so long is lost.
 pub const SILENCE_LIMIT: Duration = Duration::from_secs(2);
 /// How often signals are read while something is armed, if not more often.
 const ARMED_INTERVAL: Duration = Duration::from_millis(100);
-
-/// The sweep that is under way, or when the next one is due.
-pub struct Sweep {
-    items: VecDeque<(usize, PollItem)>,
-    sample: Sample,
-    begun_at: Duration,
-    next_at: Duration,
-    other_unit: usize,
-    sequence: u64,
-    failures_in_a_row: u32,
-    /// Silence before this does not count.
-    restarted_at: Duration,
-}
-
-impl Sweep {
-    /// Nothing under way; the first is due at `now`.
-    pub fn new(now: Duration) -> Self {
-        Self {
-            items: VecDeque::new(),
-            sample: Sample::new(0),
-            begun_at: now,
-            next_at: now,
-            other_unit: 0,
-            sequence: 0,
-            failures_in_a_row: 0,
-            restarted_at: now,
-        }
-    }
-
-    /// Drops what is under way.
-    pub fn abandon(&mut self) {
-        self.items.clear();
-    }
-}
-
-/// What is read from one unit, and what of it works.
-pub struct Plan {
-    list: PollList,
-    next_slow: usize,
-    slow_due_at: Duration,
-    misses: Vec<(PollItem, u32, Duration)>,
-    last_status: Option<StatusReport>,
-    status_told_at: Duration,
-}
-
-impl Plan {
-    /// A plan for what a unit can be asked.
-    pub fn new(list: PollList) -> Self {
-        Self {
-            list,
-            next_slow: 0,
-            slow_due_at: Duration::ZERO,
-            misses: Vec::new(),
-            last_status: None,
-            status_told_at: Duration::ZERO,
-        }
-    }
-
-    /// The items of a sweep that begins at `now`.
-    fn sweep(&mut self, now: Duration, with_signals: bool) -> Vec<PollItem> {
-        let signals = self.list.signals.filter(|_| with_signals);
-        let wanted = self.list.fast.iter().copied().chain(signals);
-        let mut items: Vec<_> = wanted.filter(|item| self.works(*item, now)).collect();
-        if now >= self.slow_due_at {
-            self.slow_due_at = now + SLOW_INTERVAL;
-            items.extend(self.next_slow(now));
-        }
-        items
-    }
-
-    fn next_slow(&mut self, now: Duration) -> Option<PollItem> {
-        let slow = &self.list.slow;
-        let turn = (0..slow.len()).map(|step| (self.next_slow + step) % slow.len());
-        let index = turn.into_iter().find(|index| self.works(slow[*index], now))?;
-        self.next_slow = index + 1;
-        Some(self.list.slow[index])
-    }
-
-    fn works(&self, item: PollItem, now: Duration) -> bool {
-        !self
-            .misses
-            .iter()
-            .any(|(missed, misses, until)| *missed == item && *misses >= MISSES_TO_SUSPEND && now < *until)
-    }
-
-    /// Notes a failed reading; whether it is left out from now on.
-    fn missed(&mut self, item: PollItem, now: Duration) -> bool {
-        let known = self.misses.iter().position(|(missed, ..)| *missed == item);
-        let index = known.unwrap_or_else(|| {
-            self.misses.push((item, 0, now));
-            self.misses.len() - 1
-        });
-        let (_, misses, until) = &mut self.misses[index];
-        *misses += 1;
-        *until = now + SUSPENSION;
-        *misses == MISSES_TO_SUSPEND
-    }
-
-    fn answered(&mut self, item: PollItem) {
-        self.misses.retain(|(missed, ..)| *missed != item);
-    }
-}
 
 impl DeviceLoop {
     /// Whether a reading is due.

@@ -1,6 +1,6 @@
 //! What is asked of the loop, one request after the other.
 
-use super::{Armed, DeviceLoop};
+use super::state::{Armed, DeviceLoop};
 use crate::device::controller::ArmCheck;
 use crate::device::drive::{ArmScope, Drive};
 use crate::device::event::{DisarmReason, Event};

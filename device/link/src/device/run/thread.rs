@@ -1,6 +1,6 @@
 //! The thread that turns the loop in real time.
 
-use super::{DeviceLoop, Step};
+use super::state::{DeviceLoop, Step};
 use crate::clock::Clock;
 use crate::device::controller::Family;
 use crate::device::event::{DisarmReason, Event};

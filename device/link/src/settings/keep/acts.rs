@@ -1,14 +1,16 @@
 //! Write, save and restore, each between the beginning and the end of a journal.
 
-use super::super::image::{Difference, SettingsImage, diff};
-use super::super::memory::{
-    DefaultsReport, SaveReport, SaveVerdict, reload, restore_defaults, save_eeprom_of,
-};
+use super::super::difference::{Difference, diff};
+use super::super::image::SettingsImage;
+use super::super::memory::{DefaultsReport, reload, restore_defaults, save_eeprom_of};
 use super::super::plan::{WriteOptions, rows_involved};
 use super::super::read::{ReadReport, read_all, read_rows};
-use super::super::table::{SettingsTable, Subject};
+use super::super::save_report::{SaveReport, SaveVerdict};
+use super::super::subject::Subject;
+use super::super::table::SettingsTable;
 use super::super::write::{RowState, WriteError, WriteReport, write};
-use super::{Act, Ending, Entry, Keeper};
+use super::journal::Act;
+use super::keeper::{Ending, Entry, Keeper};
 use crate::failure::Failure;
 use crate::wire::Wire;
 use std::time::Duration;

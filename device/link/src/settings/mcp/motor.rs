@@ -8,7 +8,7 @@ use brushwork_values::Unit;
 use super::super::kind::Coding;
 use super::super::row::Group;
 use super::super::template::{DefaultValue, Form, Limits, Repeat, Template};
-use super::{
+use super::scales::{
     AMPS, DECISECONDS, DUTY_ACCEL, GEN1, GEN2, GEN3, GEN4, I32_STEPS, POSITION_GAIN, U32_STEPS,
     VELOCITY_GAIN, steps_of,
 };

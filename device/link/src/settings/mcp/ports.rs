@@ -7,7 +7,7 @@ use brushwork_values::Unit;
 
 use super::super::row::Group;
 use super::super::template::{DefaultValue, Form, Limits, Repeat, Template};
-use super::{GEN1, GEN2, GEN3, GEN4, U32_STEPS};
+use super::scales::{GEN1, GEN2, GEN3, GEN4, U32_STEPS};
 
 pub(super) static ROWS: &[Template] = &[
     Template::new("stream.{n}.type", "Mode", Group::Streams)

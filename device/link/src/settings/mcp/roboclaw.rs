@@ -10,7 +10,7 @@ use brushwork_values::Unit;
 use super::super::kind::Coding;
 use super::super::row::Group;
 use super::super::template::{DefaultValue, Form, Limits, Repeat, Template, at};
-use super::{GEN1, GEN2, GEN3, GEN4, U8_STEPS};
+use super::scales::{GEN1, GEN2, GEN3, GEN4, U8_STEPS};
 
 pub(super) static ROWS: &[Template] = &[
     roboclaw("roboclaw.pin.{n}", "Function")

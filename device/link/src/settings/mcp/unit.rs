@@ -9,7 +9,7 @@ use brushwork_values::Unit;
 use super::super::kind::Kind;
 use super::super::row::Group;
 use super::super::template::{DefaultValue, Form, Limits, Repeat, Template, at};
-use super::{DECISECONDS, GEN1, GEN2, GEN3, GEN4, VOLTS};
+use super::scales::{DECISECONDS, GEN1, GEN2, GEN3, GEN4, VOLTS};
 
 pub(super) static ROWS: &[Template] = &[
     Template::new("unit.address", "Packet serial address", Group::Unit)

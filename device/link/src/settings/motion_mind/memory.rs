@@ -6,10 +6,10 @@
 
 use brushwork_motion_mind_wire::numbers;
 
-use super::super::image::{Difference, diff};
-use super::super::memory::{SaveReport, SaveVerdict, unknown};
+use super::super::difference::{Difference, diff};
 use super::super::read::{ReadReport, is_final, is_there, read_all, went_out};
-use super::rows::register_of;
+use super::super::row::register_of;
+use super::super::save_report::{SaveReport, SaveVerdict, unknown};
 use crate::failure::Failure;
 use crate::unit::UnitAddress;
 use crate::wire::Wire;

@@ -4,9 +4,7 @@
 //! the motor is. What is measured is no setting either.
 
 use brushwork_mcp_wire::models::MOTION_MIND_3;
-use brushwork_motion_mind_wire::{
-    Bit, FUNCTION_BITS, FUNCTION2_BITS, Register, numbers, register, register_named,
-};
+use brushwork_motion_mind_wire::{Bit, FUNCTION_BITS, FUNCTION2_BITS, Register, numbers, register_named};
 use brushwork_values::Unit;
 
 use super::super::kind::{Coding, Kind};
@@ -288,13 +286,9 @@ fn carrier(register: &'static Register, bits: Option<Bits>) -> Carrier {
     }
 }
 
-/// The register behind a row.
-pub fn register_of(row: &Row) -> Option<&'static Register> {
-    register(row.sink()?.index?)
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::super::row::register_of;
     use super::*;
     use brushwork_motion_mind_wire::REGISTERS;
 

@@ -3,7 +3,7 @@
 use brushwork_motion_mind_wire::{Address, Command, describe_command, encode_frame, register};
 
 use super::super::image::SettingsImage;
-use super::super::plan::{Stage, Step};
+use super::super::step::{Stage, Step};
 use super::super::value::SettingValue;
 use crate::unit::UnitAddress;
 
@@ -89,7 +89,8 @@ pub fn warnings(steps: &[Step]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::super::super::plan::{WriteOptions, plan};
-    use super::super::super::table::{SettingsTable, Subject};
+    use super::super::super::subject::Subject;
+    use super::super::super::table::SettingsTable;
     use super::*;
     use crate::unit::FirmwareGeneration;
     use brushwork_mcp_wire::models::MOTION_MIND_3;

@@ -6,7 +6,9 @@ use serde::Serialize;
 
 use super::super::table::SettingsTable;
 use super::super::value::SettingValue;
-use super::{Lookup, PinMode, PinValues, SignalShape, choice};
+use super::mode::PinMode;
+use super::shape::SignalShape;
+use super::values::{Lookup, PinValues, choice};
 
 /// One contradiction.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

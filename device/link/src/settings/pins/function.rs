@@ -3,7 +3,8 @@
 use super::super::row::Group;
 use super::super::table::SettingsTable;
 use super::super::value::SettingValue;
-use super::{Lookup, PinMode, PinValues, choice};
+use super::mode::PinMode;
+use super::values::{Lookup, PinValues, choice};
 
 /// The current function of number `number` (from 1) of a group of ports, pins or outputs; `None` while it is not known.
 pub fn function_text(table: &SettingsTable, get: Lookup<'_>, group: Group, number: usize) -> Option<String> {

@@ -4,7 +4,7 @@ use super::super::image::SettingsImage;
 use super::super::row::Group;
 use super::super::table::SettingsTable;
 use super::super::value::SettingValue;
-use super::{Lookup, PinValues};
+use super::values::{Lookup, PinValues};
 
 /// What a pin is used as (MCP manual 1.9.8).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

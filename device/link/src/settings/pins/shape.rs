@@ -7,7 +7,7 @@
 
 use brushwork_mcp_wire::packet_serial::scale;
 
-use super::{Lookup, PinValues};
+use super::values::{Lookup, PinValues};
 
 /// How a reading becomes a position and a command.
 #[derive(Clone, Copy, Debug, PartialEq)]

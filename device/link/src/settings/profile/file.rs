@@ -7,8 +7,8 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
+use super::content::{OpenedProfile, Profile, Strictness};
 use super::error::ProfileFileError;
-use super::{OpenedProfile, Profile, Strictness};
 
 impl Profile {
     /// The profile in a file, with what reading it changed; see [`Profile::read`].

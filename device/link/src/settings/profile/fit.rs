@@ -7,9 +7,11 @@ use brushwork_mcp_wire::models::Pin;
 use super::super::image::SettingsImage;
 use super::super::kind::Kind;
 use super::super::row::{Group, Row};
-use super::super::table::{SettingsTable, Subject};
+use super::super::subject::Subject;
+use super::super::table::SettingsTable;
 use super::super::value::SettingValue;
-use super::{Profile, generation_misfit, model_misfit};
+use super::changes::{generation_misfit, model_misfit};
+use super::content::Profile;
 
 /// A profile fitted to another controller.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,7 +6,7 @@ use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 
 use super::super::row::Row;
 use super::super::value::SettingValue;
-use super::{FORMAT, Profile, SCHEMA};
+use super::content::{FORMAT, Profile, SCHEMA};
 
 /// The profile as text, one line per setting, so that two files compare line by line.
 pub(super) fn write(profile: &Profile) -> String {

@@ -11,11 +11,13 @@ use brushwork_mcp_wire::packet_serial::Generation;
 use super::super::image::SettingsImage;
 use super::super::kind::Kind;
 use super::super::row::Row;
-use super::super::table::{SettingsTable, Subject};
+use super::super::subject::Subject;
+use super::super::table::SettingsTable;
 use super::super::value::SettingValue;
+use super::content::{FORMAT, OpenedProfile, Profile, SCHEMA, Strictness};
 use super::error::{Problem, ProfileError};
 use super::json::{Node, quote};
-use super::{FORMAT, OpenedProfile, Profile, SCHEMA, Strictness, schema};
+use super::schema;
 
 /// More pins, streams or outputs than any controller has; a larger number is a fault of the file.
 const MOST_PINS: i64 = 32;

@@ -3,7 +3,7 @@
 //! A step sees the file's members as they stand, before any setting is judged against a table. For each older
 //! schema there is a file of that time among the test fixtures.
 
-use super::SCHEMA;
+use super::content::SCHEMA;
 use super::json::Node;
 
 /// The members of a profile's file, in their order.
