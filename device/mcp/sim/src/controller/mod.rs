@@ -17,6 +17,7 @@ mod inputs;
 mod loader;
 mod memory;
 mod object;
+mod pins;
 mod port;
 mod readings;
 mod script;
