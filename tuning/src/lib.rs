@@ -23,6 +23,7 @@ pub mod motor_monitor;
 pub mod open_loop_record;
 mod oscillation;
 mod pace;
+mod poll;
 pub mod record;
 pub mod registers;
 pub mod report;
