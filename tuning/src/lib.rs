@@ -6,6 +6,7 @@
 #![doc = include_str!("../MEASURED.md")]
 
 pub mod axis;
+mod backlash;
 pub mod cause;
 mod closed_loop_monitor;
 pub mod design;
@@ -24,9 +25,12 @@ pub mod open_loop_record;
 mod oscillation;
 mod pace;
 mod poll;
+mod proposal;
 pub mod record;
 pub mod registers;
+mod replay;
 pub mod report;
+mod request;
 pub mod rules;
 pub mod score;
 pub mod settle;
