@@ -13,7 +13,7 @@ const LIMITS: [(&str, usize, usize); 6] = [
     ("device/mcp/wire", 4, 4),
     ("device/motion_mind/wire", 1, 3),
     ("device/plant", 5, 4),
-    ("device/script", 2, 3),
+    ("device/script", 1, 2),
     ("tuning/bench", 3, 2),
 ];
 
