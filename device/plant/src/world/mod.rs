@@ -25,9 +25,10 @@ pub use unit_fault::{UnitFault, UnitFaults};
 pub use view::{AxisView, WorldView};
 
 use crate::bridge::BridgeOutput;
+use crate::step::substeps;
 use crate::{
     Axis, AxisParams, AxisTruth, Board, BoardParams, ClampDrive, EncoderReading, ParamsError, Supply,
-    SupplyParams, substeps,
+    SupplyParams,
 };
 use brushwork_values::Motor;
 use pins::Pins;
