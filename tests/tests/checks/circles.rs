@@ -11,7 +11,7 @@ use brushwork_tests::workspace::{self, Metadata};
 const LIMITS: [(&str, usize, usize); 4] = [
     ("device/link", 7, 60),
     ("device/motion_mind/wire", 1, 3),
-    ("device/plant", 3, 3),
+    ("device/plant", 2, 2),
     ("tuning/bench", 3, 2),
 ];
 

@@ -4,6 +4,7 @@
 //! The controller asks it for readings and tells it what the bridges do; a panel, a fault script or a test acts on it with
 //! [`WorldAction`]s and looks at it through [`WorldView`]s. It knows nothing of bytes and settings.
 
+mod acting;
 mod action;
 mod board_switches;
 mod can_peer;
@@ -11,6 +12,7 @@ mod i2c;
 mod leds;
 mod pins;
 mod script;
+mod snapshot;
 mod unit_fault;
 mod view;
 
