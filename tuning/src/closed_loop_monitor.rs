@@ -5,8 +5,8 @@
 //! model, follow the least and the most that can have been counted over a stretch.
 
 use crate::axis::VelocityRegisters;
-use crate::experiment_guard::Point;
 use crate::model::PlantModel;
+use crate::poll::Point;
 use crate::registers::VELOCITY_SCALE;
 use std::collections::VecDeque;
 

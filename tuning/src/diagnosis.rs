@@ -5,8 +5,8 @@
 //! encoder is right; the encoder is dead since then; it counts the other way since then) is held against the currents.
 
 use crate::cause::Cause;
-use crate::experiment_guard::Point;
 use crate::motor_monitor::{MotorMonitor, NO_CURRENT_AMPS};
+use crate::poll::Point;
 
 /// How long the motor is watched with its duty taken away, s.
 pub(crate) const DIAGNOSIS_S: f64 = 0.15;

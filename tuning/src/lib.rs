@@ -6,6 +6,7 @@
 #![doc = include_str!("../MEASURED.md")]
 
 pub mod axis;
+mod backlash;
 pub mod cause;
 mod closed_loop_monitor;
 pub mod design;
@@ -13,6 +14,7 @@ mod diagnosis;
 pub mod experiment;
 pub mod experiment_guard;
 pub mod fit;
+mod gains;
 pub mod lag;
 pub mod law_probe;
 pub mod linear;
@@ -23,11 +25,16 @@ pub mod motor_monitor;
 pub mod open_loop_record;
 mod oscillation;
 mod pace;
+mod poll;
+mod proposal;
 pub mod record;
 pub mod registers;
+mod replay;
 pub mod report;
+mod request;
 pub mod rules;
 pub mod score;
+mod setpoint;
 pub mod settle;
 mod step;
 pub mod ticks;

@@ -1,6 +1,7 @@
 //! The model of an axis that identification fills and design uses, and the law the controller is taken to follow.
 
-use crate::motion_mind::{self, MotionMindLaw};
+pub use crate::gains::{Gains, Pid};
+use crate::motion_mind::{MotionMindLaw, SUM_BOUNDS_S, rounded};
 use serde::{Deserialize, Serialize};
 
 /// Share of the damping that is viscous friction, not back-EMF. Only a current limit tells them apart; small in every motor, so one
@@ -98,45 +99,17 @@ impl LoopLaw {
     /// The bounds that a position integral may be given where it needs `wanted`, counts x s.
     #[must_use]
     pub fn sum_bounds(&self, wanted: f64) -> Vec<f64> {
-        if self.motion_mind.is_some() { motion_mind::SUM_BOUNDS_S.to_vec() } else { vec![wanted] }
+        if self.motion_mind.is_some() { SUM_BOUNDS_S.to_vec() } else { vec![wanted] }
     }
 
     /// Gains as the registers can hold them. Those of packet serial are so fine that it makes no difference.
     #[must_use]
     pub fn rounded(&self, gains: &Gains, qpps: f64) -> Gains {
         match self.motion_mind {
-            Some(_) => motion_mind::rounded(gains, qpps),
+            Some(_) => rounded(gains, qpps),
             None => *gains,
         }
     }
-}
-
-/// One controller: `P e + I int(e dt) + D de/dt`, its output in counts/s.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Pid {
-    /// Proportional.
-    pub p: f64,
-    /// Integral, per second.
-    pub i: f64,
-    /// Derivative, s.
-    pub d: f64,
-}
-
-/// The gains of an axis in physical terms.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Gains {
-    /// Velocity loop: speeds in, speeds out. All zero in position modes that act on the duty directly.
-    pub velocity: Pid,
-    /// On the sum of the position's errors under a speed command, per s^2: ITERM of a Motion Mind, an integral of the integral. Nothing
-    /// else has it.
-    #[serde(default)]
-    pub velocity_sum: f64,
-    /// Position loop: counts in, counts/s out.
-    pub position: Option<Pid>,
-    /// Bound of the position integral, counts x s.
-    pub max_integral: f64,
-    /// Position errors up to this many counts count as none.
-    pub deadzone_counts: f64,
 }
 
 /// State of a [`PlantModel`].

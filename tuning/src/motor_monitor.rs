@@ -7,9 +7,9 @@
 use crate::axis::VelocityRegisters;
 use crate::cause::Cause;
 use crate::closed_loop_monitor::{Before, ClosedLoopMonitor};
-use crate::experiment_guard::Point;
 use crate::model::PlantModel;
 use crate::open_loop_record::DUTY_SLEW_PER_S;
+use crate::poll::Point;
 use std::collections::VecDeque;
 
 /// Stretches that are looked at, s.

@@ -1,8 +1,8 @@
 //! The record of an open-loop run as a fit needs it, and the counts that a model predicts for it.
 
-use crate::experiment_guard::{Drive, Input, Point};
 use crate::model::{Motion, PlantModel};
 use crate::motion_mind::{Limiter, LimiterState};
+use crate::poll::{Drive, Input, Point};
 
 /// Duty per second of the explicit highest acceleration: 100 % to -100 % in 100 ms (MCP manual, command 52).
 pub(crate) const DUTY_SLEW_PER_S: f64 = 20.0;

@@ -8,9 +8,9 @@ use crate::fit::Fit;
 use crate::lag::LagFit;
 use crate::law_probe::LawFindings;
 use crate::motion_mind::MotionMindRegisters;
-use crate::record::{Entry, Player};
+use crate::record::Entry;
+use crate::request::Request;
 use crate::rules::Classic;
-use crate::tune::{Request, tune};
 use crate::winding::{Winding, WindingUnknown};
 use serde::{Deserialize, Serialize};
 
@@ -105,20 +105,4 @@ pub struct Report {
     pub seconds: (f64, f64),
     /// The raw record.
     pub record: Vec<Entry>,
-}
-
-impl Report {
-    /// Runs the tuner again on the record. The gains come out the same to the last bit; `None` if the record does not belong
-    /// to this version of the tuner.
-    #[must_use]
-    pub fn replay(&self) -> Option<Self> {
-        self.replay_or_stray().ok()
-    }
-
-    /// The same; an error says at which entry of the record, from 0, the tuner asked for something else than the record holds.
-    pub fn replay_or_stray(&self) -> Result<Self, usize> {
-        let mut player = Player::new(self.record.clone());
-        let report = tune(&mut player, &self.request);
-        player.strayed_at().map_or(Ok(report), Err)
-    }
 }

@@ -4,8 +4,8 @@
 //! (ultimate gain and period), as the programs do that use them.
 
 use crate::experiment::FreeRun;
-use crate::experiment_guard::{Drive, Input, Point};
 use crate::model::{Gains, LoopLaw, Pid};
+use crate::poll::{Drive, Input, Point};
 use serde::{Deserialize, Serialize};
 
 /// Shortest dead time that a step fit may give, s: none at all has no gain.

@@ -3,7 +3,7 @@
 //! For each time constant of a grid, `y = y0 + v t + a (1 - exp(-t/tau))` is linear in the rest, so the best of all is found
 //! without a start value.
 
-use crate::experiment_guard::Point;
+use crate::poll::Point;
 use nalgebra::{Matrix3, Vector3};
 
 /// A speed that a drive settles at.

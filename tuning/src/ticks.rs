@@ -4,15 +4,7 @@
 use crate::model::{Gains, Lag, LoopLaw, Motion, PlantModel};
 use crate::motion_mind::{Limiter, LimiterState, PositionLoop};
 use crate::score::{LOAD_STEP_DUTY, Score, VELOCITY_STEP, horizon_s, position_step};
-
-/// What the loop is to do.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Setpoint {
-    /// Speed, counts/s.
-    Speed(f64),
-    /// Position and speed bound.
-    Position(f64, f64),
-}
+pub use crate::setpoint::Setpoint;
 
 /// A loop in simulation.
 #[derive(Clone, Debug)]

@@ -10,7 +10,7 @@ use crate::motion_mind::MotionMindRegisters;
 use crate::record::{Entry, Recorder};
 use crate::registers::{gains_of, velocity_gains};
 use crate::report::Measured;
-use crate::tune::{Excitation, Method, Request};
+use crate::request::{Excitation, Method, Request};
 use crate::verify::{is_rougher, try_position, try_velocity, try_velocity_inside};
 use crate::whatif::forecast;
 use serde::{Deserialize, Serialize};

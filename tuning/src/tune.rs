@@ -1,26 +1,25 @@
 //! A whole tuning run: probe, experiment, fit, design, verification on the machine, and the way back when anything is wrong.
 
 use crate::axis::{Axis, EncoderClass, Setup};
+use crate::backlash::with_backlash;
 use crate::cause::Cause;
-use crate::design::{
-    Design, Goal, Task, USUAL_OVERSHOOT, design_pd, design_pid, design_piv, design_velocity, unmodelled_ticks,
-};
-use crate::experiment::{Probe, go_to, measure_backlash, run_free, run_probe, run_window};
+use crate::design::{Goal, Task, USUAL_OVERSHOOT, design_velocity, unmodelled_ticks};
+use crate::experiment::{Probe, go_to, rest, run_free, run_probe, run_window};
 use crate::experiment_guard::{ExperimentGuard, GuardOptions};
 use crate::fit::{Fit, fit};
 use crate::lag::LagFit;
 use crate::law_probe::probe_law;
-use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, Lag, LoopLaw, PlantModel};
 use crate::motion_mind::{self, MotionMindLaw};
 use crate::open_loop_record::{Actuation, OpenLoopRecord};
+pub use crate::proposal::{design_for, propose};
 use crate::record::Recorder;
-use crate::registers::{position_registers, velocity_gains, velocity_registers};
+use crate::registers::{velocity_gains, velocity_registers};
 use crate::report::{FORMAT, Report, Verdict};
+pub use crate::request::{Excitation, Method, Request};
 use crate::rules::Classic;
-use crate::verify::{check_moves, measure_lag, rest};
+use crate::verify::{check_moves, measure_lag};
 use crate::winding::winding_of;
-use serde::{Deserialize, Serialize};
 
 /// The lag that is assumed before it is measured, and where it cannot be: an extra tick and a filter of one.
 const USUAL_LAG: Lag = Lag { filter_s: 0.004, delay_ticks: 1.0 };
@@ -52,67 +51,6 @@ const ABSOLUTE_RANGE: (i64, i64) = (40, 4_055);
 const ROUNDED_COUNTS: f64 = 0.289;
 /// How far a lag interval may reach before the lag counts as unknown, s.
 const WIDEST_LAG_S: f64 = 0.012;
-
-/// What to tune.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Method {
-    /// Velocity PI.
-    Velocity,
-    /// Position PD.
-    Pd,
-    /// Position PID.
-    Pid,
-    /// Position P over velocity PI.
-    Piv,
-}
-
-/// How the axis may be moved.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Excitation {
-    /// It turns freely.
-    Free,
-    /// Within so many counts around where it stands.
-    Window(f64),
-}
-
-/// What is asked of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Request {
-    /// The loop.
-    pub method: Method,
-    /// 0 (soft) to 100 (stiff).
-    pub level: f64,
-    /// How the axis may be moved.
-    pub excitation: Excitation,
-    /// The guard.
-    pub guard: GuardOptions,
-    /// The controller's law, as far as it is not found out.
-    pub law: LoopLaw,
-    /// Whether it is found out. The report's request then has what was found.
-    #[serde(default)]
-    pub probe_law: bool,
-    /// Whether the candidate is tried on the machine.
-    pub verify: bool,
-    /// Whether the new gains stay in force (RAM) at the end.
-    pub keep: bool,
-}
-
-impl Default for Request {
-    fn default() -> Self {
-        Self {
-            method: Method::Velocity,
-            level: 50.0,
-            excitation: Excitation::Free,
-            guard: GuardOptions::default(),
-            law: LoopLaw::default(),
-            probe_law: true,
-            verify: true,
-            keep: false,
-        }
-    }
-}
 
 /// Runs it. The motor stands and the old gains are in force when it returns, unless the request keeps the new ones.
 pub fn tune(axis: &mut dyn Axis, request: &Request) -> Report {
@@ -432,24 +370,6 @@ fn settle_lag(
     Ok(with_lag(Task { noise_factor, ..task }, &found))
 }
 
-/// Measures the backlash of a position axis by little pushes: before an integral is designed, and where a loop hunts.
-pub(crate) fn with_backlash(
-    guard: &mut ExperimentGuard<'_>,
-    request: &Request,
-    task: Task,
-    probe: &Probe,
-    report: &mut Report,
-) -> Result<Task, Cause> {
-    if !request.verify {
-        return Ok(task);
-    }
-    guard.progress("Looking for backlash at reversals");
-    guard.duty(0.0)?;
-    rest(guard, task.plant.tau_s, task.qpps)?;
-    report.backlash = measure_backlash(guard, probe, &task.plant)?;
-    Ok(Task { backlash_counts: report.backlash.map_or(0.0, |backlash| backlash.counts), ..task })
-}
-
 /// Writes the gains of a velocity loop, and gives them as the registers hold them.
 fn write_careful(guard: &mut ExperimentGuard<'_>, gains: &Gains, task: &Task) -> Result<Gains, Cause> {
     if let (Some(unit), Some(law)) = (guard.setup.motion_mind, task.law.motion_mind) {
@@ -480,53 +400,6 @@ fn with_lag(task: Task, found: &LagFit) -> Task {
         least_integral_s = LOOSE_INTEGRAL * plant.tau_s;
     }
     Task { plant, lag: found.lag, worst_lag, goal, least_integral_s, most_overshoot, ..task }
-}
-
-/// The design of a method.
-#[must_use]
-pub fn design_for(method: Method, task: &Task) -> Option<Design> {
-    match method {
-        Method::Velocity => design_velocity(task),
-        Method::Pd => design_pd(task),
-        Method::Pid => design_pid(task),
-        Method::Piv => design_piv(task),
-    }
-}
-
-/// Puts a design into the report, as the registers will hold it.
-pub fn propose(
-    report: &mut Report,
-    request: &Request,
-    task: &Task,
-    design: Design,
-    travel: Option<(i64, i64)>,
-) {
-    let law = &request.law;
-    if let (Some(unit), Some(mind)) = (report.before.and_then(|setup| setup.motion_mind), law.motion_mind) {
-        report.motion_mind = Some(unit.registers.with(&design.gains, task.qpps, mind));
-        report.design = Some(as_loop(task, design));
-        return;
-    }
-    report.velocity = Some(velocity_registers(&design.gains.velocity, task.qpps, law));
-    let before = report.before.map_or((0, 0), |setup| (setup.position.min, setup.position.max));
-    let travel = match travel {
-        Some((low, high)) => (clamp(low), clamp(high)),
-        None if before == (0, 0) => (-2_000_000_000, 2_000_000_000),
-        None => before,
-    };
-    report.position = design.gains.position.is_some().then(|| position_registers(&design.gains, law, travel));
-    report.design = Some(as_loop(task, design));
-}
-
-/// A design with the sensitivity that its gains have as they are.
-fn as_loop(task: &Task, design: Design) -> Design {
-    let gains = task.law.rounded(&design.gains, task.qpps);
-    let plant = LoopPlant::new(DiscretePlant::of(&task.plant, task.law.tick_s()), &task.law, task.lag);
-    Design { gains, ms: plant.margins(&gains, task.qpps).ms, ..design }
-}
-
-fn clamp(counts: i64) -> i32 {
-    counts.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32
 }
 
 fn write_final(guard: &mut ExperimentGuard<'_>, report: &Report) -> Result<(), Cause> {

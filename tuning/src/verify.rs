@@ -1,17 +1,20 @@
 //! Trials of candidate gains on the machine: setpoint steps of a velocity loop, moves of a position loop.
 
+use crate::backlash::with_backlash;
 use crate::cause::Cause;
 use crate::design::{Design, Goal, Task, deadzone};
+use crate::experiment::rest;
 use crate::experiment_guard::{ExperimentGuard, Point};
 use crate::lag::{ClosedLoopRecord, LagFit, fit_lag, predicted_record};
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::margin::{headroom, scaled};
 use crate::model::{Gains, Pid};
 use crate::oscillation::{deviation, flank_overshoot, speed_ripple};
+use crate::proposal::{design_for, propose};
 use crate::report::{Measured, Report};
+use crate::request::{Excitation, Method, Request};
 use crate::score::{horizon_s, position_step};
 use crate::ticks::{TickLoop, velocity_test};
-use crate::tune::{Excitation, Method, Request, design_for, propose, with_backlash};
 
 /// Setpoint of the velocity trial, as a share of full speed.
 const MIDDLE: f64 = 0.45;
@@ -90,19 +93,6 @@ fn run_steps(guard: &mut ExperimentGuard<'_>, task: &Task, gains: &Gains) -> Res
     let to_s = guard.now_s();
     guard.duty(0.0)?;
     Ok((from_s, to_s))
-}
-
-/// Waits until the motor stands.
-pub(crate) fn rest(guard: &mut ExperimentGuard<'_>, tau_s: f64, qpps: f64) -> Result<(), Cause> {
-    let until = guard.now_s() + 0.1 + 6.0 * tau_s;
-    while guard.now_s() < until {
-        guard.poll(false)?;
-        let slow = guard.recent_speed(6).is_some_and(|speed| speed.abs() < 0.004 * qpps);
-        if slow {
-            return Ok(());
-        }
-    }
-    Ok(())
 }
 
 /// Tries the proposed gains and lowers them while the machine is rougher than predicted. Where none are as smooth as predicted, the

@@ -6,10 +6,11 @@ use crate::design::{Design, Goal, Limit, Task, limit};
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::Gains;
 use crate::motion_mind::MotionMindRegisters;
+use crate::proposal::design_for;
 use crate::report::Report;
+use crate::request::Method;
 use crate::score::{LOAD_STEP_DUTY, Score, VELOCITY_STEP, horizon_s, position_step};
 use crate::ticks::{Setpoint, TickLoop};
-use crate::tune::{Method, design_for};
 
 /// One point of a predicted response.
 #[derive(Clone, Copy, Debug, PartialEq)]

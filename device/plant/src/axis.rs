@@ -7,7 +7,7 @@ use super::encoder::{Encoder, EncoderFaults, EncoderReading};
 use super::noise::Noise;
 use super::params::{AxisParams, ParamsError, ShaftSide};
 use super::rigid::{Push, Rigid, Winding, effective_henries};
-use super::substeps;
+use super::step::substeps;
 use super::two_mass::TwoMass;
 use crate::bridge::BridgeOutput;
 use serde::Serialize;

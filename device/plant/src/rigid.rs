@@ -3,7 +3,7 @@
 use super::friction::{DryFriction, slide_one};
 use super::linear::{dot, exponential};
 use super::params::AxisParams;
-use super::same_step;
+use super::step::{MAX_STEP_S, same_step};
 use super::travel::Travel;
 
 /// What acts on an axis over one step.
@@ -101,7 +101,7 @@ impl Rigid {
             travel: Travel::new(params.load.travel),
             last_newton_metres: 0.0,
             model,
-            maps: model.maps(super::MAX_STEP_S),
+            maps: model.maps(MAX_STEP_S),
         }
     }
 

@@ -9,7 +9,7 @@ use super::friction::{DryFriction, slide_one, slide_two};
 use super::linear::{dot, exponential};
 use super::params::{AxisParams, CouplingParams};
 use super::rigid::{Push, Winding, effective_henries};
-use super::same_step;
+use super::step::{MAX_STEP_S, same_step};
 use super::travel::Travel;
 
 /// Assumed: the resonance of motor and load through the teeth where a gear has backlash and no coupling is given.
@@ -115,8 +115,8 @@ impl TwoMass {
             load_friction: DryFriction::new(&params.load.friction),
             travel: Travel::new(params.load.travel),
             model,
-            whole: model.maps(super::MAX_STEP_S),
-            part: model.maps(super::MAX_STEP_S / f64::from(EVENT_PARTS)),
+            whole: model.maps(MAX_STEP_S),
+            part: model.maps(MAX_STEP_S / f64::from(EVENT_PARTS)),
         }
     }
 

@@ -1,6 +1,5 @@
 //! A compiled program as the machine runs it and the debugger reads it.
 
-use crate::image;
 use crate::mcl::types::VarType;
 use crate::op::{Array, Op};
 use serde::Serialize;
@@ -86,20 +85,6 @@ impl Room {
     #[must_use]
     pub fn takes(&self, size: &Size) -> bool {
         size.ram_bytes <= self.ram_bytes && size.image_bytes <= self.image_bytes
-    }
-}
-
-impl Program {
-    /// What it takes of a controller.
-    #[must_use]
-    pub fn size(&self) -> Size {
-        Size {
-            instructions: self.ops.len(),
-            code_bytes: image::code_bytes(self),
-            data_bytes: self.data.len(),
-            ram_bytes: self.ram_bytes,
-            image_bytes: image::encode(self).len(),
-        }
     }
 }
 

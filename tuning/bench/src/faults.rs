@@ -2,8 +2,8 @@
 
 use crate::line::{Bench, Event, SimulatedLine};
 use crate::population::{Draw, Kind, Specimen};
+use crate::quantile::quantile;
 use crate::run::{SimulatedAxis, axis_of, request_of};
-use crate::table::quantile;
 use crate::truth::{Truth, truth};
 use brushwork_mcp_sim::controller::Controller;
 use brushwork_plant::world::WorldAction;

@@ -2,12 +2,14 @@
 //!
 //! The tuner sees packet serial alone; what the plants really are is used here, to judge it.
 
+mod bounds;
 pub mod cache;
 pub mod faults;
 pub mod line;
 pub mod mind;
 pub mod oracle;
 pub mod population;
+mod quantile;
 pub mod reject;
 pub mod run;
 pub mod table;

@@ -1,23 +1,16 @@
 //! Why a result was not accepted, from what the trial on the true plant measured and what that plant is.
 
+pub use crate::bounds::{MOST_MS, most_overshoot};
 use crate::population::Specimen;
 use crate::run::Judgement;
 use crate::truth::Truth;
 use brushwork_plant::ShaftSide;
 use brushwork_tuning::tune::Method;
 
-/// Highest true sensitivity and duty noise that are accepted.
-pub const MOST_MS: f64 = 2.0;
 /// Motors below this time constant are over before a poll sees them, s.
 const QUICK_S: f64 = 0.020;
 /// An encoder that counts less than this in a tick at full speed, at 300 Hz, is coarse.
 const COARSE_COUNTS_PER_S: f64 = 1_500.0;
-
-/// Highest overshoot that is accepted.
-#[must_use]
-pub fn most_overshoot(method: Method) -> f64 {
-    if method == Method::Velocity { 0.25 } else { 0.10 }
-}
 
 /// The group of a result that was not accepted: what was measured, and on what; `None` for an accepted one.
 #[must_use]

@@ -1,9 +1,9 @@
 //! Runs the tuner on one plant, in virtual time over the wire, and judges what came out on the true plant.
 
+use crate::bounds::{MOST_MS, most_overshoot};
 use crate::line::SimulatedLine;
 use crate::oracle::{Optimum, cost, trial};
 use crate::population::Specimen;
-use crate::reject::{MOST_MS, most_overshoot};
 use crate::trial::{Outcome, Registers, linear};
 use crate::truth::Truth;
 use brushwork_mcp_axis::PacketAxis;

@@ -4,6 +4,7 @@ use crate::cache::{OptimaByPlant, known};
 use crate::faults::{FaultRow, fault_rows};
 use crate::oracle::{Optima, optima, position_optima};
 use crate::population::{Specimen, absolute_population, population};
+pub use crate::quantile::quantile;
 use crate::reject::group;
 use crate::run::{Judgement, judge, judge_report, request_of, tune_plant};
 use crate::trial::Registers;
@@ -354,15 +355,6 @@ fn window_runs(cases: &[Case]) -> Vec<(Option<f64>, f64)> {
             (error, reach)
         })
         .collect()
-}
-
-/// The value below which a share of the values lies.
-#[must_use]
-pub fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
-    let mut sorted: Vec<f64> = values.collect();
-    sorted.sort_by(f64::total_cmp);
-    let last = sorted.len().saturating_sub(1);
-    sorted.get((share * last as f64).round() as usize).copied().unwrap_or(0.0)
 }
 
 fn round(value: f64, digits: i32) -> f64 {

@@ -1,6 +1,7 @@
 //! Which bound keeps gains from being made stiffer: what a person who turns the level wants to know when it does little.
 
-use super::{Loops, Task};
+use super::search::Loops;
+use super::task::Task;
 use crate::linear::LoopPlant;
 use crate::model::Gains;
 

@@ -1,6 +1,7 @@
 //! Position loops: PD and PID that act on the duty directly, and P over the velocity loop (PIV).
 
-use super::{Candidate, Design, Goal, Loops, Task, ascend, better, finish, unmodelled_ticks};
+use super::search::{Candidate, Loops, ascend, better, finish};
+use super::task::{Design, Goal, Task, unmodelled_ticks};
 use crate::model::{Gains, Lag, Pid};
 use crate::score::{POSITION_OVERSHOOT, position_step};
 use crate::ticks::position_test_and_end;

@@ -1,6 +1,7 @@
 //! Velocity PI with feed-forward. D stays 0: one tick of count difference is too coarse to be differentiated again.
 
-use super::{Candidate, Design, Loops, Task, ascend, better, finish};
+use super::search::{Candidate, Loops, ascend, better, finish};
+use super::task::{Design, Task};
 use crate::model::{Gains, Pid, PlantModel};
 use crate::score::{Score, VELOCITY_OVERSHOOT};
 use crate::ticks::velocity_test;

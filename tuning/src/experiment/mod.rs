@@ -3,9 +3,11 @@
 mod backlash;
 mod free;
 mod probe;
+mod rest;
 mod window;
 
 pub use backlash::{Backlash, measure_backlash};
 pub use free::{FreeRun, run_free};
 pub use probe::{Probe, run_probe};
+pub(crate) use rest::rest;
 pub use window::{WindowRun, go_to, run_window};

@@ -3,7 +3,7 @@
 //! "If the AMPS register exceeds the AMPSLIMIT value the PWMLIMIT is internally reduced based the difference between the two current
 //! registers" (Motion Mind manual 3.10). Assumed: in each loop the bound moves by the difference, down and up again.
 
-use super::{FULL_PWM, LOOPS_PER_S};
+use super::position_law::{FULL_PWM, LOOPS_PER_S};
 
 /// The limiter of a motor.
 #[derive(Clone, Copy, Debug, PartialEq)]

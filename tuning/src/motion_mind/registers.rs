@@ -1,13 +1,11 @@
-//! Gains as registers of a Motion Mind 3, and back: the rounded gains are what the loop gets.
+//! Gains as registers of a Motion Mind 3, and back.
 
-use super::{FULL_PWM, MotionMindLaw, SPEED_STEP_COUNTS_PER_S, is_protected, on_position, sum_bound_s};
+use super::position_law::{FULL_PWM, MotionMindLaw, is_protected, on_position, sum_bound_s};
+use super::scale::{on_speed, scaled, unscaled};
 use crate::design::Task;
-use crate::model::{Gains, LoopLaw, Pid};
+use crate::gains::Gains;
+use crate::model::LoopLaw;
 use serde::{Deserialize, Serialize};
-
-/// Largest gain register and largest power of the divisor (Motion Mind manual 6.0).
-const MOST_TERM: f64 = 65_535.0;
-const MOST_SCALAR: u8 = 32;
 
 /// Bits of FUNCTION, FUNCTION2 and STATUS that concern a run (Motion Mind manual, figures 20 to 22).
 pub mod bits {
@@ -145,45 +143,11 @@ impl MotionMindRegisters {
     }
 }
 
-/// Gains as the registers can hold them.
-#[must_use]
-pub(crate) fn rounded(gains: &Gains, qpps: f64) -> Gains {
-    let ([pterm, iterm, dterm], pidscalar) = scaled(&on_position(gains), qpps);
-    let pid = unscaled([pterm, iterm, dterm], pidscalar, qpps);
-    if gains.position.is_none() {
-        let Gains { velocity, velocity_sum, .. } = on_speed(pid);
-        return Gains { velocity, velocity_sum, ..*gains };
-    }
-    Gains { position: Some(pid), max_integral: sum_bound_s(gains.max_integral), ..*gains }
-}
-
-/// Gains on the error of the position as those of a speed loop.
-fn on_speed(position: Pid) -> Gains {
-    let velocity = Pid { p: position.d, i: position.p, d: 0.0 };
-    Gains { velocity, velocity_sum: position.i, ..Gains::default() }
-}
-
-/// PTERM, ITERM, DTERM and PIDSCALAR.
-fn scaled(pid: &Pid, qpps: f64) -> ([u16; 3], u8) {
-    let tick = SPEED_STEP_COUNTS_PER_S;
-    let plain = [pid.p, pid.i / tick, pid.d * tick].map(|gain| FULL_PWM * gain.max(0.0) / qpps.max(1.0));
-    let power = |scalar: u8| 2.0_f64.powi(i32::from(scalar));
-    let fits = |scalar: &u8| plain.iter().all(|gain| (gain * power(*scalar)).round() <= MOST_TERM);
-    let pidscalar = (0..=MOST_SCALAR).rev().find(fits).unwrap_or(0);
-    // The cast saturates.
-    (plain.map(|gain| (gain * power(pidscalar)).round() as u16), pidscalar)
-}
-
-fn unscaled(terms: [u16; 3], pidscalar: u8, qpps: f64) -> Pid {
-    let tick = SPEED_STEP_COUNTS_PER_S;
-    let unit = qpps.max(1.0) / FULL_PWM / 2.0_f64.powi(i32::from(pidscalar));
-    let [p, i, d] = terms.map(|term| f64::from(term) * unit);
-    Pid { p, i: i * tick, d: d / tick }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gains::Pid;
+    use crate::motion_mind::rounded;
 
     fn pd(p: f64, i: f64, d: f64) -> Gains {
         Gains { position: Some(Pid { p, i, d }), max_integral: 600.0, ..Gains::default() }

@@ -1,8 +1,8 @@
 //! One loop of the Motion Mind after the other, for predictions: what its registers make of the positions it sees.
 
-use super::{FULL_FEED_FORWARD, FULL_PWM, MotionMindLaw, is_protected, on_position};
-use crate::model::Gains;
-use crate::ticks::Setpoint;
+use super::position_law::{FULL_FEED_FORWARD, FULL_PWM, MotionMindLaw, is_protected, on_position};
+use crate::gains::Gains;
+use crate::setpoint::Setpoint;
 
 /// The state of the loop.
 #[derive(Clone, Copy, Debug, Default)]

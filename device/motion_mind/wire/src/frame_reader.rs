@@ -8,8 +8,8 @@
 
 use std::time::Duration;
 
-use super::RECEIVE_BUFFER;
 use super::address::Address;
+use super::buffer::RECEIVE_BUFFER;
 use super::command::Command;
 use super::frame::{checksum, number};
 use super::register::register;

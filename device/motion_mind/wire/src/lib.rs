@@ -10,6 +10,7 @@
 
 mod address;
 mod bits;
+mod buffer;
 mod command;
 mod contradictions;
 mod describe;
@@ -25,6 +26,7 @@ mod switches;
 
 pub use address::{Address, InvalidAddress};
 pub use bits::{Bit, FUNCTION_BITS, FUNCTION2_BITS, STATUS_BITS, function, function2, status};
+pub use buffer::RECEIVE_BUFFER;
 pub use command::{Command, Effect, Part};
 pub use contradictions::{CONTRADICTIONS, Contradiction};
 pub use describe::{describe_command, describe_reply};
@@ -39,6 +41,3 @@ pub use reference::{
 pub use register::{Access, Kind, REGISTERS, Register, register, register_named, register_number};
 pub use reply::{BadReply, Progress, Reply, Returned, Returns};
 pub use switches::{Mode, Protocol};
-
-/// Bytes that the controller's receive buffer holds (Motion Mind manual 5.1).
-pub const RECEIVE_BUFFER: usize = 50;

@@ -5,8 +5,8 @@
 //! Assumed: letters may be small, spaces may be more than one, a line feed alone ends a line too, and an empty line is nothing.
 //! A line longer than the receive buffer is not a command. Numbers may have zeros in front, and a sign.
 
-use super::RECEIVE_BUFFER;
 use super::address::Address;
+use super::buffer::RECEIVE_BUFFER;
 use super::command::{Command, Part};
 use super::frame::fitting;
 

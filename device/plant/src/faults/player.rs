@@ -1,6 +1,6 @@
 //! Plays a fault script on a machine.
 
-use super::{Direction, Fault, FaultEffect};
+use super::fault::{Direction, Fault, FaultEffect};
 use crate::machine::{Machine, StreamIndex};
 use crate::world::{WorldAction, WorldView};
 use rand_chacha::ChaCha8Rng;

@@ -1,6 +1,6 @@
 //! The text form of a fault, as `--fault` takes it.
 
-use super::{Direction, Fault, FaultEffect};
+use super::fault::{Direction, Fault, FaultEffect};
 use crate::world::{PinSignal, SwitchKind, UnitFault, WorldAction};
 use brushwork_values::Motor;
 use std::str::FromStr;

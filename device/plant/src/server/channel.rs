@@ -1,5 +1,6 @@
 //! The endpoint inside the program: a pair of bounded channels.
 
+use super::channel_ends::ChannelEnds;
 use super::error::ServerError;
 use super::line::{Heard, Line};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
@@ -8,16 +9,6 @@ use std::time::Duration;
 
 /// Writes of either side that may wait to be read.
 const CAPACITY: usize = 256;
-
-/// The client's two ends of an in-process line. Each message is one write. When the controller is unplugged both ends are
-/// disconnected.
-#[derive(Debug)]
-pub struct ChannelEnds {
-    /// Bytes to the controller.
-    pub to_controller: Sender<Vec<u8>>,
-    /// Bytes from the controller.
-    pub from_controller: Receiver<Vec<u8>>,
-}
 
 /// The controller's side.
 #[derive(Debug, Default)]

@@ -1,11 +1,11 @@
 //! The thread that advances a machine with the wall clock and carries its bytes.
 
-use super::Stack;
 use super::clock::Clock;
 use super::error::ServerError;
 use super::handle::{Command, SimHandle, Views};
 use super::line::{Heard, Line};
 use super::pace::{Pace, SharedPace};
+use super::stack::Stack;
 use super::wait::wake_exactly;
 use crate::machine::{Machine, PACKET_GAP, StreamIndex};
 use crate::world::WorldAction;

@@ -1,6 +1,6 @@
 //! What the rest of the program holds of a running simulated machine.
 
-use super::channel::ChannelEnds;
+use super::channel_ends::ChannelEnds;
 use super::error::ServerError;
 use super::pace::{Pace, SharedPace};
 use crate::machine::Machine;

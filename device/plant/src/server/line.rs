@@ -1,6 +1,6 @@
 //! What the driver needs of an endpoint.
 
-use super::channel::ChannelEnds;
+use super::channel_ends::ChannelEnds;
 use super::error::ServerError;
 use std::time::Duration;
 

@@ -6,6 +6,7 @@
 
 mod bench;
 mod channel;
+mod channel_ends;
 mod clock;
 mod driver;
 mod error;
@@ -14,11 +15,12 @@ mod line;
 mod pace;
 #[cfg(unix)]
 mod pty;
+mod stack;
 mod tcp;
 mod wait;
 
 pub use bench::{VirtualSpeed, measure_speed};
-pub use channel::ChannelEnds;
+pub use channel_ends::ChannelEnds;
 pub use error::ServerError;
 pub use handle::SimHandle;
 pub use line::{Heard, Line};
@@ -57,9 +59,6 @@ pub struct ServerOptions {
     /// Which bytes the faults meet.
     pub seed: u64,
 }
-
-/// The machine with everything between it and the endpoint.
-type Stack<M> = Paced<Faulty<M>>;
 
 /// Starts servers.
 #[derive(Debug)]

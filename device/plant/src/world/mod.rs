@@ -4,6 +4,7 @@
 //! The controller asks it for readings and tells it what the bridges do; a panel, a fault script or a test acts on it with
 //! [`WorldAction`]s and looks at it through [`WorldView`]s. It knows nothing of bytes and settings.
 
+mod acting;
 mod action;
 mod board_switches;
 mod can_peer;
@@ -11,6 +12,7 @@ mod i2c;
 mod leds;
 mod pins;
 mod script;
+mod snapshot;
 mod unit_fault;
 mod view;
 
@@ -25,9 +27,10 @@ pub use unit_fault::{UnitFault, UnitFaults};
 pub use view::{AxisView, WorldView};
 
 use crate::bridge::BridgeOutput;
+use crate::step::substeps;
 use crate::{
     Axis, AxisParams, AxisTruth, Board, BoardParams, ClampDrive, EncoderReading, ParamsError, Supply,
-    SupplyParams, substeps,
+    SupplyParams,
 };
 use brushwork_values::Motor;
 use pins::Pins;

@@ -8,6 +8,8 @@
 mod breakpoint;
 mod lines;
 mod reason;
+mod shown;
+mod standing;
 mod terminal;
 mod value;
 mod view;
@@ -16,15 +18,15 @@ mod watch;
 pub use breakpoint::{Breakpoint, BreakpointState};
 pub use lines::{LineTable, code_id};
 pub use reason::{Reason, StepKind, StopCause, Wait};
+pub use shown::{Argument, Frame, Readings, View, Wanted};
 pub use terminal::{Chunk, Terminal};
 pub use value::{Show, Value, one};
-pub use view::{Argument, Frame, Readings, View, Wanted};
 pub use watch::{Setting, Watch};
 
-use crate::op::Op;
 use crate::program::Program;
 use crate::vm::{Host, Machine, State};
 use breakpoint::Verdict;
+use standing::{is_over, reason_of, waits};
 use std::sync::Arc;
 use terminal::Tapped;
 
@@ -223,7 +225,7 @@ impl Debugger {
         if let Some(machine) = machine.filter(|_| on) {
             self.adopt(machine);
             self.moved = true;
-            self.reason = view::reason_of(machine, &self.reason);
+            self.reason = reason_of(machine, &self.reason);
         }
     }
 
@@ -388,33 +390,4 @@ impl Debugger {
             }
         }
     }
-}
-
-fn is_over(state: &State) -> bool {
-    matches!(state, State::Ended | State::Faulted(_))
-}
-
-fn waits(machine: &Machine) -> Option<Wait> {
-    match machine.state() {
-        State::Pausing { until } => {
-            let op = machine.program().ops.get(machine.at().saturating_sub(1) as usize);
-            let is_pause = matches!(op, Some(Op::Pause));
-            Some(if is_pause { Wait::Pause { until: *until } } else { Wait::Busy { until: *until } })
-        }
-        State::Listening { stream } => Some(Wait::Gets { stream: *stream }),
-        _ => None,
-    }
-}
-
-/// Where a subroutine puts what it is given: it takes the last argument first.
-fn takes(program: &Program, entered_at: u32, count: usize) -> Vec<Option<crate::op::Cell>> {
-    let ops = program.ops.get(entered_at as usize..).unwrap_or_default();
-    let stores = ops.iter().map_while(|op| match op {
-        Op::Store(cell) => Some(Some(*cell)),
-        _ => None,
-    });
-    let mut cells: Vec<_> = stores.take(count).collect();
-    cells.resize(count, None);
-    cells.reverse();
-    cells
 }

@@ -1,6 +1,6 @@
 //! Bytes, varints and names of an image.
 
-use super::ImageError;
+use super::error::ImageError;
 
 #[derive(Debug, Default)]
 pub struct Writer {

@@ -1,7 +1,7 @@
 //! Instructions as bytes: an opcode and its operands.
 
-use super::ImageError;
 use super::bytes::{Reader, Writer};
+use super::error::ImageError;
 use crate::arithmetic::Type;
 use crate::mcl::ast::{Binary, Format, Motion, Unary};
 use crate::mcl::registers::RegisterId;

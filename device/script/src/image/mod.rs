@@ -24,49 +24,24 @@
 
 mod bytes;
 mod code;
+mod error;
+mod size;
 mod validate;
 
 pub use code::{OPCODES, Opcode, name};
+pub use error::{ImageError, VERSION};
 
 use crate::program::{Program, Variable, limits};
 use bytes::{Reader, Writer};
 
 /// The first bytes of every image.
 pub const MAGIC: [u8; 8] = *b"BWMCLIMG";
-/// The version of the format.
-pub const VERSION: u16 = 1;
 /// An image is a multiple of this long.
 pub const ROW_BYTES: usize = 16;
 /// What fills up the last row, as an erased memory would.
 pub const PADDING: u8 = 0xFF;
 
 const HEADER_BYTES: usize = 20;
-
-/// Why bytes are no program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ImageError {
-    /// The first bytes are not those of an image.
-    #[error("this is no MCL image of Brushwork: the header is missing")]
-    NotAnImage,
-    /// The header names another version.
-    #[error("the image has format version {0}, this program reads version {VERSION}")]
-    OtherVersion(u16),
-    /// There are fewer bytes than the header says.
-    #[error("the image is cut off: {has} of {wants} bytes are there")]
-    Cut {
-        /// Bytes that are there.
-        has: usize,
-        /// Bytes that the header promises.
-        wants: usize,
-    },
-    /// The checksum is wrong.
-    #[error("the image is damaged: its checksum does not fit")]
-    Damaged,
-    /// The checksum is right and the content makes no program.
-    #[error("the image makes no program: {0}")]
-    Malformed(&'static str),
-}
 
 /// How long the image is that begins here, if one does; for whoever keeps it among other bytes.
 #[must_use]

@@ -1,7 +1,7 @@
 //! Whether the places that instructions name lie inside the program. The machine checks what only shows when it runs (the stack,
 //! indices); what stands here it takes for granted.
 
-use super::ImageError;
+use super::error::ImageError;
 use crate::mcl::registers::{REGISTERS, RegisterId};
 use crate::mcl::types::VarType;
 use crate::op::{Array, Cell, Op, TableRef};

@@ -18,5 +18,6 @@ pub mod registers;
 pub mod types;
 pub mod words;
 
-pub use lower::{Compiled, LONGEST_TEXT, Names, Symbol, SymbolKind, compile, too_long};
+pub use lower::watch::Names;
+pub use lower::{Compiled, LONGEST_TEXT, Symbol, SymbolKind, compile, too_long};
 pub use parser::{Parsed, parse};

@@ -2,7 +2,7 @@
 //! are kept from being names. Compiler, completion, hover help and the reference read these tables.
 
 use super::operators::{OPERATORS, Operator};
-use super::registers::{self, RegisterId};
+use super::registers::{MISSPELT, REGISTERS, RegisterId};
 use super::types::{TABLES, VarType};
 use serde::Serialize;
 use std::collections::HashMap;
@@ -194,8 +194,8 @@ pub fn known(word: &str) -> Option<Known> {
 }
 
 fn every_word() -> HashMap<String, Known> {
-    let ids = || (0u8..).zip(&registers::REGISTERS).map(|(index, row)| (row.name, RegisterId(index)));
-    let misspelt = registers::MISSPELT.iter().filter_map(|(wrong, right)| {
+    let ids = || (0u8..).zip(&REGISTERS).map(|(index, row)| (row.name, RegisterId(index)));
+    let misspelt = MISSPELT.iter().filter_map(|(wrong, right)| {
         ids().find(|(name, _)| name == right).map(|(_, id)| (*wrong, Known::Misspelt(id)))
     });
     let rows = |rows: &'static [Word], what: fn(&'static Word) -> Known| {

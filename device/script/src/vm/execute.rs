@@ -1,7 +1,8 @@
 //! What each instruction does.
 
-use super::fast::step_of;
-use super::{Call, FaultKind, Host, Loop, Machine, State, element};
+use super::counter::{Loop, step_of};
+use super::fault::{FaultKind, outside};
+use super::{Call, Host, Machine, State, element};
 use crate::arithmetic::{self, Type};
 use crate::mcl::ast::{Binary, Motion};
 use crate::mcl::registers::RegisterId;
@@ -242,10 +243,6 @@ fn register<H: Host + ?Sized>(host: &mut H, id: RegisterId, index: u8) -> u32 {
     id.row().kind.keep(host.register(id, index))
 }
 
-pub(super) fn outside(index: u32, length: u32) -> FaultKind {
-    FaultKind::IndexOutside { index: index as i32, length }
-}
-
 /// An entry of a table in the program's data.
 pub(super) fn entry(program: &Program, table: TableRef, index: u32) -> Result<u32, FaultKind> {
     if index >= table.length {
@@ -268,14 +265,5 @@ pub(super) fn type_of(kind: VarType) -> Type {
         VarType::Float => Type::Float,
         kind if kind.is_signed() => Type::Signed,
         _ => Type::Unsigned,
-    }
-}
-
-pub(super) fn one(kind: Type, up: bool) -> u32 {
-    match (kind, up) {
-        (Type::Float, true) => 1f32.to_bits(),
-        (Type::Float, false) => (-1f32).to_bits(),
-        (_, true) => 1,
-        (_, false) => u32::MAX,
     }
 }

@@ -1,25 +1,13 @@
 //! Runs regions (see `regions`): statements of plain arithmetic without going through the stack.
 
-use super::execute::{entry, one, outside, type_of};
+use super::counter::{Loop, step_of};
+use super::execute::{entry, type_of};
+use super::fault::{FaultKind, outside};
 use super::memory::{SPAN, cell, load, set_cell, store};
-use super::regions::{LONGEST_REGION, NONE, Regions};
-use super::steps::{FAULT, Step};
-use super::{FaultKind, Loop, Machine, element};
-use crate::arithmetic::{self, Type};
-use crate::mcl::ast::Binary;
+use super::step::{Around, FAULT, MARGIN, NONE, Regions, Step};
+use super::{Machine, element};
+use crate::arithmetic;
 use crate::program::Program;
-
-/// With less left of a budget, instructions are run one by one, so that a budget is kept exactly. A step stands for three regions at
-/// most, and a turned loop counts two.
-pub const MARGIN: u32 = 3 * 2 * LONGEST_REGION + 2;
-
-/// What rarer steps work on besides memory.
-pub struct Around<'a> {
-    regions: &'a Regions,
-    program: &'a Program,
-    loops: &'a mut [Loop],
-    fault: (u32, FaultKind),
-}
 
 impl Machine {
     /// Runs regions from the one that begins here until there is none or the budget is nearly used up; what is left of it.
@@ -236,11 +224,6 @@ pub fn for_start(
     step.done::<1>(here, left)
 }
 
-/// The step of a loop without one, which counts towards its last value.
-pub fn step_of(kind: Type, start: u32, finish: u32) -> u32 {
-    one(kind, arithmetic::binary(Binary::LessOrEqual, kind, start, finish) == Ok(1))
-}
-
 /// Counts the loop `row` of any counter (row of cells `d`), whose last value is at `a`.
 pub fn for_next(
     bytes: &mut [u8; SPAN],
@@ -255,21 +238,4 @@ pub fn for_next(
     store(bytes, counter, next);
     let (fall, left) = step.done::<1>(here, left);
     (if goes_on { step.to } else { fall }, left)
-}
-
-impl Loop {
-    /// The next value of a counter, and whether the loop goes on with it: "The FOR...NEXT loop will exit when the count value is no longer
-    /// between start and finish" (MCP manual 3.4.1). The sum is looked at before it is stored, so that a byte can count to 255.
-    #[inline(always)]
-    pub fn next(self, kind: Type, value: u32, finish: u32) -> (u32, bool) {
-        let wide = |cell: u32| if kind == Type::Signed { i64::from(cell as i32) } else { i64::from(cell) };
-        if kind == Type::Float {
-            let [value, step, start, finish] = [value, self.step, self.start, finish].map(f32::from_bits);
-            let next = value + step;
-            return (next.to_bits(), start.min(finish) <= next && next <= start.max(finish));
-        }
-        let next = wide(value) + i64::from(self.step as i32);
-        let (start, finish) = (wide(self.start), wide(finish));
-        (next as u32, start.min(finish) <= next && next <= start.max(finish))
-    }
 }

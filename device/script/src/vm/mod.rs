@@ -1,28 +1,32 @@
 //! The virtual machine: runs a [`Program`] a bounded number of instructions at a time, in a [`Host`] that has the clock, the streams
 //! and the motors.
 
+mod counter;
 pub mod digits;
 mod execute;
 mod fast;
+mod fault;
 mod host;
 mod memory;
 mod reading;
 mod regions;
+mod step;
 mod steps;
 mod streams;
 mod translate;
 
+pub use fault::{Fault, FaultKind};
 pub use host::Host;
 pub use memory::{Memory, element};
 
 use crate::arithmetic::{self, Type};
 use crate::op::{Array, Op};
 use crate::program::{Program, limits};
-use fast::MARGIN;
+use counter::Loop;
 use reading::Reading;
-use regions::Regions;
 use std::sync::Arc;
 use std::time::Duration;
+use step::{MARGIN, Regions};
 
 /// A running program.
 #[derive(Clone, Debug)]
@@ -53,12 +57,6 @@ pub struct Call {
     base: usize,
 }
 
-#[derive(Clone, Copy, Debug, Default)]
-struct Loop {
-    start: u32,
-    step: u32,
-}
-
 /// Where output goes.
 #[derive(Clone, Copy, Debug)]
 enum Sink {
@@ -85,48 +83,6 @@ pub enum State {
     Ended,
     /// Something went wrong.
     Faulted(Fault),
-}
-
-/// What went wrong, and where.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("line {line}: {kind}")]
-pub struct Fault {
-    /// The line of the program's text.
-    pub line: u32,
-    /// What went wrong.
-    pub kind: FaultKind,
-}
-
-/// What can go wrong in a running program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum FaultKind {
-    /// An index outside its array.
-    #[error("index {index} is outside the array, which has elements 0 to {last}", last = length.saturating_sub(1))]
-    IndexOutside {
-        /// The index, as a signed number.
-        index: i32,
-        /// Elements of the array.
-        length: u32,
-    },
-    /// A whole number divided by zero.
-    #[error("a division by zero")]
-    DivisionByZero,
-    /// RETURN outside a subroutine.
-    #[error("RETURN without GOSUB")]
-    NoCall,
-    /// Too many calls within calls.
-    #[error("more than {} GOSUBs without RETURN", limits::CALLS)]
-    CallsTooDeep,
-    /// The stack is full.
-    #[error("the stack is full")]
-    StackFull,
-    /// The stack is empty where a value is wanted: a subroutine was entered without GOSUB.
-    #[error("the stack is empty: was the subroutine entered without GOSUB?")]
-    StackEmpty,
-    /// A jump out of the program; only a damaged image has one.
-    #[error("a jump out of the program")]
-    BadJump,
 }
 
 impl Machine {

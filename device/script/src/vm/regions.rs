@@ -7,38 +7,10 @@
 
 use super::fast;
 use super::memory::{Memory, SPAN};
-use super::steps::{self, Alu, Jump, Run, Step};
+use super::step::{NONE, Regions, Run, Step, TEMPS};
+use super::steps::{self, Alu, Jump};
 use super::translate::{Does, Plan, translate};
-use crate::arithmetic::Type;
-use crate::mcl::ast::{Binary, Unary};
-use crate::op::{Array, Cell, TableRef};
 use crate::program::Program;
-
-/// Cells for values in between.
-pub const TEMPS: u32 = 24;
-/// The most instructions that a region stands for.
-pub const LONGEST_REGION: u32 = 60;
-/// No region begins here.
-pub const NONE: u32 = u32::MAX;
-
-/// The regions of a program.
-#[derive(Debug, Default)]
-pub struct Regions {
-    pub steps: Vec<Step>,
-    /// The instruction that each step comes from, where a fault is.
-    pub at: Vec<u32>,
-    /// The first instruction of each step's region.
-    pub first: Vec<u32>,
-    /// The step that begins at each instruction, or [`NONE`].
-    pub entry: Vec<u32>,
-    pub constants: Vec<u32>,
-    pub binaries: Vec<(Binary, Type)>,
-    pub unaries: Vec<(Unary, Type)>,
-    pub converts: Vec<(Type, Type)>,
-    pub cells: Vec<Cell>,
-    pub arrays: Vec<Array>,
-    pub tables: Vec<TableRef>,
-}
 
 impl Regions {
     /// A target with this bit is an instruction and no step.

@@ -1,40 +1,10 @@
 //! The steps of regions as the machine runs them. A step is a function and what it works on; up to three that follow each other, two
 //! operators and a jump, are one.
 
-use super::execute::outside;
-use super::fast::{Around, MARGIN};
+use super::fault::outside;
 use super::memory::{SPAN, cell, set_cell};
+use super::step::{Around, MARGIN, Run, Step};
 use crate::arithmetic::Type;
-
-/// Where a step at fault leads.
-pub const FAULT: u32 = u32::MAX;
-
-/// Does the step of a number with what is left of a budget; where it goes on, and what is left then.
-///
-/// What follows a step are the steps of its other parts, which run where a jump leads into their middle, and then the one it goes on with.
-/// So a step knows its way on without having to look it up.
-pub type Run = for<'a, 'b> fn(&mut [u8; SPAN], &mut Around<'a>, &'b Step, u32, u32) -> (u32, u32);
-
-/// A step, or several in one. Places are bytes of memory.
-#[derive(Clone, Copy, Debug)]
-pub struct Step {
-    /// What it does.
-    pub run: Run,
-    /// Instructions done with it; 0 if its region goes on.
-    pub count: u16,
-    /// Row of a table, or number of a loop.
-    pub row: u16,
-    /// Whether its jump leads back to itself.
-    pub spins: bool,
-    /// Left operands of its parts.
-    pub a: [u16; 3],
-    /// Right operands.
-    pub b: [u16; 3],
-    /// Where results go.
-    pub d: [u16; 3],
-    /// Where a jump leads: a step, or with [`super::regions::Regions::OUT`] an instruction.
-    pub to: u32,
-}
 
 /// Operators that cannot fail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

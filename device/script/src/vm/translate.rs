@@ -1,7 +1,7 @@
 //! Translates the statements of a program to the steps of regions, before several become one (see `regions`).
 
 use super::memory::SPAN;
-use super::regions::{LONGEST_REGION, NONE, Regions, TEMPS};
+use super::step::{LONGEST_REGION, NONE, Regions, TEMPS};
 use super::steps::{Alu, Jump};
 use crate::arithmetic::Type;
 use crate::mcl::ast::Binary;

@@ -1,8 +1,8 @@
 //! Faults on a Motion Mind: the classes of the other family, but for the battery, whose voltage its wire does not carry.
 
+use super::axis::{SimulatedMind, axis_of};
 use super::plant_under_test::MindPlantUnderTest;
 use super::population::MindSpecimen;
-use super::table::{SimulatedMind, axis_of};
 use crate::faults::{FaultRow, FaultyPlant, rows_of};
 use crate::line::SimulatedLine;
 use crate::population::Specimen;

@@ -1,5 +1,6 @@
 //! The same bench for the Motion Mind 3: motors that suit it, their optima, the table and the faults.
 
+mod axis;
 pub mod faults;
 pub mod line;
 pub mod plant_under_test;

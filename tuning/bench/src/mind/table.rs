@@ -1,7 +1,7 @@
 //! The table of the benchmark for the Motion Mind: our methods and the textbook rules on the same records.
 
+pub use super::axis::{SimulatedMind, axis_in, axis_of};
 use super::faults::fault_rows;
-use super::line::MindLine;
 use super::plant_under_test::MindPlantUnderTest;
 use super::population::{MindSpecimen, population};
 use crate::cache::{MindOptima, known_mind};
@@ -11,8 +11,6 @@ use crate::run::{Judgement, refusal, weigh};
 use crate::table::{
     Identification, Judged, Row, Table, WINDOW_S, error_percent, identification_of, row, window_summary,
 };
-use brushwork_motion_mind_axis::MindAxis;
-use brushwork_motion_mind_sim::Mode;
 use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::linear::LoopPlant;
 use brushwork_tuning::model::Gains;
@@ -26,9 +24,6 @@ use std::collections::BTreeMap;
 /// The methods and their names in the table. There is no cascade in this family.
 pub const TASKS: [(&str, Method); 3] =
     [("velocity", Method::Velocity), ("pd", Method::Pd), ("pid", Method::Pid)];
-
-/// An axis over the simulated unit.
-pub type SimulatedMind = MindAxis<MindLine>;
 
 /// One plant with its optima, in the order of [`TASKS`].
 pub struct Case {
@@ -58,18 +53,6 @@ pub fn cases(seed: u64, plants: usize, fresh: bool) -> Vec<Case> {
 #[must_use]
 pub fn optima_of(cases: &[Case]) -> MindOptima {
     cases.iter().map(|case| (case.under_test.specimen.plant.number, case.optima)).collect()
-}
-
-/// The axis of a plant.
-#[must_use]
-pub fn axis_of(specimen: &MindSpecimen) -> SimulatedMind {
-    MindAxis::new(MindLine::new(specimen))
-}
-
-/// The axis of a plant whose unit is set to another mode.
-#[must_use]
-pub fn axis_in(specimen: &MindSpecimen, mode: Mode) -> SimulatedMind {
-    MindAxis::new(MindLine::of(specimen.unit_in(mode), specimen))
 }
 
 /// What the bench asks for.

@@ -2,9 +2,9 @@
 
 use super::can::Can;
 use super::config::{ControllerConfig, FirmwareOptions};
-use super::inputs::PinFunctions;
 use super::loader::Loader;
 use super::memory::Memory;
+use super::pins::PinFunctions;
 use super::readings::Readings;
 use super::script::ScriptState;
 use crate::motion::{BridgeOverride, Channel, Conditions, Measured, Mixer, MotionCommand, MotionSettings};

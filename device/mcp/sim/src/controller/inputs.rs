@@ -5,10 +5,11 @@
 //! source changes and when it times out with no other active.
 
 use super::firmware::Firmware;
+use super::pins::PinFunctions;
 use crate::motion::{Buffering, EncoderInput, MotionCommand, PositionMove, PositionTarget, mixed_duties};
 use crate::priority::{self, Activity, Source};
 use crate::signals::{FULL_SCALE, PinReading, Triggers};
-use brushwork_mcp_wire::models::{Family, Pin};
+use brushwork_mcp_wire::models::Family;
 use brushwork_mcp_wire::packet_serial::Generation;
 use brushwork_plant::world::{PinState, World};
 use brushwork_plant::{ABSOLUTE_FULL_SCALE_VOLTS, ABSOLUTE_MAX_COUNTS, EncoderKind, EncoderReading};
@@ -26,28 +27,6 @@ const STREAM_DISABLED: u8 = 2;
 const DIGITAL_THRESHOLD_VOLTS: f64 = 2.5;
 /// RoboClaw encoder mode bit: absolute (public clients, 2015-2025).
 const ROBOCLAW_ABSOLUTE: u8 = 0x01;
-
-/// What a pin can be, worked out once from its label.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct PinFunctions {
-    is_analog: bool,
-    is_pulse: bool,
-    /// Index of the encoder whose phase it is.
-    encoder: Option<usize>,
-    /// Index of the stream whose line it is.
-    stream: Option<usize>,
-}
-
-impl PinFunctions {
-    pub fn of(pin: Pin) -> Self {
-        Self {
-            is_analog: pin.is_analog(),
-            is_pulse: pin.is_pulse(),
-            encoder: pin.encoder_channel().and_then(|(number, _)| usize::from(number).checked_sub(1)),
-            stream: pin.uart().map(|uart| usize::from(uart) + 1),
-        }
-    }
-}
 
 impl Firmware {
     /// Reads every pin that has a function, and from them the encoder of each motor.

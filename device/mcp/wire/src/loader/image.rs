@@ -1,6 +1,7 @@
 //! A firmware image: bytes that fill whole pages.
 
-use super::{PAGE_BYTES, SimulatedImage, image_sizes};
+use super::protocol::{PAGE_BYTES, image_sizes};
+use super::simulated::SimulatedImage;
 use crate::models::Family;
 
 /// An image that can be sent. What its bytes mean is not public.

@@ -3,7 +3,7 @@
 //! This is a format of our own. It exists so that an update can be tried and tested, and so that such an image is known when
 //! somebody is about to send it to a real controller.
 
-use super::image_sizes;
+use super::protocol::{PAGE_BYTES, image_sizes};
 use crate::models::{self, Model};
 use crate::packet_serial::Generation;
 
@@ -52,7 +52,7 @@ impl SimulatedImage {
         let Self { model, version, generation } = self;
         let line = format!("{MARK} {} {version} {}\n", model.key, generation.number());
         let length = image_sizes(model.family).first().copied().unwrap_or_default();
-        let filling = (0..length).map(|at| (at / super::PAGE_BYTES * STRIDE + at) as u8);
+        let filling = (0..length).map(|at| (at / PAGE_BYTES * STRIDE + at) as u8);
         Ok(line.bytes().chain(filling).take(length).collect())
     }
 

@@ -1,6 +1,7 @@
 //! The host's side of a transfer: what to send next, and what an answer means.
 
-use super::{GREETING, Image, READY, RESET};
+use super::image::Image;
+use super::protocol::{GREETING, READY, RESET};
 
 /// Where a transfer stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,78 +1,14 @@
 //! Values into bytes, for both ends of the wire.
 
-use thiserror::Error;
-
 use super::command::{Direction, Form, Reply};
+use super::encode_error::EncodeError;
 use super::identity::Generation;
 use super::request::{Request, form_of};
 use crate::crc::Crc16;
-use brushwork_values::Value;
-use brushwork_values::{Field, Kind, SERIAL_BYTES};
+use brushwork_values::{Field, Kind, SERIAL_BYTES, Value, Values};
 
 /// The answer to a write (MCP manual 2.2.5).
 pub const ACK: u8 = 0xFF;
-
-/// Why values cannot be put on the wire.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum EncodeError {
-    /// The number stands for no command.
-    #[error("there is no packet serial command {command}")]
-    UnknownCommand {
-        /// The number.
-        command: u8,
-    },
-    /// This firmware does not have the command.
-    #[error("firmware of {generation} has no command {command}")]
-    NotInGeneration {
-        /// The number.
-        command: u8,
-        /// The generation asked for.
-        generation: Generation,
-    },
-    /// Too few or too many values.
-    #[error("wrong number of values for command {command}: {got} given, {expected} expected")]
-    WrongCount {
-        /// The number.
-        command: u8,
-        /// Fields in the layout.
-        expected: usize,
-        /// Values given.
-        got: usize,
-    },
-    /// A value that the layout needs was not given.
-    #[error("command {command} needs a value for {field}")]
-    MissingValue {
-        /// The number.
-        command: u8,
-        /// Name of the field.
-        field: &'static str,
-    },
-    /// A number does not fit the bytes of its field.
-    #[error("{value} does not fit the field {field} of command {command}, which holds {low} to {high}")]
-    OutOfRange {
-        /// The number.
-        command: u8,
-        /// Name of the field.
-        field: &'static str,
-        /// The value given.
-        value: i64,
-        /// The least that fits.
-        low: i64,
-        /// The greatest that fits.
-        high: i64,
-    },
-    /// A value is of another kind than its field, or too long for it.
-    #[error("the value for the field {field} of command {command} does not fit: {what}")]
-    WrongKind {
-        /// The number.
-        command: u8,
-        /// Name of the field.
-        field: &'static str,
-        /// What is wrong.
-        what: &'static str,
-    },
-}
 
 /// The one byte that answers a write.
 pub const fn encode_ack() -> [u8; 1] {
@@ -142,6 +78,25 @@ pub fn encode_reply_named(
         })
         .collect::<Result<Vec<_>, _>>()?;
     encode_reply(request, generation, &values)
+}
+
+impl Request {
+    /// The arguments with their names, keys filled in.
+    ///
+    /// # Errors
+    /// As [`Request::encode`].
+    pub fn arguments(&self, generation: Generation) -> Result<Values, EncodeError> {
+        let form = form_of(self.command, generation)?;
+        Ok(Values::new(form.request, request_values(self, form)?))
+    }
+
+    /// The bytes on the wire: with CRC for a write, without for a read.
+    ///
+    /// # Errors
+    /// If the generation does not have the command, or the values do not fit its layout.
+    pub fn encode(&self, generation: Generation) -> Result<Vec<u8>, EncodeError> {
+        encode_request(self, form_of(self.command, generation)?)
+    }
 }
 
 /// The CRC that a reply's data continues: over address, command and arguments.

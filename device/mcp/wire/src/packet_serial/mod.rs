@@ -12,6 +12,7 @@
 mod command;
 mod describe;
 mod encode;
+mod encode_error;
 mod field;
 mod framer;
 mod identity;
@@ -30,7 +31,8 @@ pub use describe::{
     describe_discarded, describe_event, describe_framed, describe_reply, describe_request, describe_value,
     describe_values, hex, label,
 };
-pub use encode::{ACK, EncodeError, encode_ack, encode_reply, encode_reply_named};
+pub use encode::{ACK, encode_ack, encode_reply, encode_reply_named};
+pub use encode_error::EncodeError;
 pub use framer::{
     DiscardReason, Discarded, Framed, FramerEvent, LONGEST_REQUEST, PACKET_GAP, RawBytes, RequestFramer,
 };

@@ -3,6 +3,7 @@
 //! Both read [`COMMANDS`] and nothing else, so that the page cannot differ from what is encoded and decoded.
 
 mod text;
+mod words;
 
 use serde::Serialize;
 
@@ -13,6 +14,7 @@ use super::table::COMMANDS;
 use brushwork_values::{Field, Kind, Unit};
 
 pub use text::{page, section};
+use words::kind;
 
 /// The whole reference.
 #[derive(Debug, Clone, Serialize)]
@@ -233,62 +235,6 @@ const fn shape(reply: &Reply) -> &'static str {
         Reply::AckThenStatus(_) => "ack_then_status",
         Reply::AckThenData(_) => "ack_then_data",
     }
-}
-
-fn kind(kind: &Kind) -> String {
-    match kind {
-        Kind::U8 => "u8".to_owned(),
-        Kind::I8 => "i8".to_owned(),
-        Kind::U16 => "u16".to_owned(),
-        Kind::I16 => "i16".to_owned(),
-        Kind::U24 => "u24".to_owned(),
-        Kind::U32 => "u32".to_owned(),
-        Kind::I32 => "i32".to_owned(),
-        Kind::Text { max } => format!("text ending 0A 00, at most {max} bytes"),
-        Kind::Ascii36 => "u8 length + 36 bytes ASCII".to_owned(),
-        Kind::Utf16Le36 => "u8 length + 36 bytes UTF-16LE".to_owned(),
-        Kind::Bytes(count) => format!("{count} bytes"),
-        Kind::Counted(_) => "u8 count + records".to_owned(),
-    }
-}
-
-/// "1", "2 to 4": the generations of a form.
-fn generations(form: &Form) -> String {
-    if form.first == form.last {
-        return form.first.number().to_string();
-    }
-    format!("{} to {}", form.first.number(), form.last.number())
-}
-
-/// How one raw count reads: "1 raw = 0.1 V", or nothing for plain numbers.
-fn scale_words(field: &Field) -> String {
-    let symbol = field.unit.symbol();
-    match field.unit {
-        Unit::None | Unit::Bits | Unit::Status => String::new(),
-        Unit::Gain => format!("{} raw = 1.0", (1.0 / field.scale).round()),
-        _ if field.scale == 1.0 => format!("in {symbol}"),
-        _ if field.scale < 0.01 => {
-            let hundred =
-                if matches!(field.unit, Unit::Percent | Unit::PercentPerSecond) { 100.0 } else { 1.0 };
-            format!("{} raw = {hundred} {symbol}", (hundred / field.scale).round())
-        }
-        _ => format!("1 raw = {} {symbol}", field.scale),
-    }
-}
-
-fn code_words(field: &Field) -> String {
-    let codes: Vec<String> = field.codes.iter().map(|code| format!("{} {}", code.raw, code.label)).collect();
-    codes.join(", ")
-}
-
-fn field_words(field: &Field) -> String {
-    let mut parts = vec![kind(&field.kind)];
-    parts.extend(Some(scale_words(field)).filter(|words| !words.is_empty()));
-    parts.extend(field.raw_range.map(|(low, high)| format!("{low} to {high}")));
-    parts.extend(Some(code_words(field)).filter(|words| !words.is_empty()));
-    parts.push(field.doc.to_owned());
-    let label = if field.label.is_empty() { String::new() } else { format!(" ({})", field.label) };
-    format!("{}{label}: {}", field.name, parts.join("; "))
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! A request: what a client sends and a controller takes.
 
 use super::command::{Command, Form};
-use super::encode::{EncodeError, encode_request, request_values};
+use super::encode_error::EncodeError;
 use super::identity::{Address, Generation};
 use super::table::lookup;
-use brushwork_values::{Value, Values};
+use brushwork_values::Value;
 
 /// A request to one unit. It names no generation: [`Request::encode`] takes the one of the receiver.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -52,23 +52,6 @@ impl Request {
     /// Its row in the table; `None` for a number that the table does not have.
     pub fn row(&self) -> Option<&'static Command> {
         lookup(self.command)
-    }
-
-    /// The arguments with their names, keys filled in.
-    ///
-    /// # Errors
-    /// As [`Request::encode`].
-    pub fn arguments(&self, generation: Generation) -> Result<Values, EncodeError> {
-        let form = form_of(self.command, generation)?;
-        Ok(Values::new(form.request, request_values(self, form)?))
-    }
-
-    /// The bytes on the wire: with CRC for a write, without for a read.
-    ///
-    /// # Errors
-    /// If the generation does not have the command, or the values do not fit its layout.
-    pub fn encode(&self, generation: Generation) -> Result<Vec<u8>, EncodeError> {
-        encode_request(self, form_of(self.command, generation)?)
     }
 }
 

@@ -1,6 +1,6 @@
 //! What could be typed next, and the syntax line of the command that is being typed (MCP manual 3.4.1).
 
-use super::Index;
+use super::whole::Index;
 use crate::mcl::lexer::{Token, TokenKind, tokens};
 use crate::mcl::lower::{Symbol, SymbolKind};
 use crate::mcl::operators::OPERATORS;

@@ -1,6 +1,6 @@
 //! What a word of the language means, for hovering and for completion.
 
-use super::Index;
+use super::whole::Index;
 use crate::mcl::ast::Format;
 use crate::mcl::lower::{Symbol, SymbolKind};
 use crate::mcl::operators::Operator;

@@ -1,6 +1,6 @@
 //! Another name for a variable, constant, table, alias or label, in all its places.
 
-use super::Index;
+use super::whole::Index;
 use crate::mcl::lexer::LONGEST_NAME;
 use crate::mcl::words;
 use crate::text::Span;

@@ -12,7 +12,7 @@ mod place;
 mod reach;
 mod scope;
 mod unused;
-mod watch;
+pub mod watch;
 
 use super::ast::{Name, Statement, StatementKind};
 use super::codes;
@@ -20,12 +20,11 @@ use super::parser::{Parsed, parse};
 use crate::arithmetic::Type;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::op::Op;
-use crate::program::{Program, Variable, limits};
+use crate::program::{Program, limits};
 use crate::text::{Lines, Span};
 use scope::Scope;
 pub use scope::{Symbol, SymbolKind};
 use std::sync::Arc;
-pub use watch::Names;
 
 /// What became of a program.
 #[derive(Clone, Debug, Default)]
@@ -350,11 +349,6 @@ impl<'a> Lowering<'a> {
         });
         (Compiled { program, diagnostics, symbols, left_out }, self.scope)
     }
-}
-
-/// A variable as the debugger wants it.
-fn variable(name: &str, memory: crate::op::Array, is_array: bool) -> Variable {
-    Variable { name: name.to_owned(), memory, is_array }
 }
 
 #[cfg(test)]

@@ -5,7 +5,6 @@ use super::super::codes;
 use super::super::constant::Constant;
 use super::super::registers::RegisterId;
 use super::super::types::{Part, VarType};
-use super::variable;
 use crate::arithmetic::Type;
 use crate::diagnostic::{Diagnostic, Diagnostics, excerpt};
 use crate::op::{Array, TableRef};
@@ -249,7 +248,8 @@ impl Scope {
     pub fn variables(&self, text: &str) -> Vec<Variable> {
         let of = |entry: &Entry| match &entry.meaning {
             Some(Meaning::Memory { memory, is_array, .. }) => {
-                Some(variable(entry.symbol.defined.of(text), *memory, *is_array))
+                let name = entry.symbol.defined.of(text).to_owned();
+                Some(Variable { name, memory: *memory, is_array: *is_array })
             }
             _ => None,
         };

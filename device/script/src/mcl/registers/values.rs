@@ -1,6 +1,6 @@
 //! What the values of some registers mean (the pages behind MCP manual 3.1.15).
 
-use super::RegisterId;
+use super::table::RegisterId;
 
 /// A value, or a bit of it, and what it means.
 pub type Value = (u32, &'static str);

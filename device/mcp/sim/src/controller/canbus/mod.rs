@@ -9,18 +9,18 @@
 
 mod dictionary;
 mod node;
+mod rate;
 
 use super::Controller;
 use brushwork_mcp_wire::canopen::Frame;
 use brushwork_mcp_wire::canopen::adapter::{Decoder, Form};
 use node::Node;
+use rate::on_the_bus;
 use std::collections::VecDeque;
 use std::time::Duration;
 
 /// Time from a request to its answer beyond the frames' own. Assumed.
 const ANSWER_TIME: Duration = Duration::from_micros(200);
-/// Bit rate that the adapter is set to: the default of the controllers (MCP manual 1.9.4).
-const ADAPTER_RATE_BPS: u32 = 250_000;
 
 /// The adapter and the nodes of the bus, one for each controller.
 #[derive(Clone, Debug)]
@@ -110,8 +110,4 @@ impl CanBus {
         let at = self.outbox.back().map_or(at, |(last, _)| at.max(*last));
         self.outbox.push_back((at, bytes));
     }
-}
-
-fn on_the_bus(frame: &Frame) -> Duration {
-    Duration::from_secs(1) * frame.bits() / ADAPTER_RATE_BPS
 }

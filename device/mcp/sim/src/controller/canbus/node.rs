@@ -1,7 +1,7 @@
 //! One node: its state, its heartbeat, whose heartbeat it listens for, and its SDO server.
 
-use super::ADAPTER_RATE_BPS;
 use super::dictionary::{Communication, Objects};
+use super::rate::ADAPTER_RATE_BPS;
 use crate::controller::Controller;
 use brushwork_mcp_wire::canopen::nmt::{Command, State};
 use brushwork_mcp_wire::canopen::sdo::Server;

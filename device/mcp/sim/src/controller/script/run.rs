@@ -45,7 +45,7 @@ impl ScriptState {
 
 impl Controller {
     /// Runs the script up to a moment of the machine's time.
-    pub(in super::super) fn run_script(&mut self, to: Duration) {
+    pub(crate) fn run_script(&mut self, to: Duration) {
         let Some(firmware) = &self.firmware else { return };
         if firmware.loader.is_some() || !firmware.script.is_running() {
             return;

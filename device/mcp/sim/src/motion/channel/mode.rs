@@ -7,7 +7,7 @@ use super::super::{
     ControlLaw, DistanceMove, MAX_DUTY_ACCELERATION, MotionSettings, PositionMove, PositionTarget,
     ZeroDutyAcceleration,
 };
-use super::ChannelState;
+use super::state::ChannelState;
 
 /// The highest duty ramp (MCP manual, command 52).
 pub(super) const FASTEST: Rates =

@@ -1,6 +1,8 @@
 //! The client's side of one access to an object.
 
-use super::{Abort, EXPEDITED_BYTES, Request, Response, SEGMENT_BYTES};
+use super::abort::Abort;
+use super::message::{Request, Response};
+use super::size::{EXPEDITED_BYTES, SEGMENT_BYTES};
 
 /// A value of more bytes than this is given up: no object of a motor controller is that long.
 const LONGEST_VALUE: usize = 4096;

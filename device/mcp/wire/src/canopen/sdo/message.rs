@@ -4,7 +4,8 @@
 //! that the value is in the frame ("expedited"), bit 0 that its size is told; of a segment bit 4 toggles, bits 3 to 1 say how many
 //! of seven bytes are unused, bit 0 that it is the last.
 
-use super::{Abort, EXPEDITED_BYTES, SEGMENT_BYTES};
+use super::abort::Abort;
+use super::size::{EXPEDITED_BYTES, SEGMENT_BYTES};
 
 /// What a client asks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,13 +7,10 @@ mod abort;
 mod client;
 mod message;
 mod server;
+mod size;
 
 pub use abort::Abort;
 pub use client::{Progress, Transfer};
 pub use message::{Request, Response};
 pub use server::{Dictionary, Server};
-
-/// Bytes that fit into one frame without segments.
-pub const EXPEDITED_BYTES: usize = 4;
-/// Bytes of a segment.
-pub const SEGMENT_BYTES: usize = 7;
+pub use size::{EXPEDITED_BYTES, SEGMENT_BYTES};

@@ -1,6 +1,8 @@
 //! The node's side: one access at a time, to whatever has the objects.
 
-use super::{Abort, EXPEDITED_BYTES, Request, Response, SEGMENT_BYTES};
+use super::abort::Abort;
+use super::message::{Request, Response};
+use super::size::{EXPEDITED_BYTES, SEGMENT_BYTES};
 
 /// A value of more bytes than this is not taken.
 const LONGEST_VALUE: usize = 256;

@@ -2,6 +2,7 @@
 
 use super::super::number;
 use super::super::table::lookup;
+use super::words::scale_words;
 use super::*;
 
 #[test]

@@ -6,7 +6,7 @@ use super::super::command::{ClientUse, Command, Direction, Form, Reply, Simulate
 use super::super::identity::Generation;
 use super::super::status::{CONDITIONS, Lamp};
 use super::super::table::COMMANDS;
-use super::{field_words, generations};
+use super::words::{field_words, generations, kind};
 use brushwork_values::{Field, Kind};
 
 const HEAD: &str = "\
@@ -96,7 +96,7 @@ fn layout(fields: &[Field]) -> String {
         .iter()
         .map(|field| match field.fixed {
             Some(fixed) => format!("{} {fixed:X}", field.name),
-            None => format!("{} {}", field.name, super::kind(&field.kind)),
+            None => format!("{} {}", field.name, kind(&field.kind)),
         })
         .collect();
     format!("[{}]", parts.join(", "))

@@ -1,0 +1,90 @@
+//! A search over gains: the bounds that they keep, and which candidate is cheaper.
+
+use super::task::{Design, Task};
+use crate::linear::{DiscretePlant, LoopPlant, Margins};
+use crate::model::{Gains, PlantModel};
+use crate::score::Score;
+
+/// The loops a design is checked with: as likely, with the worst lag, with half the inertia.
+pub(super) struct Loops {
+    pub nominal: LoopPlant,
+    pub worst: LoopPlant,
+    pub light: LoopPlant,
+}
+
+impl Loops {
+    /// The loops of a task.
+    pub(super) fn new(task: &Task) -> Self {
+        let tick_s = task.law.tick_s();
+        let light = PlantModel { tau_s: 0.5 * task.plant.tau_s, ..task.plant };
+        let of = |plant: &PlantModel, lag| LoopPlant::new(DiscretePlant::of(plant, tick_s), &task.law, lag);
+        Self {
+            nominal: of(&task.plant, task.lag),
+            worst: of(&task.plant, task.worst_lag),
+            light: of(&light, task.lag),
+        }
+    }
+
+    /// Margins as likely, if every bound is kept.
+    pub(super) fn within(&self, task: &Task, gains: &Gains) -> Option<Margins> {
+        if gains.velocity.i * task.least_integral_s > 1.000_001 * gains.velocity.p {
+            return None;
+        }
+        let margins = self.nominal.margins(gains, task.qpps);
+        let kept = margins.ms <= task.goal.ms
+            && margins.noise_duty * task.noise_factor <= task.goal.noise_duty
+            && self.worst.margins(gains, task.qpps).ms <= 1.12 * task.goal.ms
+            && self.light.margins(gains, task.qpps).ms <= 1.4 * task.goal.ms;
+        kept.then_some(margins)
+    }
+
+    /// Whether all three come to rest.
+    pub(super) fn stable(&self, task: &Task, gains: &Gains) -> bool {
+        [&self.nominal, &self.worst, &self.light]
+            .iter()
+            .all(|plant| plant.spectral_radius(gains, task.qpps) < 1.0)
+    }
+}
+
+/// The largest factor up to which `gains(factor)` keeps every bound, going up from near zero.
+pub(super) fn ascend(loops: &Loops, task: &Task, top: f64, gains: impl Fn(f64) -> Gains) -> Option<f64> {
+    const RATIO: f64 = 1.25;
+    let mut factor = top * 1e-4;
+    loops.within(task, &gains(factor))?;
+    while factor < top && loops.within(task, &gains(factor * RATIO)).is_some() {
+        factor *= RATIO;
+    }
+    let (mut low, mut high) = (factor, factor * RATIO);
+    for _ in 0..4 {
+        let middle = (low * high).sqrt();
+        if loops.within(task, &gains(middle)).is_some() { low = middle } else { high = middle }
+    }
+    Some(low)
+}
+
+/// A candidate with its cost.
+pub(super) struct Candidate {
+    pub gains: Gains,
+    pub score: Score,
+    pub cost: f64,
+}
+
+/// The cheaper of two.
+pub(super) fn better(best: Option<Candidate>, other: Candidate) -> Option<Candidate> {
+    match best {
+        Some(best) if best.cost <= other.cost => Some(best),
+        _ => Some(other),
+    }
+}
+
+/// What the best candidate promises.
+pub(super) fn finish(loops: &Loops, task: &Task, best: Option<Candidate>) -> Option<Design> {
+    let best = best?;
+    let margins = loops.nominal.margins(&best.gains, task.qpps);
+    Some(Design {
+        gains: best.gains,
+        score: best.score,
+        ms: margins.ms,
+        noise_duty: margins.noise_duty * task.noise_factor,
+    })
+}

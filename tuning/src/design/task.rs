@@ -1,0 +1,78 @@
+//! What a design is asked for and what it gives.
+
+use crate::model::{Gains, Lag, LoopLaw, PlantModel};
+use crate::score::Score;
+use serde::{Deserialize, Serialize};
+
+/// Duty noise that a design of the default level may have.
+const USUAL_NOISE: f64 = 0.08;
+
+/// How far a design may go.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Goal {
+    /// Highest maximum sensitivity.
+    pub ms: f64,
+    /// Highest duty noise from the rounding of counts, root mean square.
+    pub noise_duty: f64,
+}
+
+impl Goal {
+    /// The goal of a level from 0 (soft) to 100 (stiff); 50 is the default (MCP manual 2.4.5 calls it aggressiveness).
+    #[must_use]
+    pub fn of_level(level: f64) -> Self {
+        let level = level.clamp(0.0, 100.0);
+        Self { ms: 1.2 + 0.008 * level, noise_duty: USUAL_NOISE * 4.0_f64.powf((level - 50.0) / 100.0) }
+    }
+
+    /// How much stiffer than the default a level is in all that has no bound of its own: 0.7 to 1.4.
+    pub(crate) fn pace(&self) -> f64 {
+        (self.noise_duty / USUAL_NOISE).sqrt()
+    }
+}
+
+/// What a design is made for.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Task {
+    /// The motor.
+    pub plant: PlantModel,
+    /// The controller.
+    pub law: LoopLaw,
+    /// The lag beyond hold and count difference: the most likely one.
+    pub lag: Lag,
+    /// The largest lag that is still likely; the sensitivity is bounded with this one too.
+    pub worst_lag: Lag,
+    /// Speed at full duty, counts/s.
+    pub qpps: f64,
+    /// How far to go.
+    pub goal: Goal,
+    /// What the measured duty noise is to the predicted one.
+    pub noise_factor: f64,
+    /// Backlash of the mechanics, counts.
+    #[serde(rename = "slack_counts")]
+    pub backlash_counts: f64,
+    /// Shortest integral time of the velocity loop, s: backlash turns a quick integral into a limit cycle.
+    pub least_integral_s: f64,
+    /// Overshoot of a speed step beyond which the cost jumps, over the step.
+    pub most_overshoot: f64,
+}
+
+/// Lag that the model leaves out, ticks: the winding, a springy shaft. Ticks of 5 ms are longer than those it was found with.
+pub(crate) fn unmodelled_ticks(law: &LoopLaw) -> f64 {
+    if law.motion_mind.is_some() { 0.33 } else { 0.5 }
+}
+
+/// The overshoot of a speed step that a well-known motor may be designed for.
+pub const USUAL_OVERSHOOT: f64 = 0.20;
+
+/// Gains and what they promise.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Design {
+    /// The gains.
+    pub gains: Gains,
+    /// Predicted response.
+    pub score: Score,
+    /// Predicted maximum sensitivity.
+    pub ms: f64,
+    /// Predicted duty noise.
+    pub noise_duty: f64,
+}

@@ -1,0 +1,17 @@
+//! Waits until a tried motor stands.
+
+use crate::cause::Cause;
+use crate::experiment_guard::ExperimentGuard;
+
+/// Waits until the motor stands.
+pub(crate) fn rest(guard: &mut ExperimentGuard<'_>, tau_s: f64, qpps: f64) -> Result<(), Cause> {
+    let until = guard.now_s() + 0.1 + 6.0 * tau_s;
+    while guard.now_s() < until {
+        guard.poll(false)?;
+        let slow = guard.recent_speed(6).is_some_and(|speed| speed.abs() < 0.004 * qpps);
+        if slow {
+            return Ok(());
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,31 @@
+//! The gains of a loop in physical terms.
+
+use serde::{Deserialize, Serialize};
+
+/// One controller: `P e + I int(e dt) + D de/dt`, its output in counts/s.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Pid {
+    /// Proportional.
+    pub p: f64,
+    /// Integral, per second.
+    pub i: f64,
+    /// Derivative, s.
+    pub d: f64,
+}
+
+/// The gains of an axis in physical terms.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Gains {
+    /// Velocity loop: speeds in, speeds out. All zero in position modes that act on the duty directly.
+    pub velocity: Pid,
+    /// On the sum of the position's errors under a speed command, per s^2: ITERM of a Motion Mind, an integral of the integral. Nothing
+    /// else has it.
+    #[serde(default)]
+    pub velocity_sum: f64,
+    /// Position loop: counts in, counts/s out.
+    pub position: Option<Pid>,
+    /// Bound of the position integral, counts x s.
+    pub max_integral: f64,
+    /// Position errors up to this many counts count as none.
+    pub deadzone_counts: f64,
+}

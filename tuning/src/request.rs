@@ -1,0 +1,66 @@
+//! What a tuning run is asked for.
+
+use crate::experiment_guard::GuardOptions;
+use crate::model::LoopLaw;
+use serde::{Deserialize, Serialize};
+
+/// What to tune.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// Velocity PI.
+    Velocity,
+    /// Position PD.
+    Pd,
+    /// Position PID.
+    Pid,
+    /// Position P over velocity PI.
+    Piv,
+}
+
+/// How the axis may be moved.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Excitation {
+    /// It turns freely.
+    Free,
+    /// Within so many counts around where it stands.
+    Window(f64),
+}
+
+/// What is asked of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Request {
+    /// The loop.
+    pub method: Method,
+    /// 0 (soft) to 100 (stiff).
+    pub level: f64,
+    /// How the axis may be moved.
+    pub excitation: Excitation,
+    /// The guard.
+    pub guard: GuardOptions,
+    /// The controller's law, as far as it is not found out.
+    pub law: LoopLaw,
+    /// Whether it is found out. The report's request then has what was found.
+    #[serde(default)]
+    pub probe_law: bool,
+    /// Whether the candidate is tried on the machine.
+    pub verify: bool,
+    /// Whether the new gains stay in force (RAM) at the end.
+    pub keep: bool,
+}
+
+impl Default for Request {
+    fn default() -> Self {
+        Self {
+            method: Method::Velocity,
+            level: 50.0,
+            excitation: Excitation::Free,
+            guard: GuardOptions::default(),
+            law: LoopLaw::default(),
+            probe_law: true,
+            verify: true,
+            keep: false,
+        }
+    }
+}
