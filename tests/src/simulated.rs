@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use brushwork_canopen::NodeId;
+use brushwork_canopen::adapter::Form;
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_mcp_sim::settings::Settings;
-use brushwork_mcp_wire::canopen::NodeId;
-use brushwork_mcp_wire::canopen::adapter::Form;
 use brushwork_mcp_wire::packet_serial::{Address, Generation, Request, number};
 use brushwork_plant::bridge::BridgeOutput;
 use brushwork_plant::machine::{Machine as _, StreamIndex};

@@ -4,13 +4,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
+use brushwork_canopen::adapter::Form;
 use brushwork_link::device::can::{BusTransport, CanOpen, Monitor};
 use brushwork_link::device::{
     ArmScope, DeviceHandle, DeviceLoop, DeviceOptions, Drive, DriveCommand, Event, Request, Step, StopReport,
 };
 use brushwork_link::{Clock, Transport, TransportError};
 use brushwork_mcp_sim::controller::{Bus, UnitView};
-use brushwork_mcp_wire::canopen::adapter::Form;
 use brushwork_plant::faults::{Fault, Faulty};
 use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::pacing::{Paced, byte_time};

@@ -2,9 +2,9 @@
 #![cfg(unix)]
 
 use crate::cli::{Run, program, run};
+use brushwork_canopen::NodeId;
+use brushwork_canopen::adapter::Form;
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
-use brushwork_mcp_wire::canopen::NodeId;
-use brushwork_mcp_wire::canopen::adapter::Form;
 use brushwork_plant::server::{Endpoint, Server, ServerOptions, SimHandle};
 use serde_json::Value;
 use tempfile::TempDir;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::time::Duration;
 
+use brushwork_canopen::adapter::Form;
 use brushwork_core::keep::TrialKeeper;
 use brushwork_core::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
 use brushwork_link::device::{
@@ -15,7 +16,6 @@ use brushwork_link::settings::{
 };
 use brushwork_link::{Failure, FirmwareGeneration, Stream};
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
-use brushwork_mcp_wire::canopen::adapter::Form;
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::packet_serial::Generation;
 use brushwork_motion_mind_sim::{MotionMind, MotionMindBus, MotionMindConfig};

@@ -4,6 +4,7 @@
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use brushwork_canopen::adapter::Form;
 use brushwork_link::device::{
     Addresses, ArmScope, Channel, DeviceOptions, DisarmReason, Drive, DriveCommand, Event, FnJob, Identity,
     Request,
@@ -13,7 +14,6 @@ use brushwork_link::settings::{
 };
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_mcp_sim::settings::Settings;
-use brushwork_mcp_wire::canopen::adapter::Form;
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::packet_serial::Generation;
 use brushwork_plant::faults::{Direction, Fault, FaultEffect};

@@ -6,10 +6,10 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
+use brushwork_canopen::NodeId;
+use brushwork_canopen::adapter::Form;
 use brushwork_mcp_sim::controller::ControllerConfig;
 use brushwork_mcp_sim::settings::Settings;
-use brushwork_mcp_wire::canopen::NodeId;
-use brushwork_mcp_wire::canopen::adapter::Form;
 use brushwork_mcp_wire::packet_serial::Generation;
 use brushwork_plant::machine::StreamIndex;
 use brushwork_tests::program::{Child, Ending, Program};

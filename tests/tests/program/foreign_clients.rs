@@ -2,8 +2,8 @@
 #![cfg(unix)]
 #![expect(clippy::print_stdout, reason = "figures and refusals belong into the record of a test run")]
 
-use brushwork_mcp_wire::canopen::NodeId;
-use brushwork_mcp_wire::canopen::adapter::Form;
+use brushwork_canopen::NodeId;
+use brushwork_canopen::adapter::Form;
 use brushwork_mcp_wire::packet_serial::Generation;
 use brushwork_tests::foreign::{self, Findings};
 use brushwork_tests::simulated::OnPty;

@@ -7,8 +7,8 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use brushwork_canopen::adapter::Form;
 use brushwork_mcp_sim::controller::Bus;
-use brushwork_mcp_wire::canopen::adapter::Form;
 use brushwork_mcp_wire::models::MODELS;
 use brushwork_mcp_wire::packet_serial::Address;
 use brushwork_plant::faults::{FAULT_SYNTAX, Fault};

@@ -5,12 +5,12 @@
 
 use std::sync::Arc;
 
+use brushwork_canopen::NodeId;
+use brushwork_canopen::adapter::Form;
 use brushwork_link::device::can::{BusTransport, CanOpen, Monitor};
 use brushwork_link::device::{Addresses, DeviceHandle, DeviceOptions, DeviceThread, FamilyChoice, PollRate};
 use brushwork_link::transport::{ConnectTarget, OpenError, Stream, Transport, list_ports, ports};
 use brushwork_link::{Clock, HiddenSettings};
-use brushwork_mcp_wire::canopen::NodeId;
-use brushwork_mcp_wire::canopen::adapter::Form;
 
 pub mod firmware;
 pub mod line;

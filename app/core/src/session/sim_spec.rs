@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use brushwork_mcp_wire::canopen::NodeId;
-use brushwork_mcp_wire::canopen::adapter::Form;
+use brushwork_canopen::NodeId;
+use brushwork_canopen::adapter::Form;
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::models::Model;
 use brushwork_mcp_wire::packet_serial::{Address, Generation};

@@ -3,14 +3,14 @@
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use brushwork_canopen::NodeId;
+use brushwork_canopen::adapter::Form;
 use brushwork_link::HiddenSettings;
 use brushwork_link::UnitAddress;
 use brushwork_link::device::FamilyChoice;
 use brushwork_link::script::CHECKSUM_KEY;
 use brushwork_link::transport::{ChannelTransport, Stream};
 use brushwork_mcp_sim::controller::{Bus, BusError, Controller, ControllerConfig};
-use brushwork_mcp_wire::canopen::NodeId;
-use brushwork_mcp_wire::canopen::adapter::Form;
 use brushwork_mcp_wire::crc::crc16_xmodem;
 use brushwork_plant::ParamsError;
 use brushwork_plant::machine::StreamIndex;

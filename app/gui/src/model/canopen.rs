@@ -1,9 +1,9 @@
 //! What the window for connecting to a CANopen bus holds.
 
+use brushwork_canopen::NodeId;
+use brushwork_canopen::adapter::Form;
 use brushwork_link::transport::PortInfo;
 use brushwork_link::transport::target::DEFAULT_ADAPTER_BAUD;
-use brushwork_mcp_wire::canopen::NodeId;
-use brushwork_mcp_wire::canopen::adapter::Form;
 
 /// Baud rates that adapters are often set to.
 pub const ADAPTER_BAUD_RATES: [u32; 6] = [38_400, 57_600, 115_200, 230_400, 460_800, 1_000_000];

@@ -1,7 +1,7 @@
 //! The window for connecting to a CANopen bus (MCP manual 1.2.8, "Connect CANOpen Bus").
 
-use brushwork_mcp_wire::canopen::NodeId;
-use brushwork_mcp_wire::canopen::adapter::Form;
+use brushwork_canopen::NodeId;
+use brushwork_canopen::adapter::Form;
 use egui::{ComboBox, Context, DragValue, Grid, Rect, Response, RichText, Ui, Window, vec2};
 
 use crate::command::{Command, Commands};

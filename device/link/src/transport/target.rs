@@ -12,8 +12,8 @@ use super::byte_stream::Transport;
 use super::serial::SerialTransport;
 use super::tcp::TcpTransport;
 use crate::device::FamilyChoice;
-use brushwork_mcp_wire::canopen::NodeId;
-use brushwork_mcp_wire::canopen::adapter::Form;
+use brushwork_canopen::NodeId;
+use brushwork_canopen::adapter::Form;
 use std::fmt;
 use std::str::FromStr;
 

@@ -3,9 +3,9 @@
 use super::place::Place;
 use crate::device::controller::Line;
 use crate::exchange::{ExchangeError, Judgement, Outgoing, Span, Tries};
-use brushwork_mcp_wire::canopen::Function;
-use brushwork_mcp_wire::canopen::adapter::Decoder;
-use brushwork_mcp_wire::canopen::sdo::{Abort, Progress, Transfer};
+use brushwork_canopen::Function;
+use brushwork_canopen::adapter::Decoder;
+use brushwork_canopen::sdo::{Abort, Progress, Transfer};
 use std::time::Duration;
 
 /// Bytes of an answer in the shorter form, for the time it takes on a serial line.

@@ -5,10 +5,10 @@ use super::place::Place;
 use crate::device::controller::Line;
 use crate::exchange::packet::{Ask, Reply, gate};
 use crate::exchange::{ExchangeError, Span};
+use brushwork_canopen::sdo::Transfer;
 use brushwork_mcp_wire::canopen::objects::{
     LIST_CONTROL, Shape, TEXT, TRIGGER, index_of, raw_of, record_subindex_of, shape, subindex_of,
 };
-use brushwork_mcp_wire::canopen::sdo::Transfer;
 use brushwork_mcp_wire::packet_serial::{Direction, Effect, Form};
 use brushwork_values::{Field, Value, Values};
 use std::time::Duration;

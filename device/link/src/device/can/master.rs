@@ -4,8 +4,8 @@ use super::access::{read, write};
 use super::place::Place;
 use crate::device::controller::Line;
 use crate::exchange::ExchangeError;
-use brushwork_mcp_wire::canopen::NodeId;
-use brushwork_mcp_wire::canopen::nmt::objects;
+use brushwork_canopen::NodeId;
+use brushwork_canopen::nmt::objects;
 use std::time::Duration;
 
 /// The node that this program is on the bus, by its heartbeat: the highest, since other masters take low ones. Assumed free.

@@ -3,9 +3,9 @@
 use super::master::{MASTER, MASTER_LIMIT};
 use crate::clock::Clock;
 use crate::transport::{Transport, TransportError};
-use brushwork_mcp_wire::canopen::adapter::{Decoder, Form};
-use brushwork_mcp_wire::canopen::nmt::State;
-use brushwork_mcp_wire::canopen::{Emergency, Frame, NodeId};
+use brushwork_canopen::adapter::{Decoder, Form};
+use brushwork_canopen::nmt::State;
+use brushwork_canopen::{Emergency, Frame, NodeId};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;

@@ -1,9 +1,9 @@
 //! A node of the bus behind its adapter, and the frames that stop its motors.
 
 use crate::device::stop::StopBytes;
-use brushwork_mcp_wire::canopen::adapter::Form;
-use brushwork_mcp_wire::canopen::sdo::Transfer;
-use brushwork_mcp_wire::canopen::{Frame, Function, NodeId};
+use brushwork_canopen::adapter::Form;
+use brushwork_canopen::sdo::Transfer;
+use brushwork_canopen::{Frame, Function, NodeId};
 use brushwork_mcp_wire::packet_serial::number;
 use std::time::Duration;
 

@@ -1,7 +1,7 @@
 //! The frames that an adapter carries, in words for the traffic view.
 
 use crate::device::described::Described;
-use brushwork_mcp_wire::canopen::adapter::{Decoder, Form};
+use brushwork_canopen::adapter::{Decoder, Form};
 use brushwork_mcp_wire::canopen::describe_frame;
 use brushwork_mcp_wire::packet_serial::hex;
 

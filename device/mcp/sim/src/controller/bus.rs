@@ -2,7 +2,7 @@
 
 use super::Controller;
 use super::canbus::CanBus;
-use brushwork_mcp_wire::canopen::adapter::Form;
+use brushwork_canopen::adapter::Form;
 use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::world::{WorldAction, WorldView};
 use std::time::Duration;

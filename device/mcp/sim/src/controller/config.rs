@@ -2,7 +2,7 @@
 
 use crate::motion::ControlLaw;
 use crate::settings::{MotorRegisters, Settings, SignalSettings};
-use brushwork_mcp_wire::canopen::NodeId;
+use brushwork_canopen::NodeId;
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::models::{Family, Model};
 use brushwork_mcp_wire::packet_serial::{Address, Generation};

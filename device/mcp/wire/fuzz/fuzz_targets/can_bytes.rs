@@ -1,9 +1,9 @@
 //! Whatever an adapter sends: both decoders, the words for traffic, and both ends of SDO take it without harm.
 #![no_main]
 
-use brushwork_mcp_wire::canopen::adapter::{Decoder, Form};
+use brushwork_canopen::adapter::{Decoder, Form};
 use brushwork_mcp_wire::canopen::describe_frame;
-use brushwork_mcp_wire::canopen::sdo::{Abort, Dictionary, Server, Transfer};
+use brushwork_canopen::sdo::{Abort, Dictionary, Server, Transfer};
 use libfuzzer_sys::fuzz_target;
 
 struct Objects(Vec<u8>);

@@ -1,9 +1,9 @@
 //! Frames in words, for traffic views.
 
 use super::objects::command_of;
-use super::sdo::{Request, Response};
-use super::{Emergency, Frame, Function, nmt};
 use crate::packet_serial::{hex, lookup};
+use brushwork_canopen::sdo::{Request, Response};
+use brushwork_canopen::{Emergency, Frame, Function, nmt};
 
 /// What a frame says.
 #[must_use]
@@ -87,7 +87,7 @@ fn response_words(response: &Response) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::canopen::{CanId, NodeId};
+    use brushwork_canopen::{CanId, NodeId};
 
     #[test]
     fn frames_are_told_in_words() {

@@ -3,9 +3,10 @@
 
 use std::collections::BTreeMap;
 
-use brushwork_mcp_wire::canopen::adapter::{Decoder, Form};
-use brushwork_mcp_wire::canopen::sdo::{Abort, Dictionary, Progress, Server, Transfer};
-use brushwork_mcp_wire::canopen::{CanId, Frame, describe_frame};
+use brushwork_canopen::adapter::{Decoder, Form};
+use brushwork_canopen::sdo::{Abort, Dictionary, Progress, Server, Transfer};
+use brushwork_canopen::{CanId, Frame};
+use brushwork_mcp_wire::canopen::describe_frame;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 

@@ -2,12 +2,12 @@
 
 use super::super::object::{Outcome, number};
 use crate::controller::Controller;
-use brushwork_mcp_wire::canopen::NodeId;
-use brushwork_mcp_wire::canopen::nmt::objects as standard;
+use brushwork_canopen::NodeId;
+use brushwork_canopen::nmt::objects as standard;
+use brushwork_canopen::sdo::{Abort, Dictionary};
 use brushwork_mcp_wire::canopen::objects::{
     LIST_CONTROL, Shape, TEXT, TRIGGER, bytes_of, command_of, raw_of, shape,
 };
-use brushwork_mcp_wire::canopen::sdo::{Abort, Dictionary};
 use brushwork_values::{Field, Value};
 use std::collections::BTreeMap;
 use std::time::Duration;

@@ -12,8 +12,8 @@ mod node;
 mod rate;
 
 use super::Controller;
-use brushwork_mcp_wire::canopen::Frame;
-use brushwork_mcp_wire::canopen::adapter::{Decoder, Form};
+use brushwork_canopen::Frame;
+use brushwork_canopen::adapter::{Decoder, Form};
 use node::Node;
 use rate::on_the_bus;
 use std::collections::VecDeque;

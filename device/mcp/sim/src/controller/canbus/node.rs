@@ -3,9 +3,9 @@
 use super::dictionary::{Communication, Objects};
 use super::rate::ADAPTER_RATE_BPS;
 use crate::controller::Controller;
-use brushwork_mcp_wire::canopen::nmt::{Command, State};
-use brushwork_mcp_wire::canopen::sdo::Server;
-use brushwork_mcp_wire::canopen::{Emergency, Frame, Function, NodeId};
+use brushwork_canopen::nmt::{Command, State};
+use brushwork_canopen::sdo::Server;
+use brushwork_canopen::{Emergency, Frame, Function, NodeId};
 use std::time::Duration;
 
 /// Emergency code "heartbeat lost" (CiA 301).

@@ -1,6 +1,6 @@
 //! How fast bits travel on the CAN bus.
 
-use brushwork_mcp_wire::canopen::Frame;
+use brushwork_canopen::Frame;
 use std::time::Duration;
 
 /// Bit rate that the adapter is set to: the default of the controllers (MCP manual 1.9.4).

@@ -1,11 +1,11 @@
 //! Nodes on a CAN bus behind an adapter, seen from the adapter's serial port.
 
 use crate::controller::{Bus, Controller, ControllerConfig};
-use brushwork_mcp_wire::canopen::adapter::{Decoder, Form};
-use brushwork_mcp_wire::canopen::nmt::{Command, State};
+use brushwork_canopen::adapter::{Decoder, Form};
+use brushwork_canopen::nmt::{Command, State};
+use brushwork_canopen::sdo::{Abort, Progress, Transfer};
+use brushwork_canopen::{Emergency, Frame, Function, NodeId};
 use brushwork_mcp_wire::canopen::objects::{Shape, index_of, raw_of, record_subindex_of, shape, subindex_of};
-use brushwork_mcp_wire::canopen::sdo::{Abort, Progress, Transfer};
-use brushwork_mcp_wire::canopen::{Emergency, Frame, Function, NodeId};
 use brushwork_mcp_wire::packet_serial::{
     COMMANDS, Direction, Generation, ReplyProgress, Request, number, parse_reply,
 };

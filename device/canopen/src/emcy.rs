@@ -56,8 +56,8 @@ impl Emergency {
 
 #[cfg(test)]
 mod tests {
+    use super::super::CanId;
     use super::*;
-    use crate::canopen::CanId;
 
     #[test]
     fn a_lost_heartbeat_is_reported_as_8130() {
