@@ -5,8 +5,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use brushwork_link::UnitAddress;
-use brushwork_link::exchange::{Exchange, PacketWire};
+use brushwork_link::exchange::Exchange;
 use brushwork_link::{Clock, HiddenSettings, Transport, TransportError, VirtualClock};
+use brushwork_mcp_client::packet::PacketWire;
 use brushwork_mcp_wire::packet_serial::{Address, Generation};
 use brushwork_plant::machine::{Machine, StreamIndex};
 

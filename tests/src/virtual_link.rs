@@ -5,11 +5,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use brushwork_canopen::adapter::Form;
-use brushwork_link::device::can::{BusTransport, CanOpen, Monitor};
 use brushwork_link::device::{
     ArmScope, DeviceHandle, DeviceLoop, DeviceOptions, Drive, DriveCommand, Event, Request, Step, StopReport,
 };
 use brushwork_link::{Clock, Transport, TransportError};
+use brushwork_mcp_client::can::{BusTransport, CanOpen, Monitor};
 use brushwork_mcp_sim::controller::{Bus, UnitView};
 use brushwork_plant::faults::{Fault, Faulty};
 use brushwork_plant::machine::{Machine, StreamIndex};
@@ -60,6 +60,7 @@ struct Watched<M: Machine> {
 impl VirtualLink {
     /// A loop on a stream of a bus; nothing has been sent. Bytes take no time on USB, and that of the stream's rate elsewhere.
     pub fn new(bus: Bus, stream: StreamIndex, options: DeviceOptions, faults: Vec<Fault>, seed: u64) -> Self {
+        brushwork_link::install(&brushwork::FAMILIES);
         Self::made(bus, stream, faults, seed, |line, clock| DeviceLoop::new(line, clock, options))
     }
 

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::tune::TuneArgs;
 use brushwork_canopen::adapter::Form;
-use brushwork_link::device::FamilyChoice;
+use brushwork_link::FamilyChoice;
 use brushwork_motion_mind_sim::EncoderDecode;
 use brushwork_plant::faults::FAULT_SYNTAX;
 use clap::{Args, Parser, Subcommand, ValueEnum};

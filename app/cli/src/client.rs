@@ -3,9 +3,8 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use brushwork_link::device::{
-    Addresses, ArmScope, DeviceHandle, Event, FamilyChoice, Identity, PollRate, Request,
-};
+use brushwork_link::FamilyChoice;
+use brushwork_link::device::{Addresses, ArmScope, DeviceHandle, Event, Identity, PollRate, Request};
 use brushwork_link::transport::{ConnectTarget, Stream};
 use brushwork_link::{Failure, SystemClock};
 use brushwork_mcp_wire::packet_serial;
@@ -116,8 +115,10 @@ fn parse(target: &str) -> Result<ConnectTarget, Exit> {
 /// The family that is meant: as the target or `--family` says.
 pub fn family(target: &ConnectTarget, args: &ConnectArgs) -> FamilyChoice {
     match target {
-        ConnectTarget::Sim(text) if MotionMindSpec::is_asked_for(text) => FamilyChoice::MotionMind,
-        target if target.family() != FamilyChoice::Auto => target.family(),
+        ConnectTarget::Sim(text) if MotionMindSpec::is_asked_for(text) => {
+            FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND)
+        }
+        target if target.family() != FamilyChoice::AUTO => target.family(),
         _ => args.family,
     }
 }
@@ -126,9 +127,13 @@ pub fn family(target: &ConnectTarget, args: &ConnectArgs) -> FamilyChoice {
 fn addresses(target: &ConnectTarget, args: &ConnectArgs) -> Addresses {
     match (args.address, family(target, args)) {
         (Some(address), _) => Addresses::Only(address),
-        (None, FamilyChoice::MotionMind) => Addresses::Only(first_of(target).get()),
-        (None, FamilyChoice::PacketSerial) => Addresses::Only(packet_serial::Address::DEFAULT.get()),
-        (None, FamilyChoice::Auto) => Addresses::Factory,
+        (None, choice) => match choice.family() {
+            Some(family) if family == brushwork_motion_mind_client::MOTION_MIND => {
+                Addresses::Only(first_of(target).get())
+            }
+            Some(family) => Addresses::Only(family.factory_address()),
+            None => Addresses::Factory,
+        },
     }
 }
 

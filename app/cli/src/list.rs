@@ -2,8 +2,10 @@
 
 use brushwork_link::SystemClock;
 use brushwork_link::device::{Event, Identity, PollRate};
+use brushwork_link::family::Model;
 use brushwork_link::transport::{ConnectTarget, PortInfo, list_ports};
-use brushwork_mcp_wire::models::{MODELS, MOTION_MIND_3};
+use brushwork_mcp_wire::models::MODELS;
+use brushwork_motion_mind_client::MOTION_MIND;
 use serde::Serialize;
 
 use super::args::ListArgs;
@@ -75,13 +77,14 @@ fn simulated() -> Vec<SimulatedRow> {
         rating: model.rating(),
         assumed: model.assumed,
     };
-    let motion_mind = SimulatedRow {
-        connect: format!("sim:{}", MOTION_MIND_3.key),
-        model: MOTION_MIND_3.name,
-        rating: motion_mind::RATING,
+    let motion_mind = |model: &'static Model| SimulatedRow {
+        connect: format!("sim:{}", model.key),
+        model: model.name,
+        rating: model.rating,
         assumed: motion_mind::ASSUMED,
     };
-    MODELS.iter().map(row).chain([motion_mind]).collect()
+    let motion_minds = MOTION_MIND.models().iter().map(motion_mind);
+    MODELS.iter().map(row).chain(motion_minds).collect()
 }
 
 /// Asks all addresses of a port who is there. Reading moves no motor.

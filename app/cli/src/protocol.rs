@@ -1,6 +1,6 @@
 //! `brushwork protocol`: the reference of packet serial or of the Motion Mind, drawn from their tables.
 
-use brushwork_link::device::FamilyChoice;
+use brushwork_link::FamilyChoice;
 use brushwork_mcp_wire::packet_serial::reference;
 use brushwork_mcp_wire::packet_serial::{Command, lookup, lookup_key};
 use brushwork_motion_mind_wire as motion_mind;
@@ -11,7 +11,7 @@ use super::output::{Output, OutputError, say};
 
 /// Prints the whole page or the commands asked for.
 pub fn run(args: &ProtocolArgs, out: &mut Output) -> Exit {
-    if args.family == FamilyChoice::MotionMind {
+    if args.family == FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND) {
         return motion_mind(args, out);
     }
     let mut wanted = Vec::new();

@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use brushwork_link::UnitAddress;
-use brushwork_link::device::FamilyChoice;
+use brushwork_link::FamilyChoice;
+use brushwork_link::unit::parse_number;
 use brushwork_plant::world::{CanPeer, I2cDevice, WorldAction};
 use clap::{Args, ValueEnum};
 
@@ -102,7 +102,7 @@ pub fn parse_seconds(text: &str) -> Result<Duration, String> {
 
 /// Reads an address of either family.
 fn parse_connect_address(text: &str) -> Result<u8, String> {
-    let number = parse_byte(text).and_then(UnitAddress::new).map(UnitAddress::get);
+    let number = parse_number(text);
     number.ok_or_else(|| {
         format!("\"{text}\" is no address: use 0x80 to 0x87 (128 to 135), or 1 to 98 for a Motion Mind")
     })

@@ -1,17 +1,18 @@
 //! `brushwork status`: what the controller measures and reports.
 
+use brushwork_mcp_client::{MCP, is_mcp, layout_of};
+use brushwork_motion_mind_client::{MotionMindFacts, is_motion_mind};
 use std::time::{Duration, Instant};
 
-use brushwork_link::device::motion_mind::taken;
 use brushwork_link::device::{
     Channel, Event, FnJob, Identity, JobEnding, PollRate, Request, Sign, StatusReport,
 };
-use brushwork_link::diagnosis::{Diagnosis, Evidence, Measured, PinEnd, diagnose, homed, pin_ends};
-use brushwork_link::settings::{SettingsImage, Subject, read_all};
+use brushwork_link::settings::{SettingsImage, read_all};
 use brushwork_link::{Stream, Wire as _};
-use brushwork_mcp_wire::models;
+use brushwork_mcp_client::diagnosis::{Diagnosis, Evidence, Measured, PinEnd, diagnose, homed, pin_ends};
 use brushwork_mcp_wire::packet_serial::number;
 use brushwork_mcp_wire::packet_serial::status::{Condition, Lamp, Severity};
+use brushwork_motion_mind_client::taken;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
@@ -78,7 +79,7 @@ impl Readings {
     }
 
     fn is_complete(&self, identity: &Identity) -> bool {
-        if identity.is_motion_mind() {
+        if is_motion_mind(identity) {
             let wanted = [Channel::M1Position, Channel::M1Velocity, Channel::Temperature1];
             return self.status.is_some() && wanted.into_iter().all(|channel| self.get(channel).is_some());
         }
@@ -133,12 +134,11 @@ fn watch(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
 
 /// The settings in RAM and the inputs, for the diagnosis; what cannot be read is told.
 fn read_setup(client: &Client, readings: &mut Readings, interrupt: &Interrupt) -> Result<Setup, Exit> {
-    let Some(model) = models::identify(&client.identity.version_text) else { return Ok(Setup::default()) };
-    let subject = Subject::new(model, client.identity.generation);
+    let Some(subject) = client.identity.subject() else { return Ok(Setup::default()) };
     let job = FnJob::boxed("read the settings", SETTINGS_LIMIT, move |context| {
         let settings = Some(read_all(context, subject)?.image);
         // A RoboClaw does not know the command; its status word has bits of its own.
-        let values = if subject.model.family.speaks_packets() {
+        let values = if subject.family() == MCP {
             context.transact(number::READ_SIGNAL_VALUES, &[]).ok()
         } else {
             None
@@ -173,7 +173,7 @@ fn setup_of(ending: JobEnding) -> Setup {
 
 /// Why the motors do not run, as far as anything is known.
 fn judge(client: &Client, readings: &Readings, setup: &Setup) -> Option<Diagnosis> {
-    let status = readings.status.filter(|_| !client.identity.is_motion_mind())?;
+    let status = readings.status.filter(|_| !is_motion_mind(&client.identity))?;
     Some(diagnose(&Evidence {
         settings: setup.settings.as_ref(),
         pins: setup.pins.as_deref(),
@@ -208,7 +208,7 @@ fn print(
         identity.port,
         identity.version(),
     ))?;
-    if let Some(facts) = identity.motion_mind {
+    if let Some(facts) = MotionMindFacts::of(identity) {
         out.line(format!(
             "{}, {} protocol. Over the serial line it takes {}.",
             capital(&facts.mode.to_string()),
@@ -249,7 +249,7 @@ fn decimals(channel: Channel) -> usize {
 }
 
 fn lamps(readings: &Readings, client: &Client, setup: &Setup) -> Vec<LampState> {
-    if client.identity.is_motion_mind() {
+    if is_motion_mind(&client.identity) {
         return signs(readings, &client.identity);
     }
     let homed =
@@ -297,7 +297,7 @@ fn dark(lamp: Lamp, client: &Client, homed: Option<[bool; 2]>) -> &'static str {
     match by_pins {
         Some(true) => "active",
         Some(false) => "OK",
-        None if lamp.is_reported(client.identity.generation.layout(), client.identity.is_mcp()) => "OK",
+        None if lamp.is_reported(layout_of(client.identity.generation), is_mcp(&client.identity)) => "OK",
         None => "not reported",
     }
 }

@@ -2,12 +2,12 @@
 //!
 //! The stop goes out before anybody is looked for, to whoever may be there; then the units are found and each is asked to confirm.
 
+use brushwork_motion_mind_client::is_motion_mind;
 use std::time::{Duration, Instant};
 
+use brushwork_link::FamilyChoice;
 use brushwork_link::SystemClock;
-use brushwork_link::device::{
-    Addresses, DeviceHandle, Event, FamilyChoice, Identity, PollRate, StopReport, UnitStop,
-};
+use brushwork_link::device::{Addresses, DeviceHandle, Event, Identity, PollRate, StopReport, UnitStop};
 use brushwork_link::transport::ConnectTarget;
 use brushwork_mcp_wire::packet_serial;
 use brushwork_motion_mind_wire as motion_mind;
@@ -68,13 +68,13 @@ fn stop_line(line: &LineArgs, interrupt: &Interrupt) -> Result<LineStop, Exit> {
         })
     };
     let on_can = matches!(target, ConnectTarget::Can { .. });
-    let is_unknown = line.family == FamilyChoice::Auto && target.family() == FamilyChoice::Auto && !on_can;
+    let is_unknown = line.family == FamilyChoice::AUTO && target.family() == FamilyChoice::AUTO && !on_can;
     let mut session = open(line.family)?;
     let mut found = stop_and_find(&session, on_can, interrupt)?;
     if found.is_err() && is_unknown && asked == Addresses::Scan {
         // A line that is not known to have a Motion Mind is not searched for all 98 of them when it is opened.
         drop(session);
-        session = open(FamilyChoice::MotionMind)?;
+        session = open(FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND))?;
         found = stop_and_find(&session, on_can, interrupt)?;
     }
     let (units, first) = found.map_err(|sentence| {
@@ -173,7 +173,7 @@ impl LineStop {
         };
         let asked: Vec<u8> = match self.asked {
             Addresses::These(set) => set.iter().collect(),
-            _ if self.units.iter().any(|unit| unit.is_motion_mind() || unit.is_node()) => Vec::new(),
+            _ if self.units.iter().any(|unit| is_motion_mind(unit) || unit.is_node()) => Vec::new(),
             _ => packet_serial::Address::ALL.map(packet_serial::Address::get).to_vec(),
         };
         asked.into_iter().filter(|address| !answered(address)).collect()
@@ -200,7 +200,7 @@ impl LineStop {
         let mut lines = warnings_of(&self.report, &self.units);
         let silent = self.silent();
         let is_node = self.units.iter().any(Identity::is_node);
-        let is_motion_mind = self.units.iter().any(Identity::is_motion_mind);
+        let is_motion_mind = self.units.iter().any(is_motion_mind);
         match self.asked {
             Addresses::These(_) if !silent.is_empty() => lines.push(format!(
                 "Nobody answered at {}: the stop was written there too, and whether it was heard is not known. If a motor runs there, cut its power.",

@@ -3,12 +3,13 @@
 //! A unit in text takes lines; one in binary takes frames in hexadecimal, whose checksum is added. Nothing that moves the motor
 //! goes out: that takes arming, which a terminal does not do.
 
+use brushwork_motion_mind_client::MotionMindFacts;
 use std::io::BufRead as _;
 use std::time::{Duration, Instant};
 
-use brushwork_link::device::motion_mind::{describe_received, describe_sent};
-use brushwork_link::device::{Event, MotionMindFacts, PollRate, Request};
+use brushwork_link::device::{Event, PollRate, Request};
 use brushwork_mcp_wire::packet_serial::hex;
+use brushwork_motion_mind_client::{describe_received, describe_sent};
 use brushwork_motion_mind_wire::{
     Command, Effect, FrameEvent, FrameReader, LineEvent, LineReader, Protocol, checksum,
 };
@@ -32,7 +33,7 @@ pub fn run(args: &TerminalArgs, out: &mut Output, interrupt: &Interrupt) -> Exit
 /// Whether one of them was not sent.
 fn talk(args: &TerminalArgs, out: &mut Output, interrupt: &Interrupt) -> Result<bool, Exit> {
     let client = Client::connect(&args.connect, PollRate::Off, interrupt)?;
-    let Some(facts) = client.identity.motion_mind else {
+    let Some(facts) = MotionMindFacts::of(&client.identity) else {
         say(format!(
             "{} is no Motion Mind; its commands are put together in the window's Traffic screen.",
             client.identity.title()

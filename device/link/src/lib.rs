@@ -1,18 +1,15 @@
-//! Everything between a port and a typed controller: transports, requests with deadlines, and the device thread.
+//! What every family of controllers shares between a port and a typed controller: transports, requests with deadlines, the device thread, and the
+//! settings engine. It knows no family: each is an object behind [`family::Family`].
 //!
 //! Units stand in names; times are durations since the epoch of the [`Clock`] in use. There is no window here
 //! and no simulator. See `ARCHITECTURE.md`.
 
 pub mod clock;
 pub mod device;
-pub mod diagnosis;
 pub mod exchange;
 pub mod failure;
-pub mod firmware;
-pub mod script;
+pub mod family;
 pub mod settings;
-#[cfg(test)]
-mod testing;
 pub mod transport;
 pub mod unit;
 pub mod wire;
@@ -20,6 +17,7 @@ pub mod wire;
 pub use clock::{Clock, SystemClock, VirtualClock};
 pub use exchange::{ExchangeError, Interruption, LinkStatistics};
 pub use failure::Failure;
+pub use family::{FamilyChoice, FamilyRef, families, install};
 pub use transport::{ConnectTarget, Stream, Transport, TransportError};
 pub use unit::{FirmwareGeneration, UnitAddress};
 pub use wire::{HiddenSettings, Wire};

@@ -2,13 +2,11 @@
 
 use crate::exchange::ExchangeError;
 use crate::unit::{FirmwareGeneration, UnitAddress};
-use brushwork_mcp_wire::packet_serial::Request;
 use brushwork_values::{Value, Values};
 use std::fmt;
 use std::time::Duration;
 
-/// Commands to one unit, in the words of its family: packet serial's numbers and layouts, or the Motion Mind's
-/// ([`crate::device::motion_mind`]). Behind it stand deadlines, retries, the Stop flag and the arming rule.
+/// Commands to one unit, in the words of its family. Behind it stand deadlines, retries, the Stop flag and the arming rule.
 ///
 /// After an error whose [`ExchangeError::interruption`] is set every further call fails the same way: whoever holds the
 /// wire should return.
@@ -42,16 +40,14 @@ pub trait Wire {
 
     /// Sends a command whose raw numbers are given by field name, put in the order of this generation's layout; names
     /// that the layout lacks are left out.
-    fn transact_named(&mut self, command: u8, named: &[(&str, i64)]) -> Result<Values, ExchangeError> {
-        let (Some(address), Some(generation)) = (self.address().packets(), self.generation().packet_serial())
-        else {
-            // The layouts of other families have one order.
-            return self
-                .transact_values(command, named.iter().map(|(_, value)| Value::Int(*value)).collect());
-        };
-        let request = Request::named(address, command, generation, named)
-            .map_err(|source| ExchangeError::Encode { source })?;
-        self.transact_values(command, request.values)
+    fn transact_named(
+        &mut self,
+        command: u8,
+        named: &[(&'static str, i64)],
+    ) -> Result<Values, ExchangeError> {
+        let settings = self.address().family().settings();
+        let values = settings.values((self.address(), self.generation()), command, named)?;
+        self.transact_values(command, values)
     }
 
     /// Speaks to another address from now on: the unit has just been given it. `false` when this wire cannot follow.

@@ -7,14 +7,13 @@ use std::time::Duration;
 use brushwork_canopen::adapter::Form;
 use brushwork_core::keep::TrialKeeper;
 use brushwork_core::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
-use brushwork_link::device::{
-    ArmScope, DeviceOptions, Event, FamilyChoice, FnJob, Job, JobContext, JobEnding, Request,
-};
+use brushwork_link::FamilyChoice;
+use brushwork_link::device::{ArmScope, DeviceOptions, Event, FnJob, Job, JobContext, JobEnding, Request};
 use brushwork_link::settings::{
     Ending, Entry, Keeper, SettingValue, SettingsImage, SettingsTable, Subject, WriteOptions, read_all,
     reload, save_eeprom, write,
 };
-use brushwork_link::{Failure, FirmwareGeneration, Stream};
+use brushwork_link::{Failure, Stream};
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::packet_serial::Generation;
@@ -136,7 +135,7 @@ fn worked<M: Machine + 'static>(
 }
 
 fn mcp_subject(model: &str, generation: Generation) -> Subject {
-    Subject::new(models::lookup(model).expect("it is listed"), generation)
+    brushwork_mcp_client::subject(models::lookup(model).expect("it is listed"), generation)
 }
 
 fn mcp(model: &str, generation: Generation) -> Controller {
@@ -184,10 +183,13 @@ fn a_node_of_a_can_bus_is_sent_what_it_was() {
 fn motion_mind(mode: Mode, protocol: Protocol) -> (VirtualLink<MotionMindBus>, Subject) {
     let config = MotionMindConfig { protocol, ..MotionMindConfig::new(mode) };
     let bus = MotionMindBus::new(vec![MotionMind::new(config).expect("the default motor is sound")]);
-    let options =
-        DeviceOptions { simulated: true, family: FamilyChoice::MotionMind, ..DeviceOptions::default() };
+    let options = DeviceOptions {
+        simulated: true,
+        family: FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND),
+        ..DeviceOptions::default()
+    };
     let revision = u8::try_from(bus.motion_minds()[0].read_one(17)).expect("a revision is small");
-    let subject = Subject::new(&models::MOTION_MIND_3, FirmwareGeneration::MotionMind { revision });
+    let subject = brushwork_motion_mind_client::subject(revision);
     (VirtualLink::over(bus, options, Vec::new(), 1), subject)
 }
 

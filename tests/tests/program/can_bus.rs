@@ -9,9 +9,7 @@ use brushwork_link::device::{
     Addresses, ArmScope, Channel, DeviceOptions, DisarmReason, Drive, DriveCommand, Event, FnJob, Identity,
     Request,
 };
-use brushwork_link::settings::{
-    ReadReport, SettingValue, SettingsImage, Subject, WriteOptions, read_all, write,
-};
+use brushwork_link::settings::{ReadReport, SettingValue, SettingsImage, WriteOptions, read_all, write};
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_mcp_sim::settings::Settings;
 use brushwork_mcp_wire::models;
@@ -83,8 +81,8 @@ fn nodes_are_found_in_both_forms_and_generations_and_nothing_moves() {
             let found = identities(&link);
             let told: Vec<_> = found.iter().map(|unit| (unit.place(), unit.model, unit.generation)).collect();
             let expected = [
-                ("node 3".to_owned(), Some("MCP266"), generation.into()),
-                ("node 17".to_owned(), Some("MCP266"), generation.into()),
+                ("node 3".to_owned(), Some("MCP266"), brushwork_mcp_client::firmware_of(generation)),
+                ("node 17".to_owned(), Some("MCP266"), brushwork_mcp_client::firmware_of(generation)),
             ];
             assert_eq!(told, expected, "{form:?}");
             assert!(
@@ -92,7 +90,7 @@ fn nodes_are_found_in_both_forms_and_generations_and_nothing_moves() {
                 "{:?}",
                 found[0].notes
             );
-            assert!(found.iter().all(|unit| unit.family == "CANopen" && unit.firmware == "1.0.0"));
+            assert!(found.iter().all(|unit| unit.protocol == "CANopen" && unit.firmware == "1.0.0"));
             assert_eq!((link.duties(0), link.duties(1)), ([0.0; 2], [0.0; 2]));
         }
     }
@@ -154,7 +152,7 @@ fn run<T: Send + 'static>(
 }
 
 fn settings(link: &mut VirtualLink, generation: Generation) -> ReadReport {
-    let subject = Subject::new(models::lookup("mcp266").expect("it is listed"), generation);
+    let subject = brushwork_mcp_client::subject(models::lookup("mcp266").expect("it is listed"), generation);
     run(link, move |wire| read_all(wire, subject)).expect("the link holds")
 }
 

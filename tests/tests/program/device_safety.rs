@@ -6,12 +6,13 @@ use std::time::Duration;
 use brushwork_link::Stream;
 use brushwork_link::device::{
     ArmScope, DeviceHandle, DeviceOptions, DisarmReason, Drive, DriveCommand, Event, FnJob, JobEnding,
-    JobOutput, PollRate, Request, Severity,
+    JobOutput, PollRate, Request,
 };
-use brushwork_link::settings::{Subject, read_all};
+use brushwork_link::settings::read_all;
 use brushwork_link::{Interruption, Wire};
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::packet_serial::status::Severity;
 use brushwork_mcp_wire::packet_serial::{Address, Generation, Request as Packet, number};
 use brushwork_plant::faults::{Direction, Fault, FaultEffect};
 use brushwork_plant::machine::StreamIndex;
@@ -164,7 +165,10 @@ fn a_unit_on_usb_is_one_although_it_answers_all_eight_addresses() {
             })
             .collect();
         assert_eq!(found.len(), 1);
-        assert_eq!((found[0].generation, found[0].also_answers.len()), (generation.into(), 7));
+        assert_eq!(
+            (found[0].generation, found[0].also_answers.len()),
+            (brushwork_mcp_client::firmware_of(generation), 7)
+        );
         assert_eq!(found[0].notes, Vec::<String>::new());
     }
 }
@@ -399,7 +403,8 @@ fn stop_overtakes_the_reading_of_all_settings() {
     let mut link = driving_on_rs232();
     let model = models::lookup("mcp266").expect("it is in the list");
     let job = FnJob::boxed("read the settings", ms(30_000), move |context| {
-        let subject = Subject::new(model, context.generation());
+        let subject =
+            brushwork_mcp_client::subject(model, brushwork_mcp_client::layout_of(context.generation()));
         read_all(context, subject).map(|report| Box::new(report) as JobOutput)
     });
     link.ask(Request::Job(job));

@@ -3,9 +3,10 @@
 
 use std::time::Duration;
 
+use brushwork_link::device::RiskAccepted;
 use brushwork_link::device::{DeviceOptions, Event, Request};
-use brushwork_link::firmware::{Left, Progress, RiskAccepted, SendError, Sent, send};
 use brushwork_link::{Clock as _, Stream, Transport, TransportError};
+use brushwork_mcp_client::firmware::{Left, Progress, SendError, Sent, send};
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig, ERASE_TIME, Flash};
 use brushwork_mcp_wire::loader::{Image, PAGE_BYTES, SimulatedImage};
 use brushwork_mcp_wire::models;
@@ -187,7 +188,7 @@ fn power_lost_in_the_erase_kills_the_unit_as_the_risk_text_says() {
         assert_eq!(line.with(|bus| bus.controllers()[0].flash().clone()), Flash::Dead);
         assert_eq!(version(&line), None, "nothing runs, with power or without");
     }
-    let told = brushwork_link::firmware::risks(false).join(" ");
+    let told = brushwork_mcp_client::firmware::risks(false).join(" ");
     assert!(told.contains("dead for good") && told.contains("no recovery"), "{told}");
 }
 

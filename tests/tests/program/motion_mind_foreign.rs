@@ -9,14 +9,15 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
+use brushwork_link::Failure;
+use brushwork_link::FamilyChoice;
 use brushwork_link::device::{
-    Addresses, ArmScope, Channel, DeviceOptions, Drive, DriveCommand, Event, FamilyChoice, FnJob, Identity,
-    JobContext, JobEnding, Request,
+    Addresses, ArmScope, Channel, DeviceOptions, Drive, DriveCommand, Event, FnJob, Identity, JobContext,
+    JobEnding, Request,
 };
 use brushwork_link::settings::{
     SaveVerdict, SettingValue, SettingsTable, Subject, WriteOptions, read_all, save_eeprom, write,
 };
-use brushwork_link::{Failure, FirmwareGeneration};
 use brushwork_motion_mind_wire::Protocol;
 use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::world::{WorldAction, WorldView};
@@ -510,7 +511,7 @@ fn job<T: Send + 'static>(
 }
 
 fn subject(revision: u8) -> Subject {
-    Subject::new(&brushwork_mcp_wire::models::MOTION_MIND_3, FirmwareGeneration::MotionMind { revision })
+    brushwork_motion_mind_client::subject(revision)
 }
 
 const OPTIONS: WriteOptions = WriteOptions { own_stream: None, simulated: false, as_read: false };
@@ -523,14 +524,15 @@ fn manners() -> impl Iterator<Item = (Manner, bool)> {
 #[test]
 fn a_foreign_unit_is_found_in_whichever_protocol_and_manner_it_speaks() {
     for (manner, is_text) in manners() {
-        for family in [FamilyChoice::MotionMind, FamilyChoice::Auto] {
+        for family in [FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND), FamilyChoice::AUTO] {
             for addresses in [Addresses::Factory, Addresses::Scan] {
                 let mut unit = Foreign::new(manner, is_text, 4);
                 unit.ram[0] = -12_345;
                 let mut link = link_to(unit, family, addresses);
                 link.run_for(Duration::from_secs(10));
                 let identity = identity(&link);
-                let facts = identity.motion_mind.expect("it is a Motion Mind");
+                let facts = brushwork_motion_mind_client::MotionMindFacts::of(&identity)
+                    .expect("it is a Motion Mind");
                 let protocol = if is_text { Protocol::Text } else { Protocol::Binary };
                 assert_eq!((facts.protocol, facts.mode.number()), (protocol, 4), "{manner:?}");
                 assert_eq!(identity.generation.to_string(), "revision 5");
@@ -547,7 +549,8 @@ fn a_scan_finds_a_foreign_unit_at_its_address() {
     for (manner, is_text) in manners() {
         let mut unit = Foreign::new(manner, is_text, 3);
         unit.ram[7] = 57;
-        let mut link = link_to(unit, FamilyChoice::MotionMind, Addresses::Scan);
+        let mut link =
+            link_to(unit, FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND), Addresses::Scan);
         link.run_for(Duration::from_secs(20));
         assert_eq!(identity(&link).address, 57, "{manner:?}");
     }
@@ -556,9 +559,12 @@ fn a_scan_finds_a_foreign_unit_at_its_address() {
 #[test]
 fn settings_of_a_foreign_unit_are_read_written_and_stored() {
     for (manner, is_text) in manners() {
-        let mut link =
-            link_to(Foreign::new(manner, is_text, 4), FamilyChoice::MotionMind, Addresses::Factory);
-        assert!(identity(&link).is_motion_mind());
+        let mut link = link_to(
+            Foreign::new(manner, is_text, 4),
+            FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND),
+            Addresses::Factory,
+        );
+        assert!(brushwork_motion_mind_client::is_motion_mind(&identity(&link)));
         let table = SettingsTable::new(subject(5));
         let read = job(&mut link, |wire| read_all(wire, subject(5)));
         assert_eq!(read.image.get("register.vnlimit"), Some(SettingValue::Int(-100_000)), "{manner:?}");
@@ -586,8 +592,11 @@ fn settings_of_a_foreign_unit_are_read_written_and_stored() {
 #[test]
 fn a_foreign_motor_is_driven_and_stopped() {
     for (manner, is_text) in manners() {
-        let mut link =
-            link_to(Foreign::new(manner, is_text, 3), FamilyChoice::MotionMind, Addresses::Factory);
+        let mut link = link_to(
+            Foreign::new(manner, is_text, 3),
+            FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND),
+            Addresses::Factory,
+        );
         assert!(link.arm(ArmScope::Pwm), "{manner:?}: {:?}", failures(&link));
         link.ask(Request::Drive(Drive::one(Motor::M1, DriveCommand::duty(0.5))));
         link.run_for(Duration::from_secs(1));
@@ -597,8 +606,11 @@ fn a_foreign_motor_is_driven_and_stopped() {
         assert_eq!(link.bus(|unit| unit.duty), 0, "{manner:?}");
         assert!(link.stops().last().is_some_and(|stop| stop.confirmed()), "{manner:?}: {:?}", link.stops());
 
-        let mut link =
-            link_to(Foreign::new(manner, is_text, 4), FamilyChoice::MotionMind, Addresses::Factory);
+        let mut link = link_to(
+            Foreign::new(manner, is_text, 4),
+            FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND),
+            Addresses::Factory,
+        );
         assert!(link.arm(ArmScope::Position), "{manner:?}: {:?}", failures(&link));
         let speed_counts_per_s = -2000;
         let speed = DriveCommand::Speed { speed_counts_per_s, accel_counts_per_s2: None };
@@ -617,7 +629,8 @@ fn return_bits_that_somebody_else_sets_do_not_confuse_the_link() {
         let mut unit = Foreign::new(manner, is_text, 4);
         // RETPOS, RETVEL and RETTIME.
         unit.ram[3] = 0x0E;
-        let mut link = link_to(unit, FamilyChoice::MotionMind, Addresses::Factory);
+        let mut link =
+            link_to(unit, FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND), Addresses::Factory);
         assert!(link.arm(ArmScope::Position), "{manner:?}: {:?}", failures(&link));
         for returns in [0x0E, 0x02, 0x00, 0x08] {
             link.bus(|unit| unit.ram[3] = returns);
@@ -636,11 +649,15 @@ fn return_bits_that_somebody_else_sets_do_not_confuse_the_link() {
 
 #[test]
 fn the_public_simulator_is_connected_to_though_it_answers_the_read_of_all_registers_alone() {
-    for family in [FamilyChoice::MotionMind, FamilyChoice::Auto] {
+    for family in [FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND), FamilyChoice::AUTO] {
         let mut link = link_to(Foreign::new(Manner::ReadsAllAlone, true, 4), family, Addresses::Factory);
         link.run_for(Duration::from_secs(10));
         let identity = identity(&link);
-        assert_eq!(identity.motion_mind.map(|facts| facts.protocol), Some(Protocol::Text), "{family}");
+        assert_eq!(
+            brushwork_motion_mind_client::MotionMindFacts::of(&identity).map(|facts| facts.protocol),
+            Some(Protocol::Text),
+            "{family}"
+        );
         assert!(identity.notes.iter().any(|note| note.contains("simulator")), "{:?}", identity.notes);
         let seen: Vec<f64> = link
             .events
@@ -663,7 +680,8 @@ fn the_public_simulator_is_connected_to_though_it_answers_the_read_of_all_regist
 fn a_search_does_not_count_as_errors_of_the_link() {
     let mut unit = Foreign::new(Manner::Strict, false, 4);
     unit.ram[7] = 90;
-    let mut link = link_to(unit, FamilyChoice::MotionMind, Addresses::Scan);
+    let mut link =
+        link_to(unit, FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND), Addresses::Scan);
     link.run_for(Duration::from_secs(10));
     assert_eq!(identity(&link).address, 90);
     let statistics = link.events.iter().rev().find_map(|(_, event)| match event {

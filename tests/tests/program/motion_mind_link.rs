@@ -5,15 +5,16 @@ use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use brushwork_link::FamilyChoice;
 use brushwork_link::device::{
-    Addresses, ArmScope, Channel, DeviceOptions, DisarmReason, Drive, DriveCommand, Event, FamilyChoice,
-    FnJob, Identity, JobContext, JobEnding, Request,
+    Addresses, ArmScope, Channel, DeviceOptions, DisarmReason, Drive, DriveCommand, Event, FnJob, Identity,
+    JobContext, JobEnding, Request,
 };
 use brushwork_link::settings::{
     SaveVerdict, SettingValue, SettingsImage, SettingsTable, WriteOptions, read_all, reload,
     restore_defaults, save_eeprom, write,
 };
-use brushwork_link::{Failure, UnitAddress, Wire};
+use brushwork_link::{Failure, Wire};
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_motion_mind_sim::{MotionMind, MotionMindBus, MotionMindConfig};
 use brushwork_motion_mind_wire::{
@@ -100,7 +101,11 @@ fn unit(mode: Mode, protocol: Protocol, address: u8) -> MotionMind {
 }
 
 fn options(addresses: Addresses) -> DeviceOptions {
-    DeviceOptions { addresses, family: FamilyChoice::MotionMind, ..DeviceOptions::default() }
+    DeviceOptions {
+        addresses,
+        family: FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND),
+        ..DeviceOptions::default()
+    }
 }
 
 fn over(units: Vec<MotionMind>, options: DeviceOptions, faults: Vec<Fault>) -> (Link, Heard) {
@@ -215,7 +220,7 @@ fn a_unit_is_found_in_either_protocol_and_mode_and_told_by_its_registers() {
         for mode in Mode::ALL {
             let link = connected(mode, protocol);
             let unit = &identities(&link)[0];
-            let facts = unit.motion_mind.unwrap();
+            let facts = brushwork_motion_mind_client::MotionMindFacts::of(unit).unwrap();
             assert_eq!((facts.mode, facts.protocol), (mode, protocol));
             assert_eq!((unit.place(), unit.model), ("unit 1".to_owned(), Some("Motion Mind 3")));
             assert_eq!(unit.generation.to_string(), "revision 10");
@@ -235,7 +240,7 @@ fn without_a_family_named_the_factory_address_is_found_after_packet_serial_was_l
         link.run_for(Duration::from_secs(20));
         let found = identities(&link);
         assert_eq!(found.len(), 1, "{:?}", link.events);
-        assert_eq!(found[0].motion_mind.unwrap().protocol, protocol);
+        assert_eq!(brushwork_motion_mind_client::MotionMindFacts::of(&found[0]).unwrap().protocol, protocol);
     }
 }
 
@@ -311,7 +316,7 @@ fn commands_in(bytes: &[u8]) -> Vec<String> {
 
 #[test]
 fn looking_for_units_sends_reads_and_nothing_else() {
-    for family in FamilyChoice::ALL {
+    for family in FamilyChoice::all() {
         // Nobody has an address that is asked, so that everything is tried.
         let options = DeviceOptions { family, ..DeviceOptions::default() };
         let (mut link, heard) = over(vec![unit(Mode::Serial, Protocol::Binary, 0)], options, Vec::new());
@@ -330,7 +335,10 @@ fn the_probes_of_one_family_do_nothing_to_the_other() {
     // Motion Minds in every mode and protocol, their motors held or still, while packet serial is looked for.
     for protocol in Protocol::ALL {
         for mode in Mode::ALL {
-            let options = DeviceOptions { family: FamilyChoice::PacketSerial, ..DeviceOptions::default() };
+            let options = DeviceOptions {
+                family: FamilyChoice::of(brushwork_mcp_client::MCP),
+                ..DeviceOptions::default()
+            };
             let (mut link, _) = over(vec![unit(mode, protocol, 1)], options, Vec::new());
             let before: Vec<i64> = (0..=30).map(|number| register(&link, number)).collect();
             link.run_for(Duration::from_secs(10));
@@ -722,10 +730,7 @@ fn table(link: &mut Link) -> SettingsTable {
 fn connected_subject(link: &Link) -> brushwork_link::settings::Subject {
     let facts = link.bus(|tapped| tapped.bus.motion_minds()[0].read_one(17));
     let revision = u8::try_from(facts).expect("a revision is small");
-    brushwork_link::settings::Subject::new(
-        &brushwork_mcp_wire::models::MOTION_MIND_3,
-        brushwork_link::FirmwareGeneration::MotionMind { revision },
-    )
+    brushwork_motion_mind_client::subject(revision)
 }
 
 const OPTIONS: WriteOptions = WriteOptions { own_stream: None, simulated: false, as_read: false };
@@ -796,7 +801,7 @@ fn restoring_the_factory_values_changes_ram_and_eeprom_and_follows_the_unit_to_a
         })
         .unwrap();
         assert!(report.differences.is_empty(), "{protocol}: {:?}", report.differences);
-        assert_eq!(report.address, UnitAddress::new(1).unwrap(), "{protocol}");
+        assert_eq!(report.address, brushwork_motion_mind_client::unit_address(1).unwrap(), "{protocol}");
         assert_eq!((register(&link, PTERM), stored(&link, PTERM)), (6_000, 6_000));
         link.run_for(ms(500));
         assert!(failures(&link).is_empty(), "{:?}", failures(&link));
@@ -814,7 +819,10 @@ fn a_new_address_is_followed() {
         })
         .unwrap();
         assert!(report.is_complete(), "{protocol}: {report:?}");
-        assert_eq!((register(&link, ADDRESS), report.address), (42, UnitAddress::new(42).unwrap()));
+        assert_eq!(
+            (register(&link, ADDRESS), report.address),
+            (42, brushwork_motion_mind_client::unit_address(42).unwrap())
+        );
         link.events.clear();
         link.run_for(ms(1_000));
         assert!(failures(&link).is_empty() && latest(&link, Channel::M1Position).is_some(), "{protocol}");
@@ -857,7 +865,7 @@ fn on_a_bad_line_settings_are_right_or_said_to_be_unknown() {
             let Ok(report) = report else { continue };
             for (key, value) in report.image.iter() {
                 let row = report.table.row(key).unwrap();
-                let (number, bits) = (row.register().unwrap(), row.sink().unwrap().place.bits);
+                let (number, bits) = (row.register.unwrap(), row.sink().unwrap().place.bits);
                 let raw = bits.map_or(register(&link, number), |bits| bits.extract(register(&link, number)));
                 // One wrong byte in the sum of a frame is always found; text has no sum.
                 if protocol == Protocol::Binary {

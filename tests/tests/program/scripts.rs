@@ -5,8 +5,10 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use brushwork_link::device::{ArmScope, DeviceOptions, DisarmReason, Event, JobEnding, JobReport, Request};
-use brushwork_link::script::{Autorun, Downloaded, Origin, ScriptImage, Verified, autorun_job, download_job};
 use brushwork_link::{Failure, Interruption, Stream};
+use brushwork_mcp_client::script::{
+    Autorun, Downloaded, Origin, ScriptImage, Verified, autorun_job, download_job,
+};
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_mcp_wire::packet_serial::{Generation, number};
 use brushwork_plant::faults::Fault;

@@ -4,12 +4,13 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use brushwork_link::exchange::PacketWire;
 use brushwork_link::settings::{
-    Carrier, Kind, Row, RowState, SaveVerdict, SettingValue, SettingsImage, SettingsTable, SignalShape,
-    Subject, WriteOptions, diff, read_all, reload, restore_defaults, save_eeprom, write,
+    Carrier, Kind, Row, RowState, SaveVerdict, SettingValue, SettingsImage, SettingsTable, WriteOptions,
+    diff, read_all, reload, restore_defaults, save_eeprom, write,
 };
 use brushwork_link::{Stream, Wire};
+use brushwork_mcp_client::packet::PacketWire;
+use brushwork_mcp_client::settings::SignalShape;
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::models::{Family, Model};
@@ -34,7 +35,7 @@ fn unit(model: &'static Model, generation: Generation) -> (VirtualLine<Bus>, Pac
     let controller = Controller::new(config(model, generation)).expect("the default world is sound");
     let line = VirtualLine::new(Bus::single(controller, StreamIndex::Usb), StreamIndex::Usb);
     let wire = line.wire(Address::DEFAULT, generation, true).with_hidden(Arc::new(HiddenOf(line.clone())));
-    (line, wire, SettingsTable::new(Subject::new(model, generation)))
+    (line, wire, SettingsTable::new(brushwork_mcp_client::subject(model, generation)))
 }
 
 /// Every row that this program can change without cutting its own line, with a value that is not the default.
@@ -179,7 +180,7 @@ fn a_full_write_under_one_percent_of_byte_loss_ends_right_or_says_what_is_not() 
         let machine = Faulty::new(Bus::single(controller, StreamIndex::Usb), faults, seed);
         let line = VirtualLine::new(machine, StreamIndex::Usb);
         let mut wire = line.wire(Address::DEFAULT, generation, true);
-        let table = SettingsTable::new(Subject::new(model, generation));
+        let table = SettingsTable::new(brushwork_mcp_client::subject(model, generation));
         let wanted: SettingsImage = everything_changed(&table)
             .iter()
             .filter(|(key, _)| table.row(key).is_some_and(Row::has_wire_form) && *key != "unit.address")
@@ -218,13 +219,16 @@ fn truth(line: &VirtualLine<Faulty<Bus>>, table: &SettingsTable, generation: Gen
 #[test]
 fn nothing_is_left_out_but_what_this_line_needs_and_what_cannot_be_written() {
     for generation in Generation::ALL {
-        let table = SettingsTable::new(Subject::new(model("mcp266"), generation));
+        let table = SettingsTable::new(brushwork_mcp_client::subject(model("mcp266"), generation));
         let wanted = everything_changed(&table);
         let left_out: Vec<&str> =
             table.rows().iter().map(|row| row.key.as_str()).filter(|key| wanted.get(key).is_none()).collect();
         assert_eq!(left_out, ["stream.usb.type"], "{generation}");
-        let roboclaw = SettingsTable::new(Subject::new(model("roboclaw-2x7a"), generation));
-        assert_eq!(roboclaw.subject().model.family, Family::RoboClaw);
+        let roboclaw = SettingsTable::new(brushwork_mcp_client::subject(model("roboclaw-2x7a"), generation));
+        assert_eq!(
+            brushwork_mcp_client::model_of(roboclaw.subject()).map(|model| model.family),
+            Some(Family::RoboClaw)
+        );
         let wanted = everything_changed(&roboclaw);
         let read_only: Vec<&str> = roboclaw
             .rows()

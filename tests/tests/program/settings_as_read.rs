@@ -5,19 +5,18 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Duration;
 
-use brushwork_link::device::{
-    Addresses, DeviceOptions, Event, FamilyChoice, FnJob, JobContext, JobEnding, Request,
-};
-use brushwork_link::exchange::PacketWire;
+use brushwork_link::FamilyChoice;
+use brushwork_link::device::{Addresses, DeviceOptions, Event, FnJob, JobContext, JobEnding, Request};
 use brushwork_link::settings::{
     Place, Profile, Row, SettingsImage, SettingsTable, Sink, Subject, WriteOptions, diff, plan, read_all,
     restore_defaults, write,
 };
-use brushwork_link::{Failure, FirmwareGeneration, Stream, UnitAddress, Wire};
+use brushwork_link::{Failure, Stream, UnitAddress, Wire};
+use brushwork_mcp_client::packet::PacketWire;
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_mcp_sim::settings::Settings;
 use brushwork_mcp_wire::models;
-use brushwork_mcp_wire::models::{MOTION_MIND_3, Model};
+use brushwork_mcp_wire::models::Model;
 use brushwork_mcp_wire::packet_serial::{Address, Generation, lookup};
 use brushwork_motion_mind_sim::{MotionMind, MotionMindBus, MotionMindConfig};
 use brushwork_motion_mind_wire::{Address as MindAddress, Mode, Protocol, REGISTERS, Register};
@@ -105,7 +104,7 @@ fn unit(model: &'static Model, generation: Generation) -> (VirtualLine<Bus>, Pac
     let controller = Controller::new(config).expect("the default world is sound");
     let line = VirtualLine::new(Bus::single(controller, StreamIndex::Usb), StreamIndex::Usb);
     let wire = line.wire(Address::DEFAULT, generation, true).with_hidden(Arc::new(HiddenOf(line.clone())));
-    (line, wire, SettingsTable::new(Subject::new(model, generation)))
+    (line, wire, SettingsTable::new(brushwork_mcp_client::subject(model, generation)))
 }
 
 fn settings(line: &VirtualLine<Bus>) -> Settings {
@@ -117,7 +116,7 @@ fn profile(subject: Subject, settings: SettingsImage) -> Profile {
     Profile {
         subject,
         firmware: told(),
-        address: UnitAddress::DEFAULT,
+        address: UnitAddress::factory(brushwork_mcp_client::MCP),
         date: told(),
         unit: told(),
         note: told(),
@@ -177,7 +176,7 @@ fn mind(protocol: Protocol) -> MindLink {
     let unit = MotionMind::new(config).expect("the default motor is sound");
     let options = DeviceOptions {
         addresses: Addresses::Only(1),
-        family: FamilyChoice::MotionMind,
+        family: FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND),
         ..DeviceOptions::default()
     };
     let mut link = VirtualLink::over(MotionMindBus::new(vec![unit]), options, Vec::new(), 1);
@@ -240,12 +239,12 @@ fn any_registers_of_a_motion_mind_come_back_to_the_last_bit_in_both_protocols() 
             });
             let held = mind_registers(&link);
             let revision = link.bus(|bus| bus.motion_minds()[0].read_one(17)) as u8;
-            let subject = Subject::new(&MOTION_MIND_3, FirmwareGeneration::MotionMind { revision });
+            let subject = brushwork_motion_mind_client::subject(revision);
             let table = SettingsTable::new(subject);
             let image = job(&mut link, move |wire| read_all(wire, subject)).image;
 
             let mut exported = profile(subject, image.clone());
-            exported.address = UnitAddress::new(1).expect("an address");
+            exported.address = brushwork_motion_mind_client::unit_address(1).expect("an address");
             let stored =
                 Profile::parse(&exported.to_json()).unwrap_or_else(|error| panic!("{what}: {error}"));
             assert_eq!(diff(&table, &stored.settings, &image), [], "{what}");

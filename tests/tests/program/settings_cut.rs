@@ -5,12 +5,13 @@ use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use brushwork_link::exchange::{Exchange, PacketWire};
+use brushwork_link::exchange::Exchange;
 use brushwork_link::settings::{
     Act, Aftermath, Ending, Entry, Journal, Keeper, Kind, Profile, Row, RowState, SettingValue,
-    SettingsImage, SettingsTable, Subject, WriteOptions, WriteReport, read_all, save_kept, write, write_kept,
+    SettingsImage, SettingsTable, WriteOptions, WriteReport, read_all, save_kept, write, write_kept,
 };
 use brushwork_link::{Clock, Failure, Stream, Transport, TransportError};
+use brushwork_mcp_client::packet::PacketWire;
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_mcp_sim::settings::{Image, ROW_BYTES, ROW_WRITE_TIME};
 use brushwork_mcp_wire::models;
@@ -32,12 +33,12 @@ type Sent = Arc<Mutex<Vec<(Duration, u8)>>>;
 
 fn table() -> SettingsTable {
     let model = models::lookup("mcp233").expect("it is listed");
-    SettingsTable::new(Subject::new(model, GENERATION))
+    SettingsTable::new(brushwork_mcp_client::subject(model, GENERATION))
 }
 
 /// A unit from the factory, with one setting changed in RAM, and what is to happen to it.
 fn line(faults: Vec<Fault>) -> Line {
-    let model = table().subject().model;
+    let model = models::lookup("mcp233").expect("it is listed");
     let config = ControllerConfig { model, generation: GENERATION, ..ControllerConfig::default() };
     let controller = Controller::new(config).expect("the default world is sound");
     let line =

@@ -137,7 +137,7 @@ fn keeper() -> (TrialKeeper, Journal) {
 }
 
 fn subject() -> Subject {
-    Subject::new(models::lookup("mcp266").expect("it is listed"), Generation::Gen1)
+    brushwork_mcp_client::subject(models::lookup("mcp266").expect("it is listed"), Generation::Gen1)
 }
 
 /// Everything was kept before the run changed anything, and the journal says what is to be as it was.

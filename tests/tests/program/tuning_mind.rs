@@ -5,10 +5,10 @@ use std::time::Duration;
 
 use brushwork_core::keep::TrialKeeper;
 use brushwork_core::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
-use brushwork_link::device::{ArmScope, DeviceOptions, Event, FamilyChoice, Job, JobEnding, Request};
+use brushwork_link::Failure;
+use brushwork_link::FamilyChoice;
+use brushwork_link::device::{ArmScope, DeviceOptions, Event, Job, JobEnding, Request};
 use brushwork_link::settings::{Ending, Entry, Keeper, Subject};
-use brushwork_link::{Failure, FirmwareGeneration};
-use brushwork_mcp_wire::models;
 use brushwork_motion_mind_sim::{Mode, MotionMind, MotionMindBus, MotionMindConfig, Protocol};
 use brushwork_plant::machine::Machine;
 use brushwork_plant::world::WorldAction;
@@ -32,8 +32,11 @@ fn ms(milliseconds: u64) -> Duration {
 fn connected(protocol: Protocol) -> Link {
     let config = MotionMindConfig { protocol, ..MotionMindConfig::new(Mode::SerialPid) };
     let bus = MotionMindBus::new(vec![MotionMind::new(config).expect("the default motor is sound")]);
-    let options =
-        DeviceOptions { simulated: true, family: FamilyChoice::MotionMind, ..DeviceOptions::default() };
+    let options = DeviceOptions {
+        simulated: true,
+        family: FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND),
+        ..DeviceOptions::default()
+    };
     let mut link = Link::over(bus, options, Vec::new(), 1);
     link.run_for(ms(6_000));
     link
@@ -79,7 +82,7 @@ impl Keeper for Forgetful {
 
 fn subject(link: &Link) -> Subject {
     let revision = link.bus(|bus| bus.motion_minds()[0].read_one(17)) as u8;
-    Subject::new(&models::MOTION_MIND_3, FirmwareGeneration::MotionMind { revision })
+    brushwork_motion_mind_client::subject(revision)
 }
 
 fn tuned(link: &mut Link, request: Tuning, before_run: impl FnOnce(&Link)) -> Option<Report> {

@@ -10,7 +10,7 @@ use brushwork_link::device::{
     Addresses, ArmScope, DeviceHandle, DeviceLoop, DeviceOptions, Event, Identity, Job, JobEnding, Request,
     Step,
 };
-use brushwork_link::settings::{Keeper, Subject};
+use brushwork_link::settings::Keeper;
 use brushwork_link::{Clock, Transport, TransportError, VirtualClock};
 use brushwork_mcp_wire::models;
 use brushwork_tests::other_controller::{Manner, Motor, OtherController};
@@ -179,7 +179,10 @@ fn tuned(manner: Manner, motor: Motor, request: Tuning) -> Report {
     let mut link = Link::new(manner, motor);
     let identity = link.connect().unwrap_or_else(|| panic!("{place}: {:?}", link.events));
     let generation = identity.generation;
-    let subject = Subject::new(models::lookup("roboclaw").expect("it is listed"), generation);
+    let subject = brushwork_mcp_client::subject(
+        models::lookup("roboclaw").expect("it is listed"),
+        brushwork_mcp_client::layout_of(generation),
+    );
     let held = |link: &Link| {
         let unit = link.cable.unit();
         (unit.velocity, unit.position, unit.timeout_raw)

@@ -1,6 +1,7 @@
 //! `brushwork firmware info`: what is installed and what is known about it.
 
 use brushwork_link::device::PollRate;
+use brushwork_mcp_client::layout_of;
 use brushwork_mcp_wire::loader::image_sizes;
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::packet_serial::known::{Quirk, generation_text, quirks};
@@ -17,12 +18,12 @@ pub fn run(args: &InfoArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
     let client = Client::connect(&args.connect, PollRate::Off, interrupt)?;
     let identity = &client.identity;
     let family = models::identify(&identity.version_text).map(|model| model.family);
-    let known: Vec<&Quirk> = quirks(family, identity.generation.layout(), &identity.firmware).collect();
+    let known: Vec<&Quirk> = quirks(family, layout_of(identity.generation), &identity.firmware).collect();
     let sizes = family.map(image_sizes).unwrap_or_default();
     if args.json {
         out.json(&json!({
             "identity": identity,
-            "generation": generation_text(identity.generation.layout()),
+            "generation": generation_text(layout_of(identity.generation)),
             "known": known,
             "image_bytes": sizes,
         }))?;
@@ -33,7 +34,7 @@ pub fn run(args: &InfoArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
     out.line(format!(
         "Generation:  {}. {}",
         identity.generation.number(),
-        generation_text(identity.generation.layout())
+        generation_text(layout_of(identity.generation))
     ))?;
     for note in &identity.notes {
         out.line(format!("             {note}"))?;

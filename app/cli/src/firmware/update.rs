@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
 use brushwork_link::SystemClock;
+use brushwork_link::device::RiskAccepted;
 use brushwork_link::device::{Event, Request};
-use brushwork_link::firmware::{Progress, RESUME_NOTE, RiskAccepted, Sent, risks, suit};
 use brushwork_link::settings::Act;
 use brushwork_link::transport::ConnectTarget;
+use brushwork_mcp_client::firmware::{Progress, RESUME_NOTE, Sent, risks, suit};
 use brushwork_mcp_wire::loader::{Image, SimulatedImage};
 use brushwork_mcp_wire::models;
 use crossbeam_channel::RecvTimeoutError;

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use brushwork_link::device::FamilyChoice;
+use brushwork_link::FamilyChoice;
 use brushwork_mcp_wire::packet_serial::{ACK, Address, Generation, PACKET_GAP, Request, number, scale};
 use brushwork_motion_mind_wire::ACK as MIND_ACK;
 
@@ -135,11 +135,11 @@ fn stop_of(address: Address, generation: Generation) -> Option<Stop> {
 pub fn follower(args: &MonitorArgs) -> Result<Follower, Exit> {
     let target = client::target(&args.connect)?;
     // Bytes from a file come from no target, unless one is named for its family.
-    let family = if args.decode.is_some() && args.connect.family != FamilyChoice::Auto {
+    let family = if args.decode.is_some() && args.connect.family != FamilyChoice::AUTO {
         args.connect.family
     } else {
         client::family(&target, &args.connect)
     };
     let generation = args.generation.and_then(Generation::from_number);
-    Ok(Follower::new(family == FamilyChoice::MotionMind, generation))
+    Ok(Follower::new(family == FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND), generation))
 }

@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use brushwork_link::script::{AUTORUN_JOB, Autorun, read_autorun, set_autorun};
 use brushwork_link::settings::{Ending, begin_command, end_act};
 use brushwork_link::{ExchangeError, Failure, Wire};
+use brushwork_mcp_client::script::{AUTORUN_JOB, Autorun, read_autorun, set_autorun};
 use brushwork_plant::world::{ScriptRun, ScriptView};
 use serde_json::json;
 

@@ -11,7 +11,6 @@ use brushwork_link::device::{
 };
 use brushwork_link::settings::{Keeper, Profile, ReadReport, SettingsImage, Subject, WriteOptions, read_all};
 use brushwork_link::transport::list_ports;
-use brushwork_mcp_wire::models;
 use crossbeam_channel::bounded;
 
 use super::cut_short;
@@ -56,7 +55,7 @@ impl<'i> Controller<'i> {
     pub fn connect(args: &ConnectArgs, interrupt: &'i Interrupt) -> Result<Self, Exit> {
         let client = Client::connect(args, PollRate::Off, interrupt)?;
         let version = &client.identity.version_text;
-        let Some(model) = models::identify(version) else {
+        let Some(subject) = client.identity.subject() else {
             say(format!(
                 "The unit at {} on {} calls itself \"{version}\", which is no MCP, RoboClaw or Motion Mind: its \
                  settings are not known.",
@@ -65,7 +64,6 @@ impl<'i> Controller<'i> {
             ));
             return Err(Exit::Refused);
         };
-        let subject = Subject::new(model, client.identity.generation);
         // Without a list of ports a unit is told by the name of its port.
         let unit = UnitId::new(&client.identity, &list_ports().unwrap_or_default());
         Ok(Self { client, interrupt, subject, keeping: Keeping::new(Store::of_user()), unit })

@@ -63,7 +63,7 @@ fn closest<'t>(table: &'t SettingsTable, key: &str) -> Option<&'t str> {
 
 #[cfg(test)]
 mod tests {
-    use brushwork_link::settings::{SettingValue, Subject};
+    use brushwork_link::settings::SettingValue;
     use brushwork_mcp_wire::models;
     use brushwork_mcp_wire::packet_serial::Generation;
 
@@ -71,7 +71,7 @@ mod tests {
 
     fn table() -> SettingsTable {
         let model = models::lookup("mcp266").expect("it is in the list");
-        SettingsTable::new(Subject::new(model, Generation::Gen1))
+        SettingsTable::new(brushwork_mcp_client::subject(model, Generation::Gen1))
     }
 
     fn typed(texts: &[&str]) -> Vec<Assignment> {

@@ -131,7 +131,7 @@ fn tell_defaults(
         }))?;
         return Ok(stated.len());
     }
-    let place = if table.is_motion_mind() { "RAM and EEPROM" } else { "RAM" };
+    let place = if table.subject().family().settings().restores_eeprom() { "RAM and EEPROM" } else { "RAM" };
     if stated.is_empty() {
         out.line(format!("The factory defaults are restored in {place}; every setting was read back."))?;
     }
@@ -140,7 +140,7 @@ fn tell_defaults(
     if report.address != controller.address() {
         out.line(format!("The controller answers at {} now.", report.address))?;
     }
-    if table.is_motion_mind() {
+    if table.subject().family().settings().restores_eeprom() {
         return Ok(stated.len());
     }
     out.line("A power cycle brings the saved settings back unless the defaults are saved (`brushwork settings save`).")?;
@@ -188,7 +188,7 @@ pub fn reload(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Res
 
 /// Says what an act on the memory of a Motion Mind does to its motor.
 fn tell_stop(table: &SettingsTable, what: &str) {
-    if table.is_motion_mind() {
+    if table.subject().family().settings().restores_eeprom() {
         say(format!("Note: {what}"));
     }
 }

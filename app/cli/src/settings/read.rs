@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use brushwork_link::settings::{self, ListedSetting, list, list_text};
+use brushwork_link::settings::{ListedSetting, list, list_text};
 use serde_json::json;
 
 use super::args::{ReadArgs, ReferenceArgs};
@@ -24,7 +24,7 @@ pub fn run(args: &ReadArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
     if !args.keys.is_empty() {
         settings.retain(|setting| args.keys.iter().any(|start| keys::begins_with(&setting.key, start)));
     }
-    let conflicts = settings::conflicts(&report.table, &|key| report.image.get(key));
+    let conflicts = brushwork_mcp_client::settings::conflicts(&report.table, &|key| report.image.get(key));
     if args.json {
         out.json(&json!({
             "identity": controller.identity(),
@@ -47,9 +47,9 @@ pub fn run(args: &ReadArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
 /// Prints the reference page; no controller is needed.
 pub fn reference(args: &ReferenceArgs, out: &mut Output) -> Result<Exit, Exit> {
     if args.json {
-        out.json(&settings::reference())?;
+        out.json(&brushwork_mcp_client::settings::reference())?;
     } else {
-        out.line(settings::reference_text().trim_end())?;
+        out.line(brushwork_mcp_client::settings::reference_text().trim_end())?;
     }
     Ok(Exit::Done)
 }

@@ -1,11 +1,12 @@
 //! The store as a whole: what an act leaves behind, and what happens when nothing can be kept.
 
+use brushwork_mcp_client::{MCP, subject};
 use std::fs;
 use std::path::Path;
 
 use brushwork_link::UnitAddress;
 use brushwork_link::settings::{
-    Act, Ending, Entry, Keeper, Profile, SettingValue, SettingsImage, SettingsTable, Subject,
+    Act, Ending, Entry, Keeper, Profile, SettingValue, SettingsImage, SettingsTable,
 };
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::packet_serial::Generation;
@@ -13,7 +14,7 @@ use brushwork_mcp_wire::packet_serial::Generation;
 use super::*;
 
 fn table() -> SettingsTable {
-    SettingsTable::new(Subject::new(models::lookup("mcp266").expect("it is listed"), Generation::Gen1))
+    SettingsTable::new(subject(models::lookup("mcp266").expect("it is listed"), Generation::Gen1))
 }
 
 fn unit() -> UnitId {
@@ -28,7 +29,7 @@ fn unit() -> UnitId {
 
 fn entry(act: Act, wanted: SettingsImage) -> Entry {
     let table = table();
-    Entry { act, ram: table.default_image(), table, address: UnitAddress::DEFAULT, wanted }
+    Entry { act, ram: table.default_image(), table, address: UnitAddress::factory(MCP), wanted }
 }
 
 fn one(key: &str, value: SettingValue) -> SettingsImage {
@@ -151,7 +152,7 @@ fn numbered_profile(number: i64) -> Profile {
     Profile {
         subject: *table().subject(),
         firmware: String::new(),
-        address: UnitAddress::DEFAULT,
+        address: UnitAddress::factory(MCP),
         date: today(),
         unit: String::new(),
         note: String::new(),

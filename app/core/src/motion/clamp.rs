@@ -5,6 +5,7 @@
 //! Slowing down takes the duty back quickly but not at once: at once would short the motor, which brakes it and gives nothing
 //! back. The motors are stopped by the device thread on every way out.
 
+use brushwork_mcp_client::layout_of;
 use std::time::Duration;
 
 use brushwork_link::device::{Drive, DriveCommand, FnJob, Job, JobContext, JobOutput};
@@ -219,7 +220,7 @@ fn read_volts(context: &mut JobContext<'_>) -> Result<f64, Failure> {
 fn reports_high(context: &mut JobContext<'_>) -> Result<bool, Failure> {
     let values = context.transact(number::READ_STATUS, &[]).map_err(|error| failed(context, &error))?;
     let word = u32::try_from(values.int("status")).unwrap_or(0);
-    let conditions = status::decode(word, context.generation().layout());
+    let conditions = status::decode(word, layout_of(context.generation()));
     let high = [Condition::MainBatteryHighWarning, Condition::MainBatteryHighError];
     Ok(high.into_iter().any(|condition| conditions.contains(condition)))
 }

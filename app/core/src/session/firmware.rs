@@ -8,9 +8,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use brushwork_link::firmware::{Progress, Sent, send};
 use brushwork_link::transport::{ConnectTarget, PortInfo, Transport, list_ports};
 use brushwork_link::{Clock, Failure};
+use brushwork_mcp_client::firmware::{Progress, Sent, send};
 use brushwork_mcp_wire::loader::Image;
 use crossbeam_channel::{Receiver, Sender, bounded};
 

@@ -7,10 +7,11 @@ use std::sync::Arc;
 
 use brushwork_canopen::NodeId;
 use brushwork_canopen::adapter::Form;
-use brushwork_link::device::can::{BusTransport, CanOpen, Monitor};
-use brushwork_link::device::{Addresses, DeviceHandle, DeviceOptions, DeviceThread, FamilyChoice, PollRate};
+use brushwork_link::FamilyChoice;
+use brushwork_link::device::{Addresses, DeviceHandle, DeviceOptions, DeviceThread, PollRate};
 use brushwork_link::transport::{ConnectTarget, OpenError, Stream, Transport, list_ports, ports};
 use brushwork_link::{Clock, HiddenSettings};
+use brushwork_mcp_client::can::{BusTransport, CanOpen, Monitor};
 
 pub mod firmware;
 pub mod line;
@@ -73,7 +74,7 @@ pub fn open(
     }
     let named = simulation.as_deref().map_or_else(|| target.family(), Simulation::family);
     let options = SessionOptions {
-        family: if named == FamilyChoice::Auto { options.family } else { named },
+        family: if named == FamilyChoice::AUTO { options.family } else { named },
         ..options
     };
     let stream = simulation.as_ref().map_or_else(|| stream_of(target), |running| Some(running.stream()));

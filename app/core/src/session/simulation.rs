@@ -5,13 +5,15 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use brushwork_canopen::NodeId;
 use brushwork_canopen::adapter::Form;
+use brushwork_link::FamilyChoice;
 use brushwork_link::HiddenSettings;
 use brushwork_link::UnitAddress;
-use brushwork_link::device::FamilyChoice;
-use brushwork_link::script::CHECKSUM_KEY;
 use brushwork_link::transport::{ChannelTransport, Stream};
+use brushwork_mcp_client::script::CHECKSUM_KEY;
+use brushwork_mcp_client::unit_address;
 use brushwork_mcp_sim::controller::{Bus, BusError, Controller, ControllerConfig};
 use brushwork_mcp_wire::crc::crc16_xmodem;
+use brushwork_motion_mind_client::unit_address as mind_address;
 use brushwork_plant::ParamsError;
 use brushwork_plant::machine::StreamIndex;
 use brushwork_plant::presets;
@@ -98,7 +100,7 @@ impl Simulation {
         let line = SimulatedLine::Packets(Box::new(bus));
         let server = Server::spawn(line, options, &Endpoint::Channel).map_err(SimulationError::Server)?;
         let nodes = spec.units.iter().map(|unit| unit.node).collect();
-        let addresses = spec.units.iter().map(|unit| unit.address.into()).collect();
+        let addresses = spec.units.iter().map(|unit| unit_address(unit.address)).collect();
         Ok(Self {
             text: text.to_owned(),
             addresses,
@@ -106,7 +108,7 @@ impl Simulation {
             can_form: spec.can,
             nodes,
             server,
-            family: FamilyChoice::PacketSerial,
+            family: FamilyChoice::of(brushwork_mcp_client::MCP),
             script: Arc::default(),
         })
     }
@@ -117,7 +119,7 @@ impl Simulation {
         let line = SimulatedLine::MotionMinds(Box::new(spec.bus()?));
         let options = ServerOptions { seed: spec.seed, ..ServerOptions::default() };
         let server = Server::spawn(line, options, &Endpoint::Channel).map_err(SimulationError::Server)?;
-        let addresses = spec.addresses.iter().filter_map(|address| UnitAddress::new(address.get())).collect();
+        let addresses = spec.addresses.iter().filter_map(|address| mind_address(address.get())).collect();
         Ok(Self {
             text: text.to_owned(),
             addresses,
@@ -125,7 +127,7 @@ impl Simulation {
             can_form: None,
             nodes: Vec::new(),
             server,
-            family: FamilyChoice::MotionMind,
+            family: FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND),
             script: Arc::default(),
         })
     }
@@ -209,7 +211,7 @@ impl Simulation {
     pub fn unit_of(&self, id: u8) -> Option<usize> {
         match self.can_form {
             Some(_) => self.nodes.iter().position(|node| node.get() == id),
-            None => self.unit_at(UnitAddress::new(id)?),
+            None => self.unit_at(UnitAddress::new(self.family.family()?, id)?),
         }
     }
 
@@ -331,10 +333,17 @@ mod tests {
     #[test]
     fn hidden_settings_reach_the_unit_at_their_address() {
         let simulation = Simulation::start("mcp266,address=0x80,address=0x81").unwrap();
-        let address = UnitAddress::new(0x81).unwrap();
+        let address = UnitAddress::new(brushwork_mcp_client::MCP, 0x81).unwrap();
         HiddenSettings::set(&simulation, address, "unit.bridge_channels", 1).unwrap();
         assert_eq!(HiddenSettings::get(&simulation, address, "unit.bridge_channels"), Some(1));
-        assert_eq!(HiddenSettings::get(&simulation, UnitAddress::DEFAULT, "unit.bridge_channels"), Some(0));
+        assert_eq!(
+            HiddenSettings::get(
+                &simulation,
+                UnitAddress::factory(brushwork_mcp_client::MCP),
+                "unit.bridge_channels"
+            ),
+            Some(0)
+        );
         assert!(HiddenSettings::set(&simulation, address, "no.such", 1).is_err());
     }
 

@@ -1,6 +1,7 @@
 //! What kind of encoder a motor has, as the controller's settings say.
 
-use brushwork_link::settings::{PinMode, SettingValue};
+use brushwork_link::settings::SettingValue;
+use brushwork_mcp_client::settings::PinMode;
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_values::Motor;
 

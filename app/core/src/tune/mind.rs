@@ -1,5 +1,6 @@
 //! The tuner's axis on a Motion Mind over the device thread.
 
+use brushwork_motion_mind_client::MotionMindFacts;
 use std::time::Duration;
 
 use brushwork_link::device::JobContext;
@@ -92,7 +93,7 @@ impl MindCarrier for MindJobCarrier<'_, '_> {
     }
 
     fn protocol(&self) -> Protocol {
-        self.context.motion_mind().map_or(Protocol::Binary, |facts| facts.protocol)
+        self.context.facts().get::<MotionMindFacts>().map_or(Protocol::Binary, |facts| facts.protocol)
     }
 
     fn bits_per_second(&self) -> Option<u32> {

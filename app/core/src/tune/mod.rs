@@ -11,6 +11,7 @@ mod mind;
 pub mod tap;
 mod told;
 
+use brushwork_mcp_client::{layout_of, packet_address, packet_generation};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -102,7 +103,7 @@ fn needs_its_time(command: u8) -> bool {
 
 impl Carrier for JobCarrier<'_, '_> {
     fn transact(&mut self, command: u8, values: &[(&str, i64)]) -> Result<(Exchange, Values), AxisError> {
-        let address = self.context.address().packets().unwrap_or_default();
+        let address = packet_address(self.context.address()).unwrap_or_default();
         let packet = Packet::named(address, command, self.generation(), values)
             .map_err(|error| AxisError::Refused(error.to_string()))?;
         let values: Vec<i64> = packet.values.iter().filter_map(Value::as_int).collect();
@@ -122,7 +123,7 @@ impl Carrier for JobCarrier<'_, '_> {
     }
 
     fn generation(&self) -> Generation {
-        self.context.generation().layout()
+        layout_of(self.context.generation())
     }
 
     fn stream(&self) -> Option<usize> {
@@ -146,7 +147,7 @@ pub struct Target {
 }
 
 fn axis<'a>(context: &'a mut JobContext<'_>, target: Target, own_timeout: bool) -> Box<dyn Axis + 'a> {
-    if context.generation().packet_serial().is_none() {
+    if packet_generation(context.generation()).is_none() {
         return Box::new(MindAxis::new(MindJobCarrier::new(context)));
     }
     let stream = target.stream.filter(|_| own_timeout);

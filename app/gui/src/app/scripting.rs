@@ -4,8 +4,8 @@ use std::path::Path;
 
 use brushwork_link::Failure;
 use brushwork_link::device::{ArmScope, Request};
-use brushwork_link::diagnosis::Script;
-use brushwork_link::script::ScriptImage;
+use brushwork_mcp_client::diagnosis::Script;
+use brushwork_mcp_client::script::ScriptImage;
 use brushwork_script::image;
 use brushwork_script::mcl::compile;
 use egui::{Context, ViewportCommand};

@@ -1,7 +1,7 @@
 //! Firmware updates and the CAN bus, as far as the window's one place for change has to do with them.
 
 use brushwork_link::device::Request;
-use brushwork_link::firmware::RiskAccepted;
+use brushwork_link::device::RiskAccepted;
 use brushwork_link::transport::ConnectTarget;
 use egui::{Context, ViewportCommand};
 

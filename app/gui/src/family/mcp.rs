@@ -1,6 +1,7 @@
 //! MCP and RoboClaw: Ion Studio's screens, thirteen lamps, two motors (MCP manual 1.2).
 
 use brushwork_link::device::{ArmScope, Channel, Drive, Identity, StatusReport};
+use brushwork_mcp_client::{is_mcp, layout_of};
 use brushwork_mcp_wire::packet_serial::status::{Condition, Lamp};
 use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
@@ -109,7 +110,7 @@ fn lit(
         Lamp::M2Home => Some(1),
         _ => None,
     };
-    let by_pins = identity.map_or(homed.is_some(), Identity::is_mcp);
+    let by_pins = identity.map_or(homed.is_some(), is_mcp);
     if let Some(index) = index.filter(|_| by_pins) {
         return match homed {
             None => LampState::Unknown,
@@ -118,7 +119,7 @@ fn lit(
         };
     }
     let told =
-        identity.is_none_or(|identity| lamp.is_reported(identity.generation.layout(), identity.is_mcp()));
+        identity.is_none_or(|identity| lamp.is_reported(layout_of(identity.generation), is_mcp(identity)));
     let dark = if told { LampState::Ok } else { LampState::NotApplicable };
     report.lamp(lamp).map_or(dark, state_of)
 }

@@ -27,7 +27,7 @@ pub enum FamilyKind {
 impl FamilyKind {
     /// The family of a unit that answered.
     pub fn of_unit(identity: &Identity) -> Self {
-        if identity.is_motion_mind() { Self::MotionMind } else { Self::Mcp }
+        if brushwork_motion_mind_client::is_motion_mind(identity) { Self::MotionMind } else { Self::Mcp }
     }
 
     /// The family that a target names before anything has answered there, if it names one.

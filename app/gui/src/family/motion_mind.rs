@@ -2,6 +2,7 @@
 //! (Motion Mind manual, chapters 4 and 6).
 
 use brushwork_link::device::{ArmScope, Channel, Drive, Identity, StatusReport};
+use brushwork_motion_mind_client::MotionMindFacts;
 use brushwork_motion_mind_wire::Mode;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::tune::Method;
@@ -179,7 +180,7 @@ fn lit_by(report: &StatusReport, key: &str, identity: Option<&Identity>) -> Lamp
 
 /// Whether a sign means anything in the unit's mode: outside of mode 0 nobody misses an R/C pulse.
 fn means_something(key: &str, identity: Option<&Identity>) -> bool {
-    let facts = identity.and_then(|identity| identity.motion_mind);
+    let facts = identity.and_then(MotionMindFacts::of);
     key != BAD_RC || facts.is_none_or(|facts| facts.mode == Mode::RadioControl)
 }
 
@@ -251,7 +252,7 @@ const FIGURES: [Figures; 3] = [
 mod tests {
     use std::time::Duration;
 
-    use brushwork_link::device::Conditions;
+    use brushwork_mcp_wire::packet_serial::status::Conditions;
     use brushwork_motion_mind_wire::{STATUS_BITS, status as bit};
 
     use super::*;
@@ -262,7 +263,7 @@ mod tests {
             at: Duration::ZERO,
             word: word.into(),
             conditions: Conditions::default(),
-            signs: brushwork_link::device::MOTION_MIND_SIGNS,
+            signs: brushwork_motion_mind_client::SIGNS,
             unknown_bits: 0,
             running_ticks: None,
         }

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use brushwork_link::settings::{ReferenceForm, ReferenceRow, reference};
+use brushwork_mcp_client::settings::{ReferenceForm, ReferenceRow, reference};
 use brushwork_mcp_wire::packet_serial::{COMMANDS, reference as protocol};
 use egui::{Atom, Button, Grid, Label, Panel, RichText, Role, ScrollArea, Ui, WidgetInfo};
 

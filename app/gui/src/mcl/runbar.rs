@@ -1,8 +1,8 @@
 //! The arm switch and what the script does: starting a script can move motors, so it needs arming like any other motion.
 
 use brushwork_link::device::ArmScope;
-use brushwork_link::diagnosis::Script;
 use brushwork_link::transport::Stream;
+use brushwork_mcp_client::diagnosis::Script;
 use brushwork_plant::world::ScriptRun;
 use egui::{ComboBox, Label, ProgressBar, RichText, Ui};
 

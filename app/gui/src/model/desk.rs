@@ -4,15 +4,16 @@
 //! Several desks are open at once; one is in front. Switching swaps whole desks, so nothing of one controller can
 //! end up in another.
 
+use brushwork_mcp_client::is_mcp;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
 use brushwork_link::device::{ArmScope, Channel, Event, PollRate};
-use brushwork_link::diagnosis::{Evidence, Measured, Script};
-use brushwork_link::script::MIN_AUTORUN;
 use brushwork_link::settings::SettingValue;
 use brushwork_link::transport::ConnectTarget;
+use brushwork_mcp_client::diagnosis::{Evidence, Measured, Script};
+use brushwork_mcp_client::script::MIN_AUTORUN;
 use brushwork_plant::world::ScriptRun;
 use brushwork_plant::world::WorldView;
 
@@ -365,7 +366,7 @@ impl Desk {
 
     /// Brings the home lamps of an MCP up to date with its pins.
     fn update_homed(&mut self) {
-        let Some(identity) = self.link.identity().filter(|identity| identity.is_mcp()) else { return };
+        let Some(identity) = self.link.identity().filter(|identity| is_mcp(identity)) else { return };
         let (address, homed) = (identity.address, self.watch.homed());
         self.link.set_homed(homed);
         if let Some(homed) = homed {

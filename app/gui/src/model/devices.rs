@@ -3,8 +3,8 @@
 use super::desk::{Desk, DeskId, place_of};
 use super::simulated::{FIRST, Simulated};
 use brushwork_link::Failure;
-use brushwork_link::device::{Addresses, FamilyChoice};
-use brushwork_link::transport::target::{DEFAULT_BAUD, MOTION_MIND_BAUD};
+use brushwork_link::FamilyChoice;
+use brushwork_link::device::Addresses;
 use brushwork_link::transport::{ConnectTarget, PortInfo, TargetError};
 
 /// The simulated controller that is always there.
@@ -55,7 +55,7 @@ impl Default for Devices {
             listing_failure: None,
             choice: Choice::default(),
             typed: String::new(),
-            baud: DEFAULT_BAUD,
+            baud: FamilyChoice::AUTO.default_baud(),
             addresses: Addresses::default(),
             family: FamilyChoice::default(),
             simulated: Simulated::default(),
@@ -173,9 +173,8 @@ impl Devices {
 
     /// Looks for units of a family from now on. A rate that nobody has changed becomes that of the family.
     pub fn look_for(&mut self, family: FamilyChoice) {
-        let usual = |family| if family == FamilyChoice::MotionMind { MOTION_MIND_BAUD } else { DEFAULT_BAUD };
-        if self.baud == usual(self.family) {
-            self.baud = usual(family);
+        if self.baud == self.family.default_baud() {
+            self.baud = family.default_baud();
         }
         self.family = family;
     }
@@ -184,7 +183,10 @@ impl Devices {
     pub fn wants_motion_minds(&self) -> bool {
         match &self.choice {
             Choice::Simulated => self.simulated.is_motion_mind(),
-            _ => self.family_matters() && self.family == FamilyChoice::MotionMind,
+            _ => {
+                self.family_matters()
+                    && self.family == FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND)
+            }
         }
     }
 
@@ -216,13 +218,13 @@ impl Devices {
                 if let ConnectTarget::Serial { baud, .. } = &mut target
                     && self.baud_matters()
                     // The rate of a family that was typed behind the path is that of the family, unless another is chosen.
-                    && (self.baud != DEFAULT_BAUD || !self.typed.contains("family="))
+                    && (self.baud != FamilyChoice::AUTO.default_baud() || !self.typed.contains("family="))
                 {
                     *baud = self.baud;
                 }
                 // What was typed behind the path goes before what is chosen below it.
                 if let ConnectTarget::Serial { family, .. } | ConnectTarget::Tcp { family, .. } = &mut target
-                    && *family == FamilyChoice::Auto
+                    && *family == FamilyChoice::AUTO
                 {
                     *family = self.family;
                 }
@@ -253,7 +255,8 @@ mod tests {
         };
         assert_eq!(baud_of("/dev/ttyUSB7"), 115_200);
         assert_eq!(baud_of("/dev/ttyUSB7,baud=9600"), 9_600);
-        let motion_mind = Devices { baud: DEFAULT_BAUD, ..devices("COM3,family=motion-mind") };
+        let motion_mind =
+            Devices { baud: FamilyChoice::AUTO.default_baud(), ..devices("COM3,family=motion-mind") };
         assert!(matches!(motion_mind.target(), Ok(ConnectTarget::Serial { baud: 19_200, .. })));
         assert!(!devices("tcp:127.0.0.1:4000").baud_matters());
         assert!(devices("  ").target().is_err());
@@ -262,12 +265,12 @@ mod tests {
     #[test]
     fn the_rate_follows_the_family_until_somebody_says_otherwise() {
         let mut devices = Devices::default();
-        devices.look_for(FamilyChoice::MotionMind);
+        devices.look_for(FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND));
         assert_eq!(devices.baud, 19_200);
-        devices.look_for(FamilyChoice::Auto);
-        assert_eq!(devices.baud, DEFAULT_BAUD);
+        devices.look_for(FamilyChoice::AUTO);
+        assert_eq!(devices.baud, FamilyChoice::AUTO.default_baud());
         devices.baud = 9_600;
-        devices.look_for(FamilyChoice::MotionMind);
+        devices.look_for(FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND));
         assert_eq!(devices.baud, 9_600, "switch 5 is on");
     }
 

@@ -6,9 +6,9 @@ use std::time::Duration;
 
 use brushwork_link::UnitAddress;
 use brushwork_link::device::{Event, FnJob, Identity, Request};
-use brushwork_link::firmware::{Progress, RESUME_NOTE, Sent, risks, suit};
 use brushwork_link::settings::{Act, Profile, ReadReport, Subject, diff, read_all};
 use brushwork_link::transport::Stream;
+use brushwork_mcp_client::firmware::{Progress, RESUME_NOTE, Sent, risks, suit};
 use brushwork_mcp_wire::loader::{Image, SimulatedImage};
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::models::Model;
@@ -173,8 +173,8 @@ impl Firmware {
         let bytes = self.file()?;
         let image = suit(bytes, identity, model, stream)
             .map_err(|error| format!("The file is not sent: {error}."))?;
-        let Some(model) = model else { return Err("The controller's model is not known.".to_owned()) };
-        let (request, kept) = back_up(identity, Subject::new(model, identity.generation), unit, store)?;
+        let subject = identity.subject().ok_or("The controller's model is not known.")?;
+        let (request, kept) = back_up(identity, subject, unit, store)?;
         self.after = None;
         self.stage = Stage::BackingUp { image, kept };
         Ok(request)
@@ -297,8 +297,7 @@ impl Firmware {
         if after.reading.is_some() || after.compared.is_some() {
             return Next::Nothing;
         }
-        let Some(model) = models::identify(&identity.version_text) else { return Next::Nothing };
-        let subject = Subject::new(model, identity.generation);
+        let Some(subject) = identity.subject() else { return Next::Nothing };
         let (sender, reading) = bounded(1);
         after.reading = Some(reading);
         Next::Ask(Request::Job(FnJob::boxed(

@@ -4,10 +4,12 @@
 //! Times are counted from the connection. The list survives the end of a link, so that one can read why it ended; it is
 //! bounded and can be cleared.
 
+use brushwork_motion_mind_client::is_motion_mind;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::Duration;
 
-use brushwork_link::device::{Condition, DisarmReason, Event, Identity, StatusReport, StopReport};
+use brushwork_link::device::{DisarmReason, Event, Identity, StatusReport, StopReport};
+use brushwork_mcp_wire::packet_serial::status::Condition;
 
 use crate::family;
 use crate::family::{Family, FamilyKind, Sign, mcp_sign};
@@ -243,7 +245,7 @@ impl History {
         let Some(unit) = self.units.get_mut(&address) else { return };
         let Some(report) = &unit.report else { return };
         let family = unit.family();
-        let of_mind = unit.identity.as_ref().filter(|identity| identity.is_motion_mind());
+        let of_mind = unit.identity.as_ref().filter(|identity| is_motion_mind(identity));
         for (info, state) in family.lamps().iter().zip(family.lit(report, of_mind, unit.homed)) {
             let known = unit.lamps.entry(info.short).or_insert((state, since));
             if known.0 != state {

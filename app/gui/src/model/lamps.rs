@@ -54,13 +54,17 @@ mod tests {
 
     fn identity(model: &'static str, generation: Generation) -> Identity {
         Identity {
+            family: brushwork_mcp_client::MCP,
             address: 0x80,
-            family: "packet serial",
+            protocol: "packet serial",
             version_text: model.to_owned(),
             model: Some(model),
             firmware: "1.0.0".to_owned(),
-            generation: generation.into(),
-            motion_mind: None,
+            generation: brushwork_mcp_client::firmware_of(generation),
+            facts: brushwork_link::device::Facts::new(brushwork_mcp_client::McpFacts {
+                generation: generation,
+                is_node: false,
+            }),
             also_answers: Vec::new(),
             simulated: true,
             port: "sim:mcp266".to_owned(),

@@ -161,7 +161,9 @@ impl LinkView {
         let mut said =
             format!("Connected to {} at {}, {}", identity.title(), identity.port, identity.named_place());
         said += &match identity.firmware.as_str() {
-            _ if identity.is_motion_mind() => format!(", {}.", identity.generation),
+            _ if brushwork_motion_mind_client::is_motion_mind(&identity) => {
+                format!(", {}.", identity.generation)
+            }
             "" => format!(" ({}).", identity.generation),
             firmware => format!(", firmware {firmware} ({}).", identity.generation),
         };

@@ -8,11 +8,10 @@ use std::time::Duration;
 use brushwork_link::Failure;
 use brushwork_link::device::{Event, FnJob, Identity, JobEnding, Request};
 use brushwork_link::settings::{
-    Keeper, Kind, Known, ReadReport, Row, RowState, SettingValue, SettingsImage, SettingsTable, Subject,
-    WriteError, WriteOptions, WriteReport, read_some, write_kept_knowing,
+    Keeper, Kind, Known, ReadReport, Row, RowState, SettingValue, SettingsImage, SettingsTable, WriteError,
+    WriteOptions, WriteReport, read_some, write_kept_knowing,
 };
 use brushwork_link::transport::Stream;
-use brushwork_mcp_wire::models;
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_values::Motor;
 use crossbeam_channel::{Receiver, bounded};
@@ -258,8 +257,7 @@ impl LoopSettings {
         if self.running.is_some() {
             return None;
         }
-        let model = models::identify(&identity.version_text)?;
-        let table = SettingsTable::new(Subject::new(model, identity.generation));
+        let table = SettingsTable::new(identity.subject()?);
         self.table = Some(table.clone());
         let of_encoders = table.rows().iter().map(|row| row.key.clone()).filter(|key| encoder::is_asked(key));
         let keys = [keys(VELOCITY), keys(POSITION), of_encoders.collect()].concat();

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use brushwork_link::Wire as _;
 use brushwork_link::device::{Event, FnJob, JobContext, Request};
-use brushwork_link::script::{DOWNLOAD_JOB, Downloaded, ScriptImage, Verified, download};
+use brushwork_mcp_client::script::{DOWNLOAD_JOB, Downloaded, ScriptImage, Verified, download};
 
 use super::link::Effect;
 use super::message::Gravity;

@@ -7,9 +7,9 @@
 use std::time::Duration;
 
 use brushwork_link::device::{Event, FnJob, Identity, PinSignal, Request, Sample};
-use brushwork_link::diagnosis::{self, PinEnd, Script};
-use brushwork_link::settings::{SettingsImage, SettingsTable, Subject, read_some};
-use brushwork_mcp_wire::models;
+use brushwork_link::settings::{SettingsImage, SettingsTable, read_some};
+use brushwork_mcp_client::diagnosis;
+use brushwork_mcp_client::diagnosis::{PinEnd, Script};
 use crossbeam_channel::{Receiver, bounded};
 
 /// What the job is called while it runs.
@@ -67,9 +67,7 @@ impl Watch {
             return None;
         }
         self.wants_reading = false;
-        let listed = identity.model.and_then(models::lookup);
-        let model = listed.or_else(|| models::identify(&identity.version_text))?;
-        let table = SettingsTable::new(Subject::new(model, identity.generation));
+        let table = SettingsTable::new(identity.subject()?);
         let keys = diagnosis::keys(&table);
         let (sender, result) = bounded(1);
         self.running = Some(result);

@@ -1,6 +1,7 @@
 //! The firmware window: what is installed and known, an update from a file with its risks, and what became of it.
 
 use brushwork_link::device::Identity;
+use brushwork_mcp_client::layout_of;
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::models::MODELS;
 use brushwork_mcp_wire::packet_serial::known::{generation_text, quirks};
@@ -78,13 +79,13 @@ fn installed_ui(ui: &mut Ui, identity: &Identity) {
     ui.label(format!(
         "{}. {}",
         capital(&identity.generation.to_string()),
-        generation_text(identity.generation.layout())
+        generation_text(layout_of(identity.generation))
     ));
     ui.add_space(8.0);
     heading_ui(ui, "What is known about it");
     let family = models::identify(&identity.version_text).map(|model| model.family);
     Grid::new("known firmware").num_columns(2).striped(true).spacing(vec2(12.0, 4.0)).show(ui, |ui| {
-        for quirk in quirks(family, identity.generation.layout(), &identity.firmware) {
+        for quirk in quirks(family, layout_of(identity.generation), &identity.firmware) {
             ui.label(RichText::new(quirk.topic).strong());
             let text = ui.add(egui::Label::new(quirk.text).wrap());
             text.on_hover_text(format!("From: {}", quirk.source));

@@ -1,6 +1,7 @@
 //! The device list: the simulated controller, the serial ports as they come and go, and a field for any other path.
 
-use brushwork_link::device::{Addresses, FamilyChoice, Identity};
+use brushwork_link::FamilyChoice;
+use brushwork_link::device::{Addresses, Identity};
 use brushwork_link::transport::PortInfo;
 use brushwork_mcp_wire::packet_serial::Address;
 use egui::{
@@ -347,7 +348,7 @@ const MODES: [&str; 8] =
 fn family_ui(ui: &mut Ui, chosen: &mut FamilyChoice) {
     let combo = ComboBox::from_id_salt("family").width(168.0).selected_text(chosen.label());
     let response = combo.show_ui(ui, |ui| {
-        for family in FamilyChoice::ALL {
+        for family in FamilyChoice::all() {
             ui.selectable_value(chosen, family, family.label());
         }
     });

@@ -1,6 +1,7 @@
 //! One raw command of the table: its arguments, the bytes it will send, and what came back.
 
-use brushwork_link::exchange::packet::Permit;
+use brushwork_link::exchange::Permit;
+use brushwork_mcp_client::{packet_address, packet_generation};
 use brushwork_mcp_wire::packet_serial::{Address, Effect, Generation, hex};
 use brushwork_values::Field;
 use egui::{Grid, Label, RichText, ScrollArea, TextEdit, Ui, vec2};
@@ -46,7 +47,7 @@ pub fn composer_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 
 fn unit(desk: &Desk) -> Option<(Address, Generation)> {
     let identity = desk.link.identity()?;
-    Some((identity.unit_address().packets()?, identity.generation.packet_serial()?))
+    Some((packet_address(identity.unit_address())?, packet_generation(identity.generation)?))
 }
 
 /// What may go out: as the device thread will judge too.

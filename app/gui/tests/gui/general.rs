@@ -464,12 +464,11 @@ fn a_faulty_profile_is_refused_and_one_of_another_controller_is_upgraded_when_th
     assert!(bench.sees_part("Reading the profile"));
     let path = folder.path().join("other.json");
     let model = brushwork_mcp_wire::models::lookup("mcp236").unwrap();
-    let subject =
-        brushwork_link::settings::Subject::new(model, brushwork_mcp_wire::packet_serial::Generation::Gen2);
+    let subject = brushwork_mcp_client::subject(model, brushwork_mcp_wire::packet_serial::Generation::Gen2);
     let other = brushwork_link::settings::Profile {
         subject,
         firmware: "MCP236 2x30A v1.0.0".to_owned(),
-        address: brushwork_link::UnitAddress::DEFAULT,
+        address: brushwork_link::UnitAddress::factory(brushwork_mcp_client::MCP),
         date: "2025-01-01T00:00:00Z".to_owned(),
         unit: String::new(),
         note: String::new(),

@@ -4,9 +4,7 @@
 use crate::support::bench::Bench;
 use brushwork_core::keep::UnitId;
 use brushwork_gui::model::general::Sheet;
-use brushwork_link::FirmwareGeneration;
-use brushwork_link::settings::{Act, Profile, SettingValue, SettingsTable, Subject};
-use brushwork_mcp_wire::models::MOTION_MIND_3;
+use brushwork_link::settings::{Act, Profile, SettingValue, SettingsTable};
 use brushwork_motion_mind_sim::{Mode, MotionMindConfig};
 use brushwork_motion_mind_wire::register_named;
 use brushwork_plant::machine::Machine as _;
@@ -92,13 +90,13 @@ fn a_profile_is_saved_opened_compared_and_taken_over() {
 #[test]
 fn a_profile_of_another_family_is_refused_and_one_of_another_revision_is_taken_over() {
     let folder = tempfile::tempdir().unwrap();
-    let subject = Subject::new(&MOTION_MIND_3, FirmwareGeneration::MotionMind { revision: 7 });
+    let subject = brushwork_motion_mind_client::subject(7);
     let mut settings = SettingsTable::new(subject).default_image();
     settings.set(PTERM, SettingValue::Int(4_321));
     let profile = Profile {
         subject,
         firmware: "revision 7".to_owned(),
-        address: brushwork_link::UnitAddress::new(3).expect("an address"),
+        address: brushwork_motion_mind_client::unit_address(3).expect("an address"),
         date: "2025-01-01T00:00:00Z".to_owned(),
         unit: String::new(),
         note: String::new(),
@@ -117,11 +115,11 @@ fn a_profile_of_another_family_is_refused_and_one_of_another_revision_is_taken_o
     assert_eq!(bench.model().front.general.sheet(), Some(&Sheet::Compare));
     assert!(bench.sees_part("6000 -> 4321"));
 
-    let mcp = Subject::new(
+    let mcp = brushwork_mcp_client::subject(
         brushwork_mcp_wire::models::lookup("mcp236").unwrap(),
         brushwork_mcp_wire::packet_serial::Generation::Gen2,
     );
-    let address = brushwork_link::UnitAddress::DEFAULT;
+    let address = brushwork_link::UnitAddress::factory(brushwork_mcp_client::MCP);
     let foreign =
         Profile { subject: mcp, address, settings: SettingsTable::new(mcp).default_image(), ..profile };
     let path = folder.path().join("mcp.json");

@@ -12,10 +12,11 @@ use brushwork_gui::model::screen::Screen;
 use brushwork_gui::model::{Model, Phase};
 use brushwork_gui::tune::Loop;
 use brushwork_gui::tune::looked_at::Kind;
-use brushwork_link::device::{ArmScope, Channel, Condition, Event, Identity, Sample, StatusReport};
+use brushwork_link::device::{ArmScope, Channel, Event, Identity, Sample, StatusReport};
 use brushwork_link::exchange::LinkStatistics;
 use brushwork_link::transport::Stream;
 use brushwork_mcp_wire::packet_serial::Generation;
+use brushwork_mcp_wire::packet_serial::status::Condition;
 use brushwork_values::Motor;
 use egui::Theme;
 
@@ -32,13 +33,17 @@ fn fed(model: &mut Model, conditions: &[Condition]) {
     model.front.target = Some("sim:mcp266".to_owned());
     model.front.phase = Phase::Open { target: "sim:mcp266".to_owned() };
     let identity = Identity {
+        family: brushwork_mcp_client::MCP,
         address: 0x80,
-        family: "packet serial",
+        protocol: "packet serial",
         version_text: "MCP266 2x60A v1.0.0".to_owned(),
         model: Some("MCP266"),
         firmware: "1.0.0".to_owned(),
-        generation: Generation::Gen1.into(),
-        motion_mind: None,
+        generation: brushwork_mcp_client::firmware_of(Generation::Gen1),
+        facts: brushwork_link::device::Facts::new(brushwork_mcp_client::McpFacts {
+            generation: Generation::Gen1,
+            is_node: false,
+        }),
         also_answers: vec![0x81],
         simulated: true,
         port: "sim:mcp266".to_owned(),

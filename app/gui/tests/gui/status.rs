@@ -2,7 +2,7 @@
 
 use crate::support::bench::Bench;
 use crate::support::causes;
-use brushwork_link::diagnosis::diagnose;
+use brushwork_mcp_client::diagnosis::diagnose;
 use brushwork_mcp_sim::controller::{Controller, ControllerConfig};
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::packet_serial::Generation;

@@ -1,7 +1,6 @@
 //! What the device thread asks of a controller, whatever its family.
 //!
-//! The thread knows when and whether; a family knows which bytes. MCP and RoboClaw (packet serial) are the first; a
-//! family with other bytes, one motor and registers fits behind the same trait.
+//! The thread knows when and whether; a family knows which bytes.
 
 pub use super::described::Described;
 
@@ -12,8 +11,7 @@ use super::options::{Addresses, DeviceOptions};
 use super::signals::Guard;
 use super::status::StatusReport;
 use super::stop::{StopBytes, UnitStop};
-use crate::exchange::packet::Permit;
-use crate::exchange::{Exchange, ExchangeError, RETRIES, Reply, Watch};
+use crate::exchange::{Exchange, ExchangeError, Permit, RETRIES, Reply, Watch};
 use crate::failure::Failure;
 use crate::transport::Stream;
 use brushwork_values::{Motor, Value};
@@ -146,14 +144,23 @@ pub trait Controller: Send {
     fn describe_traffic(&self, request: &[u8], reply: Option<&[u8]>) -> Described;
 }
 
-/// A protocol family: how its units are found.
-pub trait Family: Send {
+/// How the units of a family are found on a line, and stopped before they are.
+pub trait Search: Send {
     /// Finds the units of a link. None found is a failure that says what came back.
     fn discover(
         &mut self,
         line: &mut Line<'_>,
         options: &DeviceOptions,
     ) -> Result<Vec<Box<dyn Controller>>, DiscoverError>;
+
+    /// The same on a line that is rather another family's, which has answered nothing: by few and harmless questions.
+    fn discover_gently(
+        &mut self,
+        line: &mut Line<'_>,
+        options: &DeviceOptions,
+    ) -> Result<Vec<Box<dyn Controller>>, DiscoverError> {
+        self.discover(line, options)
+    }
 
     /// The bytes that stop every unit that may be there, for a Stop before any was found; with [`Addresses::These`] those alone.
     fn stop_bytes(&self, addresses: Addresses) -> StopBytes;

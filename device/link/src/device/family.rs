@@ -1,109 +1,96 @@
-//! Whichever protocol family is on a link: as the user says, or found out.
+//! Whichever family is on a link: as the user says, or found out.
 
-use super::controller::{Controller, DiscoverError, Family, Line};
-use super::family_choice::FamilyChoice;
+use super::controller::{Controller, DiscoverError, Line, Search};
 use super::identity::Identity;
-use super::mcp::PacketSerial;
-use super::motion_mind::MotionMinds;
 use super::options::{Addresses, DeviceOptions};
 use super::stop::StopBytes;
 use crate::failure::Failure;
-use brushwork_mcp_wire::packet_serial::Address;
+use crate::family::{FamilyChoice, FamilyRef, families};
 
 /// Whichever family the link turns out to have.
-#[derive(Debug, Default)]
 pub struct AnyFamily {
-    found: Option<Found>,
+    searches: Vec<(FamilyRef, Box<dyn Search>)>,
+    /// Which of them has found units, or was chosen.
+    found: Option<usize>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Found {
-    Packets,
-    MotionMinds,
+impl Default for AnyFamily {
+    fn default() -> Self {
+        let searches = families().iter().map(|family| (*family, family.search())).collect();
+        Self { searches, found: None }
+    }
 }
 
-impl Family for AnyFamily {
+impl Search for AnyFamily {
     fn discover(
         &mut self,
         line: &mut Line<'_>,
         options: &DeviceOptions,
     ) -> Result<Vec<Box<dyn Controller>>, DiscoverError> {
-        let packets = match (options.family, options.addresses) {
-            (FamilyChoice::PacketSerial, _) => true,
-            (FamilyChoice::MotionMind, _) => false,
-            // No number is an address of both families.
-            (FamilyChoice::Auto, Addresses::Only(number)) => is_packet_address(number),
-            (FamilyChoice::Auto, Addresses::These(set)) => set.iter().all(is_packet_address),
-            (FamilyChoice::Auto, Addresses::Scan | Addresses::Factory) => {
-                return self.find_out(line, options);
-            }
+        let candidates = self.candidates(options.family, options.addresses);
+        self.found = match candidates[..] {
+            [only] => Some(only),
+            _ => None,
         };
-        self.found = Some(if packets { Found::Packets } else { Found::MotionMinds });
-        if packets {
-            PacketSerial.discover(line, options)
-        } else {
-            MotionMinds::new().discover(line, options)
+        let mut nothing: Option<Failure> = None;
+        for (turn, index) in candidates.iter().copied().enumerate() {
+            let search = &mut self.searches[index].1;
+            let found = match turn {
+                0 => search.discover(line, options),
+                _ => search.discover_gently(line, options),
+            };
+            match found {
+                // The first says most of what came back.
+                Err(DiscoverError::NothingThere(failure)) => {
+                    nothing.get_or_insert(failure);
+                }
+                other => {
+                    self.found = Some(index);
+                    return other;
+                }
+            }
         }
+        let nothing = nothing.unwrap_or_else(|| {
+            Failure::new(
+                "find a controller",
+                line.exchange().port(),
+                "this program has no family of controllers",
+                "",
+            )
+        });
+        Err(DiscoverError::NothingThere(self.with_the_others(nothing, &candidates)))
     }
 
     fn stop_bytes(&self, addresses: Addresses) -> StopBytes {
-        let packets = || PacketSerial.stop_bytes(addresses);
-        let motion_minds = || MotionMinds::new().stop_bytes(addresses);
-        match self.found {
-            Some(Found::Packets) => packets(),
-            Some(Found::MotionMinds) => motion_minds(),
-            None => packets().with(motion_minds()),
-        }
+        let all = self.searches.iter().enumerate();
+        let told = all.filter(|(index, _)| self.found.is_none_or(|found| found == *index));
+        told.map(|(_, (_, search))| search.stop_bytes(addresses)).reduce(StopBytes::with).unwrap_or_default()
     }
 
     fn stop_all_bytes(&self, units: &[&Identity]) -> Option<StopBytes> {
-        match self.found {
-            Some(Found::MotionMinds) => MotionMinds::new().stop_all_bytes(units),
-            _ => None,
-        }
+        self.searches.get(self.found?)?.1.stop_all_bytes(units)
     }
 }
 
 impl AnyFamily {
-    /// MCP and RoboClaw first; where nothing of packet serial comes back, a Motion Mind at its factory address in both protocols. All 98
-    /// addresses are asked of a bus that is known to have one: of a silent port that would take seconds for nothing.
-    fn find_out(
-        &mut self,
-        line: &mut Line<'_>,
-        options: &DeviceOptions,
-    ) -> Result<Vec<Box<dyn Controller>>, DiscoverError> {
-        let nothing = match PacketSerial.discover(line, options) {
-            Err(DiscoverError::NothingThere(nothing)) => nothing,
-            other => {
-                self.found = Some(Found::Packets);
-                return other;
-            }
+    /// The families to look for, in turn: the one that is chosen, or those that have the addresses that are asked for. A number that no family has
+    /// is left to the first to say so.
+    fn candidates(&self, choice: FamilyChoice, addresses: Addresses) -> Vec<usize> {
+        let fits = |family: FamilyRef| match (choice.family(), addresses) {
+            (Some(chosen), _) => family == chosen,
+            (None, Addresses::Only(number)) => family.has_address(number),
+            (None, Addresses::These(set)) => set.iter().all(|number| family.has_address(number)),
+            (None, Addresses::Scan | Addresses::Factory) => true,
         };
-        let mut found = MotionMinds::new().at_the_factory_address(line, options);
-        if found.is_ok() && options.addresses == Addresses::Scan {
-            found = MotionMinds::new().discover(line, options);
-        }
-        match found {
-            Ok(units) => {
-                self.found = Some(Found::MotionMinds);
-                Ok(units)
-            }
-            Err(DiscoverError::NothingThere(_)) => Err(DiscoverError::NothingThere(neither(nothing))),
-            Err(error) => Err(error),
-        }
+        let all = self.searches.iter().enumerate();
+        let fitting: Vec<_> = all.filter(|(_, (family, _))| fits(*family)).map(|(index, _)| index).collect();
+        if fitting.is_empty() && !self.searches.is_empty() { vec![0] } else { fitting }
     }
-}
 
-/// Whether a number that is asked for without a family is one of packet serial.
-fn is_packet_address(number: u8) -> bool {
-    Address::new(number).is_some() || number > 98
-}
-
-/// The failure of packet serial, with what else was tried.
-fn neither(nothing: Failure) -> Failure {
-    let mend = format!(
-        "{}. For a Motion Mind at another address than 1 choose its family (family=motion-mind), so that all are asked",
-        nothing.mend
-    );
-    Failure { mend, ..nothing }
+    /// The failure of the first family, with where the others may be found all the same.
+    fn with_the_others(&self, nothing: Failure, candidates: &[usize]) -> Failure {
+        let others = candidates.iter().skip(1).filter_map(|index| self.searches[*index].0.may_be_elsewhere());
+        let mend = others.fold(nothing.mend, |mend, other| format!("{mend}. {other}"));
+        Failure { mend, ..nothing }
+    }
 }

@@ -3,21 +3,15 @@
 use super::channel::Channel;
 use super::described::Described;
 use super::drive::Drive;
-use super::mcp::{describe_sent as describe_packets, preview as preview_packets};
-use super::motion_mind::{
-    MotionMindFacts, SIGNS, describe_sent as describe_commands, objection, preview as preview_command,
-};
 use super::status::Sign;
+use crate::family::{FamilyRef, families};
 use crate::settings::Subject;
 use crate::unit::{FirmwareGeneration, UnitAddress};
-use brushwork_mcp_wire::models;
-use brushwork_motion_mind_wire::Mode;
-use serde::Serialize;
-
-/// The family's name of units on a CAN bus.
-pub const CANOPEN: &str = "CANopen";
-/// The family's name of Motion Minds.
-pub const MOTION_MIND: &str = "Motion Mind";
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+use std::any::Any;
+use std::fmt;
+use std::sync::Arc;
 
 /// What a unit has and takes. Screens and commands for what it lacks are not offered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -52,61 +46,93 @@ pub struct Capabilities {
     pub registers: bool,
 }
 
-impl Capabilities {
-    /// MCP and RoboClaw. What differs between those two, their models and generations tell.
-    pub const PACKET_SERIAL: Self = Self {
-        motors: 2,
-        duty: true,
-        speed: true,
-        position: true,
-        ramps: true,
-        queued_moves: true,
-        scripts: true,
-        estop: true,
-        pins: true,
-        batteries: true,
-        serial_timeout: true,
-        firmware_loader: true,
-        reload: true,
-        registers: false,
-    };
+/// What a family knows of one unit beyond what all units have, and what follows from it.
+pub trait UnitFacts: Any + fmt::Debug + Send + Sync {
+    /// What the unit has and takes now.
+    fn capabilities(&self) -> Capabilities;
 
-    /// A Motion Mind in a mode that serial commands do not move.
-    pub const MOTION_MIND: Self = Self {
-        motors: 1,
-        duty: false,
-        speed: false,
-        position: false,
-        ramps: false,
-        queued_moves: false,
-        scripts: false,
-        estop: false,
-        pins: false,
-        batteries: false,
-        serial_timeout: false,
-        firmware_loader: false,
-        reload: false,
-        registers: true,
-    };
+    /// The signals that it can tell, in the order in which they are shown.
+    fn channels(&self) -> &'static [Channel];
+
+    /// The bits of its status word, in a family with a status of its own.
+    fn signs(&self) -> &'static [Sign] {
+        &[]
+    }
+
+    /// The requests that a write holds, in words.
+    fn describe_sent(&self, bytes: &[u8]) -> Described;
+
+    /// Why it does not take a drive as it is now, as a clause; `None` where it does, or where only asking tells.
+    fn objection(&self, _drive: &Drive) -> Option<String> {
+        None
+    }
+
+    /// The bytes of a drive, command by command, as they would be sent to this address.
+    fn preview(&self, drive: &Drive, address: u8) -> Vec<Vec<u8>>;
+
+    /// Where a unit of this address is on its bus: "0x80", "node 3", or "unit 1".
+    fn place(&self, address: u8) -> String;
+
+    /// The same with its kind: "address 0x80", "node 3", or "unit 1".
+    fn named_place(&self, address: u8) -> String {
+        self.place(address)
+    }
+
+    /// Whether it is a node of a bus that has ids of its own.
+    fn is_node(&self) -> bool {
+        false
+    }
+
+    /// What stands in JSON under the family's [`Family::facts_key`](crate::family::Family::facts_key).
+    fn json(&self) -> serde_json::Value {
+        serde_json::Value::Null
+    }
 }
 
+/// The facts of one unit, shared by all who hold its identity.
+#[derive(Clone, Debug)]
+pub struct Facts(Arc<dyn UnitFacts>);
+
+impl Facts {
+    /// Shares them.
+    pub fn new(facts: impl UnitFacts) -> Self {
+        Self(Arc::new(facts))
+    }
+
+    /// As the family's own type; `None` for a unit of another family.
+    #[must_use]
+    pub fn get<T: UnitFacts>(&self) -> Option<&T> {
+        (&*self.0 as &dyn Any).downcast_ref()
+    }
+}
+
+impl PartialEq for Facts {
+    fn eq(&self, other: &Self) -> bool {
+        format!("{self:?}") == format!("{other:?}")
+    }
+}
+
+impl Eq for Facts {}
+
 /// A unit that answered, and what was found out about it.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
-    /// Its address on the bus; on a CAN bus its node id.
+    /// Its family.
+    pub family: FamilyRef,
+    /// Its number on the bus: its address, or on a CAN bus its node id.
     pub address: u8,
-    /// Protocol family: "packet serial", "CANopen" or "Motion Mind".
-    pub family: &'static str,
+    /// How it is spoken to: "packet serial", "CANopen" or "Motion Mind".
+    pub protocol: &'static str,
     /// Its version text as it came: "MCP266 2x60A v1.0.0".
     pub version_text: String,
     /// The model, "MCP266", where the text names one that is known.
     pub model: Option<&'static str>,
     /// The firmware version: "1.0.0"; empty if the text has none.
     pub firmware: String,
-    /// The firmware's generation, which decides the widths of packets; the REVISION of a Motion Mind.
+    /// What decides which commands and settings it has.
     pub generation: FirmwareGeneration,
-    /// What the switches of a Motion Mind say; `None` for other families.
-    pub motion_mind: Option<MotionMindFacts>,
+    /// What its family knows of it.
+    pub facts: Facts,
     /// The other addresses it answers to, as over USB.
     pub also_answers: Vec<u8>,
     /// Whether it is simulated in this program.
@@ -117,87 +143,84 @@ pub struct Identity {
     pub notes: Vec<String>,
 }
 
+/// Its members by name. Each family of the program that has facts to tell has a member for them, null in the units of others, so that all units
+/// have the same members.
+impl Serialize for Identity {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("address", &self.address)?;
+        map.serialize_entry("family", self.protocol)?;
+        map.serialize_entry("version_text", &self.version_text)?;
+        map.serialize_entry("model", &self.model)?;
+        map.serialize_entry("firmware", &self.firmware)?;
+        map.serialize_entry("generation", &self.generation)?;
+        for family in families() {
+            if let Some(key) = family.facts_key() {
+                let own = (*family == self.family).then(|| self.facts.0.json());
+                map.serialize_entry(key, &own)?;
+            }
+        }
+        map.serialize_entry("also_answers", &self.also_answers)?;
+        map.serialize_entry("simulated", &self.simulated)?;
+        map.serialize_entry("port", &self.port)?;
+        map.serialize_entry("notes", &self.notes)?;
+        map.end()
+    }
+}
+
 impl Identity {
-    /// Its address as settings and profiles carry it. A node of a CAN bus has that of packet serial.
+    /// Its address as settings and profiles carry it. A node of a CAN bus has that of a unit from the factory.
     #[must_use]
     pub fn unit_address(&self) -> UnitAddress {
-        let address = if self.is_node() { None } else { UnitAddress::new(self.address) };
-        address.unwrap_or_default()
+        UnitAddress::new(self.family, self.address).unwrap_or(UnitAddress::factory(self.family))
     }
 
     /// What its settings table is made for; `None` for a model that is not known.
     #[must_use]
     pub fn subject(&self) -> Option<Subject> {
-        Some(Subject::new(models::identify(&self.version_text)?, self.generation))
+        Some(Subject::new(self.family.identify(&self.version_text)?, self.generation))
     }
 
     /// What it has and takes, for screens and commands that do not apply to every family.
     #[must_use]
     pub fn capabilities(&self) -> Capabilities {
-        let Some(facts) = self.motion_mind else { return Capabilities::PACKET_SERIAL };
-        Capabilities {
-            duty: facts.mode == Mode::Serial,
-            speed: facts.mode == Mode::SerialPid,
-            position: matches!(facts.mode, Mode::SerialPid | Mode::AnalogPid),
-            ..Capabilities::MOTION_MIND
-        }
+        self.facts.0.capabilities()
     }
 
-    /// The signals that it can tell, in the order of [`Channel::ALL`].
+    /// The signals that it can tell, in the order in which they are shown.
     #[must_use]
     pub fn channels(&self) -> &'static [Channel] {
-        if self.is_motion_mind() { Channel::MOTION_MIND } else { Channel::PACKET_SERIAL }
+        self.facts.0.channels()
     }
 
-    /// The bits of its status word; empty in a family whose status is that of packet serial.
+    /// The bits of its status word, in a family with a status of its own.
     #[must_use]
     pub fn signs(&self) -> &'static [Sign] {
-        if self.is_motion_mind() { SIGNS } else { &[] }
+        self.facts.0.signs()
     }
 
     /// The requests that a write holds, in words.
     #[must_use]
     pub fn describe_sent(&self, bytes: &[u8]) -> Described {
-        match self.motion_mind {
-            Some(facts) => describe_commands(bytes, facts.protocol),
-            None => describe_packets(bytes, self.generation.layout()),
-        }
+        self.facts.0.describe_sent(bytes)
     }
 
     /// Why it does not take a drive as it is now, as a clause; `None` where it does, or where only asking tells.
     #[must_use]
     pub fn objection(&self, drive: &Drive) -> Option<String> {
-        self.motion_mind.and_then(|facts| objection(facts.mode, drive))
+        self.facts.0.objection(drive)
     }
 
     /// The bytes of a drive, command by command, as they would be sent.
     #[must_use]
     pub fn preview(&self, drive: &Drive) -> Vec<Vec<u8>> {
-        match self.motion_mind {
-            Some(facts) => preview_command(drive, self.address, facts),
-            None => {
-                let address = self.unit_address().packets().unwrap_or_default();
-                preview_packets(drive, address, self.generation.layout())
-            }
-        }
-    }
-
-    /// Whether it is a Motion Mind.
-    #[must_use]
-    pub fn is_motion_mind(&self) -> bool {
-        self.motion_mind.is_some()
-    }
-
-    /// Whether it is an MCP rather than a RoboClaw.
-    #[must_use]
-    pub fn is_mcp(&self) -> bool {
-        self.model.is_some_and(|model| model.starts_with("MCP"))
+        self.facts.0.preview(drive, self.address)
     }
 
     /// Whether it is a node of a CAN bus.
     #[must_use]
     pub fn is_node(&self) -> bool {
-        self.family == CANOPEN
+        self.facts.0.is_node()
     }
 
     /// What it says of its firmware, with the generation where the text does not hold it.
@@ -213,18 +236,13 @@ impl Identity {
     /// Where it is on its bus: "0x80", "node 3", or "unit 1".
     #[must_use]
     pub fn place(&self) -> String {
-        match (self.is_node(), self.is_motion_mind()) {
-            (true, _) => format!("node {}", self.address),
-            (_, true) => format!("unit {}", self.address),
-            _ => format!("0x{:02X}", self.address),
-        }
+        self.facts.0.place(self.address)
     }
 
     /// The same with its kind: "address 0x80", "node 3", or "unit 1".
     #[must_use]
     pub fn named_place(&self) -> String {
-        let says_its_kind = self.is_node() || self.is_motion_mind();
-        if says_its_kind { self.place() } else { format!("address {}", self.place()) }
+        self.facts.0.named_place(self.address)
     }
 
     /// The model, or what the unit calls itself.

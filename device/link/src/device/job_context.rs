@@ -2,7 +2,7 @@
 
 use super::channel::Sample;
 use super::drive::Drive;
-use super::motion_mind::MotionMindFacts;
+use super::identity::Facts;
 use crate::exchange::{ExchangeError, Interruption, Reply};
 use crate::unit::{FirmwareGeneration, UnitAddress};
 use crate::wire::{HiddenSettings, Wire};
@@ -20,7 +20,7 @@ pub(super) trait JobHost {
     fn set_polling(&mut self, on: bool);
     fn address(&self) -> UnitAddress;
     fn generation(&self) -> FirmwareGeneration;
-    fn motion_mind(&self) -> Option<MotionMindFacts>;
+    fn facts(&self) -> Facts;
     fn is_simulated(&self) -> bool;
     fn now(&self) -> Duration;
     fn port(&self) -> String;
@@ -62,10 +62,10 @@ impl<'a> JobContext<'a> {
         self.host.drive(drive)
     }
 
-    /// What is told of a Motion Mind alone; `None` for another family.
+    /// What the unit's family knows of it.
     #[must_use]
-    pub fn motion_mind(&self) -> Option<MotionMindFacts> {
-        self.host.motion_mind()
+    pub fn facts(&self) -> Facts {
+        self.host.facts()
     }
 
     /// How long a byte takes on the wire, where that is known.

@@ -1,7 +1,7 @@
 //! How a link is opened.
 
-use super::family_choice::FamilyChoice;
 use super::poll_rate::PollRate;
+use crate::family::FamilyChoice;
 use crate::transport::Stream;
 use crate::wire::HiddenSettings;
 use std::sync::Arc;
@@ -9,14 +9,14 @@ use std::sync::Arc;
 /// Which units of a bus to look for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Addresses {
-    /// All that the family has: 0x80 to 0x87, or 1 to 98 for Motion Minds.
+    /// All that the family has.
     #[default]
     Scan,
     /// This one alone.
     Only(u8),
     /// These, and no other is told anything, not even by a stop.
     These(AddressSet),
-    /// The factory address alone: 0x80, or 1 of a Motion Mind.
+    /// The factory address alone.
     Factory,
 }
 
@@ -70,7 +70,7 @@ impl Default for DeviceOptions {
     fn default() -> Self {
         Self {
             addresses: Addresses::Scan,
-            family: FamilyChoice::Auto,
+            family: FamilyChoice::AUTO,
             stream: None,
             simulated: false,
             hidden: None,

@@ -3,7 +3,7 @@
 use super::drive::{ArmScope, Drive};
 use super::job::Job;
 use super::poll_rate::PollRate;
-use crate::firmware::RiskAccepted;
+use super::risk::RiskAccepted;
 use crate::transport::Stream;
 use brushwork_values::{Motor, Value};
 

@@ -3,7 +3,7 @@
 use super::watch::Interruption;
 use crate::failure::Failure;
 use crate::transport::TransportError;
-use brushwork_mcp_wire::packet_serial::{EncodeError, Generation};
+use crate::unit::FirmwareGeneration;
 use std::time::Duration;
 
 /// Why a request has no reply that could be used.
@@ -80,7 +80,7 @@ pub enum ExchangeError {
         /// The command's number or title.
         command: String,
         /// The generation that was detected.
-        generation: Generation,
+        generation: FirmwareGeneration,
     },
     /// The controller understood and refused.
     #[error("the controller refused: {what}")]
@@ -100,8 +100,7 @@ pub enum ExchangeError {
     #[error("the values do not fit the command")]
     Encode {
         /// Which value and why.
-        #[source]
-        source: EncodeError,
+        why: String,
     },
     /// The link is lost.
     #[error("the link is lost")]
@@ -172,7 +171,7 @@ impl ExchangeError {
     pub fn full(&self) -> String {
         match self {
             Self::Transport { source } => format!("{self}: {}", source.full()),
-            Self::Encode { source } => format!("{self}: {source}"),
+            Self::Encode { why } => format!("{self}: {why}"),
             Self::MayHaveRun { cause } if cause.is_link_lost() => format!("{}; {MAY_HAVE_RUN}", cause.full()),
             _ => self.to_string(),
         }

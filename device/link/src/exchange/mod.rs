@@ -1,25 +1,22 @@
 //! One request and its reply over a transport: deadlines, the 10 ms recovery, retries, statistics.
 //!
-//! This layer knows neither commands nor motors: a request is bytes, and whoever sends it judges the reply. What the
-//! bytes of packet serial mean is added in [`packet`].
+//! This layer knows neither commands nor motors: a request is bytes, and whoever sends it judges the reply.
 
-pub mod between;
+mod between;
 pub mod error;
 mod given_up;
 mod link;
-pub mod packet;
+mod permit;
 mod request;
 pub mod statistics;
 pub mod trace;
 pub mod watch;
 
+pub use between::{Bracketed, transact_between};
 pub use error::{ExchangeError, Tries};
 pub use link::{Exchange, RECOVERY};
-pub use packet::{PacketWire, Reply};
+pub use permit::{Permit, Reply};
 pub use request::{Fault, Judgement, Outgoing, PACKET_GAP, RETRIES, Span};
 pub use statistics::{Counters, LinkStatistics};
 pub use trace::Traffic;
 pub use watch::{Interruption, Unwatched, Watch};
-
-#[cfg(test)]
-mod tests;

@@ -5,15 +5,12 @@
 
 use std::collections::BTreeMap;
 
-use brushwork_mcp_wire::packet_serial::{Request, describe_request, lookup, number};
 use serde::Serialize;
 
-use super::check::{dangers, wrong_pairs};
+use super::family::{Argument, PlanContext, Planned, refuse};
 use super::image::SettingsImage;
-use super::motion_mind::steps as motion_mind;
-use super::pins::{Conflict, conflicts};
 use super::row::{Carrier, Place, Row, Sink, Source};
-use super::step::{Refusal, Stage, Step};
+use super::step::{Refusal, Step};
 use super::table::SettingsTable;
 use super::value::SettingValue;
 use crate::transport::Stream;
@@ -44,38 +41,24 @@ pub struct Plan {
 }
 
 impl Step {
-    /// The bytes that it puts on the wire of packet serial, or a Motion Mind in its binary protocol; an error is a clause.
+    /// The bytes as they would be sent.
     pub fn bytes(&self, address: UnitAddress, generation: FirmwareGeneration) -> Result<Vec<u8>, String> {
-        let (Some(address), Some(generation)) = (address.packets(), generation.packet_serial()) else {
-            return motion_mind::step_bytes(self, address);
-        };
-        Request::named(address, self.command, generation, &self.arguments)
-            .and_then(|request| request.encode(generation))
-            .map_err(|error| error.to_string())
+        self.family.settings().step_bytes(self, address, generation)
     }
 
-    /// Whether the controller's command has room for the values; an error is a clause.
-    fn fits(&self, table: &SettingsTable) -> Result<(), String> {
-        let mind = UnitAddress::new(1).filter(|_| table.is_motion_mind());
-        let address = mind.unwrap_or(UnitAddress::DEFAULT);
-        self.bytes(address, table.subject().generation).map(drop)
+    /// Whether the values fit the command.
+    fn fits(&self, generation: FirmwareGeneration) -> Result<(), String> {
+        self.bytes(UnitAddress::factory(self.family), generation).map(drop)
     }
 
-    /// What it says, in words: the command and its values.
+    /// The step in words.
     pub fn words(&self, address: UnitAddress, generation: FirmwareGeneration) -> String {
-        let (Some(address), Some(generation)) = (address.packets(), generation.packet_serial()) else {
-            return motion_mind::step_words(self, address);
-        };
-        Request::named(address, self.command, generation, &self.arguments)
-            .map_or_else(|error| error.to_string(), |request| describe_request(&request, generation))
+        self.family.settings().step_words(self, address, generation)
     }
 
-    /// What the command does: "M1 velocity PID (28)".
+    /// What it does, for sentences.
     pub fn title(&self) -> String {
-        if self.keys.first().is_some_and(|key| key.starts_with("register.") || key.starts_with("function")) {
-            return motion_mind::step_title(self);
-        }
-        format!("{} ({})", super::read::title(self.command), self.command)
+        self.family.settings().step_title(self)
     }
 }
 
@@ -92,10 +75,11 @@ pub fn plan(
     let mut after = ram.clone();
     after.merge(changes);
     let pairs = wrong_pairs(table, &after, changes);
-    let planner = Planner { table, ram, changes, options };
-    let (steps, missing) = planner.steps();
+    let context = PlanContext { table, ram, changes, options };
+    let family = table.subject().family().settings();
+    let (steps, missing) = context.steps();
     refusals.extend(missing);
-    let mut warnings = planner.unusual();
+    let mut warnings = context.unusual();
     match options.as_read {
         true => {
             warnings.extend(pairs.into_iter().map(|pair| format!("{} {AS_READ_PAIR}", pair.sentence)));
@@ -105,25 +89,13 @@ pub fn plan(
     if !refusals.is_empty() {
         return Err(refusals);
     }
-    warnings.extend(planner.warnings(&steps));
-    warnings.extend(dangers(table, &after, changes));
-    warnings.extend(new_conflicts(table, &after, changes));
-    Ok(Plan { hidden: planner.hidden(), steps, warnings })
+    warnings.extend(family.warnings(&context, &steps));
+    warnings.extend(family.dangers(table, &after, changes));
+    warnings.extend(family.conflicts(table, &after, changes));
+    Ok(Plan { hidden: context.hidden(), steps, warnings })
 }
 
 const AS_READ_PAIR: &str = "Both are written as they were read.";
-
-/// The contradictions that some of the changes take part in.
-fn new_conflicts(table: &SettingsTable, after: &SettingsImage, changes: &SettingsImage) -> Vec<String> {
-    let found = conflicts(table, &|key| after.get(key)).into_iter();
-    // The type of a pin and whether it is digital are one choice for a person.
-    let twin = |key: &str| key.strip_suffix(".type").map(|pin| format!("{pin}.digital"));
-    let is_changed = |key: &String| {
-        changes.get(key).is_some() || twin(key).is_some_and(|twin| changes.get(&twin).is_some())
-    };
-    let is_touched = |conflict: &Conflict| conflict.keys.iter().any(is_changed);
-    found.filter(is_touched).map(|conflict| conflict.sentence).collect()
-}
 
 /// The rows whose values a change of `keys` needs: those themselves, and those that share a command with
 /// them.
@@ -161,16 +133,10 @@ fn refusal(table: &SettingsTable, key: &str, value: SettingValue, options: Write
     sentence.map(|sentence| Refusal { key: key.to_owned(), sentence })
 }
 
-struct Planner<'p> {
-    table: &'p SettingsTable,
-    ram: &'p SettingsImage,
-    changes: &'p SettingsImage,
-    options: WriteOptions,
-}
-
-impl Planner<'_> {
+impl PlanContext<'_> {
     /// One step for each command and index that carries a change, in stage order.
     fn steps(&self) -> (Vec<Step>, Vec<Refusal>) {
+        let family = self.table.subject().family();
         let mut groups: BTreeMap<(u8, Option<u8>), Vec<&Row>> = BTreeMap::new();
         for row in self.table.rows().iter().filter(|row| self.changes.get(&row.key).is_some()) {
             if let Some(sink) = row.sink() {
@@ -180,15 +146,17 @@ impl Planner<'_> {
         let mut steps = Vec::new();
         let mut refusals = Vec::new();
         for ((command, index), changed) in groups {
-            match self.arguments(command, index, &changed) {
+            let planned = Planned { context: self, command, index, changed: &changed };
+            match self.arguments(&planned) {
                 Ok(arguments) => {
                     let step = Step {
+                        family,
                         command,
                         arguments,
                         keys: changed.iter().map(|row| row.key.clone()).collect(),
-                        stage: self.stage(command, index, &changed),
+                        stage: family.settings().stage(&planned),
                     };
-                    match step.fits(self.table) {
+                    match step.fits(self.table.subject().generation) {
                         Ok(()) => steps.push(step),
                         Err(why) => refusals.push(no_room(&changed, &why)),
                     }
@@ -197,37 +165,22 @@ impl Planner<'_> {
             }
         }
         steps.sort_by_key(|step| step.stage);
-        if self.table.is_motion_mind() {
-            motion_mind::weaken_first(&mut steps, self.ram);
-        }
+        family.settings().order(&mut steps, self.ram);
         (steps, refusals)
     }
 
-    fn arguments(
-        &self,
-        command: u8,
-        index: Option<u8>,
-        changed: &[&Row],
-    ) -> Result<Vec<(&'static str, i64)>, Refusal> {
-        if self.table.is_motion_mind() {
-            let name = changed.first().and_then(|row| row.sink()).map_or("", |sink| sink.place.field);
-            let number = index.unwrap_or_default();
-            let word = self.field_value(Sink { command, index, place: place(name) }, changed)?;
-            return Ok(motion_mind::arguments(number, name, word));
-        }
-        let form = lookup(command).and_then(|command| command.form(self.table.subject().generation.layout()));
-        let Some(form) = form else {
-            return Err(refuse(changed, format!("This firmware has no command {command}.")));
+    fn arguments(&self, planned: &Planned<'_>) -> Result<Vec<(&'static str, i64)>, Refusal> {
+        let (command, index, changed) = (planned.command, planned.index, planned.changed);
+        let settings = self.table.subject().family().settings();
+        let wanted = settings.arguments(planned).map_err(|why| refuse(changed, why))?;
+        let value = |argument| match argument {
+            Argument::Given(name, value) => Ok((name, value)),
+            Argument::Field(field) => {
+                let place = Place { field, bits: None };
+                Ok((field, self.field_value(Sink { command, index, place }, changed)?))
+            }
         };
-        let mut arguments = Vec::with_capacity(form.request.len());
-        for field in form.request.iter().filter(|field| field.fixed.is_none()) {
-            let value = match index {
-                Some(index) if field.name == "index" => i64::from(index),
-                _ => self.field_value(Sink { command, index, place: place(field.name) }, changed)?,
-            };
-            arguments.push((field.name, value));
-        }
-        Ok(arguments)
+        wanted.into_iter().map(value).collect()
     }
 
     /// The raw number of one field of a command: the changed value, or what the controller holds, bits put
@@ -268,37 +221,6 @@ impl Planner<'_> {
         row.encode(self.ram.get(&row.key)?)
     }
 
-    fn stage(&self, command: u8, index: Option<u8>, changed: &[&Row]) -> Stage {
-        if self.table.is_motion_mind() {
-            return motion_mind::stage(index.unwrap_or_default());
-        }
-        let own = |stream: Stream| index.is_some_and(|index| usize::from(index) == stream.index());
-        match command {
-            number::SET_ADDRESS_MIXED if changed.iter().any(|row| row.key == "unit.address") => {
-                Stage::Address
-            }
-            number::SET_STREAM if self.options.own_stream.is_some_and(own) => Stage::OwnPort,
-            number::SET_CONFIG => Stage::OwnPort,
-            number::SET_MAIN_VOLTAGES
-            | number::SET_LOGIC_VOLTAGES
-            | number::SET_VOLTAGE_OFFSETS
-            | number::SET_CURRENT_LIMITS_M1
-            | number::SET_CURRENT_LIMITS_M2
-            | number::SET_SPEED_ERROR_LIMITS
-            | number::SET_POSITION_ERROR_LIMITS
-            | number::SET_SERIAL_TIMEOUT => Stage::Limits,
-            number::SET_DOUT_ACTION => Stage::Outputs,
-            number::SET_SIGNAL
-            | number::SET_PIN_FUNCTIONS
-            | number::SET_CONTROL_SETTINGS
-            | number::SET_CONTROL_LIMITS => Stage::Pins,
-            number::SET_STREAM | number::SET_NODE_ID => Stage::Ports,
-            number::SET_PRIORITIES => Stage::Priorities,
-            number::SET_SCRIPT_AUTORUN | number::SET_ESTOP_LOCK => Stage::Autonomy,
-            _ => Stage::Motors,
-        }
-    }
-
     fn hidden(&self) -> Vec<(String, i64)> {
         let hidden = self.table.rows().iter().filter(|row| !row.has_wire_form());
         hidden.filter_map(|row| Some((row.key.clone(), row.encode(self.changes.get(&row.key)?)?))).collect()
@@ -309,81 +231,6 @@ impl Planner<'_> {
         let changed = self.table.rows().iter().filter_map(|row| Some((row, self.changes.get(&row.key)?)));
         changed.filter_map(|(row, value)| row.check_as_read(value).ok()?).collect()
     }
-
-    /// What the steps themselves bring about besides their values.
-    fn warnings(&self, steps: &[Step]) -> Vec<String> {
-        if self.table.is_motion_mind() {
-            return motion_mind::warnings(steps);
-        }
-        let mut warnings = Vec::new();
-        for step in steps {
-            match (step.command, step.stage) {
-                (number::SET_ADDRESS_MIXED, Stage::Address) => warnings.push(
-                    "The controller answers to its new address from then on; save it, or a power cycle \
-                     brings the old one back."
-                        .to_owned(),
-                ),
-                (number::SET_ADDRESS_MIXED, _) if self.address_is_unreadable() => warnings.push(format!(
-                    "Mixing is written together with the address, which this firmware does not report: {} \
-                     is written, the address this link speaks to. Over USB a unit answers to every \
-                     address, so check it first.",
-                    self.ram.get("unit.address").map_or_else(String::new, |address| match address {
-                        SettingValue::Int(byte) => format!("0x{byte:02X}"),
-                        _ => String::new(),
-                    })
-                )),
-                (number::SET_STREAM, Stage::OwnPort) => warnings.extend(self.own_port_warnings()),
-                (number::SET_CONFIG, _) => warnings.push(
-                    "The configuration word takes effect at once and can move the controller to another \
-                     address, baud rate or control mode: the link may be lost."
-                        .to_owned(),
-                ),
-                _ => {}
-            }
-        }
-        warnings
-    }
-
-    fn address_is_unreadable(&self) -> bool {
-        let row = self.table.row("unit.address");
-        row.is_some_and(|row| matches!(row.carrier, Carrier::Wire { read: Source::LinkAddress, .. }))
-    }
-
-    fn own_port_warnings(&self) -> Vec<String> {
-        let Some(stream) = self.options.own_stream else { return Vec::new() };
-        let change = |field: &str| {
-            let key = format!("stream.{}.{field}", stream.key());
-            let (row, value) = (self.table.row(&key)?, self.changes.get(&key)?);
-            Some((row.format(value), value))
-        };
-        let mut warnings = Vec::new();
-        if let Some((to, _)) = change("type") {
-            warnings.push(format!(
-                "This program is connected through {stream}, which becomes \"{to}\": the link is lost then."
-            ));
-        }
-        if let (Some((to, _)), true) = (change("rate"), stream != Stream::Usb) {
-            warnings.push(format!(
-                "This program is connected through {stream}, which changes to {to}: connect again at that \
-                 rate."
-            ));
-        }
-        if let Some((_, SettingValue::Int(0))) = change("timeout") {
-            warnings.push(format!(
-                "{stream} has no time-out then: the motors would go on if this program died, so it cannot \
-                 be armed."
-            ));
-        }
-        warnings
-    }
-}
-
-fn place(field: &'static str) -> Place {
-    Place { field, bits: None }
-}
-
-fn refuse(changed: &[&Row], sentence: String) -> Refusal {
-    Refusal { key: changed.first().map_or_else(String::new, |row| row.key.clone()), sentence }
 }
 
 /// A value that the fields of its command cannot hold: no unit has ever had it.
@@ -401,4 +248,32 @@ fn unknown_neighbour(row: &Row, changed: &[&Row]) -> Refusal {
             row.title()
         ),
     )
+}
+
+/// Pairs that `after` holds the wrong way round, if `changes` touches them.
+fn wrong_pairs(table: &SettingsTable, after: &SettingsImage, changes: &SettingsImage) -> Vec<Refusal> {
+    let refusal = |(low, high): &(&str, &str)| {
+        let touched = [low, high].into_iter().find(|key| changes.get(key).is_some())?;
+        let (low_row, high_row) = (table.row(low)?, table.row(high)?);
+        let (low, high) = (after.get(low)?, after.get(high)?);
+        is_above(low, high).then(|| Refusal {
+            key: (*touched).to_owned(),
+            sentence: format!(
+                "{} {} would be above {} {}.",
+                low_row.title(),
+                low_row.format(low),
+                high_row.title(),
+                high_row.format(high)
+            ),
+        })
+    };
+    table.subject().family().settings().ordered_pairs().iter().filter_map(refusal).collect()
+}
+
+fn is_above(low: SettingValue, high: SettingValue) -> bool {
+    match (low, high) {
+        (SettingValue::Int(low), SettingValue::Int(high)) => low > high,
+        (SettingValue::Number(low), SettingValue::Number(high)) => low > high,
+        _ => false,
+    }
 }

@@ -2,9 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use brushwork_mcp_wire::models::Family;
-use brushwork_mcp_wire::packet_serial::{lookup, number};
-use brushwork_motion_mind_wire::numbers;
 use brushwork_values::Values;
 use serde::Serialize;
 
@@ -14,7 +11,7 @@ use super::subject::Subject;
 use super::table::SettingsTable;
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
-use crate::unit::FirmwareGeneration;
+use crate::family::FamilyRef;
 use crate::wire::Wire;
 
 /// After this many commands in a row without any answer, and none answered before, the controller counts as
@@ -96,26 +93,18 @@ pub(super) fn read_commands<'r>(rows: impl IntoIterator<Item = &'r Row>) -> Vec<
 }
 
 /// Whether nothing further can be asked on this wire.
-pub(super) fn is_final(error: &ExchangeError) -> bool {
+pub fn is_final(error: &ExchangeError) -> bool {
     error.is_link_lost() || error.interruption().is_some()
 }
 
 /// Asks the unit for something that every unit of its family tells, to see whether it answers.
-pub(super) fn is_there(wire: &mut dyn Wire) -> Result<Values, ExchangeError> {
-    match wire.generation() {
-        FirmwareGeneration::PacketSerial(_) => wire.transact(number::READ_VERSION, &[]),
-        FirmwareGeneration::MotionMind { .. } => {
-            wire.transact(numbers::READ_REGISTER, &[i64::from(REVISION)])
-        }
-    }
+pub fn is_there(wire: &mut dyn Wire) -> Result<Values, ExchangeError> {
+    wire.address().family().settings().is_there(wire)
 }
-
-/// The register that holds the revision of a Motion Mind's firmware.
-const REVISION: u8 = 17;
 
 /// Whether a command that failed may have reached the unit. An interruption may come after it went out, so it
 /// counts.
-pub(super) fn went_out(error: &ExchangeError) -> bool {
+pub fn went_out(error: &ExchangeError) -> bool {
     !matches!(
         error,
         ExchangeError::NotArmed { .. }
@@ -130,26 +119,27 @@ struct Reader<'w> {
     wire: &'w mut dyn Wire,
     replies: BTreeMap<u8, Result<Values, ExchangeError>>,
     transactions: usize,
+    /// Whether there is a controller, though it did not answer what was asked.
+    someone_answers: bool,
 }
 
 impl<'w> Reader<'w> {
     fn new(wire: &'w mut dyn Wire) -> Self {
-        Self { wire, replies: BTreeMap::new(), transactions: 0 }
+        Self { wire, replies: BTreeMap::new(), transactions: 0, someone_answers: false }
     }
 
     /// The subject with the numbers of pins, streams and outputs that the unit returns; where it does not
     /// answer, those of its model stay.
     fn count(&mut self, mut subject: Subject) -> Result<Subject, ExchangeError> {
-        if subject.model.family == Family::Mcp {
-            let lists = [number::READ_SIGNALS, number::READ_STREAMS, number::READ_DOUT_ACTIONS];
-            self.read_commands(&lists)?;
+        if let Some(lists) = subject.family().settings().lists(&subject) {
+            self.read_commands(&[lists.pins, lists.streams, lists.douts])?;
             let count = |command: u8, listed: usize| match self.replies.get(&command) {
                 Some(Ok(values)) => values.records().count(),
                 _ => listed,
             };
-            subject.pins = count(number::READ_SIGNALS, subject.pins);
-            subject.streams = count(number::READ_STREAMS, subject.streams);
-            subject.douts = count(number::READ_DOUT_ACTIONS, subject.douts);
+            subject.pins = count(lists.pins, subject.pins);
+            subject.streams = count(lists.streams, subject.streams);
+            subject.douts = count(lists.douts, subject.douts);
         }
         Ok(subject)
     }
@@ -157,10 +147,7 @@ impl<'w> Reader<'w> {
     fn read_commands(&mut self, commands: &[u8]) -> Result<(), ExchangeError> {
         for (index, command) in commands.iter().enumerate() {
             if !self.replies.contains_key(command) {
-                let title = match self.wire.generation() {
-                    FirmwareGeneration::PacketSerial(_) => title(*command),
-                    FirmwareGeneration::MotionMind { .. } => "read the registers",
-                };
+                let title = self.wire.address().family().settings().read_title(*command);
                 self.wire.report_progress(index, commands.len(), title);
                 self.read_command(*command)?;
             }
@@ -180,24 +167,23 @@ impl<'w> Reader<'w> {
         Ok(())
     }
 
-    /// Whether there is a controller that does not know what it was asked so far: each of them tells its version.
+    /// Whether there is a controller that does not know what it was asked so far.
     fn is_there(&mut self) -> bool {
-        let reply = self.wire.transact(number::READ_VERSION, &[]);
-        let answers = reply.is_ok();
-        self.replies.insert(number::READ_VERSION, reply);
-        answers
+        self.someone_answers = is_there(self.wire).is_ok();
+        self.someone_answers
     }
 
     /// Whether this is one silence too many.
     fn nobody_there(&self, error: &ExchangeError) -> bool {
         let silent = self.replies.values().all(|reply| matches!(reply, Err(error) if error.is_no_answer()));
-        error.is_no_answer() && silent && self.replies.len() + 1 >= SILENT_COMMANDS
+        error.is_no_answer() && silent && !self.someone_answers && self.replies.len() + 1 >= SILENT_COMMANDS
     }
 
     /// The values of the rows, and what has none.
     fn collect<'r>(&self, rows: impl IntoIterator<Item = &'r Row>) -> (SettingsImage, Vec<ReadFailure>) {
         let mut image = SettingsImage::default();
-        let mut failures = Failures { on: self.wire.describe(), list: Vec::new() };
+        let mut failures =
+            Failures { on: self.wire.describe(), family: self.wire.address().family(), list: Vec::new() };
         for row in rows {
             match row.carrier {
                 Carrier::Wire { read: Source::LinkAddress, .. } => {
@@ -232,12 +218,13 @@ impl<'w> Reader<'w> {
 /// The failures so far, one for each command.
 struct Failures {
     on: String,
+    family: FamilyRef,
     list: Vec<ReadFailure>,
 }
 
 impl Failures {
     fn no_reply(&mut self, command: u8, row: &Row, error: &ExchangeError) {
-        let failure = || error.failure(titled(command, row), &self.on);
+        let failure = || error.failure(self.family.settings().read_phrase(command), &self.on);
         let failure = if self.knows(command) { None } else { Some(failure()) };
         self.add(command, row, failure);
     }
@@ -245,7 +232,7 @@ impl Failures {
     fn incomplete(&mut self, command: u8, row: &Row) {
         let failure = (!self.knows(command)).then(|| {
             Failure::new(
-                titled(command, row),
+                self.family.settings().read_phrase(command),
                 &self.on,
                 "the reply does not hold everything that this generation returns",
                 "Check which firmware the controller has",
@@ -275,17 +262,4 @@ fn raw_of(values: &Values, place: Place, record: Option<usize>) -> Option<i64> {
         None => values.try_int(place.field)?,
     };
     Some(place.bits.map_or(word, |bits| bits.extract(word)))
-}
-
-/// A command for sentences, with its number.
-fn titled(command: u8, row: &Row) -> String {
-    match row.register() {
-        Some(_) => "read the registers".to_owned(),
-        None => format!("{} ({command})", title(command)),
-    }
-}
-
-/// What a command does, for progress and sentences: "read M1 velocity PID".
-pub(super) fn title(command: u8) -> &'static str {
-    lookup(command).map_or("an unknown command", |command| command.title)
 }

@@ -5,8 +5,6 @@
 
 use std::fmt;
 
-use brushwork_mcp_wire::models::MOTION_MIND_3;
-use brushwork_motion_mind_wire::{Register, register};
 use brushwork_values::Unit;
 use serde::Serialize;
 
@@ -48,6 +46,8 @@ pub struct Row {
     pub help: &'static str,
     /// The printed name of the model the row was made for.
     pub model: &'static str,
+    /// The number of the register that holds it, in a family whose settings are known by such numbers.
+    pub register: Option<u8>,
 }
 
 /// A part of the settings, in the order in which screens show them.
@@ -294,11 +294,6 @@ impl Row {
         }
     }
 
-    /// The register of a Motion Mind that holds the row; `None` in other families.
-    pub fn register(&self) -> Option<u8> {
-        register_of(self).map(|register| register.number).filter(|_| self.model == MOTION_MIND_3.name)
-    }
-
     /// Whether a command carries the row.
     pub fn has_wire_form(&self) -> bool {
         matches!(self.carrier, Carrier::Wire { .. })
@@ -325,9 +320,14 @@ impl Row {
     /// The value that `text` stands for, rounded to the row's step. Refuses, in a sentence, what is no such
     /// value or out of range.
     pub fn parse(&self, text: &str) -> Result<SettingValue, String> {
-        let value = self.notation().parse(text).map_err(|why| format!("{}: {why}", self.title()))?;
+        let value = self.parse_any(text).map_err(|why| format!("{}: {why}", self.title()))?;
         self.check(value)?;
         Ok(value)
+    }
+
+    /// As [`Row::parse`], in range or not, for what a controller may hold.
+    pub fn parse_any(&self, text: &str) -> Result<SettingValue, String> {
+        self.notation().parse(text)
     }
 
     /// Refuses, in a sentence, a value of another kind or outside the row's range.
@@ -460,11 +460,6 @@ impl fmt::Display for Side {
             Self::Below => "below",
         })
     }
-}
-
-/// The register behind a row of a Motion Mind.
-pub(super) fn register_of(row: &Row) -> Option<&'static Register> {
-    register(row.sink()?.index?)
 }
 
 /// "Velocity P" within a sentence; "QPPS" and "L" keep their capitals.

@@ -83,7 +83,9 @@ impl SaveReport {
     }
 }
 
-pub(super) fn unknown(failure: Failure) -> SaveReport {
+/// A save of which nobody knows whether it was done.
+#[must_use]
+pub fn unknown(failure: Failure) -> SaveReport {
     SaveReport {
         verdict: SaveVerdict::Unknown,
         differences: Vec::new(),

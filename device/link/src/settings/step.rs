@@ -1,10 +1,14 @@
 //! One command of a plan and when it is sent, and why a change is refused.
 
+use crate::family::FamilyRef;
 use serde::Serialize;
 
 /// One command of a plan.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Step {
+    /// Whose command it is.
+    #[serde(skip)]
+    pub family: FamilyRef,
     /// Command number.
     pub command: u8,
     /// Raw arguments by field name, in wire order.

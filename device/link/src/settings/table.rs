@@ -2,12 +2,7 @@
 
 use std::collections::HashMap;
 
-use brushwork_mcp_wire::codes::ENCODER_PIN_NONE;
-use brushwork_mcp_wire::models::Family;
-
 use super::image::SettingsImage;
-use super::mcp;
-use super::motion_mind::rows as motion_mind;
 use super::row::{Group, Row};
 use super::subject::Subject;
 use super::value::SettingValue;
@@ -23,19 +18,9 @@ pub struct SettingsTable {
 impl SettingsTable {
     /// The table of a controller.
     pub fn new(subject: Subject) -> Self {
-        let rows: Vec<Row> = match subject.model.family {
-            Family::MotionMind => motion_mind::rows(),
-            Family::Mcp | Family::RoboClaw => {
-                mcp::templates().flat_map(|template| template.expand(&subject)).collect()
-            }
-        };
+        let rows = subject.family().settings().rows(&subject);
         let by_key = rows.iter().enumerate().map(|(index, row)| (row.key.clone(), index)).collect();
         Self { subject, rows, by_key }
-    }
-
-    /// Whether it is the table of a Motion Mind.
-    pub fn is_motion_mind(&self) -> bool {
-        self.subject.model.family == Family::MotionMind
     }
 
     /// The controller the table was made for.
@@ -60,15 +45,7 @@ impl SettingsTable {
 
     /// What a value means besides its text: the pin behind an encoder input number, as far as we assume it.
     pub fn note(&self, row: &Row, value: SettingValue) -> Option<String> {
-        let number = match value {
-            SettingValue::Int(number) if row.pattern == "motor{n}.encoder.pin" => number,
-            _ => return None,
-        };
-        if number == ENCODER_PIN_NONE {
-            return Some("none, assumed".to_owned());
-        }
-        let index = usize::try_from(number).ok().filter(|index| *index < self.subject.pins)?;
-        Some(format!("counted from 0 in the pin list: {}, assumed", self.subject.pin_name(index)))
+        self.subject.family().settings().note(self, row, value)
     }
 
     /// Every row at its default.

@@ -367,11 +367,8 @@ impl Writer<'_> {
     /// to neither.
     fn follow(&mut self, step: &Step, warnings: &mut Vec<String>) -> bool {
         let old = self.wire.address();
-        let is_address = |name: &str| name == "address" || name == "ADDRESS";
-        let argument = step.arguments.iter().find(|(name, _)| is_address(name)).map(|(_, value)| *value);
-        let Some(new) = argument.and_then(|byte| u8::try_from(byte).ok()).and_then(UnitAddress::new) else {
-            return true;
-        };
+        let number = step.family.settings().new_address(step);
+        let Some(new) = number.and_then(|number| UnitAddress::new(step.family, number)) else { return true };
         if !self.wire.set_address(new) {
             warnings.push(format!("The controller is at {new} now; connect to it there."));
             return false;

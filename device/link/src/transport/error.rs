@@ -31,10 +31,10 @@ pub enum TargetError {
         given: String,
     },
     /// An unknown protocol family.
-    #[error("\"{given}\" is no protocol family. Use auto, mcp or motion-mind")]
+    #[error("{why}")]
     Family {
-        /// What was given.
-        given: String,
+        /// What was given, and what there is.
+        why: String,
     },
     /// An unknown stream.
     #[error("\"{given}\" is no stream of the controller. Use usb, rs232, ttl1, ttl2 or ttl3")]

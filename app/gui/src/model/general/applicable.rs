@@ -70,7 +70,7 @@ fn choice(value: Option<SettingValue>) -> Option<&'static str> {
 
 #[cfg(test)]
 mod tests {
-    use brushwork_link::settings::{SettingsImage, SettingsTable, Subject};
+    use brushwork_link::settings::{SettingsImage, SettingsTable};
     use brushwork_mcp_wire::models;
     use brushwork_mcp_wire::packet_serial::Generation;
 
@@ -82,7 +82,10 @@ mod tests {
 
     #[test]
     fn a_pins_settings_follow_its_type() {
-        let table = SettingsTable::new(Subject::new(models::lookup("mcp266").unwrap(), Generation::Gen1));
+        let table = SettingsTable::new(brushwork_mcp_client::subject(
+            models::lookup("mcp266").unwrap(),
+            Generation::Gen1,
+        ));
         let mut image = table.default_image();
         image.set("pin.1.type", SettingValue::Choice("none"));
         assert_eq!(reason(&table, &image, "pin.1.type"), None);
@@ -97,7 +100,10 @@ mod tests {
 
     #[test]
     fn a_disabled_port_leaves_its_pins_to_the_bus() {
-        let table = SettingsTable::new(Subject::new(models::lookup("mcp266").unwrap(), Generation::Gen1));
+        let table = SettingsTable::new(brushwork_mcp_client::subject(
+            models::lookup("mcp266").unwrap(),
+            Generation::Gen1,
+        ));
         let mut image = table.default_image();
         image.set("stream.rs232.type", SettingValue::Choice("packet_serial"));
         assert!(reason(&table, &image, "can.rate").unwrap().contains("Disable UART0"));
@@ -110,7 +116,10 @@ mod tests {
 
     #[test]
     fn what_is_not_known_locks_nothing() {
-        let table = SettingsTable::new(Subject::new(models::lookup("mcp266").unwrap(), Generation::Gen1));
+        let table = SettingsTable::new(brushwork_mcp_client::subject(
+            models::lookup("mcp266").unwrap(),
+            Generation::Gen1,
+        ));
         let nothing = SettingsImage::default();
         for row in table.rows() {
             let reason = why_not(row, |key| nothing.get(key));

@@ -1,7 +1,8 @@
 //! Calibrating an input on the controller: its range there is opened wide, so that its bare readings can be seen, and put
 //! back on every way out. While it is open the input commands nothing.
 
-use brushwork_link::settings::{Calibrated, Calibration, Keeper, SettingsImage, open_range};
+use brushwork_link::settings::{Keeper, SettingsImage};
+use brushwork_mcp_client::settings::{Calibrated, Calibration, open_range};
 
 use super::super::message::Gravity;
 use super::summary::Summary;
@@ -70,7 +71,7 @@ impl Run {
     }
 
     fn opened(&self) -> SettingsImage {
-        let mode = brushwork_link::settings::PinMode::of(&|key| self.before.get(key), self.pin);
+        let mode = brushwork_mcp_client::settings::PinMode::of(&|key| self.before.get(key), self.pin);
         mode.map(|mode| open_range(self.pin, mode)).unwrap_or_default()
     }
 }

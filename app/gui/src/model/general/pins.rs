@@ -1,9 +1,9 @@
 //! The input pins of a unit: mode, shaping, and what the live signal says of the reading behind it.
 
 use brushwork_link::device::PinSignal;
-use brushwork_link::settings::{
-    Behind, Conflict, Group, Kind, PinMode, SettingValue, SettingsImage, SignalShape, change_mode, conflicts,
-    function_text, modes,
+use brushwork_link::settings::{Group, Kind, SettingValue, SettingsImage};
+use brushwork_mcp_client::settings::{
+    Behind, Conflict, PinMode, SignalShape, change_mode, conflicts, function_text, modes,
 };
 use brushwork_mcp_wire::packet_serial::scale;
 

@@ -3,7 +3,6 @@
 //! Opening a profile changes nothing but this screen; taking its values over makes them edits, to be written like any
 //! other.
 
-use brushwork_link::UnitAddress;
 use brushwork_link::settings::{Profile, ProfileFileError, SettingsImage};
 
 use super::unit::UnitSettings;
@@ -124,7 +123,7 @@ impl UnitSettings {
         Some(Profile {
             subject: *self.table().subject(),
             firmware: self.firmware().to_owned(),
-            address: UnitAddress::new(self.address()).unwrap_or_default(),
+            address: self.unit_address(),
             date: brushwork_core::keep::today(),
             unit: String::new(),
             note: String::new(),

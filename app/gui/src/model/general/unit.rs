@@ -1,11 +1,13 @@
 //! The settings of one unit: what it holds as far as known, what the user wants instead, and what was typed.
 
+use brushwork_link::UnitAddress;
+use brushwork_mcp_client::{layout_of, subject};
 use std::collections::{BTreeMap, BTreeSet};
 
 use brushwork_link::device::Identity;
 use brushwork_link::settings::{
     Copies, Difference, Plan, ReadReport, Refusal, Row, SaveReport, SaveVerdict, SettingValue, SettingsImage,
-    SettingsTable, Subject, WriteOptions, WriteReport, diff, plan,
+    SettingsTable, WriteOptions, WriteReport, diff, plan,
 };
 use brushwork_link::transport::Stream;
 use brushwork_mcp_wire::models;
@@ -18,6 +20,7 @@ pub struct UnitSettings {
     table: SettingsTable,
     is_simulated: bool,
     address: u8,
+    unit_address: UnitAddress,
     firmware: String,
     copies: Copies,
     /// Wanted values that differ from the controller's.
@@ -61,14 +64,15 @@ pub enum Saved {
 
 impl UnitSettings {
     pub fn new(identity: &Identity) -> Self {
-        let listed = identity.model.and_then(models::lookup);
-        let model = listed.or_else(|| models::identify(&identity.version_text));
         // Whatever answers and is not known by name has the settings that all of the family have.
-        let model = model.unwrap_or(&models::UNLISTED[0]);
+        let subject = identity
+            .subject()
+            .unwrap_or_else(|| subject(&models::UNLISTED[0], layout_of(identity.generation)));
         Self {
-            table: SettingsTable::new(Subject::new(model, identity.generation)),
+            table: SettingsTable::new(subject),
             is_simulated: identity.simulated,
             address: identity.address,
+            unit_address: identity.unit_address(),
             firmware: identity.version_text.trim_end().to_owned(),
             copies: Copies::default(),
             edits: SettingsImage::default(),
@@ -106,6 +110,11 @@ impl UnitSettings {
         self.address
     }
 
+    /// Its address as profiles carry it.
+    pub fn unit_address(&self) -> UnitAddress {
+        self.unit_address
+    }
+
     /// What the unit says of itself.
     pub fn firmware(&self) -> &str {
         &self.firmware
@@ -113,7 +122,8 @@ impl UnitSettings {
 
     /// The same unit at another address.
     pub(super) fn at(self, address: u8) -> Self {
-        Self { address, ..self }
+        let unit_address = UnitAddress::new(self.unit_address.family(), address).unwrap_or(self.unit_address);
+        Self { address, unit_address, ..self }
     }
 
     /// Whether the controller's settings were read.

@@ -1,6 +1,7 @@
 //! What a desk says of the Motion Mind that it is linked to, and what its screens ask for.
 
 use brushwork_link::settings::{SettingValue, SettingsImage};
+use brushwork_motion_mind_client::MotionMindFacts;
 use brushwork_motion_mind_wire::{Register, register_named};
 use brushwork_tuning::motion_mind::MotionMindSetup;
 use brushwork_values::Motor;
@@ -15,7 +16,7 @@ use crate::model::setpoints::Direction;
 impl Desk {
     /// The mode that a Motion Mind's switches selected at power-up.
     pub fn mode(&self) -> Option<u8> {
-        Some(self.link.identity().and_then(|identity| identity.motion_mind)?.mode.number())
+        Some(self.link.identity().and_then(MotionMindFacts::of)?.mode.number())
     }
 
     /// What of a Motion Mind can be driven from here.

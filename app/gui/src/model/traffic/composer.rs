@@ -4,7 +4,8 @@
 //! simulated controllers only. The device thread asks it again.
 
 use brushwork_link::Failure;
-use brushwork_link::exchange::packet::{Ask, Permit, gate};
+use brushwork_link::exchange::Permit;
+use brushwork_mcp_client::packet::{Ask, gate};
 use brushwork_mcp_wire::packet_serial::{
     Address, COMMANDS, Command, Effect, Generation, Request, describe_reply, describe_request, lookup,
 };

@@ -1,11 +1,11 @@
 //! A command put together by hand that changes settings: it waits until a backup of them is kept.
 
+use brushwork_mcp_client::layout_of;
 use std::time::Duration;
 
 use brushwork_link::Failure;
 use brushwork_link::device::{FnJob, Identity, Request};
-use brushwork_link::settings::{Ending, Keeper, Subject, begin_command};
-use brushwork_mcp_wire::models;
+use brushwork_link::settings::{Ending, Keeper, begin_command};
 use brushwork_mcp_wire::packet_serial::{Effect, lookup, number};
 use brushwork_values::{Value, Values};
 use crossbeam_channel::{Receiver, TryRecvError, bounded};
@@ -40,7 +40,7 @@ impl Transact {
 
     /// Whether it changes settings, in RAM or in EEPROM.
     pub fn changes_settings(&self, identity: &Identity) -> bool {
-        let effect = lookup(self.command).map(|row| row.effect(identity.generation.layout()));
+        let effect = lookup(self.command).map(|row| row.effect(layout_of(identity.generation)));
         matches!(effect, Some(Effect::Setting | Effect::Memory))
     }
 }
@@ -53,9 +53,7 @@ impl KeptCommand {
         identity: &Identity,
         keeper: Box<dyn Keeper>,
     ) -> Option<Request> {
-        let listed = identity.model.and_then(models::lookup);
-        let model = listed.or_else(|| models::identify(&identity.version_text))?;
-        let subject = Subject::new(model, identity.generation);
+        let subject = identity.subject()?;
         let saves = transact.command == number::SAVE_SETTINGS;
         let (sender, kept) = bounded(1);
         let keeper = TrialKeeper::new(keeper);

@@ -1,6 +1,6 @@
 //! The guide through the calibration of an input, in place of its settings.
 
-use brushwork_link::settings::CalibrationStage;
+use brushwork_mcp_client::settings::CalibrationStage;
 use egui::{Button, ProgressBar, RichText, Role, Ui, WidgetInfo, vec2};
 
 use super::sheet_parts::{lamp_ui, text_ui};

@@ -1,6 +1,7 @@
 //! The field of one setting: a box, a list, or an exact number.
 
 use brushwork_link::settings::{Kind, Row, SettingValue};
+use brushwork_mcp_client::model_of;
 use brushwork_mcp_wire::codes::ENCODER_PIN_NONE;
 use brushwork_values::Code;
 use egui::text::{CCursor, CCursorRange};
@@ -40,7 +41,7 @@ const ENCODER_PIN: &str = "motor{n}.encoder.pin";
 fn encoder_pins(unit: &UnitSettings) -> Vec<(SettingValue, String)> {
     let subject = unit.table().subject();
     let is_able = |index: &usize| {
-        let pin = subject.model.pins.get(*index);
+        let pin = model_of(subject).and_then(|model| model.pins.get(*index));
         pin.is_none_or(|pin| pin.is_analog() || pin.is_pulse() || pin.encoder_channel().is_some())
     };
     let pins = (0..subject.pins)

@@ -3,7 +3,8 @@
 //! Where there is room the graph stands beside the settings, else above them.
 
 use brushwork_link::device::PinSignal;
-use brushwork_link::settings::{Behind, PinMode, Row};
+use brushwork_link::settings::Row;
+use brushwork_mcp_client::settings::{Behind, PinMode};
 use brushwork_mcp_wire::packet_serial::scale;
 use egui::{
     Align, Button, ComboBox, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, UiBuilder, WidgetInfo,

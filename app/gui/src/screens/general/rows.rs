@@ -1,6 +1,7 @@
 //! The list of settings: name, field, what the controller has, the default, revert.
 
-use brushwork_link::settings::{BRIDGE_WARNING, Group, Row, SHORTEST_AUTORUN_MS, SettingValue};
+use brushwork_link::settings::{Group, Row, SettingValue};
+use brushwork_mcp_client::settings::{BRIDGE_WARNING, SHORTEST_AUTORUN_MS};
 use egui::{Align, Button, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
 use super::editor;

@@ -1,6 +1,5 @@
 //! What each act will do, shown before it is done; and what did not go as wanted, after.
 
-use brushwork_link::UnitAddress;
 use brushwork_link::settings::{Difference, Plan, diff};
 use brushwork_link::transport::Stream;
 use brushwork_mcp_wire::packet_serial::hex;
@@ -158,7 +157,7 @@ fn write_ui(ui: &mut Ui, unit: &UnitSettings, stream: Option<Stream>) -> Vec<Off
 
 /// The packets of a plan, for who wants to see them before they are sent.
 fn bytes_ui(ui: &mut Ui, unit: &UnitSettings, plan: &Plan) {
-    let Some(address) = UnitAddress::new(unit.address()) else { return };
+    let address = unit.unit_address();
     let generation = unit.table().subject().generation;
     CollapsingHeader::new("Show the bytes").show(ui, |ui| {
         for step in &plan.steps {

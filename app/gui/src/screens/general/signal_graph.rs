@@ -2,7 +2,7 @@
 //! it, and handles that bend it.
 
 use brushwork_link::device::PinSignal;
-use brushwork_link::settings::{Behind, SignalShape};
+use brushwork_mcp_client::settings::{Behind, SignalShape};
 use brushwork_mcp_wire::packet_serial::scale;
 use egui::accesskit::Action;
 use egui::{

@@ -1,6 +1,6 @@
 //! The terminal: commands in text or hex, decoded as they are typed.
 
-use brushwork_link::device::MotionMindFacts;
+use brushwork_motion_mind_client::MotionMindFacts;
 use brushwork_motion_mind_wire::Protocol;
 use egui::{ComboBox, Key, Label, RichText, ScrollArea, Ui, vec2};
 
@@ -15,8 +15,11 @@ use crate::widgets::text_field::text_field_ui;
 const ENTRY_HEIGHT: f32 = 118.0;
 
 pub fn terminal_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    let unit =
-        model.front.link.identity().and_then(|identity| Some((identity.address, identity.motion_mind?)));
+    let unit = model
+        .front
+        .link
+        .identity()
+        .and_then(|identity| Some((identity.address, MotionMindFacts::of(identity)?)));
     let Some((address, facts)) = unit else {
         return nothing_ui(ui, &not_connected_text(&model.front.phase));
     };

@@ -1,5 +1,6 @@
 //! The family's lamps in full, and what the status word says in words.
 
+use brushwork_mcp_client::is_mcp;
 use egui::{RichText, Ui};
 
 use crate::model::desk::Desk;
@@ -31,7 +32,7 @@ pub fn lamps_ui(ui: &mut Ui, desk: &Desk, columns: usize) {
 /// What the home lamps go by.
 fn note(desk: &Desk) -> Option<&'static str> {
     let identity = desk.link.identity()?;
-    if !identity.is_mcp() {
+    if !is_mcp(identity) {
         return None;
     }
     Some(match desk.watch.homed() {

@@ -1,7 +1,7 @@
 //! The one sentence that says why the motors do not run and what to do, and the reasons behind it.
 
-use brushwork_link::device::Lamp;
-use brushwork_link::diagnosis::{Finding, Hindrance, diagnose};
+use brushwork_mcp_client::diagnosis::{Finding, Hindrance, diagnose};
+use brushwork_mcp_wire::packet_serial::status::Lamp;
 use egui::{Frame, Label, Margin, RichText, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 use crate::command::{Command, Commands};

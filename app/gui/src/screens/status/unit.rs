@@ -1,6 +1,7 @@
 //! Who the unit is, and how its link does.
 
 use brushwork_link::device::StatusReport;
+use brushwork_motion_mind_client::MotionMindFacts;
 use egui::{Grid, Label, RichText, Ui};
 
 use crate::family::Ability;
@@ -47,7 +48,8 @@ pub fn unit_ui(ui: &mut Ui, desk: &Desk) {
             ),
         ),
     ];
-    let switches = identity.motion_mind.map(|facts| format!("{}; {} protocol", facts.mode, facts.protocol));
+    let switches =
+        MotionMindFacts::of(identity).map(|facts| format!("{}; {} protocol", facts.mode, facts.protocol));
     let switches = switches.map(|text| ("Switches", text));
     let weak = Palette::of(ui).weak_text;
     Grid::new("unit").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {

@@ -11,7 +11,8 @@ use brushwork_core::session::SessionError;
 use brushwork_gui::App;
 use brushwork_gui::model::Model;
 use brushwork_gui::parts::{OpenLink, Opener, Parts, PortSource, SimulatedWorld};
-use brushwork_link::device::{Addresses, DeviceLoop, DeviceOptions, FamilyChoice};
+use brushwork_link::FamilyChoice;
+use brushwork_link::device::{Addresses, DeviceLoop, DeviceOptions};
 use brushwork_link::transport::{ConnectTarget, OpenError, PortInfo, Stream};
 use brushwork_link::{Clock as _, Failure, HiddenSettings};
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
@@ -461,6 +462,8 @@ impl Opener for BenchOpener {
                 };
                 let gate = Gate::new(line.clock.clone());
                 let transport = Box::new(line.through(gate.clone()));
+                super::install_families();
+                super::install_families();
                 let (device_loop, device) = DeviceLoop::new(transport, Arc::new(gate.clone()), options);
                 *self.loops[which].borrow_mut() = Some(Lockstep::new(gate, device_loop));
                 let world = simulated.then(|| Arc::new(BenchWorld::new(line.clone())) as _);
@@ -478,12 +481,13 @@ impl BenchOpener {
     fn open_minds(&self, addresses: Addresses) -> OpenLink {
         let options = DeviceOptions {
             addresses,
-            family: FamilyChoice::MotionMind,
+            family: FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND),
             simulated: true,
             ..DeviceOptions::default()
         };
         let gate = Gate::new(self.minds.clock.clone());
         let transport = Box::new(self.minds.through(gate.clone()));
+        super::install_families();
         let (device_loop, device) = DeviceLoop::new(transport, Arc::new(gate.clone()), options);
         *self.loops[2].borrow_mut() = Some(Lockstep::new(gate, device_loop));
         OpenLink { device, world: Some(Arc::new(MindWorld(self.minds.clone()))) }

@@ -7,3 +7,8 @@ pub mod cpu;
 pub mod line;
 pub mod lockstep;
 pub mod wait;
+
+/// Names the families that this window's tests have.
+pub fn install_families() {
+    brushwork_link::install(&[brushwork_mcp_client::MCP, brushwork_motion_mind_client::MOTION_MIND]);
+}

@@ -1,7 +1,7 @@
 //! Running a job: the wire it gets, what breaks into it, and the motors stopped on every way out, a panic included.
 
 use super::state::{DeviceLoop, Phase};
-use crate::device::MotionMindFacts;
+use crate::device::Facts;
 use crate::device::channel::Sample;
 use crate::device::drive::Drive;
 use crate::device::event::{DisarmReason, Event};
@@ -252,8 +252,8 @@ impl JobHost for Host<'_> {
         self.identity().generation
     }
 
-    fn motion_mind(&self) -> Option<MotionMindFacts> {
-        self.identity().motion_mind
+    fn facts(&self) -> Facts {
+        self.identity().facts.clone()
     }
 
     fn is_simulated(&self) -> bool {

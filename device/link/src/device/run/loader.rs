@@ -3,7 +3,7 @@
 use super::state::{DeviceLoop, Phase};
 use crate::device::controller::Line;
 use crate::device::event::{DisarmReason, Event};
-use crate::exchange::packet::Permit;
+use crate::exchange::Permit;
 use crate::failure::Failure;
 use std::time::Duration;
 

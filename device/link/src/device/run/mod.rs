@@ -16,7 +16,7 @@ mod thread;
 pub use state::{DeviceLoop, Step};
 pub use thread::DeviceThread;
 
-use super::controller::{Controller, Described, DiscoverError, Family, Line};
+use super::controller::{Controller, Described, DiscoverError, Line, Search};
 use super::drive::ArmScope;
 use super::event::{DisarmReason, Event};
 use super::family::AnyFamily;
@@ -25,7 +25,7 @@ use super::options::DeviceOptions;
 use super::outbox::Outbox;
 use super::signals::{Guard, Signals};
 use crate::clock::Clock;
-use crate::exchange::packet::Permit;
+use crate::exchange::Permit;
 use crate::exchange::{Exchange, ExchangeError, Interruption, Watch};
 use crate::failure::Failure;
 use crate::transport::Transport;
@@ -61,7 +61,7 @@ impl DeviceLoop {
         transport: Box<dyn Transport>,
         clock: Arc<dyn Clock>,
         options: DeviceOptions,
-        family: Box<dyn Family>,
+        family: Box<dyn Search>,
     ) -> (Self, DeviceHandle) {
         Self::with_family(transport, clock, options, family).0
     }
@@ -71,7 +71,7 @@ impl DeviceLoop {
         transport: Box<dyn Transport>,
         clock: Arc<dyn Clock>,
         options: DeviceOptions,
-        family: Box<dyn Family>,
+        family: Box<dyn Search>,
     ) -> ((Self, DeviceHandle), Receiver<()>) {
         let (signals, woken) = Signals::new(clock.clone());
         let (requests, inbox) = bounded(options.request_capacity.max(1));
@@ -338,6 +338,3 @@ impl DeviceLoop {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

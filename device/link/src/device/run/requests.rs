@@ -9,7 +9,6 @@ use crate::device::request::Request;
 use crate::device::signals::MOTION_LIFE;
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
-use crate::unit::UnitAddress;
 use brushwork_values::{Motor, Value};
 use std::time::Duration;
 
@@ -79,8 +78,8 @@ impl DeviceLoop {
     fn select(&mut self, address: u8) {
         let found = self.units.iter().position(|unit| unit.controller.identity().address == address);
         let Some(index) = found else {
-            let place =
-                UnitAddress::new(address).map_or_else(|| address.to_string(), |place| place.to_string());
+            let family = self.units.first().map(|unit| unit.controller.identity().family);
+            let place = family.map_or_else(|| address.to_string(), |family| family.address_text(address));
             let failure = Failure::new(
                 format!("select the unit {place}"),
                 self.exchange.port(),

@@ -3,7 +3,7 @@
 use super::stop_again::StopAgain;
 use super::sweep::{Plan, Sweep};
 use crate::clock::Clock;
-use crate::device::controller::{Controller, Family};
+use crate::device::controller::{Controller, Search};
 use crate::device::drive::ArmScope;
 use crate::device::handle::Envelope;
 use crate::device::options::DeviceOptions;
@@ -37,7 +37,7 @@ pub struct DeviceLoop {
     pub(super) inbox: Receiver<Envelope>,
     pub(super) waiting: VecDeque<Envelope>,
     pub(super) outbox: Outbox,
-    pub(super) family: Box<dyn Family>,
+    pub(super) family: Box<dyn Search>,
     pub(super) options: DeviceOptions,
     pub(super) stream: Option<Stream>,
     pub(super) units: Vec<Unit>,

@@ -2,7 +2,7 @@
 
 use super::state::{DeviceLoop, Step};
 use crate::clock::Clock;
-use crate::device::controller::Family;
+use crate::device::controller::Search;
 use crate::device::event::{DisarmReason, Event};
 use crate::device::family::AnyFamily;
 use crate::device::handle::DeviceHandle;
@@ -34,7 +34,7 @@ impl DeviceThread {
         transport: Box<dyn Transport>,
         clock: Arc<dyn Clock>,
         options: DeviceOptions,
-        family: Box<dyn Family>,
+        family: Box<dyn Search>,
     ) -> io::Result<DeviceHandle> {
         let name = format!("device {}", transport.describe());
         let ((device_loop, mut handle), woken) =

@@ -6,8 +6,8 @@ use super::super::subject::Subject;
 use super::super::table::SettingsTable;
 use super::content::Profile;
 use super::error::{Problem, ProfileError};
+use crate::family::Model;
 use crate::unit::FirmwareGeneration;
-use brushwork_mcp_wire::models::Model;
 
 /// What a profile asks of a controller.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,10 +78,7 @@ impl Profile {
 pub fn model_misfit(profile: &Model, connected: &Model) -> String {
     format!(
         "The profile was made for the {} ({}), the connected controller is the {} ({}).",
-        profile.name,
-        profile.rating(),
-        connected.name,
-        connected.rating()
+        profile.name, profile.rating, connected.name, connected.rating
     )
 }
 

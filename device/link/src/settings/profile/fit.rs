@@ -1,9 +1,7 @@
 //! A profile made for one controller, fitted to another: other model, other firmware generation, other numbers
 //! of pins, streams and outputs. Every change is told in a sentence.
 
-use brushwork_mcp_wire::codes::ENCODER_PIN_NONE;
-use brushwork_mcp_wire::models::Pin;
-
+use super::super::family::{FamilySettings, Fit};
 use super::super::image::SettingsImage;
 use super::super::kind::Kind;
 use super::super::row::{Group, Row};
@@ -53,12 +51,6 @@ struct LeftOut {
     worth_naming: Vec<String>,
 }
 
-/// Where a setting goes.
-enum Place {
-    Key(String),
-    Nowhere,
-}
-
 impl<'f> Fitter<'f> {
     fn new(profile: &'f Profile, to: &'f SettingsTable) -> Self {
         Self {
@@ -90,62 +82,23 @@ impl<'f> Fitter<'f> {
         let mut moved_pins = Vec::new();
         for row in &rows {
             let Some(value) = self.profile.settings.get(&row.key) else { continue };
-            match self.place(row) {
-                Place::Key(key) => {
-                    if let Some(there) = self.to.row(&key).cloned() {
-                        self.note_moved_pin(row, &there, &mut moved_pins);
-                        self.take(row, &there, value);
-                    } else {
-                        self.leave_out(row, value);
-                    }
+            let key = self.family().key_there(&self.fit(), row);
+            match key.and_then(|key| self.to.row(&key).cloned()) {
+                Some(there) => {
+                    self.note_moved_pin(row, &there, &mut moved_pins);
+                    self.take(row, &there, value);
                 }
-                Place::Nowhere => self.leave_out(row, value),
+                None => self.leave_out(row, value),
             }
         }
     }
 
-    fn place(&self, row: &Row) -> Place {
-        match (&row.instance, row.group) {
-            (Some(instance), Group::Pins) => match self.pin_place(instance.number - 1) {
-                Some(pin) => Place::Key(row.pattern.replace("{n}", &(pin + 1).to_string())),
-                None => Place::Nowhere,
-            },
-            _ => Place::Key(row.key.clone()),
-        }
+    fn family(&self) -> &'static dyn FamilySettings {
+        self.to.subject().family().settings()
     }
 
-    /// The pin over there, from 0, that stands for a pin of the profile: the one of the same encoder channel for
-    /// what serves as an encoder, the one of the same name for everything else.
-    fn pin_place(&self, pin: usize) -> Option<usize> {
-        let (from, to) = self.subjects();
-        if from.model == to.model {
-            return (pin < to.pins).then_some(pin);
-        }
-        let wanted = from.model.pins.get(pin)?;
-        let there = if self.serves_encoder(pin) {
-            to.model
-                .pins
-                .iter()
-                .position(|other| channel(other).is_some() && channel(other) == channel(wanted))
-        } else {
-            let named = to.model.pins.iter().position(|other| other.name() == wanted.name());
-            // That one is taken by an encoder of the profile.
-            named.filter(|named| !self.is_encoder_place(*named))
-        };
-        there.filter(|there| *there < to.pins)
-    }
-
-    fn serves_encoder(&self, pin: usize) -> bool {
-        let kind = self.profile.settings.get(&format!("pin.{}.type", pin + 1));
-        kind == Some(SettingValue::Choice("encoder"))
-            && self.profile.subject.model.pins.get(pin).is_some_and(|pin| channel(pin).is_some())
-    }
-
-    fn is_encoder_place(&self, there: usize) -> bool {
-        let (from, to) = self.subjects();
-        let Some(wanted) = to.model.pins.get(there).and_then(channel) else { return false };
-        (0..from.model.pins.len())
-            .any(|pin| self.serves_encoder(pin) && channel(&from.model.pins[pin]) == Some(wanted))
+    fn fit(&self) -> Fit<'f> {
+        Fit { profile: self.profile, to: self.to }
     }
 
     fn note_moved_pin(&mut self, row: &Row, there: &Row, moved: &mut Vec<usize>) {
@@ -161,9 +114,9 @@ impl<'f> Fitter<'f> {
         let Some(value) = self.translated(row, there, value) else {
             return self.leave_out(row, value);
         };
-        if let Some(why) = self.impossible_type(there, value) {
+        if let Some((instead, why)) = self.family().impossible_there(&self.fit(), there, value) {
             self.changes.push(why);
-            self.image.set(&there.key, SettingValue::Choice("none"));
+            self.image.set(&there.key, instead);
             return;
         }
         let (from, to) = self.subjects();
@@ -188,52 +141,13 @@ impl<'f> Fitter<'f> {
 
     /// The value in the words of the other row; `None` when it means nothing there.
     fn translated(&self, row: &Row, there: &Row, value: SettingValue) -> Option<SettingValue> {
-        if row.pattern == "motor{n}.encoder.pin" {
-            return self.encoder_pin(value);
-        }
-        match (there.kind, value) {
+        match (there.kind, self.family().value_there(&self.fit(), row, value)?) {
             (Kind::Int, SettingValue::Number(number)) if number.fract() == 0.0 => {
                 Some(SettingValue::Int(number as i64))
             }
             (Kind::Fixed { .. }, SettingValue::Int(number)) => Some(SettingValue::Number(number as f64)),
-            _ => Some(value),
+            (_, value) => Some(value),
         }
-    }
-
-    /// Encoder inputs are numbers in the pin list, which is another one there.
-    fn encoder_pin(&self, value: SettingValue) -> Option<SettingValue> {
-        let (from, to) = self.subjects();
-        let SettingValue::Int(number) = value else { return Some(value) };
-        if from.model == to.model || number == ENCODER_PIN_NONE {
-            return Some(value);
-        }
-        let wanted = from.model.pins.get(usize::try_from(number).ok()?)?;
-        let by_channel = |pin: &Pin| channel(wanted).is_some() && channel(pin) == channel(wanted);
-        let by_name = |pin: &Pin| channel(wanted).is_none() && pin.name() == wanted.name();
-        let there = to.model.pins.iter().position(|pin| by_channel(pin) || by_name(pin))?;
-        i64::try_from(there).ok().map(SettingValue::Int)
-    }
-
-    /// Why an input cannot have the type that the profile wants of it.
-    fn impossible_type(&self, there: &Row, value: SettingValue) -> Option<String> {
-        if there.pattern != "pin.{n}.type" || self.profile.subject.model == self.to.subject().model {
-            return None;
-        }
-        let pin = self.to.subject().model.pins.get(there.instance.as_ref()?.number - 1)?;
-        let is_possible = match value {
-            SettingValue::Choice("analog") => pin.is_analog(),
-            SettingValue::Choice("pulse") => pin.is_pulse(),
-            SettingValue::Choice("encoder") => channel(pin).is_some(),
-            _ => true,
-        };
-        (!is_possible).then(|| {
-            format!(
-                "{} cannot be {} on the {}; it measures nothing instead.",
-                pin.label,
-                there.format_bare(value).to_lowercase(),
-                self.to.subject().model.name
-            )
-        })
     }
 
     fn leave_out(&mut self, row: &Row, value: SettingValue) {
@@ -264,10 +178,6 @@ impl<'f> Fitter<'f> {
             self.changes.push(format!("{there} has no place for {thing}: {settings} left out ({lost})."));
         }
     }
-}
-
-fn channel(pin: &Pin) -> Option<(u8, char)> {
-    pin.encoder_channel()
 }
 
 fn is_same_number(value: SettingValue, fitted: SettingValue) -> bool {

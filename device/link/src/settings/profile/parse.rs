@@ -3,10 +3,8 @@
 
 use std::collections::HashSet;
 
+use crate::family::{FamilyRef, Model, families, model_named};
 use crate::unit::{FirmwareGeneration, UnitAddress};
-use brushwork_mcp_wire::models;
-use brushwork_mcp_wire::models::Model;
-use brushwork_mcp_wire::packet_serial::Generation;
 
 use super::super::image::SettingsImage;
 use super::super::kind::Kind;
@@ -107,8 +105,10 @@ impl Reader<'_> {
 
     fn profile(&mut self, members: &Members) -> Option<Profile> {
         let model = self.model(members);
-        let generation = self.generation(members, model);
-        let address = self.address(members, model);
+        // Where the model is not known, the first family's numbers are those that most files have.
+        let family = model.map(|model| model.family).or(families().first().copied())?;
+        let generation = self.generation(members, family);
+        let address = self.address(members, family);
         let firmware = self.string(members, "firmware");
         let date = self.string(members, "date");
         let (unit, note) = (self.string(members, "unit"), self.string(members, "note"));
@@ -129,9 +129,10 @@ impl Reader<'_> {
 
     fn model(&mut self, members: &Members) -> Option<&'static Model> {
         let key = self.string(members, "model")?;
-        let model = models::lookup(&key);
+        let model = model_named(&key);
         if model.is_none() {
-            let known: Vec<&str> = models::MODELS.iter().map(|model| model.key).collect();
+            let known = families().iter().flat_map(|family| family.models()).map(|model| model.key);
+            let known: Vec<&str> = known.collect();
             self.problem(
                 "model",
                 format!("{} is no known model; known are {}.", quote(&key), known.join(", ")),
@@ -140,33 +141,25 @@ impl Reader<'_> {
         model
     }
 
-    fn generation(&mut self, members: &Members, model: Option<&Model>) -> Option<FirmwareGeneration> {
+    fn generation(&mut self, members: &Members, family: FamilyRef) -> Option<FirmwareGeneration> {
         let number = self.int(members, "generation")?;
-        let byte = u8::try_from(number).ok();
-        if model.is_some_and(|model| !model.family.speaks_packets()) {
-            let revision = byte.map(|revision| FirmwareGeneration::MotionMind { revision });
-            if revision.is_none() {
-                self.problem(
-                    "generation",
-                    format!("{number} is no revision of firmware; there are 0 to 255."),
-                );
+        match family.check_generation(number) {
+            Ok(number) => Some(FirmwareGeneration::new(family, number)),
+            Err(why) => {
+                self.problem("generation", format!("{number} {why}."));
+                None
             }
-            return revision;
         }
-        let generation = byte.and_then(Generation::from_number);
-        if generation.is_none() {
-            self.problem("generation", format!("{number} is no firmware generation; there are 1 to 4."));
-        }
-        generation.map(FirmwareGeneration::from)
     }
 
-    fn address(&mut self, members: &Members, model: Option<&Model>) -> Option<UnitAddress> {
+    fn address(&mut self, members: &Members, family: FamilyRef) -> Option<UnitAddress> {
         let text = self.string(members, "address")?;
-        let packets = model.is_none_or(|model| model.family.speaks_packets());
-        let address = UnitAddress::parse(&text).filter(|address| address.packets().is_some() == packets);
+        let address = UnitAddress::parse(family, &text);
         if address.is_none() {
-            let there_are = if packets { "there are 0x80 to 0x87" } else { "there are 0 to 98" };
-            self.problem("address", format!("{} is no address; {there_are}.", quote(&text)));
+            self.problem(
+                "address",
+                format!("{} is no address; there are {}.", quote(&text), family.addresses()),
+            );
         }
         address
     }

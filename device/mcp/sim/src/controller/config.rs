@@ -96,7 +96,7 @@ fn set_input_for(
 ) {
     const ROBOCLAW_ABSOLUTE: u8 = 1;
     match (family, signals.get_mut(usize::from(motor.encoder_mode))) {
-        (Family::RoboClaw | Family::MotionMind, _) => {
+        (Family::RoboClaw, _) => {
             motor.encoder_mode = if kind == EncoderKind::Quadrature { 0 } else { ROBOCLAW_ABSOLUTE };
         }
         (Family::Mcp, Some(signal)) => {
@@ -125,7 +125,7 @@ impl FirmwareOptions {
     /// The number alone, without the "v".
     pub(super) fn version_number(&self, model: &Model) -> &str {
         let shown = match model.family {
-            Family::Mcp | Family::MotionMind => "1.0.0",
+            Family::Mcp => "1.0.0",
             Family::RoboClaw => "4.2.8",
         };
         self.version.as_deref().unwrap_or(shown)

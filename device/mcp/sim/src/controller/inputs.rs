@@ -59,7 +59,7 @@ impl Firmware {
         let before = self.source;
         self.source = match self.model.family {
             Family::Mcp => priority::select(self.settings.priority, self.activity()),
-            Family::RoboClaw | Family::MotionMind => Some((0, Source::Serial)),
+            Family::RoboClaw => Some((0, Source::Serial)),
         };
         if before.is_some() && before.map(|(_, source)| source) != self.source.map(|(_, source)| source) {
             self.stop_what_no_script_drives();
@@ -200,7 +200,7 @@ impl Firmware {
         let index = usize::from(mode);
         let own = self.readings.plugs[motor.index()];
         match (self.model.family, self.settings.signals.get(index)) {
-            (Family::RoboClaw | Family::MotionMind, _) => roboclaw_encoder(mode, own),
+            (Family::RoboClaw, _) => roboclaw_encoder(mode, own),
             (Family::Mcp, None) => EncoderInput::Quadrature(0),
             (Family::Mcp, Some(pin)) => match (pin.kind, pin.digital) {
                 (KIND_ENCODER, false) => EncoderInput::Quadrature(self.counts[index]),

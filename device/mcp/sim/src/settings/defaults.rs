@@ -69,11 +69,11 @@ impl Settings {
                 kind: if model.stream_shares_encoder(index) { STREAM_DISABLED } else { STREAM_PACKET_SERIAL },
                 rate_bps: match model.family {
                     Family::Mcp => MCP_RATE_BPS,
-                    Family::RoboClaw | Family::MotionMind => ROBOCLAW_RATE_BPS,
+                    Family::RoboClaw => ROBOCLAW_RATE_BPS,
                 },
                 timeout_ms: match model.family {
                     Family::Mcp => TIMEOUT_MS,
-                    Family::RoboClaw | Family::MotionMind => 0,
+                    Family::RoboClaw => 0,
                 },
                 ..StreamSettings::default()
             }),
@@ -149,7 +149,7 @@ impl Default for StreamSettings {
 fn default_encoder(model: &Model, motor_number: u8) -> u8 {
     let own = model.pins.iter().position(|pin| pin.encoder_channel() == Some((motor_number, 'A')));
     match model.family {
-        Family::RoboClaw | Family::MotionMind => 0,
+        Family::RoboClaw => 0,
         Family::Mcp => own.and_then(|index| u8::try_from(index).ok()).unwrap_or(ENCODER_PIN_NONE as u8),
     }
 }

@@ -22,6 +22,5 @@ pub const fn image_sizes(family: Family) -> &'static [usize] {
     match family {
         Family::Mcp => &[0xF_0000],
         Family::RoboClaw => &[0x8000, 0x1_0000],
-        Family::MotionMind => &[],
     }
 }

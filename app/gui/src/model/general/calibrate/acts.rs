@@ -1,7 +1,8 @@
 //! What General Settings does while an input is calibrated.
 
 use brushwork_link::device::PinSignal;
-use brushwork_link::settings::{Calibration, SettingsImage, WriteReport, open_range};
+use brushwork_link::settings::{SettingsImage, WriteReport};
+use brushwork_mcp_client::settings::{Calibration, open_range};
 
 use super::{Phase, Run, closed, left_open, want_back};
 use crate::model::general::General;
@@ -66,8 +67,8 @@ impl General {
         let Some(run) = &mut self.calibration else { return };
         let Phase::Moving(calibration) = &mut run.phase else { return };
         let refused = match calibration.stage() {
-            brushwork_link::settings::CalibrationStage::Ends => calibration.take_ends().err(),
-            brushwork_link::settings::CalibrationStage::Center => match calibration.take_center() {
+            brushwork_mcp_client::settings::CalibrationStage::Ends => calibration.take_ends().err(),
+            brushwork_mcp_client::settings::CalibrationStage::Center => match calibration.take_center() {
                 Ok(found) => {
                     run.found = Some(found);
                     run.phase = Phase::Closing;

@@ -1,0 +1,195 @@
+//! Whether motion may be allowed: only when the controller itself stops the motors after this program has died.
+//!
+//! Assumed: that a stream's time-out stops the motors when no lower priority level is active. The manual says only that the
+//! next level takes over (MCP manual 1.9.3, commands 139 and 145); this is our reading of "none takes over".
+
+use crate::can::{MASTER_LIMIT, Monitor, Place};
+use crate::controller::speaker::{Speaker, Wire};
+use brushwork_link::device::controller::{ArmCheck, Line};
+use brushwork_link::exchange::ExchangeError;
+use brushwork_link::failure::Failure;
+use brushwork_link::transport::Stream;
+use brushwork_mcp_wire::packet_serial::status;
+use brushwork_mcp_wire::packet_serial::status::{Condition, Severity};
+use brushwork_mcp_wire::packet_serial::{Generation, number, scale};
+use brushwork_values::{Motor, Values};
+use std::time::Duration;
+
+/// The stream type "packet serial" and the priority "serial" on the wire (MCP manual 2.3.1, commands 139 and 145).
+const PACKET_SERIAL: i64 = 1;
+const PRIORITY_SERIAL: i64 = 1;
+
+/// Why motors may not be moved, and what to do about it.
+struct Objection {
+    came_back: String,
+    mend: String,
+}
+
+/// Reads everything arming depends on, and lists all that speaks against it.
+pub fn check(
+    speaker: Speaker,
+    monitor: Option<&Monitor>,
+    line: &mut Line<'_>,
+    stream: Option<Stream>,
+    on: &str,
+) -> Result<ArmCheck, ExchangeError> {
+    let mut objections = Vec::new();
+    let watchdog = match (speaker.wire, monitor) {
+        (Wire::Objects(place), Some(monitor)) => node_watchdog(place, monitor, line)?,
+        _ => {
+            // Over CAN, functions act at all priority levels (MCP manual 1.9.4).
+            objections.extend(object_to_priorities(speaker, line)?);
+            watchdog(speaker, line, stream)?
+        }
+    };
+    let controller_timeout = watchdog.map_err(|objection| objections.insert(0, objection)).ok();
+    objections.extend(faults(speaker, line)?.into_iter().map(|fault| {
+        object(format!("the controller reports {fault}"), "Remove the cause and reset the error first")
+    }));
+    let warnings = if objections.is_empty() { coasting(speaker, line)? } else { Vec::new() };
+    let failure =
+        |objection: Objection| Failure::new("arm the motors", on, objection.came_back, objection.mend);
+    Ok(ArmCheck { reasons: objections.into_iter().map(failure).collect(), controller_timeout, warnings })
+}
+
+/// The same for a node of a CAN bus, where the manual has no time-out ("Priority Timeout - Disabled", MCP manual 1.9.4). CANopen has one: a node
+/// may watch a master's heartbeat. Whether a real controller does so, and whether it stops its motors then, nobody has said, so
+/// only a simulated one is armed.
+fn node_watchdog(
+    place: Place,
+    monitor: &Monitor,
+    line: &mut Line<'_>,
+) -> Result<Result<Duration, Objection>, ExchangeError> {
+    if !line.permit().guesses {
+        return Ok(Err(object(
+            "over CANopen the controller has no time-out (MCP manual 1.9.4), so the motors would run on if this program died",
+            "Drive it over USB or a serial port; settings and readings work over CANopen too",
+        )));
+    }
+    match place.watch_master(line) {
+        Ok(()) => {
+            monitor.beat(true);
+            Ok(Ok(MASTER_LIMIT))
+        }
+        Err(error) if error.is_link_lost() || error.interruption().is_some() => Err(error),
+        Err(_) => Ok(Err(object(
+            "the node does not watch this program's heartbeat, so the motors would run on if this program died",
+            "Drive it over USB or a serial port",
+        ))),
+    }
+}
+
+/// After how much silence on this port the controller stops the motors.
+fn watchdog(
+    speaker: Speaker,
+    line: &mut Line<'_>,
+    stream: Option<Stream>,
+) -> Result<Result<Duration, Objection>, ExchangeError> {
+    let streams = speaker.ask_if_known(line, number::READ_STREAMS, &[])?;
+    if let Some(reply) = streams.filter(|reply| reply.values.records().next().is_some()) {
+        return Ok(of_streams(&reply.values, stream));
+    }
+    // RoboClaw has one time-out for all ports. No source says which generation brought it, so generation 1 is asked too.
+    let asker = Speaker { generation: speaker.generation.max(Generation::Gen2), ..speaker };
+    let Some(reply) = asker.ask_if_known(line, number::READ_SERIAL_TIMEOUT, &[])? else {
+        return Ok(Err(unreadable()));
+    };
+    Ok(match reply.values.int("timeout") {
+        0 => Err(object(
+            "the serial time-out is 0, so the motors would run on if this program died",
+            "Set the serial time-out in General Settings, to 1 s for example",
+        )),
+        raw => Ok(Duration::from_secs_f64(raw as f64 * scale::DECISECOND_S)),
+    })
+}
+
+/// Judges the streams of an MCP. A stream that is not known passes when every one that it could be has a time-out; the
+/// longest counts.
+fn of_streams(streams: &Values, stream: Option<Stream>) -> Result<Duration, Objection> {
+    let possible = streams.records().zip(Stream::ALL).filter(|(record, candidate)| match stream {
+        Some(stream) => *candidate == stream,
+        None => record.int("type") == PACKET_SERIAL,
+    });
+    let mut longest = None;
+    for (record, candidate) in possible {
+        if record.int("type") != PACKET_SERIAL {
+            return Err(object(
+                format!("{candidate} is not set to packet serial, so this port cannot be {candidate}"),
+                "Choose the connector that this port is really wired to",
+            ));
+        }
+        let timeout_ms = u64::try_from(record.int("timeout")).unwrap_or(0);
+        if timeout_ms == 0 {
+            return Err(no_timeout(candidate, stream.is_some()));
+        }
+        longest = longest.max(Some(Duration::from_millis(timeout_ms)));
+    }
+    longest.ok_or_else(unreadable)
+}
+
+fn no_timeout(candidate: Stream, is_known: bool) -> Objection {
+    if is_known {
+        object(
+            format!("the time-out of {candidate} is 0, so the motors would run on if this program died"),
+            format!("Set the priority time-out of {candidate} in General Settings, to 1000 ms for example"),
+        )
+    } else {
+        object(
+            format!(
+                "nobody said which connector of the controller this port is, and {candidate} has no time-out"
+            ),
+            "Choose the connector, or give it with the port: \",stream=usb\"",
+        )
+    }
+}
+
+fn unreadable() -> Objection {
+    object(
+        "the controller does not tell its serial time-out, so nobody knows whether the motors would stop if this program \
+         died",
+        "Drive this controller with another program that you can watch",
+    )
+}
+
+/// Serial must be in one of the priority levels. A unit without such levels has nothing to object to.
+fn object_to_priorities(speaker: Speaker, line: &mut Line<'_>) -> Result<Option<Objection>, ExchangeError> {
+    let Some(priorities) = speaker.ask_if_known(line, number::READ_PRIORITIES, &[])? else {
+        return Ok(None);
+    };
+    let has_serial = priorities.values.ints().any(|level| level == PRIORITY_SERIAL);
+    Ok((!has_serial).then(|| {
+        object(
+            "Serial is in none of the three priority levels, so the controller does not take its motion from this port",
+            "Set priority level 1 to Serial in General Settings",
+        )
+    }))
+}
+
+fn object(came_back: impl Into<String>, mend: impl Into<String>) -> Objection {
+    Objection { came_back: came_back.into(), mend: mend.into() }
+}
+
+/// Motors in torque control, which inductance and resistance switch on (MCP manual 1.2.11). Assumed: duty 0 is then a current of
+/// 0, so that Stop lets them coast.
+fn coasting(speaker: Speaker, line: &mut Line<'_>) -> Result<Vec<String>, ExchangeError> {
+    let mut warnings = Vec::new();
+    let reads = [number::READ_INDUCTANCE_RESISTANCE_M1, number::READ_INDUCTANCE_RESISTANCE_M2];
+    for (motor, command) in Motor::BOTH.into_iter().zip(reads) {
+        let reply = speaker.ask_if_known(line, command, &[])?;
+        if reply.is_some_and(|reply| reply.values.ints().all(|value| value != 0)) {
+            warnings.push(format!("{motor} is in torque control: Stop lets it coast instead of braking it."));
+        }
+    }
+    Ok(warnings)
+}
+
+/// What the controller has stopped motors for.
+fn faults(speaker: Speaker, line: &mut Line<'_>) -> Result<Vec<&'static str>, ExchangeError> {
+    let Some(reply) = speaker.ask_if_known(line, number::READ_STATUS, &[])? else {
+        return Ok(Vec::new());
+    };
+    let word = u32::try_from(reply.values.int("status")).unwrap_or(0);
+    let conditions = status::decode(word, speaker.generation);
+    let faults = conditions.iter().filter(|condition| condition.severity() == Severity::Error);
+    Ok(faults.map(Condition::title).collect())
+}

@@ -1,0 +1,280 @@
+//! Finding the units of a link: which addresses answer, whether they are one unit, and who each is.
+
+use crate::can::{Monitor, Place};
+use crate::controller::speaker::{Speaker, Wire};
+use crate::controller::unit::Mcp;
+use crate::controller::{generation, polling, stopping};
+use crate::{MCP, McpFacts, firmware_of as generation_number};
+use brushwork_link::device::StopBytes;
+use brushwork_link::device::controller::{Controller, DiscoverError, Line, Search};
+use brushwork_link::device::{Addresses, DeviceOptions};
+use brushwork_link::device::{Facts, Identity};
+use brushwork_link::exchange::{ExchangeError, RETRIES};
+use brushwork_link::failure::Failure;
+use brushwork_link::transport::Stream;
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::models::Model;
+use brushwork_mcp_wire::packet_serial::{Address, Generation, number};
+use std::time::Duration;
+
+/// MCP and RoboClaw controllers.
+#[derive(Debug, Default)]
+pub struct PacketSerial;
+
+/// A scan asks each address once more than this; most of the eight have nobody to answer.
+const SCAN_RETRIES: u32 = 1;
+/// How much longer a reply may take when nobody has answered before: a computer under load leaves no process its turn
+/// within the usual time, and a controller may just be starting. Nobody is asked twice who has answered.
+const PATIENCE: [Duration; 3] = [Duration::ZERO, Duration::from_millis(150), Duration::from_millis(500)];
+/// The same for a scan of all addresses, which would take eight times as long.
+const SCAN_PATIENCE: [Duration; 2] = [Duration::ZERO, Duration::from_millis(150)];
+
+impl Search for PacketSerial {
+    fn discover(
+        &mut self,
+        line: &mut Line<'_>,
+        options: &DeviceOptions,
+    ) -> Result<Vec<Box<dyn Controller>>, DiscoverError> {
+        let units = find(line, options);
+        line.exchange().set_patience(Duration::ZERO);
+        units
+    }
+
+    fn stop_bytes(&self, addresses: Addresses) -> StopBytes {
+        let speaker = |address| Speaker::packets(address, Generation::Gen1);
+        // Nobody knows yet who runs scripts; the device thread ends them once it does.
+        let each = |address| stopping::bytes(speaker(address), false, false);
+        let told = |address: &Address| match addresses {
+            Addresses::These(set) => set.contains(address.get()),
+            Addresses::Scan | Addresses::Only(_) | Addresses::Factory => true,
+        };
+        Address::ALL.into_iter().filter(told).map(each).reduce(StopBytes::with).unwrap_or_default()
+    }
+}
+
+fn find(line: &mut Line<'_>, options: &DeviceOptions) -> Result<Vec<Box<dyn Controller>>, DiscoverError> {
+    let heard_before = line.exchange().statistics().bytes_in;
+    let answers = scan(line, options.addresses)?;
+    if answers.is_empty() {
+        let heard = line.exchange().statistics().bytes_in - heard_before;
+        return Err(DiscoverError::NothingThere(nothing_there(line, options.addresses, heard)));
+    }
+    let one_unit = is_one_unit(line, &answers, options.stream)?;
+    let mut units: Vec<Box<dyn Controller>> = Vec::new();
+    for (address, version) in &answers {
+        let mut unit = identify(line, *address, version, options.simulated)?;
+        if one_unit {
+            let others = answers.iter().map(|(other, _)| other.get()).filter(|other| *other != address.get());
+            unit.identity.also_answers = others.collect();
+        }
+        units.push(Box::new(unit));
+        if one_unit {
+            break;
+        }
+    }
+    Ok(units)
+}
+
+/// The addresses that answer with a version, and their answers. A line that needed patience keeps it until all units
+/// are known.
+fn scan(line: &mut Line<'_>, addresses: Addresses) -> Result<Vec<(Address, String)>, ExchangeError> {
+    let (candidates, patience) = match addresses {
+        Addresses::Scan => (Address::ALL.to_vec(), &SCAN_PATIENCE[..]),
+        Addresses::Only(byte) => (Address::new(byte).into_iter().collect(), &PATIENCE[..]),
+        Addresses::These(set) => (set.iter().filter_map(Address::new).collect(), &SCAN_PATIENCE[..]),
+        Addresses::Factory => (vec![Address::DEFAULT], &PATIENCE[..]),
+    };
+    let mut answers = Vec::new();
+    for (round, patience) in patience.iter().enumerate() {
+        line.exchange().set_patience(*patience);
+        line.set_retries(match (round, candidates.len()) {
+            (0, 0..=1) => RETRIES,
+            (0, _) => SCAN_RETRIES,
+            _ => 0,
+        });
+        answers = ask_each(line, &candidates)?;
+        if !answers.is_empty() {
+            break;
+        }
+    }
+    line.set_retries(RETRIES);
+    Ok(answers)
+}
+
+fn ask_each(line: &mut Line<'_>, candidates: &[Address]) -> Result<Vec<(Address, String)>, ExchangeError> {
+    let mut answers = Vec::new();
+    for &address in candidates {
+        let speaker = Speaker::packets(address, Generation::Gen1);
+        match speaker.ask(line, number::READ_VERSION, &[]) {
+            Ok(reply) => {
+                answers.push((address, reply.values.text("version").unwrap_or_default().trim().to_owned()));
+            }
+            Err(error) if error.is_link_lost() || error.interruption().is_some() => return Err(error),
+            // Nobody there, or noise; what was heard is told if no address answers at all.
+            Err(_) => {}
+        }
+    }
+    Ok(answers)
+}
+
+/// Whether all answers come from one unit, as over USB, where each answers all eight addresses (MCP manual 2.1).
+///
+/// A port that is known to be USB settles it. Else all eight must answer with the same version and be in the same state:
+/// same gains and limits, encoders and voltages alike.
+fn is_one_unit(
+    line: &mut Line<'_>,
+    answers: &[(Address, String)],
+    stream: Option<Stream>,
+) -> Result<bool, ExchangeError> {
+    let Some((first, version)) = answers.first() else { return Ok(false) };
+    if answers.len() < 2 || answers.iter().any(|(_, other)| other != version) {
+        return Ok(false);
+    }
+    if stream == Some(Stream::Usb) {
+        return Ok(true);
+    }
+    if answers.len() < Address::ALL.len() {
+        return Ok(false);
+    }
+    for (address, _) in &answers[1..] {
+        // Read next to each other, so that what moves has moved little.
+        let (mine, theirs) = (state(line, *first)?, state(line, *address)?);
+        let alike = mine.len() == theirs.len()
+            && mine.iter().zip(&theirs).all(|(mine, theirs)| (mine.0 - theirs.0).abs() <= mine.1);
+        if !alike {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// What is compared, each with how far two readings of one unit may lie apart.
+const STATE: [(u8, i64); 7] = [
+    (number::READ_ENCODERS, 200),
+    (number::READ_MAIN_BATTERY, 3),
+    (number::READ_LOGIC_BATTERY, 3),
+    (number::READ_TEMPERATURE_1, 5),
+    (number::READ_VELOCITY_PID_M1, 0),
+    (number::READ_VELOCITY_PID_M2, 0),
+    (number::READ_POSITION_PID_M1, 0),
+];
+
+fn state(line: &mut Line<'_>, address: Address) -> Result<Vec<(i64, i64)>, ExchangeError> {
+    let speaker = Speaker::packets(address, Generation::Gen1);
+    let mut state = Vec::new();
+    for (command, tolerance) in STATE {
+        if let Some(reply) = speaker.ask_if_known(line, command, &[])? {
+            state.extend(reply.values.ints().map(|value| (value, tolerance)));
+        }
+    }
+    Ok(state)
+}
+
+/// Finds out all about one unit.
+fn identify(
+    line: &mut Line<'_>,
+    address: Address,
+    version: &str,
+    simulated: bool,
+) -> Result<Mcp, ExchangeError> {
+    let finding = generation::detect(line, address)?;
+    let speaker = Speaker::packets(address, finding.generation);
+    finish(line, speaker, None, version, simulated, finding.notes)
+}
+
+/// Finds out all about one node of a CAN bus; `notes` are told with its identity.
+pub fn identify_node(
+    line: &mut Line<'_>,
+    place: Place,
+    monitor: &Monitor,
+    version: &str,
+    simulated: bool,
+    mut notes: Vec<String>,
+) -> Result<Mcp, ExchangeError> {
+    let finding = generation::detect_node(line, place)?;
+    notes.extend(finding.notes);
+    let speaker =
+        Speaker { wire: Wire::Objects(place), ..Speaker::packets(Address::DEFAULT, finding.generation) };
+    finish(line, speaker, Some(monitor.clone()), version, simulated, notes)
+}
+
+/// What remains to be found out, on whichever wire.
+fn finish(
+    line: &mut Line<'_>,
+    speaker: Speaker,
+    monitor: Option<Monitor>,
+    version: &str,
+    simulated: bool,
+    mut notes: Vec<String>,
+) -> Result<Mcp, ExchangeError> {
+    let polls = polling::find(speaker, line)?;
+    let model = models::identify(version);
+    let missing = polling::missing(&polls);
+    if !missing.is_empty() {
+        notes.push(format!("It does not answer for: {}.", missing.join(", ")));
+    }
+    let is_node = matches!(speaker.wire, Wire::Objects(_));
+    let identity = Identity {
+        address: speaker.id(),
+        family: MCP,
+        protocol: if is_node { "CANopen" } else { "packet serial" },
+        version_text: version.to_owned(),
+        model: model.map(|model| model.name),
+        firmware: firmware_of(version).to_owned(),
+        generation: generation_number(speaker.generation),
+        facts: Facts::new(McpFacts { generation: speaker.generation, is_node }),
+        also_answers: Vec::new(),
+        simulated,
+        port: line.exchange().port(),
+        notes,
+    };
+    let runs_scripts = model.is_some_and(Model::runs_scripts);
+    Ok(Mcp { speaker, identity, model, polls, runs_scripts, has_buffered: false, monitor })
+}
+
+/// The version behind the last " v" of the text: "1.0.0" of "MCP266 2x60A v1.0.0".
+fn firmware_of(version: &str) -> &str {
+    let last = version.split_whitespace().next_back().unwrap_or_default();
+    let number = last.strip_prefix(['v', 'V']).unwrap_or(last);
+    if number.starts_with(|first: char| first.is_ascii_digit()) { number } else { "" }
+}
+
+fn nothing_there(line: &mut Line<'_>, addresses: Addresses, heard: u64) -> Failure {
+    let on = line.exchange().port();
+    let asked = match addresses {
+        Addresses::Scan => "addresses 0x80 to 0x87".to_owned(),
+        Addresses::Only(address) => format!("address 0x{address:02X}"),
+        Addresses::These(set) => {
+            let each: Vec<_> = set.iter().map(|address| format!("0x{address:02X}")).collect();
+            format!("the addresses {}", each.join(", "))
+        }
+        Addresses::Factory => format!("address {}", Address::DEFAULT),
+    };
+    let came_back = match heard {
+        0 => format!("nothing answered at {asked}"),
+        1 => format!("one byte came, but no packet serial, from {asked}"),
+        count => format!("{count} bytes came, but no packet serial, from {asked}"),
+    };
+    let mend = match heard {
+        0 => {
+            "Check that the controller has motor power, that the cable and the port are right, and the baud rate"
+        }
+        _ => {
+            "Check the baud rate, and that the device on this port is a motor controller set to packet serial"
+        }
+    };
+    Failure::new("find a controller", on, came_back, mend)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_firmware_version_is_the_last_word_without_its_v() {
+        assert_eq!(firmware_of("MCP266 2x60A v1.0.0"), "1.0.0");
+        assert_eq!(firmware_of("USB Roboclaw 2x7a v4.2.8"), "4.2.8");
+        assert_eq!(firmware_of("Something else"), "");
+        assert_eq!(firmware_of(""), "");
+    }
+}

@@ -1,0 +1,18 @@
+//! MCP and RoboClaw controllers over packet serial, and MCP controllers as nodes of a CAN bus ([`crate::can`] carries the commands).
+//!
+//! [`PacketSerial`] finds units, [`Mcp`](unit::Mcp) is one of them. What it reads, how it drives, stops and is armed stand in a file
+//! each. Nothing outside this folder knows a command of packet serial.
+
+mod arming;
+mod discover;
+mod driving;
+mod generation;
+mod polling;
+mod speaker;
+mod stopping;
+mod traffic;
+mod unit;
+
+pub use discover::{PacketSerial, identify_node};
+pub use driving::preview;
+pub use traffic::describe_sent;

@@ -1,0 +1,104 @@
+//! Why a transfer broke, and in which state that leaves the controller.
+
+use brushwork_link::failure::Failure;
+use brushwork_link::transport::TransportError;
+use std::time::Duration;
+
+/// In which state a controller is left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Left {
+    /// Its firmware is untouched; a restart brings it back.
+    Untouched,
+    /// It may be erasing, or have erased, its flash memory.
+    PerhapsErasing,
+    /// It has no firmware and waits for it in its loader.
+    WithoutFirmware,
+    /// It has the whole image; only its restart may be missing.
+    Complete,
+}
+
+impl Left {
+    /// What the user should do, as sentences without the last full stop.
+    #[must_use]
+    pub fn mend(self) -> &'static str {
+        match self {
+            Self::Untouched => {
+                "Nothing was erased: switch the controller off and on, and it runs its old firmware again"
+            }
+            Self::PerhapsErasing => {
+                "It may be erasing its memory: leave its power on for a minute. Then switch it off and on, and resume the update"
+            }
+            Self::WithoutFirmware => {
+                "The controller has no firmware now and waits for it in its loader: switch it off and on, and resume the update \
+                 with the same file"
+            }
+            Self::Complete => "The whole image is there: switch the controller off and on, then connect",
+        }
+    }
+}
+
+/// Why an image did not get to its end.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum SendError {
+    /// It was cancelled before anything was erased.
+    #[error("it was cancelled before anything was erased")]
+    Cancelled,
+    /// The greeting was not answered.
+    #[error("the loader did not answer the greeting within {} s", waited.as_secs())]
+    NoGreeting {
+        /// How long it was waited for.
+        waited: Duration,
+    },
+    /// A page was not answered: a byte of it, or its answer, was lost.
+    #[error("page {} of {of} was not confirmed within {} ms", page + 1, waited.as_millis())]
+    PageLost {
+        /// Which, counted from 0.
+        page: usize,
+        /// How many there are.
+        of: usize,
+        /// How long it was waited for.
+        waited: Duration,
+    },
+    /// A page was answered with something else.
+    #[error("page {} of {of} was answered with 0x{got:02X} instead of 0xAA", page + 1)]
+    PageRefused {
+        /// Which, counted from 0.
+        page: usize,
+        /// How many there are.
+        of: usize,
+        /// What came back.
+        got: u8,
+    },
+    /// The line is gone.
+    #[error("the line was lost")]
+    Line {
+        /// In which state that leaves the controller.
+        left: Left,
+        /// What the port said.
+        #[source]
+        source: TransportError,
+    },
+}
+
+impl SendError {
+    /// In which state the controller is left.
+    #[must_use]
+    pub fn left(&self) -> Left {
+        match self {
+            Self::Cancelled => Left::Untouched,
+            Self::NoGreeting { .. } => Left::PerhapsErasing,
+            Self::PageLost { .. } | Self::PageRefused { .. } => Left::WithoutFirmware,
+            Self::Line { left, .. } => *left,
+        }
+    }
+
+    /// The failure as it is shown.
+    #[must_use]
+    pub fn failure(&self, on: impl Into<String>) -> Failure {
+        let came_back = match self {
+            Self::Line { source, .. } => format!("{self}: {}", source.full()),
+            _ => self.to_string(),
+        };
+        Failure::new("send the firmware", on, came_back, self.left().mend())
+    }
+}

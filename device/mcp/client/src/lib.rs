@@ -1,0 +1,24 @@
+//! MCP and RoboClaw controllers as the device thread and the settings engine speak to them: over packet serial, and MCP controllers as nodes of a
+//! CAN bus.
+//!
+//! [`MCP`] is the family as shared code knows it. Everything else here is for those who know that they have such a controller in front of them.
+
+pub mod can;
+mod controller;
+pub mod diagnosis;
+mod facts;
+mod family;
+pub mod firmware;
+pub mod packet;
+pub mod script;
+pub mod settings;
+#[cfg(test)]
+mod testing;
+#[cfg(test)]
+mod tests;
+
+pub use controller::{PacketSerial, describe_sent, preview};
+pub use facts::McpFacts;
+pub use family::{
+    MCP, firmware_of, is_mcp, layout_of, model_of, packet_address, packet_generation, subject, unit_address,
+};

@@ -1,0 +1,56 @@
+//! Whether a controller runs its script by itself after power-up (MCP manual, commands 246 and 247).
+
+use brushwork_link::device::{FnJob, Job, JobContext};
+use brushwork_link::exchange::ExchangeError;
+use brushwork_link::failure::Failure;
+use brushwork_link::wire::Wire;
+use brushwork_mcp_wire::packet_serial::number;
+use std::time::Duration;
+
+/// What the job is called while it runs.
+pub const AUTORUN_JOB: &str = "set the script's autorun";
+/// A shorter delay switches autorun off (MCP manual, command 246).
+pub const MIN_AUTORUN: Duration = Duration::from_millis(100);
+/// A save restarts some units.
+const LIMIT: Duration = Duration::from_secs(30);
+
+/// When a script starts by itself after power-up; `None` for never.
+pub type Autorun = Option<Duration>;
+
+/// Reads it.
+///
+/// # Errors
+/// The exchange failed.
+pub fn read_autorun(wire: &mut dyn Wire) -> Result<Autorun, ExchangeError> {
+    let reply = wire.transact(number::READ_SCRIPT_AUTORUN, &[])?;
+    let delay = Duration::from_millis(u64::try_from(reply.int("delay")).unwrap_or(0));
+    Ok(Some(delay).filter(|delay| *delay >= MIN_AUTORUN))
+}
+
+/// Sets it in the controller's RAM and reads it back. It counts at the next power-up, so that it does nothing unless the settings are saved.
+///
+/// # Errors
+/// The exchange failed, or the controller kept something else.
+pub fn set_autorun(wire: &mut dyn Wire, autorun: Autorun) -> Result<(), Failure> {
+    let failure = |error: &ExchangeError, wire: &dyn Wire| error.failure(AUTORUN_JOB, wire.describe());
+    let delay_ms = autorun.map_or(0, |delay| i64::try_from(delay.max(MIN_AUTORUN).as_millis()).unwrap_or(0));
+    let written = wire.transact(number::SET_SCRIPT_AUTORUN, &[delay_ms]);
+    written.map_err(|error| failure(&error, wire))?;
+    let kept = read_autorun(wire).map_err(|error| failure(&error, wire))?;
+    let wanted = autorun.map(|delay| Duration::from_millis(delay.max(MIN_AUTORUN).as_millis() as u64));
+    if kept == wanted {
+        return Ok(());
+    }
+    let came_back =
+        format!("it was told {delay_ms} ms and says {} ms", kept.map_or(0, |delay| delay.as_millis()));
+    Err(Failure::new(AUTORUN_JOB, wire.describe(), came_back, "Try again"))
+}
+
+/// Sets it as a job. The settings are not saved by it.
+#[must_use]
+pub fn autorun_job(autorun: Autorun) -> Box<dyn Job> {
+    FnJob::boxed(AUTORUN_JOB, LIMIT, move |context: &mut JobContext<'_>| {
+        set_autorun(context, autorun)?;
+        Ok(Box::new(autorun))
+    })
+}

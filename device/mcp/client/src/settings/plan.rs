@@ -1,0 +1,162 @@
+//! What is particular in a plan: when each command is sent, what its user should know, and how a step looks on the wire.
+
+use super::pins::{Conflict, conflicts};
+use crate::{layout_of, packet_address, packet_generation};
+use brushwork_link::exchange::ExchangeError;
+use brushwork_link::settings::{
+    Argument, Carrier, PlanContext, Planned, SettingValue, SettingsImage, SettingsTable, Source, Stage, Step,
+};
+use brushwork_link::transport::Stream;
+use brushwork_link::unit::{FirmwareGeneration, UnitAddress};
+use brushwork_mcp_wire::packet_serial::{Request, describe_request, lookup, number};
+use brushwork_values::Value;
+
+/// What the command of these rows takes: its fields in wire order, without keys that never change.
+pub fn arguments(planned: &Planned<'_>) -> Result<Vec<Argument>, String> {
+    let layout = layout_of(planned.context.table.subject().generation);
+    let form = lookup(planned.command).and_then(|command| command.form(layout));
+    let form = form.ok_or_else(|| format!("This firmware has no command {}.", planned.command))?;
+    let argument = |name| match planned.index {
+        Some(index) if name == "index" => Argument::Given(name, i64::from(index)),
+        _ => Argument::Field(name),
+    };
+    let fields = form.request.iter().filter(|field| field.fixed.is_none());
+    Ok(fields.map(|field| argument(field.name)).collect())
+}
+
+/// When a command is sent: limits before what they limit, what could cut this link off last.
+pub fn stage(planned: &Planned<'_>) -> Stage {
+    let (index, changed) = (planned.index, planned.changed);
+    let own = |stream: Stream| index.is_some_and(|index| usize::from(index) == stream.index());
+    match planned.command {
+        number::SET_ADDRESS_MIXED if changed.iter().any(|row| row.key == "unit.address") => Stage::Address,
+        number::SET_STREAM if planned.context.options.own_stream.is_some_and(own) => Stage::OwnPort,
+        number::SET_CONFIG => Stage::OwnPort,
+        number::SET_MAIN_VOLTAGES
+        | number::SET_LOGIC_VOLTAGES
+        | number::SET_VOLTAGE_OFFSETS
+        | number::SET_CURRENT_LIMITS_M1
+        | number::SET_CURRENT_LIMITS_M2
+        | number::SET_SPEED_ERROR_LIMITS
+        | number::SET_POSITION_ERROR_LIMITS
+        | number::SET_SERIAL_TIMEOUT => Stage::Limits,
+        number::SET_DOUT_ACTION => Stage::Outputs,
+        number::SET_SIGNAL
+        | number::SET_PIN_FUNCTIONS
+        | number::SET_CONTROL_SETTINGS
+        | number::SET_CONTROL_LIMITS => Stage::Pins,
+        number::SET_STREAM | number::SET_NODE_ID => Stage::Ports,
+        number::SET_PRIORITIES => Stage::Priorities,
+        number::SET_SCRIPT_AUTORUN | number::SET_ESTOP_LOCK => Stage::Autonomy,
+        _ => Stage::Motors,
+    }
+}
+
+/// What the steps themselves bring about besides their values.
+pub fn warnings(context: &PlanContext<'_>, steps: &[Step]) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for step in steps {
+        match (step.command, step.stage) {
+            (number::SET_ADDRESS_MIXED, Stage::Address) => warnings.push(
+                "The controller answers to its new address from then on; save it, or a power cycle \
+                 brings the old one back."
+                    .to_owned(),
+            ),
+            (number::SET_ADDRESS_MIXED, _) if address_is_unreadable(context) => warnings.push(format!(
+                "Mixing is written together with the address, which this firmware does not report: {} \
+                 is written, the address this link speaks to. Over USB a unit answers to every \
+                 address, so check it first.",
+                context.ram.get("unit.address").map_or_else(String::new, |address| match address {
+                    SettingValue::Int(byte) => format!("0x{byte:02X}"),
+                    _ => String::new(),
+                })
+            )),
+            (number::SET_STREAM, Stage::OwnPort) => warnings.extend(own_port_warnings(context)),
+            (number::SET_CONFIG, _) => warnings.push(
+                "The configuration word takes effect at once and can move the controller to another \
+                 address, baud rate or control mode: the link may be lost."
+                    .to_owned(),
+            ),
+            _ => {}
+        }
+    }
+    warnings
+}
+
+fn address_is_unreadable(context: &PlanContext<'_>) -> bool {
+    let row = context.table.row("unit.address");
+    row.is_some_and(|row| matches!(row.carrier, Carrier::Wire { read: Source::LinkAddress, .. }))
+}
+
+fn own_port_warnings(context: &PlanContext<'_>) -> Vec<String> {
+    let Some(stream) = context.options.own_stream else { return Vec::new() };
+    let change = |field: &str| {
+        let key = format!("stream.{}.{field}", stream.key());
+        let (row, value) = (context.table.row(&key)?, context.changes.get(&key)?);
+        Some((row.format(value), value))
+    };
+    let mut warnings = Vec::new();
+    if let Some((to, _)) = change("type") {
+        warnings.push(format!(
+            "This program is connected through {stream}, which becomes \"{to}\": the link is lost then."
+        ));
+    }
+    if let (Some((to, _)), true) = (change("rate"), stream != Stream::Usb) {
+        warnings.push(format!(
+            "This program is connected through {stream}, which changes to {to}: connect again at that \
+             rate."
+        ));
+    }
+    if let Some((_, SettingValue::Int(0))) = change("timeout") {
+        warnings.push(format!(
+            "{stream} has no time-out then: the motors would go on if this program died, so it cannot \
+             be armed."
+        ));
+    }
+    warnings
+}
+
+/// The contradictions that some of the changes take part in.
+pub fn new_conflicts(table: &SettingsTable, after: &SettingsImage, changes: &SettingsImage) -> Vec<String> {
+    let found = conflicts(table, &|key| after.get(key)).into_iter();
+    // The type of a pin and whether it is digital are one choice for a person.
+    let twin = |key: &str| key.strip_suffix(".type").map(|pin| format!("{pin}.digital"));
+    let is_changed = |key: &String| {
+        changes.get(key).is_some() || twin(key).is_some_and(|twin| changes.get(&twin).is_some())
+    };
+    let is_touched = |conflict: &Conflict| conflict.keys.iter().any(is_changed);
+    found.filter(is_touched).map(|conflict| conflict.sentence).collect()
+}
+
+/// The values of a command in the order of its layout.
+pub fn values(
+    (address, generation): (UnitAddress, FirmwareGeneration),
+    command: u8,
+    named: &[(&'static str, i64)],
+) -> Result<Vec<Value>, ExchangeError> {
+    let request = request((address, generation), command, named);
+    request.map(|request| request.values).map_err(|why| ExchangeError::Encode { why })
+}
+
+/// The bytes of a step.
+pub fn step_bytes(step: &Step, unit: (UnitAddress, FirmwareGeneration)) -> Result<Vec<u8>, String> {
+    let request = request(unit, step.command, &step.arguments)?;
+    request.encode(layout_of(unit.1)).map_err(|error| error.to_string())
+}
+
+/// A step in words.
+pub fn step_words(step: &Step, unit: (UnitAddress, FirmwareGeneration)) -> String {
+    let request = request(unit, step.command, &step.arguments);
+    request.map_or_else(|error| error, |request| describe_request(&request, layout_of(unit.1)))
+}
+
+fn request(
+    (address, generation): (UnitAddress, FirmwareGeneration),
+    command: u8,
+    named: &[(&'static str, i64)],
+) -> Result<Request, String> {
+    let (Some(address), Some(generation)) = (packet_address(address), packet_generation(generation)) else {
+        return Err(format!("{address} is no address of packet serial"));
+    };
+    Request::named(address, command, generation, named).map_err(|error| error.to_string())
+}

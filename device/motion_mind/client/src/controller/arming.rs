@@ -1,0 +1,116 @@
+//! Whether motion may be allowed: the mode must take serial commands, and nothing may hold the drive back.
+
+use crate::controller::driving;
+use crate::controller::registers::{mask, value_in};
+use crate::controller::stopping::{give_back, read_ramp, switch_on};
+use crate::controller::unit::MotionMind;
+use brushwork_link::device::controller::{ArmCheck, Line};
+use brushwork_link::exchange::ExchangeError;
+use brushwork_link::failure::Failure;
+use brushwork_motion_mind_wire::{Command, Mode, function, register_number as number, status};
+use std::time::Duration;
+
+/// A ramp that takes longer is worth knowing.
+const LONG_RAMP: Duration = Duration::from_millis(300);
+
+const NO_TIME_OUT: &str = "A Motion Mind has no serial time-out: if this program or the cable dies, the motor goes on with what it \
+                           was last told. Have a switch for the motor power at hand.";
+
+const SWITCHED_ON: &str = "The output of its loop was switched off (DISABLEPID in FUNCTION). It was switched on again, in RAM: the loop \
+                           holds the motor where it stands.";
+
+/// What became of a loop whose output was switched off.
+enum Hold {
+    /// It was not off, or the mode has no loop.
+    AsItWas,
+    SwitchedOn,
+    /// The motor did not stand still, before or after.
+    Moves,
+}
+
+/// Reads all that arming depends on, and lists what speaks against it. Nothing is changed unless nothing does.
+pub fn check(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<ArmCheck, ExchangeError> {
+    let on = unit.name(line);
+    let wanted = mask(&[number::FUNCTION, number::STATUS, number::MODE]);
+    let (reply, _) = unit.speaker.ask(line, &Command::Read(wanted))?;
+    let word = |index: u8| value_in(&reply, index).unwrap_or_default();
+    let function = word(number::FUNCTION);
+    let mut objections = objections(unit, word(number::MODE), function, word(number::STATUS));
+    let mut warnings = Vec::new();
+    if objections.is_empty() {
+        match hold(unit, line, function)? {
+            Hold::AsItWas => {}
+            Hold::SwitchedOn => warnings.push(SWITCHED_ON.to_owned()),
+            Hold::Moves => objections.push((
+                "its loop is switched off (DISABLEPID in FUNCTION), and the motor does not stand still when it is switched on"
+                    .to_owned(),
+                "See that nothing turns the motor, and lower PTERM and ITERM",
+            )),
+        }
+    }
+    if objections.is_empty() {
+        give_back(unit, line, number::VELOCITYLIMIT)?;
+        warnings.push(NO_TIME_OUT.to_owned());
+        warnings.extend(ramp_warning(unit, line)?);
+    }
+    let reasons = objections
+        .into_iter()
+        .map(|(came_back, mend)| Failure::new("arm the motor", on.as_str(), came_back, mend))
+        .collect();
+    Ok(ArmCheck { reasons, controller_timeout: None, warnings })
+}
+
+/// What speaks against it, each with its cure.
+fn objections(unit: &MotionMind, mode: i64, function: i64, status: i64) -> Vec<(String, &'static str)> {
+    let is_function = |bit: u16| function & i64::from(bit) != 0;
+    let is_status = |bit: u16| status & i64::from(bit) != 0;
+    let mut found = Vec::new();
+    if mode != i64::from(unit.mode().number()) {
+        found.push((
+            format!("it is in mode {mode} now and was in {} when it was found", unit.mode()),
+            "Connect again",
+        ));
+    }
+    match unit.mode() {
+        Mode::Serial | Mode::SerialPid => {}
+        Mode::AnalogPid if is_function(function::ADSERIAL) => {}
+        Mode::AnalogPid => found.push((
+            "in mode 5 its setpoint is the analog input".to_owned(),
+            "Set ADSERIAL in FUNCTION, so that the setpoint comes over the serial line",
+        )),
+        other => found.push((
+            format!("in {other} it takes {}", driving::taken(other)),
+            "Set switches 2 to 4 for mode 3 or 4, and switch the power off and on",
+        )),
+    }
+    if is_status(status::BRAKE) {
+        found.push(("its brake input is at ground".to_owned(), "Release the brake input, J4 pin 12"));
+    }
+    if is_status(status::TEMPFAULT) {
+        found.push(("it is too hot; its bridge is off".to_owned(), "Let it cool down below 80 °C"));
+    }
+    found
+}
+
+/// Switches a loop on that a stop, a run or somebody else has switched off: who arms asks for motion.
+fn hold(unit: &mut MotionMind, line: &mut Line<'_>, function: i64) -> Result<Hold, ExchangeError> {
+    let off = i64::from(function::DISABLEPID);
+    if unit.mode() == Mode::Serial || function & off == 0 {
+        unit.borrowed.retain(|borrowed| borrowed.register != number::FUNCTION);
+        return Ok(Hold::AsItWas);
+    }
+    Ok(if switch_on(unit, line, function & !off)? { Hold::SwitchedOn } else { Hold::Moves })
+}
+
+fn ramp_warning(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<Option<String>, ExchangeError> {
+    if unit.mode() != Mode::Serial {
+        return Ok(None);
+    }
+    read_ramp(unit, line)?;
+    Ok(unit.ramp.time_to_zero().filter(|time| *time > LONG_RAMP).map(|time| {
+        format!(
+            "Its ramp takes {:.1} s from full drive to 0 (VELOCITYLIMIT, TIMER). Stop takes the ramp away for as long as it needs.",
+            time.as_secs_f64()
+        )
+    }))
+}

@@ -1,0 +1,254 @@
+//! Finding units: addresses 1 to 98 in both protocols, by reads alone. A read moves nothing, writes nothing and is the only kind
+//! of command sent here.
+
+use crate::controller::facts::MotionMindFacts;
+use crate::controller::registers::{mask, returns_of, value_in};
+use crate::controller::speaker::{GAP, Speaker};
+use crate::controller::stopping;
+use crate::controller::unit::MotionMind;
+use crate::family::{MOTION_MIND, NAME, firmware_of};
+use brushwork_link::device::StopBytes;
+use brushwork_link::device::controller::{Controller, DiscoverError, Line, Search};
+use brushwork_link::device::{Addresses, DeviceOptions};
+use brushwork_link::device::{Facts, Identity};
+use brushwork_link::exchange::{ExchangeError, RETRIES};
+use brushwork_link::failure::Failure;
+use brushwork_motion_mind_wire::{Address, Command, Mode, Protocol, function, register_number as number};
+use std::time::Duration;
+
+/// How long an answer may take in a scan, beyond its time on the wire: 10 ms of the controller, and what USB adapters add.
+const SCAN_PATIENCE: [Duration; 2] = [Duration::from_millis(28), Duration::from_millis(34)];
+/// How long units may complain about a line that was a frame of the other protocol.
+const COMPLAINTS: Duration = Duration::from_millis(60);
+/// How long the factory address, or the only one asked for, is waited for.
+const PATIENCE: [Duration; 2] = [Duration::from_millis(120), Duration::from_millis(500)];
+
+/// Motion Minds on one line.
+#[derive(Debug, Default)]
+pub struct MotionMinds;
+
+impl MotionMinds {
+    /// The family.
+    #[must_use]
+    pub fn new() -> Self {
+        Self
+    }
+}
+
+impl Search for MotionMinds {
+    fn discover(
+        &mut self,
+        line: &mut Line<'_>,
+        options: &DeviceOptions,
+    ) -> Result<Vec<Box<dyn Controller>>, DiscoverError> {
+        let heard_before = line.exchange().statistics().bytes_in;
+        let found = match options.addresses {
+            Addresses::Only(number) => match Address::unit(number) {
+                Some(address) => patiently(line, address)?.into_iter().collect(),
+                None => Vec::new(),
+            },
+            Addresses::Factory => patiently(line, Address::FACTORY)?.into_iter().collect(),
+            Addresses::These(set) => {
+                let mut found = Vec::new();
+                for address in set.iter().filter_map(Address::unit) {
+                    found.extend(patiently(line, address)?);
+                }
+                found
+            }
+            Addresses::Scan => scan(line)?,
+        };
+        if found.is_empty() {
+            return Err(nothing_there(line, options.addresses, heard_before));
+        }
+        let mut units: Vec<Box<dyn Controller>> = Vec::new();
+        for speaker in found {
+            units.push(Box::new(identify(line, speaker, options.simulated)?));
+        }
+        Ok(units)
+    }
+
+    /// The unit at the factory address first, in whichever protocol it speaks: all 98 addresses are asked of a bus that is known to have one. Of a
+    /// silent port that would take seconds for nothing.
+    fn discover_gently(
+        &mut self,
+        line: &mut Line<'_>,
+        options: &DeviceOptions,
+    ) -> Result<Vec<Box<dyn Controller>>, DiscoverError> {
+        if !matches!(options.addresses, Addresses::Scan | Addresses::Factory) {
+            return self.discover(line, options);
+        }
+        let factory = DeviceOptions { addresses: Addresses::Only(Address::FACTORY.get()), ..options.clone() };
+        let found = self.discover(line, &factory)?;
+        if options.addresses == Addresses::Scan { self.discover(line, options) } else { Ok(found) }
+    }
+
+    fn stop_bytes(&self, addresses: Addresses) -> StopBytes {
+        let told = match addresses {
+            Addresses::These(set) => set.iter().filter_map(Address::unit).collect(),
+            Addresses::Scan | Addresses::Only(_) | Addresses::Factory => vec![Address::BROADCAST],
+        };
+        let modes = [Mode::Serial, Mode::SerialPid];
+        let each = |address| {
+            let stop = |protocol| stopping::of_modes(&Speaker::new(address, protocol), &modes);
+            stop(Protocol::Binary).with(stop(Protocol::Text))
+        };
+        told.into_iter().map(each).reduce(StopBytes::with).unwrap_or_default()
+    }
+
+    fn stop_all_bytes(&self, units: &[&Identity]) -> Option<StopBytes> {
+        let facts: Vec<_> = units.iter().filter_map(|unit| MotionMindFacts::of(unit)).collect();
+        let bytes = Protocol::ALL.map(|protocol| {
+            let modes: Vec<_> =
+                facts.iter().filter(|facts| facts.protocol == protocol).map(|facts| facts.mode).collect();
+            stopping::broadcast(&modes, protocol)
+        });
+        let [binary, text] = bytes;
+        Some(binary.with(text)).filter(|bytes| !bytes.is_empty())
+    }
+}
+
+/// The unit at one address that is worth waiting for.
+fn patiently(line: &mut Line<'_>, address: Address) -> Result<Option<Speaker>, ExchangeError> {
+    let heard_before = line.exchange().statistics().bytes_in;
+    for patience in PATIENCE {
+        for protocol in Protocol::ALL {
+            change_to(line, protocol)?;
+            let speaker = Speaker::new(address, protocol);
+            if is_there(line, speaker, patience)? {
+                return Ok(Some(speaker));
+            }
+        }
+    }
+    if line.exchange().statistics().bytes_in == heard_before {
+        return Ok(None);
+    }
+    // Somebody answers, though not as a unit does: a simulator that knows the read of all registers alone.
+    let loose = Speaker { is_loose: true, ..Speaker::new(address, Protocol::Text) };
+    change_to(line, Protocol::Text)?;
+    let [.., patience] = PATIENCE;
+    Ok(loose.probe(line, number::ADDRESS, patience)?.map(|_| loose))
+}
+
+/// All units: the factory address first, in both protocols; then every other one in the protocol that it spoke, since units of one
+/// bus must speak the same. Where nobody has the factory address, all are asked in binary, and if none answers, all in text.
+fn scan(line: &mut Line<'_>) -> Result<Vec<Speaker>, ExchangeError> {
+    line.report_progress(0, usize::from(*Address::UNITS.end()), "the factory address");
+    if let Some(first) = patiently(line, Address::FACTORY)? {
+        let mut found = vec![first];
+        found.extend(ask_each(line, first.protocol)?);
+        return Ok(found);
+    }
+    for protocol in Protocol::ALL {
+        change_to(line, protocol)?;
+        let found = ask_each(line, protocol)?;
+        if !found.is_empty() {
+            return Ok(found);
+        }
+    }
+    Ok(Vec::new())
+}
+
+/// The units at the other addresses than the factory's.
+fn ask_each(line: &mut Line<'_>, protocol: Protocol) -> Result<Vec<Speaker>, ExchangeError> {
+    let of = usize::from(*Address::UNITS.end());
+    let mut found = Vec::new();
+    for number in Address::UNITS.skip(1) {
+        line.report_progress(usize::from(number) - 1, of, &format!("address {number}, {protocol}"));
+        let Some(address) = Address::unit(number) else { continue };
+        let speaker = Speaker::new(address, protocol);
+        if is_there(line, speaker, SCAN_PATIENCE[usize::from(protocol == Protocol::Text)])? {
+            found.push(speaker);
+        }
+    }
+    Ok(found)
+}
+
+/// Lets units in text forget what they took frames for: a line end makes a bad command of it, and all of them may say so.
+fn change_to(line: &mut Line<'_>, protocol: Protocol) -> Result<(), ExchangeError> {
+    if protocol == Protocol::Text {
+        let (exchange, watch) = line.parts();
+        exchange.wait(GAP, watch)?;
+        exchange.write_now(b"\r\n")?;
+        exchange.wait(COMPLAINTS, watch)?;
+    }
+    Ok(())
+}
+
+/// Whether a unit answers: the question must come back with the address that was asked.
+fn is_there(line: &mut Line<'_>, speaker: Speaker, patience: Duration) -> Result<bool, ExchangeError> {
+    let own = i64::from(speaker.address.get());
+    Ok(speaker.probe(line, number::ADDRESS, patience)? == Some(own))
+}
+
+/// Finds out all about a unit.
+fn identify(line: &mut Line<'_>, mut speaker: Speaker, simulated: bool) -> Result<MotionMind, ExchangeError> {
+    line.set_retries(RETRIES);
+    let wanted = mask(&[number::FUNCTION, number::REVISION, number::MODE]);
+    let (reply, _) = speaker.ask(line, &Command::Read(wanted))?;
+    let value = |index: u8| value_in(&reply, index).unwrap_or_default();
+    let revision = u8::try_from(value(number::REVISION)).unwrap_or_default();
+    let mode = u8::try_from(value(number::MODE)).ok().and_then(Mode::from_number);
+    speaker.returns = Some(returns_of(value(number::FUNCTION)));
+    let mut notes = Vec::new();
+    if mode.is_none() {
+        notes.push(format!(
+            "It says that its mode is {}, which the manual does not have.",
+            value(number::MODE)
+        ));
+    }
+    let closes_a_loop = matches!(mode, Some(Mode::SerialPid | Mode::AnalogPid));
+    if closes_a_loop && value(number::FUNCTION) & i64::from(function::DISABLEPID) != 0 {
+        notes.push(
+            "The output of its loop is switched off (DISABLEPID in FUNCTION); a stop or a run that was cut short may have left it so. \
+             Arming, or `drive`, switches it on again: the motor is then held where it stands."
+                .to_owned(),
+        );
+    }
+    if speaker.is_loose {
+        notes.push("It answers the read of all registers and no other: a simulator, whose values are shown as they come.".to_owned());
+    }
+    let identity = Identity {
+        address: speaker.address.get(),
+        family: MOTION_MIND,
+        protocol: MOTION_MIND.label(),
+        version_text: format!("{} revision {revision}", NAME),
+        model: Some(NAME),
+        firmware: revision.to_string(),
+        generation: firmware_of(revision),
+        facts: Facts::new(MotionMindFacts {
+            mode: mode.unwrap_or(Mode::FactoryTest),
+            protocol: speaker.protocol,
+        }),
+        also_answers: Vec::new(),
+        simulated,
+        port: line.exchange().port(),
+        notes,
+    };
+    Ok(MotionMind::new(speaker, identity))
+}
+
+fn nothing_there(line: &mut Line<'_>, addresses: Addresses, heard_before: u64) -> DiscoverError {
+    let heard = line.exchange().statistics().bytes_in - heard_before;
+    let asked = match addresses {
+        Addresses::Scan => "addresses 1 to 98".to_owned(),
+        Addresses::Only(address) => format!("address {address}"),
+        Addresses::These(set) => {
+            let each: Vec<_> = set.iter().map(|address| address.to_string()).collect();
+            format!("the addresses {}", each.join(", "))
+        }
+        Addresses::Factory => format!("address {}", Address::FACTORY.get()),
+    };
+    let (came_back, mend) = match heard {
+        0 => (
+            format!("nothing answered at {asked}, in binary or in ASCII"),
+            "Check that the controller has power, that the cable and the port are right, and the baud rate: 9600 or 19200 by switch 5, or what \
+             FUNCTION2 was set to",
+        ),
+        count => (
+            format!("{count} bytes came, but no Motion Mind, from {asked}"),
+            "Check the baud rate: 9600 or 19200 by switch 5, or what FUNCTION2 was set to",
+        ),
+    };
+    let on = line.exchange().port();
+    DiscoverError::NothingThere(Failure::new("find a controller", on, came_back, mend))
+}

@@ -1,0 +1,74 @@
+//! The mode and the protocol of a Motion Mind, which its switches choose.
+
+use super::driving::{objection, preview};
+use super::signs::SIGNS;
+use super::traffic::describe_sent;
+use brushwork_link::device::{Capabilities, Channel, Described, Drive, Sign, UnitFacts};
+use brushwork_motion_mind_wire::{Mode, Protocol};
+use serde::Serialize;
+
+/// What the switches of a Motion Mind say, as far as they can be found out over the wire.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct MotionMindFacts {
+    /// What moves its motor, from switches 2 to 4 at power-up.
+    pub mode: Mode,
+    /// Which protocol it speaks, switch 6.
+    pub protocol: Protocol,
+}
+
+/// A unit in a mode that serial commands do not move.
+const CAPABILITIES: Capabilities = Capabilities {
+    motors: 1,
+    duty: false,
+    speed: false,
+    position: false,
+    ramps: false,
+    queued_moves: false,
+    scripts: false,
+    estop: false,
+    pins: false,
+    batteries: false,
+    serial_timeout: false,
+    firmware_loader: false,
+    reload: false,
+    registers: true,
+};
+
+impl UnitFacts for MotionMindFacts {
+    fn capabilities(&self) -> Capabilities {
+        Capabilities {
+            duty: self.mode == Mode::Serial,
+            speed: self.mode == Mode::SerialPid,
+            position: matches!(self.mode, Mode::SerialPid | Mode::AnalogPid),
+            ..CAPABILITIES
+        }
+    }
+
+    fn channels(&self) -> &'static [Channel] {
+        Channel::MOTION_MIND
+    }
+
+    fn signs(&self) -> &'static [Sign] {
+        SIGNS
+    }
+
+    fn describe_sent(&self, bytes: &[u8]) -> Described {
+        describe_sent(bytes, self.protocol)
+    }
+
+    fn objection(&self, drive: &Drive) -> Option<String> {
+        objection(self.mode, drive)
+    }
+
+    fn preview(&self, drive: &Drive, address: u8) -> Vec<Vec<u8>> {
+        preview(drive, address, *self)
+    }
+
+    fn place(&self, address: u8) -> String {
+        format!("unit {address}")
+    }
+
+    fn json(&self) -> serde_json::Value {
+        serde_json::to_value(self).unwrap_or_default()
+    }
+}

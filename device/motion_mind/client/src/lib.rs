@@ -1,0 +1,14 @@
+//! Motion Mind 3 controllers as the device thread and the settings engine speak to them, in both of their protocols.
+//!
+//! [`MOTION_MIND`] is the family as shared code knows it. Everything else here is for those who know that they have such a controller in front of
+//! them.
+
+mod controller;
+mod family;
+mod settings;
+
+pub use controller::{
+    COUNTS_PER_S_PER_STEP, MotionMind, MotionMindFacts, MotionMinds, SIGNS, describe_received, describe_sent,
+    objection, preview, taken,
+};
+pub use family::{MOTION_MIND, firmware_of, is_motion_mind, subject, unit_address};
