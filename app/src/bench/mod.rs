@@ -56,6 +56,9 @@ const FULL: Effort = Effort {
     mcl_rounds: 9,
 };
 
+/// Its name on the command line.
+const NAME: &str = "bench";
+
 /// A look.
 const QUICK: Effort =
     Effort { rounds: 3, round: Duration::from_secs(1), stops: 40, sim_rounds: 6, frames: 40, mcl_rounds: 3 };
@@ -65,7 +68,7 @@ const QUICK: Effort =
 pub fn tool() -> Tool {
     let about = "Measure link use, stop latency, the simulator and the window";
     Tool {
-        command: BenchArgs::augment_args(Command::new("bench").about(about)),
+        command: BenchArgs::augment_args(Command::new(NAME).about(about)),
         run: |arguments, out, interrupt| match BenchArgs::from_arg_matches(arguments) {
             Ok(args) => run(&args, out, interrupt),
             Err(error) => error.exit(),
