@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use brushwork_link::device::motion_mind::taken;
 use brushwork_link::device::{
-    Channel, Event, FnJob, Identity, JobEnding, PollRate, Request, Sign, StatusReport,
+    Channel, Event, FnJob, Identity, JobEnding, Newest, PollRate, Request, Sign, StatusReport,
 };
 use brushwork_link::diagnosis::{Diagnosis, Evidence, Measured, PinEnd, diagnose, homed, pin_ends};
 use brushwork_link::settings::{SettingsImage, Subject, read_all};
@@ -27,8 +27,9 @@ const FIRST_READING_LIMIT: Duration = Duration::from_secs(20);
 const SETTINGS_LIMIT: Duration = Duration::from_secs(120);
 
 /// The newest of everything that has been read.
+#[derive(Default)]
 pub struct Readings {
-    values: [Option<f64>; Channel::COUNT],
+    newest: Newest,
     status: Option<StatusReport>,
     stream: Option<Stream>,
 }
@@ -39,12 +40,6 @@ struct Setup {
     settings: Option<SettingsImage>,
     /// Where the input pins stand, where the unit tells.
     pins: Option<Vec<PinEnd>>,
-}
-
-impl Default for Readings {
-    fn default() -> Self {
-        Self { values: [None; Channel::COUNT], status: None, stream: None }
-    }
 }
 
 #[derive(Serialize)]
@@ -58,13 +53,7 @@ impl Readings {
     /// Takes over what an event tells.
     pub fn take(&mut self, event: Event) {
         match event {
-            Event::Sample(sample) => {
-                for channel in Channel::ALL {
-                    if let Some(value) = sample.get(channel) {
-                        self.values[channel.index()] = Some(value);
-                    }
-                }
-            }
+            Event::Sample(sample) => self.newest.update(&sample),
             Event::Status(status) => self.status = Some(status),
             Event::Selected { stream, .. } => self.stream = stream,
             Event::Failure(failure) => say(failure.to_string()),
@@ -74,29 +63,26 @@ impl Readings {
 
     /// A channel's newest value.
     pub fn get(&self, channel: Channel) -> Option<f64> {
-        self.values[channel.index()]
+        self.newest.get(channel)
     }
 
     fn is_complete(&self, identity: &Identity) -> bool {
-        if identity.is_motion_mind() {
-            let wanted = [Channel::M1Position, Channel::M1Velocity, Channel::Temperature1];
-            return self.status.is_some() && wanted.into_iter().all(|channel| self.get(channel).is_some());
-        }
         let wanted = [
-            Channel::M1Position,
-            Channel::M1Velocity,
-            Channel::M1Current,
-            Channel::MainBattery,
-            Channel::LogicBattery,
-            Channel::Temperature1,
+            Channel::M1_POSITION,
+            Channel::M1_VELOCITY,
+            Channel::M1_CURRENT,
+            Channel::MAIN_BATTERY,
+            Channel::LOGIC_BATTERY,
+            Channel::TEMPERATURE_1,
         ];
-        self.status.is_some() && wanted.into_iter().all(|channel| self.get(channel).is_some())
+        let is_there = |channel| !identity.channels().contains(&channel) || self.get(channel).is_some();
+        self.status.is_some() && wanted.into_iter().all(is_there)
     }
 
     /// The channels of a unit but the input pins as JSON, by their keys; what was not read is null.
     pub fn to_json(&self, identity: &Identity) -> Map<String, Value> {
-        let polled = identity.channels().iter().copied().filter(|channel| !channel.is_signal());
-        polled.map(|channel| (channel.key(), json!(self.get(channel)))).collect()
+        let polled = identity.channels().iter().copied().filter(|channel| !channel.is_pin());
+        polled.map(|channel| (channel.key.to_owned(), json!(self.get(channel)))).collect()
     }
 }
 
@@ -223,12 +209,13 @@ fn print(
         out.line(diagnosis.sentence())?;
     }
     out.line("")?;
-    let rows: Vec<Vec<String>> = Channel::ALL
-        .into_iter()
-        .filter_map(|channel| {
+    let rows: Vec<Vec<String>> = identity
+        .channels()
+        .iter()
+        .filter_map(|&channel| {
             let value = readings.get(channel)?;
             let digits = decimals(channel);
-            Some(vec![channel.label().to_owned(), format!("{value:>12.digits$}"), channel.unit().to_owned()])
+            Some(vec![channel.label.to_owned(), format!("{value:>12.digits$}"), channel.unit.to_owned()])
         })
         .collect();
     out.table(&["SIGNAL", "       VALUE", "UNIT"], &rows)?;
@@ -241,7 +228,7 @@ fn print(
 }
 
 fn decimals(channel: Channel) -> usize {
-    match channel.unit() {
+    match channel.unit {
         "A" => 2,
         "V" | "°C" | "%" => 1,
         _ => 0,
@@ -341,10 +328,10 @@ pub fn line_of(readings: &Readings, identity: &Identity) -> String {
             value(current, 7)
         )
     };
-    let first = [Channel::M1Pwm, Channel::M1Velocity, Channel::M1Position, Channel::M1Current];
+    let first = [Channel::M1_PWM, Channel::M1_VELOCITY, Channel::M1_POSITION, Channel::M1_CURRENT];
     if identity.capabilities().motors == 1 {
-        return format!("{} | {} °C", motor("M1", first), value(Channel::Temperature1, 5));
+        return format!("{} | {} °C", motor("M1", first), value(Channel::TEMPERATURE_1, 5));
     }
-    let second = [Channel::M2Pwm, Channel::M2Velocity, Channel::M2Position, Channel::M2Current];
-    format!("{} | {} | {} V", motor("M1", first), motor("M2", second), value(Channel::MainBattery, 5))
+    let second = [Channel::M2_PWM, Channel::M2_VELOCITY, Channel::M2_POSITION, Channel::M2_CURRENT];
+    format!("{} | {} | {} V", motor("M1", first), motor("M2", second), value(Channel::MAIN_BATTERY, 5))
 }

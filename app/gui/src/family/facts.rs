@@ -80,8 +80,8 @@ pub trait Family: Sync {
     /// Whether the screens that drive show settings of loops that have to be read for them.
     fn has_loops(&self) -> bool;
 
-    /// Whether the graph can show a channel.
-    fn has_channel(&self, channel: Channel) -> bool;
+    /// What its controllers can tell, in the order of the graph.
+    fn channels(&self) -> &'static [Channel];
 
     /// What the graph of a screen shows at first.
     fn first_channels(&self, screen: Screen) -> &'static [Channel] {

@@ -1,5 +1,6 @@
 //! MCP and RoboClaw: Ion Studio's screens, thirteen lamps, two motors (MCP manual 1.2).
 
+use brushwork_link::device::mcp::channels::CHANNELS;
 use brushwork_link::device::{ArmScope, Channel, Drive, Identity, StatusReport};
 use brushwork_mcp_wire::packet_serial::status::{Condition, Lamp};
 use brushwork_tuning::tune::Method;
@@ -83,8 +84,8 @@ impl Family for Mcp {
         true
     }
 
-    fn has_channel(&self, _channel: Channel) -> bool {
-        true
+    fn channels(&self) -> &'static [Channel] {
+        CHANNELS
     }
 
     fn lacks(&self, _ability: Ability) -> Option<&'static str> {
@@ -154,21 +155,21 @@ const fn m2(channel: Channel, label: &'static str, unit: &'static str) -> Figure
 
 const FIGURES: [Figures; 5] = [
     Figures {
-        rows: &[m1(Channel::Temperature1, "Temp 1", "°C"), m2(Channel::Temperature2, "Temp 2", "°C")],
+        rows: &[m1(Channel::TEMPERATURE_1, "Temp 1", "°C"), m2(Channel::TEMPERATURE_2, "Temp 2", "°C")],
         label_width: 40.0,
         unit_letters: 2,
         digits: 5,
         zero: false,
     },
     Figures {
-        rows: &[m1(Channel::M1Current, "M1 amps", "A"), m2(Channel::M2Current, "M2 amps", "A")],
+        rows: &[m1(Channel::M1_CURRENT, "M1 amps", "A"), m2(Channel::M2_CURRENT, "M2 amps", "A")],
         label_width: 51.0,
         unit_letters: 1,
         digits: 7,
         zero: false,
     },
     Figures {
-        rows: &[m1(Channel::M1Position, "M1 encoder", ""), m2(Channel::M2Position, "M2 encoder", "")],
+        rows: &[m1(Channel::M1_POSITION, "M1 encoder", ""), m2(Channel::M2_POSITION, "M2 encoder", "")],
         label_width: 68.0,
         unit_letters: 0,
         digits: 11,
@@ -176,8 +177,8 @@ const FIGURES: [Figures; 5] = [
     },
     Figures {
         rows: &[
-            m1(Channel::M1Velocity, "M1 speed", "counts/s"),
-            m2(Channel::M2Velocity, "M2 speed", "counts/s"),
+            m1(Channel::M1_VELOCITY, "M1 speed", "counts/s"),
+            m2(Channel::M2_VELOCITY, "M2 speed", "counts/s"),
         ],
         label_width: 54.0,
         unit_letters: 5,
@@ -186,8 +187,8 @@ const FIGURES: [Figures; 5] = [
     },
     Figures {
         rows: &[
-            m1(Channel::MainBattery, "Main battery", "V"),
-            m2(Channel::LogicBattery, "Logic battery", "V"),
+            m1(Channel::MAIN_BATTERY, "Main battery", "V"),
+            m2(Channel::LOGIC_BATTERY, "Logic battery", "V"),
         ],
         label_width: 74.0,
         unit_letters: 1,

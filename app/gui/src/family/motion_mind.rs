@@ -1,6 +1,7 @@
 //! Motion Mind 3: one motor, registers in place of settings, and screens by the mode that its switches select
 //! (Motion Mind manual, chapters 4 and 6).
 
+use brushwork_link::device::motion_mind::channels::CHANNELS;
 use brushwork_link::device::{ArmScope, Channel, Drive, Identity, StatusReport};
 use brushwork_motion_mind_wire::Mode;
 use brushwork_tuning::cause::Cause;
@@ -125,16 +126,16 @@ impl Family for MotionMind {
         false
     }
 
-    fn has_channel(&self, channel: Channel) -> bool {
-        Channel::MOTION_MIND.contains(&channel)
+    fn channels(&self) -> &'static [Channel] {
+        CHANNELS
     }
 
     fn first_channels(&self, screen: Screen) -> &'static [Channel] {
         use Channel as C;
         match screen {
-            Screen::Velocity => &[C::M1Setpoint, C::M1Velocity, C::M1Pwm],
-            Screen::Position => &[C::M1Setpoint, C::M1Position, C::M1Pwm],
-            _ => &[C::M1Pwm, C::M1Velocity, C::M1Current],
+            Screen::Velocity => &[C::M1_SETPOINT, C::M1_VELOCITY, C::M1_PWM],
+            Screen::Position => &[C::M1_SETPOINT, C::M1_POSITION, C::M1_PWM],
+            _ => &[C::M1_PWM, C::M1_VELOCITY, C::M1_CURRENT],
         }
     }
 
@@ -225,21 +226,21 @@ const fn figure(channel: Channel, label: &'static str, unit: &'static str) -> Fi
 
 const FIGURES: [Figures; 3] = [
     Figures {
-        rows: &[figure(Channel::M1Position, "Position", "counts")],
+        rows: &[figure(Channel::M1_POSITION, "Position", "counts")],
         label_width: 56.0,
         unit_letters: 6,
         digits: 11,
         zero: true,
     },
     Figures {
-        rows: &[figure(Channel::M1Velocity, "Velocity", "counts/s"), figure(Channel::M1Pwm, "PWM", "%")],
+        rows: &[figure(Channel::M1_VELOCITY, "Velocity", "counts/s"), figure(Channel::M1_PWM, "PWM", "%")],
         label_width: 54.0,
         unit_letters: 8,
         digits: 8,
         zero: false,
     },
     Figures {
-        rows: &[figure(Channel::M1Current, "Current", "A"), figure(Channel::Temperature1, "Board", "°C")],
+        rows: &[figure(Channel::M1_CURRENT, "Current", "A"), figure(Channel::TEMPERATURE_1, "Board", "°C")],
         label_width: 50.0,
         unit_letters: 2,
         digits: 7,

@@ -65,7 +65,7 @@ fn fed(model: &mut Model, conditions: &[Condition]) {
     }
     for tick in 0..110 {
         let sample = sample(Duration::from_millis(100) * tick);
-        model.front.graph.push(sample.replied_at.as_secs_f64(), &sample.values);
+        model.front.graph.take(&sample);
         model.front.link.take(Event::Sample(Box::new(sample)));
     }
 }
@@ -75,16 +75,16 @@ fn sample(at: Duration) -> Sample {
     let mut sample = Sample::new(0x80);
     let turn = at.as_secs_f64();
     let readings = [
-        (Channel::M1Pwm, 60.0 * turn.sin()),
-        (Channel::M1Velocity, 6300.0 * (turn - 0.3).sin()),
-        (Channel::M1Position, -6300.0 * turn.cos()),
-        (Channel::M1Current, turn.cos() * 0.8),
-        (Channel::M2Pwm, 0.0),
-        (Channel::M2Position, -2_147_483_648.0),
-        (Channel::M2Current, -12.34),
-        (Channel::Temperature1, 41.2),
-        (Channel::MainBattery, 24.1),
-        (Channel::LogicBattery, 12.0),
+        (Channel::M1_PWM, 60.0 * turn.sin()),
+        (Channel::M1_VELOCITY, 6300.0 * (turn - 0.3).sin()),
+        (Channel::M1_POSITION, -6300.0 * turn.cos()),
+        (Channel::M1_CURRENT, turn.cos() * 0.8),
+        (Channel::M2_PWM, 0.0),
+        (Channel::M2_POSITION, -2_147_483_648.0),
+        (Channel::M2_CURRENT, -12.34),
+        (Channel::TEMPERATURE_1, 41.2),
+        (Channel::MAIN_BATTERY, 24.1),
+        (Channel::LOGIC_BATTERY, 12.0),
     ];
     for (channel, value) in readings {
         sample.set(channel, value, at, at);

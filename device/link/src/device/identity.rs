@@ -3,7 +3,9 @@
 use super::channel::Channel;
 use super::described::Described;
 use super::drive::Drive;
+use super::mcp;
 use super::mcp::{describe_sent as describe_packets, preview as preview_packets};
+use super::motion_mind;
 use super::motion_mind::{
     MotionMindFacts, SIGNS, describe_sent as describe_commands, objection, preview as preview_command,
 };
@@ -143,10 +145,10 @@ impl Identity {
         }
     }
 
-    /// The signals that it can tell, in the order of [`Channel::ALL`].
+    /// The signals that it can tell, in order.
     #[must_use]
     pub fn channels(&self) -> &'static [Channel] {
-        if self.is_motion_mind() { Channel::MOTION_MIND } else { Channel::PACKET_SERIAL }
+        if self.is_motion_mind() { motion_mind::channels::CHANNELS } else { mcp::channels::CHANNELS }
     }
 
     /// The bits of its status word; empty in a family whose status is that of packet serial.

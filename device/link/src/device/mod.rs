@@ -16,7 +16,7 @@ mod handle;
 mod identity;
 pub mod job;
 mod job_context;
-mod mcp;
+pub mod mcp;
 pub mod motion_mind;
 mod options;
 mod outbox;
@@ -28,7 +28,7 @@ mod status;
 mod stop;
 
 pub use brushwork_mcp_wire::packet_serial::status::{Condition, Conditions, Lamp, Severity};
-pub use channel::{Channel, PinSignal, Sample};
+pub use channel::{Channel, ChannelDescription, Newest, PinSignal, Reading, Role, Sample};
 pub use described::Described;
 pub use drive::{ArmScope, Drive, DriveCommand};
 pub use event::{DisarmReason, Event};

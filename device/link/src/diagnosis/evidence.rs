@@ -72,10 +72,10 @@ impl Measured {
     /// From the newest readings of a unit's channels.
     pub fn of(read: impl Fn(Channel) -> Option<f64>) -> Self {
         Self {
-            main_volts: read(Channel::MainBattery),
-            logic_volts: read(Channel::LogicBattery),
-            celsius: [Channel::Temperature1, Channel::Temperature2].map(&read),
-            amps: [Channel::M1Current, Channel::M2Current].map(&read),
+            main_volts: read(Channel::MAIN_BATTERY),
+            logic_volts: read(Channel::LOGIC_BATTERY),
+            celsius: [Channel::TEMPERATURE_1, Channel::TEMPERATURE_2].map(&read),
+            amps: [Channel::M1_CURRENT, Channel::M2_CURRENT].map(&read),
         }
     }
 }

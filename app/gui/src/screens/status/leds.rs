@@ -55,7 +55,7 @@ pub fn leds_ui(ui: &mut Ui, desk: &Desk) {
 
 fn code(desk: &Desk) -> Option<BlinkCode> {
     let status = desk.link.status?;
-    let driving = [Channel::M1Pwm, Channel::M2Pwm]
+    let driving = [Channel::M1_PWM, Channel::M2_PWM]
         .into_iter()
         .any(|channel| desk.link.readings.get(channel).is_some_and(|duty| duty != 0.0));
     Some(blink_code(status.conditions, driving))

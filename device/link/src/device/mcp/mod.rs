@@ -4,6 +4,7 @@
 //! each. Nothing outside this folder knows a command of packet serial.
 
 mod arming;
+pub mod channels;
 mod discover;
 mod driving;
 mod generation;

@@ -10,6 +10,7 @@
 mod acts;
 mod arming;
 mod borrowed;
+pub mod channels;
 mod discover;
 mod driving;
 mod facts;

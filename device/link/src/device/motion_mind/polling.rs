@@ -1,5 +1,6 @@
 //! What is read from a unit in a sweep, and which signal each register is.
 
+use super::channels::{ANALOG_CONTROL, ANALOG_FEEDBACK, INDEX_POSITION, RC_PULSE};
 use super::driving::COUNTS_PER_S_PER_STEP;
 use super::facts::MotionMindFacts;
 use super::registers::{mask, value_in};
@@ -72,16 +73,16 @@ fn enter(reply: &Reply, facts: Option<MotionMindFacts>, span: Span, sample: &mut
     let is_closed = facts.is_some_and(|facts| matches!(facts.mode, Mode::SerialPid | Mode::AnalogPid));
     let error = || Some((raw(number::DESIREDPOSITION)? - raw(number::POSITION)?) as f64);
     let readings = [
-        (Channel::M1Position, scaled(number::POSITION)),
-        (Channel::M1Velocity, raw(number::VELOCITY).map(|steps| steps as f64 * COUNTS_PER_S_PER_STEP)),
-        (Channel::M1Pwm, scaled(number::PWMOUT)),
-        (Channel::M1Current, scaled(number::AMPS)),
-        (Channel::M1PositionError, if is_closed { error() } else { None }),
-        (Channel::Temperature1, raw(number::THERMISTOR).map(celsius)),
-        (Channel::RcPulse, scaled(number::RCCOUNT)),
-        (Channel::AnalogControl, scaled(number::ANALOGCON)),
-        (Channel::AnalogFeedback, scaled(number::ANALOGFBCK)),
-        (Channel::IndexPosition, scaled(number::INDEXPOS)),
+        (Channel::M1_POSITION, scaled(number::POSITION)),
+        (Channel::M1_VELOCITY, raw(number::VELOCITY).map(|steps| steps as f64 * COUNTS_PER_S_PER_STEP)),
+        (Channel::M1_PWM, scaled(number::PWMOUT)),
+        (Channel::M1_CURRENT, scaled(number::AMPS)),
+        (Channel::M1_POSITION_ERROR, if is_closed { error() } else { None }),
+        (Channel::TEMPERATURE_1, raw(number::THERMISTOR).map(celsius)),
+        (RC_PULSE, scaled(number::RCCOUNT)),
+        (ANALOG_CONTROL, scaled(number::ANALOGCON)),
+        (ANALOG_FEEDBACK, scaled(number::ANALOGFBCK)),
+        (INDEX_POSITION, scaled(number::INDEXPOS)),
     ];
     for (channel, value) in readings {
         if let Some(value) = value {

@@ -75,7 +75,7 @@ impl Controller for Toy {
         sample: &mut Sample,
     ) -> Result<Option<StatusReport>, ExchangeError> {
         let (position, span) = ask(line, "P\n")?;
-        sample.set(Channel::M1Position, position, span.requested_at, span.replied_at);
+        sample.set(Channel::M1_POSITION, position, span.requested_at, span.replied_at);
         Ok(None)
     }
 
@@ -218,7 +218,7 @@ fn a_family_of_one_motor_and_text_lines_runs_on_the_same_loop_by_the_same_rules(
     let (mut link, lines) = toy();
     link.run_for(ms(300));
     assert!(link.has(
-        |event| matches!(event, Event::Sample(sample) if sample.get(Channel::M1Position) == Some(1234.0))
+        |event| matches!(event, Event::Sample(sample) if sample.get(Channel::M1_POSITION) == Some(1234.0))
     ));
     let duty = |duty| Drive::one(Motor::M1, DriveCommand::duty(duty));
     link.ask(Request::Drive(duty(0.5)));
