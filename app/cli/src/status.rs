@@ -4,14 +4,15 @@ use std::time::{Duration, Instant};
 
 use brushwork_link::device::motion_mind::taken;
 use brushwork_link::device::{
-    Channel, Event, FnJob, Identity, JobEnding, Newest, PollRate, Request, Sign, StatusReport,
+    Channel, Event, FnJob, Identity, JobEnding, Newest, PlaceState, PollRate, Request, StatusPlace,
+    StatusReport,
 };
 use brushwork_link::diagnosis::{Diagnosis, Evidence, Measured, PinEnd, diagnose, homed, pin_ends};
 use brushwork_link::settings::{SettingsImage, Subject, read_all};
 use brushwork_link::{Stream, Wire as _};
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::packet_serial::number;
-use brushwork_mcp_wire::packet_serial::status::{Condition, Lamp, Severity};
+use brushwork_values::Severity;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
@@ -235,36 +236,21 @@ fn decimals(channel: Channel) -> usize {
     }
 }
 
+/// The status row. Home and limit switches go by the actions of the pins where the status word has no bits for them.
 fn lamps(readings: &Readings, client: &Client, setup: &Setup) -> Vec<LampState> {
-    if client.identity.is_motion_mind() {
-        return signs(readings, &client.identity);
-    }
     let homed =
         setup.settings.as_ref().zip(setup.pins.as_deref()).map(|(settings, ends)| homed(settings, ends));
-    let state = |lamp: Lamp| match readings.status.map(|status| status.lamp(lamp)) {
-        None => "unknown",
-        Some(None) => dark(lamp, client, homed),
-        Some(Some(Severity::Signal)) => "active",
-        Some(Some(Severity::Warning)) => "warning",
-        Some(Some(Severity::Error)) => "ERROR",
+    let state = |state| match state {
+        PlaceState::Unknown => "unknown",
+        PlaceState::NotReported => "not reported",
+        PlaceState::Clear => "OK",
+        PlaceState::Active(Severity::Signal) => "active",
+        PlaceState::Active(Severity::Warning) => "warning",
+        PlaceState::Active(Severity::Error) => "ERROR",
     };
-    Lamp::ALL
-        .into_iter()
-        .map(|lamp| LampState { lamp: lamp.abbreviation(), title: lamp.title(), state: state(lamp) })
-        .collect()
-}
-
-/// The signs of a family with a status of its own.
-fn signs(readings: &Readings, identity: &Identity) -> Vec<LampState> {
-    let state = |sign: &Sign| match (readings.status, sign.severity) {
-        (None, _) => "unknown",
-        (Some(status), _) if status.word & sign.mask == 0 => "OK",
-        (_, Severity::Signal) => "active",
-        (_, Severity::Warning) => "warning",
-        (_, Severity::Error) => "ERROR",
-    };
-    let row = |sign: &'static Sign| LampState { lamp: sign.short, title: sign.title, state: state(sign) };
-    identity.signs().iter().map(row).collect()
+    let lamp =
+        |place: StatusPlace| LampState { lamp: place.short, title: place.title, state: state(place.state) };
+    client.identity.status_row(readings.status.as_ref(), homed).into_iter().map(lamp).collect()
 }
 
 fn capital(text: &str) -> String {
@@ -272,21 +258,6 @@ fn capital(text: &str) -> String {
     letters
         .next()
         .map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + letters.as_str())
-}
-
-/// A lamp that the status word does not light: a home lamp is lit by the actions of the pins where the word has no bit.
-fn dark(lamp: Lamp, client: &Client, homed: Option<[bool; 2]>) -> &'static str {
-    let by_pins = match lamp {
-        Lamp::M1Home => homed.map(|homed| homed[0]),
-        Lamp::M2Home => homed.map(|homed| homed[1]),
-        _ => None,
-    };
-    match by_pins {
-        Some(true) => "active",
-        Some(false) => "OK",
-        None if lamp.is_reported(client.identity.generation.layout(), client.identity.is_mcp()) => "OK",
-        None => "not reported",
-    }
 }
 
 fn to_json(
@@ -303,8 +274,7 @@ fn to_json(
         "status_word": readings.status.map(|status| status.word),
         "conditions": readings.status
             .map(|status| {
-                let conditions = status.conditions.iter().map(Condition::title);
-                conditions.chain(status.lit().map(|sign| sign.title)).collect::<Vec<_>>()
+                status.active().map(|indicator| indicator.title).collect::<Vec<_>>()
             }),
         "lamps": lamps,
     })

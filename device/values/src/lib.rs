@@ -6,9 +6,11 @@
 mod code;
 mod field;
 mod motor;
+mod severity;
 mod value;
 
 pub use code::{Code, by_key, by_raw};
 pub use field::{Field, Kind, SERIAL_BYTES, Unit, width_of};
 pub use motor::Motor;
+pub use severity::Severity;
 pub use value::{Record, Value, Values};

@@ -6,7 +6,7 @@ use std::time::Duration;
 use brushwork_link::Stream;
 use brushwork_link::device::{
     ArmScope, DeviceHandle, DeviceOptions, DisarmReason, Drive, DriveCommand, Event, FnJob, JobEnding,
-    JobOutput, PollRate, Request, Severity,
+    JobOutput, PollRate, Request,
 };
 use brushwork_link::settings::{Subject, read_all};
 use brushwork_link::{Interruption, Wire};
@@ -250,9 +250,10 @@ fn an_emergency_stop_disarms_and_arming_again_is_refused_until_it_is_reset() {
     let mut link = driving(Generation::Gen3);
     link.apply(0, &WorldAction::EStop { pressed: true });
     link.run_for(ms(500));
-    let stopped = link.events.iter().any(|(_, event)| {
-        matches!(event, Event::Status(status) if status.conditions.severity() == Some(Severity::Error))
-    });
+    let stopped = link
+        .events
+        .iter()
+        .any(|(_, event)| matches!(event, Event::Status(status) if status.faults().next().is_some()));
     assert!(stopped, "no fault was told: {:?}", link.events);
     assert!(matches!(disarm_reasons(&link).as_slice(), [DisarmReason::Fault(_)]));
     assert!(!link.arm(ArmScope::Pwm));

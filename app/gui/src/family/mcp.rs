@@ -1,12 +1,15 @@
 //! MCP and RoboClaw: Ion Studio's screens, thirteen lamps, two motors (MCP manual 1.2).
 
 use brushwork_link::device::mcp::channels::CHANNELS;
+use brushwork_link::device::mcp::indicators::{conditions, indicators};
 use brushwork_link::device::{ArmScope, Channel, Drive, Identity, StatusReport};
-use brushwork_mcp_wire::packet_serial::status::{Condition, Lamp};
+use brushwork_mcp_wire::packet_serial::Generation;
+use brushwork_mcp_wire::packet_serial::led::{BlinkCode, blink_code};
+use brushwork_mcp_wire::packet_serial::status::{Condition, Conditions, Lamp};
 use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
 
-use super::facts::{Ability, Family, Figure, Figures, Sign, Sliders};
+use super::facts::{Ability, ActiveIndicator, Family, Figure, Figures, Sliders};
 use super::words::{self, SettingsWords};
 use crate::model::drawer::Tab;
 use crate::model::lamp::{LampInfo, LampState, state_of};
@@ -49,11 +52,25 @@ impl Family for Mcp {
         identity: Option<&Identity>,
         homed: Option<[bool; 2]>,
     ) -> Vec<LampState> {
-        Lamp::ALL.into_iter().map(|lamp| lit(lamp, report, identity, homed)).collect()
+        let conditions = conditions(report);
+        Lamp::ALL.into_iter().map(|lamp| lit(lamp, conditions, identity, homed)).collect()
     }
 
-    fn signs(&self, report: &StatusReport, _identity: Option<&Identity>) -> Vec<Sign> {
-        report.conditions.iter().map(sign_of).collect()
+    fn active(&self, report: &StatusReport, _identity: Option<&Identity>) -> Vec<ActiveIndicator> {
+        let placed = report.indicators.iter().enumerate();
+        let set = placed.filter(|(_, indicator)| report.word & indicator.mask != 0);
+        set.map(|(place, indicator)| ActiveIndicator::new(Some(place), indicator)).collect()
+    }
+
+    fn homed(&self) -> Option<[ActiveIndicator; 2]> {
+        Some([Condition::M1Home, Condition::M2Home].map(|condition| {
+            let place = condition as usize;
+            ActiveIndicator::new(Some(place), &indicators(Generation::Gen1)[place])
+        }))
+    }
+
+    fn blink_code(&self, report: &StatusReport, driving: bool) -> Option<BlinkCode> {
+        Some(blink_code(conditions(report), driving))
     }
 
     fn words(&self) -> &'static SettingsWords {
@@ -93,15 +110,10 @@ impl Family for Mcp {
     }
 }
 
-/// A condition as a sign.
-pub fn sign_of(condition: Condition) -> Sign {
-    Sign { order: condition as u8, title: condition.title(), state: state_of(condition.severity()) }
-}
-
 /// A lamp as a unit's status lights it; those for home and limit switches of an MCP as its pins do.
 fn lit(
     lamp: Lamp,
-    report: &StatusReport,
+    conditions: Conditions,
     identity: Option<&Identity>,
     homed: Option<[bool; 2]>,
 ) -> LampState {
@@ -121,7 +133,7 @@ fn lit(
     let told =
         identity.is_none_or(|identity| lamp.is_reported(identity.generation.layout(), identity.is_mcp()));
     let dark = if told { LampState::Ok } else { LampState::NotApplicable };
-    report.lamp(lamp).map_or(dark, state_of)
+    lamp.lit_by(conditions).map_or(dark, state_of)
 }
 
 const fn lamp(lamp: Lamp, title: &'static str) -> LampInfo {

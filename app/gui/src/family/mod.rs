@@ -13,8 +13,7 @@ mod mcp;
 mod motion_mind;
 mod words;
 
-pub use facts::{Ability, Family, Figure, Figures, Sign, Sliders};
-pub use mcp::sign_of as mcp_sign;
+pub use facts::{Ability, ActiveIndicator, Family, Figure, Figures, Sliders};
 pub use words::SettingsWords;
 
 /// Which family a controller is of, as far as the window tells them apart.

@@ -12,7 +12,8 @@ use brushwork_gui::model::screen::Screen;
 use brushwork_gui::model::{Model, Phase};
 use brushwork_gui::tune::Loop;
 use brushwork_gui::tune::looked_at::Kind;
-use brushwork_link::device::{ArmScope, Channel, Condition, Event, Identity, Sample, StatusReport};
+use brushwork_link::device::mcp::indicators::indicators;
+use brushwork_link::device::{ArmScope, Channel, Event, Identity, Sample, StatusReport};
 use brushwork_link::exchange::LinkStatistics;
 use brushwork_link::transport::Stream;
 use brushwork_mcp_wire::packet_serial::Generation;
@@ -27,8 +28,8 @@ fn picture(mut bench: Bench, name: &str) {
     bench.harness.snapshot(name);
 }
 
-/// A unit that has answered, with the conditions given.
-fn fed(model: &mut Model, conditions: &[Condition]) {
+/// A unit that has answered, with the status word given.
+fn fed(model: &mut Model, word: u32) {
     model.front.target = Some("sim:mcp266".to_owned());
     model.front.phase = Phase::Open { target: "sim:mcp266".to_owned() };
     let identity = Identity {
@@ -44,16 +45,7 @@ fn fed(model: &mut Model, conditions: &[Condition]) {
         port: "sim:mcp266".to_owned(),
         notes: Vec::new(),
     };
-    let conditions = conditions.iter().copied().collect();
-    let status = StatusReport {
-        signs: &[],
-        address: 0x80,
-        at: Duration::ZERO,
-        word: 0x1004,
-        conditions,
-        unknown_bits: 0,
-        running_ticks: None,
-    };
+    let status = StatusReport::new(0x80, Duration::ZERO, word, indicators(Generation::Gen1));
     let figures = LinkStatistics { kbit_per_s: 5.8, transactions_per_s: 70.0, ..LinkStatistics::default() };
     for event in [
         Event::Connected(identity),
@@ -102,7 +94,7 @@ fn the_window_before_a_controller_is_connected() {
 #[test]
 fn the_status_screen_with_an_error_a_warning_and_a_failure_to_read() {
     let mut bench = Bench::sized(SMALLEST, Theme::Light);
-    fed(bench.model(), &[Condition::EStop, Condition::Temperature1Warning]);
+    fed(bench.model(), 0x1004);
     let text = "Could not set the encoder on 0x80 at /dev/ttyACM0: no answer within 60 ms (3 tries). \
                 Check the cable and the power.";
     bench.model().messages.fail(text);
@@ -113,7 +105,7 @@ fn the_status_screen_with_an_error_a_warning_and_a_failure_to_read() {
 fn the_pwm_screen_while_it_is_armed() {
     let mut bench = Bench::sized(SMALLEST, Theme::Dark);
     let model = bench.model();
-    fed(model, &[]);
+    fed(model, 0);
     model.screen = Screen::Pwm;
     model.front.link.take(Event::Armed {
         address: 0x80,
@@ -131,7 +123,7 @@ fn tuning(name: &str, theme: Theme) -> Bench {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reports").join(name);
     let report = file::read(&path).expect("it is in the repository");
     let model = bench.model();
-    fed(model, &[]);
+    fed(model, 0);
     model.screen = Screen::Velocity;
     model.front.drawers.press(Screen::Velocity, Tab::Tune);
     model.front.tune.panel_mut(Loop::Velocity, Motor::M1).add(report);

@@ -7,9 +7,9 @@ use super::mcp;
 use super::mcp::{describe_sent as describe_packets, preview as preview_packets};
 use super::motion_mind;
 use super::motion_mind::{
-    MotionMindFacts, SIGNS, describe_sent as describe_commands, objection, preview as preview_command,
+    MotionMindFacts, describe_sent as describe_commands, objection, preview as preview_command,
 };
-use super::status::Sign;
+use super::status::{StatusPlace, StatusReport};
 use crate::settings::Subject;
 use crate::unit::{FirmwareGeneration, UnitAddress};
 use brushwork_mcp_wire::models;
@@ -151,10 +151,13 @@ impl Identity {
         if self.is_motion_mind() { motion_mind::channels::CHANNELS } else { mcp::channels::CHANNELS }
     }
 
-    /// The bits of its status word; empty in a family whose status is that of packet serial.
+    /// The places of its status row, in order. `homed` is what its pins say of home and limit switches, where they are known.
     #[must_use]
-    pub fn signs(&self) -> &'static [Sign] {
-        if self.is_motion_mind() { SIGNS } else { &[] }
+    pub fn status_row(&self, report: Option<&StatusReport>, homed: Option<[bool; 2]>) -> Vec<StatusPlace> {
+        if self.is_motion_mind() {
+            return motion_mind::indicators::status_row(report);
+        }
+        mcp::indicators::status_row(report, self.generation.layout(), self.is_mcp(), homed)
     }
 
     /// The requests that a write holds, in words.

@@ -8,6 +8,7 @@ pub mod channels;
 mod discover;
 mod driving;
 mod generation;
+pub mod indicators;
 mod polling;
 mod speaker;
 mod stopping;

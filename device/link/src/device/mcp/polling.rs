@@ -1,12 +1,13 @@
 //! What is read from a unit in a sweep, and which signal each reply carries.
 
 use super::channels::pins;
+use super::indicators::indicators;
 use super::speaker::Speaker;
 use crate::device::channel::{Channel, PinSignal, Sample};
 use crate::device::controller::{Line, PollItem, PollList};
 use crate::device::status::StatusReport;
 use crate::exchange::{ExchangeError, Reply};
-use brushwork_mcp_wire::packet_serial::{Effect, Generation, lookup, number, scale, status};
+use brushwork_mcp_wire::packet_serial::{Effect, Generation, lookup, number, scale};
 
 /// Signals that change quickly, each read in every sweep.
 const FAST: [(u8, &str); 6] = [
@@ -109,12 +110,10 @@ pub fn read(
     Ok(reply.values.try_int("status").filter(|_| brings_status(command)).map(|word| {
         let word = u32::try_from(word).unwrap_or(0);
         StatusReport {
-            signs: &[],
             address: speaker.id(),
             at: reply.span.replied_at,
             word,
-            conditions: status::decode(word, speaker.generation),
-            unknown_bits: status::unknown_bits(word, speaker.generation),
+            indicators: indicators(speaker.generation),
             running_ticks: reply.values.try_int("tick").and_then(|ticks| u32::try_from(ticks).ok()),
         }
     }))

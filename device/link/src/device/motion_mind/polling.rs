@@ -3,14 +3,13 @@
 use super::channels::{ANALOG_CONTROL, ANALOG_FEEDBACK, INDEX_POSITION, RC_PULSE};
 use super::driving::COUNTS_PER_S_PER_STEP;
 use super::facts::MotionMindFacts;
+use super::indicators::INDICATORS;
 use super::registers::{mask, value_in};
-use super::signs::SIGNS;
 use super::speaker::Speaker;
 use crate::device::channel::{Channel, Sample};
 use crate::device::controller::{Line, PollItem, PollList};
 use crate::device::status::StatusReport;
 use crate::exchange::{ExchangeError, Span};
-use brushwork_mcp_wire::packet_serial::status::Conditions;
 use brushwork_motion_mind_wire::{Command, Mode, Protocol, Reply, register, register_number as number};
 
 /// What moves: one read of several registers.
@@ -93,14 +92,11 @@ fn enter(reply: &Reply, facts: Option<MotionMindFacts>, span: Span, sample: &mut
 
 fn status_of(speaker: &Speaker, reply: &Reply, span: Span) -> Option<StatusReport> {
     let word = u32::try_from(value_in(reply, number::STATUS)?).ok()?;
-    let known = SIGNS.iter().fold(0, |known, sign| known | sign.mask);
     Some(StatusReport {
         address: speaker.address.get(),
         at: span.replied_at,
         word,
-        conditions: Conditions::default(),
-        signs: SIGNS,
-        unknown_bits: word & !known,
+        indicators: INDICATORS,
         running_ticks: value_in(reply, number::TIME).and_then(|ticks| u32::try_from(ticks).ok()),
     })
 }
