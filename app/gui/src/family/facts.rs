@@ -52,7 +52,7 @@ pub trait Family: Sync {
     fn active(&self, report: &StatusReport, identity: Option<&Identity>) -> Vec<ActiveIndicator>;
 
     /// What is active while a motor is homed or at a limit, where the pins tell that and the status word has no bit for it.
-    fn homed(&self) -> Option<[ActiveIndicator; 2]> {
+    fn home_indicators(&self) -> Option<[ActiveIndicator; 2]> {
         None
     }
 

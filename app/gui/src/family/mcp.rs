@@ -62,7 +62,7 @@ impl Family for Mcp {
         set.map(|(place, indicator)| ActiveIndicator::new(Some(place), indicator)).collect()
     }
 
-    fn homed(&self) -> Option<[ActiveIndicator; 2]> {
+    fn home_indicators(&self) -> Option<[ActiveIndicator; 2]> {
         Some([Condition::M1Home, Condition::M2Home].map(|condition| {
             let place = condition as usize;
             ActiveIndicator::new(Some(place), &indicators(Generation::Gen1)[place])

@@ -214,7 +214,7 @@ impl History {
     pub fn note_homed(&mut self, address: u8, homed: [bool; 2]) {
         let unit = self.units.entry(address).or_default();
         let before = unit.homed.replace(homed).unwrap_or_default();
-        let indicators = unit.family().homed().into_iter().flatten();
+        let indicators = unit.family().home_indicators().into_iter().flatten();
         for (index, indicator) in indicators.enumerate() {
             if before[index] != homed[index] {
                 self.changed(address, indicator, homed[index], self.now);

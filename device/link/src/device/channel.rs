@@ -78,83 +78,68 @@ impl ChannelDescription {
         let (unit, decimals, range) = role.reading();
         Self { key, label, unit, role, motor: None, decimals, range }
     }
-
-    const fn of(motor: Motor, key: &'static str, label: &'static str, role: Role) -> Self {
-        let mut described = Self::new(key, label, role);
-        described.motor = Some(motor);
-        described
-    }
 }
 
 /// One signal of a controller: a handle to its description, known by its key.
 #[derive(Clone, Copy)]
 pub struct Channel(&'static ChannelDescription);
 
-/// What more than one family has. Those before the errors are of Ion Studio's graphs and status row (MCP manual 1.2).
-impl Channel {
-    /// What motor 1 was last told by this program.
-    pub const M1_SETPOINT: Self =
-        Self(const { &ChannelDescription::of(Motor::M1, "m1_setpoint", "M1 Setpoint", Role::Setpoint) });
-    /// Motor 1's output.
-    pub const M1_PWM: Self =
-        Self(const { &ChannelDescription::of(Motor::M1, "m1_pwm", "M1 PWM", Role::Pwm) });
-    /// Motor 1's speed.
-    pub const M1_VELOCITY: Self =
-        Self(const { &ChannelDescription::of(Motor::M1, "m1_velocity", "M1 Velocity", Role::Velocity) });
-    /// Motor 1's encoder.
-    pub const M1_POSITION: Self =
-        Self(const { &ChannelDescription::of(Motor::M1, "m1_position", "M1 Position", Role::Position) });
-    /// Motor 1's current.
-    pub const M1_CURRENT: Self =
-        Self(const { &ChannelDescription::of(Motor::M1, "m1_current", "M1 Current", Role::Current) });
-    /// Motor 1's speed error.
-    pub const M1_SPEED_ERROR: Self = Self(
-        const { &ChannelDescription::of(Motor::M1, "m1_speed_error", "M1 Speed Error", Role::SpeedError) },
-    );
-    /// Motor 1's position error.
-    pub const M1_POSITION_ERROR: Self = Self(
-        const { &ChannelDescription::of(Motor::M1, "m1_position_error", "M1 Position Error", Role::PositionError) },
-    );
-    /// What motor 2 was last told by this program.
-    pub const M2_SETPOINT: Self =
-        Self(const { &ChannelDescription::of(Motor::M2, "m2_setpoint", "M2 Setpoint", Role::Setpoint) });
-    /// Motor 2's output.
-    pub const M2_PWM: Self =
-        Self(const { &ChannelDescription::of(Motor::M2, "m2_pwm", "M2 PWM", Role::Pwm) });
-    /// Motor 2's speed.
-    pub const M2_VELOCITY: Self =
-        Self(const { &ChannelDescription::of(Motor::M2, "m2_velocity", "M2 Velocity", Role::Velocity) });
-    /// Motor 2's encoder.
-    pub const M2_POSITION: Self =
-        Self(const { &ChannelDescription::of(Motor::M2, "m2_position", "M2 Position", Role::Position) });
-    /// Motor 2's current.
-    pub const M2_CURRENT: Self =
-        Self(const { &ChannelDescription::of(Motor::M2, "m2_current", "M2 Current", Role::Current) });
-    /// Motor 2's speed error.
-    pub const M2_SPEED_ERROR: Self = Self(
-        const { &ChannelDescription::of(Motor::M2, "m2_speed_error", "M2 Speed Error", Role::SpeedError) },
-    );
-    /// Motor 2's position error.
-    pub const M2_POSITION_ERROR: Self = Self(
-        const { &ChannelDescription::of(Motor::M2, "m2_position_error", "M2 Position Error", Role::PositionError) },
-    );
-    /// First board temperature.
-    pub const TEMPERATURE_1: Self =
-        Self(const { &ChannelDescription::new("temperature_1", "Temperature 1", Role::Temperature) });
-    /// Second board temperature.
-    pub const TEMPERATURE_2: Self =
-        Self(const { &ChannelDescription::new("temperature_2", "Temperature 2", Role::Temperature) });
-    /// Main battery.
-    pub const MAIN_BATTERY: Self =
-        Self(const { &ChannelDescription::new("main_battery", "Main Battery", Role::Battery) });
-    /// Logic battery.
-    pub const LOGIC_BATTERY: Self = Self(
-        const {
-            let battery = ChannelDescription::new("logic_battery", "Logic Battery", Role::Battery);
-            &ChannelDescription { range: [0.0, 20.0], ..battery }
-        },
-    );
+/// The channels that more than one family has: name, key, label, role, motor, and a range where it is not that of the role.
+macro_rules! shared {
+    ($($(#[$doc:meta])* $name:ident $key:literal $label:literal $role:ident [$($motor:ident)?] $($range:expr)?;)*) => {
+        impl Channel {$(
+            $(#[$doc])*
+            pub const $name: Self = Self(const {
+                &ChannelDescription {
+                    $(motor: Some(Motor::$motor),)?
+                    $(range: $range,)?
+                    ..ChannelDescription::new($key, $label, Role::$role)
+                }
+            });
+        )*}
+    };
+}
 
+shared! {
+    /// What motor 1 was last told by this program.
+    M1_SETPOINT "m1_setpoint" "M1 Setpoint" Setpoint [M1];
+    /// Motor 1's output.
+    M1_PWM "m1_pwm" "M1 PWM" Pwm [M1];
+    /// Motor 1's speed.
+    M1_VELOCITY "m1_velocity" "M1 Velocity" Velocity [M1];
+    /// Motor 1's encoder.
+    M1_POSITION "m1_position" "M1 Position" Position [M1];
+    /// Motor 1's current.
+    M1_CURRENT "m1_current" "M1 Current" Current [M1];
+    /// Motor 1's speed error.
+    M1_SPEED_ERROR "m1_speed_error" "M1 Speed Error" SpeedError [M1];
+    /// Motor 1's position error.
+    M1_POSITION_ERROR "m1_position_error" "M1 Position Error" PositionError [M1];
+    /// What motor 2 was last told by this program.
+    M2_SETPOINT "m2_setpoint" "M2 Setpoint" Setpoint [M2];
+    /// Motor 2's output.
+    M2_PWM "m2_pwm" "M2 PWM" Pwm [M2];
+    /// Motor 2's speed.
+    M2_VELOCITY "m2_velocity" "M2 Velocity" Velocity [M2];
+    /// Motor 2's encoder.
+    M2_POSITION "m2_position" "M2 Position" Position [M2];
+    /// Motor 2's current.
+    M2_CURRENT "m2_current" "M2 Current" Current [M2];
+    /// Motor 2's speed error.
+    M2_SPEED_ERROR "m2_speed_error" "M2 Speed Error" SpeedError [M2];
+    /// Motor 2's position error.
+    M2_POSITION_ERROR "m2_position_error" "M2 Position Error" PositionError [M2];
+    /// First board temperature.
+    TEMPERATURE_1 "temperature_1" "Temperature 1" Temperature [];
+    /// Second board temperature.
+    TEMPERATURE_2 "temperature_2" "Temperature 2" Temperature [];
+    /// Main battery.
+    MAIN_BATTERY "main_battery" "Main Battery" Battery [];
+    /// Logic battery.
+    LOGIC_BATTERY "logic_battery" "Logic Battery" Battery [] [0.0, 20.0];
+}
+
+impl Channel {
     /// A channel that a family describes.
     #[must_use]
     pub const fn of(description: &'static ChannelDescription) -> Self {

@@ -47,7 +47,7 @@ fn note(desk: &Desk) -> Option<&'static str> {
 }
 
 /// What the status word says, in words.
-pub fn conditions_ui(ui: &mut Ui, desk: &Desk) {
+pub fn active_ui(ui: &mut Ui, desk: &Desk) {
     ui.add_space(6.0);
     heading_ui(ui, "What the controller reports");
     let report = desk.link.status.as_ref();

@@ -1,55 +1,28 @@
-//! What an MCP or RoboClaw can tell, in order: the motors' signals, then its input pins.
+//! What an MCP or RoboClaw can tell, in order: the signals of Ion Studio's graphs and status row (MCP manual 1.2), the errors of its
+//! loops, then its input pins.
 
 use crate::device::channel::{Channel, ChannelDescription, Role};
 
-/// The channel of the input pin with this number.
-macro_rules! pin {
-    ($number:literal) => {
-        Channel::of(
-            const { &ChannelDescription::new(concat!("din", $number), concat!("DIN", $number), Role::Pin) },
-        )
+/// A list of shared channels by their names, then of input pins by their numbers.
+macro_rules! channels {
+    ($($shared:ident)*; $($pin:literal)*) => {
+        &[
+            $(Channel::$shared,)*
+            $(Channel::of(const {
+                &ChannelDescription::new(concat!("din", $pin), concat!("DIN", $pin), Role::Pin)
+            }),)*
+        ]
     };
 }
 
 /// All of them; a model has the first of the pins, as many as it has. No model has more than these.
-pub const CHANNELS: &[Channel] = &[
-    Channel::M1_SETPOINT,
-    Channel::M1_PWM,
-    Channel::M1_VELOCITY,
-    Channel::M1_POSITION,
-    Channel::M1_CURRENT,
-    Channel::M2_SETPOINT,
-    Channel::M2_PWM,
-    Channel::M2_VELOCITY,
-    Channel::M2_POSITION,
-    Channel::M2_CURRENT,
-    Channel::TEMPERATURE_1,
-    Channel::TEMPERATURE_2,
-    Channel::MAIN_BATTERY,
-    Channel::LOGIC_BATTERY,
-    Channel::M1_SPEED_ERROR,
-    Channel::M2_SPEED_ERROR,
-    Channel::M1_POSITION_ERROR,
-    Channel::M2_POSITION_ERROR,
-    pin!(1),
-    pin!(2),
-    pin!(3),
-    pin!(4),
-    pin!(5),
-    pin!(6),
-    pin!(7),
-    pin!(8),
-    pin!(9),
-    pin!(10),
-    pin!(11),
-    pin!(12),
-    pin!(13),
-    pin!(14),
-    pin!(15),
-    pin!(16),
-    pin!(17),
-    pin!(18),
-];
+pub const CHANNELS: &[Channel] = channels! {
+    M1_SETPOINT M1_PWM M1_VELOCITY M1_POSITION M1_CURRENT
+    M2_SETPOINT M2_PWM M2_VELOCITY M2_POSITION M2_CURRENT
+    TEMPERATURE_1 TEMPERATURE_2 MAIN_BATTERY LOGIC_BATTERY
+    M1_SPEED_ERROR M2_SPEED_ERROR M1_POSITION_ERROR M2_POSITION_ERROR;
+    1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18
+};
 
 /// The channels of the input pins in the order of command 144.
 pub fn pins() -> impl Iterator<Item = Channel> {

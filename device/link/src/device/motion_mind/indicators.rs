@@ -7,68 +7,44 @@ use brushwork_values::Severity;
 /// Every bit of STATUS (Motion Mind manual, figure 22). What takes the drive away is an error, what limits it a warning, the rest is
 /// nothing but news.
 pub static INDICATORS: &[Indicator] = &[
-    indicator(status::BRAKE, "brake", "BRAKE", "Brake input at ground: the bridge is off", Severity::Error),
-    indicator(
+    bit(status::BRAKE, "brake", "BRAKE", "Brake input at ground: the bridge is off", Severity::Error),
+    bit(
         status::TEMPFAULT,
         "temp_fault",
         "TEMPFAULT",
         "Too hot: the bridge is off until it has cooled to 80 °C",
         Severity::Error,
     ),
-    indicator(
+    bit(
         status::CURRENTLIMIT,
         "current_limit",
         "CURRENTLIMIT",
         "Current above AMPSLIMIT: the drive is reduced",
         Severity::Warning,
     ),
-    indicator(
-        status::BADRC,
-        "bad_rc",
-        "BADRC",
-        "R/C pulse missing, too short or too long",
-        Severity::Warning,
-    ),
-    indicator(
-        status::NEGLIMIT,
-        "negative_limit",
-        "NEGLIMIT",
-        "Negative limit input at ground",
-        Severity::Warning,
-    ),
-    indicator(
-        status::POSLIMIT,
-        "positive_limit",
-        "POSLIMIT",
-        "Positive limit input at ground",
-        Severity::Warning,
-    ),
-    indicator(
+    bit(status::BADRC, "bad_rc", "BADRC", "R/C pulse missing, too short or too long", Severity::Warning),
+    bit(status::NEGLIMIT, "negative_limit", "NEGLIMIT", "Negative limit input at ground", Severity::Warning),
+    bit(status::POSLIMIT, "positive_limit", "POSLIMIT", "Positive limit input at ground", Severity::Warning),
+    bit(
         status::VNLIMIT,
         "virtual_negative_limit",
         "VNLIMIT",
         "At the negative virtual limit",
         Severity::Warning,
     ),
-    indicator(
+    bit(
         status::VPLIMIT,
         "virtual_positive_limit",
         "VPLIMIT",
         "At the positive virtual limit",
         Severity::Warning,
     ),
-    indicator(status::PWMLIMIT, "pwm_limit", "PWMLIMIT", "Drive at PWMLIMIT", Severity::Signal),
-    indicator(status::INDEX, "index", "INDEX", "Index input at ground", Severity::Signal),
-    indicator(
-        status::INPOSITION,
-        "in_position",
-        "INPOSITION",
-        "The motor is where it was sent",
-        Severity::Signal,
-    ),
+    bit(status::PWMLIMIT, "pwm_limit", "PWMLIMIT", "Drive at PWMLIMIT", Severity::Signal),
+    bit(status::INDEX, "index", "INDEX", "Index input at ground", Severity::Signal),
+    bit(status::INPOSITION, "in_position", "INPOSITION", "The motor is where it was sent", Severity::Signal),
 ];
 
-const fn indicator(
+const fn bit(
     mask: u16,
     key: &'static str,
     short: &'static str,
