@@ -3,9 +3,11 @@
 use super::channel::Channel;
 use super::described::Described;
 use super::drive::Drive;
-use super::mcp;
+use super::mcp::channels::CHANNELS as MCP_CHANNELS;
+use super::mcp::indicators::status_row as mcp_status_row;
 use super::mcp::{describe_sent as describe_packets, preview as preview_packets};
-use super::motion_mind;
+use super::motion_mind::channels::CHANNELS as MOTION_MIND_CHANNELS;
+use super::motion_mind::indicators::status_row as motion_mind_status_row;
 use super::motion_mind::{
     MotionMindFacts, describe_sent as describe_commands, objection, preview as preview_command,
 };
@@ -148,16 +150,16 @@ impl Identity {
     /// The signals that it can tell, in order.
     #[must_use]
     pub fn channels(&self) -> &'static [Channel] {
-        if self.is_motion_mind() { motion_mind::channels::CHANNELS } else { mcp::channels::CHANNELS }
+        if self.is_motion_mind() { MOTION_MIND_CHANNELS } else { MCP_CHANNELS }
     }
 
     /// The places of its status row, in order. `homed` is what its pins say of home and limit switches, where they are known.
     #[must_use]
     pub fn status_row(&self, report: Option<&StatusReport>, homed: Option<[bool; 2]>) -> Vec<StatusPlace> {
         if self.is_motion_mind() {
-            return motion_mind::indicators::status_row(report);
+            return motion_mind_status_row(report);
         }
-        mcp::indicators::status_row(report, self.generation.layout(), self.is_mcp(), homed)
+        mcp_status_row(report, self.generation.layout(), self.is_mcp(), homed)
     }
 
     /// The requests that a write holds, in words.
