@@ -23,10 +23,10 @@ impl Response {
 
     fn new(motor: Motor, command: DriveCommand) -> Option<Self> {
         let channel = match (command, motor) {
-            (DriveCommand::Speed { .. }, Motor::M1) => Channel::M1Velocity,
-            (DriveCommand::Speed { .. }, Motor::M2) => Channel::M2Velocity,
-            (DriveCommand::Position { .. }, Motor::M1) => Channel::M1Position,
-            (DriveCommand::Position { .. }, Motor::M2) => Channel::M2Position,
+            (DriveCommand::Speed { .. }, Motor::M1) => Channel::M1_VELOCITY,
+            (DriveCommand::Speed { .. }, Motor::M2) => Channel::M2_VELOCITY,
+            (DriveCommand::Position { .. }, Motor::M1) => Channel::M1_POSITION,
+            (DriveCommand::Position { .. }, Motor::M2) => Channel::M2_POSITION,
             _ => return None,
         };
         Some(Self { motor, channel, setpoint: command.setpoint(), start: None, points: Vec::new() })
@@ -55,7 +55,7 @@ impl Response {
             figures.overshoot * 100.0,
             time(figures.settling_time_s),
             figures.final_error,
-            self.channel.unit(),
+            self.channel.unit,
         ))
     }
 }

@@ -1,18 +1,19 @@
 //! `brushwork status`: what the controller measures and reports.
 
-use brushwork_mcp_client::{MCP, is_mcp, layout_of};
+use brushwork_mcp_client::MCP;
 use brushwork_motion_mind_client::{MotionMindFacts, is_motion_mind};
 use std::time::{Duration, Instant};
 
 use brushwork_link::device::{
-    Channel, Event, FnJob, Identity, JobEnding, PollRate, Request, Sign, StatusReport,
+    Channel, Event, FnJob, Identity, JobEnding, Newest, PlaceState, PollRate, Request, StatusPlace,
+    StatusReport,
 };
 use brushwork_link::settings::{SettingsImage, read_all};
 use brushwork_link::{Stream, Wire as _};
 use brushwork_mcp_client::diagnosis::{Diagnosis, Evidence, Measured, PinEnd, diagnose, homed, pin_ends};
 use brushwork_mcp_wire::packet_serial::number;
-use brushwork_mcp_wire::packet_serial::status::{Condition, Lamp, Severity};
 use brushwork_motion_mind_client::taken;
+use brushwork_values::Severity;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
@@ -28,8 +29,9 @@ const FIRST_READING_LIMIT: Duration = Duration::from_secs(20);
 const SETTINGS_LIMIT: Duration = Duration::from_secs(120);
 
 /// The newest of everything that has been read.
+#[derive(Default)]
 pub struct Readings {
-    values: [Option<f64>; Channel::COUNT],
+    newest: Newest,
     status: Option<StatusReport>,
     stream: Option<Stream>,
 }
@@ -40,12 +42,6 @@ struct Setup {
     settings: Option<SettingsImage>,
     /// Where the input pins stand, where the unit tells.
     pins: Option<Vec<PinEnd>>,
-}
-
-impl Default for Readings {
-    fn default() -> Self {
-        Self { values: [None; Channel::COUNT], status: None, stream: None }
-    }
 }
 
 #[derive(Serialize)]
@@ -59,13 +55,7 @@ impl Readings {
     /// Takes over what an event tells.
     pub fn take(&mut self, event: Event) {
         match event {
-            Event::Sample(sample) => {
-                for channel in Channel::ALL {
-                    if let Some(value) = sample.get(channel) {
-                        self.values[channel.index()] = Some(value);
-                    }
-                }
-            }
+            Event::Sample(sample) => self.newest.update(&sample),
             Event::Status(status) => self.status = Some(status),
             Event::Selected { stream, .. } => self.stream = stream,
             Event::Failure(failure) => say(failure.to_string()),
@@ -75,29 +65,26 @@ impl Readings {
 
     /// A channel's newest value.
     pub fn get(&self, channel: Channel) -> Option<f64> {
-        self.values[channel.index()]
+        self.newest.get(channel)
     }
 
     fn is_complete(&self, identity: &Identity) -> bool {
-        if is_motion_mind(identity) {
-            let wanted = [Channel::M1Position, Channel::M1Velocity, Channel::Temperature1];
-            return self.status.is_some() && wanted.into_iter().all(|channel| self.get(channel).is_some());
-        }
         let wanted = [
-            Channel::M1Position,
-            Channel::M1Velocity,
-            Channel::M1Current,
-            Channel::MainBattery,
-            Channel::LogicBattery,
-            Channel::Temperature1,
+            Channel::M1_POSITION,
+            Channel::M1_VELOCITY,
+            Channel::M1_CURRENT,
+            Channel::MAIN_BATTERY,
+            Channel::LOGIC_BATTERY,
+            Channel::TEMPERATURE_1,
         ];
-        self.status.is_some() && wanted.into_iter().all(|channel| self.get(channel).is_some())
+        let is_there = |channel| !identity.channels().contains(&channel) || self.get(channel).is_some();
+        self.status.is_some() && wanted.into_iter().all(is_there)
     }
 
     /// The channels of a unit but the input pins as JSON, by their keys; what was not read is null.
     pub fn to_json(&self, identity: &Identity) -> Map<String, Value> {
-        let polled = identity.channels().iter().copied().filter(|channel| !channel.is_signal());
-        polled.map(|channel| (channel.key(), json!(self.get(channel)))).collect()
+        let polled = identity.channels().iter().copied().filter(|channel| !channel.is_pin());
+        polled.map(|channel| (channel.key.to_owned(), json!(self.get(channel)))).collect()
     }
 }
 
@@ -223,12 +210,13 @@ fn print(
         out.line(diagnosis.sentence())?;
     }
     out.line("")?;
-    let rows: Vec<Vec<String>> = Channel::ALL
-        .into_iter()
-        .filter_map(|channel| {
+    let rows: Vec<Vec<String>> = identity
+        .channels()
+        .iter()
+        .filter_map(|&channel| {
             let value = readings.get(channel)?;
             let digits = decimals(channel);
-            Some(vec![channel.label().to_owned(), format!("{value:>12.digits$}"), channel.unit().to_owned()])
+            Some(vec![channel.label.to_owned(), format!("{value:>12.digits$}"), channel.unit.to_owned()])
         })
         .collect();
     out.table(&["SIGNAL", "       VALUE", "UNIT"], &rows)?;
@@ -241,43 +229,28 @@ fn print(
 }
 
 fn decimals(channel: Channel) -> usize {
-    match channel.unit() {
+    match channel.unit {
         "A" => 2,
         "V" | "°C" | "%" => 1,
         _ => 0,
     }
 }
 
+/// The status row. Home and limit switches go by the actions of the pins where the status word has no bits for them.
 fn lamps(readings: &Readings, client: &Client, setup: &Setup) -> Vec<LampState> {
-    if is_motion_mind(&client.identity) {
-        return signs(readings, &client.identity);
-    }
     let homed =
         setup.settings.as_ref().zip(setup.pins.as_deref()).map(|(settings, ends)| homed(settings, ends));
-    let state = |lamp: Lamp| match readings.status.map(|status| status.lamp(lamp)) {
-        None => "unknown",
-        Some(None) => dark(lamp, client, homed),
-        Some(Some(Severity::Signal)) => "active",
-        Some(Some(Severity::Warning)) => "warning",
-        Some(Some(Severity::Error)) => "ERROR",
+    let state = |state| match state {
+        PlaceState::Unknown => "unknown",
+        PlaceState::NotReported => "not reported",
+        PlaceState::Clear => "OK",
+        PlaceState::Active(Severity::Signal) => "active",
+        PlaceState::Active(Severity::Warning) => "warning",
+        PlaceState::Active(Severity::Error) => "ERROR",
     };
-    Lamp::ALL
-        .into_iter()
-        .map(|lamp| LampState { lamp: lamp.abbreviation(), title: lamp.title(), state: state(lamp) })
-        .collect()
-}
-
-/// The signs of a family with a status of its own.
-fn signs(readings: &Readings, identity: &Identity) -> Vec<LampState> {
-    let state = |sign: &Sign| match (readings.status, sign.severity) {
-        (None, _) => "unknown",
-        (Some(status), _) if status.word & sign.mask == 0 => "OK",
-        (_, Severity::Signal) => "active",
-        (_, Severity::Warning) => "warning",
-        (_, Severity::Error) => "ERROR",
-    };
-    let row = |sign: &'static Sign| LampState { lamp: sign.short, title: sign.title, state: state(sign) };
-    identity.signs().iter().map(row).collect()
+    let lamp =
+        |place: StatusPlace| LampState { lamp: place.short, title: place.title, state: state(place.state) };
+    client.identity.status_row(readings.status.as_ref(), homed).into_iter().map(lamp).collect()
 }
 
 fn capital(text: &str) -> String {
@@ -285,21 +258,6 @@ fn capital(text: &str) -> String {
     letters
         .next()
         .map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + letters.as_str())
-}
-
-/// A lamp that the status word does not light: a home lamp is lit by the actions of the pins where the word has no bit.
-fn dark(lamp: Lamp, client: &Client, homed: Option<[bool; 2]>) -> &'static str {
-    let by_pins = match lamp {
-        Lamp::M1Home => homed.map(|homed| homed[0]),
-        Lamp::M2Home => homed.map(|homed| homed[1]),
-        _ => None,
-    };
-    match by_pins {
-        Some(true) => "active",
-        Some(false) => "OK",
-        None if lamp.is_reported(layout_of(client.identity.generation), is_mcp(&client.identity)) => "OK",
-        None => "not reported",
-    }
 }
 
 fn to_json(
@@ -316,8 +274,7 @@ fn to_json(
         "status_word": readings.status.map(|status| status.word),
         "conditions": readings.status
             .map(|status| {
-                let conditions = status.conditions.iter().map(Condition::title);
-                conditions.chain(status.lit().map(|sign| sign.title)).collect::<Vec<_>>()
+                status.active().map(|indicator| indicator.title).collect::<Vec<_>>()
             }),
         "lamps": lamps,
     })
@@ -341,10 +298,10 @@ pub fn line_of(readings: &Readings, identity: &Identity) -> String {
             value(current, 7)
         )
     };
-    let first = [Channel::M1Pwm, Channel::M1Velocity, Channel::M1Position, Channel::M1Current];
+    let first = [Channel::M1_PWM, Channel::M1_VELOCITY, Channel::M1_POSITION, Channel::M1_CURRENT];
     if identity.capabilities().motors == 1 {
-        return format!("{} | {} °C", motor("M1", first), value(Channel::Temperature1, 5));
+        return format!("{} | {} °C", motor("M1", first), value(Channel::TEMPERATURE_1, 5));
     }
-    let second = [Channel::M2Pwm, Channel::M2Velocity, Channel::M2Position, Channel::M2Current];
-    format!("{} | {} | {} V", motor("M1", first), motor("M2", second), value(Channel::MainBattery, 5))
+    let second = [Channel::M2_PWM, Channel::M2_VELOCITY, Channel::M2_POSITION, Channel::M2_CURRENT];
+    format!("{} | {} | {} V", motor("M1", first), motor("M2", second), value(Channel::MAIN_BATTERY, 5))
 }

@@ -8,11 +8,11 @@ use std::io::BufRead as _;
 use std::time::{Duration, Instant};
 
 use brushwork_link::device::{Event, PollRate, Request};
-use brushwork_mcp_wire::packet_serial::hex;
 use brushwork_motion_mind_client::{describe_received, describe_sent};
 use brushwork_motion_mind_wire::{
     Command, Effect, FrameEvent, FrameReader, LineEvent, LineReader, Protocol, checksum,
 };
+use brushwork_values::hex;
 use serde_json::json;
 
 use super::args::TerminalArgs;

@@ -99,7 +99,7 @@ fn hours_of_random_use_leave_nothing_driven_and_memory_flat() {
 
 /// Fills the graph's ring, so that its growth, which ends by itself, is not taken for a leak.
 fn fill_graph(bench: &mut Bench) {
-    let values = vec![1.0; brushwork_gui::model::channels::graph_channels().len()];
+    let values = vec![1.0; bench.model().front.graph.live.channels.len()];
     for _ in 0..RING_ROWS {
         bench.model().front.graph.push(0.0, &values);
     }

@@ -5,10 +5,14 @@
 
 mod code;
 mod field;
+mod hex;
 mod motor;
+mod severity;
 mod value;
 
 pub use code::{Code, by_key, by_raw};
 pub use field::{Field, Kind, SERIAL_BYTES, Unit, width_of};
+pub use hex::hex;
 pub use motor::Motor;
+pub use severity::Severity;
 pub use value::{Record, Value, Values};

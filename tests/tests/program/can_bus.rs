@@ -125,10 +125,10 @@ fn readings_are_those_of_the_machine() {
         })
     };
     let volts = link.bus(|bus| bus.views()[0].battery_volts);
-    let read = newest(Channel::MainBattery).unwrap();
+    let read = newest(Channel::MAIN_BATTERY).unwrap();
     assert!((read - volts).abs() < 0.2, "{read} V against {volts} V");
     assert!(link.events.iter().any(|(_, event)| matches!(event, Event::Status(status) if status.word == 0)));
-    assert!(newest(Channel::M1Position).is_some() && newest(Channel::M2Velocity).is_some());
+    assert!(newest(Channel::M1_POSITION).is_some() && newest(Channel::M2_VELOCITY).is_some());
 }
 
 /// Runs a job that hands back a value.

@@ -12,7 +12,6 @@ use brushwork_link::settings::read_all;
 use brushwork_link::{Interruption, Wire};
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_mcp_wire::models;
-use brushwork_mcp_wire::packet_serial::status::Severity;
 use brushwork_mcp_wire::packet_serial::{Address, Generation, Request as Packet, number};
 use brushwork_plant::faults::{Direction, Fault, FaultEffect};
 use brushwork_plant::machine::StreamIndex;
@@ -254,9 +253,10 @@ fn an_emergency_stop_disarms_and_arming_again_is_refused_until_it_is_reset() {
     let mut link = driving(Generation::Gen3);
     link.apply(0, &WorldAction::EStop { pressed: true });
     link.run_for(ms(500));
-    let stopped = link.events.iter().any(|(_, event)| {
-        matches!(event, Event::Status(status) if status.conditions.severity() == Some(Severity::Error))
-    });
+    let stopped = link
+        .events
+        .iter()
+        .any(|(_, event)| matches!(event, Event::Status(status) if status.faults().next().is_some()));
     assert!(stopped, "no fault was told: {:?}", link.events);
     assert!(matches!(disarm_reasons(&link).as_slice(), [DisarmReason::Fault(_)]));
     assert!(!link.arm(ArmScope::Pwm));

@@ -536,7 +536,7 @@ fn a_foreign_unit_is_found_in_whichever_protocol_and_manner_it_speaks() {
                 let protocol = if is_text { Protocol::Text } else { Protocol::Binary };
                 assert_eq!((facts.protocol, facts.mode.number()), (protocol, 4), "{manner:?}");
                 assert_eq!(identity.generation.to_string(), "revision 5");
-                assert_eq!(latest(&link, Channel::M1Position), Some(-12_345.0), "{manner:?} {is_text}");
+                assert_eq!(latest(&link, Channel::M1_POSITION), Some(-12_345.0), "{manner:?} {is_text}");
                 assert!(failures(&link).is_empty(), "{manner:?}: {:?}", failures(&link));
                 assert!(link.bus(|unit| unit.done.is_empty()), "looking changes nothing");
             }
@@ -663,7 +663,7 @@ fn the_public_simulator_is_connected_to_though_it_answers_the_read_of_all_regist
             .events
             .iter()
             .filter_map(|(_, event)| match event {
-                Event::Sample(sample) => sample.get(Channel::M1Position),
+                Event::Sample(sample) => sample.get(Channel::M1_POSITION),
                 _ => None,
             })
             .collect();

@@ -226,7 +226,7 @@ fn a_unit_is_found_in_either_protocol_and_mode_and_told_by_its_registers() {
             assert_eq!(unit.generation.to_string(), "revision 10");
             assert!(failures(&link).is_empty(), "{protocol} {mode}: {:?}", failures(&link));
             assert!(
-                latest(&link, Channel::Temperature1).is_some_and(|celsius| (15.0..40.0).contains(&celsius))
+                latest(&link, Channel::TEMPERATURE_1).is_some_and(|celsius| (15.0..40.0).contains(&celsius))
             );
         }
     }
@@ -383,8 +383,8 @@ fn each_mode_takes_what_it_takes_and_says_what_it_does_not() {
         drive(&link, DriveCommand::duty(0.5));
         link.run_for(ms(600));
         assert_eq!(register(&link, PWMOUT), 512, "{protocol}: {:?}", failures(&link));
-        assert!(latest(&link, Channel::M1Pwm).is_some_and(|pwm| (pwm - 50.0).abs() < 0.1));
-        assert!(latest(&link, Channel::M1Velocity).is_some_and(|speed| speed > 1000.0));
+        assert!(latest(&link, Channel::M1_PWM).is_some_and(|pwm| (pwm - 50.0).abs() < 0.1));
+        assert!(latest(&link, Channel::M1_VELOCITY).is_some_and(|speed| speed > 1000.0));
         drive(&link, speed(1000));
         link.run_for(ms(100));
         assert!(failures(&link).iter().any(|told| told.contains("duties and nothing else")));
@@ -410,7 +410,7 @@ fn each_mode_takes_what_it_takes_and_says_what_it_does_not() {
         assert!((at - 2_000).abs() < 60, "{protocol}: at {at}");
         drive(&link, speed(2_000));
         link.run_for(ms(2_000));
-        let seen = latest(&link, Channel::M1Velocity).unwrap();
+        let seen = latest(&link, Channel::M1_VELOCITY).unwrap();
         assert!((seen - 2_000.0).abs() <= 400.0, "{protocol}: {seen} counts/s");
     }
     for mode in [Mode::RadioControl, Mode::Analog, Mode::Buttons, Mode::AnalogPid, Mode::FactoryRestore] {
@@ -825,7 +825,7 @@ fn a_new_address_is_followed() {
         );
         link.events.clear();
         link.run_for(ms(1_000));
-        assert!(failures(&link).is_empty() && latest(&link, Channel::M1Position).is_some(), "{protocol}");
+        assert!(failures(&link).is_empty() && latest(&link, Channel::M1_POSITION).is_some(), "{protocol}");
     }
 }
 

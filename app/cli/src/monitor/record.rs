@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use brushwork_mcp_wire::packet_serial::hex;
+use brushwork_values::hex;
 use serde_json::json;
 
 use super::args::MonitorArgs;

@@ -2,14 +2,15 @@
 
 use std::fmt;
 
-use brushwork_link::device::{ArmScope, Channel, Drive, Identity, StatusReport};
+use brushwork_link::device::{ArmScope, Channel, Drive, Identity, Indicator, StatusReport};
+use brushwork_mcp_wire::packet_serial::led::BlinkCode;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
 
 use super::words::SettingsWords;
 use crate::model::drawer::Tab;
-use crate::model::lamp::{LampInfo, LampState};
+use crate::model::lamp::{LampInfo, LampState, state_of};
 use crate::model::motion_mind::Driven;
 use crate::model::position::Position;
 use crate::model::pwm::Pwm;
@@ -47,8 +48,18 @@ pub trait Family: Sync {
         homed: Option<[bool; 2]>,
     ) -> Vec<LampState>;
 
-    /// What the status word says, the gravest lamp first in order.
-    fn signs(&self, report: &StatusReport, identity: Option<&Identity>) -> Vec<Sign>;
+    /// What the status word says, in the order in which it is shown.
+    fn active(&self, report: &StatusReport, identity: Option<&Identity>) -> Vec<ActiveIndicator>;
+
+    /// What is active while a motor is homed or at a limit, where the pins tell that and the status word has no bit for it.
+    fn home_indicators(&self) -> Option<[ActiveIndicator; 2]> {
+        None
+    }
+
+    /// How the LEDs on the board blink by a status, and by whether a bridge drives.
+    fn blink_code(&self, _report: &StatusReport, _driving: bool) -> Option<BlinkCode> {
+        None
+    }
 
     /// How acts on its settings are told.
     fn words(&self) -> &'static SettingsWords;
@@ -80,8 +91,8 @@ pub trait Family: Sync {
     /// Whether the screens that drive show settings of loops that have to be read for them.
     fn has_loops(&self) -> bool;
 
-    /// Whether the graph can show a channel.
-    fn has_channel(&self, channel: Channel) -> bool;
+    /// What its controllers can tell, in the order of the graph.
+    fn channels(&self) -> &'static [Channel];
 
     /// What the graph of a screen shows at first.
     fn first_channels(&self, screen: Screen) -> &'static [Channel] {
@@ -161,13 +172,21 @@ pub struct Figure {
     pub motor: Motor,
 }
 
-/// Something that a status word says, and how grave it is.
+/// An indicator of a status word that is set, and how grave it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Sign {
-    /// Place among the signs of its family.
+pub struct ActiveIndicator {
+    /// Place among the indicators of its family.
     pub order: u8,
     pub title: &'static str,
     pub state: LampState,
+}
+
+impl ActiveIndicator {
+    /// An indicator that stands in this place among those of its family.
+    pub fn new(place: Option<usize>, indicator: &Indicator) -> Self {
+        let order = place.and_then(|place| u8::try_from(place).ok()).unwrap_or(u8::MAX);
+        Self { order, title: indicator.title, state: state_of(indicator.severity) }
+    }
 }
 
 impl fmt::Debug for dyn Family {

@@ -1,12 +1,16 @@
 //! MCP and RoboClaw: Ion Studio's screens, thirteen lamps, two motors (MCP manual 1.2).
 
 use brushwork_link::device::{ArmScope, Channel, Drive, Identity, StatusReport};
+use brushwork_mcp_client::channels::CHANNELS;
+use brushwork_mcp_client::indicators::{conditions, indicators};
 use brushwork_mcp_client::{is_mcp, layout_of};
-use brushwork_mcp_wire::packet_serial::status::{Condition, Lamp};
+use brushwork_mcp_wire::packet_serial::Generation;
+use brushwork_mcp_wire::packet_serial::led::{BlinkCode, blink_code};
+use brushwork_mcp_wire::packet_serial::status::{Condition, Conditions, Lamp};
 use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
 
-use super::facts::{Ability, Family, Figure, Figures, Sign, Sliders};
+use super::facts::{Ability, ActiveIndicator, Family, Figure, Figures, Sliders};
 use super::words::{self, SettingsWords};
 use crate::model::drawer::Tab;
 use crate::model::lamp::{LampInfo, LampState, state_of};
@@ -49,11 +53,25 @@ impl Family for Mcp {
         identity: Option<&Identity>,
         homed: Option<[bool; 2]>,
     ) -> Vec<LampState> {
-        Lamp::ALL.into_iter().map(|lamp| lit(lamp, report, identity, homed)).collect()
+        let conditions = conditions(report);
+        Lamp::ALL.into_iter().map(|lamp| lit(lamp, conditions, identity, homed)).collect()
     }
 
-    fn signs(&self, report: &StatusReport, _identity: Option<&Identity>) -> Vec<Sign> {
-        report.conditions.iter().map(sign_of).collect()
+    fn active(&self, report: &StatusReport, _identity: Option<&Identity>) -> Vec<ActiveIndicator> {
+        let placed = report.indicators.iter().enumerate();
+        let set = placed.filter(|(_, indicator)| report.word & indicator.mask != 0);
+        set.map(|(place, indicator)| ActiveIndicator::new(Some(place), indicator)).collect()
+    }
+
+    fn home_indicators(&self) -> Option<[ActiveIndicator; 2]> {
+        Some([Condition::M1Home, Condition::M2Home].map(|condition| {
+            let place = condition as usize;
+            ActiveIndicator::new(Some(place), &indicators(Generation::Gen1)[place])
+        }))
+    }
+
+    fn blink_code(&self, report: &StatusReport, driving: bool) -> Option<BlinkCode> {
+        Some(blink_code(conditions(report), driving))
     }
 
     fn words(&self) -> &'static SettingsWords {
@@ -84,8 +102,8 @@ impl Family for Mcp {
         true
     }
 
-    fn has_channel(&self, _channel: Channel) -> bool {
-        true
+    fn channels(&self) -> &'static [Channel] {
+        CHANNELS
     }
 
     fn lacks(&self, _ability: Ability) -> Option<&'static str> {
@@ -93,15 +111,10 @@ impl Family for Mcp {
     }
 }
 
-/// A condition as a sign.
-pub fn sign_of(condition: Condition) -> Sign {
-    Sign { order: condition as u8, title: condition.title(), state: state_of(condition.severity()) }
-}
-
 /// A lamp as a unit's status lights it; those for home and limit switches of an MCP as its pins do.
 fn lit(
     lamp: Lamp,
-    report: &StatusReport,
+    conditions: Conditions,
     identity: Option<&Identity>,
     homed: Option<[bool; 2]>,
 ) -> LampState {
@@ -121,7 +134,7 @@ fn lit(
     let told =
         identity.is_none_or(|identity| lamp.is_reported(layout_of(identity.generation), is_mcp(identity)));
     let dark = if told { LampState::Ok } else { LampState::NotApplicable };
-    report.lamp(lamp).map_or(dark, state_of)
+    lamp.lit_by(conditions).map_or(dark, state_of)
 }
 
 const fn lamp(lamp: Lamp, title: &'static str) -> LampInfo {
@@ -155,21 +168,21 @@ const fn m2(channel: Channel, label: &'static str, unit: &'static str) -> Figure
 
 const FIGURES: [Figures; 5] = [
     Figures {
-        rows: &[m1(Channel::Temperature1, "Temp 1", "°C"), m2(Channel::Temperature2, "Temp 2", "°C")],
+        rows: &[m1(Channel::TEMPERATURE_1, "Temp 1", "°C"), m2(Channel::TEMPERATURE_2, "Temp 2", "°C")],
         label_width: 40.0,
         unit_letters: 2,
         digits: 5,
         zero: false,
     },
     Figures {
-        rows: &[m1(Channel::M1Current, "M1 amps", "A"), m2(Channel::M2Current, "M2 amps", "A")],
+        rows: &[m1(Channel::M1_CURRENT, "M1 amps", "A"), m2(Channel::M2_CURRENT, "M2 amps", "A")],
         label_width: 51.0,
         unit_letters: 1,
         digits: 7,
         zero: false,
     },
     Figures {
-        rows: &[m1(Channel::M1Position, "M1 encoder", ""), m2(Channel::M2Position, "M2 encoder", "")],
+        rows: &[m1(Channel::M1_POSITION, "M1 encoder", ""), m2(Channel::M2_POSITION, "M2 encoder", "")],
         label_width: 68.0,
         unit_letters: 0,
         digits: 11,
@@ -177,8 +190,8 @@ const FIGURES: [Figures; 5] = [
     },
     Figures {
         rows: &[
-            m1(Channel::M1Velocity, "M1 speed", "counts/s"),
-            m2(Channel::M2Velocity, "M2 speed", "counts/s"),
+            m1(Channel::M1_VELOCITY, "M1 speed", "counts/s"),
+            m2(Channel::M2_VELOCITY, "M2 speed", "counts/s"),
         ],
         label_width: 54.0,
         unit_letters: 5,
@@ -187,8 +200,8 @@ const FIGURES: [Figures; 5] = [
     },
     Figures {
         rows: &[
-            m1(Channel::MainBattery, "Main battery", "V"),
-            m2(Channel::LogicBattery, "Logic battery", "V"),
+            m1(Channel::MAIN_BATTERY, "Main battery", "V"),
+            m2(Channel::LOGIC_BATTERY, "Logic battery", "V"),
         ],
         label_width: 74.0,
         unit_letters: 1,

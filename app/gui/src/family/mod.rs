@@ -4,15 +4,16 @@
 //! controller has and which channels its graph. A screen that is shared asks its desk's family and never which one it is. To
 //! add a family, implement [`Family`], name it in [`of`], and its screens in `screens`.
 
-use brushwork_link::device::Identity;
+use std::collections::BTreeSet;
+
+use brushwork_link::device::{Channel, Identity};
 
 mod facts;
 mod mcp;
 mod motion_mind;
 mod words;
 
-pub use facts::{Ability, Family, Figure, Figures, Sign, Sliders};
-pub use mcp::sign_of as mcp_sign;
+pub use facts::{Ability, ActiveIndicator, Family, Figure, Figures, Sliders};
 pub use words::SettingsWords;
 
 /// Which family a controller is of, as far as the window tells them apart.
@@ -37,6 +38,15 @@ impl FamilyKind {
     }
 }
 
+/// What controllers of any family can tell, each channel once: a file may be of another controller than the one at hand.
+pub fn all_channels() -> Vec<Channel> {
+    let families = [FamilyKind::Mcp, FamilyKind::MotionMind].map(of);
+    let mut all: Vec<Channel> = families.iter().flat_map(|family| family.channels()).copied().collect();
+    let mut known = BTreeSet::new();
+    all.retain(|channel| known.insert(channel.key));
+    all
+}
+
 /// The family behind a kind.
 pub fn of(kind: FamilyKind) -> &'static dyn Family {
     match kind {
@@ -47,8 +57,6 @@ pub fn of(kind: FamilyKind) -> &'static dyn Family {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeSet;
-
     use super::*;
     use crate::model::motion_mind::Driven;
 

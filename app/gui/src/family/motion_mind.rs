@@ -1,14 +1,15 @@
 //! Motion Mind 3: one motor, registers in place of settings, and screens by the mode that its switches select
 //! (Motion Mind manual, chapters 4 and 6).
 
-use brushwork_link::device::{ArmScope, Channel, Drive, Identity, StatusReport};
+use brushwork_link::device::{ArmScope, Channel, Drive, Identity, Indicator, StatusReport};
 use brushwork_motion_mind_client::MotionMindFacts;
+use brushwork_motion_mind_client::channels::CHANNELS;
 use brushwork_motion_mind_wire::Mode;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
 
-use super::facts::{Ability, Family, Figure, Figures, Sign, Sliders};
+use super::facts::{Ability, ActiveIndicator, Family, Figure, Figures, Sliders};
 use super::words::{self, SettingsWords};
 use crate::model::drawer::Tab;
 use crate::model::lamp::{LampInfo, LampState, state_of};
@@ -69,19 +70,13 @@ impl Family for MotionMind {
         KEYS.iter().map(|key| lit_by(report, key, identity)).collect()
     }
 
-    fn signs(&self, report: &StatusReport, identity: Option<&Identity>) -> Vec<Sign> {
-        let order = |sign: &brushwork_link::device::Sign| KEYS.iter().position(|key| *key == sign.key);
-        let mut signs: Vec<Sign> = report
-            .lit()
-            .filter(|sign| means_something(sign.key, identity))
-            .map(|sign| Sign {
-                order: order(sign).and_then(|order| u8::try_from(order).ok()).unwrap_or(u8::MAX),
-                title: sign.title,
-                state: state_of(sign.severity),
-            })
-            .collect();
-        signs.sort();
-        signs
+    fn active(&self, report: &StatusReport, identity: Option<&Identity>) -> Vec<ActiveIndicator> {
+        let place = |indicator: &Indicator| KEYS.iter().position(|key| *key == indicator.key);
+        let set = report.active().filter(|indicator| means_something(indicator.key, identity));
+        let mut active: Vec<_> =
+            set.map(|indicator| ActiveIndicator::new(place(indicator), indicator)).collect();
+        active.sort();
+        active
     }
 
     fn words(&self) -> &'static SettingsWords {
@@ -126,16 +121,16 @@ impl Family for MotionMind {
         false
     }
 
-    fn has_channel(&self, channel: Channel) -> bool {
-        Channel::MOTION_MIND.contains(&channel)
+    fn channels(&self) -> &'static [Channel] {
+        CHANNELS
     }
 
     fn first_channels(&self, screen: Screen) -> &'static [Channel] {
         use Channel as C;
         match screen {
-            Screen::Velocity => &[C::M1Setpoint, C::M1Velocity, C::M1Pwm],
-            Screen::Position => &[C::M1Setpoint, C::M1Position, C::M1Pwm],
-            _ => &[C::M1Pwm, C::M1Velocity, C::M1Current],
+            Screen::Velocity => &[C::M1_SETPOINT, C::M1_VELOCITY, C::M1_PWM],
+            Screen::Position => &[C::M1_SETPOINT, C::M1_POSITION, C::M1_PWM],
+            _ => &[C::M1_PWM, C::M1_VELOCITY, C::M1_CURRENT],
         }
     }
 
@@ -170,15 +165,16 @@ impl Family for MotionMind {
     }
 }
 
-/// How the sign with that key lights its lamp.
+/// How the indicator with that key lights its lamp.
 fn lit_by(report: &StatusReport, key: &str, identity: Option<&Identity>) -> LampState {
     if !means_something(key, identity) {
         return LampState::NotApplicable;
     }
-    report.lit().find(|sign| sign.key == key).map_or(LampState::Ok, |sign| state_of(sign.severity))
+    let set = report.active().find(|indicator| indicator.key == key);
+    set.map_or(LampState::Ok, |indicator| state_of(indicator.severity))
 }
 
-/// Whether a sign means anything in the unit's mode: outside of mode 0 nobody misses an R/C pulse.
+/// Whether an indicator means anything in the unit's mode: outside of mode 0 nobody misses an R/C pulse.
 fn means_something(key: &str, identity: Option<&Identity>) -> bool {
     let facts = identity.and_then(MotionMindFacts::of);
     key != BAD_RC || facts.is_none_or(|facts| facts.mode == Mode::RadioControl)
@@ -186,7 +182,7 @@ fn means_something(key: &str, identity: Option<&Identity>) -> bool {
 
 const BAD_RC: &str = "bad_rc";
 
-/// The signs of the status that light the lamps, in the order of [`LAMPS`]: what takes the drive away comes first.
+/// The indicators of the status that light the lamps, in the order of [`LAMPS`]: what takes the drive away comes first.
 const KEYS: [&str; 11] = [
     "temp_fault",
     "brake",
@@ -226,21 +222,21 @@ const fn figure(channel: Channel, label: &'static str, unit: &'static str) -> Fi
 
 const FIGURES: [Figures; 3] = [
     Figures {
-        rows: &[figure(Channel::M1Position, "Position", "counts")],
+        rows: &[figure(Channel::M1_POSITION, "Position", "counts")],
         label_width: 56.0,
         unit_letters: 6,
         digits: 11,
         zero: true,
     },
     Figures {
-        rows: &[figure(Channel::M1Velocity, "Velocity", "counts/s"), figure(Channel::M1Pwm, "PWM", "%")],
+        rows: &[figure(Channel::M1_VELOCITY, "Velocity", "counts/s"), figure(Channel::M1_PWM, "PWM", "%")],
         label_width: 54.0,
         unit_letters: 8,
         digits: 8,
         zero: false,
     },
     Figures {
-        rows: &[figure(Channel::M1Current, "Current", "A"), figure(Channel::Temperature1, "Board", "°C")],
+        rows: &[figure(Channel::M1_CURRENT, "Current", "A"), figure(Channel::TEMPERATURE_1, "Board", "°C")],
         label_width: 50.0,
         unit_letters: 2,
         digits: 7,
@@ -252,21 +248,13 @@ const FIGURES: [Figures; 3] = [
 mod tests {
     use std::time::Duration;
 
-    use brushwork_mcp_wire::packet_serial::status::Conditions;
+    use brushwork_motion_mind_client::indicators::INDICATORS;
     use brushwork_motion_mind_wire::{STATUS_BITS, status as bit};
 
     use super::*;
 
     fn report(word: u16) -> StatusReport {
-        StatusReport {
-            address: 1,
-            at: Duration::ZERO,
-            word: word.into(),
-            conditions: Conditions::default(),
-            signs: brushwork_motion_mind_client::SIGNS,
-            unknown_bits: 0,
-            running_ticks: None,
-        }
+        StatusReport::new(1, Duration::ZERO, word.into(), INDICATORS)
     }
 
     #[test]
@@ -274,15 +262,15 @@ mod tests {
         for row in STATUS_BITS {
             let lit = MotionMind.lit(&report(row.mask()), None, None);
             assert_eq!(lit.iter().filter(|state| **state != LampState::Ok).count(), 1, "{}", row.name);
-            assert_eq!(MotionMind.signs(&report(row.mask()), None).len(), 1, "{}", row.name);
+            assert_eq!(MotionMind.active(&report(row.mask()), None).len(), 1, "{}", row.name);
         }
-        assert_eq!(MotionMind.signs(&report(0), None), []);
+        assert_eq!(MotionMind.active(&report(0), None), []);
     }
 
     #[test]
     fn what_takes_the_drive_away_is_an_error_and_comes_first() {
-        let signs = MotionMind.signs(&report(bit::TEMPFAULT | bit::INPOSITION | bit::BRAKE), None);
-        let states: Vec<_> = signs.iter().map(|sign| sign.state).collect();
+        let active = MotionMind.active(&report(bit::TEMPFAULT | bit::INPOSITION | bit::BRAKE), None);
+        let states: Vec<_> = active.iter().map(|indicator| indicator.state).collect();
         assert_eq!(states, [LampState::Error, LampState::Error, LampState::Active]);
     }
 }

@@ -1,11 +1,12 @@
 //! What the link tells the graph: samples with their own times, and events that become marks.
 
-use brushwork_link::device::{Channel, Drive, DriveCommand, Event, Sample};
+use brushwork_link::device::{Drive, DriveCommand, Event, Reading, Sample};
 use brushwork_mcp_wire::models;
 use brushwork_values::Motor;
 
 use super::live::LiveGraph;
 use super::marks::MarkKind;
+use super::series::NOT_READ;
 
 impl LiveGraph {
     /// Takes a sample of the unit that is looked at.
@@ -18,10 +19,20 @@ impl LiveGraph {
         }
         self.next_sequence = Some(sample.sequence + 1);
         self.record_sample(sample);
-        self.push_read(replied_s, &sample.values, |index| {
-            let at = Channel::ALL.get(index).and_then(|channel| sample.read_at(*channel));
-            at.map_or(replied_s, |at| at.as_secs_f64())
-        });
+        let count = self.live.channels.len();
+        let (mut values, mut times_s) = (vec![NOT_READ; count], vec![replied_s; count]);
+        for (column, reading) in self.columns_of(sample) {
+            values[column] = reading.value;
+            times_s[column] = reading.read_at().as_secs_f64();
+        }
+        self.push_read(replied_s, &values, |column| times_s[column]);
+    }
+
+    /// What a sample has of the channels of this graph, in their order.
+    pub(super) fn columns_of(&self, sample: &Sample) -> impl Iterator<Item = (usize, Reading)> {
+        let read = |key: &str| sample.readings().iter().find(|reading| reading.channel.key == key).copied();
+        let channels = self.live.track.channels.iter().enumerate();
+        channels.filter_map(move |(column, info)| Some((column, read(&info.key)?)))
     }
 
     /// Leaves a mark for an event that is one, at the event's own time or else at `now_s`.
@@ -36,7 +47,8 @@ impl LiveGraph {
             Event::Connected(identity) => {
                 identity.title().clone_into(&mut self.files.device);
                 let model = identity.model.and_then(models::lookup);
-                self.pins = model.map_or(Channel::SIGNALS, |model| model.pins.len());
+                let pins = || identity.channels().iter().filter(|channel| channel.is_pin()).count();
+                self.pins = model.map_or_else(pins, |model| model.pins.len());
             }
             Event::Lost(_) => self.mark(now_s, MarkKind::Note, "Link lost"),
             _ => {}
@@ -65,6 +77,9 @@ fn command_text(command: &DriveCommand) -> String {
 mod tests {
     use std::time::Duration;
 
+    use brushwork_link::device::Channel;
+    use brushwork_mcp_client::channels::CHANNELS;
+
     use super::*;
     use crate::model::channels::graph_channels;
 
@@ -72,26 +87,27 @@ mod tests {
 
     #[test]
     fn each_reading_keeps_the_time_of_its_own_exchange() {
-        let mut graph = LiveGraph::new(graph_channels(), 0.1);
+        let mut graph = LiveGraph::new(graph_channels(CHANNELS), 0.1);
         let mut sample = Sample::new(0x80);
-        sample.set(Channel::M1Pwm, 10.0, MS(1000), MS(1002));
-        sample.set(Channel::MainBattery, 24.0, MS(1010), MS(1014));
+        sample.set(Channel::M1_PWM, 10.0, MS(1000), MS(1002));
+        sample.set(Channel::MAIN_BATTERY, 24.0, MS(1010), MS(1014));
         graph.take(&sample);
         let history = &graph.live.track.history;
-        let (pwm_s, _) = history.reading(Channel::M1Pwm.index(), 0).unwrap();
-        let (battery_s, volts) = history.reading(Channel::MainBattery.index(), 0).unwrap();
+        let column = |channel: Channel| graph.live.track.channel_of_key(channel.key).unwrap();
+        let (pwm_s, _) = history.reading(column(Channel::M1_PWM), 0).unwrap();
+        let (battery_s, volts) = history.reading(column(Channel::MAIN_BATTERY), 0).unwrap();
         assert!((pwm_s - 1.001).abs() < 2e-5 && (battery_s - 1.012).abs() < 2e-5, "{pwm_s} {battery_s}");
         assert_eq!(volts, 24.0);
-        assert_eq!(history.reading(Channel::M2Pwm.index(), 0), None);
+        assert_eq!(history.reading(column(Channel::M2_PWM), 0), None);
     }
 
     #[test]
     fn samples_that_were_thrown_away_are_counted_and_leave_a_gap() {
-        let mut graph = LiveGraph::new(graph_channels(), 0.1);
+        let mut graph = LiveGraph::new(graph_channels(CHANNELS), 0.1);
         for sequence in [7, 8, 12] {
             let mut sample = Sample::new(0x80);
             sample.sequence = sequence;
-            sample.set(Channel::M1Pwm, 1.0, MS(sequence * 100), MS(sequence * 100));
+            sample.set(Channel::M1_PWM, 1.0, MS(sequence * 100), MS(sequence * 100));
             graph.take(&sample);
         }
         assert_eq!(graph.rate.lost, 3);
@@ -100,7 +116,7 @@ mod tests {
 
     #[test]
     fn commands_leave_marks_at_the_time_they_were_sent() {
-        let mut graph = LiveGraph::new(graph_channels(), 0.1);
+        let mut graph = LiveGraph::new(graph_channels(CHANNELS), 0.1);
         let drive = Drive::one(Motor::M2, DriveCommand::duty(0.255));
         graph.note(&Event::Driven { address: 0x80, sent_at: MS(1500), drive }, 9.0);
         graph.note(&Event::Disarmed(brushwork_link::device::DisarmReason::Asked), 9.0);

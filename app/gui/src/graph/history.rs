@@ -28,6 +28,14 @@ impl History {
         Self { times_s: Ring::new(capacity), channels, capacity, next_row: 0 }
     }
 
+    /// Keeps the channels of these places in this order; in a place of `None` there is a channel that was never read.
+    pub fn take_channels(&mut self, places: &[Option<usize>]) {
+        let series = |place: &Option<usize>| {
+            place.map_or_else(|| Series::new(self.capacity), |place| self.channels[place].clone())
+        };
+        self.channels = places.iter().map(series).collect();
+    }
+
     /// Adds one sample, all of it read at once.
     pub fn push(&mut self, time_s: f64, values: &[f64]) {
         self.push_read(time_s, values, |_| time_s);

@@ -24,12 +24,9 @@ pub fn channels_ui(ui: &mut Ui, graph: &mut LiveGraph) {
     ScrollArea::vertical().max_height((ui.available_height() - FOOTER).max(ROW_HEIGHT)).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         let known = if graph.opened.is_some() { usize::MAX } else { graph.pins };
-        // A recording has the channels that it has.
-        let left_out = if graph.opened.is_some() { Vec::new() } else { graph.left_out.clone() };
         let sheet = graph.sheet_mut();
-        let (pins, others): (Vec<usize>, Vec<usize>) = (0..sheet.channels.len())
-            .filter(|index| !left_out.get(*index).is_some_and(|out| *out))
-            .partition(|index| sheet.channels[*index].info.is_pin);
+        let (pins, others): (Vec<usize>, Vec<usize>) =
+            (0..sheet.channels.len()).partition(|index| sheet.channels[*index].info.is_pin);
         others.into_iter().for_each(|index| row_ui(ui, sheet, index));
         if known > 0 && !pins.is_empty() {
             CollapsingHeader::new("Input pins").show_unindented(ui, |ui| {

@@ -28,8 +28,6 @@ pub struct LiveGraph {
     pub large: bool,
     /// Input pins of the unit, for the list.
     pub pins: usize,
-    /// Channels that the controller's family does not have, by index; the list leaves them out.
-    pub left_out: Vec<bool>,
     /// Folders, names, dialogs, and what is being read and written.
     pub files: GraphFiles,
     /// The plot's size when it was drawn last, for pictures of it.
@@ -71,12 +69,18 @@ impl LiveGraph {
             rate: Rate::new(interval_s),
             large: false,
             pins: 0,
-            left_out: Vec::new(),
             files: GraphFiles::default(),
             last_plot_size: egui::vec2(800.0, 400.0),
             next_sequence: None,
             silent,
         }
+    }
+
+    /// Turns to the channels of another family's controller.
+    pub fn set_channels(&mut self, channels: Vec<ChannelInfo>) {
+        self.end_recording("The recording ended: the controller has other channels. ");
+        self.silent = vec![Silence::default(); channels.len()];
+        self.live.set_channels(channels);
     }
 
     /// What is looked at: the recording if one is open, else the live samples.

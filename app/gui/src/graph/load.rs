@@ -8,6 +8,7 @@ use super::marks::{Mark, MarkKind};
 use super::scale::Scale;
 use super::series::NOT_READ;
 use super::track::{ChannelInfo, Track};
+use crate::family::all_channels;
 use crate::model::channels::graph_channels;
 use brushwork_core::recording::csv::{CsvWriter, Times};
 use brushwork_core::recording::{Column, Head, Reading, Record, open};
@@ -85,7 +86,7 @@ struct Builder {
 
 impl Builder {
     fn new(head: &Head, most_rows: u64) -> Self {
-        let known = graph_channels();
+        let known = graph_channels(&all_channels());
         let channels: Vec<_> = head.columns.iter().map(|column| info_of(column, &known)).collect();
         let count = channels.len();
         let track = Track::new(channels, most_rows);

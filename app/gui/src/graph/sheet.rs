@@ -10,7 +10,7 @@ use super::memo::Memo;
 use super::scale::Scale;
 use super::trace::{Columns, Trace, View};
 use super::track::{ChannelInfo, Track};
-use super::trigger::{Trigger, TriggerMode, TriggerSource, first_crossing_s};
+use super::trigger::{Trigger, TriggerMode, TriggerSettings, TriggerSource, first_crossing_s};
 
 /// Stretches of time that zooming steps through, in seconds. Ten seconds have Ion Studio's divisions of one second.
 pub const SPANS_S: [f64; 17] =
@@ -266,6 +266,25 @@ impl Sheet {
 
     // ---- channels ----
 
+    /// Turns to other channels. Those that were there before keep their samples and how they are shown.
+    pub fn set_channels(&mut self, channels: Vec<ChannelInfo>) {
+        let before: Vec<Option<usize>> =
+            channels.iter().map(|info| self.track.channel_of_key(&info.key)).collect();
+        let now = |old: usize| before.iter().position(|kept| *kept == Some(old)).unwrap_or(0);
+        self.selected = now(self.selected);
+        let trigger = *self.trigger.settings();
+        if let TriggerSource::Channel(channel) = trigger.source {
+            self.trigger.set(TriggerSettings { source: TriggerSource::Channel(now(channel)), ..trigger });
+        }
+        let view = |(info, old): (&ChannelInfo, &Option<usize>)| {
+            old.map_or_else(|| ChannelView::new(info.clone()), |old| self.channels[old].clone())
+        };
+        self.channels = channels.iter().zip(&before).map(view).collect();
+        self.memos = RefCell::new(vec![Memo::default(); channels.len()]);
+        self.track.history.take_channels(&before);
+        self.track.channels = channels;
+    }
+
     /// Stops drawing what a channel has shown so far.
     pub fn clear(&mut self, channel: usize) {
         let now_s = self.track.history.last_time_s().unwrap_or(f64::NEG_INFINITY);
@@ -427,7 +446,7 @@ mod tests {
     fn the_next_trigger_is_looked_for_in_what_was_sampled() {
         let mut sheet = filled();
         let settings = *sheet.trigger.settings();
-        sheet.trigger.set(super::super::trigger::TriggerSettings { level: 25.0, ..settings });
+        sheet.trigger.set(TriggerSettings { level: 25.0, ..settings });
         sheet.look_at_oldest();
         assert!(sheet.look_for_trigger());
         let (start_s, _) = sheet.window();

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
-use brushwork_link::device::{ArmScope, Channel, Event, PollRate};
+use brushwork_link::device::{ArmScope, Event, PollRate};
 use brushwork_link::settings::SettingValue;
 use brushwork_link::transport::ConnectTarget;
 use brushwork_mcp_client::diagnosis::{Evidence, Measured, Script};
@@ -157,7 +157,7 @@ impl Desk {
             phase: Phase::default(),
             link: LinkView::default(),
             poll: PollRate::default(),
-            graph: LiveGraph::new(graph_channels(), 0.1),
+            graph: LiveGraph::new(graph_channels(family::of(FamilyKind::default()).channels()), 0.1),
             pwm: Pwm::default(),
             general: General::default(),
             velocity: Velocity::default(),
@@ -376,8 +376,7 @@ impl Desk {
 
     /// Whether the live signals of the input pins are in view: on the settings screen, or in the graph.
     pub fn shows_signals(&self, settings_are_shown: bool) -> bool {
-        let channels = self.graph.live.channels.iter();
-        let in_graph = channels.zip(Channel::ALL).any(|(shown, channel)| channel.is_signal() && shown.shown);
+        let in_graph = self.graph.live.channels.iter().any(|channel| channel.info.is_pin && channel.shown);
         self.is_connected() && (in_graph || settings_are_shown && self.general.wants_signals())
     }
 
@@ -432,9 +431,7 @@ impl Desk {
     pub fn set_family(&mut self, kind: FamilyKind) {
         if kind != self.family_kind {
             self.family_kind = kind;
-            let family = self.family();
-            self.graph.left_out =
-                Channel::ALL.into_iter().map(|channel| !family.has_channel(channel)).collect();
+            self.graph.set_channels(graph_channels(self.family().channels()));
             self.graph_choices.clear();
             self.show_channels(self.graph_of);
         }
@@ -465,7 +462,7 @@ impl Desk {
         let at_start = self.family().first_channels(screen);
         let chosen = self.graph_choices.get(screen.title());
         for (index, channel) in self.graph.live.channels.iter_mut().enumerate() {
-            let at_first = || at_start.contains(&Channel::ALL[index]);
+            let at_first = || at_start.iter().any(|first| first.key == channel.info.key);
             channel.shown = chosen.and_then(|chosen| chosen.get(index)).copied().unwrap_or_else(at_first);
         }
         // The axis at the side is of a line that is there.

@@ -108,8 +108,8 @@ impl Desk {
     /// Where a motor was seen last.
     pub fn seen(&self, motor: Motor) -> Seen {
         let (position, velocity) = match motor {
-            Motor::M1 => (Channel::M1Position, Channel::M1Velocity),
-            Motor::M2 => (Channel::M2Position, Channel::M2Velocity),
+            Motor::M1 => (Channel::M1_POSITION, Channel::M1_VELOCITY),
+            Motor::M2 => (Channel::M2_POSITION, Channel::M2_VELOCITY),
         };
         let read = |channel: Channel| self.link.readings.get(channel).unwrap_or(0.0);
         Seen { counts: read(position), counts_per_s: read(velocity) }

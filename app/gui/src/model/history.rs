@@ -1,4 +1,4 @@
-//! What happened to a controller: every condition that came or went, armings, disarmings, stops and losses, with times and
+//! What happened to a controller: every indicator that came or went, armings, disarmings, stops and losses, with times and
 //! counts.
 //!
 //! Times are counted from the connection. The list survives the end of a link, so that one can read why it ended; it is
@@ -9,10 +9,9 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::Duration;
 
 use brushwork_link::device::{DisarmReason, Event, Identity, StatusReport, StopReport};
-use brushwork_mcp_wire::packet_serial::status::Condition;
 
 use crate::family;
-use crate::family::{Family, FamilyKind, Sign, mcp_sign};
+use crate::family::{ActiveIndicator, Family, FamilyKind};
 use crate::model::lamp::LampState;
 
 /// Entries kept; the oldest go first.
@@ -50,8 +49,8 @@ pub struct Entry {
 /// What kind of thing happened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
-    Came(Sign),
-    Went(Sign),
+    Came(ActiveIndicator),
+    Went(ActiveIndicator),
     Connected,
     Armed,
     Disarmed { by_fault: bool },
@@ -66,7 +65,7 @@ impl Kind {
     /// How it is marked.
     pub fn state(self) -> LampState {
         match self {
-            Self::Came(sign) => sign.state,
+            Self::Came(indicator) => indicator.state,
             Self::Disarmed { by_fault: true } | Self::Stopped { confirmed: false } | Self::Lost => {
                 LampState::Error
             }
@@ -81,7 +80,7 @@ impl Kind {
     /// What is counted under this name; none for what is not worth counting.
     fn counted_as(self) -> Option<String> {
         Some(match self {
-            Self::Came(sign) => sign.title.to_owned(),
+            Self::Came(indicator) => indicator.title.to_owned(),
             Self::Disarmed { by_fault: true } => "Disarmed by a fault".to_owned(),
             Self::Disarmed { by_fault: false } => "Disarmed".to_owned(),
             Self::ArmRefused => "Arming refused".to_owned(),
@@ -99,7 +98,7 @@ impl Kind {
 struct UnitState {
     identity: Option<Identity>,
     /// What its status word said last.
-    signs: BTreeSet<Sign>,
+    active: BTreeSet<ActiveIndicator>,
     report: Option<StatusReport>,
     /// Homed or at a limit by its pins, where the status word has no bit for it.
     homed: Option<[bool; 2]>,
@@ -216,9 +215,10 @@ impl History {
     pub fn note_homed(&mut self, address: u8, homed: [bool; 2]) {
         let unit = self.units.entry(address).or_default();
         let before = unit.homed.replace(homed).unwrap_or_default();
-        for (index, condition) in [Condition::M1Home, Condition::M2Home].into_iter().enumerate() {
+        let indicators = unit.family().home_indicators().into_iter().flatten();
+        for (index, indicator) in indicators.enumerate() {
             if before[index] != homed[index] {
-                self.changed(address, mcp_sign(condition), homed[index], self.now);
+                self.changed(address, indicator, homed[index], self.now);
             }
         }
         self.update_lamps(address, self.now);
@@ -226,18 +226,19 @@ impl History {
 
     fn note_status(&mut self, report: &StatusReport) {
         let unit = self.units.entry(report.address).or_default();
-        let signs: BTreeSet<Sign> = unit.family().signs(report, unit.identity.as_ref()).into_iter().collect();
-        let before = std::mem::replace(&mut unit.signs, signs.clone());
+        let active: BTreeSet<_> = unit.family().active(report, unit.identity.as_ref()).into_iter().collect();
+        let before = std::mem::replace(&mut unit.active, active.clone());
         unit.report = Some(*report);
-        for sign in before.symmetric_difference(&signs) {
-            self.changed(report.address, *sign, signs.contains(sign), report.at);
+        for indicator in before.symmetric_difference(&active) {
+            self.changed(report.address, *indicator, active.contains(indicator), report.at);
         }
         self.update_lamps(report.address, report.at);
     }
 
-    fn changed(&mut self, address: u8, sign: Sign, came: bool, at: Duration) {
-        let (kind, word) = if came { (Kind::Came(sign), "came") } else { (Kind::Went(sign), "went") };
-        self.push(at, Some(address), kind, format!("{} {word}", sign.title));
+    fn changed(&mut self, address: u8, indicator: ActiveIndicator, came: bool, at: Duration) {
+        let (kind, word) =
+            if came { (Kind::Came(indicator), "came") } else { (Kind::Went(indicator), "went") };
+        self.push(at, Some(address), kind, format!("{} {word}", indicator.title));
     }
 
     fn update_lamps(&mut self, address: u8, at: Duration) {
@@ -301,17 +302,13 @@ pub fn clock_text(time: Duration) -> String {
 mod tests {
     use super::*;
     use brushwork_link::Failure;
+    use brushwork_mcp_client::indicators::indicators;
+    use brushwork_mcp_wire::packet_serial::Generation;
+    use brushwork_mcp_wire::packet_serial::status::{Condition, encode};
 
     fn report(at_s: u64, conditions: &[Condition]) -> Event {
-        Event::Status(StatusReport {
-            signs: &[],
-            address: 0x80,
-            at: Duration::from_secs(at_s),
-            word: 0,
-            conditions: conditions.iter().copied().collect(),
-            unknown_bits: 0,
-            running_ticks: None,
-        })
+        let word = encode(conditions.iter().copied().collect(), Generation::Gen1);
+        Event::Status(StatusReport::new(0x80, Duration::from_secs(at_s), word, indicators(Generation::Gen1)))
     }
 
     fn texts(history: &History) -> Vec<&str> {

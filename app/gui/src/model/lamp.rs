@@ -1,6 +1,6 @@
 //! One status lamp of a controller: its name and what it says.
 
-use brushwork_mcp_wire::packet_serial::status::Severity;
+use brushwork_values::Severity;
 
 /// One status lamp.
 #[derive(Debug, PartialEq, Eq)]
@@ -39,7 +39,7 @@ impl LampState {
     }
 }
 
-/// How a condition of this severity is shown.
+/// How an indicator of this severity is shown.
 pub const fn state_of(severity: Severity) -> LampState {
     match severity {
         Severity::Signal => LampState::Active,

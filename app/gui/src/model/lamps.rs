@@ -1,7 +1,6 @@
 //! The states of a controller's status lamps: thirteen of an MCP (MCP manual 1.2.5), others of other families.
 
 use brushwork_link::device::{Identity, StatusReport};
-use brushwork_mcp_wire::packet_serial::status::Lamp;
 
 use super::lamp::{LampInfo, LampState};
 use crate::family::Family;
@@ -21,11 +20,6 @@ impl Lamps {
         Self(family.lamps().iter().zip(family.lit(report, identity, homed)).collect())
     }
 
-    /// The lamp of an MCP.
-    pub fn get(&self, lamp: Lamp) -> LampState {
-        self.named(lamp.abbreviation())
-    }
-
     /// The lamp with this abbreviation.
     pub fn named(&self, short: &str) -> LampState {
         self.0.iter().find(|(info, _)| info.short == short).map_or(LampState::Unknown, |(_, state)| *state)
@@ -41,8 +35,9 @@ impl Lamps {
 mod tests {
     use std::time::Duration;
 
+    use brushwork_mcp_client::indicators::indicators;
     use brushwork_mcp_wire::packet_serial::Generation;
-    use brushwork_mcp_wire::packet_serial::status::Condition;
+    use brushwork_mcp_wire::packet_serial::status::{Condition, Lamp, encode};
 
     use super::*;
     use crate::family;
@@ -63,6 +58,7 @@ mod tests {
             generation: brushwork_mcp_client::firmware_of(generation),
             facts: brushwork_link::device::Facts::new(brushwork_mcp_client::McpFacts {
                 generation: generation,
+                is_mcp: true,
                 is_node: false,
             }),
             also_answers: Vec::new(),
@@ -73,32 +69,25 @@ mod tests {
     }
 
     fn report(conditions: &[Condition]) -> StatusReport {
-        let conditions = conditions.iter().copied().collect();
-        StatusReport {
-            signs: &[],
-            address: 0x80,
-            at: Duration::ZERO,
-            word: 0,
-            conditions,
-            unknown_bits: 0,
-            running_ticks: None,
-        }
+        let word = encode(conditions.iter().copied().collect(), Generation::Gen1);
+        StatusReport::new(0x80, Duration::ZERO, word, indicators(Generation::Gen1))
     }
 
     #[test]
     fn of_several_reasons_the_gravest_shows() {
         let conditions = [Condition::Temperature1Error, Condition::Temperature1Warning, Condition::M1Home];
         let lit = lamps(&report(&conditions), None, None);
-        assert_eq!(lit.get(Lamp::Temperature1), LampState::Error);
-        assert_eq!(lit.get(Lamp::M1Home), LampState::Active);
-        assert_eq!(lit.get(Lamp::Temperature2), LampState::Ok);
+        assert_eq!(lit.named(Lamp::Temperature1.abbreviation()), LampState::Error);
+        assert_eq!(lit.named(Lamp::M1Home.abbreviation()), LampState::Active);
+        assert_eq!(lit.named(Lamp::Temperature2.abbreviation()), LampState::Ok);
         assert_eq!(lit.worst(), LampState::Error);
     }
 
     #[test]
     fn a_lamp_the_unit_cannot_light_says_so() {
-        let state = |model, generation, lamp| {
-            lamps(&report(&[]), Some(&identity(model, generation)), Some([true, false])).get(lamp)
+        let state = |model, generation, lamp: Lamp| {
+            lamps(&report(&[]), Some(&identity(model, generation)), Some([true, false]))
+                .named(lamp.abbreviation())
         };
         assert_eq!(state("MCP266", Generation::Gen1, Lamp::M1DriverFault), LampState::NotApplicable);
         assert_eq!(state("RoboClaw 2x7A", Generation::Gen1, Lamp::M1DriverFault), LampState::Ok);

@@ -192,9 +192,9 @@ impl LinkView {
     /// Small boards have one temperature sensor and report 0 for the second: what is not there was not read.
     fn leave_out_missing_sensor(&self, sample: &mut Sample) {
         let listed = self.identity().and_then(|identity| models::lookup(identity.model?));
-        let second = &mut sample.values[Channel::Temperature2.index()];
-        if *second == 0.0 && listed.is_some_and(|listed| !listed.second_temperature) {
-            *second = f64::NAN;
+        let second = sample.get(Channel::TEMPERATURE_2);
+        if second == Some(0.0) && listed.is_some_and(|listed| !listed.second_temperature) {
+            sample.remove(Channel::TEMPERATURE_2);
         }
     }
 

@@ -227,7 +227,7 @@ mod tests {
     fn of_links_that_were_closed_the_newest_stay_and_so_do_those_with_something_to_lose() {
         let mut model = Model::default();
         for number in 0..12 {
-            let values = vec![0.0; channels::graph_channels().len()];
+            let values = vec![0.0; model.front.graph.live.channels.len()];
             model.front.target = Some(format!("tcp:host:{number}"));
             model.front.graph.push(f64::from(number), &values);
             if number == 1 {

@@ -1,28 +1,18 @@
 //! The newest reading of every channel, for the row of monitored parameters.
 
-use brushwork_link::device::{Channel, PinSignal, Sample};
+use brushwork_link::device::{Channel, Newest, PinSignal, Sample};
 
 /// The newest readings of one controller. A channel that was never read has none.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Readings {
-    values: [f64; Channel::COUNT],
+    newest: Newest,
     signals: Vec<PinSignal>,
-}
-
-impl Default for Readings {
-    fn default() -> Self {
-        Self { values: [f64::NAN; Channel::COUNT], signals: Vec::new() }
-    }
 }
 
 impl Readings {
     /// Takes over what the sample has read and keeps the rest.
     pub fn update(&mut self, sample: &Sample) {
-        for (kept, new) in self.values.iter_mut().zip(sample.values) {
-            if !new.is_nan() {
-                *kept = new;
-            }
-        }
+        self.newest.update(sample);
         if !sample.signals.is_empty() {
             self.signals.clone_from(&sample.signals);
         }
@@ -39,12 +29,12 @@ impl Readings {
     }
 
     pub fn get(&self, channel: Channel) -> Option<f64> {
-        let value = self.values[channel.index()];
-        (!value.is_nan()).then_some(value)
+        self.newest.get(channel)
     }
 
-    /// As text with `decimals` digits after the point.
-    pub fn text(&self, channel: Channel, decimals: usize) -> Option<String> {
+    /// As text with the channel's digits after the point.
+    pub fn text(&self, channel: Channel) -> Option<String> {
+        let decimals = channel.decimals;
         // Adding zero turns -0.0 into 0.0; rounding comes first, so that -0.04 does not read "-0.0".
         let factor = 10f64.powi(decimals as i32);
         self.get(channel).map(|value| format!("{:.decimals$}", (value * factor).round() / factor + 0.0))
@@ -61,19 +51,19 @@ mod tests {
     fn a_sample_that_leaves_a_channel_out_keeps_its_last_reading() {
         let mut readings = Readings::default();
         let mut sample = Sample::new(0x80);
-        sample.set(Channel::Temperature1, 27.25, Duration::ZERO, Duration::ZERO);
+        sample.set(Channel::TEMPERATURE_1, 27.25, Duration::ZERO, Duration::ZERO);
         readings.update(&sample);
         readings.update(&Sample::new(0x80));
-        assert_eq!(readings.text(Channel::Temperature1, 1).as_deref(), Some("27.3"));
-        assert_eq!(readings.get(Channel::Temperature2), None);
+        assert_eq!(readings.text(Channel::TEMPERATURE_1).as_deref(), Some("27.3"));
+        assert_eq!(readings.get(Channel::TEMPERATURE_2), None);
     }
 
     #[test]
     fn nothing_ever_reads_minus_zero() {
         let mut readings = Readings::default();
         let mut sample = Sample::new(0x80);
-        sample.set(Channel::M1Current, -0.004, Duration::ZERO, Duration::ZERO);
+        sample.set(Channel::M1_CURRENT, -0.004, Duration::ZERO, Duration::ZERO);
         readings.update(&sample);
-        assert_eq!(readings.text(Channel::M1Current, 2).as_deref(), Some("0.00"));
+        assert_eq!(readings.text(Channel::M1_CURRENT).as_deref(), Some("0.00"));
     }
 }

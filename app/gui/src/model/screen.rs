@@ -79,12 +79,17 @@ impl Screen {
         use Channel as C;
         match self {
             Self::Velocity => {
-                &[C::M1Setpoint, C::M1Velocity, C::M1Pwm, C::M2Setpoint, C::M2Velocity, C::M2Pwm]
+                &[C::M1_SETPOINT, C::M1_VELOCITY, C::M1_PWM, C::M2_SETPOINT, C::M2_VELOCITY, C::M2_PWM]
             }
-            Self::Position => {
-                &[C::M1Setpoint, C::M1Position, C::M1Velocity, C::M2Setpoint, C::M2Position, C::M2Velocity]
-            }
-            _ => &[C::M1Pwm, C::M1Velocity, C::M1Current],
+            Self::Position => &[
+                C::M1_SETPOINT,
+                C::M1_POSITION,
+                C::M1_VELOCITY,
+                C::M2_SETPOINT,
+                C::M2_POSITION,
+                C::M2_VELOCITY,
+            ],
+            _ => &[C::M1_PWM, C::M1_VELOCITY, C::M1_CURRENT],
         }
     }
 }

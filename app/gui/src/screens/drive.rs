@@ -13,7 +13,6 @@ use crate::command::{Command, Commands};
 use crate::family::{Ability, Family};
 use crate::graph::panel;
 use crate::model::Model;
-use crate::model::channels::decimals;
 use crate::model::lamp::LampState;
 use crate::model::link::{Arming, LinkView};
 use crate::model::setpoints::{Direction, Setpoints};
@@ -201,7 +200,7 @@ pub fn motor_ui(
         });
         ui.label(RichText::new(output.word).small().color(Palette::of(ui).weak_text));
         let channel = output.channels[motor.index()];
-        let text = model.front.link.readings.text(channel, decimals(channel));
+        let text = model.front.link.readings.text(channel);
         let label = format!("{motor} {}", output.word);
         let (digits, unit_letters) = (output.digits, output.unit_letters);
         Readout { label: &label, unit: output.unit, digits, unit_letters }.ui(ui, text.as_deref());

@@ -18,7 +18,7 @@ use crate::widgets::setpoint::Setpoint;
 const OUTPUT: Output = Output {
     scope: ArmScope::Position,
     word: "measured",
-    channels: [Channel::M1Position, Channel::M2Position],
+    channels: [Channel::M1_POSITION, Channel::M2_POSITION],
     unit: "counts",
     digits: 11,
     unit_letters: 5,

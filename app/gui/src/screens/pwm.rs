@@ -15,7 +15,7 @@ use crate::widgets::setpoint::Setpoint;
 const OUTPUT: Output = Output {
     scope: ArmScope::Pwm,
     word: "output",
-    channels: [Channel::M1Pwm, Channel::M2Pwm],
+    channels: [Channel::M1_PWM, Channel::M2_PWM],
     unit: "%",
     digits: 6,
     unit_letters: 1,

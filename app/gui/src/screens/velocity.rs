@@ -16,7 +16,7 @@ use crate::widgets::setpoint::Setpoint;
 const OUTPUT: Output = Output {
     scope: ArmScope::Velocity,
     word: "measured",
-    channels: [Channel::M1Velocity, Channel::M2Velocity],
+    channels: [Channel::M1_VELOCITY, Channel::M2_VELOCITY],
     unit: "counts/s",
     digits: 7,
     unit_letters: 7,

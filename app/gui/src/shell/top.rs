@@ -7,7 +7,6 @@ use egui::{Label, Role, Ui, WidgetInfo, vec2};
 use crate::command::{Command, Commands};
 use crate::family::{Figure, Figures};
 use crate::model::Model;
-use crate::model::channels::decimals;
 use crate::widgets::label::fixed_label_ui;
 use crate::widgets::readout::{NO_VALUE, Readout};
 
@@ -73,7 +72,7 @@ fn block_ui(ui: &mut Ui, block: &Figures, model: &Model, commands: &mut Commands
         for figure in block.rows {
             ui.horizontal(|ui| {
                 fixed_label_ui(ui, figure.label, block.label_width);
-                let value = model.front.link.readings.text(figure.channel, decimals(figure.channel));
+                let value = model.front.link.readings.text(figure.channel);
                 block.readout(figure).ui(ui, value.as_deref());
                 if block.zero {
                     zero_ui(ui, figure.motor, model.is_connected(), commands);

@@ -2,8 +2,9 @@
 
 use brushwork_link::exchange::Permit;
 use brushwork_mcp_client::{packet_address, packet_generation};
-use brushwork_mcp_wire::packet_serial::{Address, Effect, Generation, hex};
+use brushwork_mcp_wire::packet_serial::{Address, Effect, Generation};
 use brushwork_values::Field;
+use brushwork_values::hex;
 use egui::{Grid, Label, RichText, ScrollArea, TextEdit, Ui, vec2};
 
 use crate::command::Commands;

@@ -1,6 +1,6 @@
 //! The bytes that wait to be sent.
 
-use brushwork_mcp_wire::packet_serial::hex;
+use brushwork_values::hex;
 use egui::{Label, RichText, ScrollArea, Ui};
 
 use crate::model::Model;

@@ -67,8 +67,8 @@ impl Observer {
     /// Takes in a sample of the window. Another unit of setpoint (another screen) begins anew.
     pub fn note(&mut self, sample: &Sample, which: Loop, motor: Motor) {
         let [setpoint, speed, position, duty] = match motor {
-            Motor::M1 => [Channel::M1Setpoint, Channel::M1Velocity, Channel::M1Position, Channel::M1Pwm],
-            Motor::M2 => [Channel::M2Setpoint, Channel::M2Velocity, Channel::M2Position, Channel::M2Pwm],
+            Motor::M1 => [Channel::M1_SETPOINT, Channel::M1_VELOCITY, Channel::M1_POSITION, Channel::M1_PWM],
+            Motor::M2 => [Channel::M2_SETPOINT, Channel::M2_VELOCITY, Channel::M2_POSITION, Channel::M2_PWM],
         };
         let value = if which == Loop::Velocity { speed } else { position };
         let (Some(setpoint), Some(read), Some(duty_percent)) =

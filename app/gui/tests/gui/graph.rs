@@ -6,13 +6,13 @@ use crate::support::bench::Bench;
 use brushwork_gui::graph::runs::Align;
 use brushwork_gui::graph::trigger::{TriggerMode, TriggerSource};
 use brushwork_gui::graph::{LiveGraph, MarkKind};
-use brushwork_link::device::Channel;
 use brushwork_plant::world::WorldAction;
 use brushwork_values::Motor;
 use egui::{Key, Modifiers, MouseWheelUnit, Pos2, TouchPhase, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
-const PWM: usize = Channel::M1Pwm as usize;
+/// The column of motor 1's PWM.
+const PWM: usize = 1;
 
 /// A window that is connected and shows the PWM screen, after two seconds of samples.
 fn bench() -> Bench {

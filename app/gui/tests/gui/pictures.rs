@@ -15,8 +15,8 @@ use brushwork_gui::tune::looked_at::Kind;
 use brushwork_link::device::{ArmScope, Channel, Event, Identity, Sample, StatusReport};
 use brushwork_link::exchange::LinkStatistics;
 use brushwork_link::transport::Stream;
+use brushwork_mcp_client::indicators::indicators;
 use brushwork_mcp_wire::packet_serial::Generation;
-use brushwork_mcp_wire::packet_serial::status::Condition;
 use brushwork_values::Motor;
 use egui::Theme;
 
@@ -28,8 +28,8 @@ fn picture(mut bench: Bench, name: &str) {
     bench.harness.snapshot(name);
 }
 
-/// A unit that has answered, with the conditions given.
-fn fed(model: &mut Model, conditions: &[Condition]) {
+/// A unit that has answered, with the status word given.
+fn fed(model: &mut Model, word: u32) {
     model.front.target = Some("sim:mcp266".to_owned());
     model.front.phase = Phase::Open { target: "sim:mcp266".to_owned() };
     let identity = Identity {
@@ -42,6 +42,7 @@ fn fed(model: &mut Model, conditions: &[Condition]) {
         generation: brushwork_mcp_client::firmware_of(Generation::Gen1),
         facts: brushwork_link::device::Facts::new(brushwork_mcp_client::McpFacts {
             generation: Generation::Gen1,
+            is_mcp: true,
             is_node: false,
         }),
         also_answers: vec![0x81],
@@ -49,16 +50,7 @@ fn fed(model: &mut Model, conditions: &[Condition]) {
         port: "sim:mcp266".to_owned(),
         notes: Vec::new(),
     };
-    let conditions = conditions.iter().copied().collect();
-    let status = StatusReport {
-        signs: &[],
-        address: 0x80,
-        at: Duration::ZERO,
-        word: 0x1004,
-        conditions,
-        unknown_bits: 0,
-        running_ticks: None,
-    };
+    let status = StatusReport::new(0x80, Duration::ZERO, word, indicators(Generation::Gen1));
     let figures = LinkStatistics { kbit_per_s: 5.8, transactions_per_s: 70.0, ..LinkStatistics::default() };
     for event in [
         Event::Connected(identity),
@@ -70,7 +62,7 @@ fn fed(model: &mut Model, conditions: &[Condition]) {
     }
     for tick in 0..110 {
         let sample = sample(Duration::from_millis(100) * tick);
-        model.front.graph.push(sample.replied_at.as_secs_f64(), &sample.values);
+        model.front.graph.take(&sample);
         model.front.link.take(Event::Sample(Box::new(sample)));
     }
 }
@@ -80,16 +72,16 @@ fn sample(at: Duration) -> Sample {
     let mut sample = Sample::new(0x80);
     let turn = at.as_secs_f64();
     let readings = [
-        (Channel::M1Pwm, 60.0 * turn.sin()),
-        (Channel::M1Velocity, 6300.0 * (turn - 0.3).sin()),
-        (Channel::M1Position, -6300.0 * turn.cos()),
-        (Channel::M1Current, turn.cos() * 0.8),
-        (Channel::M2Pwm, 0.0),
-        (Channel::M2Position, -2_147_483_648.0),
-        (Channel::M2Current, -12.34),
-        (Channel::Temperature1, 41.2),
-        (Channel::MainBattery, 24.1),
-        (Channel::LogicBattery, 12.0),
+        (Channel::M1_PWM, 60.0 * turn.sin()),
+        (Channel::M1_VELOCITY, 6300.0 * (turn - 0.3).sin()),
+        (Channel::M1_POSITION, -6300.0 * turn.cos()),
+        (Channel::M1_CURRENT, turn.cos() * 0.8),
+        (Channel::M2_PWM, 0.0),
+        (Channel::M2_POSITION, -2_147_483_648.0),
+        (Channel::M2_CURRENT, -12.34),
+        (Channel::TEMPERATURE_1, 41.2),
+        (Channel::MAIN_BATTERY, 24.1),
+        (Channel::LOGIC_BATTERY, 12.0),
     ];
     for (channel, value) in readings {
         sample.set(channel, value, at, at);
@@ -107,7 +99,7 @@ fn the_window_before_a_controller_is_connected() {
 #[test]
 fn the_status_screen_with_an_error_a_warning_and_a_failure_to_read() {
     let mut bench = Bench::sized(SMALLEST, Theme::Light);
-    fed(bench.model(), &[Condition::EStop, Condition::Temperature1Warning]);
+    fed(bench.model(), 0x1004);
     let text = "Could not set the encoder on 0x80 at /dev/ttyACM0: no answer within 60 ms (3 tries). \
                 Check the cable and the power.";
     bench.model().messages.fail(text);
@@ -118,7 +110,7 @@ fn the_status_screen_with_an_error_a_warning_and_a_failure_to_read() {
 fn the_pwm_screen_while_it_is_armed() {
     let mut bench = Bench::sized(SMALLEST, Theme::Dark);
     let model = bench.model();
-    fed(model, &[]);
+    fed(model, 0);
     model.screen = Screen::Pwm;
     model.front.link.take(Event::Armed {
         address: 0x80,
@@ -136,7 +128,7 @@ fn tuning(name: &str, theme: Theme) -> Bench {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reports").join(name);
     let report = file::read(&path).expect("it is in the repository");
     let model = bench.model();
-    fed(model, &[]);
+    fed(model, 0);
     model.screen = Screen::Velocity;
     model.front.drawers.press(Screen::Velocity, Tab::Tune);
     model.front.tune.panel_mut(Loop::Velocity, Motor::M1).add(report);

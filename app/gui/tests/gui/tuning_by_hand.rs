@@ -97,7 +97,7 @@ fn whoever_follows_it_ends_with_an_exact_and_smooth_velocity_loop() {
         bench.pass_ms(3500);
     }
     assert!(bench.sees_part("You are done"), "{said:#?}");
-    let speed = bench.model().front.link.readings.get(brushwork_link::device::Channel::M1Velocity);
+    let speed = bench.model().front.link.readings.get(brushwork_link::device::Channel::M1_VELOCITY);
     assert!(speed.is_some_and(|speed| (speed - 3500.0).abs() < 100.0), "{speed:?}");
     bench.key(Key::Space);
     bench.pass_ms(1500);

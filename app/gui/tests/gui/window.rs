@@ -173,7 +173,7 @@ fn zeroing_sets_the_count_of_that_encoder() {
     bench.key(egui::Key::Escape);
     bench.pass_ms(2000);
     let counted =
-        bench.model().front.link.readings.text(brushwork_link::device::Channel::M1Position, 0).unwrap();
+        bench.model().front.link.readings.text(brushwork_link::device::Channel::M1_POSITION).unwrap();
     assert_ne!(counted, "0");
     bench.press("Zero M1 encoder");
     bench.pass_ms(500);
@@ -303,7 +303,8 @@ fn the_graph_goes_on_after_a_new_connection_and_shows_the_time_between_as_a_gap(
     bench.pass_ms(1000);
     let graph = &bench.model().front.graph;
     let columns = brushwork_gui::graph::Columns::new(&graph.live.track.history, &graph.live.view(1000));
-    let lines = graph.live.lines(brushwork_link::device::Channel::MainBattery.index(), &columns);
+    let battery = graph.live.track.channel_of_key("main_battery").unwrap();
+    let lines = graph.live.lines(battery, &columns);
     assert_eq!(lines.len(), 2, "{lines:?}");
 }
 
@@ -343,7 +344,7 @@ fn fitting_and_clearing_are_done_to_the_channel_that_was_selected() {
     bench.connect();
     bench.press("PWM Settings");
     bench.pass_ms(2000);
-    let battery = brushwork_link::device::Channel::MainBattery.index();
+    let battery = bench.model().front.graph.live.track.channel_of_key("main_battery").unwrap();
     bench.press("Show Main Battery");
     assert_eq!(bench.model().front.graph.live.selected, battery);
     bench.press("Fit scale");

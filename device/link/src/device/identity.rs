@@ -3,7 +3,7 @@
 use super::channel::Channel;
 use super::described::Described;
 use super::drive::Drive;
-use super::status::Sign;
+use super::status::{StatusPlace, StatusReport};
 use crate::family::{FamilyRef, families};
 use crate::settings::Subject;
 use crate::unit::{FirmwareGeneration, UnitAddress};
@@ -54,10 +54,8 @@ pub trait UnitFacts: Any + fmt::Debug + Send + Sync {
     /// The signals that it can tell, in the order in which they are shown.
     fn channels(&self) -> &'static [Channel];
 
-    /// The bits of its status word, in a family with a status of its own.
-    fn signs(&self) -> &'static [Sign] {
-        &[]
-    }
+    /// The places of its status row, in order.
+    fn status_row(&self, report: Option<&StatusReport>, homed: Option<[bool; 2]>) -> Vec<StatusPlace>;
 
     /// The requests that a write holds, in words.
     fn describe_sent(&self, bytes: &[u8]) -> Described;
@@ -193,10 +191,10 @@ impl Identity {
         self.facts.0.channels()
     }
 
-    /// The bits of its status word, in a family with a status of its own.
+    /// The places of its status row, in order. `homed` is what its pins say of home and limit switches, where they are known.
     #[must_use]
-    pub fn signs(&self) -> &'static [Sign] {
-        self.facts.0.signs()
+    pub fn status_row(&self, report: Option<&StatusReport>, homed: Option<[bool; 2]>) -> Vec<StatusPlace> {
+        self.facts.0.status_row(report, homed)
     }
 
     /// The requests that a write holds, in words.

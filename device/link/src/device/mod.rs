@@ -24,7 +24,7 @@ mod signals;
 mod status;
 mod stop;
 
-pub use channel::{Channel, PinSignal, Sample};
+pub use channel::{Channel, ChannelDescription, Newest, PinSignal, Reading, Role, Sample};
 pub use described::Described;
 pub use drive::{ArmScope, Drive, DriveCommand};
 pub use event::{DisarmReason, Event};
@@ -38,5 +38,5 @@ pub use request::{Request, RequestRefused};
 pub use risk::RiskAccepted;
 pub use run::{DeviceLoop, DeviceThread, Step};
 pub use signals::{Guard, MOTION_LIFE};
-pub use status::{Sign, StatusReport};
+pub use status::{Indicator, PlaceState, StatusPlace, StatusReport};
 pub use stop::{StopBytes, StopReport, UnitStop};

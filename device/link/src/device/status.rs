@@ -1,7 +1,22 @@
-//! A controller's status at one moment.
+//! A controller's status at one moment, and the indicators of which its status word consists.
 
-use brushwork_mcp_wire::packet_serial::status::{Condition, Conditions, Lamp, Severity};
+use brushwork_values::Severity;
 use std::time::Duration;
+
+/// One bit of a status word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Indicator {
+    /// Name in programs: snake_case.
+    pub key: &'static str,
+    /// A few letters for the status row; empty for what stands nowhere in it. Indicators with the same letters share a place.
+    pub short: &'static str,
+    /// What it means when it is set, in words.
+    pub title: &'static str,
+    /// How grave it is.
+    pub severity: Severity,
+    /// The bit, as a mask; 0 where the unit's generation has none.
+    pub mask: u32,
+}
 
 /// What a status word says at one moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,35 +27,46 @@ pub struct StatusReport {
     pub at: Duration,
     /// The word as it came.
     pub word: u32,
-    /// What is set in it, in a family whose status is that of packet serial.
-    pub conditions: Conditions,
-    /// What its bits mean in a family with a status of its own; empty for packet serial.
-    pub signs: &'static [Sign],
-    /// Bits that mean nothing in the unit's generation.
-    pub unknown_bits: u32,
+    /// What its bits mean in the unit's family and generation.
+    pub indicators: &'static [Indicator],
     /// The unit's running time in ticks of its own, where it comes with the status (command 73).
     pub running_ticks: Option<u32>,
 }
 
-/// One bit of a status word in a family with a status of its own.
+/// How one place of the status row stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Sign {
-    /// The bit, as a mask.
-    pub mask: u32,
-    /// Name in files and JSON: snake_case.
-    pub key: &'static str,
-    /// Name in the manual.
+pub enum PlaceState {
+    /// The status was not read yet.
+    Unknown,
+    /// The unit cannot tell.
+    NotReported,
+    /// Nothing is active.
+    Clear,
+    /// Something is, and so grave.
+    Active(Severity),
+}
+
+/// One place of the status row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StatusPlace {
+    /// A few letters.
     pub short: &'static str,
-    /// What it means when it is set, in words.
+    /// In full.
     pub title: &'static str,
-    /// How grave it is.
-    pub severity: Severity,
+    /// How it stands.
+    pub state: PlaceState,
 }
 
 /// A running time that is smaller than the one before has begun anew, unless the one before was this close to its end.
 const WRAP_MARGIN_TICKS: u32 = 1 << 24;
 
 impl StatusReport {
+    /// A report without a running time.
+    #[must_use]
+    pub fn new(address: u8, at: Duration, word: u32, indicators: &'static [Indicator]) -> Self {
+        Self { address, at, word, indicators, running_ticks: None }
+    }
+
     /// Whether the unit has started anew since an earlier report: it has forgotten every setting that was not saved.
     #[must_use]
     pub fn has_restarted_since(&self, earlier: &Self) -> bool {
@@ -48,22 +74,22 @@ impl StatusReport {
         now < then && then < u32::MAX - WRAP_MARGIN_TICKS
     }
 
+    /// The indicators that are set, in the order of their family.
+    pub fn active(&self) -> impl Iterator<Item = &'static Indicator> {
+        let word = self.word;
+        self.indicators.iter().filter(move |indicator| word & indicator.mask != 0)
+    }
+
+    /// Whether an indicator is set.
+    #[must_use]
+    pub fn is_active(&self, key: &str) -> bool {
+        self.active().any(|indicator| indicator.key == key)
+    }
+
     /// What the controller stops motors for, in words. Any of it disarms.
     pub fn faults(&self) -> impl Iterator<Item = &'static str> {
-        let conditions = self.conditions.iter().filter(|condition| condition.severity() == Severity::Error);
-        let signs = self.lit().filter(|sign| sign.severity == Severity::Error);
-        conditions.map(Condition::title).chain(signs.map(|sign| sign.title))
-    }
-
-    /// The signs that are set, in a family with a status of its own.
-    pub fn lit(&self) -> impl Iterator<Item = &'static Sign> {
-        let word = self.word;
-        self.signs.iter().filter(move |sign| word & sign.mask != 0)
-    }
-
-    /// How bad what a lamp shows is; `None` if it is dark.
-    #[must_use]
-    pub fn lamp(&self, lamp: Lamp) -> Option<Severity> {
-        lamp.lit_by(self.conditions)
+        self.active()
+            .filter(|indicator| indicator.severity == Severity::Error)
+            .map(|indicator| indicator.title)
     }
 }

@@ -1,7 +1,9 @@
 //! What is known of one unit beyond what all units have.
 
+use crate::controller::channels::CHANNELS;
+use crate::controller::indicators::status_row;
 use crate::controller::{describe_sent, preview};
-use brushwork_link::device::{Capabilities, Channel, Described, Drive, UnitFacts};
+use brushwork_link::device::{Capabilities, Channel, Described, Drive, StatusPlace, StatusReport, UnitFacts};
 use brushwork_mcp_wire::packet_serial::{Address, Generation};
 
 /// The widths that a unit's packets have, and how it is reached.
@@ -9,6 +11,8 @@ use brushwork_mcp_wire::packet_serial::{Address, Generation};
 pub struct McpFacts {
     /// The firmware's generation.
     pub generation: Generation,
+    /// Whether it is an MCP rather than a RoboClaw.
+    pub is_mcp: bool,
     /// Whether it is a node of a CAN bus.
     pub is_node: bool,
 }
@@ -37,7 +41,11 @@ impl UnitFacts for McpFacts {
     }
 
     fn channels(&self) -> &'static [Channel] {
-        Channel::PACKET_SERIAL
+        CHANNELS
+    }
+
+    fn status_row(&self, report: Option<&StatusReport>, homed: Option<[bool; 2]>) -> Vec<StatusPlace> {
+        status_row(report, self.generation, self.is_mcp, homed)
     }
 
     fn describe_sent(&self, bytes: &[u8]) -> Described {

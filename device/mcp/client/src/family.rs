@@ -1,5 +1,6 @@
 //! The family as shared code knows it, and the way between shared names of units and those of packet serial.
 
+use crate::McpFacts;
 use crate::controller::PacketSerial;
 use crate::settings::McpSettings;
 use brushwork_link::device::Identity;
@@ -167,7 +168,7 @@ pub fn model_of(subject: &Subject) -> Option<&'static models::Model> {
 /// Whether a unit is an MCP rather than a RoboClaw.
 #[must_use]
 pub fn is_mcp(identity: &Identity) -> bool {
-    identity.model.is_some_and(|model| model.starts_with("MCP"))
+    identity.facts.get::<McpFacts>().is_some_and(|facts| facts.is_mcp)
 }
 
 #[cfg(test)]

@@ -17,7 +17,7 @@ mod testing;
 #[cfg(test)]
 mod tests;
 
-pub use controller::{PacketSerial, describe_sent, preview};
+pub use controller::{PacketSerial, channels, describe_sent, indicators, preview};
 pub use facts::McpFacts;
 pub use family::{
     MCP, firmware_of, is_mcp, layout_of, model_of, packet_address, packet_generation, subject, unit_address,

@@ -4,8 +4,9 @@
 #![expect(clippy::print_stdout, reason = "an example talks to the terminal")]
 
 use brushwork_mcp_sim::controller::{Controller, ControllerConfig};
-use brushwork_mcp_wire::packet_serial::{Address, EncodeError, Generation, Request, hex, number};
+use brushwork_mcp_wire::packet_serial::{Address, EncodeError, Generation, Request, number};
 use brushwork_plant::machine::StreamIndex;
+use brushwork_values::hex;
 use std::error::Error;
 use std::time::Duration;
 

@@ -11,8 +11,9 @@
 #![expect(clippy::print_stdout, reason = "an example talks to the terminal")]
 
 use brushwork_mcp_wire::packet_serial::{
-    Address, Generation, ReplyProgress, Request, describe_reply, encode_reply_named, hex, number, parse_reply,
+    Address, Generation, ReplyProgress, Request, describe_reply, encode_reply_named, number, parse_reply,
 };
+use brushwork_values::hex;
 use brushwork_values::{Value, Values};
 use std::error::Error;
 use std::fs::OpenOptions;

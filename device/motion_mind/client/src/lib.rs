@@ -8,7 +8,7 @@ mod family;
 mod settings;
 
 pub use controller::{
-    COUNTS_PER_S_PER_STEP, MotionMind, MotionMindFacts, MotionMinds, SIGNS, describe_received, describe_sent,
-    objection, preview, taken,
+    COUNTS_PER_S_PER_STEP, MotionMind, MotionMindFacts, MotionMinds, channels, describe_received,
+    describe_sent, indicators, objection, preview, taken,
 };
 pub use family::{MOTION_MIND, firmware_of, is_motion_mind, subject, unit_address};

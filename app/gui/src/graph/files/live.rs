@@ -2,7 +2,7 @@
 
 use std::time::{Duration, SystemTime};
 
-use brushwork_link::device::{Channel, Sample};
+use brushwork_link::device::Sample;
 use crossbeam_channel::TryRecvError;
 use egui::Rect;
 
@@ -166,7 +166,7 @@ impl LiveGraph {
         self.end_recording("The recording ended with the link. ");
     }
 
-    fn end_recording(&mut self, why: &'static str) {
+    pub(in crate::graph) fn end_recording(&mut self, why: &'static str) {
         if let Some(recording) =
             self.files.recording.as_mut().filter(|recording| recording.stopping.is_none())
         {
@@ -178,12 +178,15 @@ impl LiveGraph {
     pub(in crate::graph) fn record_sample(&self, sample: &Sample) {
         self.files.record_record(|base| {
             let since = |at: Duration| u64::try_from(at.saturating_sub(base).as_micros()).unwrap_or(u64::MAX);
-            let reading = |(column, channel): (usize, Channel)| {
-                let (requested_at, replied_at) = sample.span(channel)?;
-                let (requested_us, replied_us) = (since(requested_at), since(replied_at));
-                Some(Reading { column, value: sample.get(channel)?, requested_us, replied_us })
-            };
-            let readings: Vec<_> = Channel::ALL.into_iter().enumerate().filter_map(reading).collect();
+            let readings: Vec<_> = self
+                .columns_of(sample)
+                .map(|(column, read)| Reading {
+                    column,
+                    value: read.value,
+                    requested_us: since(read.requested_at),
+                    replied_us: since(read.replied_at),
+                })
+                .collect();
             (!readings.is_empty()).then_some(Record::Sample(readings))
         });
     }

@@ -189,7 +189,8 @@ impl StepAssistant {
     /// Takes in a sample of the unit.
     pub fn note_sample(&mut self, sample: &Sample) {
         let Some(recording) = &mut self.recording else { return };
-        let (Some(value), Some(at)) = (sample.get(Channel::M1Position), sample.read_at(Channel::M1Position))
+        let (Some(value), Some(at)) =
+            (sample.get(Channel::M1_POSITION), sample.read_at(Channel::M1_POSITION))
         else {
             return;
         };
@@ -277,7 +278,7 @@ mod tests {
         for index in 0..=45 {
             let at = Duration::from_millis(index * 100);
             let mut sample = Sample::new(1);
-            sample.set(Channel::M1Position, value(at.as_secs_f64()), at, at);
+            sample.set(Channel::M1_POSITION, value(at.as_secs_f64()), at, at);
             assistant.note_sample(&sample);
         }
         assert!(!assistant.is_recording());

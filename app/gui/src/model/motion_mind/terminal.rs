@@ -9,13 +9,13 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use brushwork_link::device::Event;
-use brushwork_mcp_wire::packet_serial::hex;
 use brushwork_motion_mind_client::MotionMindFacts;
 use brushwork_motion_mind_client::{describe_received, describe_sent};
 use brushwork_motion_mind_wire::{
     Address, Command, Effect, FrameEvent, FrameReader, LineEvent, LineReader, Part, Protocol, checksum,
     describe_command, encode_frame, encode_line,
 };
+use brushwork_values::hex;
 use brushwork_values::{Value, Values};
 
 /// Lines kept; the oldest go first.

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::time::Duration;
 
 use brushwork_link::exchange::Traffic;
-use brushwork_mcp_wire::packet_serial::hex;
+use brushwork_values::hex;
 
 /// Transactions kept; the oldest go first.
 pub const MOST: usize = 20_000;

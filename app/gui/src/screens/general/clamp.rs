@@ -129,7 +129,7 @@ fn run_ui(ui: &mut Ui, general: &General, link: &LinkView, commands: &mut Comman
             if cancel.clicked() {
                 commands.push(Command::Guided(GuidedWish::Cancel));
             }
-            let volts = link.readings.get(Channel::MainBattery).unwrap_or(f64::NAN);
+            let volts = link.readings.get(Channel::MAIN_BATTERY).unwrap_or(f64::NAN);
             let bar = ProgressBar::new(fraction).desired_width(ui.available_width());
             let response = ui.add(bar.text(format!("{text} · battery {volts:.1} V")));
             let spoken = format!("Progress: clamp test, {text}");

@@ -2,7 +2,7 @@
 
 use brushwork_link::settings::{Difference, Plan, diff};
 use brushwork_link::transport::Stream;
-use brushwork_mcp_wire::packet_serial::hex;
+use brushwork_values::hex;
 use egui::{Button, CollapsingHeader, RichText, ScrollArea, Ui, vec2};
 
 use super::sheet_parts::{Act, Offer, differences_ui, lamp_ui, text_ui, title_ui};

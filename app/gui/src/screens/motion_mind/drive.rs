@@ -21,9 +21,9 @@ const fn output(scope: ArmScope, word: &'static str, channel: Channel, unit: &'s
     Output { scope, word, channels: [channel; 2], unit, digits: 9, unit_letters: 7, width: 204.0 }
 }
 
-const DUTY: Output = output(ArmScope::Pwm, "output", Channel::M1Pwm, "%");
-const VELOCITY: Output = output(ArmScope::Velocity, "measured", Channel::M1Velocity, "counts/s");
-const POSITION: Output = output(ArmScope::Position, "measured", Channel::M1Position, "counts");
+const DUTY: Output = output(ArmScope::Pwm, "output", Channel::M1_PWM, "%");
+const VELOCITY: Output = output(ArmScope::Velocity, "measured", Channel::M1_VELOCITY, "counts/s");
+const POSITION: Output = output(ArmScope::Position, "measured", Channel::M1_POSITION, "counts");
 
 pub fn duty_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     if let Some(head) = head(

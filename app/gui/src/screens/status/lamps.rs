@@ -48,20 +48,20 @@ fn note(desk: &Desk) -> Option<&'static str> {
 }
 
 /// What the status word says, in words.
-pub fn conditions_ui(ui: &mut Ui, desk: &Desk) {
+pub fn active_ui(ui: &mut Ui, desk: &Desk) {
     ui.add_space(6.0);
     heading_ui(ui, "What the controller reports");
-    let signs =
-        desk.link.status.map(|report| desk.family().signs(&report, desk.link.identity())).unwrap_or_default();
-    if signs.is_empty() {
+    let report = desk.link.status.as_ref();
+    let active = report.map(|report| desk.family().active(report, desk.link.identity())).unwrap_or_default();
+    if active.is_empty() {
         let color = Palette::of(ui).weak_text;
         ui.label(RichText::new("Nothing: neither warning nor error.").color(color));
     }
-    for sign in signs {
+    for indicator in active {
         ui.horizontal(|ui| {
             let (rect, _) = ui.allocate_exact_size(egui::vec2(18.0, 18.0), egui::Sense::hover());
-            sign.state.paint(ui, rect.center(), 6.0);
-            ui.label(format!("{} ({})", sign.title, sign.state.word()));
+            indicator.state.paint(ui, rect.center(), 6.0);
+            ui.label(format!("{} ({})", indicator.title, indicator.state.word()));
         });
     }
 }

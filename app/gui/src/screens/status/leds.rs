@@ -6,7 +6,7 @@
 use std::time::Duration;
 
 use brushwork_link::device::Channel;
-use brushwork_mcp_wire::packet_serial::led::{BlinkCode, Light, blink_code};
+use brushwork_mcp_wire::packet_serial::led::{BlinkCode, Light};
 use egui::{Align2, Color32, RichText, Role, Sense, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
 use crate::model::desk::Desk;
@@ -55,10 +55,10 @@ pub fn leds_ui(ui: &mut Ui, desk: &Desk) {
 
 fn code(desk: &Desk) -> Option<BlinkCode> {
     let status = desk.link.status?;
-    let driving = [Channel::M1Pwm, Channel::M2Pwm]
+    let driving = [Channel::M1_PWM, Channel::M2_PWM]
         .into_iter()
         .any(|channel| desk.link.readings.get(channel).is_some_and(|duty| duty != 0.0));
-    Some(blink_code(status.conditions, driving))
+    desk.family().blink_code(&status, driving)
 }
 
 /// Which LEDs a controller that is simulated in this program has lit.

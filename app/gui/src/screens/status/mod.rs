@@ -48,7 +48,7 @@ pub fn status_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
                 if family.lacks(Ability::Leds).is_none() {
                     leds::leds_ui(ui, &model.front);
                 }
-                lamps::conditions_ui(ui, &model.front);
+                lamps::active_ui(ui, &model.front);
                 ui.add_space(6.0);
                 unit::unit_ui(ui, &model.front);
             });

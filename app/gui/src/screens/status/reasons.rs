@@ -1,7 +1,6 @@
 //! The one sentence that says why the motors do not run and what to do, and the reasons behind it.
 
 use brushwork_mcp_client::diagnosis::{Finding, Hindrance, diagnose};
-use brushwork_mcp_wire::packet_serial::status::Lamp;
 use egui::{Frame, Label, Margin, RichText, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 use crate::command::{Command, Commands};
@@ -33,7 +32,7 @@ pub fn reasons_ui(ui: &mut Ui, desk: &Desk, commands: &mut Commands) {
                     .color(color),
             );
         }
-        if desk.link.lamps.get(Lamp::EStop) == LampState::Error {
+        if desk.link.status.is_some_and(|report| report.is_active("e_stop")) {
             let note = "Works only where the controller lets software reset it, and not while it is pressed";
             if ui.button("Reset emergency stop").on_hover_text(note).clicked() {
                 commands.push(Command::ResetEmergencyStop);

@@ -93,7 +93,7 @@ impl DeviceLoop {
         }
         let (from, to) = (sample.requested_at, sample.replied_at);
         let setpoints = self.units[self.selected].setpoints;
-        for (setpoint, channel) in setpoints.into_iter().zip([Channel::M1Setpoint, Channel::M2Setpoint]) {
+        for (setpoint, channel) in setpoints.into_iter().zip([Channel::M1_SETPOINT, Channel::M2_SETPOINT]) {
             if let Some(value) = setpoint {
                 sample.set(channel, value, from, to);
             }

@@ -3,7 +3,7 @@
 use brushwork_canopen::adapter::{Decoder, Form};
 use brushwork_link::device::Described;
 use brushwork_mcp_wire::canopen::describe_frame;
-use brushwork_mcp_wire::packet_serial::hex;
+use brushwork_values::hex;
 
 /// The frames in bytes of an adapter, in words.
 #[must_use]

@@ -10,9 +10,9 @@ use brushwork_link::exchange::ExchangeError;
 use brushwork_link::failure::Failure;
 use brushwork_link::transport::Stream;
 use brushwork_mcp_wire::packet_serial::status;
-use brushwork_mcp_wire::packet_serial::status::{Condition, Severity};
+use brushwork_mcp_wire::packet_serial::status::Condition;
 use brushwork_mcp_wire::packet_serial::{Generation, number, scale};
-use brushwork_values::{Motor, Values};
+use brushwork_values::{Motor, Severity, Values};
 use std::time::Duration;
 
 /// The stream type "packet serial" and the priority "serial" on the wire (MCP manual 2.3.1, commands 139 and 145).

@@ -213,6 +213,7 @@ fn finish(
     if !missing.is_empty() {
         notes.push(format!("It does not answer for: {}.", missing.join(", ")));
     }
+    let is_mcp = model.is_some_and(|model| model.name.starts_with("MCP"));
     let is_node = matches!(speaker.wire, Wire::Objects(_));
     let identity = Identity {
         address: speaker.id(),
@@ -222,7 +223,7 @@ fn finish(
         model: model.map(|model| model.name),
         firmware: firmware_of(version).to_owned(),
         generation: generation_number(speaker.generation),
-        facts: Facts::new(McpFacts { generation: speaker.generation, is_node }),
+        facts: Facts::new(McpFacts { generation: speaker.generation, is_mcp, is_node }),
         also_answers: Vec::new(),
         simulated,
         port: line.exchange().port(),

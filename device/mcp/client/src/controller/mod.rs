@@ -4,9 +4,11 @@
 //! each. Nothing outside this folder knows a command of packet serial.
 
 mod arming;
+pub mod channels;
 mod discover;
 mod driving;
 mod generation;
+pub mod indicators;
 mod polling;
 mod speaker;
 mod stopping;

@@ -1,11 +1,13 @@
 //! What is read from a unit in a sweep, and which signal each reply carries.
 
+use crate::controller::channels::pins;
+use crate::controller::indicators::indicators;
 use crate::controller::speaker::Speaker;
 use brushwork_link::device::StatusReport;
 use brushwork_link::device::controller::{Line, PollItem, PollList};
 use brushwork_link::device::{Channel, PinSignal, Sample};
 use brushwork_link::exchange::{ExchangeError, Reply};
-use brushwork_mcp_wire::packet_serial::{Effect, Generation, lookup, number, scale, status};
+use brushwork_mcp_wire::packet_serial::{Effect, Generation, lookup, number, scale};
 
 /// Signals that change quickly, each read in every sweep.
 const FAST: [(u8, &str); 6] = [
@@ -91,11 +93,11 @@ pub fn read(
     let command = read_command(item, speaker.generation)?;
     let reply = speaker.ask(line, command, &[])?;
     match command {
-        number::READ_SPEED_M1 => signed_speed(sample, &reply, Channel::M1Velocity),
-        number::READ_SPEED_M2 => signed_speed(sample, &reply, Channel::M2Velocity),
-        number::READ_SPEED_ERRORS => errors(sample, &reply, Channel::M1SpeedError, Channel::M2SpeedError),
+        number::READ_SPEED_M1 => signed_speed(sample, &reply, Channel::M1_VELOCITY),
+        number::READ_SPEED_M2 => signed_speed(sample, &reply, Channel::M2_VELOCITY),
+        number::READ_SPEED_ERRORS => errors(sample, &reply, Channel::M1_SPEED_ERROR, Channel::M2_SPEED_ERROR),
         number::READ_POSITION_ERRORS => {
-            errors(sample, &reply, Channel::M1PositionError, Channel::M2PositionError);
+            errors(sample, &reply, Channel::M1_POSITION_ERROR, Channel::M2_POSITION_ERROR);
         }
         number::READ_SIGNAL_VALUES => pin_signals(sample, &reply),
         _ => {}
@@ -108,12 +110,10 @@ pub fn read(
     Ok(reply.values.try_int("status").filter(|_| brings_status(command)).map(|word| {
         let word = u32::try_from(word).unwrap_or(0);
         StatusReport {
-            signs: &[],
             address: speaker.id(),
             at: reply.span.replied_at,
             word,
-            conditions: status::decode(word, speaker.generation),
-            unknown_bits: status::unknown_bits(word, speaker.generation),
+            indicators: indicators(speaker.generation),
             running_ticks: reply.values.try_int("tick").and_then(|ticks| u32::try_from(ticks).ok()),
         }
     }))
@@ -128,22 +128,22 @@ fn read_command(item: PollItem, generation: Generation) -> Result<u8, ExchangeEr
 
 /// The fields of the replies above and the channels they are. In 18 and 19 a field "status" is the direction.
 const NAMED: &[(&str, Channel)] = &[
-    ("encoder_m1", Channel::M1Position),
-    ("encoder_m2", Channel::M2Position),
-    ("speed_m1", Channel::M1Velocity),
-    ("speed_m2", Channel::M2Velocity),
-    ("duty_m1", Channel::M1Pwm),
-    ("duty_m2", Channel::M2Pwm),
-    ("current_m1", Channel::M1Current),
-    ("current_m2", Channel::M2Current),
-    ("temperature_1", Channel::Temperature1),
-    ("temperature_2", Channel::Temperature2),
-    ("main_battery", Channel::MainBattery),
-    ("logic_battery", Channel::LogicBattery),
-    ("speed_error_m1", Channel::M1SpeedError),
-    ("speed_error_m2", Channel::M2SpeedError),
-    ("position_error_m1", Channel::M1PositionError),
-    ("position_error_m2", Channel::M2PositionError),
+    ("encoder_m1", Channel::M1_POSITION),
+    ("encoder_m2", Channel::M2_POSITION),
+    ("speed_m1", Channel::M1_VELOCITY),
+    ("speed_m2", Channel::M2_VELOCITY),
+    ("duty_m1", Channel::M1_PWM),
+    ("duty_m2", Channel::M2_PWM),
+    ("current_m1", Channel::M1_CURRENT),
+    ("current_m2", Channel::M2_CURRENT),
+    ("temperature_1", Channel::TEMPERATURE_1),
+    ("temperature_2", Channel::TEMPERATURE_2),
+    ("main_battery", Channel::MAIN_BATTERY),
+    ("logic_battery", Channel::LOGIC_BATTERY),
+    ("speed_error_m1", Channel::M1_SPEED_ERROR),
+    ("speed_error_m2", Channel::M2_SPEED_ERROR),
+    ("position_error_m1", Channel::M1_POSITION_ERROR),
+    ("position_error_m2", Channel::M2_POSITION_ERROR),
 ];
 
 fn brings_status(command: u8) -> bool {
@@ -166,7 +166,8 @@ fn errors(sample: &mut Sample, reply: &Reply, first: Channel, second: Channel) {
 
 fn pin_signals(sample: &mut Sample, reply: &Reply) {
     let whole = |raw: i64| i32::try_from(raw).unwrap_or_default();
-    for (pin, record) in reply.values.records().enumerate() {
+    let mut channels = pins();
+    for record in reply.values.records() {
         let signal = PinSignal {
             command: whole(record.int("command")),
             position: whole(record.int("position")),
@@ -175,7 +176,7 @@ fn pin_signals(sample: &mut Sample, reply: &Reply) {
             average_speed: whole(record.int("average_speed")),
         };
         sample.signals.push(signal);
-        if let Some(channel) = Channel::signal(pin) {
+        if let Some(channel) = channels.next() {
             let percent = f64::from(signal.percent) / scale::FULL_DUTY_RAW as f64 * 100.0;
             sample.set(channel, percent, reply.span.requested_at, reply.span.replied_at);
         }

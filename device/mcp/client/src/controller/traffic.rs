@@ -4,7 +4,8 @@ use brushwork_link::device::Described;
 use brushwork_mcp_wire::packet_serial::{
     ACK, FramerEvent, Generation, ReplyProgress, Request, RequestFramer, parse_reply,
 };
-use brushwork_mcp_wire::packet_serial::{describe_event, describe_reply, hex};
+use brushwork_mcp_wire::packet_serial::{describe_event, describe_reply};
+use brushwork_values::hex;
 use std::time::Duration;
 
 /// The requests that a write holds, in words; a stop is several.

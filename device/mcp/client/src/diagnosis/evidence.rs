@@ -6,13 +6,12 @@ use brushwork_link::settings::SettingsImage;
 use brushwork_link::transport::Stream;
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::models::Model;
-use brushwork_mcp_wire::packet_serial::status::Conditions;
 
 /// What is known of a unit. The more of it is there, the more can be found; what is missing is not guessed.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Evidence<'a> {
-    /// What the status word says.
-    pub conditions: Conditions,
+    /// What the unit reports; nothing before it was read.
+    pub status: Option<&'a StatusReport>,
     /// The model, for the names of its pins.
     pub model: Option<&'static Model>,
     /// The settings in the controller's RAM.
@@ -55,10 +54,10 @@ pub enum Script {
 impl<'a> Evidence<'a> {
     /// What a unit's status says, without settings and pins.
     #[must_use]
-    pub fn of(report: &StatusReport, identity: &Identity) -> Self {
+    pub fn of(report: &'a StatusReport, identity: &Identity) -> Self {
         let model = identity.model.and_then(models::lookup);
         let model = model.or_else(|| models::identify(&identity.version_text));
-        Self { conditions: report.conditions, model, ..Self::default() }
+        Self { status: Some(report), model, ..Self::default() }
     }
 
     /// The number of an input pin and its name: "pin 7 (DIN7/AN7/P7/ENC1A)".
@@ -72,10 +71,10 @@ impl Measured {
     /// From the newest readings of a unit's channels.
     pub fn of(read: impl Fn(Channel) -> Option<f64>) -> Self {
         Self {
-            main_volts: read(Channel::MainBattery),
-            logic_volts: read(Channel::LogicBattery),
-            celsius: [Channel::Temperature1, Channel::Temperature2].map(&read),
-            amps: [Channel::M1Current, Channel::M2Current].map(&read),
+            main_volts: read(Channel::MAIN_BATTERY),
+            logic_volts: read(Channel::LOGIC_BATTERY),
+            celsius: [Channel::TEMPERATURE_1, Channel::TEMPERATURE_2].map(&read),
+            amps: [Channel::M1_CURRENT, Channel::M2_CURRENT].map(&read),
         }
     }
 }

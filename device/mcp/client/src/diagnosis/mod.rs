@@ -18,6 +18,7 @@ pub use finding::{Finding, Hindrance};
 pub use pin_end::{PinEnd, pin_ends};
 pub use pins::{has_actions, homed};
 
+use brushwork_link::device::StatusReport;
 use serde::Serialize;
 
 /// All reasons, the gravest first.
@@ -52,8 +53,9 @@ impl Diagnosis {
 /// Judges all that is known of a unit.
 #[must_use]
 pub fn diagnose(evidence: &Evidence<'_>) -> Diagnosis {
+    let active = evidence.status.into_iter().flat_map(StatusReport::active);
     let mut findings: Vec<Finding> =
-        evidence.conditions.iter().filter_map(|condition| reported::of(condition, evidence)).collect();
+        active.filter_map(|indicator| reported::of(indicator, evidence)).collect();
     findings.extend(pins::findings(evidence));
     findings.extend(configured::findings(evidence));
     findings.sort_by_key(|finding| std::cmp::Reverse(finding.hindrance));

@@ -1,10 +1,23 @@
 //! Which sentence each cause of standing motors gives.
 
+use crate::controller::indicators::indicators;
 use crate::diagnosis::*;
 use brushwork_link::Stream;
+use brushwork_link::device::StatusReport;
 use brushwork_link::settings::{SettingValue, SettingsImage};
 use brushwork_mcp_wire::models;
-use brushwork_mcp_wire::packet_serial::status::{CONDITIONS, Condition, Severity};
+use brushwork_mcp_wire::packet_serial::Generation;
+use brushwork_mcp_wire::packet_serial::status::{CONDITIONS, Condition, Conditions, encode};
+use brushwork_values::Severity;
+use std::time::Duration;
+
+/// The report of a generation that can tell the condition.
+fn reported(told: &[Condition]) -> StatusReport {
+    let told: Conditions = told.iter().copied().collect();
+    let generation = Generation::ALL.into_iter().find(|generation| told.known_to(*generation) == told);
+    let generation = generation.expect("one can tell them");
+    StatusReport::new(0x80, Duration::ZERO, encode(told, generation), indicators(generation))
+}
 
 fn settings(pairs: &[(&str, SettingValue)]) -> SettingsImage {
     pairs.iter().map(|(key, value)| ((*key).to_owned(), *value)).collect()
@@ -26,8 +39,8 @@ fn nothing_wrong_says_so() {
 #[test]
 fn every_warning_and_every_error_is_a_finding_with_a_cure() {
     for row in &CONDITIONS {
-        let conditions = [row.condition].into_iter().collect();
-        let diagnosis = diagnose(&Evidence { conditions, ..Evidence::default() });
+        let status = reported(&[row.condition]);
+        let diagnosis = diagnose(&Evidence { status: Some(&status), ..Evidence::default() });
         assert_eq!(diagnosis.findings.len(), 1, "{}", row.title);
         assert!(!diagnosis.findings[0].cure.is_empty());
         let stops = diagnosis.findings[0].hindrance > Hindrance::Limits;
@@ -37,9 +50,10 @@ fn every_warning_and_every_error_is_a_finding_with_a_cure() {
 
 #[test]
 fn an_emergency_stop_comes_before_a_setting() {
-    let conditions = [Condition::M1OverCurrentWarning, Condition::EStop].into_iter().collect();
+    let status = reported(&[Condition::M1OverCurrentWarning, Condition::EStop]);
     let image = settings(&[("motor1.velocity.qpps", SettingValue::Int(0))]);
-    let diagnosis = diagnose(&Evidence { conditions, settings: Some(&image), ..Evidence::default() });
+    let diagnosis =
+        diagnose(&Evidence { status: Some(&status), settings: Some(&image), ..Evidence::default() });
     let order: Vec<Hindrance> = diagnosis.findings.iter().map(|finding| finding.hindrance).collect();
     assert_eq!(order, [Hindrance::BlocksAll, Hindrance::BlocksSome, Hindrance::Limits]);
     let sentence = diagnosis.sentence();
@@ -49,9 +63,10 @@ fn an_emergency_stop_comes_before_a_setting() {
 #[test]
 fn the_cure_of_an_emergency_stop_is_the_one_its_reset_method_allows() {
     let cure = |method| {
-        let conditions = [Condition::EStop].into_iter().collect();
+        let status = reported(&[Condition::EStop]);
         let image = settings(&[("unit.estop_reset", choice(method))]);
-        diagnose(&Evidence { conditions, settings: Some(&image), ..Evidence::default() }).sentence()
+        diagnose(&Evidence { status: Some(&status), settings: Some(&image), ..Evidence::default() })
+            .sentence()
     };
     assert!(cure("hardware").contains("restart the controller"));
     assert!(cure("software").contains("reset it on the Device Status screen"));
@@ -60,10 +75,11 @@ fn the_cure_of_an_emergency_stop_is_the_one_its_reset_method_allows() {
 
 #[test]
 fn a_voltage_window_is_told_with_both_figures() {
-    let conditions = [Condition::MainBatteryLowWarning].into_iter().collect();
+    let status = reported(&[Condition::MainBatteryLowWarning]);
     let image = settings(&[("limits.main_battery.min_volts", SettingValue::Number(10.0))]);
     let measured = Measured { main_volts: Some(7.04), ..Measured::default() };
-    let evidence = Evidence { conditions, settings: Some(&image), measured, ..Evidence::default() };
+    let evidence =
+        Evidence { status: Some(&status), settings: Some(&image), measured, ..Evidence::default() };
     let sentence = diagnose(&evidence).sentence();
     assert!(sentence.contains("the main battery is at 7.0 V, below its minimum of 10.0 V"), "{sentence}");
     // A latched error whose cause is over does not claim that the voltage is still wrong.

@@ -84,6 +84,7 @@ mod tests {
             generation: crate::firmware_of(Generation::Gen1),
             facts: brushwork_link::device::Facts::new(crate::McpFacts {
                 generation: Generation::Gen1,
+                is_mcp: true,
                 is_node: false,
             }),
             also_answers: Vec::new(),

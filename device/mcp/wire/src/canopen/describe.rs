@@ -1,9 +1,10 @@
 //! Frames in words, for traffic views.
 
 use super::objects::command_of;
-use crate::packet_serial::{hex, lookup};
+use crate::packet_serial::lookup;
 use brushwork_canopen::sdo::{Request, Response};
 use brushwork_canopen::{Emergency, Frame, Function, nmt};
+use brushwork_values::hex;
 
 /// What a frame says.
 #[must_use]

@@ -2,13 +2,12 @@
 //!
 //! A request reads "0x80 M1 velocity PID: P 1.0, I 0.5, D 0.25, QPPS 44000", a reply "0x80 read main battery: 24.3 V".
 
-use std::fmt::Write;
-
 use super::command::Command;
 use super::framer::{Discarded, Framed, FramerEvent};
 use super::identity::{Address, Generation};
 use super::request::Request;
 use super::status;
+use brushwork_values::hex;
 use brushwork_values::{Field, Kind, Unit};
 use brushwork_values::{Value, Values};
 
@@ -85,17 +84,6 @@ pub fn label(field: &Field) -> String {
         other => other,
     });
     words.collect::<Vec<_>>().join(" ")
-}
-
-/// Bytes as upper-case hexadecimal pairs with spaces between.
-pub fn hex(bytes: &[u8]) -> String {
-    let mut text = String::with_capacity(bytes.len() * 3);
-    for (index, byte) in bytes.iter().enumerate() {
-        let space = if index == 0 { "" } else { " " };
-        // Writing into a String cannot fail.
-        let _ = write!(text, "{space}{byte:02X}");
-    }
-    text
 }
 
 fn sentence(address: Address, command: &Command, values: &Values, generation: Generation) -> String {

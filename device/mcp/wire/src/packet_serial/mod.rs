@@ -29,7 +29,7 @@ mod table;
 pub use command::{ClientUse, Command, Direction, Effect, Form, Reply, Simulated};
 pub use describe::{
     describe_discarded, describe_event, describe_framed, describe_reply, describe_request, describe_value,
-    describe_values, hex, label,
+    describe_values, label,
 };
 pub use encode::{ACK, encode_ack, encode_reply, encode_reply_named};
 pub use encode_error::EncodeError;

@@ -9,9 +9,9 @@ use serde::Serialize;
 
 use super::command::{ClientUse, Command, Direction, Effect, Form, Reply, Simulated};
 use super::identity::Generation;
-use super::status::{CONDITIONS, Lamp, Severity};
+use super::status::{CONDITIONS, Lamp};
 use super::table::COMMANDS;
-use brushwork_values::{Field, Kind, Unit};
+use brushwork_values::{Field, Kind, Severity, Unit};
 
 pub use text::{page, section};
 use words::kind;

@@ -7,6 +7,7 @@
 
 use std::fmt;
 
+use brushwork_values::Severity;
 use serde::{Deserialize, Serialize};
 
 use super::identity::Generation;
@@ -89,18 +90,6 @@ pub enum Condition {
     S5Signal,
 }
 
-/// How grave a condition is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Severity {
-    /// A state that is neither good nor bad, such as a home switch.
-    Signal,
-    /// The unit goes on, perhaps with less output.
-    Warning,
-    /// The unit has stopped one motor or both.
-    Error,
-}
-
 /// The thirteen lamps of the vendor's program (MCP manual 1.2.2), in its order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -138,6 +127,8 @@ pub enum Lamp {
 pub struct ConditionRow {
     /// The condition.
     pub condition: Condition,
+    /// Name in programs: snake_case.
+    pub key: &'static str,
     /// What people call it.
     pub title: &'static str,
     /// How grave it is.
@@ -358,163 +349,70 @@ impl fmt::Display for Conditions {
     }
 }
 
+/// The lamp of a row of [`conditions`].
+macro_rules! lamp {
+    () => {
+        None
+    };
+    ($lamp:ident) => {
+        Some(Lamp::$lamp)
+    };
+}
+
+/// The rows of a table of conditions.
+macro_rules! conditions {
+    ($($condition:ident $key:literal $title:literal $severity:ident [$($lamp:ident)?] $masks:expr;)*) => {
+        [$(ConditionRow {
+            condition: Condition::$condition,
+            key: $key,
+            title: $title,
+            severity: Severity::$severity,
+            lamp: lamp!($($lamp)?),
+            masks: $masks,
+        }),*]
+    };
+}
+
 /// Every condition in the order of [`Condition`]. Bits of generations 1 and 2: MCP manual command 90, with those of the
 /// RoboClaw in the gaps. Of 3 and 4: public clients and the RoboClaw manual of 2018, with those of 2025 in the gaps.
-pub static CONDITIONS: [ConditionRow; 36] = {
-    use Condition as C;
-    use Lamp as L;
-    use Severity::{Error, Signal, Warning};
-    [
-        row(C::EStop, "E-Stop", Error, Some(L::EStop), [0x0004, 0x0004, 0x0001, 0x0001]),
-        row(
-            C::Temperature1Error,
-            "Temperature error",
-            Error,
-            Some(L::Temperature1),
-            [0x0008, 0x0008, 0x0002, 0x0002],
-        ),
-        row(
-            C::Temperature2Error,
-            "Temperature 2 error",
-            Error,
-            Some(L::Temperature2),
-            [0x0010, 0x0010, 0x0004, 0x0004],
-        ),
-        row(
-            C::MainBatteryHighError,
-            "Main battery high error",
-            Error,
-            Some(L::MainBatteryHigh),
-            [0x0020, 0x0020, 0x0008, 0x0008],
-        ),
-        row(
-            C::MainBatteryLowError,
-            "Main battery low error",
-            Error,
-            Some(L::MainBatteryLow),
-            [0, 0, 0, 0x4000],
-        ),
-        row(
-            C::MainBatteryHighHysteresis,
-            "Main battery high hysteresis",
-            Error,
-            Some(L::MainBatteryHigh),
-            [0, 0, 0, 0x8000],
-        ),
-        row(
-            C::LogicBatteryHighError,
-            "Logic battery high error",
-            Error,
-            Some(L::LogicBatteryHigh),
-            [0x0040, 0x0040, 0x0010, 0x0010],
-        ),
-        row(
-            C::LogicBatteryLowError,
-            "Logic battery low error",
-            Error,
-            Some(L::LogicBatteryLow),
-            [0x0080, 0x0080, 0x0020, 0x0020],
-        ),
-        row(
-            C::M1DriverFault,
-            "M1 driver fault",
-            Error,
-            Some(L::M1DriverFault),
-            [0x0100, 0x0100, 0x0040, 0x0040],
-        ),
-        row(
-            C::M2DriverFault,
-            "M2 driver fault",
-            Error,
-            Some(L::M2DriverFault),
-            [0x0200, 0x0200, 0x0080, 0x0080],
-        ),
-        row(C::M1SpeedError, "M1 speed error", Error, None, [0, 0, 0x0100, 0x0100]),
-        row(C::M2SpeedError, "M2 speed error", Error, None, [0, 0, 0x0200, 0x0200]),
-        row(C::M1PositionError, "M1 position error", Error, None, [0, 0, 0x0400, 0x0400]),
-        row(C::M2PositionError, "M2 position error", Error, None, [0, 0, 0x0800, 0x0800]),
-        row(C::M1CurrentError, "M1 current error", Error, Some(L::M1OverCurrent), [0, 0, 0x1000, 0x1000]),
-        row(C::M2CurrentError, "M2 current error", Error, Some(L::M2OverCurrent), [0, 0, 0x2000, 0x2000]),
-        row(
-            C::M1OverCurrentWarning,
-            "M1 over-current warning",
-            Warning,
-            Some(L::M1OverCurrent),
-            [0x0001, 0x0001, 0x0001_0000, 0x0001_0000],
-        ),
-        row(
-            C::M2OverCurrentWarning,
-            "M2 over-current warning",
-            Warning,
-            Some(L::M2OverCurrent),
-            [0x0002, 0x0002, 0x0002_0000, 0x0002_0000],
-        ),
-        row(
-            C::MainBatteryHighWarning,
-            "Main battery high warning",
-            Warning,
-            Some(L::MainBatteryHigh),
-            [0x0400, 0x0400, 0x0004_0000, 0x0004_0000],
-        ),
-        row(
-            C::MainBatteryLowWarning,
-            "Main battery low warning",
-            Warning,
-            Some(L::MainBatteryLow),
-            [0x0800, 0x0800, 0x0008_0000, 0x0008_0000],
-        ),
-        row(
-            C::Temperature1Warning,
-            "Temperature warning",
-            Warning,
-            Some(L::Temperature1),
-            [0x1000, 0x1000, 0x0010_0000, 0x0010_0000],
-        ),
-        row(
-            C::Temperature2Warning,
-            "Temperature 2 warning",
-            Warning,
-            Some(L::Temperature2),
-            [0x2000, 0x2000, 0x0020_0000, 0x0020_0000],
-        ),
-        row(C::SpeedLimitWarning, "Speed limit warning", Warning, None, [0, 0, 0x0100_0000, 0]),
-        row(C::PositionLimitWarning, "Position limit warning", Warning, None, [0, 0, 0x0200_0000, 0]),
-        row(C::M1SpeedWarning, "M1 speed warning", Warning, None, [0, 0, 0, 0x0100_0000]),
-        row(C::M2SpeedWarning, "M2 speed warning", Warning, None, [0, 0, 0, 0x0200_0000]),
-        row(C::M1PositionWarning, "M1 position warning", Warning, None, [0, 0, 0, 0x0400_0000]),
-        row(C::M2PositionWarning, "M2 position warning", Warning, None, [0, 0, 0, 0x0800_0000]),
-        row(C::CanWarning, "CAN warning", Warning, None, [0, 0, 0, 0x1000_0000]),
-        row(C::BootWarning, "Boot warning", Warning, None, [0, 0, 0, 0x2000_0000]),
-        row(
-            C::M1OverRegenerationWarning,
-            "M1 over-regeneration warning",
-            Warning,
-            None,
-            [0, 0, 0, 0x4000_0000],
-        ),
-        row(
-            C::M2OverRegenerationWarning,
-            "M2 over-regeneration warning",
-            Warning,
-            None,
-            [0, 0, 0, 0x8000_0000],
-        ),
-        row(C::M1Home, "M1 home", Signal, Some(L::M1Home), [0x4000, 0x4000, 0, 0]),
-        row(C::M2Home, "M2 home", Signal, Some(L::M2Home), [0x8000, 0x8000, 0, 0]),
-        row(C::S4Signal, "S4 signal", Signal, Some(L::M1Home), [0, 0, 0x0040_0000, 0x0040_0000]),
-        row(C::S5Signal, "S5 signal", Signal, Some(L::M2Home), [0, 0, 0x0080_0000, 0x0080_0000]),
-    ]
+pub static CONDITIONS: [ConditionRow; 36] = conditions! {
+    EStop "e_stop" "E-Stop" Error [EStop] [0x0004, 0x0004, 0x0001, 0x0001];
+    Temperature1Error "temperature1_error" "Temperature error" Error [Temperature1] [0x0008, 0x0008, 0x0002, 0x0002];
+    Temperature2Error "temperature2_error" "Temperature 2 error" Error [Temperature2] [0x0010, 0x0010, 0x0004, 0x0004];
+    MainBatteryHighError "main_battery_high_error" "Main battery high error" Error [MainBatteryHigh] [0x0020, 0x0020, 0x0008, 0x0008];
+    MainBatteryLowError "main_battery_low_error" "Main battery low error" Error [MainBatteryLow] [0, 0, 0, 0x4000];
+    MainBatteryHighHysteresis "main_battery_high_hysteresis" "Main battery high hysteresis" Error [MainBatteryHigh] [0, 0, 0, 0x8000];
+    LogicBatteryHighError "logic_battery_high_error" "Logic battery high error" Error [LogicBatteryHigh] [0x0040, 0x0040, 0x0010, 0x0010];
+    LogicBatteryLowError "logic_battery_low_error" "Logic battery low error" Error [LogicBatteryLow] [0x0080, 0x0080, 0x0020, 0x0020];
+    M1DriverFault "m1_driver_fault" "M1 driver fault" Error [M1DriverFault] [0x0100, 0x0100, 0x0040, 0x0040];
+    M2DriverFault "m2_driver_fault" "M2 driver fault" Error [M2DriverFault] [0x0200, 0x0200, 0x0080, 0x0080];
+    M1SpeedError "m1_speed_error" "M1 speed error" Error [] [0, 0, 0x0100, 0x0100];
+    M2SpeedError "m2_speed_error" "M2 speed error" Error [] [0, 0, 0x0200, 0x0200];
+    M1PositionError "m1_position_error" "M1 position error" Error [] [0, 0, 0x0400, 0x0400];
+    M2PositionError "m2_position_error" "M2 position error" Error [] [0, 0, 0x0800, 0x0800];
+    M1CurrentError "m1_current_error" "M1 current error" Error [M1OverCurrent] [0, 0, 0x1000, 0x1000];
+    M2CurrentError "m2_current_error" "M2 current error" Error [M2OverCurrent] [0, 0, 0x2000, 0x2000];
+    M1OverCurrentWarning "m1_over_current_warning" "M1 over-current warning" Warning [M1OverCurrent] [0x0001, 0x0001, 0x0001_0000, 0x0001_0000];
+    M2OverCurrentWarning "m2_over_current_warning" "M2 over-current warning" Warning [M2OverCurrent] [0x0002, 0x0002, 0x0002_0000, 0x0002_0000];
+    MainBatteryHighWarning "main_battery_high_warning" "Main battery high warning" Warning [MainBatteryHigh] [0x0400, 0x0400, 0x0004_0000, 0x0004_0000];
+    MainBatteryLowWarning "main_battery_low_warning" "Main battery low warning" Warning [MainBatteryLow] [0x0800, 0x0800, 0x0008_0000, 0x0008_0000];
+    Temperature1Warning "temperature1_warning" "Temperature warning" Warning [Temperature1] [0x1000, 0x1000, 0x0010_0000, 0x0010_0000];
+    Temperature2Warning "temperature2_warning" "Temperature 2 warning" Warning [Temperature2] [0x2000, 0x2000, 0x0020_0000, 0x0020_0000];
+    SpeedLimitWarning "speed_limit_warning" "Speed limit warning" Warning [] [0, 0, 0x0100_0000, 0];
+    PositionLimitWarning "position_limit_warning" "Position limit warning" Warning [] [0, 0, 0x0200_0000, 0];
+    M1SpeedWarning "m1_speed_warning" "M1 speed warning" Warning [] [0, 0, 0, 0x0100_0000];
+    M2SpeedWarning "m2_speed_warning" "M2 speed warning" Warning [] [0, 0, 0, 0x0200_0000];
+    M1PositionWarning "m1_position_warning" "M1 position warning" Warning [] [0, 0, 0, 0x0400_0000];
+    M2PositionWarning "m2_position_warning" "M2 position warning" Warning [] [0, 0, 0, 0x0800_0000];
+    CanWarning "can_warning" "CAN warning" Warning [] [0, 0, 0, 0x1000_0000];
+    BootWarning "boot_warning" "Boot warning" Warning [] [0, 0, 0, 0x2000_0000];
+    M1OverRegenerationWarning "m1_over_regeneration_warning" "M1 over-regeneration warning" Warning [] [0, 0, 0, 0x4000_0000];
+    M2OverRegenerationWarning "m2_over_regeneration_warning" "M2 over-regeneration warning" Warning [] [0, 0, 0, 0x8000_0000];
+    M1Home "m1_home" "M1 home" Signal [M1Home] [0x4000, 0x4000, 0, 0];
+    M2Home "m2_home" "M2 home" Signal [M2Home] [0x8000, 0x8000, 0, 0];
+    S4Signal "s4_signal" "S4 signal" Signal [M1Home] [0, 0, 0x0040_0000, 0x0040_0000];
+    S5Signal "s5_signal" "S5 signal" Signal [M2Home] [0, 0, 0x0080_0000, 0x0080_0000];
 };
-
-const fn row(
-    condition: Condition,
-    title: &'static str,
-    severity: Severity,
-    lamp: Option<Lamp>,
-    masks: [u32; 4],
-) -> ConditionRow {
-    ConditionRow { condition, title, severity, lamp, masks }
-}
 
 #[cfg(test)]
 mod tests {
@@ -525,6 +423,14 @@ mod tests {
         for (index, row) in CONDITIONS.iter().enumerate() {
             assert_eq!(row.condition as usize, index);
             assert_eq!(row.condition.title(), row.title);
+            let mut key = String::new();
+            for letter in format!("{:?}", row.condition).chars() {
+                if letter.is_uppercase() && !key.is_empty() {
+                    key.push('_');
+                }
+                key.push(letter.to_ascii_lowercase());
+            }
+            assert_eq!(row.key, key);
         }
     }
 

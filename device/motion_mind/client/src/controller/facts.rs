@@ -1,9 +1,10 @@
 //! The mode and the protocol of a Motion Mind, which its switches choose.
 
+use super::channels::CHANNELS;
 use super::driving::{objection, preview};
-use super::signs::SIGNS;
+use super::indicators::status_row;
 use super::traffic::describe_sent;
-use brushwork_link::device::{Capabilities, Channel, Described, Drive, Sign, UnitFacts};
+use brushwork_link::device::{Capabilities, Channel, Described, Drive, StatusPlace, StatusReport, UnitFacts};
 use brushwork_motion_mind_wire::{Mode, Protocol};
 use serde::Serialize;
 
@@ -45,11 +46,11 @@ impl UnitFacts for MotionMindFacts {
     }
 
     fn channels(&self) -> &'static [Channel] {
-        Channel::MOTION_MIND
+        CHANNELS
     }
 
-    fn signs(&self) -> &'static [Sign] {
-        SIGNS
+    fn status_row(&self, report: Option<&StatusReport>, _homed: Option<[bool; 2]>) -> Vec<StatusPlace> {
+        status_row(report)
     }
 
     fn describe_sent(&self, bytes: &[u8]) -> Described {

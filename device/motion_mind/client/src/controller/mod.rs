@@ -10,13 +10,14 @@
 mod acts;
 mod arming;
 mod borrowed;
+pub mod channels;
 mod discover;
 mod driving;
 mod facts;
+pub mod indicators;
 mod polling;
 mod raw;
 mod registers;
-mod signs;
 mod speaker;
 mod stopping;
 #[cfg(test)]
@@ -27,6 +28,5 @@ mod unit;
 pub use discover::MotionMinds;
 pub use driving::{COUNTS_PER_S_PER_STEP, objection, preview, taken};
 pub use facts::MotionMindFacts;
-pub use signs::SIGNS;
 pub use traffic::{describe_received, describe_sent};
 pub use unit::MotionMind;

@@ -1,15 +1,15 @@
 //! What is read from a unit in a sweep, and which signal each register is.
 
+use crate::controller::channels::{ANALOG_CONTROL, ANALOG_FEEDBACK, INDEX_POSITION, RC_PULSE};
 use crate::controller::driving::COUNTS_PER_S_PER_STEP;
 use crate::controller::facts::MotionMindFacts;
+use crate::controller::indicators::INDICATORS;
 use crate::controller::registers::{mask, value_in};
-use crate::controller::signs::SIGNS;
 use crate::controller::speaker::Speaker;
 use brushwork_link::device::StatusReport;
 use brushwork_link::device::controller::{Line, PollItem, PollList};
 use brushwork_link::device::{Channel, Sample};
 use brushwork_link::exchange::{ExchangeError, Span};
-use brushwork_mcp_wire::packet_serial::status::Conditions;
 use brushwork_motion_mind_wire::{Command, Mode, Protocol, Reply, register, register_number as number};
 
 /// What moves: one read of several registers.
@@ -72,16 +72,16 @@ fn enter(reply: &Reply, facts: Option<MotionMindFacts>, span: Span, sample: &mut
     let is_closed = facts.is_some_and(|facts| matches!(facts.mode, Mode::SerialPid | Mode::AnalogPid));
     let error = || Some((raw(number::DESIREDPOSITION)? - raw(number::POSITION)?) as f64);
     let readings = [
-        (Channel::M1Position, scaled(number::POSITION)),
-        (Channel::M1Velocity, raw(number::VELOCITY).map(|steps| steps as f64 * COUNTS_PER_S_PER_STEP)),
-        (Channel::M1Pwm, scaled(number::PWMOUT)),
-        (Channel::M1Current, scaled(number::AMPS)),
-        (Channel::M1PositionError, if is_closed { error() } else { None }),
-        (Channel::Temperature1, raw(number::THERMISTOR).map(celsius)),
-        (Channel::RcPulse, scaled(number::RCCOUNT)),
-        (Channel::AnalogControl, scaled(number::ANALOGCON)),
-        (Channel::AnalogFeedback, scaled(number::ANALOGFBCK)),
-        (Channel::IndexPosition, scaled(number::INDEXPOS)),
+        (Channel::M1_POSITION, scaled(number::POSITION)),
+        (Channel::M1_VELOCITY, raw(number::VELOCITY).map(|steps| steps as f64 * COUNTS_PER_S_PER_STEP)),
+        (Channel::M1_PWM, scaled(number::PWMOUT)),
+        (Channel::M1_CURRENT, scaled(number::AMPS)),
+        (Channel::M1_POSITION_ERROR, if is_closed { error() } else { None }),
+        (Channel::TEMPERATURE_1, raw(number::THERMISTOR).map(celsius)),
+        (RC_PULSE, scaled(number::RCCOUNT)),
+        (ANALOG_CONTROL, scaled(number::ANALOGCON)),
+        (ANALOG_FEEDBACK, scaled(number::ANALOGFBCK)),
+        (INDEX_POSITION, scaled(number::INDEXPOS)),
     ];
     for (channel, value) in readings {
         if let Some(value) = value {
@@ -92,14 +92,11 @@ fn enter(reply: &Reply, facts: Option<MotionMindFacts>, span: Span, sample: &mut
 
 fn status_of(speaker: &Speaker, reply: &Reply, span: Span) -> Option<StatusReport> {
     let word = u32::try_from(value_in(reply, number::STATUS)?).ok()?;
-    let known = SIGNS.iter().fold(0, |known, sign| known | sign.mask);
     Some(StatusReport {
         address: speaker.address.get(),
         at: span.replied_at,
         word,
-        conditions: Conditions::default(),
-        signs: SIGNS,
-        unknown_bits: word & !known,
+        indicators: INDICATORS,
         running_ticks: value_in(reply, number::TIME).and_then(|ticks| u32::try_from(ticks).ok()),
     })
 }

@@ -2,11 +2,11 @@
 
 use crate::controller::registers::all_returns;
 use brushwork_link::device::Described;
-use brushwork_mcp_wire::packet_serial::hex;
 use brushwork_motion_mind_wire::{
     Address, Command, FrameEvent, FrameReader, LineEvent, LineReader, Part, Progress, Protocol, Returns,
     describe_command, describe_reply, parse_frame_reply, parse_line_reply,
 };
+use brushwork_values::hex;
 use std::time::Duration;
 
 /// The commands that a write holds, in words.

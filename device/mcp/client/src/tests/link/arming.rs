@@ -228,7 +228,7 @@ fn an_armed_screen_drives_and_its_setpoint_is_in_the_sample() {
     assert_eq!(link.taken(number::DUTY_BOTH)[0].values, [8_192, 8_192]);
     use brushwork_link::device::Channel;
     assert!(link.has(
-        |event| matches!(event, Event::Sample(sample) if sample.get(Channel::M1Setpoint) == Some(25.0))
+        |event| matches!(event, Event::Sample(sample) if sample.get(Channel::M1_SETPOINT) == Some(25.0))
     ));
 }
 

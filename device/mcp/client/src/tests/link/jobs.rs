@@ -119,7 +119,7 @@ fn a_job_drives_in_the_words_of_the_window_and_its_setpoint_is_in_the_sample() {
     link.run_for(ms(500));
     assert_eq!(link.taken(number::DUTY_M1)[0].values, [8_192]);
     assert!(link.has(
-        |event| matches!(event, Event::Sample(sample) if sample.get(Channel::M1Setpoint) == Some(25.0))
+        |event| matches!(event, Event::Sample(sample) if sample.get(Channel::M1_SETPOINT) == Some(25.0))
     ));
     assert_stopped(&link);
 }

@@ -1,5 +1,6 @@
 //! Sweeps: what is read how often, what a sample holds, and a window that does not take it.
 
+use crate::controller::channels::CHANNELS;
 use crate::testing::ms;
 use crate::testing::unit::{Bus, of_generation};
 use crate::tests::link::harness::Link;
@@ -8,7 +9,7 @@ use brushwork_link::device::DeviceOptions;
 use brushwork_link::device::Event;
 use brushwork_link::device::PollRate;
 use brushwork_link::device::Request;
-use brushwork_link::device::{Channel, PinSignal, Sample};
+use brushwork_link::device::{Channel, PinSignal, Role, Sample};
 use brushwork_mcp_wire::packet_serial::{Generation, number};
 use brushwork_values::Value;
 
@@ -70,23 +71,23 @@ fn a_sample_carries_physical_values_and_the_times_of_request_and_reply() {
         let got = last.get(channel).unwrap_or_else(|| panic!("no {channel:?}"));
         assert!((got - value).abs() < 1e-2, "{channel:?} is {got}");
     };
-    close(Channel::M1Position, -12_345.0);
-    close(Channel::M2Position, 678.0);
-    close(Channel::M1Velocity, -4_000.0);
-    close(Channel::M2Velocity, 4_000.0);
-    close(Channel::M1Pwm, -50.0);
-    close(Channel::M2Pwm, 100.0);
-    close(Channel::M1Current, 1.5);
-    close(Channel::M2Current, -0.2);
+    close(Channel::M1_POSITION, -12_345.0);
+    close(Channel::M2_POSITION, 678.0);
+    close(Channel::M1_VELOCITY, -4_000.0);
+    close(Channel::M2_VELOCITY, 4_000.0);
+    close(Channel::M1_PWM, -50.0);
+    close(Channel::M2_PWM, 100.0);
+    close(Channel::M1_CURRENT, 1.5);
+    close(Channel::M2_CURRENT, -0.2);
     let slow = |channel: Channel| samples.iter().find_map(|sample| sample.get(channel)).unwrap();
-    assert!((slow(Channel::MainBattery) - 24.3).abs() < 1e-9);
-    assert!((slow(Channel::LogicBattery) - 5.0).abs() < 1e-9);
-    assert!((slow(Channel::Temperature1) - 30.7).abs() < 1e-9);
-    assert!((slow(Channel::Temperature2) + 0.5).abs() < 1e-9);
+    assert!((slow(Channel::MAIN_BATTERY) - 24.3).abs() < 1e-9);
+    assert!((slow(Channel::LOGIC_BATTERY) - 5.0).abs() < 1e-9);
+    assert!((slow(Channel::TEMPERATURE_1) - 30.7).abs() < 1e-9);
+    assert!((slow(Channel::TEMPERATURE_2) + 0.5).abs() < 1e-9);
     // Six exchanges of a millisecond each bring values; the encoders are the first, the PWM outputs the fourth.
     assert_eq!(last.replied_at - last.requested_at, ms(6));
-    assert_eq!(last.read_at(Channel::M1Position), Some(last.requested_at + ms(1) / 2));
-    assert_eq!(last.read_at(Channel::M2Pwm), Some(last.requested_at + ms(3) + ms(1) / 2));
+    assert_eq!(last.read_at(Channel::M1_POSITION), Some(last.requested_at + ms(1) / 2));
+    assert_eq!(last.read_at(Channel::M2_PWM), Some(last.requested_at + ms(3) + ms(1) / 2));
     assert!(samples.windows(2).all(|pair| pair[1].sequence == pair[0].sequence + 1));
 }
 
@@ -102,9 +103,8 @@ fn a_unit_of_the_newest_generation_is_read_with_one_request() {
     assert!(commands.iter().all(|command| *command == number::READ_ALL_STATUS), "{commands:?}");
     let samples = samples(&link);
     assert_eq!(samples.len(), 10);
-    for channel in Channel::PACKET_SERIAL.iter().copied() {
-        let setpoint = matches!(channel, Channel::M1Setpoint | Channel::M2Setpoint);
-        let is_read = !setpoint && !channel.is_signal();
+    for channel in CHANNELS.iter().copied() {
+        let is_read = channel.role != Role::Setpoint && !channel.is_pin();
         assert_eq!(samples[0].get(channel).is_some(), is_read, "{channel:?}");
     }
 }
@@ -123,9 +123,9 @@ fn the_input_pins_are_read_only_while_somebody_wants_them() {
     let first_pin =
         PinSignal { command: -16_384, position: -1024, percent: -16_384, speed: 7, average_speed: 5 };
     assert_eq!(last.signals, [first_pin, PinSignal::default()]);
-    let percent = last.get(Channel::Signal1).unwrap();
+    let percent = last.get(CHANNELS[18]).unwrap();
     assert!((percent + 50.001_5).abs() < 1e-3, "{percent}");
-    assert_eq!(last.get(Channel::Signal3), None, "the unit has two");
+    assert_eq!(last.get(CHANNELS[20]), None, "the unit has two");
     link.ask(Request::ReadSignals(false));
     link.run_for(ms(200));
     link.forget();

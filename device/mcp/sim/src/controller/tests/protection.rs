@@ -3,14 +3,14 @@
 use super::support::Bench;
 use crate::controller::ControllerConfig;
 use brushwork_mcp_wire::models;
-use brushwork_mcp_wire::packet_serial::status::{Condition, Lamp, Severity, decode};
+use brushwork_mcp_wire::packet_serial::status::{Condition, Lamp, decode};
 use brushwork_mcp_wire::packet_serial::{Generation, number};
 use brushwork_plant::BrakeResistorParams;
 use brushwork_plant::bridge::BridgeOutput;
 use brushwork_plant::presets;
 use brushwork_plant::world::Leds;
 use brushwork_plant::world::{UnitFault, WorldAction};
-use brushwork_values::Motor;
+use brushwork_values::{Motor, Severity};
 use std::time::Duration;
 
 const A_MOMENT: Duration = Duration::from_millis(200);
