@@ -36,7 +36,7 @@ pub use family::AnyFamily;
 pub use family_choice::FamilyChoice;
 pub use handle::{DeviceHandle, Stopper};
 pub use identity::{Capabilities, Identity};
-pub use job::{FnJob, Job, JobContext, JobEnding, JobOutput, JobReport};
+pub use job::{Job, JobContext, JobEnding, JobId, JobReport, JobTicket, QueuedJob};
 pub use mcp::{PacketSerial, describe_sent, preview};
 pub use motion_mind::{MotionMindFacts, SIGNS as MOTION_MIND_SIGNS};
 pub use options::{AddressSet, Addresses, DeviceOptions};
