@@ -184,7 +184,9 @@ impl Devices {
     pub fn wants_motion_minds(&self) -> bool {
         match &self.choice {
             Choice::Simulated => self.simulated.is_motion_mind(),
-            _ => self.family_matters() && self.family == FamilyChoice::MotionMind,
+            Choice::Port(_) | Choice::Typed | Choice::Desk(_) => {
+                self.family_matters() && self.family == FamilyChoice::MotionMind
+            }
         }
     }
 

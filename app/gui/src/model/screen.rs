@@ -84,7 +84,13 @@ impl Screen {
             Self::Position => {
                 &[C::M1Setpoint, C::M1Position, C::M1Velocity, C::M2Setpoint, C::M2Position, C::M2Velocity]
             }
-            _ => &[C::M1Pwm, C::M1Velocity, C::M1Current],
+            Self::Pwm
+            | Self::MclEditor
+            | Self::DeviceStatus
+            | Self::GeneralSettings
+            | Self::Motion
+            | Self::Inputs
+            | Self::Terminal => &[C::M1Pwm, C::M1Velocity, C::M1Current],
         }
     }
 }
