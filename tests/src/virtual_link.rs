@@ -6,7 +6,8 @@ use std::time::Duration;
 
 use brushwork_canopen::adapter::Form;
 use brushwork_link::device::{
-    ArmScope, DeviceHandle, DeviceLoop, DeviceOptions, Drive, DriveCommand, Event, Request, Step, StopReport,
+    ArmScope, DeviceHandle, DeviceLoop, DeviceOptions, Drive, DriveCommand, Event, Job, JobEnding, JobTicket,
+    Request, Step, StopReport,
 };
 use brushwork_link::{Clock, Transport, TransportError};
 use brushwork_mcp_client::can::{BusTransport, CanOpen, Monitor};
@@ -180,6 +181,32 @@ impl<M: Machine + 'static> VirtualLink<M> {
     /// Asks something of the loop.
     pub fn ask(&self, request: Request) {
         self.handle.request(request).expect("the queue has room in these tests");
+    }
+
+    /// Asks for a job.
+    pub fn start<T: Send + 'static>(&self, job: Job<T>) -> JobTicket<T> {
+        self.handle.start(job).expect("the queue has room in these tests")
+    }
+
+    /// Runs a job to its end, with no other events left than those since its beginning; none when it does not end in this time.
+    pub fn finish<T: Send + 'static>(&mut self, job: Job<T>, longest: Duration) -> Option<JobEnding<T>> {
+        self.events.clear();
+        let ticket = self.start(job);
+        self.finish_begun(&ticket, longest)
+    }
+
+    /// Runs until a job has ended that was begun.
+    pub fn finish_begun<T>(&mut self, ticket: &JobTicket<T>, longest: Duration) -> Option<JobEnding<T>> {
+        let end = self.now() + longest;
+        while self.now() < end && !self.ended {
+            self.run_for(Duration::from_millis(10));
+            let is_end = |event: &Event| matches!(event, Event::JobEnded(report) if report.id == ticket.id());
+            let found = self.events.iter().position(|(_, event)| is_end(event));
+            if let Some((_, Event::JobEnded(report))) = found.map(|at| self.events.remove(at)) {
+                return Some(ticket.ending(report.ending));
+            }
+        }
+        None
     }
 
     /// Arms and says whether it was allowed.

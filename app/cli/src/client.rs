@@ -4,7 +4,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use brushwork_link::FamilyChoice;
-use brushwork_link::device::{Addresses, ArmScope, DeviceHandle, Event, Identity, PollRate, Request};
+use brushwork_link::device::{
+    Addresses, ArmScope, DeviceHandle, Event, Identity, Job, JobTicket, PollRate, Request,
+};
 use brushwork_link::transport::{ConnectTarget, Stream};
 use brushwork_link::{Failure, SystemClock};
 use brushwork_mcp_wire::packet_serial;
@@ -220,6 +222,17 @@ pub fn look_for_event(
 /// It takes none now (said on standard error).
 pub fn ask(device: &DeviceHandle, request: Request) -> Result<(), Exit> {
     device.request(request).map_err(|refused| {
+        say(format!("Could not ask the controller: {refused}"));
+        Exit::Refused
+    })
+}
+
+/// Queues a job.
+///
+/// # Errors
+/// It was not taken, which is said on standard error.
+pub fn start<T: Send + 'static>(device: &DeviceHandle, job: Job<T>) -> Result<JobTicket<T>, Exit> {
+    device.start(job).map_err(|refused| {
         say(format!("Could not ask the controller: {refused}"));
         Exit::Refused
     })

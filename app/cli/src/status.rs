@@ -5,8 +5,7 @@ use brushwork_motion_mind_client::{MotionMindFacts, is_motion_mind};
 use std::time::{Duration, Instant};
 
 use brushwork_link::device::{
-    Channel, Event, FnJob, Identity, JobEnding, Newest, PlaceState, PollRate, Request, StatusPlace,
-    StatusReport,
+    Channel, Event, Identity, Job, JobEnding, Newest, PlaceState, PollRate, StatusPlace, StatusReport,
 };
 use brushwork_link::settings::{SettingsImage, read_all};
 use brushwork_link::{Stream, Wire as _};
@@ -122,7 +121,7 @@ fn watch(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
 /// The settings in RAM and the inputs, for the diagnosis; what cannot be read is told.
 fn read_setup(client: &Client, readings: &mut Readings, interrupt: &Interrupt) -> Result<Setup, Exit> {
     let Some(subject) = client.identity.subject() else { return Ok(Setup::default()) };
-    let job = FnJob::boxed("read the settings", SETTINGS_LIMIT, move |context| {
+    let job = Job::new("read the settings", SETTINGS_LIMIT, move |context| {
         let settings = Some(read_all(context, subject)?.image);
         // A RoboClaw does not know the command; its status word has bits of its own.
         let values = if subject.family() == MCP {
@@ -130,26 +129,29 @@ fn read_setup(client: &Client, readings: &mut Readings, interrupt: &Interrupt) -
         } else {
             None
         };
-        Ok(Box::new(Setup { settings, pins: values.map(|values| pin_ends(&values)) }))
+        Ok(Setup { settings, pins: values.map(|values| pin_ends(&values)) })
     });
-    if let Err(refused) = client.device().request(Request::Job(job)) {
-        say(refused.to_string());
-        return Ok(Setup::default());
-    }
+    let ticket = match client.device().start(job) {
+        Ok(ticket) => ticket,
+        Err(refused) => {
+            say(refused.to_string());
+            return Ok(Setup::default());
+        }
+    };
     loop {
         match client.next_event(interrupt)? {
-            Some(Event::JobEnded(report)) => return Ok(setup_of(report.ending)),
+            Some(Event::JobEnded(report)) if report.id == ticket.id() => {
+                return Ok(setup_of(ticket.ending(report.ending)));
+            }
             Some(event) => readings.take(event),
             None => {}
         }
     }
 }
 
-fn setup_of(ending: JobEnding) -> Setup {
+fn setup_of(ending: JobEnding<Setup>) -> Setup {
     match ending {
-        JobEnding::Done(output) => {
-            output.downcast::<Setup>().map_or_else(|_| Setup::default(), |setup| *setup)
-        }
+        JobEnding::Done(setup) => setup,
         JobEnding::Failed(failure) => {
             say(failure.to_string());
             Setup::default()

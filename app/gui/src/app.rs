@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use brushwork_link::device::{ArmScope, DeviceHandle, Event, PollRate, Request};
+use brushwork_link::device::{ArmScope, DeviceHandle, Event, PollRate, QueuedJob, Request};
 use brushwork_plant::world::WorldAction;
 use crossbeam_channel::TryRecvError;
 use egui::{Context, Ui, ViewportCommand};
@@ -18,6 +18,9 @@ use super::ending::EndBySignal;
 use super::family::Ability;
 use super::keys;
 use super::links::Links;
+use super::model::drawer::Tab;
+use super::model::general::Sheet;
+use super::model::jobs::Owner;
 use super::model::link::{Arming, Effect};
 use super::model::message::Gravity;
 use super::model::palette::Palette;
@@ -188,10 +191,13 @@ impl App {
         }
         let is_quiet = desk.link.arming == Arming::Disarmed && desk.is_connected();
         if let Some(identity) = desk.link.identity().cloned().filter(|_| is_quiet)
-            && let Some(request) = desk.watch.read(&identity)
-            && device.request(request).is_err()
+            && let Some(job) = desk.watch.read(&identity)
         {
-            desk.watch.not_begun();
+            let job_id = job.id();
+            match device.request(Request::Job(job)) {
+                Ok(()) => desk.jobs.begun(job_id, Owner::Watch),
+                Err(_) => desk.watch.not_begun(),
+            }
         }
         let wanted =
             desk.watch.wants_signals() || desk.shows_signals(shows_settings) || desk.graph.wants_pins();
@@ -274,29 +280,19 @@ impl App {
     }
 
     fn apply(&mut self, command: Command) {
+        let model = &mut self.model;
         match command {
             Command::Connect => self.connect(),
             Command::Disconnect(desk) => self.disconnect(desk),
             Command::Front(desk) => self.bring_to_front(desk),
             Command::Forget(desk) => self.forget(desk),
             Command::ConnectTo(target) => self.connect_to(&target, target.parse()),
+            Command::ForgetRecent(target) => model.devices.forget_recent(&target),
             Command::Show(screen) => self.show(screen),
             Command::Stop => self.stop(),
-            // The switch and its key in the middle of a run ask for its end, wherever it is between two jobs.
-            Command::Arm(_) if self.model.front.tune.is_running() => self.disarm(),
-            Command::Arm(scope) => {
-                self.model.front.link.refusals.clear();
-                if self.request(Request::Arm(scope)) {
-                    self.model.front.link.arming = Arming::Asked(scope);
-                }
-            }
+            Command::Arm(scope) => self.arm(scope),
             Command::Disarm => self.disarm(),
-            Command::SelectUnit(address)
-                if self.waits_for_run(self.model.front.id(), Afterwards::Select(address)) => {}
-            Command::SelectUnit(address) => {
-                self.disarm();
-                self.request(Request::Select(address));
-            }
+            Command::SelectUnit(address) => self.select_unit(address),
             Command::SetStream(stream) => {
                 if self.request(Request::SetStream(stream)) {
                     self.model.front.link.stream = Some(stream);
@@ -309,39 +305,28 @@ impl App {
                 self.request(Request::ResetEStop);
             }
             Command::Poll(rate) => self.poll(rate),
-            Command::ReadLoops => self.model.front.loops.want_reading(),
+            Command::ReadLoops => model.front.loops.want_reading(),
             Command::ApplyLoops(columns) => self.apply_loops(columns),
             Command::World(action) => self.act_on_world(action),
+            Command::ToggleWorld => model.front.world.open = !model.front.world.open,
             Command::Settings(wish) => self.settings(wish),
             Command::Raw { id, bytes } => self.send_raw(id, bytes),
             Command::Transact { id, command, values } => self.transact(Transact { id, command, values }),
             Command::Guided(wish) => self.guided(wish),
             Command::Tune(wish) => self.tune(wish),
             Command::Firmware(wish) => self.firmware(wish),
-            Command::OpenSheet(sheet) => {
-                self.show(Screen::GeneralSettings);
-                let front = &mut self.model.front;
-                if let Some(identity) = front.link.identity() {
-                    front.general.look_at(identity);
-                }
-                front.general.open_once_read(sheet);
-            }
+            Command::OpenSheet(sheet) => self.open_sheet(sheet),
             Command::ShowSettings(section) => {
                 self.show(Screen::GeneralSettings);
                 self.model.front.general.turn_to(section);
             }
-            Command::OpenDrawer(screen, tab) => {
-                self.show(screen);
-                if self.model.front.open_tab(screen) != Some(tab) {
-                    self.model.front.drawers.press(screen, tab);
-                }
-            }
+            Command::OpenDrawer(screen, tab) => self.open_drawer(screen, tab),
             Command::FindSetting => {
                 self.show(Screen::GeneralSettings);
                 self.model.front.general.find();
             }
             Command::RevertSettings => {
-                if let Some(unit) = self.model.front.general.unit_mut() {
+                if let Some(unit) = model.front.general.unit_mut() {
                     unit.revert_all();
                 }
             }
@@ -350,39 +335,57 @@ impl App {
             Command::Debug(wish) => self.debug(wish),
             Command::Mcl(wish) => self.edit_mcl(wish),
             Command::DownloadMcl => self.download_mcl(),
-            Command::CancelDownload => {
-                self.request(Request::CancelJob);
-            }
+            Command::CancelDownload => model.front.script.cancel(),
             Command::StartScript => self.start_script(),
             Command::StopScript => self.stop_script(),
-            other => self.apply_to_window(other),
-        }
-    }
-
-    /// Commands that no controller hears of.
-    fn apply_to_window(&mut self, command: Command) {
-        let model = &mut self.model;
-        match command {
             Command::Theme(theme) => model.appearance.theme = theme,
             Command::PlainEdges(plain) => model.appearance.plain = plain,
             Command::Scale(percent) => model.appearance.set_scale(percent),
-            Command::OpenCanOpen => {
-                let ports = model.devices.ports().to_vec();
-                model.canopen.show(&ports);
-            }
+            Command::OpenCanOpen => model.canopen.show(model.devices.ports()),
             Command::Graph(action) => model.front.graph.act(action),
-            Command::ToggleWorld => model.front.world.open = !model.front.world.open,
             Command::PauseTraffic(paused) => model.front.traffic.log.set_paused(paused),
             Command::ClearHistory => model.front.history.clear(),
             Command::ToggleTraffic => model.front.traffic.open = !model.front.traffic.open,
             Command::OpenPalette => {
                 model.palette = if model.palette.is_some() { None } else { Some(Palette::opened()) };
             }
-            Command::ForgetRecent(target) => model.devices.forget_recent(&target),
             Command::OpenHelp(page) => model.help.open(page),
             Command::Exit => self.closing = true,
             Command::DismissMessage => model.messages.dismiss(),
-            _ => {}
+        }
+    }
+
+    fn arm(&mut self, scope: ArmScope) {
+        // The switch and its key in the middle of a run ask for its end, wherever it is between two jobs.
+        if self.model.front.tune.is_running() {
+            return self.disarm();
+        }
+        self.model.front.link.refusals.clear();
+        if self.request(Request::Arm(scope)) {
+            self.model.front.link.arming = Arming::Asked(scope);
+        }
+    }
+
+    fn select_unit(&mut self, address: u8) {
+        if !self.waits_for_run(self.model.front.id(), Afterwards::Select(address)) {
+            self.disarm();
+            self.request(Request::Select(address));
+        }
+    }
+
+    fn open_sheet(&mut self, sheet: Sheet) {
+        self.show(Screen::GeneralSettings);
+        let front = &mut self.model.front;
+        if let Some(identity) = front.link.identity() {
+            front.general.look_at(identity);
+        }
+        front.general.open_once_read(sheet);
+    }
+
+    fn open_drawer(&mut self, screen: Screen, tab: Tab) {
+        self.show(screen);
+        if self.model.front.open_tab(screen) != Some(tab) {
+            self.model.front.drawers.press(screen, tab);
         }
     }
 
@@ -451,12 +454,13 @@ impl App {
 
     /// Starts or ends a job that moves motors.
     fn guided(&mut self, wish: GuidedWish) {
-        match self.model.front.guided_request(wish, self.model.screen) {
-            Ok(request) => {
-                if !self.request(request) {
+        match self.model.front.begin_guided(wish, self.model.screen) {
+            Ok(Some((owner, job))) => {
+                if !self.start_for(self.model.front.id(), owner, job) {
                     self.model.front.guided_not_begun();
                 }
             }
+            Ok(None) => {}
             Err(sentence) => self.model.messages.fail(sentence),
         }
     }
@@ -485,18 +489,26 @@ impl App {
         ctx.request_repaint_after(FRAME_INTERVAL);
     }
 
+    /// Queues a job, whose events go to its owner.
+    fn start_for(&mut self, id: DeskId, owner: Owner, job: QueuedJob) -> bool {
+        let job_id = job.id();
+        let is_taken = self.request_of(id, Request::Job(job));
+        if let Some(desk) = self.model.desk_mut(id).filter(|_| is_taken) {
+            desk.jobs.begun(job_id, owner);
+        }
+        is_taken
+    }
+
     /// Queues a request to the link in front; a refusal is told.
     fn request(&mut self, request: Request) -> bool {
         self.request_of(self.model.front.id(), request)
     }
 
     fn request_of(&mut self, desk: DeskId, request: Request) -> bool {
-        let gives_way = self.model.desk_mut(desk).and_then(|desk| desk.general.give_way());
-        let Some(device) = self.links.device(desk) else { return false };
-        if let Some(cancel) = gives_way {
-            // A signal, which is never refused.
-            let _ = device.request(cancel);
+        if let Some(desk) = self.model.desk_mut(desk) {
+            desk.general.give_way();
         }
+        let Some(device) = self.links.device(desk) else { return false };
         match device.request(request) {
             Ok(()) => true,
             Err(refused) => {

@@ -8,7 +8,7 @@ use brushwork_canopen::adapter::Form;
 use brushwork_core::keep::TrialKeeper;
 use brushwork_core::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
 use brushwork_link::FamilyChoice;
-use brushwork_link::device::{ArmScope, DeviceOptions, Event, FnJob, Job, JobContext, JobEnding, Request};
+use brushwork_link::device::{ArmScope, DeviceOptions, Event, Job, JobContext, JobEnding, Request};
 use brushwork_link::settings::{
     Ending, Entry, Keeper, SettingValue, SettingsImage, SettingsTable, Subject, WriteOptions, read_all,
     reload, save_eeprom, write,
@@ -63,28 +63,16 @@ impl Transcript {
     }
 }
 
-/// Runs a job to its end.
-fn finish<M: Machine + 'static>(link: &mut VirtualLink<M>, job: Box<dyn Job>) -> JobEnding {
-    link.events.clear();
-    link.ask(Request::Job(job));
-    for _ in 0..12_000 {
-        link.run_for(ms(10));
-        let ended = link.events.iter().position(|(_, event)| matches!(event, Event::JobEnded(_)));
-        if let Some((_, Event::JobEnded(report))) = ended.map(|at| link.events.remove(at)) {
-            return report.ending;
-        }
-    }
-    panic!("the job did not end: {:?}", link.events)
-}
-
 fn job<M: Machine + 'static, T: Send + 'static>(
     link: &mut VirtualLink<M>,
-    mut work: impl FnMut(&mut JobContext<'_>) -> Result<T, Failure> + Send + 'static,
+    work: impl FnMut(&mut JobContext<'_>) -> Result<T, Failure> + Send + 'static,
 ) {
-    let job = FnJob::boxed("work", Duration::from_secs(120), move |context| Ok(Box::new(work(context)?)));
-    let ending = finish(link, job);
-    assert!(matches!(ending, JobEnding::Done(_)), "{ending:?}");
+    let ending = link.finish(Job::new("work", LIMIT, work), LIMIT);
+    assert!(matches!(ending, Some(JobEnding::Done(_))), "{ending:?}: {:?}", link.events);
 }
+
+/// What any job may take.
+const LIMIT: Duration = Duration::from_secs(120);
 
 const OPTIONS: WriteOptions = WriteOptions { own_stream: None, simulated: true, as_read: false };
 
@@ -232,17 +220,17 @@ fn tuned<M: Machine + 'static>(
     link.take_written();
     let setup: Slot<Setup> = Slot::default();
     let keeper = TrialKeeper::new(Box::new(Forgetful));
-    finish(link, prepare(target, subject, &setup, &keeper));
+    link.finish(prepare(target, subject, &setup, &keeper), LIMIT);
     transcript.act("prepare", link);
     let before = take(&setup).expect("it was read");
     assert!(link.arm(ArmScope::CommandLine), "{:?}", link.events);
     transcript.act("arm", link);
     let found: Slot<Report> = Slot::default();
-    finish(link, run(target, request, &found));
+    link.finish(run(target, request, &found), LIMIT);
     transcript.long_act("run", link);
     let report = take(&found);
     let left_off = leaves_off(report.as_ref(), None);
-    finish(link, restore(target, before, report.as_ref(), left_off, &keeper));
+    link.finish(restore(target, before, report.as_ref(), left_off, &keeper), LIMIT);
     transcript.act("give back", link);
     transcript
 }

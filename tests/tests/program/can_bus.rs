@@ -1,12 +1,11 @@
 //! The device thread on a CANopen bus with simulated nodes, in virtual time: it finds them, reads and writes what packet serial does, and
 //! holds the same safety rules.
 
-use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use brushwork_canopen::adapter::Form;
 use brushwork_link::device::{
-    Addresses, ArmScope, Channel, DeviceOptions, DisarmReason, Drive, DriveCommand, Event, FnJob, Identity,
+    Addresses, ArmScope, Channel, DeviceOptions, DisarmReason, Drive, DriveCommand, Event, Identity, Job,
     Request,
 };
 use brushwork_link::settings::{ReadReport, SettingValue, SettingsImage, WriteOptions, read_all, write};
@@ -136,15 +135,10 @@ fn run<T: Send + 'static>(
     link: &mut VirtualLink,
     mut work: impl FnMut(&mut brushwork_link::device::JobContext<'_>) -> T + Send + 'static,
 ) -> T {
-    let value = Arc::new(Mutex::new(None));
-    let into = Arc::clone(&value);
-    link.ask(Request::Job(FnJob::boxed("test", Duration::from_secs(300), move |wire| {
-        *into.lock().expect("nobody panics with it") = Some(work(wire));
-        Ok(Box::new(()))
-    })));
+    let ticket = link.start(Job::new("test", Duration::from_secs(300), move |wire| Ok(work(wire))));
     for _ in 0..300 {
         link.run_for(ms(1000));
-        if let Some(value) = value.lock().expect("nobody panics with it").take() {
+        if let Some(value) = ticket.take() {
             return value;
         }
     }

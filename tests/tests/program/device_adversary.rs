@@ -4,8 +4,7 @@
 use std::time::Duration;
 
 use brushwork_link::device::{
-    ArmScope, DeviceHandle, DeviceOptions, DisarmReason, Drive, DriveCommand, Event, FnJob, JobOutput,
-    PollRate, Request,
+    ArmScope, DeviceHandle, DeviceOptions, DisarmReason, Drive, DriveCommand, Event, Job, PollRate, Request,
 };
 use brushwork_link::{Stream, Wire};
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
@@ -107,14 +106,19 @@ fn every_request(index: usize) -> Option<Request> {
         14 => Request::SetStream(Stream::Rs232),
         15 => Request::Trace(true),
         16 => Request::Disarm,
-        17 => Request::Job(FnJob::moving("wander", ms(400), |context| {
-            loop {
-                let moved = context.transact(number::DUTY_M1, &[9_000]).and_then(|_| context.sleep(ms(20)));
-                if let Err(error) = moved {
-                    return Err(error.failure("wander", "the bench"));
+        17 => Request::Job(
+            Job::<()>::moving("wander", ms(400), |context| {
+                loop {
+                    let moved =
+                        context.transact(number::DUTY_M1, &[9_000]).and_then(|_| context.sleep(ms(20)));
+                    if let Err(error) = moved {
+                        return Err(error.failure("wander", "the bench"));
+                    }
                 }
-            }
-        })),
+            })
+            .queued()
+            .0,
+        ),
         _ => return None,
     })
 }
@@ -298,13 +302,13 @@ fn a_silent_unit_on_the_bus_does_not_delay_the_stop_of_the_others() {
 fn a_settings_job_that_changes_what_arming_was_based_on_stops_the_motors_first_and_goes_on() {
     let mut link = usb(Generation::Gen1);
     start(&mut link, 0);
-    let job = FnJob::boxed("write settings", ms(2_000), |context| {
+    let job = Job::new("write settings", ms(2_000), |context| {
         let fail = |error: brushwork_link::ExchangeError| error.failure("write settings", "the bench");
         context.transact(number::SET_STREAM, &[0, 1, 115_200, 0]).map_err(fail)?;
         context.transact(number::SET_VELOCITY_PID_M1, &[0, 65_536, 32_768, 30_000]).map_err(fail)?;
-        Ok(Box::new(()) as JobOutput)
+        Ok(())
     });
-    link.ask(Request::Job(job));
+    link.start(job);
     link.run_for(ms(100) + RAMP_DOWN);
     assert_eq!(disarm_reasons(&link), [DisarmReason::SettingsChanged]);
     let report = link.events.iter().find_map(|(_, event)| match event {

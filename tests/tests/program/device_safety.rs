@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use brushwork_link::Stream;
 use brushwork_link::device::{
-    ArmScope, DeviceHandle, DeviceOptions, DisarmReason, Drive, DriveCommand, Event, FnJob, JobEnding,
-    JobOutput, PollRate, Request,
+    ArmScope, DeviceHandle, DeviceOptions, DisarmReason, Drive, DriveCommand, Event, Job, JobEnding,
+    PollRate, Request,
 };
 use brushwork_link::settings::read_all;
 use brushwork_link::{Interruption, Wire};
@@ -381,12 +381,12 @@ fn a_stop_into_a_dead_spot_of_the_line_is_repeated_until_it_is_heard() {
 fn a_job_that_panics_in_mid_motion_leaves_the_motors_standing() {
     let mut link = usb(config(Generation::Gen1), Vec::new(), 1);
     assert!(link.arm(ArmScope::Tuning));
-    let job = FnJob::moving("try the motor", ms(10_000), |context| {
+    let job = Job::<()>::moving("try the motor", ms(10_000), |context| {
         context.transact(number::DUTY_BOTH, &[16_384, 16_384]).expect("it is armed");
         context.sleep(ms(300)).expect("nothing breaks in");
         panic!("a bug in the job")
     });
-    link.ask(Request::Job(job));
+    link.start(job);
     link.run_for(ms(800));
     let ending = link.events.iter().find_map(|(_, event)| match event {
         Event::JobEnded(report) => {
@@ -402,12 +402,12 @@ fn a_job_that_panics_in_mid_motion_leaves_the_motors_standing() {
 fn stop_overtakes_the_reading_of_all_settings() {
     let mut link = driving_on_rs232();
     let model = models::lookup("mcp266").expect("it is in the list");
-    let job = FnJob::boxed("read the settings", ms(30_000), move |context| {
+    let job = Job::new("read the settings", ms(30_000), move |context| {
         let subject =
             brushwork_mcp_client::subject(model, brushwork_mcp_client::layout_of(context.generation()));
-        read_all(context, subject).map(|report| Box::new(report) as JobOutput)
+        read_all(context, subject)
     });
-    link.ask(Request::Job(job));
+    link.start(job);
     link.at(link.now() + ms(30), DeviceHandle::stop_all);
     link.run_for(ms(1_000));
     let broken = link.events.iter().any(|(_, event)| {
@@ -539,15 +539,19 @@ fn act_at_random(link: &mut VirtualLink, dice: &mut Dice, watchman: &mut Watchma
             [PollRate::Off, PollRate::DEFAULT, PollRate::Every(ms(20))][dice.roll(3) as usize],
         )),
         12 => ask(Request::StartScript),
-        13 => ask(Request::Job(FnJob::moving("wander", ms(400), |context| {
-            loop {
-                let error =
-                    context.transact(number::DUTY_M1, &[9_000]).and_then(|_| context.sleep(ms(20))).err();
-                if let Some(error) = error {
-                    return Err(error.failure("wander", "the bench"));
+        13 => ask(Request::Job(
+            Job::<()>::moving("wander", ms(400), |context| {
+                loop {
+                    let error =
+                        context.transact(number::DUTY_M1, &[9_000]).and_then(|_| context.sleep(ms(20))).err();
+                    if let Some(error) = error {
+                        return Err(error.failure("wander", "the bench"));
+                    }
                 }
-            }
-        }))),
+            })
+            .queued()
+            .0,
+        )),
         14 => {
             link.freeze_window();
             watchman.frozen_at = watchman.frozen_at.or(Some(link.now()));

@@ -12,7 +12,7 @@ use std::time::Duration;
 use brushwork_link::Failure;
 use brushwork_link::FamilyChoice;
 use brushwork_link::device::{
-    Addresses, ArmScope, Channel, DeviceOptions, Drive, DriveCommand, Event, FnJob, Identity, JobContext,
+    Addresses, ArmScope, Channel, DeviceOptions, Drive, DriveCommand, Event, Identity, Job, JobContext,
     JobEnding, Request,
 };
 use brushwork_link::settings::{
@@ -492,22 +492,13 @@ fn latest(link: &Link, channel: Channel) -> Option<f64> {
 
 fn job<T: Send + 'static>(
     link: &mut Link,
-    mut work: impl FnMut(&mut JobContext<'_>) -> Result<T, Failure> + Send + 'static,
+    work: impl FnMut(&mut JobContext<'_>) -> Result<T, Failure> + Send + 'static,
 ) -> T {
-    link.events.clear();
-    let job = FnJob::boxed("work", Duration::from_secs(60), move |context| Ok(Box::new(work(context)?)));
-    link.ask(Request::Job(job));
-    for _ in 0..6_000 {
-        link.run_for(Duration::from_millis(10));
-        if let Some(at) = link.events.iter().position(|(_, event)| matches!(event, Event::JobEnded(_))) {
-            let (_, Event::JobEnded(report)) = link.events.swap_remove(at) else { unreachable!("it is one") };
-            return match report.ending {
-                JobEnding::Done(output) => *output.downcast().expect("what the work hands back"),
-                other => panic!("{other:?}"),
-            };
-        }
+    let limit = Duration::from_secs(60);
+    match link.finish(Job::new("work", limit, work), limit) {
+        Some(JobEnding::Done(value)) => value,
+        other => panic!("{other:?}: {:?}", link.events),
     }
-    panic!("the job did not end: {:?}", link.events)
 }
 
 fn subject(revision: u8) -> Subject {

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use brushwork_link::FamilyChoice;
 use brushwork_link::device::{
-    Addresses, ArmScope, Channel, DeviceOptions, DisarmReason, Drive, DriveCommand, Event, FnJob, Identity,
+    Addresses, ArmScope, Channel, DeviceOptions, DisarmReason, Drive, DriveCommand, Event, Identity, Job,
     JobContext, JobEnding, Request,
 };
 use brushwork_link::settings::{
@@ -195,23 +195,13 @@ fn inject(link: &Link, address: Address, command: &Command) {
 /// Runs a job to its end and gives what it handed back.
 fn job<T: Send + 'static>(
     link: &mut Link,
-    mut work: impl FnMut(&mut JobContext<'_>) -> Result<T, Failure> + Send + 'static,
+    work: impl FnMut(&mut JobContext<'_>) -> Result<T, Failure> + Send + 'static,
 ) -> Result<T, String> {
-    link.events.clear();
-    let job = FnJob::boxed("work", Duration::from_secs(60), move |context| Ok(Box::new(work(context)?)));
-    link.ask(Request::Job(job));
-    for _ in 0..6_000 {
-        link.run_for(ms(10));
-        let ended = link.events.iter().position(|(_, event)| matches!(event, Event::JobEnded(_)));
-        if let Some(at) = ended {
-            let (_, Event::JobEnded(report)) = link.events.swap_remove(at) else { unreachable!("it is one") };
-            return match report.ending {
-                JobEnding::Done(output) => Ok(*output.downcast().expect("what the work hands back")),
-                other => Err(format!("{other:?}")),
-            };
-        }
+    let limit = Duration::from_secs(60);
+    match link.finish(Job::new("work", limit, work), limit) {
+        Some(JobEnding::Done(value)) => Ok(value),
+        other => Err(format!("{other:?}: {:?}", link.events)),
     }
-    Err(format!("the job did not end: {:?}", link.events))
 }
 
 #[test]

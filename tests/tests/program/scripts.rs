@@ -4,7 +4,7 @@
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use brushwork_link::device::{ArmScope, DeviceOptions, DisarmReason, Event, JobEnding, JobReport, Request};
+use brushwork_link::device::{ArmScope, DeviceOptions, DisarmReason, Event, Job, JobEnding, Request};
 use brushwork_link::{Failure, Interruption, Stream};
 use brushwork_mcp_client::script::{
     Autorun, Downloaded, Origin, ScriptImage, Verified, autorun_job, download_job,
@@ -105,30 +105,19 @@ fn reasons(link: &VirtualLink) -> Vec<DisarmReason> {
 }
 
 /// Runs a job to its end.
-fn ended(link: &mut VirtualLink, job: Box<dyn brushwork_link::device::Job>) -> JobReport {
-    link.events.clear();
-    link.ask(Request::Job(job));
-    link.run_for(Duration::from_secs(60));
-    job_report(link).expect("the job ends within a minute")
+fn ended<T: Send + 'static>(link: &mut VirtualLink, job: Job<T>) -> JobEnding<T> {
+    link.finish(job, Duration::from_secs(60)).expect("the job ends within a minute")
 }
 
-fn job_report(link: &mut VirtualLink) -> Option<JobReport> {
-    let at = link.events.iter().position(|(_, event)| matches!(event, Event::JobEnded(_)))?;
-    match link.events.remove(at).1 {
-        Event::JobEnded(report) => Some(report),
-        _ => None,
-    }
-}
-
-fn downloaded(report: JobReport) -> Downloaded {
-    match report.ending {
-        JobEnding::Done(output) => *output.downcast().expect("a download hands back a Downloaded"),
+fn downloaded(ending: JobEnding<Downloaded>) -> Downloaded {
+    match ending {
+        JobEnding::Done(downloaded) => downloaded,
         other => panic!("{other:?}"),
     }
 }
 
-fn refused(report: JobReport) -> Failure {
-    match report.ending {
+fn refused<T>(ending: JobEnding<T>) -> Failure {
+    match ending {
         JobEnding::Failed(failure) => failure,
         other => panic!("{other:?}"),
     }
@@ -138,14 +127,14 @@ fn refused(report: JobReport) -> Failure {
 fn a_script_is_downloaded_with_progress_and_then_runs() {
     let mut link = connected();
     let program = compiled(DRIVES);
-    let report = ended(&mut link, download_job(program.clone(), false));
-    assert_eq!(report.motors_stopped, None, "nothing was moved");
-    let done = downloaded(report);
+    let ending = ended(&mut link, download_job(program.clone(), false));
+    assert!(link.stops().is_empty(), "nothing was moved");
+    let done = downloaded(ending);
     assert_eq!((done.bytes, done.blocks, done.is_foreign), (program.len(), program.blocks().len(), false));
     assert_eq!((done.verified, done.autorun), (Verified::Status, None));
     assert!(done.took > Duration::from_millis(1_500), "an erase takes its time: {:?}", done.took);
     let told = link.events.iter().filter_map(|(_, event)| match event {
-        Event::JobProgress { fraction, text } => Some((*fraction, text.as_str())),
+        Event::JobProgress { fraction, text, .. } => Some((*fraction, text.as_str())),
         _ => None,
     });
     let told: Vec<_> = told.collect();
@@ -209,8 +198,7 @@ fn a_download_under_byte_loss_arrives_whole_or_says_what_it_left() {
     for seed in 1..=6 {
         let fault = "drop=0.002".parse().expect("a fault as on the command line");
         let mut link = with_faults(true, vec![fault], seed);
-        let report = ended(&mut link, download_job(program.clone(), false));
-        match report.ending {
+        match ended(&mut link, download_job(program.clone(), false)) {
             JobEnding::Done(_) => {
                 let held = link.bus(|bus| bus.controllers()[0].script_image().to_vec());
                 let sent: Vec<u8> = program.blocks().flat_map(|block| block.bytes).collect();
@@ -228,11 +216,11 @@ fn cancelling_a_download_leaves_an_image_that_is_not_run() {
     // Long enough to be cancelled in the middle of its blocks.
     let text: String = (0..400).map(|line| format!("puts 0,[\"line {line}\"]\n")).collect();
     link.events.clear();
-    link.ask(Request::Job(download_job(compiled(&format!("{text}end\n")), false)));
-    link.at(link.now() + ms(2_000), |handle| handle.request(Request::CancelJob).expect("there is room"));
-    link.run_for(ms(5_000));
-    let report = job_report(&mut link).expect("it has ended");
-    assert!(matches!(report.ending, JobEnding::Interrupted(Interruption::Cancelled)), "{:?}", report.ending);
+    let ticket = Arc::new(link.start(download_job(compiled(&format!("{text}end\n")), false)));
+    let cancelled = Arc::clone(&ticket);
+    link.at(link.now() + ms(2_000), move |_| cancelled.cancel());
+    let ending = link.finish_begun(&ticket, ms(5_000));
+    assert!(matches!(ending, Some(JobEnding::Interrupted(Interruption::Cancelled))), "{ending:?}");
     assert_eq!(holds(&link), Content::Own, "its beginning is there");
     assert!(link.arm(ArmScope::Script));
     link.ask(Request::StartScript);
@@ -252,8 +240,8 @@ fn autorun_is_set_read_back_and_takes_effect_once_it_is_saved() {
     let mut link = connected();
     install(&link, DRIVES);
     let set = |link: &mut VirtualLink, autorun: Autorun| {
-        let report = ended(link, autorun_job(autorun));
-        assert!(matches!(report.ending, JobEnding::Done(_)), "{:?}", report.ending);
+        let ending = ended(link, autorun_job(autorun));
+        assert!(matches!(ending, JobEnding::Done(())), "{ending:?}");
     };
     set(&mut link, Some(ms(500)));
     power_cycle(&mut link);

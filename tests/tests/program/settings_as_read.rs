@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use brushwork_link::FamilyChoice;
-use brushwork_link::device::{Addresses, DeviceOptions, Event, FnJob, JobContext, JobEnding, Request};
+use brushwork_link::device::{Addresses, DeviceOptions, Job, JobContext, JobEnding};
 use brushwork_link::settings::{
     Place, Profile, Row, SettingsImage, SettingsTable, Sink, Subject, WriteOptions, diff, plan, read_all,
     restore_defaults, write,
@@ -186,22 +186,13 @@ fn mind(protocol: Protocol) -> MindLink {
 
 fn job<T: Send + 'static>(
     link: &mut MindLink,
-    mut work: impl FnMut(&mut JobContext<'_>) -> Result<T, Failure> + Send + 'static,
+    work: impl FnMut(&mut JobContext<'_>) -> Result<T, Failure> + Send + 'static,
 ) -> T {
-    link.events.clear();
     let limit = Duration::from_secs(60);
-    link.ask(Request::Job(FnJob::boxed("work", limit, move |context| Ok(Box::new(work(context)?)))));
-    for _ in 0..6_000 {
-        link.run_for(Duration::from_millis(10));
-        let ended = link.events.iter().position(|(_, event)| matches!(event, Event::JobEnded(_)));
-        let Some(at) = ended else { continue };
-        let (_, Event::JobEnded(report)) = link.events.swap_remove(at) else { unreachable!("it is one") };
-        match report.ending {
-            JobEnding::Done(output) => return *output.downcast().expect("what the work hands back"),
-            other => panic!("{other:?}"),
-        }
+    match link.finish(Job::new("work", limit, work), limit) {
+        Some(JobEnding::Done(value)) => value,
+        other => panic!("{other:?}: {:?}", link.events),
     }
-    panic!("the job did not end: {:?}", link.events)
 }
 
 /// The registers that are settings, but for the address.

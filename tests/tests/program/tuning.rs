@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use brushwork_core::keep::TrialKeeper;
 use brushwork_core::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
-use brushwork_link::device::{ArmScope, DeviceOptions, Event, FnJob, Job, JobEnding, Request};
+use brushwork_link::device::{ArmScope, DeviceOptions, Event, Job, JobEnding, JobTicket, Request};
 use brushwork_link::settings::{Act, Ending, Entry, Keeper, SettingsTable, Subject, WriteOptions, save_kept};
 use brushwork_link::{Failure, Stream};
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
@@ -51,21 +51,6 @@ fn settings(link: &VirtualLink) -> (MotionSettings, u32) {
     })
 }
 
-/// Runs a job to its end and gives it.
-fn finish(link: &mut VirtualLink, job: Box<dyn Job>, longest: Duration) -> Option<JobEnding> {
-    link.events.clear();
-    link.ask(Request::Job(job));
-    let end = link.now() + longest;
-    while link.now() < end && !link.ended {
-        link.run_for(ms(20));
-        let found = link.events.iter().position(|(_, event)| matches!(event, Event::JobEnded(_)));
-        if let Some((_, Event::JobEnded(report))) = found.map(|at| link.events.remove(at)) {
-            return Some(report.ending);
-        }
-    }
-    None
-}
-
 /// Something that happens to the machine at a time after the run began.
 fn strike(link: &VirtualLink, after: Duration, action: WorldAction) {
     let line = link.line.clone();
@@ -76,33 +61,36 @@ fn strike(link: &VirtualLink, after: Duration, action: WorldAction) {
 
 /// The three jobs, as the program runs them.
 fn tuned(link: &mut VirtualLink, request: Tuning, before_run: impl FnOnce(&VirtualLink)) -> Option<Report> {
-    tuned_as(link, TARGET, request, before_run)
+    tuned_as(link, TARGET, request, |link, _| before_run(link))
 }
 
 fn tuned_as(
     link: &mut VirtualLink,
     target: Target,
     request: Tuning,
-    before_run: impl FnOnce(&VirtualLink),
+    before_run: impl FnOnce(&VirtualLink, &Arc<JobTicket<()>>),
 ) -> Option<Report> {
     let setup: Slot<Setup> = Slot::default();
     let (keeper, journal) = keeper();
-    let prepared = finish(link, prepare(target, subject(), &setup, &keeper), ms(5_000));
+    let prepared = link.finish(prepare(target, subject(), &setup, &keeper), ms(5_000));
     assert!(matches!(prepared, Some(JobEnding::Done(_))), "{prepared:?}");
     let before = take(&setup).expect("it was read");
     let target = Target { encoder: Some(before.encoder), ..target };
     assert_backed_up(link, &journal);
     assert!(link.arm(ArmScope::CommandLine), "{:?}", link.events);
-    before_run(link);
     let found: Slot<Report> = Slot::default();
-    finish(link, run(target, request, &found), ms(60_000));
+    let (job, ticket) = run(target, request, &found).queued();
+    let ticket = Arc::new(ticket);
+    before_run(link, &ticket);
+    link.events.clear();
+    link.ask(Request::Job(job));
+    link.finish_begun(&ticket, ms(60_000));
     let report = take(&found);
     // From full duty to none at the highest acceleration takes 50 ms.
     link.line.pass(ms(60));
     assert!(link.duties(0)[0].abs() < 1e-6, "a run ends with the motor off");
     if !link.ended {
-        finish(
-            link,
+        link.finish(
             restore(target, before, report.as_ref(), leaves_off(report.as_ref(), None), &keeper),
             ms(5_000),
         );
@@ -271,7 +259,7 @@ fn faults_while_a_loop_has_the_motor_stop_it_and_are_named() {
 fn stages(request: Tuning) -> Vec<(String, Duration)> {
     let mut link = connected();
     let setup: Slot<Setup> = Slot::default();
-    finish(&mut link, prepare(TARGET, subject(), &setup, &keeper().0), ms(5_000));
+    link.finish(prepare(TARGET, subject(), &setup, &keeper().0), ms(5_000));
     assert!(link.arm(ArmScope::CommandLine), "{:?}", link.events);
     let begun = link.now();
     let told: Arc<Mutex<Vec<(Event, Duration)>>> = Arc::default();
@@ -283,7 +271,7 @@ fn stages(request: Tuning) -> Vec<(String, Duration)> {
             told.extend(handle.events().try_iter().map(|event| (event, at)));
         });
     }
-    link.ask(Request::Job(run(TARGET, request, &Slot::default())));
+    link.start(run(TARGET, request, &Slot::default()));
     link.run_for(ms(29_000));
     let mut starts: Vec<(String, Duration)> = Vec::new();
     let mut end = begun;
@@ -318,11 +306,12 @@ fn stop_and_cancel_at_every_stage_stand_the_motor_and_put_the_old_gains_back() {
                 let place = format!("{:?}, \"{text}\", after {after:?}, cancels: {cancels}", request.method);
                 let mut link = connected();
                 let before = settings(&link);
-                let report = tuned(&mut link, request, |link| {
+                let report = tuned_as(&mut link, TARGET, request, |link, ticket| {
+                    let ticket = Arc::clone(ticket);
                     link.at(link.now() + after, move |handle| {
-                        let asked = if cancels { handle.request(Request::CancelJob) } else { Ok(()) };
-                        asked.expect("the queue has room");
-                        if !cancels {
+                        if cancels {
+                            ticket.cancel();
+                        } else {
                             handle.stop_all();
                         }
                     });
@@ -346,11 +335,11 @@ fn a_cable_pulled_at_every_stage_leaves_the_motor_to_the_controllers_time_out() 
         for (text, after) in stages(request) {
             let mut link = connected();
             let setup: Slot<Setup> = Slot::default();
-            finish(&mut link, prepare(TARGET, subject(), &setup, &keeper().0), ms(5_000));
+            link.finish(prepare(TARGET, subject(), &setup, &keeper().0), ms(5_000));
             assert!(link.arm(ArmScope::CommandLine), "{:?}", link.events);
             strike(&link, after, WorldAction::Unplug { unplugged: true });
             let found: Slot<Report> = Slot::default();
-            finish(&mut link, run(TARGET, request, &found), ms(20_000));
+            link.finish(run(TARGET, request, &found), ms(20_000));
             link.machine_alone_for(ms(400));
             let duty = link.bus(|bus| bus.controllers()[0].view().axes[0].output.duty());
             assert_eq!(duty, 0.0, "{:?}, pulled at \"{text}\"", request.method);
@@ -391,10 +380,10 @@ fn gains_that_were_kept_and_saved_are_there_after_a_power_cycle_and_so_is_the_us
     let new = report.velocity.expect("gains");
     let table = SettingsTable::new(subject());
     let options = WriteOptions { own_stream: Some(Stream::Usb), simulated: true, as_read: false };
-    let saving = FnJob::boxed("save the settings", ms(60_000), move |wire| {
-        save_kept(wire, &table, options, &mut Noting(Journal::default())).map(|saved| Box::new(saved) as _)
+    let saving = Job::new("save the settings", ms(60_000), move |wire| {
+        save_kept(wire, &table, options, &mut Noting(Journal::default()))
     });
-    let saved = finish(&mut link, saving, ms(60_000));
+    let saved = link.finish(saving, ms(60_000));
     assert!(matches!(saved, Some(JobEnding::Done(_))), "{saved:?}");
     for powered in [false, true] {
         link.apply(0, &WorldAction::Power { on: powered });
@@ -465,7 +454,8 @@ fn the_kind_of_encoder_is_read_from_the_controller_and_an_absolute_one_is_tuned_
         let mut link = connected_to(absolute(false));
         let before = settings(&link);
         let asked = Target { encoder: None, ..TARGET };
-        let report = tuned_as(&mut link, asked, Tuning { method, ..velocity() }, |_| {}).expect("a report");
+        let report =
+            tuned_as(&mut link, asked, Tuning { method, ..velocity() }, |_, _| {}).expect("a report");
         assert_eq!(report.before.map(|setup| setup.encoder), Some(EncoderClass::Absolute));
         assert_ne!(report.verdict, Verdict::Refused, "{method:?}: {:?}", report.causes);
         assert!(report.window.is_some() && report.free.is_none(), "it never runs freely against its ends");
@@ -481,11 +471,11 @@ fn the_speed_of_an_absolute_encoder_that_wraps_is_refused_before_anything_moves(
     let turns = |link: &VirtualLink| link.bus(|bus| bus.controllers()[0].view().axes[0].truth.motor_radians);
     let start = turns(&link);
     let asked = Target { encoder: Some(EncoderClass::AbsoluteWrapping), ..TARGET };
-    let report = tuned_as(&mut link, asked, velocity(), |_| {}).expect("a report");
+    let report = tuned_as(&mut link, asked, velocity(), |_, _| {}).expect("a report");
     assert_eq!((report.verdict, report.causes.first()), (Verdict::Refused, Some(&Cause::WrappingEncoder)));
     assert_eq!(turns(&link), start);
     let report =
-        tuned_as(&mut link, asked, Tuning { method: Method::Pd, ..velocity() }, |_| {}).expect("a report");
+        tuned_as(&mut link, asked, Tuning { method: Method::Pd, ..velocity() }, |_, _| {}).expect("a report");
     assert_ne!(report.verdict, Verdict::Refused, "{:?}", report.causes);
     assert_eq!(settings(&link), before);
 }

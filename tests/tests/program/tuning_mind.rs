@@ -1,13 +1,14 @@
 //! Whole tuning runs of a Motion Mind through the device thread with real bytes, in virtual time: both protocols, faults, Stop and a
 //! lost cable.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use brushwork_core::keep::TrialKeeper;
 use brushwork_core::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
 use brushwork_link::Failure;
 use brushwork_link::FamilyChoice;
-use brushwork_link::device::{ArmScope, DeviceOptions, Event, Job, JobEnding, Request};
+use brushwork_link::device::{ArmScope, DeviceOptions, JobEnding, JobTicket, Request};
 use brushwork_link::settings::{Ending, Entry, Keeper, Subject};
 use brushwork_motion_mind_sim::{Mode, MotionMind, MotionMindBus, MotionMindConfig, Protocol};
 use brushwork_plant::machine::Machine;
@@ -54,20 +55,6 @@ fn eeprom_writes(link: &Link) -> u64 {
     link.bus(|bus| bus.motion_minds()[0].eeprom_writes())
 }
 
-fn finish(link: &mut Link, job: Box<dyn Job>, longest: Duration) -> Option<JobEnding> {
-    link.events.clear();
-    link.ask(Request::Job(job));
-    let end = link.now() + longest;
-    while link.now() < end && !link.ended {
-        link.run_for(ms(20));
-        let found = link.events.iter().position(|(_, event)| matches!(event, Event::JobEnded(_)));
-        if let Some((_, Event::JobEnded(report))) = found.map(|at| link.events.remove(at)) {
-            return Some(report.ending);
-        }
-    }
-    None
-}
-
 struct Forgetful;
 
 impl Keeper for Forgetful {
@@ -86,22 +73,33 @@ fn subject(link: &Link) -> Subject {
 }
 
 fn tuned(link: &mut Link, request: Tuning, before_run: impl FnOnce(&Link)) -> Option<Report> {
+    tuned_by(link, request, |link, _| before_run(link))
+}
+
+fn tuned_by(
+    link: &mut Link,
+    request: Tuning,
+    before_run: impl FnOnce(&Link, &Arc<JobTicket<()>>),
+) -> Option<Report> {
     let setup: Slot<Setup> = Slot::default();
     let keeper = TrialKeeper::new(Box::new(Forgetful));
     let subject = subject(link);
-    let prepared = finish(link, prepare(TARGET, subject, &setup, &keeper), ms(30_000));
+    let prepared = link.finish(prepare(TARGET, subject, &setup, &keeper), ms(30_000));
     assert!(matches!(prepared, Some(JobEnding::Done(_))), "{prepared:?}");
     let before = take(&setup).expect("it was read");
     assert!(link.arm(ArmScope::CommandLine), "{:?}", link.events);
-    before_run(link);
     let found: Slot<Report> = Slot::default();
-    finish(link, run(TARGET, request, &found), ms(120_000));
+    let (job, ticket) = run(TARGET, request, &found).queued();
+    let ticket = Arc::new(ticket);
+    before_run(link, &ticket);
+    link.events.clear();
+    link.ask(Request::Job(job));
+    link.finish_begun(&ticket, ms(120_000));
     let report = take(&found);
     if !link.ended {
         // After a Stop in a loop the unit holds the motor where it is.
         assert!(link.duties(0)[0].abs() < 0.05, "a run ends with the motor at rest");
-        let restored = finish(
-            link,
+        let restored = link.finish(
             restore(TARGET, before, report.as_ref(), leaves_off(report.as_ref(), None), &keeper),
             ms(10_000),
         );
@@ -215,10 +213,11 @@ fn stop_and_cancel_at_any_stage_stand_the_motor_and_the_old_registers_come_back(
     for (protocol, after, cancels) in plan.chain(in_text) {
         let mut link = connected(protocol);
         let before = registers(&link);
-        let report = tuned(&mut link, of(Method::Velocity), |link| {
+        let report = tuned_by(&mut link, of(Method::Velocity), |link, ticket| {
+            let ticket = Arc::clone(ticket);
             link.at(link.now() + ms(after), move |handle| {
                 if cancels {
-                    handle.request(Request::CancelJob).expect("there is room");
+                    ticket.cancel();
                 } else {
                     handle.stop_all();
                 }
@@ -245,10 +244,10 @@ fn when_the_cable_is_pulled_out_the_motor_runs_up_to_the_fence_and_stops() {
         let mut link = connected(protocol);
         let (keeper, setup) = (TrialKeeper::new(Box::new(Forgetful)), Slot::<Setup>::default());
         let subject = subject(&link);
-        finish(&mut link, prepare(TARGET, subject, &setup, &keeper), ms(30_000));
+        link.finish(prepare(TARGET, subject, &setup, &keeper), ms(30_000));
         assert!(link.arm(ArmScope::CommandLine), "{:?}", link.events);
         strike(&link, ms(after), &WorldAction::Unplug { unplugged: true });
-        finish(&mut link, run(TARGET, of(Method::Velocity), &Slot::<Report>::default()), ms(after + 3_000));
+        link.finish(run(TARGET, of(Method::Velocity), &Slot::<Report>::default()), ms(after + 3_000));
         link.line.pass(ms(2_000));
         let place = registers_of(&link, 0);
         link.line.pass(ms(1_000));

@@ -137,14 +137,14 @@ impl Link {
         })
     }
 
-    fn job(&mut self, job: Box<dyn Job>) -> Option<JobEnding> {
-        self.handle.request(Request::Job(job)).expect("the queue has room");
+    fn job<T: Send + 'static>(&mut self, job: Job<T>) -> Option<JobEnding<T>> {
+        let ticket = self.handle.start(job).expect("the queue has room");
         let events = self.events.len();
         let ended = self.until(s(400), |event| matches!(event, Event::JobEnded(_)).then_some(()));
         ended?;
         let at = self.events[events..].iter().position(|event| matches!(event, Event::JobEnded(_)))?;
         match self.events.remove(events + at) {
-            Event::JobEnded(report) => Some(report.ending),
+            Event::JobEnded(report) => Some(ticket.ending(report.ending)),
             _ => None,
         }
     }

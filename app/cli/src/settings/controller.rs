@@ -7,11 +7,10 @@ use std::time::{Duration, Instant};
 use brushwork_link::Stream;
 use brushwork_link::UnitAddress;
 use brushwork_link::device::{
-    DeviceHandle, Event, FnJob, Identity, JobContext, JobEnding, JobReport, PollRate, Request,
+    DeviceHandle, Event, Identity, Job, JobContext, JobEnding, JobReport, JobTicket, PollRate,
 };
 use brushwork_link::settings::{Keeper, Profile, ReadReport, SettingsImage, Subject, WriteOptions, read_all};
 use brushwork_link::transport::list_ports;
-use crossbeam_channel::bounded;
 
 use super::cut_short;
 use crate::client::Client;
@@ -174,21 +173,17 @@ impl<'i> Controller<'i> {
         limit: Duration,
         mut work: impl FnMut(&mut JobContext<'_>) -> T + Send + 'static,
     ) -> Result<Finished<T>, Exit> {
-        let (sender, receiver) = bounded(1);
-        let job = FnJob::boxed(name, limit, move |wire| {
-            // The receiver lives until the job has ended; without it nobody wants the result.
-            let _ = sender.try_send(work(wire));
-            Ok(Box::new(()))
-        });
-        self.client.device().request(Request::Job(job)).map_err(|refused| {
+        // What came of an act that failed is a result too, so that it comes back after an interruption.
+        let job = Job::new(name, limit, move |wire| Ok(work(wire)));
+        let ticket = self.client.device().start(job).map_err(|refused| {
             say(format!("Could not {name}: {refused}"));
             Exit::Refused
         })?;
-        let report = self.wait_for_end(name, limit)?;
+        let report = self.wait_for_end(&ticket, limit)?;
         let broken = explain(&report, self.interrupt.is_raised());
-        match (receiver.try_recv(), broken) {
-            (Ok(value), broken) => Ok(Finished { value, broken }),
-            (Err(_), broken) => Err(broken.unwrap_or(Exit::Failed)),
+        match (ticket.take(), broken) {
+            (Some(value), broken) => Ok(Finished { value, broken }),
+            (None, broken) => Err(broken.unwrap_or(Exit::Failed)),
         }
     }
 
@@ -216,7 +211,7 @@ impl<'i> Controller<'i> {
         self.client.next_event(&Interrupt::default())
     }
 
-    fn wait_for_end(&self, name: &str, limit: Duration) -> Result<JobReport, Exit> {
+    fn wait_for_end<T>(&self, ticket: &JobTicket<T>, limit: Duration) -> Result<JobReport, Exit> {
         let deaf = Interrupt::default();
         let mut progress = Progress::new();
         let mut deadline = Instant::now() + limit + CANCEL_LIMIT;
@@ -225,17 +220,18 @@ impl<'i> Controller<'i> {
             if self.interrupt.is_raised() && !cancelled {
                 cancelled = true;
                 deadline = Instant::now() + CANCEL_LIMIT;
-                // A full queue cannot refuse this one: it overtakes what is queued.
-                let _ = self.client.device().request(Request::CancelJob);
+                ticket.cancel();
             }
             match self.client.next_event(&deaf)? {
-                Some(Event::JobProgress { fraction, text }) => progress.show(fraction, &text),
+                Some(Event::JobProgress { id, fraction, text }) if id == ticket.id() => {
+                    progress.show(fraction, &text);
+                }
                 Some(Event::Failure(failure)) => say(failure.to_string()),
-                Some(Event::JobEnded(report)) => return Ok(report),
+                Some(Event::JobEnded(report)) if report.id == ticket.id() => return Ok(report),
                 _ => {}
             }
         }
-        say(format!("Could not {name}: the work did not end in time."));
+        say(format!("Could not {}: the work did not end in time.", ticket.name()));
         Err(if cancelled { Exit::Interrupted } else { Exit::Failed })
     }
 }
@@ -244,7 +240,7 @@ impl<'i> Controller<'i> {
 fn explain(report: &JobReport, by_signal: bool) -> Option<Exit> {
     let name = &report.name;
     match &report.ending {
-        JobEnding::Done(_) => None,
+        JobEnding::Done(()) => None,
         JobEnding::Interrupted(cause) => {
             say(format!("Could not {name} to the end: {cause}."));
             Some(exit_of_interruption(*cause, by_signal))

@@ -7,7 +7,7 @@ mod words;
 
 use std::time::{Duration, Instant};
 
-use brushwork_link::device::{ArmScope, Event, Job, JobEnding, JobOutput, Request};
+use brushwork_link::device::{ArmScope, Event, Job, JobEnding};
 use brushwork_link::settings::SettingsTable;
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::experiment_guard::GuardOptions;
@@ -15,7 +15,7 @@ use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::tune::{Excitation, Method, Request as TuneRequest};
 use brushwork_values::Motor;
 
-use super::client::{Client, arm, ask};
+use super::client::{Client, arm, start};
 use super::exit::Exit;
 use super::interrupt::{Interrupt, exit_of_interruption};
 use super::new_file::NewFile;
@@ -103,15 +103,13 @@ fn session(
     let target = Target { encoder: Some(before.encoder), ..target };
     let found: Slot<Report> = Slot::default();
     let ran = prepared
-        .and_then(|_| arm(client.device(), ArmScope::CommandLine, interrupt))
+        .and_then(|()| arm(client.device(), ArmScope::CommandLine, interrupt))
         .and_then(|()| job(client, tuning_job(target, request(args, method), &found), interrupt));
     *found_report = take(&found);
     // A raised interrupt has ended the run; it must not keep the old gains from being put back.
     let kept = found_report.as_ref().filter(|_| ran.is_ok());
     let restoring = restore(target, before, kept, leaves_off(found_report.as_ref(), None), &keeper);
     let restored = job(client, restoring, &Interrupt::default());
-    let restored = restored
-        .map(|output| output.downcast::<Restored>().map_or_else(|_| Restored::default(), |told| *told));
     if restored.is_ok() && ran.is_err() {
         say("The old gains and settings are in force again, as reading them back has shown.");
     }
@@ -176,10 +174,10 @@ fn conclude(
 }
 
 /// Runs a job to its end, renewing the dead-man. Ctrl-C stops all motors, which ends the job.
-fn job(client: &Client, job: Box<dyn Job>, interrupt: &Interrupt) -> Result<JobOutput, Exit> {
+fn job<T: Send + 'static>(client: &Client, job: Job<T>, interrupt: &Interrupt) -> Result<T, Exit> {
     let deaf = Interrupt::default();
     let limit = job.time_limit() + ANSWER_LIMIT;
-    ask(client.device(), Request::Job(job))?;
+    let ticket = start(client.device(), job)?;
     let deadline = Instant::now() + limit;
     let mut stopped = false;
     while Instant::now() < deadline {
@@ -189,10 +187,10 @@ fn job(client: &Client, job: Box<dyn Job>, interrupt: &Interrupt) -> Result<JobO
         }
         client.device().renew();
         match client.next_event(&deaf)? {
-            Some(Event::JobProgress { text, .. }) => say(text),
+            Some(Event::JobProgress { id, text, .. }) if id == ticket.id() => say(text),
             Some(Event::Failure(failure)) => say(failure.to_string()),
-            Some(Event::JobEnded(report)) => {
-                return match report.ending {
+            Some(Event::JobEnded(report)) if report.id == ticket.id() => {
+                return match ticket.ending(report.ending) {
                     JobEnding::Done(output) => Ok(output),
                     JobEnding::Interrupted(cause) => {
                         say(format!("The run was ended: {cause}. The motors were stopped."));

@@ -8,7 +8,7 @@
 use brushwork_mcp_client::layout_of;
 use std::time::Duration;
 
-use brushwork_link::device::{Drive, DriveCommand, FnJob, Job, JobContext, JobOutput};
+use brushwork_link::device::{Drive, DriveCommand, Job, JobContext};
 use brushwork_link::exchange::ExchangeError;
 use brushwork_link::{Failure, Wire};
 use brushwork_mcp_wire::packet_serial::number;
@@ -18,7 +18,7 @@ use brushwork_values::Motor;
 use crossbeam_channel::Sender;
 
 /// Verb phrase of the job.
-pub const JOB: &str = "test the voltage clamp";
+const JOB: &str = "test the voltage clamp";
 
 /// The duties of the test, in percent (MCP manual 1.7.5).
 const FIRST_PERCENT: u32 = 25;
@@ -99,8 +99,8 @@ impl Task {
 }
 
 /// The job; each [`Step`] goes to `steps` as it ends, so that an interrupted test leaves what it has found.
-pub fn job(task: Task, steps: Sender<Step>) -> Box<dyn Job> {
-    FnJob::moving(JOB, task.time_limit(), move |context| {
+pub fn job(task: Task, steps: Sender<Step>) -> Job<()> {
+    Job::moving(JOB, task.time_limit(), move |context| {
         refuse_torque_control(context, task.motor)?;
         refuse_high_battery(context, &task)?;
         for (index, duty) in duties().enumerate() {
@@ -115,7 +115,7 @@ pub fn job(task: Task, steps: Sender<Step>) -> Box<dyn Job> {
             }
             come_to_rest(context, task.motor)?;
         }
-        Ok(Box::new(()) as JobOutput)
+        Ok(())
     })
 }
 

@@ -5,19 +5,18 @@
 
 use std::time::Duration;
 
-use brushwork_link::device::{Drive, DriveCommand, FnJob, Job, JobContext, JobOutput};
+use brushwork_link::device::{Drive, DriveCommand, Job, JobContext};
 use brushwork_link::exchange::ExchangeError;
 use brushwork_link::{Failure, Wire};
 use brushwork_tuning::{Point, StepFigures};
 use brushwork_values::Motor;
-use crossbeam_channel::Sender;
 
 use super::profile::{Leg, Mode, WAY_LIMIT, setpoint_text};
 use super::reader::{Encoders, INTERVAL};
 use super::speed::{Reading, present_speed, speeds};
 
 /// Verb phrase of the job.
-pub const JOB: &str = "play the profile";
+const JOB: &str = "play the profile";
 
 /// Beyond what the legs take by themselves: exchanges, and the pace of a slow line.
 const SLACK: Duration = Duration::from_secs(30);
@@ -60,20 +59,17 @@ pub struct Played {
     pub steps: Vec<JudgedStep>,
 }
 
-/// The job that plays `task`; [`Played`] goes to `outcome`.
-pub fn job(task: Task, outcome: Sender<Played>) -> Box<dyn Job> {
+/// The job that plays `task`.
+pub fn job(task: Task) -> Job<Played> {
     let own_time = |leg: &Leg| match leg {
         Leg::Hold { time, .. } => *time,
         Leg::Settle { dwell, .. } | Leg::GoTo { dwell, .. } => *dwell + WAY_LIMIT,
     };
     let limit = task.legs.iter().map(own_time).sum::<Duration>() + SLACK;
-    FnJob::moving(JOB, limit, move |context| {
+    Job::moving(JOB, limit, move |context| {
         let mut player =
             Player { task: task.clone(), encoders: Encoders::default(), record: [const { Vec::new() }; 2] };
-        let played = player.play(context)?;
-        // Nobody waits for it once the unit was left.
-        let _ = outcome.try_send(played);
-        Ok(Box::new(()) as JobOutput)
+        player.play(context)
     })
 }
 

@@ -6,18 +6,17 @@
 
 use std::time::Duration;
 
-use brushwork_link::device::{Drive, DriveCommand, FnJob, Job, JobContext, JobOutput};
+use brushwork_link::device::{Drive, DriveCommand, Job, JobContext};
 use brushwork_link::exchange::ExchangeError;
 use brushwork_link::{Failure, Wire};
 use brushwork_mcp_wire::packet_serial::number;
 use brushwork_values::Motor;
-use crossbeam_channel::Sender;
 
 use super::reader::{Encoders, INTERVAL, Power, read_power};
 use super::speed::{HeldSpeed, PART_S, Reading, has_settled, held_speed, present_speed};
 
 /// Verb phrase of the job.
-pub const JOB: &str = "measure QPPS";
+const JOB: &str = "measure QPPS";
 
 /// Duty at which the direction is looked for: it goes up until the motor moves.
 const DIRECTION_DUTY: f64 = 0.30;
@@ -90,16 +89,13 @@ impl Measured {
     }
 }
 
-/// The job; [`Measured`] goes to `outcome`.
-pub fn job(task: Task, outcome: Sender<Measured>) -> Box<dyn Job> {
+/// The job that measures.
+pub fn job(task: Task) -> Job<Measured> {
     let ramps = Duration::from_secs_f64(4.0 / task.accel_duty_per_s.max(0.05));
     let limit = (task.time_limit + REST_LIMIT) * 2 + ramps + Duration::from_secs(10);
-    FnJob::moving(JOB, limit, move |context| {
+    Job::moving(JOB, limit, move |context| {
         let mut bench = Bench { task, encoders: Encoders::default() };
-        let measured = bench.measure(context)?;
-        // Nobody waits for it once the unit was left.
-        let _ = outcome.try_send(measured);
-        Ok(Box::new(()) as JobOutput)
+        bench.measure(context)
     })
 }
 

@@ -16,7 +16,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use brushwork_link::Stream;
-use brushwork_link::device::{FnJob, Job, JobContext};
+use brushwork_link::device::{Job, JobContext};
 use brushwork_link::failure::Failure;
 use brushwork_link::settings::{Ending, Subject, begin_trial, end_act};
 use brushwork_link::wire::Wire;
@@ -39,13 +39,13 @@ use tap::{Live, Tap};
 use told::told;
 
 /// Verb phrase of the job before a run.
-pub const PREPARE: &str = "get ready to tune";
+const PREPARE: &str = "get ready to tune";
 /// Verb phrase of a run.
-pub const RUN: &str = "tune the motor";
+const RUN: &str = "tune the motor";
 /// Verb phrase of a trial.
-pub const TRIAL: &str = "try the gains";
+const TRIAL: &str = "try the gains";
 /// Verb phrase of the job after either.
-pub const RESTORE: &str = "put back what the tuning changed";
+const RESTORE: &str = "put back what the tuning changed";
 
 /// What a trial of gains may take.
 const TRIAL_LIMIT: Duration = Duration::from_secs(120);
@@ -156,9 +156,9 @@ fn axis<'a>(context: &'a mut JobContext<'_>, target: Target, own_timeout: bool) 
 }
 
 /// The job before: keeps backup and journal, reads what is put back afterwards, and shortens the time-out. It moves nothing.
-pub fn prepare(target: Target, subject: Subject, found: &Slot<Setup>, keeper: &TrialKeeper) -> Box<dyn Job> {
+pub fn prepare(target: Target, subject: Subject, found: &Slot<Setup>, keeper: &TrialKeeper) -> Job<()> {
     let (found, keeper) = (Arc::clone(found), keeper.clone());
-    FnJob::boxed(PREPARE, PREPARE_LIMIT, move |context| {
+    Job::new(PREPARE, PREPARE_LIMIT, move |context| {
         let place = context.describe();
         let is_tried = |key: &str| is_tried(target.motor, key);
         let held = begin_trial(context, subject, &is_tried, &mut **keeper.lock())?;
@@ -171,38 +171,38 @@ pub fn prepare(target: Target, subject: Subject, found: &Slot<Setup>, keeper: &T
             thrice(|| axis.set_stream_timeout(RUN_STREAM_TIMEOUT_MS))
                 .map_err(|error| failed("set the time-out of the port", &place, &error))?;
         }
-        Ok(Box::new(()))
+        Ok(())
     })
 }
 
 /// The run. It moves the motor, so it must be armed. The report is in its slot also after an interruption.
-pub fn run(target: Target, request: Request, found: &Slot<Report>) -> Box<dyn Job> {
+pub fn run(target: Target, request: Request, found: &Slot<Report>) -> Job<()> {
     run_watched(target, request, found, &Live::default())
 }
 
 /// The run, with a trace in `live` for whoever looks on.
-pub fn run_watched(target: Target, request: Request, found: &Slot<Report>, live: &Live) -> Box<dyn Job> {
+pub fn run_watched(target: Target, request: Request, found: &Slot<Report>, live: &Live) -> Job<()> {
     let (found, live) = (Arc::clone(found), live.clone());
     let limit = Duration::from_secs_f64(request.guard.time_limit_s) + GRACE;
-    FnJob::moving(RUN, limit, move |context| {
+    Job::moving(RUN, limit, move |context| {
         context.set_polling(false);
         // The time-out was set before: changing it now would undermine the arming.
         let mut axis = axis(context, target, false);
         let report = tune(&mut Tap::new(&mut *axis, live.clone()), &request);
         put(&found, report);
-        Ok(Box::new(()))
+        Ok(())
     })
 }
 
 /// Gains tried by themselves. It moves the motor, so it must be armed; what it found is in its slot also after an interruption.
-pub fn trial(target: Target, wanted: TrialRequest, found: &Slot<Trial>, live: &Live) -> Box<dyn Job> {
+pub fn trial(target: Target, wanted: TrialRequest, found: &Slot<Trial>, live: &Live) -> Job<()> {
     let (found, live) = (Arc::clone(found), live.clone());
-    FnJob::moving(TRIAL, TRIAL_LIMIT, move |context| {
+    Job::moving(TRIAL, TRIAL_LIMIT, move |context| {
         context.set_polling(false);
         let mut axis = axis(context, target, false);
         let trial = run_trial(&mut Tap::new(&mut *axis, live.clone()), &wanted);
         put(&found, trial);
-        Ok(Box::new(()))
+        Ok(())
     })
 }
 
@@ -235,21 +235,21 @@ pub fn leaves_off(report: Option<&Report>, trial: Option<&Trial>) -> bool {
 }
 
 /// The job after: the old gains, unless the run's own stay, and the old time-out, proven by reading them; the journal is closed. It
-/// moves nothing, and leaves a loop off where the run has for a reason. It tells [`Restored`].
+/// moves nothing, and leaves a loop off where the run has for a reason.
 pub fn restore(
     target: Target,
     before: Setup,
     report: Option<&Report>,
     leaves_off: bool,
     keeper: &TrialKeeper,
-) -> Box<dyn Job> {
+) -> Job<Restored> {
     let keeper = keeper.clone();
     let keeps = report.filter(|report| report.request.keep && report.verdict != Verdict::Refused);
     let velocity = keeps.and_then(|report| report.velocity).unwrap_or(before.velocity);
     let position = keeps.and_then(|report| report.position).unwrap_or(before.position);
     let mind =
         before.motion_mind.map(|unit| keeps.and_then(|report| report.motion_mind).unwrap_or(unit.registers));
-    FnJob::boxed(RESTORE, RESTORE_LIMIT, move |context| {
+    Job::new(RESTORE, RESTORE_LIMIT, move |context| {
         let place = context.describe();
         if let Some(registers) = mind {
             let mut axis = MindAxis::new(MindJobCarrier::new(context));
@@ -257,7 +257,7 @@ pub fn restore(
                 .and_then(|()| thrice(|| axis.put_back(registers, leaves_off)))
                 .map_err(|error| failed("write the registers back", &place, &error))?;
             end_act(context, &mut **keeper.lock(), Ending::Known);
-            return Ok(Box::new(Restored { loop_left_off: put_back == LoopAfter::LeftOff }));
+            return Ok(Restored { loop_left_off: put_back == LoopAfter::LeftOff });
         }
         let mut axis = axis(context, target, true);
         let now =
@@ -289,7 +289,7 @@ pub fn restore(
         }
         drop(axis);
         end_act(context, &mut **keeper.lock(), Ending::Known);
-        Ok(Box::new(Restored { loop_left_off: false }))
+        Ok(Restored { loop_left_off: false })
     })
 }
 

@@ -4,8 +4,8 @@
 
 use super::App;
 use crate::model::DeskId;
+use crate::model::jobs::Owner;
 use crate::tune::model::Afterwards;
-use crate::tune::sequence::Sequence;
 use brushwork_link::device::Request;
 use brushwork_link::settings::SettingsImage;
 use egui::{Context, ViewportCommand};
@@ -80,12 +80,8 @@ impl App {
             desk.tune.afterwards = None;
             return false;
         }
-        let is_restoring = desk.tune.running().is_some_and(Sequence::is_restoring);
-        desk.tune.abort(afterwards.why());
+        desk.tune.cancel(afterwards.why());
         desk.rest();
-        if !is_restoring {
-            self.request_of(id, Request::CancelJob);
-        }
         self.request_of(id, Request::Disarm);
         self.model.messages.note(format!(
             "The motors are stopped. {} as soon as what the run changed is put back.",
@@ -142,8 +138,8 @@ impl App {
         let identity = desk.link.identity().cloned().ok_or(none)?;
         let stream = desk.link.stream;
         let keeper = desk.general.keeper().ok_or(none)?;
-        let request = desk.loops.apply_image(image, &identity, stream, keeper).ok_or_else(busy)?;
-        if self.request_of(id, request) {
+        let job = desk.loops.apply_image(image, &identity, stream, keeper).ok_or_else(busy)?;
+        if self.start_for(id, Owner::Loops, job) {
             return Ok(());
         }
         if let Some(desk) = self.model.desk_mut(id) {

@@ -21,7 +21,7 @@ impl App {
     pub(super) fn connect(&mut self) {
         let chosen = match self.model.devices.choice {
             Choice::Desk(id) => self.model.desk(id).and_then(|desk| desk.target.clone()),
-            _ => None,
+            Choice::Simulated | Choice::Port(_) | Choice::Typed => None,
         };
         let target = match &chosen {
             Some(target) => target.parse(),

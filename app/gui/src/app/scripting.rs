@@ -12,6 +12,7 @@ use egui::{Context, ViewportCommand};
 
 use super::App;
 use crate::mcl::MclWish;
+use crate::model::jobs::Owner;
 use crate::model::screen::Screen;
 use crate::model::script::Source;
 
@@ -108,8 +109,8 @@ impl App {
             }
         };
         match self.model.front.script.begin(image, source) {
-            Some(request) => {
-                if !self.request(request) {
+            Some(job) => {
+                if !self.start_for(self.model.front.id(), Owner::Script, job) {
                     self.model.front.script.not_begun();
                 }
             }

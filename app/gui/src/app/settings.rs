@@ -1,9 +1,12 @@
 //! Work with settings that the window asks of the device threads: whole, of the control loops, of inputs, and command by
 //! command. Whatever writes has a backup made first.
 
+use brushwork_link::device::Request;
+
 use super::App;
 use crate::model::DeskId;
 use crate::model::general::SettingsWish;
+use crate::model::jobs::Owner;
 use crate::model::loop_settings::Column;
 use crate::model::screen::Screen;
 use crate::model::traffic::Transact;
@@ -25,8 +28,8 @@ impl App {
             return;
         }
         let stream = desk.link.stream;
-        if let Some(request) = desk.general.begin(wish, stream)
-            && !self.request_of(id, request)
+        if let Some(job) = desk.general.begin(wish, stream)
+            && !self.start_for(id, Owner::Settings, job)
             && let Some(desk) = self.model.desk_mut(id)
         {
             desk.general.not_begun();
@@ -49,12 +52,14 @@ impl App {
         if front.general.has_unfinished() {
             return self.settings(SettingsWish::Read);
         }
-        let id = front.id();
         if front.is_idle()
-            && let Some(request) = front.general.begin_quietly()
-            && self.links.device(id).is_none_or(|device| device.request(request).is_err())
+            && let Some(job) = front.general.begin_quietly()
         {
-            self.model.front.general.not_begun();
+            let (id, job_id) = (front.id(), job.id());
+            match self.links.device(id).map(|device| device.request(Request::Job(job))) {
+                Some(Ok(())) => front.jobs.begun(job_id, Owner::Settings),
+                Some(Err(_)) | None => front.general.not_begun(),
+            }
         }
     }
 
@@ -73,8 +78,8 @@ impl App {
     }
 
     pub(super) fn clamp_test(&mut self) {
-        if let Some(request) = self.model.front.general.begin_clamp_test()
-            && !self.request(request)
+        if let Some(job) = self.model.front.general.begin_clamp_test()
+            && !self.start_for(self.model.front.id(), Owner::ClampTest, job)
         {
             self.model.front.general.clamp_test_not_begun();
         }
@@ -87,8 +92,8 @@ impl App {
             return;
         }
         let Some(identity) = self.model.front.link.identity().cloned() else { return };
-        if let Some(request) = self.model.front.loops.read(&identity)
-            && !self.request(request)
+        if let Some(job) = self.model.front.loops.read(&identity)
+            && !self.start_for(self.model.front.id(), Owner::Loops, job)
         {
             self.model.front.loops.not_begun();
         }
@@ -99,8 +104,8 @@ impl App {
         let stream = self.model.front.link.stream;
         // Whoever is connected is looked at, so there is one.
         let Some(keeper) = self.model.front.general.keeper() else { return };
-        if let Some(request) = self.model.front.loops.apply(columns, &identity, stream, keeper)
-            && !self.request(request)
+        if let Some(job) = self.model.front.loops.apply(columns, &identity, stream, keeper)
+            && !self.start_for(self.model.front.id(), Owner::Loops, job)
         {
             self.model.front.loops.not_begun();
         }
@@ -121,8 +126,8 @@ impl App {
         let Some((identity, keeper)) = identity.zip(front.general.keeper()) else {
             return self.send_transact(self.model.front.id(), transact);
         };
-        let request = front.traffic.kept.keep_first(transact, &identity, keeper);
-        if !request.is_some_and(|request| self.request(request)) {
+        let job = front.traffic.kept.keep_first(transact, &identity, keeper);
+        if !job.is_some_and(|job| self.request(Request::Job(job))) {
             self.model.front.traffic.kept.forget();
             self.model.front.traffic.composer.forget_waiting();
         }

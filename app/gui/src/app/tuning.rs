@@ -3,10 +3,10 @@
 use super::App;
 use crate::model::DeskId;
 use crate::model::drawer::Tab;
+use crate::model::jobs::Owner;
 use crate::model::link::Arming;
 use crate::model::loop_settings::key;
 use crate::tune::files;
-use crate::tune::model::as_request;
 use crate::tune::registers::Registers;
 use crate::tune::sequence::{Next, Origin};
 use crate::tune::{Loop, TuneWish};
@@ -32,8 +32,7 @@ impl App {
             TuneWish::Start(motor) => front.tune.start(which, motor, stream),
             TuneWish::Verify => front.tune.verify(which, stream),
             TuneWish::Cancel => {
-                front.tune.abort("it was cancelled");
-                self.request(Request::CancelJob);
+                front.tune.cancel("it was cancelled");
                 Ok(())
             }
             TuneWish::Apply => self.apply_gains(which),
@@ -106,19 +105,21 @@ impl App {
     }
 
     fn ask_next(&mut self, id: DeskId, next: Next) {
-        let scope = match &next {
-            Next::Arm(scope) => Some(*scope),
-            Next::Job(_) => None,
+        let is_taken = match next {
+            Next::Arm(scope) => {
+                if let Some(desk) = self.model.desk_mut(id) {
+                    desk.link.refusals.clear();
+                }
+                let is_taken = self.request_of(id, Request::Arm(scope));
+                if let Some(desk) = self.model.desk_mut(id).filter(|_| is_taken) {
+                    desk.link.arming = Arming::Asked(scope);
+                }
+                is_taken
+            }
+            Next::Job(job) => self.start_for(id, Owner::Tune, job),
         };
-        if let (Some(_), Some(desk)) = (scope, self.model.desk_mut(id)) {
-            desk.link.refusals.clear();
-        }
-        let is_taken = self.request_of(id, as_request(next));
-        let Some(desk) = self.model.desk_mut(id) else { return };
-        match scope {
-            _ if !is_taken => desk.tune.not_begun(),
-            Some(scope) => desk.link.arming = Arming::Asked(scope),
-            None => {}
+        if let Some(desk) = self.model.desk_mut(id).filter(|_| !is_taken) {
+            desk.tune.not_begun();
         }
     }
 

@@ -41,8 +41,8 @@ impl App {
         }
         match next {
             Next::Nothing => {}
-            Next::Ask(request) => {
-                if !self.request_of(id, request)
+            Next::Ask(job) => {
+                if !self.request_of(id, Request::Job(job))
                     && let Some(desk) = self.model.desk_mut(id)
                 {
                     desk.firmware.not_compared();
@@ -88,8 +88,8 @@ impl App {
         let front = &mut self.model.front;
         let identity = front.link.identity().cloned().ok_or("Connect the controller first.")?;
         let unit = UnitId::new(&identity, &ports);
-        let request = front.firmware.begin(&identity, front.link.stream, unit, store)?;
-        if !self.request(request) {
+        let job = front.firmware.begin(&identity, front.link.stream, unit, store)?;
+        if !self.request(Request::Job(job)) {
             self.model.front.firmware.not_entered("the controller is busy.");
         }
         Ok(())

@@ -22,7 +22,9 @@ use super::drawer::{Drawers, Tab};
 use super::firmware::Firmware;
 use super::general::General;
 use super::generator::Generator;
+use super::guided::said;
 use super::history::History;
+use super::jobs::{Jobs, Owner};
 use super::link::{Arming, Effect, LinkView};
 use super::loop_settings::LoopSettings;
 use super::motion_mind::MotionMindDesk;
@@ -65,6 +67,8 @@ pub struct Desk {
     pub poll: PollRate,
     pub graph: LiveGraph,
     pub pwm: Pwm,
+    /// Whose the jobs on the device thread are.
+    pub jobs: Jobs,
     /// The settings of the units met so far, and what is being done with them.
     pub general: General,
     pub velocity: Velocity,
@@ -159,6 +163,7 @@ impl Desk {
             poll: PollRate::default(),
             graph: LiveGraph::new(graph_channels(family::of(FamilyKind::default()).channels()), 0.1),
             pwm: Pwm::default(),
+            jobs: Jobs::default(),
             general: General::default(),
             velocity: Velocity::default(),
             firmware: Firmware::default(),
@@ -244,7 +249,7 @@ impl Desk {
             ArmScope::Pwm => self.pwm.setpoints.sent(),
             ArmScope::Velocity => self.velocity.setpoints.sent(),
             ArmScope::Position => self.position.setpoints.sent(),
-            _ => {}
+            ArmScope::ClampTest | ArmScope::Tuning | ArmScope::Script | ArmScope::CommandLine => {}
         }
     }
 
@@ -262,40 +267,60 @@ impl Desk {
         if self.motion_mind.take(&event) {
             return Vec::new();
         }
-        if self.watch.note(&event) {
-            self.update_homed();
-            return Vec::new();
-        }
+        self.watch.note(&event);
         if matches!(event, Event::Stopped(_)) && !self.family().has_loops() {
             // A stop may have switched a loop off by a register.
             self.general.ram_changes();
         }
-        let effects = if self.tune.awaits(&event) {
-            let effects = self.tune.take(event);
-            if !self.tune.is_running() {
-                // A run has written gains and put others back.
-                self.loops.want_reading();
-                if !self.family().has_loops() {
-                    self.general.ram_changes();
-                }
-            }
-            effects
-        } else if self.awaits_guided(&event) {
-            self.take_guided(event)
-        } else if self.script.awaits(&event) {
-            self.script.take(event)
-        } else if self.general.awaits(&event) {
-            self.general.take(event)
-        } else if self.loops.awaits(&event) {
-            let effects = self.loops.take(event);
-            if let Some(written) = self.loops.take_written() {
-                self.general.note_written_elsewhere(&written);
-            }
-            effects
-        } else {
-            self.link.take(event)
+        let owner = self.jobs.owner(&event);
+        if matches!(event, Event::JobEnded(_)) && owner != Some(Owner::Watch) {
+            // Whatever it was may have changed settings.
+            self.watch.want_reading();
+        }
+        let effects = match owner {
+            Some(owner) => self.take_of(owner, event),
+            None => self.link.take(event),
         };
         effects.into_iter().filter_map(|effect| self.settle(effect)).collect()
+    }
+
+    /// Hands an event of a job to whoever asked for the job.
+    fn take_of(&mut self, owner: Owner, event: Event) -> Vec<Effect> {
+        match owner {
+            Owner::Settings => self.general.take(event),
+            Owner::ClampTest => self.general.take_clamp_test(event),
+            Owner::Loops => {
+                let effects = self.loops.take(event);
+                if let Some(written) = self.loops.take_written() {
+                    self.general.note_written_elsewhere(&written);
+                }
+                effects
+            }
+            Owner::Watch => {
+                self.watch.take(event);
+                self.update_homed();
+                Vec::new()
+            }
+            Owner::Generator => said(
+                self.generator.take(event),
+                "The profile was played to its end. The motors were stopped.",
+            ),
+            Owner::Qpps => said(self.qpps.take(event), "QPPS was measured. The motors were stopped."),
+            Owner::Script => self.script.take(event),
+            Owner::Tune => self.take_tuning(event),
+        }
+    }
+
+    fn take_tuning(&mut self, event: Event) -> Vec<Effect> {
+        let effects = self.tune.take(event);
+        if !self.tune.is_running() {
+            // A run has written gains and put others back.
+            self.loops.want_reading();
+            if !self.family().has_loops() {
+                self.general.ram_changes();
+            }
+        }
+        effects
     }
 
     /// What is known of the unit's script. A simulated controller in this program tells; of others nothing is known but what went over
@@ -313,7 +338,10 @@ impl Desk {
         let view = self.worlds.as_ref()?.get(self.world_unit)?;
         Some(match view.script.as_ref()?.run {
             ScriptRun::Running { line } => Some(line),
-            _ => None,
+            ScriptRun::Idle
+            | ScriptRun::Ended { .. }
+            | ScriptRun::Stopped { .. }
+            | ScriptRun::Faulted { .. } => None,
         })
     }
 
@@ -409,6 +437,7 @@ impl Desk {
     pub fn link_ended(&mut self) -> Vec<Effect> {
         let effects = self.tune.link_ended();
         self.phase = Phase::Closed;
+        self.jobs = Jobs::default();
         self.link = LinkView::default();
         self.watch = Watch::default();
         self.traffic.link_ended();

@@ -183,7 +183,7 @@ impl Devices {
     pub fn wants_motion_minds(&self) -> bool {
         match &self.choice {
             Choice::Simulated => self.simulated.is_motion_mind(),
-            _ => {
+            Choice::Port(_) | Choice::Typed | Choice::Desk(_) => {
                 self.family_matters()
                     && self.family == FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND)
             }

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use brushwork_link::UnitAddress;
-use brushwork_link::device::{Event, FnJob, Identity, Request};
+use brushwork_link::device::{Event, Identity, Job, JobTicket, QueuedJob};
 use brushwork_link::settings::{Act, Profile, ReadReport, Subject, diff, read_all};
 use brushwork_link::transport::Stream;
 use brushwork_mcp_client::firmware::{Progress, RESUME_NOTE, Sent, risks, suit};
@@ -88,7 +88,7 @@ pub struct Kept {
 #[derive(Debug)]
 struct After {
     kept: Kept,
-    reading: Option<Receiver<Result<ReadReport, String>>>,
+    reading: Option<JobTicket<Result<ReadReport, String>>>,
     compared: Option<Compared>,
 }
 
@@ -105,7 +105,7 @@ pub struct Compared {
 #[derive(Debug)]
 pub enum Next {
     /// Sends this to the device thread.
-    Ask(Request),
+    Ask(QueuedJob),
     /// Sends the unit into its loader.
     EnterLoader,
     Nothing,
@@ -168,16 +168,16 @@ impl Firmware {
         stream: Option<Stream>,
         unit: UnitId,
         store: Store,
-    ) -> Result<Request, String> {
+    ) -> Result<QueuedJob, String> {
         let model = models::identify(&identity.version_text);
         let bytes = self.file()?;
         let image = suit(bytes, identity, model, stream)
             .map_err(|error| format!("The file is not sent: {error}."))?;
         let subject = identity.subject().ok_or("The controller's model is not known.")?;
-        let (request, kept) = back_up(identity, subject, unit, store)?;
+        let (job, kept) = back_up(identity, subject, unit, store)?;
         self.after = None;
         self.stage = Stage::BackingUp { image, kept };
-        Ok(request)
+        Ok(job)
     }
 
     /// Begins to send the image to a unit that waits in its loader.
@@ -203,12 +203,13 @@ impl Firmware {
 
     /// Takes note of what the device thread tells about the way into the loader.
     pub fn note(&mut self, event: &Event) {
-        match event {
-            Event::LoaderEntered => self.entered(),
-            Event::Failure(failure) if matches!(self.stage, Stage::Entering { .. }) => {
-                self.not_entered(&failure.to_string());
-            }
-            _ => {}
+        if matches!(event, Event::LoaderEntered) {
+            self.entered();
+        }
+        if let Event::Failure(failure) = event
+            && matches!(self.stage, Stage::Entering { .. })
+        {
+            self.not_entered(&failure.to_string());
         }
     }
 
@@ -232,7 +233,7 @@ impl Firmware {
         match &self.stage {
             Stage::BackingUp { .. } => self.stage = Stage::Idle,
             Stage::Sending { upload, .. } => upload.cancel(),
-            _ => {}
+            Stage::Idle | Stage::Entering { .. } | Stage::Done(_) | Stage::Failed(_) => {}
         }
     }
 
@@ -286,7 +287,7 @@ impl Firmware {
                 }
                 Next::Nothing
             }
-            _ => Next::Nothing,
+            Stage::Idle | Stage::Entering { .. } | Stage::Done(_) | Stage::Failed(_) => Next::Nothing,
         }
     }
 
@@ -298,17 +299,12 @@ impl Firmware {
             return Next::Nothing;
         }
         let Some(subject) = identity.subject() else { return Next::Nothing };
-        let (sender, reading) = bounded(1);
+        let job = Job::new("compare the settings with the backup", READ_LIMIT, move |wire| {
+            Ok(read_all(wire, subject).map_err(|failure| failure.to_string()))
+        });
+        let (job, reading) = job.queued();
         after.reading = Some(reading);
-        Next::Ask(Request::Job(FnJob::boxed(
-            "compare the settings with the backup",
-            READ_LIMIT,
-            move |wire| {
-                // Whoever closed the window does not want it any more.
-                let _ = sender.try_send(read_all(wire, subject).map_err(|failure| failure.to_string()));
-                Ok(Box::new(()))
-            },
-        )))
+        Next::Ask(job)
     }
 
     /// The comparison could not be begun; it is tried again.
@@ -330,7 +326,7 @@ impl Firmware {
 
     fn take_comparison(&mut self) {
         let Some(after) = &mut self.after else { return };
-        let Some(read) = after.reading.as_ref().and_then(|reading| reading.try_recv().ok()) else { return };
+        let Some(read) = after.reading.as_ref().and_then(JobTicket::take) else { return };
         after.compared = Some(match read {
             Ok(report) => compare(&after.kept.profile, &report),
             Err(why) => Compared { differences: Vec::new(), failure: Some(why) },
@@ -363,7 +359,7 @@ fn back_up(
     subject: Subject,
     unit: UnitId,
     store: Store,
-) -> Result<(Request, Receiver<Result<Kept, String>>), String> {
+) -> Result<(QueuedJob, Receiver<Result<Kept, String>>), String> {
     let (read, to_keep) = bounded::<Result<ReadReport, String>>(1);
     let (sender, kept) = bounded(1);
     let firmware = identity.version_text.clone();
@@ -378,11 +374,12 @@ fn back_up(
     thread
         .spawn(keep)
         .map_err(|error| format!("Could not start the thread that keeps the backup: {error}."))?;
-    let job = FnJob::boxed("back the settings up", READ_LIMIT, move |wire| {
+    let job = Job::new("back the settings up", READ_LIMIT, move |wire| {
         let _ = read.try_send(read_all(wire, subject).map_err(|failure| failure.to_string()));
-        Ok(Box::new(()))
+        Ok(())
     });
-    Ok((Request::Job(job), kept))
+    // What was read goes to the thread that keeps it.
+    Ok((job.queued().0, kept))
 }
 
 fn keep(

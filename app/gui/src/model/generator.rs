@@ -1,9 +1,9 @@
 //! The profile generator of the screens that drive: what is set, what runs, and the figures of its last steps.
 
-use brushwork_link::device::{ArmScope, Event, Request};
+use brushwork_link::device::{ArmScope, Event, QueuedJob};
 use brushwork_values::Motor;
 
-use super::watched::Watched;
+use super::watched::{Unfinished, Watched};
 use brushwork_core::motion::player;
 use brushwork_core::motion::player::{JudgedStep, Played};
 use brushwork_core::motion::profile::{Leg, Mode, Pace, Profile, Reach, Shape, legs, total_time};
@@ -85,17 +85,25 @@ impl Generator {
     }
 
     /// What to ask of the device thread to play what is set.
-    pub fn begin(&mut self, mode: Mode, pace: Pace, reaches: [Option<Reach>; 2]) -> Result<Request, String> {
+    pub fn begin(
+        &mut self,
+        mode: Mode,
+        pace: Pace,
+        reaches: [Option<Reach>; 2],
+    ) -> Result<QueuedJob, String> {
         let legs = self.plan(mode, pace, reaches)?;
         let motors = self.chosen_motors();
-        let Some(outcome) = self.job.begin(player::JOB) else {
-            return Err("A profile is playing already.".to_owned());
-        };
+        let job = self.job.begin(player::job(player::Task { mode, motors, legs }));
+        let job = job.ok_or("A profile is playing already.")?;
         (self.mode, self.played) = (mode, None);
-        Ok(Request::Job(player::job(player::Task { mode, motors, legs }, outcome)))
+        Ok(job)
     }
 
-    /// The request was not taken.
+    pub fn cancel(&self) {
+        self.job.cancel();
+    }
+
+    /// The job was not taken.
     pub fn not_begun(&mut self) {
         self.job.forget();
     }
@@ -124,19 +132,10 @@ impl Generator {
         Motor::BOTH.into_iter().flat_map(of).collect()
     }
 
-    pub fn awaits(&self, event: &Event) -> bool {
-        self.job.awaits(event)
-    }
-
-    /// Takes in an event that it awaits; a sentence if nothing was played to its end.
-    pub fn take(&mut self, event: Event) -> Option<String> {
-        match self.job.take(event)? {
-            Ok(played) => {
-                self.played = Some((self.mode, played));
-                None
-            }
-            Err(sentence) => Some(sentence),
-        }
+    /// Takes in an event of its job; at the end whether it was played to its end.
+    pub fn take(&mut self, event: Event) -> Option<Result<(), Unfinished>> {
+        let result = self.job.take_result(event)?;
+        Some(result.map(|played| self.played = Some((self.mode, played))))
     }
 }
 

@@ -1,15 +1,17 @@
 //! What the screens that drive ask of a desk beyond its sliders: a profile to be played, QPPS to be measured.
 
-use brushwork_link::device::{Channel, Event, Request};
+use brushwork_link::device::{Channel, QueuedJob};
 use brushwork_values::Motor;
 
 use super::desk::Desk;
 use super::drawer::Tab;
 use super::generator::mode_of;
+use super::jobs::Owner;
 use super::link::Effect;
 use super::message::Gravity;
 use super::position::{Seen, Travels};
 use super::screen::Screen;
+use super::watched::Unfinished;
 use brushwork_core::motion::profile::{Leg, Mode, Pace, Reach};
 
 /// What is asked for.
@@ -32,22 +34,34 @@ impl Desk {
         self.generator.plan(mode, self.pace(mode), self.reaches(mode))
     }
 
-    /// What to ask of the device thread, or why nothing can be.
-    pub fn guided_request(&mut self, wish: GuidedWish, screen: Screen) -> Result<Request, String> {
+    /// A job to ask of the device thread, and whose it is; or why none can be.
+    pub fn begin_guided(
+        &mut self,
+        wish: GuidedWish,
+        screen: Screen,
+    ) -> Result<Option<(Owner, QueuedJob)>, String> {
         let nothing = || "A job runs already. Wait for it or cancel it.".to_owned();
         match wish {
-            GuidedWish::Cancel => Ok(Request::CancelJob),
-            _ if self.is_guided() => Err(nothing()),
-            GuidedWish::MeasureQpps => self.qpps.begin(self.pwm.accel_percent_per_s).ok_or_else(nothing),
+            GuidedWish::Cancel => {
+                self.generator.cancel();
+                self.qpps.cancel();
+                self.general.clamp.cancel();
+                Ok(None)
+            }
+            GuidedWish::MeasureQpps | GuidedWish::Play if self.is_guided() => Err(nothing()),
+            GuidedWish::MeasureQpps => {
+                let job = self.qpps.begin(self.pwm.accel_percent_per_s).ok_or_else(nothing)?;
+                Ok(Some((Owner::Qpps, job)))
+            }
             GuidedWish::Play => {
                 let mode = screen.arm_scope().and_then(mode_of).ok_or_else(nothing)?;
                 let (pace, reaches) = (self.pace(mode), self.reaches(mode));
-                self.generator.begin(mode, pace, reaches)
+                Ok(Some((Owner::Generator, self.generator.begin(mode, pace, reaches)?)))
             }
         }
     }
 
-    /// The request was not taken.
+    /// The job was not taken.
     pub fn guided_not_begun(&mut self) {
         self.generator.not_begun();
         self.qpps.not_begun();
@@ -58,27 +72,6 @@ impl Desk {
         self.loops.edit_qpps(motor, counts_per_s);
         if self.drawers.open(Screen::Pwm) != Some(Tab::Settings) {
             self.drawers.press(Screen::Pwm, Tab::Settings);
-        }
-    }
-
-    /// Whether the event is about such a job.
-    pub(super) fn awaits_guided(&self, event: &Event) -> bool {
-        self.generator.awaits(event) || self.qpps.awaits(event)
-    }
-
-    /// Takes in an event that it awaits.
-    pub(super) fn take_guided(&mut self, event: Event) -> Vec<Effect> {
-        let ended = matches!(event, Event::JobEnded(_));
-        let (sentence, done) = if self.generator.awaits(&event) {
-            (self.generator.take(event), "The profile was played to its end. The motors were stopped.")
-        } else {
-            (self.qpps.take(event), "QPPS was measured. The motors were stopped.")
-        };
-        match sentence {
-            Some(text) if text.starts_with("Could not") => vec![Effect::Say(Gravity::Error, text)],
-            Some(text) => vec![Effect::Say(Gravity::Warning, text)],
-            None if ended => vec![Effect::Say(Gravity::Note, done.to_owned())],
-            None => Vec::new(),
         }
     }
 
@@ -136,4 +129,13 @@ impl Desk {
             }
         })
     }
+}
+
+/// What is said at the end of such a job; nothing before.
+pub(super) fn said(ended: Option<Result<(), Unfinished>>, done: &str) -> Vec<Effect> {
+    let said = ended.map(|result| match result {
+        Ok(()) => Effect::Say(Gravity::Note, done.to_owned()),
+        Err(Unfinished { gravity, sentence }) => Effect::Say(gravity, sentence),
+    });
+    said.into_iter().collect()
 }

@@ -207,7 +207,19 @@ impl History {
                 self.push(self.now, None, Kind::Closed, "Disconnected".to_owned());
                 self.is_open = false;
             }
-            _ => {}
+            // What is asked, measured and answered all the time is no moment to remember.
+            Event::Searching { .. }
+            | Event::Selected { .. }
+            | Event::Sample(_)
+            | Event::Driven { .. }
+            | Event::Transacted { .. }
+            | Event::RawReply { .. }
+            | Event::LoaderEntered
+            | Event::JobStarted { .. }
+            | Event::JobProgress { .. }
+            | Event::JobEnded(_)
+            | Event::Link(_)
+            | Event::Traffic { .. } => {}
         }
     }
 

@@ -6,7 +6,7 @@
 use std::time::Duration;
 
 use brushwork_link::Failure;
-use brushwork_link::device::{Event, FnJob, Identity, JobEnding, Request};
+use brushwork_link::device::{Event, Identity, Job, JobEnding, QueuedJob};
 use brushwork_link::settings::{
     Keeper, Kind, Known, ReadReport, Row, RowState, SettingValue, SettingsImage, SettingsTable, WriteError,
     WriteOptions, WriteReport, read_some, write_kept_knowing,
@@ -14,10 +14,10 @@ use brushwork_link::settings::{
 use brushwork_link::transport::Stream;
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_values::Motor;
-use crossbeam_channel::{Receiver, bounded};
 
 use super::link::Effect;
 use super::message::Gravity;
+use super::watched::Watched;
 use brushwork_core::tune::encoder;
 
 /// One setting that both motors have.
@@ -89,7 +89,7 @@ pub struct LoopSettings {
     table: Option<SettingsTable>,
     ram: SettingsImage,
     edits: SettingsImage,
-    running: Option<Running>,
+    job: Watched<Outcome>,
     wants_reading: bool,
     /// Every edit is applied as soon as it is made.
     pub at_once: bool,
@@ -99,13 +99,6 @@ pub struct LoopSettings {
     known: Known,
     /// What the last write came to, for others that show the same settings.
     written: Option<Box<WriteReport>>,
-}
-
-#[derive(Debug)]
-struct Running {
-    name: &'static str,
-    has_started: bool,
-    outcome: Receiver<Outcome>,
 }
 
 #[derive(Debug)]
@@ -135,11 +128,11 @@ impl LoopSettings {
     }
 
     pub fn wants_reading(&self) -> bool {
-        self.wants_reading && self.running.is_none()
+        self.wants_reading && !self.job.is_running()
     }
 
     pub fn is_busy(&self) -> bool {
-        self.running.is_some()
+        self.job.is_running()
     }
 
     /// Whether anything was read from the controller.
@@ -251,24 +244,16 @@ impl LoopSettings {
     }
 
     /// What to ask of the device thread to read the settings.
-    pub fn read(&mut self, identity: &Identity) -> Option<Request> {
+    pub fn read(&mut self, identity: &Identity) -> Option<QueuedJob> {
         self.wants_reading = false;
         self.known.forget();
-        if self.running.is_some() {
-            return None;
-        }
         let table = SettingsTable::new(identity.subject()?);
         self.table = Some(table.clone());
         let of_encoders = table.rows().iter().map(|row| row.key.clone()).filter(|key| encoder::is_asked(key));
         let keys = [keys(VELOCITY), keys(POSITION), of_encoders.collect()].concat();
-        let (sender, outcome) = bounded(1);
-        let job = FnJob::boxed(READ_JOB, READ_LIMIT, move |wire| {
-            // Nobody waits for it once the unit was left.
-            let _ = sender.try_send(Outcome::Read(read_some(wire, &table, &keys)));
-            Ok(Box::new(()))
-        });
-        self.running = Some(Running { name: READ_JOB, has_started: false, outcome });
-        Some(Request::Job(job))
+        self.job.begin(Job::new(READ_JOB, READ_LIMIT, move |wire| {
+            Ok(Outcome::Read(read_some(wire, &table, &keys)))
+        }))
     }
 
     /// What to ask of the device thread to write the edits to RAM.
@@ -278,7 +263,7 @@ impl LoopSettings {
         identity: &Identity,
         own_stream: Option<Stream>,
         keeper: Box<dyn Keeper>,
-    ) -> Option<Request> {
+    ) -> Option<QueuedJob> {
         let wanted: SettingsImage = keys(columns)
             .into_iter()
             .filter_map(|key| self.edits.get(&key).map(|value| (key, value)))
@@ -298,27 +283,22 @@ impl LoopSettings {
         identity: &Identity,
         own_stream: Option<Stream>,
         mut keeper: Box<dyn Keeper>,
-    ) -> Option<Request> {
-        let table = self.table.clone().filter(|_| self.running.is_none())?;
+    ) -> Option<QueuedJob> {
+        let table = self.table.clone().filter(|_| !self.job.is_running())?;
         if wanted.is_empty() {
             return None;
         }
         let options = WriteOptions { own_stream, simulated: identity.simulated, as_read: false };
-        let (sender, outcome) = bounded(1);
         let mut known = std::mem::take(&mut self.known);
-        let job = FnJob::boxed(WRITE_JOB, WRITE_LIMIT, move |wire| {
+        self.job.begin(Job::new(WRITE_JOB, WRITE_LIMIT, move |wire| {
             let result = write_kept_knowing(wire, &table, &wanted, options, &mut *keeper, &mut known);
-            // Nobody waits for it once the unit was left.
-            let _ = sender.try_send(Outcome::Written(result.map(Box::new), std::mem::take(&mut known)));
-            Ok(Box::new(()))
-        });
-        self.running = Some(Running { name: WRITE_JOB, has_started: false, outcome });
-        Some(Request::Job(job))
+            Ok(Outcome::Written(result.map(Box::new), std::mem::take(&mut known)))
+        }))
     }
 
-    /// The request was not taken.
+    /// The job was not taken.
     pub fn not_begun(&mut self) {
-        self.running = None;
+        self.job.forget();
     }
 
     /// What a write came to, once.
@@ -326,44 +306,20 @@ impl LoopSettings {
         self.written.take()
     }
 
-    /// Whether the event is about work that was begun here.
-    pub fn awaits(&self, event: &Event) -> bool {
-        let Some(running) = &self.running else { return false };
-        match event {
-            Event::JobStarted { name } => name == running.name,
-            Event::JobProgress { .. } => running.has_started,
-            Event::JobEnded(report) => report.name == running.name,
-            _ => false,
-        }
-    }
-
-    /// Takes in an event that [`LoopSettings::awaits`].
+    /// Takes in an event of its job.
     pub fn take(&mut self, event: Event) -> Vec<Effect> {
-        match event {
-            Event::JobStarted { .. } => {
-                if let Some(running) = &mut self.running {
-                    running.has_started = true;
-                }
-                Vec::new()
-            }
-            Event::JobEnded(report) => self.ended(&report.ending),
-            _ => Vec::new(),
-        }
-    }
-
-    fn ended(&mut self, ending: &JobEnding) -> Vec<Effect> {
-        let Some(running) = self.running.take() else { return Vec::new() };
-        match running.outcome.try_recv() {
-            Ok(Outcome::Read(Ok(report))) => self.was_read(&report),
-            Ok(Outcome::Written(Ok(report), known)) => {
+        let Some((ticket, ending)) = self.job.take(event) else { return Vec::new() };
+        match ticket.take() {
+            Some(Outcome::Read(Ok(report))) => self.was_read(&report),
+            Some(Outcome::Written(Ok(report), known)) => {
                 self.known = known;
                 let effects = self.was_written(&report);
                 self.written = Some(report);
                 effects
             }
-            Ok(Outcome::Read(Err(failure))) => vec![Effect::Say(Gravity::Error, failure.to_string())],
-            Ok(Outcome::Written(Err(error), _)) => vec![Effect::Say(Gravity::Error, error.to_string())],
-            Err(_) => vec![Effect::Say(Gravity::Error, nothing_came(running.name, ending))],
+            Some(Outcome::Read(Err(failure))) => vec![Effect::Say(Gravity::Error, failure.to_string())],
+            Some(Outcome::Written(Err(error), _)) => vec![Effect::Say(Gravity::Error, error.to_string())],
+            None => vec![Effect::Say(Gravity::Error, nothing_came(ticket.name(), &ending))],
         }
     }
 
@@ -425,7 +381,7 @@ fn nothing_came(name: &str, ending: &JobEnding) -> String {
     match ending {
         JobEnding::Failed(failure) => failure.to_string(),
         JobEnding::Panicked(word) => format!("Could not {name}: Brushwork had a bug. Its last word: {word}"),
-        JobEnding::Done(_) | JobEnding::Interrupted(_) => {
+        JobEnding::Done(()) | JobEnding::Interrupted(_) => {
             format!("Could not {name}: something more urgent came first. Read them again.")
         }
     }

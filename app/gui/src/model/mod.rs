@@ -16,6 +16,7 @@ pub mod generator;
 pub mod guided;
 pub mod help;
 pub mod history;
+pub mod jobs;
 pub mod lamp;
 pub mod lamps;
 pub mod link;

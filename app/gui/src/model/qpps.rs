@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use brushwork_link::device::{Event, Request};
+use brushwork_link::device::{Event, QueuedJob};
 use brushwork_values::Motor;
 
-use super::watched::Watched;
+use super::watched::{Unfinished, Watched};
 use brushwork_core::motion::qpps;
 use brushwork_core::motion::qpps::{Measured, Task};
 
@@ -40,9 +40,7 @@ impl Default for QppsPanel {
 impl QppsPanel {
     /// What to ask of the device thread; none while a measurement runs. The duty changes at `accel_percent_per_s`, where
     /// 0 is at once.
-    pub fn begin(&mut self, accel_percent_per_s: f64) -> Option<Request> {
-        let outcome = self.job.begin(qpps::JOB)?;
-        (self.measured, self.refusal) = (None, None);
+    pub fn begin(&mut self, accel_percent_per_s: f64) -> Option<QueuedJob> {
         let accel_duty_per_s = if accel_percent_per_s > 0.0 { accel_percent_per_s / 100.0 } else { 20.0 };
         let task = Task {
             motor: self.motor,
@@ -50,10 +48,16 @@ impl QppsPanel {
             time_limit: Duration::from_secs_f64(self.time_limit_s.clamp(1.0, 600.0)),
             accel_duty_per_s: accel_duty_per_s.clamp(0.05, 20.0),
         };
-        Some(Request::Job(qpps::job(task, outcome)))
+        let job = self.job.begin(qpps::job(task))?;
+        (self.measured, self.refusal) = (None, None);
+        Some(job)
     }
 
-    /// The request was not taken.
+    pub fn cancel(&self) {
+        self.job.cancel();
+    }
+
+    /// The job was not taken.
     pub fn not_begun(&mut self) {
         self.job.forget();
     }
@@ -80,22 +84,11 @@ impl QppsPanel {
         self.refusal.as_deref()
     }
 
-    pub fn awaits(&self, event: &Event) -> bool {
-        self.job.awaits(event)
-    }
-
-    /// Takes in an event that it awaits; a sentence if nothing was found.
-    pub fn take(&mut self, event: Event) -> Option<String> {
-        match self.job.take(event)? {
-            Ok(measured) => {
-                self.measured = Some(measured);
-                None
-            }
-            Err(sentence) => {
-                self.refusal = Some(sentence.clone());
-                Some(sentence)
-            }
-        }
+    /// Takes in an event of its job; at the end whether something was found.
+    pub fn take(&mut self, event: Event) -> Option<Result<(), Unfinished>> {
+        let result = self.job.take_result(event)?;
+        self.refusal = result.as_ref().err().map(|unfinished| unfinished.sentence.clone());
+        Some(result.map(|measured| self.measured = Some(measured)))
     }
 }
 

@@ -89,7 +89,13 @@ impl Screen {
                 C::M2_POSITION,
                 C::M2_VELOCITY,
             ],
-            _ => &[C::M1_PWM, C::M1_VELOCITY, C::M1_CURRENT],
+            Self::Pwm
+            | Self::MclEditor
+            | Self::DeviceStatus
+            | Self::GeneralSettings
+            | Self::Motion
+            | Self::Inputs
+            | Self::Terminal => &[C::M1_PWM, C::M1_VELOCITY, C::M1_CURRENT],
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use brushwork_link::Wire as _;
-use brushwork_link::device::{Event, FnJob, JobContext, Request};
+use brushwork_link::device::{Event, Job, QueuedJob};
 use brushwork_mcp_client::script::{DOWNLOAD_JOB, Downloaded, ScriptImage, Verified, download};
 
 use super::link::Effect;
@@ -30,23 +30,24 @@ pub struct ScriptWork {
 
 impl ScriptWork {
     /// What to ask of the device thread; none while a download runs.
-    pub fn begin(&mut self, image: ScriptImage, source: Source) -> Option<Request> {
-        let outcome = self.job.begin(DOWNLOAD_JOB)?;
-        self.sending = Some(source);
-        self.on_board = None;
+    pub fn begin(&mut self, image: ScriptImage, source: Source) -> Option<QueuedJob> {
         let blocks = u32::try_from(image.blocks().len()).unwrap_or(u32::MAX);
         // A wire of 2400 bit/s takes most of it.
         let limit = Duration::from_secs(60) + Duration::from_millis(200).saturating_mul(blocks);
-        Some(Request::Job(FnJob::boxed(DOWNLOAD_JOB, limit, move |context: &mut JobContext<'_>| {
+        let job = self.job.begin(Job::new(DOWNLOAD_JOB, limit, move |context| {
             let is_simulated = context.is_simulated();
-            let done = download(context, &image, is_simulated)?;
-            // Nobody waits for it when the link was closed meanwhile.
-            let _ = outcome.try_send(done);
-            Ok(Box::new(()))
-        })))
+            download(context, &image, is_simulated)
+        }))?;
+        self.sending = Some(source);
+        self.on_board = None;
+        Some(job)
     }
 
-    /// The request was not taken.
+    pub fn cancel(&self) {
+        self.job.cancel();
+    }
+
+    /// The job was not taken.
     pub fn not_begun(&mut self) {
         self.forget();
     }
@@ -69,13 +70,9 @@ impl ScriptWork {
         self.on_board.as_ref()
     }
 
-    pub fn awaits(&self, event: &Event) -> bool {
-        self.job.awaits(event)
-    }
-
-    /// Takes in an event that it awaits.
+    /// Takes in an event of its job.
     pub fn take(&mut self, event: Event) -> Vec<Effect> {
-        let Some(ended) = self.job.take(event) else { return Vec::new() };
+        let Some(ended) = self.job.take_result(event) else { return Vec::new() };
         let source = self.sending.take();
         match ended {
             Ok(done) => {
@@ -84,7 +81,7 @@ impl ScriptWork {
                 self.on_board = source;
                 vec![Effect::Say(Gravity::Note, text)]
             }
-            Err(sentence) => vec![Effect::Say(Gravity::Error, sentence)],
+            Err(unfinished) => vec![Effect::Say(Gravity::Error, unfinished.sentence)],
         }
     }
 }

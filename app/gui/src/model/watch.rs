@@ -6,14 +6,15 @@
 
 use std::time::Duration;
 
-use brushwork_link::device::{Event, FnJob, Identity, PinSignal, Request, Sample};
+use brushwork_link::device::{Event, Identity, Job, PinSignal, QueuedJob, Sample};
 use brushwork_link::settings::{SettingsImage, SettingsTable, read_some};
 use brushwork_mcp_client::diagnosis;
 use brushwork_mcp_client::diagnosis::{PinEnd, Script};
-use crossbeam_channel::{Receiver, bounded};
+
+use super::watched::Watched;
 
 /// What the job is called while it runs.
-pub const JOB: &str = "look what keeps the motors from running";
+const JOB: &str = "look what keeps the motors from running";
 /// A serial line of 2400 bit/s takes most of it.
 const LIMIT: Duration = Duration::from_secs(30);
 
@@ -24,7 +25,7 @@ pub struct Watch {
     pins: Option<Vec<PinEnd>>,
     script: Script,
     wants_reading: bool,
-    running: Option<Receiver<SettingsImage>>,
+    job: Watched<SettingsImage>,
 }
 
 impl Watch {
@@ -62,53 +63,40 @@ impl Watch {
     }
 
     /// The job that reads what is wanted, if anything is.
-    pub fn read(&mut self, identity: &Identity) -> Option<Request> {
-        if !self.wants_reading || self.running.is_some() {
+    pub fn read(&mut self, identity: &Identity) -> Option<QueuedJob> {
+        if !self.wants_reading || self.job.is_running() {
             return None;
         }
         self.wants_reading = false;
         let table = SettingsTable::new(identity.subject()?);
         let keys = diagnosis::keys(&table);
-        let (sender, result) = bounded(1);
-        self.running = Some(result);
-        Some(Request::Job(FnJob::boxed(JOB, LIMIT, move |context| {
-            let report = read_some(context, &table, &keys)?;
-            // Nobody waits for it when the link was closed meanwhile.
-            let _ = sender.try_send(report.image);
-            Ok(Box::new(()))
-        })))
+        self.job.begin(Job::new(JOB, LIMIT, move |context| Ok(read_some(context, &table, &keys)?.image)))
     }
 
     /// Whether it reads, or is about to.
     pub fn is_busy(&self) -> bool {
-        self.wants_reading || self.running.is_some()
+        self.wants_reading || self.job.is_running()
     }
 
-    /// The request was not taken; it is made again later.
+    /// The job was not taken; it is made again later.
     pub fn not_begun(&mut self) {
-        self.running = None;
+        self.job.forget();
         self.wants_reading = true;
     }
 
-    /// Takes note of an event of the link. True where it is about the job of this module alone.
-    pub fn note(&mut self, event: &Event) -> bool {
-        match event {
-            Event::JobStarted { name } => name == JOB,
-            Event::JobEnded(report) if report.name == JOB => {
-                let image = self.running.take().and_then(|result| result.try_recv().ok());
-                self.settings = image.or(self.settings.take());
-                true
-            }
-            // Whatever it was may have changed settings.
-            Event::JobEnded(_) => {
-                self.wants_reading = true;
-                false
-            }
-            Event::Stopped(report) if report.confirmed() => {
-                self.script = Script::Stopped;
-                false
-            }
-            _ => false,
+    /// Takes in an event of its job.
+    pub fn take(&mut self, event: Event) {
+        if let Some((ticket, _)) = self.job.take(event) {
+            self.settings = ticket.take().or(self.settings.take());
+        }
+    }
+
+    /// Takes note of an event of the link.
+    pub fn note(&mut self, event: &Event) {
+        if let Event::Stopped(report) = event
+            && report.confirmed()
+        {
+            self.script = Script::Stopped;
         }
     }
 

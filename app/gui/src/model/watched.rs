@@ -1,8 +1,9 @@
 //! A job that was asked for, followed by the device thread's events until it ends.
 
-use brushwork_link::device::{Event, JobEnding};
+use brushwork_link::device::{Event, Job, JobEnding, JobTicket, QueuedJob};
 use brushwork_link::exchange::Interruption;
-use crossbeam_channel::{Receiver, Sender, bounded};
+
+use super::message::Gravity;
 
 /// One kind of job, at most one of which runs.
 #[derive(Debug)]
@@ -12,11 +13,16 @@ pub struct Watched<T> {
 
 #[derive(Debug)]
 struct Running<T> {
-    name: &'static str,
-    has_started: bool,
-    outcome: Receiver<T>,
+    ticket: JobTicket<T>,
     fraction: f32,
     text: String,
+}
+
+/// Why a job has no result.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unfinished {
+    pub gravity: Gravity,
+    pub sentence: String,
 }
 
 impl<T> Default for Watched<T> {
@@ -25,21 +31,29 @@ impl<T> Default for Watched<T> {
     }
 }
 
-impl<T> Watched<T> {
-    /// A job of this name is about to be asked for; what it finds goes into the sender. None while one runs.
-    pub fn begin(&mut self, name: &'static str) -> Option<Sender<T>> {
+impl<T: Send + 'static> Watched<T> {
+    /// What to ask of the device thread. None while one runs.
+    pub fn begin(&mut self, job: Job<T>) -> Option<QueuedJob> {
         if self.running.is_some() {
             return None;
         }
-        let (sender, outcome) = bounded(1);
-        let text = "Waiting for its turn".to_owned();
-        self.running = Some(Running { name, has_started: false, outcome, fraction: 0.0, text });
-        Some(sender)
+        let (job, ticket) = job.queued();
+        self.running = Some(Running { ticket, fraction: 0.0, text: "Waiting for its turn".to_owned() });
+        Some(job)
     }
+}
 
-    /// The request was not taken, or the link ended.
+impl<T> Watched<T> {
+    /// The job was not taken, or the link ended.
     pub fn forget(&mut self) {
         self.running = None;
+    }
+
+    /// Ends it at its next exchange.
+    pub fn cancel(&self) {
+        if let Some(running) = &self.running {
+            running.ticket.cancel();
+        }
     }
 
     pub fn is_running(&self) -> bool {
@@ -51,52 +65,43 @@ impl<T> Watched<T> {
         self.running.as_ref().map(|running| (running.fraction, running.text.as_str()))
     }
 
-    /// Whether the event is about it.
-    pub fn awaits(&self, event: &Event) -> bool {
-        let Some(running) = &self.running else { return false };
-        match event {
-            Event::JobStarted { name } => name == running.name,
-            Event::JobProgress { .. } => running.has_started,
-            Event::JobEnded(report) => report.name == running.name,
-            _ => false,
+    /// Takes in an event; at its end gives the ticket back, with how it ended. Events of other jobs are not for it: it may
+    /// have been forgotten, and another one begun.
+    pub fn take(&mut self, event: Event) -> Option<(JobTicket<T>, JobEnding)> {
+        let running = self.running.as_mut().filter(|running| event.job() == Some(running.ticket.id()))?;
+        if let Event::JobEnded(report) = event {
+            return self.running.take().map(|running| (running.ticket, report.ending));
         }
-    }
-
-    /// Takes in an event that it awaits. At the end tells what was found, or a sentence that says why nothing was.
-    pub fn take(&mut self, event: Event) -> Option<Result<T, String>> {
-        let running = self.running.as_mut()?;
-        match event {
-            Event::JobStarted { .. } => running.has_started = true,
-            Event::JobProgress { fraction, text } => {
-                running.fraction = fraction.unwrap_or(running.fraction);
-                running.text = text;
-            }
-            Event::JobEnded(report) => {
-                let running = self.running.take()?;
-                return Some(match report.ending {
-                    JobEnding::Done(_) => running.outcome.try_recv().map_err(|_| no_outcome(running.name)),
-                    ending => Err(ending_text(running.name, &ending)),
-                });
-            }
-            _ => {}
+        if let Event::JobProgress { fraction, text, .. } = event {
+            running.fraction = fraction.unwrap_or(running.fraction);
+            running.text = text;
         }
         None
     }
-}
 
-fn no_outcome(name: &str) -> String {
-    format!("Could not {name}: it ended without a result. Try again.")
-}
-
-fn ending_text(name: &str, ending: &JobEnding) -> String {
-    match ending {
-        JobEnding::Done(_) => no_outcome(name),
-        JobEnding::Failed(failure) => failure.to_string(),
-        JobEnding::Panicked(word) => format!("Could not {name}: Brushwork had a bug. Its last word: {word}"),
-        JobEnding::Interrupted(cause) => {
-            format!("Did not {name} to the end: {}. The motors were stopped.", interruption(*cause))
-        }
+    /// As [`Watched::take`]: at the end what the job gave, or why it gave nothing.
+    pub fn take_result(&mut self, event: Event) -> Option<Result<T, Unfinished>> {
+        let (ticket, ending) = self.take(event)?;
+        Some(match ticket.ending(ending) {
+            JobEnding::Done(value) => Ok(value),
+            ending => Err(unfinished(ticket.name(), &ending)),
+        })
     }
+}
+
+fn unfinished<T>(name: &str, ending: &JobEnding<T>) -> Unfinished {
+    let (gravity, sentence) = match ending {
+        JobEnding::Done(_) => (Gravity::Note, String::new()),
+        JobEnding::Failed(failure) => (Gravity::Error, failure.to_string()),
+        JobEnding::Panicked(word) => {
+            (Gravity::Error, format!("Could not {name}: Brushwork had a bug. Its last word: {word}"))
+        }
+        JobEnding::Interrupted(cause) => (
+            Gravity::Warning,
+            format!("Did not {name} to the end: {}. The motors were stopped.", interruption(*cause)),
+        ),
+    };
+    Unfinished { gravity, sentence }
 }
 
 /// What broke into a job, as a clause.
@@ -117,40 +122,44 @@ pub fn interruption(cause: Interruption) -> &'static str {
 mod tests {
     use std::time::Duration;
 
-    use brushwork_link::device::JobReport;
+    use brushwork_link::device::{JobId, JobReport};
 
     use super::*;
 
-    const JOB: &str = "try the motor";
+    fn job() -> Job<u8> {
+        Job::new("try the motor", Duration::from_secs(1), |_| Ok(42))
+    }
 
-    fn ended(name: &str, ending: JobEnding) -> Event {
+    fn ended(id: JobId, ending: JobEnding) -> Event {
         let ran_for = Duration::from_secs(1);
-        Event::JobEnded(JobReport { name: name.to_owned(), ran_for, ending, motors_stopped: Some(true) })
+        Event::JobEnded(JobReport { id, name: String::new(), ran_for, ending, motors_stopped: Some(true) })
     }
 
     #[test]
-    fn a_job_is_followed_to_its_result() {
+    fn a_job_is_followed_to_its_end_and_no_other() {
         let mut watched = Watched::default();
-        let sender = watched.begin(JOB).unwrap();
-        assert!(watched.begin(JOB).is_none(), "one at a time");
-        let progress = Event::JobProgress { fraction: Some(0.5), text: "half way".to_owned() };
-        assert!(!watched.awaits(&progress), "another job's, before this one began");
-        assert!(watched.take(Event::JobStarted { name: JOB.to_owned() }).is_none());
-        assert!(watched.awaits(&progress) && watched.take(progress).is_none());
+        let id = watched.begin(job()).unwrap().id();
+        let other = job().queued().0.id();
+        assert!(watched.begin(job()).is_none(), "one at a time");
+        let progress = |id| Event::JobProgress { id, fraction: Some(0.5), text: "half way".to_owned() };
+        assert!(watched.take(progress(other)).is_none());
+        assert_eq!(watched.progress(), Some((0.0, "Waiting for its turn")));
+        assert!(watched.take(progress(id)).is_none());
         assert_eq!(watched.progress(), Some((0.5, "half way")));
-        sender.send(42).unwrap();
-        let end = ended(JOB, JobEnding::Done(Box::new(())));
-        assert!(watched.awaits(&end) && !watched.awaits(&ended("save", JobEnding::Done(Box::new(())))));
-        assert_eq!(watched.take(end), Some(Ok(42)));
+        assert!(watched.take(ended(other, JobEnding::Done(()))).is_none());
+        assert!(watched.is_running());
+        let told = watched.take_result(ended(id, JobEnding::Done(()))).unwrap();
+        assert!(told.is_err(), "nothing has run it");
         assert!(!watched.is_running());
     }
 
     #[test]
     fn an_interrupted_job_says_why_and_that_the_motors_were_stopped() {
-        let mut watched = Watched::<()>::default();
-        drop(watched.begin(JOB));
-        let told = watched.take(ended(JOB, JobEnding::Interrupted(Interruption::Stop)));
-        let sentence = told.unwrap().unwrap_err();
-        assert_eq!(sentence, "Did not try the motor to the end: Stop was pressed. The motors were stopped.");
+        let mut watched = Watched::default();
+        let id = watched.begin(job()).unwrap().id();
+        let told = watched.take_result(ended(id, JobEnding::Interrupted(Interruption::Stop)));
+        let sentence = "Did not try the motor to the end: Stop was pressed. The motors were stopped.";
+        let unfinished = Unfinished { gravity: Gravity::Warning, sentence: sentence.to_owned() };
+        assert_eq!(told, Some(Err(unfinished)));
     }
 }

@@ -1,6 +1,6 @@
 //! Tuning as the window keeps it: what is set, what runs, and the runs so far, for each loop of each motor.
 
-use brushwork_link::device::{Event, Identity, Request, Sample};
+use brushwork_link::device::{Event, Identity, Sample};
 use brushwork_link::settings::SettingValue;
 use brushwork_link::transport::Stream;
 use brushwork_tuning::axis::{EncoderClass, Setup};
@@ -377,6 +377,13 @@ impl Tuning {
         }
     }
 
+    /// As [`Tuning::abort`]; a job that runs ends at its next exchange.
+    pub fn cancel(&mut self, why: &str) {
+        if let Some((_, sequence)) = &mut self.running {
+            sequence.cancel(why);
+        }
+    }
+
     /// What to ask of the device thread now; asked in every frame.
     pub fn next(
         &mut self,
@@ -394,11 +401,7 @@ impl Tuning {
         }
     }
 
-    pub fn awaits(&self, event: &Event) -> bool {
-        self.running.as_ref().is_some_and(|(_, sequence)| sequence.awaits(event))
-    }
-
-    /// Takes in an event that it awaits.
+    /// Takes in an event of a job of the run.
     pub fn take(&mut self, event: Event) -> Vec<Effect> {
         let Some((which, sequence)) = &mut self.running else { return Vec::new() };
         let which = *which;
@@ -423,6 +426,9 @@ impl Tuning {
                 let panel = self.panel_mut(which, target.motor);
                 let said = said_of(target.motor, &report, ended.why.as_deref(), is_owed);
                 panel.add(report);
+                if let Some(run) = panel.run_mut() {
+                    run.interrupted = ended.interrupted;
+                }
                 said
             }
             (Work::Try(_), _, Some(trial)) => {
@@ -571,13 +577,5 @@ fn said_of_trial(motor: Motor, trial: &brushwork_tuning::trial::Trial) -> Effect
     match trial.cause {
         None => Effect::Say(Gravity::Note, format!("{motor} behaves as predicted with these gains.")),
         Some(cause) => Effect::Say(Gravity::Warning, format!("{motor}: {}", cause.sentence())),
-    }
-}
-
-/// What to ask for as a request.
-pub fn as_request(next: Next) -> Request {
-    match next {
-        Next::Arm(scope) => Request::Arm(scope),
-        Next::Job(request) => request,
     }
 }

@@ -11,6 +11,7 @@ use super::which::Loop;
 use crate::command::{Command, Commands};
 use crate::model::Model;
 use crate::model::lamp::LampState;
+use crate::model::watched::interruption;
 use crate::theme::Palette;
 
 /// What to do, in the order in which it is best tried.
@@ -152,6 +153,14 @@ pub fn cleared_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     }
 }
 
+/// What was seen; of a run that was stopped, by what.
+fn sentence(run: &Run, cause: Cause) -> String {
+    match run.interrupted.filter(|_| cause == Cause::Stopped) {
+        Some(by) => format!("The run was stopped: {}.", interruption(by)),
+        None => cause.sentence().into_owned(),
+    }
+}
+
 pub fn refusal_ui(ui: &mut Ui, model: &Model, which: Loop, commands: &mut Commands) {
     let Some(run) = model.front.tune.front(which).run() else { return };
     let motor = model.front.tune.motor(which);
@@ -171,7 +180,7 @@ pub fn refusal_ui(ui: &mut Ui, model: &Model, which: Loop, commands: &mut Comman
         }
     });
     for (index, cause) in run.report.causes.iter().enumerate() {
-        ui.add(Label::new(cause.sentence().into_owned()).wrap());
+        ui.add(Label::new(sentence(run, *cause)).wrap());
         if let Some(sketch) = Sketch::of(*cause).filter(|_| index == 0) {
             sketch_ui(ui, &sketch);
         }

@@ -1,5 +1,6 @@
 //! One run as the window keeps it: its report, what it looked like, and the gains that are considered now.
 
+use brushwork_link::exchange::Interruption;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::design::Task;
 use brushwork_tuning::model::Gains;
@@ -50,6 +51,8 @@ pub struct Run {
     /// Counted from 1.
     pub number: usize,
     pub report: Report,
+    /// What broke into it.
+    pub interrupted: Option<Interruption>,
     /// What was tried on the machine last: by the run itself or by a verification.
     pub tried: Option<Tried>,
     /// What a verification said.
@@ -80,6 +83,7 @@ impl Run {
         let tried = tried(trace, rms, &report);
         let mut run = Self {
             number,
+            interrupted: None,
             tried,
             verified: None,
             level: report.request.level,

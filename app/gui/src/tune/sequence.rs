@@ -6,7 +6,8 @@
 
 use std::sync::PoisonError;
 
-use brushwork_link::device::{ArmScope, Event, Job, JobEnding, Request};
+use brushwork_link::device::{ArmScope, Event, JobEnding, JobId, JobTicket, QueuedJob};
+use brushwork_link::exchange::Interruption;
 use brushwork_link::settings::Subject;
 use brushwork_tuning::axis::Setup;
 use brushwork_tuning::report::Report;
@@ -51,6 +52,8 @@ pub struct Ended {
     pub trial: Option<Trial>,
     /// Why there is less than was asked for.
     pub why: Option<String>,
+    /// What broke into the run itself.
+    pub interrupted: Option<Interruption>,
     /// What the controller held before and does not hold again.
     pub owed: Option<(Setup, Origin)>,
     /// A loop did not hold its motor still with what was put back, and was left off.
@@ -68,7 +71,16 @@ pub struct Origin {
 #[derive(Debug)]
 pub enum Next {
     Arm(ArmScope),
-    Job(Request),
+    Job(QueuedJob),
+}
+
+/// What was asked for in a stage.
+#[derive(Debug)]
+enum Asked {
+    Nothing,
+    Arming,
+    Work(JobTicket<()>),
+    Restore(JobTicket<Restored>),
 }
 
 /// One run.
@@ -78,9 +90,7 @@ pub struct Sequence {
     pub target: Target,
     scope: ArmScope,
     stage: Stage,
-    /// The job or the arming of the stage was asked for.
-    is_asked: bool,
-    has_started: bool,
+    asked: Asked,
     restores: u8,
     /// From the job that prepares on.
     origin: Option<Origin>,
@@ -92,6 +102,7 @@ pub struct Sequence {
     /// What it does at the moment, and since when on the trace.
     texts: Vec<(String, f64)>,
     why: Option<String>,
+    interrupted: Option<Interruption>,
     loop_left_off: bool,
 }
 
@@ -103,8 +114,7 @@ impl Sequence {
             target,
             scope,
             stage: Stage::Preparing,
-            is_asked: false,
-            has_started: false,
+            asked: Asked::Nothing,
             restores: 0,
             origin: None,
             setup: Slot::default(),
@@ -114,6 +124,7 @@ impl Sequence {
             live,
             texts: Vec::new(),
             why: None,
+            interrupted: None,
             loop_left_off: false,
         }
     }
@@ -163,8 +174,16 @@ impl Sequence {
         }
     }
 
+    /// As [`Sequence::abort`]; the job that runs ends at its next exchange, unless it puts something back.
+    pub fn cancel(&mut self, why: &str) {
+        if let Asked::Work(ticket) = &self.asked {
+            ticket.cancel();
+        }
+        self.abort(why);
+    }
+
     fn go_to(&mut self, stage: Stage) {
-        (self.stage, self.is_asked, self.has_started) = (stage, false, false);
+        (self.stage, self.asked) = (stage, Asked::Nothing);
     }
 
     /// What to ask for now, if anything; asked in every frame. `origin` is asked once, before anything else.
@@ -181,15 +200,18 @@ impl Sequence {
         if self.stage == Stage::Arming {
             if arming.is_armed_for(self.scope) {
                 self.go_to(Stage::Running);
-            } else if self.is_asked && refused && arming == Arming::Disarmed {
+            } else if matches!(self.asked, Asked::Arming) && refused && arming == Arming::Disarmed {
                 self.abort("the screen could not be armed again");
             }
         }
-        if std::mem::replace(&mut self.is_asked, true) {
+        if !matches!(self.asked, Asked::Nothing) {
             return None;
         }
-        let job: Box<dyn Job> = match self.stage {
-            Stage::Arming => return Some(Next::Arm(self.scope)),
+        let work = match self.stage {
+            Stage::Arming => {
+                self.asked = Asked::Arming;
+                return Some(Next::Arm(self.scope));
+            }
             Stage::Preparing => jobs::prepare(self.target, subject, &self.setup, &keeper),
             Stage::Running => match &self.work {
                 Work::Tune(request) => jobs::run_watched(self.target, *request, &self.found, &self.live),
@@ -197,10 +219,15 @@ impl Sequence {
                 Work::PutBack => return None,
             },
             Stage::Restoring => {
-                jobs::restore(self.target, self.before?, None, self.leaves_loop_off(), &keeper)
+                let restore = jobs::restore(self.target, self.before?, None, self.leaves_loop_off(), &keeper);
+                let (job, ticket) = restore.queued();
+                self.asked = Asked::Restore(ticket);
+                return Some(Next::Job(job));
             }
         };
-        Some(Next::Job(Request::Job(job)))
+        let (job, ticket) = work.queued();
+        self.asked = Asked::Work(ticket);
+        Some(Next::Job(job))
     }
 
     /// Whether the run has left a loop off, for a reason that its result tells.
@@ -212,86 +239,83 @@ impl Sequence {
 
     /// The device thread did not take what was asked for: it is asked again.
     pub fn not_begun(&mut self) {
-        self.is_asked = false;
+        self.asked = Asked::Nothing;
     }
 
-    fn job_name(&self) -> Option<&'static str> {
-        match (self.stage, &self.work) {
-            (Stage::Preparing, _) => Some(jobs::PREPARE),
-            (Stage::Running, Work::Tune(_)) => Some(jobs::RUN),
-            (Stage::Running, _) => Some(jobs::TRIAL),
-            (Stage::Restoring, _) => Some(jobs::RESTORE),
-            (Stage::Arming, _) => None,
+    /// The job that was asked for.
+    fn job(&self) -> Option<JobId> {
+        match &self.asked {
+            Asked::Nothing | Asked::Arming => None,
+            Asked::Work(ticket) => Some(ticket.id()),
+            Asked::Restore(ticket) => Some(ticket.id()),
         }
     }
 
-    /// Whether the event is about the job that runs.
-    pub fn awaits(&self, event: &Event) -> bool {
-        let Some(running) = self.job_name().filter(|_| self.is_asked) else { return false };
-        match event {
-            Event::JobStarted { name } => name == running,
-            Event::JobProgress { .. } => self.has_started,
-            Event::JobEnded(report) => report.name == running,
-            _ => false,
-        }
-    }
-
-    /// Takes in an event that it awaits; the end of the run, if it is that.
+    /// Takes in an event of a job; the end of the run, if it is that.
     pub fn take(&mut self, event: Event) -> Option<Ended> {
-        match event {
-            Event::JobStarted { .. } => self.has_started = true,
-            // What the jobs around it say has no place among the steps of the run.
-            Event::JobProgress { text, .. } if self.stage == Stage::Running => {
-                let since_s = self.live.look().end_s();
-                if self.texts.last().is_none_or(|(last, _)| *last != text) {
-                    self.texts.push((text, since_s));
-                }
+        if event.job() != self.job() {
+            return None;
+        }
+        if let Event::JobEnded(report) = event {
+            return self.job_ended(report.ending);
+        }
+        // What the jobs around it say has no place among the steps of the run.
+        if let Event::JobProgress { text, .. } = event
+            && self.stage == Stage::Running
+        {
+            let since_s = self.live.look().end_s();
+            if self.texts.last().is_none_or(|(last, _)| *last != text) {
+                self.texts.push((text, since_s));
             }
-            Event::JobEnded(report) => return self.job_ended(report.ending),
-            _ => {}
         }
         None
     }
 
     fn job_ended(&mut self, ending: JobEnding) -> Option<Ended> {
-        let is_done = matches!(ending, JobEnding::Done(_));
-        match self.stage {
-            Stage::Preparing => {
-                self.before = take(&self.setup);
-                self.note(ending);
-                let Some(before) = self.before else { return Some(self.end(None)) };
-                self.target.encoder = Some(before.encoder);
-                self.live.begin(Trace::new(self.target.motor.index(), before.encoder));
-                let goes_on = is_done && self.why.is_none();
-                self.go_to(if goes_on { Stage::Arming } else { Stage::Restoring });
-            }
-            Stage::Running => {
-                self.note(ending);
-                self.go_to(Stage::Restoring);
-            }
-            Stage::Restoring if is_done => {
-                if let JobEnding::Done(output) = ending {
-                    let told = output.downcast_ref::<Restored>();
-                    self.loop_left_off = told.is_some_and(|told| told.loop_left_off);
+        match std::mem::replace(&mut self.asked, Asked::Nothing) {
+            Asked::Work(_) => self.work_ended(ending),
+            Asked::Restore(ticket) => match ticket.ending(ending) {
+                JobEnding::Done(told) => {
+                    self.loop_left_off = told.loop_left_off;
+                    Some(self.end(None))
                 }
-                return Some(self.end(None));
-            }
-            Stage::Restoring if self.restores >= MOST_RESTORES => {
-                self.note(ending);
-                let owed = self.before;
-                return Some(self.end(owed));
-            }
-            Stage::Restoring => {
-                self.restores += 1;
-                self.is_asked = false;
-            }
-            Stage::Arming => {}
+                ending if self.restores >= MOST_RESTORES => {
+                    self.note(ending);
+                    let owed = self.before;
+                    Some(self.end(owed))
+                }
+                JobEnding::Interrupted(_) | JobEnding::Failed(_) | JobEnding::Panicked(_) => {
+                    self.restores += 1;
+                    None
+                }
+            },
+            Asked::Nothing | Asked::Arming => None,
         }
+    }
+
+    /// The job before the run has ended, or the run itself.
+    fn work_ended(&mut self, ending: JobEnding) -> Option<Ended> {
+        let is_done = matches!(ending, JobEnding::Done(()));
+        if self.stage == Stage::Running {
+            if let JobEnding::Interrupted(cause) = ending {
+                self.interrupted = Some(cause);
+            }
+            self.note(ending);
+            self.go_to(Stage::Restoring);
+            return None;
+        }
+        self.before = take(&self.setup);
+        self.note(ending);
+        let Some(before) = self.before else { return Some(self.end(None)) };
+        self.target.encoder = Some(before.encoder);
+        self.live.begin(Trace::new(self.target.motor.index(), before.encoder));
+        let goes_on = is_done && self.why.is_none();
+        self.go_to(if goes_on { Stage::Arming } else { Stage::Restoring });
         None
     }
 
     /// Why a job ended early, if it did.
-    fn note(&mut self, ending: JobEnding) {
+    fn note<T>(&mut self, ending: JobEnding<T>) {
         let why = match ending {
             JobEnding::Done(_) => return,
             JobEnding::Failed(failure) => failure.to_string(),
@@ -307,6 +331,7 @@ impl Sequence {
             report: take(&self.found),
             trial: take(&self.tried),
             why: self.why.take(),
+            interrupted: self.interrupted,
             owed: owed.zip(self.origin.clone()),
             loop_left_off: self.loop_left_off,
         }

@@ -319,6 +319,7 @@ fn a_frozen_window_stops_the_motor_and_the_old_gains_are_put_back_when_it_lives_
     assert_at_rest(&mut bench);
     assert!(!bench.model().front.tune.is_running());
     assert_eq!(held(&bench, Motor::M1), before);
+    assert!(bench.sees_part("The run was stopped: this computer answered late"));
 }
 
 #[test]

@@ -308,7 +308,7 @@ fn the_run_that_was_ended_is_kept_with_its_reason() {
     let run = bench.model().front.tune.front(Loop::Velocity).run().cloned();
     let run = run.expect("the run is there");
     assert!(run.is_refused());
-    assert!(bench.sees_part("M1 was not tuned") && bench.sees("The run was stopped."));
+    assert!(bench.sees_part("M1 was not tuned") && bench.sees("The run was stopped: Stop was pressed."));
 }
 
 #[test]

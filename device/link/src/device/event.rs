@@ -3,7 +3,7 @@
 use super::channel::Sample;
 use super::drive::{ArmScope, Drive};
 use super::identity::Identity;
-use super::job::JobReport;
+use super::job::{JobId, JobReport};
 use super::status::StatusReport;
 use super::stop::StopReport;
 use crate::exchange::{LinkStatistics, Traffic};
@@ -88,11 +88,15 @@ pub enum Event {
     LoaderEntered,
     /// A job began.
     JobStarted {
-        /// Its name.
+        /// Which.
+        id: JobId,
+        /// Its name, for people.
         name: String,
     },
     /// A job tells how far it is.
     JobProgress {
+        /// Which.
+        id: JobId,
         /// 0 to 1, where the job can tell.
         fraction: Option<f32>,
         /// What it does at the moment.
@@ -146,6 +150,35 @@ pub enum DisarmReason {
     LinkLost,
     /// The link is being closed.
     Closing,
+}
+
+impl Event {
+    /// The job that it is about.
+    #[must_use]
+    pub fn job(&self) -> Option<JobId> {
+        match self {
+            Self::JobStarted { id, .. } | Self::JobProgress { id, .. } => Some(*id),
+            Self::JobEnded(report) => Some(report.id),
+            Self::Connected(_)
+            | Self::Searching { .. }
+            | Self::Selected { .. }
+            | Self::Sample(_)
+            | Self::Status(_)
+            | Self::Armed { .. }
+            | Self::Driven { .. }
+            | Self::Disarmed(_)
+            | Self::ArmRefused { .. }
+            | Self::Stopped(_)
+            | Self::Transacted { .. }
+            | Self::RawReply { .. }
+            | Self::LoaderEntered
+            | Self::Link(_)
+            | Self::Traffic { .. }
+            | Self::Failure(_)
+            | Self::Lost(_)
+            | Self::Closed => None,
+        }
+    }
 }
 
 impl fmt::Display for DisarmReason {

@@ -1,6 +1,7 @@
 //! The window's and the command line's end of a device thread. Nothing here waits.
 
 use super::event::Event;
+use super::job::{Job, JobTicket};
 use super::request::{Request, RequestRefused};
 use super::signals::Signals;
 use crossbeam_channel::{Receiver, Sender, TrySendError};
@@ -24,8 +25,6 @@ pub(super) struct Envelope {
     pub stops: u64,
     /// How often disarming had been asked for until then.
     pub disarms: u64,
-    /// How often a job had been cancelled until then.
-    pub cancels: u64,
 }
 
 /// A device thread's handle. Dropping it closes the link: motors that this program set in motion are stopped first.
@@ -52,15 +51,20 @@ impl DeviceHandle {
         self.ended = Some(ended);
     }
 
-    /// Queues a request. Disarm, cancel and disconnect are not queued but seen at once.
+    /// Queues a request. Disarm and disconnect are not queued but seen at once.
     pub fn request(&self, request: Request) -> Result<(), RequestRefused> {
         match request {
             Request::Disarm => self.signals.disarm(),
-            Request::CancelJob => self.signals.cancel(),
             Request::Disconnect => self.signals.close(),
             request => return self.queue(request),
         }
         Ok(())
+    }
+
+    /// Queues a job; what it gives comes by the ticket.
+    pub fn start<T: Send + 'static>(&self, job: Job<T>) -> Result<JobTicket<T>, RequestRefused> {
+        let (job, ticket) = job.queued();
+        self.request(Request::Job(job)).map(|()| ticket)
     }
 
     /// Stops all motors of the link: seen by the thread within milliseconds, whatever it is doing.
@@ -104,7 +108,6 @@ impl DeviceHandle {
             asked_at: self.now(),
             stops: self.signals.stops(),
             disarms: self.signals.disarms(),
-            cancels: self.signals.cancels(),
         };
         match self.requests.try_send(envelope) {
             Ok(()) => {

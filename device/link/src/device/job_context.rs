@@ -56,7 +56,7 @@ impl<'a> JobContext<'a> {
     }
 
     /// Moves motors, as [`Request::Drive`](super::Request::Drive) does. Refused unless something is armed; a job that uses it
-    /// says so by [`Job::moves_motors`](super::Job::moves_motors). After an error nobody knows what the motors do, so the job
+    /// is made by [`Job::moving`](super::Job::moving). After an error nobody knows what the motors do, so the job
     /// should end.
     pub fn drive(&mut self, drive: &Drive) -> Result<(), ExchangeError> {
         self.host.drive(drive)

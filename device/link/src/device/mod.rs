@@ -31,7 +31,7 @@ pub use event::{DisarmReason, Event};
 pub use family::AnyFamily;
 pub use handle::{DeviceHandle, Stopper};
 pub use identity::{Capabilities, Facts, Identity, UnitFacts};
-pub use job::{FnJob, Job, JobContext, JobEnding, JobOutput, JobReport};
+pub use job::{Job, JobContext, JobEnding, JobId, JobReport, JobTicket, QueuedJob};
 pub use options::{AddressSet, Addresses, DeviceOptions};
 pub use poll_rate::PollRate;
 pub use request::{Request, RequestRefused};

@@ -1,7 +1,7 @@
 //! What a window or a command line asks of the device thread.
 
 use super::drive::{ArmScope, Drive};
-use super::job::Job;
+use super::job::QueuedJob;
 use super::poll_rate::PollRate;
 use super::risk::RiskAccepted;
 use crate::transport::Stream;
@@ -61,10 +61,8 @@ pub enum Request {
         /// The bytes, line end or checksum included.
         bytes: Vec<u8>,
     },
-    /// Runs long work. Answered by [`Event::JobStarted`](super::Event::JobStarted) and what follows it.
-    Job(Box<dyn Job>),
-    /// Ends the running job at its next exchange. Overtakes what is queued.
-    CancelJob,
+    /// Runs long work. Answered by [`Event::JobStarted`](super::Event::JobStarted) and what follows it; its ticket cancels it.
+    Job(QueuedJob),
     /// Stops what this program has set in motion and closes the link. Overtakes what is queued.
     Disconnect,
 }

@@ -1,4 +1,4 @@
-//! What reaches the device thread without waiting in its queue: Stop, renewal, disarm, cancel, close.
+//! What reaches the device thread without waiting in its queue: Stop, renewal, disarm, close.
 //!
 //! All of it is atomic, so that a window, a signal handler and a frozen queue make no difference. [`Guard`] is the
 //! thread's own view of it: what may break into an exchange at a given moment.
@@ -6,7 +6,7 @@
 use crate::clock::{Clock, nanoseconds};
 use crate::exchange::{Interruption, Watch};
 use crossbeam_channel::{Receiver, Sender, bounded};
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
@@ -26,7 +26,6 @@ pub struct Signals {
     /// Since when a motion command may be in effect, in nanoseconds; [`AT_REST`] while none is.
     motion_since: AtomicU64,
     disarms: AtomicU64,
-    cancels: AtomicU64,
     closing: AtomicBool,
     wake: Sender<()>,
 }
@@ -42,7 +41,6 @@ impl Signals {
             renewed_at: AtomicU64::new(0),
             motion_since: AtomicU64::new(AT_REST),
             disarms: AtomicU64::new(0),
-            cancels: AtomicU64::new(0),
             closing: AtomicBool::new(false),
             wake,
         };
@@ -78,12 +76,6 @@ impl Signals {
         self.wake();
     }
 
-    /// Asks the running job to end.
-    pub fn cancel(&self) {
-        self.cancels.fetch_add(1, Ordering::SeqCst);
-        self.wake();
-    }
-
     /// Asks the thread to close the link.
     pub fn close(&self) {
         self.closing.store(true, Ordering::SeqCst);
@@ -105,11 +97,6 @@ impl Signals {
         self.disarms.load(Ordering::SeqCst)
     }
 
-    /// How often a job was cancelled.
-    pub fn cancels(&self) -> u64 {
-        self.cancels.load(Ordering::SeqCst)
-    }
-
     /// When the last stop was asked for.
     pub fn stopped_at(&self) -> Duration {
         Duration::from_nanos(self.stopped_at.load(Ordering::SeqCst))
@@ -126,9 +113,9 @@ pub struct Guard {
     signals: Arc<Signals>,
     stops_served: Cell<u64>,
     disarms_served: Cell<u64>,
-    cancels_served: Cell<u64>,
     armed: Cell<bool>,
     job_until: Cell<Option<Duration>>,
+    job_cancelled: RefCell<Arc<AtomicBool>>,
     only_stop: Cell<bool>,
 }
 
@@ -138,9 +125,9 @@ impl Guard {
         Self {
             stops_served: Cell::new(0),
             disarms_served: Cell::new(0),
-            cancels_served: Cell::new(0),
             armed: Cell::new(false),
             job_until: Cell::new(None),
+            job_cancelled: RefCell::default(),
             only_stop: Cell::new(false),
             signals,
         }
@@ -180,10 +167,15 @@ impl Guard {
         self.stops_served.set(stops);
     }
 
-    /// Begins a job that must end by `until` and before which jobs had been cancelled `cancels` times; `None` ends it.
-    pub fn set_job(&self, until: Option<Duration>, cancels: u64) {
-        self.job_until.set(until);
-        self.cancels_served.set(cancels);
+    /// Begins a job that must end by `until`, or when its flag says that it was cancelled.
+    pub fn set_job(&self, until: Duration, cancelled: Arc<AtomicBool>) {
+        self.job_until.set(Some(until));
+        self.job_cancelled.replace(cancelled);
+    }
+
+    /// The job has ended.
+    pub fn job_ended(&self) {
+        self.job_until.set(None);
     }
 
     /// While set, only a new Stop breaks in: the motors are being stopped.
@@ -207,7 +199,7 @@ impl Guard {
 
     fn job_ends(&self, now: Duration) -> Option<Interruption> {
         let until = self.job_until.get()?;
-        if self.signals.cancels() != self.cancels_served.get() {
+        if self.job_cancelled.borrow().load(Ordering::SeqCst) {
             return Some(Interruption::Cancelled);
         }
         (now >= until).then_some(Interruption::TimeLimit)
@@ -258,7 +250,7 @@ mod tests {
     fn stop_comes_before_everything_else() {
         let (clock, signals, guard) = guard();
         guard.set_armed(true, 0);
-        guard.set_job(Some(Duration::ZERO), 0);
+        guard.set_job(Duration::ZERO, Arc::default());
         signals.close();
         signals.disarm();
         signals.stop();
@@ -307,14 +299,16 @@ mod tests {
     }
 
     #[test]
-    fn a_job_ends_by_its_limit_or_by_a_cancel_of_its_own_time() {
-        let (_, signals, guard) = guard();
+    fn a_job_ends_by_its_limit_or_by_a_cancel_of_its_own() {
+        let (_, _, guard) = guard();
         let ms = Duration::from_millis;
-        signals.cancel();
-        guard.set_job(Some(ms(500)), signals.cancels());
+        let [earlier, cancelled] = [true, false].map(|is| Arc::new(AtomicBool::new(is)));
+        guard.set_job(ms(500), earlier);
+        guard.job_ended();
+        guard.set_job(ms(500), cancelled.clone());
         assert_eq!(guard.interruption(ms(499)), None, "an earlier cancel was for another job");
         assert_eq!(guard.interruption(ms(500)), Some(Interruption::TimeLimit));
-        signals.cancel();
+        cancelled.store(true, Ordering::SeqCst);
         assert_eq!(guard.interruption(ms(1)), Some(Interruption::Cancelled));
     }
 

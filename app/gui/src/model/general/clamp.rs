@@ -7,8 +7,8 @@ use crossbeam_channel::Receiver;
 
 use super::super::link::Effect;
 use super::super::message::Gravity;
+use super::super::watched::Watched;
 use super::unit::UnitSettings;
-use brushwork_core::motion::clamp;
 use brushwork_core::motion::clamp::{STEPS, Step, Task};
 
 mod acts;
@@ -24,6 +24,7 @@ pub struct ClampTest {
     pub limit_volts: Option<f64>,
     pub down_percent_per_s: f64,
     pub hold_s: f64,
+    job: Watched<()>,
     running: Option<Running>,
     /// What was found in the last run.
     pub steps: Vec<Step>,
@@ -41,9 +42,6 @@ pub struct Verdict {
 #[derive(Debug)]
 struct Running {
     task: Task,
-    has_started: bool,
-    fraction: f32,
-    text: String,
     found: Receiver<Step>,
 }
 
@@ -54,6 +52,7 @@ impl Default for ClampTest {
             limit_volts: None,
             down_percent_per_s: 300.0,
             hold_s: 1.5,
+            job: Watched::default(),
             running: None,
             steps: Vec::new(),
             verdict: None,
@@ -63,11 +62,15 @@ impl Default for ClampTest {
 
 impl ClampTest {
     pub fn is_running(&self) -> bool {
-        self.running.is_some()
+        self.job.is_running()
     }
 
     pub fn progress(&self) -> Option<(f32, &str)> {
-        self.running.as_ref().map(|running| (running.fraction, running.text.as_str()))
+        self.job.progress()
+    }
+
+    pub fn cancel(&self) {
+        self.job.cancel();
     }
 
     /// The limit of the test: as set, or from the unit's own maximum.
@@ -75,35 +78,20 @@ impl ClampTest {
         self.limit_volts.or_else(|| unit.and_then(first_limit)).unwrap_or(30.0)
     }
 
-    fn awaits(&self, event: &Event) -> bool {
-        let Some(running) = &self.running else { return false };
-        match event {
-            Event::JobStarted { name } => name == clamp::JOB,
-            Event::JobProgress { .. } => running.has_started,
-            Event::JobEnded(report) => report.name == clamp::JOB,
-            _ => false,
-        }
+    fn take(&mut self, event: Event) -> Vec<Effect> {
+        let Some(running) = &self.running else { return Vec::new() };
+        self.steps.extend(running.found.try_iter());
+        let task = running.task;
+        let Some((_, ending)) = self.job.take(event) else { return Vec::new() };
+        let verdict = verdict(&task, &self.steps, &ending);
+        self.verdict = Some(verdict.clone());
+        self.running = None;
+        vec![Effect::Say(verdict.gravity, verdict.sentence)]
     }
 
-    fn take(&mut self, event: Event) -> Vec<Effect> {
-        let Some(running) = &mut self.running else { return Vec::new() };
-        self.steps.extend(running.found.try_iter());
-        match event {
-            Event::JobStarted { .. } => running.has_started = true,
-            Event::JobProgress { fraction, text } => {
-                running.fraction = fraction.unwrap_or(running.fraction);
-                running.text = text;
-            }
-            Event::JobEnded(report) => {
-                let task = running.task;
-                self.running = None;
-                let verdict = verdict(&task, &self.steps, &report.ending);
-                self.verdict = Some(verdict.clone());
-                return vec![Effect::Say(verdict.gravity, verdict.sentence)];
-            }
-            _ => {}
-        }
-        Vec::new()
+    fn forget_job(&mut self) {
+        self.job.forget();
+        self.running = None;
     }
 }
 
@@ -121,7 +109,7 @@ fn verdict(task: &Task, steps: &[Step], ending: &JobEnding) -> Verdict {
     let over = steps.last().filter(|step| step.is_over);
     let braked = steps.last().filter(|step| step.is_braked());
     let (gravity, sentence) = match (ending, over) {
-        (JobEnding::Done(_), Some(step)) => (
+        (JobEnding::Done(()), Some(step)) => (
             Gravity::Error,
             format!(
                 "Stopped at {:.0} %: the main battery reached {:.1} V, the limit is {:.1} V. Use a resistor of fewer \
@@ -131,17 +119,17 @@ fn verdict(task: &Task, steps: &[Step], ending: &JobEnding) -> Verdict {
                 task.limit_volts
             ),
         ),
-        (JobEnding::Done(_), None) if braked.is_some() => {
+        (JobEnding::Done(()), None) if braked.is_some() => {
             (Gravity::Error, format!("{} MCP manual 1.7.5.", braked.map(braked_text).unwrap_or_default()))
         }
-        (JobEnding::Done(_), None) if steps.len() == STEPS => (
+        (JobEnding::Done(()), None) if steps.len() == STEPS => (
             Gravity::Note,
             format!(
                 "The main battery stayed below {:.1} V from every speed: {highest:.1} V at most.",
                 task.limit_volts
             ),
         ),
-        (JobEnding::Done(_), None) => {
+        (JobEnding::Done(()), None) => {
             (Gravity::Error, "The test ended without a result. Try again.".to_owned())
         }
         (JobEnding::Failed(failure), _) => (Gravity::Error, failure.to_string()),

@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 
-use brushwork_link::device::{Event, Identity, JobEnding, Request};
+use brushwork_link::device::{Event, Identity, JobEnding, QueuedJob};
 use brushwork_link::settings::WriteReport;
 use brushwork_link::transport::Stream;
 
@@ -175,13 +175,14 @@ impl General {
     }
 
     /// What to ask of the device thread. Nothing while other work with settings runs.
-    pub fn begin(&mut self, wish: SettingsWish, own_stream: Option<Stream>) -> Option<Request> {
+    pub fn begin(&mut self, wish: SettingsWish, own_stream: Option<Stream>) -> Option<QueuedJob> {
         if wish == SettingsWish::Cancel {
             let running = self.running.as_mut()?;
             running.is_cancelled = true;
             // Whoever calls it off is told, and it is not begun again by itself.
             running.is_quiet = false;
-            return Some(Request::CancelJob);
+            running.ticket.cancel();
+            return None;
         }
         let is_calibrating = matches!(wish, SettingsWish::OpenInput | SettingsWish::CloseInput);
         if self.running.is_some() || self.calibration.is_some() != is_calibrating {
@@ -200,22 +201,22 @@ impl General {
         let (job, running) = work::begin(wish, key, unit, input, own_stream, keeper)?;
         self.running = Some(running);
         self.sheet = None;
-        Some(Request::Job(job))
+        Some(job)
     }
 
     /// Reads what the controller works with, without a word: whoever is connected is to see what is saved and what is not.
     /// It gives way to whatever is asked for meanwhile, and is begun again.
-    pub fn begin_quietly(&mut self) -> Option<Request> {
+    pub fn begin_quietly(&mut self) -> Option<QueuedJob> {
         if self.quiet_failures >= QUIET_TRIES {
             return None;
         }
         let sheet = self.sheet.clone();
-        let request = self.begin(SettingsWish::Read, None);
+        let job = self.begin(SettingsWish::Read, None);
         self.sheet = sheet;
-        if let Some(running) = self.running.as_mut().filter(|_| request.is_some()) {
+        if let Some(running) = self.running.as_mut().filter(|_| job.is_some()) {
             running.is_quiet = true;
         }
-        request
+        job
     }
 
     /// Whether the settings are being read without anybody having asked.
@@ -224,50 +225,29 @@ impl General {
     }
 
     /// Makes reading that nobody asked for give way.
-    pub fn give_way(&mut self) -> Option<Request> {
-        let running = self.running.as_mut().filter(|running| running.is_quiet && !running.is_cancelled)?;
-        running.is_cancelled = true;
-        Some(Request::CancelJob)
+    pub fn give_way(&mut self) {
+        if let Some(running) = self.running.as_mut().filter(|running| running.is_quiet) {
+            running.is_cancelled = true;
+            running.ticket.cancel();
+        }
     }
 
-    /// The request was not taken.
+    /// The job was not taken.
     pub fn not_begun(&mut self) {
-        if let Some(running) = &mut self.running
-            && !std::mem::take(&mut running.is_cancelled)
-        {
-            self.running = None;
-            self.calibration_not_begun();
-        }
+        self.running = None;
+        self.calibration_not_begun();
     }
 
-    /// Whether the event is about work that was begun here.
-    pub fn awaits(&self, event: &Event) -> bool {
-        if self.awaits_clamp_test(event) {
-            return true;
-        }
-        let Some(running) = &self.running else { return false };
-        match event {
-            Event::JobStarted { name } => *name == running.name,
-            Event::JobProgress { .. } => running.has_started,
-            Event::JobEnded(report) => report.name == running.name,
-            _ => false,
-        }
-    }
-
-    /// Takes in an event that [`General::awaits`].
+    /// Takes in an event of the work that was begun here.
     pub fn take(&mut self, event: Event) -> Vec<Effect> {
-        if self.awaits_clamp_test(&event) {
-            return self.take_clamp_test(event);
+        let is_of_it = |running: &&mut Running| event.job() == Some(running.ticket.id());
+        let Some(running) = self.running.as_mut().filter(is_of_it) else { return Vec::new() };
+        if let Event::JobEnded(report) = event {
+            return self.ended(&report.ending);
         }
-        let Some(running) = &mut self.running else { return Vec::new() };
-        match event {
-            Event::JobStarted { .. } => running.has_started = true,
-            Event::JobProgress { fraction, text } => {
-                running.fraction = fraction;
-                running.text = text;
-            }
-            Event::JobEnded(report) => return self.ended(&report.ending),
-            _ => {}
+        if let Event::JobProgress { fraction, text, .. } = event {
+            running.fraction = fraction;
+            running.text = text;
         }
         Vec::new()
     }
@@ -290,7 +270,7 @@ impl General {
     fn ended(&mut self, ending: &JobEnding) -> Vec<Effect> {
         let Some(running) = self.running.take() else { return Vec::new() };
         if matches!(running.wish, SettingsWish::OpenInput | SettingsWish::CloseInput) {
-            let report = match running.result() {
+            let report = match running.ticket.take() {
                 Some(work::Outcome::Written(report)) => Some(*report),
                 _ => None,
             };
@@ -298,7 +278,7 @@ impl General {
             return self.told(told);
         }
         let Some(unit) = self.units.get_mut(&running.unit) else { return Vec::new() };
-        let result = running.result();
+        let result = running.ticket.take();
         let came_of = result.as_ref().map(Came::of);
         let told = match result {
             Some(outcome) => outcome::take(unit, outcome),

@@ -36,7 +36,7 @@ pub(super) fn nothing_came(running: &Running, ending: &JobEnding) -> Summary {
                 running.name()
             ),
         ),
-        JobEnding::Done(_) => (Gravity::Error, format!("Could not {}: no result came.", running.name())),
+        JobEnding::Done(()) => (Gravity::Error, format!("Could not {}: no result came.", running.name())),
     };
     Summary { gravity, summary, sentences: Vec::new(), address: None }
 }

@@ -1,19 +1,17 @@
-//! Work with settings on the device thread: one job each, with its result in a channel of its own.
+//! Work with settings on the device thread: one job each.
 //!
-//! The result does not travel in the job's output, since a job that was cancelled has a result too: what was written
-//! and what was not.
+//! A job that was cancelled has a result too: what was written and what was not.
 
 use std::time::Duration;
 
 use brushwork_link::Failure;
-use brushwork_link::device::{FnJob, Job, JobContext};
+use brushwork_link::device::{Job, JobContext, JobTicket, QueuedJob};
 use brushwork_link::settings::{
     DefaultsReport, Ending, Keeper, ReadReport, SaveReport, SettingsImage, SettingsTable, WriteError,
     WriteOptions, WriteReport, begin_trial, defaults_kept, end_act, read_all, reload_kept, save_kept, write,
     write_kept,
 };
 use brushwork_link::transport::Stream;
-use crossbeam_channel::{Receiver, bounded};
 
 use super::summary::settings;
 use super::unit::UnitSettings;
@@ -44,16 +42,14 @@ pub enum SettingsWish {
 #[derive(Debug)]
 pub struct Running {
     pub(super) unit: UnitKey,
-    pub(super) name: String,
     pub(super) wish: SettingsWish,
-    pub(super) has_started: bool,
     /// 0 to 1, where it is known.
     pub fraction: Option<f32>,
     pub text: String,
     pub is_cancelled: bool,
     /// Begun by nobody: nothing is said of it.
     pub(super) is_quiet: bool,
-    result: Receiver<Outcome>,
+    pub(super) ticket: JobTicket<Outcome>,
 }
 
 /// What work gave.
@@ -70,11 +66,7 @@ pub(super) enum Outcome {
 impl Running {
     /// What it does: "read the settings".
     pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    pub(super) fn result(&self) -> Option<Outcome> {
-        self.result.try_recv().ok()
+        self.ticket.name()
     }
 }
 
@@ -91,7 +83,7 @@ pub(super) fn begin(
     input: Option<(SettingsImage, TrialKeeper)>,
     own_stream: Option<Stream>,
     mut keeper: Box<dyn Keeper>,
-) -> Option<(Box<dyn Job>, Running)> {
+) -> Option<(QueuedJob, Running)> {
     let table = unit.table().clone();
     let subject = *table.subject();
     let options = unit.options(own_stream);
@@ -170,7 +162,7 @@ fn writing(
     wanted: SettingsImage,
     options: WriteOptions,
     mut keeper: Box<dyn Keeper>,
-) -> (Box<dyn Job>, Running) {
+) -> (QueuedJob, Running) {
     let table = unit.table().clone();
     job(key, name, WRITING_LIMIT, move |context| {
         Ok(match write_kept(context, &table, &wanted, options, &mut *keeper) {
@@ -184,25 +176,17 @@ fn job(
     unit: UnitKey,
     name: String,
     limit: Duration,
-    mut work: impl FnMut(&mut JobContext<'_>) -> Result<Outcome, Failure> + Send + 'static,
-) -> (Box<dyn Job>, Running) {
-    let (sender, result) = bounded(1);
-    let job = FnJob::boxed(name.clone(), limit, move |context| {
-        let outcome = work(context)?;
-        // Nobody waits for it when the link was closed meanwhile.
-        let _ = sender.try_send(outcome);
-        Ok(Box::new(()))
-    });
+    work: impl FnMut(&mut JobContext<'_>) -> Result<Outcome, Failure> + Send + 'static,
+) -> (QueuedJob, Running) {
+    let (job, ticket) = Job::new(name, limit, work).queued();
     let running = Running {
         unit,
-        name,
         wish: SettingsWish::Read,
-        has_started: false,
         fraction: None,
         text: String::new(),
         is_cancelled: false,
         is_quiet: false,
-        result,
+        ticket,
     };
     (job, running)
 }

@@ -333,14 +333,15 @@ impl Terminal {
 
     /// Takes note of an answer.
     pub fn note(&mut self, event: &Event) {
-        let (Event::Transacted { id, .. } | Event::RawReply { id, .. }) = event else { return };
-        let Some(entry) = self.entries.iter_mut().find(|entry| entry.id == *id) else { return };
-        match event {
-            Event::Transacted { result, .. } => {
-                entry.answer = Some(result.as_ref().map(told).map_err(ToString::to_string));
-            }
-            Event::RawReply { result, .. } => entry.note_bytes(result.as_ref().map_err(ToString::to_string)),
-            _ => {}
+        if let Event::Transacted { id, result } = event
+            && let Some(entry) = self.entries.iter_mut().find(|entry| entry.id == *id)
+        {
+            entry.answer = Some(result.as_ref().map(told).map_err(ToString::to_string));
+        }
+        if let Event::RawReply { id, result } = event
+            && let Some(entry) = self.entries.iter_mut().find(|entry| entry.id == *id)
+        {
+            entry.note_bytes(result.as_ref().map_err(ToString::to_string));
         }
     }
 

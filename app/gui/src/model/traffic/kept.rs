@@ -1,14 +1,14 @@
 //! A command put together by hand that changes settings: it waits until a backup of them is kept.
 
 use brushwork_mcp_client::layout_of;
+use std::task::Poll;
 use std::time::Duration;
 
 use brushwork_link::Failure;
-use brushwork_link::device::{FnJob, Identity, Request};
+use brushwork_link::device::{Identity, Job, JobTicket, QueuedJob, Request};
 use brushwork_link::settings::{Ending, Keeper, begin_command};
 use brushwork_mcp_wire::packet_serial::{Effect, lookup, number};
 use brushwork_values::{Value, Values};
-use crossbeam_channel::{Receiver, TryRecvError, bounded};
 
 use brushwork_core::keep::TrialKeeper;
 
@@ -19,7 +19,7 @@ const LIMIT: Duration = Duration::from_secs(120);
 /// The command that waits for its backup, or for its answer.
 #[derive(Debug, Default)]
 pub struct KeptCommand {
-    waiting: Option<(Transact, Receiver<Result<(), Failure>>)>,
+    waiting: Option<(Transact, JobTicket<Result<(), Failure>>)>,
     sent: Option<(u64, TrialKeeper)>,
     keeper: Option<TrialKeeper>,
 }
@@ -52,22 +52,20 @@ impl KeptCommand {
         transact: Transact,
         identity: &Identity,
         keeper: Box<dyn Keeper>,
-    ) -> Option<Request> {
+    ) -> Option<QueuedJob> {
         let subject = identity.subject()?;
         let saves = transact.command == number::SAVE_SETTINGS;
-        let (sender, kept) = bounded(1);
         let keeper = TrialKeeper::new(keeper);
         self.keeper = Some(keeper.clone());
+        let job = Job::new(JOB, LIMIT, move |context| {
+            Ok(begin_command(context, subject, saves, &mut **keeper.lock()))
+        });
+        let (job, kept) = job.queued();
         self.waiting = Some((transact, kept));
-        Some(Request::Job(FnJob::boxed(JOB, LIMIT, move |context| {
-            let begun = begin_command(context, subject, saves, &mut **keeper.lock());
-            // Nobody waits for it when the link was closed meanwhile.
-            let _ = sender.try_send(begun);
-            Ok(Box::new(()))
-        })))
+        Some(job)
     }
 
-    /// The request was not taken, or the link is gone.
+    /// The job was not taken, or the link is gone.
     pub fn forget(&mut self) {
         *self = Self::default();
     }
@@ -75,10 +73,10 @@ impl KeptCommand {
     /// The command whose backup is kept now, once; or, with its number, why there is none.
     pub fn ready(&mut self) -> Option<Result<Transact, (u64, Failure)>> {
         let (_, kept) = self.waiting.as_ref()?;
-        let kept = match kept.try_recv() {
-            Err(TryRecvError::Empty) => return None,
-            Ok(kept) => kept,
-            Err(TryRecvError::Disconnected) => Err(Failure::new(
+        let kept = match kept.poll() {
+            Poll::Pending => return None,
+            Poll::Ready(Some(kept)) => kept,
+            Poll::Ready(None) => Err(Failure::new(
                 JOB,
                 "this computer",
                 "something more urgent came first",

@@ -5,7 +5,7 @@ use crate::device::Facts;
 use crate::device::channel::Sample;
 use crate::device::drive::Drive;
 use crate::device::event::{DisarmReason, Event};
-use crate::device::job::{Job, JobEnding, JobOutput, JobReport};
+use crate::device::job::{JobEnding, JobId, JobReport, QueuedJob};
 use crate::device::job_context::{JobContext, JobHost};
 use crate::exchange::{ExchangeError, Interruption, Reply, Watch};
 use crate::failure::Failure;
@@ -25,6 +25,7 @@ const ALIVE: Duration = Duration::from_secs(1);
 /// The device thread as one job sees it.
 struct Host<'a> {
     core: &'a mut DeviceLoop,
+    job: JobId,
     asked_at: Duration,
     was_armed: bool,
     polling: bool,
@@ -35,43 +36,38 @@ struct Host<'a> {
 }
 
 impl DeviceLoop {
-    pub(super) fn run_job(
-        &mut self,
-        mut job: Box<dyn Job>,
-        asked_at: Duration,
-        overtaken: bool,
-        cancels: u64,
-    ) {
-        let name = job.name();
-        if let Some(failure) = self.job_refusal(job.as_ref(), overtaken) {
+    pub(super) fn run_job(&mut self, mut job: QueuedJob, asked_at: Duration, overtaken: bool) {
+        let (id, name) = (job.id, job.name.clone());
+        if let Some(failure) = self.job_refusal(&job, overtaken) {
             let ending = JobEnding::Failed(failure);
-            let report = JobReport { name, ran_for: Duration::ZERO, ending, motors_stopped: None };
+            let report = JobReport { id, name, ran_for: Duration::ZERO, ending, motors_stopped: None };
             return self.outbox.send(Event::JobEnded(report));
         }
         let begun_at = self.clock.now();
         let was_moving = self.guard.is_moving();
-        self.guard.set_job(Some(begun_at + job.time_limit()), cancels);
-        self.outbox.send(Event::JobStarted { name: name.clone() });
+        self.guard.set_job(begun_at + job.time_limit, job.cancelled.clone());
+        self.outbox.send(Event::JobStarted { id, name: name.clone() });
         let mut host = Host {
             was_armed: self.armed.is_some(),
             core: self,
+            job: id,
             asked_at,
             polling: true,
             broken_by: None,
             stop: None,
         };
-        let result = panic::catch_unwind(AssertUnwindSafe(|| job.run(&mut JobContext::new(&mut host))));
+        let result = panic::catch_unwind(AssertUnwindSafe(|| (job.run)(&mut JobContext::new(&mut host))));
         let (broken_by, stop) = (host.broken_by, host.stop);
-        self.guard.set_job(None, cancels);
+        self.guard.job_ended();
         let ending = ending(result, broken_by);
-        let has_moved = job.moves_motors() || self.guard.is_moving() && !was_moving || stop.is_some();
+        let has_moved = job.moves_motors || self.guard.is_moving() && !was_moving || stop.is_some();
         let must_stop = has_moved || self.armed.is_some() && matches!(ending, JobEnding::Panicked(_));
         // Dropping a job can panic too; motors come first.
         let motors_stopped = must_stop.then(|| self.stop_after_job(broken_by, stop));
         let _ = panic::catch_unwind(AssertUnwindSafe(|| drop(job)));
         self.restart_sweep();
         let ran_for = self.clock.now().saturating_sub(begun_at);
-        self.outbox.send(Event::JobEnded(JobReport { name, ran_for, ending, motors_stopped }));
+        self.outbox.send(Event::JobEnded(JobReport { id, name, ran_for, ending, motors_stopped }));
     }
 
     /// Stops the motors, or confirms the stop that was written when something broke in. Whether all units confirmed.
@@ -90,11 +86,11 @@ impl DeviceLoop {
         }
     }
 
-    fn job_refusal(&self, job: &dyn Job, overtaken: bool) -> Option<Failure> {
+    fn job_refusal(&self, job: &QueuedJob, overtaken: bool) -> Option<Failure> {
         let refuse = |came_back: &str, mend: &str| {
-            Some(Failure::new(job.name(), self.name_of(self.selected), came_back, mend))
+            Some(Failure::new(job.name.clone(), self.name_of(self.selected), came_back, mend))
         };
-        if !job.moves_motors() {
+        if !job.moves_motors {
             return None;
         }
         if overtaken {
@@ -233,7 +229,7 @@ impl JobHost for Host<'_> {
     }
 
     fn progress(&mut self, fraction: Option<f32>, text: &str) {
-        self.core.outbox.send(Event::JobProgress { fraction, text: text.to_owned() });
+        self.core.outbox.send(Event::JobProgress { id: self.job, fraction, text: text.to_owned() });
     }
 
     fn sample(&mut self, sample: Sample) {
@@ -287,14 +283,14 @@ impl Host<'_> {
     }
 }
 
-type Outcome = Result<Result<JobOutput, Failure>, Box<dyn Any + Send>>;
+type Outcome = Result<Result<(), Failure>, Box<dyn Any + Send>>;
 
 /// How a job ended. What broke in counts for more than what the job made of it.
 fn ending(outcome: Outcome, broken_by: Option<Interruption>) -> JobEnding {
     match (outcome, broken_by) {
         (Err(panic), _) => JobEnding::Panicked(last_word(panic.as_ref())),
         (Ok(_), Some(cause)) => JobEnding::Interrupted(cause),
-        (Ok(Ok(output)), None) => JobEnding::Done(output),
+        (Ok(Ok(())), None) => JobEnding::Done(()),
         (Ok(Err(failure)), None) => JobEnding::Failed(failure),
     }
 }

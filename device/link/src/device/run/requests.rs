@@ -67,10 +67,9 @@ impl DeviceLoop {
                 self.transact(id, command, values, asked_at, overtaken);
             }
             Request::Raw { id, bytes } => self.raw(id, &bytes, asked_at, overtaken),
-            Request::Job(job) => self.run_job(job, asked_at, overtaken, envelope.cancels),
+            Request::Job(job) => self.run_job(job, asked_at, overtaken),
             // The handle turns these into signals, which are seen before any request.
             Request::Disarm => self.signals.disarm(),
-            Request::CancelJob => self.signals.cancel(),
             Request::Disconnect => self.signals.close(),
         }
     }

@@ -1,6 +1,6 @@
 //! Whether a controller runs its script by itself after power-up (MCP manual, commands 246 and 247).
 
-use brushwork_link::device::{FnJob, Job, JobContext};
+use brushwork_link::device::Job;
 use brushwork_link::exchange::ExchangeError;
 use brushwork_link::failure::Failure;
 use brushwork_link::wire::Wire;
@@ -48,9 +48,6 @@ pub fn set_autorun(wire: &mut dyn Wire, autorun: Autorun) -> Result<(), Failure>
 
 /// Sets it as a job. The settings are not saved by it.
 #[must_use]
-pub fn autorun_job(autorun: Autorun) -> Box<dyn Job> {
-    FnJob::boxed(AUTORUN_JOB, LIMIT, move |context: &mut JobContext<'_>| {
-        set_autorun(context, autorun)?;
-        Ok(Box::new(autorun))
-    })
+pub fn autorun_job(autorun: Autorun) -> Job<()> {
+    Job::new(AUTORUN_JOB, LIMIT, move |context| set_autorun(context, autorun))
 }

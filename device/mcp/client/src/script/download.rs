@@ -2,7 +2,7 @@
 
 use crate::script::autorun::{Autorun, read_autorun};
 use crate::script::image::{Origin, ScriptImage};
-use brushwork_link::device::{FnJob, Job, JobContext};
+use brushwork_link::device::Job;
 use brushwork_link::exchange::ExchangeError;
 use brushwork_link::failure::Failure;
 use brushwork_link::wire::Wire;
@@ -58,12 +58,12 @@ pub enum Verified {
 
 /// Downloads as a job. `simulated_elsewhere`: the user says that the controller is simulated by another program.
 #[must_use]
-pub fn download_job(image: ScriptImage, simulated_elsewhere: bool) -> Box<dyn Job> {
+pub fn download_job(image: ScriptImage, simulated_elsewhere: bool) -> Job<Downloaded> {
     let blocks = u32::try_from(image.blocks().len()).unwrap_or(u32::MAX);
     let limit = Duration::from_secs(60) + Duration::from_millis(200).saturating_mul(blocks);
-    FnJob::boxed(DOWNLOAD_JOB, limit, move |context: &mut JobContext<'_>| {
+    Job::new(DOWNLOAD_JOB, limit, move |context| {
         let is_simulated = context.is_simulated() || simulated_elsewhere;
-        download(context, &image, is_simulated).map(|done| Box::new(done) as _)
+        download(context, &image, is_simulated)
     })
 }
 

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use brushwork_link::device::{ArmScope, Event, Request};
+use brushwork_link::device::{ArmScope, Event, QueuedJob};
 use brushwork_link::settings::{Group, SettingValue};
 use crossbeam_channel::bounded;
 
@@ -21,7 +21,7 @@ impl General {
     }
 
     /// Begins the clamp test; what to ask of the device thread. Nothing while other work runs.
-    pub fn begin_clamp_test(&mut self) -> Option<Request> {
+    pub fn begin_clamp_test(&mut self) -> Option<QueuedJob> {
         if self.is_busy() {
             return None;
         }
@@ -34,16 +34,16 @@ impl General {
             hold: Duration::from_secs_f64(test.hold_s.clamp(0.2, 10.0)),
         };
         let (sender, found) = bounded(STEPS);
-        let text = "Waiting for its turn".to_owned();
-        test.running = Some(Running { task, has_started: false, fraction: 0.0, text, found });
+        let job = test.job.begin(clamp::job(task, sender))?;
+        test.running = Some(Running { task, found });
         test.steps.clear();
         test.verdict = None;
-        Some(Request::Job(clamp::job(task, sender)))
+        Some(job)
     }
 
-    /// The request was not taken.
+    /// The job was not taken.
     pub fn clamp_test_not_begun(&mut self) {
-        self.clamp.running = None;
+        self.clamp.forget_job();
     }
 
     /// Outputs that are set to clamp over-voltage, from 1.
@@ -56,16 +56,13 @@ impl General {
         rows.filter(clamps).filter_map(|row| row.instance.as_ref().map(|one| one.number)).collect()
     }
 
-    pub(in crate::model::general) fn awaits_clamp_test(&self, event: &Event) -> bool {
-        self.clamp.awaits(event)
-    }
-
-    pub(in crate::model::general) fn take_clamp_test(&mut self, event: Event) -> Vec<Effect> {
+    /// Takes in an event of the clamp test.
+    pub fn take_clamp_test(&mut self, event: Event) -> Vec<Effect> {
         self.clamp.take(event)
     }
 
     pub(in crate::model::general) fn clamp_test_lost(&mut self) {
-        self.clamp.running = None;
+        self.clamp.forget_job();
     }
 
     /// What was found says nothing of another unit.

@@ -5,7 +5,7 @@ use crate::tests::link::harness::{DUTY_ZERO, Link};
 use brushwork_link::clock::Clock;
 use brushwork_link::device::Channel;
 use brushwork_link::device::PollRate;
-use brushwork_link::device::job::{FnJob, JobContext, JobEnding, JobOutput};
+use brushwork_link::device::job::{Job, JobContext, JobEnding, JobTicket};
 use brushwork_link::device::{ArmScope, Drive, DriveCommand};
 use brushwork_link::device::{DisarmReason, Event};
 use brushwork_link::device::{Request, RequestRefused};
@@ -16,7 +16,7 @@ use brushwork_mcp_wire::packet_serial::number;
 use brushwork_values::Motor;
 use std::time::Duration;
 
-type Outcome = Result<JobOutput, Failure>;
+type Outcome = Result<(), Failure>;
 
 /// The report of the one job that ended.
 fn ending(link: &Link) -> (&JobEnding, Option<bool>) {
@@ -45,8 +45,8 @@ fn drive_for_ever(context: &mut JobContext<'_>) -> Outcome {
     }
 }
 
-fn start(link: &mut Link, run: impl FnMut(&mut JobContext<'_>) -> Outcome + Send + 'static) {
-    link.ask(Request::Job(FnJob::moving("try the motor", Duration::from_secs(10), run)));
+fn start(link: &mut Link, run: impl FnMut(&mut JobContext<'_>) -> Outcome + Send + 'static) -> JobTicket<()> {
+    link.handle.start(Job::moving("try the motor", Duration::from_secs(10), run)).unwrap()
 }
 
 /// The last drive command that the unit took.
@@ -65,23 +65,24 @@ fn assert_stopped(link: &Link) {
 #[test]
 fn a_job_tells_its_progress_and_hands_back_its_result() {
     let mut link = Link::connected();
-    let job = FnJob::boxed("read three values", ms(5_000), |context| {
+    let job = Job::new("read three values", ms(5_000), |context| {
         let mut values = Vec::new();
         for step in 0..3_u8 {
             context.progress(Some(f32::from(step) / 3.0), "reading");
             let reply = context.transact(number::READ_MAIN_BATTERY, &[]).map_err(fail)?;
             values.push(reply.int("main_battery"));
         }
-        Ok(Box::new(values))
+        Ok(values)
     });
     link.bus().set(number::READ_MAIN_BATTERY, &[240]);
-    link.ask(Request::Job(job));
+    let ticket = link.handle.start(job).unwrap();
+    let is_of_it = |event: &Event| event.job() == Some(ticket.id());
     link.run_for(ms(500));
-    let progress = link.events.iter().filter(|(_, event)| matches!(event, Event::JobProgress { .. })).count();
-    assert_eq!(progress, 3);
-    assert!(link.has(|event| matches!(event, Event::JobStarted { name } if name == "read three values")));
-    let (JobEnding::Done(output), stopped) = ending(&link) else { panic!("{:?}", ending(&link)) };
-    assert_eq!(output.downcast_ref::<Vec<i64>>(), Some(&vec![240; 3]));
+    let progress = link.events.iter().filter(|(_, event)| matches!(event, Event::JobProgress { .. }));
+    assert_eq!(progress.filter(|(_, event)| is_of_it(event)).count(), 3);
+    assert!(link.has(|event| matches!(event, Event::JobStarted { .. }) && is_of_it(event)));
+    let (JobEnding::Done(()), stopped) = ending(&link) else { panic!("{:?}", ending(&link)) };
+    assert_eq!(ticket.take(), Some(vec![240; 3]));
     assert_eq!(stopped, None, "it had nothing to do with motors");
     assert_eq!(link.bus().count(number::DUTY_ACCEL_BOTH), 0);
 }
@@ -99,7 +100,7 @@ fn a_job_that_moves_motors_needs_arming() {
 #[test]
 fn a_job_that_claims_to_move_nothing_cannot_move_anything_unarmed() {
     let mut link = Link::connected();
-    link.ask(Request::Job(FnJob::boxed("sneak", ms(1_000), drive_for_ever)));
+    link.handle.start(Job::new("sneak", ms(1_000), drive_for_ever)).unwrap();
     link.run_for(ms(500));
     assert!(matches!(ending(&link).0, JobEnding::Failed(_)));
     assert_eq!(link.bus().count(number::DUTY_M1), 0);
@@ -114,7 +115,7 @@ fn a_job_drives_in_the_words_of_the_window_and_its_setpoint_is_in_the_sample() {
         for _ in 0..30 {
             context.transact(number::READ_ENCODERS, &[]).map_err(fail)?;
         }
-        Ok(Box::new(()))
+        Ok(())
     });
     link.run_for(ms(500));
     assert_eq!(link.taken(number::DUTY_M1)[0].values, [8_192]);
@@ -127,11 +128,11 @@ fn a_job_drives_in_the_words_of_the_window_and_its_setpoint_is_in_the_sample() {
 #[test]
 fn a_job_cannot_drive_unarmed() {
     let mut link = Link::connected();
-    let job = FnJob::boxed("sneak", ms(1_000), |context| {
+    let job = Job::new("sneak", ms(1_000), |context| {
         context.drive(&Drive::both(DriveCommand::duty(0.25))).map_err(fail)?;
-        Ok(Box::new(()))
+        Ok(())
     });
-    link.ask(Request::Job(job));
+    link.handle.start(job).unwrap();
     link.run_for(ms(500));
     assert!(matches!(ending(&link).0, JobEnding::Failed(_)));
     assert_eq!(link.bus().count(number::DUTY_BOTH), 0);
@@ -142,10 +143,10 @@ fn a_job_that_did_its_work_ends_with_the_motors_stopped_and_disarmed() {
     let mut link = Link::armed();
     start(&mut link, |context| {
         context.transact(number::DUTY_M1, &[8_192]).map_err(fail)?;
-        Ok(Box::new(()))
+        Ok(())
     });
     link.run_for(ms(500));
-    assert!(matches!(ending(&link).0, JobEnding::Done(_)));
+    assert!(matches!(ending(&link).0, JobEnding::Done(())));
     assert_stopped(&link);
     assert_eq!(link.disarm_reasons(), [DisarmReason::JobEnded]);
 }
@@ -169,7 +170,8 @@ fn a_job_that_panics_ends_with_the_motors_stopped_and_the_link_lives_on() {
         context.transact(number::DUTY_M1, &[8_192]).map_err(fail)?;
         let nothing: [u8; 0] = [];
         let index = usize::from(context.address().get());
-        Ok(Box::new(nothing[index]))
+        assert_eq!(nothing[index], 0);
+        Ok(())
     });
     link.run_for(ms(500));
     let JobEnding::Panicked(word) = ending(&link).0 else { panic!("{:?}", ending(&link)) };
@@ -183,10 +185,9 @@ fn a_job_that_panics_ends_with_the_motors_stopped_and_the_link_lives_on() {
 #[test]
 fn cancel_ends_a_job_with_the_motors_stopped() {
     let mut link = Link::armed();
-    start(&mut link, drive_for_ever);
-    let handle = link.handle.clone();
+    let ticket = start(&mut link, drive_for_ever);
     let cancel_at = link.clock.now() + ms(100);
-    link.tap.at(cancel_at, move || handle.request(Request::CancelJob).unwrap());
+    link.tap.at(cancel_at, move || ticket.cancel());
     renew_until(&link, ms(5_000));
     link.run_for(ms(1_000));
     assert!(matches!(ending(&link).0, JobEnding::Interrupted(Interruption::Cancelled)));
@@ -237,11 +238,11 @@ fn a_frozen_window_stops_a_job_after_250_ms() {
 #[test]
 fn a_job_that_sleeps_is_woken_by_its_time_limit() {
     let mut link = Link::connected();
-    let job = FnJob::boxed("wait", ms(700), |context| {
+    let job = Job::new("wait", ms(700), |context| {
         context.sleep(ms(60_000)).map_err(fail)?;
-        Ok(Box::new(()))
+        Ok(())
     });
-    link.ask(Request::Job(job));
+    link.handle.start(job).unwrap();
     let begun_at = link.clock.now();
     link.run_for(ms(1_000));
     assert!(matches!(ending(&link).0, JobEnding::Interrupted(Interruption::TimeLimit)));
@@ -304,15 +305,15 @@ fn a_fault_seen_between_the_exchanges_of_a_job_ends_it() {
 fn signals_are_read_while_a_job_runs_unless_it_wants_the_line_for_itself() {
     for (polling, least, most) in [(true, 8, 12), (false, 0, 1)] {
         let mut link = Link::connected();
-        let job = FnJob::boxed("read for a second", ms(5_000), move |context| {
+        let job = Job::new("read for a second", ms(5_000), move |context| {
             context.set_polling(polling);
             let end = context.now() + ms(1_000);
             while context.now() < end {
                 context.transact(number::READ_MAIN_VOLTAGES, &[]).map_err(fail)?;
             }
-            Ok(Box::new(()))
+            Ok(())
         });
-        link.ask(Request::Job(job));
+        link.handle.start(job).unwrap();
         while !link.has(|event| matches!(event, Event::JobEnded(_))) {
             let _ = link.step();
         }
@@ -336,7 +337,7 @@ fn a_panic_of_a_job_that_moves_nothing_still_stops_what_was_armed() {
     let mut link = Link::armed();
     link.drive(0.5);
     link.run_for(ms(30));
-    link.ask(Request::Job(FnJob::boxed("count", ms(1_000), |_| panic!("a bug"))));
+    link.handle.start(Job::<()>::new("count", ms(1_000), |_| panic!("a bug"))).unwrap();
     link.run_for(ms(300));
     assert!(matches!(ending(&link).0, JobEnding::Panicked(word) if word == "a bug"));
     assert_stopped(&link);
@@ -347,11 +348,11 @@ fn a_settings_job_leaves_an_armed_screen_armed() {
     let mut link = Link::armed();
     link.drive(0.5);
     link.run_for(ms(30));
-    let job = FnJob::boxed("write a gain", ms(1_000), |context| {
+    let job = Job::new("write a gain", ms(1_000), |context| {
         context.transact(number::SET_VELOCITY_PID_M1, &[0, 0, 0, 0]).map_err(fail)?;
-        Ok(Box::new(()))
+        Ok(())
     });
-    link.ask(Request::Job(job));
+    link.handle.start(job).unwrap();
     link.run_for(ms(200));
     assert_eq!(ending(&link).1, None);
     assert!(link.disarm_reasons().is_empty());
@@ -374,4 +375,21 @@ fn a_full_queue_refuses_in_a_sentence_and_stop_still_gets_through() {
     link.handle.stop_all();
     link.settle();
     assert_eq!(link.stops().len(), 1);
+}
+
+#[test]
+fn a_cancel_ends_its_own_job_and_no_other() {
+    let mut link = Link::connected();
+    let wait = |context: &mut JobContext<'_>| context.sleep(ms(100)).map_err(fail);
+    let [first, second] =
+        ["wait", "wait"].map(|name| link.handle.start(Job::new(name, ms(1_000), wait)).unwrap());
+    second.cancel();
+    link.run_for(ms(500));
+    let ended = link.events.iter().filter_map(|(_, event)| match event {
+        Event::JobEnded(report) => Some((report.id, format!("{:?}", report.ending))),
+        _ => None,
+    });
+    let expected = [(first.id(), "Done".to_owned()), (second.id(), "Interrupted(Cancelled)".to_owned())];
+    assert!(ended.eq(expected), "{:?}", link.events);
+    assert_eq!((first.take(), second.take()), (Some(()), None));
 }

@@ -1,0 +1,41 @@
+//! Whose the jobs of one link are, so that each event of a job finds the one who asked for it.
+
+use std::collections::BTreeMap;
+
+use brushwork_link::device::{Event, JobId};
+
+/// Who is told how far a job is and how it ended. Whoever only looks at its ticket is not among them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Owner {
+    /// General Settings.
+    Settings,
+    ClampTest,
+    Loops,
+    /// What a diagnosis needs.
+    Watch,
+    Generator,
+    Qpps,
+    /// The download of a script.
+    Script,
+    /// Guided tuning.
+    Tune,
+}
+
+/// The jobs that were asked for and have not ended.
+#[derive(Debug, Default)]
+pub struct Jobs(BTreeMap<JobId, Owner>);
+
+impl Jobs {
+    /// A job was taken by the device thread.
+    pub fn begun(&mut self, id: JobId, owner: Owner) {
+        self.0.insert(id, owner);
+    }
+
+    /// Whose job the event is about. Its end is the last that is told of a job.
+    pub fn owner(&mut self, event: &Event) -> Option<Owner> {
+        match event {
+            Event::JobEnded(report) => self.0.remove(&report.id),
+            event => self.0.get(&event.job()?).copied(),
+        }
+    }
+}
