@@ -6,13 +6,9 @@
 
 use std::sync::PoisonError;
 
+use brushwork_core::tune::law::{Report, Request as TuneRequest, Setup, Trace, Trial, TrialRequest};
 use brushwork_link::device::{ArmScope, Event, Job, JobEnding, Request};
 use brushwork_link::settings::Subject;
-use brushwork_tuning::axis::Setup;
-use brushwork_tuning::report::Report;
-use brushwork_tuning::trace::Trace;
-use brushwork_tuning::trial::{Trial, TrialRequest};
-use brushwork_tuning::tune;
 
 use crate::model::link::Arming;
 use crate::model::watched::interruption;
@@ -27,7 +23,7 @@ const MOST_RESTORES: u8 = 4;
 #[derive(Clone, Debug)]
 pub enum Work {
     /// Identifies the motor and designs gains.
-    Tune(tune::Request),
+    Tune(TuneRequest),
     /// Tries gains.
     Try(Box<TrialRequest>),
     /// Puts back what a run left when its link was lost.

@@ -1,6 +1,7 @@
 //! A host that stands still for 0.1 to 0.9 s in mid-run, or reads nearly every reply late: whatever it sees then is no fault of the machine, and no refusal says so.
 
 use brushwork_tuning::cause::Cause;
+use brushwork_tuning::law::Law;
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::tune::{Method, tune};
 use brushwork_tuning_bench::mind::population::specimen as mind_specimen;
@@ -37,7 +38,7 @@ fn stalls(draw: &mut ChaCha8Rng, from: Duration) -> Vec<(Duration, Duration)> {
 
 /// The first cause of a refusal, which may say that the computer was late, or that somebody set a limit, and nothing else.
 #[track_caller]
-fn assert_blames_no_machine(report: &Report, case: &str) -> bool {
+fn assert_blames_no_machine<L: Law>(report: &Report<L>, case: &str) -> bool {
     if report.verdict != Verdict::Refused {
         return false;
     }
