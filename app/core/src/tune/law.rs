@@ -37,38 +37,23 @@ pub type Trial = brushwork_tuning::trial::Trial<AnyLaw>;
 /// What is to be tried.
 pub type TrialRequest = brushwork_tuning::trial::TrialRequest<AnyLaw>;
 
-/// The law of whatever controller is at the wire.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct AnyLaw {
-    /// That of an MCP or RoboClaw, and what reports say of every law.
-    #[serde(flatten)]
-    pub mcp: McpLaw,
-    /// That of a Motion Mind instead.
-    #[serde(flatten)]
-    pub mind: MotionMindPart<MotionMindLaw>,
-}
-
-/// What it holds before a run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct AnyHeld {
-    /// An MCP or RoboClaw.
-    #[serde(flatten)]
-    pub mcp: McpHeld,
-    /// A Motion Mind instead.
-    #[serde(flatten)]
-    pub mind: MotionMindHeld,
-}
-
-/// Its registers.
+/// Something of each family, of which that of the controller at the wire is used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct AnyRegisters {
-    /// Of an MCP or RoboClaw.
+pub struct OfEach<P, M> {
+    /// Of an MCP or RoboClaw; of a law, what reports say of every one.
     #[serde(flatten)]
-    pub mcp: McpRegisters,
-    /// Of a Motion Mind instead.
+    pub mcp: P,
+    /// Of a Motion Mind.
     #[serde(flatten)]
-    pub mind: MotionMindProposal,
+    pub mind: M,
 }
+
+/// The law of whatever controller is at the wire.
+pub type AnyLaw = OfEach<McpLaw, MotionMindPart<MotionMindLaw>>;
+/// What it holds before a run.
+pub type AnyHeld = OfEach<McpHeld, MotionMindHeld>;
+/// Its registers.
+pub type AnyRegisters = OfEach<McpRegisters, MotionMindProposal>;
 
 /// What goes over in one write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,13 +72,6 @@ pub enum AnyNote {
     Mcp(McpNote),
     /// Of a Motion Mind.
     Mind(MotionMindNote),
-}
-
-/// The state of a loop in simulation: that of one of the families is used.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct AnyLoop {
-    mcp: Cascade,
-    mind: PositionLoop,
 }
 
 impl From<McpHeld> for AnyHeld {
@@ -117,12 +95,6 @@ impl From<McpRegisters> for AnyRegisters {
 impl From<MotionMindProposal> for AnyRegisters {
     fn from(mind: MotionMindProposal) -> Self {
         Self { mind, ..Self::default() }
-    }
-}
-
-impl From<MotionMindRegisters> for AnyRegisters {
-    fn from(registers: MotionMindRegisters) -> Self {
-        MotionMindProposal { motion_mind: Some(registers) }.into()
     }
 }
 
@@ -154,13 +126,7 @@ impl TryFrom<AnyWrite> for MotionMindWrite {
     }
 }
 
-impl AnyHeld {
-    fn is_mind(&self) -> bool {
-        self.mind.motion_mind.is_some()
-    }
-}
-
-impl AnyRegisters {
+impl<P, T> OfEach<P, MotionMindPart<T>> {
     fn is_mind(&self) -> bool {
         self.mind.motion_mind.is_some()
     }
@@ -171,6 +137,17 @@ impl From<MotionMindLaw> for AnyLaw {
         let mcp = McpLaw { rate_hz: LOOPS_PER_S, per_tick: true, position_scale: 1.0, feed_forward: true };
         Self { mcp, mind: MotionMindPart { motion_mind: Some(law) } }
     }
+}
+
+/// What the law of the controller's family says.
+macro_rules! of_family {
+    ($of:ident.$what:ident($($with:expr),*)) => {
+        if $of.is_mind() {
+            MotionMindLaw::$what(&$of.mind, $($with),*)
+        } else {
+            McpLaw::$what(&$of.mcp, $($with),*)
+        }
+    };
 }
 
 fn of_mcp(writes: Vec<McpWrite>) -> Vec<AnyWrite> {
@@ -187,7 +164,7 @@ impl Law for AnyLaw {
     type Write = AnyWrite;
     type Note = AnyNote;
     type Findings = LawFindings;
-    type Loop = AnyLoop;
+    type Loop = OfEach<Cascade, PositionLoop>;
 
     fn facts(&self) -> &'static Facts {
         self.mind.motion_mind.map_or_else(|| self.mcp.facts(), |law| law.facts())
@@ -205,17 +182,17 @@ impl Law for AnyLaw {
         self.mind.motion_mind.and_then(|law| law.duty_limit())
     }
 
-    fn tick(&self, state: &mut AnyLoop, gains: (&Gains, f64), setpoint: Setpoint, seen: &Seen<'_>) -> f64 {
+    fn tick(&self, state: &mut Self::Loop, gains: (&Gains, f64), setpoint: Setpoint, seen: &Seen<'_>) -> f64 {
         match self.mind.motion_mind {
             Some(law) => law.tick(&mut state.mind, gains, setpoint, seen),
             None => self.mcp.tick(&mut state.mcp, gains, setpoint, seen),
         }
     }
 
-    fn steady(&self, gains: (&Gains, f64), speed: f64, duty: f64) -> AnyLoop {
+    fn steady(&self, gains: (&Gains, f64), speed: f64, duty: f64) -> Self::Loop {
         match self.mind.motion_mind {
-            Some(law) => AnyLoop { mind: law.steady(gains, speed, duty), ..AnyLoop::default() },
-            None => AnyLoop { mcp: self.mcp.steady(gains, speed, duty), ..AnyLoop::default() },
+            Some(law) => OfEach { mind: law.steady(gains, speed, duty), ..OfEach::default() },
+            None => OfEach { mcp: self.mcp.steady(gains, speed, duty), ..OfEach::default() },
         }
     }
 
@@ -252,7 +229,7 @@ impl Law for AnyLaw {
     }
 
     fn refuse(registers: &AnyRegisters) -> Result<(), Cause> {
-        MotionMindLaw::refuse(&registers.mind)
+        of_family!(registers.refuse())
     }
 
     fn writes(registers: &AnyRegisters, is_position: bool) -> Vec<AnyWrite> {
@@ -318,35 +295,27 @@ impl Law for AnyLaw {
     }
 
     fn ready(held: &AnyHeld) -> Result<(), Cause> {
-        MotionMindLaw::ready(&held.mind)
+        of_family!(held.ready())
     }
 
     fn position_limits(held: &AnyHeld) -> Option<(i64, i64)> {
-        McpLaw::position_limits(&held.mcp)
+        of_family!(held.position_limits())
     }
 
     fn fault(held: &AnyHeld, status_raw: u32) -> Cause {
-        if held.is_mind() {
-            MotionMindLaw::fault(&held.mind, status_raw)
-        } else {
-            McpLaw::fault(&held.mcp, status_raw)
-        }
+        of_family!(held.fault(status_raw))
     }
 
     fn actuation(held: &AnyHeld, max_current_raw: u32) -> Actuation {
-        if held.is_mind() {
-            MotionMindLaw::actuation(&held.mind, max_current_raw)
-        } else {
-            McpLaw::actuation(&held.mcp, max_current_raw)
-        }
+        of_family!(held.actuation(max_current_raw))
     }
 
     fn stamps(held: &AnyHeld) -> Stamps {
-        if held.is_mind() { MotionMindLaw::stamps(&held.mind) } else { McpLaw::stamps(&held.mcp) }
+        of_family!(held.stamps())
     }
 
     fn goes_on(held: &AnyHeld) -> bool {
-        MotionMindLaw::goes_on(&held.mind)
+        of_family!(held.goes_on())
     }
 
     fn keeping(registers: &AnyRegisters) -> Vec<AnyWrite> {
