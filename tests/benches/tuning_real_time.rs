@@ -17,6 +17,7 @@ mod real_time {
     use std::process::ExitCode;
     use std::time::Duration;
 
+    use brushwork_core::tune::law::{Report, Request};
     use brushwork_mcp_axis::PacketAxis;
     use brushwork_mcp_sim::controller::ControllerConfig;
     use brushwork_mcp_wire::packet_serial::Generation;
@@ -24,8 +25,8 @@ mod real_time {
     use brushwork_tests::program::Program;
     use brushwork_tests::simulated::{OnPty, is_at_rest};
     use brushwork_tuning::experiment_guard::GuardOptions;
-    use brushwork_tuning::report::{Report, Verdict};
-    use brushwork_tuning::tune::{Request, tune};
+    use brushwork_tuning::report::Verdict;
+    use brushwork_tuning::tune::tune;
     use brushwork_tuning_bench::line::SimulatedLine;
     use brushwork_tuning_bench::population::LinkParams;
 

@@ -7,9 +7,9 @@
 use brushwork_tuning::design::{Goal, Task, USUAL_OVERSHOOT, design_velocity};
 use brushwork_tuning::experiment_guard::{Drive, Input, Point};
 use brushwork_tuning::fit::{Fit, fit};
-use brushwork_tuning::model::{Lag, LoopLaw};
+use brushwork_tuning::model::Lag;
 use brushwork_tuning::open_loop_record::OpenLoopRecord;
-use brushwork_tuning::registers::velocity_registers;
+use brushwork_tuning::plain_law::PlainLaw;
 use brushwork_tuning::whatif::forecast;
 use std::error::Error;
 
@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("QPPS             {:.0} counts/s", model.steady_speed(1.0));
     println!("chi-square       {:.2} (1 or less where the model explains the record)", found.chi_square);
     println!();
-    println!("level  P        I        overshoot  settles  Ms    registers of command 28: P, I, D, QPPS");
+    println!("level  P        I        overshoot  settles  Ms");
     for level in LEVELS {
         gains_of_level(&found, level);
     }
@@ -83,7 +83,7 @@ fn identify(points: &[Point], drives: &[Drive]) -> Result<Fit, Box<dyn Error>> {
 
 /// A row of the table.
 fn gains_of_level(found: &Fit, level: f64) {
-    let law = LoopLaw::default();
+    let law = PlainLaw::default();
     let task = Task {
         plant: found.model,
         law,
@@ -102,17 +102,12 @@ fn gains_of_level(found: &Fit, level: f64) {
     };
     let gains = design.gains.velocity;
     let promised = forecast(&task, &design.gains);
-    let registers = velocity_registers(&gains, task.qpps, &law);
     println!(
-        "{level:5}  {:<7.3}  {:<7.2}  {:6.1} %   {:6}   {:.2}  {}, {}, {}, {}",
+        "{level:5}  {:<7.3}  {:<7.2}  {:6.1} %   {:6}   {:.2}",
         gains.p,
         gains.i,
         100.0 * promised.overshoot,
         promised.settling_s.map_or("never".to_owned(), |s| format!("{:.0} ms", 1e3 * s)),
-        promised.ms,
-        registers.p,
-        registers.i,
-        registers.d,
-        registers.qpps
+        promised.ms
     );
 }

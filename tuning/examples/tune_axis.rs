@@ -6,11 +6,12 @@
 #![expect(clippy::print_stdout, reason = "an example talks to the terminal")]
 
 use brushwork_tuning::axis::{
-    AMPS_PER_RAW, Axis, AxisError, Exchange, FULL_DUTY_RAW, PositionRegisters, Sample, Setup, Status,
-    VOLTS_PER_RAW, VelocityRegisters, Want,
+    AMPS_PER_RAW, Axis, AxisError, Exchange, FULL_DUTY_RAW, Sample, Status, VOLTS_PER_RAW, Want,
 };
-use brushwork_tuning::model::{LoopLaw, Motion, PlantModel};
-use brushwork_tuning::registers::velocity_gains;
+use brushwork_tuning::law::Law;
+use brushwork_tuning::model::{Gains, Motion, Pid, PlantModel};
+use brushwork_tuning::plain_law::{PlainLaw, PlainRegisters};
+use brushwork_tuning::setup::{LoopAxis, Setup};
 use brushwork_tuning::tune::{Request, tune};
 use std::time::Duration;
 
@@ -47,18 +48,14 @@ fn main() {
         );
         println!("time constant {:.1} ms, really {:.1}", 1e3 * fit.model.tau_s, 1e3 * MOTOR.tau_s);
     }
-    if let (Some(registers), Some(design)) = (report.velocity, report.design) {
-        let gains = design.gains.velocity;
-        println!("gains P {:.3}, I {:.2}, predicted Ms {:.2}", gains.p, gains.i, design.ms);
-        println!(
-            "command 28 takes P {}, I {}, D {}, QPPS {}",
-            registers.p, registers.i, registers.d, registers.qpps
-        );
+    if let Some(design) = report.design {
+        let (gains, qpps) = (report.proposed.gains.velocity, report.proposed.qpps);
+        println!("gains P {:.3}, I {:.2}, QPPS {qpps:.0}, predicted Ms {:.2}", gains.p, gains.i, design.ms);
     }
     if let Some(measured) = report.measured {
         println!("measured overshoot {:.1} %", 100.0 * measured.overshoot);
     }
-    let again = report.replay().is_some_and(|again| again.velocity == report.velocity);
+    let again = report.replay().is_some_and(|again| again.proposed == report.proposed);
     println!(
         "{} calls recorded; a replay gives {}",
         report.record.len(),
@@ -80,14 +77,14 @@ struct Desk {
     motion: Motion,
     told: Told,
     duty: f64,
-    registers: VelocityRegisters,
+    registers: PlainRegisters,
     last_count: f64,
     filtered_speed: f64,
     error_sum: f64,
 }
 
 impl Default for Desk {
-    /// As it comes from the factory: P 1.0, I 0.5, D 0.25, QPPS 44000 (MCP manual, command 28).
+    /// As it comes from the factory.
     fn default() -> Self {
         Self {
             now: Duration::ZERO,
@@ -95,7 +92,10 @@ impl Default for Desk {
             motion: Motion::default(),
             told: Told::Duty(0.0),
             duty: 0.0,
-            registers: VelocityRegisters { p: 0x1_0000, i: 0x8000, d: 0x4000, qpps: 44_000 },
+            registers: PlainRegisters {
+                gains: Gains { velocity: Pid { p: 1.0, i: 150.0, d: 0.0 }, ..Gains::default() },
+                qpps: 44_000.0,
+            },
             last_count: 0.0,
             filtered_speed: 0.0,
             error_sum: 0.0,
@@ -105,7 +105,7 @@ impl Default for Desk {
 
 impl Desk {
     fn advance(&mut self, to: Duration) {
-        let tick_s = LoopLaw::default().tick_s();
+        let tick_s = PlainLaw::default().tick_s();
         while f64::from(self.ticks + 1) * tick_s <= to.as_secs_f64() {
             self.ticks += 1;
             MOTOR.step(&mut self.motion, self.duty, tick_s);
@@ -126,10 +126,11 @@ impl Desk {
                 self.duty + (wanted - self.duty).clamp(-most, most)
             }
             Told::Speed(wanted) => {
-                let gains = velocity_gains(&self.registers, &LoopLaw::default());
+                let PlainRegisters { gains, qpps } = self.registers;
+                let gains = gains.velocity;
                 let error = wanted - self.filtered_speed;
                 let sum = self.error_sum + error * tick_s;
-                let duty = (wanted + gains.p * error + gains.i * sum) / f64::from(self.registers.qpps.max(1));
+                let duty = (wanted + gains.p * error + gains.i * sum) / qpps.max(1.0);
                 if duty.abs() <= 1.0 {
                     self.error_sum = sum;
                 }
@@ -194,25 +195,6 @@ impl Axis for Desk {
         Err(AxisError::Refused("this desk has no position loop".to_owned()))
     }
 
-    /// Commands 55, 63, 135, 59 and 146.
-    fn read_setup(&mut self) -> Result<Setup, AxisError> {
-        self.exchange();
-        Ok(Setup { velocity: self.registers, stream_timeout_ms: Some(1_000), ..Setup::default() })
-    }
-
-    /// Command 28.
-    fn write_velocity(&mut self, registers: VelocityRegisters) -> Result<(), AxisError> {
-        self.exchange();
-        self.registers = registers;
-        self.error_sum = 0.0;
-        Ok(())
-    }
-
-    /// Command 61.
-    fn write_position(&mut self, _registers: PositionRegisters) -> Result<(), AxisError> {
-        Err(AxisError::Refused("this desk has no position loop".to_owned()))
-    }
-
     fn write_winding(&mut self, _inductance_resistance_raw: [u32; 2]) -> Result<(), AxisError> {
         Ok(())
     }
@@ -233,5 +215,21 @@ impl Axis for Desk {
 
     fn progress(&mut self, text: &str) {
         println!("{:6.2} s  {text}", self.now.as_secs_f64());
+    }
+}
+
+impl LoopAxis<PlainLaw> for Desk {
+    /// Commands 55, 63, 135, 59 and 146.
+    fn read_setup(&mut self) -> Result<Setup<PlainLaw>, AxisError> {
+        self.exchange();
+        Ok(Setup { held: self.registers, stream_timeout_ms: Some(1_000), ..Setup::default() })
+    }
+
+    /// Commands 28 and 61.
+    fn write(&mut self, registers: PlainRegisters) -> Result<(), AxisError> {
+        self.exchange();
+        self.registers = registers;
+        self.error_sum = 0.0;
+        Ok(())
     }
 }

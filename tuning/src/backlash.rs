@@ -4,17 +4,18 @@ use crate::cause::Cause;
 use crate::design::Task;
 use crate::experiment::{Probe, measure_backlash, rest};
 use crate::experiment_guard::ExperimentGuard;
+use crate::law::Law;
 use crate::report::Report;
 use crate::request::Request;
 
 /// Measures the backlash of a position axis by little pushes: before an integral is designed, and where a loop hunts.
-pub(crate) fn with_backlash(
-    guard: &mut ExperimentGuard<'_>,
-    request: &Request,
-    task: Task,
+pub(crate) fn with_backlash<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    request: &Request<L>,
+    task: Task<L>,
     probe: &Probe,
-    report: &mut Report,
-) -> Result<Task, Cause> {
+    report: &mut Report<L>,
+) -> Result<Task<L>, Cause> {
     if !request.verify {
         return Ok(task);
     }

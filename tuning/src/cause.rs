@@ -72,15 +72,15 @@ pub enum Cause {
     HeavyLoad,
     /// The controller's loop follows no law that is known.
     UnknownLaw,
-    /// A Motion Mind is not in the mode in which it can be tuned.
+    /// The controller is not in the mode in which it can be tuned.
     WrongMode,
     /// The controller has no loop of this kind.
     NoSuchLoop,
-    /// Bits of a Motion Mind are set that make another loop of its gains, or none.
+    /// Bits of the controller are set that make another loop of its gains, or none.
     OtherLoop,
-    /// A limit or brake input of a Motion Mind is at ground.
+    /// A limit or brake input of the controller is at ground.
     LimitInput,
-    /// The loop of a Motion Mind was left switched off at the end of a run that found something wrong with the machine.
+    /// The loop of the controller was left switched off at the end of a run that found something wrong with the machine.
     LoopOff,
     /// Nothing moves, and the current cannot be distinguished from its own noise.
     CurrentUnclear,

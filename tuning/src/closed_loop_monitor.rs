@@ -4,10 +4,8 @@
 //! again as readings scatter of late, and anything at all where a new setpoint fell between them. From these, and from bounds of the
 //! model, follow the least and the most that can have been counted over a stretch.
 
-use crate::axis::VelocityRegisters;
 use crate::model::PlantModel;
 use crate::poll::Point;
-use crate::registers::VELOCITY_SCALE;
 use std::collections::VecDeque;
 
 /// Stretches that are looked at, s. The long ones are for heavy motors, which show a fault late.
@@ -35,9 +33,8 @@ const LIMIT: (f64, f64) = (0.85, 1.2);
 /// Duty that readings may be beside the truth between two polls, and how many times their middle scatter is added to it.
 const DUTY_DOUBT: f64 = 0.02;
 const SCATTERS: f64 = 2.0;
-/// Steps of the duty by one count that readings may miss, and ticks per second: the usual.
+/// Steps of the duty by one count that readings may miss.
 const STEPS_UNSEEN: f64 = 0.5;
-const TICKS_PER_S: f64 = 300.0;
 /// The same with too few readings to tell a scatter.
 const UNKNOWN_DOUBT: f64 = 0.14;
 const FEW_READINGS: usize = 5;
@@ -137,9 +134,8 @@ impl ClosedLoopMonitor {
 
     /// The velocity loop has these gains. Where a tick sees a count or none, the duty jumps between two values, and polls in step with
     /// the ticks may see the same one for long.
-    pub(crate) fn hold(&mut self, registers: VelocityRegisters) {
-        let gain = f64::from(registers.p) / VELOCITY_SCALE;
-        self.step_duty = gain * TICKS_PER_S / f64::from(registers.qpps.max(1));
+    pub(crate) fn hold(&mut self, step_duty: f64) {
+        self.step_duty = step_duty;
     }
 
     /// Whether a load pulls that could keep the motor going without a current.

@@ -4,20 +4,20 @@
 //! window, stalls, lost encoders and open motors before the experiment sees it.
 
 use crate::axis::{
-    AMPS_PER_RAW, Axis, AxisError, EncoderClass, FULL_DUTY_RAW, PositionRegisters, Sample, Setup,
-    VOLTS_PER_RAW, VelocityRegisters, Want,
+    ABSOLUTE_COUNTS, AMPS_PER_RAW, Axis, AxisError, EncoderClass, FULL_DUTY_RAW, Sample, VOLTS_PER_RAW, Want,
 };
 use crate::cause::Cause;
 use crate::diagnosis::{DIAGNOSIS_S, diagnose};
-use crate::motion_mind::{MotionMindRegisters, SPEED_STEP_COUNTS_PER_S, bits};
+use crate::gains::Gains;
+use crate::law::{Ending, Facts, Law};
 use crate::motor_monitor::{MotorMonitor, NO_CURRENT_AMPS};
+use crate::open_loop_record::Actuation;
 use crate::pace::{Pace, quantile};
 pub use crate::poll::{Drive, Input, Point};
+use crate::setup::{LoopAxis, Setup};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// Counts of an absolute encoder for one turn (MCP manual 2.4.9, command 16).
-const ABSOLUTE_COUNTS: i64 = 4096;
 /// The stream time-out during a run, ms: assumed to take the drive from the motor this long after the program died. With the unit's own
 /// tick the motor is off within 250 ms of a link that drops, which the bench holds; a computer that is silent for so long counts as late
 /// anyway.
@@ -44,8 +44,6 @@ const REST_LOOK: Duration = Duration::from_millis(40);
 /// Polls whose exchanges are the usual ones, and how much longer a prompt one may take, s.
 const USUAL_POLLS: usize = 17;
 const LATE_S: f64 = 0.004;
-/// Steps of 10 mA in one of AMPSLIMIT.
-const AMPSLIMIT_STEP: u32 = 2;
 /// Silence after which the link counts as lost, s, and so many polls in a row: on a slow line a few lost replies take as long.
 const LINK_LOST_S: f64 = 0.15;
 const LINK_LOST_POLLS: u32 = 5;
@@ -97,12 +95,14 @@ impl Default for GuardOptions {
 }
 
 /// The guard around an experiment on an axis.
-pub struct ExperimentGuard<'a> {
-    axis: &'a mut dyn Axis,
+pub struct ExperimentGuard<'a, L: Law> {
+    axis: &'a mut dyn LoopAxis<L>,
     /// What it has to keep to.
     pub options: GuardOptions,
     /// What the controller held at the start.
-    pub setup: Setup,
+    pub setup: Setup<L>,
+    /// Properties of its law.
+    pub(crate) facts: &'static Facts,
     /// Every poll.
     pub points: Vec<Point>,
     /// How long the exchange of each poll took, s, and when it was: what its time is worth.
@@ -126,7 +126,7 @@ pub struct ExperimentGuard<'a> {
     /// Polls in a row with a current beyond the highest.
     beyond: u32,
     max_current_raw: u32,
-    kept: Option<MotionMindRegisters>,
+    kept: Option<L::Registers>,
     stays_off: bool,
     gains_touched: bool,
     timeout_touched: bool,
@@ -134,16 +134,17 @@ pub struct ExperimentGuard<'a> {
     winding_touched: bool,
 }
 
-impl<'a> ExperimentGuard<'a> {
+impl<'a, L: Law> ExperimentGuard<'a, L> {
     /// Takes an axis over: reads its setup, refuses torque mode unless it may be left, makes the controller stop by itself when
     /// the host dies, and gives it the highest current. What was changed is put back when it fails.
-    pub fn new(axis: &'a mut dyn Axis, options: GuardOptions) -> Result<Self, Cause> {
+    pub fn new(axis: &'a mut dyn LoopAxis<L>, options: GuardOptions) -> Result<Self, Cause> {
         let setup = retried(|| axis.read_setup())?;
         let now = axis.now();
         let mut guard = Self {
             axis,
             options,
             setup,
+            facts: L::default().of_unit(&setup.held).facts(),
             points: Vec::new(),
             exchanges: Vec::new(),
             drives: Vec::new(),
@@ -178,14 +179,10 @@ impl<'a> ExperimentGuard<'a> {
 
     fn get_ready(&mut self) -> Result<(), Cause> {
         let setup = self.setup;
-        if let Some(unit) = setup.motion_mind {
-            if !unit.can_be_tuned() {
-                return Err(Cause::WrongMode);
-            }
-            self.monitor.is_abrupt = true;
-            if let Some(travel) = self.options.travel {
-                retried(|| self.axis.set_travel(travel))?;
-            }
+        L::ready(&setup.held)?;
+        self.monitor.is_abrupt = self.actuation().slew_per_s.is_infinite();
+        if let Some(travel) = self.options.travel.filter(|_| self.facts.keeps_travel) {
+            retried(|| self.axis.set_travel(travel))?;
         }
         if setup.is_torque_mode() {
             if !self.options.clear_winding {
@@ -225,14 +222,15 @@ impl<'a> ExperimentGuard<'a> {
         self.pace.pause();
     }
 
-    /// A Motion Mind that is given another kind of command, or has had no duty, first has all its registers written, with its motor off.
+    /// A controller whose registers are written at rest first has all of them written where it is given another kind of command, or has
+    /// had no duty.
     fn pause_for(&mut self, input: Input) {
         let kind = |input: &Input| std::mem::discriminant(input);
         let is_another = self
             .drives
             .last()
             .is_none_or(|last| last.input == Input::Duty(0.0) || kind(&last.input) != kind(&input));
-        if self.setup.motion_mind.is_some() && is_another {
+        if self.facts.writes_at_rest && is_another {
             self.pause();
         }
     }
@@ -312,7 +310,7 @@ impl<'a> ExperimentGuard<'a> {
     /// The step of a speed command, counts/s.
     #[must_use]
     pub fn speed_step(&self) -> f64 {
-        if self.setup.motion_mind.is_some() { SPEED_STEP_COUNTS_PER_S } else { 1.0 }
+        self.facts.speed_step
     }
 
     /// Commands a position in counts from the start of the run.
@@ -332,7 +330,7 @@ impl<'a> ExperimentGuard<'a> {
     /// Up to four tries. A controller that goes on reporting its counts has not lost the link: it does not take this command.
     fn acknowledged<T>(
         &mut self,
-        mut call: impl FnMut(&mut dyn Axis) -> Result<T, AxisError>,
+        mut call: impl FnMut(&mut dyn LoopAxis<L>) -> Result<T, AxisError>,
     ) -> Result<T, Cause> {
         let result = retried(|| call(self.axis));
         if matches!(result, Err(Cause::LinkLost)) && self.axis.sample(Want::default()).is_ok() {
@@ -341,42 +339,50 @@ impl<'a> ExperimentGuard<'a> {
         result
     }
 
-    /// Writes velocity registers to RAM; they are put back unless the run keeps them.
-    pub fn write_velocity(&mut self, registers: VelocityRegisters) -> Result<(), Cause> {
+    /// Writes registers to RAM; they are put back unless the run keeps its own.
+    pub fn write(&mut self, write: L::Write) -> Result<(), Cause> {
         self.gains_touched = true;
-        self.monitor.hold(registers);
-        self.acknowledged(|axis| axis.write_velocity(registers))
+        if let Some(step_duty) = L::step_duty(&write) {
+            self.monitor.hold(step_duty);
+        }
+        if self.facts.writes_at_rest {
+            self.pause();
+            return retried(|| self.axis.write(write));
+        }
+        self.acknowledged(|axis| axis.write(write))
     }
 
-    /// Writes position registers to RAM; they are put back unless the run keeps them.
-    pub fn write_position(&mut self, registers: PositionRegisters) -> Result<(), Cause> {
-        self.gains_touched = true;
-        self.acknowledged(|axis| axis.write_position(registers))
+    /// Writes the registers that speed moves need, or position moves.
+    pub fn write_all(&mut self, registers: &L::Registers, is_position: bool) -> Result<(), Cause> {
+        L::writes(registers, is_position).into_iter().try_for_each(|write| self.write(write))
     }
 
-    /// Writes the registers of a Motion Mind to RAM; they are put back unless the run keeps its own.
-    pub fn write_motion_mind(&mut self, registers: MotionMindRegisters) -> Result<(), Cause> {
-        self.gains_touched = true;
-        self.pause();
-        retried(|| self.axis.write_motion_mind(registers))
+    /// Writes the gains of a velocity loop, and gives them as registers.
+    pub(crate) fn write_gains(&mut self, law: &L, gains: &Gains, qpps: f64) -> Result<L::Registers, Cause> {
+        let registers = law.registers(&self.setup.held, gains, qpps, None);
+        self.write_all(&registers, false).map(|()| registers)
     }
 
-    /// AMPSLIMIT of a Motion Mind during the run, 20 mA.
-    #[must_use]
-    pub fn amps_limit(&self) -> u16 {
-        u16::try_from(self.max_current_raw / AMPSLIMIT_STEP).unwrap_or(u16::MAX)
+    /// The highest current during the run, 10 mA; 0 = none.
+    pub(crate) fn max_current_raw(&self) -> u32 {
+        self.max_current_raw
     }
 
-    /// What a Motion Mind holds at the end of the run.
-    pub fn keep_motion_mind(&mut self, registers: MotionMindRegisters) {
+    /// How the controller takes a duty.
+    pub(crate) fn actuation(&self) -> Actuation {
+        L::actuation(&self.setup.held, self.max_current_raw)
+    }
+
+    /// What the controller is to hold at the end of the run.
+    pub fn keep(&mut self, registers: L::Registers) -> Result<(), Cause> {
         self.kept = Some(registers);
+        L::keeping(&registers).into_iter().try_for_each(|write| self.write(write))
     }
 
-    /// Leaves the loop of a Motion Mind off at the end where something is wrong with the machine: it would hold the motor by a signal
+    /// Leaves a loop that goes on after the run off where something is wrong with the machine: it would hold the motor by a signal
     /// that is not there, or drive it away. Whether there is such a loop, and it was on.
     pub(crate) fn leave_off(&mut self, cause: Cause) -> bool {
-        let is_on = self.setup.motion_mind.is_some_and(|unit| !unit.registers.has(bits::DISABLEPID));
-        self.stays_off = is_on && cause.is_of_machine();
+        self.stays_off = L::goes_on(&self.setup.held) && cause.is_of_machine();
         self.stays_off
     }
 
@@ -438,9 +444,7 @@ impl<'a> ExperimentGuard<'a> {
             }
         }
         if sample.status.fault {
-            let is_held =
-                self.setup.motion_mind.is_some() && sample.status.raw & u32::from(bits::INPUTS) != 0;
-            return Err(if is_held { Cause::LimitInput } else { Cause::ControllerFault });
+            return Err(L::fault(&self.setup.held, sample.status.raw));
         }
         let floor = f64::from(self.setup.min_volts_raw) * VOLTS_PER_RAW + self.options.volts_margin;
         let sagging = self.setup.min_volts_raw > 0 && point.volts.is_some_and(|volts| volts < floor);
@@ -519,14 +523,13 @@ impl<'a> ExperimentGuard<'a> {
     /// Puts back what the run has changed. What cannot be said now is left to whoever owns the link.
     fn put_back(&mut self, keep_gains: bool) {
         let before = self.setup;
-        if let Some(unit) = before.motion_mind {
-            // Open-loop duties use the gain registers too, so that they are put back whatever the run did.
-            let mut registers = self.kept.filter(|_| keep_gains).unwrap_or(unit.registers);
-            registers.function |= if self.stays_off { bits::DISABLEPID } else { 0 };
-            let _ = retried(|| self.axis.end_motion_mind(registers));
-        } else if self.gains_touched && !keep_gains {
-            let _ = retried(|| self.axis.write_velocity(before.velocity));
-            let _ = retried(|| self.axis.write_position(before.position));
+        let ending = Ending {
+            kept: self.kept.as_ref().filter(|_| keep_gains),
+            is_touched: self.gains_touched,
+            stays_off: self.stays_off,
+        };
+        for write in L::ending(&before.held, ending) {
+            let _ = retried(|| self.axis.write(write));
         }
         if self.limits_touched {
             let _ =
@@ -747,7 +750,7 @@ impl<'a> ExperimentGuard<'a> {
 }
 
 /// Waits until a braked motor stands, for a few seconds at the most: where duty is a current, duty 0 no longer brakes it.
-pub fn wait_for_rest(axis: &mut dyn Axis) {
+pub fn wait_for_rest<A: Axis + ?Sized>(axis: &mut A) {
     let until = axis.now() + LONGEST_REST;
     let mut before = None;
     while axis.now() < until {

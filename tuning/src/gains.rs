@@ -18,8 +18,8 @@ pub struct Pid {
 pub struct Gains {
     /// Velocity loop: speeds in, speeds out. All zero in position modes that act on the duty directly.
     pub velocity: Pid,
-    /// On the sum of the position's errors under a speed command, per s^2: ITERM of a Motion Mind, an integral of the integral. Nothing
-    /// else has it.
+    /// On the sum of the position's errors under a speed command, per s^2, an integral of the integral: where one loop on the position
+    /// makes both kinds of moves.
     #[serde(default)]
     pub velocity_sum: f64,
     /// Position loop: counts in, counts/s out.

@@ -1,21 +1,16 @@
 //! The lag that hides in the firmware's loop, measured on the closed loop.
 //!
-//! Polls at 50 to 100 Hz cannot see a few milliseconds in the counts of an open loop. In a closed one the duty (command 48) is the
+//! Polls at 50 to 100 Hz cannot see a few milliseconds in the counts of an open loop. In a closed one the duty is the
 //! controller's own answer to the speed as it sees it: the candidate loop is simulated with each lag of a grid, and the
 //! lags under which simulated counts and duties agree with the polled ones are the likely ones.
 
 use crate::experiment_guard::{ExperimentGuard, Input};
+use crate::law::Law;
 use crate::linear::{DiscretePlant, LoopPlant};
-use crate::model::{Gains, Lag, LoopLaw, PlantModel};
-use crate::open_loop_record::UNDATED_STAMP_S;
+use crate::model::{Gains, Lag, PlantModel};
 use crate::ticks::{Setpoint, TickLoop};
 use serde::{Deserialize, Serialize};
 
-/// Filters tried, s, and delays tried, ticks.
-const FILTERS_S: [f64; 9] = [0.0, 0.002, 0.004, 0.006, 0.008, 0.010, 0.013, 0.017, 0.022];
-const DELAYS: [f64; 6] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0];
-/// Delays tried of a Motion Mind, whose ticks are longer.
-const LONG_DELAYS: [f64; 8] = [0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0];
 /// Time constants tried, in prior standard deviations of their logarithm, and the bounds of that deviation.
 const TAU_STEPS: [f64; 9] = [-2.4, -1.8, -1.2, -0.6, 0.0, 0.6, 1.2, 1.8, 2.4];
 const TAU_PRIOR: (f64, f64) = (0.02, 0.6);
@@ -51,7 +46,7 @@ pub struct ClosedLoopRecord {
 impl ClosedLoopRecord {
     /// What the experiment guard recorded between two times under speed commands.
     #[must_use]
-    pub fn of(guard: &ExperimentGuard<'_>, from_s: f64, to_s: f64) -> Self {
+    pub fn of<L: Law>(guard: &ExperimentGuard<'_, L>, from_s: f64, to_s: f64) -> Self {
         let inside = |t: f64| t >= from_s && t <= to_s;
         let setpoints = guard.drives.iter().filter(|d| inside(d.t)).filter_map(|d| match d.input {
             Input::Speed(speed) => Some((d.t, speed)),
@@ -62,15 +57,14 @@ impl ClosedLoopRecord {
         let shortest = points().map(|(_, took)| took.1).fold(f64::INFINITY, f64::min);
         let prompt = || points().filter(|(_, took)| took.1 - shortest <= LATE_S);
         let n = prompt().count().max(1) as f64;
-        let unit = guard.setup.motion_mind;
-        let undated_s = if unit.is_some_and(|unit| unit.is_undated) { UNDATED_STAMP_S } else { 0.0 };
+        let stamps = L::stamps(&guard.setup.held);
         let open = prompt().map(|(_, took)| (took.1 - shortest).powi(2)).sum::<f64>() / n;
         Self {
             setpoints: setpoints.collect(),
             counts: prompt().map(|(p, _)| (p.t, p.counts)).collect(),
             duties: points().filter_map(|(p, _)| p.duty).collect(),
-            stamp_s: (open / 12.0).sqrt().hypot(undated_s),
-            is_dated: unit.is_some_and(|unit| !unit.is_undated),
+            stamp_s: (open / 12.0).sqrt().hypot(stamps.open_s),
+            is_dated: stamps.are_dated,
         }
     }
 }
@@ -100,10 +94,10 @@ struct Case {
 
 /// Fits the lag. `sd_ln_tau` is how loosely the time constant is known.
 #[must_use]
-pub fn fit_lag(
+pub fn fit_lag<L: Law>(
     record: &ClosedLoopRecord,
     plant: &PlantModel,
-    law: &LoopLaw,
+    law: &L,
     gains: &Gains,
     qpps: f64,
     sd_ln_tau: f64,
@@ -113,13 +107,8 @@ pub fn fit_lag(
     }
     let spread = (1.5 * sd_ln_tau).clamp(TAU_PRIOR.0, TAU_PRIOR.1);
     let mut cases: Vec<Case> = Vec::new();
-    // A Motion Mind has no speed that it could filter.
-    let (filters_s, delays) = match law.motion_mind {
-        Some(_) => (&FILTERS_S[..1], &LONG_DELAYS[..]),
-        None => (&FILTERS_S[..], &DELAYS[..]),
-    };
-    for &filter_s in filters_s {
-        for &delay_ticks in delays {
+    for &filter_s in law.facts().filters_s {
+        for &delay_ticks in law.facts().delays_ticks {
             let lag = Lag { filter_s, delay_ticks };
             // A lag that lets more of the rounding through explains a rougher duty.
             let linear = LoopPlant::new(DiscretePlant::of(plant, law.tick_s()), law, lag);
@@ -142,14 +131,14 @@ pub fn fit_lag(
     let chi_square = best.misfit / readings;
     // What the model explains badly it also locates badly.
     let likely = best.cost + 4.0 * chi_square.max(1.0).powi(2);
-    let total = |case: &&Case| case.lag.total_s(law);
+    let total = |case: &&Case| case.lag.total_s(law.tick_s());
     let within = || cases.iter().filter(|case| case.cost < likely);
     let shortest = within().map(|c| total(&c)).fold(f64::INFINITY, f64::min);
     let worst = within().max_by(|a, b| total(a).total_cmp(&total(b)))?;
     Some(LagFit {
         lag: best.lag,
         worst: worst.lag,
-        interval_s: (shortest, worst.lag.total_s(law)),
+        interval_s: (shortest, worst.lag.total_s(law.tick_s())),
         tau_scale: best.tau_scale,
         chi_square,
     })
@@ -166,10 +155,10 @@ struct Followed {
 impl Followed {
     /// `started` says whether the loop is at work before the first setpoint of the record. `offset_s` is how long after its stamp a
     /// setpoint takes effect.
-    fn new(
+    fn new<L: Law>(
         record: &ClosedLoopRecord,
-        mut twin: TickLoop,
-        law: &LoopLaw,
+        mut twin: TickLoop<L>,
+        law: &L,
         offset_s: f64,
         before: Option<f64>,
     ) -> Option<Self> {
@@ -204,10 +193,10 @@ impl Followed {
 }
 
 /// The record that a loop, at work at the speed `before`, would have given under the same setpoints and polls.
-pub(crate) fn predicted_record(
+pub(crate) fn predicted_record<L: Law>(
     record: &ClosedLoopRecord,
-    twin: TickLoop,
-    law: &LoopLaw,
+    twin: TickLoop<L>,
+    law: &L,
     before: f64,
 ) -> Option<ClosedLoopRecord> {
     let followed = Followed::new(record, twin, law, 0.5 * law.tick_s(), Some(before))?;
@@ -216,7 +205,13 @@ pub(crate) fn predicted_record(
 }
 
 /// Sum of the squared misfits of counts (differences between polls) and duties.
-fn mismatch(record: &ClosedLoopRecord, twin: TickLoop, law: &LoopLaw, offset_s: f64, sigma_duty: f64) -> f64 {
+fn mismatch<L: Law>(
+    record: &ClosedLoopRecord,
+    twin: TickLoop<L>,
+    law: &L,
+    offset_s: f64,
+    sigma_duty: f64,
+) -> f64 {
     let Some(followed) = Followed::new(record, twin, law, offset_s, None) else { return f64::INFINITY };
     let (start, tick_s, duties) = (followed.start, followed.tick_s, &followed.duties);
     let ticks = duties.len();
@@ -251,6 +246,7 @@ fn mismatch(record: &ClosedLoopRecord, twin: TickLoop, law: &LoopLaw, offset_s: 
 mod tests {
     use super::*;
     use crate::model::Pid;
+    use crate::plain_law::PlainLaw;
 
     const PLANT: PlantModel = PlantModel {
         gain_counts_per_s: 40_000.0,
@@ -271,7 +267,7 @@ mod tests {
 
     /// Steps of a loop with a known lag, polled every 12.3 ms.
     fn known_record(lag: Lag) -> ClosedLoopRecord {
-        let law = LoopLaw::default();
+        let law = PlainLaw::default();
         let mut twin = TickLoop::new(PLANT, law, lag, GAINS, 40_000.0);
         let mut record = ClosedLoopRecord::default();
         for n in 0..5 {
@@ -298,7 +294,7 @@ mod tests {
 
     #[test]
     fn a_known_lag_is_found_again_and_lies_in_its_interval() {
-        let law = LoopLaw::default();
+        let law = PlainLaw::default();
         for lag in [
             Lag::default(),
             Lag { filter_s: 0.004, delay_ticks: 1.0 },
@@ -307,7 +303,7 @@ mod tests {
         ] {
             let found =
                 fit_lag(&known_record(lag), &PLANT, &law, &GAINS, 40_000.0, 0.03).expect("enough readings");
-            let (got, wanted) = (found.lag.total_s(&law), lag.total_s(&law));
+            let (got, wanted) = (found.lag.total_s(law.tick_s()), lag.total_s(law.tick_s()));
             assert!((got - wanted).abs() < 0.0025, "{got} s instead of {wanted} s: {found:?}");
             assert!(found.chi_square < 1.5, "{found:?}");
         }
@@ -316,7 +312,7 @@ mod tests {
     #[test]
     fn a_record_without_steps_says_nothing() {
         assert!(
-            fit_lag(&ClosedLoopRecord::default(), &PLANT, &LoopLaw::default(), &GAINS, 40_000.0, 0.1)
+            fit_lag(&ClosedLoopRecord::default(), &PLANT, &PlainLaw::default(), &GAINS, 40_000.0, 0.1)
                 .is_none()
         );
     }

@@ -3,7 +3,8 @@
 //! The plant is given as a discrete state space from duty to counts, so that the tuner's first-order model and a benchmark's
 //! detailed truth go through the same code.
 
-use crate::model::{Gains, Lag, LoopLaw, PlantModel};
+use crate::law::Law;
+use crate::model::{Gains, Lag, PlantModel};
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// Frequencies of the grid.
@@ -49,7 +50,8 @@ impl DiscretePlant {
 /// A plant under a law, with its responses worked out once for many gains.
 #[derive(Clone, Debug)]
 pub struct LoopPlant {
-    law: LoopLaw,
+    tick_s: f64,
+    feed_forward: bool,
     lag: Lag,
     plant: DiscretePlant,
     omega: Vec<f64>,
@@ -75,7 +77,7 @@ pub struct Margins {
 impl LoopPlant {
     /// Works the responses out. The lag is the model's or the truth's.
     #[must_use]
-    pub fn new(plant: DiscretePlant, law: &LoopLaw, lag: Lag) -> Self {
+    pub fn new<L: Law>(plant: DiscretePlant, law: &L, lag: Lag) -> Self {
         let tick_s = law.tick_s();
         let top = std::f64::consts::PI / tick_s;
         let bottom = top * 2e-4;
@@ -91,7 +93,8 @@ impl LoopPlant {
         let speed = position.iter().zip(&slope).zip(&filter).map(|((p, s), f)| p * s * f).collect();
         let delay = omega.iter().map(|w| Complex::from_polar(1.0, -w * tick_s * lag.delay_ticks)).collect();
         let integral = slope.iter().map(|s| one / s).collect();
-        Self { law: *law, lag, plant, omega, slope, integral, position, speed, filter, delay }
+        let feed_forward = law.feed_forward();
+        Self { tick_s, feed_forward, lag, plant, omega, slope, integral, position, speed, filter, delay }
     }
 
     /// Maximum sensitivity and noise of a loop; the loop must be stable for them to mean anything.
@@ -113,7 +116,7 @@ impl LoopPlant {
             }
             before = Some((self.omega[n], power));
         }
-        let noise_duty = (noise * self.law.tick_s() / std::f64::consts::PI / 12.0).sqrt();
+        let noise_duty = (noise * self.tick_s / std::f64::consts::PI / 12.0).sqrt();
         Margins { ms, noise_duty }
     }
 
@@ -144,7 +147,7 @@ impl LoopPlant {
         }
         let by_position = gains.position.map_or(Complex::new(0.0, 0.0), |position| {
             let wanted = self.integral[n] * position.i + self.slope[n] * position.d + position.p;
-            let forward = if is_simple(gains) { 1.0 } else { f64::from(u8::from(self.law.feed_forward)) };
+            let forward = if is_simple(gains) { 1.0 } else { f64::from(u8::from(self.feed_forward)) };
             wanted * (by_speed + forward)
         });
         (by_speed, by_position)
@@ -155,7 +158,7 @@ impl LoopPlant {
     fn closed_loop(&self, gains: &Gains, qpps: f64) -> Option<DMatrix<f64>> {
         let n = self.plant.a.nrows();
         let delay = self.lag.delay_ticks.ceil() as usize;
-        let tick_s = self.law.tick_s();
+        let tick_s = self.tick_s;
         let size = n + 5 + delay;
         let (last, filtered, sum, error, position_sum, queue) = (n, n + 1, n + 2, n + 3, n + 4, n + 5);
         let unit = |k: usize| DVector::from_fn(size, |r, _| f64::from(u8::from(r == k)));
@@ -175,7 +178,7 @@ impl LoopPlant {
             new_position_sum = unit(position_sum) + &new_sum * tick_s;
         }
         let velocity = gains.velocity;
-        let forward = if is_simple(gains) || self.law.feed_forward { 1.0 } else { 0.0 };
+        let forward = if is_simple(gains) || self.feed_forward { 1.0 } else { 0.0 };
         let duty = if is_simple(gains) {
             wanted / qpps
         } else {
@@ -249,7 +252,7 @@ impl LoopPlant {
     }
 }
 
-/// A position loop that acts on the duty directly: the velocity gains are all zero (MCP manual 2.4.7).
+/// A position loop that acts on the duty directly: the velocity gains are all zero.
 fn is_simple(gains: &Gains) -> bool {
     let v = gains.velocity;
     gains.position.is_some() && v.p == 0.0 && v.i == 0.0 && v.d == 0.0
@@ -259,6 +262,7 @@ fn is_simple(gains: &Gains) -> bool {
 mod tests {
     use super::*;
     use crate::model::Pid;
+    use crate::plain_law::PlainLaw;
 
     fn loop_of(tau_s: f64, lag: Lag) -> LoopPlant {
         let model = PlantModel {
@@ -270,7 +274,7 @@ mod tests {
             brake_limit: None,
             sag: 0.0,
         };
-        let law = LoopLaw::default();
+        let law = PlainLaw::default();
         LoopPlant::new(DiscretePlant::of(&model, law.tick_s()), &law, lag)
     }
 

@@ -4,10 +4,10 @@
 use crate::cause::Cause;
 use crate::design::Task;
 use crate::experiment_guard::ExperimentGuard;
+use crate::law::Law;
 use crate::linear::{DiscretePlant, LoopPlant};
-use crate::model::{Gains, LoopLaw, Pid};
+use crate::model::{Gains, Pid};
 use crate::oscillation::deviation;
-use crate::registers::velocity_registers;
 
 /// Gains tried, as multiples of the proposed ones, up to the margin that is wanted.
 const FACTORS: [f64; 5] = [1.2, 1.4, 1.6, 1.8, 2.0];
@@ -85,12 +85,12 @@ pub(crate) fn scaled(gains: &Gains, factor: f64) -> Gains {
 
 /// Raises the velocity gains step by step at a steady speed, as far as the duty stays quiet. The motor is braked at the end; the raised
 /// gains stand in the registers then.
-pub(crate) fn headroom(
-    guard: &mut ExperimentGuard<'_>,
-    task: &Task,
-    law: &LoopLaw,
+pub(crate) fn headroom<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    task: &Task<L>,
     gains: &Gains,
 ) -> Result<Headroom, Cause> {
+    let law = &task.law;
     let inner = velocity_loop_of(gains);
     let plant = LoopPlant::new(DiscretePlant::of(&task.plant, law.tick_s()), law, task.lag);
     let most = highest_calm(&plant, &inner, task.qpps);
@@ -98,10 +98,10 @@ pub(crate) fn headroom(
     let predicted = |factor: f64| {
         task.noise_factor.max(1.0) * plant.margins(&scaled(&inner, factor), task.qpps).noise_duty
     };
-    let lag_s = task.lag.total_s(law) + 2.0 * law.tick_s();
+    let lag_s = task.lag.total_s(law.tick_s()) + 2.0 * law.tick_s();
     let tried_s = (LAGS * lag_s).clamp(TRIED_S.0, TRIED_S.1).max(LEAST_POLLS * guard.options.poll_s / HEARD);
     let settle_s = (1.5 * task.plant.tau_s).clamp(0.15, 1.0);
-    guard.write_velocity(velocity_registers(&inner.velocity, task.qpps, law))?;
+    guard.write_gains(law, &inner, task.qpps)?;
     let step = (STEP_DUTY / (wanted * inner.velocity.p).max(1e-6)).clamp(STEP.0, STEP.1);
     let speed = |side: f64| between_counts((SPEED + side * step) * task.qpps, law.tick_s());
     guard.speed(speed(-1.0))?;
@@ -117,7 +117,7 @@ pub(crate) fn headroom(
             // The rounding of a coarse encoder alone makes such a noise.
             return Ok(Headroom { quiet: wanted, wanted });
         }
-        guard.write_velocity(velocity_registers(&scaled(&inner, factor).velocity, task.qpps, law))?;
+        guard.write_gains(law, &scaled(&inner, factor), task.qpps)?;
         let measured = activity(guard, speed(side), tried_s)?;
         let expected = predicted(factor).max(usual * predicted(factor) / predicted(1.0).max(1e-4));
         let bound = (TOO_ROUGH * expected).max(LEAST_ROUGH);
@@ -143,7 +143,7 @@ fn between_counts(speed: f64, tick_s: f64) -> f64 {
 }
 
 /// Deviation of the duty in the second half of a step.
-fn activity(guard: &mut ExperimentGuard<'_>, speed: f64, tried_s: f64) -> Result<f64, Cause> {
+fn activity<L: Law>(guard: &mut ExperimentGuard<'_, L>, speed: f64, tried_s: f64) -> Result<f64, Cause> {
     guard.speed(speed)?;
     let from_s = guard.now_s() + (1.0 - HEARD) * tried_s;
     guard.poll_for(tried_s, true)?;

@@ -1,7 +1,6 @@
-//! The model of an axis that identification fills and design uses, and the law the controller is taken to follow.
+//! The model of an axis that identification fills and design uses.
 
 pub use crate::gains::{Gains, Pid};
-use crate::motion_mind::{MotionMindLaw, SUM_BOUNDS_S, rounded};
 use serde::{Deserialize, Serialize};
 
 /// Share of the damping that is viscous friction, not back-EMF. Only a current limit tells them apart; small in every motor, so one
@@ -53,62 +52,8 @@ pub struct Lag {
 impl Lag {
     /// All of it, s.
     #[must_use]
-    pub fn total_s(&self, law: &LoopLaw) -> f64 {
-        self.filter_s + self.delay_ticks * law.tick_s()
-    }
-}
-
-/// The firmware's law, as far as the tuner must know it.
-///
-/// Assumed, since none of it is public: `duty = (feed_forward v + P e + I sum(e) + D diff(e)) / QPPS`. The law probe checks it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LoopLaw {
-    /// Loop rate, Hz.
-    pub rate_hz: u32,
-    /// Whether I and D count per tick; otherwise per second.
-    pub per_tick: bool,
-    /// Wire value of a position gain of 1.
-    pub position_scale: f64,
-    /// Whether the setpoint's share of QPPS is added to the duty.
-    pub feed_forward: bool,
-    /// The law of a Motion Mind instead: one loop on the position, its output a duty.
-    #[serde(default)]
-    pub motion_mind: Option<MotionMindLaw>,
-}
-
-impl Default for LoopLaw {
-    /// Assumed: 300 Hz, gains per tick, position gains x 1024, with feed-forward.
-    fn default() -> Self {
-        Self { rate_hz: 300, per_tick: true, position_scale: 1024.0, feed_forward: true, motion_mind: None }
-    }
-}
-
-impl LoopLaw {
-    /// Length of a tick, s.
-    #[must_use]
-    pub fn tick_s(&self) -> f64 {
-        1.0 / f64::from(self.rate_hz)
-    }
-
-    /// Seconds that one unit of the integral or derivative stands for.
-    #[must_use]
-    pub fn gain_step(&self) -> f64 {
-        if self.per_tick { 1.0 } else { self.tick_s() }
-    }
-
-    /// The bounds that a position integral may be given where it needs `wanted`, counts x s.
-    #[must_use]
-    pub fn sum_bounds(&self, wanted: f64) -> Vec<f64> {
-        if self.motion_mind.is_some() { SUM_BOUNDS_S.to_vec() } else { vec![wanted] }
-    }
-
-    /// Gains as the registers can hold them. Those of packet serial are so fine that it makes no difference.
-    #[must_use]
-    pub fn rounded(&self, gains: &Gains, qpps: f64) -> Gains {
-        match self.motion_mind {
-            Some(_) => rounded(gains, qpps),
-            None => *gains,
-        }
+    pub fn total_s(&self, tick_s: f64) -> f64 {
+        self.filter_s + self.delay_ticks * tick_s
     }
 }
 

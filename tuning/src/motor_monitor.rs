@@ -4,7 +4,6 @@
 //! was and which duty it had. The bounds are wide, since they come from the run itself: the speeds seen so far and a rough time
 //! constant. A stretch outside them is a suspicion, which the diagnosis turns into a cause.
 
-use crate::axis::VelocityRegisters;
 use crate::cause::Cause;
 use crate::closed_loop_monitor::{Before, ClosedLoopMonitor};
 use crate::model::PlantModel;
@@ -154,9 +153,9 @@ impl MotorMonitor {
     }
 
     /// The velocity loop is given other gains.
-    pub(crate) fn hold(&mut self, registers: VelocityRegisters) {
+    pub(crate) fn hold(&mut self, step_duty: f64) {
         if let Some(closed_loop) = &mut self.closed_loop {
-            closed_loop.hold(registers);
+            closed_loop.hold(step_duty);
         }
     }
 

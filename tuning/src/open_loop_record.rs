@@ -1,10 +1,10 @@
 //! The record of an open-loop run as a fit needs it, and the counts that a model predicts for it.
 
+use crate::duty_limiter::{DutyLimit, Limiter, LimiterState};
 use crate::model::{Motion, PlantModel};
-use crate::motion_mind::{Limiter, LimiterState};
 use crate::poll::{Drive, Input, Point};
 
-/// Duty per second of the explicit highest acceleration: 100 % to -100 % in 100 ms (MCP manual, command 52).
+/// Duty per second of the explicit highest acceleration: 100 % to -100 % in 100 ms.
 pub(crate) const DUTY_SLEW_PER_S: f64 = 20.0;
 /// Step along a duty ramp, and under a current limit, s.
 const RAMP_STEP_S: f64 = 0.001;
@@ -34,30 +34,19 @@ pub struct Actuation {
     pub slew_per_s: f64,
     /// From the stamp of a command to its effect, with the age of a reading, s: the usual.
     pub offset_s: f64,
-    /// AMPSLIMIT of a Motion Mind, whose limit of the current is one of the duty.
-    pub amps_limit: Option<u16>,
+    /// The limit of the duty by which the current is held, where it is not the current itself that is limited.
+    pub duty_limit: Option<DutyLimit>,
     /// Standard deviation of the time stamps of readings, s.
     pub stamp_s: f64,
 }
 
 /// The same of readings that came promptly or with their time.
-const STAMP_S: f64 = 0.0010;
-/// The same of a Motion Mind's that came without their time: the position is that of the last loop, and nobody knows when that was.
-pub(crate) const UNDATED_STAMP_S: f64 = 0.0018;
+pub const STAMP_S: f64 = 0.0010;
 
 impl Default for Actuation {
-    /// A ramp of packet serial; half a tick of waiting and half a tick of age at 300 Hz.
+    /// A ramp of 100 % to -100 % in 100 ms; half a tick of waiting and half a tick of age at 300 Hz.
     fn default() -> Self {
-        Self { slew_per_s: DUTY_SLEW_PER_S, offset_s: 0.0035, amps_limit: None, stamp_s: STAMP_S }
-    }
-}
-
-impl Actuation {
-    /// A Motion Mind: the next loop has the whole duty, and shows the position of the last one.
-    #[must_use]
-    pub fn motion_mind(amps_limit: u16, is_dated: bool) -> Self {
-        let stamp_s = if is_dated { STAMP_S } else { UNDATED_STAMP_S };
-        Self { slew_per_s: f64::INFINITY, offset_s: 0.0052, amps_limit: Some(amps_limit), stamp_s }
+        Self { slew_per_s: DUTY_SLEW_PER_S, offset_s: 0.0035, duty_limit: None, stamp_s: STAMP_S }
     }
 }
 
@@ -115,9 +104,9 @@ impl OpenLoopRecord {
         volts.clear();
         let Some(&(start, _)) = self.counts.first() else { return };
         let motion = Motion { speed: self.start_speed, position: 0.0 };
-        let limiter = self.actuation.amps_limit.and_then(|amps| Limiter::new(amps, model.drive_limit));
+        let limiter = self.actuation.duty_limit.and_then(|limit| Limiter::new(limit, model.drive_limit));
         // A limit of the duty leaves none of the current.
-        let model = &match self.actuation.amps_limit {
+        let model = &match self.actuation.duty_limit {
             Some(_) => PlantModel { drive_limit: None, ..*model },
             None => *model,
         };
@@ -180,7 +169,7 @@ impl OpenLoopRecord {
 /// The same where a limiter moves the bound of the duty.
 fn advance_limited(model: &PlantModel, limiter: &Limiter, state: &mut Cursor, to: f64) {
     while state.t < to - 1e-12 {
-        let step = (to - state.t).min(Limiter::step_s());
+        let step = (to - state.t).min(limiter.step_s());
         let duty = Limiter::left(&state.limit, state.duty);
         let before = state.motion.speed;
         model.step(&mut state.motion, duty, step);

@@ -3,15 +3,16 @@
 //! All values are whole numbers of the wire, so a record survives a file unchanged, and a tuner that is fed from it makes the
 //! same decisions and the same gains to the last bit.
 
-use crate::axis::{Axis, AxisError, Exchange, PositionRegisters, Sample, Setup, VelocityRegisters, Want};
-use crate::motion_mind::MotionMindRegisters;
+use crate::axis::{Axis, AxisError, Exchange, Sample, Want};
+use crate::law::Law;
+use crate::setup::{LoopAxis, Setup};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
 /// One call and its answer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Entry {
+#[serde(rename_all = "snake_case", bound = "")]
+pub enum Entry<L: Law> {
     /// The time was asked for.
     Now(Duration),
     /// A wait ended.
@@ -25,11 +26,7 @@ pub enum Entry {
     /// A position and its speed.
     Position(i32, u32, Result<Exchange, AxisError>),
     /// The setup.
-    Setup(Result<Setup, AxisError>),
-    /// Velocity registers written.
-    Velocity(VelocityRegisters, Result<(), AxisError>),
-    /// Position registers written.
-    PositionLoop(PositionRegisters, Result<(), AxisError>),
+    Setup(Result<Setup<L>, AxisError>),
     /// Inductance and resistance written.
     Winding([u32; 2], Result<(), AxisError>),
     /// Highest currents written.
@@ -38,34 +35,33 @@ pub enum Entry {
     RawSpeed(Result<i32, AxisError>),
     /// Stream time-out set.
     Timeout(u32, Result<(), AxisError>),
-    /// Registers of a Motion Mind written.
-    MotionMind(MotionMindRegisters, Result<(), AxisError>),
-    /// The run on a Motion Mind ended with these.
-    MotionMindEnd(MotionMindRegisters, Result<(), AxisError>),
     /// Travel given.
     Travel((i64, i64), Result<(), AxisError>),
+    /// Registers of a loop written, under the law's own names.
+    #[serde(untagged)]
+    Registers(L::Note),
 }
 
 /// Writes down what passes between a tuner and an axis.
-pub struct Recorder<'a> {
-    axis: &'a mut dyn Axis,
-    entries: Vec<Entry>,
+pub struct Recorder<'a, L: Law> {
+    axis: &'a mut dyn LoopAxis<L>,
+    entries: Vec<Entry<L>>,
 }
 
-impl<'a> Recorder<'a> {
+impl<'a, L: Law> Recorder<'a, L> {
     /// Listens to `axis`.
-    pub fn new(axis: &'a mut dyn Axis) -> Self {
+    pub fn new(axis: &'a mut dyn LoopAxis<L>) -> Self {
         Self { axis, entries: Vec::new() }
     }
 
     /// What passed so far.
     #[must_use]
-    pub fn into_entries(self) -> Vec<Entry> {
+    pub fn into_entries(self) -> Vec<Entry<L>> {
         self.entries
     }
 }
 
-impl Axis for Recorder<'_> {
+impl<L: Law> Axis for Recorder<'_, L> {
     fn now(&mut self) -> Duration {
         let now = self.axis.now();
         self.entries.push(Entry::Now(now));
@@ -102,24 +98,6 @@ impl Axis for Recorder<'_> {
         answer
     }
 
-    fn read_setup(&mut self) -> Result<Setup, AxisError> {
-        let answer = self.axis.read_setup();
-        self.entries.push(Entry::Setup(answer.clone()));
-        answer
-    }
-
-    fn write_velocity(&mut self, registers: VelocityRegisters) -> Result<(), AxisError> {
-        let answer = self.axis.write_velocity(registers);
-        self.entries.push(Entry::Velocity(registers, answer.clone()));
-        answer
-    }
-
-    fn write_position(&mut self, registers: PositionRegisters) -> Result<(), AxisError> {
-        let answer = self.axis.write_position(registers);
-        self.entries.push(Entry::PositionLoop(registers, answer.clone()));
-        answer
-    }
-
     fn write_winding(&mut self, raw: [u32; 2]) -> Result<(), AxisError> {
         let answer = self.axis.write_winding(raw);
         self.entries.push(Entry::Winding(raw, answer.clone()));
@@ -144,18 +122,6 @@ impl Axis for Recorder<'_> {
         answer
     }
 
-    fn write_motion_mind(&mut self, registers: MotionMindRegisters) -> Result<(), AxisError> {
-        let answer = self.axis.write_motion_mind(registers);
-        self.entries.push(Entry::MotionMind(registers, answer.clone()));
-        answer
-    }
-
-    fn end_motion_mind(&mut self, registers: MotionMindRegisters) -> Result<(), AxisError> {
-        let answer = self.axis.end_motion_mind(registers);
-        self.entries.push(Entry::MotionMindEnd(registers, answer.clone()));
-        answer
-    }
-
     fn set_travel(&mut self, counts: (i64, i64)) -> Result<(), AxisError> {
         let answer = self.axis.set_travel(counts);
         self.entries.push(Entry::Travel(counts, answer.clone()));
@@ -167,18 +133,32 @@ impl Axis for Recorder<'_> {
     }
 }
 
+impl<L: Law> LoopAxis<L> for Recorder<'_, L> {
+    fn read_setup(&mut self) -> Result<Setup<L>, AxisError> {
+        let answer = self.axis.read_setup();
+        self.entries.push(Entry::Setup(answer.clone()));
+        answer
+    }
+
+    fn write(&mut self, write: L::Write) -> Result<(), AxisError> {
+        let answer = self.axis.write(write);
+        self.entries.push(Entry::Registers(L::note(write, answer.clone())));
+        answer
+    }
+}
+
 /// An axis that answers from a record.
-pub struct Player {
-    entries: std::vec::IntoIter<Entry>,
+pub struct Player<L: Law> {
+    entries: std::vec::IntoIter<Entry<L>>,
     time: Duration,
     played: usize,
     strayed_at: Option<usize>,
 }
 
-impl Player {
+impl<L: Law> Player<L> {
     /// Plays `entries` from their start.
     #[must_use]
-    pub fn new(entries: Vec<Entry>) -> Self {
+    pub fn new(entries: Vec<Entry<L>>) -> Self {
         Self { entries: entries.into_iter(), time: Duration::ZERO, played: 0, strayed_at: None }
     }
 
@@ -195,7 +175,7 @@ impl Player {
         self.strayed_at
     }
 
-    fn next(&mut self) -> Option<Entry> {
+    fn next(&mut self) -> Option<Entry<L>> {
         let entry = self.entries.next();
         self.played += usize::from(entry.is_some());
         entry
@@ -213,7 +193,7 @@ impl Player {
     }
 }
 
-impl Axis for Player {
+impl<L: Law> Axis for Player<L> {
     fn now(&mut self) -> Duration {
         if let Some(Entry::Now(now)) = self.next() {
             self.time = now;
@@ -258,27 +238,6 @@ impl Axis for Player {
         }
     }
 
-    fn read_setup(&mut self) -> Result<Setup, AxisError> {
-        match self.next() {
-            Some(Entry::Setup(answer)) => answer,
-            _ => self.stray(),
-        }
-    }
-
-    fn write_velocity(&mut self, registers: VelocityRegisters) -> Result<(), AxisError> {
-        match self.next() {
-            Some(Entry::Velocity(was, answer)) if was == registers => answer,
-            _ => self.stray(),
-        }
-    }
-
-    fn write_position(&mut self, registers: PositionRegisters) -> Result<(), AxisError> {
-        match self.next() {
-            Some(Entry::PositionLoop(was, answer)) if was == registers => answer,
-            _ => self.stray(),
-        }
-    }
-
     fn write_winding(&mut self, raw: [u32; 2]) -> Result<(), AxisError> {
         match self.next() {
             Some(Entry::Winding(was, answer)) if was == raw => answer,
@@ -307,23 +266,28 @@ impl Axis for Player {
         }
     }
 
-    fn write_motion_mind(&mut self, registers: MotionMindRegisters) -> Result<(), AxisError> {
-        match self.entries.next() {
-            Some(Entry::MotionMind(was, answer)) if was == registers => answer,
-            _ => self.stray(),
-        }
-    }
-
-    fn end_motion_mind(&mut self, registers: MotionMindRegisters) -> Result<(), AxisError> {
-        match self.entries.next() {
-            Some(Entry::MotionMindEnd(was, answer)) if was == registers => answer,
-            _ => self.stray(),
-        }
-    }
-
     fn set_travel(&mut self, counts: (i64, i64)) -> Result<(), AxisError> {
         match self.entries.next() {
             Some(Entry::Travel(was, answer)) if was == counts => answer,
+            _ => self.stray(),
+        }
+    }
+}
+
+impl<L: Law> LoopAxis<L> for Player<L> {
+    fn read_setup(&mut self) -> Result<Setup<L>, AxisError> {
+        match self.next() {
+            Some(Entry::Setup(answer)) => answer,
+            _ => self.stray(),
+        }
+    }
+
+    fn write(&mut self, write: L::Write) -> Result<(), AxisError> {
+        match self.next() {
+            Some(Entry::Registers(note)) => match L::noted(&note) {
+                (was, answer) if was == write => answer,
+                _ => self.stray(),
+            },
             _ => self.stray(),
         }
     }

@@ -1,10 +1,11 @@
 //! Runs the tuner again on the record of a report.
 
+use crate::law_probe::LawProbe;
 use crate::record::Player;
 use crate::report::Report;
 use crate::tune::tune;
 
-impl Report {
+impl<L: LawProbe> Report<L> {
     /// Runs the tuner again on the record. The gains come out the same to the last bit; `None` if the record does not belong
     /// to this version of the tuner.
     #[must_use]

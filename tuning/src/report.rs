@@ -1,16 +1,15 @@
 //! What a run leaves: verdict, model, gains, predictions and the raw record.
 
-use crate::axis::{PositionRegisters, Setup, VelocityRegisters};
 use crate::cause::Cause;
 use crate::design::{Design, Task};
 use crate::experiment::{Backlash, FreeRun, Probe, WindowRun};
 use crate::fit::Fit;
 use crate::lag::LagFit;
-use crate::law_probe::LawFindings;
-use crate::motion_mind::MotionMindRegisters;
+use crate::law::Law;
 use crate::record::Entry;
 use crate::request::Request;
 use crate::rules::Classic;
+use crate::setup::Setup;
 use crate::winding::{Winding, WindingUnknown};
 use serde::{Deserialize, Serialize};
 
@@ -49,18 +48,19 @@ pub struct Measured {
 
 /// Everything a run found and did.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Report {
+#[serde(bound = "")]
+pub struct Report<L: Law> {
     /// The form of this report: what the program that wrote it calls [`FORMAT`].
     #[serde(default = "first_format")]
     pub format: u32,
     /// What was asked for.
-    pub request: Request,
+    pub request: Request<L>,
     /// How it ended.
     pub verdict: Verdict,
     /// Why, and what to know.
     pub causes: Vec<Cause>,
     /// What the controller held before.
-    pub before: Option<Setup>,
+    pub before: Option<Setup<L>>,
     /// The probe.
     pub probe: Option<Probe>,
     /// The free run.
@@ -75,7 +75,7 @@ pub struct Report {
     pub qpps: Option<f64>,
     /// What the law probe found.
     #[serde(default)]
-    pub law: Option<LawFindings>,
+    pub law: Option<L::Findings>,
     /// Resistance of the winding.
     #[serde(default)]
     pub winding: Option<Winding>,
@@ -89,20 +89,16 @@ pub struct Report {
     pub lag: Option<LagFit>,
     /// What the design was made for: the model with all that the run learned of the loop.
     #[serde(default)]
-    pub task: Option<Task>,
+    pub task: Option<Task<L>>,
     /// The design.
     pub design: Option<Design>,
     /// What the last verification measured.
     pub measured: Option<Measured>,
-    /// Velocity registers proposed.
-    pub velocity: Option<VelocityRegisters>,
-    /// Position registers proposed.
-    pub position: Option<PositionRegisters>,
-    /// Registers proposed for a Motion Mind; it has neither of the two above.
-    #[serde(default)]
-    pub motion_mind: Option<MotionMindRegisters>,
+    /// Registers proposed; none where it was refused.
+    #[serde(flatten)]
+    pub proposed: L::Registers,
     /// Length of identification and of the whole run, s.
     pub seconds: (f64, f64),
     /// The raw record.
-    pub record: Vec<Entry>,
+    pub record: Vec<Entry<L>>,
 }

@@ -1,7 +1,7 @@
 //! What a tuning run is asked for.
 
 use crate::experiment_guard::GuardOptions;
-use crate::model::LoopLaw;
+use crate::law::Law;
 use serde::{Deserialize, Serialize};
 
 /// What to tune.
@@ -30,7 +30,8 @@ pub enum Excitation {
 
 /// What is asked of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Request {
+#[serde(bound = "")]
+pub struct Request<L: Law> {
     /// The loop.
     pub method: Method,
     /// 0 (soft) to 100 (stiff).
@@ -40,7 +41,7 @@ pub struct Request {
     /// The guard.
     pub guard: GuardOptions,
     /// The controller's law, as far as it is not found out.
-    pub law: LoopLaw,
+    pub law: L,
     /// Whether it is found out. The report's request then has what was found.
     #[serde(default)]
     pub probe_law: bool,
@@ -50,14 +51,14 @@ pub struct Request {
     pub keep: bool,
 }
 
-impl Default for Request {
+impl<L: Law> Default for Request<L> {
     fn default() -> Self {
         Self {
             method: Method::Velocity,
             level: 50.0,
             excitation: Excitation::Free,
             guard: GuardOptions::default(),
-            law: LoopLaw::default(),
+            law: L::default(),
             probe_law: true,
             verify: true,
             keep: false,

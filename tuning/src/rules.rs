@@ -4,7 +4,8 @@
 //! (ultimate gain and period), as the programs do that use them.
 
 use crate::experiment::FreeRun;
-use crate::model::{Gains, LoopLaw, Pid};
+use crate::law::Law;
+use crate::model::{Gains, Pid};
 use crate::poll::{Drive, Input, Point};
 use serde::{Deserialize, Serialize};
 
@@ -78,7 +79,7 @@ pub type RuleGains = (&'static str, Gains);
 
 /// The velocity rules.
 #[must_use]
-pub fn velocity_rules(c: &Classic, law: &LoopLaw, qpps: f64) -> Vec<RuleGains> {
+pub fn velocity_rules<L: Law>(c: &Classic, law: &L, qpps: f64) -> Vec<RuleGains> {
     let (k, t, d) = (c.gain_counts_per_s, c.tau_s, c.dead_time_s);
     let floor = d.max(3.0 * law.tick_s());
     let pi = |gain: f64, time_s: f64| velocity(gain * qpps, time_s);
@@ -102,7 +103,7 @@ pub fn velocity_rules(c: &Classic, law: &LoopLaw, qpps: f64) -> Vec<RuleGains> {
 
 /// The rules of a position loop that acts on the duty directly, PD.
 #[must_use]
-pub fn pd_rules(c: &Classic, law: &LoopLaw, qpps: f64) -> Vec<RuleGains> {
+pub fn pd_rules<L: Law>(c: &Classic, law: &L, qpps: f64) -> Vec<RuleGains> {
     let floor = 3.0 * law.tick_s();
     let (k, t) = (c.gain_counts_per_s, c.tau_s);
     let (ku, tu) = c.position_ultimate(floor);
@@ -117,7 +118,7 @@ pub fn pd_rules(c: &Classic, law: &LoopLaw, qpps: f64) -> Vec<RuleGains> {
 
 /// The PID rules.
 #[must_use]
-pub fn pid_rules(c: &Classic, law: &LoopLaw, qpps: f64) -> Vec<RuleGains> {
+pub fn pid_rules<L: Law>(c: &Classic, law: &L, qpps: f64) -> Vec<RuleGains> {
     let (ku, tu) = c.position_ultimate(3.0 * law.tick_s());
     let dead = c.dead_time_s.max(3.0 * law.tick_s()) + c.tau_s;
     let amigo = 0.45 / (c.gain_counts_per_s * dead);
@@ -130,7 +131,7 @@ pub fn pid_rules(c: &Classic, law: &LoopLaw, qpps: f64) -> Vec<RuleGains> {
 
 /// The PIV rules.
 #[must_use]
-pub fn piv_rules(c: &Classic, law: &LoopLaw, qpps: f64) -> Vec<RuleGains> {
+pub fn piv_rules<L: Law>(c: &Classic, law: &L, qpps: f64) -> Vec<RuleGains> {
     let dead = c.dead_time_s.max(3.0 * law.tick_s());
     let inner = velocity(c.tau_s / (c.gain_counts_per_s * 2.0 * dead) * qpps, c.tau_s.min(8.0 * dead));
     let relay = velocity(0.45 * c.ultimate_gain * qpps, c.ultimate_period_s / 1.2);
@@ -158,6 +159,7 @@ fn position(p: f64, integral_rate: f64, derivative_s: f64) -> Gains {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plain_law::PlainLaw;
 
     const CLASSIC: Classic = Classic {
         gain_counts_per_s: 10_000.0,
@@ -173,7 +175,7 @@ mod tests {
 
     #[test]
     fn the_rules_are_those_of_the_textbook_for_a_known_step_and_relay() {
-        let rules = velocity_rules(&CLASSIC, &LoopLaw::default(), 10_000.0);
+        let rules = velocity_rules(&CLASSIC, &PlainLaw::default(), 10_000.0);
         let close =
             |got: f64, wanted: f64| assert!((got / wanted - 1.0).abs() < 1e-9, "{got} is not {wanted}");
         // SIMC: tau / (K 2 theta) = 5 / K, integral time min(tau, 8 theta) = 0.08 s.
@@ -187,7 +189,7 @@ mod tests {
         // Cohen-Coon, r = 0.1.
         close(rule(&rules, "cohen_coon_step").velocity.p, 10.0 * (0.9 + 0.1 / 12.0));
         close(rule(&rules, "lambda_step").velocity.p, 2.0);
-        let pd = pd_rules(&CLASSIC, &LoopLaw::default(), 10_000.0);
+        let pd = pd_rules(&CLASSIC, &PlainLaw::default(), 10_000.0);
         close(rule(&pd, "simc_pd_step").position.unwrap().p, 50.0);
         close(rule(&pd, "simc_pd_step").position.unwrap().d, 5.0);
     }

@@ -3,16 +3,13 @@
 //! It grows call by call from a live axis, or comes whole from the raw record of a report. Nothing is computed from it here but
 //! speeds, and the response that a model predicts for the same commands.
 
-use crate::axis::{AMPS_PER_RAW, EncoderClass, FULL_DUTY_RAW, PositionRegisters, Sample, VelocityRegisters};
+use crate::axis::{ABSOLUTE_COUNTS, AMPS_PER_RAW, EncoderClass, FULL_DUTY_RAW, Sample};
 use crate::design::Task;
 use crate::experiment_guard::{Drive, Input};
+use crate::law::Law;
 use crate::model::Gains;
-use crate::motion_mind::MotionMindRegisters;
 use crate::record::Entry;
 use crate::ticks::{Setpoint, TickLoop};
-
-/// Counts of an absolute encoder for one turn (MCP manual 2.4.9, command 16).
-const ABSOLUTE_COUNTS: i64 = 4096;
 
 /// One poll.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,26 +24,15 @@ pub struct TracePoint {
     pub amps: Option<f64>,
 }
 
-/// Gains that were written, and when.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Written {
-    /// The velocity loop.
-    Velocity(VelocityRegisters),
-    /// The position loop.
-    Position(PositionRegisters),
-    /// Those of a Motion Mind.
-    MotionMind(MotionMindRegisters),
-}
-
 /// A run so far.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Trace {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trace<L: Law> {
     /// Every poll that was answered, in order.
     pub points: Vec<TracePoint>,
     /// Every command, in order.
     pub drives: Vec<Drive>,
-    /// Every write of gains, in order.
-    pub writes: Vec<(f64, Written)>,
+    /// Every write of registers, in order.
+    pub writes: Vec<(f64, L::Write)>,
     motor: usize,
     encoder: EncoderClass,
     epoch_s: Option<f64>,
@@ -79,16 +65,32 @@ pub struct Predicted {
     pub duty: f64,
 }
 
-impl Trace {
+impl<L: Law> Default for Trace<L> {
+    fn default() -> Self {
+        Self::new(0, EncoderClass::default())
+    }
+}
+
+impl<L: Law> Trace<L> {
     /// An empty trace of motor 0 or 1.
     #[must_use]
     pub fn new(motor: usize, encoder: EncoderClass) -> Self {
-        Self { motor: motor.min(1), encoder, ..Self::default() }
+        Self {
+            points: Vec::new(),
+            drives: Vec::new(),
+            writes: Vec::new(),
+            motor: motor.min(1),
+            encoder,
+            epoch_s: None,
+            last_raw: None,
+            first_raw: 0,
+            travelled: 0,
+        }
     }
 
     /// The trace of a raw record.
     #[must_use]
-    pub fn of(motor: usize, record: &[Entry]) -> Self {
+    pub fn of(motor: usize, record: &[Entry<L>]) -> Self {
         let encoder = record.iter().find_map(|entry| match entry {
             Entry::Setup(Ok(setup)) => Some(setup.encoder),
             _ => None,
@@ -99,7 +101,7 @@ impl Trace {
     }
 
     /// Takes over a call and its answer.
-    pub fn take(&mut self, entry: &Entry) {
+    pub fn take(&mut self, entry: &Entry<L>) {
         match entry {
             Entry::Now(now) => {
                 self.since_start(now.as_secs_f64());
@@ -114,9 +116,11 @@ impl Trace {
                 let from_start = f64::from(*counts) - self.first_raw as f64;
                 self.drive(at.middle_s(), Input::Position(from_start, f64::from(*speed)));
             }
-            Entry::Velocity(registers, Ok(())) => self.write(Written::Velocity(*registers)),
-            Entry::PositionLoop(registers, Ok(())) => self.write(Written::Position(*registers)),
-            Entry::MotionMind(registers, Ok(())) => self.write(Written::MotionMind(*registers)),
+            Entry::Registers(note) => {
+                if let (write, Ok(())) = L::noted(note) {
+                    self.writes.push((self.end_s(), write));
+                }
+            }
             _ => {}
         }
     }
@@ -137,11 +141,6 @@ impl Trace {
     fn drive(&mut self, at_s: f64, input: Input) {
         let t = self.since_start(at_s);
         self.drives.push(Drive { t, input });
-    }
-
-    fn write(&mut self, what: Written) {
-        let t = self.end_s();
-        self.writes.push((t, what));
     }
 
     /// Time of the newest poll or command, s.
@@ -212,7 +211,7 @@ impl Trace {
 
     /// What a model predicts for the commands of a stretch, from where the axis stood, tick by tick.
     #[must_use]
-    pub fn predict(&self, task: &Task, gains: &Gains, stretch: &Stretch) -> Vec<Predicted> {
+    pub fn predict(&self, task: &Task<L>, gains: &Gains, stretch: &Stretch) -> Vec<Predicted> {
         let tick_s = task.law.tick_s();
         let start = self.points.iter().rev().find(|point| point.t <= stretch.from_s);
         let origin = start.or(self.points.first()).map_or(0.0, |point| point.counts);
@@ -249,13 +248,14 @@ impl Trace {
 mod tests {
     use super::*;
     use crate::axis::{Exchange, Status};
+    use crate::plain_law::PlainLaw;
     use std::time::Duration;
 
     fn at(ms: u64) -> Exchange {
         Exchange { sent: Duration::from_millis(ms), received: Duration::from_millis(ms + 2) }
     }
 
-    fn sampled(ms: u64, counts: i32) -> Entry {
+    fn sampled(ms: u64, counts: i32) -> Entry<PlainLaw> {
         Entry::Sampled(Ok(Sample {
             counts_at: at(ms),
             counts: [counts, 0],
@@ -294,7 +294,7 @@ mod tests {
             Entry::Position(1000, 2000, Ok(at(700))),
             sampled(900, 0),
         ];
-        let found = Trace::of(0, &record).stretches();
+        let found = Trace::<PlainLaw>::of(0, &record).stretches();
         assert_eq!(found.len(), 2);
         assert!((found[0].from_s - 0.101).abs() < 1e-9 && (found[0].to_s - 0.601).abs() < 1e-9);
         assert!(!found[0].is_position && found[1].is_position);

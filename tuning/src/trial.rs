@@ -1,40 +1,36 @@
 //! Gains tried on the machine by themselves: the same moves as at the end of a run, under the same guard.
 
-use crate::axis::{Axis, PositionRegisters, VelocityRegisters};
 use crate::cause::Cause;
 use crate::design::{Design, Task};
 use crate::experiment::Probe;
 use crate::experiment_guard::ExperimentGuard;
+use crate::law::Law;
 use crate::model::Gains;
-use crate::motion_mind::MotionMindRegisters;
 use crate::record::{Entry, Recorder};
-use crate::registers::{gains_of, velocity_gains};
 use crate::report::Measured;
 use crate::request::{Excitation, Method, Request};
+use crate::setup::LoopAxis;
 use crate::verify::{is_rougher, try_position, try_velocity, try_velocity_inside};
 use crate::whatif::forecast;
 use serde::{Deserialize, Serialize};
 
 /// What is to be tried.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TrialRequest {
+pub struct TrialRequest<L: Law> {
     /// As the run was asked for: guard, excitation, law.
-    pub request: Request,
+    pub request: Request<L>,
     /// The model of that run.
-    pub task: Task,
+    pub task: Task<L>,
     /// Its probe, for the guard.
     pub probe: Probe,
-    /// The velocity loop.
-    pub velocity: VelocityRegisters,
-    /// The position loop, of the methods that have one.
-    pub position: Option<PositionRegisters>,
-    /// The registers of a Motion Mind, which has neither of the two above.
-    pub motion_mind: Option<MotionMindRegisters>,
+    /// The registers.
+    pub registers: L::Registers,
 }
 
 /// What came of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Trial {
+#[serde(bound = "")]
+pub struct Trial<L: Law> {
     /// Why it ended early, or [`Cause::NotVerified`] where the machine was rougher than predicted.
     pub cause: Option<Cause>,
     /// What was measured.
@@ -42,10 +38,10 @@ pub struct Trial {
     /// How long it took, s.
     pub seconds: f64,
     /// The raw record.
-    pub record: Vec<Entry>,
+    pub record: Vec<Entry<L>>,
 }
 
-impl TrialRequest {
+impl<L: Law> TrialRequest<L> {
     /// The gains as the registers hold them.
     #[must_use]
     pub fn gains(&self) -> Gains {
@@ -54,29 +50,20 @@ impl TrialRequest {
 
     /// The model with what the registers change of it, and the gains as the registers hold them.
     #[must_use]
-    pub fn on_model(&self) -> (Task, Gains) {
-        match self.motion_mind {
-            Some(registers) => registers.on_model(&self.task, self.request.method != Method::Velocity),
-            None => (self.task, registers_gains(&self.velocity, self.position.as_ref(), &self.request)),
-        }
+    pub fn on_model(&self) -> (Task<L>, Gains) {
+        on_model(&self.task, &self.registers, self.request.method)
     }
 }
 
-/// The gains that registers stand for under a request's law.
+/// A run's model with what registers change of it, and the gains that they stand for.
 #[must_use]
-pub fn registers_gains(
-    velocity: &VelocityRegisters,
-    position: Option<&PositionRegisters>,
-    request: &Request,
-) -> Gains {
-    match position {
-        Some(position) => gains_of(velocity, position, &request.law),
-        None => Gains { velocity: velocity_gains(velocity, &request.law), ..Gains::default() },
-    }
+pub fn on_model<L: Law>(task: &Task<L>, registers: &L::Registers, method: Method) -> (Task<L>, Gains) {
+    let law = task.law.with_registers(registers);
+    (Task { law, ..*task }, law.gains(registers, task.qpps, method != Method::Velocity))
 }
 
 /// Runs it. The motor stands and the gains from before are in force when it returns.
-pub fn run_trial(axis: &mut dyn Axis, wanted: &TrialRequest) -> Trial {
+pub fn run_trial<L: Law>(axis: &mut dyn LoopAxis<L>, wanted: &TrialRequest<L>) -> Trial<L> {
     let mut recorder = Recorder::new(axis);
     let mut trial = Trial { cause: None, measured: None, seconds: 0.0, record: Vec::new() };
     match ExperimentGuard::new(&mut recorder, wanted.request.guard) {
@@ -102,7 +89,10 @@ pub fn run_trial(axis: &mut dyn Axis, wanted: &TrialRequest) -> Trial {
     trial
 }
 
-fn moves(guard: &mut ExperimentGuard<'_>, wanted: &TrialRequest) -> Result<(Measured, bool), Cause> {
+fn moves<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    wanted: &TrialRequest<L>,
+) -> Result<(Measured, bool), Cause> {
     let (task, gains) = wanted.on_model();
     let shown = forecast(&task, &gains);
     let design = Design { gains, score: shown.score, ms: shown.ms, noise_duty: shown.noise_duty };
@@ -124,15 +114,7 @@ fn moves(guard: &mut ExperimentGuard<'_>, wanted: &TrialRequest) -> Result<(Meas
     Ok((measured, is_rougher(&design, &measured)))
 }
 
-fn write_loops(guard: &mut ExperimentGuard<'_>, wanted: &TrialRequest) -> Result<(), Cause> {
-    match wanted.motion_mind {
-        Some(registers) if !registers.is_usual_loop() => return Err(Cause::OtherLoop),
-        Some(registers) => return guard.write_motion_mind(registers),
-        None => {}
-    }
-    guard.write_velocity(wanted.velocity)?;
-    match wanted.position.filter(|_| wanted.request.method != Method::Velocity) {
-        Some(position) => guard.write_position(position),
-        None => Ok(()),
-    }
+fn write_loops<L: Law>(guard: &mut ExperimentGuard<'_, L>, wanted: &TrialRequest<L>) -> Result<(), Cause> {
+    L::refuse(&wanted.registers)?;
+    guard.write_all(&wanted.registers, wanted.request.method != Method::Velocity)
 }

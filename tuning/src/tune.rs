@@ -1,33 +1,26 @@
 //! A whole tuning run: probe, experiment, fit, design, verification on the machine, and the way back when anything is wrong.
 
-use crate::axis::{Axis, EncoderClass, Setup};
+use crate::axis::EncoderClass;
 use crate::backlash::with_backlash;
 use crate::cause::Cause;
-use crate::design::{Goal, Task, USUAL_OVERSHOOT, design_velocity, unmodelled_ticks};
+use crate::design::{Goal, Task, USUAL_OVERSHOOT, design_velocity};
 use crate::experiment::{Probe, go_to, rest, run_free, run_probe, run_window};
 use crate::experiment_guard::{ExperimentGuard, GuardOptions};
 use crate::fit::{Fit, fit};
 use crate::lag::LagFit;
-use crate::law_probe::probe_law;
-use crate::model::{Gains, Lag, LoopLaw, PlantModel};
-use crate::motion_mind::{self, MotionMindLaw};
-use crate::open_loop_record::{Actuation, OpenLoopRecord};
+use crate::law::Law;
+use crate::law_probe::LawProbe;
+use crate::model::{Lag, PlantModel};
+use crate::open_loop_record::OpenLoopRecord;
 pub use crate::proposal::{design_for, propose};
 use crate::record::Recorder;
-use crate::registers::{velocity_gains, velocity_registers};
 use crate::report::{FORMAT, Report, Verdict};
 pub use crate::request::{Excitation, Method, Request};
 use crate::rules::Classic;
+use crate::setup::{LoopAxis, Setup};
 use crate::verify::{check_moves, measure_lag};
 use crate::winding::winding_of;
 
-/// The lag that is assumed before it is measured, and where it cannot be: an extra tick and a filter of one.
-const USUAL_LAG: Lag = Lag { filter_s: 0.004, delay_ticks: 1.0 };
-/// The longest that it may be where an axis has no room to measure it: a filter of three ticks.
-const LONGEST_LAG: Lag = Lag { filter_s: 0.010, delay_ticks: 1.0 };
-/// The same of a Motion Mind, which filters nothing. Assumed: what it computes it gives in the same loop; half a tick for the winding.
-const MOTION_MIND_LAG: Lag = Lag { filter_s: 0.0, delay_ticks: 0.5 };
-const LONGEST_MOTION_MIND_LAG: Lag = Lag { filter_s: 0.0, delay_ticks: 1.5 };
 /// Highest chi-square of a fit that is believed.
 const WORST_CHI_SQUARE: f64 = 12.0;
 /// Loosest time constant, as standard deviation of its logarithm, of a motor slower than four polls.
@@ -53,7 +46,7 @@ const ROUNDED_COUNTS: f64 = 0.289;
 const WIDEST_LAG_S: f64 = 0.012;
 
 /// Runs it. The motor stands and the old gains are in force when it returns, unless the request keeps the new ones.
-pub fn tune(axis: &mut dyn Axis, request: &Request) -> Report {
+pub fn tune<L: LawProbe>(axis: &mut dyn LoopAxis<L>, request: &Request<L>) -> Report<L> {
     let mut recorder = Recorder::new(axis);
     let mut report = blank(request);
     let outcome = match ExperimentGuard::new(&mut recorder, request.guard) {
@@ -65,7 +58,7 @@ pub fn tune(axis: &mut dyn Axis, request: &Request) -> Report {
             guard.options = request.guard;
             let outcome = run(&mut guard, request, &mut report).map_err(|cause| guard.concluded(cause));
             let keep = outcome.is_ok() && request.keep;
-            if keep && let Err(cause) = write_final(&mut guard, &report) {
+            if keep && let Err(cause) = guard.keep(report.proposed) {
                 report.causes.push(cause);
             }
             if outcome.is_err_and(|cause| guard.leave_off(cause)) {
@@ -79,9 +72,7 @@ pub fn tune(axis: &mut dyn Axis, request: &Request) -> Report {
     if let Err(cause) = outcome {
         report.causes.insert(0, cause);
         report.verdict = Verdict::Refused;
-        report.velocity = None;
-        report.position = None;
-        report.motion_mind = None;
+        report.proposed = L::Registers::default();
     } else if !report.causes.is_empty() {
         report.verdict = Verdict::TunedWithWarnings;
     }
@@ -91,12 +82,11 @@ pub fn tune(axis: &mut dyn Axis, request: &Request) -> Report {
 
 /// An absolute encoder has a range, and what lies beyond its ends is not known: the axis stays within it, whatever was asked for. One
 /// that wraps stays off its seam, where the controller's own speed jumps.
-fn confined(request: &Request, setup: &Setup) -> Request {
+fn confined<L: Law>(request: &Request<L>, setup: &Setup<L>) -> Request<L> {
     if setup.encoder == EncoderClass::Quadrature {
         return *request;
     }
-    let held = (i64::from(setup.position.min), i64::from(setup.position.max));
-    let held = if held.0 < held.1 { held } else { ABSOLUTE_RANGE };
+    let held = L::position_limits(&setup.held).filter(|held| held.0 < held.1).unwrap_or(ABSOLUTE_RANGE);
     let (low, high) = request.guard.travel.unwrap_or(held);
     let (low, high) = (low.max(ABSOLUTE_RANGE.0), high.min(ABSOLUTE_RANGE.1));
     let width = ((high - low) as f64).max(0.0);
@@ -108,7 +98,7 @@ fn confined(request: &Request, setup: &Setup) -> Request {
     Request { excitation: Excitation::Window(width), guard, ..*request }
 }
 
-fn blank(request: &Request) -> Report {
+fn blank<L: Law>(request: &Request<L>) -> Report<L> {
     Report {
         format: FORMAT,
         request: *request,
@@ -129,16 +119,18 @@ fn blank(request: &Request) -> Report {
         task: None,
         design: None,
         measured: None,
-        velocity: None,
-        position: None,
-        motion_mind: None,
+        proposed: L::Registers::default(),
         seconds: (0.0, 0.0),
         record: Vec::new(),
     }
 }
 
-fn run(guard: &mut ExperimentGuard<'_>, request: &Request, report: &mut Report) -> Result<(), Cause> {
-    let request = &for_family(guard, request, report)?;
+fn run<L: LawProbe>(
+    guard: &mut ExperimentGuard<'_, L>,
+    request: &Request<L>,
+    report: &mut Report<L>,
+) -> Result<(), Cause> {
+    let request = &of_unit(guard, request, report)?;
     if request.method == Method::Velocity && guard.setup.encoder == EncoderClass::AbsoluteWrapping {
         return Err(Cause::WrappingEncoder);
     }
@@ -169,11 +161,11 @@ fn run(guard: &mut ExperimentGuard<'_>, request: &Request, report: &mut Report) 
     let task = Task {
         plant: found.fit.model,
         law: request.law,
-        lag: usual_lag(&request.law),
+        lag: guard.facts.usual_lag,
         worst_lag: if request.excitation == Excitation::Free {
-            usual_lag(&request.law)
+            guard.facts.usual_lag
         } else {
-            longest_lag(&request.law)
+            guard.facts.longest_lag
         },
         qpps: found.qpps,
         goal: Goal::of_level(request.level),
@@ -199,31 +191,22 @@ fn run(guard: &mut ExperimentGuard<'_>, request: &Request, report: &mut Report) 
     Ok(())
 }
 
-/// The request with the law of the family.
-fn for_family(guard: &ExperimentGuard<'_>, request: &Request, report: &mut Report) -> Result<Request, Cause> {
-    if guard.setup.motion_mind.is_none() {
-        return Ok(*request);
-    }
-    if request.method == Method::Piv {
+/// The request with the law of this controller.
+fn of_unit<L: Law>(
+    guard: &ExperimentGuard<'_, L>,
+    request: &Request<L>,
+    report: &mut Report<L>,
+) -> Result<Request<L>, Cause> {
+    if request.method == Method::Piv && !guard.facts.has_cascade {
         return Err(Cause::NoSuchLoop);
     }
-    let request = Request { law: motion_mind::law(), ..*request };
-    report.request.law = request.law;
-    Ok(request)
-}
-
-/// The lag that is assumed of a law before it is measured.
-fn usual_lag(law: &LoopLaw) -> Lag {
-    if law.motion_mind.is_some() { MOTION_MIND_LAG } else { USUAL_LAG }
-}
-
-/// The longest lag of a law where there is no room to measure it.
-fn longest_lag(law: &LoopLaw) -> Lag {
-    if law.motion_mind.is_some() { LONGEST_MOTION_MIND_LAG } else { LONGEST_LAG }
+    let law = request.law.of_unit(&guard.setup.held);
+    report.request.law = law;
+    Ok(Request { law, ..*request })
 }
 
 /// The width that fits into the travel window around where the axis stands; from near an end it goes to the middle first.
-fn usable_width(guard: &mut ExperimentGuard<'_>, probe: &Probe, width: f64) -> Result<f64, Cause> {
+fn usable_width<L: Law>(guard: &mut ExperimentGuard<'_, L>, probe: &Probe, width: f64) -> Result<f64, Cause> {
     let Some((low, high)) = guard.travel_counts() else { return Ok(width) };
     if guard.room_counts().is_some_and(|room| room < ENOUGH_ROOM * (high - low)) {
         guard.progress("Going to the middle of the travel");
@@ -234,17 +217,16 @@ fn usable_width(guard: &mut ExperimentGuard<'_>, probe: &Probe, width: f64) -> R
 }
 
 /// The request with the law that the controller follows. A run that may not move by loops keeps the law that it was given.
-fn with_law(
-    guard: &mut ExperimentGuard<'_>,
-    request: &Request,
+fn with_law<L: LawProbe>(
+    guard: &mut ExperimentGuard<'_, L>,
+    request: &Request<L>,
     probe: &Probe,
     found: &Found,
-    report: &mut Report,
-) -> Result<Request, Cause> {
-    if request.law.motion_mind.is_some() {
-        // The manual tells this law; what depends on the motor is the feed-forward.
-        let mind = MotionMindLaw { amps_limit: guard.amps_limit(), ..MotionMindLaw::of_qpps(found.qpps) };
-        let law = LoopLaw { motion_mind: Some(mind), ..request.law };
+    report: &mut Report<L>,
+) -> Result<Request<L>, Cause> {
+    if !guard.facts.can_be_probed {
+        // The manual says this law; what depends on the motor is what it adds to the gains.
+        let law = request.law.of_motor(found.qpps, guard.max_current_raw());
         report.request.law = law;
         return Ok(Request { law, ..*request });
     }
@@ -254,9 +236,9 @@ fn with_law(
     guard.progress("Finding out the law of the loop");
     rest(guard, found.fit.model.tau_s, found.qpps)?;
     let position = request.method != Method::Velocity;
-    let Some(findings) = probe_law(guard, probe.start_duty, position)? else { return Ok(*request) };
+    let Some(findings) = L::probe(guard, probe.start_duty, position)? else { return Ok(*request) };
     report.law = Some(findings);
-    let law = findings.law(&request.law, position).ok_or(Cause::UnknownLaw)?;
+    let law = request.law.found(&findings, position).ok_or(Cause::UnknownLaw)?;
     report.request.law = law;
     Ok(Request { law, ..*request })
 }
@@ -267,10 +249,10 @@ struct Found {
     qpps: f64,
 }
 
-fn identify_free(
-    guard: &mut ExperimentGuard<'_>,
+fn identify_free<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
     probe: &Probe,
-    report: &mut Report,
+    report: &mut Report<L>,
 ) -> Result<Found, Cause> {
     let run = run_free(guard, probe)?;
     report.free = Some(run);
@@ -294,11 +276,11 @@ fn identify_free(
     Ok(Found { fit: found, qpps })
 }
 
-fn identify_window(
-    guard: &mut ExperimentGuard<'_>,
+fn identify_window<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
     probe: &Probe,
     width: f64,
-    report: &mut Report,
+    report: &mut Report<L>,
 ) -> Result<Found, Cause> {
     let run = run_window(guard, probe, width)?;
     report.window = Some(run);
@@ -312,24 +294,18 @@ fn identify_window(
     Ok(Found { fit: found, qpps })
 }
 
-fn open_loop_record_of(
-    guard: &ExperimentGuard<'_>,
+fn open_loop_record_of<L: Law>(
+    guard: &ExperimentGuard<'_, L>,
     from_s: f64,
     to_s: f64,
     volts: Option<f64>,
 ) -> OpenLoopRecord {
     let record = OpenLoopRecord::new(&guard.points, &guard.drives, from_s, to_s, volts);
-    match guard.setup.motion_mind {
-        Some(unit) => {
-            let actuation = Actuation::motion_mind(guard.amps_limit(), !unit.is_undated);
-            OpenLoopRecord { actuation, ..record }
-        }
-        None => record,
-    }
+    OpenLoopRecord { actuation: guard.actuation(), ..record }
 }
 
 /// The current limit for braking over that for driving.
-fn brake_share(guard: &ExperimentGuard<'_>) -> f64 {
+fn brake_share<L: Law>(guard: &ExperimentGuard<'_, L>) -> f64 {
     let (drive, brake) =
         (f64::from(guard.setup.max_current_raw), f64::from(guard.setup.min_current_raw).abs());
     if drive > 0.0 && brake > 0.0 { brake / drive } else { 1.0 }
@@ -349,18 +325,19 @@ fn believe(fit: &Fit, poll_s: f64, record: &OpenLoopRecord) -> Result<(), Cause>
 }
 
 /// Measures the lag with a careful velocity loop where the axis may turn freely.
-fn settle_lag(
-    guard: &mut ExperimentGuard<'_>,
-    request: &Request,
-    task: Task,
-    report: &mut Report,
-) -> Result<Task, Cause> {
+fn settle_lag<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    request: &Request<L>,
+    task: Task<L>,
+    report: &mut Report<L>,
+) -> Result<Task<L>, Cause> {
     if !request.verify || request.excitation != Excitation::Free {
         return Ok(task);
     }
     let careful = Task { goal: Goal { ms: 1.4, ..task.goal }, ..task };
     let Some(design) = design_velocity(&careful) else { return Ok(task) };
-    let gains = write_careful(guard, &design.gains, &task)?;
+    let registers = guard.write_gains(&task.law, &design.gains, task.qpps)?;
+    let gains = task.law.gains(&registers, task.qpps, false);
     let sd_ln_tau = report.fit.map_or(0.1, |fit| fit.sd_ln_tau);
     let Some((found, noise_factor)) = measure_lag(guard, &careful, &gains, sd_ln_tau)? else {
         report.causes.push(Cause::LagUnknown);
@@ -370,26 +347,15 @@ fn settle_lag(
     Ok(with_lag(Task { noise_factor, ..task }, &found))
 }
 
-/// Writes the gains of a velocity loop, and gives them as the registers hold them.
-fn write_careful(guard: &mut ExperimentGuard<'_>, gains: &Gains, task: &Task) -> Result<Gains, Cause> {
-    if let (Some(unit), Some(law)) = (guard.setup.motion_mind, task.law.motion_mind) {
-        let registers = unit.registers.with(gains, task.qpps, law);
-        guard.write_motion_mind(registers)?;
-        return Ok(registers.gains(task.qpps, false));
-    }
-    let registers = velocity_registers(&gains.velocity, task.qpps, &task.law);
-    guard.write_velocity(registers)?;
-    Ok(Gains { velocity: velocity_gains(&registers, &task.law), ..Gains::default() })
-}
-
-fn with_lag(task: Task, found: &LagFit) -> Task {
+fn with_lag<L: Law>(task: Task<L>, found: &LagFit) -> Task<L> {
     let wide = found.interval_s.1 - found.interval_s.0 > WIDEST_LAG_S;
-    if wide && found.interval_s.0 <= usual_lag(&task.law).total_s(&task.law) {
+    if wide && found.interval_s.0 <= task.law.facts().usual_lag.total_s(task.law.tick_s()) {
         return task;
     }
     let plant = PlantModel { tau_s: task.plant.tau_s * found.tau_scale, ..task.plant };
     // The winding and whatever else the model leaves out.
-    let worst_lag = Lag { delay_ticks: found.worst.delay_ticks + unmodelled_ticks(&task.law), ..found.worst };
+    let worst_lag =
+        Lag { delay_ticks: found.worst.delay_ticks + task.law.facts().unmodelled_ticks, ..found.worst };
     let (mut goal, mut least_integral_s, mut most_overshoot) = (task.goal, 0.0, task.most_overshoot);
     if found.chi_square > ODD_CHI_SQUARE {
         // Something oscillates or has backlash that the model knows nothing of: keep more distance.
@@ -400,18 +366,4 @@ fn with_lag(task: Task, found: &LagFit) -> Task {
         least_integral_s = LOOSE_INTEGRAL * plant.tau_s;
     }
     Task { plant, lag: found.lag, worst_lag, goal, least_integral_s, most_overshoot, ..task }
-}
-
-fn write_final(guard: &mut ExperimentGuard<'_>, report: &Report) -> Result<(), Cause> {
-    if let Some(registers) = report.motion_mind {
-        guard.keep_motion_mind(registers);
-        return Ok(());
-    }
-    if let Some(velocity) = report.velocity {
-        guard.write_velocity(velocity)?;
-    }
-    if let Some(position) = report.position {
-        guard.write_position(position)?;
-    }
-    Ok(())
 }

@@ -6,6 +6,7 @@ use crate::design::{Design, Goal, Task, deadzone};
 use crate::experiment::rest;
 use crate::experiment_guard::{ExperimentGuard, Point};
 use crate::lag::{ClosedLoopRecord, LagFit, fit_lag, predicted_record};
+use crate::law::Law;
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::margin::{headroom, scaled};
 use crate::model::{Gains, Pid};
@@ -52,9 +53,9 @@ const MOST_BACK_OFFS: usize = 3;
 const BACK_OFF: f64 = 0.7;
 
 /// Runs setpoint steps with gains that are already written, and fits the lag. `None` where the record says nothing.
-pub fn measure_lag(
-    guard: &mut ExperimentGuard<'_>,
-    task: &Task,
+pub fn measure_lag<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    task: &Task<L>,
     gains: &Gains,
     sd_ln_tau: f64,
 ) -> Result<Option<(LagFit, f64)>, Cause> {
@@ -74,10 +75,14 @@ pub fn measure_lag(
 }
 
 /// Six steps about the middle speed, from rest. The motor is braked at the end.
-fn run_steps(guard: &mut ExperimentGuard<'_>, task: &Task, gains: &Gains) -> Result<(f64, f64), Cause> {
+fn run_steps<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    task: &Task<L>,
+    gains: &Gains,
+) -> Result<(f64, f64), Cause> {
     let p = gains.velocity.p;
     let height = ((0.7 / (1.0 + p)).clamp(0.03, 0.3) * task.qpps).max(2.0 * guard.speed_step());
-    let lag_s = task.lag.total_s(&task.law) + 2.0 * task.law.tick_s();
+    let lag_s = task.lag.total_s(task.law.tick_s()) + 2.0 * task.law.tick_s();
     let dwell_s = (14.0 * lag_s + task.plant.tau_s / (1.0 + p)).clamp(0.2, 1.0);
     guard.duty(0.0)?;
     rest(guard, task.plant.tau_s, task.qpps)?;
@@ -97,11 +102,11 @@ fn run_steps(guard: &mut ExperimentGuard<'_>, task: &Task, gains: &Gains) -> Res
 
 /// Tries the proposed gains and lowers them while the machine is rougher than predicted. Where none are as smooth as predicted, the
 /// smoothest of those tried stay proposed.
-pub fn check_moves(
-    guard: &mut ExperimentGuard<'_>,
-    request: &Request,
-    task: &Task,
-    report: &mut Report,
+pub fn check_moves<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    request: &Request<L>,
+    task: &Task<L>,
+    report: &mut Report<L>,
 ) -> Result<(), Cause> {
     let room = leave_room(guard, request, task, report)?;
     let mut smoothest: Option<(f64, Design, Measured)> = None;
@@ -148,57 +153,47 @@ pub fn check_moves(
     }
 }
 
-fn warn_of_lowering(report: &mut Report) {
+fn warn_of_lowering<L: Law>(report: &mut Report<L>) {
     if !report.causes.contains(&Cause::BackedOff) {
         report.causes.push(Cause::BackedOff);
     }
 }
 
 /// Writes the registers of a design and tries it.
-fn try_design(
-    guard: &mut ExperimentGuard<'_>,
-    request: &Request,
-    task: &Task,
-    report: &Report,
+fn try_design<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    request: &Request<L>,
+    task: &Task<L>,
+    report: &Report<L>,
     design: &Design,
 ) -> Result<Measured, Cause> {
     // The design before it was computed.
     guard.pause();
-    if let Some(velocity) = report.velocity {
-        guard.write_velocity(velocity)?;
-    }
-    if let Some(registers) = report.motion_mind {
-        guard.write_motion_mind(registers)?;
-    }
+    guard.write_all(&report.proposed, request.method != Method::Velocity)?;
     match request.method {
         Method::Velocity => match request.excitation {
             Excitation::Free => try_velocity(guard, task, &design.gains),
             Excitation::Window(width) => try_velocity_inside(guard, task, &design.gains, width),
         },
-        Method::Pd | Method::Pid | Method::Piv => {
-            if let Some(position) = report.position {
-                guard.write_position(position)?;
-            }
-            try_position(guard, request, task, design)
-        }
+        Method::Pd | Method::Pid | Method::Piv => try_position(guard, request, task, design),
     }
 }
 
 /// Raises the gain of the velocity loop on the machine, and lowers the proposed gains where less of it is left than they promise.
-fn leave_room(
-    guard: &mut ExperimentGuard<'_>,
-    request: &Request,
-    task: &Task,
-    report: &mut Report,
+fn leave_room<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    request: &Request<L>,
+    task: &Task<L>,
+    report: &mut Report<L>,
 ) -> Result<Option<f64>, Cause> {
-    // A Motion Mind has its registers written at rest only, and a loop without a gain of the speed is no velocity loop.
-    let can_be_raised = request.law.motion_mind.is_none() && request.excitation == Excitation::Free;
+    // Registers that are written at rest only cannot be raised, and a loop without a gain of the speed is no velocity loop.
+    let can_be_raised = !guard.facts.writes_at_rest && request.excitation == Excitation::Free;
     let damped =
         |gains: &Gains| gains.velocity.p > 0.0 || gains.position.is_some_and(|position| position.d > 0.0);
     let Some(design) = report.design.filter(|design| can_be_raised && damped(&design.gains)) else {
         return Ok(None);
     };
-    let found = headroom(guard, task, &request.law, &design.gains)?;
+    let found = headroom(guard, task, &design.gains)?;
     let factor = found.quiet / found.wanted;
     if factor < 0.999 {
         warn_of_lowering(report);
@@ -211,15 +206,15 @@ fn leave_room(
     Ok(Some(found.quiet / factor))
 }
 
-/// A position that hunts is first looked at for backlash: within it nothing can be held (MCP manual 2.4.7, the deadzone). `None` where
+/// A position that hunts is first looked at for backlash: within it nothing can be held. `None` where
 /// the deadzone covers the backlash already, or there is none.
-fn with_deadzone(
-    guard: &mut ExperimentGuard<'_>,
-    request: &Request,
-    task: &Task,
+fn with_deadzone<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    request: &Request<L>,
+    task: &Task<L>,
     design: &Design,
     measured: &Measured,
-    report: &mut Report,
+    report: &mut Report<L>,
 ) -> Result<Option<Design>, Cause> {
     let hunts = design.gains.position.is_some() && measured.ripple > MOST_POSITION_RIPPLE;
     if !hunts || report.backlash.is_some() {
@@ -264,7 +259,7 @@ fn less_integral(gains: &Gains) -> Gains {
 
 /// What lowers a design: a position loop is designed anew for a softer goal than what it promised, since gains that are merely scaled
 /// end a move in a long creep, which sticks and slips in the backlash of a real machine. A velocity loop is scaled.
-fn softer(method: Method, task: &Task, design: &Design) -> Design {
+fn softer<L: Law>(method: Method, task: &Task<L>, design: &Design) -> Design {
     let scaled = Design { gains: lowered(&design.gains), ..*design };
     if method == Method::Velocity {
         return scaled;
@@ -287,9 +282,9 @@ const FLANKS: usize = 5;
 const FLANK_S: (f64, f64) = (0.15, 1.2);
 const STAY_S: f64 = 1.0;
 
-pub(crate) fn try_velocity(
-    guard: &mut ExperimentGuard<'_>,
-    task: &Task,
+pub(crate) fn try_velocity<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    task: &Task<L>,
     gains: &Gains,
 ) -> Result<Measured, Cause> {
     let predicted = velocity_test(&task.plant, &task.law, task.lag, gains, task.qpps);
@@ -329,13 +324,13 @@ pub(crate) fn try_velocity(
 
 /// The same inside a travel window: to and fro about where the axis stands, as fast as the room allows. The motor is braked at the
 /// end.
-pub(crate) fn try_velocity_inside(
-    guard: &mut ExperimentGuard<'_>,
-    task: &Task,
+pub(crate) fn try_velocity_inside<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    task: &Task<L>,
     gains: &Gains,
     width: f64,
 ) -> Result<Measured, Cause> {
-    let lag_s = task.lag.total_s(&task.law) + 2.0 * task.law.tick_s();
+    let lag_s = task.lag.total_s(task.law.tick_s()) + 2.0 * task.law.tick_s();
     let dwell_s = (14.0 * lag_s + task.plant.tau_s / (1.0 + gains.velocity.p)).clamp(0.12, 0.4);
     let room = guard.room_counts().unwrap_or(width).min(width);
     let speed = (INSIDE_SHARE * room / dwell_s).min(MIDDLE * task.qpps);
@@ -370,10 +365,10 @@ fn plateau_activity(record: &ClosedLoopRecord) -> f64 {
 }
 
 /// Moves D, 0, 0.25 D, 0, towards the farther end of the travel.
-pub(crate) fn try_position(
-    guard: &mut ExperimentGuard<'_>,
-    request: &Request,
-    task: &Task,
+pub(crate) fn try_position<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    request: &Request<L>,
+    task: &Task<L>,
     design: &Design,
 ) -> Result<Measured, Cause> {
     let mut step = position_step(task.plant.gain_counts_per_s, task.plant.tau_s);
@@ -416,7 +411,7 @@ pub(crate) fn try_position(
 }
 
 /// The direction in which the travel has more room, and how much, counts.
-fn farther_end(guard: &ExperimentGuard<'_>, position: f64) -> (f64, f64) {
+fn farther_end<L: Law>(guard: &ExperimentGuard<'_, L>, position: f64) -> (f64, f64) {
     let Some((low, high)) = guard.travel_counts() else { return (1.0, f64::INFINITY) };
     if high - position >= position - low { (1.0, high - position) } else { (-1.0, position - low) }
 }

@@ -3,9 +3,9 @@
 //! Pure and quick, so that a slider or a typed gain redraws its prediction at once; nothing is sent and no motor moves.
 
 use crate::design::{Design, Goal, Limit, Task, limit};
+use crate::law::Law;
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::Gains;
-use crate::motion_mind::MotionMindRegisters;
 use crate::proposal::design_for;
 use crate::report::Report;
 use crate::request::Method;
@@ -79,7 +79,7 @@ impl LoopPoint {
 
 /// What `gains` would do.
 #[must_use]
-pub fn forecast(task: &Task, gains: &Gains) -> Forecast {
+pub fn forecast<L: Law>(task: &Task<L>, gains: &Gains) -> Forecast {
     let is_position = gains.position.is_some();
     let (from, to) = if is_position {
         (0.0, position_step(task.plant.gain_counts_per_s, task.plant.tau_s))
@@ -127,7 +127,7 @@ pub fn forecast(task: &Task, gains: &Gains) -> Forecast {
 
 /// The open loop over frequency, up to half the firmware's loop rate.
 #[must_use]
-pub fn frequency_response(task: &Task, gains: &Gains) -> Vec<LoopPoint> {
+pub fn frequency_response<L: Law>(task: &Task<L>, gains: &Gains) -> Vec<LoopPoint> {
     let points = loop_of(task).open_loop(gains, task.qpps);
     points
         .into_iter()
@@ -135,13 +135,13 @@ pub fn frequency_response(task: &Task, gains: &Gains) -> Vec<LoopPoint> {
         .collect()
 }
 
-fn loop_of(task: &Task) -> LoopPlant {
+fn loop_of<L: Law>(task: &Task<L>) -> LoopPlant {
     LoopPlant::new(DiscretePlant::of(&task.plant, task.law.tick_s()), &task.law, task.lag)
 }
 
 /// The task of another level: what the run learned to be careful about stays.
 #[must_use]
-pub fn at_level(task: &Task, was: f64, level: f64) -> Task {
+pub fn at_level<L: Law>(task: &Task<L>, was: f64, level: f64) -> Task<L> {
     let (before, now) = (Goal::of_level(was), Goal::of_level(level));
     let share = (task.goal.ms - 1.0) / (before.ms - 1.0);
     let noise = task.goal.noise_duty / before.noise_duty;
@@ -152,7 +152,13 @@ pub fn at_level(task: &Task, was: f64, level: f64) -> Task {
 /// The gains of another level from the model of a run, with no new experiment. What the run took back on the machine is taken back
 /// here in the same proportion.
 #[must_use]
-pub fn redesign(method: Method, task: &Task, was: f64, run: &Design, level: f64) -> Option<Design> {
+pub fn redesign<L: Law>(
+    method: Method,
+    task: &Task<L>,
+    was: f64,
+    run: &Design,
+    level: f64,
+) -> Option<Design> {
     let design = design_for(method, &at_level(task, was, level))?;
     let as_held = |first: Design| share_of(&run.gains, &task.law.rounded(&first.gains, task.qpps));
     let ratio = design_for(method, task).map_or(1.0, as_held);
@@ -169,21 +175,20 @@ pub fn redesign(method: Method, task: &Task, was: f64, run: &Design, level: f64)
     Some(Design { gains, score: forecast.score, ms: forecast.ms, noise_duty: forecast.noise_duty })
 }
 
-/// The registers of a Motion Mind for another level, from the report of its run.
+/// The registers of another level, from the report of a run.
 #[must_use]
-pub fn redesign_motion_mind(report: &Report, level: f64) -> Option<MotionMindRegisters> {
+pub fn redesign_registers<L: Law>(report: &Report<L>, level: f64) -> Option<L::Registers> {
     let (request, task, design) = (&report.request, report.task?, report.design?);
-    let (unit, mind) = (report.before?.motion_mind?, task.law.motion_mind?);
     if level == request.level {
-        return report.motion_mind;
+        return Some(report.proposed);
     }
     let design = redesign(request.method, &task, request.level, &design, level)?;
-    Some(unit.registers.with(&design.gains, task.qpps, mind))
+    Some(request.law.registers(&report.before?.held, &design.gains, task.qpps, request.guard.travel))
 }
 
 /// What keeps the gains of a level from being stiffer; see [`limit`].
 #[must_use]
-pub fn limit_at(task: &Task, was: f64, level: f64, gains: &Gains) -> Option<Limit> {
+pub fn limit_at<L: Law>(task: &Task<L>, was: f64, level: f64, gains: &Gains) -> Option<Limit> {
     limit(&at_level(task, was, level), gains)
 }
 
@@ -196,9 +201,10 @@ fn share_of(left: &Gains, first: &Gains) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Lag, LoopLaw, Pid, PlantModel};
+    use crate::model::{Lag, Pid, PlantModel};
+    use crate::plain_law::PlainLaw;
 
-    fn task() -> Task {
+    fn task() -> Task<PlainLaw> {
         let lag = Lag { filter_s: 0.004, delay_ticks: 1.0 };
         Task {
             plant: PlantModel {
@@ -210,7 +216,7 @@ mod tests {
                 brake_limit: None,
                 sag: 0.0,
             },
-            law: LoopLaw::default(),
+            law: PlainLaw::default(),
             lag,
             worst_lag: lag,
             qpps: 30_000.0,

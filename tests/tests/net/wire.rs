@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use brushwork_canopen::adapter::Form;
 use brushwork_core::keep::TrialKeeper;
+use brushwork_core::tune::law::{Report, Request as Tuning, Setup};
 use brushwork_core::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
 use brushwork_link::FamilyChoice;
 use brushwork_link::device::{ArmScope, DeviceOptions, Event, Job, JobContext, JobEnding, Request};
@@ -21,9 +22,8 @@ use brushwork_motion_mind_sim::{MotionMind, MotionMindBus, MotionMindConfig};
 use brushwork_motion_mind_wire::{Mode, Protocol};
 use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_tests::virtual_link::VirtualLink;
-use brushwork_tuning::axis::{EncoderClass, Setup};
-use brushwork_tuning::report::Report;
-use brushwork_tuning::tune::{Excitation, Method, Request as Tuning};
+use brushwork_tuning::axis::EncoderClass;
+use brushwork_tuning::tune::{Excitation, Method};
 use brushwork_values::Motor;
 
 use crate::assert_kept;

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use brushwork_core::tune::file;
+use brushwork_core::tune::law::Report;
 use brushwork_mcp_sim::controller::ControllerConfig;
 use brushwork_mcp_sim::motion::MotionSettings;
 use brushwork_mcp_sim::settings::Settings;
@@ -16,7 +17,7 @@ use brushwork_tests::program::{Ending, Program};
 use brushwork_tests::simulated::{OnPty, is_driven};
 use brushwork_tests::wait::LIMIT;
 use brushwork_tuning::cause::Cause;
-use brushwork_tuning::report::{Report, Verdict};
+use brushwork_tuning::report::Verdict;
 use brushwork_values::Motor;
 use tempfile::TempDir;
 
@@ -107,7 +108,7 @@ fn saved_gains_are_in_ram_and_in_eeprom_with_the_users_time_out_and_the_report_r
     assert!(bench.controller.look(|unit| !is_driven(unit)));
     let [ram, eeprom] = bench.held();
     assert_eq!((ram.1, eeprom.1), (USERS_MS, USERS_MS));
-    match report.velocity {
+    match report.proposed.mcp.velocity {
         Some(new) if report.verdict != Verdict::Refused => {
             assert_eq!(gains(&ram.0), [new.p, new.i, new.d, new.qpps]);
             assert_eq!(gains(&eeprom.0), gains(&ram.0));

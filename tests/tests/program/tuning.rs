@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use brushwork_core::keep::TrialKeeper;
+use brushwork_core::tune::law::{Report, Request as Tuning, Setup};
 use brushwork_core::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
 use brushwork_link::device::{ArmScope, DeviceOptions, Event, Job, JobEnding, JobTicket, Request};
 use brushwork_link::settings::{Act, Ending, Entry, Keeper, SettingsTable, Subject, WriteOptions, save_kept};
@@ -17,10 +18,10 @@ use brushwork_plant::presets;
 use brushwork_plant::world::WorldAction;
 use brushwork_plant::{EncoderKind, StopKind, TravelParams};
 use brushwork_tests::virtual_link::VirtualLink;
-use brushwork_tuning::axis::{EncoderClass, Setup};
+use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::cause::Cause;
-use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::tune::{Excitation, Method, Request as Tuning};
+use brushwork_tuning::report::Verdict;
+use brushwork_tuning::tune::{Excitation, Method};
 use brushwork_values::Motor;
 
 const TARGET: Target =
@@ -169,7 +170,7 @@ fn a_run_that_keeps_its_gains_leaves_them_in_ram_and_the_users_time_out_in_force
     let (before, timeout_ms) = settings(&link);
     let request = Tuning { keep: true, ..velocity() };
     let report = tuned(&mut link, request, |_| {}).expect("a report");
-    let new = report.velocity.expect("gains");
+    let new = report.proposed.mcp.velocity.expect("gains");
     let (after, timeout_after_ms) = settings(&link);
     assert_eq!((after.velocity_p_raw, after.velocity_i_raw, after.qpps), (new.p, new.i, new.qpps));
     assert_ne!(after.qpps, before.qpps);
@@ -377,7 +378,7 @@ fn gains_that_were_kept_and_saved_are_there_after_a_power_cycle_and_so_is_the_us
     let mut link = connected();
     let (_, timeout_ms) = settings(&link);
     let report = tuned(&mut link, Tuning { keep: true, ..velocity() }, |_| {}).expect("a report");
-    let new = report.velocity.expect("gains");
+    let new = report.proposed.mcp.velocity.expect("gains");
     let table = SettingsTable::new(subject());
     let options = WriteOptions { own_stream: Some(Stream::Usb), simulated: true, as_read: false };
     let saving = Job::new("save the settings", ms(60_000), move |wire| {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use brushwork_core::keep::TrialKeeper;
+use brushwork_core::tune::law::{Report, Request as Tuning, Setup};
 use brushwork_core::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
 use brushwork_link::Failure;
 use brushwork_link::FamilyChoice;
@@ -14,10 +15,10 @@ use brushwork_motion_mind_sim::{Mode, MotionMind, MotionMindBus, MotionMindConfi
 use brushwork_plant::machine::Machine;
 use brushwork_plant::world::WorldAction;
 use brushwork_tests::virtual_link::VirtualLink;
-use brushwork_tuning::axis::{EncoderClass, Setup};
+use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::cause::Cause;
-use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::tune::{Method, Request as Tuning};
+use brushwork_tuning::report::Verdict;
+use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
 
 const TARGET: Target = Target { motor: Motor::M1, encoder: Some(EncoderClass::Quadrature), stream: None };
@@ -127,7 +128,7 @@ fn each_loop_is_tuned_through_the_device_thread_replayed_to_the_bit_and_nothing_
         let report = tuned(&mut link, of(method), |_| {}).expect("the run left its report");
         let place = format!("{protocol:?} {method:?}: {:?} {:?}", report.verdict, report.causes);
         assert_ne!(report.verdict, Verdict::Refused, "{place}");
-        assert!(report.motion_mind.is_some(), "{place}");
+        assert!(report.proposed.mind.motion_mind.is_some(), "{place}");
         assert!(report.replay().as_ref() == Some(&report), "{place}: the replay differs");
         assert_eq!(registers(&link), before, "{place}");
         assert_eq!(eeprom_writes(&link), 0, "{place}");
@@ -139,7 +140,7 @@ fn gains_that_are_kept_stay_in_ram_and_the_limits_are_the_users_again() {
     let mut link = connected(Protocol::Binary);
     let before = registers(&link);
     let report = tuned(&mut link, Tuning { keep: true, ..of(Method::Pd) }, |_| {}).expect("a report");
-    let kept = report.motion_mind.expect("gains");
+    let kept = report.proposed.mind.motion_mind.expect("gains");
     let now = registers(&link);
     let proposed = [kept.pterm, kept.iterm, kept.dterm, u16::from(kept.pidscalar)].map(i64::from);
     assert_eq!(now[2..6], proposed);

@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
 use brushwork_core::keep::TrialKeeper;
+use brushwork_core::tune::law::{Report, Request as Tuning, Setup};
 use brushwork_core::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
 use brushwork_link::device::{
     Addresses, ArmScope, DeviceHandle, DeviceLoop, DeviceOptions, Event, Identity, Job, JobEnding, Request,
@@ -14,10 +15,9 @@ use brushwork_link::settings::Keeper;
 use brushwork_link::{Clock, Transport, TransportError, VirtualClock};
 use brushwork_mcp_wire::models;
 use brushwork_tests::other_controller::{Manner, Motor, OtherController};
-use brushwork_tuning::axis::Setup;
 use brushwork_tuning::cause::Cause;
-use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::tune::{Excitation, Method, Request as Tuning};
+use brushwork_tuning::report::Verdict;
+use brushwork_tuning::tune::{Excitation, Method};
 use brushwork_values::Motor as Channel;
 
 const TARGET: Target = Target { motor: Channel::M1, encoder: None, stream: None };

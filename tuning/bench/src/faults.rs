@@ -5,12 +5,15 @@ use crate::population::{Draw, Kind, Specimen};
 use crate::quantile::quantile;
 use crate::run::{SimulatedAxis, axis_of, request_of};
 use crate::truth::{Truth, truth};
+use brushwork_mcp_axis::McpLaw;
 use brushwork_mcp_sim::controller::Controller;
 use brushwork_plant::world::WorldAction;
 use brushwork_plant::{StopKind, TravelParams};
-use brushwork_tuning::axis::Axis;
 use brushwork_tuning::cause::Cause;
+use brushwork_tuning::law::Law;
+use brushwork_tuning::law_probe::LawProbe;
 use brushwork_tuning::report::{Report, Verdict};
+use brushwork_tuning::setup::LoopAxis;
 use brushwork_tuning::tune::{Excitation, Method, Request, tune};
 use brushwork_values::Motor;
 use rand_chacha::ChaCha8Rng;
@@ -22,8 +25,10 @@ use std::time::Duration;
 
 /// The plant under test that faults strike, under a controller of some family.
 pub trait FaultyPlant: Clone + Send + Sync {
+    /// The law of its controller.
+    type Law: LawProbe;
     /// Its axis over the wire.
-    type Axis: Axis;
+    type Axis: LoopAxis<Self::Law>;
     /// Its controller.
     type Unit: Bench;
     /// The methods whose trials are struck, and whose runs have to be quiet.
@@ -37,7 +42,7 @@ pub trait FaultyPlant: Clone + Send + Sync {
     /// The motor, to be changed.
     fn plant_mut(&mut self) -> &mut Specimen;
     /// What it really is.
-    fn truth(&self) -> Truth;
+    fn truth(&self) -> Truth<Self::Law>;
     /// A fresh axis.
     fn axis(&self) -> Self::Axis;
     /// The line beneath an axis.
@@ -45,6 +50,7 @@ pub trait FaultyPlant: Clone + Send + Sync {
 }
 
 impl FaultyPlant for Specimen {
+    type Law = McpLaw;
     type Axis = SimulatedAxis;
     type Unit = Controller;
     const WHOLE: [Method; 2] = [Method::Velocity, Method::Piv];
@@ -201,9 +207,9 @@ struct Run {
 }
 
 /// A plant, what it is, and how long its identification takes.
-struct Subject<P> {
+struct Subject<P: FaultyPlant> {
     specimen: P,
-    truth: Truth,
+    truth: Truth<P::Law>,
     /// Length of the identification, and of whole runs by method, s.
     span_s: f64,
     whole_s: [f64; 2],
@@ -259,7 +265,7 @@ pub fn rows_of<P: FaultyPlant>(plants: &[P], names: &[&str]) -> Vec<FaultRow> {
 
 /// Whether a report blames the machine.
 #[must_use]
-pub fn is_alarm(report: &Report) -> bool {
+pub fn is_alarm<L: Law>(report: &Report<L>) -> bool {
     const ALARMS: [Cause; 11] = [
         Cause::EncoderReversed,
         Cause::EncoderDead,
@@ -276,7 +282,7 @@ pub fn is_alarm(report: &Report) -> bool {
     report.verdict == Verdict::Refused && report.causes.first().is_some_and(|cause| ALARMS.contains(cause))
 }
 
-fn identification_only(specimen: &Specimen) -> Request {
+fn identification_only<L: Law>(specimen: &Specimen) -> Request<L> {
     Request { verify: false, ..request_of(specimen, Method::Velocity) }
 }
 
@@ -285,7 +291,7 @@ fn healthy_method<P: FaultyPlant>(n: usize) -> Option<Method> {
     P::WHOLE.get(n % 3).copied()
 }
 
-fn healthy<P: FaultyPlant>(specimen: &P, round: u64, method: Option<Method>) -> (Report, P::Axis) {
+fn healthy<P: FaultyPlant>(specimen: &P, round: u64, method: Option<Method>) -> (Report<P::Law>, P::Axis) {
     let mut specimen = specimen.clone();
     let link = &mut specimen.plant_mut().link;
     link.seed = link.seed.wrapping_add(round.wrapping_mul(0x9E37_79B9_7F4A_7C15));
@@ -380,7 +386,7 @@ impl Run {
     fn quiet<P: FaultyPlant>(
         subject: &Subject<P>,
         axis: &mut P::Axis,
-        report: &Report,
+        report: &Report<P::Law>,
         in_time: bool,
     ) -> Self {
         let plant = subject.specimen.plant();
@@ -427,7 +433,7 @@ fn with_end_stops<P: FaultyPlant>(subject: &Subject<P>) -> P {
     specimen
 }
 
-fn first(report: &Report) -> Option<Cause> {
+fn first<L: Law>(report: &Report<L>) -> Option<Cause> {
     (report.verdict == Verdict::Refused).then(|| report.causes.first().copied()).flatten()
 }
 

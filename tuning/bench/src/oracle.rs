@@ -6,6 +6,8 @@
 use crate::population::Specimen;
 use crate::trial::{Outcome, Registers, position_trial, velocity_trial};
 use crate::truth::Truth;
+use brushwork_mcp_axis::McpLaw;
+use brushwork_tuning::law::Law;
 use brushwork_tuning::model::{Gains, Pid};
 use brushwork_tuning::score::{POSITION_OVERSHOOT, VELOCITY_OVERSHOOT};
 use brushwork_tuning::tune::Method;
@@ -63,8 +65,10 @@ pub fn cost(method: Method, outcome: &Outcome) -> f64 {
 
 /// The plant that gains are tried on.
 pub trait PlantUnderTest {
+    /// The law of its controller.
+    type Law: Law;
     /// What the plant is.
-    fn truth(&self) -> &Truth;
+    fn truth(&self) -> &Truth<Self::Law>;
     /// Gains as the registers hold them.
     fn rounded(&self, gains: &Gains) -> Gains;
     /// One trial of a method.
@@ -78,6 +82,8 @@ struct PacketPlantUnderTest<'a> {
 }
 
 impl PlantUnderTest for PacketPlantUnderTest<'_> {
+    type Law = McpLaw;
+
     fn truth(&self) -> &Truth {
         self.truth
     }
@@ -119,20 +125,20 @@ pub fn position_optima(specimen: &Specimen, truth: &Truth) -> Optima {
 
 /// Finds the optimum of one method.
 #[must_use]
-pub fn optimum(under_test: &dyn PlantUnderTest, method: Method) -> Option<Optimum> {
+pub fn optimum<L: Law>(under_test: &dyn PlantUnderTest<Law = L>, method: Method) -> Option<Optimum> {
     Search { method, under_test, truth: under_test.truth() }.run()
 }
 
-struct Search<'a> {
+struct Search<'a, L: Law> {
     method: Method,
-    under_test: &'a dyn PlantUnderTest,
-    truth: &'a Truth,
+    under_test: &'a dyn PlantUnderTest<Law = L>,
+    truth: &'a Truth<L>,
 }
 
 /// A point of the search: P, I or D, and the outer P.
 type Point = [f64; 3];
 
-impl Search<'_> {
+impl<L: Law> Search<'_, L> {
     fn gains(&self, point: &Point) -> Gains {
         let [a, b, c] = *point;
         match self.method {
@@ -234,7 +240,7 @@ impl Search<'_> {
 
     /// The global grid: for each ratio of gains, shares of the highest gain that is allowed, going up from near zero.
     fn grid(&self) -> Vec<Point> {
-        let lag = self.truth.lag.total_s(&self.truth.law) + 1.5 * self.truth.law.tick_s();
+        let lag = self.truth.lag.total_s(self.truth.law.tick_s()) + 1.5 * self.truth.law.tick_s();
         let longest = (12.0 * self.truth.tau_s).max(40.0 * lag);
         let mut points = Vec::new();
         let times =

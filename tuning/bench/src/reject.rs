@@ -5,6 +5,7 @@ use crate::population::Specimen;
 use crate::run::Judgement;
 use crate::truth::Truth;
 use brushwork_plant::ShaftSide;
+use brushwork_tuning::law::Law;
 use brushwork_tuning::tune::Method;
 
 /// Motors below this time constant are over before a poll sees them, s.
@@ -14,7 +15,12 @@ const COARSE_COUNTS_PER_S: f64 = 1_500.0;
 
 /// The group of a result that was not accepted: what was measured, and on what; `None` for an accepted one.
 #[must_use]
-pub fn group(method: Method, specimen: &Specimen, truth: &Truth, judged: &Judgement) -> Option<String> {
+pub fn group<L: Law>(
+    method: Method,
+    specimen: &Specimen,
+    truth: &Truth<L>,
+    judged: &Judgement,
+) -> Option<String> {
     if judged.accept {
         return None;
     }
@@ -35,7 +41,7 @@ pub fn group(method: Method, specimen: &Specimen, truth: &Truth, judged: &Judgem
     Some(format!("{measured}, {}", machine(specimen, truth)))
 }
 
-fn machine(specimen: &Specimen, truth: &Truth) -> &'static str {
+fn machine<L: Law>(specimen: &Specimen, truth: &Truth<L>) -> &'static str {
     let axis = &specimen.axis;
     let has_backlash = axis.gear.backlash_radians > 0.0;
     match (axis.is_two_mass(), axis.encoder.side) {

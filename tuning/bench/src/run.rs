@@ -6,17 +6,22 @@ use crate::oracle::{Optimum, cost, trial};
 use crate::population::Specimen;
 use crate::trial::{Outcome, Registers, linear};
 use crate::truth::Truth;
-use brushwork_mcp_axis::PacketAxis;
+use brushwork_mcp_axis::{McpLaw, PacketAxis};
 use brushwork_mcp_sim::controller::Controller;
 use brushwork_plant::EncoderKind;
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::GuardOptions;
+use brushwork_tuning::law::Law;
 use brushwork_tuning::linear::{LoopPlant, Margins};
-use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::tune::{Excitation, Method, Request, tune};
+use brushwork_tuning::report::{self, Verdict};
+use brushwork_tuning::tune::{self, Excitation, Method, tune};
 use brushwork_values::Motor;
 
+/// What a run is asked for, and what it leaves.
+pub type Request = tune::Request<McpLaw>;
+/// The report of a run.
+pub type Report = report::Report<McpLaw>;
 /// An axis over the simulated machine.
 pub type SimulatedAxis = PacketAxis<SimulatedLine>;
 
@@ -41,12 +46,12 @@ fn encoder_of(specimen: &Specimen) -> EncoderClass {
 
 /// What the bench asks for.
 #[must_use]
-pub fn request_of(specimen: &Specimen, method: Method) -> Request {
-    Request {
+pub fn request_of<L: Law>(specimen: &Specimen, method: Method) -> tune::Request<L> {
+    tune::Request {
         method,
         excitation: Excitation::Free,
         guard: GuardOptions { poll_s: specimen.link.poll_s, ..GuardOptions::default() },
-        ..Request::default()
+        ..tune::Request::default()
     }
 }
 
@@ -131,7 +136,7 @@ pub fn weigh(
 
 /// A refusal.
 #[must_use]
-pub fn refusal(report: &Report) -> Judgement {
+pub fn refusal<L: Law>(report: &report::Report<L>) -> Judgement {
     let refused = report.causes.first().copied().or(Some(Cause::TooCoarse));
     Judgement { j: f64::INFINITY, stable: true, refused, ..Judgement::default() }
 }
@@ -139,9 +144,9 @@ pub fn refusal(report: &Report) -> Judgement {
 /// Judges a report.
 #[must_use]
 pub fn judge_report(specimen: &Specimen, truth: &Truth, optimum: &Optimum, report: &Report) -> Judgement {
-    let registers = match (report.verdict, report.velocity) {
+    let registers = match (report.verdict, report.proposed.velocity) {
         (Verdict::Refused, _) | (_, None) => return refusal(report),
-        (_, Some(velocity)) => Registers { velocity, position: report.position },
+        (_, Some(velocity)) => Registers { velocity, position: report.proposed.position },
     };
     judge(report.request.method, specimen, truth, optimum, &registers)
 }

@@ -6,12 +6,13 @@ use crate::oracle::{Optima, optima, position_optima};
 use crate::population::{Specimen, absolute_population, population};
 pub use crate::quantile::quantile;
 use crate::reject::group;
-use crate::run::{Judgement, judge, judge_report, request_of, tune_plant};
+use crate::run::{Judgement, Report, Request, judge, judge_report, request_of, tune_plant};
 use crate::trial::Registers;
 use crate::truth::{Truth, truth};
-use brushwork_tuning::report::Report;
+use brushwork_tuning::law::Law;
+use brushwork_tuning::report;
 use brushwork_tuning::rules::{pd_rules, pid_rules, piv_rules, velocity_rules};
-use brushwork_tuning::tune::{Excitation, Method, Request};
+use brushwork_tuning::tune::{Excitation, Method};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -235,10 +236,10 @@ pub(crate) struct Judged {
 }
 
 impl Judged {
-    pub(crate) fn new(
+    pub(crate) fn new<L: Law>(
         method: Method,
         specimen: &Specimen,
-        truth: &Truth,
+        truth: &Truth<L>,
         result: Judgement,
         seconds: f64,
     ) -> Self {
@@ -276,7 +277,7 @@ pub(crate) fn row<'a>(method: &str, judged: impl Iterator<Item = &'a Judged>) ->
 fn identification(cases: &[Case], reports: &[(Report, f64)]) -> Identification {
     let found = || cases.iter().zip(reports).map(|(case, (report, peak))| (&case.truth, report, *peak));
     let ms = cases.iter().zip(reports).filter_map(|(c, (r, _))| {
-        let registers = Registers { velocity: r.velocity?, position: None };
+        let registers = Registers { velocity: r.proposed.velocity?, position: None };
         let (margins, _) = crate::trial::linear(&c.truth.nominal, &c.truth, &registers);
         Some((margins.ms - r.design?.ms).abs())
     });
@@ -287,27 +288,30 @@ pub(crate) fn error_percent(got: f64, wanted: f64) -> f64 {
     100.0 * (got / wanted - 1.0).abs()
 }
 
+/// How far a report is from the truth.
+type ErrorOf<L> = dyn Fn(&Truth<L>, &report::Report<L>) -> Option<f64>;
+
 /// What the velocity runs found against the truth: (truth, report, peak current over the stall current) of each plant, and how far
 /// the predicted sensitivities were off.
-pub(crate) fn identification_of<'a>(
-    found: impl Iterator<Item = (&'a Truth, &'a Report, f64)>,
+pub(crate) fn identification_of<'a, L: Law>(
+    found: impl Iterator<Item = (&'a Truth<L>, &'a report::Report<L>, f64)>,
     ms: &[f64],
 ) -> Identification {
     let found: Vec<_> = found.collect();
-    let of = |error: &dyn Fn(&Truth, &Report) -> Option<f64>, share: f64| {
+    let of = |error: &ErrorOf<L>, share: f64| {
         quantile(found.iter().filter_map(|(truth, report, _)| error(truth, report)), share)
     };
-    let qpps = |truth: &Truth, report: &Report| Some(error_percent(report.qpps?, truth.qpps));
-    let gain = |truth: &Truth, report: &Report| {
+    let qpps = |truth: &Truth<L>, report: &report::Report<L>| Some(error_percent(report.qpps?, truth.qpps));
+    let gain = |truth: &Truth<L>, report: &report::Report<L>| {
         Some(error_percent(report.fit?.model.gain_counts_per_s, truth.gain_counts_per_s))
     };
-    let tau = |truth: &Truth, report: &Report| {
+    let tau = |truth: &Truth<L>, report: &report::Report<L>| {
         let error = error_percent(report.fit?.model.tau_s, truth.tau_s);
         (truth.tau_s > 0.03).then_some(error)
     };
-    let lag = |truth: &Truth, report: &Report| {
-        let law = &truth.law;
-        Some(1e3 * (report.lag?.lag.total_s(law) - truth.lag.total_s(law)).abs())
+    let lag = |truth: &Truth<L>, report: &report::Report<L>| {
+        let tick_s = truth.law.tick_s();
+        Some(1e3 * (report.lag?.lag.total_s(tick_s) - truth.lag.total_s(tick_s)).abs())
     };
     Identification {
         qpps_error_median: round(of(&qpps, 0.5), 3),

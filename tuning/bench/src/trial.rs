@@ -2,6 +2,9 @@
 
 use crate::population::Specimen;
 use crate::truth::Truth;
+use brushwork_mcp_axis::{
+    PositionRegisters, VelocityRegisters, gains_of, position_registers, velocity_registers,
+};
 use brushwork_mcp_sim::motion::{
     Buffering, Channel, Conditions, EncoderInput, Measured, MotionCommand, MotionSettings, PositionMove,
     PositionTarget,
@@ -9,10 +12,8 @@ use brushwork_mcp_sim::motion::{
 use brushwork_plant::bridge::BridgeOutput;
 use brushwork_plant::world::{World, WorldAction};
 use brushwork_plant::{EncoderKind, EncoderReading, ShaftSide};
-use brushwork_tuning::axis::{PositionRegisters, VelocityRegisters};
 use brushwork_tuning::linear::{LoopPlant, Margins};
 use brushwork_tuning::model::Gains;
-use brushwork_tuning::registers::{gains_of, position_registers, velocity_registers};
 use brushwork_tuning::score::{LOAD_STEP_DUTY, Score, VELOCITY_STEP, horizon_s, position_step};
 use brushwork_values::Motor;
 

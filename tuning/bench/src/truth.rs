@@ -1,10 +1,12 @@
 //! What a plant really is, linearly: the detailed axis, its battery, its firmware's filter and delay, exact at the tick.
 
 use crate::population::Specimen;
+use brushwork_mcp_axis::McpLaw;
 use brushwork_mcp_sim::motion::{GainTiming, VelocityEstimate};
 use brushwork_plant::{AxisParams, ShaftSide};
+use brushwork_tuning::law::Law;
 use brushwork_tuning::linear::{DiscretePlant, LoopPlant};
-use brushwork_tuning::model::{Lag, LoopLaw};
+use brushwork_tuning::model::Lag;
 use nalgebra::{DMatrix, DVector};
 
 /// Duty at which the battery's sag is taken.
@@ -12,7 +14,7 @@ const WORKING_DUTY: f64 = 0.4;
 
 /// The true figures of a plant.
 #[derive(Clone, Debug)]
-pub struct Truth {
+pub struct Truth<L: Law = McpLaw> {
     /// Speed per duty, friction aside, counts/s.
     pub gain_counts_per_s: f64,
     /// Mechanical time constant, s.
@@ -20,7 +22,7 @@ pub struct Truth {
     /// Steady speed at full duty, counts/s, battery sag included.
     pub qpps: f64,
     /// The law, in the tuner's terms.
-    pub law: LoopLaw,
+    pub law: L,
     /// Filter and delay of the firmware.
     pub lag: Lag,
     /// The linear loop at the tick.
@@ -32,8 +34,7 @@ pub struct Truth {
 /// Works the truth of a plant out.
 #[must_use]
 pub fn truth(specimen: &Specimen) -> Truth {
-    let law = LoopLaw {
-        motion_mind: None,
+    let law = McpLaw {
         rate_hz: specimen.law.rate_hz,
         per_tick: specimen.law.gain_timing == GainTiming::PerTick,
         position_scale: specimen.law.position_gain_scale,
@@ -49,7 +50,7 @@ pub fn truth(specimen: &Specimen) -> Truth {
 }
 
 /// The truth of a plant under a law with a lag.
-pub(crate) fn truth_under(specimen: &Specimen, law: LoopLaw, lag: Lag) -> Truth {
+pub(crate) fn truth_under<L: Law>(specimen: &Specimen, law: L, lag: Lag) -> Truth<L> {
     let axis = &specimen.axis;
     let volts = specimen.volts();
     let step = axis.steady_counts_per_second(volts) - axis.steady_counts_per_second(0.9 * volts);

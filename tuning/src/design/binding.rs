@@ -2,6 +2,7 @@
 
 use super::search::Loops;
 use super::task::Task;
+use crate::law::Law;
 use crate::linear::LoopPlant;
 use crate::model::Gains;
 
@@ -38,7 +39,7 @@ const LIGHT_MS: f64 = 1.4;
 /// Which bound of `task` is met first when all of `gains` are raised by a quarter: the one that is broken by the most. `None` where none
 /// is: stiffer gains would only overshoot more.
 #[must_use]
-pub fn limit(task: &Task, gains: &Gains) -> Option<Limit> {
+pub fn limit<L: Law>(task: &Task<L>, gains: &Gains) -> Option<Limit> {
     let loops = Loops::new(task);
     let (now, raised) = (shares(task, &loops, gains), shares(task, &loops, &raised(gains)));
     let most = (0..raised.len()).max_by(|a, b| raised[*a].1.total_cmp(&raised[*b].1))?;
@@ -47,7 +48,7 @@ pub fn limit(task: &Task, gains: &Gains) -> Option<Limit> {
 }
 
 /// How much of each bound is used.
-fn shares(task: &Task, loops: &Loops, gains: &Gains) -> [(Bound, f64); 5] {
+fn shares<L: Law>(task: &Task<L>, loops: &Loops, gains: &Gains) -> [(Bound, f64); 5] {
     let ms = |plant: &LoopPlant| plant.margins(gains, task.qpps).ms;
     let nominal = loops.nominal.margins(gains, task.qpps);
     // Raising all gains leaves the integral time as it is, so that a bound that is reached counts as broken.
@@ -73,9 +74,10 @@ fn raised(gains: &Gains) -> Gains {
 mod tests {
     use super::*;
     use crate::design::{Goal, USUAL_OVERSHOOT, design_velocity};
-    use crate::model::{Lag, LoopLaw, Pid, PlantModel};
+    use crate::model::{Lag, Pid, PlantModel};
+    use crate::plain_law::PlainLaw;
 
-    fn task(tau_s: f64, gain_counts_per_s: f64, level: f64) -> Task {
+    fn task(tau_s: f64, gain_counts_per_s: f64, level: f64) -> Task<PlainLaw> {
         let lag = Lag { filter_s: 0.004, delay_ticks: 1.0 };
         let plant = PlantModel {
             gain_counts_per_s,
@@ -88,7 +90,7 @@ mod tests {
         };
         Task {
             plant,
-            law: LoopLaw::default(),
+            law: PlainLaw::default(),
             lag,
             worst_lag: lag,
             qpps: gain_counts_per_s,

@@ -12,16 +12,16 @@ mod velocity;
 pub use binding::{Bound, Limit, limit};
 pub(crate) use position::deadzone;
 pub use position::{design_pd, design_pid, design_piv};
-pub(crate) use task::unmodelled_ticks;
 pub use task::{Design, Goal, Task, USUAL_OVERSHOOT};
 pub use velocity::design_velocity;
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Lag, LoopLaw, PlantModel};
+    use crate::model::{Lag, PlantModel};
+    use crate::plain_law::PlainLaw;
 
-    fn task(level: f64) -> Task {
+    fn task(level: f64) -> Task<PlainLaw> {
         let lag = Lag { filter_s: 0.004, delay_ticks: 1.0 };
         Task {
             plant: PlantModel {
@@ -33,7 +33,7 @@ mod tests {
                 brake_limit: None,
                 sag: 0.03,
             },
-            law: LoopLaw::default(),
+            law: PlainLaw::default(),
             lag,
             worst_lag: lag,
             qpps: 28_000.0,
@@ -47,7 +47,7 @@ mod tests {
 
     #[test]
     fn every_method_keeps_its_goal_at_every_level_and_stiffer_is_never_slower() {
-        type Method = fn(&Task) -> Option<Design>;
+        type Method = fn(&Task<PlainLaw>) -> Option<Design>;
         let methods: [(&str, Method); 4] =
             [("velocity", design_velocity), ("pd", design_pd), ("pid", design_pid), ("piv", design_piv)];
         for (name, method) in methods {

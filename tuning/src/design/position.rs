@@ -1,7 +1,8 @@
 //! Position loops: PD and PID that act on the duty directly, and P over the velocity loop (PIV).
 
 use super::search::{Candidate, Loops, ascend, better, finish};
-use super::task::{Design, Goal, Task, unmodelled_ticks};
+use super::task::{Design, Goal, Task};
+use crate::law::Law;
 use crate::model::{Gains, Lag, Pid};
 use crate::score::{POSITION_OVERSHOOT, position_step};
 use crate::ticks::position_test_and_end;
@@ -30,9 +31,9 @@ const INNER_SHARES: [f64; 4] = [1.0, 0.7, 0.4, 0.2];
 const BACKLASH_MARGIN: f64 = 2.0;
 const INTEGRAL_DEADZONE: f64 = 1.0;
 
-/// `v = P e + D de/dt`, duty = v / QPPS (MCP manual 2.4.7, the simple PD system).
+/// `v = P e + D de/dt`, duty = v / QPPS: the simple PD system.
 #[must_use]
-pub fn design_pd(task: &Task) -> Option<Design> {
+pub fn design_pd<L: Law>(task: &Task<L>) -> Option<Design> {
     let task = &direct(task);
     let loops = Loops::new(task);
     let base = Gains { deadzone_counts: deadzone(task), ..Gains::default() };
@@ -43,7 +44,7 @@ pub fn design_pd(task: &Task) -> Option<Design> {
 
 /// The PD with an integral that carries friction and load, bounded by what they need.
 #[must_use]
-pub fn design_pid(task: &Task) -> Option<Design> {
+pub fn design_pid<L: Law>(task: &Task<L>) -> Option<Design> {
     let task = &direct(task);
     let loops = Loops::new(task);
     let base = Gains { deadzone_counts: deadzone(task).max(INTEGRAL_DEADZONE), ..Gains::default() };
@@ -54,7 +55,7 @@ pub fn design_pid(task: &Task) -> Option<Design> {
     // What friction and the load step eat, half as much again.
     let eaten = 1.5 * (task.plant.coulomb_duty + task.plant.load_duty.abs() + crate::score::LOAD_STEP_DUTY);
     // A sum that has no fine bound has to grow slowly.
-    let (longest, ratio) = if task.law.motion_mind.is_some() { (30.0, 0.65) } else { (3.0, 0.8_f64) };
+    let (longest, ratio) = task.law.facts().integral_times;
     for time_s in (0..12).map(|n| longest * task.plant.tau_s.max(0.03) * ratio.powi(n)) {
         for share in [1.0, 0.8, 0.6] {
             let p = proportional.p * share;
@@ -76,12 +77,12 @@ pub fn design_pid(task: &Task) -> Option<Design> {
 
 /// P over the velocity PI, both searched together.
 #[must_use]
-pub fn design_piv(task: &Task) -> Option<Design> {
+pub fn design_piv<L: Law>(task: &Task<L>) -> Option<Design> {
     let loops = Loops::new(task);
     let quiet = Goal { noise_duty: AT_REST * task.goal.noise_duty, ..task.goal };
     let task = &Task { goal: quiet, ..*task };
     let inner = Task { goal: Goal { ms: 1.05 * quiet.ms, ..quiet }, ..*task };
-    let lag_s = task.lag.total_s(&task.law) + 1.5 * task.law.tick_s();
+    let lag_s = task.lag.total_s(task.law.tick_s()) + 1.5 * task.law.tick_s();
     let shortest = (1.5 * lag_s).max(task.least_integral_s);
     let longest = (12.0 * task.plant.tau_s).max(40.0 * lag_s).max(1.5 * shortest);
     let mut best = None;
@@ -106,7 +107,7 @@ pub fn design_piv(task: &Task) -> Option<Design> {
     finish(&loops, task, Some(best).filter(|best| loops.stable(task, &best.gains)))
 }
 
-fn search_pd(loops: &Loops, task: &Task, base: Gains) -> Option<Candidate> {
+fn search_pd<L: Law>(loops: &Loops, task: &Task<L>, base: Gains) -> Option<Candidate> {
     let mut best = None;
     for times in DERIVATIVE_TIMES {
         let time_s = times * task.plant.tau_s;
@@ -120,7 +121,7 @@ fn search_pd(loops: &Loops, task: &Task, base: Gains) -> Option<Candidate> {
 }
 
 /// Small steps in each gain, as long as they pay.
-fn refine(loops: &Loops, task: &Task, mut best: Candidate) -> Candidate {
+fn refine<L: Law>(loops: &Loops, task: &Task<L>, mut best: Candidate) -> Candidate {
     let mut step = 1.2_f64;
     for _ in 0..4 {
         for n in 0..10 {
@@ -150,7 +151,7 @@ fn refine(loops: &Loops, task: &Task, mut best: Candidate) -> Candidate {
     best
 }
 
-fn candidate(task: &Task, gains: Gains) -> Candidate {
+fn candidate<L: Law>(task: &Task<L>, gains: Gains) -> Candidate {
     let gains = task.law.rounded(&gains, task.qpps);
     let (score, end) = position_test_and_end(&task.plant, &task.law, task.lag, &gains, task.qpps);
     let excess = (score.overshoot - OVERSHOOT_CAP).max(0.0)
@@ -163,14 +164,14 @@ fn candidate(task: &Task, gains: Gains) -> Candidate {
 }
 
 /// Within the backlash nothing can be held; beyond it two counts keep the rounding quiet.
-pub(crate) fn deadzone(task: &Task) -> f64 {
+pub(crate) fn deadzone<L: Law>(task: &Task<L>) -> f64 {
     if task.backlash_counts > 0.0 { (task.backlash_counts + BACKLASH_MARGIN).round() } else { 0.0 }
 }
 
 /// The task of a loop that acts on the duty directly: its sensitivity is bounded with some more lag, for the winding and a springy
 /// shaft, which a difference of one tick reaches where a filtered speed does not.
-fn direct(task: &Task) -> Task {
+fn direct<L: Law>(task: &Task<L>) -> Task<L> {
     let worst_lag =
-        Lag { delay_ticks: task.worst_lag.delay_ticks + unmodelled_ticks(&task.law), ..task.worst_lag };
+        Lag { delay_ticks: task.worst_lag.delay_ticks + task.law.facts().unmodelled_ticks, ..task.worst_lag };
     Task { worst_lag, ..*task }
 }

@@ -1,6 +1,7 @@
 //! A search over gains: the bounds that they keep, and which candidate is cheaper.
 
 use super::task::{Design, Task};
+use crate::law::Law;
 use crate::linear::{DiscretePlant, LoopPlant, Margins};
 use crate::model::{Gains, PlantModel};
 use crate::score::Score;
@@ -14,7 +15,7 @@ pub(super) struct Loops {
 
 impl Loops {
     /// The loops of a task.
-    pub(super) fn new(task: &Task) -> Self {
+    pub(super) fn new<L: Law>(task: &Task<L>) -> Self {
         let tick_s = task.law.tick_s();
         let light = PlantModel { tau_s: 0.5 * task.plant.tau_s, ..task.plant };
         let of = |plant: &PlantModel, lag| LoopPlant::new(DiscretePlant::of(plant, tick_s), &task.law, lag);
@@ -26,7 +27,7 @@ impl Loops {
     }
 
     /// Margins as likely, if every bound is kept.
-    pub(super) fn within(&self, task: &Task, gains: &Gains) -> Option<Margins> {
+    pub(super) fn within<L: Law>(&self, task: &Task<L>, gains: &Gains) -> Option<Margins> {
         if gains.velocity.i * task.least_integral_s > 1.000_001 * gains.velocity.p {
             return None;
         }
@@ -39,7 +40,7 @@ impl Loops {
     }
 
     /// Whether all three come to rest.
-    pub(super) fn stable(&self, task: &Task, gains: &Gains) -> bool {
+    pub(super) fn stable<L: Law>(&self, task: &Task<L>, gains: &Gains) -> bool {
         [&self.nominal, &self.worst, &self.light]
             .iter()
             .all(|plant| plant.spectral_radius(gains, task.qpps) < 1.0)
@@ -47,7 +48,12 @@ impl Loops {
 }
 
 /// The largest factor up to which `gains(factor)` keeps every bound, going up from near zero.
-pub(super) fn ascend(loops: &Loops, task: &Task, top: f64, gains: impl Fn(f64) -> Gains) -> Option<f64> {
+pub(super) fn ascend<L: Law>(
+    loops: &Loops,
+    task: &Task<L>,
+    top: f64,
+    gains: impl Fn(f64) -> Gains,
+) -> Option<f64> {
     const RATIO: f64 = 1.25;
     let mut factor = top * 1e-4;
     loops.within(task, &gains(factor))?;
@@ -78,7 +84,7 @@ pub(super) fn better(best: Option<Candidate>, other: Candidate) -> Option<Candid
 }
 
 /// What the best candidate promises.
-pub(super) fn finish(loops: &Loops, task: &Task, best: Option<Candidate>) -> Option<Design> {
+pub(super) fn finish<L: Law>(loops: &Loops, task: &Task<L>, best: Option<Candidate>) -> Option<Design> {
     let best = best?;
     let margins = loops.nominal.margins(&best.gains, task.qpps);
     Some(Design {

@@ -1,6 +1,7 @@
 //! What a design is asked for and what it gives.
 
-use crate::model::{Gains, Lag, LoopLaw, PlantModel};
+use crate::law::Law;
+use crate::model::{Gains, Lag, PlantModel};
 use crate::score::Score;
 use serde::{Deserialize, Serialize};
 
@@ -17,7 +18,7 @@ pub struct Goal {
 }
 
 impl Goal {
-    /// The goal of a level from 0 (soft) to 100 (stiff); 50 is the default (MCP manual 2.4.5 calls it aggressiveness).
+    /// The goal of a level from 0 (soft) to 100 (stiff); 50 is the default.
     #[must_use]
     pub fn of_level(level: f64) -> Self {
         let level = level.clamp(0.0, 100.0);
@@ -32,11 +33,12 @@ impl Goal {
 
 /// What a design is made for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Task {
+#[serde(bound = "")]
+pub struct Task<L: Law> {
     /// The motor.
     pub plant: PlantModel,
     /// The controller.
-    pub law: LoopLaw,
+    pub law: L,
     /// The lag beyond hold and count difference: the most likely one.
     pub lag: Lag,
     /// The largest lag that is still likely; the sensitivity is bounded with this one too.
@@ -54,11 +56,6 @@ pub struct Task {
     pub least_integral_s: f64,
     /// Overshoot of a speed step beyond which the cost jumps, over the step.
     pub most_overshoot: f64,
-}
-
-/// Lag that the model leaves out, ticks: the winding, a springy shaft. Ticks of 5 ms are longer than those it was found with.
-pub(crate) fn unmodelled_ticks(law: &LoopLaw) -> f64 {
-    if law.motion_mind.is_some() { 0.33 } else { 0.5 }
 }
 
 /// The overshoot of a speed step that a well-known motor may be designed for.

@@ -2,6 +2,7 @@
 
 use super::search::{Candidate, Loops, ascend, better, finish};
 use super::task::{Design, Task};
+use crate::law::Law;
 use crate::model::{Gains, Pid, PlantModel};
 use crate::score::{Score, VELOCITY_OVERSHOOT};
 use crate::ticks::velocity_test;
@@ -16,9 +17,9 @@ const FIRST_STEP: f64 = 1.25;
 
 /// The gains that respond best within the goal; `None` where not even small gains keep it.
 #[must_use]
-pub fn design_velocity(task: &Task) -> Option<Design> {
+pub fn design_velocity<L: Law>(task: &Task<L>) -> Option<Design> {
     let loops = Loops::new(task);
-    let lag_s = task.lag.total_s(&task.law) + 1.5 * task.law.tick_s();
+    let lag_s = task.lag.total_s(task.law.tick_s()) + 1.5 * task.law.tick_s();
     let shortest = (1.5 * lag_s).max(task.least_integral_s);
     let longest = (12.0 * task.plant.tau_s).max(40.0 * lag_s).max(1.5 * shortest);
     let mut best = None;
@@ -33,7 +34,7 @@ pub fn design_velocity(task: &Task) -> Option<Design> {
     finish(&loops, task, Some(best).filter(|best| loops.stable(task, &best.gains)))
 }
 
-fn refine(loops: &Loops, task: &Task, mut best: Candidate) -> Candidate {
+fn refine<L: Law>(loops: &Loops, task: &Task<L>, mut best: Candidate) -> Candidate {
     let mut step = FIRST_STEP;
     for _ in 0..ROUNDS {
         for (by_p, by_i) in [(step, 1.0), (1.0 / step, 1.0), (1.0, step), (1.0, 1.0 / step), (step, step)] {
@@ -53,7 +54,7 @@ fn refine(loops: &Loops, task: &Task, mut best: Candidate) -> Candidate {
 }
 
 /// The cost as likely, and half as much again of what it would be on a somewhat quicker motor with the worst lag.
-fn candidate(task: &Task, gains: Gains) -> Candidate {
+fn candidate<L: Law>(task: &Task<L>, gains: Gains) -> Candidate {
     let gains = task.law.rounded(&gains, task.qpps);
     let score = velocity_test(&task.plant, &task.law, task.lag, &gains, task.qpps);
     let other = PlantModel { tau_s: 0.88 * task.plant.tau_s, ..task.plant };

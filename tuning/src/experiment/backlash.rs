@@ -7,6 +7,7 @@ use super::Probe;
 use crate::cause::Cause;
 use crate::diagnosis::why_unmoved;
 use crate::experiment_guard::ExperimentGuard;
+use crate::law::Law;
 use crate::model::PlantModel;
 use serde::{Deserialize, Serialize};
 
@@ -45,8 +46,8 @@ pub struct Backlash {
 }
 
 /// Pushes the axis to and fro with little duty. `None` where there is no room for it, or it did not move.
-pub fn measure_backlash(
-    guard: &mut ExperimentGuard<'_>,
+pub fn measure_backlash<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
     probe: &Probe,
     model: &PlantModel,
 ) -> Result<Option<Backlash>, Cause> {
@@ -81,8 +82,8 @@ fn did_not_move(distances: &[(f64, f64)]) -> bool {
 
 /// Pushes with a duty to either side of the one that balances the load. For each push: 1 for another one in the same
 /// direction, -1 for one after a reversal, 0 for the first; and its distance, counts.
-fn push(
-    guard: &mut ExperimentGuard<'_>,
+fn push<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
     duty: f64,
     load_duty: f64,
     push_s: f64,
@@ -115,7 +116,7 @@ fn push(
     Ok(distances)
 }
 
-fn position(guard: &ExperimentGuard<'_>) -> f64 {
+fn position<L: Law>(guard: &ExperimentGuard<'_, L>) -> f64 {
     let last = guard.points.iter().rev().take(3).map(|p| p.counts);
     last.sum::<f64>() / guard.points.len().clamp(1, 3) as f64
 }

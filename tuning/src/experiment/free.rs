@@ -4,6 +4,7 @@
 use super::Probe;
 use crate::cause::Cause;
 use crate::experiment_guard::ExperimentGuard;
+use crate::law::Law;
 use crate::settle::{Settled, settled};
 use serde::{Deserialize, Serialize};
 
@@ -51,7 +52,7 @@ pub struct FreeRun {
 }
 
 /// Runs it. The motor is braked when it returns.
-pub fn run_free(guard: &mut ExperimentGuard<'_>, probe: &Probe) -> Result<FreeRun, Cause> {
+pub fn run_free<L: Law>(guard: &mut ExperimentGuard<'_, L>, probe: &Probe) -> Result<FreeRun, Cause> {
     let full_duty = guard.options.max_duty;
     guard.monitor.start_duty = probe.start_duty;
     guard.monitor.stall_amps = probe.stall_amps;
@@ -93,7 +94,7 @@ pub fn run_free(guard: &mut ExperimentGuard<'_>, probe: &Probe) -> Result<FreeRu
 /// Goes up to the full duty in steps where the controller has no ramp of its own: nobody knows yet how fast this motor is. Then it is
 /// braked, so that it goes up once more from rest, which shows its time constant. Whether it came to rest: the record that the model is
 /// fitted to begins then, since a quick motor may stick at a low duty, and no model says when.
-fn climb(guard: &mut ExperimentGuard<'_>, full_duty: f64) -> Result<bool, Cause> {
+fn climb<L: Law>(guard: &mut ExperimentGuard<'_, L>, full_duty: f64) -> Result<bool, Cause> {
     let mut duty = (guard.monitor.start_duty + 0.06).max(CLIMB_FROM);
     let mut top: f64 = 0.0;
     while duty < 0.9 * full_duty {
@@ -118,7 +119,7 @@ fn climb(guard: &mut ExperimentGuard<'_>, full_duty: f64) -> Result<bool, Cause>
 }
 
 /// Holds a duty until the speed it settles at is known.
-fn settle_at(guard: &mut ExperimentGuard<'_>, duty: f64) -> Result<Settled, Cause> {
+fn settle_at<L: Law>(guard: &mut ExperimentGuard<'_, L>, duty: f64) -> Result<Settled, Cause> {
     guard.duty(duty)?;
     // The duty ramp of up to 0.1 s is no part of the exponential.
     let mut start =
@@ -160,7 +161,7 @@ fn tau_bounds(fitted: f64, rise: f64) -> (f64, f64) {
 }
 
 /// Time to 63 % of a speed: no time constant is longer.
-fn rise_s(guard: &ExperimentGuard<'_>, from_s: f64, speed: f64) -> f64 {
+fn rise_s<L: Law>(guard: &ExperimentGuard<'_, L>, from_s: f64, speed: f64) -> f64 {
     let driven = guard.points.iter().filter(|p| p.t >= from_s);
     let pairs = guard.points.windows(2).filter(|w| w[0].t >= from_s);
     let risen =
@@ -172,7 +173,11 @@ fn rise_s(guard: &ExperimentGuard<'_>, from_s: f64, speed: f64) -> f64 {
 }
 
 /// Switches between two duties whenever the speed has come most of the way.
-fn run_relay(guard: &mut ExperimentGuard<'_>, duties: (f64, f64), full_speed: f64) -> Result<(), Cause> {
+fn run_relay<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    duties: (f64, f64),
+    full_speed: f64,
+) -> Result<(), Cause> {
     let start = probe_share(guard);
     let speed_at = |duty: f64| full_speed * (duty - start) / (guard.options.max_duty - start).max(0.05);
     let (low, high) = (speed_at(duties.0), speed_at(duties.1));
@@ -203,6 +208,6 @@ fn run_relay(guard: &mut ExperimentGuard<'_>, duties: (f64, f64), full_speed: f6
 }
 
 /// A guess of the duty that friction eats: somewhat less than it took to start.
-fn probe_share(guard: &ExperimentGuard<'_>) -> f64 {
+fn probe_share<L: Law>(guard: &ExperimentGuard<'_, L>) -> f64 {
     0.6 * guard.monitor.start_duty
 }

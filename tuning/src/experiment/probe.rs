@@ -3,6 +3,7 @@
 
 use crate::cause::Cause;
 use crate::experiment_guard::ExperimentGuard;
+use crate::law::Law;
 use serde::{Deserialize, Serialize};
 
 /// Time at rest first, s.
@@ -34,7 +35,7 @@ pub struct Probe {
 }
 
 /// Runs it. The motor is braked when it returns.
-pub fn run_probe(guard: &mut ExperimentGuard<'_>, direction: f64) -> Result<Probe, Cause> {
+pub fn run_probe<L: Law>(guard: &mut ExperimentGuard<'_, L>, direction: f64) -> Result<Probe, Cause> {
     guard.duty(0.0)?;
     guard.poll_for(REST_S, false)?;
     let rest = guard.points.last().map_or(0.0, |p| p.counts);
@@ -86,8 +87,8 @@ pub fn run_probe(guard: &mut ExperimentGuard<'_>, direction: f64) -> Result<Prob
 }
 
 /// Distinguishes an open motor, a locked shaft and a dead encoder by the current.
-fn nothing_moved(
-    guard: &mut ExperimentGuard<'_>,
+fn nothing_moved<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
     readings: &[(f64, f64)],
     peak_amps: f64,
     steepest: f64,

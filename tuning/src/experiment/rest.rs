@@ -2,9 +2,10 @@
 
 use crate::cause::Cause;
 use crate::experiment_guard::ExperimentGuard;
+use crate::law::Law;
 
 /// Waits until the motor stands.
-pub(crate) fn rest(guard: &mut ExperimentGuard<'_>, tau_s: f64, qpps: f64) -> Result<(), Cause> {
+pub(crate) fn rest<L: Law>(guard: &mut ExperimentGuard<'_, L>, tau_s: f64, qpps: f64) -> Result<(), Cause> {
     let until = guard.now_s() + 0.1 + 6.0 * tau_s;
     while guard.now_s() < until {
         guard.poll(false)?;

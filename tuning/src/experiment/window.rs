@@ -3,6 +3,7 @@
 use super::Probe;
 use crate::cause::Cause;
 use crate::experiment_guard::ExperimentGuard;
+use crate::law::Law;
 use serde::{Deserialize, Serialize};
 
 /// Switches at each of the two duties.
@@ -44,7 +45,11 @@ pub struct WindowRun {
 }
 
 /// Runs it inside `width` counts around where the axis is now. The motor is braked when it returns.
-pub fn run_window(guard: &mut ExperimentGuard<'_>, probe: &Probe, width: f64) -> Result<WindowRun, Cause> {
+pub fn run_window<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    probe: &Probe,
+    width: f64,
+) -> Result<WindowRun, Cause> {
     guard.monitor.start_duty = probe.start_duty;
     guard.monitor.stall_amps = probe.stall_amps;
     guard.monitor.drive_limit = guard.drive_limit(probe.stall_amps);
@@ -66,8 +71,8 @@ pub fn run_window(guard: &mut ExperimentGuard<'_>, probe: &Probe, width: f64) ->
 }
 
 /// Oscillates about the middle of a width at both duties.
-fn oscillate(
-    guard: &mut ExperimentGuard<'_>,
+fn oscillate<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
     probe: &Probe,
     (middle, width): (f64, f64),
     turn: &mut Turn,
@@ -82,9 +87,9 @@ fn oscillate(
 }
 
 /// Drives to a position with little duty, and lets the axis come to rest there.
-pub fn go_to(guard: &mut ExperimentGuard<'_>, probe: &Probe, position: f64) -> Result<(), Cause> {
+pub fn go_to<L: Law>(guard: &mut ExperimentGuard<'_, L>, probe: &Probe, position: f64) -> Result<(), Cause> {
     let begin = guard.now_s();
-    let here = |guard: &ExperimentGuard<'_>| guard.points.last().map_or(0.0, |p| p.counts);
+    let here = |guard: &ExperimentGuard<'_, L>| guard.points.last().map_or(0.0, |p| p.counts);
     let direction = (position - here(guard)).signum();
     guard.duty((probe.start_duty + GOING_DUTY).min(guard.options.max_duty) * direction)?;
     loop {
@@ -135,8 +140,8 @@ impl Turn {
 }
 
 /// Oscillates about the middle at one duty. The distance it takes to turn round is learned from each half cycle.
-fn oscillate_at(
-    guard: &mut ExperimentGuard<'_>,
+fn oscillate_at<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
     duty: f64,
     middle: f64,
     width: f64,
@@ -189,7 +194,7 @@ fn turn_at(turn: &Turn) -> f64 {
     turn.share * if turn.last.is_some() { TURN_AT } else { FIRST_TURN_AT }
 }
 
-fn learn(guard: &mut ExperimentGuard<'_>, turn: &mut Turn, speed: f64, distance: f64, duty: f64) {
+fn learn<L: Law>(guard: &mut ExperimentGuard<'_, L>, turn: &mut Turn, speed: f64, distance: f64, duty: f64) {
     turn.learn(speed, distance);
     if speed > 0.0 && distance > 0.0 {
         let seconds = (distance / speed).clamp(0.02, 0.6);

@@ -1,13 +1,12 @@
 //! The registers of a Motion Mind in a report: what is there, what is proposed.
 
+use brushwork_core::tune::law::Report;
 use brushwork_motion_mind_wire::FUNCTION_BITS;
-use brushwork_tuning::motion_mind::MotionMindLaw;
-use brushwork_tuning::report::Report;
 
 /// Rows of name, current and proposed value, and what is on the wire; none for another family or without gains.
 pub fn rows(report: &Report) -> Vec<Vec<String>> {
-    let Some(old) = report.before.and_then(|before| before.motion_mind) else { return Vec::new() };
-    let (old, Some(new)) = (old.registers, report.motion_mind) else { return Vec::new() };
+    let Some(old) = report.before.and_then(|before| before.held.mind.motion_mind) else { return Vec::new() };
+    let (old, Some(new)) = (old.registers, report.proposed.mind.motion_mind) else { return Vec::new() };
     let pairs = [
         ("PTERM", u32::from(old.pterm), u32::from(new.pterm)),
         ("ITERM", u32::from(old.iterm), u32::from(new.iterm)),
@@ -31,7 +30,6 @@ pub fn rows(report: &Report) -> Vec<Vec<String>> {
 
 /// How much of a speed's duty the feed-forward gives: its register is too small for all of it on most motors.
 pub fn feed_forward(report: &Report) -> Option<String> {
-    let registers = report.motion_mind?;
-    let law = MotionMindLaw { velocity_ff: registers.velocity_ff, ..MotionMindLaw::default() };
-    Some(format!("{:.0} % of a speed's duty", 100.0 * law.covered(report.qpps?).min(1.0)))
+    let covered = report.proposed.mind.motion_mind?.covered(report.qpps?);
+    Some(format!("{:.0} % of a speed's duty", 100.0 * covered.min(1.0)))
 }

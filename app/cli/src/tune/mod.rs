@@ -11,8 +11,8 @@ use brushwork_link::device::{ArmScope, Event, Job, JobEnding};
 use brushwork_link::settings::SettingsTable;
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::experiment_guard::GuardOptions;
-use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::tune::{Excitation, Method, Request as TuneRequest};
+use brushwork_tuning::report::Verdict;
+use brushwork_tuning::tune::{Excitation, Method};
 use brushwork_values::Motor;
 
 use super::client::{Client, arm, start};
@@ -26,6 +26,7 @@ use args::{EncoderArg, MethodArg, RunArgs};
 pub use args::{TuneArgs, TuneCommand};
 use brushwork_core::keep::TrialKeeper;
 use brushwork_core::tune::file;
+use brushwork_core::tune::law::{Report, Request as TuneRequest};
 use brushwork_core::tune::{
     LEFT_OFF, Restored, Slot, Target, leaves_off, prepare, restore, run as tuning_job, take,
 };

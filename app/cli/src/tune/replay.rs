@@ -2,12 +2,11 @@
 
 use std::path::Path;
 
-use brushwork_tuning::report::Report;
-
 use super::words;
 use crate::exit::Exit;
 use crate::output::{Output, say};
 use brushwork_core::tune::file;
+use brushwork_core::tune::law::Report;
 
 /// Reads a report, runs the tuner on its record and compares.
 pub fn run(path: &Path, json: bool, out: &mut Output) -> Exit {

@@ -1,6 +1,8 @@
 //! A report in words and figures.
 
-use brushwork_tuning::report::{Report, Verdict};
+use brushwork_core::tune::law::Report;
+use brushwork_tuning::law::Law;
+use brushwork_tuning::report::Verdict;
 use serde_json::{Value, json};
 
 use super::mind;
@@ -66,7 +68,11 @@ pub fn print(report: &Report, out: &mut Output) -> Result<(), OutputError> {
     }
     if let Some(lag) = &report.lag {
         let range = format!("{:.1} to {:.1} ms", 1e3 * lag.interval_s.0, 1e3 * lag.interval_s.1);
-        row("lag of the loop", format!("{:.1} ms", 1e3 * lag.lag.total_s(&report.request.law)), range);
+        row(
+            "lag of the loop",
+            format!("{:.1} ms", 1e3 * lag.lag.total_s(report.request.law.tick_s())),
+            range,
+        );
     }
     if let Some(design) = &report.design {
         row("sensitivity Ms", format!("{:.2}", design.ms), String::new());
@@ -96,8 +102,8 @@ fn print_gains(report: &Report, out: &mut Output) -> Result<(), OutputError> {
         out.line(format!("R of the winding was not told: {}", why.sentence()))?;
     }
     let mut rows = Vec::new();
-    if let Some(new) = report.velocity {
-        let old = before.velocity;
+    if let Some(new) = report.proposed.mcp.velocity {
+        let old = before.held.mcp.velocity;
         let pairs = [("P", old.p, new.p), ("I", old.i, new.i), ("D", old.d, new.d)];
         for (name, old, new) in pairs {
             let shown = |raw: u32| format!("{:.4}", f64::from(raw) / 65_536.0);
@@ -105,9 +111,9 @@ fn print_gains(report: &Report, out: &mut Output) -> Result<(), OutputError> {
         }
         rows.push(vec!["QPPS".into(), old.qpps.to_string(), new.qpps.to_string(), new.qpps.to_string()]);
     }
-    if let Some(new) = report.position {
-        let old = before.position;
-        let scale = report.request.law.position_scale;
+    if let Some(new) = report.proposed.mcp.position {
+        let old = before.held.mcp.position;
+        let scale = report.request.law.mcp.position_scale;
         let pairs = [("P", old.p, new.p), ("I", old.i, new.i), ("D", old.d, new.d)];
         for (name, old, new) in pairs {
             let shown = |raw: u32| format!("{:.4}", f64::from(raw) / scale);

@@ -3,10 +3,12 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use brushwork_tuning::report::{FORMAT, Report};
+use brushwork_tuning::report::FORMAT;
 use serde::Deserialize;
 use serde_json::Value;
 use serde_json::error::Category;
+
+use super::law::Report;
 
 /// What of a file tells whose it is.
 #[derive(Deserialize)]

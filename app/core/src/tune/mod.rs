@@ -7,6 +7,7 @@
 
 pub mod encoder;
 pub mod file;
+pub mod law;
 mod mind;
 pub mod tap;
 mod told;
@@ -20,20 +21,20 @@ use brushwork_link::device::{Job, JobContext};
 use brushwork_link::failure::Failure;
 use brushwork_link::settings::{Ending, Subject, begin_trial, end_act};
 use brushwork_link::wire::Wire;
-use brushwork_mcp_axis::{Carrier, PacketAxis};
+use brushwork_mcp_axis::{Carrier, McpHeld, McpWrite, PacketAxis};
 use brushwork_mcp_wire::packet_serial::{Generation, Request as Packet, number};
 use brushwork_motion_mind_axis::{LoopAfter, MindAxis};
-use brushwork_tuning::axis::{
-    Axis, AxisError, EncoderClass, Exchange, PositionRegisters, Setup, VelocityRegisters,
-};
+use brushwork_tuning::axis::{Axis, AxisError, EncoderClass, Exchange};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::{RUN_STREAM_TIMEOUT_MS, wait_for_rest};
-use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::trial::{Trial, TrialRequest, run_trial};
-use brushwork_tuning::tune::{Request, tune};
+use brushwork_tuning::report::Verdict;
+use brushwork_tuning::setup::LoopAxis;
+use brushwork_tuning::trial::run_trial;
+use brushwork_tuning::tune::tune;
 use brushwork_values::{Motor, Value, Values};
 
 use crate::keep::TrialKeeper;
+use law::{AnyLaw, Report, Request, Setup, Trial, TrialRequest};
 use mind::MindJobCarrier;
 use tap::{Live, Tap};
 use told::told;
@@ -146,7 +147,11 @@ pub struct Target {
     pub stream: Option<Stream>,
 }
 
-fn axis<'a>(context: &'a mut JobContext<'_>, target: Target, own_timeout: bool) -> Box<dyn Axis + 'a> {
+fn axis<'a>(
+    context: &'a mut JobContext<'_>,
+    target: Target,
+    own_timeout: bool,
+) -> Box<dyn LoopAxis<AnyLaw> + 'a> {
     if packet_generation(context.generation()).is_none() {
         return Box::new(MindAxis::new(MindJobCarrier::new(context)));
     }
@@ -245,10 +250,13 @@ pub fn restore(
 ) -> Job<Restored> {
     let keeper = keeper.clone();
     let keeps = report.filter(|report| report.request.keep && report.verdict != Verdict::Refused);
-    let velocity = keeps.and_then(|report| report.velocity).unwrap_or(before.velocity);
-    let position = keeps.and_then(|report| report.position).unwrap_or(before.position);
-    let mind =
-        before.motion_mind.map(|unit| keeps.and_then(|report| report.motion_mind).unwrap_or(unit.registers));
+    let held = before.held;
+    let kept = keeps.map(|report| report.proposed).unwrap_or_default();
+    let loops = McpHeld {
+        velocity: kept.mcp.velocity.unwrap_or(held.mcp.velocity),
+        position: kept.mcp.position.unwrap_or(held.mcp.position),
+    };
+    let mind = held.mind.motion_mind.map(|unit| kept.mind.motion_mind.unwrap_or(unit.registers));
     Job::new(RESTORE, RESTORE_LIMIT, move |context| {
         let place = context.describe();
         if let Some(registers) = mind {
@@ -262,7 +270,7 @@ pub fn restore(
         let mut axis = axis(context, target, true);
         let now =
             thrice(|| axis.read_setup()).map_err(|error| failed("read the loops back", &place, &error))?;
-        put_loops_back(&mut *axis, &now, velocity, position)
+        put_loops_back(&mut *axis, &now.held.mcp, &loops)
             .map_err(|error| failed("write the loops back", &place, &error))?;
         if (now.max_current_raw, now.min_current_raw) != (before.max_current_raw, before.min_current_raw) {
             thrice(|| axis.write_current_limits(before.max_current_raw, before.min_current_raw))
@@ -279,7 +287,7 @@ pub fn restore(
         }
         let held =
             thrice(|| axis.read_setup()).map_err(|error| failed("read the loops back", &place, &error))?;
-        if (held.velocity, held.position) != (velocity, position)
+        if held.held.mcp != loops
             || held.max_current_raw != before.max_current_raw
             || held.inductance_resistance_raw != before.inductance_resistance_raw
             || (before.stream_timeout_ms.is_some() && held.stream_timeout_ms != before.stream_timeout_ms)
@@ -294,17 +302,12 @@ pub fn restore(
 }
 
 /// Writes the loops that are not as they were; a controller may not take what need not be written.
-fn put_loops_back(
-    axis: &mut dyn Axis,
-    now: &Setup,
-    velocity: VelocityRegisters,
-    position: PositionRegisters,
-) -> Result<(), AxisError> {
-    if now.velocity != velocity {
-        thrice(|| axis.write_velocity(velocity))?;
+fn put_loops_back(axis: &mut dyn LoopAxis<AnyLaw>, now: &McpHeld, wanted: &McpHeld) -> Result<(), AxisError> {
+    if now.velocity != wanted.velocity {
+        thrice(|| axis.write(McpWrite::Velocity(wanted.velocity).into()))?;
     }
-    if now.position != position {
-        thrice(|| axis.write_position(position))?;
+    if now.position != wanted.position {
+        thrice(|| axis.write(McpWrite::PositionLoop(wanted.position).into()))?;
     }
     Ok(())
 }

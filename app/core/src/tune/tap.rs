@@ -3,12 +3,12 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use brushwork_tuning::axis::{
-    Axis, AxisError, Exchange, PositionRegisters, Sample, Setup, VelocityRegisters, Want,
-};
-use brushwork_tuning::motion_mind::MotionMindRegisters;
+use brushwork_tuning::axis::{Axis, AxisError, Exchange, Sample, Want};
+use brushwork_tuning::law::Law;
 use brushwork_tuning::record::Entry;
-use brushwork_tuning::trace::Trace;
+use brushwork_tuning::setup::LoopAxis;
+
+use super::law::{AnyLaw, AnyWrite, Setup, Trace};
 
 /// The trace of a run, shared between the run and whoever looks on. Each holds it only for a moment.
 #[derive(Clone, Debug, Default)]
@@ -30,20 +30,20 @@ impl Live {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn take(&self, entry: &Entry) {
+    fn take(&self, entry: &Entry<AnyLaw>) {
         self.look().take(entry);
     }
 }
 
 /// An axis that is looked at.
 pub struct Tap<'a> {
-    axis: &'a mut dyn Axis,
+    axis: &'a mut dyn LoopAxis<AnyLaw>,
     live: Live,
 }
 
 impl<'a> Tap<'a> {
     /// Passes on to `axis`, and keeps a trace in `live`.
-    pub fn new(axis: &'a mut dyn Axis, live: Live) -> Self {
+    pub fn new(axis: &'a mut dyn LoopAxis<AnyLaw>, live: Live) -> Self {
         Self { axis, live }
     }
 }
@@ -83,22 +83,6 @@ impl Axis for Tap<'_> {
         answer
     }
 
-    fn read_setup(&mut self) -> Result<Setup, AxisError> {
-        self.axis.read_setup()
-    }
-
-    fn write_velocity(&mut self, registers: VelocityRegisters) -> Result<(), AxisError> {
-        let answer = self.axis.write_velocity(registers);
-        self.live.take(&Entry::Velocity(registers, answer.clone()));
-        answer
-    }
-
-    fn write_position(&mut self, registers: PositionRegisters) -> Result<(), AxisError> {
-        let answer = self.axis.write_position(registers);
-        self.live.take(&Entry::PositionLoop(registers, answer.clone()));
-        answer
-    }
-
     fn write_winding(&mut self, raw: [u32; 2]) -> Result<(), AxisError> {
         self.axis.write_winding(raw)
     }
@@ -115,21 +99,23 @@ impl Axis for Tap<'_> {
         self.axis.set_stream_timeout(milliseconds)
     }
 
-    fn write_motion_mind(&mut self, registers: MotionMindRegisters) -> Result<(), AxisError> {
-        let answer = self.axis.write_motion_mind(registers);
-        self.live.take(&Entry::MotionMind(registers, answer.clone()));
-        answer
-    }
-
-    fn end_motion_mind(&mut self, registers: MotionMindRegisters) -> Result<(), AxisError> {
-        self.axis.end_motion_mind(registers)
-    }
-
     fn set_travel(&mut self, counts: (i64, i64)) -> Result<(), AxisError> {
         self.axis.set_travel(counts)
     }
 
     fn progress(&mut self, text: &str) {
         self.axis.progress(text);
+    }
+}
+
+impl LoopAxis<AnyLaw> for Tap<'_> {
+    fn read_setup(&mut self) -> Result<Setup, AxisError> {
+        self.axis.read_setup()
+    }
+
+    fn write(&mut self, write: AnyWrite) -> Result<(), AxisError> {
+        let answer = self.axis.write(write);
+        self.live.take(&Entry::Registers(AnyLaw::note(write, answer.clone())));
+        answer
     }
 }

@@ -341,7 +341,7 @@ fn advise_position(step: usize, seen: &Observation) -> Advice {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use brushwork_tuning::axis::{PositionRegisters, VelocityRegisters};
+    use brushwork_core::tune::law::{PositionRegisters, VelocityRegisters};
 
     fn held() -> Registers {
         let velocity = VelocityRegisters { p: 65_536, i: 0, d: 0, qpps: 10_000 };

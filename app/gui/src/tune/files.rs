@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use brushwork_tuning::report::Report;
+use brushwork_core::tune::law::Report;
 use egui::{Button, Ui, vec2};
 
 use super::asked::Asked;

@@ -1,7 +1,8 @@
 //! Figures of what a loop did in a stretch: overshoot and settling of its steps, as measured and as predicted for the same commands.
 
+use brushwork_core::tune::law::Trace;
 use brushwork_tuning::experiment_guard::Input;
-use brushwork_tuning::trace::{Stretch, Trace};
+use brushwork_tuning::trace::Stretch;
 
 /// Band of a settled speed, as a share of the step; that of a position, and the counts that are rounding.
 const SPEED_BAND: f64 = 0.05;

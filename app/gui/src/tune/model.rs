@@ -1,12 +1,13 @@
 //! Tuning as the window keeps it: what is set, what runs, and the runs so far, for each loop of each motor.
 
+use brushwork_core::tune::law::{Report, Request as TuneRequest, Setup, Trial};
 use brushwork_link::device::{Event, Identity, Sample};
 use brushwork_link::settings::SettingValue;
 use brushwork_link::transport::Stream;
-use brushwork_tuning::axis::{EncoderClass, Setup};
+use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::report::Verdict;
-use brushwork_tuning::tune::{self, Excitation, Method};
+use brushwork_tuning::tune::{Excitation, Method};
 use brushwork_values::Motor;
 
 use super::asked::Asked;
@@ -113,10 +114,10 @@ impl Setting {
         }
     }
 
-    fn request(&self, motor: Motor) -> tune::Request {
+    fn request(&self, motor: Motor) -> TuneRequest {
         let (low, high) = (self.travel.0.round() as i64, self.travel.1.round() as i64);
         let travel = (!self.turns_freely).then_some((low, high));
-        tune::Request {
+        TuneRequest {
             method: self.method,
             level: self.level,
             excitation: travel.map_or(Excitation::Free, |_| Excitation::Window((high - low) as f64)),
@@ -129,7 +130,7 @@ impl Setting {
             },
             verify: self.tries,
             keep: false,
-            ..tune::Request::default()
+            ..TuneRequest::default()
         }
     }
 }
@@ -163,7 +164,7 @@ impl Panel {
         self.run().filter(|run| run.first.is_some()).map_or(self.setting.level, |run| run.level)
     }
 
-    pub fn add(&mut self, report: brushwork_tuning::report::Report) {
+    pub fn add(&mut self, report: Report) {
         let number = self.runs.last().map_or(1, |run| run.number + 1);
         self.runs.iter_mut().for_each(Run::settle);
         self.runs.push(Run::new(number, report));
@@ -550,12 +551,7 @@ fn owed_effect() -> Effect {
     Effect::Say(Gravity::Error, text.to_owned())
 }
 
-fn said_of(
-    motor: Motor,
-    report: &brushwork_tuning::report::Report,
-    why: Option<&str>,
-    is_owed: bool,
-) -> Effect {
+fn said_of(motor: Motor, report: &Report, why: Option<&str>, is_owed: bool) -> Effect {
     match (report.verdict, report.causes.first()) {
         (Verdict::Refused, Some(cause)) => {
             let why = why.map_or_else(|| cause.sentence().into_owned(), |why| format!("{why}."));
@@ -573,7 +569,7 @@ fn said_of(
     }
 }
 
-fn said_of_trial(motor: Motor, trial: &brushwork_tuning::trial::Trial) -> Effect {
+fn said_of_trial(motor: Motor, trial: &Trial) -> Effect {
     match trial.cause {
         None => Effect::Say(Gravity::Note, format!("{motor} behaves as predicted with these gains.")),
         Some(cause) => Effect::Say(Gravity::Warning, format!("{motor}: {}", cause.sentence())),

@@ -1,7 +1,8 @@
 //! The pictures of tuning: what goes on, what was measured over what was predicted, steps, load steps, and the loop over frequency.
 
+use brushwork_core::tune::law::Trace;
 use brushwork_tuning::experiment_guard::{Drive, Input};
-use brushwork_tuning::trace::{Predicted, Stretch, Trace};
+use brushwork_tuning::trace::{Predicted, Stretch};
 use brushwork_tuning::whatif::{LoopPoint, Reply};
 use egui::{Color32, RichText, Ui, vec2};
 

@@ -3,9 +3,10 @@
 //! One table for both families. A field that a family does not have gives no value for its registers, so that whoever walks the
 //! table asks no family which one it is.
 
+use brushwork_core::tune::law::{
+    AnyRegisters, MotionMindRegisters, PositionRegisters, VelocityRegisters, bits,
+};
 use brushwork_link::settings::{SettingValue, SettingsImage};
-use brushwork_tuning::axis::{PositionRegisters, VelocityRegisters};
-use brushwork_tuning::motion_mind::{MotionMindRegisters, bits};
 use brushwork_values::Motor;
 
 use crate::model::loop_settings::{LoopSettings, key};
@@ -319,6 +320,23 @@ impl Field {
             (Form::Number, 1.0) => SettingValue::Int(raw),
             (Form::Number, scale) => SettingValue::Number(raw as f64 / scale),
         }
+    }
+}
+
+impl From<AnyRegisters> for Registers {
+    fn from(any: AnyRegisters) -> Self {
+        let velocity = any.mcp.velocity.unwrap_or_default();
+        Self { velocity, position: any.mcp.position, motion_mind: any.mind.motion_mind }
+    }
+}
+
+impl From<Registers> for AnyRegisters {
+    fn from(registers: Registers) -> Self {
+        let mut any = Self::default();
+        any.mind.motion_mind = registers.motion_mind;
+        any.mcp.velocity = of_loops(&registers).copied();
+        any.mcp.position = registers.position;
+        any
     }
 }
 

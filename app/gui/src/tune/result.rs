@@ -1,7 +1,7 @@
 //! What a run has found: its verdict, the gains as current, proposed and change, what they promise, and the runs so far.
 
-use brushwork_tuning::motion_mind::MotionMindLaw;
-use brushwork_tuning::report::{Report, Verdict};
+use brushwork_core::tune::law::Report;
+use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::Method;
 use egui::{Button, Grid, Label, RichText, Ui, vec2};
 
@@ -22,7 +22,8 @@ use crate::widgets::numeric::Numeric;
 
 pub fn result_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands) {
     let motor = model.front.tune.motor(which);
-    let with_position = model.front.tune.front(which).run().is_some_and(|run| run.report.position.is_some());
+    let with_position =
+        model.front.tune.front(which).run().is_some_and(|run| run.report.proposed.mcp.position.is_some());
     let held = model.front.held_gains(motor, with_position);
     if let Some(run) = model.front.tune.front_mut(which).run_mut() {
         run.look_at_held(held);
@@ -102,8 +103,7 @@ fn model_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
 fn feed_forward_text(run: Option<&Run>) -> Option<String> {
     let run = run?;
     let mind = run.shown.as_ref()?.registers.motion_mind?;
-    let law = MotionMindLaw { velocity_ff: mind.velocity_ff, ..MotionMindLaw::default() };
-    let percent = 100.0 * law.covered(run.report.qpps?).min(1.0);
+    let percent = 100.0 * mind.covered(run.report.qpps?).min(1.0);
     let rest = if percent < 99.5 {
         " The loop makes up for the rest; the design counts on no more than this."
     } else {

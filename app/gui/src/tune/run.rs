@@ -1,17 +1,14 @@
 //! One run as the window keeps it: its report, what it looked like, and the gains that are considered now.
 
+use brushwork_core::tune::law::{AnyLaw, AnyRegisters, Report, Task, Trace, Trial, TrialRequest};
 use brushwork_link::exchange::Interruption;
 use brushwork_tuning::cause::Cause;
-use brushwork_tuning::design::Task;
+use brushwork_tuning::law::Law;
 use brushwork_tuning::model::Gains;
-use brushwork_tuning::registers::{position_registers, velocity_registers};
-use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::trace::{Predicted, Stretch, Trace, Written};
-use brushwork_tuning::trial::{Trial, TrialRequest, registers_gains};
-use brushwork_tuning::tune::Method;
-use brushwork_tuning::whatif::{
-    Forecast, LoopPoint, forecast, frequency_response, redesign, redesign_motion_mind,
-};
+use brushwork_tuning::report::Verdict;
+use brushwork_tuning::trace::{Predicted, Stretch};
+use brushwork_tuning::trial::on_model;
+use brushwork_tuning::whatif::{Forecast, LoopPoint, forecast, frequency_response, redesign_registers};
 
 use super::measured::{self, Figures};
 use super::registers::Registers;
@@ -131,23 +128,9 @@ impl Run {
     /// The slider was moved: the gains of that level, with no new experiment.
     pub fn set_level(&mut self, level: f64) {
         self.level = level;
-        let (Some(task), Some(design), Some(first)) = (self.report.task, self.report.design, self.first)
-        else {
-            return;
-        };
-        let request = &self.report.request;
-        if level == request.level {
-            return self.consider(first);
+        if let Some(registers) = redesign_registers(&self.report, level).filter(|_| self.first.is_some()) {
+            self.consider(registers.into());
         }
-        if first.motion_mind.is_some() {
-            let motion_mind = redesign_motion_mind(&self.report, level).or(first.motion_mind);
-            return self.consider(Registers { motion_mind, ..first });
-        }
-        let Some(design) = redesign(request.method, &task, request.level, &design, level) else { return };
-        let velocity = velocity_registers(&design.gains.velocity, task.qpps, &request.law);
-        let position =
-            first.position.map(|was| position_registers(&design.gains, &request.law, (was.min, was.max)));
-        self.consider(Registers { velocity, position, motion_mind: None });
     }
 
     /// A gain was entered by hand.
@@ -204,9 +187,7 @@ impl Run {
             request: self.report.request,
             task: self.report.task?,
             probe: self.report.probe?,
-            velocity: registers.velocity,
-            position: registers.position,
-            motion_mind: registers.motion_mind,
+            registers: registers.into(),
         })
     }
 
@@ -224,39 +205,29 @@ impl Run {
 
 /// What a run proposes.
 fn proposed(report: &Report) -> Option<Registers> {
-    match (report.motion_mind, report.velocity) {
-        (Some(mind), _) => Some(Registers { motion_mind: Some(mind), ..Registers::default() }),
-        (None, Some(velocity)) => Some(Registers { velocity, position: report.position, motion_mind: None }),
-        (None, None) => None,
-    }
+    let proposed = report.proposed;
+    (proposed != AnyRegisters::default()).then(|| proposed.into())
 }
 
 /// The model with what registers say of its law, and the gains that they stand for.
 fn considered(report: &Report, registers: &Registers) -> Option<(Task, Gains)> {
     let task = report.task?;
-    let Some(mind) = registers.motion_mind else {
-        let gains = registers_gains(&registers.velocity, registers.position.as_ref(), &report.request);
-        return Some((Task { qpps: f64::from(registers.velocity.qpps).max(1.0), ..task }, gains));
-    };
-    Some(mind.on_model(&task, report.request.method != Method::Velocity))
+    let (task, gains) = on_model(&task, &(*registers).into(), report.request.method);
+    if registers.motion_mind.is_some() {
+        return Some((task, gains));
+    }
+    Some((Task { qpps: f64::from(registers.velocity.qpps).max(1.0), ..task }, gains))
 }
 
 /// The last stretch in which a loop held the motor, and with which gains.
 fn tried(trace: Trace, duty_rms: Option<f64>, report: &Report) -> Option<Tried> {
     let stretch = *trace.stretches().last()?;
     let before = report.before.unwrap_or_default();
-    let mut registers = Registers {
-        velocity: before.velocity,
-        position: None,
-        motion_mind: before.motion_mind.map(|unit| unit.registers),
-    };
+    let mut registers = AnyLaw::before(&before.held);
     for (_, written) in trace.writes.iter().filter(|(at, _)| *at <= stretch.from_s) {
-        match written {
-            Written::Velocity(velocity) => registers.velocity = *velocity,
-            Written::Position(position) => registers.position = Some(*position),
-            Written::MotionMind(mind) => registers.motion_mind = Some(*mind),
-        }
+        AnyLaw::take(&mut registers, written);
     }
+    let mut registers = Registers::from(registers);
     if !stretch.is_position {
         registers.position = None;
     }

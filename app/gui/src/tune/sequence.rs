@@ -6,14 +6,10 @@
 
 use std::sync::PoisonError;
 
+use brushwork_core::tune::law::{Report, Request as TuneRequest, Setup, Trace, Trial, TrialRequest};
 use brushwork_link::device::{ArmScope, Event, JobEnding, JobId, JobTicket, QueuedJob};
 use brushwork_link::exchange::Interruption;
 use brushwork_link::settings::Subject;
-use brushwork_tuning::axis::Setup;
-use brushwork_tuning::report::Report;
-use brushwork_tuning::trace::Trace;
-use brushwork_tuning::trial::{Trial, TrialRequest};
-use brushwork_tuning::tune;
 
 use crate::model::link::Arming;
 use crate::model::watched::interruption;
@@ -28,7 +24,7 @@ const MOST_RESTORES: u8 = 4;
 #[derive(Clone, Debug)]
 pub enum Work {
     /// Identifies the motor and designs gains.
-    Tune(tune::Request),
+    Tune(TuneRequest),
     /// Tries gains.
     Try(Box<TrialRequest>),
     /// Puts back what a run left when its link was lost.

@@ -4,6 +4,7 @@
 use std::time::Duration;
 
 use crate::support::bench::Bench;
+use brushwork_core::tune::law::{MotionMindRegisters, bits};
 use brushwork_gui::model::link::Arming;
 use brushwork_gui::tune::Loop;
 use brushwork_gui::tune::run::Run;
@@ -11,7 +12,6 @@ use brushwork_motion_mind_sim::{Mode, MotionMindConfig, Protocol};
 use brushwork_motion_mind_wire::register_named;
 use brushwork_plant::machine::Machine as _;
 use brushwork_plant::world::WorldAction;
-use brushwork_tuning::motion_mind::{MotionMindRegisters, bits};
 use brushwork_tuning::report::Verdict;
 use brushwork_values::Motor;
 use egui::{Key, Modifiers};

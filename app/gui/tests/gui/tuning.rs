@@ -4,6 +4,7 @@
 use std::time::Duration;
 
 use crate::support::bench::Bench;
+use brushwork_core::tune::law::Report;
 use brushwork_gui::model::general::SettingsWish;
 use brushwork_gui::model::link::Arming;
 use brushwork_gui::model::loop_settings::VELOCITY;
@@ -15,7 +16,7 @@ use brushwork_mcp_sim::motion::MotionSettings;
 use brushwork_plant::presets;
 use brushwork_plant::world::WorldAction;
 use brushwork_tuning::axis::EncoderClass;
-use brushwork_tuning::report::{Report, Verdict};
+use brushwork_tuning::report::Verdict;
 use brushwork_tuning::winding::{Winding, WindingUnknown};
 use brushwork_values::Motor;
 use egui::{Key, Modifiers};

@@ -1,14 +1,23 @@
 //! An [`Axis`] in packet serial: which commands make its calls, whatever carries them.
 //!
 //! The device thread of the program and the simulated link of the tuning bench both carry them, so that what is measured is what is
-//! shipped.
+//! shipped. [`McpLaw`] is what the tuner knows of the controller's loops.
+
+mod law;
+mod probe;
+mod registers;
+
+pub use probe::{LawFindings, probe_law};
+pub use registers::{
+    McpHeld, McpLaw, McpNote, McpRegisters, McpWrite, PositionRegisters, VelocityRegisters, gains_of,
+    position_registers, velocity_gains, velocity_registers,
+};
 
 use brushwork_mcp_wire::packet_serial::status::{Condition, decode};
 use brushwork_mcp_wire::packet_serial::{Generation, number, scale};
-use brushwork_tuning::axis::{
-    Axis, AxisError, EncoderClass, Exchange, PositionRegisters, Sample, Setup, Status, VelocityRegisters,
-    Want,
-};
+use brushwork_tuning::axis::{Axis, AxisError, EncoderClass, Exchange, Sample, Status, Want};
+use brushwork_tuning::law::Law;
+use brushwork_tuning::setup::{LoopAxis, Setup};
 use brushwork_values::{Motor, Values};
 use std::collections::BTreeSet;
 use std::time::Duration;
@@ -118,6 +127,29 @@ impl<C: Carrier> PacketAxis<C> {
         }
     }
 
+    fn write_velocity(&mut self, registers: VelocityRegisters) -> Result<(), AxisError> {
+        let values = [
+            ("d", i64::from(registers.d)),
+            ("p", i64::from(registers.p)),
+            ("i", i64::from(registers.i)),
+            ("qpps", i64::from(registers.qpps)),
+        ];
+        self.send(number::SET_VELOCITY_PID_M1, number::SET_VELOCITY_PID_M2, &values).map(|_| ())
+    }
+
+    fn write_position(&mut self, registers: PositionRegisters) -> Result<(), AxisError> {
+        let values = [
+            ("d", i64::from(registers.d)),
+            ("p", i64::from(registers.p)),
+            ("i", i64::from(registers.i)),
+            ("max_i", i64::from(registers.max_i)),
+            ("deadzone", i64::from(registers.deadzone)),
+            ("min", i64::from(registers.min)),
+            ("max", i64::from(registers.max)),
+        ];
+        self.send(number::SET_POSITION_PID_M1, number::SET_POSITION_PID_M2, &values).map(|_| ())
+    }
+
     fn read_status(&mut self) -> Result<Status, AxisError> {
         let Some((_, values)) = self.optional(number::READ_STATUS)? else { return Ok(Status::default()) };
         let raw = values.int("status") as u32;
@@ -195,65 +227,6 @@ impl<C: Carrier> Axis for PacketAxis<C> {
         self.send(number::POSITION_PROFILE_M1, number::POSITION_PROFILE_M2, &values)
     }
 
-    fn read_setup(&mut self) -> Result<Setup, AxisError> {
-        let velocity = self.read(number::READ_VELOCITY_PID_M1, number::READ_VELOCITY_PID_M2)?;
-        let position = self.read(number::READ_POSITION_PID_M1, number::READ_POSITION_PID_M2)?;
-        let current = self.optional_of(number::READ_CURRENT_LIMITS_M1, number::READ_CURRENT_LIMITS_M2)?;
-        let winding =
-            self.optional_of(number::READ_INDUCTANCE_RESISTANCE_M1, number::READ_INDUCTANCE_RESISTANCE_M2)?;
-        let volts = self.optional(number::READ_MAIN_VOLTAGES)?.map(|(_, values)| values);
-        let stream_timeout_ms = self.read_stream()?;
-        let unsigned = |values: &Values, name: &str| values.int(name) as u32;
-        Ok(Setup {
-            velocity: VelocityRegisters {
-                p: unsigned(&velocity, "p"),
-                i: unsigned(&velocity, "i"),
-                d: unsigned(&velocity, "d"),
-                qpps: unsigned(&velocity, "qpps"),
-            },
-            position: PositionRegisters {
-                p: unsigned(&position, "p"),
-                i: unsigned(&position, "i"),
-                d: unsigned(&position, "d"),
-                max_i: unsigned(&position, "max_i"),
-                deadzone: unsigned(&position, "deadzone"),
-                min: position.int("min") as i32,
-                max: position.int("max") as i32,
-            },
-            max_current_raw: current.as_ref().map_or(0, |values| unsigned(values, "max")),
-            min_current_raw: current.as_ref().map_or(0, |values| values.int("min") as i32),
-            min_volts_raw: volts.map_or(0, |values| values.int("min") as u16),
-            inductance_resistance_raw: winding
-                .map_or([0, 0], |values| [unsigned(&values, "inductance"), unsigned(&values, "resistance")]),
-            stream_timeout_ms,
-            encoder: self.encoder,
-            motion_mind: None,
-        })
-    }
-
-    fn write_velocity(&mut self, registers: VelocityRegisters) -> Result<(), AxisError> {
-        let values = [
-            ("d", i64::from(registers.d)),
-            ("p", i64::from(registers.p)),
-            ("i", i64::from(registers.i)),
-            ("qpps", i64::from(registers.qpps)),
-        ];
-        self.send(number::SET_VELOCITY_PID_M1, number::SET_VELOCITY_PID_M2, &values).map(|_| ())
-    }
-
-    fn write_position(&mut self, registers: PositionRegisters) -> Result<(), AxisError> {
-        let values = [
-            ("d", i64::from(registers.d)),
-            ("p", i64::from(registers.p)),
-            ("i", i64::from(registers.i)),
-            ("max_i", i64::from(registers.max_i)),
-            ("deadzone", i64::from(registers.deadzone)),
-            ("min", i64::from(registers.min)),
-            ("max", i64::from(registers.max)),
-        ];
-        self.send(number::SET_POSITION_PID_M1, number::SET_POSITION_PID_M2, &values).map(|_| ())
-    }
-
     fn write_winding(&mut self, [inductance, resistance]: [u32; 2]) -> Result<(), AxisError> {
         let values = [("inductance", i64::from(inductance)), ("resistance", i64::from(resistance))];
         let (m1, m2) = (number::SET_INDUCTANCE_RESISTANCE_M1, number::SET_INDUCTANCE_RESISTANCE_M2);
@@ -284,5 +257,56 @@ impl<C: Carrier> Axis for PacketAxis<C> {
 
     fn progress(&mut self, text: &str) {
         self.carrier.progress(text);
+    }
+}
+
+impl<C: Carrier, L> LoopAxis<L> for PacketAxis<C>
+where
+    L: Law<Held: From<McpHeld>, Write: TryInto<McpWrite>>,
+{
+    fn read_setup(&mut self) -> Result<Setup<L>, AxisError> {
+        let velocity = self.read(number::READ_VELOCITY_PID_M1, number::READ_VELOCITY_PID_M2)?;
+        let position = self.read(number::READ_POSITION_PID_M1, number::READ_POSITION_PID_M2)?;
+        let current = self.optional_of(number::READ_CURRENT_LIMITS_M1, number::READ_CURRENT_LIMITS_M2)?;
+        let winding =
+            self.optional_of(number::READ_INDUCTANCE_RESISTANCE_M1, number::READ_INDUCTANCE_RESISTANCE_M2)?;
+        let volts = self.optional(number::READ_MAIN_VOLTAGES)?.map(|(_, values)| values);
+        let stream_timeout_ms = self.read_stream()?;
+        let unsigned = |values: &Values, name: &str| values.int(name) as u32;
+        let held = McpHeld {
+            velocity: VelocityRegisters {
+                p: unsigned(&velocity, "p"),
+                i: unsigned(&velocity, "i"),
+                d: unsigned(&velocity, "d"),
+                qpps: unsigned(&velocity, "qpps"),
+            },
+            position: PositionRegisters {
+                p: unsigned(&position, "p"),
+                i: unsigned(&position, "i"),
+                d: unsigned(&position, "d"),
+                max_i: unsigned(&position, "max_i"),
+                deadzone: unsigned(&position, "deadzone"),
+                min: position.int("min") as i32,
+                max: position.int("max") as i32,
+            },
+        };
+        Ok(Setup {
+            held: held.into(),
+            max_current_raw: current.as_ref().map_or(0, |values| unsigned(values, "max")),
+            min_current_raw: current.as_ref().map_or(0, |values| values.int("min") as i32),
+            min_volts_raw: volts.map_or(0, |values| values.int("min") as u16),
+            inductance_resistance_raw: winding
+                .map_or([0, 0], |values| [unsigned(&values, "inductance"), unsigned(&values, "resistance")]),
+            stream_timeout_ms,
+            encoder: self.encoder,
+        })
+    }
+
+    fn write(&mut self, write: L::Write) -> Result<(), AxisError> {
+        match write.try_into() {
+            Ok(McpWrite::Velocity(registers)) => self.write_velocity(registers),
+            Ok(McpWrite::PositionLoop(registers)) => self.write_position(registers),
+            Err(_) => Err(AxisError::Refused("gains of another family".into())),
+        }
     }
 }

@@ -9,24 +9,27 @@
 
 mod clock;
 mod fence;
+pub mod law;
 mod timing;
 
 pub use timing::{BITS_PER_BYTE, worked_at};
 
 use brushwork_motion_mind_wire::{Command, Part, Protocol, Reply, register_number as number, status};
-use brushwork_tuning::axis::{
-    Axis, AxisError, EncoderClass, Exchange, FULL_DUTY_RAW, PositionRegisters, Sample, Setup, Status,
-    VelocityRegisters, Want,
-};
-use brushwork_tuning::motion_mind::{FULL_FEED_FORWARD, MotionMindRegisters, MotionMindSetup, bits};
+use brushwork_tuning::axis::{Axis, AxisError, EncoderClass, Exchange, FULL_DUTY_RAW, Sample, Status, Want};
+use brushwork_tuning::law::Law;
+use brushwork_tuning::setup::{LoopAxis, Setup};
 use clock::UnitClock;
 use fence::Fence;
+use law::{
+    FULL_FEED_FORWARD, MotionMindHeld, MotionMindLaw, MotionMindRegisters, MotionMindSetup, MotionMindWrite,
+    bits,
+};
 use std::time::Duration;
 
 /// Steps of a full duty.
-const FULL_PWM: i32 = 1023;
+const FULL_PWM: i32 = law::FULL_PWM as i32;
 /// Counts in a loop for counts/s.
-const LOOPS_PER_S: i32 = 200;
+const LOOPS_PER_S: i32 = law::LOOPS_PER_S as i32;
 /// Steps of 10 mA in a step of AMPS.
 const CURRENT_STEP: i64 = 2;
 /// Bits per second from which on the line of all registers (up to 190 characters) takes about as long as two single ones.
@@ -167,8 +170,8 @@ impl<C: MindCarrier> MindAxis<C> {
 
     /// The registers as they are.
     fn held(&mut self) -> Result<MotionMindRegisters, AxisError> {
-        let unit = self.read_setup()?.motion_mind;
-        unit.map(|unit| unit.registers).ok_or(AxisError::NoReply)
+        let setup: Setup<MotionMindLaw> = self.read_setup()?;
+        setup.held.motion_mind.map(|unit| unit.registers).ok_or(AxisError::NoReply)
     }
 
     /// Switches the loop on where the motor stands, and off again if it moves the motor. Gives whether it is on.
@@ -301,6 +304,18 @@ impl<C: MindCarrier> MindAxis<C> {
         self.send(Command::MoveAtVelocity(0))?;
         self.driving = Driving::Off;
         Ok(at)
+    }
+
+    fn end(&mut self, registers: MotionMindRegisters) -> Result<(), AxisError> {
+        self.off()?;
+        self.write_gains(&registers)?;
+        let (low, high) = registers.virtual_limits;
+        self.write(number::VNLIMIT, i64::from(low))?;
+        self.write(number::VPLIMIT, i64::from(high))?;
+        self.send(Command::MoveToRelative(0))?;
+        self.write(number::FUNCTION, i64::from(registers.function))?;
+        self.driving = Driving::Unknown;
+        Ok(())
     }
 
     fn write_gains(&mut self, registers: &MotionMindRegisters) -> Result<(), AxisError> {
@@ -447,7 +462,38 @@ impl<C: MindCarrier> Axis for MindAxis<C> {
         self.send(Command::MoveToAbsolute(counts))
     }
 
-    fn read_setup(&mut self) -> Result<Setup, AxisError> {
+    fn write_winding(&mut self, _: [u32; 2]) -> Result<(), AxisError> {
+        Err(AxisError::Refused("inductance and resistance".into()))
+    }
+
+    fn write_current_limits(&mut self, max_raw: u32, _: i32) -> Result<(), AxisError> {
+        let steps = (i64::from(max_raw) / CURRENT_STEP).min(1023);
+        self.write(number::AMPSLIMIT, steps).map(|_| ())
+    }
+
+    fn raw_speed(&mut self) -> Result<i32, AxisError> {
+        Err(AxisError::Refused("a speed that is not a mean".into()))
+    }
+
+    fn set_stream_timeout(&mut self, _: u32) -> Result<(), AxisError> {
+        Err(AxisError::Refused("a time-out".into()))
+    }
+
+    fn set_travel(&mut self, counts: (i64, i64)) -> Result<(), AxisError> {
+        self.fence.travel = Some(counts);
+        Ok(())
+    }
+
+    fn progress(&mut self, text: &str) {
+        self.carrier.progress(text);
+    }
+}
+
+impl<C: MindCarrier, L> LoopAxis<L> for MindAxis<C>
+where
+    L: Law<Held: From<MotionMindHeld>, Write: TryInto<MotionMindWrite>>,
+{
+    fn read_setup(&mut self) -> Result<Setup<L>, AxisError> {
         let (_, values) = self.registers(&SETUP)?;
         for (number, value) in &values {
             self.known[usize::from(*number)] = Some(*value);
@@ -469,69 +515,27 @@ impl<C: MindCarrier> Axis for MindAxis<C> {
             virtual_limits: (value(number::VNLIMIT)? as i32, value(number::VPLIMIT)? as i32),
         };
         self.before = Some(registers);
+        let mode = value(number::MODE)? as u8;
+        let unit = MotionMindSetup { mode, registers, is_undated: !self.reads_whole() };
         Ok(Setup {
+            held: MotionMindHeld { motion_mind: Some(unit) }.into(),
             max_current_raw: (value(number::AMPSLIMIT)? * CURRENT_STEP) as u32,
             encoder: EncoderClass::Quadrature,
-            motion_mind: Some(MotionMindSetup {
-                mode: value(number::MODE)? as u8,
-                registers,
-                is_undated: !self.reads_whole(),
-            }),
             ..Setup::default()
         })
     }
 
-    fn write_velocity(&mut self, _: VelocityRegisters) -> Result<(), AxisError> {
-        Err(AxisError::Refused("gains of another family".into()))
-    }
-
-    fn write_position(&mut self, _: PositionRegisters) -> Result<(), AxisError> {
-        Err(AxisError::Refused("gains of another family".into()))
-    }
-
-    fn write_winding(&mut self, _: [u32; 2]) -> Result<(), AxisError> {
-        Err(AxisError::Refused("inductance and resistance".into()))
-    }
-
-    fn write_current_limits(&mut self, max_raw: u32, _: i32) -> Result<(), AxisError> {
-        let steps = (i64::from(max_raw) / CURRENT_STEP).min(1023);
-        self.write(number::AMPSLIMIT, steps).map(|_| ())
-    }
-
-    fn raw_speed(&mut self) -> Result<i32, AxisError> {
-        Err(AxisError::Refused("a speed that is not a mean".into()))
-    }
-
-    fn set_stream_timeout(&mut self, _: u32) -> Result<(), AxisError> {
-        Err(AxisError::Refused("a time-out".into()))
-    }
-
-    fn write_motion_mind(&mut self, registers: MotionMindRegisters) -> Result<(), AxisError> {
-        self.off()?;
-        self.write_gains(&registers)?;
-        self.trial = Some(registers);
-        Ok(())
-    }
-
-    fn end_motion_mind(&mut self, registers: MotionMindRegisters) -> Result<(), AxisError> {
-        self.off()?;
-        self.write_gains(&registers)?;
-        let (low, high) = registers.virtual_limits;
-        self.write(number::VNLIMIT, i64::from(low))?;
-        self.write(number::VPLIMIT, i64::from(high))?;
-        self.send(Command::MoveToRelative(0))?;
-        self.write(number::FUNCTION, i64::from(registers.function))?;
-        self.driving = Driving::Unknown;
-        Ok(())
-    }
-
-    fn set_travel(&mut self, counts: (i64, i64)) -> Result<(), AxisError> {
-        self.fence.travel = Some(counts);
-        Ok(())
-    }
-
-    fn progress(&mut self, text: &str) {
-        self.carrier.progress(text);
+    fn write(&mut self, write: L::Write) -> Result<(), AxisError> {
+        match write.try_into() {
+            Ok(MotionMindWrite::Loop(registers)) => {
+                self.off()?;
+                self.write_gains(&registers)?;
+                self.trial = Some(registers);
+                Ok(())
+            }
+            Ok(MotionMindWrite::End(registers)) => self.end(registers),
+            Err(_) => Err(AxisError::Refused("gains of another family".into())),
+        }
     }
 }
 
@@ -573,27 +577,5 @@ mod tests {
         for steps in -1023..=1023 {
             assert_eq!(steps_of(duty_of(steps)), steps as i16);
         }
-    }
-
-    #[test]
-    fn the_bits_of_the_tuner_are_those_of_the_protocol() {
-        use brushwork_motion_mind_wire::{function, function2};
-        let own = [
-            bits::SATPROT,
-            bits::VELLIMIT,
-            bits::ACTIVESTOP,
-            bits::ENABLEDB,
-            bits::VIRTLIMIT,
-            bits::DISABLEPID,
-        ];
-        let named = ["SATPROT", "VELLIMIT", "ACTIVESTOP", "ENABLEDB", "VIRTLIMIT", "DISABLEPID"];
-        for (mask, name) in own.into_iter().zip(named) {
-            let bit = brushwork_motion_mind_wire::FUNCTION_BITS.iter().find(|bit| bit.name == name);
-            assert_eq!(bit.map(|bit| bit.mask()), Some(mask), "{name}");
-        }
-        assert_eq!(bits::SATPROT, function::SATPROT);
-        assert_eq!((bits::NEWVELMODE, bits::FASTPID), (function2::NEWVELMODE, function2::FASTPID));
-        assert_eq!(bits::PULSEFB, function2::PULSEFB);
-        assert_eq!(bits::INPUTS, status::NEGLIMIT | status::POSLIMIT | status::BRAKE);
     }
 }

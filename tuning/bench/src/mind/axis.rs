@@ -3,8 +3,13 @@
 use super::line::MindLine;
 use super::population::MindSpecimen;
 use brushwork_motion_mind_axis::MindAxis;
+use brushwork_motion_mind_axis::law::MotionMindLaw;
 use brushwork_motion_mind_sim::Mode;
 
+/// What a run is asked for.
+pub type Request = brushwork_tuning::tune::Request<MotionMindLaw>;
+/// The report of a run.
+pub type Report = brushwork_tuning::report::Report<MotionMindLaw>;
 /// An axis over the simulated unit.
 pub type SimulatedMind = MindAxis<MindLine>;
 

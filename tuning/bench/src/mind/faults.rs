@@ -7,10 +7,12 @@ use crate::faults::{FaultRow, FaultyPlant, rows_of};
 use crate::line::SimulatedLine;
 use crate::population::Specimen;
 use crate::truth::Truth;
+use brushwork_motion_mind_axis::law::MotionMindLaw;
 use brushwork_motion_mind_sim::MotionMind;
 use brushwork_tuning::tune::Method;
 
 impl FaultyPlant for MindSpecimen {
+    type Law = MotionMindLaw;
     type Axis = SimulatedMind;
     type Unit = MotionMind;
     const WHOLE: [Method; 2] = [Method::Velocity, Method::Pd];
@@ -26,7 +28,7 @@ impl FaultyPlant for MindSpecimen {
         &mut self.plant
     }
 
-    fn truth(&self) -> Truth {
+    fn truth(&self) -> Truth<MotionMindLaw> {
         MindPlantUnderTest::new(self.clone()).truth
     }
 

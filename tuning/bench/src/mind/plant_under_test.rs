@@ -4,14 +4,14 @@ use super::population::{MindSpecimen, command_unit};
 use crate::oracle::PlantUnderTest;
 use crate::trial::{Outcome, position_outcome, velocity_outcome};
 use crate::truth::{Truth, full_speed, truth_under};
+use brushwork_motion_mind_axis::law::{
+    LOOPS_PER_S, MotionMindLaw, MotionMindRegisters, SPEED_STEP_COUNTS_PER_S,
+};
 use brushwork_motion_mind_sim::MotionMind;
 use brushwork_motion_mind_wire::Command;
 use brushwork_plant::ShaftSide;
 use brushwork_plant::world::WorldAction;
-use brushwork_tuning::model::{Gains, Lag, LoopLaw};
-use brushwork_tuning::motion_mind::{
-    LOOPS_PER_S, MotionMindLaw, MotionMindRegisters, SPEED_STEP_COUNTS_PER_S, law,
-};
+use brushwork_tuning::model::{Gains, Lag};
 use brushwork_tuning::score::{LOAD_STEP_DUTY, VELOCITY_STEP, horizon_s, position_step};
 use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
@@ -36,7 +36,7 @@ pub struct MindPlantUnderTest {
     /// The plant.
     pub specimen: MindSpecimen,
     /// Its truth.
-    pub truth: Truth,
+    pub truth: Truth<MotionMindLaw>,
     fresh: MotionMind,
 }
 
@@ -45,8 +45,7 @@ impl MindPlantUnderTest {
     #[must_use]
     pub fn new(specimen: MindSpecimen) -> Self {
         let qpps = full_speed(&specimen.plant);
-        let law = LoopLaw { motion_mind: Some(MotionMindLaw::of_qpps(qpps)), ..law() };
-        let truth = truth_under(&specimen.plant, law, Lag::default());
+        let truth = truth_under(&specimen.plant, MotionMindLaw::of_qpps(qpps), Lag::default());
         let mut fresh = specimen.unit();
         // To the beginning of a loop, so that every trial counts the same ones.
         fresh.advance(fresh.now() + TICK);
@@ -79,7 +78,9 @@ impl MindPlantUnderTest {
 }
 
 impl PlantUnderTest for MindPlantUnderTest {
-    fn truth(&self) -> &Truth {
+    type Law = MotionMindLaw;
+
+    fn truth(&self) -> &Truth<MotionMindLaw> {
         &self.truth
     }
 

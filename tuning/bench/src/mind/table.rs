@@ -1,6 +1,6 @@
 //! The table of the benchmark for the Motion Mind: our methods and the textbook rules on the same records.
 
-pub use super::axis::{SimulatedMind, axis_in, axis_of};
+pub use super::axis::{Report, Request, SimulatedMind, axis_in, axis_of};
 use super::faults::fault_rows;
 use super::plant_under_test::MindPlantUnderTest;
 use super::population::{MindSpecimen, population};
@@ -11,13 +11,12 @@ use crate::run::{Judgement, refusal, weigh};
 use crate::table::{
     Identification, Judged, Row, Table, WINDOW_S, error_percent, identification_of, row, window_summary,
 };
-use brushwork_tuning::experiment_guard::GuardOptions;
+use brushwork_motion_mind_axis::law::MotionMindRegisters;
 use brushwork_tuning::linear::LoopPlant;
 use brushwork_tuning::model::Gains;
-use brushwork_tuning::motion_mind::MotionMindRegisters;
-use brushwork_tuning::report::{Report, Verdict};
+use brushwork_tuning::report::Verdict;
 use brushwork_tuning::rules::{pd_rules, pid_rules, velocity_rules};
-use brushwork_tuning::tune::{Excitation, Method, Request, tune};
+use brushwork_tuning::tune::{Excitation, Method, tune};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -58,8 +57,7 @@ pub fn optima_of(cases: &[Case]) -> MindOptima {
 /// What the bench asks for.
 #[must_use]
 pub fn request_of(specimen: &MindSpecimen, method: Method) -> Request {
-    let guard = GuardOptions { poll_s: specimen.plant.link.poll_s, ..GuardOptions::default() };
-    Request { method, excitation: Excitation::Free, guard, ..Request::default() }
+    crate::run::request_of(&specimen.plant, method)
 }
 
 /// A tuning run of a plant.
@@ -168,7 +166,7 @@ pub fn judge(
 /// Judges a report.
 #[must_use]
 pub fn judge_report(under_test: &MindPlantUnderTest, optimum: &Optimum, report: &Report) -> Judgement {
-    match report.motion_mind {
+    match report.proposed.motion_mind {
         Some(registers) if report.verdict != Verdict::Refused => {
             judge(report.request.method, under_test, optimum, &registers)
         }
@@ -181,7 +179,7 @@ fn identify(cases: &[Case], reports: &[(Report, f64)]) -> Identification {
         || cases.iter().zip(reports).map(|(case, (report, peak))| (&case.under_test.truth, report, *peak));
     let ms = cases.iter().zip(reports).filter_map(|(case, (report, _))| {
         let truth = &case.under_test.truth;
-        let gains = report.motion_mind?.gains(truth.qpps, false);
+        let gains = report.proposed.motion_mind?.gains(truth.qpps, false);
         Some((truth.nominal.margins(&gains, truth.qpps).ms - report.design?.ms).abs())
     });
     let windows: Vec<(Option<f64>, f64)> =

@@ -76,7 +76,7 @@ fn backlash_is_seen_behind_the_gear_and_claimed_nowhere_else() {
             "plant {number}: {found:?} of {true_counts} counts"
         );
         assert!(true_counts > 0.0, "plant {number} has none");
-        let position = report.position.expect("it was tuned");
+        let position = report.proposed.position.expect("it was tuned");
         assert!(f64::from(position.deadzone) >= found.counts, "plant {number}: {position:?}");
         seen += 1;
     }

@@ -5,7 +5,7 @@ use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::{Method, tune};
 use brushwork_tuning_bench::oracle::Optimum;
 use brushwork_tuning_bench::population::specimen;
-use brushwork_tuning_bench::run::{axis_of, judge_report, request_of};
+use brushwork_tuning_bench::run::{Report, axis_of, judge_report, request_of};
 use brushwork_tuning_bench::truth::truth;
 
 /// Share of replies that are read late, and by how much at the most, s: a machine with more to do than it can.
@@ -21,7 +21,7 @@ fn a_busy_host_lowers_no_gains_and_raises_no_alarm() {
         let costs = [None, Some(BUSY)].map(|late_reads| {
             let mut axis = axis_of(&plant);
             axis.carrier.late_reads = late_reads;
-            let report = tune(&mut axis, &request_of(&plant, Method::Velocity));
+            let report: Report = tune(&mut axis, &request_of(&plant, Method::Velocity));
             println!("plant {number}, {late_reads:?}: {:?} {:?}", report.causes, report.measured);
             assert_ne!(
                 report.verdict,

@@ -1,12 +1,13 @@
 //! A host that stands still for 0.1 to 0.9 s in mid-run, or reads nearly every reply late: whatever it sees then is no fault of the machine, and no refusal says so.
 
 use brushwork_tuning::cause::Cause;
+use brushwork_tuning::law::Law;
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::tune::{Method, tune};
 use brushwork_tuning_bench::mind::population::specimen as mind_specimen;
 use brushwork_tuning_bench::mind::table as mind;
 use brushwork_tuning_bench::population::specimen;
-use brushwork_tuning_bench::run::{axis_of, request_of};
+use brushwork_tuning_bench::run::{self, axis_of, request_of};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::time::Duration;
@@ -37,7 +38,7 @@ fn stalls(draw: &mut ChaCha8Rng, from: Duration) -> Vec<(Duration, Duration)> {
 
 /// The first cause of a refusal, which may say that the computer was late, or that somebody set a limit, and nothing else.
 #[track_caller]
-fn assert_blames_no_machine(report: &Report, case: &str) -> bool {
+fn assert_blames_no_machine<L: Law>(report: &Report<L>, case: &str) -> bool {
     if report.verdict != Verdict::Refused {
         return false;
     }
@@ -62,7 +63,7 @@ fn no_refusal_of_a_late_host_names_the_machine() {
         let mut draw = ChaCha8Rng::seed_from_u64(seed);
         axis.carrier.stalls = stalls(&mut draw, Duration::from_millis(500));
         let case = format!("seed {seed}, {method:?}, stalls {:?}", axis.carrier.stalls);
-        let report = tune(&mut axis, &request_of(&plant, method));
+        let report: run::Report = tune(&mut axis, &request_of(&plant, method));
         refused += usize::from(assert_blames_no_machine(&report, &case));
         assert!(report.replay().as_ref() == Some(&report), "{case}: the replay differs");
     }
@@ -82,7 +83,7 @@ fn no_refusal_of_a_crowded_host_names_the_machine() {
         let mut axis = axis_of(&plant);
         axis.carrier.late_reads = Some(CROWDED);
         let case = format!("seed {seed}, {method:?}");
-        let report = tune(&mut axis, &request_of(&plant, method));
+        let report: run::Report = tune(&mut axis, &request_of(&plant, method));
         refused += usize::from(assert_blames_no_machine(&report, &case));
     }
     println!("{refused} of {RUNS} were refused");

@@ -75,8 +75,8 @@ fn a_law_that_is_not_known_is_refused_and_the_old_gains_stay() {
         assert_eq!(report.causes.first(), Some(&Cause::UnknownLaw), "{name}");
         let before = report.before.expect("the setup was read");
         let motion = axis.carrier.unit().settings().motors[0].motion;
-        assert_eq!(motion.velocity_p_raw, before.velocity.p, "{name}");
-        assert_eq!(motion.position_p_raw, before.position.p, "{name}");
-        assert_eq!(motion.qpps, before.velocity.qpps, "{name}");
+        assert_eq!(motion.velocity_p_raw, before.held.velocity.p, "{name}");
+        assert_eq!(motion.position_p_raw, before.held.position.p, "{name}");
+        assert_eq!(motion.qpps, before.held.velocity.qpps, "{name}");
     }
 }

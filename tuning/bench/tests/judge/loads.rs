@@ -3,10 +3,10 @@
 
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::GuardOptions;
-use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::tune::{Excitation, Method, Request};
+use brushwork_tuning::report::Verdict;
+use brushwork_tuning::tune::{Excitation, Method};
 use brushwork_tuning_bench::population::{Specimen, specimen};
-use brushwork_tuning_bench::run::{request_of, tune_plant};
+use brushwork_tuning_bench::run::{Report, Request, request_of, tune_plant};
 use brushwork_tuning_bench::truth::truth;
 
 /// Two of each kind, from seed 7.

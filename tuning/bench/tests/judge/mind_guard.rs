@@ -6,12 +6,12 @@ use brushwork_motion_mind_wire::{Address, Command, encode_frame, function2, stat
 use brushwork_plant::world::{PinSignal, WorldAction};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::GuardOptions;
-use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::tune::{Method, Request, tune};
+use brushwork_tuning::report::Verdict;
+use brushwork_tuning::tune::{Method, tune};
 use brushwork_tuning_bench::line::Event;
 use brushwork_tuning_bench::mind::line::MindLine;
 use brushwork_tuning_bench::mind::population::{MindSpecimen, specimen};
-use brushwork_tuning_bench::mind::table::{SimulatedMind, axis_of, request_of};
+use brushwork_tuning_bench::mind::table::{Report, Request, SimulatedMind, axis_of, request_of};
 use std::time::Duration;
 
 const FUNCTION: u8 = 3;
@@ -106,7 +106,7 @@ fn pulse_feedback_is_refused_before_anything_moves_and_other_bits_are_set_aside_
             }
             None => {
                 assert_ne!(report.verdict, Verdict::Refused, "bit {bit:#x}: {:?}", report.causes);
-                let proposed = report.motion_mind.expect("registers");
+                let proposed = report.proposed.motion_mind.expect("registers");
                 assert_eq!(proposed.function2 & bit, 0, "the gains are for the usual loop");
             }
         }

@@ -6,12 +6,12 @@ use brushwork_motion_mind_sim::Mode;
 use brushwork_plant::world::WorldAction;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::GuardOptions;
-use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::tune::{Method, Request, tune};
+use brushwork_tuning::report::Verdict;
+use brushwork_tuning::tune::{Method, tune};
 use brushwork_tuning_bench::line::Event;
 use brushwork_tuning_bench::mind::population::specimen;
 use brushwork_tuning_bench::mind::table::{
-    SimulatedMind, axis_in, axis_of, cases, request_of, table, tune_plant,
+    Report, Request, SimulatedMind, axis_in, axis_of, cases, request_of, table, tune_plant,
 };
 use brushwork_tuning_bench::table::Row;
 use brushwork_values::Motor;
@@ -57,7 +57,7 @@ fn a_replay_of_the_record_gives_the_same_report_to_the_last_bit_also_after_a_fil
         let plant = specimen(7, number);
         let (report, _) = tune_plant(&plant, &request_of(&plant, method));
         assert_ne!(report.verdict, Verdict::Refused, "plant {number}: {:?}", report.causes);
-        assert!(report.motion_mind.is_some() && report.velocity.is_none() && report.position.is_none());
+        assert!(report.proposed.motion_mind.is_some());
         let text = serde_json::to_string(&report).expect("a report is plain data");
         let read: Report = serde_json::from_str(&text).expect("and reads back");
         assert!(read == report, "plant {number}: the file keeps every bit");
@@ -90,7 +90,7 @@ fn a_run_that_keeps_its_gains_leaves_them_in_ram_with_the_users_limits() {
     let plant = specimen(7, 1);
     let request = Request { keep: true, ..request_of(&plant, Method::Pd) };
     let (report, axis) = tune_plant(&plant, &request);
-    let kept = report.motion_mind.expect("gains");
+    let kept = report.proposed.motion_mind.expect("gains");
     let unit = axis.carrier.line.unit();
     assert_eq!(
         [4, 5, 6, 8].map(|n| unit.read_one(n)),

@@ -1,14 +1,16 @@
 //! Registers of a Motion Mind tried by themselves, and redrawn for other levels from the model of a run, with no new experiment.
 
+use brushwork_motion_mind_axis::law::{
+    MotionMindLaw, MotionMindProposal, MotionMindRegisters, MotionMindWrite, bits,
+};
 use brushwork_tuning::cause::Cause;
-use brushwork_tuning::motion_mind::{MotionMindRegisters, bits};
-use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::trace::{Trace, Written};
-use brushwork_tuning::trial::{Trial, TrialRequest, run_trial};
+use brushwork_tuning::report::Verdict;
+use brushwork_tuning::trace::Trace;
+use brushwork_tuning::trial::{Trial, TrialRequest, on_model, run_trial};
 use brushwork_tuning::tune::Method;
-use brushwork_tuning::whatif::{forecast, redesign_motion_mind};
+use brushwork_tuning::whatif::{forecast, redesign_registers};
 use brushwork_tuning_bench::mind::population::{MindSpecimen, specimen};
-use brushwork_tuning_bench::mind::table::{SimulatedMind, axis_of, request_of, tune_plant};
+use brushwork_tuning_bench::mind::table::{Report, SimulatedMind, axis_of, request_of, tune_plant};
 
 /// A gearmotor and a wheel: nothing about them is odd.
 const PLANTS: [usize; 2] = [0, 1];
@@ -20,14 +22,12 @@ fn tuned(number: usize, method: Method) -> (MindSpecimen, Report) {
     (plant, report)
 }
 
-fn wanted(report: &Report, registers: MotionMindRegisters) -> TrialRequest {
+fn wanted(report: &Report, registers: MotionMindRegisters) -> TrialRequest<MotionMindLaw> {
     TrialRequest {
         request: report.request,
         task: report.task.expect("a model"),
         probe: report.probe.expect("a probe"),
-        velocity: Default::default(),
-        position: None,
-        motion_mind: Some(registers),
+        registers: MotionMindProposal { motion_mind: Some(registers) },
     }
 }
 
@@ -36,7 +36,7 @@ fn held(axis: &SimulatedMind) -> Vec<i64> {
 }
 
 /// The trial, after which all is as before and nothing turns.
-fn tried(plant: &MindSpecimen, wanted: &TrialRequest) -> Trial {
+fn tried(plant: &MindSpecimen, wanted: &TrialRequest<MotionMindLaw>) -> Trial<MotionMindLaw> {
     let mut axis = axis_of(plant);
     let (before, stored) = (held(&axis), axis.carrier.line.unit().eeprom_writes());
     let trial = run_trial(&mut axis, wanted);
@@ -51,7 +51,7 @@ fn tried(plant: &MindSpecimen, wanted: &TrialRequest) -> Trial {
 fn what_a_run_proposed_is_verified_again_and_so_is_less_of_it_by_hand() {
     for (number, method) in PLANTS.into_iter().flat_map(|n| [(n, Method::Velocity), (n, Method::Pd)]) {
         let (plant, report) = tuned(number, method);
-        let proposed = report.motion_mind.expect("registers");
+        let proposed = report.proposed.motion_mind.expect("registers");
         let softer =
             MotionMindRegisters { pterm: proposed.pterm / 2, dterm: proposed.dterm / 10 * 7, ..proposed };
         for registers in [proposed, softer] {
@@ -60,7 +60,7 @@ fn what_a_run_proposed_is_verified_again_and_so_is_less_of_it_by_hand() {
             assert_eq!(trial.cause, None, "plant {number} {method:?}: {:?}", trial.measured);
             assert!(trial.measured.is_some());
             let trace = Trace::of(0, &trial.record);
-            assert!(trace.writes.iter().any(|(_, what)| *what == Written::MotionMind(registers)));
+            assert!(trace.writes.iter().any(|(_, what)| *what == MotionMindWrite::Loop(registers)));
             let stretch = *trace.stretches().last().expect("a loop held the motor");
             let (task, gains) = wanted.on_model();
             assert!(!trace.predict(&task, &gains, &stretch).is_empty());
@@ -71,7 +71,7 @@ fn what_a_run_proposed_is_verified_again_and_so_is_less_of_it_by_hand() {
 #[test]
 fn far_too_much_gain_is_found_on_the_machine_and_foretold_by_the_model() {
     let (plant, report) = tuned(1, Method::Pd);
-    let proposed = report.motion_mind.expect("registers");
+    let proposed = report.proposed.motion_mind.expect("registers");
     // Thirty-two times the loop.
     let wild = MotionMindRegisters { pidscalar: proposed.pidscalar - 5, ..proposed };
     let wanted = wanted(&report, wild);
@@ -83,7 +83,7 @@ fn far_too_much_gain_is_found_on_the_machine_and_foretold_by_the_model() {
 #[test]
 fn bits_that_make_another_loop_are_refused_before_anything_moves() {
     let (plant, report) = tuned(0, Method::Velocity);
-    let proposed = report.motion_mind.expect("registers");
+    let proposed = report.proposed.motion_mind.expect("registers");
     for function2 in [bits::NEWVELMODE, bits::FASTPID] {
         let other = MotionMindRegisters { function2: proposed.function2 | function2, ..proposed };
         let trial = tried(&plant, &wanted(&report, other));
@@ -102,10 +102,10 @@ fn another_level_is_other_registers_and_a_stiffer_one_goes_nearer_to_its_bound()
     for method in [Method::Velocity, Method::Pd, Method::Pid] {
         let (_, report) = tuned(0, method);
         let task = report.task.expect("a model");
-        assert_eq!(redesign_motion_mind(&report, report.request.level), report.motion_mind);
+        assert_eq!(redesign_registers(&report, report.request.level), Some(report.proposed));
         let shown = [0.0, 30.0, 90.0].map(|level| {
-            let registers = redesign_motion_mind(&report, level).expect("registers");
-            let (task, gains) = registers.on_model(&task, method != Method::Velocity);
+            let registers = redesign_registers(&report, level).expect("registers");
+            let (task, gains) = on_model(&task, &registers, method);
             let shown = forecast(&task, &gains);
             assert!(shown.is_stable, "{method:?} at level {level}");
             shown
@@ -119,10 +119,7 @@ fn another_level_is_other_registers_and_a_stiffer_one_goes_nearer_to_its_bound()
 fn the_sensitivity_of_a_report_is_that_of_its_rounded_registers() {
     for method in [Method::Velocity, Method::Pd, Method::Pid] {
         let (_, report) = tuned(0, method);
-        let (task, gains) = report
-            .motion_mind
-            .expect("registers")
-            .on_model(&report.task.expect("a model"), method != Method::Velocity);
+        let (task, gains) = on_model(&report.task.expect("a model"), &report.proposed, method);
         let design = report.design.expect("a design");
         assert!((forecast(&task, &gains).ms - design.ms).abs() < 1e-9, "{method:?}");
     }

@@ -6,11 +6,11 @@ use brushwork_plant::world::WorldAction;
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::GuardOptions;
-use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::tune::{Method, Request, tune};
+use brushwork_tuning::report::Verdict;
+use brushwork_tuning::tune::{Method, tune};
 use brushwork_tuning_bench::line::{Event, SimulatedLine};
 use brushwork_tuning_bench::population::specimen;
-use brushwork_tuning_bench::run::request_of;
+use brushwork_tuning_bench::run::{Report, Request, request_of};
 use brushwork_values::Motor;
 use std::time::Duration;
 

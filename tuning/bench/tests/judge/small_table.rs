@@ -2,10 +2,10 @@
 //!
 //! `brushwork bench tuning --plants 24 --seed 7` prints the same figures.
 
-use brushwork_tuning::report::{Report, Verdict};
+use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::Method;
 use brushwork_tuning_bench::population::specimen;
-use brushwork_tuning_bench::run::{request_of, tune_plant};
+use brushwork_tuning_bench::run::{Report, request_of, tune_plant};
 use brushwork_tuning_bench::table::{Row, cases, table};
 
 /// Lowest and highest figure that is as usual.

@@ -3,10 +3,10 @@
 use brushwork_plant::world::WorldAction;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::report::Verdict;
-use brushwork_tuning::tune::{Method, Request, tune};
+use brushwork_tuning::tune::{Method, tune};
 use brushwork_tuning_bench::line::Event;
 use brushwork_tuning_bench::population::specimen;
-use brushwork_tuning_bench::run::{axis_of, request_of};
+use brushwork_tuning_bench::run::{Request, axis_of, request_of};
 use brushwork_values::Motor;
 use std::time::Duration;
 

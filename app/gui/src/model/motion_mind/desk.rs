@@ -1,9 +1,10 @@
 //! What a desk says of the Motion Mind that it is linked to, and what its screens ask for.
 
+use brushwork_core::tune::law::MotionMindSetup;
 use brushwork_link::settings::{SettingValue, SettingsImage};
 use brushwork_motion_mind_client::MotionMindFacts;
 use brushwork_motion_mind_wire::{Register, register_named};
-use brushwork_tuning::motion_mind::MotionMindSetup;
+
 use brushwork_values::Motor;
 
 use super::Driven;

@@ -2,33 +2,20 @@
 
 use super::position_law::{FULL_PWM, MotionMindLaw, is_protected, on_position, sum_bound_s};
 use super::scale::{on_speed, scaled, unscaled};
-use crate::design::Task;
-use crate::gains::Gains;
-use crate::model::LoopLaw;
+use brushwork_tuning::axis::AxisError;
+use brushwork_tuning::model::Gains;
 use serde::{Deserialize, Serialize};
 
 /// Bits of FUNCTION, FUNCTION2 and STATUS that concern a run (Motion Mind manual, figures 20 to 22).
 pub mod bits {
-    /// FUNCTION: the sum is bounded closely and stands while the output is saturated.
-    pub const SATPROT: u16 = 1 << 4;
-    /// FUNCTION: position moves run at VELOCITYLIMIT.
-    pub const VELLIMIT: u16 = 1 << 6;
-    /// FUNCTION: a duty of 0 brakes.
-    pub const ACTIVESTOP: u16 = 1 << 7;
-    /// FUNCTION: no duty inside DEADBAND.
-    pub const ENABLEDB: u16 = 1 << 11;
-    /// FUNCTION: VNLIMIT and VPLIMIT hold.
-    pub const VIRTLIMIT: u16 = 1 << 13;
-    /// FUNCTION: the loop gives no duty.
-    pub const DISABLEPID: u16 = 1 << 14;
+    pub use brushwork_motion_mind_wire::function::{
+        ACTIVESTOP, DISABLEPID, ENABLEDB, SATPROT, VELLIMIT, VIRTLIMIT,
+    };
+    pub use brushwork_motion_mind_wire::function2::{FASTPID, NEWVELMODE, PULSEFB};
+    use brushwork_motion_mind_wire::status;
+
     /// STATUS: a limit input or the brake input is at ground, which takes the drive away, one way or both.
-    pub const INPUTS: u16 = 0b111;
-    /// FUNCTION2: feedback by pulses.
-    pub const PULSEFB: u16 = 1 << 9;
-    /// FUNCTION2: speed moves work on speeds.
-    pub const NEWVELMODE: u16 = 1 << 11;
-    /// FUNCTION2: a loop of 0.5 ms.
-    pub const FASTPID: u16 = 1 << 13;
+    pub const INPUTS: u16 = status::NEGLIMIT | status::POSLIMIT | status::BRAKE;
 }
 
 /// The registers that a run writes and puts back.
@@ -64,6 +51,42 @@ pub struct MotionMindSetup {
     /// Readings come without the unit's time: one line of text for each register.
     #[serde(default)]
     pub is_undated: bool,
+}
+
+/// Something of this family beside the same of others: what a unit holds, what is proposed, its law.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MotionMindPart<T> {
+    /// It, where the controller is a Motion Mind.
+    #[serde(default = "none")]
+    pub motion_mind: Option<T>,
+}
+
+fn none<T>() -> Option<T> {
+    None
+}
+
+/// What a unit holds before a run.
+pub type MotionMindHeld = MotionMindPart<MotionMindSetup>;
+/// What is proposed; none in a refusal.
+pub type MotionMindProposal = MotionMindPart<MotionMindRegisters>;
+
+/// What goes over in one write.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MotionMindWrite {
+    /// The registers of a loop. The motor is off until the next command.
+    Loop(MotionMindRegisters),
+    /// The end of a run: these registers, as they are, and the position of the motor as the wanted one.
+    End(MotionMindRegisters),
+}
+
+/// The same with its answer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MotionMindNote {
+    /// Registers written.
+    MotionMind(MotionMindRegisters, Result<(), AxisError>),
+    /// The run ended with these.
+    MotionMindEnd(MotionMindRegisters, Result<(), AxisError>),
 }
 
 impl MotionMindSetup {
@@ -120,13 +143,10 @@ impl MotionMindRegisters {
         Gains { position: Some(pid), max_integral, deadzone_counts, ..Gains::default() }
     }
 
-    /// What they are on a run's model: the model with their feed-forward, and their gains.
+    /// Share of the duty of a steady speed, friction aside, that the feed-forward gives.
     #[must_use]
-    pub fn on_model(&self, task: &Task, is_position: bool) -> (Task, Gains) {
-        let mind = task.law.motion_mind.unwrap_or_default();
-        let mind = MotionMindLaw { velocity_ff: self.velocity_ff, ..mind };
-        let law = LoopLaw { motion_mind: Some(mind), ..task.law };
-        (Task { law, ..*task }, self.gains(task.qpps, is_position))
+    pub fn covered(&self, qpps: f64) -> f64 {
+        MotionMindLaw { velocity_ff: self.velocity_ff, ..MotionMindLaw::default() }.covered(qpps)
     }
 
     /// Whether the loop is the one that the gains are computed for: the one on positions, every 5 ms, giving a duty.
@@ -146,8 +166,8 @@ impl MotionMindRegisters {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gains::Pid;
-    use crate::motion_mind::rounded;
+    use crate::law::scale::rounded;
+    use brushwork_tuning::model::Pid;
 
     fn pd(p: f64, i: f64, d: f64) -> Gains {
         Gains { position: Some(Pid { p, i, d }), max_integral: 600.0, ..Gains::default() }

@@ -1,12 +1,12 @@
 //! One loop of the Motion Mind after the other, for predictions: what its registers make of the positions it sees.
 
 use super::position_law::{FULL_FEED_FORWARD, FULL_PWM, MotionMindLaw, is_protected, on_position};
-use crate::gains::Gains;
-use crate::setpoint::Setpoint;
+use brushwork_tuning::model::Gains;
+use brushwork_tuning::setpoint::Setpoint;
 
 /// The state of the loop.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct PositionLoop {
+pub struct PositionLoop {
     /// Where a speed command wants the motor to be; `None` before the first.
     ahead: Option<f64>,
     /// Where a position command sends it; `None` before the first.
@@ -89,7 +89,7 @@ fn forward(law: MotionMindLaw, counts_per_loop: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::Pid;
+    use brushwork_tuning::model::Pid;
 
     const TICK_S: f64 = 0.005;
 

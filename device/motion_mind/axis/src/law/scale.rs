@@ -1,7 +1,7 @@
 //! Gains in the steps of the registers: the rounded gains are what the loop gets.
 
 use super::position_law::{FULL_PWM, SPEED_STEP_COUNTS_PER_S, on_position, sum_bound_s};
-use crate::gains::{Gains, Pid};
+use brushwork_tuning::model::{Gains, Pid};
 
 /// Largest gain register and largest power of the divisor (Motion Mind manual 6.0).
 const MOST_TERM: f64 = 65_535.0;

@@ -1,6 +1,6 @@
 //! The law of a Motion Mind in figures: one loop on the position, with feed-forward and a bounded sum.
 
-use crate::gains::{Gains, Pid};
+use brushwork_tuning::model::{Gains, Pid};
 use serde::{Deserialize, Serialize};
 
 /// Loops in a second (Motion Mind manual 3.15).

@@ -1,0 +1,147 @@
+//! The law of an MCP or RoboClaw for the tuner: a velocity PID with QPPS, alone or under a position PID, each with its own registers.
+
+use crate::probe::{LawFindings, probe_law};
+use crate::registers::{
+    McpHeld, McpLaw, McpNote, McpRegisters, McpWrite, VELOCITY_SCALE, gains_of, position_registers,
+    velocity_gains, velocity_registers,
+};
+use brushwork_tuning::axis::AxisError;
+use brushwork_tuning::cascade::{CASCADE, Cascade};
+use brushwork_tuning::cause::Cause;
+use brushwork_tuning::experiment_guard::ExperimentGuard;
+use brushwork_tuning::law::{Ending, Facts, Law, Seen};
+use brushwork_tuning::law_probe::LawProbe;
+use brushwork_tuning::model::Gains;
+use brushwork_tuning::setpoint::Setpoint;
+
+/// None of the firmware's law is public, so that a run finds it out.
+static FACTS: Facts = Facts { can_be_probed: true, ..CASCADE };
+/// Ticks per second: the usual.
+const TICKS_PER_S: f64 = 300.0;
+/// Position limits where neither the run nor the controller has any, counts.
+const WIDE: (i32, i32) = (-2_000_000_000, 2_000_000_000);
+
+impl Law for McpLaw {
+    type Held = McpHeld;
+    type Registers = McpRegisters;
+    type Write = McpWrite;
+    type Note = McpNote;
+    type Findings = LawFindings;
+    type Loop = Cascade;
+
+    fn facts(&self) -> &'static Facts {
+        &FACTS
+    }
+
+    fn rate_hz(&self) -> u32 {
+        self.rate_hz
+    }
+
+    fn feed_forward(&self) -> bool {
+        self.feed_forward
+    }
+
+    fn tick(&self, state: &mut Cascade, gains: (&Gains, f64), setpoint: Setpoint, seen: &Seen<'_>) -> f64 {
+        state.tick(gains, (self.feed_forward, self.tick_s()), setpoint, seen)
+    }
+
+    fn steady(&self, gains: (&Gains, f64), speed: f64, duty: f64) -> Cascade {
+        Cascade::steady(gains, self.feed_forward, speed, duty)
+    }
+
+    fn registers(
+        &self,
+        held: &McpHeld,
+        gains: &Gains,
+        qpps: f64,
+        travel: Option<(i64, i64)>,
+    ) -> McpRegisters {
+        let before = (held.position.min, held.position.max);
+        // The casts are of counts within 32 bits.
+        let clamp = |counts: i64| counts.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32;
+        let travel = match travel {
+            Some((low, high)) => (clamp(low), clamp(high)),
+            None if before == (0, 0) => WIDE,
+            None => before,
+        };
+        McpRegisters {
+            velocity: Some(velocity_registers(&gains.velocity, qpps, self)),
+            position: gains.position.map(|_| position_registers(gains, self, travel)),
+        }
+    }
+
+    fn gains(&self, registers: &McpRegisters, _: f64, _: bool) -> Gains {
+        let velocity = registers.velocity.unwrap_or_default();
+        match &registers.position {
+            Some(position) => gains_of(&velocity, position, self),
+            None => Gains { velocity: velocity_gains(&velocity, self), ..Gains::default() },
+        }
+    }
+
+    fn writes(registers: &McpRegisters, is_position: bool) -> Vec<McpWrite> {
+        let position = registers.position.filter(|_| is_position).map(McpWrite::PositionLoop);
+        registers.velocity.map(McpWrite::Velocity).into_iter().chain(position).collect()
+    }
+
+    fn before(held: &McpHeld) -> McpRegisters {
+        McpRegisters { velocity: Some(held.velocity), position: None }
+    }
+
+    fn take(registers: &mut McpRegisters, write: &McpWrite) {
+        match *write {
+            McpWrite::Velocity(velocity) => registers.velocity = Some(velocity),
+            McpWrite::PositionLoop(position) => registers.position = Some(position),
+        }
+    }
+
+    fn step_duty(write: &McpWrite) -> Option<f64> {
+        let McpWrite::Velocity(registers) = write else { return None };
+        let gain = f64::from(registers.p) / VELOCITY_SCALE;
+        Some(gain * TICKS_PER_S / f64::from(registers.qpps.max(1)))
+    }
+
+    fn note(write: McpWrite, answer: Result<(), AxisError>) -> McpNote {
+        match write {
+            McpWrite::Velocity(registers) => McpNote::Velocity(registers, answer),
+            McpWrite::PositionLoop(registers) => McpNote::PositionLoop(registers, answer),
+        }
+    }
+
+    fn noted(note: &McpNote) -> (McpWrite, Result<(), AxisError>) {
+        match note {
+            McpNote::Velocity(registers, answer) => (McpWrite::Velocity(*registers), answer.clone()),
+            McpNote::PositionLoop(registers, answer) => (McpWrite::PositionLoop(*registers), answer.clone()),
+        }
+    }
+
+    fn found(&self, findings: &LawFindings, is_position: bool) -> Option<Self> {
+        findings.law(self, is_position)
+    }
+
+    fn keeping(registers: &McpRegisters) -> Vec<McpWrite> {
+        Self::writes(registers, true)
+    }
+
+    fn position_limits(held: &McpHeld) -> Option<(i64, i64)> {
+        Some((held.position.min.into(), held.position.max.into()))
+    }
+
+    fn ending(held: &McpHeld, ending: Ending<'_, Self>) -> Vec<McpWrite> {
+        if ending.is_touched && ending.kept.is_none() {
+            vec![McpWrite::Velocity(held.velocity), McpWrite::PositionLoop(held.position)]
+        } else {
+            Vec::new()
+        }
+    }
+}
+
+impl LawProbe for McpLaw {
+    fn probe(
+        guard: &mut ExperimentGuard<'_, Self>,
+        start_duty: f64,
+        is_position: bool,
+    ) -> Result<Option<LawFindings>, Cause> {
+        let position = guard.setup.held.position;
+        probe_law(guard, start_duty, is_position.then_some((position.min, position.max)))
+    }
+}

@@ -1,0 +1,191 @@
+//! Gains as the registers of a controller, and back: the rounded gains are what the loop gets.
+
+use brushwork_tuning::axis::AxisError;
+use brushwork_tuning::law::Law;
+use brushwork_tuning::model::{Gains, Pid};
+use serde::{Deserialize, Serialize};
+
+/// Wire value of a velocity gain of 1 (MCP manual, command 28).
+pub const VELOCITY_SCALE: f64 = 65_536.0;
+
+/// The firmware's law, as far as the tuner must know it.
+///
+/// Assumed, since none of it is public: `duty = (feed_forward v + P e + I sum(e) + D diff(e)) / QPPS`. A run checks it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct McpLaw {
+    /// Loop rate, Hz.
+    pub rate_hz: u32,
+    /// Whether I and D count per tick; otherwise per second.
+    pub per_tick: bool,
+    /// Wire value of a position gain of 1.
+    pub position_scale: f64,
+    /// Whether the setpoint's share of QPPS is added to the duty.
+    pub feed_forward: bool,
+}
+
+impl Default for McpLaw {
+    /// Assumed: 300 Hz, gains per tick, position gains x 1024, with feed-forward.
+    fn default() -> Self {
+        Self { rate_hz: 300, per_tick: true, position_scale: 1024.0, feed_forward: true }
+    }
+}
+
+impl McpLaw {
+    /// Seconds that one unit of the integral or derivative stands for.
+    fn gain_step(&self) -> f64 {
+        if self.per_tick { 1.0 } else { self.tick_s() }
+    }
+}
+
+/// Registers of the velocity loop as they travel (commands 28, 55): gains x 65536, QPPS in counts/s.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct VelocityRegisters {
+    /// Proportional.
+    pub p: u32,
+    /// Integral.
+    pub i: u32,
+    /// Derivative.
+    pub d: u32,
+    /// Speed at full duty, counts/s.
+    pub qpps: u32,
+}
+
+/// Registers of the position loop as they travel (commands 61, 63).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PositionRegisters {
+    /// Proportional.
+    pub p: u32,
+    /// Integral.
+    pub i: u32,
+    /// Derivative.
+    pub d: u32,
+    /// Bound of the integral.
+    pub max_i: u32,
+    /// Errors up to this many counts are none.
+    pub deadzone: u32,
+    /// Lowest position, counts.
+    pub min: i32,
+    /// Highest position, counts.
+    pub max: i32,
+}
+
+/// The loops that a controller holds before a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct McpHeld {
+    /// Velocity loop (commands 55, 56).
+    pub velocity: VelocityRegisters,
+    /// Position loop (commands 63, 64).
+    pub position: PositionRegisters,
+}
+
+/// The loops that are proposed; none in a refusal.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct McpRegisters {
+    /// Velocity loop.
+    pub velocity: Option<VelocityRegisters>,
+    /// Position loop, of the methods that have one.
+    pub position: Option<PositionRegisters>,
+}
+
+/// One loop is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum McpWrite {
+    /// Velocity loop (commands 28, 29).
+    Velocity(VelocityRegisters),
+    /// Position loop (commands 61, 62).
+    PositionLoop(PositionRegisters),
+}
+
+/// The same with its answer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum McpNote {
+    /// Velocity registers written.
+    Velocity(VelocityRegisters, Result<(), AxisError>),
+    /// Position registers written.
+    PositionLoop(PositionRegisters, Result<(), AxisError>),
+}
+
+/// Velocity registers of an MCP or RoboClaw.
+#[must_use]
+pub fn velocity_registers(velocity: &Pid, qpps: f64, law: &McpLaw) -> VelocityRegisters {
+    let [p, i, d] = per_step(velocity, law).map(|gain| raw(gain, VELOCITY_SCALE));
+    VelocityRegisters { p, i, d, qpps: whole(qpps) }
+}
+
+/// The velocity gains that registers stand for.
+#[must_use]
+pub fn velocity_gains(registers: &VelocityRegisters, law: &McpLaw) -> Pid {
+    let step_s = law.tick_s() / law.gain_step();
+    Pid {
+        p: f64::from(registers.p) / VELOCITY_SCALE,
+        i: f64::from(registers.i) / VELOCITY_SCALE / step_s,
+        d: f64::from(registers.d) / VELOCITY_SCALE * step_s,
+    }
+}
+
+/// Position registers of an MCP or RoboClaw, with the travel as position limits.
+#[must_use]
+pub fn position_registers(gains: &Gains, law: &McpLaw, travel: (i32, i32)) -> PositionRegisters {
+    let position = gains.position.unwrap_or_default();
+    let [p, i, d] = per_step(&position, law).map(|gain| raw(gain, law.position_scale));
+    // The integral is a sum over ticks where gains count per tick.
+    let max_i = whole(gains.max_integral * law.gain_step() / law.tick_s());
+    PositionRegisters { p, i, d, max_i, deadzone: whole(gains.deadzone_counts), min: travel.0, max: travel.1 }
+}
+
+/// The gains that both sets of registers stand for.
+#[must_use]
+pub fn gains_of(velocity: &VelocityRegisters, position: &PositionRegisters, law: &McpLaw) -> Gains {
+    let step_s = law.tick_s() / law.gain_step();
+    let scaled = |raw: u32| f64::from(raw) / law.position_scale;
+    Gains {
+        velocity: velocity_gains(velocity, law),
+        velocity_sum: 0.0,
+        position: Some(Pid {
+            p: scaled(position.p),
+            i: scaled(position.i) / step_s,
+            d: scaled(position.d) * step_s,
+        }),
+        max_integral: f64::from(position.max_i) * step_s,
+        deadzone_counts: f64::from(position.deadzone),
+    }
+}
+
+fn per_step(pid: &Pid, law: &McpLaw) -> [f64; 3] {
+    let step_s = law.tick_s() / law.gain_step();
+    [pid.p, pid.i * step_s, pid.d / step_s]
+}
+
+fn raw(gain: f64, scale: f64) -> u32 {
+    // The cast saturates.
+    (gain * scale).round() as u32
+}
+
+fn whole(value: f64) -> u32 {
+    value.round() as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn registers_and_gains_are_each_others_inverse_up_to_rounding() {
+        for law in [McpLaw::default(), McpLaw { rate_hz: 625, per_tick: false, ..McpLaw::default() }] {
+            let pid = Pid { p: 2.5, i: 40.0, d: 0.01 };
+            let back = velocity_gains(&velocity_registers(&pid, 12_345.0, &law), &law);
+            assert!((back.p - pid.p).abs() < 1e-4 && (back.i / pid.i - 1.0).abs() < 1e-3);
+            assert!((back.d / pid.d - 1.0).abs() < 1e-2);
+        }
+    }
+
+    #[test]
+    fn the_factory_gains_are_one_half_and_a_quarter_per_tick() {
+        let law = McpLaw::default();
+        let factory = VelocityRegisters { p: 0x1_0000, i: 0x8000, d: 0x4000, qpps: 44_000 };
+        let gains = velocity_gains(&factory, &law);
+        assert_eq!((gains.p, gains.i), (1.0, 150.0));
+        assert!((gains.d - 0.25 / 300.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,125 @@
+//! A velocity PID with feed-forward, alone or under a position PID: the loop of many controllers, in simulation.
+
+use crate::gains::Gains;
+use crate::law::{Facts, Seen};
+use crate::model::Lag;
+use crate::setpoint::Setpoint;
+
+/// Filters tried, s, and delays tried, ticks.
+const FILTERS_S: [f64; 9] = [0.0, 0.002, 0.004, 0.006, 0.008, 0.010, 0.013, 0.017, 0.022];
+const DELAYS: [f64; 6] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0];
+
+/// Properties of such a loop at 300 Hz or more: a lag of an extra tick and a filter of one, of three at the most.
+pub const CASCADE: Facts = Facts {
+    has_cascade: true,
+    can_be_probed: false,
+    writes_at_rest: false,
+    keeps_travel: false,
+    speed_step: 1.0,
+    usual_lag: Lag { filter_s: 0.004, delay_ticks: 1.0 },
+    longest_lag: Lag { filter_s: 0.010, delay_ticks: 1.0 },
+    filters_s: &FILTERS_S,
+    delays_ticks: &DELAYS,
+    unmodelled_ticks: 0.5,
+    integral_times: (3.0, 0.8),
+};
+
+/// The state of the loop.
+#[derive(Clone, Copy, Debug)]
+pub struct Cascade {
+    integral: f64,
+    last_error: f64,
+    position_integral: f64,
+    last_position_error: Option<f64>,
+    last_target: f64,
+}
+
+impl Default for Cascade {
+    fn default() -> Self {
+        Self {
+            integral: 0.0,
+            last_error: 0.0,
+            position_integral: 0.0,
+            last_position_error: None,
+            last_target: f64::NAN,
+        }
+    }
+}
+
+impl Cascade {
+    /// The steady state of a speed: `duty` is what it takes.
+    #[must_use]
+    pub fn steady((gains, qpps): (&Gains, f64), feed_forward: bool, speed: f64, duty: f64) -> Self {
+        let forward = if feed_forward { speed } else { 0.0 };
+        let i = gains.velocity.i;
+        let integral = if i > 0.0 { (duty * qpps - forward) / i } else { 0.0 };
+        Self { integral, ..Self::default() }
+    }
+
+    /// One tick: the duty.
+    pub fn tick(
+        &mut self,
+        gains: (&Gains, f64),
+        (feed_forward, tick_s): (bool, f64),
+        setpoint: Setpoint,
+        seen: &Seen<'_>,
+    ) -> f64 {
+        match setpoint {
+            Setpoint::Speed(speed) => self.velocity(gains, (feed_forward, tick_s), speed, seen),
+            Setpoint::Position(position, bound) => {
+                self.position(gains, (feed_forward, tick_s), (position, bound), seen)
+            }
+        }
+    }
+
+    /// Assumed: the loop knows what the current limit leaves and does not wind up against it.
+    fn velocity(
+        &mut self,
+        (gains, qpps): (&Gains, f64),
+        (feed_forward, tick_s): (bool, f64),
+        setpoint: f64,
+        seen: &Seen<'_>,
+    ) -> f64 {
+        let gains = gains.velocity;
+        let error = setpoint - seen.speed;
+        let slope = (error - self.last_error) / tick_s;
+        self.last_error = error;
+        self.integral += error * tick_s;
+        let forward = if feed_forward { setpoint } else { 0.0 };
+        let wanted = (forward + gains.p * error + gains.i * self.integral + gains.d * slope) / qpps;
+        let (lowest, highest) = seen.duty_bounds();
+        let duty = wanted.clamp(lowest, highest);
+        if duty != wanted && gains.i > 0.0 {
+            let share = if gains.p > 0.0 { (gains.i * tick_s / gains.p).min(1.0) } else { 1.0 };
+            self.integral += share * (duty - wanted) * qpps / gains.i;
+        }
+        duty
+    }
+
+    fn position(
+        &mut self,
+        (all, qpps): (&Gains, f64),
+        (feed_forward, tick_s): (bool, f64),
+        (target, bound): (f64, f64),
+        seen: &Seen<'_>,
+    ) -> f64 {
+        let Some(gains) = all.position else { return 0.0 };
+        if target != self.last_target {
+            self.last_position_error = None;
+            self.last_target = target;
+        }
+        let error = target - seen.count;
+        let slope = self.last_position_error.map_or(0.0, |before| (error - before) / tick_s);
+        self.last_position_error = Some(error);
+        let acting = if error.abs() <= all.deadzone_counts { 0.0 } else { error };
+        let most = all.max_integral;
+        self.position_integral = (self.position_integral + acting * tick_s).clamp(-most, most);
+        let wanted = gains.p * acting + gains.i * self.position_integral + gains.d * slope;
+        let speed = wanted.clamp(-bound, bound);
+        let v = all.velocity;
+        if v.p == 0.0 && v.i == 0.0 && v.d == 0.0 {
+            return (speed / qpps).clamp(-1.0, 1.0);
+        }
+        self.velocity((all, qpps), (feed_forward, tick_s), speed, seen)
+    }
+}
