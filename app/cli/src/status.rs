@@ -8,9 +8,9 @@ use brushwork_link::device::{
 };
 use brushwork_link::diagnosis::{Diagnosis, Evidence, Measured, PinEnd, diagnose, homed, pin_ends};
 use brushwork_link::settings::{SettingsImage, Subject, read_all};
-use brushwork_link::{Stream, Wire as _};
+use brushwork_link::{Stream, TypedWire as _};
 use brushwork_mcp_wire::models;
-use brushwork_mcp_wire::packet_serial::number;
+use brushwork_mcp_wire::packet_serial::commands;
 use brushwork_mcp_wire::packet_serial::status::{Condition, Lamp, Severity};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -139,7 +139,7 @@ fn read_setup(client: &Client, readings: &mut Readings, interrupt: &Interrupt) -
         let settings = Some(read_all(context, subject)?.image);
         // A RoboClaw does not know the command; its status word has bits of its own.
         let values = if subject.model.family.speaks_packets() {
-            context.transact(number::READ_SIGNAL_VALUES, &[]).ok()
+            context.ask(commands::READ_SIGNAL_VALUES, &[]).ok()
         } else {
             None
         };

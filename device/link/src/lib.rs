@@ -22,4 +22,4 @@ pub use exchange::{ExchangeError, Interruption, LinkStatistics};
 pub use failure::Failure;
 pub use transport::{ConnectTarget, Stream, Transport, TransportError};
 pub use unit::{FirmwareGeneration, UnitAddress};
-pub use wire::{HiddenSettings, Wire};
+pub use wire::{HiddenSettings, TypedWire, Wire};

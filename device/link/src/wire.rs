@@ -1,8 +1,9 @@
 //! What settings code and jobs see of a controller: commands to one unit, and the time.
 
 use crate::exchange::ExchangeError;
+use crate::exchange::packet::typed;
 use crate::unit::{FirmwareGeneration, UnitAddress};
-use brushwork_mcp_wire::packet_serial::Request;
+use brushwork_mcp_wire::packet_serial::{Read, Typed};
 use brushwork_values::{Value, Values};
 use std::fmt;
 use std::time::Duration;
@@ -40,20 +41,6 @@ pub trait Wire {
         self.transact_values(command, values.iter().map(|&value| Value::Int(value)).collect())
     }
 
-    /// Sends a command whose raw numbers are given by field name, put in the order of this generation's layout; names
-    /// that the layout lacks are left out.
-    fn transact_named(&mut self, command: u8, named: &[(&str, i64)]) -> Result<Values, ExchangeError> {
-        let (Some(address), Some(generation)) = (self.address().packets(), self.generation().packet_serial())
-        else {
-            // The layouts of other families have one order.
-            return self
-                .transact_values(command, named.iter().map(|(_, value)| Value::Int(*value)).collect());
-        };
-        let request = Request::named(address, command, generation, named)
-            .map_err(|source| ExchangeError::Encode { source })?;
-        self.transact_values(command, request.values)
-    }
-
     /// Speaks to another address from now on: the unit has just been given it. `false` when this wire cannot follow.
     fn set_address(&mut self, _address: UnitAddress) -> bool {
         false
@@ -75,6 +62,20 @@ pub trait Wire {
         format!("{} at {}", self.address(), self.port())
     }
 }
+
+/// Commands of packet serial whose fields the compiler knows, on every [`Wire`].
+pub trait TypedWire: Wire {
+    /// As [`Wire::transact`].
+    fn ask<const LAYOUT: u8>(
+        &mut self,
+        command: Typed<LAYOUT>,
+        values: &[i64],
+    ) -> Result<Read<LAYOUT>, ExchangeError> {
+        typed(command, self.transact(command.number(), values)?)
+    }
+}
+
+impl<W: Wire + ?Sized> TypedWire for W {}
 
 /// Settings that no public command carries, as far as a simulated controller has them: read and set past the wire, in its
 /// own world. A real controller has no such thing, so a guess cannot reach one.

@@ -10,8 +10,8 @@ use super::watch::{Unwatched, Watch};
 use crate::unit::{FirmwareGeneration, UnitAddress};
 use crate::wire::{HiddenSettings, Wire};
 use brushwork_mcp_wire::packet_serial::{
-    Address, ClientUse, Command, Direction, Effect, Form, Generation, Reply as ReplyForm, ReplyProgress,
-    Request, parse_reply,
+    Address, ClientUse, Command, Direction, Effect, Form, Generation, Read, Reply as ReplyForm,
+    ReplyProgress, Request, Typed, parse_reply,
 };
 use brushwork_values::{Value, Values};
 use std::sync::Arc;
@@ -51,11 +51,29 @@ pub struct Ask<'a> {
 
 /// A reply with the host times of its exchange.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Reply {
+pub struct Reply<V = Values> {
     /// What came back; empty for an acknowledgement.
-    pub values: Values,
+    pub values: V,
     /// When it was asked and when it was answered.
     pub span: Span,
+}
+
+impl Reply {
+    /// The same as the reply to a command whose fields the compiler knows.
+    pub fn of<const LAYOUT: u8>(self, command: Typed<LAYOUT>) -> Result<Reply<Read<LAYOUT>>, ExchangeError> {
+        Ok(Reply { values: typed(command, self.values)?, span: self.span })
+    }
+}
+
+/// Values as those of the reply to `command`.
+pub fn typed<const LAYOUT: u8>(
+    command: Typed<LAYOUT>,
+    values: Values,
+) -> Result<Read<LAYOUT>, ExchangeError> {
+    command.reply(values).ok_or_else(|| {
+        let what = format!("the values that came are not those of command {}", command.number());
+        ExchangeError::Impossible { what }
+    })
 }
 
 /// Whether a packet may go out, and what it does. Asked before anything is written.

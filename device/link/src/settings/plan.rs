@@ -5,6 +5,7 @@
 
 use std::collections::BTreeMap;
 
+use brushwork_mcp_wire::packet_serial::name::{INDEX, Name};
 use brushwork_mcp_wire::packet_serial::{Request, describe_request, lookup, number};
 use serde::Serialize;
 
@@ -49,9 +50,14 @@ impl Step {
         let (Some(address), Some(generation)) = (address.packets(), generation.packet_serial()) else {
             return motion_mind::step_bytes(self, address);
         };
-        Request::named(address, self.command, generation, &self.arguments)
-            .and_then(|request| request.encode(generation))
+        Request::new(address, self.command, &self.values())
+            .encode(generation)
             .map_err(|error| error.to_string())
+    }
+
+    /// The raw arguments in wire order.
+    pub fn values(&self) -> Vec<i64> {
+        self.arguments.iter().map(|(_, raw)| *raw).collect()
     }
 
     /// Whether the controller's command has room for the values; an error is a clause.
@@ -66,8 +72,7 @@ impl Step {
         let (Some(address), Some(generation)) = (address.packets(), generation.packet_serial()) else {
             return motion_mind::step_words(self, address);
         };
-        Request::named(address, self.command, generation, &self.arguments)
-            .map_or_else(|error| error.to_string(), |request| describe_request(&request, generation))
+        describe_request(&Request::new(address, self.command, &self.values()), generation)
     }
 
     /// What the command does: "M1 velocity PID (28)".
@@ -222,7 +227,7 @@ impl Planner<'_> {
         let mut arguments = Vec::with_capacity(form.request.len());
         for field in form.request.iter().filter(|field| field.fixed.is_none()) {
             let value = match index {
-                Some(index) if field.name == "index" => i64::from(index),
+                Some(index) if field.name == INDEX::TEXT => i64::from(index),
                 _ => self.field_value(Sink { command, index, place: place(field.name) }, changed)?,
             };
             arguments.push((field.name, value));

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use brushwork_mcp_wire::models::Family;
 use brushwork_mcp_wire::packet_serial::{lookup, number};
-use brushwork_motion_mind_wire::numbers;
+use brushwork_motion_mind_wire::{numbers, register_number};
 use brushwork_values::Values;
 use serde::Serialize;
 
@@ -105,13 +105,10 @@ pub(super) fn is_there(wire: &mut dyn Wire) -> Result<Values, ExchangeError> {
     match wire.generation() {
         FirmwareGeneration::PacketSerial(_) => wire.transact(number::READ_VERSION, &[]),
         FirmwareGeneration::MotionMind { .. } => {
-            wire.transact(numbers::READ_REGISTER, &[i64::from(REVISION)])
+            wire.transact(numbers::READ_REGISTER, &[i64::from(register_number::REVISION)])
         }
     }
 }
-
-/// The register that holds the revision of a Motion Mind's firmware.
-const REVISION: u8 = 17;
 
 /// Whether a command that failed may have reached the unit. An interruption may come after it went out, so it
 /// counts.

@@ -6,6 +6,8 @@
 use serde::Serialize;
 use thiserror::Error;
 
+use brushwork_mcp_wire::packet_serial::name::{self, Name};
+
 use super::difference::changes;
 use super::image::SettingsImage;
 use super::plan::{Plan, WriteOptions, plan, rows_involved};
@@ -259,7 +261,7 @@ impl Writer<'_> {
             return;
         }
         self.transactions += 1;
-        let reply = self.wire.transact_named(step.command, &step.arguments);
+        let reply = self.wire.transact(step.command, &step.values());
         if reply.as_ref().err().is_none_or(went_out) {
             self.sent.extend(step.keys.iter().cloned());
         }
@@ -367,7 +369,7 @@ impl Writer<'_> {
     /// to neither.
     fn follow(&mut self, step: &Step, warnings: &mut Vec<String>) -> bool {
         let old = self.wire.address();
-        let is_address = |name: &str| name == "address" || name == "ADDRESS";
+        let is_address = |name: &str| name.eq_ignore_ascii_case(name::ADDRESS::TEXT);
         let argument = step.arguments.iter().find(|(name, _)| is_address(name)).map(|(_, value)| *value);
         let Some(new) = argument.and_then(|byte| u8::try_from(byte).ok()).and_then(UnitAddress::new) else {
             return true;

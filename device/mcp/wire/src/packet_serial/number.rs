@@ -7,6 +7,15 @@ macro_rules! numbers {
             pub const $name: u8 = $number;
         )*
 
+        /// The commands by name, each with its layout as a type.
+        pub mod commands {
+            use crate::packet_serial::typed::{Typed, layout_of};
+            $(
+                #[doc = concat!("Command ", stringify!($number), "; see its row in [`COMMANDS`](crate::packet_serial::COMMANDS).")]
+                pub const $name: Typed<{ layout_of($number) }> = Typed::new($number);
+            )*
+        }
+
         /// Every name with its number, in order.
         #[cfg(test)]
         pub(super) const NAMED: &[(&str, u8)] = &[$((stringify!($name), $number)),*];

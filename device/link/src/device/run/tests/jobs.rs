@@ -11,8 +11,8 @@ use crate::device::request::{Request, RequestRefused};
 use crate::exchange::{ExchangeError, Interruption};
 use crate::failure::Failure;
 use crate::testing::ms;
-use crate::wire::Wire;
-use brushwork_mcp_wire::packet_serial::number;
+use crate::wire::{TypedWire, Wire};
+use brushwork_mcp_wire::packet_serial::{commands, name, number};
 use brushwork_values::Motor;
 use std::time::Duration;
 
@@ -69,8 +69,8 @@ fn a_job_tells_its_progress_and_hands_back_its_result() {
         let mut values = Vec::new();
         for step in 0..3_u8 {
             context.progress(Some(f32::from(step) / 3.0), "reading");
-            let reply = context.transact(number::READ_MAIN_BATTERY, &[]).map_err(fail)?;
-            values.push(reply.int("main_battery"));
+            let reply = context.ask(commands::READ_MAIN_BATTERY, &[]).map_err(fail)?;
+            values.push(reply.int(name::MAIN_BATTERY));
         }
         Ok(Box::new(values))
     });

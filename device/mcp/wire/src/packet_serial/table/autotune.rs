@@ -1,6 +1,8 @@
 //! The relay test behind auto-tuning (public clients, 2015-2020).
 
 use super::super::command::{Command, Effect, Form};
+use super::super::field::field;
+use super::super::name;
 use super::super::number;
 use super::{CLIENTS, G1, G2, G3, G4, fields, forms, read, write};
 use brushwork_values::{Field, Kind};
@@ -16,8 +18,8 @@ pub(super) const ROWS: &[Command] = &[
 
 const NOT_IN_LIBRARY: &str = "libraries of generation 4 do not send it; taken as in generation 3";
 
-const AMPLITUDE: Field = Field::new("amplitude", Kind::U32, "duty of the relay, as raw duty");
-const HYSTERESIS: Field = Field::new("hysteresis", Kind::U32, "error at which the relay switches");
+const AMPLITUDE: Field = field(name::AMPLITUDE, Kind::U32, "duty of the relay, as raw duty");
+const HYSTERESIS: Field = field(name::HYSTERESIS, Kind::U32, "error at which the relay switches");
 
 const START: &[Form] = forms![
     write(G1, G2, Effect::RelativeMotion, fields![AMPLITUDE]),
@@ -26,8 +28,8 @@ const START: &[Form] = forms![
 ];
 
 const RESULT: &[Field] = fields![
-    Field::new("amplitude", Kind::U32, "amplitude of the oscillation found"),
-    Field::new("period", Kind::U32, "period of the oscillation found; its unit is not public"),
+    field(name::AMPLITUDE, Kind::U32, "amplitude of the oscillation found"),
+    field(name::PERIOD, Kind::U32, "period of the oscillation found; its unit is not public"),
 ];
 
 const READ: &[Form] = forms![read(G1, G3, RESULT), read(G4, G4, RESULT).assumed(NOT_IN_LIBRARY)];

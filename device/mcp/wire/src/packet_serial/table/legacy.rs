@@ -2,6 +2,7 @@
 
 use super::super::command::{ClientUse, Command, Effect, Form};
 use super::super::field::byte;
+use super::super::name;
 use super::super::number;
 use super::{G1, G3, G4, MANUAL_ADVANCED, MANUAL_LEGACY, fields, forms, write};
 use brushwork_values::Field;
@@ -55,14 +56,14 @@ pub(super) const ROWS: &[Command] = &[
     ),
 ];
 
-const POWER: &[Field] = fields![byte("power", "0 stops, 127 is full power").range(0, 127)];
+const POWER: &[Field] = fields![byte(name::POWER, "0 stops, 127 is full power").range(0, 127)];
 
 /// The manual's text for 13 says "0 = stop"; all clients and command 12 have 64.
 const SIGNED_POWER: &[Field] =
-    fields![byte("power", "1 is full power backward or left, 64 stops, 127 is full power").range(0, 127)];
+    fields![byte(name::POWER, "1 is full power backward or left, 64 stops, 127 is full power").range(0, 127)];
 
-const MIN_STEP: &[Field] = fields![byte("value", "6 V plus 0.2 V for each count").range(0, 140)];
-const MAX_STEP: &[Field] = fields![byte("value", "5.12 counts for each volt").range(30, 175)];
+const MIN_STEP: &[Field] = fields![byte(name::VALUE, "6 V plus 0.2 V for each count").range(0, 140)];
+const MAX_STEP: &[Field] = fields![byte(name::VALUE, "5.12 counts for each volt").range(30, 175)];
 
 const ONE_WAY: &[Form] =
     forms![write(G1, G3, Effect::Motion, POWER), write(G4, G4, Effect::Motion, POWER).assumed(ASSUMED)];

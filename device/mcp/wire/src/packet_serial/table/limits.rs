@@ -1,7 +1,8 @@
 //! Limits of voltage, current and control error, and the emergency stop.
 
 use super::super::command::{Command, Effect, Form, Simulated};
-use super::super::field::{byte, volts};
+use super::super::field::{byte, field, volts};
+use super::super::name::{self, Name};
 use super::super::{number, scale};
 use super::{CLIENTS, G1, G3, G4, MANUAL_ADVANCED, fields, forms, read, write};
 use brushwork_values::{Field, Kind, Unit};
@@ -17,8 +18,8 @@ pub(super) const ROWS: &[Command] = &[
         "set_speed_error_limits",
         "speed error limits",
         forms![
-            write(G3, G3, Effect::Setting, fields![wide("limit_m1", SPEED), wide("limit_m2", SPEED)]),
-            write(G4, G4, Effect::Setting, fields![narrow("limit_m1", SPEED), narrow("limit_m2", SPEED)]),
+            write(G3, G3, Effect::Setting, fields![wide(name::LIMIT_M1, SPEED), wide(name::LIMIT_M2, SPEED)]),
+            write(G4, G4, Effect::Setting, fields![narrow(name::LIMIT_M1, SPEED), narrow(name::LIMIT_M2, SPEED)]),
         ],
     ),
     late(
@@ -26,8 +27,8 @@ pub(super) const ROWS: &[Command] = &[
         "read_speed_error_limits",
         "read speed error limits",
         forms![
-            read(G3, G3, fields![wide("limit_m1", SPEED), wide("limit_m2", SPEED)]),
-            read(G4, G4, fields![narrow("limit_m1", SPEED), narrow("limit_m2", SPEED)]),
+            read(G3, G3, fields![wide(name::LIMIT_M1, SPEED), wide(name::LIMIT_M2, SPEED)]),
+            read(G4, G4, fields![narrow(name::LIMIT_M1, SPEED), narrow(name::LIMIT_M2, SPEED)]),
         ],
     ),
     late(
@@ -35,8 +36,8 @@ pub(super) const ROWS: &[Command] = &[
         "read_speed_errors",
         "read speed errors",
         forms![
-            read(G3, G3, fields![error("error_m1", SPEED), error("error_m2", SPEED)]),
-            read(G4, G4, fields![narrow_error("error_m1", SPEED), narrow_error("error_m2", SPEED)]),
+            read(G3, G3, fields![error(name::ERROR_M1, SPEED), error(name::ERROR_M2, SPEED)]),
+            read(G4, G4, fields![narrow_error(name::ERROR_M1, SPEED), narrow_error(name::ERROR_M2, SPEED)]),
         ],
     ),
     late(
@@ -44,8 +45,8 @@ pub(super) const ROWS: &[Command] = &[
         "set_position_error_limits",
         "position error limits",
         forms![
-            write(G3, G3, Effect::Setting, fields![wide("limit_m1", POSITION), wide("limit_m2", POSITION)]),
-            write(G4, G4, Effect::Setting, fields![narrow("limit_m1", POSITION), narrow("limit_m2", POSITION)]),
+            write(G3, G3, Effect::Setting, fields![wide(name::LIMIT_M1, POSITION), wide(name::LIMIT_M2, POSITION)]),
+            write(G4, G4, Effect::Setting, fields![narrow(name::LIMIT_M1, POSITION), narrow(name::LIMIT_M2, POSITION)]),
         ],
     )
     .note("The vendor says that these limits act only where acceleration and deceleration are set."),
@@ -54,8 +55,8 @@ pub(super) const ROWS: &[Command] = &[
         "read_position_error_limits",
         "read position error limits",
         forms![
-            read(G3, G3, fields![wide("limit_m1", POSITION), wide("limit_m2", POSITION)]),
-            read(G4, G4, fields![narrow("limit_m1", POSITION), narrow("limit_m2", POSITION)]),
+            read(G3, G3, fields![wide(name::LIMIT_M1, POSITION), wide(name::LIMIT_M2, POSITION)]),
+            read(G4, G4, fields![narrow(name::LIMIT_M1, POSITION), narrow(name::LIMIT_M2, POSITION)]),
         ],
     ),
     late(
@@ -63,21 +64,21 @@ pub(super) const ROWS: &[Command] = &[
         "read_position_errors",
         "read position errors",
         forms![
-            read(G3, G3, fields![error("error_m1", POSITION), error("error_m2", POSITION)]),
-            read(G4, G4, fields![narrow_error("error_m1", POSITION), narrow_error("error_m2", POSITION)]),
+            read(G3, G3, fields![error(name::ERROR_M1, POSITION), error(name::ERROR_M2, POSITION)]),
+            read(G4, G4, fields![narrow_error(name::ERROR_M1, POSITION), narrow_error(name::ERROR_M2, POSITION)]),
         ],
     ),
     late(
         number::SET_VOLTAGE_OFFSETS,
         "set_voltage_offsets",
         "voltage offsets",
-        forms![write(G3, G4, Effect::Setting, fields![offset("main"), offset("logic")])],
+        forms![write(G3, G4, Effect::Setting, fields![offset(name::MAIN), offset(name::LOGIC)])],
     ),
     late(
         number::READ_VOLTAGE_OFFSETS,
         "read_voltage_offsets",
         "read voltage offsets",
-        forms![read(G3, G4, fields![offset("main"), offset("logic")])],
+        forms![read(G3, G4, fields![offset(name::MAIN), offset(name::LOGIC)])],
     ),
     late(
         number::SET_CONTROL_LIMITS,
@@ -121,32 +122,36 @@ const BLANKING: &str =
 const SPEED: Unit = Unit::CountsPerSecond;
 const POSITION: Unit = Unit::Counts;
 
-const AUTO_OFFSET: Field =
-    byte("auto_offset", "automatic offset in tenths of a volt").scaled(Unit::Volts, scale::VOLTAGE_VOLTS, 1);
+const AUTO_OFFSET: Field = byte(name::AUTO_OFFSET, "automatic offset in tenths of a volt").scaled(
+    Unit::Volts,
+    scale::VOLTAGE_VOLTS,
+    1,
+);
 const SET_MAIN: &[Form] = forms![
-    write(G1, G3, Effect::Setting, fields![volts("min"), volts("max")]),
-    write(G4, G4, Effect::Setting, fields![volts("min"), volts("max"), AUTO_OFFSET]),
+    write(G1, G3, Effect::Setting, fields![volts(name::MIN), volts(name::MAX)]),
+    write(G4, G4, Effect::Setting, fields![volts(name::MIN), volts(name::MAX), AUTO_OFFSET]),
 ];
 const READ_MAIN: &[Form] = forms![
-    read(G1, G3, fields![volts("min"), volts("max")]),
-    read(G4, G4, fields![volts("min"), volts("max"), AUTO_OFFSET]),
+    read(G1, G3, fields![volts(name::MIN), volts(name::MAX)]),
+    read(G4, G4, fields![volts(name::MIN), volts(name::MAX), AUTO_OFFSET]),
 ];
-const SET_LOGIC: &[Form] = forms![write(G1, G4, Effect::Setting, fields![volts("min"), volts("max")])];
-const READ_LOGIC: &[Form] = forms![read(G1, G4, fields![volts("min"), volts("max")])];
+const SET_LOGIC: &[Form] =
+    forms![write(G1, G4, Effect::Setting, fields![volts(name::MIN), volts(name::MAX)])];
+const READ_LOGIC: &[Form] = forms![read(G1, G4, fields![volts(name::MIN), volts(name::MAX)])];
 
 const SET_CURRENT: &[Form] =
-    forms![write(G1, G4, Effect::Setting, fields![limit_amps("max"), limit_amps("min")])];
-const READ_CURRENT: &[Form] = forms![read(G1, G4, fields![limit_amps("max"), limit_amps("min")])];
+    forms![write(G1, G4, Effect::Setting, fields![limit_amps(name::MAX), limit_amps(name::MIN)])];
+const READ_CURRENT: &[Form] = forms![read(G1, G4, fields![limit_amps(name::MAX), limit_amps(name::MIN)])];
 
 const CONTROL_LIMITS: &[Field] = fields![
-    control_limit("s1_min"),
-    control_limit("s1_max"),
-    control_limit("s2_min"),
-    control_limit("s2_max")
+    control_limit(name::S1_MIN),
+    control_limit(name::S1_MAX),
+    control_limit(name::S2_MIN),
+    control_limit(name::S2_MAX)
 ];
 
 const LOCK: Field =
-    byte("lock", "0xAA lets software reset; 0x55 resets by itself (generation 4); else only hardware");
+    byte(name::LOCK, "0xAA lets software reset; 0x55 resets by itself (generation 4); else only hardware");
 
 const fn manual(number: u8, key: &'static str, title: &'static str, forms: &'static [Form]) -> Command {
     Command::new(number, key, title, MANUAL_ADVANCED, forms)
@@ -156,37 +161,37 @@ const fn late(number: u8, key: &'static str, title: &'static str, forms: &'stati
     Command::new(number, key, title, CLIENTS, forms)
 }
 
-const fn wide(name: &'static str, unit: Unit) -> Field {
-    Field::new(name, Kind::U32, "error at which the motor is stopped; 0 for none").unit(unit)
+const fn wide(name: impl Name, unit: Unit) -> Field {
+    field(name, Kind::U32, "error at which the motor is stopped; 0 for none").unit(unit)
 }
 
-const fn narrow(name: &'static str, unit: Unit) -> Field {
-    Field::new(name, Kind::U16, "error at which the motor is stopped; 0 for none").unit(unit)
+const fn narrow(name: impl Name, unit: Unit) -> Field {
+    field(name, Kind::U16, "error at which the motor is stopped; 0 for none").unit(unit)
 }
 
-const fn error(name: &'static str, unit: Unit) -> Field {
-    Field::new(name, Kind::I32, "how far the motor is from its setpoint").unit(unit)
+const fn error(name: impl Name, unit: Unit) -> Field {
+    field(name, Kind::I32, "how far the motor is from its setpoint").unit(unit)
 }
 
 /// Clients read two bytes without a sign.
-const fn narrow_error(name: &'static str, unit: Unit) -> Field {
-    Field::new(name, Kind::U16, "magnitude of how far the motor is from its setpoint").unit(unit)
+const fn narrow_error(name: impl Name, unit: Unit) -> Field {
+    field(name, Kind::U16, "magnitude of how far the motor is from its setpoint").unit(unit)
 }
 
-const fn offset(name: &'static str) -> Field {
-    Field::new(name, Kind::I8, "added to the measured voltage, in tenths of a volt")
+const fn offset(name: impl Name) -> Field {
+    field(name, Kind::I8, "added to the measured voltage, in tenths of a volt")
         .scaled(Unit::Volts, scale::VOLTAGE_VOLTS, 1)
         .range(-10, 10)
 }
 
-const fn control_limit(name: &'static str) -> Field {
-    Field::new(name, Kind::U16, "share of the output that an input may command").scaled(
+const fn control_limit(name: impl Name) -> Field {
+    field(name, Kind::U16, "share of the output that an input may command").scaled(
         Unit::Percent,
         100.0 / scale::DEFAULT_SPEED_RAW,
         2,
     )
 }
 
-const fn limit_amps(name: &'static str) -> Field {
-    Field::new(name, Kind::I32, "current in steps of 10 mA").scaled(Unit::Amps, scale::CURRENT_AMPS, 2)
+const fn limit_amps(name: impl Name) -> Field {
+    field(name, Kind::I32, "current in steps of 10 mA").scaled(Unit::Amps, scale::CURRENT_AMPS, 2)
 }

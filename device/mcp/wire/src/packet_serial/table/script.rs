@@ -1,7 +1,8 @@
 //! Scripts and the firmware loader. The format of a compiled script is not public.
 
 use super::super::command::{ClientUse, Command, Effect, Form, Reply, Simulated};
-use super::super::field::byte;
+use super::super::field::{byte, field};
+use super::super::name;
 use super::super::number;
 use super::{CLIENTS, G1, G4, MANUAL_ADVANCED, fields, forms, read, write, write_for};
 use crate::models::Family;
@@ -42,17 +43,18 @@ pub(super) const ROWS: &[Command] = &[
     ),
 ];
 
-const DELAY: Field = Field::new("delay", Kind::U32, "time after a reset; below 100 the script is not run")
+const DELAY: Field = field(name::DELAY, Kind::U32, "time after a reset; below 100 the script is not run")
     .unit(Unit::Milliseconds);
 
 /// The reply's second byte comes when the work is done; what it says is not public.
-const STATUS: &[Field] = fields![byte("status", "comes when the work is done; its meaning is not public")];
+const STATUS: &[Field] =
+    fields![byte(name::STATUS, "comes when the work is done; its meaning is not public")];
 
 const ERASE: &[Form] = forms![write_for(
     G1,
     G4,
     Effect::Memory,
-    fields![Field::new("key", Kind::U16, "the key 55AA").unit(Unit::Bits).fixed(0x55AA)],
+    fields![field(name::KEY, Kind::U16, "the key 55AA").unit(Unit::Bits).fixed(0x55AA)],
     Reply::AckThenStatus(STATUS)
 )];
 
@@ -61,15 +63,15 @@ const WRITE: &[Form] = forms![write_for(
     G4,
     Effect::Memory,
     fields![
-        Field::new("address", Kind::U24, "place in the script memory").unit(Unit::Bits),
-        Field::new("data", Kind::Bytes(16), "four words of the compiled file, the bytes of each reversed"),
+        field(name::ADDRESS, Kind::U24, "place in the script memory").unit(Unit::Bits),
+        field(name::DATA, Kind::Bytes(16), "four words of the compiled file, the bytes of each reversed"),
     ],
     Reply::AckThenStatus(STATUS)
 )];
 
 const LOADER: &[Field] = fields![
-    byte("mark", "always FF").unit(Unit::Bits).fixed(0xFF),
-    Field::new("key", Kind::U32, "the key A5A51234").unit(Unit::Bits).fixed(0xA5A5_1234),
+    byte(name::MARK, "always FF").unit(Unit::Bits).fixed(0xFF),
+    field(name::KEY, Kind::U32, "the key A5A51234").unit(Unit::Bits).fixed(0xA5A5_1234),
 ];
 
 const fn manual(number: u8, key: &'static str, title: &'static str, forms: &'static [Form]) -> Command {
