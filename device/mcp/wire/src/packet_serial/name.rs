@@ -6,6 +6,19 @@ pub trait Name: Copy {
     const TEXT: &'static str;
 }
 
+/// A name in small letters, as text.
+macro_rules! small {
+    ($name:ident) => {{
+        const SMALL: [u8; stringify!($name).len()] = $crate::packet_serial::name::letters(stringify!($name));
+        match str::from_utf8(&SMALL) {
+            Ok(text) => text,
+            Err(_) => panic!("a name is ASCII"),
+        }
+    }};
+}
+
+pub(super) use small;
+
 macro_rules! names {
     ($($name:ident)*) => {
         $(
@@ -15,13 +28,7 @@ macro_rules! names {
             pub struct $name;
 
             impl Name for $name {
-                const TEXT: &'static str = {
-                    const SMALL: [u8; stringify!($name).len()] = small(stringify!($name));
-                    match str::from_utf8(&SMALL) {
-                        Ok(text) => text,
-                        Err(_) => panic!("a name is ASCII"),
-                    }
-                };
+                const TEXT: &'static str = small!($name);
             }
         )*
 
@@ -31,7 +38,7 @@ macro_rules! names {
     };
 }
 
-const fn small<const LENGTH: usize>(name: &str) -> [u8; LENGTH] {
+pub(super) const fn letters<const LENGTH: usize>(name: &str) -> [u8; LENGTH] {
     let mut letters = [0; LENGTH];
     letters.copy_from_slice(name.as_bytes());
     letters.make_ascii_lowercase();

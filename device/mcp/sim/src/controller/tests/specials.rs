@@ -130,16 +130,19 @@ fn writes_in_the_width_of_another_generation_are_taken_and_leave_the_rest_as_it_
     // 57 in the four bytes of generations 1 to 3: min 11.0 V, max 29.0 V.
     assert_eq!(bench.raw(&with_crc(&[0x80, 57, 0, 110, 1, 34])), [0xff]);
     let limits = bench.ask(commands::READ_MAIN_VOLTAGES, &[]);
-    assert_eq!((limits.int(name::MIN), limits.int(name::MAX), limits.int(name::AUTO_OFFSET)), (110, 290, 9));
+    assert_eq!(
+        (limits.int(name::MIN), limits.int(name::MAX), limits.try_int(name::AUTO_OFFSET)),
+        (110, 290, Some(9))
+    );
     // 148 in the one byte of generations 1 and 2 sets both motors.
     assert_eq!(bench.raw(&with_crc(&[0x80, 148, 1])), [0xff]);
     let modes = bench.ask(commands::READ_PWM_MODE, &[]);
-    assert_eq!((modes.int(name::MODE_M1), modes.int(name::MODE_M2)), (1, 1));
+    assert_eq!((modes.try_int(name::MODE_M1), modes.try_int(name::MODE_M2)), (Some(1), Some(1)));
     // 68 in the four bytes of generation 1 leaves the deceleration.
     bench.ask(commands::SET_DEFAULT_ACCEL_M1, &[1_000, 2_000]);
     assert_eq!(bench.raw(&with_crc(&[0x80, 68, 0, 0, 0x0b, 0xb8])), [0xff]);
     let accels = bench.ask(commands::READ_DEFAULT_ACCELS, &[]);
-    assert_eq!((accels.int(name::ACCEL_M1), accels.int(name::DECEL_M1)), (3_000, 2_000));
+    assert_eq!((accels.int(name::ACCEL_M1), accels.try_int(name::DECEL_M1)), (3_000, Some(2_000)));
 }
 
 #[test]

@@ -8,12 +8,12 @@ use super::{CLIENTS, G1, G2, G3, G4, fields, forms, read, write};
 use brushwork_values::{Field, Kind};
 
 pub(super) const ROWS: &[Command] = &[
-    start(number::AUTOTUNE_VELOCITY_M1, "autotune_velocity_m1", "M1 velocity relay test"),
-    start(number::AUTOTUNE_VELOCITY_M2, "autotune_velocity_m2", "M2 velocity relay test"),
-    start(number::AUTOTUNE_POSITION_M1, "autotune_position_m1", "M1 position relay test"),
-    start(number::AUTOTUNE_POSITION_M2, "autotune_position_m2", "M2 position relay test"),
-    result(number::READ_AUTOTUNE_M1, "read_autotune_m1", "read M1 relay test"),
-    result(number::READ_AUTOTUNE_M2, "read_autotune_m2", "read M2 relay test"),
+    start(number::AUTOTUNE_VELOCITY_M1, "M1 velocity relay test"),
+    start(number::AUTOTUNE_VELOCITY_M2, "M2 velocity relay test"),
+    start(number::AUTOTUNE_POSITION_M1, "M1 position relay test"),
+    start(number::AUTOTUNE_POSITION_M2, "M2 position relay test"),
+    result(number::READ_AUTOTUNE_M1, "read M1 relay test"),
+    result(number::READ_AUTOTUNE_M2, "read M2 relay test"),
 ];
 
 const NOT_IN_LIBRARY: &str = "libraries of generation 4 do not send it; taken as in generation 3";
@@ -34,11 +34,11 @@ const RESULT: &[Field] = fields![
 
 const READ: &[Form] = forms![read(G1, G3, RESULT), read(G4, G4, RESULT).assumed(NOT_IN_LIBRARY)];
 
-const fn start(number: u8, key: &'static str, title: &'static str) -> Command {
-    Command::new(number, key, title, CLIENTS, START)
+const fn start(number: u8, title: &'static str) -> Command {
+    Command::new(number, title, CLIENTS, START)
         .note("The formula that turns its result into gains runs in the vendor's program and is not public.")
 }
 
-const fn result(number: u8, key: &'static str, title: &'static str) -> Command {
-    Command::new(number, key, title, CLIENTS, READ)
+const fn result(number: u8, title: &'static str) -> Command {
+    Command::new(number, title, CLIENTS, READ)
 }

@@ -10,7 +10,6 @@ use brushwork_values::{Field, Kind, Unit};
 pub(super) const ROWS: &[Command] = &[
     Command::new(
         number::SET_NODE_ID,
-        "set_node_id",
         "CANopen node id",
         CLIENTS,
         forms![write(G3, G4, Effect::Setting, fields![NODE_ID])],
@@ -18,7 +17,6 @@ pub(super) const ROWS: &[Command] = &[
     .simulated(NO_BUS),
     Command::new(
         number::READ_NODE_ID,
-        "read_node_id",
         "read CANopen node id",
         CLIENTS,
         forms![read(G3, G4, fields![NODE_ID])],
@@ -26,7 +24,6 @@ pub(super) const ROWS: &[Command] = &[
     .simulated(NO_BUS),
     Command::new(
         number::READ_CAN_ERRORS,
-        "read_can_errors",
         "read CAN error state",
         CLIENTS,
         forms![
@@ -39,24 +36,18 @@ pub(super) const ROWS: &[Command] = &[
     .note("The vendor's C++ library of 2025 reads one byte, the number of waiting messages."),
     Command::new(
         number::PUT_CAN_PACKET,
-        "put_can_packet",
         "send CAN message",
         CLIENTS,
         forms![write(G4, G4, Effect::Bus, MESSAGE)],
     )
     .simulated(LOOP_BACK),
-    Command::new(
-        number::GET_CAN_PACKET,
-        "get_can_packet",
-        "read CAN message",
-        CLIENTS,
-        forms![read(G4, G4, RECEIVED)],
-    )
-    .simulated(LOOP_BACK)
-    .note("In the vendor's C++ library of 2025 a reply that does not start with 0xFF ends after that byte."),
+    Command::new(number::GET_CAN_PACKET, "read CAN message", CLIENTS, forms![read(G4, G4, RECEIVED)])
+        .simulated(LOOP_BACK)
+        .note(
+            "In the vendor's C++ library of 2025 a reply that does not start with 0xFF ends after that byte.",
+        ),
     Command::new(
         number::WRITE_CAN_DICTIONARY,
-        "write_can_dictionary",
         "write CANopen dictionary",
         CLIENTS,
         forms![
@@ -69,7 +60,6 @@ pub(super) const ROWS: &[Command] = &[
     .note("The vendor's C++ library of 2025 expects no acknowledgement before the result."),
     Command::new(
         number::READ_CAN_DICTIONARY,
-        "read_can_dictionary",
         "read CANopen dictionary",
         CLIENTS,
         forms![read_at(G4, G4, ENTRY, READ_ENTRY).assumed(CONTRADICT)],

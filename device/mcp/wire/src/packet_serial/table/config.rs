@@ -12,78 +12,70 @@ use brushwork_values::{Field, Kind, Unit};
 pub(super) const ROWS: &[Command] = &[
     late(
         number::SET_SERIAL_TIMEOUT,
-        "set_serial_timeout",
         "serial time-out",
         forms![write(G2, G4, Effect::Setting, fields![SERIAL_TIMEOUT])],
     )
     .note("No source says which generation brought it; the library of 2015 does not have it."),
     late(
         number::READ_SERIAL_TIMEOUT,
-        "read_serial_timeout",
         "read serial time-out",
         forms![read(G2, G4, fields![SERIAL_TIMEOUT])],
     ),
     manual(
         number::RESTORE_DEFAULTS,
-        "restore_defaults",
         "restore defaults",
         forms![write(G1, G2, Effect::Memory, &[]), write(G3, G4, Effect::Memory, KEY)],
     )
     .accepts(&[&[], KEY])
     .note("Without the key later firmware does nothing."),
-    manual(number::SAVE_SETTINGS, "save_settings", "save settings", forms![write(G1, G4, Effect::Memory, KEY)])
+    manual(number::SAVE_SETTINGS, "save settings", forms![write(G1, G4, Effect::Memory, KEY)])
         .accepts(&[&[]])
         .note("The manual prints neither key nor CRC. Some units restart after it and take seconds."),
-    manual(number::RELOAD_SETTINGS, "reload_settings", "reload settings", forms![write(G1, G4, Effect::Memory, &[])])
+    manual(number::RELOAD_SETTINGS, "reload settings", forms![write(G1, G4, Effect::Memory, &[])])
         .note("The manual prints a read with the reply of 91; all clients write. Sent right after 94 it can time out."),
-    late(number::SET_SERIAL_NUMBER, "set_serial_number", "serial number", SET_SERIAL).simulated(LABEL),
-    late(number::READ_SERIAL_NUMBER, "read_serial_number", "read serial number", READ_SERIAL).simulated(LABEL),
+    late(number::SET_SERIAL_NUMBER, "serial number", SET_SERIAL).simulated(LABEL),
+    late(number::READ_SERIAL_NUMBER, "read serial number", READ_SERIAL).simulated(LABEL),
     late(
         number::SET_CONFIG,
-        "set_config",
         "configuration word",
         forms![write(G1, G4, Effect::Setting, fields![CONFIG])],
     )
     .simulated(Simulated::StoredOnly("a RoboClaw word, of which only the address acts; the MCP has 139 to 145 for what it says"))
     .client(ClientUse::Superseded("the MCP has 139 to 147 for what it says"))
     .note("Writing it can move the unit to another address at once."),
-    late(number::READ_CONFIG, "read_config", "read configuration word", forms![read(G1, G4, fields![CONFIG])])
+    late(number::READ_CONFIG, "read configuration word", forms![read(G1, G4, fields![CONFIG])])
         .simulated(Simulated::StoredOnly("a RoboClaw word, of which only the address acts; the MCP has 139 to 145 for what it says")),
-    late(number::READ_VOLTS, "read_volts", "read voltages", VOLTS)
+    late(number::READ_VOLTS, "read voltages", VOLTS)
         .note("A factory test in generation 1, the CTRL modes in 2 and 3, which the simulated controller only stores."),
-    late(number::READ_TEMPERATURES, "read_temperatures", "read temperatures", TEMPERATURES)
+    late(number::READ_TEMPERATURES, "read temperatures", TEMPERATURES)
         .note("A factory test in generation 1, the CTRL modes in 2 and 3, which the simulated controller only stores."),
-    late(number::SET_AUX_DUTIES, "set_aux_duties", "auxiliary duties", SET_AUX)
+    late(number::SET_AUX_DUTIES, "auxiliary duties", SET_AUX)
         .simulated(CTRL_PINS)
         .note("Sets the duty of the first CTRL pin in generations 2 and 3."),
-    late(number::READ_AUX_DUTIES, "read_aux_duties", "read auxiliary duties", READ_AUX).simulated(CTRL_PINS),
-    late(number::SET_HOMING_M1, "set_homing_m1", "M1 homing", SET_HOMING).simulated(HOMING),
-    late(number::SET_HOMING_M2, "set_homing_m2", "M2 homing", SET_HOMING).simulated(HOMING),
-    late(number::READ_HOMING, "read_homing", "read homing", READ_HOMING).simulated(HOMING),
-    manual(number::SET_PWM_MODE, "set_pwm_mode", "PWM mode", SET_PWM).simulated(NO_RIPPLE),
-    manual(number::READ_PWM_MODE, "read_pwm_mode", "read PWM mode", READ_PWM).simulated(NO_RIPPLE),
+    late(number::READ_AUX_DUTIES, "read auxiliary duties", READ_AUX).simulated(CTRL_PINS),
+    late(number::SET_HOMING_M1, "M1 homing", SET_HOMING).simulated(HOMING),
+    late(number::SET_HOMING_M2, "M2 homing", SET_HOMING).simulated(HOMING),
+    late(number::READ_HOMING, "read homing", READ_HOMING).simulated(HOMING),
+    manual(number::SET_PWM_MODE, "PWM mode", SET_PWM).simulated(NO_RIPPLE),
+    manual(number::READ_PWM_MODE, "read PWM mode", READ_PWM).simulated(NO_RIPPLE),
     late(
         number::SET_PWM_IDLE,
-        "set_pwm_idle",
         "PWM idle",
         forms![write(G3, G4, Effect::Setting, fields![idle(name::IDLE_M1), idle(name::IDLE_M2)])],
     ),
     late(
         number::READ_PWM_IDLE,
-        "read_pwm_idle",
         "read PWM idle",
         forms![read(G3, G4, fields![idle(name::IDLE_M1), idle(name::IDLE_M2)])],
     ),
     manual(
         number::READ_USER_MEMORY,
-        "read_user_memory",
         "read user memory",
         forms![read_at(G1, G4, fields![USER_ADDRESS], fields![USER_VALUE])],
     )
     .note("The reply's CRC covers the address byte."),
     manual(
         number::WRITE_USER_MEMORY,
-        "write_user_memory",
         "write user memory",
         forms![write(G1, G4, Effect::Setting, fields![USER_ADDRESS, USER_VALUE])],
     )
@@ -178,12 +170,12 @@ const READ_PWM: &[Form] = forms![
 const USER_ADDRESS: Field = byte(name::ADDRESS, "byte address in the user memory of 256 bytes");
 const USER_VALUE: Field = field(name::VALUE, Kind::U16, "the word there");
 
-const fn manual(number: u8, key: &'static str, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, key, title, MANUAL_ADVANCED, forms)
+const fn manual(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
+    Command::new(number, title, MANUAL_ADVANCED, forms)
 }
 
-const fn late(number: u8, key: &'static str, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, key, title, CLIENTS, forms)
+const fn late(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
+    Command::new(number, title, CLIENTS, forms)
 }
 
 /// The library of 2015 waits up to five seconds for it, so the motor may well run.

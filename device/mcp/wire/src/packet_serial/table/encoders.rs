@@ -10,34 +10,30 @@ use brushwork_values::{Field, Kind, Unit};
 pub(super) const ROWS: &[Command] = &[
     Command::new(
         number::READ_ENCODER_M1,
-        "read_encoder_m1",
         "read M1 encoder",
         MANUAL_ENCODERS,
         COUNT_AND_STATUS,
     ),
     Command::new(
         number::READ_ENCODER_M2,
-        "read_encoder_m2",
         "read M2 encoder",
         MANUAL_ENCODERS,
         COUNT_AND_STATUS,
     ),
-    Command::new(number::READ_SPEED_M1, "read_speed_m1", "read M1 speed", MANUAL_ENCODERS, SPEED_AND_STATUS)
+    Command::new(number::READ_SPEED_M1, "read M1 speed", MANUAL_ENCODERS, SPEED_AND_STATUS)
         .note(SIGN_IN_STATUS),
-    Command::new(number::READ_SPEED_M2, "read_speed_m2", "read M2 speed", MANUAL_ENCODERS, SPEED_AND_STATUS)
+    Command::new(number::READ_SPEED_M2, "read M2 speed", MANUAL_ENCODERS, SPEED_AND_STATUS)
         .note(SIGN_IN_STATUS),
     Command::new(
         number::RESET_ENCODERS,
-        "reset_encoders",
         "zero both encoders",
         MANUAL_ENCODERS,
         forms![write(G1, G4, Effect::Encoder, &[])],
     ),
-    Command::new(number::SET_ENCODER_M1, "set_encoder_m1", "set M1 encoder", MANUAL_ENCODERS, SET_COUNT),
-    Command::new(number::SET_ENCODER_M2, "set_encoder_m2", "set M2 encoder", MANUAL_ENCODERS, SET_COUNT),
+    Command::new(number::SET_ENCODER_M1, "set M1 encoder", MANUAL_ENCODERS, SET_COUNT),
+    Command::new(number::SET_ENCODER_M2, "set M2 encoder", MANUAL_ENCODERS, SET_COUNT),
     Command::new(
         number::READ_RAW_SPEED_M1,
-        "read_raw_speed_m1",
         "read M1 raw speed",
         MANUAL_ENCODERS,
         SPEED_AND_STATUS,
@@ -45,7 +41,6 @@ pub(super) const ROWS: &[Command] = &[
     .note(SIGN_IN_STATUS),
     Command::new(
         number::READ_RAW_SPEED_M2,
-        "read_raw_speed_m2",
         "read M2 raw speed",
         MANUAL_ENCODERS,
         SPEED_AND_STATUS,
@@ -53,7 +48,6 @@ pub(super) const ROWS: &[Command] = &[
     .note(SIGN_IN_STATUS),
     Command::new(
         number::READ_ENCODERS,
-        "read_encoders",
         "read encoders",
         MANUAL_ENCODERS,
         forms![read(G1, G4, fields![position(name::ENCODER_M1), position(name::ENCODER_M2)])],
@@ -61,7 +55,6 @@ pub(super) const ROWS: &[Command] = &[
     .note("The manual gives absolute encoders 0 to 2047 here and 0 to 4095 for 16; 4095 is followed."),
     Command::new(
         number::READ_RAW_SPEEDS,
-        "read_raw_speeds",
         "read raw speeds",
         MANUAL_ENCODERS,
         forms![read(G1, G4, fields![speed(name::RAW_SPEED_M1), speed(name::RAW_SPEED_M2)])],
@@ -69,28 +62,24 @@ pub(super) const ROWS: &[Command] = &[
     .note("Counts of the last 1/300 s expressed per second; signed, unlike 30 and 31."),
     Command::new(
         number::READ_ENCODER_MODES,
-        "read_encoder_modes",
         "read encoder pins",
         MANUAL_ADVANCED,
         forms![read(G1, G4, fields![pin(name::MODE_M1), pin(name::MODE_M2)])],
     ),
     Command::new(
         number::SET_ENCODER_MODE_M1,
-        "set_encoder_mode_m1",
         "M1 encoder pin",
         MANUAL_ADVANCED,
         SET_MODE,
     ),
     Command::new(
         number::SET_ENCODER_MODE_M2,
-        "set_encoder_mode_m2",
         "M2 encoder pin",
         MANUAL_ADVANCED,
         SET_MODE,
     ),
     Command::new(
         number::READ_ENCODER_STATUS,
-        "read_encoder_status",
         "read encoder status",
         CLIENTS,
         forms![
@@ -102,7 +91,6 @@ pub(super) const ROWS: &[Command] = &[
     .note("Generations 2 and 3 set the duty of the second CTRL pin with this number; the simulated controller only stores it."),
     Command::new(
         number::READ_SPEEDS,
-        "read_speeds",
         "read speeds",
         CLIENTS,
         forms![read(G3, G4, fields![speed(name::SPEED_M1), speed(name::SPEED_M2)])],

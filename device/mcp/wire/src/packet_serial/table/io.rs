@@ -9,40 +9,26 @@ use crate::codes;
 use brushwork_values::{Field, Kind, Unit};
 
 pub(super) const ROWS: &[Command] = &[
-    Command::new(number::SET_PIN_FUNCTIONS, "set_pin_functions", "pin functions", CLIENTS, SET_PINS)
+    Command::new(number::SET_PIN_FUNCTIONS, "pin functions", CLIENTS, SET_PINS)
         .simulated(ROBOCLAW_PINS)
         .client(MCP_PINS),
-    Command::new(number::READ_PIN_FUNCTIONS, "read_pin_functions", "read pin functions", CLIENTS, READ_PINS)
+    Command::new(number::READ_PIN_FUNCTIONS, "read pin functions", CLIENTS, READ_PINS)
         .simulated(ROBOCLAW_PINS)
         .client(MCP_PINS),
-    Command::new(
-        number::SET_CONTROL_SETTINGS,
-        "set_control_settings",
-        "control input settings",
-        CLIENTS,
-        SET_CONTROL,
-    )
-    .simulated(ROBOCLAW_PINS)
-    .client(MCP_PINS),
-    Command::new(
-        number::READ_CONTROL_SETTINGS,
-        "read_control_settings",
-        "read control input settings",
-        CLIENTS,
-        READ_CONTROL,
-    )
-    .simulated(ROBOCLAW_PINS)
-    .client(MCP_PINS),
+    Command::new(number::SET_CONTROL_SETTINGS, "control input settings", CLIENTS, SET_CONTROL)
+        .simulated(ROBOCLAW_PINS)
+        .client(MCP_PINS),
+    Command::new(number::READ_CONTROL_SETTINGS, "read control input settings", CLIENTS, READ_CONTROL)
+        .simulated(ROBOCLAW_PINS)
+        .client(MCP_PINS),
     manual(
         number::SET_DOUT_ACTION,
-        "set_dout_action",
         "digital output action",
         forms![write(G1, G4, Effect::Setting, fields![byte(name::INDEX, "output, counted from 0"), ACTION])],
     )
     .note("The manual prints no reply."),
     manual(
         number::READ_DOUT_ACTIONS,
-        "read_dout_actions",
         "read digital output actions",
         forms![read(
             G1,
@@ -50,43 +36,25 @@ pub(super) const ROWS: &[Command] = &[
             fields![counted(name::DOUTS, fields![ACTION], "one record for each output of the model")]
         )],
     ),
-    manual(
-        number::SET_PRIORITIES,
-        "set_priorities",
-        "priority levels",
-        forms![write(G1, G4, Effect::Setting, PRIORITIES)],
-    ),
-    manual(
-        number::READ_PRIORITIES,
-        "read_priorities",
-        "read priority levels",
-        forms![read(G1, G4, PRIORITIES)],
-    ),
+    manual(number::SET_PRIORITIES, "priority levels", forms![write(G1, G4, Effect::Setting, PRIORITIES)]),
+    manual(number::READ_PRIORITIES, "read priority levels", forms![read(G1, G4, PRIORITIES)]),
     manual(
         number::SET_ADDRESS_MIXED,
-        "set_address_mixed",
         "address and mixed mode",
         forms![write(G1, G4, Effect::Setting, fields![ADDRESS, MIXED])],
     )
     .note("Takes effect with the next packet."),
     manual(
         number::READ_ADDRESS_MIXED,
-        "read_address_mixed",
         "read address and mixed mode",
         forms![read(G1, G1, fields![MIXED]), read(G2, G4, fields![ADDRESS, MIXED])],
     ),
-    manual(number::SET_SIGNAL, "set_signal", "signal properties", SET_SIGNAL).note(OUTPUT_RANGE),
-    manual(number::READ_SIGNALS, "read_signals", "read signal properties", READ_SIGNALS)
+    manual(number::SET_SIGNAL, "signal properties", SET_SIGNAL).note(OUTPUT_RANGE),
+    manual(number::READ_SIGNALS, "read signal properties", READ_SIGNALS)
         .note("The manual prints a further 0xFF after the reply; no client reads one."),
-    manual(
-        number::SET_STREAM,
-        "set_stream",
-        "stream properties",
-        forms![write(G1, G4, Effect::Setting, SET_STREAM)],
-    ),
+    manual(number::SET_STREAM, "stream properties", forms![write(G1, G4, Effect::Setting, SET_STREAM)]),
     manual(
         number::READ_STREAMS,
-        "read_streams",
         "read stream properties",
         forms![read(
             G1,
@@ -96,7 +64,6 @@ pub(super) const ROWS: &[Command] = &[
     ),
     manual(
         number::READ_SIGNAL_VALUES,
-        "read_signal_values",
         "read signal values",
         forms![read(G1, G4, fields![counted(name::SIGNALS, VALUES, "one record for each signal")])],
     ),
@@ -226,8 +193,8 @@ const VALUES: &[Field] = fields![
     field(name::AVERAGE_SPEED, Kind::I32, "averaged speed"),
 ];
 
-const fn manual(number: u8, key: &'static str, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, key, title, MANUAL_ADVANCED, forms)
+const fn manual(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
+    Command::new(number, title, MANUAL_ADVANCED, forms)
 }
 
 const fn counted(name: impl Name, fields: &'static [Field], doc: &'static str) -> Field {

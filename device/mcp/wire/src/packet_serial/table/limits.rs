@@ -8,14 +8,13 @@ use super::{CLIENTS, G1, G3, G4, MANUAL_ADVANCED, fields, forms, read, write};
 use brushwork_values::{Field, Kind, Unit};
 
 pub(super) const ROWS: &[Command] = &[
-    manual(number::SET_MAIN_VOLTAGES, "set_main_voltages", "main voltage limits", SET_MAIN)
+    manual(number::SET_MAIN_VOLTAGES, "main voltage limits", SET_MAIN)
         .note("The simulated controller only stores the automatic offset of generation 4."),
-    manual(number::SET_LOGIC_VOLTAGES, "set_logic_voltages", "logic voltage limits", SET_LOGIC),
-    manual(number::READ_MAIN_VOLTAGES, "read_main_voltages", "read main voltage limits", READ_MAIN),
-    manual(number::READ_LOGIC_VOLTAGES, "read_logic_voltages", "read logic voltage limits", READ_LOGIC),
+    manual(number::SET_LOGIC_VOLTAGES, "logic voltage limits", SET_LOGIC),
+    manual(number::READ_MAIN_VOLTAGES, "read main voltage limits", READ_MAIN),
+    manual(number::READ_LOGIC_VOLTAGES, "read logic voltage limits", READ_LOGIC),
     late(
         number::SET_SPEED_ERROR_LIMITS,
-        "set_speed_error_limits",
         "speed error limits",
         forms![
             write(G3, G3, Effect::Setting, fields![wide(name::LIMIT_M1, SPEED), wide(name::LIMIT_M2, SPEED)]),
@@ -24,7 +23,6 @@ pub(super) const ROWS: &[Command] = &[
     ),
     late(
         number::READ_SPEED_ERROR_LIMITS,
-        "read_speed_error_limits",
         "read speed error limits",
         forms![
             read(G3, G3, fields![wide(name::LIMIT_M1, SPEED), wide(name::LIMIT_M2, SPEED)]),
@@ -33,7 +31,6 @@ pub(super) const ROWS: &[Command] = &[
     ),
     late(
         number::READ_SPEED_ERRORS,
-        "read_speed_errors",
         "read speed errors",
         forms![
             read(G3, G3, fields![error(name::ERROR_M1, SPEED), error(name::ERROR_M2, SPEED)]),
@@ -42,7 +39,6 @@ pub(super) const ROWS: &[Command] = &[
     ),
     late(
         number::SET_POSITION_ERROR_LIMITS,
-        "set_position_error_limits",
         "position error limits",
         forms![
             write(G3, G3, Effect::Setting, fields![wide(name::LIMIT_M1, POSITION), wide(name::LIMIT_M2, POSITION)]),
@@ -52,7 +48,6 @@ pub(super) const ROWS: &[Command] = &[
     .note("The vendor says that these limits act only where acceleration and deceleration are set."),
     late(
         number::READ_POSITION_ERROR_LIMITS,
-        "read_position_error_limits",
         "read position error limits",
         forms![
             read(G3, G3, fields![wide(name::LIMIT_M1, POSITION), wide(name::LIMIT_M2, POSITION)]),
@@ -61,7 +56,6 @@ pub(super) const ROWS: &[Command] = &[
     ),
     late(
         number::READ_POSITION_ERRORS,
-        "read_position_errors",
         "read position errors",
         forms![
             read(G3, G3, fields![error(name::ERROR_M1, POSITION), error(name::ERROR_M2, POSITION)]),
@@ -70,19 +64,16 @@ pub(super) const ROWS: &[Command] = &[
     ),
     late(
         number::SET_VOLTAGE_OFFSETS,
-        "set_voltage_offsets",
         "voltage offsets",
         forms![write(G3, G4, Effect::Setting, fields![offset(name::MAIN), offset(name::LOGIC)])],
     ),
     late(
         number::READ_VOLTAGE_OFFSETS,
-        "read_voltage_offsets",
         "read voltage offsets",
         forms![read(G3, G4, fields![offset(name::MAIN), offset(name::LOGIC)])],
     ),
     late(
         number::SET_CONTROL_LIMITS,
-        "set_control_limits",
         "control input limits",
         forms![write(G3, G3, Effect::Setting, CONTROL_LIMITS)],
     )
@@ -90,28 +81,26 @@ pub(super) const ROWS: &[Command] = &[
     .note(BLANKING),
     late(
         number::READ_CONTROL_LIMITS,
-        "read_control_limits",
         "read control input limits",
         forms![read(G3, G3, CONTROL_LIMITS)],
     )
     .simulated(CONTROL_INPUTS)
     .note(BLANKING),
-    manual(number::SET_CURRENT_LIMITS_M1, "set_current_limits_m1", "M1 current limits", SET_CURRENT)
+    manual(number::SET_CURRENT_LIMITS_M1, "M1 current limits", SET_CURRENT)
         .note("The manual prints command byte 134 and zeros for the minimum. From 2018 the minimum is sent as a positive magnitude."),
-    manual(number::SET_CURRENT_LIMITS_M2, "set_current_limits_m2", "M2 current limits", SET_CURRENT)
+    manual(number::SET_CURRENT_LIMITS_M2, "M2 current limits", SET_CURRENT)
         .note("From 2018 the minimum is sent as a positive magnitude."),
-    manual(number::READ_CURRENT_LIMITS_M1, "read_current_limits_m1", "read M1 current limits", READ_CURRENT),
-    manual(number::READ_CURRENT_LIMITS_M2, "read_current_limits_m2", "read M2 current limits", READ_CURRENT),
-    manual(number::RESET_ESTOP, "reset_estop", "reset E-stop", forms![write(G1, G4, Effect::Setting, &[])])
+    manual(number::READ_CURRENT_LIMITS_M1, "read M1 current limits", READ_CURRENT),
+    manual(number::READ_CURRENT_LIMITS_M2, "read M2 current limits", READ_CURRENT),
+    manual(number::RESET_ESTOP, "reset E-stop", forms![write(G1, G4, Effect::Setting, &[])])
         .note("Does nothing unless the reset is unlocked (201)."),
     manual(
         number::SET_ESTOP_LOCK,
-        "set_estop_lock",
         "E-stop reset lock",
         forms![write(G1, G4, Effect::Setting, fields![LOCK])],
     )
     .note("The manual prints neither argument nor CRC, and the reply of 202."),
-    manual(number::READ_ESTOP_LOCK, "read_estop_lock", "read E-stop reset lock", forms![read(G1, G4, fields![LOCK])]),
+    manual(number::READ_ESTOP_LOCK, "read E-stop reset lock", forms![read(G1, G4, fields![LOCK])]),
 ];
 
 const CONTROL_INPUTS: Simulated =
@@ -153,12 +142,12 @@ const CONTROL_LIMITS: &[Field] = fields![
 const LOCK: Field =
     byte(name::LOCK, "0xAA lets software reset; 0x55 resets by itself (generation 4); else only hardware");
 
-const fn manual(number: u8, key: &'static str, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, key, title, MANUAL_ADVANCED, forms)
+const fn manual(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
+    Command::new(number, title, MANUAL_ADVANCED, forms)
 }
 
-const fn late(number: u8, key: &'static str, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, key, title, CLIENTS, forms)
+const fn late(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
+    Command::new(number, title, CLIENTS, forms)
 }
 
 const fn wide(name: impl Name, unit: Unit) -> Field {

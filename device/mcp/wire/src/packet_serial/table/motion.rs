@@ -8,35 +8,23 @@ use super::{CLIENTS, G1, G3, G4, MANUAL_MOTION, fields, forms, write};
 use brushwork_values::{Field, Kind, Unit};
 
 pub(super) const ROWS: &[Command] = &[
-    row(number::DUTY_M1, "duty_m1", "M1 duty", DUTY),
-    row(number::DUTY_M2, "duty_m2", "M2 duty", DUTY),
-    row(
-        number::DUTY_BOTH,
-        "duty_both",
-        "duty",
-        forms![drive(fields![duty(name::DUTY_M1), duty(name::DUTY_M2)])],
-    ),
-    row(number::SPEED_M1, "speed_m1", "M1 speed", SPEED),
-    row(number::SPEED_M2, "speed_m2", "M2 speed", SPEED),
-    row(
-        number::SPEED_BOTH,
-        "speed_both",
-        "speed",
-        forms![drive(fields![speed(name::SPEED_M1), speed(name::SPEED_M2)])],
-    ),
-    row(number::SPEED_ACCEL_M1, "speed_accel_m1", "M1 speed with acceleration", SPEED_ACCEL),
-    row(number::SPEED_ACCEL_M2, "speed_accel_m2", "M2 speed with acceleration", SPEED_ACCEL),
+    row(number::DUTY_M1, "M1 duty", DUTY),
+    row(number::DUTY_M2, "M2 duty", DUTY),
+    row(number::DUTY_BOTH, "duty", forms![drive(fields![duty(name::DUTY_M1), duty(name::DUTY_M2)])]),
+    row(number::SPEED_M1, "M1 speed", SPEED),
+    row(number::SPEED_M2, "M2 speed", SPEED),
+    row(number::SPEED_BOTH, "speed", forms![drive(fields![speed(name::SPEED_M1), speed(name::SPEED_M2)])]),
+    row(number::SPEED_ACCEL_M1, "M1 speed with acceleration", SPEED_ACCEL),
+    row(number::SPEED_ACCEL_M2, "M2 speed with acceleration", SPEED_ACCEL),
     row(
         number::SPEED_ACCEL_BOTH,
-        "speed_accel_both",
         "speed with acceleration",
         forms![drive(fields![accel(name::ACCEL), speed(name::SPEED_M1), speed(name::SPEED_M2)])],
     ),
-    row(number::SPEED_DISTANCE_M1, "speed_distance_m1", "M1 distance", SPEED_DISTANCE),
-    row(number::SPEED_DISTANCE_M2, "speed_distance_m2", "M2 distance", SPEED_DISTANCE),
+    row(number::SPEED_DISTANCE_M1, "M1 distance", SPEED_DISTANCE),
+    row(number::SPEED_DISTANCE_M2, "M2 distance", SPEED_DISTANCE),
     row(
         number::SPEED_DISTANCE_BOTH,
-        "speed_distance_both",
         "distance",
         forms![travel(fields![
             speed(name::SPEED_M1),
@@ -46,22 +34,11 @@ pub(super) const ROWS: &[Command] = &[
             BUFFER,
         ])],
     ),
-    row(
-        number::SPEED_ACCEL_DISTANCE_M1,
-        "speed_accel_distance_m1",
-        "M1 distance with acceleration",
-        SPEED_ACCEL_DISTANCE,
-    )
-    .note("The manual's copy at hand lacks the send line; as 45."),
-    row(
-        number::SPEED_ACCEL_DISTANCE_M2,
-        "speed_accel_distance_m2",
-        "M2 distance with acceleration",
-        SPEED_ACCEL_DISTANCE,
-    ),
+    row(number::SPEED_ACCEL_DISTANCE_M1, "M1 distance with acceleration", SPEED_ACCEL_DISTANCE)
+        .note("The manual's copy at hand lacks the send line; as 45."),
+    row(number::SPEED_ACCEL_DISTANCE_M2, "M2 distance with acceleration", SPEED_ACCEL_DISTANCE),
     row(
         number::SPEED_ACCEL_DISTANCE_BOTH,
-        "speed_accel_distance_both",
         "distance with acceleration",
         forms![travel(fields![
             accel(name::ACCEL),
@@ -74,7 +51,6 @@ pub(super) const ROWS: &[Command] = &[
     ),
     row(
         number::SPEED_ACCEL_EACH,
-        "speed_accel_each",
         "speed with acceleration each",
         forms![drive(fields![
             accel(name::ACCEL_M1),
@@ -85,7 +61,6 @@ pub(super) const ROWS: &[Command] = &[
     ),
     row(
         number::SPEED_ACCEL_DISTANCE_EACH,
-        "speed_accel_distance_each",
         "distance with acceleration each",
         forms![travel(fields![
             accel(name::ACCEL_M1),
@@ -97,11 +72,10 @@ pub(super) const ROWS: &[Command] = &[
             BUFFER,
         ])],
     ),
-    row(number::DUTY_ACCEL_M1, "duty_accel_m1", "M1 duty with acceleration", DUTY_ACCEL).note(FOUR_BYTES),
-    row(number::DUTY_ACCEL_M2, "duty_accel_m2", "M2 duty with acceleration", DUTY_ACCEL).note(FOUR_BYTES),
+    row(number::DUTY_ACCEL_M1, "M1 duty with acceleration", DUTY_ACCEL).note(FOUR_BYTES),
+    row(number::DUTY_ACCEL_M2, "M2 duty with acceleration", DUTY_ACCEL).note(FOUR_BYTES),
     row(
         number::DUTY_ACCEL_BOTH,
-        "duty_accel_both",
         "duty with acceleration",
         forms![drive(fields![
             duty(name::DUTY_M1),
@@ -111,35 +85,20 @@ pub(super) const ROWS: &[Command] = &[
         ])],
     )
     .note("The manual's copy at hand lacks the layout; all clients send this one."),
-    row(number::POSITION_PROFILE_M1, "position_profile_m1", "M1 position with profile", PROFILE)
-        .note(UNSIGNED_SPEED),
-    row(number::POSITION_PROFILE_M2, "position_profile_m2", "M2 position with profile", PROFILE)
-        .note(UNSIGNED_SPEED),
-    row(number::POSITION_PROFILE_BOTH, "position_profile_both", "position with profile", PROFILE_BOTH)
-        .note(UNSIGNED_SPEED),
-    late(
-        number::POSITION_M1,
-        "position_m1",
-        "M1 position",
-        forms![queue(fields![position(name::POSITION), BUFFER])],
-    ),
-    late(
-        number::POSITION_M2,
-        "position_m2",
-        "M2 position",
-        forms![queue(fields![position(name::POSITION), BUFFER])],
-    ),
+    row(number::POSITION_PROFILE_M1, "M1 position with profile", PROFILE).note(UNSIGNED_SPEED),
+    row(number::POSITION_PROFILE_M2, "M2 position with profile", PROFILE).note(UNSIGNED_SPEED),
+    row(number::POSITION_PROFILE_BOTH, "position with profile", PROFILE_BOTH).note(UNSIGNED_SPEED),
+    late(number::POSITION_M1, "M1 position", forms![queue(fields![position(name::POSITION), BUFFER])]),
+    late(number::POSITION_M2, "M2 position", forms![queue(fields![position(name::POSITION), BUFFER])]),
     late(
         number::POSITION_BOTH,
-        "position_both",
         "position",
         forms![queue(fields![position(name::POSITION_M1), position(name::POSITION_M2), BUFFER])],
     ),
-    late(number::SPEED_POSITION_M1, "speed_position_m1", "M1 position with speed", SPEED_POSITION),
-    late(number::SPEED_POSITION_M2, "speed_position_m2", "M2 position with speed", SPEED_POSITION),
+    late(number::SPEED_POSITION_M1, "M1 position with speed", SPEED_POSITION),
+    late(number::SPEED_POSITION_M2, "M2 position with speed", SPEED_POSITION),
     late(
         number::SPEED_POSITION_BOTH,
-        "speed_position_both",
         "position with speed",
         forms![queue(fields![
             travel_speed(name::SPEED_M1),
@@ -149,11 +108,10 @@ pub(super) const ROWS: &[Command] = &[
             BUFFER,
         ])],
     ),
-    late(number::PERCENT_POSITION_M1, "percent_position_m1", "M1 position in percent", PERCENT),
-    late(number::PERCENT_POSITION_M2, "percent_position_m2", "M2 position in percent", PERCENT),
+    late(number::PERCENT_POSITION_M1, "M1 position in percent", PERCENT),
+    late(number::PERCENT_POSITION_M2, "M2 position in percent", PERCENT),
     late(
         number::PERCENT_POSITION_BOTH,
-        "percent_position_both",
         "position in percent",
         forms![queue(fields![percent(name::POSITION_M1), percent(name::POSITION_M2), BUFFER])],
     ),
@@ -200,12 +158,12 @@ const PERCENT: &[Form] = forms![queue(fields![percent(name::POSITION), BUFFER])]
 const BUFFER: Field =
     byte(name::BUFFER, "0 queues the command, 1 drops what runs and waits and starts it at once").range(0, 1);
 
-const fn row(number: u8, key: &'static str, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, key, title, MANUAL_MOTION, forms)
+const fn row(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
+    Command::new(number, title, MANUAL_MOTION, forms)
 }
 
-const fn late(number: u8, key: &'static str, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, key, title, CLIENTS, forms)
+const fn late(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
+    Command::new(number, title, CLIENTS, forms)
 }
 
 const fn drive(request: &'static [Field]) -> Form {

@@ -8,69 +8,31 @@ use super::{CLIENTS, G1, G2, G3, G4, MANUAL_ADVANCED, MANUAL_MOTION, fields, for
 use brushwork_values::{Field, Kind, Unit};
 
 pub(super) const ROWS: &[Command] = &[
-    row(number::SET_VELOCITY_PID_M1, "set_velocity_pid_m1", "M1 velocity PID", SET_VELOCITY),
-    row(number::SET_VELOCITY_PID_M2, "set_velocity_pid_m2", "M2 velocity PID", SET_VELOCITY),
-    row(number::READ_VELOCITY_PID_M1, "read_velocity_pid_m1", "read M1 velocity PID", READ_VELOCITY)
-        .note(ORDER),
-    row(number::READ_VELOCITY_PID_M2, "read_velocity_pid_m2", "read M2 velocity PID", READ_VELOCITY)
-        .note(ORDER),
-    row(number::SET_POSITION_PID_M1, "set_position_pid_m1", "M1 position PID", SET_POSITION).note(FACTOR),
-    row(number::SET_POSITION_PID_M2, "set_position_pid_m2", "M2 position PID", SET_POSITION).note(FACTOR),
-    row(number::READ_POSITION_PID_M1, "read_position_pid_m1", "read M1 position PID", READ_POSITION)
-        .note(NO_LINE),
-    row(number::READ_POSITION_PID_M2, "read_position_pid_m2", "read M2 position PID", READ_POSITION)
-        .note(NO_LINE),
-    row(number::SET_DEFAULT_ACCEL_M1, "set_default_accel_m1", "M1 default acceleration", SET_ACCEL),
-    row(number::SET_DEFAULT_ACCEL_M2, "set_default_accel_m2", "M2 default acceleration", SET_ACCEL),
-    Command::new(
-        number::SET_DEFAULT_SPEED_M1,
-        "set_default_speed_m1",
-        "M1 default speed",
-        CLIENTS,
-        SET_SPEED,
-    ),
-    Command::new(
-        number::SET_DEFAULT_SPEED_M2,
-        "set_default_speed_m2",
-        "M2 default speed",
-        CLIENTS,
-        SET_SPEED,
-    ),
+    row(number::SET_VELOCITY_PID_M1, "M1 velocity PID", SET_VELOCITY),
+    row(number::SET_VELOCITY_PID_M2, "M2 velocity PID", SET_VELOCITY),
+    row(number::READ_VELOCITY_PID_M1, "read M1 velocity PID", READ_VELOCITY).note(ORDER),
+    row(number::READ_VELOCITY_PID_M2, "read M2 velocity PID", READ_VELOCITY).note(ORDER),
+    row(number::SET_POSITION_PID_M1, "M1 position PID", SET_POSITION).note(FACTOR),
+    row(number::SET_POSITION_PID_M2, "M2 position PID", SET_POSITION).note(FACTOR),
+    row(number::READ_POSITION_PID_M1, "read M1 position PID", READ_POSITION).note(NO_LINE),
+    row(number::READ_POSITION_PID_M2, "read M2 position PID", READ_POSITION).note(NO_LINE),
+    row(number::SET_DEFAULT_ACCEL_M1, "M1 default acceleration", SET_ACCEL),
+    row(number::SET_DEFAULT_ACCEL_M2, "M2 default acceleration", SET_ACCEL),
+    Command::new(number::SET_DEFAULT_SPEED_M1, "M1 default speed", CLIENTS, SET_SPEED),
+    Command::new(number::SET_DEFAULT_SPEED_M2, "M2 default speed", CLIENTS, SET_SPEED),
     Command::new(
         number::READ_DEFAULT_SPEEDS,
-        "read_default_speeds",
         "read default speeds",
         CLIENTS,
         forms![read(G3, G4, fields![default_speed(name::SPEED_M1), default_speed(name::SPEED_M2)])],
     ),
-    row(number::READ_DEFAULT_ACCELS, "read_default_accels", "read default accelerations", READ_ACCELS),
-    torque(
-        number::SET_INDUCTANCE_RESISTANCE_M1,
-        "set_inductance_resistance_m1",
-        "M1 inductance and resistance",
-        SET_LR,
-    ),
-    torque(
-        number::SET_INDUCTANCE_RESISTANCE_M2,
-        "set_inductance_resistance_m2",
-        "M2 inductance and resistance",
-        SET_LR,
-    ),
-    torque(
-        number::READ_INDUCTANCE_RESISTANCE_M1,
-        "read_inductance_resistance_m1",
-        "read M1 inductance and resistance",
-        READ_LR,
-    ),
-    torque(
-        number::READ_INDUCTANCE_RESISTANCE_M2,
-        "read_inductance_resistance_m2",
-        "read M2 inductance and resistance",
-        READ_LR,
-    ),
+    row(number::READ_DEFAULT_ACCELS, "read default accelerations", READ_ACCELS),
+    torque(number::SET_INDUCTANCE_RESISTANCE_M1, "M1 inductance and resistance", SET_LR),
+    torque(number::SET_INDUCTANCE_RESISTANCE_M2, "M2 inductance and resistance", SET_LR),
+    torque(number::READ_INDUCTANCE_RESISTANCE_M1, "read M1 inductance and resistance", READ_LR),
+    torque(number::READ_INDUCTANCE_RESISTANCE_M2, "read M2 inductance and resistance", READ_LR),
     Command::new(
         number::CALIBRATE_INDUCTANCE_RESISTANCE,
-        "calibrate_inductance_resistance",
         "calibrate inductance and resistance",
         CLIENTS,
         forms![write(G1, G3, Effect::RelativeMotion, &[])],
@@ -169,12 +131,12 @@ const RESISTANCE: Field =
         .scaled(Unit::Ohms, 1.0 / scale::INDUCTANCE_RESISTANCE, 6)
         .label("R");
 
-const fn row(number: u8, key: &'static str, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, key, title, MANUAL_MOTION, forms)
+const fn row(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
+    Command::new(number, title, MANUAL_MOTION, forms)
 }
 
-const fn torque(number: u8, key: &'static str, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, key, title, MANUAL_ADVANCED, forms)
+const fn torque(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
+    Command::new(number, title, MANUAL_ADVANCED, forms)
         .note("L and R times 2^24. The vendor's Arduino library of 2025 sends floats and calls that a guess.")
 }
 

@@ -11,28 +11,25 @@ use brushwork_values::{Field, Kind, Unit};
 pub(super) const ROWS: &[Command] = &[
     manual(
         number::SET_SCRIPT_AUTORUN,
-        "set_script_autorun",
         "script autorun delay",
         forms![write(G1, G4, Effect::Setting, fields![DELAY])],
     )
     .note("A client of 2025 refuses to send 1 to 99."),
     manual(
         number::READ_SCRIPT_AUTORUN,
-        "read_script_autorun",
         "read script autorun delay",
         forms![read(G1, G4, fields![DELAY])],
     ),
-    manual(number::START_SCRIPT, "start_script", "start script", forms![write(G1, G4, Effect::Script, &[])]),
-    manual(number::STOP_SCRIPT, "stop_script", "stop script", forms![write(G1, G4, Effect::Stop, &[])]),
-    Command::new(number::ERASE_SCRIPT, "erase_script", "erase script", CLIENTS, ERASE).only(Family::Mcp),
-    Command::new(number::WRITE_SCRIPT, "write_script", "write script", CLIENTS, WRITE).only(Family::Mcp),
-    Command::new(number::READ_SCRIPT, "read_script", "read script", CLIENTS, &[])
+    manual(number::START_SCRIPT, "start script", forms![write(G1, G4, Effect::Script, &[])]),
+    manual(number::STOP_SCRIPT, "stop script", forms![write(G1, G4, Effect::Stop, &[])]),
+    Command::new(number::ERASE_SCRIPT, "erase script", CLIENTS, ERASE).only(Family::Mcp),
+    Command::new(number::WRITE_SCRIPT, "write script", CLIENTS, WRITE).only(Family::Mcp),
+    Command::new(number::READ_SCRIPT, "read script", CLIENTS, &[])
         .simulated(Simulated::Silent("only the number is public, not the layout"))
         .client(ClientUse::Never("only the number is public, not the layout"))
         .only(Family::Mcp),
     Command::new(
         number::ENTER_LOADER,
-        "enter_loader",
         "enter firmware loader",
         CLIENTS,
         forms![write(G1, G4, Effect::Loader, LOADER)],
@@ -74,7 +71,7 @@ const LOADER: &[Field] = fields![
     field(name::KEY, Kind::U32, "the key A5A51234").unit(Unit::Bits).fixed(0xA5A5_1234),
 ];
 
-const fn manual(number: u8, key: &'static str, title: &'static str, forms: &'static [Form]) -> Command {
+const fn manual(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
     // MCL is the MCP's (MCP manual 3.0.1): no RoboClaw manual has these numbers.
-    Command::new(number, key, title, MANUAL_ADVANCED, forms).only(Family::Mcp)
+    Command::new(number, title, MANUAL_ADVANCED, forms).only(Family::Mcp)
 }

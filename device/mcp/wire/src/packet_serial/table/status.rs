@@ -10,7 +10,6 @@ use brushwork_values::{Field, Kind, Unit};
 pub(super) const ROWS: &[Command] = &[
     Command::new(
         number::READ_VERSION,
-        "read_version",
         "read version",
         MANUAL_ADVANCED,
         forms![read(
@@ -21,21 +20,18 @@ pub(super) const ROWS: &[Command] = &[
     ),
     Command::new(
         number::READ_MAIN_BATTERY,
-        "read_main_battery",
         "read main battery",
         MANUAL_ADVANCED,
         forms![read(G1, G4, fields![volts(name::MAIN_BATTERY)])],
     ),
     Command::new(
         number::READ_LOGIC_BATTERY,
-        "read_logic_battery",
         "read logic battery",
         MANUAL_ADVANCED,
         forms![read(G1, G4, fields![volts(name::LOGIC_BATTERY)])],
     ),
     Command::new(
         number::READ_BUFFERS,
-        "read_buffers",
         "read buffer lengths",
         MANUAL_MOTION,
         forms![read(G1, G4, fields![buffer(name::BUFFER_M1), buffer(name::BUFFER_M2)])],
@@ -43,43 +39,33 @@ pub(super) const ROWS: &[Command] = &[
     .note("Clients of 2025 say that 0 means empty; the manual's 0x80 is followed."),
     Command::new(
         number::READ_PWMS,
-        "read_pwms",
         "read motor PWM",
         MANUAL_ADVANCED,
         forms![read(G1, G4, fields![duty(name::DUTY_M1), duty(name::DUTY_M2)])],
     ),
     Command::new(
         number::READ_CURRENTS,
-        "read_currents",
         "read motor currents",
         MANUAL_ADVANCED,
         forms![read(G1, G4, fields![amps(name::CURRENT_M1), amps(name::CURRENT_M2)])],
     )
     .note("The manual gives no sign; most clients read it with one."),
-    Command::new(
-        number::READ_ALL_STATUS,
-        "read_all_status",
-        "read all status",
-        CLIENTS,
-        forms![read(G4, G4, ALL_STATUS)],
-    )
-    .note("Firmware 4.2.8 does not answer it."),
+    Command::new(number::READ_ALL_STATUS, "read all status", CLIENTS, forms![read(G4, G4, ALL_STATUS)])
+        .note("Firmware 4.2.8 does not answer it."),
     Command::new(
         number::READ_TEMPERATURE_1,
-        "read_temperature_1",
         "read temperature 1",
         MANUAL_ADVANCED,
         forms![read(G1, G4, fields![celsius(name::TEMPERATURE_1)])],
     ),
     Command::new(
         number::READ_TEMPERATURE_2,
-        "read_temperature_2",
         "read temperature 2",
         MANUAL_ADVANCED,
         forms![read(G1, G4, fields![celsius(name::TEMPERATURE_2)])],
     )
     .note("Only on units with a second sensor."),
-    Command::new(number::READ_STATUS, "read_status", "read status", MANUAL_ADVANCED, STATUS)
+    Command::new(number::READ_STATUS, "read status", MANUAL_ADVANCED, STATUS)
         .note("The bits mean different things in two bytes and in four; see the table of status bits."),
 ];
 
