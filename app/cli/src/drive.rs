@@ -7,7 +7,8 @@ use std::time::{Duration, Instant};
 use brushwork_link::device::{
     ArmScope, DisarmReason, Drive, DriveCommand, Event, Identity, PollRate, Request,
 };
-use brushwork_mcp_wire::packet_serial::number;
+use brushwork_mcp_wire::packet_serial::commands;
+use brushwork_mcp_wire::packet_serial::name::QPPS;
 use brushwork_values::Motor;
 use serde_json::json;
 
@@ -127,14 +128,19 @@ fn command(args: &DriveArgs, client: &Client, interrupt: &Interrupt) -> Result<D
 
 /// The motor's own full speed: with both motors, the slower one's.
 fn qpps(motor: MotorArg, client: &Client, interrupt: &Interrupt) -> Result<u32, Exit> {
-    let commands: &[u8] = match motor {
-        MotorArg::M1 => &[number::READ_VELOCITY_PID_M1],
-        MotorArg::M2 => &[number::READ_VELOCITY_PID_M2],
-        MotorArg::Both => &[number::READ_VELOCITY_PID_M1, number::READ_VELOCITY_PID_M2],
+    let both = [commands::READ_VELOCITY_PID_M1, commands::READ_VELOCITY_PID_M2];
+    let commands = match motor {
+        MotorArg::M1 => &both[..1],
+        MotorArg::M2 => &both[1..],
+        MotorArg::Both => &both,
     };
     let mut slowest = u32::MAX;
     for &command in commands {
-        let request = Request::Transact { id: u64::from(command), command, values: Vec::new() };
+        let request = Request::Transact {
+            id: u64::from(command.number()),
+            command: command.number(),
+            values: Vec::new(),
+        };
         ask(client.device(), request)?;
         let values = wait(client.device(), interrupt, |event| match event {
             Event::Transacted { result, .. } => Some(result),
@@ -144,7 +150,8 @@ fn qpps(motor: MotorArg, client: &Client, interrupt: &Interrupt) -> Result<u32, 
             say(failure.to_string());
             Exit::Refused
         })?;
-        slowest = slowest.min(u32::try_from(values.int("qpps")).unwrap_or(0));
+        let reply = command.reply(values).ok_or(Exit::Refused)?;
+        slowest = slowest.min(u32::try_from(reply.int(QPPS)).unwrap_or(0));
     }
     if slowest == 0 {
         say(

@@ -4,13 +4,14 @@ use brushwork_mcp_client::MCP;
 use brushwork_motion_mind_client::{MotionMindFacts, is_motion_mind};
 use std::time::{Duration, Instant};
 
+use brushwork_link::Stream;
 use brushwork_link::device::{
     Channel, Event, Identity, Job, JobEnding, Newest, PlaceState, PollRate, StatusPlace, StatusReport,
 };
 use brushwork_link::settings::{SettingsImage, read_all};
-use brushwork_link::{Stream, Wire as _};
+use brushwork_mcp_client::TypedWire as _;
 use brushwork_mcp_client::diagnosis::{Diagnosis, Evidence, Measured, PinEnd, diagnose, homed, pin_ends};
-use brushwork_mcp_wire::packet_serial::number;
+use brushwork_mcp_wire::packet_serial::commands;
 use brushwork_motion_mind_client::taken;
 use brushwork_values::Severity;
 use serde::Serialize;
@@ -124,11 +125,8 @@ fn read_setup(client: &Client, readings: &mut Readings, interrupt: &Interrupt) -
     let job = Job::new("read the settings", SETTINGS_LIMIT, move |context| {
         let settings = Some(read_all(context, subject)?.image);
         // A RoboClaw does not know the command; its status word has bits of its own.
-        let values = if subject.family() == MCP {
-            context.transact(number::READ_SIGNAL_VALUES, &[]).ok()
-        } else {
-            None
-        };
+        let values =
+            if subject.family() == MCP { context.ask(commands::READ_SIGNAL_VALUES, &[]).ok() } else { None };
         Ok(Setup { settings, pins: values.map(|values| pin_ends(&values)) })
     });
     let ticket = match client.device().start(job) {

@@ -38,18 +38,6 @@ pub trait Wire {
         self.transact_values(command, values.iter().map(|&value| Value::Int(value)).collect())
     }
 
-    /// Sends a command whose raw numbers are given by field name, put in the order of this generation's layout; names
-    /// that the layout lacks are left out.
-    fn transact_named(
-        &mut self,
-        command: u8,
-        named: &[(&'static str, i64)],
-    ) -> Result<Values, ExchangeError> {
-        let settings = self.address().family().settings();
-        let values = settings.values((self.address(), self.generation()), command, named)?;
-        self.transact_values(command, values)
-    }
-
     /// Speaks to another address from now on: the unit has just been given it. `false` when this wire cannot follow.
     fn set_address(&mut self, _address: UnitAddress) -> bool {
         false

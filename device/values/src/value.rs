@@ -85,14 +85,6 @@ impl Values {
         self.iter().find(|(field, _)| field.name == name).map(|(_, value)| value)
     }
 
-    /// The raw number of the field `name`; 0 if there is none, which is a mistake of the caller: where a generation may
-    /// lack the field, use [`Values::try_int`].
-    pub fn int(&self, name: &str) -> i64 {
-        let value = self.try_int(name);
-        debug_assert!(value.is_some(), "no number named {name} among {:?}", self.names());
-        value.unwrap_or(0)
-    }
-
     /// The raw number of the field `name`; `None` if this generation's layout has no such number.
     pub fn try_int(&self, name: &str) -> Option<i64> {
         self.get(name).and_then(Value::as_int)
@@ -169,12 +161,5 @@ impl<'a> Record<'a> {
     pub fn try_int(&self, name: &str) -> Option<i64> {
         let index = self.fields.iter().position(|field| field.name == name)?;
         self.ints.get(index).copied()
-    }
-
-    /// The raw number of the field `name`; 0 if there is none, which is a mistake of the caller (see [`Values::int`]).
-    pub fn int(&self, name: &str) -> i64 {
-        let value = self.try_int(name);
-        debug_assert!(value.is_some(), "no number named {name} in the record");
-        value.unwrap_or(0)
     }
 }

@@ -9,12 +9,13 @@ use brushwork_link::settings::{
     diff, read_all, reload, restore_defaults, save_eeprom, write,
 };
 use brushwork_link::{Stream, Wire};
+use brushwork_mcp_client::TypedWire;
 use brushwork_mcp_client::packet::PacketWire;
 use brushwork_mcp_client::settings::SignalShape;
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::models::{Family, Model};
-use brushwork_mcp_wire::packet_serial::{Address, Generation, number};
+use brushwork_mcp_wire::packet_serial::{Address, Generation, commands, name, number};
 use brushwork_plant::faults::{Fault, Faulty};
 use brushwork_plant::machine::StreamIndex;
 use brushwork_plant::world::{PinSignal, WorldAction};
@@ -270,11 +271,11 @@ fn the_signal_graph_draws_what_the_controller_makes_of_an_input() {
             let action = WorldAction::SetPin { pin: 2, signal: PinSignal::Volts { volts } };
             line.with(|bus| bus.controllers_mut()[0].apply(&action)).expect("it has that pin");
             line.pass(Duration::from_millis(10));
-            let values = wire.transact(number::READ_SIGNAL_VALUES, &[]).expect("the line is sound");
+            let values = wire.ask(commands::READ_SIGNAL_VALUES, &[]).expect("the line is sound");
             let record = values.records().nth(2).expect("it has ten pins");
             let reading = f64::from(reading);
-            assert_eq!(record.int("position"), drawn.position(reading) as i64, "{shape:?} at {reading}");
-            let command = record.int("command") as f64;
+            assert_eq!(record.int(name::POSITION), drawn.position(reading) as i64, "{shape:?} at {reading}");
+            let command = record.int(name::COMMAND) as f64;
             assert!((command - drawn.command(reading)).abs() <= 1.0, "{shape:?} at {reading}: {command}");
         }
     }

@@ -88,9 +88,9 @@ fn randomise(wire: &mut PacketWire, table: &SettingsTable, generation: Generatio
                     raw_of(random, generation, sink, field.kind, now)
                 }
             };
-            arguments.push((field.name, value));
+            arguments.push(value);
         }
-        wire.transact_named(command, &arguments).unwrap_or_else(|error| panic!("{command}: {error}"));
+        wire.transact(command, &arguments).unwrap_or_else(|error| panic!("{command}: {error}"));
     }
     let address = wire.address();
     for row in table.rows().iter().filter(|row| !row.has_wire_form()) {

@@ -12,7 +12,9 @@ use brushwork_link::{Failure, Stream};
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_mcp_sim::motion::MotionSettings;
 use brushwork_mcp_wire::models;
-use brushwork_mcp_wire::packet_serial::{Address, Generation, Request as Packet, number};
+use brushwork_mcp_wire::packet_serial::{
+    Address, Generation, Given, Request as Packet, Typed, commands, give, name,
+};
 use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::presets;
 use brushwork_plant::world::WorldAction;
@@ -361,7 +363,7 @@ fn a_slow_default_acceleration_does_not_slow_the_experiments() {
         let mut link = connected();
         if slow {
             // 10 % of the duty range a second (commands 68 and 69, MCP manual): 3277 of 32767.
-            set(&link, number::SET_DEFAULT_ACCEL_M1, &[("accel", 3_277)]);
+            set(&link, commands::SET_DEFAULT_ACCEL_M1, &[give(name::ACCEL, 3_277)]);
             link.run_for(ms(100));
         }
         let report = tuned(&mut link, velocity(), |_| {}).expect("a report");
@@ -487,10 +489,10 @@ fn held(link: &VirtualLink) -> (u32, i32, [u32; 2]) {
     (motion.max_current_raw, motion.min_current_raw, [motion.inductance_raw, motion.resistance_raw])
 }
 
-fn set(link: &VirtualLink, command: u8, values: &[(&str, i64)]) {
+fn set<const L: u8>(link: &VirtualLink, command: Typed<L>, given: &[Given<L>]) {
     link.bus(|bus| {
         let generation = bus.controllers()[0].config().generation;
-        let packet = Packet::named(Address::DEFAULT, command, generation, values).expect("the values fit");
+        let packet = Packet::typed(Address::DEFAULT, command, generation, given).expect("the values fit");
         let bytes = packet.encode(generation).expect("it encodes");
         bus.receive(StreamIndex::Usb, &bytes);
     });
@@ -500,7 +502,11 @@ fn set(link: &VirtualLink, command: u8, values: &[(&str, i64)]) {
 fn torque_mode_is_refused_and_left_only_with_the_users_word_and_put_back() {
     let mut link = connected();
     // L 1 mH (16777 of 2^24), R 0.5 ohm (8388608 of 2^24): duty is a current (MCP manual 1.2.11).
-    set(&link, number::SET_INDUCTANCE_RESISTANCE_M1, &[("inductance", 16_777), ("resistance", 8_388_608)]);
+    set(
+        &link,
+        commands::SET_INDUCTANCE_RESISTANCE_M1,
+        &[give(name::INDUCTANCE, 16_777), give(name::RESISTANCE, 8_388_608)],
+    );
     link.run_for(ms(100));
     let before = held(&link);
     assert_eq!(before.2, [16_777, 8_388_608]);

@@ -1,13 +1,14 @@
 //! The link of the benchmark: packet serial bytes to a simulated controller in virtual time, with latency, jitter and loss.
 
 use crate::population::{Draw, LinkParams};
-use brushwork_mcp_axis::Carrier;
+use brushwork_mcp_axis::{Carrier, Timed};
 use brushwork_mcp_sim::controller::Controller;
-use brushwork_mcp_wire::packet_serial::{Address, Generation, ReplyProgress, Request, parse_reply};
+use brushwork_mcp_wire::packet_serial::{
+    Address, Generation, Given, ReplyProgress, Request, Typed, parse_reply,
+};
 use brushwork_plant::machine::StreamIndex;
 use brushwork_plant::world::{WorldAction, WorldView};
 use brushwork_tuning::axis::{AxisError, Exchange};
-use brushwork_values::Values;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use std::time::Duration;
@@ -230,12 +231,12 @@ impl<M: Bench> SimulatedLine<M> {
 }
 
 impl Carrier for SimulatedLine {
-    fn transact(&mut self, command: u8, values: &[(&str, i64)]) -> Result<(Exchange, Values), AxisError> {
+    fn transact<const L: u8>(&mut self, command: Typed<L>, given: &[Given<L>]) -> Timed<L> {
         if self.is_stopped() {
             return Err(AxisError::Stopped);
         }
         let generation = self.generation();
-        let request = Request::named(Address::DEFAULT, command, generation, values)
+        let request = Request::typed(Address::DEFAULT, command, generation, given)
             .map_err(|error| AxisError::Refused(error.to_string()))?;
         let bytes = request.encode(generation).map_err(|error| AxisError::Refused(error.to_string()))?;
         let sent = self.now;
@@ -259,7 +260,10 @@ impl Carrier for SimulatedLine {
         }
         self.read_late();
         match parse_reply(&request, generation, &reply) {
-            ReplyProgress::Done { values, .. } => Ok((Exchange { sent, received: self.now }, values)),
+            ReplyProgress::Done { values, .. } => {
+                let values = command.reply(values).ok_or(AxisError::NoReply)?;
+                Ok((Exchange { sent, received: self.now }, values))
+            }
             _ => Err(AxisError::NoReply),
         }
     }

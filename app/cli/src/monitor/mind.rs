@@ -9,7 +9,7 @@ use std::time::Duration;
 use brushwork_motion_mind_wire::{
     Address, Command, Effect, FrameEvent, FrameReader, LineEvent, LineReader, Progress, Protocol, Returns,
     checksum, describe_command, describe_reply, encode_frame, encode_line, function, parse_frame_reply,
-    parse_line_reply, register_named,
+    parse_line_reply, register_number,
 };
 
 use super::record::{Direction, Record};
@@ -245,12 +245,11 @@ impl MindDecoder {
 
     /// A write to FUNCTION that was acknowledged tells what moves are answered with.
     fn note_write(&mut self, address: Address, command: Option<Command>) {
-        let function = register_named("FUNCTION").map(|row| row.number);
         let Some(Command::Write { register, value } | Command::WriteStore { register, value }) = command
         else {
             return;
         };
-        if Some(register) == function {
+        if register == register_number::FUNCTION {
             let bits = u16::try_from(value).unwrap_or_default();
             self.returns.retain(|(known, _)| *known != address);
             self.returns.push((address, Returns::of_function(bits)));

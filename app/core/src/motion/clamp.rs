@@ -11,7 +11,9 @@ use std::time::Duration;
 use brushwork_link::device::{Drive, DriveCommand, Job, JobContext};
 use brushwork_link::exchange::ExchangeError;
 use brushwork_link::{Failure, Wire};
-use brushwork_mcp_wire::packet_serial::number;
+use brushwork_mcp_client::TypedWire;
+use brushwork_mcp_wire::packet_serial::commands;
+use brushwork_mcp_wire::packet_serial::name::{MAIN_BATTERY, SPEED, STATUS};
 use brushwork_mcp_wire::packet_serial::status;
 use brushwork_mcp_wire::packet_serial::status::Condition;
 use brushwork_values::Motor;
@@ -121,8 +123,8 @@ pub fn job(task: Task, steps: Sender<Step>) -> Job<()> {
 
 /// With L and R set a duty is a current, and no speed follows from it (MCP manual 1.2.11).
 fn refuse_torque_control(context: &mut JobContext<'_>, motor: Motor) -> Result<(), Failure> {
-    let reads = [number::READ_INDUCTANCE_RESISTANCE_M1, number::READ_INDUCTANCE_RESISTANCE_M2];
-    match context.transact(reads[motor.index()], &[]) {
+    let reads = [commands::READ_INDUCTANCE_RESISTANCE_M1, commands::READ_INDUCTANCE_RESISTANCE_M2];
+    match context.ask(reads[motor.index()], &[]) {
         Ok(values) if values.ints().all(|value| value != 0) => {
             let came_back = format!("L and R of {motor} are both set, so that its duty is a current");
             Err(refusal(context, came_back, "Set L or R to 0 for the test"))
@@ -212,14 +214,14 @@ fn drive(context: &mut JobContext<'_>, motor: Motor, duty: f64, duty_per_s: f64)
 }
 
 fn read_volts(context: &mut JobContext<'_>) -> Result<f64, Failure> {
-    let values = context.transact(number::READ_MAIN_BATTERY, &[]).map_err(|error| failed(context, &error))?;
-    Ok(values.physical("main_battery").unwrap_or(f64::INFINITY))
+    let values = context.ask(commands::READ_MAIN_BATTERY, &[]).map_err(|error| failed(context, &error))?;
+    Ok(values.physical(MAIN_BATTERY))
 }
 
 /// Whether the controller reports an over-voltage of the main battery, while which it brakes the motors (MCP manual 1.6.3).
 fn reports_high(context: &mut JobContext<'_>) -> Result<bool, Failure> {
-    let values = context.transact(number::READ_STATUS, &[]).map_err(|error| failed(context, &error))?;
-    let word = u32::try_from(values.int("status")).unwrap_or(0);
+    let values = context.ask(commands::READ_STATUS, &[]).map_err(|error| failed(context, &error))?;
+    let word = u32::try_from(values.int(STATUS)).unwrap_or(0);
     let conditions = status::decode(word, layout_of(context.generation()));
     let high = [Condition::MainBatteryHighWarning, Condition::MainBatteryHighError];
     Ok(high.into_iter().any(|condition| conditions.contains(condition)))
@@ -227,12 +229,12 @@ fn reports_high(context: &mut JobContext<'_>) -> Result<bool, Failure> {
 
 /// Waits until the motor hardly turns, as far as an encoder tells.
 fn come_to_rest(context: &mut JobContext<'_>, motor: Motor) -> Result<(), Failure> {
-    let command = [number::READ_SPEED_M1, number::READ_SPEED_M2][motor.index()];
+    let command = [commands::READ_SPEED_M1, commands::READ_SPEED_M2][motor.index()];
     let until = context.now() + REST_LIMIT;
     let mut first = None;
     while context.now() < until {
-        let values = context.transact(command, &[]).map_err(|error| failed(context, &error))?;
-        let speed = values.physical("speed").unwrap_or(0.0).abs();
+        let values = context.ask(command, &[]).map_err(|error| failed(context, &error))?;
+        let speed = values.physical(SPEED).abs();
         if speed <= *first.get_or_insert(speed) * REST_SHARE || speed < REST_COUNTS_PER_S {
             return Ok(());
         }

@@ -1,9 +1,11 @@
 //! Readings that a job makes itself: encoder counts with their moments, and what a motor draws.
 
-use brushwork_link::Wire;
 use brushwork_link::device::JobContext;
 use brushwork_link::exchange::ExchangeError;
-use brushwork_mcp_wire::packet_serial::number;
+use brushwork_mcp_client::TypedWire;
+use brushwork_mcp_client::packet::typed_reply;
+use brushwork_mcp_wire::packet_serial::commands;
+use brushwork_mcp_wire::packet_serial::name::*;
 use brushwork_values::Motor;
 use std::time::Duration;
 
@@ -33,10 +35,13 @@ pub struct Power {
 impl Encoders {
     /// Reads both, dated half way between request and reply.
     pub fn read(&mut self, context: &mut JobContext<'_>) -> Result<[Reading; 2], ExchangeError> {
-        let reply = context.transact_timed(number::READ_ENCODERS, &[])?;
+        let reply = typed_reply(
+            context.transact_timed(commands::READ_ENCODERS.number(), &[])?,
+            commands::READ_ENCODERS,
+        )?;
         let at_s = (reply.span.requested_at + reply.span.replied_at).as_secs_f64() / 2.0;
         // The count is a 32 bit pattern.
-        let now = ["encoder_m1", "encoder_m2"].map(|name| reply.values.int(name) as i32);
+        let now = [reply.values.int(ENCODER_M1) as i32, reply.values.int(ENCODER_M2) as i32];
         Ok(self.take(now).map(|counts| Reading { at_s, counts: counts as f64 }))
     }
 
@@ -56,17 +61,13 @@ impl Encoders {
 
 /// Reads what a motor gets and draws, with the battery that feeds it.
 pub fn read_power(context: &mut JobContext<'_>, motor: Motor) -> Result<Power, ExchangeError> {
-    let [duty, current] = match motor {
-        Motor::M1 => ["duty_m1", "current_m1"],
-        Motor::M2 => ["duty_m2", "current_m2"],
-    };
-    let duties = context.transact(number::READ_PWMS, &[])?;
-    let currents = context.transact(number::READ_CURRENTS, &[])?;
-    let battery = context.transact(number::READ_MAIN_BATTERY, &[])?;
+    let duties = context.ask(commands::READ_PWMS, &[])?;
+    let currents = context.ask(commands::READ_CURRENTS, &[])?;
+    let battery = context.ask(commands::READ_MAIN_BATTERY, &[])?;
     Ok(Power {
-        duty: duties.physical(duty).unwrap_or(f64::NAN) / 100.0,
-        amps: currents.physical(current).unwrap_or(f64::NAN),
-        volts: battery.physical("main_battery").unwrap_or(f64::NAN),
+        duty: [duties.physical(DUTY_M1), duties.physical(DUTY_M2)][motor.index()] / 100.0,
+        amps: [currents.physical(CURRENT_M1), currents.physical(CURRENT_M2)][motor.index()],
+        volts: battery.physical(MAIN_BATTERY),
     })
 }
 

@@ -12,6 +12,7 @@ mod mind;
 pub mod tap;
 mod told;
 
+use brushwork_mcp_client::packet::typed_reply;
 use brushwork_mcp_client::{layout_of, packet_address, packet_generation};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -21,8 +22,8 @@ use brushwork_link::device::{Job, JobContext};
 use brushwork_link::failure::Failure;
 use brushwork_link::settings::{Ending, Subject, begin_trial, end_act};
 use brushwork_link::wire::Wire;
-use brushwork_mcp_axis::{Carrier, McpHeld, McpWrite, PacketAxis};
-use brushwork_mcp_wire::packet_serial::{Generation, Request as Packet, number};
+use brushwork_mcp_axis::{Carrier, McpHeld, McpWrite, PacketAxis, Timed};
+use brushwork_mcp_wire::packet_serial::{Generation, Given, Request as Packet, Typed, number};
 use brushwork_motion_mind_axis::{LoopAfter, MindAxis};
 use brushwork_tuning::axis::{Axis, AxisError, EncoderClass, Exchange};
 use brushwork_tuning::cause::Cause;
@@ -31,7 +32,7 @@ use brushwork_tuning::report::Verdict;
 use brushwork_tuning::setup::LoopAxis;
 use brushwork_tuning::trial::run_trial;
 use brushwork_tuning::tune::tune;
-use brushwork_values::{Motor, Value, Values};
+use brushwork_values::{Motor, Value};
 
 use crate::keep::TrialKeeper;
 use law::{AnyLaw, Report, Request, Setup, Trial, TrialRequest};
@@ -103,15 +104,23 @@ fn needs_its_time(command: u8) -> bool {
 }
 
 impl Carrier for JobCarrier<'_, '_> {
-    fn transact(&mut self, command: u8, values: &[(&str, i64)]) -> Result<(Exchange, Values), AxisError> {
+    fn transact<const L: u8>(&mut self, command: Typed<L>, given: &[Given<L>]) -> Timed<L> {
         let address = packet_address(self.context.address()).unwrap_or_default();
-        let packet = Packet::named(address, command, self.generation(), values)
+        let packet = Packet::typed(address, command, self.generation(), given)
             .map_err(|error| AxisError::Refused(error.to_string()))?;
         let values: Vec<i64> = packet.values.iter().filter_map(Value::as_int).collect();
-        let reply = self.context.transact_timed(command, &values).map_err(|error| told(&error))?;
+        let reply = self
+            .context
+            .transact_timed(command.number(), &values)
+            .and_then(|reply| typed_reply(reply, command));
+        let reply = reply.map_err(|error| told(&error))?;
         let exchange = Exchange { sent: reply.span.requested_at, received: reply.span.replied_at };
         let is_vague = self.is_vague(&exchange);
-        if is_vague && needs_its_time(command) { Err(AxisError::Late) } else { Ok((exchange, reply.values)) }
+        if is_vague && needs_its_time(command.number()) {
+            Err(AxisError::Late)
+        } else {
+            Ok((exchange, reply.values))
+        }
     }
 
     fn now(&mut self) -> Duration {

@@ -18,9 +18,9 @@ pub struct Permit {
 
 /// A reply with the host times of its exchange.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Reply {
+pub struct Reply<V = Values> {
     /// What came back; empty for an acknowledgement.
-    pub values: Values,
+    pub values: V,
     /// When it was asked and when it was answered.
     pub span: Span,
 }

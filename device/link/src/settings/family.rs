@@ -14,7 +14,7 @@ use crate::exchange::ExchangeError;
 use crate::failure::Failure;
 use crate::unit::{FirmwareGeneration, UnitAddress};
 use crate::wire::Wire;
-use brushwork_values::{Value, Values};
+use brushwork_values::Values;
 
 /// The settings of a family. What has a default here need not be thought of where it does not apply.
 pub trait FamilySettings: Send + Sync {
@@ -40,17 +40,6 @@ pub trait FamilySettings: Send + Sync {
     /// The same for sentences, with the command's number where people know it by that.
     fn read_phrase(&self, command: u8) -> String {
         format!("{} ({command})", self.read_title(command))
-    }
-
-    /// The values of a command in the order of this generation's layout, from raw numbers by field name; names that the layout lacks are left
-    /// out.
-    fn values(
-        &self,
-        _unit: (UnitAddress, FirmwareGeneration),
-        _command: u8,
-        named: &[(&'static str, i64)],
-    ) -> Result<Vec<Value>, ExchangeError> {
-        Ok(named.iter().map(|(_, value)| Value::Int(*value)).collect())
     }
 
     /// What the command that writes these rows takes, in wire order.

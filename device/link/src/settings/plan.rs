@@ -46,7 +46,12 @@ impl Step {
         self.family.settings().step_bytes(self, address, generation)
     }
 
-    /// Whether the values fit the command.
+    /// The raw arguments in wire order.
+    pub fn values(&self) -> Vec<i64> {
+        self.arguments.iter().map(|(_, raw)| *raw).collect()
+    }
+
+    /// Whether the controller's command has room for the values; an error is a clause.
     fn fits(&self, generation: FirmwareGeneration) -> Result<(), String> {
         self.bytes(UnitAddress::factory(self.family), generation).map(drop)
     }

@@ -259,7 +259,7 @@ impl Writer<'_> {
             return;
         }
         self.transactions += 1;
-        let reply = self.wire.transact_named(step.command, &step.arguments);
+        let reply = self.wire.transact(step.command, &step.values());
         if reply.as_ref().err().is_none_or(went_out) {
             self.sent.extend(step.keys.iter().cloned());
         }

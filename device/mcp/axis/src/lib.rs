@@ -13,22 +13,30 @@ pub use registers::{
     position_registers, velocity_gains, velocity_registers,
 };
 
+use brushwork_mcp_wire::packet_serial::name::*;
 use brushwork_mcp_wire::packet_serial::status::{Condition, decode};
-use brushwork_mcp_wire::packet_serial::{Generation, number, scale};
+use brushwork_mcp_wire::packet_serial::{Generation, Given, Read, Typed, commands, give, scale};
 use brushwork_tuning::axis::{Axis, AxisError, EncoderClass, Exchange, Sample, Status, Want};
 use brushwork_tuning::law::Law;
 use brushwork_tuning::setup::{LoopAxis, Setup};
-use brushwork_values::{Motor, Values};
+use brushwork_values::Motor;
 use std::collections::BTreeSet;
 use std::time::Duration;
 
 /// How often a command that not every controller has is tried before its silence counts as an answer.
 const TRIES: usize = 4;
 
+/// A reply with the times of its exchange.
+pub type Timed<const LAYOUT: u8> = Result<(Exchange, Read<LAYOUT>), AxisError>;
+
 /// What carries commands to one unit.
 pub trait Carrier {
     /// Sends a command with its values by name and gives its reply.
-    fn transact(&mut self, command: u8, values: &[(&str, i64)]) -> Result<(Exchange, Values), AxisError>;
+    fn transact<const LAYOUT: u8>(
+        &mut self,
+        command: Typed<LAYOUT>,
+        given: &[Given<LAYOUT>],
+    ) -> Timed<LAYOUT>;
     /// The time.
     fn now(&mut self) -> Duration;
     /// Waits until a time.
@@ -62,17 +70,18 @@ impl<C: Carrier> PacketAxis<C> {
 
     /// Asks for what not every controller reports; `None` where this one does not. A controller says no by silence, so only a command
     /// that was never answered counts as missing, and only after some tries.
-    fn optional(&mut self, command: u8) -> Result<Option<(Exchange, Values)>, AxisError> {
-        if self.absent.contains(&command) {
+    fn optional<const L: u8>(&mut self, command: Typed<L>) -> Result<Option<(Exchange, Read<L>)>, AxisError> {
+        let number = command.number();
+        if self.absent.contains(&number) {
             return Ok(None);
         }
         for _ in 0..TRIES {
             match self.carrier.transact(command, &[]) {
                 Ok(reply) => {
-                    self.answered.insert(command);
+                    self.answered.insert(number);
                     return Ok(Some(reply));
                 }
-                Err(AxisError::NoReply) if self.answered.contains(&command) => {
+                Err(AxisError::NoReply) if self.answered.contains(&number) => {
                     return Err(AxisError::NoReply);
                 }
                 Err(AxisError::NoReply) => {}
@@ -80,79 +89,66 @@ impl<C: Carrier> PacketAxis<C> {
                 Err(error) => return Err(error),
             }
         }
-        self.absent.insert(command);
+        self.absent.insert(number);
         Ok(None)
     }
 
     /// The same of this motor's of two commands, its values alone.
-    fn optional_of(&mut self, m1: u8, m2: u8) -> Result<Option<Values>, AxisError> {
-        Ok(self.optional(self.of(m1, m2))?.map(|(_, values)| values))
+    fn optional_of<const L: u8>(&mut self, of_motors: [Typed<L>; 2]) -> Result<Option<Read<L>>, AxisError> {
+        Ok(self.optional(of_motors[self.motor.index()])?.map(|(_, values)| values))
     }
 
     /// Counts of both motors; of this one alone where the controller does not report both at once.
     fn read_counts(&mut self) -> Result<(Exchange, [i32; 2]), AxisError> {
         // The casts are the register's own wrap.
-        if let Some((at, counts)) = self.optional(number::READ_ENCODERS)? {
-            return Ok((at, [counts.int("encoder_m1") as i32, counts.int("encoder_m2") as i32]));
+        if let Some((at, counts)) = self.optional(commands::READ_ENCODERS)? {
+            return Ok((at, [counts.int(ENCODER_M1) as i32, counts.int(ENCODER_M2) as i32]));
         }
-        let command = self.of(number::READ_ENCODER_M1, number::READ_ENCODER_M2);
-        let (at, values) = self.carrier.transact(command, &[])?;
+        let commands = [commands::READ_ENCODER_M1, commands::READ_ENCODER_M2];
+        let (at, values) = self.carrier.transact(commands[self.motor.index()], &[])?;
         let mut counts = [0; 2];
-        counts[self.motor.index()] = values.int("encoder") as i32;
+        counts[self.motor.index()] = values.int(ENCODER) as i32;
         Ok((at, counts))
     }
 
-    fn of(&self, m1: u8, m2: u8) -> u8 {
-        match self.motor {
-            Motor::M1 => m1,
-            Motor::M2 => m2,
-        }
+    fn send<const L: u8>(
+        &mut self,
+        of_motors: [Typed<L>; 2],
+        given: &[Given<L>],
+    ) -> Result<Exchange, AxisError> {
+        self.carrier.transact(of_motors[self.motor.index()], given).map(|(at, _)| at)
     }
 
-    fn send(&mut self, m1: u8, m2: u8, values: &[(&str, i64)]) -> Result<Exchange, AxisError> {
-        let command = self.of(m1, m2);
-        self.carrier.transact(command, values).map(|(at, _)| at)
-    }
-
-    fn read(&mut self, m1: u8, m2: u8) -> Result<Values, AxisError> {
-        let command = self.of(m1, m2);
-        self.carrier.transact(command, &[]).map(|(_, values)| values)
-    }
-
-    /// This motor's one of two fields.
-    fn field<'a>(&self, m1: &'a str, m2: &'a str) -> &'a str {
-        match self.motor {
-            Motor::M1 => m1,
-            Motor::M2 => m2,
-        }
+    fn read<const L: u8>(&mut self, of_motors: [Typed<L>; 2]) -> Result<Read<L>, AxisError> {
+        self.carrier.transact(of_motors[self.motor.index()], &[]).map(|(_, values)| values)
     }
 
     fn write_velocity(&mut self, registers: VelocityRegisters) -> Result<(), AxisError> {
         let values = [
-            ("d", i64::from(registers.d)),
-            ("p", i64::from(registers.p)),
-            ("i", i64::from(registers.i)),
-            ("qpps", i64::from(registers.qpps)),
+            give(D, i64::from(registers.d)),
+            give(P, i64::from(registers.p)),
+            give(I, i64::from(registers.i)),
+            give(QPPS, i64::from(registers.qpps)),
         ];
-        self.send(number::SET_VELOCITY_PID_M1, number::SET_VELOCITY_PID_M2, &values).map(|_| ())
+        self.send([commands::SET_VELOCITY_PID_M1, commands::SET_VELOCITY_PID_M2], &values).map(|_| ())
     }
 
     fn write_position(&mut self, registers: PositionRegisters) -> Result<(), AxisError> {
         let values = [
-            ("d", i64::from(registers.d)),
-            ("p", i64::from(registers.p)),
-            ("i", i64::from(registers.i)),
-            ("max_i", i64::from(registers.max_i)),
-            ("deadzone", i64::from(registers.deadzone)),
-            ("min", i64::from(registers.min)),
-            ("max", i64::from(registers.max)),
+            give(D, i64::from(registers.d)),
+            give(P, i64::from(registers.p)),
+            give(I, i64::from(registers.i)),
+            give(MAX_I, i64::from(registers.max_i)),
+            give(DEADZONE, i64::from(registers.deadzone)),
+            give(MIN, i64::from(registers.min)),
+            give(MAX, i64::from(registers.max)),
         ];
-        self.send(number::SET_POSITION_PID_M1, number::SET_POSITION_PID_M2, &values).map(|_| ())
+        self.send([commands::SET_POSITION_PID_M1, commands::SET_POSITION_PID_M2], &values).map(|_| ())
     }
 
     fn read_status(&mut self) -> Result<Status, AxisError> {
-        let Some((_, values)) = self.optional(number::READ_STATUS)? else { return Ok(Status::default()) };
-        let raw = values.int("status") as u32;
+        let Some((_, values)) = self.optional(commands::READ_STATUS)? else { return Ok(Status::default()) };
+        let raw = values.int(STATUS) as u32;
         let set = decode(raw, self.carrier.generation());
         let over_current = match self.motor {
             Motor::M1 => [Condition::M1OverCurrentWarning, Condition::M1CurrentError],
@@ -176,10 +172,10 @@ impl<C: Carrier> PacketAxis<C> {
     /// The stream's settings by command 146; `None` where the firmware or the caller does not tell which stream it is.
     fn read_stream(&mut self) -> Result<Option<u32>, AxisError> {
         let Some(index) = self.carrier.stream() else { return Ok(None) };
-        let Some((_, values)) = self.optional(number::READ_STREAMS)? else { return Ok(None) };
+        let Some((_, values)) = self.optional(commands::READ_STREAMS)? else { return Ok(None) };
         let Some(record) = values.records().nth(index) else { return Ok(None) };
-        self.stream = Some(vec![index as i64, record.int("type"), record.int("rate")]);
-        Ok(u32::try_from(record.int("timeout")).ok())
+        self.stream = Some(vec![index as i64, record.int(TYPE), record.int(RATE)]);
+        Ok(u32::try_from(record.int(TIMEOUT)).ok())
     }
 }
 
@@ -194,55 +190,56 @@ impl<C: Carrier> Axis for PacketAxis<C> {
 
     fn sample(&mut self, want: Want) -> Result<Sample, AxisError> {
         let (counts_at, counts) = self.read_counts()?;
-        let duty_raw = if want.duty { self.optional(number::READ_PWMS)? } else { None };
-        let duty = self.field("duty_m1", "duty_m2");
-        let duty_raw = duty_raw.map(|(at, values)| (at, values.int(duty) as i16));
-        let current_raw = if want.current { self.optional(number::READ_CURRENTS)? } else { None };
-        let current = self.field("current_m1", "current_m2");
-        let current_raw = current_raw.map(|(_, values)| values.int(current) as i16);
-        let volts_raw = if want.volts { self.optional(number::READ_MAIN_BATTERY)? } else { None };
-        let volts_raw = volts_raw.map(|(_, values)| values.int("main_battery") as u16);
+        let duty_raw = if want.duty { self.optional(commands::READ_PWMS)? } else { None };
+        let motor = self.motor.index();
+        let duty_raw =
+            duty_raw.map(|(at, values)| (at, [values.int(DUTY_M1), values.int(DUTY_M2)][motor] as i16));
+        let current_raw = if want.current { self.optional(commands::READ_CURRENTS)? } else { None };
+        let current_raw =
+            current_raw.map(|(_, values)| [values.int(CURRENT_M1), values.int(CURRENT_M2)][motor] as i16);
+        let volts_raw = if want.volts { self.optional(commands::READ_MAIN_BATTERY)? } else { None };
+        let volts_raw = volts_raw.map(|(_, values)| values.int(MAIN_BATTERY) as u16);
         let status = self.read_status()?;
         Ok(Sample { counts_at, counts, status, duty_raw, current_raw, volts_raw })
     }
 
     fn drive_duty(&mut self, duty_raw: i16) -> Result<Exchange, AxisError> {
         let accel = scale::MAX_DUTY_ACCEL_RAW;
-        let values = [("duty", i64::from(duty_raw)), ("accel", accel)];
-        self.send(number::DUTY_ACCEL_M1, number::DUTY_ACCEL_M2, &values)
+        let values = [give(DUTY, i64::from(duty_raw)), give(ACCEL, accel)];
+        self.send([commands::DUTY_ACCEL_M1, commands::DUTY_ACCEL_M2], &values)
     }
 
     fn command_speed(&mut self, counts_per_s: i32) -> Result<Exchange, AxisError> {
-        self.send(number::SPEED_M1, number::SPEED_M2, &[("speed", i64::from(counts_per_s))])
+        self.send([commands::SPEED_M1, commands::SPEED_M2], &[give(SPEED, i64::from(counts_per_s))])
     }
 
     fn command_position(&mut self, counts: i32, speed: u32) -> Result<Exchange, AxisError> {
         let values = [
-            ("accel", 0),
-            ("speed", i64::from(speed)),
-            ("decel", 0),
-            ("position", i64::from(counts)),
-            ("buffer", 1),
+            give(ACCEL, 0),
+            give(SPEED, i64::from(speed)),
+            give(DECEL, 0),
+            give(POSITION, i64::from(counts)),
+            give(BUFFER, 1),
         ];
-        self.send(number::POSITION_PROFILE_M1, number::POSITION_PROFILE_M2, &values)
+        self.send([commands::POSITION_PROFILE_M1, commands::POSITION_PROFILE_M2], &values)
     }
 
     fn write_winding(&mut self, [inductance, resistance]: [u32; 2]) -> Result<(), AxisError> {
-        let values = [("inductance", i64::from(inductance)), ("resistance", i64::from(resistance))];
-        let (m1, m2) = (number::SET_INDUCTANCE_RESISTANCE_M1, number::SET_INDUCTANCE_RESISTANCE_M2);
-        self.send(m1, m2, &values).map(|_| ())
+        let values = [give(INDUCTANCE, i64::from(inductance)), give(RESISTANCE, i64::from(resistance))];
+        let commands = [commands::SET_INDUCTANCE_RESISTANCE_M1, commands::SET_INDUCTANCE_RESISTANCE_M2];
+        self.send(commands, &values).map(|_| ())
     }
 
     fn write_current_limits(&mut self, max_raw: u32, min_raw: i32) -> Result<(), AxisError> {
-        let values = [("max", i64::from(max_raw)), ("min", i64::from(min_raw))];
-        self.send(number::SET_CURRENT_LIMITS_M1, number::SET_CURRENT_LIMITS_M2, &values).map(|_| ())
+        let values = [give(MAX, i64::from(max_raw)), give(MIN, i64::from(min_raw))];
+        self.send([commands::SET_CURRENT_LIMITS_M1, commands::SET_CURRENT_LIMITS_M2], &values).map(|_| ())
     }
 
     fn raw_speed(&mut self) -> Result<i32, AxisError> {
-        let values = self.read(number::READ_RAW_SPEED_M1, number::READ_RAW_SPEED_M2)?;
-        let magnitude = values.int("speed") as u32 as i32;
+        let values = self.read([commands::READ_RAW_SPEED_M1, commands::READ_RAW_SPEED_M2])?;
+        let magnitude = values.int(SPEED) as u32 as i32;
         // Generations that report the direction beside the speed set the lowest bit of the status byte for backwards.
-        let backwards = magnitude > 0 && values.try_int("status").is_some_and(|status| status & 1 != 0);
+        let backwards = magnitude > 0 && values.try_int(STATUS).is_some_and(|status| status & 1 != 0);
         Ok(if backwards { -magnitude } else { magnitude })
     }
 
@@ -251,8 +248,9 @@ impl<C: Carrier> Axis for PacketAxis<C> {
             return Err(AxisError::Refused("command 145".into()));
         };
         let [index, kind, rate] = stream[..] else { return Err(AxisError::Refused("command 145".into())) };
-        let values = [("index", index), ("type", kind), ("rate", rate), ("timeout", i64::from(milliseconds))];
-        self.carrier.transact(number::SET_STREAM, &values).map(|_| ())
+        let values =
+            [give(INDEX, index), give(TYPE, kind), give(RATE, rate), give(TIMEOUT, i64::from(milliseconds))];
+        self.carrier.transact(commands::SET_STREAM, &values).map(|_| ())
     }
 
     fn progress(&mut self, text: &str) {
@@ -265,38 +263,40 @@ where
     L: Law<Held: From<McpHeld>, Write: TryInto<McpWrite>>,
 {
     fn read_setup(&mut self) -> Result<Setup<L>, AxisError> {
-        let velocity = self.read(number::READ_VELOCITY_PID_M1, number::READ_VELOCITY_PID_M2)?;
-        let position = self.read(number::READ_POSITION_PID_M1, number::READ_POSITION_PID_M2)?;
-        let current = self.optional_of(number::READ_CURRENT_LIMITS_M1, number::READ_CURRENT_LIMITS_M2)?;
-        let winding =
-            self.optional_of(number::READ_INDUCTANCE_RESISTANCE_M1, number::READ_INDUCTANCE_RESISTANCE_M2)?;
-        let volts = self.optional(number::READ_MAIN_VOLTAGES)?.map(|(_, values)| values);
+        let velocity = self.read([commands::READ_VELOCITY_PID_M1, commands::READ_VELOCITY_PID_M2])?;
+        let position = self.read([commands::READ_POSITION_PID_M1, commands::READ_POSITION_PID_M2])?;
+        let current =
+            self.optional_of([commands::READ_CURRENT_LIMITS_M1, commands::READ_CURRENT_LIMITS_M2])?;
+        let winding = self.optional_of([
+            commands::READ_INDUCTANCE_RESISTANCE_M1,
+            commands::READ_INDUCTANCE_RESISTANCE_M2,
+        ])?;
+        let volts = self.optional(commands::READ_MAIN_VOLTAGES)?.map(|(_, values)| values);
         let stream_timeout_ms = self.read_stream()?;
-        let unsigned = |values: &Values, name: &str| values.int(name) as u32;
         let held = McpHeld {
             velocity: VelocityRegisters {
-                p: unsigned(&velocity, "p"),
-                i: unsigned(&velocity, "i"),
-                d: unsigned(&velocity, "d"),
-                qpps: unsigned(&velocity, "qpps"),
+                p: velocity.int(P) as u32,
+                i: velocity.int(I) as u32,
+                d: velocity.int(D) as u32,
+                qpps: velocity.int(QPPS) as u32,
             },
             position: PositionRegisters {
-                p: unsigned(&position, "p"),
-                i: unsigned(&position, "i"),
-                d: unsigned(&position, "d"),
-                max_i: unsigned(&position, "max_i"),
-                deadzone: unsigned(&position, "deadzone"),
-                min: position.int("min") as i32,
-                max: position.int("max") as i32,
+                p: position.int(P) as u32,
+                i: position.int(I) as u32,
+                d: position.int(D) as u32,
+                max_i: position.int(MAX_I) as u32,
+                deadzone: position.int(DEADZONE) as u32,
+                min: position.int(MIN) as i32,
+                max: position.int(MAX) as i32,
             },
         };
         Ok(Setup {
             held: held.into(),
-            max_current_raw: current.as_ref().map_or(0, |values| unsigned(values, "max")),
-            min_current_raw: current.as_ref().map_or(0, |values| values.int("min") as i32),
-            min_volts_raw: volts.map_or(0, |values| values.int("min") as u16),
+            max_current_raw: current.as_ref().map_or(0, |values| values.int(MAX) as u32),
+            min_current_raw: current.as_ref().map_or(0, |values| values.int(MIN) as i32),
+            min_volts_raw: volts.map_or(0, |values| values.int(MIN) as u16),
             inductance_resistance_raw: winding
-                .map_or([0, 0], |values| [unsigned(&values, "inductance"), unsigned(&values, "resistance")]),
+                .map_or([0, 0], |values| [values.int(INDUCTANCE) as u32, values.int(RESISTANCE) as u32]),
             stream_timeout_ms,
             encoder: self.encoder,
         })

@@ -22,3 +22,4 @@ pub use facts::McpFacts;
 pub use family::{
     MCP, firmware_of, is_mcp, layout_of, model_of, packet_address, packet_generation, subject, unit_address,
 };
+pub use packet::TypedWire;

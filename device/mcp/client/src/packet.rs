@@ -10,8 +10,8 @@ use brushwork_link::exchange::{
 use brushwork_link::unit::{FirmwareGeneration, UnitAddress};
 use brushwork_link::wire::{HiddenSettings, Wire};
 use brushwork_mcp_wire::packet_serial::{
-    Address, ClientUse, Command, Direction, Effect, EncodeError, Form, Generation, Reply as ReplyForm,
-    ReplyProgress, Request, parse_reply,
+    Address, ClientUse, Command, Direction, Effect, EncodeError, Form, Generation, Read, Reply as ReplyForm,
+    ReplyProgress, Request, Typed, parse_reply,
 };
 use brushwork_values::{Value, Values};
 use std::sync::Arc;
@@ -35,6 +35,39 @@ pub struct Ask<'a> {
     /// How often to try again; commands that must not be repeated are not, whatever this says.
     pub retries: u32,
 }
+
+/// A reply as that to a command whose fields the compiler knows.
+pub fn typed_reply<const LAYOUT: u8>(
+    reply: Reply,
+    command: Typed<LAYOUT>,
+) -> Result<Reply<Read<LAYOUT>>, ExchangeError> {
+    Ok(Reply { values: typed(command, reply.values)?, span: reply.span })
+}
+
+/// Values as those of the reply to `command`.
+pub fn typed<const LAYOUT: u8>(
+    command: Typed<LAYOUT>,
+    values: Values,
+) -> Result<Read<LAYOUT>, ExchangeError> {
+    command.reply(values).ok_or_else(|| {
+        let what = format!("the values that came are not those of command {}", command.number());
+        ExchangeError::Impossible { what }
+    })
+}
+
+/// Commands of packet serial whose fields the compiler knows, on every [`Wire`].
+pub trait TypedWire: Wire {
+    /// As [`Wire::transact`].
+    fn ask<const LAYOUT: u8>(
+        &mut self,
+        command: Typed<LAYOUT>,
+        values: &[i64],
+    ) -> Result<Read<LAYOUT>, ExchangeError> {
+        typed(command, self.transact(command.number(), values)?)
+    }
+}
+
+impl<W: Wire + ?Sized> TypedWire for W {}
 
 /// Whether a packet may go out, and what it does. Asked before anything is written.
 pub fn gate(ask: &Ask<'_>) -> Result<&'static Form, ExchangeError> {

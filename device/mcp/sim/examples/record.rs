@@ -6,12 +6,12 @@
 #![expect(clippy::print_stdout, reason = "an example talks to the terminal")]
 
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
+use brushwork_mcp_wire::packet_serial::name::ENCODER_M1;
 use brushwork_mcp_wire::packet_serial::{
-    Address, Generation, ReplyProgress, Request, number, parse_reply, scale,
+    Address, Generation, Read, ReplyProgress, Request, Typed, commands, parse_reply, scale,
 };
 use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::presets;
-use brushwork_values::Values;
 use std::error::Error;
 use std::time::Duration;
 
@@ -36,24 +36,30 @@ fn main() -> Result<(), Box<dyn Error>> {
         let next_poll = line.now() + POLL;
         if let Some((_, duty)) = steps.next_if(|(from_s, _)| *from_s <= line.now().as_secs_f64()) {
             let raw = (duty * scale::FULL_DUTY_RAW as f64) as i64;
-            let (time_s, _) = ask(&mut line, number::DUTY_ACCEL_M1, &[raw, scale::MAX_DUTY_ACCEL_RAW])?;
+            let (time_s, _) = ask(&mut line, commands::DUTY_ACCEL_M1, &[raw, scale::MAX_DUTY_ACCEL_RAW])?;
             println!("{time_s:.6},{duty},");
         }
-        let (time_s, counts) = ask(&mut line, number::READ_ENCODERS, &[])?;
-        println!("{time_s:.6},,{}", counts.int("encoder_m1") as i32);
+        let (time_s, counts) = ask(&mut line, commands::READ_ENCODERS, &[])?;
+        println!("{time_s:.6},,{}", counts.int(ENCODER_M1) as i32);
         line.advance(next_poll);
     }
     Ok(())
 }
 
 /// One exchange: the middle of it, and what came back.
-fn ask(line: &mut Bus, command: u8, values: &[i64]) -> Result<(f64, Values), Box<dyn Error>> {
-    let request = Request::new(Address::DEFAULT, command, values);
+fn ask<const L: u8>(
+    line: &mut Bus,
+    command: Typed<L>,
+    values: &[i64],
+) -> Result<(f64, Read<L>), Box<dyn Error>> {
+    let request = Request::new(Address::DEFAULT, command.number(), values);
     let sent = line.now();
     let reply = line.exchange(&request.encode(Generation::Gen1)?, Duration::from_millis(50));
     let middle_s = 0.5 * (sent + line.now()).as_secs_f64();
     match parse_reply(&request, Generation::Gen1, &reply) {
-        ReplyProgress::Done { values, .. } => Ok((middle_s, values)),
-        other => Err(format!("command {command}: {other:?}").into()),
+        ReplyProgress::Done { values, .. } => {
+            Ok((middle_s, command.reply(values).ok_or("the reply of another command")?))
+        }
+        other => Err(format!("{command:?}: {other:?}").into()),
     }
 }

@@ -9,10 +9,11 @@ use brushwork_link::device::controller::{ArmCheck, Line};
 use brushwork_link::exchange::ExchangeError;
 use brushwork_link::failure::Failure;
 use brushwork_link::transport::Stream;
+use brushwork_mcp_wire::packet_serial::name::{STATUS, TIMEOUT, TYPE};
 use brushwork_mcp_wire::packet_serial::status;
 use brushwork_mcp_wire::packet_serial::status::Condition;
-use brushwork_mcp_wire::packet_serial::{Generation, number, scale};
-use brushwork_values::{Motor, Severity, Values};
+use brushwork_mcp_wire::packet_serial::{Generation, Read, commands, scale};
+use brushwork_values::{Motor, Severity};
 use std::time::Duration;
 
 /// The stream type "packet serial" and the priority "serial" on the wire (MCP manual 2.3.1, commands 139 and 145).
@@ -85,16 +86,16 @@ fn watchdog(
     line: &mut Line<'_>,
     stream: Option<Stream>,
 ) -> Result<Result<Duration, Objection>, ExchangeError> {
-    let streams = speaker.ask_if_known(line, number::READ_STREAMS, &[])?;
+    let streams = speaker.ask_if_known(line, commands::READ_STREAMS)?;
     if let Some(reply) = streams.filter(|reply| reply.values.records().next().is_some()) {
         return Ok(of_streams(&reply.values, stream));
     }
     // RoboClaw has one time-out for all ports. No source says which generation brought it, so generation 1 is asked too.
     let asker = Speaker { generation: speaker.generation.max(Generation::Gen2), ..speaker };
-    let Some(reply) = asker.ask_if_known(line, number::READ_SERIAL_TIMEOUT, &[])? else {
+    let Some(reply) = asker.ask_if_known(line, commands::READ_SERIAL_TIMEOUT)? else {
         return Ok(Err(unreadable()));
     };
-    Ok(match reply.values.int("timeout") {
+    Ok(match reply.values.int(TIMEOUT) {
         0 => Err(object(
             "the serial time-out is 0, so the motors would run on if this program died",
             "Set the serial time-out in General Settings, to 1 s for example",
@@ -105,20 +106,20 @@ fn watchdog(
 
 /// Judges the streams of an MCP. A stream that is not known passes when every one that it could be has a time-out; the
 /// longest counts.
-fn of_streams(streams: &Values, stream: Option<Stream>) -> Result<Duration, Objection> {
+fn of_streams<const L: u8>(streams: &Read<L>, stream: Option<Stream>) -> Result<Duration, Objection> {
     let possible = streams.records().zip(Stream::ALL).filter(|(record, candidate)| match stream {
         Some(stream) => *candidate == stream,
-        None => record.int("type") == PACKET_SERIAL,
+        None => record.int(TYPE) == PACKET_SERIAL,
     });
     let mut longest = None;
     for (record, candidate) in possible {
-        if record.int("type") != PACKET_SERIAL {
+        if record.int(TYPE) != PACKET_SERIAL {
             return Err(object(
                 format!("{candidate} is not set to packet serial, so this port cannot be {candidate}"),
                 "Choose the connector that this port is really wired to",
             ));
         }
-        let timeout_ms = u64::try_from(record.int("timeout")).unwrap_or(0);
+        let timeout_ms = u64::try_from(record.int(TIMEOUT)).unwrap_or(0);
         if timeout_ms == 0 {
             return Err(no_timeout(candidate, stream.is_some()));
         }
@@ -153,7 +154,7 @@ fn unreadable() -> Objection {
 
 /// Serial must be in one of the priority levels. A unit without such levels has nothing to object to.
 fn object_to_priorities(speaker: Speaker, line: &mut Line<'_>) -> Result<Option<Objection>, ExchangeError> {
-    let Some(priorities) = speaker.ask_if_known(line, number::READ_PRIORITIES, &[])? else {
+    let Some(priorities) = speaker.ask_if_known(line, commands::READ_PRIORITIES)? else {
         return Ok(None);
     };
     let has_serial = priorities.values.ints().any(|level| level == PRIORITY_SERIAL);
@@ -173,9 +174,9 @@ fn object(came_back: impl Into<String>, mend: impl Into<String>) -> Objection {
 /// 0, so that Stop lets them coast.
 fn coasting(speaker: Speaker, line: &mut Line<'_>) -> Result<Vec<String>, ExchangeError> {
     let mut warnings = Vec::new();
-    let reads = [number::READ_INDUCTANCE_RESISTANCE_M1, number::READ_INDUCTANCE_RESISTANCE_M2];
+    let reads = [commands::READ_INDUCTANCE_RESISTANCE_M1, commands::READ_INDUCTANCE_RESISTANCE_M2];
     for (motor, command) in Motor::BOTH.into_iter().zip(reads) {
-        let reply = speaker.ask_if_known(line, command, &[])?;
+        let reply = speaker.ask_if_known(line, command)?;
         if reply.is_some_and(|reply| reply.values.ints().all(|value| value != 0)) {
             warnings.push(format!("{motor} is in torque control: Stop lets it coast instead of braking it."));
         }
@@ -185,10 +186,10 @@ fn coasting(speaker: Speaker, line: &mut Line<'_>) -> Result<Vec<String>, Exchan
 
 /// What the controller has stopped motors for.
 fn faults(speaker: Speaker, line: &mut Line<'_>) -> Result<Vec<&'static str>, ExchangeError> {
-    let Some(reply) = speaker.ask_if_known(line, number::READ_STATUS, &[])? else {
+    let Some(reply) = speaker.ask_if_known(line, commands::READ_STATUS)? else {
         return Ok(Vec::new());
     };
-    let word = u32::try_from(reply.values.int("status")).unwrap_or(0);
+    let word = u32::try_from(reply.values.int(STATUS)).unwrap_or(0);
     let conditions = status::decode(word, speaker.generation);
     let faults = conditions.iter().filter(|condition| condition.severity() == Severity::Error);
     Ok(faults.map(Condition::title).collect())

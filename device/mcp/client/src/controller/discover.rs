@@ -14,7 +14,7 @@ use brushwork_link::failure::Failure;
 use brushwork_link::transport::Stream;
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::models::Model;
-use brushwork_mcp_wire::packet_serial::{Address, Generation, number};
+use brushwork_mcp_wire::packet_serial::{Address, Generation, Typed, commands, name};
 use std::time::Duration;
 
 /// MCP and RoboClaw controllers.
@@ -105,9 +105,10 @@ fn ask_each(line: &mut Line<'_>, candidates: &[Address]) -> Result<Vec<(Address,
     let mut answers = Vec::new();
     for &address in candidates {
         let speaker = Speaker::packets(address, Generation::Gen1);
-        match speaker.ask(line, number::READ_VERSION, &[]) {
+        match speaker.ask(line, commands::READ_VERSION, &[]) {
             Ok(reply) => {
-                answers.push((address, reply.values.text("version").unwrap_or_default().trim().to_owned()));
+                answers
+                    .push((address, reply.values.text(name::VERSION).unwrap_or_default().trim().to_owned()));
             }
             Err(error) if error.is_link_lost() || error.interruption().is_some() => return Err(error),
             // Nobody there, or noise; what was heard is told if no address answers at all.
@@ -149,25 +150,33 @@ fn is_one_unit(
 }
 
 /// What is compared, each with how far two readings of one unit may lie apart.
-const STATE: [(u8, i64); 7] = [
-    (number::READ_ENCODERS, 200),
-    (number::READ_MAIN_BATTERY, 3),
-    (number::READ_LOGIC_BATTERY, 3),
-    (number::READ_TEMPERATURE_1, 5),
-    (number::READ_VELOCITY_PID_M1, 0),
-    (number::READ_VELOCITY_PID_M2, 0),
-    (number::READ_POSITION_PID_M1, 0),
-];
-
 fn state(line: &mut Line<'_>, address: Address) -> Result<Vec<(i64, i64)>, ExchangeError> {
     let speaker = Speaker::packets(address, Generation::Gen1);
     let mut state = Vec::new();
-    for (command, tolerance) in STATE {
-        if let Some(reply) = speaker.ask_if_known(line, command, &[])? {
+    speaker.compare(line, commands::READ_ENCODERS, 200, &mut state)?;
+    speaker.compare(line, commands::READ_MAIN_BATTERY, 3, &mut state)?;
+    speaker.compare(line, commands::READ_LOGIC_BATTERY, 3, &mut state)?;
+    speaker.compare(line, commands::READ_TEMPERATURE_1, 5, &mut state)?;
+    speaker.compare(line, commands::READ_VELOCITY_PID_M1, 0, &mut state)?;
+    speaker.compare(line, commands::READ_VELOCITY_PID_M2, 0, &mut state)?;
+    speaker.compare(line, commands::READ_POSITION_PID_M1, 0, &mut state)?;
+    Ok(state)
+}
+
+impl Speaker {
+    /// Adds what a command reads, if the unit knows it, to what is compared.
+    fn compare<const L: u8>(
+        self,
+        line: &mut Line<'_>,
+        command: Typed<L>,
+        tolerance: i64,
+        state: &mut Vec<(i64, i64)>,
+    ) -> Result<(), ExchangeError> {
+        if let Some(reply) = self.ask_if_known(line, command)? {
             state.extend(reply.values.ints().map(|value| (value, tolerance)));
         }
+        Ok(())
     }
-    Ok(state)
 }
 
 /// Finds out all about one unit.

@@ -1,10 +1,10 @@
 //! One command to one unit and its reply, as packets or as objects of a node.
 
 use crate::can::{Place, carry_out};
-use crate::packet::{Ask, gate, transact};
+use crate::packet::{Ask, gate, transact, typed_reply};
 use brushwork_link::device::controller::Line;
 use brushwork_link::exchange::{ExchangeError, Reply};
-use brushwork_mcp_wire::packet_serial::{Address, Generation, Request};
+use brushwork_mcp_wire::packet_serial::{Address, Generation, Read, Request, Typed};
 use brushwork_values::Value;
 
 /// Who is spoken to and in which widths.
@@ -39,8 +39,14 @@ impl Speaker {
     }
 
     /// Sends a command whose values are all numbers.
-    pub fn ask(self, line: &mut Line<'_>, command: u8, values: &[i64]) -> Result<Reply, ExchangeError> {
-        self.ask_values(line, command, values.iter().map(|&value| Value::Int(value)).collect())
+    pub fn ask<const L: u8>(
+        self,
+        line: &mut Line<'_>,
+        command: Typed<L>,
+        values: &[i64],
+    ) -> Result<Reply<Read<L>>, ExchangeError> {
+        let values = values.iter().map(|&value| Value::Int(value)).collect();
+        typed_reply(self.ask_values(line, command.number(), values)?, command)
     }
 
     pub fn ask_values(
@@ -70,13 +76,12 @@ impl Speaker {
 
     /// As [`Speaker::ask`], but `None` where the unit does not know the command: it answers nothing, or nothing that fits, or
     /// its generation has no such command.
-    pub fn ask_if_known(
+    pub fn ask_if_known<const L: u8>(
         self,
         line: &mut Line<'_>,
-        command: u8,
-        values: &[i64],
-    ) -> Result<Option<Reply>, ExchangeError> {
-        match self.ask(line, command, values) {
+        command: Typed<L>,
+    ) -> Result<Option<Reply<Read<L>>>, ExchangeError> {
+        match self.ask(line, command, &[]) {
             Ok(reply) => Ok(Some(reply)),
             Err(ExchangeError::Unsupported { .. }) => Ok(None),
             Err(error) if error.is_unusable_answer() => Ok(None),

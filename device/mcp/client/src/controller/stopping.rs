@@ -9,11 +9,10 @@ use brushwork_link::exchange::{Bracketed, transact_between};
 use brushwork_link::failure::Failure;
 use brushwork_mcp_wire::codes;
 use brushwork_mcp_wire::models::Model;
+use brushwork_mcp_wire::packet_serial::name::{MAX_ACTION, MIN_ACTION, TARGET, TYPE};
 use brushwork_mcp_wire::packet_serial::{
-    ACK, Generation, ReplyProgress, Request, number, parse_reply, scale,
+    ACK, Generation, Record, ReplyProgress, Request, Typed, commands, number, parse_reply, scale,
 };
-use brushwork_values::Code;
-use brushwork_values::Record;
 use std::time::Duration;
 
 /// Duty 0 on both motors at the highest acceleration (command 54).
@@ -61,7 +60,7 @@ pub fn confirm(
     scripts: bool,
     on: &str,
 ) -> Result<UnitStop, ExchangeError> {
-    let stand = |line: &mut Line<'_>| ask_surely(speaker, line, reads, number::DUTY_ACCEL_BOTH, &DUTY_ZERO);
+    let stand = |line: &mut Line<'_>| ask_surely(speaker, line, reads, commands::DUTY_ACCEL_BOTH, &DUTY_ZERO);
     let mut stop = UnitStop {
         address: speaker.id(),
         confirmed: false,
@@ -103,14 +102,14 @@ pub fn other_drivers(
     line: &mut Line<'_>,
     model: Option<&'static Model>,
 ) -> Result<Vec<String>, ExchangeError> {
-    let Some(priorities) = speaker.ask_if_known(line, number::READ_PRIORITIES, &[])? else {
+    let Some(priorities) = speaker.ask_if_known(line, commands::READ_PRIORITIES)? else {
         return Ok(Vec::new());
     };
     let levels: Vec<i64> = priorities.values.ints().collect();
     if !levels.iter().any(|level| is_pin_level(*level)) {
         return Ok(Vec::new());
     }
-    let Some(signals) = speaker.ask_if_known(line, number::READ_SIGNALS, &[])? else {
+    let Some(signals) = speaker.ask_if_known(line, commands::READ_SIGNALS)? else {
         return Ok(Vec::new());
     };
     let named = signals.values.records().enumerate();
@@ -118,26 +117,20 @@ pub fn other_drivers(
 }
 
 /// The sentences about one pin.
-fn drivers_of(pin: &str, record: &Record<'_>, levels: &[i64]) -> Vec<String> {
-    let kind = brushwork_values::by_raw(codes::SIGNAL_TYPES, record.int("type")).map_or("", |code| code.key);
+fn drivers_of<const L: u8>(pin: &str, record: &Record<'_, L>, levels: &[i64]) -> Vec<String> {
+    let kind = record.key(TYPE).unwrap_or_default();
     let mut sentences = Vec::new();
-    let target = record.int("target");
+    let target = record.int(TARGET);
     if target != 0 && levels.iter().any(|level| level_key(*level) == kind) {
         let motors =
             brushwork_values::by_raw(codes::SIGNAL_TARGETS, target).map_or("a motor", |code| code.label);
         sentences.push(format!("The {kind} input {pin} can drive {}.", lower_first(motors)));
     }
-    let starts = |name: &str| action_key(record, name) == Some("run_script");
-    if kind != "none" && (starts("min_action") || starts("max_action")) {
+    let starts = [record.key(MIN_ACTION), record.key(MAX_ACTION)].contains(&Some("run_script"));
+    if kind != "none" && starts {
         sentences.push(format!("The input {pin} can start the script."));
     }
     sentences
-}
-
-/// The key of an action in whichever numbering its width has.
-fn action_key(record: &Record<'_>, name: &str) -> Option<&'static str> {
-    let field = record.fields().iter().find(|field| field.name == name)?;
-    brushwork_values::by_raw(field.codes, record.int(name)).map(|code: &Code| code.key)
 }
 
 fn pin_name(model: Option<&'static Model>, index: usize) -> String {
@@ -168,7 +161,7 @@ fn stop_script(
     reads: &[u8],
     stop: &mut UnitStop,
 ) -> Result<bool, ExchangeError> {
-    let stopped = ask_surely(speaker, line, reads, number::STOP_SCRIPT, &[]);
+    let stopped = ask_surely(speaker, line, reads, commands::STOP_SCRIPT, &[]);
     stop.script_ended = Some(stopped.is_ok());
     if let Err(error) = stopped {
         pass_on(&error)?;
@@ -181,11 +174,11 @@ fn stop_script(
 
 /// Sends a command that may be repeated, until its acknowledgement is certain: no byte of a late reply counts as one, and none is taken
 /// for a refusal.
-fn ask_surely(
+fn ask_surely<const L: u8>(
     speaker: Speaker,
     line: &mut Line<'_>,
     reads: &[u8],
-    command: u8,
+    command: Typed<L>,
     values: &[i64],
 ) -> Result<(), ExchangeError> {
     if matches!(speaker.wire, Wire::Objects(_)) {
@@ -202,7 +195,7 @@ fn ask_surely(
             done => return done.map(drop),
         }
     }
-    let request = Request::new(speaker.address, command, values);
+    let request = Request::new(speaker.address, command.number(), values);
     let (permit, retries) = (line.permit(), line.retries());
     let ask = Ask { request: &request, generation: speaker.generation, permit, retries };
     let (exchange, watch) = line.parts();
@@ -224,14 +217,14 @@ fn empty_buffers(speaker: Speaker, line: &mut Line<'_>) -> Result<Option<bool>, 
         Some(false) => {}
         known => return Ok(known),
     }
-    let dropped = speaker.ask(line, number::SPEED_DISTANCE_BOTH, &DROP_BUFFERS);
-    speaker.ask(line, number::DUTY_ACCEL_BOTH, &DUTY_ZERO)?;
+    let dropped = speaker.ask(line, commands::SPEED_DISTANCE_BOTH, &DROP_BUFFERS);
+    speaker.ask(line, commands::DUTY_ACCEL_BOTH, &DUTY_ZERO)?;
     dropped?;
     are_empty(speaker, line)
 }
 
 fn are_empty(speaker: Speaker, line: &mut Line<'_>) -> Result<Option<bool>, ExchangeError> {
-    let Some(reply) = speaker.ask_if_known(line, number::READ_BUFFERS, &[])? else {
+    let Some(reply) = speaker.ask_if_known(line, commands::READ_BUFFERS)? else {
         return Ok(None);
     };
     Ok(Some(reply.values.ints().all(|length| is_empty(length, speaker.generation))))

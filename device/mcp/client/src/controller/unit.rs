@@ -15,8 +15,9 @@ use brushwork_link::device::{StopBytes, UnitStop};
 use brushwork_link::exchange::{ExchangeError, Reply, Tries};
 use brushwork_link::transport::{Stream, TransportError};
 use brushwork_mcp_wire::models::{Family, Model};
+use brushwork_mcp_wire::packet_serial::name::STATUS;
 use brushwork_mcp_wire::packet_serial::status::Condition;
-use brushwork_mcp_wire::packet_serial::{Address, Effect, lookup, number, status};
+use brushwork_mcp_wire::packet_serial::{Address, Effect, commands, lookup, number, status};
 use brushwork_values::{Motor, Value};
 
 /// One MCP or RoboClaw controller.
@@ -96,18 +97,18 @@ impl Controller for Mcp {
     }
 
     fn set_encoder(&mut self, line: &mut Line<'_>, motor: Motor, counts: i32) -> Result<(), ExchangeError> {
-        let command = [number::SET_ENCODER_M1, number::SET_ENCODER_M2][motor.index()];
+        let command = [commands::SET_ENCODER_M1, commands::SET_ENCODER_M2][motor.index()];
         self.speaker.ask(line, command, &[i64::from(counts)]).map(drop)
     }
 
     fn zero_encoders(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError> {
-        self.speaker.ask(line, number::RESET_ENCODERS, &[]).map(drop)
+        self.speaker.ask(line, commands::RESET_ENCODERS, &[]).map(drop)
     }
 
     fn reset_estop(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError> {
-        self.speaker.ask(line, number::RESET_ESTOP, &[])?;
-        let reply = self.speaker.ask(line, number::READ_STATUS, &[])?;
-        let word = u32::try_from(reply.values.int("status")).unwrap_or(0);
+        self.speaker.ask(line, commands::RESET_ESTOP, &[])?;
+        let reply = self.speaker.ask(line, commands::READ_STATUS, &[])?;
+        let word = u32::try_from(reply.values.int(STATUS)).unwrap_or(0);
         if status::decode(word, self.speaker.generation).contains(Condition::EStop) {
             let what = "the E-stop is still set: it is pressed, or its reset is locked to the hardware";
             return Err(ExchangeError::Impossible { what: what.to_owned() });
@@ -116,7 +117,7 @@ impl Controller for Mcp {
     }
 
     fn start_script(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError> {
-        self.speaker.ask(line, number::START_SCRIPT, &[])?;
+        self.speaker.ask(line, commands::START_SCRIPT, &[])?;
         self.runs_scripts = true;
         Ok(())
     }
@@ -127,7 +128,7 @@ impl Controller for Mcp {
                 what: format!("a {} runs no scripts", model.family.name()),
             });
         }
-        self.speaker.ask(line, number::STOP_SCRIPT, &[]).map(drop)
+        self.speaker.ask(line, commands::STOP_SCRIPT, &[]).map(drop)
     }
 
     fn enter_loader(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError> {
@@ -135,7 +136,7 @@ impl Controller for Mcp {
             let what = "the firmware loader cannot be entered over the CAN bus; connect over USB".to_owned();
             return Err(ExchangeError::Impossible { what });
         }
-        match self.speaker.ask(line, number::ENTER_LOADER, &[]) {
+        match self.speaker.ask(line, commands::ENTER_LOADER, &[]) {
             // The libraries do not insist on the acknowledgement: the unit restarts.
             Err(error) if error.is_unusable_answer() || error.is_link_lost() => Ok(()),
             other => other.map(drop),

@@ -1,6 +1,6 @@
 //! Where an input pin stands within its range.
 
-use brushwork_values::Values;
+use brushwork_mcp_wire::packet_serial::{Read, name};
 
 /// Full scale of a signal's percent (MCP manual 1.9.12).
 const FULL_SCALE: i64 = 32_767;
@@ -20,8 +20,8 @@ pub enum PinEnd {
 ///
 /// Assumed: percent reaches full scale exactly at the ends; with a curve that ends early it may say so a little before.
 #[must_use]
-pub fn pin_ends(values: &Values) -> Vec<PinEnd> {
-    values.records().map(|record| PinEnd::of_percent(record.int("percent"))).collect()
+pub fn pin_ends<const LAYOUT: u8>(values: &Read<LAYOUT>) -> Vec<PinEnd> {
+    values.records().map(|record| PinEnd::of_percent(record.int(name::PERCENT))).collect()
 }
 
 impl PinEnd {

@@ -1,10 +1,12 @@
 //! Whether a controller runs its script by itself after power-up (MCP manual, commands 246 and 247).
 
+use crate::TypedWire;
 use brushwork_link::device::Job;
 use brushwork_link::exchange::ExchangeError;
 use brushwork_link::failure::Failure;
 use brushwork_link::wire::Wire;
-use brushwork_mcp_wire::packet_serial::number;
+use brushwork_mcp_wire::packet_serial::commands;
+use brushwork_mcp_wire::packet_serial::name::DELAY;
 use std::time::Duration;
 
 /// What the job is called while it runs.
@@ -22,8 +24,8 @@ pub type Autorun = Option<Duration>;
 /// # Errors
 /// The exchange failed.
 pub fn read_autorun(wire: &mut dyn Wire) -> Result<Autorun, ExchangeError> {
-    let reply = wire.transact(number::READ_SCRIPT_AUTORUN, &[])?;
-    let delay = Duration::from_millis(u64::try_from(reply.int("delay")).unwrap_or(0));
+    let reply = wire.ask(commands::READ_SCRIPT_AUTORUN, &[])?;
+    let delay = Duration::from_millis(u64::try_from(reply.int(DELAY)).unwrap_or(0));
     Ok(Some(delay).filter(|delay| *delay >= MIN_AUTORUN))
 }
 
@@ -34,7 +36,7 @@ pub fn read_autorun(wire: &mut dyn Wire) -> Result<Autorun, ExchangeError> {
 pub fn set_autorun(wire: &mut dyn Wire, autorun: Autorun) -> Result<(), Failure> {
     let failure = |error: &ExchangeError, wire: &dyn Wire| error.failure(AUTORUN_JOB, wire.describe());
     let delay_ms = autorun.map_or(0, |delay| i64::try_from(delay.max(MIN_AUTORUN).as_millis()).unwrap_or(0));
-    let written = wire.transact(number::SET_SCRIPT_AUTORUN, &[delay_ms]);
+    let written = wire.ask(commands::SET_SCRIPT_AUTORUN, &[delay_ms]);
     written.map_err(|error| failure(&error, wire))?;
     let kept = read_autorun(wire).map_err(|error| failure(&error, wire))?;
     let wanted = autorun.map(|delay| Duration::from_millis(delay.max(MIN_AUTORUN).as_millis() as u64));

@@ -1,12 +1,15 @@
 //! Erasing the script memory and writing an image into it, block by block.
 
+use crate::TypedWire;
+use crate::packet::typed;
 use crate::script::autorun::{Autorun, read_autorun};
 use crate::script::image::{Origin, ScriptImage};
 use brushwork_link::device::Job;
 use brushwork_link::exchange::ExchangeError;
 use brushwork_link::failure::Failure;
 use brushwork_link::wire::Wire;
-use brushwork_mcp_wire::packet_serial::number;
+use brushwork_mcp_wire::packet_serial::name::STATUS;
+use brushwork_mcp_wire::packet_serial::{Read, Typed, commands};
 use brushwork_mcp_wire::script_image::Block;
 use brushwork_values::Value;
 use std::collections::BTreeSet;
@@ -78,7 +81,7 @@ pub fn download(wire: &mut dyn Wire, image: &ScriptImage, is_simulated: bool) ->
     let begun_at = wire.now();
     wire.report_progress(0, 0, "stopping the script");
     let untouched = |error: ExchangeError, wire: &dyn Wire| error.failure(DOWNLOAD_JOB, wire.describe());
-    wire.transact(number::STOP_SCRIPT, &[]).map_err(|error| untouched(error, wire))?;
+    wire.ask(commands::STOP_SCRIPT, &[]).map_err(|error| untouched(error, wire))?;
     let autorun = read_autorun(wire).map_err(|error| untouched(error, wire))?;
     wire.report_progress(0, 0, "erasing the script memory");
     let mut sending = Sending { statuses: BTreeSet::new(), autorun, is_simulated };
@@ -113,17 +116,17 @@ struct Sending {
 
 impl Sending {
     fn erase(&self, wire: &mut dyn Wire) -> Result<(), Failure> {
-        let reply = repeated(wire, number::ERASE_SCRIPT, || vec![Value::Int(ERASE_KEY)]);
+        let reply = repeated(wire, commands::ERASE_SCRIPT, || vec![Value::Int(ERASE_KEY)]);
         let values = reply.map_err(|error| self.broken(wire, "erasing", &error.full()))?;
-        self.check(wire, "the erase", values.int("status"))
+        self.check(wire, "the erase", values.int(STATUS))
     }
 
     fn write(&mut self, wire: &mut dyn Wire, block: &Block) -> Result<(), Failure> {
         let values = || vec![Value::Int(block.address.into()), Value::Bytes(block.wire_bytes().to_vec())];
         let place = format!("the block at 0x{:06X}", block.address);
-        let reply = repeated(wire, number::WRITE_SCRIPT, values);
+        let reply = repeated(wire, commands::WRITE_SCRIPT, values);
         let values = reply.map_err(|error| self.broken(wire, &format!("writing {place}"), &error.full()))?;
-        let status = values.int("status");
+        let status = values.int(STATUS);
         self.statuses.insert(status as u8);
         self.check(wire, &place, status)
     }
@@ -180,14 +183,14 @@ impl Sending {
 }
 
 /// Sends a command again whose answer did not come, which the exchange itself does not do with what works on memory.
-fn repeated(
+fn repeated<const L: u8>(
     wire: &mut dyn Wire,
-    command: u8,
+    command: Typed<L>,
     values: impl Fn() -> Vec<Value>,
-) -> Result<brushwork_values::Values, ExchangeError> {
+) -> Result<Read<L>, ExchangeError> {
     let mut tries = 1;
     loop {
-        match wire.transact_values(command, values()) {
+        match wire.transact_values(command.number(), values()).and_then(|values| typed(command, values)) {
             Err(error) if tries < BLOCK_TRIES && is_lost_answer(&error) => tries += 1,
             done => return done,
         }

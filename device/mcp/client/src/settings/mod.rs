@@ -27,8 +27,9 @@ use brushwork_link::unit::{FirmwareGeneration, UnitAddress};
 use brushwork_link::wire::Wire;
 use brushwork_mcp_wire::codes::ENCODER_PIN_NONE;
 use brushwork_mcp_wire::models::Family;
+use brushwork_mcp_wire::packet_serial::name::{ADDRESS, Name};
 use brushwork_mcp_wire::packet_serial::{lookup, number};
-use brushwork_values::{Value, Values};
+use brushwork_values::Values;
 
 /// The settings as the engine sees them.
 #[derive(Debug)]
@@ -70,15 +71,6 @@ impl FamilySettings for McpSettings {
 
     fn read_title(&self, command: u8) -> &'static str {
         lookup(command).map_or("an unknown command", |command| command.title)
-    }
-
-    fn values(
-        &self,
-        unit: (UnitAddress, FirmwareGeneration),
-        command: u8,
-        named: &[(&'static str, i64)],
-    ) -> Result<Vec<Value>, ExchangeError> {
-        plan::values(unit, command, named)
     }
 
     fn arguments(&self, planned: &Planned<'_>) -> Result<Vec<Argument>, String> {
@@ -128,7 +120,7 @@ impl FamilySettings for McpSettings {
     }
 
     fn new_address(&self, step: &Step) -> Option<u8> {
-        let given = step.arguments.iter().find(|(name, _)| *name == "address")?;
+        let given = step.arguments.iter().find(|(name, _)| *name == ADDRESS::TEXT)?;
         u8::try_from(given.1).ok()
     }
 

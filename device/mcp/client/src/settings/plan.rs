@@ -1,15 +1,14 @@
 //! What is particular in a plan: when each command is sent, what its user should know, and how a step looks on the wire.
 
 use super::pins::{Conflict, conflicts};
-use crate::{layout_of, packet_address, packet_generation};
-use brushwork_link::exchange::ExchangeError;
+use crate::{layout_of, packet_address};
 use brushwork_link::settings::{
     Argument, Carrier, PlanContext, Planned, SettingValue, SettingsImage, SettingsTable, Source, Stage, Step,
 };
 use brushwork_link::transport::Stream;
 use brushwork_link::unit::{FirmwareGeneration, UnitAddress};
+use brushwork_mcp_wire::packet_serial::name::{INDEX, Name};
 use brushwork_mcp_wire::packet_serial::{Request, describe_request, lookup, number};
-use brushwork_values::Value;
 
 /// What the command of these rows takes: its fields in wire order, without keys that never change.
 pub fn arguments(planned: &Planned<'_>) -> Result<Vec<Argument>, String> {
@@ -17,7 +16,7 @@ pub fn arguments(planned: &Planned<'_>) -> Result<Vec<Argument>, String> {
     let form = lookup(planned.command).and_then(|command| command.form(layout));
     let form = form.ok_or_else(|| format!("This firmware has no command {}.", planned.command))?;
     let argument = |name| match planned.index {
-        Some(index) if name == "index" => Argument::Given(name, i64::from(index)),
+        Some(index) if name == INDEX::TEXT => Argument::Given(name, i64::from(index)),
         _ => Argument::Field(name),
     };
     let fields = form.request.iter().filter(|field| field.fixed.is_none());
@@ -128,35 +127,18 @@ pub fn new_conflicts(table: &SettingsTable, after: &SettingsImage, changes: &Set
     found.filter(is_touched).map(|conflict| conflict.sentence).collect()
 }
 
-/// The values of a command in the order of its layout.
-pub fn values(
-    (address, generation): (UnitAddress, FirmwareGeneration),
-    command: u8,
-    named: &[(&'static str, i64)],
-) -> Result<Vec<Value>, ExchangeError> {
-    let request = request((address, generation), command, named);
-    request.map(|request| request.values).map_err(|why| ExchangeError::Encode { why })
-}
-
 /// The bytes of a step.
 pub fn step_bytes(step: &Step, unit: (UnitAddress, FirmwareGeneration)) -> Result<Vec<u8>, String> {
-    let request = request(unit, step.command, &step.arguments)?;
-    request.encode(layout_of(unit.1)).map_err(|error| error.to_string())
+    request(step, unit.0)?.encode(layout_of(unit.1)).map_err(|error| error.to_string())
 }
 
 /// A step in words.
 pub fn step_words(step: &Step, unit: (UnitAddress, FirmwareGeneration)) -> String {
-    let request = request(unit, step.command, &step.arguments);
-    request.map_or_else(|error| error, |request| describe_request(&request, layout_of(unit.1)))
+    request(step, unit.0).map_or_else(|error| error, |request| describe_request(&request, layout_of(unit.1)))
 }
 
-fn request(
-    (address, generation): (UnitAddress, FirmwareGeneration),
-    command: u8,
-    named: &[(&'static str, i64)],
-) -> Result<Request, String> {
-    let (Some(address), Some(generation)) = (packet_address(address), packet_generation(generation)) else {
-        return Err(format!("{address} is no address of packet serial"));
-    };
-    Request::named(address, command, generation, named).map_err(|error| error.to_string())
+fn request(step: &Step, address: UnitAddress) -> Result<Request, String> {
+    let address =
+        packet_address(address).ok_or_else(|| format!("{address} is no address of packet serial"))?;
+    Ok(Request::new(address, step.command, &step.values()))
 }

@@ -5,7 +5,7 @@
 
 use brushwork_mcp_wire::codes;
 use brushwork_mcp_wire::models::{Family, Model, Pin};
-use brushwork_mcp_wire::packet_serial::Generation;
+use brushwork_mcp_wire::packet_serial::{Generation, Part, has_number};
 use brushwork_values::Code;
 use brushwork_values::Unit as Measure;
 
@@ -104,7 +104,22 @@ impl Template {
         self
     }
 
+    /// The forms by generation. Commands and fields that the command table does not have do not compile.
     pub(crate) const fn forms(mut self, forms: &'static [Form]) -> Self {
+        let mut at = 0;
+        while at < forms.len() {
+            match forms[at].carrier {
+                FormCarrier::Wire { read, write } => {
+                    read.must_stand(if read.indexed { Part::Record } else { Part::Reply });
+                    if let Some(write) = write {
+                        write.must_stand(Part::Request);
+                    }
+                }
+                FormCarrier::LinkAddress { write } => write.must_stand(Part::Request),
+                FormCarrier::Hidden(_) => {}
+            }
+            at += 1;
+        }
         self.forms = forms;
         self
     }
@@ -232,12 +247,27 @@ impl At {
         self
     }
 
-    fn command(self, instance: usize) -> u8 {
-        self.commands[instance.min(self.commands.len() - 1)]
+    const fn must_stand(self, part: Part) {
+        let mut instance = 0;
+        while instance < self.commands.len() || instance < self.fields.len() {
+            assert!(
+                has_number(self.command(instance), part, self.field(instance)),
+                "the command of a setting has no such field"
+            );
+            instance += 1;
+        }
+    }
+
+    const fn command(self, instance: usize) -> u8 {
+        self.commands[if instance < self.commands.len() { instance } else { self.commands.len() - 1 }]
+    }
+
+    const fn field(self, instance: usize) -> &'static str {
+        self.fields[if instance < self.fields.len() { instance } else { self.fields.len() - 1 }]
     }
 
     fn place(self, instance: usize) -> Place {
-        Place { field: self.fields[instance.min(self.fields.len() - 1)], bits: self.bits }
+        Place { field: self.field(instance), bits: self.bits }
     }
 
     fn source(self, instance: usize) -> Source {

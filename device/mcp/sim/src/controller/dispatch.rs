@@ -1,38 +1,30 @@
 //! From a request to the handler that acts on it.
 
-use super::answer::{Answer, Arguments, Handler, Handlers};
+use super::answer::{AnyAnswer, Handler};
 use super::commands::THEMES;
 use super::firmware::Firmware;
 use brushwork_mcp_wire::packet_serial::Framed;
+use std::sync::LazyLock;
 
 impl Firmware {
     /// Acts on one request for this unit.
-    pub(super) fn execute(&mut self, framed: &Framed) -> Answer {
+    pub(super) fn execute(&mut self, framed: &Framed) -> AnyAnswer {
         match handler(framed.command.number) {
-            Some(handler) => handler(self, &Arguments { values: &framed.values }),
-            None => Answer::Silence,
+            Some(handler) => handler.act(self, &framed.values),
+            None => AnyAnswer::Silence,
         }
     }
 }
 
 /// The handler of a command byte.
-pub(super) fn handler(number: u8) -> Option<Handler> {
+pub(super) fn handler(number: u8) -> Option<&'static dyn Handler> {
     INDEX[usize::from(number)]
 }
 
-static INDEX: [Option<Handler>; 256] = index_of(&THEMES);
-
-const fn index_of(themes: &[Handlers]) -> [Option<Handler>; 256] {
+static INDEX: LazyLock<[Option<&dyn Handler>; 256]> = LazyLock::new(|| {
     let mut index = [None; 256];
-    let mut theme = 0;
-    while theme < themes.len() {
-        let mut row = 0;
-        while row < themes[theme].len() {
-            let (number, handler) = themes[theme][row];
-            index[number as usize] = Some(handler);
-            row += 1;
-        }
-        theme += 1;
+    for handler in THEMES.into_iter().flatten() {
+        index[usize::from(handler.number())] = Some(*handler);
     }
     index
-}
+});

@@ -1,7 +1,7 @@
 //! Commands carried out past packet serial: by the objects of the CANopen node.
 
 use super::Controller;
-use super::answer::{Answer, Arguments, Named, find};
+use super::answer::{Answer, Named, find};
 use super::dispatch::handler;
 use brushwork_mcp_wire::packet_serial::{Form, Generation, lookup};
 use brushwork_values::{Value, Values};
@@ -43,7 +43,7 @@ impl Controller {
         firmware.now = now;
         firmware.from_can = true;
         let values = Values::new(form.request, args.iter().map(|&value| Value::Int(value)).collect());
-        let answer = handler(firmware, &Arguments { values: &values });
+        let answer = handler.act(firmware, &values);
         firmware.from_can = false;
         match answer {
             Answer::Ack => Outcome::Done,

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::identity::Generation;
+use super::number;
 use crate::models::Family;
 use brushwork_values::{Field, width_of};
 
@@ -196,14 +197,13 @@ pub(super) const fn request_width(fields: &[Field]) -> usize {
 impl Command {
     pub(super) const fn new(
         number: u8,
-        key: &'static str,
         title: &'static str,
         source: &'static str,
         forms: &'static [Form],
     ) -> Self {
         Self {
             number,
-            key,
+            key: number::key(number),
             title,
             forms,
             also_accepted: &[],

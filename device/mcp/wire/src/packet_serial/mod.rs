@@ -18,6 +18,7 @@ mod framer;
 mod identity;
 pub mod known;
 pub mod led;
+pub mod name;
 pub mod number;
 mod parse;
 pub mod reference;
@@ -25,6 +26,7 @@ mod request;
 pub mod scale;
 pub mod status;
 mod table;
+mod typed;
 
 pub use command::{ClientUse, Command, Direction, Effect, Form, Reply, Simulated};
 pub use describe::{
@@ -37,6 +39,8 @@ pub use framer::{
     DiscardReason, Discarded, Framed, FramerEvent, LONGEST_REQUEST, PACKET_GAP, RawBytes, RequestFramer,
 };
 pub use identity::{Address, Generation, InvalidAddress, InvalidGeneration};
+pub use number::commands;
 pub use parse::{ReplyProgress, parse_reply};
 pub use request::Request;
 pub use table::{COMMANDS, lookup, lookup_key};
+pub use typed::{Given, Part, Read, Record, Typed, always_has, give, has, has_number};

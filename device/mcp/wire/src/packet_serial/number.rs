@@ -1,11 +1,30 @@
 //! The command numbers by name. Each is the upper-case form of its row's key in the command table.
 
+use super::name::small;
+
 macro_rules! numbers {
     ($($name:ident = $number:literal;)*) => {
         $(
             #[doc = concat!("Command ", stringify!($number), "; see its row in [`COMMANDS`](super::COMMANDS).")]
             pub const $name: u8 = $number;
         )*
+
+        /// The commands by name, each with its layout as a type.
+        pub mod commands {
+            use crate::packet_serial::typed::{Typed, layout_of};
+            $(
+                #[doc = concat!("Command ", stringify!($number), "; see its row in [`COMMANDS`](crate::packet_serial::COMMANDS).")]
+                pub const $name: Typed<{ layout_of($number) }> = Typed::new($number);
+            )*
+        }
+
+        /// The key of a command's row: the name of its number in small letters.
+        pub(super) const fn key(number: u8) -> &'static str {
+            match number {
+                $($number => small!($name),)*
+                _ => panic!("no command is named so"),
+            }
+        }
 
         /// Every name with its number, in order.
         #[cfg(test)]

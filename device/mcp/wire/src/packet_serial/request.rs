@@ -4,7 +4,8 @@ use super::command::{Command, Form};
 use super::encode_error::EncodeError;
 use super::identity::{Address, Generation};
 use super::table::lookup;
-use brushwork_values::Value;
+use super::typed::{Given, Typed};
+use brushwork_values::{Field, Value};
 
 /// A request to one unit. It names no generation: [`Request::encode`] takes the one of the receiver.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,29 +24,25 @@ impl Request {
         Self { address, command, values: values.iter().map(|&value| Value::Int(value)).collect() }
     }
 
-    /// A request whose arguments are put in the order that `generation` has them. Names that the generation's layout
-    /// lacks are left out, so that one call serves all widths.
+    /// A request whose arguments are put in the order that `generation` has them. Those that its layout lacks are left out, so
+    /// that one call serves all widths.
     ///
     /// # Errors
-    /// If the generation does not have the command, or an argument of its layout is not among `named`.
-    pub fn named(
+    /// If the generation does not have the command, or an argument of its layout is not among `given`.
+    pub fn typed<const LAYOUT: u8>(
         address: Address,
-        command: u8,
+        command: Typed<LAYOUT>,
         generation: Generation,
-        named: &[(&str, i64)],
+        given: &[Given<LAYOUT>],
     ) -> Result<Self, EncodeError> {
-        let form = form_of(command, generation)?;
-        let value_of =
-            |name: &str| named.iter().find(|(given, _)| *given == name).map(|(_, value)| Value::Int(*value));
-        let values = form
-            .request
-            .iter()
-            .map(|field| {
-                value_of(field.name)
-                    .or_else(|| field.fixed.map(Value::Int))
-                    .ok_or(EncodeError::MissingValue { command, field: field.name })
-            })
-            .collect::<Result<_, _>>()?;
+        let command = command.number();
+        let raw_of =
+            |field: &Field| given.iter().find(|given| given.name == field.name).map(|given| given.raw);
+        let value_of = |field: &Field| {
+            let raw = raw_of(field).or(field.fixed);
+            raw.map(Value::Int).ok_or(EncodeError::MissingValue { command, field: field.name })
+        };
+        let values = form_of(command, generation)?.request.iter().map(value_of).collect::<Result<_, _>>()?;
         Ok(Self { address, command, values })
     }
 

@@ -4,7 +4,9 @@
 //! the motor is. What is measured is no setting either.
 
 use crate::family::NAME;
-use brushwork_motion_mind_wire::{Bit, FUNCTION_BITS, FUNCTION2_BITS, Register, numbers, register_named};
+use brushwork_motion_mind_wire::{
+    Bit, FUNCTION_BITS, FUNCTION2_BITS, Register, numbers, register, register_number as number,
+};
 use brushwork_values::Unit;
 
 use brushwork_link::settings::SettingValue;
@@ -13,7 +15,7 @@ use brushwork_link::settings::{Coding, Kind};
 
 /// How one register is shown.
 struct Shown {
-    register: &'static str,
+    register: u8,
     key: &'static str,
     label: &'static str,
     group: Group,
@@ -35,7 +37,7 @@ const PLAIN: Form = Form::Raw(Unit::None);
 const MILLISECONDS: Form = Form::Scaled(Unit::Milliseconds, 3);
 
 const fn shown(
-    register: &'static str,
+    register: u8,
     key: &'static str,
     label: &'static str,
     group: Group,
@@ -47,7 +49,7 @@ const fn shown(
 
 static SHOWN: &[Shown] = &[
     shown(
-        "ADDRESS",
+        number::ADDRESS,
         "register.address",
         "Address",
         Group::Unit,
@@ -56,7 +58,7 @@ static SHOWN: &[Shown] = &[
          register 7.",
     ),
     shown(
-        "AMPSLIMIT",
+        number::AMPSLIMIT,
         "register.ampslimit",
         "Current limit",
         Group::CurrentLimits,
@@ -64,7 +66,7 @@ static SHOWN: &[Shown] = &[
         "Above this current the drive is reduced by the excess; 0 switches the limit off. Motion Mind manual 3.10, register 28.",
     ),
     shown(
-        "PWMLIMIT",
+        number::PWMLIMIT,
         "register.pwmlimit",
         "Drive limit",
         Group::CurrentLimits,
@@ -72,7 +74,7 @@ static SHOWN: &[Shown] = &[
         "The most drive that the motor gets in either direction. Motion Mind manual 3.10, register 25.",
     ),
     shown(
-        "VELOCITYLIMIT",
+        number::VELOCITYLIMIT,
         "register.velocitylimit",
         "Velocity limit",
         Group::Velocity,
@@ -81,7 +83,7 @@ static SHOWN: &[Shown] = &[
          PID loop of 5 ms. Motion Mind manual 6.2, register 1.",
     ),
     shown(
-        "TIMER",
+        number::TIMER,
         "register.timer",
         "Timer",
         Group::Velocity,
@@ -90,7 +92,7 @@ static SHOWN: &[Shown] = &[
          manual 6.2, register 9.",
     ),
     shown(
-        "VELOCITYFF",
+        number::VELOCITYFF,
         "register.velocityff",
         "Velocity feed-forward",
         Group::Velocity,
@@ -99,7 +101,7 @@ static SHOWN: &[Shown] = &[
          register 2.",
     ),
     shown(
-        "PTERM",
+        number::PTERM,
         "register.pterm",
         "P",
         Group::Loop,
@@ -107,7 +109,7 @@ static SHOWN: &[Shown] = &[
         "Proportional gain of the PID. Motion Mind manual 3.13, register 4.",
     ),
     shown(
-        "ITERM",
+        number::ITERM,
         "register.iterm",
         "I",
         Group::Loop,
@@ -115,7 +117,7 @@ static SHOWN: &[Shown] = &[
         "Integral gain of the PID, for the sum of errors of all loops. Motion Mind manual 3.13, register 5.",
     ),
     shown(
-        "DTERM",
+        number::DTERM,
         "register.dterm",
         "D",
         Group::Loop,
@@ -123,7 +125,7 @@ static SHOWN: &[Shown] = &[
         "Derivative gain of the PID, for the change of the error in one loop. Motion Mind manual 3.13, register 6.",
     ),
     shown(
-        "PIDSCALAR",
+        number::PIDSCALAR,
         "register.pidscalar",
         "PID scalar",
         Group::Loop,
@@ -131,7 +133,7 @@ static SHOWN: &[Shown] = &[
         "The sum of the three terms is divided by 2 to this power: one more halves all gains. Motion Mind manual 3.13, register 8.",
     ),
     shown(
-        "DEADBAND",
+        number::DEADBAND,
         "register.deadband",
         "Dead band",
         Group::Loop,
@@ -140,7 +142,7 @@ static SHOWN: &[Shown] = &[
          Mind manual 6.2, register 26.",
     ),
     shown(
-        "VNLIMIT",
+        number::VNLIMIT,
         "register.vnlimit",
         "Negative virtual limit",
         Group::Position,
@@ -148,7 +150,7 @@ static SHOWN: &[Shown] = &[
         "With VIRTLIMIT: at this position the motor stops on its way down. Motion Mind manual 6.2, register 23.",
     ),
     shown(
-        "VPLIMIT",
+        number::VPLIMIT,
         "register.vplimit",
         "Positive virtual limit",
         Group::Position,
@@ -156,7 +158,7 @@ static SHOWN: &[Shown] = &[
         "With VIRTLIMIT: at this position the motor stops on its way up. Motion Mind manual 6.2, register 24.",
     ),
     shown(
-        "RCMAX",
+        number::RCMAX,
         "register.rcmax",
         "R/C maximum",
         Group::Pins,
@@ -164,7 +166,7 @@ static SHOWN: &[Shown] = &[
         "Width of the pulse that is full speed forward. Motion Mind manual 4.3, register 10.",
     ),
     shown(
-        "RCMIN",
+        number::RCMIN,
         "register.rcmin",
         "R/C minimum",
         Group::Pins,
@@ -172,7 +174,7 @@ static SHOWN: &[Shown] = &[
         "Width of the pulse that is full speed reverse. Motion Mind manual 4.3, register 11.",
     ),
     shown(
-        "RCBAND",
+        number::RCBAND,
         "register.rcband",
         "R/C dead band",
         Group::Pins,
@@ -184,15 +186,15 @@ static SHOWN: &[Shown] = &[
 /// Every row, in screen order.
 pub fn rows() -> Vec<Row> {
     let registers = SHOWN.iter().filter_map(row_of);
-    let function = bit_rows("FUNCTION", "function.{bit}", Group::Functions, FUNCTION_BITS);
-    let function2 = bit_rows("FUNCTION2", "function2.{bit}", Group::Functions2, FUNCTION2_BITS);
+    let function = bit_rows(number::FUNCTION, "function.{bit}", Group::Functions, FUNCTION_BITS);
+    let function2 = bit_rows(number::FUNCTION2, "function2.{bit}", Group::Functions2, FUNCTION2_BITS);
     let mut rows: Vec<Row> = registers.chain(function).chain(function2).chain(unused_bits()).collect();
     rows.sort_by_key(|row| row.group);
     rows
 }
 
 fn row_of(shown: &Shown) -> Option<Row> {
-    let register = register_named(shown.register)?;
+    let register = register(shown.register)?;
     let (kind, unit, coding) = match shown.form {
         Form::Raw(unit) => (Kind::Int, unit, Coding::Plain),
         Form::Scaled(unit, decimals) => {
@@ -202,8 +204,8 @@ fn row_of(shown: &Shown) -> Option<Row> {
     let physical = |raw: i64| coding.to_physical(raw);
     let (mut min, max) = (*register.range.start(), *register.range.end());
     // From 99 on nobody answers, and 0 is no address that text and scans have.
-    let max = if shown.register == "ADDRESS" { 98 } else { max };
-    min = if shown.register == "ADDRESS" { 1 } else { min };
+    let max = if shown.register == number::ADDRESS { 98 } else { max };
+    min = if shown.register == number::ADDRESS { 1 } else { min };
     Some(Row {
         key: shown.key.to_owned(),
         pattern: shown.key,
@@ -225,13 +227,13 @@ fn row_of(shown: &Shown) -> Option<Row> {
 }
 
 fn bit_rows(
-    register: &'static str,
+    number: u8,
     pattern: &'static str,
     group: Group,
     bits: &'static [Bit],
 ) -> impl Iterator<Item = Row> {
     bits.iter().filter_map(move |bit| {
-        let register = register_named(register)?;
+        let register = register(number)?;
         Some(Row {
             key: pattern.replace("{bit}", &key_of(bit)),
             pattern,
@@ -260,7 +262,7 @@ fn key_of(bit: &Bit) -> String {
 
 /// Bits 14 and 15 of FUNCTION2 mean nothing. As a row they are kept as they are when others change.
 fn unused_bits() -> Option<Row> {
-    let register = register_named("FUNCTION2")?;
+    let register = register(number::FUNCTION2)?;
     Some(Row {
         key: "function2.unused".to_owned(),
         pattern: "function2.unused",
@@ -313,7 +315,7 @@ mod tests {
         }
         let bits: u32 = rows
             .iter()
-            .filter(|row| register_of(row).is_some_and(|register| register.name == "FUNCTION2"))
+            .filter(|row| register_of(row).is_some_and(|register| register.number == number::FUNCTION2))
             .filter_map(|row| row.sink()?.place.bits)
             .fold(0, |all, bits| all | ((1 << bits.width) - 1) << bits.shift);
         assert_eq!(bits, 0xFFFF, "no bit of FUNCTION2 is lost when another is written");

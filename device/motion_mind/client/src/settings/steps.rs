@@ -1,6 +1,7 @@
 //! Writes of registers as steps of a plan.
 
-use brushwork_motion_mind_wire::{Address, Command, describe_command, encode_frame, register};
+use brushwork_motion_mind_wire::register_number as number;
+use brushwork_motion_mind_wire::{Address, Command, describe_command, encode_frame};
 
 use brushwork_link::settings::SettingValue;
 use brushwork_link::settings::SettingsImage;
@@ -12,11 +13,11 @@ pub const INDEX: &str = "register";
 
 /// When a register is written: limits first, then what they limit, then the switches, the address last.
 pub fn stage(index: u8) -> Stage {
-    match register(index).map_or("", |row| row.name) {
-        "AMPSLIMIT" | "PWMLIMIT" | "VNLIMIT" | "VPLIMIT" => Stage::Limits,
-        "RCMAX" | "RCMIN" | "RCBAND" => Stage::Pins,
-        "FUNCTION" | "FUNCTION2" => Stage::Priorities,
-        "ADDRESS" => Stage::Address,
+    match index {
+        number::AMPSLIMIT | number::PWMLIMIT | number::VNLIMIT | number::VPLIMIT => Stage::Limits,
+        number::RCMAX | number::RCMIN | number::RCBAND => Stage::Pins,
+        number::FUNCTION | number::FUNCTION2 => Stage::Priorities,
+        number::ADDRESS => Stage::Address,
         _ => Stage::Motors,
     }
 }
@@ -24,10 +25,13 @@ pub fn stage(index: u8) -> Stage {
 /// Puts a PIDSCALAR that grows before the terms that it divides. They are written in the order of their numbers, the divisor last: so
 /// a mix of old and new ones is never stronger than both, and a motor that its loop holds is not kicked in between.
 pub fn weaken_first(steps: &mut [Step], ram: &SettingsImage) {
-    const TERMS: [&str; 4] = ["PTERM", "ITERM", "DTERM", "PIDSCALAR"];
-    let name = |step: &Step| step.arguments.get(1).map_or("", |(name, _)| *name);
-    let Some(scalar) = steps.iter().position(|step| name(step) == "PIDSCALAR") else { return };
-    let Some(first) = steps.iter().position(|step| TERMS.contains(&name(step))) else { return };
+    const TERMS: [u8; 4] = [number::PTERM, number::ITERM, number::DTERM, number::PIDSCALAR];
+    let writes =
+        |step: &Step, number: u8| step.arguments.first().map(|(_, raw)| *raw) == Some(i64::from(number));
+    let Some(scalar) = steps.iter().position(|step| writes(step, number::PIDSCALAR)) else { return };
+    let Some(first) = steps.iter().position(|step| TERMS.iter().any(|term| writes(step, *term))) else {
+        return;
+    };
     let wanted = steps[scalar].arguments.get(1).map(|(_, value)| *value);
     let held = match ram.get("register.pidscalar") {
         Some(SettingValue::Int(held)) => Some(held),

@@ -1,5 +1,6 @@
 //! Jobs: progress, cancel, time limit, and the motors stopped on every way out.
 
+use crate::TypedWire;
 use crate::testing::ms;
 use crate::tests::link::harness::{DUTY_ZERO, Link};
 use brushwork_link::clock::Clock;
@@ -12,7 +13,7 @@ use brushwork_link::device::{Request, RequestRefused};
 use brushwork_link::exchange::{ExchangeError, Interruption};
 use brushwork_link::failure::Failure;
 use brushwork_link::wire::Wire;
-use brushwork_mcp_wire::packet_serial::number;
+use brushwork_mcp_wire::packet_serial::{commands, name, number};
 use brushwork_values::Motor;
 use std::time::Duration;
 
@@ -69,8 +70,8 @@ fn a_job_tells_its_progress_and_hands_back_its_result() {
         let mut values = Vec::new();
         for step in 0..3_u8 {
             context.progress(Some(f32::from(step) / 3.0), "reading");
-            let reply = context.transact(number::READ_MAIN_BATTERY, &[]).map_err(fail)?;
-            values.push(reply.int("main_battery"));
+            let reply = context.ask(commands::READ_MAIN_BATTERY, &[]).map_err(fail)?;
+            values.push(reply.int(name::MAIN_BATTERY));
         }
         Ok(values)
     });

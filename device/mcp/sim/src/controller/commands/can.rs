@@ -1,59 +1,56 @@
 //! The CAN port seen from packet serial: commands 150, 151, 180 to 182, 190, 191.
 
-use super::super::answer::{Answer, Arguments, Handlers, Named, find};
+use super::super::answer::{Answer, Arguments, Handlers, On, find, tell, tell_value};
 use super::super::can::{ACCESS_DONE, COMMAND_OBJECTS, CanFrame, CanObject};
 use super::super::dispatch::handler;
 use super::super::firmware::Firmware;
-use brushwork_mcp_wire::packet_serial::{Direction, lookup, number};
+use brushwork_mcp_wire::packet_serial::name::*;
+use brushwork_mcp_wire::packet_serial::{Direction, commands, lookup};
 use brushwork_values::{Value, Values};
 
 pub(super) const HANDLERS: Handlers = &[
-    (number::SET_NODE_ID, |unit, args| {
-        unit.settings.unit.can_node_id = args.u8("node_id");
+    &On(commands::SET_NODE_ID, |unit, args| {
+        unit.settings.unit.can_node_id = args.u8(NODE_ID);
         Answer::Ack
     }),
-    (number::READ_NODE_ID, |unit, _| Answer::ints([("node_id", unit.settings.unit.can_node_id.into())])),
-    (number::READ_CAN_ERRORS, |unit, _| Answer::ints([("errors", unit.can.error_state().into())])),
-    (number::PUT_CAN_PACKET, |unit, args| {
-        let mut data = [0; 8];
-        if let Some(bytes) = args.values.bytes("data") {
-            data.iter_mut().zip(bytes).for_each(|(to, from)| *to = *from);
-        }
-        let (cob_id, remote, length) = (args.u16("cob_id"), args.u8("rtr"), args.u8("length"));
+    &On(commands::READ_NODE_ID, |unit, _| Answer::of([tell(NODE_ID, unit.settings.unit.can_node_id.into())])),
+    &On(commands::READ_CAN_ERRORS, |unit, _| Answer::of([tell(ERRORS, unit.can.error_state().into())])),
+    &On(commands::PUT_CAN_PACKET, |unit, args| {
+        let data = args.bytes(DATA).unwrap_or_default();
+        let (cob_id, remote, length) = (args.u16(COB_ID), args.u8(RTR), args.u8(LENGTH));
         unit.can.put(CanFrame { cob_id, remote, length, data });
         Answer::Ack
     }),
-    (number::GET_CAN_PACKET, |unit, _| {
+    &On(commands::GET_CAN_PACKET, |unit, _| {
         let received = unit.can.take();
-        let present = received.is_some();
-        Answer::Data(packet(present, &received.unwrap_or_default()))
+        packet(received.is_some(), &received.unwrap_or_default())
     }),
-    (number::WRITE_CAN_DICTIONARY, |unit, args| {
-        let object = CanObject { value: args.u32("value"), size: args.u8("size") };
-        let result = unit.can.write(args.u16("index"), args.u8("subindex"), object);
-        Answer::ints([("result", result.into())])
+    &On(commands::WRITE_CAN_DICTIONARY, |unit, args| {
+        let object = CanObject { value: args.u32(VALUE), size: args.u8(SIZE) };
+        let result = unit.can.write(args.u16(INDEX), args.u8(SUBINDEX), object);
+        Answer::of([tell(RESULT, result.into())])
     }),
-    (number::READ_CAN_DICTIONARY, read_dictionary),
+    &On(commands::READ_CAN_DICTIONARY, read_dictionary),
 ];
 
 /// First byte of the answer to 182 where there was a message.
-const PRESENT: i64 = 0xff;
+const THERE: i64 = 0xff;
 /// CANopen data type UNSIGNED32. Assumed for every object.
 const TYPE_UNSIGNED32: i64 = 0x07;
 
-fn packet(present: bool, frame: &CanFrame) -> Vec<Named> {
-    vec![
-        ("present", Value::Int(if present { PRESENT } else { 0 })),
-        ("cob_id", Value::Int(frame.cob_id.into())),
-        ("rtr", Value::Int(frame.remote.into())),
-        ("length", Value::Int(frame.length.into())),
-        ("data", Value::Bytes(frame.data.to_vec())),
-    ]
+fn packet<const L: u8>(is_there: bool, frame: &CanFrame) -> Answer<L> {
+    Answer::of([
+        tell(PRESENT, if is_there { THERE } else { 0 }),
+        tell(COB_ID, frame.cob_id.into()),
+        tell(RTR, frame.remote.into()),
+        tell(LENGTH, frame.length.into()),
+        tell_value(DATA, Value::Bytes(frame.data.to_vec())),
+    ])
 }
 
 /// An entry that was written, or the present value of a packet serial command without arguments.
-fn read_dictionary(unit: &mut Firmware, args: &Arguments<'_>) -> Answer {
-    let (index, subindex) = (args.u16("index"), args.u8("subindex"));
+fn read_dictionary<const L: u8>(unit: &mut Firmware, args: &Arguments<'_, L>) -> Answer<L> {
+    let (index, subindex) = (args.u16(INDEX), args.u8(SUBINDEX));
     let found = match unit.can.read(index, subindex) {
         Ok(object) => Ok(object),
         Err(abort) => command_object(unit, index, subindex).ok_or(abort),
@@ -62,11 +59,11 @@ fn read_dictionary(unit: &mut Firmware, args: &Arguments<'_>) -> Answer {
         Ok(object) => (object, ACCESS_DONE),
         Err(abort) => (CanObject::default(), abort),
     };
-    Answer::ints([
-        ("value", object.value.into()),
-        ("size", object.size.into()),
-        ("type", TYPE_UNSIGNED32),
-        ("result", result.into()),
+    Answer::of([
+        tell(VALUE, object.value.into()),
+        tell(SIZE, object.size.into()),
+        tell(TYPE, TYPE_UNSIGNED32),
+        tell(RESULT, result.into()),
     ])
 }
 
@@ -80,7 +77,7 @@ fn command_object(unit: &mut Firmware, index: u16, subindex: u8) -> Option<CanOb
     let fields = form.reply.fields();
     let at = if fields.len() == 1 { usize::from(subindex) } else { usize::from(subindex).checked_sub(1)? };
     let field = fields.get(at)?;
-    let Answer::Data(values) = handler(number)?(unit, &Arguments { values: &Values::default() }) else {
+    let Answer::Data(values) = handler(number)?.act(unit, &Values::default()) else {
         return None;
     };
     let value = find(&values, field.name)?.as_int()?;

@@ -1,80 +1,83 @@
 //! Pins and streams: commands 137 to 140, 143 to 147.
 
-use super::super::answer::{Answer, Arguments, Handlers};
+use super::super::answer::{Answer, Arguments, Handlers, On, tell, tell_value};
 use super::super::firmware::Firmware;
 use crate::settings::{SignalSettings, StreamSettings};
-use brushwork_mcp_wire::packet_serial::{Generation, number};
+use brushwork_mcp_wire::packet_serial::name::*;
+use brushwork_mcp_wire::packet_serial::{Generation, commands};
 use brushwork_values::Value;
 
 /// Assumed: an index that the model does not have is refused by silence.
 pub(super) const HANDLERS: Handlers = &[
-    (number::SET_DOUT_ACTION, |unit, args| {
-        let is_there = unit.set_output_action(args.u8("index").into(), args.u8("action"));
+    &On(commands::SET_DOUT_ACTION, |unit, args| {
+        let is_there = unit.set_output_action(args.u8(INDEX).into(), args.u8(ACTION));
         if is_there { Answer::Ack } else { Answer::Silence }
     }),
-    (number::READ_DOUT_ACTIONS, |unit, _| {
-        records("douts", unit.settings.outputs.iter().map(|output| vec![output.action.into()]))
+    &On(commands::READ_DOUT_ACTIONS, |unit, _| {
+        records(DOUTS, unit.settings.outputs.iter().map(|output| vec![output.action.into()]))
     }),
-    (number::SET_PRIORITIES, |unit, args| {
-        unit.settings.priority = [args.u8("level_1"), args.u8("level_2"), args.u8("level_3")];
+    &On(commands::SET_PRIORITIES, |unit, args| {
+        unit.settings.priority = [args.u8(LEVEL_1), args.u8(LEVEL_2), args.u8(LEVEL_3)];
         Answer::Ack
     }),
-    (number::READ_PRIORITIES, |unit, _| {
+    &On(commands::READ_PRIORITIES, |unit, _| {
         let [first, second, third] = unit.settings.priority.map(i64::from);
-        Answer::ints([("level_1", first), ("level_2", second), ("level_3", third)])
+        Answer::of([tell(LEVEL_1, first), tell(LEVEL_2, second), tell(LEVEL_3, third)])
     }),
-    (number::SET_SIGNAL, set_signal),
-    (number::READ_SIGNALS, |unit, _| {
+    &On(commands::SET_SIGNAL, set_signal),
+    &On(commands::READ_SIGNALS, |unit, _| {
         let generation = unit.generation;
-        records("signals", unit.settings.signals.iter().map(|signal| signal_record(signal, generation)))
+        records(SIGNALS, unit.settings.signals.iter().map(|signal| signal_record(signal, generation)))
     }),
-    (number::SET_STREAM, |unit, args| match unit.settings.streams.get_mut(usize::from(args.u8("index"))) {
-        Some(stream) => {
-            stream.kind = args.u8("type");
-            stream.rate_bps = args.u32("rate");
-            stream.timeout_ms = args.u32("timeout");
-            Answer::Ack
+    &On(commands::SET_STREAM, |unit, args| {
+        match unit.settings.streams.get_mut(usize::from(args.u8(INDEX))) {
+            Some(stream) => {
+                stream.kind = args.u8(TYPE);
+                stream.rate_bps = args.u32(RATE);
+                stream.timeout_ms = args.u32(TIMEOUT);
+                Answer::Ack
+            }
+            None => Answer::Silence,
         }
-        None => Answer::Silence,
     }),
-    (number::READ_STREAMS, |unit, _| {
+    &On(commands::READ_STREAMS, |unit, _| {
         let streams = &unit.settings.streams[..unit.model.streams.min(unit.settings.streams.len())];
-        records("streams", streams.iter().map(stream_record))
+        records(STREAMS, streams.iter().map(stream_record))
     }),
-    (number::READ_SIGNAL_VALUES, |unit, _| {
+    &On(commands::READ_SIGNAL_VALUES, |unit, _| {
         let values = unit.signals.iter().zip(&unit.settings.signals).map(|(signal, settings)| {
             let values = signal.values(settings);
             [values.command, values.position, values.percent, values.speed, values.average_speed]
                 .map(i64::from)
                 .to_vec()
         });
-        records("signals", values)
+        records(SIGNALS, values)
     }),
 ];
 
-fn set_signal(unit: &mut Firmware, args: &Arguments<'_>) -> Answer {
-    let Some(signal) = unit.settings.signals.get_mut(usize::from(args.u8("index"))) else {
+fn set_signal<const L: u8>(unit: &mut Firmware, args: &Arguments<'_, L>) -> Answer<L> {
+    let Some(signal) = unit.settings.signals.get_mut(usize::from(args.u8(INDEX))) else {
         return Answer::Silence;
     };
-    let kind = args.u8("type");
+    let kind = args.u8(TYPE);
     *signal = SignalSettings {
         kind,
-        mode: args.u8("mode"),
-        target: args.u8("target"),
-        min_action: args.u16("min_action"),
-        max_action: args.u16("max_action"),
-        low_pass: args.int_or("low_pass", signal.low_pass.into()) as u8,
-        timeout_ms: args.u32("timeout"),
-        load_home: args.i32("load_home"),
-        min: args.i32("min"),
-        max: args.i32("max"),
-        center: args.i32("center"),
-        deadband: args.u32("deadband"),
-        power_exp_raw: args.i32("power_exponent"),
-        min_output: args.i32("min_output"),
-        max_output: args.i32("max_output"),
-        power_min: args.u32("power_min"),
-        potentiometer: args.int_or("potentiometer", signal.potentiometer.into()) as u32,
+        mode: args.u8(MODE),
+        target: args.u8(TARGET),
+        min_action: args.u16(MIN_ACTION),
+        max_action: args.u16(MAX_ACTION),
+        low_pass: args.int_or(LOW_PASS, signal.low_pass.into()) as u8,
+        timeout_ms: args.u32(TIMEOUT),
+        load_home: args.i32(LOAD_HOME),
+        min: args.i32(MIN),
+        max: args.i32(MAX),
+        center: args.i32(CENTER),
+        deadband: args.u32(DEADBAND),
+        power_exp_raw: args.i32(POWER_EXPONENT),
+        min_output: args.i32(MIN_OUTPUT),
+        max_output: args.i32(MAX_OUTPUT),
+        power_min: args.u32(POWER_MIN),
+        potentiometer: args.int_or(POTENTIOMETER, signal.potentiometer.into()) as u32,
         digital: signal.digital && kind == 0,
     };
     Answer::Ack
@@ -114,6 +117,6 @@ fn stream_record(stream: &StreamSettings) -> Vec<i64> {
     vec![stream.kind.into(), stream.rate_bps.into(), stream.timeout_ms.into()]
 }
 
-fn records(name: &'static str, records: impl Iterator<Item = Vec<i64>>) -> Answer {
-    Answer::Data(vec![(name, Value::Records(records.collect()))])
+fn records<const L: u8>(name: impl Name, records: impl Iterator<Item = Vec<i64>>) -> Answer<L> {
+    Answer::of([tell_value(name, Value::Records(records.collect()))])
 }

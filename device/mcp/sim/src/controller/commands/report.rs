@@ -1,53 +1,55 @@
 //! What the unit says about itself: commands 21, 24, 25, 47 to 49, 73, 82, 83, 90, 100 and 101.
 
-use super::super::answer::{Answer, Handlers, Named};
+use super::super::answer::{Answer, Handlers, On, tell, tell_value};
 use super::super::firmware::Firmware;
 use super::super::readings::{amps_raw, celsius_raw, volts_raw};
-use brushwork_mcp_wire::packet_serial::{Generation, number};
+use brushwork_mcp_wire::packet_serial::name::*;
+use brushwork_mcp_wire::packet_serial::{Generation, commands};
 use brushwork_values::Motor;
 use brushwork_values::Motor::{M1, M2};
 use brushwork_values::Value;
 
 pub(super) const HANDLERS: Handlers = &[
-    (number::READ_VERSION, |unit, _| {
-        Answer::Data(vec![("version", Value::Text(unit.options.version_text(unit.model)))])
+    &On(commands::READ_VERSION, |unit, _| {
+        Answer::of([tell_value(VERSION, Value::Text(unit.options.version_text(unit.model)))])
     }),
-    (number::READ_MAIN_BATTERY, |unit, _| Answer::ints([("main_battery", unit.main_battery_raw())])),
-    (number::READ_LOGIC_BATTERY, |unit, _| Answer::ints([("logic_battery", unit.logic_battery_raw())])),
-    (number::READ_BUFFERS, |unit, _| {
+    &On(commands::READ_MAIN_BATTERY, |unit, _| Answer::of([tell(MAIN_BATTERY, unit.main_battery_raw())])),
+    &On(commands::READ_LOGIC_BATTERY, |unit, _| Answer::of([tell(LOGIC_BATTERY, unit.logic_battery_raw())])),
+    &On(commands::READ_BUFFERS, |unit, _| {
         let [m1, m2] = [M1, M2].map(|motor| unit.channels[motor.index()].buffer_length());
-        Answer::ints([("buffer_m1", m1.into()), ("buffer_m2", m2.into())])
+        Answer::of([tell(BUFFER_M1, m1.into()), tell(BUFFER_M2, m2.into())])
     }),
-    (number::READ_PWMS, |unit, _| {
-        Answer::ints([("duty_m1", unit.duty_raw(M1)), ("duty_m2", unit.duty_raw(M2))])
+    &On(commands::READ_PWMS, |unit, _| {
+        Answer::of([tell(DUTY_M1, unit.duty_raw(M1)), tell(DUTY_M2, unit.duty_raw(M2))])
     }),
-    (number::READ_CURRENTS, |unit, _| {
-        Answer::ints([("current_m1", unit.current_raw(M1)), ("current_m2", unit.current_raw(M2))])
+    &On(commands::READ_CURRENTS, |unit, _| {
+        Answer::of([tell(CURRENT_M1, unit.current_raw(M1)), tell(CURRENT_M2, unit.current_raw(M2))])
     }),
-    (number::READ_ALL_STATUS, |unit, _| Answer::Data(all_status(unit))),
-    (number::READ_TEMPERATURE_1, |unit, _| Answer::ints([("temperature_1", unit.temperature_raw(0))])),
-    (number::READ_TEMPERATURE_2, |unit, _| Answer::ints([("temperature_2", unit.temperature_raw(1))])),
-    (number::READ_STATUS, |unit, _| Answer::ints([("status", unit.status_word().into())])),
-    (number::READ_VOLTS, |unit, args| match unit.generation {
+    &On(commands::READ_ALL_STATUS, |unit, _| all_status(unit)),
+    &On(commands::READ_TEMPERATURE_1, |unit, _| Answer::of([tell(TEMPERATURE_1, unit.temperature_raw(0))])),
+    &On(commands::READ_TEMPERATURE_2, |unit, _| Answer::of([tell(TEMPERATURE_2, unit.temperature_raw(1))])),
+    &On(commands::READ_STATUS, |unit, _| Answer::of([tell(STATUS, unit.status_word().into())])),
+    &On(commands::READ_VOLTS, |unit, args| match unit.generation {
         Generation::Gen1 => factory_test(unit, M1),
         Generation::Gen2 | Generation::Gen3 => {
-            unit.settings.roboclaw.control_modes = [args.u8("mode_1"), args.u8("mode_2")];
+            unit.settings.roboclaw.control_modes =
+                [args.int_or(MODE_1, 0) as u8, args.int_or(MODE_2, 0) as u8];
             Answer::Ack
         }
-        Generation::Gen4 => Answer::ints([
-            ("main_battery", unit.main_battery_raw()),
-            ("logic_battery", unit.logic_battery_raw()),
+        Generation::Gen4 => Answer::of([
+            tell(MAIN_BATTERY, unit.main_battery_raw()),
+            tell(LOGIC_BATTERY, unit.logic_battery_raw()),
         ]),
     }),
-    (number::READ_TEMPERATURES, |unit, _| match unit.generation {
+    &On(commands::READ_TEMPERATURES, |unit, _| match unit.generation {
         Generation::Gen1 => factory_test(unit, M2),
         Generation::Gen2 | Generation::Gen3 => {
             let [first, second] = unit.settings.roboclaw.control_modes;
-            Answer::ints([("mode_1", first.into()), ("mode_2", second.into())])
+            Answer::of([tell(MODE_1, first.into()), tell(MODE_2, second.into())])
         }
-        Generation::Gen4 => Answer::ints([
-            ("temperature_1", unit.temperature_raw(0)),
-            ("temperature_2", unit.temperature_raw(1)),
+        Generation::Gen4 => Answer::of([
+            tell(TEMPERATURE_1, unit.temperature_raw(0)),
+            tell(TEMPERATURE_2, unit.temperature_raw(1)),
         ]),
     }),
 ];
@@ -81,37 +83,36 @@ impl Firmware {
 }
 
 /// Command 73. Assumed: the tick counts milliseconds since power up.
-fn all_status(unit: &Firmware) -> Vec<Named> {
+fn all_status<const L: u8>(unit: &Firmware) -> Answer<L> {
     let narrow = |value: i32| i64::from(value.clamp(i32::from(i16::MIN), i32::from(i16::MAX)));
     let errors = [M1, M2].map(|motor| unit.channels[motor.index()].errors());
     let speeds = [M1, M2].map(|motor| unit.speeds(motor));
-    let fields: [(&'static str, i64); 20] = [
-        ("tick", unit.up_for().as_millis() as i64 & i64::from(u32::MAX)),
-        ("status", unit.status_word().into()),
-        ("temperature_1", unit.temperature_raw(0)),
-        ("temperature_2", unit.temperature_raw(1)),
-        ("main_battery", unit.main_battery_raw()),
-        ("logic_battery", unit.logic_battery_raw()),
-        ("duty_m1", unit.duty_raw(M1)),
-        ("duty_m2", unit.duty_raw(M2)),
-        ("current_m1", unit.current_raw(M1)),
-        ("current_m2", unit.current_raw(M2)),
-        ("encoder_m1", unit.position(M1)),
-        ("encoder_m2", unit.position(M2)),
-        ("speed_m1", speeds[0].filtered.into()),
-        ("speed_m2", speeds[1].filtered.into()),
-        ("raw_speed_m1", speeds[0].raw.into()),
-        ("raw_speed_m2", speeds[1].raw.into()),
-        ("speed_error_m1", narrow(errors[0].speed_counts_per_s)),
-        ("speed_error_m2", narrow(errors[1].speed_counts_per_s)),
-        ("position_error_m1", narrow(errors[0].position_counts)),
-        ("position_error_m2", narrow(errors[1].position_counts)),
-    ];
-    fields.into_iter().map(|(name, value)| (name, Value::Int(value))).collect()
+    Answer::of([
+        tell(TICK, unit.up_for().as_millis() as i64 & i64::from(u32::MAX)),
+        tell(STATUS, unit.status_word().into()),
+        tell(TEMPERATURE_1, unit.temperature_raw(0)),
+        tell(TEMPERATURE_2, unit.temperature_raw(1)),
+        tell(MAIN_BATTERY, unit.main_battery_raw()),
+        tell(LOGIC_BATTERY, unit.logic_battery_raw()),
+        tell(DUTY_M1, unit.duty_raw(M1)),
+        tell(DUTY_M2, unit.duty_raw(M2)),
+        tell(CURRENT_M1, unit.current_raw(M1)),
+        tell(CURRENT_M2, unit.current_raw(M2)),
+        tell(ENCODER_M1, unit.position(M1)),
+        tell(ENCODER_M2, unit.position(M2)),
+        tell(SPEED_M1, speeds[0].filtered.into()),
+        tell(SPEED_M2, speeds[1].filtered.into()),
+        tell(RAW_SPEED_M1, speeds[0].raw.into()),
+        tell(RAW_SPEED_M2, speeds[1].raw.into()),
+        tell(SPEED_ERROR_M1, narrow(errors[0].speed_counts_per_s)),
+        tell(SPEED_ERROR_M2, narrow(errors[1].speed_counts_per_s)),
+        tell(POSITION_ERROR_M1, narrow(errors[0].position_counts)),
+        tell(POSITION_ERROR_M2, narrow(errors[1].position_counts)),
+    ])
 }
 
 /// Commands 100 and 101 of generation 1. Assumed: without running the motor they read its present speed.
-fn factory_test(unit: &Firmware, motor: Motor) -> Answer {
+fn factory_test<const L: u8>(unit: &Firmware, motor: Motor) -> Answer<L> {
     let speed = unit.speeds(motor).filtered.clamp(i16::MIN.into(), i16::MAX.into());
-    Answer::ints([("speed", speed.into())])
+    Answer::of([tell(SPEED, speed.into())])
 }

@@ -1,32 +1,33 @@
 //! The unit as a whole: commands 14, 15, 80, 94 to 97, 141, 142, 148, 149, 160, 161, 252, 253.
 
-use super::super::answer::{Answer, Arguments, Handlers};
+use super::super::answer::{Answer, Arguments, Handlers, On, tell, tell_value};
 use super::super::firmware::Firmware;
 use crate::settings::Settings;
-use brushwork_mcp_wire::packet_serial::{Address, Generation, number, scale};
+use brushwork_mcp_wire::packet_serial::name::*;
+use brushwork_mcp_wire::packet_serial::{Address, Generation, commands, scale};
 use brushwork_values::Value;
 
 pub(super) const HANDLERS: Handlers = &[
-    (number::SET_SERIAL_TIMEOUT, |unit, args| {
-        unit.settings.unit.serial_timeout_tenths = args.u8("timeout");
+    &On(commands::SET_SERIAL_TIMEOUT, |unit, args| {
+        unit.settings.unit.serial_timeout_tenths = args.u8(TIMEOUT);
         Answer::Ack
     }),
-    (number::READ_SERIAL_TIMEOUT, |unit, _| {
-        Answer::ints([("timeout", unit.settings.unit.serial_timeout_tenths.into())])
+    &On(commands::READ_SERIAL_TIMEOUT, |unit, _| {
+        Answer::of([tell(TIMEOUT, unit.settings.unit.serial_timeout_tenths.into())])
     }),
-    (number::RESTORE_DEFAULTS, |unit, args| {
+    &On(commands::RESTORE_DEFAULTS, |unit, args| {
         if is_unlocked(unit, args) {
             unit.restore_defaults();
         }
         Answer::Ack
     }),
-    (number::SAVE_SETTINGS, |unit, args| {
+    &On(commands::SAVE_SETTINGS, |unit, args| {
         if is_unlocked(unit, args) {
             unit.save_settings();
         }
         Answer::Ack
     }),
-    (number::RELOAD_SETTINGS, |unit, _| {
+    &On(commands::RELOAD_SETTINGS, |unit, _| {
         // Sent right after a save it times out on a real unit (public clients, 2015-2025).
         if unit.memory.eeprom.is_saving() {
             return Answer::Silence;
@@ -34,50 +35,50 @@ pub(super) const HANDLERS: Handlers = &[
         unit.reload_settings();
         Answer::Ack
     }),
-    (number::SET_SERIAL_NUMBER, |unit, args| {
-        unit.settings.unit.serial_number = args.values.text("serial_number").unwrap_or_default().to_owned();
+    &On(commands::SET_SERIAL_NUMBER, |unit, args| {
+        unit.settings.unit.serial_number = args.text(SERIAL_NUMBER).to_owned();
         Answer::Ack
     }),
-    (number::READ_SERIAL_NUMBER, |unit, _| {
+    &On(commands::READ_SERIAL_NUMBER, |unit, _| {
         let label = label_text(&unit.settings.unit.serial_number, unit.generation);
-        Answer::Data(vec![("serial_number", Value::Text(label))])
+        Answer::of([tell_value(SERIAL_NUMBER, Value::Text(label))])
     }),
-    (number::SET_ADDRESS_MIXED, |unit, args| {
+    &On(commands::SET_ADDRESS_MIXED, |unit, args| {
         // Assumed: an address outside 0x80 to 0x87 leaves the old one.
-        if let Some(address) = Address::new(args.u8("address")) {
+        if let Some(address) = Address::new(args.u8(ADDRESS)) {
             unit.settings.unit.address = address.get();
         }
-        unit.settings.unit.mixed = args.u8("mixed");
+        unit.settings.unit.mixed = args.u8(MIXED);
         Answer::Ack
     }),
-    (number::READ_ADDRESS_MIXED, |unit, _| {
+    &On(commands::READ_ADDRESS_MIXED, |unit, _| {
         let settings = &unit.settings.unit;
-        Answer::ints([("address", settings.address.into()), ("mixed", settings.mixed.into())])
+        Answer::of([tell(ADDRESS, settings.address.into()), tell(MIXED, settings.mixed.into())])
     }),
-    (number::SET_PWM_MODE, |unit, args| {
-        let both = args.int_or("mode", 0);
-        unit.settings.motors[0].pwm_mode = args.int_or("mode_m1", both) as u8;
-        unit.settings.motors[1].pwm_mode = args.int_or("mode_m2", both) as u8;
+    &On(commands::SET_PWM_MODE, |unit, args| {
+        let both = args.int_or(MODE, 0);
+        unit.settings.motors[0].pwm_mode = args.int_or(MODE_M1, both) as u8;
+        unit.settings.motors[1].pwm_mode = args.int_or(MODE_M2, both) as u8;
         Answer::Ack
     }),
-    (number::READ_PWM_MODE, |unit, _| {
+    &On(commands::READ_PWM_MODE, |unit, _| {
         let [m1, m2] = [0, 1].map(|motor: usize| i64::from(unit.settings.motors[motor].pwm_mode));
-        Answer::ints([("mode", m1), ("mode_m1", m1), ("mode_m2", m2)])
+        Answer::of([tell(MODE, m1), tell(MODE_M1, m1), tell(MODE_M2, m2)])
     }),
-    (number::SET_PWM_IDLE, |unit, args| {
-        unit.settings.motors[0].motion.pwm_idle_raw = args.u8("idle_m1");
-        unit.settings.motors[1].motion.pwm_idle_raw = args.u8("idle_m2");
+    &On(commands::SET_PWM_IDLE, |unit, args| {
+        unit.settings.motors[0].motion.pwm_idle_raw = args.u8(IDLE_M1);
+        unit.settings.motors[1].motion.pwm_idle_raw = args.u8(IDLE_M2);
         Answer::Ack
     }),
-    (number::READ_PWM_IDLE, |unit, _| {
+    &On(commands::READ_PWM_IDLE, |unit, _| {
         let [m1, m2] = [0, 1].map(|motor: usize| i64::from(unit.settings.motors[motor].motion.pwm_idle_raw));
-        Answer::ints([("idle_m1", m1), ("idle_m2", m2)])
+        Answer::of([tell(IDLE_M1, m1), tell(IDLE_M2, m2)])
     }),
-    (number::READ_USER_MEMORY, |unit, args| {
-        Answer::ints([("value", unit.memory.eeprom.user_word(args.u8("address")).into())])
+    &On(commands::READ_USER_MEMORY, |unit, args| {
+        Answer::of([tell(VALUE, unit.memory.eeprom.user_word(args.u8(ADDRESS)).into())])
     }),
-    (number::WRITE_USER_MEMORY, |unit, args| {
-        unit.memory.eeprom.set_user_word(args.u8("address"), args.u16("value"));
+    &On(commands::WRITE_USER_MEMORY, |unit, args| {
+        unit.memory.eeprom.set_user_word(args.u8(ADDRESS), args.u16(VALUE));
         Answer::Ack
     }),
 ];
@@ -101,8 +102,8 @@ fn label_text(label: &str, generation: Generation) -> String {
 }
 
 /// From generation 3 on, 80 and 94 do nothing without the key, though they are acknowledged (public clients, 2015-2025).
-fn is_unlocked(unit: &Firmware, args: &Arguments<'_>) -> bool {
-    match args.values.try_int("key") {
+fn is_unlocked<const L: u8>(unit: &Firmware, args: &Arguments<'_, L>) -> bool {
+    match args.get(KEY) {
         Some(key) => key == i64::from(scale::SETTINGS_KEY),
         None => unit.generation < Generation::Gen3,
     }

@@ -2,7 +2,7 @@
 
 use super::support::Bench;
 use crate::controller::{Bus, BusError, Controller, ControllerConfig, FAST_TURNAROUND, SLOW_TURNAROUND};
-use brushwork_mcp_wire::packet_serial::{Address, Generation, number};
+use brushwork_mcp_wire::packet_serial::{Address, Generation, commands, name, number};
 use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::world::WorldAction;
 use brushwork_values::Motor;
@@ -25,12 +25,12 @@ fn the_version_is_answered_byte_for_byte() {
 #[test]
 fn a_duty_command_is_acknowledged_and_turns_the_motor() {
     let mut bench = Bench::new(Generation::Gen1);
-    assert!(bench.ask(number::DUTY_M1, &[16_384]).is_empty());
+    assert!(bench.ask_row(commands::DUTY_M1.number(), &[16_384]).is_empty());
     bench.wait_talking(Duration::from_millis(500));
-    assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), 16_384);
-    assert!(bench.read(number::READ_ENCODER_M1, "encoder") > 100);
-    assert!(bench.read(number::READ_SPEED_M1, "speed") > 100);
-    assert_eq!(bench.read(number::READ_PWMS, "duty_m2"), 0);
+    assert_eq!(bench.read(commands::READ_PWMS, name::DUTY_M1), 16_384);
+    assert!(bench.read(commands::READ_ENCODER_M1, name::ENCODER) > 100);
+    assert!(bench.read(commands::READ_SPEED_M1, name::SPEED) > 100);
+    assert_eq!(bench.read(commands::READ_PWMS, name::DUTY_M2), 0);
 }
 
 #[test]
@@ -41,7 +41,7 @@ fn a_bad_crc_an_unknown_command_and_a_stub_are_met_with_silence() {
     assert!(bench.raw(&[0x80, 52]).is_empty()); // nothing after the command
     assert!(bench.raw(&[0x12, 0x34]).is_empty()); // no address
     assert!(!bench.raw(&[0x80, 90]).is_empty());
-    assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), 0);
+    assert_eq!(bench.read(commands::READ_PWMS, name::DUTY_M1), 0);
 }
 
 #[test]
@@ -79,7 +79,7 @@ fn usb_answers_all_eight_addresses_and_a_uart_only_its_own() {
 fn slow_ports_wait_a_millisecond_before_they_answer() {
     for (rate, turnaround) in [(38_400, SLOW_TURNAROUND), (115_200, FAST_TURNAROUND)] {
         let mut bench = Bench::on(ControllerConfig::default(), StreamIndex::Uart0);
-        bench.ask(number::SET_STREAM, &[1, 1, rate, 0]);
+        bench.ask(commands::SET_STREAM, &[1, 1, rate, 0]);
         let asked_at = bench.bus.now();
         bench.bus.receive(StreamIndex::Uart0, &[0x80, 24]);
         assert_eq!(bench.bus.next_output_at(), Some(asked_at + turnaround), "{rate} bit/s");
@@ -120,7 +120,7 @@ fn a_bus_of_several_needs_a_wire_that_takes_several() {
 fn a_stream_in_mcl_mode_or_disabled_does_not_answer() {
     for kind in [0, 2] {
         let mut bench = Bench::new(Generation::Gen1);
-        bench.ask(number::SET_STREAM, &[2, kind, 115_200, 1000]); // TTL UART1
+        bench.ask(commands::SET_STREAM, &[2, kind, 115_200, 1000]); // TTL UART1
         bench.bus.receive(StreamIndex::Uart1, &[0x80, 24]);
         bench.wait(Duration::from_millis(20));
         assert_eq!(bench.bus.take_output(StreamIndex::Uart1), None);
@@ -148,27 +148,41 @@ fn legacy_commands_drive_silently_where_the_firmware_is_of_that_kind() {
     let mut bench = Bench::of(config);
     assert!(bench.try_ask(number::FORWARD_M1, &[127]).is_none());
     bench.wait(Duration::from_millis(300));
-    assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), 32_767);
+    assert_eq!(bench.read(commands::READ_PWMS, name::DUTY_M1), 32_767);
     assert!(Bench::new(Generation::Gen1).try_ask(number::FORWARD_M1, &[127]).is_some());
 }
 
 #[test]
 fn what_is_read_is_what_the_unit_knows() {
     let mut bench = Bench::new(Generation::Gen4);
-    bench.ask(number::DUTY_BOTH, &[16_384, -8_000]);
+    bench.ask(commands::DUTY_BOTH, &[16_384, -8_000]);
     bench.wait_talking(Duration::from_millis(700));
     let [main, logic, first, second] = bench.unit().unit().expect("it has power").supply_raw();
-    let all = bench.ask(number::READ_ALL_STATUS, &[]);
+    let all = bench.ask(commands::READ_ALL_STATUS, &[]);
     let unit = bench.unit().unit().expect("it has power");
-    assert_eq!((all.int("main_battery"), all.int("logic_battery")), (main, logic));
-    assert_eq!((all.int("temperature_1"), all.int("temperature_2")), (first, second));
-    for (motor, name) in [(Motor::M1, "m1"), (Motor::M2, "m2")] {
+    assert_eq!((all.int(name::MAIN_BATTERY), all.int(name::LOGIC_BATTERY)), (main, logic));
+    assert_eq!((all.int(name::TEMPERATURE_1), all.int(name::TEMPERATURE_2)), (first, second));
+    let of = |m1: [i64; 4], m2: [i64; 4]| [(Motor::M1, m1), (Motor::M2, m2)];
+    for (motor, [duty, encoder, speed, current]) in of(
+        [
+            all.int(name::DUTY_M1),
+            all.int(name::ENCODER_M1),
+            all.int(name::SPEED_M1),
+            all.int(name::CURRENT_M1),
+        ],
+        [
+            all.int(name::DUTY_M2),
+            all.int(name::ENCODER_M2),
+            all.int(name::SPEED_M2),
+            all.int(name::CURRENT_M2),
+        ],
+    ) {
         let channel = unit.channel(motor);
-        assert_eq!(all.int(&format!("duty_{name}")), i64::from(channel.duty_raw()));
-        assert_eq!(all.int(&format!("encoder_{name}")), i64::from(channel.encoder().position()));
-        assert_eq!(all.int(&format!("speed_{name}")), i64::from(channel.speeds().filtered));
-        assert_eq!(all.int(&format!("current_{name}")), unit.current_raw(motor));
+        assert_eq!(duty, i64::from(channel.duty_raw()));
+        assert_eq!(encoder, i64::from(channel.encoder().position()));
+        assert_eq!(speed, i64::from(channel.speeds().filtered));
+        assert_eq!(current, unit.current_raw(motor));
     }
-    assert_eq!(all.int("status"), i64::from(unit.status_word()));
-    assert!(main > 200 && all.int("encoder_m1") > 0 && all.int("encoder_m2") < 0);
+    assert_eq!(all.int(name::STATUS), i64::from(unit.status_word()));
+    assert!(main > 200 && all.int(name::ENCODER_M1) > 0 && all.int(name::ENCODER_M2) < 0);
 }

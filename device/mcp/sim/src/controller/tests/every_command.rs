@@ -119,7 +119,7 @@ fn check_pair(write: &Command, form: &Form, read: &Command, generation: Generati
         |name| form.request.iter().position(|field| field.name == name).map(|at| &request.values[at]);
     let arguments: Vec<i64> =
         asked_for.iter().filter_map(|field| value_of(field.name).and_then(Value::as_int)).collect();
-    let back = bench.ask(read.number, &arguments);
+    let back = bench.ask_row(read.number, &arguments);
     for (field, value) in form.request.iter().zip(&request.values) {
         let is_index = field.name == "index" || asked_for.iter().any(|asked| asked.name == field.name);
         if is_index || NOT_READ.contains(&(write.key, field.name, generation)) {

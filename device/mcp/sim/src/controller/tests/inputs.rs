@@ -4,10 +4,9 @@ use super::support::Bench;
 use crate::controller::ControllerConfig;
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::packet_serial::status::{Condition, decode};
-use brushwork_mcp_wire::packet_serial::{Generation, number};
+use brushwork_mcp_wire::packet_serial::{Generation, commands, name};
 use brushwork_plant::world::{PinSignal, WorldAction};
 use brushwork_values::Motor;
-use brushwork_values::Values;
 use std::time::Duration;
 
 const A_MOMENT: Duration = Duration::from_millis(100);
@@ -52,7 +51,7 @@ fn set_pin(bench: &mut Bench, index: usize, pin: Pin) {
     if bench.generation > Generation::Gen2 {
         args.push(0); // potentiometer
     }
-    bench.ask(number::SET_SIGNAL, &args);
+    bench.ask(commands::SET_SIGNAL, &args);
 }
 
 fn volts(bench: &mut Bench, pin: usize, volts: f64) {
@@ -64,15 +63,15 @@ fn pulse(bench: &mut Bench, pin: usize, microseconds: f64) {
 }
 
 fn values(bench: &mut Bench, pin: usize) -> [i64; 3] {
-    let reply: Values = bench.ask(number::READ_SIGNAL_VALUES, &[]);
+    let reply = bench.ask(commands::READ_SIGNAL_VALUES, &[]);
     let record = reply.records().nth(pin).expect("the pin is there");
-    [record.int("command"), record.int("position"), record.int("percent")]
+    [record.int(name::COMMAND), record.int(name::POSITION), record.int(name::PERCENT)]
 }
 
 /// A unit on which the serial port gives way to inputs after 100 ms.
 fn steered(generation: Generation) -> Bench {
     let mut bench = Bench::new(generation);
-    bench.ask(number::SET_STREAM, &[0, 1, 115_200, 100]);
+    bench.ask(commands::SET_STREAM, &[0, 1, 115_200, 100]);
     bench
 }
 
@@ -103,7 +102,7 @@ fn a_pin_that_a_uart_uses_is_no_input_until_the_uart_is_disabled() {
     volts(&mut bench, 0, 5.1);
     bench.wait(A_MOMENT);
     assert_eq!(values(&mut bench, 0), [0; 3]);
-    bench.ask(number::SET_STREAM, &[4, 2, 115_200, 1000]); // UART3 off
+    bench.ask(commands::SET_STREAM, &[4, 2, 115_200, 1000]); // UART3 off
     bench.wait(A_MOMENT);
     assert_eq!(values(&mut bench, 0)[1], 2047);
 }
@@ -122,7 +121,7 @@ fn a_digital_pin_reads_low_or_high() {
 #[test]
 fn an_analog_stick_drives_a_motor_once_the_serial_port_has_timed_out() {
     let mut bench = steered(Generation::Gen1);
-    bench.ask(number::SET_VELOCITY_PID_M1, &[0, 0, 0, 10_000]); // no velocity loop: duty
+    bench.ask(commands::SET_VELOCITY_PID_M1, &[0, 0, 0, 10_000]); // no velocity loop: duty
     set_pin(&mut bench, PIN, Pin { target: 1, ..Pin::default() });
     volts(&mut bench, PIN, 5.1);
     bench.wait(Duration::from_millis(90));
@@ -137,20 +136,20 @@ fn an_analog_stick_drives_a_motor_once_the_serial_port_has_timed_out() {
 #[test]
 fn a_byte_on_the_serial_port_takes_control_back_and_stops_the_motor() {
     let mut bench = steered(Generation::Gen1);
-    bench.ask(number::SET_VELOCITY_PID_M1, &[0, 0, 0, 10_000]);
+    bench.ask(commands::SET_VELOCITY_PID_M1, &[0, 0, 0, 10_000]);
     set_pin(&mut bench, PIN, Pin { target: 1, ..Pin::default() });
     volts(&mut bench, PIN, 5.1);
     bench.wait(Duration::from_millis(500));
     bench.raw(&[0x00]); // no packet at all
     bench.wait_talking(Duration::from_millis(200));
-    assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), 0);
+    assert_eq!(bench.read(commands::READ_PWMS, name::DUTY_M1), 0);
     assert_eq!(bench.unit().unit().expect("power").priority_level(), Some(1));
 }
 
 #[test]
 fn with_a_velocity_loop_a_stick_commands_speed_and_with_a_position_loop_position() {
     let mut bench = steered(Generation::Gen1);
-    bench.ask(number::SET_VELOCITY_PID_M1, &[0, 65_536, 6_554, 4_000]);
+    bench.ask(commands::SET_VELOCITY_PID_M1, &[0, 65_536, 6_554, 4_000]);
     set_pin(&mut bench, PIN, Pin { target: 1, ..Pin::default() });
     volts(&mut bench, PIN, 3.825); // three quarters: half speed forward
     bench.wait(Duration::from_secs(3));
@@ -158,8 +157,8 @@ fn with_a_velocity_loop_a_stick_commands_speed_and_with_a_position_loop_position
     assert!((1900..2100).contains(&speed), "{speed}");
 
     let mut bench = steered(Generation::Gen1);
-    bench.ask(number::SET_VELOCITY_PID_M1, &[0, 65_536, 6_554, 4_000]);
-    bench.ask(number::SET_POSITION_PID_M1, &[0, 8_192, 0, 0, 5, -2_000, 2_000]);
+    bench.ask(commands::SET_VELOCITY_PID_M1, &[0, 65_536, 6_554, 4_000]);
+    bench.ask(commands::SET_POSITION_PID_M1, &[0, 8_192, 0, 0, 5, -2_000, 2_000]);
     set_pin(&mut bench, PIN, Pin { target: 1, ..Pin::default() });
     volts(&mut bench, PIN, 3.825);
     bench.wait(Duration::from_secs(4));
@@ -170,7 +169,7 @@ fn with_a_velocity_loop_a_stick_commands_speed_and_with_a_position_loop_position
 #[test]
 fn pulses_rank_above_analog_and_give_way_when_they_stop() {
     let mut bench = steered(Generation::Gen1);
-    for motor in [number::SET_VELOCITY_PID_M1, number::SET_VELOCITY_PID_M2] {
+    for motor in [commands::SET_VELOCITY_PID_M1, commands::SET_VELOCITY_PID_M2] {
         bench.ask(motor, &[0, 0, 0, 10_000]);
     }
     set_pin(
@@ -195,10 +194,10 @@ fn pulses_rank_above_analog_and_give_way_when_they_stop() {
 #[test]
 fn mixed_inputs_drive_and_turn() {
     let mut bench = steered(Generation::Gen1);
-    for motor in [number::SET_VELOCITY_PID_M1, number::SET_VELOCITY_PID_M2] {
+    for motor in [commands::SET_VELOCITY_PID_M1, commands::SET_VELOCITY_PID_M2] {
         bench.ask(motor, &[0, 0, 0, 10_000]);
     }
-    bench.ask(number::SET_ADDRESS_MIXED, &[0x80, 1]);
+    bench.ask(commands::SET_ADDRESS_MIXED, &[0x80, 1]);
     set_pin(&mut bench, PIN, Pin { target: 1, range: [0, 2000, 4000], ..Pin::default() });
     set_pin(&mut bench, 2, Pin { target: 2, range: [0, 2000, 4000], ..Pin::default() });
     volts(&mut bench, PIN, 3000.0 / 4095.0 * 5.1); // half forward
@@ -211,22 +210,22 @@ fn mixed_inputs_drive_and_turn() {
 #[test]
 fn a_limit_switch_stops_forward_motion_and_allows_backward_and_lights_the_lamp() {
     let mut bench = Bench::new(Generation::Gen2);
-    bench.ask(number::DUTY_M1, &[10_000]);
+    bench.ask(commands::DUTY_M1, &[10_000]);
     // At or below 500: M1 forward limit; switches close to ground.
     set_pin(&mut bench, PIN, Pin { min_action: 0x0008, range: [500, 2048, 4095], ..Pin::default() });
     volts(&mut bench, PIN, 5.0);
     bench.wait_talking(Duration::from_millis(300));
-    assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), 10_000);
+    assert_eq!(bench.read(commands::READ_PWMS, name::DUTY_M1), 10_000);
     volts(&mut bench, PIN, 0.0);
     bench.wait_talking(Duration::from_millis(300));
-    assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), 0);
+    assert_eq!(bench.read(commands::READ_PWMS, name::DUTY_M1), 0);
     // An MCP's word has no bit for it (MCP manual command 90).
-    let word = bench.read(number::READ_STATUS, "status") as u32;
+    let word = bench.read(commands::READ_STATUS, name::STATUS) as u32;
     assert!(decode(word, Generation::Gen2).is_empty());
     assert!(bench.unit().unit().expect("power").conditions().contains(Condition::M1Home));
-    bench.ask(number::DUTY_M1, &[-10_000]);
+    bench.ask(commands::DUTY_M1, &[-10_000]);
     bench.wait_talking(Duration::from_millis(300));
-    assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), -10_000);
+    assert_eq!(bench.read(commands::READ_PWMS, name::DUTY_M1), -10_000);
 }
 
 #[test]
@@ -234,28 +233,28 @@ fn a_home_switch_loads_its_value_and_a_reverse_switch_turns_the_motor_round() {
     let mut bench = Bench::new(Generation::Gen2);
     set_pin(&mut bench, PIN, Pin { max_action: 0x0024, load_home: 5000, ..Pin::default() }); // load home and reverse
     volts(&mut bench, PIN, 0.0);
-    bench.ask(number::DUTY_M1, &[8_000]);
+    bench.ask(commands::DUTY_M1, &[8_000]);
     bench.wait_talking(Duration::from_millis(300));
     volts(&mut bench, PIN, 5.1);
     bench.wait(Duration::from_millis(4));
-    assert!((4_900..5_100).contains(&bench.read(number::READ_ENCODER_M1, "encoder")));
+    assert!((4_900..5_100).contains(&bench.read(commands::READ_ENCODER_M1, name::ENCODER)));
     bench.wait_talking(Duration::from_millis(500));
-    assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), -8_000);
+    assert_eq!(bench.read(commands::READ_PWMS, name::DUTY_M1), -8_000);
 }
 
 #[test]
 fn an_emergency_stop_on_a_pin_stops_both_motors() {
     for (generation, action) in [(Generation::Gen1, 22), (Generation::Gen4, 0x8000)] {
         let mut bench = Bench::new(generation);
-        bench.ask(number::DUTY_BOTH, &[8_000, 8_000]);
+        bench.ask(commands::DUTY_BOTH, &[8_000, 8_000]);
         set_pin(&mut bench, PIN, Pin { min_action: action, ..Pin::default() });
         volts(&mut bench, PIN, 5.0);
         bench.wait_talking(A_MOMENT);
-        assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), 8_000, "{generation}");
+        assert_eq!(bench.read(commands::READ_PWMS, name::DUTY_M1), 8_000, "{generation}");
         volts(&mut bench, PIN, 0.0);
         bench.wait_talking(A_MOMENT);
-        assert_eq!(bench.read(number::READ_PWMS, "duty_m2"), 0, "{generation}");
-        let word = bench.read(number::READ_STATUS, "status") as u32;
+        assert_eq!(bench.read(commands::READ_PWMS, name::DUTY_M2), 0, "{generation}");
+        let word = bench.read(commands::READ_STATUS, name::STATUS) as u32;
         assert!(decode(word, generation).contains(Condition::EStop), "{generation}");
     }
 }
@@ -265,27 +264,27 @@ fn any_input_can_be_a_motors_encoder() {
     let mut bench = Bench::new(Generation::Gen1);
     set_pin(&mut bench, PIN, Pin::default());
     volts(&mut bench, PIN, 2.55);
-    bench.ask(number::SET_ENCODER_MODE_M1, &[PIN as i64]);
+    bench.ask(commands::SET_ENCODER_MODE_M1, &[PIN as i64]);
     bench.wait(A_MOMENT);
-    assert_eq!(bench.read(number::READ_ENCODER_M1, "encoder"), 2048);
-    bench.ask(number::SET_ENCODER_MODE_M1, &[0xff]);
-    bench.ask(number::DUTY_M1, &[8_000]);
+    assert_eq!(bench.read(commands::READ_ENCODER_M1, name::ENCODER), 2048);
+    bench.ask(commands::SET_ENCODER_MODE_M1, &[0xff]);
+    bench.ask(commands::DUTY_M1, &[8_000]);
     bench.wait(Duration::from_millis(300));
-    assert_eq!(bench.read(number::READ_ENCODER_M1, "encoder"), 0, "no encoder");
+    assert_eq!(bench.read(commands::READ_ENCODER_M1, name::ENCODER), 0, "no encoder");
     // Motor 2 can be given motor 1's encoder.
-    bench.ask(number::SET_ENCODER_MODE_M2, &[6]); // ENC1A
+    bench.ask(commands::SET_ENCODER_MODE_M2, &[6]); // ENC1A
     bench.wait(Duration::from_millis(300));
-    assert!(bench.read(number::READ_ENCODER_M2, "encoder") > 100);
+    assert!(bench.read(commands::READ_ENCODER_M2, name::ENCODER) > 100);
 }
 
 #[test]
 fn the_number_of_a_pin_without_a_function_leaves_the_motors_own_encoder() {
     for mode in [0, 1] {
         let mut bench = Bench::new(Generation::Gen4);
-        bench.ask(number::SET_ENCODER_MODE_M1, &[mode]);
-        bench.ask(number::DUTY_M1, &[8_000]);
+        bench.ask(commands::SET_ENCODER_MODE_M1, &[mode]);
+        bench.ask(commands::DUTY_M1, &[8_000]);
         bench.wait(Duration::from_millis(300));
-        assert!(bench.read(number::READ_ENCODER_M1, "encoder") > 100, "mode {mode}");
+        assert!(bench.read(commands::READ_ENCODER_M1, name::ENCODER) > 100, "mode {mode}");
     }
 }
 
@@ -296,7 +295,7 @@ fn an_actuator_with_an_analog_encoder_comes_with_its_input_set() {
     let world = brushwork_plant::presets::world_of(axis, axis, model.pins.len());
     let mut bench = Bench::of(ControllerConfig { world, ..ControllerConfig::of(model) });
     bench.wait(A_MOMENT);
-    let count = bench.read(number::READ_ENCODER_M1, "encoder");
+    let count = bench.read(commands::READ_ENCODER_M1, name::ENCODER);
     assert!((2_000..2_100).contains(&count), "{count}");
 }
 

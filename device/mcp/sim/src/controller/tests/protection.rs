@@ -4,7 +4,7 @@ use super::support::Bench;
 use crate::controller::ControllerConfig;
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::packet_serial::status::{Condition, Lamp, decode};
-use brushwork_mcp_wire::packet_serial::{Generation, number};
+use brushwork_mcp_wire::packet_serial::{Generation, commands, name, number};
 use brushwork_plant::BrakeResistorParams;
 use brushwork_plant::bridge::BridgeOutput;
 use brushwork_plant::presets;
@@ -18,7 +18,7 @@ const A_MOMENT: Duration = Duration::from_millis(200);
 /// A unit whose motors run at half duty.
 fn running(generation: Generation) -> Bench {
     let mut bench = Bench::new(generation);
-    bench.ask(number::DUTY_BOTH, &[16_000, 16_000]);
+    bench.ask(commands::DUTY_BOTH, &[16_000, 16_000]);
     bench.wait_talking(Duration::from_millis(800));
     assert_eq!(output(&bench), BridgeOutput::Duty(16_000.0 / 32_767.0));
     bench
@@ -29,7 +29,7 @@ fn output(bench: &Bench) -> BridgeOutput {
 }
 
 fn has(bench: &mut Bench, condition: Condition) -> bool {
-    let word = bench.read(number::READ_STATUS, "status") as u32;
+    let word = bench.read(commands::READ_STATUS, name::STATUS) as u32;
     decode(word, bench.generation).contains(condition)
 }
 
@@ -65,14 +65,17 @@ fn the_second_sensor_counts_on_boards_that_have_one() {
         bench.apply(&WorldAction::SetBoardCelsius { celsius: Some(101.0) });
         bench.wait_talking(A_MOMENT);
         assert_eq!(has(&mut bench, Condition::Temperature2Error), second, "{}", model.key);
-        assert_eq!(bench.read(number::READ_TEMPERATURE_2, "temperature_2"), if second { 1010 } else { 0 });
+        assert_eq!(
+            bench.read(commands::READ_TEMPERATURE_2, name::TEMPERATURE_2),
+            if second { 1010 } else { 0 }
+        );
     }
 }
 
 #[test]
 fn a_main_battery_above_its_maximum_brakes_the_motors_while_it_lasts() {
     let mut bench = running(Generation::Gen1);
-    bench.ask(number::SET_MAIN_VOLTAGES, &[100, 260]);
+    bench.ask(commands::SET_MAIN_VOLTAGES, &[100, 260]);
     bench.apply(&WorldAction::SetBatteryVolts { volts: 28.0 });
     bench.wait_talking(A_MOMENT);
     assert!(has(&mut bench, Condition::MainBatteryHighWarning));
@@ -97,7 +100,7 @@ fn a_main_battery_above_the_rating_brakes_until_a_restart() {
     bench.apply(&WorldAction::Power { on: true });
     bench.wait_talking(A_MOMENT);
     assert!(!has(&mut bench, Condition::MainBatteryHighError));
-    bench.ask(number::DUTY_M1, &[16_000]);
+    bench.ask(commands::DUTY_M1, &[16_000]);
     bench.wait_talking(A_MOMENT);
     assert!(matches!(output(&bench), BridgeOutput::Duty(duty) if duty > 0.0));
 }
@@ -105,7 +108,7 @@ fn a_main_battery_above_the_rating_brakes_until_a_restart() {
 #[test]
 fn a_main_battery_below_its_minimum_lets_the_motors_freewheel() {
     let mut bench = running(Generation::Gen1);
-    bench.ask(number::SET_MAIN_VOLTAGES, &[230, 600]);
+    bench.ask(commands::SET_MAIN_VOLTAGES, &[230, 600]);
     bench.apply(&WorldAction::SetBatteryVolts { volts: 15.0 });
     bench.wait_talking(A_MOMENT);
     assert!(has(&mut bench, Condition::MainBatteryLowWarning));
@@ -134,11 +137,11 @@ fn logic_battery_errors_freewheel_until_a_restart() {
 #[test]
 fn a_locked_shaft_is_held_to_the_current_limit_and_warned_about() {
     let mut bench = Bench::new(Generation::Gen1);
-    bench.ask(number::SET_CURRENT_LIMITS_M1, &[150, -150]); // 1.5 A
+    bench.ask(commands::SET_CURRENT_LIMITS_M1, &[150, -150]); // 1.5 A
     bench.apply(&WorldAction::LockShaft { motor: Motor::M1, on: true });
-    bench.ask(number::DUTY_M1, &[32_767]);
+    bench.ask(commands::DUTY_M1, &[32_767]);
     bench.wait_talking(Duration::from_millis(900));
-    let current = bench.read(number::READ_CURRENTS, "current_m1");
+    let current = bench.read(commands::READ_CURRENTS, name::CURRENT_M1);
     assert!((140..=160).contains(&current), "{current} x 10 mA");
     assert!(has(&mut bench, Condition::M1OverCurrentWarning));
     assert!(!has(&mut bench, Condition::M2OverCurrentWarning));
@@ -157,7 +160,7 @@ fn a_locked_emergency_stop_needs_a_restart() {
         assert_eq!(output(&bench), BridgeOutput::Brake, "{generation}");
         assert_eq!(leds(&bench), Leds { stat1: true, stat2: true, err: true });
         bench.apply(&WorldAction::EStop { pressed: false });
-        bench.ask(number::RESET_ESTOP, &[]);
+        bench.ask(commands::RESET_ESTOP, &[]);
         bench.wait_talking(A_MOMENT);
         assert!(has(&mut bench, Condition::EStop), "{generation}");
         bench.apply(&WorldAction::Power { on: false });
@@ -170,63 +173,63 @@ fn a_locked_emergency_stop_needs_a_restart() {
 #[test]
 fn an_unlocked_emergency_stop_is_reset_by_command_and_the_motors_stay_stopped_until_told() {
     let mut bench = running(Generation::Gen1);
-    bench.ask(number::SET_ESTOP_LOCK, &[0xaa]);
+    bench.ask(commands::SET_ESTOP_LOCK, &[0xaa]);
     bench.apply(&WorldAction::EStop { pressed: true });
     bench.wait_talking(A_MOMENT);
-    bench.ask(number::DUTY_M1, &[10_000]); // acknowledged, and refused
-    bench.ask(number::RESET_ESTOP, &[]); // still pressed
+    bench.ask(commands::DUTY_M1, &[10_000]); // acknowledged, and refused
+    bench.ask(commands::RESET_ESTOP, &[]); // still pressed
     assert!(has(&mut bench, Condition::EStop));
     bench.apply(&WorldAction::EStop { pressed: false });
-    bench.ask(number::RESET_ESTOP, &[]);
+    bench.ask(commands::RESET_ESTOP, &[]);
     assert!(!has(&mut bench, Condition::EStop));
     bench.wait_talking(A_MOMENT);
-    assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), 0);
-    bench.ask(number::DUTY_M1, &[10_000]);
+    assert_eq!(bench.read(commands::READ_PWMS, name::DUTY_M1), 0);
+    bench.ask(commands::DUTY_M1, &[10_000]);
     bench.wait_talking(A_MOMENT);
-    assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), 10_000);
+    assert_eq!(bench.read(commands::READ_PWMS, name::DUTY_M1), 10_000);
 }
 
 #[test]
 fn a_command_right_behind_the_reset_is_taken() {
     let mut bench = running(Generation::Gen1);
-    bench.ask(number::SET_ESTOP_LOCK, &[0xaa]);
+    bench.ask(commands::SET_ESTOP_LOCK, &[0xaa]);
     bench.apply(&WorldAction::EStop { pressed: true });
     bench.wait_talking(A_MOMENT);
     bench.apply(&WorldAction::EStop { pressed: false });
-    bench.ask(number::RESET_ESTOP, &[]);
-    bench.ask(number::DUTY_M1, &[10_000]);
+    bench.ask(commands::RESET_ESTOP, &[]);
+    bench.ask(commands::DUTY_M1, &[10_000]);
     bench.wait_talking(A_MOMENT);
-    assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), 10_000);
+    assert_eq!(bench.read(commands::READ_PWMS, name::DUTY_M1), 10_000);
 }
 
 #[test]
 fn generation_4_can_reset_by_itself_and_the_others_take_its_code_for_locked() {
     for generation in Generation::ALL {
         let mut bench = Bench::new(generation);
-        bench.ask(number::SET_ESTOP_LOCK, &[0x55]);
+        bench.ask(commands::SET_ESTOP_LOCK, &[0x55]);
         bench.apply(&WorldAction::EStop { pressed: true });
         bench.wait_talking(A_MOMENT);
         bench.apply(&WorldAction::EStop { pressed: false });
         bench.wait_talking(A_MOMENT);
         assert_eq!(has(&mut bench, Condition::EStop), generation != Generation::Gen4, "{generation}");
-        assert_eq!(bench.read(number::READ_ESTOP_LOCK, "lock"), 0x55);
+        assert_eq!(bench.read(commands::READ_ESTOP_LOCK, name::LOCK), 0x55);
     }
 }
 
 #[test]
 fn a_speed_error_beyond_its_limit_stops_the_motor_and_shows_until_the_next_command() {
     let mut bench = Bench::new(Generation::Gen3);
-    bench.ask(number::SET_SPEED_ERROR_LIMITS, &[500, 0]);
+    bench.ask(commands::SET_SPEED_ERROR_LIMITS, &[500, 0]);
     bench.apply(&WorldAction::LockShaft { motor: Motor::M1, on: true });
-    bench.ask(number::SPEED_ACCEL_M1, &[20_000, 3_000]);
+    bench.ask(commands::SPEED_ACCEL_M1, &[20_000, 3_000]);
     bench.wait_talking(Duration::from_millis(800));
     assert!(has(&mut bench, Condition::M1SpeedError));
-    assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), 0);
+    assert_eq!(bench.read(commands::READ_PWMS, name::DUTY_M1), 0);
     bench.apply(&WorldAction::LockShaft { motor: Motor::M1, on: false });
-    bench.ask(number::DUTY_M1, &[5_000]);
+    bench.ask(commands::DUTY_M1, &[5_000]);
     bench.wait_talking(A_MOMENT);
     assert!(!has(&mut bench, Condition::M1SpeedError));
-    assert_eq!(bench.read(number::READ_PWMS, "duty_m1"), 5_000);
+    assert_eq!(bench.read(commands::READ_PWMS, name::DUTY_M1), 5_000);
 }
 
 #[test]
@@ -239,7 +242,7 @@ fn faults_of_the_electronics_stop_both_motors_until_a_restart_and_show_where_the
     for generation in Generation::ALL {
         for (fault, condition, shown) in faults {
             let mut bench = Bench::of(ControllerConfig { generation, ..ControllerConfig::of(roboclaw) });
-            bench.ask(number::DUTY_BOTH, &[16_000, 16_000]);
+            bench.ask(commands::DUTY_BOTH, &[16_000, 16_000]);
             bench.wait_talking(A_MOMENT);
             bench.apply(&WorldAction::SetUnitFault { fault, on: true });
             bench.wait_talking(A_MOMENT);
@@ -247,7 +250,7 @@ fn faults_of_the_electronics_stop_both_motors_until_a_restart_and_show_where_the
             assert_eq!(has(&mut bench, condition), shown, "{fault:?} in {generation}");
             assert_eq!(output(&bench), BridgeOutput::Coast, "{fault:?} in {generation}");
             bench.apply(&WorldAction::SetUnitFault { fault, on: false });
-            bench.ask(number::DUTY_BOTH, &[16_000, 16_000]);
+            bench.ask(commands::DUTY_BOTH, &[16_000, 16_000]);
             bench.wait_talking(A_MOMENT);
             assert_eq!(output(&bench), BridgeOutput::Coast, "{fault:?} in {generation}");
             bench.apply(&WorldAction::Power { on: false });
@@ -281,11 +284,11 @@ fn a_boot_fault_shows_from_the_next_start_on_and_a_can_fault_while_it_lasts() {
 fn digital_outputs_follow_their_actions() {
     let mut bench = Bench::new(Generation::Gen1);
     let outputs = |bench: &Bench| bench.unit().unit().expect("power").outputs().to_vec();
-    bench.ask(number::SET_DOUT_ACTION, &[0, 1]); // motor 1 on
-    bench.ask(number::SET_DOUT_ACTION, &[1, 8]); // over-temperature
+    bench.ask(commands::SET_DOUT_ACTION, &[0, 1]); // motor 1 on
+    bench.ask(commands::SET_DOUT_ACTION, &[1, 8]); // over-temperature
     bench.wait_talking(A_MOMENT);
     assert_eq!(outputs(&bench), [false, false]);
-    bench.ask(number::DUTY_M1, &[5_000]);
+    bench.ask(commands::DUTY_M1, &[5_000]);
     bench.apply(&WorldAction::SetBoardCelsius { celsius: Some(95.0) });
     bench.wait_talking(A_MOMENT);
     assert_eq!(outputs(&bench), [true, true]);
@@ -297,10 +300,10 @@ fn digital_outputs_follow_their_actions() {
 #[test]
 fn voltage_offsets_shift_the_readings_and_not_the_limits() {
     let mut bench = Bench::new(Generation::Gen3);
-    let before = bench.read(number::READ_MAIN_BATTERY, "main_battery");
-    bench.ask(number::SET_VOLTAGE_OFFSETS, &[-7, 5]);
-    assert_eq!(bench.read(number::READ_MAIN_BATTERY, "main_battery"), before - 7);
-    assert_eq!(bench.read(number::READ_LOGIC_BATTERY, "logic_battery"), 125);
+    let before = bench.read(commands::READ_MAIN_BATTERY, name::MAIN_BATTERY);
+    bench.ask(commands::SET_VOLTAGE_OFFSETS, &[-7, 5]);
+    assert_eq!(bench.read(commands::READ_MAIN_BATTERY, name::MAIN_BATTERY), before - 7);
+    assert_eq!(bench.read(commands::READ_LOGIC_BATTERY, name::LOGIC_BATTERY), 125);
 }
 
 /// A flywheel on a power supply that takes no current back, slowed from full speed: at how many of 300 looks the unit had to
@@ -313,11 +316,11 @@ fn looks_at_which_protection_brakes(dout_action: i64) -> usize {
     config.world.supply.brake_resistor = Some(BrakeResistorParams { ohms: 2.0, dout: 0 });
     let max_tenths = (config.world.supply.open_circuit_volts * 10.0) as i64 + 30;
     let mut bench = Bench::of(config);
-    bench.ask(number::SET_MAIN_VOLTAGES, &[100, max_tenths]);
-    bench.ask(number::SET_DOUT_ACTION, &[0, dout_action]);
-    bench.ask(number::DUTY_ACCEL_M1, &[32_767, 655_359]);
+    bench.ask(commands::SET_MAIN_VOLTAGES, &[100, max_tenths]);
+    bench.ask(commands::SET_DOUT_ACTION, &[0, dout_action]);
+    bench.ask(commands::DUTY_ACCEL_M1, &[32_767, 655_359]);
     bench.wait_talking(Duration::from_secs(30));
-    bench.ask(number::DUTY_ACCEL_M1, &[16_000, 6_553]); // to half duty in about 2.5 s: regeneration
+    bench.ask(commands::DUTY_ACCEL_M1, &[16_000, 6_553]); // to half duty in about 2.5 s: regeneration
     let mut braking = 0;
     for _ in 0..300 {
         bench.wait_talking(Duration::from_millis(10));
@@ -336,7 +339,7 @@ fn an_output_with_the_over_voltage_action_clamps_the_link_so_that_protection_nee
 fn two_machines_of_one_seed_say_the_same_and_another_seed_says_something_else() {
     let talk = |seed: u64| {
         let mut bench = Bench::of(ControllerConfig { seed, ..ControllerConfig::default() });
-        bench.ask(number::SPEED_ACCEL_BOTH, &[10_000, 2_000, -1_500]);
+        bench.ask(commands::SPEED_ACCEL_BOTH, &[10_000, 2_000, -1_500]);
         let mut replies = Vec::new();
         for _ in 0..200 {
             bench.wait(Duration::from_millis(7));
@@ -353,7 +356,7 @@ fn two_machines_of_one_seed_say_the_same_and_another_seed_says_something_else() 
 fn time_may_be_advanced_in_any_pieces() {
     let run = |pieces: u32| {
         let mut bench = Bench::of(ControllerConfig { seed: 9, ..ControllerConfig::default() });
-        bench.ask(number::SPEED_ACCEL_BOTH, &[10_000, 2_000, -1_500]);
+        bench.ask(commands::SPEED_ACCEL_BOTH, &[10_000, 2_000, -1_500]);
         for _ in 0..pieces {
             bench.wait(Duration::from_millis(900) / pieces);
         }

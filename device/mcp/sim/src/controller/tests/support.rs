@@ -1,7 +1,10 @@
 //! A client in virtual time: asks, waits for the reply, and takes it apart with the client's side of the codec.
 
 use crate::controller::{Bus, Controller, ControllerConfig};
-use brushwork_mcp_wire::packet_serial::{Address, Generation, ReplyProgress, Request, lookup, parse_reply};
+use brushwork_mcp_wire::packet_serial::name::Name;
+use brushwork_mcp_wire::packet_serial::{
+    Address, Generation, Read, ReplyProgress, Request, Typed, commands, lookup, parse_reply,
+};
 use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::world::ScriptRun;
 use brushwork_plant::world::WorldAction;
@@ -72,14 +75,19 @@ impl Bench {
     }
 
     /// Sends a request that is answered.
-    pub fn ask(&mut self, command: u8, args: &[i64]) -> Values {
+    pub fn ask<const L: u8>(&mut self, command: Typed<L>, args: &[i64]) -> Read<L> {
+        command.reply(self.ask_row(command.number(), args)).expect("it is its reply")
+    }
+
+    /// The same with whatever command.
+    pub fn ask_row(&mut self, command: u8, args: &[i64]) -> Values {
         let answer = self.try_ask(command, args);
         answer.unwrap_or_else(|| panic!("command {command} was not answered"))
     }
 
-    /// A number from the reply to a read without arguments.
-    pub fn read(&mut self, command: u8, name: &str) -> i64 {
-        self.ask(command, &[]).int(name)
+    /// The first number of this name in the reply to a read without arguments.
+    pub fn read<const L: u8>(&mut self, command: Typed<L>, name: impl Name) -> i64 {
+        self.ask(command, &[]).try_int(name).expect("this generation returns it")
     }
 
     /// Lets time pass.
@@ -91,7 +99,7 @@ impl Bench {
     pub fn wait_talking(&mut self, time: Duration) {
         let end = self.bus.now() + time;
         while self.bus.now() < end {
-            self.ask(brushwork_mcp_wire::packet_serial::number::READ_STATUS, &[]);
+            self.ask(commands::READ_STATUS, &[]);
             self.bus.advance((self.bus.now() + Duration::from_millis(100)).min(end));
         }
     }
@@ -105,7 +113,7 @@ impl Bench {
     /// Stores a script and starts it with command 248.
     pub fn start(&mut self, text: &str) {
         self.install(text);
-        self.ask(brushwork_mcp_wire::packet_serial::number::START_SCRIPT, &[]);
+        self.ask(commands::START_SCRIPT, &[]);
     }
 
     /// What the script has said on a stream since it was asked last.

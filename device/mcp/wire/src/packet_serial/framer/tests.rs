@@ -117,7 +117,7 @@ fn reads_with_an_argument_are_taken_with_and_without_crc() {
     let mut line = Line::new(Generation::Gen1);
     // Address, command 252, address in the user memory.
     let framed = line.request(&[0x80, 0xFC, 0x10]);
-    assert_eq!(framed.values.int("address"), 0x10);
+    assert_eq!(framed.values.try_int("address"), Some(0x10));
     let crc = crc16_xmodem(&[0x80, 0xFC, 0x10]).to_be_bytes();
     line.nothing(&crc);
     line.request(&[0x80, 0xFC, 0x10]);
@@ -131,7 +131,7 @@ fn reads_with_an_argument_are_taken_with_and_without_crc() {
         0x10, 0x18, // index
         0x02, // subindex
     ]);
-    assert_eq!((framed.values.int("index"), framed.values.int("subindex")), (0x1018, 2));
+    assert_eq!((framed.values.try_int("index"), framed.values.try_int("subindex")), (Some(0x1018), Some(2)));
     line.nothing(&crc16_xmodem(&framed.raw).to_be_bytes());
     // Command 182 has no argument.
     line.request(&[0x80, 0xB6]);
@@ -148,7 +148,10 @@ fn a_write_is_taken_when_its_crc_has_come() {
     ];
     packet.extend([0xD9, 0x1E]); // CRC
     let framed = line.request(&packet);
-    assert_eq!((framed.values.int("duty_m1"), framed.values.int("duty_m2")), (3276, 3276));
+    assert_eq!(
+        (framed.values.try_int("duty_m1"), framed.values.try_int("duty_m2")),
+        (Some(3276), Some(3276))
+    );
     line.request(&packet);
 }
 
@@ -216,7 +219,7 @@ fn a_write_whose_address_comes_twice_is_taken() {
     let mut line = Line::new(Generation::Gen1);
     // Address twice, command 32, duty 2000, CRC of the packet without the first address.
     let framed = line.request(&[0x80, 0x80, 32, 0x07, 0xD0, 0x09, 0x14]);
-    assert_eq!((framed.command.number, framed.values.int("duty")), (number::DUTY_M1, 2000));
+    assert_eq!((framed.command.number, framed.values.try_int("duty")), (number::DUTY_M1, Some(2000)));
     assert_eq!(&*framed.raw, [0x80, 32, 0x07, 0xD0, 0x09, 0x14]);
     // A longer one than command 128, which the second address could be.
     let mut doubled = write_packet(number::SPEED_ACCEL_DISTANCE_BOTH, 21);

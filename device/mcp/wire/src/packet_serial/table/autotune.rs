@@ -1,23 +1,25 @@
 //! The relay test behind auto-tuning (public clients, 2015-2020).
 
 use super::super::command::{Command, Effect, Form};
+use super::super::field::field;
+use super::super::name;
 use super::super::number;
 use super::{CLIENTS, G1, G2, G3, G4, fields, forms, read, write};
 use brushwork_values::{Field, Kind};
 
 pub(super) const ROWS: &[Command] = &[
-    start(number::AUTOTUNE_VELOCITY_M1, "autotune_velocity_m1", "M1 velocity relay test"),
-    start(number::AUTOTUNE_VELOCITY_M2, "autotune_velocity_m2", "M2 velocity relay test"),
-    start(number::AUTOTUNE_POSITION_M1, "autotune_position_m1", "M1 position relay test"),
-    start(number::AUTOTUNE_POSITION_M2, "autotune_position_m2", "M2 position relay test"),
-    result(number::READ_AUTOTUNE_M1, "read_autotune_m1", "read M1 relay test"),
-    result(number::READ_AUTOTUNE_M2, "read_autotune_m2", "read M2 relay test"),
+    start(number::AUTOTUNE_VELOCITY_M1, "M1 velocity relay test"),
+    start(number::AUTOTUNE_VELOCITY_M2, "M2 velocity relay test"),
+    start(number::AUTOTUNE_POSITION_M1, "M1 position relay test"),
+    start(number::AUTOTUNE_POSITION_M2, "M2 position relay test"),
+    result(number::READ_AUTOTUNE_M1, "read M1 relay test"),
+    result(number::READ_AUTOTUNE_M2, "read M2 relay test"),
 ];
 
 const NOT_IN_LIBRARY: &str = "libraries of generation 4 do not send it; taken as in generation 3";
 
-const AMPLITUDE: Field = Field::new("amplitude", Kind::U32, "duty of the relay, as raw duty");
-const HYSTERESIS: Field = Field::new("hysteresis", Kind::U32, "error at which the relay switches");
+const AMPLITUDE: Field = field(name::AMPLITUDE, Kind::U32, "duty of the relay, as raw duty");
+const HYSTERESIS: Field = field(name::HYSTERESIS, Kind::U32, "error at which the relay switches");
 
 const START: &[Form] = forms![
     write(G1, G2, Effect::RelativeMotion, fields![AMPLITUDE]),
@@ -26,17 +28,17 @@ const START: &[Form] = forms![
 ];
 
 const RESULT: &[Field] = fields![
-    Field::new("amplitude", Kind::U32, "amplitude of the oscillation found"),
-    Field::new("period", Kind::U32, "period of the oscillation found; its unit is not public"),
+    field(name::AMPLITUDE, Kind::U32, "amplitude of the oscillation found"),
+    field(name::PERIOD, Kind::U32, "period of the oscillation found; its unit is not public"),
 ];
 
 const READ: &[Form] = forms![read(G1, G3, RESULT), read(G4, G4, RESULT).assumed(NOT_IN_LIBRARY)];
 
-const fn start(number: u8, key: &'static str, title: &'static str) -> Command {
-    Command::new(number, key, title, CLIENTS, START)
+const fn start(number: u8, title: &'static str) -> Command {
+    Command::new(number, title, CLIENTS, START)
         .note("The formula that turns its result into gains runs in the vendor's program and is not public.")
 }
 
-const fn result(number: u8, key: &'static str, title: &'static str) -> Command {
-    Command::new(number, key, title, CLIENTS, READ)
+const fn result(number: u8, title: &'static str) -> Command {
+    Command::new(number, title, CLIENTS, READ)
 }

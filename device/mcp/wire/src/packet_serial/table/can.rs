@@ -1,7 +1,8 @@
 //! The CAN bus seen from packet serial.
 
 use super::super::command::{ClientUse, Command, Effect, Reply, Simulated};
-use super::super::field::byte;
+use super::super::field::{byte, field};
+use super::super::name;
 use super::super::number;
 use super::{CLIENTS, G3, G4, fields, forms, read, read_at, write, write_for};
 use brushwork_values::{Field, Kind, Unit};
@@ -9,7 +10,6 @@ use brushwork_values::{Field, Kind, Unit};
 pub(super) const ROWS: &[Command] = &[
     Command::new(
         number::SET_NODE_ID,
-        "set_node_id",
         "CANopen node id",
         CLIENTS,
         forms![write(G3, G4, Effect::Setting, fields![NODE_ID])],
@@ -17,7 +17,6 @@ pub(super) const ROWS: &[Command] = &[
     .simulated(NO_BUS),
     Command::new(
         number::READ_NODE_ID,
-        "read_node_id",
         "read CANopen node id",
         CLIENTS,
         forms![read(G3, G4, fields![NODE_ID])],
@@ -25,11 +24,10 @@ pub(super) const ROWS: &[Command] = &[
     .simulated(NO_BUS),
     Command::new(
         number::READ_CAN_ERRORS,
-        "read_can_errors",
         "read CAN error state",
         CLIENTS,
         forms![
-            read(G4, G4, fields![Field::new("errors", Kind::U32, "the CAN error register").unit(Unit::Bits)])
+            read(G4, G4, fields![field(name::ERRORS, Kind::U32, "the CAN error register").unit(Unit::Bits)])
                 .assumed(CONTRADICT)
         ],
     )
@@ -38,24 +36,18 @@ pub(super) const ROWS: &[Command] = &[
     .note("The vendor's C++ library of 2025 reads one byte, the number of waiting messages."),
     Command::new(
         number::PUT_CAN_PACKET,
-        "put_can_packet",
         "send CAN message",
         CLIENTS,
         forms![write(G4, G4, Effect::Bus, MESSAGE)],
     )
     .simulated(LOOP_BACK),
-    Command::new(
-        number::GET_CAN_PACKET,
-        "get_can_packet",
-        "read CAN message",
-        CLIENTS,
-        forms![read(G4, G4, RECEIVED)],
-    )
-    .simulated(LOOP_BACK)
-    .note("In the vendor's C++ library of 2025 a reply that does not start with 0xFF ends after that byte."),
+    Command::new(number::GET_CAN_PACKET, "read CAN message", CLIENTS, forms![read(G4, G4, RECEIVED)])
+        .simulated(LOOP_BACK)
+        .note(
+            "In the vendor's C++ library of 2025 a reply that does not start with 0xFF ends after that byte.",
+        ),
     Command::new(
         number::WRITE_CAN_DICTIONARY,
-        "write_can_dictionary",
         "write CANopen dictionary",
         CLIENTS,
         forms![
@@ -68,7 +60,6 @@ pub(super) const ROWS: &[Command] = &[
     .note("The vendor's C++ library of 2025 expects no acknowledgement before the result."),
     Command::new(
         number::READ_CAN_DICTIONARY,
-        "read_can_dictionary",
         "read CANopen dictionary",
         CLIENTS,
         forms![read_at(G4, G4, ENTRY, READ_ENTRY).assumed(CONTRADICT)],
@@ -90,20 +81,21 @@ const DICTIONARY: Simulated = Simulated::StoredOnly(
 const CONTRADICT: &str = "the vendor's Python and C++ libraries of 2025 contradict each other";
 const NEVER: ClientUse = ClientUse::Never(CONTRADICT);
 
-const NODE_ID: Field = byte("node_id", "CANopen node id").range(1, 127);
-const COB_ID: Field = Field::new("cob_id", Kind::U16, "identifier of the message").unit(Unit::Bits);
-const RTR: Field = byte("rtr", "1 asks for the message instead of carrying it");
-const LENGTH: Field = byte("length", "bytes used of the data").range(0, 8);
-const DATA: Field = Field::new("data", Kind::Bytes(8), "content, always eight bytes");
+const NODE_ID: Field = byte(name::NODE_ID, "CANopen node id").range(1, 127);
+const COB_ID: Field = field(name::COB_ID, Kind::U16, "identifier of the message").unit(Unit::Bits);
+const RTR: Field = byte(name::RTR, "1 asks for the message instead of carrying it");
+const LENGTH: Field = byte(name::LENGTH, "bytes used of the data").range(0, 8);
+const DATA: Field = field(name::DATA, Kind::Bytes(8), "content, always eight bytes");
 const MESSAGE: &[Field] = fields![COB_ID, RTR, LENGTH, DATA];
-const RECEIVED: &[Field] = fields![byte("present", "0xFF if there was a message"), COB_ID, RTR, LENGTH, DATA];
+const RECEIVED: &[Field] =
+    fields![byte(name::PRESENT, "0xFF if there was a message"), COB_ID, RTR, LENGTH, DATA];
 
-const NODE: Field = byte("node", "node that owns the dictionary");
-const ENTRY_INDEX: Field = Field::new("index", Kind::U16, "index of the entry").unit(Unit::Bits);
-const SUBINDEX: Field = byte("subindex", "subindex of the entry");
-const VALUE: Field = Field::new("value", Kind::U32, "value of the entry");
-const SIZE: Field = byte("size", "bytes used of the value");
-const RESULT: Field = Field::new("result", Kind::U32, "0, or why it failed").unit(Unit::Bits);
+const NODE: Field = byte(name::NODE, "node that owns the dictionary");
+const ENTRY_INDEX: Field = field(name::INDEX, Kind::U16, "index of the entry").unit(Unit::Bits);
+const SUBINDEX: Field = byte(name::SUBINDEX, "subindex of the entry");
+const VALUE: Field = field(name::VALUE, Kind::U32, "value of the entry");
+const SIZE: Field = byte(name::SIZE, "bytes used of the value");
+const RESULT: Field = field(name::RESULT, Kind::U32, "0, or why it failed").unit(Unit::Bits);
 const ENTRY: &[Field] = fields![NODE, ENTRY_INDEX, SUBINDEX];
 const WRITE_ENTRY: &[Field] = fields![NODE, ENTRY_INDEX, SUBINDEX, VALUE, SIZE];
-const READ_ENTRY: &[Field] = fields![VALUE, SIZE, byte("type", "CANopen data type"), RESULT];
+const READ_ENTRY: &[Field] = fields![VALUE, SIZE, byte(name::TYPE, "CANopen data type"), RESULT];

@@ -1,7 +1,8 @@
 //! Encoder counts and speeds, and which input is whose encoder.
 
 use super::super::command::{Command, Effect, Form};
-use super::super::field::{byte, position, speed};
+use super::super::field::{byte, field, position, speed};
+use super::super::name::{self, Name};
 use super::super::number;
 use super::{CLIENTS, G1, G3, G4, MANUAL_ADVANCED, MANUAL_ENCODERS, fields, forms, read, write};
 use brushwork_values::{Field, Kind, Unit};
@@ -9,34 +10,30 @@ use brushwork_values::{Field, Kind, Unit};
 pub(super) const ROWS: &[Command] = &[
     Command::new(
         number::READ_ENCODER_M1,
-        "read_encoder_m1",
         "read M1 encoder",
         MANUAL_ENCODERS,
         COUNT_AND_STATUS,
     ),
     Command::new(
         number::READ_ENCODER_M2,
-        "read_encoder_m2",
         "read M2 encoder",
         MANUAL_ENCODERS,
         COUNT_AND_STATUS,
     ),
-    Command::new(number::READ_SPEED_M1, "read_speed_m1", "read M1 speed", MANUAL_ENCODERS, SPEED_AND_STATUS)
+    Command::new(number::READ_SPEED_M1, "read M1 speed", MANUAL_ENCODERS, SPEED_AND_STATUS)
         .note(SIGN_IN_STATUS),
-    Command::new(number::READ_SPEED_M2, "read_speed_m2", "read M2 speed", MANUAL_ENCODERS, SPEED_AND_STATUS)
+    Command::new(number::READ_SPEED_M2, "read M2 speed", MANUAL_ENCODERS, SPEED_AND_STATUS)
         .note(SIGN_IN_STATUS),
     Command::new(
         number::RESET_ENCODERS,
-        "reset_encoders",
         "zero both encoders",
         MANUAL_ENCODERS,
         forms![write(G1, G4, Effect::Encoder, &[])],
     ),
-    Command::new(number::SET_ENCODER_M1, "set_encoder_m1", "set M1 encoder", MANUAL_ENCODERS, SET_COUNT),
-    Command::new(number::SET_ENCODER_M2, "set_encoder_m2", "set M2 encoder", MANUAL_ENCODERS, SET_COUNT),
+    Command::new(number::SET_ENCODER_M1, "set M1 encoder", MANUAL_ENCODERS, SET_COUNT),
+    Command::new(number::SET_ENCODER_M2, "set M2 encoder", MANUAL_ENCODERS, SET_COUNT),
     Command::new(
         number::READ_RAW_SPEED_M1,
-        "read_raw_speed_m1",
         "read M1 raw speed",
         MANUAL_ENCODERS,
         SPEED_AND_STATUS,
@@ -44,7 +41,6 @@ pub(super) const ROWS: &[Command] = &[
     .note(SIGN_IN_STATUS),
     Command::new(
         number::READ_RAW_SPEED_M2,
-        "read_raw_speed_m2",
         "read M2 raw speed",
         MANUAL_ENCODERS,
         SPEED_AND_STATUS,
@@ -52,59 +48,52 @@ pub(super) const ROWS: &[Command] = &[
     .note(SIGN_IN_STATUS),
     Command::new(
         number::READ_ENCODERS,
-        "read_encoders",
         "read encoders",
         MANUAL_ENCODERS,
-        forms![read(G1, G4, fields![position("encoder_m1"), position("encoder_m2")])],
+        forms![read(G1, G4, fields![position(name::ENCODER_M1), position(name::ENCODER_M2)])],
     )
     .note("The manual gives absolute encoders 0 to 2047 here and 0 to 4095 for 16; 4095 is followed."),
     Command::new(
         number::READ_RAW_SPEEDS,
-        "read_raw_speeds",
         "read raw speeds",
         MANUAL_ENCODERS,
-        forms![read(G1, G4, fields![speed("raw_speed_m1"), speed("raw_speed_m2")])],
+        forms![read(G1, G4, fields![speed(name::RAW_SPEED_M1), speed(name::RAW_SPEED_M2)])],
     )
     .note("Counts of the last 1/300 s expressed per second; signed, unlike 30 and 31."),
     Command::new(
         number::READ_ENCODER_MODES,
-        "read_encoder_modes",
         "read encoder pins",
         MANUAL_ADVANCED,
-        forms![read(G1, G4, fields![pin("mode_m1"), pin("mode_m2")])],
+        forms![read(G1, G4, fields![pin(name::MODE_M1), pin(name::MODE_M2)])],
     ),
     Command::new(
         number::SET_ENCODER_MODE_M1,
-        "set_encoder_mode_m1",
         "M1 encoder pin",
         MANUAL_ADVANCED,
         SET_MODE,
     ),
     Command::new(
         number::SET_ENCODER_MODE_M2,
-        "set_encoder_mode_m2",
         "M2 encoder pin",
         MANUAL_ADVANCED,
         SET_MODE,
     ),
     Command::new(
         number::READ_ENCODER_STATUS,
-        "read_encoder_status",
         "read encoder status",
         CLIENTS,
         forms![
-            write(super::G2, G3, Effect::Setting, fields![super::config::ctrl_duty("duty_2")])
+            write(super::G2, G3, Effect::Setting, fields![super::config::ctrl_duty(name::DUTY_2)])
                 .titled("CTRL2 duty"),
-            read(G4, G4, fields![byte("status_m1", STATUS), byte("status_m2", STATUS)]),
+            read(G4, G4, fields![byte(name::STATUS_M1, STATUS), byte(name::STATUS_M2, STATUS)]),
         ],
     )
     .note("Generations 2 and 3 set the duty of the second CTRL pin with this number; the simulated controller only stores it."),
     Command::new(
         number::READ_SPEEDS,
-        "read_speeds",
         "read speeds",
         CLIENTS,
-        forms![read(G3, G4, fields![speed("speed_m1"), speed("speed_m2")])],
+        forms![read(G3, G4, fields![speed(name::SPEED_M1), speed(name::SPEED_M2)])],
     )
     .note("Averaged as 18 and 19; signed, unlike them."),
 ];
@@ -114,21 +103,22 @@ const SIGN_IN_STATUS: &str =
 
 const STATUS: &str = "bit 0 underflow, bit 1 backwards, bit 2 overflow; reading clears bits 0 and 2";
 
-const COUNT_AND_STATUS: &[Form] = forms![read(G1, G4, fields![position("encoder"), byte("status", STATUS)])];
+const COUNT_AND_STATUS: &[Form] =
+    forms![read(G1, G4, fields![position(name::ENCODER), byte(name::STATUS, STATUS)])];
 
 const SPEED_AND_STATUS: &[Form] = forms![read(
     G1,
     G4,
     fields![
-        Field::new("speed", Kind::U32, "magnitude of the speed").unit(Unit::CountsPerSecond),
-        byte("status", "0 forward, 1 backward"),
+        field(name::SPEED, Kind::U32, "magnitude of the speed").unit(Unit::CountsPerSecond),
+        byte(name::STATUS, "0 forward, 1 backward"),
     ]
 )];
 
-const SET_COUNT: &[Form] = forms![write(G1, G4, Effect::Encoder, fields![position("encoder")])];
+const SET_COUNT: &[Form] = forms![write(G1, G4, Effect::Encoder, fields![position(name::ENCODER)])];
 
-const SET_MODE: &[Form] = forms![write(G1, G4, Effect::Setting, fields![pin("mode")])];
+const SET_MODE: &[Form] = forms![write(G1, G4, Effect::Setting, fields![pin(name::MODE)])];
 
-const fn pin(name: &'static str) -> Field {
+const fn pin(name: impl Name) -> Field {
     byte(name, "input that is the motor's encoder; its numbers are not public")
 }

@@ -1,87 +1,79 @@
 //! Limits of voltage, current and control error, and the emergency stop.
 
 use super::super::command::{Command, Effect, Form, Simulated};
-use super::super::field::{byte, volts};
+use super::super::field::{byte, field, volts};
+use super::super::name::{self, Name};
 use super::super::{number, scale};
 use super::{CLIENTS, G1, G3, G4, MANUAL_ADVANCED, fields, forms, read, write};
 use brushwork_values::{Field, Kind, Unit};
 
 pub(super) const ROWS: &[Command] = &[
-    manual(number::SET_MAIN_VOLTAGES, "set_main_voltages", "main voltage limits", SET_MAIN)
+    manual(number::SET_MAIN_VOLTAGES, "main voltage limits", SET_MAIN)
         .note("The simulated controller only stores the automatic offset of generation 4."),
-    manual(number::SET_LOGIC_VOLTAGES, "set_logic_voltages", "logic voltage limits", SET_LOGIC),
-    manual(number::READ_MAIN_VOLTAGES, "read_main_voltages", "read main voltage limits", READ_MAIN),
-    manual(number::READ_LOGIC_VOLTAGES, "read_logic_voltages", "read logic voltage limits", READ_LOGIC),
+    manual(number::SET_LOGIC_VOLTAGES, "logic voltage limits", SET_LOGIC),
+    manual(number::READ_MAIN_VOLTAGES, "read main voltage limits", READ_MAIN),
+    manual(number::READ_LOGIC_VOLTAGES, "read logic voltage limits", READ_LOGIC),
     late(
         number::SET_SPEED_ERROR_LIMITS,
-        "set_speed_error_limits",
         "speed error limits",
         forms![
-            write(G3, G3, Effect::Setting, fields![wide("limit_m1", SPEED), wide("limit_m2", SPEED)]),
-            write(G4, G4, Effect::Setting, fields![narrow("limit_m1", SPEED), narrow("limit_m2", SPEED)]),
+            write(G3, G3, Effect::Setting, fields![wide(name::LIMIT_M1, SPEED), wide(name::LIMIT_M2, SPEED)]),
+            write(G4, G4, Effect::Setting, fields![narrow(name::LIMIT_M1, SPEED), narrow(name::LIMIT_M2, SPEED)]),
         ],
     ),
     late(
         number::READ_SPEED_ERROR_LIMITS,
-        "read_speed_error_limits",
         "read speed error limits",
         forms![
-            read(G3, G3, fields![wide("limit_m1", SPEED), wide("limit_m2", SPEED)]),
-            read(G4, G4, fields![narrow("limit_m1", SPEED), narrow("limit_m2", SPEED)]),
+            read(G3, G3, fields![wide(name::LIMIT_M1, SPEED), wide(name::LIMIT_M2, SPEED)]),
+            read(G4, G4, fields![narrow(name::LIMIT_M1, SPEED), narrow(name::LIMIT_M2, SPEED)]),
         ],
     ),
     late(
         number::READ_SPEED_ERRORS,
-        "read_speed_errors",
         "read speed errors",
         forms![
-            read(G3, G3, fields![error("error_m1", SPEED), error("error_m2", SPEED)]),
-            read(G4, G4, fields![narrow_error("error_m1", SPEED), narrow_error("error_m2", SPEED)]),
+            read(G3, G3, fields![error(name::ERROR_M1, SPEED), error(name::ERROR_M2, SPEED)]),
+            read(G4, G4, fields![narrow_error(name::ERROR_M1, SPEED), narrow_error(name::ERROR_M2, SPEED)]),
         ],
     ),
     late(
         number::SET_POSITION_ERROR_LIMITS,
-        "set_position_error_limits",
         "position error limits",
         forms![
-            write(G3, G3, Effect::Setting, fields![wide("limit_m1", POSITION), wide("limit_m2", POSITION)]),
-            write(G4, G4, Effect::Setting, fields![narrow("limit_m1", POSITION), narrow("limit_m2", POSITION)]),
+            write(G3, G3, Effect::Setting, fields![wide(name::LIMIT_M1, POSITION), wide(name::LIMIT_M2, POSITION)]),
+            write(G4, G4, Effect::Setting, fields![narrow(name::LIMIT_M1, POSITION), narrow(name::LIMIT_M2, POSITION)]),
         ],
     )
     .note("The vendor says that these limits act only where acceleration and deceleration are set."),
     late(
         number::READ_POSITION_ERROR_LIMITS,
-        "read_position_error_limits",
         "read position error limits",
         forms![
-            read(G3, G3, fields![wide("limit_m1", POSITION), wide("limit_m2", POSITION)]),
-            read(G4, G4, fields![narrow("limit_m1", POSITION), narrow("limit_m2", POSITION)]),
+            read(G3, G3, fields![wide(name::LIMIT_M1, POSITION), wide(name::LIMIT_M2, POSITION)]),
+            read(G4, G4, fields![narrow(name::LIMIT_M1, POSITION), narrow(name::LIMIT_M2, POSITION)]),
         ],
     ),
     late(
         number::READ_POSITION_ERRORS,
-        "read_position_errors",
         "read position errors",
         forms![
-            read(G3, G3, fields![error("error_m1", POSITION), error("error_m2", POSITION)]),
-            read(G4, G4, fields![narrow_error("error_m1", POSITION), narrow_error("error_m2", POSITION)]),
+            read(G3, G3, fields![error(name::ERROR_M1, POSITION), error(name::ERROR_M2, POSITION)]),
+            read(G4, G4, fields![narrow_error(name::ERROR_M1, POSITION), narrow_error(name::ERROR_M2, POSITION)]),
         ],
     ),
     late(
         number::SET_VOLTAGE_OFFSETS,
-        "set_voltage_offsets",
         "voltage offsets",
-        forms![write(G3, G4, Effect::Setting, fields![offset("main"), offset("logic")])],
+        forms![write(G3, G4, Effect::Setting, fields![offset(name::MAIN), offset(name::LOGIC)])],
     ),
     late(
         number::READ_VOLTAGE_OFFSETS,
-        "read_voltage_offsets",
         "read voltage offsets",
-        forms![read(G3, G4, fields![offset("main"), offset("logic")])],
+        forms![read(G3, G4, fields![offset(name::MAIN), offset(name::LOGIC)])],
     ),
     late(
         number::SET_CONTROL_LIMITS,
-        "set_control_limits",
         "control input limits",
         forms![write(G3, G3, Effect::Setting, CONTROL_LIMITS)],
     )
@@ -89,28 +81,26 @@ pub(super) const ROWS: &[Command] = &[
     .note(BLANKING),
     late(
         number::READ_CONTROL_LIMITS,
-        "read_control_limits",
         "read control input limits",
         forms![read(G3, G3, CONTROL_LIMITS)],
     )
     .simulated(CONTROL_INPUTS)
     .note(BLANKING),
-    manual(number::SET_CURRENT_LIMITS_M1, "set_current_limits_m1", "M1 current limits", SET_CURRENT)
+    manual(number::SET_CURRENT_LIMITS_M1, "M1 current limits", SET_CURRENT)
         .note("The manual prints command byte 134 and zeros for the minimum. From 2018 the minimum is sent as a positive magnitude."),
-    manual(number::SET_CURRENT_LIMITS_M2, "set_current_limits_m2", "M2 current limits", SET_CURRENT)
+    manual(number::SET_CURRENT_LIMITS_M2, "M2 current limits", SET_CURRENT)
         .note("From 2018 the minimum is sent as a positive magnitude."),
-    manual(number::READ_CURRENT_LIMITS_M1, "read_current_limits_m1", "read M1 current limits", READ_CURRENT),
-    manual(number::READ_CURRENT_LIMITS_M2, "read_current_limits_m2", "read M2 current limits", READ_CURRENT),
-    manual(number::RESET_ESTOP, "reset_estop", "reset E-stop", forms![write(G1, G4, Effect::Setting, &[])])
+    manual(number::READ_CURRENT_LIMITS_M1, "read M1 current limits", READ_CURRENT),
+    manual(number::READ_CURRENT_LIMITS_M2, "read M2 current limits", READ_CURRENT),
+    manual(number::RESET_ESTOP, "reset E-stop", forms![write(G1, G4, Effect::Setting, &[])])
         .note("Does nothing unless the reset is unlocked (201)."),
     manual(
         number::SET_ESTOP_LOCK,
-        "set_estop_lock",
         "E-stop reset lock",
         forms![write(G1, G4, Effect::Setting, fields![LOCK])],
     )
     .note("The manual prints neither argument nor CRC, and the reply of 202."),
-    manual(number::READ_ESTOP_LOCK, "read_estop_lock", "read E-stop reset lock", forms![read(G1, G4, fields![LOCK])]),
+    manual(number::READ_ESTOP_LOCK, "read E-stop reset lock", forms![read(G1, G4, fields![LOCK])]),
 ];
 
 const CONTROL_INPUTS: Simulated =
@@ -121,72 +111,76 @@ const BLANKING: &str =
 const SPEED: Unit = Unit::CountsPerSecond;
 const POSITION: Unit = Unit::Counts;
 
-const AUTO_OFFSET: Field =
-    byte("auto_offset", "automatic offset in tenths of a volt").scaled(Unit::Volts, scale::VOLTAGE_VOLTS, 1);
+const AUTO_OFFSET: Field = byte(name::AUTO_OFFSET, "automatic offset in tenths of a volt").scaled(
+    Unit::Volts,
+    scale::VOLTAGE_VOLTS,
+    1,
+);
 const SET_MAIN: &[Form] = forms![
-    write(G1, G3, Effect::Setting, fields![volts("min"), volts("max")]),
-    write(G4, G4, Effect::Setting, fields![volts("min"), volts("max"), AUTO_OFFSET]),
+    write(G1, G3, Effect::Setting, fields![volts(name::MIN), volts(name::MAX)]),
+    write(G4, G4, Effect::Setting, fields![volts(name::MIN), volts(name::MAX), AUTO_OFFSET]),
 ];
 const READ_MAIN: &[Form] = forms![
-    read(G1, G3, fields![volts("min"), volts("max")]),
-    read(G4, G4, fields![volts("min"), volts("max"), AUTO_OFFSET]),
+    read(G1, G3, fields![volts(name::MIN), volts(name::MAX)]),
+    read(G4, G4, fields![volts(name::MIN), volts(name::MAX), AUTO_OFFSET]),
 ];
-const SET_LOGIC: &[Form] = forms![write(G1, G4, Effect::Setting, fields![volts("min"), volts("max")])];
-const READ_LOGIC: &[Form] = forms![read(G1, G4, fields![volts("min"), volts("max")])];
+const SET_LOGIC: &[Form] =
+    forms![write(G1, G4, Effect::Setting, fields![volts(name::MIN), volts(name::MAX)])];
+const READ_LOGIC: &[Form] = forms![read(G1, G4, fields![volts(name::MIN), volts(name::MAX)])];
 
 const SET_CURRENT: &[Form] =
-    forms![write(G1, G4, Effect::Setting, fields![limit_amps("max"), limit_amps("min")])];
-const READ_CURRENT: &[Form] = forms![read(G1, G4, fields![limit_amps("max"), limit_amps("min")])];
+    forms![write(G1, G4, Effect::Setting, fields![limit_amps(name::MAX), limit_amps(name::MIN)])];
+const READ_CURRENT: &[Form] = forms![read(G1, G4, fields![limit_amps(name::MAX), limit_amps(name::MIN)])];
 
 const CONTROL_LIMITS: &[Field] = fields![
-    control_limit("s1_min"),
-    control_limit("s1_max"),
-    control_limit("s2_min"),
-    control_limit("s2_max")
+    control_limit(name::S1_MIN),
+    control_limit(name::S1_MAX),
+    control_limit(name::S2_MIN),
+    control_limit(name::S2_MAX)
 ];
 
 const LOCK: Field =
-    byte("lock", "0xAA lets software reset; 0x55 resets by itself (generation 4); else only hardware");
+    byte(name::LOCK, "0xAA lets software reset; 0x55 resets by itself (generation 4); else only hardware");
 
-const fn manual(number: u8, key: &'static str, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, key, title, MANUAL_ADVANCED, forms)
+const fn manual(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
+    Command::new(number, title, MANUAL_ADVANCED, forms)
 }
 
-const fn late(number: u8, key: &'static str, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, key, title, CLIENTS, forms)
+const fn late(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
+    Command::new(number, title, CLIENTS, forms)
 }
 
-const fn wide(name: &'static str, unit: Unit) -> Field {
-    Field::new(name, Kind::U32, "error at which the motor is stopped; 0 for none").unit(unit)
+const fn wide(name: impl Name, unit: Unit) -> Field {
+    field(name, Kind::U32, "error at which the motor is stopped; 0 for none").unit(unit)
 }
 
-const fn narrow(name: &'static str, unit: Unit) -> Field {
-    Field::new(name, Kind::U16, "error at which the motor is stopped; 0 for none").unit(unit)
+const fn narrow(name: impl Name, unit: Unit) -> Field {
+    field(name, Kind::U16, "error at which the motor is stopped; 0 for none").unit(unit)
 }
 
-const fn error(name: &'static str, unit: Unit) -> Field {
-    Field::new(name, Kind::I32, "how far the motor is from its setpoint").unit(unit)
+const fn error(name: impl Name, unit: Unit) -> Field {
+    field(name, Kind::I32, "how far the motor is from its setpoint").unit(unit)
 }
 
 /// Clients read two bytes without a sign.
-const fn narrow_error(name: &'static str, unit: Unit) -> Field {
-    Field::new(name, Kind::U16, "magnitude of how far the motor is from its setpoint").unit(unit)
+const fn narrow_error(name: impl Name, unit: Unit) -> Field {
+    field(name, Kind::U16, "magnitude of how far the motor is from its setpoint").unit(unit)
 }
 
-const fn offset(name: &'static str) -> Field {
-    Field::new(name, Kind::I8, "added to the measured voltage, in tenths of a volt")
+const fn offset(name: impl Name) -> Field {
+    field(name, Kind::I8, "added to the measured voltage, in tenths of a volt")
         .scaled(Unit::Volts, scale::VOLTAGE_VOLTS, 1)
         .range(-10, 10)
 }
 
-const fn control_limit(name: &'static str) -> Field {
-    Field::new(name, Kind::U16, "share of the output that an input may command").scaled(
+const fn control_limit(name: impl Name) -> Field {
+    field(name, Kind::U16, "share of the output that an input may command").scaled(
         Unit::Percent,
         100.0 / scale::DEFAULT_SPEED_RAW,
         2,
     )
 }
 
-const fn limit_amps(name: &'static str) -> Field {
-    Field::new(name, Kind::I32, "current in steps of 10 mA").scaled(Unit::Amps, scale::CURRENT_AMPS, 2)
+const fn limit_amps(name: impl Name) -> Field {
+    field(name, Kind::I32, "current in steps of 10 mA").scaled(Unit::Amps, scale::CURRENT_AMPS, 2)
 }

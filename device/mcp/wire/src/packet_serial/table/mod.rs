@@ -20,8 +20,11 @@ use brushwork_values::Field;
 pub static COMMANDS: &[Command] = &SORTED;
 
 /// The row of a command byte; `None` if no source knows the number.
-pub fn lookup(number: u8) -> Option<&'static Command> {
-    INDEX[usize::from(number)].and_then(|index| COMMANDS.get(usize::from(index)))
+pub const fn lookup(number: u8) -> Option<&'static Command> {
+    match INDEX[number as usize] {
+        Some(index) => Some(&SORTED[index as usize]),
+        None => None,
+    }
 }
 
 /// The row with this key.

@@ -1,150 +1,119 @@
 //! What drives motors: duty, speed, distance and position.
 
 use super::super::command::{Command, Effect, Form};
-use super::super::field::{accel, byte, distance, duty, duty_accel, position, speed};
+use super::super::field::{accel, byte, distance, duty, duty_accel, field, position, speed};
+use super::super::name::{self, Name};
 use super::super::{number, scale};
 use super::{CLIENTS, G1, G3, G4, MANUAL_MOTION, fields, forms, write};
 use brushwork_values::{Field, Kind, Unit};
 
 pub(super) const ROWS: &[Command] = &[
-    row(number::DUTY_M1, "duty_m1", "M1 duty", DUTY),
-    row(number::DUTY_M2, "duty_m2", "M2 duty", DUTY),
-    row(number::DUTY_BOTH, "duty_both", "duty", forms![drive(fields![duty("duty_m1"), duty("duty_m2")])]),
-    row(number::SPEED_M1, "speed_m1", "M1 speed", SPEED),
-    row(number::SPEED_M2, "speed_m2", "M2 speed", SPEED),
-    row(
-        number::SPEED_BOTH,
-        "speed_both",
-        "speed",
-        forms![drive(fields![speed("speed_m1"), speed("speed_m2")])],
-    ),
-    row(number::SPEED_ACCEL_M1, "speed_accel_m1", "M1 speed with acceleration", SPEED_ACCEL),
-    row(number::SPEED_ACCEL_M2, "speed_accel_m2", "M2 speed with acceleration", SPEED_ACCEL),
+    row(number::DUTY_M1, "M1 duty", DUTY),
+    row(number::DUTY_M2, "M2 duty", DUTY),
+    row(number::DUTY_BOTH, "duty", forms![drive(fields![duty(name::DUTY_M1), duty(name::DUTY_M2)])]),
+    row(number::SPEED_M1, "M1 speed", SPEED),
+    row(number::SPEED_M2, "M2 speed", SPEED),
+    row(number::SPEED_BOTH, "speed", forms![drive(fields![speed(name::SPEED_M1), speed(name::SPEED_M2)])]),
+    row(number::SPEED_ACCEL_M1, "M1 speed with acceleration", SPEED_ACCEL),
+    row(number::SPEED_ACCEL_M2, "M2 speed with acceleration", SPEED_ACCEL),
     row(
         number::SPEED_ACCEL_BOTH,
-        "speed_accel_both",
         "speed with acceleration",
-        forms![drive(fields![accel("accel"), speed("speed_m1"), speed("speed_m2")])],
+        forms![drive(fields![accel(name::ACCEL), speed(name::SPEED_M1), speed(name::SPEED_M2)])],
     ),
-    row(number::SPEED_DISTANCE_M1, "speed_distance_m1", "M1 distance", SPEED_DISTANCE),
-    row(number::SPEED_DISTANCE_M2, "speed_distance_m2", "M2 distance", SPEED_DISTANCE),
+    row(number::SPEED_DISTANCE_M1, "M1 distance", SPEED_DISTANCE),
+    row(number::SPEED_DISTANCE_M2, "M2 distance", SPEED_DISTANCE),
     row(
         number::SPEED_DISTANCE_BOTH,
-        "speed_distance_both",
         "distance",
         forms![travel(fields![
-            speed("speed_m1"),
-            distance("distance_m1"),
-            speed("speed_m2"),
-            distance("distance_m2"),
+            speed(name::SPEED_M1),
+            distance(name::DISTANCE_M1),
+            speed(name::SPEED_M2),
+            distance(name::DISTANCE_M2),
             BUFFER,
         ])],
     ),
-    row(
-        number::SPEED_ACCEL_DISTANCE_M1,
-        "speed_accel_distance_m1",
-        "M1 distance with acceleration",
-        SPEED_ACCEL_DISTANCE,
-    )
-    .note("The manual's copy at hand lacks the send line; as 45."),
-    row(
-        number::SPEED_ACCEL_DISTANCE_M2,
-        "speed_accel_distance_m2",
-        "M2 distance with acceleration",
-        SPEED_ACCEL_DISTANCE,
-    ),
+    row(number::SPEED_ACCEL_DISTANCE_M1, "M1 distance with acceleration", SPEED_ACCEL_DISTANCE)
+        .note("The manual's copy at hand lacks the send line; as 45."),
+    row(number::SPEED_ACCEL_DISTANCE_M2, "M2 distance with acceleration", SPEED_ACCEL_DISTANCE),
     row(
         number::SPEED_ACCEL_DISTANCE_BOTH,
-        "speed_accel_distance_both",
         "distance with acceleration",
         forms![travel(fields![
-            accel("accel"),
-            speed("speed_m1"),
-            distance("distance_m1"),
-            speed("speed_m2"),
-            distance("distance_m2"),
+            accel(name::ACCEL),
+            speed(name::SPEED_M1),
+            distance(name::DISTANCE_M1),
+            speed(name::SPEED_M2),
+            distance(name::DISTANCE_M2),
             BUFFER,
         ])],
     ),
     row(
         number::SPEED_ACCEL_EACH,
-        "speed_accel_each",
         "speed with acceleration each",
-        forms![drive(fields![accel("accel_m1"), speed("speed_m1"), accel("accel_m2"), speed("speed_m2")])],
+        forms![drive(fields![
+            accel(name::ACCEL_M1),
+            speed(name::SPEED_M1),
+            accel(name::ACCEL_M2),
+            speed(name::SPEED_M2)
+        ])],
     ),
     row(
         number::SPEED_ACCEL_DISTANCE_EACH,
-        "speed_accel_distance_each",
         "distance with acceleration each",
         forms![travel(fields![
-            accel("accel_m1"),
-            speed("speed_m1"),
-            distance("distance_m1"),
-            accel("accel_m2"),
-            speed("speed_m2"),
-            distance("distance_m2"),
+            accel(name::ACCEL_M1),
+            speed(name::SPEED_M1),
+            distance(name::DISTANCE_M1),
+            accel(name::ACCEL_M2),
+            speed(name::SPEED_M2),
+            distance(name::DISTANCE_M2),
             BUFFER,
         ])],
     ),
-    row(number::DUTY_ACCEL_M1, "duty_accel_m1", "M1 duty with acceleration", DUTY_ACCEL).note(FOUR_BYTES),
-    row(number::DUTY_ACCEL_M2, "duty_accel_m2", "M2 duty with acceleration", DUTY_ACCEL).note(FOUR_BYTES),
+    row(number::DUTY_ACCEL_M1, "M1 duty with acceleration", DUTY_ACCEL).note(FOUR_BYTES),
+    row(number::DUTY_ACCEL_M2, "M2 duty with acceleration", DUTY_ACCEL).note(FOUR_BYTES),
     row(
         number::DUTY_ACCEL_BOTH,
-        "duty_accel_both",
         "duty with acceleration",
         forms![drive(fields![
-            duty("duty_m1"),
-            duty_accel("accel_m1"),
-            duty("duty_m2"),
-            duty_accel("accel_m2")
+            duty(name::DUTY_M1),
+            duty_accel(name::ACCEL_M1),
+            duty(name::DUTY_M2),
+            duty_accel(name::ACCEL_M2)
         ])],
     )
     .note("The manual's copy at hand lacks the layout; all clients send this one."),
-    row(number::POSITION_PROFILE_M1, "position_profile_m1", "M1 position with profile", PROFILE)
-        .note(UNSIGNED_SPEED),
-    row(number::POSITION_PROFILE_M2, "position_profile_m2", "M2 position with profile", PROFILE)
-        .note(UNSIGNED_SPEED),
-    row(number::POSITION_PROFILE_BOTH, "position_profile_both", "position with profile", PROFILE_BOTH)
-        .note(UNSIGNED_SPEED),
-    late(
-        number::POSITION_M1,
-        "position_m1",
-        "M1 position",
-        forms![queue(fields![position("position"), BUFFER])],
-    ),
-    late(
-        number::POSITION_M2,
-        "position_m2",
-        "M2 position",
-        forms![queue(fields![position("position"), BUFFER])],
-    ),
+    row(number::POSITION_PROFILE_M1, "M1 position with profile", PROFILE).note(UNSIGNED_SPEED),
+    row(number::POSITION_PROFILE_M2, "M2 position with profile", PROFILE).note(UNSIGNED_SPEED),
+    row(number::POSITION_PROFILE_BOTH, "position with profile", PROFILE_BOTH).note(UNSIGNED_SPEED),
+    late(number::POSITION_M1, "M1 position", forms![queue(fields![position(name::POSITION), BUFFER])]),
+    late(number::POSITION_M2, "M2 position", forms![queue(fields![position(name::POSITION), BUFFER])]),
     late(
         number::POSITION_BOTH,
-        "position_both",
         "position",
-        forms![queue(fields![position("position_m1"), position("position_m2"), BUFFER])],
+        forms![queue(fields![position(name::POSITION_M1), position(name::POSITION_M2), BUFFER])],
     ),
-    late(number::SPEED_POSITION_M1, "speed_position_m1", "M1 position with speed", SPEED_POSITION),
-    late(number::SPEED_POSITION_M2, "speed_position_m2", "M2 position with speed", SPEED_POSITION),
+    late(number::SPEED_POSITION_M1, "M1 position with speed", SPEED_POSITION),
+    late(number::SPEED_POSITION_M2, "M2 position with speed", SPEED_POSITION),
     late(
         number::SPEED_POSITION_BOTH,
-        "speed_position_both",
         "position with speed",
         forms![queue(fields![
-            travel_speed("speed_m1"),
-            position("position_m1"),
-            travel_speed("speed_m2"),
-            position("position_m2"),
+            travel_speed(name::SPEED_M1),
+            position(name::POSITION_M1),
+            travel_speed(name::SPEED_M2),
+            position(name::POSITION_M2),
             BUFFER,
         ])],
     ),
-    late(number::PERCENT_POSITION_M1, "percent_position_m1", "M1 position in percent", PERCENT),
-    late(number::PERCENT_POSITION_M2, "percent_position_m2", "M2 position in percent", PERCENT),
+    late(number::PERCENT_POSITION_M1, "M1 position in percent", PERCENT),
+    late(number::PERCENT_POSITION_M2, "M2 position in percent", PERCENT),
     late(
         number::PERCENT_POSITION_BOTH,
-        "percent_position_both",
         "position in percent",
-        forms![queue(fields![percent("position_m1"), percent("position_m2"), BUFFER])],
+        forms![queue(fields![percent(name::POSITION_M1), percent(name::POSITION_M2), BUFFER])],
     ),
 ];
 
@@ -153,47 +122,48 @@ const FOUR_BYTES: &str =
 const UNSIGNED_SPEED: &str = "The speed is a magnitude: the position decides the direction. A negative speed is met in \
      the field and taken without its sign.";
 
-const DUTY: &[Form] = forms![drive(fields![duty("duty")])];
-const SPEED: &[Form] = forms![drive(fields![speed("speed")])];
-const SPEED_ACCEL: &[Form] = forms![drive(fields![accel("accel"), speed("speed")])];
-const SPEED_DISTANCE: &[Form] = forms![travel(fields![speed("speed"), distance("distance"), BUFFER])];
+const DUTY: &[Form] = forms![drive(fields![duty(name::DUTY)])];
+const SPEED: &[Form] = forms![drive(fields![speed(name::SPEED)])];
+const SPEED_ACCEL: &[Form] = forms![drive(fields![accel(name::ACCEL), speed(name::SPEED)])];
+const SPEED_DISTANCE: &[Form] = forms![travel(fields![speed(name::SPEED), distance(name::DISTANCE), BUFFER])];
 const SPEED_ACCEL_DISTANCE: &[Form] =
-    forms![travel(fields![accel("accel"), speed("speed"), distance("distance"), BUFFER])];
-const DUTY_ACCEL: &[Form] = forms![drive(fields![duty("duty"), duty_accel("accel")])];
+    forms![travel(fields![accel(name::ACCEL), speed(name::SPEED), distance(name::DISTANCE), BUFFER])];
+const DUTY_ACCEL: &[Form] = forms![drive(fields![duty(name::DUTY), duty_accel(name::ACCEL)])];
 const PROFILE: &[Form] = forms![write(
     G1,
     G4,
     Effect::Buffered,
-    fields![accel("accel"), speed("speed"), accel("decel"), position("position"), BUFFER]
+    fields![accel(name::ACCEL), speed(name::SPEED), accel(name::DECEL), position(name::POSITION), BUFFER]
 )];
 const PROFILE_BOTH: &[Form] = forms![write(
     G1,
     G4,
     Effect::Buffered,
     fields![
-        accel("accel_m1"),
-        speed("speed_m1"),
-        accel("decel_m1"),
-        position("position_m1"),
-        accel("accel_m2"),
-        speed("speed_m2"),
-        accel("decel_m2"),
-        position("position_m2"),
+        accel(name::ACCEL_M1),
+        speed(name::SPEED_M1),
+        accel(name::DECEL_M1),
+        position(name::POSITION_M1),
+        accel(name::ACCEL_M2),
+        speed(name::SPEED_M2),
+        accel(name::DECEL_M2),
+        position(name::POSITION_M2),
         BUFFER,
     ]
 )];
-const SPEED_POSITION: &[Form] = forms![queue(fields![travel_speed("speed"), position("position"), BUFFER])];
-const PERCENT: &[Form] = forms![queue(fields![percent("position"), BUFFER])];
+const SPEED_POSITION: &[Form] =
+    forms![queue(fields![travel_speed(name::SPEED), position(name::POSITION), BUFFER])];
+const PERCENT: &[Form] = forms![queue(fields![percent(name::POSITION), BUFFER])];
 
 const BUFFER: Field =
-    byte("buffer", "0 queues the command, 1 drops what runs and waits and starts it at once").range(0, 1);
+    byte(name::BUFFER, "0 queues the command, 1 drops what runs and waits and starts it at once").range(0, 1);
 
-const fn row(number: u8, key: &'static str, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, key, title, MANUAL_MOTION, forms)
+const fn row(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
+    Command::new(number, title, MANUAL_MOTION, forms)
 }
 
-const fn late(number: u8, key: &'static str, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, key, title, CLIENTS, forms)
+const fn late(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
+    Command::new(number, title, CLIENTS, forms)
 }
 
 const fn drive(request: &'static [Field]) -> Form {
@@ -208,12 +178,12 @@ const fn queue(request: &'static [Field]) -> Form {
     write(G3, G4, Effect::Buffered, request)
 }
 
-const fn travel_speed(name: &'static str) -> Field {
-    Field::new(name, Kind::U32, "speed on the way").unit(Unit::CountsPerSecond)
+const fn travel_speed(name: impl Name) -> Field {
+    field(name, Kind::U32, "speed on the way").unit(Unit::CountsPerSecond)
 }
 
-const fn percent(name: &'static str) -> Field {
-    Field::new(name, Kind::I16, "place between the least and the greatest position of the position PID")
+const fn percent(name: impl Name) -> Field {
+    field(name, Kind::I16, "place between the least and the greatest position of the position PID")
         .scaled(Unit::Percent, scale::DUTY_PERCENT, 2)
         .range(-scale::FULL_DUTY_RAW, scale::FULL_DUTY_RAW)
 }

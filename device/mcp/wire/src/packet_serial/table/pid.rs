@@ -1,75 +1,38 @@
 //! Velocity and position PID, default accelerations and speeds, inductance and resistance.
 
 use super::super::command::{Command, Effect, Form, Simulated};
-use super::super::field::{duty_accel, position};
+use super::super::field::{duty_accel, field, position};
+use super::super::name::{self, Name};
 use super::super::{number, scale};
 use super::{CLIENTS, G1, G2, G3, G4, MANUAL_ADVANCED, MANUAL_MOTION, fields, forms, read, write};
 use brushwork_values::{Field, Kind, Unit};
 
 pub(super) const ROWS: &[Command] = &[
-    row(number::SET_VELOCITY_PID_M1, "set_velocity_pid_m1", "M1 velocity PID", SET_VELOCITY),
-    row(number::SET_VELOCITY_PID_M2, "set_velocity_pid_m2", "M2 velocity PID", SET_VELOCITY),
-    row(number::READ_VELOCITY_PID_M1, "read_velocity_pid_m1", "read M1 velocity PID", READ_VELOCITY)
-        .note(ORDER),
-    row(number::READ_VELOCITY_PID_M2, "read_velocity_pid_m2", "read M2 velocity PID", READ_VELOCITY)
-        .note(ORDER),
-    row(number::SET_POSITION_PID_M1, "set_position_pid_m1", "M1 position PID", SET_POSITION).note(FACTOR),
-    row(number::SET_POSITION_PID_M2, "set_position_pid_m2", "M2 position PID", SET_POSITION).note(FACTOR),
-    row(number::READ_POSITION_PID_M1, "read_position_pid_m1", "read M1 position PID", READ_POSITION)
-        .note(NO_LINE),
-    row(number::READ_POSITION_PID_M2, "read_position_pid_m2", "read M2 position PID", READ_POSITION)
-        .note(NO_LINE),
-    row(number::SET_DEFAULT_ACCEL_M1, "set_default_accel_m1", "M1 default acceleration", SET_ACCEL),
-    row(number::SET_DEFAULT_ACCEL_M2, "set_default_accel_m2", "M2 default acceleration", SET_ACCEL),
-    Command::new(
-        number::SET_DEFAULT_SPEED_M1,
-        "set_default_speed_m1",
-        "M1 default speed",
-        CLIENTS,
-        SET_SPEED,
-    ),
-    Command::new(
-        number::SET_DEFAULT_SPEED_M2,
-        "set_default_speed_m2",
-        "M2 default speed",
-        CLIENTS,
-        SET_SPEED,
-    ),
+    row(number::SET_VELOCITY_PID_M1, "M1 velocity PID", SET_VELOCITY),
+    row(number::SET_VELOCITY_PID_M2, "M2 velocity PID", SET_VELOCITY),
+    row(number::READ_VELOCITY_PID_M1, "read M1 velocity PID", READ_VELOCITY).note(ORDER),
+    row(number::READ_VELOCITY_PID_M2, "read M2 velocity PID", READ_VELOCITY).note(ORDER),
+    row(number::SET_POSITION_PID_M1, "M1 position PID", SET_POSITION).note(FACTOR),
+    row(number::SET_POSITION_PID_M2, "M2 position PID", SET_POSITION).note(FACTOR),
+    row(number::READ_POSITION_PID_M1, "read M1 position PID", READ_POSITION).note(NO_LINE),
+    row(number::READ_POSITION_PID_M2, "read M2 position PID", READ_POSITION).note(NO_LINE),
+    row(number::SET_DEFAULT_ACCEL_M1, "M1 default acceleration", SET_ACCEL),
+    row(number::SET_DEFAULT_ACCEL_M2, "M2 default acceleration", SET_ACCEL),
+    Command::new(number::SET_DEFAULT_SPEED_M1, "M1 default speed", CLIENTS, SET_SPEED),
+    Command::new(number::SET_DEFAULT_SPEED_M2, "M2 default speed", CLIENTS, SET_SPEED),
     Command::new(
         number::READ_DEFAULT_SPEEDS,
-        "read_default_speeds",
         "read default speeds",
         CLIENTS,
-        forms![read(G3, G4, fields![default_speed("speed_m1"), default_speed("speed_m2")])],
+        forms![read(G3, G4, fields![default_speed(name::SPEED_M1), default_speed(name::SPEED_M2)])],
     ),
-    row(number::READ_DEFAULT_ACCELS, "read_default_accels", "read default accelerations", READ_ACCELS),
-    torque(
-        number::SET_INDUCTANCE_RESISTANCE_M1,
-        "set_inductance_resistance_m1",
-        "M1 inductance and resistance",
-        SET_LR,
-    ),
-    torque(
-        number::SET_INDUCTANCE_RESISTANCE_M2,
-        "set_inductance_resistance_m2",
-        "M2 inductance and resistance",
-        SET_LR,
-    ),
-    torque(
-        number::READ_INDUCTANCE_RESISTANCE_M1,
-        "read_inductance_resistance_m1",
-        "read M1 inductance and resistance",
-        READ_LR,
-    ),
-    torque(
-        number::READ_INDUCTANCE_RESISTANCE_M2,
-        "read_inductance_resistance_m2",
-        "read M2 inductance and resistance",
-        READ_LR,
-    ),
+    row(number::READ_DEFAULT_ACCELS, "read default accelerations", READ_ACCELS),
+    torque(number::SET_INDUCTANCE_RESISTANCE_M1, "M1 inductance and resistance", SET_LR),
+    torque(number::SET_INDUCTANCE_RESISTANCE_M2, "M2 inductance and resistance", SET_LR),
+    torque(number::READ_INDUCTANCE_RESISTANCE_M1, "read M1 inductance and resistance", READ_LR),
+    torque(number::READ_INDUCTANCE_RESISTANCE_M2, "read M2 inductance and resistance", READ_LR),
     Command::new(
         number::CALIBRATE_INDUCTANCE_RESISTANCE,
-        "calibrate_inductance_resistance",
         "calibrate inductance and resistance",
         CLIENTS,
         forms![write(G1, G3, Effect::RelativeMotion, &[])],
@@ -86,21 +49,31 @@ const SET_VELOCITY: &[Form] = forms![write(
     G1,
     G4,
     Effect::Setting,
-    fields![velocity_gain("d", "D", 3), velocity_gain("p", "P", 1), velocity_gain("i", "I", 2), QPPS]
+    fields![
+        velocity_gain(name::D, "D", 3),
+        velocity_gain(name::P, "P", 1),
+        velocity_gain(name::I, "I", 2),
+        QPPS
+    ]
 )];
 const READ_VELOCITY: &[Form] = forms![read(
     G1,
     G4,
-    fields![velocity_gain("p", "P", 1), velocity_gain("i", "I", 2), velocity_gain("d", "D", 3), QPPS]
+    fields![
+        velocity_gain(name::P, "P", 1),
+        velocity_gain(name::I, "I", 2),
+        velocity_gain(name::D, "D", 3),
+        QPPS
+    ]
 )];
 const SET_POSITION: &[Form] = forms![write(
     G1,
     G4,
     Effect::Setting,
     fields![
-        position_gain("d", "D", 3),
-        position_gain("p", "P", 1),
-        position_gain("i", "I", 2),
+        position_gain(name::D, "D", 3),
+        position_gain(name::P, "P", 1),
+        position_gain(name::I, "I", 2),
         MAX_I,
         DEADZONE,
         MIN,
@@ -111,9 +84,9 @@ const READ_POSITION: &[Form] = forms![read(
     G1,
     G4,
     fields![
-        position_gain("p", "P", 1),
-        position_gain("i", "I", 2),
-        position_gain("d", "D", 3),
+        position_gain(name::P, "P", 1),
+        position_gain(name::I, "I", 2),
+        position_gain(name::D, "D", 3),
         MAX_I,
         DEADZONE,
         MIN,
@@ -121,66 +94,66 @@ const READ_POSITION: &[Form] = forms![read(
     ]
 )];
 const SET_ACCEL: &[Form] = forms![
-    write(G1, G1, Effect::Setting, fields![duty_accel("accel")]),
-    write(G2, G4, Effect::Setting, fields![duty_accel("accel"), duty_accel("decel")]),
+    write(G1, G1, Effect::Setting, fields![duty_accel(name::ACCEL)]),
+    write(G2, G4, Effect::Setting, fields![duty_accel(name::ACCEL), duty_accel(name::DECEL)]),
 ];
 const READ_ACCELS: &[Form] = forms![
-    read(G1, G1, fields![duty_accel("accel_m1"), duty_accel("accel_m2")]),
+    read(G1, G1, fields![duty_accel(name::ACCEL_M1), duty_accel(name::ACCEL_M2)]),
     read(
         G2,
         G4,
         fields![
-            duty_accel("accel_m1"),
-            duty_accel("decel_m1"),
-            duty_accel("accel_m2"),
-            duty_accel("decel_m2")
+            duty_accel(name::ACCEL_M1),
+            duty_accel(name::DECEL_M1),
+            duty_accel(name::ACCEL_M2),
+            duty_accel(name::DECEL_M2)
         ]
     ),
 ];
-const SET_SPEED: &[Form] = forms![write(G3, G4, Effect::Setting, fields![default_speed("speed")])];
+const SET_SPEED: &[Form] = forms![write(G3, G4, Effect::Setting, fields![default_speed(name::SPEED)])];
 const SET_LR: &[Form] = forms![write(G1, G4, Effect::Setting, fields![INDUCTANCE, RESISTANCE])];
 const READ_LR: &[Form] = forms![read(G1, G4, fields![INDUCTANCE, RESISTANCE])];
 
 const QPPS: Field =
-    Field::new("qpps", Kind::U32, "speed at full duty in counts per second; the feed-forward term")
+    field(name::QPPS, Kind::U32, "speed at full duty in counts per second; the feed-forward term")
         .label("QPPS");
-const MAX_I: Field = Field::new("max_i", Kind::U32, "greatest wind-up of the integral").label("max I");
+const MAX_I: Field = field(name::MAX_I, Kind::U32, "greatest wind-up of the integral").label("max I");
 const DEADZONE: Field =
-    Field::new("deadzone", Kind::U32, "distance from the setpoint that counts as there").unit(Unit::Counts);
-const MIN: Field = position("min");
-const MAX: Field = position("max");
+    field(name::DEADZONE, Kind::U32, "distance from the setpoint that counts as there").unit(Unit::Counts);
+const MIN: Field = position(name::MIN);
+const MAX: Field = position(name::MAX);
 const INDUCTANCE: Field =
-    Field::new("inductance", Kind::U32, "of the armature; with the resistance selects torque control")
+    field(name::INDUCTANCE, Kind::U32, "of the armature; with the resistance selects torque control")
         .scaled(Unit::Henries, 1.0 / scale::INDUCTANCE_RESISTANCE, 7)
         .label("L");
 const RESISTANCE: Field =
-    Field::new("resistance", Kind::U32, "of the armature; with the inductance selects torque control")
+    field(name::RESISTANCE, Kind::U32, "of the armature; with the inductance selects torque control")
         .scaled(Unit::Ohms, 1.0 / scale::INDUCTANCE_RESISTANCE, 6)
         .label("R");
 
-const fn row(number: u8, key: &'static str, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, key, title, MANUAL_MOTION, forms)
+const fn row(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
+    Command::new(number, title, MANUAL_MOTION, forms)
 }
 
-const fn torque(number: u8, key: &'static str, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, key, title, MANUAL_ADVANCED, forms)
+const fn torque(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
+    Command::new(number, title, MANUAL_ADVANCED, forms)
         .note("L and R times 2^24. The vendor's Arduino library of 2025 sends floats and calls that a guess.")
 }
 
-const fn velocity_gain(name: &'static str, label: &'static str, rank: u8) -> Field {
+const fn velocity_gain(name: impl Name, label: &'static str, rank: u8) -> Field {
     gain(name, label, rank, scale::VELOCITY_GAIN, "gain times 65536")
 }
 
-const fn position_gain(name: &'static str, label: &'static str, rank: u8) -> Field {
+const fn position_gain(name: impl Name, label: &'static str, rank: u8) -> Field {
     gain(name, label, rank, scale::POSITION_GAIN, "gain times 1024")
 }
 
-const fn gain(name: &'static str, label: &'static str, rank: u8, one: f64, doc: &'static str) -> Field {
-    Field::new(name, Kind::U32, doc).scaled(Unit::Gain, 1.0 / one, 5).label(label).rank(rank)
+const fn gain(name: impl Name, label: &'static str, rank: u8, one: f64, doc: &'static str) -> Field {
+    field(name, Kind::U32, doc).scaled(Unit::Gain, 1.0 / one, 5).label(label).rank(rank)
 }
 
-const fn default_speed(name: &'static str) -> Field {
-    Field::new(name, Kind::U16, "speed used where a command gives none").scaled(
+const fn default_speed(name: impl Name) -> Field {
+    field(name, Kind::U16, "speed used where a command gives none").scaled(
         Unit::Percent,
         100.0 / scale::DEFAULT_SPEED_RAW,
         2,

@@ -1,7 +1,8 @@
 //! Scripts and the firmware loader. The format of a compiled script is not public.
 
 use super::super::command::{ClientUse, Command, Effect, Form, Reply, Simulated};
-use super::super::field::byte;
+use super::super::field::{byte, field};
+use super::super::name;
 use super::super::number;
 use super::{CLIENTS, G1, G4, MANUAL_ADVANCED, fields, forms, read, write, write_for};
 use crate::models::Family;
@@ -10,28 +11,25 @@ use brushwork_values::{Field, Kind, Unit};
 pub(super) const ROWS: &[Command] = &[
     manual(
         number::SET_SCRIPT_AUTORUN,
-        "set_script_autorun",
         "script autorun delay",
         forms![write(G1, G4, Effect::Setting, fields![DELAY])],
     )
     .note("A client of 2025 refuses to send 1 to 99."),
     manual(
         number::READ_SCRIPT_AUTORUN,
-        "read_script_autorun",
         "read script autorun delay",
         forms![read(G1, G4, fields![DELAY])],
     ),
-    manual(number::START_SCRIPT, "start_script", "start script", forms![write(G1, G4, Effect::Script, &[])]),
-    manual(number::STOP_SCRIPT, "stop_script", "stop script", forms![write(G1, G4, Effect::Stop, &[])]),
-    Command::new(number::ERASE_SCRIPT, "erase_script", "erase script", CLIENTS, ERASE).only(Family::Mcp),
-    Command::new(number::WRITE_SCRIPT, "write_script", "write script", CLIENTS, WRITE).only(Family::Mcp),
-    Command::new(number::READ_SCRIPT, "read_script", "read script", CLIENTS, &[])
+    manual(number::START_SCRIPT, "start script", forms![write(G1, G4, Effect::Script, &[])]),
+    manual(number::STOP_SCRIPT, "stop script", forms![write(G1, G4, Effect::Stop, &[])]),
+    Command::new(number::ERASE_SCRIPT, "erase script", CLIENTS, ERASE).only(Family::Mcp),
+    Command::new(number::WRITE_SCRIPT, "write script", CLIENTS, WRITE).only(Family::Mcp),
+    Command::new(number::READ_SCRIPT, "read script", CLIENTS, &[])
         .simulated(Simulated::Silent("only the number is public, not the layout"))
         .client(ClientUse::Never("only the number is public, not the layout"))
         .only(Family::Mcp),
     Command::new(
         number::ENTER_LOADER,
-        "enter_loader",
         "enter firmware loader",
         CLIENTS,
         forms![write(G1, G4, Effect::Loader, LOADER)],
@@ -42,17 +40,18 @@ pub(super) const ROWS: &[Command] = &[
     ),
 ];
 
-const DELAY: Field = Field::new("delay", Kind::U32, "time after a reset; below 100 the script is not run")
+const DELAY: Field = field(name::DELAY, Kind::U32, "time after a reset; below 100 the script is not run")
     .unit(Unit::Milliseconds);
 
 /// The reply's second byte comes when the work is done; what it says is not public.
-const STATUS: &[Field] = fields![byte("status", "comes when the work is done; its meaning is not public")];
+const STATUS: &[Field] =
+    fields![byte(name::STATUS, "comes when the work is done; its meaning is not public")];
 
 const ERASE: &[Form] = forms![write_for(
     G1,
     G4,
     Effect::Memory,
-    fields![Field::new("key", Kind::U16, "the key 55AA").unit(Unit::Bits).fixed(0x55AA)],
+    fields![field(name::KEY, Kind::U16, "the key 55AA").unit(Unit::Bits).fixed(0x55AA)],
     Reply::AckThenStatus(STATUS)
 )];
 
@@ -61,18 +60,18 @@ const WRITE: &[Form] = forms![write_for(
     G4,
     Effect::Memory,
     fields![
-        Field::new("address", Kind::U24, "place in the script memory").unit(Unit::Bits),
-        Field::new("data", Kind::Bytes(16), "four words of the compiled file, the bytes of each reversed"),
+        field(name::ADDRESS, Kind::U24, "place in the script memory").unit(Unit::Bits),
+        field(name::DATA, Kind::Bytes(16), "four words of the compiled file, the bytes of each reversed"),
     ],
     Reply::AckThenStatus(STATUS)
 )];
 
 const LOADER: &[Field] = fields![
-    byte("mark", "always FF").unit(Unit::Bits).fixed(0xFF),
-    Field::new("key", Kind::U32, "the key A5A51234").unit(Unit::Bits).fixed(0xA5A5_1234),
+    byte(name::MARK, "always FF").unit(Unit::Bits).fixed(0xFF),
+    field(name::KEY, Kind::U32, "the key A5A51234").unit(Unit::Bits).fixed(0xA5A5_1234),
 ];
 
-const fn manual(number: u8, key: &'static str, title: &'static str, forms: &'static [Form]) -> Command {
+const fn manual(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
     // MCL is the MCP's (MCP manual 3.0.1): no RoboClaw manual has these numbers.
-    Command::new(number, key, title, MANUAL_ADVANCED, forms).only(Family::Mcp)
+    Command::new(number, title, MANUAL_ADVANCED, forms).only(Family::Mcp)
 }

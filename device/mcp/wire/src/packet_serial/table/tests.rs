@@ -4,7 +4,8 @@ use std::collections::HashSet;
 
 use super::super::command::{ClientUse, Command, Direction, Effect, Form, Reply};
 use super::super::identity::Generation;
-use super::super::number;
+use super::super::typed::layout_of;
+use super::super::{name, number};
 use super::{COMMANDS, lookup, lookup_key};
 use brushwork_values::{Field, Kind, width_of};
 
@@ -87,6 +88,28 @@ fn names_are_snake_case_and_unique_in_their_layout() {
             assert!(!field.doc.is_empty(), "{}: {}", command.key, field.name);
         }
     }
+}
+
+#[test]
+fn the_names_that_the_compiler_knows_are_those_of_the_table() {
+    let used: HashSet<&str> = layouts().flat_map(|(_, fields)| fields).map(|field| field.name).collect();
+    assert_eq!(name::ALL.iter().copied().collect::<HashSet<_>>(), used);
+}
+
+#[test]
+fn commands_of_one_layout_have_the_same_fields_and_the_motors_share_theirs() {
+    for number in COMMANDS.iter().map(|row| row.number) {
+        let first = layout_of(number);
+        let names = |number| {
+            let forms = lookup(number).expect("in the table").forms.iter();
+            let of = |fields: &[Field]| fields.iter().map(|field| field.name).collect::<Vec<_>>();
+            forms
+                .map(|form| (form.first, form.last, of(form.request), of(form.reply.fields())))
+                .collect::<Vec<_>>()
+        };
+        assert!(first <= number && names(first) == names(number), "{first} and {number}");
+    }
+    assert_eq!(layout_of(number::READ_POSITION_PID_M2), number::READ_POSITION_PID_M1);
 }
 
 #[test]

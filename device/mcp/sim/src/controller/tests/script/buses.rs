@@ -2,7 +2,7 @@
 
 use super::super::support::Bench;
 use super::{ms, run};
-use brushwork_mcp_wire::packet_serial::{Generation, number};
+use brushwork_mcp_wire::packet_serial::{Generation, commands};
 use brushwork_plant::machine::StreamIndex;
 use brushwork_plant::world::{I2cDevice, WorldAction};
 
@@ -13,7 +13,7 @@ const WHO_AM_I: &str = "temp var long\nmain\npause 10\ni2cout error,10,[0xd0,0x7
 /// Starts a script with UART1 disabled, which makes its pins the I2C bus.
 fn on_the_bus(text: &str) -> Bench {
     let mut bench = Bench::new(Generation::Gen2);
-    bench.ask(number::SET_STREAM, &[2, 2, 115_200, 1000]);
+    bench.ask(commands::SET_STREAM, &[2, 2, 115_200, 1000]);
     run(&mut bench, text);
     bench
 }

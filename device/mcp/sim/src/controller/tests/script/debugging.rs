@@ -2,7 +2,7 @@
 
 use super::super::support::Bench;
 use super::{USB_TO_SCRIPTS, ms, start_bytes};
-use brushwork_mcp_wire::packet_serial::{Generation, number};
+use brushwork_mcp_wire::packet_serial::{Generation, commands, name};
 use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::world::ScriptRun;
 use brushwork_plant::world::WorldAction;
@@ -25,7 +25,7 @@ fn debugged(text: &str, requests: Vec<Request>) -> Bench {
     bench.wait(ms(10));
     ask(&mut bench, Request::Attach(true));
     requests.into_iter().for_each(|request| drop(ask(&mut bench, request)));
-    bench.ask(number::START_SCRIPT, &[]);
+    bench.ask(commands::START_SCRIPT, &[]);
     bench
 }
 
@@ -68,7 +68,7 @@ fn a_frozen_world_stands_in_mid_motion_and_answers_and_goes_on_where_it_stood() 
     assert_eq!(position(&bench), at);
     assert_eq!(bench.unit().view().axes, status.axes);
     assert_eq!(look(&mut bench).now, view.now, "its clock stands too");
-    let battery = bench.read(number::READ_MAIN_BATTERY, "main_battery");
+    let battery = bench.read(commands::READ_MAIN_BATTERY, name::MAIN_BATTERY);
     assert!(battery > 100, "it answers: {battery}");
     ask(&mut bench, Request::Breakpoints(Vec::new()));
     ask(&mut bench, Request::Continue);
@@ -93,14 +93,14 @@ fn stopping_a_paused_script_lets_the_world_go_on_and_says_so() {
     let mut bench = debugged(DRIVER, vec![breakpoints, Request::FreezeWorld(true)]);
     bench.wait(ms(100));
     assert!(look(&mut bench).world_frozen);
-    bench.ask(number::STOP_SCRIPT, &[]);
+    bench.ask(commands::STOP_SCRIPT, &[]);
     let view = look(&mut bench);
     assert_eq!(view.reason, Reason::Stopped(StopCause::Command));
     assert!(!view.is_paused && !view.is_running && !view.world_frozen);
     let at = look(&mut bench).now;
     bench.wait(ms(100));
     assert_eq!(look(&mut bench).now, at + ms(100));
-    bench.ask(number::START_SCRIPT, &[]);
+    bench.ask(commands::START_SCRIPT, &[]);
     bench.wait(ms(20));
     assert!(
         matches!(look(&mut bench).reason, Reason::Breakpoint { hits: 1, .. }),
@@ -118,7 +118,7 @@ fn a_debugged_script_sends_the_same_at_the_same_times_as_a_free_one() {
         if attach {
             ask(&mut bench, Request::Attach(true));
         }
-        bench.ask(number::SET_STREAM, &USB_TO_SCRIPTS);
+        bench.ask(commands::SET_STREAM, &USB_TO_SCRIPTS);
         bench.bus.receive(StreamIndex::Uart0, &start_bytes());
         bench.wait(ms(300));
         (bench.said(StreamIndex::Usb), look(&mut bench).executed)
@@ -162,7 +162,7 @@ fn breakpoints_outlive_a_power_cycle_and_the_loss_is_named() {
     assert_eq!((view.reason, view.code), (Reason::Stopped(StopCause::PowerLost), 0));
     bench.apply(&WorldAction::Power { on: true });
     bench.wait(ms(50));
-    bench.ask(number::START_SCRIPT, &[]);
+    bench.ask(commands::START_SCRIPT, &[]);
     bench.wait(ms(50));
     assert!(matches!(look(&mut bench).reason, Reason::Breakpoint { line: 4, .. }));
 }
@@ -174,7 +174,7 @@ fn a_new_image_ends_a_paused_script() {
     bench.install("end\n");
     let view = look(&mut bench);
     assert_eq!((view.reason, view.is_paused), (Reason::Stopped(StopCause::NewImage), false));
-    bench.ask(number::START_SCRIPT, &[]);
+    bench.ask(commands::START_SCRIPT, &[]);
     bench.wait(ms(50));
     assert_eq!(look(&mut bench).reason, Reason::Ended);
 }
@@ -189,7 +189,7 @@ fn a_machine_that_hurries_wants_real_time_where_a_debugged_script_stands_or_has_
     ask(&mut bench, Request::Continue);
     ask(&mut bench, Request::Breakpoints(Vec::new()));
     assert!(!bench.bus.wants_real_time());
-    bench.ask(number::STOP_SCRIPT, &[]);
+    bench.ask(commands::STOP_SCRIPT, &[]);
     assert!(bench.bus.wants_real_time());
     ask(&mut bench, Request::Attach(false));
     assert!(!bench.bus.wants_real_time(), "nobody looks");

@@ -2,7 +2,7 @@
 
 use super::super::support::Bench;
 use super::{ms, running, start_bytes};
-use brushwork_mcp_wire::packet_serial::{Generation, Request, number};
+use brushwork_mcp_wire::packet_serial::{Generation, Request, commands, name, number};
 use brushwork_mcp_wire::script_image;
 use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::world::{Content, ScriptRun};
@@ -22,14 +22,14 @@ fn start_and_stop_are_commands_248_and_249_and_a_start_begins_anew() {
     bench.wait(ms(25));
     assert_eq!(bench.said(StreamIndex::Usb), "1\r2\r3\r");
     bench.apply(&WorldAction::SetRts { on: true });
-    bench.ask(number::STOP_SCRIPT, &[]);
+    bench.ask(commands::STOP_SCRIPT, &[]);
     assert!(matches!(bench.script(), ScriptRun::Stopped { line: 3..=6 }));
     bench.apply(&WorldAction::SetRts { on: false });
     bench.wait(ms(50));
     assert_eq!(bench.said(StreamIndex::Usb), "");
     bench.apply(&WorldAction::SetRts { on: true });
-    bench.ask(number::START_SCRIPT, &[]);
-    bench.ask(number::START_SCRIPT, &[]);
+    bench.ask(commands::START_SCRIPT, &[]);
+    bench.ask(commands::START_SCRIPT, &[]);
     bench.apply(&WorldAction::SetRts { on: false });
     bench.wait(ms(15));
     let said = bench.said(StreamIndex::Usb);
@@ -42,7 +42,7 @@ fn a_script_that_pauses_is_told_on_the_line_of_its_pause() {
     bench.wait(ms(100));
     assert_eq!(bench.script(), ScriptRun::Running { line: 3 });
     bench.apply(&WorldAction::SetRts { on: true });
-    bench.ask(number::STOP_SCRIPT, &[]);
+    bench.ask(commands::STOP_SCRIPT, &[]);
     assert_eq!(bench.script(), ScriptRun::Stopped { line: 3 });
 }
 
@@ -92,8 +92,8 @@ fn autorun_starts_a_script_after_its_delay_and_never_below_100_ms() {
     for (delay_ms, runs) in [(99, false), (0, false), (100, true), (400, true)] {
         let mut bench = Bench::new(Generation::Gen2);
         bench.install(COUNTER);
-        bench.ask(number::SET_SCRIPT_AUTORUN, &[delay_ms]);
-        bench.ask(number::SAVE_SETTINGS, &[]);
+        bench.ask(commands::SET_SCRIPT_AUTORUN, &[delay_ms]);
+        bench.ask(commands::SAVE_SETTINGS, &[]);
         bench.wait(ms(1_000));
         assert_eq!(bench.script(), ScriptRun::Idle, "only a power-up counts");
         bench.apply(&WorldAction::Power { on: false });
@@ -109,15 +109,15 @@ fn autorun_starts_a_script_after_its_delay_and_never_below_100_ms() {
 fn a_script_stopped_after_an_autorun_stays_stopped() {
     let mut bench = Bench::new(Generation::Gen2);
     bench.install(COUNTER);
-    bench.ask(number::SET_SCRIPT_AUTORUN, &[200]);
-    bench.ask(number::SAVE_SETTINGS, &[]);
+    bench.ask(commands::SET_SCRIPT_AUTORUN, &[200]);
+    bench.ask(commands::SAVE_SETTINGS, &[]);
     bench.wait(ms(500));
     bench.apply(&WorldAction::Power { on: false });
     assert_eq!(bench.unit().view().script, None);
     bench.apply(&WorldAction::Power { on: true });
     // A Stop that comes before the delay is over keeps it from starting too.
     bench.wait(ms(100));
-    bench.ask(number::STOP_SCRIPT, &[]);
+    bench.ask(commands::STOP_SCRIPT, &[]);
     bench.wait(ms(1_000));
     assert_eq!(bench.script(), ScriptRun::Idle);
 }
@@ -132,40 +132,10 @@ fn pins_run_stop_and_reset_the_script() {
     bench.apply(&WorldAction::SetRts { on: true });
     // An analog pin that stops the script at its lowest value and resets it at its highest: 0x4000 and 0x0080.
     let set = |bench: &mut Bench, min_action: i64, max_action: i64| {
-        let values = [
-            ("index", PIN as i64),
-            ("type", 1),
-            ("min_action", min_action),
-            ("max_action", max_action),
-            ("max", 4095),
-            ("center", 2048),
-        ];
-        let names = [
-            "index",
-            "type",
-            "mode",
-            "target",
-            "min_action",
-            "max_action",
-            "low_pass",
-            "timeout",
-            "load_home",
-            "min",
-            "max",
-            "center",
-            "deadband",
-            "power_exponent",
-            "min_output",
-            "max_output",
-            "power_min",
-        ];
-        let named: Vec<(&str, i64)> = names
-            .map(|name| {
-                (name, values.iter().find(|(known, _)| *known == name).map_or(0, |(_, value)| *value))
-            })
-            .to_vec();
-        let request = Request::named(bench.address, number::SET_SIGNAL, Generation::Gen2, &named).unwrap();
-        assert!(bench.try_send(&request).is_some());
+        let ends = [min_action, max_action];
+        let before = [PIN as i64, 1, 0, 0];
+        let after = [0, 0, 0, 0, 4095, 2048, 0, 0, 0, 0, 0];
+        bench.ask(commands::SET_SIGNAL, &[&before[..], &ends, &after].concat());
     };
     drive(&mut bench, 2.5);
     set(&mut bench, 0x4000, 0x0080);
@@ -200,7 +170,7 @@ fn a_downloaded_image_runs_and_a_foreign_one_is_refused() {
     assert_eq!(brushwork_script::image::MAGIC, script_image::OWN_MAGIC);
     download(&mut bench, &image);
     assert_eq!(bench.unit().view().script.map(|script| script.holds), Some(Content::Own));
-    bench.ask(number::START_SCRIPT, &[]);
+    bench.ask(commands::START_SCRIPT, &[]);
     bench.wait(ms(50));
     assert!(bench.script().is_running());
     let mut foreign = image.clone();
@@ -244,10 +214,10 @@ fn user_eeprom_of_scripts_and_of_commands_252_and_253_is_one_memory() {
     assert_eq!(bench.said(StreamIndex::Usb), "Hello\0\0\0\0\0\0");
     bench.apply(&WorldAction::SetRts { on: true });
     // Word 0 is bytes 0 and 1, the low one first: "H" is 0x48, "e" 0x65.
-    assert_eq!(bench.ask(number::READ_USER_MEMORY, &[0]).int("value"), 0x6548);
-    assert_eq!(bench.ask(number::READ_USER_MEMORY, &[2]).int("value"), 0x006F);
+    assert_eq!(bench.ask(commands::READ_USER_MEMORY, &[0]).int(name::VALUE), 0x6548);
+    assert_eq!(bench.ask(commands::READ_USER_MEMORY, &[2]).int(name::VALUE), 0x006F);
     bench.apply(&WorldAction::Power { on: false });
     bench.apply(&WorldAction::Power { on: true });
     bench.wait(ms(10));
-    assert_eq!(bench.ask(number::READ_USER_MEMORY, &[1]).int("value"), 0x6C6C, "it survives");
+    assert_eq!(bench.ask(commands::READ_USER_MEMORY, &[1]).int(name::VALUE), 0x6C6C, "it survives");
 }

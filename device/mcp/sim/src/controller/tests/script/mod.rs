@@ -8,7 +8,7 @@ mod registers;
 mod streams;
 
 use super::support::Bench;
-use brushwork_mcp_wire::packet_serial::{Generation, number};
+use brushwork_mcp_wire::packet_serial::{Generation, commands};
 use brushwork_plant::machine::{Machine, StreamIndex};
 use std::time::Duration;
 
@@ -24,7 +24,7 @@ fn run(bench: &mut Bench, text: &str) {
     bench.install(text);
     // The encoders' first readings are zeroed in the first tick.
     bench.wait(ms(10));
-    bench.ask(number::SET_STREAM, &USB_TO_SCRIPTS);
+    bench.ask(commands::SET_STREAM, &USB_TO_SCRIPTS);
     bench.bus.receive(StreamIndex::Uart0, &start_bytes());
     bench.wait(Duration::from_micros(60));
     assert_eq!(bench.bus.take_output(StreamIndex::Uart0), Some(vec![0xFF]));

@@ -2,7 +2,7 @@
 
 use super::super::support::Bench;
 use super::{ms, running};
-use brushwork_mcp_wire::packet_serial::{Generation, number};
+use brushwork_mcp_wire::packet_serial::{Generation, commands};
 use brushwork_plant::machine::StreamIndex;
 use brushwork_plant::world::{PinSignal, WorldAction};
 use brushwork_values::Motor;
@@ -73,7 +73,7 @@ fn speed_and_dist_close_the_velocity_loop() {
 fn move_takes_one_second_for_a_thousand_counts_and_stands_for_another() {
     // MCP manual 3.4.1, MOVE, on a motor whose loops are tuned for it: position P 10 (x1024 in this generation).
     let mut bench = Bench::new(Generation::Gen2);
-    bench.ask(number::SET_POSITION_PID_M1, &[0, 10 * 1024, 0, 0, 0, -20_000, 20_000]);
+    bench.ask(commands::SET_POSITION_PID_M1, &[0, 10 * 1024, 0, 0, 0, -20_000, 20_000]);
     bench.start("main\nmove 0,1000,0,0,1000,0\npause 2000\nmove 0,1000,0,0,-1000,0\npause 2000\ngoto main\n");
     bench.wait(ms(500));
     assert!((350..650).contains(&counts(&bench, M1)), "{}", counts(&bench, M1));
@@ -88,7 +88,7 @@ fn move_takes_one_second_for_a_thousand_counts_and_stands_for_another() {
 fn a_serial_port_that_goes_silent_does_not_stop_what_the_script_drives() {
     let mut bench = Bench::new(Generation::Gen2);
     bench.start("main\npower 0,10000,655359\nmain2\npause 10\ngoto main2\n");
-    bench.ask(number::DUTY_M2, &[8_000]);
+    bench.ask(commands::DUTY_M2, &[8_000]);
     bench.wait(ms(500));
     assert_eq!((duty(&bench, M1), duty(&bench, M2)), (10_000, 8_000));
     bench.wait(ms(1_500));
@@ -102,11 +102,11 @@ fn stop_all_stands_the_motors_of_a_running_script() {
     bench.wait(ms(300));
     assert_eq!(duty(&bench, M1), 10_000);
     // Duty 0 alone does not last: the script drives on.
-    bench.ask(number::DUTY_ACCEL_BOTH, &[0, 655_359, 0, 655_359]);
+    bench.ask(commands::DUTY_ACCEL_BOTH, &[0, 655_359, 0, 655_359]);
     bench.wait(ms(300));
     assert_eq!(duty(&bench, M1), 10_000);
-    bench.ask(number::STOP_SCRIPT, &[]);
-    bench.ask(number::DUTY_ACCEL_BOTH, &[0, 655_359, 0, 655_359]);
+    bench.ask(commands::STOP_SCRIPT, &[]);
+    bench.ask(commands::DUTY_ACCEL_BOTH, &[0, 655_359, 0, 655_359]);
     bench.wait(ms(300));
     assert_eq!((duty(&bench, M1), duty(&bench, M2)), (0, 0));
 }
@@ -116,7 +116,7 @@ fn a_script_that_was_stopped_leaves_its_motors_to_the_time_out() {
     let mut bench = Bench::new(Generation::Gen2);
     bench.start("main\npower 0,10000,655359\nmain2\ngoto main2\n");
     bench.wait(ms(300));
-    bench.ask(number::STOP_SCRIPT, &[]);
+    bench.ask(commands::STOP_SCRIPT, &[]);
     bench.wait(ms(500));
     assert_eq!(duty(&bench, M1), 10_000, "stopping a script stops no motor");
     bench.wait(ms(1_000));

@@ -2,7 +2,7 @@
 
 use super::super::support::Bench;
 use super::{ms, run, running};
-use brushwork_mcp_wire::packet_serial::{Generation, number};
+use brushwork_mcp_wire::packet_serial::{Generation, commands, name};
 use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::world::{PinSignal, WorldAction};
 use brushwork_values::Motor::{M1, M2};
@@ -20,7 +20,7 @@ fn the_system_registers_say_what_the_commands_say() {
     bench.apply(&WorldAction::SetBatteryVolts { volts: 15.5 });
     bench.apply(&WorldAction::SetLogicVolts { volts: 9.0 });
     bench.apply(&WorldAction::SetBoardCelsius { celsius: Some(39.3) });
-    bench.ask(number::SET_MAIN_VOLTAGES, &[100, 600]);
+    bench.ask(commands::SET_MAIN_VOLTAGES, &[100, 600]);
     bench.wait(ms(10));
     let said = said(
         &mut bench,
@@ -42,8 +42,8 @@ fn limits_that_a_script_sets_act_and_show_in_sysstatus() {
     // Main battery low: 0x0040 on the register's page.
     assert_eq!(bench.said(StreamIndex::Usb), "0040");
     bench.apply(&WorldAction::SetRts { on: true });
-    let limits = bench.ask(number::READ_MAIN_VOLTAGES, &[]);
-    assert_eq!((limits.int("min"), limits.int("max")), (120, 200));
+    let limits = bench.ask(commands::READ_MAIN_VOLTAGES, &[]);
+    assert_eq!((limits.int(name::MIN), limits.int(name::MAX)), (120, 200));
 }
 
 #[test]
@@ -57,10 +57,10 @@ fn motor_registers_are_the_gains_and_the_state_of_the_channels() {
     // Active, velocity loop, nothing waits: 0x40 + 0x80 + 0x200.
     assert_eq!(bench.said(StreamIndex::Usb), "2000 4000 2c0 80 -77");
     bench.apply(&WorldAction::SetRts { on: true });
-    assert_eq!(bench.ask(number::READ_VELOCITY_PID_M1, &[]).int("i"), 32_768);
-    assert_eq!(bench.ask(number::READ_VELOCITY_PID_M2, &[]).int("qpps"), 180_000);
-    assert_eq!(bench.ask(number::READ_POSITION_PID_M1, &[]).int("min"), -10_000);
-    assert_eq!(bench.ask(number::READ_DEFAULT_ACCELS, &[]).int("accel_m1"), 655_360);
+    assert_eq!(bench.ask(commands::READ_VELOCITY_PID_M1, &[]).int(name::I), 32_768);
+    assert_eq!(bench.ask(commands::READ_VELOCITY_PID_M2, &[]).int(name::QPPS), 180_000);
+    assert_eq!(bench.ask(commands::READ_POSITION_PID_M1, &[]).int(name::MIN), -10_000);
+    assert_eq!(bench.ask(commands::READ_DEFAULT_ACCELS, &[]).int(name::ACCEL_M1), 655_360);
     let unit = bench.unit().unit().expect("power");
     assert_eq!(unit.channel(M2).encoder().position(), -77);
     assert!((1_800..2_200).contains(&unit.channel(M1).speeds().filtered));
@@ -83,9 +83,9 @@ fn dout_overrides_its_action_until_the_action_is_set() {
     assert_eq!(bench.said(StreamIndex::Usb), "01");
     assert_eq!(on(&bench)[..2], [true, true], "the action is back");
     bench.apply(&WorldAction::SetRts { on: true });
-    bench.ask(number::STOP_SCRIPT, &[]);
-    bench.ask(number::DUTY_BOTH, &[0, 0]);
-    bench.ask(number::SET_DOUT_ACTION, &[1, 0]);
+    bench.ask(commands::STOP_SCRIPT, &[]);
+    bench.ask(commands::DUTY_BOTH, &[0, 0]);
+    bench.ask(commands::SET_DOUT_ACTION, &[1, 0]);
     bench.wait(ms(300));
     assert_eq!(on(&bench)[..2], [false, false], "command 137 gives an output back to its action");
 }
@@ -107,8 +107,8 @@ fn signals_are_read_and_set() {
     // It changed within the first ticks and timed out since; it was read in each of some 150 ticks.
     assert!(words[4] < 20 && words[5] == 0 && (140..=155).contains(&words[6]), "{said}");
     bench.apply(&WorldAction::SetRts { on: true });
-    let signals = bench.ask(number::READ_SIGNALS, &[]);
-    assert_eq!(signals.records().nth(3).map(|record| record.int("target")), Some(2));
+    let signals = bench.ask(commands::READ_SIGNALS, &[]);
+    assert_eq!(signals.records().nth(3).map(|record| record.int(name::TARGET)), Some(2));
 }
 
 #[test]
@@ -122,8 +122,8 @@ fn stream_registers_are_those_of_command_146() {
     let said = bench.said(StreamIndex::Usb);
     assert!(said.starts_with("0110 11"), "{said}");
     bench.apply(&WorldAction::SetRts { on: true });
-    let streams = bench.ask(number::READ_STREAMS, &[]);
-    let rates: Vec<i64> = streams.records().map(|record| record.int("rate")).collect();
+    let streams = bench.ask(commands::READ_STREAMS, &[]);
+    let rates: Vec<i64> = streams.records().map(|record| record.int(name::RATE)).collect();
     assert_eq!(rates[1], 57_600, "RS-232 is stream 3 of scripts and 1 of command 145");
 }
 
@@ -131,7 +131,7 @@ fn stream_registers_are_those_of_command_146() {
 fn the_priority_registers_follow_the_inputs() {
     let mut bench = running("main\nputs 0,[dec PRIORITYLEVEL,dec PRIORITYACTIVE,32]\npause 500\ngoto main\n");
     bench.apply(&WorldAction::SetRts { on: true });
-    bench.ask(number::SET_PRIORITIES, &[1, 2, 3]);
+    bench.ask(commands::SET_PRIORITIES, &[1, 2, 3]);
     bench.apply(&WorldAction::SetRts { on: false });
     bench.wait(ms(2_600));
     let said = bench.said(StreamIndex::Usb);

@@ -2,7 +2,7 @@
 
 use super::super::support::Bench;
 use super::{USB_TO_SCRIPTS, ms, running};
-use brushwork_mcp_wire::packet_serial::{Generation, number};
+use brushwork_mcp_wire::packet_serial::{Generation, commands, name, number};
 use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::world::ScriptRun;
 use brushwork_plant::world::{CanPeer, WorldAction};
@@ -30,7 +30,7 @@ fn a_port_that_speaks_packet_serial_loses_what_a_script_says() {
     bench.start("main\nputs 0,[\"hello\"]\npause 10\ngoto main\n");
     bench.wait(ms(100));
     assert_eq!(bench.said(USB), "");
-    assert_eq!(bench.read(number::READ_STATUS, "status"), 0, "replies are whole");
+    assert_eq!(bench.read(commands::READ_STATUS, name::STATUS), 0, "replies are whole");
 }
 
 #[test]
@@ -41,7 +41,7 @@ fn rts_brings_packet_serial_back_and_its_release_gives_the_port_back_to_the_scri
     assert_eq!(bench.try_ask(number::READ_STATUS, &[]), None, "the port belongs to the script");
     bench.apply(&WorldAction::SetRts { on: true });
     bench.said(USB);
-    assert_eq!(bench.read(number::READ_STATUS, "status"), 0);
+    assert_eq!(bench.read(commands::READ_STATUS, name::STATUS), 0);
     bench.wait(ms(50));
     assert_eq!(bench.said(USB), "", "packet serial is not disturbed");
     bench.apply(&WorldAction::SetRts { on: false });
@@ -53,7 +53,7 @@ fn rts_brings_packet_serial_back_and_its_release_gives_the_port_back_to_the_scri
 fn rs232_is_stream_3_and_ttl_uart_1_is_stream_2() {
     let mut bench = Bench::new(Generation::Gen2);
     for index in [1, 2] {
-        bench.ask(number::SET_STREAM, &[index, 0, 115_200, 1000]);
+        bench.ask(commands::SET_STREAM, &[index, 0, 115_200, 1000]);
     }
     bench.start("letter var byte\nmain\ngets 3,[letter]\nputs 2,[letter+1]\ngoto main\n");
     bench.bus.receive(StreamIndex::Uart0, b"HAL");
@@ -65,7 +65,7 @@ fn rs232_is_stream_3_and_ttl_uart_1_is_stream_2() {
 #[test]
 fn a_slow_port_makes_a_script_wait_for_its_room() {
     let mut bench = Bench::new(Generation::Gen2);
-    bench.ask(number::SET_STREAM, &[1, 0, 9_600, 1000]);
+    bench.ask(commands::SET_STREAM, &[1, 0, 9_600, 1000]);
     bench.start("main\nputs 3,[rep \"x\"\\100]\ngoto main\n");
     bench.wait(ms(1_000));
     // 960 bytes a second leave the port; 64 more wait in it, and up to one text of 100 is on its way.
@@ -97,9 +97,9 @@ fn the_can_stream_is_there_while_uart_0_is_disabled() {
     assert_eq!(bench.said(USB), "", "UART0 has the pins");
     let mut bench = Bench::new(Generation::Gen2);
     bench.apply(&WorldAction::SetCanPeer { peer: CanPeer::Echoing });
-    bench.ask(number::SET_STREAM, &[1, 2, 115_200, 1000]);
+    bench.ask(commands::SET_STREAM, &[1, 2, 115_200, 1000]);
     bench.start(program);
-    bench.ask(number::SET_STREAM, &USB_TO_SCRIPTS);
+    bench.ask(commands::SET_STREAM, &USB_TO_SCRIPTS);
     bench.wait(ms(10));
     assert!(bench.said(USB).starts_with("ab.ab."));
     bench.apply(&WorldAction::SetCanPeer { peer: CanPeer::Listening });
