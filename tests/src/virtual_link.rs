@@ -61,7 +61,6 @@ struct Watched<M: Machine> {
 impl VirtualLink {
     /// A loop on a stream of a bus; nothing has been sent. Bytes take no time on USB, and that of the stream's rate elsewhere.
     pub fn new(bus: Bus, stream: StreamIndex, options: DeviceOptions, faults: Vec<Fault>, seed: u64) -> Self {
-        brushwork_link::install(&brushwork::FAMILIES);
         Self::made(bus, stream, faults, seed, |line, clock| DeviceLoop::new(line, clock, options))
     }
 
@@ -100,6 +99,7 @@ impl<M: Machine + 'static> VirtualLink<M> {
         seed: u64,
         open: impl FnOnce(Box<dyn Transport>, Arc<dyn Clock>) -> (DeviceLoop, DeviceHandle),
     ) -> Self {
+        brushwork_link::install(&brushwork::FAMILIES);
         let paced = stream != StreamIndex::Usb;
         let byte_time = paced.then(|| byte_time(bus.bits_per_second(stream)));
         let line = VirtualLine::new(Paced::new(Faulty::new(bus, faults, seed), paced), stream);

@@ -8,7 +8,7 @@ use brushwork_tests::rust_source::{code_lines, without_tests};
 use brushwork_tests::workspace::{self, DependencyKind, Member, Metadata};
 
 /// The arrows that ship: a crate and the crates of this workspace it may use.
-const ARROWS: [(&str, &[&str]); 19] = [
+const ARROWS: [(&str, &[&str]); 22] = [
     (
         "brushwork",
         &[
@@ -16,8 +16,10 @@ const ARROWS: [(&str, &[&str]); 19] = [
             "brushwork-core",
             "brushwork-gui",
             "brushwork-link",
+            "brushwork-mcp-client",
             "brushwork-mcp-sim",
             "brushwork-mcp-wire",
+            "brushwork-motion-mind-client",
             "brushwork-plant",
             "brushwork-script",
             "brushwork-tuning-bench",
@@ -27,10 +29,13 @@ const ARROWS: [(&str, &[&str]); 19] = [
     (
         "brushwork-cli",
         &[
+            "brushwork-canopen",
             "brushwork-core",
             "brushwork-link",
+            "brushwork-mcp-client",
             "brushwork-mcp-sim",
             "brushwork-mcp-wire",
+            "brushwork-motion-mind-client",
             "brushwork-motion-mind-sim",
             "brushwork-motion-mind-wire",
             "brushwork-plant",
@@ -42,11 +47,14 @@ const ARROWS: [(&str, &[&str]); 19] = [
     (
         "brushwork-core",
         &[
+            "brushwork-canopen",
             "brushwork-link",
             "brushwork-mcp-axis",
+            "brushwork-mcp-client",
             "brushwork-mcp-sim",
             "brushwork-mcp-wire",
             "brushwork-motion-mind-axis",
+            "brushwork-motion-mind-client",
             "brushwork-motion-mind-sim",
             "brushwork-motion-mind-wire",
             "brushwork-plant",
@@ -58,9 +66,12 @@ const ARROWS: [(&str, &[&str]); 19] = [
     (
         "brushwork-gui",
         &[
+            "brushwork-canopen",
             "brushwork-core",
             "brushwork-link",
+            "brushwork-mcp-client",
             "brushwork-mcp-wire",
+            "brushwork-motion-mind-client",
             "brushwork-motion-mind-wire",
             "brushwork-plant",
             "brushwork-raster",
@@ -84,12 +95,27 @@ const ARROWS: [(&str, &[&str]); 19] = [
             "brushwork-values",
         ],
     ),
-    ("brushwork-link", &["brushwork-mcp-wire", "brushwork-motion-mind-wire", "brushwork-values"]),
+    ("brushwork-link", &["brushwork-canopen", "brushwork-values"]),
     ("brushwork-plant", &["brushwork-values"]),
-    ("brushwork-mcp-wire", &["brushwork-values"]),
+    ("brushwork-canopen", &[]),
+    ("brushwork-mcp-wire", &["brushwork-canopen", "brushwork-values"]),
+    (
+        "brushwork-mcp-client",
+        &["brushwork-canopen", "brushwork-link", "brushwork-mcp-wire", "brushwork-values"],
+    ),
     ("brushwork-mcp-axis", &["brushwork-mcp-wire", "brushwork-tuning", "brushwork-values"]),
-    ("brushwork-mcp-sim", &["brushwork-mcp-wire", "brushwork-plant", "brushwork-script", "brushwork-values"]),
+    (
+        "brushwork-mcp-sim",
+        &[
+            "brushwork-canopen",
+            "brushwork-mcp-wire",
+            "brushwork-plant",
+            "brushwork-script",
+            "brushwork-values",
+        ],
+    ),
     ("brushwork-motion-mind-wire", &["brushwork-values"]),
+    ("brushwork-motion-mind-client", &["brushwork-link", "brushwork-motion-mind-wire", "brushwork-values"]),
     ("brushwork-motion-mind-axis", &["brushwork-motion-mind-wire", "brushwork-tuning"]),
     ("brushwork-motion-mind-sim", &["brushwork-motion-mind-wire", "brushwork-plant", "brushwork-values"]),
     ("brushwork-script", &[]),
@@ -100,14 +126,17 @@ const ARROWS: [(&str, &[&str]); 19] = [
         "brushwork-tests",
         &[
             "brushwork",
+            "brushwork-canopen",
             "brushwork-child",
             "brushwork-core",
             "brushwork-gui",
             "brushwork-link",
             "brushwork-mcp-axis",
+            "brushwork-mcp-client",
             "brushwork-mcp-sim",
             "brushwork-mcp-wire",
             "brushwork-motion-mind-axis",
+            "brushwork-motion-mind-client",
             "brushwork-motion-mind-sim",
             "brushwork-motion-mind-wire",
             "brushwork-plant",
@@ -121,7 +150,7 @@ const ARROWS: [(&str, &[&str]); 19] = [
 
 /// Arrows for tests alone: the window is tried against simulated controllers, the program from outside.
 const TEST_ARROWS: [(&str, &[&str]); 2] = [
-    ("brushwork", &["brushwork-child"]),
+    ("brushwork", &["brushwork-canopen", "brushwork-child"]),
     ("brushwork-gui", &["brushwork-child", "brushwork-mcp-sim", "brushwork-motion-mind-sim"]),
 ];
 
@@ -154,7 +183,8 @@ const IMPURE: [&str; 9] = [
 ];
 
 /// The pure parts: a source folder and the modules in it that are the named exception.
-const PURE: [(&str, &[&str]); 10] = [
+const PURE: [(&str, &[&str]); 11] = [
+    ("device/canopen/src", &[]),
     ("device/values/src", &[]),
     ("device/mcp/axis/src", &[]),
     ("device/mcp/wire/src", &[]),

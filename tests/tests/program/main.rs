@@ -6,6 +6,7 @@ mod command_line_data;
 mod device_adversary;
 mod device_safety;
 mod device_thread;
+mod echo;
 mod firmware;
 mod foreign_clients;
 mod killed_clients;

@@ -57,7 +57,7 @@ mod tests {
             firmware: "1.0.0".to_owned(),
             generation: brushwork_mcp_client::firmware_of(generation),
             facts: brushwork_link::device::Facts::new(brushwork_mcp_client::McpFacts {
-                generation: generation,
+                generation,
                 is_mcp: true,
                 is_node: false,
             }),

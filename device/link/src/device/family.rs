@@ -14,20 +14,13 @@ pub struct AnyFamily {
     found: Option<usize>,
 }
 
-impl Default for AnyFamily {
-    fn default() -> Self {
-        let searches = families().iter().map(|family| (*family, family.search())).collect();
-        Self { searches, found: None }
-    }
-}
-
 impl Search for AnyFamily {
     fn discover(
         &mut self,
         line: &mut Line<'_>,
         options: &DeviceOptions,
     ) -> Result<Vec<Box<dyn Controller>>, DiscoverError> {
-        let candidates = self.candidates(options.family, options.addresses);
+        let candidates = self.candidates(options);
         self.found = match candidates[..] {
             [only] => Some(only),
             _ => None,
@@ -73,14 +66,24 @@ impl Search for AnyFamily {
 }
 
 impl AnyFamily {
+    /// The one that is chosen, whether the program lists it or not, or all that it has.
+    pub fn new(choice: FamilyChoice) -> Self {
+        let searches = match choice.family() {
+            Some(chosen) => vec![(chosen, chosen.search())],
+            None => families().iter().map(|family| (*family, family.search())).collect(),
+        };
+        Self { searches, found: None }
+    }
+
     /// The families to look for, in turn: the one that is chosen, or those that have the addresses that are asked for. A number that no family has
     /// is left to the first to say so.
-    fn candidates(&self, choice: FamilyChoice, addresses: Addresses) -> Vec<usize> {
-        let fits = |family: FamilyRef| match (choice.family(), addresses) {
-            (Some(chosen), _) => family == chosen,
-            (None, Addresses::Only(number)) => family.has_address(number),
-            (None, Addresses::These(set)) => set.iter().all(|number| family.has_address(number)),
-            (None, Addresses::Scan | Addresses::Factory) => true,
+    fn candidates(&self, options: &DeviceOptions) -> Vec<usize> {
+        let is_chosen = options.family.family().is_some();
+        let fits = |family: FamilyRef| match options.addresses {
+            _ if is_chosen => true,
+            Addresses::Only(number) => family.has_address(number),
+            Addresses::These(set) => set.iter().all(|number| family.has_address(number)),
+            Addresses::Scan | Addresses::Factory => true,
         };
         let all = self.searches.iter().enumerate();
         let fitting: Vec<_> = all.filter(|(_, (family, _))| fits(*family)).map(|(index, _)| index).collect();

@@ -95,7 +95,7 @@ pub fn gate(ask: &Ask<'_>) -> Result<&'static Form, ExchangeError> {
 /// Sends a packet and decodes its reply.
 pub fn transact(exchange: &mut Exchange, watch: &dyn Watch, ask: &Ask<'_>) -> Result<Reply, ExchangeError> {
     let form = gate(ask)?;
-    let bytes = ask.request.encode(ask.generation).map_err(encode_error)?;
+    let bytes = ask.request.encode(ask.generation).map_err(|source| encode_error(&source))?;
     let outgoing = Outgoing {
         bytes: &bytes,
         reply_length: form.reply.width().unwrap_or(SHORTEST_OPEN_REPLY),
@@ -206,7 +206,7 @@ fn patience(form: &Form) -> Duration {
 }
 
 /// Values that do not fit a command.
-pub(crate) fn encode_error(source: EncodeError) -> ExchangeError {
+pub(crate) fn encode_error(source: &EncodeError) -> ExchangeError {
     ExchangeError::Encode { why: source.to_string() }
 }
 

@@ -52,7 +52,8 @@ impl DeviceLoop {
         clock: Arc<dyn Clock>,
         options: DeviceOptions,
     ) -> (Self, DeviceHandle) {
-        Self::with_family(transport, clock, options, Box::<AnyFamily>::default()).0
+        let family = Box::new(AnyFamily::new(options.family));
+        Self::with_family(transport, clock, options, family).0
     }
 
     /// The same for any family.

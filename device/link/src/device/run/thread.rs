@@ -26,7 +26,8 @@ impl DeviceThread {
         clock: Arc<dyn Clock>,
         options: DeviceOptions,
     ) -> io::Result<DeviceHandle> {
-        Self::spawn_family(transport, clock, options, Box::<AnyFamily>::default())
+        let family = Box::new(AnyFamily::new(options.family));
+        Self::spawn_family(transport, clock, options, family)
     }
 
     /// The same for any protocol family.

@@ -31,7 +31,7 @@ pub fn carry_out(line: &mut Line<'_>, place: Place, ask: &Ask<'_>) -> Result<Rep
         return Reader { line, place, index, span: None }.read(shape, form);
     }
     // The packet's own encoder checks the values and fills in keys.
-    let packet = ask.request.encode(ask.generation).map_err(encode_error)?;
+    let packet = ask.request.encode(ask.generation).map_err(|source| encode_error(&source))?;
     let arguments = packet.get(PACKET_HEAD..).unwrap_or_default();
     let span = act(line, place, index, shape, form, arguments)?;
     Ok(Reply { values: Values::default(), span })

@@ -200,7 +200,7 @@ fn ask_surely<const L: u8>(
     let ask = Ask { request: &request, generation: speaker.generation, permit, retries };
     let (exchange, watch) = line.parts();
     gate(&ask)?;
-    let bytes = request.encode(speaker.generation).map_err(encode_error)?;
+    let bytes = request.encode(speaker.generation).map_err(|source| encode_error(&source))?;
     let reads: Vec<_> = reads.iter().map(|read| Request::new(speaker.address, *read, &[])).collect();
     let end_of = |read: usize, bytes: &[u8]| match parse_reply(reads.get(read)?, speaker.generation, bytes) {
         ReplyProgress::Done { used, .. } => Some(used),

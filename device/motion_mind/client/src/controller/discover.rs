@@ -211,7 +211,7 @@ fn identify(line: &mut Line<'_>, mut speaker: Speaker, simulated: bool) -> Resul
         address: speaker.address.get(),
         family: MOTION_MIND,
         protocol: MOTION_MIND.label(),
-        version_text: format!("{} revision {revision}", NAME),
+        version_text: format!("{NAME} revision {revision}"),
         model: Some(NAME),
         firmware: revision.to_string(),
         generation: firmware_of(revision),
