@@ -5,6 +5,7 @@ pub mod keep;
 pub mod motion;
 pub mod recording;
 pub mod session;
+pub mod settings;
 pub mod tune;
 
 #[cfg(test)]

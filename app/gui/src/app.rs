@@ -15,7 +15,6 @@ use egui::{Context, Ui, ViewportCommand};
 use super::actions;
 use super::command::{Command, GuidedWish};
 use super::ending::EndBySignal;
-use super::family::Ability;
 use super::keys;
 use super::links::Links;
 use super::model::drawer::Tab;
@@ -186,21 +185,17 @@ impl App {
     fn watch(&mut self, id: DeskId) {
         let shows_settings = self.shows_settings_of(id);
         let (Some(device), Some(desk)) = (self.links.device(id), self.model.desk_mut(id)) else { return };
-        if desk.family().lacks(Ability::Diagnosis).is_some() {
-            desk.watch.want_nothing();
-        }
         let is_quiet = desk.link.arming == Arming::Disarmed && desk.is_connected();
-        if let Some(identity) = desk.link.identity().cloned().filter(|_| is_quiet)
-            && let Some(job) = desk.watch.read(&identity)
-        {
+        let keys = if is_quiet { desk.diagnosis_keys() } else { Vec::new() };
+        if let Some(job) = desk.settings.read(&keys, true) {
             let job_id = job.id();
             match device.request(Request::Job(job)) {
-                Ok(()) => desk.jobs.begun(job_id, Owner::Watch),
-                Err(_) => desk.watch.not_begun(),
+                Ok(()) => desk.jobs.begun(job_id, Owner::Settings),
+                Err(_) => desk.settings.not_begun(),
             }
         }
         let wanted =
-            desk.watch.wants_signals() || desk.shows_signals(shows_settings) || desk.graph.wants_pins();
+            desk.diagnosis_wants_signals() || desk.shows_signals(shows_settings) || desk.graph.wants_pins();
         let traced = desk.traffic.open;
         let link = self.links.entry(id);
         if link.reads_signals != wanted
@@ -305,7 +300,7 @@ impl App {
                 self.request(Request::ResetEStop);
             }
             Command::Poll(rate) => self.poll(rate),
-            Command::ReadLoops => model.front.loops.want_reading(),
+            Command::ReadLoops => self.read_loops_again(),
             Command::ApplyLoops(columns) => self.apply_loops(columns),
             Command::World(action) => self.act_on_world(action),
             Command::ToggleWorld => model.front.world.open = !model.front.world.open,
@@ -326,7 +321,7 @@ impl App {
                 self.model.front.general.find();
             }
             Command::RevertSettings => {
-                if let Some(unit) = model.front.general.unit_mut() {
+                if let Some(unit) = model.front.settings.unit_mut() {
                     unit.revert_all();
                 }
             }
@@ -375,11 +370,7 @@ impl App {
 
     fn open_sheet(&mut self, sheet: Sheet) {
         self.show(Screen::GeneralSettings);
-        let front = &mut self.model.front;
-        if let Some(identity) = front.link.identity() {
-            front.general.look_at(identity);
-        }
-        front.general.open_once_read(sheet);
+        self.model.front.general_view().open_once_read(sheet);
     }
 
     fn open_drawer(&mut self, screen: Screen, tab: Tab) {
@@ -401,9 +392,8 @@ impl App {
         self.model.front.tune.want_winding_back();
         self.model.turn_to(screen);
         if screen == Screen::DeviceStatus {
-            self.model.front.watch.want_reading();
+            self.model.front.doubt_diagnosis();
         }
-        self.model.front.loops.want_reading();
     }
 
     /// Leaving the page of the clamp test disarms as leaving a screen does.
@@ -506,7 +496,7 @@ impl App {
 
     fn request_of(&mut self, desk: DeskId, request: Request) -> bool {
         if let Some(desk) = self.model.desk_mut(desk) {
-            desk.general.give_way();
+            desk.settings.give_way();
         }
         let Some(device) = self.links.device(desk) else { return false };
         match device.request(request) {

@@ -12,13 +12,14 @@ use super::mcl::MclWish;
 use super::model::DeskId;
 use super::model::drawer::Tab;
 use super::model::firmware::FirmwareWish;
-use super::model::general::{Section, SettingsWish, Sheet};
+use super::model::general::{Section, Sheet};
 pub use super::model::guided::GuidedWish;
 use super::model::help::HelpPage;
 use super::model::loop_settings::Column;
 pub use super::model::motion_mind::MindWish;
 use super::model::motion_mind::terminal::Sending;
 use super::model::screen::Screen;
+use super::model::settings::SettingsWish;
 pub use super::tune::TuneWish;
 
 /// One wish.

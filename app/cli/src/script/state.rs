@@ -12,10 +12,12 @@ use super::args::{AutorunArgs, StatusArgs};
 use crate::exit::Exit;
 use crate::interrupt::Interrupt;
 use crate::output::{Output, say};
-use crate::settings::controller::{Controller, Finished, WRITE_LIMIT};
+use crate::settings::controller::{Controller, Finished};
 
 /// More than reading takes at the slowest rates.
 const LIMIT: Duration = Duration::from_secs(30);
+/// The same with everything read for a backup before.
+const SETTING_LIMIT: Duration = Duration::from_secs(300);
 /// What is told of controllers that are not simulated in this program.
 const UNKNOWN: &str =
     "No command of the protocol tells whether a script runs; nothing was started over this link.";
@@ -25,7 +27,7 @@ pub fn autorun(args: &AutorunArgs, out: &mut Output, interrupt: &Interrupt) -> R
     let controller = Controller::connect(&args.connect, interrupt)?;
     let wanted = args.delay;
     let (subject, mut keeper) = (controller.subject(), controller.keeper());
-    let finished = controller.run(AUTORUN_JOB, WRITE_LIMIT, move |wire| {
+    let finished = controller.run(AUTORUN_JOB, SETTING_LIMIT, move |wire| {
         if let Some(delay) = wanted {
             begin_command(wire, subject, false, &mut *keeper)?;
             let set = set_autorun(wire, delay.0);

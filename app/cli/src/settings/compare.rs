@@ -11,6 +11,7 @@ use crate::exit::Exit;
 use crate::interrupt::Interrupt;
 use crate::output::{Output, say};
 use brushwork_core::keep::{Store, today};
+use brushwork_core::settings::known_defaults;
 
 /// Compares and prints.
 pub fn run(args: &CompareArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
@@ -79,8 +80,7 @@ fn side(name: &SideName, controller: Option<&Controller<'_>>, other: Option<Side
 /// Every default of the settings that the profile has.
 fn defaults_of(profile: &Profile) -> Profile {
     let table = profile.table();
-    let rows = table.rows().iter().filter(|row| profile.settings.get(&row.key).is_some());
-    let settings = rows.map(|row| (row.key.clone(), row.default)).collect();
+    let settings = known_defaults(&table, &profile.settings);
     Profile { settings, date: today(), note: "defaults".to_owned(), ..profile.clone() }
 }
 

@@ -4,12 +4,15 @@ use std::io::{self, IsTerminal as _, Write as _};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use brushwork_link::Failure;
 use brushwork_link::Stream;
 use brushwork_link::UnitAddress;
 use brushwork_link::device::{
     DeviceHandle, Event, Identity, Job, JobContext, JobEnding, JobReport, JobTicket, PollRate,
 };
-use brushwork_link::settings::{Keeper, Profile, ReadReport, SettingsImage, Subject, WriteOptions, read_all};
+use brushwork_link::settings::{
+    Keeper, Profile, ReadReport, SettingsImage, SettingsTable, Subject, WriteOptions,
+};
 use brushwork_link::transport::list_ports;
 
 use super::cut_short;
@@ -21,11 +24,8 @@ use crate::shared_args::ConnectArgs;
 use brushwork_core::keep;
 use brushwork_core::keep::{Keeping, Store, UnitId};
 use brushwork_core::session::Simulation;
+use brushwork_core::settings::{Act, Done};
 
-/// How long reading everything may take: a hundred commands at the slowest baud rates, with retries.
-pub const READ_LIMIT: Duration = Duration::from_secs(120);
-/// How long writing everything may take: reading before and after, and the writing between.
-pub const WRITE_LIMIT: Duration = Duration::from_secs(300);
 /// How long a cancelled job may take to end.
 const CANCEL_LIMIT: Duration = Duration::from_secs(60);
 
@@ -150,19 +150,35 @@ impl<'i> Controller<'i> {
 
     /// Reads every setting; says what could not be read.
     pub fn read_quietly(&self) -> Result<ReadReport, Exit> {
-        let subject = self.subject;
-        let finished = self.run("read the settings", READ_LIMIT, move |wire| read_all(wire, subject))?;
+        let table = SettingsTable::new(self.subject);
+        let finished = self.act("read the settings", Act::Read, &table, self.write_options())?;
         if let Some(exit) = finished.broken {
             return Err(exit);
         }
-        let report = finished.value.map_err(|failure| {
-            say(failure.to_string());
-            Exit::NoLink
-        })?;
+        let report = match finished.value {
+            Ok(Done::Read(report)) => *report,
+            Ok(_) => return Err(Exit::Failed),
+            Err(failure) => {
+                say(failure.to_string());
+                return Err(Exit::NoLink);
+            }
+        };
         for unread in &report.failures {
             say(format!("Not read: {}. {}", unread.keys.join(", "), unread.failure));
         }
         Ok(report)
+    }
+
+    /// Has an act on the settings done, with what it keeps on this computer, and waits for its end.
+    pub fn act(
+        &self,
+        name: &str,
+        mut act: Act,
+        table: &SettingsTable,
+        options: WriteOptions,
+    ) -> Result<Finished<Result<Done, Failure>>, Exit> {
+        let (table, mut keeper) = (table.clone(), self.keeper());
+        self.run(name, act.limit(), move |wire| act.run(wire, &table, options, &mut *keeper))
     }
 
     /// Runs work on the device thread and waits for its end. Ctrl-C cancels it; what it had to say by then

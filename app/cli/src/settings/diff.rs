@@ -6,10 +6,11 @@ use serde_json::json;
 use super::args::DiffArgs;
 use super::controller::Controller;
 use super::profile;
-use super::review::{Change, change_lines, changes, settings_count};
+use super::review::{Change, change_lines, changes};
 use crate::exit::Exit;
 use crate::interrupt::Interrupt;
 use crate::output::{Output, say};
+use brushwork_core::settings::counted;
 
 /// One side of a comparison.
 #[derive(Clone)]
@@ -91,7 +92,7 @@ fn print(left: &Side, right: &Side, differences: &[Change], out: &mut Output) ->
         out.line(format!("{} and {} agree.", left.name, right.name))?;
         return Ok(());
     }
-    let count = settings_count(differences.len());
+    let count = counted(differences.len());
     out.line(format!("{count} with different values, {} -> {}:", left.name, right.name))?;
     for line in change_lines(differences) {
         out.line(line)?;

@@ -1,24 +1,17 @@
 //! `brushwork settings save` and `defaults`: acts on the controller's own memory, asked for and proven.
 
-use std::time::Duration;
-
-use brushwork_link::settings::{
-    DefaultsReport, SaveReport, SaveVerdict, SettingsImage, SettingsTable, defaults_kept, reload_kept,
-    save_kept,
-};
+use brushwork_link::settings::{DefaultsReport, SaveReport, SaveVerdict, SettingsTable};
 use serde_json::json;
 
 use super::args::MemoryArgs;
 use super::ask;
 use super::controller::Controller;
-use super::review::{Change, change_lines, changes, merged, settings_count};
+use super::review::{Change, change_lines, changes};
 use crate::exit::Exit;
 use crate::interrupt::Interrupt;
 use crate::output::{Output, OutputError, say};
 use brushwork_core::keep::{Store, UnitId, WearLevel};
-
-/// How long a save or a restore may take with its readings before and after.
-const MEMORY_LIMIT: Duration = Duration::from_secs(300);
+use brushwork_core::settings::{Act, Done, counted, known_defaults, merged};
 
 /// Saves RAM to EEPROM and proves it.
 pub fn save(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
@@ -71,13 +64,15 @@ pub fn save_to_eeprom(
     controller: &Controller<'_>,
     table: &SettingsTable,
 ) -> Result<(SaveReport, Exit), Exit> {
-    let (options, table, mut keeper) = (controller.write_options(), table.clone(), controller.keeper());
-    let finished = controller
-        .run("save the settings", MEMORY_LIMIT, move |wire| save_kept(wire, &table, options, &mut *keeper))?;
-    let report = finished.value.map_err(|failure| {
-        say(format!("Nothing was saved. {failure}"));
-        finished.broken.unwrap_or(Exit::Refused)
-    })?;
+    let finished = controller.act("save the settings", Act::Save, table, controller.write_options())?;
+    let report = match finished.value {
+        Ok(Done::Saved(report)) => *report,
+        Ok(_) => return Err(Exit::Failed),
+        Err(failure) => {
+            say(format!("Nothing was saved. {failure}"));
+            return Err(finished.broken.unwrap_or(Exit::Refused));
+        }
+    };
     let exit = match report.verdict {
         SaveVerdict::Verified | SaveVerdict::Stored | SaveVerdict::Acknowledged => Exit::Done,
         SaveVerdict::NotSaved | SaveVerdict::Unknown => Exit::NotTaken,
@@ -97,13 +92,16 @@ pub fn defaults(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> R
     );
     let question = format!("Restore the factory defaults of {}?", controller.describe());
     ask::agreed(&question, args.yes, &controller)?;
-    let (subject, mut keeper) = (controller.subject(), controller.keeper());
-    let finished = controller
-        .run("restore the defaults", MEMORY_LIMIT, move |wire| defaults_kept(wire, subject, &mut *keeper))?;
-    let report = finished.value.map_err(|failure| {
-        say(failure.to_string());
-        finished.broken.unwrap_or(Exit::Refused)
-    })?;
+    let options = controller.write_options();
+    let finished = controller.act("restore the defaults", Act::RestoreDefaults, &ram.table, options)?;
+    let report = match finished.value {
+        Ok(Done::Restored(report)) => *report,
+        Ok(_) => return Err(Exit::Failed),
+        Err(failure) => {
+            say(failure.to_string());
+            return Err(finished.broken.unwrap_or(Exit::Refused));
+        }
+    };
     let others = tell_defaults(args, &controller, &list, &report, out)?;
     Ok(finished.broken.unwrap_or(if others == 0 { Exit::Done } else { Exit::NotTaken }))
 }
@@ -165,19 +163,21 @@ pub fn reload(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Res
     );
     let question = format!("Load the EEPROM of {} over its RAM?", controller.describe());
     ask::agreed(&question, args.yes, &controller)?;
-    let (table, mut keeper) = (ram.table.clone(), controller.keeper());
-    let finished = controller.run("load the settings from EEPROM", MEMORY_LIMIT, move |wire| {
-        reload_kept(wire, &table, &mut *keeper)
-    })?;
-    let report = finished.value.map_err(|failure| {
-        say(failure.to_string());
-        finished.broken.unwrap_or(Exit::Refused)
-    })?;
+    let options = controller.write_options();
+    let finished = controller.act("load the settings from EEPROM", Act::Reload, &ram.table, options)?;
+    let report = match finished.value {
+        Ok(Done::Reloaded(report)) => *report,
+        Ok(_) => return Err(Exit::Failed),
+        Err(failure) => {
+            say(failure.to_string());
+            return Err(finished.broken.unwrap_or(Exit::Refused));
+        }
+    };
     let came_back = changes(&ram.table, &ram.image, &merged(&ram.image, &report.image));
     if args.json {
         out.json(&json!({ "identity": controller.identity(), "changes": came_back }))?;
     } else {
-        let count = settings_count(came_back.len());
+        let count = counted(came_back.len());
         out.line(format!("EEPROM is loaded and read: {count} came back otherwise."))?;
         for line in change_lines(&came_back) {
             out.line(line)?;
@@ -198,12 +198,6 @@ fn tell_others(head: &str, changes: &[Change]) {
         say(head);
         change_lines(changes).into_iter().for_each(say);
     }
-}
-
-/// The default of every setting whose value was read.
-fn known_defaults(table: &SettingsTable, image: &SettingsImage) -> SettingsImage {
-    let known = table.rows().iter().filter(|row| image.get(&row.key).is_some());
-    known.map(|row| (row.key.clone(), row.default)).collect()
 }
 
 const AT_DEFAULT: &str = "nothing: every setting is at its default";
@@ -228,7 +222,7 @@ fn show(
     if list.is_empty() {
         lines.push(format!("  {none}"));
     } else {
-        lines.push(format!("  ({})", settings_count(list.len())));
+        lines.push(format!("  ({})", counted(list.len())));
     }
     for line in lines {
         if !args.json {

@@ -6,11 +6,11 @@ use brushwork_link::settings::{OpenedProfile, Profile, ProfileFileError, Strictn
 
 use super::args::ExportArgs;
 use super::controller::Controller;
-use super::review::settings_count;
 use crate::exit::Exit;
 use crate::interrupt::Interrupt;
 use crate::new_file::{NewFile, NewFileError};
 use crate::output::{Output, say};
+use brushwork_core::settings::counted;
 
 /// Reads the controller and writes the profile.
 pub fn export(args: &ExportArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
@@ -26,7 +26,7 @@ pub fn export(args: &ExportArgs, out: &mut Output, interrupt: &Interrupt) -> Res
         }
         refused => refused.into(),
     })?;
-    let count = settings_count(profile.settings.len());
+    let count = counted(profile.settings.len());
     out.line(format!("{count} of {} are in {}.", controller.describe(), args.file.display()))?;
     if report.failures.is_empty() {
         return Ok(Exit::Done);

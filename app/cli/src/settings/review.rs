@@ -110,13 +110,6 @@ pub fn changes(table: &SettingsTable, before: &SettingsImage, after: &SettingsIm
     diff(table, before, after).into_iter().filter_map(change).collect()
 }
 
-/// `ram` with `changes`.
-pub fn merged(ram: &SettingsImage, changes: &SettingsImage) -> SettingsImage {
-    let mut after = ram.clone();
-    after.merge(changes);
-    after
-}
-
 /// One line for each change: key, old -> new.
 pub fn change_lines(changes: &[Change]) -> Vec<String> {
     let width = |text: fn(&Change) -> &str| {
@@ -128,11 +121,6 @@ pub fn change_lines(changes: &[Change]) -> Vec<String> {
         format!("  {key:<keys$}  {before_text:>olds$} -> {after_text}")
     };
     changes.iter().map(line).collect()
-}
-
-/// "1 setting", "12 settings".
-pub fn settings_count(count: usize) -> String {
-    if count == 1 { "1 setting".to_owned() } else { format!("{count} settings") }
 }
 
 fn commands(table: &SettingsTable, plan: &Plan, address: UnitAddress) -> Vec<PlannedCommand> {

@@ -11,6 +11,7 @@ use crate::exit::Exit;
 use crate::interrupt::Interrupt;
 use crate::output::{Output, say};
 use brushwork_core::keep::{OpenJournal, Store};
+use brushwork_core::settings::remedy;
 
 /// Shows what was cut short, and settles it when asked to.
 pub fn run(args: &UnfinishedArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
@@ -25,11 +26,8 @@ pub fn run(args: &UnfinishedArgs, out: &mut Output, interrupt: &Interrupt) -> Re
     if !args.finish && !args.undo {
         return if args.forget { close(&journals) } else { Ok(Exit::Different) };
     }
-    let remedy = newest.journal.remedy(&ram.image, args.undo);
-    let writable = remedy.iter().filter(|(key, _)| {
-        ram.table.row(key).is_some_and(|row| row.locked(controller.identity().simulated).is_none())
-    });
-    let wanted = Wanted::read(writable.map(|(key, value)| (key.to_owned(), value)).collect());
+    let is_simulated = controller.identity().simulated;
+    let wanted = Wanted::read(remedy(&newest.journal, &ram.table, &ram.image, args.undo, is_simulated));
     let how = write::how(args, newest.journal.act == Act::Save);
     let exit = write::carry_out(&controller, &ram, &wanted, &how, out)?;
     if exit == Exit::Done && !args.dry_run {

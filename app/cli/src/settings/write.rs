@@ -1,19 +1,20 @@
 //! `brushwork settings write` and `import`: shows the changes, asks, writes, and names what did not take.
 
 use brushwork_link::settings::{
-    OpenedProfile, Profile, ReadReport, Refusal, SaveReport, SaveVerdict, SettingsImage, SettingsTable,
-    WriteOptions, WriteReport, changes, plan, write_kept,
+    Known, OpenedProfile, Profile, ReadReport, Refusal, SaveReport, SaveVerdict, SettingsImage,
+    SettingsTable, WriteOptions, WriteReport, changes,
 };
 use serde_json::{Value, json};
 
 use super::args::{Assignment, ImportArgs, UnfinishedArgs, WriteArgs, WriteHow};
 use super::ask;
-use super::controller::{Controller, WRITE_LIMIT};
-use super::review::{Review, merged, settings_count};
+use super::controller::Controller;
+use super::review::Review;
 use super::{keys, memory, profile, read};
 use crate::exit::Exit;
 use crate::interrupt::Interrupt;
 use crate::output::{Output, say};
+use brushwork_core::settings::{Act, Done, counted, fitted, merged, write_options};
 
 /// Writes the changes given, and those of a profile.
 pub fn run(args: &WriteArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
@@ -40,8 +41,8 @@ pub struct Wanted {
     pub left_out_lines: Vec<String>,
     /// What fitting a profile to this controller changed, a sentence each.
     upgraded: Vec<String>,
-    /// Whether values were read from a unit once, so that they are written as they are.
-    as_read: bool,
+    /// Those of them that were read from a unit once, so that they are written as they are.
+    taken: SettingsImage,
 }
 
 impl Wanted {
@@ -50,13 +51,17 @@ impl Wanted {
         Self { changes, ..Self::default() }
     }
 
-    fn options(&self, controller: &Controller<'_>) -> WriteOptions {
-        WriteOptions { as_read: self.as_read, ..controller.write_options() }
-    }
-
     /// Values that the unit had once.
     pub fn read(changes: SettingsImage) -> Self {
-        Self { as_read: true, ..Self::of(changes) }
+        Self { taken: changes.clone(), ..Self::of(changes) }
+    }
+
+    /// How they are written; refused where what was typed cannot be.
+    fn options(&self, controller: &Controller<'_>, ram: &ReadReport) -> Result<WriteOptions, Exit> {
+        let typed = self.changes.iter().filter(|(key, value)| self.taken.get(key) != Some(*value));
+        let typed = typed.map(|(key, value)| (key.to_owned(), value)).collect();
+        let options = controller.write_options();
+        write_options(&ram.table, &ram.image, &self.taken, &typed, options).map_err(cannot_be)
     }
 }
 
@@ -88,7 +93,8 @@ pub fn carry_out(
     how: &WriteHow,
     out: &mut Output,
 ) -> Result<Exit, Exit> {
-    let review = review(controller, ram, wanted)?;
+    let options = wanted.options(controller, ram)?;
+    let review = review(controller, ram, wanted, options)?;
     show(&review, wanted, how, out)?;
     if how.dry_run {
         print_json(controller, &review, wanted, how, &Results::default(), out)?;
@@ -102,7 +108,7 @@ pub fn carry_out(
         ask::agreed(&question(controller, count, how.save), how.yes, controller)?;
     }
     let mut results = Results::default();
-    let exit = perform(controller, &ram.table, wanted, how, &mut results);
+    let exit = perform(controller, &ram.table, (wanted, options), how, &mut results);
     tell(&ram.table, &results, how, out)?;
     print_json(controller, &review, wanted, how, &results, out)?;
     exit
@@ -120,17 +126,16 @@ fn upgraded(
     opened: OpenedProfile,
     how: &WriteHow,
 ) -> Result<(Profile, Vec<String>), Exit> {
-    let fitted = opened.profile.fitted_to(&ram.table);
-    let sentences: Vec<String> = opened.upgraded.into_iter().chain(fitted.changes).collect();
+    let (profile, sentences) = fitted(opened, &ram.table);
     if sentences.is_empty() {
-        return Ok((opened.profile, sentences));
+        return Ok((profile, sentences));
     }
     say("The profile has to be changed to fit this controller:");
     sentences.iter().for_each(|sentence| say(format!("  {sentence}")));
     if !how.dry_run {
         ask::agreed("Use the profile with these changes?", how.yes, controller)?;
     }
-    Ok((fitted.profile, sentences))
+    Ok((profile, sentences))
 }
 
 /// The changes that profile and assignments ask for.
@@ -151,15 +156,10 @@ fn wanted(
         })?;
         let left_out_lines = left_out_lines(controller, ram, &profile);
         let changes = only(&ram.table, &asked.wanted, &how.only)?;
-        wanted = Wanted { changes, left_out: asked.left_out, left_out_lines, upgraded, as_read: true };
+        wanted = Wanted { left_out: asked.left_out, left_out_lines, upgraded, ..Wanted::read(changes) };
     }
     let typed = keys::parse(&ram.table, assignments).map_err(|problems| refused(&problems))?;
-    if wanted.as_read {
-        // A profile may hold what a unit held once; what somebody types has to be right.
-        let typed = changes(&ram.table, &ram.image, &merged(&ram.image, &typed));
-        let beside = merged(&ram.image, &wanted.changes);
-        plan(&ram.table, &beside, &typed, controller.write_options()).map_err(cannot_be)?;
-    }
+    typed.iter().for_each(|(key, _)| wanted.taken.remove(key));
     wanted.changes.merge(&typed);
     wanted.changes = changes(&ram.table, &ram.image, &merged(&ram.image, &wanted.changes));
     Ok(wanted)
@@ -194,8 +194,12 @@ fn left_out_lines(controller: &Controller<'_>, ram: &ReadReport, profile: &Profi
     lines
 }
 
-fn review(controller: &Controller<'_>, ram: &ReadReport, wanted: &Wanted) -> Result<Review, Exit> {
-    let options = wanted.options(controller);
+fn review(
+    controller: &Controller<'_>,
+    ram: &ReadReport,
+    wanted: &Wanted,
+    options: WriteOptions,
+) -> Result<Review, Exit> {
     let mut review = Review::new(&ram.table, &ram.image, &wanted.changes, options, controller.address())
         .map_err(cannot_be)?;
     let touches_streams = review.changes.iter().any(|change| change.key.starts_with("stream."));
@@ -245,9 +249,9 @@ fn question(controller: &Controller<'_>, count: usize, save: bool) -> String {
     let place = controller.describe();
     match (count, save) {
         (0, _) => format!("Save all settings of {place} to EEPROM?"),
-        (count, false) => format!("Write {} to RAM of {place}?", settings_count(count)),
+        (count, false) => format!("Write {} to RAM of {place}?", counted(count)),
         (count, true) => {
-            format!("Write {} to RAM of {place} and save all settings to EEPROM?", settings_count(count))
+            format!("Write {} to RAM of {place} and save all settings to EEPROM?", counted(count))
         }
     }
 }
@@ -256,22 +260,25 @@ fn question(controller: &Controller<'_>, count: usize, save: bool) -> String {
 fn perform(
     controller: &Controller<'_>,
     table: &SettingsTable,
-    wanted: &Wanted,
+    (wanted, options): (&Wanted, WriteOptions),
     how: &WriteHow,
     results: &mut Results,
 ) -> Result<Exit, Exit> {
     let mut exit = Exit::Done;
     let changes = wanted.changes.clone();
     if !changes.is_empty() {
-        let (options, job_table, mut keeper) =
-            (wanted.options(controller), table.clone(), controller.keeper());
-        let finished = controller.run("write the settings", WRITE_LIMIT, move |wire| {
-            write_kept(wire, &job_table, &changes, options, &mut *keeper)
-        })?;
-        let report = finished.value.map_err(|error| {
-            say(error.to_string());
-            finished.broken.unwrap_or(Exit::NotTaken)
-        })?;
+        let act = Act::Write { wanted: changes, known: Known::default() };
+        let finished = controller.act("write the settings", act, table, options)?;
+        let refused = |why: &str| {
+            say(why);
+            Err(finished.broken.unwrap_or(Exit::NotTaken))
+        };
+        let report = match finished.value {
+            Ok(Done::Written(report, _)) => *report,
+            Ok(Done::NotWritten(error)) => return refused(&error.to_string()),
+            Ok(_) => return Err(Exit::Failed),
+            Err(failure) => return refused(&failure.to_string()),
+        };
         let is_complete = report.is_complete();
         results.write = Some(report);
         exit = finished.broken.unwrap_or(if is_complete { Exit::Done } else { Exit::NotTaken });
@@ -299,7 +306,7 @@ fn tell(table: &SettingsTable, results: &Results, how: &WriteHow, out: &mut Outp
         }
         let taken = report.rows.len() - report.did_not_take().count();
         if !how.json {
-            out.line(format!("{} written and read back.", settings_count(taken)))?;
+            out.line(format!("{} written and read back.", counted(taken)))?;
             if report.is_complete() && !how.save {
                 out.line("A power cycle brings the old values back unless they are saved (`brushwork settings save`).")?;
             }

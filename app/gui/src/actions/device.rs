@@ -397,6 +397,6 @@ fn has_others(model: &Model) -> Ready {
 
 fn has_changes(model: &Model) -> Ready {
     settings_idle(model)?;
-    let has = model.front.general.unit().is_some_and(|unit| !unit.edits().is_empty());
+    let has = model.front.settings.unit().is_some_and(|unit| !unit.edits().is_empty());
     if has { Ok(()) } else { Err("No setting was edited.".into()) }
 }

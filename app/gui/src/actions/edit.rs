@@ -41,6 +41,6 @@ pub(super) const ACTIONS: &[Action] = &[
 ];
 
 fn has_edits(model: &Model) -> Ready {
-    let has = model.front.general.unit().is_some_and(|unit| !unit.edits().is_empty() || unit.has_typed());
+    let has = model.front.settings.unit().is_some_and(|unit| !unit.edits().is_empty() || unit.has_typed());
     if has { Ok(()) } else { Err("No setting was edited.".into()) }
 }

@@ -201,9 +201,9 @@ fn connected(model: &Model) -> Ready {
 /// A controller is connected and no other work with its settings runs.
 fn settings_idle(model: &Model) -> Ready {
     connected(model)?;
-    match model.front.general.running() {
+    match model.front.settings.running() {
         Some(running) => Err(format!("Wait until Brushwork is done ({}).", running.name()).into()),
-        None if model.front.general.is_busy() => {
+        None if model.front.general.holds_settings() => {
             Err("A calibration or a test uses the settings. End it first.".into())
         }
         None => Ok(()),

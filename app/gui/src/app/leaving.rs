@@ -4,10 +4,8 @@
 
 use super::App;
 use crate::model::DeskId;
-use crate::model::jobs::Owner;
 use crate::tune::model::Afterwards;
 use brushwork_link::device::Request;
-use brushwork_link::settings::SettingsImage;
 use egui::{Context, ViewportCommand};
 
 /// Whether the window waits for a run before it closes.
@@ -65,7 +63,7 @@ impl App {
     fn has_to_put_back(&self) -> bool {
         let is_leaving = self.leaving == Leaving::WhenPutBack;
         self.model.desks().any(|desk| {
-            let owes_winding = desk.tune.cleared_winding().is_some() || is_leaving && desk.loops.is_busy();
+            let owes_winding = desk.tune.cleared_winding().is_some() || is_leaving && desk.settings.is_busy();
             desk.tune.is_running() || desk.is_connected() && owes_winding
         })
     }
@@ -105,11 +103,11 @@ impl App {
     /// Writes L and R back when the run that they were cleared for has ended.
     pub(super) fn put_winding_back(&mut self, id: DeskId) {
         let Some(desk) = self.model.desk_mut(id) else { return };
-        if desk.loops.is_busy() || !desk.is_connected() {
+        if desk.settings.is_busy() || !desk.is_connected() {
             return;
         }
-        let (tune, loops) = (&mut desk.tune, &desk.loops);
-        match tune.is_winding_back(|key| loops.held_value(key)) {
+        let (tune, unit) = (&mut desk.tune, desk.settings.unit());
+        match tune.is_winding_back(|key| unit?.on_controller(key)) {
             Some(true) => {
                 return self.model.messages.note("L and R are put back as they were before the run.");
             }
@@ -123,28 +121,10 @@ impl App {
         }
         let Some(image) = desk.tune.winding_due().cloned() else { return };
         // A write that is not taken is tried again in the next frame.
-        if self.write_gains_of(id, image).is_ok()
+        if self.write_ram_of(id, image).is_ok()
             && let Some(desk) = self.model.desk_mut(id)
         {
             desk.tune.winding_is_written();
         }
-    }
-
-    /// Writes gains of a unit to RAM as the settings of the loops are written: with a backup before, and read back.
-    pub(super) fn write_gains_of(&mut self, id: DeskId, image: SettingsImage) -> Result<(), String> {
-        let busy = || "The settings are being read or written. Try again in a moment.".to_owned();
-        let none = "No controller is connected.";
-        let desk = self.model.desk_mut(id).ok_or(none)?;
-        let identity = desk.link.identity().cloned().ok_or(none)?;
-        let stream = desk.link.stream;
-        let keeper = desk.general.keeper().ok_or(none)?;
-        let job = desk.loops.apply_image(image, &identity, stream, keeper).ok_or_else(busy)?;
-        if self.start_for(id, Owner::Loops, job) {
-            return Ok(());
-        }
-        if let Some(desk) = self.model.desk_mut(id) {
-            desk.loops.not_begun();
-        }
-        Err(busy())
     }
 }

@@ -91,7 +91,7 @@ impl App {
         let target = desk.phase.target().unwrap_or_default().to_owned();
         desk.phase = Phase::Open { target: target.clone() };
         desk.link = LinkView::default();
-        desk.general.keep_in(self.parts.keeping.clone(), ports);
+        desk.settings.keep_in(self.parts.keeping.clone(), ports);
         desk.world.forget();
         let poll = desk.poll;
         self.model.devices.remember(&target);
@@ -150,7 +150,6 @@ impl App {
         self.disarm();
         self.model.bring_to_front(id);
         self.model.devices.choose_desk(&self.model.front);
-        self.model.front.loops.want_reading();
     }
 
     pub(super) fn forget(&mut self, id: DeskId) {

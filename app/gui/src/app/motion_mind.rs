@@ -1,7 +1,6 @@
 //! What the screens of a Motion Mind ask for: reads of all registers, and writes by its assistants.
 
 use brushwork_link::device::{DeviceHandle, Request};
-use brushwork_link::settings::SettingsImage;
 
 use super::App;
 use crate::command::MindWish;
@@ -13,7 +12,7 @@ impl App {
     pub(super) fn read_for_screen(&mut self) {
         let Some(now) = self.device().map(DeviceHandle::now) else { return };
         let (screen, front) = (self.model.screen, &mut self.model.front);
-        let is_free = front.is_connected() && !front.is_guided() && front.general.running().is_none();
+        let is_free = front.is_connected() && !front.is_guided() && front.settings.running().is_none();
         let wants_read = is_free && front.family().shows_registers(screen);
         let Some(request) = wants_read.then(|| front.motion_mind.live.read(now)).flatten() else { return };
         // A link that is busy is asked again later; nobody has to be told.
@@ -34,14 +33,14 @@ impl App {
         let told = match wish {
             MindWish::Turn(image) => {
                 let held = self.model.front.step_registers();
-                let told = self.write_registers(&image);
+                let told = self.write_ram(image);
                 if let (Ok(()), Some(held)) = (&told, held) {
                     self.model.front.motion_mind.steps.remember(held);
                 }
                 told
             }
             MindWish::PutBack(image) => {
-                let told = self.write_registers(&image);
+                let told = self.write_ram(image);
                 if told.is_ok() {
                     self.model.front.motion_mind.steps.is_back();
                 }
@@ -49,7 +48,7 @@ impl App {
             }
             MindWish::Radio(max, min) => {
                 let ends = self.model.front.as_settings(&[("RCMAX", max), ("RCMIN", min)]);
-                self.write_registers(&ends)
+                self.write_ram(ends)
             }
             MindWish::UseRadio => {
                 self.use_radio();
@@ -67,25 +66,12 @@ impl App {
         let for_position = front.has_bit("FUNCTION", "RCPOS-ENCFDBCK");
         let Some([max, min, band]) = front.motion_mind.radio.result(for_position) else { return };
         let image = front.as_settings(&[("RCMAX", max), ("RCMIN", min), ("RCBAND", band)]);
-        if let Some(unit) = front.general.unit_mut() {
+        if let Some(unit) = front.settings.unit_mut() {
             for (key, value) in image.iter() {
                 unit.set(key, value);
             }
         }
         self.show(Screen::GeneralSettings);
-        self.model.front.general.open_once_read(Sheet::Write);
-    }
-
-    /// Writes registers to RAM with a backup before, and reads them back.
-    pub(super) fn write_registers(&mut self, image: &SettingsImage) -> Result<(), String> {
-        let front = &mut self.model.front;
-        let unit = front.general.unit().ok_or("No controller is connected.")?;
-        let changed = image.iter().filter(|(key, value)| unit.on_controller(key) != Some(*value));
-        let changed: SettingsImage = changed.map(|(key, value)| (key.to_owned(), value)).collect();
-        if changed.is_empty() {
-            return Err("The registers hold these values already.".to_owned());
-        }
-        front.loops.adopt(unit.table().clone());
-        self.write_gains(changed)
+        self.model.front.general_view().open_once_read(Sheet::Write);
     }
 }

@@ -5,11 +5,12 @@ use brushwork_link::device::Request;
 
 use super::App;
 use crate::model::DeskId;
-use crate::model::general::SettingsWish;
 use crate::model::jobs::Owner;
 use crate::model::loop_settings::Column;
 use crate::model::screen::Screen;
+use crate::model::settings::{SettingsWish, UnitSettings};
 use crate::model::traffic::Transact;
+use brushwork_link::settings::SettingsImage;
 
 impl App {
     /// Starts or ends work with the settings, on the device thread.
@@ -28,11 +29,11 @@ impl App {
             return;
         }
         let stream = desk.link.stream;
-        if let Some(job) = desk.general.begin(wish, stream)
+        if let Some(job) = desk.general_view().begin(wish, stream)
             && !self.start_for(id, Owner::Settings, job)
             && let Some(desk) = self.model.desk_mut(id)
         {
-            desk.general.not_begun();
+            desk.general_view().not_begun();
         }
     }
 
@@ -44,21 +45,19 @@ impl App {
     /// say what is saved and what is not, and what an act that was cut short has left.
     pub(super) fn look_for_settings(&mut self) {
         let front = &mut self.model.front;
-        let Some(identity) = front.link.identity() else { return };
-        front.general.look_at(identity);
-        if !front.general.wants_reading() {
+        if !front.is_connected() || !front.settings.wants_reading() {
             return;
         }
-        if front.general.has_unfinished() {
+        if front.settings.has_unfinished() {
             return self.settings(SettingsWish::Read);
         }
         if front.is_idle()
-            && let Some(job) = front.general.begin_quietly()
+            && let Some(job) = front.settings.begin_quietly()
         {
             let (id, job_id) = (front.id(), job.id());
             match self.links.device(id).map(|device| device.request(Request::Job(job))) {
                 Some(Ok(())) => front.jobs.begun(job_id, Owner::Settings),
-                Some(Err(_)) | None => front.general.not_begun(),
+                Some(Err(_)) | None => front.settings.not_begun(),
             }
         }
     }
@@ -71,44 +70,60 @@ impl App {
             if !is_shown {
                 desk.general.cancel_calibration();
             }
-            if let Some(wish) = desk.general.next_wish() {
-                self.settings_of(id, wish);
+            if desk.general.wants_closing() && desk.settings.running().is_none() {
+                self.settings_of(id, SettingsWish::CloseInput);
             }
         }
     }
 
     pub(super) fn clamp_test(&mut self) {
-        if let Some(job) = self.model.front.general.begin_clamp_test()
+        if let Some(job) = self.model.front.general_view().begin_clamp_test()
             && !self.start_for(self.model.front.id(), Owner::ClampTest, job)
         {
             self.model.front.general.clamp_test_not_begun();
         }
     }
 
-    /// Reads the settings of the control loops when a screen that shows them wants them.
+    /// Reads what the screen in front shows of the settings, as far as it is not known or in doubt.
     pub(super) fn read_loops(&mut self) {
-        let has_loops = self.model.screen.has_loops() && self.model.front.family().has_loops();
-        if !has_loops || !self.model.front.loops.wants_reading() {
-            return;
-        }
-        let Some(identity) = self.model.front.link.identity().cloned() else { return };
-        if let Some(job) = self.model.front.loops.read(&identity)
-            && !self.start_for(self.model.front.id(), Owner::Loops, job)
+        let front = &mut self.model.front;
+        let has_loops = self.model.screen.has_loops() && front.family().has_loops() && front.is_connected();
+        let keys = front.settings.unit().filter(|_| has_loops).map(UnitSettings::loop_keys);
+        if let Some(job) = keys.and_then(|keys| front.settings.read(&keys, false))
+            && !self.start_for(self.model.front.id(), Owner::Settings, job)
         {
-            self.model.front.loops.not_begun();
+            self.model.front.settings.not_begun();
+        }
+    }
+
+    /// Has the settings that the screens that drive show read anew.
+    pub(super) fn read_loops_again(&mut self) {
+        if let Some(unit) = self.model.front.settings.unit_mut() {
+            unit.doubt_keys(&unit.loop_keys());
         }
     }
 
     pub(super) fn apply_loops(&mut self, columns: &[Column]) {
-        let Some(identity) = self.model.front.link.identity().cloned() else { return };
-        let stream = self.model.front.link.stream;
-        // Whoever is connected is looked at, so there is one.
-        let Some(keeper) = self.model.front.general.keeper() else { return };
-        if let Some(job) = self.model.front.loops.apply(columns, &identity, stream, keeper)
-            && !self.start_for(self.model.front.id(), Owner::Loops, job)
-        {
-            self.model.front.loops.not_begun();
+        let front = &mut self.model.front;
+        let Some(edits) = front.settings.unit().map(|unit| unit.loop_edits(columns)) else { return };
+        // Nothing to write, or another write: the button is there again.
+        let _ = self.write_ram_of(self.model.front.id(), edits);
+    }
+
+    /// Writes values to a unit's RAM, whatever screen they come from and whatever its family: with a backup before, and read back.
+    pub(super) fn write_ram_of(&mut self, id: DeskId, wanted: SettingsImage) -> Result<(), String> {
+        let busy = || "The settings are being read or written. Try again in a moment.".to_owned();
+        let none = "No controller is connected.";
+        let desk = self.model.desk_mut(id).filter(|desk| desk.is_connected()).ok_or(none)?;
+        let stream = desk.link.stream;
+        let job = desk.settings.apply(wanted, stream).ok_or_else(busy)?;
+        if self.start_for(id, Owner::Settings, job) {
+            return Ok(());
         }
+        if let Some(desk) = self.model.desk_mut(id) {
+            desk.settings.not_begun();
+        }
+        Err(busy())
     }
 
     /// Sends a command that was put together by hand; one that changes settings once a backup of them is kept.
@@ -123,7 +138,7 @@ impl App {
             return;
         }
         let identity = front.link.identity().cloned().filter(|identity| transact.changes_settings(identity));
-        let Some((identity, keeper)) = identity.zip(front.general.keeper()) else {
+        let Some((identity, keeper)) = identity.zip(front.settings.keeper()) else {
             return self.send_transact(self.model.front.id(), transact);
         };
         let job = front.traffic.kept.keep_first(transact, &identity, keeper);
@@ -138,10 +153,6 @@ impl App {
         match self.model.desk_mut(id).and_then(|desk| desk.traffic.kept.ready()) {
             Some(Ok(transact)) => {
                 self.send_transact(id, transact);
-                if let Some(desk) = self.model.desk_mut(id) {
-                    desk.general.ram_changes();
-                    desk.loops.want_reading();
-                }
             }
             Some(Err((number, failure))) => {
                 if let Some(desk) = self.model.desk_mut(id) {
@@ -154,11 +165,7 @@ impl App {
 
     fn send_transact(&mut self, id: DeskId, transact: Transact) {
         let is_sent = self.request_of(id, transact.request());
-        let Some(desk) = self.model.desk_mut(id) else { return };
-        if is_sent {
-            // It may have changed a setting.
-            desk.watch.want_reading();
-        } else {
+        if !is_sent && let Some(desk) = self.model.desk_mut(id) {
             desk.traffic.composer.forget_waiting();
         }
     }

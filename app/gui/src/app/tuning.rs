@@ -67,17 +67,18 @@ impl App {
             desk.tune.adopt_methods(desk.family());
             for (motor, travel) in Motor::BOTH.into_iter().zip(desk.travels()) {
                 desk.tune.adopt_travel(motor, travel);
-                desk.tune.adopt_encoder(motor, desk.loops.encoder(motor));
+                let unit = desk.settings.unit();
+                desk.tune.adopt_encoder(motor, unit.and_then(|unit| unit.encoder(motor)));
             }
             if let Some(wish) = desk.tune.take_waiting() {
                 self.settings_of(id, wish);
             }
             let Some(desk) = self.model.desk_mut(id) else { continue };
             let refused = !desk.link.refusals.is_empty();
-            let general = &desk.general;
+            let settings = &desk.settings;
             let origin = || {
-                let subject = *general.unit()?.table().subject();
-                Some(Origin { subject, keeper: TrialKeeper::new(general.keeper()?) })
+                let subject = *settings.unit()?.table().subject();
+                Some(Origin { subject, keeper: TrialKeeper::new(settings.keeper()?) })
             };
             if let Some(next) = desk.tune.next(desk.link.arming, refused, origin) {
                 self.ask_next(id, next);
@@ -93,13 +94,13 @@ impl App {
         let motor = front.tune.motor(which);
         let (mut before, mut cleared) = (SettingsImage::default(), SettingsImage::default());
         for name in ["inductance_henries", "resistance_ohms"] {
-            let Some(value) = front.loops.held(motor, name) else {
+            let Some(value) = front.settings.unit().and_then(|unit| unit.held(motor, name)) else {
                 return Err("L and R have not been read. Read the settings again first.".to_owned());
             };
             before.set(&key(motor, name), SettingValue::Number(value));
             cleared.set(&key(motor, name), SettingValue::Number(0.0));
         }
-        self.write_gains(cleared)?;
+        self.write_ram(cleared)?;
         self.model.front.tune.winding_cleared(motor, before);
         Ok(())
     }
@@ -136,15 +137,14 @@ impl App {
                 "The registers are being read, so that they can be put back. Apply in a moment.".to_owned()
             );
         }
-        self.write_held(registers.image(motor))?;
+        self.write_ram(registers.image(motor))?;
         self.model.front.tune.front_mut(which).undo = held.map(|held| held.image(motor));
         Ok(())
     }
 
     /// Writes what was turned by hand, and nothing else.
     fn adjust(&mut self, which: Loop, motor: Motor, registers: Registers) -> Result<(), String> {
-        let loops = &self.model.front.loops;
-        let held = Registers::held(loops, motor, which == Loop::Position).map(|held| held.image(motor));
+        let held = self.model.front.held_gains(motor, which == Loop::Position).map(|held| held.image(motor));
         let wanted = registers.image(motor);
         let changed =
             wanted.iter().filter(|(key, value)| held.as_ref().and_then(|held| held.get(key)) != Some(*value));
@@ -152,29 +152,26 @@ impl App {
         if image.is_empty() {
             return Err("That changes nothing: the value is at its end already.".to_owned());
         }
-        self.write_gains(image)
+        self.write_ram(image)
     }
 
     fn undo_gains(&mut self, which: Loop) -> Result<(), String> {
         let Some(image) = self.model.front.tune.front(which).undo.clone() else {
             return Err("Nothing was applied that could be undone.".to_owned());
         };
-        self.write_held(image)?;
+        self.write_ram(image)?;
         self.model.front.tune.front_mut(which).undo = None;
         Ok(())
     }
 
-    /// Writes gains where the family keeps them: the loops' own settings, or registers.
-    fn write_held(&mut self, image: SettingsImage) -> Result<(), String> {
-        if self.model.front.family().has_loops() {
-            self.write_gains(image)
-        } else {
-            self.write_registers(&image)
+    /// Writes values to RAM of the controller in front, unless it holds them all.
+    pub(super) fn write_ram(&mut self, wanted: SettingsImage) -> Result<(), String> {
+        let front = &self.model.front;
+        let unit = front.settings.unit().ok_or("No controller is connected.")?;
+        if wanted.iter().all(|(key, value)| unit.confirmed(key) == Some(value)) {
+            return Err("The controller holds these values already.".to_owned());
         }
-    }
-
-    pub(super) fn write_gains(&mut self, image: SettingsImage) -> Result<(), String> {
-        self.write_gains_of(self.model.front.id(), image)
+        self.write_ram_of(front.id(), wanted)
     }
 
     fn open_report(&mut self, path: &std::path::Path) -> Result<(), String> {

@@ -10,8 +10,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use brushwork_link::device::{ArmScope, Event, PollRate};
-use brushwork_link::settings::SettingValue;
+use brushwork_link::settings::{SettingValue, SettingsImage};
 use brushwork_link::transport::ConnectTarget;
+use brushwork_mcp_client::diagnosis;
 use brushwork_mcp_client::diagnosis::{Evidence, Measured, Script};
 use brushwork_mcp_client::script::MIN_AUTORUN;
 use brushwork_plant::world::ScriptRun;
@@ -20,26 +21,27 @@ use brushwork_plant::world::WorldView;
 use super::channels::graph_channels;
 use super::drawer::{Drawers, Tab};
 use super::firmware::Firmware;
-use super::general::General;
+use super::general::{General, GeneralView};
 use super::generator::Generator;
 use super::guided::said;
 use super::history::History;
 use super::jobs::{Jobs, Owner};
 use super::link::{Arming, Effect, LinkView};
-use super::loop_settings::LoopSettings;
+use super::loop_settings::LoopView;
 use super::motion_mind::MotionMindDesk;
 use super::position::Position;
 use super::pwm::Pwm;
 use super::qpps::QppsPanel;
 use super::screen::Screen;
 use super::script::ScriptWork;
+use super::settings::Settings;
 use super::traffic::Traffic;
 use super::velocity::Velocity;
 use super::watch::Watch;
 use super::world::WorldPanel;
 use crate::debugger::Debugging;
 use crate::family;
-use crate::family::{Family, FamilyKind, Sliders};
+use crate::family::{Ability, Family, FamilyKind, Sliders};
 use crate::graph::LiveGraph;
 use crate::tune::Tuning;
 
@@ -69,7 +71,8 @@ pub struct Desk {
     pub pwm: Pwm,
     /// Whose the jobs on the device thread are.
     pub jobs: Jobs,
-    /// The settings of the units met so far, and what is being done with them.
+    /// The settings of the units met so far, and what is being done with them: every screen shows these.
+    pub settings: Settings,
     pub general: General,
     pub velocity: Velocity,
     /// The firmware window and the update that runs.
@@ -83,7 +86,7 @@ pub struct Desk {
     pub tune: Tuning,
     /// What the screens that drive have open above their graphs.
     pub drawers: Drawers,
-    pub loops: LoopSettings,
+    pub loops: LoopView,
     /// What happened since the connection.
     pub history: History,
     /// What a diagnosis needs besides the status word.
@@ -164,6 +167,7 @@ impl Desk {
             graph: LiveGraph::new(graph_channels(family::of(FamilyKind::default()).channels()), 0.1),
             pwm: Pwm::default(),
             jobs: Jobs::default(),
+            settings: Settings::default(),
             general: General::default(),
             velocity: Velocity::default(),
             firmware: Firmware::default(),
@@ -173,7 +177,7 @@ impl Desk {
             qpps: QppsPanel::default(),
             tune: Tuning::default(),
             drawers: Drawers::default(),
-            loops: LoopSettings::default(),
+            loops: LoopView::default(),
             history: History::default(),
             watch: Watch::default(),
             motion_mind: MotionMindDesk::default(),
@@ -215,7 +219,7 @@ impl Desk {
     pub fn is_blank(&self) -> bool {
         self.phase == Phase::Closed
             && self.graph.sheet().track.history.is_empty()
-            && !self.general.has_edits()
+            && !self.settings.has_edits()
     }
 
     /// Whether a unit has answered on the open link.
@@ -227,9 +231,9 @@ impl Desk {
     pub fn is_idle(&self) -> bool {
         self.link.arming == Arming::Disarmed
             && self.is_connected()
-            && !self.watch.is_busy()
-            && !self.loops.is_busy()
-            && !self.general.is_busy()
+            && !self.settings.is_at_work()
+            && !self.general.holds_settings()
+            && self.diagnosis_keys().is_empty()
             && !self.is_guided()
             && self.tune.running().is_none()
             && !self.firmware.stage.is_running()
@@ -261,52 +265,107 @@ impl Desk {
     /// Takes over an event of this link. What it means beyond this desk is handed back: something to say, or the
     /// end of the link.
     pub fn take(&mut self, event: Event) -> Vec<Effect> {
+        let changes_ram = self.changes_ram(&event);
         self.history.note(&event);
         self.traffic.note(&event);
         self.firmware.note(&event);
+        if changes_ram {
+            self.settings.doubt();
+        }
         if self.motion_mind.take(&event) {
             return Vec::new();
         }
         self.watch.note(&event);
-        if matches!(event, Event::Stopped(_)) && !self.family().has_loops() {
-            // A stop may have switched a loop off by a register.
-            self.general.ram_changes();
-        }
-        let owner = self.jobs.owner(&event);
-        if matches!(event, Event::JobEnded(_)) && owner != Some(Owner::Watch) {
-            // Whatever it was may have changed settings.
-            self.watch.want_reading();
-        }
-        let effects = match owner {
+        let effects = match self.jobs.owner(&event) {
             Some(owner) => self.take_of(owner, event),
             None => self.link.take(event),
         };
-        effects.into_iter().filter_map(|effect| self.settle(effect)).collect()
+        let effects = effects.into_iter().filter_map(|effect| self.settle(effect)).collect();
+        self.look_at_unit();
+        self.follow_settings();
+        effects
+    }
+
+    /// Whether the event is about something that may have changed the controller's settings past [`Settings`].
+    fn changes_ram(&self, event: &Event) -> bool {
+        match event {
+            Event::Transacted { id, .. } => self.traffic.kept.is_sent(*id),
+            // A stop may have switched a loop off by a register.
+            Event::Stopped(_) => !self.family().has_loops(),
+            _ => false,
+        }
+    }
+
+    /// The settings with the screen that shows all of them.
+    pub fn general_view(&mut self) -> GeneralView<'_> {
+        GeneralView::new(&mut self.settings, &mut self.general)
+    }
+
+    /// Turns to the settings of the unit that is looked at.
+    fn look_at_unit(&mut self) {
+        if let Some(identity) = self.link.identity()
+            && self.settings.look_at(identity)
+        {
+            self.general.forget_unit();
+        }
+    }
+
+    /// Lights what follows from the settings anew where they have changed.
+    fn follow_settings(&mut self) {
+        let is_diagnosed = self.family().lacks(Ability::Diagnosis).is_none();
+        if self.watch.see(self.settings.unit().filter(|_| is_diagnosed)) {
+            self.update_homed();
+        }
+    }
+
+    /// What a diagnosis has to ask the controller for.
+    pub fn diagnosis_keys(&self) -> Vec<String> {
+        self.settings.unit().map(|unit| unit.unasked(self.watch.keys())).unwrap_or_default()
+    }
+
+    /// Whoever looks why the motors do not run is to see the controller as it is now.
+    pub fn doubt_diagnosis(&mut self) {
+        if let Some(unit) = self.settings.unit_mut() {
+            unit.doubt_keys(self.watch.keys());
+        }
+    }
+
+    /// The settings that a diagnosis goes by, once they were read.
+    fn diagnosed(&self) -> Option<&SettingsImage> {
+        let keys = Some(self.watch.keys()).filter(|keys| !keys.is_empty())?;
+        self.settings.unit()?.ram_with(keys)
+    }
+
+    /// Whether a pin that can stop a motor has to be read for the diagnosis.
+    pub fn diagnosis_wants_signals(&self) -> bool {
+        self.diagnosed().is_some_and(diagnosis::has_actions)
+    }
+
+    /// Whether each motor is homed or at a limit by an action of its pins; `None` where that is not known.
+    pub fn homed(&self) -> Option<[bool; 2]> {
+        self.watch.homed(self.diagnosed()?)
     }
 
     /// Hands an event of a job to whoever asked for the job.
     fn take_of(&mut self, owner: Owner, event: Event) -> Vec<Effect> {
         match owner {
-            Owner::Settings => self.general.take(event),
+            Owner::Settings => {
+                let ended = self.settings.take(event);
+                ended.map(|ended| self.general_view().take(ended)).unwrap_or_default()
+            }
             Owner::ClampTest => self.general.take_clamp_test(event),
-            Owner::Loops => {
-                let effects = self.loops.take(event);
-                if let Some(written) = self.loops.take_written() {
-                    self.general.note_written_elsewhere(&written);
-                }
-                effects
-            }
-            Owner::Watch => {
-                self.watch.take(event);
-                self.update_homed();
-                Vec::new()
-            }
             Owner::Generator => said(
                 self.generator.take(event),
                 "The profile was played to its end. The motors were stopped.",
             ),
             Owner::Qpps => said(self.qpps.take(event), "QPPS was measured. The motors were stopped."),
-            Owner::Script => self.script.take(event),
+            Owner::Script => {
+                if matches!(event, Event::JobEnded(_)) {
+                    // It may have set autorun.
+                    self.settings.doubt();
+                }
+                self.script.take(event)
+            }
             Owner::Tune => self.take_tuning(event),
         }
     }
@@ -315,10 +374,7 @@ impl Desk {
         let effects = self.tune.take(event);
         if !self.tune.is_running() {
             // A run has written gains and put others back.
-            self.loops.want_reading();
-            if !self.family().has_loops() {
-                self.general.ram_changes();
-            }
+            self.settings.doubt();
         }
         effects
     }
@@ -369,7 +425,7 @@ impl Desk {
 
     /// Whether the unit starts its script by itself, as far as its settings were read.
     fn autoruns(&self) -> bool {
-        let delay = self.watch.settings().and_then(|settings| settings.get("script.autorun_delay"));
+        let delay = self.settings.unit().and_then(|unit| unit.on_controller("script.autorun_delay"));
         matches!(delay, Some(SettingValue::Int(delay_ms)) if delay_ms >= MIN_AUTORUN.as_millis() as i64)
     }
 
@@ -378,7 +434,7 @@ impl Desk {
         let identity = self.link.identity()?;
         let status = self.link.status.as_ref()?;
         Some(Evidence {
-            settings: self.watch.settings(),
+            settings: self.diagnosed(),
             pins: self.watch.pins(),
             stream: self.link.stream,
             measured: Measured::of(|channel| self.link.readings.get(channel)),
@@ -395,7 +451,7 @@ impl Desk {
     /// Brings the home lamps of an MCP up to date with its pins.
     fn update_homed(&mut self) {
         let Some(identity) = self.link.identity().filter(|identity| is_mcp(identity)) else { return };
-        let (address, homed) = (identity.address, self.watch.homed());
+        let (address, homed) = (identity.address, self.homed());
         self.link.set_homed(homed);
         if let Some(homed) = homed {
             self.history.note_homed(address, homed);
@@ -425,7 +481,9 @@ impl Desk {
                 self.turn_to_family();
                 self.graph.push_gap();
                 self.forget_unit();
-                self.loops.want_reading();
+                // Whatever happened to it while another one was looked at.
+                self.look_at_unit();
+                self.settings.doubt();
                 self.watch.forget();
                 self.debug.forget();
             }
@@ -443,7 +501,7 @@ impl Desk {
         self.traffic.link_ended();
         self.debug.forget();
         self.firmware.not_entered("the link was lost.");
-        self.general.link_ended();
+        self.general_view().link_ended();
         self.forget_unit();
         self.rest();
         self.graph.link_ended();
@@ -468,7 +526,6 @@ impl Desk {
 
     /// What is known of one unit's motors says nothing of another's.
     fn forget_unit(&mut self) {
-        self.loops.forget();
         self.motion_mind.forget_unit();
         self.generator.forget();
         self.script.forget();

@@ -69,7 +69,10 @@ impl Desk {
 
     /// Puts what was measured into the settings of the PWM screen, where it is applied.
     pub fn take_over_qpps(&mut self, motor: Motor, counts_per_s: f64) {
-        self.loops.edit_qpps(motor, counts_per_s);
+        if let Some(unit) = self.settings.unit_mut() {
+            unit.edit_qpps(motor, counts_per_s);
+            self.loops.note_edit();
+        }
         if self.drawers.open(Screen::Pwm) != Some(Tab::Settings) {
             self.drawers.press(Screen::Pwm, Tab::Settings);
         }
@@ -88,12 +91,14 @@ impl Desk {
 
     /// Speed at full duty of each motor, counts/s; 0 where it was not read.
     pub fn top_speeds(&self) -> [f64; 2] {
-        Motor::BOTH.map(|motor| self.loops.qpps(motor).unwrap_or(0.0).min(f64::from(i32::MAX)))
+        let unit = self.settings.unit();
+        Motor::BOTH
+            .map(|motor| unit.and_then(|unit| unit.qpps(motor)).unwrap_or(0.0).min(f64::from(i32::MAX)))
     }
 
     pub fn travels(&self) -> Travels {
         match self.family().has_loops() {
-            true => Motor::BOTH.map(|motor| self.loops.travel(motor)),
+            true => Motor::BOTH.map(|motor| self.settings.unit()?.travel(motor)),
             false => [self.virtual_travel(), None],
         }
     }
@@ -125,7 +130,9 @@ impl Desk {
             match mode {
                 Mode::Duty => Some(Reach { low: -100.0, high: 100.0, qpps }),
                 Mode::Speed => (qpps >= 1.0).then_some(Reach { low: -qpps, high: qpps, qpps }),
-                Mode::Position => self.loops.travel(motor).map(|(low, high)| Reach { low, high, qpps }),
+                Mode::Position => {
+                    self.settings.unit()?.travel(motor).map(|(low, high)| Reach { low, high, qpps })
+                }
             }
         })
     }

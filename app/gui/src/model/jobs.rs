@@ -7,12 +7,9 @@ use brushwork_link::device::{Event, JobId};
 /// Who is told how far a job is and how it ended. Whoever only looks at its ticket is not among them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Owner {
-    /// General Settings.
+    /// The settings of the units, whatever screen asked.
     Settings,
     ClampTest,
-    Loops,
-    /// What a diagnosis needs.
-    Watch,
     Generator,
     Qpps,
     /// The download of a script.

@@ -31,6 +31,7 @@ pub mod readings;
 pub mod screen;
 pub mod script;
 pub mod setpoints;
+pub mod settings;
 pub mod simulated;
 pub mod traffic;
 pub mod velocity;
@@ -192,7 +193,7 @@ impl Model {
     /// written, or whose recording still runs, is kept.
     pub fn closed_too_many(&self) -> Vec<DeskId> {
         let is_over = |desk: &&Desk| {
-            desk.phase == Phase::Closed && !desk.general.has_edits() && !desk.graph.files.is_recording()
+            desk.phase == Phase::Closed && !desk.settings.has_edits() && !desk.graph.files.is_recording()
         };
         let mut closed: Vec<DeskId> = self.others.iter().filter(is_over).map(Desk::id).collect();
         closed.sort_unstable();

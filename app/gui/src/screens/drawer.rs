@@ -49,8 +49,12 @@ pub fn drawer_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 /// The title, with a star while edits behind it wait to be applied.
 fn title(model: &Model, screen: Screen, tab: Tab) -> String {
     let has_edits =
-        matches!(tab, Tab::Settings | Tab::VelocityLoop) && model.front.loops.edits(columns(screen, tab)) > 0;
+        matches!(tab, Tab::Settings | Tab::VelocityLoop) && has_loop_edits(model, columns(screen, tab));
     format!("{}{}", tab.title(screen), if has_edits { " *" } else { "" })
+}
+
+fn has_loop_edits(model: &Model, columns: &[Column]) -> bool {
+    model.front.settings.unit().is_some_and(|unit| !unit.loop_edits(columns).is_empty())
 }
 
 const fn columns(screen: Screen, tab: Tab) -> &'static [Column] {

@@ -6,10 +6,12 @@ use egui::{Button, Grid, RichText, Ui, vec2};
 
 use crate::command::{Command, Commands};
 use crate::model::Model;
-use crate::model::loop_settings::{Column, LoopSettings, counted, number};
+use crate::model::loop_settings::{Column, LoopView, number};
+use crate::model::settings::UnitSettings;
 use crate::theme::Palette;
 use crate::widgets::numeric::Numeric;
 use crate::widgets::readout::NO_VALUE;
+use brushwork_core::settings::counted;
 
 /// Where no row says otherwise.
 const GREATEST: f64 = u32::MAX as f64;
@@ -17,7 +19,10 @@ const GREATEST: f64 = u32::MAX as f64;
 pub fn loops_ui(ui: &mut Ui, model: &mut Model, columns: &'static [Column], commands: &mut Commands) {
     let palette = Palette::of(ui);
     let is_free = !model.front.is_guided();
+    let is_busy = model.front.settings.is_busy();
     let loops = &mut model.front.loops;
+    let Some(unit) = model.front.settings.unit_mut() else { return };
+    let mut is_edited = false;
     Grid::new(("loops", columns[0].key)).spacing(vec2(8.0, 4.0)).show(ui, |ui| {
         ui.label("");
         for column in columns {
@@ -25,13 +30,16 @@ pub fn loops_ui(ui: &mut Ui, model: &mut Model, columns: &'static [Column], comm
         }
         ui.end_row();
         for motor in Motor::BOTH {
-            motor_row_ui(ui, loops, motor, columns);
+            is_edited |= motor_row_ui(ui, unit, motor, columns);
             ui.end_row();
         }
     });
+    if is_edited {
+        loops.note_edit();
+    }
     ui.add_space(2.0);
-    ui.horizontal_wrapped(|ui| buttons_ui(ui, loops, columns, is_free, commands));
-    for motor in torque_controlled(loops, columns) {
+    ui.horizontal_wrapped(|ui| buttons_ui(ui, (loops, unit), columns, (is_free, is_busy), commands));
+    for motor in torque_controlled(unit, columns) {
         let text = format!(
             "Motor {}: with L and R both other than 0 the controller switches from duty to current (torque) \
              control.",
@@ -39,35 +47,41 @@ pub fn loops_ui(ui: &mut Ui, model: &mut Model, columns: &'static [Column], comm
         );
         ui.label(RichText::new(text).color(palette.warning));
     }
-    if is_free && loops.wants_applying() {
+    if is_free && !is_busy && unit.is_known() && loops.wants_applying() {
         commands.push(Command::ApplyLoops(columns));
     }
 }
 
 /// Told where L and R stand.
-fn torque_controlled(loops: &LoopSettings, columns: &[Column]) -> Vec<Motor> {
+fn torque_controlled(unit: &UnitSettings, columns: &[Column]) -> Vec<Motor> {
     let has_inductance = columns.iter().any(|column| column.key == "inductance_henries");
-    if has_inductance { loops.torque_controlled() } else { Vec::new() }
+    if has_inductance { unit.torque_controlled() } else { Vec::new() }
 }
 
-fn motor_row_ui(ui: &mut Ui, loops: &mut LoopSettings, motor: Motor, columns: &[Column]) {
+/// True where something was edited.
+fn motor_row_ui(ui: &mut Ui, unit: &mut UnitSettings, motor: Motor, columns: &[Column]) -> bool {
     ui.label(format!("Motor {}", motor.index() + 1));
+    // Each field is drawn, whichever is edited.
+    let mut is_edited = false;
     for column in columns {
-        field_ui(ui, loops, motor, column);
+        is_edited |= field_ui(ui, unit, motor, column);
     }
+    is_edited
 }
 
-fn field_ui(ui: &mut Ui, loops: &mut LoopSettings, motor: Motor, column: &Column) {
-    let Some(value) = loops.shown(motor, column) else {
+fn field_ui(ui: &mut Ui, unit: &mut UnitSettings, motor: Motor, column: &Column) -> bool {
+    let Some(value) = unit.shown(motor, column) else {
         ui.label(NO_VALUE).on_hover_text("Not read, or not a setting of this controller");
-        return;
+        return false;
     };
-    let Some((row, mut shown)) = loops.row(motor, column).zip(number(value)) else { return };
+    let Some((row, mut shown)) = unit.row(motor, column).zip(number(value)) else {
+        return false;
+    };
     let name = format!("{motor} {}", row.label);
     let help = row.help;
     let range = row.range.min.max(-GREATEST)..=row.range.max.min(GREATEST);
     let decimals = decimals_of(&row.format_bare(value), row.kind, value);
-    let edited = loops.is_edited(motor, column);
+    let edited = unit.is_edited(&row.key);
     let response = ui
         .scope(|ui| {
             if edited {
@@ -78,9 +92,11 @@ fn field_ui(ui: &mut Ui, loops: &mut LoopSettings, motor: Motor, column: &Column
             field.ui(ui, &mut shown)
         })
         .inner;
-    if response.on_hover_text(help).changed() {
-        loops.edit(motor, column, shown);
+    let is_changed = response.on_hover_text(help).changed();
+    if is_changed {
+        unit.edit(motor, column.key, shown);
     }
+    is_changed
 }
 
 /// As many decimals as the value has, so that leaving a field does not round it.
@@ -93,13 +109,13 @@ fn decimals_of(text: &str, kind: Kind, value: SettingValue) -> usize {
 
 fn buttons_ui(
     ui: &mut Ui,
-    loops: &mut LoopSettings,
+    (loops, unit): (&mut LoopView, &mut UnitSettings),
     columns: &'static [Column],
-    is_free: bool,
+    (is_free, is_busy): (bool, bool),
     commands: &mut Commands,
 ) {
-    let edits = loops.edits(columns);
-    let is_ready = is_free && loops.is_known() && !loops.is_busy();
+    let edits = unit.loop_edits(columns).len();
+    let is_ready = is_free && unit.is_known() && !is_busy;
     let apply = ui.add_enabled(is_ready && edits > 0, Button::new("Apply to RAM"));
     if apply.on_hover_text("Writes the changes to the controller and reads them back").clicked() {
         commands.push(Command::ApplyLoops(columns));
@@ -108,21 +124,22 @@ fn buttons_ui(
     at_once.on_hover_text("Applies each change as soon as it is entered, so that its effect can be watched");
     let revert = ui.add_enabled(edits > 0, Button::new("Revert"));
     if revert.on_hover_text("Drops the changes that were not applied").clicked() {
-        loops.revert(columns);
+        unit.revert_loops(columns);
     }
-    let read = ui.add_enabled(is_free && !loops.is_busy(), Button::new("Read again"));
+    let read = ui.add_enabled(is_free && !is_busy, Button::new("Read again"));
     if read.on_hover_text("Reads the settings from the controller; changes here stay").clicked() {
         commands.push(Command::ReadLoops);
     }
     ui.separator();
     for (from, label) in [(Motor::M1, "Copy M1 to M2"), (Motor::M2, "Copy M2 to M1")] {
         if ui.add_enabled(is_ready, Button::new(label)).clicked() {
-            loops.copy_from(from, columns);
+            unit.copy_from(from, columns);
+            loops.note_edit();
         }
     }
     let state = match edits {
-        _ if loops.is_busy() => "Asking the controller …".to_owned(),
-        _ if !loops.is_known() => "Not read yet.".to_owned(),
+        _ if is_busy => "Asking the controller …".to_owned(),
+        _ if !unit.is_known() => "Not read yet.".to_owned(),
         0 => "As the controller holds them.".to_owned(),
         _ => format!("{} changed and not applied yet.", counted(edits)),
     };

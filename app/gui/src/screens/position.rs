@@ -12,6 +12,7 @@ use crate::model::Model;
 use crate::model::desk::Desk;
 use crate::model::position::PACE_RANGE;
 use crate::model::setpoints::Direction;
+use crate::model::settings::UnitSettings;
 use crate::widgets::numeric::Numeric;
 use crate::widgets::setpoint::Setpoint;
 
@@ -77,7 +78,9 @@ fn slider_ui(ui: &mut Ui, model: &mut Model, motor: Motor) {
     let desk = &mut model.front;
     let travels = desk.travels();
     let Some((low, high)) = travels[motor.index()] else {
-        ui.add(Label::new(why_no_slider(desk.loops.is_known())).truncate());
+        ui.add(
+            Label::new(why_no_slider(desk.settings.unit().is_some_and(UnitSettings::is_known))).truncate(),
+        );
         return;
     };
     // Where the motor is, until a hand asks for something.

@@ -56,7 +56,7 @@ fn speed_ui(ui: &mut Ui, model: &mut Model, motor: Motor) {
     let qpps = model.front.top_speeds();
     let reach = qpps[motor.index()];
     if reach < 1.0 {
-        let is_known = model.front.loops.qpps(motor).is_some();
+        let is_known = model.front.settings.unit().is_some_and(|unit| unit.qpps(motor).is_some());
         ui.add(Label::new(why_no_slider(is_known)).truncate());
         return;
     }

@@ -5,9 +5,9 @@ use egui::{Align2, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, p
 
 use crate::command::{Command, Commands};
 use crate::model::Model;
-use crate::model::general::Saved;
 use crate::model::lamp::LampState;
 use crate::model::screen::Screen;
+use crate::model::settings::Saved;
 use crate::theme::Palette;
 
 pub const WIDTH: f32 = 206.0;
@@ -41,9 +41,9 @@ pub fn marks_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
 
 /// The gravest state, then RAM and EEPROM, then edits and profile.
 fn mark(model: &Model) -> (LampState, String, String) {
-    let general = &model.front.general;
-    let Some(unit) = general.unit().filter(|unit| unit.is_read() && model.is_connected()) else {
-        let text = match (model.is_connected(), general.running().is_some()) {
+    let settings = &model.front.settings;
+    let Some(unit) = settings.unit().filter(|unit| unit.is_read() && model.is_connected()) else {
+        let text = match (model.is_connected(), settings.running().is_some()) {
             (false, _) => "no controller",
             (true, true) => "reading the settings …",
             (true, false) => "settings not read yet",
@@ -64,8 +64,8 @@ fn mark(model: &Model) -> (LampState, String, String) {
 
 /// RAM against what the EEPROM was proven to hold last, in an earlier session.
 fn as_known_before(model: &Model) -> (LampState, String) {
-    let general = &model.front.general;
-    let differing = general.known_eeprom().zip(general.unit()).and_then(|(known, unit)| {
+    let settings = &model.front.settings;
+    let differing = settings.known_eeprom().zip(settings.unit()).and_then(|(known, unit)| {
         let both = |each: &Difference| each.left.is_some() && each.right.is_some();
         Some(diff(unit.table(), &known.settings, unit.ram()?).into_iter().filter(both).count())
     });
@@ -78,9 +78,8 @@ fn as_known_before(model: &Model) -> (LampState, String) {
 
 /// How the open profile differs from the controller.
 fn profile(model: &Model) -> String {
-    let general = &model.front.general;
-    let Some(opened) = general.profiles.opened() else { return "no profile open".to_owned() };
-    let differing = general.unit().and_then(|unit| {
+    let Some(opened) = model.front.general.profiles.opened() else { return "no profile open".to_owned() };
+    let differing = model.front.settings.unit().and_then(|unit| {
         let differences = diff(unit.table(), unit.ram()?, &opened.profile.settings);
         Some(differences.iter().filter(|difference| difference.right.is_some()).count())
     });

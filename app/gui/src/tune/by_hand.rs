@@ -22,11 +22,11 @@ pub fn by_hand_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     head_ui(ui, model, which, commands);
     let calibration = model.front.tune.calibration(which);
     let (motor, at) = (calibration.motor, calibration.step());
-    let held = Registers::held(&model.front.loops, motor, which == Loop::Position);
+    let held = model.front.held_gains(motor, which == Loop::Position);
     let step = &Calibration::steps(which)[at];
     ui.add(Label::new(step.text).wrap());
     ui.horizontal_wrapped(|ui| {
-        let is_free = !model.front.is_guided() && !model.front.loops.is_busy();
+        let is_free = !model.front.is_guided() && !model.front.settings.is_busy();
         for change in step.changes {
             let button = ui.add_enabled(is_free && held.is_some(), Button::new(change.label));
             if button.on_hover_text(change.hint).clicked()

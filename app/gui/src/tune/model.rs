@@ -18,10 +18,10 @@ use super::run::Run;
 use super::sequence::{Ended, Next, Origin, Sequence, Work};
 use super::which::Loop;
 use crate::family::Family;
-use crate::model::general::SettingsWish;
 use crate::model::link::{Arming, Effect};
 use crate::model::message::Gravity;
 use crate::model::screen::Screen;
+use crate::model::settings::SettingsWish;
 use brushwork_core::tune::Target;
 
 /// How often L and R are written back before that is given up.

@@ -132,7 +132,7 @@ fn clearing_ui(ui: &mut Ui, model: &Model, which: Loop, commands: &mut Commands)
     {
         return;
     }
-    let is_free = !model.front.is_guided() && !model.front.loops.is_busy();
+    let is_free = !model.front.is_guided() && !model.front.settings.is_busy();
     let clear = ui.add_enabled(is_free, Button::new("Clear L and R for the run"));
     let hint = "Writes 0 for both into the controller's RAM now and puts them back after the next run, whatever becomes of it";
     if clear.on_hover_text(hint).clicked() {

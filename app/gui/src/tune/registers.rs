@@ -9,7 +9,8 @@ use brushwork_core::tune::law::{
 use brushwork_link::settings::{SettingValue, SettingsImage};
 use brushwork_values::Motor;
 
-use crate::model::loop_settings::{LoopSettings, key};
+use crate::model::loop_settings::key;
+use crate::model::settings::UnitSettings;
 
 /// Wire value of a velocity gain of 1 (MCP manual, command 28).
 const VELOCITY_SCALE: f64 = 65_536.0;
@@ -353,11 +354,11 @@ impl Registers {
     }
 
     /// What the controller holds, as last read; position where it is asked for and known.
-    pub fn held(loops: &LoopSettings, motor: Motor, with_position: bool) -> Option<Self> {
+    pub fn held(unit: &UnitSettings, motor: Motor, with_position: bool) -> Option<Self> {
         let mut held = Self { position: with_position.then(PositionRegisters::default), ..Self::default() };
         for field in &FIELDS {
             if (field.get)(&held).is_some() {
-                field.set(&mut held, loops.held(motor, field.key)?);
+                field.set(&mut held, unit.held(motor, field.key)?);
             }
         }
         Some(held)

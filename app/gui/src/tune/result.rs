@@ -240,7 +240,7 @@ fn heads_ui(ui: &mut Ui, first: &str, others: [(&str, f32); 3]) {
 
 fn acts_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands) {
     let is_armed = model.front.link.arming.is_armed_for(which.scope());
-    let is_free = !model.front.is_guided() && !model.front.loops.is_busy() && model.front.is_connected();
+    let is_free = !model.front.is_guided() && !model.front.settings.is_busy() && model.front.is_connected();
     let panel = model.front.tune.front_mut(which);
     let can_undo = panel.undo.is_some();
     let Some(run) = panel.run_mut() else { return };

@@ -5,6 +5,7 @@ use egui::{Button, Label, RichText, Ui};
 
 use super::which::Loop;
 use crate::model::Model;
+use crate::model::settings::UnitSettings;
 use crate::theme::Palette;
 
 /// Offers the measured resistance, and says what setting it does.
@@ -13,12 +14,16 @@ pub fn winding_ui(ui: &mut Ui, model: &mut Model, which: Loop, winding: &Winding
     ui.horizontal_wrapped(|ui| {
         let text = format!("Measured R {:.3} ± {:.3} Ω", winding.ohms, winding.interval_ohms);
         ui.label(text).on_hover_text("Of the winding, its leads and the bridge, with its 95 % interval");
-        let is_free = !model.front.is_guided() && model.front.loops.is_known();
+        let is_free =
+            !model.front.is_guided() && model.front.settings.unit().is_some_and(UnitSettings::is_known);
         let enter = ui.add_enabled(is_free, Button::new("Enter as R").small());
         let hint =
             "Puts it into the field R under Velocity loop. It is sent with the other edits of that table.";
-        if enter.on_hover_text(hint).clicked() {
-            model.front.loops.edit_resistance(motor, winding.ohms);
+        if enter.on_hover_text(hint).clicked()
+            && let Some(unit) = model.front.settings.unit_mut()
+        {
+            unit.edit_resistance(motor, winding.ohms);
+            model.front.loops.note_edit();
         }
     });
     let warning = "With L and R both other than 0, duty commands become current (torque) commands. L cannot be measured this way.";

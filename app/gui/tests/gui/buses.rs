@@ -250,7 +250,7 @@ fn settings_are_read_and_a_simulated_node_is_armed_driven_and_stopped_over_can()
     window.open("sim:mcp266,can,node=3");
     window.click(Role::Button, "General Settings");
     window.until("the settings are read", |app| {
-        app.model.front.general.unit().is_some_and(brushwork_gui::model::general::UnitSettings::is_read)
+        app.model.front.settings.unit().is_some_and(brushwork_gui::model::settings::UnitSettings::is_read)
     });
     window.click(Role::Button, "PWM Settings");
     window.click(Role::Button, "Device");

@@ -30,7 +30,7 @@ fn open(bench: &mut Bench) {
     bench.harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::Num2);
     bench.pass_ms(3000);
     assert_eq!(bench.model().screen, Screen::GeneralSettings);
-    assert!(bench.model().front.general.running().is_none());
+    assert!(bench.model().front.settings.running().is_none());
 }
 
 /// What the controller works with.
@@ -75,7 +75,7 @@ fn opening_the_screen_reads_every_setting_and_changes_none() {
     assert!(bench.sees("Main battery minimum default: 10.0 V"));
     assert_eq!(truth(&bench), before);
     assert!(bench.both_stand());
-    let unit = bench.model().front.general.unit().unwrap();
+    let unit = bench.model().front.settings.unit().unwrap();
     let unread: Vec<_> =
         unit.table().rows().iter().filter(|row| unit.on_controller(&row.key).is_none()).collect();
     assert!(unread.is_empty(), "{unread:?}");
@@ -141,9 +141,9 @@ fn an_edit_made_while_a_write_runs_stays() {
     bench.press("Write settings");
     bench.button("Write to controller").click();
     bench.harness.step();
-    assert!(bench.model().front.general.running().is_some());
+    assert!(bench.model().front.settings.running().is_some());
     let min_volts = brushwork_link::settings::SettingValue::Number(12.0);
-    bench.model().front.general.unit_mut().unwrap().set("limits.main_battery.min_volts", min_volts);
+    bench.model().front.settings.unit_mut().unwrap().set("limits.main_battery.min_volts", min_volts);
     bench.pass_ms(3000);
     assert_eq!(truth(&bench).battery.main_max_tenths, 335);
     assert_ne!(truth(&bench).battery.main_min_tenths, 120, "it was made after the list was shown");
@@ -191,7 +191,7 @@ fn search_and_only_changed_pick_rows_from_all_sections() {
     bench.pass_ms(100);
     bench.harness.get_by_role_and_label(Role::TextInput, "Search settings").type_text("battery max");
     bench.pass_ms(200);
-    let shown = bench.model().front.general.shown();
+    let shown = bench.model().front.general_view().shown();
     assert_eq!(shown, ["limits.main_battery.max_volts", "limits.logic_battery.max_volts"]);
     assert!(bench.sees_part("2 of "));
     enter(&mut bench, MAX_VOLTS, "33.5");
@@ -208,7 +208,7 @@ fn each_pin_has_its_own_settings_and_those_that_do_not_apply_are_locked_with_the
     let mut bench = opened_in(Bench::sized([1280.0, 1000.0], egui::Theme::Dark));
     bench.press("Section DIN3/AN3");
     let type_of_pin = || brushwork_link::settings::SettingValue::Choice("none");
-    let unit = bench.model().front.general.unit_mut().unwrap();
+    let unit = bench.model().front.settings.unit_mut().unwrap();
     let pin = unit.table().rows().iter().find(|row| {
         row.pattern == "pin.{n}.type" && row.instance.as_ref().is_some_and(|it| it.name == "DIN3/AN3")
     });
@@ -357,24 +357,24 @@ fn reading_that_nobody_asked_for_delays_nothing_and_is_begun_again() {
     bench.line.swallow(number::READ_MAIN_VOLTAGES, &[]);
     bench.press("Connect");
     for _ in 0..500 {
-        if bench.model().front.general.is_reading_quietly() {
+        if bench.model().front.settings.is_reading_quietly() {
             break;
         }
         bench.pass_frame(Duration::from_millis(5));
     }
-    assert!(bench.model().front.general.is_reading_quietly());
+    assert!(bench.model().front.settings.is_reading_quietly());
     bench.button("Zero M1 encoder").click();
     bench.pass_frame(Duration::from_millis(5));
-    assert!(!bench.model().front.general.is_reading_quietly(), "it gives way at once");
+    assert!(!bench.model().front.settings.is_reading_quietly(), "it gives way at once");
     bench.arm();
     assert!(matches!(bench.model().front.link.arming, Arming::Armed { .. }));
-    assert!(!bench.model().front.general.unit().unwrap().is_read());
+    assert!(!bench.model().front.settings.unit().unwrap().is_read());
     assert!(!bench.sees_part("cancelled"), "nobody called anything off");
     bench.pass_ms(2000);
-    assert!(bench.model().front.general.running().is_none(), "nothing is begun while armed");
+    assert!(bench.model().front.settings.running().is_none(), "nothing is begun while armed");
     bench.press("Arm");
     bench.pass_ms(3000);
-    assert!(bench.model().front.general.unit().unwrap().is_read());
+    assert!(bench.model().front.settings.unit().unwrap().is_read());
 }
 
 #[test]
@@ -392,13 +392,13 @@ fn the_stop_key_stops_and_closes_the_sheet_while_one_is_open() {
 #[test]
 fn every_section_can_be_drawn_at_the_smallest_size_and_the_screen_looks_as_it_did() {
     let mut bench = opened_in(Bench::sized([1024.0, 700.0], egui::Theme::Light));
-    let unit = bench.model().front.general.unit().unwrap();
+    let unit = bench.model().front.settings.unit().unwrap();
     let sections: Vec<_> = sections(unit.table()).into_iter().map(|(section, _)| section).collect();
     assert!(sections.len() > 20, "{sections:?}");
     for section in sections {
         bench.model().front.general.section = section;
         bench.harness.step();
-        assert!(!bench.model().front.general.shown().is_empty(), "{section:?}");
+        assert!(!bench.model().front.general_view().shown().is_empty(), "{section:?}");
     }
     bench.press("Section Voltage limits");
     enter(&mut bench, MAX_VOLTS, "33.5");
@@ -489,7 +489,7 @@ fn a_faulty_profile_is_refused_and_one_of_another_controller_is_upgraded_when_th
     assert_eq!(bench.model().front.general.sheet(), Some(&Sheet::Compare));
     assert!(bench.sees("Motor 1: maximum current: 60.00 A -> 30.00 A"));
     bench.press("Take over group Current limits");
-    assert!(bench.sees("Edits: 4 not written"), "{:?}", bench.model().front.general.unit().unwrap().edits());
+    assert!(bench.sees("Edits: 4 not written"), "{:?}", bench.model().front.settings.unit().unwrap().edits());
     bench.press("Revert all");
     // One value that is no number: refused at first, opened without it on request.
     let mut broken = other.to_json();
@@ -511,7 +511,7 @@ fn a_unit_that_was_given_another_address_keeps_its_edits_here() {
     bench.button("Write to controller").click();
     bench.harness.step();
     let mixing = brushwork_link::settings::SettingValue::Bool(true);
-    bench.model().front.general.unit_mut().unwrap().set("unit.mixing", mixing);
+    bench.model().front.settings.unit_mut().unwrap().set("unit.mixing", mixing);
     bench.pass_ms(6000);
     assert_eq!(truth(&bench).unit.address, 130);
     assert!(bench.sees("Edits: 1 not written"), "{:?}", bench.model().messages.shown());

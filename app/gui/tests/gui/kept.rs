@@ -28,7 +28,7 @@ fn open(bench: &mut Bench) {
     bench.harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::Num2);
     bench.pass_ms(3000);
     assert_eq!(bench.model().screen, Screen::GeneralSettings);
-    assert!(bench.model().front.general.running().is_none());
+    assert!(bench.model().front.settings.running().is_none());
 }
 
 fn unit(bench: &mut Bench) -> UnitId {
@@ -37,7 +37,7 @@ fn unit(bench: &mut Bench) -> UnitId {
 
 fn want(bench: &mut Bench, changes: &[(&str, SettingValue)]) {
     for (key, value) in changes {
-        bench.model().front.general.unit_mut().expect("it is looked at").set(key, *value);
+        bench.model().front.settings.unit_mut().expect("it is looked at").set(key, *value);
     }
     bench.pass_ms(200);
 }
@@ -49,7 +49,7 @@ fn write(bench: &mut Bench) {
 }
 
 fn edits(bench: &mut Bench) -> usize {
-    bench.model().front.general.unit().expect("it is looked at").edits().len()
+    bench.model().front.settings.unit().expect("it is looked at").edits().len()
 }
 
 const P: &str = "motor1.velocity.p";
@@ -87,7 +87,7 @@ fn the_list_of_backups_compares_and_restores() {
     assert!(bench.sees(&format!("{TITLE}: 2.500 -> 1.000")));
     bench.press("Write to controller");
     bench.pass_ms(3000);
-    assert_eq!(bench.model().front.general.unit().unwrap().on_controller(P), Some(number(1.0)));
+    assert_eq!(bench.model().front.settings.unit().unwrap().on_controller(P), Some(number(1.0)));
     assert_eq!(bench.store().backups(Some(&unit)).len(), 2, "restoring is a write and leaves a backup too");
 }
 
@@ -114,10 +114,10 @@ fn what_a_unit_had_out_of_range_is_restored_with_a_warning_and_typed_it_is_refus
     );
     // Chosen beside what is taken over, a value has to be right.
     want(&mut bench, &[(MIN, number(8.2))]);
-    let refused = bench.model().front.general.unit().unwrap().plan(None).unwrap_err();
+    let refused = bench.model().front.settings.unit().unwrap().plan(None).unwrap_err();
     assert!(refused[0].sentence.contains("8.2 V is below the MCP266's 10.0 V."), "{refused:?}");
     write(&mut bench);
-    let controller = |bench: &mut Bench| bench.model().front.general.unit().unwrap().on_controller(MIN);
+    let controller = |bench: &mut Bench| bench.model().front.settings.unit().unwrap().on_controller(MIN);
     assert_eq!(controller(&mut bench), Some(number(12.0)));
 
     bench.press("Backups");
@@ -142,7 +142,13 @@ fn every_write_from_every_screen_that_drives_has_a_backup_of_what_was_there() {
         bench.press(screen);
         bench.pass_ms(1000);
         for value in values {
-            let before = bench.model().front.loops.held(motor, column).expect("it was read");
+            let before = bench
+                .model()
+                .front
+                .settings
+                .unit()
+                .and_then(|unit| unit.held(motor, column))
+                .expect("it was read");
             bench.enter(field, value);
             bench.press("Apply to RAM");
             bench.pass_ms(3000);
@@ -265,7 +271,7 @@ fn a_motor_is_copied_to_the_other_one_with_what_stays_named() {
     bench.press("Copy");
     assert_eq!(edits(&mut bench), 2);
     write(&mut bench);
-    let unit = bench.model().front.general.unit().unwrap();
+    let unit = bench.model().front.settings.unit().unwrap();
     assert_eq!(unit.on_controller("motor2.velocity.p"), Some(number(2.5)));
     assert_eq!(unit.on_controller("motor2.position.d"), unit.on_controller("motor1.position.d"));
 }
@@ -338,7 +344,7 @@ fn after_a_pulled_plug_the_old_values_come_back_or_all_stays_as_it_is() {
             bench.press("Write to controller");
             bench.pass_ms(3000);
         }
-        let on_controller = bench.model().front.general.unit().unwrap().on_controller(P);
+        let on_controller = bench.model().front.settings.unit().unwrap().on_controller(P);
         assert_eq!(on_controller, Some(number(if leave { 7.0 } else { 1.0 })));
         let unit_id = unit(&mut bench);
         assert_eq!(bench.store().open_journals(&unit_id).0.len(), 0);
@@ -392,7 +398,7 @@ fn edits_made_while_a_write_runs_stay() {
     bench.press("Write settings");
     bench.button("Write to controller").click();
     bench.harness.step();
-    bench.model().front.general.unit_mut().unwrap().set("unit.mixing", SettingValue::Bool(true));
+    bench.model().front.settings.unit_mut().unwrap().set("unit.mixing", SettingValue::Bool(true));
     bench.pass_ms(5000);
     assert_eq!(edits(&mut bench), 1);
     assert!(bench.sees("Edits: 1 not written"));

@@ -20,6 +20,7 @@ mod position;
 mod qpps;
 mod safety;
 mod scripts;
+mod settings_state;
 mod shell;
 mod status;
 mod support;

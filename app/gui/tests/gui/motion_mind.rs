@@ -245,7 +245,7 @@ fn write(bench: &mut Bench) {
     bench.press("Write settings");
     bench.press("Write to controller");
     bench.pass_ms(4000);
-    assert!(bench.model().front.general.running().is_none(), "the write has ended");
+    assert!(bench.model().front.settings.running().is_none(), "the write has ended");
 }
 
 #[test]
@@ -293,7 +293,7 @@ fn a_value_out_of_range_is_refused_with_its_range() {
     bench.press("Register PIDSCALAR");
     bench.enter("PID scalar", "40");
     assert!(bench.sees_part("32"), "the range is named");
-    assert!(bench.model().front.general.unit().unwrap().edits().is_empty());
+    assert!(bench.model().front.settings.unit().unwrap().edits().is_empty());
 }
 
 #[test]

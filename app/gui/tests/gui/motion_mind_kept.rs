@@ -41,7 +41,7 @@ fn ram(bench: &Bench, name: &str) -> i64 {
 
 fn want(bench: &mut Bench, changes: &[(&str, i64)]) {
     for (key, value) in changes {
-        let unit = bench.model().front.general.unit_mut().expect("it is looked at");
+        let unit = bench.model().front.settings.unit_mut().expect("it is looked at");
         unit.set(key, SettingValue::Int(*value));
     }
     bench.pass_ms(200);
@@ -54,7 +54,7 @@ fn write(bench: &mut Bench) {
 }
 
 fn edits(bench: &mut Bench) -> usize {
-    bench.model().front.general.unit().expect("it is looked at").edits().len()
+    bench.model().front.settings.unit().expect("it is looked at").edits().len()
 }
 
 #[test]

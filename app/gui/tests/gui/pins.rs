@@ -79,7 +79,7 @@ fn volts(reading: f64) -> f64 {
 }
 
 fn wanted(bench: &mut Bench, field: &str) -> SettingValue {
-    let unit = bench.model().front.general.unit().expect("a unit is looked at");
+    let unit = bench.model().front.settings.unit().expect("a unit is looked at");
     unit.wanted(&format!("pin.{}.{field}", PIN + 1)).expect("the pin was read")
 }
 
@@ -101,7 +101,7 @@ fn each_pin_tells_what_it_does_at_a_glance() {
     assert_eq!(described(&bench, "DIN7/AN7/P7/ENC1A"), "DIN7/AN7/P7/ENC1A: Encoder");
     assert_eq!(described(&bench, NAME), format!("{NAME}: None"));
     choose(&mut bench, "Pulse");
-    bench.model().front.general.unit_mut().unwrap().set("pin.4.target", SettingValue::Choice("both"));
+    bench.model().front.settings.unit_mut().unwrap().set("pin.4.target", SettingValue::Choice("both"));
     bench.pass_ms(200);
     assert_eq!(described(&bench, NAME), format!("{NAME}: Pulse, M1 + M2"));
 }
@@ -186,7 +186,7 @@ fn the_handles_of_the_signal_graph_are_dragged_and_what_they_give_is_written() {
     assert!(pin.power_exp_raw > 10_000, "upwards is steeper at the center: {pin:?}");
     // What is drawn is what the controller does.
     apply_volts(&mut bench, volts(3300.0));
-    let unit = bench.model().front.general.unit().unwrap();
+    let unit = bench.model().front.settings.unit().unwrap();
     let shape = SignalShape::of(&|key| unit.on_controller(key), PIN + 1).unwrap();
     let signal = bench.model().front.link.readings.signal(PIN + 1).unwrap();
     assert_eq!(signal.position, shape.position(3300.0) as i32);
@@ -252,7 +252,7 @@ fn match_input_makes_the_command_range_as_wide_as_the_input_range() {
 fn an_input_is_calibrated_by_moving_it() {
     let mut bench = analog();
     enter(&mut bench, &format!("{NAME}: deadband"), "5");
-    bench.model().front.general.unit_mut().unwrap().set("pin.4.target", SettingValue::Choice("motor1"));
+    bench.model().front.settings.unit_mut().unwrap().set("pin.4.target", SettingValue::Choice("motor1"));
     write(&mut bench);
     apply_volts(&mut bench, volts(300.0));
     bench.press(&format!("Calibrate {NAME}"));
@@ -341,12 +341,12 @@ fn conflicts_are_listed_and_lead_to_their_rows() {
     let mut bench = opened();
     bench.press("Section Conflicts");
     assert!(bench.sees_part("Nothing contradicts itself"));
-    let unit = bench.model().front.general.unit_mut().unwrap();
+    let unit = bench.model().front.settings.unit_mut().unwrap();
     unit.set_pin_mode(5, PinMode::Digital);
     unit.set("pin.9.type", SettingValue::Choice("analog"));
     bench.pass_ms(200);
     let kinds: Vec<_> =
-        bench.model().front.general.unit().unwrap().conflicts().into_iter().map(|one| one.kind).collect();
+        bench.model().front.settings.unit().unwrap().conflicts().into_iter().map(|one| one.kind).collect();
     assert_eq!(kinds, [ConflictKind::PortHoldsPin, ConflictKind::HalfAnEncoder]);
     assert!(bench.sees_part("DIN5/TX2 is set to digital, but TTL UART2 is in use and holds the pin"));
     bench.press("Go to DIN7/AN7/P7/ENC1A: type");
@@ -375,8 +375,8 @@ fn the_page_fits_a_small_window() {
     let mut bench = Bench::sized([1024.0, 700.0], Theme::Light);
     bench.connect();
     open(&mut bench);
-    bench.model().front.general.go_to("pin.4.type");
-    bench.model().front.general.unit_mut().unwrap().set_pin_mode(4, PinMode::Analog);
+    bench.model().front.general_view().go_to("pin.4.type");
+    bench.model().front.settings.unit_mut().unwrap().set_pin_mode(4, PinMode::Analog);
     bench.pass(Duration::from_millis(500));
     let right = bench.harness.get_by_label_contains("Signal command").rect().right();
     assert!(right < 1024.0, "{right}");

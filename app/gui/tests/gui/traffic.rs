@@ -177,7 +177,7 @@ fn the_bytes_of_edited_settings_and_of_the_sliders_are_shown_before_they_are_sen
     assert!(bench.sees_part("Drive: what the sliders stand for: 0x80"));
     bench.press("General Settings");
     bench.pass_ms(1500);
-    let unit = bench.model().front.general.unit_mut().expect("it is connected");
+    let unit = bench.model().front.settings.unit_mut().expect("it is connected");
     unit.set("motor1.velocity.qpps", SettingValue::Int(12_345));
     bench.pass_ms(300);
     assert!(bench.sees_part("Write: ") && bench.sees_part("12345"));

@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use crate::support::bench::Bench;
 use brushwork_core::tune::law::Report;
-use brushwork_gui::model::general::SettingsWish;
 use brushwork_gui::model::link::Arming;
 use brushwork_gui::model::loop_settings::VELOCITY;
+use brushwork_gui::model::settings::SettingsWish;
 use brushwork_gui::tune::Loop;
 use brushwork_gui::tune::registers::Registers;
 use brushwork_gui::tune::run::Run;
@@ -623,7 +623,11 @@ fn the_measured_resistance_is_offered_as_an_edit_and_not_sent() {
     bench.pass_ms(300);
     assert!(bench.sees_part("Measured R 0.750") && bench.sees_part("become current (torque) commands"));
     press_below(&mut bench, "Enter as R");
-    assert_eq!(bench.model().front.loops.edits(VELOCITY), 1, "R alone is edited");
+    assert_eq!(
+        bench.model().front.settings.unit().map(|unit| unit.loop_edits(VELOCITY).len()),
+        Some(1),
+        "R alone is edited"
+    );
     assert_eq!(held(&bench, Motor::M1).resistance_raw, 0, "and nothing was sent");
 }
 
@@ -783,4 +787,16 @@ fn l_and_r_that_were_cleared_are_put_back_on_leaving_by_the_button_and_after_a_l
     bench.key(Key::Escape);
     bench.pass_ms(6000);
     assert_eq!(held(&bench, Motor::M1), before, "{:?}", bench.said());
+}
+
+#[test]
+fn applied_gains_are_known_to_every_screen() {
+    let mut bench = tuned("Velocity Settings", Loop::Velocity);
+    press_below(&mut bench, "Apply (RAM)");
+    bench.pass_ms(8000);
+    let held = held(&bench, Motor::M1).velocity_p_raw;
+    let unit = bench.model().front.settings.unit().expect("it is connected");
+    assert_eq!(unit.held(Motor::M1, "velocity.p"), Some(f64::from(held) / 65_536.0));
+    assert!(unit.is_read() && unit.confirmed("motor1.velocity.p").is_some());
+    assert!(unit.edits().is_empty());
 }

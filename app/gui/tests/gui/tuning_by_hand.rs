@@ -3,7 +3,6 @@
 use crate::support::bench::Bench;
 use brushwork_gui::tune::Loop;
 use brushwork_gui::tune::calibration::Advice;
-use brushwork_gui::tune::registers::Registers;
 use brushwork_mcp_sim::controller::{Controller, ControllerConfig};
 use brushwork_mcp_sim::motion::MotionSettings;
 use brushwork_plant::presets;
@@ -42,7 +41,7 @@ fn held(bench: &Bench) -> MotionSettings {
 /// What the assistant says now.
 fn advice(bench: &mut Bench, which: Loop) -> Advice {
     let front = &bench.model().front;
-    let held = Registers::held(&front.loops, Motor::M1, which == Loop::Position);
+    let held = front.held_gains(Motor::M1, which == Loop::Position);
     front.tune.calibration(which).advice(which, held)
 }
 

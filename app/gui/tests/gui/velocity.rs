@@ -54,8 +54,11 @@ fn opening_the_screen_reads_the_settings_and_moves_nothing() {
     for name in ["M1 Velocity P", "M2 Velocity I", "M1 Velocity D", "M2 QPPS", "M1 L", "M2 R"] {
         assert!(bench.sees(name), "{name}");
     }
-    assert_eq!(bench.model().front.loops.held(Motor::M1, "velocity.p"), Some(1.0));
-    assert_eq!(bench.model().front.loops.qpps(Motor::M2), Some(44_000.0));
+    assert_eq!(
+        bench.model().front.settings.unit().and_then(|unit| unit.held(Motor::M1, "velocity.p")),
+        Some(1.0)
+    );
+    assert_eq!(bench.model().front.settings.unit().and_then(|unit| unit.qpps(Motor::M2)), Some(44_000.0));
     assert!(bench.button("M1 speed").accesskit_node().is_disabled());
     assert!(bench.both_stand());
 }
@@ -196,7 +199,15 @@ fn passing_through_a_field_does_not_change_it() {
     let held = held_p_raw(&bench, Motor::M1);
     bench.focus_label("M1 Velocity P");
     bench.focus_label("M1 Velocity I");
-    assert_eq!(bench.model().front.loops.edits(brushwork_gui::model::loop_settings::VELOCITY), 0);
+    assert_eq!(
+        bench
+            .model()
+            .front
+            .settings
+            .unit()
+            .map(|unit| unit.loop_edits(brushwork_gui::model::loop_settings::VELOCITY).len()),
+        Some(0)
+    );
     assert_eq!(held_p_raw(&bench, Motor::M1), held);
 }
 

@@ -4,11 +4,8 @@
 use brushwork_link::settings::{Keeper, SettingsImage};
 use brushwork_mcp_client::settings::{Calibrated, Calibration, open_range};
 
-use super::super::message::Gravity;
-use super::summary::Summary;
-use super::unit::{Kept, UnitSettings};
-use super::unit_key::UnitKey;
-use super::work::SettingsWish;
+use crate::model::message::Gravity;
+use crate::model::settings::{Before, SettingsWish, Summary, UnitKey, UnitSettings};
 use brushwork_core::keep::TrialKeeper;
 
 mod acts;
@@ -23,7 +20,7 @@ pub struct Run {
     pub told: Option<String>,
     /// What the pin had before.
     before: SettingsImage,
-    kept: Kept,
+    kept: Before,
     /// From the write that opens the input to the one that closes it.
     keeper: Option<TrialKeeper>,
     found: Option<Calibrated>,

@@ -5,10 +5,10 @@ use brushwork_link::settings::SettingValue;
 use brushwork_values::Motor;
 use crossbeam_channel::Receiver;
 
-use super::super::link::Effect;
-use super::super::message::Gravity;
-use super::super::watched::Watched;
-use super::unit::UnitSettings;
+use crate::model::link::Effect;
+use crate::model::message::Gravity;
+use crate::model::settings::UnitSettings;
+use crate::model::watched::Watched;
 use brushwork_core::motion::clamp::{STEPS, Step, Task};
 
 mod acts;

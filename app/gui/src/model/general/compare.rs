@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use brushwork_link::settings::{Difference, Group, OpenedProfile, Profile, SettingsImage};
+use brushwork_link::settings::{Difference, Group, SettingsImage};
 
 mod acts;
 
@@ -66,14 +66,4 @@ impl Comparison {
     pub fn count(&self) -> usize {
         self.groups.iter().map(|(_, differences)| differences.len()).sum()
     }
-}
-
-/// A profile as it is for a controller, or that it needs no change.
-pub(super) fn upgrade(
-    opened: OpenedProfile,
-    table: &brushwork_link::settings::SettingsTable,
-) -> (Profile, Vec<String>) {
-    let fitted = opened.profile.fitted_to(table);
-    let sentences: Vec<String> = opened.upgraded.into_iter().chain(fitted.changes).collect();
-    (if sentences.is_empty() { opened.profile } else { fitted.profile }, sentences)
 }

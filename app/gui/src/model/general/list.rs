@@ -4,6 +4,7 @@ use brushwork_link::settings::Row;
 
 use super::General;
 use super::section::Section;
+use crate::model::settings::UnitSettings;
 
 impl General {
     /// Whether rows are picked from all sections.
@@ -11,9 +12,8 @@ impl General {
         self.only_changed || !self.search.trim().is_empty()
     }
 
-    /// The keys of the rows to show, in screen order.
-    pub fn shown(&self) -> Vec<String> {
-        let Some(unit) = self.unit() else { return Vec::new() };
+    /// The keys of a unit's rows to show, in screen order.
+    pub fn shown_of(&self, unit: &UnitSettings) -> Vec<String> {
         let words: Vec<String> = self.search.split_whitespace().map(str::to_lowercase).collect();
         let is_shown = |row: &&Row| {
             if self.is_filtered() {

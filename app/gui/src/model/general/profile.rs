@@ -3,9 +3,8 @@
 //! Opening a profile changes nothing but this screen; taking its values over makes them edits, to be written like any
 //! other.
 
-use brushwork_link::settings::{Profile, ProfileFileError, SettingsImage};
+use brushwork_link::settings::{Profile, ProfileFileError};
 
-use super::unit::UnitSettings;
 use crate::files::{FileAnswer, FileDialog, FileKind, FileWish};
 
 mod acts;
@@ -105,29 +104,5 @@ impl Profiles {
     fn fail(&mut self, error: &ProfileFileError, can_be_mended: bool) {
         let sentences = error.to_string().lines().map(str::to_owned).collect();
         self.told = Told::Failed { sentences, can_be_mended };
-    }
-}
-
-impl UnitSettings {
-    /// What a file can keep of the controller: what it has, or what is wanted of it.
-    fn profile(&self, with_edits: bool) -> Option<Profile> {
-        let mut settings = self.ram()?.clone();
-        if with_edits {
-            settings.merge(self.edits());
-        }
-        self.profile_of(settings)
-    }
-
-    /// Values as a profile of this controller.
-    pub(super) fn profile_of(&self, settings: SettingsImage) -> Option<Profile> {
-        Some(Profile {
-            subject: *self.table().subject(),
-            firmware: self.firmware().to_owned(),
-            address: self.unit_address(),
-            date: brushwork_core::keep::today(),
-            unit: String::new(),
-            note: String::new(),
-            settings,
-        })
     }
 }

@@ -49,7 +49,7 @@ impl Desk {
     }
 
     fn setting(&self, register: &Register) -> Option<i64> {
-        match self.general.unit()?.on_controller(&key(register))? {
+        match self.settings.unit()?.confirmed(&key(register))? {
             SettingValue::Int(value) => Some(value),
             _ => None,
         }
@@ -57,7 +57,7 @@ impl Desk {
 
     /// Raw register values as settings, as far as the unit's table has them.
     pub fn as_settings(&self, raw: &[(&str, i64)]) -> SettingsImage {
-        let Some(unit) = self.general.unit() else { return SettingsImage::default() };
+        let Some(unit) = self.settings.unit() else { return SettingsImage::default() };
         let setting = |(name, raw): &(&str, i64)| {
             let row = unit.table().row(&key(register_named(name)?))?;
             Some((row.key.clone(), row.coding.decode(row.kind, *raw)))
@@ -68,7 +68,7 @@ impl Desk {
     /// Whether a bit of FUNCTION or FUNCTION2 is known to be set, by the register's and the bit's name.
     pub fn has_bit(&self, register: &str, bit: &str) -> bool {
         let key = bit_key(register, bit);
-        let of_settings = self.general.unit().and_then(|unit| unit.on_controller(&key));
+        let of_settings = self.settings.unit().and_then(|unit| unit.on_controller(&key));
         of_settings == Some(SettingValue::Bool(true))
     }
 }
@@ -127,7 +127,7 @@ impl Desk {
 
     /// What the registers of the assistant hold now.
     pub fn step_registers(&self) -> Option<SettingsImage> {
-        let ram = self.general.unit()?.ram()?;
+        let ram = self.settings.unit()?.ram()?;
         touched().map(|key| Some((key.clone(), ram.get(&key)?))).collect()
     }
 }

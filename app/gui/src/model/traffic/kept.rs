@@ -88,6 +88,11 @@ impl KeptCommand {
         Some(kept.map_err(|failure| (transact.id, failure)).map(|()| transact))
     }
 
+    /// Whether a command that changes settings was sent with that number and waits for its answer.
+    pub fn is_sent(&self, id: u64) -> bool {
+        self.sent.as_ref().is_some_and(|(sent, _)| *sent == id)
+    }
+
     /// The answer has come: the journal is closed, unless nobody knows what became of a save.
     pub fn answered(&mut self, id: u64, result: &Result<Values, Failure>) {
         if let Some((_, keeper)) = self.sent.take_if(|(sent, _)| *sent == id) {

@@ -24,7 +24,7 @@ pub fn pending(desk: &Desk, screen: Screen) -> (Vec<Pending>, Vec<String>) {
     };
     let mut packets = Vec::new();
     let mut refusals = Vec::new();
-    match desk.general.unit().filter(|unit| !unit.edits().is_empty()).map(|unit| unit.plan(desk.link.stream))
+    match desk.settings.unit().filter(|unit| !unit.edits().is_empty()).map(|unit| unit.plan(desk.link.stream))
     {
         Some(Ok(plan)) => {
             let steps = plan.steps.iter().filter_map(|step| {

@@ -4,11 +4,11 @@ use brushwork_mcp_client::settings::CalibrationStage;
 use egui::{Button, ProgressBar, RichText, Role, Ui, WidgetInfo, vec2};
 
 use super::sheet_parts::{lamp_ui, text_ui};
-use crate::model::general::General;
+use crate::model::general::GeneralView;
 use crate::model::lamp::LampState;
 use crate::widgets::readout::Readout;
 
-pub fn calibrate_ui(ui: &mut Ui, general: &mut General) {
+pub fn calibrate_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
     let Some(run) = general.calibration() else { return };
     ui.label(RichText::new("Calibration").size(16.0).strong());
     let Some(calibration) = run.moving() else {

@@ -7,7 +7,7 @@ use egui::{Button, Grid, Label, Layout, ProgressBar, RichText, Role, ScrollArea,
 use super::sheet_parts::lamp_ui;
 use crate::command::{Command, Commands, GuidedWish};
 use crate::family::Family;
-use crate::model::general::General;
+use crate::model::general::GeneralView;
 use crate::model::lamp::LampState;
 use crate::model::link::LinkView;
 use crate::model::message::Gravity;
@@ -23,7 +23,7 @@ const WHAT_IT_DOES: &str = "Runs the motor up to 25 % and slows it down quickly,
 
 pub fn clamp_ui(
     ui: &mut Ui,
-    general: &mut General,
+    general: &mut GeneralView<'_>,
     (link, family): (&LinkView, &dyn Family),
     height: f32,
     commands: &mut Commands,
@@ -54,7 +54,7 @@ pub fn clamp_ui(
 }
 
 /// Which outputs clamp; without one the test shows what happens without.
-fn outputs_ui(ui: &mut Ui, general: &General) {
+fn outputs_ui(ui: &mut Ui, general: &GeneralView<'_>) {
     let outputs = general.clamping_outputs();
     if outputs.is_empty() {
         let text =
@@ -66,7 +66,7 @@ fn outputs_ui(ui: &mut Ui, general: &General) {
     }
 }
 
-fn task_ui(ui: &mut Ui, general: &mut General) {
+fn task_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
     let limit = general.clamp.limit(general.unit());
     let test = &mut general.clamp;
     ui.horizontal_wrapped(|ui| {
@@ -120,7 +120,7 @@ fn task_ui(ui: &mut Ui, general: &mut General) {
     });
 }
 
-fn run_ui(ui: &mut Ui, general: &General, link: &LinkView, commands: &mut Commands) {
+fn run_ui(ui: &mut Ui, general: &GeneralView<'_>, link: &LinkView, commands: &mut Commands) {
     ui.horizontal(|ui| {
         ui.set_min_height(30.0);
         if let Some((fraction, text)) = general.clamp.progress() {

@@ -4,8 +4,9 @@ use brushwork_link::settings::{Difference, Group};
 use egui::{Button, ComboBox, Grid, RichText, Role, Ui, WidgetInfo};
 
 use super::sheet_parts::{Act, Offer, lamp_ui, text_ui, title_ui};
-use crate::model::general::{Comparison, General, Side, Take, UnitSettings};
+use crate::model::general::{Comparison, GeneralView, Side, Take};
 use crate::model::lamp::LampState;
+use crate::model::settings::UnitSettings;
 use crate::theme::Palette;
 
 /// Room for the longest name of a backup.
@@ -13,7 +14,7 @@ const SIDE_WIDTH: f32 = 300.0;
 /// Columns of the list, so that groups line up.
 const COLUMNS: [f32; 3] = [300.0, 170.0, 170.0];
 
-pub fn compare_ui(ui: &mut Ui, general: &mut General) -> Vec<Offer> {
+pub fn compare_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
     title_ui(ui, "Compare settings");
     text_ui(ui, "Taking a value over from the right side makes it a change here; Write sends it.");
     sides_ui(ui, general);
@@ -40,7 +41,7 @@ pub fn compare_ui(ui: &mut Ui, general: &mut General) -> Vec<Offer> {
     vec![("Take over all", Act::TakeOverAll, comparison.count() > 0)]
 }
 
-fn sides_ui(ui: &mut Ui, general: &mut General) {
+fn sides_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
     let (mut left, mut right) = (general.comparing.left.clone(), general.comparing.right.clone());
     ui.horizontal_wrapped(|ui| {
         side_ui(ui, general, &mut left, "Left side");
@@ -54,7 +55,7 @@ fn sides_ui(ui: &mut Ui, general: &mut General) {
     }
 }
 
-fn side_ui(ui: &mut Ui, general: &General, side: &mut Side, name: &str) {
+fn side_ui(ui: &mut Ui, general: &GeneralView<'_>, side: &mut Side, name: &str) {
     let combo = ComboBox::from_id_salt(name).width(SIDE_WIDTH).selected_text(general.side_title(side));
     let response = combo.show_ui(ui, |ui| {
         for each in general.sides() {

@@ -4,10 +4,10 @@ use brushwork_link::settings::Row;
 use egui::{Button, Label, Layout, RichText, Role, ScrollArea, Ui, WidgetInfo, vec2};
 
 use super::sheet_parts::text_ui;
-use crate::model::general::General;
+use crate::model::general::GeneralView;
 use crate::model::lamp::LampState;
 
-pub fn conflicts_ui(ui: &mut Ui, general: &mut General, height: f32) {
+pub fn conflicts_ui(ui: &mut Ui, general: &mut GeneralView<'_>, height: f32) {
     let Some(unit) = general.unit() else { return };
     let conflicts = unit.conflicts();
     let mut wanted = None;

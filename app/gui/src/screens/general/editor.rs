@@ -7,7 +7,7 @@ use brushwork_values::Code;
 use egui::text::{CCursor, CCursorRange};
 use egui::{ComboBox, Id, Key, Response, RichText, Stroke, TextEdit, Ui, vec2};
 
-use crate::model::general::UnitSettings;
+use crate::model::settings::UnitSettings;
 use crate::theme;
 use crate::theme::Palette;
 

@@ -4,8 +4,9 @@ use egui::{Button, Label, ProgressBar, RichText, Role, Ui, WidgetInfo, vec2};
 
 use crate::command::{Command, Commands};
 use crate::family::{Ability, Family, SettingsWords};
-use crate::model::general::{General, Running, Saved, SettingsWish, Sheet, UnitSettings};
+use crate::model::general::{GeneralView, Sheet};
 use crate::model::lamp::LampState;
+use crate::model::settings::{Running, Saved, SettingsWish, UnitSettings};
 use crate::theme::Palette;
 use crate::widgets::text_field::text_field_ui;
 
@@ -13,7 +14,7 @@ const SEARCH_WIDTH: f32 = 190.0;
 /// So that a count in a button moves nothing.
 const BUTTON_WIDTH: f32 = 84.0;
 
-pub fn head_ui(ui: &mut Ui, general: &mut General, family: &dyn Family, commands: &mut Commands) {
+pub fn head_ui(ui: &mut Ui, general: &mut GeneralView<'_>, family: &dyn Family, commands: &mut Commands) {
     marks_ui(ui, family.words(), general.unit());
     buttons_ui(ui, general, family);
     filter_ui(ui, general, family.words(), commands);
@@ -64,7 +65,7 @@ fn mark_ui(ui: &mut Ui, state: LampState, title: &str, text: &str) {
     });
 }
 
-fn buttons_ui(ui: &mut Ui, general: &mut General, family: &dyn Family) {
+fn buttons_ui(ui: &mut Ui, general: &mut GeneralView<'_>, family: &dyn Family) {
     let words = family.words();
     let Some(unit) = general.unit() else { return };
     let idle = !general.is_busy();
@@ -105,7 +106,7 @@ fn buttons_ui(ui: &mut Ui, general: &mut General, family: &dyn Family) {
         "One motor's settings for the other one",
         Sheet::CopyMotor,
     ));
-    let unfinished = general.has_unfinished().then_some((
+    let unfinished = general.settings.has_unfinished().then_some((
         "Unfinished…",
         "Unfinished",
         true,
@@ -132,7 +133,7 @@ fn buttons_ui(ui: &mut Ui, general: &mut General, family: &dyn Family) {
 }
 
 /// One line, always as high: the search, and what runs or what is shown.
-fn filter_ui(ui: &mut Ui, general: &mut General, words: &SettingsWords, commands: &mut Commands) {
+fn filter_ui(ui: &mut Ui, general: &mut GeneralView<'_>, words: &SettingsWords, commands: &mut Commands) {
     ui.horizontal(|ui| {
         ui.set_min_height(ui.spacing().interact_size.y);
         let mut is_new = false;
@@ -154,14 +155,14 @@ fn filter_ui(ui: &mut Ui, general: &mut General, words: &SettingsWords, commands
         {
             unit.revert_all();
         }
-        match general.running() {
+        match general.settings.running() {
             Some(running) => running_ui(ui, running, commands),
             None => idle_ui(ui, general, words.many),
         }
     });
 }
 
-fn idle_ui(ui: &mut Ui, general: &General, many: &str) {
+fn idle_ui(ui: &mut Ui, general: &GeneralView<'_>, many: &str) {
     let Some(unit) = general.unit() else { return };
     let all = unit.table().rows().len();
     let text = if general.is_filtered() {

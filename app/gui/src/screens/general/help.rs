@@ -3,7 +3,8 @@
 use brushwork_link::settings::{Bound, Row};
 use egui::{Frame, Label, Margin, RichText, ScrollArea, Stroke, Ui};
 
-use crate::model::general::{General, UnitSettings};
+use crate::model::general::GeneralView;
+use crate::model::settings::UnitSettings;
 use crate::theme::Palette;
 
 /// Its height on a screen of `available` points: less where the settings themselves have little room.
@@ -11,7 +12,7 @@ pub fn height(available: f32) -> f32 {
     if available < 460.0 { 74.0 } else { 116.0 }
 }
 
-pub fn help_ui(ui: &mut Ui, general: &General, height: f32) {
+pub fn help_ui(ui: &mut Ui, general: &GeneralView<'_>, height: f32) {
     let palette = Palette::of(ui);
     let frame = Frame::new().stroke(Stroke::new(1.0, palette.line)).corner_radius(4.0);
     frame.inner_margin(Margin::symmetric(10, 6)).show(ui, |ui| {

@@ -4,20 +4,22 @@ use brushwork_link::settings::{Aftermath, Difference, Held, Row};
 use egui::{Button, Grid, RichText, Role, Ui, WidgetInfo};
 
 use super::sheet_parts::{Act, Offer, differences_ui, lamp_ui, text_ui, title_ui};
-use crate::model::general::{General, Settle, Sheet, Side, UnitSettings};
+use crate::model::general::{GeneralView, Sheet, Side};
 use crate::model::lamp::LampState;
+use crate::model::settings::{Settle, UnitSettings};
 use crate::theme::Palette;
 
-pub fn backups_ui(ui: &mut Ui, general: &mut General) -> Vec<Offer> {
+pub fn backups_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
     title_ui(ui, "Backups");
-    let folder = general.backup_folder().unwrap_or_else(|| "nowhere: there is no home folder".to_owned());
+    let folder =
+        general.settings.backup_folder().unwrap_or_else(|| "nowhere: there is no home folder".to_owned());
     text_ui(
         ui,
         "Before every write, save, restore of defaults and firmware change the settings are kept here, newest first. \
          Restoring one makes its values changes, to be looked at and written.",
     );
     ui.label(RichText::new(format!("Kept in {folder}")).color(Palette::of(ui).weak_text));
-    if general.backups().is_empty() {
+    if general.settings.backups().is_empty() {
         lamp_ui(
             ui,
             LampState::Unknown,
@@ -27,7 +29,7 @@ pub fn backups_ui(ui: &mut Ui, general: &mut General) -> Vec<Offer> {
     }
     let mut wanted = None;
     Grid::new("backups").num_columns(3).striped(true).spacing([16.0, 4.0]).show(ui, |ui| {
-        for backup in general.backups() {
+        for backup in general.settings.backups() {
             ui.label(backup.title());
             for (text, restores) in [("Compare", false), ("Restore…", true)] {
                 let response = ui.add(Button::new(text).small());
@@ -51,7 +53,7 @@ pub fn backups_ui(ui: &mut Ui, general: &mut General) -> Vec<Offer> {
     Vec::new()
 }
 
-pub fn copy_motor_ui(ui: &mut Ui, general: &mut General) -> Vec<Offer> {
+pub fn copy_motor_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
     title_ui(ui, "Copy motor");
     text_ui(ui, "Makes one motor's settings those of the other. They become changes here; Write sends them.");
     ui.horizontal(|ui| {
@@ -80,12 +82,12 @@ pub fn copy_motor_ui(ui: &mut Ui, general: &mut General) -> Vec<Offer> {
     vec![("Copy", Act::CopyMotor, !copied.wanted.is_empty())]
 }
 
-pub fn unfinished_ui(ui: &mut Ui, general: &General) -> Vec<Offer> {
+pub fn unfinished_ui(ui: &mut Ui, general: &GeneralView<'_>) -> Vec<Offer> {
     title_ui(ui, "Unfinished");
-    let aftermaths = general.aftermaths();
+    let aftermaths = general.settings.aftermaths();
     let Some(unit) = general.unit() else { return Vec::new() };
     if aftermaths.is_empty() {
-        let text = if general.has_unfinished() {
+        let text = if general.settings.has_unfinished() {
             "Something was cut short on this controller. Read the settings to see what became of it."
         } else {
             "Nothing that was begun on this controller was cut short."

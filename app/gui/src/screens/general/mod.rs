@@ -8,7 +8,8 @@ use egui::{Align, Layout, Ui, vec2};
 use super::{not_connected_text, nothing_ui};
 use crate::command::{Command, Commands};
 use crate::model::Model;
-use crate::model::general::{Section, SettingsWish};
+use crate::model::general::{GeneralView, Section};
+use crate::model::settings::SettingsWish;
 
 mod calibrate;
 mod clamp;
@@ -43,19 +44,19 @@ pub fn framed_ui(
     commands: &mut Commands,
     list_ui: impl FnOnce(&mut Ui, &mut Model, &mut Commands),
 ) {
-    let Some(identity) = model.front.link.identity() else {
+    if model.front.link.identity().is_none() {
         return nothing_ui(ui, &not_connected_text(&model.front.phase));
-    };
+    }
     let family = model.front.family();
-    let general = &mut model.front.general;
-    general.look_at(identity);
-    if general.wants_reading() {
+    let stream = model.front.link.stream;
+    let general = &mut model.front.general_view();
+    if general.settings.wants_reading() {
         commands.push(Command::Settings(SettingsWish::Read));
     }
     head::head_ui(ui, general, family, commands);
     ui.add_space(4.0);
     match general.sheet().is_some() {
-        true => sheet::sheet_ui(ui, general, model.front.link.stream, family.words(), commands),
+        true => sheet::sheet_ui(ui, general, stream, family.words(), commands),
         false => list_ui(ui, model, commands),
     }
 }
@@ -64,14 +65,14 @@ pub fn framed_ui(
 fn sections_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let size = ui.available_size();
     if size.x < SIDE_BY_SIDE {
-        nav::choice_ui(ui, &mut model.front.general);
+        nav::choice_ui(ui, &mut model.front.general_view());
         return section_ui(ui, model, commands);
     }
     let nav_width = (size.x * NAV_SHARE).clamp(NAV_WIDTH.0, NAV_WIDTH.1);
     ui.horizontal_top(|ui| {
         ui.allocate_ui_with_layout(vec2(nav_width, size.y), Layout::top_down(Align::Min), |ui| {
             ui.set_width(nav_width);
-            nav::nav_ui(ui, &mut model.front.general);
+            nav::nav_ui(ui, &mut model.front.general_view());
         });
         let width = ui.available_width();
         ui.allocate_ui_with_layout(vec2(width, size.y), Layout::top_down(Align::Min), |ui| {
@@ -84,7 +85,8 @@ fn sections_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 /// What the open part has, and the explanation of one row.
 fn section_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let family = model.front.family();
-    let general = &mut model.front.general;
+    let link = &model.front.link;
+    let general = &mut GeneralView::new(&mut model.front.settings, &mut model.front.general);
     let room = ui.available_height();
     let help_height = help::height(room);
     let height = room - help_height - ui.spacing().item_spacing.y;
@@ -92,12 +94,12 @@ fn section_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     match general.section {
         Section::Conflicts if !general.is_filtered() => conflicts::conflicts_ui(ui, general, room),
         Section::ClampTest if !general.is_filtered() => {
-            clamp::clamp_ui(ui, general, (&model.front.link, family), room, commands);
+            clamp::clamp_ui(ui, general, (link, family), room, commands);
         }
         _ => {
             match general.pin() {
                 Some(pin) => {
-                    let signal = model.front.link.readings.signal(pin);
+                    let signal = link.readings.signal(pin);
                     pin::pin_ui(ui, general, pin, signal, height, commands);
                 }
                 None => rows::rows_ui(ui, general, height),

@@ -3,7 +3,8 @@
 use brushwork_link::settings::SettingsTable;
 use egui::{Align, Button, ComboBox, Layout, Response, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
-use crate::model::general::{General, Section, UnitSettings, sections};
+use crate::model::general::{GeneralView, Section, sections};
+use crate::model::settings::UnitSettings;
 use crate::widgets::heading::heading_ui;
 
 /// Room that the scroll bar may take.
@@ -15,7 +16,7 @@ const LIST_HEIGHT: f32 = 400.0;
 const CONFLICTS: &str = "Conflicts";
 const CLAMP_TEST: &str = "Voltage clamp test";
 
-pub fn nav_ui(ui: &mut Ui, general: &mut General) {
+pub fn nav_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
     let wanted = ScrollArea::vertical().id_salt("sections").auto_shrink(false).show(ui, |ui| {
         ui.set_max_width(ui.available_width() - BAR_WIDTH);
         entries_ui(ui, general)
@@ -26,7 +27,7 @@ pub fn nav_ui(ui: &mut Ui, general: &mut General) {
 }
 
 /// The same parts in a list that unfolds, where there is no room beside the settings.
-pub fn choice_ui(ui: &mut Ui, general: &mut General) {
+pub fn choice_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
     let Some(unit) = general.unit() else { return };
     let current = match general.section {
         _ if general.is_filtered() => "all sections".to_owned(),
@@ -50,7 +51,7 @@ pub fn choice_ui(ui: &mut Ui, general: &mut General) {
 }
 
 /// One entry per part; the one that was pressed.
-fn entries_ui(ui: &mut Ui, general: &General) -> Option<Section> {
+fn entries_ui(ui: &mut Ui, general: &GeneralView<'_>) -> Option<Section> {
     let unit = general.unit()?;
     let current = (!general.is_filtered()).then_some(general.section);
     let mut wanted = None;

@@ -15,7 +15,8 @@ use super::calibrate::calibrate_ui;
 use super::rows::{self, Columns};
 use super::signal_graph::signal_graph_ui;
 use crate::command::{Command, Commands};
-use crate::model::general::{General, UnitSettings};
+use crate::model::general::GeneralView;
+use crate::model::settings::UnitSettings;
 use crate::theme::Palette;
 use crate::widgets::readout::Readout;
 
@@ -30,7 +31,7 @@ const STATUS_WIDTH: f32 = 290.0;
 
 pub fn pin_ui(
     ui: &mut Ui,
-    general: &mut General,
+    general: &mut GeneralView<'_>,
     pin: usize,
     signal: Option<PinSignal>,
     height: f32,
@@ -77,7 +78,7 @@ pub fn pin_ui(
 }
 
 /// The pin's name, its mode, and what can be done with it.
-fn head_ui(ui: &mut Ui, general: &mut General, pin: usize, commands: &mut Commands) {
+fn head_ui(ui: &mut Ui, general: &mut GeneralView<'_>, pin: usize, commands: &mut Commands) {
     let is_busy = general.is_busy();
     let mut wish = None;
     ui.horizontal(|ui| {
@@ -136,7 +137,7 @@ fn mode_ui(ui: &mut Ui, unit: &mut UnitSettings, pin: usize, name: &str) {
     ui.ctx().accesskit_node_builder(opened.response.id, |node| node.set_label(spoken));
 }
 
-fn picture_ui(ui: &mut Ui, general: &mut General, pin: usize, signal: Option<PinSignal>, width: f32) {
+fn picture_ui(ui: &mut Ui, general: &mut GeneralView<'_>, pin: usize, signal: Option<PinSignal>, width: f32) {
     let idle = general.calibration().is_none();
     let Some(unit) = general.unit_mut() else { return };
     if matches!(unit.pin_mode(pin), None | Some(PinMode::None)) {
@@ -152,7 +153,7 @@ fn picture_ui(ui: &mut Ui, general: &mut General, pin: usize, signal: Option<Pin
 }
 
 /// What the controller makes of the input now (MCP manual 1.9.12).
-fn status_ui(ui: &mut Ui, general: &General, pin: usize, signal: Option<PinSignal>) {
+fn status_ui(ui: &mut Ui, general: &GeneralView<'_>, pin: usize, signal: Option<PinSignal>) {
     let Some(unit) = general.unit() else { return };
     let mode = unit.pin_mode_on_controller(pin).filter(|mode| *mode != PinMode::None);
     let signal = signal.filter(|_| mode.is_some());
@@ -189,7 +190,13 @@ fn reading_text(behind: Behind) -> String {
 }
 
 /// The settings of the pin.
-fn settings_ui(ui: &mut Ui, general: &mut General, pin: usize, signal: Option<PinSignal>, width: f32) {
+fn settings_ui(
+    ui: &mut Ui,
+    general: &mut GeneralView<'_>,
+    pin: usize,
+    signal: Option<PinSignal>,
+    width: f32,
+) {
     let keys: Vec<String> = general.shown().into_iter().filter(|key| !is_mode(key)).collect();
     let columns = Columns::with_extra(width, ui.spacing().item_spacing.x);
     rows::header_ui(ui, columns);

@@ -4,11 +4,12 @@ use egui::{Button, Ui, vec2};
 
 use super::sheet_parts::{Act, Offer, lamp_ui, text_ui, title_ui};
 use crate::app::FRAME_INTERVAL;
-use crate::model::general::{General, Purpose, Told, UnitSettings};
+use crate::model::general::{GeneralView, Purpose, Told};
 use crate::model::lamp::LampState;
+use crate::model::settings::UnitSettings;
 use crate::widgets::text_field::text_field_ui;
 
-pub fn open_ui(ui: &mut Ui, general: &mut General) -> Vec<Offer> {
+pub fn open_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
     title_ui(ui, "Open profile");
     text_ui(
         ui,
@@ -24,7 +25,7 @@ pub fn open_ui(ui: &mut Ui, general: &mut General) -> Vec<Offer> {
     acts
 }
 
-pub fn save_ui(ui: &mut Ui, general: &mut General) -> Vec<Offer> {
+pub fn save_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
     title_ui(ui, "Save profile");
     text_ui(
         ui,
@@ -48,7 +49,7 @@ pub fn save_ui(ui: &mut Ui, general: &mut General) -> Vec<Offer> {
 }
 
 /// The path, and the desktop's own dialog for it.
-fn path_ui(ui: &mut Ui, general: &mut General, purpose: Purpose) {
+fn path_ui(ui: &mut Ui, general: &mut GeneralView<'_>, purpose: Purpose) {
     ui.horizontal(|ui| {
         let width = (ui.available_width() - 110.0).clamp(120.0, 620.0);
         ui.allocate_ui(vec2(width, ui.spacing().interact_size.y), |ui| {
@@ -87,7 +88,7 @@ fn told_ui(ui: &mut Ui, told: &Told) -> bool {
 }
 
 /// What has to be changed of a profile before it fits; nothing is used before that is agreed to.
-pub fn upgrade_ui(ui: &mut Ui, general: &General) -> Vec<Offer> {
+pub fn upgrade_ui(ui: &mut Ui, general: &GeneralView<'_>) -> Vec<Offer> {
     let Some((name, changes)) = general.profiles.pending() else { return Vec::new() };
     title_ui(ui, &format!("Upgrade profile {name}"));
     text_ui(

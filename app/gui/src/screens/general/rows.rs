@@ -6,8 +6,9 @@ use egui::{Align, Button, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, 
 
 use super::editor;
 use super::sheet_parts::lamp_ui;
-use crate::model::general::{General, Section, UnitSettings};
+use crate::model::general::{GeneralView, Section};
 use crate::model::lamp::LampState;
+use crate::model::settings::UnitSettings;
 use crate::theme::Palette;
 use crate::widgets::heading::heading_ui;
 use crate::widgets::readout::NO_VALUE;
@@ -58,7 +59,7 @@ impl Columns {
 /// Room that the scroll bar may take.
 const BAR_WIDTH: f32 = 14.0;
 
-pub fn rows_ui(ui: &mut Ui, general: &mut General, height: f32) {
+pub fn rows_ui(ui: &mut Ui, general: &mut GeneralView<'_>, height: f32) {
     let shown = general.shown();
     let is_filtered = general.is_filtered();
     let gap = ui.spacing().item_spacing.x;
@@ -86,7 +87,7 @@ pub fn rows_ui(ui: &mut Ui, general: &mut General, height: f32) {
 }
 
 /// Ion Studio's box over the delay (MCP manual 1.2.10): a delay too short for a start is none.
-fn autorun_ui(ui: &mut Ui, general: &mut General) {
+fn autorun_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
     const DELAY: &str = "script.autorun_delay";
     let Some(unit) = general.unit_mut() else { return };
     let Some(SettingValue::Int(delay_ms)) = unit.wanted(DELAY) else { return };
@@ -109,7 +110,13 @@ fn bridge_ui(ui: &mut Ui, unit: Option<&UnitSettings>) {
 }
 
 /// The rows one below the other, under their sections where several are shown.
-pub fn list_ui(ui: &mut Ui, general: &mut General, shown: &[String], columns: Columns, extra: Extra<'_>) {
+pub fn list_ui(
+    ui: &mut Ui,
+    general: &mut GeneralView<'_>,
+    shown: &[String],
+    columns: Columns,
+    extra: Extra<'_>,
+) {
     let is_filtered = general.is_filtered();
     let sought = general.take_sought();
     let mut explained = None;

@@ -9,8 +9,9 @@ use super::sheet_parts::{Act, Offer, differences_ui, lamp_ui, text_ui, title_ui}
 use super::{compare, kept, profile};
 use crate::command::{Command, Commands};
 use crate::family::SettingsWords;
-use crate::model::general::{General, Saved, SettingsWish, Sheet, Take, UnitSettings};
+use crate::model::general::{GeneralView, Sheet, Take};
 use crate::model::lamp::LampState;
+use crate::model::settings::{Saved, SettingsWish, UnitSettings};
 use crate::theme::Palette;
 use brushwork_core::keep::WearLevel;
 
@@ -19,7 +20,7 @@ const BUTTONS_HEIGHT: f32 = 44.0;
 
 pub fn sheet_ui(
     ui: &mut Ui,
-    general: &mut General,
+    general: &mut GeneralView<'_>,
     stream: Option<Stream>,
     words: &SettingsWords,
     commands: &mut Commands,
@@ -37,7 +38,7 @@ pub fn sheet_ui(
 
 fn content_ui(
     ui: &mut Ui,
-    general: &mut General,
+    general: &mut GeneralView<'_>,
     sheet: &Sheet,
     stream: Option<Stream>,
     words: &SettingsWords,
@@ -63,7 +64,7 @@ fn content_ui(
     }
 }
 
-fn buttons_ui(ui: &mut Ui, general: &mut General, offers: &[Offer], commands: &mut Commands) {
+fn buttons_ui(ui: &mut Ui, general: &mut GeneralView<'_>, offers: &[Offer], commands: &mut Commands) {
     let focus = general.take_sheet_focus();
     let mut chosen = None;
     let mut close = false;
@@ -174,14 +175,14 @@ fn bytes_ui(ui: &mut Ui, unit: &UnitSettings, plan: &Plan) {
     });
 }
 
-fn save_ui(ui: &mut Ui, general: &General, words: &SettingsWords) -> Vec<Offer> {
+fn save_ui(ui: &mut Ui, general: &GeneralView<'_>, words: &SettingsWords) -> Vec<Offer> {
     let Some(unit) = general.unit() else { return Vec::new() };
     title_ui(ui, "Save to EEPROM");
     text_ui(ui, words.save_text);
     if let Some(warning) = words.save_warning {
         lamp_ui(ui, LampState::Warning, warning);
     }
-    match (unit.saved(), general.known_eeprom().zip(unit.ram())) {
+    match (unit.saved(), general.settings.known_eeprom().zip(unit.ram())) {
         (Saved::Yes, _) => text_ui(ui, "As far as known its EEPROM holds the same already."),
         (Saved::Differs(_), _) => {
             text_ui(ui, "These are saved (in EEPROM, as last known -> works with now):");
@@ -207,7 +208,7 @@ fn save_ui(ui: &mut Ui, general: &General, words: &SettingsWords) -> Vec<Offer> 
             "Changes on this screen that are not written are not saved. Write them first to keep them.";
         lamp_ui(ui, LampState::Warning, text);
     }
-    let (wear, limits) = general.wear();
+    let (wear, limits) = general.settings.wear();
     let state = match wear.level() {
         WearLevel::Fine => LampState::Ok,
         WearLevel::Half => LampState::Warning,

@@ -3,8 +3,8 @@
 use brushwork_link::settings::Difference;
 use egui::{Grid, Label, RichText, Ui, vec2};
 
-use crate::model::general::{SettingsWish, Settle, UnitSettings};
 use crate::model::lamp::LampState;
+use crate::model::settings::{SettingsWish, Settle, UnitSettings};
 use crate::theme::Palette;
 
 /// What a button of a sheet does.

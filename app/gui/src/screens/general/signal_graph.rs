@@ -10,7 +10,7 @@ use egui::{
     WidgetInfo, pos2, vec2,
 };
 
-use crate::model::general::UnitSettings;
+use crate::model::settings::UnitSettings;
 use crate::theme::Palette;
 use crate::widgets::steps::{Steps, set_by_reader};
 

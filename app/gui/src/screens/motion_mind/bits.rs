@@ -37,7 +37,7 @@ impl Desk {
         if !register.is_writable() {
             return self.register(register.name).and_then(|word| u16::try_from(word).ok());
         }
-        let unit = self.general.unit()?;
+        let unit = self.settings.unit()?;
         word_of(register, |bit| Some(unit.wanted(&bit_key(register.name, bit))? == SettingValue::Bool(true)))
     }
 }
@@ -60,7 +60,7 @@ pub fn bits_ui(ui: &mut Ui, desk: &mut Desk, register: &'static Register) {
 
 /// A box for a bit that can be written, with what the unit has where that is another.
 fn setting_ui(ui: &mut Ui, desk: &mut Desk, register: &Register, bit: &Bit) {
-    let Some(unit) = desk.general.unit_mut() else { return };
+    let Some(unit) = desk.settings.unit_mut() else { return };
     let key = bit_key(register.name, bit.name);
     let Some(row) = unit.table().row(&key).cloned() else { return };
     let wanted = unit.wanted(&key) == Some(SettingValue::Bool(true));

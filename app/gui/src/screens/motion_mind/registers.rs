@@ -14,9 +14,9 @@ use super::bits::{bits_ui, has_bits};
 use crate::command::Commands;
 use crate::model::Model;
 use crate::model::desk::Desk;
-use crate::model::general::UnitSettings;
 use crate::model::lamp::LampState;
 use crate::model::motion_mind::registers::{in_unit, key};
+use crate::model::settings::UnitSettings;
 use crate::screens::general::{editor, framed_ui};
 use crate::theme;
 use crate::theme::Palette;
@@ -62,12 +62,12 @@ fn is_shown(desk: &Desk, register: &Register) -> bool {
     if !general.is_filtered() {
         return true;
     }
-    let Some(unit) = general.unit() else { return true };
+    let Some(unit) = desk.settings.unit() else { return true };
     let own = key(register);
     let of_it = |row: &str| row == own || row.starts_with(&format!("{}.", register.name.to_lowercase()));
     let edited = || unit.edits().iter().any(|(edited, _)| of_it(edited));
     let text = format!("{} {} {}", register.number, register.name, register.help).to_lowercase();
-    let bits = || general.shown().iter().any(|row| of_it(row));
+    let bits = || general.shown_of(unit).iter().any(|row| of_it(row));
     let found = general.search.split_whitespace().all(|word| text.contains(&word.to_lowercase())) || bits();
     found && (!general.only_changed || edited())
 }
@@ -146,7 +146,7 @@ fn wanted_ui(ui: &mut Ui, desk: &mut Desk, register: &'static Register) -> bool 
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &spoken));
         return response.clicked();
     }
-    let Some(unit) = desk.general.unit_mut() else { return false };
+    let Some(unit) = desk.settings.unit_mut() else { return false };
     let Some(row) = unit.table().row(&key(register)).cloned() else {
         let weak = Palette::of(ui).weak_text;
         ui.label(RichText::new(if register.is_writable() { "" } else { "measured" }).small().color(weak));
@@ -166,7 +166,7 @@ fn mark_ui(ui: &mut Ui, desk: &Desk, register: &Register) {
 }
 
 fn mark(desk: &Desk, register: &Register) -> Option<(LampState, String)> {
-    let unit = desk.general.unit()?;
+    let unit = desk.settings.unit()?;
     let rows: Vec<&Row> = rows_of(unit, register).collect();
     let trouble = rows.iter().find_map(|row| unit.trouble(&row.key));
     if let Some(trouble) = trouble {
@@ -195,7 +195,7 @@ fn ram_text(desk: &Desk, register: &Register) -> String {
             .register(register.name)
             .map_or_else(|| NO_VALUE.to_owned(), |word| format!("0x{word:04X}"));
     }
-    let of_settings = desk.general.unit().and_then(|unit| {
+    let of_settings = desk.settings.unit().and_then(|unit| {
         let row = unit.table().row(&key(register))?;
         Some(row.format_bare(unit.on_controller(&row.key)?))
     });
@@ -206,9 +206,10 @@ fn ram_text(desk: &Desk, register: &Register) -> String {
 /// What the EEPROM holds, as proven in this session; else as it was known last, in brackets.
 fn eeprom_text(desk: &Desk, register: &Register) -> String {
     let text = || {
-        let unit = desk.general.unit()?;
+        let unit = desk.settings.unit()?;
         if has_bits(register) {
-            let image = unit.eeprom().or_else(|| desk.general.known_eeprom().map(|known| &known.settings))?;
+            let image =
+                unit.eeprom().or_else(|| desk.settings.known_eeprom().map(|known| &known.settings))?;
             let word = super::bits::word_of(register, |bit| {
                 let key = crate::model::motion_mind::registers::bit_key(register.name, bit);
                 Some(image.get(&key)? == SettingValue::Bool(true))
@@ -223,7 +224,7 @@ fn eeprom_text(desk: &Desk, register: &Register) -> String {
         match unit.eeprom().and_then(|image| image.get(&row.key)) {
             Some(value) => Some(row.format_bare(value)),
             None => {
-                Some(format!("({})", row.format_bare(desk.general.known_eeprom()?.settings.get(&row.key)?)))
+                Some(format!("({})", row.format_bare(desk.settings.known_eeprom()?.settings.get(&row.key)?)))
             }
         }
     };
@@ -268,7 +269,7 @@ fn about_ui(ui: &mut Ui, desk: &Desk, register: &Register) {
     let palette = Palette::of(ui);
     let help = capital(register.help);
     ui.add(Label::new(format!("{help}.")).wrap());
-    let Some(unit) = desk.general.unit() else { return };
+    let Some(unit) = desk.settings.unit() else { return };
     for row in rows_of(unit, register) {
         if let Some(trouble) = unit.trouble(&row.key) {
             ui.add(Label::new(RichText::new(trouble).color(palette.error)).wrap());
@@ -303,7 +304,7 @@ fn facts(register: &Register) -> String {
 
 /// What a power cycle would change of it.
 fn unsaved_ui(ui: &mut Ui, desk: &Desk, register: &Register) {
-    let Some(unit) = desk.general.unit() else { return };
+    let Some(unit) = desk.settings.unit() else { return };
     let (Some(eeprom), Some(ram)) = (unit.eeprom(), unit.ram()) else { return };
     let of_it: Vec<&str> = rows_of(unit, register).map(|row| row.key.as_str()).collect();
     let both =

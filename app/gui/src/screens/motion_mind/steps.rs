@@ -14,7 +14,7 @@ pub fn steps_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let stage = &STAGES[at];
     stages_ui(ui, model, at);
     ui.add(Label::new(stage.text).wrap());
-    let is_free = !model.front.is_guided() && !model.front.loops.is_busy();
+    let is_free = !model.front.is_guided() && !model.front.settings.is_busy();
     ui.horizontal_wrapped(|ui| {
         if at == 0 {
             let hint = "Writes five changes to RAM; nothing is stored";

@@ -35,7 +35,7 @@ fn note(desk: &Desk) -> Option<&'static str> {
     if !is_mcp(identity) {
         return None;
     }
-    Some(match desk.watch.homed() {
+    Some(match desk.homed() {
         Some(_) => {
             "M1HM and M2HM follow the actions of the input pins: this controller's status word has no bits for them. \
              Times are counted from the connection."

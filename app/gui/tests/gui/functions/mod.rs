@@ -179,7 +179,7 @@ fn write(bench: &mut Bench) {
     bench.press("Write to controller");
     for _ in 0..60 {
         bench.pass_ms(100);
-        if bench.model().front.general.running().is_none() {
+        if bench.model().front.settings.running().is_none() {
             break;
         }
     }

@@ -5,53 +5,18 @@ use brushwork_link::settings::{SettingsImage, WriteReport};
 use brushwork_mcp_client::settings::{Calibration, open_range};
 
 use super::{Phase, Run, closed, left_open, want_back};
-use crate::model::general::General;
-use crate::model::general::summary::Summary;
-use crate::model::general::work::SettingsWish;
+use crate::model::general::{General, GeneralView};
 use crate::model::message::Gravity;
+use crate::model::settings::{SettingsWish, Summary};
 
 impl General {
     pub fn calibration(&self) -> Option<&Run> {
         self.calibration.as_ref()
     }
 
-    /// Whether nothing else may be done with the settings for now.
-    pub fn is_busy(&self) -> bool {
-        self.running.is_some() || self.calibration.is_some() || self.clamp.is_running()
-    }
-
-    /// Begins to calibrate a pin; what to ask for next.
-    pub fn calibrate(&mut self, pin: usize) -> Option<SettingsWish> {
-        if self.is_busy() {
-            return None;
-        }
-        let unit_key = self.current.clone()?;
-        let unit = self.units.get(&unit_key)?;
-        let own = format!("pin.{pin}.");
-        let mode = unit.pin_mode_on_controller(pin)?;
-        let opened = open_range(pin, mode);
-        let known = |key: &str| Some((key.to_owned(), unit.on_controller(key)?));
-        let keys = opened.iter().map(|(key, _)| key.to_owned());
-        let all: Option<SettingsImage> = keys.map(|key| known(&key)).collect();
-        let mut before = all?;
-        // The mode itself is not written; it says how far the range is opened.
-        for field in ["type", "digital"] {
-            let key = format!("{own}{field}");
-            if let Some(value) = unit.on_controller(&key) {
-                before.set(&key, value);
-            }
-        }
-        self.calibration = Some(Run {
-            unit: unit_key,
-            pin,
-            phase: Phase::Opening,
-            told: None,
-            before,
-            kept: unit.keep(),
-            keeper: None,
-            found: None,
-        });
-        Some(SettingsWish::OpenInput)
+    /// Whether a calibration or a test needs the settings to be left as they are.
+    pub fn holds_settings(&self) -> bool {
+        self.calibration.is_some() || self.clamp.is_running()
     }
 
     /// Takes in the readings of a sweep.
@@ -96,6 +61,43 @@ impl General {
             self.calibration = None;
         }
     }
+}
+
+impl GeneralView<'_> {
+    /// Begins to calibrate a pin; what to ask for next.
+    pub fn calibrate(&mut self, pin: usize) -> Option<SettingsWish> {
+        if self.is_busy() {
+            return None;
+        }
+        let unit_key = self.settings.current()?.clone();
+        let unit = self.unit()?;
+        let own = format!("pin.{pin}.");
+        let mode = unit.pin_mode_on_controller(pin)?;
+        let opened = open_range(pin, mode);
+        let known = |key: &str| Some((key.to_owned(), unit.on_controller(key)?));
+        let keys = opened.iter().map(|(key, _)| key.to_owned());
+        let all: Option<SettingsImage> = keys.map(|key| known(&key)).collect();
+        let mut before = all?;
+        // The mode itself is not written; it says how far the range is opened.
+        for field in ["type", "digital"] {
+            let key = format!("{own}{field}");
+            if let Some(value) = unit.on_controller(&key) {
+                before.set(&key, value);
+            }
+        }
+        let run = Run {
+            unit: unit_key,
+            pin,
+            phase: Phase::Opening,
+            told: None,
+            before,
+            kept: unit.keep(),
+            keeper: None,
+            found: None,
+        };
+        self.calibration = Some(run);
+        Some(SettingsWish::OpenInput)
+    }
 
     /// The write that opens or closes the input has ended, with its report if it got that far.
     pub(in crate::model::general) fn calibration_step_ended(
@@ -103,11 +105,8 @@ impl General {
         report: Option<WriteReport>,
     ) -> Summary {
         let Some(mut run) = self.calibration.take() else { return Summary::note(String::new()) };
-        let Some(unit) = self.units.get_mut(&run.unit) else { return Summary::note(String::new()) };
-        let sentences = report.as_ref().map(|report| {
-            unit.note_written(report);
-            report.sentences(unit.table())
-        });
+        let Some(unit) = self.settings.unit_at(&run.unit) else { return Summary::note(String::new()) };
+        let sentences = report.as_ref().map(|report| report.sentences(unit.table()));
         let has_taken = sentences.as_ref().is_some_and(Vec::is_empty)
             && report.is_some_and(|report| report.ended_early.is_none());
         let name = unit.table().subject().pin_name(run.pin - 1);
@@ -135,7 +134,7 @@ impl General {
     /// The link is gone in the middle of a calibration: what the pin had is wanted again.
     pub(in crate::model::general) fn calibration_lost(&mut self) {
         if let Some(run) = self.calibration.take()
-            && let Some(unit) = self.units.get_mut(&run.unit)
+            && let Some(unit) = self.settings.unit_at(&run.unit)
         {
             want_back(unit, &run);
         }

@@ -7,8 +7,8 @@ use brushwork_link::settings::{Group, SettingValue};
 use crossbeam_channel::bounded;
 
 use super::{ClampTest, Running};
-use crate::model::general::General;
 use crate::model::general::section::Section;
+use crate::model::general::{General, GeneralView};
 use crate::model::link::Effect;
 use brushwork_core::motion::clamp;
 use brushwork_core::motion::clamp::{STEPS, Task};
@@ -20,6 +20,29 @@ impl General {
         is_open.then_some(ArmScope::ClampTest)
     }
 
+    /// The job was not taken.
+    pub fn clamp_test_not_begun(&mut self) {
+        self.clamp.forget_job();
+    }
+
+    /// Takes in an event of the clamp test.
+    pub fn take_clamp_test(&mut self, event: Event) -> Vec<Effect> {
+        self.clamp.take(event)
+    }
+
+    pub(in crate::model::general) fn clamp_test_lost(&mut self) {
+        self.clamp.forget_job();
+    }
+
+    /// What was found says nothing of another unit.
+    pub(in crate::model::general) fn forget_clamp_test(&mut self) {
+        if !self.clamp.is_running() {
+            self.clamp = ClampTest::default();
+        }
+    }
+}
+
+impl GeneralView<'_> {
     /// Begins the clamp test; what to ask of the device thread. Nothing while other work runs.
     pub fn begin_clamp_test(&mut self) -> Option<QueuedJob> {
         if self.is_busy() {
@@ -41,11 +64,6 @@ impl General {
         Some(job)
     }
 
-    /// The job was not taken.
-    pub fn clamp_test_not_begun(&mut self) {
-        self.clamp.forget_job();
-    }
-
     /// Outputs that are set to clamp over-voltage, from 1.
     pub fn clamping_outputs(&self) -> Vec<usize> {
         let Some(unit) = self.unit() else { return Vec::new() };
@@ -54,21 +72,5 @@ impl General {
             unit.on_controller(&row.key) == Some(SettingValue::Choice("over_voltage"))
         };
         rows.filter(clamps).filter_map(|row| row.instance.as_ref().map(|one| one.number)).collect()
-    }
-
-    /// Takes in an event of the clamp test.
-    pub fn take_clamp_test(&mut self, event: Event) -> Vec<Effect> {
-        self.clamp.take(event)
-    }
-
-    pub(in crate::model::general) fn clamp_test_lost(&mut self) {
-        self.clamp.forget_job();
-    }
-
-    /// What was found says nothing of another unit.
-    pub(in crate::model::general) fn forget_clamp_test(&mut self) {
-        if !self.clamp.is_running() {
-            self.clamp = ClampTest::default();
-        }
     }
 }

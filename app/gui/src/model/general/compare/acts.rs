@@ -3,15 +3,16 @@
 use brushwork_link::settings::{CopiedMotor, OpenedProfile, SettingsImage, copy_motor, diff};
 
 use super::{Comparison, Fitted, Side, Take};
-use crate::model::general::General;
+use crate::model::general::GeneralView;
 use brushwork_core::keep::Backup;
+use brushwork_core::settings::known_defaults;
 
-impl General {
+impl GeneralView<'_> {
     /// What a side is called.
     pub fn side_title(&self, side: &Side) -> String {
         match side {
             Side::Ram => "Controller (RAM)".to_owned(),
-            Side::Eeprom => match self.known_eeprom() {
+            Side::Eeprom => match self.settings.known_eeprom() {
                 Some(known) => format!("EEPROM as known since {}", known.date_text()),
                 None => "EEPROM (not known)".to_owned(),
             },
@@ -21,7 +22,7 @@ impl General {
             },
             Side::Default => "Defaults".to_owned(),
             Side::Backup(name) => {
-                let backup = self.backups().iter().find(|backup| backup.name == *name);
+                let backup = self.settings.backups().iter().find(|backup| backup.name == *name);
                 format!("Backup {}", backup.map_or_else(|| name.clone(), Backup::title))
             }
         }
@@ -30,7 +31,7 @@ impl General {
     /// Every side that there is.
     pub fn sides(&self) -> Vec<Side> {
         let mut sides = vec![Side::Ram, Side::Eeprom, Side::Profile, Side::Default];
-        sides.extend(self.backups().iter().map(|backup| Side::Backup(backup.name.clone())));
+        sides.extend(self.settings.backups().iter().map(|backup| Side::Backup(backup.name.clone())));
         sides
     }
 
@@ -47,7 +48,7 @@ impl General {
     }
 
     fn fit_backup(&self, name: &str) -> Result<Fitted, String> {
-        let backup = self.backups().iter().find(|backup| backup.name == name);
+        let backup = self.settings.backups().iter().find(|backup| backup.name == name);
         let Some((backup, unit)) = backup.zip(self.unit()) else {
             return Err("The backup is not there any more.".to_owned());
         };
@@ -88,7 +89,7 @@ impl General {
         let unit = self.unit().ok_or("No controller is looked at.")?;
         match side {
             Side::Ram => unit.ram().map(plain).ok_or("The settings have not been read.".to_owned()),
-            Side::Eeprom => match (unit.eeprom(), self.known_eeprom()) {
+            Side::Eeprom => match (unit.eeprom(), self.settings.known_eeprom()) {
                 (Some(image), _) => Ok(plain(image)),
                 (None, Some(known)) => Ok(plain(&known.fitted_to(unit.table()).profile.settings)),
                 (None, None) => Err(
@@ -102,12 +103,11 @@ impl General {
                 opened.map(|opened| plain(&opened.profile.settings)).ok_or("No profile is open.".to_owned())
             }
             Side::Default => {
-                // What is not readable here cannot be compared either.
-                let known = |key: &str| unit.ram().is_none_or(|ram| ram.get(key).is_some());
-                let defaults = unit.table().default_image();
-                let defaults = defaults.iter().filter(|(key, _)| known(key));
-                let image = defaults.map(|(key, value)| (key.to_owned(), value)).collect();
-                Ok(Fitted { image, changes: Vec::new() })
+                let image = match unit.ram() {
+                    Some(ram) => known_defaults(unit.table(), ram),
+                    None => unit.table().default_image(),
+                };
+                Ok(plain(&image))
             }
             Side::Backup(name) => {
                 let opened = self.comparing.opened.get(name).cloned();

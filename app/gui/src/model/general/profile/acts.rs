@@ -5,13 +5,12 @@ use std::path::Path;
 use brushwork_link::settings::{OpenedProfile, Profile, Strictness};
 
 use super::{Opened, Purpose, Told};
-use crate::model::general::General;
-use crate::model::general::compare;
+use crate::model::general::GeneralView;
 use crate::model::general::compare::Side;
 use crate::model::general::sheet::Sheet;
-use crate::model::general::summary::settings;
+use brushwork_core::settings::{counted, fitted};
 
-impl General {
+impl GeneralView<'_> {
     /// Looks whether the desktop's dialog gave a file, and opens or saves it then. Never waits for the user.
     pub fn follow_dialog(&mut self) {
         match self.profiles.answer() {
@@ -48,7 +47,7 @@ impl General {
             if Path::new(typed).extension().is_some() { typed.to_owned() } else { format!("{typed}.json") };
         match profile.save(Path::new(&path)) {
             Ok(()) => {
-                let settings = settings(profile.settings.len());
+                let settings = counted(profile.settings.len());
                 self.profiles.told = Told::Done(format!("{settings} are in {path}."));
             }
             Err(error) => self.profiles.fail(&error, false),
@@ -59,7 +58,7 @@ impl General {
     fn take_profile(&mut self, name: String, read: OpenedProfile) {
         let Some(unit) = self.unit() else { return };
         let mended = read.mended.iter().map(ToString::to_string).collect();
-        let (profile, changes) = compare::upgrade(read, unit.table());
+        let (profile, changes) = fitted(read, unit.table());
         let opened = Opened { name, profile, mended };
         self.profiles.told = Told::Nothing;
         if changes.is_empty() {

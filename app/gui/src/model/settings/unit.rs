@@ -1,13 +1,16 @@
 //! The settings of one unit: what it holds as far as known, what the user wants instead, and what was typed.
+//!
+//! Every screen that shows a setting shows this state, and whatever changes RAM or an edit raises its revision.
 
-use brushwork_link::UnitAddress;
 use brushwork_mcp_client::{layout_of, subject};
 use std::collections::{BTreeMap, BTreeSet};
 
+use brushwork_core::settings::write_options;
+use brushwork_link::UnitAddress;
 use brushwork_link::device::Identity;
 use brushwork_link::settings::{
-    Copies, Difference, Plan, ReadReport, Refusal, Row, SaveReport, SaveVerdict, SettingValue, SettingsImage,
-    SettingsTable, WriteOptions, WriteReport, diff, plan,
+    Copies, Difference, Known, Plan, Profile, ReadReport, Refusal, Row, RowState, SaveReport, SaveVerdict,
+    SettingValue, SettingsImage, SettingsTable, WriteOptions, WriteReport, diff, plan,
 };
 use brushwork_link::transport::Stream;
 use brushwork_mcp_wire::models;
@@ -33,12 +36,30 @@ pub struct UnitSettings {
     troubles: BTreeMap<String, String>,
     /// Rows written since EEPROM was last known.
     written: BTreeSet<String>,
+    /// How far the controller was asked for each setting.
+    asked: BTreeMap<String, Asked>,
+    /// Whether all settings were asked for since RAM was last in doubt.
     was_asked: bool,
+    /// Whether all settings were read since the controller was last out of reach.
+    is_read: bool,
+    /// What the backup of the next of a series of small writes is made from.
+    known: Known,
+    revision: u64,
+}
+
+/// How far the controller was asked for a setting; one that it was never asked for has none of these.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Asked {
+    Waiting,
+    /// It has told, or cannot.
+    Answered,
+    /// It has told, and may hold something else by now.
+    InDoubt,
 }
 
 /// What a calibration must not disturb: edits, and what is known of EEPROM.
 #[derive(Clone, Debug)]
-pub(super) struct Kept {
+pub struct Before {
     edits: SettingsImage,
     taken: BTreeSet<String>,
     written: BTreeSet<String>,
@@ -80,8 +101,21 @@ impl UnitSettings {
             typed: BTreeMap::new(),
             troubles: BTreeMap::new(),
             written: BTreeSet::new(),
+            asked: BTreeMap::new(),
             was_asked: false,
+            is_read: false,
+            known: Known::default(),
+            revision: 0,
         }
+    }
+
+    /// Goes up with every change of RAM, as far as it is known, and of edits.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    fn changed(&mut self) {
+        self.revision += 1;
     }
 
     pub fn table(&self) -> &SettingsTable {
@@ -92,9 +126,15 @@ impl UnitSettings {
         &self.edits
     }
 
-    /// What the controller works with, if it was read.
+    /// What the controller works with, if all of it was read.
     pub fn ram(&self) -> Option<&SettingsImage> {
-        self.copies.ram()
+        self.copies.ram().filter(|_| self.is_read)
+    }
+
+    /// What is known of RAM, if each of these keys was asked for and told at least once.
+    pub fn ram_with(&self, keys: &[String]) -> Option<&SettingsImage> {
+        let is_told = |key: &String| self.asked.get(key).is_some_and(|asked| *asked != Asked::Waiting);
+        self.copies.ram().filter(|_| keys.iter().all(is_told))
     }
 
     /// What its EEPROM holds, if that was proven in this session.
@@ -128,20 +168,62 @@ impl UnitSettings {
 
     /// Whether the controller's settings were read.
     pub fn is_read(&self) -> bool {
-        self.copies.ram().is_some()
+        self.is_read
     }
 
     pub fn was_asked(&self) -> bool {
         self.was_asked
     }
 
-    pub fn note_asked(&mut self) {
+    pub(super) fn note_asked(&mut self) {
         self.was_asked = true;
     }
 
     /// What was asked for gave way to something more urgent.
     pub(super) fn forget_asked(&mut self) {
         self.was_asked = false;
+    }
+
+    /// Which of these keys the controller has to be asked for: those that are not known, and those in doubt.
+    pub fn unasked(&self, keys: &[String]) -> Vec<String> {
+        let is_unasked = |key: &&String| self.asked.get(*key).is_none_or(|asked| *asked == Asked::InDoubt);
+        keys.iter().filter(is_unasked).cloned().collect()
+    }
+
+    pub(super) fn note_keys_asked(&mut self, keys: &[String]) {
+        self.asked.extend(keys.iter().map(|key| (key.clone(), Asked::Waiting)));
+    }
+
+    /// No answer came: whoever wants them asks again.
+    pub(super) fn forget_keys_asked(&mut self, keys: &[String]) {
+        for key in keys {
+            let was_told = self.on_controller(key).is_some();
+            match was_told {
+                true => self.asked.insert(key.clone(), Asked::InDoubt),
+                false => self.asked.remove(key),
+            };
+        }
+    }
+
+    /// These are to be read anew by whoever shows them.
+    pub fn doubt_keys(&mut self, keys: &[String]) {
+        for key in keys {
+            self.asked.entry(key.clone()).and_modify(|asked| *asked = Asked::InDoubt);
+        }
+        self.known.forget();
+    }
+
+    /// Something else than a write from here may have changed RAM: what is known of it is read anew.
+    pub(super) fn doubt(&mut self) {
+        self.asked.values_mut().for_each(|asked| *asked = Asked::InDoubt);
+        self.was_asked = false;
+        self.known.forget();
+        self.changed();
+    }
+
+    /// What the controller works with, unless something may have changed it since it was read.
+    pub fn confirmed(&self, key: &str) -> Option<SettingValue> {
+        self.on_controller(key).filter(|_| self.asked.get(key) == Some(&Asked::Answered))
     }
 
     /// What the controller works with, as last read.
@@ -184,6 +266,7 @@ impl UnitSettings {
 
     /// Wants a value.
     pub fn set(&mut self, key: &str, value: SettingValue) {
+        self.changed();
         self.typed.remove(key);
         self.troubles.remove(key);
         self.taken.remove(key);
@@ -204,12 +287,14 @@ impl UnitSettings {
 
     /// What stands in the row's field while it is being typed.
     pub fn type_in(&mut self, key: &str, text: String) {
+        self.changed();
         self.typed.insert(key.to_owned(), Typed { text, refusal: String::new() });
     }
 
     /// Takes what was typed as the row's value. What is no value stays in the field, with the reason.
     pub fn finish_typing(&mut self, key: &str) {
         let Some(typed) = self.typed.remove(key) else { return };
+        self.changed();
         let Some(row) = self.table.row(key) else { return };
         if typed.text.trim().is_empty() {
             return self.revert(key);
@@ -224,11 +309,13 @@ impl UnitSettings {
 
     /// Forgets what was typed and not taken.
     pub fn drop_typing(&mut self, key: &str) {
+        self.changed();
         self.typed.remove(key);
     }
 
     /// Back to what the controller has.
     pub fn revert(&mut self, key: &str) {
+        self.changed();
         self.edits.remove(key);
         self.taken.remove(key);
         self.typed.remove(key);
@@ -255,7 +342,7 @@ impl UnitSettings {
 
     /// What the defaults would change.
     pub fn changes_to_defaults(&self) -> Vec<Difference> {
-        let Some(ram) = self.copies.ram() else { return Vec::new() };
+        let Some(ram) = self.ram() else { return Vec::new() };
         let known = |difference: &Difference| difference.left.is_some();
         diff(&self.table, ram, &self.table.default_image()).into_iter().filter(known).collect()
     }
@@ -272,27 +359,27 @@ impl UnitSettings {
 
     /// The commands that the edits need, or why they cannot be written.
     pub fn plan(&self, own_stream: Option<Stream>) -> Result<Plan, Vec<Refusal>> {
-        let nothing = SettingsImage::default();
-        let ram = self.copies.ram().unwrap_or(&nothing);
-        plan(&self.table, ram, &self.edits, self.options(own_stream))
+        plan(&self.table, &self.held_image(), &self.edits, self.options(&self.edits, own_stream))
     }
 
-    /// How the edits are written. Those that were typed have to be right for those that were taken over to be written as they are.
-    pub fn options(&self, own_stream: Option<Stream>) -> WriteOptions {
+    fn held_image(&self) -> SettingsImage {
+        self.copies.ram().cloned().unwrap_or_default()
+    }
+
+    /// How values are written: those that were taken over from a profile, a backup or a journal as they are.
+    pub(super) fn options(&self, wanted: &SettingsImage, own_stream: Option<Stream>) -> WriteOptions {
         let options = WriteOptions { own_stream, simulated: self.is_simulated, as_read: false };
-        if self.taken.is_empty() {
-            return options;
-        }
-        let (mut beside, mut typed) =
-            (self.copies.ram().cloned().unwrap_or_default(), SettingsImage::default());
-        for (key, value) in self.edits.iter() {
-            if self.taken.contains(key) { &mut beside } else { &mut typed }.set(key, value);
-        }
-        WriteOptions { as_read: plan(&self.table, &beside, &typed, options).is_ok(), ..options }
+        let (taken, typed): (Vec<_>, Vec<_>) = wanted
+            .iter()
+            .map(|(key, value)| (key.to_owned(), value))
+            .partition(|(key, value)| self.taken.contains(key) && self.edits.get(key) == Some(*value));
+        let (taken, typed) = (taken.into_iter().collect(), typed.into_iter().collect());
+        // What cannot be written is refused by the plan, which tells every reason.
+        write_options(&self.table, &self.held_image(), &taken, &typed, options).unwrap_or(options)
     }
 
     pub fn saved(&self) -> Saved {
-        if self.copies.ram().is_none() || self.copies.eeprom().is_none() {
+        if self.ram().is_none() || self.copies.eeprom().is_none() {
             return Saved::NotKnown { written: self.written.len() };
         }
         match self.unsaved().len() {
@@ -303,18 +390,19 @@ impl UnitSettings {
 
     /// What a power cycle would change, as far as both copies are known: in EEPROM, then in RAM.
     pub fn unsaved(&self) -> Vec<Difference> {
-        let (Some(eeprom), Some(ram)) = (self.copies.eeprom(), self.copies.ram()) else { return Vec::new() };
+        let (Some(eeprom), Some(ram)) = (self.copies.eeprom(), self.ram()) else { return Vec::new() };
         let known = |difference: &Difference| difference.left.is_some() && difference.right.is_some();
         diff(&self.table, eeprom, ram).into_iter().filter(known).collect()
     }
 
     /// The edits and what was written, as they are.
-    pub(super) fn keep(&self) -> Kept {
-        Kept { edits: self.edits.clone(), taken: self.taken.clone(), written: self.written.clone() }
+    pub fn keep(&self) -> Before {
+        Before { edits: self.edits.clone(), taken: self.taken.clone(), written: self.written.clone() }
     }
 
     /// Edits and what was written as they were.
-    pub(super) fn put_back(&mut self, kept: Kept) {
+    pub fn put_back(&mut self, kept: Before) {
+        self.changed();
         self.edits = kept.edits;
         self.taken = kept.taken;
         self.written = kept.written;
@@ -322,19 +410,18 @@ impl UnitSettings {
     }
 
     /// The link is gone. What was read may no longer be true; the edits stay.
-    pub(super) fn forget_ram(&mut self) {
-        self.copies.forget_ram();
-        self.was_asked = false;
-    }
-
     pub(super) fn forget(&mut self) {
         self.copies.forget_ram();
         self.copies.forget_eeprom();
         self.written.clear();
         self.troubles.clear();
-        self.was_asked = false;
+        self.asked.clear();
+        self.known.forget();
+        (self.was_asked, self.is_read) = (false, false);
+        self.changed();
     }
 
+    /// All settings were read.
     pub(super) fn note_read(&mut self, report: ReadReport, from_eeprom: bool) {
         let each = |failure: &brushwork_link::settings::ReadFailure| {
             let why = failure.failure.to_string();
@@ -348,18 +435,51 @@ impl UnitSettings {
         } else {
             self.copies.note_ram(report.image);
         }
+        self.asked = self.table.rows().iter().map(|row| (row.key.clone(), Asked::Answered)).collect();
+        (self.was_asked, self.is_read) = (true, true);
+        self.known.forget();
         self.drop_fulfilled();
     }
 
-    pub(super) fn note_written(&mut self, report: &WriteReport) {
-        let mut ram = self.copies.ram().cloned().unwrap_or_default();
+    /// Some settings were read.
+    pub(super) fn note_keys(&mut self, keys: &[String], image: &SettingsImage) {
+        let mut ram = self.held_image();
+        for key in keys {
+            match image.get(key) {
+                Some(value) => ram.set(key, value),
+                None => ram.remove(key),
+            }
+            self.asked.insert(key.clone(), Asked::Answered);
+        }
+        self.copies.note_ram(ram);
+        self.drop_fulfilled();
+    }
+
+    /// What the next write makes its backup from; it hands it back with its report.
+    pub(super) fn take_known(&mut self) -> Known {
+        std::mem::take(&mut self.known)
+    }
+
+    /// Values were written. `replaced` are the edits of them that there were when that was asked for.
+    pub(super) fn note_written(&mut self, report: &WriteReport, replaced: &SettingsImage, known: Known) {
+        let mut ram = self.held_image();
         report.merge_into(&mut ram);
         self.copies.note_ram(ram);
+        self.known = known;
         let sentences = report.sentences(&self.table);
         for (row, sentence) in report.did_not_take().zip(sentences) {
             self.troubles.insert(row.key.clone(), sentence);
         }
-        self.written.extend(report.rows.iter().filter(|row| row.found.is_some()).map(|row| row.key.clone()));
+        for row in &report.rows {
+            if row.state == RowState::Taken && self.edits.get(&row.key) == replaced.get(&row.key) {
+                self.edits.remove(&row.key);
+                self.taken.remove(&row.key);
+            }
+            if row.found.is_some() {
+                self.asked.insert(row.key.clone(), Asked::Answered);
+                self.written.insert(row.key.clone());
+            }
+        }
         self.drop_fulfilled();
     }
 
@@ -377,13 +497,14 @@ impl UnitSettings {
             }
             SaveVerdict::Acknowledged => self.written.clear(),
             // Loading what EEPROM held may have changed RAM: it is read again.
-            SaveVerdict::NotSaved | SaveVerdict::Unknown => self.was_asked = false,
+            SaveVerdict::NotSaved | SaveVerdict::Unknown => self.doubt(),
         }
         self.drop_fulfilled();
     }
 
     /// An edit that the controller has come to hold is none any more.
     fn drop_fulfilled(&mut self) {
+        self.changed();
         let fulfilled: Vec<String> = self
             .edits
             .iter()
@@ -393,6 +514,27 @@ impl UnitSettings {
         for key in fulfilled {
             self.edits.remove(&key);
             self.taken.remove(&key);
+        }
+    }
+    /// What a file can keep of the controller: what it has, or what is wanted of it.
+    pub fn profile(&self, with_edits: bool) -> Option<Profile> {
+        let mut settings = self.ram()?.clone();
+        if with_edits {
+            settings.merge(self.edits());
+        }
+        Some(self.profile_of(settings))
+    }
+
+    /// Values as a profile of this controller.
+    pub(super) fn profile_of(&self, settings: SettingsImage) -> Profile {
+        Profile {
+            subject: *self.table.subject(),
+            firmware: self.firmware.clone(),
+            address: self.unit_address,
+            date: brushwork_core::keep::today(),
+            unit: String::new(),
+            note: String::new(),
+            settings,
         }
     }
 }

@@ -4,7 +4,7 @@ use brushwork_link::device::Identity;
 
 /// A unit, wherever the link to it is.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct UnitKey {
+pub struct UnitKey {
     pub port: String,
     pub address: u8,
     pub version_text: String,

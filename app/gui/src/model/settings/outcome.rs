@@ -2,23 +2,68 @@
 
 use brushwork_link::device::JobEnding;
 use brushwork_link::settings::{
-    DefaultsReport, ReadReport, SaveReport, SaveVerdict, SettingsTable, WriteError, WriteReport,
+    DefaultsReport, Known, ReadReport, RowState, SaveReport, SaveVerdict, SettingsImage, SettingsTable,
+    WriteError, WriteReport,
 };
 
-use super::super::message::Gravity;
-use super::summary::{Summary, settings};
+use super::summary::Summary;
 use super::unit::UnitSettings;
-use super::work::{Outcome, Running};
+use super::work::Running;
+use crate::model::message::Gravity;
+use brushwork_core::settings::{Done, counted};
 
-pub(super) fn take(unit: &mut UnitSettings, outcome: Outcome) -> Summary {
-    match outcome {
-        Outcome::Read(report) => read(unit, *report, false),
-        Outcome::Reloaded(report) => read(unit, *report, true),
-        Outcome::Written(report) => written(unit, &report),
-        Outcome::NotWritten(error) => not_written(error),
-        Outcome::Saved(report) => saved(unit, &report),
-        Outcome::Restored(report) => restored(unit, *report),
+/// For the screen with all settings.
+pub(super) fn take(unit: &mut UnitSettings, done: Done, replaced: &SettingsImage) -> Summary {
+    match done {
+        Done::Read(report) => read(unit, *report, false),
+        Done::Reloaded(report) => read(unit, *report, true),
+        Done::Written(report, known) => written(unit, &report, replaced, known),
+        Done::NotWritten(error) => not_written(error),
+        Done::Saved(report) => saved(unit, &report),
+        Done::Restored(report) => restored(unit, *report),
     }
+}
+
+/// For a screen that shows some settings: what could not be read, unless nobody waits for it.
+pub(super) fn keys_read(
+    unit: &mut UnitSettings,
+    keys: &[String],
+    report: &ReadReport,
+    is_quiet: bool,
+) -> Vec<(Gravity, String)> {
+    unit.note_keys(keys, &report.image);
+    let failures = report.failures.iter().filter(|_| !is_quiet);
+    failures.map(|unread| (Gravity::Error, unread.failure.to_string())).collect()
+}
+
+/// For whoever writes single values to RAM.
+pub(super) fn applied(
+    unit: &mut UnitSettings,
+    done: Done,
+    replaced: &SettingsImage,
+) -> Vec<(Gravity, String)> {
+    let (report, known) = match done {
+        Done::Written(report, known) => (report, known),
+        Done::NotWritten(error) => return vec![(Gravity::Error, error.to_string())],
+        Done::Read(_) | Done::Reloaded(_) | Done::Saved(_) | Done::Restored(_) => return Vec::new(),
+    };
+    unit.note_written(&report, replaced, known);
+    let mut said: Vec<(Gravity, String)> =
+        report.warnings.iter().map(|text| (Gravity::Warning, text.clone())).collect();
+    let wrong = report.sentences(unit.table());
+    let taken = report.rows.iter().filter(|row| row.state == RowState::Taken).count();
+    said.push(match wrong.is_empty() {
+        true => (
+            Gravity::Note,
+            format!(
+                "Applied and read back: {} in the controller's RAM. Until they are saved to EEPROM they last \
+                 until it is switched off.",
+                counted(taken)
+            ),
+        ),
+        false => (Gravity::Error, wrong.join(" ")),
+    });
+    said
 }
 
 /// The work ended without a result.
@@ -49,10 +94,10 @@ fn read(unit: &mut UnitSettings, report: ReadReport, from_eeprom: bool) -> Summa
         0 => (Gravity::Note, String::new()),
         _ => (
             Gravity::Warning,
-            format!(" {} could not be read; each row says why.", capital(&settings(failed))),
+            format!(" {} could not be read; each row says why.", capital(&counted(failed))),
         ),
     };
-    let summary = format!("{} {from}.{rest}", capital(&settings(known)));
+    let summary = format!("{} {from}.{rest}", capital(&counted(known)));
     Summary { gravity, summary, sentences: Vec::new(), address: None }
 }
 
@@ -60,21 +105,21 @@ fn unread(report: &ReadReport) -> usize {
     report.failures.iter().map(|failure| failure.keys.len()).sum()
 }
 
-fn written(unit: &mut UnitSettings, report: &WriteReport) -> Summary {
+fn written(unit: &mut UnitSettings, report: &WriteReport, replaced: &SettingsImage, known: Known) -> Summary {
     let wanted = report.rows.len();
     let failed = report.did_not_take().count();
     let mut sentences = report.sentences(unit.table());
     sentences.extend(report.ended_early.iter().map(ToString::to_string));
-    unit.note_written(report);
+    unit.note_written(report, replaced, known);
     let (gravity, summary) = if failed == 0 {
         let text = format!(
             "{} written and read back as wanted. Save to EEPROM to keep them over a power cycle.",
-            capital(&settings(wanted))
+            capital(&counted(wanted))
         );
         (Gravity::Note, text)
     } else {
         sentences.extend(report.warnings.iter().cloned());
-        let text = format!("{failed} of {} did not take; their rows keep the change.", settings(wanted));
+        let text = format!("{failed} of {} did not take; their rows keep the change.", counted(wanted));
         (Gravity::Error, text)
     };
     Summary { gravity, summary, sentences, address: Some(report.address.get()) }
@@ -123,7 +168,7 @@ fn restored(unit: &mut UnitSettings, report: DefaultsReport) -> Summary {
     let mut summary =
         "The controller works with its default settings. Save to EEPROM to keep them.".to_owned();
     if own > 0 {
-        summary += &format!(" {} came back with another value than listed here.", capital(&settings(own)));
+        summary += &format!(" {} came back with another value than listed here.", capital(&counted(own)));
     }
     Summary { gravity: Gravity::Note, summary, sentences: Vec::new(), address: Some(address) }
 }

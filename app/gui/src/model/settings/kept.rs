@@ -6,8 +6,8 @@ use brushwork_link::settings::{Keeper, Profile, SaveVerdict, SettingsImage};
 use brushwork_link::transport::PortInfo;
 
 use super::unit_key::UnitKey;
-use super::work::Outcome;
 use brushwork_core::keep::{Backup, Keeping, OpenJournal, UnitId, Wear};
+use brushwork_core::settings::Done;
 
 mod acts;
 
@@ -48,12 +48,12 @@ pub(super) enum Came {
 }
 
 impl Came {
-    pub(super) fn of(outcome: &Outcome) -> Self {
-        match outcome {
-            Outcome::Read(_) => Self::Read,
-            Outcome::Reloaded(report) => Self::Reloaded(report.image.clone()),
-            Outcome::Written(report) if report.is_complete() => Self::Written,
-            Outcome::Saved(report) => Self::Saved { verified: report.verdict == SaveVerdict::Verified },
+    pub(super) fn of(done: &Done) -> Self {
+        match done {
+            Done::Read(_) => Self::Read,
+            Done::Reloaded(report) => Self::Reloaded(report.image.clone()),
+            Done::Written(report, _) if report.is_complete() => Self::Written,
+            Done::Saved(report) => Self::Saved { verified: report.verdict == SaveVerdict::Verified },
             _ => Self::Other,
         }
     }

@@ -1,18 +1,15 @@
-//! What General Settings does with what is kept on this computer.
+//! What the settings of a unit have to do with what is kept on this computer.
 
 use brushwork_link::device::Identity;
-use brushwork_link::settings::{Act, Aftermath, Keeper, Profile};
+use brushwork_link::settings::{Act, Aftermath, Journal, Keeper, Profile};
 use brushwork_link::transport::PortInfo;
 
-use super::{Came, Settle};
-use crate::model::general::General;
-use crate::model::general::sheet::Sheet;
-use crate::model::general::unit_key::UnitKey;
-use crate::model::link::Effect;
-use crate::model::message::Gravity;
+use super::Came;
+use crate::model::settings::unit_key::UnitKey;
+use crate::model::settings::units::Settings;
 use brushwork_core::keep::{Backup, Keeping, UnitId, Wear};
 
-impl General {
+impl Settings {
     /// Where backups and journals go from now on; the ports tell serial numbers.
     pub fn keep_in(&mut self, keeping: Keeping, ports: Vec<PortInfo>) {
         self.kept.keeping = Some(keeping);
@@ -21,11 +18,16 @@ impl General {
 
     /// What keeps backup and journal of work on the unit that is looked at.
     pub fn keeper(&self) -> Option<Box<dyn Keeper>> {
-        self.kept.keeper(self.current.as_ref()?, self.unit()?.firmware())
+        self.keeper_of(self.current()?)
+    }
+
+    /// The same of any unit that was met.
+    pub fn keeper_of(&self, key: &UnitKey) -> Option<Box<dyn Keeper>> {
+        self.kept.keeper(key, self.firmware_of(key)?)
     }
 
     /// Looks up what is kept of the unit that is looked at from now on.
-    pub(in crate::model::general) fn look_up(&mut self, key: UnitKey, identity: &Identity) {
+    pub(in crate::model::settings) fn look_up(&mut self, key: UnitKey, identity: &Identity) {
         let kept = &mut self.kept;
         let unit = UnitId::new(identity, &kept.ports);
         kept.units.insert(key, unit.clone());
@@ -38,15 +40,12 @@ impl General {
         }
     }
 
-    /// What a sheet shows of the disk, read once when it is opened.
-    pub(in crate::model::general) fn refresh_for(&mut self, sheet: &Sheet) {
+    /// What stands on the disk by now: backups, and how often the EEPROM was written.
+    pub fn refresh_kept(&mut self) {
         let kept = &mut self.kept;
         let (Some(keeping), Some(unit)) = (&kept.keeping, &kept.unit) else { return };
-        match sheet {
-            Sheet::Backups | Sheet::Compare => kept.backups = keeping.store().backups(Some(unit)),
-            Sheet::Save => kept.wear = keeping.store().wear(unit),
-            _ => {}
-        }
+        kept.backups = keeping.store().backups(Some(unit));
+        kept.wear = keeping.store().wear(unit);
     }
 
     /// The unit's backups, newest first.
@@ -81,33 +80,13 @@ impl General {
         self.kept.unfinished.iter().map(|open| open.aftermath(unit.table(), ram)).collect()
     }
 
-    /// Settles what was cut short. The newest alone is finished or undone; those before were overtaken by it.
-    pub fn settle(&mut self, how: Settle) {
-        let Some(newest) = self.kept.unfinished.last().map(|open| open.journal.clone()) else { return };
-        if how == Settle::Leave {
-            self.close_unfinished();
-            return self.close_sheet();
-        }
-        let Some(unit) = self.unit_mut() else { return };
-        let Some(ram) = unit.ram().cloned() else { return };
-        let remedy = newest.remedy(&ram, how == Settle::Undo);
-        for (key, value) in remedy.iter() {
-            let is_writable = unit.table().row(key).is_some_and(|row| unit.is_writable(row));
-            if is_writable {
-                unit.take(key, value);
-            }
-        }
-        match (unit.edits().is_empty(), newest.act) {
-            (false, _) => self.open(Sheet::Write),
-            (true, Act::Save) => self.open(Sheet::Save),
-            (true, _) => {
-                self.close_unfinished();
-                self.close_sheet();
-            }
-        }
+    /// What was begun last of what was cut short.
+    pub fn newest_unfinished(&self) -> Option<Journal> {
+        self.kept.unfinished.last().map(|open| open.journal.clone())
     }
 
-    fn close_unfinished(&mut self) {
+    /// What was cut short is settled, or was told.
+    pub fn close_unfinished(&mut self) {
         let Some(keeping) = &self.kept.keeping else { return };
         for open in self.kept.unfinished.drain(..) {
             // A journal that cannot be removed is told once more at the next connection.
@@ -115,18 +94,18 @@ impl General {
         }
     }
 
-    /// Takes in what work came to: what was cut short may be settled by it, or has to be told now.
-    pub(in crate::model::general) fn note_came(&mut self, came: Option<Came>) -> Vec<Effect> {
+    /// Takes in what work came to: what was cut short may be settled by it, or has to be told now, which is true then.
+    pub(in crate::model::settings) fn note_came(&mut self, came: Option<Came>) -> bool {
         match came {
-            Some(Came::Read) if self.has_unfinished() => return self.tell_unfinished(),
+            Some(Came::Read) => return self.has_unfinished() && !self.aftermaths().is_empty(),
             Some(Came::Reloaded(image)) => {
-                self.kept.eeprom = self.unit().and_then(|unit| unit.profile_of(image));
+                self.kept.eeprom = self.unit().map(|unit| unit.profile_of(image));
             }
             Some(Came::Saved { verified }) => {
                 self.kept.eeprom = None;
                 if verified {
                     self.close_unfinished();
-                    self.kept.eeprom = self.unit().and_then(|unit| unit.profile_of(unit.ram()?.clone()));
+                    self.kept.eeprom = self.unit().and_then(|unit| unit.profile(false));
                 }
             }
             Some(Came::Written) => {
@@ -137,17 +116,8 @@ impl General {
                     self.close_unfinished();
                 }
             }
-            _ => {}
+            Some(Came::Other) | None => {}
         }
-        Vec::new()
-    }
-
-    fn tell_unfinished(&mut self) -> Vec<Effect> {
-        let aftermaths = self.aftermaths();
-        let Some(newest) = aftermaths.last() else { return Vec::new() };
-        let text =
-            format!("{} General Settings says which settings are old and which are new.", newest.headline());
-        self.open(Sheet::Unfinished);
-        vec![Effect::Say(Gravity::Error, text)]
+        false
     }
 }
