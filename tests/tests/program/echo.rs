@@ -557,3 +557,58 @@ fn the_settings_of_a_family_of_one_are_read_written_and_held_to_their_range() {
     assert_eq!(done, (true, true, Some(SettingValue::Int(7))));
     assert_eq!(link.bus(|echo| echo.gain), 7);
 }
+
+/// Takes everything and says nothing.
+#[derive(Default)]
+struct Silent(EchoMachine);
+
+impl Machine for Silent {
+    fn now(&self) -> Duration {
+        self.0.now()
+    }
+
+    fn receive(&mut self, _stream: StreamIndex, _bytes: &[u8]) {}
+
+    fn advance(&mut self, to: Duration) {
+        self.0.advance(to);
+    }
+
+    fn next_output_at(&self) -> Option<Duration> {
+        None
+    }
+
+    fn take_output(&mut self, _stream: StreamIndex) -> Option<Vec<u8>> {
+        None
+    }
+
+    fn bits_per_second(&self, stream: StreamIndex) -> u32 {
+        self.0.bits_per_second(stream)
+    }
+
+    fn units(&self) -> usize {
+        1
+    }
+
+    fn apply(&mut self, _unit: usize, _action: &WorldAction) {}
+
+    fn views(&self) -> Vec<WorldView> {
+        Vec::new()
+    }
+
+    fn plugged(&self) -> bool {
+        true
+    }
+}
+
+#[test]
+fn on_a_silent_port_all_families_are_looked_for_and_where_one_may_be_all_the_same_is_told() {
+    let mut link = VirtualLink::over(Silent::default(), DeviceOptions::default(), Vec::new(), 1);
+    link.run_for(Duration::from_secs(20));
+    let told = link.events.iter().find_map(|(_, event)| match event {
+        Event::Lost(reason) => Some(reason.to_string()),
+        _ => None,
+    });
+    let told = told.expect("the search ends");
+    assert!(told.contains("nothing answered at addresses 0x80 to 0x87"), "{told}");
+    assert!(told.ends_with("choose its family (family=motion-mind), so that all are asked."), "{told}");
+}

@@ -21,6 +21,7 @@ mod scripts;
 mod settings;
 mod settings_as_read;
 mod settings_cut;
+mod targets;
 mod tune_command;
 mod tuning;
 mod tuning_mind;

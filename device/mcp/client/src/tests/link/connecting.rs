@@ -120,8 +120,7 @@ fn a_silent_port_is_told_in_a_sentence_and_the_loop_ends() {
         link.sentences(),
         [
             "Could not find a controller on /dev/test: nothing answered at addresses 0x80 to 0x87. Check that the controller \
-          has motor power, that the cable and the port are right, and the baud rate. For a Motion Mind at another address \
-          than 1 choose its family (family=motion-mind), so that all are asked."
+          has motor power, that the cable and the port are right, and the baud rate."
         ]
     );
 }
