@@ -1,7 +1,7 @@
 //! `brushwork firmware info`: what is installed and what is known about it.
 
 use brushwork_link::device::PollRate;
-use brushwork_mcp_client::layout_of;
+use brushwork_mcp_client::{MCP, layout_of};
 use brushwork_mcp_wire::loader::image_sizes;
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::packet_serial::known::{Quirk, generation_text, quirks};
@@ -18,7 +18,11 @@ pub fn run(args: &InfoArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
     let client = Client::connect(&args.connect, PollRate::Off, interrupt)?;
     let identity = &client.identity;
     let family = models::identify(&identity.version_text).map(|model| model.family);
-    let known: Vec<&Quirk> = quirks(family, layout_of(identity.generation), &identity.firmware).collect();
+    // What is known is of this family's firmware; of another one it would be nonsense.
+    let known: Vec<&Quirk> = match identity.family == MCP {
+        true => quirks(family, layout_of(identity.generation), &identity.firmware).collect(),
+        false => Vec::new(),
+    };
     let sizes = family.map(image_sizes).unwrap_or_default();
     if args.json {
         out.json(&json!({

@@ -1,9 +1,9 @@
 //! Which controller something was kept of, as far as a computer can tell one from another.
 
 use brushwork_link::device::Identity;
+use brushwork_link::family::model_named;
 use brushwork_link::settings::Profile;
 use brushwork_link::transport::PortInfo;
-use brushwork_mcp_wire::models;
 
 /// How the names of files begin that are for one process alone.
 pub(super) const OWNER: &str = "process-";
@@ -27,8 +27,6 @@ pub struct UnitId {
 impl UnitId {
     /// The unit that answered. `ports` gives the serial number of the port's USB device, where it has one.
     pub fn new(identity: &Identity, ports: &[PortInfo]) -> Self {
-        let named = identity.model.and_then(models::lookup);
-        let model = named.or_else(|| models::identify(&identity.version_text));
         let path = identity.port.split(',').next().unwrap_or_default();
         let real = std::fs::canonicalize(path).ok();
         let real = real.as_ref().and_then(|real| real.to_str()).unwrap_or(path);
@@ -36,7 +34,7 @@ impl UnitId {
         let serial =
             port.and_then(|port| port.serial_number.clone()).filter(|serial| !serial.trim().is_empty());
         Self {
-            model: model.map_or("unknown", |model| model.key).to_owned(),
+            model: identity.subject().map_or("unknown", |subject| subject.model.key).to_owned(),
             has_serial_number: serial.is_some(),
             place: serial.unwrap_or_else(|| identity.port.clone()),
             address: identity.address,
@@ -66,7 +64,7 @@ impl UnitId {
 
     /// "MCP266 at 0x80, serial number 1234".
     pub fn describe(&self) -> String {
-        let model = models::lookup(&self.model).map_or(self.model.as_str(), |model| model.name);
+        let model = model_named(&self.model).map_or(self.model.as_str(), |model| model.name);
         let place = if self.has_serial_number {
             format!("serial number {}", self.place)
         } else {

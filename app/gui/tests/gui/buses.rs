@@ -65,6 +65,7 @@ impl Window {
     }
 
     fn open(&mut self, target: &str) {
+        crate::support::install_families();
         self.harness.step();
         self.app.borrow_mut().as_mut().expect("it was drawn").open(target);
         self.until("it is connected", |app| app.model.front.is_connected());
