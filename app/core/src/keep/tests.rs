@@ -14,6 +14,7 @@ use brushwork_mcp_wire::packet_serial::Generation;
 use super::*;
 
 fn table() -> SettingsTable {
+    brushwork_link::install(&[MCP]);
     SettingsTable::new(subject(models::lookup("mcp266").expect("it is listed"), Generation::Gen1))
 }
 

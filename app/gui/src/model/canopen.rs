@@ -79,6 +79,7 @@ mod tests {
 
     #[test]
     fn an_adapter_is_chosen_before_a_controllers_own_port() {
+        brushwork_link::install(&[brushwork_mcp_client::MCP, brushwork_motion_mind_client::MOTION_MIND]);
         let port = |name: &str, product: &str| PortInfo {
             name: name.to_owned(),
             product: Some(product.to_owned()),

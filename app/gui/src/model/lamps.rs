@@ -58,7 +58,7 @@ mod tests {
             generation: brushwork_mcp_client::firmware_of(generation),
             facts: brushwork_link::device::Facts::new(brushwork_mcp_client::McpFacts {
                 generation,
-                is_mcp: true,
+                is_mcp: model.starts_with("MCP"),
                 is_node: false,
             }),
             also_answers: Vec::new(),
