@@ -3,7 +3,7 @@
 use egui::{Button, Ui, vec2};
 
 use super::sheet_parts::{Act, Offer, lamp_ui, text_ui, title_ui};
-use crate::app::FRAME_INTERVAL;
+use crate::frame::FRAME_INTERVAL;
 use crate::model::general::{General, Purpose, Told, UnitSettings};
 use crate::model::lamp::LampState;
 use crate::widgets::text_field::text_field_ui;
