@@ -4,12 +4,18 @@ use super::answer::{Answer, Arguments, Handler, Handlers};
 use super::commands::THEMES;
 use super::firmware::Firmware;
 use brushwork_mcp_wire::packet_serial::Framed;
+use brushwork_values::Values;
 
 impl Firmware {
     /// Acts on one request for this unit.
     pub(super) fn execute(&mut self, framed: &Framed) -> Answer {
-        match handler(framed.command.number) {
-            Some(handler) => handler(self, &Arguments { values: &framed.values }),
+        self.answer(framed.command.number, &framed.values)
+    }
+
+    /// Acts on a command byte with its values, whichever wire it came over.
+    pub(super) fn answer(&mut self, number: u8, values: &Values) -> Answer {
+        match handler(number) {
+            Some(handler) => handler(self, &Arguments { values }),
             None => Answer::Silence,
         }
     }

@@ -2,7 +2,6 @@
 
 use super::super::answer::{Answer, Arguments, Handlers, Named, find};
 use super::super::can::{ACCESS_DONE, COMMAND_OBJECTS, CanFrame, CanObject};
-use super::super::dispatch::handler;
 use super::super::firmware::Firmware;
 use brushwork_mcp_wire::packet_serial::{Direction, lookup, number};
 use brushwork_values::{Value, Values};
@@ -80,9 +79,7 @@ fn command_object(unit: &mut Firmware, index: u16, subindex: u8) -> Option<CanOb
     let fields = form.reply.fields();
     let at = if fields.len() == 1 { usize::from(subindex) } else { usize::from(subindex).checked_sub(1)? };
     let field = fields.get(at)?;
-    let Answer::Data(values) = handler(number)?(unit, &Arguments { values: &Values::default() }) else {
-        return None;
-    };
+    let Answer::Data(values) = unit.answer(number, &Values::default()) else { return None };
     let value = find(&values, field.name)?.as_int()?;
     Some(CanObject { value: value as u32, size: u8::try_from(field.kind.width()?).ok()? })
 }
