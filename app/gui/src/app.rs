@@ -15,6 +15,7 @@ use egui::{Context, Ui, ViewportCommand};
 use super::actions;
 use super::command::{Command, GuidedWish};
 use super::ending::EndBySignal;
+use super::frame::FRAME_INTERVAL;
 use super::keys;
 use super::links::Links;
 use super::model::drawer::Tab;
@@ -39,9 +40,6 @@ mod scripting;
 mod settings;
 mod tuning;
 mod updating;
-
-/// Time between two frames while nobody touches anything: ten a second show what ten samples a second bring.
-pub const FRAME_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Time between two looks at a link that is being opened.
 const OPENING_INTERVAL: Duration = Duration::from_millis(50);

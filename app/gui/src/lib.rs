@@ -14,6 +14,7 @@ pub mod debugger;
 pub mod ending;
 pub mod family;
 pub mod files;
+pub mod frame;
 pub mod graph;
 pub mod help;
 pub mod keys;

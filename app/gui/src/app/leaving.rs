@@ -51,7 +51,7 @@ impl App {
             self.closing = true;
         }
         if self.leaving == Leaving::WhenPutBack {
-            ctx.request_repaint_after(super::FRAME_INTERVAL);
+            ctx.request_repaint_after(crate::frame::FRAME_INTERVAL);
         }
     }
 

@@ -5,7 +5,8 @@ use brushwork_link::device::RiskAccepted;
 use brushwork_link::transport::ConnectTarget;
 use egui::{Context, ViewportCommand};
 
-use super::{App, FRAME_INTERVAL};
+use super::App;
+use crate::frame::FRAME_INTERVAL;
 use crate::model::firmware::{FirmwareWish, Next, Stage};
 use crate::model::link::Arming;
 use crate::model::{DeskId, Phase};

@@ -8,9 +8,9 @@ use egui::{Button, Ui, vec2};
 use super::asked::Asked;
 use super::model::{TuneWish, Tuning};
 use super::which::Loop;
-use crate::app::FRAME_INTERVAL;
 use crate::command::{Command, Commands};
 use crate::files::{FileAnswer, FileDialog, FileKind, FileWish};
+use crate::frame::FRAME_INTERVAL;
 use crate::widgets::text_field::text_field_ui;
 
 /// Which loop a report is of.

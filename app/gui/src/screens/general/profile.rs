@@ -3,7 +3,7 @@
 use egui::{Button, Ui, vec2};
 
 use super::sheet_parts::{Act, Offer, lamp_ui, text_ui, title_ui};
-use crate::app::FRAME_INTERVAL;
+use crate::frame::FRAME_INTERVAL;
 use crate::model::general::{GeneralView, Purpose, Told};
 use crate::model::lamp::LampState;
 use crate::model::settings::UnitSettings;

@@ -4,13 +4,19 @@ use super::answer::{AnyAnswer, Handler};
 use super::commands::THEMES;
 use super::firmware::Firmware;
 use brushwork_mcp_wire::packet_serial::Framed;
+use brushwork_values::Values;
 use std::sync::LazyLock;
 
 impl Firmware {
     /// Acts on one request for this unit.
     pub(super) fn execute(&mut self, framed: &Framed) -> AnyAnswer {
-        match handler(framed.command.number) {
-            Some(handler) => handler.act(self, &framed.values),
+        self.answer(framed.command.number, &framed.values)
+    }
+
+    /// Acts on a command byte with its values, whichever wire it came over.
+    pub(super) fn answer(&mut self, number: u8, values: &Values) -> AnyAnswer {
+        match handler(number) {
+            Some(handler) => handler.act(self, values),
             None => AnyAnswer::Silence,
         }
     }

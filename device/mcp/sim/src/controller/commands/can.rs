@@ -1,8 +1,7 @@
 //! The CAN port seen from packet serial: commands 150, 151, 180 to 182, 190, 191.
 
-use super::super::answer::{Answer, Arguments, Handlers, On, find, tell, tell_value};
+use super::super::answer::{Answer, AnyAnswer, Arguments, Handlers, On, find, tell, tell_value};
 use super::super::can::{ACCESS_DONE, COMMAND_OBJECTS, CanFrame, CanObject};
-use super::super::dispatch::handler;
 use super::super::firmware::Firmware;
 use brushwork_mcp_wire::packet_serial::name::*;
 use brushwork_mcp_wire::packet_serial::{Direction, commands, lookup};
@@ -77,9 +76,7 @@ fn command_object(unit: &mut Firmware, index: u16, subindex: u8) -> Option<CanOb
     let fields = form.reply.fields();
     let at = if fields.len() == 1 { usize::from(subindex) } else { usize::from(subindex).checked_sub(1)? };
     let field = fields.get(at)?;
-    let Answer::Data(values) = handler(number)?.act(unit, &Values::default()) else {
-        return None;
-    };
+    let AnyAnswer::Data(values) = unit.answer(number, &Values::default()) else { return None };
     let value = find(&values, field.name)?.as_int()?;
     Some(CanObject { value: value as u32, size: u8::try_from(field.kind.width()?).ok()? })
 }
