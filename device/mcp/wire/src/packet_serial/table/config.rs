@@ -5,7 +5,7 @@ use super::super::command::{ClientUse, Command, Effect, Form, Simulated};
 use super::super::field::{byte, celsius, field, volts};
 use super::super::name::{self, Name};
 use super::super::{number, scale};
-use super::{CLIENTS, G1, G2, G3, G4, MANUAL_ADVANCED, fields, forms, read, read_at, write};
+use super::{CLIENTS, G1, G2, G3, G4, MANUAL_ADVANCED, fields, forms, read, read_at, reads, sets, write};
 use crate::codes;
 use brushwork_values::{Field, Kind, Unit};
 
@@ -38,12 +38,12 @@ pub(super) const ROWS: &[Command] = &[
     late(
         number::SET_CONFIG,
         "configuration word",
-        forms![write(G1, G4, Effect::Setting, fields![CONFIG])],
+        sets![CONFIG],
     )
     .simulated(Simulated::StoredOnly("a RoboClaw word, of which only the address acts; the MCP has 139 to 145 for what it says"))
     .client(ClientUse::Superseded("the MCP has 139 to 147 for what it says"))
     .note("Writing it can move the unit to another address at once."),
-    late(number::READ_CONFIG, "read configuration word", forms![read(G1, G4, fields![CONFIG])])
+    late(number::READ_CONFIG, "read configuration word", reads![CONFIG])
         .simulated(Simulated::StoredOnly("a RoboClaw word, of which only the address acts; the MCP has 139 to 145 for what it says")),
     late(number::READ_VOLTS, "read voltages", VOLTS)
         .note("A factory test in generation 1, the CTRL modes in 2 and 3, which the simulated controller only stores."),
@@ -77,7 +77,7 @@ pub(super) const ROWS: &[Command] = &[
     manual(
         number::WRITE_USER_MEMORY,
         "write user memory",
-        forms![write(G1, G4, Effect::Setting, fields![USER_ADDRESS, USER_VALUE])],
+        sets![USER_ADDRESS, USER_VALUE],
     )
     .note("The manual's text calls it \"Get Priority Levels\"; the RoboClaw manual of 2018 swaps it with 252."),
 ];

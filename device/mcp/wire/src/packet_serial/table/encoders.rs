@@ -4,67 +4,60 @@ use super::super::command::{Command, Effect, Form};
 use super::super::field::{byte, field, position, speed};
 use super::super::name::{self, Name};
 use super::super::number;
-use super::{CLIENTS, G1, G3, G4, MANUAL_ADVANCED, MANUAL_ENCODERS, fields, forms, read, write};
+use super::{CLIENTS, G1, G3, G4, MANUAL_ADVANCED, MANUAL_ENCODERS, fields, forms, read, reads, sets, write};
 use brushwork_values::{Field, Kind, Unit};
 
 pub(super) const ROWS: &[Command] = &[
-    Command::new(
+    manual(
         number::READ_ENCODER_M1,
         "read M1 encoder",
-        MANUAL_ENCODERS,
         COUNT_AND_STATUS,
     ),
-    Command::new(
+    manual(
         number::READ_ENCODER_M2,
         "read M2 encoder",
-        MANUAL_ENCODERS,
         COUNT_AND_STATUS,
     ),
-    Command::new(number::READ_SPEED_M1, "read M1 speed", MANUAL_ENCODERS, SPEED_AND_STATUS)
+    manual(number::READ_SPEED_M1, "read M1 speed", SPEED_AND_STATUS)
         .note(SIGN_IN_STATUS),
-    Command::new(number::READ_SPEED_M2, "read M2 speed", MANUAL_ENCODERS, SPEED_AND_STATUS)
+    manual(number::READ_SPEED_M2, "read M2 speed", SPEED_AND_STATUS)
         .note(SIGN_IN_STATUS),
-    Command::new(
+    manual(
         number::RESET_ENCODERS,
         "zero both encoders",
-        MANUAL_ENCODERS,
         forms![write(G1, G4, Effect::Encoder, &[])],
     ),
-    Command::new(number::SET_ENCODER_M1, "set M1 encoder", MANUAL_ENCODERS, SET_COUNT),
-    Command::new(number::SET_ENCODER_M2, "set M2 encoder", MANUAL_ENCODERS, SET_COUNT),
-    Command::new(
+    manual(number::SET_ENCODER_M1, "set M1 encoder", SET_COUNT),
+    manual(number::SET_ENCODER_M2, "set M2 encoder", SET_COUNT),
+    manual(
         number::READ_RAW_SPEED_M1,
         "read M1 raw speed",
-        MANUAL_ENCODERS,
         SPEED_AND_STATUS,
     )
     .note(SIGN_IN_STATUS),
-    Command::new(
+    manual(
         number::READ_RAW_SPEED_M2,
         "read M2 raw speed",
-        MANUAL_ENCODERS,
         SPEED_AND_STATUS,
     )
     .note(SIGN_IN_STATUS),
-    Command::new(
+    manual(
         number::READ_ENCODERS,
         "read encoders",
-        MANUAL_ENCODERS,
-        forms![read(G1, G4, fields![position(name::ENCODER_M1), position(name::ENCODER_M2)])],
+        reads![position(name::ENCODER_M1), position(name::ENCODER_M2)],
     )
     .note("The manual gives absolute encoders 0 to 2047 here and 0 to 4095 for 16; 4095 is followed."),
-    Command::new(
+    manual(
         number::READ_RAW_SPEEDS,
         "read raw speeds",
-        MANUAL_ENCODERS,
-        forms![read(G1, G4, fields![speed(name::RAW_SPEED_M1), speed(name::RAW_SPEED_M2)])],
+        reads![speed(name::RAW_SPEED_M1), speed(name::RAW_SPEED_M2)],
     )
     .note("Counts of the last 1/300 s expressed per second; signed, unlike 30 and 31."),
     Command::new(
         number::READ_ENCODER_MODES,
         "read encoder pins",
         MANUAL_ADVANCED,
-        forms![read(G1, G4, fields![pin(name::MODE_M1), pin(name::MODE_M2)])],
+        reads![pin(name::MODE_M1), pin(name::MODE_M2)],
     ),
     Command::new(
         number::SET_ENCODER_MODE_M1,
@@ -103,22 +96,21 @@ const SIGN_IN_STATUS: &str =
 
 const STATUS: &str = "bit 0 underflow, bit 1 backwards, bit 2 overflow; reading clears bits 0 and 2";
 
-const COUNT_AND_STATUS: &[Form] =
-    forms![read(G1, G4, fields![position(name::ENCODER), byte(name::STATUS, STATUS)])];
+const COUNT_AND_STATUS: &[Form] = reads![position(name::ENCODER), byte(name::STATUS, STATUS)];
 
-const SPEED_AND_STATUS: &[Form] = forms![read(
-    G1,
-    G4,
-    fields![
-        field(name::SPEED, Kind::U32, "magnitude of the speed").unit(Unit::CountsPerSecond),
-        byte(name::STATUS, "0 forward, 1 backward"),
-    ]
-)];
+const SPEED_AND_STATUS: &[Form] = reads![
+    field(name::SPEED, Kind::U32, "magnitude of the speed").unit(Unit::CountsPerSecond),
+    byte(name::STATUS, "0 forward, 1 backward"),
+];
 
 const SET_COUNT: &[Form] = forms![write(G1, G4, Effect::Encoder, fields![position(name::ENCODER)])];
 
-const SET_MODE: &[Form] = forms![write(G1, G4, Effect::Setting, fields![pin(name::MODE)])];
+const SET_MODE: &[Form] = sets![pin(name::MODE)];
 
 const fn pin(name: impl Name) -> Field {
     byte(name, "input that is the motor's encoder; its numbers are not public")
+}
+
+const fn manual(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
+    Command::new(number, title, MANUAL_ENCODERS, forms)
 }

@@ -4,7 +4,7 @@ use super::super::command::{ClientUse, Command, Effect, Form, Simulated};
 use super::super::field::{byte, field};
 use super::super::name::{self, Name};
 use super::super::{number, scale};
-use super::{CLIENTS, G1, G2, G3, G4, MANUAL_ADVANCED, fields, forms, read, write};
+use super::{CLIENTS, G1, G2, G3, G4, MANUAL_ADVANCED, fields, forms, read, reads, sets, write};
 use crate::codes;
 use brushwork_values::{Field, Kind, Unit};
 
@@ -24,26 +24,18 @@ pub(super) const ROWS: &[Command] = &[
     manual(
         number::SET_DOUT_ACTION,
         "digital output action",
-        forms![write(G1, G4, Effect::Setting, fields![byte(name::INDEX, "output, counted from 0"), ACTION])],
+        sets![byte(name::INDEX, "output, counted from 0"), ACTION],
     )
     .note("The manual prints no reply."),
     manual(
         number::READ_DOUT_ACTIONS,
         "read digital output actions",
-        forms![read(
-            G1,
-            G4,
-            fields![counted(name::DOUTS, fields![ACTION], "one record for each output of the model")]
-        )],
+        reads![counted(name::DOUTS, fields![ACTION], "one record for each output of the model")],
     ),
     manual(number::SET_PRIORITIES, "priority levels", forms![write(G1, G4, Effect::Setting, PRIORITIES)]),
     manual(number::READ_PRIORITIES, "read priority levels", forms![read(G1, G4, PRIORITIES)]),
-    manual(
-        number::SET_ADDRESS_MIXED,
-        "address and mixed mode",
-        forms![write(G1, G4, Effect::Setting, fields![ADDRESS, MIXED])],
-    )
-    .note("Takes effect with the next packet."),
+    manual(number::SET_ADDRESS_MIXED, "address and mixed mode", sets![ADDRESS, MIXED])
+        .note("Takes effect with the next packet."),
     manual(
         number::READ_ADDRESS_MIXED,
         "read address and mixed mode",
@@ -56,16 +48,12 @@ pub(super) const ROWS: &[Command] = &[
     manual(
         number::READ_STREAMS,
         "read stream properties",
-        forms![read(
-            G1,
-            G4,
-            fields![counted(name::STREAMS, STREAM, "one record for each stream, USB first")]
-        )],
+        reads![counted(name::STREAMS, STREAM, "one record for each stream, USB first")],
     ),
     manual(
         number::READ_SIGNAL_VALUES,
         "read signal values",
-        forms![read(G1, G4, fields![counted(name::SIGNALS, VALUES, "one record for each signal")])],
+        reads![counted(name::SIGNALS, VALUES, "one record for each signal")],
     ),
 ];
 

@@ -4,7 +4,7 @@ use super::super::command::{Command, Effect, Form, Simulated};
 use super::super::field::{byte, field, volts};
 use super::super::name::{self, Name};
 use super::super::{number, scale};
-use super::{CLIENTS, G1, G3, G4, MANUAL_ADVANCED, fields, forms, read, write};
+use super::{CLIENTS, G1, G3, G4, MANUAL_ADVANCED, fields, forms, read, reads, sets, write};
 use brushwork_values::{Field, Kind, Unit};
 
 pub(super) const ROWS: &[Command] = &[
@@ -92,15 +92,15 @@ pub(super) const ROWS: &[Command] = &[
         .note("From 2018 the minimum is sent as a positive magnitude."),
     manual(number::READ_CURRENT_LIMITS_M1, "read M1 current limits", READ_CURRENT),
     manual(number::READ_CURRENT_LIMITS_M2, "read M2 current limits", READ_CURRENT),
-    manual(number::RESET_ESTOP, "reset E-stop", forms![write(G1, G4, Effect::Setting, &[])])
+    manual(number::RESET_ESTOP, "reset E-stop", sets![])
         .note("Does nothing unless the reset is unlocked (201)."),
     manual(
         number::SET_ESTOP_LOCK,
         "E-stop reset lock",
-        forms![write(G1, G4, Effect::Setting, fields![LOCK])],
+        sets![LOCK],
     )
     .note("The manual prints neither argument nor CRC, and the reply of 202."),
-    manual(number::READ_ESTOP_LOCK, "read E-stop reset lock", forms![read(G1, G4, fields![LOCK])]),
+    manual(number::READ_ESTOP_LOCK, "read E-stop reset lock", reads![LOCK]),
 ];
 
 const CONTROL_INPUTS: Simulated =
@@ -124,13 +124,11 @@ const READ_MAIN: &[Form] = forms![
     read(G1, G3, fields![volts(name::MIN), volts(name::MAX)]),
     read(G4, G4, fields![volts(name::MIN), volts(name::MAX), AUTO_OFFSET]),
 ];
-const SET_LOGIC: &[Form] =
-    forms![write(G1, G4, Effect::Setting, fields![volts(name::MIN), volts(name::MAX)])];
-const READ_LOGIC: &[Form] = forms![read(G1, G4, fields![volts(name::MIN), volts(name::MAX)])];
+const SET_LOGIC: &[Form] = sets![volts(name::MIN), volts(name::MAX)];
+const READ_LOGIC: &[Form] = reads![volts(name::MIN), volts(name::MAX)];
 
-const SET_CURRENT: &[Form] =
-    forms![write(G1, G4, Effect::Setting, fields![limit_amps(name::MAX), limit_amps(name::MIN)])];
-const READ_CURRENT: &[Form] = forms![read(G1, G4, fields![limit_amps(name::MAX), limit_amps(name::MIN)])];
+const SET_CURRENT: &[Form] = sets![limit_amps(name::MAX), limit_amps(name::MIN)];
+const READ_CURRENT: &[Form] = reads![limit_amps(name::MAX), limit_amps(name::MIN)];
 
 const CONTROL_LIMITS: &[Field] = fields![
     control_limit(name::S1_MIN),

@@ -117,7 +117,21 @@ macro_rules! forms {
     }};
 }
 
-use {fields, forms};
+/// The one form of a read without arguments that every generation has.
+macro_rules! reads {
+    ($($field:expr),* $(,)?) => {
+        forms![super::read(super::G1, super::G4, fields![$($field),*])]
+    };
+}
+
+/// The one form of a setting that every generation has.
+macro_rules! sets {
+    ($($field:expr),* $(,)?) => {
+        forms![super::write(super::G1, super::G4, crate::packet_serial::command::Effect::Setting, fields![$($field),*])]
+    };
+}
+
+use {fields, forms, reads, sets};
 
 /// A read without arguments.
 const fn read(first: Generation, last: Generation, reply: &'static [Field]) -> Form {

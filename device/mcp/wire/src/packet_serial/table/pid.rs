@@ -4,7 +4,9 @@ use super::super::command::{Command, Effect, Form, Simulated};
 use super::super::field::{duty_accel, field, position};
 use super::super::name::{self, Name};
 use super::super::{number, scale};
-use super::{CLIENTS, G1, G2, G3, G4, MANUAL_ADVANCED, MANUAL_MOTION, fields, forms, read, write};
+use super::{
+    CLIENTS, G1, G2, G3, G4, MANUAL_ADVANCED, MANUAL_MOTION, fields, forms, read, reads, sets, write,
+};
 use brushwork_values::{Field, Kind, Unit};
 
 pub(super) const ROWS: &[Command] = &[
@@ -45,54 +47,36 @@ const FACTOR: &str = "The manual gives no factor for the gains; all vendor libra
 const NO_LINE: &str =
     "The manual's copy at hand lacks the receive line. Read in the order P, I, D, written D, P, I.";
 
-const SET_VELOCITY: &[Form] = forms![write(
-    G1,
-    G4,
-    Effect::Setting,
-    fields![
-        velocity_gain(name::D, "D", 3),
-        velocity_gain(name::P, "P", 1),
-        velocity_gain(name::I, "I", 2),
-        QPPS
-    ]
-)];
-const READ_VELOCITY: &[Form] = forms![read(
-    G1,
-    G4,
-    fields![
-        velocity_gain(name::P, "P", 1),
-        velocity_gain(name::I, "I", 2),
-        velocity_gain(name::D, "D", 3),
-        QPPS
-    ]
-)];
-const SET_POSITION: &[Form] = forms![write(
-    G1,
-    G4,
-    Effect::Setting,
-    fields![
-        position_gain(name::D, "D", 3),
-        position_gain(name::P, "P", 1),
-        position_gain(name::I, "I", 2),
-        MAX_I,
-        DEADZONE,
-        MIN,
-        MAX,
-    ]
-)];
-const READ_POSITION: &[Form] = forms![read(
-    G1,
-    G4,
-    fields![
-        position_gain(name::P, "P", 1),
-        position_gain(name::I, "I", 2),
-        position_gain(name::D, "D", 3),
-        MAX_I,
-        DEADZONE,
-        MIN,
-        MAX,
-    ]
-)];
+const SET_VELOCITY: &[Form] = sets![
+    velocity_gain(name::D, "D", 3),
+    velocity_gain(name::P, "P", 1),
+    velocity_gain(name::I, "I", 2),
+    QPPS
+];
+const READ_VELOCITY: &[Form] = reads![
+    velocity_gain(name::P, "P", 1),
+    velocity_gain(name::I, "I", 2),
+    velocity_gain(name::D, "D", 3),
+    QPPS
+];
+const SET_POSITION: &[Form] = sets![
+    position_gain(name::D, "D", 3),
+    position_gain(name::P, "P", 1),
+    position_gain(name::I, "I", 2),
+    MAX_I,
+    DEADZONE,
+    MIN,
+    MAX,
+];
+const READ_POSITION: &[Form] = reads![
+    position_gain(name::P, "P", 1),
+    position_gain(name::I, "I", 2),
+    position_gain(name::D, "D", 3),
+    MAX_I,
+    DEADZONE,
+    MIN,
+    MAX,
+];
 const SET_ACCEL: &[Form] = forms![
     write(G1, G1, Effect::Setting, fields![duty_accel(name::ACCEL)]),
     write(G2, G4, Effect::Setting, fields![duty_accel(name::ACCEL), duty_accel(name::DECEL)]),
@@ -111,8 +95,8 @@ const READ_ACCELS: &[Form] = forms![
     ),
 ];
 const SET_SPEED: &[Form] = forms![write(G3, G4, Effect::Setting, fields![default_speed(name::SPEED)])];
-const SET_LR: &[Form] = forms![write(G1, G4, Effect::Setting, fields![INDUCTANCE, RESISTANCE])];
-const READ_LR: &[Form] = forms![read(G1, G4, fields![INDUCTANCE, RESISTANCE])];
+const SET_LR: &[Form] = sets![INDUCTANCE, RESISTANCE];
+const READ_LR: &[Form] = reads![INDUCTANCE, RESISTANCE];
 
 const QPPS: Field =
     field(name::QPPS, Kind::U32, "speed at full duty in counts per second; the feed-forward term")

@@ -4,7 +4,7 @@ use super::super::command::{ClientUse, Command, Effect, Form, Reply, Simulated};
 use super::super::field::{byte, field};
 use super::super::name;
 use super::super::number;
-use super::{CLIENTS, G1, G4, MANUAL_ADVANCED, fields, forms, read, write, write_for};
+use super::{CLIENTS, G1, G4, MANUAL_ADVANCED, fields, forms, read, reads, sets, write, write_for};
 use crate::models::Family;
 use brushwork_values::{Field, Kind, Unit};
 
@@ -12,13 +12,13 @@ pub(super) const ROWS: &[Command] = &[
     manual(
         number::SET_SCRIPT_AUTORUN,
         "script autorun delay",
-        forms![write(G1, G4, Effect::Setting, fields![DELAY])],
+        sets![DELAY],
     )
     .note("A client of 2025 refuses to send 1 to 99."),
     manual(
         number::READ_SCRIPT_AUTORUN,
         "read script autorun delay",
-        forms![read(G1, G4, fields![DELAY])],
+        reads![DELAY],
     ),
     manual(number::START_SCRIPT, "start script", forms![write(G1, G4, Effect::Script, &[])]),
     manual(number::STOP_SCRIPT, "stop script", forms![write(G1, G4, Effect::Stop, &[])]),
