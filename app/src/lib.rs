@@ -4,11 +4,12 @@
 mod bench;
 
 use brushwork_gui::run::{WindowOptions, run as open_window};
-use brushwork_link::FamilyRef;
+use brushwork_link::Driver;
 use std::process::ExitCode;
 
 /// The families of controllers that this program has, the one that is looked for first at the head. To add one, name it here.
-pub static FAMILIES: [FamilyRef; 2] = [brushwork_mcp_client::MCP, brushwork_motion_mind_client::MOTION_MIND];
+pub static FAMILIES: [&dyn Driver; 2] =
+    [&brushwork_mcp_client::McpDriver, &brushwork_motion_mind_client::MotionMindDriver];
 
 /// Runs the program: a command, or the window where none is given.
 #[must_use]

@@ -1,4 +1,4 @@
-//! A CAN frame.
+//! A CAN frame, as controllers and adapters pass it on.
 
 use std::fmt;
 

@@ -1,15 +1,11 @@
-//! What shared code knows of a family of controllers: one object for each, and the list of those that this program has.
-//!
-//! Nothing here or elsewhere in this crate knows which families there are. The program names them once, by [`install`].
+//! A family of controllers by its names, addresses and models, and the list of those that this program has.
 
-use crate::device::controller::Search;
-use crate::settings::FamilySettings;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 use std::str::FromStr;
 use std::sync::OnceLock;
 
-/// A family of controllers: its names, addresses and models, how its units are found, and what its settings are.
+/// A family of controllers: its names, addresses and models.
 pub trait Family: Send + Sync {
     /// Name on the command line and in files, in lower case.
     fn key(&self) -> &'static str;
@@ -59,16 +55,10 @@ pub trait Family: Send + Sync {
         None
     }
 
-    /// What finds the units of a link.
-    fn search(&self) -> Box<dyn Search>;
-
     /// What to do when no family was found on a line, if this one could be there all the same: a sentence without its full stop.
     fn may_be_elsewhere(&self) -> Option<&'static str> {
         None
     }
-
-    /// Its settings.
-    fn settings(&self) -> &'static dyn FamilySettings;
 
     /// The member under which a unit's own facts stand in JSON; `None` for a family that has none to tell.
     fn facts_key(&self) -> Option<&'static str> {
@@ -150,11 +140,10 @@ impl fmt::Debug for FamilyRef {
     }
 }
 
-static FAMILIES: OnceLock<&'static [FamilyRef]> = OnceLock::new();
+static FAMILIES: OnceLock<Vec<FamilyRef>> = OnceLock::new();
 
-/// Names the families that this program has, the one that is looked for first at the head. Only the first call counts, so that tests of one
-/// process can all name theirs.
-pub fn install(families: &'static [FamilyRef]) {
+/// Sets the families that this program has, once.
+pub(crate) fn list(families: Vec<FamilyRef>) {
     // A second list is that of another test.
     let _ = FAMILIES.set(families);
 }
@@ -162,7 +151,7 @@ pub fn install(families: &'static [FamilyRef]) {
 /// The families that this program has.
 #[must_use]
 pub fn families() -> &'static [FamilyRef] {
-    FAMILIES.get().copied().unwrap_or_default()
+    FAMILIES.get().map_or(&[], Vec::as_slice)
 }
 
 /// The model with this key or printed name, whatever its case, in any family.

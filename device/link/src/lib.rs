@@ -1,11 +1,12 @@
 //! What every family of controllers shares between a port and a typed controller: transports, requests with deadlines, the device thread, and the
-//! settings engine. It knows no family: each is an object behind [`family::Family`].
+//! settings engine. It knows no family: each is an object behind [`driver::Driver`].
 //!
 //! Units stand in names; times are durations since the epoch of the [`Clock`] in use. There is no window here
 //! and no simulator. See `ARCHITECTURE.md`.
 
 pub mod clock;
 pub mod device;
+pub mod driver;
 pub mod exchange;
 pub mod failure;
 pub mod family;
@@ -15,9 +16,10 @@ pub mod unit;
 pub mod wire;
 
 pub use clock::{Clock, SystemClock, VirtualClock};
+pub use driver::{Driver, install, register};
 pub use exchange::{ExchangeError, Interruption, LinkStatistics};
 pub use failure::Failure;
-pub use family::{FamilyChoice, FamilyRef, families, install};
+pub use family::{FamilyChoice, FamilyRef, families};
 pub use transport::{ConnectTarget, Stream, Transport, TransportError};
 pub use unit::{FirmwareGeneration, UnitAddress};
 pub use wire::{HiddenSettings, Wire};

@@ -17,7 +17,7 @@ use brushwork_link::settings::{
     WriteOptions, read_all, write,
 };
 use brushwork_link::unit::{FirmwareGeneration, UnitAddress};
-use brushwork_link::{Failure, FamilyChoice, Stream, Wire};
+use brushwork_link::{Driver, Failure, FamilyChoice, Stream, Wire, register};
 use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::world::{WorldAction, WorldView};
 use brushwork_tests::virtual_link::VirtualLink;
@@ -53,6 +53,8 @@ struct EchoMachine {
     speed_counts_per_s: f64,
     gain: i64,
     is_hot: bool,
+    /// Of a line whose end has not come yet.
+    input: Vec<u8>,
     output: Option<Vec<u8>>,
 }
 
@@ -62,8 +64,11 @@ impl Machine for EchoMachine {
     }
 
     fn receive(&mut self, _stream: StreamIndex, bytes: &[u8]) {
-        for line in String::from_utf8_lossy(bytes).lines() {
-            let (word, number) = line.split_once(' ').unwrap_or((line, ""));
+        self.input.extend(bytes);
+        while let Some(end) = self.input.iter().position(|byte| *byte == b'\n') {
+            let line: Vec<u8> = self.input.drain(..=end).collect();
+            let line = String::from_utf8_lossy(&line[..end]);
+            let (word, number) = line.split_once(' ').unwrap_or((&line, ""));
             let given: Option<f64> = number.parse().ok();
             let reply = match (word, given) {
                 ("P", _) => format!("{:.0} {}", self.position_counts, u8::from(self.is_hot)),
@@ -160,6 +165,12 @@ impl Family for Echo {
 
     fn generation_text(&self, number: u8) -> String {
         format!("edition {number}")
+    }
+}
+
+impl Driver for Echo {
+    fn family(&self) -> FamilyRef {
+        ECHO
     }
 
     fn search(&self) -> Box<dyn Search> {
@@ -486,6 +497,7 @@ fn ms(ms: u64) -> Duration {
 
 /// A link to an echo that nobody else's family was asked for.
 fn connected() -> VirtualLink<EchoMachine> {
+    register(&Echo);
     let options =
         DeviceOptions { family: FamilyChoice::of(ECHO), simulated: true, ..DeviceOptions::default() };
     let mut link = VirtualLink::over(EchoMachine::default(), options, Vec::new(), 1);

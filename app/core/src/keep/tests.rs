@@ -1,6 +1,6 @@
 //! The store as a whole: what an act leaves behind, and what happens when nothing can be kept.
 
-use brushwork_mcp_client::{MCP, subject};
+use brushwork_mcp_client::{MCP, McpDriver, subject};
 use std::fs;
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use brushwork_mcp_wire::packet_serial::Generation;
 use super::*;
 
 fn table() -> SettingsTable {
-    brushwork_link::install(&[MCP]);
+    brushwork_link::install(&[&McpDriver]);
     SettingsTable::new(subject(models::lookup("mcp266").expect("it is listed"), Generation::Gen1))
 }
 

@@ -188,7 +188,7 @@ mod tests {
 
     #[test]
     fn the_loader_is_known_by_its_usb_name_and_two_are_one_too_many() {
-        brushwork_link::install(&[brushwork_mcp_client::MCP]);
+        brushwork_link::install(&[&brushwork_mcp_client::McpDriver]);
         let controller = port("/dev/ttyACM0", "MCP266 2x60A");
         let loader = port("/dev/ttyACM1", "MCP266ASTULDR");
         let other = port("/dev/ttyACM2", "MCP2160ULDR");

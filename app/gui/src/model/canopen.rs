@@ -79,7 +79,10 @@ mod tests {
 
     #[test]
     fn an_adapter_is_chosen_before_a_controllers_own_port() {
-        brushwork_link::install(&[brushwork_mcp_client::MCP, brushwork_motion_mind_client::MOTION_MIND]);
+        brushwork_link::install(&[
+            &brushwork_mcp_client::McpDriver,
+            &brushwork_motion_mind_client::MotionMindDriver,
+        ]);
         let port = |name: &str, product: &str| PortInfo {
             name: name.to_owned(),
             product: Some(product.to_owned()),

@@ -239,7 +239,10 @@ mod tests {
     use super::*;
 
     fn devices(typed: &str) -> Devices {
-        brushwork_link::install(&[brushwork_mcp_client::MCP, brushwork_motion_mind_client::MOTION_MIND]);
+        brushwork_link::install(&[
+            &brushwork_mcp_client::McpDriver,
+            &brushwork_motion_mind_client::MotionMindDriver,
+        ]);
         Devices { choice: Choice::Typed, typed: typed.to_owned(), baud: 115_200, ..Devices::default() }
     }
 
@@ -265,7 +268,10 @@ mod tests {
 
     #[test]
     fn the_rate_follows_the_family_until_somebody_says_otherwise() {
-        brushwork_link::install(&[brushwork_mcp_client::MCP, brushwork_motion_mind_client::MOTION_MIND]);
+        brushwork_link::install(&[
+            &brushwork_mcp_client::McpDriver,
+            &brushwork_motion_mind_client::MotionMindDriver,
+        ]);
         let mut devices = Devices::default();
         devices.look_for(FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND));
         assert_eq!(devices.baud, 19_200);

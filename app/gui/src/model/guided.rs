@@ -7,11 +7,8 @@ use super::desk::Desk;
 use super::drawer::Tab;
 use super::generator::mode_of;
 use super::jobs::Owner;
-use super::link::Effect;
-use super::message::Gravity;
 use super::position::{Seen, Travels};
 use super::screen::Screen;
-use super::watched::Unfinished;
 use brushwork_core::motion::profile::{Leg, Mode, Pace, Reach};
 
 /// What is asked for.
@@ -136,13 +133,4 @@ impl Desk {
             }
         })
     }
-}
-
-/// What is said at the end of such a job; nothing before.
-pub(super) fn said(ended: Option<Result<(), Unfinished>>, done: &str) -> Vec<Effect> {
-    let said = ended.map(|result| match result {
-        Ok(()) => Effect::Say(Gravity::Note, done.to_owned()),
-        Err(Unfinished { gravity, sentence }) => Effect::Say(gravity, sentence),
-    });
-    said.into_iter().collect()
 }

@@ -3,6 +3,7 @@
 use brushwork_link::device::{Event, Job, JobEnding, JobTicket, QueuedJob};
 use brushwork_link::exchange::Interruption;
 
+use super::link::Effect;
 use super::message::Gravity;
 
 /// One kind of job, at most one of which runs.
@@ -116,6 +117,15 @@ pub fn interruption(cause: Interruption) -> &'static str {
         Interruption::Cancelled => "it was cancelled",
         Interruption::TimeLimit => "it took too long",
     }
+}
+
+/// What is said at the end of such a job; nothing before.
+pub fn said(ended: Option<Result<(), Unfinished>>, done: &str) -> Vec<Effect> {
+    let said = ended.map(|result| match result {
+        Ok(()) => Effect::Say(Gravity::Note, done.to_owned()),
+        Err(Unfinished { gravity, sentence }) => Effect::Say(gravity, sentence),
+    });
+    said.into_iter().collect()
 }
 
 #[cfg(test)]

@@ -1,12 +1,11 @@
 //! What the settings engine asks of a family: which rows a unit has, and how they are carried, ordered, kept and judged together.
 
 use super::image::SettingsImage;
-use super::plan::WriteOptions;
 use super::profile::Profile;
 use super::read::ReadReport;
 use super::row::Row;
 use super::save_report::SaveReport;
-use super::step::{Refusal, Stage, Step};
+use super::step::{Refusal, Stage, Step, WriteOptions};
 use super::subject::Subject;
 use super::table::SettingsTable;
 use super::value::SettingValue;

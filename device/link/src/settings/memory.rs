@@ -7,9 +7,9 @@
 use std::time::Duration;
 
 use super::difference::{Difference, diff};
-use super::plan::WriteOptions;
 use super::read::{ReadReport, is_final, is_there, read_all};
 use super::save_report::SaveReport;
+use super::step::WriteOptions;
 use super::subject::Subject;
 use super::table::SettingsTable;
 use crate::exchange::ExchangeError;

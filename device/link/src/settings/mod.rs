@@ -24,6 +24,7 @@ mod subject;
 mod table;
 mod value;
 mod write;
+mod write_report;
 
 pub use copies::{Copies, Copy};
 pub use copy::{CopiedMotor, copy_motor};
@@ -37,7 +38,7 @@ pub use keep::{
 pub use kind::{Coding, Kind};
 pub use listing::{ListedSetting, list, list_text};
 pub use memory::{DefaultsReport, answers, await_unit, reload, restore_defaults, save_eeprom};
-pub use plan::{Plan, WriteOptions, plan};
+pub use plan::{Plan, plan};
 pub use profile::{
     FORMAT, Fitted, OpenedProfile, Problem, Profile, ProfileChanges, ProfileError, ProfileFileError, SCHEMA,
     Strictness, replace_file,
@@ -45,8 +46,9 @@ pub use profile::{
 pub use read::{ReadFailure, ReadReport, is_final, is_there, read_all, read_some, went_out};
 pub use row::{Access, Bits, Bound, Carrier, Group, Instance, Place, Range, Row, Sink, Source};
 pub use save_report::{SaveReport, SaveVerdict, unknown};
-pub use step::{Refusal, Stage, Step};
+pub use step::{Refusal, Stage, Step, WriteOptions};
 pub use subject::Subject;
 pub use table::SettingsTable;
 pub use value::SettingValue;
-pub use write::{RowOutcome, RowState, WriteError, WriteReport, write};
+pub use write::{WriteError, write};
+pub use write_report::{RowOutcome, RowState, WriteReport};

@@ -10,24 +10,10 @@ use serde::Serialize;
 use super::family::{Argument, PlanContext, Planned, refuse};
 use super::image::SettingsImage;
 use super::row::{Carrier, Place, Row, Sink, Source};
-use super::step::{Refusal, Step};
+use super::step::{Refusal, Step, WriteOptions};
 use super::table::SettingsTable;
 use super::value::SettingValue;
-use crate::transport::Stream;
 use crate::unit::{FirmwareGeneration, UnitAddress};
-
-/// What writing has to know besides the values.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct WriteOptions {
-    /// The controller's stream that this program is connected through, where known. Its settings are written
-    /// last.
-    pub own_stream: Option<Stream>,
-    /// Whether the controller is simulated, so that settings without a public wire form can be set.
-    pub simulated: bool,
-    /// Whether the values were read from such a unit once, so that one that nobody may choose there, out of range or without a
-    /// name, is written as it was, with a warning.
-    pub as_read: bool,
-}
 
 /// The commands that bring about some changes.
 #[derive(Clone, Debug, PartialEq, Serialize)]

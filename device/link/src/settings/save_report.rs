@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::difference::Difference;
 use super::image::SettingsImage;
-use super::write::WriteReport;
+use super::write_report::WriteReport;
 use crate::failure::Failure;
 
 /// What is known of a save.

@@ -1,7 +1,21 @@
-//! One command of a plan and when it is sent, and why a change is refused.
+//! One command of a plan and when it is sent, how a plan is to be written, and why a change is refused.
 
 use crate::family::FamilyRef;
+use crate::transport::Stream;
 use serde::Serialize;
+
+/// What writing has to know besides the values.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct WriteOptions {
+    /// The controller's stream that this program is connected through, where known. Its settings are written
+    /// last.
+    pub own_stream: Option<Stream>,
+    /// Whether the controller is simulated, so that settings without a public wire form can be set.
+    pub simulated: bool,
+    /// Whether the values were read from such a unit once, so that one that nobody may choose there, out of range or without a
+    /// name, is written as it was, with a warning.
+    pub as_read: bool,
+}
 
 /// One command of a plan.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -3,17 +3,17 @@
 //! Until the first command is sent everything that is wrong refuses the whole. From then on there is always a
 //! report that says of each row what is known.
 
-use serde::Serialize;
 use thiserror::Error;
 
 use super::difference::changes;
 use super::image::SettingsImage;
-use super::plan::{Plan, WriteOptions, plan, rows_involved};
+use super::plan::{Plan, plan, rows_involved};
 use super::read::{ReadFailure, is_final, is_there, read_rows, went_out};
 use super::row::Row;
-use super::step::{Refusal, Stage, Step};
+use super::step::{Refusal, Stage, Step, WriteOptions};
 use super::table::SettingsTable;
 use super::value::SettingValue;
+use super::write_report::{RowOutcome, RowState, WriteReport};
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
 use crate::unit::UnitAddress;
@@ -44,106 +44,6 @@ pub enum WriteError {
 
 fn sentences(refusals: &[Refusal]) -> String {
     refusals.iter().map(|refusal| format!("\n{}", refusal.sentence)).collect()
-}
-
-/// What became of each change.
-#[derive(Clone, Debug, Serialize)]
-pub struct WriteReport {
-    /// Every row that was to be changed, in screen order.
-    pub rows: Vec<RowOutcome>,
-    /// What the user should know, a sentence each.
-    pub warnings: Vec<String>,
-    /// Why writing ended early, if it did.
-    pub ended_early: Option<Failure>,
-    /// Where the controller answers now.
-    pub address: UnitAddress,
-    /// Commands sent, reads included.
-    pub transactions: usize,
-}
-
-/// What became of one change.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RowOutcome {
-    /// The row.
-    pub key: String,
-    /// Its value before, if it could be read.
-    pub before: Option<SettingValue>,
-    /// The value wanted.
-    pub wanted: SettingValue,
-    /// The value read back, if it could be.
-    pub found: Option<SettingValue>,
-    /// What that means.
-    pub state: RowState,
-}
-
-/// What is known of a change.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum RowState {
-    /// Read back as wanted.
-    Taken,
-    /// Read back, and not as wanted; with what was wrong with the command, if anything was.
-    DidNotTake {
-        /// What came back when it was written; empty when it was acknowledged.
-        why: String,
-    },
-    /// Not sent; the controller holds the old value.
-    NotSent {
-        /// Why, as a sentence.
-        why: String,
-    },
-    /// Sent, and not read back.
-    Unverified {
-        /// Why, as a sentence.
-        why: String,
-    },
-}
-
-impl WriteReport {
-    /// Whether every row was read back as wanted.
-    pub fn is_complete(&self) -> bool {
-        self.rows.iter().all(|row| row.state == RowState::Taken)
-    }
-
-    /// The rows that are not known to hold what was wanted.
-    pub fn did_not_take(&self) -> impl Iterator<Item = &RowOutcome> {
-        self.rows.iter().filter(|row| row.state != RowState::Taken)
-    }
-
-    /// A sentence for each row that is not known to hold what was wanted.
-    pub fn sentences(&self, table: &SettingsTable) -> Vec<String> {
-        self.did_not_take().filter_map(|outcome| Some(outcome.sentence(table.row(&outcome.key)?))).collect()
-    }
-
-    /// What the controller holds as far as this write knows: `ram` with what was read back.
-    pub fn merge_into(&self, ram: &mut SettingsImage) {
-        for row in &self.rows {
-            match (row.found, &row.state) {
-                (Some(found), _) => ram.set(&row.key, found),
-                (None, RowState::NotSent { .. }) => {}
-                (None, _) => ram.remove(&row.key),
-            }
-        }
-    }
-}
-
-impl RowOutcome {
-    fn sentence(&self, row: &Row) -> String {
-        let (title, wanted) = (row.title(), row.format(self.wanted));
-        let found = self.found.map_or_else(|| "unknown".to_owned(), |found| row.format(found));
-        match &self.state {
-            RowState::Taken => format!("{title} is {wanted}."),
-            RowState::DidNotTake { why } if why.is_empty() => {
-                format!(
-                    "{title} was to be {wanted} and is {found}: the controller acknowledged it and did not \
-                     take it."
-                )
-            }
-            RowState::DidNotTake { why } => format!("{title} was to be {wanted} and is {found}. {why}"),
-            RowState::NotSent { why } => format!("{title} was to be {wanted} and was not sent. {why}"),
-            RowState::Unverified { why } => format!("{title} was set to {wanted} and not read back. {why}"),
-        }
-    }
 }
 
 /// Writes `wanted` values; those that the controller holds already are not sent. See the module's own words.

@@ -1,12 +1,9 @@
-//! The family as shared code knows it, and the way between shared names of units and those of packet serial.
+//! The family by name, and the way between shared names of units and those of packet serial.
 
 use crate::McpFacts;
-use crate::controller::PacketSerial;
-use crate::settings::McpSettings;
 use brushwork_link::device::Identity;
-use brushwork_link::device::controller::Search;
 use brushwork_link::family::{Family, FamilyRef, Model, UsbProduct};
-use brushwork_link::settings::{FamilySettings, Subject};
+use brushwork_link::settings::Subject;
 use brushwork_link::unit::{FirmwareGeneration, UnitAddress};
 use brushwork_mcp_wire::loader::USB_NAME_PART;
 use brushwork_mcp_wire::models;
@@ -100,14 +97,6 @@ impl Family for Mcp {
         let name = name.to_ascii_lowercase();
         let is_named = name.contains("roboclaw") || USB_NAMES.iter().any(|known| name.contains(known));
         is_named.then_some(UsbProduct::Controller)
-    }
-
-    fn search(&self) -> Box<dyn Search> {
-        Box::new(PacketSerial)
-    }
-
-    fn settings(&self) -> &'static dyn FamilySettings {
-        &McpSettings
     }
 }
 

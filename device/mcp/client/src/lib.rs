@@ -1,11 +1,12 @@
 //! MCP and RoboClaw controllers as the device thread and the settings engine speak to them: over packet serial, and MCP controllers as nodes of a
 //! CAN bus.
 //!
-//! [`MCP`] is the family as shared code knows it. Everything else here is for those who know that they have such a controller in front of them.
+//! [`McpDriver`] is the family as shared code knows it, and [`MCP`] its name. Everything else here is for those who know that they have such a controller in front of them.
 
 pub mod can;
 mod controller;
 pub mod diagnosis;
+mod driver;
 mod facts;
 mod family;
 pub mod firmware;
@@ -18,6 +19,7 @@ mod testing;
 mod tests;
 
 pub use controller::{PacketSerial, channels, describe_sent, indicators, preview};
+pub use driver::McpDriver;
 pub use facts::McpFacts;
 pub use family::{
     MCP, firmware_of, is_mcp, layout_of, model_of, packet_address, packet_generation, subject, unit_address,

@@ -1,11 +1,8 @@
-//! The family as shared code knows it.
+//! The family by name: addresses, models, revisions of firmware.
 
-use crate::controller::{MotionMindFacts, MotionMinds};
-use crate::settings::MotionMindSettings;
 use brushwork_link::device::Identity;
-use brushwork_link::device::controller::Search;
 use brushwork_link::family::{Family, FamilyRef, Model};
-use brushwork_link::settings::{FamilySettings, Subject};
+use brushwork_link::settings::Subject;
 use brushwork_link::unit::{FirmwareGeneration, UnitAddress};
 use brushwork_motion_mind_wire::Address;
 use std::sync::LazyLock;
@@ -81,18 +78,10 @@ impl Family for MotionMind3 {
         format!("revision {number}")
     }
 
-    fn search(&self) -> Box<dyn Search> {
-        Box::new(MotionMinds::new())
-    }
-
     fn may_be_elsewhere(&self) -> Option<&'static str> {
         Some(
             "For a Motion Mind at another address than 1 choose its family (family=motion-mind), so that all are asked",
         )
-    }
-
-    fn settings(&self) -> &'static dyn FamilySettings {
-        &MotionMindSettings
     }
 
     fn facts_key(&self) -> Option<&'static str> {
@@ -125,14 +114,6 @@ pub fn subject(revision: u8) -> Subject {
 #[must_use]
 pub fn is_motion_mind(identity: &Identity) -> bool {
     identity.family == MOTION_MIND
-}
-
-impl MotionMindFacts {
-    /// Those of a unit; `None` for a unit of another family.
-    #[must_use]
-    pub fn of(identity: &Identity) -> Option<Self> {
-        identity.facts.get().copied()
-    }
 }
 
 #[cfg(test)]

@@ -10,5 +10,8 @@ pub mod wait;
 
 /// Names the families that this window's tests have.
 pub fn install_families() {
-    brushwork_link::install(&[brushwork_mcp_client::MCP, brushwork_motion_mind_client::MOTION_MIND]);
+    brushwork_link::install(&[
+        &brushwork_mcp_client::McpDriver,
+        &brushwork_motion_mind_client::MotionMindDriver,
+    ]);
 }

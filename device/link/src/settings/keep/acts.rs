@@ -3,12 +3,14 @@
 use super::super::difference::{Difference, diff};
 use super::super::image::SettingsImage;
 use super::super::memory::{DefaultsReport, reload, restore_defaults, save_eeprom_of};
-use super::super::plan::{WriteOptions, rows_involved};
+use super::super::plan::rows_involved;
 use super::super::read::{ReadReport, read_all, read_rows};
 use super::super::save_report::{SaveReport, SaveVerdict};
+use super::super::step::WriteOptions;
 use super::super::subject::Subject;
 use super::super::table::SettingsTable;
-use super::super::write::{RowState, WriteError, WriteReport, write};
+use super::super::write::{WriteError, write};
+use super::super::write_report::{RowState, WriteReport};
 use super::journal::Act;
 use super::keeper::{Ending, Entry, Keeper};
 use crate::failure::Failure;

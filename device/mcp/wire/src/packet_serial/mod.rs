@@ -10,6 +10,7 @@
 //! [`encode_reply`] (a controller).
 
 mod command;
+pub mod commands;
 mod describe;
 mod encode;
 mod encode_error;
@@ -39,7 +40,6 @@ pub use framer::{
     DiscardReason, Discarded, Framed, FramerEvent, LONGEST_REQUEST, PACKET_GAP, RawBytes, RequestFramer,
 };
 pub use identity::{Address, Generation, InvalidAddress, InvalidGeneration};
-pub use number::commands;
 pub use parse::{ReplyProgress, parse_reply};
 pub use request::Request;
 pub use table::{COMMANDS, lookup, lookup_key};

@@ -1,6 +1,5 @@
 //! What a drive is in commands of a Motion Mind: one for each mode that serial commands can move a motor in.
 
-use crate::controller::facts::MotionMindFacts;
 use brushwork_link::device::{Drive, DriveCommand};
 use brushwork_link::exchange::ExchangeError;
 use brushwork_motion_mind_wire::{Address, Command, Mode, Protocol, encode_frame, encode_line};
@@ -65,13 +64,13 @@ pub fn objection(mode: Mode, drive: &Drive) -> Option<String> {
 
 /// The bytes of a drive, as they would be sent.
 #[must_use]
-pub fn preview(drive: &Drive, address: u8, facts: MotionMindFacts) -> Vec<Vec<u8>> {
+pub fn preview(drive: &Drive, address: u8, mode: Mode, protocol: Protocol) -> Vec<Vec<u8>> {
     let Some(address) = Address::unit(address) else { return Vec::new() };
-    let encode = |command: Command| match facts.protocol {
+    let encode = |command: Command| match protocol {
         Protocol::Binary => encode_frame(address, &command).ok(),
         Protocol::Text => encode_line(address, &command).ok().map(String::into_bytes),
     };
-    command(facts.mode, drive).ok().and_then(encode).into_iter().collect()
+    command(mode, drive).ok().and_then(encode).into_iter().collect()
 }
 
 fn impossible<T>(what: &str) -> Result<T, ExchangeError> {

@@ -4,7 +4,9 @@ use super::channels::CHANNELS;
 use super::driving::{objection, preview};
 use super::indicators::status_row;
 use super::traffic::describe_sent;
-use brushwork_link::device::{Capabilities, Channel, Described, Drive, StatusPlace, StatusReport, UnitFacts};
+use brushwork_link::device::{
+    Capabilities, Channel, Described, Drive, Identity, StatusPlace, StatusReport, UnitFacts,
+};
 use brushwork_motion_mind_wire::{Mode, Protocol};
 use serde::Serialize;
 
@@ -35,6 +37,14 @@ const CAPABILITIES: Capabilities = Capabilities {
     registers: true,
 };
 
+impl MotionMindFacts {
+    /// Those of a unit; `None` for a unit of another family.
+    #[must_use]
+    pub fn of(identity: &Identity) -> Option<Self> {
+        identity.facts.get().copied()
+    }
+}
+
 impl UnitFacts for MotionMindFacts {
     fn capabilities(&self) -> Capabilities {
         Capabilities {
@@ -62,7 +72,7 @@ impl UnitFacts for MotionMindFacts {
     }
 
     fn preview(&self, drive: &Drive, address: u8) -> Vec<Vec<u8>> {
-        preview(drive, address, *self)
+        preview(drive, address, self.mode, self.protocol)
     }
 
     fn place(&self, address: u8) -> String {

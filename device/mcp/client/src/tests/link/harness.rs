@@ -37,7 +37,7 @@ impl Link {
         let far_end = bus.clone();
         let (transport, tap) =
             ScriptedTransport::new(&clock, move |bytes, now| far_end.lock().unwrap().take(bytes, now));
-        brushwork_link::install(&[crate::MCP]);
+        brushwork_link::install(&[&crate::McpDriver]);
         let (device_loop, handle) = DeviceLoop::new(transport, Arc::new(clock.clone()), options);
         Self { bus, ..Self::over(clock, device_loop, handle, tap) }
     }

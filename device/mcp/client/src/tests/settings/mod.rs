@@ -20,7 +20,7 @@ use brushwork_link::settings::SettingsTable;
 
 /// The table of one model and generation.
 fn table(model: &str, generation: Generation) -> SettingsTable {
-    brushwork_link::install(&[crate::MCP]);
+    brushwork_link::install(&[&crate::McpDriver]);
     let model = models::lookup(model).expect("the tests name models of the list");
     SettingsTable::new(subject(model, generation))
 }

@@ -4,7 +4,7 @@ use super::super::command::{ClientUse, Command, Effect, Form, Reply, Simulated};
 use super::super::field::{byte, field};
 use super::super::name;
 use super::super::number;
-use super::{CLIENTS, G1, G4, MANUAL_ADVANCED, fields, forms, read, reads, sets, write, write_for};
+use super::{CLIENTS, G1, G4, MANUAL_ADVANCED, fields, forms, reads, sets, write, write_for};
 use crate::models::Family;
 use brushwork_values::{Field, Kind, Unit};
 
