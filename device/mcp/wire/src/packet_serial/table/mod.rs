@@ -120,18 +120,28 @@ macro_rules! forms {
 /// The one form of a read without arguments that every generation has.
 macro_rules! reads {
     ($($field:expr),* $(,)?) => {
-        forms![super::read(super::G1, super::G4, fields![$($field),*])]
+        forms![$crate::packet_serial::table::always_read(fields![$($field),*])]
     };
 }
 
 /// The one form of a setting that every generation has.
 macro_rules! sets {
     ($($field:expr),* $(,)?) => {
-        forms![super::write(super::G1, super::G4, crate::packet_serial::command::Effect::Setting, fields![$($field),*])]
+        forms![$crate::packet_serial::table::always_set(fields![$($field),*])]
     };
 }
 
 use {fields, forms, reads, sets};
+
+/// A read without arguments that every generation has.
+const fn always_read(reply: &'static [Field]) -> Form {
+    read(G1, G4, reply)
+}
+
+/// A setting that every generation has.
+const fn always_set(request: &'static [Field]) -> Form {
+    write(G1, G4, Effect::Setting, request)
+}
 
 /// A read without arguments.
 const fn read(first: Generation, last: Generation, reply: &'static [Field]) -> Form {
