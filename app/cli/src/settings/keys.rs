@@ -71,6 +71,7 @@ mod tests {
 
     fn table() -> SettingsTable {
         let model = models::lookup("mcp266").expect("it is in the list");
+        brushwork_link::register(&brushwork_mcp_client::McpDriver);
         SettingsTable::new(brushwork_mcp_client::subject(model, Generation::Gen1))
     }
 

@@ -82,6 +82,7 @@ mod tests {
 
     #[test]
     fn a_pins_settings_follow_its_type() {
+        brushwork_link::register(&brushwork_mcp_client::McpDriver);
         let table = SettingsTable::new(brushwork_mcp_client::subject(
             models::lookup("mcp266").unwrap(),
             Generation::Gen1,
@@ -100,6 +101,7 @@ mod tests {
 
     #[test]
     fn a_disabled_port_leaves_its_pins_to_the_bus() {
+        brushwork_link::register(&brushwork_mcp_client::McpDriver);
         let table = SettingsTable::new(brushwork_mcp_client::subject(
             models::lookup("mcp266").unwrap(),
             Generation::Gen1,
@@ -116,6 +118,7 @@ mod tests {
 
     #[test]
     fn what_is_not_known_locks_nothing() {
+        brushwork_link::register(&brushwork_mcp_client::McpDriver);
         let table = SettingsTable::new(brushwork_mcp_client::subject(
             models::lookup("mcp266").unwrap(),
             Generation::Gen1,

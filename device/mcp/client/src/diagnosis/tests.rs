@@ -201,6 +201,7 @@ fn every_key_that_is_judged_is_in_the_table_and_among_those_to_read() {
     use brushwork_mcp_wire::packet_serial::Generation;
     for generation in Generation::ALL {
         let model = models::lookup("MCP266").expect("it is in the list");
+        brushwork_link::register(&crate::McpDriver);
         let table = SettingsTable::new(crate::subject(model, generation));
         let keys = keys(&table);
         for key in [

@@ -93,6 +93,7 @@ mod tests {
 
     /// The names of the registers that are written to get from the factory's values to these, in order.
     fn order(values: &[(&str, i64)]) -> Vec<&'static str> {
+        brushwork_link::register(&crate::MotionMindDriver);
         let table = SettingsTable::new(crate::subject(3));
         let ram = table.default_image();
         let changes =

@@ -168,6 +168,7 @@ mod tests {
     use crate::settings::pins::SignalShape;
 
     fn table(generation: Generation) -> SettingsTable {
+        brushwork_link::register(&crate::McpDriver);
         SettingsTable::new(crate::subject(models::lookup("mcp266").unwrap(), generation))
     }
 

@@ -11,6 +11,7 @@ use brushwork_link::settings::{SettingValue, SettingsImage, SettingsTable};
 const CHOICE: fn(&'static str) -> SettingValue = SettingValue::Choice;
 
 fn table(model: &str) -> SettingsTable {
+    brushwork_link::register(&crate::McpDriver);
     SettingsTable::new(subject(models::lookup(model).unwrap(), Generation::Gen2))
 }
 
@@ -40,6 +41,7 @@ fn only(changes: &[(&str, SettingValue)]) -> (ConflictKind, String, String) {
 fn the_defaults_of_every_model_and_what_is_not_known_have_no_conflict() {
     for model in models::MODELS.iter().filter(|model| model.family == Family::Mcp) {
         for generation in Generation::ALL {
+            brushwork_link::register(&crate::McpDriver);
             let table = SettingsTable::new(subject(model, generation));
             let image = table.default_image();
             assert_eq!(conflicts(&table, &|key| image.get(key)), [], "{}", model.key);

@@ -27,6 +27,7 @@ fn table(model: &str, generation: Generation) -> SettingsTable {
 
 /// The tables of every model in every generation.
 fn every_table() -> impl Iterator<Item = SettingsTable> {
+    brushwork_link::install(&[&crate::McpDriver]);
     models::MODELS
         .iter()
         .flat_map(|model| Generation::ALL.map(|generation| SettingsTable::new(subject(model, generation))))

@@ -10,6 +10,7 @@ use brushwork_link::settings::{
 };
 
 fn profile(model: &str, generation: Generation) -> Profile {
+    brushwork_link::install(&[&crate::McpDriver]);
     let subject = subject(models::lookup(model).expect("a model of the list"), generation);
     Profile {
         subject,
