@@ -151,6 +151,10 @@ pub trait Law:
     fn with_registers(&self, _registers: &Self::Registers) -> Self {
         *self
     }
+    /// Registers for people: name, held, proposed, and what is on the wire; none where nothing is proposed.
+    fn rows(&self, _held: &Self::Held, _proposed: &Self::Registers) -> Vec<[String; 4]> {
+        Vec::new()
+    }
     /// Why these registers cannot be tried, if so.
     fn refuse(_registers: &Self::Registers) -> Result<(), Cause> {
         Ok(())

@@ -32,6 +32,20 @@ impl<L: Law> Setup<L> {
     pub fn is_torque_mode(&self) -> bool {
         self.inductance_resistance_raw.iter().all(|&raw| raw != 0)
     }
+
+    /// The same with what another law makes of the loops.
+    #[must_use]
+    pub fn with_held<J: Law>(self, held: impl FnOnce(L::Held) -> J::Held) -> Setup<J> {
+        Setup {
+            held: held(self.held),
+            max_current_raw: self.max_current_raw,
+            min_current_raw: self.min_current_raw,
+            min_volts_raw: self.min_volts_raw,
+            inductance_resistance_raw: self.inductance_resistance_raw,
+            stream_timeout_ms: self.stream_timeout_ms,
+            encoder: self.encoder,
+        }
+    }
 }
 
 /// An axis with the loops of a law.

@@ -236,7 +236,9 @@ fn with_law<L: LawProbe>(
     guard.progress("Finding out the law of the loop");
     rest(guard, found.fit.model.tau_s, found.qpps)?;
     let position = request.method != Method::Velocity;
-    let Some(findings) = L::probe(guard, probe.start_duty, position)? else { return Ok(*request) };
+    let held = guard.setup.held;
+    let found = L::probe(guard, &held, &|write| write, probe.start_duty, position)?;
+    let Some(findings) = found else { return Ok(*request) };
     report.law = Some(findings);
     let law = request.law.found(&findings, position).ok_or(Cause::UnknownLaw)?;
     report.request.law = law;

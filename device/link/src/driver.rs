@@ -3,10 +3,14 @@
 //! A [`FamilyRef`] is a name, so that addresses and settings rows can carry it; the driver behind it is found here by its key. Nothing here or
 //! elsewhere in this crate knows which families there are. The program names them once, by [`install`].
 
+use crate::clock::Clock;
 use crate::device::controller::Search;
+use crate::device::{NoReadings, Readings};
 use crate::family::{self, FamilyRef};
 use crate::settings::FamilySettings;
-use std::sync::{PoisonError, RwLock};
+use crate::transport::Transport;
+use brushwork_canopen::adapter::Form;
+use std::sync::{Arc, PoisonError, RwLock};
 
 /// A family of controllers as it is spoken with.
 pub trait Driver: Send + Sync {
@@ -18,6 +22,37 @@ pub trait Driver: Send + Sync {
 
     /// Its settings.
     fn settings(&self) -> &'static dyn FamilySettings;
+
+    /// What its units tell a job.
+    fn readings(&self) -> &'static dyn Readings {
+        &NoReadings
+    }
+
+    /// The line to its nodes on a CAN bus, made of that to the adapter, and what finds them; the transport is given back where it has none.
+    fn on_can(
+        &self,
+        adapter: Box<dyn Transport>,
+        _clock: Arc<dyn Clock>,
+        _form: Form,
+    ) -> Result<CanLine, Box<dyn Transport>> {
+        Err(adapter)
+    }
+}
+
+/// A line to nodes, and what finds them.
+pub type CanLine = (Box<dyn Transport>, Box<dyn Search>);
+
+/// The line to the nodes of a CAN bus, for the first family that has some.
+#[must_use]
+pub fn can_line(mut adapter: Box<dyn Transport>, clock: &Arc<dyn Clock>, form: Form) -> Option<CanLine> {
+    let drivers = DRIVERS.read().unwrap_or_else(PoisonError::into_inner).clone();
+    for driver in drivers {
+        match driver.on_can(adapter, Arc::clone(clock), form) {
+            Ok(line) => return Some(line),
+            Err(back) => adapter = back,
+        }
+    }
+    None
 }
 
 static DRIVERS: RwLock<Vec<&'static dyn Driver>> = RwLock::new(Vec::new());
@@ -54,6 +89,15 @@ impl FamilyRef {
     #[must_use]
     pub fn settings(self) -> &'static dyn FamilySettings {
         self.driver().settings()
+    }
+
+    /// What its units tell a job.
+    ///
+    /// # Panics
+    /// If the family was never installed.
+    #[must_use]
+    pub fn readings(self) -> &'static dyn Readings {
+        self.driver().readings()
     }
 
     fn driver(self) -> &'static dyn Driver {

@@ -5,6 +5,7 @@
 
 use crate::world::{WorldAction, WorldView};
 use serde::{Deserialize, Serialize};
+use std::any::Any;
 use std::time::Duration;
 
 /// The silence that ends a command where a controller knows no other: the 10 ms of packet serial (MCP manual 2.2.4).
@@ -59,8 +60,9 @@ impl StreamIndex {
 
 /// A simulated machine: one controller, or several on one wire, with the worlds around them.
 ///
-/// Its time only moves in [`Machine::advance`]; all else happens at [`Machine::now`].
-pub trait Machine: Send {
+/// Its time only moves in [`Machine::advance`]; all else happens at [`Machine::now`]. Whoever knows which machine it is finds it through
+/// [`Any`].
+pub trait Machine: Send + Any {
     /// The machine's own time since its start.
     fn now(&self) -> Duration;
 

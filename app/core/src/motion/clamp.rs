@@ -5,17 +5,11 @@
 //! Slowing down takes the duty back quickly but not at once: at once would short the motor, which brakes it and gives nothing
 //! back. The motors are stopped by the device thread on every way out.
 
-use brushwork_mcp_client::layout_of;
 use std::time::Duration;
 
 use brushwork_link::device::{Drive, DriveCommand, Job, JobContext};
 use brushwork_link::exchange::ExchangeError;
 use brushwork_link::{Failure, Wire};
-use brushwork_mcp_client::TypedWire;
-use brushwork_mcp_wire::packet_serial::commands;
-use brushwork_mcp_wire::packet_serial::name::{MAIN_BATTERY, SPEED, STATUS};
-use brushwork_mcp_wire::packet_serial::status;
-use brushwork_mcp_wire::packet_serial::status::Condition;
 use brushwork_values::Motor;
 use crossbeam_channel::Sender;
 
@@ -123,15 +117,13 @@ pub fn job(task: Task, steps: Sender<Step>) -> Job<()> {
 
 /// With L and R set a duty is a current, and no speed follows from it (MCP manual 1.2.11).
 fn refuse_torque_control(context: &mut JobContext<'_>, motor: Motor) -> Result<(), Failure> {
-    let reads = [commands::READ_INDUCTANCE_RESISTANCE_M1, commands::READ_INDUCTANCE_RESISTANCE_M2];
-    match context.ask(reads[motor.index()], &[]) {
-        Ok(values) if values.ints().all(|value| value != 0) => {
+    match context.address().family().readings().is_torque_mode(context, motor) {
+        Ok(true) => {
             let came_back = format!("L and R of {motor} are both set, so that its duty is a current");
             Err(refusal(context, came_back, "Set L or R to 0 for the test"))
         }
-        Err(error) if error.is_link_lost() || error.interruption().is_some() => Err(failed(context, &error)),
-        // A RoboClaw may have neither.
-        _ => Ok(()),
+        Ok(false) => Ok(()),
+        Err(error) => Err(failed(context, &error)),
     }
 }
 
@@ -214,27 +206,23 @@ fn drive(context: &mut JobContext<'_>, motor: Motor, duty: f64, duty_per_s: f64)
 }
 
 fn read_volts(context: &mut JobContext<'_>) -> Result<f64, Failure> {
-    let values = context.ask(commands::READ_MAIN_BATTERY, &[]).map_err(|error| failed(context, &error))?;
-    Ok(values.physical(MAIN_BATTERY))
+    let readings = context.address().family().readings();
+    readings.battery(context).map_err(|error| failed(context, &error))
 }
 
 /// Whether the controller reports an over-voltage of the main battery, while which it brakes the motors (MCP manual 1.6.3).
 fn reports_high(context: &mut JobContext<'_>) -> Result<bool, Failure> {
-    let values = context.ask(commands::READ_STATUS, &[]).map_err(|error| failed(context, &error))?;
-    let word = u32::try_from(values.int(STATUS)).unwrap_or(0);
-    let conditions = status::decode(word, layout_of(context.generation()));
-    let high = [Condition::MainBatteryHighWarning, Condition::MainBatteryHighError];
-    Ok(high.into_iter().any(|condition| conditions.contains(condition)))
+    let readings = context.address().family().readings();
+    readings.is_battery_high(context).map_err(|error| failed(context, &error))
 }
 
 /// Waits until the motor hardly turns, as far as an encoder tells.
 fn come_to_rest(context: &mut JobContext<'_>, motor: Motor) -> Result<(), Failure> {
-    let command = [commands::READ_SPEED_M1, commands::READ_SPEED_M2][motor.index()];
+    let readings = context.address().family().readings();
     let until = context.now() + REST_LIMIT;
     let mut first = None;
     while context.now() < until {
-        let values = context.ask(command, &[]).map_err(|error| failed(context, &error))?;
-        let speed = values.physical(SPEED).abs();
+        let speed = readings.speed(context, motor).map_err(|error| failed(context, &error))?.abs();
         if speed <= *first.get_or_insert(speed) * REST_SHARE || speed < REST_COUNTS_PER_S {
             return Ok(());
         }

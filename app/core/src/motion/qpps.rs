@@ -6,13 +6,12 @@
 
 use std::time::Duration;
 
-use brushwork_link::device::{Drive, DriveCommand, Job, JobContext};
+use brushwork_link::device::{Drive, DriveCommand, Job, JobContext, Power};
 use brushwork_link::exchange::ExchangeError;
 use brushwork_link::{Failure, Wire};
-use brushwork_mcp_wire::packet_serial::number;
 use brushwork_values::Motor;
 
-use super::reader::{Encoders, INTERVAL, Power, read_power};
+use super::reader::{Encoders, INTERVAL};
 use super::speed::{HeldSpeed, PART_S, Reading, has_settled, held_speed, present_speed};
 
 /// Verb phrase of the job.
@@ -125,22 +124,15 @@ impl Bench {
 
     /// With L and R set the sliders ask for a current, so that there is no full duty to measure at (MCP manual 1.2.11).
     fn refuse_torque_control(&self, context: &mut JobContext<'_>) -> Result<(), Failure> {
-        let command = match self.task.motor {
-            Motor::M1 => number::READ_INDUCTANCE_RESISTANCE_M1,
-            Motor::M2 => number::READ_INDUCTANCE_RESISTANCE_M2,
-        };
-        match context.transact(command, &[]) {
-            Ok(values) if values.ints().all(|value| value != 0) => Err(refusal(
+        let motor = self.task.motor;
+        match context.address().family().readings().is_torque_mode(context, motor) {
+            Ok(true) => Err(refusal(
                 context,
-                format!("L and R of {} are both set, so that its duty is a current", self.task.motor),
+                format!("L and R of {motor} are both set, so that its duty is a current"),
                 "Set L or R to 0 for the measurement",
             )),
-            Ok(_) => Ok(()),
-            Err(error) if error.is_link_lost() || error.interruption().is_some() => {
-                Err(failed(context, &error))
-            }
-            // RoboClaw has neither.
-            Err(_) => Ok(()),
+            Ok(false) => Ok(()),
+            Err(error) => Err(failed(context, &error)),
         }
     }
 
@@ -343,7 +335,7 @@ fn held_back(context: &JobContext<'_>, share: f64) -> Failure {
 }
 
 fn power(context: &mut JobContext<'_>, motor: Motor) -> Result<Power, Failure> {
-    read_power(context, motor).map_err(|error| failed(context, &error))
+    context.address().family().readings().power(context, motor).map_err(|error| failed(context, &error))
 }
 
 fn pause(context: &mut JobContext<'_>) -> Result<(), Failure> {

@@ -1,12 +1,8 @@
-//! Readings that a job makes itself: encoder counts with their moments, and what a motor draws.
+//! Encoder counts with their moments, as a job reads them.
 
 use brushwork_link::device::JobContext;
 use brushwork_link::exchange::ExchangeError;
-use brushwork_mcp_client::TypedWire;
-use brushwork_mcp_client::packet::typed_reply;
-use brushwork_mcp_wire::packet_serial::commands;
-use brushwork_mcp_wire::packet_serial::name::*;
-use brushwork_values::Motor;
+use brushwork_link::wire::Wire;
 use std::time::Duration;
 
 use super::speed::Reading;
@@ -21,27 +17,11 @@ pub struct Encoders {
     counts: [i64; 2],
 }
 
-/// What a motor gets and draws.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Power {
-    /// Output, -1 to 1.
-    pub duty: f64,
-    /// Current, A.
-    pub amps: f64,
-    /// Main battery, V.
-    pub volts: f64,
-}
-
 impl Encoders {
     /// Reads both, dated half way between request and reply.
     pub fn read(&mut self, context: &mut JobContext<'_>) -> Result<[Reading; 2], ExchangeError> {
-        let reply = typed_reply(
-            context.transact_timed(commands::READ_ENCODERS.number(), &[])?,
-            commands::READ_ENCODERS,
-        )?;
-        let at_s = (reply.span.requested_at + reply.span.replied_at).as_secs_f64() / 2.0;
-        // The count is a 32 bit pattern.
-        let now = [reply.values.int(ENCODER_M1) as i32, reply.values.int(ENCODER_M2) as i32];
+        let (now, span) = context.address().family().readings().encoders(context)?;
+        let at_s = (span.requested_at + span.replied_at).as_secs_f64() / 2.0;
         Ok(self.take(now).map(|counts| Reading { at_s, counts: counts as f64 }))
     }
 
@@ -57,18 +37,6 @@ impl Encoders {
         self.last = Some(now);
         self.counts
     }
-}
-
-/// Reads what a motor gets and draws, with the battery that feeds it.
-pub fn read_power(context: &mut JobContext<'_>, motor: Motor) -> Result<Power, ExchangeError> {
-    let duties = context.ask(commands::READ_PWMS, &[])?;
-    let currents = context.ask(commands::READ_CURRENTS, &[])?;
-    let battery = context.ask(commands::READ_MAIN_BATTERY, &[])?;
-    Ok(Power {
-        duty: [duties.physical(DUTY_M1), duties.physical(DUTY_M2)][motor.index()] / 100.0,
-        amps: [currents.physical(CURRENT_M1), currents.physical(CURRENT_M2)][motor.index()],
-        volts: battery.physical(MAIN_BATTERY),
-    })
 }
 
 #[cfg(test)]

@@ -9,17 +9,14 @@ use brushwork_canopen::NodeId;
 use brushwork_canopen::adapter::Form;
 use brushwork_link::FamilyChoice;
 use brushwork_link::device::{Addresses, DeviceHandle, DeviceOptions, DeviceThread, PollRate};
+use brushwork_link::driver::can_line;
 use brushwork_link::transport::{ConnectTarget, OpenError, Stream, Transport, list_ports, ports};
 use brushwork_link::{Clock, HiddenSettings};
-use brushwork_mcp_client::can::{BusTransport, CanOpen, Monitor};
 
 pub mod firmware;
 pub mod line;
-pub mod motion_mind_spec;
-pub mod sim_spec;
 pub mod simulation;
 
-pub use sim_spec::{SimSpec, SimSpecError};
 pub use simulation::{Simulation, SimulationError};
 
 /// An open link.
@@ -50,6 +47,11 @@ pub enum SessionError {
     /// The simulated controller.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    /// A CAN bus where no family has nodes.
+    #[error(
+        "Could not look for nodes on the CAN bus: this program has no family of controllers that are nodes."
+    )]
+    NoNodes,
     /// The thread that would own the link.
     #[error("Could not start the thread that owns the link: {0}. Close other programs and try again.")]
     Thread(#[source] std::io::Error),
@@ -128,10 +130,8 @@ fn spawn_on_can(
         hidden: alone.map(|simulation| simulation as Arc<dyn HiddenSettings>),
         ..DeviceOptions::default()
     };
-    let monitor = Monitor::default();
-    let transport = BusTransport::new(transport, Arc::clone(&clock), form, monitor.clone());
-    let family = Box::new(CanOpen::new(form, monitor));
-    let device = DeviceThread::spawn_family(Box::new(transport), clock, options, family);
+    let (line, nodes) = can_line(transport, &clock, form).ok_or(SessionError::NoNodes)?;
+    let device = DeviceThread::spawn_family(line, clock, options, nodes);
     Ok(Session { device: device.map_err(SessionError::Thread)?, simulation })
 }
 

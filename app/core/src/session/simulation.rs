@@ -5,25 +5,17 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use brushwork_canopen::NodeId;
 use brushwork_canopen::adapter::Form;
+use brushwork_family::{Simulator, SimulatorError, Started, simulator};
 use brushwork_link::FamilyChoice;
 use brushwork_link::HiddenSettings;
 use brushwork_link::UnitAddress;
 use brushwork_link::transport::{ChannelTransport, Stream};
-use brushwork_mcp_client::script::CHECKSUM_KEY;
-use brushwork_mcp_client::unit_address;
-use brushwork_mcp_sim::controller::{Bus, BusError, Controller, ControllerConfig};
-use brushwork_mcp_wire::crc::crc16_xmodem;
-use brushwork_motion_mind_client::unit_address as mind_address;
 use brushwork_plant::ParamsError;
-use brushwork_plant::machine::StreamIndex;
-use brushwork_plant::presets;
 use brushwork_plant::server::{ChannelEnds, Endpoint, Server, ServerError, ServerOptions, SimHandle};
 use brushwork_plant::world::{WorldAction, WorldView};
 use brushwork_script::debug::{Request, View, Wanted};
 
 use super::line::SimulatedLine;
-use super::motion_mind_spec::MotionMindSpec;
-use super::sim_spec::{SimSpec, SimSpecError, UnitSpec};
 
 /// One or more simulated controllers on one line, and the worlds around them.
 pub struct Simulation {
@@ -33,8 +25,8 @@ pub struct Simulation {
     can_form: Option<Form>,
     nodes: Vec<NodeId>,
     server: SimHandle<SimulatedLine>,
-    /// The family of its units.
-    family: FamilyChoice,
+    /// What made its units.
+    simulator: &'static dyn Simulator,
     /// The last look at a script that was asked for.
     script: Arc<Mutex<Option<View>>>,
 }
@@ -43,17 +35,8 @@ pub struct Simulation {
 #[derive(Debug, thiserror::Error)]
 pub enum SimulationError {
     /// The text behind `sim:`.
-    #[error("Could not start the simulated controller sim:{text}: {source}.")]
-    Spec {
-        /// As typed.
-        text: String,
-        /// What is wrong with it.
-        #[source]
-        source: SimSpecError,
-    },
-    /// The text behind `sim:motion-mind-3`.
     #[error("Could not start the simulated controller sim:{text}: {why}.")]
-    MotionMindSpec {
+    Spec {
         /// As typed.
         text: String,
         /// What is wrong with it.
@@ -64,7 +47,7 @@ pub enum SimulationError {
     Params(#[from] ParamsError),
     /// Several units where there is room for one.
     #[error("Could not start the simulated controllers: {0}.")]
-    Bus(#[from] BusError),
+    Line(String),
     /// It cannot be served.
     #[error("Could not start the simulated controller: {0}.")]
     Server(#[source] ServerError),
@@ -84,57 +67,26 @@ impl Simulation {
     /// # Errors
     /// The text names something that does not exist, or the system gives no thread.
     pub fn start(text: &str) -> Result<Self, SimulationError> {
-        if MotionMindSpec::is_asked_for(text) {
-            return Self::start_motion_minds(text);
-        }
-        let spec =
-            SimSpec::parse(text).map_err(|source| SimulationError::Spec { text: text.to_owned(), source })?;
-        // Several units can only share a TTL wire; one alone hangs on USB.
-        let (index, stream) = match spec.units.len() {
-            _ if spec.can.is_some() => (StreamIndex::Usb, Stream::Usb),
-            1 => (StreamIndex::Usb, Stream::Usb),
-            _ => (StreamIndex::Uart1, Stream::Ttl1),
+        let wrong = |why: String| SimulationError::Spec { text: text.to_owned(), why };
+        let Some(simulator) = simulator::asked_for(text) else {
+            return Err(wrong("this program has no simulated controllers".to_owned()));
         };
-        let bus = bus_of(&spec, index)?;
-        let options = ServerOptions { stream: index, seed: spec.seed, ..ServerOptions::default() };
-        let line = SimulatedLine::Packets(Box::new(bus));
+        let Started { machine, addresses, nodes, can_form, index, stream, seed } =
+            simulator.start(text).map_err(|error| match error {
+                SimulatorError::Spec(why) => wrong(why),
+                SimulatorError::Params(error) => SimulationError::Params(error),
+                SimulatorError::Line(why) => SimulationError::Line(why),
+            })?;
+        let options = ServerOptions { stream: index, seed, ..ServerOptions::default() };
+        let line = SimulatedLine::new(machine);
         let server = Server::spawn(line, options, &Endpoint::Channel).map_err(SimulationError::Server)?;
-        let nodes = spec.units.iter().map(|unit| unit.node).collect();
-        let addresses = spec.units.iter().map(|unit| unit_address(unit.address)).collect();
-        Ok(Self {
-            text: text.to_owned(),
-            addresses,
-            stream,
-            can_form: spec.can,
-            nodes,
-            server,
-            family: FamilyChoice::of(brushwork_mcp_client::MCP),
-            script: Arc::default(),
-        })
-    }
-
-    fn start_motion_minds(text: &str) -> Result<Self, SimulationError> {
-        let spec = MotionMindSpec::parse(text)
-            .map_err(|why| SimulationError::MotionMindSpec { text: text.to_owned(), why })?;
-        let line = SimulatedLine::MotionMinds(Box::new(spec.bus()?));
-        let options = ServerOptions { seed: spec.seed, ..ServerOptions::default() };
-        let server = Server::spawn(line, options, &Endpoint::Channel).map_err(SimulationError::Server)?;
-        let addresses = spec.addresses.iter().filter_map(|address| mind_address(address.get())).collect();
-        Ok(Self {
-            text: text.to_owned(),
-            addresses,
-            stream: Stream::Rs232,
-            can_form: None,
-            nodes: Vec::new(),
-            server,
-            family: FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND),
-            script: Arc::default(),
-        })
+        let (text, script) = (text.to_owned(), Arc::default());
+        Ok(Self { text, addresses, stream, can_form, nodes, server, simulator, script })
     }
 
     /// The protocol family of its units.
     pub fn family(&self) -> FamilyChoice {
-        self.family
+        FamilyChoice::of(self.simulator.family())
     }
 
     /// Whether it runs and is what `text` describes.
@@ -188,11 +140,9 @@ impl Simulation {
     /// # Errors
     /// The machine has ended or its queue is full.
     pub fn debug(&self, unit: usize, requests: Vec<Request>, wanted: Wanted) -> Result<(), ServerError> {
-        let script = Arc::clone(&self.script);
-        self.server.post(move |bus| {
-            let controllers = bus.packets_mut().map(Bus::controllers_mut);
-            let view =
-                controllers.and_then(|units| units.get_mut(unit)).map(|unit| unit.debug(requests, &wanted));
+        let (script, simulator) = (Arc::clone(&self.script), self.simulator);
+        self.server.post(move |line| {
+            let view = simulator.debug(line.machine_mut(), unit, requests, &wanted);
             *script.lock().unwrap_or_else(PoisonError::into_inner) = view;
         })
     }
@@ -211,7 +161,7 @@ impl Simulation {
     pub fn unit_of(&self, id: u8) -> Option<usize> {
         match self.can_form {
             Some(_) => self.nodes.iter().position(|node| node.get() == id),
-            None => self.unit_at(UnitAddress::new(self.family.family()?, id)?),
+            None => self.unit_at(UnitAddress::new(self.simulator.family(), id)?),
         }
     }
 
@@ -230,68 +180,18 @@ impl fmt::Debug for Simulation {
 impl HiddenSettings for Simulation {
     fn get(&self, address: UnitAddress, key: &str) -> Option<i64> {
         let unit = self.unit_at(address)?;
-        if key == CHECKSUM_KEY {
-            let look = move |line: &mut SimulatedLine| {
-                Some(crc16_xmodem(line.packets()?.controllers().get(unit)?.script_image()))
-            };
-            return self.server.inspect(look).ok().flatten().map(i64::from);
-        }
-        let key = key.to_owned();
-        let look = move |line: &mut SimulatedLine| {
-            line.packets()?.controllers().get(unit)?.settings().hidden(&key).ok()
-        };
+        let (key, simulator) = (key.to_owned(), self.simulator);
+        let look = move |line: &mut SimulatedLine| simulator.hidden(line.machine_mut(), unit, &key);
         self.server.inspect(look).ok().flatten()
     }
 
     fn set(&self, address: UnitAddress, key: &str, value: i64) -> Result<(), String> {
         let unit =
             self.unit_at(address).ok_or_else(|| format!("There is no simulated unit at {address}."))?;
-        let action = WorldAction::SetHidden { key: key.to_owned(), value };
-        let act = move |line: &mut SimulatedLine| {
-            Some(line.packets_mut()?.controllers_mut().get_mut(unit)?.apply(&action))
-        };
-        match self.server.inspect(act) {
-            Ok(Some(Ok(()))) => Ok(()),
-            Ok(Some(Err(unknown))) => Err(format!("{unknown}.")),
-            Ok(None) => Err("This simulated controller has no settings past the wire.".to_owned()),
-            Err(error) => Err(format!("{error}.")),
-        }
+        let (key, simulator) = (key.to_owned(), self.simulator);
+        let act = move |line: &mut SimulatedLine| simulator.set_hidden(line.machine_mut(), unit, &key, value);
+        self.server.inspect(act).unwrap_or_else(|error| Err(format!("{error}.")))
     }
-}
-
-/// The machines that a description asks for, on one wire.
-///
-/// # Errors
-/// Several units do not fit on this kind of wire.
-pub fn bus_of(spec: &SimSpec, stream: StreamIndex) -> Result<Bus, SimulationError> {
-    let units = spec.units.iter().map(|unit| controller(unit, spec.seed)).collect::<Result<Vec<_>, _>>()?;
-    match spec.can {
-        Some(form) => Ok(Bus::on_can(units, form)?),
-        None => Ok(Bus::new(units, stream)?),
-    }
-}
-
-fn controller(unit: &UnitSpec, seed: u64) -> Result<Controller, ParamsError> {
-    Controller::new(config_of(unit, seed))
-}
-
-/// What a unit is made of.
-pub fn config_of(unit: &UnitSpec, seed: u64) -> ControllerConfig {
-    let preset = |index: usize| {
-        presets::lookup(&unit.presets[index])
-            .expect("the names of presets were checked when the text was read")
-    };
-    let mut config = ControllerConfig {
-        generation: unit.generation,
-        address: unit.address,
-        world: presets::world_of(preset(0), preset(1), unit.model.pins.len()),
-        seed,
-        ..ControllerConfig::of(unit.model)
-    };
-    if unit.node != NodeId::DEFAULT {
-        config.set_node(unit.node);
-    }
-    config
 }
 
 #[cfg(test)]
@@ -299,10 +199,16 @@ mod tests {
     use super::*;
     use crate::wait::{PATIENCE, until_some};
     use brushwork_link::Transport as _;
+    use brushwork_mcp_sim::controller::Bus;
     use brushwork_mcp_wire::crc::crc16_xmodem;
     use brushwork_plant::server::Pace;
     use brushwork_script::debug::{Breakpoint, Reason};
     use std::time::Duration;
+
+    fn start(text: &str) -> Result<Simulation, SimulationError> {
+        simulator::install(&[&brushwork_mcp::McpSimulator]);
+        Simulation::start(text)
+    }
 
     /// Command 21 to 0x80; the reply begins with the name.
     fn name_of(transport: &mut ChannelTransport) -> String {
@@ -314,7 +220,7 @@ mod tests {
 
     #[test]
     fn a_simulated_controller_answers_and_outlives_its_client() {
-        let simulation = Simulation::start("mcp266").unwrap();
+        let simulation = start("mcp266").unwrap();
         let mut first = simulation.connect().unwrap();
         assert!(name_of(&mut first).contains("MCP266"));
         drop(first);
@@ -324,7 +230,7 @@ mod tests {
 
     #[test]
     fn an_unplugged_cable_is_named_with_the_cure() {
-        let simulation = Simulation::start("mcp266").unwrap();
+        let simulation = start("mcp266").unwrap();
         simulation.apply(0, WorldAction::Unplug { unplugged: true }).unwrap();
         let error = simulation.connect().err().unwrap();
         assert!(error.to_string().contains("Plug it in again"), "{error}");
@@ -332,7 +238,7 @@ mod tests {
 
     #[test]
     fn hidden_settings_reach_the_unit_at_their_address() {
-        let simulation = Simulation::start("mcp266,address=0x80,address=0x81").unwrap();
+        let simulation = start("mcp266,address=0x80,address=0x81").unwrap();
         let address = UnitAddress::new(brushwork_mcp_client::MCP, 0x81).unwrap();
         HiddenSettings::set(&simulation, address, "unit.bridge_channels", 1).unwrap();
         assert_eq!(HiddenSettings::get(&simulation, address, "unit.bridge_channels"), Some(1));
@@ -362,15 +268,13 @@ mod tests {
 
     #[test]
     fn full_speed_leads_to_a_breakpoint_and_stops_hurrying_there_with_the_link_alive() {
-        let simulation = Simulation::start("mcp266").unwrap();
+        let simulation = start("mcp266").unwrap();
         let mut transport = simulation.connect().unwrap();
         let program = brushwork_script::mcl::compile(DRIVER).program.unwrap();
         let image = brushwork_script::image::encode(&program);
         simulation
             .server()
-            .inspect(move |line| {
-                line.packets_mut().map(|bus| bus.controllers_mut()[0].install_script(&image))
-            })
+            .inspect(move |line| line.get::<Bus>().map(|bus| bus.controllers_mut()[0].install_script(&image)))
             .unwrap();
         // The thousandth round is ten seconds of the controller's time away.
         let breakpoint = Breakpoint { from_hit: 1_000, ..Breakpoint::at(3) };

@@ -5,10 +5,12 @@ use crate::registers::{
     McpHeld, McpLaw, McpNote, McpRegisters, McpWrite, VELOCITY_SCALE, gains_of, position_registers,
     velocity_gains, velocity_registers,
 };
+use crate::table;
 use brushwork_tuning::axis::AxisError;
 use brushwork_tuning::cascade::{CASCADE, Cascade};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::ExperimentGuard;
+use brushwork_tuning::joined::LeadingLaw;
 use brushwork_tuning::law::{Ending, Facts, Law, Seen};
 use brushwork_tuning::law_probe::LawProbe;
 use brushwork_tuning::model::Gains;
@@ -78,6 +80,10 @@ impl Law for McpLaw {
         }
     }
 
+    fn rows(&self, held: &McpHeld, proposed: &McpRegisters) -> Vec<[String; 4]> {
+        table::rows(held, proposed, self.position_scale)
+    }
+
     fn writes(registers: &McpRegisters, is_position: bool) -> Vec<McpWrite> {
         let position = registers.position.filter(|_| is_position).map(McpWrite::PositionLoop);
         registers.velocity.map(McpWrite::Velocity).into_iter().chain(position).collect()
@@ -136,12 +142,20 @@ impl Law for McpLaw {
 }
 
 impl LawProbe for McpLaw {
-    fn probe(
-        guard: &mut ExperimentGuard<'_, Self>,
+    fn probe<J: Law>(
+        guard: &mut ExperimentGuard<'_, J>,
+        held: &McpHeld,
+        write: &dyn Fn(McpWrite) -> J::Write,
         start_duty: f64,
         is_position: bool,
     ) -> Result<Option<LawFindings>, Cause> {
-        let position = guard.setup.held.position;
-        probe_law(guard, start_duty, is_position.then_some((position.min, position.max)))
+        let position = held.position;
+        probe_law(guard, write, start_duty, is_position.then_some((position.min, position.max)))
+    }
+}
+
+impl LeadingLaw for McpLaw {
+    fn standing_in(rate_hz: u32) -> Self {
+        Self { rate_hz, per_tick: true, position_scale: 1.0, feed_forward: true }
     }
 }

@@ -6,6 +6,7 @@
 mod law;
 mod probe;
 mod registers;
+mod table;
 
 pub use probe::{LawFindings, probe_law};
 pub use registers::{
@@ -17,7 +18,6 @@ use brushwork_mcp_wire::packet_serial::name::*;
 use brushwork_mcp_wire::packet_serial::status::{Condition, decode};
 use brushwork_mcp_wire::packet_serial::{Generation, Given, Read, Typed, commands, give, scale};
 use brushwork_tuning::axis::{Axis, AxisError, EncoderClass, Exchange, Sample, Status, Want};
-use brushwork_tuning::law::Law;
 use brushwork_tuning::setup::{LoopAxis, Setup};
 use brushwork_values::Motor;
 use std::collections::BTreeSet;
@@ -258,11 +258,8 @@ impl<C: Carrier> Axis for PacketAxis<C> {
     }
 }
 
-impl<C: Carrier, L> LoopAxis<L> for PacketAxis<C>
-where
-    L: Law<Held: From<McpHeld>, Write: TryInto<McpWrite>>,
-{
-    fn read_setup(&mut self) -> Result<Setup<L>, AxisError> {
+impl<C: Carrier> LoopAxis<McpLaw> for PacketAxis<C> {
+    fn read_setup(&mut self) -> Result<Setup<McpLaw>, AxisError> {
         let velocity = self.read([commands::READ_VELOCITY_PID_M1, commands::READ_VELOCITY_PID_M2])?;
         let position = self.read([commands::READ_POSITION_PID_M1, commands::READ_POSITION_PID_M2])?;
         let current =
@@ -291,7 +288,7 @@ where
             },
         };
         Ok(Setup {
-            held: held.into(),
+            held,
             max_current_raw: current.as_ref().map_or(0, |values| values.int(MAX) as u32),
             min_current_raw: current.as_ref().map_or(0, |values| values.int(MIN) as i32),
             min_volts_raw: volts.map_or(0, |values| values.int(MIN) as u16),
@@ -302,11 +299,10 @@ where
         })
     }
 
-    fn write(&mut self, write: L::Write) -> Result<(), AxisError> {
-        match write.try_into() {
-            Ok(McpWrite::Velocity(registers)) => self.write_velocity(registers),
-            Ok(McpWrite::PositionLoop(registers)) => self.write_position(registers),
-            Err(_) => Err(AxisError::Refused("gains of another family".into())),
+    fn write(&mut self, write: McpWrite) -> Result<(), AxisError> {
+        match write {
+            McpWrite::Velocity(registers) => self.write_velocity(registers),
+            McpWrite::PositionLoop(registers) => self.write_position(registers),
         }
     }
 }

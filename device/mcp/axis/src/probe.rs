@@ -80,11 +80,13 @@ fn near(found: f64, known: f64) -> bool {
 ///
 /// # Errors
 /// Says why the run ends.
-pub fn probe_law<L: Law<Write: From<McpWrite>>>(
+pub fn probe_law<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
+    write: &dyn Fn(McpWrite) -> L::Write,
     start_duty: f64,
     held_limits: Option<(i32, i32)>,
 ) -> Result<Option<LawFindings>, Cause> {
+    let guard = &mut Probed { guard, write };
     let duty = (DUTY_SHARE * start_duty).clamp(DUTY.0, DUTY.1);
     let speed = (duty * QPPS).round();
     let Some(feed) = duty_under(guard, speed, gains(0.0, 0.0))? else { return Ok(None) };
@@ -103,8 +105,34 @@ pub fn probe_law<L: Law<Write: From<McpWrite>>>(
         Some(limits) => scale_under(guard, duty, limits)?,
         None => None,
     };
-    guard.write(gains(0.0, 0.0).into())?;
+    guard.set(gains(0.0, 0.0))?;
     Ok(Some(LawFindings { feed_forward, proportional, sums_per_s, position_scale }))
+}
+
+/// The motor with its loops as this law writes them.
+struct Probed<'p, 'g, L: Law> {
+    guard: &'p mut ExperimentGuard<'g, L>,
+    write: &'p dyn Fn(McpWrite) -> L::Write,
+}
+
+impl<L: Law> Probed<'_, '_, L> {
+    fn set(&mut self, registers: McpWrite) -> Result<(), Cause> {
+        self.guard.write((self.write)(registers))
+    }
+}
+
+impl<'g, L: Law> std::ops::Deref for Probed<'_, 'g, L> {
+    type Target = ExperimentGuard<'g, L>;
+
+    fn deref(&self) -> &Self::Target {
+        self.guard
+    }
+}
+
+impl<L: Law> std::ops::DerefMut for Probed<'_, '_, L> {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        self.guard
+    }
 }
 
 fn gains(p: f64, i: f64) -> McpWrite {
@@ -113,8 +141,8 @@ fn gains(p: f64, i: f64) -> McpWrite {
 }
 
 /// The middle of the duties under a speed command.
-fn duty_under<L: Law<Write: From<McpWrite>>>(
-    guard: &mut ExperimentGuard<'_, L>,
+fn duty_under<L: Law>(
+    guard: &mut Probed<'_, '_, L>,
     speed: f64,
     registers: McpWrite,
 ) -> Result<Option<f64>, Cause> {
@@ -125,8 +153,8 @@ fn duty_under<L: Law<Write: From<McpWrite>>>(
 }
 
 /// How much the duty grows for each count that the motor stays behind the commanded speed.
-fn growth_under<L: Law<Write: From<McpWrite>>>(
-    guard: &mut ExperimentGuard<'_, L>,
+fn growth_under<L: Law>(
+    guard: &mut Probed<'_, '_, L>,
     speed: f64,
     registers: McpWrite,
 ) -> Result<f64, Cause> {
@@ -141,13 +169,13 @@ fn growth_under<L: Law<Write: From<McpWrite>>>(
 }
 
 /// The polls under a speed command; the first may come before the loop has acted.
-fn under<L: Law<Write: From<McpWrite>>>(
-    guard: &mut ExperimentGuard<'_, L>,
+fn under<L: Law>(
+    guard: &mut Probed<'_, '_, L>,
     speed: f64,
     registers: McpWrite,
     seconds: f64,
 ) -> Result<Vec<Point>, Cause> {
-    guard.write(registers.into())?;
+    guard.set(registers)?;
     guard.speed(speed)?;
     let from_s = guard.now_s() + 0.012;
     guard.poll_for(0.012 + seconds, true)?;
@@ -156,17 +184,17 @@ fn under<L: Law<Write: From<McpWrite>>>(
 }
 
 /// The position scale: P alone acts on the duty directly (MCP manual 2.4.7).
-fn scale_under<L: Law<Write: From<McpWrite>>>(
-    guard: &mut ExperimentGuard<'_, L>,
+fn scale_under<L: Law>(
+    guard: &mut Probed<'_, '_, L>,
     duty: f64,
     (min, max): (i32, i32),
 ) -> Result<Option<f64>, Cause> {
     let wanted = 1.6 * duty;
     let p = (wanted * QPPS * SCALES[0] / ERROR_COUNTS).round();
     let (min, max) = if min < max { (min, max) } else { (i32::MIN / 2, i32::MAX / 2) };
-    guard.write(gains(0.0, 0.0).into())?;
+    guard.set(gains(0.0, 0.0))?;
     let registers = PositionRegisters { p: p as u32, min, max, ..PositionRegisters::default() };
-    guard.write(McpWrite::PositionLoop(registers).into())?;
+    guard.set(McpWrite::PositionLoop(registers))?;
     guard.poll(false)?;
     let here = guard.points.last().map_or(0.0, |p| p.counts);
     // Away from the upper limit, which would shorten the error.

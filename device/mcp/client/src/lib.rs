@@ -11,6 +11,7 @@ mod facts;
 mod family;
 pub mod firmware;
 pub mod packet;
+mod readings;
 pub mod script;
 pub mod settings;
 #[cfg(test)]

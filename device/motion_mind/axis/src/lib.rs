@@ -16,7 +16,6 @@ pub use timing::{BITS_PER_BYTE, worked_at};
 
 use brushwork_motion_mind_wire::{Command, Part, Protocol, Reply, register_number as number, status};
 use brushwork_tuning::axis::{Axis, AxisError, EncoderClass, Exchange, FULL_DUTY_RAW, Sample, Status, Want};
-use brushwork_tuning::law::Law;
 use brushwork_tuning::setup::{LoopAxis, Setup};
 use clock::UnitClock;
 use fence::Fence;
@@ -489,11 +488,8 @@ impl<C: MindCarrier> Axis for MindAxis<C> {
     }
 }
 
-impl<C: MindCarrier, L> LoopAxis<L> for MindAxis<C>
-where
-    L: Law<Held: From<MotionMindHeld>, Write: TryInto<MotionMindWrite>>,
-{
-    fn read_setup(&mut self) -> Result<Setup<L>, AxisError> {
+impl<C: MindCarrier> LoopAxis<MotionMindLaw> for MindAxis<C> {
+    fn read_setup(&mut self) -> Result<Setup<MotionMindLaw>, AxisError> {
         let (_, values) = self.registers(&SETUP)?;
         for (number, value) in &values {
             self.known[usize::from(*number)] = Some(*value);
@@ -518,23 +514,22 @@ where
         let mode = value(number::MODE)? as u8;
         let unit = MotionMindSetup { mode, registers, is_undated: !self.reads_whole() };
         Ok(Setup {
-            held: MotionMindHeld { motion_mind: Some(unit) }.into(),
+            held: MotionMindHeld { motion_mind: Some(unit) },
             max_current_raw: (value(number::AMPSLIMIT)? * CURRENT_STEP) as u32,
             encoder: EncoderClass::Quadrature,
             ..Setup::default()
         })
     }
 
-    fn write(&mut self, write: L::Write) -> Result<(), AxisError> {
-        match write.try_into() {
-            Ok(MotionMindWrite::Loop(registers)) => {
+    fn write(&mut self, write: MotionMindWrite) -> Result<(), AxisError> {
+        match write {
+            MotionMindWrite::Loop(registers) => {
                 self.off()?;
                 self.write_gains(&registers)?;
                 self.trial = Some(registers);
                 Ok(())
             }
-            Ok(MotionMindWrite::End(registers)) => self.end(registers),
-            Err(_) => Err(AxisError::Refused("gains of another family".into())),
+            MotionMindWrite::End(registers) => self.end(registers),
         }
     }
 }

@@ -11,6 +11,7 @@
 mod position_law;
 mod registers;
 mod scale;
+mod table;
 mod tick;
 
 pub use position_law::{FULL_FEED_FORWARD, FULL_PWM, LOOPS_PER_S, MotionMindLaw, SPEED_STEP_COUNTS_PER_S};
@@ -131,6 +132,10 @@ impl Law for MotionMindLaw {
     fn with_registers(&self, registers: &MotionMindProposal) -> Self {
         let velocity_ff = registers.motion_mind.map_or(self.velocity_ff, |registers| registers.velocity_ff);
         Self { velocity_ff, ..*self }
+    }
+
+    fn rows(&self, held: &MotionMindHeld, proposed: &MotionMindProposal) -> Vec<[String; 4]> {
+        table::rows(held, proposed)
     }
 
     fn refuse(registers: &MotionMindProposal) -> Result<(), Cause> {

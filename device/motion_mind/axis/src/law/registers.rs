@@ -3,6 +3,7 @@
 use super::position_law::{FULL_PWM, MotionMindLaw, is_protected, on_position, sum_bound_s};
 use super::scale::{on_speed, scaled, unscaled};
 use brushwork_tuning::axis::AxisError;
+use brushwork_tuning::joined::{LawPart, Part};
 use brushwork_tuning::model::Gains;
 use serde::{Deserialize, Serialize};
 
@@ -59,6 +60,24 @@ pub struct MotionMindPart<T> {
     /// It, where the controller is a Motion Mind.
     #[serde(default = "none")]
     pub motion_mind: Option<T>,
+}
+
+impl<T> Part for MotionMindPart<T> {
+    fn is_there(&self) -> bool {
+        self.motion_mind.is_some()
+    }
+}
+
+impl LawPart for MotionMindPart<MotionMindLaw> {
+    type Law = MotionMindLaw;
+
+    fn law(&self) -> Option<MotionMindLaw> {
+        self.motion_mind
+    }
+
+    fn of(law: MotionMindLaw) -> Self {
+        Self { motion_mind: Some(law) }
+    }
 }
 
 fn none<T>() -> Option<T> {

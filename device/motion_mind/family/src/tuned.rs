@@ -1,24 +1,29 @@
-//! The tuner's axis on a Motion Mind over the device thread.
+//! The loop of a Motion Mind over the device thread.
 
-use brushwork_motion_mind_client::MotionMindFacts;
-use std::time::Duration;
-
+use brushwork_family::tuned::{OtherTuned, Registers, Restored, Target, Tuned, failed, thrice, told};
 use brushwork_link::device::JobContext;
-use brushwork_link::wire::Wire;
-use brushwork_motion_mind_axis::{BITS_PER_BYTE, MindCarrier, worked_at};
+use brushwork_link::{Failure, Wire};
+use brushwork_motion_mind_axis::law::{MotionMindLaw, MotionMindPart};
+use brushwork_motion_mind_axis::{BITS_PER_BYTE, LoopAfter, MindAxis, MindCarrier, worked_at};
+use brushwork_motion_mind_client::{MOTION_MIND, MotionMindFacts};
 use brushwork_motion_mind_wire::{
     Address, Command, Part, Protocol, Reply, encode_frame, encode_line, register,
 };
-use brushwork_tuning::axis::{AxisError, Exchange};
+use brushwork_tuning::axis::{Axis, AxisError, Exchange};
+use brushwork_tuning::setup::{LoopAxis, Setup};
+use brushwork_values::Motor;
+use std::time::Duration;
 
-use super::told::told;
+/// Registers that a run writes, by their names in keys.
+const TRIED: [&str; 9] =
+    ["velocityff", "pterm", "iterm", "dterm", "pidscalar", "vnlimit", "vplimit", "deadband", "ampslimit"];
 
 /// An exchange that took so much longer than the quickest of its kind had a retry in it, so that nobody can say when the unit did
 /// its work.
 const LATE: Duration = Duration::from_millis(35);
 
 /// The wire of a job as the tuner's carrier. The device thread knows which protocol the unit speaks; here all is commands.
-pub(super) struct MindJobCarrier<'a, 'b> {
+struct MindJobCarrier<'a, 'b> {
     context: &'a mut JobContext<'b>,
     /// The quickest reading and the quickest of the other exchanges so far.
     quickest: [Option<Duration>; 2],
@@ -26,7 +31,7 @@ pub(super) struct MindJobCarrier<'a, 'b> {
 
 impl<'a, 'b> MindJobCarrier<'a, 'b> {
     /// The carrier of a job.
-    pub(super) fn new(context: &'a mut JobContext<'b>) -> Self {
+    fn new(context: &'a mut JobContext<'b>) -> Self {
         Self { context, quickest: [None; 2] }
     }
 
@@ -137,6 +142,53 @@ fn values_of(command: &Command) -> Option<Vec<i64>> {
         Command::MoveToAbsolute(counts) | Command::MoveToRelative(counts) => vec![i64::from(counts)],
         _ => return None,
     })
+}
+
+/// The loop of a Motion Mind.
+#[derive(Clone, Copy, Debug)]
+pub struct MotionMindTuned;
+
+impl OtherTuned for MotionMindTuned {
+    type Part = MotionMindPart<MotionMindLaw>;
+}
+
+impl Tuned for MotionMindTuned {
+    type Law = MotionMindLaw;
+
+    fn is_at(context: &JobContext<'_>) -> bool {
+        context.address().family() == MOTION_MIND
+    }
+
+    fn axis<'a>(
+        context: &'a mut JobContext<'_>,
+        _target: Target,
+        _own_timeout: bool,
+    ) -> Box<dyn LoopAxis<MotionMindLaw> + 'a> {
+        Box::new(MindAxis::new(MindJobCarrier::new(context)))
+    }
+
+    fn is_tried(_motor: Motor, key: &str) -> bool {
+        key.strip_prefix("register.").is_some_and(|name| TRIED.contains(&name))
+            || key.starts_with("function.")
+            || key.starts_with("function2.")
+    }
+
+    fn restore(
+        context: &mut JobContext<'_>,
+        _target: Target,
+        before: &Setup<MotionMindLaw>,
+        kept: &Registers<MotionMindLaw>,
+        leaves_off: bool,
+    ) -> Result<Restored, Failure> {
+        let place = context.describe();
+        let held = before.held.motion_mind.map(|unit| unit.registers);
+        let Some(registers) = kept.motion_mind.or(held) else { return Ok(Restored::default()) };
+        let mut axis = MindAxis::new(MindJobCarrier::new(context));
+        let put_back = thrice(|| axis.write_current_limits(before.max_current_raw, 0))
+            .and_then(|()| thrice(|| axis.put_back(registers, leaves_off)))
+            .map_err(|error| failed("write the registers back", &place, &error))?;
+        Ok(Restored { loop_left_off: put_back == LoopAfter::LeftOff })
+    }
 }
 
 #[cfg(test)]

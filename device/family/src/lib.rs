@@ -1,0 +1,9 @@
+//! What a program asks of a whole family of controllers beyond its driver: simulated units, and the tuning of its loops.
+//!
+//! A family's own crate puts its client, simulator and axis together behind these traits. Nothing here knows which families there are.
+
+pub mod simulator;
+pub mod tuned;
+
+pub use simulator::{Simulator, SimulatorError, Started};
+pub use tuned::{Restored, Target, Tuned};

@@ -1,0 +1,10 @@
+//! MCP and RoboClaw controllers whole: their driver, their simulated units and the tuning of their loops, as a program lists them.
+
+mod encoder;
+pub mod sim_spec;
+mod simulator;
+mod tuned;
+
+pub use sim_spec::{SimSpec, SimSpecError};
+pub use simulator::{McpSimulator, bus_of, config_of};
+pub use tuned::McpTuned;

@@ -1,0 +1,124 @@
+//! Simulated MCP and RoboClaw controllers as a program serves them.
+
+use crate::sim_spec::{SimSpec, UnitSpec};
+use brushwork_canopen::NodeId;
+use brushwork_family::{Simulator, SimulatorError, Started};
+use brushwork_link::{FamilyRef, Stream};
+use brushwork_mcp_client::script::CHECKSUM_KEY;
+use brushwork_mcp_client::{MCP, unit_address};
+use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
+use brushwork_mcp_wire::crc::crc16_xmodem;
+use brushwork_mcp_wire::models;
+use brushwork_plant::machine::{Machine, StreamIndex};
+use brushwork_plant::world::WorldAction;
+use brushwork_plant::{ParamsError, presets};
+use brushwork_script::debug::{Request, View, Wanted};
+use std::any::Any;
+
+/// What makes them.
+#[derive(Clone, Copy, Debug)]
+pub struct McpSimulator;
+
+impl Simulator for McpSimulator {
+    fn family(&self) -> FamilyRef {
+        MCP
+    }
+
+    fn is_asked_for(&self, text: &str) -> bool {
+        let model = text.split(',').next().unwrap_or_default().trim();
+        model.is_empty() || models::lookup(model).is_some()
+    }
+
+    fn start(&self, text: &str) -> Result<Started, SimulatorError> {
+        let spec = SimSpec::parse(text).map_err(|error| SimulatorError::Spec(error.to_string()))?;
+        // Several units can only share a TTL wire; one alone hangs on USB.
+        let (index, stream) = match spec.units.len() {
+            _ if spec.can.is_some() => (StreamIndex::Usb, Stream::Usb),
+            1 => (StreamIndex::Usb, Stream::Usb),
+            _ => (StreamIndex::Uart1, Stream::Ttl1),
+        };
+        Ok(Started {
+            machine: Box::new(bus_of(&spec, index)?),
+            addresses: spec.units.iter().map(|unit| unit_address(unit.address)).collect(),
+            nodes: spec.units.iter().map(|unit| unit.node).collect(),
+            can_form: spec.can,
+            index,
+            stream,
+            seed: spec.seed,
+        })
+    }
+
+    fn hidden(&self, machine: &mut dyn Machine, unit: usize, key: &str) -> Option<i64> {
+        let controller = controllers(machine)?.get(unit)?;
+        if key == CHECKSUM_KEY {
+            return Some(i64::from(crc16_xmodem(controller.script_image())));
+        }
+        controller.settings().hidden(key).ok()
+    }
+
+    fn set_hidden(
+        &self,
+        machine: &mut dyn Machine,
+        unit: usize,
+        key: &str,
+        value: i64,
+    ) -> Result<(), String> {
+        let controller = controllers(machine).and_then(|all| all.get_mut(unit));
+        let Some(controller) = controller else {
+            return Err("This simulated controller has no settings past the wire.".to_owned());
+        };
+        let action = WorldAction::SetHidden { key: key.to_owned(), value };
+        controller.apply(&action).map_err(|unknown| format!("{unknown}."))
+    }
+
+    fn debug(
+        &self,
+        machine: &mut dyn Machine,
+        unit: usize,
+        requests: Vec<Request>,
+        wanted: &Wanted,
+    ) -> Option<View> {
+        Some(controllers(machine)?.get_mut(unit)?.debug(requests, wanted))
+    }
+}
+
+fn controllers(machine: &mut dyn Machine) -> Option<&mut [Controller]> {
+    let machine: &mut dyn Any = machine;
+    machine.downcast_mut::<Bus>().map(Bus::controllers_mut)
+}
+
+/// The machines that a description asks for, on one wire.
+///
+/// # Errors
+/// Several units do not fit on this kind of wire.
+pub fn bus_of(spec: &SimSpec, stream: StreamIndex) -> Result<Bus, SimulatorError> {
+    let units = spec.units.iter().map(|unit| controller(unit, spec.seed)).collect::<Result<Vec<_>, _>>()?;
+    let bus = match spec.can {
+        Some(form) => Bus::on_can(units, form),
+        None => Bus::new(units, stream),
+    };
+    bus.map_err(|error| SimulatorError::Line(error.to_string()))
+}
+
+fn controller(unit: &UnitSpec, seed: u64) -> Result<Controller, ParamsError> {
+    Controller::new(config_of(unit, seed))
+}
+
+/// What a unit is made of.
+pub fn config_of(unit: &UnitSpec, seed: u64) -> ControllerConfig {
+    let preset = |index: usize| {
+        presets::lookup(&unit.presets[index])
+            .expect("the names of presets were checked when the text was read")
+    };
+    let mut config = ControllerConfig {
+        generation: unit.generation,
+        address: unit.address,
+        world: presets::world_of(preset(0), preset(1), unit.model.pins.len()),
+        seed,
+        ..ControllerConfig::of(unit.model)
+    };
+    if unit.node != NodeId::DEFAULT {
+        config.set_node(unit.node);
+    }
+    config
+}

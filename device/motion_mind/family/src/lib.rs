@@ -1,0 +1,9 @@
+//! Motion Mind 3 controllers whole: their driver, their simulated units and the tuning of their loop, as a program lists them.
+
+pub mod sim_spec;
+mod simulator;
+mod tuned;
+
+pub use sim_spec::MotionMindSpec;
+pub use simulator::MotionMindSimulator;
+pub use tuned::MotionMindTuned;

@@ -1,0 +1,34 @@
+//! Simulated Motion Minds as a program serves them.
+
+use crate::sim_spec::MotionMindSpec;
+use brushwork_family::{Simulator, SimulatorError, Started};
+use brushwork_link::{FamilyRef, Stream};
+use brushwork_motion_mind_client::{MOTION_MIND, unit_address};
+use brushwork_plant::server::ServerOptions;
+
+/// What makes them.
+#[derive(Clone, Copy, Debug)]
+pub struct MotionMindSimulator;
+
+impl Simulator for MotionMindSimulator {
+    fn family(&self) -> FamilyRef {
+        MOTION_MIND
+    }
+
+    fn is_asked_for(&self, text: &str) -> bool {
+        MotionMindSpec::is_asked_for(text)
+    }
+
+    fn start(&self, text: &str) -> Result<Started, SimulatorError> {
+        let spec = MotionMindSpec::parse(text).map_err(SimulatorError::Spec)?;
+        Ok(Started {
+            machine: Box::new(spec.bus()?),
+            addresses: spec.addresses.iter().filter_map(|address| unit_address(address.get())).collect(),
+            nodes: Vec::new(),
+            can_form: None,
+            index: ServerOptions::default().stream,
+            stream: Stream::Rs232,
+            seed: spec.seed,
+        })
+    }
+}
