@@ -3,6 +3,7 @@
 #[cfg(feature = "bench")]
 mod bench;
 
+use brushwork_family::Simulator;
 use brushwork_gui::run::{WindowOptions, run as open_window};
 use brushwork_link::Driver;
 use std::process::ExitCode;
@@ -11,10 +12,20 @@ use std::process::ExitCode;
 pub static FAMILIES: [&dyn Driver; 2] =
     [&brushwork_mcp_client::McpDriver, &brushwork_motion_mind_client::MotionMindDriver];
 
+/// What simulates their units. The first one's are made where the text behind `sim:` names none.
+pub static SIMULATORS: [&dyn Simulator; 2] =
+    [&brushwork_mcp::McpSimulator, &brushwork_motion_mind::MotionMindSimulator];
+
+/// Makes the families known to every part of the program.
+pub fn install() {
+    brushwork_link::install(&FAMILIES);
+    brushwork_family::simulator::install(&SIMULATORS);
+}
+
 /// Runs the program: a command, or the window where none is given.
 #[must_use]
 pub fn run() -> ExitCode {
-    brushwork_link::install(&FAMILIES);
+    install();
     brushwork_cli::run(
         |window| {
             let options = WindowOptions { open: window.open.clone(), plain: window.plain };

@@ -25,6 +25,7 @@ mod real_time {
     use brushwork_tests::program::Program;
     use brushwork_tests::simulated::{OnPty, is_at_rest};
     use brushwork_tuning::experiment_guard::GuardOptions;
+    use brushwork_tuning::joined::Joined;
     use brushwork_tuning::report::Verdict;
     use brushwork_tuning::tune::tune;
     use brushwork_tuning_bench::line::SimulatedLine;
@@ -45,12 +46,15 @@ mod real_time {
         let link = LinkParams { poll_s: 0.010, jitter_s: 0.001, latency_s: 0.001, loss: 0.0, seed: 1 };
         let mut line = SimulatedLine::new(unit, link);
         line.idle(Duration::from_millis(500));
-        let mut axis = PacketAxis::new(
+        let axis = PacketAxis::new(
             line,
             brushwork_values::Motor::M1,
             brushwork_tuning::axis::EncoderClass::Quadrature,
         );
-        tune(&mut axis, &Request { guard: GuardOptions::default(), ..Request::default() })
+        tune(
+            &mut Joined::first(Box::new(axis)),
+            &Request { guard: GuardOptions::default(), ..Request::default() },
+        )
     }
 
     fn in_real_time(report: &Path) -> Report {

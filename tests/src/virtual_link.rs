@@ -99,7 +99,7 @@ impl<M: Machine + 'static> VirtualLink<M> {
         seed: u64,
         open: impl FnOnce(Box<dyn Transport>, Arc<dyn Clock>) -> (DeviceLoop, DeviceHandle),
     ) -> Self {
-        brushwork_link::install(&brushwork::FAMILIES);
+        brushwork::install();
         let paced = stream != StreamIndex::Usb;
         let byte_time = paced.then(|| byte_time(bus.bits_per_second(stream)));
         let line = VirtualLine::new(Paced::new(Faulty::new(bus, faults, seed), paced), stream);

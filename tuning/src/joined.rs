@@ -178,9 +178,10 @@ impl<A: LeadingLaw, P: LawPart> Law for Both<A, P> {
     }
 
     fn rows(&self, held: &Self::Held, proposed: &Self::Registers) -> Vec<[String; 4]> {
-        match self.second.law() {
-            Some(law) => law.rows(&held.second, &proposed.second),
-            None => self.first.rows(&held.first, &proposed.first),
+        if held.second.is_there() {
+            self.second.law().unwrap_or_default().rows(&held.second, &proposed.second)
+        } else {
+            self.first.rows(&held.first, &proposed.first)
         }
     }
 

@@ -18,8 +18,8 @@ use super::new_file::Replace;
 use super::script::args::ScriptArgs;
 use super::settings::args::SettingsArgs;
 use super::shared_args::{ConnectArgs, LineArgs, ScriptBuses, parse_seconds};
-use brushwork_core::session::motion_mind_spec;
-use brushwork_core::session::sim_spec::parse_byte;
+use brushwork_mcp::sim_spec::parse_byte;
+use brushwork_motion_mind::sim_spec as motion_mind_spec;
 
 /// Configures, drives and tunes brushed-DC motor controllers.
 #[derive(Debug, Parser)]

@@ -18,8 +18,8 @@ use super::interrupt::Interrupt;
 use super::output::say;
 use super::shared_args::{ConnectArgs, LineArgs};
 use brushwork_core::session;
-use brushwork_core::session::motion_mind_spec::MotionMindSpec;
 use brushwork_core::session::{Session, SessionOptions, Simulation};
+use brushwork_motion_mind::MotionMindSpec;
 
 /// How long a controller may take to be found and identified.
 pub const CONNECT_LIMIT: Duration = Duration::from_secs(60);

@@ -58,7 +58,7 @@ impl Bench {
 
     /// The backups of `kept`, oldest first.
     fn backups(&self) -> Vec<Profile> {
-        brushwork_link::install(&brushwork::FAMILIES);
+        brushwork::install();
         let mut open = vec![self.kept().join("backups")];
         let mut files = Vec::new();
         while let Some(folder) = open.pop() {

@@ -115,7 +115,7 @@ fn an_update_needs_the_risk_accepted_and_backs_the_settings_up_first() {
     assert!(run.stdout.contains("128 pages were sent and confirmed"), "{run:?}");
     assert!(run.stdout.contains("settings diff"), "what to do next is said: {run:?}");
     assert!(unit.flash() == holds(&unit.path("new.bin")));
-    brushwork_link::install(&brushwork::FAMILIES);
+    brushwork::install();
     assert!(Profile::load(&backup).unwrap().firmware.contains("v4.2.8"), "the backup is of the old firmware");
     unit.until("a restart", |unit| unit.unit().is_some_and(|unit| !unit.is_in_loader()));
     let info = firmware(&["info", "--connect", &port]);

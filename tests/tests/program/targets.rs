@@ -7,7 +7,7 @@ use brushwork_link::transport::{ConnectTarget, Stream};
 
 /// What a text means.
 fn parse(text: &str) -> Result<ConnectTarget, String> {
-    brushwork_link::install(&brushwork::FAMILIES);
+    brushwork::install();
     text.parse().map_err(|error: brushwork_link::transport::target::TargetError| error.to_string())
 }
 

@@ -10,6 +10,7 @@ use brushwork_core::tune::file;
 use brushwork_core::tune::law::{Report, Request};
 use brushwork_tests::program::Program;
 use brushwork_tests::wait::LIMIT;
+use brushwork_tuning::joined::Joined;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::{Method, tune};
 use brushwork_tuning_bench::population::specimen;
@@ -38,7 +39,8 @@ fn report(name: &str, plant: usize, method: Method, level: f64) -> Report {
     if std::env::var_os("UPDATE_REPORTS").is_some() {
         let plant = specimen(7, plant);
         let request = Request { level, ..request_of(&plant, method) };
-        file::write(&tune(&mut axis_of(&plant), &request), &path).expect("the folder is in the repository");
+        file::write(&tune(&mut Joined::first(Box::new(axis_of(&plant))), &request), &path)
+            .expect("the folder is in the repository");
     }
     file::read(&path).expect("it is in the repository")
 }
@@ -51,7 +53,7 @@ fn kept_reports_replay_to_the_last_bit() {
         let again = kept.replay_or_stray().unwrap_or_else(|entry| {
             panic!("{name}: the tuner asks for another step at entry {entry}; record it anew (see the head of this file)")
         });
-        let gains = |report: &Report| (report.proposed.mcp.velocity, report.proposed.mcp.position);
+        let gains = |report: &Report| (report.proposed.first.velocity, report.proposed.first.position);
         assert_eq!(gains(&again), gains(&kept), "{name}");
         assert!(
             again == kept,

@@ -12,8 +12,8 @@ use brushwork_script::program::Program;
 use brushwork_script::vm::{Machine, State};
 
 use super::args::RunArgs;
-use brushwork_core::session::sim_spec::{SimOptions, SimSpec};
-use brushwork_core::session::simulation;
+use brushwork_mcp as simulation;
+use brushwork_mcp::sim_spec::{SimOptions, SimSpec};
 
 /// From power-up to the start of the script: the encoders have been read by then.
 const WARM_UP: Duration = Duration::from_millis(10);

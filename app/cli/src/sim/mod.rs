@@ -23,8 +23,9 @@ use super::exit::Exit;
 use super::interrupt::Interrupt;
 use super::new_file::NewFile;
 use super::output::{Output, OutputError, say};
-use brushwork_core::session::sim_spec::SimOptions;
-use brushwork_core::session::{SimSpec, motion_mind_spec, simulation};
+use brushwork_mcp::sim_spec::SimOptions;
+use brushwork_mcp::{self as simulation, SimSpec};
+use brushwork_motion_mind::sim_spec as motion_mind_spec;
 
 /// Time between two looks at the server, and between two writes of the truth.
 const WATCH_INTERVAL: Duration = Duration::from_millis(100);

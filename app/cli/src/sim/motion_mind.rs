@@ -5,7 +5,7 @@ use brushwork_motion_mind_sim::assumed::REVISION;
 use brushwork_motion_mind_wire::{Address, Mode, Protocol};
 
 use super::super::args::{ProtocolArg, SimArgs};
-use brushwork_core::session::motion_mind_spec::{MODEL, MotionMindSpec, preset};
+use brushwork_motion_mind::sim_spec::{MODEL, MotionMindSpec, preset};
 
 /// What `--list` says about it.
 pub const RATING: &str = "1 motor, 6-24 V, 9 A, 25 A peak";

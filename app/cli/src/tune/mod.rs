@@ -1,7 +1,6 @@
 //! `brushwork tune`: tunes a motor on the machine, or plays a report back.
 
 mod args;
-mod mind;
 mod replay;
 mod words;
 

@@ -2,10 +2,10 @@
 
 use brushwork_core::tune::law::Report;
 use brushwork_tuning::law::Law;
+use brushwork_tuning::registers::RegisterTable as _;
 use brushwork_tuning::report::Verdict;
 use serde_json::{Value, json};
 
-use super::mind;
 use crate::exit::Exit;
 use crate::output::{Output, OutputError};
 
@@ -82,8 +82,12 @@ pub fn print(report: &Report, out: &mut Output) -> Result<(), OutputError> {
             report.measured.map_or_else(String::new, |m| format!("measured {:.1} %", 100.0 * m.duty_rms));
         row("duty noise", format!("{:.1} %", 100.0 * design.noise_duty), measured);
     }
-    if let Some(share) = mind::feed_forward(report) {
-        row("feed-forward", share, String::new());
+    if let Some(given) = report.qpps.and_then(|qpps| report.proposed.feed_forward(qpps)) {
+        row(
+            "feed-forward",
+            format!("{:.0} % of a speed's duty", 100.0 * given.share.min(1.0)),
+            String::new(),
+        );
     }
     out.table(&["", "", ""], &rows)?;
     print_gains(report, out)
@@ -101,29 +105,8 @@ fn print_gains(report: &Report, out: &mut Output) -> Result<(), OutputError> {
     if let Some(why) = report.winding_unknown {
         out.line(format!("R of the winding was not told: {}", why.sentence()))?;
     }
-    let mut rows = Vec::new();
-    if let Some(new) = report.proposed.mcp.velocity {
-        let old = before.held.mcp.velocity;
-        let pairs = [("P", old.p, new.p), ("I", old.i, new.i), ("D", old.d, new.d)];
-        for (name, old, new) in pairs {
-            let shown = |raw: u32| format!("{:.4}", f64::from(raw) / 65_536.0);
-            rows.push(vec![format!("velocity {name}"), shown(old), shown(new), new.to_string()]);
-        }
-        rows.push(vec!["QPPS".into(), old.qpps.to_string(), new.qpps.to_string(), new.qpps.to_string()]);
-    }
-    if let Some(new) = report.proposed.mcp.position {
-        let old = before.held.mcp.position;
-        let scale = report.request.law.mcp.position_scale;
-        let pairs = [("P", old.p, new.p), ("I", old.i, new.i), ("D", old.d, new.d)];
-        for (name, old, new) in pairs {
-            let shown = |raw: u32| format!("{:.4}", f64::from(raw) / scale);
-            rows.push(vec![format!("position {name}"), shown(old), shown(new), new.to_string()]);
-        }
-        for (name, old, new) in [("max I", old.max_i, new.max_i), ("deadzone", old.deadzone, new.deadzone)] {
-            rows.push(vec![format!("position {name}"), old.to_string(), new.to_string(), new.to_string()]);
-        }
-    }
-    rows.extend(mind::rows(report));
+    let rows = report.request.law.rows(&before.held, &report.proposed);
+    let rows: Vec<Vec<String>> = rows.into_iter().map(|row| row.to_vec()).collect();
     if rows.is_empty() {
         return Ok(());
     }

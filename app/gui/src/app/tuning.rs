@@ -7,13 +7,15 @@ use crate::model::jobs::Owner;
 use crate::model::link::Arming;
 use crate::model::loop_settings::key;
 use crate::tune::files;
-use crate::tune::registers::Registers;
+use crate::tune::registers::image;
 use crate::tune::sequence::{Next, Origin};
 use crate::tune::{Loop, TuneWish};
 use brushwork_core::keep::TrialKeeper;
 use brushwork_core::tune::file;
+use brushwork_core::tune::law::AnyRegisters;
 use brushwork_link::device::Request;
 use brushwork_link::settings::{SettingValue, SettingsImage};
+use brushwork_tuning::registers::RegisterTable as _;
 use brushwork_values::Motor;
 
 impl App {
@@ -131,21 +133,22 @@ impl App {
         let Some(registers) = shown.map(|shown| shown.registers) else {
             return Err("There are no gains to apply. Tune first.".to_owned());
         };
-        let held = front.held_gains(motor, registers.position.is_some());
-        if held.is_none() && registers.motion_mind.is_some() {
+        let held = front.held_gains(motor, registers.raw("position.p").is_some());
+        if held.is_none() && registers.is_one_set() {
             return Err(
                 "The registers are being read, so that they can be put back. Apply in a moment.".to_owned()
             );
         }
-        self.write_ram(registers.image(motor))?;
-        self.model.front.tune.front_mut(which).undo = held.map(|held| held.image(motor));
+        self.write_ram(image(&registers, motor))?;
+        self.model.front.tune.front_mut(which).undo = held.map(|held| image(&held, motor));
         Ok(())
     }
 
     /// Writes what was turned by hand, and nothing else.
-    fn adjust(&mut self, which: Loop, motor: Motor, registers: Registers) -> Result<(), String> {
-        let held = self.model.front.held_gains(motor, which == Loop::Position).map(|held| held.image(motor));
-        let wanted = registers.image(motor);
+    fn adjust(&mut self, which: Loop, motor: Motor, registers: AnyRegisters) -> Result<(), String> {
+        let held =
+            self.model.front.held_gains(motor, which == Loop::Position).map(|held| image(&held, motor));
+        let wanted = image(&registers, motor);
         let changed =
             wanted.iter().filter(|(key, value)| held.as_ref().and_then(|held| held.get(key)) != Some(*value));
         let image: SettingsImage = changed.map(|(key, value)| (key.to_owned(), value)).collect();

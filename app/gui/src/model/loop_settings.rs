@@ -5,7 +5,7 @@ use brushwork_tuning::axis::EncoderClass;
 use brushwork_values::Motor;
 
 use super::settings::UnitSettings;
-use brushwork_core::tune::encoder;
+use brushwork_core::tune::{encoder, tells_encoder};
 
 /// One setting that both motors have.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,7 +97,7 @@ impl UnitSettings {
     /// What the screens that drive show: the settings of the loops, and those that tell the kind of the encoders.
     pub fn loop_keys(&self) -> Vec<String> {
         let rows = self.table().rows().iter().map(|row| &row.key);
-        let of_encoders = rows.filter(|key| encoder::is_asked(key)).cloned();
+        let of_encoders = rows.filter(|key| tells_encoder(key)).cloned();
         let of_loops = [keys(VELOCITY), keys(POSITION)].concat();
         of_loops.into_iter().filter(|key| self.table().row(key).is_some()).chain(of_encoders).collect()
     }
@@ -177,7 +177,7 @@ impl UnitSettings {
 
     /// What kind of encoder a motor has, as the controller's settings say.
     pub fn encoder(&self, motor: Motor) -> Option<EncoderClass> {
-        encoder::class(&|key| self.on_controller(key), motor)
+        encoder(&|key| self.on_controller(key), motor)
     }
 
     /// Motors whose L and R, as shown, are both other than 0.

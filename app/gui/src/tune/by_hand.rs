@@ -7,7 +7,6 @@ use egui::{Button, Label, RichText, Ui};
 use super::calibration::{Advice, Calibration};
 use super::figures::lamp_ui;
 use super::model::TuneWish;
-use super::registers::{FIELDS, Registers};
 use super::which::Loop;
 use crate::command::{Command, Commands};
 use crate::model::Model;
@@ -16,6 +15,8 @@ use crate::model::lamp::LampState;
 use crate::model::screen::Screen;
 use crate::theme;
 use crate::theme::Palette;
+use brushwork_core::tune::law::AnyRegisters;
+use brushwork_tuning::registers::RegisterTable as _;
 
 pub fn by_hand_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let Some(which) = Loop::of(model.screen) else { return };
@@ -93,7 +94,7 @@ fn travel_speed_ui(ui: &mut Ui, model: &mut Model, motor: Motor) {
 }
 
 /// What the controller holds of the gains that this procedure turns.
-fn held_ui(ui: &mut Ui, which: Loop, held: Option<Registers>) {
+fn held_ui(ui: &mut Ui, which: Loop, held: Option<AnyRegisters>) {
     let palette = Palette::of(ui);
     let Some(held) = held else { return };
     ui.label(RichText::new("In the controller:").small().color(palette.weak_text));
@@ -101,8 +102,8 @@ fn held_ui(ui: &mut Ui, which: Loop, held: Option<Registers>) {
         Loop::Velocity => &["velocity.p", "velocity.i", "velocity.d"],
         Loop::Position => &["position.p", "position.i", "position.d", "position.max_i", "position.deadzone"],
     };
-    for field in FIELDS.iter().filter(|field| keys.contains(&field.key)) {
-        if let Some(value) = field.value(&held) {
+    for field in AnyRegisters::fields().into_iter().filter(|field| keys.contains(&field.key)) {
+        if let Some(value) = held.value(field) {
             ui.label(RichText::new(field.label).small().color(palette.weak_text));
             ui.label(RichText::new(field.text(value)).text_style(theme::figures()));
         }

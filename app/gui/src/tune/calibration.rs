@@ -5,8 +5,10 @@
 use brushwork_values::Motor;
 
 use super::observe::{Observation, Observer};
-use super::registers::{FIELDS, Registers};
+use super::registers::value_of;
 use super::which::Loop;
+use brushwork_core::tune::law::AnyRegisters;
+use brushwork_tuning::registers::RegisterTable as _;
 
 /// P of the position loop to begin with, 2000 on the wire (MCP manual 2.4.7), which is about 2 counts/s per count.
 const FIRST_POSITION_P: f64 = 2000.0 / 1024.0;
@@ -49,14 +51,14 @@ pub struct Step {
 pub struct Change {
     pub label: &'static str,
     pub hint: &'static str,
-    make: fn(&mut Registers),
+    make: fn(&mut AnyRegisters),
 }
 
-fn set(registers: &mut Registers, key: &str, change: impl Fn(f64) -> f64) {
-    if let Some(field) = FIELDS.iter().find(|field| field.key == key)
-        && let Some(value) = field.value(registers)
+fn set(registers: &mut AnyRegisters, key: &str, change: impl Fn(f64) -> f64) {
+    if let Some(field) = AnyRegisters::fields().into_iter().find(|field| field.key == key)
+        && let Some(value) = registers.value(field)
     {
-        field.set(registers, change(value));
+        registers.set_value(field, change(value));
     }
 }
 
@@ -145,7 +147,7 @@ pub const POSITION_STEPS: [Step; 5] = [
                 label: "D to 5 × P",
                 hint: "Where the useful values of D usually begin",
                 make: |registers| {
-                    let p = registers.position.map_or(0.0, |position| f64::from(position.p) / 1024.0);
+                    let p = value_of(registers, "position.p").unwrap_or_default();
                     set(registers, "position.d", |_value| 5.0 * p);
                 },
             },
@@ -176,7 +178,7 @@ pub const POSITION_STEPS: [Step; 5] = [
 
 impl Change {
     /// The registers with this change made.
-    pub fn made(&self, held: Registers) -> Registers {
+    pub fn made(&self, held: AnyRegisters) -> AnyRegisters {
         let mut registers = held;
         (self.make)(&mut registers);
         registers
@@ -219,7 +221,7 @@ impl Calibration {
     }
 
     /// What to do now.
-    pub fn advice(&self, which: Loop, held: Option<Registers>) -> Advice {
+    pub fn advice(&self, which: Loop, held: Option<AnyRegisters>) -> Advice {
         let Some(held) = held else { return Advice::Wait("The settings have not been read yet.") };
         if let Some(missing) = missing(which, self.step, &held) {
             return Advice::Change(missing.to_owned());
@@ -237,18 +239,21 @@ impl Calibration {
 }
 
 /// What must be there before the motor can be moved, or is in the way of the procedure.
-fn missing(which: Loop, step: usize, held: &Registers) -> Option<&'static str> {
-    if held.velocity.qpps < 1 {
+fn missing(which: Loop, step: usize, held: &AnyRegisters) -> Option<&'static str> {
+    let raw = |key| held.raw(key).unwrap_or_default();
+    if raw("velocity.qpps") < 1 {
         return Some("QPPS is 0. Measure or enter it first.");
     }
-    let position = held.position.filter(|_| which == Loop::Position)?;
-    let velocity = held.velocity;
-    if position.max <= position.min {
+    if which != Loop::Position || held.raw("position.p").is_none() {
+        return None;
+    }
+    let velocity = ["velocity.p", "velocity.i", "velocity.d"];
+    if raw("position.max") <= raw("position.min") {
         Some(
             "Min and Max leave no travel, so the slider has nowhere to go. Set them under Position loop, or press No end stops in the \
              first step.",
         )
-    } else if step == 0 && (velocity.p, velocity.i, velocity.d) != (0, 0, 0) {
+    } else if step == 0 && velocity.iter().any(|key| raw(key) != 0) {
         Some(
             "P, I or D of the velocity loop are not 0. Set them to 0, or leave them if that loop is tuned already, and go on.",
         )
@@ -257,14 +262,13 @@ fn missing(which: Loop, step: usize, held: &Registers) -> Option<&'static str> {
     }
 }
 
-fn ready(held: &Registers) -> String {
-    let qpps = held.velocity.qpps;
-    match held.position {
-        Some(position) => format!(
-            "QPPS is {qpps} counts/s and the travel goes from {} to {} counts. If that is right, go on.",
-            position.min, position.max
+fn ready(held: &AnyRegisters) -> String {
+    let qpps = held.raw("velocity.qpps").unwrap_or_default();
+    match (held.raw("position.min"), held.raw("position.max")) {
+        (Some(min), Some(max)) => format!(
+            "QPPS is {qpps} counts/s and the travel goes from {min} to {max} counts. If that is right, go on."
         ),
-        None => format!("QPPS is {qpps} counts/s. If that is right, go on."),
+        _ => format!("QPPS is {qpps} counts/s. If that is right, go on."),
     }
 }
 
@@ -341,38 +345,45 @@ fn advise_position(step: usize, seen: &Observation) -> Advice {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use brushwork_core::tune::law::{PositionRegisters, VelocityRegisters};
 
-    fn held() -> Registers {
-        let velocity = VelocityRegisters { p: 65_536, i: 0, d: 0, qpps: 10_000 };
-        let position = PositionRegisters { p: 2000, ..PositionRegisters::default() };
-        Registers { velocity, position: Some(position), motion_mind: None }
+    fn with(registers: AnyRegisters, changes: &[(&str, i64)]) -> AnyRegisters {
+        let mut registers = registers;
+        changes.iter().for_each(|(key, raw)| registers.set_raw(key, *raw));
+        registers
+    }
+
+    fn held() -> AnyRegisters {
+        let changes = [("velocity.p", 65_536), ("velocity.qpps", 10_000), ("position.p", 2000)];
+        with(AnyRegisters::blank(true), &changes)
+    }
+
+    fn terms(registers: &AnyRegisters, of: &str) -> [Option<i64>; 3] {
+        ["p", "i", "d"].map(|term| registers.raw(&format!("{of}.{term}")))
     }
 
     #[test]
     fn the_first_values_are_those_of_the_manual() {
-        let velocity = VELOCITY_STEPS[1].changes[0].made(Registers::default()).velocity;
-        assert_eq!((velocity.p, velocity.i, velocity.d), (0x1_0000, 0, 0));
-        let position = POSITION_STEPS[1].changes[0].made(held()).position.unwrap();
-        assert_eq!((position.p, position.i, position.d), (2000, 0, 0));
+        let velocity = VELOCITY_STEPS[1].changes[0].made(AnyRegisters::blank(false));
+        assert_eq!(terms(&velocity, "velocity"), [Some(0x1_0000), Some(0), Some(0)]);
+        let position = POSITION_STEPS[1].changes[0].made(held());
+        assert_eq!(terms(&position, "position"), [Some(2000), Some(0), Some(0)]);
     }
 
     #[test]
     fn two_thirds_and_tenths_are_what_they_say() {
-        let down = VELOCITY_STEPS[2].changes[1].made(held()).velocity.p;
-        assert_eq!(down, 43_691);
-        let up = VELOCITY_STEPS[3].changes[0].made(held()).velocity.i;
-        assert_eq!(up, 6554);
-        let d = POSITION_STEPS[2].changes[2].made(held()).position.unwrap().d;
-        assert_eq!(d, 10_000);
+        let down = VELOCITY_STEPS[2].changes[1].made(held());
+        assert_eq!(down.raw("velocity.p"), Some(43_691));
+        let up = VELOCITY_STEPS[3].changes[0].made(held());
+        assert_eq!(up.raw("velocity.i"), Some(6554));
+        let d = POSITION_STEPS[2].changes[2].made(held());
+        assert_eq!(d.raw("position.d"), Some(10_000));
     }
 
     #[test]
     fn what_is_missing_is_told_in_whatever_step() {
         let mut calibration = Calibration::default();
-        let position = |min, max| Some(PositionRegisters { min, max, ..PositionRegisters::default() });
-        let slow = Registers { velocity: VelocityRegisters { qpps: 0, ..held().velocity }, ..held() };
-        let stuck = Registers { position: position(0, 0), ..held() };
+        let travel = |min, max| with(held(), &[("position.min", min), ("position.max", max)]);
+        let (slow, stuck) = (with(held(), &[("velocity.qpps", 0)]), travel(0, 0));
         for step in 0..5 {
             calibration.go_to(Loop::Position, step);
             let advice = |held| calibration.advice(Loop::Position, Some(held));
@@ -380,10 +391,10 @@ mod tests {
             assert!(matches!(advice(stuck), Advice::Change(text) if text.contains("no travel")));
         }
         calibration.go_to(Loop::Position, 0);
-        let cascaded = Registers { position: position(-100, 100), ..held() };
+        let cascaded = travel(-100, 100);
         let advice = calibration.advice(Loop::Position, Some(cascaded));
         assert!(matches!(advice, Advice::Change(text) if text.contains("velocity loop are not 0")));
-        let simple = Registers { velocity: VelocityRegisters { p: 0, ..held().velocity }, ..cascaded };
+        let simple = with(cascaded, &[("velocity.p", 0)]);
         let advice = calibration.advice(Loop::Position, Some(simple));
         assert!(matches!(advice, Advice::Good(text) if text.contains("from -100 to 100 counts")));
     }

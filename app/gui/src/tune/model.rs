@@ -13,7 +13,6 @@ use brushwork_values::Motor;
 use super::asked::Asked;
 use super::calibration::Calibration;
 use super::looked_at::View;
-use super::registers::Registers;
 use super::run::Run;
 use super::sequence::{Ended, Next, Origin, Sequence, Work};
 use super::which::Loop;
@@ -23,6 +22,7 @@ use crate::model::message::Gravity;
 use crate::model::screen::Screen;
 use crate::model::settings::SettingsWish;
 use brushwork_core::tune::Target;
+use brushwork_core::tune::law::AnyRegisters;
 
 /// How often L and R are written back before that is given up.
 const MOST_WRITES: u8 = 4;
@@ -45,7 +45,7 @@ pub enum TuneWish {
     /// What was cleared is put back now.
     PutWindingBack,
     /// Gains turned by hand, into the controller's RAM.
-    Adjust(Motor, Registers),
+    Adjust(Motor, AnyRegisters),
     SaveReport(std::path::PathBuf),
     OpenReport(std::path::PathBuf),
 }

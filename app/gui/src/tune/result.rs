@@ -9,7 +9,6 @@ use super::figures::{FIGURES, figure_ui, lamp_ui};
 use super::files::files_ui;
 use super::measured::Figures;
 use super::model::TuneWish;
-use super::registers::{FIELDS, Field, Form, Registers};
 use super::run::Run;
 use super::which::Loop;
 use super::winding::{unknown_ui, winding_ui};
@@ -19,11 +18,17 @@ use crate::model::general::Sheet;
 use crate::model::lamp::LampState;
 use crate::theme::Palette;
 use crate::widgets::numeric::Numeric;
+use brushwork_core::tune::law::AnyRegisters;
+use brushwork_tuning::registers::{Form, RegisterField, RegisterTable as _};
 
 pub fn result_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands) {
     let motor = model.front.tune.motor(which);
-    let with_position =
-        model.front.tune.front(which).run().is_some_and(|run| run.report.proposed.mcp.position.is_some());
+    let with_position = model
+        .front
+        .tune
+        .front(which)
+        .run()
+        .is_some_and(|run| run.report.proposed.raw("position.p").is_some());
     let held = model.front.held_gains(motor, with_position);
     if let Some(run) = model.front.tune.front_mut(which).run_mut() {
         run.look_at_held(held);
@@ -99,19 +104,19 @@ fn model_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
     }
 }
 
-/// How much of a speed's duty the feed-forward gives: the register of a Motion Mind is too small for all of it on most motors.
+/// How much of a speed's duty the feed-forward gives: a register may be too small for all of it on most motors.
 fn feed_forward_text(run: Option<&Run>) -> Option<String> {
     let run = run?;
-    let mind = run.shown.as_ref()?.registers.motion_mind?;
-    let percent = 100.0 * mind.covered(run.report.qpps?).min(1.0);
+    let given = run.shown.as_ref()?.registers.feed_forward(run.report.qpps?)?;
+    let percent = 100.0 * given.share.min(1.0);
     let rest = if percent < 99.5 {
         " The loop makes up for the rest; the design counts on no more than this."
     } else {
         ""
     };
     Some(format!(
-        "Feed-forward: VELOCITYFF {} gives {percent:.0} % of a speed's duty.{rest}",
-        mind.velocity_ff
+        "Feed-forward: {} {} gives {percent:.0} % of a speed's duty.{rest}",
+        given.register, given.raw
     ))
 }
 
@@ -141,7 +146,7 @@ fn model_text(report: &Report) -> Option<String> {
 }
 
 /// Gains: current, proposed (to be edited), change.
-fn gains_ui(ui: &mut Ui, model: &mut Model, which: Loop, held: Option<Registers>) {
+fn gains_ui(ui: &mut Ui, model: &mut Model, which: Loop, held: Option<AnyRegisters>) {
     let tuning = &mut model.front.tune;
     let motor = tuning.motor(which);
     let Some(run) = tuning.front_mut(which).run_mut() else { return };
@@ -151,9 +156,9 @@ fn gains_ui(ui: &mut Ui, model: &mut Model, which: Loop, held: Option<Registers>
     Grid::new("tune gains").striped(true).num_columns(4).spacing(vec2(12.0, 2.0)).show(ui, |ui| {
         heads_ui(ui, "", [("current", 84.0), ("proposed", 96.0), ("change", 72.0)]);
         ui.end_row();
-        for field in &FIELDS {
-            let Some(value) = field.value(&wanted) else { continue };
-            let current = held.and_then(|held| field.value(&held));
+        for field in AnyRegisters::fields() {
+            let Some(value) = wanted.value(field) else { continue };
+            let current = held.and_then(|held| held.value(field));
             if !field.is_modelled() && current == Some(value) {
                 continue;
             }
@@ -163,9 +168,9 @@ fn gains_ui(ui: &mut Ui, model: &mut Model, which: Loop, held: Option<Registers>
             }
             figure_ui(ui, &current.map_or_else(|| "–".to_owned(), |value| field.text(value)), 84.0);
             if let Some(value) = entry_ui(ui, field, &format!("{motor} proposed {}", field.label), value) {
-                field.set(&mut wanted, value);
+                wanted.set_value(field, value);
             }
-            figure_ui(ui, &change_text(field, current, field.value(&wanted)), 72.0);
+            figure_ui(ui, &change_text(field, current, wanted.value(field)), 72.0);
             ui.end_row();
         }
     });
@@ -175,7 +180,7 @@ fn gains_ui(ui: &mut Ui, model: &mut Model, which: Loop, held: Option<Registers>
 }
 
 /// The proposed value, to be changed by hand; the new one where it was.
-fn entry_ui(ui: &mut Ui, field: &Field, name: &str, value: f64) -> Option<f64> {
+fn entry_ui(ui: &mut Ui, field: &RegisterField, name: &str, value: f64) -> Option<f64> {
     const HINT: &str = "Edit it to see what it would do; nothing is sent until you apply it";
     if !field.is_modelled() {
         figure_ui(ui, &field.text(value), 96.0)
@@ -200,7 +205,7 @@ fn entry_ui(ui: &mut Ui, field: &Field, name: &str, value: f64) -> Option<f64> {
     entry.ui(ui, &mut value).on_hover_text(HINT).changed().then_some(value)
 }
 
-fn change_text(field: &Field, current: Option<f64>, wanted: Option<f64>) -> String {
+fn change_text(field: &RegisterField, current: Option<f64>, wanted: Option<f64>) -> String {
     let (Some(current), Some(wanted)) = (current, wanted) else { return "–".to_owned() };
     if field.text(current) == field.text(wanted) {
         "same".to_owned()

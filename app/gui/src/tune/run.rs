@@ -5,13 +5,13 @@ use brushwork_link::exchange::Interruption;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::law::Law;
 use brushwork_tuning::model::Gains;
+use brushwork_tuning::registers::RegisterTable as _;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::trace::{Predicted, Stretch};
 use brushwork_tuning::trial::on_model;
 use brushwork_tuning::whatif::{Forecast, LoopPoint, forecast, frequency_response, redesign_registers};
 
 use super::measured::{self, Figures};
-use super::registers::Registers;
 
 /// Speeds are taken over this long while counts are coarse, s.
 pub const SPEED_OVER_S: f64 = 0.02;
@@ -19,7 +19,7 @@ pub const SPEED_OVER_S: f64 = 0.02;
 /// Gains on the model: what they promise, and the loop over frequency.
 #[derive(Clone, Debug)]
 pub struct Shown {
-    pub registers: Registers,
+    pub registers: AnyRegisters,
     pub gains: Gains,
     pub forecast: Forecast,
     pub frequency: Vec<LoopPoint>,
@@ -30,7 +30,7 @@ pub struct Shown {
 pub struct Tried {
     pub trace: Trace,
     pub stretch: Stretch,
-    pub registers: Registers,
+    pub registers: AnyRegisters,
     /// What the model predicts for the same commands, with the gains that were tried.
     pub predicted: Vec<Predicted>,
     /// The same with the gains that are considered, where they are others.
@@ -59,14 +59,14 @@ pub struct Run {
     /// What is considered, by the level or by hand.
     pub shown: Option<Shown>,
     /// What the run proposed.
-    pub first: Option<Registers>,
+    pub first: Option<AnyRegisters>,
     /// The whole run, where it was refused: what was seen.
     pub seen: Option<Trace>,
     /// Drawn under other runs.
     pub is_overlaid: bool,
     /// What is drawn of the gains that the controller holds.
     current: Option<Shown>,
-    looked_at: Option<Registers>,
+    looked_at: Option<AnyRegisters>,
 }
 
 impl Run {
@@ -115,7 +115,7 @@ impl Run {
     }
 
     /// What gains do on this run's model.
-    pub fn on_model(&self, registers: Registers) -> Option<Shown> {
+    pub fn on_model(&self, registers: AnyRegisters) -> Option<Shown> {
         let (task, gains) = considered(&self.report, &registers)?;
         Some(Shown {
             registers,
@@ -129,12 +129,12 @@ impl Run {
     pub fn set_level(&mut self, level: f64) {
         self.level = level;
         if let Some(registers) = redesign_registers(&self.report, level).filter(|_| self.first.is_some()) {
-            self.consider(registers.into());
+            self.consider(registers);
         }
     }
 
     /// A gain was entered by hand.
-    pub fn consider(&mut self, registers: Registers) {
+    pub fn consider(&mut self, registers: AnyRegisters) {
         self.shown = self.on_model(registers);
         self.predict_considered();
     }
@@ -162,17 +162,17 @@ impl Run {
     }
 
     /// What the gains that the controller holds do on this model; worked out when they change.
-    pub fn look_at_held(&mut self, held: Option<Registers>) {
+    pub fn look_at_held(&mut self, held: Option<AnyRegisters>) {
         let wanted = held;
         if self.looked_at != wanted {
-            let held = held.filter(Registers::has_a_loop);
+            let held = held.filter(|held| held.has_a_loop());
             self.current = held.and_then(|registers| self.on_model(registers));
             self.looked_at = wanted;
         }
     }
 
     /// What the controller holds, as last read.
-    pub fn held(&self) -> Option<Registers> {
+    pub fn held(&self) -> Option<AnyRegisters> {
         self.looked_at
     }
 
@@ -187,7 +187,7 @@ impl Run {
             request: self.report.request,
             task: self.report.task?,
             probe: self.report.probe?,
-            registers: registers.into(),
+            registers,
         })
     }
 
@@ -204,19 +204,19 @@ impl Run {
 }
 
 /// What a run proposes.
-fn proposed(report: &Report) -> Option<Registers> {
+fn proposed(report: &Report) -> Option<AnyRegisters> {
     let proposed = report.proposed;
-    (proposed != AnyRegisters::default()).then(|| proposed.into())
+    (proposed != AnyRegisters::default()).then_some(proposed)
 }
 
 /// The model with what registers say of its law, and the gains that they stand for.
-fn considered(report: &Report, registers: &Registers) -> Option<(Task, Gains)> {
+fn considered(report: &Report, registers: &AnyRegisters) -> Option<(Task, Gains)> {
     let task = report.task?;
-    let (task, gains) = on_model(&task, &(*registers).into(), report.request.method);
-    if registers.motion_mind.is_some() {
-        return Some((task, gains));
+    let (task, gains) = on_model(&task, registers, report.request.method);
+    match registers.raw("velocity.qpps") {
+        Some(qpps) => Some((Task { qpps: (qpps as f64).max(1.0), ..task }, gains)),
+        None => Some((task, gains)),
     }
-    Some((Task { qpps: f64::from(registers.velocity.qpps).max(1.0), ..task }, gains))
 }
 
 /// The last stretch in which a loop held the motor, and with which gains.
@@ -227,9 +227,8 @@ fn tried(trace: Trace, duty_rms: Option<f64>, report: &Report) -> Option<Tried> 
     for (_, written) in trace.writes.iter().filter(|(at, _)| *at <= stretch.from_s) {
         AnyLaw::take(&mut registers, written);
     }
-    let mut registers = Registers::from(registers);
     if !stretch.is_position {
-        registers.position = None;
+        registers = registers.of_speed();
     }
     let values = |place: f64, speed: f64| if stretch.is_position { place } else { speed };
     let with = considered(report, &registers);

@@ -3,11 +3,12 @@
 use egui::{Align, Color32, Grid, Label, Layout, RichText, Sense, Ui, vec2};
 
 use super::figures::{FIGURES, figure_ui};
-use super::registers::FIELDS;
 use super::run::Run;
 use super::which::Loop;
 use crate::model::Model;
 use crate::theme::Palette;
+use brushwork_core::tune::law::AnyRegisters;
+use brushwork_tuning::registers::RegisterTable as _;
 
 impl Run {
     /// Of its line beneath other runs.
@@ -99,9 +100,12 @@ fn run_row_ui(ui: &mut Ui, run: &Run) {
     };
     let mut cells = vec![format!("{:.0}", run.level)];
     // The first three that there are: P, I and D of the outer loop.
-    let terms = FIELDS.iter().filter(|field| field.is_term(&shown.registers)).take(3);
+    let terms = AnyRegisters::fields()
+        .into_iter()
+        .filter(|field| field.is_term() && shown.registers.raw(field.key).is_some())
+        .take(3);
     cells.extend(terms.map(|field| {
-        let value = field.value(&shown.registers).unwrap_or_default();
+        let value = shown.registers.value(field).unwrap_or_default();
         short(value, field.decimals)
     }));
     cells.extend([FIGURES[0], FIGURES[1], FIGURES[3]].map(|(_, _, figure)| figure(shown)));

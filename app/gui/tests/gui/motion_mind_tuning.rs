@@ -4,14 +4,15 @@
 use std::time::Duration;
 
 use crate::support::bench::Bench;
-use brushwork_core::tune::law::{MotionMindRegisters, bits};
 use brushwork_gui::model::link::Arming;
 use brushwork_gui::tune::Loop;
 use brushwork_gui::tune::run::Run;
+use brushwork_motion_mind_axis::law::{MotionMindRegisters, bits};
 use brushwork_motion_mind_sim::{Mode, MotionMindConfig, Protocol};
 use brushwork_motion_mind_wire::register_named;
 use brushwork_plant::machine::Machine as _;
 use brushwork_plant::world::WorldAction;
+use brushwork_tuning::registers::RegisterTable as _;
 use brushwork_tuning::report::Verdict;
 use brushwork_values::Motor;
 use egui::{Key, Modifiers};
@@ -82,7 +83,7 @@ fn run(bench: &mut Bench, which: Loop) -> Run {
 }
 
 fn proposed(bench: &mut Bench, which: Loop) -> MotionMindRegisters {
-    run(bench, which).shown.expect("gains").registers.motion_mind.expect("registers of a Motion Mind")
+    run(bench, which).shown.expect("gains").registers.second.motion_mind.expect("registers of a Motion Mind")
 }
 
 /// Presses what may have to be scrolled to first, as with a wheel.

@@ -1,7 +1,7 @@
 //! What a desk says of the Motion Mind that it is linked to, and what its screens ask for.
 
-use brushwork_core::tune::law::MotionMindSetup;
 use brushwork_link::settings::{SettingValue, SettingsImage};
+use brushwork_motion_mind_axis::law::MotionMindSetup;
 use brushwork_motion_mind_client::MotionMindFacts;
 use brushwork_motion_mind_wire::{Register, register_named};
 

@@ -14,4 +14,8 @@ pub fn install_families() {
         &brushwork_mcp_client::McpDriver,
         &brushwork_motion_mind_client::MotionMindDriver,
     ]);
+    brushwork_family::simulator::install(&[
+        &brushwork_mcp::McpSimulator,
+        &brushwork_motion_mind::MotionMindSimulator,
+    ]);
 }
