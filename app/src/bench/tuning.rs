@@ -1,7 +1,7 @@
 //! `brushwork bench tuning`: the tuner and every textbook rule, side by side on the same records.
 
 use brushwork_tuning_bench::faults::{FaultRow, fault_rows};
-use brushwork_tuning_bench::mind;
+use brushwork_tuning_bench::motion_mind;
 use brushwork_tuning_bench::population::population;
 use brushwork_tuning_bench::table::{Row, Table, cases, optima_of, table};
 
@@ -35,9 +35,10 @@ pub fn run(args: &BenchArgs, out: &mut Output) -> Exit {
     if args.faults {
         let rows = match args.family {
             BenchFamily::Mcp => fault_rows(&population(args.seed, args.plants)),
-            BenchFamily::MotionMind => {
-                mind::faults::fault_rows(&mind::population::population(args.seed, args.plants), &[])
-            }
+            BenchFamily::MotionMind => motion_mind::faults::fault_rows(
+                &motion_mind::population::population(args.seed, args.plants),
+                &[],
+            ),
         };
         let printed = if args.json { out.json(&rows) } else { print_faults(&rows, out) };
         return printed.map_or_else(Exit::from, |()| Exit::Done);
@@ -55,9 +56,9 @@ pub fn run(args: &BenchArgs, out: &mut Output) -> Exit {
             (optima, (!is_fresh).then(|| table(args.seed, &cases, !args.quick)))
         }
         BenchFamily::MotionMind => {
-            let cases = mind::table::cases(args.seed, args.plants, is_fresh);
-            let optima = is_fresh.then(|| serde_json::to_string(&mind::table::optima_of(&cases)));
-            (optima, (!is_fresh).then(|| mind::table::table(args.seed, &cases, !args.quick)))
+            let cases = motion_mind::table::cases(args.seed, args.plants, is_fresh);
+            let optima = is_fresh.then(|| serde_json::to_string(&motion_mind::table::optima_of(&cases)));
+            (optima, (!is_fresh).then(|| motion_mind::table::table(args.seed, &cases, !args.quick)))
         }
     };
     if let Some(file) = &mut file {

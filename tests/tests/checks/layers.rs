@@ -8,17 +8,20 @@ use brushwork_tests::rust_source::{code_lines, without_tests};
 use brushwork_tests::workspace::{self, DependencyKind, Member, Metadata};
 
 /// The arrows that ship: a crate and the crates of this workspace it may use.
-const ARROWS: [(&str, &[&str]); 22] = [
+const ARROWS: [(&str, &[&str]); 25] = [
     (
         "brushwork",
         &[
             "brushwork-cli",
             "brushwork-core",
+            "brushwork-family",
             "brushwork-gui",
             "brushwork-link",
+            "brushwork-mcp",
             "brushwork-mcp-client",
             "brushwork-mcp-sim",
             "brushwork-mcp-wire",
+            "brushwork-motion-mind",
             "brushwork-motion-mind-client",
             "brushwork-plant",
             "brushwork-script",
@@ -32,9 +35,11 @@ const ARROWS: [(&str, &[&str]); 22] = [
             "brushwork-canopen",
             "brushwork-core",
             "brushwork-link",
+            "brushwork-mcp",
             "brushwork-mcp-client",
             "brushwork-mcp-sim",
             "brushwork-mcp-wire",
+            "brushwork-motion-mind",
             "brushwork-motion-mind-client",
             "brushwork-motion-mind-sim",
             "brushwork-motion-mind-wire",
@@ -48,15 +53,12 @@ const ARROWS: [(&str, &[&str]); 22] = [
         "brushwork-core",
         &[
             "brushwork-canopen",
+            "brushwork-family",
             "brushwork-link",
-            "brushwork-mcp-axis",
+            "brushwork-mcp",
             "brushwork-mcp-client",
-            "brushwork-mcp-sim",
             "brushwork-mcp-wire",
-            "brushwork-motion-mind-axis",
-            "brushwork-motion-mind-client",
-            "brushwork-motion-mind-sim",
-            "brushwork-motion-mind-wire",
+            "brushwork-motion-mind",
             "brushwork-plant",
             "brushwork-script",
             "brushwork-tuning",
@@ -71,6 +73,7 @@ const ARROWS: [(&str, &[&str]); 22] = [
             "brushwork-link",
             "brushwork-mcp-client",
             "brushwork-mcp-wire",
+            "brushwork-motion-mind-axis",
             "brushwork-motion-mind-client",
             "brushwork-motion-mind-wire",
             "brushwork-plant",
@@ -96,6 +99,47 @@ const ARROWS: [(&str, &[&str]); 22] = [
         ],
     ),
     ("brushwork-link", &["brushwork-canopen", "brushwork-values"]),
+    (
+        "brushwork-family",
+        &[
+            "brushwork-canopen",
+            "brushwork-link",
+            "brushwork-plant",
+            "brushwork-script",
+            "brushwork-tuning",
+            "brushwork-values",
+        ],
+    ),
+    (
+        "brushwork-mcp",
+        &[
+            "brushwork-canopen",
+            "brushwork-family",
+            "brushwork-link",
+            "brushwork-mcp-axis",
+            "brushwork-mcp-client",
+            "brushwork-mcp-sim",
+            "brushwork-mcp-wire",
+            "brushwork-plant",
+            "brushwork-script",
+            "brushwork-tuning",
+            "brushwork-values",
+        ],
+    ),
+    (
+        "brushwork-motion-mind",
+        &[
+            "brushwork-family",
+            "brushwork-link",
+            "brushwork-motion-mind-axis",
+            "brushwork-motion-mind-client",
+            "brushwork-motion-mind-sim",
+            "brushwork-motion-mind-wire",
+            "brushwork-plant",
+            "brushwork-tuning",
+            "brushwork-values",
+        ],
+    ),
     ("brushwork-plant", &["brushwork-values"]),
     ("brushwork-canopen", &[]),
     ("brushwork-mcp-wire", &["brushwork-canopen", "brushwork-values"]),
@@ -129,12 +173,15 @@ const ARROWS: [(&str, &[&str]); 22] = [
             "brushwork-canopen",
             "brushwork-child",
             "brushwork-core",
+            "brushwork-family",
             "brushwork-gui",
             "brushwork-link",
+            "brushwork-mcp",
             "brushwork-mcp-axis",
             "brushwork-mcp-client",
             "brushwork-mcp-sim",
             "brushwork-mcp-wire",
+            "brushwork-motion-mind",
             "brushwork-motion-mind-axis",
             "brushwork-motion-mind-client",
             "brushwork-motion-mind-sim",
@@ -149,9 +196,20 @@ const ARROWS: [(&str, &[&str]); 22] = [
 ];
 
 /// Arrows for tests alone: the window is tried against simulated controllers, the program from outside.
-const TEST_ARROWS: [(&str, &[&str]); 2] = [
+const TEST_ARROWS: [(&str, &[&str]); 3] = [
     ("brushwork", &["brushwork-canopen", "brushwork-child"]),
-    ("brushwork-gui", &["brushwork-child", "brushwork-mcp-sim", "brushwork-motion-mind-sim"]),
+    ("brushwork-core", &["brushwork-mcp-sim"]),
+    (
+        "brushwork-gui",
+        &[
+            "brushwork-child",
+            "brushwork-family",
+            "brushwork-mcp",
+            "brushwork-mcp-sim",
+            "brushwork-motion-mind",
+            "brushwork-motion-mind-sim",
+        ],
+    ),
 ];
 
 /// Crates from outside that only some of ours may use, by the start of their name.

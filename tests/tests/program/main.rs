@@ -1,6 +1,7 @@
 //! The built program, its device thread and its tuner from outside: pseudo-terminals, foreign clients, other controllers.
 
 mod can_bus;
+mod children;
 mod command_line;
 mod command_line_data;
 mod device_adversary;

@@ -6,7 +6,7 @@ mod bounds;
 pub mod cache;
 pub mod faults;
 pub mod line;
-pub mod mind;
+pub mod motion_mind;
 pub mod oracle;
 pub mod population;
 mod quantile;

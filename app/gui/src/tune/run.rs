@@ -165,7 +165,7 @@ impl Run {
     pub fn look_at_held(&mut self, held: Option<AnyRegisters>) {
         let wanted = held;
         if self.looked_at != wanted {
-            let held = held.filter(|held| held.has_a_loop());
+            let held = held.filter(AnyRegisters::has_a_loop);
             self.current = held.and_then(|registers| self.on_model(registers));
             self.looked_at = wanted;
         }

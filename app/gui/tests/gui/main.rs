@@ -22,6 +22,7 @@ mod safety;
 mod scripts;
 mod settings_state;
 mod shell;
+mod soak;
 mod status;
 mod support;
 mod traffic;

@@ -23,6 +23,8 @@ mod reference;
 mod register;
 mod reply;
 mod switches;
+#[cfg(test)]
+mod tests;
 
 pub use address::{Address, InvalidAddress};
 pub use bits::{Bit, FUNCTION_BITS, FUNCTION2_BITS, STATUS_BITS, function, function2, status};

@@ -9,9 +9,9 @@ use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::{Method, tune};
 use brushwork_tuning_bench::line::Event;
-use brushwork_tuning_bench::mind::line::MindLine;
-use brushwork_tuning_bench::mind::population::{MindSpecimen, specimen};
-use brushwork_tuning_bench::mind::table::{Report, Request, SimulatedMind, axis_of, request_of};
+use brushwork_tuning_bench::motion_mind::line::MindLine;
+use brushwork_tuning_bench::motion_mind::population::{MindSpecimen, specimen};
+use brushwork_tuning_bench::motion_mind::table::{Report, Request, SimulatedMind, axis_of, request_of};
 use std::time::Duration;
 
 const FUNCTION: u8 = 3;

@@ -9,8 +9,8 @@ use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::{Method, tune};
 use brushwork_tuning_bench::line::Event;
-use brushwork_tuning_bench::mind::population::specimen;
-use brushwork_tuning_bench::mind::table::{
+use brushwork_tuning_bench::motion_mind::population::specimen;
+use brushwork_tuning_bench::motion_mind::table::{
     Report, Request, SimulatedMind, axis_in, axis_of, cases, request_of, table, tune_plant,
 };
 use brushwork_tuning_bench::table::Row;

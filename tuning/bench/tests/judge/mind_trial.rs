@@ -9,8 +9,8 @@ use brushwork_tuning::trace::Trace;
 use brushwork_tuning::trial::{Trial, TrialRequest, on_model, run_trial};
 use brushwork_tuning::tune::Method;
 use brushwork_tuning::whatif::{forecast, redesign_registers};
-use brushwork_tuning_bench::mind::population::{MindSpecimen, specimen};
-use brushwork_tuning_bench::mind::table::{Report, SimulatedMind, axis_of, request_of, tune_plant};
+use brushwork_tuning_bench::motion_mind::population::{MindSpecimen, specimen};
+use brushwork_tuning_bench::motion_mind::table::{Report, SimulatedMind, axis_of, request_of, tune_plant};
 
 /// A gearmotor and a wheel: nothing about them is odd.
 const PLANTS: [usize; 2] = [0, 1];

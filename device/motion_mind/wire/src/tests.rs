@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use brushwork_motion_mind_wire::{
+use crate::{
     Address, BadReply, Command, EncodeError, FrameEvent, FrameReader, LineEvent, LineReader, Part, Progress,
     REGISTERS, Reply, Returned, Returns, checksum, encode_frame, encode_frame_reply, encode_line,
     encode_line_reply, parse_frame_reply, parse_line_reply, register,

@@ -143,7 +143,7 @@ fn a_child_ends_when_its_tests_process_is_killed() {
         return;
     }
     let mut copy = Command::new(std::env::current_exe().unwrap());
-    copy.args(["--exact", "a_child_ends_when_its_tests_process_is_killed", "--nocapture"]);
+    copy.args(["--exact", "children::a_child_ends_when_its_tests_process_is_killed", "--nocapture"]);
     copy.env(TO_BE_KILLED, "yes");
     let mut copy = Program::spawn(copy);
     let line = copy.wait_for("child ", LIMIT);
