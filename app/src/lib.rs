@@ -4,6 +4,7 @@
 mod bench;
 
 use brushwork_gui::run::{WindowOptions, run as open_window};
+use brushwork_gui::screens::face::Window;
 use brushwork_link::Driver;
 use std::process::ExitCode;
 
@@ -11,10 +12,14 @@ use std::process::ExitCode;
 pub static FAMILIES: [&dyn Driver; 2] =
     [&brushwork_mcp_client::McpDriver, &brushwork_motion_mind_client::MotionMindDriver];
 
+/// The same families, in the same order, as the window has them.
+pub static WINDOWS: [&dyn Window; 2] = [&brushwork_gui::mcp::Mcp, &brushwork_gui::motion_mind::MotionMind];
+
 /// Runs the program: a command, or the window where none is given.
 #[must_use]
 pub fn run() -> ExitCode {
     brushwork_link::install(&FAMILIES);
+    brushwork_gui::install(&WINDOWS);
     brushwork_cli::run(
         |window| {
             let options = WindowOptions { open: window.open.clone(), plain: window.plain };

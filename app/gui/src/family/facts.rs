@@ -2,29 +2,45 @@
 
 use std::fmt;
 
-use brushwork_link::device::{ArmScope, Channel, Drive, Identity, Indicator, StatusReport};
-use brushwork_mcp_wire::packet_serial::led::BlinkCode;
+use brushwork_link::FamilyRef;
+use brushwork_link::device::{
+    Addresses, ArmScope, Channel, Drive, Identity, Indicator, Job, PinSignal, StatusReport,
+};
+use brushwork_link::settings::{Group, Row, SettingValue, SettingsImage, SettingsTable, Subject};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
 
+use super::own::Own;
 use super::words::SettingsWords;
 use crate::model::drawer::Tab;
+use crate::model::help_page::HelpPage;
 use crate::model::lamp::{LampInfo, LampState, state_of};
-use crate::model::motion_mind::Driven;
 use crate::model::position::Position;
 use crate::model::pwm::Pwm;
 use crate::model::screen::Screen;
+use crate::model::simulated::Simulated;
 use crate::model::velocity::Velocity;
 use crate::tune::Loop;
 
-/// What the window has to know of a family.
+/// What is known of a setting, by its key.
+pub type Known<'a> = &'a dyn Fn(&str) -> Option<SettingValue>;
+
+/// What the window has to know of a family. What has a default is had by few.
 pub trait Family: Sync {
+    /// The family itself.
+    fn family(&self) -> FamilyRef;
+
     /// What a person calls its controllers, for sentences.
     fn name(&self) -> &'static str;
 
-    /// The screens, in the order of the list; those that drive where `driven` says what a Motion Mind takes.
-    fn screens(&self, driven: Driven) -> Vec<Screen>;
+    /// What the window keeps of its own for each link.
+    fn own(&self) -> Option<Box<dyn Own>> {
+        None
+    }
+
+    /// The screens, in the order of the list, by what is known of the unit and its settings.
+    fn screens(&self, identity: Option<&Identity>, known: Known<'_>) -> Vec<Screen>;
 
     /// What a screen is called in this family.
     fn title(&self, screen: Screen) -> &'static str {
@@ -56,9 +72,128 @@ pub trait Family: Sync {
         None
     }
 
-    /// How the LEDs on the board blink by a status, and by whether a bridge drives.
-    fn blink_code(&self, _report: &StatusReport, _driving: bool) -> Option<BlinkCode> {
+    /// Whether a unit tells by its pins alone that a motor is homed or at a limit.
+    fn homes_by_pins(&self, _identity: &Identity) -> bool {
+        false
+    }
+
+    /// What stands below the lamps, by what the pins say of home and limit switches.
+    fn lamps_note(&self, _identity: &Identity, _homed: Option<[bool; 2]>) -> Option<&'static str> {
         None
+    }
+
+    /// [`Family::lit`] for the times since which lamps are as they are.
+    fn lit_since(
+        &self,
+        report: &StatusReport,
+        identity: Option<&Identity>,
+        homed: Option<[bool; 2]>,
+    ) -> Vec<LampState> {
+        self.lit(report, identity, homed)
+    }
+
+    /// The settings that say what keeps the motors from running.
+    fn diagnosis_keys(&self, _table: &SettingsTable) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// Whether a pin can stop a motor, as these settings say.
+    fn has_pin_actions(&self, _settings: &SettingsImage) -> bool {
+        false
+    }
+
+    /// Whether each motor is homed or at a limit by an action of its pins; `None` where the pins are not known.
+    fn homed(&self, _settings: &SettingsImage, _pins: Option<&[PinSignal]>) -> Option<[bool; 2]> {
+        None
+    }
+
+    /// The firmware's number, where its version tells less.
+    fn generation_number(&self, _identity: &Identity) -> Option<u8> {
+        None
+    }
+
+    /// What else a unit tells of itself, with its label.
+    fn unit_row(&self, _identity: &Identity) -> Option<(&'static str, String)> {
+        None
+    }
+
+    /// Whether a unit reports a value for this channel that its board does not measure.
+    fn makes_up(&self, _identity: &Identity, _channel: Channel) -> bool {
+        false
+    }
+
+    /// What a unit's settings table is made for: where nobody knows it by name, for what all models have.
+    fn subject(&self, identity: &Identity) -> Subject {
+        let any = || Subject::new(&self.family().models()[0], identity.generation);
+        identity.subject().unwrap_or_else(any)
+    }
+
+    /// What a port, pin or output does by its settings, in a few words.
+    fn function(&self, _table: &SettingsTable, _known: Known<'_>, _of: (Group, usize)) -> Option<String> {
+        None
+    }
+
+    /// The values that a setting is chosen from, where its row cannot list them.
+    fn choices(&self, _row: &Row, _subject: &Subject) -> Option<Vec<(SettingValue, String)>> {
+        None
+    }
+
+    /// The settings of an input whose range is opened wide for a calibration.
+    fn opened_input(&self, _known: Known<'_>, _pin: usize) -> Option<SettingsImage> {
+        None
+    }
+
+    /// Whether a unit starts its script by itself, as far as its settings were read.
+    fn autoruns(&self, _known: Known<'_>) -> bool {
+        false
+    }
+
+    /// The job that downloads a script from a file's bytes, and comes to a clause of what was sent.
+    fn download(&self, _bytes: &[u8]) -> Result<Job<String>, String> {
+        Err(self.lacks(Ability::Scripts).unwrap_or_default().to_owned())
+    }
+
+    /// What a command of the protocol is called.
+    fn command_title(&self, _number: u8) -> &'static str {
+        ""
+    }
+
+    /// Whether a command changes settings, in RAM or in EEPROM.
+    fn changes_settings(&self, _command: u8, _identity: &Identity) -> bool {
+        false
+    }
+
+    /// Whether a command saves all settings to EEPROM.
+    fn saves_settings(&self, _command: u8) -> bool {
+        false
+    }
+
+    /// The pages of help about it.
+    fn help_pages(&self) -> &'static [HelpPage] {
+        &[]
+    }
+
+    /// The models that this program simulates, by key and name, the one that is offered first at the head.
+    fn simulated(&self) -> Vec<(&'static str, &'static str)>;
+
+    /// What a person would type to connect to what is simulated.
+    fn simulated_target(&self, simulated: &Simulated) -> String {
+        format!("sim:{}", simulated.model)
+    }
+
+    /// Where the simulated units are, where that follows from what is simulated.
+    fn simulated_addresses(&self, _simulated: &Simulated) -> Option<Addresses> {
+        None
+    }
+
+    /// An address in a list to choose from.
+    fn address_label(&self, address: u8) -> String {
+        self.family().address_text(address)
+    }
+
+    /// What asking all addresses takes, as a clause behind a comma.
+    fn scan_cost(&self) -> &'static str {
+        ""
     }
 
     /// How acts on its settings are told.
@@ -74,6 +209,11 @@ pub trait Family: Sync {
 
     /// The ways of guided tuning for a loop, the one that is taken unless another is chosen at the end.
     fn methods(&self, which: Loop) -> &'static [Method];
+
+    /// Why a unit cannot be tuned as it is set, where it cannot.
+    fn cannot_tune(&self, _identity: Option<&Identity>, _known: Known<'_>) -> Option<&'static str> {
+        None
+    }
 
     /// What to do about a refused run, in the order in which it is best tried, where it is done in other places than elsewhere.
     fn remedies(&self, _cause: Cause) -> Option<&'static [&'static str]> {

@@ -3,12 +3,12 @@
 
 use egui::{Key, Ui};
 
-use super::command::{Command, Commands};
+use super::command::Commands;
 use super::model::Model;
 use super::model::traffic::Tab;
+use super::screens::face;
 use super::widgets::heading::heading_ui;
 
-mod composer;
 mod log;
 mod pending;
 
@@ -35,12 +35,7 @@ pub fn traffic_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     });
     match tab {
         Tab::Log => log::log_ui(ui, model, commands),
-        Tab::Composer => composer::composer_ui(ui, model, commands),
+        Tab::Composer => face::of(model.front.family()).composer_ui(ui, model, commands),
         Tab::Pending => pending::pending_ui(ui, model),
     }
-}
-
-/// What a screen command is called here, so that others need not know it.
-pub fn send(id: u64, request: brushwork_mcp_wire::packet_serial::Request) -> Command {
-    Command::Transact { id, command: request.command, values: request.values }
 }

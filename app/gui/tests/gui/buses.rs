@@ -177,7 +177,7 @@ fn settings_that_differ_after_an_update_are_listed_and_can_be_restored() {
     let mut window = Window::new();
     window.open(UNIT);
     // A change in RAM that was never saved: the restart after the update forgets it.
-    window.app.borrow_mut().as_mut().unwrap().model.front.firmware.open = true;
+    window.app.borrow_mut().as_mut().unwrap().model.front.mcp_mut().firmware.open = true;
     let request = Request::Transact {
         id: 1,
         command: brushwork_mcp_wire::packet_serial::number::SET_VELOCITY_PID_M1,

@@ -3,7 +3,7 @@
 
 use egui::{Align, Layout, ScrollArea, Ui};
 
-use super::{not_connected_text, nothing_ui, title_ui};
+use super::{face, not_connected_text, nothing_ui, title_ui};
 use crate::command::Commands;
 use crate::family::Ability;
 use crate::model::Model;
@@ -11,8 +11,6 @@ use crate::model::lamp::LampState;
 
 mod history;
 mod lamps;
-mod leds;
-mod reasons;
 mod unit;
 
 /// Width from which two columns fit.
@@ -34,7 +32,7 @@ pub fn status_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let family = model.front.family();
     ScrollArea::vertical().show(ui, |ui| {
         if family.lacks(Ability::Diagnosis).is_none() {
-            reasons::reasons_ui(ui, &model.front, commands);
+            face::of(family).reasons_ui(ui, &model.front, commands);
             ui.add_space(8.0);
         }
         lamps::lamps_ui(ui, &model.front, columns);
@@ -46,7 +44,7 @@ pub fn status_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             ui[0].with_layout(left, |ui| history::history_ui(ui, &mut model.front.history, height));
             ui[columns - 1].with_layout(left, |ui| {
                 if family.lacks(Ability::Leds).is_none() {
-                    leds::leds_ui(ui, &model.front);
+                    face::of(family).leds_ui(ui, &model.front);
                 }
                 lamps::active_ui(ui, &model.front);
                 ui.add_space(6.0);

@@ -14,4 +14,5 @@ pub fn install_families() {
         &brushwork_mcp_client::McpDriver,
         &brushwork_motion_mind_client::MotionMindDriver,
     ]);
+    brushwork_gui::install(&[&brushwork_gui::mcp::Mcp, &brushwork_gui::motion_mind::MotionMind]);
 }
