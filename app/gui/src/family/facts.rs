@@ -12,7 +12,7 @@ use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
 
 use super::own::Own;
-use super::words::SettingsWords;
+use super::words::{self, SettingsWords};
 use crate::model::drawer::Tab;
 use crate::model::help_page::HelpPage;
 use crate::model::lamp::{LampInfo, LampState, state_of};
@@ -48,10 +48,14 @@ pub trait Family: Sync {
     }
 
     /// The tabs above the graph of a screen that drives.
-    fn tabs(&self, screen: Screen) -> &'static [Tab];
+    fn tabs(&self, _screen: Screen) -> &'static [Tab] {
+        &[]
+    }
 
     /// The monitored parameters at the top.
-    fn figures(&self) -> &'static [Figures];
+    fn figures(&self) -> &'static [Figures] {
+        &[]
+    }
 
     /// The status lamps, in order.
     fn lamps(&self) -> &'static [LampInfo];
@@ -60,12 +64,22 @@ pub trait Family: Sync {
     fn lit(
         &self,
         report: &StatusReport,
-        identity: Option<&Identity>,
-        homed: Option<[bool; 2]>,
-    ) -> Vec<LampState>;
+        _identity: Option<&Identity>,
+        _homed: Option<[bool; 2]>,
+    ) -> Vec<LampState> {
+        let lit = |lamp: &LampInfo| {
+            let set = report.active().find(|indicator| indicator.short == lamp.short);
+            set.map_or(LampState::Ok, |indicator| state_of(indicator.severity))
+        };
+        self.lamps().iter().map(lit).collect()
+    }
 
     /// What the status word says, in the order in which it is shown.
-    fn active(&self, report: &StatusReport, identity: Option<&Identity>) -> Vec<ActiveIndicator>;
+    fn active(&self, report: &StatusReport, _identity: Option<&Identity>) -> Vec<ActiveIndicator> {
+        let placed = report.indicators.iter().enumerate();
+        let set = placed.filter(|(_, indicator)| report.word & indicator.mask != 0);
+        set.map(|(place, indicator)| ActiveIndicator::new(Some(place), indicator)).collect()
+    }
 
     /// What is active while a motor is homed or at a limit, where the pins tell that and the status word has no bit for it.
     fn home_indicators(&self) -> Option<[ActiveIndicator; 2]> {
@@ -174,7 +188,9 @@ pub trait Family: Sync {
     }
 
     /// The models that this program simulates, by key and name, the one that is offered first at the head.
-    fn simulated(&self) -> Vec<(&'static str, &'static str)>;
+    fn simulated(&self) -> Vec<(&'static str, &'static str)> {
+        Vec::new()
+    }
 
     /// What a person would type to connect to what is simulated.
     fn simulated_target(&self, simulated: &Simulated) -> String {
@@ -197,7 +213,9 @@ pub trait Family: Sync {
     }
 
     /// How acts on its settings are told.
-    fn words(&self) -> &'static SettingsWords;
+    fn words(&self) -> &'static SettingsWords {
+        &words::USUAL
+    }
 
     /// The motors a controller has.
     fn motors(&self) -> &'static [Motor];
@@ -208,7 +226,9 @@ pub trait Family: Sync {
     }
 
     /// The ways of guided tuning for a loop, the one that is taken unless another is chosen at the end.
-    fn methods(&self, which: Loop) -> &'static [Method];
+    fn methods(&self, _which: Loop) -> &'static [Method] {
+        &[]
+    }
 
     /// Why a unit cannot be tuned as it is set, where it cannot.
     fn cannot_tune(&self, _identity: Option<&Identity>, _known: Known<'_>) -> Option<&'static str> {
@@ -229,7 +249,9 @@ pub trait Family: Sync {
     }
 
     /// Whether the screens that drive show settings of loops that have to be read for them.
-    fn has_loops(&self) -> bool;
+    fn has_loops(&self) -> bool {
+        false
+    }
 
     /// What its controllers can tell, in the order of the graph.
     fn channels(&self) -> &'static [Channel];

@@ -43,6 +43,7 @@ struct Window {
 
 impl Window {
     fn new() -> Self {
+        crate::support::install_families();
         let folder = tempfile::tempdir().expect("a temporary folder can be made");
         let keeping = Keeping::new(Store::at(folder.path().join("kept")));
         let mut parts = Some(Parts { ports: Box::new(NoPorts), opener: session_opener(), keeping });
@@ -65,7 +66,6 @@ impl Window {
     }
 
     fn open(&mut self, target: &str) {
-        crate::support::install_families();
         self.harness.step();
         self.app.borrow_mut().as_mut().expect("it was drawn").open(target);
         self.until("it is connected", |app| app.model.front.is_connected());

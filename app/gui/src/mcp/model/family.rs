@@ -17,8 +17,8 @@ use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
 
 use super::diagnosis::ends;
-use super::{McpDesk, script, words};
-use crate::family::{Ability, ActiveIndicator, Family, Figure, Figures, Known, Own, SettingsWords, Sliders};
+use super::{McpDesk, script};
+use crate::family::{Ability, ActiveIndicator, Family, Figure, Figures, Known, Own, Sliders};
 use crate::model::drawer::Tab;
 use crate::model::help_page::HelpPage;
 use crate::model::lamp::{LampInfo, LampState, state_of};
@@ -29,12 +29,12 @@ use crate::tune::Loop;
 pub struct Mcp;
 
 impl Family for Mcp {
-    fn name(&self) -> &'static str {
-        "MCP"
-    }
-
     fn family(&self) -> FamilyRef {
         MCP
+    }
+
+    fn name(&self) -> &'static str {
+        "MCP"
     }
 
     fn own(&self) -> Option<Box<dyn Own>> {
@@ -70,12 +70,6 @@ impl Family for Mcp {
     ) -> Vec<LampState> {
         let conditions = conditions(report);
         Lamp::ALL.into_iter().map(|lamp| lit(lamp, conditions, identity, homed)).collect()
-    }
-
-    fn active(&self, report: &StatusReport, _identity: Option<&Identity>) -> Vec<ActiveIndicator> {
-        let placed = report.indicators.iter().enumerate();
-        let set = placed.filter(|(_, indicator)| report.word & indicator.mask != 0);
-        set.map(|(place, indicator)| ActiveIndicator::new(Some(place), indicator)).collect()
     }
 
     fn home_indicators(&self) -> Option<[ActiveIndicator; 2]> {
@@ -204,10 +198,6 @@ impl Family for Mcp {
         let is_first = |key: &str| key == FIRST;
         let listed = || MODELS.iter().map(|model| (model.key, model.name));
         listed().filter(|(key, _)| is_first(key)).chain(listed().filter(|(key, _)| !is_first(key))).collect()
-    }
-
-    fn words(&self) -> &'static SettingsWords {
-        &words::WORDS
     }
 
     fn motors(&self) -> &'static [Motor] {

@@ -9,7 +9,6 @@ pub mod family;
 pub mod firmware;
 mod pins;
 mod script;
-mod words;
 
 use crate::family::Own;
 use crate::model::desk::Desk;

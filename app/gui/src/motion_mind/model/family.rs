@@ -26,12 +26,12 @@ use crate::tune::Loop;
 pub struct MotionMind;
 
 impl Family for MotionMind {
-    fn name(&self) -> &'static str {
-        "Motion Mind 3"
-    }
-
     fn family(&self) -> FamilyRef {
         MOTION_MIND
+    }
+
+    fn name(&self) -> &'static str {
+        "Motion Mind 3"
     }
 
     fn own(&self) -> Option<Box<dyn Own>> {
@@ -175,10 +175,6 @@ impl Family for MotionMind {
 
     fn shows_registers(&self, screen: Screen) -> bool {
         matches!(screen, Screen::GeneralSettings | Screen::Inputs | Screen::Motion)
-    }
-
-    fn has_loops(&self) -> bool {
-        false
     }
 
     fn channels(&self) -> &'static [Channel] {
