@@ -15,7 +15,6 @@ use egui::{Context, Ui, ViewportCommand};
 use super::actions;
 use super::command::{Command, GuidedWish};
 use super::ending::EndBySignal;
-use super::family::Own;
 use super::frame::FRAME_INTERVAL;
 use super::keys;
 use super::links::Links;
@@ -308,7 +307,7 @@ impl App {
             Command::Transact { id, command, values } => self.transact(Transact { id, command, values }),
             Command::Guided(wish) => self.guided(wish),
             Command::Tune(wish) => self.tune(wish),
-            Command::OpenFirmware => model.front.owns_mut().for_each(Own::open_firmware),
+            Command::OpenFirmware => model.front.own.iter_mut().for_each(|own| own.open_firmware()),
             Command::OpenSheet(sheet) => self.open_sheet(sheet),
             Command::ShowSettings(section) => {
                 self.show(Screen::GeneralSettings);

@@ -261,6 +261,12 @@ mod tests {
 
     use super::*;
 
+    /// Every action, with those of the families.
+    fn all() -> impl Iterator<Item = &'static Action> {
+        crate::install(&[&crate::mcp::Mcp, &crate::motion_mind::MotionMind]);
+        super::all()
+    }
+
     #[test]
     fn no_two_actions_share_a_name_a_title_or_keys() {
         let (mut ids, mut titles, mut keys) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());

@@ -8,7 +8,6 @@ use brushwork_link::transport::ConnectTarget;
 use egui::{Context, ViewportCommand};
 
 use super::App;
-use crate::family::Own;
 use crate::model::screen::Screen;
 use crate::model::{DeskId, Model};
 use crate::wish::Host;
@@ -50,13 +49,13 @@ impl App {
         let (screen, front) = (self.model.screen, &mut self.model.front);
         let is_free = front.is_connected() && !front.is_guided() && front.settings.running().is_none();
         let wants_read = is_free && front.family().shows_registers(screen);
-        let Some(request) = wants_read.then(|| front.owns_mut().find_map(|own| own.read(now))).flatten()
+        let Some(request) = wants_read.then(|| front.own.iter_mut().find_map(|own| own.read(now))).flatten()
         else {
             return;
         };
         // A link that is busy is asked again later; nobody has to be told.
         if self.device().is_none_or(|device| device.request(request).is_err()) {
-            self.model.front.owns_mut().for_each(Own::not_read);
+            self.model.front.own.iter_mut().for_each(|own| own.not_read());
         }
     }
 
@@ -64,14 +63,14 @@ impl App {
     pub(super) fn send_raw(&mut self, id: u64, bytes: Vec<u8>) {
         let is_free = !self.model.front.is_guided();
         if !(is_free && self.request(Request::Raw { id, bytes })) {
-            self.model.front.owns_mut().for_each(|own| own.not_sent(id));
+            self.model.front.own.iter_mut().for_each(|own| own.not_sent(id));
         }
     }
 
     /// Keeps the window open while something is at work that must not be cut short.
     pub(super) fn hold_open(&mut self, ctx: &Context) {
         let asked = self.closing || ctx.input(|input| input.viewport().close_requested());
-        let why = self.model.desks().flat_map(|desk| desk.owns()).find_map(Own::holds_window);
+        let why = self.model.desks().flat_map(|desk| desk.own.iter()).find_map(|own| own.holds_window());
         let Some(why) = why.filter(|_| asked) else { return };
         self.closing = false;
         ctx.send_viewport_cmd(ViewportCommand::CancelClose);

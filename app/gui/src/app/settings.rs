@@ -1,10 +1,9 @@
 //! Work with settings that the window asks of the device threads: whole, of the control loops, of inputs, and command by
 //! command. Whatever writes has a backup made first.
 
-use brushwork_link::device::{Identity, Request};
+use brushwork_link::device::Request;
 
 use super::App;
-use crate::family::Own;
 use crate::model::DeskId;
 use crate::model::jobs::Owner;
 use crate::model::loop_settings::Column;
@@ -130,22 +129,21 @@ impl App {
     /// Sends a command that was put together by hand; one that changes settings once a backup of them is kept.
     pub(super) fn transact(&mut self, transact: Transact) {
         let front = &mut self.model.front;
-        let changes = |identity: &Identity| front.family().changes_settings(transact.command, identity);
-        if front.tune.is_running() && front.link.identity().is_some_and(changes) {
+        let saves = front.link.identity().and_then(|unit| front.family().saves(transact.command, unit));
+        if front.tune.is_running() && saves.is_some() {
             let told =
                 "A tuning run is at work, and this command changes settings. Send it when the run has ended.";
             self.model.messages.fail(told.to_owned());
             return;
         }
-        let identity = front.link.identity().cloned().filter(changes);
-        let Some((identity, keeper)) = identity.zip(front.settings.keeper()) else {
+        let identity = front.link.identity().cloned();
+        let (Some(saves), Some(identity), Some(keeper)) = (saves, identity, front.settings.keeper()) else {
             return self.send_transact(self.model.front.id(), transact);
         };
-        let saves = front.family().saves_settings(transact.command);
         let job = front.traffic.kept.keep_first(transact, saves, &identity, keeper);
         if !job.is_some_and(|job| self.request(Request::Job(job))) {
             self.model.front.traffic.kept.forget();
-            self.model.front.owns_mut().for_each(Own::not_transacted);
+            self.model.front.own.iter_mut().for_each(|own| own.not_transacted());
         }
     }
 
@@ -157,7 +155,7 @@ impl App {
             }
             Some(Err((number, failure))) => {
                 if let Some(desk) = self.model.desk_mut(id) {
-                    desk.owns_mut().for_each(|own| own.refused(number, failure.clone()));
+                    desk.own.iter_mut().for_each(|own| own.refused(number, failure.clone()));
                 }
             }
             None => {}
@@ -167,7 +165,7 @@ impl App {
     fn send_transact(&mut self, id: DeskId, transact: Transact) {
         let is_sent = self.request_of(id, transact.request());
         if !is_sent && let Some(desk) = self.model.desk_mut(id) {
-            desk.owns_mut().for_each(Own::not_transacted);
+            desk.own.iter_mut().for_each(|own| own.not_transacted());
         }
     }
 }

@@ -172,14 +172,9 @@ pub trait Family: Sync {
         ""
     }
 
-    /// Whether a command changes settings, in RAM or in EEPROM.
-    fn changes_settings(&self, _command: u8, _identity: &Identity) -> bool {
-        false
-    }
-
-    /// Whether a command saves all settings to EEPROM.
-    fn saves_settings(&self, _command: u8) -> bool {
-        false
+    /// Whether a command that changes settings saves them all to EEPROM; `None` for one that changes none.
+    fn saves(&self, _command: u8, _identity: &Identity) -> Option<bool> {
+        None
     }
 
     /// The pages of help about it.
@@ -294,12 +289,6 @@ pub enum Ability {
     Buses,
     /// Faults of bridges and start-up that a simulated one can have.
     BridgeFaults,
-    /// A report of what keeps the motors from running, which needs settings.
-    Diagnosis,
-    /// LEDs on the board whose blink codes are known.
-    Leds,
-    /// Raw commands out of a table.
-    Composer,
     /// Settings that can contradict each other.
     Conflicts,
     /// Calibration by hand of loop gains.

@@ -85,7 +85,7 @@ pub struct Desk {
     /// What a diagnosis needs besides the status word.
     pub watch: Watch,
     /// What each family has of its own.
-    own: Vec<Box<dyn Own>>,
+    pub own: Vec<Box<dyn Own>>,
     /// The MCL debugger of a simulated controller.
     pub debug: Debugging,
     /// The traffic panel of this link.
@@ -225,16 +225,6 @@ impl Desk {
         found.unwrap_or_else(|| panic!("a family was never installed"))
     }
 
-    /// What each family keeps of its own here.
-    pub fn owns(&self) -> impl Iterator<Item = &dyn Own> {
-        self.own.iter().map(|own| &**own)
-    }
-
-    /// The same, to be changed.
-    pub fn owns_mut(&mut self) -> impl Iterator<Item = &mut dyn Own> {
-        self.own.iter_mut().map(|own| &mut **own)
-    }
-
     /// The tab that is open above the graph of a screen that drives.
     pub fn open_tab(&self, screen: Screen) -> Option<Tab> {
         self.drawers.open(screen).filter(|tab| self.family().tabs(screen).contains(tab))
@@ -266,7 +256,7 @@ impl Desk {
             && self.diagnosis_keys().is_empty()
             && !self.is_guided()
             && self.tune.running().is_none()
-            && !self.owns().any(Own::is_busy)
+            && !self.own.iter().any(|own| own.is_busy())
     }
 
     /// The sliders of every screen go back to rest, with nothing left to send.
@@ -274,7 +264,7 @@ impl Desk {
         self.pwm.setpoints.stop();
         self.velocity.setpoints.stop();
         self.position.setpoints.stop();
-        self.owns_mut().for_each(Own::rest);
+        self.own.iter_mut().for_each(|own| own.rest());
     }
 
     /// The device thread has taken what the family's sliders asked for.
@@ -302,7 +292,7 @@ impl Desk {
             self.settings.doubt();
         }
         // Each has to see it.
-        let is_own = self.owns_mut().fold(false, |taken, own| own.take(&event) || taken);
+        let is_own = self.own.iter_mut().fold(false, |taken, own| own.take(&event) || taken);
         if is_own {
             return Vec::new();
         }
@@ -486,7 +476,7 @@ impl Desk {
                 self.update_homed();
                 self.general.take_signals(&sample.signals);
                 self.tune.note_sample(&sample, self.graph_of);
-                self.owns_mut().for_each(|own| own.note_sample(&sample));
+                self.own.iter_mut().for_each(|own| own.note_sample(&sample));
                 self.graph.take(&sample);
             }
             Effect::OtherUnit => {
@@ -512,7 +502,7 @@ impl Desk {
         self.watch = Watch::default();
         self.traffic.link_ended();
         self.debug.forget();
-        self.owns_mut().for_each(Own::link_ended);
+        self.own.iter_mut().for_each(|own| own.link_ended());
         self.general_view().link_ended();
         self.forget_unit();
         self.rest();
@@ -539,7 +529,7 @@ impl Desk {
 
     /// What is known of one unit's motors says nothing of another's.
     fn forget_unit(&mut self) {
-        self.owns_mut().for_each(Own::forget_unit);
+        self.own.iter_mut().for_each(|own| own.forget_unit());
         self.generator.forget();
         self.script.forget();
         self.qpps.forget();

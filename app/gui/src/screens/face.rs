@@ -36,8 +36,10 @@ pub trait Face: Sync {
     /// What stands before and behind the rows of the part of the settings that is open.
     fn around_rows_ui(&self, _ui: &mut Ui, _general: &mut GeneralView<'_>, _is_before: bool) {}
 
-    /// A raw command, put together by hand.
-    fn composer_ui(&self, _ui: &mut Ui, _model: &mut Model, _commands: &mut Commands) {}
+    /// A raw command, put together by hand. False where there is no unit that takes one.
+    fn composer_ui(&self, _ui: &mut Ui, _model: &mut Model, _commands: &mut Commands) -> bool {
+        false
+    }
 
     /// Its own windows, within the room.
     fn windows_ui(&self, _ctx: &Context, _model: &mut Model, _commands: &mut Commands, _room: Rect) {}

@@ -181,13 +181,9 @@ impl Family for Mcp {
         lookup(number).map_or("", |row| row.title)
     }
 
-    fn changes_settings(&self, command: u8, identity: &Identity) -> bool {
-        let effect = lookup(command).map(|row| row.effect(layout_of(identity.generation)));
-        matches!(effect, Some(Effect::Setting | Effect::Memory))
-    }
-
-    fn saves_settings(&self, command: u8) -> bool {
-        command == number::SAVE_SETTINGS
+    fn saves(&self, command: u8, identity: &Identity) -> Option<bool> {
+        let effect = lookup(command)?.effect(layout_of(identity.generation));
+        matches!(effect, Effect::Setting | Effect::Memory).then_some(command == number::SAVE_SETTINGS)
     }
 
     fn help_pages(&self) -> &'static [HelpPage] {

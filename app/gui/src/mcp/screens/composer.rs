@@ -17,12 +17,9 @@ use crate::widgets::text_field::text_field_ui;
 
 const LIST_WIDTH: f32 = 250.0;
 
-pub fn composer_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    let Some((address, generation)) = unit(&model.front) else {
-        let hint = "Not connected. A command can be put together here and sent to a controller.";
-        ui.label(RichText::new(hint).color(Palette::of(ui).weak_text));
-        return;
-    };
+/// Nothing without a unit.
+pub fn composer_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) -> Option<()> {
+    let (address, generation) = unit(&model.front)?;
     let permit = permit(&model.front);
     let composer = &mut model.front.mcp_mut().composer;
     let height = ui.available_height();
@@ -44,6 +41,7 @@ pub fn composer_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             });
         });
     });
+    Some(())
 }
 
 fn unit(desk: &Desk) -> Option<(Address, Generation)> {

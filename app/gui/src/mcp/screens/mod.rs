@@ -39,6 +39,7 @@ impl Face for Mcp {
 
     fn reasons_ui(&self, ui: &mut Ui, desk: &Desk, commands: &mut Commands) {
         reasons::reasons_ui(ui, desk, commands);
+        ui.add_space(8.0);
     }
 
     fn leds_ui(&self, ui: &mut Ui, desk: &Desk) {
@@ -49,8 +50,8 @@ impl Face for Mcp {
         general::around_rows_ui(ui, general, is_before);
     }
 
-    fn composer_ui(&self, ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-        composer::composer_ui(ui, model, commands);
+    fn composer_ui(&self, ui: &mut Ui, model: &mut Model, commands: &mut Commands) -> bool {
+        composer::composer_ui(ui, model, commands).is_some()
     }
 
     fn windows_ui(&self, ctx: &Context, model: &mut Model, commands: &mut Commands, room: Rect) {

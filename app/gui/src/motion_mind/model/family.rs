@@ -108,9 +108,8 @@ impl Family for MotionMind {
         Some(("Switches", format!("{}; {} protocol", facts.mode, facts.protocol)))
     }
 
-    /// RESTORE, which brings back the factory's values in RAM and in EEPROM.
-    fn changes_settings(&self, command: u8, _identity: &Identity) -> bool {
-        command == RESTORE
+    fn saves(&self, command: u8, _identity: &Identity) -> Option<bool> {
+        matches!(command, RESTORE | RESET).then_some(false)
     }
 
     fn help_pages(&self) -> &'static [HelpPage] {
@@ -205,11 +204,8 @@ impl Family for MotionMind {
             Ability::Firmware => {
                 "The firmware loader of a Motion Mind 3 is not public. Use its maker's program."
             }
-            Ability::Diagnosis => "What keeps a Motion Mind 3 from running is told by its lamps.",
             Ability::BridgeFaults => "The simulated Motion Mind 3 has no faults of its bridge.",
             Ability::Buses => "A Motion Mind 3 has no buses for scripts.",
-            Ability::Leds => "The LEDs of a Motion Mind 3 tell its power and its traffic alone.",
-            Ability::Composer => "Send commands from the Terminal screen.",
             Ability::Conflicts => "No two registers of a Motion Mind 3 contradict each other.",
             Ability::Streams => "A Motion Mind 3 has one serial port, and no time-out for it.",
             Ability::LogicBattery => {
@@ -239,8 +235,10 @@ fn means_something(key: &str, identity: Option<&Identity>) -> bool {
     key != BAD_RC || facts.is_none_or(|facts| facts.mode == Mode::RadioControl)
 }
 
-/// Its number in frames and in lines.
+/// Brings back the factory's values, in RAM and in EEPROM.
 const RESTORE: u8 = 0x1B;
+/// Loads the EEPROM.
+const RESET: u8 = 0x1C;
 
 const BAD_RC: &str = "bad_rc";
 
