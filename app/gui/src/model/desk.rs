@@ -292,7 +292,7 @@ impl Desk {
             self.settings.doubt();
         }
         // Each has to see it.
-        let is_own = self.own.iter_mut().fold(false, |taken, own| own.take(&event) || taken);
+        let is_own = self.own.iter_mut().map(|own| own.take(&event)).max() == Some(true);
         if is_own {
             return Vec::new();
         }

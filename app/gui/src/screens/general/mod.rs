@@ -30,7 +30,7 @@ const SIDE_BY_SIDE: f32 = 560.0;
 
 pub fn general_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     framed_ui(ui, model, commands, |ui, model, commands| {
-        sections_ui(ui, model, commands, &[], |_, _, _, _| false)
+        sections_ui(ui, model, commands, &[], |_, _, _, _| false);
     });
 }
 
@@ -107,6 +107,6 @@ fn section_ui(
         rows::rows_ui(ui, &mut model.front.general_view(), face, height);
     }
     if has_rows {
-        help::help_ui(ui, &mut model.front.general_view(), help_height);
+        help::help_ui(ui, &model.front.general_view(), help_height);
     }
 }
