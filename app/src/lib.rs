@@ -3,23 +3,48 @@
 #[cfg(feature = "bench")]
 mod bench;
 
-use brushwork_family::Simulator;
+use brushwork_cli::family::Family as Commands;
+use brushwork_family::{Simulator, simulator};
 use brushwork_gui::run::{WindowOptions, run as open_window};
+use brushwork_gui::screens::face::Window;
 use brushwork_link::Driver;
 use std::process::ExitCode;
 
-/// The families of controllers that this program has, the one that is looked for first at the head. To add one, name it here.
-pub static FAMILIES: [&dyn Driver; 2] =
-    [&brushwork_mcp_client::McpDriver, &brushwork_motion_mind_client::MotionMindDriver];
+/// A family of controllers, as each part of the program has it.
+pub struct Family {
+    /// What speaks with its units.
+    pub driver: &'static dyn Driver,
+    /// What simulates them.
+    pub simulator: &'static dyn Simulator,
+    /// What the window shows of them.
+    pub window: &'static dyn Window,
+    /// What they add to the command line.
+    pub commands: &'static dyn Commands,
+}
 
-/// What simulates their units. The first one's are made where the text behind `sim:` names none.
-pub static SIMULATORS: [&dyn Simulator; 2] =
-    [&brushwork_mcp::McpSimulator, &brushwork_motion_mind::MotionMindSimulator];
+/// The families that this program has. The one that is looked for first, and simulated where nothing else is named, is at the head. To add one,
+/// name it here.
+pub static FAMILIES: [Family; 2] = [
+    Family {
+        driver: &brushwork_mcp_client::McpDriver,
+        simulator: &brushwork_mcp::McpSimulator,
+        window: &brushwork_gui::mcp::Mcp,
+        commands: &brushwork_cli::mcp::McpCommands,
+    },
+    Family {
+        driver: &brushwork_motion_mind_client::MotionMindDriver,
+        simulator: &brushwork_motion_mind::MotionMindSimulator,
+        window: &brushwork_gui::motion_mind::MotionMind,
+        commands: &brushwork_cli::motion_mind::MotionMindCommands,
+    },
+];
 
 /// Makes the families known to every part of the program.
 pub fn install() {
-    brushwork_link::install(&FAMILIES);
-    brushwork_family::simulator::install(&SIMULATORS);
+    brushwork_link::install(&FAMILIES.each_ref().map(|family| family.driver));
+    simulator::install(&FAMILIES.each_ref().map(|family| family.simulator));
+    brushwork_gui::install(&FAMILIES.each_ref().map(|family| family.window));
+    brushwork_cli::family::install(&FAMILIES.each_ref().map(|family| family.commands));
 }
 
 /// Runs the program: a command, or the window where none is given.
@@ -31,7 +56,7 @@ pub fn run() -> ExitCode {
             let options = WindowOptions { open: window.open.clone(), plain: window.plain };
             open_window(options).map_err(|error| error.to_string())
         },
-        &[
+        [
             #[cfg(feature = "bench")]
             bench::tool(),
         ],

@@ -29,17 +29,17 @@ use super::model::traffic::Transact;
 use super::model::{Appearance, DeskId, Model};
 use super::parts::{Parts, SimulatedWorld};
 use super::remember::Memory;
+use super::screens::face;
 use super::tune::model::Afterwards;
 use super::{shell, theme};
 
 mod debugging;
 mod leaving;
 mod linking;
-mod motion_mind;
+mod own;
 mod scripting;
 mod settings;
 mod tuning;
-mod updating;
 
 /// Time between two looks at a link that is being opened.
 const OPENING_INTERVAL: Duration = Duration::from_millis(50);
@@ -160,7 +160,7 @@ impl App {
             self.look_at_world(desk);
             self.look_at_script(desk, ctx);
             self.look_after_graph(desk, ctx);
-            self.look_after_firmware(desk, ctx);
+            face::all().for_each(|face| face.go_on(self, desk, ctx));
             self.send_kept_command(desk);
         }
     }
@@ -307,7 +307,7 @@ impl App {
             Command::Transact { id, command, values } => self.transact(Transact { id, command, values }),
             Command::Guided(wish) => self.guided(wish),
             Command::Tune(wish) => self.tune(wish),
-            Command::Firmware(wish) => self.firmware(wish),
+            Command::OpenFirmware => model.front.own.iter_mut().for_each(|own| own.open_firmware()),
             Command::OpenSheet(sheet) => self.open_sheet(sheet),
             Command::ShowSettings(section) => {
                 self.show(Screen::GeneralSettings);
@@ -324,7 +324,11 @@ impl App {
                 }
             }
             Command::ClampTest => self.clamp_test(),
-            Command::Mind(wish) => self.mind(wish),
+            Command::Own(wish) => {
+                if let Err(why) = wish.act(self) {
+                    self.model.messages.fail(why);
+                }
+            }
             Command::Debug(wish) => self.debug(wish),
             Command::Mcl(wish) => self.edit_mcl(wish),
             Command::DownloadMcl => self.download_mcl(),

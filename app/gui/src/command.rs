@@ -1,5 +1,7 @@
 //! What a person can ask of the window. Screens send commands; [`super::app::App`] applies them in one place.
 
+use std::rc::Rc;
+
 use brushwork_link::device::{ArmScope, PollRate};
 use brushwork_link::transport::Stream;
 use brushwork_plant::world::WorldAction;
@@ -11,19 +13,17 @@ use super::graph::GraphAction;
 use super::mcl::MclWish;
 use super::model::DeskId;
 use super::model::drawer::Tab;
-use super::model::firmware::FirmwareWish;
 use super::model::general::{Section, Sheet};
 pub use super::model::guided::GuidedWish;
-use super::model::help::HelpPage;
+use super::model::help_page::HelpPage;
 use super::model::loop_settings::Column;
-pub use super::model::motion_mind::MindWish;
-use super::model::motion_mind::terminal::Sending;
 use super::model::screen::Screen;
 use super::model::settings::SettingsWish;
 pub use super::tune::TuneWish;
+use super::wish::Wish;
 
 /// One wish.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub enum Command {
     /// Opens a link to what is chosen in the device list.
     Connect,
@@ -62,7 +62,7 @@ pub enum Command {
         command: u8,
         values: Vec<Value>,
     },
-    /// Sends bytes as they are to a Motion Mind.
+    /// Sends bytes as they are.
     Raw {
         id: u64,
         bytes: Vec<u8>,
@@ -79,8 +79,8 @@ pub enum Command {
     PlainEdges(bool),
     /// Size of everything in the window, percent.
     Scale(u16),
-    /// Something to be done with the firmware of the unit that is looked at.
-    Firmware(FirmwareWish),
+    /// Opens the window for firmware updates.
+    OpenFirmware,
     /// Opens the window for connecting to a CANopen bus.
     OpenCanOpen,
     ToggleWorld,
@@ -103,8 +103,8 @@ pub enum Command {
     /// The voltage clamp test.
     ClampTest,
     DismissMessage,
-    /// Something that an assistant of a Motion Mind asks for.
-    Mind(MindWish),
+    /// Something that a family's own screens ask for.
+    Own(Rc<dyn Wish>),
     /// Something to be done by the MCL debugger.
     Debug(DebugWish),
     /// Something to be done in the MCL editor.
@@ -120,11 +120,9 @@ pub enum Command {
 /// The wishes of one frame, in order.
 pub type Commands = Vec<Command>;
 
-impl From<Sending> for Command {
-    fn from(sending: Sending) -> Self {
-        match sending {
-            Sending::Transact { id, command, values } => Self::Transact { id, command, values },
-            Sending::Raw { id, bytes } => Self::Raw { id, bytes },
-        }
+impl Command {
+    /// Something that a family's own screens ask for.
+    pub fn own(wish: impl Wish + 'static) -> Self {
+        Self::Own(Rc::new(wish))
     }
 }

@@ -1,7 +1,7 @@
 //! The window: its model, screens, widgets and graph.
 //!
 //! `model` is plain data, `screens` and `shell` draw it and ask for changes by `command`, and `app` makes them. What differs between families of
-//! controllers stands in `family`. `mcl` is the editor for scripts, `debugger` runs them step by step, `tune` is guided tuning.
+//! controllers, shared code asks `family` and `screens::face`; each family has a folder of its own. `mcl` is the editor for scripts, `debugger` runs them step by step, `tune` is guided tuning.
 #![allow(
     missing_docs,
     reason = "the window is no library: only the program and its own tests see these items"
@@ -12,6 +12,7 @@ pub mod app;
 pub mod command;
 pub mod debugger;
 pub mod ending;
+pub mod families;
 pub mod family;
 pub mod files;
 pub mod frame;
@@ -20,7 +21,9 @@ pub mod help;
 pub mod keys;
 pub mod links;
 pub mod mcl;
+pub mod mcp;
 pub mod model;
+pub mod motion_mind;
 pub mod opener;
 pub mod parts;
 pub mod remember;
@@ -31,9 +34,11 @@ pub mod theme;
 pub mod traffic;
 pub mod tune;
 pub mod widgets;
+pub mod wish;
 pub mod world;
 
 pub use app::App;
+pub use families::install;
 
 #[cfg(test)]
 #[path = "../tests/gui/support/wait.rs"]

@@ -9,7 +9,6 @@ use crate::command::Command;
 use crate::family::Ability;
 use crate::mcl::MclWish;
 use crate::model::drawer::Tab;
-use crate::model::firmware::FirmwareWish;
 use crate::model::general::{Section, Sheet};
 use crate::model::link::Arming;
 use crate::model::screen::Screen;
@@ -95,7 +94,7 @@ pub(super) const ACTIONS: &[Action] = &[
         help: "Shows what firmware is installed and what is known about it, and updates it from a file of yours.",
         ready: |model| has(model, Ability::Firmware, always),
         is_on: None,
-        command: |_| Command::Firmware(FirmwareWish::Open),
+        command: |_| Command::OpenFirmware,
     },
     Action {
         id: "device.read-settings",

@@ -5,6 +5,7 @@
 //! keys call it, when it can be done and why not, and which [`Command`] it is.
 
 use std::borrow::Cow;
+use std::sync::OnceLock;
 
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
@@ -12,6 +13,23 @@ use super::command::{Command, Commands};
 use super::mcl::has_keyboard;
 use super::model::Model;
 use super::model::screen::Screen;
+
+/// A row of the Help menu that opens a page.
+macro_rules! page {
+    ($id:literal, $title:expr, $keys:expr, $page:expr, $help:literal) => {
+        $crate::actions::Action {
+            id: $id,
+            title: $title,
+            place: $crate::actions::Place { menu: $crate::actions::Menu::Help, group: $page.group },
+            keys: $keys,
+            help: $help,
+            ready: |_| Ok(()),
+            is_on: None,
+            command: |_| $crate::command::Command::OpenHelp($page),
+        }
+    };
+}
+pub(crate) use page;
 
 mod debug;
 mod device;
@@ -95,8 +113,19 @@ pub enum Keys {
 /// `Err` says in a sentence why an action cannot be done now.
 pub type Ready = Result<(), Cow<'static, str>>;
 
+static OWN: OnceLock<Vec<&'static Action>> = OnceLock::new();
+
+/// Sets the actions that families have of their own, once. They stand in the Help menu.
+pub(crate) fn install(own: Vec<&'static Action>) {
+    // A second list is that of another test.
+    let _ = OWN.set(own);
+}
+
 /// Every action, menu by menu, as the menus show them.
 pub fn all() -> impl Iterator<Item = &'static Action> {
+    let own = OWN.get().into_iter().flatten().copied();
+    let mut help: Vec<&Action> = help::ACTIONS.iter().chain(own).collect();
+    help.sort_by_key(|action| action.place.group);
     [
         program::FILE,
         file::ACTIONS,
@@ -107,10 +136,10 @@ pub fn all() -> impl Iterator<Item = &'static Action> {
         view::ACTIONS,
         program::VIEW,
         graph::ACTIONS,
-        help::ACTIONS,
     ]
     .into_iter()
     .flatten()
+    .chain(help)
 }
 
 /// The actions of a menu.
@@ -231,6 +260,12 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
+
+    /// Every action, with those of the families.
+    fn all() -> impl Iterator<Item = &'static Action> {
+        crate::install(&[&crate::mcp::Mcp, &crate::motion_mind::MotionMind]);
+        super::all()
+    }
 
     #[test]
     fn no_two_actions_share_a_name_a_title_or_keys() {

@@ -7,7 +7,7 @@ use crossbeam_channel::TryRecvError;
 use egui::Context;
 
 use super::{App, OPENING_INTERVAL, waker};
-use crate::family::FamilyKind;
+use crate::family;
 use crate::links;
 use crate::model::devices::Choice;
 use crate::model::link::{Effect, LinkView};
@@ -56,7 +56,7 @@ impl App {
         let text = target.to_string();
         let front = &mut self.model.front;
         front.target = Some(text.clone());
-        front.set_family(FamilyKind::of_target(&text).unwrap_or(front.family_kind));
+        front.set_family(family::of_target(&text).unwrap_or(front.family()));
         if front.phase == Phase::Closed {
             self.model.messages.dismiss();
             front.phase = Phase::Opening { target: text };

@@ -4,8 +4,6 @@ use std::path::Path;
 
 use brushwork_link::Failure;
 use brushwork_link::device::{ArmScope, Request};
-use brushwork_mcp_client::diagnosis::Script;
-use brushwork_mcp_client::script::ScriptImage;
 use brushwork_script::image;
 use brushwork_script::mcl::compile;
 use egui::{Context, ViewportCommand};
@@ -101,14 +99,14 @@ impl App {
     }
 
     fn send_image(&mut self, bytes: &[u8], source: Source) {
-        let image = match ScriptImage::from_file(bytes) {
-            Ok(image) => image,
+        let download = match self.model.front.family().download(bytes) {
+            Ok(download) => download,
             Err(error) => {
                 let failure = Failure::new("download", source.title, error, "Choose another file");
                 return self.model.messages.fail(failure.to_string());
             }
         };
-        match self.model.front.script.begin(image, source) {
+        match self.model.front.script.begin(download, source) {
             Some(job) => {
                 if !self.start_for(self.model.front.id(), Owner::Script, job) {
                     self.model.front.script.not_begun();
@@ -125,13 +123,13 @@ impl App {
             return self.model.messages.warn(text);
         }
         if self.request(Request::StartScript) {
-            self.model.front.watch.note_script(Script::Started);
+            self.model.front.watch.note_script(true);
         }
     }
 
     pub(super) fn stop_script(&mut self) {
         if self.request(Request::StopScript) {
-            self.model.front.watch.note_script(Script::Stopped);
+            self.model.front.watch.note_script(false);
         }
     }
 }

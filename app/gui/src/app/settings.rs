@@ -129,22 +129,21 @@ impl App {
     /// Sends a command that was put together by hand; one that changes settings once a backup of them is kept.
     pub(super) fn transact(&mut self, transact: Transact) {
         let front = &mut self.model.front;
-        if front.tune.is_running()
-            && front.link.identity().is_some_and(|identity| transact.changes_settings(identity))
-        {
+        let saves = front.link.identity().and_then(|unit| front.family().saves(transact.command, unit));
+        if front.tune.is_running() && saves.is_some() {
             let told =
                 "A tuning run is at work, and this command changes settings. Send it when the run has ended.";
             self.model.messages.fail(told.to_owned());
             return;
         }
-        let identity = front.link.identity().cloned().filter(|identity| transact.changes_settings(identity));
-        let Some((identity, keeper)) = identity.zip(front.settings.keeper()) else {
+        let identity = front.link.identity().cloned();
+        let (Some(saves), Some(identity), Some(keeper)) = (saves, identity, front.settings.keeper()) else {
             return self.send_transact(self.model.front.id(), transact);
         };
-        let job = front.traffic.kept.keep_first(transact, &identity, keeper);
+        let job = front.traffic.kept.keep_first(transact, saves, &identity, keeper);
         if !job.is_some_and(|job| self.request(Request::Job(job))) {
             self.model.front.traffic.kept.forget();
-            self.model.front.traffic.composer.forget_waiting();
+            self.model.front.own.iter_mut().for_each(|own| own.not_transacted());
         }
     }
 
@@ -156,7 +155,7 @@ impl App {
             }
             Some(Err((number, failure))) => {
                 if let Some(desk) = self.model.desk_mut(id) {
-                    desk.traffic.composer.answered(number, &Err(failure));
+                    desk.own.iter_mut().for_each(|own| own.refused(number, failure.clone()));
                 }
             }
             None => {}
@@ -166,7 +165,7 @@ impl App {
     fn send_transact(&mut self, id: DeskId, transact: Transact) {
         let is_sent = self.request_of(id, transact.request());
         if !is_sent && let Some(desk) = self.model.desk_mut(id) {
-            desk.traffic.composer.forget_waiting();
+            desk.own.iter_mut().for_each(|own| own.not_transacted());
         }
     }
 }

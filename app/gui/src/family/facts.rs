@@ -2,29 +2,45 @@
 
 use std::fmt;
 
-use brushwork_link::device::{ArmScope, Channel, Drive, Identity, Indicator, StatusReport};
-use brushwork_mcp_wire::packet_serial::led::BlinkCode;
+use brushwork_link::FamilyRef;
+use brushwork_link::device::{
+    Addresses, ArmScope, Channel, Drive, Identity, Indicator, Job, PinSignal, StatusReport,
+};
+use brushwork_link::settings::{Group, Row, SettingValue, SettingsImage, SettingsTable, Subject};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
 
-use super::words::SettingsWords;
+use super::own::Own;
+use super::words::{self, SettingsWords};
 use crate::model::drawer::Tab;
+use crate::model::help_page::HelpPage;
 use crate::model::lamp::{LampInfo, LampState, state_of};
-use crate::model::motion_mind::Driven;
 use crate::model::position::Position;
 use crate::model::pwm::Pwm;
 use crate::model::screen::Screen;
+use crate::model::simulated::Simulated;
 use crate::model::velocity::Velocity;
 use crate::tune::Loop;
 
-/// What the window has to know of a family.
+/// What is known of a setting, by its key.
+pub type Known<'a> = &'a dyn Fn(&str) -> Option<SettingValue>;
+
+/// What the window has to know of a family. What has a default is had by few.
 pub trait Family: Sync {
+    /// The family itself.
+    fn family(&self) -> FamilyRef;
+
     /// What a person calls its controllers, for sentences.
     fn name(&self) -> &'static str;
 
-    /// The screens, in the order of the list; those that drive where `driven` says what a Motion Mind takes.
-    fn screens(&self, driven: Driven) -> Vec<Screen>;
+    /// What the window keeps of its own for each link.
+    fn own(&self) -> Option<Box<dyn Own>> {
+        None
+    }
+
+    /// The screens, in the order of the list, by what is known of the unit and its settings.
+    fn screens(&self, identity: Option<&Identity>, known: Known<'_>) -> Vec<Screen>;
 
     /// What a screen is called in this family.
     fn title(&self, screen: Screen) -> &'static str {
@@ -32,10 +48,14 @@ pub trait Family: Sync {
     }
 
     /// The tabs above the graph of a screen that drives.
-    fn tabs(&self, screen: Screen) -> &'static [Tab];
+    fn tabs(&self, _screen: Screen) -> &'static [Tab] {
+        &[]
+    }
 
     /// The monitored parameters at the top.
-    fn figures(&self) -> &'static [Figures];
+    fn figures(&self) -> &'static [Figures] {
+        &[]
+    }
 
     /// The status lamps, in order.
     fn lamps(&self) -> &'static [LampInfo];
@@ -44,25 +64,153 @@ pub trait Family: Sync {
     fn lit(
         &self,
         report: &StatusReport,
-        identity: Option<&Identity>,
-        homed: Option<[bool; 2]>,
-    ) -> Vec<LampState>;
+        _identity: Option<&Identity>,
+        _homed: Option<[bool; 2]>,
+    ) -> Vec<LampState> {
+        let lit = |lamp: &LampInfo| {
+            let set = report.active().find(|indicator| indicator.short == lamp.short);
+            set.map_or(LampState::Ok, |indicator| state_of(indicator.severity))
+        };
+        self.lamps().iter().map(lit).collect()
+    }
 
     /// What the status word says, in the order in which it is shown.
-    fn active(&self, report: &StatusReport, identity: Option<&Identity>) -> Vec<ActiveIndicator>;
+    fn active(&self, report: &StatusReport, _identity: Option<&Identity>) -> Vec<ActiveIndicator> {
+        let placed = report.indicators.iter().enumerate();
+        let set = placed.filter(|(_, indicator)| report.word & indicator.mask != 0);
+        set.map(|(place, indicator)| ActiveIndicator::new(Some(place), indicator)).collect()
+    }
 
     /// What is active while a motor is homed or at a limit, where the pins tell that and the status word has no bit for it.
     fn home_indicators(&self) -> Option<[ActiveIndicator; 2]> {
         None
     }
 
-    /// How the LEDs on the board blink by a status, and by whether a bridge drives.
-    fn blink_code(&self, _report: &StatusReport, _driving: bool) -> Option<BlinkCode> {
+    /// Whether a unit tells by its pins alone that a motor is homed or at a limit.
+    fn homes_by_pins(&self, _identity: &Identity) -> bool {
+        false
+    }
+
+    /// What stands below the lamps, by what the pins say of home and limit switches.
+    fn lamps_note(&self, _identity: &Identity, _homed: Option<[bool; 2]>) -> Option<&'static str> {
         None
     }
 
+    /// [`Family::lit`] for the times since which lamps are as they are.
+    fn lit_since(
+        &self,
+        report: &StatusReport,
+        identity: Option<&Identity>,
+        homed: Option<[bool; 2]>,
+    ) -> Vec<LampState> {
+        self.lit(report, identity, homed)
+    }
+
+    /// The settings that say what keeps the motors from running.
+    fn diagnosis_keys(&self, _table: &SettingsTable) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// Whether a pin can stop a motor, as these settings say.
+    fn has_pin_actions(&self, _settings: &SettingsImage) -> bool {
+        false
+    }
+
+    /// Whether each motor is homed or at a limit by an action of its pins; `None` where the pins are not known.
+    fn homed(&self, _settings: &SettingsImage, _pins: Option<&[PinSignal]>) -> Option<[bool; 2]> {
+        None
+    }
+
+    /// The firmware's number, where its version tells less.
+    fn generation_number(&self, _identity: &Identity) -> Option<u8> {
+        None
+    }
+
+    /// What else a unit tells of itself, with its label.
+    fn unit_row(&self, _identity: &Identity) -> Option<(&'static str, String)> {
+        None
+    }
+
+    /// Whether a unit reports a value for this channel that its board does not measure.
+    fn makes_up(&self, _identity: &Identity, _channel: Channel) -> bool {
+        false
+    }
+
+    /// What a unit's settings table is made for: where nobody knows it by name, for what all models have.
+    fn subject(&self, identity: &Identity) -> Subject {
+        let any = || Subject::new(&self.family().models()[0], identity.generation);
+        identity.subject().unwrap_or_else(any)
+    }
+
+    /// What a port, pin or output does by its settings, in a few words.
+    fn function(&self, _table: &SettingsTable, _known: Known<'_>, _of: (Group, usize)) -> Option<String> {
+        None
+    }
+
+    /// The values that a setting is chosen from, where its row cannot list them.
+    fn choices(&self, _row: &Row, _subject: &Subject) -> Option<Vec<(SettingValue, String)>> {
+        None
+    }
+
+    /// The settings of an input whose range is opened wide for a calibration.
+    fn opened_input(&self, _known: Known<'_>, _pin: usize) -> Option<SettingsImage> {
+        None
+    }
+
+    /// Whether a unit starts its script by itself, as far as its settings were read.
+    fn autoruns(&self, _known: Known<'_>) -> bool {
+        false
+    }
+
+    /// The job that downloads a script from a file's bytes, and comes to a clause of what was sent.
+    fn download(&self, _bytes: &[u8]) -> Result<Job<String>, String> {
+        Err(self.lacks(Ability::Scripts).unwrap_or_default().to_owned())
+    }
+
+    /// What a command of the protocol is called.
+    fn command_title(&self, _number: u8) -> &'static str {
+        ""
+    }
+
+    /// Whether a command that changes settings saves them all to EEPROM; `None` for one that changes none.
+    fn saves(&self, _command: u8, _identity: &Identity) -> Option<bool> {
+        None
+    }
+
+    /// The pages of help about it.
+    fn help_pages(&self) -> &'static [HelpPage] {
+        &[]
+    }
+
+    /// The models that this program simulates, by key and name, the one that is offered first at the head.
+    fn simulated(&self) -> Vec<(&'static str, &'static str)> {
+        Vec::new()
+    }
+
+    /// What a person would type to connect to what is simulated.
+    fn simulated_target(&self, simulated: &Simulated) -> String {
+        format!("sim:{}", simulated.model)
+    }
+
+    /// Where the simulated units are, where that follows from what is simulated.
+    fn simulated_addresses(&self, _simulated: &Simulated) -> Option<Addresses> {
+        None
+    }
+
+    /// An address in a list to choose from.
+    fn address_label(&self, address: u8) -> String {
+        self.family().address_text(address)
+    }
+
+    /// What asking all addresses takes, as a clause behind a comma.
+    fn scan_cost(&self) -> &'static str {
+        ""
+    }
+
     /// How acts on its settings are told.
-    fn words(&self) -> &'static SettingsWords;
+    fn words(&self) -> &'static SettingsWords {
+        &words::USUAL
+    }
 
     /// The motors a controller has.
     fn motors(&self) -> &'static [Motor];
@@ -73,7 +221,14 @@ pub trait Family: Sync {
     }
 
     /// The ways of guided tuning for a loop, the one that is taken unless another is chosen at the end.
-    fn methods(&self, which: Loop) -> &'static [Method];
+    fn methods(&self, _which: Loop) -> &'static [Method] {
+        &[]
+    }
+
+    /// Why a unit cannot be tuned as it is set, where it cannot.
+    fn cannot_tune(&self, _identity: Option<&Identity>, _known: Known<'_>) -> Option<&'static str> {
+        None
+    }
 
     /// What to do about a refused run, in the order in which it is best tried, where it is done in other places than elsewhere.
     fn remedies(&self, _cause: Cause) -> Option<&'static [&'static str]> {
@@ -89,7 +244,9 @@ pub trait Family: Sync {
     }
 
     /// Whether the screens that drive show settings of loops that have to be read for them.
-    fn has_loops(&self) -> bool;
+    fn has_loops(&self) -> bool {
+        false
+    }
 
     /// What its controllers can tell, in the order of the graph.
     fn channels(&self) -> &'static [Channel];
@@ -132,12 +289,6 @@ pub enum Ability {
     Buses,
     /// Faults of bridges and start-up that a simulated one can have.
     BridgeFaults,
-    /// A report of what keeps the motors from running, which needs settings.
-    Diagnosis,
-    /// LEDs on the board whose blink codes are known.
-    Leds,
-    /// Raw commands out of a table.
-    Composer,
     /// Settings that can contradict each other.
     Conflicts,
     /// Calibration by hand of loop gains.

@@ -1,71 +1,104 @@
 //! What differs between families of controllers in the window, in ONE place that the shell and the shared screens ask.
 //!
 //! A family says which screens there are, which figures stand in the top row, which lamps at the bottom, how many motors a
-//! controller has and which channels its graph. A screen that is shared asks its desk's family and never which one it is. To
-//! add a family, implement [`Family`], name it in [`of`], and its screens in `screens`.
+//! controller has and which channels its graph. A screen that is shared asks its desk's family and never which one it is. A
+//! family has a folder of its own in this crate; the program names those that it has, once, by [`install`].
 
 use std::collections::BTreeSet;
+use std::sync::OnceLock;
 
-use brushwork_link::device::{Channel, Identity};
+use brushwork_link::FamilyRef;
+use brushwork_link::device::Channel;
 
 mod facts;
-mod mcp;
-mod motion_mind;
+mod own;
 mod words;
 
-pub use facts::{Ability, ActiveIndicator, Family, Figure, Figures, Sliders};
+pub use facts::{Ability, ActiveIndicator, Family, Figure, Figures, Known, Sliders};
+pub use own::Own;
 pub use words::SettingsWords;
 
-/// Which family a controller is of, as far as the window tells them apart.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum FamilyKind {
-    /// MCP and RoboClaw, over packet serial or CANopen. Shown before anything was ever connected.
-    #[default]
-    Mcp,
-    MotionMind,
+static FAMILIES: OnceLock<Vec<&'static dyn Family>> = OnceLock::new();
+
+/// Names the families that the window has, the one that is shown before anything was connected at the head. Only the first list counts as
+/// the program's.
+pub fn install(families: Vec<&'static dyn Family>) {
+    // A second list is that of another test.
+    let _ = FAMILIES.set(families);
 }
 
-impl FamilyKind {
-    /// The family of a unit that answered.
-    pub fn of_unit(identity: &Identity) -> Self {
-        if brushwork_motion_mind_client::is_motion_mind(identity) { Self::MotionMind } else { Self::Mcp }
-    }
+/// The families that the window has.
+pub fn all() -> &'static [&'static dyn Family] {
+    #[cfg(test)]
+    FAMILIES.get_or_init(tests::families);
+    FAMILIES.get().map_or(&[], Vec::as_slice)
+}
 
-    /// The family that a target names before anything has answered there, if it names one.
-    pub fn of_target(target: &str) -> Option<Self> {
-        let simulated = target.strip_prefix("sim:")?;
-        Some(if simulated.starts_with("motion-mind") { Self::MotionMind } else { Self::Mcp })
-    }
+/// The family of a unit or of a choice.
+///
+/// # Panics
+/// If the window has no such family.
+pub fn of(family: FamilyRef) -> &'static dyn Family {
+    let found = all().iter().find(|known| known.family() == family).copied();
+    found.unwrap_or_else(|| panic!("the window has no family {}", family.key()))
+}
+
+/// The family that is shown before anything was ever connected.
+///
+/// # Panics
+/// If none was installed.
+pub fn first() -> &'static dyn Family {
+    all().first().copied().unwrap_or_else(|| panic!("the window has no family of controllers"))
+}
+
+/// The family that a target names before anything has answered there, if it names one.
+pub fn of_target(target: &str) -> Option<&'static dyn Family> {
+    let model = target.strip_prefix("sim:")?.split(',').next()?;
+    let found = all().iter().find(|family| family.simulated().iter().any(|(key, _)| key.starts_with(model)));
+    Some(found.copied().unwrap_or_else(first))
+}
+
+/// All models that are simulated, by key and name: first one of each family.
+pub fn simulated_models() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let part = |first: bool| {
+        let of_family = move |family: &&dyn Family| {
+            let models = family.simulated().into_iter().enumerate();
+            models.filter(move |(place, _)| (*place == 0) == first).map(|(_, model)| model)
+        };
+        all().iter().flat_map(of_family)
+    };
+    part(true).chain(part(false))
+}
+
+/// The family that simulates a model.
+pub fn of_model(key: &str) -> &'static dyn Family {
+    let has = |family: &&&dyn Family| family.simulated().iter().any(|(known, _)| *known == key);
+    all().iter().find(has).copied().unwrap_or_else(first)
 }
 
 /// What controllers of any family can tell, each channel once: a file may be of another controller than the one at hand.
 pub fn all_channels() -> Vec<Channel> {
-    let families = [FamilyKind::Mcp, FamilyKind::MotionMind].map(of);
-    let mut all: Vec<Channel> = families.iter().flat_map(|family| family.channels()).copied().collect();
+    let mut all: Vec<Channel> = all().iter().flat_map(|family| family.channels()).copied().collect();
     let mut known = BTreeSet::new();
     all.retain(|channel| known.insert(channel.key));
     all
 }
 
-/// The family behind a kind.
-pub fn of(kind: FamilyKind) -> &'static dyn Family {
-    match kind {
-        FamilyKind::Mcp => &mcp::Mcp,
-        FamilyKind::MotionMind => &motion_mind::MotionMind,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::motion_mind::Driven;
+
+    /// Those that the tests of this crate have.
+    pub(super) fn families() -> Vec<&'static dyn Family> {
+        vec![&crate::mcp::Mcp, &crate::motion_mind::MotionMind]
+    }
 
     #[test]
     fn in_each_family_lamps_and_screens_have_names_of_their_own() {
-        for family in [FamilyKind::Mcp, FamilyKind::MotionMind].map(of) {
+        for family in all() {
             let shorts: BTreeSet<_> = family.lamps().iter().map(|lamp| lamp.short).collect();
             assert_eq!(shorts.len(), family.lamps().len(), "{family:?}");
-            let screens = family.screens(Driven::Nothing);
+            let screens = family.screens(None, &|_| None);
             let titles: BTreeSet<_> = screens.iter().map(|screen| family.title(*screen)).collect();
             assert_eq!(titles.len(), screens.len(), "{family:?}");
         }

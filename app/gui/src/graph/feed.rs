@@ -1,7 +1,6 @@
 //! What the link tells the graph: samples with their own times, and events that become marks.
 
 use brushwork_link::device::{Drive, DriveCommand, Event, Reading, Sample};
-use brushwork_mcp_wire::models;
 use brushwork_values::Motor;
 
 use super::live::LiveGraph;
@@ -46,9 +45,10 @@ impl LiveGraph {
             Event::Disarmed(reason) => self.mark(now_s, MarkKind::Arm, reason.to_string()),
             Event::Connected(identity) => {
                 identity.title().clone_into(&mut self.files.device);
-                let model = identity.model.and_then(models::lookup);
+                let model = identity.model.and_then(|model| identity.family.model(model));
                 let pins = || identity.channels().iter().filter(|channel| channel.is_pin()).count();
-                self.pins = model.map_or_else(pins, |model| model.pins.len());
+                self.pins =
+                    model.map(|model| model.pins.len()).filter(|count| *count > 0).unwrap_or_else(pins);
             }
             Event::Lost(_) => self.mark(now_s, MarkKind::Note, "Link lost"),
             _ => {}

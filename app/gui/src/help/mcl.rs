@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use brushwork_script::mcl::reference::sections;
 use egui::{Label, Ui};
 
-use super::reference::{Entry, list_ui};
+use super::list::{Entry, list_ui};
 use super::{note_ui, scrolled_ui};
 use crate::model::help::Help;
 

@@ -3,14 +3,15 @@
 use egui::{Context, Frame, Margin, Rect, RichText, ScrollArea, Ui, Window, vec2};
 
 use super::model::Model;
-use super::model::help::{Help, HelpPage};
+use super::model::help::{Help, pages};
+use super::model::help_page::HelpPage;
+use super::screens::face;
 use super::theme::Palette;
 use super::widgets::text_field::text_field_ui;
 
-mod mcl;
-mod motion_mind;
+pub mod list;
+pub mod mcl;
 mod pages;
-mod reference;
 mod tuning;
 
 /// Draws the window, if it is open, within `room`: it never covers what lies outside.
@@ -34,13 +35,13 @@ pub fn help_ui(ctx: &Context, model: &mut Model, room: Rect) {
 
 fn page_ui(ui: &mut Ui, page: HelpPage, help: &mut Help) {
     ui.horizontal_wrapped(|ui| {
-        for each in HelpPage::ALL {
-            if ui.selectable_label(each == page, each.title()).clicked() {
+        for each in pages() {
+            if ui.selectable_label(each == page, each.title).clicked() {
                 help.open(each);
             }
         }
     });
-    if page.is_searched() {
+    if page.is_searched {
         let field = text_field_ui(ui, &mut help.search, "Search this page", "Search");
         if std::mem::take(&mut help.wants_focus) {
             field.request_focus();
@@ -48,25 +49,25 @@ fn page_ui(ui: &mut Ui, page: HelpPage, help: &mut Help) {
     }
     ui.separator();
     match page {
-        HelpPage::FirstSteps => scrolled_ui(ui, pages::first_steps_ui),
-        HelpPage::Tuning => scrolled_ui(ui, tuning::tuning_ui),
-        HelpPage::MotionMind => motion_mind::motion_mind_ui(ui, help),
-        HelpPage::Settings => reference::settings_ui(ui, help),
-        HelpPage::PacketSerial => reference::packet_serial_ui(ui, help),
-        HelpPage::Mcl => mcl::mcl_ui(ui, help),
-        HelpPage::Shortcuts => scrolled_ui(ui, |ui| pages::shortcuts_ui(ui, &help.search)),
-        HelpPage::About => scrolled_ui(ui, pages::about_ui),
+        HelpPage::FIRST_STEPS => scrolled_ui(ui, pages::first_steps_ui),
+        HelpPage::TUNING => scrolled_ui(ui, tuning::tuning_ui),
+        HelpPage::SHORTCUTS => scrolled_ui(ui, |ui| pages::shortcuts_ui(ui, &help.search)),
+        HelpPage::ABOUT => scrolled_ui(ui, pages::about_ui),
+        // One of a family's own.
+        page => {
+            face::all().any(|face| face.help_ui(ui, page, help));
+        }
     }
 }
 
-fn scrolled_ui(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+pub(super) fn scrolled_ui(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
     ScrollArea::vertical().auto_shrink([false; 2]).show(ui, |ui| {
         Frame::new().inner_margin(Margin::symmetric(8, 2)).show(ui, contents);
     });
 }
 
 /// A paragraph in the weak colour.
-fn note_ui(ui: &mut Ui, text: &str) {
+pub(super) fn note_ui(ui: &mut Ui, text: &str) {
     let color = Palette::of(ui).weak_text;
     ui.label(RichText::new(text).color(color));
 }

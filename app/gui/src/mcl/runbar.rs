@@ -2,7 +2,6 @@
 
 use brushwork_link::device::ArmScope;
 use brushwork_link::transport::Stream;
-use brushwork_mcp_client::diagnosis::Script;
 use brushwork_plant::world::ScriptRun;
 use egui::{ComboBox, Label, ProgressBar, RichText, Ui};
 
@@ -67,7 +66,7 @@ fn told(model: &Model, armed: bool) -> String {
         Some(ScriptRun::Ended { line }) => format!("The script ended in line {line}. "),
         Some(ScriptRun::Faulted { line, what }) => format!("The script broke off in line {line}: {what}. "),
         Some(_) => String::new(),
-        None if front.watch.script() == Script::Started => "A script was started. ".to_owned(),
+        None if front.watch.script_runs() == Some(true) => "A script was started. ".to_owned(),
         None => String::new(),
     };
     let can = match (armed, front.script.on_board()) {

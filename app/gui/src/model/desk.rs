@@ -4,30 +4,25 @@
 //! Several desks are open at once; one is in front. Switching swaps whole desks, so nothing of one controller can
 //! end up in another.
 
-use brushwork_mcp_client::is_mcp;
+use std::any::Any;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
-use brushwork_link::device::{ArmScope, Event, PollRate};
+use brushwork_link::device::{ArmScope, Event, Identity, PollRate};
 use brushwork_link::settings::{SettingValue, SettingsImage};
 use brushwork_link::transport::ConnectTarget;
-use brushwork_mcp_client::diagnosis;
-use brushwork_mcp_client::diagnosis::{Evidence, Measured, Script};
-use brushwork_mcp_client::script::MIN_AUTORUN;
 use brushwork_plant::world::ScriptRun;
 use brushwork_plant::world::WorldView;
 
 use super::channels::graph_channels;
 use super::drawer::{Drawers, Tab};
-use super::firmware::Firmware;
 use super::general::{General, GeneralView};
 use super::generator::Generator;
 use super::history::History;
 use super::jobs::{Jobs, Owner};
 use super::link::{Arming, Effect, LinkView};
 use super::loop_settings::LoopView;
-use super::motion_mind::MotionMindDesk;
 use super::position::Position;
 use super::pwm::Pwm;
 use super::qpps::QppsPanel;
@@ -41,7 +36,7 @@ use super::watched::said;
 use super::world::WorldPanel;
 use crate::debugger::Debugging;
 use crate::family;
-use crate::family::{Ability, Family, FamilyKind, Sliders};
+use crate::family::{Family, Own, Sliders};
 use crate::graph::LiveGraph;
 use crate::tune::Tuning;
 
@@ -62,7 +57,7 @@ pub struct Desk {
     /// What the link goes to, or went to last.
     pub target: Option<String>,
     /// The family of the unit that was looked at last, or that the target names.
-    pub family_kind: FamilyKind,
+    family: &'static dyn Family,
     pub phase: Phase,
     /// What is known of the open link; empty while there is none.
     pub link: LinkView,
@@ -75,8 +70,6 @@ pub struct Desk {
     pub settings: Settings,
     pub general: General,
     pub velocity: Velocity,
-    /// The firmware window and the update that runs.
-    pub firmware: Firmware,
     /// The download of a script, and which one the controller holds.
     pub script: ScriptWork,
     pub position: Position,
@@ -91,8 +84,8 @@ pub struct Desk {
     pub history: History,
     /// What a diagnosis needs besides the status word.
     pub watch: Watch,
-    /// What a Motion Mind 3 has of its own.
-    pub motion_mind: MotionMindDesk,
+    /// What each family has of its own.
+    pub own: Vec<Box<dyn Own>>,
     /// The MCL debugger of a simulated controller.
     pub debug: Debugging,
     /// The traffic panel of this link.
@@ -160,17 +153,16 @@ impl Desk {
         Self {
             id,
             target: None,
-            family_kind: FamilyKind::default(),
+            family: family::first(),
             phase: Phase::default(),
             link: LinkView::default(),
             poll: PollRate::default(),
-            graph: LiveGraph::new(graph_channels(family::of(FamilyKind::default()).channels()), 0.1),
+            graph: LiveGraph::new(graph_channels(family::first().channels()), 0.1),
             pwm: Pwm::default(),
             jobs: Jobs::default(),
             settings: Settings::default(),
             general: General::default(),
             velocity: Velocity::default(),
-            firmware: Firmware::default(),
             script: ScriptWork::default(),
             position: Position::default(),
             generator: Generator::default(),
@@ -180,7 +172,7 @@ impl Desk {
             loops: LoopView::default(),
             history: History::default(),
             watch: Watch::default(),
-            motion_mind: MotionMindDesk::default(),
+            own: family::all().iter().filter_map(|family| family.own()).collect(),
             debug: Debugging::default(),
             traffic: Traffic::default(),
             graph_of: Screen::Pwm,
@@ -197,12 +189,40 @@ impl Desk {
 
     /// What is so with the family of the controller that is, or was, connected.
     pub fn family(&self) -> &'static dyn Family {
-        family::of(self.family_kind)
+        self.family
     }
 
     /// The screens of that controller, in the order of the list.
     pub fn screens(&self) -> Vec<Screen> {
-        self.family().screens(self.driven())
+        self.family().screens(self.link.identity(), &|key| self.known(key))
+    }
+
+    /// A setting as the controller has it, as far as known.
+    fn known(&self, key: &str) -> Option<SettingValue> {
+        self.settings.unit()?.on_controller(key)
+    }
+
+    /// Why the controller cannot be tuned as it is set, where it cannot.
+    pub fn cannot_tune(&self) -> Option<&'static str> {
+        self.family().cannot_tune(self.link.identity(), &|key| self.known(key))
+    }
+
+    /// What a family keeps of its own here.
+    ///
+    /// # Panics
+    /// If the family was never installed.
+    pub fn own<T: Own>(&self) -> &T {
+        let found = self.own.iter().find_map(|own| (&**own as &dyn Any).downcast_ref());
+        found.unwrap_or_else(|| panic!("a family was never installed"))
+    }
+
+    /// The same, to be changed.
+    ///
+    /// # Panics
+    /// If the family was never installed.
+    pub fn own_mut<T: Own>(&mut self) -> &mut T {
+        let found = self.own.iter_mut().find_map(|own| (&mut **own as &mut dyn Any).downcast_mut());
+        found.unwrap_or_else(|| panic!("a family was never installed"))
     }
 
     /// The tab that is open above the graph of a screen that drives.
@@ -236,7 +256,7 @@ impl Desk {
             && self.diagnosis_keys().is_empty()
             && !self.is_guided()
             && self.tune.running().is_none()
-            && !self.firmware.stage.is_running()
+            && !self.own.iter().any(|own| own.is_busy())
     }
 
     /// The sliders of every screen go back to rest, with nothing left to send.
@@ -244,7 +264,7 @@ impl Desk {
         self.pwm.setpoints.stop();
         self.velocity.setpoints.stop();
         self.position.setpoints.stop();
-        self.motion_mind.steps.give_up();
+        self.own.iter_mut().for_each(|own| own.rest());
     }
 
     /// The device thread has taken what the family's sliders asked for.
@@ -268,11 +288,12 @@ impl Desk {
         let changes_ram = self.changes_ram(&event);
         self.history.note(&event);
         self.traffic.note(&event);
-        self.firmware.note(&event);
         if changes_ram {
             self.settings.doubt();
         }
-        if self.motion_mind.take(&event) {
+        // Each has to see it.
+        let is_own = self.own.iter_mut().map(|own| own.take(&event)).max() == Some(true);
+        if is_own {
             return Vec::new();
         }
         self.watch.note(&event);
@@ -312,8 +333,7 @@ impl Desk {
 
     /// Lights what follows from the settings anew where they have changed.
     fn follow_settings(&mut self) {
-        let is_diagnosed = self.family().lacks(Ability::Diagnosis).is_none();
-        if self.watch.see(self.settings.unit().filter(|_| is_diagnosed)) {
+        if self.watch.see(self.family, self.settings.unit()) {
             self.update_homed();
         }
     }
@@ -331,19 +351,19 @@ impl Desk {
     }
 
     /// The settings that a diagnosis goes by, once they were read.
-    fn diagnosed(&self) -> Option<&SettingsImage> {
+    pub fn diagnosed(&self) -> Option<&SettingsImage> {
         let keys = Some(self.watch.keys()).filter(|keys| !keys.is_empty())?;
         self.settings.unit()?.ram_with(keys)
     }
 
     /// Whether a pin that can stop a motor has to be read for the diagnosis.
     pub fn diagnosis_wants_signals(&self) -> bool {
-        self.diagnosed().is_some_and(diagnosis::has_actions)
+        self.diagnosed().is_some_and(|settings| self.family().has_pin_actions(settings))
     }
 
     /// Whether each motor is homed or at a limit by an action of its pins; `None` where that is not known.
     pub fn homed(&self) -> Option<[bool; 2]> {
-        self.watch.homed(self.diagnosed()?)
+        self.family().homed(self.diagnosed()?, self.watch.pins())
     }
 
     /// Hands an event of a job to whoever asked for the job.
@@ -379,13 +399,12 @@ impl Desk {
         effects
     }
 
-    /// What is known of the unit's script. A simulated controller in this program tells; of others nothing is known but what went over
+    /// Whether the unit's script runs, as far as known. A simulated controller in this program tells; of others nothing is known but what went over
     /// this link, since no command asks for it.
-    pub fn script(&self) -> Script {
+    pub fn script_runs(&self) -> Option<bool> {
         match self.script_line() {
-            Some(Some(_)) => Script::Started,
-            Some(None) => Script::Stopped,
-            None => self.watch.script(),
+            Some(line) => Some(line.is_some()),
+            None => self.watch.script_runs(),
         }
     }
 
@@ -412,35 +431,17 @@ impl Desk {
         if !self.is_connected() {
             return None;
         }
-        match (self.script(), self.script_line()) {
-            (Script::Started, Some(Some(line))) if self.script_is_paused() => {
+        match (self.script_runs(), self.script_line()) {
+            (Some(true), Some(Some(line))) if self.script_is_paused() => {
                 Some(format!("Script paused, line {line}"))
             }
-            (Script::Started, Some(Some(line))) => Some(format!("Script running, line {line}")),
-            (Script::Started, _) => Some("Script running".to_owned()),
-            (Script::NotKnown, _) if self.autoruns() => Some("Script may run (autorun)".to_owned()),
+            (Some(true), Some(Some(line))) => Some(format!("Script running, line {line}")),
+            (Some(true), _) => Some("Script running".to_owned()),
+            (None, _) if self.family().autoruns(&|key| self.known(key)) => {
+                Some("Script may run (autorun)".to_owned())
+            }
             _ => None,
         }
-    }
-
-    /// Whether the unit starts its script by itself, as far as its settings were read.
-    fn autoruns(&self) -> bool {
-        let delay = self.settings.unit().and_then(|unit| unit.on_controller("script.autorun_delay"));
-        matches!(delay, Some(SettingValue::Int(delay_ms)) if delay_ms >= MIN_AUTORUN.as_millis() as i64)
-    }
-
-    /// All that is known for a diagnosis; `None` before the status was read.
-    pub fn evidence(&self) -> Option<Evidence<'_>> {
-        let identity = self.link.identity()?;
-        let status = self.link.status.as_ref()?;
-        Some(Evidence {
-            settings: self.diagnosed(),
-            pins: self.watch.pins(),
-            stream: self.link.stream,
-            measured: Measured::of(|channel| self.link.readings.get(channel)),
-            script: self.script(),
-            ..Evidence::of(status, identity)
-        })
     }
 
     /// Since when a lamp of the unit that is looked at is as it is, as time since the connection.
@@ -448,9 +449,10 @@ impl Desk {
         self.history.lamp_since(self.link.selected?, short)
     }
 
-    /// Brings the home lamps of an MCP up to date with its pins.
+    /// Brings home lamps up to date with the pins, where these alone tell.
     fn update_homed(&mut self) {
-        let Some(identity) = self.link.identity().filter(|identity| is_mcp(identity)) else { return };
+        let by_pins = |identity: &&Identity| self.family().homes_by_pins(identity);
+        let Some(identity) = self.link.identity().filter(by_pins) else { return };
         let (address, homed) = (identity.address, self.homed());
         self.link.set_homed(homed);
         if let Some(homed) = homed {
@@ -474,7 +476,7 @@ impl Desk {
                 self.update_homed();
                 self.general.take_signals(&sample.signals);
                 self.tune.note_sample(&sample, self.graph_of);
-                self.motion_mind.steps.note_sample(&sample);
+                self.own.iter_mut().for_each(|own| own.note_sample(&sample));
                 self.graph.take(&sample);
             }
             Effect::OtherUnit => {
@@ -500,7 +502,7 @@ impl Desk {
         self.watch = Watch::default();
         self.traffic.link_ended();
         self.debug.forget();
-        self.firmware.not_entered("the link was lost.");
+        self.own.iter_mut().for_each(|own| own.link_ended());
         self.general_view().link_ended();
         self.forget_unit();
         self.rest();
@@ -510,14 +512,15 @@ impl Desk {
 
     /// The unit that is looked at may be of another family than the one before.
     fn turn_to_family(&mut self) {
-        let kind = self.link.identity().map_or(self.family_kind, FamilyKind::of_unit);
-        self.set_family(kind);
+        if let Some(identity) = self.link.identity() {
+            self.set_family(family::of(identity.family));
+        }
     }
 
     /// The family whose screens and channels are shown.
-    pub fn set_family(&mut self, kind: FamilyKind) {
-        if kind != self.family_kind {
-            self.family_kind = kind;
+    pub fn set_family(&mut self, family: &'static dyn Family) {
+        if family.family() != self.family.family() {
+            self.family = family;
             self.graph.set_channels(graph_channels(self.family().channels()));
             self.graph_choices.clear();
             self.show_channels(self.graph_of);
@@ -526,7 +529,7 @@ impl Desk {
 
     /// What is known of one unit's motors says nothing of another's.
     fn forget_unit(&mut self) {
-        self.motion_mind.forget_unit();
+        self.own.iter_mut().for_each(|own| own.forget_unit());
         self.generator.forget();
         self.script.forget();
         self.qpps.forget();

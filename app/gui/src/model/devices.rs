@@ -1,7 +1,9 @@
 //! The device list: what can be connected to, and what was chosen.
 
 use super::desk::{Desk, DeskId, place_of};
-use super::simulated::{FIRST, Simulated};
+use super::simulated::Simulated;
+use crate::family;
+use crate::family::Family;
 use brushwork_link::Failure;
 use brushwork_link::FamilyChoice;
 use brushwork_link::device::Addresses;
@@ -82,7 +84,7 @@ impl Devices {
     /// Chooses what a person would have typed.
     pub fn choose(&mut self, typed: &str) {
         if typed == SIMULATED {
-            FIRST.clone_into(&mut self.simulated.model);
+            self.simulated.model = Simulated::default().model;
         }
         self.choice = if typed == SIMULATED { Choice::Simulated } else { Choice::Typed };
         if self.choice == Choice::Typed {
@@ -97,7 +99,7 @@ impl Devices {
         }
         self.choice = match self.ports.iter().find(|port| desk.is_at(&port.name)) {
             Some(port) => Choice::Port(port.name.clone()),
-            None if desk.is_at(&self.simulated.target()) => Choice::Simulated,
+            None if desk.is_at(&self.simulated_target()) => Choice::Simulated,
             None => Choice::Desk(desk.id()),
         };
     }
@@ -179,36 +181,42 @@ impl Devices {
         self.family = family;
     }
 
-    /// Whether the units that are looked for are Motion Minds for sure.
-    pub fn wants_motion_minds(&self) -> bool {
-        match &self.choice {
-            Choice::Simulated => self.simulated.is_motion_mind(),
-            Choice::Port(_) | Choice::Typed | Choice::Desk(_) => {
-                self.family_matters()
-                    && self.family == FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND)
+    /// The family of the units that are looked for, as far as known.
+    pub fn wanted_family(&self) -> &'static dyn Family {
+        match (&self.choice, self.family.family()) {
+            (Choice::Simulated, _) => family::of_model(&self.simulated.model),
+            (Choice::Port(_) | Choice::Typed | Choice::Desk(_), Some(chosen)) if self.family_matters() => {
+                family::of(chosen)
             }
+            (Choice::Port(_) | Choice::Typed | Choice::Desk(_), _) => family::first(),
         }
+    }
+
+    /// What a person would type to connect to what is simulated.
+    pub fn simulated_target(&self) -> String {
+        family::of_model(&self.simulated.model).simulated_target(&self.simulated)
+    }
+
+    /// Where the simulated units are, where that is what is chosen and follows from it.
+    pub fn simulated_addresses(&self) -> Option<Addresses> {
+        let is_chosen = self.choice == Choice::Simulated;
+        self.wanted_family().simulated_addresses(&self.simulated).filter(|_| is_chosen)
     }
 
     /// The addresses to look for. An address of the other family than the one that is wanted is none.
     pub fn addresses(&self) -> Addresses {
-        match self.addresses {
-            // Where the simulated one is, is known; several are looked for as on any bus.
-            _ if self.choice == Choice::Simulated && self.simulated.is_motion_mind() => {
-                match self.simulated.units {
-                    1 => Addresses::Only(self.simulated.address),
-                    _ => Addresses::Scan,
-                }
-            }
-            Addresses::Only(address) if self.wants_motion_minds() == (address > 98) => Addresses::Scan,
-            addresses => addresses,
+        let has = |address| self.wanted_family().family().has_address(address);
+        match (self.simulated_addresses(), self.addresses) {
+            (Some(simulated), _) => simulated,
+            (None, Addresses::Only(address)) if !has(address) => Addresses::Scan,
+            (None, addresses) => addresses,
         }
     }
 
     /// Where to connect to. A desk's own target is known to the desk.
     pub fn target(&self) -> Result<ConnectTarget, TargetError> {
         match &self.choice {
-            Choice::Simulated => self.simulated.target().parse(),
+            Choice::Simulated => self.simulated_target().parse(),
             Choice::Port(name) => {
                 let stream = self.chosen_port().and_then(|port| port.stream);
                 Ok(ConnectTarget::Serial { path: name.clone(), baud: self.baud, stream, family: self.family })
@@ -298,5 +306,16 @@ mod tests {
         assert!(!devices.choice_is_gone());
         devices.set_ports(Ok(Vec::new()));
         assert!(devices.choice_is_gone());
+    }
+
+    #[test]
+    fn what_is_chosen_is_a_target_as_a_person_would_type_it() {
+        let mut devices = Devices::default();
+        assert_eq!(devices.simulated_target(), "sim:mcp266");
+        devices.simulated.model = "motion-mind-3".to_owned();
+        assert_eq!(devices.simulated_target(), "sim:motion-mind-3,mode=4,protocol=binary,address=1");
+        let simulated = &mut devices.simulated;
+        (simulated.is_text, simulated.units, simulated.address) = (true, 2, 7);
+        assert_eq!(devices.simulated_target(), "sim:motion-mind-3,mode=4,protocol=ascii,address=7,address=8");
     }
 }

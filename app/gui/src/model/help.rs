@@ -1,48 +1,14 @@
-//! The page of help that is open, and what is looked for in it.
+//! The pages of help, the one that is open, and what is looked for in it.
 
-/// A page of help.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum HelpPage {
-    #[default]
-    FirstSteps,
-    Tuning,
-    MotionMind,
-    Settings,
-    PacketSerial,
-    Mcl,
-    Shortcuts,
-    About,
-}
+use super::help_page::HelpPage;
+use crate::family;
 
-impl HelpPage {
-    pub const ALL: [Self; 8] = [
-        Self::FirstSteps,
-        Self::Tuning,
-        Self::MotionMind,
-        Self::Settings,
-        Self::PacketSerial,
-        Self::Mcl,
-        Self::Shortcuts,
-        Self::About,
-    ];
-
-    pub const fn title(self) -> &'static str {
-        match self {
-            Self::FirstSteps => "First Steps",
-            Self::Tuning => "Tuning",
-            Self::MotionMind => "Motion Mind 3",
-            Self::Settings => "Settings Reference",
-            Self::PacketSerial => "Packet Serial Reference",
-            Self::Mcl => "MCL Reference",
-            Self::Shortcuts => "Keyboard Shortcuts",
-            Self::About => "About Brushwork",
-        }
-    }
-
-    /// Whether the page is long enough to be searched.
-    pub const fn is_searched(self) -> bool {
-        matches!(self, Self::MotionMind | Self::Settings | Self::PacketSerial | Self::Mcl | Self::Shortcuts)
-    }
+/// All pages, those of the families among them.
+pub fn pages() -> Vec<HelpPage> {
+    let mut all = vec![HelpPage::FIRST_STEPS, HelpPage::TUNING, HelpPage::SHORTCUTS, HelpPage::ABOUT];
+    all.extend(family::all().iter().flat_map(|family| family.help_pages()));
+    all.sort_by_key(|page| page.group);
+    all
 }
 
 /// The window of help.

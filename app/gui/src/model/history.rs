@@ -4,14 +4,13 @@
 //! Times are counted from the connection. The list survives the end of a link, so that one can read why it ended; it is
 //! bounded and can be cleared.
 
-use brushwork_motion_mind_client::is_motion_mind;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::Duration;
 
 use brushwork_link::device::{DisarmReason, Event, Identity, StatusReport, StopReport};
 
 use crate::family;
-use crate::family::{ActiveIndicator, Family, FamilyKind};
+use crate::family::{ActiveIndicator, Family};
 use crate::model::lamp::LampState;
 
 /// Entries kept; the oldest go first.
@@ -107,7 +106,7 @@ struct UnitState {
 
 impl UnitState {
     fn family(&self) -> &'static dyn Family {
-        family::of(self.identity.as_ref().map(FamilyKind::of_unit).unwrap_or_default())
+        self.identity.as_ref().map_or_else(family::first, |identity| family::of(identity.family))
     }
 }
 
@@ -258,8 +257,8 @@ impl History {
         let Some(unit) = self.units.get_mut(&address) else { return };
         let Some(report) = &unit.report else { return };
         let family = unit.family();
-        let of_mind = unit.identity.as_ref().filter(|identity| is_motion_mind(identity));
-        for (info, state) in family.lamps().iter().zip(family.lit(report, of_mind, unit.homed)) {
+        let states = family.lit_since(report, unit.identity.as_ref(), unit.homed);
+        for (info, state) in family.lamps().iter().zip(states) {
             let known = unit.lamps.entry(info.short).or_insert((state, since));
             if known.0 != state {
                 *known = (state, since);

@@ -41,10 +41,9 @@ mod tests {
 
     use super::*;
     use crate::family;
-    use crate::family::FamilyKind;
 
     fn lamps(report: &StatusReport, identity: Option<&Identity>, homed: Option<[bool; 2]>) -> Lamps {
-        Lamps::of(family::of(FamilyKind::Mcp), report, identity, homed)
+        Lamps::of(family::first(), report, identity, homed)
     }
 
     fn identity(model: &'static str, generation: Generation) -> Identity {

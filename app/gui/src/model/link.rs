@@ -9,14 +9,13 @@ use brushwork_link::device::{
 };
 use brushwork_link::exchange::LinkStatistics;
 use brushwork_link::transport::Stream;
-use brushwork_mcp_wire::models;
 use std::time::Duration;
 
 use super::lamps::Lamps;
 use super::message::Gravity;
 use super::readings::Readings;
 use crate::family;
-use crate::family::{Family, FamilyKind};
+use crate::family::Family;
 
 /// Whether motors may be moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -94,7 +93,7 @@ impl LinkView {
 
     /// The family of the unit that is looked at.
     fn family(&self) -> &'static dyn Family {
-        family::of(self.identity().map(FamilyKind::of_unit).unwrap_or_default())
+        self.identity().map_or_else(family::first, |identity| family::of(identity.family))
     }
 
     /// Takes over what the pins say of home and limit switches.
@@ -161,7 +160,7 @@ impl LinkView {
         let mut said =
             format!("Connected to {} at {}, {}", identity.title(), identity.port, identity.named_place());
         said += &match identity.firmware.as_str() {
-            _ if brushwork_motion_mind_client::is_motion_mind(&identity) => {
+            _ if family::of(identity.family).generation_number(&identity).is_none() => {
                 format!(", {}.", identity.generation)
             }
             "" => format!(" ({}).", identity.generation),
@@ -189,12 +188,12 @@ impl LinkView {
         vec![Effect::OtherUnit]
     }
 
-    /// Small boards have one temperature sensor and report 0 for the second: what is not there was not read.
+    /// Boards without a second temperature sensor report 0 for it: what is not there was not read.
     fn leave_out_missing_sensor(&self, sample: &mut Sample) {
-        let listed = self.identity().and_then(|identity| models::lookup(identity.model?));
-        let second = sample.get(Channel::TEMPERATURE_2);
-        if second == Some(0.0) && listed.is_some_and(|listed| !listed.second_temperature) {
-            sample.remove(Channel::TEMPERATURE_2);
+        let second = Channel::TEMPERATURE_2;
+        let is_made_up = |identity: &Identity| self.family().makes_up(identity, second);
+        if sample.get(second) == Some(0.0) && self.identity().is_some_and(is_made_up) {
+            sample.remove(second);
         }
     }
 

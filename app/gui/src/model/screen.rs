@@ -35,7 +35,7 @@ impl Screen {
     ];
 
     /// Those of an MCP.
-    pub const MCP: [Self; 6] = [
+    pub const USUAL: [Self; 6] = [
         Self::DeviceStatus,
         Self::GeneralSettings,
         Self::Pwm,

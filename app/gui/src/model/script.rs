@@ -1,10 +1,6 @@
 //! Scripts on their way into the controller of a link: the download that runs, and which program is in there.
 
-use std::time::Duration;
-
-use brushwork_link::Wire as _;
 use brushwork_link::device::{Event, Job, QueuedJob};
-use brushwork_mcp_client::script::{DOWNLOAD_JOB, Downloaded, ScriptImage, Verified, download};
 
 use super::link::Effect;
 use super::message::Gravity;
@@ -22,7 +18,7 @@ pub struct Source {
 /// The scripts of one link.
 #[derive(Debug, Default)]
 pub struct ScriptWork {
-    job: Watched<Downloaded>,
+    job: Watched<String>,
     sending: Option<Source>,
     /// What was downloaded last over this link.
     on_board: Option<Source>,
@@ -30,14 +26,8 @@ pub struct ScriptWork {
 
 impl ScriptWork {
     /// What to ask of the device thread; none while a download runs.
-    pub fn begin(&mut self, image: ScriptImage, source: Source) -> Option<QueuedJob> {
-        let blocks = u32::try_from(image.blocks().len()).unwrap_or(u32::MAX);
-        // A wire of 2400 bit/s takes most of it.
-        let limit = Duration::from_secs(60) + Duration::from_millis(200).saturating_mul(blocks);
-        let job = self.job.begin(Job::new(DOWNLOAD_JOB, limit, move |context| {
-            let is_simulated = context.is_simulated();
-            download(context, &image, is_simulated)
-        }))?;
+    pub fn begin(&mut self, download: Job<String>, source: Source) -> Option<QueuedJob> {
+        let job = self.job.begin(download)?;
         self.sending = Some(source);
         self.on_board = None;
         Some(job)
@@ -77,28 +67,11 @@ impl ScriptWork {
         match ended {
             Ok(done) => {
                 let title = source.as_ref().map_or("the script", |source| source.title.as_str());
-                let text = told(title, &done);
+                let text = format!("Downloaded {title}: {done}");
                 self.on_board = source;
                 vec![Effect::Say(Gravity::Note, text)]
             }
             Err(unfinished) => vec![Effect::Say(Gravity::Error, unfinished.sentence)],
         }
     }
-}
-
-/// What was sent and how far it is known to have arrived.
-fn told(title: &str, done: &Downloaded) -> String {
-    let verified = match done.verified {
-        Verified::Content => "verified".to_owned(),
-        Verified::Status => "each block confirmed".to_owned(),
-        Verified::Alike(byte) => {
-            format!("each block answered with 0x{byte:02X}, whose meaning is not public")
-        }
-    };
-    let foreign = if done.is_foreign { " A simulated controller does not run it." } else { "" };
-    format!(
-        "Downloaded {title}: {} bytes in {:.1} s, {verified}. Start Script runs it.{foreign}",
-        done.bytes,
-        done.took.as_secs_f64()
-    )
 }

@@ -2,17 +2,16 @@
 //! known of the script. Nothing here edits.
 
 use brushwork_link::device::{Event, PinSignal, Sample};
-use brushwork_link::settings::SettingsImage;
-use brushwork_mcp_client::diagnosis;
-use brushwork_mcp_client::diagnosis::{PinEnd, Script};
 
 use super::settings::UnitSettings;
+use crate::family::Family;
 
 /// What is known of one unit beyond its status word and its settings.
 #[derive(Debug, Default)]
 pub struct Watch {
-    pins: Option<Vec<PinEnd>>,
-    script: Script,
+    pins: Option<Vec<PinSignal>>,
+    /// Whether a script was started, or was stopped, over this link; no command tells whether one runs.
+    script_runs: Option<bool>,
     /// The settings that it goes by.
     keys: Vec<String>,
     /// The revision of the settings that was looked at last.
@@ -21,17 +20,17 @@ pub struct Watch {
 
 impl Watch {
     /// Where the input pins stand, while they are read.
-    pub fn pins(&self) -> Option<&[PinEnd]> {
+    pub fn pins(&self) -> Option<&[PinSignal]> {
         self.pins.as_deref()
     }
 
-    pub fn script(&self) -> Script {
-        self.script
+    pub fn script_runs(&self) -> Option<bool> {
+        self.script_runs
     }
 
     /// A script was started over this link, or was stopped.
-    pub fn note_script(&mut self, script: Script) {
-        self.script = script;
+    pub fn note_script(&mut self, runs: bool) {
+        self.script_runs = Some(runs);
     }
 
     /// Another unit, or another link: nothing is known.
@@ -45,13 +44,13 @@ impl Watch {
     }
 
     /// Looks at the settings, if they have changed; true then.
-    pub fn see(&mut self, unit: Option<&UnitSettings>) -> bool {
+    pub fn see(&mut self, family: &dyn Family, unit: Option<&UnitSettings>) -> bool {
         let revision = unit.map(UnitSettings::revision);
         if self.seen == revision {
             return false;
         }
         self.seen = revision;
-        self.keys = unit.map(|unit| diagnosis::keys(unit.table())).unwrap_or_default();
+        self.keys = unit.map(|unit| family.diagnosis_keys(unit.table())).unwrap_or_default();
         true
     }
 
@@ -60,23 +59,14 @@ impl Watch {
         if let Event::Stopped(report) = event
             && report.confirmed()
         {
-            self.script = Script::Stopped;
+            self.script_runs = Some(false);
         }
     }
 
     /// Takes over where the input pins stand.
     pub fn note_sample(&mut self, sample: &Sample) {
         if !sample.signals.is_empty() {
-            let end = |signal: &PinSignal| PinEnd::of_percent(signal.percent.into());
-            self.pins = Some(sample.signals.iter().map(end).collect());
+            self.pins = Some(sample.signals.clone());
         }
-    }
-
-    /// Whether each motor is homed or at a limit by an action of its pins, as the settings say; `None` where the pins are not known.
-    pub fn homed(&self, settings: &SettingsImage) -> Option<[bool; 2]> {
-        if !diagnosis::has_actions(settings) {
-            return Some([false; 2]);
-        }
-        Some(diagnosis::homed(settings, self.pins.as_deref()?))
     }
 }

@@ -2,9 +2,9 @@
 
 use egui::{Frame, Margin, Stroke, Ui};
 
+use super::face;
 use super::generator::generator_ui;
 use super::loops::loops_ui;
-use super::motion_mind::steps::steps_ui;
 use super::qpps::qpps_ui;
 use crate::command::Commands;
 use crate::model::Model;
@@ -40,7 +40,7 @@ pub fn drawer_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             Tab::Generator => generator_ui(ui, model, commands),
             Tab::Qpps => qpps_ui(ui, model, commands),
             Tab::ByHand => by_hand_ui(ui, model, commands),
-            Tab::Steps => steps_ui(ui, model, commands),
+            Tab::Steps => face::of(model.front.family()).steps_ui(ui, model, commands),
             Tab::Tune => {}
         }
     });

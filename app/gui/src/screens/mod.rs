@@ -3,7 +3,6 @@
 use egui::{Align, Layout, RichText, Ui};
 
 use super::command::Commands;
-use super::family::FamilyKind;
 use super::mcl;
 use super::model::screen::Screen;
 use super::model::{Model, Phase};
@@ -12,16 +11,15 @@ use super::theme::Palette;
 pub mod canopen;
 mod drawer;
 pub(super) mod drive;
-pub mod firmware;
+pub mod face;
 pub(super) mod general;
 mod generator;
 mod loops;
-pub mod motion_mind;
 mod position;
 mod progress;
 mod pwm;
 mod qpps;
-mod status;
+pub(super) mod status;
 mod velocity;
 
 /// The screen that is open, as the family of the controller in front draws it.
@@ -30,14 +28,13 @@ pub fn screen_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     if let Some(scope) = drives.filter(|scope| scope.allows_motion()) {
         return drive::large_graph_ui(ui, scope, model, commands);
     }
-    match model.front.family_kind {
-        FamilyKind::Mcp => mcp_ui(ui, model, commands),
-        FamilyKind::MotionMind => motion_mind::screen_ui(ui, model, commands),
+    if !face::of(model.front.family()).screen_ui(ui, model, commands) {
+        shared_ui(ui, model, commands);
     }
 }
 
-/// The screens of an MCP.
-fn mcp_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+/// The screens as a family has them that draws none of its own.
+fn shared_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     match model.screen {
         Screen::DeviceStatus => status::status_ui(ui, model, commands),
         Screen::GeneralSettings => general::general_ui(ui, model, commands),
@@ -52,7 +49,7 @@ fn mcp_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 }
 
 /// What a screen shows while it has nothing to show.
-fn nothing_ui(ui: &mut Ui, hint: &str) {
+pub(super) fn nothing_ui(ui: &mut Ui, hint: &str) {
     let color = Palette::of(ui).weak_text;
     ui.with_layout(Layout::centered_and_justified(egui::Direction::LeftToRight), |ui| {
         ui.with_layout(Layout::top_down(Align::Center), |ui| {
@@ -63,7 +60,7 @@ fn nothing_ui(ui: &mut Ui, hint: &str) {
 }
 
 /// Why there is nothing to show before a controller has answered.
-fn not_connected_text(phase: &Phase) -> String {
+pub(super) fn not_connected_text(phase: &Phase) -> String {
     match phase {
         Phase::Closed => {
             "Not connected.\nChoose a device at the left and press Connect. The simulated MCP266 needs no hardware.".to_owned()
@@ -75,7 +72,7 @@ fn not_connected_text(phase: &Phase) -> String {
 }
 
 /// The screen's title, with a line of explanation at its right.
-fn title_ui(ui: &mut Ui, title: &str, note: &str) {
+pub(super) fn title_ui(ui: &mut Ui, title: &str, note: &str) {
     ui.horizontal(|ui| {
         ui.heading(title);
         let color = Palette::of(ui).weak_text;

@@ -3,7 +3,6 @@
 use brushwork_link::FamilyChoice;
 use brushwork_link::device::{Addresses, Identity};
 use brushwork_link::transport::PortInfo;
-use brushwork_mcp_wire::packet_serial::Address;
 use egui::{
     Align2, ComboBox, Key, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui,
     WidgetInfo, pos2, vec2,
@@ -12,13 +11,17 @@ use egui::{
 use egui::containers::menu::MenuButton;
 
 use crate::command::{Command, Commands};
+use crate::family;
+use crate::family::Family;
 use crate::model::devices::{BAUD_RATES, Choice, Devices};
 use crate::model::lamp::LampState;
 use crate::model::link::Arming;
 use crate::model::simulated::Simulated;
 use crate::model::{Desk, DeskId, Model, Phase, place_of};
+use crate::screens::face;
 use crate::theme::Palette;
 use crate::widgets::heading::heading_ui;
+use crate::widgets::label::name_combo;
 use crate::widgets::text_field::text_field_ui;
 
 const ROW_HEIGHT: f32 = 54.0;
@@ -65,7 +68,7 @@ struct Row {
 fn rows(model: &Model) -> Vec<Row> {
     let devices = &model.devices;
     let simulated = &devices.simulated;
-    let (place, title) = (simulated.target(), format!("Simulated {}", simulated.name()));
+    let (place, title) = (devices.simulated_target(), format!("Simulated {}", name_of(simulated)));
     let mut rows = vec![row(model, Choice::Simulated, &place, &title, "in this program")];
     for port in devices.ports() {
         rows.push(row(model, Choice::Port(port.name.clone()), &port.name, &port.name, &described(port)));
@@ -271,17 +274,16 @@ fn options_ui(ui: &mut Ui, devices: &mut Devices) {
         if devices.choice == Choice::Simulated {
             model_ui(ui, &mut devices.simulated);
         }
-        if !(devices.choice == Choice::Simulated && devices.simulated.is_motion_mind()) {
-            let motion_minds = devices.wants_motion_minds();
+        if devices.simulated_addresses().is_none() {
             let shown = devices.addresses();
-            devices.addresses = address_ui(ui, shown, motion_minds);
+            devices.addresses = address_ui(ui, shown, devices.wanted_family());
         }
         if devices.baud_matters() {
             baud_ui(ui, &mut devices.baud);
         }
     });
-    if devices.choice == Choice::Simulated && devices.simulated.is_motion_mind() {
-        motion_mind_ui(ui, &mut devices.simulated);
+    if devices.choice == Choice::Simulated {
+        face::of(devices.wanted_family()).simulated_ui(ui, &mut devices.simulated);
     }
     if devices.family_matters() {
         let mut family = devices.family;
@@ -292,12 +294,17 @@ fn options_ui(ui: &mut Ui, devices: &mut Devices) {
     }
 }
 
+/// The model's name.
+fn name_of(simulated: &Simulated) -> &str {
+    let named = family::simulated_models().find(|(key, _)| *key == simulated.model);
+    named.map_or(simulated.model.as_str(), |(_, name)| name)
+}
+
 /// Which model is simulated.
 fn model_ui(ui: &mut Ui, simulated: &mut Simulated) {
-    let combo =
-        ComboBox::from_id_salt("simulated model").width(104.0).selected_text(simulated.name().to_owned());
+    let combo = ComboBox::from_id_salt("simulated model").width(104.0).selected_text(name_of(simulated));
     let response = combo.show_ui(ui, |ui| {
-        for (key, name) in Simulated::models() {
+        for (key, name) in family::simulated_models() {
             if ui.selectable_label(simulated.model == key, name).clicked() {
                 key.clone_into(&mut simulated.model);
             }
@@ -305,44 +312,6 @@ fn model_ui(ui: &mut Ui, simulated: &mut Simulated) {
     });
     name_combo(ui, &response.response, "Simulated model", "Which controller is simulated in this program");
 }
-
-/// How the switches of a simulated Motion Mind stand: they are read at its power-up, so that another choice is another unit.
-fn motion_mind_ui(ui: &mut Ui, simulated: &mut Simulated) {
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
-        let text = |mode: u8| format!("{mode} {}", MODES[usize::from(mode).min(MODES.len() - 1)]);
-        let combo =
-            ComboBox::from_id_salt("mode").width(104.0).selected_text(text(simulated.mode)).truncate();
-        let response = combo.show_ui(ui, |ui| {
-            for mode in 0..=7 {
-                ui.selectable_value(&mut simulated.mode, mode, text(mode));
-            }
-        });
-        name_combo(ui, &response.response, "Mode", "What moves the motor: switches 2 to 4 of the board");
-        let text = |is_text: bool| if is_text { "ASCII" } else { "Binary" };
-        let combo = ComboBox::from_id_salt("protocol").width(60.0).selected_text(text(simulated.is_text));
-        let response = combo.show_ui(ui, |ui| {
-            for is_text in [false, true] {
-                ui.selectable_value(&mut simulated.is_text, is_text, text(is_text));
-            }
-        });
-        name_combo(ui, &response.response, "Protocol", "Switch 6 of the board");
-    });
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
-        let number = |ui: &mut Ui, label: &str, name: &str, value: &mut u8, range| {
-            ui.label(label);
-            let field = ui.add(egui::DragValue::new(value).range(range).speed(0.2));
-            ui.ctx().accesskit_node_builder(field.id, |node| node.set_label(name));
-        };
-        number(ui, "Address", "Unit address", &mut simulated.address, 1..=98);
-        number(ui, "Units", "Units on the bus", &mut simulated.units, 1..=Simulated::MOST_UNITS);
-    });
-}
-
-/// Short names of the modes, by number.
-const MODES: [&str; 8] =
-    ["R/C", "Analog", "Buttons", "Serial", "Serial PID", "Analog PID", "Factory restore", "Factory test"];
 
 /// Which family the controllers at a port are of.
 fn family_ui(ui: &mut Ui, chosen: &mut FamilyChoice) {
@@ -357,30 +326,24 @@ fn family_ui(ui: &mut Ui, chosen: &mut FamilyChoice) {
     name_combo(ui, &response.response, "Controller family", help);
 }
 
-fn address_ui(ui: &mut Ui, shown: Addresses, motion_minds: bool) -> Addresses {
+fn address_ui(ui: &mut Ui, shown: Addresses, family: &dyn Family) -> Addresses {
     let text = |addresses: Addresses| match addresses {
         Addresses::Scan => "Scan all".to_owned(),
         Addresses::These(_) => "Several".to_owned(),
         Addresses::Factory => "Factory".to_owned(),
-        Addresses::Only(address) if motion_minds => format!("unit {address}"),
-        Addresses::Only(address) => format!("0x{address:02X}"),
+        Addresses::Only(address) => family.address_label(address),
     };
     let mut chosen = shown;
     let combo = ComboBox::from_id_salt("address").width(72.0).selected_text(text(shown));
     let response = combo.show_ui(ui, |ui| {
-        let each: Vec<u8> = match motion_minds {
-            true => (1..=98).collect(),
-            false => Address::ALL.into_iter().map(Address::get).collect(),
-        };
-        for addresses in std::iter::once(Addresses::Scan).chain(each.into_iter().map(Addresses::Only)) {
+        let each = (0..=u8::MAX).filter(|number| family.family().has_address(*number));
+        for addresses in std::iter::once(Addresses::Scan).chain(each.map(Addresses::Only)) {
             ui.selectable_value(&mut chosen, addresses, text(addresses));
         }
     });
-    let help = match motion_minds {
-        true => "Which addresses to ask when connecting: all from 1 to 98, which takes a while, or one",
-        false => "Which addresses to ask when connecting: all from 0x80 to 0x87, or one",
-    };
-    name_combo(ui, &response.response, "Address", help);
+    let (all, cost) = (family.family().addresses(), family.scan_cost());
+    let help = format!("Which addresses to ask when connecting: all from {all}, {cost}or one");
+    name_combo(ui, &response.response, "Address", &help);
     chosen
 }
 
@@ -414,11 +377,6 @@ fn recent_ui(ui: &mut Ui, devices: &Devices, commands: &mut Commands) {
         })
     });
     menu.inner.0.on_hover_text("Connections of before");
-}
-
-fn name_combo(ui: &Ui, response: &Response, name: &str, help: &str) {
-    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name));
-    response.clone().on_hover_text(help);
 }
 
 /// Connects to what is chosen, or ends the link to it.

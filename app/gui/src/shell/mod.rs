@@ -55,7 +55,7 @@ pub fn shell_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     CentralPanel::no_frame().frame(central).show(ui, |ui| screens::screen_ui(ui, model, commands));
     let room = ui.ctx().content_rect().with_min_x(left.right());
     help::help_ui(ui.ctx(), model, room);
-    screens::firmware::firmware_ui(ui.ctx(), model, commands, room);
+    screens::face::all().for_each(|face| face.windows_ui(ui.ctx(), model, commands, room));
     screens::canopen::canopen_ui(ui.ctx(), model, commands, room);
     palette::palette_ui(ui.ctx(), model, commands);
 }

@@ -1,6 +1,5 @@
 //! The row of monitored parameters (MCP manual 1.2.2), in blocks that wrap when the window is narrow.
 
-use brushwork_mcp_client::packet_generation;
 use brushwork_values::Motor;
 use egui::{Label, Role, Ui, WidgetInfo, vec2};
 
@@ -104,8 +103,8 @@ fn identity_ui(ui: &mut Ui, model: &Model) {
     });
     let version = identity.map(|identity| match identity.firmware.as_str() {
         "" => "not told".to_owned(),
-        version => match packet_generation(identity.generation) {
-            Some(generation) => format!("{version} (gen {})", generation.number()),
+        version => match model.front.family().generation_number(identity) {
+            Some(generation) => format!("{version} (gen {generation})"),
             None => identity.generation.to_string(),
         },
     });

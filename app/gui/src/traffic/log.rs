@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use brushwork_mcp_wire::packet_serial::lookup;
 use egui::{
     Align2, ComboBox, FontId, Label, RichText, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2,
 };
 
 use crate::command::Commands;
+use crate::family::Family;
 use crate::files::{FileAnswer, FileDialog, FileKind, FileWish};
 use crate::model::Model;
 use crate::model::lamp::LampState;
@@ -55,8 +55,9 @@ pub fn head_ui(ui: &mut Ui, model: &mut Model, _commands: &mut Commands) {
 pub fn log_ui(ui: &mut Ui, model: &mut Model, _commands: &mut Commands) {
     saving_ui(ui, model);
     let connected = model.front.is_connected();
+    let family = model.front.family();
     let traffic = &mut model.front.traffic;
-    filter_ui(ui, &mut traffic.log);
+    filter_ui(ui, &mut traffic.log, family);
     summary_ui(ui, &traffic.log);
     if traffic.log.shown_len() == 0 {
         let hint = hint(traffic, connected);
@@ -84,7 +85,7 @@ fn hint(traffic: &Traffic, connected: bool) -> &'static str {
     }
 }
 
-fn filter_ui(ui: &mut Ui, log: &mut Log) {
+fn filter_ui(ui: &mut Ui, log: &mut Log, family: &dyn Family) {
     let mut filter: Filter = log.filter().clone();
     ui.horizontal(|ui| {
         ui.scope(|ui| {
@@ -93,7 +94,7 @@ fn filter_ui(ui: &mut Ui, log: &mut Log) {
         });
         let text = |command: Option<u8>| match command {
             None => "All commands".to_owned(),
-            Some(number) => format!("{number} {}", lookup(number).map_or("", |row| row.title)),
+            Some(number) => format!("{number} {}", family.command_title(number)),
         };
         let combo =
             ComboBox::from_id_salt("traffic command").width(190.0).selected_text(text(filter.command));

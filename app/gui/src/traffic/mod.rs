@@ -1,14 +1,15 @@
 //! The traffic panel: every transaction as it goes over the wire, one command put together by hand, and the bytes that wait to
 //! be sent. It lies below any screen, so that one can watch while driving.
 
-use egui::{Key, Ui};
+use egui::{Key, RichText, Ui};
 
-use super::command::{Command, Commands};
+use super::command::Commands;
 use super::model::Model;
 use super::model::traffic::Tab;
+use super::screens::face;
+use super::theme::Palette;
 use super::widgets::heading::heading_ui;
 
-mod composer;
 mod log;
 mod pending;
 
@@ -35,12 +36,12 @@ pub fn traffic_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     });
     match tab {
         Tab::Log => log::log_ui(ui, model, commands),
-        Tab::Composer => composer::composer_ui(ui, model, commands),
+        Tab::Composer => {
+            if !face::of(model.front.family()).composer_ui(ui, model, commands) {
+                let hint = "Not connected. A command can be put together here and sent to a controller.";
+                ui.label(RichText::new(hint).color(Palette::of(ui).weak_text));
+            }
+        }
         Tab::Pending => pending::pending_ui(ui, model),
     }
-}
-
-/// What a screen command is called here, so that others need not know it.
-pub fn send(id: u64, request: brushwork_mcp_wire::packet_serial::Request) -> Command {
-    Command::Transact { id, command: request.command, values: request.values }
 }

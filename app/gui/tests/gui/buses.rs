@@ -43,6 +43,7 @@ struct Window {
 
 impl Window {
     fn new() -> Self {
+        crate::support::install_families();
         let folder = tempfile::tempdir().expect("a temporary folder can be made");
         let keeping = Keeping::new(Store::at(folder.path().join("kept")));
         let mut parts = Some(Parts { ports: Box::new(NoPorts), opener: session_opener(), keeping });
@@ -65,7 +66,6 @@ impl Window {
     }
 
     fn open(&mut self, target: &str) {
-        crate::support::install_families();
         self.harness.step();
         self.app.borrow_mut().as_mut().expect("it was drawn").open(target);
         self.until("it is connected", |app| app.model.front.is_connected());
@@ -177,7 +177,7 @@ fn settings_that_differ_after_an_update_are_listed_and_can_be_restored() {
     let mut window = Window::new();
     window.open(UNIT);
     // A change in RAM that was never saved: the restart after the update forgets it.
-    window.app.borrow_mut().as_mut().unwrap().model.front.firmware.open = true;
+    window.app.borrow_mut().as_mut().unwrap().model.front.mcp_mut().firmware.open = true;
     let request = Request::Transact {
         id: 1,
         command: brushwork_mcp_wire::packet_serial::number::SET_VELOCITY_PID_M1,

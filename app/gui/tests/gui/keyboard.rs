@@ -169,7 +169,7 @@ fn a_command_is_composed_and_the_history_cleared_by_keys_alone() {
 fn every_screen_has_a_key_and_the_panels_too() {
     let mut bench = connected();
     let keys = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6];
-    for (key, screen) in keys.into_iter().zip(Screen::MCP) {
+    for (key, screen) in keys.into_iter().zip(Screen::USUAL) {
         bench.key_with(Modifiers::COMMAND, key);
         bench.pass_ms(300);
         assert_eq!(bench.model().screen, screen);

@@ -406,7 +406,7 @@ fn the_terminal_sends_neither_the_self_test_nor_motion() {
     assert!(!bench.sees("Send command"));
     bench.key(Key::Escape);
     let field = bench.model();
-    field.front.motion_mind.terminal.typed.clear();
+    field.front.mind_mut().terminal.typed.clear();
     type_line(&mut bench, "V01 20");
     assert!(bench.sees_part("this moves the motor"));
     bench.key(Key::Enter);

@@ -2,8 +2,8 @@
 
 use crate::support::bench::Bench;
 use brushwork_gui::model::loop_settings::VELOCITY;
-use brushwork_gui::model::motion_mind::registers::key;
 use brushwork_gui::model::settings::UnitSettings;
+use brushwork_gui::motion_mind::model::registers::key;
 use brushwork_link::settings::SettingValue;
 use brushwork_mcp_wire::packet_serial::{Generation, number};
 use brushwork_motion_mind_sim::{Mode, MotionMindConfig};
@@ -124,7 +124,7 @@ fn a_command_by_hand_that_changes_ram_is_seen_on_every_screen() {
     bench.model().front.traffic.open = true;
     bench.pass_ms(200);
     bench.press("Send a command");
-    let composer = &mut bench.model().front.traffic.composer;
+    let composer = &mut bench.model().front.mcp_mut().composer;
     composer.choose(number::SET_VELOCITY_PID_M1, Generation::Gen1);
     // D, P, I and QPPS (MCP manual 2.4.1).
     composer.arguments = ["0", "131072", "0", "9000"].map(str::to_owned).to_vec();

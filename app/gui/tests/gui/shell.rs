@@ -401,7 +401,7 @@ fn without_a_name(bench: &Bench) -> Vec<String> {
 #[test]
 fn everything_that_can_be_used_has_a_name_on_every_screen() {
     let mut bench = both_open();
-    for screen in Screen::MCP.into_iter() {
+    for screen in Screen::USUAL.into_iter() {
         bench.press(screen.title());
         bench.pass_ms(4000);
         assert_eq!(without_a_name(&bench), [] as [String; 0], "{}", screen.title());
@@ -459,7 +459,7 @@ fn at_the_smallest_size_the_shell_is_whole_on_every_screen() {
     bench.connect();
     connect_second(&mut bench);
     let window = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1024.0, 700.0));
-    for screen in Screen::MCP.into_iter() {
+    for screen in Screen::USUAL.into_iter() {
         bench.press(screen.title());
         bench.pass_ms(1000);
         let always = [

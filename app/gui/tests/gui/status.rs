@@ -46,7 +46,10 @@ fn a_blocked_shaft_is_told_as_a_current_limit_while_the_motor_drives() {
     bench.set_duty(Motor::M1, "100");
     bench.pass_ms(2000);
     assert!(bench.sees("M1OC: warning"));
-    let evidence = bench.model().front.evidence().map(|evidence| diagnose(&evidence).sentence());
+    let evidence = {
+        let pins = bench.model().front.pin_ends();
+        bench.model().front.evidence(pins.as_deref()).map(|evidence| diagnose(&evidence).sentence())
+    };
     let sentence = evidence.expect("the status was read");
     assert!(
         sentence.contains("motor 1 is at its current limit (") && sentence.contains("Free the shaft"),

@@ -111,7 +111,7 @@ fn a_command_that_changes_settings_is_sent_once_a_backup_of_them_is_kept() {
     bench.press("Send a command");
     let generation = brushwork_mcp_wire::packet_serial::Generation::Gen1;
     let unit = UnitId::new(bench.model().front.link.identity().unwrap(), &[]);
-    let composer = &mut bench.model().front.traffic.composer;
+    let composer = &mut bench.model().front.mcp_mut().composer;
     composer.choose(number::SET_VELOCITY_PID_M1, generation);
     // D, P, I and QPPS (MCP manual 2.4.1).
     composer.arguments = ["0", "131072", "0", "9000"].map(str::to_owned).to_vec();
@@ -127,14 +127,14 @@ fn a_command_that_changes_settings_is_sent_once_a_backup_of_them_is_kept() {
     assert_eq!(kept.get("motor1.velocity.qpps"), Some(SettingValue::Int(44_000)), "what was there before");
     // A save counts as one.
     assert_eq!(bench.store().wear(&unit).saves, 0);
-    bench.model().front.traffic.composer.choose(number::SAVE_SETTINGS, generation);
+    bench.model().front.mcp_mut().composer.choose(number::SAVE_SETTINGS, generation);
     bench.pass_ms(200);
     bench.press("Send these bytes");
     bench.pass_ms(3000);
     assert_eq!((bench.store().backups(Some(&unit)).len(), bench.store().wear(&unit).saves), (2, 1));
     assert!(bench.store().open_journals(&unit).0.is_empty());
     // What only reads has none.
-    bench.model().front.traffic.composer.choose(number::READ_MAIN_BATTERY, generation);
+    bench.model().front.mcp_mut().composer.choose(number::READ_MAIN_BATTERY, generation);
     bench.pass_ms(200);
     bench.press("Send these bytes");
     bench.pass_ms(1000);
@@ -146,7 +146,7 @@ fn a_motion_command_is_refused_until_a_screen_is_armed_and_space_stops_it() {
     let mut bench = open();
     bench.press("Send a command");
     let generation = brushwork_mcp_wire::packet_serial::Generation::Gen1;
-    let composer = &mut bench.model().front.traffic.composer;
+    let composer = &mut bench.model().front.mcp_mut().composer;
     composer.choose(number::DUTY_M1, generation);
     composer.arguments = vec!["8000".to_owned()];
     bench.pass_ms(200);

@@ -2,8 +2,9 @@
 //! back on every way out. While it is open the input commands nothing.
 
 use brushwork_link::settings::{Keeper, SettingsImage};
-use brushwork_mcp_client::settings::{Calibrated, Calibration, open_range};
 
+use super::calibration::{Calibrated, Calibration};
+use crate::family::Family;
 use crate::model::message::Gravity;
 use crate::model::settings::{Before, SettingsWish, Summary, UnitKey, UnitSettings};
 use brushwork_core::keep::TrialKeeper;
@@ -14,6 +15,7 @@ mod acts;
 #[derive(Debug)]
 pub struct Run {
     pub(super) unit: UnitKey,
+    family: &'static dyn Family,
     pub(super) pin: usize,
     phase: Phase,
     /// Why the last step was not taken, for the user.
@@ -68,8 +70,8 @@ impl Run {
     }
 
     fn opened(&self) -> SettingsImage {
-        let mode = brushwork_mcp_client::settings::PinMode::of(&|key| self.before.get(key), self.pin);
-        mode.map(|mode| open_range(self.pin, mode)).unwrap_or_default()
+        let opened = self.family.opened_input(&|key| self.before.get(key), self.pin);
+        opened.unwrap_or_default()
     }
 }
 

@@ -2,6 +2,7 @@
 //! unit, which [`GeneralView`] borrows.
 
 mod calibrate;
+mod calibration;
 mod clamp;
 mod compare;
 mod list;
@@ -14,6 +15,7 @@ mod unfinished;
 mod view;
 
 pub use calibrate::Run as CalibrationRun;
+pub use calibration::CalibrationStage;
 pub use clamp::{ClampTest, Verdict};
 pub use compare::{Comparing, Comparison, Side, Take};
 pub use profile::{Profiles, Purpose, Told};

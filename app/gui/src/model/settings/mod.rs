@@ -3,7 +3,6 @@
 mod applicable;
 mod kept;
 mod outcome;
-mod pins;
 mod summary;
 mod unit;
 mod unit_key;

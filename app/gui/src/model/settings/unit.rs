@@ -2,20 +2,19 @@
 //!
 //! Every screen that shows a setting shows this state, and whatever changes RAM or an edit raises its revision.
 
-use brushwork_mcp_client::{layout_of, subject};
 use std::collections::{BTreeMap, BTreeSet};
 
 use brushwork_core::settings::write_options;
 use brushwork_link::UnitAddress;
 use brushwork_link::device::Identity;
 use brushwork_link::settings::{
-    Copies, Difference, Known, Plan, Profile, ReadReport, Refusal, Row, RowState, SaveReport, SaveVerdict,
-    SettingValue, SettingsImage, SettingsTable, WriteOptions, WriteReport, diff, plan,
+    Copies, Difference, Group, Kind, Known, Plan, Profile, ReadReport, Refusal, Row, RowState, SaveReport,
+    SaveVerdict, SettingValue, SettingsImage, SettingsTable, WriteOptions, WriteReport, diff, plan,
 };
 use brushwork_link::transport::Stream;
-use brushwork_mcp_wire::models;
 
 use super::applicable;
+use crate::family;
 
 /// The settings of one unit.
 #[derive(Debug)]
@@ -86,9 +85,7 @@ pub enum Saved {
 impl UnitSettings {
     pub fn new(identity: &Identity) -> Self {
         // Whatever answers and is not known by name has the settings that all of the family have.
-        let subject = identity
-            .subject()
-            .unwrap_or_else(|| subject(&models::UNLISTED[0], layout_of(identity.generation)));
+        let subject = family::of(identity.family).subject(identity);
         Self {
             table: SettingsTable::new(subject),
             is_simulated: identity.simulated,
@@ -523,6 +520,29 @@ impl UnitSettings {
             settings.merge(self.edits());
         }
         Some(self.profile_of(settings))
+    }
+
+    /// Wants a number, moved into the row's range.
+    pub fn set_number(&mut self, key: &str, number: f64) {
+        let Some(row) = self.table().row(key) else { return };
+        let number = number.clamp(row.range.min, row.range.max);
+        let value = match row.kind {
+            Kind::Int => SettingValue::Int(number.round() as i64),
+            _ => row.settle(SettingValue::Number(number)),
+        };
+        self.set(key, value);
+    }
+
+    /// What a port, pin or output is wanted to do, in a few words.
+    pub fn function(&self, group: Group, number: usize) -> Option<String> {
+        let family = family::of(self.table().subject().family());
+        family.function(self.table(), &|key| self.wanted(key), (group, number))
+    }
+
+    pub fn set_all(&mut self, values: &SettingsImage) {
+        for (key, value) in values.iter() {
+            self.set(key, value);
+        }
     }
 
     /// Values as a profile of this controller.

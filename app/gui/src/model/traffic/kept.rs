@@ -1,13 +1,11 @@
 //! A command put together by hand that changes settings: it waits until a backup of them is kept.
 
-use brushwork_mcp_client::layout_of;
 use std::task::Poll;
 use std::time::Duration;
 
 use brushwork_link::Failure;
 use brushwork_link::device::{Identity, Job, JobTicket, QueuedJob, Request};
 use brushwork_link::settings::{Ending, Keeper, begin_command};
-use brushwork_mcp_wire::packet_serial::{Effect, lookup, number};
 use brushwork_values::{Value, Values};
 
 use brushwork_core::keep::TrialKeeper;
@@ -37,24 +35,18 @@ impl Transact {
     pub fn request(self) -> Request {
         Request::Transact { id: self.id, command: self.command, values: self.values }
     }
-
-    /// Whether it changes settings, in RAM or in EEPROM.
-    pub fn changes_settings(&self, identity: &Identity) -> bool {
-        let effect = lookup(self.command).map(|row| row.effect(layout_of(identity.generation)));
-        matches!(effect, Some(Effect::Setting | Effect::Memory))
-    }
 }
 
 impl KeptCommand {
-    /// The job that keeps a backup before `transact` is sent.
+    /// The job that keeps a backup before `transact` is sent, which may save all settings.
     pub fn keep_first(
         &mut self,
         transact: Transact,
+        saves: bool,
         identity: &Identity,
         keeper: Box<dyn Keeper>,
     ) -> Option<QueuedJob> {
         let subject = identity.subject()?;
-        let saves = transact.command == number::SAVE_SETTINGS;
         let keeper = TrialKeeper::new(keeper);
         self.keeper = Some(keeper.clone());
         let job = Job::new(JOB, LIMIT, move |context| {

@@ -1,11 +1,9 @@
 //! The traffic panel's state: what went over the wire, a composer for one command, and the bytes that wait to be sent.
 
-mod composer;
 mod kept;
 mod log;
 pub mod pending;
 
-pub use composer::{Composer, Prepared};
 pub use kept::{KeptCommand, Transact};
 pub use log::{Filter, Log, MOST, MOST_BYTES, Outcome, Transaction};
 
@@ -31,7 +29,6 @@ pub struct Traffic {
     pub open: bool,
     pub tab: Tab,
     pub log: Log,
-    pub composer: Composer,
     /// A command that changes settings and waits for their backup.
     pub kept: KeptCommand,
     /// The name that was typed for a file, while one is asked for.
@@ -46,7 +43,6 @@ impl Traffic {
             Event::Traffic { traffic, text, sound } => self.log.take(traffic, text, *sound),
             Event::Transacted { id, result } => {
                 self.kept.answered(*id, result);
-                self.composer.answered(*id, result);
             }
             _ => {}
         }
@@ -55,7 +51,6 @@ impl Traffic {
     /// The link is gone: a request that waits for its answer waits for nothing.
     pub fn link_ended(&mut self) {
         self.log.link_ended();
-        self.composer.forget_waiting();
         self.kept.forget();
     }
 

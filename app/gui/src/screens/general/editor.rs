@@ -1,12 +1,11 @@
 //! The field of one setting: a box, a list, or an exact number.
 
 use brushwork_link::settings::{Kind, Row, SettingValue};
-use brushwork_mcp_client::model_of;
-use brushwork_mcp_wire::codes::ENCODER_PIN_NONE;
 use brushwork_values::Code;
 use egui::text::{CCursor, CCursorRange};
 use egui::{ComboBox, Id, Key, Response, RichText, Stroke, TextEdit, Ui, vec2};
 
+use crate::family;
 use crate::model::settings::UnitSettings;
 use crate::theme;
 use crate::theme::Palette;
@@ -16,10 +15,11 @@ const LIST_WIDTH: f32 = 164.0;
 
 /// Draws the field; true when it has the keyboard.
 pub fn editor_ui(ui: &mut Ui, unit: &mut UnitSettings, row: &Row) -> bool {
+    let subject = *unit.table().subject();
+    let own = family::of(subject.family()).choices(row, &subject);
     let response = match (row.kind, unit.wanted(&row.key)) {
-        (Kind::Int, value) if row.pattern == ENCODER_PIN => {
-            let choices = encoder_pins(unit);
-            let named: Vec<_> = choices.iter().map(|(value, name)| (*value, name.as_str())).collect();
+        (_, value) if own.is_some() => {
+            let named: Vec<_> = own.iter().flatten().map(|(value, name)| (*value, name.as_str())).collect();
             list_ui(ui, unit, row, value, &named)
         }
         (Kind::Bool, Some(SettingValue::Bool(on))) => box_ui(ui, unit, row, on),
@@ -32,23 +32,6 @@ pub fn editor_ui(ui: &mut Ui, unit: &mut UnitSettings, row: &Row) -> bool {
         response.scroll_to_me(None);
     }
     response.has_focus()
-}
-
-/// The row that names a motor's encoder by the number of its pin.
-const ENCODER_PIN: &str = "motor{n}.encoder.pin";
-
-/// None, and every pin that can be an encoder, by the numbers that we assume for them.
-fn encoder_pins(unit: &UnitSettings) -> Vec<(SettingValue, String)> {
-    let subject = unit.table().subject();
-    let is_able = |index: &usize| {
-        let pin = model_of(subject).and_then(|model| model.pins.get(*index));
-        pin.is_none_or(|pin| pin.is_analog() || pin.is_pulse() || pin.encoder_channel().is_some())
-    };
-    let pins = (0..subject.pins)
-        .filter(is_able)
-        .map(|index| (index as i64, format!("{index}: {}", subject.pin_name(index))));
-    let none = (ENCODER_PIN_NONE, "None".to_owned());
-    std::iter::once(none).chain(pins).map(|(number, name)| (SettingValue::Int(number), name)).collect()
 }
 
 const NO: SettingValue = SettingValue::Bool(false);

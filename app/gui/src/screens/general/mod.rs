@@ -5,27 +5,22 @@
 
 use egui::{Align, Layout, Ui, vec2};
 
-use super::{not_connected_text, nothing_ui};
+use super::{face, not_connected_text, nothing_ui};
 use crate::command::{Command, Commands};
 use crate::model::Model;
-use crate::model::general::{GeneralView, Section};
+use crate::model::general::Section;
 use crate::model::settings::SettingsWish;
 
-mod calibrate;
-mod clamp;
 mod compare;
-mod conflicts;
-pub(super) mod editor;
+pub(crate) mod editor;
 mod head;
-pub(super) mod help;
+pub(crate) mod help;
 mod kept;
 mod nav;
-mod pin;
 mod profile;
-mod rows;
-pub(super) mod sheet;
-mod sheet_parts;
-mod signal_graph;
+pub(crate) mod rows;
+pub(crate) mod sheet;
+pub(crate) mod sheet_parts;
 
 /// The share of the screen that the list of sections takes, and its least and greatest width.
 const NAV_SHARE: f32 = 0.25;
@@ -34,7 +29,9 @@ const NAV_WIDTH: (f32, f32) = (176.0, 250.0);
 const SIDE_BY_SIDE: f32 = 560.0;
 
 pub fn general_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    framed_ui(ui, model, commands, sections_ui);
+    framed_ui(ui, model, commands, |ui, model, commands| {
+        sections_ui(ui, model, commands, &[], |_, _, _, _| false);
+    });
 }
 
 /// What the settings of every family have around their list: the head, and the sheets that stand in its place.
@@ -61,50 +58,55 @@ pub fn framed_ui(
     }
 }
 
-/// The parts at the left, or above in a list that unfolds where that leaves too little room, and what the open one has.
-fn sections_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+/// A part of the settings that only one family has: what it is called, and what stands right of its name.
+pub type OwnSection = (Section, &'static str, String);
+
+/// The parts at the left, or above in a list that unfolds where that leaves too little room, and what the open one has. `own_ui` draws a part
+/// in the room that is left, or leaves it to the list of rows.
+pub fn sections_ui(
+    ui: &mut Ui,
+    model: &mut Model,
+    commands: &mut Commands,
+    own: &[OwnSection],
+    own_ui: impl Fn(&mut Ui, &mut Model, f32, &mut Commands) -> bool,
+) {
     let size = ui.available_size();
     if size.x < SIDE_BY_SIDE {
-        nav::choice_ui(ui, &mut model.front.general_view());
-        return section_ui(ui, model, commands);
+        nav::choice_ui(ui, &mut model.front.general_view(), own);
+        return section_ui(ui, model, commands, own_ui);
     }
     let nav_width = (size.x * NAV_SHARE).clamp(NAV_WIDTH.0, NAV_WIDTH.1);
     ui.horizontal_top(|ui| {
         ui.allocate_ui_with_layout(vec2(nav_width, size.y), Layout::top_down(Align::Min), |ui| {
             ui.set_width(nav_width);
-            nav::nav_ui(ui, &mut model.front.general_view());
+            nav::nav_ui(ui, &mut model.front.general_view(), own);
         });
         let width = ui.available_width();
         ui.allocate_ui_with_layout(vec2(width, size.y), Layout::top_down(Align::Min), |ui| {
             ui.set_width(width);
-            section_ui(ui, model, commands);
+            section_ui(ui, model, commands, own_ui);
         });
     });
 }
 
 /// What the open part has, and the explanation of one row.
-fn section_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    let family = model.front.family();
-    let link = &model.front.link;
-    let general = &mut GeneralView::new(&mut model.front.settings, &mut model.front.general);
+fn section_ui(
+    ui: &mut Ui,
+    model: &mut Model,
+    commands: &mut Commands,
+    own_ui: impl Fn(&mut Ui, &mut Model, f32, &mut Commands) -> bool,
+) {
     let room = ui.available_height();
     let help_height = help::height(room);
     let height = room - help_height - ui.spacing().item_spacing.y;
     // Pages without rows have nothing to explain.
-    match general.section {
-        Section::Conflicts if !general.is_filtered() => conflicts::conflicts_ui(ui, general, room),
-        Section::ClampTest if !general.is_filtered() => {
-            clamp::clamp_ui(ui, general, (link, family), room, commands);
-        }
-        _ => {
-            match general.pin() {
-                Some(pin) => {
-                    let signal = link.readings.signal(pin);
-                    pin::pin_ui(ui, general, pin, signal, height, commands);
-                }
-                None => rows::rows_ui(ui, general, height),
-            }
-            help::help_ui(ui, general, help_height);
-        }
+    let has_rows = !matches!(model.front.general.section, Section::Conflicts | Section::ClampTest)
+        || model.front.general.is_filtered();
+    if !own_ui(ui, model, if has_rows { height } else { room }, commands) {
+        let face = face::of(model.front.family());
+        rows::rows_ui(ui, &mut model.front.general_view(), face, height);
+    }
+    if has_rows {
+        help::help_ui(ui, &model.front.general_view(), help_height);
     }
 }

@@ -3,6 +3,7 @@
 use brushwork_link::settings::SettingsTable;
 use egui::{Align, Button, ComboBox, Layout, Response, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
+use super::OwnSection;
 use crate::model::general::{GeneralView, Section, sections};
 use crate::model::settings::UnitSettings;
 use crate::widgets::heading::heading_ui;
@@ -13,13 +14,10 @@ const BAR_WIDTH: f32 = 10.0;
 const LIST_WIDTH: f32 = 220.0;
 const LIST_HEIGHT: f32 = 400.0;
 
-const CONFLICTS: &str = "Conflicts";
-const CLAMP_TEST: &str = "Voltage clamp test";
-
-pub fn nav_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
+pub fn nav_ui(ui: &mut Ui, general: &mut GeneralView<'_>, own: &[OwnSection]) {
     let wanted = ScrollArea::vertical().id_salt("sections").auto_shrink(false).show(ui, |ui| {
         ui.set_max_width(ui.available_width() - BAR_WIDTH);
-        entries_ui(ui, general)
+        entries_ui(ui, general, own)
     });
     if let Some(section) = wanted.inner {
         general.turn_to(section);
@@ -27,14 +25,13 @@ pub fn nav_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
 }
 
 /// The same parts in a list that unfolds, where there is no room beside the settings.
-pub fn choice_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
+pub fn choice_ui(ui: &mut Ui, general: &mut GeneralView<'_>, own: &[OwnSection]) {
     let Some(unit) = general.unit() else { return };
     let current = match general.section {
         _ if general.is_filtered() => "all sections".to_owned(),
-        Section::Conflicts => CONFLICTS.to_owned(),
-        Section::ClampTest => CLAMP_TEST.to_owned(),
         section => {
-            let named = sections(unit.table()).into_iter().find(|(other, _)| *other == section);
+            let own = own.iter().map(|(section, name, _)| (*section, *name));
+            let named = sections(unit.table()).into_iter().chain(own).find(|(other, _)| *other == section);
             named.map_or_else(String::new, |(_, name)| name.to_owned())
         }
     };
@@ -42,7 +39,7 @@ pub fn choice_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
         let label = ui.label("Section");
         let list =
             ComboBox::from_id_salt("section").selected_text(current).width(LIST_WIDTH).height(LIST_HEIGHT);
-        let shown = list.show_ui(ui, |ui| entries_ui(ui, general));
+        let shown = list.show_ui(ui, |ui| entries_ui(ui, general, own));
         shown.response.labelled_by(label.id);
         if let Some(section) = shown.inner.flatten() {
             general.turn_to(section);
@@ -51,7 +48,7 @@ pub fn choice_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
 }
 
 /// One entry per part; the one that was pressed.
-fn entries_ui(ui: &mut Ui, general: &GeneralView<'_>) -> Option<Section> {
+fn entries_ui(ui: &mut Ui, general: &GeneralView<'_>, own: &[OwnSection]) -> Option<Section> {
     let unit = general.unit()?;
     let current = (!general.is_filtered()).then_some(general.section);
     let mut wanted = None;
@@ -74,13 +71,9 @@ fn entries_ui(ui: &mut Ui, general: &GeneralView<'_>) -> Option<Section> {
             }
         }
         if !pins {
-            let count = unit.conflicts().len();
-            let mark = if count == 0 { "none".to_owned() } else { format!("{count} found") };
-            for (section, name, mark) in
-                [(Section::Conflicts, CONFLICTS, mark), (Section::ClampTest, CLAMP_TEST, String::new())]
-            {
-                if section_ui(ui, name, None, mark, current == Some(section)).clicked() {
-                    wanted = Some(section);
+            for (section, name, mark) in own {
+                if section_ui(ui, name, None, mark.clone(), current == Some(*section)).clicked() {
+                    wanted = Some(*section);
                 }
             }
         }

@@ -1,20 +1,19 @@
 //! The list of settings: name, field, what the controller has, the default, revert.
 
-use brushwork_link::settings::{Group, Row, SettingValue};
-use brushwork_mcp_client::settings::{BRIDGE_WARNING, SHORTEST_AUTORUN_MS};
+use brushwork_link::settings::Row;
 use egui::{Align, Button, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
 use super::editor;
-use super::sheet_parts::lamp_ui;
 use crate::model::general::{GeneralView, Section};
 use crate::model::lamp::LampState;
 use crate::model::settings::UnitSettings;
+use crate::screens::face::Face;
 use crate::theme::Palette;
 use crate::widgets::heading::heading_ui;
 use crate::widgets::readout::NO_VALUE;
 
-const HEIGHT: f32 = 28.0;
-const MARK_WIDTH: f32 = 14.0;
+pub const HEIGHT: f32 = 28.0;
+pub const MARK_WIDTH: f32 = 14.0;
 const FIELD_WIDTH: f32 = 184.0;
 const VALUE_WIDTH: f32 = 110.0;
 const REVERT_WIDTH: f32 = 62.0;
@@ -59,7 +58,7 @@ impl Columns {
 /// Room that the scroll bar may take.
 const BAR_WIDTH: f32 = 14.0;
 
-pub fn rows_ui(ui: &mut Ui, general: &mut GeneralView<'_>, height: f32) {
+pub fn rows_ui(ui: &mut Ui, general: &mut GeneralView<'_>, face: &dyn Face, height: f32) {
     let shown = general.shown();
     let is_filtered = general.is_filtered();
     let gap = ui.spacing().item_spacing.x;
@@ -75,38 +74,15 @@ pub fn rows_ui(ui: &mut Ui, general: &mut GeneralView<'_>, height: f32) {
             if shown.is_empty() {
                 ui.label("No setting of this controller fits.");
             }
-            if general.section == Section::Group(Group::Scripting) && !is_filtered {
-                autorun_ui(ui, general);
+            if !is_filtered {
+                face.around_rows_ui(ui, general, true);
             }
             list_ui(ui, general, &shown, columns, &mut |_, _, _| {});
-            if general.section == Section::Group(Group::Unit) && !is_filtered {
-                bridge_ui(ui, general.unit());
+            if !is_filtered {
+                face.around_rows_ui(ui, general, false);
             }
         });
     });
-}
-
-/// Ion Studio's box over the delay (MCP manual 1.2.10): a delay too short for a start is none.
-fn autorun_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
-    const DELAY: &str = "script.autorun_delay";
-    let Some(unit) = general.unit_mut() else { return };
-    let Some(SettingValue::Int(delay_ms)) = unit.wanted(DELAY) else { return };
-    let mut runs = delay_ms >= SHORTEST_AUTORUN_MS;
-    ui.horizontal(|ui| {
-        ui.allocate_space(vec2(MARK_WIDTH, HEIGHT));
-        if ui.checkbox(&mut runs, "Execute script on power up").changed() {
-            unit.set_number(DELAY, if runs { SHORTEST_AUTORUN_MS as f64 } else { 0.0 });
-        }
-    });
-}
-
-/// The wiring warning of bridged channels, while they are wanted (MCP manual 1.8).
-fn bridge_ui(ui: &mut Ui, unit: Option<&UnitSettings>) {
-    let is_on = |unit: &UnitSettings| unit.wanted("unit.bridge_channels") == Some(SettingValue::Bool(true));
-    if unit.is_some_and(is_on) {
-        ui.add_space(6.0);
-        lamp_ui(ui, LampState::Warning, BRIDGE_WARNING);
-    }
 }
 
 /// The rows one below the other, under their sections where several are shown.

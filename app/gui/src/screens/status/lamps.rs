@@ -1,6 +1,5 @@
 //! The family's lamps in full, and what the status word says in words.
 
-use brushwork_mcp_client::is_mcp;
 use egui::{RichText, Ui};
 
 use crate::model::desk::Desk;
@@ -29,22 +28,9 @@ pub fn lamps_ui(ui: &mut Ui, desk: &Desk, columns: usize) {
     }
 }
 
-/// What the home lamps go by.
+/// What some lamps go by.
 fn note(desk: &Desk) -> Option<&'static str> {
-    let identity = desk.link.identity()?;
-    if !is_mcp(identity) {
-        return None;
-    }
-    Some(match desk.homed() {
-        Some(_) => {
-            "M1HM and M2HM follow the actions of the input pins: this controller's status word has no bits for them. \
-             Times are counted from the connection."
-        }
-        None => {
-            "M1HM and M2HM follow the actions of the input pins, which have not been read yet: this controller's status \
-             word has no bits for them. Times are counted from the connection."
-        }
-    })
+    desk.family().lamps_note(desk.link.identity()?, desk.homed())
 }
 
 /// What the status word says, in words.

@@ -3,16 +3,13 @@
 
 use egui::{Align, Layout, ScrollArea, Ui};
 
-use super::{not_connected_text, nothing_ui, title_ui};
+use super::{face, not_connected_text, nothing_ui, title_ui};
 use crate::command::Commands;
-use crate::family::Ability;
 use crate::model::Model;
 use crate::model::lamp::LampState;
 
 mod history;
 mod lamps;
-mod leds;
-mod reasons;
 mod unit;
 
 /// Width from which two columns fit.
@@ -31,12 +28,9 @@ pub fn status_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     title_ui(ui, "Device Status", headline(model));
     // Side by side where there is room, else below each other.
     let columns = if ui.available_width() < TWO_COLUMNS_FROM { 1 } else { 2 };
-    let family = model.front.family();
+    let face = face::of(model.front.family());
     ScrollArea::vertical().show(ui, |ui| {
-        if family.lacks(Ability::Diagnosis).is_none() {
-            reasons::reasons_ui(ui, &model.front, commands);
-            ui.add_space(8.0);
-        }
+        face.reasons_ui(ui, &model.front, commands);
         lamps::lamps_ui(ui, &model.front, columns);
         ui.add_space(8.0);
         let height = ui.available_height().max(history::LEAST_HEIGHT);
@@ -45,9 +39,7 @@ pub fn status_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             let left = Layout::top_down(Align::Min);
             ui[0].with_layout(left, |ui| history::history_ui(ui, &mut model.front.history, height));
             ui[columns - 1].with_layout(left, |ui| {
-                if family.lacks(Ability::Leds).is_none() {
-                    leds::leds_ui(ui, &model.front);
-                }
+                face.leds_ui(ui, &model.front);
                 lamps::active_ui(ui, &model.front);
                 ui.add_space(6.0);
                 unit::unit_ui(ui, &model.front);

@@ -1,7 +1,6 @@
 //! Who the unit is, and how its link does.
 
 use brushwork_link::device::StatusReport;
-use brushwork_motion_mind_client::MotionMindFacts;
 use egui::{Grid, Label, RichText, Ui};
 
 use crate::family::Ability;
@@ -48,12 +47,10 @@ pub fn unit_ui(ui: &mut Ui, desk: &Desk) {
             ),
         ),
     ];
-    let switches =
-        MotionMindFacts::of(identity).map(|facts| format!("{}; {} protocol", facts.mode, facts.protocol));
-    let switches = switches.map(|text| ("Switches", text));
+    let own = desk.family().unit_row(identity);
     let weak = Palette::of(ui).weak_text;
     Grid::new("unit").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {
-        for (label, value) in rows.into_iter().chain(switches) {
+        for (label, value) in rows.into_iter().chain(own) {
             ui.label(RichText::new(label).color(weak));
             ui.add(Label::new(value).truncate());
             ui.end_row();

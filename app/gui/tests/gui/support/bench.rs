@@ -139,6 +139,7 @@ impl Bench {
         size: [f32; 2],
         theme: Theme,
     ) -> Self {
+        super::install_families();
         let minds =
             minds.into_iter().map(|config| MotionMind::new(config).expect("the configuration is sound"));
         let minds = Line::of(MotionMindBus::new(minds.collect()), StreamIndex::Usb, MIND);
@@ -462,8 +463,6 @@ impl Opener for BenchOpener {
                 };
                 let gate = Gate::new(line.clock.clone());
                 let transport = Box::new(line.through(gate.clone()));
-                super::install_families();
-                super::install_families();
                 let (device_loop, device) = DeviceLoop::new(transport, Arc::new(gate.clone()), options);
                 *self.loops[which].borrow_mut() = Some(Lockstep::new(gate, device_loop));
                 let world = simulated.then(|| Arc::new(BenchWorld::new(line.clone())) as _);
@@ -487,7 +486,6 @@ impl BenchOpener {
         };
         let gate = Gate::new(self.minds.clock.clone());
         let transport = Box::new(self.minds.through(gate.clone()));
-        super::install_families();
         let (device_loop, device) = DeviceLoop::new(transport, Arc::new(gate.clone()), options);
         *self.loops[2].borrow_mut() = Some(Lockstep::new(gate, device_loop));
         OpenLink { device, world: Some(Arc::new(MindWorld(self.minds.clone()))) }

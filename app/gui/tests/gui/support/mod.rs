@@ -18,4 +18,5 @@ pub fn install_families() {
         &brushwork_mcp::McpSimulator,
         &brushwork_motion_mind::MotionMindSimulator,
     ]);
+    brushwork_gui::install(&[&brushwork_gui::mcp::Mcp, &brushwork_gui::motion_mind::MotionMind]);
 }

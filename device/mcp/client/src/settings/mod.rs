@@ -11,8 +11,8 @@ mod template;
 
 pub use check::{BRIDGE_WARNING, SHORTEST_AUTORUN_MS};
 pub use pins::{
-    Behind, Calibrated, Calibration, CalibrationStage, Conflict, ConflictKind, PinMode, SignalShape,
-    change_mode, conflicts, function_text, modes, open_range,
+    Behind, Conflict, ConflictKind, PinMode, SignalShape, change_mode, conflicts, function_text, modes,
+    open_range,
 };
 pub use reference::{ReferenceForm, ReferenceRow, reference, reference_text};
 

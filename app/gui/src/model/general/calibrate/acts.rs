@@ -2,9 +2,10 @@
 
 use brushwork_link::device::PinSignal;
 use brushwork_link::settings::{SettingsImage, WriteReport};
-use brushwork_mcp_client::settings::{Calibration, open_range};
 
 use super::{Phase, Run, closed, left_open, want_back};
+use crate::family;
+use crate::model::general::calibration::{Calibration, CalibrationStage};
 use crate::model::general::{General, GeneralView};
 use crate::model::message::Gravity;
 use crate::model::settings::{SettingsWish, Summary};
@@ -32,8 +33,8 @@ impl General {
         let Some(run) = &mut self.calibration else { return };
         let Phase::Moving(calibration) = &mut run.phase else { return };
         let refused = match calibration.stage() {
-            brushwork_mcp_client::settings::CalibrationStage::Ends => calibration.take_ends().err(),
-            brushwork_mcp_client::settings::CalibrationStage::Center => match calibration.take_center() {
+            CalibrationStage::Ends => calibration.take_ends().err(),
+            CalibrationStage::Center => match calibration.take_center() {
                 Ok(found) => {
                     run.found = Some(found);
                     run.phase = Phase::Closing;
@@ -72,8 +73,8 @@ impl GeneralView<'_> {
         let unit_key = self.settings.current()?.clone();
         let unit = self.unit()?;
         let own = format!("pin.{pin}.");
-        let mode = unit.pin_mode_on_controller(pin)?;
-        let opened = open_range(pin, mode);
+        let family = family::of(unit.table().subject().family());
+        let opened = family.opened_input(&|key| unit.on_controller(key), pin)?;
         let known = |key: &str| Some((key.to_owned(), unit.on_controller(key)?));
         let keys = opened.iter().map(|(key, _)| key.to_owned());
         let all: Option<SettingsImage> = keys.map(|key| known(&key)).collect();
@@ -87,6 +88,7 @@ impl GeneralView<'_> {
         }
         let run = Run {
             unit: unit_key,
+            family,
             pin,
             phase: Phase::Opening,
             told: None,

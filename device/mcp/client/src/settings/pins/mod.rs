@@ -1,15 +1,12 @@
-//! Input pins beyond their single rows: modes, the shaping of a signal, calibration, and what contradicts what.
 //!
 //! Everything here is a pure function of settings; reading and writing them is the business of its neighbours.
 
-mod calibration;
 mod conflicts;
 mod function;
 mod mode;
 mod shape;
 mod values;
 
-pub use calibration::{Calibrated, Calibration, CalibrationStage};
 pub use conflicts::{Conflict, ConflictKind, conflicts};
 pub use function::function_text;
 pub use mode::{PinMode, change_mode, modes, open_range};

@@ -1,0 +1,58 @@
+//! What a family keeps of its own for one link: shared code hands it what happens and asks nothing else of it.
+
+use std::any::Any;
+use std::fmt::Debug;
+use std::time::Duration;
+
+use brushwork_link::Failure;
+use brushwork_link::device::{Event, Request, Sample};
+
+/// The state of a family's own screens and panels for one link. Each link has that of every family.
+pub trait Own: Any + Debug {
+    /// Takes in an event of the link. True where it was about a read of its own, which concerns nobody else.
+    fn take(&mut self, _event: &Event) -> bool {
+        false
+    }
+
+    /// Takes in the readings of a sweep.
+    fn note_sample(&mut self, _sample: &Sample) {}
+
+    /// Nothing may move any more.
+    fn rest(&mut self) {}
+
+    /// Another unit, or none.
+    fn forget_unit(&mut self) {}
+
+    /// The link is gone, by wish or not.
+    fn link_ended(&mut self) {}
+
+    /// Whether it is at work with the unit.
+    fn is_busy(&self) -> bool {
+        false
+    }
+
+    /// Why the window may not be closed now.
+    fn holds_window(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// What the open screen needs read besides the signals, when it is time for it.
+    fn read(&mut self, _now: Duration) -> Option<Request> {
+        None
+    }
+
+    /// Such a read was not taken by the link.
+    fn not_read(&mut self) {}
+
+    /// Bytes that were to be sent as they are were not taken by the link.
+    fn not_sent(&mut self, _id: u64) {}
+
+    /// A command that was put together by hand was not taken by the link.
+    fn not_transacted(&mut self) {}
+
+    /// Such a command was not sent.
+    fn refused(&mut self, _id: u64, _why: Failure) {}
+
+    /// Shows the window for firmware updates.
+    fn open_firmware(&mut self) {}
+}

@@ -1,0 +1,352 @@
+//! MCP and RoboClaw: Ion Studio's screens, thirteen lamps, two motors (MCP manual 1.2).
+
+use brushwork_link::FamilyRef;
+use brushwork_link::device::{ArmScope, Channel, Drive, Identity, Job, PinSignal, StatusReport};
+use brushwork_link::settings::{Group, Row, SettingValue, SettingsImage, SettingsTable, Subject};
+use brushwork_mcp_client::channels::CHANNELS;
+use brushwork_mcp_client::diagnosis;
+use brushwork_mcp_client::indicators::{conditions, indicators};
+use brushwork_mcp_client::script::MIN_AUTORUN;
+use brushwork_mcp_client::settings::{PinMode, function_text, open_range};
+use brushwork_mcp_client::{MCP, is_mcp, layout_of, model_of, packet_generation, subject};
+use brushwork_mcp_wire::codes::ENCODER_PIN_NONE;
+use brushwork_mcp_wire::models::{self, MODELS};
+use brushwork_mcp_wire::packet_serial::status::{Condition, Conditions, Lamp};
+use brushwork_mcp_wire::packet_serial::{Effect, Generation, lookup, number};
+use brushwork_tuning::tune::Method;
+use brushwork_values::Motor;
+
+use super::diagnosis::ends;
+use super::{McpDesk, script};
+use crate::family::{Ability, ActiveIndicator, Family, Figure, Figures, Known, Own, Sliders};
+use crate::model::drawer::Tab;
+use crate::model::help_page::HelpPage;
+use crate::model::lamp::{LampInfo, LampState, state_of};
+use crate::model::screen::Screen;
+use crate::tune::Loop;
+
+#[derive(Debug)]
+pub struct Mcp;
+
+impl Family for Mcp {
+    fn family(&self) -> FamilyRef {
+        MCP
+    }
+
+    fn name(&self) -> &'static str {
+        "MCP"
+    }
+
+    fn own(&self) -> Option<Box<dyn Own>> {
+        Some(Box::<McpDesk>::default())
+    }
+
+    fn screens(&self, _identity: Option<&Identity>, _known: Known<'_>) -> Vec<Screen> {
+        Screen::USUAL.to_vec()
+    }
+
+    fn tabs(&self, screen: Screen) -> &'static [Tab] {
+        match screen {
+            Screen::Pwm => &[Tab::Settings, Tab::Generator, Tab::Qpps],
+            Screen::Velocity => &[Tab::Settings, Tab::Generator, Tab::ByHand, Tab::Tune],
+            Screen::Position => &[Tab::Settings, Tab::VelocityLoop, Tab::Generator, Tab::ByHand, Tab::Tune],
+            _ => &[],
+        }
+    }
+
+    fn figures(&self) -> &'static [Figures] {
+        &FIGURES
+    }
+
+    fn lamps(&self) -> &'static [LampInfo] {
+        &LAMPS
+    }
+
+    fn lit(
+        &self,
+        report: &StatusReport,
+        identity: Option<&Identity>,
+        homed: Option<[bool; 2]>,
+    ) -> Vec<LampState> {
+        let conditions = conditions(report);
+        Lamp::ALL.into_iter().map(|lamp| lit(lamp, conditions, identity, homed)).collect()
+    }
+
+    fn home_indicators(&self) -> Option<[ActiveIndicator; 2]> {
+        Some([Condition::M1Home, Condition::M2Home].map(|condition| {
+            let place = condition as usize;
+            ActiveIndicator::new(Some(place), &indicators(Generation::Gen1)[place])
+        }))
+    }
+
+    fn lit_since(
+        &self,
+        report: &StatusReport,
+        _identity: Option<&Identity>,
+        homed: Option<[bool; 2]>,
+    ) -> Vec<LampState> {
+        self.lit(report, None, homed)
+    }
+
+    fn homes_by_pins(&self, identity: &Identity) -> bool {
+        is_mcp(identity)
+    }
+
+    fn lamps_note(&self, identity: &Identity, homed: Option<[bool; 2]>) -> Option<&'static str> {
+        if !is_mcp(identity) {
+            return None;
+        }
+        Some(match homed {
+            Some(_) => {
+                "M1HM and M2HM follow the actions of the input pins: this controller's status word has no bits for them. \
+                 Times are counted from the connection."
+            }
+            None => {
+                "M1HM and M2HM follow the actions of the input pins, which have not been read yet: this controller's status \
+                 word has no bits for them. Times are counted from the connection."
+            }
+        })
+    }
+
+    fn diagnosis_keys(&self, table: &SettingsTable) -> Vec<String> {
+        diagnosis::keys(table)
+    }
+
+    fn has_pin_actions(&self, settings: &SettingsImage) -> bool {
+        diagnosis::has_actions(settings)
+    }
+
+    fn homed(&self, settings: &SettingsImage, pins: Option<&[PinSignal]>) -> Option<[bool; 2]> {
+        if !diagnosis::has_actions(settings) {
+            return Some([false; 2]);
+        }
+        Some(diagnosis::homed(settings, &ends(pins?)))
+    }
+
+    fn generation_number(&self, identity: &Identity) -> Option<u8> {
+        packet_generation(identity.generation).map(Generation::number)
+    }
+
+    /// Small boards have one temperature sensor and report 0 for the second.
+    fn makes_up(&self, identity: &Identity, channel: Channel) -> bool {
+        let listed = identity.model.and_then(models::lookup);
+        channel == Channel::TEMPERATURE_2 && listed.is_some_and(|listed| !listed.second_temperature)
+    }
+
+    fn subject(&self, identity: &Identity) -> Subject {
+        let any = || subject(&models::UNLISTED[0], layout_of(identity.generation));
+        identity.subject().unwrap_or_else(any)
+    }
+
+    fn function(
+        &self,
+        table: &SettingsTable,
+        known: Known<'_>,
+        (group, number): (Group, usize),
+    ) -> Option<String> {
+        function_text(table, known, group, number)
+    }
+
+    /// The row that names a motor's encoder by the number of its pin: none, and every pin that can be an encoder, by the numbers that we
+    /// assume for them.
+    fn choices(&self, row: &Row, subject: &Subject) -> Option<Vec<(SettingValue, String)>> {
+        if row.pattern != "motor{n}.encoder.pin" {
+            return None;
+        }
+        let is_able = |index: &usize| {
+            let pin = model_of(subject).and_then(|model| model.pins.get(*index));
+            pin.is_none_or(|pin| pin.is_analog() || pin.is_pulse() || pin.encoder_channel().is_some())
+        };
+        let pins = (0..subject.pins)
+            .filter(is_able)
+            .map(|index| (index as i64, format!("{index}: {}", subject.pin_name(index))));
+        let all = std::iter::once((ENCODER_PIN_NONE, "None".to_owned())).chain(pins);
+        Some(all.map(|(number, name)| (SettingValue::Int(number), name)).collect())
+    }
+
+    fn opened_input(&self, known: Known<'_>, pin: usize) -> Option<SettingsImage> {
+        PinMode::of(known, pin).map(|mode| open_range(pin, mode))
+    }
+
+    fn autoruns(&self, known: Known<'_>) -> bool {
+        let delay = known("script.autorun_delay");
+        matches!(delay, Some(SettingValue::Int(delay_ms)) if delay_ms >= MIN_AUTORUN.as_millis() as i64)
+    }
+
+    fn download(&self, bytes: &[u8]) -> Result<Job<String>, String> {
+        script::download_job(bytes)
+    }
+
+    fn command_title(&self, number: u8) -> &'static str {
+        lookup(number).map_or("", |row| row.title)
+    }
+
+    fn saves(&self, command: u8, identity: &Identity) -> Option<bool> {
+        let effect = lookup(command)?.effect(layout_of(identity.generation));
+        matches!(effect, Effect::Setting | Effect::Memory).then_some(command == number::SAVE_SETTINGS)
+    }
+
+    fn help_pages(&self) -> &'static [HelpPage] {
+        &[HELP_SETTINGS, HELP_COMMANDS, HELP_MCL]
+    }
+
+    fn simulated(&self) -> Vec<(&'static str, &'static str)> {
+        let is_first = |key: &str| key == FIRST;
+        let listed = || MODELS.iter().map(|model| (model.key, model.name));
+        listed().filter(|(key, _)| is_first(key)).chain(listed().filter(|(key, _)| !is_first(key))).collect()
+    }
+
+    fn motors(&self) -> &'static [Motor] {
+        &Motor::BOTH
+    }
+
+    fn methods(&self, which: Loop) -> &'static [Method] {
+        match which {
+            Loop::Velocity => &[Method::Velocity],
+            Loop::Position => &[Method::Pd, Method::Pid, Method::Piv],
+        }
+    }
+
+    fn to_send(&self, scope: ArmScope, sliders: Sliders) -> Option<Drive> {
+        match scope {
+            ArmScope::Pwm => sliders.pwm.to_send(),
+            ArmScope::Velocity => sliders.velocity.to_send(),
+            ArmScope::Position => sliders.position.to_send(),
+            _ => None,
+        }
+    }
+
+    fn has_loops(&self) -> bool {
+        true
+    }
+
+    fn channels(&self) -> &'static [Channel] {
+        CHANNELS
+    }
+
+    fn lacks(&self, _ability: Ability) -> Option<&'static str> {
+        None
+    }
+}
+
+/// The model that is simulated unless another is chosen.
+const FIRST: &str = "mcp266";
+
+/// Every setting.
+pub const HELP_SETTINGS: HelpPage = HelpPage { title: "Settings Reference", group: 1, is_searched: true };
+/// Every command.
+pub const HELP_COMMANDS: HelpPage =
+    HelpPage { title: "Packet Serial Reference", group: 1, is_searched: true };
+/// The language of its scripts.
+pub const HELP_MCL: HelpPage = HelpPage { title: "MCL Reference", group: 1, is_searched: true };
+
+/// A lamp as a unit's status lights it; those for home and limit switches of an MCP as its pins do.
+fn lit(
+    lamp: Lamp,
+    conditions: Conditions,
+    identity: Option<&Identity>,
+    homed: Option<[bool; 2]>,
+) -> LampState {
+    let index = match lamp {
+        Lamp::M1Home => Some(0),
+        Lamp::M2Home => Some(1),
+        _ => None,
+    };
+    let by_pins = identity.map_or(homed.is_some(), is_mcp);
+    if let Some(index) = index.filter(|_| by_pins) {
+        return match homed {
+            None => LampState::Unknown,
+            Some(homed) if homed[index] => LampState::Active,
+            Some(_) => LampState::Ok,
+        };
+    }
+    let told =
+        identity.is_none_or(|identity| lamp.is_reported(layout_of(identity.generation), is_mcp(identity)));
+    let dark = if told { LampState::Ok } else { LampState::NotApplicable };
+    lamp.lit_by(conditions).map_or(dark, state_of)
+}
+
+const fn lamp(lamp: Lamp, title: &'static str) -> LampInfo {
+    LampInfo { short: lamp.abbreviation(), title }
+}
+
+/// In the order of [`Lamp::ALL`] (MCP manual 1.2.5).
+const LAMPS: [LampInfo; Lamp::ALL.len()] = [
+    lamp(Lamp::M1OverCurrent, "Motor 1 over current"),
+    lamp(Lamp::M2OverCurrent, "Motor 2 over current"),
+    lamp(Lamp::MainBatteryHigh, "Main battery over voltage"),
+    lamp(Lamp::MainBatteryLow, "Main battery under voltage"),
+    lamp(Lamp::LogicBatteryHigh, "Logic battery over voltage"),
+    lamp(Lamp::LogicBatteryLow, "Logic battery under voltage"),
+    lamp(Lamp::Temperature1, "Temperature 1"),
+    lamp(Lamp::Temperature2, "Temperature 2"),
+    lamp(Lamp::M1DriverFault, "Motor 1 driver fault"),
+    lamp(Lamp::M2DriverFault, "Motor 2 driver fault"),
+    lamp(Lamp::EStop, "Emergency stop"),
+    lamp(Lamp::M1Home, "Motor 1 home or limit switch"),
+    lamp(Lamp::M2Home, "Motor 2 home or limit switch"),
+];
+
+const fn m1(channel: Channel, label: &'static str, unit: &'static str) -> Figure {
+    Figure { channel, label, unit, motor: Motor::M1 }
+}
+
+const fn m2(channel: Channel, label: &'static str, unit: &'static str) -> Figure {
+    Figure { channel, label, unit, motor: Motor::M2 }
+}
+
+const FIGURES: [Figures; 5] = [
+    Figures {
+        rows: &[m1(Channel::TEMPERATURE_1, "Temp 1", "°C"), m2(Channel::TEMPERATURE_2, "Temp 2", "°C")],
+        label_width: 40.0,
+        unit_letters: 2,
+        digits: 5,
+        zero: false,
+    },
+    Figures {
+        rows: &[m1(Channel::M1_CURRENT, "M1 amps", "A"), m2(Channel::M2_CURRENT, "M2 amps", "A")],
+        label_width: 51.0,
+        unit_letters: 1,
+        digits: 7,
+        zero: false,
+    },
+    Figures {
+        rows: &[m1(Channel::M1_POSITION, "M1 encoder", ""), m2(Channel::M2_POSITION, "M2 encoder", "")],
+        label_width: 68.0,
+        unit_letters: 0,
+        digits: 11,
+        zero: true,
+    },
+    Figures {
+        rows: &[
+            m1(Channel::M1_VELOCITY, "M1 speed", "counts/s"),
+            m2(Channel::M2_VELOCITY, "M2 speed", "counts/s"),
+        ],
+        label_width: 54.0,
+        unit_letters: 5,
+        digits: 8,
+        zero: false,
+    },
+    Figures {
+        rows: &[
+            m1(Channel::MAIN_BATTERY, "Main battery", "V"),
+            m2(Channel::LOGIC_BATTERY, "Logic battery", "V"),
+        ],
+        label_width: 74.0,
+        unit_letters: 1,
+        digits: 5,
+        zero: false,
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_lamps_stand_in_the_order_of_the_protocols_table() {
+        for (lamp, info) in Lamp::ALL.into_iter().zip(&LAMPS) {
+            assert_eq!(lamp.abbreviation(), info.short);
+        }
+    }
+}

@@ -1,0 +1,423 @@
+//! The firmware window of one link: the file, the risks and whether they were accepted, how far an update is, and what
+//! became of the settings.
+
+use std::path::Path;
+use std::time::Duration;
+
+use brushwork_link::UnitAddress;
+use brushwork_link::device::{Event, Identity, Job, JobTicket, QueuedJob};
+use brushwork_link::settings::{Act, Profile, ReadReport, Subject, diff, read_all};
+use brushwork_link::transport::Stream;
+use brushwork_mcp_client::firmware::{Progress, RESUME_NOTE, Sent, risks, suit};
+use brushwork_mcp_wire::loader::{Image, SimulatedImage};
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::models::Model;
+use crossbeam_channel::{Receiver, bounded};
+
+use crate::files::{FileAnswer, FileDialog, FileKind, FileWish};
+use brushwork_core::keep::{Store, UnitId, today};
+use brushwork_core::session::firmware::{LoaderPlace, Upload, UploadEvent};
+
+/// How long reading all settings may take.
+const READ_LIMIT: Duration = Duration::from_secs(120);
+/// No image is larger; a file that is need not be read.
+const LARGEST_FILE_BYTES: u64 = 2_000_000;
+/// Differences from the backup that are listed.
+pub const LISTED: usize = 12;
+
+/// What is asked of the firmware window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FirmwareWish {
+    Browse,
+    /// Starts an update of the unit that is looked at, or resumes one that broke.
+    Update,
+    /// Gives up before anything is erased.
+    Cancel,
+    /// Puts the outcome aside.
+    Dismiss,
+}
+
+/// The firmware window and the update that runs.
+#[derive(Debug, Default)]
+pub struct Firmware {
+    pub open: bool,
+    /// The file, as typed or chosen.
+    pub path: String,
+    /// Whether the user has accepted the risks.
+    pub accepted: bool,
+    /// The model that waits in its loader, when an update is resumed.
+    pub resumed_model: Option<&'static Model>,
+    pub stage: Stage,
+    dialog: Option<FileDialog>,
+    after: Option<After>,
+}
+
+/// How far an update is.
+#[derive(Debug, Default)]
+pub enum Stage {
+    #[default]
+    Idle,
+    /// The settings are read and kept; nothing is erased yet.
+    BackingUp {
+        image: Image,
+        kept: Receiver<Result<Kept, String>>,
+    },
+    /// The motors are stopped and the loader is entered.
+    Entering {
+        image: Image,
+        place: LoaderPlace,
+    },
+    /// The image goes over.
+    Sending {
+        upload: Upload,
+        progress: Progress,
+    },
+    Done(Sent),
+    Failed(String),
+}
+
+/// A backup that was made.
+#[derive(Debug)]
+pub struct Kept {
+    profile: Profile,
+    title: String,
+}
+
+/// What is compared after an update.
+#[derive(Debug)]
+struct After {
+    kept: Kept,
+    reading: Option<JobTicket<Result<ReadReport, String>>>,
+    compared: Option<Compared>,
+}
+
+/// How the settings are after an update, against the backup.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Compared {
+    /// A line for each that differs: "M1 QPPS: 44000 counts/s in the backup, 12000 counts/s now".
+    pub differences: Vec<String>,
+    /// Why they could not be compared.
+    pub failure: Option<String>,
+}
+
+/// What the window has to do next for a running update.
+#[derive(Debug)]
+pub enum Next {
+    /// Sends this to the device thread.
+    Ask(QueuedJob),
+    /// Sends the unit into its loader.
+    EnterLoader,
+    Nothing,
+}
+
+impl Stage {
+    /// Whether an update is under way.
+    pub fn is_running(&self) -> bool {
+        matches!(self, Self::BackingUp { .. } | Self::Entering { .. } | Self::Sending { .. })
+    }
+
+    /// Whether it can still be given up without leaving the controller without firmware.
+    pub fn can_be_cancelled(&self) -> bool {
+        match self {
+            Self::BackingUp { .. } => true,
+            Self::Sending { progress, .. } => *progress == Progress::Greeting,
+            Self::Idle | Self::Entering { .. } | Self::Done(_) | Self::Failed(_) => false,
+        }
+    }
+
+    /// Whether ending it would leave the controller without firmware.
+    pub fn must_go_on(&self) -> bool {
+        matches!(self, Self::Sending { .. }) && !self.can_be_cancelled()
+    }
+
+    /// What happens now, and the share that is done where it is known.
+    pub fn told(&self) -> (String, Option<f32>) {
+        match self {
+            Self::BackingUp { .. } => ("Backing up the settings.".to_owned(), None),
+            Self::Entering { .. } => ("Stopping the motors and entering the loader.".to_owned(), None),
+            Self::Sending { progress: Progress::Greeting, .. } => {
+                ("Waiting for the loader.".to_owned(), None)
+            }
+            Self::Sending { progress: Progress::Erasing, .. } => (
+                "Erasing. Do not switch anything off: without power now the controller is dead for good."
+                    .to_owned(),
+                None,
+            ),
+            Self::Sending { progress: Progress::Writing { pages, of }, .. } => {
+                (format!("Writing page {pages} of {of}."), Some(*pages as f32 / (*of).max(1) as f32))
+            }
+            Self::Idle | Self::Done(_) | Self::Failed(_) => (String::new(), None),
+        }
+    }
+}
+
+impl Firmware {
+    /// The risks, and what a resumed update needs.
+    pub fn risks(&self, simulated: bool) -> Vec<&'static str> {
+        let mut all = risks(simulated);
+        all.extend(self.resumed_model.map(|_| RESUME_NOTE));
+        all
+    }
+
+    /// Opens the desktop's own dialog.
+    pub fn browse(&mut self) {
+        let kind = FileKind { title: "Firmware image".to_owned(), extension: "bin".to_owned() };
+        self.dialog = Some(FileDialog::ask(FileWish::Open, kind));
+    }
+
+    /// Begins to update the unit that is connected: its settings are backed up first.
+    pub fn begin(
+        &mut self,
+        identity: &Identity,
+        stream: Option<Stream>,
+        unit: UnitId,
+        store: Store,
+    ) -> Result<QueuedJob, String> {
+        let model = models::identify(&identity.version_text);
+        let bytes = self.file()?;
+        let image = suit(bytes, identity, model, stream)
+            .map_err(|error| format!("The file is not sent: {error}."))?;
+        let subject = identity.subject().ok_or("The controller's model is not known.")?;
+        let (job, kept) = back_up(identity, subject, unit, store)?;
+        self.after = None;
+        self.stage = Stage::BackingUp { image, kept };
+        Ok(job)
+    }
+
+    /// Begins to send the image to a unit that waits in its loader.
+    pub fn resume(&mut self, place: LoaderPlace, simulated: bool) -> Result<(), String> {
+        let model = self.resumed_model.ok_or("Choose the model that waits in its loader.")?;
+        let bytes = self.file()?;
+        if SimulatedImage::is_marked(&bytes) && !simulated {
+            return Err("The file is not sent: it was made for simulated controllers.".to_owned());
+        }
+        let image =
+            Image::new(bytes, model.family).map_err(|error| format!("The file is not sent: {error}."))?;
+        self.send(image, place);
+        Ok(())
+    }
+
+    /// The backup is made: the loader comes next.
+    pub fn entering(&mut self, place: LoaderPlace) {
+        self.stage = match std::mem::take(&mut self.stage) {
+            Stage::BackingUp { image, .. } => Stage::Entering { image, place },
+            other => other,
+        };
+    }
+
+    /// Takes note of what the device thread tells about the way into the loader.
+    pub fn note(&mut self, event: &Event) {
+        if matches!(event, Event::LoaderEntered) {
+            self.entered();
+        }
+        if let Event::Failure(failure) = event
+            && matches!(self.stage, Stage::Entering { .. })
+        {
+            self.not_entered(&failure.to_string());
+        }
+    }
+
+    /// The unit is in its loader.
+    fn entered(&mut self) {
+        match std::mem::take(&mut self.stage) {
+            Stage::Entering { image, place } => self.send(image, place),
+            other => self.stage = other,
+        }
+    }
+
+    /// The link has ended, or the unit refused, before the loader was entered.
+    pub fn not_entered(&mut self, why: &str) {
+        if matches!(self.stage, Stage::BackingUp { .. } | Stage::Entering { .. }) {
+            self.stage = Stage::Failed(format!("The update did not begin: {why} Nothing was erased."));
+        }
+    }
+
+    /// Gives up, as long as that is harmless.
+    pub fn cancel(&mut self) {
+        match &self.stage {
+            Stage::BackingUp { .. } => self.stage = Stage::Idle,
+            Stage::Sending { upload, .. } => upload.cancel(),
+            Stage::Idle | Stage::Entering { .. } | Stage::Done(_) | Stage::Failed(_) => {}
+        }
+    }
+
+    /// Puts the outcome aside; the risks have to be accepted anew.
+    pub fn dismiss(&mut self) {
+        if !self.stage.is_running() {
+            self.stage = Stage::Idle;
+            self.accepted = false;
+            self.resumed_model = None;
+        }
+    }
+
+    /// Takes in what happened since the last frame.
+    pub fn update(&mut self) -> Next {
+        if let Some(dialog) = &self.dialog {
+            match dialog.answer() {
+                FileAnswer::Waiting => {}
+                FileAnswer::None => self.dialog = None,
+                FileAnswer::Chosen(path) => {
+                    self.path = path.display().to_string();
+                    self.dialog = None;
+                }
+            }
+        }
+        self.take_comparison();
+        match &mut self.stage {
+            Stage::BackingUp { kept, .. } => match kept.try_recv() {
+                Ok(Ok(kept)) => {
+                    self.after = Some(After { kept, reading: None, compared: None });
+                    Next::EnterLoader
+                }
+                Ok(Err(why)) => {
+                    self.not_entered(&why);
+                    Next::Nothing
+                }
+                Err(_) => Next::Nothing,
+            },
+            Stage::Sending { upload, progress } => {
+                for event in upload.events().clone().try_iter() {
+                    match event {
+                        UploadEvent::Progress(now) => *progress = now,
+                        UploadEvent::Ended(Ok(sent)) => {
+                            self.stage = Stage::Done(sent);
+                            break;
+                        }
+                        UploadEvent::Ended(Err(failure)) => {
+                            self.stage = Stage::Failed(failure.to_string());
+                            break;
+                        }
+                    }
+                }
+                Next::Nothing
+            }
+            Stage::Idle | Stage::Entering { .. } | Stage::Done(_) | Stage::Failed(_) => Next::Nothing,
+        }
+    }
+
+    /// The unit is connected again: its settings are compared with the backup once.
+    pub fn compare(&mut self, identity: &Identity) -> Next {
+        let is_done = matches!(self.stage, Stage::Done(_));
+        let Some(after) = self.after.as_mut().filter(|_| is_done) else { return Next::Nothing };
+        if after.reading.is_some() || after.compared.is_some() {
+            return Next::Nothing;
+        }
+        let Some(subject) = identity.subject() else { return Next::Nothing };
+        let job = Job::new("compare the settings with the backup", READ_LIMIT, move |wire| {
+            Ok(read_all(wire, subject).map_err(|failure| failure.to_string()))
+        });
+        let (job, reading) = job.queued();
+        after.reading = Some(reading);
+        Next::Ask(job)
+    }
+
+    /// The comparison could not be begun; it is tried again.
+    pub fn not_compared(&mut self) {
+        if let Some(after) = &mut self.after {
+            after.reading = None;
+        }
+    }
+
+    /// How the settings are after the update, once they were compared.
+    pub fn compared(&self) -> Option<&Compared> {
+        self.after.as_ref()?.compared.as_ref()
+    }
+
+    /// What the backup is called.
+    pub fn backup(&self) -> Option<&str> {
+        self.after.as_ref().map(|after| after.kept.title.as_str())
+    }
+
+    fn take_comparison(&mut self) {
+        let Some(after) = &mut self.after else { return };
+        let Some(read) = after.reading.as_ref().and_then(JobTicket::take) else { return };
+        after.compared = Some(match read {
+            Ok(report) => compare(&after.kept.profile, &report),
+            Err(why) => Compared { differences: Vec::new(), failure: Some(why) },
+        });
+    }
+
+    fn send(&mut self, image: Image, place: LoaderPlace) {
+        self.stage = match Upload::start(place, image, brushwork_link::SystemClock::shared()) {
+            Ok(upload) => Stage::Sending { upload, progress: Progress::Greeting },
+            Err(error) => Stage::Failed(format!(
+                "Could not start the thread that sends the firmware: {error}. Nothing was erased: switch the controller off and on."
+            )),
+        };
+    }
+
+    fn file(&self) -> Result<Vec<u8>, String> {
+        let path = Path::new(self.path.trim());
+        let told = |error: std::io::Error| format!("Could not read {}: {error}.", path.display());
+        let length = std::fs::metadata(path).map_err(told)?.len();
+        if length > LARGEST_FILE_BYTES {
+            return Err(format!("The file is not sent: it has {length} bytes, and no image is that large."));
+        }
+        std::fs::read(path).map_err(told)
+    }
+}
+
+/// Reads all settings in a job, and keeps them on a thread that may wait for the disk.
+fn back_up(
+    identity: &Identity,
+    subject: Subject,
+    unit: UnitId,
+    store: Store,
+) -> Result<(QueuedJob, Receiver<Result<Kept, String>>), String> {
+    let (read, to_keep) = bounded::<Result<ReadReport, String>>(1);
+    let (sender, kept) = bounded(1);
+    let firmware = identity.version_text.clone();
+    let address = identity.unit_address();
+    let keep = move || {
+        let report = to_keep.recv_timeout(READ_LIMIT).map_err(|_| "The settings were not read.".to_owned());
+        let done = report.and_then(|report| keep(report?, firmware, address, &unit, &store));
+        // Whoever closed the window does not want it any more.
+        let _ = sender.send(done);
+    };
+    let thread = std::thread::Builder::new().name("firmware backup".to_owned());
+    thread
+        .spawn(keep)
+        .map_err(|error| format!("Could not start the thread that keeps the backup: {error}."))?;
+    let job = Job::new("back the settings up", READ_LIMIT, move |wire| {
+        let _ = read.try_send(read_all(wire, subject).map_err(|failure| failure.to_string()));
+        Ok(())
+    });
+    // What was read goes to the thread that keeps it.
+    Ok((job.queued().0, kept))
+}
+
+fn keep(
+    report: ReadReport,
+    firmware: String,
+    address: UnitAddress,
+    unit: &UnitId,
+    store: &Store,
+) -> Result<Kept, String> {
+    if let Some(unread) = report.failures.first() {
+        return Err(format!(
+            "Not all settings could be read, so the backup would not be whole. {}",
+            unread.failure
+        ));
+    }
+    let note = format!("before {}", Act::Firmware.label());
+    let subject = *report.table.subject();
+    let (date, settings) = (today(), report.image);
+    let profile = Profile { subject, firmware, address, date, unit: unit.place.clone(), note, settings };
+    let backup = store.back_up(unit, Act::Firmware, &profile).map_err(|error| error.to_string())?;
+    Ok(Kept { profile, title: backup.title() })
+}
+
+fn compare(profile: &Profile, report: &ReadReport) -> Compared {
+    let fitted = profile.fitted_to(&report.table).profile.settings;
+    let told = diff(&report.table, &fitted, &report.image).into_iter().filter_map(|difference| {
+        let row = report.table.row(&difference.key)?;
+        let text = |value: Option<_>| value.map_or("nothing".to_owned(), |value| row.format(value));
+        Some(format!(
+            "{}: {} in the backup, {} now",
+            row.title(),
+            text(difference.left),
+            text(difference.right)
+        ))
+    });
+    Compared { differences: told.collect(), failure: None }
+}

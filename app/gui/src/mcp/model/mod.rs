@@ -1,0 +1,72 @@
+//! What the window keeps of an MCP's own: the firmware update, the composer of raw commands, and what its settings mean.
+
+use brushwork_link::Failure;
+use brushwork_link::device::Event;
+
+pub mod composer;
+mod diagnosis;
+pub mod family;
+pub mod firmware;
+mod pins;
+mod script;
+
+use crate::family::Own;
+use crate::model::desk::Desk;
+use composer::Composer;
+use firmware::Firmware;
+
+/// The state of an MCP's own panels.
+#[derive(Debug, Default)]
+pub struct McpDesk {
+    /// The firmware window and the update that runs.
+    pub firmware: Firmware,
+    pub composer: Composer,
+}
+
+impl Own for McpDesk {
+    fn take(&mut self, event: &Event) -> bool {
+        self.firmware.note(event);
+        if let Event::Transacted { id, result } = event {
+            self.composer.answered(*id, result);
+        }
+        false
+    }
+
+    fn link_ended(&mut self) {
+        self.firmware.not_entered("the link was lost.");
+        self.composer.forget_waiting();
+    }
+
+    fn is_busy(&self) -> bool {
+        self.firmware.stage.is_running()
+    }
+
+    fn holds_window(&self) -> Option<&'static str> {
+        self.firmware.stage.must_go_on().then_some(
+            "The window stays open: a firmware update runs, and ending it now would leave the controller without firmware.",
+        )
+    }
+
+    fn not_transacted(&mut self) {
+        self.composer.forget_waiting();
+    }
+
+    fn refused(&mut self, id: u64, why: Failure) {
+        self.composer.answered(id, &Err(why));
+    }
+
+    fn open_firmware(&mut self) {
+        self.firmware.open = true;
+    }
+}
+
+impl Desk {
+    /// What is kept of its own.
+    pub fn mcp(&self) -> &McpDesk {
+        self.own()
+    }
+
+    pub fn mcp_mut(&mut self) -> &mut McpDesk {
+        self.own_mut()
+    }
+}

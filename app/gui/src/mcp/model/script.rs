@@ -1,0 +1,35 @@
+//! The download of a script into an MCP.
+
+use brushwork_link::Wire as _;
+use brushwork_link::device::Job;
+use brushwork_mcp_client::script::{DOWNLOAD_JOB, Downloaded, ScriptImage, Verified, download};
+use std::time::Duration;
+
+/// Downloads a file's bytes; comes to a clause of what was sent.
+pub fn download_job(bytes: &[u8]) -> Result<Job<String>, String> {
+    let image = ScriptImage::from_file(bytes).map_err(|error| error.to_string())?;
+    let blocks = u32::try_from(image.blocks().len()).unwrap_or(u32::MAX);
+    // A wire of 2400 bit/s takes most of it.
+    let limit = Duration::from_secs(60) + Duration::from_millis(200).saturating_mul(blocks);
+    Ok(Job::new(DOWNLOAD_JOB, limit, move |context| {
+        let is_simulated = context.is_simulated();
+        download(context, &image, is_simulated).map(|done| told(&done))
+    }))
+}
+
+/// What was sent and how far it is known to have arrived.
+fn told(done: &Downloaded) -> String {
+    let verified = match done.verified {
+        Verified::Content => "verified".to_owned(),
+        Verified::Status => "each block confirmed".to_owned(),
+        Verified::Alike(byte) => {
+            format!("each block answered with 0x{byte:02X}, whose meaning is not public")
+        }
+    };
+    let foreign = if done.is_foreign { " A simulated controller does not run it." } else { "" };
+    format!(
+        "{} bytes in {:.1} s, {verified}. Start Script runs it.{foreign}",
+        done.bytes,
+        done.took.as_secs_f64()
+    )
+}

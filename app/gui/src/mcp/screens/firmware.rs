@@ -1,0 +1,224 @@
+//! The firmware window: what is installed and known, an update from a file with its risks, and what became of it.
+
+use brushwork_link::device::Identity;
+use brushwork_mcp_client::layout_of;
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::models::MODELS;
+use brushwork_mcp_wire::packet_serial::known::{generation_text, quirks};
+use egui::{
+    Align, Button, ComboBox, Context, Grid, Layout, ProgressBar, Rect, RichText, ScrollArea, Ui, Window, vec2,
+};
+
+use crate::command::{Command, Commands};
+use crate::mcp::model::firmware::{Firmware, FirmwareWish, LISTED, Stage};
+use crate::model::Model;
+use crate::model::general::Sheet;
+use crate::theme::Palette;
+use crate::widgets::heading::heading_ui;
+use crate::widgets::text_field::text_field_ui;
+
+/// Draws the window, if it is open, within `room`.
+pub fn firmware_ui(ctx: &Context, model: &mut Model, commands: &mut Commands, room: Rect) {
+    if !model.front.mcp().firmware.open {
+        return;
+    }
+    let mut open = true;
+    let size = vec2(760.0, 680.0).min(room.size() - vec2(24.0, 60.0));
+    Window::new("Firmware")
+        .open(&mut open)
+        .collapsible(false)
+        .default_size(size)
+        .default_pos(room.center() - size / 2.0)
+        .min_size(vec2(420.0, 260.0))
+        .constrain_to(room)
+        .show(ctx, |ui| {
+            ScrollArea::vertical().auto_shrink([false; 2]).show(ui, |ui| contents_ui(ui, model, commands));
+        });
+    // The window can be put away while an update runs; the update goes on.
+    model.front.mcp_mut().firmware.open = open;
+}
+
+fn contents_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    let identity = model.front.link.identity().cloned();
+    match &identity {
+        Some(identity) => installed_ui(ui, identity),
+        None => weak_ui(
+            ui,
+            "No controller is connected. Connect one to see its firmware, or resume an update that broke.",
+        ),
+    }
+    ui.add_space(8.0);
+    heading_ui(ui, "Update from a file");
+    match &model.front.mcp().firmware.stage {
+        Stage::Idle => {
+            let simulated = identity.as_ref().map_or_else(
+                || model.front.target.as_deref().is_some_and(|target| target.starts_with("sim:")),
+                |identity| identity.simulated,
+            );
+            ask_ui(ui, &mut model.front.mcp_mut().firmware, identity.as_ref(), simulated, commands);
+        }
+        Stage::Done(sent) => {
+            let text =
+                format!("{} pages were sent and confirmed in {:.1} s.", sent.pages, sent.took.as_secs_f64());
+            done_ui(ui, &text, &model.front.mcp().firmware, identity.is_some(), commands);
+        }
+        Stage::Failed(sentence) => {
+            ui.label(RichText::new(sentence).color(Palette::of(ui).error));
+            if ui.button("Back").clicked() {
+                commands.push(Command::own(FirmwareWish::Dismiss));
+            }
+        }
+        running => running_ui(ui, running, commands),
+    }
+}
+
+/// What is installed, and the table of what is known about it.
+fn installed_ui(ui: &mut Ui, identity: &Identity) {
+    heading_ui(ui, "Installed");
+    ui.label(RichText::new(identity.version_text.trim()).strong());
+    ui.label(format!(
+        "{}. {}",
+        capital(&identity.generation.to_string()),
+        generation_text(layout_of(identity.generation))
+    ));
+    ui.add_space(8.0);
+    heading_ui(ui, "What is known about it");
+    let family = models::identify(&identity.version_text).map(|model| model.family);
+    Grid::new("known firmware").num_columns(2).striped(true).spacing(vec2(12.0, 4.0)).show(ui, |ui| {
+        for quirk in quirks(family, layout_of(identity.generation), &identity.firmware) {
+            ui.label(RichText::new(quirk.topic).strong());
+            let text = ui.add(egui::Label::new(quirk.text).wrap());
+            text.on_hover_text(format!("From: {}", quirk.source));
+            ui.end_row();
+        }
+    });
+}
+
+fn ask_ui(
+    ui: &mut Ui,
+    firmware: &mut Firmware,
+    identity: Option<&Identity>,
+    simulated: bool,
+    commands: &mut Commands,
+) {
+    weak_ui(ui, "No firmware image is published. An update needs a file that you have.");
+    ui.horizontal(|ui| {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if ui.button("Choose…").clicked() {
+                commands.push(Command::own(FirmwareWish::Browse));
+            }
+            text_field_ui(ui, &mut firmware.path, "Firmware file", "Path of the image");
+        });
+    });
+    if identity.is_none() {
+        resumed_ui(ui, firmware);
+    }
+    ui.add_space(4.0);
+    for risk in firmware.risks(simulated) {
+        ui.horizontal_top(|ui| {
+            ui.label("•");
+            ui.add(egui::Label::new(risk).wrap());
+        });
+    }
+    ui.add_space(4.0);
+    ui.checkbox(&mut firmware.accepted, "I have read this and accept that the controller can become useless");
+    let why_not = if firmware.path.trim().is_empty() {
+        Some("Choose a file first.")
+    } else if identity.is_none() && firmware.resumed_model.is_none() {
+        Some("Connect a controller, or choose the model that waits in its loader.")
+    } else if !firmware.accepted {
+        Some("Read and accept the risks first.")
+    } else {
+        None
+    };
+    let title = if identity.is_none() { "Resume the update" } else { "Update the firmware" };
+    let button = ui.add_enabled(why_not.is_none(), Button::new(title));
+    if button.clicked() {
+        commands.push(Command::own(FirmwareWish::Update));
+    }
+    if let Some(why) = why_not {
+        button.on_disabled_hover_text(why);
+        weak_ui(ui, why);
+    }
+}
+
+/// Which model waits in its loader: it cannot tell.
+fn resumed_ui(ui: &mut Ui, firmware: &mut Firmware) {
+    ui.horizontal(|ui| {
+        ui.label("Waits in its loader:");
+        let chosen = firmware.resumed_model.map_or("none", |model| model.name);
+        let combo = ComboBox::from_id_salt("resumed model").selected_text(chosen).show_ui(ui, |ui| {
+            ui.selectable_value(&mut firmware.resumed_model, None, "none");
+            for model in MODELS {
+                ui.selectable_value(&mut firmware.resumed_model, Some(model), model.name);
+            }
+        });
+        ui.ctx().accesskit_node_builder(combo.response.id, |node| node.set_label("Model in its loader"));
+    });
+}
+
+fn running_ui(ui: &mut Ui, stage: &Stage, commands: &mut Commands) {
+    let (text, share) = stage.told();
+    ui.label(RichText::new(&text).strong());
+    let bar = ProgressBar::new(share.unwrap_or(0.0)).desired_height(18.0);
+    ui.add(if share.is_some() { bar.show_percentage() } else { bar });
+    let harmless = stage.can_be_cancelled();
+    let cancel = ui.add_enabled(harmless, Button::new("Cancel the update"));
+    if cancel.clicked() {
+        commands.push(Command::own(FirmwareWish::Cancel));
+    }
+    if !harmless {
+        weak_ui(ui, "It cannot be cancelled now: the controller would be left without firmware.");
+    }
+}
+
+fn done_ui(ui: &mut Ui, text: &str, firmware: &Firmware, connected: bool, commands: &mut Commands) {
+    ui.label(RichText::new(text).strong());
+    if let Some(backup) = firmware.backup() {
+        weak_ui(ui, &format!("The settings from before are kept: {backup}."));
+    }
+    match firmware.compared() {
+        None if connected => weak_ui(ui, "Comparing the settings with the backup."),
+        None => weak_ui(
+            ui,
+            "The controller restarts. Connect it again; its settings are then compared with the backup.",
+        ),
+        Some(compared) => {
+            if let Some(why) = &compared.failure {
+                weak_ui(ui, why);
+            } else if compared.differences.is_empty() {
+                ui.label("The settings are as they are in the backup.");
+            } else {
+                differences_ui(ui, &compared.differences, commands);
+            }
+        }
+    }
+    if ui.button("Back").clicked() {
+        commands.push(Command::own(FirmwareWish::Dismiss));
+    }
+}
+
+fn differences_ui(ui: &mut Ui, differences: &[String], commands: &mut Commands) {
+    let count = differences.len();
+    let noun = if count == 1 { "setting differs" } else { "settings differ" };
+    ui.label(RichText::new(format!("{count} {noun} from the backup:")).color(Palette::of(ui).warning));
+    for line in differences.iter().take(LISTED) {
+        ui.label(line);
+    }
+    if count > LISTED {
+        weak_ui(ui, &format!("and {} more", count - LISTED));
+    }
+    if ui.button("Restore from the backup…").clicked() {
+        commands.push(Command::OpenSheet(Sheet::Backups));
+    }
+}
+
+fn weak_ui(ui: &mut Ui, text: &str) {
+    let color = Palette::of(ui).weak_text;
+    ui.label(RichText::new(text).color(color));
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}

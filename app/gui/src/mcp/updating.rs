@@ -1,0 +1,99 @@
+//! Firmware updates of an MCP: what the firmware window asks for, and how an update goes on.
+
+use brushwork_core::keep::UnitId;
+use brushwork_link::device::{Request, RiskAccepted};
+use brushwork_link::transport::ConnectTarget;
+use egui::Context;
+
+use super::model::firmware::{FirmwareWish, Next};
+use crate::frame::FRAME_INTERVAL;
+use crate::model::link::Arming;
+use crate::model::{DeskId, Phase};
+use crate::wish::{Host, Wish};
+
+impl Wish for FirmwareWish {
+    fn act(&self, host: &mut dyn Host) -> Result<(), String> {
+        let firmware = &mut host.model().front.mcp_mut().firmware;
+        match *self {
+            Self::Browse => firmware.browse(),
+            Self::Update => return begin_update(host),
+            Self::Cancel => firmware.cancel(),
+            Self::Dismiss => firmware.dismiss(),
+        }
+        Ok(())
+    }
+}
+
+/// Takes in what became of an update, in front or not.
+pub fn look_after_firmware(host: &mut dyn Host, id: DeskId, ctx: &Context) {
+    let Some(desk) = host.model().desk_mut(id) else { return };
+    let mut next = desk.mcp_mut().firmware.update();
+    if desk.mcp().firmware.stage.is_running() {
+        ctx.request_repaint_after(FRAME_INTERVAL);
+    }
+    let quiet = desk.is_connected() && desk.link.arming == Arming::Disarmed;
+    if let (Next::Nothing, Some(identity)) = (&next, desk.link.identity().cloned().filter(|_| quiet)) {
+        next = desk.mcp_mut().firmware.compare(&identity);
+    }
+    match next {
+        Next::Nothing => {}
+        Next::Ask(job) => {
+            if !host.request_of(id, Request::Job(job))
+                && let Some(desk) = host.model().desk_mut(id)
+            {
+                desk.mcp_mut().firmware.not_compared();
+            }
+        }
+        Next::EnterLoader => enter_loader(host, id),
+    }
+}
+
+fn begin_update(host: &mut dyn Host) -> Result<(), String> {
+    let model = host.model();
+    let firmware = &model.front.mcp().firmware;
+    if !firmware.accepted || firmware.stage.is_running() {
+        return Ok(());
+    }
+    if firmware.resumed_model.is_some() {
+        let target = match model.front.target.as_ref().filter(|_| model.front.phase == Phase::Closed) {
+            Some(target) => target.parse(),
+            None => model.devices.target(),
+        };
+        let target = target.map_err(|error| error.to_string())?;
+        let place = host.loader_place(&target);
+        let simulated = matches!(target, ConnectTarget::Sim(_));
+        return host.model().front.mcp_mut().firmware.resume(place, simulated);
+    }
+    host.disarm();
+    let store = host.store();
+    let model = host.model();
+    let front = &mut model.front;
+    let identity = front.link.identity().cloned().ok_or("Connect the controller first.")?;
+    let unit = UnitId::new(&identity, model.devices.ports());
+    let (id, stream) = (front.id(), front.link.stream);
+    let job = front.mcp_mut().firmware.begin(&identity, stream, unit, store)?;
+    if !host.request_of(id, Request::Job(job)) {
+        host.model().front.mcp_mut().firmware.not_entered("the controller is busy.");
+    }
+    Ok(())
+}
+
+/// The backup is made. Where the loader will be is asked while the controller is still there.
+fn enter_loader(host: &mut dyn Host, id: DeskId) {
+    let target = host.model().desk(id).and_then(|desk| desk.phase.target()?.parse().ok());
+    let place = target.map(|target| host.loader_place(&target));
+    let is_known = place.is_some();
+    if let Some(desk) = host.model().desk_mut(id) {
+        let firmware = &mut desk.mcp_mut().firmware;
+        match place {
+            Some(place) => firmware.entering(place),
+            None => firmware.not_entered("the link was lost."),
+        }
+    }
+    if is_known
+        && !host.request_of(id, Request::EnterLoader(RiskAccepted::by_the_user()))
+        && let Some(desk) = host.model().desk_mut(id)
+    {
+        desk.mcp_mut().firmware.not_entered("the controller is busy.");
+    }
+}

@@ -1,0 +1,336 @@
+//! Motion Mind 3: one motor, registers in place of settings, and screens by the mode that its switches select
+//! (Motion Mind manual, chapters 4 and 6).
+
+use brushwork_link::FamilyRef;
+use brushwork_link::device::{Addresses, ArmScope, Channel, Drive, Identity, Indicator, StatusReport};
+use brushwork_motion_mind_client::channels::CHANNELS;
+use brushwork_motion_mind_client::{MOTION_MIND, MotionMindFacts};
+use brushwork_motion_mind_wire::Mode;
+use brushwork_tuning::cause::Cause;
+use brushwork_tuning::tune::Method;
+use brushwork_values::Motor;
+
+use super::MotionMindDesk;
+use super::desk::{cannot_tune, driven};
+use super::drive::to_send;
+use super::words;
+use crate::family::{Ability, ActiveIndicator, Family, Figure, Figures, Known, Own, SettingsWords, Sliders};
+use crate::model::drawer::Tab;
+use crate::model::help_page::HelpPage;
+use crate::model::lamp::{LampInfo, LampState, state_of};
+use crate::model::screen::Screen;
+use crate::model::simulated::Simulated;
+use crate::tune::Loop;
+
+#[derive(Debug)]
+pub struct MotionMind;
+
+impl Family for MotionMind {
+    fn family(&self) -> FamilyRef {
+        MOTION_MIND
+    }
+
+    fn name(&self) -> &'static str {
+        "Motion Mind 3"
+    }
+
+    fn own(&self) -> Option<Box<dyn Own>> {
+        Some(Box::<MotionMindDesk>::default())
+    }
+
+    fn screens(&self, identity: Option<&Identity>, known: Known<'_>) -> Vec<Screen> {
+        let mut screens = vec![Screen::DeviceStatus, Screen::GeneralSettings];
+        screens.extend_from_slice(driven(identity, known).screens());
+        screens.extend([Screen::Inputs, Screen::Terminal]);
+        screens
+    }
+
+    fn title(&self, screen: Screen) -> &'static str {
+        match screen {
+            Screen::GeneralSettings => "Registers",
+            Screen::Pwm => "Duty",
+            Screen::Velocity => "Velocity",
+            Screen::Position => "Position",
+            Screen::Inputs => "Inputs and R/C",
+            Screen::Terminal => "Terminal",
+            other => other.title(),
+        }
+    }
+
+    fn tabs(&self, screen: Screen) -> &'static [Tab] {
+        match screen {
+            Screen::Velocity => &[Tab::Tune],
+            Screen::Position => &[Tab::Steps, Tab::Tune],
+            _ => &[],
+        }
+    }
+
+    fn figures(&self) -> &'static [Figures] {
+        &FIGURES
+    }
+
+    fn lamps(&self) -> &'static [LampInfo] {
+        &LAMPS
+    }
+
+    fn lit(
+        &self,
+        report: &StatusReport,
+        identity: Option<&Identity>,
+        _homed: Option<[bool; 2]>,
+    ) -> Vec<LampState> {
+        KEYS.iter().map(|key| lit_by(report, key, identity)).collect()
+    }
+
+    fn active(&self, report: &StatusReport, identity: Option<&Identity>) -> Vec<ActiveIndicator> {
+        let place = |indicator: &Indicator| KEYS.iter().position(|key| *key == indicator.key);
+        let set = report.active().filter(|indicator| means_something(indicator.key, identity));
+        let mut active: Vec<_> =
+            set.map(|indicator| ActiveIndicator::new(place(indicator), indicator)).collect();
+        active.sort();
+        active
+    }
+
+    fn words(&self) -> &'static SettingsWords {
+        &words::WORDS
+    }
+
+    fn motors(&self) -> &'static [Motor] {
+        &[Motor::M1]
+    }
+
+    fn world_pins(&self) -> &'static [&'static str] {
+        &["P4 control", "P3 feedback", "P17 pos. limit", "P16 neg. limit", "P12 brake", "J6 R/C, index"]
+    }
+
+    fn unit_row(&self, identity: &Identity) -> Option<(&'static str, String)> {
+        let facts = MotionMindFacts::of(identity)?;
+        Some(("Switches", format!("{}; {} protocol", facts.mode, facts.protocol)))
+    }
+
+    fn saves(&self, command: u8, _identity: &Identity) -> Option<bool> {
+        matches!(command, RESTORE | RESET).then_some(false)
+    }
+
+    fn help_pages(&self) -> &'static [HelpPage] {
+        &[HELP]
+    }
+
+    fn simulated(&self) -> Vec<(&'static str, &'static str)> {
+        vec![("motion-mind-3", "Motion Mind 3")]
+    }
+
+    fn simulated_target(&self, simulated: &Simulated) -> String {
+        let protocol = if simulated.is_text { "ascii" } else { "binary" };
+        let mut text = format!("sim:{},mode={},protocol={protocol}", simulated.model, simulated.mode);
+        let last = simulated.address.saturating_add(simulated.units.max(1) - 1).min(98);
+        for address in simulated.address..=last {
+            text += &format!(",address={address}");
+        }
+        text
+    }
+
+    /// Where the simulated one is, is known; several are looked for as on any bus.
+    fn simulated_addresses(&self, simulated: &Simulated) -> Option<Addresses> {
+        Some(match simulated.units {
+            1 => Addresses::Only(simulated.address),
+            _ => Addresses::Scan,
+        })
+    }
+
+    fn address_label(&self, address: u8) -> String {
+        format!("unit {address}")
+    }
+
+    fn scan_cost(&self) -> &'static str {
+        "which takes a while, "
+    }
+
+    fn methods(&self, which: Loop) -> &'static [Method] {
+        match which {
+            Loop::Velocity => &[Method::Velocity],
+            // One set of registers for both kinds of moves: there is no cascade.
+            Loop::Position => &[Method::Pd, Method::Pid],
+        }
+    }
+
+    fn cannot_tune(&self, identity: Option<&Identity>, known: Known<'_>) -> Option<&'static str> {
+        cannot_tune(identity, known)
+    }
+
+    fn remedies(&self, cause: Cause) -> Option<&'static [&'static str]> {
+        words::remedies(cause)
+    }
+
+    fn to_send(&self, scope: ArmScope, sliders: Sliders) -> Option<Drive> {
+        let setpoints = match scope {
+            ArmScope::Pwm => sliders.pwm.setpoints,
+            ArmScope::Velocity => sliders.velocity.setpoints,
+            ArmScope::Position => sliders.position.setpoints,
+            _ => return None,
+        };
+        to_send(scope, setpoints)
+    }
+
+    fn shows_registers(&self, screen: Screen) -> bool {
+        matches!(screen, Screen::GeneralSettings | Screen::Inputs | Screen::Motion)
+    }
+
+    fn channels(&self) -> &'static [Channel] {
+        CHANNELS
+    }
+
+    fn first_channels(&self, screen: Screen) -> &'static [Channel] {
+        use Channel as C;
+        match screen {
+            Screen::Velocity => &[C::M1_SETPOINT, C::M1_VELOCITY, C::M1_PWM],
+            Screen::Position => &[C::M1_SETPOINT, C::M1_POSITION, C::M1_PWM],
+            _ => &[C::M1_PWM, C::M1_VELOCITY, C::M1_CURRENT],
+        }
+    }
+
+    fn lacks(&self, ability: Ability) -> Option<&'static str> {
+        Some(match ability {
+            Ability::Scripts => "A Motion Mind 3 runs no scripts.",
+            Ability::Qpps => "A Motion Mind 3 has no register for a top speed.",
+            Ability::ClampTest => "A Motion Mind 3 has no voltage clamp.",
+            Ability::Generator => {
+                "Profiles are played on MCP controllers. Use the step assistant of the Position screen."
+            }
+            Ability::EmergencyStop => {
+                "A Motion Mind 3 has no emergency stop that software resets: its brake input acts while it is low."
+            }
+            Ability::SecondMotor => "A Motion Mind 3 drives one motor.",
+            Ability::Firmware => {
+                "The firmware loader of a Motion Mind 3 is not public. Use its maker's program."
+            }
+            Ability::BridgeFaults => "The simulated Motion Mind 3 has no faults of its bridge.",
+            Ability::Buses => "A Motion Mind 3 has no buses for scripts.",
+            Ability::Conflicts => "No two registers of a Motion Mind 3 contradict each other.",
+            Ability::Streams => "A Motion Mind 3 has one serial port, and no time-out for it.",
+            Ability::LogicBattery => {
+                "A Motion Mind 3 makes the supply of its logic out of that of the motor."
+            }
+            Ability::AbsoluteEncoders => "A Motion Mind 3 is tuned with its quadrature encoder.",
+            Ability::ByHand => "Use the step assistant of the Position screen.",
+        })
+    }
+}
+
+/// How to connect, drive and tune it.
+pub const HELP: HelpPage = HelpPage { title: "Motion Mind 3", group: 0, is_searched: true };
+
+/// How the indicator with that key lights its lamp.
+fn lit_by(report: &StatusReport, key: &str, identity: Option<&Identity>) -> LampState {
+    if !means_something(key, identity) {
+        return LampState::NotApplicable;
+    }
+    let set = report.active().find(|indicator| indicator.key == key);
+    set.map_or(LampState::Ok, |indicator| state_of(indicator.severity))
+}
+
+/// Whether an indicator means anything in the unit's mode: outside of mode 0 nobody misses an R/C pulse.
+fn means_something(key: &str, identity: Option<&Identity>) -> bool {
+    let facts = identity.and_then(MotionMindFacts::of);
+    key != BAD_RC || facts.is_none_or(|facts| facts.mode == Mode::RadioControl)
+}
+
+/// Brings back the factory's values, in RAM and in EEPROM.
+const RESTORE: u8 = 0x1B;
+/// Loads the EEPROM.
+const RESET: u8 = 0x1C;
+
+const BAD_RC: &str = "bad_rc";
+
+/// The indicators of the status that light the lamps, in the order of [`LAMPS`]: what takes the drive away comes first.
+const KEYS: [&str; 11] = [
+    "temp_fault",
+    "brake",
+    "current_limit",
+    BAD_RC,
+    "negative_limit",
+    "positive_limit",
+    "virtual_negative_limit",
+    "virtual_positive_limit",
+    "pwm_limit",
+    "in_position",
+    "index",
+];
+
+const fn lamp(short: &'static str, title: &'static str) -> LampInfo {
+    LampInfo { short, title }
+}
+
+/// The bits of STATUS (Motion Mind manual, figure 22).
+const LAMPS: [LampInfo; KEYS.len()] = [
+    lamp("TEMP", "Over temperature: bridge off"),
+    lamp("BRK", "Brake input low: bridge off"),
+    lamp("AMPS", "Current limit: drive reduced"),
+    lamp("RC", "Bad R/C signal"),
+    lamp("NEG", "Negative limit input"),
+    lamp("POS", "Positive limit input"),
+    lamp("VN", "Negative virtual limit"),
+    lamp("VP", "Positive virtual limit"),
+    lamp("PWM", "At the PWM limit"),
+    lamp("INP", "In position"),
+    lamp("IDX", "Index input"),
+];
+
+const fn figure(channel: Channel, label: &'static str, unit: &'static str) -> Figure {
+    Figure { channel, label, unit, motor: Motor::M1 }
+}
+
+const FIGURES: [Figures; 3] = [
+    Figures {
+        rows: &[figure(Channel::M1_POSITION, "Position", "counts")],
+        label_width: 56.0,
+        unit_letters: 6,
+        digits: 11,
+        zero: true,
+    },
+    Figures {
+        rows: &[figure(Channel::M1_VELOCITY, "Velocity", "counts/s"), figure(Channel::M1_PWM, "PWM", "%")],
+        label_width: 54.0,
+        unit_letters: 8,
+        digits: 8,
+        zero: false,
+    },
+    Figures {
+        rows: &[figure(Channel::M1_CURRENT, "Current", "A"), figure(Channel::TEMPERATURE_1, "Board", "°C")],
+        label_width: 50.0,
+        unit_letters: 2,
+        digits: 7,
+        zero: false,
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use brushwork_motion_mind_client::indicators::INDICATORS;
+    use brushwork_motion_mind_wire::{STATUS_BITS, status as bit};
+
+    use super::*;
+
+    fn report(word: u16) -> StatusReport {
+        StatusReport::new(1, Duration::ZERO, word.into(), INDICATORS)
+    }
+
+    #[test]
+    fn every_bit_of_the_status_lights_one_lamp() {
+        for row in STATUS_BITS {
+            let lit = MotionMind.lit(&report(row.mask()), None, None);
+            assert_eq!(lit.iter().filter(|state| **state != LampState::Ok).count(), 1, "{}", row.name);
+            assert_eq!(MotionMind.active(&report(row.mask()), None).len(), 1, "{}", row.name);
+        }
+        assert_eq!(MotionMind.active(&report(0), None), []);
+    }
+
+    #[test]
+    fn what_takes_the_drive_away_is_an_error_and_comes_first() {
+        let active = MotionMind.active(&report(bit::TEMPFAULT | bit::INPOSITION | bit::BRAKE), None);
+        let states: Vec<_> = active.iter().map(|indicator| indicator.state).collect();
+        assert_eq!(states, [LampState::Error, LampState::Error, LampState::Active]);
+    }
+}

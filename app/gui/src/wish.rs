@@ -1,0 +1,42 @@
+//! What screens of one family alone ask for: the wish brings along what is done about it, and the window lends it a hand.
+
+use std::fmt::Debug;
+
+use brushwork_core::keep::Store;
+use brushwork_core::session::firmware::LoaderPlace;
+use brushwork_link::device::Request;
+use brushwork_link::settings::SettingsImage;
+use brushwork_link::transport::ConnectTarget;
+
+use super::model::screen::Screen;
+use super::model::{DeskId, Model};
+
+/// Something that the screens of a family ask for.
+pub trait Wish: Debug {
+    /// Does it; why not, as a sentence.
+    fn act(&self, host: &mut dyn Host) -> Result<(), String>;
+}
+
+/// What the window does for a wish.
+pub trait Host {
+    /// All there is to see.
+    fn model(&mut self) -> &mut Model;
+
+    /// Queues a request to a link; a refusal is told.
+    fn request_of(&mut self, desk: DeskId, request: Request) -> bool;
+
+    /// Writes values to the RAM of the unit in front, with a backup before, and reads them back.
+    fn write_ram(&mut self, wanted: SettingsImage) -> Result<(), String>;
+
+    /// Goes to a screen.
+    fn show(&mut self, screen: Screen);
+
+    /// Disarms the screen in front.
+    fn disarm(&mut self);
+
+    /// Where backups are kept.
+    fn store(&self) -> Store;
+
+    /// Where a unit behind a target waits for firmware.
+    fn loader_place(&mut self, target: &ConnectTarget) -> LoaderPlace;
+}
