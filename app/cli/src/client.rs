@@ -3,22 +3,19 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use brushwork_link::FamilyChoice;
 use brushwork_link::device::{
     Addresses, ArmScope, DeviceHandle, Event, Identity, Job, JobTicket, PollRate, Request,
 };
 use brushwork_link::transport::{ConnectTarget, Stream};
-use brushwork_link::{Failure, SystemClock};
-use brushwork_mcp_wire::packet_serial;
-use brushwork_motion_mind_wire as motion_mind;
+use brushwork_link::{Failure, FamilyChoice, SystemClock, families};
 use crossbeam_channel::RecvTimeoutError;
 
 use super::exit::Exit;
+use super::family::{self, Family};
 use super::interrupt::Interrupt;
 use super::output::say;
 use super::shared_args::{ConnectArgs, LineArgs};
 use brushwork_core::session;
-use brushwork_core::session::motion_mind_spec::MotionMindSpec;
 use brushwork_core::session::{Session, SessionOptions, Simulation};
 
 /// How long a controller may take to be found and identified.
@@ -95,9 +92,8 @@ pub fn target(args: &ConnectArgs) -> Result<ConnectTarget, Exit> {
 pub fn line_target(args: &LineArgs) -> Result<ConnectTarget, Exit> {
     let target = parse(&args.connect)?;
     let on_can = matches!(target, ConnectTarget::Can { .. });
-    let is_packet_address = |address: &u8| packet_serial::Address::new(*address).is_some();
-    let is_unit = |address: &u8| motion_mind::Address::unit(*address).is_some();
-    let one_family = args.address.iter().all(is_packet_address) || args.address.iter().all(is_unit);
+    let one_family =
+        families().iter().any(|family| args.address.iter().all(|address| family.has_address(*address)));
     if !on_can && !one_family {
         say(
             "Could not understand --address: a line has controllers of one family, MCP or RoboClaw at 0x80 to 0x87 or Motion Minds at 1 to 98.",
@@ -116,36 +112,32 @@ fn parse(target: &str) -> Result<ConnectTarget, Exit> {
 
 /// The family that is meant: as the target or `--family` says.
 pub fn family(target: &ConnectTarget, args: &ConnectArgs) -> FamilyChoice {
-    match target {
-        ConnectTarget::Sim(text) if MotionMindSpec::is_asked_for(text) => {
-            FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND)
-        }
-        target if target.family() != FamilyChoice::AUTO => target.family(),
-        _ => args.family,
+    let simulated = family::families().iter().find(|family| first_of(target, **family).is_some());
+    match simulated {
+        Some(family) => FamilyChoice::of(family.family()),
+        None if target.family() != FamilyChoice::AUTO => target.family(),
+        None => args.family,
     }
 }
 
-/// The one address that is meant: as given, or the factory's of the family.
+/// The one address that is meant: as given, or the first one of units that are simulated, or the factory's of the family.
 fn addresses(target: &ConnectTarget, args: &ConnectArgs) -> Addresses {
-    match (args.address, family(target, args)) {
+    match (args.address, family(target, args).family()) {
         (Some(address), _) => Addresses::Only(address),
-        (None, choice) => match choice.family() {
-            Some(family) if family == brushwork_motion_mind_client::MOTION_MIND => {
-                Addresses::Only(first_of(target).get())
-            }
-            Some(family) => Addresses::Only(family.factory_address()),
-            None => Addresses::Factory,
-        },
+        (None, Some(family)) => {
+            let first = first_of(target, family::of(family));
+            Addresses::Only(first.unwrap_or_else(|| family.factory_address()))
+        }
+        (None, None) => Addresses::Factory,
     }
 }
 
-/// The first of simulated Motion Minds, or the factory address.
-fn first_of(target: &ConnectTarget) -> motion_mind::Address {
-    let spec = match target {
-        ConnectTarget::Sim(text) => MotionMindSpec::parse(text).ok(),
-        _ => None,
-    };
-    spec.and_then(|spec| spec.addresses.first().copied()).unwrap_or(motion_mind::Address::FACTORY)
+/// The first of simulated units, if they are the family's.
+fn first_of(target: &ConnectTarget, family: &dyn Family) -> Option<u8> {
+    match target {
+        ConnectTarget::Sim(text) => family.first_simulated(text),
+        ConnectTarget::Serial { .. } | ConnectTarget::Tcp { .. } | ConnectTarget::Can { .. } => None,
+    }
 }
 
 /// Simulated controllers are made at the addresses that are asked for, unless the target names some itself.

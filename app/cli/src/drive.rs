@@ -7,14 +7,13 @@ use std::time::{Duration, Instant};
 use brushwork_link::device::{
     ArmScope, DisarmReason, Drive, DriveCommand, Event, Identity, PollRate, Request,
 };
-use brushwork_mcp_wire::packet_serial::commands;
-use brushwork_mcp_wire::packet_serial::name::QPPS;
 use brushwork_values::Motor;
 use serde_json::json;
 
 use super::args::{DriveArgs, MotorArg};
-use super::client::{Client, arm, ask, wait};
+use super::client::{Client, arm, ask};
 use super::exit::Exit;
+use super::family;
 use super::interrupt::Interrupt;
 use super::output::{Output, OutputError, say};
 use super::response::Response;
@@ -102,9 +101,10 @@ fn command(args: &DriveArgs, client: &Client, interrupt: &Interrupt) -> Result<D
     }
     let speed_counts_per_s = match args.speed_limit {
         Some(limit) => limit,
-        // Its speed is VELOCITYLIMIT, a setting.
-        None if !client.identity.capabilities().ramps => 0,
-        None => qpps(args.motor, client, interrupt)?,
+        None => {
+            let family = family::of(client.identity.family);
+            family.full_speed(args.motor.motors(), client.device(), interrupt)?
+        }
     };
     if let Some(distance) = args.by {
         let speed = i32::try_from(speed_counts_per_s).unwrap_or(i32::MAX);
@@ -124,42 +124,6 @@ fn command(args: &DriveArgs, client: &Client, interrupt: &Interrupt) -> Result<D
         decel_counts_per_s2: args.decel.map_or(accel, rate),
         queued: false,
     })
-}
-
-/// The motor's own full speed: with both motors, the slower one's.
-fn qpps(motor: MotorArg, client: &Client, interrupt: &Interrupt) -> Result<u32, Exit> {
-    let both = [commands::READ_VELOCITY_PID_M1, commands::READ_VELOCITY_PID_M2];
-    let commands = match motor {
-        MotorArg::M1 => &both[..1],
-        MotorArg::M2 => &both[1..],
-        MotorArg::Both => &both,
-    };
-    let mut slowest = u32::MAX;
-    for &command in commands {
-        let request = Request::Transact {
-            id: u64::from(command.number()),
-            command: command.number(),
-            values: Vec::new(),
-        };
-        ask(client.device(), request)?;
-        let values = wait(client.device(), interrupt, |event| match event {
-            Event::Transacted { result, .. } => Some(result),
-            _ => None,
-        })?
-        .map_err(|failure| {
-            say(failure.to_string());
-            Exit::Refused
-        })?;
-        let reply = command.reply(values).ok_or(Exit::Refused)?;
-        slowest = slowest.min(u32::try_from(reply.int(QPPS)).unwrap_or(0));
-    }
-    if slowest == 0 {
-        say(
-            "The motor's QPPS is 0, so a position move would not move. Give --speed-limit or set QPPS first.",
-        );
-        return Err(Exit::Refused);
-    }
-    Ok(slowest)
 }
 
 fn keep_driving(

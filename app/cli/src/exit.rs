@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use super::output::OutputError;
+use super::output::{OutputError, say};
 
 /// Shown under `brushwork --help`.
 pub const HELP: &str = "Exit codes:\n  \
@@ -44,6 +44,14 @@ pub enum Exit {
     ScriptFaulted,
     /// A signal or a closed pipe ended the command, with the motors stopped.
     Interrupted,
+}
+
+impl Exit {
+    /// Says what makes no sense.
+    pub fn usage(sentence: impl AsRef<str>) -> Self {
+        say(sentence);
+        Self::Usage
+    }
 }
 
 impl From<OutputError> for Exit {

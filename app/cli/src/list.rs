@@ -2,17 +2,14 @@
 
 use brushwork_link::SystemClock;
 use brushwork_link::device::{Event, Identity, PollRate};
-use brushwork_link::family::Model;
 use brushwork_link::transport::{ConnectTarget, PortInfo, list_ports};
-use brushwork_mcp_wire::models::MODELS;
-use brushwork_motion_mind_client::MOTION_MIND;
 use serde::Serialize;
 
 use super::args::ListArgs;
 use super::exit::Exit;
+use super::family::families;
 use super::interrupt::Interrupt;
 use super::output::{Output, OutputError, say};
-use super::sim::motion_mind;
 use brushwork_core::session;
 use brushwork_core::session::SessionOptions;
 
@@ -71,20 +68,15 @@ fn describe(port: &PortInfo) -> String {
 }
 
 fn simulated() -> Vec<SimulatedRow> {
-    let row = |model: &'static brushwork_mcp_wire::models::Model| SimulatedRow {
-        connect: format!("sim:{}", model.key),
-        model: model.name,
-        rating: model.rating(),
-        assumed: model.assumed,
-    };
-    let motion_mind = |model: &'static Model| SimulatedRow {
-        connect: format!("sim:{}", model.key),
-        model: model.name,
-        rating: model.rating,
-        assumed: motion_mind::ASSUMED,
-    };
-    let motion_minds = MOTION_MIND.models().iter().map(motion_mind);
-    MODELS.iter().map(row).chain(motion_minds).collect()
+    let rows = families().iter().flat_map(|family| {
+        family.family().models().iter().map(|model| SimulatedRow {
+            connect: format!("sim:{}", model.key),
+            model: model.name,
+            rating: model.rating,
+            assumed: family.simulated(model).assumed,
+        })
+    });
+    rows.collect()
 }
 
 /// Asks all addresses of a port who is there. Reading moves no motor.

@@ -1,7 +1,5 @@
 //! `brushwork status`: what the controller measures and reports.
 
-use brushwork_mcp_client::MCP;
-use brushwork_motion_mind_client::{MotionMindFacts, is_motion_mind};
 use std::time::{Duration, Instant};
 
 use brushwork_link::Stream;
@@ -9,10 +7,6 @@ use brushwork_link::device::{
     Channel, Event, Identity, Job, JobEnding, Newest, PlaceState, PollRate, StatusPlace, StatusReport,
 };
 use brushwork_link::settings::{SettingsImage, read_all};
-use brushwork_mcp_client::TypedWire as _;
-use brushwork_mcp_client::diagnosis::{Diagnosis, Evidence, Measured, PinEnd, diagnose, homed, pin_ends};
-use brushwork_mcp_wire::packet_serial::commands;
-use brushwork_motion_mind_client::taken;
 use brushwork_values::Severity;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -20,6 +14,7 @@ use serde_json::{Map, Value, json};
 use super::args::StatusArgs;
 use super::client::Client;
 use super::exit::Exit;
+use super::family::{self, Known, Said};
 use super::interrupt::Interrupt;
 use super::output::{Output, OutputError, say};
 
@@ -41,7 +36,7 @@ pub struct Readings {
 struct Setup {
     settings: Option<SettingsImage>,
     /// Where the input pins stand, where the unit tells.
-    pins: Option<Vec<PinEnd>>,
+    inputs: Option<Vec<i64>>,
 }
 
 #[derive(Serialize)]
@@ -124,10 +119,7 @@ fn read_setup(client: &Client, readings: &mut Readings, interrupt: &Interrupt) -
     let Some(subject) = client.identity.subject() else { return Ok(Setup::default()) };
     let job = Job::new("read the settings", SETTINGS_LIMIT, move |context| {
         let settings = Some(read_all(context, subject)?.image);
-        // A RoboClaw does not know the command; its status word has bits of its own.
-        let values =
-            if subject.family() == MCP { context.ask(commands::READ_SIGNAL_VALUES, &[]).ok() } else { None };
-        Ok(Setup { settings, pins: values.map(|values| pin_ends(&values)) })
+        Ok(Setup { settings, inputs: family::of(subject.family()).read_inputs(context) })
     });
     let ticket = match client.device().start(job) {
         Ok(ticket) => ticket,
@@ -159,15 +151,15 @@ fn setup_of(ending: JobEnding<Setup>) -> Setup {
 }
 
 /// Why the motors do not run, as far as anything is known.
-fn judge(client: &Client, readings: &Readings, setup: &Setup) -> Option<Diagnosis> {
-    let status = readings.status.filter(|_| !is_motion_mind(&client.identity))?;
-    Some(diagnose(&Evidence {
-        settings: setup.settings.as_ref(),
-        pins: setup.pins.as_deref(),
+fn judge(client: &Client, readings: &Readings, setup: &Setup) -> Option<Said> {
+    family::of(client.identity.family).diagnose(&Known {
+        identity: &client.identity,
+        status: readings.status.as_ref(),
+        newest: &readings.newest,
         stream: readings.stream,
-        measured: Measured::of(|channel| readings.get(channel)),
-        ..Evidence::of(&status, &client.identity)
-    }))
+        settings: setup.settings.as_ref(),
+        inputs: setup.inputs.as_deref(),
+    })
 }
 
 fn print(
@@ -195,19 +187,14 @@ fn print(
         identity.port,
         identity.version(),
     ))?;
-    if let Some(facts) = MotionMindFacts::of(identity) {
-        out.line(format!(
-            "{}, {} protocol. Over the serial line it takes {}.",
-            capital(&facts.mode.to_string()),
-            facts.protocol,
-            taken(facts.mode)
-        ))?;
+    if let Some(line) = family::of(identity.family).set_up(identity) {
+        out.line(line)?;
     }
     for note in &identity.notes {
         out.line(format!("Note: {note}"))?;
     }
     if let Some(diagnosis) = &diagnosis {
-        out.line(diagnosis.sentence())?;
+        out.line(&diagnosis.sentence)?;
     }
     out.line("")?;
     let rows: Vec<Vec<String>> = identity
@@ -238,8 +225,9 @@ fn decimals(channel: Channel) -> usize {
 
 /// The status row. Home and limit switches go by the actions of the pins where the status word has no bits for them.
 fn lamps(readings: &Readings, client: &Client, setup: &Setup) -> Vec<LampState> {
-    let homed =
-        setup.settings.as_ref().zip(setup.pins.as_deref()).map(|(settings, ends)| homed(settings, ends));
+    let family = family::of(client.identity.family);
+    let known = setup.settings.as_ref().zip(setup.inputs.as_deref());
+    let homed = known.and_then(|(settings, inputs)| family.homed(settings, inputs));
     let state = |state| match state {
         PlaceState::Unknown => "unknown",
         PlaceState::NotReported => "not reported",
@@ -253,22 +241,10 @@ fn lamps(readings: &Readings, client: &Client, setup: &Setup) -> Vec<LampState> 
     client.identity.status_row(readings.status.as_ref(), homed).into_iter().map(lamp).collect()
 }
 
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters
-        .next()
-        .map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + letters.as_str())
-}
-
-fn to_json(
-    client: &Client,
-    readings: &Readings,
-    lamps: &[LampState],
-    diagnosis: Option<&Diagnosis>,
-) -> Value {
+fn to_json(client: &Client, readings: &Readings, lamps: &[LampState], diagnosis: Option<&Said>) -> Value {
     json!({
-        "diagnosis": diagnosis.map(Diagnosis::sentence),
-        "findings": diagnosis.map(|diagnosis| &diagnosis.findings),
+        "diagnosis": diagnosis.map(|diagnosis| &diagnosis.sentence),
+        "findings": diagnosis.map(|diagnosis| &diagnosis.data),
         "identity": client.identity,
         "readings": readings.to_json(&client.identity),
         "status_word": readings.status.map(|status| status.word),

@@ -2,20 +2,17 @@
 //!
 //! The stop goes out before anybody is looked for, to whoever may be there; then the units are found and each is asked to confirm.
 
-use brushwork_motion_mind_client::is_motion_mind;
 use std::time::{Duration, Instant};
 
-use brushwork_link::FamilyChoice;
-use brushwork_link::SystemClock;
 use brushwork_link::device::{Addresses, DeviceHandle, Event, Identity, PollRate, StopReport, UnitStop};
 use brushwork_link::transport::ConnectTarget;
-use brushwork_mcp_wire::packet_serial;
-use brushwork_motion_mind_wire as motion_mind;
+use brushwork_link::{FamilyChoice, SystemClock, families};
 use serde_json::json;
 
 use super::args::StopArgs;
 use super::client::{self, CONNECT_LIMIT, Client};
 use super::exit::Exit;
+use super::family::{self, Unheard};
 use super::interrupt::Interrupt;
 use super::output::{Output, OutputError, say};
 use super::shared_args::LineArgs;
@@ -71,11 +68,15 @@ fn stop_line(line: &LineArgs, interrupt: &Interrupt) -> Result<LineStop, Exit> {
     let is_unknown = line.family == FamilyChoice::AUTO && target.family() == FamilyChoice::AUTO && !on_can;
     let mut session = open(line.family)?;
     let mut found = stop_and_find(&session, on_can, interrupt)?;
-    if found.is_err() && is_unknown && asked == Addresses::Scan {
-        // A line that is not known to have a Motion Mind is not searched for all 98 of them when it is opened.
-        drop(session);
-        session = open(FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND))?;
-        found = stop_and_find(&session, on_can, interrupt)?;
+    if is_unknown && asked == Addresses::Scan {
+        // When the line was opened it was not searched for all units that these families can have on it.
+        for family in family::families().iter().filter(|family| family.is_searched_in_part()) {
+            if found.is_err() {
+                drop(session);
+                session = open(FamilyChoice::of(family.family()))?;
+                found = stop_and_find(&session, on_can, interrupt)?;
+            }
+        }
     }
     let (units, first) = found.map_err(|sentence| {
         say(sentence);
@@ -166,15 +167,21 @@ impl LineStop {
         }
     }
 
-    /// The addresses at which nobody answered: of those that were asked for, or of all that packet serial has.
+    /// What the stop did about units that do not answer; `None` where nothing is known of them.
+    fn unheard(&self) -> Option<Unheard> {
+        let unit = self.units.first().filter(|unit| !unit.is_node())?;
+        Some(family::of(unit.family).unheard())
+    }
+
+    /// The addresses at which nobody answered: of those that were asked for, or of all that the stop was written to.
     fn silent(&self) -> Vec<u8> {
         let answered = |address: &u8| {
             self.units.iter().any(|unit| unit.address == *address || unit.also_answers.contains(address))
         };
-        let asked: Vec<u8> = match self.asked {
-            Addresses::These(set) => set.iter().collect(),
-            _ if self.units.iter().any(|unit| is_motion_mind(unit) || unit.is_node()) => Vec::new(),
-            _ => packet_serial::Address::ALL.map(packet_serial::Address::get).to_vec(),
+        let asked: Vec<u8> = match (self.asked, self.unheard()) {
+            (Addresses::These(set), _) => set.iter().collect(),
+            (_, Some(Unheard::WrittenTo(addresses))) => addresses,
+            (_, Some(Unheard::Broadcast) | None) => Vec::new(),
         };
         asked.into_iter().filter(|address| !answered(address)).collect()
     }
@@ -199,25 +206,23 @@ impl LineStop {
     fn warnings(&self) -> Vec<String> {
         let mut lines = warnings_of(&self.report, &self.units);
         let silent = self.silent();
-        let is_node = self.units.iter().any(Identity::is_node);
-        let is_motion_mind = self.units.iter().any(is_motion_mind);
-        match self.asked {
-            Addresses::These(_) if !silent.is_empty() => lines.push(format!(
+        match (self.asked, self.unheard()) {
+            (Addresses::These(_), _) if !silent.is_empty() => lines.push(format!(
                 "Nobody answered at {}: the stop was written there too, and whether it was heard is not known. If a motor runs there, cut its power.",
                 in_words(&silent)
             )),
-            Addresses::These(_) => {}
-            _ if is_node => lines.push(
+            (Addresses::These(_), _) => {}
+            (_, None) => lines.push(
                 "Nodes that do not answer as a controller that this program knows were told nothing.".to_owned(),
             ),
-            _ if is_motion_mind => lines.push(
+            (_, Some(Unheard::Broadcast)) => lines.push(
                 "Units that do not answer were told to stop by a broadcast, which nobody confirms.".to_owned(),
             ),
-            _ if !silent.is_empty() => lines.push(format!(
+            (_, Some(Unheard::WrittenTo(_))) if !silent.is_empty() => lines.push(format!(
                 "Nobody answered at {}; the stop was written to these addresses too.",
                 in_words(&silent)
             )),
-            _ => {}
+            (_, Some(Unheard::WrittenTo(_))) => {}
         }
         lines
     }
@@ -264,9 +269,9 @@ fn place(units: &[Identity], address: u8) -> String {
 
 /// Addresses with runs drawn together: "0x81, 0x83 to 0x87".
 fn in_words(addresses: &[u8]) -> String {
-    let name = |address: u8| match motion_mind::Address::unit(address) {
-        Some(_) => address.to_string(),
-        None => format!("0x{address:02X}"),
+    let name = |address: u8| {
+        let family = families().iter().find(|family| family.has_address(address));
+        family.map_or_else(|| format!("0x{address:02X}"), |family| family.address_text(address))
     };
     let runs = addresses.chunk_by(|left, right| left + 1 == *right);
     let words = runs.map(|run| match run {
@@ -282,6 +287,10 @@ mod tests {
 
     #[test]
     fn runs_of_addresses_are_drawn_together() {
+        brushwork_link::install(&[
+            &brushwork_mcp_client::McpDriver,
+            &brushwork_motion_mind_client::MotionMindDriver,
+        ]);
         assert_eq!(in_words(&[0x80]), "0x80");
         assert_eq!(in_words(&[0x80, 0x82, 0x83]), "0x80, 0x82, 0x83");
         assert_eq!(in_words(&[0x81, 0x83, 0x84, 0x85, 0x87]), "0x81, 0x83 to 0x85, 0x87");

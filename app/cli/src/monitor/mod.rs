@@ -1,15 +1,14 @@
-//! `brushwork monitor`: traffic in words, of packet serial and of both Motion Mind protocols.
+//! `brushwork monitor`: traffic in words, of whichever family.
 //!
 //! Three sources: this program's own polling ([`own`]), another program's traffic that is passed on ([`tap`]), and bytes from
 //! a file ([`file`]). All of them end as [`record::Record`]s.
 
 pub mod args;
-mod decoder;
+mod chosen;
 mod file;
-mod follower;
-mod mind;
+pub mod follower;
 mod own;
-mod record;
+pub mod record;
 mod tap;
 
 use super::exit::Exit;

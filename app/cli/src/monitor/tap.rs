@@ -16,7 +16,8 @@ use brushwork_plant::server::{Endpoint, Heard, Line};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
 use super::args::MonitorArgs;
-use super::follower::{Follower, follower};
+use super::chosen::follower;
+use super::follower::Follower;
 use super::record::{Record, print};
 use crate::client;
 use crate::exit::Exit;
@@ -30,6 +31,8 @@ const QUEUE: usize = 4096;
 const LOOK: Duration = Duration::from_millis(1);
 /// How often the printing thread looks at signals.
 const WATCH: Duration = Duration::from_millis(20);
+/// The pause after which what a client left half sent is over: twice what a controller needs.
+const GAP: Duration = Duration::from_millis(20);
 /// How long a stop at the end may take to be confirmed.
 const STOP_LIMIT: Duration = Duration::from_millis(250);
 
@@ -125,7 +128,7 @@ fn show(
 struct Tap {
     line: Box<dyn Line>,
     transport: Box<dyn Transport>,
-    decoder: Follower,
+    decoder: Box<dyn Follower>,
     news: Sender<News>,
     left_out: u64,
     stop: Arc<AtomicBool>,
@@ -137,7 +140,7 @@ impl Tap {
         while !self.stop.load(Ordering::SeqCst) {
             self.turn()?;
         }
-        stop_moved(self.transport.as_mut(), &self.decoder)
+        stop_moved(self.transport.as_mut(), self.decoder.as_ref())
     }
 
     fn turn(&mut self) -> Result<(), TransportError> {
@@ -195,12 +198,12 @@ impl Tap {
 }
 
 /// Stops the units that the client had told to move.
-fn stop_moved(transport: &mut dyn Transport, follower: &Follower) -> Result<(), TransportError> {
+fn stop_moved(transport: &mut dyn Transport, follower: &dyn Follower) -> Result<(), TransportError> {
     for stop in follower.stops() {
         let mut confirmed = false;
         for bytes in &stop.writes {
             // What the client left half sent must be over first: the controller drops it after a pause.
-            thread::sleep(follower.gap());
+            thread::sleep(GAP);
             transport.discard_input()?;
             transport.write(bytes)?;
             confirmed |= answer_within(transport, STOP_LIMIT)?.starts_with(stop.acknowledge);

@@ -11,9 +11,9 @@ pub mod source;
 
 use brushwork_script::mcl::reference;
 
-use super::exit::Exit;
-use super::interrupt::Interrupt;
-use super::output::Output;
+use crate::exit::Exit;
+use crate::interrupt::Interrupt;
+use crate::output::Output;
 use args::{MclArgs, MclCommand, ReferenceArgs};
 
 /// Does what was asked for.

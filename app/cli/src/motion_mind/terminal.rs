@@ -3,26 +3,45 @@
 //! A unit in text takes lines; one in binary takes frames in hexadecimal, whose checksum is added. Nothing that moves the motor
 //! goes out: that takes arming, which a terminal does not do.
 
-use brushwork_motion_mind_client::MotionMindFacts;
 use std::io::BufRead as _;
 use std::time::{Duration, Instant};
 
 use brushwork_link::device::{Event, PollRate, Request};
-use brushwork_motion_mind_client::{describe_received, describe_sent};
+use brushwork_motion_mind_client::{MotionMindFacts, describe_received, describe_sent};
 use brushwork_motion_mind_wire::{
     Command, Effect, FrameEvent, FrameReader, LineEvent, LineReader, Protocol, checksum,
 };
 use brushwork_values::hex;
+use clap::Args;
 use serde_json::json;
 
-use super::args::TerminalArgs;
-use super::client::{Client, ask};
-use super::exit::Exit;
-use super::interrupt::Interrupt;
-use super::output::{Output, say};
+use crate::client::{Client, ask};
+use crate::exit::Exit;
+use crate::interrupt::Interrupt;
+use crate::output::{Output, say};
+use crate::shared_args::ConnectArgs;
 
 /// How long a reply may take.
 const REPLY_LIMIT: Duration = Duration::from_secs(10);
+
+/// Arguments of `brushwork terminal`.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    brushwork terminal --connect /dev/ttyUSB0,family=motion-mind 'R01 04' 'W01 04 5000'\n  \
+    brushwork terminal --connect sim:motion-mind-3 '1A 01 01 00 01 00'\n\n\
+    Without commands each line of standard input is one. A unit in ASCII takes lines, one in binary takes the bytes of a\n\
+    frame in hexadecimal without their checksum. Commands that move the motor are refused; use `brushwork drive`.")]
+pub struct TerminalArgs {
+    /// The controller.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// What to send.
+    #[arg(value_name = "COMMAND")]
+    pub commands: Vec<String>,
+    /// Print each exchange as a JSON object a line.
+    #[arg(long)]
+    pub json: bool,
+}
 
 /// Sends each command that is given, or each line of standard input.
 pub fn run(args: &TerminalArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {

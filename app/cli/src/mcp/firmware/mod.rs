@@ -5,9 +5,9 @@ mod image;
 mod info;
 mod update;
 
-use super::exit::Exit;
-use super::interrupt::Interrupt;
-use super::output::Output;
+use crate::exit::Exit;
+use crate::interrupt::Interrupt;
+use crate::output::Output;
 use args::{FirmwareAction, FirmwareArgs};
 
 /// Does what the arguments ask for.

@@ -7,12 +7,13 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use brushwork_motion_mind_wire::{
-    Address, Command, Effect, FrameEvent, FrameReader, LineEvent, LineReader, Progress, Protocol, Returns,
-    checksum, describe_command, describe_reply, encode_frame, encode_line, function, parse_frame_reply,
-    parse_line_reply, register_number,
+    ACK, Address, Command, Effect, FrameEvent, FrameReader, LineEvent, LineReader, Progress, Protocol,
+    Returns, checksum, describe_command, describe_reply, encode_frame, encode_line, function,
+    parse_frame_reply, parse_line_reply, register_number,
 };
 
-use super::record::{Direction, Record};
+use crate::monitor::follower::{Follower, Stop};
+use crate::monitor::record::{Direction, Record};
 
 /// A unit that has not answered after this time will not.
 const REPLY_LIMIT: Duration = Duration::from_millis(250);
@@ -25,7 +26,7 @@ const NEXT_COMMAND: Duration = Duration::from_millis(10);
 
 /// Follows a conversation.
 #[derive(Default)]
-pub struct MindDecoder {
+pub struct Decoder {
     frames: FrameReader,
     lines: LineReader,
     /// What the client has sent since its last command, and since when.
@@ -40,8 +41,8 @@ pub struct MindDecoder {
 
 /// A unit that was told to move and not to stand since.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Moved {
-    pub address: Address,
+struct Moved {
+    address: Address,
     protocol: Protocol,
     /// By a duty, else by a velocity or a move.
     is_duty: bool,
@@ -59,8 +60,8 @@ struct Awaited {
 }
 
 impl Moved {
-    /// The bytes that stand its motor, one write each.
-    pub fn stops(self) -> Vec<Vec<u8>> {
+    /// What stands its motor.
+    fn stop(self) -> Stop {
         // A setpoint that stands, in mode 4 and in mode 5.
         let closed = [Command::MoveAtVelocity(0), Command::MoveToRelative(0)];
         let commands = if self.is_duty { &[Command::ChangeSpeed(0)][..] } else { &closed[..] };
@@ -68,113 +69,18 @@ impl Moved {
             Protocol::Binary => encode_frame(self.address, command).ok(),
             Protocol::Text => encode_line(self.address, command).ok().map(String::into_bytes),
         };
-        commands.iter().filter_map(encode).collect()
+        Stop {
+            who: format!("the motor of {}", self.address),
+            writes: commands.iter().filter_map(encode).collect(),
+            acknowledge: match self.protocol {
+                Protocol::Binary => &[ACK],
+                Protocol::Text => b"OK",
+            },
+        }
     }
 }
 
-impl MindDecoder {
-    /// Units that were told to move after they were last told to stand still.
-    pub fn moved(&self) -> &[Moved] {
-        &self.moved
-    }
-
-    /// Takes bytes of the client.
-    pub fn client_sent(&mut self, bytes: &[u8], now: Duration) -> Vec<Record> {
-        let mut records = self.client_silence(now);
-        for &byte in bytes {
-            if self.open.is_empty() {
-                self.open_since = now;
-            }
-            self.open.push(byte);
-            let frame = self.frames.feed(byte, now);
-            let line = self.lines.feed(byte).filter(|_| is_text(&self.open));
-            match (frame, line) {
-                (Some(FrameEvent::Command(address, command)), _) => {
-                    self.take_command(address, command, Protocol::Binary, now, &mut records);
-                }
-                (_, Some(LineEvent::Command(address, command))) => {
-                    self.take_command(address, command, Protocol::Text, now, &mut records);
-                }
-                (_, Some(LineEvent::SelfTest(address))) => {
-                    records.push(
-                        self.close(format!("{address}: self-test; it answers again after a power cycle")),
-                    );
-                }
-                (_, Some(LineEvent::NotUnderstood { address, line })) => {
-                    records.push(self.close(format!("no command: {line:?}")));
-                    let address = address.unwrap_or(Address::FACTORY);
-                    self.wait_for(address, None, Protocol::Text, now);
-                }
-                _ => {}
-            }
-        }
-        records
-    }
-
-    /// Takes bytes of the controller.
-    pub fn controller_sent(&mut self, bytes: &[u8], now: Duration) -> Vec<Record> {
-        let Some(awaited) = self.awaited.front_mut() else {
-            return vec![record(now, Direction::FromController, bytes.to_vec(), "answer to nothing".into())];
-        };
-        if awaited.bytes.is_empty() {
-            awaited.first_at = now;
-        }
-        awaited.bytes.extend(bytes);
-        awaited.last_at = now;
-        let mut records = Vec::new();
-        if let Some((record, rest)) = self.whole_reply() {
-            records.push(record);
-            if !rest.is_empty() {
-                records.extend(self.controller_sent(&rest, now));
-            }
-        }
-        records
-    }
-
-    /// Whether an answer is due.
-    pub fn awaits_reply(&self) -> bool {
-        !self.awaited.is_empty()
-    }
-
-    /// Whether a command is open that further bytes may complete.
-    pub fn may_become_whole(&self) -> bool {
-        !self.open.is_empty()
-    }
-
-    /// Tells the time while nothing comes.
-    pub fn silence(&mut self, now: Duration) -> Vec<Record> {
-        let mut records = self.client_silence(now);
-        while self.awaited.front().is_some_and(|awaited| awaited.is_over(now)) {
-            records.extend(self.give_up());
-        }
-        records
-    }
-
-    /// Tells the time while nothing comes from the client: a frame that stopped half way is dropped, a line is not.
-    pub fn client_silence(&mut self, now: Duration) -> Vec<Record> {
-        let is_dropped = self.frames.silent_until(now).is_some();
-        if !is_dropped || self.open.is_empty() || is_text(&self.open) {
-            return Vec::new();
-        }
-        self.lines = LineReader::new();
-        let why = why_no_frame(&self.open);
-        vec![self.close(format!("no command: {why}"))]
-    }
-
-    /// The client has gone: what it left half done is over.
-    pub fn client_left(&mut self, now: Duration) -> Vec<Record> {
-        let mut records = self.client_silence(Duration::MAX);
-        if !self.open.is_empty() {
-            records.push(self.close("no command: a line without its end".to_owned()));
-        }
-        while self.awaits_reply() {
-            records.extend(self.give_up());
-        }
-        (self.frames, self.lines) = (FrameReader::new(), LineReader::new());
-        records.iter_mut().for_each(|record| record.at = record.at.map(|at| at.min(now)));
-        records
-    }
-
+impl Decoder {
     fn take_command(
         &mut self,
         address: Address,
@@ -212,7 +118,7 @@ impl MindDecoder {
 
     /// What the client has sent, as a record.
     fn close(&mut self, text: String) -> Record {
-        record(self.open_since, Direction::ToController, std::mem::take(&mut self.open), text)
+        Record::new(self.open_since, Direction::ToController, std::mem::take(&mut self.open), text)
     }
 
     fn note_motion(&mut self, address: Address, command: Command, protocol: Protocol) {
@@ -236,7 +142,7 @@ impl MindDecoder {
         let Awaited { mut bytes, first_at, address, command, .. } = self.awaited.pop_front()?;
         let rest = bytes.split_off(used);
         self.note_write(address, command);
-        Some((record(first_at, Direction::FromController, bytes, text), rest))
+        Some((Record::new(first_at, Direction::FromController, bytes, text), rest))
     }
 
     fn returns_of(&self, address: Address) -> Option<Returns> {
@@ -265,7 +171,109 @@ impl MindDecoder {
             (false, None) => "a reply cut short".to_owned(),
         };
         let text = format!("{}: {what}", awaited.address);
-        Some(record(awaited.first_at, Direction::FromController, awaited.bytes, text))
+        Some(Record::new(awaited.first_at, Direction::FromController, awaited.bytes, text))
+    }
+}
+
+impl Follower for Decoder {
+    fn client_sent(&mut self, bytes: &[u8], now: Duration) -> Vec<Record> {
+        let mut records = self.client_silence(now);
+        for &byte in bytes {
+            if self.open.is_empty() {
+                self.open_since = now;
+            }
+            self.open.push(byte);
+            let frame = self.frames.feed(byte, now);
+            let line = self.lines.feed(byte).filter(|_| is_text(&self.open));
+            match (frame, line) {
+                (Some(FrameEvent::Command(address, command)), _) => {
+                    self.take_command(address, command, Protocol::Binary, now, &mut records);
+                }
+                (_, Some(LineEvent::Command(address, command))) => {
+                    self.take_command(address, command, Protocol::Text, now, &mut records);
+                }
+                (_, Some(LineEvent::SelfTest(address))) => {
+                    records.push(
+                        self.close(format!("{address}: self-test; it answers again after a power cycle")),
+                    );
+                }
+                (_, Some(LineEvent::NotUnderstood { address, line })) => {
+                    records.push(self.close(format!("no command: {line:?}")));
+                    let address = address.unwrap_or(Address::FACTORY);
+                    self.wait_for(address, None, Protocol::Text, now);
+                }
+                _ => {}
+            }
+        }
+        records
+    }
+
+    fn controller_sent(&mut self, bytes: &[u8], now: Duration) -> Vec<Record> {
+        let Some(awaited) = self.awaited.front_mut() else {
+            return vec![Record::new(
+                now,
+                Direction::FromController,
+                bytes.to_vec(),
+                "answer to nothing".into(),
+            )];
+        };
+        if awaited.bytes.is_empty() {
+            awaited.first_at = now;
+        }
+        awaited.bytes.extend(bytes);
+        awaited.last_at = now;
+        let mut records = Vec::new();
+        if let Some((record, rest)) = self.whole_reply() {
+            records.push(record);
+            if !rest.is_empty() {
+                records.extend(self.controller_sent(&rest, now));
+            }
+        }
+        records
+    }
+
+    fn awaits_reply(&self) -> bool {
+        !self.awaited.is_empty()
+    }
+
+    fn may_become_whole(&self) -> bool {
+        !self.open.is_empty()
+    }
+
+    fn silence(&mut self, now: Duration) -> Vec<Record> {
+        let mut records = self.client_silence(now);
+        while self.awaited.front().is_some_and(|awaited| awaited.is_over(now)) {
+            records.extend(self.give_up());
+        }
+        records
+    }
+
+    /// A frame that stopped half way is dropped, a line is not.
+    fn client_silence(&mut self, now: Duration) -> Vec<Record> {
+        let is_dropped = self.frames.silent_until(now).is_some();
+        if !is_dropped || self.open.is_empty() || is_text(&self.open) {
+            return Vec::new();
+        }
+        self.lines = LineReader::new();
+        let why = why_no_frame(&self.open);
+        vec![self.close(format!("no command: {why}"))]
+    }
+
+    fn client_left(&mut self, now: Duration) -> Vec<Record> {
+        let mut records = self.client_silence(Duration::MAX);
+        if !self.open.is_empty() {
+            records.push(self.close("no command: a line without its end".to_owned()));
+        }
+        while self.awaits_reply() {
+            records.extend(self.give_up());
+        }
+        (self.frames, self.lines) = (FrameReader::new(), LineReader::new());
+        records.iter_mut().for_each(|record| record.at = record.at.map(|at| at.min(now)));
+        records
+    }
+
+    fn stops(&self) -> Vec<Stop> {
+        self.moved.iter().map(|moved| moved.stop()).collect()
     }
 }
 
@@ -329,10 +337,6 @@ fn why_no_frame(bytes: &[u8]) -> String {
     }
 }
 
-fn record(at: Duration, direction: Direction, bytes: Vec<u8>, text: String) -> Record {
-    Record { at: Some(at), direction, bytes, text }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -347,7 +351,7 @@ mod tests {
 
     #[test]
     fn frames_and_lines_are_told_from_the_traffic_itself() {
-        let mut decoder = MindDecoder::default();
+        let mut decoder = Decoder::default();
         // READ REGISTER 1 byte by byte, and its answer in two pieces: address, 1023, checksum.
         let mut told = Vec::new();
         for (at, byte) in [0x1D, 0x01, 0x01, 0x1F].into_iter().enumerate() {
@@ -366,7 +370,7 @@ mod tests {
 
     #[test]
     fn what_is_no_command_is_told_with_its_reason() {
-        let mut decoder = MindDecoder::default();
+        let mut decoder = Decoder::default();
         // MOVETO_ABSOLUTE 1000 with a wrong checksum.
         assert!(decoder.client_sent(&[0x15, 0x01, 0xE8, 0x03, 0x00, 0x00, 0x02], ms(0)).is_empty());
         let told = decoder.silence(ms(20));
@@ -381,7 +385,7 @@ mod tests {
 
     #[test]
     fn missing_wrong_and_unasked_answers_are_told_as_such() {
-        let mut decoder = MindDecoder::default();
+        let mut decoder = Decoder::default();
         assert_eq!(texts(&decoder.controller_sent(&[6], ms(0))), ["answer to nothing"]);
         decoder.client_sent(&[0x1D, 0x02, 0x01, 0x20], ms(10));
         assert!(decoder.silence(ms(200)).is_empty());
@@ -397,7 +401,7 @@ mod tests {
 
     #[test]
     fn answers_follow_the_return_bits_that_were_written_and_unknown_ones_are_found_out() {
-        let mut decoder = MindDecoder::default();
+        let mut decoder = Decoder::default();
         // MOVETO_ABSOLUTE 1000 answered by POSITION 1000.
         decoder.client_sent(&[0x15, 0x01, 0xE8, 0x03, 0x00, 0x00, 0x01], ms(0));
         let told = decoder.controller_sent(&[0x01, 0xE8, 0x03, 0x00, 0x00, 0xEC], ms(5));
@@ -412,10 +416,10 @@ mod tests {
 
     #[test]
     fn units_that_were_told_to_move_are_remembered_with_what_stands_them() {
-        let mut decoder = MindDecoder::default();
+        let mut decoder = Decoder::default();
         let mut send = |bytes: &[u8]| {
             decoder.client_sent(bytes, ms(0));
-            decoder.moved().iter().map(|moved| moved.stops()).collect::<Vec<_>>()
+            decoder.stops().into_iter().map(|stop| stop.writes).collect::<Vec<_>>()
         };
         // CHANGE_SPEED 763 to unit 1, then 0.
         assert_eq!(send(&[0x14, 0x01, 0xFB, 0x02, 0x12]), [[vec![0x14, 0x01, 0x00, 0x00, 0x15]]]);

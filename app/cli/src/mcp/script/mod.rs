@@ -5,9 +5,9 @@ pub mod download;
 mod run;
 mod state;
 
-use super::exit::Exit;
-use super::interrupt::Interrupt;
-use super::output::Output;
+use crate::exit::Exit;
+use crate::interrupt::Interrupt;
+use crate::output::Output;
 use args::{ScriptArgs, ScriptCommand};
 
 /// Does what is asked.

@@ -12,7 +12,7 @@ use serde_json::json;
 use super::args::DownloadArgs;
 use crate::exit::Exit;
 use crate::interrupt::Interrupt;
-use crate::mcl::source::{Source, read_bytes};
+use crate::mcp::mcl::source::{Source, read_bytes};
 use crate::output::{Output, say};
 use crate::settings::controller::Controller;
 

@@ -1,0 +1,39 @@
+//! A command that is not every program's: a family's own, or a tool of the developers.
+
+use clap::{ArgMatches, Args, Command};
+
+use super::exit::Exit;
+use super::interrupt::Interrupt;
+use super::output::Output;
+
+/// What does a command; its exit code.
+type Act = dyn Fn(&ArgMatches, &mut Output, &Interrupt) -> Exit;
+
+/// A command with what does it.
+pub struct Tool {
+    /// Its name, arguments and help.
+    pub command: Command,
+    run: Box<Act>,
+}
+
+impl Tool {
+    /// A command of that name, at that place among those of the help page, where they stand by [`Command::display_order`].
+    #[must_use]
+    pub fn new<A: Args + 'static>(
+        name: &'static str,
+        place: usize,
+        about: &'static str,
+        run: fn(&A, &mut Output, &Interrupt) -> Exit,
+    ) -> Self {
+        let command = A::augment_args(Command::new(name)).about(about).long_about(None);
+        let run = move |arguments: &ArgMatches, out: &mut Output, interrupt: &Interrupt| {
+            run(&A::from_arg_matches(arguments).unwrap_or_else(|error| error.exit()), out, interrupt)
+        };
+        Self { command: command.display_order(place), run: Box::new(run) }
+    }
+
+    /// Does it.
+    pub fn run(&self, arguments: &ArgMatches, out: &mut Output, interrupt: &Interrupt) -> Exit {
+        (self.run)(arguments, out, interrupt)
+    }
+}
