@@ -9,7 +9,7 @@ use brushwork_link::FamilyChoice;
 use brushwork_plant::faults::FAULT_SYNTAX;
 use brushwork_plant::machine::StreamIndex;
 use brushwork_values::Motor;
-use clap::{ArgMatches, Args, Command as Clap, Error, FromArgMatches, Parser, Subcommand, ValueEnum};
+use clap::{ArgMatches, Args, FromArgMatches as _, Parser, Subcommand, ValueEnum};
 
 use super::exit;
 use super::family::families;
@@ -327,28 +327,9 @@ impl SimArgs {
 }
 
 /// The arguments that families add to those of `brushwork sim`. Each family reads its own.
-#[derive(Debug, Clone, Copy)]
-pub struct OfFamilies;
-
-impl FromArgMatches for OfFamilies {
-    fn from_arg_matches(_: &ArgMatches) -> Result<Self, Error> {
-        Ok(Self)
-    }
-
-    fn update_from_arg_matches(&mut self, _: &ArgMatches) -> Result<(), Error> {
-        Ok(())
-    }
-}
-
-impl Args for OfFamilies {
-    fn augment_args(command: Clap) -> Clap {
-        families().iter().fold(command, |command, family| family.sim_arguments(command))
-    }
-
-    fn augment_args_for_update(command: Clap) -> Clap {
-        Self::augment_args(command)
-    }
-}
+#[derive(Debug, Args)]
+#[command(args = families().iter().flat_map(|family| family.sim_arguments()))]
+pub struct OfFamilies {}
 
 /// A unit's number as typed; what numbers there are depends on the model.
 fn parse_unit_number(text: &str) -> Result<u8, String> {

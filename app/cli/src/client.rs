@@ -71,10 +71,7 @@ impl Client {
 pub fn open(args: &ConnectArgs, poll: PollRate) -> Result<Session, Exit> {
     let target = target(args)?;
     let options = SessionOptions { addresses: addresses(&target, args), poll, family: args.family };
-    session::open(&target, options, SystemClock::shared(), None).map_err(|error| {
-        say(error.to_string());
-        Exit::NoLink
-    })
+    session::open(&target, options, SystemClock::shared(), None).map_err(|error| Exit::NoLink.saying(error))
 }
 
 /// What `--connect` and `--address` name.
@@ -95,19 +92,15 @@ pub fn line_target(args: &LineArgs) -> Result<ConnectTarget, Exit> {
     let one_family =
         families().iter().any(|family| args.address.iter().all(|address| family.has_address(*address)));
     if !on_can && !one_family {
-        say(
-            "Could not understand --address: a line has controllers of one family, MCP or RoboClaw at 0x80 to 0x87 or Motion Minds at 1 to 98.",
-        );
-        return Err(Exit::Usage);
+        return Err(Exit::Usage.saying("Could not understand --address: a line has controllers of one family, MCP or RoboClaw at 0x80 to 0x87 or Motion Minds at 1 to 98."));
     }
     Ok(at_addresses(target, &args.address))
 }
 
 fn parse(target: &str) -> Result<ConnectTarget, Exit> {
-    target.parse().map_err(|error| {
-        say(format!("Could not understand --connect {target}: {error}."));
-        Exit::Usage
-    })
+    target
+        .parse()
+        .map_err(|error| Exit::Usage.saying(format!("Could not understand --connect {target}: {error}.")))
 }
 
 /// The family that is meant: as the target or `--family` says.
@@ -171,8 +164,10 @@ fn wait_for_identity(
             _ => {}
         }
     }
-    say(format!("Could not connect: no controller identified itself within {} s.", CONNECT_LIMIT.as_secs()));
-    Err(Exit::NoLink)
+    Err(Exit::NoLink.saying(format!(
+        "Could not connect: no controller identified itself within {} s.",
+        CONNECT_LIMIT.as_secs()
+    )))
 }
 
 /// The next event, or `None` when there was none for a moment.
@@ -180,10 +175,7 @@ fn wait_for_identity(
 /// # Errors
 /// The link is lost (said on standard error) or the program was asked to end.
 pub fn next_event(device: &DeviceHandle, interrupt: &Interrupt) -> Result<Option<Event>, Exit> {
-    look_for_event(device, interrupt)?.map_err(|failure| {
-        say(failure.to_string());
-        Exit::NoLink
-    })
+    look_for_event(device, interrupt)?.map_err(|failure| Exit::NoLink.saying(failure))
 }
 
 /// The same, with the loss of the link as the failure that it is.
@@ -201,10 +193,7 @@ pub fn look_for_event(
         Ok(Event::Lost(failure)) => Ok(Err(failure)),
         Ok(event) => Ok(Ok(Some(event))),
         Err(RecvTimeoutError::Timeout) => Ok(Ok(None)),
-        Err(RecvTimeoutError::Disconnected) => {
-            say("The link was closed.");
-            Err(Exit::NoLink)
-        }
+        Err(RecvTimeoutError::Disconnected) => Err(Exit::NoLink.saying("The link was closed.")),
     }
 }
 
@@ -213,10 +202,9 @@ pub fn look_for_event(
 /// # Errors
 /// It takes none now (said on standard error).
 pub fn ask(device: &DeviceHandle, request: Request) -> Result<(), Exit> {
-    device.request(request).map_err(|refused| {
-        say(format!("Could not ask the controller: {refused}"));
-        Exit::Refused
-    })
+    device
+        .request(request)
+        .map_err(|refused| Exit::Refused.saying(format!("Could not ask the controller: {refused}")))
 }
 
 /// Queues a job.
@@ -224,10 +212,9 @@ pub fn ask(device: &DeviceHandle, request: Request) -> Result<(), Exit> {
 /// # Errors
 /// It was not taken, which is said on standard error.
 pub fn start<T: Send + 'static>(device: &DeviceHandle, job: Job<T>) -> Result<JobTicket<T>, Exit> {
-    device.start(job).map_err(|refused| {
-        say(format!("Could not ask the controller: {refused}"));
-        Exit::Refused
-    })
+    device
+        .start(job)
+        .map_err(|refused| Exit::Refused.saying(format!("Could not ask the controller: {refused}")))
 }
 
 /// Arms, and says what the device thread warns of.
@@ -274,6 +261,5 @@ pub fn wait<T>(
             None => {}
         }
     }
-    say(format!("The controller did not answer within {} s.", ANSWER_LIMIT.as_secs()));
-    Err(Exit::NoLink)
+    Err(Exit::NoLink.saying(format!("The controller did not answer within {} s.", ANSWER_LIMIT.as_secs())))
 }

@@ -34,12 +34,11 @@ pub fn run(args: &DriveArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
     let drive = match command(args, &client, interrupt).and_then(|command| {
         let drive = to_motors(args.motor, command);
         if let Some(clause) = client.identity.objection(&drive) {
-            say(format!(
+            return Err(Exit::Refused.saying(format!(
                 "Could not move the motor of {} on {}: {clause}.",
                 client.identity.place(),
                 client.identity.port
-            ));
-            return Err(Exit::Refused);
+            )));
         }
         arm(client.device(), ArmScope::CommandLine, interrupt)?;
         Ok(drive)
@@ -145,8 +144,7 @@ fn keep_driving(
             Some(Event::Disarmed(reason)) => return Err(disarmed(&reason)),
             // The command never went out, on a line that was busy with faults for instance: nothing will move.
             Some(Event::Failure(failure)) if failure.tried.starts_with("move the motor") => {
-                say(failure.to_string());
-                return Err(Exit::Refused);
+                return Err(Exit::Refused.saying(failure));
             }
             Some(event) => {
                 if let Event::Sample(sample) = &event {

@@ -1,5 +1,6 @@
 //! Exit codes: one place for the numbers, the help text and the type.
 
+use std::fmt::Display;
 use std::process::ExitCode;
 
 use super::output::{OutputError, say};
@@ -47,10 +48,11 @@ pub enum Exit {
 }
 
 impl Exit {
-    /// Says what makes no sense.
-    pub fn usage(sentence: impl AsRef<str>) -> Self {
-        say(sentence);
-        Self::Usage
+    /// Ends so, with a sentence for the person at the terminal.
+    #[must_use]
+    pub fn saying(self, sentence: impl Display) -> Self {
+        say(sentence.to_string());
+        self
     }
 }
 

@@ -10,7 +10,7 @@ use brushwork_link::family::{FamilyRef, Model};
 use brushwork_link::settings::{SettingsImage, SettingsTable};
 use brushwork_link::{FamilyChoice, Stream, Wire};
 use brushwork_values::Motor;
-use clap::{ArgMatches, Command};
+use clap::{Arg, ArgMatches};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -33,9 +33,9 @@ pub trait Family: Send + Sync {
     /// What a list of simulated controllers says of a model of its own.
     fn simulated(&self, model: &Model) -> SimulatedModel;
 
-    /// Adds its own arguments to those of `brushwork sim`.
-    fn sim_arguments(&self, command: Command) -> Command {
-        command
+    /// Its own arguments of `brushwork sim`.
+    fn sim_arguments(&self) -> Vec<Arg> {
+        Vec::new()
     }
 
     /// What is wrong when its own arguments are given and simulated units are another family's.

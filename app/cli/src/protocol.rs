@@ -9,6 +9,6 @@ use super::output::Output;
 pub fn run(args: &ProtocolArgs, out: &mut Output) -> Exit {
     match family::chosen(args.family).protocol(&args.commands) {
         Ok(page) => page.print(args.json, out).map_or_else(Exit::from, |()| Exit::Done),
-        Err(sentence) => Exit::usage(sentence),
+        Err(sentence) => Exit::Usage.saying(sentence),
     }
 }

@@ -59,10 +59,8 @@ fn stop_line(line: &LineArgs, interrupt: &Interrupt) -> Result<LineStop, Exit> {
     };
     let open = |family| {
         let options = SessionOptions { addresses: asked, poll: PollRate::Off, family };
-        session::open(&target, options, SystemClock::shared(), None).map_err(|error| {
-            say(error.to_string());
-            Exit::NoLink
-        })
+        session::open(&target, options, SystemClock::shared(), None)
+            .map_err(|error| Exit::NoLink.saying(error))
     };
     let on_can = matches!(target, ConnectTarget::Can { .. });
     let is_unknown = line.family == FamilyChoice::AUTO && target.family() == FamilyChoice::AUTO && !on_can;
@@ -131,11 +129,10 @@ fn wait_for_report_of(device: &DeviceHandle) -> Result<StopReport, Exit> {
             return Ok(report);
         }
     }
-    say(format!(
+    Err(Exit::Refused.saying(format!(
         "Stop was sent, but the controller did not confirm it within {} s. Cut the motor power.",
         STOP_LIMIT.as_secs()
-    ));
-    Err(Exit::Refused)
+    )))
 }
 
 /// Says what is not plainly stopped.

@@ -8,7 +8,6 @@ use brushwork_values::Motor;
 use crate::client::{ask, wait};
 use crate::exit::Exit;
 use crate::interrupt::Interrupt;
-use crate::output::say;
 
 /// The motor's own full speed: of both motors, the slower one's.
 pub fn qpps(motors: &[Motor], device: &DeviceHandle, interrupt: &Interrupt) -> Result<u32, Exit> {
@@ -28,18 +27,14 @@ pub fn qpps(motors: &[Motor], device: &DeviceHandle, interrupt: &Interrupt) -> R
             Event::Transacted { result, .. } => Some(result),
             _ => None,
         })?
-        .map_err(|failure| {
-            say(failure.to_string());
-            Exit::Refused
-        })?;
+        .map_err(|failure| Exit::Refused.saying(failure))?;
         let reply = command.reply(values).ok_or(Exit::Refused)?;
         slowest = slowest.min(u32::try_from(reply.int(QPPS)).unwrap_or(0));
     }
     if slowest == 0 {
-        say(
+        return Err(Exit::Refused.saying(
             "The motor's QPPS is 0, so a position move would not move. Give --speed-limit or set QPPS first.",
-        );
-        return Err(Exit::Refused);
+        ));
     }
     Ok(slowest)
 }

@@ -30,9 +30,9 @@ pub fn simulate(typed: &ArgMatches) -> Result<Simulated, Exit> {
         nodes: args.node.clone(),
     };
     let spec = SimSpec::from_options(&options)
-        .map_err(|error| Exit::usage(format!("Could not start the simulated controller: {error}.")))?;
+        .map_err(|error| Exit::Usage.saying(format!("Could not start the simulated controller: {error}.")))?;
     let stream = args.port.index();
-    let mut bus = simulation::bus_of(&spec, stream).map_err(|error| Exit::usage(error.to_string()))?;
+    let mut bus = simulation::bus_of(&spec, stream).map_err(|error| Exit::Usage.saying(error.to_string()))?;
     prepare(args, &mut bus)?;
     let what = if args.can.is_some() { spec.to_string() } else { format!("{spec}, port {}", stream.key()) };
     Ok(Simulated { line: SimulatedLine::Packets(Box::new(bus)), what, is_found: true })

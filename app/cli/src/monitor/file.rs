@@ -12,15 +12,12 @@ use super::chosen::follower;
 use super::follower::Follower;
 use super::record::{Direction, Record, print};
 use crate::exit::Exit;
-use crate::output::{Output, say};
+use crate::output::Output;
 
 /// Prints what the requests in the file mean.
 pub fn run(args: &MonitorArgs, path: &Path, out: &mut Output) -> Result<(), Exit> {
     let name = if is_standard_input(path) { "standard input".into() } else { path.display().to_string() };
-    let failed = |sentence: String| {
-        say(format!("Could not decode {name}: {sentence}."));
-        Exit::Failed
-    };
+    let failed = |sentence: String| Exit::Failed.saying(format!("Could not decode {name}: {sentence}."));
     let text = read(path).map_err(|error| failed(error.to_string()))?;
     let lines = parse(&text).map_err(|error| failed(error.to_string()))?;
     let mut decoder = follower(args)?;

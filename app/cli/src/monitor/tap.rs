@@ -48,10 +48,8 @@ enum News {
 pub fn run(args: &MonitorArgs, out: &mut Output, interrupt: &Interrupt) -> Result<(), Exit> {
     let endpoint = endpoint(args)?;
     let target = client::target(&args.connect)?;
-    let (transport, simulation) = session::connect(&target, None).map_err(|error| {
-        say(error.to_string());
-        Exit::NoLink
-    })?;
+    let (transport, simulation) =
+        session::connect(&target, None).map_err(|error| Exit::NoLink.saying(error))?;
     let (line, place) = server::open(&endpoint).map_err(|error| failed(&error.to_string()))?;
     let (news, received) = bounded(QUEUE);
     let stop = Arc::new(AtomicBool::new(false));
@@ -76,17 +74,15 @@ pub fn run(args: &MonitorArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
     drop(simulation);
     match (printed, carried) {
         (_, Err(_)) => Err(failed("the thread that carries the bytes failed")),
-        (Ok(()), Ok(Err(lost))) => {
-            say(format!("Lost the link to {name}: {lost}. Check the cable and start the monitor again."));
-            Err(Exit::NoLink)
-        }
+        (Ok(()), Ok(Err(lost))) => Err(Exit::NoLink.saying(format!(
+            "Lost the link to {name}: {lost}. Check the cable and start the monitor again."
+        ))),
         (printed, Ok(_)) => printed,
     }
 }
 
 fn failed(what: &str) -> Exit {
-    say(format!("Could not stand between another program and the controller: {what}."));
-    Exit::Failed
+    Exit::Failed.saying(format!("Could not stand between another program and the controller: {what}."))
 }
 
 fn endpoint(args: &MonitorArgs) -> Result<Endpoint, Exit> {

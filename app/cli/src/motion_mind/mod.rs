@@ -8,7 +8,7 @@ use brushwork_link::device::Identity;
 use brushwork_link::family::{FamilyRef, Model};
 use brushwork_motion_mind_client::{MOTION_MIND, MotionMindFacts, taken};
 use brushwork_motion_mind_wire::{reference, reference_entry, reference_page};
-use clap::{ArgMatches, Args as _, Command};
+use clap::{Arg, ArgMatches, Args as _, Command};
 
 use crate::exit::Exit;
 use crate::family::{Family, Page, Simulated, SimulatedModel, Unheard};
@@ -35,8 +35,9 @@ impl Family for MotionMindCommands {
         SimulatedModel { rating: sim::RATING, assumed: sim::ASSUMED }
     }
 
-    fn sim_arguments(&self, command: Command) -> Command {
-        Switches::augment_args(command)
+    fn sim_arguments(&self) -> Vec<Arg> {
+        // Their places on the help page are those of the command that takes them.
+        Switches::augment_args(Command::new("").next_display_order(None)).get_arguments().cloned().collect()
     }
 
     fn misplaced(&self, sim: &ArgMatches) -> Option<String> {
@@ -44,7 +45,7 @@ impl Family for MotionMindCommands {
     }
 
     fn simulate(&self, sim: &ArgMatches) -> Result<Simulated, Exit> {
-        sim::simulate(sim).map_err(Exit::usage)
+        sim::simulate(sim).map_err(|sentence| Exit::Usage.saying(sentence))
     }
 
     fn first_simulated(&self, text: &str) -> Option<u8> {

@@ -53,11 +53,10 @@ pub fn run(args: &TerminalArgs, out: &mut Output, interrupt: &Interrupt) -> Exit
 fn talk(args: &TerminalArgs, out: &mut Output, interrupt: &Interrupt) -> Result<bool, Exit> {
     let client = Client::connect(&args.connect, PollRate::Off, interrupt)?;
     let Some(facts) = MotionMindFacts::of(&client.identity) else {
-        say(format!(
+        return Err(Exit::Refused.saying(format!(
             "{} is no Motion Mind; its commands are put together in the window's Traffic screen.",
             client.identity.title()
-        ));
-        return Err(Exit::Refused);
+        )));
     };
     say(format!(
         "{} {} on {}: {}, {}.",
@@ -122,8 +121,7 @@ fn exchange(
             _ => {}
         }
     }
-    say("The link gave no answer.");
-    Err(Exit::NoLink)
+    Err(Exit::NoLink.saying("The link gave no answer."))
 }
 
 /// Whether the bytes are a command that writes EEPROM or starts the unit anew.

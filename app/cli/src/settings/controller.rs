@@ -55,13 +55,12 @@ impl<'i> Controller<'i> {
         let client = Client::connect(args, PollRate::Off, interrupt)?;
         let version = &client.identity.version_text;
         let Some(subject) = client.identity.subject() else {
-            say(format!(
+            return Err(Exit::Refused.saying(format!(
                 "The unit at {} on {} calls itself \"{version}\", which is no MCP, RoboClaw or Motion Mind: its \
                  settings are not known.",
                 client.identity.place(),
                 client.identity.port
-            ));
-            return Err(Exit::Refused);
+            )));
         };
         // Without a list of ports a unit is told by the name of its port.
         let unit = UnitId::new(&client.identity, &list_ports().unwrap_or_default());
@@ -159,8 +158,7 @@ impl<'i> Controller<'i> {
             Ok(Done::Read(report)) => *report,
             Ok(_) => return Err(Exit::Failed),
             Err(failure) => {
-                say(failure.to_string());
-                return Err(Exit::NoLink);
+                return Err(Exit::NoLink.saying(failure));
             }
         };
         for unread in &report.failures {
@@ -191,10 +189,11 @@ impl<'i> Controller<'i> {
     ) -> Result<Finished<T>, Exit> {
         // What came of an act that failed is a result too, so that it comes back after an interruption.
         let job = Job::new(name, limit, move |wire| Ok(work(wire)));
-        let ticket = self.client.device().start(job).map_err(|refused| {
-            say(format!("Could not {name}: {refused}"));
-            Exit::Refused
-        })?;
+        let ticket = self
+            .client
+            .device()
+            .start(job)
+            .map_err(|refused| Exit::Refused.saying(format!("Could not {name}: {refused}")))?;
         let report = self.wait_for_end(&ticket, limit)?;
         let broken = explain(&report, self.interrupt.is_raised());
         match (ticket.take(), broken) {

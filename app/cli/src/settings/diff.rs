@@ -34,8 +34,7 @@ pub fn run(args: &DiffArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
         sides.insert(0, Side::of_controller(&Controller::connect(&args.connect, interrupt)?)?);
     }
     let [left, right] = &sides[..] else {
-        say("One or two profiles can be compared.");
-        return Err(Exit::Failed);
+        return Err(Exit::Failed.saying("One or two profiles can be compared."));
     };
     compare(left, right, args.json, out)
 }

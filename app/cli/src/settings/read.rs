@@ -18,8 +18,7 @@ pub fn run(args: &ReadArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
     let controller = Controller::connect(&args.connect, interrupt)?;
     let report = controller.read()?;
     if let Some(problem) = keys::unmatched(&report.table, &args.keys) {
-        say(problem);
-        return Err(Exit::NotTaken);
+        return Err(Exit::NotTaken.saying(problem));
     }
     let mut settings = list(&report.table, &report.image, controller.identity().simulated);
     if !args.keys.is_empty() {

@@ -151,8 +151,10 @@ fn wanted(
         let (profile, upgraded) = upgraded(controller, ram, opened, how)?;
         let asked = profile.changes_for(&ram.table, &ram.image, controller.identity().simulated);
         let asked = asked.map_err(|error| {
-            say(format!("The profile does not fit {}, nothing was changed:\n{error}", controller.describe()));
-            Exit::NotTaken
+            Exit::NotTaken.saying(format!(
+                "The profile does not fit {}, nothing was changed:\n{error}",
+                controller.describe()
+            ))
         })?;
         let left_out_lines = left_out_lines(controller, ram, &profile);
         let changes = only(&ram.table, &asked.wanted, &how.only)?;
@@ -168,8 +170,7 @@ fn wanted(
 /// The changes whose keys begin with one of `starts`; all of them where there are none.
 fn only(table: &SettingsTable, changes: &SettingsImage, starts: &[String]) -> Result<SettingsImage, Exit> {
     if let Some(problem) = keys::unmatched(table, starts) {
-        say(problem);
-        return Err(Exit::NotTaken);
+        return Err(Exit::NotTaken.saying(problem));
     }
     let is_meant = |key: &str| starts.is_empty() || starts.iter().any(|start| keys::begins_with(key, start));
     Ok(changes.iter().filter(|(key, _)| is_meant(key)).map(|(key, value)| (key.to_owned(), value)).collect())

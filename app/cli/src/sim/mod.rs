@@ -43,21 +43,23 @@ fn simulate(args: &SimArgs, typed: &ArgMatches) -> Result<Simulated, Exit> {
     let family = families().iter().rev().find(is_named).or(families().first()).ok_or(Exit::Usage)?;
     let others = families().iter().filter(|other| other.family() != family.family());
     match others.filter_map(|other| other.misplaced(typed)).next() {
-        Some(sentence) => Err(Exit::usage(sentence)),
+        Some(sentence) => Err(Exit::Usage.saying(sentence)),
         None => family.simulate(typed),
     }
 }
 
 fn start(args: &SimArgs, line: SimulatedLine) -> Result<SimHandle<SimulatedLine>, Exit> {
-    let endpoint = endpoint(args).map_err(Exit::usage)?;
-    let faults =
-        args.fault.iter().map(|text| fault(text)).collect::<Result<Vec<_>, _>>().map_err(Exit::usage)?;
+    let endpoint = endpoint(args).map_err(|sentence| Exit::Usage.saying(sentence))?;
+    let faults = args
+        .fault
+        .iter()
+        .map(|text| fault(text))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(|sentence| Exit::Usage.saying(sentence))?;
     let stream = args.port.index();
     let options = ServerOptions { stream, pace: args.pace, faults, seed: args.seed };
-    Server::spawn(line, options, &endpoint).map_err(|error| {
-        say(format!("Could not start the simulated controller: {error}."));
-        Exit::Failed
-    })
+    Server::spawn(line, options, &endpoint)
+        .map_err(|error| Exit::Failed.saying(format!("Could not start the simulated controller: {error}.")))
 }
 
 fn endpoint(args: &SimArgs) -> Result<Endpoint, String> {
@@ -108,8 +110,7 @@ fn serve(
     let mut next_truth = Instant::now();
     while !interrupt.sleep(WATCH_INTERVAL) {
         if !server.is_running() {
-            say("The simulated controller has ended by itself.");
-            return Err(Exit::Failed);
+            return Err(Exit::Failed.saying("The simulated controller has ended by itself."));
         }
         for line in control.iter().flat_map(Receiver::try_iter) {
             control::obey(&line, server);

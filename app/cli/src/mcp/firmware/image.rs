@@ -7,14 +7,11 @@ use brushwork_mcp_wire::packet_serial::Generation;
 use super::args::ImageArgs;
 use crate::exit::Exit;
 use crate::new_file::NewFile;
-use crate::output::{Output, say};
+use crate::output::Output;
 
 /// Writes the image.
 pub fn run(args: &ImageArgs, out: &mut Output) -> Result<Exit, Exit> {
-    let usage = |sentence: String| {
-        say(sentence);
-        Exit::Usage
-    };
+    let usage = |sentence: String| Exit::Usage.saying(sentence);
     let model = models::lookup(&args.model).ok_or_else(|| {
         usage(format!("\"{}\" is no model. `brushwork sim --list` names them.", args.model))
     })?;

@@ -61,8 +61,9 @@ struct Report {
 /// Builds every file that has no error.
 pub fn run(args: &BuildArgs, out: &mut Output) -> Exit {
     if args.output.is_some() && args.files.len() > 1 {
-        say("--output names one image, but several scripts are given. Leave it out, or build one at a time.");
-        return Exit::Usage;
+        return Exit::Usage.saying(
+            "--output names one image, but several scripts are given. Leave it out, or build one at a time.",
+        );
     }
     let mut files = Vec::new();
     let mut exit = Exit::Done;
@@ -117,17 +118,14 @@ fn build(path: &Path, args: &BuildArgs, out: &mut Output) -> Result<Built, Exit>
 }
 
 fn failed(sentence: &str) -> Exit {
-    say(sentence);
-    Exit::Failed
+    Exit::Failed.saying(sentence)
 }
 
 fn target(path: &Path, args: &BuildArgs) -> Result<PathBuf, Exit> {
     match &args.output {
         Some(output) => Ok(output.clone()),
-        None if is_standard(path) => {
-            say("A script on standard input has no name: say with --output where the image goes.");
-            Err(Exit::Usage)
-        }
+        None if is_standard(path) => Err(Exit::Usage
+            .saying("A script on standard input has no name: say with --output where the image goes.")),
         None => Ok(path.with_extension(EXTENSION)),
     }
 }

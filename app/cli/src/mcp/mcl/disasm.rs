@@ -8,7 +8,7 @@ use brushwork_script::image;
 use super::args::DisasmArgs;
 use super::source::{Source, read_bytes};
 use crate::exit::Exit;
-use crate::output::{Output, say};
+use crate::output::Output;
 
 /// Lists every file.
 pub fn run(args: &DisasmArgs, out: &mut Output) -> Exit {
@@ -30,25 +30,17 @@ pub fn run(args: &DisasmArgs, out: &mut Output) -> Exit {
 }
 
 fn list(path: &Path) -> Result<String, Exit> {
-    let bytes = read_bytes(path).map_err(|error| {
-        say(error.to_string());
-        Exit::Failed
-    })?;
+    let bytes = read_bytes(path).map_err(|error| Exit::Failed.saying(error))?;
     if let Some(image) = image_of(&bytes) {
-        let program = image::decode(image).map_err(|error| {
-            say(format!("Could not read {}: {error}.", path.display()));
-            Exit::Failed
-        })?;
+        let program = image::decode(image)
+            .map_err(|error| Exit::Failed.saying(format!("Could not read {}: {error}.", path.display())))?;
         return Ok(disassemble(&program, None));
     }
     let source = Source::of(path.display().to_string(), bytes);
     let compiled = source.compile();
     match &compiled.program {
         Some(program) => Ok(disassemble(program, Some(&source.text))),
-        None => {
-            say(source.rendered(&compiled).trim_end());
-            Err(Exit::ScriptWrong)
-        }
+        None => Err(Exit::ScriptWrong.saying(source.rendered(&compiled).trim_end())),
     }
 }
 

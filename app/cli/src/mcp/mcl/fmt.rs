@@ -9,7 +9,7 @@ use brushwork_script::text::Lines;
 use super::args::FmtArgs;
 use super::source::{Source, is_standard};
 use crate::exit::Exit;
-use crate::output::{Output, say};
+use crate::output::Output;
 
 /// Formats every file in its place.
 pub fn run(args: &FmtArgs, out: &mut Output) -> Exit {
@@ -26,14 +26,11 @@ pub fn run(args: &FmtArgs, out: &mut Output) -> Exit {
 
 /// Whether a file would change, which only matters when it is not written.
 fn one(path: &Path, args: &FmtArgs, out: &mut Output) -> Result<bool, Exit> {
-    let failed = |sentence: String| {
-        say(sentence);
-        Exit::Failed
-    };
+    let failed = |sentence: String| Exit::Failed.saying(sentence);
     let source = Source::read(path).map_err(|error| failed(error.to_string()))?;
     if let Some(refused) = too_long(&source.text) {
-        say(refused.render(&source.name, &source.text, &Lines::of(&source.text)).trim_end());
-        return Err(Exit::ScriptWrong);
+        return Err(Exit::ScriptWrong
+            .saying(refused.render(&source.name, &source.text, &Lines::of(&source.text)).trim_end()));
     }
     let formatted = format(&source.text);
     if too_long(&formatted).is_some() {

@@ -35,8 +35,7 @@ pub fn run(args: &RunArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
     let mut rig = match Rig::new(args, &program) {
         Ok(rig) => rig,
         Err(sentence) => {
-            say(sentence);
-            return Exit::Usage;
+            return Exit::Usage.saying(sentence);
         }
     };
     let mut input = Input::new(is_standard(&args.file));
@@ -47,19 +46,14 @@ pub fn run(args: &RunArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
     match (ended, rig.run()) {
         (Err(error), _) => error.into(),
         (Ok(()), _) if interrupt.is_raised() => Exit::Interrupted,
-        (Ok(()), Run::Faulted { line, what }) => {
-            say(format!("{}:{line}: the script was stopped by a fault: {what}.", args.file.display()));
-            Exit::ScriptFaulted
-        }
+        (Ok(()), Run::Faulted { line, what }) => Exit::ScriptFaulted
+            .saying(format!("{}:{line}: the script was stopped by a fault: {what}.", args.file.display())),
         (Ok(()), _) => Exit::Done,
     }
 }
 
 fn load(path: &Path, quiet: bool) -> Result<Program, Exit> {
-    let failed = |sentence: String| {
-        say(sentence);
-        Exit::Failed
-    };
+    let failed = |sentence: String| Exit::Failed.saying(sentence);
     let bytes = read_bytes(path).map_err(|error| failed(error.to_string()))?;
     if let Some(image) = image_of(&bytes) {
         let program = image::decode(image);

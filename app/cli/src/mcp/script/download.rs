@@ -34,16 +34,11 @@ pub fn run(args: &DownloadArgs, out: &mut Output, interrupt: &Interrupt) -> Resu
 
 /// The image in a compiled file, or of a script that is compiled here.
 pub fn image_of(file: &Path) -> Result<ScriptImage, Exit> {
-    let bytes = read_bytes(file).map_err(|error| {
-        say(error.to_string());
-        Exit::Failed
-    })?;
+    let bytes = read_bytes(file).map_err(|error| Exit::Failed.saying(error))?;
     let is_text = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcl"));
     let bytes = if is_text { compiled(file, bytes)? } else { bytes };
-    ScriptImage::from_file(&bytes).map_err(|error| {
-        say(format!("Could not use {}: {error}.", file.display()));
-        Exit::Failed
-    })
+    ScriptImage::from_file(&bytes)
+        .map_err(|error| Exit::Failed.saying(format!("Could not use {}: {error}.", file.display())))
 }
 
 fn compiled(file: &Path, bytes: Vec<u8>) -> Result<Vec<u8>, Exit> {
