@@ -15,8 +15,7 @@ use super::family::{self, Family};
 use super::interrupt::Interrupt;
 use super::output::say;
 use super::shared_args::{ConnectArgs, LineArgs};
-use brushwork_core::session;
-use brushwork_core::session::{Session, SessionOptions, Simulation};
+use brushwork_core::session::{self, Session, SessionOptions, Simulation};
 
 /// How long a controller may take to be found and identified.
 pub const CONNECT_LIMIT: Duration = Duration::from_secs(60);

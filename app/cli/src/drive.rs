@@ -7,7 +7,6 @@ use std::time::{Duration, Instant};
 use brushwork_link::device::{
     ArmScope, DisarmReason, Drive, DriveCommand, Event, Identity, PollRate, Request,
 };
-use brushwork_values::Motor;
 use serde_json::json;
 
 use super::args::{DriveArgs, MotorArg};
@@ -16,8 +15,9 @@ use super::exit::Exit;
 use super::family;
 use super::interrupt::Interrupt;
 use super::output::{Output, OutputError, say};
+use super::readings::Readings;
 use super::response::Response;
-use super::status::{Readings, line_of};
+use super::status::line_of;
 use super::stop;
 
 /// Time between two sweeps of the signals.
@@ -26,61 +26,47 @@ const SWEEP_INTERVAL: Duration = Duration::from_millis(20);
 const PRINT_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Connects, arms, drives, stops.
-pub fn run(args: &DriveArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
-    let client = match Client::connect(&args.connect, PollRate::Every(SWEEP_INTERVAL), interrupt) {
-        Ok(client) => client,
-        Err(exit) => return exit,
-    };
-    let drive = match command(args, &client, interrupt).and_then(|command| {
-        let drive = to_motors(args.motor, command);
-        if let Some(clause) = client.identity.objection(&drive) {
-            return Err(Exit::Refused.saying(format!(
-                "Could not move the motor of {} on {}: {clause}.",
-                client.identity.place(),
-                client.identity.port
-            )));
-        }
-        arm(client.device(), ArmScope::CommandLine, interrupt)?;
-        Ok(drive)
-    }) {
-        Ok(drive) => drive,
-        Err(exit) => return exit,
-    };
+pub fn run(args: &DriveArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let client = Client::connect(&args.connect, PollRate::Every(SWEEP_INTERVAL), interrupt)?;
+    let drive = to_motors(args.motor, command(args, &client, interrupt)?);
+    if let Some(clause) = client.identity.objection(&drive) {
+        return Err(Exit::Refused.saying(format!(
+            "Could not move the motor of {} on {}: {clause}.",
+            client.identity.place(),
+            client.identity.port
+        )));
+    }
+    arm(client.device(), ArmScope::CommandLine, interrupt)?;
     let driven = keep_driving(args, drive, &client, out, interrupt);
-    let exit = finish(driven, &client);
-    if exit == Exit::Interrupted && args.connect.address.is_none() && client.simulation().is_none() {
+    let ended = finish(driven, &client);
+    if ended == Err(Exit::Interrupted) && args.connect.address.is_none() && client.simulation().is_none() {
         // Whoever presses Ctrl-C and has named no unit wants the line to stand, whoever set it in motion.
         let own = client.identity.clone();
         drop(client);
         stop::stop_the_rest(&args.connect.line(), &own);
     }
-    exit
+    ended
 }
 
 /// Stops whatever the driving came to, then gives its exit code.
-fn finish(driven: Result<(), Exit>, client: &Client) -> Exit {
+fn finish(driven: Result<(), Exit>, client: &Client) -> Result<Exit, Exit> {
     let was_lost = driven == Err(Exit::NoLink);
     if !was_lost {
         client.device().stop_all();
-        match stop::wait_for_report(client) {
-            Ok(report) => {
-                stop::warnings(&report, &client.identity).into_iter().for_each(say);
-                // The motion was carried out, but nothing holds the motor now.
-                if driven.is_ok() && report.left_a_loop_off() {
-                    return Exit::Refused;
-                }
-            }
-            Err(exit) => return exit,
+        let report = stop::wait_for_report(client)?;
+        stop::warnings(&report, &client.identity).into_iter().for_each(say);
+        // The motion was carried out, but nothing holds the motor now.
+        if driven.is_ok() && report.left_a_loop_off() {
+            return Err(Exit::Refused);
         }
     }
-    driven.map_or_else(|exit| exit, |()| Exit::Done)
+    driven.map(|()| Exit::Done)
 }
 
 fn to_motors(motor: MotorArg, command: DriveCommand) -> Drive {
-    match motor {
-        MotorArg::M1 => Drive::one(Motor::M1, command),
-        MotorArg::M2 => Drive::one(Motor::M2, command),
-        MotorArg::Both => Drive::both(command),
+    match motor.motors() {
+        [motor] => Drive::one(*motor, command),
+        _ => Drive::both(command),
     }
 }
 

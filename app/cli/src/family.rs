@@ -5,10 +5,10 @@
 use std::sync::OnceLock;
 
 use brushwork_core::session::line::SimulatedLine;
-use brushwork_link::device::{DeviceHandle, Identity, Newest, StatusReport};
+use brushwork_link::device::{DeviceHandle, Identity};
 use brushwork_link::family::{FamilyRef, Model};
 use brushwork_link::settings::{SettingsImage, SettingsTable};
-use brushwork_link::{FamilyChoice, Stream, Wire};
+use brushwork_link::{FamilyChoice, Wire};
 use brushwork_values::Motor;
 use clap::{Arg, ArgMatches};
 use serde::Serialize;
@@ -18,6 +18,7 @@ use super::exit::Exit;
 use super::interrupt::Interrupt;
 use super::monitor::follower::Follower;
 use super::output::{Output, OutputError};
+use super::readings::Readings;
 use super::tool::Tool;
 
 /// A family as commands see it. What has a default here need not be thought of where it does not apply.
@@ -98,22 +99,15 @@ pub trait Family: Send + Sync {
         None
     }
 
-    /// Which motors an input holds at home or at a limit, where inputs can.
-    fn homed(&self, _settings: &SettingsImage, _inputs: &[i64]) -> Option<[bool; 2]> {
-        None
+    /// What the readings come to.
+    fn judge(&self, _identity: &Identity, _readings: &Readings) -> Judged {
+        Judged::default()
     }
 
-    /// Why the motors do not run, as far as anything is known.
-    fn diagnose(&self, _known: &Known<'_>) -> Option<Said> {
-        None
-    }
-
-    /// What a stop of a whole line does about units that do not answer.
-    fn unheard(&self) -> Unheard;
-
-    /// Whether a line that is not known to have its units is searched for none but the first of them.
-    fn is_searched_in_part(&self) -> bool {
-        false
+    /// The addresses to which a stop of a whole line is written, whoever is there. None where a broadcast reaches more units than are
+    /// searched for on a line that is not known to have them.
+    fn stopped_addresses(&self) -> Vec<u8> {
+        Vec::new()
     }
 }
 
@@ -165,28 +159,13 @@ pub struct Said {
     pub data: Value,
 }
 
-/// What is known of a unit when it is asked why its motors do not run.
-pub struct Known<'k> {
-    /// Who it is.
-    pub identity: &'k Identity,
-    /// What it reports.
-    pub status: Option<&'k StatusReport>,
-    /// The newest readings.
-    pub newest: &'k Newest,
-    /// The stream that the port is wired to.
-    pub stream: Option<Stream>,
-    /// Its settings in RAM.
-    pub settings: Option<&'k SettingsImage>,
-    /// Its inputs, as [`Family::read_inputs`] gives them.
-    pub inputs: Option<&'k [i64]>,
-}
-
-/// Units that do not answer to the stop of a whole line.
-pub enum Unheard {
-    /// The stop is written to these addresses, whoever is there.
-    WrittenTo(Vec<u8>),
-    /// It is a broadcast.
-    Broadcast,
+/// What readings come to.
+#[derive(Default)]
+pub struct Judged {
+    /// Why the motors do not run, as far as anything is known.
+    pub diagnosis: Option<Said>,
+    /// Which motors an input holds at home or at a limit, where that is known.
+    pub homed: Option<[bool; 2]>,
 }
 
 static FAMILIES: OnceLock<Vec<&'static dyn Family>> = OnceLock::new();

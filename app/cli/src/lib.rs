@@ -17,6 +17,7 @@ pub mod new_file;
 mod nodes;
 pub mod output;
 mod protocol;
+mod readings;
 mod response;
 pub mod settings;
 pub mod shared_args;
@@ -33,7 +34,7 @@ use clap::{ArgMatches, CommandFactory as _, FromArgMatches as _};
 use args::{Cli, Command, WindowArgs};
 pub use exit::Exit;
 use interrupt::Interrupt;
-use output::{Output, say};
+use output::Output;
 pub use tool::Tool;
 
 /// Runs the program: a command, or the window where none is given. `open_window` returns when the window is closed, or says in a sentence
@@ -53,26 +54,28 @@ pub fn run(open_window: impl FnOnce(&WindowArgs) -> Result<(), String>, tools: V
     let Some((command, (_, typed))) = cli.command.zip(matches.subcommand()) else {
         return match open_window(&cli.window) {
             Ok(()) => Exit::Done.into(),
-            Err(error) => {
-                say(error);
-                Exit::Failed.into()
-            }
+            Err(error) => Exit::Failed.saying(error).into(),
         };
     };
     with_interrupt(|out, interrupt| dispatch(&command, typed, out, interrupt))
 }
 
-fn with_interrupt(run: impl FnOnce(&mut Output, &Interrupt) -> Exit) -> ExitCode {
+fn with_interrupt(run: impl FnOnce(&mut Output, &Interrupt) -> Result<Exit, Exit>) -> ExitCode {
     match Interrupt::install() {
-        Ok(interrupt) => run(&mut Output::stdout(), &interrupt).into(),
-        Err(error) => {
-            say(format!("Could not take over Ctrl-C, without which motors could not be stopped: {error}."));
-            Exit::Failed.into()
-        }
+        Ok(interrupt) => run(&mut Output::stdout(), &interrupt).unwrap_or_else(|exit| exit),
+        Err(error) => Exit::Failed.saying(format!(
+            "Could not take over Ctrl-C, without which motors could not be stopped: {error}."
+        )),
     }
+    .into()
 }
 
-fn dispatch(command: &Command, typed: &ArgMatches, out: &mut Output, interrupt: &Interrupt) -> Exit {
+fn dispatch(
+    command: &Command,
+    typed: &ArgMatches,
+    out: &mut Output,
+    interrupt: &Interrupt,
+) -> Result<Exit, Exit> {
     match command {
         Command::List(args) => list::run(args, out, interrupt),
         Command::Nodes(args) => nodes::run(args, out, interrupt),
@@ -83,6 +86,6 @@ fn dispatch(command: &Command, typed: &ArgMatches, out: &mut Output, interrupt: 
         Command::Sim(args) => sim::run(args, typed, out, interrupt),
         Command::Protocol(args) => protocol::run(args, out),
         Command::Monitor(args) => monitor::run(args, out, interrupt),
-        Command::Tune(args) => tune::run(args, out, interrupt),
+        Command::Tune(args) => Ok(tune::run(args, out, interrupt)),
     }
 }

@@ -10,8 +10,7 @@ use super::exit::Exit;
 use super::family::families;
 use super::interrupt::Interrupt;
 use super::output::{Output, OutputError, say};
-use brushwork_core::session;
-use brushwork_core::session::SessionOptions;
+use brushwork_core::session::{self, SessionOptions};
 
 #[derive(Debug, Serialize)]
 struct Listing {
@@ -35,7 +34,7 @@ struct SimulatedRow {
 }
 
 /// Lists and prints.
-pub fn run(args: &ListArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
+pub fn run(args: &ListArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let ports = match list_ports() {
         Ok(ports) => ports,
         Err(failure) => {
@@ -48,12 +47,13 @@ pub fn run(args: &ListArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
         let units = args.scan.then(|| scan(&port.name, interrupt));
         rows.push(PortRow { description: describe(&port), connect: port.name, units });
         if interrupt.is_raised() {
-            return Exit::Interrupted;
+            return Err(Exit::Interrupted);
         }
     }
     let listing = Listing { ports: rows, simulated: simulated() };
     let printed = if args.json { out.json(&listing) } else { print(&listing, out) };
-    printed.map_or_else(Exit::from, |()| Exit::Done)
+    printed?;
+    Ok(Exit::Done)
 }
 
 /// What the operating system knows of a port.

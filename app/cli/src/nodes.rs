@@ -11,18 +11,13 @@ use super::client::next_event;
 use super::exit::Exit;
 use super::interrupt::Interrupt;
 use super::output::Output;
-use brushwork_core::session;
-use brushwork_core::session::SessionOptions;
+use brushwork_core::session::{self, SessionOptions};
 
 /// How long the search may take: all node ids are asked at once, and each that answers is then identified.
 const SEARCH_LIMIT: Duration = Duration::from_secs(60);
 
 /// Searches and prints.
-pub fn run(args: &NodesArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
-    search(args, out, interrupt).unwrap_or_else(|exit| exit)
-}
-
-fn search(args: &NodesArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+pub fn run(args: &NodesArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let target = args.connect.parse().map_err(|error| {
         Exit::Usage.saying(format!("Could not understand --connect {}: {error}.", args.connect))
     })?;

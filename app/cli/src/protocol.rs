@@ -6,9 +6,8 @@ use super::family;
 use super::output::Output;
 
 /// Prints the whole page or what is asked for.
-pub fn run(args: &ProtocolArgs, out: &mut Output) -> Exit {
-    match family::chosen(args.family).protocol(&args.commands) {
-        Ok(page) => page.print(args.json, out).map_or_else(Exit::from, |()| Exit::Done),
-        Err(sentence) => Exit::Usage.saying(sentence),
-    }
+pub fn run(args: &ProtocolArgs, out: &mut Output) -> Result<Exit, Exit> {
+    let page = family::chosen(args.family).protocol(&args.commands);
+    page.map_err(|sentence| Exit::Usage.saying(sentence))?.print(args.json, out)?;
+    Ok(Exit::Done)
 }

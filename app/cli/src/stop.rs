@@ -12,24 +12,21 @@ use serde_json::json;
 use super::args::StopArgs;
 use super::client::{self, CONNECT_LIMIT, Client};
 use super::exit::Exit;
-use super::family::{self, Unheard};
+use super::family;
 use super::interrupt::Interrupt;
 use super::output::{Output, OutputError, say};
 use super::shared_args::LineArgs;
-use brushwork_core::session;
-use brushwork_core::session::{Session, SessionOptions};
+use brushwork_core::session::{self, Session, SessionOptions};
 
 /// How long the controllers may take to confirm: late replies at 2400 bit/s take 6 s.
 const STOP_LIMIT: Duration = Duration::from_secs(10);
 
 /// Stops the line and prints what became of it.
-pub fn run(args: &StopArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
-    let stopped = match stop_line(&args.line, interrupt) {
-        Ok(stopped) => stopped,
-        Err(exit) => return exit,
-    };
+pub fn run(args: &StopArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let stopped = stop_line(&args.line, interrupt)?;
     let printed = if args.json { stopped.print_json(out) } else { stopped.print(out) };
-    printed.map_or_else(Exit::from, |()| stopped.exit())
+    printed?;
+    Ok(stopped.exit())
 }
 
 /// Stops what else is on a line, after its own unit was stopped, and says on standard error what became of it. Nobody else there is
@@ -68,7 +65,7 @@ fn stop_line(line: &LineArgs, interrupt: &Interrupt) -> Result<LineStop, Exit> {
     let mut found = stop_and_find(&session, on_can, interrupt)?;
     if is_unknown && asked == Addresses::Scan {
         // When the line was opened it was not searched for all units that these families can have on it.
-        for family in family::families().iter().filter(|family| family.is_searched_in_part()) {
+        for family in family::families().iter().filter(|family| family.stopped_addresses().is_empty()) {
             if found.is_err() {
                 drop(session);
                 session = open(FamilyChoice::of(family.family()))?;
@@ -164,10 +161,14 @@ impl LineStop {
         }
     }
 
-    /// What the stop did about units that do not answer; `None` where nothing is known of them.
-    fn unheard(&self) -> Option<Unheard> {
-        let unit = self.units.first().filter(|unit| !unit.is_node())?;
-        Some(family::of(unit.family).unheard())
+    fn is_of_nodes(&self) -> bool {
+        self.units.iter().any(Identity::is_node)
+    }
+
+    /// The addresses that the stop was written to, where they were not asked for.
+    fn written_to(&self) -> Vec<u8> {
+        let unit = self.units.first().filter(|_| !self.is_of_nodes());
+        unit.map_or_else(Vec::new, |unit| family::of(unit.family).stopped_addresses())
     }
 
     /// The addresses at which nobody answered: of those that were asked for, or of all that the stop was written to.
@@ -175,10 +176,9 @@ impl LineStop {
         let answered = |address: &u8| {
             self.units.iter().any(|unit| unit.address == *address || unit.also_answers.contains(address))
         };
-        let asked: Vec<u8> = match (self.asked, self.unheard()) {
-            (Addresses::These(set), _) => set.iter().collect(),
-            (_, Some(Unheard::WrittenTo(addresses))) => addresses,
-            (_, Some(Unheard::Broadcast) | None) => Vec::new(),
+        let asked: Vec<u8> = match self.asked {
+            Addresses::These(set) => set.iter().collect(),
+            _ => self.written_to(),
         };
         asked.into_iter().filter(|address| !answered(address)).collect()
     }
@@ -203,23 +203,23 @@ impl LineStop {
     fn warnings(&self) -> Vec<String> {
         let mut lines = warnings_of(&self.report, &self.units);
         let silent = self.silent();
-        match (self.asked, self.unheard()) {
-            (Addresses::These(_), _) if !silent.is_empty() => lines.push(format!(
+        match self.asked {
+            Addresses::These(_) if !silent.is_empty() => lines.push(format!(
                 "Nobody answered at {}: the stop was written there too, and whether it was heard is not known. If a motor runs there, cut its power.",
                 in_words(&silent)
             )),
-            (Addresses::These(_), _) => {}
-            (_, None) => lines.push(
+            Addresses::These(_) => {}
+            _ if self.is_of_nodes() => lines.push(
                 "Nodes that do not answer as a controller that this program knows were told nothing.".to_owned(),
             ),
-            (_, Some(Unheard::Broadcast)) => lines.push(
+            _ if self.written_to().is_empty() => lines.push(
                 "Units that do not answer were told to stop by a broadcast, which nobody confirms.".to_owned(),
             ),
-            (_, Some(Unheard::WrittenTo(_))) if !silent.is_empty() => lines.push(format!(
+            _ if !silent.is_empty() => lines.push(format!(
                 "Nobody answered at {}; the stop was written to these addresses too.",
                 in_words(&silent)
             )),
-            (_, Some(Unheard::WrittenTo(_))) => {}
+            _ => {}
         }
         lines
     }

@@ -6,8 +6,8 @@ use super::exit::Exit;
 use super::interrupt::Interrupt;
 use super::output::Output;
 
-/// What does a command; its exit code.
-type Act = dyn Fn(&ArgMatches, &mut Output, &Interrupt) -> Exit;
+/// What does a command; gives its exit code either way.
+type Act = dyn Fn(&ArgMatches, &mut Output, &Interrupt) -> Result<Exit, Exit>;
 
 /// A command with what does it.
 pub struct Tool {
@@ -23,7 +23,7 @@ impl Tool {
         name: &'static str,
         place: usize,
         about: &'static str,
-        run: fn(&A, &mut Output, &Interrupt) -> Exit,
+        run: fn(&A, &mut Output, &Interrupt) -> Result<Exit, Exit>,
     ) -> Self {
         let command = A::augment_args(Command::new(name)).about(about).long_about(None);
         let run = move |arguments: &ArgMatches, out: &mut Output, interrupt: &Interrupt| {
@@ -33,7 +33,7 @@ impl Tool {
     }
 
     /// Does it.
-    pub fn run(&self, arguments: &ArgMatches, out: &mut Output, interrupt: &Interrupt) -> Exit {
+    pub fn run(&self, arguments: &ArgMatches, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
         (self.run)(arguments, out, interrupt)
     }
 }

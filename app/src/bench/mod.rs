@@ -62,7 +62,12 @@ const QUICK: Effort =
 /// `brushwork bench`.
 #[must_use]
 pub fn tool() -> Tool {
-    Tool::new("bench", 50, "Measure link use, stop latency, the simulator and the window", run)
+    Tool::new(
+        "bench",
+        50,
+        "Measure link use, stop latency, the simulator and the window",
+        |args, out, interrupt| Ok(run(args, out, interrupt)),
+    )
 }
 
 /// Measures, prints, and fails when a promise is not kept.

@@ -7,12 +7,12 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use brushwork_mcp_wire::crc::crc16_xmodem;
-use brushwork_mcp_wire::packet_serial;
 use brushwork_mcp_wire::packet_serial::{
-    ACK, Address, DiscardReason, Effect, Framed, FramerEvent, Generation, PACKET_GAP, ReplyProgress, Request,
-    RequestFramer, describe_event, describe_reply, number, parse_reply, scale,
+    self, ACK, Address, DiscardReason, Effect, Framed, FramerEvent, Generation, PACKET_GAP, ReplyProgress,
+    Request, RequestFramer, describe_event, describe_reply, number, parse_reply, scale,
 };
 
+use crate::monitor::awaited::{Awaited, take};
 use crate::monitor::follower::{Follower, Stop};
 use crate::monitor::record::{Direction, Record};
 
@@ -27,7 +27,7 @@ pub struct Decoder {
     /// The last read and the bytes after it: together perhaps a CRC that the client appends.
     after_read: Option<AfterRead>,
     /// Requests whose replies are due, oldest first: some clients send several at once.
-    awaited: VecDeque<Awaited>,
+    awaited: VecDeque<Awaited<Request>>,
     moved: Vec<Address>,
 }
 
@@ -35,15 +35,6 @@ struct AfterRead {
     crc: [u8; 2],
     until: Duration,
     bytes: Vec<u8>,
-}
-
-/// A request whose reply is due, and what has come of it.
-struct Awaited {
-    request: Request,
-    sent_at: Duration,
-    bytes: Vec<u8>,
-    first_at: Duration,
-    last_at: Duration,
 }
 
 impl Decoder {
@@ -85,13 +76,7 @@ impl Decoder {
             until: now.saturating_add(PACKET_GAP),
             bytes: Vec::new(),
         });
-        self.awaited.push_back(Awaited {
-            request: framed.request(),
-            sent_at: now,
-            bytes: Vec::new(),
-            first_at: now,
-            last_at: now,
-        });
+        self.awaited.push_back(Awaited::new(framed.request(), now));
         if form.is_some_and(|form| can_move(form.effect)) {
             self.note_motion(framed);
         }
@@ -181,13 +166,7 @@ impl Decoder {
         }
         records.extend(self.give_up_reply(now));
         if let Some(second) = self.awaited.front_mut() {
-            *second = Awaited {
-                request: second.request.clone(),
-                sent_at: second.sent_at,
-                bytes,
-                first_at,
-                last_at: now,
-            };
+            (second.bytes, second.first_at, second.last_at) = (bytes, first_at, now);
         }
     }
 
@@ -245,19 +224,9 @@ impl Follower for Decoder {
     }
 
     fn controller_sent(&mut self, bytes: &[u8], now: Duration) -> Vec<Record> {
-        let Some(awaited) = self.awaited.front_mut() else {
-            return vec![Record::new(
-                now,
-                Direction::FromController,
-                bytes.to_vec(),
-                "answer to nothing".into(),
-            )];
-        };
-        if awaited.bytes.is_empty() {
-            awaited.first_at = now;
+        if let Some(unasked) = take(&mut self.awaited, bytes, now) {
+            return vec![unasked];
         }
-        awaited.bytes.extend(bytes);
-        awaited.last_at = now;
         let mut records = Vec::new();
         self.skip_unanswered(now, &mut records);
         if let Some(rest) = self.take_reply(&mut records)
@@ -282,7 +251,7 @@ impl Follower for Decoder {
 
     fn silence(&mut self, now: Duration) -> Vec<Record> {
         let mut records = self.client_silence(now);
-        while self.awaited.front().is_some_and(|awaited| awaited.is_over(now)) {
+        while self.awaited.front().is_some_and(|awaited| awaited.is_over(now, REPLY_LIMIT, PACKET_GAP)) {
             records.extend(self.give_up_reply(now));
         }
         records
@@ -314,15 +283,7 @@ impl Follower for Decoder {
     }
 }
 
-impl Awaited {
-    /// Nothing more will come.
-    fn is_over(&self, now: Duration) -> bool {
-        match self.bytes.is_empty() {
-            true => now.saturating_sub(self.sent_at) > REPLY_LIMIT,
-            false => now.saturating_sub(self.last_at) > PACKET_GAP,
-        }
-    }
-
+impl Awaited<Request> {
     /// A request that comes now is not one of several sent at once: the client waits no longer.
     fn is_cut_off(&self, now: Duration) -> bool {
         !self.bytes.is_empty() || now.saturating_sub(self.sent_at) >= PACKET_GAP

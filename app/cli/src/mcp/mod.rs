@@ -10,7 +10,7 @@ mod sim;
 mod status;
 
 use brushwork_link::Wire;
-use brushwork_link::device::DeviceHandle;
+use brushwork_link::device::{DeviceHandle, Identity};
 use brushwork_link::family::{FamilyRef, Model};
 use brushwork_link::settings::{SettingsImage, SettingsTable};
 use brushwork_mcp_client::{MCP, settings};
@@ -21,9 +21,10 @@ use clap::ArgMatches;
 use serde_json::json;
 
 use crate::exit::Exit;
-use crate::family::{Family, Known, Page, Said, Simulated, SimulatedModel, Unheard};
+use crate::family::{Family, Judged, Page, Said, Simulated, SimulatedModel};
 use crate::interrupt::Interrupt;
 use crate::monitor::follower::Follower;
+use crate::readings::Readings;
 use crate::tool::Tool;
 use decoder::Decoder;
 
@@ -86,15 +87,11 @@ impl Family for McpCommands {
         status::read_inputs(wire)
     }
 
-    fn homed(&self, settings: &SettingsImage, inputs: &[i64]) -> Option<[bool; 2]> {
-        Some(status::homed(settings, inputs))
+    fn judge(&self, identity: &Identity, readings: &Readings) -> Judged {
+        status::judge(identity, readings)
     }
 
-    fn diagnose(&self, known: &Known<'_>) -> Option<Said> {
-        status::diagnose(known)
-    }
-
-    fn unheard(&self) -> Unheard {
-        Unheard::WrittenTo(Address::ALL.map(Address::get).to_vec())
+    fn stopped_addresses(&self) -> Vec<u8> {
+        Address::ALL.map(Address::get).to_vec()
     }
 }

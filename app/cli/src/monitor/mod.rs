@@ -4,6 +4,7 @@
 //! a file ([`file`]). All of them end as [`record::Record`]s.
 
 pub mod args;
+pub mod awaited;
 mod chosen;
 mod file;
 pub mod follower;
@@ -17,11 +18,11 @@ use super::output::Output;
 use args::MonitorArgs;
 
 /// Monitors until the time is over, the source ends, or the program is interrupted.
-pub fn run(args: &MonitorArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
+pub fn run(args: &MonitorArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let done = match (&args.decode, args.pty.is_some() || args.tcp.is_some()) {
         (Some(path), _) => file::run(args, path, out),
         (None, true) => tap::run(args, out, interrupt),
         (None, false) => own::run(args, out, interrupt),
     };
-    done.map_or_else(|exit| exit, |()| Exit::Done)
+    done.map(|()| Exit::Done)
 }

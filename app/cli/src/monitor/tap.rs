@@ -11,8 +11,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use brushwork_link::transport::{Transport, TransportError};
-use brushwork_plant::server;
-use brushwork_plant::server::{Endpoint, Heard, Line};
+use brushwork_plant::server::{self, Endpoint, Heard, Line};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
 use super::args::MonitorArgs;

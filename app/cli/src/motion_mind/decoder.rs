@@ -12,6 +12,7 @@ use brushwork_motion_mind_wire::{
     parse_frame_reply, parse_line_reply, register_number,
 };
 
+use crate::monitor::awaited::{Awaited, take};
 use crate::monitor::follower::{Follower, Stop};
 use crate::monitor::record::{Direction, Record};
 
@@ -33,7 +34,7 @@ pub struct Decoder {
     open: Vec<u8>,
     open_since: Duration,
     /// Commands whose answers are due, oldest first.
-    awaited: VecDeque<Awaited>,
+    awaited: VecDeque<Awaited<Asked>>,
     /// The return bits of units, as writes to FUNCTION tell.
     returns: Vec<(Address, Returns)>,
     moved: Vec<Moved>,
@@ -49,14 +50,10 @@ struct Moved {
 }
 
 /// A command whose answer is due; none for a line that is no command.
-struct Awaited {
+struct Asked {
     address: Address,
     command: Option<Command>,
     protocol: Protocol,
-    sent_at: Duration,
-    bytes: Vec<u8>,
-    first_at: Duration,
-    last_at: Duration,
 }
 
 impl Moved {
@@ -104,16 +101,7 @@ impl Decoder {
     }
 
     fn wait_for(&mut self, address: Address, command: Option<Command>, protocol: Protocol, now: Duration) {
-        let (bytes, sent_at) = (Vec::new(), now);
-        self.awaited.push_back(Awaited {
-            address,
-            command,
-            protocol,
-            sent_at,
-            bytes,
-            first_at: now,
-            last_at: now,
-        });
+        self.awaited.push_back(Awaited::new(Asked { address, command, protocol }, now));
     }
 
     /// What the client has sent, as a record.
@@ -138,10 +126,10 @@ impl Decoder {
     /// The answer to the oldest command if it is whole, and the bytes that came after it.
     fn whole_reply(&mut self) -> Option<(Record, Vec<u8>)> {
         let awaited = self.awaited.front()?;
-        let (text, used) = awaited.read(self.returns_of(awaited.address))?;
-        let Awaited { mut bytes, first_at, address, command, .. } = self.awaited.pop_front()?;
+        let (text, used) = awaited.read(self.returns_of(awaited.request.address))?;
+        let Awaited { mut bytes, first_at, request, .. } = self.awaited.pop_front()?;
         let rest = bytes.split_off(used);
-        self.note_write(address, command);
+        self.note_write(request.address, request.command);
         Some((Record::new(first_at, Direction::FromController, bytes, text), rest))
     }
 
@@ -170,7 +158,7 @@ impl Decoder {
             (false, Some(why)) => format!("bad reply ({why})"),
             (false, None) => "a reply cut short".to_owned(),
         };
-        let text = format!("{}: {what}", awaited.address);
+        let text = format!("{}: {what}", awaited.request.address);
         Some(Record::new(awaited.first_at, Direction::FromController, awaited.bytes, text))
     }
 }
@@ -209,19 +197,9 @@ impl Follower for Decoder {
     }
 
     fn controller_sent(&mut self, bytes: &[u8], now: Duration) -> Vec<Record> {
-        let Some(awaited) = self.awaited.front_mut() else {
-            return vec![Record::new(
-                now,
-                Direction::FromController,
-                bytes.to_vec(),
-                "answer to nothing".into(),
-            )];
-        };
-        if awaited.bytes.is_empty() {
-            awaited.first_at = now;
+        if let Some(unasked) = take(&mut self.awaited, bytes, now) {
+            return vec![unasked];
         }
-        awaited.bytes.extend(bytes);
-        awaited.last_at = now;
         let mut records = Vec::new();
         if let Some((record, rest)) = self.whole_reply() {
             records.push(record);
@@ -242,7 +220,12 @@ impl Follower for Decoder {
 
     fn silence(&mut self, now: Duration) -> Vec<Record> {
         let mut records = self.client_silence(now);
-        while self.awaited.front().is_some_and(|awaited| awaited.is_over(now)) {
+        let limit = |asked: &Asked| match asked.command {
+            Some(Command::Restore) => RESTORE_LIMIT,
+            _ => REPLY_LIMIT,
+        };
+        let is_over = |due: &Awaited<Asked>| due.is_over(now, limit(&due.request), REPLY_GAP);
+        while self.awaited.front().is_some_and(is_over) {
             records.extend(self.give_up());
         }
         records
@@ -277,23 +260,14 @@ impl Follower for Decoder {
     }
 }
 
-impl Awaited {
-    /// Nothing more will come.
-    fn is_over(&self, now: Duration) -> bool {
-        let limit = if self.command == Some(Command::Restore) { RESTORE_LIMIT } else { REPLY_LIMIT };
-        match self.bytes.is_empty() {
-            true => now.saturating_sub(self.sent_at) > limit,
-            false => now.saturating_sub(self.last_at) > REPLY_GAP,
-        }
-    }
-
+impl Awaited<Asked> {
     /// What it says and how many bytes it takes, if it is whole. Return bits that nobody has told are found out by what fits.
     fn read(&self, known: Option<Returns>) -> Option<(String, usize)> {
         let whole = |progress| match progress {
             Progress::Done { reply, used } => Some((describe_reply(&reply), used)),
             _ => None,
         };
-        let Some(command) = &self.command else {
+        let Some(command) = &self.request.command else {
             return whole(parse_line_reply(&Command::Reset, Returns::default(), &self.bytes));
         };
         if let Some(read) = known.and_then(|returns| whole(self.parse(command, returns))) {
@@ -305,14 +279,14 @@ impl Awaited {
     }
 
     fn parse(&self, command: &Command, returns: Returns) -> Progress {
-        match self.protocol {
-            Protocol::Binary => parse_frame_reply(self.address, command, returns, &self.bytes),
+        match self.request.protocol {
+            Protocol::Binary => parse_frame_reply(self.request.address, command, returns, &self.bytes),
             Protocol::Text => parse_line_reply(command, returns, &self.bytes),
         }
     }
 
     fn bad(&self) -> Option<String> {
-        match self.parse(self.command.as_ref()?, Returns::default()) {
+        match self.parse(self.request.command.as_ref()?, Returns::default()) {
             Progress::Bad(bad) => Some(bad.to_string()),
             _ => None,
         }

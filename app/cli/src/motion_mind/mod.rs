@@ -11,7 +11,7 @@ use brushwork_motion_mind_wire::{reference, reference_entry, reference_page};
 use clap::{Arg, ArgMatches, Args as _, Command};
 
 use crate::exit::Exit;
-use crate::family::{Family, Page, Simulated, SimulatedModel, Unheard};
+use crate::family::{Family, Page, Simulated, SimulatedModel};
 use crate::monitor::follower::Follower;
 use crate::tool::Tool;
 use decoder::Decoder;
@@ -79,15 +79,6 @@ impl Family for MotionMindCommands {
             facts.protocol,
             taken(facts.mode)
         ))
-    }
-
-    fn unheard(&self) -> Unheard {
-        Unheard::Broadcast
-    }
-
-    /// All 98 are looked for where the family is named.
-    fn is_searched_in_part(&self) -> bool {
-        true
     }
 }
 

@@ -44,13 +44,7 @@ pub struct TerminalArgs {
 }
 
 /// Sends each command that is given, or each line of standard input.
-pub fn run(args: &TerminalArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
-    talk(args, out, interrupt)
-        .map_or_else(|exit| exit, |failed| if failed { Exit::Refused } else { Exit::Done })
-}
-
-/// Whether one of them was not sent.
-fn talk(args: &TerminalArgs, out: &mut Output, interrupt: &Interrupt) -> Result<bool, Exit> {
+pub fn run(args: &TerminalArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let client = Client::connect(&args.connect, PollRate::Off, interrupt)?;
     let Some(facts) = MotionMindFacts::of(&client.identity) else {
         return Err(Exit::Refused.saying(format!(
@@ -78,7 +72,7 @@ fn talk(args: &TerminalArgs, out: &mut Output, interrupt: &Interrupt) -> Result<
         number += 1;
         failed |= !exchange(line, number, facts, args, &client, out, interrupt)?;
     }
-    Ok(failed)
+    Ok(if failed { Exit::Refused } else { Exit::Done })
 }
 
 /// Sends one command; whether it went out.

@@ -4,8 +4,6 @@ use std::io::{self, IsTerminal as _, Write as _};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use brushwork_link::Failure;
-use brushwork_link::Stream;
 use brushwork_link::UnitAddress;
 use brushwork_link::device::{
     DeviceHandle, Event, Identity, Job, JobContext, JobEnding, JobReport, JobTicket, PollRate,
@@ -14,6 +12,7 @@ use brushwork_link::settings::{
     Keeper, Profile, ReadReport, SettingsImage, SettingsTable, Subject, WriteOptions,
 };
 use brushwork_link::transport::list_ports;
+use brushwork_link::{Failure, Stream};
 
 use super::cut_short;
 use crate::client::Client;
@@ -21,8 +20,7 @@ use crate::exit::Exit;
 use crate::interrupt::{Interrupt, exit_of_interruption};
 use crate::output::say;
 use crate::shared_args::ConnectArgs;
-use brushwork_core::keep;
-use brushwork_core::keep::{Keeping, Store, UnitId};
+use brushwork_core::keep::{self, Keeping, Store, UnitId};
 use brushwork_core::session::Simulation;
 use brushwork_core::settings::{Act, Done};
 

@@ -1,7 +1,6 @@
 //! Commands on standard input while simulated controllers run: the control of their RTS line.
 
-use std::io;
-use std::thread;
+use std::{io, thread};
 
 use brushwork_core::session::line::SimulatedLine;
 use brushwork_plant::server::SimHandle;

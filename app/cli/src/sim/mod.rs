@@ -25,12 +25,17 @@ use brushwork_core::session::line::SimulatedLine;
 const WATCH_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Serves until interrupted.
-pub fn run(args: &SimArgs, typed: &ArgMatches, out: &mut Output, interrupt: &Interrupt) -> Exit {
+pub fn run(
+    args: &SimArgs,
+    typed: &ArgMatches,
+    out: &mut Output,
+    interrupt: &Interrupt,
+) -> Result<Exit, Exit> {
     if args.list {
-        return list(out).map_or_else(Exit::from, |()| Exit::Done);
+        list(out)?;
+        return Ok(Exit::Done);
     }
-    let simulated = simulate(args, typed);
-    simulated.and_then(|simulated| serve(args, simulated, out, interrupt)).unwrap_or_else(|exit| exit)
+    serve(args, simulate(args, typed)?, out, interrupt)
 }
 
 /// The units of the family that has a model of those that are named, and of the first family where none has one. Of several the last

@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
 use brushwork_link::SystemClock;
-use brushwork_link::device::RiskAccepted;
-use brushwork_link::device::{Event, Request};
+use brushwork_link::device::{Event, Request, RiskAccepted};
 use brushwork_link::settings::Act;
 use brushwork_link::transport::ConnectTarget;
 use brushwork_mcp_client::firmware::{Progress, RESUME_NOTE, Sent, risks, suit};

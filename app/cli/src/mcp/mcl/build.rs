@@ -59,11 +59,11 @@ struct Report {
 }
 
 /// Builds every file that has no error.
-pub fn run(args: &BuildArgs, out: &mut Output) -> Exit {
+pub fn run(args: &BuildArgs, out: &mut Output) -> Result<Exit, Exit> {
     if args.output.is_some() && args.files.len() > 1 {
-        return Exit::Usage.saying(
+        return Err(Exit::Usage.saying(
             "--output names one image, but several scripts are given. Leave it out, or build one at a time.",
-        );
+        ));
     }
     let mut files = Vec::new();
     let mut exit = Exit::Done;
@@ -87,11 +87,12 @@ pub fn run(args: &BuildArgs, out: &mut Output) -> Exit {
             files.iter().filter(|file| file.image.is_some()).try_for_each(|file| print(file, out))
         }
     };
-    printed.map_or_else(Exit::from, |()| exit)
+    printed?;
+    Ok(exit)
 }
 
 fn build(path: &Path, args: &BuildArgs, out: &mut Output) -> Result<Built, Exit> {
-    let source = Source::read(path).map_err(|error| failed(&error.to_string()))?;
+    let source = Source::read(path).map_err(|error| Exit::Failed.saying(error))?;
     let compiled = source.compile();
     if !args.json {
         let said = source.rendered(&compiled);
@@ -115,10 +116,6 @@ fn build(path: &Path, args: &BuildArgs, out: &mut Output) -> Result<Built, Exit>
     built.size = Some(size);
     built.image = Some(target);
     Ok(built)
-}
-
-fn failed(sentence: &str) -> Exit {
-    Exit::Failed.saying(sentence)
 }
 
 fn target(path: &Path, args: &BuildArgs) -> Result<PathBuf, Exit> {

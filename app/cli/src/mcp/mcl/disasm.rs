@@ -4,6 +4,7 @@ use std::path::Path;
 
 use brushwork_script::disassembly::disassemble;
 use brushwork_script::image;
+use brushwork_script::program::Program;
 
 use super::args::DisasmArgs;
 use super::source::{Source, read_bytes};
@@ -11,29 +12,20 @@ use crate::exit::Exit;
 use crate::output::Output;
 
 /// Lists every file.
-pub fn run(args: &DisasmArgs, out: &mut Output) -> Exit {
+pub fn run(args: &DisasmArgs, out: &mut Output) -> Result<Exit, Exit> {
     for path in &args.files {
-        let listed = list(path).map(|page| match args.files.len() {
-            1 => page,
-            _ => format!("; {}\n{page}", path.display()),
-        });
-        match listed {
-            Ok(page) => {
-                if let Err(error) = out.line(page.trim_end()) {
-                    return error.into();
-                }
-            }
-            Err(exit) => return exit,
+        let page = list(path)?;
+        match args.files.len() {
+            1 => out.line(page.trim_end())?,
+            _ => out.line(format!("; {}\n{}", path.display(), page.trim_end()))?,
         }
     }
-    Exit::Done
+    Ok(Exit::Done)
 }
 
 fn list(path: &Path) -> Result<String, Exit> {
     let bytes = read_bytes(path).map_err(|error| Exit::Failed.saying(error))?;
-    if let Some(image) = image_of(&bytes) {
-        let program = image::decode(image)
-            .map_err(|error| Exit::Failed.saying(format!("Could not read {}: {error}.", path.display())))?;
+    if let Some(program) = program_in(&bytes, path)? {
         return Ok(disassemble(&program, None));
     }
     let source = Source::of(path.display().to_string(), bytes);
@@ -44,7 +36,9 @@ fn list(path: &Path) -> Result<String, Exit> {
     }
 }
 
-/// The image in a file, with or without the header for people.
-pub fn image_of(bytes: &[u8]) -> Option<&[u8]> {
-    image::of_file(bytes).or_else(|| bytes.starts_with(&image::MAGIC).then_some(bytes))
+/// The program in a file that holds an image, with or without the header for people.
+pub fn program_in(bytes: &[u8], path: &Path) -> Result<Option<Program>, Exit> {
+    let image = image::of_file(bytes).or_else(|| bytes.starts_with(&image::MAGIC).then_some(bytes));
+    let failed = |error| Exit::Failed.saying(format!("Could not read {}: {error}.", path.display()));
+    image.map(image::decode).transpose().map_err(failed)
 }

@@ -12,7 +12,7 @@ use crate::exit::Exit;
 use crate::output::Output;
 
 /// Formats every file in its place.
-pub fn run(args: &FmtArgs, out: &mut Output) -> Exit {
+pub fn run(args: &FmtArgs, out: &mut Output) -> Result<Exit, Exit> {
     let mut exit = Exit::Done;
     for path in &args.files {
         match one(path, args, out) {
@@ -21,7 +21,7 @@ pub fn run(args: &FmtArgs, out: &mut Output) -> Exit {
             Err(failed) => exit = failed,
         }
     }
-    exit
+    Ok(exit)
 }
 
 /// Whether a file would change, which only matters when it is not written.
@@ -42,12 +42,12 @@ fn one(path: &Path, args: &FmtArgs, out: &mut Output) -> Result<bool, Exit> {
     let changes = formatted != source.text;
     if args.check {
         if changes {
-            out.line(&source.name).map_err(Exit::from)?;
+            out.line(&source.name)?;
         }
         return Ok(changes);
     }
     if is_standard(path) {
-        out.bytes(&source.encoded(&formatted)).map_err(Exit::from)?;
+        out.bytes(&source.encoded(&formatted))?;
     } else if changes {
         let write = std::fs::write(path, source.encoded(&formatted));
         write.map_err(|error| failed(format!("Could not write {}: {error}.", path.display())))?;
