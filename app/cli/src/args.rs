@@ -9,7 +9,7 @@ use brushwork_link::FamilyChoice;
 use brushwork_plant::faults::FAULT_SYNTAX;
 use brushwork_plant::machine::StreamIndex;
 use brushwork_values::Motor;
-use clap::{ArgMatches, Args, FromArgMatches as _, Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::exit;
 use super::family::families;
@@ -317,13 +317,6 @@ pub struct SimArgs {
     /// Name the models and presets, and end.
     #[arg(long)]
     pub list: bool,
-}
-
-impl SimArgs {
-    /// From what was typed, for a family that looks at its own arguments there too.
-    pub fn of(typed: &ArgMatches) -> Self {
-        Self::from_arg_matches(typed).unwrap_or_else(|error| error.exit())
-    }
 }
 
 /// The arguments that families add to those of `brushwork sim`. Each family reads its own.

@@ -1,5 +1,6 @@
 //! A controller as a command sees it: connected and identified, or a sentence and an exit code.
 
+use std::fmt::Display;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -126,10 +127,8 @@ fn addresses(target: &ConnectTarget, args: &ConnectArgs) -> Addresses {
 
 /// The first of simulated units, if they are the family's.
 fn first_of(target: &ConnectTarget, family: &dyn Family) -> Option<u8> {
-    match target {
-        ConnectTarget::Sim(text) => family.first_simulated(text),
-        ConnectTarget::Serial { .. } | ConnectTarget::Tcp { .. } | ConnectTarget::Can { .. } => None,
-    }
+    let ConnectTarget::Sim(text) = target else { return None };
+    family.first_simulated(text)
 }
 
 /// Simulated controllers are made at the addresses that are asked for, unless the target names some itself.
@@ -201,9 +200,7 @@ pub fn look_for_event(
 /// # Errors
 /// It takes none now (said on standard error).
 pub fn ask(device: &DeviceHandle, request: Request) -> Result<(), Exit> {
-    device
-        .request(request)
-        .map_err(|refused| Exit::Refused.saying(format!("Could not ask the controller: {refused}")))
+    device.request(request).map_err(not_asked)
 }
 
 /// Queues a job.
@@ -211,9 +208,11 @@ pub fn ask(device: &DeviceHandle, request: Request) -> Result<(), Exit> {
 /// # Errors
 /// It was not taken, which is said on standard error.
 pub fn start<T: Send + 'static>(device: &DeviceHandle, job: Job<T>) -> Result<JobTicket<T>, Exit> {
-    device
-        .start(job)
-        .map_err(|refused| Exit::Refused.saying(format!("Could not ask the controller: {refused}")))
+    device.start(job).map_err(not_asked)
+}
+
+fn not_asked(refused: impl Display) -> Exit {
+    Exit::Refused.saying(format!("Could not ask the controller: {refused}"))
 }
 
 /// Arms, and says what the device thread warns of.

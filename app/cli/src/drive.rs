@@ -9,7 +9,7 @@ use brushwork_link::device::{
 };
 use serde_json::json;
 
-use super::args::{DriveArgs, MotorArg};
+use super::args::DriveArgs;
 use super::client::{Client, arm, ask};
 use super::exit::Exit;
 use super::family;
@@ -28,7 +28,11 @@ const PRINT_INTERVAL: Duration = Duration::from_millis(100);
 /// Connects, arms, drives, stops.
 pub fn run(args: &DriveArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let client = Client::connect(&args.connect, PollRate::Every(SWEEP_INTERVAL), interrupt)?;
-    let drive = to_motors(args.motor, command(args, &client, interrupt)?);
+    let command = command(args, &client, interrupt)?;
+    let drive = match args.motor.motors() {
+        [motor] => Drive::one(*motor, command),
+        _ => Drive::both(command),
+    };
     if let Some(clause) = client.identity.objection(&drive) {
         return Err(Exit::Refused.saying(format!(
             "Could not move the motor of {} on {}: {clause}.",
@@ -53,7 +57,7 @@ fn finish(driven: Result<(), Exit>, client: &Client) -> Result<Exit, Exit> {
     let was_lost = driven == Err(Exit::NoLink);
     if !was_lost {
         client.device().stop_all();
-        let report = stop::wait_for_report(client)?;
+        let report = stop::wait_for_report(client.device())?;
         stop::warnings(&report, &client.identity).into_iter().for_each(say);
         // The motion was carried out, but nothing holds the motor now.
         if driven.is_ok() && report.left_a_loop_off() {
@@ -61,13 +65,6 @@ fn finish(driven: Result<(), Exit>, client: &Client) -> Result<Exit, Exit> {
         }
     }
     driven.map(|()| Exit::Done)
-}
-
-fn to_motors(motor: MotorArg, command: DriveCommand) -> Drive {
-    match motor.motors() {
-        [motor] => Drive::one(*motor, command),
-        _ => Drive::both(command),
-    }
 }
 
 fn command(args: &DriveArgs, client: &Client, interrupt: &Interrupt) -> Result<DriveCommand, Exit> {

@@ -114,9 +114,7 @@ fn print(
     if let Some(line) = family.set_up(identity) {
         out.line(line)?;
     }
-    for note in &identity.notes {
-        out.line(format!("Note: {note}"))?;
-    }
+    out.lines(identity.notes.iter().map(|note| format!("Note: {note}")))?;
     if let Some(diagnosis) = &diagnosis {
         out.line(&diagnosis.sentence)?;
     }

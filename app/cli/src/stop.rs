@@ -10,7 +10,7 @@ use brushwork_link::{FamilyChoice, SystemClock, families};
 use serde_json::json;
 
 use super::args::StopArgs;
-use super::client::{self, CONNECT_LIMIT, Client};
+use super::client::{self, CONNECT_LIMIT};
 use super::exit::Exit;
 use super::family;
 use super::interrupt::Interrupt;
@@ -83,7 +83,7 @@ fn stop_line(line: &LineArgs, interrupt: &Interrupt) -> Result<LineStop, Exit> {
     if on_can {
         session.device.stop_all();
     }
-    let report = wait_for_report_of(&session.device)?;
+    let report = wait_for_report(&session.device)?;
     let latency = first.as_ref().unwrap_or(&report).latency();
     Ok(LineStop { units, report, asked, latency })
 }
@@ -114,11 +114,7 @@ fn stop_and_find(session: &Session, on_can: bool, interrupt: &Interrupt) -> Resu
 }
 
 /// Waits for the stop that was asked for; a signal does not cut this short, since it ends by itself.
-pub fn wait_for_report(client: &Client) -> Result<StopReport, Exit> {
-    wait_for_report_of(client.device())
-}
-
-fn wait_for_report_of(device: &DeviceHandle) -> Result<StopReport, Exit> {
+pub fn wait_for_report(device: &DeviceHandle) -> Result<StopReport, Exit> {
     let deadline = Instant::now() + STOP_LIMIT;
     let deaf = Interrupt::default();
     while Instant::now() < deadline {
@@ -225,9 +221,8 @@ impl LineStop {
     }
 
     fn print(&self, out: &mut Output) -> Result<(), OutputError> {
-        for unit in self.report.units.iter().filter(|unit| unit.confirmed) {
-            out.line(self.sentence(unit))?;
-        }
+        let confirmed = self.report.units.iter().filter(|unit| unit.confirmed);
+        out.lines(confirmed.map(|unit| self.sentence(unit)))?;
         self.warnings().into_iter().for_each(say);
         Ok(())
     }

@@ -6,6 +6,11 @@ use super::exit::Exit;
 use super::interrupt::Interrupt;
 use super::output::Output;
 
+/// Arguments as their type has them; ends the program where they do not fit, which only happens to those that were not read before.
+pub fn typed<A: Args>(arguments: &ArgMatches) -> A {
+    A::from_arg_matches(arguments).unwrap_or_else(|error| error.exit())
+}
+
 /// What does a command; gives its exit code either way.
 type Act = dyn Fn(&ArgMatches, &mut Output, &Interrupt) -> Result<Exit, Exit>;
 
@@ -27,7 +32,7 @@ impl Tool {
     ) -> Self {
         let command = A::augment_args(Command::new(name)).about(about).long_about(None);
         let run = move |arguments: &ArgMatches, out: &mut Output, interrupt: &Interrupt| {
-            run(&A::from_arg_matches(arguments).unwrap_or_else(|error| error.exit()), out, interrupt)
+            run(&typed(arguments), out, interrupt)
         };
         Self { command: command.display_order(place), run: Box::new(run) }
     }

@@ -1,13 +1,12 @@
 //! MCP and RoboClaw on the command line: firmware, scripts, the language of scripts, and their part of the shared commands.
 
 pub mod decoder;
-mod drive;
 mod firmware;
 mod mcl;
 mod protocol;
 mod script;
 mod sim;
-mod status;
+mod unit;
 
 use brushwork_link::Wire;
 use brushwork_link::device::{DeviceHandle, Identity};
@@ -80,15 +79,15 @@ impl Family for McpCommands {
         device: &DeviceHandle,
         interrupt: &Interrupt,
     ) -> Result<u32, Exit> {
-        drive::qpps(motors, device, interrupt)
+        unit::qpps(motors, device, interrupt)
     }
 
     fn read_inputs(&self, wire: &mut dyn Wire) -> Option<Vec<i64>> {
-        status::read_inputs(wire)
+        unit::read_inputs(wire)
     }
 
     fn judge(&self, identity: &Identity, readings: &Readings) -> Judged {
-        status::judge(identity, readings)
+        unit::judge(identity, readings)
     }
 
     fn stopped_addresses(&self) -> Vec<u8> {

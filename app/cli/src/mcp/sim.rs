@@ -13,13 +13,14 @@ use super::script::download::image_of;
 use crate::args::SimArgs;
 use crate::exit::Exit;
 use crate::family::Simulated;
+use crate::tool::typed;
 
 /// The units that are asked for.
 ///
 /// # Errors
 /// What does not fit together is said on standard error.
-pub fn simulate(typed: &ArgMatches) -> Result<Simulated, Exit> {
-    let args = &SimArgs::of(typed);
+pub fn simulate(sim: &ArgMatches) -> Result<Simulated, Exit> {
+    let args: &SimArgs = &typed(sim);
     let options = SimOptions {
         models: args.model.iter().map(String::as_str).collect(),
         generation: args.generation,

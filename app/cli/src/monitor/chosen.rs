@@ -12,10 +12,9 @@ use crate::family;
 pub fn follower(args: &MonitorArgs) -> Result<Box<dyn Follower>, Exit> {
     let target = client::target(&args.connect)?;
     // Bytes from a file come from no target, unless one is named for its family.
-    let choice = if args.decode.is_some() && args.connect.family != FamilyChoice::AUTO {
-        args.connect.family
-    } else {
-        client::family(&target, &args.connect)
+    let choice = match args.connect.family {
+        named if args.decode.is_some() && named != FamilyChoice::AUTO => named,
+        _ => client::family(&target, &args.connect),
     };
     Ok(family::chosen(choice).follower(args.generation))
 }

@@ -5,10 +5,11 @@ use brushwork_core::session::motion_mind_spec::{MODEL, MotionMindSpec, decode, p
 use brushwork_motion_mind_sim::EncoderDecode;
 use brushwork_motion_mind_sim::assumed::REVISION;
 use brushwork_motion_mind_wire::{Address, Mode, Protocol};
-use clap::{ArgMatches, Args, FromArgMatches as _, ValueEnum};
+use clap::{ArgMatches, Args, ValueEnum};
 
 use crate::args::SimArgs;
 use crate::family::Simulated;
+use crate::tool::typed;
 
 /// What `--list` says about it.
 pub const RATING: &str = "1 motor, 6-24 V, 9 A, 25 A peak";
@@ -45,15 +46,9 @@ enum ProtocolArg {
     Ascii,
 }
 
-impl Switches {
-    fn of(typed: &ArgMatches) -> Self {
-        Self::from_arg_matches(typed).unwrap_or_else(|error| error.exit())
-    }
-}
-
 /// What is wrong with switches that are given to controllers that have none.
-pub fn misplaced(typed: &ArgMatches) -> Option<String> {
-    let Switches { mode, protocol: _, baud, encoder, revision } = Switches::of(typed);
+pub fn misplaced(sim: &ArgMatches) -> Option<String> {
+    let Switches { mode, protocol: _, baud, encoder, revision } = typed(sim);
     let is_given = mode.is_some() || baud.is_some() || encoder.is_some() || revision.is_some();
     is_given.then(|| format!("--mode, --baud, --encoder and --revision are for --model {MODEL}."))
 }
@@ -62,10 +57,10 @@ pub fn misplaced(typed: &ArgMatches) -> Option<String> {
 ///
 /// # Errors
 /// A sentence about what does not fit together.
-pub fn simulate(typed: &ArgMatches) -> Result<Simulated, String> {
-    let args = &SimArgs::of(typed);
+pub fn simulate(sim: &ArgMatches) -> Result<Simulated, String> {
+    let args: &SimArgs = &typed(sim);
     check_options(args)?;
-    let spec = spec_of(args, &Switches::of(typed))?;
+    let spec = spec_of(args, &typed(sim))?;
     let numbers: Vec<_> = spec.addresses.iter().map(|address| address.get().to_string()).collect();
     let who = if numbers.len() == 1 { "unit" } else { "units" };
     let (mode, protocol) = (spec.mode.number(), spec.protocol);

@@ -155,9 +155,7 @@ impl<'i> Controller<'i> {
         let report = match finished.value {
             Ok(Done::Read(report)) => *report,
             Ok(_) => return Err(Exit::Failed),
-            Err(failure) => {
-                return Err(Exit::NoLink.saying(failure));
-            }
+            Err(failure) => return Err(Exit::NoLink.saying(failure)),
         };
         for unread in &report.failures {
             say(format!("Not read: {}. {}", unread.keys.join(", "), unread.failure));
@@ -244,8 +242,8 @@ impl<'i> Controller<'i> {
                 _ => {}
             }
         }
-        say(format!("Could not {}: the work did not end in time.", ticket.name()));
-        Err(if cancelled { Exit::Interrupted } else { Exit::Failed })
+        let exit = if cancelled { Exit::Interrupted } else { Exit::Failed };
+        Err(exit.saying(format!("Could not {}: the work did not end in time.", ticket.name())))
     }
 }
 
@@ -255,17 +253,13 @@ fn explain(report: &JobReport, by_signal: bool) -> Option<Exit> {
     match &report.ending {
         JobEnding::Done(()) => None,
         JobEnding::Interrupted(cause) => {
-            say(format!("Could not {name} to the end: {cause}."));
-            Some(exit_of_interruption(*cause, by_signal))
+            let exit = exit_of_interruption(*cause, by_signal);
+            Some(exit.saying(format!("Could not {name} to the end: {cause}.")))
         }
-        JobEnding::Failed(failure) => {
-            say(failure.to_string());
-            Some(Exit::Failed)
-        }
-        JobEnding::Panicked(word) => {
-            say(format!("Could not {name}: an internal error ({word}). Please report it."));
-            Some(Exit::Failed)
-        }
+        JobEnding::Failed(failure) => Some(Exit::Failed.saying(failure)),
+        JobEnding::Panicked(word) => Some(
+            Exit::Failed.saying(format!("Could not {name}: an internal error ({word}). Please report it.")),
+        ),
     }
 }
 

@@ -93,9 +93,7 @@ fn print(left: &Side, right: &Side, differences: &[Change], out: &mut Output) ->
     }
     let count = counted(differences.len());
     out.line(format!("{count} with different values, {} -> {}:", left.name, right.name))?;
-    for line in change_lines(differences) {
-        out.line(line)?;
-    }
+    out.lines(change_lines(differences))?;
     Ok(())
 }
 

@@ -35,9 +35,7 @@ pub fn run(args: &ReadArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
         }))?;
     } else {
         out.line(list_text(&settings))?;
-        for line in legend(&settings) {
-            out.line(line)?;
-        }
+        out.lines(legend(&settings))?;
         for conflict in conflicts {
             say(format!("Warning: {}", conflict.sentence));
         }

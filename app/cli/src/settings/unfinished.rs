@@ -67,9 +67,7 @@ fn show(
     }
     for aftermath in aftermaths {
         out.line(aftermath.headline())?;
-        for sentence in aftermath.sentences(&ram.table) {
-            out.line(format!("  {sentence}"))?;
-        }
+        out.lines(aftermath.sentences(&ram.table).iter().map(|sentence| format!("  {sentence}")))?;
     }
     Ok(())
 }

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use super::args::{Assignment, ImportArgs, UnfinishedArgs, WriteArgs, WriteHow};
 use super::ask;
 use super::controller::Controller;
-use super::review::Review;
+use super::review::{self, Review};
 use super::{keys, memory, profile, read};
 use crate::exit::Exit;
 use crate::interrupt::Interrupt;
@@ -236,14 +236,7 @@ fn show(review: &Review, wanted: &Wanted, how: &WriteHow, out: &mut Output) -> R
         lines.push("Commands that would be sent:".to_owned());
         lines.extend(review.command_lines());
     }
-    for line in lines {
-        if !how.json {
-            out.line(line)?;
-        } else if !how.yes && !how.dry_run {
-            say(line);
-        }
-    }
-    Ok(())
+    Ok(review::tell(lines, how.json, !how.yes && !how.dry_run, out)?)
 }
 
 fn question(controller: &Controller<'_>, count: usize, save: bool) -> String {
@@ -270,10 +263,7 @@ fn perform(
     if !changes.is_empty() {
         let act = Act::Write { wanted: changes, known: Known::default() };
         let finished = controller.act("write the settings", act, table, options)?;
-        let refused = |why: &str| {
-            say(why);
-            Err(finished.broken.unwrap_or(Exit::NotTaken))
-        };
+        let refused = |why: &str| Err(finished.broken.unwrap_or(Exit::NotTaken).saying(why));
         let report = match finished.value {
             Ok(Done::Written(report, _)) => *report,
             Ok(Done::NotWritten(error)) => return refused(&error.to_string()),

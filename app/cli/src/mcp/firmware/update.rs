@@ -154,9 +154,7 @@ fn enter_loader(controller: &Controller<'_>, interrupt: &Interrupt) -> Result<()
     while Instant::now() < deadline {
         match client::next_event(controller.device(), interrupt)? {
             Some(Event::LoaderEntered) => return Ok(()),
-            Some(Event::Failure(failure)) => {
-                return Err(Exit::Refused.saying(failure));
-            }
+            Some(Event::Failure(failure)) => return Err(Exit::Refused.saying(failure)),
             _ => {}
         }
     }

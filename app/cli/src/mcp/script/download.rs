@@ -68,8 +68,7 @@ pub fn to_controller(
     match (finished.value, finished.broken) {
         (Ok(done), None) => Ok(done),
         (Err(failure), broken) => {
-            say(failure.to_string());
-            Err(broken.unwrap_or(if is_refused { Exit::Refused } else { Exit::Failed }))
+            Err(broken.unwrap_or(if is_refused { Exit::Refused } else { Exit::Failed }).saying(failure))
         }
         (Ok(_), Some(exit)) => Err(exit),
     }

@@ -42,9 +42,7 @@ fn run(controller: &Controller<'_>, duration: Option<Duration>) -> Result<Exit, 
     while duration.is_none_or(|duration| begun_at.elapsed() < duration) {
         controller.device().renew();
         match controller.next_event()? {
-            Some(Event::Failure(failure)) => {
-                return Err(Exit::Refused.saying(failure));
-            }
+            Some(Event::Failure(failure)) => return Err(Exit::Refused.saying(failure)),
             Some(Event::Disarmed(reason)) => {
                 say(format!("{reason}. The script and both motors are being stopped."));
                 return Err(if reason == DisarmReason::LinkLost { Exit::NoLink } else { Exit::Refused });
