@@ -378,7 +378,9 @@ mod tests {
 
     #[test]
     fn the_definition_is_consistent() {
-        Cli::command().debug_assert();
+        crate::family::install(&[&crate::mcp::McpCommands, &crate::motion_mind::MotionMindCommands]);
+        let own = families().iter().flat_map(|family| family.commands());
+        own.fold(Cli::command(), |cli, tool| cli.subcommand(tool.command)).debug_assert();
     }
 
     #[test]

@@ -106,9 +106,7 @@ pub trait Family: Send + Sync {
 
     /// The addresses to which a stop of a whole line is written, whoever is there. None where a broadcast reaches more units than are
     /// searched for on a line that is not known to have them.
-    fn stopped_addresses(&self) -> Vec<u8> {
-        Vec::new()
-    }
+    fn stopped_addresses(&self) -> Vec<u8>;
 }
 
 /// What a list says of a simulated model.

@@ -1,7 +1,8 @@
 //! The command line: everything that can be done without a window.
 //!
-//! [`run`] reads the arguments and hands over to one file per command; what a family of controllers adds is in its folder. Commands talk to controllers through
-//! [`brushwork_core::session`] like the window does; they print data on standard output and words on standard error.
+//! [`run`] reads the arguments and hands over to one file per command; what a family of controllers adds stands in its folder. Commands
+//! talk to controllers through [`brushwork_core::session`] like the window does; they print data on standard output and words on
+//! standard error.
 
 pub mod args;
 mod client;

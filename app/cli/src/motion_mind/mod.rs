@@ -80,6 +80,10 @@ impl Family for MotionMindCommands {
             taken(facts.mode)
         ))
     }
+
+    fn stopped_addresses(&self) -> Vec<u8> {
+        Vec::new()
+    }
 }
 
 fn capital(text: &str) -> String {

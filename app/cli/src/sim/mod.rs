@@ -54,24 +54,21 @@ fn simulate(args: &SimArgs, typed: &ArgMatches) -> Result<Simulated, Exit> {
 }
 
 fn start(args: &SimArgs, line: SimulatedLine) -> Result<SimHandle<SimulatedLine>, Exit> {
-    let endpoint = endpoint(args).map_err(|sentence| Exit::Usage.saying(sentence))?;
-    let faults = args
-        .fault
-        .iter()
-        .map(|text| fault(text))
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(|sentence| Exit::Usage.saying(sentence))?;
+    let endpoint = endpoint(args)?;
+    let faults = args.fault.iter().map(|text| fault(text)).collect::<Result<_, _>>()?;
     let stream = args.port.index();
     let options = ServerOptions { stream, pace: args.pace, faults, seed: args.seed };
     Server::spawn(line, options, &endpoint)
         .map_err(|error| Exit::Failed.saying(format!("Could not start the simulated controller: {error}.")))
 }
 
-fn endpoint(args: &SimArgs) -> Result<Endpoint, String> {
+fn endpoint(args: &SimArgs) -> Result<Endpoint, Exit> {
     match (&args.pty, &args.tcp) {
         (Some(link), _) => Ok(Endpoint::Pty { link: link.clone() }),
         (None, Some(address)) => address.parse::<SocketAddr>().map(Endpoint::Tcp).map_err(|_| {
-            format!("\"{address}\" is no address to listen on. Use for example --tcp 127.0.0.1:7000.")
+            Exit::Usage.saying(format!(
+                "\"{address}\" is no address to listen on. Use for example --tcp 127.0.0.1:7000."
+            ))
         }),
         (None, None) if cfg!(windows) => Ok(Endpoint::Tcp(SocketAddr::from(([127, 0, 0, 1], 0)))),
         (None, None) => Ok(Endpoint::Pty { link: default_link() }),
@@ -82,8 +79,10 @@ fn default_link() -> PathBuf {
     std::env::temp_dir().join("brushwork-sim")
 }
 
-fn fault(text: &str) -> Result<Fault, String> {
-    text.parse().map_err(|error| format!("Could not read --fault {text}: {error}.\n\n{FAULT_SYNTAX}"))
+fn fault(text: &str) -> Result<Fault, Exit> {
+    text.parse().map_err(|error| {
+        Exit::Usage.saying(format!("Could not read --fault {text}: {error}.\n\n{FAULT_SYNTAX}"))
+    })
 }
 
 fn serve(
