@@ -35,13 +35,10 @@ struct SimulatedRow {
 
 /// Lists and prints.
 pub fn run(args: &ListArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
-    let ports = match list_ports() {
-        Ok(ports) => ports,
-        Err(failure) => {
-            say(failure.to_string());
-            Vec::new()
-        }
-    };
+    let ports = list_ports().unwrap_or_else(|failure| {
+        say(failure.to_string());
+        Vec::new()
+    });
     let mut rows = Vec::new();
     for port in ports {
         let units = args.scan.then(|| scan(&port.name, interrupt));

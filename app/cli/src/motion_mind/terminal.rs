@@ -3,7 +3,6 @@
 //! A unit in text takes lines; one in binary takes frames in hexadecimal, whose checksum is added. Nothing that moves the motor
 //! goes out: that takes arming, which a terminal does not do.
 
-use std::io::BufRead as _;
 use std::time::{Duration, Instant};
 
 use brushwork_link::device::{Event, PollRate, Request};
@@ -60,17 +59,13 @@ pub fn run(args: &TerminalArgs, out: &mut Output, interrupt: &Interrupt) -> Resu
         facts.mode,
         facts.protocol
     ));
+    let lines: Box<dyn Iterator<Item = String>> = match args.commands.is_empty() {
+        true => Box::new(std::io::stdin().lines().map_while(Result::ok)),
+        false => Box::new(args.commands.iter().cloned()),
+    };
     let mut failed = false;
-    let mut number = 0;
-    if args.commands.is_empty() {
-        for line in std::io::stdin().lock().lines().map_while(Result::ok) {
-            number += 1;
-            failed |= !exchange(&line, number, facts, args, &client, out, interrupt)?;
-        }
-    }
-    for line in &args.commands {
-        number += 1;
-        failed |= !exchange(line, number, facts, args, &client, out, interrupt)?;
+    for (id, line) in (1..).zip(lines) {
+        failed |= !exchange(&line, id, facts, args, &client, out, interrupt)?;
     }
     Ok(if failed { Exit::Refused } else { Exit::Done })
 }
