@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::args::ListArgs;
 use super::exit::Exit;
-use super::family::families;
+use super::family::{SimulatedModel, families};
 use super::interrupt::Interrupt;
 use super::output::{Output, OutputError, say};
 use brushwork_core::session::{self, SessionOptions};
@@ -66,11 +66,9 @@ fn describe(port: &PortInfo) -> String {
 
 fn simulated() -> Vec<SimulatedRow> {
     let rows = families().iter().flat_map(|family| {
-        family.family().models().iter().map(|model| SimulatedRow {
-            connect: format!("sim:{}", model.key),
-            model: model.name,
-            rating: model.rating,
-            assumed: family.simulated(model).assumed,
+        family.family().models().iter().map(|model| {
+            let SimulatedModel { rating, assumed } = family.simulated(model);
+            SimulatedRow { connect: format!("sim:{}", model.key), model: model.name, rating, assumed }
         })
     });
     rows.collect()
