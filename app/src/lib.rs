@@ -26,7 +26,7 @@ pub fn run() -> ExitCode {
             let options = WindowOptions { open: window.open.clone(), plain: window.plain };
             open_window(options).map_err(|error| error.to_string())
         },
-        vec![
+        [
             #[cfg(feature = "bench")]
             bench::tool(),
         ],

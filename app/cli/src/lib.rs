@@ -40,7 +40,10 @@ pub use tool::Tool;
 
 /// Runs the program: a command, or the window where none is given. `open_window` returns when the window is closed, or says in a sentence
 /// why there is none.
-pub fn run(open_window: impl FnOnce(&WindowArgs) -> Result<(), String>, tools: Vec<Tool>) -> ExitCode {
+pub fn run(
+    open_window: impl FnOnce(&WindowArgs) -> Result<(), String>,
+    tools: impl IntoIterator<Item = Tool>,
+) -> ExitCode {
     let own = family::families().iter().flat_map(|family| family.commands());
     let tools: Vec<Tool> = own.chain(tools).collect();
     let known = tools.iter().fold(Cli::command(), |cli, tool| cli.subcommand(tool.command.clone()));

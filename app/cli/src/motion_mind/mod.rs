@@ -37,7 +37,7 @@ impl Family for MotionMindCommands {
 
     fn sim_arguments(&self) -> Vec<Arg> {
         // Their places on the help page are those of the command that takes them.
-        Switches::augment_args(Command::new("").next_display_order(None)).get_arguments().cloned().collect()
+        Switches::augment_args(Command::default().next_display_order(None)).get_arguments().cloned().collect()
     }
 
     fn misplaced(&self, sim: &ArgMatches) -> Option<String> {
