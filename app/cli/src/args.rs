@@ -6,20 +6,18 @@ use std::time::Duration;
 use super::tune::TuneArgs;
 use brushwork_canopen::adapter::Form;
 use brushwork_link::FamilyChoice;
-use brushwork_motion_mind_sim::EncoderDecode;
 use brushwork_plant::faults::FAULT_SYNTAX;
+use brushwork_plant::machine::StreamIndex;
+use brushwork_values::Motor;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::exit;
-use super::firmware::args::FirmwareArgs;
-use super::mcl::args::MclArgs;
+use super::family::families;
 use super::monitor::args::MonitorArgs;
 use super::new_file::Replace;
-use super::script::args::ScriptArgs;
 use super::settings::args::SettingsArgs;
 use super::shared_args::{ConnectArgs, LineArgs, ScriptBuses, parse_seconds};
-use brushwork_mcp::sim_spec::parse_byte;
-use brushwork_motion_mind::sim_spec as motion_mind_spec;
+use brushwork_values::parse_byte;
 
 /// Configures, drives and tunes brushed-DC motor controllers.
 #[derive(Debug, Parser)]
@@ -52,7 +50,7 @@ pub struct WindowArgs {
     pub plain: bool,
 }
 
-/// What `brushwork` can do without a window.
+/// What `brushwork` can do without a window, whatever the controller. Between their places on the help page is room for families' own.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// List serial ports and simulated controllers.
@@ -67,22 +65,18 @@ pub enum Command {
     Stop(StopArgs),
     /// Read, write, compare and save a controller's settings.
     Settings(SettingsArgs),
-    /// Show what firmware is installed, and update it from a file of yours.
-    Firmware(FirmwareArgs),
-    /// Download, start and stop a controller's script.
-    Script(ScriptArgs),
     /// Run simulated controllers on a pseudo-terminal or a TCP port.
+    #[command(display_order = 20)]
     Sim(SimArgs),
-    /// Send commands to a Motion Mind as they are typed.
-    Terminal(TerminalArgs),
     /// Print the reference of packet serial, or of the Motion Mind.
+    #[command(display_order = 30)]
     Protocol(ProtocolArgs),
     /// Decode traffic: our own, another program's, or a file's.
+    #[command(display_order = 31)]
     Monitor(MonitorArgs),
     /// Tune a motor's velocity or position loop on the machine.
+    #[command(display_order = 32)]
     Tune(TuneArgs),
-    /// Check, build, run, list and format MCL scripts; print the language reference.
-    Mcl(MclArgs),
 }
 
 /// One of the controller's serial streams (MCP manual 2.3.1, command 145).
@@ -98,6 +92,19 @@ pub enum StreamArg {
     Ttl2,
     /// UART3, TTL levels.
     Ttl3,
+}
+
+impl StreamArg {
+    /// Its number in a controller.
+    pub fn index(self) -> StreamIndex {
+        match self {
+            Self::Usb => StreamIndex::Usb,
+            Self::Rs232 => StreamIndex::Uart0,
+            Self::Ttl1 => StreamIndex::Uart1,
+            Self::Ttl2 => StreamIndex::Uart2,
+            Self::Ttl3 => StreamIndex::Uart3,
+        }
+    }
 }
 
 /// Arguments of `brushwork list`.
@@ -211,6 +218,17 @@ pub enum MotorArg {
     Both,
 }
 
+impl MotorArg {
+    /// The motors that are meant.
+    pub fn motors(self) -> &'static [Motor] {
+        match self {
+            Self::M1 => &[Motor::M1],
+            Self::M2 => &[Motor::M2],
+            Self::Both => &[Motor::M1, Motor::M2],
+        }
+    }
+}
+
 /// Arguments of `brushwork stop`.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
@@ -251,15 +269,9 @@ pub struct SimArgs {
     /// Address, or a comma-separated list: one simulated unit for each, on one line. 0x80 to 0x87, or 1 to 98 for a Motion Mind 3.
     #[arg(long, value_name = "ADDRESS", value_delimiter = ',', value_parser = parse_unit_number)]
     pub address: Vec<u8>,
-    /// What moves the motor of a Motion Mind 3, as its switches say; 4 if not given.
-    #[arg(long, value_name = "0..7", value_parser = clap::value_parser!(u8).range(0..=7))]
-    pub mode: Option<u8>,
-    /// Which of its two protocols a Motion Mind 3 speaks.
-    #[arg(long, value_enum, value_name = "PROTOCOL", default_value = "binary")]
-    pub protocol: ProtocolArg,
-    /// The other switches of a Motion Mind 3.
+    /// What a family alone has.
     #[command(flatten)]
-    pub switches: MotionMindSwitches,
+    pub of_families: OfFamilies,
     /// Which of the controller's ports is served.
     #[arg(long, value_enum, value_name = "PORT", default_value = "usb")]
     pub port: StreamArg,
@@ -307,66 +319,15 @@ pub struct SimArgs {
     pub list: bool,
 }
 
-/// Switches 5 and 7 of a Motion Mind 3, and its firmware.
-#[derive(Debug, Clone, Default, Args)]
-pub struct MotionMindSwitches {
-    /// Switch 5 of a Motion Mind 3; with --pace its bytes take the time of that rate. In mode 2 it is the direction too.
-    #[arg(long, value_name = "9600|19200", value_parser = parse_switched_baud)]
-    pub baud: Option<u32>,
-    /// Switch 7 of a Motion Mind 3: which edges of the encoder count.
-    #[arg(long, value_name = "1x|4x", value_parser = motion_mind_spec::decode)]
-    pub encoder: Option<EncoderDecode>,
-    /// The firmware revision that a Motion Mind 3 tells.
-    #[arg(long, value_name = "N")]
-    pub revision: Option<u8>,
-}
-
-impl MotionMindSwitches {
-    /// Whether any is given.
-    pub fn is_given(&self) -> bool {
-        self.baud.is_some() || self.encoder.is_some() || self.revision.is_some()
-    }
-}
-
-fn parse_switched_baud(text: &str) -> Result<u32, String> {
-    match text.parse() {
-        Ok(baud @ (9_600 | 19_200)) => Ok(baud),
-        _ => Err(format!("\"{text}\" is none of the rates of switch 5: use 9600 or 19200")),
-    }
-}
+/// The arguments that families add to those of `brushwork sim`. Each family reads its own.
+#[derive(Debug, Args)]
+#[command(args = families().iter().flat_map(|family| family.sim_arguments()))]
+pub struct OfFamilies {}
 
 /// A unit's number as typed; what numbers there are depends on the model.
 fn parse_unit_number(text: &str) -> Result<u8, String> {
     parse_byte(text)
         .ok_or_else(|| format!("\"{text}\" is no address; an example is 0x80, or 1 for a Motion Mind 3"))
-}
-
-/// A protocol of the Motion Mind 3.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum ProtocolArg {
-    /// Frames with a checksum.
-    Binary,
-    /// Lines of text.
-    Ascii,
-}
-
-/// Arguments of `brushwork terminal`.
-#[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  \
-    brushwork terminal --connect /dev/ttyUSB0,family=motion-mind 'R01 04' 'W01 04 5000'\n  \
-    brushwork terminal --connect sim:motion-mind-3 '1A 01 01 00 01 00'\n\n\
-    Without commands each line of standard input is one. A unit in ASCII takes lines, one in binary takes the bytes of a\n\
-    frame in hexadecimal without their checksum. Commands that move the motor are refused; use `brushwork drive`.")]
-pub struct TerminalArgs {
-    /// The controller.
-    #[command(flatten)]
-    pub connect: ConnectArgs,
-    /// What to send.
-    #[arg(value_name = "COMMAND")]
-    pub commands: Vec<String>,
-    /// Print each exchange as a JSON object a line.
-    #[arg(long)]
-    pub json: bool,
 }
 
 /// Arguments of `brushwork protocol`.
@@ -417,7 +378,9 @@ mod tests {
 
     #[test]
     fn the_definition_is_consistent() {
-        Cli::command().debug_assert();
+        crate::family::install(&[&crate::mcp::McpCommands, &crate::motion_mind::MotionMindCommands]);
+        let own = families().iter().flat_map(|family| family.commands());
+        own.fold(Cli::command(), |cli, tool| cli.subcommand(tool.command)).debug_assert();
     }
 
     #[test]

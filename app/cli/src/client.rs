@@ -1,25 +1,22 @@
 //! A controller as a command sees it: connected and identified, or a sentence and an exit code.
 
+use std::fmt::Display;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use brushwork_link::FamilyChoice;
 use brushwork_link::device::{
     Addresses, ArmScope, DeviceHandle, Event, Identity, Job, JobTicket, PollRate, Request,
 };
 use brushwork_link::transport::{ConnectTarget, Stream};
-use brushwork_link::{Failure, SystemClock};
-use brushwork_mcp_wire::packet_serial;
-use brushwork_motion_mind_wire as motion_mind;
+use brushwork_link::{Failure, FamilyChoice, SystemClock, families};
 use crossbeam_channel::RecvTimeoutError;
 
 use super::exit::Exit;
+use super::family::{self, Family};
 use super::interrupt::Interrupt;
 use super::output::say;
 use super::shared_args::{ConnectArgs, LineArgs};
-use brushwork_core::session;
-use brushwork_core::session::{Session, SessionOptions, Simulation};
-use brushwork_motion_mind::MotionMindSpec;
+use brushwork_core::session::{self, Session, SessionOptions, Simulation};
 
 /// How long a controller may take to be found and identified.
 pub const CONNECT_LIMIT: Duration = Duration::from_secs(60);
@@ -74,10 +71,7 @@ impl Client {
 pub fn open(args: &ConnectArgs, poll: PollRate) -> Result<Session, Exit> {
     let target = target(args)?;
     let options = SessionOptions { addresses: addresses(&target, args), poll, family: args.family };
-    session::open(&target, options, SystemClock::shared(), None).map_err(|error| {
-        say(error.to_string());
-        Exit::NoLink
-    })
+    session::open(&target, options, SystemClock::shared(), None).map_err(|error| Exit::NoLink.saying(error))
 }
 
 /// What `--connect` and `--address` name.
@@ -95,57 +89,46 @@ pub fn target(args: &ConnectArgs) -> Result<ConnectTarget, Exit> {
 pub fn line_target(args: &LineArgs) -> Result<ConnectTarget, Exit> {
     let target = parse(&args.connect)?;
     let on_can = matches!(target, ConnectTarget::Can { .. });
-    let is_packet_address = |address: &u8| packet_serial::Address::new(*address).is_some();
-    let is_unit = |address: &u8| motion_mind::Address::unit(*address).is_some();
-    let one_family = args.address.iter().all(is_packet_address) || args.address.iter().all(is_unit);
+    let one_family =
+        families().iter().any(|family| args.address.iter().all(|address| family.has_address(*address)));
     if !on_can && !one_family {
-        say(
-            "Could not understand --address: a line has controllers of one family, MCP or RoboClaw at 0x80 to 0x87 or Motion Minds at 1 to 98.",
-        );
-        return Err(Exit::Usage);
+        return Err(Exit::Usage.saying("Could not understand --address: a line has controllers of one family, MCP or RoboClaw at 0x80 to 0x87 or Motion Minds at 1 to 98."));
     }
     Ok(at_addresses(target, &args.address))
 }
 
 fn parse(target: &str) -> Result<ConnectTarget, Exit> {
-    target.parse().map_err(|error| {
-        say(format!("Could not understand --connect {target}: {error}."));
-        Exit::Usage
-    })
+    target
+        .parse()
+        .map_err(|error| Exit::Usage.saying(format!("Could not understand --connect {target}: {error}.")))
 }
 
 /// The family that is meant: as the target or `--family` says.
 pub fn family(target: &ConnectTarget, args: &ConnectArgs) -> FamilyChoice {
-    match target {
-        ConnectTarget::Sim(text) if MotionMindSpec::is_asked_for(text) => {
-            FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND)
-        }
-        target if target.family() != FamilyChoice::AUTO => target.family(),
-        _ => args.family,
+    let simulated = family::families().iter().find(|family| first_of(target, **family).is_some());
+    match simulated {
+        Some(family) => FamilyChoice::of(family.family()),
+        None if target.family() != FamilyChoice::AUTO => target.family(),
+        None => args.family,
     }
 }
 
-/// The one address that is meant: as given, or the factory's of the family.
+/// The one address that is meant: as given, or the first one of units that are simulated, or the factory's of the family.
 fn addresses(target: &ConnectTarget, args: &ConnectArgs) -> Addresses {
-    match (args.address, family(target, args)) {
+    match (args.address, family(target, args).family()) {
         (Some(address), _) => Addresses::Only(address),
-        (None, choice) => match choice.family() {
-            Some(family) if family == brushwork_motion_mind_client::MOTION_MIND => {
-                Addresses::Only(first_of(target).get())
-            }
-            Some(family) => Addresses::Only(family.factory_address()),
-            None => Addresses::Factory,
-        },
+        (None, Some(family)) => {
+            let first = first_of(target, family::of(family));
+            Addresses::Only(first.unwrap_or_else(|| family.factory_address()))
+        }
+        (None, None) => Addresses::Factory,
     }
 }
 
-/// The first of simulated Motion Minds, or the factory address.
-fn first_of(target: &ConnectTarget) -> motion_mind::Address {
-    let spec = match target {
-        ConnectTarget::Sim(text) => MotionMindSpec::parse(text).ok(),
-        _ => None,
-    };
-    spec.and_then(|spec| spec.addresses.first().copied()).unwrap_or(motion_mind::Address::FACTORY)
+/// The first of simulated units, if they are the family's.
+fn first_of(target: &ConnectTarget, family: &dyn Family) -> Option<u8> {
+    let ConnectTarget::Sim(text) = target else { return None };
+    family.first_simulated(text)
 }
 
 /// Simulated controllers are made at the addresses that are asked for, unless the target names some itself.
@@ -179,8 +162,10 @@ fn wait_for_identity(
             _ => {}
         }
     }
-    say(format!("Could not connect: no controller identified itself within {} s.", CONNECT_LIMIT.as_secs()));
-    Err(Exit::NoLink)
+    Err(Exit::NoLink.saying(format!(
+        "Could not connect: no controller identified itself within {} s.",
+        CONNECT_LIMIT.as_secs()
+    )))
 }
 
 /// The next event, or `None` when there was none for a moment.
@@ -188,10 +173,7 @@ fn wait_for_identity(
 /// # Errors
 /// The link is lost (said on standard error) or the program was asked to end.
 pub fn next_event(device: &DeviceHandle, interrupt: &Interrupt) -> Result<Option<Event>, Exit> {
-    look_for_event(device, interrupt)?.map_err(|failure| {
-        say(failure.to_string());
-        Exit::NoLink
-    })
+    look_for_event(device, interrupt)?.map_err(|failure| Exit::NoLink.saying(failure))
 }
 
 /// The same, with the loss of the link as the failure that it is.
@@ -209,10 +191,7 @@ pub fn look_for_event(
         Ok(Event::Lost(failure)) => Ok(Err(failure)),
         Ok(event) => Ok(Ok(Some(event))),
         Err(RecvTimeoutError::Timeout) => Ok(Ok(None)),
-        Err(RecvTimeoutError::Disconnected) => {
-            say("The link was closed.");
-            Err(Exit::NoLink)
-        }
+        Err(RecvTimeoutError::Disconnected) => Err(Exit::NoLink.saying("The link was closed.")),
     }
 }
 
@@ -221,10 +200,7 @@ pub fn look_for_event(
 /// # Errors
 /// It takes none now (said on standard error).
 pub fn ask(device: &DeviceHandle, request: Request) -> Result<(), Exit> {
-    device.request(request).map_err(|refused| {
-        say(format!("Could not ask the controller: {refused}"));
-        Exit::Refused
-    })
+    device.request(request).map_err(not_asked)
 }
 
 /// Queues a job.
@@ -232,10 +208,11 @@ pub fn ask(device: &DeviceHandle, request: Request) -> Result<(), Exit> {
 /// # Errors
 /// It was not taken, which is said on standard error.
 pub fn start<T: Send + 'static>(device: &DeviceHandle, job: Job<T>) -> Result<JobTicket<T>, Exit> {
-    device.start(job).map_err(|refused| {
-        say(format!("Could not ask the controller: {refused}"));
-        Exit::Refused
-    })
+    device.start(job).map_err(not_asked)
+}
+
+fn not_asked(refused: impl Display) -> Exit {
+    Exit::Refused.saying(format!("Could not ask the controller: {refused}"))
 }
 
 /// Arms, and says what the device thread warns of.
@@ -282,6 +259,5 @@ pub fn wait<T>(
             None => {}
         }
     }
-    say(format!("The controller did not answer within {} s.", ANSWER_LIMIT.as_secs()));
-    Err(Exit::NoLink)
+    Err(Exit::NoLink.saying(format!("The controller did not answer within {} s.", ANSWER_LIMIT.as_secs())))
 }

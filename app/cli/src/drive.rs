@@ -7,18 +7,17 @@ use std::time::{Duration, Instant};
 use brushwork_link::device::{
     ArmScope, DisarmReason, Drive, DriveCommand, Event, Identity, PollRate, Request,
 };
-use brushwork_mcp_wire::packet_serial::commands;
-use brushwork_mcp_wire::packet_serial::name::QPPS;
-use brushwork_values::Motor;
 use serde_json::json;
 
-use super::args::{DriveArgs, MotorArg};
-use super::client::{Client, arm, ask, wait};
+use super::args::DriveArgs;
+use super::client::{Client, arm, ask};
 use super::exit::Exit;
+use super::family;
 use super::interrupt::Interrupt;
 use super::output::{Output, OutputError, say};
+use super::readings::Readings;
 use super::response::Response;
-use super::status::{Readings, line_of};
+use super::status::line_of;
 use super::stop;
 
 /// Time between two sweeps of the signals.
@@ -27,63 +26,45 @@ const SWEEP_INTERVAL: Duration = Duration::from_millis(20);
 const PRINT_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Connects, arms, drives, stops.
-pub fn run(args: &DriveArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
-    let client = match Client::connect(&args.connect, PollRate::Every(SWEEP_INTERVAL), interrupt) {
-        Ok(client) => client,
-        Err(exit) => return exit,
+pub fn run(args: &DriveArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let client = Client::connect(&args.connect, PollRate::Every(SWEEP_INTERVAL), interrupt)?;
+    let command = command(args, &client, interrupt)?;
+    let drive = match args.motor.motors() {
+        [motor] => Drive::one(*motor, command),
+        _ => Drive::both(command),
     };
-    let drive = match command(args, &client, interrupt).and_then(|command| {
-        let drive = to_motors(args.motor, command);
-        if let Some(clause) = client.identity.objection(&drive) {
-            say(format!(
-                "Could not move the motor of {} on {}: {clause}.",
-                client.identity.place(),
-                client.identity.port
-            ));
-            return Err(Exit::Refused);
-        }
-        arm(client.device(), ArmScope::CommandLine, interrupt)?;
-        Ok(drive)
-    }) {
-        Ok(drive) => drive,
-        Err(exit) => return exit,
-    };
+    if let Some(clause) = client.identity.objection(&drive) {
+        return Err(Exit::Refused.saying(format!(
+            "Could not move the motor of {} on {}: {clause}.",
+            client.identity.place(),
+            client.identity.port
+        )));
+    }
+    arm(client.device(), ArmScope::CommandLine, interrupt)?;
     let driven = keep_driving(args, drive, &client, out, interrupt);
-    let exit = finish(driven, &client);
-    if exit == Exit::Interrupted && args.connect.address.is_none() && client.simulation().is_none() {
+    let ended = finish(driven, &client);
+    if ended == Err(Exit::Interrupted) && args.connect.address.is_none() && client.simulation().is_none() {
         // Whoever presses Ctrl-C and has named no unit wants the line to stand, whoever set it in motion.
         let own = client.identity.clone();
         drop(client);
         stop::stop_the_rest(&args.connect.line(), &own);
     }
-    exit
+    ended
 }
 
 /// Stops whatever the driving came to, then gives its exit code.
-fn finish(driven: Result<(), Exit>, client: &Client) -> Exit {
+fn finish(driven: Result<(), Exit>, client: &Client) -> Result<Exit, Exit> {
     let was_lost = driven == Err(Exit::NoLink);
     if !was_lost {
         client.device().stop_all();
-        match stop::wait_for_report(client) {
-            Ok(report) => {
-                stop::warnings(&report, &client.identity).into_iter().for_each(say);
-                // The motion was carried out, but nothing holds the motor now.
-                if driven.is_ok() && report.left_a_loop_off() {
-                    return Exit::Refused;
-                }
-            }
-            Err(exit) => return exit,
+        let report = stop::wait_for_report(client.device())?;
+        stop::warnings(&report, &client.identity).into_iter().for_each(say);
+        // The motion was carried out, but nothing holds the motor now.
+        if driven.is_ok() && report.left_a_loop_off() {
+            return Err(Exit::Refused);
         }
     }
-    driven.map_or_else(|exit| exit, |()| Exit::Done)
-}
-
-fn to_motors(motor: MotorArg, command: DriveCommand) -> Drive {
-    match motor {
-        MotorArg::M1 => Drive::one(Motor::M1, command),
-        MotorArg::M2 => Drive::one(Motor::M2, command),
-        MotorArg::Both => Drive::both(command),
-    }
+    driven.map(|()| Exit::Done)
 }
 
 fn command(args: &DriveArgs, client: &Client, interrupt: &Interrupt) -> Result<DriveCommand, Exit> {
@@ -102,9 +83,10 @@ fn command(args: &DriveArgs, client: &Client, interrupt: &Interrupt) -> Result<D
     }
     let speed_counts_per_s = match args.speed_limit {
         Some(limit) => limit,
-        // Its speed is VELOCITYLIMIT, a setting.
-        None if !client.identity.capabilities().ramps => 0,
-        None => qpps(args.motor, client, interrupt)?,
+        None => {
+            let family = family::of(client.identity.family);
+            family.full_speed(args.motor.motors(), client.device(), interrupt)?
+        }
     };
     if let Some(distance) = args.by {
         let speed = i32::try_from(speed_counts_per_s).unwrap_or(i32::MAX);
@@ -126,42 +108,6 @@ fn command(args: &DriveArgs, client: &Client, interrupt: &Interrupt) -> Result<D
     })
 }
 
-/// The motor's own full speed: with both motors, the slower one's.
-fn qpps(motor: MotorArg, client: &Client, interrupt: &Interrupt) -> Result<u32, Exit> {
-    let both = [commands::READ_VELOCITY_PID_M1, commands::READ_VELOCITY_PID_M2];
-    let commands = match motor {
-        MotorArg::M1 => &both[..1],
-        MotorArg::M2 => &both[1..],
-        MotorArg::Both => &both,
-    };
-    let mut slowest = u32::MAX;
-    for &command in commands {
-        let request = Request::Transact {
-            id: u64::from(command.number()),
-            command: command.number(),
-            values: Vec::new(),
-        };
-        ask(client.device(), request)?;
-        let values = wait(client.device(), interrupt, |event| match event {
-            Event::Transacted { result, .. } => Some(result),
-            _ => None,
-        })?
-        .map_err(|failure| {
-            say(failure.to_string());
-            Exit::Refused
-        })?;
-        let reply = command.reply(values).ok_or(Exit::Refused)?;
-        slowest = slowest.min(u32::try_from(reply.int(QPPS)).unwrap_or(0));
-    }
-    if slowest == 0 {
-        say(
-            "The motor's QPPS is 0, so a position move would not move. Give --speed-limit or set QPPS first.",
-        );
-        return Err(Exit::Refused);
-    }
-    Ok(slowest)
-}
-
 fn keep_driving(
     args: &DriveArgs,
     drive: Drive,
@@ -181,8 +127,7 @@ fn keep_driving(
             Some(Event::Disarmed(reason)) => return Err(disarmed(&reason)),
             // The command never went out, on a line that was busy with faults for instance: nothing will move.
             Some(Event::Failure(failure)) if failure.tried.starts_with("move the motor") => {
-                say(failure.to_string());
-                return Err(Exit::Refused);
+                return Err(Exit::Refused.saying(failure));
             }
             Some(event) => {
                 if let Event::Sample(sample) = &event {

@@ -1,8 +1,9 @@
 //! Exit codes: one place for the numbers, the help text and the type.
 
+use std::fmt::Display;
 use std::process::ExitCode;
 
-use super::output::OutputError;
+use super::output::{OutputError, say};
 
 /// Shown under `brushwork --help`.
 pub const HELP: &str = "Exit codes:\n  \
@@ -44,6 +45,15 @@ pub enum Exit {
     ScriptFaulted,
     /// A signal or a closed pipe ended the command, with the motors stopped.
     Interrupted,
+}
+
+impl Exit {
+    /// Ends so, with a sentence for the person at the terminal.
+    #[must_use]
+    pub fn saying(self, sentence: impl Display) -> Self {
+        say(sentence.to_string());
+        self
+    }
 }
 
 impl From<OutputError> for Exit {

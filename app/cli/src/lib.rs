@@ -1,29 +1,31 @@
 //! The command line: everything that can be done without a window.
 //!
-//! [`run`] reads the arguments and hands over to one file per command. Commands talk to controllers through
-//! [`brushwork_core::session`] like the window does; they print data on standard output and words on standard error.
+//! [`run`] reads the arguments and hands over to one file per command; what a family of controllers adds stands in its folder. Commands
+//! talk to controllers through [`brushwork_core::session`] like the window does; they print data on standard output and words on
+//! standard error.
 
 pub mod args;
 mod client;
 mod drive;
 mod exit;
-mod firmware;
+pub mod family;
 pub mod interrupt;
 mod list;
-mod mcl;
+pub mod mcp;
 mod monitor;
+pub mod motion_mind;
 pub mod new_file;
 mod nodes;
 pub mod output;
 mod protocol;
+mod readings;
 mod response;
-mod script;
 pub mod settings;
 pub mod shared_args;
 mod sim;
 mod status;
 mod stop;
-mod terminal;
+mod tool;
 pub mod tune;
 
 use std::process::ExitCode;
@@ -33,52 +35,51 @@ use clap::{ArgMatches, CommandFactory as _, FromArgMatches as _};
 use args::{Cli, Command, WindowArgs};
 pub use exit::Exit;
 use interrupt::Interrupt;
-use output::{Output, say};
-
-/// A command that a program adds to those of this crate.
-#[derive(Debug)]
-pub struct Tool {
-    /// Its name, arguments and help.
-    pub command: clap::Command,
-    /// Does it.
-    pub run: fn(&ArgMatches, &mut Output, &Interrupt) -> Exit,
-}
+use output::Output;
+pub use tool::Tool;
 
 /// Runs the program: a command, or the window where none is given. `open_window` returns when the window is closed, or says in a sentence
 /// why there is none.
-pub fn run(open_window: impl FnOnce(&WindowArgs) -> Result<(), String>, tools: &[Tool]) -> ExitCode {
+pub fn run(
+    open_window: impl FnOnce(&WindowArgs) -> Result<(), String>,
+    tools: impl IntoIterator<Item = Tool>,
+) -> ExitCode {
+    let own = family::families().iter().flat_map(|family| family.commands());
+    let tools: Vec<Tool> = own.chain(tools).collect();
     let known = tools.iter().fold(Cli::command(), |cli, tool| cli.subcommand(tool.command.clone()));
     let matches = known.get_matches();
     let tool = matches.subcommand().and_then(|(name, arguments)| {
         Some((tools.iter().find(|tool| tool.command.get_name() == name)?, arguments))
     });
     if let Some((tool, arguments)) = tool {
-        return with_interrupt(|out, interrupt| (tool.run)(arguments, out, interrupt));
+        return with_interrupt(|out, interrupt| tool.run(arguments, out, interrupt));
     }
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
-    let Some(command) = cli.command else {
+    let Some((command, (_, typed))) = cli.command.zip(matches.subcommand()) else {
         return match open_window(&cli.window) {
             Ok(()) => Exit::Done.into(),
-            Err(error) => {
-                say(error);
-                Exit::Failed.into()
-            }
+            Err(error) => Exit::Failed.saying(error).into(),
         };
     };
-    with_interrupt(|out, interrupt| dispatch(&command, out, interrupt))
+    with_interrupt(|out, interrupt| dispatch(&command, typed, out, interrupt))
 }
 
-fn with_interrupt(run: impl FnOnce(&mut Output, &Interrupt) -> Exit) -> ExitCode {
+fn with_interrupt(run: impl FnOnce(&mut Output, &Interrupt) -> Result<Exit, Exit>) -> ExitCode {
     match Interrupt::install() {
-        Ok(interrupt) => run(&mut Output::stdout(), &interrupt).into(),
-        Err(error) => {
-            say(format!("Could not take over Ctrl-C, without which motors could not be stopped: {error}."));
-            Exit::Failed.into()
-        }
+        Ok(interrupt) => run(&mut Output::stdout(), &interrupt).unwrap_or_else(|exit| exit),
+        Err(error) => Exit::Failed.saying(format!(
+            "Could not take over Ctrl-C, without which motors could not be stopped: {error}."
+        )),
     }
+    .into()
 }
 
-fn dispatch(command: &Command, out: &mut Output, interrupt: &Interrupt) -> Exit {
+fn dispatch(
+    command: &Command,
+    typed: &ArgMatches,
+    out: &mut Output,
+    interrupt: &Interrupt,
+) -> Result<Exit, Exit> {
     match command {
         Command::List(args) => list::run(args, out, interrupt),
         Command::Nodes(args) => nodes::run(args, out, interrupt),
@@ -86,13 +87,9 @@ fn dispatch(command: &Command, out: &mut Output, interrupt: &Interrupt) -> Exit 
         Command::Drive(args) => drive::run(args, out, interrupt),
         Command::Stop(args) => stop::run(args, out, interrupt),
         Command::Settings(args) => settings::run(args, out, interrupt),
-        Command::Firmware(args) => firmware::run(args, out, interrupt),
-        Command::Sim(args) => sim::run(args, out, interrupt),
-        Command::Script(args) => script::run(args, out, interrupt),
+        Command::Sim(args) => sim::run(args, typed, out, interrupt),
         Command::Protocol(args) => protocol::run(args, out),
-        Command::Terminal(args) => terminal::run(args, out, interrupt),
         Command::Monitor(args) => monitor::run(args, out, interrupt),
-        Command::Tune(args) => tune::run(args, out, interrupt),
-        Command::Mcl(args) => mcl::run(args, out, interrupt),
+        Command::Tune(args) => Ok(tune::run(args, out, interrupt)),
     }
 }

@@ -2,19 +2,15 @@
 
 use brushwork_link::SystemClock;
 use brushwork_link::device::{Event, Identity, PollRate};
-use brushwork_link::family::Model;
 use brushwork_link::transport::{ConnectTarget, PortInfo, list_ports};
-use brushwork_mcp_wire::models::MODELS;
-use brushwork_motion_mind_client::MOTION_MIND;
 use serde::Serialize;
 
 use super::args::ListArgs;
 use super::exit::Exit;
+use super::family::{SimulatedModel, families};
 use super::interrupt::Interrupt;
 use super::output::{Output, OutputError, say};
-use super::sim::motion_mind;
-use brushwork_core::session;
-use brushwork_core::session::SessionOptions;
+use brushwork_core::session::{self, SessionOptions};
 
 #[derive(Debug, Serialize)]
 struct Listing {
@@ -38,25 +34,23 @@ struct SimulatedRow {
 }
 
 /// Lists and prints.
-pub fn run(args: &ListArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
-    let ports = match list_ports() {
-        Ok(ports) => ports,
-        Err(failure) => {
-            say(failure.to_string());
-            Vec::new()
-        }
-    };
+pub fn run(args: &ListArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let ports = list_ports().unwrap_or_else(|failure| {
+        say(failure.to_string());
+        Vec::new()
+    });
     let mut rows = Vec::new();
     for port in ports {
         let units = args.scan.then(|| scan(&port.name, interrupt));
         rows.push(PortRow { description: describe(&port), connect: port.name, units });
         if interrupt.is_raised() {
-            return Exit::Interrupted;
+            return Err(Exit::Interrupted);
         }
     }
     let listing = Listing { ports: rows, simulated: simulated() };
     let printed = if args.json { out.json(&listing) } else { print(&listing, out) };
-    printed.map_or_else(Exit::from, |()| Exit::Done)
+    printed?;
+    Ok(Exit::Done)
 }
 
 /// What the operating system knows of a port.
@@ -71,20 +65,13 @@ fn describe(port: &PortInfo) -> String {
 }
 
 fn simulated() -> Vec<SimulatedRow> {
-    let row = |model: &'static brushwork_mcp_wire::models::Model| SimulatedRow {
-        connect: format!("sim:{}", model.key),
-        model: model.name,
-        rating: model.rating(),
-        assumed: model.assumed,
-    };
-    let motion_mind = |model: &'static Model| SimulatedRow {
-        connect: format!("sim:{}", model.key),
-        model: model.name,
-        rating: model.rating,
-        assumed: motion_mind::ASSUMED,
-    };
-    let motion_minds = MOTION_MIND.models().iter().map(motion_mind);
-    MODELS.iter().map(row).chain(motion_minds).collect()
+    let rows = families().iter().flat_map(|family| {
+        family.family().models().iter().map(|model| {
+            let SimulatedModel { rating, assumed } = family.simulated(model);
+            SimulatedRow { connect: format!("sim:{}", model.key), model: model.name, rating, assumed }
+        })
+    });
+    rows.collect()
 }
 
 /// Asks all addresses of a port who is there. Reading moves no motor.

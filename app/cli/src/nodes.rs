@@ -10,28 +10,20 @@ use super::args::NodesArgs;
 use super::client::next_event;
 use super::exit::Exit;
 use super::interrupt::Interrupt;
-use super::output::{Output, say};
-use brushwork_core::session;
-use brushwork_core::session::SessionOptions;
+use super::output::Output;
+use brushwork_core::session::{self, SessionOptions};
 
 /// How long the search may take: all node ids are asked at once, and each that answers is then identified.
 const SEARCH_LIMIT: Duration = Duration::from_secs(60);
 
 /// Searches and prints.
-pub fn run(args: &NodesArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
-    search(args, out, interrupt).unwrap_or_else(|exit| exit)
-}
-
-fn search(args: &NodesArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+pub fn run(args: &NodesArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let target = args.connect.parse().map_err(|error| {
-        say(format!("Could not understand --connect {}: {error}.", args.connect));
-        Exit::Usage
+        Exit::Usage.saying(format!("Could not understand --connect {}: {error}.", args.connect))
     })?;
     let options = SessionOptions { poll: PollRate::Off, ..SessionOptions::default() };
-    let session = session::open(&target, options, SystemClock::shared(), None).map_err(|error| {
-        say(error.to_string());
-        Exit::NoLink
-    })?;
+    let session = session::open(&target, options, SystemClock::shared(), None)
+        .map_err(|error| Exit::NoLink.saying(error))?;
     let deadline = Instant::now() + SEARCH_LIMIT;
     let mut nodes: Vec<Identity> = Vec::new();
     while Instant::now() < deadline {
@@ -41,14 +33,18 @@ fn search(args: &NodesArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
             _ => {}
         }
     }
-    say(format!("Could not list the nodes: the search did not end within {} s.", SEARCH_LIMIT.as_secs()));
-    Err(Exit::NoLink)
+    Err(Exit::NoLink.saying(format!(
+        "Could not list the nodes: the search did not end within {} s.",
+        SEARCH_LIMIT.as_secs()
+    )))
 }
 
 fn print(args: &NodesArgs, nodes: &[Identity], out: &mut Output) -> Result<Exit, Exit> {
     if !nodes.iter().all(Identity::is_node) {
-        say(format!("{} is no CAN adapter. Write can: in front of an adapter's port.", args.connect));
-        return Err(Exit::Usage);
+        return Err(Exit::Usage.saying(format!(
+            "{} is no CAN adapter. Write can: in front of an adapter's port.",
+            args.connect
+        )));
     }
     if args.json {
         out.json(&json!({ "nodes": nodes }))?;

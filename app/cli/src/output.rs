@@ -45,6 +45,11 @@ impl Output {
         Ok(())
     }
 
+    /// Writes lines.
+    pub fn lines(&mut self, lines: impl IntoIterator<Item = impl AsRef<str>>) -> Result<(), OutputError> {
+        lines.into_iter().try_for_each(|line| self.line(line))
+    }
+
     /// Writes bytes as they are.
     pub fn bytes(&mut self, bytes: &[u8]) -> Result<(), OutputError> {
         self.writer.write_all(bytes)?;

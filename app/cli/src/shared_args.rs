@@ -7,7 +7,7 @@ use brushwork_link::unit::parse_number;
 use brushwork_plant::world::{CanPeer, I2cDevice, WorldAction};
 use clap::{Args, ValueEnum};
 
-use brushwork_mcp::sim_spec::parse_byte;
+use brushwork_values::parse_byte;
 
 /// Which controller, and how to reach it.
 #[derive(Debug, Clone, Args)]

@@ -1,48 +1,25 @@
 //! `brushwork status`: what the controller measures and reports.
 
-use brushwork_mcp_client::MCP;
-use brushwork_motion_mind_client::{MotionMindFacts, is_motion_mind};
 use std::time::{Duration, Instant};
 
-use brushwork_link::Stream;
-use brushwork_link::device::{
-    Channel, Event, Identity, Job, JobEnding, Newest, PlaceState, PollRate, StatusPlace, StatusReport,
-};
-use brushwork_link::settings::{SettingsImage, read_all};
-use brushwork_mcp_client::TypedWire as _;
-use brushwork_mcp_client::diagnosis::{Diagnosis, Evidence, Measured, PinEnd, diagnose, homed, pin_ends};
-use brushwork_mcp_wire::packet_serial::commands;
-use brushwork_motion_mind_client::taken;
+use brushwork_link::device::{Channel, Event, Identity, Job, JobEnding, PlaceState, PollRate, StatusPlace};
+use brushwork_link::settings::read_all;
 use brushwork_values::Severity;
 use serde::Serialize;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use super::args::StatusArgs;
 use super::client::Client;
 use super::exit::Exit;
+use super::family::{self, Judged, Said};
 use super::interrupt::Interrupt;
 use super::output::{Output, OutputError, say};
+use super::readings::Readings;
 
 /// How long the slow signals may take to come round.
 const FIRST_READING_LIMIT: Duration = Duration::from_secs(20);
 /// How long reading the settings may take.
 const SETTINGS_LIMIT: Duration = Duration::from_secs(120);
-
-/// The newest of everything that has been read.
-#[derive(Default)]
-pub struct Readings {
-    newest: Newest,
-    status: Option<StatusReport>,
-    stream: Option<Stream>,
-}
-
-/// What a diagnosis needs beyond the readings.
-#[derive(Default)]
-struct Setup {
-    settings: Option<SettingsImage>,
-    /// Where the input pins stand, where the unit tells.
-    pins: Option<Vec<PinEnd>>,
-}
 
 #[derive(Serialize)]
 struct LampState {
@@ -51,49 +28,8 @@ struct LampState {
     state: &'static str,
 }
 
-impl Readings {
-    /// Takes over what an event tells.
-    pub fn take(&mut self, event: Event) {
-        match event {
-            Event::Sample(sample) => self.newest.update(&sample),
-            Event::Status(status) => self.status = Some(status),
-            Event::Selected { stream, .. } => self.stream = stream,
-            Event::Failure(failure) => say(failure.to_string()),
-            _ => {}
-        }
-    }
-
-    /// A channel's newest value.
-    pub fn get(&self, channel: Channel) -> Option<f64> {
-        self.newest.get(channel)
-    }
-
-    fn is_complete(&self, identity: &Identity) -> bool {
-        let wanted = [
-            Channel::M1_POSITION,
-            Channel::M1_VELOCITY,
-            Channel::M1_CURRENT,
-            Channel::MAIN_BATTERY,
-            Channel::LOGIC_BATTERY,
-            Channel::TEMPERATURE_1,
-        ];
-        let is_there = |channel| !identity.channels().contains(&channel) || self.get(channel).is_some();
-        self.status.is_some() && wanted.into_iter().all(is_there)
-    }
-
-    /// The channels of a unit but the input pins as JSON, by their keys; what was not read is null.
-    pub fn to_json(&self, identity: &Identity) -> Map<String, Value> {
-        let polled = identity.channels().iter().copied().filter(|channel| !channel.is_pin());
-        polled.map(|channel| (channel.key.to_owned(), json!(self.get(channel)))).collect()
-    }
-}
-
 /// Connects, reads and prints, once or until interrupted.
-pub fn run(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
-    watch(args, out, interrupt).unwrap_or_else(|exit| exit)
-}
-
-fn watch(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+pub fn run(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let client = Client::connect(&args.connect, PollRate::DEFAULT, interrupt)?;
     let mut readings = Readings::default();
     let first_deadline = Instant::now() + FIRST_READING_LIMIT;
@@ -102,8 +38,8 @@ fn watch(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
             readings.take(event);
         }
     }
-    let setup = read_setup(&client, &mut readings, interrupt)?;
-    print(args, &client, &readings, &setup, out)?;
+    read_setup(&client, &mut readings, interrupt)?;
+    print(args, &client.identity, &readings, out)?;
     if !args.watch {
         return Ok(Exit::Done);
     }
@@ -114,32 +50,36 @@ fn watch(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
         }
         if Instant::now() >= next {
             next += args.interval;
-            print(args, &client, &readings, &setup, out)?;
+            print(args, &client.identity, &readings, out)?;
         }
     }
 }
 
 /// The settings in RAM and the inputs, for the diagnosis; what cannot be read is told.
-fn read_setup(client: &Client, readings: &mut Readings, interrupt: &Interrupt) -> Result<Setup, Exit> {
-    let Some(subject) = client.identity.subject() else { return Ok(Setup::default()) };
+fn read_setup(client: &Client, readings: &mut Readings, interrupt: &Interrupt) -> Result<(), Exit> {
+    let Some(subject) = client.identity.subject() else { return Ok(()) };
     let job = Job::new("read the settings", SETTINGS_LIMIT, move |context| {
-        let settings = Some(read_all(context, subject)?.image);
-        // A RoboClaw does not know the command; its status word has bits of its own.
-        let values =
-            if subject.family() == MCP { context.ask(commands::READ_SIGNAL_VALUES, &[]).ok() } else { None };
-        Ok(Setup { settings, pins: values.map(|values| pin_ends(&values)) })
+        let settings = read_all(context, subject)?.image;
+        Ok((settings, family::of(subject.family()).read_inputs(context)))
     });
     let ticket = match client.device().start(job) {
         Ok(ticket) => ticket,
         Err(refused) => {
             say(refused.to_string());
-            return Ok(Setup::default());
+            return Ok(());
         }
     };
     loop {
         match client.next_event(interrupt)? {
             Some(Event::JobEnded(report)) if report.id == ticket.id() => {
-                return Ok(setup_of(ticket.ending(report.ending)));
+                match ticket.ending(report.ending) {
+                    JobEnding::Done((settings, inputs)) => {
+                        (readings.settings, readings.inputs) = (Some(settings), inputs);
+                    }
+                    JobEnding::Failed(failure) => say(failure.to_string()),
+                    JobEnding::Interrupted(_) | JobEnding::Panicked(_) => {}
+                }
+                return Ok(());
             }
             Some(event) => readings.take(event),
             None => {}
@@ -147,46 +87,22 @@ fn read_setup(client: &Client, readings: &mut Readings, interrupt: &Interrupt) -
     }
 }
 
-fn setup_of(ending: JobEnding<Setup>) -> Setup {
-    match ending {
-        JobEnding::Done(setup) => setup,
-        JobEnding::Failed(failure) => {
-            say(failure.to_string());
-            Setup::default()
-        }
-        JobEnding::Interrupted(_) | JobEnding::Panicked(_) => Setup::default(),
-    }
-}
-
-/// Why the motors do not run, as far as anything is known.
-fn judge(client: &Client, readings: &Readings, setup: &Setup) -> Option<Diagnosis> {
-    let status = readings.status.filter(|_| !is_motion_mind(&client.identity))?;
-    Some(diagnose(&Evidence {
-        settings: setup.settings.as_ref(),
-        pins: setup.pins.as_deref(),
-        stream: readings.stream,
-        measured: Measured::of(|channel| readings.get(channel)),
-        ..Evidence::of(&status, &client.identity)
-    }))
-}
-
 fn print(
     args: &StatusArgs,
-    client: &Client,
+    identity: &Identity,
     readings: &Readings,
-    setup: &Setup,
     out: &mut Output,
 ) -> Result<(), OutputError> {
-    let diagnosis = judge(client, readings, setup);
-    let lamps = lamps(readings, client, setup);
+    let family = family::of(identity.family);
+    let Judged { diagnosis, homed } = family.judge(identity, readings);
+    let lamps = lamps(readings, identity, homed);
     if args.json {
-        let object = to_json(client, readings, &lamps, diagnosis.as_ref());
+        let object = to_json(identity, readings, &lamps, diagnosis.as_ref());
         return if args.watch { out.json_line(&object) } else { out.json(&object) };
     }
     if args.watch {
-        return out.line(line_of(readings, &client.identity));
+        return out.line(line_of(readings, identity));
     }
-    let identity = &client.identity;
     let simulated = if identity.simulated { ", simulated" } else { "" };
     out.line(format!(
         "{} at {} on {} ({}{simulated})",
@@ -195,19 +111,12 @@ fn print(
         identity.port,
         identity.version(),
     ))?;
-    if let Some(facts) = MotionMindFacts::of(identity) {
-        out.line(format!(
-            "{}, {} protocol. Over the serial line it takes {}.",
-            capital(&facts.mode.to_string()),
-            facts.protocol,
-            taken(facts.mode)
-        ))?;
+    if let Some(line) = family.set_up(identity) {
+        out.line(line)?;
     }
-    for note in &identity.notes {
-        out.line(format!("Note: {note}"))?;
-    }
+    out.lines(identity.notes.iter().map(|note| format!("Note: {note}")))?;
     if let Some(diagnosis) = &diagnosis {
-        out.line(diagnosis.sentence())?;
+        out.line(&diagnosis.sentence)?;
     }
     out.line("")?;
     let rows: Vec<Vec<String>> = identity
@@ -237,9 +146,7 @@ fn decimals(channel: Channel) -> usize {
 }
 
 /// The status row. Home and limit switches go by the actions of the pins where the status word has no bits for them.
-fn lamps(readings: &Readings, client: &Client, setup: &Setup) -> Vec<LampState> {
-    let homed =
-        setup.settings.as_ref().zip(setup.pins.as_deref()).map(|(settings, ends)| homed(settings, ends));
+fn lamps(readings: &Readings, identity: &Identity, homed: Option<[bool; 2]>) -> Vec<LampState> {
     let state = |state| match state {
         PlaceState::Unknown => "unknown",
         PlaceState::NotReported => "not reported",
@@ -250,27 +157,15 @@ fn lamps(readings: &Readings, client: &Client, setup: &Setup) -> Vec<LampState> 
     };
     let lamp =
         |place: StatusPlace| LampState { lamp: place.short, title: place.title, state: state(place.state) };
-    client.identity.status_row(readings.status.as_ref(), homed).into_iter().map(lamp).collect()
+    identity.status_row(readings.status.as_ref(), homed).into_iter().map(lamp).collect()
 }
 
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters
-        .next()
-        .map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + letters.as_str())
-}
-
-fn to_json(
-    client: &Client,
-    readings: &Readings,
-    lamps: &[LampState],
-    diagnosis: Option<&Diagnosis>,
-) -> Value {
+fn to_json(identity: &Identity, readings: &Readings, lamps: &[LampState], diagnosis: Option<&Said>) -> Value {
     json!({
-        "diagnosis": diagnosis.map(Diagnosis::sentence),
-        "findings": diagnosis.map(|diagnosis| &diagnosis.findings),
-        "identity": client.identity,
-        "readings": readings.to_json(&client.identity),
+        "diagnosis": diagnosis.map(|diagnosis| &diagnosis.sentence),
+        "findings": diagnosis.map(|diagnosis| &diagnosis.data),
+        "identity": identity,
+        "readings": readings.to_json(identity),
         "status_word": readings.status.map(|status| status.word),
         "conditions": readings.status
             .map(|status| {

@@ -2,37 +2,31 @@
 //!
 //! The stop goes out before anybody is looked for, to whoever may be there; then the units are found and each is asked to confirm.
 
-use brushwork_motion_mind_client::is_motion_mind;
 use std::time::{Duration, Instant};
 
-use brushwork_link::FamilyChoice;
-use brushwork_link::SystemClock;
 use brushwork_link::device::{Addresses, DeviceHandle, Event, Identity, PollRate, StopReport, UnitStop};
 use brushwork_link::transport::ConnectTarget;
-use brushwork_mcp_wire::packet_serial;
-use brushwork_motion_mind_wire as motion_mind;
+use brushwork_link::{FamilyChoice, SystemClock, families};
 use serde_json::json;
 
 use super::args::StopArgs;
-use super::client::{self, CONNECT_LIMIT, Client};
+use super::client::{self, CONNECT_LIMIT};
 use super::exit::Exit;
+use super::family;
 use super::interrupt::Interrupt;
 use super::output::{Output, OutputError, say};
 use super::shared_args::LineArgs;
-use brushwork_core::session;
-use brushwork_core::session::{Session, SessionOptions};
+use brushwork_core::session::{self, Session, SessionOptions};
 
 /// How long the controllers may take to confirm: late replies at 2400 bit/s take 6 s.
 const STOP_LIMIT: Duration = Duration::from_secs(10);
 
 /// Stops the line and prints what became of it.
-pub fn run(args: &StopArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
-    let stopped = match stop_line(&args.line, interrupt) {
-        Ok(stopped) => stopped,
-        Err(exit) => return exit,
-    };
+pub fn run(args: &StopArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let stopped = stop_line(&args.line, interrupt)?;
     let printed = if args.json { stopped.print_json(out) } else { stopped.print(out) };
-    printed.map_or_else(Exit::from, |()| stopped.exit())
+    printed?;
+    Ok(stopped.exit())
 }
 
 /// Stops what else is on a line, after its own unit was stopped, and says on standard error what became of it. Nobody else there is
@@ -62,20 +56,22 @@ fn stop_line(line: &LineArgs, interrupt: &Interrupt) -> Result<LineStop, Exit> {
     };
     let open = |family| {
         let options = SessionOptions { addresses: asked, poll: PollRate::Off, family };
-        session::open(&target, options, SystemClock::shared(), None).map_err(|error| {
-            say(error.to_string());
-            Exit::NoLink
-        })
+        session::open(&target, options, SystemClock::shared(), None)
+            .map_err(|error| Exit::NoLink.saying(error))
     };
     let on_can = matches!(target, ConnectTarget::Can { .. });
     let is_unknown = line.family == FamilyChoice::AUTO && target.family() == FamilyChoice::AUTO && !on_can;
     let mut session = open(line.family)?;
     let mut found = stop_and_find(&session, on_can, interrupt)?;
-    if found.is_err() && is_unknown && asked == Addresses::Scan {
-        // A line that is not known to have a Motion Mind is not searched for all 98 of them when it is opened.
-        drop(session);
-        session = open(FamilyChoice::of(brushwork_motion_mind_client::MOTION_MIND))?;
-        found = stop_and_find(&session, on_can, interrupt)?;
+    if is_unknown && asked == Addresses::Scan {
+        // When the line was opened it was not searched for all units that these families can have on it.
+        for family in family::families().iter().filter(|family| family.stopped_addresses().is_empty()) {
+            if found.is_err() {
+                drop(session);
+                session = open(FamilyChoice::of(family.family()))?;
+                found = stop_and_find(&session, on_can, interrupt)?;
+            }
+        }
     }
     let (units, first) = found.map_err(|sentence| {
         say(sentence);
@@ -87,7 +83,7 @@ fn stop_line(line: &LineArgs, interrupt: &Interrupt) -> Result<LineStop, Exit> {
     if on_can {
         session.device.stop_all();
     }
-    let report = wait_for_report_of(&session.device)?;
+    let report = wait_for_report(&session.device)?;
     let latency = first.as_ref().unwrap_or(&report).latency();
     Ok(LineStop { units, report, asked, latency })
 }
@@ -118,11 +114,7 @@ fn stop_and_find(session: &Session, on_can: bool, interrupt: &Interrupt) -> Resu
 }
 
 /// Waits for the stop that was asked for; a signal does not cut this short, since it ends by itself.
-pub fn wait_for_report(client: &Client) -> Result<StopReport, Exit> {
-    wait_for_report_of(client.device())
-}
-
-fn wait_for_report_of(device: &DeviceHandle) -> Result<StopReport, Exit> {
+pub fn wait_for_report(device: &DeviceHandle) -> Result<StopReport, Exit> {
     let deadline = Instant::now() + STOP_LIMIT;
     let deaf = Interrupt::default();
     while Instant::now() < deadline {
@@ -130,11 +122,10 @@ fn wait_for_report_of(device: &DeviceHandle) -> Result<StopReport, Exit> {
             return Ok(report);
         }
     }
-    say(format!(
+    Err(Exit::Refused.saying(format!(
         "Stop was sent, but the controller did not confirm it within {} s. Cut the motor power.",
         STOP_LIMIT.as_secs()
-    ));
-    Err(Exit::Refused)
+    )))
 }
 
 /// Says what is not plainly stopped.
@@ -166,15 +157,24 @@ impl LineStop {
         }
     }
 
-    /// The addresses at which nobody answered: of those that were asked for, or of all that packet serial has.
+    fn is_of_nodes(&self) -> bool {
+        self.units.iter().any(Identity::is_node)
+    }
+
+    /// The addresses that the stop was written to, where they were not asked for.
+    fn written_to(&self) -> Vec<u8> {
+        let unit = self.units.first().filter(|_| !self.is_of_nodes());
+        unit.map_or_else(Vec::new, |unit| family::of(unit.family).stopped_addresses())
+    }
+
+    /// The addresses at which nobody answered: of those that were asked for, or of all that the stop was written to.
     fn silent(&self) -> Vec<u8> {
         let answered = |address: &u8| {
             self.units.iter().any(|unit| unit.address == *address || unit.also_answers.contains(address))
         };
         let asked: Vec<u8> = match self.asked {
             Addresses::These(set) => set.iter().collect(),
-            _ if self.units.iter().any(|unit| is_motion_mind(unit) || unit.is_node()) => Vec::new(),
-            _ => packet_serial::Address::ALL.map(packet_serial::Address::get).to_vec(),
+            _ => self.written_to(),
         };
         asked.into_iter().filter(|address| !answered(address)).collect()
     }
@@ -199,18 +199,16 @@ impl LineStop {
     fn warnings(&self) -> Vec<String> {
         let mut lines = warnings_of(&self.report, &self.units);
         let silent = self.silent();
-        let is_node = self.units.iter().any(Identity::is_node);
-        let is_motion_mind = self.units.iter().any(is_motion_mind);
         match self.asked {
             Addresses::These(_) if !silent.is_empty() => lines.push(format!(
                 "Nobody answered at {}: the stop was written there too, and whether it was heard is not known. If a motor runs there, cut its power.",
                 in_words(&silent)
             )),
             Addresses::These(_) => {}
-            _ if is_node => lines.push(
+            _ if self.is_of_nodes() => lines.push(
                 "Nodes that do not answer as a controller that this program knows were told nothing.".to_owned(),
             ),
-            _ if is_motion_mind => lines.push(
+            _ if self.written_to().is_empty() => lines.push(
                 "Units that do not answer were told to stop by a broadcast, which nobody confirms.".to_owned(),
             ),
             _ if !silent.is_empty() => lines.push(format!(
@@ -223,9 +221,8 @@ impl LineStop {
     }
 
     fn print(&self, out: &mut Output) -> Result<(), OutputError> {
-        for unit in self.report.units.iter().filter(|unit| unit.confirmed) {
-            out.line(self.sentence(unit))?;
-        }
+        let confirmed = self.report.units.iter().filter(|unit| unit.confirmed);
+        out.lines(confirmed.map(|unit| self.sentence(unit)))?;
         self.warnings().into_iter().for_each(say);
         Ok(())
     }
@@ -264,9 +261,9 @@ fn place(units: &[Identity], address: u8) -> String {
 
 /// Addresses with runs drawn together: "0x81, 0x83 to 0x87".
 fn in_words(addresses: &[u8]) -> String {
-    let name = |address: u8| match motion_mind::Address::unit(address) {
-        Some(_) => address.to_string(),
-        None => format!("0x{address:02X}"),
+    let name = |address: u8| {
+        let family = families().iter().find(|family| family.has_address(address));
+        family.map_or_else(|| format!("0x{address:02X}"), |family| family.address_text(address))
     };
     let runs = addresses.chunk_by(|left, right| left + 1 == *right);
     let words = runs.map(|run| match run {
@@ -282,6 +279,10 @@ mod tests {
 
     #[test]
     fn runs_of_addresses_are_drawn_together() {
+        brushwork_link::install(&[
+            &brushwork_mcp_client::McpDriver,
+            &brushwork_motion_mind_client::MotionMindDriver,
+        ]);
         assert_eq!(in_words(&[0x80]), "0x80");
         assert_eq!(in_words(&[0x80, 0x82, 0x83]), "0x80, 0x82, 0x83");
         assert_eq!(in_words(&[0x81, 0x83, 0x84, 0x85, 0x87]), "0x81, 0x83 to 0x85, 0x87");

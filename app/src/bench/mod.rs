@@ -26,7 +26,6 @@ use arguments::{BenchArg, BenchArgs};
 use brushwork_cli::interrupt::Interrupt;
 use brushwork_cli::output::{Output, OutputError, say};
 use brushwork_cli::{Exit, Tool};
-use clap::{Args as _, Command, FromArgMatches as _};
 use figure::{Figure, MARKS};
 
 /// How long and how often to measure.
@@ -56,9 +55,6 @@ const FULL: Effort = Effort {
     mcl_rounds: 9,
 };
 
-/// Its name on the command line.
-const NAME: &str = "bench";
-
 /// A look.
 const QUICK: Effort =
     Effort { rounds: 3, round: Duration::from_secs(1), stops: 40, sim_rounds: 6, frames: 40, mcl_rounds: 3 };
@@ -66,14 +62,12 @@ const QUICK: Effort =
 /// `brushwork bench`.
 #[must_use]
 pub fn tool() -> Tool {
-    let about = "Measure link use, stop latency, the simulator and the window";
-    Tool {
-        command: BenchArgs::augment_args(Command::new(NAME).about(about)),
-        run: |arguments, out, interrupt| match BenchArgs::from_arg_matches(arguments) {
-            Ok(args) => run(&args, out, interrupt),
-            Err(error) => error.exit(),
-        },
-    }
+    Tool::new(
+        "bench",
+        50,
+        "Measure link use, stop latency, the simulator and the window",
+        |args, out, interrupt| Ok(run(args, out, interrupt)),
+    )
 }
 
 /// Measures, prints, and fails when a promise is not kept.

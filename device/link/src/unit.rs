@@ -3,6 +3,7 @@
 //! The families' own types are narrower; these are what settings, profiles and screens carry.
 
 use crate::family::{FamilyRef, families};
+use brushwork_values::parse_byte;
 use serde::{Serialize, Serializer};
 use std::fmt;
 
@@ -41,21 +42,14 @@ impl UnitAddress {
     /// The address as the family writes it in files and on the command line.
     #[must_use]
     pub fn parse(family: FamilyRef, text: &str) -> Option<Self> {
-        Self::new(family, number_of(text)?)
+        Self::new(family, parse_byte(text)?)
     }
 }
 
 /// The number of a unit as it is typed, decimal or hexadecimal, if a unit of any family can have it.
 #[must_use]
 pub fn parse_number(text: &str) -> Option<u8> {
-    number_of(text).filter(|number| families().iter().any(|family| family.has_address(*number)))
-}
-
-fn number_of(text: &str) -> Option<u8> {
-    match text.strip_prefix("0x").or(text.strip_prefix("0X")) {
-        Some(hex) => u8::from_str_radix(hex, 16).ok(),
-        None => text.parse().ok(),
-    }
+    parse_byte(text).filter(|number| families().iter().any(|family| family.has_address(*number)))
 }
 
 impl Serialize for UnitAddress {

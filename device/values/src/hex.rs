@@ -13,3 +13,11 @@ pub fn hex(bytes: &[u8]) -> String {
     }
     text
 }
+
+/// Reads a number of one byte, in hexadecimal with 0x or in decimal.
+#[must_use]
+pub fn parse_byte(text: &str) -> Option<u8> {
+    let digits = text.trim();
+    let hexadecimal = digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X"));
+    hexadecimal.map_or_else(|| digits.parse().ok(), |digits| u8::from_str_radix(digits, 16).ok())
+}

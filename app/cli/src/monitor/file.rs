@@ -8,22 +8,20 @@ use std::path::Path;
 use std::time::Duration;
 
 use super::args::MonitorArgs;
-use super::follower::{Follower, follower};
+use super::chosen::follower;
+use super::follower::Follower;
 use super::record::{Direction, Record, print};
 use crate::exit::Exit;
-use crate::output::{Output, say};
+use crate::output::Output;
 
 /// Prints what the requests in the file mean.
 pub fn run(args: &MonitorArgs, path: &Path, out: &mut Output) -> Result<(), Exit> {
     let name = if is_standard_input(path) { "standard input".into() } else { path.display().to_string() };
-    let failed = |sentence: String| {
-        say(format!("Could not decode {name}: {sentence}."));
-        Exit::Failed
-    };
+    let failed = |sentence: String| Exit::Failed.saying(format!("Could not decode {name}: {sentence}."));
     let text = read(path).map_err(|error| failed(error.to_string()))?;
     let lines = parse(&text).map_err(|error| failed(error.to_string()))?;
     let mut decoder = follower(args)?;
-    for record in decode(&mut decoder, &lines) {
+    for record in decode(decoder.as_mut(), &lines) {
         print(args, &record, out)?;
     }
     Ok(())
@@ -89,7 +87,7 @@ fn take_token(digits: &str, bytes: &mut Vec<u8>) -> Result<(), (usize, String, &
     Ok(())
 }
 
-fn decode(decoder: &mut Follower, lines: &[Vec<u8>]) -> Vec<Record> {
+fn decode(decoder: &mut dyn Follower, lines: &[Vec<u8>]) -> Vec<Record> {
     const PAUSE: Duration = Duration::from_secs(1);
     let mut now = Duration::ZERO;
     let mut records = Vec::new();
@@ -110,7 +108,7 @@ mod tests {
     use super::*;
 
     fn told(text: &str) -> Vec<String> {
-        let mut decoder = Follower::new(false, None);
+        let mut decoder = crate::mcp::decoder::Decoder::new(None);
         decode(&mut decoder, &parse(text).unwrap()).into_iter().map(|record| record.text).collect()
     }
 

@@ -30,6 +30,13 @@ pub enum Direction {
     FromController,
 }
 
+impl Record {
+    /// Of a live line.
+    pub fn new(at: Duration, direction: Direction, bytes: Vec<u8>, text: String) -> Self {
+        Self { at: Some(at), direction, bytes, text }
+    }
+}
+
 /// Prints a record as the arguments ask for it.
 pub fn print(args: &MonitorArgs, record: &Record, out: &mut Output) -> Result<(), OutputError> {
     if args.json {

@@ -11,12 +11,12 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use brushwork_link::transport::{Transport, TransportError};
-use brushwork_plant::server;
-use brushwork_plant::server::{Endpoint, Heard, Line};
+use brushwork_plant::server::{self, Endpoint, Heard, Line};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
 use super::args::MonitorArgs;
-use super::follower::{Follower, follower};
+use super::chosen::follower;
+use super::follower::Follower;
 use super::record::{Record, print};
 use crate::client;
 use crate::exit::Exit;
@@ -30,6 +30,8 @@ const QUEUE: usize = 4096;
 const LOOK: Duration = Duration::from_millis(1);
 /// How often the printing thread looks at signals.
 const WATCH: Duration = Duration::from_millis(20);
+/// The pause after which what a client left half sent is over: twice what a controller needs.
+const GAP: Duration = Duration::from_millis(20);
 /// How long a stop at the end may take to be confirmed.
 const STOP_LIMIT: Duration = Duration::from_millis(250);
 
@@ -45,10 +47,8 @@ enum News {
 pub fn run(args: &MonitorArgs, out: &mut Output, interrupt: &Interrupt) -> Result<(), Exit> {
     let endpoint = endpoint(args)?;
     let target = client::target(&args.connect)?;
-    let (transport, simulation) = session::connect(&target, None).map_err(|error| {
-        say(error.to_string());
-        Exit::NoLink
-    })?;
+    let (transport, simulation) =
+        session::connect(&target, None).map_err(|error| Exit::NoLink.saying(error))?;
     let (line, place) = server::open(&endpoint).map_err(|error| failed(&error.to_string()))?;
     let (news, received) = bounded(QUEUE);
     let stop = Arc::new(AtomicBool::new(false));
@@ -73,17 +73,15 @@ pub fn run(args: &MonitorArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
     drop(simulation);
     match (printed, carried) {
         (_, Err(_)) => Err(failed("the thread that carries the bytes failed")),
-        (Ok(()), Ok(Err(lost))) => {
-            say(format!("Lost the link to {name}: {lost}. Check the cable and start the monitor again."));
-            Err(Exit::NoLink)
-        }
+        (Ok(()), Ok(Err(lost))) => Err(Exit::NoLink.saying(format!(
+            "Lost the link to {name}: {lost}. Check the cable and start the monitor again."
+        ))),
         (printed, Ok(_)) => printed,
     }
 }
 
 fn failed(what: &str) -> Exit {
-    say(format!("Could not stand between another program and the controller: {what}."));
-    Exit::Failed
+    Exit::Failed.saying(format!("Could not stand between another program and the controller: {what}."))
 }
 
 fn endpoint(args: &MonitorArgs) -> Result<Endpoint, Exit> {
@@ -125,7 +123,7 @@ fn show(
 struct Tap {
     line: Box<dyn Line>,
     transport: Box<dyn Transport>,
-    decoder: Follower,
+    decoder: Box<dyn Follower>,
     news: Sender<News>,
     left_out: u64,
     stop: Arc<AtomicBool>,
@@ -137,7 +135,7 @@ impl Tap {
         while !self.stop.load(Ordering::SeqCst) {
             self.turn()?;
         }
-        stop_moved(self.transport.as_mut(), &self.decoder)
+        stop_moved(self.transport.as_mut(), self.decoder.as_ref())
     }
 
     fn turn(&mut self) -> Result<(), TransportError> {
@@ -195,12 +193,12 @@ impl Tap {
 }
 
 /// Stops the units that the client had told to move.
-fn stop_moved(transport: &mut dyn Transport, follower: &Follower) -> Result<(), TransportError> {
+fn stop_moved(transport: &mut dyn Transport, follower: &dyn Follower) -> Result<(), TransportError> {
     for stop in follower.stops() {
         let mut confirmed = false;
         for bytes in &stop.writes {
             // What the client left half sent must be over first: the controller drops it after a pause.
-            thread::sleep(follower.gap());
+            thread::sleep(GAP);
             transport.discard_input()?;
             transport.write(bytes)?;
             confirmed |= answer_within(transport, STOP_LIMIT)?.starts_with(stop.acknowledge);

@@ -18,16 +18,16 @@ pub fn agreed(question: &str, yes: bool, controller: &Controller<'_>) -> Result<
         return Ok(());
     }
     if !io::stdin().is_terminal() {
-        say(format!("{question} Nobody can be asked here: give --yes to do it. Nothing was written."));
-        return Err(Exit::Refused);
+        return Err(Exit::Refused.saying(format!(
+            "{question} Nobody can be asked here: give --yes to do it. Nothing was written."
+        )));
     }
     let _ = write!(io::stderr(), "{question} [y/N] ");
     let breathe = || controller.breathe().inspect_err(|_| say("\nNothing was written."));
     if is_yes(&line(&breathe)?) {
         return Ok(());
     }
-    say("Nothing was written.");
-    Err(Exit::Refused)
+    Err(Exit::Refused.saying("Nothing was written."))
 }
 
 /// One line from the terminal. It is read on a thread of its own, since reading cannot be called off; `breathe` is called
@@ -44,8 +44,7 @@ pub fn line(breathe: &dyn Fn() -> Result<(), Exit>) -> Result<String, Exit> {
         let _ = sender.send(line);
     });
     if let Err(error) = reader {
-        say(format!("Could not ask: {error}. Nothing was written."));
-        return Err(Exit::Failed);
+        return Err(Exit::Failed.saying(format!("Could not ask: {error}. Nothing was written.")));
     }
     loop {
         match receiver.try_recv() {

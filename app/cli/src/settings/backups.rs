@@ -50,8 +50,7 @@ pub fn restore(args: &RestoreArgs, out: &mut Output, interrupt: &Interrupt) -> R
         None => {
             let newest = Store::of_user().backups(Some(controller.unit())).into_iter().next();
             newest.ok_or_else(|| {
-                say("There is no backup of this controller yet. `brushwork settings backups` lists those of others.");
-                Exit::Refused
+                Exit::Refused.saying("There is no backup of this controller yet. `brushwork settings backups` lists those of others.")
             })?
         }
     };
@@ -68,13 +67,10 @@ pub fn find(name: &str) -> Result<Backup, Exit> {
     match (all.iter().find(|backup| backup.name == name), found.next(), found.next()) {
         (Some(exact), ..) => Ok(exact.clone()),
         (None, Some(only), None) => Ok(only.clone()),
-        (None, None, _) => {
-            say(format!("There is no backup {name}. `brushwork settings backups` lists them."));
-            Err(Exit::Refused)
-        }
-        (None, Some(_), Some(_)) => {
-            say(format!("More than one backup begins with {name}. `brushwork settings backups` lists them."));
-            Err(Exit::Refused)
-        }
+        (None, None, _) => Err(Exit::Refused
+            .saying(format!("There is no backup {name}. `brushwork settings backups` lists them."))),
+        (None, Some(_), Some(_)) => Err(Exit::Refused.saying(format!(
+            "More than one backup begins with {name}. `brushwork settings backups` lists them."
+        ))),
     }
 }

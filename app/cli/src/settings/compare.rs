@@ -35,10 +35,7 @@ pub fn run(args: &CompareArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
 }
 
 fn side(name: &SideName, controller: Option<&Controller<'_>>, other: Option<Side>) -> Result<Side, Exit> {
-    let refuse = |why: &str| {
-        say(why);
-        Exit::Refused
-    };
+    let refuse = |why: &str| Exit::Refused.saying(why);
     match (name, controller) {
         (SideName::File(path), _) => Ok(Side::new(path.display().to_string(), opened(profile::open(path)?))),
         (SideName::Backup(Some(name)), _) => backup(name),
@@ -87,10 +84,7 @@ fn defaults_of(profile: &Profile) -> Profile {
 fn backup(name: &str) -> Result<Side, Exit> {
     let backup = backups::find(name)?;
     let title = format!("backup {}", backup.name);
-    let opened = backup.open().map_err(|error| {
-        say(error.to_string());
-        Exit::NotTaken
-    })?;
+    let opened = backup.open().map_err(|error| Exit::NotTaken.saying(error))?;
     Ok(Side::new(title, opened.profile))
 }
 

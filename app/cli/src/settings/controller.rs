@@ -4,8 +4,6 @@ use std::io::{self, IsTerminal as _, Write as _};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use brushwork_link::Failure;
-use brushwork_link::Stream;
 use brushwork_link::UnitAddress;
 use brushwork_link::device::{
     DeviceHandle, Event, Identity, Job, JobContext, JobEnding, JobReport, JobTicket, PollRate,
@@ -14,6 +12,7 @@ use brushwork_link::settings::{
     Keeper, Profile, ReadReport, SettingsImage, SettingsTable, Subject, WriteOptions,
 };
 use brushwork_link::transport::list_ports;
+use brushwork_link::{Failure, Stream};
 
 use super::cut_short;
 use crate::client::Client;
@@ -21,8 +20,7 @@ use crate::exit::Exit;
 use crate::interrupt::{Interrupt, exit_of_interruption};
 use crate::output::say;
 use crate::shared_args::ConnectArgs;
-use brushwork_core::keep;
-use brushwork_core::keep::{Keeping, Store, UnitId};
+use brushwork_core::keep::{self, Keeping, Store, UnitId};
 use brushwork_core::session::Simulation;
 use brushwork_core::settings::{Act, Done};
 
@@ -55,13 +53,12 @@ impl<'i> Controller<'i> {
         let client = Client::connect(args, PollRate::Off, interrupt)?;
         let version = &client.identity.version_text;
         let Some(subject) = client.identity.subject() else {
-            say(format!(
+            return Err(Exit::Refused.saying(format!(
                 "The unit at {} on {} calls itself \"{version}\", which is no MCP, RoboClaw or Motion Mind: its \
                  settings are not known.",
                 client.identity.place(),
                 client.identity.port
-            ));
-            return Err(Exit::Refused);
+            )));
         };
         // Without a list of ports a unit is told by the name of its port.
         let unit = UnitId::new(&client.identity, &list_ports().unwrap_or_default());
@@ -158,10 +155,7 @@ impl<'i> Controller<'i> {
         let report = match finished.value {
             Ok(Done::Read(report)) => *report,
             Ok(_) => return Err(Exit::Failed),
-            Err(failure) => {
-                say(failure.to_string());
-                return Err(Exit::NoLink);
-            }
+            Err(failure) => return Err(Exit::NoLink.saying(failure)),
         };
         for unread in &report.failures {
             say(format!("Not read: {}. {}", unread.keys.join(", "), unread.failure));
@@ -191,10 +185,11 @@ impl<'i> Controller<'i> {
     ) -> Result<Finished<T>, Exit> {
         // What came of an act that failed is a result too, so that it comes back after an interruption.
         let job = Job::new(name, limit, move |wire| Ok(work(wire)));
-        let ticket = self.client.device().start(job).map_err(|refused| {
-            say(format!("Could not {name}: {refused}"));
-            Exit::Refused
-        })?;
+        let ticket = self
+            .client
+            .device()
+            .start(job)
+            .map_err(|refused| Exit::Refused.saying(format!("Could not {name}: {refused}")))?;
         let report = self.wait_for_end(&ticket, limit)?;
         let broken = explain(&report, self.interrupt.is_raised());
         match (ticket.take(), broken) {
@@ -247,8 +242,8 @@ impl<'i> Controller<'i> {
                 _ => {}
             }
         }
-        say(format!("Could not {}: the work did not end in time.", ticket.name()));
-        Err(if cancelled { Exit::Interrupted } else { Exit::Failed })
+        let exit = if cancelled { Exit::Interrupted } else { Exit::Failed };
+        Err(exit.saying(format!("Could not {}: the work did not end in time.", ticket.name())))
     }
 }
 
@@ -258,17 +253,13 @@ fn explain(report: &JobReport, by_signal: bool) -> Option<Exit> {
     match &report.ending {
         JobEnding::Done(()) => None,
         JobEnding::Interrupted(cause) => {
-            say(format!("Could not {name} to the end: {cause}."));
-            Some(exit_of_interruption(*cause, by_signal))
+            let exit = exit_of_interruption(*cause, by_signal);
+            Some(exit.saying(format!("Could not {name} to the end: {cause}.")))
         }
-        JobEnding::Failed(failure) => {
-            say(failure.to_string());
-            Some(Exit::Failed)
-        }
-        JobEnding::Panicked(word) => {
-            say(format!("Could not {name}: an internal error ({word}). Please report it."));
-            Some(Exit::Failed)
-        }
+        JobEnding::Failed(failure) => Some(Exit::Failed.saying(failure)),
+        JobEnding::Panicked(word) => Some(
+            Exit::Failed.saying(format!("Could not {name}: an internal error ({word}). Please report it.")),
+        ),
     }
 }
 

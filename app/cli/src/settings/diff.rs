@@ -34,8 +34,7 @@ pub fn run(args: &DiffArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
         sides.insert(0, Side::of_controller(&Controller::connect(&args.connect, interrupt)?)?);
     }
     let [left, right] = &sides[..] else {
-        say("One or two profiles can be compared.");
-        return Err(Exit::Failed);
+        return Err(Exit::Failed.saying("One or two profiles can be compared."));
     };
     compare(left, right, args.json, out)
 }
@@ -94,9 +93,7 @@ fn print(left: &Side, right: &Side, differences: &[Change], out: &mut Output) ->
     }
     let count = counted(differences.len());
     out.line(format!("{count} with different values, {} -> {}:", left.name, right.name))?;
-    for line in change_lines(differences) {
-        out.line(line)?;
-    }
+    out.lines(change_lines(differences))?;
     Ok(())
 }
 

@@ -70,6 +70,7 @@ mod tests {
     use super::*;
 
     fn table() -> SettingsTable {
+        brushwork_link::register(&brushwork_mcp_client::McpDriver);
         let model = models::lookup("mcp266").expect("it is in the list");
         brushwork_link::register(&brushwork_mcp_client::McpDriver);
         SettingsTable::new(brushwork_mcp_client::subject(model, Generation::Gen1))

@@ -6,7 +6,7 @@ use serde_json::json;
 use super::args::MemoryArgs;
 use super::ask;
 use super::controller::Controller;
-use super::review::{Change, change_lines, changes};
+use super::review::{Change, change_lines, changes, tell};
 use crate::exit::Exit;
 use crate::interrupt::Interrupt;
 use crate::output::{Output, OutputError, say};
@@ -69,8 +69,8 @@ pub fn save_to_eeprom(
         Ok(Done::Saved(report)) => *report,
         Ok(_) => return Err(Exit::Failed),
         Err(failure) => {
-            say(format!("Nothing was saved. {failure}"));
-            return Err(finished.broken.unwrap_or(Exit::Refused));
+            let exit = finished.broken.unwrap_or(Exit::Refused);
+            return Err(exit.saying(format!("Nothing was saved. {failure}")));
         }
     };
     let exit = match report.verdict {
@@ -97,10 +97,7 @@ pub fn defaults(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> R
     let report = match finished.value {
         Ok(Done::Restored(report)) => *report,
         Ok(_) => return Err(Exit::Failed),
-        Err(failure) => {
-            say(failure.to_string());
-            return Err(finished.broken.unwrap_or(Exit::Refused));
-        }
+        Err(failure) => return Err(finished.broken.unwrap_or(Exit::Refused).saying(failure)),
     };
     let others = tell_defaults(args, &controller, &list, &report, out)?;
     Ok(finished.broken.unwrap_or(if others == 0 { Exit::Done } else { Exit::NotTaken }))
@@ -168,10 +165,7 @@ pub fn reload(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Res
     let report = match finished.value {
         Ok(Done::Reloaded(report)) => *report,
         Ok(_) => return Err(Exit::Failed),
-        Err(failure) => {
-            say(failure.to_string());
-            return Err(finished.broken.unwrap_or(Exit::Refused));
-        }
+        Err(failure) => return Err(finished.broken.unwrap_or(Exit::Refused).saying(failure)),
     };
     let came_back = changes(&ram.table, &ram.image, &merged(&ram.image, &report.image));
     if args.json {
@@ -179,9 +173,7 @@ pub fn reload(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Res
     } else {
         let count = counted(came_back.len());
         out.line(format!("EEPROM is loaded and read: {count} came back otherwise."))?;
-        for line in change_lines(&came_back) {
-            out.line(line)?;
-        }
+        out.lines(change_lines(&came_back))?;
     }
     Ok(finished.broken.unwrap_or(if report.failures.is_empty() { Exit::Done } else { Exit::NotTaken }))
 }
@@ -224,12 +216,5 @@ fn show(
     } else {
         lines.push(format!("  ({})", counted(list.len())));
     }
-    for line in lines {
-        if !args.json {
-            out.line(line)?;
-        } else if !args.yes {
-            say(line);
-        }
-    }
-    Ok(())
+    tell(lines, args.json, !args.yes, out)
 }

@@ -26,8 +26,8 @@ use super::output::Output;
 use args::{SettingsAction, SettingsArgs};
 
 /// Does what the arguments ask for.
-pub fn run(args: &SettingsArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
-    let done = match &args.action {
+pub fn run(args: &SettingsArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    match &args.action {
         SettingsAction::Read(args) => read::run(args, out, interrupt),
         SettingsAction::Write(args) => write::run(args, out, interrupt),
         SettingsAction::Import(args) => write::import(args, out, interrupt),
@@ -42,6 +42,5 @@ pub fn run(args: &SettingsArgs, out: &mut Output, interrupt: &Interrupt) -> Exit
         SettingsAction::CopyMotor(args) => copy::run(args, out, interrupt),
         SettingsAction::Unfinished(args) => unfinished::run(args, out, interrupt),
         SettingsAction::Reference(args) => read::reference(args, out),
-    };
-    done.unwrap_or_else(|exit| exit)
+    }
 }

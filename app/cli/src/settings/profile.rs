@@ -21,8 +21,7 @@ pub fn export(args: &ExportArgs, out: &mut Output, interrupt: &Interrupt) -> Res
     let profile = controller.profile_of(&report, report.image.clone());
     file.write(profile.to_json().as_bytes()).map_err(|error| match error {
         NewFileError::System { path, source } => {
-            say(ProfileFileError::Write { path, source }.to_string());
-            Exit::Failed
+            Exit::Failed.saying(ProfileFileError::Write { path, source }.to_string())
         }
         refused => refused.into(),
     })?;
@@ -37,8 +36,5 @@ pub fn export(args: &ExportArgs, out: &mut Output, interrupt: &Interrupt) -> Res
 
 /// The profile in a file; what is wrong with it is said on standard error.
 pub fn open(path: &Path) -> Result<OpenedProfile, Exit> {
-    Profile::open(path, Strictness::Refuse).map_err(|error| {
-        say(error.to_string());
-        Exit::NotTaken
-    })
+    Profile::open(path, Strictness::Refuse).map_err(|error| Exit::NotTaken.saying(error))
 }

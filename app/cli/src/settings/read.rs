@@ -9,6 +9,7 @@ use super::args::{ReadArgs, ReferenceArgs};
 use super::controller::Controller;
 use super::keys;
 use crate::exit::Exit;
+use crate::family;
 use crate::interrupt::Interrupt;
 use crate::output::{Output, say};
 
@@ -17,26 +18,24 @@ pub fn run(args: &ReadArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
     let controller = Controller::connect(&args.connect, interrupt)?;
     let report = controller.read()?;
     if let Some(problem) = keys::unmatched(&report.table, &args.keys) {
-        say(problem);
-        return Err(Exit::NotTaken);
+        return Err(Exit::NotTaken.saying(problem));
     }
     let mut settings = list(&report.table, &report.image, controller.identity().simulated);
     if !args.keys.is_empty() {
         settings.retain(|setting| args.keys.iter().any(|start| keys::begins_with(&setting.key, start)));
     }
-    let conflicts = brushwork_mcp_client::settings::conflicts(&report.table, &|key| report.image.get(key));
+    let family = family::of(controller.identity().family);
+    let conflicts = family.conflicts(&report.table, &report.image);
     if args.json {
         out.json(&json!({
             "identity": controller.identity(),
             "settings": settings,
             "failures": report.failures,
-            "conflicts": conflicts,
+            "conflicts": conflicts.iter().map(|conflict| &conflict.data).collect::<Vec<_>>(),
         }))?;
     } else {
         out.line(list_text(&settings))?;
-        for line in legend(&settings) {
-            out.line(line)?;
-        }
+        out.lines(legend(&settings))?;
         for conflict in conflicts {
             say(format!("Warning: {}", conflict.sentence));
         }
@@ -44,12 +43,10 @@ pub fn run(args: &ReadArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
     Ok(if report.failures.is_empty() { Exit::Done } else { Exit::Failed })
 }
 
-/// Prints the reference page; no controller is needed.
+/// Prints the reference page of the first family that has one; no controller is needed.
 pub fn reference(args: &ReferenceArgs, out: &mut Output) -> Result<Exit, Exit> {
-    if args.json {
-        out.json(&brushwork_mcp_client::settings::reference())?;
-    } else {
-        out.line(brushwork_mcp_client::settings::reference_text().trim_end())?;
+    if let Some(page) = family::families().iter().find_map(|family| family.settings_reference()) {
+        page.print(args.json, out)?;
     }
     Ok(Exit::Done)
 }

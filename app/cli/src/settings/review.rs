@@ -4,7 +4,10 @@ use brushwork_link::UnitAddress;
 use brushwork_link::settings::{
     Plan, Refusal, SettingValue, SettingsImage, SettingsTable, WriteOptions, diff, plan,
 };
+use brushwork_values::hex;
 use serde::Serialize;
+
+use crate::output::{Output, OutputError, say};
 
 /// What a write will do.
 #[derive(Serialize)]
@@ -92,6 +95,16 @@ impl Review {
     }
 }
 
+/// Lines before anything is done: on standard output, or beside it where that carries JSON and somebody is asked.
+pub fn tell(lines: Vec<String>, json: bool, is_asked: bool, out: &mut Output) -> Result<(), OutputError> {
+    match (json, is_asked) {
+        (false, _) => out.lines(lines)?,
+        (true, true) => lines.into_iter().for_each(say),
+        (true, false) => {}
+    }
+    Ok(())
+}
+
 /// What differs between two images, both sides with their units.
 pub fn changes(table: &SettingsTable, before: &SettingsImage, after: &SettingsImage) -> Vec<Change> {
     let change = |difference: brushwork_link::settings::Difference| {
@@ -127,13 +140,8 @@ fn commands(table: &SettingsTable, plan: &Plan, address: UnitAddress) -> Vec<Pla
     let generation = table.subject().generation;
     let planned = |step: &brushwork_link::settings::Step| PlannedCommand {
         text: step.words(address, generation),
-        bytes: step.bytes(address, generation).map_or_else(|error| error, |bytes| hexadecimal(&bytes)),
+        bytes: step.bytes(address, generation).map_or_else(|error| error, |bytes| hex(&bytes)),
         keys: step.keys.clone(),
     };
     plan.steps.iter().map(planned).collect()
-}
-
-fn hexadecimal(bytes: &[u8]) -> String {
-    let bytes: Vec<String> = bytes.iter().map(|byte| format!("{byte:02X}")).collect();
-    bytes.join(" ")
 }

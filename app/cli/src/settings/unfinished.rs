@@ -9,7 +9,7 @@ use super::cut_short::journals;
 use super::write::{self, Wanted};
 use crate::exit::Exit;
 use crate::interrupt::Interrupt;
-use crate::output::{Output, say};
+use crate::output::Output;
 use brushwork_core::keep::{OpenJournal, Store};
 use brushwork_core::settings::remedy;
 
@@ -38,10 +38,7 @@ pub fn run(args: &UnfinishedArgs, out: &mut Output, interrupt: &Interrupt) -> Re
 
 fn close(journals: &[OpenJournal]) -> Result<Exit, Exit> {
     for open in journals {
-        Store::of_user().close_journal(&open.path).map_err(|error| {
-            say(error.to_string());
-            Exit::Failed
-        })?;
+        Store::of_user().close_journal(&open.path).map_err(|error| Exit::Failed.saying(error))?;
     }
     Ok(Exit::Done)
 }
@@ -70,9 +67,7 @@ fn show(
     }
     for aftermath in aftermaths {
         out.line(aftermath.headline())?;
-        for sentence in aftermath.sentences(&ram.table) {
-            out.line(format!("  {sentence}"))?;
-        }
+        out.lines(aftermath.sentences(&ram.table).iter().map(|sentence| format!("  {sentence}")))?;
     }
     Ok(())
 }

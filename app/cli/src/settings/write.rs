@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use super::args::{Assignment, ImportArgs, UnfinishedArgs, WriteArgs, WriteHow};
 use super::ask;
 use super::controller::Controller;
-use super::review::Review;
+use super::review::{self, Review};
 use super::{keys, memory, profile, read};
 use crate::exit::Exit;
 use crate::interrupt::Interrupt;
@@ -151,8 +151,10 @@ fn wanted(
         let (profile, upgraded) = upgraded(controller, ram, opened, how)?;
         let asked = profile.changes_for(&ram.table, &ram.image, controller.identity().simulated);
         let asked = asked.map_err(|error| {
-            say(format!("The profile does not fit {}, nothing was changed:\n{error}", controller.describe()));
-            Exit::NotTaken
+            Exit::NotTaken.saying(format!(
+                "The profile does not fit {}, nothing was changed:\n{error}",
+                controller.describe()
+            ))
         })?;
         let left_out_lines = left_out_lines(controller, ram, &profile);
         let changes = only(&ram.table, &asked.wanted, &how.only)?;
@@ -168,8 +170,7 @@ fn wanted(
 /// The changes whose keys begin with one of `starts`; all of them where there are none.
 fn only(table: &SettingsTable, changes: &SettingsImage, starts: &[String]) -> Result<SettingsImage, Exit> {
     if let Some(problem) = keys::unmatched(table, starts) {
-        say(problem);
-        return Err(Exit::NotTaken);
+        return Err(Exit::NotTaken.saying(problem));
     }
     let is_meant = |key: &str| starts.is_empty() || starts.iter().any(|start| keys::begins_with(key, start));
     Ok(changes.iter().filter(|(key, _)| is_meant(key)).map(|(key, value)| (key.to_owned(), value)).collect())
@@ -235,14 +236,7 @@ fn show(review: &Review, wanted: &Wanted, how: &WriteHow, out: &mut Output) -> R
         lines.push("Commands that would be sent:".to_owned());
         lines.extend(review.command_lines());
     }
-    for line in lines {
-        if !how.json {
-            out.line(line)?;
-        } else if !how.yes && !how.dry_run {
-            say(line);
-        }
-    }
-    Ok(())
+    Ok(review::tell(lines, how.json, !how.yes && !how.dry_run, out)?)
 }
 
 fn question(controller: &Controller<'_>, count: usize, save: bool) -> String {
@@ -269,10 +263,7 @@ fn perform(
     if !changes.is_empty() {
         let act = Act::Write { wanted: changes, known: Known::default() };
         let finished = controller.act("write the settings", act, table, options)?;
-        let refused = |why: &str| {
-            say(why);
-            Err(finished.broken.unwrap_or(Exit::NotTaken))
-        };
+        let refused = |why: &str| Err(finished.broken.unwrap_or(Exit::NotTaken).saying(why));
         let report = match finished.value {
             Ok(Done::Written(report, _)) => *report,
             Ok(Done::NotWritten(error)) => return refused(&error.to_string()),

@@ -7,6 +7,7 @@ use brushwork_canopen::adapter::Form;
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::models::Model;
 use brushwork_mcp_wire::packet_serial::{Address, Generation};
+use brushwork_values::parse_byte;
 
 /// One line with one or more simulated controllers on it.
 #[derive(Debug, Clone, PartialEq)]
@@ -248,13 +249,6 @@ pub fn parse_address(text: &str) -> Result<u8, String> {
         Some(address @ 0x80..=0x87) => Ok(address),
         _ => Err(format!("\"{text}\" is no address: use 0x80 to 0x87 (128 to 135)")),
     }
-}
-
-/// Reads a number of one byte, in hexadecimal with 0x or in decimal.
-pub fn parse_byte(text: &str) -> Option<u8> {
-    let digits = text.trim();
-    let hexadecimal = digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X"));
-    hexadecimal.map_or_else(|| digits.parse().ok(), |digits| u8::from_str_radix(digits, 16).ok())
 }
 
 fn bad_node(given: &str) -> SimSpecError {

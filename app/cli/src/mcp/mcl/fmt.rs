@@ -9,10 +9,10 @@ use brushwork_script::text::Lines;
 use super::args::FmtArgs;
 use super::source::{Source, is_standard};
 use crate::exit::Exit;
-use crate::output::{Output, say};
+use crate::output::Output;
 
 /// Formats every file in its place.
-pub fn run(args: &FmtArgs, out: &mut Output) -> Exit {
+pub fn run(args: &FmtArgs, out: &mut Output) -> Result<Exit, Exit> {
     let mut exit = Exit::Done;
     for path in &args.files {
         match one(path, args, out) {
@@ -21,19 +21,16 @@ pub fn run(args: &FmtArgs, out: &mut Output) -> Exit {
             Err(failed) => exit = failed,
         }
     }
-    exit
+    Ok(exit)
 }
 
 /// Whether a file would change, which only matters when it is not written.
 fn one(path: &Path, args: &FmtArgs, out: &mut Output) -> Result<bool, Exit> {
-    let failed = |sentence: String| {
-        say(sentence);
-        Exit::Failed
-    };
+    let failed = |sentence: String| Exit::Failed.saying(sentence);
     let source = Source::read(path).map_err(|error| failed(error.to_string()))?;
     if let Some(refused) = too_long(&source.text) {
-        say(refused.render(&source.name, &source.text, &Lines::of(&source.text)).trim_end());
-        return Err(Exit::ScriptWrong);
+        return Err(Exit::ScriptWrong
+            .saying(refused.render(&source.name, &source.text, &Lines::of(&source.text)).trim_end()));
     }
     let formatted = format(&source.text);
     if too_long(&formatted).is_some() {
@@ -45,12 +42,12 @@ fn one(path: &Path, args: &FmtArgs, out: &mut Output) -> Result<bool, Exit> {
     let changes = formatted != source.text;
     if args.check {
         if changes {
-            out.line(&source.name).map_err(Exit::from)?;
+            out.line(&source.name)?;
         }
         return Ok(changes);
     }
     if is_standard(path) {
-        out.bytes(&source.encoded(&formatted)).map_err(Exit::from)?;
+        out.bytes(&source.encoded(&formatted))?;
     } else if changes {
         let write = std::fs::write(path, source.encoded(&formatted));
         write.map_err(|error| failed(format!("Could not write {}: {error}.", path.display())))?;

@@ -105,9 +105,6 @@ fn value_of<T>(finished: Finished<Result<T, Failure>>) -> Result<T, Exit> {
     match (finished.value, finished.broken) {
         (_, Some(exit)) => Err(exit),
         (Ok(value), None) => Ok(value),
-        (Err(failure), None) => {
-            say(failure.to_string());
-            Err(Exit::Refused)
-        }
+        (Err(failure), None) => Err(Exit::Refused.saying(failure)),
     }
 }

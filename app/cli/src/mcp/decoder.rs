@@ -1,4 +1,4 @@
-//! Traffic of both directions in words. No clock, no IO: bytes and times in, records out.
+//! Traffic of packet serial in words, in both directions. No clock, no IO: bytes and times in, records out.
 //!
 //! The firmware generation is followed as the traffic shows it: by commands that only a later one has, and by replies that
 //! have the width of another one.
@@ -7,13 +7,14 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use brushwork_mcp_wire::crc::crc16_xmodem;
-use brushwork_mcp_wire::packet_serial;
 use brushwork_mcp_wire::packet_serial::{
-    Address, DiscardReason, Effect, Framed, FramerEvent, Generation, PACKET_GAP, ReplyProgress, Request,
-    RequestFramer, describe_event, describe_reply, parse_reply,
+    self, ACK, Address, DiscardReason, Effect, Framed, FramerEvent, Generation, PACKET_GAP, ReplyProgress,
+    Request, RequestFramer, describe_event, describe_reply, number, parse_reply, scale,
 };
 
-use super::record::{Direction, Record};
+use crate::monitor::awaited::{Awaited, take};
+use crate::monitor::follower::{Follower, Stop};
+use crate::monitor::record::{Direction, Record};
 
 /// A controller that has not answered after this time will not.
 const REPLY_LIMIT: Duration = Duration::from_millis(250);
@@ -26,7 +27,7 @@ pub struct Decoder {
     /// The last read and the bytes after it: together perhaps a CRC that the client appends.
     after_read: Option<AfterRead>,
     /// Requests whose replies are due, oldest first: some clients send several at once.
-    awaited: VecDeque<Awaited>,
+    awaited: VecDeque<Awaited<Request>>,
     moved: Vec<Address>,
 }
 
@@ -34,15 +35,6 @@ struct AfterRead {
     crc: [u8; 2],
     until: Duration,
     bytes: Vec<u8>,
-}
-
-/// A request whose reply is due, and what has come of it.
-struct Awaited {
-    request: Request,
-    sent_at: Duration,
-    bytes: Vec<u8>,
-    first_at: Duration,
-    last_at: Duration,
 }
 
 impl Decoder {
@@ -59,95 +51,6 @@ impl Decoder {
         }
     }
 
-    /// Units that were told to move after they were last told to stop or to stand still.
-    pub fn moved(&self) -> &[Address] {
-        &self.moved
-    }
-
-    /// The generation as far as it is known.
-    pub fn generation(&self) -> Generation {
-        self.generation
-    }
-
-    /// Takes bytes of the client.
-    pub fn client_sent(&mut self, bytes: &[u8], now: Duration) -> Vec<Record> {
-        let mut records = Vec::new();
-        for &byte in bytes {
-            let event = self.framer.feed(byte, now);
-            match event {
-                Some(event) => self.take_event(event, now, &mut records),
-                None => self.take_appended(byte, now, &mut records),
-            }
-        }
-        records
-    }
-
-    /// Takes bytes of the controller.
-    pub fn controller_sent(&mut self, bytes: &[u8], now: Duration) -> Vec<Record> {
-        let Some(awaited) = self.awaited.front_mut() else {
-            return vec![record(now, Direction::FromController, bytes.to_vec(), "answer to nothing".into())];
-        };
-        if awaited.bytes.is_empty() {
-            awaited.first_at = now;
-        }
-        awaited.bytes.extend(bytes);
-        awaited.last_at = now;
-        let mut records = Vec::new();
-        self.skip_unanswered(now, &mut records);
-        if let Some(rest) = self.take_reply(&mut records)
-            && !rest.is_empty()
-        {
-            records.extend(self.controller_sent(&rest, now));
-        }
-        records
-    }
-
-    /// Whether a reply is due.
-    pub fn awaits_reply(&self) -> bool {
-        !self.awaited.is_empty()
-    }
-
-    /// Whether a packet is open that further bytes may complete.
-    pub fn may_become_whole(&self) -> bool {
-        let mut ended = self.framer.clone();
-        matches!(
-            ended.silence(Duration::MAX),
-            Some(FramerEvent::Discarded(discarded)) if discarded.why == DiscardReason::Gap
-        )
-    }
-
-    /// Tells the time while nothing comes.
-    pub fn silence(&mut self, now: Duration) -> Vec<Record> {
-        let mut records = self.client_silence(now);
-        while self.awaited.front().is_some_and(|awaited| awaited.is_over(now)) {
-            records.extend(self.give_up_reply(now));
-        }
-        records
-    }
-
-    /// Tells the time while nothing comes from the client.
-    pub fn client_silence(&mut self, now: Duration) -> Vec<Record> {
-        let mut records = Vec::new();
-        if let Some(event) = self.framer.silence(now) {
-            self.take_event(event, now, &mut records);
-        }
-        records
-    }
-
-    /// The client has gone: what it left half done is over.
-    pub fn client_left(&mut self, now: Duration) -> Vec<Record> {
-        let mut records = Vec::new();
-        if let Some(event) = self.framer.silence(Duration::MAX) {
-            self.take_event(event, now, &mut records);
-        }
-        while self.awaits_reply() {
-            records.extend(self.give_up_reply(now));
-        }
-        self.framer.reset();
-        self.after_read = None;
-        records
-    }
-
     fn take_event(&mut self, event: FramerEvent, now: Duration, records: &mut Vec<Record>) {
         self.after_read = None;
         let event = self.follow_generation(event);
@@ -162,7 +65,7 @@ impl Decoder {
             }
             self.take_request(&framed, now);
         }
-        records.push(record(now, Direction::ToController, bytes.to_vec(), text));
+        records.push(Record::new(now, Direction::ToController, bytes.to_vec(), text));
     }
 
     fn take_request(&mut self, framed: &Framed, now: Duration) {
@@ -173,13 +76,7 @@ impl Decoder {
             until: now.saturating_add(PACKET_GAP),
             bytes: Vec::new(),
         });
-        self.awaited.push_back(Awaited {
-            request: framed.request(),
-            sent_at: now,
-            bytes: Vec::new(),
-            first_at: now,
-            last_at: now,
-        });
+        self.awaited.push_back(Awaited::new(framed.request(), now));
         if form.is_some_and(|form| can_move(form.effect)) {
             self.note_motion(framed);
         }
@@ -209,7 +106,9 @@ impl Decoder {
             self.after_read = None;
             match records.last_mut() {
                 Some(read) => read.bytes.extend(bytes),
-                None => records.push(record(now, Direction::ToController, bytes, "CRC of that read".into())),
+                None => {
+                    records.push(Record::new(now, Direction::ToController, bytes, "CRC of that read".into()));
+                }
             }
         } else if after.bytes.len() >= after.crc.len() {
             self.after_read = None;
@@ -247,7 +146,7 @@ impl Decoder {
         let Awaited { request, mut bytes, first_at, .. } = self.awaited.pop_front()?;
         let rest = bytes.split_off(used);
         let text = describe_reply(&request, &values, self.generation);
-        records.push(record(first_at, Direction::FromController, bytes, text));
+        records.push(Record::new(first_at, Direction::FromController, bytes, text));
         Some(rest)
     }
 
@@ -267,13 +166,7 @@ impl Decoder {
         }
         records.extend(self.give_up_reply(now));
         if let Some(second) = self.awaited.front_mut() {
-            *second = Awaited {
-                request: second.request.clone(),
-                sent_at: second.sent_at,
-                bytes,
-                first_at,
-                last_at: now,
-            };
+            (second.bytes, second.first_at, second.last_at) = (bytes, first_at, now);
         }
     }
 
@@ -283,10 +176,10 @@ impl Decoder {
         if bytes.is_empty() {
             let title = request.row().map_or("", |row| row.title(self.generation));
             let text = format!("{} {title}: no answer", request.address);
-            return Some(record(now, Direction::FromController, bytes, text));
+            return Some(Record::new(now, Direction::FromController, bytes, text));
         }
         let text = self.foreign_reply(&request, &bytes).unwrap_or_else(|| self.fault_of(&request, &bytes));
-        Some(record(first_at, Direction::FromController, bytes, text))
+        Some(Record::new(first_at, Direction::FromController, bytes, text))
     }
 
     /// A reply that fits another generation moves the decoder there.
@@ -317,15 +210,80 @@ impl Decoder {
     }
 }
 
-impl Awaited {
-    /// Nothing more will come.
-    fn is_over(&self, now: Duration) -> bool {
-        match self.bytes.is_empty() {
-            true => now.saturating_sub(self.sent_at) > REPLY_LIMIT,
-            false => now.saturating_sub(self.last_at) > PACKET_GAP,
+impl Follower for Decoder {
+    fn client_sent(&mut self, bytes: &[u8], now: Duration) -> Vec<Record> {
+        let mut records = Vec::new();
+        for &byte in bytes {
+            let event = self.framer.feed(byte, now);
+            match event {
+                Some(event) => self.take_event(event, now, &mut records),
+                None => self.take_appended(byte, now, &mut records),
+            }
         }
+        records
     }
 
+    fn controller_sent(&mut self, bytes: &[u8], now: Duration) -> Vec<Record> {
+        if let Some(unasked) = take(&mut self.awaited, bytes, now) {
+            return vec![unasked];
+        }
+        let mut records = Vec::new();
+        self.skip_unanswered(now, &mut records);
+        if let Some(rest) = self.take_reply(&mut records)
+            && !rest.is_empty()
+        {
+            records.extend(self.controller_sent(&rest, now));
+        }
+        records
+    }
+
+    fn awaits_reply(&self) -> bool {
+        !self.awaited.is_empty()
+    }
+
+    fn may_become_whole(&self) -> bool {
+        let mut ended = self.framer.clone();
+        matches!(
+            ended.silence(Duration::MAX),
+            Some(FramerEvent::Discarded(discarded)) if discarded.why == DiscardReason::Gap
+        )
+    }
+
+    fn silence(&mut self, now: Duration) -> Vec<Record> {
+        let mut records = self.client_silence(now);
+        while self.awaited.front().is_some_and(|awaited| awaited.is_over(now, REPLY_LIMIT, PACKET_GAP)) {
+            records.extend(self.give_up_reply(now));
+        }
+        records
+    }
+
+    fn client_silence(&mut self, now: Duration) -> Vec<Record> {
+        let mut records = Vec::new();
+        if let Some(event) = self.framer.silence(now) {
+            self.take_event(event, now, &mut records);
+        }
+        records
+    }
+
+    fn client_left(&mut self, now: Duration) -> Vec<Record> {
+        let mut records = Vec::new();
+        if let Some(event) = self.framer.silence(Duration::MAX) {
+            self.take_event(event, now, &mut records);
+        }
+        while self.awaits_reply() {
+            records.extend(self.give_up_reply(now));
+        }
+        self.framer.reset();
+        self.after_read = None;
+        records
+    }
+
+    fn stops(&self) -> Vec<Stop> {
+        self.moved.iter().filter_map(|address| stop_of(*address, self.generation)).collect()
+    }
+}
+
+impl Awaited<Request> {
     /// A request that comes now is not one of several sent at once: the client waits no longer.
     fn is_cut_off(&self, now: Duration) -> bool {
         !self.bytes.is_empty() || now.saturating_sub(self.sent_at) >= PACKET_GAP
@@ -343,8 +301,12 @@ fn setpoints(framed: &Framed) -> impl Iterator<Item = i64> {
     setpoints.filter_map(|name| framed.values.try_int(name))
 }
 
-fn record(at: Duration, direction: Direction, bytes: Vec<u8>, text: String) -> Record {
-    Record { at: Some(at), direction, bytes, text }
+/// What stands both motors of a unit.
+fn stop_of(address: Address, generation: Generation) -> Option<Stop> {
+    const DUTY_ZERO: [i64; 4] = [0, scale::MAX_DUTY_ACCEL_RAW, 0, scale::MAX_DUTY_ACCEL_RAW];
+    let request = Request::new(address, number::DUTY_ACCEL_BOTH, &DUTY_ZERO);
+    let writes = vec![request.encode(generation).ok()?];
+    Some(Stop { who: format!("both motors of {address}"), writes, acknowledge: &[ACK] })
 }
 
 #[cfg(test)]
@@ -443,7 +405,7 @@ mod tests {
         decoder.client_sent(&[0x80, 90], ms(0));
         decoder.controller_sent(&reply, ms(1));
         assert_eq!(texts(&decoder.silence(ms(20))), ["0x80 read status: 0x00000000 (normal)"]);
-        assert!(decoder.generation() > Generation::Gen1);
+        assert!(decoder.generation > Generation::Gen1);
         let mut fixed = Decoder::new(Some(Generation::Gen1));
         fixed.client_sent(&[0x80, 90], ms(0));
         fixed.controller_sent(&reply, ms(1));
@@ -455,7 +417,7 @@ mod tests {
         let mut decoder = Decoder::new(None);
         let told = decoder.client_sent(&[0x80, number::READ_ALL_STATUS], ms(0));
         assert_eq!(texts(&told), ["0x80 read all status"]);
-        assert!(decoder.generation() > Generation::Gen1);
+        assert!(decoder.generation > Generation::Gen1);
     }
 
     #[test]
@@ -463,7 +425,7 @@ mod tests {
         let mut decoder = Decoder::new(None);
         let mut send = |number, values: &[i64]| {
             decoder.client_sent(&bytes(number, values, Generation::Gen1), ms(0));
-            !decoder.moved().is_empty()
+            !decoder.moved.is_empty()
         };
         assert!(!send(number::READ_STATUS, &[]));
         assert!(send(number::DUTY_M1, &[1000]));

@@ -25,7 +25,7 @@ struct Report {
 }
 
 /// Checks every file, also after one that cannot be read.
-pub fn run(args: &CheckArgs, out: &mut Output) -> Exit {
+pub fn run(args: &CheckArgs, out: &mut Output) -> Result<Exit, Exit> {
     let mut files = Vec::new();
     let mut page = String::new();
     let mut unread = false;
@@ -52,12 +52,12 @@ pub fn run(args: &CheckArgs, out: &mut Output) -> Exit {
         page += &format!("{}: {errors}, {warnings}\n", file.file);
     }
     let printed = if args.json { out.json(&Report { files }) } else { out.line(page.trim_end()) };
-    match printed {
-        Err(error) => error.into(),
-        Ok(()) if unread => Exit::Failed,
-        Ok(()) if is_wrong => Exit::ScriptWrong,
-        Ok(()) => Exit::Done,
-    }
+    printed?;
+    Ok(match (unread, is_wrong) {
+        (true, _) => Exit::Failed,
+        (false, true) => Exit::ScriptWrong,
+        (false, false) => Exit::Done,
+    })
 }
 
 /// "1 error", "2 errors".

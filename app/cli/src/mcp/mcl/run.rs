@@ -5,12 +5,11 @@ use std::path::Path;
 use std::time::Duration;
 
 use brushwork_script::diagnostic::Severity;
-use brushwork_script::image;
 use brushwork_script::program::Program;
 use crossbeam_channel::{Receiver, RecvTimeoutError, TryRecvError, bounded};
 
 use super::args::RunArgs;
-use super::disasm::image_of;
+use super::disasm::program_in;
 use super::rig::{Rig, Run};
 use super::source::{Source, is_standard, read_bytes};
 use crate::exit::Exit;
@@ -27,43 +26,27 @@ const HEAD_START: Duration = Duration::from_millis(50);
 const LOOK: Duration = Duration::from_millis(20);
 
 /// Runs the script to its end, its fault or the limit.
-pub fn run(args: &RunArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
-    let program = match load(&args.file, args.quiet) {
-        Ok(program) => program,
-        Err(exit) => return exit,
-    };
-    let mut rig = match Rig::new(args, &program) {
-        Ok(rig) => rig,
-        Err(sentence) => {
-            say(sentence);
-            return Exit::Usage;
-        }
-    };
+pub fn run(args: &RunArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let program = load(&args.file, args.quiet)?;
+    let mut rig = Rig::new(args, &program).map_err(|sentence| Exit::Usage.saying(sentence))?;
     let mut input = Input::new(is_standard(&args.file));
     let ended = drive(&mut rig, &mut input, args.limit, out, interrupt);
     if args.report {
         report(&rig);
     }
-    match (ended, rig.run()) {
-        (Err(error), _) => error.into(),
-        (Ok(()), _) if interrupt.is_raised() => Exit::Interrupted,
-        (Ok(()), Run::Faulted { line, what }) => {
-            say(format!("{}:{line}: the script was stopped by a fault: {what}.", args.file.display()));
-            Exit::ScriptFaulted
-        }
-        (Ok(()), _) => Exit::Done,
+    ended?;
+    match rig.run() {
+        _ if interrupt.is_raised() => Err(Exit::Interrupted),
+        Run::Faulted { line, what } => Err(Exit::ScriptFaulted
+            .saying(format!("{}:{line}: the script was stopped by a fault: {what}.", args.file.display()))),
+        Run::Running { .. } | Run::Ended { .. } => Ok(Exit::Done),
     }
 }
 
 fn load(path: &Path, quiet: bool) -> Result<Program, Exit> {
-    let failed = |sentence: String| {
-        say(sentence);
-        Exit::Failed
-    };
-    let bytes = read_bytes(path).map_err(|error| failed(error.to_string()))?;
-    if let Some(image) = image_of(&bytes) {
-        let program = image::decode(image);
-        return program.map_err(|error| failed(format!("Could not read {}: {error}.", path.display())));
+    let bytes = read_bytes(path).map_err(|error| Exit::Failed.saying(error))?;
+    if let Some(program) = program_in(&bytes, path)? {
+        return Ok(program);
     }
     let source = Source::of(path.display().to_string(), bytes);
     let mut compiled = source.compile();

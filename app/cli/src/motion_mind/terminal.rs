@@ -3,42 +3,53 @@
 //! A unit in text takes lines; one in binary takes frames in hexadecimal, whose checksum is added. Nothing that moves the motor
 //! goes out: that takes arming, which a terminal does not do.
 
-use brushwork_motion_mind_client::MotionMindFacts;
-use std::io::BufRead as _;
 use std::time::{Duration, Instant};
 
 use brushwork_link::device::{Event, PollRate, Request};
-use brushwork_motion_mind_client::{describe_received, describe_sent};
+use brushwork_motion_mind_client::{MotionMindFacts, describe_received, describe_sent};
 use brushwork_motion_mind_wire::{
     Command, Effect, FrameEvent, FrameReader, LineEvent, LineReader, Protocol, checksum,
 };
 use brushwork_values::hex;
+use clap::Args;
 use serde_json::json;
 
-use super::args::TerminalArgs;
-use super::client::{Client, ask};
-use super::exit::Exit;
-use super::interrupt::Interrupt;
-use super::output::{Output, say};
+use crate::client::{Client, ask};
+use crate::exit::Exit;
+use crate::interrupt::Interrupt;
+use crate::output::{Output, say};
+use crate::shared_args::ConnectArgs;
 
 /// How long a reply may take.
 const REPLY_LIMIT: Duration = Duration::from_secs(10);
 
-/// Sends each command that is given, or each line of standard input.
-pub fn run(args: &TerminalArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
-    talk(args, out, interrupt)
-        .map_or_else(|exit| exit, |failed| if failed { Exit::Refused } else { Exit::Done })
+/// Arguments of `brushwork terminal`.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    brushwork terminal --connect /dev/ttyUSB0,family=motion-mind 'R01 04' 'W01 04 5000'\n  \
+    brushwork terminal --connect sim:motion-mind-3 '1A 01 01 00 01 00'\n\n\
+    Without commands each line of standard input is one. A unit in ASCII takes lines, one in binary takes the bytes of a\n\
+    frame in hexadecimal without their checksum. Commands that move the motor are refused; use `brushwork drive`.")]
+pub struct TerminalArgs {
+    /// The controller.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// What to send.
+    #[arg(value_name = "COMMAND")]
+    pub commands: Vec<String>,
+    /// Print each exchange as a JSON object a line.
+    #[arg(long)]
+    pub json: bool,
 }
 
-/// Whether one of them was not sent.
-fn talk(args: &TerminalArgs, out: &mut Output, interrupt: &Interrupt) -> Result<bool, Exit> {
+/// Sends each command that is given, or each line of standard input.
+pub fn run(args: &TerminalArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let client = Client::connect(&args.connect, PollRate::Off, interrupt)?;
     let Some(facts) = MotionMindFacts::of(&client.identity) else {
-        say(format!(
+        return Err(Exit::Refused.saying(format!(
             "{} is no Motion Mind; its commands are put together in the window's Traffic screen.",
             client.identity.title()
-        ));
-        return Err(Exit::Refused);
+        )));
     };
     say(format!(
         "{} {} on {}: {}, {}.",
@@ -48,19 +59,15 @@ fn talk(args: &TerminalArgs, out: &mut Output, interrupt: &Interrupt) -> Result<
         facts.mode,
         facts.protocol
     ));
+    let lines: Box<dyn Iterator<Item = String>> = match args.commands.is_empty() {
+        true => Box::new(std::io::stdin().lines().map_while(Result::ok)),
+        false => Box::new(args.commands.iter().cloned()),
+    };
     let mut failed = false;
-    let mut number = 0;
-    if args.commands.is_empty() {
-        for line in std::io::stdin().lock().lines().map_while(Result::ok) {
-            number += 1;
-            failed |= !exchange(&line, number, facts, args, &client, out, interrupt)?;
-        }
+    for (id, line) in (1..).zip(lines) {
+        failed |= !exchange(&line, id, facts, args, &client, out, interrupt)?;
     }
-    for line in &args.commands {
-        number += 1;
-        failed |= !exchange(line, number, facts, args, &client, out, interrupt)?;
-    }
-    Ok(failed)
+    Ok(if failed { Exit::Refused } else { Exit::Done })
 }
 
 /// Sends one command; whether it went out.
@@ -103,8 +110,7 @@ fn exchange(
             _ => {}
         }
     }
-    say("The link gave no answer.");
-    Err(Exit::NoLink)
+    Err(Exit::NoLink.saying("The link gave no answer."))
 }
 
 /// Whether the bytes are a command that writes EEPROM or starts the unit anew.

@@ -5,19 +5,18 @@ pub mod download;
 mod run;
 mod state;
 
-use super::exit::Exit;
-use super::interrupt::Interrupt;
-use super::output::Output;
+use crate::exit::Exit;
+use crate::interrupt::Interrupt;
+use crate::output::Output;
 use args::{ScriptArgs, ScriptCommand};
 
 /// Does what is asked.
-pub fn run(args: &ScriptArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
-    let done = match &args.command {
+pub fn run(args: &ScriptArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    match &args.command {
         ScriptCommand::Download(args) => download::run(args, out, interrupt),
         ScriptCommand::Start(args) => run::start(args, interrupt),
         ScriptCommand::Stop(args) => run::stop(args, interrupt),
         ScriptCommand::Autorun(args) => state::autorun(args, out, interrupt),
         ScriptCommand::Status(args) => state::status(args, out, interrupt),
-    };
-    done.unwrap_or_else(|exit| exit)
+    }
 }

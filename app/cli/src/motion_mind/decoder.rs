@@ -7,12 +7,14 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use brushwork_motion_mind_wire::{
-    Address, Command, Effect, FrameEvent, FrameReader, LineEvent, LineReader, Progress, Protocol, Returns,
-    checksum, describe_command, describe_reply, encode_frame, encode_line, function, parse_frame_reply,
-    parse_line_reply, register_number,
+    ACK, Address, Command, Effect, FrameEvent, FrameReader, LineEvent, LineReader, Progress, Protocol,
+    Returns, checksum, describe_command, describe_reply, encode_frame, encode_line, function,
+    parse_frame_reply, parse_line_reply, register_number,
 };
 
-use super::record::{Direction, Record};
+use crate::monitor::awaited::{Awaited, take};
+use crate::monitor::follower::{Follower, Stop};
+use crate::monitor::record::{Direction, Record};
 
 /// A unit that has not answered after this time will not.
 const REPLY_LIMIT: Duration = Duration::from_millis(250);
@@ -25,14 +27,14 @@ const NEXT_COMMAND: Duration = Duration::from_millis(10);
 
 /// Follows a conversation.
 #[derive(Default)]
-pub struct MindDecoder {
+pub struct Decoder {
     frames: FrameReader,
     lines: LineReader,
     /// What the client has sent since its last command, and since when.
     open: Vec<u8>,
     open_since: Duration,
     /// Commands whose answers are due, oldest first.
-    awaited: VecDeque<Awaited>,
+    awaited: VecDeque<Awaited<Asked>>,
     /// The return bits of units, as writes to FUNCTION tell.
     returns: Vec<(Address, Returns)>,
     moved: Vec<Moved>,
@@ -40,27 +42,23 @@ pub struct MindDecoder {
 
 /// A unit that was told to move and not to stand since.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Moved {
-    pub address: Address,
+struct Moved {
+    address: Address,
     protocol: Protocol,
     /// By a duty, else by a velocity or a move.
     is_duty: bool,
 }
 
 /// A command whose answer is due; none for a line that is no command.
-struct Awaited {
+struct Asked {
     address: Address,
     command: Option<Command>,
     protocol: Protocol,
-    sent_at: Duration,
-    bytes: Vec<u8>,
-    first_at: Duration,
-    last_at: Duration,
 }
 
 impl Moved {
-    /// The bytes that stand its motor, one write each.
-    pub fn stops(self) -> Vec<Vec<u8>> {
+    /// What stands its motor.
+    fn stop(self) -> Stop {
         // A setpoint that stands, in mode 4 and in mode 5.
         let closed = [Command::MoveAtVelocity(0), Command::MoveToRelative(0)];
         let commands = if self.is_duty { &[Command::ChangeSpeed(0)][..] } else { &closed[..] };
@@ -68,18 +66,105 @@ impl Moved {
             Protocol::Binary => encode_frame(self.address, command).ok(),
             Protocol::Text => encode_line(self.address, command).ok().map(String::into_bytes),
         };
-        commands.iter().filter_map(encode).collect()
+        Stop {
+            who: format!("the motor of {}", self.address),
+            writes: commands.iter().filter_map(encode).collect(),
+            acknowledge: match self.protocol {
+                Protocol::Binary => &[ACK],
+                Protocol::Text => b"OK",
+            },
+        }
     }
 }
 
-impl MindDecoder {
-    /// Units that were told to move after they were last told to stand still.
-    pub fn moved(&self) -> &[Moved] {
-        &self.moved
+impl Decoder {
+    fn take_command(
+        &mut self,
+        address: Address,
+        command: Command,
+        protocol: Protocol,
+        now: Duration,
+        records: &mut Vec<Record>,
+    ) {
+        while self.awaited.front().is_some_and(|awaited| now >= awaited.sent_at + NEXT_COMMAND) {
+            records.extend(self.give_up());
+        }
+        records.push(self.close(describe_command(address, &command)));
+        match protocol {
+            Protocol::Binary => self.lines = LineReader::new(),
+            Protocol::Text => self.frames = FrameReader::new(),
+        }
+        self.note_motion(address, command, protocol);
+        if !address.is_broadcast() {
+            self.wait_for(address, Some(command), protocol, now);
+        }
     }
 
-    /// Takes bytes of the client.
-    pub fn client_sent(&mut self, bytes: &[u8], now: Duration) -> Vec<Record> {
+    fn wait_for(&mut self, address: Address, command: Option<Command>, protocol: Protocol, now: Duration) {
+        self.awaited.push_back(Awaited::new(Asked { address, command, protocol }, now));
+    }
+
+    /// What the client has sent, as a record.
+    fn close(&mut self, text: String) -> Record {
+        Record::new(self.open_since, Direction::ToController, std::mem::take(&mut self.open), text)
+    }
+
+    fn note_motion(&mut self, address: Address, command: Command, protocol: Protocol) {
+        match command {
+            Command::ChangeSpeed(0) | Command::MoveAtVelocity(0) | Command::Restore | Command::Reset => {
+                self.moved.retain(|moved| moved.address != address && !address.is_broadcast());
+            }
+            _ if matches!(command.effect(), Effect::Motion | Effect::RelativeMotion) => {
+                let is_duty = matches!(command, Command::ChangeSpeed(_));
+                self.moved.retain(|moved| moved.address != address);
+                self.moved.push(Moved { address, protocol, is_duty });
+            }
+            _ => {}
+        }
+    }
+
+    /// The answer to the oldest command if it is whole, and the bytes that came after it.
+    fn whole_reply(&mut self) -> Option<(Record, Vec<u8>)> {
+        let awaited = self.awaited.front()?;
+        let (text, used) = awaited.read(self.returns_of(awaited.request.address))?;
+        let Awaited { mut bytes, first_at, request, .. } = self.awaited.pop_front()?;
+        let rest = bytes.split_off(used);
+        self.note_write(request.address, request.command);
+        Some((Record::new(first_at, Direction::FromController, bytes, text), rest))
+    }
+
+    fn returns_of(&self, address: Address) -> Option<Returns> {
+        self.returns.iter().find(|(known, _)| *known == address).map(|(_, returns)| *returns)
+    }
+
+    /// A write to FUNCTION that was acknowledged tells what moves are answered with.
+    fn note_write(&mut self, address: Address, command: Option<Command>) {
+        let Some(Command::Write { register, value } | Command::WriteStore { register, value }) = command
+        else {
+            return;
+        };
+        if register == register_number::FUNCTION {
+            let bits = u16::try_from(value).unwrap_or_default();
+            self.returns.retain(|(known, _)| *known != address);
+            self.returns.push((address, Returns::of_function(bits)));
+        }
+    }
+
+    /// Ends the wait for the oldest answer and tells what there is of it.
+    fn give_up(&mut self) -> Option<Record> {
+        let awaited = self.awaited.pop_front()?;
+        let what = match (awaited.bytes.is_empty(), awaited.bad()) {
+            (true, _) => "no answer".to_owned(),
+            (false, Some(why)) => format!("bad reply ({why})"),
+            (false, None) => "a reply cut short".to_owned(),
+        };
+        let text = format!("{}: {what}", awaited.request.address);
+        Some(Record::new(awaited.first_at, Direction::FromController, awaited.bytes, text))
+    }
+}
+
+impl Follower for Decoder {
+    fn client_sent(&mut self, bytes: &[u8], now: Duration) -> Vec<Record> {
         let mut records = self.client_silence(now);
         for &byte in bytes {
             if self.open.is_empty() {
@@ -111,16 +196,10 @@ impl MindDecoder {
         records
     }
 
-    /// Takes bytes of the controller.
-    pub fn controller_sent(&mut self, bytes: &[u8], now: Duration) -> Vec<Record> {
-        let Some(awaited) = self.awaited.front_mut() else {
-            return vec![record(now, Direction::FromController, bytes.to_vec(), "answer to nothing".into())];
-        };
-        if awaited.bytes.is_empty() {
-            awaited.first_at = now;
+    fn controller_sent(&mut self, bytes: &[u8], now: Duration) -> Vec<Record> {
+        if let Some(unasked) = take(&mut self.awaited, bytes, now) {
+            return vec![unasked];
         }
-        awaited.bytes.extend(bytes);
-        awaited.last_at = now;
         let mut records = Vec::new();
         if let Some((record, rest)) = self.whole_reply() {
             records.push(record);
@@ -131,27 +210,29 @@ impl MindDecoder {
         records
     }
 
-    /// Whether an answer is due.
-    pub fn awaits_reply(&self) -> bool {
+    fn awaits_reply(&self) -> bool {
         !self.awaited.is_empty()
     }
 
-    /// Whether a command is open that further bytes may complete.
-    pub fn may_become_whole(&self) -> bool {
+    fn may_become_whole(&self) -> bool {
         !self.open.is_empty()
     }
 
-    /// Tells the time while nothing comes.
-    pub fn silence(&mut self, now: Duration) -> Vec<Record> {
+    fn silence(&mut self, now: Duration) -> Vec<Record> {
         let mut records = self.client_silence(now);
-        while self.awaited.front().is_some_and(|awaited| awaited.is_over(now)) {
+        let limit = |asked: &Asked| match asked.command {
+            Some(Command::Restore) => RESTORE_LIMIT,
+            _ => REPLY_LIMIT,
+        };
+        let is_over = |due: &Awaited<Asked>| due.is_over(now, limit(&due.request), REPLY_GAP);
+        while self.awaited.front().is_some_and(is_over) {
             records.extend(self.give_up());
         }
         records
     }
 
-    /// Tells the time while nothing comes from the client: a frame that stopped half way is dropped, a line is not.
-    pub fn client_silence(&mut self, now: Duration) -> Vec<Record> {
+    /// A frame that stopped half way is dropped, a line is not.
+    fn client_silence(&mut self, now: Duration) -> Vec<Record> {
         let is_dropped = self.frames.silent_until(now).is_some();
         if !is_dropped || self.open.is_empty() || is_text(&self.open) {
             return Vec::new();
@@ -161,8 +242,7 @@ impl MindDecoder {
         vec![self.close(format!("no command: {why}"))]
     }
 
-    /// The client has gone: what it left half done is over.
-    pub fn client_left(&mut self, now: Duration) -> Vec<Record> {
+    fn client_left(&mut self, now: Duration) -> Vec<Record> {
         let mut records = self.client_silence(Duration::MAX);
         if !self.open.is_empty() {
             records.push(self.close("no command: a line without its end".to_owned()));
@@ -175,117 +255,19 @@ impl MindDecoder {
         records
     }
 
-    fn take_command(
-        &mut self,
-        address: Address,
-        command: Command,
-        protocol: Protocol,
-        now: Duration,
-        records: &mut Vec<Record>,
-    ) {
-        while self.awaited.front().is_some_and(|awaited| now >= awaited.sent_at + NEXT_COMMAND) {
-            records.extend(self.give_up());
-        }
-        records.push(self.close(describe_command(address, &command)));
-        match protocol {
-            Protocol::Binary => self.lines = LineReader::new(),
-            Protocol::Text => self.frames = FrameReader::new(),
-        }
-        self.note_motion(address, command, protocol);
-        if !address.is_broadcast() {
-            self.wait_for(address, Some(command), protocol, now);
-        }
-    }
-
-    fn wait_for(&mut self, address: Address, command: Option<Command>, protocol: Protocol, now: Duration) {
-        let (bytes, sent_at) = (Vec::new(), now);
-        self.awaited.push_back(Awaited {
-            address,
-            command,
-            protocol,
-            sent_at,
-            bytes,
-            first_at: now,
-            last_at: now,
-        });
-    }
-
-    /// What the client has sent, as a record.
-    fn close(&mut self, text: String) -> Record {
-        record(self.open_since, Direction::ToController, std::mem::take(&mut self.open), text)
-    }
-
-    fn note_motion(&mut self, address: Address, command: Command, protocol: Protocol) {
-        match command {
-            Command::ChangeSpeed(0) | Command::MoveAtVelocity(0) | Command::Restore | Command::Reset => {
-                self.moved.retain(|moved| moved.address != address && !address.is_broadcast());
-            }
-            _ if matches!(command.effect(), Effect::Motion | Effect::RelativeMotion) => {
-                let is_duty = matches!(command, Command::ChangeSpeed(_));
-                self.moved.retain(|moved| moved.address != address);
-                self.moved.push(Moved { address, protocol, is_duty });
-            }
-            _ => {}
-        }
-    }
-
-    /// The answer to the oldest command if it is whole, and the bytes that came after it.
-    fn whole_reply(&mut self) -> Option<(Record, Vec<u8>)> {
-        let awaited = self.awaited.front()?;
-        let (text, used) = awaited.read(self.returns_of(awaited.address))?;
-        let Awaited { mut bytes, first_at, address, command, .. } = self.awaited.pop_front()?;
-        let rest = bytes.split_off(used);
-        self.note_write(address, command);
-        Some((record(first_at, Direction::FromController, bytes, text), rest))
-    }
-
-    fn returns_of(&self, address: Address) -> Option<Returns> {
-        self.returns.iter().find(|(known, _)| *known == address).map(|(_, returns)| *returns)
-    }
-
-    /// A write to FUNCTION that was acknowledged tells what moves are answered with.
-    fn note_write(&mut self, address: Address, command: Option<Command>) {
-        let Some(Command::Write { register, value } | Command::WriteStore { register, value }) = command
-        else {
-            return;
-        };
-        if register == register_number::FUNCTION {
-            let bits = u16::try_from(value).unwrap_or_default();
-            self.returns.retain(|(known, _)| *known != address);
-            self.returns.push((address, Returns::of_function(bits)));
-        }
-    }
-
-    /// Ends the wait for the oldest answer and tells what there is of it.
-    fn give_up(&mut self) -> Option<Record> {
-        let awaited = self.awaited.pop_front()?;
-        let what = match (awaited.bytes.is_empty(), awaited.bad()) {
-            (true, _) => "no answer".to_owned(),
-            (false, Some(why)) => format!("bad reply ({why})"),
-            (false, None) => "a reply cut short".to_owned(),
-        };
-        let text = format!("{}: {what}", awaited.address);
-        Some(record(awaited.first_at, Direction::FromController, awaited.bytes, text))
+    fn stops(&self) -> Vec<Stop> {
+        self.moved.iter().map(|moved| moved.stop()).collect()
     }
 }
 
-impl Awaited {
-    /// Nothing more will come.
-    fn is_over(&self, now: Duration) -> bool {
-        let limit = if self.command == Some(Command::Restore) { RESTORE_LIMIT } else { REPLY_LIMIT };
-        match self.bytes.is_empty() {
-            true => now.saturating_sub(self.sent_at) > limit,
-            false => now.saturating_sub(self.last_at) > REPLY_GAP,
-        }
-    }
-
+impl Awaited<Asked> {
     /// What it says and how many bytes it takes, if it is whole. Return bits that nobody has told are found out by what fits.
     fn read(&self, known: Option<Returns>) -> Option<(String, usize)> {
         let whole = |progress| match progress {
             Progress::Done { reply, used } => Some((describe_reply(&reply), used)),
             _ => None,
         };
-        let Some(command) = &self.command else {
+        let Some(command) = &self.request.command else {
             return whole(parse_line_reply(&Command::Reset, Returns::default(), &self.bytes));
         };
         if let Some(read) = known.and_then(|returns| whole(self.parse(command, returns))) {
@@ -297,14 +279,14 @@ impl Awaited {
     }
 
     fn parse(&self, command: &Command, returns: Returns) -> Progress {
-        match self.protocol {
-            Protocol::Binary => parse_frame_reply(self.address, command, returns, &self.bytes),
+        match self.request.protocol {
+            Protocol::Binary => parse_frame_reply(self.request.address, command, returns, &self.bytes),
             Protocol::Text => parse_line_reply(command, returns, &self.bytes),
         }
     }
 
     fn bad(&self) -> Option<String> {
-        match self.parse(self.command.as_ref()?, Returns::default()) {
+        match self.parse(self.request.command.as_ref()?, Returns::default()) {
             Progress::Bad(bad) => Some(bad.to_string()),
             _ => None,
         }
@@ -329,10 +311,6 @@ fn why_no_frame(bytes: &[u8]) -> String {
     }
 }
 
-fn record(at: Duration, direction: Direction, bytes: Vec<u8>, text: String) -> Record {
-    Record { at: Some(at), direction, bytes, text }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -347,7 +325,7 @@ mod tests {
 
     #[test]
     fn frames_and_lines_are_told_from_the_traffic_itself() {
-        let mut decoder = MindDecoder::default();
+        let mut decoder = Decoder::default();
         // READ REGISTER 1 byte by byte, and its answer in two pieces: address, 1023, checksum.
         let mut told = Vec::new();
         for (at, byte) in [0x1D, 0x01, 0x01, 0x1F].into_iter().enumerate() {
@@ -366,7 +344,7 @@ mod tests {
 
     #[test]
     fn what_is_no_command_is_told_with_its_reason() {
-        let mut decoder = MindDecoder::default();
+        let mut decoder = Decoder::default();
         // MOVETO_ABSOLUTE 1000 with a wrong checksum.
         assert!(decoder.client_sent(&[0x15, 0x01, 0xE8, 0x03, 0x00, 0x00, 0x02], ms(0)).is_empty());
         let told = decoder.silence(ms(20));
@@ -381,7 +359,7 @@ mod tests {
 
     #[test]
     fn missing_wrong_and_unasked_answers_are_told_as_such() {
-        let mut decoder = MindDecoder::default();
+        let mut decoder = Decoder::default();
         assert_eq!(texts(&decoder.controller_sent(&[6], ms(0))), ["answer to nothing"]);
         decoder.client_sent(&[0x1D, 0x02, 0x01, 0x20], ms(10));
         assert!(decoder.silence(ms(200)).is_empty());
@@ -397,7 +375,7 @@ mod tests {
 
     #[test]
     fn answers_follow_the_return_bits_that_were_written_and_unknown_ones_are_found_out() {
-        let mut decoder = MindDecoder::default();
+        let mut decoder = Decoder::default();
         // MOVETO_ABSOLUTE 1000 answered by POSITION 1000.
         decoder.client_sent(&[0x15, 0x01, 0xE8, 0x03, 0x00, 0x00, 0x01], ms(0));
         let told = decoder.controller_sent(&[0x01, 0xE8, 0x03, 0x00, 0x00, 0xEC], ms(5));
@@ -412,10 +390,10 @@ mod tests {
 
     #[test]
     fn units_that_were_told_to_move_are_remembered_with_what_stands_them() {
-        let mut decoder = MindDecoder::default();
+        let mut decoder = Decoder::default();
         let mut send = |bytes: &[u8]| {
             decoder.client_sent(bytes, ms(0));
-            decoder.moved().iter().map(|moved| moved.stops()).collect::<Vec<_>>()
+            decoder.stops().into_iter().map(|stop| stop.writes).collect::<Vec<_>>()
         };
         // CHANGE_SPEED 763 to unit 1, then 0.
         assert_eq!(send(&[0x14, 0x01, 0xFB, 0x02, 0x12]), [[vec![0x14, 0x01, 0x00, 0x00, 0x15]]]);

@@ -42,10 +42,7 @@ fn run(controller: &Controller<'_>, duration: Option<Duration>) -> Result<Exit, 
     while duration.is_none_or(|duration| begun_at.elapsed() < duration) {
         controller.device().renew();
         match controller.next_event()? {
-            Some(Event::Failure(failure)) => {
-                say(failure.to_string());
-                return Err(Exit::Refused);
-            }
+            Some(Event::Failure(failure)) => return Err(Exit::Refused.saying(failure)),
             Some(Event::Disarmed(reason)) => {
                 say(format!("{reason}. The script and both motors are being stopped."));
                 return Err(if reason == DisarmReason::LinkLost { Exit::NoLink } else { Exit::Refused });
@@ -66,6 +63,5 @@ fn stop_all(controller: &Controller<'_>) -> Result<(), Exit> {
             return if report.confirmed() { Ok(()) } else { Err(Exit::Refused) };
         }
     }
-    say("The controller did not confirm the stop. Cut the motor power.");
-    Err(Exit::Refused)
+    Err(Exit::Refused.saying("The controller did not confirm the stop. Cut the motor power."))
 }

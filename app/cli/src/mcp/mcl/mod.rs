@@ -11,25 +11,23 @@ pub mod source;
 
 use brushwork_script::mcl::reference;
 
-use super::exit::Exit;
-use super::interrupt::Interrupt;
-use super::output::Output;
-use args::{MclArgs, MclCommand, ReferenceArgs};
+use crate::exit::Exit;
+use crate::family::Page;
+use crate::interrupt::Interrupt;
+use crate::output::Output;
+use args::{MclArgs, MclCommand};
 
 /// Does what was asked for.
-pub fn run(args: &MclArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
+pub fn run(args: &MclArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     match &args.command {
         MclCommand::Check(args) => check::run(args, out),
         MclCommand::Build(args) => build::run(args, out),
         MclCommand::Run(args) => run::run(args, out, interrupt),
         MclCommand::Disasm(args) => disasm::run(args, out),
         MclCommand::Fmt(args) => fmt::run(args, out),
-        MclCommand::Reference(args) => print_reference(args, out),
+        MclCommand::Reference(args) => {
+            Page::new(&reference::page(), &reference::reference()).print(args.json, out)?;
+            Ok(Exit::Done)
+        }
     }
-}
-
-fn print_reference(args: &ReferenceArgs, out: &mut Output) -> Exit {
-    let printed =
-        if args.json { out.json(&reference::reference()) } else { out.line(reference::page().trim_end()) };
-    printed.map_or_else(Exit::from, |()| Exit::Done)
 }

@@ -12,7 +12,7 @@ use serde_json::json;
 use super::args::DownloadArgs;
 use crate::exit::Exit;
 use crate::interrupt::Interrupt;
-use crate::mcl::source::{Source, read_bytes};
+use crate::mcp::mcl::source::{Source, read_bytes};
 use crate::output::{Output, say};
 use crate::settings::controller::Controller;
 
@@ -34,16 +34,11 @@ pub fn run(args: &DownloadArgs, out: &mut Output, interrupt: &Interrupt) -> Resu
 
 /// The image in a compiled file, or of a script that is compiled here.
 pub fn image_of(file: &Path) -> Result<ScriptImage, Exit> {
-    let bytes = read_bytes(file).map_err(|error| {
-        say(error.to_string());
-        Exit::Failed
-    })?;
+    let bytes = read_bytes(file).map_err(|error| Exit::Failed.saying(error))?;
     let is_text = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcl"));
     let bytes = if is_text { compiled(file, bytes)? } else { bytes };
-    ScriptImage::from_file(&bytes).map_err(|error| {
-        say(format!("Could not use {}: {error}.", file.display()));
-        Exit::Failed
-    })
+    ScriptImage::from_file(&bytes)
+        .map_err(|error| Exit::Failed.saying(format!("Could not use {}: {error}.", file.display())))
 }
 
 fn compiled(file: &Path, bytes: Vec<u8>) -> Result<Vec<u8>, Exit> {
@@ -73,8 +68,7 @@ pub fn to_controller(
     match (finished.value, finished.broken) {
         (Ok(done), None) => Ok(done),
         (Err(failure), broken) => {
-            say(failure.to_string());
-            Err(broken.unwrap_or(if is_refused { Exit::Refused } else { Exit::Failed }))
+            Err(broken.unwrap_or(if is_refused { Exit::Refused } else { Exit::Failed }).saying(failure))
         }
         (Ok(_), Some(exit)) => Err(exit),
     }

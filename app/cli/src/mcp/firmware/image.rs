@@ -7,20 +7,17 @@ use brushwork_mcp_wire::packet_serial::Generation;
 use super::args::ImageArgs;
 use crate::exit::Exit;
 use crate::new_file::NewFile;
-use crate::output::{Output, say};
+use crate::output::Output;
 
 /// Writes the image.
 pub fn run(args: &ImageArgs, out: &mut Output) -> Result<Exit, Exit> {
-    let usage = |sentence: String| {
-        say(sentence);
-        Exit::Usage
-    };
     let model = models::lookup(&args.model).ok_or_else(|| {
-        usage(format!("\"{}\" is no model. `brushwork sim --list` names them.", args.model))
+        Exit::Usage.saying(format!("\"{}\" is no model. `brushwork sim --list` names them.", args.model))
     })?;
     let generation = Generation::from_number(args.generation).unwrap_or(Generation::Gen1);
     let image = SimulatedImage { model, version: args.version.clone(), generation };
-    let bytes = image.bytes().map_err(|error| usage(format!("Could not make the image: {error}.")))?;
+    let bytes =
+        image.bytes().map_err(|error| Exit::Usage.saying(format!("Could not make the image: {error}.")))?;
     NewFile::new(&args.file, args.replace).write(&bytes)?;
     out.line(format!(
         "{} holds {} bytes that make a simulated {} report version {} ({generation}). No real controller can use them.",

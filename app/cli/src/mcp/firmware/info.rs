@@ -40,9 +40,7 @@ pub fn run(args: &InfoArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
         identity.generation.number(),
         generation_text(layout_of(identity.generation))
     ))?;
-    for note in &identity.notes {
-        out.line(format!("             {note}"))?;
-    }
+    out.lines(identity.notes.iter().map(|note| format!("             {note}")))?;
     let sizes: Vec<_> = sizes.iter().map(ToString::to_string).collect();
     out.line(format!(
         "Update:      from a file of yours of {} bytes; no image is published",

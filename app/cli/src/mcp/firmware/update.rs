@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
 use brushwork_link::SystemClock;
-use brushwork_link::device::RiskAccepted;
-use brushwork_link::device::{Event, Request};
+use brushwork_link::device::{Event, Request, RiskAccepted};
 use brushwork_link::settings::Act;
 use brushwork_link::transport::ConnectTarget;
 use brushwork_mcp_client::firmware::{Progress, RESUME_NOTE, Sent, risks, suit};
@@ -33,10 +32,8 @@ const SLICE: Duration = Duration::from_millis(50);
 /// Updates, or resumes an update.
 pub fn run(args: &UpdateArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let target = client::target(&args.connect)?;
-    let bytes = std::fs::read(&args.file).map_err(|error| {
-        say(format!("Could not read {}: {error}.", args.file.display()));
-        Exit::Failed
-    })?;
+    let bytes = std::fs::read(&args.file)
+        .map_err(|error| Exit::Failed.saying(format!("Could not read {}: {error}.", args.file.display())))?;
     if args.resume {
         let image = resumed_image(args, bytes, &target)?;
         accept(args, is_simulated(args, &target), &|| interrupted(interrupt))?;
@@ -69,8 +66,7 @@ fn fresh_image(args: &UpdateArgs, bytes: Vec<u8>, controller: &Controller<'_>) -
 fn resumed_image(args: &UpdateArgs, bytes: Vec<u8>, target: &ConnectTarget) -> Result<Image, Exit> {
     let name = args.model.as_deref().unwrap_or_default();
     let Some(model) = models::lookup(name) else {
-        say(format!("\"{name}\" is no model. `brushwork sim --list` names them."));
-        return Err(Exit::Usage);
+        return Err(Exit::Usage.saying(format!("\"{name}\" is no model. `brushwork sim --list` names them.")));
     };
     if SimulatedImage::is_marked(&bytes) && !is_simulated(args, target) {
         return Err(not_sent(
@@ -82,8 +78,7 @@ fn resumed_image(args: &UpdateArgs, bytes: Vec<u8>, target: &ConnectTarget) -> R
 }
 
 fn not_sent(args: &UpdateArgs, why: &dyn std::fmt::Display) -> Exit {
-    say(format!("{} is not sent: {why}.", args.file.display()));
-    Exit::Refused
+    Exit::Refused.saying(format!("{} is not sent: {why}.", args.file.display()))
 }
 
 fn is_simulated(args: &UpdateArgs, target: &ConnectTarget) -> bool {
@@ -103,15 +98,15 @@ fn accept(args: &UpdateArgs, simulated: bool, breathe: &dyn Fn() -> Result<(), E
         return Ok(());
     }
     if !io::stdin().is_terminal() {
-        say("Nobody can be asked here: give --accept-risk to update all the same. Nothing was sent.");
-        return Err(Exit::Refused);
+        return Err(Exit::Refused.saying(
+            "Nobody can be asked here: give --accept-risk to update all the same. Nothing was sent.",
+        ));
     }
     let _ = write!(io::stderr(), "Type \"update\" to accept these risks: ");
     if ask::line(breathe)?.trim() == "update" {
         return Ok(());
     }
-    say("Nothing was sent.");
-    Err(Exit::Refused)
+    Err(Exit::Refused.saying("Nothing was sent."))
 }
 
 fn interrupted(interrupt: &Interrupt) -> Result<(), Exit> {
@@ -126,26 +121,24 @@ fn backup_file<'p>(path: &'p Path, args: &UpdateArgs) -> NewFile<'p> {
 fn back_up(args: &UpdateArgs, controller: &Controller<'_>, out: &mut Output) -> Result<PathBuf, Exit> {
     let report = controller.read()?;
     if !report.failures.is_empty() {
-        say("Not all settings could be read, so the backup would not be whole. Nothing was sent.");
-        return Err(Exit::Refused);
+        return Err(Exit::Refused
+            .saying("Not all settings could be read, so the backup would not be whole. Nothing was sent."));
     }
     let date = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
     let mut profile = controller.profile_of(&report, report.image.clone());
     profile.note = format!("before {}", Act::Firmware.label());
-    Store::of_user().back_up(controller.unit(), Act::Firmware, &profile).map_err(|error| {
-        say(format!("{error} Nothing was sent."));
-        Exit::Failed
-    })?;
+    Store::of_user()
+        .back_up(controller.unit(), Act::Firmware, &profile)
+        .map_err(|error| Exit::Failed.saying(format!("{error} Nothing was sent.")))?;
     let model = profile.subject.model.key;
     let path = args.backup.clone().unwrap_or_else(|| {
         // Colons do not go into file names everywhere.
         let name = format!("backup-{model}-{}.json", date.replace(':', ""));
         args.file.parent().unwrap_or_else(|| Path::new("")).join(name)
     });
-    backup_file(&path, args).write(profile.to_json().as_bytes()).map_err(|error| {
-        say(format!("{error} Nothing was sent."));
-        Exit::Failed
-    })?;
+    backup_file(&path, args)
+        .write(profile.to_json().as_bytes())
+        .map_err(|error| Exit::Failed.saying(format!("{error} Nothing was sent.")))?;
     out.line(format!("The settings are backed up in {}.", path.display()))?;
     Ok(path)
 }
@@ -153,29 +146,28 @@ fn back_up(args: &UpdateArgs, controller: &Controller<'_>, out: &mut Output) -> 
 /// Stops the motors and sends the controller into its loader; ends the link.
 fn enter_loader(controller: &Controller<'_>, interrupt: &Interrupt) -> Result<(), Exit> {
     let request = Request::EnterLoader(RiskAccepted::by_the_user());
-    controller.device().request(request).map_err(|refused| {
-        say(format!("Could not enter the firmware loader: {refused}"));
-        Exit::Refused
-    })?;
+    controller
+        .device()
+        .request(request)
+        .map_err(|refused| Exit::Refused.saying(format!("Could not enter the firmware loader: {refused}")))?;
     let deadline = Instant::now() + ENTER_LIMIT;
     while Instant::now() < deadline {
         match client::next_event(controller.device(), interrupt)? {
             Some(Event::LoaderEntered) => return Ok(()),
-            Some(Event::Failure(failure)) => {
-                say(failure.to_string());
-                return Err(Exit::Refused);
-            }
+            Some(Event::Failure(failure)) => return Err(Exit::Refused.saying(failure)),
             _ => {}
         }
     }
-    say("Could not enter the firmware loader: the controller did not get there in time. Nothing was erased.");
-    Err(Exit::NoLink)
+    Err(Exit::NoLink.saying(
+        "Could not enter the firmware loader: the controller did not get there in time. Nothing was erased.",
+    ))
 }
 
 fn start(place: LoaderPlace, image: Image) -> Result<Upload, Exit> {
     Upload::start(place, image, SystemClock::shared()).map_err(|error| {
-        say(format!("Could not start the thread that sends the firmware: {error}. Nothing was erased."));
-        Exit::Failed
+        Exit::Failed.saying(format!(
+            "Could not start the thread that sends the firmware: {error}. Nothing was erased."
+        ))
     })
 }
 
@@ -207,8 +199,9 @@ fn follow(upload: &Upload, interrupt: &Interrupt) -> Result<Sent, Exit> {
             }
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => {
-                say("Could not send the firmware: an internal error. Please report it.");
-                return Err(Exit::Failed);
+                return Err(
+                    Exit::Failed.saying("Could not send the firmware: an internal error. Please report it.")
+                );
             }
         }
     }

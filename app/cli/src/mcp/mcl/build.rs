@@ -59,10 +59,11 @@ struct Report {
 }
 
 /// Builds every file that has no error.
-pub fn run(args: &BuildArgs, out: &mut Output) -> Exit {
+pub fn run(args: &BuildArgs, out: &mut Output) -> Result<Exit, Exit> {
     if args.output.is_some() && args.files.len() > 1 {
-        say("--output names one image, but several scripts are given. Leave it out, or build one at a time.");
-        return Exit::Usage;
+        return Err(Exit::Usage.saying(
+            "--output names one image, but several scripts are given. Leave it out, or build one at a time.",
+        ));
     }
     let mut files = Vec::new();
     let mut exit = Exit::Done;
@@ -86,11 +87,12 @@ pub fn run(args: &BuildArgs, out: &mut Output) -> Exit {
             files.iter().filter(|file| file.image.is_some()).try_for_each(|file| print(file, out))
         }
     };
-    printed.map_or_else(Exit::from, |()| exit)
+    printed?;
+    Ok(exit)
 }
 
 fn build(path: &Path, args: &BuildArgs, out: &mut Output) -> Result<Built, Exit> {
-    let source = Source::read(path).map_err(|error| failed(&error.to_string()))?;
+    let source = Source::read(path).map_err(|error| Exit::Failed.saying(error))?;
     let compiled = source.compile();
     if !args.json {
         let said = source.rendered(&compiled);
@@ -116,18 +118,11 @@ fn build(path: &Path, args: &BuildArgs, out: &mut Output) -> Result<Built, Exit>
     Ok(built)
 }
 
-fn failed(sentence: &str) -> Exit {
-    say(sentence);
-    Exit::Failed
-}
-
 fn target(path: &Path, args: &BuildArgs) -> Result<PathBuf, Exit> {
     match &args.output {
         Some(output) => Ok(output.clone()),
-        None if is_standard(path) => {
-            say("A script on standard input has no name: say with --output where the image goes.");
-            Err(Exit::Usage)
-        }
+        None if is_standard(path) => Err(Exit::Usage
+            .saying("A script on standard input has no name: say with --output where the image goes.")),
         None => Ok(path.with_extension(EXTENSION)),
     }
 }

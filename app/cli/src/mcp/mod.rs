@@ -1,0 +1,96 @@
+//! MCP and RoboClaw on the command line: firmware, scripts, the language of scripts, and their part of the shared commands.
+
+pub mod decoder;
+mod firmware;
+mod mcl;
+mod protocol;
+mod script;
+mod sim;
+mod unit;
+
+use brushwork_link::Wire;
+use brushwork_link::device::{DeviceHandle, Identity};
+use brushwork_link::family::{FamilyRef, Model};
+use brushwork_link::settings::{SettingsImage, SettingsTable};
+use brushwork_mcp_client::{MCP, settings};
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::packet_serial::{Address, Generation};
+use brushwork_values::Motor;
+use clap::ArgMatches;
+use serde_json::json;
+
+use crate::exit::Exit;
+use crate::family::{Family, Judged, Page, Said, Simulated, SimulatedModel};
+use crate::interrupt::Interrupt;
+use crate::monitor::follower::Follower;
+use crate::readings::Readings;
+use crate::tool::Tool;
+use decoder::Decoder;
+
+/// MCP and RoboClaw as commands see them.
+#[derive(Debug)]
+pub struct McpCommands;
+
+impl Family for McpCommands {
+    fn family(&self) -> FamilyRef {
+        MCP
+    }
+
+    fn commands(&self) -> Vec<Tool> {
+        let firmware = "Show what firmware is installed, and update it from a file of yours";
+        let script = "Download, start and stop a controller's script";
+        let mcl = "Check, build, run, list and format MCL scripts; print the language reference";
+        vec![
+            Tool::new("firmware", 10, firmware, firmware::run),
+            Tool::new("script", 11, script, script::run),
+            Tool::new("mcl", 40, mcl, mcl::run),
+        ]
+    }
+
+    fn simulated(&self, model: &Model) -> SimulatedModel {
+        let assumed = models::lookup(model.key).map_or("", |model| model.assumed);
+        SimulatedModel { rating: model.rating, assumed }
+    }
+
+    fn simulate(&self, sim: &ArgMatches) -> Result<Simulated, Exit> {
+        sim::simulate(sim)
+    }
+
+    fn protocol(&self, names: &[String]) -> Result<Page, String> {
+        protocol::page(names)
+    }
+
+    fn settings_reference(&self) -> Option<Page> {
+        Some(Page::new(&settings::reference_text(), &settings::reference()))
+    }
+
+    fn conflicts(&self, table: &SettingsTable, image: &SettingsImage) -> Vec<Said> {
+        let conflicts = settings::conflicts(table, &|key| image.get(key)).into_iter();
+        conflicts.map(|conflict| Said { data: json!(conflict), sentence: conflict.sentence }).collect()
+    }
+
+    fn follower(&self, generation: Option<u8>) -> Box<dyn Follower> {
+        Box::new(Decoder::new(generation.and_then(Generation::from_number)))
+    }
+
+    fn full_speed(
+        &self,
+        motors: &[Motor],
+        device: &DeviceHandle,
+        interrupt: &Interrupt,
+    ) -> Result<u32, Exit> {
+        unit::qpps(motors, device, interrupt)
+    }
+
+    fn read_inputs(&self, wire: &mut dyn Wire) -> Option<Vec<i64>> {
+        unit::read_inputs(wire)
+    }
+
+    fn judge(&self, identity: &Identity, readings: &Readings) -> Judged {
+        unit::judge(identity, readings)
+    }
+
+    fn stopped_addresses(&self) -> Vec<u8> {
+        Address::ALL.map(Address::get).to_vec()
+    }
+}

@@ -1,0 +1,94 @@
+//! The Motion Mind 3 on the command line: its terminal, and its part of the shared commands.
+
+mod decoder;
+mod sim;
+mod terminal;
+
+use brushwork_link::device::Identity;
+use brushwork_link::family::{FamilyRef, Model};
+use brushwork_motion_mind_client::{MOTION_MIND, MotionMindFacts, taken};
+use brushwork_motion_mind_wire::{reference, reference_entry, reference_page};
+use clap::{Arg, ArgMatches, Args as _, Command};
+
+use crate::exit::Exit;
+use crate::family::{Family, Page, Simulated, SimulatedModel};
+use crate::monitor::follower::Follower;
+use crate::tool::Tool;
+use decoder::Decoder;
+use sim::Switches;
+
+/// The Motion Mind 3 as commands see it.
+#[derive(Debug)]
+pub struct MotionMindCommands;
+
+impl Family for MotionMindCommands {
+    fn family(&self) -> FamilyRef {
+        MOTION_MIND
+    }
+
+    fn commands(&self) -> Vec<Tool> {
+        let about = "Send commands to a Motion Mind as they are typed";
+        vec![Tool::new("terminal", 21, about, terminal::run)]
+    }
+
+    fn simulated(&self, _model: &Model) -> SimulatedModel {
+        SimulatedModel { rating: sim::RATING, assumed: sim::ASSUMED }
+    }
+
+    fn sim_arguments(&self) -> Vec<Arg> {
+        // Their places on the help page are those of the command that takes them.
+        Switches::augment_args(Command::default().next_display_order(None)).get_arguments().cloned().collect()
+    }
+
+    fn misplaced(&self, sim: &ArgMatches) -> Option<String> {
+        sim::misplaced(sim)
+    }
+
+    fn simulate(&self, sim: &ArgMatches) -> Result<Simulated, Exit> {
+        sim::simulate(sim).map_err(|sentence| Exit::Usage.saying(sentence))
+    }
+
+    fn first_simulated(&self, text: &str) -> Option<u8> {
+        sim::first_of(text)
+    }
+
+    fn protocol(&self, names: &[String]) -> Result<Page, String> {
+        let named = |name: &String| {
+            reference_entry(name).ok_or_else(|| {
+                format!(
+                    "There is no command or register \"{name}\" of a Motion Mind. Use a name such as WRITE_STORE or PTERM; \
+                     `brushwork protocol --family motion-mind` prints all."
+                )
+            })
+        };
+        let entries: Vec<_> = names.iter().map(named).collect::<Result<_, _>>()?;
+        let entries: Vec<_> = entries.iter().map(|entry| entry.trim_end()).collect();
+        let text = if entries.is_empty() { reference_page() } else { entries.join("\n") };
+        Ok(Page::new(&text, &reference()))
+    }
+
+    fn follower(&self, _generation: Option<u8>) -> Box<dyn Follower> {
+        Box::new(Decoder::default())
+    }
+
+    fn set_up(&self, identity: &Identity) -> Option<String> {
+        let facts = MotionMindFacts::of(identity)?;
+        Some(format!(
+            "{}, {} protocol. Over the serial line it takes {}.",
+            capital(&facts.mode.to_string()),
+            facts.protocol,
+            taken(facts.mode)
+        ))
+    }
+
+    fn stopped_addresses(&self) -> Vec<u8> {
+        Vec::new()
+    }
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters
+        .next()
+        .map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + letters.as_str())
+}

@@ -1,0 +1,60 @@
+//! What has been read of a unit so far, for `brushwork status` and `drive`.
+
+use brushwork_link::Stream;
+use brushwork_link::device::{Channel, Event, Identity, Newest, StatusReport};
+use brushwork_link::settings::SettingsImage;
+use serde_json::{Map, Value, json};
+
+use super::output::say;
+
+/// The newest of everything.
+#[derive(Default)]
+pub struct Readings {
+    newest: Newest,
+    /// What the unit reports.
+    pub status: Option<StatusReport>,
+    /// The stream that the port is wired to.
+    pub stream: Option<Stream>,
+    /// The settings in RAM.
+    pub settings: Option<SettingsImage>,
+    /// Where the input pins stand, raw as the wire carries it, where the unit tells.
+    pub inputs: Option<Vec<i64>>,
+}
+
+impl Readings {
+    /// Takes over what an event tells.
+    pub fn take(&mut self, event: Event) {
+        match event {
+            Event::Sample(sample) => self.newest.update(&sample),
+            Event::Status(status) => self.status = Some(status),
+            Event::Selected { stream, .. } => self.stream = stream,
+            Event::Failure(failure) => say(failure.to_string()),
+            _ => {}
+        }
+    }
+
+    /// A channel's newest value.
+    pub fn get(&self, channel: Channel) -> Option<f64> {
+        self.newest.get(channel)
+    }
+
+    /// Whether the signals that every unit tells have come round.
+    pub fn is_complete(&self, identity: &Identity) -> bool {
+        let wanted = [
+            Channel::M1_POSITION,
+            Channel::M1_VELOCITY,
+            Channel::M1_CURRENT,
+            Channel::MAIN_BATTERY,
+            Channel::LOGIC_BATTERY,
+            Channel::TEMPERATURE_1,
+        ];
+        let is_there = |channel| !identity.channels().contains(&channel) || self.get(channel).is_some();
+        self.status.is_some() && wanted.into_iter().all(is_there)
+    }
+
+    /// The channels of a unit but the input pins as JSON, by their keys; what was not read is null.
+    pub fn to_json(&self, identity: &Identity) -> Map<String, Value> {
+        let polled = identity.channels().iter().copied().filter(|channel| !channel.is_pin());
+        polled.map(|channel| (channel.key.to_owned(), json!(self.get(channel)))).collect()
+    }
+}
