@@ -66,7 +66,7 @@ pub fn tool() -> Tool {
         "bench",
         50,
         "Measure link use, stop latency, the simulator and the window",
-        |args, out, interrupt| Ok(run(args, out, interrupt)),
+        |args: &BenchArgs, out, interrupt| Ok(run(args, out, interrupt)),
     )
 }
 
