@@ -214,7 +214,7 @@ fn recordings_are_read_to_the_last_value() {
 
 #[test]
 fn the_window_is_as_it_was_left() {
-    brushwork_gui::install(&brushwork::WINDOWS);
+    brushwork::install();
     let work = TempDir::new().expect("a temporary folder can be made");
     let path = work.path().join("window.json");
     fs::copy(file("window.json"), &path).expect("the folder is the test's");

@@ -74,6 +74,7 @@ fn hours_of_random_use_leave_nothing_driven_and_memory_flat() {
     assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
 }
 
+#[expect(clippy::print_stdout, reason = "the figures of a long run are what it is for")]
 fn use_for_hours() {
     let seed = 0x5EED_CAFE_F00D;
     let whole = Duration::from_secs_f64(hours() * 3_600.0);
