@@ -11,6 +11,7 @@ use brushwork_tuning::cause::Cause;
 use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
 
+use super::known::Known;
 use super::own::Own;
 use super::words::{self, SettingsWords};
 use crate::model::drawer::Tab;
@@ -22,9 +23,6 @@ use crate::model::screen::Screen;
 use crate::model::simulated::Simulated;
 use crate::model::velocity::Velocity;
 use crate::tune::Loop;
-
-/// What is known of a setting, by its key.
-pub type Known<'a> = &'a dyn Fn(&str) -> Option<SettingValue>;
 
 /// What the window has to know of a family. What has a default is had by few.
 pub trait Family: Sync {

@@ -11,10 +11,12 @@ use brushwork_link::FamilyRef;
 use brushwork_link::device::Channel;
 
 mod facts;
+mod known;
 mod own;
 mod words;
 
-pub use facts::{Ability, ActiveIndicator, Family, Figure, Figures, Known, Sliders};
+pub use facts::{Ability, ActiveIndicator, Family, Figure, Figures, Sliders};
+pub use known::Known;
 pub use own::Own;
 pub use words::SettingsWords;
 

@@ -7,6 +7,8 @@ use std::time::Duration;
 use brushwork_link::Failure;
 use brushwork_link::device::{Event, Request, Sample};
 
+use super::known::Known;
+
 /// The state of a family's own screens and panels for one link. Each link has that of every family.
 pub trait Own: Any + Debug {
     /// Takes in an event of the link. True where it was about a read of its own, which concerns nobody else.
@@ -38,6 +40,11 @@ pub trait Own: Any + Debug {
 
     /// What the open screen needs read besides the signals, when it is time for it.
     fn read(&mut self, _now: Duration) -> Option<Request> {
+        None
+    }
+
+    /// Where the unit keeps its motor by itself, in counts: by settings as they were confirmed, and as they are known.
+    fn travel(&self, _confirmed: Known<'_>, _known: Known<'_>) -> Option<(f64, f64)> {
         None
     }
 

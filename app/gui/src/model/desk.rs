@@ -207,6 +207,12 @@ impl Desk {
         self.family().cannot_tune(self.link.identity(), &|key| self.known(key))
     }
 
+    /// Where the unit keeps its motor by itself, where it does.
+    pub fn virtual_travel(&self) -> Option<(f64, f64)> {
+        let confirmed = |key: &str| self.settings.unit()?.confirmed(key);
+        self.own.iter().find_map(|own| own.travel(&confirmed, &|key| self.known(key)))
+    }
+
     /// What a family keeps of its own here.
     ///
     /// # Panics

@@ -107,13 +107,6 @@ impl Desk {
         self.virtual_travel().unwrap_or((-span, span))
     }
 
-    /// The virtual limits, where they act.
-    pub fn virtual_travel(&self) -> Option<(f64, f64)> {
-        let of_register = |name| self.register(name).map(|value| value as f64);
-        let limits = of_register("VNLIMIT").zip(of_register("VPLIMIT"))?;
-        (self.has_bit(registers::FUNCTION, "VIRTLIMIT") && limits.0 < limits.1).then_some(limits)
-    }
-
     /// Asks for a position within the travel.
     pub fn ask_position(&mut self, counts: f64) {
         let (low, high) = self.mind_travel();

@@ -4,7 +4,7 @@ use brushwork_link::device::{Event, Request, Sample};
 use brushwork_motion_mind_wire::register_named;
 use std::time::Duration;
 
-use crate::family::Own;
+use crate::family::{Known, Own};
 use crate::model::screen::Screen;
 
 pub mod desk;
@@ -16,9 +16,10 @@ pub mod steps;
 pub mod terminal;
 mod words;
 
+use brushwork_link::settings::SettingValue;
 use drive::Reach;
 use radio::Radio;
-use registers::Live;
+use registers::{FUNCTION, Live, bit_key, key};
 use steps::StepAssistant;
 use terminal::Terminal;
 
@@ -93,6 +94,20 @@ impl Own for MotionMindDesk {
 
     fn read(&mut self, now: Duration) -> Option<Request> {
         self.live.read(now)
+    }
+
+    /// The virtual limits, where they act.
+    fn travel(&self, confirmed: Known<'_>, known: Known<'_>) -> Option<(f64, f64)> {
+        let limit = |name: &str| {
+            let register = register_named(name)?;
+            match confirmed(&key(register)) {
+                Some(SettingValue::Int(value)) => Some(value as f64),
+                _ => self.live.get(register).map(|value| value as f64),
+            }
+        };
+        let limits = limit("VNLIMIT").zip(limit("VPLIMIT"))?;
+        let act = known(&bit_key(FUNCTION, "VIRTLIMIT")) == Some(SettingValue::Bool(true));
+        (act && limits.0 < limits.1).then_some(limits)
     }
 
     fn not_read(&mut self) {
