@@ -3,6 +3,7 @@
 mod buses;
 mod clamp;
 mod debugger;
+mod echo;
 mod functions;
 mod general;
 mod generator;

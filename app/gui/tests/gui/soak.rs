@@ -3,11 +3,10 @@
 //!
 //! A short run by default; `BRUSHWORK_SOAK_HOURS=8 cargo test -p brushwork-gui --test gui soak` runs them all.
 
-use std::process::Command;
 use std::time::Duration;
 
+use crate::support::alone::{LIMIT, alone};
 use crate::support::bench::Bench;
-use brushwork_child::Child;
 use brushwork_gui::model::Phase;
 use brushwork_gui::model::link::Arming;
 use brushwork_link::Clock as _;
@@ -29,11 +28,6 @@ const IDLE_FRAME: Duration = Duration::from_millis(2_000);
 const ARMED_FRAME: Duration = Duration::from_millis(200);
 /// What a stop may take: the ramp from full duty, a second try, and the controller's own second after a lost link.
 const GRACE: Duration = Duration::from_millis(1_700);
-
-/// Set for a copy of this process that does nothing else, whose memory is that of the window alone.
-const ALONE: &str = "BRUSHWORK_SOAK_ALONE";
-/// More than a busy machine needs to start, and for each virtual hour.
-const LIMIT: Duration = Duration::from_secs(900);
 
 /// A small generator of its own, so that a seed gives the same run everywhere.
 struct Dice(u64);
@@ -62,16 +56,8 @@ fn hours() -> f64 {
 
 #[test]
 fn hours_of_random_use_leave_nothing_driven_and_memory_flat() {
-    if std::env::var_os(ALONE).is_some() {
-        return use_for_hours();
-    }
-    let mut alone = Command::new(std::env::current_exe().unwrap());
     let name = "soak::hours_of_random_use_leave_nothing_driven_and_memory_flat";
-    alone.args(["--exact", name, "--nocapture"]).env(ALONE, "yes");
-    let limit = LIMIT + LIMIT.mul_f64(hours());
-    let said = Child::output(&alone, b"", limit);
-    println!("{}", String::from_utf8_lossy(&said.stdout));
-    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    println!("{}", alone(name, LIMIT + LIMIT.mul_f64(hours()), use_for_hours));
 }
 
 #[expect(clippy::print_stdout, reason = "the figures of a long run are what it is for")]

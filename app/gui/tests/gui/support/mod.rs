@@ -1,6 +1,7 @@
 //! What the window's tests share.
 #![allow(dead_code, reason = "each test file uses its own part of this")]
 
+pub mod alone;
 pub mod bench;
 pub mod causes;
 pub mod cpu;

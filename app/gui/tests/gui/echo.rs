@@ -5,6 +5,10 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Duration;
 
+use crate::support::alone::{LIMIT, alone};
+use crate::support::cpu::Cpu;
+use crate::support::line::Line;
+use crate::support::lockstep::{Gate, Lockstep};
 use brushwork_core::keep::{Keeping, Store};
 use brushwork_core::session::SessionError;
 use brushwork_gui::App;
@@ -26,15 +30,10 @@ use crossbeam_channel::{Receiver, bounded};
 use egui_kittest::kittest::Queryable as _;
 use egui_kittest::{Harness, HarnessBuilder};
 use family::{CHANNELS, ECHO, Echo, EchoMachine};
-use support::cpu::Cpu;
-use support::line::Line;
-use support::lockstep::{Gate, Lockstep};
 
-#[path = "../../../tests/tests/program/echo/family.rs"]
+#[path = "../../../../tests/tests/program/echo/family.rs"]
 #[allow(dead_code, reason = "shared with the tests of the program")]
 mod family;
-#[path = "gui/support/mod.rs"]
-mod support;
 
 const FRAME: Duration = Duration::from_millis(20);
 
@@ -165,6 +164,11 @@ impl Bench {
 
 #[test]
 fn a_family_that_draws_nothing_itself_is_shown_by_the_shared_screens() {
+    // The other tests' families are installed in their process.
+    alone("echo::a_family_that_draws_nothing_itself_is_shown_by_the_shared_screens", LIMIT, show_it);
+}
+
+fn show_it() {
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
     let mut bench = Bench::new(&folder);
     bench.app().open("sim:echo-1");
