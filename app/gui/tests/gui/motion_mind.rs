@@ -349,6 +349,7 @@ fn the_terminal_decodes_sends_and_shows_the_answer() {
     bench.pass_ms(6000);
     assert_eq!(ram(&bench, 0, "PTERM"), 6100);
     assert!(bench.sees("Answer: OK"));
+    assert_eq!(bench.store().backups(None).len(), 1, "what was there before is kept");
     type_line(&mut bench, "R01 04");
     bench.key(Key::Enter);
     bench.pass_ms(1000);

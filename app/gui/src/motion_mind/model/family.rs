@@ -5,7 +5,7 @@ use brushwork_link::FamilyRef;
 use brushwork_link::device::{Addresses, ArmScope, Channel, Drive, Identity, Indicator, StatusReport};
 use brushwork_motion_mind_client::channels::CHANNELS;
 use brushwork_motion_mind_client::{MOTION_MIND, MotionMindFacts};
-use brushwork_motion_mind_wire::Mode;
+use brushwork_motion_mind_wire::{Mode, numbers};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
@@ -109,7 +109,9 @@ impl Family for MotionMind {
     }
 
     fn saves(&self, command: u8, _identity: &Identity) -> Option<bool> {
-        matches!(command, RESTORE | RESET).then_some(false)
+        let is_change =
+            matches!(command, numbers::WRITE | numbers::WRITE_STORE | numbers::RESTORE | numbers::RESET);
+        is_change.then_some(false)
     }
 
     fn help_pages(&self) -> &'static [HelpPage] {
@@ -234,11 +236,6 @@ fn means_something(key: &str, identity: Option<&Identity>) -> bool {
     let facts = identity.and_then(MotionMindFacts::of);
     key != BAD_RC || facts.is_none_or(|facts| facts.mode == Mode::RadioControl)
 }
-
-/// Brings back the factory's values, in RAM and in EEPROM.
-const RESTORE: u8 = 0x1B;
-/// Loads the EEPROM.
-const RESET: u8 = 0x1C;
 
 const BAD_RC: &str = "bad_rc";
 
