@@ -1,6 +1,7 @@
 //! The house rules: layers, the map, licences, and what neither rustfmt nor clippy can see.
 
 mod circles;
+mod families;
 mod layers;
 mod licences;
 mod limited;

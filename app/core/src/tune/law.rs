@@ -1,12 +1,10 @@
 //! The families whose loops can be tuned, and what a run of any of them speaks of.
 
 use brushwork_family::tuned::{OneOf, Tuned};
-use brushwork_mcp::McpTuned;
-use brushwork_motion_mind::MotionMindTuned;
 use brushwork_tuning::law::Law;
 
 /// All of them.
-pub type Families = OneOf<McpTuned, MotionMindTuned>;
+pub type Families = OneOf<brushwork_mcp::McpTuned, brushwork_motion_mind::MotionMindTuned>;
 /// The law of whatever controller is at the wire.
 pub type AnyLaw = <Families as Tuned>::Law;
 /// Its registers.

@@ -84,8 +84,9 @@ pub enum Group {
     Buses,
     /// Digital outputs.
     Outputs,
-    /// What only RoboClaw boards have.
-    RoboClaw,
+    /// What only one line of a family's boards has.
+    #[serde(rename = "robo_claw")]
+    ProductLine,
     /// The PID of a Motion Mind.
     Loop,
     /// The bits of FUNCTION of a Motion Mind.
@@ -112,7 +113,7 @@ impl Group {
         Self::Streams,
         Self::Buses,
         Self::Outputs,
-        Self::RoboClaw,
+        Self::ProductLine,
         Self::Loop,
         Self::Functions,
         Self::Functions2,
@@ -136,7 +137,7 @@ impl Group {
             Self::Streams => "Serial ports",
             Self::Buses => "CAN and I2C",
             Self::Outputs => "Digital outputs",
-            Self::RoboClaw => "RoboClaw",
+            Self::ProductLine => "RoboClaw",
             Self::Loop => "PID",
             Self::Functions => "FUNCTION",
             Self::Functions2 => "FUNCTION2",

@@ -1,4 +1,4 @@
-//!
+//! Input pins: their modes, what they are wired to do, and what contradicts what.
 //! Everything here is a pure function of settings; reading and writing them is the business of its neighbours.
 
 mod conflicts;

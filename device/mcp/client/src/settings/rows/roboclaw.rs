@@ -159,7 +159,7 @@ const OUTPUT: Coding = Coding::PerUnit(scale::DEFAULT_SPEED_RAW / 100.0);
 const U16_STEPS: Limits = Limits::Steps(0, 0xFFFF);
 
 const fn roboclaw(key: &'static str, label: &'static str) -> Template {
-    Template::new(key, label, Group::RoboClaw).only_on(Family::RoboClaw)
+    Template::new(key, label, Group::ProductLine).only_on(Family::RoboClaw)
 }
 
 const fn input(key: &'static str, label: &'static str) -> Template {
