@@ -1,7 +1,8 @@
 //! What a script sent, and what a person types for it: a host around the host that listens in.
 
 use crate::mcl::ast::Motion;
-use crate::mcl::registers::{self, RegisterId};
+use crate::mcl::registers::RegisterId;
+use crate::mcl::words;
 use crate::vm::Host;
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
@@ -91,7 +92,7 @@ impl<H: Host + ?Sized> Host for Tapped<'_, H> {
 
     fn register(&mut self, id: RegisterId, element: u8) -> u32 {
         let value = self.host.register(id, element);
-        if registers::lookup("STREAMCOUNT").is_some_and(|(count, _)| count == id) {
+        if words::register("STREAMCOUNT").is_some_and(|(count, _)| count == id) {
             let typed = u32::try_from(self.terminal.waiting(element.into())).unwrap_or(u32::MAX);
             return value.saturating_add(typed).min(0xFF);
         }

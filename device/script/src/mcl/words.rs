@@ -193,6 +193,16 @@ pub fn known(word: &str) -> Option<Known> {
     TABLE.get(std::str::from_utf8(small).ok()?).copied()
 }
 
+/// The register of this name, in any case; the second part is true for a spelling of [`MISSPELT`].
+#[must_use]
+pub fn register(name: &str) -> Option<(RegisterId, bool)> {
+    match known(name) {
+        Some(Known::Register(id)) => Some((id, false)),
+        Some(Known::Misspelt(id)) => Some((id, true)),
+        Some(_) | None => None,
+    }
+}
+
 fn every_word() -> HashMap<String, Known> {
     let ids = || (0u8..).zip(&REGISTERS).map(|(index, row)| (row.name, RegisterId(index)));
     let misspelt = MISSPELT.iter().filter_map(|(wrong, right)| {
@@ -262,6 +272,17 @@ pub fn did_you_mean<'a>(typed: &str, words: impl IntoIterator<Item = &'a str>) -
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_register_is_found_by_its_name_in_any_case() {
+        for (index, row) in REGISTERS.iter().enumerate() {
+            let (id, misspelt) = register(&row.name.to_lowercase()).unwrap();
+            assert_eq!((usize::from(id.0), misspelt), (index, false), "{}", row.name);
+        }
+        assert_eq!(register("SINGALTIMEOUT").unwrap().0.row().name, "SIGNALTIMEOUT");
+        assert!(register("SINGALTIMEOUT").unwrap().1);
+        assert_eq!(register("SYSNOTHING"), None);
+    }
 
     #[test]
     fn words_of_the_language_are_reserved_in_any_case_and_labels_of_the_manual_are_not() {

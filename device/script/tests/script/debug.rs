@@ -4,7 +4,7 @@ use crate::support::Desk;
 use brushwork_script::debug::{
     Breakpoint, Debugger, Reason, Request, Show, StepKind, StopCause, View, Wanted, code_id,
 };
-use brushwork_script::mcl::{Names, registers};
+use brushwork_script::mcl::{Names, words};
 use brushwork_script::vm::{Machine, State};
 use std::sync::Arc;
 use std::time::Duration;
@@ -327,7 +327,7 @@ fn a_variable_is_set_while_the_script_stands_if_the_value_fits() {
     assert!(bench.set("half", "1").unwrap_err().contains("constant"));
     assert!(bench.set("first(0)", "1").unwrap_err().contains("cannot be set"));
     assert_eq!(bench.set("SYSMINMBAT", "120"), Ok("SYSMINMBAT is 120 now.".to_owned()));
-    let (id, _) = registers::lookup("SYSMINMBAT").unwrap();
+    let (id, _) = words::register("SYSMINMBAT").unwrap();
     assert_eq!(bench.desk.registers[&(id.0, 0)], 120);
     assert_eq!(bench.set("SYSTICK", "1"), Err("SYSTICK can only be read.".to_owned()));
     let executed = bench.machine.executed();
@@ -340,7 +340,7 @@ fn a_variable_is_set_while_the_script_stands_if_the_value_fits() {
 #[test]
 fn registers_are_read_with_all_their_elements() {
     let mut bench = Bench::new("done\ngoto done\n");
-    let (id, _) = registers::lookup("MOTORPWM").unwrap();
+    let (id, _) = words::register("MOTORPWM").unwrap();
     bench.desk.registers.insert((id.0, 1), 0xFFFF);
     bench.wanted.registers = Arc::new(vec![id]);
     let view = bench.view();

@@ -10,7 +10,7 @@
 use crate::support::examples::{Example, corrected, examples};
 use crate::support::{Desk, run_on};
 use brushwork_script::diagnostic::Severity;
-use brushwork_script::mcl::{compile, registers};
+use brushwork_script::mcl::{compile, registers, words};
 use brushwork_script::text::Lines;
 use brushwork_script::vm::{Machine, State, element};
 use std::sync::Arc;
@@ -35,7 +35,7 @@ fn number<T: std::str::FromStr>(text: &str) -> T {
 }
 
 fn register(desk: &Desk, name: &str, index: &str) -> u32 {
-    let (id, _) = registers::lookup(name).expect("a register");
+    let (id, _) = words::register(name).expect("a register");
     desk.registers[&(id.0, number(index))]
 }
 
@@ -50,7 +50,7 @@ fn prepare(example: &Example<'_>) -> Desk {
         let words: Vec<&str> = line.split(' ').collect();
         match words[..] {
             ["set", name, index, value] => {
-                let (id, _) = registers::lookup(name).expect("a register");
+                let (id, _) = words::register(name).expect("a register");
                 desk.registers.insert((id.0, number(index)), number(value));
             }
             ["i2c", byte] => desk.i2c_reply = Some(vec![number(byte)]),

@@ -4,8 +4,9 @@ use super::whole::Index;
 use crate::mcl::lexer::{Token, TokenKind, tokens};
 use crate::mcl::lower::{Symbol, SymbolKind};
 use crate::mcl::operators::OPERATORS;
-use crate::mcl::registers::{REGISTERS, lookup};
+use crate::mcl::registers::REGISTERS;
 use crate::mcl::types::{self, TABLES, VarType};
+use crate::mcl::words::register as lookup;
 use crate::mcl::words::{self, COMMANDS, FORMATS, Known, Word};
 use crate::text::Span;
 

@@ -3,8 +3,8 @@
 use super::super::ast::{Expr, Name, Place};
 use super::super::codes;
 use super::super::constant::{self, Constant};
-use super::super::registers;
 use super::super::types::VarType;
+use super::super::words;
 use super::Lowering;
 use super::place::Target;
 use super::scope::{Meaning, text_of};
@@ -72,7 +72,7 @@ impl Lowering<'_> {
     }
 
     pub(super) fn alias(&mut self, name: &Name, of: &Place) {
-        let whole = registers::lookup(of.name.span.of(self.text))
+        let whole = words::register(of.name.span.of(self.text))
             .filter(|(id, _)| id.row().length > 1 && of.index.is_none() && of.modifier.is_none());
         if let Some((id, _)) = whole {
             return self.scope.settle(name, Meaning::Register { id, element: None, part: None });

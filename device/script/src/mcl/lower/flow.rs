@@ -3,8 +3,9 @@
 use super::super::ast::{Expr, For, Name, Place, Statement};
 use super::super::codes;
 use super::super::constant::Constant;
-use super::super::registers::{self, RegisterId};
+use super::super::registers::RegisterId;
 use super::super::types::{self, VarType};
+use super::super::words;
 use super::place::Target;
 use super::scope::{Meaning, type_of};
 use super::{Argument, Lowering, Mark};
@@ -204,7 +205,7 @@ impl Lowering<'_> {
 
     /// The register that a place names, perhaps by an alias.
     pub(super) fn register_of(&self, place: &Place) -> Option<RegisterId> {
-        if let Some((id, _)) = registers::lookup(&place.name.key) {
+        if let Some((id, _)) = words::register(&place.name.key) {
             return Some(id);
         }
         match self.scope.get(&place.name.key)?.meaning.as_ref()? {
@@ -215,7 +216,7 @@ impl Lowering<'_> {
 
     /// The type that a variable, a register or a part of one is stored as; uses and faults are not noted.
     pub(super) fn stored_kind(&self, place: &Place) -> Option<VarType> {
-        let whole = match (registers::lookup(&place.name.key), self.scope.get(&place.name.key)) {
+        let whole = match (words::register(&place.name.key), self.scope.get(&place.name.key)) {
             (Some((id, _)), _) => id.row().kind,
             (None, entry) => match entry?.meaning.as_ref()? {
                 Meaning::Memory { memory, .. } => memory.first.kind,

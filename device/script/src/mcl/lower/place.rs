@@ -58,7 +58,7 @@ pub const AMBIGUOUS_STREAM: &str =
 impl Lowering<'_> {
     /// What a place is; what is wrong with it is reported.
     pub(super) fn target(&mut self, place: &Place) -> Option<Target> {
-        if let Some((id, misspelt)) = registers::lookup(place.name.span.of(self.text)) {
+        if let Some((id, misspelt)) = words::register(place.name.span.of(self.text)) {
             return self.register(place, id, misspelt);
         }
         match self.meaning(&place.name)? {

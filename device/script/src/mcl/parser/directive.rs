@@ -50,7 +50,7 @@ impl Parser<'_> {
                 return false;
             };
             let known = self.defined.contains(word.to_ascii_lowercase().as_str())
-                || crate::mcl::registers::lookup(word).is_some();
+                || crate::mcl::words::register(word).is_some();
             self.advance();
             return known != name.ends_with("ndef");
         }

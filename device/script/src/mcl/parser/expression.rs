@@ -127,7 +127,7 @@ impl Parser<'_> {
             if words::CAN.iter().any(|can| can.eq_ignore_ascii_case(word)) {
                 return self.no_public_syntax(word);
             }
-            if crate::mcl::registers::lookup(word).is_some() {
+            if words::register(word).is_some() {
                 return Ok(self.any_name(word));
             }
         }

@@ -6,7 +6,6 @@ use crate::mcl::ast::{Motion, Name, Place, Statement, StatementKind};
 use crate::mcl::codes;
 use crate::mcl::constant::{self, Constant};
 use crate::mcl::lexer::TokenKind;
-use crate::mcl::registers;
 use crate::mcl::types::{TABLES, VarType};
 use crate::mcl::words;
 
@@ -151,7 +150,7 @@ impl Parser<'_> {
             return self.fail(codes::UNEXPECTED, message, Some("For example: speed VAR SLong".into()));
         };
         let Some(kind) = VarType::lookup(word) else {
-            if registers::lookup(word).is_none() && words::is_reserved(word) {
+            if words::register(word).is_none() && words::is_reserved(word) {
                 let types = VarType::ALL.map(VarType::name).join(", ");
                 let hint = Some(format!("Types are {types}."));
                 return self.fail(codes::UNEXPECTED, format!("`{word}` is no type."), hint);

@@ -25,7 +25,7 @@ pub struct Register {
 pub struct RegisterId(pub u8);
 
 impl RegisterId {
-    /// Its row. Ids are made by [`super::lookup`] alone or checked when an image is read.
+    /// Its row. Ids are made by [`register`](crate::mcl::words::register) alone or checked when an image is read.
     #[must_use]
     pub fn row(self) -> &'static Register {
         &REGISTERS[usize::from(self.0) % REGISTERS.len()]

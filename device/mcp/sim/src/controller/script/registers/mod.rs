@@ -8,7 +8,8 @@ mod stream;
 mod system;
 
 use super::ScriptHost;
-use brushwork_script::mcl::registers::{REGISTERS, RegisterId, lookup};
+use brushwork_script::mcl::registers::{REGISTERS, RegisterId};
+use brushwork_script::mcl::words::register as lookup;
 use std::sync::LazyLock;
 
 /// Gives an element.
