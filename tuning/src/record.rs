@@ -162,14 +162,8 @@ impl<L: Law> Player<L> {
         Self { entries: entries.into_iter(), time: Duration::ZERO, played: 0, strayed_at: None }
     }
 
-    /// Whether the tuner asked for something else than it did when the record was made: then the record comes from another
-    /// version of the program, or was changed.
-    #[must_use]
-    pub fn strayed(&self) -> bool {
-        self.strayed_at.is_some()
-    }
-
-    /// The entry at which that was, from 0; that of its end where the record was too short.
+    /// The entry, from 0, at which the tuner asked for something else than it did when the record was made: then the record comes from
+    /// another version of the program, or was changed. That of its end where the record was too short.
     #[must_use]
     pub fn strayed_at(&self) -> Option<usize> {
         self.strayed_at

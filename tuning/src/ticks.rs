@@ -135,12 +135,6 @@ pub fn velocity_test<L: Law>(plant: &PlantModel, law: &L, lag: Lag, gains: &Gain
     Score::of(&after_step, &after_load, tick_s, high - low, 0.05)
 }
 
-/// The position test on the model.
-#[must_use]
-pub fn position_test<L: Law>(plant: &PlantModel, law: &L, lag: Lag, gains: &Gains, qpps: f64) -> Score {
-    position_test_and_end(plant, law, lag, gains, qpps).0
-}
-
 /// What still goes on in the last third of a test, after the step or after the load, whichever is more.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Residual {

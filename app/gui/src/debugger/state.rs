@@ -248,14 +248,6 @@ impl Debugging {
         self.compiler.is_busy()
     }
 
-    /// Whether the text in front is not what runs in the controller.
-    pub fn is_other_text(&self, id: TextId) -> bool {
-        let code = self.view.as_ref().map_or(0, |view| view.code);
-        code != 0
-            && !self.compiler.is_busy()
-            && self.front.as_ref().is_none_or(|front| front.code != code || front.text != id)
-    }
-
     pub fn program(&self) -> Option<&Arc<Program>> {
         self.loaded().map(|loaded| loaded.names.program())
     }

@@ -231,13 +231,6 @@ impl<'a> Line<'a> {
         }
     }
 
-    /// Sets how often a request is sent again.
-    #[must_use]
-    pub fn with_retries(mut self, retries: u32) -> Self {
-        self.retries = retries;
-        self
-    }
-
     /// Tells `progress` how far a search is.
     #[must_use]
     pub fn with_progress(mut self, progress: &'a mut Progress<'a>) -> Self {

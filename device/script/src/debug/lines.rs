@@ -51,11 +51,6 @@ impl LineTable {
         self.first.range(line..).next().map(|(line, _)| *line)
     }
 
-    /// Every line that has code.
-    pub fn with_code(&self) -> impl Iterator<Item = u32> {
-        self.first.keys().copied()
-    }
-
     /// The last line with code; 0 for an empty program.
     #[must_use]
     pub fn last(&self) -> u32 {

@@ -20,7 +20,7 @@ pub use host::Host;
 pub use memory::{Memory, element};
 
 use crate::arithmetic::{self, Type};
-use crate::op::{Array, Op};
+use crate::op::Array;
 use crate::program::{Program, limits};
 use counter::Loop;
 use reading::Reading;
@@ -264,13 +264,5 @@ impl Machine {
     pub fn label_of(&self, at: u32) -> Option<&str> {
         let labels = self.program.labels.iter().filter(|(_, label)| *label <= at);
         labels.max_by_key(|(_, label)| *label).map(|(name, _)| name.as_str())
-    }
-}
-
-impl Op {
-    /// Whether the machine may wait at it.
-    #[must_use]
-    pub fn may_wait(self) -> bool {
-        matches!(self, Self::Pause | Self::InByte | Self::InNumber(..) | Self::InReal | Self::InString(..))
     }
 }
