@@ -59,7 +59,7 @@ pub enum BenchArg {
     Sim,
     /// An hour of 16 channels: our graph against plain plot lines.
     Window,
-    /// MCL: lines compiled and instructions run per second, loops against PUC Lua 5.4 where it is installed.
+    /// MCL: lines compiled per second, and instructions run beside those of a controller.
     Mcl,
     /// The tuner and every textbook rule on simulated motors, in virtual time.
     Tuning,

@@ -28,8 +28,6 @@ pub struct Figure {
     decimals: usize,
     target: Option<Target>,
     highest_possible: Option<f64>,
-    /// Why there is no value.
-    missing: Option<&'static str>,
     note: String,
 }
 
@@ -43,22 +41,7 @@ impl Figure {
         decimals: usize,
     ) -> Self {
         let name = name.into();
-        Self {
-            bench,
-            name,
-            value,
-            unit,
-            decimals,
-            target: None,
-            highest_possible: None,
-            missing: None,
-            note: String::new(),
-        }
-    }
-
-    /// A figure that could not be measured here, and why: "not installed".
-    pub fn missing(bench: &'static str, name: impl Into<String>, why: &'static str) -> Self {
-        Self { missing: Some(why), ..Self::new(bench, name, f64::NAN, "", 0) }
+        Self { bench, name, value, unit, decimals, target: None, highest_possible: None, note: String::new() }
     }
 
     /// The same, held to a target.
@@ -81,9 +64,6 @@ impl Figure {
 
     /// Whether the target is met; none where there is no target. A measurement at fault meets nothing.
     pub fn is_met(&self) -> Option<bool> {
-        if self.missing.is_some() {
-            return None;
-        }
         if self.is_fault() {
             return Some(false);
         }
@@ -96,8 +76,7 @@ impl Figure {
 
     /// Whether the value cannot be true.
     fn is_fault(&self) -> bool {
-        self.missing.is_none() && !self.value.is_finite()
-            || self.highest_possible.is_some_and(|highest| self.value > highest)
+        !self.value.is_finite() || self.highest_possible.is_some_and(|highest| self.value > highest)
     }
 
     fn full_note(&self) -> String {
@@ -117,7 +96,6 @@ impl Figure {
             Target::Below(limit) => format!("< {limit}"),
         });
         let met = match self.is_met() {
-            None if self.missing.is_some() => "",
             Some(true) => "yes",
             Some(false) => "NO",
             None => "stated",
@@ -125,10 +103,7 @@ impl Figure {
         vec![
             self.bench.to_owned(),
             self.name.clone(),
-            self.missing.map_or_else(
-                || format!("{:.decimals$} {}", self.value, self.unit).trim_end().to_owned(),
-                str::to_owned,
-            ),
+            format!("{:.decimals$} {}", self.value, self.unit).trim_end().to_owned(),
             target,
             met.to_owned(),
             self.full_note(),
@@ -138,11 +113,10 @@ impl Figure {
 
 impl Serialize for Figure {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut object = serializer.serialize_struct("Figure", 8)?;
+        let mut object = serializer.serialize_struct("Figure", 7)?;
         object.serialize_field("bench", self.bench)?;
         object.serialize_field("figure", &self.name)?;
         object.serialize_field("value", &self.value)?;
-        object.serialize_field("missing", &self.missing)?;
         object.serialize_field("unit", self.unit)?;
         object.serialize_field("target", &self.target)?;
         object.serialize_field("met", &self.is_met())?;
@@ -174,15 +148,6 @@ mod tests {
         assert_eq!(figure.is_met(), Some(false));
         assert!(figure.cells()[5].starts_with("FAULT OF THE MEASUREMENT"), "{:?}", figure.cells());
         assert_eq!(link_use(f64::NAN).is_met(), Some(false));
-    }
-
-    #[test]
-    fn what_is_not_installed_is_neither_met_nor_missed() {
-        let figure = Figure::missing("mcl", "WHILE over Lua", "not installed").target(Target::AtLeast(1.0));
-        assert_eq!(figure.is_met(), None);
-        assert_eq!(figure.cells()[2..5], ["not installed", ">= 1", ""]);
-        let json = serde_json::to_value(figure).unwrap();
-        assert_eq!((&json["value"], &json["missing"]), (&serde_json::Value::Null, &"not installed".into()));
     }
 
     #[test]

@@ -112,7 +112,7 @@ fn evaluate<H: Host + ?Sized>(
     host: &mut H,
     first: Option<u32>,
 ) -> Result<u32, String> {
-    let mut scratch = Machine::plain(program.clone());
+    let mut scratch = Machine::new(program.clone());
     first.into_iter().for_each(|cell| scratch.put_first(cell));
     std::mem::swap(scratch.memory_mut(), machine.memory_mut());
     let state = scratch.run(host, MOST).clone();

@@ -260,7 +260,7 @@ fn part_of(part: Part, value: u32) -> u32 {
     part.kind.keep(value.checked_shr(part.first_bit).unwrap_or(0))
 }
 
-pub(super) fn type_of(kind: VarType) -> Type {
+fn type_of(kind: VarType) -> Type {
     match kind {
         VarType::Float => Type::Float,
         kind if kind.is_signed() => Type::Signed,

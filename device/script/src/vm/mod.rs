@@ -4,16 +4,11 @@
 mod counter;
 pub mod digits;
 mod execute;
-mod fast;
 mod fault;
 mod host;
 mod memory;
 mod reading;
-mod regions;
-mod step;
-mod steps;
 mod streams;
-mod translate;
 
 pub use fault::{Fault, FaultKind};
 pub use host::Host;
@@ -26,7 +21,6 @@ use counter::Loop;
 use reading::Reading;
 use std::sync::Arc;
 use std::time::Duration;
-use step::{MARGIN, Regions};
 
 /// A running program.
 #[derive(Clone, Debug)]
@@ -43,7 +37,6 @@ pub struct Machine {
     reading: Reading,
     result: (u32, Type),
     executed: u64,
-    regions: Arc<Regions>,
 }
 
 /// A subroutine that has not returned.
@@ -89,19 +82,8 @@ impl Machine {
     /// A machine at the beginning of a program, with zeroed memory.
     #[must_use]
     pub fn new(program: Arc<Program>) -> Self {
-        let regions = Arc::new(Regions::of(&program));
-        Self::with_regions(program, regions)
-    }
-
-    /// The same without the translation that makes long runs fast: for programs of a few instructions, and those whose memory is lent.
-    #[must_use]
-    pub fn plain(program: Arc<Program>) -> Self {
-        Self::with_regions(program, Arc::default())
-    }
-
-    fn with_regions(program: Arc<Program>, regions: Arc<Regions>) -> Self {
         Self {
-            memory: regions.memory(&program),
+            memory: Memory::new(program.ram_bytes),
             loops: vec![Loop::default(); program.loops as usize],
             program,
             stack: Vec::with_capacity(64),
@@ -113,13 +95,12 @@ impl Machine {
             reading: Reading::default(),
             result: (0, Type::Unsigned),
             executed: 0,
-            regions,
         }
     }
 
     /// Goes back to the beginning, with zeroed memory.
     pub fn reset(&mut self) {
-        *self = Self::with_regions(self.program.clone(), self.regions.clone());
+        *self = Self::new(self.program.clone());
     }
 
     /// Runs at most `budget` instructions and says how far it is. A machine that ended or faulted stays where it is.
@@ -132,16 +113,9 @@ impl Machine {
         if let State::Listening { .. } = self.state {
             self.state = State::Ready;
         }
-        let (program, regions) = (self.program.clone(), self.regions.clone());
+        let program = self.program.clone();
         let mut left = budget;
         while left > 0 && matches!(self.state, State::Ready) {
-            if left > MARGIN {
-                let before = left;
-                left = self.run_regions(&regions, &program, left);
-                if left != before {
-                    continue;
-                }
-            }
             left -= 1;
             self.executed += 1;
             let at = self.at;

@@ -11,5 +11,5 @@ mod messages;
 mod mutations;
 mod precedence;
 mod programs;
-mod speed_same;
+mod slices;
 mod support;
