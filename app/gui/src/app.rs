@@ -13,7 +13,7 @@ use crossbeam_channel::TryRecvError;
 use egui::{Context, Ui, ViewportCommand};
 
 use super::actions;
-use super::command::{Command, GuidedWish};
+use super::command::{Command, GuidedAction};
 use super::ending::EndBySignal;
 use super::frame::FRAME_INTERVAL;
 use super::keys;
@@ -302,11 +302,11 @@ impl App {
             Command::ApplyLoops(columns) => self.apply_loops(columns),
             Command::World(action) => self.act_on_world(action),
             Command::ToggleWorld => model.front.world.open = !model.front.world.open,
-            Command::Settings(wish) => self.settings(wish),
+            Command::Settings(action) => self.settings(action),
             Command::Raw { id, bytes } => self.send_raw(id, bytes),
             Command::Transact { id, command, values } => self.transact(Transact { id, command, values }),
-            Command::Guided(wish) => self.guided(wish),
-            Command::Tune(wish) => self.tune(wish),
+            Command::Guided(action) => self.guided(action),
+            Command::Tune(action) => self.tune(action),
             Command::OpenFirmware => model.front.own.iter_mut().for_each(|own| own.open_firmware()),
             Command::OpenSheet(sheet) => self.open_sheet(sheet),
             Command::ShowSettings(section) => {
@@ -324,13 +324,13 @@ impl App {
                 }
             }
             Command::ClampTest => self.clamp_test(),
-            Command::Own(wish) => {
-                if let Err(why) = wish.act(self) {
+            Command::Own(action) => {
+                if let Err(why) = action.act(self) {
                     self.model.messages.fail(why);
                 }
             }
-            Command::Debug(wish) => self.debug(wish),
-            Command::Mcl(wish) => self.edit_mcl(wish),
+            Command::Debug(action) => self.debug(action),
+            Command::Mcl(action) => self.edit_mcl(action),
             Command::DownloadMcl => self.download_mcl(),
             Command::CancelDownload => model.front.script.cancel(),
             Command::StartScript => self.start_script(),
@@ -445,8 +445,8 @@ impl App {
     }
 
     /// Starts or ends a job that moves motors.
-    fn guided(&mut self, wish: GuidedWish) {
-        match self.model.front.begin_guided(wish, self.model.screen) {
+    fn guided(&mut self, action: GuidedAction) {
+        match self.model.front.begin_guided(action, self.model.screen) {
             Ok(Some((owner, job))) => {
                 if !self.start_for(self.model.front.id(), owner, job) {
                     self.model.front.guided_not_begun();

@@ -8,21 +8,21 @@ use brushwork_plant::world::WorldAction;
 use brushwork_values::{Motor, Value};
 use egui::ThemePreference;
 
-use super::debugger::DebugWish;
+use super::debugger::DebugAction;
+use super::family_action::FamilyAction;
 use super::graph::GraphAction;
-use super::mcl::MclWish;
+use super::mcl::MclAction;
 use super::model::DeskId;
 use super::model::drawer::Tab;
 use super::model::general::{Section, Sheet};
-pub use super::model::guided::GuidedWish;
+pub use super::model::guided::GuidedAction;
 use super::model::help_page::HelpPage;
 use super::model::loop_settings::Column;
 use super::model::screen::Screen;
-use super::model::settings::SettingsWish;
-pub use super::tune::TuneWish;
-use super::wish::Wish;
+use super::model::settings::SettingsAction;
+pub use super::tune::TuneAction;
 
-/// One wish.
+/// One action.
 #[derive(Clone, Debug)]
 pub enum Command {
     /// Opens a link to what is chosen in the device list.
@@ -55,7 +55,7 @@ pub enum Command {
     /// Something done to the world of the simulated unit that is looked at.
     World(WorldAction),
     /// Something to be done with the settings of the unit that is looked at.
-    Settings(SettingsWish),
+    Settings(SettingsAction),
     /// Sends one raw command; the answer comes with `id`.
     Transact {
         id: u64,
@@ -97,18 +97,18 @@ pub enum Command {
     /// Stops all motors and closes the window.
     Exit,
     /// A profile to be played or QPPS to be measured.
-    Guided(GuidedWish),
+    Guided(GuidedAction),
     /// Something to be done in guided tuning.
-    Tune(TuneWish),
+    Tune(TuneAction),
     /// The voltage clamp test.
     ClampTest,
     DismissMessage,
     /// Something that a family's own screens ask for.
-    Own(Rc<dyn Wish>),
+    Own(Rc<dyn FamilyAction>),
     /// Something to be done by the MCL debugger.
-    Debug(DebugWish),
+    Debug(DebugAction),
     /// Something to be done in the MCL editor.
-    Mcl(MclWish),
+    Mcl(MclAction),
     /// Compiles the MCL program in front and downloads it.
     DownloadMcl,
     /// Gives up the download that runs.
@@ -117,12 +117,12 @@ pub enum Command {
     StopScript,
 }
 
-/// The wishes of one frame, in order.
+/// The actions of one frame, in order.
 pub type Commands = Vec<Command>;
 
 impl Command {
     /// Something that a family's own screens ask for.
-    pub fn own(wish: impl Wish + 'static) -> Self {
-        Self::Own(Rc::new(wish))
+    pub fn own(action: impl FamilyAction + 'static) -> Self {
+        Self::Own(Rc::new(action))
     }
 }

@@ -19,7 +19,7 @@ pub struct FileKind {
 
 /// Whether a file is read or written.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum FileWish {
+pub enum FileAction {
     Open,
     /// The name that is offered.
     Save {
@@ -45,13 +45,13 @@ pub enum FileAnswer {
 
 impl FileDialog {
     /// Opens the dialog.
-    pub fn ask(wish: FileWish, kind: FileKind) -> Self {
+    pub fn ask(action: FileAction, kind: FileKind) -> Self {
         Self::answered_by(move || {
             let extensions: Vec<&str> = kind.extension.split(',').collect();
             let dialog = rfd::FileDialog::new().add_filter(kind.title, &extensions);
-            match wish {
-                FileWish::Open => dialog.pick_file(),
-                FileWish::Save { name } => dialog.set_file_name(name).save_file(),
+            match action {
+                FileAction::Open => dialog.pick_file(),
+                FileAction::Save { name } => dialog.set_file_name(name).save_file(),
             }
         })
     }

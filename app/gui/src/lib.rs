@@ -14,6 +14,7 @@ pub mod debugger;
 pub mod ending;
 pub mod families;
 pub mod family;
+pub mod family_action;
 pub mod files;
 pub mod frame;
 pub mod graph;
@@ -34,7 +35,6 @@ pub mod theme;
 pub mod traffic;
 pub mod tune;
 pub mod widgets;
-pub mod wish;
 pub mod world;
 
 pub use app::App;

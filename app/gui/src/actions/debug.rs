@@ -6,12 +6,12 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 use super::{Action, Keys, Menu, Ready, key, place, shift};
 use crate::command::Command;
 use crate::debugger;
-use crate::debugger::DebugWish;
+use crate::debugger::DebugAction;
 use crate::model::Model;
 use crate::model::screen::Screen;
 
 macro_rules! action {
-    ($id:literal, $title:literal, $group:literal, $keys:expr, $help:literal, $ready:expr, $wish:expr) => {
+    ($id:literal, $title:literal, $group:literal, $keys:expr, $help:literal, $ready:expr, $action:expr) => {
         Action {
             id: $id,
             title: $title,
@@ -20,7 +20,7 @@ macro_rules! action {
             help: $help,
             ready: $ready,
             is_on: None,
-            command: |_| Command::Debug($wish),
+            command: |_| Command::Debug($action),
         }
     };
 }
@@ -33,7 +33,7 @@ pub(super) const ACTIONS: &[Action] = &[
         key(Key::F6),
         "Lets a paused script go on, or starts the program that is in the simulated controller.",
         not_running,
-        DebugWish::Run
+        DebugAction::Run
     ),
     action!(
         "debug.pause",
@@ -42,7 +42,7 @@ pub(super) const ACTIONS: &[Action] = &[
         ctrl_key(Key::F6),
         "Stops the script before its next line. The motors go on unless the world is frozen too.",
         running,
-        DebugWish::Pause
+        DebugAction::Pause
     ),
     action!(
         "debug.step-into",
@@ -51,7 +51,7 @@ pub(super) const ACTIONS: &[Action] = &[
         key(Key::F11),
         "Runs one line; a GOSUB leads into its subroutine.",
         paused,
-        DebugWish::Step(StepKind::Into)
+        DebugAction::Step(StepKind::Into)
     ),
     action!(
         "debug.step-over",
@@ -60,7 +60,7 @@ pub(super) const ACTIONS: &[Action] = &[
         key(Key::F12),
         "Runs one line with the subroutines it calls.",
         paused,
-        DebugWish::Step(StepKind::Over)
+        DebugAction::Step(StepKind::Over)
     ),
     action!(
         "debug.step-out",
@@ -69,7 +69,7 @@ pub(super) const ACTIONS: &[Action] = &[
         shift(Key::F11),
         "Runs on until the subroutine has returned.",
         paused,
-        DebugWish::Step(StepKind::Out)
+        DebugAction::Step(StepKind::Out)
     ),
     action!(
         "debug.run-to-cursor",
@@ -78,7 +78,7 @@ pub(super) const ACTIONS: &[Action] = &[
         shift(Key::F6),
         "Runs on to the line of the caret, or the next one that has code.",
         has_script,
-        DebugWish::RunToCursor
+        DebugAction::RunToCursor
     ),
     action!(
         "debug.breakpoint",
@@ -87,7 +87,7 @@ pub(super) const ACTIONS: &[Action] = &[
         ctrl_key(Key::F8),
         "Sets a breakpoint at the line of the caret, or takes it away.",
         on_screen,
-        DebugWish::ToggleBreakpoint
+        DebugAction::ToggleBreakpoint
     ),
     action!(
         "debug.clear-breakpoints",
@@ -96,7 +96,7 @@ pub(super) const ACTIONS: &[Action] = &[
         Keys::None,
         "Takes away every breakpoint of the program.",
         on_screen,
-        DebugWish::ClearBreakpoints
+        DebugAction::ClearBreakpoints
     ),
 ];
 

@@ -7,13 +7,13 @@ use egui::Key;
 use super::{Action, Keys, Menu, Ready, always, connected, ctrl, ctrl_shift, key, place, settings_idle};
 use crate::command::Command;
 use crate::family::Ability;
-use crate::mcl::MclWish;
+use crate::mcl::MclAction;
 use crate::model::drawer::Tab;
 use crate::model::general::{Section, Sheet};
 use crate::model::link::Arming;
 use crate::model::screen::Screen;
 use crate::model::{Model, Phase};
-use crate::tune::{Loop, TuneWish};
+use crate::tune::{Loop, TuneAction};
 
 pub(super) const ACTIONS: &[Action] = &[
     Action {
@@ -194,7 +194,7 @@ pub(super) const ACTIONS: &[Action] = &[
         help: "Starts the guided tuning of motor 1 on the open and armed Velocity or Position screen.",
         ready: can_tune,
         is_on: None,
-        command: |_| Command::Tune(TuneWish::Start(Motor::M1)),
+        command: |_| Command::Tune(TuneAction::Start(Motor::M1)),
     },
     Action {
         id: "device.tune-m2",
@@ -204,7 +204,7 @@ pub(super) const ACTIONS: &[Action] = &[
         help: "Starts the guided tuning of motor 2 on the open and armed Velocity or Position screen.",
         ready: |model| has(model, Ability::SecondMotor, can_tune),
         is_on: None,
-        command: |_| Command::Tune(TuneWish::Start(Motor::M2)),
+        command: |_| Command::Tune(TuneAction::Start(Motor::M2)),
     },
     Action {
         id: "device.by-hand",
@@ -240,7 +240,7 @@ pub(super) const ACTIONS: &[Action] = &[
         help: "Compiles the open MCL program and checks it for errors.",
         ready: always,
         is_on: None,
-        command: |_| Command::Mcl(MclWish::Check),
+        command: |_| Command::Mcl(MclAction::Check),
     },
     Action {
         id: "device.download-mcl",
@@ -260,7 +260,7 @@ pub(super) const ACTIONS: &[Action] = &[
         help: "Downloads a script that the maker's own program has compiled, for real controllers.",
         ready: |model| has(model, Ability::Scripts, connected),
         is_on: None,
-        command: |_| Command::Mcl(MclWish::ChooseImage),
+        command: |_| Command::Mcl(MclAction::ChooseImage),
     },
     Action {
         id: "device.start-script",

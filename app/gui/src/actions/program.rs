@@ -5,7 +5,7 @@ use egui::{Key, Modifiers};
 use super::{Action, Keys, Menu, Ready, always, ctrl, ctrl_shift, in_text_key, on_mcl, on_mcl_key, place};
 use crate::command::Command;
 use crate::mcl::panel::Tab;
-use crate::mcl::{Editor, MclWish};
+use crate::mcl::{Editor, MclAction};
 use crate::model::Model;
 
 const CTRL: Modifiers = Modifiers::COMMAND;
@@ -14,9 +14,9 @@ const ALT: Modifiers = Modifiers::ALT;
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 const NONE: Modifiers = Modifiers::NONE;
 
-/// One row whose command is a wish that depends on nothing.
+/// One row whose command is an action that depends on nothing.
 macro_rules! row {
-    ($menu:ident $group:literal, $id:literal, $title:literal, $keys:expr, $ready:expr, $wish:expr, $help:literal) => {
+    ($menu:ident $group:literal, $id:literal, $title:literal, $keys:expr, $ready:expr, $action:expr, $help:literal) => {
         Action {
             id: $id,
             title: $title,
@@ -25,14 +25,14 @@ macro_rules! row {
             help: $help,
             ready: $ready,
             is_on: None,
-            command: |_| Command::Mcl($wish),
+            command: |_| Command::Mcl($action),
         }
     };
 }
 
 /// One row for something that is on or off.
 macro_rules! switch {
-    ($id:literal, $title:literal, $keys:expr, $wish:expr, $is_on:expr, $help:literal) => {
+    ($id:literal, $title:literal, $keys:expr, $action:expr, $is_on:expr, $help:literal) => {
         Action {
             id: $id,
             title: $title,
@@ -41,23 +41,23 @@ macro_rules! switch {
             help: $help,
             ready: on_mcl,
             is_on: Some($is_on),
-            command: |_| Command::Mcl($wish),
+            command: |_| Command::Mcl($action),
         }
     };
 }
 
 macro_rules! example {
     ($index:literal, $id:literal, $title:literal, $help:literal) => {
-        row!(File 1, $id, $title, Keys::None, always, MclWish::Example($index), $help)
+        row!(File 1, $id, $title, Keys::None, always, MclAction::Example($index), $help)
     };
 }
 
 pub(super) const FILE: &[Action] = &[
-    row!(File 0, "file.new", "New MCL Program", ctrl(Key::N), always, MclWish::New, "Begins an empty MCL program."),
-    row!(File 0, "file.open", "Open MCL Program…", ctrl(Key::O), always, MclWish::Open, "Opens an MCL program from a file."),
-    row!(File 0, "file.save", "Save MCL Program", ctrl(Key::S), always, MclWish::Save, "Saves the open MCL program to its file."),
-    row!(File 0, "file.save-as", "Save MCL Program As…", ctrl_shift(Key::S), always, MclWish::SaveAs, "Saves the open MCL program under another name."),
-    row!(File 0, "file.print", "Print MCL Program…", on_mcl_key(CTRL, Key::P), on_mcl, MclWish::Print, "Prints the open MCL program with colours and line numbers: on the system's printer or to a PDF file."),
+    row!(File 0, "file.new", "New MCL Program", ctrl(Key::N), always, MclAction::New, "Begins an empty MCL program."),
+    row!(File 0, "file.open", "Open MCL Program…", ctrl(Key::O), always, MclAction::Open, "Opens an MCL program from a file."),
+    row!(File 0, "file.save", "Save MCL Program", ctrl(Key::S), always, MclAction::Save, "Saves the open MCL program to its file."),
+    row!(File 0, "file.save-as", "Save MCL Program As…", ctrl_shift(Key::S), always, MclAction::SaveAs, "Saves the open MCL program under another name."),
+    row!(File 0, "file.print", "Print MCL Program…", on_mcl_key(CTRL, Key::P), on_mcl, MclAction::Print, "Prints the open MCL program with colours and line numbers: on the system's printer or to a PDF file."),
     Action {
         id: "file.close",
         title: "Close MCL Program",
@@ -66,7 +66,7 @@ pub(super) const FILE: &[Action] = &[
         help: "Closes the tab in front; unsaved text is asked for first.",
         ready: on_mcl,
         is_on: None,
-        command: |model| Command::Mcl(MclWish::Close(model.mcl.front().id())),
+        command: |model| Command::Mcl(MclAction::Close(model.mcl.front().id())),
     },
     Action {
         id: "file.next-program",
@@ -76,7 +76,7 @@ pub(super) const FILE: &[Action] = &[
         help: "Puts the next tab in front.",
         ready: on_mcl,
         is_on: None,
-        command: |model| Command::Mcl(MclWish::Front(model.mcl.neighbour(true))),
+        command: |model| Command::Mcl(MclAction::Front(model.mcl.neighbour(true))),
     },
     Action {
         id: "file.previous-program",
@@ -86,7 +86,7 @@ pub(super) const FILE: &[Action] = &[
         help: "Puts the previous tab in front.",
         ready: on_mcl,
         is_on: None,
-        command: |model| Command::Mcl(MclWish::Front(model.mcl.neighbour(false))),
+        command: |model| Command::Mcl(MclAction::Front(model.mcl.neighbour(false))),
     },
     example!(
         0,
@@ -123,35 +123,35 @@ pub(super) const FILE: &[Action] = &[
 ];
 
 pub(super) const EDIT: &[Action] = &[
-    row!(Edit 0, "edit.undo", "Undo", in_text_key(CTRL, Key::Z), can_undo, MclWish::Undo, "Takes back the last edit of the MCL program."),
-    row!(Edit 0, "edit.redo", "Redo", in_text_key(CTRL, Key::Y), can_redo, MclWish::Redo, "Does the last edit that was taken back again."),
-    row!(Edit 0, "edit.cut", "Cut", Keys::Elsewhere("Ctrl+X"), on_mcl, MclWish::Cut, "Cuts the selected text, or the line, out of the MCL program."),
-    row!(Edit 0, "edit.copy", "Copy", Keys::Elsewhere("Ctrl+C"), on_mcl, MclWish::Copy, "Copies the selected text, or the line, of the MCL program."),
-    row!(Edit 0, "edit.paste", "Paste", Keys::Elsewhere("Ctrl+V"), on_mcl, MclWish::Paste, "Pastes text into the MCL program."),
-    row!(Edit 0, "edit.select-all", "Select All", in_text_key(CTRL, Key::A), on_mcl, MclWish::SelectAll, "Selects the whole MCL program."),
-    row!(Edit 1, "edit.find", "Find…", on_mcl_key(CTRL, Key::F), on_mcl, MclWish::Find, "Looks for text in the MCL program: case, whole words, regular expressions."),
-    row!(Edit 1, "edit.find-next", "Find Next", on_mcl_key(NONE, Key::F3), on_mcl, MclWish::FindNext, "Goes to the next match."),
-    row!(Edit 1, "edit.find-previous", "Find Previous", on_mcl_key(SHIFT, Key::F3), on_mcl, MclWish::FindPrevious, "Goes to the match before."),
-    row!(Edit 1, "edit.replace", "Replace…", on_mcl_key(CTRL, Key::H), on_mcl, MclWish::Replace, "Looks for text and puts other text in its place."),
-    row!(Edit 1, "edit.go-to-line", "Go to Line…", on_mcl_key(CTRL, Key::G), on_mcl, MclWish::GoToLine, "Goes to a line by its number."),
-    row!(Edit 2, "edit.bookmark", "Toggle Bookmark", on_mcl_key(CTRL, Key::F2), on_mcl, MclWish::ToggleBookmark, "Adds a bookmark to the line of the caret, or removes it."),
-    row!(Edit 2, "edit.next-bookmark", "Next Bookmark", on_mcl_key(NONE, Key::F2), has_bookmarks, MclWish::NextBookmark, "Goes to the next bookmark."),
-    row!(Edit 2, "edit.previous-bookmark", "Previous Bookmark", on_mcl_key(SHIFT, Key::F2), has_bookmarks, MclWish::PreviousBookmark, "Goes to the bookmark before."),
-    row!(Edit 2, "edit.clear-bookmarks", "Remove All Bookmarks", Keys::None, has_bookmarks, MclWish::ClearBookmarks, "Removes every bookmark of the program."),
-    row!(Edit 3, "edit.complete", "Complete Word", Keys::Elsewhere("Ctrl+Space"), on_mcl, MclWish::Complete, "Lists the words that could be typed."),
-    row!(Edit 3, "edit.definition", "Go to Definition", on_mcl_key(CTRL, Key::J), on_mcl, MclWish::Definition, "Goes to where the name at the caret is defined; Ctrl+click does the same."),
-    row!(Edit 3, "edit.rename", "Rename…", on_mcl_key(CTRL_SHIFT, Key::R), on_mcl, MclWish::Rename, "Gives the name at the caret another, in all its places."),
-    row!(Edit 3, "edit.match", "Go to Matching Word", on_mcl_key(CTRL, Key::M), on_mcl, MclWish::Matching, "Goes from IF over ELSE to ENDIF, from FOR to NEXT, and round."),
-    row!(Edit 3, "edit.next-problem", "Next Problem", on_mcl_key(NONE, Key::F4), has_problems, MclWish::NextProblem, "Goes to the next error or warning."),
-    row!(Edit 3, "edit.previous-problem", "Previous Problem", on_mcl_key(SHIFT, Key::F4), has_problems, MclWish::PreviousProblem, "Goes to the error or warning before."),
-    row!(Edit 4, "edit.comment", "Toggle Comment", in_text_key(CTRL, Key::Slash), on_mcl, MclWish::ToggleComment, "Makes comments of the selected lines, or code again."),
-    row!(Edit 4, "edit.tidy", "Format Program", on_mcl_key(CTRL_SHIFT, Key::F), on_mcl, MclWish::Tidy, "Writes the program in the usual form: indents, blanks, one way to write each word."),
-    row!(Edit 4, "edit.indent", "Indent Lines", Keys::Elsewhere("Tab"), on_mcl, MclWish::Indent { further: true }, "Moves the selected lines to the right."),
-    row!(Edit 4, "edit.unindent", "Unindent Lines", Keys::Elsewhere("Shift+Tab"), on_mcl, MclWish::Indent { further: false }, "Moves the selected lines to the left."),
-    row!(Edit 4, "edit.duplicate", "Duplicate Lines", in_text_key(CTRL, Key::D), on_mcl, MclWish::DuplicateLines, "Puts a copy of the selected lines below them."),
-    row!(Edit 4, "edit.delete-lines", "Delete Lines", in_text_key(CTRL_SHIFT, Key::K), on_mcl, MclWish::DeleteLines, "Takes the selected lines away."),
-    row!(Edit 4, "edit.lines-up", "Move Lines Up", in_text_key(ALT, Key::ArrowUp), on_mcl, MclWish::MoveLines { down: false }, "Moves the selected lines over the line above."),
-    row!(Edit 4, "edit.lines-down", "Move Lines Down", in_text_key(ALT, Key::ArrowDown), on_mcl, MclWish::MoveLines { down: true }, "Moves the selected lines over the line below."),
+    row!(Edit 0, "edit.undo", "Undo", in_text_key(CTRL, Key::Z), can_undo, MclAction::Undo, "Takes back the last edit of the MCL program."),
+    row!(Edit 0, "edit.redo", "Redo", in_text_key(CTRL, Key::Y), can_redo, MclAction::Redo, "Does the last edit that was taken back again."),
+    row!(Edit 0, "edit.cut", "Cut", Keys::Elsewhere("Ctrl+X"), on_mcl, MclAction::Cut, "Cuts the selected text, or the line, out of the MCL program."),
+    row!(Edit 0, "edit.copy", "Copy", Keys::Elsewhere("Ctrl+C"), on_mcl, MclAction::Copy, "Copies the selected text, or the line, of the MCL program."),
+    row!(Edit 0, "edit.paste", "Paste", Keys::Elsewhere("Ctrl+V"), on_mcl, MclAction::Paste, "Pastes text into the MCL program."),
+    row!(Edit 0, "edit.select-all", "Select All", in_text_key(CTRL, Key::A), on_mcl, MclAction::SelectAll, "Selects the whole MCL program."),
+    row!(Edit 1, "edit.find", "Find…", on_mcl_key(CTRL, Key::F), on_mcl, MclAction::Find, "Looks for text in the MCL program: case, whole words, regular expressions."),
+    row!(Edit 1, "edit.find-next", "Find Next", on_mcl_key(NONE, Key::F3), on_mcl, MclAction::FindNext, "Goes to the next match."),
+    row!(Edit 1, "edit.find-previous", "Find Previous", on_mcl_key(SHIFT, Key::F3), on_mcl, MclAction::FindPrevious, "Goes to the match before."),
+    row!(Edit 1, "edit.replace", "Replace…", on_mcl_key(CTRL, Key::H), on_mcl, MclAction::Replace, "Looks for text and puts other text in its place."),
+    row!(Edit 1, "edit.go-to-line", "Go to Line…", on_mcl_key(CTRL, Key::G), on_mcl, MclAction::GoToLine, "Goes to a line by its number."),
+    row!(Edit 2, "edit.bookmark", "Toggle Bookmark", on_mcl_key(CTRL, Key::F2), on_mcl, MclAction::ToggleBookmark, "Adds a bookmark to the line of the caret, or removes it."),
+    row!(Edit 2, "edit.next-bookmark", "Next Bookmark", on_mcl_key(NONE, Key::F2), has_bookmarks, MclAction::NextBookmark, "Goes to the next bookmark."),
+    row!(Edit 2, "edit.previous-bookmark", "Previous Bookmark", on_mcl_key(SHIFT, Key::F2), has_bookmarks, MclAction::PreviousBookmark, "Goes to the bookmark before."),
+    row!(Edit 2, "edit.clear-bookmarks", "Remove All Bookmarks", Keys::None, has_bookmarks, MclAction::ClearBookmarks, "Removes every bookmark of the program."),
+    row!(Edit 3, "edit.complete", "Complete Word", Keys::Elsewhere("Ctrl+Space"), on_mcl, MclAction::Complete, "Lists the words that could be typed."),
+    row!(Edit 3, "edit.definition", "Go to Definition", on_mcl_key(CTRL, Key::J), on_mcl, MclAction::Definition, "Goes to where the name at the caret is defined; Ctrl+click does the same."),
+    row!(Edit 3, "edit.rename", "Rename…", on_mcl_key(CTRL_SHIFT, Key::R), on_mcl, MclAction::Rename, "Gives the name at the caret another, in all its places."),
+    row!(Edit 3, "edit.match", "Go to Matching Word", on_mcl_key(CTRL, Key::M), on_mcl, MclAction::Matching, "Goes from IF over ELSE to ENDIF, from FOR to NEXT, and round."),
+    row!(Edit 3, "edit.next-problem", "Next Problem", on_mcl_key(NONE, Key::F4), has_problems, MclAction::NextProblem, "Goes to the next error or warning."),
+    row!(Edit 3, "edit.previous-problem", "Previous Problem", on_mcl_key(SHIFT, Key::F4), has_problems, MclAction::PreviousProblem, "Goes to the error or warning before."),
+    row!(Edit 4, "edit.comment", "Toggle Comment", in_text_key(CTRL, Key::Slash), on_mcl, MclAction::ToggleComment, "Makes comments of the selected lines, or code again."),
+    row!(Edit 4, "edit.tidy", "Format Program", on_mcl_key(CTRL_SHIFT, Key::F), on_mcl, MclAction::Tidy, "Writes the program in the usual form: indents, blanks, one way to write each word."),
+    row!(Edit 4, "edit.indent", "Indent Lines", Keys::Elsewhere("Tab"), on_mcl, MclAction::Indent { further: true }, "Moves the selected lines to the right."),
+    row!(Edit 4, "edit.unindent", "Unindent Lines", Keys::Elsewhere("Shift+Tab"), on_mcl, MclAction::Indent { further: false }, "Moves the selected lines to the left."),
+    row!(Edit 4, "edit.duplicate", "Duplicate Lines", in_text_key(CTRL, Key::D), on_mcl, MclAction::DuplicateLines, "Puts a copy of the selected lines below them."),
+    row!(Edit 4, "edit.delete-lines", "Delete Lines", in_text_key(CTRL_SHIFT, Key::K), on_mcl, MclAction::DeleteLines, "Takes the selected lines away."),
+    row!(Edit 4, "edit.lines-up", "Move Lines Up", in_text_key(ALT, Key::ArrowUp), on_mcl, MclAction::MoveLines { down: false }, "Moves the selected lines over the line above."),
+    row!(Edit 4, "edit.lines-down", "Move Lines Down", in_text_key(ALT, Key::ArrowDown), on_mcl, MclAction::MoveLines { down: true }, "Moves the selected lines over the line below."),
 ];
 
 pub(super) const VIEW: &[Action] = &[
@@ -159,7 +159,7 @@ pub(super) const VIEW: &[Action] = &[
         "view.hidden",
         "Hidden Characters",
         Keys::None,
-        MclWish::ToggleHidden,
+        MclAction::ToggleHidden,
         |model| model.mcl.options.hidden,
         "Shows spaces, tabs, line ends and characters that nobody sees in the MCL program."
     ),
@@ -167,7 +167,7 @@ pub(super) const VIEW: &[Action] = &[
         "view.current-line",
         "Highlight Current Line",
         Keys::None,
-        MclWish::ToggleCurrentLine,
+        MclAction::ToggleCurrentLine,
         |model| model.mcl.options.current_line,
         "Highlights the line of the caret."
     ),
@@ -175,13 +175,13 @@ pub(super) const VIEW: &[Action] = &[
         "view.folding",
         "Folding Lines",
         Keys::None,
-        MclWish::ToggleFolding,
+        MclAction::ToggleFolding,
         |model| model.mcl.options.folding,
         "Shows beside the text what can be folded away."
     ),
-    row!(View 4, "view.fold", "Fold or Unfold Block", in_text_key(CTRL, Key::OpenBracket), on_mcl, MclWish::ToggleFoldHere, "Folds the block of the caret away, or brings it back."),
-    row!(View 4, "view.fold-all", "Fold All", Keys::None, on_mcl, MclWish::FoldAll, "Folds every block away."),
-    row!(View 4, "view.unfold-all", "Unfold All", Keys::None, on_mcl, MclWish::UnfoldAll, "Brings every block back."),
+    row!(View 4, "view.fold", "Fold or Unfold Block", in_text_key(CTRL, Key::OpenBracket), on_mcl, MclAction::ToggleFoldHere, "Folds the block of the caret away, or brings it back."),
+    row!(View 4, "view.fold-all", "Fold All", Keys::None, on_mcl, MclAction::FoldAll, "Folds every block away."),
+    row!(View 4, "view.unfold-all", "Unfold All", Keys::None, on_mcl, MclAction::UnfoldAll, "Brings every block back."),
     Action {
         id: "view.zoom-in",
         title: "Text Larger",
@@ -190,7 +190,7 @@ pub(super) const VIEW: &[Action] = &[
         help: "Makes the text of MCL programs larger; Ctrl+wheel does the same.",
         ready: on_mcl,
         is_on: None,
-        command: |model| Command::Mcl(MclWish::Zoom(zoom(&model.mcl).saturating_add(10))),
+        command: |model| Command::Mcl(MclAction::Zoom(zoom(&model.mcl).saturating_add(10))),
     },
     Action {
         id: "view.zoom-out",
@@ -200,9 +200,9 @@ pub(super) const VIEW: &[Action] = &[
         help: "Makes the text of MCL programs smaller.",
         ready: on_mcl,
         is_on: None,
-        command: |model| Command::Mcl(MclWish::Zoom(zoom(&model.mcl).saturating_sub(10))),
+        command: |model| Command::Mcl(MclAction::Zoom(zoom(&model.mcl).saturating_sub(10))),
     },
-    row!(View 5, "view.zoom-normal", "Text Zoom 100 %", on_mcl_key(ALT, Key::Num0), on_mcl, MclWish::Zoom(100), "Makes the text of MCL programs as large as at first."),
+    row!(View 5, "view.zoom-normal", "Text Zoom 100 %", on_mcl_key(ALT, Key::Num0), on_mcl, MclAction::Zoom(100), "Makes the text of MCL programs as large as at first."),
     Action {
         id: "view.problems",
         title: "Problems",
@@ -211,7 +211,7 @@ pub(super) const VIEW: &[Action] = &[
         help: "Shows and hides the list of errors and warnings.",
         ready: on_mcl,
         is_on: Some(|model| shows(&model.mcl, Tab::Problems)),
-        command: |_| Command::Mcl(MclWish::ShowPanel(Tab::Problems)),
+        command: |_| Command::Mcl(MclAction::ShowPanel(Tab::Problems)),
     },
     Action {
         id: "view.terminal",
@@ -221,7 +221,7 @@ pub(super) const VIEW: &[Action] = &[
         help: "Shows and hides the terminal for what a script sends and gets.",
         ready: on_mcl,
         is_on: Some(|model| shows(&model.mcl, Tab::Terminal)),
-        command: |_| Command::Mcl(MclWish::ShowPanel(Tab::Terminal)),
+        command: |_| Command::Mcl(MclAction::ShowPanel(Tab::Terminal)),
     },
 ];
 

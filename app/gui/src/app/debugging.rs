@@ -8,15 +8,15 @@ use brushwork_script::debug::{Reason, Request};
 use egui::Context;
 
 use super::App;
-use crate::debugger::DebugWish;
+use crate::debugger::DebugAction;
 use crate::debugger::names::TextId;
 use crate::debugger::state::Source;
 use crate::graph::MarkKind;
-use crate::mcl::{DocId, Document, MclWish};
+use crate::mcl::{DocId, Document, MclAction};
 use crate::model::DeskId;
 use crate::model::screen::Screen;
 
-/// The answer to a wish comes within some milliseconds; the frame that shows it is drawn then, not with the next samples.
+/// The answer to an action comes within some milliseconds; the frame that shows it is drawn then, not with the next samples.
 const SOON: Duration = Duration::from_millis(12);
 
 impl App {
@@ -94,43 +94,43 @@ impl App {
         front.debug.is_stepping = hurry;
     }
 
-    /// Does what is wished of the debugger.
-    pub(super) fn debug(&mut self, wish: DebugWish) {
+    /// Does what is asked of the debugger.
+    pub(super) fn debug(&mut self, action: DebugAction) {
         let debug = &mut self.model.front.debug;
-        match wish {
-            DebugWish::Run if debug.is_paused() => debug.ask(Request::Continue),
-            DebugWish::Run => self.start_script(),
-            DebugWish::Pause => debug.ask(Request::Pause),
-            DebugWish::Step(kind) => debug.ask(Request::Step(kind)),
-            DebugWish::RunToCursor => {
+        match action {
+            DebugAction::Run if debug.is_paused() => debug.ask(Request::Continue),
+            DebugAction::Run => self.start_script(),
+            DebugAction::Pause => debug.ask(Request::Pause),
+            DebugAction::Step(kind) => debug.ask(Request::Step(kind)),
+            DebugAction::RunToCursor => {
                 let line = self.model.mcl.front().caret_line() as u32 + 1;
                 debug.ask(Request::RunTo(line));
             }
-            DebugWish::StopAtEntry(on) => {
+            DebugAction::StopAtEntry(on) => {
                 debug.stops_at_entry = on;
                 debug.ask(Request::StopAtEntry(on));
             }
-            DebugWish::FreezeWorld(on) => {
+            DebugAction::FreezeWorld(on) => {
                 debug.freezes_world = on;
                 debug.ask(Request::FreezeWorld(on));
             }
-            DebugWish::Pace(pace) => self.set_pace(pace),
-            DebugWish::ShowCounts(on) => debug.shows_counts = on,
-            DebugWish::ClearCounts => debug.ask(Request::ClearCounts),
-            DebugWish::Send => debug.send_typed(),
-            DebugWish::SetValue => debug.set(),
-            DebugWish::ToggleBreakpoint => {
+            DebugAction::Pace(pace) => self.set_pace(pace),
+            DebugAction::ShowCounts(on) => debug.shows_counts = on,
+            DebugAction::ClearCounts => debug.ask(Request::ClearCounts),
+            DebugAction::Send => debug.send_typed(),
+            DebugAction::SetValue => debug.set(),
+            DebugAction::ToggleBreakpoint => {
                 let line = self.model.mcl.front().caret_line();
-                self.edit_mcl(MclWish::ToggleBreakpoint(line));
+                self.edit_mcl(MclAction::ToggleBreakpoint(line));
             }
-            DebugWish::ClearBreakpoints => self.debugged().breakpoints.clear(),
-            DebugWish::RemoveBreakpoint(line) => {
+            DebugAction::ClearBreakpoints => self.debugged().breakpoints.clear(),
+            DebugAction::RemoveBreakpoint(line) => {
                 let (document, line) = (self.debugged(), line as usize - 1);
                 if document.breakpoints.contains(line) {
                     document.breakpoints.toggle(line);
                 }
             }
-            DebugWish::ShowLine(line) => {
+            DebugAction::ShowLine(line) => {
                 let id = self.debugged().id();
                 self.model.mcl.bring_to_front(id);
                 self.debugged().go_to_line((line as usize).saturating_sub(1));

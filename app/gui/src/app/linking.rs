@@ -129,7 +129,7 @@ impl App {
         }
     }
 
-    /// A link is gone, by wish or not. A simulated world lives on.
+    /// A link is gone, on request or not. A simulated world lives on.
     pub(super) fn ended(&mut self, id: DeskId) {
         if let Some(device) = self.links.entry(id).device.take() {
             links::close(device);

@@ -8,9 +8,9 @@ use brushwork_link::transport::ConnectTarget;
 use egui::{Context, ViewportCommand};
 
 use super::App;
+use crate::family_action::Host;
 use crate::model::screen::Screen;
 use crate::model::{DeskId, Model};
-use crate::wish::Host;
 
 impl Host for App {
     fn model(&mut self) -> &mut Model {

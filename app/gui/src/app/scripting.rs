@@ -9,29 +9,29 @@ use brushwork_script::mcl::compile;
 use egui::{Context, ViewportCommand};
 
 use super::App;
-use crate::mcl::MclWish;
+use crate::mcl::MclAction;
 use crate::model::jobs::Owner;
 use crate::model::screen::Screen;
 use crate::model::script::Source;
 
 impl App {
-    /// Does what is wished of the MCL editor. What opens or asks something shows its screen.
-    pub(super) fn edit_mcl(&mut self, wish: MclWish) {
+    /// Does what is asked of the MCL editor. What opens or asks something shows its screen.
+    pub(super) fn edit_mcl(&mut self, action: MclAction) {
         let shows = matches!(
-            wish,
-            MclWish::New
-                | MclWish::Open
-                | MclWish::Example(_)
-                | MclWish::SaveAs
-                | MclWish::Check
-                | MclWish::ChooseImage
+            action,
+            MclAction::New
+                | MclAction::Open
+                | MclAction::Example(_)
+                | MclAction::SaveAs
+                | MclAction::Check
+                | MclAction::ChooseImage
         );
-        let asks = wish == MclWish::Save && self.model.mcl.front().path.is_none();
+        let asks = action == MclAction::Save && self.model.mcl.front().path.is_none();
         if shows || asks {
             self.show(Screen::MclEditor);
         }
         let ctx = self.ctx.clone();
-        self.model.mcl.act(wish, &ctx);
+        self.model.mcl.act(action, &ctx);
     }
 
     /// Takes in what the editor's threads have done.
@@ -70,17 +70,17 @@ impl App {
         let simulated = self.model.front.link.identity().is_some_and(|identity| identity.simulated);
         if !simulated {
             self.model.messages.fail(REAL);
-            return self.edit_mcl(MclWish::ChooseImage);
+            return self.edit_mcl(MclAction::ChooseImage);
         }
         let document = self.model.mcl.front_mut();
         document.known();
         if document.findings.counts().0 > 0 {
-            return self.edit_mcl(MclWish::Check);
+            return self.edit_mcl(MclAction::Check);
         }
         let title = document.title();
         let text = Some((document.id(), document.text.revision()));
         let Some(program) = compile(&document.text.text()).program else {
-            return self.edit_mcl(MclWish::Check);
+            return self.edit_mcl(MclAction::Check);
         };
         self.send_image(&image::encode(&program), Source { title, text });
     }

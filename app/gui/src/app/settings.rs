@@ -8,20 +8,20 @@ use crate::model::DeskId;
 use crate::model::jobs::Owner;
 use crate::model::loop_settings::Column;
 use crate::model::screen::Screen;
-use crate::model::settings::{SettingsWish, UnitSettings};
+use crate::model::settings::{SettingsAction, UnitSettings};
 use crate::model::traffic::Transact;
 use brushwork_link::settings::SettingsImage;
 
 impl App {
     /// Starts or ends work with the settings, on the device thread.
-    pub(super) fn settings(&mut self, wish: SettingsWish) {
-        self.settings_of(self.model.front.id(), wish);
+    pub(super) fn settings(&mut self, action: SettingsAction) {
+        self.settings_of(self.model.front.id(), action);
     }
 
-    pub(super) fn settings_of(&mut self, id: DeskId, wish: SettingsWish) {
+    pub(super) fn settings_of(&mut self, id: DeskId, action: SettingsAction) {
         let Some(desk) = self.model.desk_mut(id) else { return };
-        if desk.tune.is_running() && !matches!(wish, SettingsWish::Cancel | SettingsWish::Read) {
-            desk.tune.waiting = Some(wish);
+        if desk.tune.is_running() && !matches!(action, SettingsAction::Cancel | SettingsAction::Read) {
+            desk.tune.waiting = Some(action);
             self.model.messages.note(
                 "That waits for the end of the tuning run, so that the time-out and the gains of before are written, not those of \
                  the run.",
@@ -29,7 +29,7 @@ impl App {
             return;
         }
         let stream = desk.link.stream;
-        if let Some(job) = desk.general_view().begin(wish, stream)
+        if let Some(job) = desk.general_view().begin(action, stream)
             && !self.start_for(id, Owner::Settings, job)
             && let Some(desk) = self.model.desk_mut(id)
         {
@@ -49,7 +49,7 @@ impl App {
             return;
         }
         if front.settings.has_unfinished() {
-            return self.settings(SettingsWish::Read);
+            return self.settings(SettingsAction::Read);
         }
         if front.is_idle()
             && let Some(job) = front.settings.begin_quietly()
@@ -71,7 +71,7 @@ impl App {
                 desk.general.cancel_calibration();
             }
             if desk.general.wants_closing() && desk.settings.running().is_none() {
-                self.settings_of(id, SettingsWish::CloseInput);
+                self.settings_of(id, SettingsAction::CloseInput);
             }
         }
     }

@@ -9,7 +9,7 @@ use crate::model::loop_settings::key;
 use crate::tune::files;
 use crate::tune::registers::image;
 use crate::tune::sequence::{Next, Origin};
-use crate::tune::{Loop, TuneWish};
+use crate::tune::{Loop, TuneAction};
 use brushwork_core::keep::TrialKeeper;
 use brushwork_core::tune::file;
 use brushwork_core::tune::law::AnyRegisters;
@@ -19,38 +19,39 @@ use brushwork_tuning::registers::RegisterTable as _;
 use brushwork_values::Motor;
 
 impl App {
-    pub(super) fn tune(&mut self, wish: TuneWish) {
+    pub(super) fn tune(&mut self, action: TuneAction) {
         let Some(which) = Loop::of(self.model.screen) else { return };
-        if matches!(wish, TuneWish::Start(_)) && self.model.front.open_tab(which.screen()) != Some(Tab::Tune)
+        if matches!(action, TuneAction::Start(_))
+            && self.model.front.open_tab(which.screen()) != Some(Tab::Tune)
         {
             self.model.front.drawers.press(which.screen(), Tab::Tune);
         }
         let front = &mut self.model.front;
         let stream = front.link.stream;
-        let told = match wish {
-            TuneWish::Start(_) | TuneWish::Verify if front.is_guided() => {
+        let told = match action {
+            TuneAction::Start(_) | TuneAction::Verify if front.is_guided() => {
                 Err("A job runs already. Wait for it or cancel it.".to_owned())
             }
-            TuneWish::Start(motor) => front.tune.start(which, motor, stream),
-            TuneWish::Verify => front.tune.verify(which, stream),
-            TuneWish::Cancel => {
+            TuneAction::Start(motor) => front.tune.start(which, motor, stream),
+            TuneAction::Verify => front.tune.verify(which, stream),
+            TuneAction::Cancel => {
                 front.tune.cancel("it was cancelled");
                 Ok(())
             }
-            TuneWish::Apply => self.apply_gains(which),
-            TuneWish::Undo => self.undo_gains(which),
-            TuneWish::ClearWinding => self.clear_winding(which),
-            TuneWish::PutWindingBack => {
+            TuneAction::Apply => self.apply_gains(which),
+            TuneAction::Undo => self.undo_gains(which),
+            TuneAction::ClearWinding => self.clear_winding(which),
+            TuneAction::PutWindingBack => {
                 front.tune.want_winding_back();
                 Ok(())
             }
-            TuneWish::Adjust(motor, registers) => self.adjust(which, motor, registers),
-            TuneWish::SaveReport(path) => match front.tune.front(which).run() {
+            TuneAction::Adjust(motor, registers) => self.adjust(which, motor, registers),
+            TuneAction::SaveReport(path) => match front.tune.front(which).run() {
                 Some(run) => file::write(&run.report, &path)
                     .map(|()| self.model.messages.note(format!("The report is in {}.", path.display()))),
                 None => Ok(()),
             },
-            TuneWish::OpenReport(path) => self.open_report(&path),
+            TuneAction::OpenReport(path) => self.open_report(&path),
         };
         if let Err(sentence) = told {
             self.model.messages.fail(sentence);
@@ -72,8 +73,8 @@ impl App {
                 let unit = desk.settings.unit();
                 desk.tune.adopt_encoder(motor, unit.and_then(|unit| unit.encoder(motor)));
             }
-            if let Some(wish) = desk.tune.take_waiting() {
-                self.settings_of(id, wish);
+            if let Some(action) = desk.tune.take_waiting() {
+                self.settings_of(id, action);
             }
             let Some(desk) = self.model.desk_mut(id) else { continue };
             let refused = !desk.link.refusals.is_empty();

@@ -2,6 +2,7 @@
 //!
 //! It speaks to controllers that are simulated in this program, past the wire: the protocol has no word for any of it.
 
+pub mod action;
 pub mod names;
 mod needs;
 mod panel;
@@ -12,10 +13,9 @@ pub mod terminal;
 mod toolbar;
 mod values;
 mod watches;
-pub mod wish;
 
+pub use action::DebugAction;
 pub use needs::why_not;
 pub use panel::debug_ui;
 pub use state::Debugging;
 pub use stream::terminal_ui;
-pub use wish::DebugWish;

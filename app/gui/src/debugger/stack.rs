@@ -3,9 +3,9 @@
 use brushwork_script::debug::{Frame, one};
 use egui::{DragValue, Label, RichText, Ui};
 
+use super::action::DebugAction;
 use super::state::Debugging;
 use super::watches::remove_ui;
-use super::wish::DebugWish;
 use crate::command::{Command, Commands};
 use crate::theme::Palette;
 use crate::widgets::heading::heading_ui;
@@ -21,7 +21,7 @@ pub fn stack_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
         let text = frame_text(debug, frame);
         let link = ui.add(egui::Button::new(RichText::new(&text).monospace()).frame(false).truncate());
         if link.on_hover_text("Shows the line").clicked() {
-            commands.push(Command::Debug(DebugWish::ShowLine(frame.line)));
+            commands.push(Command::Debug(DebugAction::ShowLine(frame.line)));
         }
     }
     ui.add_space(6.0);
@@ -58,7 +58,7 @@ fn breakpoints_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
     ui.horizontal(|ui| {
         heading_ui(ui, "Breakpoints");
         if !debug.breakpoints_mut().is_empty() && ui.small_button("Clear all").clicked() {
-            commands.push(Command::Debug(DebugWish::ClearBreakpoints));
+            commands.push(Command::Debug(DebugAction::ClearBreakpoints));
         }
     });
     if debug.breakpoints_mut().is_empty() {
@@ -86,7 +86,7 @@ fn breakpoints_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
             };
             if ui.add(Label::new(RichText::new(told).weak()).sense(egui::Sense::click()).truncate()).clicked()
             {
-                commands.push(Command::Debug(DebugWish::ShowLine(*line)));
+                commands.push(Command::Debug(DebugAction::ShowLine(*line)));
             }
         });
         ui.horizontal(|ui| {
@@ -104,6 +104,6 @@ fn breakpoints_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
         }
     }
     if let Some(line) = gone {
-        commands.push(Command::Debug(DebugWish::RemoveBreakpoint(line)));
+        commands.push(Command::Debug(DebugAction::RemoveBreakpoint(line)));
     }
 }

@@ -2,9 +2,9 @@
 
 use egui::{ComboBox, Label, RichText, ScrollArea, TextEdit, Ui};
 
+use super::action::DebugAction;
 use super::needs::why_not;
 use super::terminal::{LineEnd, Terminal};
-use super::wish::DebugWish;
 use crate::command::{Command, Commands};
 use crate::model::Model;
 use crate::theme::Palette;
@@ -90,7 +90,7 @@ fn input_ui(ui: &mut Ui, terminal: &mut Terminal, waiting: usize, commands: &mut
         }
         let entered = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
         if ui.button("Send").clicked() || entered {
-            commands.push(Command::Debug(DebugWish::Send));
+            commands.push(Command::Debug(DebugAction::Send));
         }
         if entered {
             field.request_focus();

@@ -4,7 +4,7 @@ use brushwork_plant::server::Pace;
 use brushwork_script::debug::{Reason, StepKind};
 use egui::{ComboBox, RichText, Ui};
 
-use super::wish::DebugWish;
+use super::action::DebugAction;
 use crate::command::{Command, Commands};
 use crate::model::Model;
 use crate::model::lamp::LampState;
@@ -15,42 +15,42 @@ pub fn toolbar_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     let (paused, running) = (debug.is_paused(), debug.is_running());
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        let mut button = |ui: &mut Ui, enabled: bool, text: &str, hint: &str, wish: DebugWish| {
+        let mut button = |ui: &mut Ui, enabled: bool, text: &str, hint: &str, action: DebugAction| {
             let response = ui.add_enabled(enabled, egui::Button::new(text)).on_hover_text(hint);
             if response.on_disabled_hover_text(hint).clicked() {
-                commands.push(Command::Debug(wish));
+                commands.push(Command::Debug(action));
             }
         };
         let run = if paused { "Continue" } else { "Run" };
-        button(ui, !running, run, "Goes on, or starts the script (F6)", DebugWish::Run);
-        button(ui, running, "Pause", "Stops the script before its next line; the motors go on (Ctrl+F6)", DebugWish::Pause);
-        let step = |kind| DebugWish::Step(kind);
+        button(ui, !running, run, "Goes on, or starts the script (F6)", DebugAction::Run);
+        button(ui, running, "Pause", "Stops the script before its next line; the motors go on (Ctrl+F6)", DebugAction::Pause);
+        let step = |kind| DebugAction::Step(kind);
         button(ui, paused, "Step into", "Runs one line (F11)", step(StepKind::Into));
         let over = "Runs one line with the subroutines it calls (F12)";
         button(ui, paused, "Step over", over, step(StepKind::Over));
         button(ui, paused, "Step out", "Runs on until the subroutine has returned (Shift+F11)", step(StepKind::Out));
         let cursor = "Runs on to the line of the caret (Shift+F6)";
-        button(ui, paused || running, "Run to cursor", cursor, DebugWish::RunToCursor);
+        button(ui, paused || running, "Run to cursor", cursor, DebugAction::RunToCursor);
         ui.separator();
         let hint = "A script that is started, by hand, by autorun or by a pin, stops before its first line";
         let mut on = debug.stops_at_entry;
         if ui.checkbox(&mut on, "Stop at start").on_hover_text(hint).changed() {
-            commands.push(Command::Debug(DebugWish::StopAtEntry(on)));
+            commands.push(Command::Debug(DebugAction::StopAtEntry(on)));
         }
         let hint = "On: while the script is paused the motors stand still in mid-motion, and the controller's clock and \
                     time-outs with them. Off, as in a real controller: they go on as the script told them, and nothing \
                     stops them but Stop";
         let mut on = debug.freezes_world;
         if ui.checkbox(&mut on, "Freeze world too").on_hover_text(hint).changed() {
-            commands.push(Command::Debug(DebugWish::FreezeWorld(on)));
+            commands.push(Command::Debug(DebugAction::FreezeWorld(on)));
         }
         let hint = "How often each line was run, beside its number";
         let mut on = debug.shows_counts;
         if ui.checkbox(&mut on, "Counts").on_hover_text(hint).changed() {
-            commands.push(Command::Debug(DebugWish::ShowCounts(on)));
+            commands.push(Command::Debug(DebugAction::ShowCounts(on)));
         }
         if debug.shows_counts && ui.small_button("Clear counts").clicked() {
-            commands.push(Command::Debug(DebugWish::ClearCounts));
+            commands.push(Command::Debug(DebugAction::ClearCounts));
         }
         pace_ui(ui, model, commands);
     });
@@ -67,7 +67,7 @@ fn pace_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     let response = combo.show_ui(ui, |ui| {
         for choice in [Pace::REAL, Pace::TEN, Pace::Max] {
             if ui.selectable_label(choice == pace, choice.name()).clicked() {
-                commands.push(Command::Debug(DebugWish::Pace(choice)));
+                commands.push(Command::Debug(DebugAction::Pace(choice)));
             }
         }
     });

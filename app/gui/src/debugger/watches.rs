@@ -2,9 +2,9 @@
 
 use egui::{Label, RichText, TextEdit, Ui};
 
+use super::action::DebugAction;
 use super::state::Debugging;
 use super::values::show_ui;
-use super::wish::DebugWish;
 use crate::command::{Command, Commands};
 use crate::theme::Palette;
 use crate::widgets::heading::heading_ui;
@@ -69,7 +69,7 @@ fn set_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
         ui.ctx().accesskit_node_builder(value.id, |node| node.set_label("New value"));
         let entered = value.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
         if ui.button("Set").clicked() || entered {
-            commands.push(Command::Debug(DebugWish::SetValue));
+            commands.push(Command::Debug(DebugAction::SetValue));
         }
     });
     match &debug.set_answer {

@@ -25,7 +25,7 @@ pub trait Own: Any + Debug {
     /// Another unit, or none.
     fn forget_unit(&mut self) {}
 
-    /// The link is gone, by wish or not.
+    /// The link is gone, on request or not.
     fn link_ended(&mut self) {}
 
     /// Whether it is at work with the unit.

@@ -12,7 +12,7 @@ use brushwork_link::settings::replace_file;
 use crossbeam_channel::{Receiver, bounded};
 use egui::vec2;
 
-use crate::files::{FileDialog, FileKind, FileWish};
+use crate::files::{FileAction, FileDialog, FileKind};
 use crate::model::message::Gravity;
 use brushwork_core::recording::recorder::Recorder;
 use brushwork_core::recording::{Record, dated_name, free_path};
@@ -151,7 +151,7 @@ impl GraphFiles {
 
     pub fn choose_recording(&mut self) {
         let kind = FileKind { title: "Recording".to_owned(), extension: "bwr,csv,txt".to_owned() };
-        self.dialog = Some((Asked::Open, FileDialog::ask(FileWish::Open, kind)));
+        self.dialog = Some((Asked::Open, FileDialog::ask(FileAction::Open, kind)));
     }
 
     /// Reads the file that was typed.

@@ -1,7 +1,8 @@
-//! What the wishes of a person do to the open programs.
+//! What the actions of a person do to the open programs.
 
 use egui::{Context, ViewportCommand};
 
+use super::action::MclAction;
 use super::caret::Caret;
 use super::complete::Completion;
 use super::document::Document;
@@ -9,64 +10,63 @@ use super::editor::Editor;
 use super::examples::EXAMPLES;
 use super::panel::Tab;
 use super::sheet::{PathField, Sheet};
-use super::wish::MclWish;
 use crate::model::message::Gravity;
 
 impl Editor {
-    /// Does what was wished.
-    pub fn act(&mut self, wish: MclWish, ctx: &Context) {
+    /// Does what was asked.
+    pub fn act(&mut self, action: MclAction, ctx: &Context) {
         let front = self.front().id();
-        match wish {
-            MclWish::New => {
+        match action {
+            MclAction::New => {
                 self.open_new("");
             }
-            MclWish::Example(index) => {
+            MclAction::Example(index) => {
                 if let Some(example) = EXAMPLES.get(index) {
                     self.open_named(example.title, example.text);
                 }
             }
-            MclWish::Open => self.open_sheet(Sheet::Open(PathField::default())),
-            MclWish::Save => self.save(front),
-            MclWish::SaveAs => self.save_as(front),
-            MclWish::Print => self.print(front),
-            MclWish::SendToPrinter => self.send_to_printer(ctx),
-            MclWish::Front(id) => self.bring_to_front(id),
-            MclWish::Close(id) => self.close(id),
-            MclWish::AcceptSheet => self.accept_sheet(),
-            MclWish::DismissSheet => self.dismiss_sheet(),
-            MclWish::CloseUnsaved => self.close_unsaved(),
-            MclWish::SettleChange { id, load } => self.settle_change(id, load),
-            MclWish::SettleLeft { restore } => self.settle_left(restore),
-            MclWish::ChooseImage => self.open_sheet(Sheet::Image(PathField::default())),
+            MclAction::Open => self.open_sheet(Sheet::Open(PathField::default())),
+            MclAction::Save => self.save(front),
+            MclAction::SaveAs => self.save_as(front),
+            MclAction::Print => self.print(front),
+            MclAction::SendToPrinter => self.send_to_printer(ctx),
+            MclAction::Front(id) => self.bring_to_front(id),
+            MclAction::Close(id) => self.close(id),
+            MclAction::AcceptSheet => self.accept_sheet(),
+            MclAction::DismissSheet => self.dismiss_sheet(),
+            MclAction::CloseUnsaved => self.close_unsaved(),
+            MclAction::SettleChange { id, load } => self.settle_change(id, load),
+            MclAction::SettleLeft { restore } => self.settle_left(restore),
+            MclAction::ChooseImage => self.open_sheet(Sheet::Image(PathField::default())),
             other => self.act_on_view(other, ctx),
         }
     }
 
-    fn act_on_view(&mut self, wish: MclWish, ctx: &Context) {
-        match wish {
-            MclWish::ToggleHidden => self.options.hidden = !self.options.hidden,
-            MclWish::ToggleCurrentLine => self.options.current_line = !self.options.current_line,
-            MclWish::ToggleFolding => self.toggle_folding(),
-            MclWish::Zoom(percent) => self.options.set_zoom(percent),
-            MclWish::ShowPanel(tab) => self.panel.press(tab),
-            MclWish::HidePanel => self.panel.open = false,
-            MclWish::Check => self.check_now(),
-            MclWish::GoToLine => self.open_sheet(Sheet::GoToLine(String::new())),
-            MclWish::Rename => self.ask_rename(),
-            MclWish::Find | MclWish::Replace => {
+    fn act_on_view(&mut self, action: MclAction, ctx: &Context) {
+        match action {
+            MclAction::ToggleHidden => self.options.hidden = !self.options.hidden,
+            MclAction::ToggleCurrentLine => self.options.current_line = !self.options.current_line,
+            MclAction::ToggleFolding => self.toggle_folding(),
+            MclAction::Zoom(percent) => self.options.set_zoom(percent),
+            MclAction::ShowPanel(tab) => self.panel.press(tab),
+            MclAction::HidePanel => self.panel.open = false,
+            MclAction::Check => self.check_now(),
+            MclAction::GoToLine => self.open_sheet(Sheet::GoToLine(String::new())),
+            MclAction::Rename => self.ask_rename(),
+            MclAction::Find | MclAction::Replace => {
                 let front = &self.documents[self.front];
-                self.find.show(front, wish == MclWish::Replace);
+                self.find.show(front, action == MclAction::Replace);
                 self.find.look(front);
             }
-            MclWish::ReplaceAll => {
+            MclAction::ReplaceAll => {
                 let count = self.find.replace_all(&mut self.documents[self.front]);
                 self.say(Gravity::Note, format!("Replaced {count} places."));
             }
-            MclWish::CloseFind => {
+            MclAction::CloseFind => {
                 self.find.open = false;
                 self.wants_focus = true;
             }
-            MclWish::FindNext | MclWish::FindPrevious | MclWish::ReplaceOne => self.find(wish),
+            MclAction::FindNext | MclAction::FindPrevious | MclAction::ReplaceOne => self.find(action),
             other => {
                 self.wants_focus = true;
                 self.completion = None;
@@ -75,61 +75,61 @@ impl Editor {
         }
     }
 
-    fn act_on_lines(&mut self, wish: MclWish, ctx: &Context) {
+    fn act_on_lines(&mut self, action: MclAction, ctx: &Context) {
         let document = self.front_mut();
-        match wish {
-            MclWish::Undo => document.undo(),
-            MclWish::Redo => document.redo(),
-            MclWish::Cut => ctx.copy_text(document.cut()),
-            MclWish::Copy => ctx.copy_text(document.copied()),
+        match action {
+            MclAction::Undo => document.undo(),
+            MclAction::Redo => document.redo(),
+            MclAction::Cut => ctx.copy_text(document.cut()),
+            MclAction::Copy => ctx.copy_text(document.copied()),
             // Only the window system knows what is in the clipboard; it comes back as typed text does.
-            MclWish::Paste => ctx.send_viewport_cmd(ViewportCommand::RequestPaste),
-            MclWish::SelectAll => document.caret = Caret::selecting(0, document.text.len()),
-            MclWish::ToggleComment => document.toggle_comment(),
-            MclWish::DuplicateLines => document.duplicate_lines(),
-            MclWish::DeleteLines => document.delete_lines(),
-            MclWish::MoveLines { down } => document.move_lines(down),
-            MclWish::Indent { further: true } => document.indent(),
-            MclWish::Indent { further: false } => document.unindent(),
-            MclWish::SetEncoding(encoding) if encoding != document.format.encoding => {
+            MclAction::Paste => ctx.send_viewport_cmd(ViewportCommand::RequestPaste),
+            MclAction::SelectAll => document.caret = Caret::selecting(0, document.text.len()),
+            MclAction::ToggleComment => document.toggle_comment(),
+            MclAction::DuplicateLines => document.duplicate_lines(),
+            MclAction::DeleteLines => document.delete_lines(),
+            MclAction::MoveLines { down } => document.move_lines(down),
+            MclAction::Indent { further: true } => document.indent(),
+            MclAction::Indent { further: false } => document.unindent(),
+            MclAction::SetEncoding(encoding) if encoding != document.format.encoding => {
                 document.format.encoding = encoding;
                 document.text.set_unsaved();
             }
-            MclWish::SetLineEnds(ends) if ends != document.format.ends => document.set_line_ends(ends),
-            MclWish::Select(anchor, head) => document.go_to(Caret::selecting(anchor, head)),
-            MclWish::Definition => self.tell(Document::go_to_definition),
-            MclWish::Matching => self.tell(Document::go_to_match),
-            MclWish::Complete => self.completion = Completion::of(self.front(), true),
-            MclWish::Tidy => document.tidy(),
+            MclAction::SetLineEnds(ends) if ends != document.format.ends => document.set_line_ends(ends),
+            MclAction::Select(anchor, head) => document.go_to(Caret::selecting(anchor, head)),
+            MclAction::Definition => self.tell(Document::go_to_definition),
+            MclAction::Matching => self.tell(Document::go_to_match),
+            MclAction::Complete => self.completion = Completion::of(self.front(), true),
+            MclAction::Tidy => document.tidy(),
             other => self.act_on_marks(other),
         }
     }
 
-    fn act_on_marks(&mut self, wish: MclWish) {
+    fn act_on_marks(&mut self, action: MclAction) {
         let document = self.front_mut();
         let line = document.caret_line();
-        match wish {
-            MclWish::ToggleFold(line) => document.toggle_fold(line),
-            MclWish::ToggleFoldHere => document.toggle_fold(line),
-            MclWish::FoldAll => document.fold_all(),
-            MclWish::UnfoldAll => document.folds.open_all(),
-            MclWish::ToggleBookmark => {
+        match action {
+            MclAction::ToggleFold(line) => document.toggle_fold(line),
+            MclAction::ToggleFoldHere => document.toggle_fold(line),
+            MclAction::FoldAll => document.fold_all(),
+            MclAction::UnfoldAll => document.folds.open_all(),
+            MclAction::ToggleBookmark => {
                 document.bookmarks.toggle(line);
             }
-            MclWish::NextBookmark => {
+            MclAction::NextBookmark => {
                 let next = document.bookmarks.next(line);
                 next.into_iter().for_each(|line| document.go_to_line(line));
             }
-            MclWish::PreviousBookmark => {
+            MclAction::PreviousBookmark => {
                 let previous = document.bookmarks.previous(line);
                 previous.into_iter().for_each(|line| document.go_to_line(line));
             }
-            MclWish::ClearBookmarks => document.bookmarks.clear(),
-            MclWish::ToggleBreakpoint(line) => {
+            MclAction::ClearBookmarks => document.bookmarks.clear(),
+            MclAction::ToggleBreakpoint(line) => {
                 document.breakpoints.toggle(line);
             }
-            MclWish::NextProblem => document.go_to_problem(true),
-            MclWish::PreviousProblem => document.go_to_problem(false),
+            MclAction::NextProblem => document.go_to_problem(true),
+            MclAction::PreviousProblem => document.go_to_problem(false),
             _ => {}
         }
     }
@@ -141,14 +141,14 @@ impl Editor {
         }
     }
 
-    fn find(&mut self, wish: MclWish) {
+    fn find(&mut self, action: MclAction) {
         if !self.find.open {
             self.find.show(&self.documents[self.front], false);
         }
         let document = &mut self.documents[self.front];
-        match wish {
-            MclWish::ReplaceOne => self.find.replace(document),
-            _ => self.find.go(document, wish == MclWish::FindNext),
+        match action {
+            MclAction::ReplaceOne => self.find.replace(document),
+            _ => self.find.go(document, action == MclAction::FindNext),
         }
     }
 

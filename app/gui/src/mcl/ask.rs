@@ -2,17 +2,17 @@
 
 use egui::{Align2, Context, Key, Modifiers, Rect, Ui, Window, vec2};
 
+use super::action::MclAction;
 use super::editor::Editor;
 use super::saving::{mcl_files, pdf_files};
 use super::sheet::{PathField, Sheet};
-use super::wish::MclWish;
 use crate::files::FileKind;
 use crate::widgets::text_field::text_field_ui;
 
 const WIDTH: f32 = 460.0;
 
 /// Draws it within `room`, if there is one.
-pub fn ask_ui(ctx: &Context, editor: &mut Editor, room: Rect, wishes: &mut Vec<MclWish>) {
+pub fn ask_ui(ctx: &Context, editor: &mut Editor, room: Rect, actions: &mut Vec<MclAction>) {
     let is_new = std::mem::take(&mut editor.sheet_is_new);
     let titles: Vec<String> = match &editor.sheet {
         Some(Sheet::Close { ids }) => {
@@ -25,13 +25,13 @@ pub fn ask_ui(ctx: &Context, editor: &mut Editor, room: Rect, wishes: &mut Vec<M
     let window = window.pivot(Align2::CENTER_TOP).default_pos(room.center_top() + vec2(0.0, 40.0));
     window.show(ctx, |ui| {
         ui.set_width(WIDTH.min(room.width() - 40.0));
-        sheet_ui(ui, sheet, &titles, is_new, wishes);
+        sheet_ui(ui, sheet, &titles, is_new, actions);
     });
     ctx.input_mut(|input| {
         if input.key_pressed(Key::Escape) {
-            wishes.push(MclWish::DismissSheet);
+            actions.push(MclAction::DismissSheet);
         } else if input.consume_key(Modifiers::NONE, Key::Enter) {
-            wishes.push(MclWish::AcceptSheet);
+            actions.push(MclAction::AcceptSheet);
         }
     });
 }
@@ -48,7 +48,7 @@ fn title(sheet: &Sheet) -> &'static str {
     }
 }
 
-fn sheet_ui(ui: &mut Ui, sheet: &mut Sheet, titles: &[String], is_new: bool, wishes: &mut Vec<MclWish>) {
+fn sheet_ui(ui: &mut Ui, sheet: &mut Sheet, titles: &[String], is_new: bool, actions: &mut Vec<MclAction>) {
     let accept = match sheet {
         Sheet::Open(field) => {
             path_ui(ui, field, (false, mcl_files()), is_new);
@@ -59,7 +59,7 @@ fn sheet_ui(ui: &mut Ui, sheet: &mut Sheet, titles: &[String], is_new: bool, wis
             "Save"
         }
         Sheet::Print { field, printer, spooler, .. } => {
-            print_ui(ui, printer, spooler.is_some(), wishes);
+            print_ui(ui, printer, spooler.is_some(), actions);
             path_ui(ui, field, (true, pdf_files()), is_new);
             "Print to the file"
         }
@@ -89,19 +89,19 @@ fn sheet_ui(ui: &mut Ui, sheet: &mut Sheet, titles: &[String], is_new: bool, wis
             button.request_focus();
         }
         if button.clicked() {
-            wishes.push(MclWish::AcceptSheet);
+            actions.push(MclAction::AcceptSheet);
         }
         if matches!(sheet, Sheet::Close { .. }) && ui.button("Close without saving").clicked() {
-            wishes.push(MclWish::CloseUnsaved);
+            actions.push(MclAction::CloseUnsaved);
         }
         if ui.button("Cancel").clicked() {
-            wishes.push(MclWish::DismissSheet);
+            actions.push(MclAction::DismissSheet);
         }
     });
 }
 
 /// To a printer, where the system has a command for it.
-fn print_ui(ui: &mut Ui, printer: &mut String, can_print: bool, wishes: &mut Vec<MclWish>) {
+fn print_ui(ui: &mut Ui, printer: &mut String, can_print: bool, actions: &mut Vec<MclAction>) {
     ui.label("Pages with colours, line numbers and a head with name and page.");
     ui.add_space(4.0);
     if !can_print {
@@ -113,7 +113,7 @@ fn print_ui(ui: &mut Ui, printer: &mut String, can_print: bool, wishes: &mut Vec
     let name = text_field_ui(ui, printer, "Printer", "Printer: the one the system takes by itself");
     let is_entered = name.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     if ui.button("Send to the printer").clicked() || is_entered {
-        wishes.push(MclWish::SendToPrinter);
+        actions.push(MclAction::SendToPrinter);
     }
     ui.add_space(8.0);
     ui.label("Or to a PDF file:");

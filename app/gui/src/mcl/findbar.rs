@@ -2,15 +2,15 @@
 
 use egui::{Button, Key, Label, Modifiers, Role, TextEdit, Ui, WidgetInfo};
 
+use super::action::MclAction;
 use super::editor::Editor;
-use super::wish::MclWish;
 use crate::theme::Palette;
 use crate::widgets::text_field::keep_space;
 
 const FIELD_WIDTH: f32 = 220.0;
 const TOLD_WIDTH: f32 = 150.0;
 
-pub fn findbar_ui(ui: &mut Ui, editor: &mut Editor, wishes: &mut Vec<MclWish>) {
+pub fn findbar_ui(ui: &mut Ui, editor: &mut Editor, actions: &mut Vec<MclAction>) {
     if !editor.find.open {
         return;
     }
@@ -20,47 +20,47 @@ pub fn findbar_ui(ui: &mut Ui, editor: &mut Editor, wishes: &mut Vec<MclWish>) {
         ui.spacing_mut().item_spacing.x = 4.0;
         let entered = field_ui(ui, &mut editor.find.query.text, "Find", wants_focus);
         match entered {
-            Some(Entered::Enter) => wishes.push(MclWish::FindNext),
-            Some(Entered::ShiftEnter) => wishes.push(MclWish::FindPrevious),
-            Some(Entered::Escape) => wishes.push(MclWish::CloseFind),
+            Some(Entered::Enter) => actions.push(MclAction::FindNext),
+            Some(Entered::ShiftEnter) => actions.push(MclAction::FindPrevious),
+            Some(Entered::Escape) => actions.push(MclAction::CloseFind),
             None => {}
         }
         let query = &mut editor.find.query;
         toggle_ui(ui, &mut query.case, "Aa", "Match case");
         toggle_ui(ui, &mut query.word, "Word", "Whole words");
         toggle_ui(ui, &mut query.regex, ".*", "Regular expression");
-        for (reads, wish, name) in [
-            ("Previous", MclWish::FindPrevious, "Find previous match"),
-            ("Next", MclWish::FindNext, "Find next match"),
+        for (reads, action, name) in [
+            ("Previous", MclAction::FindPrevious, "Find previous match"),
+            ("Next", MclAction::FindNext, "Find next match"),
         ] {
             if named(ui, reads, name).clicked() {
-                wishes.push(wish);
+                actions.push(action);
             }
         }
         told_ui(ui, &told);
         if named(ui, "Close", "Close the find bar").clicked() {
-            wishes.push(MclWish::CloseFind);
+            actions.push(MclAction::CloseFind);
         }
     });
     if editor.find.replaces {
-        replace_ui(ui, editor, wishes);
+        replace_ui(ui, editor, actions);
     }
     ui.add_space(2.0);
 }
 
-fn replace_ui(ui: &mut Ui, editor: &mut Editor, wishes: &mut Vec<MclWish>) {
+fn replace_ui(ui: &mut Ui, editor: &mut Editor, actions: &mut Vec<MclAction>) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         match field_ui(ui, &mut editor.find.replacement, "Replace with", false) {
-            Some(Entered::Enter | Entered::ShiftEnter) => wishes.push(MclWish::ReplaceOne),
-            Some(Entered::Escape) => wishes.push(MclWish::CloseFind),
+            Some(Entered::Enter | Entered::ShiftEnter) => actions.push(MclAction::ReplaceOne),
+            Some(Entered::Escape) => actions.push(MclAction::CloseFind),
             None => {}
         }
         if named(ui, "Replace", "Replace this match").clicked() {
-            wishes.push(MclWish::ReplaceOne);
+            actions.push(MclAction::ReplaceOne);
         }
         if named(ui, "Replace all", "Replace all matches").clicked() {
-            wishes.push(MclWish::ReplaceAll);
+            actions.push(MclAction::ReplaceAll);
         }
     });
 }

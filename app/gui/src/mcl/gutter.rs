@@ -2,10 +2,10 @@
 
 use egui::{Align2, FontId, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
+use super::action::MclAction;
 use super::document::Document;
 use super::editor::Options;
 use super::paint::Metrics;
-use super::wish::MclWish;
 use crate::theme::Palette;
 
 /// Room for a breakpoint or bookmark.
@@ -29,7 +29,7 @@ pub fn gutter_ui(
     document: &Document,
     options: &Options,
     metrics: &Metrics,
-    wishes: &mut Vec<MclWish>,
+    actions: &mut Vec<MclAction>,
 ) {
     let palette = Palette::of(ui);
     let response = ui.interact(rect, ui.scope_id().with("mcl gutter"), Sense::click());
@@ -61,7 +61,7 @@ pub fn gutter_ui(
             let line = document.folds.line_at(row);
             let folds =
                 options.folding && at.x > rect.right() - FOLDS && document.findings.last_of(line).is_some();
-            wishes.push(if folds { MclWish::ToggleFold(line) } else { MclWish::ToggleBreakpoint(line) });
+            actions.push(if folds { MclAction::ToggleFold(line) } else { MclAction::ToggleBreakpoint(line) });
         }
     }
     let hint = "Click a line to set a breakpoint; click the sign at its right to fold a block away";

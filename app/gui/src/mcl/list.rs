@@ -4,15 +4,15 @@ use egui::{Align2, FontId, Role, ScrollArea, Sense, Stroke, TextStyle, Ui, Widge
 
 use brushwork_script::diagnostic::Severity;
 
+use super::action::MclAction;
 use super::document::Document;
 use super::problems::Problem;
-use super::wish::MclWish;
 use crate::model::lamp::LampState;
 use crate::theme::Palette;
 
 const ROW: f32 = 22.0;
 
-pub fn list_ui(ui: &mut Ui, document: &Document, wishes: &mut Vec<MclWish>) {
+pub fn list_ui(ui: &mut Ui, document: &Document, actions: &mut Vec<MclAction>) {
     let problems = &document.findings.problems;
     if problems.is_empty() {
         let text = match (document.findings.checked.is_some(), document.text.is_empty()) {
@@ -29,12 +29,12 @@ pub fn list_ui(ui: &mut Ui, document: &Document, wishes: &mut Vec<MclWish>) {
     ui.spacing_mut().item_spacing.y = 0.0;
     ScrollArea::vertical().auto_shrink(false).show_rows(ui, ROW, problems.len(), |ui, rows| {
         for problem in &problems[rows] {
-            row_ui(ui, document, problem, wishes);
+            row_ui(ui, document, problem, actions);
         }
     });
 }
 
-fn row_ui(ui: &mut Ui, document: &Document, problem: &Problem, wishes: &mut Vec<MclWish>) {
+fn row_ui(ui: &mut Ui, document: &Document, problem: &Problem, actions: &mut Vec<MclAction>) {
     let palette = Palette::of(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
     let line = document.text.line_of(problem.range.start) + 1;
@@ -65,7 +65,7 @@ fn row_ui(ui: &mut Ui, document: &Document, problem: &Problem, wishes: &mut Vec<
         painter.text(at, Align2::LEFT_CENTER, hint, body, palette.weak_text);
     }
     if response.on_hover_text(problem.in_full()).clicked() {
-        wishes.push(MclWish::Select(problem.range.start, problem.range.end));
+        actions.push(MclAction::Select(problem.range.start, problem.range.end));
     }
 }
 

@@ -5,6 +5,7 @@
 
 mod access;
 mod act;
+pub mod action;
 mod ask;
 pub mod buffer;
 pub mod caret;
@@ -46,14 +47,13 @@ mod threads;
 mod toolbar;
 mod typing;
 mod view;
-pub mod wish;
 
+pub use action::MclAction;
 pub use doc_id::DocId;
 pub use document::Document;
 pub use editor::Editor;
 pub use screen::screen_ui;
 pub use view::has_keyboard;
-pub use wish::MclWish;
 
 #[cfg(test)]
 mod tests;

@@ -2,22 +2,22 @@
 
 use egui::{Frame, Label, Margin, Stroke, Ui, vec2};
 
+use super::action::MclAction;
 use super::document::OnDisk;
 use super::editor::Editor;
-use super::wish::MclWish;
 use crate::model::lamp::LampState;
 use crate::theme::Palette;
 
-pub fn notices_ui(ui: &mut Ui, editor: &Editor, wishes: &mut Vec<MclWish>) {
+pub fn notices_ui(ui: &mut Ui, editor: &Editor, actions: &mut Vec<MclAction>) {
     if !editor.left.is_empty() {
         let programs: Vec<&str> =
             editor.left.iter().flat_map(|left| &left.programs).map(|kept| kept.title.as_str()).collect();
         let text = format!("Unsaved text from an earlier time was found: {}.", programs.join(", "));
         let choices = [
-            ("Restore", MclWish::SettleLeft { restore: true }),
-            ("Discard", MclWish::SettleLeft { restore: false }),
+            ("Restore", MclAction::SettleLeft { restore: true }),
+            ("Discard", MclAction::SettleLeft { restore: false }),
         ];
-        bar_ui(ui, &text, &choices, wishes);
+        bar_ui(ui, &text, &choices, actions);
     }
     let (front, id) = (editor.front(), editor.front().id());
     match front.on_disk {
@@ -26,19 +26,19 @@ pub fn notices_ui(ui: &mut Ui, editor: &Editor, wishes: &mut Vec<MclWish>) {
             let text =
                 format!("{} was changed by another program, and there is unsaved text here.", front.title());
             let choices = [
-                ("Load the file", MclWish::SettleChange { id, load: true }),
-                ("Keep this text", MclWish::SettleChange { id, load: false }),
+                ("Load the file", MclAction::SettleChange { id, load: true }),
+                ("Keep this text", MclAction::SettleChange { id, load: false }),
             ];
-            bar_ui(ui, &text, &choices, wishes);
+            bar_ui(ui, &text, &choices, actions);
         }
         OnDisk::Gone => {
             let text = format!("The file of {} is gone. Save writes it again.", front.title());
-            bar_ui(ui, &text, &[("Keep this text", MclWish::SettleChange { id, load: false })], wishes);
+            bar_ui(ui, &text, &[("Keep this text", MclAction::SettleChange { id, load: false })], actions);
         }
     }
 }
 
-fn bar_ui(ui: &mut Ui, text: &str, choices: &[(&str, MclWish)], wishes: &mut Vec<MclWish>) {
+fn bar_ui(ui: &mut Ui, text: &str, choices: &[(&str, MclAction)], actions: &mut Vec<MclAction>) {
     let palette = Palette::of(ui);
     let frame = Frame::new().stroke(Stroke::new(1.0, palette.warning)).corner_radius(4.0);
     frame.inner_margin(Margin::symmetric(8, 3)).show(ui, |ui| {
@@ -46,9 +46,9 @@ fn bar_ui(ui: &mut Ui, text: &str, choices: &[(&str, MclWish)], wishes: &mut Vec
             let (rect, _) = ui.allocate_exact_size(vec2(16.0, 16.0), egui::Sense::hover());
             LampState::Warning.paint(ui, rect.center(), 5.0);
             ui.add(Label::new(text).wrap());
-            for (reads, wish) in choices {
+            for (reads, action) in choices {
                 if ui.button(*reads).clicked() {
-                    wishes.push(*wish);
+                    actions.push(*action);
                 }
             }
         });

@@ -2,6 +2,7 @@
 
 use egui::{CentralPanel, Frame, Panel as Area, Ui};
 
+use super::action::MclAction;
 use super::ask::ask_ui;
 use super::findbar::findbar_ui;
 use super::list;
@@ -12,7 +13,6 @@ use super::strip::strip_ui;
 use super::tabs::tabs_ui;
 use super::toolbar::toolbar_ui;
 use super::view::view_ui;
-use super::wish::MclWish;
 use crate::command::{Command, Commands};
 use crate::debugger;
 use crate::model::Model;
@@ -30,15 +30,15 @@ const PANEL_RANGE: std::ops::RangeInclusive<f32> = 80.0..=520.0;
 
 /// Draws the screen.
 pub fn screen_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    let mut wishes = Vec::new();
+    let mut actions = Vec::new();
     let room = ui.available_rect_before_wrap();
     let bare = Frame::new();
     toolbar_ui(ui, model, commands);
-    notices_ui(ui, &model.mcl, &mut wishes);
-    tabs_ui(ui, &model.mcl, &mut wishes);
-    findbar_ui(ui, &mut model.mcl, &mut wishes);
+    notices_ui(ui, &model.mcl, &mut actions);
+    tabs_ui(ui, &model.mcl, &mut actions);
+    findbar_ui(ui, &mut model.mcl, &mut actions);
     Area::bottom("mcl panel tabs").resizable(false).show_separator_line(false).frame(bare).show(ui, |ui| {
-        panel_tabs_ui(ui, model, &mut wishes, commands);
+        panel_tabs_ui(ui, model, &mut actions, commands);
     });
     if model.mcl.panel.open {
         // The debugger has more to show, so it keeps a height of its own. In a low window the text keeps most of the room.
@@ -50,22 +50,22 @@ pub fn screen_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             _ => ("mcl panel", PANEL_HEIGHT),
         };
         let area = Area::bottom(id).resizable(true).default_size(height);
-        area.size_range(PANEL_RANGE).frame(bare).show(ui, |ui| panel_ui(ui, model, &mut wishes, commands));
+        area.size_range(PANEL_RANGE).frame(bare).show(ui, |ui| panel_ui(ui, model, &mut actions, commands));
     }
     CentralPanel::no_frame().show(ui, |ui| {
         Area::bottom("mcl strip").resizable(false).show_separator_line(false).frame(bare).show(ui, |ui| {
-            strip_ui(ui, model.mcl.front(), &mut wishes);
+            strip_ui(ui, model.mcl.front(), &mut actions);
         });
         CentralPanel::no_frame().show(ui, |ui| {
             let debug = &model.front.debug;
-            view_ui(ui, &mut model.mcl, &|name| debug.value_of(name), &mut wishes);
+            view_ui(ui, &mut model.mcl, &|name| debug.value_of(name), &mut actions);
         });
     });
-    ask_ui(ui.ctx(), &mut model.mcl, room, &mut wishes);
-    commands.extend(wishes.into_iter().map(Command::Mcl));
+    ask_ui(ui.ctx(), &mut model.mcl, room, &mut actions);
+    commands.extend(actions.into_iter().map(Command::Mcl));
 }
 
-fn panel_tabs_ui(ui: &mut Ui, model: &Model, wishes: &mut Vec<MclWish>, commands: &mut Commands) {
+fn panel_tabs_ui(ui: &mut Ui, model: &Model, actions: &mut Vec<MclAction>, commands: &mut Commands) {
     ui.add_space(2.0);
     reasons_ui(ui, model, commands);
     ui.horizontal(|ui| {
@@ -77,7 +77,7 @@ fn panel_tabs_ui(ui: &mut Ui, model: &Model, wishes: &mut Vec<MclWish>, commands
             let count =
                 if tab == Tab::Problems { list::count_text(model.mcl.front()) } else { String::new() };
             if ui.selectable_label(shown, format!("{}{count}", tab.title())).clicked() {
-                wishes.push(MclWish::ShowPanel(tab));
+                actions.push(MclAction::ShowPanel(tab));
             }
         }
         ui.separator();
@@ -85,10 +85,10 @@ fn panel_tabs_ui(ui: &mut Ui, model: &Model, wishes: &mut Vec<MclWish>, commands
     });
 }
 
-fn panel_ui(ui: &mut Ui, model: &mut Model, wishes: &mut Vec<MclWish>, commands: &mut Commands) {
+fn panel_ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<MclAction>, commands: &mut Commands) {
     ui.take_available_space();
     match model.mcl.panel.tab {
-        Tab::Problems => list::list_ui(ui, model.mcl.front(), wishes),
+        Tab::Problems => list::list_ui(ui, model.mcl.front(), actions),
         Tab::Debugger => debugger::debug_ui(ui, model, commands),
         Tab::Terminal => debugger::terminal_ui(ui, model, commands),
     }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::doc_id::DocId;
 use super::printer::Spooler;
-use crate::files::{FileAnswer, FileDialog, FileKind, FileWish};
+use crate::files::{FileAction, FileAnswer, FileDialog, FileKind};
 
 /// A question, in the small window above the text.
 #[derive(Debug)]
@@ -59,11 +59,11 @@ impl PathField {
     /// Opens the desktop's dialog.
     pub fn browse(&mut self, saves: bool, kind: FileKind) {
         let name = Path::new(&self.text).file_name().map(|name| name.to_string_lossy().into_owned());
-        let wish = match saves {
-            true => FileWish::Save { name: name.unwrap_or_else(|| format!("program.{}", kind.extension)) },
-            false => FileWish::Open,
+        let action = match saves {
+            true => FileAction::Save { name: name.unwrap_or_else(|| format!("program.{}", kind.extension)) },
+            false => FileAction::Open,
         };
-        self.dialog = Some(FileDialog::ask(wish, kind));
+        self.dialog = Some(FileDialog::ask(action, kind));
     }
 
     pub fn is_waiting(&self) -> bool {

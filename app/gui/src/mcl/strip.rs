@@ -5,16 +5,16 @@ use brushwork_script::mcl::index::SyntaxHint;
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Align, ComboBox, FontId, Layout, Role, Sense, Ui, WidgetInfo, vec2};
 
+use super::action::MclAction;
 use super::disk::{Encoding, LineEnds};
 use super::document::Document;
-use super::wish::MclWish;
 use crate::theme::Palette;
 
 const HEIGHT: f32 = 26.0;
 /// Room for the place of the caret.
 const PLACE_WIDTH: f32 = 190.0;
 
-pub fn strip_ui(ui: &mut Ui, document: &Document, wishes: &mut Vec<MclWish>) {
+pub fn strip_ui(ui: &mut Ui, document: &Document, actions: &mut Vec<MclAction>) {
     let palette = Palette::of(ui);
     let size = vec2(ui.available_width(), HEIGHT);
     ui.painter().rect_filled(egui::Rect::from_min_size(ui.cursor().min, size), 0.0, palette.raised);
@@ -22,20 +22,20 @@ pub fn strip_ui(ui: &mut Ui, document: &Document, wishes: &mut Vec<MclWish>) {
         ui.set_min_height(HEIGHT);
         ui.spacing_mut().item_spacing.x = 4.0;
         ui.spacing_mut().interact_size.y = 20.0;
-        ends_ui(ui, document, wishes);
-        encoding_ui(ui, document, wishes);
+        ends_ui(ui, document, actions);
+        encoding_ui(ui, document, actions);
         place_ui(ui, document);
         syntax_ui(ui, document);
     });
 }
 
-fn encoding_ui(ui: &mut Ui, document: &Document, wishes: &mut Vec<MclWish>) {
+fn encoding_ui(ui: &mut Ui, document: &Document, actions: &mut Vec<MclAction>) {
     let now = document.format.encoding;
     let list = ComboBox::from_id_salt("mcl encoding").selected_text(now.title()).width(64.0);
     let shown = list.show_ui(ui, |ui| {
         for encoding in Encoding::ALL {
             if ui.selectable_label(encoding == now, encoding.title()).clicked() {
-                wishes.push(MclWish::SetEncoding(encoding));
+                actions.push(MclAction::SetEncoding(encoding));
             }
         }
     });
@@ -43,13 +43,13 @@ fn encoding_ui(ui: &mut Ui, document: &Document, wishes: &mut Vec<MclWish>) {
     shown.response.on_hover_text("How the file's letters are written");
 }
 
-fn ends_ui(ui: &mut Ui, document: &Document, wishes: &mut Vec<MclWish>) {
+fn ends_ui(ui: &mut Ui, document: &Document, actions: &mut Vec<MclAction>) {
     let now = document.format.ends;
     let list = ComboBox::from_id_salt("mcl line ends").selected_text(now.title()).width(44.0);
     let shown = list.show_ui(ui, |ui| {
         for ends in LineEnds::ALL {
             if ui.selectable_label(ends == now, ends.title()).clicked() {
-                wishes.push(MclWish::SetLineEnds(ends));
+                actions.push(MclAction::SetLineEnds(ends));
             }
         }
     });

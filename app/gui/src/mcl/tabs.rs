@@ -4,27 +4,27 @@ use egui::{
     Align2, Key, Rect, Response, Role, ScrollArea, Sense, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2,
 };
 
+use super::action::MclAction;
 use super::document::Document;
 use super::editor::Editor;
-use super::wish::MclWish;
 use crate::theme::Palette;
 
 const HEIGHT: f32 = 28.0;
 const CLOSE_WIDTH: f32 = 22.0;
 
-pub fn tabs_ui(ui: &mut Ui, editor: &Editor, wishes: &mut Vec<MclWish>) {
+pub fn tabs_ui(ui: &mut Ui, editor: &Editor, actions: &mut Vec<MclAction>) {
     ScrollArea::horizontal().id_salt("mcl tabs").min_scrolled_width(80.0).show(ui, |ui| {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
             let front = editor.front().id();
             for document in editor.documents() {
-                tab_ui(ui, document, document.id() == front, wishes);
+                tab_ui(ui, document, document.id() == front, actions);
             }
         });
     });
 }
 
-fn tab_ui(ui: &mut Ui, document: &Document, in_front: bool, wishes: &mut Vec<MclWish>) {
+fn tab_ui(ui: &mut Ui, document: &Document, in_front: bool, actions: &mut Vec<MclAction>) {
     let palette = Palette::of(ui);
     let (title, modified) = (document.title(), document.text.is_modified());
     let font = TextStyle::Body.resolve(ui.style());
@@ -46,12 +46,12 @@ fn tab_ui(ui: &mut Ui, document: &Document, in_front: bool, wishes: &mut Vec<Mcl
     if modified {
         ui.painter().circle_filled(pos2(rect.left() + 11.0, rect.center().y), 3.5, palette.warning);
     }
-    let closed = close_ui(ui, rect, document, &title, wishes);
+    let closed = close_ui(ui, rect, document, &title, actions);
     if !closed && response.clicked() {
-        wishes.push(MclWish::Front(document.id()));
+        actions.push(MclAction::Front(document.id()));
     }
     if response.middle_clicked() || response.has_focus() && ui.input(|input| input.key_pressed(Key::Delete)) {
-        wishes.push(MclWish::Close(document.id()));
+        actions.push(MclAction::Close(document.id()));
     }
     hover_ui(response, document);
 }
@@ -62,7 +62,7 @@ fn hover_ui(response: Response, document: &Document) {
     response.on_hover_text(format!("{}{state}", path.unwrap_or_else(|| "Not in a file yet".to_owned())));
 }
 
-fn close_ui(ui: &Ui, tab: Rect, document: &Document, title: &str, wishes: &mut Vec<MclWish>) -> bool {
+fn close_ui(ui: &Ui, tab: Rect, document: &Document, title: &str, actions: &mut Vec<MclAction>) -> bool {
     let palette = Palette::of(ui);
     let at = Rect::from_center_size(pos2(tab.right() - 12.0, tab.center().y), vec2(17.0, 17.0));
     let response = ui.interact(at, ui.scope_id().with(("close", document.id())), Sense::click());
@@ -76,7 +76,7 @@ fn close_ui(ui: &Ui, tab: Rect, document: &Document, title: &str, wishes: &mut V
     let clicked = response.clicked();
     response.on_hover_text(name);
     if clicked {
-        wishes.push(MclWish::Close(document.id()));
+        actions.push(MclAction::Close(document.id()));
     }
     clicked
 }

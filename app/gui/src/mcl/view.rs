@@ -10,13 +10,13 @@ use egui::{
     Ui, UiBuilder, Vec2, pos2, vec2,
 };
 
+use super::action::MclAction;
 use super::buffer::Buffer;
 use super::caret::Caret;
 use super::document::{Document, Reveal};
 use super::editor::{Editor, Options};
 use super::moves::word_at;
 use super::paint::{Line, Metrics};
-use super::wish::MclWish;
 use super::{access, gutter, input, popup, squiggle};
 use crate::theme::Palette;
 use crate::widgets::text_field;
@@ -29,7 +29,7 @@ pub fn view_ui(
     ui: &mut Ui,
     editor: &mut Editor,
     value_of: &dyn Fn(&str) -> Option<String>,
-    wishes: &mut Vec<MclWish>,
+    actions: &mut Vec<MclAction>,
 ) {
     let options = editor.options;
     let wants_focus = std::mem::take(&mut editor.wants_focus);
@@ -55,8 +55,8 @@ pub fn view_ui(
     }
     editor.find.look(document);
     let looks = Looks { options, matches: editor.find.matches(), value_of };
-    let anchor = text_ui(ui, text, id, document, &looks, &metrics, wishes);
-    gutter::gutter_ui(ui, gutter, document, &options, &metrics, wishes);
+    let anchor = text_ui(ui, text, id, document, &looks, &metrics, actions);
+    gutter::gutter_ui(ui, gutter, document, &options, &metrics, actions);
     if let (Some(open), Some(at)) = (&list, anchor)
         && let Some(index) = popup::completion_ui(ui.ctx(), open, at)
         && let Some(open) = list.take()
@@ -93,7 +93,7 @@ fn text_ui(
     document: &mut Document,
     looks: &Looks<'_>,
     metrics: &Metrics,
-    wishes: &mut Vec<MclWish>,
+    actions: &mut Vec<MclAction>,
 ) -> Option<Rect> {
     let mut child = ui.new_child(UiBuilder::new().max_rect(rect));
     child.shrink_clip_rect(rect);
@@ -112,7 +112,7 @@ fn text_ui(
         let visible = Rect::from_min_size(content.min + viewport.min.to_vec2(), viewport.size());
         let response = ui.interact(visible, id, Sense::click_and_drag() | Sense::focusable_noninteractive());
         let mut page = Page { document, looks, metrics, origin: content.min + vec2(MARGIN, 0.0), visible };
-        page.pointer(ui, &response, wishes);
+        page.pointer(ui, &response, actions);
         let anchor = page.paint(ui, &response);
         page.hover(ui, &response);
         let (rows, origin) = (page.rows(), page.origin);
@@ -180,13 +180,13 @@ impl Page<'_> {
         text.line_start(line) + self.line(ui, line).byte_at(at.x - self.origin.x)
     }
 
-    fn pointer(&mut self, ui: &Ui, response: &Response, wishes: &mut Vec<MclWish>) {
+    fn pointer(&mut self, ui: &Ui, response: &Response, actions: &mut Vec<MclAction>) {
         if response.hovered() {
             ui.ctx().set_cursor_icon(CursorIcon::Text);
             let zoom = ui.input(egui::InputState::zoom_delta);
             if zoom != 1.0 {
                 let step = if zoom > 1.0 { 10 } else { -10 };
-                wishes.push(MclWish::Zoom(self.looks.options.zoom_percent.saturating_add_signed(step)));
+                actions.push(MclAction::Zoom(self.looks.options.zoom_percent.saturating_add_signed(step)));
             }
         }
         let Some(at) = response.interact_pointer_pos() else { return };
@@ -199,7 +199,7 @@ impl Page<'_> {
             document.caret = document.caret.to(place, modifiers.shift);
             document.composing = None;
             if modifiers.command {
-                wishes.push(MclWish::Definition);
+                actions.push(MclAction::Definition);
             }
         }
         if response.triple_clicked() {

@@ -5,13 +5,13 @@ use brushwork_link::device::{Request, RiskAccepted};
 use brushwork_link::transport::ConnectTarget;
 use egui::Context;
 
-use super::model::firmware::{FirmwareWish, Next};
+use super::model::firmware::{FirmwareAction, Next};
+use crate::family_action::{FamilyAction, Host};
 use crate::frame::FRAME_INTERVAL;
 use crate::model::link::Arming;
 use crate::model::{DeskId, Phase};
-use crate::wish::{Host, Wish};
 
-impl Wish for FirmwareWish {
+impl FamilyAction for FirmwareAction {
     fn act(&self, host: &mut dyn Host) -> Result<(), String> {
         let firmware = &mut host.model().front.mcp_mut().firmware;
         match *self {

@@ -499,7 +499,7 @@ impl Desk {
         None
     }
 
-    /// The link is gone, by wish or not. A simulated world lives on. What there is to say of it is handed back.
+    /// The link is gone, on request or not. A simulated world lives on. What there is to say of it is handed back.
     pub fn link_ended(&mut self) -> Vec<Effect> {
         let effects = self.tune.link_ended();
         self.phase = Phase::Closed;

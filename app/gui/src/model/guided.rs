@@ -13,7 +13,7 @@ use brushwork_core::motion::profile::{Leg, Mode, Pace, Reach};
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GuidedWish {
+pub enum GuidedAction {
     /// Plays the profile of the screen that is open.
     Play,
     MeasureQpps,
@@ -34,23 +34,23 @@ impl Desk {
     /// A job to ask of the device thread, and whose it is; or why none can be.
     pub fn begin_guided(
         &mut self,
-        wish: GuidedWish,
+        action: GuidedAction,
         screen: Screen,
     ) -> Result<Option<(Owner, QueuedJob)>, String> {
         let nothing = || "A job runs already. Wait for it or cancel it.".to_owned();
-        match wish {
-            GuidedWish::Cancel => {
+        match action {
+            GuidedAction::Cancel => {
                 self.generator.cancel();
                 self.qpps.cancel();
                 self.general.clamp.cancel();
                 Ok(None)
             }
-            GuidedWish::MeasureQpps | GuidedWish::Play if self.is_guided() => Err(nothing()),
-            GuidedWish::MeasureQpps => {
+            GuidedAction::MeasureQpps | GuidedAction::Play if self.is_guided() => Err(nothing()),
+            GuidedAction::MeasureQpps => {
                 let job = self.qpps.begin(self.pwm.accel_percent_per_s).ok_or_else(nothing)?;
                 Ok(Some((Owner::Qpps, job)))
             }
-            GuidedWish::Play => {
+            GuidedAction::Play => {
                 let mode = screen.arm_scope().and_then(mode_of).ok_or_else(nothing)?;
                 let (pace, reaches) = (self.pace(mode), self.reaches(mode));
                 Ok(Some((Owner::Generator, self.generator.begin(mode, pace, reaches)?)))

@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_slider_shows_by_itself_is_not_sent_and_ends_with_the_first_wish() {
+    fn what_a_slider_shows_by_itself_is_not_sent_and_ends_with_the_first_action() {
         let mut setpoints = Setpoints::default();
         setpoints.show(Motor::M1, 5000.0);
         assert_eq!((setpoints.values[0], setpoints.to_send(speed)), (5000.0, None));

@@ -1,8 +1,8 @@
 //! Motion Mind 3 in the window: its facts, the state of its screens, and the screens.
 
+mod action;
 pub mod model;
 pub mod screens;
-mod wish;
 
+pub use action::MindAction;
 pub use model::family::MotionMind;
-pub use wish::MindWish;

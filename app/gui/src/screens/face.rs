@@ -9,13 +9,13 @@ use egui::{Context, Rect, Ui};
 use crate::actions::Action;
 use crate::command::Commands;
 use crate::family::Family;
+use crate::family_action::Host;
 use crate::model::Model;
 use crate::model::desk::{Desk, DeskId};
 use crate::model::general::GeneralView;
 use crate::model::help::Help;
 use crate::model::help_page::HelpPage;
 use crate::model::simulated::Simulated;
-use crate::wish::Host;
 
 /// What a family draws itself.
 pub trait Face: Sync {

@@ -6,7 +6,7 @@ use brushwork_values::Motor;
 use egui::{Button, ComboBox, Grid, Label, RichText, Ui, vec2};
 
 use super::progress::progress_ui;
-use crate::command::{Command, Commands, GuidedWish};
+use crate::command::{Command, Commands, GuidedAction};
 use crate::model::Model;
 use crate::model::generator::{duration_text, mode_of};
 use crate::theme;
@@ -37,7 +37,7 @@ pub fn generator_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             "Plays it once, stops the motors and disarms. Any stop, and a window that hangs, ends it.",
         );
         if run.clicked() {
-            commands.push(Command::Guided(GuidedWish::Play));
+            commands.push(Command::Guided(GuidedAction::Play));
         }
         let palette = Palette::of(ui);
         let (text, color) = match plan {

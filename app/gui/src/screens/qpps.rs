@@ -4,7 +4,7 @@ use brushwork_values::Motor;
 use egui::{Button, Label, RichText, Ui};
 
 use super::progress::progress_ui;
-use crate::command::{Command, Commands, GuidedWish};
+use crate::command::{Command, Commands, GuidedAction};
 use crate::model::Model;
 use crate::model::lamp::LampState;
 use crate::model::qpps::lines;
@@ -28,7 +28,7 @@ pub fn qpps_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         let label = format!("Measure {}", model.front.qpps.motor);
         let measure = ui.add_enabled(is_armed, Button::new(label));
         if measure.on_disabled_hover_text("Arm this screen first").clicked() {
-            commands.push(Command::Guided(GuidedWish::MeasureQpps));
+            commands.push(Command::Guided(GuidedAction::MeasureQpps));
         }
         if !is_armed {
             let hint = RichText::new("Arm this screen to measure.").small().color(palette.weak_text);

@@ -8,7 +8,7 @@ use egui::{
 
 use crate::command::Commands;
 use crate::family::Family;
-use crate::files::{FileAnswer, FileDialog, FileKind, FileWish};
+use crate::files::{FileAction, FileAnswer, FileDialog, FileKind};
 use crate::model::Model;
 use crate::model::lamp::LampState;
 use crate::model::traffic::{Filter, Log, Outcome, Traffic, Transaction};
@@ -143,7 +143,7 @@ fn saving_ui(ui: &mut Ui, model: &mut Model) {
         });
         if ui.button("Browse…").clicked() {
             let kind = FileKind { title: "Text".to_owned(), extension: "txt".to_owned() };
-            traffic.dialog = Some(FileDialog::ask(FileWish::Save { name: "traffic.txt".to_owned() }, kind));
+            traffic.dialog = Some(FileDialog::ask(FileAction::Save { name: "traffic.txt".to_owned() }, kind));
         }
         if ui.add_enabled(!name.trim().is_empty(), egui::Button::new("Save traffic")).clicked() {
             match traffic.save(&PathBuf::from(name.trim())) {

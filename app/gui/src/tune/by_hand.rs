@@ -6,7 +6,7 @@ use egui::{Button, Label, RichText, Ui};
 
 use super::calibration::{Advice, Calibration};
 use super::figures::lamp_ui;
-use super::model::TuneWish;
+use super::model::TuneAction;
 use super::which::Loop;
 use crate::command::{Command, Commands};
 use crate::model::Model;
@@ -34,7 +34,7 @@ pub fn by_hand_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
                 && let Some(held) = held
             {
                 let registers = change.made(held);
-                commands.push(Command::Tune(TuneWish::Adjust(motor, registers)));
+                commands.push(Command::Tune(TuneAction::Adjust(motor, registers)));
             }
         }
         if which == Loop::Velocity && at == 0 && ui.button("Measure QPPS…").clicked() {

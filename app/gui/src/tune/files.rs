@@ -6,10 +6,10 @@ use brushwork_core::tune::law::Report;
 use egui::{Button, Ui, vec2};
 
 use super::asked::Asked;
-use super::model::{TuneWish, Tuning};
+use super::model::{TuneAction, Tuning};
 use super::which::Loop;
 use crate::command::{Command, Commands};
-use crate::files::{FileAnswer, FileDialog, FileKind, FileWish};
+use crate::files::{FileAction, FileAnswer, FileDialog, FileKind};
 use crate::frame::FRAME_INTERVAL;
 use crate::widgets::text_field::text_field_ui;
 
@@ -37,17 +37,17 @@ pub fn files_ui(ui: &mut Ui, tuning: &mut Tuning, which: Loop, commands: &mut Co
         if save.on_hover_text(hint).clicked() {
             if path.is_empty() {
                 let name = format!("tuning-{}.json", tuning.motor(which));
-                ask(tuning, FileWish::Save { name });
+                ask(tuning, FileAction::Save { name });
             } else {
-                commands.push(Command::Tune(TuneWish::SaveReport(with_extension(&path))));
+                commands.push(Command::Tune(TuneAction::SaveReport(with_extension(&path))));
             }
         }
         let open = ui.button("Open report");
         if open.on_hover_text("Shows a saved run here; without a path it asks for one").clicked() {
             if path.is_empty() {
-                ask(tuning, FileWish::Open);
+                ask(tuning, FileAction::Open);
             } else {
-                commands.push(Command::Tune(TuneWish::OpenReport(path.into())));
+                commands.push(Command::Tune(TuneAction::OpenReport(path.into())));
             }
         }
     });
@@ -60,10 +60,10 @@ fn with_extension(path: &str) -> PathBuf {
     if Path::new(path).extension().is_some() { path.into() } else { format!("{path}.json").into() }
 }
 
-fn ask(tuning: &mut Tuning, wish: FileWish) {
-    let saves = wish != FileWish::Open;
+fn ask(tuning: &mut Tuning, action: FileAction) {
+    let saves = action != FileAction::Open;
     let kind = FileKind { title: "Tuning report".to_owned(), extension: "json".to_owned() };
-    tuning.dialog = Some(Asked { dialog: FileDialog::ask(wish, kind), saves });
+    tuning.dialog = Some(Asked { dialog: FileDialog::ask(action, kind), saves });
 }
 
 fn answer(tuning: &mut Tuning, commands: &mut Commands) {
@@ -72,8 +72,9 @@ fn answer(tuning: &mut Tuning, commands: &mut Commands) {
         FileAnswer::Waiting => {}
         FileAnswer::None => tuning.dialog = None,
         FileAnswer::Chosen(path) => {
-            let wish = if asked.saves { TuneWish::SaveReport(path) } else { TuneWish::OpenReport(path) };
-            commands.push(Command::Tune(wish));
+            let action =
+                if asked.saves { TuneAction::SaveReport(path) } else { TuneAction::OpenReport(path) };
+            commands.push(Command::Tune(action));
             tuning.dialog = None;
         }
     }

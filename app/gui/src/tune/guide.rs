@@ -5,7 +5,7 @@ use egui::{
     UiBuilder, vec2,
 };
 
-use super::model::{TuneWish, Tuning};
+use super::model::{TuneAction, Tuning};
 use super::which::Loop;
 use super::{plots, result, setup};
 use crate::command::{Command, Commands};
@@ -88,7 +88,7 @@ fn progress_ui(ui: &mut Ui, tuning: &Tuning, which: Loop, commands: &mut Command
         let stop = Button::new(RichText::new("Stop the run").strong());
         let hint = "Stops at once and puts the old gains back. Space and Esc do the same.";
         if ui.add(stop).on_hover_text(hint).clicked() {
-            commands.push(Command::Tune(TuneWish::Cancel));
+            commands.push(Command::Tune(TuneAction::Cancel));
         }
         let bar = ProgressBar::new(left.fraction).desired_width(220.0);
         ui.add(bar);

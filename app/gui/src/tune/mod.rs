@@ -29,5 +29,5 @@ mod sketches;
 pub mod which;
 mod winding;
 
-pub use model::{TuneWish, Tuning};
+pub use model::{TuneAction, Tuning};
 pub use which::Loop;

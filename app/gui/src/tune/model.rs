@@ -20,7 +20,7 @@ use crate::family::Family;
 use crate::model::link::{Arming, Effect};
 use crate::model::message::Gravity;
 use crate::model::screen::Screen;
-use crate::model::settings::SettingsWish;
+use crate::model::settings::SettingsAction;
 use brushwork_core::tune::Target;
 use brushwork_core::tune::law::AnyRegisters;
 
@@ -32,7 +32,7 @@ const ENDLESS_COUNTS: f64 = 1e8;
 
 /// What is asked for.
 #[derive(Clone, Debug, PartialEq)]
-pub enum TuneWish {
+pub enum TuneAction {
     Start(Motor),
     Verify,
     Cancel,
@@ -206,7 +206,7 @@ pub struct Tuning {
     calibrations: [Calibration; 2],
     pub view: View,
     /// Work with the settings that was asked for during a run: it waits until what the run changed is put back.
-    pub waiting: Option<SettingsWish>,
+    pub waiting: Option<SettingsAction>,
     pub afterwards: Option<Afterwards>,
     /// A path for a report, as it is typed.
     pub path: String,
@@ -322,7 +322,7 @@ impl Tuning {
     }
 
     /// What was asked for in the meantime, once nothing runs any more.
-    pub fn take_waiting(&mut self) -> Option<SettingsWish> {
+    pub fn take_waiting(&mut self) -> Option<SettingsAction> {
         if self.running.is_none() { self.waiting.take() } else { None }
     }
 

@@ -4,7 +4,7 @@ use brushwork_tuning::cause::Cause;
 use egui::{Button, Label, RichText, Ui};
 
 use super::figures::lamp_ui;
-use super::model::TuneWish;
+use super::model::TuneAction;
 use super::run::Run;
 use super::sketches::{Sketch, sketch_ui};
 use super::which::Loop;
@@ -136,7 +136,7 @@ fn clearing_ui(ui: &mut Ui, model: &Model, which: Loop, commands: &mut Commands)
     let clear = ui.add_enabled(is_free, Button::new("Clear L and R for the run"));
     let hint = "Writes 0 for both into the controller's RAM now and puts them back after the next run, whatever becomes of it";
     if clear.on_hover_text(hint).clicked() {
-        commands.push(Command::Tune(TuneWish::ClearWinding));
+        commands.push(Command::Tune(TuneAction::ClearWinding));
     }
 }
 
@@ -149,7 +149,7 @@ pub fn cleared_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
         &format!("L and R of {motor} are cleared. They are put back after the run."),
     );
     if ui.button("Put L and R back").on_hover_text("Now, without a run").clicked() {
-        commands.push(Command::Tune(TuneWish::PutWindingBack));
+        commands.push(Command::Tune(TuneAction::PutWindingBack));
     }
 }
 
@@ -172,7 +172,7 @@ pub fn refusal_ui(ui: &mut Ui, model: &Model, which: Loop, commands: &mut Comman
         let can_start = is_armed && !model.front.is_guided();
         let again = ui.add_enabled(can_start, Button::new("Try again"));
         if again.on_disabled_hover_text("Arm this screen first").clicked() {
-            commands.push(Command::Tune(TuneWish::Start(motor)));
+            commands.push(Command::Tune(TuneAction::Start(motor)));
         }
         clearing_ui(ui, model, which, commands);
         if !is_armed {

@@ -8,7 +8,7 @@ use egui::{Button, Grid, Label, RichText, Ui, vec2};
 use super::figures::{FIGURES, figure_ui, lamp_ui};
 use super::files::files_ui;
 use super::measured::Figures;
-use super::model::TuneWish;
+use super::model::TuneAction;
 use super::run::Run;
 use super::which::Loop;
 use super::winding::{unknown_ui, winding_ui};
@@ -261,7 +261,7 @@ fn acts_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands)
             .on_hover_text("Writes the proposed gains into the controller's RAM and reads them back")
             .clicked()
         {
-            commands.push(Command::Tune(TuneWish::Apply));
+            commands.push(Command::Tune(TuneAction::Apply));
         }
         let verify = ui.add_enabled(is_free && is_armed && has_gains, Button::new("Verify"));
         let verify = verify.on_disabled_hover_text("Arm this screen first");
@@ -269,7 +269,7 @@ fn acts_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands)
             .on_hover_text("Moves the motor with the proposed gains and compares it with the prediction")
             .clicked()
         {
-            commands.push(Command::Tune(TuneWish::Verify));
+            commands.push(Command::Tune(TuneAction::Verify));
         }
         let save = ui.add_enabled(is_free, Button::new("Save…"));
         if save.on_hover_text("Shows what is not in EEPROM yet and saves it there").clicked() {
@@ -277,7 +277,7 @@ fn acts_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands)
         }
         let undo = ui.add_enabled(is_free && can_undo, Button::new("Undo"));
         if undo.on_hover_text("Writes back what RAM held before the gains were applied").clicked() {
-            commands.push(Command::Tune(TuneWish::Undo));
+            commands.push(Command::Tune(TuneAction::Undo));
         }
         let reset = ui.add_enabled(!run.is_as_proposed(), Button::new("As proposed"));
         if reset.on_hover_text("Back to the gains and the level of the run").clicked() {

@@ -6,7 +6,7 @@ use brushwork_values::Motor;
 use egui::{Button, ComboBox, Label, RichText, Ui};
 
 use super::level::level_ui;
-use super::model::{Setting, TuneWish};
+use super::model::{Setting, TuneAction};
 use super::which::Loop;
 use crate::command::{Command, Commands};
 use crate::family::Ability;
@@ -69,7 +69,7 @@ fn motor_row_ui(
     let tune = ui.add_enabled(can_start, Button::new(format!("Tune {motor}")));
     let tune = tune.on_disabled_hover_text("Arm this screen first");
     if tune.on_hover_text("Moves the motor, at up to the highest duty").clicked() {
-        commands.push(Command::Tune(TuneWish::Start(motor)));
+        commands.push(Command::Tune(TuneAction::Start(motor)));
     }
     let panel = model.front.tune.panel_mut(which, motor);
     let mut level = panel.level();

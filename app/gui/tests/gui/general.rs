@@ -129,7 +129,7 @@ fn what_did_not_take_is_named_with_both_values_and_stays_an_edit() {
     assert!(bench.sees_part(&format!("{MAX_VOLTS} was to be 33.5 V and is 60.0 V")));
     assert_eq!(bench.model().messages.shown().unwrap().gravity, Gravity::Error);
     bench.press("Back");
-    assert!(bench.sees("Edits: 1 not written"), "the wish is kept");
+    assert!(bench.sees("Edits: 1 not written"), "the edit is kept");
     assert!(bench.sees_part(&format!("{MAX_VOLTS}: {MAX_VOLTS} was to be 33.5 V")), "its row says why");
 }
 

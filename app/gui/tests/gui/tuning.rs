@@ -8,7 +8,7 @@ use brushwork_core::tune::law::AnyRegisters;
 use brushwork_core::tune::law::Report;
 use brushwork_gui::model::link::Arming;
 use brushwork_gui::model::loop_settings::VELOCITY;
-use brushwork_gui::model::settings::SettingsWish;
+use brushwork_gui::model::settings::SettingsAction;
 use brushwork_gui::tune::Loop;
 use brushwork_gui::tune::run::Run;
 use brushwork_mcp_sim::controller::{Controller, ControllerConfig};
@@ -578,9 +578,9 @@ fn saving_while_a_run_is_at_work_waits_for_its_end_and_saves_the_users_values() 
     let (mut bench, before) = running("small-gearmotor", "Velocity Settings");
     bench.pass_ms(1500);
     assert_ne!(timeout_ms(&bench), timeout_of_factory(), "the run has shortened it");
-    bench.model().front.tune.waiting = Some(SettingsWish::Save);
+    bench.model().front.tune.waiting = Some(SettingsAction::Save);
     bench.pass_ms(300);
-    assert_eq!(bench.model().front.tune.waiting, Some(SettingsWish::Save), "it waits");
+    assert_eq!(bench.model().front.tune.waiting, Some(SettingsAction::Save), "it waits");
     bench.key(Key::Escape);
     for _ in 0..40 {
         bench.pass_ms(500);

@@ -14,7 +14,7 @@ use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::models::Model;
 use crossbeam_channel::{Receiver, bounded};
 
-use crate::files::{FileAnswer, FileDialog, FileKind, FileWish};
+use crate::files::{FileAction, FileAnswer, FileDialog, FileKind};
 use brushwork_core::keep::{Store, UnitId, today};
 use brushwork_core::session::firmware::{LoaderPlace, Upload, UploadEvent};
 
@@ -27,7 +27,7 @@ pub const LISTED: usize = 12;
 
 /// What is asked of the firmware window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FirmwareWish {
+pub enum FirmwareAction {
     Browse,
     /// Starts an update of the unit that is looked at, or resumes one that broke.
     Update,
@@ -162,7 +162,7 @@ impl Firmware {
     /// Opens the desktop's own dialog.
     pub fn browse(&mut self) {
         let kind = FileKind { title: "Firmware image".to_owned(), extension: "bin".to_owned() };
-        self.dialog = Some(FileDialog::ask(FileWish::Open, kind));
+        self.dialog = Some(FileDialog::ask(FileAction::Open, kind));
     }
 
     /// Begins to update the unit that is connected: its settings are backed up first.

@@ -4,7 +4,7 @@ use brushwork_link::device::{ArmScope, Channel};
 use brushwork_values::Motor;
 use egui::{Button, Grid, Label, Layout, ProgressBar, RichText, Role, ScrollArea, Ui, WidgetInfo, vec2};
 
-use crate::command::{Command, Commands, GuidedWish};
+use crate::command::{Command, Commands, GuidedAction};
 use crate::family::Family;
 use crate::model::general::GeneralView;
 use crate::model::lamp::LampState;
@@ -127,7 +127,7 @@ fn run_ui(ui: &mut Ui, general: &GeneralView<'_>, link: &LinkView, commands: &mu
             let cancel = ui.add(Button::new("Cancel").min_size(vec2(90.0, 28.0)));
             cancel.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Cancel clamp test"));
             if cancel.clicked() {
-                commands.push(Command::Guided(GuidedWish::Cancel));
+                commands.push(Command::Guided(GuidedAction::Cancel));
             }
             let volts = link.readings.get(Channel::MAIN_BATTERY).unwrap_or(f64::NAN);
             let bar = ProgressBar::new(fraction).desired_width(ui.available_width());

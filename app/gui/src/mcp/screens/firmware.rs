@@ -10,7 +10,7 @@ use egui::{
 };
 
 use crate::command::{Command, Commands};
-use crate::mcp::model::firmware::{Firmware, FirmwareWish, LISTED, Stage};
+use crate::mcp::model::firmware::{Firmware, FirmwareAction, LISTED, Stage};
 use crate::model::Model;
 use crate::model::general::Sheet;
 use crate::theme::Palette;
@@ -65,7 +65,7 @@ fn contents_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         Stage::Failed(sentence) => {
             ui.label(RichText::new(sentence).color(Palette::of(ui).error));
             if ui.button("Back").clicked() {
-                commands.push(Command::own(FirmwareWish::Dismiss));
+                commands.push(Command::own(FirmwareAction::Dismiss));
             }
         }
         running => running_ui(ui, running, commands),
@@ -105,7 +105,7 @@ fn ask_ui(
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if ui.button("Choose…").clicked() {
-                commands.push(Command::own(FirmwareWish::Browse));
+                commands.push(Command::own(FirmwareAction::Browse));
             }
             text_field_ui(ui, &mut firmware.path, "Firmware file", "Path of the image");
         });
@@ -134,7 +134,7 @@ fn ask_ui(
     let title = if identity.is_none() { "Resume the update" } else { "Update the firmware" };
     let button = ui.add_enabled(why_not.is_none(), Button::new(title));
     if button.clicked() {
-        commands.push(Command::own(FirmwareWish::Update));
+        commands.push(Command::own(FirmwareAction::Update));
     }
     if let Some(why) = why_not {
         button.on_disabled_hover_text(why);
@@ -165,7 +165,7 @@ fn running_ui(ui: &mut Ui, stage: &Stage, commands: &mut Commands) {
     let harmless = stage.can_be_cancelled();
     let cancel = ui.add_enabled(harmless, Button::new("Cancel the update"));
     if cancel.clicked() {
-        commands.push(Command::own(FirmwareWish::Cancel));
+        commands.push(Command::own(FirmwareAction::Cancel));
     }
     if !harmless {
         weak_ui(ui, "It cannot be cancelled now: the controller would be left without firmware.");
@@ -194,7 +194,7 @@ fn done_ui(ui: &mut Ui, text: &str, firmware: &Firmware, connected: bool, comman
         }
     }
     if ui.button("Back").clicked() {
-        commands.push(Command::own(FirmwareWish::Dismiss));
+        commands.push(Command::own(FirmwareAction::Dismiss));
     }
 }
 

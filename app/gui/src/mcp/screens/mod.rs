@@ -6,6 +6,7 @@ use super::model::family::{HELP_COMMANDS, HELP_MCL, HELP_SETTINGS};
 use super::{Mcp, updating};
 use crate::actions::{Action, Keys, page};
 use crate::command::Commands;
+use crate::family_action::Host;
 use crate::help::mcl::mcl_ui;
 use crate::model::desk::Desk;
 use crate::model::general::GeneralView;
@@ -14,7 +15,6 @@ use crate::model::help_page::HelpPage;
 use crate::model::screen::Screen;
 use crate::model::{DeskId, Model};
 use crate::screens::face::Face;
-use crate::wish::Host;
 
 mod calibrate;
 mod clamp;

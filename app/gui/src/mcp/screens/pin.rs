@@ -80,7 +80,7 @@ pub fn pin_ui(
 /// The pin's name, its mode, and what can be done with it.
 fn head_ui(ui: &mut Ui, general: &mut GeneralView<'_>, pin: usize, commands: &mut Commands) {
     let is_busy = general.is_busy();
-    let mut wish = None;
+    let mut action = None;
     ui.horizontal(|ui| {
         ui.set_min_height(ui.spacing().interact_size.y);
         let Some(unit) = general.unit_mut() else { return };
@@ -104,15 +104,15 @@ fn head_ui(ui: &mut Ui, general: &mut GeneralView<'_>, pin: usize, commands: &mu
             "Finds minimum, center and maximum by moving the input. Meanwhile it commands nothing and triggers nothing.",
         );
         if response.on_hover_text(note).on_disabled_hover_text(note).clicked() {
-            wish = Some(pin);
+            action = Some(pin);
         }
         if is_edited {
             let hint = "Write the mode to see the live signal.";
             ui.add(Label::new(RichText::new(hint).small().color(Palette::of(ui).weak_text)).truncate());
         }
     });
-    if let Some(wish) = wish.and_then(|pin| general.calibrate(pin)) {
-        commands.push(Command::Settings(wish));
+    if let Some(action) = action.and_then(|pin| general.calibrate(pin)) {
+        commands.push(Command::Settings(action));
     }
 }
 

@@ -6,7 +6,7 @@ use brushwork_link::settings::{Keeper, SettingsImage};
 use super::calibration::{Calibrated, Calibration};
 use crate::family::Family;
 use crate::model::message::Gravity;
-use crate::model::settings::{Before, SettingsWish, Summary, UnitKey, UnitSettings};
+use crate::model::settings::{Before, SettingsAction, Summary, UnitKey, UnitSettings};
 use brushwork_core::keep::TrialKeeper;
 
 mod acts;
@@ -53,10 +53,10 @@ impl Run {
         matches!(self.phase, Phase::Closing)
     }
 
-    /// What to write for a wish of a calibration.
-    pub(super) fn image(&self, wish: SettingsWish) -> SettingsImage {
-        match wish {
-            SettingsWish::CloseInput => self.before.clone(),
+    /// What to write for an action of a calibration.
+    pub(super) fn image(&self, action: SettingsAction) -> SettingsImage {
+        match action {
+            SettingsAction::CloseInput => self.before.clone(),
             _ => self.opened(),
         }
     }

@@ -5,7 +5,7 @@
 
 use brushwork_link::settings::{Profile, ProfileFileError};
 
-use crate::files::{FileAnswer, FileDialog, FileKind, FileWish};
+use crate::files::{FileAction, FileAnswer, FileDialog, FileKind};
 
 mod acts;
 
@@ -78,12 +78,12 @@ impl Profiles {
 
     /// Opens the desktop's own dialog.
     pub fn browse(&mut self, purpose: Purpose) {
-        let wish = match purpose {
-            Purpose::Open => FileWish::Open,
-            Purpose::Save => FileWish::Save { name: "controller.json".to_owned() },
+        let action = match purpose {
+            Purpose::Open => FileAction::Open,
+            Purpose::Save => FileAction::Save { name: "controller.json".to_owned() },
         };
         let kind = FileKind { title: "Profile".to_owned(), extension: "json".to_owned() };
-        self.dialog = Some((FileDialog::ask(wish, kind), purpose));
+        self.dialog = Some((FileDialog::ask(action, kind), purpose));
     }
 
     fn answer(&mut self) -> Option<Purpose> {

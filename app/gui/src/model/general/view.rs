@@ -8,7 +8,7 @@ use brushwork_link::transport::Stream;
 use super::{General, Sheet};
 use crate::model::link::Effect;
 use crate::model::message::Gravity;
-use crate::model::settings::{Calibrating, Ended, Settings, SettingsWish, Summary, UnitSettings};
+use crate::model::settings::{Calibrating, Ended, Settings, SettingsAction, Summary, UnitSettings};
 
 /// The screen with the settings that it shows.
 #[derive(Debug)]
@@ -74,24 +74,24 @@ impl GeneralView<'_> {
     }
 
     /// What to ask of the device thread. Nothing while other work with settings runs.
-    pub fn begin(&mut self, wish: SettingsWish, own_stream: Option<Stream>) -> Option<QueuedJob> {
-        let is_calibrating = matches!(wish, SettingsWish::OpenInput | SettingsWish::CloseInput);
-        if wish != SettingsWish::Cancel && self.calibration.is_some() != is_calibrating {
+    pub fn begin(&mut self, action: SettingsAction, own_stream: Option<Stream>) -> Option<QueuedJob> {
+        let is_calibrating = matches!(action, SettingsAction::OpenInput | SettingsAction::CloseInput);
+        if action != SettingsAction::Cancel && self.calibration.is_some() != is_calibrating {
             return None;
         }
-        let calibrating = if is_calibrating { Some(self.calibrating(wish)?) } else { None };
-        let job = self.settings.begin(wish, own_stream, calibrating)?;
+        let calibrating = if is_calibrating { Some(self.calibrating(action)?) } else { None };
+        let job = self.settings.begin(action, own_stream, calibrating)?;
         self.sheet = None;
         Some(job)
     }
 
     /// What keeps the journal of the calibration, and what opens or closes its input.
-    fn calibrating(&mut self, wish: SettingsWish) -> Option<Calibrating> {
+    fn calibrating(&mut self, action: SettingsAction) -> Option<Calibrating> {
         let settings = &*self.settings;
         let run = self.screen.calibration.as_mut()?;
         let unit = run.unit.clone();
         let keeper = run.keeper(|| settings.keeper_of(&unit))?;
-        Some(Calibrating { unit: run.unit.clone(), wanted: run.image(wish), keeper })
+        Some(Calibrating { unit: run.unit.clone(), wanted: run.image(action), keeper })
     }
 
     /// The job was not taken.

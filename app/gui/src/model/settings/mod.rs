@@ -14,4 +14,4 @@ pub use summary::Summary;
 pub use unit::{Before, Saved, UnitSettings};
 pub use unit_key::UnitKey;
 pub use units::{Ended, Settings};
-pub use work::{Calibrating, Running, SettingsWish};
+pub use work::{Calibrating, Running, SettingsAction};

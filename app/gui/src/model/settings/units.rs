@@ -13,7 +13,7 @@ use super::outcome;
 use super::summary::Summary;
 use super::unit::UnitSettings;
 use super::unit_key::UnitKey;
-use super::work::{self, Calibrating, Origin, Running, SettingsWish};
+use super::work::{self, Calibrating, Origin, Running, SettingsAction};
 use crate::model::message::Gravity;
 use brushwork_core::settings::{Act, Done};
 
@@ -112,11 +112,11 @@ impl Settings {
     /// What to ask of the device thread; `calibrating` is the input that is opened or closed. Nothing while other work runs.
     pub fn begin(
         &mut self,
-        wish: SettingsWish,
+        action: SettingsAction,
         stream: Option<Stream>,
         calibrating: Option<Calibrating>,
     ) -> Option<QueuedJob> {
-        if wish == SettingsWish::Cancel {
+        if action == SettingsAction::Cancel {
             let running = self.jobs.iter_mut().find(|job| !job.is_view())?;
             running.is_cancelled = true;
             // Whoever calls it off is told, and it is not begun again by itself.
@@ -130,20 +130,20 @@ impl Settings {
         if let Some(calibrating) = calibrating {
             let unit = self.units.get(&calibrating.unit)?;
             let (table, options) = (unit.table().clone(), unit.options(&calibrating.wanted, stream));
-            let begun = work::calibrate(calibrating, wish == SettingsWish::OpenInput, table, options);
+            let begun = work::calibrate(calibrating, action == SettingsAction::OpenInput, table, options);
             return Some(self.asked(begun));
         }
         let unit = self.unit()?;
-        let act = match wish {
-            SettingsWish::Read => Act::Read,
-            SettingsWish::Reload => Act::Reload,
+        let act = match action {
+            SettingsAction::Read => Act::Read,
+            SettingsAction::Reload => Act::Reload,
             // What the sheet has shown is written over what is read now.
-            SettingsWish::Write => Act::Write { wanted: unit.edits().clone(), known: Default::default() },
-            SettingsWish::Save => Act::Save,
-            SettingsWish::RestoreDefaults => Act::RestoreDefaults,
-            SettingsWish::OpenInput | SettingsWish::CloseInput | SettingsWish::Cancel => return None,
+            SettingsAction::Write => Act::Write { wanted: unit.edits().clone(), known: Default::default() },
+            SettingsAction::Save => Act::Save,
+            SettingsAction::RestoreDefaults => Act::RestoreDefaults,
+            SettingsAction::OpenInput | SettingsAction::CloseInput | SettingsAction::Cancel => return None,
         };
-        let job = self.begin_act(act, Origin::Settings(wish), stream)?;
+        let job = self.begin_act(act, Origin::Settings(action), stream)?;
         self.unit_mut()?.note_asked();
         Some(job)
     }
@@ -177,7 +177,7 @@ impl Settings {
         if self.quiet_failures >= QUIET_TRIES {
             return None;
         }
-        let job = self.begin(SettingsWish::Read, None, None)?;
+        let job = self.begin(SettingsAction::Read, None, None)?;
         self.jobs.iter_mut().rev().take(1).for_each(|job| job.is_quiet = true);
         Some(job)
     }
@@ -255,7 +255,7 @@ impl Settings {
             })),
             (Origin::Loop, Some(done)) => Some(Ended::Said(outcome::applied(unit, done, &job.replaced))),
             (Origin::Loop, None) => Some(Ended::Said(outcome::nothing_came(job, ending).said())),
-            (Origin::Settings(SettingsWish::OpenInput | SettingsWish::CloseInput), done) => {
+            (Origin::Settings(SettingsAction::OpenInput | SettingsAction::CloseInput), done) => {
                 Some(Ended::Calibrated(match done {
                     Some(Done::Written(report, known)) => {
                         unit.note_written(&report, &SettingsImage::default(), known);
@@ -286,7 +286,7 @@ impl Settings {
         let Some(unit) = self.units.get_mut(&job.unit) else { return };
         match &job.origin {
             Origin::View(keys) => unit.forget_keys_asked(keys),
-            Origin::Settings(SettingsWish::Read) if job.is_quiet => unit.forget_asked(),
+            Origin::Settings(SettingsAction::Read) if job.is_quiet => unit.forget_asked(),
             _ => {}
         }
     }

@@ -14,7 +14,7 @@ use brushwork_core::settings::{Act, Done};
 
 /// What can be asked of the settings' controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SettingsWish {
+pub enum SettingsAction {
     /// Reads what the controller works with.
     Read,
     /// Makes the controller load its EEPROM, then reads.
@@ -44,7 +44,7 @@ pub struct Calibrating {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Origin {
     /// General Settings, or nobody.
-    Settings(SettingsWish),
+    Settings(SettingsAction),
     /// A screen that drives, a tuning run, an assistant: values to RAM.
     Loop,
     /// A screen that shows some settings.
@@ -101,15 +101,15 @@ pub(super) fn calibrate(
     options: WriteOptions,
 ) -> (QueuedJob, Running) {
     let Calibrating { unit, wanted, keeper } = calibrating;
-    let (name, wish) = match opens {
-        true => ("open the input", SettingsWish::OpenInput),
-        false => ("put the input back", SettingsWish::CloseInput),
+    let (name, action) = match opens {
+        true => ("open the input", SettingsAction::OpenInput),
+        false => ("put the input back", SettingsAction::CloseInput),
     };
     let limit = Act::Write { wanted: SettingsImage::default(), known: Known::default() }.limit();
     let job = Job::new(name, limit, move |context| {
         calibrating_done(context, &table, &wanted, options, &keeper, opens)
     });
-    running(unit, Origin::Settings(wish), job)
+    running(unit, Origin::Settings(action), job)
 }
 
 fn running(unit: UnitKey, origin: Origin, job: Job<Done>) -> (QueuedJob, Running) {

@@ -431,7 +431,7 @@ mod tests {
             let mut terminal = Terminal { typed: typed.to_owned(), form, ..Terminal::default() };
             terminal.send(1, facts(protocol))
         };
-        let bytes = |wish| match wish {
+        let bytes = |action| match action {
             Some(Sending::Raw { bytes, .. }) => bytes,
             other => panic!("{other:?}"),
         };

@@ -8,7 +8,7 @@ use crate::command::{Command, Commands};
 use crate::model::Model;
 use crate::model::desk::Desk;
 use crate::model::lamp::LampState;
-use crate::motion_mind::MindWish;
+use crate::motion_mind::MindAction;
 use crate::motion_mind::model::radio::{STEP_MS, Stage, WIDE};
 use crate::motion_mind::model::registers::in_unit;
 use crate::screens::{not_connected_text, nothing_ui, title_ui};
@@ -156,7 +156,7 @@ fn stage_ui(ui: &mut Ui, model: &mut Model, count: Option<i64>, is_position: boo
                     the motor may move.";
         ui.add(Label::new(RichText::new(text).color(Palette::of(ui).warning)).wrap());
         if ui.button("Widen to 0.75 and 2.25 ms").clicked() {
-            commands.push(Command::own(MindWish::Radio(WIDE.1, WIDE.0)));
+            commands.push(Command::own(MindAction::Radio(WIDE.1, WIDE.0)));
         }
     }
     if let Some(end) = model.front.mind().radio.reached() {
@@ -178,7 +178,7 @@ fn stage_ui(ui: &mut Ui, model: &mut Model, count: Option<i64>, is_position: boo
         Stage::Done => {
             let hint = "Puts them into the Wanted column of the registers and shows what will be written";
             if ui.button("Use these values…").on_hover_text(hint).clicked() {
-                commands.push(Command::own(MindWish::UseRadio));
+                commands.push(Command::own(MindAction::UseRadio));
             }
             if ui.button("Start again").clicked() {
                 model.front.mind_mut().radio.start();

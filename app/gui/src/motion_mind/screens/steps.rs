@@ -5,7 +5,7 @@ use egui::{Button, Label, RichText, Ui};
 
 use crate::command::{Command, Commands};
 use crate::model::Model;
-use crate::motion_mind::MindWish;
+use crate::motion_mind::MindAction;
 use crate::motion_mind::model::steps::{Outcome, STAGES, prepared};
 use crate::theme;
 use crate::theme::Palette;
@@ -20,7 +20,7 @@ pub fn steps_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         if at == 0 {
             let hint = "Writes five changes to RAM; nothing is stored";
             if ui.add_enabled(is_free, Button::new("Prepare the registers")).on_hover_text(hint).clicked() {
-                commands.push(Command::own(MindWish::Turn(prepared())));
+                commands.push(Command::own(MindAction::Turn(prepared())));
             }
         }
         for change in stage.changes {
@@ -29,13 +29,13 @@ pub fn steps_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             if button.on_hover_text(change.hint).clicked()
                 && let Some(image) = image
             {
-                commands.push(Command::own(MindWish::Turn(image)));
+                commands.push(Command::own(MindAction::Turn(image)));
             }
         }
         if let Some(before) = model.front.mind().steps.before() {
             let hint = "The registers as they were when the assistant first changed one";
             if ui.add_enabled(is_free, Button::new("Put all back")).on_hover_text(hint).clicked() {
-                commands.push(Command::own(MindWish::PutBack(before.clone())));
+                commands.push(Command::own(MindAction::PutBack(before.clone())));
             }
         }
         held_ui(ui, model);

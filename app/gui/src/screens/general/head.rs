@@ -6,7 +6,7 @@ use crate::command::{Command, Commands};
 use crate::family::{Ability, Family, SettingsWords};
 use crate::model::general::{GeneralView, Sheet};
 use crate::model::lamp::LampState;
-use crate::model::settings::{Running, Saved, SettingsWish, UnitSettings};
+use crate::model::settings::{Running, Saved, SettingsAction, UnitSettings};
 use crate::theme::Palette;
 use crate::widgets::text_field::text_field_ui;
 
@@ -177,7 +177,7 @@ fn idle_ui(ui: &mut Ui, general: &GeneralView<'_>, many: &str) {
 fn running_ui(ui: &mut Ui, running: &Running, commands: &mut Commands) {
     let cancel = ui.add_enabled(!running.is_cancelled, Button::new("Cancel"));
     if cancel.on_hover_text("Ends it after the command that is on the wire").clicked() {
-        commands.push(Command::Settings(SettingsWish::Cancel));
+        commands.push(Command::Settings(SettingsAction::Cancel));
     }
     let text = if running.text.is_empty() { running.name() } else { &running.text };
     let bar = ProgressBar::new(running.fraction.unwrap_or(0.0)).desired_width(ui.available_width());

@@ -9,7 +9,7 @@ use super::{face, not_connected_text, nothing_ui};
 use crate::command::{Command, Commands};
 use crate::model::Model;
 use crate::model::general::Section;
-use crate::model::settings::SettingsWish;
+use crate::model::settings::SettingsAction;
 
 mod compare;
 pub(crate) mod editor;
@@ -48,7 +48,7 @@ pub fn framed_ui(
     let stream = model.front.link.stream;
     let general = &mut model.front.general_view();
     if general.settings.wants_reading() {
-        commands.push(Command::Settings(SettingsWish::Read));
+        commands.push(Command::Settings(SettingsAction::Read));
     }
     head::head_ui(ui, general, family, commands);
     ui.add_space(4.0);

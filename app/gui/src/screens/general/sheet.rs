@@ -11,7 +11,7 @@ use crate::command::{Command, Commands};
 use crate::family::SettingsWords;
 use crate::model::general::{GeneralView, Sheet, Take};
 use crate::model::lamp::LampState;
-use crate::model::settings::{Saved, SettingsWish, UnitSettings};
+use crate::model::settings::{Saved, SettingsAction, UnitSettings};
 use crate::theme::Palette;
 use brushwork_core::keep::WearLevel;
 
@@ -85,7 +85,7 @@ fn buttons_ui(ui: &mut Ui, general: &mut GeneralView<'_>, offers: &[Offer], comm
         close = back.clicked() || ui.input(|input| input.key_pressed(egui::Key::Escape));
     });
     match chosen {
-        Some(Act::Wish(wish)) => commands.push(Command::Settings(wish)),
+        Some(Act::FamilyAction(action)) => commands.push(Command::Settings(action)),
         Some(Act::OpenProfile { mending }) => general.open_profile(mending),
         Some(Act::SaveProfile) => general.save_profile(),
         Some(Act::TakeOverAll) => {
@@ -117,8 +117,8 @@ fn read_ui(ui: &mut Ui, unit: &UnitSettings, words: &SettingsWords) -> Vec<Offer
         text_ui(ui, "Your changes that are not written stay on this screen either way.");
     }
     vec![
-        ("Read", Act::Wish(SettingsWish::Read), true),
-        ("Load from EEPROM", Act::Wish(SettingsWish::Reload), true),
+        ("Read", Act::FamilyAction(SettingsAction::Read), true),
+        ("Load from EEPROM", Act::FamilyAction(SettingsAction::Reload), true),
     ]
 }
 
@@ -153,7 +153,11 @@ fn write_ui(ui: &mut Ui, unit: &UnitSettings, stream: Option<Stream>) -> Vec<Off
             false
         }
     };
-    vec![("Write to controller", Act::Wish(SettingsWish::Write), can_be_written && !changes.is_empty())]
+    vec![(
+        "Write to controller",
+        Act::FamilyAction(SettingsAction::Write),
+        can_be_written && !changes.is_empty(),
+    )]
 }
 
 /// The packets of a plan, for who wants to see them before they are sent.
@@ -215,7 +219,7 @@ fn save_ui(ui: &mut Ui, general: &GeneralView<'_>, words: &SettingsWords) -> Vec
         WearLevel::Worn => LampState::Error,
     };
     lamp_ui(ui, state, &format!("{} {limits}", wear.sentence()));
-    vec![(words.save_now, Act::Wish(SettingsWish::Save), true)]
+    vec![(words.save_now, Act::FamilyAction(SettingsAction::Save), true)]
 }
 
 fn defaults_ui(ui: &mut Ui, unit: &UnitSettings, words: &SettingsWords) -> Vec<Offer> {
@@ -234,7 +238,7 @@ fn defaults_ui(ui: &mut Ui, unit: &UnitSettings, words: &SettingsWords) -> Vec<O
     if !unit.edits().is_empty() {
         text_ui(ui, "Your changes that are not written stay on this screen.");
     }
-    vec![(words.defaults_now, Act::Wish(SettingsWish::RestoreDefaults), true)]
+    vec![(words.defaults_now, Act::FamilyAction(SettingsAction::RestoreDefaults), true)]
 }
 
 fn report_ui(ui: &mut Ui, title: &str, sentences: &[String]) -> Vec<Offer> {

@@ -4,13 +4,13 @@ use brushwork_link::settings::Difference;
 use egui::{Grid, Label, RichText, Ui, vec2};
 
 use crate::model::lamp::LampState;
-use crate::model::settings::{SettingsWish, Settle, UnitSettings};
+use crate::model::settings::{SettingsAction, Settle, UnitSettings};
 use crate::theme::Palette;
 
 /// What a button of a sheet does.
 #[derive(Clone, Copy, Debug)]
 pub enum Act {
-    Wish(SettingsWish),
+    FamilyAction(SettingsAction),
     OpenProfile { mending: bool },
     SaveProfile,
     TakeOverAll,

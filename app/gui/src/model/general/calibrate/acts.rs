@@ -8,7 +8,7 @@ use crate::family;
 use crate::model::general::calibration::{Calibration, CalibrationStage};
 use crate::model::general::{General, GeneralView};
 use crate::model::message::Gravity;
-use crate::model::settings::{SettingsWish, Summary};
+use crate::model::settings::{SettingsAction, Summary};
 
 impl General {
     pub fn calibration(&self) -> Option<&Run> {
@@ -66,7 +66,7 @@ impl General {
 
 impl GeneralView<'_> {
     /// Begins to calibrate a pin; what to ask for next.
-    pub fn calibrate(&mut self, pin: usize) -> Option<SettingsWish> {
+    pub fn calibrate(&mut self, pin: usize) -> Option<SettingsAction> {
         if self.is_busy() {
             return None;
         }
@@ -98,7 +98,7 @@ impl GeneralView<'_> {
             found: None,
         };
         self.calibration = Some(run);
-        Some(SettingsWish::OpenInput)
+        Some(SettingsAction::OpenInput)
     }
 
     /// The write that opens or closes the input has ended, with its report if it got that far.

@@ -1,4 +1,4 @@
-//! A script under the debugger inside the controller: what goes on while it is paused, and what stands still when that is wished.
+//! A script under the debugger inside the controller: what goes on while it is paused, and what stands still when that is asked for.
 
 use super::super::support::Bench;
 use super::{USB_TO_SCRIPTS, ms, start_bytes};

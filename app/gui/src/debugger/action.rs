@@ -3,9 +3,9 @@
 use brushwork_plant::server::Pace;
 use brushwork_script::debug::StepKind;
 
-/// One wish.
+/// One action.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum DebugWish {
+pub enum DebugAction {
     /// Goes on; starts the script if none runs.
     Run,
     Pause,

@@ -1,4 +1,4 @@
-//! What screens of one family alone ask for: the wish brings along what is done about it, and the window lends it a hand.
+//! What screens of one family alone ask for: the action brings along what is done about it, and the window lends it a hand.
 
 use std::fmt::Debug;
 
@@ -12,12 +12,12 @@ use super::model::screen::Screen;
 use super::model::{DeskId, Model};
 
 /// Something that the screens of a family ask for.
-pub trait Wish: Debug {
+pub trait FamilyAction: Debug {
     /// Does it; why not, as a sentence.
     fn act(&self, host: &mut dyn Host) -> Result<(), String>;
 }
 
-/// What the window does for a wish.
+/// What the window does for an action.
 pub trait Host {
     /// All there is to see.
     fn model(&mut self) -> &mut Model;

@@ -4,9 +4,9 @@ use super::disk::{Encoding, LineEnds};
 use super::doc_id::DocId;
 use super::panel::Tab;
 
-/// One wish. What is done to a program is done to the one in front.
+/// One action. What is done to a program is done to the one in front.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum MclWish {
+pub enum MclAction {
     New,
     /// Opens an example that comes with Brushwork.
     Example(usize),

@@ -2,14 +2,14 @@
 
 use brushwork_link::settings::SettingsImage;
 
+use crate::family_action::{FamilyAction, Host};
 use crate::model::desk::Desk;
 use crate::model::general::Sheet;
 use crate::model::screen::Screen;
-use crate::wish::{Host, Wish};
 
 /// What the assistants ask for.
 #[derive(Debug)]
-pub enum MindWish {
+pub enum MindAction {
     /// Writes these registers and bits to RAM, with a backup, and remembers what was there.
     Turn(SettingsImage),
     /// Writes these back.
@@ -20,7 +20,7 @@ pub enum MindWish {
     UseRadio,
 }
 
-impl Wish for MindWish {
+impl FamilyAction for MindAction {
     fn act(&self, host: &mut dyn Host) -> Result<(), String> {
         match self {
             Self::Turn(image) => {
