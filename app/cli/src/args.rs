@@ -57,7 +57,7 @@ pub enum Command {
     List(ListArgs),
     /// List the nodes of a CANopen bus.
     Nodes(NodesArgs),
-    /// Show measurements, lamps and why the motors do not run.
+    /// Show measurements, indicators and why the motors do not run.
     Status(StatusArgs),
     /// Drive a motor until the time is over or you stop it.
     Drive(DriveArgs),

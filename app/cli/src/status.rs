@@ -22,8 +22,9 @@ const FIRST_READING_LIMIT: Duration = Duration::from_secs(20);
 const SETTINGS_LIMIT: Duration = Duration::from_secs(120);
 
 #[derive(Serialize)]
-struct LampState {
-    lamp: &'static str,
+struct IndicatorState {
+    #[serde(rename = "lamp")]
+    indicator: &'static str,
     title: &'static str,
     state: &'static str,
 }
@@ -95,9 +96,9 @@ fn print(
 ) -> Result<(), OutputError> {
     let family = family::of(identity.family);
     let Judged { diagnosis, homed } = family.judge(identity, readings);
-    let lamps = lamps(readings, identity, homed);
+    let indicators = indicators(readings, identity, homed);
     if args.json {
-        let object = to_json(identity, readings, &lamps, diagnosis.as_ref());
+        let object = to_json(identity, readings, &indicators, diagnosis.as_ref());
         return if args.watch { out.json_line(&object) } else { out.json(&object) };
     }
     if args.watch {
@@ -129,12 +130,14 @@ fn print(
         })
         .collect();
     out.table(&["SIGNAL", "       VALUE", "UNIT"], &rows)?;
-    let lamps: Vec<Vec<String>> = lamps
+    let indicators: Vec<Vec<String>> = indicators
         .into_iter()
-        .map(|lamp| vec![lamp.lamp.to_owned(), lamp.state.to_owned(), lamp.title.to_owned()])
+        .map(|indicator| {
+            vec![indicator.indicator.to_owned(), indicator.state.to_owned(), indicator.title.to_owned()]
+        })
         .collect();
     out.line("")?;
-    out.table(&["LAMP", "STATE", "MEANING"], &lamps)
+    out.table(&["INDICATOR", "STATE", "MEANING"], &indicators)
 }
 
 fn decimals(channel: Channel) -> usize {
@@ -146,7 +149,7 @@ fn decimals(channel: Channel) -> usize {
 }
 
 /// The status row. Home and limit switches go by the actions of the pins where the status word has no bits for them.
-fn lamps(readings: &Readings, identity: &Identity, homed: Option<[bool; 2]>) -> Vec<LampState> {
+fn indicators(readings: &Readings, identity: &Identity, homed: Option<[bool; 2]>) -> Vec<IndicatorState> {
     let state = |state| match state {
         PlaceState::Unknown => "unknown",
         PlaceState::NotReported => "not reported",
@@ -155,12 +158,20 @@ fn lamps(readings: &Readings, identity: &Identity, homed: Option<[bool; 2]>) -> 
         PlaceState::Active(Severity::Warning) => "warning",
         PlaceState::Active(Severity::Error) => "ERROR",
     };
-    let lamp =
-        |place: StatusPlace| LampState { lamp: place.short, title: place.title, state: state(place.state) };
-    identity.status_row(readings.status.as_ref(), homed).into_iter().map(lamp).collect()
+    let indicator = |place: StatusPlace| IndicatorState {
+        indicator: place.short,
+        title: place.title,
+        state: state(place.state),
+    };
+    identity.status_row(readings.status.as_ref(), homed).into_iter().map(indicator).collect()
 }
 
-fn to_json(identity: &Identity, readings: &Readings, lamps: &[LampState], diagnosis: Option<&Said>) -> Value {
+fn to_json(
+    identity: &Identity,
+    readings: &Readings,
+    indicators: &[IndicatorState],
+    diagnosis: Option<&Said>,
+) -> Value {
     json!({
         "diagnosis": diagnosis.map(|diagnosis| &diagnosis.sentence),
         "findings": diagnosis.map(|diagnosis| &diagnosis.data),
@@ -171,7 +182,7 @@ fn to_json(identity: &Identity, readings: &Readings, lamps: &[LampState], diagno
             .map(|status| {
                 status.active().map(|indicator| indicator.title).collect::<Vec<_>>()
             }),
-        "lamps": lamps,
+        "lamps": indicators,
     })
 }
 

@@ -12,7 +12,7 @@ pub struct Palette {
     pub ground: Color32,
     /// Side, top and bottom panels.
     pub panel: Color32,
-    /// Groups, lamps and fields that lie on a panel.
+    /// Groups, indicators and fields that lie on a panel.
     pub raised: Color32,
     /// Separators and outlines.
     pub line: Color32,
@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn lamps_and_traces_stand_out_from_what_is_behind_them() {
+    fn indicators_and_traces_stand_out_from_what_is_behind_them() {
         for palette in [&DARK, &LIGHT] {
             for color in [palette.ok, palette.warning, palette.error] {
                 for back in [palette.ground, palette.panel, palette.raised] {

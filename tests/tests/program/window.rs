@@ -20,8 +20,8 @@ const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
 /// More than any blank or broken picture has: text alone, being smoothed, has more.
 const COLOURS_OF_A_WINDOW: usize = 200;
 
-/// A few lamps of some ten pixels across; an unconnected window has none.
-const GREEN_OF_LAMPS: usize = 400;
+/// A few indicators of some ten pixels across; an unconnected window has none.
+const GREEN_OF_INDICATORS: usize = 400;
 
 fn window_on(display: &str) -> Command {
     let mut command = Command::new(BRUSHWORK);
@@ -30,14 +30,14 @@ fn window_on(display: &str) -> Command {
     command
 }
 
-/// A window that was opened on a controller, and what it looks like once its lamps are green.
+/// A window that was opened on a controller, and what it looks like once its indicators are green.
 fn connected_window(screen: &Screen, controller: &OnPty) -> (Program, Picture) {
     let mut command = window_on(screen.display());
     command.arg("--open").arg(controller.port());
     let window = Program::spawn(command);
-    match screen.wait_for(|picture| green_pixels(picture) >= GREEN_OF_LAMPS) {
+    match screen.wait_for(|picture| green_pixels(picture) >= GREEN_OF_INDICATORS) {
         Some(picture) => (window, picture),
-        None => panic!("no lamp is green: {:?}", window.finish(Duration::ZERO)),
+        None => panic!("no indicator is green: {:?}", window.finish(Duration::ZERO)),
     }
 }
 
@@ -64,7 +64,7 @@ fn the_window_opens_and_shows_something() {
 }
 
 #[test]
-fn a_window_opened_on_a_controller_lights_its_lamps_and_moves_nothing() {
+fn a_window_opened_on_a_controller_lights_its_indicators_and_moves_nothing() {
     if is_left_out("xvfb") {
         return;
     }
@@ -179,7 +179,7 @@ fn drives_by_hand(hands: &Hands, controller: &OnPty) -> bool {
     })
 }
 
-/// Pixels of a lamp that says OK, whatever the theme's exact green.
+/// Pixels of an indicator that says OK, whatever the theme's exact green.
 fn green_pixels(picture: &Picture) -> usize {
     let is_green =
         |pixel: &&[u8]| pixel[1] > pixel[0].saturating_add(60) && pixel[1] > pixel[2].saturating_add(40);

@@ -330,7 +330,8 @@ struct Watch {
 fn held_back(context: &JobContext<'_>, share: f64) -> Failure {
     let came_back =
         format!("the controller gives only {:.0} % of the duty that was asked for", share.abs() * 100.0);
-    let mend = "A limit of current, voltage or temperature holds it back: see the lamps and General Settings";
+    let mend =
+        "A limit of current, voltage or temperature holds it back: see the indicators and General Settings";
     refusal(context, came_back, mend)
 }
 

@@ -43,7 +43,7 @@ pub(super) const ACTIONS: &[Action] = &[
         "view.device-status",
         DeviceStatus,
         Num1,
-        "Lamps, events and what keeps the motors from running."
+        "Indicators, events and what keeps the motors from running."
     ),
     screen!(
         "view.general",

@@ -7,7 +7,7 @@ use egui::{ComboBox, RichText, Ui};
 use super::action::DebugAction;
 use crate::command::{Command, Commands};
 use crate::model::Model;
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::theme::Palette;
 
 pub fn toolbar_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
@@ -80,7 +80,7 @@ pub fn reason_ui(ui: &mut Ui, model: &Model) {
     let palette = Palette::of(ui);
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(egui::vec2(14.0, 16.0), egui::Sense::hover());
-        lamp_of(view.is_paused, view.is_running, &view.reason).paint(ui, rect.center(), 5.0);
+        indicator_of(view.is_paused, view.is_running, &view.reason).paint(ui, rect.center(), 5.0);
         let color = if view.is_paused { palette.warning } else { palette.text };
         ui.add(egui::Label::new(RichText::new(view.sentence()).strong().color(color)).truncate());
         let notes = [
@@ -93,11 +93,11 @@ pub fn reason_ui(ui: &mut Ui, model: &Model) {
     });
 }
 
-fn lamp_of(is_paused: bool, is_running: bool, reason: &Reason) -> LampState {
+fn indicator_of(is_paused: bool, is_running: bool, reason: &Reason) -> IndicatorState {
     match reason {
-        Reason::Faulted(_) => LampState::Error,
-        _ if is_paused => LampState::Warning,
-        _ if is_running => LampState::Ok,
-        _ => LampState::Unknown,
+        Reason::Faulted(_) => IndicatorState::Error,
+        _ if is_paused => IndicatorState::Warning,
+        _ if is_running => IndicatorState::Ok,
+        _ => IndicatorState::Unknown,
     }
 }

@@ -16,7 +16,7 @@ use super::own::Own;
 use super::words::{self, SettingsWords};
 use crate::model::drawer::Tab;
 use crate::model::help_page::HelpPage;
-use crate::model::lamp::{LampInfo, LampState, state_of};
+use crate::model::indicator::{IndicatorInfo, IndicatorState, state_of};
 use crate::model::position::Position;
 use crate::model::pwm::Pwm;
 use crate::model::screen::Screen;
@@ -55,21 +55,21 @@ pub trait Family: Sync {
         &[]
     }
 
-    /// The status lamps, in order.
-    fn lamps(&self) -> &'static [LampInfo];
+    /// The status indicators, in order.
+    fn indicators(&self) -> &'static [IndicatorInfo];
 
-    /// How each of [`Family::lamps`] stands. `homed` is what the input pins say of home and limit switches, where they are known.
+    /// How each of [`Family::indicators`] stands. `homed` is what the input pins say of home and limit switches, where they are known.
     fn lit(
         &self,
         report: &StatusReport,
         _identity: Option<&Identity>,
         _homed: Option<[bool; 2]>,
-    ) -> Vec<LampState> {
-        let lit = |lamp: &LampInfo| {
-            let set = report.active().find(|indicator| indicator.short == lamp.short);
-            set.map_or(LampState::Ok, |indicator| state_of(indicator.severity))
+    ) -> Vec<IndicatorState> {
+        let lit = |indicator: &IndicatorInfo| {
+            let set = report.active().find(|bit| bit.short == indicator.short);
+            set.map_or(IndicatorState::Ok, |bit| state_of(bit.severity))
         };
-        self.lamps().iter().map(lit).collect()
+        self.indicators().iter().map(lit).collect()
     }
 
     /// What the status word says, in the order in which it is shown.
@@ -89,18 +89,18 @@ pub trait Family: Sync {
         false
     }
 
-    /// What stands below the lamps, by what the pins say of home and limit switches.
-    fn lamps_note(&self, _identity: &Identity, _homed: Option<[bool; 2]>) -> Option<&'static str> {
+    /// What stands below the indicators, by what the pins say of home and limit switches.
+    fn indicators_note(&self, _identity: &Identity, _homed: Option<[bool; 2]>) -> Option<&'static str> {
         None
     }
 
-    /// [`Family::lit`] for the times since which lamps are as they are.
+    /// [`Family::lit`] for the times since which indicators are as they are.
     fn lit_since(
         &self,
         report: &StatusReport,
         identity: Option<&Identity>,
         homed: Option<[bool; 2]>,
-    ) -> Vec<LampState> {
+    ) -> Vec<IndicatorState> {
         self.lit(report, identity, homed)
     }
 
@@ -327,7 +327,7 @@ pub struct ActiveIndicator {
     /// Place among the indicators of its family.
     pub order: u8,
     pub title: &'static str,
-    pub state: LampState,
+    pub state: IndicatorState,
 }
 
 impl ActiveIndicator {

@@ -1,6 +1,6 @@
 //! What differs between families of controllers in the window, in ONE place that the shell and the shared screens ask.
 //!
-//! A family says which screens there are, which figures stand in the top row, which lamps at the bottom, how many motors a
+//! A family says which screens there are, which figures stand in the top row, which indicators at the bottom, how many motors a
 //! controller has and which channels its graph. A screen that is shared asks its desk's family and never which one it is. A
 //! family has a folder of its own in this crate; the program names those that it has, once, by [`install`].
 
@@ -96,10 +96,10 @@ mod tests {
     }
 
     #[test]
-    fn in_each_family_lamps_and_screens_have_names_of_their_own() {
+    fn in_each_family_indicators_and_screens_have_names_of_their_own() {
         for family in all() {
-            let shorts: BTreeSet<_> = family.lamps().iter().map(|lamp| lamp.short).collect();
-            assert_eq!(shorts.len(), family.lamps().len(), "{family:?}");
+            let shorts: BTreeSet<_> = family.indicators().iter().map(|indicator| indicator.short).collect();
+            assert_eq!(shorts.len(), family.indicators().len(), "{family:?}");
             let screens = family.screens(None, &|_| None);
             let titles: BTreeSet<_> = screens.iter().map(|screen| family.title(*screen)).collect();
             assert_eq!(titles.len(), screens.len(), "{family:?}");

@@ -17,7 +17,7 @@ const FIRST_STEPS: [(&str, &str); 9] = [
     ),
     (
         "Look",
-        "The row at the top shows temperatures, currents, encoders, speeds and batteries. The lamps at the bottom are \
+        "The row at the top shows temperatures, currents, encoders, speeds and batteries. The indicators at the bottom are \
          green when all is well. Device Status says in one sentence why a motor would not run.",
     ),
     (

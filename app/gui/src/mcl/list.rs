@@ -7,7 +7,7 @@ use brushwork_script::diagnostic::Severity;
 use super::action::MclAction;
 use super::document::Document;
 use super::problems::Problem;
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::theme::Palette;
 
 const ROW: f32 = 22.0;
@@ -47,11 +47,11 @@ fn row_ui(ui: &mut Ui, document: &Document, problem: &Problem, actions: &mut Vec
         let ring = Stroke::new(1.5, palette.accent);
         ui.painter().rect_stroke(rect, 2.0, ring, egui::StrokeKind::Inside);
     }
-    let lamp = match problem.severity {
-        Severity::Error => LampState::Error,
-        Severity::Warning => LampState::Warning,
+    let indicator = match problem.severity {
+        Severity::Error => IndicatorState::Error,
+        Severity::Warning => IndicatorState::Warning,
     };
-    lamp.paint(ui, pos2(rect.left() + 12.0, rect.center().y), 4.5);
+    indicator.paint(ui, pos2(rect.left() + 12.0, rect.center().y), 4.5);
     let painter = ui.painter().with_clip_rect(rect);
     let figures = FontId::monospace(11.5);
     let place = format!("{line:>5}  {}", problem.code);

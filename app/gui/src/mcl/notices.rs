@@ -5,7 +5,7 @@ use egui::{Frame, Label, Margin, Stroke, Ui, vec2};
 use super::action::MclAction;
 use super::document::OnDisk;
 use super::editor::Editor;
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::theme::Palette;
 
 pub fn notices_ui(ui: &mut Ui, editor: &Editor, actions: &mut Vec<MclAction>) {
@@ -44,7 +44,7 @@ fn bar_ui(ui: &mut Ui, text: &str, choices: &[(&str, MclAction)], actions: &mut 
     frame.inner_margin(Margin::symmetric(8, 3)).show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
             let (rect, _) = ui.allocate_exact_size(vec2(16.0, 16.0), egui::Sense::hover());
-            LampState::Warning.paint(ui, rect.center(), 5.0);
+            IndicatorState::Warning.paint(ui, rect.center(), 5.0);
             ui.add(Label::new(text).wrap());
             for (reads, action) in choices {
                 if ui.button(*reads).clicked() {

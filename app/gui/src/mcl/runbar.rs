@@ -7,7 +7,7 @@ use egui::{ComboBox, Label, ProgressBar, RichText, Ui};
 
 use crate::command::{Command, Commands};
 use crate::model::Model;
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::model::link::Arming;
 use crate::theme::Palette;
 use crate::widgets::arm_switch::arm_switch_ui;
@@ -43,10 +43,10 @@ pub fn reasons_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
         stream_ui(ui, commands);
     }
     for refusal in &link.refusals {
-        reason_ui(ui, LampState::Error, &refusal.to_string());
+        reason_ui(ui, IndicatorState::Error, &refusal.to_string());
     }
     if link.arming.is_armed_for(ArmScope::Script) {
-        link.warnings.iter().for_each(|warning| reason_ui(ui, LampState::Warning, warning));
+        link.warnings.iter().for_each(|warning| reason_ui(ui, IndicatorState::Warning, warning));
     }
 }
 
@@ -94,7 +94,7 @@ fn stream_ui(ui: &mut Ui, commands: &mut Commands) {
     });
 }
 
-fn reason_ui(ui: &mut Ui, state: LampState, text: &str) {
+fn reason_ui(ui: &mut Ui, state: IndicatorState, text: &str) {
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(egui::vec2(18.0, 18.0), egui::Sense::hover());
         state.paint(ui, rect.center(), 6.0);

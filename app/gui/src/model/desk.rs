@@ -450,12 +450,12 @@ impl Desk {
         }
     }
 
-    /// Since when a lamp of the unit that is looked at is as it is, as time since the connection.
-    pub fn lamp_since(&self, short: &str) -> Option<Duration> {
-        self.history.lamp_since(self.link.selected?, short)
+    /// Since when an indicator of the unit that is looked at is as it is, as time since the connection.
+    pub fn indicator_since(&self, short: &str) -> Option<Duration> {
+        self.history.indicator_since(self.link.selected?, short)
     }
 
-    /// Brings home lamps up to date with the pins, where these alone tell.
+    /// Brings home indicators up to date with the pins, where these alone tell.
     fn update_homed(&mut self) {
         let by_pins = |identity: &&Identity| self.family().homes_by_pins(identity);
         let Some(identity) = self.link.identity().filter(by_pins) else { return };

@@ -11,7 +11,7 @@ use brushwork_link::device::{DisarmReason, Event, Identity, StatusReport, StopRe
 
 use crate::family;
 use crate::family::{ActiveIndicator, Family};
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 
 /// Entries kept; the oldest go first.
 pub const KEPT: usize = 2000;
@@ -62,16 +62,16 @@ pub enum Kind {
 
 impl Kind {
     /// How it is marked.
-    pub fn state(self) -> LampState {
+    pub fn state(self) -> IndicatorState {
         match self {
             Self::Came(indicator) => indicator.state,
             Self::Disarmed { by_fault: true } | Self::Stopped { confirmed: false } | Self::Lost => {
-                LampState::Error
+                IndicatorState::Error
             }
-            Self::Armed | Self::ArmRefused | Self::Failed => LampState::Warning,
-            Self::Went(_) | Self::Connected => LampState::Ok,
+            Self::Armed | Self::ArmRefused | Self::Failed => IndicatorState::Warning,
+            Self::Went(_) | Self::Connected => IndicatorState::Ok,
             Self::Disarmed { by_fault: false } | Self::Stopped { confirmed: true } | Self::Closed => {
-                LampState::Active
+                IndicatorState::Active
             }
         }
     }
@@ -101,7 +101,7 @@ struct UnitState {
     report: Option<StatusReport>,
     /// Homed or at a limit by its pins, where the status word has no bit for it.
     homed: Option<[bool; 2]>,
-    lamps: BTreeMap<&'static str, (LampState, Duration)>,
+    indicators: BTreeMap<&'static str, (IndicatorState, Duration)>,
 }
 
 impl UnitState {
@@ -135,7 +135,7 @@ impl History {
     }
 
     /// How often each kind of thing happened since the history was cleared: its state, its name, its count.
-    pub fn counts(&self) -> impl Iterator<Item = (LampState, String, u32)> {
+    pub fn counts(&self) -> impl Iterator<Item = (IndicatorState, String, u32)> {
         let named = |(kind, count): (&Kind, &u32)| Some((kind.state(), kind.counted_as()?, *count));
         self.counts.iter().filter_map(named)
     }
@@ -145,10 +145,10 @@ impl History {
         self.connected_at.filter(|_| self.is_open).map(|at| self.now.saturating_sub(at))
     }
 
-    /// Since when a unit's lamp is as it is, as time since the connection.
-    pub fn lamp_since(&self, address: u8, short: &str) -> Option<Duration> {
+    /// Since when a unit's indicator is as it is, as time since the connection.
+    pub fn indicator_since(&self, address: u8, short: &str) -> Option<Duration> {
         let unit = self.units.get(&address).filter(|_| self.is_open)?;
-        Some(unit.lamps.get(short)?.1)
+        Some(unit.indicators.get(short)?.1)
     }
 
     /// Forgets what happened; what is so now stays known.
@@ -232,7 +232,7 @@ impl History {
                 self.changed(address, indicator, homed[index], self.now);
             }
         }
-        self.update_lamps(address, self.now);
+        self.update_indicators(address, self.now);
     }
 
     fn note_status(&mut self, report: &StatusReport) {
@@ -243,7 +243,7 @@ impl History {
         for indicator in before.symmetric_difference(&active) {
             self.changed(report.address, *indicator, active.contains(indicator), report.at);
         }
-        self.update_lamps(report.address, report.at);
+        self.update_indicators(report.address, report.at);
     }
 
     fn changed(&mut self, address: u8, indicator: ActiveIndicator, came: bool, at: Duration) {
@@ -252,14 +252,14 @@ impl History {
         self.push(at, Some(address), kind, format!("{} {word}", indicator.title));
     }
 
-    fn update_lamps(&mut self, address: u8, at: Duration) {
+    fn update_indicators(&mut self, address: u8, at: Duration) {
         let since = self.since_connect(at);
         let Some(unit) = self.units.get_mut(&address) else { return };
         let Some(report) = &unit.report else { return };
         let family = unit.family();
         let states = family.lit_since(report, unit.identity.as_ref(), unit.homed);
-        for (info, state) in family.lamps().iter().zip(states) {
-            let known = unit.lamps.entry(info.short).or_insert((state, since));
+        for (info, state) in family.indicators().iter().zip(states) {
+            let known = unit.indicators.entry(info.short).or_insert((state, since));
             if known.0 != state {
                 *known = (state, since);
             }
@@ -348,11 +348,11 @@ mod tests {
         assert_eq!(history.from_newest(2).unwrap().at, Duration::from_secs(30));
         let counts: Vec<(String, u32)> = history.counts().map(|(_, name, count)| (name, count)).collect();
         assert_eq!(counts, [("E-Stop".to_owned(), 2), ("Temperature warning".to_owned(), 1)]);
-        assert_eq!(history.lamp_since(0x80, "ESTP"), Some(Duration::from_secs(40)));
-        assert_eq!(history.lamp_since(0x80, "TMP2"), Some(Duration::from_secs(1)));
+        assert_eq!(history.indicator_since(0x80, "ESTP"), Some(Duration::from_secs(40)));
+        assert_eq!(history.indicator_since(0x80, "TMP2"), Some(Duration::from_secs(1)));
         history.clear();
         assert!(history.is_empty() && history.counts().next().is_none());
-        assert_eq!(history.lamp_since(0x80, "ESTP"), Some(Duration::from_secs(40)));
+        assert_eq!(history.indicator_since(0x80, "ESTP"), Some(Duration::from_secs(40)));
     }
 
     #[test]
@@ -363,7 +363,7 @@ mod tests {
         history.note_homed(0x80, [false, true]);
         history.note_homed(0x80, [false, true]);
         assert_eq!(texts(&history), ["M2 home came"]);
-        assert_eq!(history.lamp_since(0x80, "M2HM"), Some(Duration::from_secs(5)));
+        assert_eq!(history.indicator_since(0x80, "M2HM"), Some(Duration::from_secs(5)));
     }
 
     #[test]

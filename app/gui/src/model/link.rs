@@ -11,7 +11,7 @@ use brushwork_link::exchange::LinkStatistics;
 use brushwork_link::transport::Stream;
 use std::time::Duration;
 
-use super::lamps::Lamps;
+use super::indicators::Indicators;
 use super::message::Gravity;
 use super::readings::Readings;
 use crate::family;
@@ -60,7 +60,7 @@ pub struct LinkView {
     /// Which of the controller's ports this is, where it is known.
     pub stream: Option<Stream>,
     pub readings: Readings,
-    pub lamps: Lamps,
+    pub indicators: Indicators,
     /// Whether the pins hold a motor at a home or limit switch, where they are known.
     homed: Option<[bool; 2]>,
     pub status: Option<StatusReport>,
@@ -103,7 +103,7 @@ impl LinkView {
         }
         self.homed = homed;
         if let Some(report) = &self.status {
-            self.lamps = Lamps::of(self.family(), report, self.identity(), homed);
+            self.indicators = Indicators::of(self.family(), report, self.identity(), homed);
         }
     }
 
@@ -183,7 +183,7 @@ impl LinkView {
             return Vec::new();
         }
         self.readings = Readings::default();
-        self.lamps = Lamps::default();
+        self.indicators = Indicators::default();
         self.status = None;
         vec![Effect::OtherUnit]
     }
@@ -201,7 +201,7 @@ impl LinkView {
         if Some(report.address) != self.selected {
             return Vec::new();
         }
-        self.lamps = Lamps::of(self.family(), &report, self.identity(), self.homed);
+        self.indicators = Indicators::of(self.family(), &report, self.identity(), self.homed);
         self.status = Some(report);
         Vec::new()
     }

@@ -13,7 +13,7 @@ use crate::command::{Command, Commands};
 use crate::family::{Ability, Family};
 use crate::graph::panel;
 use crate::model::Model;
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::model::link::{Arming, LinkView};
 use crate::model::setpoints::{Direction, Setpoints};
 use crate::theme::Palette;
@@ -115,15 +115,15 @@ pub fn arm_ui(ui: &mut Ui, scope: ArmScope, link: &LinkView, family: &dyn Family
             stream_ui(ui, commands);
         }
         for refusal in &link.refusals {
-            reason_ui(ui, LampState::Error, &refusal.to_string());
+            reason_ui(ui, IndicatorState::Error, &refusal.to_string());
         }
         for warning in &link.warnings {
-            reason_ui(ui, LampState::Warning, warning);
+            reason_ui(ui, IndicatorState::Warning, warning);
         }
     });
 }
 
-fn reason_ui(ui: &mut Ui, state: LampState, text: &str) {
+fn reason_ui(ui: &mut Ui, state: IndicatorState, text: &str) {
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(18.0, 18.0), egui::Sense::hover());
         state.paint(ui, rect.center(), 6.0);

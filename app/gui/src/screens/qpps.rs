@@ -6,7 +6,7 @@ use egui::{Button, Label, RichText, Ui};
 use super::progress::progress_ui;
 use crate::command::{Command, Commands, GuidedAction};
 use crate::model::Model;
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::model::qpps::lines;
 use crate::theme::Palette;
 use crate::widgets::numeric::Numeric;
@@ -82,7 +82,7 @@ fn result_ui(ui: &mut Ui, model: &mut Model) {
         (None, Some(refusal)) => {
             ui.horizontal(|ui| {
                 let (rect, _) = ui.allocate_exact_size(egui::vec2(18.0, 18.0), egui::Sense::hover());
-                LampState::Error.paint(ui, rect.center(), 6.0);
+                IndicatorState::Error.paint(ui, rect.center(), 6.0);
                 ui.add(Label::new(refusal).wrap());
             });
         }

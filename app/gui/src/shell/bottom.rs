@@ -1,4 +1,4 @@
-//! The family's lamps by their abbreviations, and the figures of the link.
+//! The family's indicators by their abbreviations, and the figures of the link.
 
 use brushwork_link::exchange::LinkStatistics;
 use egui::{Align2, Role, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
@@ -6,7 +6,7 @@ use egui::{Align2, Role, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 use crate::model::Model;
 use crate::theme;
 use crate::theme::Palette;
-use crate::widgets::lamp;
+use crate::widgets::indicator;
 
 const LINK_WIDTH: f32 = 226.0;
 const HEIGHT: f32 = 38.0;
@@ -14,12 +14,12 @@ const HEIGHT: f32 = 38.0;
 pub fn bottom_ui(ui: &mut Ui, model: &Model) {
     ui.spacing_mut().item_spacing.x = 4.0;
     ui.horizontal(|ui| {
-        let lamps = model.front.family().lamps();
-        let gaps = ui.spacing().item_spacing.x * lamps.len() as f32;
-        let width = ((ui.available_width() - LINK_WIDTH - gaps) / lamps.len() as f32).clamp(38.0, 72.0);
-        for info in lamps {
-            let state = model.front.link.lamps.named(info.short);
-            lamp::abbreviated_ui(ui, vec2(width.floor(), HEIGHT), info.short, info.title, state);
+        let indicators = model.front.family().indicators();
+        let gaps = ui.spacing().item_spacing.x * indicators.len() as f32;
+        let width = ((ui.available_width() - LINK_WIDTH - gaps) / indicators.len() as f32).clamp(38.0, 72.0);
+        for info in indicators {
+            let state = model.front.link.indicators.named(info.short);
+            indicator::abbreviated_ui(ui, vec2(width.floor(), HEIGHT), info.short, info.title, state);
         }
         link_ui(ui, model);
     });

@@ -14,7 +14,7 @@ use crate::command::{Command, Commands};
 use crate::family;
 use crate::family::Family;
 use crate::model::devices::{BAUD_RATES, Choice, Devices};
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::model::link::Arming;
 use crate::model::simulated::Simulated;
 use crate::model::{Desk, DeskId, Model, Phase, place_of};
@@ -115,32 +115,32 @@ fn answered(identity: &Identity) -> String {
     format!("{} · {} · {firmware}", identity.title(), identity.place())
 }
 
-/// What is so with a device: a word, and a lamp that says the same by colour and shape.
+/// What is so with a device: a word, and an indicator that says the same by colour and shape.
 #[derive(Clone, Copy)]
-struct State(&'static str, LampState);
+struct State(&'static str, IndicatorState);
 
 impl State {
-    const AVAILABLE: Self = Self("available", LampState::Unknown);
-    const GONE: Self = Self("gone", LampState::Warning);
+    const AVAILABLE: Self = Self("available", IndicatorState::Unknown);
+    const GONE: Self = Self("gone", IndicatorState::Warning);
 
     fn of(desk: &Desk) -> Self {
         match &desk.phase {
             Phase::Closed => Self::AVAILABLE,
-            Phase::Opening { .. } => Self("connecting", LampState::Active),
-            Phase::Closing { .. } => Self("disconnecting", LampState::Active),
+            Phase::Opening { .. } => Self("connecting", IndicatorState::Active),
+            Phase::Closing { .. } => Self("disconnecting", IndicatorState::Active),
             Phase::Open { .. } if desk.link.identity().is_none() => {
-                Self("looking for controllers", LampState::Active)
+                Self("looking for controllers", IndicatorState::Active)
             }
             Phase::Open { .. } => Self::of_unit(desk),
         }
     }
 
     fn of_unit(desk: &Desk) -> Self {
-        match (desk.link.lamps.worst(), desk.link.arming) {
-            (LampState::Error, _) => Self("connected, error", LampState::Error),
-            (_, Arming::Armed { .. }) => Self("connected, armed", LampState::Active),
-            (LampState::Warning, _) => Self("connected, warning", LampState::Warning),
-            _ => Self("connected", LampState::Ok),
+        match (desk.link.indicators.worst(), desk.link.arming) {
+            (IndicatorState::Error, _) => Self("connected, error", IndicatorState::Error),
+            (_, Arming::Armed { .. }) => Self("connected, armed", IndicatorState::Active),
+            (IndicatorState::Warning, _) => Self("connected, warning", IndicatorState::Warning),
+            _ => Self("connected", IndicatorState::Ok),
         }
     }
 }

@@ -5,7 +5,7 @@ use egui::{Align2, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, p
 
 use crate::command::{Command, Commands};
 use crate::model::Model;
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::model::screen::Screen;
 use crate::model::settings::Saved;
 use crate::theme::Palette;
@@ -13,7 +13,7 @@ use crate::theme::Palette;
 pub const WIDTH: f32 = 206.0;
 const HEIGHT: f32 = 36.0;
 
-/// One lamp with two lines; pressing it goes to the settings.
+/// One indicator with two lines; pressing it goes to the settings.
 pub fn marks_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     let (state, first, second) = mark(model);
     let palette = Palette::of(ui);
@@ -40,7 +40,7 @@ pub fn marks_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
 }
 
 /// The gravest state, then RAM and EEPROM, then edits and profile.
-fn mark(model: &Model) -> (LampState, String, String) {
+fn mark(model: &Model) -> (IndicatorState, String, String) {
     let settings = &model.front.settings;
     let Some(unit) = settings.unit().filter(|unit| unit.is_read() && model.is_connected()) else {
         let text = match (model.is_connected(), settings.running().is_some()) {
@@ -48,31 +48,33 @@ fn mark(model: &Model) -> (LampState, String, String) {
             (true, true) => "reading the settings …",
             (true, false) => "settings not read yet",
         };
-        return (LampState::Unknown, text.to_owned(), profile(model));
+        return (IndicatorState::Unknown, text.to_owned(), profile(model));
     };
     let (state, first) = match unit.saved() {
-        Saved::Yes => (LampState::Ok, "RAM is saved in EEPROM".to_owned()),
-        Saved::Differs(count) => (LampState::Warning, format!("RAM: {count} not saved in EEPROM")),
+        Saved::Yes => (IndicatorState::Ok, "RAM is saved in EEPROM".to_owned()),
+        Saved::Differs(count) => (IndicatorState::Warning, format!("RAM: {count} not saved in EEPROM")),
         Saved::NotKnown { written: 0 } => as_known_before(model),
-        Saved::NotKnown { written } => (LampState::Warning, format!("RAM: {written} written, not saved")),
+        Saved::NotKnown { written } => {
+            (IndicatorState::Warning, format!("RAM: {written} written, not saved"))
+        }
     };
     match unit.changes().len() {
         0 => (state, first, profile(model)),
-        edits => (LampState::Warning, first, format!("{edits} edits not written")),
+        edits => (IndicatorState::Warning, first, format!("{edits} edits not written")),
     }
 }
 
 /// RAM against what the EEPROM was proven to hold last, in an earlier session.
-fn as_known_before(model: &Model) -> (LampState, String) {
+fn as_known_before(model: &Model) -> (IndicatorState, String) {
     let settings = &model.front.settings;
     let differing = settings.known_eeprom().zip(settings.unit()).and_then(|(known, unit)| {
         let both = |each: &Difference| each.left.is_some() && each.right.is_some();
         Some(diff(unit.table(), &known.settings, unit.ram()?).into_iter().filter(both).count())
     });
     match differing {
-        Some(0) => (LampState::Ok, "RAM is as saved last".to_owned()),
-        Some(count) => (LampState::Warning, format!("RAM: {count} not as saved last")),
-        None => (LampState::Unknown, "EEPROM not known".to_owned()),
+        Some(0) => (IndicatorState::Ok, "RAM is as saved last".to_owned()),
+        Some(count) => (IndicatorState::Warning, format!("RAM: {count} not as saved last")),
+        None => (IndicatorState::Unknown, "EEPROM not known".to_owned()),
     }
 }
 

@@ -5,7 +5,7 @@ use egui::{Align, Label, Layout, RichText, Role, Ui, WidgetInfo, vec2};
 use super::marks;
 use crate::command::{Command, Commands};
 use crate::model::Model;
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::model::message::{Gravity, Message};
 use crate::theme::Palette;
 
@@ -33,9 +33,9 @@ pub fn message_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
 
 fn shown_ui(ui: &mut Ui, message: &Message, commands: &mut Commands) {
     let state = match message.gravity {
-        Gravity::Note => LampState::Ok,
-        Gravity::Warning => LampState::Warning,
-        Gravity::Error => LampState::Error,
+        Gravity::Note => IndicatorState::Ok,
+        Gravity::Warning => IndicatorState::Warning,
+        Gravity::Error => IndicatorState::Error,
     };
     let (rect, _) = ui.allocate_exact_size(vec2(20.0, HEIGHT), egui::Sense::hover());
     state.paint(ui, rect.center(), 7.0);

@@ -1,4 +1,4 @@
-//! What is always in view: devices and screens at the left, monitored parameters at the top, lamps at the bottom.
+//! What is always in view: devices and screens at the left, monitored parameters at the top, indicators at the bottom.
 
 use egui::{CentralPanel, Frame, Margin, Panel, ScrollArea, Ui};
 
@@ -32,7 +32,7 @@ pub fn shell_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     Panel::top("parameters").resizable(false).frame(panel).show(ui, |ui| {
         top::top_ui(ui, model, commands);
     });
-    Panel::bottom("lamps").resizable(false).frame(panel).show(ui, |ui| bottom::bottom_ui(ui, model));
+    Panel::bottom("indicators").resizable(false).frame(panel).show(ui, |ui| bottom::bottom_ui(ui, model));
     Panel::bottom("message").resizable(false).frame(panel).show(ui, |ui| {
         message::message_ui(ui, model, commands);
     });

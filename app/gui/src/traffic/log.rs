@@ -10,7 +10,7 @@ use crate::command::Commands;
 use crate::family::Family;
 use crate::files::{FileAction, FileAnswer, FileDialog, FileKind};
 use crate::model::Model;
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::model::traffic::{Filter, Log, Outcome, Traffic, Transaction};
 use crate::theme;
 use crate::theme::Palette;
@@ -195,11 +195,11 @@ fn row_ui(ui: &mut Ui, transaction: &Transaction) {
     });
 }
 
-const fn state_of(outcome: Outcome) -> LampState {
+const fn state_of(outcome: Outcome) -> IndicatorState {
     match outcome {
-        Outcome::Waiting | Outcome::NotRecorded => LampState::Unknown,
-        Outcome::Good => LampState::Ok,
-        Outcome::NoAnswer | Outcome::Damaged => LampState::Error,
-        Outcome::Unasked => LampState::Warning,
+        Outcome::Waiting | Outcome::NotRecorded => IndicatorState::Unknown,
+        Outcome::Good => IndicatorState::Ok,
+        Outcome::NoAnswer | Outcome::Damaged => IndicatorState::Error,
+        Outcome::Unasked => IndicatorState::Warning,
     }
 }

@@ -5,13 +5,13 @@ use brushwork_values::Motor;
 use egui::{Button, Label, RichText, Ui};
 
 use super::calibration::{Advice, Calibration};
-use super::figures::lamp_ui;
+use super::figures::indicator_ui;
 use super::model::TuneAction;
 use super::which::Loop;
 use crate::command::{Command, Commands};
 use crate::model::Model;
 use crate::model::drawer::Tab;
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::model::screen::Screen;
 use crate::theme;
 use crate::theme::Palette;
@@ -112,9 +112,9 @@ fn held_ui(ui: &mut Ui, which: Loop, held: Option<AnyRegisters>) {
 
 fn advice_ui(ui: &mut Ui, advice: &Advice) {
     match advice {
-        Advice::Wait(text) => lamp_ui(ui, LampState::Unknown, text),
-        Advice::Good(text) => lamp_ui(ui, LampState::Ok, text),
-        Advice::Change(text) => lamp_ui(ui, LampState::Warning, text),
-        Advice::Danger(text) => lamp_ui(ui, LampState::Error, text),
+        Advice::Wait(text) => indicator_ui(ui, IndicatorState::Unknown, text),
+        Advice::Good(text) => indicator_ui(ui, IndicatorState::Ok, text),
+        Advice::Change(text) => indicator_ui(ui, IndicatorState::Warning, text),
+        Advice::Danger(text) => indicator_ui(ui, IndicatorState::Error, text),
     }
 }

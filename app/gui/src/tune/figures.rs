@@ -3,7 +3,7 @@
 use egui::{Label, Response, RichText, Ui, vec2};
 
 use super::run::Shown;
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::theme;
 
 type Figure = (&'static str, &'static str, fn(&Shown) -> String);
@@ -47,7 +47,7 @@ pub fn figure_ui(ui: &mut Ui, text: &str, width: f32) -> Response {
     .inner
 }
 
-pub fn lamp_ui(ui: &mut Ui, state: LampState, text: &str) {
+pub fn indicator_ui(ui: &mut Ui, state: IndicatorState, text: &str) {
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(18.0, 18.0), egui::Sense::hover());
         state.paint(ui, rect.center(), 6.0);

@@ -3,14 +3,14 @@
 use brushwork_tuning::cause::Cause;
 use egui::{Button, Label, RichText, Ui};
 
-use super::figures::lamp_ui;
+use super::figures::indicator_ui;
 use super::model::TuneAction;
 use super::run::Run;
 use super::sketches::{Sketch, sketch_ui};
 use super::which::Loop;
 use crate::command::{Command, Commands};
 use crate::model::Model;
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::model::watched::interruption;
 use crate::theme::Palette;
 
@@ -143,9 +143,9 @@ fn clearing_ui(ui: &mut Ui, model: &Model, which: Loop, commands: &mut Commands)
 /// Says that L and R are cleared, with the way back.
 pub fn cleared_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     let Some(motor) = model.front.tune.cleared_winding() else { return };
-    lamp_ui(
+    indicator_ui(
         ui,
-        LampState::Warning,
+        IndicatorState::Warning,
         &format!("L and R of {motor} are cleared. They are put back after the run."),
     );
     if ui.button("Put L and R back").on_hover_text("Now, without a run").clicked() {
@@ -165,7 +165,7 @@ pub fn refusal_ui(ui: &mut Ui, model: &Model, which: Loop, commands: &mut Comman
     let Some(run) = model.front.tune.front(which).run() else { return };
     let motor = model.front.tune.motor(which);
     let head = format!("{motor} was not tuned · run {} · {:.1} s", run.number, run.report.seconds.1);
-    lamp_ui(ui, LampState::Error, &head);
+    indicator_ui(ui, IndicatorState::Error, &head);
     let weak = Palette::of(ui).weak_text;
     let is_armed = model.front.link.arming.is_armed_for(which.scope());
     ui.horizontal_wrapped(|ui| {

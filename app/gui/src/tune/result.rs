@@ -5,7 +5,7 @@ use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::Method;
 use egui::{Button, Grid, Label, RichText, Ui, vec2};
 
-use super::figures::{FIGURES, figure_ui, lamp_ui};
+use super::figures::{FIGURES, figure_ui, indicator_ui};
 use super::files::files_ui;
 use super::measured::Figures;
 use super::model::TuneAction;
@@ -15,7 +15,7 @@ use super::winding::{unknown_ui, winding_ui};
 use crate::command::{Command, Commands};
 use crate::model::Model;
 use crate::model::general::Sheet;
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::theme::Palette;
 use crate::widgets::numeric::Numeric;
 use brushwork_core::tune::law::AnyRegisters;
@@ -79,13 +79,13 @@ fn empty_ui(ui: &mut Ui, model: &Model, which: Loop) {
 fn verdict_ui(ui: &mut Ui, run: &Run) {
     let report = &run.report;
     let (state, word) = match report.verdict {
-        Verdict::Tuned => (LampState::Ok, "Tuned"),
-        Verdict::TunedWithWarnings => (LampState::Warning, "Tuned with warnings"),
-        Verdict::Refused => (LampState::Error, "Refused"),
+        Verdict::Tuned => (IndicatorState::Ok, "Tuned"),
+        Verdict::TunedWithWarnings => (IndicatorState::Warning, "Tuned with warnings"),
+        Verdict::Refused => (IndicatorState::Error, "Refused"),
     };
-    lamp_ui(ui, state, &format!("{word} · run {} · {:.1} s", run.number, report.seconds.1));
+    indicator_ui(ui, state, &format!("{word} · run {} · {:.1} s", run.number, report.seconds.1));
     for cause in &report.causes {
-        lamp_ui(ui, LampState::Warning, &cause.sentence());
+        indicator_ui(ui, IndicatorState::Warning, &cause.sentence());
     }
 }
 
@@ -292,8 +292,8 @@ fn acts_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands)
         ui.label(RichText::new(text).small().color(Palette::of(ui).accent));
     }
     match run.verified {
-        Some(Ok(())) => lamp_ui(ui, LampState::Ok, "Verified: the machine behaves as predicted."),
-        Some(Err(cause)) => lamp_ui(ui, LampState::Warning, &cause.sentence()),
+        Some(Ok(())) => indicator_ui(ui, IndicatorState::Ok, "Verified: the machine behaves as predicted."),
+        Some(Err(cause)) => indicator_ui(ui, IndicatorState::Warning, &cause.sentence()),
         None => {}
     }
 }
@@ -319,9 +319,17 @@ fn figures_ui(ui: &mut Ui, model: &Model, which: Loop) {
         }
     });
     if !shown.forecast.is_stable {
-        lamp_ui(ui, LampState::Error, "Unstable on the model: the motor would swing up. Lower the gains.");
+        indicator_ui(
+            ui,
+            IndicatorState::Error,
+            "Unstable on the model: the motor would swing up. Lower the gains.",
+        );
     } else if shown.forecast.ms > 2.0 {
-        lamp_ui(ui, LampState::Warning, "Ms above 2: a little more load or lag could make it swing.");
+        indicator_ui(
+            ui,
+            IndicatorState::Warning,
+            "Ms above 2: a little more load or lag could make it swing.",
+        );
     }
     super::limits::limits_ui(ui, run);
 }

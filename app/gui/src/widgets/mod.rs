@@ -2,9 +2,9 @@
 
 pub mod arm_switch;
 pub mod heading;
+pub mod indicator;
 pub mod jog;
 pub mod label;
-pub mod lamp;
 pub mod numeric;
 pub mod readout;
 pub mod setpoint;

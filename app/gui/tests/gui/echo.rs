@@ -14,7 +14,7 @@ use brushwork_core::session::SessionError;
 use brushwork_gui::App;
 use brushwork_gui::family::{Ability, Family as WindowFamily, Known, Sliders};
 use brushwork_gui::model::general::Section;
-use brushwork_gui::model::lamp::LampInfo;
+use brushwork_gui::model::indicator::IndicatorInfo;
 use brushwork_gui::model::screen::Screen;
 use brushwork_gui::parts::{OpenLink, Opener, Parts, PortSource};
 use brushwork_gui::screens::face::Face;
@@ -53,8 +53,8 @@ impl WindowFamily for EchoWindow {
         vec![Screen::DeviceStatus, Screen::GeneralSettings, Screen::Velocity]
     }
 
-    fn lamps(&self) -> &'static [LampInfo] {
-        &[LampInfo { short: "HOT", title: "Too hot" }]
+    fn indicators(&self) -> &'static [IndicatorInfo] {
+        &[IndicatorInfo { short: "HOT", title: "Too hot" }]
     }
 
     fn motors(&self) -> &'static [Motor] {
@@ -176,7 +176,7 @@ fn show_it() {
     assert!(bench.app().model.front.is_connected());
     let name = bench.app().model.front.link.identity().map(Identity::title).unwrap_or_default().to_owned();
     assert!(name.starts_with("Echo 1") && bench.sees(&name), "its name: {name}");
-    assert_eq!(bench.app().model.front.link.lamps.named("HOT").word(), "OK");
+    assert_eq!(bench.app().model.front.link.indicators.named("HOT").word(), "OK");
     bench.app().model.turn_to(Screen::GeneralSettings);
     bench.app().model.front.general.turn_to(Section::Group(Group::Loop));
     bench.pass_ms(100);

@@ -1,5 +1,5 @@
 //! The window for Motion Mind 3, by role and label, against simulated ones in virtual time: the device list, screens by mode,
-//! lamps, registers in RAM and EEPROM, and the terminal.
+//! indicators, registers in RAM and EEPROM, and the terminal.
 
 use crate::support::bench::{Bench, FRAME};
 use brushwork_gui::model::screen::Screen;
@@ -159,7 +159,7 @@ fn what_does_not_apply_is_not_shown() {
             assert!(!has_screen(&bench, title), "{title} in {mode:?}");
         }
         assert!(!bench.sees("Zero M2 encoder") && bench.sees("Zero M1 encoder"));
-        assert!(!bench.sees("M1OC: OK"), "the lamps are this family's");
+        assert!(!bench.sees("M1OC: OK"), "the indicators are this family's");
     }
 }
 
@@ -206,7 +206,7 @@ fn a_bit_that_hands_over_the_setpoint_brings_the_position_screen() {
 // ---- dashboard ----
 
 #[test]
-fn the_lamps_follow_the_status_in_word_and_history() {
+fn the_indicators_follow_the_status_in_word_and_history() {
     let mut bench = connected(Mode::SerialPid);
     assert!(bench.sees("BRK: OK"));
     put(&bench, pin::BRAKE, PinSignal::Volts { volts: 0.0 });

@@ -1,4 +1,4 @@
-//! Device Status: why motors stand, lamps with their times, LEDs and history, against the simulated controller.
+//! Device Status: why motors stand, indicators with their times, LEDs and history, against the simulated controller.
 
 use crate::support::bench::Bench;
 use crate::support::causes;
@@ -60,7 +60,7 @@ fn a_blocked_shaft_is_told_as_a_current_limit_while_the_motor_drives() {
 }
 
 #[test]
-fn lamps_say_since_when_and_the_history_lists_what_came_and_went() {
+fn indicators_say_since_when_and_the_history_lists_what_came_and_went() {
     let mut bench = Bench::new();
     bench.connect();
     let described = |bench: &Bench, label: &str| {
@@ -123,7 +123,7 @@ fn the_leds_are_shown_as_the_simulated_controller_lights_them_and_in_words() {
 }
 
 #[test]
-fn a_driver_fault_of_a_roboclaw_lights_its_lamp_and_disarms() {
+fn a_driver_fault_of_a_roboclaw_lights_its_indicator_and_disarms() {
     let model = models::lookup("roboclaw").expect("it is in the list");
     let config = ControllerConfig { generation: Generation::Gen4, ..ControllerConfig::of(model) };
     let mut bench = Bench::of(Controller::new(config).expect("the default world is sound"));
@@ -138,7 +138,7 @@ fn a_driver_fault_of_a_roboclaw_lights_its_lamp_and_disarms() {
 }
 
 #[test]
-fn the_home_lamp_of_an_mcp_follows_the_action_of_its_pin() {
+fn the_home_indicator_of_an_mcp_follows_the_action_of_its_pin() {
     let cause = causes::all().into_iter().find(|cause| cause.name == "an input at its end");
     let mut bench = Bench::of(cause.expect("it is in the list").controller());
     bench.act(&WorldAction::SetPin { pin: 0, signal: PinSignal::Volts { volts: 2.5 } });

@@ -1,11 +1,11 @@
 //! The window's own widgets, by role and label, and one small picture of them in both themes.
 
-use brushwork_gui::model::lamp::LampState;
+use brushwork_gui::model::indicator::IndicatorState;
 use brushwork_gui::theme;
 use brushwork_gui::widgets::numeric::Numeric;
 use brushwork_gui::widgets::readout::Readout;
 use brushwork_gui::widgets::setpoint::Setpoint;
-use brushwork_gui::widgets::{lamp, stop, text_field};
+use brushwork_gui::widgets::{indicator, stop, text_field};
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Theme, Ui, vec2};
 use egui_kittest::kittest::Queryable as _;
@@ -114,10 +114,16 @@ fn stop_is_pressed_when_the_pointer_goes_down_and_only_once_per_press() {
 }
 
 #[test]
-fn a_lamp_says_its_word() {
+fn an_indicator_says_its_word() {
     let harness = Harness::new_ui(|ui| {
-        lamp::abbreviated_ui(ui, vec2(60.0, 34.0), "M1OC", "Motor 1 over current", LampState::Warning);
-        lamp::full_ui(ui, "ESTP", "Emergency stop", LampState::Error, None);
+        indicator::abbreviated_ui(
+            ui,
+            vec2(60.0, 34.0),
+            "M1OC",
+            "Motor 1 over current",
+            IndicatorState::Warning,
+        );
+        indicator::full_ui(ui, "ESTP", "Emergency stop", IndicatorState::Error, None);
     });
     harness.get_by_role_and_label(Role::Status, "M1OC: warning");
     harness.get_by_role_and_label(Role::Status, "Emergency stop: error");
@@ -147,18 +153,18 @@ fn gallery_ui(ui: &mut Ui) {
     egui::Frame::central_panel(ui.style()).show(ui, |ui| {
         ui.horizontal(|ui| {
             let states = [
-                LampState::Unknown,
-                LampState::NotApplicable,
-                LampState::Ok,
-                LampState::Warning,
-                LampState::Error,
+                IndicatorState::Unknown,
+                IndicatorState::NotApplicable,
+                IndicatorState::Ok,
+                IndicatorState::Warning,
+                IndicatorState::Error,
             ];
             for state in states {
-                lamp::abbreviated_ui(ui, vec2(52.0, 36.0), "MBHI", "Main battery high", state);
+                indicator::abbreviated_ui(ui, vec2(52.0, 36.0), "MBHI", "Main battery high", state);
             }
         });
-        lamp::full_ui(ui, "ESTP", "Emergency stop", LampState::Error, None);
-        lamp::full_ui(ui, "TMP1", "Temperature 1", LampState::Ok, None);
+        indicator::full_ui(ui, "ESTP", "Emergency stop", IndicatorState::Error, None);
+        indicator::full_ui(ui, "TMP1", "Temperature 1", IndicatorState::Ok, None);
         ui.horizontal(|ui| {
             let readout = Readout { label: "M1 speed", unit: "counts/s", digits: 8, unit_letters: 6 };
             readout.ui(ui, Some("-12345"));

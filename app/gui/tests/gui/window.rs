@@ -73,7 +73,7 @@ fn a_typed_path_that_cannot_be_opened_is_told_in_a_sentence() {
 }
 
 #[test]
-fn the_thirteen_lamps_are_shown_in_full_on_the_status_screen() {
+fn the_thirteen_indicators_are_shown_in_full_on_the_status_screen() {
     let mut bench = Bench::new();
     bench.connect();
     for title in ["Motor 1 over current: OK", "Logic battery under voltage: OK", "Temperature 2: OK"] {
@@ -89,7 +89,7 @@ fn the_thirteen_lamps_are_shown_in_full_on_the_status_screen() {
 }
 
 #[test]
-fn a_low_battery_lights_its_lamp() {
+fn a_low_battery_lights_its_indicator() {
     let mut bench = Bench::new();
     bench.connect();
     bench.act(&WorldAction::SetBatteryVolts { volts: 7.0 });

@@ -1,4 +1,4 @@
-//! MCP and RoboClaw: Ion Studio's screens, thirteen lamps, two motors (MCP manual 1.2).
+//! MCP and RoboClaw: Ion Studio's screens, thirteen indicators, two motors (MCP manual 1.2).
 
 use brushwork_link::FamilyRef;
 use brushwork_link::device::{ArmScope, Channel, Drive, Identity, Job, PinSignal, StatusReport};
@@ -11,7 +11,7 @@ use brushwork_mcp_client::settings::{PinMode, function_text, open_range};
 use brushwork_mcp_client::{MCP, is_mcp, layout_of, model_of, packet_generation, subject};
 use brushwork_mcp_wire::codes::ENCODER_PIN_NONE;
 use brushwork_mcp_wire::models::{self, MODELS};
-use brushwork_mcp_wire::packet_serial::status::{Condition, Conditions, Lamp};
+use brushwork_mcp_wire::packet_serial::status::{Condition, Conditions, StatusIndicator};
 use brushwork_mcp_wire::packet_serial::{Effect, Generation, lookup, number};
 use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
@@ -21,7 +21,7 @@ use super::{McpDesk, script};
 use crate::family::{Ability, ActiveIndicator, Family, Figure, Figures, Known, Own, Sliders};
 use crate::model::drawer::Tab;
 use crate::model::help_page::HelpPage;
-use crate::model::lamp::{LampInfo, LampState, state_of};
+use crate::model::indicator::{IndicatorInfo, IndicatorState, state_of};
 use crate::model::screen::Screen;
 use crate::tune::Loop;
 
@@ -58,8 +58,8 @@ impl Family for Mcp {
         &FIGURES
     }
 
-    fn lamps(&self) -> &'static [LampInfo] {
-        &LAMPS
+    fn indicators(&self) -> &'static [IndicatorInfo] {
+        &INDICATORS
     }
 
     fn lit(
@@ -67,9 +67,12 @@ impl Family for Mcp {
         report: &StatusReport,
         identity: Option<&Identity>,
         homed: Option<[bool; 2]>,
-    ) -> Vec<LampState> {
+    ) -> Vec<IndicatorState> {
         let conditions = conditions(report);
-        Lamp::ALL.into_iter().map(|lamp| lit(lamp, conditions, identity, homed)).collect()
+        StatusIndicator::ALL
+            .into_iter()
+            .map(|indicator| lit(indicator, conditions, identity, homed))
+            .collect()
     }
 
     fn home_indicators(&self) -> Option<[ActiveIndicator; 2]> {
@@ -84,7 +87,7 @@ impl Family for Mcp {
         report: &StatusReport,
         _identity: Option<&Identity>,
         homed: Option<[bool; 2]>,
-    ) -> Vec<LampState> {
+    ) -> Vec<IndicatorState> {
         self.lit(report, None, homed)
     }
 
@@ -92,7 +95,7 @@ impl Family for Mcp {
         is_mcp(identity)
     }
 
-    fn lamps_note(&self, identity: &Identity, homed: Option<[bool; 2]>) -> Option<&'static str> {
+    fn indicators_note(&self, identity: &Identity, homed: Option<[bool; 2]>) -> Option<&'static str> {
         if !is_mcp(identity) {
             return None;
         }
@@ -240,51 +243,51 @@ pub const HELP_COMMANDS: HelpPage =
 /// The language of its scripts.
 pub const HELP_MCL: HelpPage = HelpPage { title: "MCL Reference", group: 1, is_searched: true };
 
-/// A lamp as a unit's status lights it; those for home and limit switches of an MCP as its pins do.
+/// An indicator as a unit's status lights it; those for home and limit switches of an MCP as its pins do.
 fn lit(
-    lamp: Lamp,
+    indicator: StatusIndicator,
     conditions: Conditions,
     identity: Option<&Identity>,
     homed: Option<[bool; 2]>,
-) -> LampState {
-    let index = match lamp {
-        Lamp::M1Home => Some(0),
-        Lamp::M2Home => Some(1),
+) -> IndicatorState {
+    let index = match indicator {
+        StatusIndicator::M1Home => Some(0),
+        StatusIndicator::M2Home => Some(1),
         _ => None,
     };
     let by_pins = identity.map_or(homed.is_some(), is_mcp);
     if let Some(index) = index.filter(|_| by_pins) {
         return match homed {
-            None => LampState::Unknown,
-            Some(homed) if homed[index] => LampState::Active,
-            Some(_) => LampState::Ok,
+            None => IndicatorState::Unknown,
+            Some(homed) if homed[index] => IndicatorState::Active,
+            Some(_) => IndicatorState::Ok,
         };
     }
-    let told =
-        identity.is_none_or(|identity| lamp.is_reported(layout_of(identity.generation), is_mcp(identity)));
-    let dark = if told { LampState::Ok } else { LampState::NotApplicable };
-    lamp.lit_by(conditions).map_or(dark, state_of)
+    let told = identity
+        .is_none_or(|identity| indicator.is_reported(layout_of(identity.generation), is_mcp(identity)));
+    let dark = if told { IndicatorState::Ok } else { IndicatorState::NotApplicable };
+    indicator.lit_by(conditions).map_or(dark, state_of)
 }
 
-const fn lamp(lamp: Lamp, title: &'static str) -> LampInfo {
-    LampInfo { short: lamp.abbreviation(), title }
+const fn indicator(indicator: StatusIndicator, title: &'static str) -> IndicatorInfo {
+    IndicatorInfo { short: indicator.abbreviation(), title }
 }
 
-/// In the order of [`Lamp::ALL`] (MCP manual 1.2.5).
-const LAMPS: [LampInfo; Lamp::ALL.len()] = [
-    lamp(Lamp::M1OverCurrent, "Motor 1 over current"),
-    lamp(Lamp::M2OverCurrent, "Motor 2 over current"),
-    lamp(Lamp::MainBatteryHigh, "Main battery over voltage"),
-    lamp(Lamp::MainBatteryLow, "Main battery under voltage"),
-    lamp(Lamp::LogicBatteryHigh, "Logic battery over voltage"),
-    lamp(Lamp::LogicBatteryLow, "Logic battery under voltage"),
-    lamp(Lamp::Temperature1, "Temperature 1"),
-    lamp(Lamp::Temperature2, "Temperature 2"),
-    lamp(Lamp::M1DriverFault, "Motor 1 driver fault"),
-    lamp(Lamp::M2DriverFault, "Motor 2 driver fault"),
-    lamp(Lamp::EStop, "Emergency stop"),
-    lamp(Lamp::M1Home, "Motor 1 home or limit switch"),
-    lamp(Lamp::M2Home, "Motor 2 home or limit switch"),
+/// In the order of [`StatusIndicator::ALL`] (MCP manual 1.2.5).
+const INDICATORS: [IndicatorInfo; StatusIndicator::ALL.len()] = [
+    indicator(StatusIndicator::M1OverCurrent, "Motor 1 over current"),
+    indicator(StatusIndicator::M2OverCurrent, "Motor 2 over current"),
+    indicator(StatusIndicator::MainBatteryHigh, "Main battery over voltage"),
+    indicator(StatusIndicator::MainBatteryLow, "Main battery under voltage"),
+    indicator(StatusIndicator::LogicBatteryHigh, "Logic battery over voltage"),
+    indicator(StatusIndicator::LogicBatteryLow, "Logic battery under voltage"),
+    indicator(StatusIndicator::Temperature1, "Temperature 1"),
+    indicator(StatusIndicator::Temperature2, "Temperature 2"),
+    indicator(StatusIndicator::M1DriverFault, "Motor 1 driver fault"),
+    indicator(StatusIndicator::M2DriverFault, "Motor 2 driver fault"),
+    indicator(StatusIndicator::EStop, "Emergency stop"),
+    indicator(StatusIndicator::M1Home, "Motor 1 home or limit switch"),
+    indicator(StatusIndicator::M2Home, "Motor 2 home or limit switch"),
 ];
 
 const fn m1(channel: Channel, label: &'static str, unit: &'static str) -> Figure {
@@ -344,9 +347,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_lamps_stand_in_the_order_of_the_protocols_table() {
-        for (lamp, info) in Lamp::ALL.into_iter().zip(&LAMPS) {
-            assert_eq!(lamp.abbreviation(), info.short);
+    fn the_indicators_stand_in_the_order_of_the_protocols_table() {
+        for (indicator, info) in StatusIndicator::ALL.into_iter().zip(&INDICATORS) {
+            assert_eq!(indicator.abbreviation(), info.short);
         }
     }
 }

@@ -4,8 +4,8 @@ use crate::model::general::CalibrationStage;
 use egui::{Button, ProgressBar, RichText, Role, Ui, WidgetInfo, vec2};
 
 use crate::model::general::GeneralView;
-use crate::model::lamp::LampState;
-use crate::screens::general::sheet_parts::{lamp_ui, text_ui};
+use crate::model::indicator::IndicatorState;
+use crate::screens::general::sheet_parts::{indicator_ui, text_ui};
 use crate::widgets::readout::Readout;
 
 pub fn calibrate_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
@@ -51,7 +51,7 @@ pub fn calibrate_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
         });
     }
     if let Some(told) = &run.told {
-        lamp_ui(ui, LampState::Warning, told);
+        indicator_ui(ui, IndicatorState::Warning, told);
     }
     let (mut take, mut cancel) = (false, false);
     ui.add_space(4.0);

@@ -7,11 +7,11 @@ use egui::{Button, Grid, Label, Layout, ProgressBar, RichText, Role, ScrollArea,
 use crate::command::{Command, Commands, GuidedAction};
 use crate::family::Family;
 use crate::model::general::GeneralView;
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::model::link::LinkView;
 use crate::model::message::Gravity;
 use crate::screens::drive::arm_ui;
-use crate::screens::general::sheet_parts::lamp_ui;
+use crate::screens::general::sheet_parts::indicator_ui;
 use crate::theme::Palette;
 use crate::widgets::numeric::Numeric;
 use brushwork_core::motion::clamp::Step;
@@ -42,11 +42,11 @@ pub fn clamp_ui(
             run_ui(ui, general, link, commands);
             if let Some(verdict) = &general.clamp.verdict {
                 let state = match verdict.gravity {
-                    Gravity::Note => LampState::Ok,
-                    Gravity::Warning => LampState::Warning,
-                    Gravity::Error => LampState::Error,
+                    Gravity::Note => IndicatorState::Ok,
+                    Gravity::Warning => IndicatorState::Warning,
+                    Gravity::Error => IndicatorState::Error,
                 };
-                lamp_ui(ui, state, &verdict.sentence);
+                indicator_ui(ui, state, &verdict.sentence);
             }
             steps_ui(ui, &general.clamp.steps);
         });
@@ -59,10 +59,10 @@ fn outputs_ui(ui: &mut Ui, general: &GeneralView<'_>) {
     if outputs.is_empty() {
         let text =
             "No output has the action Over voltage, so nothing clamps the voltage but what is wired outside.";
-        lamp_ui(ui, LampState::Warning, text);
+        indicator_ui(ui, IndicatorState::Warning, text);
     } else {
         let names: Vec<String> = outputs.iter().map(|number| format!("DOUT{number}")).collect();
-        lamp_ui(ui, LampState::Ok, &format!("{} clamps over-voltage.", names.join(", ")));
+        indicator_ui(ui, IndicatorState::Ok, &format!("{} clamps over-voltage.", names.join(", ")));
     }
 }
 

@@ -8,10 +8,10 @@ use super::{clamp, conflicts, pin};
 use crate::command::Commands;
 use crate::model::Model;
 use crate::model::general::{GeneralView, Section};
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::model::settings::UnitSettings;
 use crate::screens::general::rows::{HEIGHT, MARK_WIDTH};
-use crate::screens::general::sheet_parts::lamp_ui;
+use crate::screens::general::sheet_parts::indicator_ui;
 use crate::screens::general::{framed_ui, sections_ui};
 
 pub fn general_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
@@ -69,6 +69,6 @@ fn bridge_ui(ui: &mut Ui, unit: Option<&UnitSettings>) {
     let is_on = |unit: &UnitSettings| unit.wanted("unit.bridge_channels") == Some(SettingValue::Bool(true));
     if unit.is_some_and(is_on) {
         ui.add_space(6.0);
-        lamp_ui(ui, LampState::Warning, BRIDGE_WARNING);
+        indicator_ui(ui, IndicatorState::Warning, BRIDGE_WARNING);
     }
 }

@@ -117,13 +117,13 @@ fn status_ui(ui: &mut Ui) {
     ui.heading("The status word");
     ui.label("Masks of each condition in the four firmware generations; a dash where a generation has no such bit.");
     Grid::new("status word").num_columns(7).striped(true).spacing([14.0, 3.0]).show(ui, |ui| {
-        for head in ["Condition", "Lamp", "Gravity", "1", "2", "3", "4"] {
+        for head in ["Condition", "Indicator", "Gravity", "1", "2", "3", "4"] {
             ui.label(RichText::new(head).strong());
         }
         ui.end_row();
         for row in rows {
             ui.label(row.title);
-            ui.label(row.lamp.unwrap_or("–"));
+            ui.label(row.indicator.unwrap_or("–"));
             ui.label(format!("{:?}", row.severity).to_lowercase());
             for mask in row.masks {
                 let text = if mask == 0 { "–".to_owned() } else { format!("0x{mask:X}") };

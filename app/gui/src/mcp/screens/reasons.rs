@@ -5,16 +5,16 @@ use egui::{Frame, Label, Margin, RichText, Role, Sense, Stroke, Ui, WidgetInfo, 
 
 use crate::command::{Command, Commands};
 use crate::model::desk::Desk;
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::theme::Palette;
 
 pub fn reasons_ui(ui: &mut Ui, desk: &Desk, commands: &mut Commands) {
     let pins = desk.pin_ends();
     let Some(evidence) = desk.evidence(pins.as_deref()) else { return };
     let diagnosis = diagnose(&evidence);
-    let state = diagnosis.findings.first().map_or(LampState::Ok, |first| state_of(first.hindrance));
+    let state = diagnosis.findings.first().map_or(IndicatorState::Ok, |first| state_of(first.hindrance));
     let palette = Palette::of(ui);
-    let outline = if state == LampState::Ok { palette.line } else { state.color(palette) };
+    let outline = if state == IndicatorState::Ok { palette.line } else { state.color(palette) };
     let frame = Frame::new()
         .fill(palette.raised)
         .stroke(Stroke::new(1.0, outline))
@@ -42,7 +42,7 @@ pub fn reasons_ui(ui: &mut Ui, desk: &Desk, commands: &mut Commands) {
     });
 }
 
-fn row_ui(ui: &mut Ui, state: LampState, text: RichText, name: &str) {
+fn row_ui(ui: &mut Ui, state: IndicatorState, text: RichText, name: &str) {
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(20.0, 18.0), Sense::hover());
         state.paint(ui, rect.center(), 6.0);
@@ -60,10 +60,10 @@ fn in_full(finding: &Finding) -> String {
     format!("{what}. {}.", finding.cure)
 }
 
-const fn state_of(hindrance: Hindrance) -> LampState {
+const fn state_of(hindrance: Hindrance) -> IndicatorState {
     match hindrance {
-        Hindrance::BlocksAll => LampState::Error,
-        Hindrance::BlocksSome => LampState::Warning,
-        Hindrance::Limits => LampState::Active,
+        Hindrance::BlocksAll => IndicatorState::Error,
+        Hindrance::BlocksSome => IndicatorState::Warning,
+        Hindrance::Limits => IndicatorState::Active,
     }
 }

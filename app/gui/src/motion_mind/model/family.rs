@@ -17,7 +17,7 @@ use super::words;
 use crate::family::{Ability, ActiveIndicator, Family, Figure, Figures, Known, Own, SettingsWords, Sliders};
 use crate::model::drawer::Tab;
 use crate::model::help_page::HelpPage;
-use crate::model::lamp::{LampInfo, LampState, state_of};
+use crate::model::indicator::{IndicatorInfo, IndicatorState, state_of};
 use crate::model::screen::Screen;
 use crate::model::simulated::Simulated;
 use crate::tune::Loop;
@@ -69,8 +69,8 @@ impl Family for MotionMind {
         &FIGURES
     }
 
-    fn lamps(&self) -> &'static [LampInfo] {
-        &LAMPS
+    fn indicators(&self) -> &'static [IndicatorInfo] {
+        &INDICATORS
     }
 
     fn lit(
@@ -78,7 +78,7 @@ impl Family for MotionMind {
         report: &StatusReport,
         identity: Option<&Identity>,
         _homed: Option<[bool; 2]>,
-    ) -> Vec<LampState> {
+    ) -> Vec<IndicatorState> {
         KEYS.iter().map(|key| lit_by(report, key, identity)).collect()
     }
 
@@ -222,13 +222,13 @@ impl Family for MotionMind {
 /// How to connect, drive and tune it.
 pub const HELP: HelpPage = HelpPage { title: "Motion Mind 3", group: 0, is_searched: true };
 
-/// How the indicator with that key lights its lamp.
-fn lit_by(report: &StatusReport, key: &str, identity: Option<&Identity>) -> LampState {
+/// What the bit with that key shows.
+fn lit_by(report: &StatusReport, key: &str, identity: Option<&Identity>) -> IndicatorState {
     if !means_something(key, identity) {
-        return LampState::NotApplicable;
+        return IndicatorState::NotApplicable;
     }
-    let set = report.active().find(|indicator| indicator.key == key);
-    set.map_or(LampState::Ok, |indicator| state_of(indicator.severity))
+    let set = report.active().find(|bit| bit.key == key);
+    set.map_or(IndicatorState::Ok, |bit| state_of(bit.severity))
 }
 
 /// Whether an indicator means anything in the unit's mode: outside of mode 0 nobody misses an R/C pulse.
@@ -239,7 +239,7 @@ fn means_something(key: &str, identity: Option<&Identity>) -> bool {
 
 const BAD_RC: &str = "bad_rc";
 
-/// The indicators of the status that light the lamps, in the order of [`LAMPS`]: what takes the drive away comes first.
+/// The bits of the status that set the indicators, in the order of [`INDICATORS`]: what takes the drive away comes first.
 const KEYS: [&str; 11] = [
     "temp_fault",
     "brake",
@@ -254,23 +254,23 @@ const KEYS: [&str; 11] = [
     "index",
 ];
 
-const fn lamp(short: &'static str, title: &'static str) -> LampInfo {
-    LampInfo { short, title }
+const fn indicator(short: &'static str, title: &'static str) -> IndicatorInfo {
+    IndicatorInfo { short, title }
 }
 
 /// The bits of STATUS (Motion Mind manual, figure 22).
-const LAMPS: [LampInfo; KEYS.len()] = [
-    lamp("TEMP", "Over temperature: bridge off"),
-    lamp("BRK", "Brake input low: bridge off"),
-    lamp("AMPS", "Current limit: drive reduced"),
-    lamp("RC", "Bad R/C signal"),
-    lamp("NEG", "Negative limit input"),
-    lamp("POS", "Positive limit input"),
-    lamp("VN", "Negative virtual limit"),
-    lamp("VP", "Positive virtual limit"),
-    lamp("PWM", "At the PWM limit"),
-    lamp("INP", "In position"),
-    lamp("IDX", "Index input"),
+const INDICATORS: [IndicatorInfo; KEYS.len()] = [
+    indicator("TEMP", "Over temperature: bridge off"),
+    indicator("BRK", "Brake input low: bridge off"),
+    indicator("AMPS", "Current limit: drive reduced"),
+    indicator("RC", "Bad R/C signal"),
+    indicator("NEG", "Negative limit input"),
+    indicator("POS", "Positive limit input"),
+    indicator("VN", "Negative virtual limit"),
+    indicator("VP", "Positive virtual limit"),
+    indicator("PWM", "At the PWM limit"),
+    indicator("INP", "In position"),
+    indicator("IDX", "Index input"),
 ];
 
 const fn figure(channel: Channel, label: &'static str, unit: &'static str) -> Figure {
@@ -315,10 +315,10 @@ mod tests {
     }
 
     #[test]
-    fn every_bit_of_the_status_lights_one_lamp() {
+    fn every_bit_of_the_status_lights_one_indicator() {
         for row in STATUS_BITS {
             let lit = MotionMind.lit(&report(row.mask()), None, None);
-            assert_eq!(lit.iter().filter(|state| **state != LampState::Ok).count(), 1, "{}", row.name);
+            assert_eq!(lit.iter().filter(|state| **state != IndicatorState::Ok).count(), 1, "{}", row.name);
             assert_eq!(MotionMind.active(&report(row.mask()), None).len(), 1, "{}", row.name);
         }
         assert_eq!(MotionMind.active(&report(0), None), []);
@@ -328,6 +328,6 @@ mod tests {
     fn what_takes_the_drive_away_is_an_error_and_comes_first() {
         let active = MotionMind.active(&report(bit::TEMPFAULT | bit::INPOSITION | bit::BRAKE), None);
         let states: Vec<_> = active.iter().map(|indicator| indicator.state).collect();
-        assert_eq!(states, [LampState::Error, LampState::Error, LampState::Active]);
+        assert_eq!(states, [IndicatorState::Error, IndicatorState::Error, IndicatorState::Active]);
     }
 }

@@ -53,7 +53,7 @@ pub(super) fn remedies(cause: Cause) -> Option<&'static [&'static str]> {
              back when it answers again.",
         ],
         Cause::ControllerFault => &[
-            "See the lamps at the bottom: a limit input, the brake input or the temperature keeps the bridge off.",
+            "See the indicators at the bottom: a limit input, the brake input or the temperature keeps the bridge off.",
             "Free the input or let the board cool down, then try again.",
         ],
         Cause::BatteryLow => {

@@ -5,7 +5,7 @@ use brushwork_motion_mind_wire::{Bit, FUNCTION_BITS, FUNCTION2_BITS, Register, S
 use egui::{Button, Label, RichText, Role, Sense, Ui, WidgetInfo, vec2};
 
 use crate::model::desk::Desk;
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::motion_mind::model::registers::bit_key;
 use crate::theme::Palette;
 
@@ -77,7 +77,7 @@ fn setting_ui(ui: &mut Ui, desk: &mut Desk, register: &Register, bit: &Bit) {
         }
         if unit.is_edited(&key) {
             let (rect, _) = ui.allocate_exact_size(vec2(14.0, 14.0), Sense::hover());
-            LampState::Warning.paint(ui, rect.center(), 5.0);
+            IndicatorState::Warning.paint(ui, rect.center(), 5.0);
             let revert = ui.add(Button::new("Revert").small());
             let name = format!("Revert {spoken}");
             revert.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
@@ -91,9 +91,9 @@ fn setting_ui(ui: &mut Ui, desk: &mut Desk, register: &Register, bit: &Bit) {
 fn measured_ui(ui: &mut Ui, desk: &Desk, register: &Register, bit: &Bit) {
     let set = desk.register(register.name).map(|word| word & i64::from(bit.mask()) != 0);
     let (state, word) = match set {
-        None => (LampState::Unknown, "not known"),
-        Some(true) => (LampState::Active, "set"),
-        Some(false) => (LampState::Ok, "clear"),
+        None => (IndicatorState::Unknown, "not known"),
+        Some(true) => (IndicatorState::Active, "set"),
+        Some(false) => (IndicatorState::Ok, "clear"),
     };
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(16.0, 16.0), Sense::hover());

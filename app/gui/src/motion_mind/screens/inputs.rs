@@ -7,7 +7,7 @@ use egui::{Button, Frame, Label, Margin, ProgressBar, RichText, Role, Sense, Str
 use crate::command::{Command, Commands};
 use crate::model::Model;
 use crate::model::desk::Desk;
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::motion_mind::MindAction;
 use crate::motion_mind::model::radio::{STEP_MS, Stage, WIDE};
 use crate::motion_mind::model::registers::in_unit;
@@ -71,9 +71,9 @@ fn measured_ui(ui: &mut Ui, desk: &Desk) {
 fn switch_ui(ui: &mut Ui, desk: &Desk, bit: u16, name: &str, means: &str) {
     let low = desk.link.status.as_ref().map(|report| report.word & u32::from(bit) != 0);
     let (state, word) = match low {
-        None => (LampState::Unknown, "not known"),
-        Some(true) => (LampState::Active, "at ground"),
-        Some(false) => (LampState::Ok, "open"),
+        None => (IndicatorState::Unknown, "not known"),
+        Some(true) => (IndicatorState::Active, "at ground"),
+        Some(false) => (IndicatorState::Ok, "open"),
     };
     ui.horizontal(|ui| {
         ui.set_min_height(ROW_HEIGHT);
@@ -139,7 +139,7 @@ fn pulse_ui(ui: &mut Ui, desk: &Desk, count: Option<i64>) {
     };
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(18.0, ROW_HEIGHT), Sense::hover());
-        let state = if bad { LampState::Warning } else { LampState::Ok };
+        let state = if bad { IndicatorState::Warning } else { IndicatorState::Ok };
         state.paint(ui, rect.center(), 6.0);
         ui.label(RichText::new(text).text_style(theme::figures()));
         if bad {

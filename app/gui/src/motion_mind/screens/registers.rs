@@ -14,7 +14,7 @@ use super::bits::{bits_ui, has_bits};
 use crate::command::Commands;
 use crate::model::Model;
 use crate::model::desk::Desk;
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::model::settings::UnitSettings;
 use crate::motion_mind::model::registers::{in_unit, key};
 use crate::screens::general::{editor, framed_ui};
@@ -165,22 +165,22 @@ fn mark_ui(ui: &mut Ui, desk: &Desk, register: &Register) {
     response.on_hover_text(spoken);
 }
 
-fn mark(desk: &Desk, register: &Register) -> Option<(LampState, String)> {
+fn mark(desk: &Desk, register: &Register) -> Option<(IndicatorState, String)> {
     let unit = desk.settings.unit()?;
     let rows: Vec<&Row> = rows_of(unit, register).collect();
     let trouble = rows.iter().find_map(|row| unit.trouble(&row.key));
     if let Some(trouble) = trouble {
-        return Some((LampState::Error, format!("{}: {trouble}", register.name)));
+        return Some((IndicatorState::Error, format!("{}: {trouble}", register.name)));
     }
     if rows.iter().any(|row| unit.is_edited(&row.key)) {
-        return Some((LampState::Warning, format!("{} is changed and not written", register.name)));
+        return Some((IndicatorState::Warning, format!("{} is changed and not written", register.name)));
     }
     let eeprom = unit.eeprom()?;
     let differs = rows.iter().any(|row| {
         let (ram, kept) = (unit.on_controller(&row.key), eeprom.get(&row.key));
         ram.is_some() && kept.is_some() && ram != kept
     });
-    differs.then(|| (LampState::Active, format!("{} in RAM differs from EEPROM", register.name)))
+    differs.then(|| (IndicatorState::Active, format!("{} in RAM differs from EEPROM", register.name)))
 }
 
 /// The rows of the settings table that a register is made of: one, or one for each bit.

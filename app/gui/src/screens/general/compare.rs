@@ -3,9 +3,9 @@
 use brushwork_link::settings::{Difference, Group};
 use egui::{Button, ComboBox, Grid, RichText, Role, Ui, WidgetInfo};
 
-use super::sheet_parts::{Act, Offer, lamp_ui, text_ui, title_ui};
+use super::sheet_parts::{Act, Offer, indicator_ui, text_ui, title_ui};
 use crate::model::general::{Comparison, GeneralView, Side, Take};
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::model::settings::UnitSettings;
 use crate::theme::Palette;
 
@@ -20,14 +20,14 @@ pub fn compare_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
     sides_ui(ui, general);
     let comparison = general.comparison();
     for missing in &comparison.missing {
-        lamp_ui(ui, LampState::Unknown, missing);
+        indicator_ui(ui, IndicatorState::Unknown, missing);
     }
     for note in &comparison.notes {
-        lamp_ui(ui, LampState::Warning, note);
+        indicator_ui(ui, IndicatorState::Warning, note);
     }
     if let (Side::Profile, Some(opened)) = (&general.comparing.right, general.profiles.opened()) {
         for sentence in &opened.mended {
-            lamp_ui(ui, LampState::Warning, sentence);
+            indicator_ui(ui, IndicatorState::Warning, sentence);
         }
         text_ui(ui, &format!("Profile {}, read {}.", opened.name, opened.profile.date_text()));
     }
@@ -69,7 +69,7 @@ fn side_ui(ui: &mut Ui, general: &GeneralView<'_>, side: &mut Side, name: &str) 
 
 fn count_ui(ui: &mut Ui, comparison: &Comparison) {
     match comparison.count() {
-        0 => lamp_ui(ui, LampState::Ok, "Both sides have the same values."),
+        0 => indicator_ui(ui, IndicatorState::Ok, "Both sides have the same values."),
         1 => text_ui(ui, "1 setting differs."),
         count => text_ui(ui, &format!("{count} settings differ.")),
     }

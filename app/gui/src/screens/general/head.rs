@@ -5,7 +5,7 @@ use egui::{Button, Label, ProgressBar, RichText, Role, Ui, WidgetInfo, vec2};
 use crate::command::{Command, Commands};
 use crate::family::{Ability, Family, SettingsWords};
 use crate::model::general::{GeneralView, Sheet};
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::model::settings::{Running, Saved, SettingsAction, UnitSettings};
 use crate::theme::Palette;
 use crate::widgets::text_field::text_field_ui;
@@ -32,24 +32,24 @@ fn marks_ui(ui: &mut Ui, words: &SettingsWords, unit: Option<&UnitSettings>) {
     });
 }
 
-fn edits_mark(unit: &UnitSettings) -> (LampState, String) {
+fn edits_mark(unit: &UnitSettings) -> (IndicatorState, String) {
     match unit.changes().len() {
-        _ if !unit.is_read() => (LampState::Unknown, "not read yet".to_owned()),
-        0 => (LampState::Ok, "none".to_owned()),
-        count => (LampState::Warning, format!("{count} not written")),
+        _ if !unit.is_read() => (IndicatorState::Unknown, "not read yet".to_owned()),
+        0 => (IndicatorState::Ok, "none".to_owned()),
+        count => (IndicatorState::Warning, format!("{count} not written")),
     }
 }
 
-fn saved_mark(unit: &UnitSettings) -> (LampState, String) {
+fn saved_mark(unit: &UnitSettings) -> (IndicatorState, String) {
     match unit.saved() {
-        Saved::Yes => (LampState::Ok, "saved".to_owned()),
-        Saved::Differs(count) => (LampState::Warning, format!("{count} not saved")),
-        Saved::NotKnown { written: 0 } => (LampState::Unknown, "not known".to_owned()),
-        Saved::NotKnown { written } => (LampState::Warning, format!("{written} written, not saved")),
+        Saved::Yes => (IndicatorState::Ok, "saved".to_owned()),
+        Saved::Differs(count) => (IndicatorState::Warning, format!("{count} not saved")),
+        Saved::NotKnown { written: 0 } => (IndicatorState::Unknown, "not known".to_owned()),
+        Saved::NotKnown { written } => (IndicatorState::Warning, format!("{written} written, not saved")),
     }
 }
 
-fn mark_ui(ui: &mut Ui, state: LampState, title: &str, text: &str) {
+fn mark_ui(ui: &mut Ui, state: IndicatorState, title: &str, text: &str) {
     ui.add_space(6.0);
     let (rect, _) = ui.allocate_exact_size(vec2(14.0, 14.0), egui::Sense::hover());
     state.paint(ui, rect.center(), 6.0);

@@ -3,9 +3,9 @@
 use brushwork_link::settings::{Aftermath, Difference, Held, Row};
 use egui::{Button, Grid, RichText, Role, Ui, WidgetInfo};
 
-use super::sheet_parts::{Act, Offer, differences_ui, lamp_ui, text_ui, title_ui};
+use super::sheet_parts::{Act, Offer, differences_ui, indicator_ui, text_ui, title_ui};
 use crate::model::general::{GeneralView, Sheet, Side};
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::model::settings::{Settle, UnitSettings};
 use crate::theme::Palette;
 
@@ -20,9 +20,9 @@ pub fn backups_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
     );
     ui.label(RichText::new(format!("Kept in {folder}")).color(Palette::of(ui).weak_text));
     if general.settings.backups().is_empty() {
-        lamp_ui(
+        indicator_ui(
             ui,
-            LampState::Unknown,
+            IndicatorState::Unknown,
             "There is no backup of this controller yet. The first is made before the first write.",
         );
         return Vec::new();
@@ -65,11 +65,11 @@ pub fn copy_motor_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
         }
     });
     let (Some(copied), Some(unit)) = (general.motor_copy(), general.unit()) else {
-        lamp_ui(ui, LampState::Unknown, "The settings have not been read.");
+        indicator_ui(ui, IndicatorState::Unknown, "The settings have not been read.");
         return Vec::new();
     };
     if copied.wanted.is_empty() {
-        lamp_ui(ui, LampState::Ok, "The other motor has the same settings already.");
+        indicator_ui(ui, IndicatorState::Ok, "The other motor has the same settings already.");
     }
     let difference = |row: &Row| {
         let right = Some(copied.wanted.get(&row.key)?);
@@ -77,7 +77,7 @@ pub fn copy_motor_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
     };
     differences_ui(ui, unit, unit.table().rows().iter().filter_map(difference));
     for sentence in &copied.left_out {
-        lamp_ui(ui, LampState::Unknown, sentence);
+        indicator_ui(ui, IndicatorState::Unknown, sentence);
     }
     vec![("Copy", Act::CopyMotor, !copied.wanted.is_empty())]
 }
@@ -92,12 +92,12 @@ pub fn unfinished_ui(ui: &mut Ui, general: &GeneralView<'_>) -> Vec<Offer> {
         } else {
             "Nothing that was begun on this controller was cut short."
         };
-        lamp_ui(ui, LampState::Unknown, text);
+        indicator_ui(ui, IndicatorState::Unknown, text);
         return Vec::new();
     }
     // The newest decides; those before it were overtaken by it.
     for aftermath in aftermaths.iter().rev() {
-        lamp_ui(ui, LampState::Error, &aftermath.headline());
+        indicator_ui(ui, IndicatorState::Error, &aftermath.headline());
         lists_ui(ui, unit, aftermath);
     }
     let newest = aftermaths.last();

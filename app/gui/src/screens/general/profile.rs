@@ -2,10 +2,10 @@
 
 use egui::{Button, Ui, vec2};
 
-use super::sheet_parts::{Act, Offer, lamp_ui, text_ui, title_ui};
+use super::sheet_parts::{Act, Offer, indicator_ui, text_ui, title_ui};
 use crate::frame::FRAME_INTERVAL;
 use crate::model::general::{GeneralView, Purpose, Told};
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::model::settings::UnitSettings;
 use crate::widgets::text_field::text_field_ui;
 
@@ -42,7 +42,11 @@ pub fn save_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
     told_ui(ui, general.profiles.told());
     let is_read = general.unit().is_some_and(UnitSettings::is_read);
     if !is_read {
-        lamp_ui(ui, LampState::Warning, "The settings have not been read, so there is nothing to save yet.");
+        indicator_ui(
+            ui,
+            IndicatorState::Warning,
+            "The settings have not been read, so there is nothing to save yet.",
+        );
     }
     let has_path = !general.profiles.path.trim().is_empty();
     vec![("Save profile", Act::SaveProfile, is_read && has_path)]
@@ -75,12 +79,12 @@ fn told_ui(ui: &mut Ui, told: &Told) -> bool {
     match told {
         Told::Nothing => false,
         Told::Done(sentence) => {
-            lamp_ui(ui, LampState::Ok, sentence);
+            indicator_ui(ui, IndicatorState::Ok, sentence);
             false
         }
         Told::Failed { sentences, can_be_mended } => {
             for sentence in sentences {
-                lamp_ui(ui, LampState::Error, sentence);
+                indicator_ui(ui, IndicatorState::Error, sentence);
             }
             *can_be_mended
         }
@@ -97,7 +101,7 @@ pub fn upgrade_ui(ui: &mut Ui, general: &GeneralView<'_>) -> Vec<Offer> {
          controller here it is changed as follows; the file stays as it is, and nothing is written yet.",
     );
     for change in changes {
-        lamp_ui(ui, LampState::Warning, change);
+        indicator_ui(ui, IndicatorState::Warning, change);
     }
     vec![("Use with these changes", Act::UseUpgraded, true)]
 }

@@ -5,7 +5,7 @@ use egui::{Align, Button, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, 
 
 use super::editor;
 use crate::model::general::{GeneralView, Section};
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::model::settings::UnitSettings;
 use crate::screens::face::Face;
 use crate::theme::Palette;
@@ -196,8 +196,8 @@ fn row_ui(
 fn mark_ui(ui: &mut Ui, unit: &UnitSettings, row: &Row) {
     let (rect, response) = ui.allocate_exact_size(vec2(MARK_WIDTH, HEIGHT), Sense::hover());
     let (state, spoken) = match unit.trouble(&row.key) {
-        Some(trouble) => (LampState::Error, format!("{}: {trouble}", row.title())),
-        None if unit.is_edited(&row.key) => (LampState::Warning, format!("{} is changed", row.title())),
+        Some(trouble) => (IndicatorState::Error, format!("{}: {trouble}", row.title())),
+        None if unit.is_edited(&row.key) => (IndicatorState::Warning, format!("{} is changed", row.title())),
         None => return,
     };
     state.paint(ui, rect.center(), 5.0);

@@ -5,12 +5,12 @@ use brushwork_link::transport::Stream;
 use brushwork_values::hex;
 use egui::{Button, CollapsingHeader, RichText, ScrollArea, Ui, vec2};
 
-use super::sheet_parts::{Act, Offer, differences_ui, lamp_ui, text_ui, title_ui};
+use super::sheet_parts::{Act, Offer, differences_ui, indicator_ui, text_ui, title_ui};
 use super::{compare, kept, profile};
 use crate::command::{Command, Commands};
 use crate::family::SettingsWords;
 use crate::model::general::{GeneralView, Sheet, Take};
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::model::settings::{Saved, SettingsAction, UnitSettings};
 use crate::theme::Palette;
 use brushwork_core::keep::WearLevel;
@@ -136,19 +136,19 @@ fn write_ui(ui: &mut Ui, unit: &UnitSettings, stream: Option<Stream>) -> Vec<Off
     );
     differences_ui(ui, unit, changes.iter().cloned());
     for refusal in unit.refused() {
-        lamp_ui(ui, LampState::Warning, &format!("{refusal} It is not written."));
+        indicator_ui(ui, IndicatorState::Warning, &format!("{refusal} It is not written."));
     }
     let can_be_written = match unit.plan(stream) {
         Ok(plan) => {
             for warning in &plan.warnings {
-                lamp_ui(ui, LampState::Warning, warning);
+                indicator_ui(ui, IndicatorState::Warning, warning);
             }
             bytes_ui(ui, unit, &plan);
             true
         }
         Err(refusals) => {
             for refusal in &refusals {
-                lamp_ui(ui, LampState::Error, &refusal.sentence);
+                indicator_ui(ui, IndicatorState::Error, &refusal.sentence);
             }
             false
         }
@@ -184,7 +184,7 @@ fn save_ui(ui: &mut Ui, general: &GeneralView<'_>, words: &SettingsWords) -> Vec
     title_ui(ui, "Save to EEPROM");
     text_ui(ui, words.save_text);
     if let Some(warning) = words.save_warning {
-        lamp_ui(ui, LampState::Warning, warning);
+        indicator_ui(ui, IndicatorState::Warning, warning);
     }
     match (unit.saved(), general.settings.known_eeprom().zip(unit.ram())) {
         (Saved::Yes, _) => text_ui(ui, "As far as known its EEPROM holds the same already."),
@@ -210,15 +210,15 @@ fn save_ui(ui: &mut Ui, general: &GeneralView<'_>, words: &SettingsWords) -> Vec
     if !unit.edits().is_empty() {
         let text =
             "Changes on this screen that are not written are not saved. Write them first to keep them.";
-        lamp_ui(ui, LampState::Warning, text);
+        indicator_ui(ui, IndicatorState::Warning, text);
     }
     let (wear, limits) = general.settings.wear();
     let state = match wear.level() {
-        WearLevel::Fine => LampState::Ok,
-        WearLevel::Half => LampState::Warning,
-        WearLevel::Worn => LampState::Error,
+        WearLevel::Fine => IndicatorState::Ok,
+        WearLevel::Half => IndicatorState::Warning,
+        WearLevel::Worn => IndicatorState::Error,
     };
-    lamp_ui(ui, state, &format!("{} {limits}", wear.sentence()));
+    indicator_ui(ui, state, &format!("{} {limits}", wear.sentence()));
     vec![(words.save_now, Act::FamilyAction(SettingsAction::Save), true)]
 }
 
@@ -227,7 +227,7 @@ fn defaults_ui(ui: &mut Ui, unit: &UnitSettings, words: &SettingsWords) -> Vec<O
     title_ui(ui, "Default settings");
     text_ui(ui, words.defaults_text);
     if let Some(warning) = words.defaults_warning {
-        lamp_ui(ui, LampState::Warning, warning);
+        indicator_ui(ui, IndicatorState::Warning, warning);
     }
     if changes.is_empty() {
         text_ui(ui, "As far as known it has its defaults already.");
@@ -244,7 +244,7 @@ fn defaults_ui(ui: &mut Ui, unit: &UnitSettings, words: &SettingsWords) -> Vec<O
 fn report_ui(ui: &mut Ui, title: &str, sentences: &[String]) -> Vec<Offer> {
     title_ui(ui, title);
     for sentence in sentences {
-        lamp_ui(ui, LampState::Error, sentence);
+        indicator_ui(ui, IndicatorState::Error, sentence);
     }
     Vec::new()
 }

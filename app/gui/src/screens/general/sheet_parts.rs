@@ -1,9 +1,9 @@
-//! What sheets are made of: texts, lamps, differences, and the buttons that they offer.
+//! What sheets are made of: texts, indicators, differences, and the buttons that they offer.
 
 use brushwork_link::settings::Difference;
 use egui::{Grid, Label, RichText, Ui, vec2};
 
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::model::settings::{SettingsAction, Settle, UnitSettings};
 use crate::theme::Palette;
 
@@ -30,7 +30,7 @@ pub fn text_ui(ui: &mut Ui, text: &str) {
     ui.add(Label::new(text).wrap());
 }
 
-pub fn lamp_ui(ui: &mut Ui, state: LampState, text: &str) {
+pub fn indicator_ui(ui: &mut Ui, state: IndicatorState, text: &str) {
     ui.horizontal_top(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(18.0, 18.0), egui::Sense::hover());
         state.paint(ui, rect.center(), 6.0);

@@ -26,8 +26,9 @@ pub fn history_ui(ui: &mut Ui, history: &mut History, height: f32) {
         ui.label(RichText::new(connected).color(weak));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let response = ui.add_enabled(!history.is_empty(), egui::Button::new("Clear history"));
-            clear =
-                response.on_hover_text("Forgets the list and its counts; lamps keep their times").clicked();
+            clear = response
+                .on_hover_text("Forgets the list and its counts; indicators keep their times")
+                .clicked();
         });
     });
     counts_ui(ui, history);

@@ -1,4 +1,4 @@
-//! Device Status (MCP manual 1.2.3 to 1.2.5): why the motors do not run, thirteen lamps in full, the LEDs, who the unit is,
+//! Device Status (MCP manual 1.2.3 to 1.2.5): why the motors do not run, thirteen indicators in full, the LEDs, who the unit is,
 //! and what happened since the connection.
 
 use egui::{Align, Layout, ScrollArea, Ui};
@@ -6,10 +6,10 @@ use egui::{Align, Layout, ScrollArea, Ui};
 use super::{face, not_connected_text, nothing_ui, title_ui};
 use crate::command::Commands;
 use crate::model::Model;
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 
 mod history;
-mod lamps;
+mod indicators;
 mod unit;
 
 /// Width from which two columns fit.
@@ -31,7 +31,7 @@ pub fn status_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let face = face::of(model.front.family());
     ScrollArea::vertical().show(ui, |ui| {
         face.reasons_ui(ui, &model.front, commands);
-        lamps::lamps_ui(ui, &model.front, columns);
+        indicators::indicators_ui(ui, &model.front, columns);
         ui.add_space(8.0);
         let height = ui.available_height().max(history::LEAST_HEIGHT);
         ui.columns(columns, |ui| {
@@ -40,7 +40,7 @@ pub fn status_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             ui[0].with_layout(left, |ui| history::history_ui(ui, &mut model.front.history, height));
             ui[columns - 1].with_layout(left, |ui| {
                 face.leds_ui(ui, &model.front);
-                lamps::active_ui(ui, &model.front);
+                indicators::active_ui(ui, &model.front);
                 ui.add_space(6.0);
                 unit::unit_ui(ui, &model.front);
             });
@@ -49,11 +49,11 @@ pub fn status_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 }
 
 fn headline(model: &Model) -> &'static str {
-    match model.front.link.lamps.worst() {
-        LampState::Error => "At least one error: the controller has stopped a motor or both.",
-        LampState::Warning => "At least one warning: a limit is close.",
-        LampState::Active => "No warning and no error; a signal is active.",
-        LampState::Ok => "No warning and no error.",
-        LampState::Unknown | LampState::NotApplicable => "The status has not been read yet.",
+    match model.front.link.indicators.worst() {
+        IndicatorState::Error => "At least one error: the controller has stopped a motor or both.",
+        IndicatorState::Warning => "At least one warning: a limit is close.",
+        IndicatorState::Active => "No warning and no error; a signal is active.",
+        IndicatorState::Ok => "No warning and no error.",
+        IndicatorState::Unknown | IndicatorState::NotApplicable => "The status has not been read yet.",
     }
 }

@@ -48,7 +48,7 @@ pub fn play(bench: &mut Bench, row: &Row, scene: &str) {
         name if name.starts_with("tune_") => tuning::play(bench, row, name),
         name if name.starts_with("mcl_") => mcl::play(bench, row, name),
         name if name.starts_with("stop_") => stop(bench, row, name),
-        name if name.starts_with("lamp_") => lamp(bench, row, name),
+        name if name.starts_with("indicator_") => indicator(bench, row, name),
         name if name.starts_with("help_") => help(bench, row),
         name if name.starts_with("graph_") || name == "channel" => graph::play(bench, row, name),
         "firmware" | "exit" | "canopen" | "read_settings" | "default_settings" | "save_settings" => {
@@ -151,33 +151,33 @@ fn with_two_sensors(bench: &mut Bench) {
     bench.connect();
 }
 
-/// The world in which a lamp burns.
-fn lamp(bench: &mut Bench, row: &Row, name: &str) {
+/// The world in which an indicator burns.
+fn indicator(bench: &mut Bench, row: &Row, name: &str) {
     match name {
-        "lamp_m1oc" => over_current(bench, Motor::M1),
-        "lamp_m2oc" => over_current(bench, Motor::M2),
-        "lamp_mbhi" => bench.act(&WorldAction::SetBatteryVolts { volts: 75.0 }),
-        "lamp_mblo" => bench.act(&WorldAction::SetBatteryVolts { volts: 7.0 }),
-        "lamp_lbhi" => bench.act(&WorldAction::SetLogicVolts { volts: 18.0 }),
+        "indicator_m1oc" => over_current(bench, Motor::M1),
+        "indicator_m2oc" => over_current(bench, Motor::M2),
+        "indicator_mbhi" => bench.act(&WorldAction::SetBatteryVolts { volts: 75.0 }),
+        "indicator_mblo" => bench.act(&WorldAction::SetBatteryVolts { volts: 7.0 }),
+        "indicator_lbhi" => bench.act(&WorldAction::SetLogicVolts { volts: 18.0 }),
         // The logic runs on the higher of both supplies, so both have to be low.
-        "lamp_lblo" => {
+        "indicator_lblo" => {
             bench.act(&WorldAction::SetBatteryVolts { volts: 7.0 });
             bench.act(&WorldAction::SetLogicVolts { volts: 7.0 });
         }
-        "lamp_tmp1" => bench.act(&WorldAction::SetBoardCelsius { celsius: Some(101.0) }),
-        "lamp_tmp2" => {
+        "indicator_tmp1" => bench.act(&WorldAction::SetBoardCelsius { celsius: Some(101.0) }),
+        "indicator_tmp2" => {
             with_two_sensors(bench);
             assert_eq!(shown(bench, "TMP2"), "OK");
             bench.act(&WorldAction::SetBoardCelsius { celsius: Some(101.0) });
         }
-        "lamp_estp" => bench.act(&WorldAction::EStop { pressed: true }),
-        _ => home(bench, if name == "lamp_m1hm" { 1 } else { 2 }),
+        "indicator_estp" => bench.act(&WorldAction::EStop { pressed: true }),
+        _ => home(bench, if name == "indicator_m1hm" { 1 } else { 2 }),
     }
     bench.pass_ms(2500);
-    let lamp = &row.label[..4];
-    let state = shown(bench, lamp);
+    let indicator = &row.label[..4];
+    let state = shown(bench, indicator);
     let burns = state == "error" || state == "warning" || state == "active";
-    assert!(burns, "{lamp}: {state}");
+    assert!(burns, "{indicator}: {state}");
     *bench = super::opened(row.place);
 }
 

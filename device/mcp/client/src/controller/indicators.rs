@@ -2,7 +2,7 @@
 
 use brushwork_link::device::{Indicator, PlaceState, StatusPlace, StatusReport};
 use brushwork_mcp_wire::packet_serial::Generation;
-use brushwork_mcp_wire::packet_serial::status::{CONDITIONS, Conditions, Lamp};
+use brushwork_mcp_wire::packet_serial::status::{CONDITIONS, Conditions, StatusIndicator};
 use brushwork_values::Severity;
 
 static BY_GENERATION: [[Indicator; CONDITIONS.len()]; 4] =
@@ -14,7 +14,7 @@ const fn of(generation: Generation) -> [Indicator; CONDITIONS.len()] {
     let mut index = 0;
     while index < indicators.len() {
         let row = &CONDITIONS[index];
-        let short = match row.lamp {
+        let short = match row.indicator {
             Some(place) => place.abbreviation(),
             None => "",
         };
@@ -52,12 +52,12 @@ pub fn status_row(
     is_mcp: bool,
     homed: Option<[bool; 2]>,
 ) -> Vec<StatusPlace> {
-    let by_pins = |place: Lamp| match place {
-        Lamp::M1Home => homed.map(|homed| homed[0]),
-        Lamp::M2Home => homed.map(|homed| homed[1]),
+    let by_pins = |place: StatusIndicator| match place {
+        StatusIndicator::M1Home => homed.map(|homed| homed[0]),
+        StatusIndicator::M2Home => homed.map(|homed| homed[1]),
         _ => None,
     };
-    let state = |place: Lamp| {
+    let state = |place: StatusIndicator| {
         let Some(report) = report else { return PlaceState::Unknown };
         match (place.lit_by(conditions(report)), by_pins(place)) {
             (Some(severity), _) => PlaceState::Active(severity),
@@ -67,9 +67,12 @@ pub fn status_row(
             (None, None) => PlaceState::NotReported,
         }
     };
-    let place =
-        |place: Lamp| StatusPlace { short: place.abbreviation(), title: place.title(), state: state(place) };
-    Lamp::ALL.into_iter().map(place).collect()
+    let place = |place: StatusIndicator| StatusPlace {
+        short: place.abbreviation(),
+        title: place.title(),
+        state: state(place),
+    };
+    StatusIndicator::ALL.into_iter().map(place).collect()
 }
 
 #[cfg(test)]

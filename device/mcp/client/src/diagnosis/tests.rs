@@ -160,7 +160,7 @@ fn a_script_is_suspected_told_or_known_to_have_ended() {
 }
 
 #[test]
-fn a_pin_at_its_end_stops_what_its_action_says_and_lights_the_home_lamps() {
+fn a_pin_at_its_end_stops_what_its_action_says_and_lights_the_home_indicators() {
     let image = settings(&[
         ("pin.1.type", choice("none")),
         ("pin.1.digital", SettingValue::Bool(true)),
@@ -176,16 +176,16 @@ fn a_pin_at_its_end_stops_what_its_action_says_and_lights_the_home_lamps() {
         let evidence = Evidence { settings: Some(&image), pins: Some(pins), ..Evidence::default() };
         (diagnose(&evidence), homed(&image, pins))
     };
-    let (diagnosis, lamps) = with(&[PinEnd::Between, PinEnd::Lowest, PinEnd::Lowest]);
+    let (diagnosis, indicators) = with(&[PinEnd::Between, PinEnd::Lowest, PinEnd::Lowest]);
     assert!(diagnosis.findings.is_empty(), "pin 3 has no type");
-    assert_eq!(lamps, [false, false]);
-    let (diagnosis, lamps) = with(&[PinEnd::Lowest, PinEnd::Between, PinEnd::Between]);
-    assert_eq!(lamps, [true, false]);
+    assert_eq!(indicators, [false, false]);
+    let (diagnosis, indicators) = with(&[PinEnd::Lowest, PinEnd::Between, PinEnd::Between]);
+    assert_eq!(indicators, [true, false]);
     let sentence = diagnosis.sentence();
     assert!(sentence.contains("pin 1 is at its minimum, whose action stops motor 1"), "{sentence}");
-    let (diagnosis, lamps) = with(&[PinEnd::Between, PinEnd::Highest, PinEnd::Between]);
+    let (diagnosis, indicators) = with(&[PinEnd::Between, PinEnd::Highest, PinEnd::Between]);
     assert_eq!(diagnosis.findings[0].hindrance, Hindrance::BlocksAll);
-    assert_eq!(lamps, [true, true]);
+    assert_eq!(indicators, [true, true]);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! The conditions a unit reports with command 90, and with them its lamps.
+//! The conditions a unit reports with command 90, and with them its indicators.
 
 use super::firmware::Firmware;
 use crate::signals::MotorTriggers;

@@ -38,7 +38,7 @@ pub struct MotorTriggers {
 }
 
 impl MotorTriggers {
-    /// Whether the motor is homed or at a limit switch, which is what the M1HM and M2HM lamps show (MCP manual 1.2.5).
+    /// Whether the motor is homed or at a limit switch, which is what the M1HM and M2HM indicators show (MCP manual 1.2.5).
     pub fn is_limited(self) -> bool {
         self.safe_stop || self.off || self.forward_limit || self.backward_limit || self.at_home
     }

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::command::{ClientUse, Command, Direction, Effect, Form, Reply, Simulated};
 use super::identity::Generation;
-use super::status::{CONDITIONS, Lamp};
+use super::status::{CONDITIONS, StatusIndicator};
 use super::table::COMMANDS;
 use brushwork_values::{Field, Kind, Severity, Unit};
 
@@ -129,8 +129,9 @@ pub struct StatusEntry {
     pub title: &'static str,
     /// How grave it is.
     pub severity: Severity,
-    /// The lamp that shows it.
-    pub lamp: Option<&'static str>,
+    /// The indicator that shows it.
+    #[serde(rename = "lamp")]
+    pub indicator: Option<&'static str>,
     /// Its mask in generations 1 to 4; 0 where there is none.
     pub masks: [u32; 4],
 }
@@ -140,7 +141,7 @@ pub fn reference() -> Reference {
     let status = CONDITIONS.iter().map(|row| StatusEntry {
         title: row.title,
         severity: row.severity,
-        lamp: row.lamp.map(Lamp::abbreviation),
+        indicator: row.indicator.map(StatusIndicator::abbreviation),
         masks: row.masks,
     });
     Reference { commands: COMMANDS.iter().map(CommandEntry::of).collect(), status: status.collect() }

@@ -90,10 +90,10 @@ pub enum Condition {
     S5Signal,
 }
 
-/// The thirteen lamps of the vendor's program (MCP manual 1.2.2), in its order.
+/// The thirteen indicators of the vendor's program (MCP manual 1.2.2), in its order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Lamp {
+pub enum StatusIndicator {
     /// Current of motor 1.
     M1OverCurrent,
     /// Current of motor 2.
@@ -133,8 +133,8 @@ pub struct ConditionRow {
     pub title: &'static str,
     /// How grave it is.
     pub severity: Severity,
-    /// The lamp that shows it, if one does.
-    pub lamp: Option<Lamp>,
+    /// The indicator that shows it, if one does.
+    pub indicator: Option<StatusIndicator>,
     /// Its bit in generations 1 to 4, as a mask; 0 where the generation has none.
     pub masks: [u32; 4],
 }
@@ -183,9 +183,9 @@ impl Condition {
         self.row().severity
     }
 
-    /// The lamp that shows it, if one does.
-    pub const fn lamp(self) -> Option<Lamp> {
-        self.row().lamp
+    /// The indicator that shows it, if one does.
+    pub const fn indicator(self) -> Option<StatusIndicator> {
+        self.row().indicator
     }
 }
 
@@ -195,7 +195,7 @@ impl fmt::Display for Condition {
     }
 }
 
-impl Lamp {
+impl StatusIndicator {
     /// All thirteen, in order.
     pub const ALL: [Self; 13] = [
         Self::M1OverCurrent,
@@ -251,18 +251,22 @@ impl Lamp {
         }
     }
 
-    /// Whether a status word can light it. An MCP has no driver faults, and its home lamps follow the actions of its pins
+    /// Whether a status word can light it. An MCP has no driver faults, and its home indicators follow the actions of its pins
     /// instead (MCP manual 1.2.5 and command 90, whose table ends before them).
     pub fn is_reported(self, generation: Generation, mcp: bool) -> bool {
         let roboclaw_only =
             matches!(self, Self::M1DriverFault | Self::M2DriverFault | Self::M1Home | Self::M2Home);
-        let has_bit = CONDITIONS.iter().any(|row| row.lamp == Some(self) && row.mask(generation) != 0);
+        let has_bit = CONDITIONS.iter().any(|row| row.indicator == Some(self) && row.mask(generation) != 0);
         has_bit && !(mcp && roboclaw_only)
     }
 
     /// The gravest of the conditions that light it; `None` if it is dark.
     pub fn lit_by(self, conditions: Conditions) -> Option<Severity> {
-        conditions.iter().filter(|condition| condition.lamp() == Some(self)).map(Condition::severity).max()
+        conditions
+            .iter()
+            .filter(|condition| condition.indicator() == Some(self))
+            .map(Condition::severity)
+            .max()
     }
 }
 
@@ -349,25 +353,25 @@ impl fmt::Display for Conditions {
     }
 }
 
-/// The lamp of a row of [`conditions`].
-macro_rules! lamp {
+/// The indicator of a row of [`conditions`].
+macro_rules! indicator {
     () => {
         None
     };
-    ($lamp:ident) => {
-        Some(Lamp::$lamp)
+    ($indicator:ident) => {
+        Some(StatusIndicator::$indicator)
     };
 }
 
 /// The rows of a table of conditions.
 macro_rules! conditions {
-    ($($condition:ident $key:literal $title:literal $severity:ident [$($lamp:ident)?] $masks:expr;)*) => {
+    ($($condition:ident $key:literal $title:literal $severity:ident [$($indicator:ident)?] $masks:expr;)*) => {
         [$(ConditionRow {
             condition: Condition::$condition,
             key: $key,
             title: $title,
             severity: Severity::$severity,
-            lamp: lamp!($($lamp)?),
+            indicator: indicator!($($indicator)?),
             masks: $masks,
         }),*]
     };
@@ -501,15 +505,15 @@ mod tests {
     }
 
     #[test]
-    fn lamps_show_the_gravest_of_their_conditions() {
+    fn indicators_show_the_gravest_of_their_conditions() {
         let conditions: Conditions =
             [Condition::Temperature1Warning, Condition::Temperature1Error].into_iter().collect();
-        assert_eq!(Lamp::Temperature1.lit_by(conditions), Some(Severity::Error));
-        assert_eq!(Lamp::Temperature2.lit_by(conditions), None);
+        assert_eq!(StatusIndicator::Temperature1.lit_by(conditions), Some(Severity::Error));
+        assert_eq!(StatusIndicator::Temperature2.lit_by(conditions), None);
         assert_eq!(conditions.severity(), Some(Severity::Error));
-        for lamp in Lamp::ALL {
-            assert_eq!(lamp.abbreviation().len(), 4);
-            assert!(CONDITIONS.iter().any(|row| row.lamp == Some(lamp)), "{}", lamp.title());
+        for indicator in StatusIndicator::ALL {
+            assert_eq!(indicator.abbreviation().len(), 4);
+            assert!(CONDITIONS.iter().any(|row| row.indicator == Some(indicator)), "{}", indicator.title());
         }
     }
 }

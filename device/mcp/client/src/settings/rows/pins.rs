@@ -171,7 +171,7 @@ pub(crate) static ROWS: &[Template] = &[
         .forms(&[Form::record(&[number::READ_DOUT_ACTIONS], &[number::SET_DOUT_ACTION], &["action"])])
         .help(
             "What switches this output on: a motor running or reversing, over-voltage for a brake \
-             resistor, over-temperature, or one of the lamps. MCP manual 1.9.9, command 137.",
+             resistor, over-temperature, or one of the indicators. MCP manual 1.9.9, command 137.",
         ),
     Template::new("dout.{n}.inverted", "Inverted", Group::Outputs)
         .per(Repeat::Douts)

@@ -208,7 +208,7 @@ fn mixed_inputs_drive_and_turn() {
 }
 
 #[test]
-fn a_limit_switch_stops_forward_motion_and_allows_backward_and_lights_the_lamp() {
+fn a_limit_switch_stops_forward_motion_and_allows_backward_and_lights_the_indicator() {
     let mut bench = Bench::new(Generation::Gen2);
     bench.ask(commands::DUTY_M1, &[10_000]);
     // At or below 500: M1 forward limit; switches close to ground.

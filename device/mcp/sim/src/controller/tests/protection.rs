@@ -3,7 +3,7 @@
 use super::support::Bench;
 use crate::controller::ControllerConfig;
 use brushwork_mcp_wire::models;
-use brushwork_mcp_wire::packet_serial::status::{Condition, Lamp, decode};
+use brushwork_mcp_wire::packet_serial::status::{Condition, StatusIndicator, decode};
 use brushwork_mcp_wire::packet_serial::{Generation, commands, name, number};
 use brushwork_plant::BrakeResistorParams;
 use brushwork_plant::bridge::BridgeOutput;
@@ -146,7 +146,7 @@ fn a_locked_shaft_is_held_to_the_current_limit_and_warned_about() {
     assert!(has(&mut bench, Condition::M1OverCurrentWarning));
     assert!(!has(&mut bench, Condition::M2OverCurrentWarning));
     assert_eq!(
-        Lamp::M1OverCurrent.lit_by(bench.unit().unit().expect("power").conditions()),
+        StatusIndicator::M1OverCurrent.lit_by(bench.unit().unit().expect("power").conditions()),
         Some(Severity::Warning)
     );
 }

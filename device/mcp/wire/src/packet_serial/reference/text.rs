@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::super::command::{ClientUse, Command, Direction, Form, Reply, Simulated};
 use super::super::identity::Generation;
-use super::super::status::{CONDITIONS, Lamp};
+use super::super::status::{CONDITIONS, StatusIndicator};
 use super::super::table::COMMANDS;
 use super::words::{field_words, generations, kind};
 use brushwork_values::{Field, Kind};
@@ -134,16 +134,16 @@ fn client(client: ClientUse) -> Option<String> {
 fn status_table(page: &mut String) {
     heading(page, "Status bits (commands 90 and 73)");
     line(page, "");
-    line(page, "| Condition | Severity | Lamp | Generation 1 | 2 | 3 | 4 |");
+    line(page, "| Condition | Severity | Indicator | Generation 1 | 2 | 3 | 4 |");
     line(page, "| --- | --- | --- | --- | --- | --- | --- |");
     for row in &CONDITIONS {
         let masks = Generation::ALL.map(|generation| match row.mask(generation) {
             0 => "-".to_owned(),
             mask => format!("0x{mask:X}"),
         });
-        let lamp = row.lamp.map_or("-", Lamp::abbreviation);
+        let indicator = row.indicator.map_or("-", StatusIndicator::abbreviation);
         let severity = format!("{:?}", row.severity).to_lowercase();
-        line(page, &format!("| {} | {severity} | {lamp} | {} |", row.title, masks.join(" | ")));
+        line(page, &format!("| {} | {severity} | {indicator} | {} |", row.title, masks.join(" | ")));
     }
 }
 

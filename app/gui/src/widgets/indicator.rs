@@ -1,4 +1,4 @@
-//! A status lamp: colour, shape and word, so that no one of the three has to be seen.
+//! A status indicator: colour, shape and word, so that no one of the three has to be seen.
 
 use std::f32::consts::{PI, TAU};
 
@@ -7,11 +7,11 @@ use egui::{
     Vec2, WidgetInfo, pos2, vec2,
 };
 
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::theme;
 use crate::theme::Palette;
 
-impl LampState {
+impl IndicatorState {
     pub const fn color(self, palette: &Palette) -> Color32 {
         match self {
             Self::Unknown | Self::NotApplicable => palette.weak_text,
@@ -69,13 +69,19 @@ fn polygon(center: Pos2, radius: f32, corners: u8, start: f32, color: Color32) -
     Shape::convex_polygon((0..corners).map(corner).collect(), color, Stroke::NONE)
 }
 
-/// A small lamp with its abbreviation below, for the bottom of the window.
-pub fn abbreviated_ui(ui: &mut Ui, size: Vec2, abbreviation: &str, name: &str, state: LampState) -> Response {
+/// A small indicator with its abbreviation below, for the bottom of the window.
+pub fn abbreviated_ui(
+    ui: &mut Ui,
+    size: Vec2,
+    abbreviation: &str,
+    name: &str,
+    state: IndicatorState,
+) -> Response {
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     response
         .widget_info(|| WidgetInfo::labeled(Role::Status, true, format!("{abbreviation}: {}", state.word())));
     let palette = Palette::of(ui);
-    let alarming = state >= LampState::Active;
+    let alarming = state >= IndicatorState::Active;
     let outline = if alarming { state.color(palette) } else { palette.line };
     ui.painter().rect(rect, 4.0, palette.raised, Stroke::new(1.0, outline), StrokeKind::Inside);
     state.paint(ui, pos2(rect.center().x, rect.top() + rect.height() * 0.32), 5.0);
@@ -94,12 +100,12 @@ pub fn abbreviated_ui(ui: &mut Ui, size: Vec2, abbreviation: &str, name: &str, s
 /// Room for "since 10:00:00".
 const SINCE_WIDTH: f32 = 92.0;
 
-/// A lamp in full: shape, name, word and since when on one line.
+/// An indicator in full: shape, name, word and since when on one line.
 pub fn full_ui(
     ui: &mut Ui,
     abbreviation: &str,
     name: &str,
-    state: LampState,
+    state: IndicatorState,
     since: Option<&str>,
 ) -> Response {
     let palette = Palette::of(ui);
@@ -108,7 +114,7 @@ pub fn full_ui(
     if let Some(since) = since {
         ui.ctx().accesskit_node_builder(response.id, |node| node.set_description(since));
     }
-    let alarming = state >= LampState::Active;
+    let alarming = state >= IndicatorState::Active;
     let outline = if alarming { state.color(palette) } else { palette.line };
     ui.painter().rect(rect, 4.0, palette.raised, Stroke::new(1.0, outline), StrokeKind::Inside);
     state.paint(ui, pos2(rect.left() + 18.0, rect.center().y), 7.0);

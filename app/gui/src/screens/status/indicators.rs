@@ -1,26 +1,27 @@
-//! The family's lamps in full, and what the status word says in words.
+//! The family's indicators in full, and what the status word says in words.
 
 use egui::{RichText, Ui};
 
 use crate::model::desk::Desk;
 use crate::model::history::clock_text;
-use crate::model::lamp::LampState;
+use crate::model::indicator::IndicatorState;
 use crate::theme::Palette;
 use crate::widgets::heading::heading_ui;
-use crate::widgets::lamp;
+use crate::widgets::indicator;
 
-pub fn lamps_ui(ui: &mut Ui, desk: &Desk, columns: usize) {
+pub fn indicators_ui(ui: &mut Ui, desk: &Desk, columns: usize) {
     ui.columns(columns, |ui| {
-        let lamps = desk.family().lamps();
-        for (index, info) in lamps.iter().enumerate() {
-            let column = &mut ui[usize::from(index >= lamps.len().div_ceil(2)).min(columns - 1)];
+        let indicators = desk.family().indicators();
+        for (index, info) in indicators.iter().enumerate() {
+            let column = &mut ui[usize::from(index >= indicators.len().div_ceil(2)).min(columns - 1)];
             column.spacing_mut().item_spacing.y = 4.0;
-            let state = desk.link.lamps.named(info.short);
-            let since = desk.lamp_since(info.short).filter(|_| state >= LampState::Ok).map(|since| {
-                let clock = clock_text(since);
-                format!("since {}", clock.split('.').next().unwrap_or_default())
-            });
-            lamp::full_ui(column, info.short, info.title, state, since.as_deref());
+            let state = desk.link.indicators.named(info.short);
+            let since =
+                desk.indicator_since(info.short).filter(|_| state >= IndicatorState::Ok).map(|since| {
+                    let clock = clock_text(since);
+                    format!("since {}", clock.split('.').next().unwrap_or_default())
+                });
+            indicator::full_ui(column, info.short, info.title, state, since.as_deref());
         }
     });
     if let Some(note) = note(desk) {
@@ -28,9 +29,9 @@ pub fn lamps_ui(ui: &mut Ui, desk: &Desk, columns: usize) {
     }
 }
 
-/// What some lamps go by.
+/// What some indicators go by.
 fn note(desk: &Desk) -> Option<&'static str> {
-    desk.family().lamps_note(desk.link.identity()?, desk.homed())
+    desk.family().indicators_note(desk.link.identity()?, desk.homed())
 }
 
 /// What the status word says, in words.

@@ -1,19 +1,19 @@
-//! One status lamp of a controller: its name and what it says.
+//! One status indicator of a controller: its name and what it says.
 
 use brushwork_values::Severity;
 
-/// One status lamp.
+/// One status indicator.
 #[derive(Debug, PartialEq, Eq)]
-pub struct LampInfo {
-    /// A few letters, for the bottom of the window. Each lamp of a family has its own.
+pub struct IndicatorInfo {
+    /// A few letters, for the bottom of the window. Each indicator of a family has its own.
     pub short: &'static str,
     /// In full.
     pub title: &'static str,
 }
 
-/// What a lamp says.
+/// What an indicator says.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum LampState {
+pub enum IndicatorState {
     /// Nothing is known: no controller, or it was not asked yet.
     #[default]
     Unknown,
@@ -26,7 +26,7 @@ pub enum LampState {
     Error,
 }
 
-impl LampState {
+impl IndicatorState {
     pub const fn word(self) -> &'static str {
         match self {
             Self::Unknown => "unknown",
@@ -40,10 +40,10 @@ impl LampState {
 }
 
 /// How an indicator of this severity is shown.
-pub const fn state_of(severity: Severity) -> LampState {
+pub const fn state_of(severity: Severity) -> IndicatorState {
     match severity {
-        Severity::Signal => LampState::Active,
-        Severity::Warning => LampState::Warning,
-        Severity::Error => LampState::Error,
+        Severity::Signal => IndicatorState::Active,
+        Severity::Warning => IndicatorState::Warning,
+        Severity::Error => IndicatorState::Error,
     }
 }
