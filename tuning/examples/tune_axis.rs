@@ -35,8 +35,8 @@ const DUTY_SLEW_PER_S: f64 = 20.0;
 const FILTER_S: f64 = 0.004;
 
 fn main() {
-    let mut desk = Desk::default();
-    let report = tune(&mut desk, &Request::default());
+    let mut bench = Bench::default();
+    let report = tune(&mut bench, &Request::default());
     println!("{:?} after {:.1} s", report.verdict, report.seconds.1);
     for cause in &report.causes {
         println!("  {}", cause.sentence());
@@ -71,7 +71,7 @@ enum Told {
 }
 
 /// A motor, its controller, and a line to it.
-struct Desk {
+struct Bench {
     now: Duration,
     ticks: u32,
     motion: Motion,
@@ -83,7 +83,7 @@ struct Desk {
     error_sum: f64,
 }
 
-impl Default for Desk {
+impl Default for Bench {
     /// As it comes from the factory.
     fn default() -> Self {
         Self {
@@ -103,7 +103,7 @@ impl Default for Desk {
     }
 }
 
-impl Desk {
+impl Bench {
     fn advance(&mut self, to: Duration) {
         let tick_s = PlainLaw::default().tick_s();
         while f64::from(self.ticks + 1) * tick_s <= to.as_secs_f64() {
@@ -155,7 +155,7 @@ impl Desk {
     }
 }
 
-impl Axis for Desk {
+impl Axis for Bench {
     fn now(&mut self) -> Duration {
         self.now
     }
@@ -192,7 +192,7 @@ impl Axis for Desk {
     }
 
     fn command_position(&mut self, _counts: i32, _speed_counts_per_s: u32) -> Result<Exchange, AxisError> {
-        Err(AxisError::Refused("this desk has no position loop".to_owned()))
+        Err(AxisError::Refused("this bench has no position loop".to_owned()))
     }
 
     fn write_winding(&mut self, _inductance_resistance_raw: [u32; 2]) -> Result<(), AxisError> {
@@ -218,7 +218,7 @@ impl Axis for Desk {
     }
 }
 
-impl LoopAxis<PlainLaw> for Desk {
+impl LoopAxis<PlainLaw> for Bench {
     /// Commands 55, 63, 135, 59 and 146.
     fn read_setup(&mut self) -> Result<Setup<PlainLaw>, AxisError> {
         self.exchange();

@@ -26,7 +26,7 @@ use super::model::message::Gravity;
 use super::model::palette::Palette;
 use super::model::screen::Screen;
 use super::model::traffic::Transact;
-use super::model::{Appearance, DeskId, Model};
+use super::model::{Appearance, ConnectionId, Model};
 use super::parts::{Parts, SimulatedWorld};
 use super::remember::Memory;
 use super::screens::face;
@@ -153,25 +153,25 @@ impl App {
         if let Some(listed) = self.parts.ports.newest() {
             self.model.devices.set_ports(listed);
         }
-        for desk in self.links.ids() {
-            self.finish_opening(desk, ctx);
-            self.drain(desk);
-            self.watch(desk);
-            self.look_at_world(desk);
-            self.look_at_script(desk, ctx);
-            self.look_after_graph(desk, ctx);
-            face::all().for_each(|face| face.go_on(self, desk, ctx));
-            self.send_kept_command(desk);
+        for connection in self.links.ids() {
+            self.finish_opening(connection, ctx);
+            self.drain(connection);
+            self.watch(connection);
+            self.look_at_world(connection);
+            self.look_at_script(connection, ctx);
+            self.look_after_graph(connection, ctx);
+            face::all().for_each(|face| face.go_on(self, connection, ctx));
+            self.send_kept_command(connection);
         }
     }
 
     /// Recordings, exports and files being opened.
-    fn look_after_graph(&mut self, id: DeskId, ctx: &Context) {
+    fn look_after_graph(&mut self, id: ConnectionId, ctx: &Context) {
         let now = self.links.device(id).map(DeviceHandle::now);
-        let Some(desk) = self.model.desk_mut(id) else { return };
+        let Some(connection) = self.model.connection_mut(id) else { return };
         let dark = ctx.global_style().visuals.dark_mode;
-        let said = desk.graph.poll_files(now, dark);
-        if desk.graph.files.is_busy() {
+        let said = connection.graph.poll_files(now, dark);
+        if connection.graph.files.is_busy() {
             ctx.request_repaint_after(FRAME_INTERVAL);
         }
         for (gravity, text) in said {
@@ -180,21 +180,24 @@ impl App {
     }
 
     /// Has read what a diagnosis needs. Nothing is said when it cannot be: it is tried again.
-    fn watch(&mut self, id: DeskId) {
+    fn watch(&mut self, id: ConnectionId) {
         let shows_settings = self.shows_settings_of(id);
-        let (Some(device), Some(desk)) = (self.links.device(id), self.model.desk_mut(id)) else { return };
-        let is_quiet = desk.link.arming == Arming::Disarmed && desk.is_connected();
-        let keys = if is_quiet { desk.diagnosis_keys() } else { Vec::new() };
-        if let Some(job) = desk.settings.read(&keys, true) {
+        let (Some(device), Some(connection)) = (self.links.device(id), self.model.connection_mut(id)) else {
+            return;
+        };
+        let is_quiet = connection.link.arming == Arming::Disarmed && connection.is_connected();
+        let keys = if is_quiet { connection.diagnosis_keys() } else { Vec::new() };
+        if let Some(job) = connection.settings.read(&keys, true) {
             let job_id = job.id();
             match device.request(Request::Job(job)) {
-                Ok(()) => desk.jobs.begun(job_id, Owner::Settings),
-                Err(_) => desk.settings.not_begun(),
+                Ok(()) => connection.jobs.begun(job_id, Owner::Settings),
+                Err(_) => connection.settings.not_begun(),
             }
         }
-        let wanted =
-            desk.diagnosis_wants_signals() || desk.shows_signals(shows_settings) || desk.graph.wants_pins();
-        let traced = desk.traffic.open;
+        let wanted = connection.diagnosis_wants_signals()
+            || connection.shows_signals(shows_settings)
+            || connection.graph.wants_pins();
+        let traced = connection.traffic.open;
         let link = self.links.entry(id);
         if link.reads_signals != wanted
             && let Some(device) = &link.device
@@ -202,7 +205,7 @@ impl App {
         {
             link.reads_signals = wanted;
             if !wanted {
-                desk.link.readings.forget_signals();
+                connection.link.readings.forget_signals();
             }
         }
         if link.traced != traced
@@ -214,58 +217,60 @@ impl App {
     }
 
     /// Takes in a link's events, in front or not.
-    fn drain(&mut self, desk: DeskId) {
-        if let (Some(device), Some(desk)) = (self.links.device(desk), self.model.desk_mut(desk)) {
-            desk.history.tick(device.now());
+    fn drain(&mut self, connection: ConnectionId) {
+        if let (Some(device), Some(connection)) =
+            (self.links.device(connection), self.model.connection_mut(connection))
+        {
+            connection.history.tick(device.now());
         }
         for _ in 0..EVENTS_PER_FRAME {
-            let Some(device) = self.links.device(desk) else { break };
+            let Some(device) = self.links.device(connection) else { break };
             match device.events().try_recv() {
-                Ok(event) => self.take(desk, event),
+                Ok(event) => self.take(connection, event),
                 Err(TryRecvError::Empty) => break,
                 Err(TryRecvError::Disconnected) => {
-                    self.say(desk, Gravity::Error, "The link ended without a reason. Connect again.");
-                    self.ended(desk);
+                    self.say(connection, Gravity::Error, "The link ended without a reason. Connect again.");
+                    self.ended(connection);
                 }
             }
         }
     }
 
     /// Sees the worlds of simulated units as they are now.
-    fn look_at_world(&mut self, id: DeskId) {
-        let Some(desk) = self.model.desk_mut(id) else { return };
+    fn look_at_world(&mut self, id: ConnectionId) {
+        let Some(connection) = self.model.connection_mut(id) else { return };
         let world = self.links.get(id).and_then(|link| link.world.as_ref());
-        desk.worlds = world.and_then(|world| world.views());
+        connection.worlds = world.and_then(|world| world.views());
         let Some(world) = world else { return };
-        let unit = desk.link.selected.and_then(|address| world.unit_at(address));
+        let unit = connection.link.selected.and_then(|address| world.unit_at(address));
         // Without a link the unit looked at last stays in view.
         if let Some(unit) = unit
-            && unit != desk.world_unit
+            && unit != connection.world_unit
         {
-            desk.world_unit = unit;
-            desk.world.forget();
+            connection.world_unit = unit;
+            connection.world.forget();
         }
     }
 
-    fn take(&mut self, id: DeskId, event: Event) {
+    fn take(&mut self, id: ConnectionId, event: Event) {
         let now_s = self.links.device(id).map_or(0.0, |device| device.now().as_secs_f64());
-        let Some(desk) = self.model.desk_mut(id) else { return };
-        desk.graph.note(&event, now_s);
-        for effect in desk.take(event) {
+        let Some(connection) = self.model.connection_mut(id) else { return };
+        connection.graph.note(&event, now_s);
+        for effect in connection.take(event) {
             match effect {
                 Effect::Say(gravity, text) => self.say(id, gravity, text),
                 Effect::Ended => self.ended(id),
-                // The desk has done the rest.
+                // The connection has done the rest.
                 Effect::AtRest | Effect::Sample(_) | Effect::OtherUnit => {}
             }
         }
     }
 
     /// Says something about a link; one in the background is named.
-    fn say(&mut self, id: DeskId, gravity: Gravity, text: impl Into<String>) {
+    fn say(&mut self, id: ConnectionId, gravity: Gravity, text: impl Into<String>) {
         let text = text.into();
-        let behind = self.model.others.iter().find(|desk| desk.id() == id);
-        let text = match behind.and_then(|desk| desk.phase.target()) {
+        let behind = self.model.others.iter().find(|connection| connection.id() == id);
+        let text = match behind.and_then(|connection| connection.phase.target()) {
             Some(target) => format!("{target}: {text}"),
             None => text,
         };
@@ -276,9 +281,9 @@ impl App {
         let model = &mut self.model;
         match command {
             Command::Connect => self.connect(),
-            Command::Disconnect(desk) => self.disconnect(desk),
-            Command::Front(desk) => self.bring_to_front(desk),
-            Command::Forget(desk) => self.forget(desk),
+            Command::Disconnect(connection) => self.disconnect(connection),
+            Command::Front(connection) => self.bring_to_front(connection),
+            Command::Forget(connection) => self.forget(connection),
             Command::ConnectTo(target) => self.connect_to(&target, target.parse()),
             Command::ForgetRecent(target) => model.devices.forget_recent(&target),
             Command::Show(screen) => self.show(screen),
@@ -411,10 +416,10 @@ impl App {
     /// Stops all motors of every link, at once and without asking anything first.
     fn stop(&mut self) {
         self.links.stop_all();
-        for desk in self.model.desks_mut() {
-            desk.tune.abort("Stop was pressed");
-            desk.link.arming = Arming::Disarmed;
-            desk.rest();
+        for connection in self.model.connections_mut() {
+            connection.tune.abort("Stop was pressed");
+            connection.link.arming = Arming::Disarmed;
+            connection.rest();
         }
     }
 
@@ -482,11 +487,11 @@ impl App {
     }
 
     /// Queues a job, whose events go to its owner.
-    fn start_for(&mut self, id: DeskId, owner: Owner, job: QueuedJob) -> bool {
+    fn start_for(&mut self, id: ConnectionId, owner: Owner, job: QueuedJob) -> bool {
         let job_id = job.id();
         let is_taken = self.request_of(id, Request::Job(job));
-        if let Some(desk) = self.model.desk_mut(id).filter(|_| is_taken) {
-            desk.jobs.begun(job_id, owner);
+        if let Some(connection) = self.model.connection_mut(id).filter(|_| is_taken) {
+            connection.jobs.begun(job_id, owner);
         }
         is_taken
     }
@@ -496,15 +501,15 @@ impl App {
         self.request_of(self.model.front.id(), request)
     }
 
-    fn request_of(&mut self, desk: DeskId, request: Request) -> bool {
-        if let Some(desk) = self.model.desk_mut(desk) {
-            desk.settings.give_way();
+    fn request_of(&mut self, connection: ConnectionId, request: Request) -> bool {
+        if let Some(connection) = self.model.connection_mut(connection) {
+            connection.settings.give_way();
         }
-        let Some(device) = self.links.device(desk) else { return false };
+        let Some(device) = self.links.device(connection) else { return false };
         match device.request(request) {
             Ok(()) => true,
             Err(refused) => {
-                self.say(desk, Gravity::Error, refused.to_string());
+                self.say(connection, Gravity::Error, refused.to_string());
                 false
             }
         }

@@ -12,7 +12,7 @@ use super::debugger::DebugAction;
 use super::family_action::FamilyAction;
 use super::graph::GraphAction;
 use super::mcl::MclAction;
-use super::model::DeskId;
+use super::model::ConnectionId;
 use super::model::drawer::Tab;
 use super::model::general::{Section, Sheet};
 pub use super::model::guided::GuidedAction;
@@ -30,11 +30,11 @@ pub enum Command {
     /// Opens a link to what a person would have typed, or brings it to the front if it is open.
     ConnectTo(String),
     /// Closes a link, or gives up opening it.
-    Disconnect(DeskId),
+    Disconnect(ConnectionId),
     /// Puts another open link in front.
-    Front(DeskId),
+    Front(ConnectionId),
     /// Closes a link and forgets all that is known of it.
-    Forget(DeskId),
+    Forget(ConnectionId),
     /// Takes a target off the list of recent connections.
     ForgetRecent(String),
     Show(Screen),

@@ -9,7 +9,7 @@ use brushwork_link::settings::SettingsImage;
 use brushwork_link::transport::ConnectTarget;
 
 use super::model::screen::Screen;
-use super::model::{DeskId, Model};
+use super::model::{ConnectionId, Model};
 
 /// Something that the screens of a family ask for.
 pub trait FamilyAction: Debug {
@@ -23,7 +23,7 @@ pub trait Host {
     fn model(&mut self) -> &mut Model;
 
     /// Queues a request to a link; a refusal is told.
-    fn request_of(&mut self, desk: DeskId, request: Request) -> bool;
+    fn request_of(&mut self, connection: ConnectionId, request: Request) -> bool;
 
     /// Writes values to the RAM of the unit in front, with a backup before, and reads them back.
     fn write_ram(&mut self, wanted: SettingsImage) -> Result<(), String>;

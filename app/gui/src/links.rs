@@ -1,4 +1,4 @@
-//! The device threads of all links, open and opening. What is known of each link is its desk in the model.
+//! The device threads of all links, open and opening. What is known of each link is its connection in the model.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -6,11 +6,11 @@ use std::sync::Arc;
 use brushwork_link::device::{DeviceHandle, Stopper};
 use crossbeam_channel::Receiver;
 
-use super::model::DeskId;
+use super::model::ConnectionId;
 use super::parts::{OpenLink, SimulatedWorld};
 use brushwork_core::session::SessionError;
 
-/// What belongs to one desk outside the model.
+/// What belongs to one connection outside the model.
 #[derive(Default)]
 pub struct Link {
     pub opening: Option<Receiver<Result<OpenLink, SessionError>>>,
@@ -23,25 +23,25 @@ pub struct Link {
     pub world: Option<Arc<dyn SimulatedWorld>>,
 }
 
-/// The links of all desks.
+/// The links of all connections.
 #[derive(Default)]
-pub struct Links(BTreeMap<DeskId, Link>);
+pub struct Links(BTreeMap<ConnectionId, Link>);
 
 impl Links {
-    pub fn get(&self, desk: DeskId) -> Option<&Link> {
-        self.0.get(&desk)
+    pub fn get(&self, connection: ConnectionId) -> Option<&Link> {
+        self.0.get(&connection)
     }
 
-    pub fn entry(&mut self, desk: DeskId) -> &mut Link {
-        self.0.entry(desk).or_default()
+    pub fn entry(&mut self, connection: ConnectionId) -> &mut Link {
+        self.0.entry(connection).or_default()
     }
 
-    pub fn device(&self, desk: DeskId) -> Option<&DeviceHandle> {
-        self.0.get(&desk)?.device.as_ref()
+    pub fn device(&self, connection: ConnectionId) -> Option<&DeviceHandle> {
+        self.0.get(&connection)?.device.as_ref()
     }
 
-    /// Every desk that has or had a link.
-    pub fn ids(&self) -> Vec<DeskId> {
+    /// Every connection that has or had a link.
+    pub fn ids(&self) -> Vec<ConnectionId> {
         self.0.keys().copied().collect()
     }
 
@@ -55,9 +55,9 @@ impl Links {
         self.0.values().filter_map(|link| link.device.as_ref()).for_each(DeviceHandle::stop_all);
     }
 
-    /// Forgets a desk's link and closes it if it is open.
-    pub fn remove(&mut self, desk: DeskId) {
-        if let Some(link) = self.0.remove(&desk) {
+    /// Forgets a connection's link and closes it if it is open.
+    pub fn remove(&mut self, connection: ConnectionId) {
+        if let Some(link) = self.0.remove(&connection) {
             link.device.map(close);
         }
     }

@@ -13,7 +13,7 @@ use crate::debugger::names::TextId;
 use crate::debugger::state::Source;
 use crate::graph::MarkKind;
 use crate::mcl::{DocId, Document, MclAction};
-use crate::model::DeskId;
+use crate::model::ConnectionId;
 use crate::model::screen::Screen;
 
 /// The answer to an action comes within some milliseconds; the frame that shows it is drawn then, not with the next samples.
@@ -21,19 +21,19 @@ const SOON: Duration = Duration::from_millis(12);
 
 impl App {
     /// Takes in the newest look at a link's script, and asks for the next one while the debugger is in view.
-    pub(super) fn look_at_script(&mut self, id: DeskId, ctx: &Context) {
+    pub(super) fn look_at_script(&mut self, id: ConnectionId, ctx: &Context) {
         let now_s = self.links.device(id).map_or(0.0, |device: &DeviceHandle| device.now().as_secs_f64());
         let world = self.links.get(id).and_then(|link| link.world.as_ref());
-        let Some(desk) = self.model.desk_mut(id) else { return };
-        let Some(world) = world else { return desk.debug.forget() };
-        desk.debug.pace = world.pace();
+        let Some(connection) = self.model.connection_mut(id) else { return };
+        let Some(world) = world else { return connection.debug.forget() };
+        connection.debug.pace = world.pace();
         let mut stopped = false;
         if let Some(view) = world.script() {
-            let was_paused = desk.debug.is_paused();
-            if let Some(text) = desk.debug.take(view) {
-                desk.graph.mark(now_s, MarkKind::Note, text);
+            let was_paused = connection.debug.is_paused();
+            if let Some(text) = connection.debug.take(view) {
+                connection.graph.mark(now_s, MarkKind::Note, text);
             }
-            stopped = desk.debug.is_paused() && !was_paused;
+            stopped = connection.debug.is_paused() && !was_paused;
         }
         if id != self.model.front.id() || self.model.screen != Screen::MclEditor {
             return;

@@ -3,7 +3,7 @@
 //! The motors do not wait: they are stopped at once. Asked for a second time it happens at once too.
 
 use super::App;
-use crate::model::DeskId;
+use crate::model::ConnectionId;
 use crate::tune::model::Afterwards;
 use brushwork_link::device::Request;
 use egui::{Context, ViewportCommand};
@@ -34,10 +34,10 @@ impl App {
                 self.closing = false;
                 ctx.send_viewport_cmd(ViewportCommand::CancelClose);
                 self.links.stop_all();
-                for desk in self.model.desks_mut() {
-                    desk.tune.abort("the window is being closed");
-                    desk.tune.want_winding_back();
-                    desk.rest();
+                for connection in self.model.connections_mut() {
+                    connection.tune.abort("the window is being closed");
+                    connection.tune.want_winding_back();
+                    connection.rest();
                 }
                 self.model.messages.warn(
                     "The motors are stopped. The window closes as soon as what the tuning run changed is put back; close it again to \
@@ -62,24 +62,29 @@ impl App {
 
     fn has_to_put_back(&self) -> bool {
         let is_leaving = self.leaving == Leaving::WhenPutBack;
-        self.model.desks().any(|desk| {
-            let owes_winding = desk.tune.cleared_winding().is_some() || is_leaving && desk.settings.is_busy();
-            desk.tune.is_running() || desk.is_connected() && owes_winding
+        self.model.connections().any(|connection| {
+            let owes_winding =
+                connection.tune.cleared_winding().is_some() || is_leaving && connection.settings.is_busy();
+            connection.tune.is_running() || connection.is_connected() && owes_winding
         })
     }
 
     /// Whether an act that would cut a run off from its controller is put off until the run has put back what it changed. The run is
     /// ended.
-    pub(super) fn waits_for_run(&mut self, id: DeskId, afterwards: Afterwards) -> bool {
-        let Some(desk) = self.model.desk_mut(id).filter(|desk| desk.tune.is_running()) else { return false };
-        let again = desk.tune.afterwards.replace(afterwards) == Some(afterwards);
+    pub(super) fn waits_for_run(&mut self, id: ConnectionId, afterwards: Afterwards) -> bool {
+        let Some(connection) =
+            self.model.connection_mut(id).filter(|connection| connection.tune.is_running())
+        else {
+            return false;
+        };
+        let again = connection.tune.afterwards.replace(afterwards) == Some(afterwards);
         // Another unit in mid-act would be given the gains of this one.
         if again && afterwards == Afterwards::Disconnect {
-            desk.tune.afterwards = None;
+            connection.tune.afterwards = None;
             return false;
         }
-        desk.tune.cancel(afterwards.why());
-        desk.rest();
+        connection.tune.cancel(afterwards.why());
+        connection.rest();
         self.request_of(id, Request::Disarm);
         self.model.messages.note(format!(
             "The motors are stopped. {} as soon as what the run changed is put back.",
@@ -89,9 +94,13 @@ impl App {
     }
 
     /// Does what was put off, once nothing runs any more.
-    pub(super) fn follow_run(&mut self, id: DeskId) {
-        let Some(desk) = self.model.desk_mut(id).filter(|desk| !desk.tune.is_running()) else { return };
-        match desk.tune.afterwards.take() {
+    pub(super) fn follow_run(&mut self, id: ConnectionId) {
+        let Some(connection) =
+            self.model.connection_mut(id).filter(|connection| !connection.tune.is_running())
+        else {
+            return;
+        };
+        match connection.tune.afterwards.take() {
             Some(Afterwards::Disconnect) => self.disconnect(id),
             Some(Afterwards::Select(address)) => {
                 self.request_of(id, Request::Select(address));
@@ -101,12 +110,12 @@ impl App {
     }
 
     /// Writes L and R back when the run that they were cleared for has ended.
-    pub(super) fn put_winding_back(&mut self, id: DeskId) {
-        let Some(desk) = self.model.desk_mut(id) else { return };
-        if desk.settings.is_busy() || !desk.is_connected() {
+    pub(super) fn put_winding_back(&mut self, id: ConnectionId) {
+        let Some(connection) = self.model.connection_mut(id) else { return };
+        if connection.settings.is_busy() || !connection.is_connected() {
             return;
         }
-        let (tune, unit) = (&mut desk.tune, desk.settings.unit());
+        let (tune, unit) = (&mut connection.tune, connection.settings.unit());
         match tune.is_winding_back(|key| unit?.on_controller(key)) {
             Some(true) => {
                 return self.model.messages.note("L and R are put back as they were before the run.");
@@ -119,12 +128,12 @@ impl App {
             }
             None => {}
         }
-        let Some(image) = desk.tune.winding_due().cloned() else { return };
+        let Some(image) = connection.tune.winding_due().cloned() else { return };
         // A write that is not taken is tried again in the next frame.
         if self.write_ram_of(id, image).is_ok()
-            && let Some(desk) = self.model.desk_mut(id)
+            && let Some(connection) = self.model.connection_mut(id)
         {
-            desk.tune.winding_is_written();
+            connection.tune.winding_is_written();
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::links;
 use crate::model::devices::Choice;
 use crate::model::link::{Effect, LinkView};
 use crate::model::message::Gravity;
-use crate::model::{Desk, DeskId, Phase, place_of};
+use crate::model::{Connection, ConnectionId, Phase, place_of};
 use crate::parts::OpenLink;
 use crate::tune::model::Afterwards;
 
@@ -20,7 +20,9 @@ impl App {
     /// Connects to what is chosen in the device list.
     pub(super) fn connect(&mut self) {
         let chosen = match self.model.devices.choice {
-            Choice::Desk(id) => self.model.desk(id).and_then(|desk| desk.target.clone()),
+            Choice::Connection(id) => {
+                self.model.connection(id).and_then(|connection| connection.target.clone())
+            }
             Choice::Simulated | Choice::Port(_) | Choice::Typed => None,
         };
         let target = match &chosen {
@@ -31,7 +33,7 @@ impl App {
         self.connect_to(&typed, target);
     }
 
-    /// Opens a link on a desk of its own, or brings the one that is open to the front.
+    /// Opens a link on a connection of its own, or brings the one that is open to the front.
     pub(super) fn connect_to(&mut self, typed: &str, target: Result<ConnectTarget, TargetError>) {
         let target = match target {
             Ok(target) => target,
@@ -41,12 +43,12 @@ impl App {
             }
         };
         let place = place_of(&target.to_string());
-        match self.model.desk_at(&place).map(Desk::id) {
-            Some(desk) => self.bring_to_front(desk),
+        match self.model.connection_at(&place).map(Connection::id) {
+            Some(connection) => self.bring_to_front(connection),
             None => {
                 self.disarm();
-                self.model.add_desk();
-                self.model.closed_too_many().into_iter().for_each(|desk| self.forget(desk));
+                self.model.add_connection();
+                self.model.closed_too_many().into_iter().for_each(|connection| self.forget(connection));
             }
         }
         self.open_front(target);
@@ -63,10 +65,10 @@ impl App {
             let opening = self.parts.opener.open(target, self.model.devices.addresses());
             self.links.entry(front.id()).opening = Some(opening);
         }
-        self.model.devices.choose_desk(&self.model.front);
+        self.model.devices.choose_connection(&self.model.front);
     }
 
-    pub(super) fn finish_opening(&mut self, id: DeskId, ctx: &Context) {
+    pub(super) fn finish_opening(&mut self, id: ConnectionId, ctx: &Context) {
         let Some(opening) = self.links.get(id).and_then(|link| link.opening.as_ref()) else { return };
         let why = match opening.try_recv() {
             Ok(Ok(link)) => return self.opened(id, link, ctx),
@@ -77,23 +79,23 @@ impl App {
             }
         };
         self.links.entry(id).opening = None;
-        if let Some(desk) = self.model.desk_mut(id) {
-            desk.phase = Phase::Closed;
+        if let Some(connection) = self.model.connection_mut(id) {
+            connection.phase = Phase::Closed;
         }
         self.say(id, Gravity::Error, why);
     }
 
-    fn opened(&mut self, id: DeskId, opened: OpenLink, ctx: &Context) {
+    fn opened(&mut self, id: ConnectionId, opened: OpenLink, ctx: &Context) {
         let ports = self.model.devices.ports().to_vec();
         self.links.entry(id).opening = None;
-        // A desk that was given up meanwhile: the link is closed again by being dropped.
-        let Some(desk) = self.model.desk_mut(id) else { return };
-        let target = desk.phase.target().unwrap_or_default().to_owned();
-        desk.phase = Phase::Open { target: target.clone() };
-        desk.link = LinkView::default();
-        desk.settings.keep_in(self.parts.keeping.clone(), ports);
-        desk.world.forget();
-        let poll = desk.poll;
+        // A connection that was given up meanwhile: the link is closed again by being dropped.
+        let Some(connection) = self.model.connection_mut(id) else { return };
+        let target = connection.phase.target().unwrap_or_default().to_owned();
+        connection.phase = Phase::Open { target: target.clone() };
+        connection.link = LinkView::default();
+        connection.settings.keep_in(self.parts.keeping.clone(), ports);
+        connection.world.forget();
+        let poll = connection.poll;
         self.model.devices.remember(&target);
         self.model.devices.opened(&target);
         opened.device.set_waker(waker(ctx.clone(), self.last_frame.clone()));
@@ -108,12 +110,12 @@ impl App {
         }
     }
 
-    pub(super) fn disconnect(&mut self, id: DeskId) {
-        let Some(desk) = self.model.desk_mut(id) else { return };
-        match &desk.phase {
+    pub(super) fn disconnect(&mut self, id: ConnectionId) {
+        let Some(connection) = self.model.connection_mut(id) else { return };
+        match &connection.phase {
             Phase::Opening { .. } => {
                 self.links.entry(id).opening = None;
-                desk.phase = Phase::Closed;
+                connection.phase = Phase::Closed;
                 self.model.messages.note("Gave up connecting.");
             }
             Phase::Open { target } => {
@@ -121,8 +123,8 @@ impl App {
                 if self.waits_for_run(id, Afterwards::Disconnect) {
                     return;
                 }
-                let Some(desk) = self.model.desk_mut(id) else { return };
-                desk.phase = Phase::Closing { target };
+                let Some(connection) = self.model.connection_mut(id) else { return };
+                connection.phase = Phase::Closing { target };
                 self.request_of(id, Request::Disconnect);
             }
             Phase::Closed | Phase::Closing { .. } => {}
@@ -130,11 +132,11 @@ impl App {
     }
 
     /// A link is gone, on request or not. A simulated world lives on.
-    pub(super) fn ended(&mut self, id: DeskId) {
+    pub(super) fn ended(&mut self, id: ConnectionId) {
         if let Some(device) = self.links.entry(id).device.take() {
             links::close(device);
         }
-        let effects = self.model.desk_mut(id).map(Desk::link_ended).unwrap_or_default();
+        let effects = self.model.connection_mut(id).map(Connection::link_ended).unwrap_or_default();
         for effect in effects {
             if let Effect::Say(gravity, text) = effect {
                 self.say(id, gravity, text);
@@ -143,18 +145,18 @@ impl App {
     }
 
     /// Another link comes to the front. What is armed is disarmed and stopped first: only the front can be armed.
-    pub(super) fn bring_to_front(&mut self, id: DeskId) {
-        if id == self.model.front.id() || self.model.desk(id).is_none() {
+    pub(super) fn bring_to_front(&mut self, id: ConnectionId) {
+        if id == self.model.front.id() || self.model.connection(id).is_none() {
             return;
         }
         self.disarm();
         self.model.bring_to_front(id);
-        self.model.devices.choose_desk(&self.model.front);
+        self.model.devices.choose_connection(&self.model.front);
     }
 
-    pub(super) fn forget(&mut self, id: DeskId) {
+    pub(super) fn forget(&mut self, id: ConnectionId) {
         self.links.remove(id);
-        self.model.remove_desk(id);
-        self.model.devices.choose_desk(&self.model.front);
+        self.model.remove_connection(id);
+        self.model.devices.choose_connection(&self.model.front);
     }
 }

@@ -10,15 +10,15 @@ use egui::{Context, ViewportCommand};
 use super::App;
 use crate::family_action::Host;
 use crate::model::screen::Screen;
-use crate::model::{DeskId, Model};
+use crate::model::{ConnectionId, Model};
 
 impl Host for App {
     fn model(&mut self) -> &mut Model {
         &mut self.model
     }
 
-    fn request_of(&mut self, desk: DeskId, request: Request) -> bool {
-        Self::request_of(self, desk, request)
+    fn request_of(&mut self, connection: ConnectionId, request: Request) -> bool {
+        Self::request_of(self, connection, request)
     }
 
     fn write_ram(&mut self, wanted: SettingsImage) -> Result<(), String> {
@@ -70,7 +70,11 @@ impl App {
     /// Keeps the window open while something is at work that must not be cut short.
     pub(super) fn hold_open(&mut self, ctx: &Context) {
         let asked = self.closing || ctx.input(|input| input.viewport().close_requested());
-        let why = self.model.desks().flat_map(|desk| desk.own.iter()).find_map(|own| own.holds_window());
+        let why = self
+            .model
+            .connections()
+            .flat_map(|connection| connection.own.iter())
+            .find_map(|own| own.holds_window());
         let Some(why) = why.filter(|_| asked) else { return };
         self.closing = false;
         ctx.send_viewport_cmd(ViewportCommand::CancelClose);

@@ -4,7 +4,7 @@
 use brushwork_link::device::Request;
 
 use super::App;
-use crate::model::DeskId;
+use crate::model::ConnectionId;
 use crate::model::jobs::Owner;
 use crate::model::loop_settings::Column;
 use crate::model::screen::Screen;
@@ -18,26 +18,26 @@ impl App {
         self.settings_of(self.model.front.id(), action);
     }
 
-    pub(super) fn settings_of(&mut self, id: DeskId, action: SettingsAction) {
-        let Some(desk) = self.model.desk_mut(id) else { return };
-        if desk.tune.is_running() && !matches!(action, SettingsAction::Cancel | SettingsAction::Read) {
-            desk.tune.waiting = Some(action);
+    pub(super) fn settings_of(&mut self, id: ConnectionId, action: SettingsAction) {
+        let Some(connection) = self.model.connection_mut(id) else { return };
+        if connection.tune.is_running() && !matches!(action, SettingsAction::Cancel | SettingsAction::Read) {
+            connection.tune.waiting = Some(action);
             self.model.messages.note(
                 "That waits for the end of the tuning run, so that the time-out and the gains of before are written, not those of \
                  the run.",
             );
             return;
         }
-        let stream = desk.link.stream;
-        if let Some(job) = desk.general_view().begin(action, stream)
+        let stream = connection.link.stream;
+        if let Some(job) = connection.general_view().begin(action, stream)
             && !self.start_for(id, Owner::Settings, job)
-            && let Some(desk) = self.model.desk_mut(id)
+            && let Some(connection) = self.model.connection_mut(id)
         {
-            desk.general_view().not_begun();
+            connection.general_view().not_begun();
         }
     }
 
-    pub(super) fn shows_settings_of(&self, id: DeskId) -> bool {
+    pub(super) fn shows_settings_of(&self, id: ConnectionId) -> bool {
         self.model.screen == Screen::GeneralSettings && id == self.model.front.id()
     }
 
@@ -66,11 +66,11 @@ impl App {
     pub(super) fn end_calibrations(&mut self) {
         for id in self.links.ids() {
             let is_shown = self.shows_settings_of(id);
-            let Some(desk) = self.model.desk_mut(id) else { continue };
+            let Some(connection) = self.model.connection_mut(id) else { continue };
             if !is_shown {
-                desk.general.cancel_calibration();
+                connection.general.cancel_calibration();
             }
-            if desk.general.wants_closing() && desk.settings.running().is_none() {
+            if connection.general.wants_closing() && connection.settings.running().is_none() {
                 self.settings_of(id, SettingsAction::CloseInput);
             }
         }
@@ -111,17 +111,18 @@ impl App {
     }
 
     /// Writes values to a unit's RAM, whatever screen they come from and whatever its family: with a backup before, and read back.
-    pub(super) fn write_ram_of(&mut self, id: DeskId, wanted: SettingsImage) -> Result<(), String> {
+    pub(super) fn write_ram_of(&mut self, id: ConnectionId, wanted: SettingsImage) -> Result<(), String> {
         let busy = || "The settings are being read or written. Try again in a moment.".to_owned();
         let none = "No controller is connected.";
-        let desk = self.model.desk_mut(id).filter(|desk| desk.is_connected()).ok_or(none)?;
-        let stream = desk.link.stream;
-        let job = desk.settings.apply(wanted, stream).ok_or_else(busy)?;
+        let connection =
+            self.model.connection_mut(id).filter(|connection| connection.is_connected()).ok_or(none)?;
+        let stream = connection.link.stream;
+        let job = connection.settings.apply(wanted, stream).ok_or_else(busy)?;
         if self.start_for(id, Owner::Settings, job) {
             return Ok(());
         }
-        if let Some(desk) = self.model.desk_mut(id) {
-            desk.settings.not_begun();
+        if let Some(connection) = self.model.connection_mut(id) {
+            connection.settings.not_begun();
         }
         Err(busy())
     }
@@ -148,24 +149,24 @@ impl App {
     }
 
     /// Sends a command whose backup is kept by now.
-    pub(super) fn send_kept_command(&mut self, id: DeskId) {
-        match self.model.desk_mut(id).and_then(|desk| desk.traffic.kept.ready()) {
+    pub(super) fn send_kept_command(&mut self, id: ConnectionId) {
+        match self.model.connection_mut(id).and_then(|connection| connection.traffic.kept.ready()) {
             Some(Ok(transact)) => {
                 self.send_transact(id, transact);
             }
             Some(Err((number, failure))) => {
-                if let Some(desk) = self.model.desk_mut(id) {
-                    desk.own.iter_mut().for_each(|own| own.refused(number, failure.clone()));
+                if let Some(connection) = self.model.connection_mut(id) {
+                    connection.own.iter_mut().for_each(|own| own.refused(number, failure.clone()));
                 }
             }
             None => {}
         }
     }
 
-    fn send_transact(&mut self, id: DeskId, transact: Transact) {
+    fn send_transact(&mut self, id: ConnectionId, transact: Transact) {
         let is_sent = self.request_of(id, transact.request());
-        if !is_sent && let Some(desk) = self.model.desk_mut(id) {
-            desk.own.iter_mut().for_each(|own| own.not_transacted());
+        if !is_sent && let Some(connection) = self.model.connection_mut(id) {
+            connection.own.iter_mut().for_each(|own| own.not_transacted());
         }
     }
 }

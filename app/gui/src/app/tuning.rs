@@ -1,7 +1,7 @@
 //! Guided tuning: its jobs one after the other, its gains into RAM and back, its reports on the disk.
 
 use super::App;
-use crate::model::DeskId;
+use crate::model::ConnectionId;
 use crate::model::drawer::Tab;
 use crate::model::jobs::Owner;
 use crate::model::link::Arming;
@@ -58,32 +58,32 @@ impl App {
         }
     }
 
-    /// Asks for what comes next in each run that goes on, on whatever desk it is.
+    /// Asks for what comes next in each run that goes on, on whatever connection it is.
     pub(super) fn go_on_tuning(&mut self) {
         for id in self.links.ids() {
-            let Some(desk) = self.model.desk_mut(id) else { continue };
-            if let Some(identity) = desk.link.identity() {
+            let Some(connection) = self.model.connection_mut(id) else { continue };
+            if let Some(identity) = connection.link.identity() {
                 let identity = identity.clone();
-                desk.tune.meet(&identity);
-                desk.tune.settle_debts();
+                connection.tune.meet(&identity);
+                connection.tune.settle_debts();
             }
-            desk.tune.adopt_methods(desk.family());
-            for (motor, travel) in Motor::BOTH.into_iter().zip(desk.travels()) {
-                desk.tune.adopt_travel(motor, travel);
-                let unit = desk.settings.unit();
-                desk.tune.adopt_encoder(motor, unit.and_then(|unit| unit.encoder(motor)));
+            connection.tune.adopt_methods(connection.family());
+            for (motor, travel) in Motor::BOTH.into_iter().zip(connection.travels()) {
+                connection.tune.adopt_travel(motor, travel);
+                let unit = connection.settings.unit();
+                connection.tune.adopt_encoder(motor, unit.and_then(|unit| unit.encoder(motor)));
             }
-            if let Some(action) = desk.tune.take_waiting() {
+            if let Some(action) = connection.tune.take_waiting() {
                 self.settings_of(id, action);
             }
-            let Some(desk) = self.model.desk_mut(id) else { continue };
-            let refused = !desk.link.refusals.is_empty();
-            let settings = &desk.settings;
+            let Some(connection) = self.model.connection_mut(id) else { continue };
+            let refused = !connection.link.refusals.is_empty();
+            let settings = &connection.settings;
             let origin = || {
                 let subject = *settings.unit()?.table().subject();
                 Some(Origin { subject, keeper: TrialKeeper::new(settings.keeper()?) })
             };
-            if let Some(next) = desk.tune.next(desk.link.arming, refused, origin) {
+            if let Some(next) = connection.tune.next(connection.link.arming, refused, origin) {
                 self.ask_next(id, next);
             }
             self.put_winding_back(id);
@@ -108,22 +108,22 @@ impl App {
         Ok(())
     }
 
-    fn ask_next(&mut self, id: DeskId, next: Next) {
+    fn ask_next(&mut self, id: ConnectionId, next: Next) {
         let is_taken = match next {
             Next::Arm(scope) => {
-                if let Some(desk) = self.model.desk_mut(id) {
-                    desk.link.refusals.clear();
+                if let Some(connection) = self.model.connection_mut(id) {
+                    connection.link.refusals.clear();
                 }
                 let is_taken = self.request_of(id, Request::Arm(scope));
-                if let Some(desk) = self.model.desk_mut(id).filter(|_| is_taken) {
-                    desk.link.arming = Arming::Asked(scope);
+                if let Some(connection) = self.model.connection_mut(id).filter(|_| is_taken) {
+                    connection.link.arming = Arming::Asked(scope);
                 }
                 is_taken
             }
             Next::Job(job) => self.start_for(id, Owner::Tune, job),
         };
-        if let Some(desk) = self.model.desk_mut(id).filter(|_| !is_taken) {
-            desk.tune.not_begun();
+        if let Some(connection) = self.model.connection_mut(id).filter(|_| !is_taken) {
+            connection.tune.not_begun();
         }
     }
 

@@ -1,7 +1,7 @@
 //! What differs between families of controllers in the window, in ONE place that the shell and the shared screens ask.
 //!
 //! A family says which screens there are, which figures stand in the top row, which indicators at the bottom, how many motors a
-//! controller has and which channels its graph. A screen that is shared asks its desk's family and never which one it is. A
+//! controller has and which channels its graph. A screen that is shared asks its connection's family and never which one it is. A
 //! family has a folder of its own in this crate; the program names those that it has, once, by [`install`].
 
 use std::collections::BTreeSet;

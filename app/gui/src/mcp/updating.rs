@@ -9,7 +9,7 @@ use super::model::firmware::{FirmwareAction, Next};
 use crate::family_action::{FamilyAction, Host};
 use crate::frame::FRAME_INTERVAL;
 use crate::model::link::Arming;
-use crate::model::{DeskId, Phase};
+use crate::model::{ConnectionId, Phase};
 
 impl FamilyAction for FirmwareAction {
     fn act(&self, host: &mut dyn Host) -> Result<(), String> {
@@ -25,23 +25,23 @@ impl FamilyAction for FirmwareAction {
 }
 
 /// Takes in what became of an update, in front or not.
-pub fn look_after_firmware(host: &mut dyn Host, id: DeskId, ctx: &Context) {
-    let Some(desk) = host.model().desk_mut(id) else { return };
-    let mut next = desk.mcp_mut().firmware.update();
-    if desk.mcp().firmware.stage.is_running() {
+pub fn look_after_firmware(host: &mut dyn Host, id: ConnectionId, ctx: &Context) {
+    let Some(connection) = host.model().connection_mut(id) else { return };
+    let mut next = connection.mcp_mut().firmware.update();
+    if connection.mcp().firmware.stage.is_running() {
         ctx.request_repaint_after(FRAME_INTERVAL);
     }
-    let quiet = desk.is_connected() && desk.link.arming == Arming::Disarmed;
-    if let (Next::Nothing, Some(identity)) = (&next, desk.link.identity().cloned().filter(|_| quiet)) {
-        next = desk.mcp_mut().firmware.compare(&identity);
+    let quiet = connection.is_connected() && connection.link.arming == Arming::Disarmed;
+    if let (Next::Nothing, Some(identity)) = (&next, connection.link.identity().cloned().filter(|_| quiet)) {
+        next = connection.mcp_mut().firmware.compare(&identity);
     }
     match next {
         Next::Nothing => {}
         Next::Ask(job) => {
             if !host.request_of(id, Request::Job(job))
-                && let Some(desk) = host.model().desk_mut(id)
+                && let Some(connection) = host.model().connection_mut(id)
             {
-                desk.mcp_mut().firmware.not_compared();
+                connection.mcp_mut().firmware.not_compared();
             }
         }
         Next::EnterLoader => enter_loader(host, id),
@@ -79,12 +79,12 @@ fn begin_update(host: &mut dyn Host) -> Result<(), String> {
 }
 
 /// The backup is made. Where the loader will be is asked while the controller is still there.
-fn enter_loader(host: &mut dyn Host, id: DeskId) {
-    let target = host.model().desk(id).and_then(|desk| desk.phase.target()?.parse().ok());
+fn enter_loader(host: &mut dyn Host, id: ConnectionId) {
+    let target = host.model().connection(id).and_then(|connection| connection.phase.target()?.parse().ok());
     let place = target.map(|target| host.loader_place(&target));
     let is_known = place.is_some();
-    if let Some(desk) = host.model().desk_mut(id) {
-        let firmware = &mut desk.mcp_mut().firmware;
+    if let Some(connection) = host.model().connection_mut(id) {
+        let firmware = &mut connection.mcp_mut().firmware;
         match place {
             Some(place) => firmware.entering(place),
             None => firmware.not_entered("the link was lost."),
@@ -92,8 +92,8 @@ fn enter_loader(host: &mut dyn Host, id: DeskId) {
     }
     if is_known
         && !host.request_of(id, Request::EnterLoader(RiskAccepted::by_the_user()))
-        && let Some(desk) = host.model().desk_mut(id)
+        && let Some(connection) = host.model().connection_mut(id)
     {
-        desk.mcp_mut().firmware.not_entered("the controller is busy.");
+        connection.mcp_mut().firmware.not_entered("the controller is busy.");
     }
 }

@@ -1,6 +1,6 @@
 //! The device list: what can be connected to, and what was chosen.
 
-use super::desk::{Desk, DeskId, place_of};
+use super::connection::{Connection, ConnectionId, place_of};
 use super::simulated::Simulated;
 use crate::family;
 use crate::family::Family;
@@ -28,7 +28,7 @@ pub enum Choice {
     /// What stands in the field below the list.
     Typed,
     /// A link that is open, or was, to something else.
-    Desk(DeskId),
+    Connection(ConnectionId),
 }
 
 /// The device list.
@@ -92,15 +92,15 @@ impl Devices {
         }
     }
 
-    /// Chooses the row that shows a desk.
-    pub fn choose_desk(&mut self, desk: &Desk) {
-        if desk.target.is_none() {
+    /// Chooses the row that shows a connection.
+    pub fn choose_connection(&mut self, connection: &Connection) {
+        if connection.target.is_none() {
             return;
         }
-        self.choice = match self.ports.iter().find(|port| desk.is_at(&port.name)) {
+        self.choice = match self.ports.iter().find(|port| connection.is_at(&port.name)) {
             Some(port) => Choice::Port(port.name.clone()),
-            None if desk.is_at(&self.simulated_target()) => Choice::Simulated,
-            None => Choice::Desk(desk.id()),
+            None if connection.is_at(&self.simulated_target()) => Choice::Simulated,
+            None => Choice::Connection(connection.id()),
         };
     }
 
@@ -154,7 +154,7 @@ impl Devices {
     /// Whether the rate matters: not over a controller's own USB, TCP or in this program.
     pub fn baud_matters(&self) -> bool {
         match &self.choice {
-            Choice::Simulated | Choice::Desk(_) => false,
+            Choice::Simulated | Choice::Connection(_) => false,
             Choice::Port(_) => self.chosen_port().is_some_and(|port| !port.names_a_controller()),
             Choice::Typed => {
                 let typed = self.typed.trim();
@@ -167,7 +167,7 @@ impl Devices {
     /// Whether it matters which family is looked for: a simulated controller's is known.
     pub fn family_matters(&self) -> bool {
         match &self.choice {
-            Choice::Simulated | Choice::Desk(_) => false,
+            Choice::Simulated | Choice::Connection(_) => false,
             Choice::Port(_) => true,
             Choice::Typed => !self.typed.trim().is_empty() && !self.typed.trim().starts_with("sim:"),
         }
@@ -185,10 +185,12 @@ impl Devices {
     pub fn wanted_family(&self) -> &'static dyn Family {
         match (&self.choice, self.family.family()) {
             (Choice::Simulated, _) => family::of_model(&self.simulated.model),
-            (Choice::Port(_) | Choice::Typed | Choice::Desk(_), Some(chosen)) if self.family_matters() => {
+            (Choice::Port(_) | Choice::Typed | Choice::Connection(_), Some(chosen))
+                if self.family_matters() =>
+            {
                 family::of(chosen)
             }
-            (Choice::Port(_) | Choice::Typed | Choice::Desk(_), _) => family::first(),
+            (Choice::Port(_) | Choice::Typed | Choice::Connection(_), _) => family::first(),
         }
     }
 
@@ -213,7 +215,7 @@ impl Devices {
         }
     }
 
-    /// Where to connect to. A desk's own target is known to the desk.
+    /// Where to connect to. A connection's own target is known to the connection.
     pub fn target(&self) -> Result<ConnectTarget, TargetError> {
         match &self.choice {
             Choice::Simulated => self.simulated_target().parse(),
@@ -221,7 +223,7 @@ impl Devices {
                 let stream = self.chosen_port().and_then(|port| port.stream);
                 Ok(ConnectTarget::Serial { path: name.clone(), baud: self.baud, stream, family: self.family })
             }
-            Choice::Desk(_) | Choice::Typed => {
+            Choice::Connection(_) | Choice::Typed => {
                 let mut target = self.typed.parse()?;
                 if let ConnectTarget::Serial { baud, .. } = &mut target
                     && self.baud_matters()

@@ -1,9 +1,9 @@
-//! What the screens that drive ask of a desk beyond its sliders: a profile to be played, QPPS to be measured.
+//! What the screens that drive ask of a connection beyond its sliders: a profile to be played, QPPS to be measured.
 
 use brushwork_link::device::{Channel, QueuedJob};
 use brushwork_values::Motor;
 
-use super::desk::Desk;
+use super::connection::Connection;
 use super::drawer::Tab;
 use super::generator::mode_of;
 use super::jobs::Owner;
@@ -20,7 +20,7 @@ pub enum GuidedAction {
     Cancel,
 }
 
-impl Desk {
+impl Connection {
     /// Whether a job moves the motors; the sliders rest meanwhile.
     pub fn is_guided(&self) -> bool {
         self.generator.is_running() || self.qpps.is_running() || self.tune.is_running()

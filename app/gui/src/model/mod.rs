@@ -7,7 +7,7 @@ use super::mcl::Editor;
 
 pub mod canopen;
 pub mod channels;
-pub mod desk;
+pub mod connection;
 pub mod devices;
 pub mod drawer;
 pub mod general;
@@ -38,7 +38,7 @@ pub mod watch;
 pub mod watched;
 pub mod world;
 
-pub use desk::{Desk, DeskId, Phase, place_of};
+pub use connection::{Connection, ConnectionId, Phase, place_of};
 use devices::Devices;
 use help::Help;
 use message::Messages;
@@ -61,9 +61,9 @@ pub struct Model {
     /// The MCL programs that are open; they belong to no link.
     pub mcl: Editor,
     /// The link that is looked at. Only this one can be armed.
-    pub front: Desk,
+    pub front: Connection,
     /// The links in the background. They are read and recorded like the one in front.
-    pub others: Vec<Desk>,
+    pub others: Vec<Connection>,
 }
 
 /// Closed links that stay in the list behind the one in front.
@@ -137,27 +137,27 @@ impl Model {
     }
 
     /// All links: the one in front first.
-    pub fn desks(&self) -> impl Iterator<Item = &Desk> {
+    pub fn connections(&self) -> impl Iterator<Item = &Connection> {
         std::iter::once(&self.front).chain(&self.others)
     }
 
     /// All links: the one in front first.
-    pub fn desks_mut(&mut self) -> impl Iterator<Item = &mut Desk> {
+    pub fn connections_mut(&mut self) -> impl Iterator<Item = &mut Connection> {
         std::iter::once(&mut self.front).chain(&mut self.others)
     }
 
-    pub fn desk(&self, id: DeskId) -> Option<&Desk> {
-        self.desks().find(|desk| desk.id() == id)
+    pub fn connection(&self, id: ConnectionId) -> Option<&Connection> {
+        self.connections().find(|connection| connection.id() == id)
     }
 
-    pub fn desk_mut(&mut self, id: DeskId) -> Option<&mut Desk> {
-        self.desks_mut().find(|desk| desk.id() == id)
+    pub fn connection_mut(&mut self, id: ConnectionId) -> Option<&mut Connection> {
+        self.connections_mut().find(|connection| connection.id() == id)
     }
 
     /// The link that stands before or behind the one in front, in the order they were opened; round at the ends.
-    pub fn neighbour(&self, forward: bool) -> DeskId {
+    pub fn neighbour(&self, forward: bool) -> ConnectionId {
         let front = self.front.id();
-        let mut ids: Vec<DeskId> = self.desks().map(Desk::id).collect();
+        let mut ids: Vec<ConnectionId> = self.connections().map(Connection::id).collect();
         ids.sort_unstable();
         let at = ids.iter().position(|id| *id == front).unwrap_or_default();
         let by = if forward { 1 } else { ids.len() - 1 };
@@ -165,52 +165,55 @@ impl Model {
     }
 
     /// Puts another link in front. Nothing is armed across this: the window disarms first.
-    pub fn bring_to_front(&mut self, id: DeskId) {
-        if let Some(desk) = self.others.iter_mut().find(|desk| desk.id() == id) {
-            std::mem::swap(&mut self.front, desk);
+    pub fn bring_to_front(&mut self, id: ConnectionId) {
+        if let Some(connection) = self.others.iter_mut().find(|connection| connection.id() == id) {
+            std::mem::swap(&mut self.front, connection);
             self.front.graph_for(self.screen);
         }
     }
 
     /// The link at a place, open or not.
-    pub fn desk_at(&self, place: &str) -> Option<&Desk> {
-        self.desks().find(|desk| desk.is_at(place))
+    pub fn connection_at(&self, place: &str) -> Option<&Connection> {
+        self.connections().find(|connection| connection.is_at(place))
     }
 
-    /// Puts an empty desk in front: a new one, or the one in front if nobody would miss what it holds.
-    pub fn add_desk(&mut self) {
+    /// Puts an empty connection in front: a new one, or the one in front if nobody would miss what it holds.
+    pub fn add_connection(&mut self) {
         if self.front.is_blank() {
             return;
         }
-        let next = self.desks().map(Desk::id).max().map_or(DeskId::default(), DeskId::next);
-        let before = std::mem::replace(&mut self.front, Desk::new(next));
+        let next =
+            self.connections().map(Connection::id).max().map_or(ConnectionId::default(), ConnectionId::next);
+        let before = std::mem::replace(&mut self.front, Connection::new(next));
         self.others.push(before);
         self.front.graph_for(self.screen);
     }
 
     /// Links that were closed long ago, beyond so many of them: their graphs take memory. One with edits that were not
     /// written, or whose recording still runs, is kept.
-    pub fn closed_too_many(&self) -> Vec<DeskId> {
-        let is_over = |desk: &&Desk| {
-            desk.phase == Phase::Closed && !desk.settings.has_edits() && !desk.graph.files.is_recording()
+    pub fn closed_too_many(&self) -> Vec<ConnectionId> {
+        let is_over = |connection: &&Connection| {
+            connection.phase == Phase::Closed
+                && !connection.settings.has_edits()
+                && !connection.graph.files.is_recording()
         };
-        let mut closed: Vec<DeskId> = self.others.iter().filter(is_over).map(Desk::id).collect();
+        let mut closed: Vec<ConnectionId> = self.others.iter().filter(is_over).map(Connection::id).collect();
         closed.sort_unstable();
         closed.truncate(closed.len().saturating_sub(MOST_CLOSED));
         closed
     }
 
-    /// Takes a desk away. Without any other an empty one comes in its place.
-    pub fn remove_desk(&mut self, id: DeskId) {
+    /// Takes a connection away. Without any other an empty one comes in its place.
+    pub fn remove_connection(&mut self, id: ConnectionId) {
         if id == self.front.id() {
             let next = self.neighbour(true);
             if next == id {
-                self.front = Desk::new(id.next());
+                self.front = Connection::new(id.next());
             } else {
                 self.bring_to_front(next);
             }
         }
-        self.others.retain(|desk| desk.id() != id);
+        self.others.retain(|connection| connection.id() != id);
     }
 
     /// Goes to a screen. Each screen that drives keeps its own choice of channels.
@@ -234,15 +237,16 @@ mod tests {
             if number == 1 {
                 model.front.phase = Phase::Open { target: "tcp:host:1".to_owned() };
             }
-            model.add_desk();
+            model.add_connection();
         }
         let over = model.closed_too_many();
         assert_eq!(over.len(), 11 - MOST_CLOSED, "all but the open one were closed");
-        for desk in over {
-            model.remove_desk(desk);
+        for connection in over {
+            model.remove_connection(connection);
         }
         assert!(model.closed_too_many().is_empty());
-        let left: Vec<&str> = model.others.iter().filter_map(|desk| desk.target.as_deref()).collect();
+        let left: Vec<&str> =
+            model.others.iter().filter_map(|connection| connection.target.as_deref()).collect();
         assert!(left.contains(&"tcp:host:1") && left.contains(&"tcp:host:11"), "{left:?}");
         assert!(!left.contains(&"tcp:host:0") && !left.contains(&"tcp:host:2"), "{left:?}");
     }

@@ -3,7 +3,7 @@
 use brushwork_link::settings::SettingsImage;
 
 use crate::family_action::{FamilyAction, Host};
-use crate::model::desk::Desk;
+use crate::model::connection::Connection;
 use crate::model::general::Sheet;
 use crate::model::screen::Screen;
 
@@ -44,7 +44,7 @@ impl FamilyAction for MindAction {
     }
 }
 
-fn front(host: &mut dyn Host) -> &mut Desk {
+fn front(host: &mut dyn Host) -> &mut Connection {
     &mut host.model().front
 }
 

@@ -11,7 +11,7 @@ use crate::command::Commands;
 use crate::family::Family;
 use crate::family_action::Host;
 use crate::model::Model;
-use crate::model::desk::{Desk, DeskId};
+use crate::model::connection::{Connection, ConnectionId};
 use crate::model::general::GeneralView;
 use crate::model::help::Help;
 use crate::model::help_page::HelpPage;
@@ -28,10 +28,10 @@ pub trait Face: Sync {
     fn steps_ui(&self, _ui: &mut Ui, _model: &mut Model, _commands: &mut Commands) {}
 
     /// What keeps the motors from running, at the head of Device Status.
-    fn reasons_ui(&self, _ui: &mut Ui, _desk: &Desk, _commands: &mut Commands) {}
+    fn reasons_ui(&self, _ui: &mut Ui, _connection: &Connection, _commands: &mut Commands) {}
 
     /// The LEDs of the board.
-    fn leds_ui(&self, _ui: &mut Ui, _desk: &Desk) {}
+    fn leds_ui(&self, _ui: &mut Ui, _connection: &Connection) {}
 
     /// What stands before and behind the rows of the part of the settings that is open.
     fn around_rows_ui(&self, _ui: &mut Ui, _general: &mut GeneralView<'_>, _is_before: bool) {}
@@ -58,7 +58,7 @@ pub trait Face: Sync {
     }
 
     /// Goes on with what it has at work for a link, in front or not.
-    fn go_on(&self, _host: &mut dyn Host, _desk: DeskId, _ctx: &Context) {}
+    fn go_on(&self, _host: &mut dyn Host, _connection: ConnectionId, _ctx: &Context) {}
 }
 
 /// A family as the window has it: what is known of it, and what it draws.

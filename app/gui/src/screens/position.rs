@@ -9,7 +9,7 @@ use super::drive::{Output, drive_ui, motor_ui, on_release_ui, options_ui, pace_u
 use super::{not_connected_text, nothing_ui};
 use crate::command::Commands;
 use crate::model::Model;
-use crate::model::desk::Desk;
+use crate::model::connection::Connection;
 use crate::model::position::PACE_RANGE;
 use crate::model::setpoints::Direction;
 use crate::model::settings::UnitSettings;
@@ -75,28 +75,29 @@ fn controls_ui(ui: &mut Ui, model: &mut Model) {
 }
 
 fn slider_ui(ui: &mut Ui, model: &mut Model, motor: Motor) {
-    let desk = &mut model.front;
-    let travels = desk.travels();
+    let connection = &mut model.front;
+    let travels = connection.travels();
     let Some((low, high)) = travels[motor.index()] else {
         ui.add(
-            Label::new(why_no_slider(desk.settings.unit().is_some_and(UnitSettings::is_known))).truncate(),
+            Label::new(why_no_slider(connection.settings.unit().is_some_and(UnitSettings::is_known)))
+                .truncate(),
         );
         return;
     };
     // Where the motor is, until a hand asks for something.
-    desk.position.setpoints.show(motor, desk.seen(motor).counts);
+    connection.position.setpoints.show(motor, connection.seen(motor).counts);
     let name = format!("{motor} position");
     let slider = Setpoint { name: &name, unit: "", range: low..=high, decimals: 0, step: 1.0 };
-    let shown = desk.position.setpoints.values[motor.index()].clamp(low, high);
+    let shown = connection.position.setpoints.values[motor.index()].clamp(low, high);
     let mut counts = shown;
     let moved = slider.ui(ui, &mut counts);
     if !ui.is_enabled() {
         return;
     }
-    desk.position.setpoints.hold(motor, moved.held);
+    connection.position.setpoints.hold(motor, moved.held);
     // Outside the travel the slider stands at its end; only a hand moves the motor.
     if counts != shown {
-        desk.position.set_position(motor, counts, travels);
+        connection.position.set_position(motor, counts, travels);
     }
 }
 
@@ -108,7 +109,7 @@ fn why_no_slider(is_known: bool) -> &'static str {
     }
 }
 
-fn jog(desk: &mut Desk, motor: Motor, held: Option<Direction>) {
-    let (travels, seen) = (desk.travels(), Motor::BOTH.map(|motor| desk.seen(motor)));
-    desk.position.jog(motor, held, travels, seen);
+fn jog(connection: &mut Connection, motor: Motor, held: Option<Direction>) {
+    let (travels, seen) = (connection.travels(), Motor::BOTH.map(|motor| connection.seen(motor)));
+    connection.position.jog(motor, held, travels, seen);
 }

@@ -17,7 +17,7 @@ use crate::model::devices::{BAUD_RATES, Choice, Devices};
 use crate::model::indicator::IndicatorState;
 use crate::model::link::Arming;
 use crate::model::simulated::Simulated;
-use crate::model::{Desk, DeskId, Model, Phase, place_of};
+use crate::model::{Connection, ConnectionId, Model, Phase, place_of};
 use crate::screens::face;
 use crate::theme::Palette;
 use crate::widgets::heading::heading_ui;
@@ -58,9 +58,9 @@ struct Row {
     detail: String,
     state: State,
     simulated: bool,
-    desk: Option<DeskId>,
+    connection: Option<ConnectionId>,
     is_open: bool,
-    /// It is there only because of its desk, and can be taken off the list.
+    /// It is there only because of its connection, and can be taken off the list.
     can_be_forgotten: bool,
 }
 
@@ -78,12 +78,14 @@ fn rows(model: &Model) -> Vec<Row> {
         gone.state = State::GONE;
         rows.push(gone);
     }
-    let mut desks: Vec<&Desk> = model.desks().filter(|desk| desk.target.is_some()).collect();
-    desks.sort_by_key(|desk| desk.id());
-    for desk in desks {
-        let target = desk.target.as_deref().unwrap_or_default();
-        if !rows.iter().any(|row| row.desk == Some(desk.id())) {
-            let mut other = row(model, Choice::Desk(desk.id()), &place_of(target), target, "named below");
+    let mut connections: Vec<&Connection> =
+        model.connections().filter(|connection| connection.target.is_some()).collect();
+    connections.sort_by_key(|connection| connection.id());
+    for connection in connections {
+        let target = connection.target.as_deref().unwrap_or_default();
+        if !rows.iter().any(|row| row.connection == Some(connection.id())) {
+            let mut other =
+                row(model, Choice::Connection(connection.id()), &place_of(target), target, "named below");
             other.can_be_forgotten = !other.is_open;
             rows.push(other);
         }
@@ -92,16 +94,16 @@ fn rows(model: &Model) -> Vec<Row> {
 }
 
 fn row(model: &Model, choice: Choice, place: &str, title: &str, detail: &str) -> Row {
-    let desk = model.desk_at(place);
-    let identity = desk.and_then(|desk| desk.link.identity());
+    let connection = model.connection_at(place);
+    let identity = connection.and_then(|connection| connection.link.identity());
     Row {
         choice,
         title: title.to_owned(),
         detail: identity.map_or_else(|| detail.to_owned(), answered),
-        state: desk.map_or(State::AVAILABLE, State::of),
+        state: connection.map_or(State::AVAILABLE, State::of),
         simulated: place.starts_with("sim:"),
-        desk: desk.map(Desk::id),
-        is_open: desk.is_some_and(|desk| desk.phase != Phase::Closed),
+        connection: connection.map(Connection::id),
+        is_open: connection.is_some_and(|connection| connection.phase != Phase::Closed),
         can_be_forgotten: false,
     }
 }
@@ -123,20 +125,20 @@ impl State {
     const AVAILABLE: Self = Self("available", IndicatorState::Unknown);
     const GONE: Self = Self("gone", IndicatorState::Warning);
 
-    fn of(desk: &Desk) -> Self {
-        match &desk.phase {
+    fn of(connection: &Connection) -> Self {
+        match &connection.phase {
             Phase::Closed => Self::AVAILABLE,
             Phase::Opening { .. } => Self("connecting", IndicatorState::Active),
             Phase::Closing { .. } => Self("disconnecting", IndicatorState::Active),
-            Phase::Open { .. } if desk.link.identity().is_none() => {
+            Phase::Open { .. } if connection.link.identity().is_none() => {
                 Self("looking for controllers", IndicatorState::Active)
             }
-            Phase::Open { .. } => Self::of_unit(desk),
+            Phase::Open { .. } => Self::of_unit(connection),
         }
     }
 
-    fn of_unit(desk: &Desk) -> Self {
-        match (desk.link.indicators.worst(), desk.link.arming) {
+    fn of_unit(connection: &Connection) -> Self {
+        match (connection.link.indicators.worst(), connection.link.arming) {
             (IndicatorState::Error, _) => Self("connected, error", IndicatorState::Error),
             (_, Arming::Armed { .. }) => Self("connected, armed", IndicatorState::Active),
             (IndicatorState::Warning, _) => Self("connected, warning", IndicatorState::Warning),
@@ -147,8 +149,8 @@ impl State {
 
 fn row_ui(ui: &mut Ui, row: &Row, model: &mut Model, commands: &mut Commands) {
     let chosen = model.devices.choice == row.choice;
-    let in_front = row.is_open && row.desk == Some(model.front.id());
-    let several = model.desks().filter(|desk| desk.phase != Phase::Closed).count() > 1;
+    let in_front = row.is_open && row.connection == Some(model.front.id());
+    let several = model.connections().filter(|connection| connection.phase != Phase::Closed).count() > 1;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::click());
     let front = if in_front && several { ", in front" } else { "" };
     let spoken = format!("{}: {}, {}{front}", row.title, row.detail, row.state.0);
@@ -157,7 +159,7 @@ fn row_ui(ui: &mut Ui, row: &Row, model: &mut Model, commands: &mut Commands) {
     end_ui(ui, rect, row, commands);
     if response.clicked() {
         model.devices.choice = row.choice.clone();
-        commands.extend(row.desk.filter(|_| row.is_open).map(Command::Front));
+        commands.extend(row.connection.filter(|_| row.is_open).map(Command::Front));
     }
     if response.double_clicked() && !row.is_open {
         commands.push(Command::Connect);
@@ -167,10 +169,10 @@ fn row_ui(ui: &mut Ui, row: &Row, model: &mut Model, commands: &mut Commands) {
 
 /// The small button in the row's corner: ends the link, or takes a closed one off the list.
 fn end_ui(ui: &mut Ui, rect: Rect, row: &Row, commands: &mut Commands) {
-    let Some(desk) = row.desk.filter(|_| row.is_open || row.can_be_forgotten) else { return };
+    let Some(connection) = row.connection.filter(|_| row.is_open || row.can_be_forgotten) else { return };
     let (verb, command) = match row.is_open {
-        true => ("Disconnect from", Command::Disconnect(desk)),
-        false => ("Forget", Command::Forget(desk)),
+        true => ("Disconnect from", Command::Disconnect(connection)),
+        false => ("Forget", Command::Forget(connection)),
     };
     let at = Rect::from_center_size(pos2(rect.right() - 13.0, rect.bottom() - 11.0), vec2(20.0, 16.0));
     let name = format!("{verb} {}", row.title);
@@ -382,10 +384,10 @@ fn recent_ui(ui: &mut Ui, devices: &Devices, commands: &mut Commands) {
 /// Connects to what is chosen, or ends the link to it.
 fn connect_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     let chosen = rows(model).into_iter().find(|row| row.choice == model.devices.choice);
-    let desk = chosen.and_then(|row| row.desk).and_then(|id| model.desk(id));
-    let end = desk.map(|desk| Command::Disconnect(desk.id()));
-    let searching = desk.and_then(|desk| desk.link.searching.as_ref());
-    let (text, command) = match desk.map(|desk| &desk.phase) {
+    let connection = chosen.and_then(|row| row.connection).and_then(|id| model.connection(id));
+    let end = connection.map(|connection| Command::Disconnect(connection.id()));
+    let searching = connection.and_then(|connection| connection.link.searching.as_ref());
+    let (text, command) = match connection.map(|connection| &connection.phase) {
         None | Some(Phase::Closed) => ("Connect", Some(Command::Connect)),
         Some(Phase::Opening { .. }) => ("Cancel", end),
         Some(Phase::Open { .. }) if searching.is_some() => ("Cancel", end),

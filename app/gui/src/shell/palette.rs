@@ -8,7 +8,7 @@ use crate::actions;
 use crate::actions::Ready;
 use crate::command::{Command, Commands};
 use crate::model::palette::{Palette, fitting};
-use crate::model::{Desk, Model};
+use crate::model::{Connection, Model};
 use crate::theme::Palette as Colours;
 use crate::widgets::text_field::text_field_ui;
 
@@ -67,9 +67,10 @@ fn rows(ctx: &Context, model: &Model) -> Vec<Row> {
         ready: (action.ready)(model),
         command: (action.command)(model),
     };
-    let of_desk = |desk: &Desk| {
-        let target = desk.target.as_deref()?;
-        let (name, command) = (format!("Device: Bring {target} to the Front"), Command::Front(desk.id()));
+    let of_connection = |connection: &Connection| {
+        let target = connection.target.as_deref()?;
+        let (name, command) =
+            (format!("Device: Bring {target} to the Front"), Command::Front(connection.id()));
         Some(Row { name, keys: String::new(), ready: Ok(()), command })
     };
     let of_recent = |target: &String| Row {
@@ -80,7 +81,7 @@ fn rows(ctx: &Context, model: &Model) -> Vec<Row> {
     };
     let actions = actions::all().map(of_action);
     actions
-        .chain(model.others.iter().filter_map(of_desk))
+        .chain(model.others.iter().filter_map(of_connection))
         .chain(model.devices.recent().iter().map(of_recent))
         .collect()
 }

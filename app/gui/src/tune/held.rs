@@ -1,13 +1,13 @@
-//! The gains that the controller of a desk holds.
+//! The gains that the controller of a connection holds.
 
 use brushwork_core::tune::law::AnyRegisters;
 use brushwork_tuning::registers::RegisterField;
 use brushwork_values::Motor;
 
 use super::registers::of_settings;
-use crate::model::desk::Desk;
+use crate::model::connection::Connection;
 
-impl Desk {
+impl Connection {
     /// The gains that the controller holds, as last read; of a position loop of its own where that is asked for.
     pub fn held_gains(&self, motor: Motor, with_position: bool) -> Option<AnyRegisters> {
         let unit = self.settings.unit()?;

@@ -72,7 +72,10 @@ fn every_way_out_stops_the_motor() {
         way(&mut bench);
         bench.pass_ms(800);
         assert!(stands(&bench), "{name}: {}", duty(&bench));
-        assert!(bench.model().desks().all(|desk| desk.link.arming == Arming::Disarmed), "{name}");
+        assert!(
+            bench.model().connections().all(|connection| connection.link.arming == Arming::Disarmed),
+            "{name}"
+        );
     }
 }
 

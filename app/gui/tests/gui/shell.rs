@@ -116,7 +116,7 @@ fn switching_devices_disarms_and_stops_the_one_before() {
     bench.pass_ms(300);
     assert_eq!(bench.model().front.target.as_deref(), Some("sim:mcp266"));
     assert_eq!(second_duty(&bench, Motor::M1), 0.0);
-    assert!(bench.model().desks().all(|desk| desk.link.arming == Arming::Disarmed));
+    assert!(bench.model().connections().all(|connection| connection.link.arming == Arming::Disarmed));
     // The sliders of the one in front move the one in front.
     bench.arm();
     bench.set_duty(Motor::M2, "30");
@@ -134,7 +134,7 @@ fn opening_another_device_disarms_the_one_in_front() {
     bench.pass_ms(1000);
     connect_second(&mut bench);
     assert!(bench.both_stand());
-    assert!(bench.model().desks().all(|desk| desk.link.arming == Arming::Disarmed));
+    assert!(bench.model().connections().all(|connection| connection.link.arming == Arming::Disarmed));
 }
 
 #[test]
@@ -158,7 +158,7 @@ fn one_device_is_disconnected_and_the_other_goes_on() {
     bench.pass_ms(500);
     assert!(!bench.model().is_connected());
     bench.press(&format!("Forget {SECOND}"));
-    assert!(bench.model().desks().all(|desk| desk.target.as_deref() != Some(SECOND)));
+    assert!(bench.model().connections().all(|connection| connection.target.as_deref() != Some(SECOND)));
 }
 
 #[test]
@@ -180,7 +180,7 @@ fn a_place_is_opened_once_and_connecting_again_brings_it_to_the_front() {
     bench.pass(FRAME);
     bench.key(Key::Enter);
     assert_eq!(bench.model().front.target.as_deref(), Some(SECOND));
-    assert_eq!(bench.model().desks().count(), 2);
+    assert_eq!(bench.model().connections().count(), 2);
 }
 
 #[test]

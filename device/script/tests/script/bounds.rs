@@ -2,7 +2,7 @@
 //!
 //! `BRUSHWORK_MCL_BYTES=n` takes programs of n bytes (the default is small), `BRUSHWORK_SEED=n` other random ones.
 
-use crate::support::Desk;
+use crate::support::TestHost;
 use crate::support::mutation::number;
 use crate::support::worst::{Worst, worst};
 use brushwork_script::diagnostic::MOST_TOLD;
@@ -39,8 +39,8 @@ fn through(Worst { name, text }: &Worst) {
         assert!(image::decode(&image::encode(&program)).is_ok_and(|read| read == program), "{name}");
         assert!(!disassemble(&program, Some(text)).is_empty(), "{name}");
         let mut machine = Machine::new(Arc::new(program));
-        let mut desk = Desk::default();
-        let state = machine.run(&mut desk, 1_000).clone();
+        let mut host = TestHost::default();
+        let state = machine.run(&mut host, 1_000).clone();
         assert!(state != vm::State::Ready || machine.executed() > 0, "{name}");
     }
     let index = Index::of(text);
@@ -195,7 +195,7 @@ fn images_made_to_be_slow_are_answered_at_once() {
     let page = disassemble(&program, None);
     assert!(page.contains("load               Bit 1.1 ; v\n"));
     let mut machine = Machine::new(Arc::new(program));
-    let _ = machine.run(&mut Desk::default(), 10_000);
+    let _ = machine.run(&mut TestHost::default(), 10_000);
     // Some milliseconds; what went through every pair took minutes.
     assert!(began.elapsed().as_secs() < 20, "{:?}", began.elapsed());
 }

@@ -1,6 +1,6 @@
 //! The debugger in front of small programs: where it stops, what it shows, what it lets change.
 
-use crate::support::Desk;
+use crate::support::TestHost;
 use brushwork_script::debug::{
     Breakpoint, Debugger, Reason, Request, Show, StepKind, StopCause, View, Wanted, code_id,
 };
@@ -13,7 +13,7 @@ use std::time::Duration;
 struct Bench {
     names: Names,
     machine: Machine,
-    desk: Desk,
+    host: TestHost,
     debugger: Debugger,
     wanted: Wanted,
 }
@@ -24,7 +24,8 @@ impl Bench {
         let names = Names::of(text).expect("the program compiles");
         let machine = Machine::new(names.program().clone());
         let wanted = Wanted { code: code_id(names.program()), ..Wanted::default() };
-        let mut bench = Self { names, machine, desk: Desk::default(), debugger: Debugger::default(), wanted };
+        let mut bench =
+            Self { names, machine, host: TestHost::default(), debugger: Debugger::default(), wanted };
         bench.ask(Request::Attach(true));
         bench.ask(Request::StopAtEntry(true));
         bench.debugger.started(&bench.machine);
@@ -32,18 +33,18 @@ impl Bench {
     }
 
     fn ask(&mut self, request: Request) {
-        self.debugger.ask(request, Some(&mut self.machine), &mut self.desk);
+        self.debugger.ask(request, Some(&mut self.machine), &mut self.host);
     }
 
     /// Runs until it stands or 10,000 instructions are through; pauses are jumped over.
     fn go(&mut self, request: Request) -> View {
         self.ask(request);
         for _ in 0..100 {
-            let state = self.debugger.run(&mut self.machine, &mut self.desk, 100).clone();
+            let state = self.debugger.run(&mut self.machine, &mut self.host, 100).clone();
             if let State::Pausing { until } = state
                 && !self.debugger.is_paused()
             {
-                self.desk.now = until;
+                self.host.now = until;
             }
         }
         self.view()
@@ -54,7 +55,7 @@ impl Bench {
     }
 
     fn view(&mut self) -> View {
-        self.debugger.view(Some(&mut self.machine), &mut self.desk, &self.wanted)
+        self.debugger.view(Some(&mut self.machine), &mut self.host, &self.wanted)
     }
 
     fn watch(&mut self, text: &str) -> String {
@@ -208,9 +209,9 @@ fn a_loop_of_one_line_is_stepped_round_by_round() {
     }
     assert_eq!(bench.view().counts[2], 3);
     bench.ask(Request::Continue);
-    bench.debugger.run(&mut bench.machine, &mut bench.desk, 100);
+    bench.debugger.run(&mut bench.machine, &mut bench.host, 100);
     bench.ask(Request::Pause);
-    bench.debugger.run(&mut bench.machine, &mut bench.desk, 100);
+    bench.debugger.run(&mut bench.machine, &mut bench.host, 100);
     assert_eq!(bench.view().sentence(), "Paused at line 2, because Pause was asked for.");
 }
 
@@ -228,10 +229,10 @@ fn lines_are_counted_from_the_start_or_from_a_reset() {
 fn a_pause_and_a_wait_for_input_say_what_they_wait_for() {
     let mut bench = Bench::new("v var byte\npause 500\ngets 2,[v]\nputs 0,[v]\nend\n");
     bench.breakpoints(&[3]);
-    bench.desk.now = Duration::from_millis(1000);
+    bench.host.now = Duration::from_millis(1000);
     bench.ask(Request::Continue);
-    bench.debugger.run(&mut bench.machine, &mut bench.desk, 10);
-    bench.desk.now = Duration::from_millis(1200);
+    bench.debugger.run(&mut bench.machine, &mut bench.host, 10);
+    bench.host.now = Duration::from_millis(1200);
     let view = bench.view();
     assert_eq!(view.sentence(), "The script runs: PAUSE at line 2 waits until 1.500 s, 0.300 s more.");
     bench.ask(Request::Pause);
@@ -239,14 +240,14 @@ fn a_pause_and_a_wait_for_input_say_what_they_wait_for() {
     assert!(view.is_paused);
     assert!(view.sentence().starts_with("Paused because Pause was asked for: PAUSE at line 2"));
     // The world went on: the time of the pause is over, and the line after it has its breakpoint.
-    bench.desk.now = Duration::from_millis(3000);
+    bench.host.now = Duration::from_millis(3000);
     assert!(matches!(bench.go(Request::Continue).reason, Reason::Breakpoint { line: 3, .. }));
     let view = bench.go(Request::Continue);
     assert_eq!(view.sentence(), "The script runs: GETS at line 3 waits for a byte on stream 2.");
     assert_eq!(view.counts[3], 1, "waiting is no running");
     let view = bench.go(Request::Give { stream: 2, bytes: b"Q".to_vec() });
     assert_eq!(view.reason, Reason::Ended);
-    assert_eq!(bench.desk.sent[&0], b"Q");
+    assert_eq!(bench.host.sent[&0], b"Q");
 }
 
 #[test]
@@ -328,11 +329,11 @@ fn a_variable_is_set_while_the_script_stands_if_the_value_fits() {
     assert!(bench.set("first(0)", "1").unwrap_err().contains("cannot be set"));
     assert_eq!(bench.set("SYSMINMBAT", "120"), Ok("SYSMINMBAT is 120 now.".to_owned()));
     let (id, _) = words::register("SYSMINMBAT").unwrap();
-    assert_eq!(bench.desk.registers[&(id.0, 0)], 120);
+    assert_eq!(bench.host.registers[&(id.0, 0)], 120);
     assert_eq!(bench.set("SYSTICK", "1"), Err("SYSTICK can only be read.".to_owned()));
     let executed = bench.machine.executed();
     bench.ask(Request::Continue);
-    bench.debugger.run(&mut bench.machine, &mut bench.desk, 10);
+    bench.debugger.run(&mut bench.machine, &mut bench.host, 10);
     assert!(bench.set("w", "1").unwrap_err().contains("pause it first"));
     assert_eq!(bench.machine.executed(), executed + 10, "looking costs the program nothing");
 }
@@ -341,7 +342,7 @@ fn a_variable_is_set_while_the_script_stands_if_the_value_fits() {
 fn registers_are_read_with_all_their_elements() {
     let mut bench = Bench::new("done\ngoto done\n");
     let (id, _) = words::register("MOTORPWM").unwrap();
-    bench.desk.registers.insert((id.0, 1), 0xFFFF);
+    bench.host.registers.insert((id.0, 1), 0xFFFF);
     bench.wanted.registers = Arc::new(vec![id]);
     let view = bench.view();
     assert_eq!(view.registers[0].cells, [0, u32::MAX], "signed words have their sign spread");
@@ -371,7 +372,7 @@ fn the_world_is_held_only_while_paused_and_wished() {
     bench.ask(Request::Continue);
     assert!(!bench.debugger.holds_world());
     bench.ask(Request::Pause);
-    bench.debugger.run(&mut bench.machine, &mut bench.desk, 10);
+    bench.debugger.run(&mut bench.machine, &mut bench.host, 10);
     assert!(bench.debugger.holds_world());
     bench.ask(Request::Attach(false));
     assert!(!bench.debugger.holds_world(), "nobody is left to let it go on");
@@ -380,13 +381,13 @@ fn the_world_is_held_only_while_paused_and_wished() {
 #[test]
 fn a_debugger_that_comes_late_sees_the_script_that_runs() {
     let names = Names::of(CALLS).unwrap();
-    let (mut machine, mut desk) = (Machine::new(names.program().clone()), Desk::default());
+    let (mut machine, mut host) = (Machine::new(names.program().clone()), TestHost::default());
     let mut debugger = Debugger::default();
     debugger.started(&machine);
-    debugger.run(&mut machine, &mut desk, 12);
-    debugger.ask(Request::Breakpoints(vec![Breakpoint::at(6)]), Some(&mut machine), &mut desk);
-    debugger.ask(Request::Attach(true), Some(&mut machine), &mut desk);
-    debugger.run(&mut machine, &mut desk, 1_000);
-    let view = debugger.view(Some(&mut machine), &mut desk, &Wanted::default());
+    debugger.run(&mut machine, &mut host, 12);
+    debugger.ask(Request::Breakpoints(vec![Breakpoint::at(6)]), Some(&mut machine), &mut host);
+    debugger.ask(Request::Attach(true), Some(&mut machine), &mut host);
+    debugger.run(&mut machine, &mut host, 1_000);
+    let view = debugger.view(Some(&mut machine), &mut host, &Wanted::default());
     assert!(matches!(view.reason, Reason::Breakpoint { line: 6, hits: 1, .. }), "{:?}", view.reason);
 }

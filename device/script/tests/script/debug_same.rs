@@ -5,7 +5,7 @@
 
 use crate::support::examples::{corrected, examples};
 use crate::support::mutation::{damaged, number, seeds};
-use crate::support::{Desk, same_desk};
+use crate::support::{TestHost, same_host};
 use brushwork_script::debug::{Breakpoint, Debugger, Request, StepKind, Wanted};
 use brushwork_script::mcl::{Names, compile};
 use brushwork_script::program::Program;
@@ -17,14 +17,14 @@ use std::sync::Arc;
 /// Instructions that each program runs at most.
 const MOST: u64 = 3_000;
 
-fn desk() -> Desk {
-    let mut desk = Desk::default();
-    desk.waiting.insert(
+fn host() -> TestHost {
+    let mut host = TestHost::default();
+    host.waiting.insert(
         0,
         b"x 77 -5,a1 $3f 1.5 abc\r hello 12 34 56 \0\x01\x02".iter().copied().cycle().take(400).collect(),
     );
-    desk.i2c_reply = Some(vec![7, 9]);
-    desk
+    host.i2c_reply = Some(vec![7, 9]);
+    host
 }
 
 /// The end of a run, and whether it can go on from there.
@@ -32,17 +32,17 @@ fn is_at_rest(state: &State) -> bool {
     !matches!(state, State::Ready | State::Pausing { .. })
 }
 
-fn free(program: &Arc<Program>) -> (Machine, Desk) {
-    let (mut machine, mut desk) = (Machine::new(program.clone()), desk());
+fn free(program: &Arc<Program>) -> (Machine, TestHost) {
+    let (mut machine, mut host) = (Machine::new(program.clone()), host());
     while machine.executed() < MOST {
         let left = (MOST - machine.executed()) as u32;
-        match machine.run(&mut desk, left.min(1_500)) {
-            State::Pausing { until } => desk.now = *until,
+        match machine.run(&mut host, left.min(1_500)) {
+            State::Pausing { until } => host.now = *until,
             state if is_at_rest(state) => break,
             _ => {}
         }
     }
-    (machine, desk)
+    (machine, host)
 }
 
 fn any_request(rng: &mut ChaCha8Rng, lines: u32) -> Request {
@@ -62,8 +62,8 @@ fn any_request(rng: &mut ChaCha8Rng, lines: u32) -> Request {
     }
 }
 
-fn stepped(program: &Arc<Program>, text: &str, rng: &mut ChaCha8Rng) -> (Machine, Desk) {
-    let (mut machine, mut desk) = (Machine::new(program.clone()), desk());
+fn stepped(program: &Arc<Program>, text: &str, rng: &mut ChaCha8Rng) -> (Machine, TestHost) {
+    let (mut machine, mut host) = (Machine::new(program.clone()), host());
     let mut debugger = Debugger::default();
     let lines = text.lines().count() as u32;
     let mut names = Names::of(text).expect("it compiles");
@@ -74,40 +74,40 @@ fn stepped(program: &Arc<Program>, text: &str, rng: &mut ChaCha8Rng) -> (Machine
         code: brushwork_script::debug::code_id(program),
         ..Wanted::default()
     };
-    debugger.ask(Request::StopAtEntry(rng.next_u32().is_multiple_of(2)), None, &mut desk);
-    debugger.ask(Request::Attach(true), Some(&mut machine), &mut desk);
+    debugger.ask(Request::StopAtEntry(rng.next_u32().is_multiple_of(2)), None, &mut host);
+    debugger.ask(Request::Attach(true), Some(&mut machine), &mut host);
     debugger.started(&machine);
     let mut turns = 0u64;
     while machine.executed() < MOST {
         turns += 1;
         assert!(turns < 60 * MOST, "it hangs:\n{text}");
         if debugger.is_paused() || rng.next_u32().is_multiple_of(5) {
-            debugger.ask(any_request(rng, lines), Some(&mut machine), &mut desk);
-            debugger.view(Some(&mut machine), &mut desk, &wanted);
+            debugger.ask(any_request(rng, lines), Some(&mut machine), &mut host);
+            debugger.view(Some(&mut machine), &mut host, &wanted);
         }
         let left = (MOST - machine.executed()) as u32;
-        let state = debugger.run(&mut machine, &mut desk, left.min(1 + rng.next_u32() % 97)).clone();
+        let state = debugger.run(&mut machine, &mut host, left.min(1 + rng.next_u32() % 97)).clone();
         match state {
             _ if debugger.is_paused() => {}
-            State::Pausing { until } => desk.now = until,
+            State::Pausing { until } => host.now = until,
             state if is_at_rest(&state) => break,
             _ => {}
         }
     }
-    (machine, desk)
+    (machine, host)
 }
 
 /// Runs a program both ways.
 fn compare(text: &str, rng: &mut ChaCha8Rng) -> bool {
     let Some(program) = compile(text).program else { return false };
     let program = Arc::new(program);
-    let (free, free_desk) = free(&program);
-    let (stepped, stepped_desk) = stepped(&program, text, rng);
+    let (free, free_host) = free(&program);
+    let (stepped, stepped_host) = stepped(&program, text, rng);
     assert_eq!(stepped.executed(), free.executed(), "{text}");
     assert_eq!(stepped.at(), free.at(), "{text}");
     assert_eq!(stepped.state(), free.state(), "{text}");
     assert_eq!(stepped.memory(), free.memory(), "{text}");
-    assert!(same_desk(&stepped_desk, &free_desk), "{text}\n{stepped_desk:?}\n{free_desk:?}");
+    assert!(same_host(&stepped_host, &free_host), "{text}\n{stepped_host:?}\n{free_host:?}");
     true
 }
 

@@ -3,7 +3,7 @@
 //! `BRUSHWORK_MCL_IMAGES=n` damages n of them, `BRUSHWORK_SEED=n` others.
 
 use crate::support::examples::{corrected, examples};
-use crate::support::{Desk, run_in_slices};
+use crate::support::{TestHost, run_in_slices};
 use brushwork_script::image::{MAGIC, decode, encode};
 use brushwork_script::mcl::compile;
 use brushwork_script::vm::Machine;
@@ -58,9 +58,9 @@ fn damaged_images_with_a_right_checksum_are_refused_or_run_without_a_panic() {
             };
         }
         let Ok(program) = decode(&sealed(image)) else { continue };
-        let mut desk = Desk::default();
-        desk.waiting.insert(0, (0..=255).collect());
-        run_in_slices(&mut Machine::new(Arc::new(program)), &mut desk, 4_000, 2_000);
+        let mut host = TestHost::default();
+        host.waiting.insert(0, (0..=255).collect());
+        run_in_slices(&mut Machine::new(Arc::new(program)), &mut host, 4_000, 2_000);
         ran += 1;
     }
     assert!(ran > runs / 20, "only {ran} of {runs} were still programs");

@@ -1,6 +1,6 @@
 //! What programs do, with results worked out by hand.
 
-use crate::support::{Desk, machine, output, run, run_on, value};
+use crate::support::{TestHost, machine, output, run, run_on, value};
 use brushwork_script::vm::{Fault, FaultKind, State};
 
 #[test]
@@ -250,16 +250,16 @@ puts 0,[\" \",hex v,\" \",sdec s,\" \",str t\\8\\0]
 end
 ";
     let mut machine = machine(text);
-    let mut desk = Desk::default();
-    desk.waiting.insert(0, [0x12, 0x34].into());
-    assert_eq!(run_on(&mut machine, &mut desk, 10_000), State::Listening { stream: 0 });
-    assert_eq!(desk.sent[&0], b"1234");
+    let mut host = TestHost::default();
+    host.waiting.insert(0, [0x12, 0x34].into());
+    assert_eq!(run_on(&mut machine, &mut host, 10_000), State::Listening { stream: 0 });
+    assert_eq!(host.sent[&0], b"1234");
     for byte in b"x 77 -5,a1abc\r" {
-        desk.waiting.entry(0).or_default().push_back(*byte);
-        run_on(&mut machine, &mut desk, 10_000);
+        host.waiting.entry(0).or_default().push_back(*byte);
+        run_on(&mut machine, &mut host, 10_000);
     }
     assert_eq!(machine.state(), &State::Ended);
-    assert_eq!(desk.sent[&0], b"1234 a100004d -5 abc");
+    assert_eq!(host.sent[&0], b"1234 a100004d -5 abc");
 }
 
 #[test]
@@ -348,13 +348,13 @@ end
 #[test]
 fn a_stream_without_a_number_does_not_hold_the_machine_in_one_step() {
     let mut machine = machine("n var long\nf var float\ngets 0,[dec n,real f]\nend\n");
-    let mut desk = Desk::default();
-    desk.waiting.insert(0, vec![b'x'; 100_000].into());
-    machine.run(&mut desk, 10);
-    let left = desk.waiting[&0].len();
+    let mut host = TestHost::default();
+    host.waiting.insert(0, vec![b'x'; 100_000].into());
+    machine.run(&mut host, 10);
+    let left = host.waiting[&0].len();
     assert!(left > 95_000 && left < 100_000, "{left}");
     assert_eq!(machine.state(), &State::Ready);
-    desk.waiting.get_mut(&0).unwrap().extend(b"42 -1.5 ");
-    assert_eq!(run_on(&mut machine, &mut desk, 100_000), State::Ended);
+    host.waiting.get_mut(&0).unwrap().extend(b"42 -1.5 ");
+    assert_eq!(run_on(&mut machine, &mut host, 100_000), State::Ended);
     assert_eq!(machine.memory().load(machine.program().variables[0].memory.first), 42);
 }

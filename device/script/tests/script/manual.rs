@@ -8,7 +8,7 @@
 //! A register that nothing sets reads 42.
 
 use crate::support::examples::{Example, corrected, examples};
-use crate::support::{Desk, run_on};
+use crate::support::{TestHost, run_on};
 use brushwork_script::diagnostic::Severity;
 use brushwork_script::mcl::{compile, registers, words};
 use brushwork_script::text::Lines;
@@ -34,16 +34,16 @@ fn number<T: std::str::FromStr>(text: &str) -> T {
     text.parse().ok().unwrap_or_else(|| panic!("{text} is no number"))
 }
 
-fn register(desk: &Desk, name: &str, index: &str) -> u32 {
+fn register(host: &TestHost, name: &str, index: &str) -> u32 {
     let (id, _) = words::register(name).expect("a register");
-    desk.registers[&(id.0, number(index))]
+    host.registers[&(id.0, number(index))]
 }
 
-fn prepare(example: &Example<'_>) -> Desk {
-    let mut desk = Desk::default();
+fn prepare(example: &Example<'_>) -> TestHost {
+    let mut host = TestHost::default();
     for (id, row) in registers::REGISTERS.iter().enumerate() {
         for index in 0..row.length {
-            desk.registers.insert((id as u8, index), 42);
+            host.registers.insert((id as u8, index), 42);
         }
     }
     for line in &example.expected {
@@ -51,17 +51,17 @@ fn prepare(example: &Example<'_>) -> Desk {
         match words[..] {
             ["set", name, index, value] => {
                 let (id, _) = words::register(name).expect("a register");
-                desk.registers.insert((id.0, number(index)), number(value));
+                host.registers.insert((id.0, number(index)), number(value));
             }
-            ["i2c", byte] => desk.i2c_reply = Some(vec![number(byte)]),
+            ["i2c", byte] => host.i2c_reply = Some(vec![number(byte)]),
             _ => {
                 if let Some(input) = line.strip_prefix("< ") {
-                    desk.waiting.insert(0, bytes(input).into());
+                    host.waiting.insert(0, bytes(input).into());
                 }
             }
         }
     }
-    desk
+    host
 }
 
 fn variable(machine: &Machine, name: &str, index: u32) -> u32 {
@@ -70,14 +70,14 @@ fn variable(machine: &Machine, name: &str, index: u32) -> u32 {
     machine.memory().load(element(found.memory, index).expect("an element"))
 }
 
-fn check(example: &Example<'_>, machine: &Machine, desk: &Desk, state: &State) {
+fn check(example: &Example<'_>, machine: &Machine, host: &TestHost, state: &State) {
     let title = example.title;
-    let mut motions = desk.motions.iter();
+    let mut motions = host.motions.iter();
     for line in &example.expected {
         let words: Vec<&str> = line.split(' ').collect();
         match words[..] {
             ["=", name, index, value] => {
-                assert_eq!(register(desk, name, index).to_string(), value, "{title}: {line}");
+                assert_eq!(register(host, name, index).to_string(), value, "{title}: {line}");
             }
             ["var", name, index, value] => {
                 assert_eq!(variable(machine, name, number(index)).to_string(), value, "{title}: {line}");
@@ -99,7 +99,7 @@ fn check(example: &Example<'_>, machine: &Machine, desk: &Desk, state: &State) {
             ["ends"] => assert_eq!(state, &State::Ended, "{title}"),
             _ => {
                 if let Some(output) = line.strip_prefix("> ") {
-                    let sent = desk.sent.get(&0).cloned().unwrap_or_default();
+                    let sent = host.sent.get(&0).cloned().unwrap_or_default();
                     let shown = String::from_utf8_lossy(&sent);
                     assert!(sent.starts_with(&bytes(output)), "{title}: sent {shown:?}, not {output:?}");
                 }
@@ -114,10 +114,10 @@ fn prove(file: &str) -> usize {
         let text = corrected(example);
         let compiled = compile(&text);
         let Some(program) = compiled.program else { panic!("{}:\n{}", example.title, errors(&text)) };
-        let mut desk = prepare(example);
+        let mut host = prepare(example);
         let mut machine = Machine::new(Arc::new(program));
-        let state = run_on(&mut machine, &mut desk, 20_000);
-        check(example, &machine, &desk, &state);
+        let state = run_on(&mut machine, &mut host, 20_000);
+        check(example, &machine, &host, &state);
         assert!(!matches!(state, State::Faulted(_)), "{}: {state:?}", example.title);
     }
     examples.len()

@@ -3,7 +3,7 @@
 //! `BRUSHWORK_MCL_MUTATIONS=n` runs n of them (the default is small), `BRUSHWORK_SEED=n` others.
 
 use crate::support::mutation::{damaged, number, seeds};
-use crate::support::{Desk, run_in_slices};
+use crate::support::{TestHost, run_in_slices};
 use brushwork_script::image;
 use brushwork_script::mcl::{codes, compile};
 use brushwork_script::vm::{Machine, State};
@@ -29,9 +29,9 @@ fn damaged_programs_neither_panic_nor_hang() {
         let Some(program) = compiled.program else { continue };
         assert_eq!(image::decode(&image::encode(&program)).as_ref(), Ok(&program), "{text}");
         let mut machine = Machine::new(Arc::new(program));
-        let mut desk = Desk::default();
-        desk.waiting.insert(0, (0..=255).collect());
-        let state = run_in_slices(&mut machine, &mut desk, 2_000, 1_000);
+        let mut host = TestHost::default();
+        host.waiting.insert(0, (0..=255).collect());
+        let state = run_in_slices(&mut machine, &mut host, 2_000, 1_000);
         assert!(state != State::Ready || machine.executed() > 0);
         ran += 1;
     }

@@ -1,7 +1,7 @@
 //! One program per operator, modifier, type and command, with the output that was worked out by hand or by a Python script (see
 //! `tests/programs/expected.py`), not by this machine.
 
-use crate::support::{Desk, machine, run_in_slices};
+use crate::support::{TestHost, machine, run_in_slices};
 use brushwork_script::mcl::operators::OPERATORS;
 use brushwork_script::mcl::types::{TABLES, VarType, parts};
 use brushwork_script::mcl::words::{COMMANDS, FORMATS};
@@ -36,12 +36,12 @@ fn programs(file: &str) -> Vec<Program> {
 fn prove(programs: &[Program]) {
     for program in programs {
         let mut machine = machine(&program.text);
-        let mut desk = Desk::default();
-        desk.waiting.insert(0, program.input.clone().into());
-        let state = run_in_slices(&mut machine, &mut desk, 100_000, 50_000);
+        let mut host = TestHost::default();
+        host.waiting.insert(0, program.input.clone().into());
+        let state = run_in_slices(&mut machine, &mut host, 100_000, 50_000);
         assert_eq!(state, State::Ended, "{}\n{}", program.title, program.text);
-        let sent: String = desk.sent.remove(&0).unwrap_or_default().into_iter().map(char::from).collect();
-        let motions = desk.motions.iter().map(|(motion, arguments)| {
+        let sent: String = host.sent.remove(&0).unwrap_or_default().into_iter().map(char::from).collect();
+        let motions = host.motions.iter().map(|(motion, arguments)| {
             let arguments: Vec<String> = arguments.iter().map(ToString::to_string).collect();
             format!("@ {} {}", motion.word(), arguments.join(" "))
         });

@@ -4,7 +4,7 @@
 //! `BRUSHWORK_MCL_SAME=n` compares n damaged programs, `BRUSHWORK_SEED=n` others.
 
 use crate::support::mutation::{damaged, number, seeds};
-use crate::support::{Desk, same_desk};
+use crate::support::{TestHost, same_host};
 use brushwork_script::mcl::compile;
 use brushwork_script::program::Program;
 use brushwork_script::vm::{Machine, State};
@@ -27,32 +27,32 @@ const LOOPS: [&str; 11] = [
     "t WordTable 1,20,300\ni var long\ns var long\nmain\ns = s + t(i) ^ 3\ni = i + 1\nif not (s > 1000) then main\nend\n",
 ];
 
-fn run(program: &Arc<Program>, most: u64, mut budget: impl FnMut() -> u32) -> (Machine, Desk) {
+fn run(program: &Arc<Program>, most: u64, mut budget: impl FnMut() -> u32) -> (Machine, TestHost) {
     let mut machine = Machine::new(program.clone());
-    let mut desk = Desk::default();
-    desk.waiting.insert(0, (0..=255).collect());
+    let mut host = TestHost::default();
+    host.waiting.insert(0, (0..=255).collect());
     while machine.executed() < most {
         let left = u32::try_from(most - machine.executed()).unwrap_or(u32::MAX);
-        match machine.run(&mut desk, budget().min(left)) {
-            State::Pausing { until } => desk.now = *until,
+        match machine.run(&mut host, budget().min(left)) {
+            State::Pausing { until } => host.now = *until,
             State::Ready => {}
             _ => break,
         }
     }
-    (machine, desk)
+    (machine, host)
 }
 
 fn compare(text: &str, rng: &mut ChaCha8Rng) -> bool {
     let Some(program) = compile(text).program.map(Arc::new) else { return false };
     let most = u64::from(rng.next_u32() % 4_000);
-    let (stepped, stepped_desk) = run(&program, most, || 1);
-    let (whole, whole_desk) = run(&program, most, || 4_000);
-    let (cut, cut_desk) = run(&program, most, || 1 + rng.next_u32() % 1_500);
-    for (other, desk) in [(&whole, &whole_desk), (&cut, &cut_desk)] {
+    let (stepped, stepped_host) = run(&program, most, || 1);
+    let (whole, whole_host) = run(&program, most, || 4_000);
+    let (cut, cut_host) = run(&program, most, || 1 + rng.next_u32() % 1_500);
+    for (other, host) in [(&whole, &whole_host), (&cut, &cut_host)] {
         assert_eq!(stepped.state(), other.state(), "{text}");
         assert_eq!((stepped.at(), stepped.executed()), (other.at(), other.executed()), "{text}");
         assert_eq!(stepped.memory(), other.memory(), "{text}");
-        assert!(same_desk(&stepped_desk, desk), "{text}");
+        assert!(same_host(&stepped_host, host), "{text}");
     }
     true
 }

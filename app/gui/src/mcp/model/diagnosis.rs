@@ -3,14 +3,14 @@
 use brushwork_link::device::PinSignal;
 use brushwork_mcp_client::diagnosis::{Evidence, Measured, PinEnd, Script};
 
-use crate::model::desk::Desk;
+use crate::model::connection::Connection;
 
 /// Where pins stand, by their signals.
 pub fn ends(signals: &[PinSignal]) -> Vec<PinEnd> {
     signals.iter().map(|signal| PinEnd::of_percent(signal.percent.into())).collect()
 }
 
-impl Desk {
+impl Connection {
     /// Where the unit's input pins stand, while they are read.
     pub fn pin_ends(&self) -> Option<Vec<PinEnd>> {
         self.watch.pins().map(ends)

@@ -17,7 +17,7 @@ use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
 
 use super::diagnosis::ends;
-use super::{McpDesk, script};
+use super::{McpConnection, script};
 use crate::family::{Ability, ActiveIndicator, Family, Figure, Figures, Known, Own, Sliders};
 use crate::model::drawer::Tab;
 use crate::model::help_page::HelpPage;
@@ -38,7 +38,7 @@ impl Family for Mcp {
     }
 
     fn own(&self) -> Option<Box<dyn Own>> {
-        Some(Box::<McpDesk>::default())
+        Some(Box::<McpConnection>::default())
     }
 
     fn screens(&self, _identity: Option<&Identity>, _known: Known<'_>) -> Vec<Screen> {

@@ -11,19 +11,19 @@ mod pins;
 mod script;
 
 use crate::family::Own;
-use crate::model::desk::Desk;
+use crate::model::connection::Connection;
 use composer::Composer;
 use firmware::Firmware;
 
 /// The state of an MCP's own panels.
 #[derive(Debug, Default)]
-pub struct McpDesk {
+pub struct McpConnection {
     /// The firmware window and the update that runs.
     pub firmware: Firmware,
     pub composer: Composer,
 }
 
-impl Own for McpDesk {
+impl Own for McpConnection {
     fn take(&mut self, event: &Event) -> bool {
         self.firmware.note(event);
         if let Event::Transacted { id, result } = event {
@@ -60,13 +60,13 @@ impl Own for McpDesk {
     }
 }
 
-impl Desk {
+impl Connection {
     /// What is kept of its own.
-    pub fn mcp(&self) -> &McpDesk {
+    pub fn mcp(&self) -> &McpConnection {
         self.own()
     }
 
-    pub fn mcp_mut(&mut self) -> &mut McpDesk {
+    pub fn mcp_mut(&mut self) -> &mut McpConnection {
         self.own_mut()
     }
 }

@@ -10,7 +10,7 @@ use egui::{Grid, Label, RichText, ScrollArea, TextEdit, Ui, vec2};
 use crate::command::{Command, Commands};
 use crate::mcp::model::composer::{Composer, Prepared};
 use crate::model::Model;
-use crate::model::desk::Desk;
+use crate::model::connection::Connection;
 use crate::model::link::Arming;
 use crate::theme::Palette;
 use crate::widgets::text_field::text_field_ui;
@@ -44,18 +44,18 @@ pub fn composer_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) -> O
     Some(())
 }
 
-fn unit(desk: &Desk) -> Option<(Address, Generation)> {
-    let identity = desk.link.identity()?;
+fn unit(connection: &Connection) -> Option<(Address, Generation)> {
+    let identity = connection.link.identity()?;
     Some((packet_address(identity.unit_address())?, packet_generation(identity.generation)?))
 }
 
 /// What may go out: as the device thread will judge too.
-fn permit(desk: &Desk) -> Permit {
-    let (motion, script) = match desk.link.arming {
+fn permit(connection: &Connection) -> Permit {
+    let (motion, script) = match connection.link.arming {
         Arming::Armed { scope, .. } => (scope.allows_motion(), scope.allows_scripts()),
         Arming::Disarmed | Arming::Asked(_) => (false, false),
     };
-    let guesses = desk.link.identity().is_some_and(|identity| identity.simulated);
+    let guesses = connection.link.identity().is_some_and(|identity| identity.simulated);
     Permit { motion, script, guesses, ..Permit::default() }
 }
 

@@ -10,7 +10,7 @@ use brushwork_mcp_client::indicators::conditions;
 use brushwork_mcp_wire::packet_serial::led::{BlinkCode, Light, blink_code};
 use egui::{Align2, Color32, RichText, Role, Sense, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
-use crate::model::desk::Desk;
+use crate::model::connection::Connection;
 use crate::theme::Palette;
 use crate::widgets::heading::heading_ui;
 
@@ -21,14 +21,14 @@ const LOOK_INTERVAL: Duration = Duration::from_millis(100);
 /// While data comes in, STAT1 goes dark and bright again in this time.
 const DATA_BLINK: Duration = Duration::from_millis(400);
 
-pub fn leds_ui(ui: &mut Ui, desk: &Desk) {
+pub fn leds_ui(ui: &mut Ui, connection: &Connection) {
     heading_ui(ui, "LEDs on the board");
-    let Some(code) = code(desk) else { return };
+    let Some(code) = code(connection) else { return };
     let now = Duration::try_from_secs_f64(ui.input(|input| input.time)).unwrap_or_default();
-    let real = lit_by_simulation(desk);
+    let real = lit_by_simulation(connection);
     let lit = real.unwrap_or_else(|| {
         // Frames come with the data anyway: this asks for none of its own.
-        let receiving = desk.link.statistics.transactions_per_s > 0.0 && code.err != Light::Lit;
+        let receiving = connection.link.statistics.transactions_per_s > 0.0 && code.err != Light::Lit;
         let dark = receiving && now.as_millis() % DATA_BLINK.as_millis() < DATA_BLINK.as_millis() / 4;
         [
             code.stat1.is_lit(now) && !(dark && code.stat1 == Light::Lit),
@@ -54,18 +54,18 @@ pub fn leds_ui(ui: &mut Ui, desk: &Desk) {
     }
 }
 
-fn code(desk: &Desk) -> Option<BlinkCode> {
-    let status = desk.link.status?;
+fn code(connection: &Connection) -> Option<BlinkCode> {
+    let status = connection.link.status?;
     let driving = [Channel::M1_PWM, Channel::M2_PWM]
         .into_iter()
-        .any(|channel| desk.link.readings.get(channel).is_some_and(|duty| duty != 0.0));
+        .any(|channel| connection.link.readings.get(channel).is_some_and(|duty| duty != 0.0));
     Some(blink_code(conditions(&status), driving))
 }
 
 /// Which LEDs a controller that is simulated in this program has lit.
-fn lit_by_simulation(desk: &Desk) -> Option<[bool; 3]> {
-    desk.link.identity().filter(|identity| identity.simulated)?;
-    let leds = desk.worlds.as_ref()?.get(desk.world_unit)?.leds?;
+fn lit_by_simulation(connection: &Connection) -> Option<[bool; 3]> {
+    connection.link.identity().filter(|identity| identity.simulated)?;
+    let leds = connection.worlds.as_ref()?.get(connection.world_unit)?.leds?;
     Some([leds.stat1, leds.stat2, leds.err])
 }
 

@@ -8,12 +8,12 @@ use crate::actions::{Action, Keys, page};
 use crate::command::Commands;
 use crate::family_action::Host;
 use crate::help::mcl::mcl_ui;
-use crate::model::desk::Desk;
+use crate::model::connection::Connection;
 use crate::model::general::GeneralView;
 use crate::model::help::Help;
 use crate::model::help_page::HelpPage;
 use crate::model::screen::Screen;
-use crate::model::{DeskId, Model};
+use crate::model::{ConnectionId, Model};
 use crate::screens::face::Face;
 
 mod calibrate;
@@ -37,13 +37,13 @@ impl Face for Mcp {
         is_own
     }
 
-    fn reasons_ui(&self, ui: &mut Ui, desk: &Desk, commands: &mut Commands) {
-        reasons::reasons_ui(ui, desk, commands);
+    fn reasons_ui(&self, ui: &mut Ui, connection: &Connection, commands: &mut Commands) {
+        reasons::reasons_ui(ui, connection, commands);
         ui.add_space(8.0);
     }
 
-    fn leds_ui(&self, ui: &mut Ui, desk: &Desk) {
-        leds::leds_ui(ui, desk);
+    fn leds_ui(&self, ui: &mut Ui, connection: &Connection) {
+        leds::leds_ui(ui, connection);
     }
 
     fn around_rows_ui(&self, ui: &mut Ui, general: &mut GeneralView<'_>, is_before: bool) {
@@ -72,8 +72,8 @@ impl Face for Mcp {
         ACTIONS
     }
 
-    fn go_on(&self, host: &mut dyn Host, desk: DeskId, ctx: &Context) {
-        updating::look_after_firmware(host, desk, ctx);
+    fn go_on(&self, host: &mut dyn Host, connection: ConnectionId, ctx: &Context) {
+        updating::look_after_firmware(host, connection, ctx);
     }
 }
 

@@ -4,13 +4,13 @@ use brushwork_mcp_client::diagnosis::{Finding, Hindrance, diagnose};
 use egui::{Frame, Label, Margin, RichText, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 use crate::command::{Command, Commands};
-use crate::model::desk::Desk;
+use crate::model::connection::Connection;
 use crate::model::indicator::IndicatorState;
 use crate::theme::Palette;
 
-pub fn reasons_ui(ui: &mut Ui, desk: &Desk, commands: &mut Commands) {
-    let pins = desk.pin_ends();
-    let Some(evidence) = desk.evidence(pins.as_deref()) else { return };
+pub fn reasons_ui(ui: &mut Ui, connection: &Connection, commands: &mut Commands) {
+    let pins = connection.pin_ends();
+    let Some(evidence) = connection.evidence(pins.as_deref()) else { return };
     let diagnosis = diagnose(&evidence);
     let state = diagnosis.findings.first().map_or(IndicatorState::Ok, |first| state_of(first.hindrance));
     let palette = Palette::of(ui);
@@ -33,7 +33,7 @@ pub fn reasons_ui(ui: &mut Ui, desk: &Desk, commands: &mut Commands) {
                     .color(color),
             );
         }
-        if desk.link.status.is_some_and(|report| report.is_active("e_stop")) {
+        if connection.link.status.is_some_and(|report| report.is_active("e_stop")) {
             let note = "Works only where the controller lets software reset it, and not while it is pressed";
             if ui.button("Reset emergency stop").on_hover_text(note).clicked() {
                 commands.push(Command::ResetEmergencyStop);

@@ -2,7 +2,7 @@
 
 use brushwork_link::device::Drive;
 
-use crate::model::desk::Desk;
+use crate::model::connection::Connection;
 use crate::model::screen::Screen;
 
 /// One packet that waits.
@@ -15,8 +15,8 @@ pub struct Pending {
 }
 
 /// All packets that wait, in the order in which they would be sent; or why the settings cannot be written as they are.
-pub fn pending(desk: &Desk, screen: Screen) -> (Vec<Pending>, Vec<String>) {
-    let Some(identity) = desk.link.identity() else { return (Vec::new(), Vec::new()) };
+pub fn pending(connection: &Connection, screen: Screen) -> (Vec<Pending>, Vec<String>) {
+    let Some(identity) = connection.link.identity() else { return (Vec::new(), Vec::new()) };
     let (address, generation) = (identity.unit_address(), identity.generation);
     let packet = |title: String, bytes: Vec<u8>| {
         let text = identity.describe_sent(&bytes).text;
@@ -24,7 +24,11 @@ pub fn pending(desk: &Desk, screen: Screen) -> (Vec<Pending>, Vec<String>) {
     };
     let mut packets = Vec::new();
     let mut refusals = Vec::new();
-    match desk.settings.unit().filter(|unit| !unit.edits().is_empty()).map(|unit| unit.plan(desk.link.stream))
+    match connection
+        .settings
+        .unit()
+        .filter(|unit| !unit.edits().is_empty())
+        .map(|unit| unit.plan(connection.link.stream))
     {
         Some(Ok(plan)) => {
             let steps = plan.steps.iter().filter_map(|step| {
@@ -35,7 +39,7 @@ pub fn pending(desk: &Desk, screen: Screen) -> (Vec<Pending>, Vec<String>) {
         Some(Err(reasons)) => refusals.extend(reasons.into_iter().map(|refusal| refusal.sentence)),
         None => {}
     }
-    if let Some(drive) = drive_of(desk, screen) {
+    if let Some(drive) = drive_of(connection, screen) {
         let bytes = identity.preview(&drive);
         packets.extend(
             bytes.into_iter().map(|bytes| packet("Drive: what the sliders stand for".to_owned(), bytes)),
@@ -45,13 +49,13 @@ pub fn pending(desk: &Desk, screen: Screen) -> (Vec<Pending>, Vec<String>) {
 }
 
 /// What the sliders of a screen would send if both were moved.
-fn drive_of(desk: &Desk, screen: Screen) -> Option<Drive> {
+fn drive_of(connection: &Connection, screen: Screen) -> Option<Drive> {
     let scope = screen.arm_scope()?;
-    let mut sliders = desk.sliders();
+    let mut sliders = connection.sliders();
     for setpoints in
         [&mut sliders.pwm.setpoints, &mut sliders.velocity.setpoints, &mut sliders.position.setpoints]
     {
         setpoints.touch();
     }
-    desk.family().to_send(scope, sliders)
+    connection.family().to_send(scope, sliders)
 }

@@ -10,8 +10,8 @@ use brushwork_tuning::cause::Cause;
 use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
 
-use super::MotionMindDesk;
-use super::desk::{cannot_tune, driven};
+use super::MotionMindConnection;
+use super::connection::{cannot_tune, driven};
 use super::drive::to_send;
 use super::words;
 use crate::family::{Ability, ActiveIndicator, Family, Figure, Figures, Known, Own, SettingsWords, Sliders};
@@ -35,7 +35,7 @@ impl Family for MotionMind {
     }
 
     fn own(&self) -> Option<Box<dyn Own>> {
-        Some(Box::<MotionMindDesk>::default())
+        Some(Box::<MotionMindConnection>::default())
     }
 
     fn screens(&self, identity: Option<&Identity>, known: Known<'_>) -> Vec<Screen> {

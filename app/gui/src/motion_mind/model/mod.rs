@@ -7,7 +7,7 @@ use std::time::Duration;
 use crate::family::{Known, Own};
 use crate::model::screen::Screen;
 
-pub mod desk;
+pub mod connection;
 pub mod drive;
 pub mod family;
 pub mod radio;
@@ -25,7 +25,7 @@ use terminal::Terminal;
 
 /// The state of a Motion Mind's screens.
 #[derive(Debug, Default)]
-pub struct MotionMindDesk {
+pub struct MotionMindConnection {
     /// All registers as read last, while a screen shows them.
     pub live: Live,
     /// The register that is explained, by its number.
@@ -72,7 +72,7 @@ impl Driven {
     }
 }
 
-impl Own for MotionMindDesk {
+impl Own for MotionMindConnection {
     fn take(&mut self, event: &Event) -> bool {
         self.terminal.note(event);
         if !self.live.take(event) {

@@ -208,8 +208,8 @@ impl StepAssistant {
     }
 
     /// Remembers what the registers are, once, so that they can be put back.
-    pub fn remember(&mut self, desk_values: SettingsImage) {
-        self.before.get_or_insert(desk_values);
+    pub fn remember(&mut self, connection_values: SettingsImage) {
+        self.before.get_or_insert(connection_values);
     }
 
     /// What puts the registers back as they were.

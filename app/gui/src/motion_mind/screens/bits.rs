@@ -4,7 +4,7 @@ use brushwork_link::settings::SettingValue;
 use brushwork_motion_mind_wire::{Bit, FUNCTION_BITS, FUNCTION2_BITS, Register, STATUS_BITS};
 use egui::{Button, Label, RichText, Role, Sense, Ui, WidgetInfo, vec2};
 
-use crate::model::desk::Desk;
+use crate::model::connection::Connection;
 use crate::model::indicator::IndicatorState;
 use crate::motion_mind::model::registers::bit_key;
 use crate::theme::Palette;
@@ -31,7 +31,7 @@ pub fn word_of(register: &Register, is_set: impl Fn(&str) -> Option<bool>) -> Op
     })
 }
 
-impl Desk {
+impl Connection {
     /// A register of bits as it is wanted: the edits, or else what the unit has.
     pub fn word_wanted(&self, register: &Register) -> Option<u16> {
         if !register.is_writable() {
@@ -42,13 +42,13 @@ impl Desk {
     }
 }
 
-pub fn bits_ui(ui: &mut Ui, desk: &mut Desk, register: &'static Register) {
+pub fn bits_ui(ui: &mut Ui, connection: &mut Connection, register: &'static Register) {
     ui.spacing_mut().item_spacing.y = 2.0;
     for bit in bits_of(register) {
         if register.is_writable() {
-            setting_ui(ui, desk, register, bit);
+            setting_ui(ui, connection, register, bit);
         } else {
-            measured_ui(ui, desk, register, bit);
+            measured_ui(ui, connection, register, bit);
         }
         let means = Label::new(
             RichText::new(format!("Set: {}.", bit.set_means)).small().color(Palette::of(ui).weak_text),
@@ -59,8 +59,8 @@ pub fn bits_ui(ui: &mut Ui, desk: &mut Desk, register: &'static Register) {
 }
 
 /// A box for a bit that can be written, with what the unit has where that is another.
-fn setting_ui(ui: &mut Ui, desk: &mut Desk, register: &Register, bit: &Bit) {
-    let Some(unit) = desk.settings.unit_mut() else { return };
+fn setting_ui(ui: &mut Ui, connection: &mut Connection, register: &Register, bit: &Bit) {
+    let Some(unit) = connection.settings.unit_mut() else { return };
     let key = bit_key(register.name, bit.name);
     let Some(row) = unit.table().row(&key).cloned() else { return };
     let wanted = unit.wanted(&key) == Some(SettingValue::Bool(true));
@@ -88,8 +88,8 @@ fn setting_ui(ui: &mut Ui, desk: &mut Desk, register: &Register, bit: &Bit) {
     });
 }
 
-fn measured_ui(ui: &mut Ui, desk: &Desk, register: &Register, bit: &Bit) {
-    let set = desk.register(register.name).map(|word| word & i64::from(bit.mask()) != 0);
+fn measured_ui(ui: &mut Ui, connection: &Connection, register: &Register, bit: &Bit) {
+    let set = connection.register(register.name).map(|word| word & i64::from(bit.mask()) != 0);
     let (state, word) = match set {
         None => (IndicatorState::Unknown, "not known"),
         Some(true) => (IndicatorState::Active, "set"),

@@ -132,18 +132,18 @@ pub fn position_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 fn position_controls_ui(ui: &mut Ui, model: &mut Model) {
     // No velocity can be commanded on this screen, so its jog buttons step.
     let held = motor_ui(ui, model, Motor::M1, &POSITION, |ui, model| {
-        let desk = &mut model.front;
-        let (low, high) = desk.mind_travel();
-        let seen = desk.seen(Motor::M1).counts;
-        desk.position.setpoints.show(Motor::M1, seen);
+        let connection = &mut model.front;
+        let (low, high) = connection.mind_travel();
+        let seen = connection.seen(Motor::M1).counts;
+        connection.position.setpoints.show(Motor::M1, seen);
         let slider = Setpoint { name: "Motor position", unit: "", range: low..=high, decimals: 0, step: 1.0 };
-        let shown = desk.position.setpoints.values[0].clamp(low, high);
+        let shown = connection.position.setpoints.values[0].clamp(low, high);
         let mut counts = shown;
         let moved = slider.ui(ui, &mut counts);
         if ui.is_enabled() {
-            desk.position.setpoints.hold(Motor::M1, moved.held);
+            connection.position.setpoints.hold(Motor::M1, moved.held);
             if counts != shown {
-                desk.ask_position(counts);
+                connection.ask_position(counts);
             }
         }
     });
@@ -178,11 +178,11 @@ fn steps_ui(ui: &mut Ui, model: &mut Model) {
 
 /// Asks for a step, whose response the assistant records.
 fn step(model: &mut Model, sign: f64) {
-    let desk = &mut model.front;
-    let seen = desk.seen(Motor::M1).counts;
-    desk.ask_step(sign * desk.mind().reach.step_counts);
-    let target = desk.position.setpoints.values[0];
-    desk.mind_mut().steps.begin(seen, target);
+    let connection = &mut model.front;
+    let seen = connection.seen(Motor::M1).counts;
+    connection.ask_step(sign * connection.mind().reach.step_counts);
+    let target = connection.position.setpoints.values[0];
+    connection.mind_mut().steps.begin(seen, target);
 }
 
 fn number<'a>(name: &'a str, unit: &'a str, range: std::ops::RangeInclusive<f64>, step: f64) -> Numeric<'a> {

@@ -6,7 +6,7 @@ use egui::{Button, Frame, Label, Margin, ProgressBar, RichText, Role, Sense, Str
 
 use crate::command::{Command, Commands};
 use crate::model::Model;
-use crate::model::desk::Desk;
+use crate::model::connection::Connection;
 use crate::model::indicator::IndicatorState;
 use crate::motion_mind::MindAction;
 use crate::motion_mind::model::radio::{STEP_MS, Stage, WIDE};
@@ -35,13 +35,13 @@ pub fn inputs_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 }
 
 /// One measured input: name, what it means in this mode, and how far it is in its range.
-fn measured_ui(ui: &mut Ui, desk: &Desk) {
-    let mode = desk.mode();
+fn measured_ui(ui: &mut Ui, connection: &Connection) {
+    let mode = connection.mode();
     ui.label(RichText::new("Measured").strong());
     for (register, pin, range) in
         [("ANALOGCON", "J4 P4", 1023.0), ("ANALOGFBCK", "J4 P3", 1023.0), ("RCCOUNT", "J6 P2", 1440.0)]
     {
-        let raw = desk.register(register);
+        let raw = connection.register(register);
         let text = raw.zip(register_named(register)).and_then(|(raw, row)| in_unit(row, raw));
         let text = text.unwrap_or_else(|| "–".to_owned());
         ui.horizontal(|ui| {
@@ -64,12 +64,12 @@ fn measured_ui(ui: &mut Ui, desk: &Desk) {
         (status::BRAKE, "_BRAKE, J4 P12", "at ground the bridge is off"),
         (status::INDEX, "Index, J6 P2", "the index channel of an encoder"),
     ] {
-        switch_ui(ui, desk, bit, name, means);
+        switch_ui(ui, connection, bit, name, means);
     }
 }
 
-fn switch_ui(ui: &mut Ui, desk: &Desk, bit: u16, name: &str, means: &str) {
-    let low = desk.link.status.as_ref().map(|report| report.word & u32::from(bit) != 0);
+fn switch_ui(ui: &mut Ui, connection: &Connection, bit: u16, name: &str, means: &str) {
+    let low = connection.link.status.as_ref().map(|report| report.word & u32::from(bit) != 0);
     let (state, word) = match low {
         None => (IndicatorState::Unknown, "not known"),
         Some(true) => (IndicatorState::Active, "at ground"),
@@ -131,8 +131,9 @@ fn radio_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     });
 }
 
-fn pulse_ui(ui: &mut Ui, desk: &Desk, count: Option<i64>) {
-    let bad = desk.link.status.as_ref().is_some_and(|report| report.word & u32::from(status::BADRC) != 0);
+fn pulse_ui(ui: &mut Ui, connection: &Connection, count: Option<i64>) {
+    let bad =
+        connection.link.status.as_ref().is_some_and(|report| report.word & u32::from(status::BADRC) != 0);
     let text = match count {
         Some(count) => format!("Pulse now {:.3} ms ({count})", count as f64 * STEP_MS),
         None => "Pulse not read yet".to_owned(),

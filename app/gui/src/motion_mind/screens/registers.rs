@@ -13,7 +13,7 @@ use egui::{
 use super::bits::{bits_ui, has_bits};
 use crate::command::Commands;
 use crate::model::Model;
-use crate::model::desk::Desk;
+use crate::model::connection::Connection;
 use crate::model::indicator::IndicatorState;
 use crate::model::settings::UnitSettings;
 use crate::motion_mind::model::registers::{in_unit, key};
@@ -57,12 +57,12 @@ pub fn registers_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 }
 
 /// What is typed into the search field, against name, help and number.
-fn is_shown(desk: &Desk, register: &Register) -> bool {
-    let general = &desk.general;
+fn is_shown(connection: &Connection, register: &Register) -> bool {
+    let general = &connection.general;
     if !general.is_filtered() {
         return true;
     }
-    let Some(unit) = desk.settings.unit() else { return true };
+    let Some(unit) = connection.settings.unit() else { return true };
     let own = key(register);
     let of_it = |row: &str| row == own || row.starts_with(&format!("{}.", register.name.to_lowercase()));
     let edited = || unit.edits().iter().any(|(edited, _)| of_it(edited));
@@ -72,7 +72,7 @@ fn is_shown(desk: &Desk, register: &Register) -> bool {
     found && (!general.only_changed || edited())
 }
 
-fn table_ui(ui: &mut Ui, desk: &mut Desk) {
+fn table_ui(ui: &mut Ui, connection: &mut Connection) {
     ui.spacing_mut().item_spacing.x = GAP;
     ui.horizontal(|ui| {
         ui.allocate_space(vec2(MARK_WIDTH, 1.0));
@@ -84,26 +84,27 @@ fn table_ui(ui: &mut Ui, desk: &mut Desk) {
     let mut chosen = None;
     ScrollArea::both().id_salt("registers").auto_shrink(false).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        for register in REGISTERS.iter().filter(|register| is_shown(desk, register)).collect::<Vec<_>>() {
-            let is_chosen = desk.mind().register == register.number;
-            if ui.push_id(register.number, |ui| row_ui(ui, desk, register, is_chosen)).inner {
+        for register in REGISTERS.iter().filter(|register| is_shown(connection, register)).collect::<Vec<_>>()
+        {
+            let is_chosen = connection.mind().register == register.number;
+            if ui.push_id(register.number, |ui| row_ui(ui, connection, register, is_chosen)).inner {
                 chosen = Some(register.number);
             }
         }
     });
     if let Some(chosen) = chosen {
-        desk.mind_mut().register = chosen;
+        connection.mind_mut().register = chosen;
     }
 }
 
 /// Draws a register; true when it is the one to explain.
-fn row_ui(ui: &mut Ui, desk: &mut Desk, register: &'static Register, is_chosen: bool) -> bool {
+fn row_ui(ui: &mut Ui, connection: &mut Connection, register: &'static Register, is_chosen: bool) -> bool {
     let palette = Palette::of(ui);
     let mut wants = false;
     let size = vec2(ui.available_width(), HEIGHT);
     ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
         ui.set_min_height(HEIGHT);
-        mark_ui(ui, desk, register);
+        mark_ui(ui, connection, register);
         figure_ui(ui, &register.number.to_string(), "", NUMBER_WIDTH, true);
         let place = vec2(NAME_WIDTH, HEIGHT - 5.0);
         let name = ui
@@ -116,9 +117,9 @@ fn row_ui(ui: &mut Ui, desk: &mut Desk, register: &'static Register, is_chosen: 
         wants |= name.on_hover_text(register.help).clicked();
         ui.allocate_ui_with_layout(vec2(WANTED_WIDTH, HEIGHT), Layout::left_to_right(Align::Center), |ui| {
             ui.set_min_width(WANTED_WIDTH);
-            wants |= wanted_ui(ui, desk, register);
+            wants |= wanted_ui(ui, connection, register);
         });
-        let (ram, eeprom) = (ram_text(desk, register), eeprom_text(desk, register));
+        let (ram, eeprom) = (ram_text(connection, register), eeprom_text(connection, register));
         let value = |ui: &mut Ui, copy: &str, text: &str, weak| {
             figure_ui(ui, text, &format!("{} in {copy}: {text}", register.name), VALUE_WIDTH, weak);
         };
@@ -126,7 +127,7 @@ fn row_ui(ui: &mut Ui, desk: &mut Desk, register: &'static Register, is_chosen: 
         if register.is_writable() {
             value(ui, "EEPROM", &eeprom, true);
         } else {
-            let told = desk.mind().live.get(register).and_then(|raw| in_unit(register, raw));
+            let told = connection.mind().live.get(register).and_then(|raw| in_unit(register, raw));
             let told = told.unwrap_or_default();
             let text = Label::new(RichText::new(&told).small().color(palette.weak_text)).truncate();
             ui.add_sized(vec2(VALUE_WIDTH, HEIGHT), text);
@@ -136,17 +137,17 @@ fn row_ui(ui: &mut Ui, desk: &mut Desk, register: &'static Register, is_chosen: 
 }
 
 /// The field, the way to the bits, or that it is measured.
-fn wanted_ui(ui: &mut Ui, desk: &mut Desk, register: &'static Register) -> bool {
+fn wanted_ui(ui: &mut Ui, connection: &mut Connection, register: &'static Register) -> bool {
     if has_bits(register) {
-        let is_chosen = desk.mind().register == register.number;
-        let word = desk.word_wanted(register);
+        let is_chosen = connection.mind().register == register.number;
+        let word = connection.word_wanted(register);
         let shown = word.map_or_else(|| "Bits".to_owned(), |word| format!("0x{word:04X} bits"));
         let response = ui.add(Button::selectable(is_chosen, shown).frame_when_inactive(true));
         let spoken = format!("Bits of {}", register.name);
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &spoken));
         return response.clicked();
     }
-    let Some(unit) = desk.settings.unit_mut() else { return false };
+    let Some(unit) = connection.settings.unit_mut() else { return false };
     let Some(row) = unit.table().row(&key(register)).cloned() else {
         let weak = Palette::of(ui).weak_text;
         ui.label(RichText::new(if register.is_writable() { "" } else { "measured" }).small().color(weak));
@@ -157,16 +158,16 @@ fn wanted_ui(ui: &mut Ui, desk: &mut Desk, register: &'static Register) -> bool 
 }
 
 /// Trouble first, then edits, then what a power cycle would change.
-fn mark_ui(ui: &mut Ui, desk: &Desk, register: &Register) {
+fn mark_ui(ui: &mut Ui, connection: &Connection, register: &Register) {
     let (rect, response) = ui.allocate_exact_size(vec2(MARK_WIDTH, HEIGHT), Sense::hover());
-    let Some((state, spoken)) = mark(desk, register) else { return };
+    let Some((state, spoken)) = mark(connection, register) else { return };
     state.paint(ui, rect.center(), 5.0);
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
     response.on_hover_text(spoken);
 }
 
-fn mark(desk: &Desk, register: &Register) -> Option<(IndicatorState, String)> {
-    let unit = desk.settings.unit()?;
+fn mark(connection: &Connection, register: &Register) -> Option<(IndicatorState, String)> {
+    let unit = connection.settings.unit()?;
     let rows: Vec<&Row> = rows_of(unit, register).collect();
     let trouble = rows.iter().find_map(|row| unit.trouble(&row.key));
     if let Some(trouble) = trouble {
@@ -189,27 +190,27 @@ pub fn rows_of<'a>(unit: &'a UnitSettings, register: &Register) -> impl Iterator
     unit.table().rows().iter().filter(move |row| row.key == own || row.key.starts_with(&bits))
 }
 
-fn ram_text(desk: &Desk, register: &Register) -> String {
+fn ram_text(connection: &Connection, register: &Register) -> String {
     if has_bits(register) {
-        return desk
+        return connection
             .register(register.name)
             .map_or_else(|| NO_VALUE.to_owned(), |word| format!("0x{word:04X}"));
     }
-    let of_settings = desk.settings.unit().and_then(|unit| {
+    let of_settings = connection.settings.unit().and_then(|unit| {
         let row = unit.table().row(&key(register))?;
         Some(row.format_bare(unit.on_controller(&row.key)?))
     });
-    let live = || desk.mind().live.get(register).map(|raw| raw.to_string());
+    let live = || connection.mind().live.get(register).map(|raw| raw.to_string());
     of_settings.or_else(live).unwrap_or_else(|| NO_VALUE.to_owned())
 }
 
 /// What the EEPROM holds, as proven in this session; else as it was known last, in brackets.
-fn eeprom_text(desk: &Desk, register: &Register) -> String {
+fn eeprom_text(connection: &Connection, register: &Register) -> String {
     let text = || {
-        let unit = desk.settings.unit()?;
+        let unit = connection.settings.unit()?;
         if has_bits(register) {
             let image =
-                unit.eeprom().or_else(|| desk.settings.known_eeprom().map(|known| &known.settings))?;
+                unit.eeprom().or_else(|| connection.settings.known_eeprom().map(|known| &known.settings))?;
             let word = super::bits::word_of(register, |bit| {
                 let key = crate::motion_mind::model::registers::bit_key(register.name, bit);
                 Some(image.get(&key)? == SettingValue::Bool(true))
@@ -223,9 +224,10 @@ fn eeprom_text(desk: &Desk, register: &Register) -> String {
         let row = unit.table().row(&key(register))?;
         match unit.eeprom().and_then(|image| image.get(&row.key)) {
             Some(value) => Some(row.format_bare(value)),
-            None => {
-                Some(format!("({})", row.format_bare(desk.settings.known_eeprom()?.settings.get(&row.key)?)))
-            }
+            None => Some(format!(
+                "({})",
+                row.format_bare(connection.settings.known_eeprom()?.settings.get(&row.key)?)
+            )),
         }
     };
     text().unwrap_or_else(|| NO_VALUE.to_owned())
@@ -246,30 +248,30 @@ fn figure_ui(ui: &mut Ui, text: &str, spoken: &str, width: f32, is_weak: bool) {
 }
 
 /// The register that is chosen: what it is, and its bits.
-fn panel_ui(ui: &mut Ui, desk: &mut Desk) {
+fn panel_ui(ui: &mut Ui, connection: &mut Connection) {
     let palette = Palette::of(ui);
-    let Some(register) = REGISTERS.get(usize::from(desk.mind().register)) else { return };
+    let Some(register) = REGISTERS.get(usize::from(connection.mind().register)) else { return };
     let frame = Frame::new().stroke(Stroke::new(1.0, palette.line)).corner_radius(4.0);
     frame.inner_margin(Margin::symmetric(10, 8)).show(ui, |ui| {
         ui.set_width(ui.available_width());
         ui.set_height(ui.available_height() - 2.0);
         ui.label(RichText::new(format!("{} (register {})", register.name, register.number)).strong());
         ScrollArea::vertical().id_salt(("register", register.number)).auto_shrink(false).show(ui, |ui| {
-            about_ui(ui, desk, register);
+            about_ui(ui, connection, register);
             if has_bits(register) {
                 ui.add_space(4.0);
-                bits_ui(ui, desk, register);
+                bits_ui(ui, connection, register);
             }
-            unsaved_ui(ui, desk, register);
+            unsaved_ui(ui, connection, register);
         });
     });
 }
 
-fn about_ui(ui: &mut Ui, desk: &Desk, register: &Register) {
+fn about_ui(ui: &mut Ui, connection: &Connection, register: &Register) {
     let palette = Palette::of(ui);
     let help = capital(register.help);
     ui.add(Label::new(format!("{help}.")).wrap());
-    let Some(unit) = desk.settings.unit() else { return };
+    let Some(unit) = connection.settings.unit() else { return };
     for row in rows_of(unit, register) {
         if let Some(trouble) = unit.trouble(&row.key) {
             ui.add(Label::new(RichText::new(trouble).color(palette.error)).wrap());
@@ -280,7 +282,7 @@ fn about_ui(ui: &mut Ui, desk: &Desk, register: &Register) {
         }
     }
     ui.add(Label::new(RichText::new(facts(register)).color(palette.weak_text)).wrap());
-    let raw = desk.register(register.name);
+    let raw = connection.register(register.name);
     if let Some(text) = raw.and_then(|raw| in_unit(register, raw)) {
         ui.add(Label::new(format!("Now {text}.")).wrap());
     }
@@ -303,8 +305,8 @@ fn facts(register: &Register) -> String {
 }
 
 /// What a power cycle would change of it.
-fn unsaved_ui(ui: &mut Ui, desk: &Desk, register: &Register) {
-    let Some(unit) = desk.settings.unit() else { return };
+fn unsaved_ui(ui: &mut Ui, connection: &Connection, register: &Register) {
+    let Some(unit) = connection.settings.unit() else { return };
     let (Some(eeprom), Some(ram)) = (unit.eeprom(), unit.ram()) else { return };
     let of_it: Vec<&str> = rows_of(unit, register).map(|row| row.key.as_str()).collect();
     let both =

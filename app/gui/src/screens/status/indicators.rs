@@ -2,44 +2,46 @@
 
 use egui::{RichText, Ui};
 
-use crate::model::desk::Desk;
+use crate::model::connection::Connection;
 use crate::model::history::clock_text;
 use crate::model::indicator::IndicatorState;
 use crate::theme::Palette;
 use crate::widgets::heading::heading_ui;
 use crate::widgets::indicator;
 
-pub fn indicators_ui(ui: &mut Ui, desk: &Desk, columns: usize) {
+pub fn indicators_ui(ui: &mut Ui, connection: &Connection, columns: usize) {
     ui.columns(columns, |ui| {
-        let indicators = desk.family().indicators();
+        let indicators = connection.family().indicators();
         for (index, info) in indicators.iter().enumerate() {
             let column = &mut ui[usize::from(index >= indicators.len().div_ceil(2)).min(columns - 1)];
             column.spacing_mut().item_spacing.y = 4.0;
-            let state = desk.link.indicators.named(info.short);
+            let state = connection.link.indicators.named(info.short);
             let since =
-                desk.indicator_since(info.short).filter(|_| state >= IndicatorState::Ok).map(|since| {
+                connection.indicator_since(info.short).filter(|_| state >= IndicatorState::Ok).map(|since| {
                     let clock = clock_text(since);
                     format!("since {}", clock.split('.').next().unwrap_or_default())
                 });
             indicator::full_ui(column, info.short, info.title, state, since.as_deref());
         }
     });
-    if let Some(note) = note(desk) {
+    if let Some(note) = note(connection) {
         ui.label(RichText::new(note).small().color(Palette::of(ui).weak_text));
     }
 }
 
 /// What some indicators go by.
-fn note(desk: &Desk) -> Option<&'static str> {
-    desk.family().indicators_note(desk.link.identity()?, desk.homed())
+fn note(connection: &Connection) -> Option<&'static str> {
+    connection.family().indicators_note(connection.link.identity()?, connection.homed())
 }
 
 /// What the status word says, in words.
-pub fn active_ui(ui: &mut Ui, desk: &Desk) {
+pub fn active_ui(ui: &mut Ui, connection: &Connection) {
     ui.add_space(6.0);
     heading_ui(ui, "What the controller reports");
-    let report = desk.link.status.as_ref();
-    let active = report.map(|report| desk.family().active(report, desk.link.identity())).unwrap_or_default();
+    let report = connection.link.status.as_ref();
+    let active = report
+        .map(|report| connection.family().active(report, connection.link.identity()))
+        .unwrap_or_default();
     if active.is_empty() {
         let color = Palette::of(ui).weak_text;
         ui.label(RichText::new("Nothing: neither warning nor error.").color(color));

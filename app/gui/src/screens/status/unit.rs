@@ -4,29 +4,29 @@ use brushwork_link::device::StatusReport;
 use egui::{Grid, Label, RichText, Ui};
 
 use crate::family::Ability;
-use crate::model::desk::Desk;
+use crate::model::connection::Connection;
 use crate::theme::Palette;
 use crate::widgets::heading::heading_ui;
 
-pub fn unit_ui(ui: &mut Ui, desk: &Desk) {
-    let Some(identity) = desk.link.identity() else { return };
+pub fn unit_ui(ui: &mut Ui, connection: &Connection) {
+    let Some(identity) = connection.link.identity() else { return };
     heading_ui(ui, "Unit and link");
     let addresses = |addresses: &[u8]| {
         let each: Vec<_> = addresses.iter().map(|address| format!("0x{address:02X}")).collect();
         if each.is_empty() { String::new() } else { format!(", also answers {}", each.join(" ")) }
     };
-    let stream = desk.link.stream.map_or("not known".to_owned(), |stream| stream.to_string());
-    let port = match desk.family().lacks(Ability::Streams) {
+    let stream = connection.link.stream.map_or("not known".to_owned(), |stream| stream.to_string());
+    let port = match connection.family().lacks(Ability::Streams) {
         Some(_) => identity.port.clone(),
         None => format!("{} ({stream})", identity.port),
     };
-    let figures = &desk.link.statistics;
+    let figures = &connection.link.statistics;
     let rows = [
         ("Says of itself", identity.version_text.trim().to_owned()),
         ("Firmware", format!("{}, {}", or_not_told(&identity.firmware), identity.generation)),
         ("Address", format!("{}{}", identity.place(), addresses(&identity.also_answers))),
         ("Port", port),
-        ("Status word", desk.link.status.as_ref().map_or(String::new(), word_text)),
+        ("Status word", connection.link.status.as_ref().map_or(String::new(), word_text)),
         (
             "Traffic",
             format!("{:.1} kbit/s, {:.0} requests/s", figures.kbit_per_s, figures.transactions_per_s),
@@ -47,7 +47,7 @@ pub fn unit_ui(ui: &mut Ui, desk: &Desk) {
             ),
         ),
     ];
-    let own = desk.family().unit_row(identity);
+    let own = connection.family().unit_row(identity);
     let weak = Palette::of(ui).weak_text;
     Grid::new("unit").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {
         for (label, value) in rows.into_iter().chain(own) {

@@ -14,7 +14,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 #[derive(Debug, Default)]
-pub struct Desk {
+pub struct TestHost {
     pub now: Duration,
     pub sent: HashMap<u32, Vec<u8>>,
     pub waiting: HashMap<u32, VecDeque<u8>>,
@@ -26,7 +26,7 @@ pub struct Desk {
     pub i2c_reply: Option<Vec<u8>>,
 }
 
-impl Host for Desk {
+impl Host for TestHost {
     fn now(&self) -> Duration {
         self.now
     }
@@ -79,10 +79,10 @@ pub fn machine(text: &str) -> Machine {
 }
 
 /// Runs a machine one instruction after the other, a hundred or up to a pause at a time, jumping over pauses.
-pub fn run_on(machine: &mut Machine, desk: &mut Desk, most: u32) -> State {
+pub fn run_on(machine: &mut Machine, host: &mut TestHost, most: u32) -> State {
     for _ in 0..most / 100 {
-        match machine.run(desk, 100) {
-            State::Pausing { until } => desk.now = *until,
+        match machine.run(host, 100) {
+            State::Pausing { until } => host.now = *until,
             State::Ready => {}
             state => return state.clone(),
         }
@@ -91,15 +91,15 @@ pub fn run_on(machine: &mut Machine, desk: &mut Desk, most: u32) -> State {
 }
 
 /// Runs a machine to its end or to this many instructions, so many at a time: of thousands it runs several in one.
-pub fn run_in_slices(machine: &mut Machine, desk: &mut Desk, most: u32, slice: u32) -> State {
+pub fn run_in_slices(machine: &mut Machine, host: &mut TestHost, most: u32, slice: u32) -> State {
     let most = machine.executed() + u64::from(most);
     let mut turns = 0;
     while machine.executed() < most {
         turns += 1;
         assert!(turns < 1_000_000, "it hangs");
         let left = u32::try_from(most - machine.executed()).unwrap_or(u32::MAX);
-        match machine.run(desk, slice.min(left)) {
-            State::Pausing { until } => desk.now = *until,
+        match machine.run(host, slice.min(left)) {
+            State::Pausing { until } => host.now = *until,
             State::Ready => {}
             state => return state.clone(),
         }
@@ -110,9 +110,9 @@ pub fn run_in_slices(machine: &mut Machine, desk: &mut Desk, most: u32, slice: u
 /// What a program sends to stream 0, with its last state; the same both ways in which a machine runs.
 pub fn run(text: &str) -> (String, State) {
     let [one_by_one, several] = [100, 100_000].map(|slice| {
-        let mut desk = Desk::default();
-        let state = run_in_slices(&mut machine(text), &mut desk, 200_000, slice);
-        let sent = desk.sent.remove(&0).unwrap_or_default();
+        let mut host = TestHost::default();
+        let state = run_in_slices(&mut machine(text), &mut host, 200_000, slice);
+        let sent = host.sent.remove(&0).unwrap_or_default();
         (sent.into_iter().map(char::from).collect(), state)
     });
     assert_eq!(one_by_one, several, "{text}");
@@ -132,8 +132,8 @@ pub fn value(expression: &str) -> String {
 }
 
 /// Whether two hosts saw the same.
-pub fn same_desk(a: &Desk, b: &Desk) -> bool {
-    let outside = |desk: &Desk| (desk.sent.clone(), desk.registers.clone(), desk.eeprom.clone());
-    let done = |desk: &Desk| (desk.motions.clone(), desk.i2c.clone(), desk.waiting.clone());
+pub fn same_host(a: &TestHost, b: &TestHost) -> bool {
+    let outside = |host: &TestHost| (host.sent.clone(), host.registers.clone(), host.eeprom.clone());
+    let done = |host: &TestHost| (host.motions.clone(), host.i2c.clone(), host.waiting.clone());
     a.now == b.now && outside(a) == outside(b) && done(a) == done(b)
 }

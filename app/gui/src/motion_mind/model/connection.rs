@@ -1,4 +1,4 @@
-//! What a desk says of the Motion Mind that it is linked to, and what its screens ask for.
+//! What a connection says of the Motion Mind that it is linked to, and what its screens ask for.
 
 use brushwork_link::device::Identity;
 use brushwork_link::settings::{SettingValue, SettingsImage};
@@ -11,18 +11,18 @@ use brushwork_values::Motor;
 use super::drive::{ANALOG_FULL, PULSE_FULL};
 use super::registers::{self, bit_key, key};
 use super::steps::touched;
-use super::{Driven, MotionMindDesk};
+use super::{Driven, MotionMindConnection};
 use crate::family::Known;
-use crate::model::desk::Desk;
+use crate::model::connection::Connection;
 use crate::model::setpoints::Direction;
 
-impl Desk {
+impl Connection {
     /// What is kept of its own.
-    pub fn mind(&self) -> &MotionMindDesk {
+    pub fn mind(&self) -> &MotionMindConnection {
         self.own()
     }
 
-    pub fn mind_mut(&mut self) -> &mut MotionMindDesk {
+    pub fn mind_mut(&mut self) -> &mut MotionMindConnection {
         self.own_mut()
     }
 
@@ -60,7 +60,7 @@ pub fn cannot_tune(identity: Option<&Identity>, known: Known<'_>) -> Option<&'st
     )
 }
 
-impl Desk {
+impl Connection {
     /// The raw value of a register, by its name, as far as it was read. A setting's is that of the settings' model, which takes note
     /// of every write; what the unit measures was read while a screen showed it.
     pub fn register(&self, name: &str) -> Option<i64> {
@@ -93,7 +93,7 @@ impl Desk {
     }
 }
 
-impl Desk {
+impl Connection {
     /// Where a position may be asked for: the scale of an analog or pulse feedback, the virtual limits, or what was set.
     pub fn mind_travel(&self) -> (f64, f64) {
         let span = self.mind().reach.span_counts;
@@ -154,28 +154,31 @@ mod tests {
 
     #[test]
     fn a_velocity_goes_out_in_whole_counts_per_loop() {
-        let mut desk = Desk::default();
-        desk.ask_velocity(-12.4);
+        let mut connection = Connection::default();
+        connection.ask_velocity(-12.4);
         let wanted = DriveCommand::Speed { speed_counts_per_s: -2400, accel_counts_per_s2: None };
-        assert_eq!(to_send(ArmScope::Velocity, desk.velocity.setpoints), Some(Drive::one(Motor::M1, wanted)));
-        desk.ask_velocity(5000.0);
-        assert_eq!(desk.velocity.setpoints.values[0], 50.0, "the slider's end");
+        assert_eq!(
+            to_send(ArmScope::Velocity, connection.velocity.setpoints),
+            Some(Drive::one(Motor::M1, wanted))
+        );
+        connection.ask_velocity(5000.0);
+        assert_eq!(connection.velocity.setpoints.values[0], 50.0, "the slider's end");
     }
 
     #[test]
     fn a_jog_runs_while_it_is_held() {
-        let mut desk = Desk::default();
-        desk.jog_velocity(Some(Direction::Backward));
-        assert_eq!(desk.velocity.setpoints.values[0], -10.0);
-        desk.jog_velocity(None);
-        assert_eq!(desk.velocity.setpoints.values[0], 0.0);
+        let mut connection = Connection::default();
+        connection.jog_velocity(Some(Direction::Backward));
+        assert_eq!(connection.velocity.setpoints.values[0], -10.0);
+        connection.jog_velocity(None);
+        assert_eq!(connection.velocity.setpoints.values[0], 0.0);
     }
 
     #[test]
     fn steps_add_up_and_stay_in_the_travel() {
-        let mut desk = Desk::default();
-        desk.ask_step(15_000.0);
-        desk.ask_step(15_000.0);
-        assert_eq!(desk.position.setpoints.values[0], 20_000.0);
+        let mut connection = Connection::default();
+        connection.ask_step(15_000.0);
+        connection.ask_step(15_000.0);
+        assert_eq!(connection.position.setpoints.values[0], 20_000.0);
     }
 }

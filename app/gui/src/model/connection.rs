@@ -1,7 +1,7 @@
 //! One link and all that belongs to it: what is known of its controllers, their settings, what its screens hold, and
 //! what its graph has recorded.
 //!
-//! Several desks are open at once; one is in front. Switching swaps whole desks, so nothing of one controller can
+//! Several connections are open at once; one is in front. Switching swaps whole connections, so nothing of one controller can
 //! end up in another.
 
 use std::any::Any;
@@ -40,11 +40,11 @@ use crate::family::{Family, Own, Sliders};
 use crate::graph::LiveGraph;
 use crate::tune::Tuning;
 
-/// Which desk, for as long as the window is open.
+/// Which connection, for as long as the window is open.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct DeskId(u32);
+pub struct ConnectionId(u32);
 
-impl DeskId {
+impl ConnectionId {
     pub fn next(self) -> Self {
         Self(self.0 + 1)
     }
@@ -52,8 +52,8 @@ impl DeskId {
 
 /// One link and all that belongs to it.
 #[derive(Debug)]
-pub struct Desk {
-    id: DeskId,
+pub struct Connection {
+    id: ConnectionId,
     /// What the link goes to, or went to last.
     pub target: Option<String>,
     /// The family of the unit that was looked at last, or that the target names.
@@ -141,15 +141,15 @@ impl Phase {
     }
 }
 
-impl Default for Desk {
+impl Default for Connection {
     fn default() -> Self {
-        Self::new(DeskId::default())
+        Self::new(ConnectionId::default())
     }
 }
 
-impl Desk {
-    /// A desk without a link.
-    pub fn new(id: DeskId) -> Self {
+impl Connection {
+    /// A connection without a link.
+    pub fn new(id: ConnectionId) -> Self {
         Self {
             id,
             target: None,
@@ -183,7 +183,7 @@ impl Desk {
         }
     }
 
-    pub fn id(&self) -> DeskId {
+    pub fn id(&self) -> ConnectionId {
         self.id
     }
 
@@ -288,7 +288,7 @@ impl Desk {
         Sliders { pwm: self.pwm, velocity: self.velocity, position: self.position }
     }
 
-    /// Takes over an event of this link. What it means beyond this desk is handed back: something to say, or the
+    /// Takes over an event of this link. What it means beyond this connection is handed back: something to say, or the
     /// end of the link.
     pub fn take(&mut self, event: Event) -> Vec<Effect> {
         let changes_ram = self.changes_ram(&event);
@@ -472,7 +472,7 @@ impl Desk {
         self.is_connected() && (in_graph || settings_are_shown && self.general.wants_signals())
     }
 
-    /// Does what an effect means for this desk.
+    /// Does what an effect means for this connection.
     fn settle(&mut self, effect: Effect) -> Option<Effect> {
         match effect {
             Effect::Say(..) | Effect::Ended => return Some(effect),
