@@ -65,7 +65,7 @@ fn main() {
 
 /// What the controller was last told.
 #[derive(Clone, Copy)]
-enum Told {
+enum Reported {
     Duty(f64),
     Speed(f64),
 }
@@ -75,7 +75,7 @@ struct Bench {
     now: Duration,
     ticks: u32,
     motion: Motion,
-    told: Told,
+    reported: Reported,
     duty: f64,
     registers: PlainRegisters,
     last_count: f64,
@@ -90,7 +90,7 @@ impl Default for Bench {
             now: Duration::ZERO,
             ticks: 0,
             motion: Motion::default(),
-            told: Told::Duty(0.0),
+            reported: Reported::Duty(0.0),
             duty: 0.0,
             registers: PlainRegisters {
                 gains: Gains { velocity: Pid { p: 1.0, i: 150.0, d: 0.0 }, ..Gains::default() },
@@ -120,12 +120,12 @@ impl Bench {
         let speed = (count - self.last_count) / tick_s;
         self.filtered_speed += tick_s / (FILTER_S + tick_s) * (speed - self.filtered_speed);
         self.last_count = count;
-        self.duty = match self.told {
-            Told::Duty(wanted) => {
+        self.duty = match self.reported {
+            Reported::Duty(wanted) => {
                 let most = DUTY_SLEW_PER_S * tick_s;
                 self.duty + (wanted - self.duty).clamp(-most, most)
             }
-            Told::Speed(wanted) => {
+            Reported::Speed(wanted) => {
                 let PlainRegisters { gains, qpps } = self.registers;
                 let gains = gains.velocity;
                 let error = wanted - self.filtered_speed;
@@ -145,12 +145,12 @@ impl Bench {
         Exchange { sent, received: self.now }
     }
 
-    fn tell(&mut self, told: Told) -> Result<Exchange, AxisError> {
+    fn tell(&mut self, reported: Reported) -> Result<Exchange, AxisError> {
         let exchange = self.exchange();
-        if matches!((self.told, told), (Told::Duty(_), Told::Speed(_))) {
+        if matches!((self.reported, reported), (Reported::Duty(_), Reported::Speed(_))) {
             self.error_sum = 0.0;
         }
-        self.told = told;
+        self.reported = reported;
         Ok(exchange)
     }
 }
@@ -183,12 +183,12 @@ impl Axis for Bench {
 
     /// Command 52.
     fn drive_duty(&mut self, duty_raw: i16) -> Result<Exchange, AxisError> {
-        self.tell(Told::Duty(f64::from(duty_raw) / f64::from(FULL_DUTY_RAW)))
+        self.tell(Reported::Duty(f64::from(duty_raw) / f64::from(FULL_DUTY_RAW)))
     }
 
     /// Command 35.
     fn command_speed(&mut self, counts_per_s: i32) -> Result<Exchange, AxisError> {
-        self.tell(Told::Speed(f64::from(counts_per_s)))
+        self.tell(Reported::Speed(f64::from(counts_per_s)))
     }
 
     fn command_position(&mut self, _counts: i32, _speed_counts_per_s: u32) -> Result<Exchange, AxisError> {

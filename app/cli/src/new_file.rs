@@ -266,7 +266,7 @@ mod tests {
     fn devices_and_pipes_are_written_to() {
         NewFile::new(Path::new("/dev/null"), UNASKED).write(b"x").unwrap();
         assert!(!fs::metadata("/dev/null").unwrap().is_file());
-        let told = NewFile::new(Path::new("/dev/full"), UNASKED).write(b"x").unwrap_err().to_string();
-        assert!(told.starts_with("Could not write /dev/full: No space left"), "{told}");
+        let reported = NewFile::new(Path::new("/dev/full"), UNASKED).write(b"x").unwrap_err().to_string();
+        assert!(reported.starts_with("Could not write /dev/full: No space left"), "{reported}");
     }
 }

@@ -40,9 +40,9 @@ impl ListedPorts {
         let (sender, receiver) = bounded(1);
         let watch = std::thread::Builder::new().name("ports".to_owned()).spawn(move || watch(&sender, &ctx));
         if let Err(error) = watch {
-            let mend = "Type the path of the port instead";
+            let remedy = "Type the path of the port instead";
             let (sender, receiver) = bounded(1);
-            let failure = Failure::new("watch the serial ports", "", error, mend);
+            let failure = Failure::new("watch the serial ports", "", error, remedy);
             sender.send(Err(failure)).expect("the channel is empty and its receiver is here");
             return Self(receiver);
         }
@@ -58,13 +58,13 @@ impl PortSource for ListedPorts {
 
 /// Ends when the window is gone.
 fn watch(sender: &Sender<Listed>, ctx: &Context) {
-    let mut told: Option<Listed> = None;
+    let mut reported: Option<Listed> = None;
     loop {
         let listed = list_ports();
-        if told.as_ref() != Some(&listed) {
+        if reported.as_ref() != Some(&listed) {
             match sender.try_send(listed.clone()) {
                 Ok(()) => {
-                    told = Some(listed);
+                    reported = Some(listed);
                     ctx.request_repaint();
                 }
                 // The window has not taken the list before; the next turn tries again.

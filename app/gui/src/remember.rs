@@ -202,14 +202,14 @@ fn read(path: &Path) -> Result<Remembered, Failure> {
             let aside = path.with_extension("json.broken");
             // If it cannot be put aside, it is overwritten: nothing in it is worth more than starting.
             let _ = fs::rename(path, &aside);
-            let mend = format!("Brushwork starts as it is at first. The old file is {}", aside.display());
-            Err(unread(path, error, &mend))
+            let remedy = format!("Brushwork starts as it is at first. The old file is {}", aside.display());
+            Err(unread(path, error, &remedy))
         }
     }
 }
 
-fn unread(path: &Path, error: impl std::fmt::Display, mend: &str) -> Failure {
-    Failure::new("read the window's state", path.display().to_string(), error, mend)
+fn unread(path: &Path, error: impl std::fmt::Display, remedy: &str) -> Failure {
+    Failure::new("read the window's state", path.display().to_string(), error, remedy)
 }
 
 /// A window that is nowhere or has no size is as good as none.
@@ -278,8 +278,8 @@ impl Writer {
 
 fn write(path: &Path, remembered: &Remembered) -> Result<(), Failure> {
     let failed = |error: &dyn std::fmt::Display| {
-        let mend = "The next start will be as the last one was. Look at the folder's permissions";
-        Failure::new("keep the window's state", path.display().to_string(), error, mend)
+        let remedy = "The next start will be as the last one was. Look at the folder's permissions";
+        Failure::new("keep the window's state", path.display().to_string(), error, remedy)
     };
     let text = serde_json::to_string_pretty(remembered).map_err(|error| failed(&error))?;
     if let Some(folder) = path.parent() {
@@ -328,8 +328,8 @@ mod tests {
         fs::write(&path, "{ \"theme\": \"purple\" ").unwrap();
         let (memory, failure) = Memory::at(Some(path.clone()));
         assert_eq!(*memory.remembered(), Remembered::default());
-        let told = failure.unwrap().to_string();
-        assert!(told.contains("window.json") && told.contains("broken"), "{told}");
+        let reported = failure.unwrap().to_string();
+        assert!(reported.contains("window.json") && reported.contains("broken"), "{reported}");
         assert!(path.with_extension("json.broken").exists() && !path.exists());
     }
 
@@ -355,7 +355,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let in_the_way = folder.path().join("config");
         fs::write(&in_the_way, "a file where a folder should be").unwrap();
-        let told = write(&in_the_way.join("window.json"), &Remembered::default()).unwrap_err().to_string();
-        assert!(told.contains("window.json"), "{told}");
+        let reported =
+            write(&in_the_way.join("window.json"), &Remembered::default()).unwrap_err().to_string();
+        assert!(reported.contains("window.json"), "{reported}");
     }
 }

@@ -170,7 +170,7 @@ mod tests {
         assert_eq!(reason, "libxkbcommon-x11.so could not be loaded");
         let reason = one_line("os error at /a/b.rs:788: Failed to load one of xlib's shared libraries");
         assert!(reason.starts_with("Failed to load one") && reason.contains("libxcursor1"), "{reason}");
-        let told = WindowError { reason }.to_string();
-        assert!(told.contains("brushwork --help") && told.lines().count() == 1, "{told}");
+        let reported = WindowError { reason }.to_string();
+        assert!(reported.contains("brushwork --help") && reported.lines().count() == 1, "{reported}");
     }
 }

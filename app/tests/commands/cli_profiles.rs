@@ -209,19 +209,19 @@ mod on_a_pseudo_terminal {
         for (settle, p1, deadband) in [("--finish", "7.000", "7"), ("--undo", "1.000", "0")] {
             let (kept, unit) = a_killed_write();
             assert_eq!(journals(&kept).len(), 1);
-            let told = at(&kept, &unit, "read", &["motor1.velocity.p"]).ended_with(DONE);
-            assert!(told.stderr.contains("A write of settings begun"), "{told:#?}");
-            assert!(told.stderr.contains("Motor 1: velocity P holds the"), "{told:#?}");
-            let told = at(&kept, &unit, "unfinished", &["--json"]).ended_with(DIFFERENT).json();
-            let aftermath = &told[0]["aftermath"];
+            let reported = at(&kept, &unit, "read", &["motor1.velocity.p"]).ended_with(DONE);
+            assert!(reported.stderr.contains("A write of settings begun"), "{reported:#?}");
+            assert!(reported.stderr.contains("Motor 1: velocity P holds the"), "{reported:#?}");
+            let reported = at(&kept, &unit, "unfinished", &["--json"]).ended_with(DIFFERENT).json();
+            let aftermath = &reported[0]["aftermath"];
             let count = |list: &str| aftermath[list].as_array().map_or(0, Vec::len);
             assert_eq!(count("old") + count("new"), 18, "{aftermath:#}");
             if count(if settle == "--undo" { "new" } else { "old" }) > 0 {
                 at(&kept, &unit, "unfinished", &[settle]).ended_with(REFUSED).explains("--yes");
             }
             at(&kept, &unit, "unfinished", &[settle, "--yes"]).ended_with(DONE);
-            let told = at(&kept, &unit, "unfinished", &[]).ended_with(DONE);
-            assert!(told.stdout.contains("Nothing that was begun"), "{told:#?}");
+            let reported = at(&kept, &unit, "unfinished", &[]).ended_with(DONE);
+            assert!(reported.stdout.contains("Nothing that was begun"), "{reported:#?}");
             at(&kept, &unit, "read", &["motor1.velocity.p"]).ended_with(DONE).prints(p1);
             at(&kept, &unit, "read", &["pin.9.deadband"]).ended_with(DONE).prints(deadband);
             assert_eq!(journals(&kept).len(), 0);
@@ -232,8 +232,8 @@ mod on_a_pseudo_terminal {
     fn what_was_cut_short_can_be_left_as_it_is() {
         let (kept, unit) = a_killed_write();
         at(&kept, &unit, "unfinished", &["--forget"]).ended_with(DONE).prints("A write of settings");
-        let told = at(&kept, &unit, "read", &["motor1.velocity.p"]).ended_with(DONE);
-        assert!(!told.stderr.contains("cut short"), "{told:#?}");
+        let reported = at(&kept, &unit, "read", &["motor1.velocity.p"]).ended_with(DONE);
+        assert!(!reported.stderr.contains("cut short"), "{reported:#?}");
     }
 
     /// A controller in the middle of a write whose program was killed once its journal was there and some may be sent.

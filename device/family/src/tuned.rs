@@ -133,7 +133,7 @@ impl<A: Tuned<Law: LeadingLaw + LawProbe>, B: OtherTuned> Tuned for OneOf<A, B> 
 
 /// What a failed exchange means to the tuner.
 #[must_use]
-pub fn told(error: &ExchangeError) -> AxisError {
+pub fn reported(error: &ExchangeError) -> AxisError {
     if error.interruption().is_some() {
         AxisError::Stopped
     } else if error.is_link_lost() {
@@ -145,7 +145,7 @@ pub fn told(error: &ExchangeError) -> AxisError {
             | ExchangeError::BadAcknowledgement { .. }
             | ExchangeError::Malformed { .. } => AxisError::NoReply,
             // Whatever the tuner commands is absolute and at once, so that it may come twice.
-            ExchangeError::MayHaveRun { cause } => told(cause),
+            ExchangeError::MayHaveRun { cause } => reported(cause),
             other => AxisError::Refused(other.to_string()),
         }
     }

@@ -15,7 +15,7 @@ pub struct Failure {
     /// What came back, without a full stop: "no answer within 60 ms (3 tries)".
     pub came_back: String,
     /// What to do, a sentence without its full stop. Empty when there is nothing to do.
-    pub mend: String,
+    pub remedy: String,
 }
 
 impl Failure {
@@ -24,9 +24,9 @@ impl Failure {
         tried: impl Into<String>,
         on: impl Into<String>,
         came_back: impl fmt::Display,
-        mend: impl Into<String>,
+        remedy: impl Into<String>,
     ) -> Self {
-        Self { tried: tried.into(), on: on.into(), came_back: came_back.to_string(), mend: mend.into() }
+        Self { tried: tried.into(), on: on.into(), came_back: came_back.to_string(), remedy: remedy.into() }
     }
 }
 
@@ -37,8 +37,8 @@ impl fmt::Display for Failure {
             write!(f, " on {}", self.on)?;
         }
         write!(f, ": {}.", self.came_back)?;
-        if !self.mend.is_empty() {
-            write!(f, " {}.", self.mend)?;
+        if !self.remedy.is_empty() {
+            write!(f, " {}.", self.remedy)?;
         }
         Ok(())
     }

@@ -46,7 +46,7 @@ pub struct Rigid {
     ratio: f64,
     friction: DryFriction,
     travel: Travel,
-    /// Sum of the torques of the last step, from which the next step's charge is foretold.
+    /// Sum of the torques of the last step, from which the next step's charge is predicted.
     last_newton_metres: f64,
     model: Model,
     maps: Maps,

@@ -139,12 +139,12 @@ pub const MOST_TOLD: usize = 100;
 /// how many there are. What is said twice counts once.
 #[derive(Clone, Debug, Default)]
 pub struct Diagnostics {
-    errors: Told,
-    warnings: Told,
+    errors: Reported,
+    warnings: Reported,
 }
 
 #[derive(Clone, Debug, Default)]
-struct Told {
+struct Reported {
     /// By place and code.
     list: BTreeMap<(u32, &'static str), Vec<Diagnostic>>,
     count: usize,
@@ -152,14 +152,14 @@ struct Told {
     others: HashSet<(u32, u16)>,
 }
 
-impl Told {
+impl Reported {
     /// `told` is only asked for what is listed.
-    fn push(&mut self, key: (u32, &'static str), told: impl FnOnce() -> Diagnostic) {
+    fn push(&mut self, key: (u32, &'static str), reported: impl FnOnce() -> Diagnostic) {
         let is_late = self.list.last_key_value().is_none_or(|(last, _)| key > *last);
         if self.count >= MOST_TOLD && is_late {
             return self.pass_over(key);
         }
-        let said = told();
+        let said = reported();
         let same = self.list.entry(key).or_default();
         if same.contains(&said) {
             return;
@@ -202,10 +202,10 @@ impl Diagnostics {
     }
 
     /// Notes one at byte `start`; what it says is only asked if it is listed.
-    pub fn note(&mut self, start: u32, code: &'static str, told: impl FnOnce() -> Diagnostic) {
+    pub fn note(&mut self, start: u32, code: &'static str, reported: impl FnOnce() -> Diagnostic) {
         match severity_of(code) {
-            Severity::Error => self.errors.push((start, code), told),
-            Severity::Warning => self.warnings.push((start, code), told),
+            Severity::Error => self.errors.push((start, code), reported),
+            Severity::Warning => self.warnings.push((start, code), reported),
         }
     }
 
@@ -228,10 +228,10 @@ impl Diagnostics {
             self.warnings.more(codes::MORE_WARNINGS, "warning"),
         ];
         let lists = self.errors.list.into_values().chain(self.warnings.list.into_values());
-        let mut told: Vec<Diagnostic> = lists.flatten().collect();
-        told.sort_by_key(|said| (said.span.start, said.code));
-        told.extend(more.into_iter().flatten());
-        told
+        let mut reported: Vec<Diagnostic> = lists.flatten().collect();
+        reported.sort_by_key(|said| (said.span.start, said.code));
+        reported.extend(more.into_iter().flatten());
+        reported
     }
 }
 

@@ -78,12 +78,13 @@ fn nodes_are_found_in_both_forms_and_generations_and_nothing_moves() {
                 VirtualLink::on_can(bus(generation, &[3, 17], form), form, options(false), Vec::new(), 1);
             link.run_for(Duration::from_secs(5));
             let found = identities(&link);
-            let told: Vec<_> = found.iter().map(|unit| (unit.place(), unit.model, unit.generation)).collect();
+            let reported: Vec<_> =
+                found.iter().map(|unit| (unit.place(), unit.model, unit.generation)).collect();
             let expected = [
                 ("node 3".to_owned(), Some("MCP266"), brushwork_mcp_client::firmware_of(generation)),
                 ("node 17".to_owned(), Some("MCP266"), brushwork_mcp_client::firmware_of(generation)),
             ];
-            assert_eq!(told, expected, "{form:?}");
+            assert_eq!(reported, expected, "{form:?}");
             assert!(
                 found[0].notes.iter().any(|note| note.contains("product 0x0000010A")),
                 "{:?}",
@@ -187,11 +188,11 @@ fn a_real_controller_is_not_armed_over_can_and_it_says_why() {
     let mut link = VirtualLink::on_can(bus, Form::Ascii, options(false), Vec::new(), 1);
     link.run_for(ms(3000));
     assert!(!link.arm(ArmScope::Pwm));
-    let told = link.events.iter().find_map(|(_, event)| match event {
+    let reported = link.events.iter().find_map(|(_, event)| match event {
         Event::ArmRefused { reasons, .. } => Some(reasons[0].to_string()),
         _ => None,
     });
-    assert!(told.clone().unwrap().contains("no time-out (MCP manual 1.9.4)"), "{told:?}");
+    assert!(reported.clone().unwrap().contains("no time-out (MCP manual 1.9.4)"), "{reported:?}");
     link.drive(0.5);
     link.run_for(ms(500));
     assert_eq!(link.duties(0), [0.0, 0.0]);

@@ -116,16 +116,16 @@ fn stop_without_an_address_stops_every_unit_of_the_line_and_says_which_and_who_d
     assert_eq!(ending.status.code(), Some(DONE), "{ending:?}");
     wait::until("bridges at rest", || line.driven() == [false; 3], || format!("{:?}", line.driven()));
     for place in ["0x80", "0x81", "0x85"] {
-        let told = format!("{place}: both motors stopped");
-        assert!(ending.stdout.iter().any(|sentence| sentence.starts_with(&told)), "{ending:?}");
+        let reported = format!("{place}: both motors stopped");
+        assert!(ending.stdout.iter().any(|sentence| sentence.starts_with(&reported)), "{ending:?}");
     }
     let said = ending.stderr.join(" ");
     assert!(said.contains("Nobody answered at 0x82 to 0x84, 0x86, 0x87"), "{said}");
     line.set_all_going();
-    let told = json(&run(&["stop", "--connect", &text(&line.port()), "--json"]));
-    assert_eq!(told["confirmed"], true);
+    let reported = json(&run(&["stop", "--connect", &text(&line.port()), "--json"]));
+    assert_eq!(reported["confirmed"], true);
     let addresses: Vec<_> =
-        told["units"].as_array().into_iter().flatten().map(|unit| &unit["address"]).collect();
+        reported["units"].as_array().into_iter().flatten().map(|unit| &unit["address"]).collect();
     assert_eq!(addresses, [0x80, 0x81, 0x85]);
     wait::until("bridges at rest", || line.driven() == [false; 3], || format!("{:?}", line.driven()));
 }
@@ -160,8 +160,8 @@ fn stop_on_a_can_bus_stops_every_node_that_is_a_controller() {
     assert_eq!(ending.status.code(), Some(DONE), "{ending:?}");
     wait::until("bridges at rest", || bus.driven() == [false; 2], || format!("{:?}", bus.driven()));
     for node in ["node 3", "node 5"] {
-        let told = format!("{node}: both motors stopped");
-        assert!(ending.stdout.iter().any(|sentence| sentence.starts_with(&told)), "{ending:?}");
+        let reported = format!("{node}: both motors stopped");
+        assert!(ending.stdout.iter().any(|sentence| sentence.starts_with(&reported)), "{ending:?}");
     }
     assert!(ending.stderr.join(" ").contains("Nodes that do not answer"), "{ending:?}");
 }
@@ -365,8 +365,8 @@ fn a_tap_decodes_a_foreign_program_and_stops_its_motors_when_it_ends() {
 fn a_port_that_is_not_there_is_told_in_a_sentence() {
     let ending = run(&["status", "--connect", "/dev/no-such-port"]);
     assert_eq!(ending.status.code(), Some(NO_LINK), "{ending:?}");
-    let told = ending.stderr.join(" ");
-    assert!(told.contains("/dev/no-such-port") && told.ends_with('.'), "{told}");
+    let reported = ending.stderr.join(" ");
+    assert!(reported.contains("/dev/no-such-port") && reported.ends_with('.'), "{reported}");
 }
 
 #[test]
@@ -375,8 +375,8 @@ fn a_port_that_is_no_controller_is_told_in_a_sentence() {
     let target = format!("tcp:{}", listener.local_addr().expect("it has an address"));
     let ending = run(&["status", "--connect", &target]);
     assert_eq!(ending.status.code(), Some(NO_LINK), "{ending:?}");
-    let told = ending.stderr.join(" ");
-    assert!(told.contains(&target) && told.ends_with('.'), "{told}");
+    let reported = ending.stderr.join(" ");
+    assert!(reported.contains(&target) && reported.ends_with('.'), "{reported}");
 }
 
 #[test]

@@ -204,9 +204,9 @@ fn stop_stops_what_another_program_has_left_running_and_says_so() {
         let ending = run(&[&["stop", "--connect", &text(&controller.port())], more].concat());
         assert_eq!(code(&ending), Some(DONE), "{ending:?}");
         let _ = controller.wait_until_off();
-        let told = ending.stdout.join("\n");
+        let reported = ending.stdout.join("\n");
         match more {
-            [] => assert!(told.contains("0x80: both motors stopped, buffers empty"), "{told}"),
+            [] => assert!(reported.contains("0x80: both motors stopped, buffers empty"), "{reported}"),
             _ => assert_eq!(json(&ending)["confirmed"], true),
         }
     }
@@ -248,10 +248,10 @@ fn every_command_has_help_with_an_example() {
     let commands = ["list", "status", "drive", "stop", "settings", "sim", "protocol", "monitor", "bench"];
     let top = run(&["--help"]);
     assert_eq!(code(&top), Some(DONE));
-    let told = top.stdout.join("\n");
-    assert!(told.contains("Exit codes:") && told.contains("130"), "{told}");
+    let reported = top.stdout.join("\n");
+    assert!(reported.contains("Exit codes:") && reported.contains("130"), "{reported}");
     for command in commands {
-        assert!(told.contains(&format!("\n  {command} ")), "{command} is not in: {told}");
+        assert!(reported.contains(&format!("\n  {command} ")), "{command} is not in: {reported}");
         for asked in [&[command, "--help"][..], &["help", command], &[command, "-h"]] {
             let ending = run(asked);
             assert_eq!(code(&ending), Some(DONE), "{ending:?}");
@@ -274,12 +274,12 @@ fn the_faults_that_help_promises_are_all_taken() {
 // What goes wrong
 
 /// One sentence, or several, and no trace of a panic.
-fn assert_told(ending: &Ending, wanted: i32, words: &[&str]) {
-    let told = ending.stderr.join("\n");
-    assert_eq!(code(ending), Some(wanted), "{told}");
-    assert!(!told.contains("panicked"), "{told}");
+fn assert_reported(ending: &Ending, wanted: i32, words: &[&str]) {
+    let reported = ending.stderr.join("\n");
+    assert_eq!(code(ending), Some(wanted), "{reported}");
+    assert!(!reported.contains("panicked"), "{reported}");
     for word in words {
-        assert!(told.contains(word), "`{word}` is not in: {told}");
+        assert!(reported.contains(word), "`{word}` is not in: {reported}");
     }
 }
 
@@ -301,7 +301,7 @@ fn bad_arguments_of_sim_are_told_in_a_sentence_that_says_what_may_stand_there() 
         (&["--pty", &taken], FAILED, &[&taken, "already there"]),
     ];
     for (arguments, wanted, words) in cases {
-        assert_told(&run(&[&["sim"], arguments].concat()), wanted, words);
+        assert_reported(&run(&[&["sim"], arguments].concat()), wanted, words);
     }
     assert!(file.path().exists(), "what was there is left alone");
 }
@@ -315,9 +315,9 @@ fn a_target_that_makes_no_sense_is_told_in_a_sentence() {
         ("tcp:127.0.0.1:1", NO_LINK, "127.0.0.1:1"),
         ("/etc/hostname", NO_LINK, "/etc/hostname"),
     ] {
-        assert_told(&run(&["status", "--connect", target]), wanted, &[word]);
+        assert_reported(&run(&["status", "--connect", target]), wanted, &[word]);
     }
-    assert_told(&run(&["protocol", "no_such_command"]), USAGE, &["no_such_command"]);
+    assert_reported(&run(&["protocol", "no_such_command"]), USAGE, &["no_such_command"]);
 }
 
 /// Answers every request with bytes that mean nothing, by a generator with a fixed seed.
@@ -355,7 +355,7 @@ fn a_port_that_talks_nonsense_is_no_controller() {
             scope.spawn(|| babble(&listener));
             let more: &[&str] = if command == "drive" { &["--duty", "10"] } else { &[] };
             let ending = run(&[&[command, "--connect", &target], more].concat());
-            assert_told(&ending, NO_LINK, &[&target]);
+            assert_reported(&ending, NO_LINK, &[&target]);
             assert!(ending.stdout.is_empty(), "{ending:?}");
         });
     }
@@ -367,7 +367,7 @@ fn a_port_that_another_program_holds_is_told_with_its_name() {
     let port = text(&controller.port());
     let mut holder = start(&["status", "--connect", &port, "--watch"]);
     holder.next_line(LIMIT).expect("it has connected");
-    assert_told(&run(&["status", "--connect", &port]), NO_LINK, &[&port, "using it"]);
+    assert_reported(&run(&["status", "--connect", &port]), NO_LINK, &[&port, "using it"]);
 }
 
 #[test]
@@ -380,8 +380,8 @@ fn without_a_display_the_program_names_the_command_line() {
             command.env_remove(name);
         }
         let ending = Program::spawn(command).finish(LIMIT);
-        assert_told(&ending, FAILED, &["no display", "command line", "brushwork --help"]);
+        assert_reported(&ending, FAILED, &["no display", "command line", "brushwork --help"]);
         assert_eq!(ending.stderr.len(), 1, "{ending:?}");
     }
-    assert_told(&run(&["--open", "sim:mcp266", "status"]), USAGE, &["--open"]);
+    assert_reported(&run(&["--open", "sim:mcp266", "status"]), USAGE, &["--open"]);
 }

@@ -141,11 +141,14 @@ impl Machine for Silent {
 fn on_a_silent_port_all_families_are_looked_for_and_where_one_may_be_all_the_same_is_told() {
     let mut link = VirtualLink::over(Silent::default(), DeviceOptions::default(), Vec::new(), 1);
     link.run_for(Duration::from_secs(20));
-    let told = link.events.iter().find_map(|(_, event)| match event {
+    let reported = link.events.iter().find_map(|(_, event)| match event {
         Event::Lost(reason) => Some(reason.to_string()),
         _ => None,
     });
-    let told = told.expect("the search ends");
-    assert!(told.contains("nothing answered at addresses 0x80 to 0x87"), "{told}");
-    assert!(told.ends_with("choose its family (family=motion-mind), so that all are asked."), "{told}");
+    let reported = reported.expect("the search ends");
+    assert!(reported.contains("nothing answered at addresses 0x80 to 0x87"), "{reported}");
+    assert!(
+        reported.ends_with("choose its family (family=motion-mind), so that all are asked."),
+        "{reported}"
+    );
 }

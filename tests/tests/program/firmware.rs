@@ -188,8 +188,8 @@ fn power_lost_in_the_erase_kills_the_unit_as_the_risk_text_says() {
         assert_eq!(line.with(|bus| bus.controllers()[0].flash().clone()), Flash::Dead);
         assert_eq!(version(&line), None, "nothing runs, with power or without");
     }
-    let told = brushwork_mcp_client::firmware::risks(false).join(" ");
-    assert!(told.contains("dead for good") && told.contains("no recovery"), "{told}");
+    let reported = brushwork_mcp_client::firmware::risks(false).join(" ");
+    assert!(reported.contains("dead for good") && reported.contains("no recovery"), "{reported}");
 }
 
 #[test]

@@ -108,10 +108,11 @@ fn told_of_two_clients() -> Vec<Value> {
     }
     let ending = tapped.end("TERM");
     let records = records(&ending);
-    let told = |record: &&Value, direction: &str, words: &str| {
+    let reported = |record: &&Value, direction: &str, words: &str| {
         record["direction"] == direction && record["text"].as_str().is_some_and(|text| text.contains(words))
     };
-    let versions = records.iter().filter(|record| told(record, "from_controller", "MCP266 2x60A")).count();
+    let versions =
+        records.iter().filter(|record| reported(record, "from_controller", "MCP266 2x60A")).count();
     assert!(versions >= 2, "each client reads the version: {ending:?}");
     let is_wrong = |record: &Value| {
         ["no answer", "bad reply", "dropped", "answer to nothing"]
@@ -229,8 +230,8 @@ fn a_place_that_cannot_be_served_is_told_in_a_sentence() {
     ] {
         let ending = run(&[&["monitor", "--connect", "sim:mcp266"][..], &arguments].concat());
         assert_eq!(code(&ending), Some(1), "{ending:?}");
-        let told = ending.stderr.join(" ");
-        assert!(told.contains(words) && told.ends_with('.'), "{told}");
+        let reported = ending.stderr.join(" ");
+        assert!(reported.contains(words) && reported.ends_with('.'), "{reported}");
     }
     assert!(file.path().exists(), "what was there is left alone");
 }
@@ -322,9 +323,9 @@ fn motion_mind_behind_a_tap(protocol: &str) -> (Ending, Vec<Value>) {
 fn a_tap_in_front_of_a_motion_mind_tells_both_protocols_and_stops_what_runs_on() {
     for (protocol, wrong) in [("binary", "checksum is 0x31 and not 0x30"), ("ascii", "no command: \"Q01\"")] {
         let (ending, records) = motion_mind_behind_a_tap(protocol);
-        let told: Vec<&str> = records.iter().filter_map(|record| record["text"].as_str()).collect();
+        let reported: Vec<&str> = records.iter().filter_map(|record| record["text"].as_str()).collect();
         for words in ["unit 1: read MODE", "MODE 3", wrong, "unit 1: drive 300 of 1023", "acknowledged"] {
-            assert!(told.iter().any(|text| text.contains(words)), "{protocol} {words}: {told:?}");
+            assert!(reported.iter().any(|text| text.contains(words)), "{protocol} {words}: {reported:?}");
         }
         let said = ending.stderr.join("\n");
         assert!(said.contains("the motor of unit 1"), "{protocol}: {said}");

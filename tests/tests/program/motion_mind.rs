@@ -67,8 +67,8 @@ fn stop_finds_and_stops_units_at_other_addresses_than_the_factorys_without_being
     let ending = Program::start(BRUSHWORK, &["stop", "--connect", &format!("tcp:{port}")]).finish(LIMIT);
     assert_eq!(ending.status.code(), Some(0), "{ending:?}");
     for unit in [3, 7] {
-        let told = format!("unit {unit}: motor stopped");
-        assert!(ending.stdout.iter().any(|sentence| sentence.starts_with(&told)), "{ending:?}");
+        let reported = format!("unit {unit}: motor stopped");
+        assert!(ending.stdout.iter().any(|sentence| sentence.starts_with(&reported)), "{ending:?}");
     }
     let mut stream = TcpStream::connect(port).expect("it is still served");
     stream.set_read_timeout(Some(LIMIT)).expect("a timeout can be set");
@@ -193,8 +193,8 @@ fn settings_through_their_life(protocol: &str) {
     assert!(said.contains("stops the motor") && said.contains("answers at 1 now"), "{said}");
     expect(0, "6000", run_in(folder, &["settings", "read", "--connect", &target, "register.pterm"]));
     // Found without its family being named, at the factory address; told once which revision it is.
-    let told = expect(0, "revision 9", run_in(folder, &["status", "--connect", &port]));
-    assert_eq!(told.matches("revision 9").count(), 1, "{told}");
+    let reported = expect(0, "revision 9", run_in(folder, &["status", "--connect", &port]));
+    assert_eq!(reported.matches("revision 9").count(), 1, "{reported}");
 }
 
 #[test]

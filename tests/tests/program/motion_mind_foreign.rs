@@ -473,14 +473,14 @@ fn identity(link: &Link) -> Identity {
 }
 
 fn failures(link: &Link) -> Vec<String> {
-    let told = link.events.iter().filter_map(|(_, event)| match event {
+    let reported = link.events.iter().filter_map(|(_, event)| match event {
         Event::Failure(failure) | Event::Lost(failure) => Some(failure.to_string()),
         Event::ArmRefused { reasons, .. } => {
             Some(reasons.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "))
         }
         _ => None,
     });
-    told.collect()
+    reported.collect()
 }
 
 fn latest(link: &Link, channel: Channel) -> Option<f64> {

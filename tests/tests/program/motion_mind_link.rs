@@ -131,14 +131,14 @@ fn identities(link: &Link) -> Vec<Identity> {
 }
 
 fn failures(link: &Link) -> Vec<String> {
-    let told = link.events.iter().filter_map(|(_, event)| match event {
+    let reported = link.events.iter().filter_map(|(_, event)| match event {
         Event::Failure(failure) | Event::Lost(failure) => Some(failure.to_string()),
         Event::ArmRefused { reasons, .. } => {
             Some(reasons.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "))
         }
         _ => None,
     });
-    told.collect()
+    reported.collect()
 }
 
 fn register(link: &Link, number: u8) -> i64 {
@@ -377,7 +377,7 @@ fn each_mode_takes_what_it_takes_and_says_what_it_does_not() {
         assert!(latest(&link, Channel::M1_VELOCITY).is_some_and(|speed| speed > 1000.0));
         drive(&link, speed(1000));
         link.run_for(ms(100));
-        assert!(failures(&link).iter().any(|told| told.contains("duties and nothing else")));
+        assert!(failures(&link).iter().any(|reported| reported.contains("duties and nothing else")));
 
         let mut link = connected(Mode::SerialPid, protocol);
         tame(&link);
@@ -432,7 +432,7 @@ fn nothing_moves_unarmed_by_whatever_request() {
         }
         link.run_for(ms(2_000));
         assert_eq!((register(&link, PWMOUT), register(&link, POSITION)), (0, 0), "{mode}");
-        let told = failures(&link).len()
+        let reported = failures(&link).len()
             + link
                 .events
                 .iter()
@@ -442,7 +442,7 @@ fn nothing_moves_unarmed_by_whatever_request() {
                     _ => false,
                 })
                 .count();
-        assert!(told >= 7, "{mode}: {:?}", link.events);
+        assert!(reported >= 7, "{mode}: {:?}", link.events);
     }
 }
 

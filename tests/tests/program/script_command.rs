@@ -69,8 +69,8 @@ fn what_is_compiled_here_is_not_sent_unless_the_controller_is_said_to_be_simulat
     assert_eq!(controller.look(holds), Content::Nothing);
     let done = run(&["download", &file, "--to", &target, "--simulated", "--json"]);
     assert_eq!(code(&done), Some(DONE), "{done:?}");
-    let told: Value = serde_json::from_str(&done.stdout.join("\n")).expect("JSON");
-    assert_eq!((&told["verified"], &told["status"]), (&"status".into(), &255.into()), "{told}");
+    let reported: Value = serde_json::from_str(&done.stdout.join("\n")).expect("JSON");
+    assert_eq!((&reported["verified"], &reported["status"]), (&"status".into(), &255.into()), "{reported}");
     assert_eq!(controller.look(holds), Content::Own);
     assert!(!controller.look(runs), "a download starts nothing");
 }
@@ -99,9 +99,9 @@ fn autorun_is_told_and_set_and_a_foreign_image_is_not_run() {
     let target = target(&controller);
     let set = run(&["autorun", "500", "--json", "--to", &target]);
     assert!(set.stdout.join("\n").contains("500"), "{set:?}");
-    let told = run(&["status", "--to", &target]);
-    assert_eq!(told.stdout[0], "Autorun is on: the script starts 500 ms after power-up.", "{told:?}");
-    assert!(told.stdout[1].starts_with("No command of the protocol tells"), "{told:?}");
+    let reported = run(&["status", "--to", &target]);
+    assert_eq!(reported.stdout[0], "Autorun is on: the script starts 500 ms after power-up.", "{reported:?}");
+    assert!(reported.stdout[1].starts_with("No command of the protocol tells"), "{reported:?}");
     let done = run(&["download", &text(&file), "--to", &target]);
     assert_eq!(code(&done), Some(DONE), "{done:?}");
     assert!(done.stderr.join("\n").contains("Autorun is on"), "{done:?}");

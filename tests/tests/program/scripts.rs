@@ -133,13 +133,13 @@ fn a_script_is_downloaded_with_progress_and_then_runs() {
     assert_eq!((done.bytes, done.blocks, done.is_foreign), (program.len(), program.blocks().len(), false));
     assert_eq!((done.verified, done.autorun), (Verified::Status, None));
     assert!(done.took > Duration::from_millis(1_500), "an erase takes its time: {:?}", done.took);
-    let told = link.events.iter().filter_map(|(_, event)| match event {
+    let reported = link.events.iter().filter_map(|(_, event)| match event {
         Event::JobProgress { fraction, text, .. } => Some((*fraction, text.as_str())),
         _ => None,
     });
-    let told: Vec<_> = told.collect();
-    assert!(told.contains(&(None, "erasing the script memory")), "{told:?}");
-    assert_eq!(told.last(), Some(&(Some(1.0), "verifying")));
+    let reported: Vec<_> = reported.collect();
+    assert!(reported.contains(&(None, "erasing the script memory")), "{reported:?}");
+    assert_eq!(reported.last(), Some(&(Some(1.0), "verifying")));
     assert_eq!(holds(&link), Content::Own);
     assert_eq!(script(&link), ScriptRun::Idle, "a download starts nothing");
     started(&mut link);
@@ -175,11 +175,11 @@ fn a_simulated_controller_takes_a_foreign_image_and_refuses_to_run_it() {
     link.ask(Request::StartScript);
     link.run_for(ms(300));
     assert_eq!(script(&link), ScriptRun::Idle);
-    let told = failures(&link);
-    assert!(told[0].starts_with("Could not start the script on 0x80 at"), "{told:?}");
+    let reported = failures(&link);
+    assert!(reported[0].starts_with("Could not start the script on 0x80 at"), "{reported:?}");
     assert!(
-        told[0].contains("it answered 00 instead of FF: it holds no script that it can run. Download"),
-        "{told:?}"
+        reported[0].contains("it answered 00 instead of FF: it holds no script that it can run. Download"),
+        "{reported:?}"
     );
 }
 
@@ -189,7 +189,7 @@ fn an_image_that_does_not_fit_is_told_with_its_place() {
     let file = ScriptImage::from_file(&vec![0x5A; 0x100 + 0x1_0010]).unwrap();
     let failure = refused(ended(&mut link, download_job(file, false)));
     assert!(failure.came_back.starts_with("the block at 0x010000 was answered with status 00"), "{failure}");
-    assert!(failure.mend.contains("holds a part of the image"), "{failure}");
+    assert!(failure.remedy.contains("holds a part of the image"), "{failure}");
 }
 
 #[test]
@@ -204,7 +204,7 @@ fn a_download_under_byte_loss_arrives_whole_or_says_what_it_left() {
                 let sent: Vec<u8> = program.blocks().flat_map(|block| block.bytes).collect();
                 assert_eq!(held, sent, "seed {seed}");
             }
-            JobEnding::Failed(failure) => assert!(!failure.mend.is_empty(), "seed {seed}: {failure}"),
+            JobEnding::Failed(failure) => assert!(!failure.remedy.is_empty(), "seed {seed}: {failure}"),
             other => panic!("seed {seed}: {other:?}"),
         }
     }

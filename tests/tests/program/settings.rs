@@ -85,8 +85,8 @@ fn a_unit_from_the_factory_holds_the_defaults_of_the_table() {
             let (_, mut wire, table) = unit(model, generation);
             let report = read_all(&mut wire, *table.subject()).unwrap_or_else(|failure| panic!("{failure}"));
             assert!(report.failures.is_empty(), "{} {generation}: {:?}", model.key, report.failures);
-            let told = describe(&table, &table.default_image(), &report.image);
-            assert_eq!(told, [""; 0], "{} {generation}", model.key);
+            let reported = describe(&table, &table.default_image(), &report.image);
+            assert_eq!(reported, [""; 0], "{} {generation}", model.key);
             assert_eq!(report.table.subject(), table.subject());
         }
     }
@@ -173,7 +173,7 @@ fn a_save_cut_by_a_power_loss_is_found_out() {
 
 #[test]
 fn a_full_write_under_one_percent_of_byte_loss_ends_right_or_says_what_is_not() {
-    let (mut complete, mut told) = (0, 0);
+    let (mut complete, mut reported) = (0, 0);
     for seed in 1..=20 {
         let (model, generation) = (model("mcp233"), Generation::Gen1);
         let controller = Controller::new(config(model, generation)).expect("the default world is sound");
@@ -188,7 +188,7 @@ fn a_full_write_under_one_percent_of_byte_loss_ends_right_or_says_what_is_not() 
             .map(|(key, value)| (key.to_owned(), value))
             .collect();
         let Ok(report) = write(&mut wire, &table, &wanted, OPTIONS) else {
-            told += 1;
+            reported += 1;
             continue;
         };
         let truth = truth(&line, &table, generation);
@@ -203,10 +203,10 @@ fn a_full_write_under_one_percent_of_byte_loss_ends_right_or_says_what_is_not() 
                 RowState::Unverified { .. } => {}
             }
         }
-        if report.is_complete() { complete += 1 } else { told += 1 }
+        if report.is_complete() { complete += 1 } else { reported += 1 }
     }
-    assert_eq!(complete + told, 20);
-    assert!(complete > 0 && told > 0, "both ends are seen: {complete} right, {told} told");
+    assert_eq!(complete + reported, 20);
+    assert!(complete > 0 && reported > 0, "both ends are seen: {complete} right, {reported} told");
 }
 
 /// What the unit really holds, read over a line of its own without faults.

@@ -112,14 +112,14 @@ fn settings(line: &VirtualLine<Bus>) -> Settings {
 }
 
 fn profile(subject: Subject, settings: SettingsImage) -> Profile {
-    let told = String::new;
+    let reported = String::new;
     Profile {
         subject,
-        firmware: told(),
+        firmware: reported(),
         address: UnitAddress::factory(brushwork_mcp_client::MCP),
-        date: told(),
-        unit: told(),
-        note: told(),
+        date: reported(),
+        unit: reported(),
+        note: reported(),
         settings,
     }
 }
@@ -154,11 +154,11 @@ fn any_registers_come_back_to_the_last_bit_in_every_model_and_generation() {
                 let asked =
                     stored.changes_for(&table, &ram, true).unwrap_or_else(|error| panic!("{what}: {error}"));
                 let planned = plan(&table, &ram, &asked.wanted, AS_READ).expect("it can be written");
-                let told =
+                let reported =
                     planned.warnings.iter().filter(|text| text.ends_with("It is written as it was read."));
                 let unusual = unusual(&table, &asked.wanted);
                 assert!(unusual > 0, "{what}: the state is not strange enough");
-                assert_eq!(told.count(), unusual, "{what}: {:#?}", planned.warnings);
+                assert_eq!(reported.count(), unusual, "{what}: {:#?}", planned.warnings);
                 let report = write(&mut wire, &table, &asked.wanted, AS_READ)
                     .unwrap_or_else(|error| panic!("{what}: {error}"));
                 assert!(report.is_complete(), "{what}: {:#?}", report.sentences(&table));
@@ -245,8 +245,9 @@ fn any_registers_of_a_motion_mind_come_back_to_the_last_bit_in_both_protocols() 
             let wanted = stored.changes_for(&table, &ram, false).expect("it fits").wanted;
             let options = WriteOptions { own_stream: None, simulated: false, as_read: true };
             let planned = plan(&table, &ram, &wanted, options).expect("it can be written");
-            let told = planned.warnings.iter().filter(|text| text.ends_with("It is written as it was read."));
-            assert_eq!(told.count(), unusual(&table, &wanted), "{what}: {:#?}", planned.warnings);
+            let reported =
+                planned.warnings.iter().filter(|text| text.ends_with("It is written as it was read."));
+            assert_eq!(reported.count(), unusual(&table, &wanted), "{what}: {:#?}", planned.warnings);
             let (copy, on) = (table.clone(), wanted.clone());
             let report = job(&mut link, move |wire| {
                 let written = write(wire, &copy, &on, options);

@@ -126,7 +126,7 @@ impl Keeper for Memory {
 
 impl Memory {
     /// What the user is told at the next connection; none when the act ended with everything known.
-    fn told(&self, now: &SettingsImage) -> Option<Aftermath> {
+    fn reported(&self, now: &SettingsImage) -> Option<Aftermath> {
         match &self.ending {
             Some(Ending::Open) | None => {
                 let journal = Journal::parse(self.journal.as_ref()?).expect("it is as it was written");
@@ -218,7 +218,7 @@ fn moments(times: &[Duration]) -> Vec<Duration> {
 struct Cut {
     before: SettingsImage,
     result: Option<WriteReport>,
-    told: Option<Aftermath>,
+    reported: Option<Aftermath>,
     now: SettingsImage,
 }
 
@@ -228,8 +228,8 @@ fn cut_write(fault: Fault) -> Cut {
     let mut keeper = Memory::default();
     let result = write_kept(&mut wire(&line), &table(), &everything_changed(), OPTIONS, &mut keeper).ok();
     let now = next_connection(&line);
-    let told = keeper.journal.as_ref().and_then(|_| keeper.told(&now));
-    Cut { before, result, told, now }
+    let reported = keeper.journal.as_ref().and_then(|_| keeper.reported(&now));
+    Cut { before, result, reported, now }
 }
 
 /// What the controller works with when a write begins.
@@ -256,7 +256,7 @@ fn check(cut: &Cut, wanted: &SettingsImage, what: &str) -> bool {
     };
     let new = keys(&|key, value| cut.now.get(key) == Some(value));
     let old = keys(&|key, _| cut.now.get(key) == cut.before.get(key));
-    let Some(told) = &cut.told else {
+    let Some(reported) = &cut.reported else {
         // The write never began, or was over: then the report is what the user was told.
         match &cut.result {
             None => assert!(new.is_empty(), "{what}: nothing was told and {new:?} are new"),
@@ -269,18 +269,18 @@ fn check(cut: &Cut, wanted: &SettingsImage, what: &str) -> bool {
     let named = |list: &[brushwork_link::settings::Held]| -> BTreeSet<String> {
         list.iter().map(|held| held.key.clone()).collect()
     };
-    assert_eq!(named(&told.new), new, "{what}: new");
-    assert_eq!(named(&told.old), old, "{what}: old");
+    assert_eq!(named(&reported.new), new, "{what}: new");
+    assert_eq!(named(&reported.old), old, "{what}: old");
     let torn = keys(&|key, value| cut.now.get(key) != Some(value) && cut.now.get(key) != cut.before.get(key));
-    assert_eq!(named(&told.other), torn, "{what}: neither old nor new");
+    assert_eq!(named(&reported.other), torn, "{what}: neither old nor new");
     let disturbed: BTreeSet<String> = cut
         .before
         .iter()
         .filter(|(key, value)| changed.get(key).is_none() && cut.now.get(key) != Some(*value))
         .map(|(key, _)| key.to_owned())
         .collect();
-    assert_eq!(named(&told.disturbed), disturbed, "{what}: disturbed");
-    let sentences = told.sentences(&table());
+    assert_eq!(named(&reported.disturbed), disturbed, "{what}: disturbed");
+    let sentences = reported.sentences(&table());
     assert_eq!(sentences.len(), changed.len() + disturbed.len(), "{what}: a sentence each");
     !new.is_empty() && !old.is_empty()
 }
@@ -300,20 +300,20 @@ fn a_plug_pulled_at_any_transaction_of_a_full_write_leaves_nothing_untold() {
 #[test]
 fn power_lost_at_any_transaction_of_a_full_write_leaves_nothing_untold() {
     let moments = moments(&write_times());
-    let (mut told, mut disturbed) = (0, 0);
+    let (mut reported, mut disturbed) = (0, 0);
     for at in &moments {
         let cut = cut_write(power_loss(*at));
-        if let Some(aftermath) = &cut.told {
-            told += 1;
+        if let Some(aftermath) = &cut.reported {
+            reported += 1;
             disturbed += usize::from(aftermath.disturbed.iter().any(|held| held.key == UNSAVED.0));
         }
         // RAM is gone: everything is as EEPROM has it, which is told, or the write was over before.
-        let over = cut.told.is_none() && cut.result.as_ref().is_some_and(WriteReport::is_complete);
+        let over = cut.reported.is_none() && cut.result.as_ref().is_some_and(WriteReport::is_complete);
         assert!(!check(&cut, &everything_changed(), &format!("power lost at {at:?}")) || over, "{at:?}");
     }
-    println!("{} moments, {told} told, {disturbed} with the unsaved setting", moments.len());
-    assert_eq!(told, disturbed, "what was not saved is lost too, and told each time");
-    assert!(told > 80, "{told}");
+    println!("{} moments, {reported} told, {disturbed} with the unsaved setting", moments.len());
+    assert_eq!(reported, disturbed, "what was not saved is lost too, and told each time");
+    assert!(reported > 80, "{reported}");
 }
 
 /// A glitch that is over before the write gives up: the write goes on with a unit that has forgotten things.
@@ -336,8 +336,10 @@ fn a_short_power_loss_within_a_write_is_told_by_the_write_itself() {
         }
         incomplete += 1;
         let told_by_report = report.warnings.iter().any(|warning| warning.contains("velocity P"));
-        let told_later =
-            cut.told.as_ref().is_some_and(|told| told.disturbed.iter().any(|held| held.key == UNSAVED.0));
+        let told_later = cut
+            .reported
+            .as_ref()
+            .is_some_and(|reported| reported.disturbed.iter().any(|held| held.key == UNSAVED.0));
         assert!(!lost || told_by_report || told_later, "{what}: {:?}", report.warnings);
     }
     println!("{incomplete} of {} did not go through", times.len().div_ceil(3));
@@ -384,14 +386,14 @@ fn power_lost_at_any_row_of_a_save_is_told_setting_by_setting() {
         let mut keeper = Memory { eeprom: eeprom.clone(), ..Memory::default() };
         let result = save_kept(&mut wire(&line), &table(), OPTIONS, &mut keeper);
         let now = next_connection(&line);
-        let told = keeper.told(&now);
-        assert!(told.is_some(), "row {row}: {:?}", result.map(|report| report.sentence()));
-        let cut = Cut { before: eeprom.clone(), result: None, told, now };
+        let reported = keeper.reported(&now);
+        assert!(reported.is_some(), "row {row}: {:?}", result.map(|report| report.sentence()));
+        let cut = Cut { before: eeprom.clone(), result: None, reported, now };
         mixes += usize::from(check(&cut, &wanted, &format!("power lost at row {row} of {rows}")));
-        let told = cut.told.as_ref();
+        let reported = cut.reported.as_ref();
         // A number that lies across two rows comes out as neither the old nor the new one.
-        torn += told.map_or(0, |told| told.other.len());
-        seen_new.insert(told.map_or(0, |told| told.new.len()));
+        torn += reported.map_or(0, |reported| reported.other.len());
+        seen_new.insert(reported.map_or(0, |reported| reported.new.len()));
     }
     println!("{rows} rows, {mixes} mixes, {} different ones, {torn} torn numbers", seen_new.len());
     assert!(torn > 0);
@@ -407,8 +409,8 @@ fn without_knowing_what_eeprom_held_the_old_settings_are_named_all_the_same() {
     let mut keeper = Memory::default();
     let _ = save_kept(&mut wire(&line), &table(), OPTIONS, &mut keeper);
     let now = next_connection(&line);
-    let told = keeper.told(&now).expect("the save was cut");
-    let old: BTreeSet<&str> = told.old.iter().map(|held| held.key.as_str()).collect();
+    let reported = keeper.reported(&now).expect("the save was cut");
+    let old: BTreeSet<&str> = reported.old.iter().map(|held| held.key.as_str()).collect();
     let truth: BTreeSet<&str> =
         wanted.iter().filter(|(key, value)| now.get(key) != Some(*value)).map(|(key, _)| key).collect();
     assert!(!truth.is_empty());
@@ -423,8 +425,8 @@ fn a_plug_pulled_within_a_save_leaves_the_question_of_eeprom_open_and_says_so() 
         let mut keeper = Memory::default();
         let _ = save_kept(&mut wire(&line), &table(), OPTIONS, &mut keeper);
         let now = next_connection(&line);
-        let told = keeper.told(&now).expect("the save was cut");
-        assert!(told.is_all_new(), "row {row}: {told:?}");
-        assert!(told.headline().contains("save again to be sure"), "{}", told.headline());
+        let reported = keeper.reported(&now).expect("the save was cut");
+        assert!(reported.is_all_new(), "row {row}: {reported:?}");
+        assert!(reported.headline().contains("save again to be sure"), "{}", reported.headline());
     }
 }

@@ -141,8 +141,8 @@ fn a_reversed_encoder_is_refused_and_its_report_replays_to_the_same_code() {
     bench.controller.apply(WorldAction::ReverseEncoder { motor: Motor::M1, on: true });
     let ending = bench.tune(&["--dry-run", "--json"]).finish(LIMIT);
     assert_eq!(code(&ending), Some(REFUSED), "{ending:?}");
-    let told: serde_json::Value = serde_json::from_str(&ending.stdout.join("\n")).expect("JSON");
-    assert_eq!(told["verdict"], "refused", "{told}");
+    let reported: serde_json::Value = serde_json::from_str(&ending.stdout.join("\n")).expect("JSON");
+    assert_eq!(reported["verdict"], "refused", "{reported}");
     assert_eq!(bench.held(), before);
     assert_eq!(code(&replayed(&bench.report_path())), Some(REFUSED));
     let text = std::fs::read_to_string(bench.report_path()).expect("written");

@@ -265,20 +265,20 @@ fn stages(request: Tuning) -> Vec<(String, Duration)> {
     link.finish(prepare(TARGET, subject(), &setup, &keeper().0), ms(5_000));
     assert!(link.arm(ArmScope::CommandLine), "{:?}", link.events);
     let begun = link.now();
-    let told: Arc<Mutex<Vec<(Event, Duration)>>> = Arc::default();
+    let reported: Arc<Mutex<Vec<(Event, Duration)>>> = Arc::default();
     // A job is one step of the loop: what it tells is taken in between, as a window does.
     for look in 1..3_000 {
-        let (at, told) = (begun + 10 * ms(look), Arc::clone(&told));
+        let (at, reported) = (begun + 10 * ms(look), Arc::clone(&reported));
         link.at(at, move |handle| {
-            let mut told = told.lock().expect("no test panics with it");
-            told.extend(handle.events().try_iter().map(|event| (event, at)));
+            let mut reported = reported.lock().expect("no test panics with it");
+            reported.extend(handle.events().try_iter().map(|event| (event, at)));
         });
     }
     link.start(run(TARGET, request, &Slot::default()));
     link.run_for(ms(29_000));
     let mut starts: Vec<(String, Duration)> = Vec::new();
     let mut end = begun;
-    for (event, at) in told.lock().expect("no test panics with it").iter() {
+    for (event, at) in reported.lock().expect("no test panics with it").iter() {
         match event {
             Event::JobProgress { text, .. } if starts.last().is_none_or(|(last, _)| last != text) => {
                 starts.push((text.clone(), *at));

@@ -377,13 +377,13 @@ mod tests {
         decoder.client_sent(&[&stop_script[..], &[0x81, 24, 0x80, 24]].concat(), ms(0));
         let battery = encode_reply(&request(24, &[]), Generation::Gen1, &[Value::Int(243)]).unwrap();
         // FF acknowledges the first; 0x81 is not there; the CRC tells that 0x80 has answered.
-        let told = decoder.controller_sent(&[&[0xFF][..], &battery].concat(), ms(3));
+        let reported = decoder.controller_sent(&[&[0xFF][..], &battery].concat(), ms(3));
         let wanted = [
             "0x80 stop script: acknowledged",
             "0x81 read main battery: no answer",
             "0x80 read main battery: 24.3 V",
         ];
-        assert_eq!(texts(&told), wanted);
+        assert_eq!(texts(&reported), wanted);
         assert!(!decoder.awaits_reply());
     }
 
@@ -393,8 +393,11 @@ mod tests {
         assert_eq!(texts(&decoder.controller_sent(&[7], ms(0))), ["answer to nothing"]);
         decoder.client_sent(&[0x80, 24], ms(1));
         assert!(decoder.controller_sent(&[0, 243, 1, 2], ms(2)).is_empty(), "more may come");
-        let told = decoder.silence(ms(20));
-        assert!(told[0].text.contains("read main battery: bad reply (CRC 0102 instead of"), "{told:?}");
+        let reported = decoder.silence(ms(20));
+        assert!(
+            reported[0].text.contains("read main battery: bad reply (CRC 0102 instead of"),
+            "{reported:?}"
+        );
     }
 
     #[test]
@@ -415,8 +418,8 @@ mod tests {
     #[test]
     fn a_command_of_a_later_generation_moves_the_decoder_there() {
         let mut decoder = Decoder::new(None);
-        let told = decoder.client_sent(&[0x80, number::READ_ALL_STATUS], ms(0));
-        assert_eq!(texts(&told), ["0x80 read all status"]);
+        let reported = decoder.client_sent(&[0x80, number::READ_ALL_STATUS], ms(0));
+        assert_eq!(texts(&reported), ["0x80 read all status"]);
         assert!(decoder.generation > Generation::Gen1);
     }
 

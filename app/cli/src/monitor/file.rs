@@ -107,7 +107,7 @@ fn decode(decoder: &mut dyn Follower, lines: &[Vec<u8>]) -> Vec<Record> {
 mod tests {
     use super::*;
 
-    fn told(text: &str) -> Vec<String> {
+    fn reported(text: &str) -> Vec<String> {
         let mut decoder = crate::mcp::decoder::Decoder::new(None);
         decode(&mut decoder, &parse(text).unwrap()).into_iter().map(|record| record.text).collect()
     }
@@ -142,16 +142,16 @@ mod tests {
         ]);
         let text =
             format!("80 1C 00 00 40 00\n00 01 00 00 00 00 80 00\n00 00 AB E0 {crc:04X}\n80 AA 01\n80 18");
-        let told = told(&text);
-        assert_eq!(told[0], "0x80 M1 velocity PID: P 1.0, I 0.5, D 0.25, QPPS 44000");
-        assert!(told[1].contains("unknown command"), "{told:?}");
-        assert_eq!(told[2], "0x80 read main battery");
+        let reported = reported(&text);
+        assert_eq!(reported[0], "0x80 M1 velocity PID: P 1.0, I 0.5, D 0.25, QPPS 44000");
+        assert!(reported[1].contains("unknown command"), "{reported:?}");
+        assert_eq!(reported[2], "0x80 read main battery");
     }
 
     #[test]
     fn an_empty_line_ends_a_packet_that_stopped_half_way() {
-        let told = told("80 20 12\n\n80 18");
-        assert!(told[0].contains("stopped half way"), "{told:?}");
-        assert_eq!(told[1], "0x80 read main battery");
+        let reported = reported("80 20 12\n\n80 18");
+        assert!(reported[0].contains("stopped half way"), "{reported:?}");
+        assert_eq!(reported[1], "0x80 read main battery");
     }
 }

@@ -327,18 +327,18 @@ mod tests {
     fn frames_and_lines_are_told_from_the_traffic_itself() {
         let mut decoder = Decoder::default();
         // READ REGISTER 1 byte by byte, and its answer in two pieces: address, 1023, checksum.
-        let mut told = Vec::new();
+        let mut reported = Vec::new();
         for (at, byte) in [0x1D, 0x01, 0x01, 0x1F].into_iter().enumerate() {
-            told.extend(decoder.client_sent(&[byte], ms(at as u64)));
+            reported.extend(decoder.client_sent(&[byte], ms(at as u64)));
         }
-        assert_eq!(texts(&told), ["unit 1: read VELOCITYLIMIT"]);
-        assert_eq!((told[0].at, told[0].bytes.len()), (Some(ms(0)), 4));
+        assert_eq!(texts(&reported), ["unit 1: read VELOCITYLIMIT"]);
+        assert_eq!((reported[0].at, reported[0].bytes.len()), (Some(ms(0)), 4));
         assert!(decoder.controller_sent(&[0x01, 0xFF], ms(6)).is_empty() && decoder.awaits_reply());
-        let told = decoder.controller_sent(&[0x03, 0x03], ms(7));
-        assert_eq!((texts(&told), told[0].at), (vec!["VELOCITYLIMIT 1023"], Some(ms(6))));
+        let reported = decoder.controller_sent(&[0x03, 0x03], ms(7));
+        assert_eq!((texts(&reported), reported[0].at), (vec!["VELOCITYLIMIT 1023"], Some(ms(6))));
         // The same in lines, on the same line of a moment later.
-        let told = decoder.client_sent(b"R01 04\r\n", ms(100));
-        assert_eq!(texts(&told), ["unit 1: read PTERM"]);
+        let reported = decoder.client_sent(b"R01 04\r\n", ms(100));
+        assert_eq!(texts(&reported), ["unit 1: read PTERM"]);
         assert_eq!(texts(&decoder.controller_sent(b"PTRM=6000\r\n", ms(110))), ["PTERM 6000"]);
     }
 
@@ -347,12 +347,12 @@ mod tests {
         let mut decoder = Decoder::default();
         // MOVETO_ABSOLUTE 1000 with a wrong checksum.
         assert!(decoder.client_sent(&[0x15, 0x01, 0xE8, 0x03, 0x00, 0x00, 0x02], ms(0)).is_empty());
-        let told = decoder.silence(ms(20));
-        assert!(told[0].text.contains("checksum is 0x02 and not 0x01"), "{told:?}");
+        let reported = decoder.silence(ms(20));
+        assert!(reported[0].text.contains("checksum is 0x02 and not 0x01"), "{reported:?}");
         decoder.client_sent(&[0x80, 0x15], ms(30));
         assert!(decoder.silence(ms(50))[0].text.contains("0x80 begins none"));
-        let told = decoder.client_sent(b"Q01\r\n", ms(60));
-        assert_eq!(texts(&told), ["no command: \"Q01\""]);
+        let reported = decoder.client_sent(b"Q01\r\n", ms(60));
+        assert_eq!(texts(&reported), ["no command: \"Q01\""]);
         assert_eq!(texts(&decoder.controller_sent(b"BAD COMMAND\r\n", ms(70))), ["not understood"]);
         assert!(decoder.client_sent(b"Z01\r\n", ms(80))[0].text.contains("self-test"));
     }
@@ -366,8 +366,8 @@ mod tests {
         assert_eq!(texts(&decoder.silence(ms(300))), ["unit 2: no answer"]);
         decoder.client_sent(&[0x1D, 0x01, 0x01, 0x1F], ms(400));
         decoder.controller_sent(&[0x01, 0xFF, 0x03, 0x04], ms(405));
-        let told = decoder.silence(ms(500));
-        assert!(told[0].text.contains("bad reply (the checksum is 0x04, not 0x03)"), "{told:?}");
+        let reported = decoder.silence(ms(500));
+        assert!(reported[0].text.contains("bad reply (the checksum is 0x04, not 0x03)"), "{reported:?}");
         // A broadcast is answered by nobody.
         decoder.client_sent(&[0x17, 0x63, 0x00, 0x00, 0x7A], ms(600));
         assert!(!decoder.awaits_reply());
@@ -378,14 +378,14 @@ mod tests {
         let mut decoder = Decoder::default();
         // MOVETO_ABSOLUTE 1000 answered by POSITION 1000.
         decoder.client_sent(&[0x15, 0x01, 0xE8, 0x03, 0x00, 0x00, 0x01], ms(0));
-        let told = decoder.controller_sent(&[0x01, 0xE8, 0x03, 0x00, 0x00, 0xEC], ms(5));
-        assert_eq!(texts(&told), ["POSITION 1000"]);
+        let reported = decoder.controller_sent(&[0x01, 0xE8, 0x03, 0x00, 0x00, 0xEC], ms(5));
+        assert_eq!(texts(&reported), ["POSITION 1000"]);
         // WRITE FUNCTION 4: RETVEL.
         decoder.client_sent(&[0x18, 0x01, 0x03, 0x04, 0x00, 0x20], ms(20));
         assert_eq!(texts(&decoder.controller_sent(&[0x06], ms(25))), ["acknowledged"]);
         decoder.client_sent(&[0x17, 0x01, 0x38, 0xFF, 0x4F], ms(40));
-        let told = decoder.controller_sent(&[0x01, 0x05, 0x00, 0x06], ms(45));
-        assert_eq!(texts(&told), ["VELOCITY 5"]);
+        let reported = decoder.controller_sent(&[0x01, 0x05, 0x00, 0x06], ms(45));
+        assert_eq!(texts(&reported), ["VELOCITY 5"]);
     }
 
     #[test]

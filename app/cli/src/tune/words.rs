@@ -103,7 +103,7 @@ fn print_gains(report: &Report, out: &mut Output) -> Result<(), OutputError> {
         ))?;
     }
     if let Some(why) = report.winding_unknown {
-        out.line(format!("R of the winding was not told: {}", why.sentence()))?;
+        out.line(format!("R of the winding was not reported: {}", why.sentence()))?;
     }
     let rows = report.request.law.rows(&before.held, &report.proposed);
     let rows: Vec<Vec<String>> = rows.into_iter().map(|row| row.to_vec()).collect();

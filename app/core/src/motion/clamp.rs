@@ -231,8 +231,8 @@ fn come_to_rest(context: &mut JobContext<'_>, motor: Motor) -> Result<(), Failur
     Ok(())
 }
 
-fn refusal(context: &JobContext<'_>, came_back: String, mend: &str) -> Failure {
-    Failure::new(JOB, context.describe(), came_back, mend)
+fn refusal(context: &JobContext<'_>, came_back: String, remedy: &str) -> Failure {
+    Failure::new(JOB, context.describe(), came_back, remedy)
 }
 
 fn failed(context: &JobContext<'_>, error: &ExchangeError) -> Failure {

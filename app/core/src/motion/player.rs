@@ -159,8 +159,8 @@ impl Player {
                     setpoint_text(&command),
                     WAY_LIMIT.as_secs()
                 );
-                let mend = "Tune the position loop, or widen its deadzone";
-                return Err(Failure::new(JOB, context.describe(), came_back, mend));
+                let remedy = "Tune the position loop, or widen its deadzone";
+                return Err(Failure::new(JOB, context.describe(), came_back, remedy));
             }
             let soon = context.now() + INTERVAL * 4;
             self.watch(context, soon)?;
@@ -272,7 +272,7 @@ fn failed(context: &JobContext<'_>, error: &ExchangeError) -> Failure {
 }
 
 fn lost_way(context: &JobContext<'_>, motor: Motor, counts: f64, is_late: bool) -> Failure {
-    let (came_back, mend) = if is_late {
+    let (came_back, remedy) = if is_late {
         (
             format!("{motor} did not reach {counts:.0} counts within {} s", WAY_LIMIT.as_secs()),
             "Go faster, or choose points that are nearer",
@@ -283,7 +283,7 @@ fn lost_way(context: &JobContext<'_>, motor: Motor, counts: f64, is_late: bool) 
             "Its encoder counts the wrong way: change round the two motor leads, or the encoder's A and B",
         )
     };
-    Failure::new(JOB, context.describe(), came_back, mend)
+    Failure::new(JOB, context.describe(), came_back, remedy)
 }
 
 #[cfg(test)]

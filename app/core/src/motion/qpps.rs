@@ -181,19 +181,19 @@ impl Bench {
         }
         let drew = format!("{motor} counted nothing up to {:.0} % duty and drew", DIRECTION_DUTY * 100.0);
         if amps < NO_AMPS {
-            let mend = "Check the motor's leads, its fuse and its power";
-            return refusal(context, format!("{drew} no current"), mend);
+            let remedy = "Check the motor's leads, its fuse and its power";
+            return refusal(context, format!("{drew} no current"), remedy);
         }
         if amps > half.amps.abs() * BLOCKED_RATIO {
-            let mend = "Free the shaft. If it did turn, check the encoder's plug, supply and pins";
-            return refusal(context, format!("{drew} {amps:.2} A, as a motor does that is blocked"), mend);
+            let remedy = "Free the shaft. If it did turn, check the encoder's plug, supply and pins";
+            return refusal(context, format!("{drew} {amps:.2} A, as a motor does that is blocked"), remedy);
         }
-        let mend =
+        let remedy =
             "Check the encoder's plug, its supply, and which pins it is assigned to in General Settings";
         refusal(
             context,
             format!("{drew} {amps:.2} A, as a motor does that turns: its encoder is not seen"),
-            mend,
+            remedy,
         )
     }
 
@@ -255,8 +255,8 @@ impl Bench {
                 self.task.travel_limit_counts,
                 so_far()
             );
-            let mend = "Allow more travel if there is room, or enter an estimated QPPS by hand";
-            return Err(refusal(context, came_back, mend));
+            let remedy = "Allow more travel if there is room, or enter an estimated QPPS by hand";
+            return Err(refusal(context, came_back, remedy));
         }
         if context.now() > begun_at + self.task.time_limit {
             let came_back = format!(
@@ -279,8 +279,8 @@ impl Bench {
                 "{} ran at {:.0} counts/s and then counted {forward:.0} counts/s, drawing {amps:.2} A",
                 self.task.motor, watch.best
             );
-            let mend = "Look whether the shaft is blocked or the encoder has lost its plug";
-            return Err(refusal(context, came_back, mend));
+            let remedy = "Look whether the shaft is blocked or the encoder has lost its plug";
+            return Err(refusal(context, came_back, remedy));
         }
         watch.best = watch.best.max(forward);
         Ok(())
@@ -330,9 +330,9 @@ struct Watch {
 fn held_back(context: &JobContext<'_>, share: f64) -> Failure {
     let came_back =
         format!("the controller gives only {:.0} % of the duty that was asked for", share.abs() * 100.0);
-    let mend =
+    let remedy =
         "A limit of current, voltage or temperature holds it back: see the indicators and General Settings";
-    refusal(context, came_back, mend)
+    refusal(context, came_back, remedy)
 }
 
 fn power(context: &mut JobContext<'_>, motor: Motor) -> Result<Power, Failure> {
@@ -343,8 +343,8 @@ fn pause(context: &mut JobContext<'_>) -> Result<(), Failure> {
     context.sleep(INTERVAL).map_err(|error| failed(context, &error))
 }
 
-fn refusal(context: &JobContext<'_>, came_back: String, mend: &str) -> Failure {
-    Failure::new(JOB, context.describe(), came_back, mend)
+fn refusal(context: &JobContext<'_>, came_back: String, remedy: &str) -> Failure {
+    Failure::new(JOB, context.describe(), came_back, remedy)
 }
 
 fn failed(context: &JobContext<'_>, error: &ExchangeError) -> Failure {

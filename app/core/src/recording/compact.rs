@@ -551,10 +551,10 @@ mod tests {
 
     #[test]
     fn what_is_no_recording_is_told_in_a_sentence() {
-        let told = |bytes: &[u8]| read(bytes, "x.bwr", |_| (), |_| true).unwrap_err().to_string();
-        assert!(told(b"").contains("x.bwr: it is shorter than"));
-        assert!(told(b"time_s,a\n1,2\n").contains("it does not begin like one"));
-        assert!(told(&written(&head(1), &[])[..20]).contains("its head is damaged"));
+        let reported = |bytes: &[u8]| read(bytes, "x.bwr", |_| (), |_| true).unwrap_err().to_string();
+        assert!(reported(b"").contains("x.bwr: it is shorter than"));
+        assert!(reported(b"time_s,a\n1,2\n").contains("it does not begin like one"));
+        assert!(reported(&written(&head(1), &[])[..20]).contains("its head is damaged"));
         let file = written(&head(1), &[Record::Gap { at_us: 1 }, Record::Gap { at_us: 2_000_000 }]);
         let (_, records, damage) = read_back(&file[..file.len() - 1]);
         assert_eq!(records, []);

@@ -35,8 +35,8 @@ const TIME_NAMES: [(&str, f64); 12] = [
 /// What a line of marks says where data was lost.
 const GAP: &str = "gap";
 
-const MEND: &str = "Mend that line, or choose another file";
-const MEND_HEAD: &str = "The first line has to name the columns, one of them time_s";
+const REMEDY: &str = "Mend that line, or choose another file";
+const REMEDY_HEAD: &str = "The first line has to name the columns, one of them time_s";
 
 /// Which times of a reading are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -225,7 +225,7 @@ fn roles_of(path: &str, names: &csv::StringRecord) -> Result<(Vec<Column>, Vec<R
             path: path.to_owned(),
             line: 1,
             what: shortened(&what),
-            mend: MEND_HEAD,
+            remedy: REMEDY_HEAD,
         });
     };
     let mut columns: Vec<Column> = Vec::new();
@@ -260,7 +260,7 @@ fn roles_of(path: &str, names: &csv::StringRecord) -> Result<(Vec<Column>, Vec<R
     }
     if columns.is_empty() {
         let what = "there is no column besides the time".to_owned();
-        return Err(RecordingError::Line { path: path.to_owned(), line: 1, what, mend: MEND_HEAD });
+        return Err(RecordingError::Line { path: path.to_owned(), line: 1, what, remedy: REMEDY_HEAD });
     }
     Ok((columns, roles))
 }
@@ -369,7 +369,7 @@ fn shortened(text: &str) -> String {
 }
 
 fn at_line(path: &str, line: u64, what: String) -> RecordingError {
-    RecordingError::Line { path: path.to_owned(), line, what, mend: MEND }
+    RecordingError::Line { path: path.to_owned(), line, what, remedy: REMEDY }
 }
 
 fn io(path: &str, source: std::io::Error) -> RecordingError {
@@ -464,7 +464,7 @@ mod tests {
         assert!(wrong("").contains("line 1"));
         assert!(wrong("time_s,a\n").contains("there is no line with values"));
         assert!(wrong("time_s,a\n-3,1\n").contains("line 2: in the column time_s, -3 is no time"));
-        let told = |bytes: &[u8]| read(bytes, "x", |_| (), |_| true).unwrap_err().to_string();
-        assert!(told(b"time_s,a\n1,2\n2,\xff\xfe\n").contains("line 3: it is not text"));
+        let reported = |bytes: &[u8]| read(bytes, "x", |_| (), |_| true).unwrap_err().to_string();
+        assert!(reported(b"time_s,a\n1,2\n2,\xff\xfe\n").contains("line 3: it is not text"));
     }
 }

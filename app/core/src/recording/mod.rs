@@ -130,7 +130,7 @@ pub enum RecordingError {
         source: std::io::Error,
     },
     /// A line of a CSV file is not as it should be.
-    #[error("Could not open the recording {path}: line {line}: {what}. {mend}.")]
+    #[error("Could not open the recording {path}: line {line}: {what}. {remedy}.")]
     Line {
         /// The file.
         path: String,
@@ -139,7 +139,7 @@ pub enum RecordingError {
         /// What is wrong with it.
         what: String,
         /// What to do.
-        mend: &'static str,
+        remedy: &'static str,
     },
     /// A compact file is not one, or its head is damaged.
     #[error("Could not open the recording {path}: {what}. Choose a file that Brushwork has recorded.")]

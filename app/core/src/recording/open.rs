@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn a_file_that_is_not_there_is_told_by_its_path() {
-        let told = read(Path::new("/nowhere/run.csv"), |_| (), |_| true).unwrap_err().to_string();
-        assert!(told.starts_with("Could not open the recording /nowhere/run.csv: "), "{told}");
+        let reported = read(Path::new("/nowhere/run.csv"), |_| (), |_| true).unwrap_err().to_string();
+        assert!(reported.starts_with("Could not open the recording /nowhere/run.csv: "), "{reported}");
     }
 }

@@ -65,12 +65,12 @@ impl Recorder {
     ) -> std::io::Result<Self> {
         let (sender, receiver) = bounded(QUEUE);
         let progress = Arc::new(Mutex::new(Progress::default()));
-        let (told, name) = (progress.clone(), path.display().to_string());
+        let (reported, name) = (progress.clone(), path.display().to_string());
         let work = move || {
-            let result = open().and_then(|file| write_all(file, form, &head, &receiver, &told));
+            let result = open().and_then(|file| write_all(file, form, &head, &receiver, &reported));
             // Dropping the receiver tells the window that nothing more is taken.
             drop(receiver);
-            lock(&told).ended = Some(result.map_err(|error| sentence(&name, &error)));
+            lock(&reported).ended = Some(result.map_err(|error| sentence(&name, &error)));
         };
         let thread = thread::Builder::new().name("recorder".to_owned()).spawn(work)?;
         Ok(Self { path: path.to_owned(), sender: Some(sender), progress, thread: Some(thread) })
@@ -188,14 +188,14 @@ fn lock(progress: &Mutex<Progress>) -> MutexGuard<'_, Progress> {
 }
 
 fn sentence(path: &str, error: &std::io::Error) -> String {
-    let mend = match error.kind() {
+    let remedy = match error.kind() {
         std::io::ErrorKind::StorageFull | std::io::ErrorKind::QuotaExceeded => {
             "Make room on the disk, or choose another folder"
         }
         std::io::ErrorKind::PermissionDenied => "Choose a folder that you may write to",
         _ => "Choose another folder",
     };
-    format!("Could not record to {path}: {error}. What was written before that is kept. {mend}.")
+    format!("Could not record to {path}: {error}. What was written before that is kept. {remedy}.")
 }
 
 #[cfg(test)]
@@ -262,9 +262,9 @@ mod tests {
         };
         let recorder = Recorder::into(path, Form::Compact, head(), open).unwrap();
         recorder.record(sample(1));
-        let told = settled(&recorder).unwrap_err();
-        assert!(told.starts_with("Could not record to /dev/full: No space left"), "{told}");
-        assert!(told.ends_with("Make room on the disk, or choose another folder."), "{told}");
+        let reported = settled(&recorder).unwrap_err();
+        assert!(reported.starts_with("Could not record to /dev/full: No space left"), "{reported}");
+        assert!(reported.ends_with("Make room on the disk, or choose another folder."), "{reported}");
         recorder.record(sample(2));
     }
 }

@@ -80,8 +80,9 @@ impl LoaderPlace {
         }
         let came_back =
             if goes_on() { came_back } else { "it was cancelled before anything was erased".to_owned() };
-        let mend = "Nothing was erased: switch the controller off and on, and it runs its old firmware again";
-        Err(Failure::new("open the line to the firmware loader", self.target.to_string(), came_back, mend))
+        let remedy =
+            "Nothing was erased: switch the controller off and on, and it runs its old firmware again";
+        Err(Failure::new("open the line to the firmware loader", self.target.to_string(), came_back, remedy))
     }
 
     fn look(&self) -> Result<Option<Box<dyn Transport>>, String> {
@@ -142,12 +143,12 @@ fn run(
 ) -> Result<Sent, Failure> {
     let goes_on = || !cancelled.load(Ordering::SeqCst);
     let mut transport = place.open(&goes_on)?;
-    let mut told = None;
+    let mut reported = None;
     send(transport.as_mut(), clock, image, &mut |progress| {
         // A window that does not look misses some pages, never the end.
-        if told != Some(progress) {
+        if reported != Some(progress) {
             let _ = events.try_send(UploadEvent::Progress(progress));
-            told = Some(progress);
+            reported = Some(progress);
         }
         goes_on()
     })

@@ -24,8 +24,9 @@ struct Head {
 /// # Errors
 /// Says why a value cannot be written.
 pub fn text_of(report: &Report) -> Result<String, String> {
-    let told = |error: serde_json::Error| error.to_string();
-    let mut fields = serde_json::to_value(Report { record: Vec::new(), ..report.clone() }).map_err(told)?;
+    let reported = |error: serde_json::Error| error.to_string();
+    let mut fields =
+        serde_json::to_value(Report { record: Vec::new(), ..report.clone() }).map_err(reported)?;
     let mut text = "{\n".to_owned();
     if let Some(fields) = fields.as_object_mut() {
         fields.remove("record");
@@ -37,7 +38,7 @@ pub fn text_of(report: &Report) -> Result<String, String> {
     text.push_str("\"record\":[\n");
     for (number, entry) in report.record.iter().enumerate() {
         let separator = if number == 0 { "" } else { ",\n" };
-        let _ = write!(text, "{separator}{}", serde_json::to_string(entry).map_err(told)?);
+        let _ = write!(text, "{separator}{}", serde_json::to_string(entry).map_err(reported)?);
     }
     text.push_str("\n]}\n");
     Ok(text)
@@ -60,10 +61,10 @@ pub fn write(report: &Report, path: &Path) -> Result<(), String> {
 /// # Errors
 /// Says what was tried, where the file is wrong, and what to do.
 pub fn read(path: &Path) -> Result<Report, String> {
-    let told = |why: String| format!("Could not read a report from {}: {why}", path.display());
+    let reported = |why: String| format!("Could not read a report from {}: {why}", path.display());
     let text = std::fs::read_to_string(path)
-        .map_err(|error| told(format!("{error}. Choose a file that a tuning run wrote.")))?;
-    parse(&text).map_err(told)
+        .map_err(|error| reported(format!("{error}. Choose a file that a tuning run wrote.")))?;
+    parse(&text).map_err(reported)
 }
 
 fn parse(text: &str) -> Result<Report, String> {

@@ -38,8 +38,8 @@ impl App {
         let target = match target {
             Ok(target) => target,
             Err(error) => {
-                let mend = "Type a path such as /dev/ttyUSB0 or COM3, or tcp:host:port";
-                return self.model.messages.fail(Failure::new("connect", typed, error, mend).to_string());
+                let remedy = "Type a path such as /dev/ttyUSB0 or COM3, or tcp:host:port";
+                return self.model.messages.fail(Failure::new("connect", typed, error, remedy).to_string());
             }
         };
         let place = place_of(&target.to_string());

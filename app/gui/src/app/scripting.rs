@@ -91,8 +91,8 @@ impl App {
         match std::fs::read(path) {
             Ok(bytes) => self.send_image(&bytes, Source { title, text: None }),
             Err(error) => {
-                let mend = "Check the path and your rights";
-                let failure = Failure::new("read", path.display().to_string(), error, mend);
+                let remedy = "Check the path and your rights";
+                let failure = Failure::new("read", path.display().to_string(), error, remedy);
                 self.model.messages.fail(failure.to_string());
             }
         }

@@ -132,9 +132,9 @@ impl App {
         let front = &mut self.model.front;
         let saves = front.link.identity().and_then(|unit| front.family().saves(transact.command, unit));
         if front.tune.is_running() && saves.is_some() {
-            let told =
+            let reported =
                 "A tuning run is at work, and this command changes settings. Send it when the run has ended.";
-            self.model.messages.fail(told.to_owned());
+            self.model.messages.fail(reported.to_owned());
             return;
         }
         let identity = front.link.identity().cloned();

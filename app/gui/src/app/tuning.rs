@@ -28,7 +28,7 @@ impl App {
         }
         let front = &mut self.model.front;
         let stream = front.link.stream;
-        let told = match action {
+        let reported = match action {
             TuneAction::Start(_) | TuneAction::Verify if front.is_guided() => {
                 Err("A job runs already. Wait for it or cancel it.".to_owned())
             }
@@ -53,7 +53,7 @@ impl App {
             },
             TuneAction::OpenReport(path) => self.open_report(&path),
         };
-        if let Err(sentence) = told {
+        if let Err(sentence) = reported {
             self.model.messages.fail(sentence);
         }
     }

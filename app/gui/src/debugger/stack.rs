@@ -76,7 +76,7 @@ fn breakpoints_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
             if ui.checkbox(&mut on, format!("Line {line}")).changed() {
                 terms.disabled = !on;
             }
-            let told = match state {
+            let reported = match state {
                 Some(state) if state.line.is_none() => "no code from here on".to_owned(),
                 Some(state) if state.line != Some(*line) => {
                     format!("at line {}, {} ×", state.line.unwrap_or_default(), state.hits)
@@ -84,7 +84,9 @@ fn breakpoints_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
                 Some(state) => format!("{} ×", state.hits),
                 None => String::new(),
             };
-            if ui.add(Label::new(RichText::new(told).weak()).sense(egui::Sense::click()).truncate()).clicked()
+            if ui
+                .add(Label::new(RichText::new(reported).weak()).sense(egui::Sense::click()).truncate())
+                .clicked()
             {
                 commands.push(Command::Debug(DebugAction::ShowLine(*line)));
             }

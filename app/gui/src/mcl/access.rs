@@ -22,13 +22,13 @@ pub fn describe(
     let label = format!("Program {}", document.title());
     response.widget_info(|| WidgetInfo::labeled(Role::MultilineTextInput, true, &label));
     let line = document.caret_line();
-    let told = ui.ctx().accesskit_node_builder(response.id, |node| {
+    let reported = ui.ctx().accesskit_node_builder(response.id, |node| {
         node.set_label(label.as_str());
         node.set_value(document.text.line(line).into_owned());
         node.set_description(format!("Line {} of {}", line + 1, document.text.line_count()));
     });
     // Nobody listens: the lines need not be laid out once more.
-    if told.is_none() {
+    if reported.is_none() {
         return;
     }
     let lines: Vec<usize> = rows.clone().map(|row| document.folds.line_at(row)).collect();

@@ -105,9 +105,9 @@ mod tests {
 
     #[test]
     fn what_is_deep_long_or_wrong_throughout_ends_neither_the_thread_nor_the_program() {
-        let (told, news) = bounded(8);
+        let (reported, news) = bounded(8);
         let checker = Checker::start(move || {
-            let _ = told.try_send(());
+            let _ = reported.try_send(());
         });
         let sum = format!("x var long\nx = x{}\n", "+x".repeat(40_000));
         for (revision, text) in (1..).zip([sum, "(".repeat(100_000), "\0".repeat(50_000)]) {
@@ -121,9 +121,9 @@ mod tests {
 
     #[test]
     fn the_newest_text_is_checked_within_a_tenth_of_a_second_after_the_last_key() {
-        let (told, news) = bounded(8);
+        let (reported, news) = bounded(8);
         let checker = Checker::start(move || {
-            let _ = told.try_send(());
+            let _ = reported.try_send(());
         });
         for revision in 1..=5 {
             checker.ask(DocId(1), revision, Rope::from_str("goto nowhere\n"));

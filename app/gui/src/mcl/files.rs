@@ -173,12 +173,12 @@ fn keep(task: Task, journal: &mut Journal) -> Option<Done> {
     match task {
         Task::Keep(id, kept) => {
             let failed = journal.keep(id, &kept).err()?;
-            let mend = "Save it to a file now and then";
+            let remedy = "Save it to a file now and then";
             return Some(Done::NotKept(Failure::new(
                 "keep unsaved text against a crash",
                 kept.title,
                 failed,
-                mend,
+                remedy,
             )));
         }
         Task::Forget(id) => journal.forget(id),

@@ -86,7 +86,7 @@ impl Find {
     }
 
     /// "3 of 17", "None", or why the query makes no sense.
-    pub fn told(&self, caret: Caret) -> String {
+    pub fn reported(&self, caret: Caret) -> String {
         if let Some(failure) = &self.found.failure {
             return failure.clone();
         }
@@ -209,8 +209,11 @@ mod tests {
     fn what_is_no_expression_is_said_and_finds_nothing() {
         let mut find = find("(", |query| query.regex = true);
         assert_eq!(count(&mut find, "(("), 0);
-        let told = find.told(Caret::default());
-        assert!(told.starts_with("This is no regular expression:") && told.ends_with('.'), "{told}");
+        let reported = find.reported(Caret::default());
+        assert!(
+            reported.starts_with("This is no regular expression:") && reported.ends_with('.'),
+            "{reported}"
+        );
     }
 
     #[test]
@@ -219,7 +222,7 @@ mod tests {
         let mut find = find("a", |_| ());
         let mut at = |forward| {
             find.go(&mut document, forward);
-            (document.caret.range().start, find.told(document.caret))
+            (document.caret.range().start, find.reported(document.caret))
         };
         assert_eq!(at(true), (2, "1 of 2".into()));
         assert_eq!(at(true), (6, "2 of 2".into()));

@@ -15,7 +15,7 @@ pub fn findbar_ui(ui: &mut Ui, editor: &mut Editor, actions: &mut Vec<MclAction>
         return;
     }
     let wants_focus = std::mem::take(&mut editor.find.wants_focus);
-    let told = editor.find.told(editor.front().caret);
+    let reported = editor.find.reported(editor.front().caret);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let entered = field_ui(ui, &mut editor.find.query.text, "Find", wants_focus);
@@ -37,7 +37,7 @@ pub fn findbar_ui(ui: &mut Ui, editor: &mut Editor, actions: &mut Vec<MclAction>
                 actions.push(action);
             }
         }
-        told_ui(ui, &told);
+        told_ui(ui, &reported);
         if named(ui, "Close", "Close the find bar").clicked() {
             actions.push(MclAction::CloseFind);
         }
@@ -112,8 +112,8 @@ fn named(ui: &mut Ui, reads: &str, name: &str) -> egui::Response {
     response.on_hover_text(name)
 }
 
-fn told_ui(ui: &mut Ui, told: &str) {
+fn told_ui(ui: &mut Ui, reported: &str) {
     let color = Palette::of(ui).weak_text;
-    let label = Label::new(egui::RichText::new(told).color(color)).truncate().selectable(false);
-    ui.add_sized(egui::vec2(TOLD_WIDTH, ui.spacing().interact_size.y), label).on_hover_text(told);
+    let label = Label::new(egui::RichText::new(reported).color(color)).truncate().selectable(false);
+    ui.add_sized(egui::vec2(TOLD_WIDTH, ui.spacing().interact_size.y), label).on_hover_text(reported);
 }

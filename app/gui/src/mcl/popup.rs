@@ -48,11 +48,11 @@ fn list_ui(ui: &mut Ui, list: &Completion) -> Option<usize> {
         let left = rect.left_center() + vec2(4.0, 0.0);
         let word = painter.text(left, Align2::LEFT_CENTER, &entry.word, mono, palette.text);
         let kind = format!("{:?}", entry.kind).to_lowercase();
-        let told = if entry.detail.is_empty() { kind } else { format!("{}   {kind}", entry.detail) };
+        let reported = if entry.detail.is_empty() { kind } else { format!("{}   {kind}", entry.detail) };
         let room = rect.with_min_x(word.right() + 12.0);
         let right = room.right_center() - vec2(4.0, 0.0);
         let painter = painter.with_clip_rect(room);
-        painter.text(right, Align2::RIGHT_CENTER, told, small, palette.weak_text);
+        painter.text(right, Align2::RIGHT_CENTER, reported, small, palette.weak_text);
         if response.clicked() {
             clicked = Some(index);
         }

@@ -41,8 +41,8 @@ impl Spooler {
     fn print(&self, job: &Job) -> Result<(), Failure> {
         let on = if job.printer.is_empty() { "the system's printer" } else { &job.printer };
         let failed = |why: String| {
-            let mend = "See that a printer is set up, or print to a PDF file";
-            Err(Failure::new(format!("print {}", job.title), on, why, mend))
+            let remedy = "See that a printer is set up, or print to a PDF file";
+            Err(Failure::new(format!("print {}", job.title), on, why, remedy))
         };
         let mut command = Command::new(&self.program);
         command.args([if self.is_lp { "-t" } else { "-J" }, &job.title]);
@@ -148,13 +148,13 @@ mod tests {
         fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).expect("a file of ours");
     }
 
-    fn told(spooler: Spooler, printer: &str) -> Result<String, Failure> {
+    fn reported(spooler: Spooler, printer: &str) -> Result<String, Failure> {
         let printing = Printing::default();
         let job =
             Job { title: "a.mcl".to_owned(), printer: printer.to_owned(), pages: b"%PDF-1.7 x".to_vec() };
-        let (told, news) = bounded(1);
+        let (reported, news) = bounded(1);
         printing.begin(spooler, job, move || {
-            let _ = told.try_send(());
+            let _ = reported.try_send(());
         });
         news.recv_timeout(Duration::from_secs(60)).expect("the print command answers");
         printing.news().expect("there is news")
@@ -167,7 +167,7 @@ mod tests {
         install(folder.path(), "lpr", "exit 1");
         install(folder.path(), "lp", &format!("echo \"$@\" >{0}; cat >>{0}", seen.display()));
         let spooler = Spooler::find_in(folder.path().as_os_str()).unwrap();
-        assert_eq!(told(spooler, "laser").unwrap(), "a.mcl is with the printer.");
+        assert_eq!(reported(spooler, "laser").unwrap(), "a.mcl is with the printer.");
         assert_eq!(fs::read_to_string(seen).unwrap(), "-t a.mcl -d laser\n%PDF-1.7 x");
     }
 
@@ -176,7 +176,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         install(folder.path(), "lpr", "echo 'lpr: no default destination.' >&2; exit 1");
         let spooler = Spooler::find_in(folder.path().as_os_str()).unwrap();
-        let failure = told(spooler, "").unwrap_err().to_string();
+        let failure = reported(spooler, "").unwrap_err().to_string();
         for part in ["print a.mcl", "the system's printer", "lpr: no default destination", "PDF file"] {
             assert!(failure.contains(part), "{failure}");
         }

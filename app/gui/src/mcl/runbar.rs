@@ -31,7 +31,7 @@ pub fn runbar_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
         return;
     }
     let palette = Palette::of(ui);
-    let text = told(model, armed);
+    let text = reported(model, armed);
     let color = if armed { palette.text } else { palette.weak_text };
     ui.add(Label::new(RichText::new(&text).color(color)).truncate()).on_hover_text(text);
 }
@@ -51,7 +51,7 @@ pub fn reasons_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
 }
 
 /// What the script does, as far as that is known, and what can happen.
-fn told(model: &Model, armed: bool) -> String {
+fn reported(model: &Model, armed: bool) -> String {
     let front = &model.front;
     if !model.is_connected() {
         return "Not connected. Programs can be written and checked; running them needs a controller."

@@ -48,12 +48,12 @@ fn button_ui(ui: &mut Ui, id: &str, reads: &str, model: &Model, commands: &mut C
     });
     let keys = action.keys_text(ui.ctx());
     let keys = if keys.is_empty() { keys } else { format!(" ({keys})") };
-    let told = match &ready {
+    let reported = match &ready {
         Ok(()) => format!("{}{keys}\n{}", action.title, action.help),
         Err(why) => format!("{}{keys}\n{why}", action.title),
     };
     if response.clicked() {
         commands.push((action.command)(model));
     }
-    response.on_hover_text(&told).on_disabled_hover_text(told);
+    response.on_hover_text(&reported).on_disabled_hover_text(reported);
 }

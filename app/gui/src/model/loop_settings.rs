@@ -86,7 +86,7 @@ impl LoopView {
         self.is_fresh = true;
     }
 
-    /// Whether edits are to be applied now. Told once for each edit, so that what was refused is not sent again and again.
+    /// Whether edits are to be applied now. Reported once for each edit, so that what was refused is not sent again and again.
     pub fn wants_applying(&mut self) -> bool {
         self.at_once && std::mem::take(&mut self.is_fresh)
     }

@@ -158,8 +158,8 @@ mod tests {
         assert_eq!(watched.progress(), Some((0.5, "half way")));
         assert!(watched.take(ended(other, JobEnding::Done(()))).is_none());
         assert!(watched.is_running());
-        let told = watched.take_result(ended(id, JobEnding::Done(()))).unwrap();
-        assert!(told.is_err(), "nothing has run it");
+        let reported = watched.take_result(ended(id, JobEnding::Done(()))).unwrap();
+        assert!(reported.is_err(), "nothing has run it");
         assert!(!watched.is_running());
     }
 
@@ -167,9 +167,9 @@ mod tests {
     fn an_interrupted_job_says_why_and_that_the_motors_were_stopped() {
         let mut watched = Watched::default();
         let id = watched.begin(job()).unwrap().id();
-        let told = watched.take_result(ended(id, JobEnding::Interrupted(Interruption::Stop)));
+        let reported = watched.take_result(ended(id, JobEnding::Interrupted(Interruption::Stop)));
         let sentence = "Did not try the motor to the end: Stop was pressed. The motors were stopped.";
         let unfinished = Unfinished { gravity: Gravity::Warning, sentence: sentence.to_owned() };
-        assert_eq!(told, Some(Err(unfinished)));
+        assert_eq!(reported, Some(Err(unfinished)));
     }
 }

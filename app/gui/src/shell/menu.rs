@@ -49,7 +49,7 @@ fn item_ui(ui: &mut Ui, action: &Action, model: &Model) -> Response {
         Some(_) => WidgetInfo::selected(Role::MenuItemCheckBox, ready.is_ok(), is_on, action.title),
         None => WidgetInfo::labeled(Role::MenuItem, ready.is_ok(), action.title),
     });
-    let told = ready.err().unwrap_or(action.help.into());
-    ui.ctx().accesskit_node_builder(response.id, |node| node.set_description(&*told));
-    response.on_hover_text(&*told).on_disabled_hover_text(&*told)
+    let reported = ready.err().unwrap_or(action.help.into());
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_description(&*reported));
+    response.on_hover_text(&*reported).on_disabled_hover_text(&*reported)
 }

@@ -102,7 +102,7 @@ fn identity_ui(ui: &mut Ui, model: &Model) {
         format!("{}{simulated}", identity.title())
     });
     let version = identity.map(|identity| match identity.firmware.as_str() {
-        "" => "not told".to_owned(),
+        "" => "not reported".to_owned(),
         version => match model.front.family().generation_number(identity) {
             Some(generation) => format!("{version} (gen {generation})"),
             None => identity.generation.to_string(),

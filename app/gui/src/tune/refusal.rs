@@ -25,7 +25,7 @@ fn steps(cause: Cause) -> &'static [&'static str] {
         Cause::NothingCounted => &[
             "Look at the encoder's plug at both ends, and turn the shaft by hand: the encoder figure at the top must change.",
             "Look at both motor leads and their screws, and take brakes and jams away.",
-            "This controller tells no motor current, so the three cannot be told apart from here.",
+            "This controller reports no motor current, so the three cannot be told apart from here.",
         ],
         Cause::CurrentUnclear => &[
             "Look at both motor leads and their screws.",

@@ -148,7 +148,7 @@ mod tests {
     #[test]
     fn gains_fit_into_their_column() {
         let texts = [(0.13968, 4), (2.64, 4), (26.41, 3), (684.41, 3), (12_345.6, 3), (3.0, 0)];
-        let told = texts.map(|(value, decimals)| short(value, decimals));
-        assert_eq!(told, ["0.14", "2.64", "26.4", "684", "12346", "3"]);
+        let reported = texts.map(|(value, decimals)| short(value, decimals));
+        assert_eq!(reported, ["0.14", "2.64", "26.4", "684", "12346", "3"]);
     }
 }

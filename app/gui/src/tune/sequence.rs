@@ -271,8 +271,8 @@ impl Sequence {
         match std::mem::replace(&mut self.asked, Asked::Nothing) {
             Asked::Work(_) => self.work_ended(ending),
             Asked::Restore(ticket) => match ticket.ending(ending) {
-                JobEnding::Done(told) => {
-                    self.loop_left_off = told.loop_left_off;
+                JobEnding::Done(reported) => {
+                    self.loop_left_off = reported.loop_left_off;
                     Some(self.end(None))
                 }
                 ending if self.restores >= MOST_RESTORES => {

@@ -32,7 +32,7 @@ pub fn winding_ui(ui: &mut Ui, model: &mut Model, which: Loop, winding: &Winding
 
 /// Says why there is none.
 pub fn unknown_ui(ui: &mut Ui, why: WindingUnknown) {
-    weak_ui(ui, &format!("R of the winding was not told: {}", why.sentence()));
+    weak_ui(ui, &format!("R of the winding was not reported: {}", why.sentence()));
 }
 
 fn weak_ui(ui: &mut Ui, text: &str) {

@@ -246,13 +246,14 @@ fn the_stop_is_on_the_wire_in_the_frame_of_the_key() {
     let mut bench = driving();
     bench.key(Key::Space);
     bench.pass_ms(300);
-    let told = bench.model().messages.past().find(|message| message.text.starts_with("Stopped.")).cloned();
-    let told = told.expect("a stop is reported").text;
-    let milliseconds: f64 = told
+    let reported =
+        bench.model().messages.past().find(|message| message.text.starts_with("Stopped.")).cloned();
+    let reported = reported.expect("a stop is reported").text;
+    let milliseconds: f64 = reported
         .split("after ")
         .nth(1)
         .and_then(|rest| rest.split(' ').next())
         .and_then(|number| number.parse().ok())
         .expect("the sentence names the time");
-    assert!(milliseconds <= 10.0, "{told}");
+    assert!(milliseconds <= 10.0, "{reported}");
 }

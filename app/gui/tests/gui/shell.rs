@@ -221,8 +221,8 @@ fn every_menu_shows_its_actions_and_says_why_one_cannot_be_done() {
             });
             let node = items.next().unwrap_or_else(|| panic!("{} is not in its menu", action.id));
             assert_eq!(node.accesskit_node().is_disabled(), ready.is_err(), "{}", action.id);
-            let told = node.accesskit_node().data().description().unwrap_or_default().to_owned();
-            assert_eq!(told, ready.err().unwrap_or(action.help.into()), "{}", action.id);
+            let reported = node.accesskit_node().data().description().unwrap_or_default().to_owned();
+            assert_eq!(reported, ready.err().unwrap_or(action.help.into()), "{}", action.id);
         }
         bench.press(menu.title());
     }

@@ -31,9 +31,9 @@ fn the_window_says_of_every_cause_what_is_so_and_what_to_do() {
         let reasons = reasons(&bench);
         let [what, cure] = cause.says;
         let lower = |text: &str| text.to_lowercase();
-        let told =
+        let reported =
             |reason: &String| lower(reason).contains(&lower(what)) && lower(reason).contains(&lower(cure));
-        assert!(reasons.iter().any(told), "{}: {reasons:#?}", cause.name);
+        assert!(reasons.iter().any(reported), "{}: {reasons:#?}", cause.name);
     }
 }
 

@@ -377,7 +377,7 @@ fn a_resistance_that_is_not_told_says_why_and_what_would_tell_it() {
         (report.winding, report.winding_unknown) = (None, Some(why));
         bench.model().front.tune.panel_mut(Loop::Velocity, Motor::M1).add(report.clone());
         bench.pass_ms(200);
-        assert!(bench.sees_part("R of the winding was not told") && bench.sees_part(word), "{why:?}");
+        assert!(bench.sees_part("R of the winding was not reported") && bench.sees_part(word), "{why:?}");
         assert!(bench.sees_part("measure R with a meter") || why == WindingUnknown::TooFew);
         assert!(!bench.sees_part("Enter as R"));
     }

@@ -138,14 +138,14 @@ fn at_each_stage(how: &str, end: impl Fn(&mut Bench), after: impl Fn(&mut Bench)
             assert_eq!(bench.model().front.link.arming, Arming::Disarmed, "{place}");
             assert_eq!(held(&bench), before, "{place}");
             let said = bench.said();
-            let is_told = |text: &String| {
+            let is_reported = |text: &String| {
                 text.contains("was not tuned")
                     || text.contains("are back")
                     || text.contains("is tuned")
                     || text.contains("behaves")
                     || text.contains("M1: ")
             };
-            assert!(said.iter().take(8).any(is_told), "{place}: {said:?}");
+            assert!(said.iter().take(8).any(is_reported), "{place}: {said:?}");
         }
     }
 }

@@ -56,8 +56,11 @@ impl Search for AnyFamily {
 
     fn stop_bytes(&self, addresses: Addresses) -> StopBytes {
         let all = self.searches.iter().enumerate();
-        let told = all.filter(|(index, _)| self.found.is_none_or(|found| found == *index));
-        told.map(|(_, (_, search))| search.stop_bytes(addresses)).reduce(StopBytes::with).unwrap_or_default()
+        let reported = all.filter(|(index, _)| self.found.is_none_or(|found| found == *index));
+        reported
+            .map(|(_, (_, search))| search.stop_bytes(addresses))
+            .reduce(StopBytes::with)
+            .unwrap_or_default()
     }
 
     fn stop_all_bytes(&self, units: &[&Identity]) -> Option<StopBytes> {
@@ -93,7 +96,7 @@ impl AnyFamily {
     /// The failure of the first family, with where the others may be found all the same.
     fn with_the_others(&self, nothing: Failure, candidates: &[usize]) -> Failure {
         let others = candidates.iter().skip(1).filter_map(|index| self.searches[*index].0.may_be_elsewhere());
-        let mend = others.fold(nothing.mend, |mend, other| format!("{mend}. {other}"));
-        Failure { mend, ..nothing }
+        let remedy = others.fold(nothing.remedy, |remedy, other| format!("{remedy}. {other}"));
+        Failure { remedy, ..nothing }
     }
 }

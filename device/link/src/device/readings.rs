@@ -19,27 +19,27 @@ pub struct Power {
 pub trait Readings: Send + Sync {
     /// Both encoder counts, as their 32 bits, and when they were read.
     fn encoders(&self, _context: &mut JobContext<'_>) -> Result<([i32; 2], Span), ExchangeError> {
-        not_told("its encoders")
+        not_reported("its encoders")
     }
 
     /// What a motor gets and draws.
     fn power(&self, _context: &mut JobContext<'_>, _motor: Motor) -> Result<Power, ExchangeError> {
-        not_told("what a motor draws")
+        not_reported("what a motor draws")
     }
 
     /// The speed of a motor, counts/s.
     fn speed(&self, _context: &mut JobContext<'_>, _motor: Motor) -> Result<f64, ExchangeError> {
-        not_told("its speed")
+        not_reported("its speed")
     }
 
     /// The main battery, V.
     fn battery(&self, _context: &mut JobContext<'_>) -> Result<f64, ExchangeError> {
-        not_told("its battery")
+        not_reported("its battery")
     }
 
     /// Whether the unit reports an over-voltage of the main battery.
     fn is_battery_high(&self, _context: &mut JobContext<'_>) -> Result<bool, ExchangeError> {
-        not_told("its battery")
+        not_reported("its battery")
     }
 
     /// Whether a duty is a current command, so that no speed follows from it.
@@ -48,7 +48,7 @@ pub trait Readings: Send + Sync {
     }
 }
 
-fn not_told<T>(what: &str) -> Result<T, ExchangeError> {
+fn not_reported<T>(what: &str) -> Result<T, ExchangeError> {
     Err(ExchangeError::Impossible { what: format!("this controller does not tell a job {what}") })
 }
 

@@ -179,7 +179,7 @@ impl ExchangeError {
 
     /// What the user can do about it.
     #[must_use]
-    pub fn mend(&self) -> &'static str {
+    pub fn remedy(&self) -> &'static str {
         match self {
             Self::TimedOut { heard: 0, .. } => {
                 "Check the controller's power, the wiring, the baud rate and the address"
@@ -205,7 +205,7 @@ impl ExchangeError {
     /// The failure for the user, with what was tried and on what.
     #[must_use]
     pub fn failure(&self, tried: impl Into<String>, on: impl Into<String>) -> Failure {
-        Failure::new(tried, on, self.full(), self.mend())
+        Failure::new(tried, on, self.full(), self.remedy())
     }
 }
 

@@ -44,16 +44,16 @@ pub enum TargetError {
     },
 }
 
-/// Why a target could not be opened; each says how to mend it.
+/// Why a target could not be opened; each says its remedy.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
     /// The user may not open the device.
-    #[error("Could not open {path}: permission denied. {mend}")]
+    #[error("Could not open {path}: permission denied. {remedy}")]
     Permission {
         /// The device.
         path: String,
         /// Which group to join and how.
-        mend: String,
+        remedy: String,
     },
     /// Another program holds the port.
     #[error(

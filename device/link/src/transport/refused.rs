@@ -14,7 +14,7 @@ pub(super) fn exists(path: &str) -> bool {
 }
 
 /// What to do when opening is not allowed: the group that owns the device, and how to join it.
-pub(super) fn permission_mend(path: &str) -> String {
+pub(super) fn permission_remedy(path: &str) -> String {
     match owning_group(path) {
         Some(group) => format!(
             "The port belongs to the group {group}: run `sudo usermod -aG {group} $USER`, then log out and in again."
@@ -87,7 +87,7 @@ mod tests {
         assert_eq!(group_name(groups, 20), Some("dialout"));
         assert_eq!(group_name(groups, 21), None);
         let file = tempfile::NamedTempFile::new().unwrap();
-        let mend = permission_mend(file.path().to_str().unwrap());
-        assert!(mend.contains("sudo usermod -aG") && mend.contains("log out"), "{mend}");
+        let remedy = permission_remedy(file.path().to_str().unwrap());
+        assert!(remedy.contains("sudo usermod -aG") && remedy.contains("log out"), "{remedy}");
     }
 }

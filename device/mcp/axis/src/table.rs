@@ -183,9 +183,9 @@ mod tests {
 
     #[test]
     fn without_a_position_loop_there_are_four_registers() {
-        let told = |registers: McpRegisters| {
+        let reported = |registers: McpRegisters| {
             McpRegisters::fields().iter().filter(|field| registers.raw(field.key).is_some()).count()
         };
-        assert_eq!((told(McpRegisters::blank(false)), told(McpRegisters::blank(true))), (4, 11));
+        assert_eq!((reported(McpRegisters::blank(false)), reported(McpRegisters::blank(true))), (4, 11));
     }
 }

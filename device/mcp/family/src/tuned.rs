@@ -1,7 +1,7 @@
 //! The loops of an MCP or RoboClaw over the device thread.
 
 use crate::encoder;
-use brushwork_family::tuned::{Registers, Restored, Target, Tuned, failed, thrice, told};
+use brushwork_family::tuned::{Registers, Restored, Target, Tuned, failed, reported, thrice};
 use brushwork_link::device::JobContext;
 use brushwork_link::settings::SettingValue;
 use brushwork_link::{Failure, Stream, Wire};
@@ -55,7 +55,7 @@ impl Carrier for JobCarrier<'_, '_> {
             .context
             .transact_timed(command.number(), &values)
             .and_then(|reply| typed_reply(reply, command));
-        let reply = reply.map_err(|error| told(&error))?;
+        let reply = reply.map_err(|error| reported(&error))?;
         let exchange = Exchange { sent: reply.span.requested_at, received: reply.span.replied_at };
         let is_vague = self.is_vague(&exchange);
         if is_vague && needs_its_time(command.number()) {
@@ -71,7 +71,7 @@ impl Carrier for JobCarrier<'_, '_> {
 
     fn wait_until(&mut self, time: Duration) -> Result<(), AxisError> {
         let left = time.saturating_sub(self.context.now());
-        self.context.sleep(left).map_err(|error| told(&error))
+        self.context.sleep(left).map_err(|error| reported(&error))
     }
 
     fn generation(&self) -> Generation {

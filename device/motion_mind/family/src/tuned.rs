@@ -1,6 +1,6 @@
 //! The loop of a Motion Mind over the device thread.
 
-use brushwork_family::tuned::{OtherTuned, Registers, Restored, Target, Tuned, failed, thrice, told};
+use brushwork_family::tuned::{OtherTuned, Registers, Restored, Target, Tuned, failed, reported, thrice};
 use brushwork_link::device::JobContext;
 use brushwork_link::{Failure, Wire};
 use brushwork_motion_mind_axis::law::{MotionMindLaw, MotionMindPart};
@@ -78,7 +78,7 @@ impl MindCarrier for MindJobCarrier<'_, '_> {
         let Some((number, values)) = wire_form(command) else {
             return Err(AxisError::Refused("a command that no run sends".into()));
         };
-        let reply = self.context.transact_timed(number, &values).map_err(|error| told(&error))?;
+        let reply = self.context.transact_timed(number, &values).map_err(|error| reported(&error))?;
         let span = (reply.span.requested_at, reply.span.replied_at);
         let mask = match command {
             Command::Read(mask) => *mask,
@@ -113,7 +113,7 @@ impl MindCarrier for MindJobCarrier<'_, '_> {
 
     fn wait_until(&mut self, time: Duration) -> Result<(), AxisError> {
         let left = time.saturating_sub(self.context.now());
-        self.context.sleep(left).map_err(|error| told(&error))
+        self.context.sleep(left).map_err(|error| reported(&error))
     }
 
     fn progress(&mut self, text: &str) {

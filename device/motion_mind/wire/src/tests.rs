@@ -315,7 +315,7 @@ fn what_is_no_command_is_told_with_its_address() {
     for line in ["C01", "C01 12 13", "C01x", "C1 12", "Q01 1", "R01 32", "W01 02 256", "C01 40000", "P01 one"]
     {
         match &lines_in(format!("{line}\r\n").as_bytes())[..] {
-            [LineEvent::NotUnderstood { line: told, .. }] => assert_eq!(told, line),
+            [LineEvent::NotUnderstood { line: reported, .. }] => assert_eq!(reported, line),
             other => panic!("{line}: {other:?}"),
         }
     }
@@ -341,10 +341,10 @@ fn a_wrong_reply_is_told_from_a_short_one() {
     let none = Returns::default();
     let read = Command::ReadRegister(0);
     let wrong_sum = [0x01, 0x20, 0x4E, 0x00, 0x00, 0x70];
-    let told = Progress::Bad(BadReply::Checksum { expected: 0x6F, got: 0x70 });
-    assert_eq!(parse_frame_reply(UNIT_1, &read, none, &wrong_sum), told);
-    let told = Progress::Bad(BadReply::Start { expected: 0x01, got: 0x02 });
-    assert_eq!(parse_frame_reply(UNIT_1, &read, none, &[0x02]), told);
+    let reported = Progress::Bad(BadReply::Checksum { expected: 0x6F, got: 0x70 });
+    assert_eq!(parse_frame_reply(UNIT_1, &read, none, &wrong_sum), reported);
+    let reported = Progress::Bad(BadReply::Start { expected: 0x01, got: 0x02 });
+    assert_eq!(parse_frame_reply(UNIT_1, &read, none, &[0x02]), reported);
     let newer = parse_frame_reply(UNIT_1, &Command::ReadRegister(40), none, &[]);
     assert_eq!(newer, Progress::Bad(BadReply::UnknownRegister(40)));
     assert_eq!(checksum(&[0xE8, 0x04, 0xFC]), 0xE8);

@@ -261,7 +261,7 @@ impl World {
         if self.encoders_swapped { 1 - motor.index() } else { motor.index() }
     }
 
-    /// One step of both axes and the link. The link voltage is foretold together with both currents, so that neither runs
+    /// One step of both axes and the link. The link voltage is predicted together with both currents, so that neither runs
     /// ahead of the other.
     fn step(&mut self, step_s: f64) {
         let mut at_no_volts = 0.0;

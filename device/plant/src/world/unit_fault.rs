@@ -49,7 +49,7 @@ impl UnitFaults {
         self.0[fault as usize]
     }
 
-    /// Brings a fault about or mends it.
+    /// Brings a fault about or ends it.
     pub const fn set(&mut self, fault: UnitFault, on: bool) {
         self.0[fault as usize] = on;
     }

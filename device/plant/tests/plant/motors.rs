@@ -118,7 +118,7 @@ fn the_steady_speed_is_where_the_torques_balance() {
         let torque = 0.03 * volts / 2.0 - 0.01 * duty.signum() - 0.1 / 10.0;
         let wanted = torque / (2e-5 + 0.03 * 0.03 / 2.0);
         assert_near(speed(&motor), wanted, 1e-6, "speed");
-        assert_near(params.steady_speed_radians_per_second(volts), wanted, 1e-9, "foretold speed");
+        assert_near(params.steady_speed_radians_per_second(volts), wanted, 1e-9, "predicted speed");
         assert_near(motor.state().amps, (volts - 0.03 * wanted) / 2.0, 1e-6, "current");
     }
 }
@@ -562,7 +562,7 @@ fn a_data_sheet_becomes_an_axis_that_reaches_its_figures() {
             motor.advance(BridgeOutput::Duty(1.0), 12.0, 1.0);
             let measured = (motor.encoder().counts - before) as f64;
             assert_near(measured, qpps, 1.0 + qpps * 1e-4, "QPPS");
-            assert_near(params.steady_counts_per_second(12.0), qpps, qpps * 1e-9, "foretold QPPS");
+            assert_near(params.steady_counts_per_second(12.0), qpps, qpps * 1e-9, "predicted QPPS");
         }
     }
 }

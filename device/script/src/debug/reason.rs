@@ -98,7 +98,7 @@ impl Reason {
         match self {
             Self::NotStarted => "No script runs: start it.".to_owned(),
             Self::Running => "The script runs.".to_owned(),
-            Self::Waiting(wait) => format!("The script runs: {}.", wait.told(line, now)),
+            Self::Waiting(wait) => format!("The script runs: {}.", wait.reported(line, now)),
             Self::Breakpoint { line, hits, condition } => {
                 let condition = condition.as_ref().map(|text| format!(" ({text})")).unwrap_or_default();
                 format!("Paused at the breakpoint on line {line}{condition}, reached {}.", times(*hits))
@@ -106,22 +106,22 @@ impl Reason {
             Self::BadCondition { line, why } => {
                 format!("Paused at the breakpoint on line {line}: its condition cannot be worked out. {why}")
             }
-            Self::Step(kind) => format!("Paused at line {line}: {}.", kind.told()),
+            Self::Step(kind) => format!("Paused at line {line}: {}.", kind.reported()),
             Self::Cursor => format!("Paused at line {line}, which was to be run to."),
             Self::Entry => format!("Paused before the first line that does something, line {line}."),
             Self::Asked(None) => format!("Paused at line {line}, because Pause was asked for."),
             Self::Asked(Some(wait)) => {
-                format!("Paused because Pause was asked for: {}.", wait.told(line, now))
+                format!("Paused because Pause was asked for: {}.", wait.reported(line, now))
             }
             Self::Ended => format!("The script has ended: END was reached at line {line}."),
             Self::Faulted(fault) => format!("The script has failed at line {}: {}.", fault.line, fault.kind),
-            Self::Stopped(cause) => format!("The script was stopped at line {line}: {}.", cause.told()),
+            Self::Stopped(cause) => format!("The script was stopped at line {line}: {}.", cause.reported()),
         }
     }
 }
 
 impl Wait {
-    fn told(self, line: u32, now: Duration) -> String {
+    fn reported(self, line: u32, now: Duration) -> String {
         match self {
             Self::Pause { until } => {
                 let left = until.saturating_sub(now).as_secs_f64();
@@ -137,7 +137,7 @@ impl Wait {
 }
 
 impl StepKind {
-    fn told(self) -> &'static str {
+    fn reported(self) -> &'static str {
         match self {
             Self::Into => "one line was run",
             Self::Over => "one line was run, with the subroutines it calls",
@@ -147,7 +147,7 @@ impl StepKind {
 }
 
 impl StopCause {
-    fn told(self) -> String {
+    fn reported(self) -> String {
         match self {
             Self::Command => {
                 "the controller was told to (command 249: Stop Script, Stop All or disarming)".into()

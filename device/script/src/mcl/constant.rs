@@ -80,8 +80,8 @@ impl Constant {
 impl NotConstant {
     /// The sentence and hint for it; `what` is what should have been constant.
     #[must_use]
-    pub fn told(&self, what: &str) -> (String, Option<String>) {
-        self.why.told(what)
+    pub fn reported(&self, what: &str) -> (String, Option<String>) {
+        self.why.reported(what)
     }
 
     /// The code of the diagnostic.
@@ -94,7 +94,7 @@ impl NotConstant {
 impl Why {
     /// The sentence and hint for it; `what` is what should have been constant.
     #[must_use]
-    pub fn told(self, what: &str) -> (String, Option<String>) {
+    pub fn reported(self, what: &str) -> (String, Option<String>) {
         match self {
             Self::Varies => (
                 format!("{what} must be known when the program is compiled."),

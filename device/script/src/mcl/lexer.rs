@@ -47,7 +47,7 @@ pub struct Wrong {
 impl Wrong {
     /// What there is to say; `text` is the whole text.
     #[must_use]
-    pub fn told(self, text: &str) -> Diagnostic {
+    pub fn reported(self, text: &str) -> Diagnostic {
         let Self { code, span } = self;
         let piece = span.of(text);
         let shown = excerpt(piece);

@@ -128,25 +128,25 @@ fn a_text_that_is_too_long_is_refused_where_the_bound_is() {
 fn of_too_many_statements_or_names_the_first_too_many_is_named() {
     let place_of = |text: &str, start: u32| Lines::of(text).line_of(start) as usize;
     let text = "end\n".repeat(400_000);
-    let told = compile(&text).diagnostics;
-    let places: Vec<usize> = told.iter().map(|said| place_of(&text, said.span.start)).collect();
+    let reported = compile(&text).diagnostics;
+    let places: Vec<usize> = reported.iter().map(|said| place_of(&text, said.span.start)).collect();
     // One instruction too many, and one statement more than there can be instructions and names.
     assert_eq!(places, [256 * 1024 + 1, (256 + 64) * 1024 + 1]);
-    assert!(told.iter().all(|said| said.code == codes::TOO_LARGE));
+    assert!(reported.iter().all(|said| said.code == codes::TOO_LARGE));
     let text: String = (0..70_000).map(|number| format!("v{number} con 1\n")).collect();
-    let told = compile(&text).diagnostics;
-    assert_eq!(told[0].message, "The program has 70000 names; 65536 are allowed.");
-    assert_eq!((told.len(), place_of(&text, told[0].span.start)), (1, 65_537));
+    let reported = compile(&text).diagnostics;
+    assert_eq!(reported[0].message, "The program has 70000 names; 65536 are allowed.");
+    assert_eq!((reported.len(), place_of(&text, reported[0].span.start)), (1, 65_537));
 }
 
 #[test]
 fn of_many_errors_the_first_are_listed_and_the_last_says_how_many_more_there_are() {
     let text = "#if 0\n?????\n#endif\n".to_owned() + &"?\n".repeat(1_000) + &"goto nowhere\n".repeat(3);
-    let told = compile(&text).diagnostics;
-    assert_eq!(told.len(), MOST_TOLD + 1);
+    let reported = compile(&text).diagnostics;
+    assert_eq!(reported.len(), MOST_TOLD + 1);
     let lines = Lines::of(&text);
-    assert!((0..MOST_TOLD).all(|at| lines.line_of(told[at].span.start) as usize == at + 4));
-    let last = &told[MOST_TOLD];
+    assert!((0..MOST_TOLD).all(|at| lines.line_of(reported[at].span.start) as usize == at + 4));
+    let last = &reported[MOST_TOLD];
     assert_eq!(
         (last.code, last.message.as_str()),
         (codes::MORE_ERRORS, "There are 903 more errors than the 100 that are listed.")

@@ -323,7 +323,7 @@ end
 ";
     assert_eq!(output(text), "kept3");
     let kept = brushwork_script::mcl::compile("#IF 1\nputs 0,[\"half]\n#ENDIF\nend\n");
-    assert!(kept.diagnostics.iter().any(|told| told.code == "E104"), "{:?}", kept.diagnostics);
+    assert!(kept.diagnostics.iter().any(|reported| reported.code == "E104"), "{:?}", kept.diagnostics);
 }
 
 #[test]

@@ -63,7 +63,7 @@ impl Rig {
     /// # Errors
     /// A sentence: there is no such model or preset.
     pub fn new(args: &RunArgs, program: &Program) -> Result<Self, String> {
-        let told =
+        let reported =
             |error: &dyn std::fmt::Display| format!("Could not start the simulated controller: {error}.");
         let options = SimOptions {
             models: vec![&args.model],
@@ -74,10 +74,11 @@ impl Rig {
             can: None,
             nodes: vec![],
         };
-        let spec = SimSpec::from_options(&options).map_err(|error| told(&error))?;
-        let unit = spec.units.first().ok_or_else(|| told(&"no model is named"))?;
+        let spec = SimSpec::from_options(&options).map_err(|error| reported(&error))?;
+        let unit = spec.units.first().ok_or_else(|| reported(&"no model is named"))?;
         let config = simulation::config_of(unit, spec.seed);
-        let mut settings = Controller::new(config.clone()).map_err(|error| told(&error))?.stored_settings();
+        let mut settings =
+            Controller::new(config.clone()).map_err(|error| reported(&error))?.stored_settings();
         let port = match args.stream {
             2 => StreamIndex::Uart1,
             3 => StreamIndex::Uart0,
@@ -87,9 +88,9 @@ impl Rig {
             settings.streams[index.index()].kind = kind_of(index, args)?;
         }
         let config = ControllerConfig { settings: Some(settings), ..config };
-        let mut controller = Controller::new(config).map_err(|error| told(&error))?;
+        let mut controller = Controller::new(config).map_err(|error| reported(&error))?;
         for action in args.buses.actions() {
-            controller.apply(&action).map_err(|error| told(&error))?;
+            controller.apply(&action).map_err(|error| reported(&error))?;
         }
         controller.install_script(&image::encode(program));
         controller.advance(WARM_UP);

@@ -263,9 +263,9 @@ fn lit(
             Some(_) => IndicatorState::Ok,
         };
     }
-    let told = identity
+    let reported = identity
         .is_none_or(|identity| indicator.is_reported(layout_of(identity.generation), is_mcp(identity)));
-    let dark = if told { IndicatorState::Ok } else { IndicatorState::NotApplicable };
+    let dark = if reported { IndicatorState::Ok } else { IndicatorState::NotApplicable };
     indicator.lit_by(conditions).map_or(dark, state_of)
 }
 

@@ -131,7 +131,7 @@ impl Stage {
     }
 
     /// What happens now, and the share that is done where it is known.
-    pub fn told(&self) -> (String, Option<f32>) {
+    pub fn reported(&self) -> (String, Option<f32>) {
         match self {
             Self::BackingUp { .. } => ("Backing up the settings.".to_owned(), None),
             Self::Entering { .. } => ("Stopping the motors and entering the loader.".to_owned(), None),
@@ -348,12 +348,12 @@ impl Firmware {
 
     fn file(&self) -> Result<Vec<u8>, String> {
         let path = Path::new(self.path.trim());
-        let told = |error: std::io::Error| format!("Could not read {}: {error}.", path.display());
-        let length = std::fs::metadata(path).map_err(told)?.len();
+        let reported = |error: std::io::Error| format!("Could not read {}: {error}.", path.display());
+        let length = std::fs::metadata(path).map_err(reported)?.len();
         if length > LARGEST_FILE_BYTES {
             return Err(format!("The file is not sent: it has {length} bytes, and no image is that large."));
         }
-        std::fs::read(path).map_err(told)
+        std::fs::read(path).map_err(reported)
     }
 }
 
@@ -409,7 +409,7 @@ fn keep(
 
 fn compare(profile: &Profile, report: &ReadReport) -> Compared {
     let fitted = profile.fitted_to(&report.table).profile.settings;
-    let told = diff(&report.table, &fitted, &report.image).into_iter().filter_map(|difference| {
+    let reported = diff(&report.table, &fitted, &report.image).into_iter().filter_map(|difference| {
         let row = report.table.row(&difference.key)?;
         let text = |value: Option<_>| value.map_or("nothing".to_owned(), |value| row.format(value));
         Some(format!(
@@ -419,5 +419,5 @@ fn compare(profile: &Profile, report: &ReadReport) -> Compared {
             text(difference.right)
         ))
     });
-    Compared { differences: told.collect(), failure: None }
+    Compared { differences: reported.collect(), failure: None }
 }

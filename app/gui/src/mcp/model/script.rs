@@ -13,12 +13,12 @@ pub fn download_job(bytes: &[u8]) -> Result<Job<String>, String> {
     let limit = Duration::from_secs(60) + Duration::from_millis(200).saturating_mul(blocks);
     Ok(Job::new(DOWNLOAD_JOB, limit, move |context| {
         let is_simulated = context.is_simulated();
-        download(context, &image, is_simulated).map(|done| told(&done))
+        download(context, &image, is_simulated).map(|done| reported(&done))
     }))
 }
 
 /// What was sent and how far it is known to have arrived.
-fn told(done: &Downloaded) -> String {
+fn reported(done: &Downloaded) -> String {
     let verified = match done.verified {
         Verified::Content => "verified".to_owned(),
         Verified::Status => "each block confirmed".to_owned(),

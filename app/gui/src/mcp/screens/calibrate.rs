@@ -50,8 +50,8 @@ pub fn calibrate_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
             Readout { label: &spoken, unit: "", digits: 10, unit_letters: 0 }.ui(ui, value.as_deref());
         });
     }
-    if let Some(told) = &run.told {
-        indicator_ui(ui, IndicatorState::Warning, told);
+    if let Some(reported) = &run.reported {
+        indicator_ui(ui, IndicatorState::Warning, reported);
     }
     let (mut take, mut cancel) = (false, false);
     ui.add_space(4.0);

@@ -158,7 +158,7 @@ fn resumed_ui(ui: &mut Ui, firmware: &mut Firmware) {
 }
 
 fn running_ui(ui: &mut Ui, stage: &Stage, commands: &mut Commands) {
-    let (text, share) = stage.told();
+    let (text, share) = stage.reported();
     ui.label(RichText::new(&text).strong());
     let bar = ProgressBar::new(share.unwrap_or(0.0)).desired_height(18.0);
     ui.add(if share.is_some() { bar.show_percentage() } else { bar });

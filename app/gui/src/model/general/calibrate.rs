@@ -19,7 +19,7 @@ pub struct Run {
     pub(super) pin: usize,
     phase: Phase,
     /// Why the last step was not taken, for the user.
-    pub told: Option<String>,
+    pub reported: Option<String>,
     /// What the pin had before.
     before: SettingsImage,
     kept: Before,

@@ -18,7 +18,7 @@ pub use calibrate::Run as CalibrationRun;
 pub use calibration::CalibrationStage;
 pub use clamp::{ClampTest, Verdict};
 pub use compare::{Comparing, Comparison, Side, Take};
-pub use profile::{Profiles, Purpose, Told};
+pub use profile::{Profiles, Purpose, Reported};
 pub use screen::General;
 pub use section::{Section, sections};
 pub use sheet::Sheet;

@@ -21,7 +21,7 @@ pub struct Profiles {
     /// A profile that has to be changed before it fits, until that is agreed to.
     pending: Option<(Opened, Vec<String>)>,
     /// What came of the last attempt.
-    told: Told,
+    reported: Reported,
 }
 
 /// What a path is asked for.
@@ -33,14 +33,14 @@ pub enum Purpose {
 
 /// What came of opening or saving.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub enum Told {
+pub enum Reported {
     #[default]
     Nothing,
     Done(String),
     Failed {
         sentences: Vec<String>,
         /// Whether the file can be opened without its faulty settings.
-        can_be_mended: bool,
+        can_be_corrected: bool,
     },
 }
 
@@ -49,8 +49,8 @@ pub enum Told {
 pub struct Opened {
     pub name: String,
     pub profile: Profile,
-    /// What was mended or left out in reading it.
-    pub mended: Vec<String>,
+    /// What was corrected or left out in reading it.
+    pub corrected: Vec<String>,
 }
 
 impl Profiles {
@@ -63,12 +63,12 @@ impl Profiles {
         self.pending.as_ref().map(|(opened, changes)| (opened.name.as_str(), changes.as_slice()))
     }
 
-    pub fn told(&self) -> &Told {
-        &self.told
+    pub fn reported(&self) -> &Reported {
+        &self.reported
     }
 
-    pub fn forget_told(&mut self) {
-        self.told = Told::Nothing;
+    pub fn forget_reported(&mut self) {
+        self.reported = Reported::Nothing;
     }
 
     /// Whether the desktop's own dialog is open.
@@ -101,8 +101,8 @@ impl Profiles {
         None
     }
 
-    fn fail(&mut self, error: &ProfileFileError, can_be_mended: bool) {
+    fn fail(&mut self, error: &ProfileFileError, can_be_corrected: bool) {
         let sentences = error.to_string().lines().map(str::to_owned).collect();
-        self.told = Told::Failed { sentences, can_be_mended };
+        self.reported = Reported::Failed { sentences, can_be_corrected };
     }
 }

@@ -57,7 +57,7 @@ impl GeneralView<'_> {
     }
 
     pub fn open(&mut self, sheet: Sheet) {
-        self.profiles.forget_told();
+        self.profiles.forget_reported();
         if matches!(sheet, Sheet::Backups | Sheet::Compare | Sheet::Save) {
             self.settings.refresh_kept();
         }
@@ -108,7 +108,7 @@ impl GeneralView<'_> {
                 let summary = self.calibration_step_ended(report);
                 self.tell(summary)
             }
-            Ended::Told { summary, is_quiet, is_unfinished, .. } => {
+            Ended::Reported { summary, is_quiet, is_unfinished, .. } => {
                 let mut effects = self.tell(summary);
                 if is_quiet {
                     effects.clear();
@@ -130,13 +130,13 @@ impl GeneralView<'_> {
         self.settings.link_ended();
     }
 
-    fn tell(&mut self, told: Summary) -> Vec<Effect> {
-        if !told.sentences.is_empty() {
-            self.open(Sheet::Report { title: told.summary.clone(), sentences: told.sentences });
+    fn tell(&mut self, reported: Summary) -> Vec<Effect> {
+        if !reported.sentences.is_empty() {
+            self.open(Sheet::Report { title: reported.summary.clone(), sentences: reported.sentences });
         } else if let Some(sheet) = self.waiting_sheet.take() {
             self.open(sheet);
         }
-        vec![Effect::Say(told.gravity, told.summary)]
+        vec![Effect::Say(reported.gravity, reported.summary)]
     }
 
     fn tell_unfinished(&mut self) -> Vec<Effect> {

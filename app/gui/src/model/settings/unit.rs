@@ -130,8 +130,8 @@ impl UnitSettings {
 
     /// What is known of RAM, if each of these keys was asked for and told at least once.
     pub fn ram_with(&self, keys: &[String]) -> Option<&SettingsImage> {
-        let is_told = |key: &String| self.asked.get(key).is_some_and(|asked| *asked != Asked::Waiting);
-        self.copies.ram().filter(|_| keys.iter().all(is_told))
+        let is_reported = |key: &String| self.asked.get(key).is_some_and(|asked| *asked != Asked::Waiting);
+        self.copies.ram().filter(|_| keys.iter().all(is_reported))
     }
 
     /// What its EEPROM holds, if that was proven in this session.
@@ -194,8 +194,8 @@ impl UnitSettings {
     /// No answer came: whoever wants them asks again.
     pub(super) fn forget_keys_asked(&mut self, keys: &[String]) {
         for key in keys {
-            let was_told = self.on_controller(key).is_some();
-            match was_told {
+            let was_reported = self.on_controller(key).is_some();
+            match was_reported {
                 true => self.asked.insert(key.clone(), Asked::InDoubt),
                 false => self.asked.remove(key),
             };

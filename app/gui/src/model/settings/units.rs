@@ -36,7 +36,7 @@ pub struct Settings {
 #[derive(Debug)]
 pub enum Ended {
     /// For the screen with all settings; quiet where nobody asked for it.
-    Told { summary: Summary, is_quiet: bool, is_unfinished: bool },
+    Reported { summary: Summary, is_quiet: bool, is_unfinished: bool },
     /// An input was opened or closed, or could not be: what was written.
     Calibrated(Option<WriteReport>),
     /// For the message line alone.
@@ -276,7 +276,7 @@ impl Settings {
                 let failed = job.is_quiet && matches!(ending, JobEnding::Failed(_));
                 self.quiet_failures += usize::from(came.is_none() && failed);
                 let is_unfinished = is_current && self.note_came(came);
-                Some(Ended::Told { summary, is_quiet, is_unfinished })
+                Some(Ended::Reported { summary, is_quiet, is_unfinished })
             }
         }
     }

@@ -365,9 +365,10 @@ mod tests {
     #[test]
     fn requests_and_answers_are_put_together_with_times_and_outcomes() {
         let log = filled();
-        let told: Vec<_> = (0..3).filter_map(|index| log.shown(index)).map(Transaction::to_line).collect();
+        let reported: Vec<_> =
+            (0..3).filter_map(|index| log.shown(index)).map(Transaction::to_line).collect();
         assert_eq!(
-            told,
+            reported,
             [
                 "0.000000\t2.00\tOK\t80 18 | 00 F3 E8 86\t0x80 main battery -> 24.3 V",
                 "0.100000\t\tno answer\t80 5A | \t0x80 status (no answer)",

@@ -130,12 +130,12 @@ mod tests {
 
     #[test]
     fn values_stand_in_the_unit_of_their_register() {
-        let told = |name: &str, raw| in_unit(register_named(name).unwrap(), raw);
-        assert_eq!(told("RCMAX", 1152).as_deref(), Some("2.000 ms"));
-        assert_eq!(told("AMPS", 512).as_deref(), Some("10.24 A"));
-        assert_eq!(told("THERMISTOR", 952).as_deref(), Some("25.1 °C"));
-        assert_eq!(told("TIMER", 10).as_deref(), Some("0.050 s"));
-        assert_eq!(told("PTERM", 6000), None);
+        let reported = |name: &str, raw| in_unit(register_named(name).unwrap(), raw);
+        assert_eq!(reported("RCMAX", 1152).as_deref(), Some("2.000 ms"));
+        assert_eq!(reported("AMPS", 512).as_deref(), Some("10.24 A"));
+        assert_eq!(reported("THERMISTOR", 952).as_deref(), Some("25.1 °C"));
+        assert_eq!(reported("TIMER", 10).as_deref(), Some("0.050 s"));
+        assert_eq!(reported("PTERM", 6000), None);
     }
 
     #[test]

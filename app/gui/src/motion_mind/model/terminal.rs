@@ -336,7 +336,7 @@ impl Terminal {
         if let Event::Transacted { id, result } = event
             && let Some(entry) = self.entries.iter_mut().find(|entry| entry.id == *id)
         {
-            entry.answer = Some(result.as_ref().map(told).map_err(ToString::to_string));
+            entry.answer = Some(result.as_ref().map(reported).map_err(ToString::to_string));
         }
         if let Event::RawReply { id, result } = event
             && let Some(entry) = self.entries.iter_mut().find(|entry| entry.id == *id)
@@ -375,7 +375,7 @@ impl Entry {
 }
 
 /// "PTERM 6000, ITERM 35", or that it was taken.
-fn told(values: &Values) -> String {
+fn reported(values: &Values) -> String {
     if values.is_empty() {
         return "OK".to_owned();
     }

@@ -64,7 +64,7 @@ pub(super) fn remedies(cause: Cause) -> Option<&'static [&'static str]> {
             "Clear PULSEFB in FUNCTION2 on the Registers screen.",
         ],
         Cause::LoopOff => {
-            &["When it is mended, arm and try again: arming switches the loop on where the motor stands."]
+            &["When it is put right, arm and try again: arming switches the loop on where the motor stands."]
         }
         Cause::OtherLoop => &["Clear NEWVELMODE, FASTPID, PULSEFB and DISABLEPID on the Registers screen."],
         Cause::UnknownLaw => {

@@ -169,7 +169,7 @@ fn stage_ui(ui: &mut Ui, model: &mut Model, count: Option<i64>, is_position: boo
             ui.label(RichText::new(&text).strong());
         }
     }
-    let mut told = None;
+    let mut reported = None;
     ui.horizontal_wrapped(|ui| match stage {
         Stage::Idle => {
             if ui.button("Start the calibration").clicked() {
@@ -187,14 +187,14 @@ fn stage_ui(ui: &mut Ui, model: &mut Model, count: Option<i64>, is_position: boo
         }
         _ => {
             if ui.add(Button::new(button_text(stage))).clicked() {
-                told = model.front.mind_mut().radio.go_on(count).err();
+                reported = model.front.mind_mut().radio.go_on(count).err();
             }
             if ui.button("Give up").clicked() {
                 model.front.mind_mut().radio.give_up();
             }
         }
     });
-    if let Some(why) = told {
+    if let Some(why) = reported {
         model.messages.warn(why);
     }
 }

@@ -127,9 +127,9 @@ fn row_ui(ui: &mut Ui, connection: &mut Connection, register: &'static Register,
         if register.is_writable() {
             value(ui, "EEPROM", &eeprom, true);
         } else {
-            let told = connection.mind().live.get(register).and_then(|raw| in_unit(register, raw));
-            let told = told.unwrap_or_default();
-            let text = Label::new(RichText::new(&told).small().color(palette.weak_text)).truncate();
+            let reported = connection.mind().live.get(register).and_then(|raw| in_unit(register, raw));
+            let reported = reported.unwrap_or_default();
+            let text = Label::new(RichText::new(&reported).small().color(palette.weak_text)).truncate();
             ui.add_sized(vec2(VALUE_WIDTH, HEIGHT), text);
         }
     });

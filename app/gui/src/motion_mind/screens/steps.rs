@@ -84,8 +84,8 @@ fn outcome_ui(ui: &mut Ui, model: &Model) {
     let label = ui.add(Label::new(&text).truncate());
     label.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("Last step: {text}")));
     let advice = steps.advice();
-    let told = ui.add(Label::new(RichText::new(advice).strong()).wrap());
-    told.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("Advice: {advice}")));
+    let reported = ui.add(Label::new(RichText::new(advice).strong()).wrap());
+    reported.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("Advice: {advice}")));
 }
 
 fn figures_text(last: Outcome) -> String {

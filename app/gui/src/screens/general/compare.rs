@@ -26,7 +26,7 @@ pub fn compare_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
         indicator_ui(ui, IndicatorState::Warning, note);
     }
     if let (Side::Profile, Some(opened)) = (&general.comparing.right, general.profiles.opened()) {
-        for sentence in &opened.mended {
+        for sentence in &opened.corrected {
             indicator_ui(ui, IndicatorState::Warning, sentence);
         }
         text_ui(ui, &format!("Profile {}, read {}.", opened.name, opened.profile.date_text()));

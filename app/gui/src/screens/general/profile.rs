@@ -4,7 +4,7 @@ use egui::{Button, Ui, vec2};
 
 use super::sheet_parts::{Act, Offer, indicator_ui, text_ui, title_ui};
 use crate::frame::FRAME_INTERVAL;
-use crate::model::general::{GeneralView, Purpose, Told};
+use crate::model::general::{GeneralView, Purpose, Reported};
 use crate::model::indicator::IndicatorState;
 use crate::model::settings::UnitSettings;
 use crate::widgets::text_field::text_field_ui;
@@ -16,10 +16,10 @@ pub fn open_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
         "Reads a profile file and shows it beside the controller. Nothing is written; you choose what to take over.",
     );
     path_ui(ui, general, Purpose::Open);
-    let can_be_mended = told_ui(ui, general.profiles.told());
+    let can_be_corrected = told_ui(ui, general.profiles.reported());
     let has_path = !general.profiles.path.trim().is_empty();
     let mut acts = vec![("Open", Act::OpenProfile { mending: false }, has_path)];
-    if can_be_mended {
+    if can_be_corrected {
         acts.push(("Open without what is wrong", Act::OpenProfile { mending: true }, has_path));
     }
     acts
@@ -39,7 +39,7 @@ pub fn save_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
     } else {
         general.profiles.with_edits = false;
     }
-    told_ui(ui, general.profiles.told());
+    told_ui(ui, general.profiles.reported());
     let is_read = general.unit().is_some_and(UnitSettings::is_read);
     if !is_read {
         indicator_ui(
@@ -60,12 +60,12 @@ fn path_ui(ui: &mut Ui, general: &mut GeneralView<'_>, purpose: Purpose) {
             let response =
                 text_field_ui(ui, &mut general.profiles.path, "Profile file", "Path of a .json file");
             if response.changed() {
-                general.profiles.forget_told();
+                general.profiles.forget_reported();
             }
         });
         let is_free = !general.profiles.is_browsing();
         if ui.add_enabled(is_free, Button::new("Browse…")).clicked() {
-            general.profiles.forget_told();
+            general.profiles.forget_reported();
             general.profiles.browse(purpose);
         }
     });
@@ -75,18 +75,18 @@ fn path_ui(ui: &mut Ui, general: &mut GeneralView<'_>, purpose: Purpose) {
 }
 
 /// What came of the last attempt; true when the file can be opened without what is wrong with it.
-fn told_ui(ui: &mut Ui, told: &Told) -> bool {
-    match told {
-        Told::Nothing => false,
-        Told::Done(sentence) => {
+fn told_ui(ui: &mut Ui, reported: &Reported) -> bool {
+    match reported {
+        Reported::Nothing => false,
+        Reported::Done(sentence) => {
             indicator_ui(ui, IndicatorState::Ok, sentence);
             false
         }
-        Told::Failed { sentences, can_be_mended } => {
+        Reported::Failed { sentences, can_be_corrected } => {
             for sentence in sentences {
                 indicator_ui(ui, IndicatorState::Error, sentence);
             }
-            *can_be_mended
+            *can_be_corrected
         }
     }
 }

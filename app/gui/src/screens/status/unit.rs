@@ -23,7 +23,7 @@ pub fn unit_ui(ui: &mut Ui, connection: &Connection) {
     let figures = &connection.link.statistics;
     let rows = [
         ("Says of itself", identity.version_text.trim().to_owned()),
-        ("Firmware", format!("{}, {}", or_not_told(&identity.firmware), identity.generation)),
+        ("Firmware", format!("{}, {}", or_not_reported(&identity.firmware), identity.generation)),
         ("Address", format!("{}{}", identity.place(), addresses(&identity.also_answers))),
         ("Port", port),
         ("Status word", connection.link.status.as_ref().map_or(String::new(), word_text)),
@@ -58,8 +58,8 @@ pub fn unit_ui(ui: &mut Ui, connection: &Connection) {
     });
 }
 
-fn or_not_told(text: &str) -> &str {
-    if text.is_empty() { "not told" } else { text }
+fn or_not_reported(text: &str) -> &str {
+    if text.is_empty() { "not reported" } else { text }
 }
 
 fn word_text(report: &StatusReport) -> String {

@@ -87,8 +87,8 @@ impl DeviceLoop {
     }
 
     fn job_refusal(&self, job: &QueuedJob, overtaken: bool) -> Option<Failure> {
-        let refuse = |came_back: &str, mend: &str| {
-            Some(Failure::new(job.name.clone(), self.name_of(self.selected), came_back, mend))
+        let refuse = |came_back: &str, remedy: &str| {
+            Some(Failure::new(job.name.clone(), self.name_of(self.selected), came_back, remedy))
         };
         if !job.moves_motors {
             return None;

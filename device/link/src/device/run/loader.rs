@@ -17,8 +17,8 @@ impl DeviceLoop {
         }
         if self.units.len() > 1 {
             // The others would take the image's bytes for packets.
-            let mend = "Connect the controller alone, over its USB port";
-            return self.refuse_loader("other controllers share this line", mend);
+            let remedy = "Connect the controller alone, over its USB port";
+            return self.refuse_loader("other controllers share this line", remedy);
         }
         if !self.halt_and_confirm(DisarmReason::Stop) {
             if self.phase != Phase::Ended {
@@ -40,8 +40,8 @@ impl DeviceLoop {
         }
     }
 
-    fn refuse_loader(&mut self, came_back: &str, mend: &str) {
-        let failure = Failure::new(TRIED, self.name_of(self.selected), came_back, mend);
+    fn refuse_loader(&mut self, came_back: &str, remedy: &str) {
+        let failure = Failure::new(TRIED, self.name_of(self.selected), came_back, remedy);
         self.outbox.send(Event::Failure(failure));
     }
 }

@@ -213,12 +213,13 @@ impl DeviceLoop {
     }
 
     fn lose_for(&mut self, came_back: &str) {
-        let mend = if self.guard.is_moving() || self.units.iter().any(|unit| unit.moved) {
+        let remedy = if self.guard.is_moving() || self.units.iter().any(|unit| unit.moved) {
             "Make sure that the motors stand still; then check power and cable, and connect again"
         } else {
             "Check the controller's power and the cable, then connect again"
         };
-        let failure = Failure::new("go on talking to the controller", self.exchange.port(), came_back, mend);
+        let failure =
+            Failure::new("go on talking to the controller", self.exchange.port(), came_back, remedy);
         self.end(Event::Lost(failure));
     }
 

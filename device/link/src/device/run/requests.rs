@@ -124,7 +124,7 @@ impl DeviceLoop {
             Ok(check) if check.reasons.is_empty() => self.enter_armed(scope, check, disarms),
             Ok(ArmCheck { reasons, .. }) => self.outbox.send(Event::ArmRefused { scope, reasons }),
             Err(error) if error.is_link_lost() => self.lose(&error),
-            Err(error) => self.refuse(scope, &error.full(), error.mend()),
+            Err(error) => self.refuse(scope, &error.full(), error.remedy()),
         }
     }
 
@@ -143,9 +143,9 @@ impl DeviceLoop {
         self.outbox.send(Event::Armed { address, scope, controller_timeout, warnings });
     }
 
-    fn refuse(&mut self, scope: ArmScope, came_back: &str, mend: &str) {
+    fn refuse(&mut self, scope: ArmScope, came_back: &str, remedy: &str) {
         let reason =
-            Failure::new(format!("arm {scope}"), self.name_of(self.selected), came_back, mend.to_owned());
+            Failure::new(format!("arm {scope}"), self.name_of(self.selected), came_back, remedy.to_owned());
         self.outbox.send(Event::ArmRefused { scope, reasons: vec![reason] });
     }
 
@@ -207,9 +207,9 @@ impl DeviceLoop {
     /// Simulated controllers refuse by another byte than FF. Nobody knows what a real one says, so that it is stopped all the same.
     fn tell_refused_start(&mut self, answer: u8) {
         let came_back = format!("it answered {answer:02X} instead of FF: it holds no script that it can run");
-        let mend = "Download the script first; a simulated controller runs what this program compiles, a real one what the maker's \
+        let remedy = "Download the script first; a simulated controller runs what this program compiles, a real one what the maker's \
                     tool compiles";
-        let failure = Failure::new("start the script", self.name_of(self.selected), came_back, mend);
+        let failure = Failure::new("start the script", self.name_of(self.selected), came_back, remedy);
         self.outbox.send(Event::Failure(failure));
     }
 

@@ -79,8 +79,8 @@ impl DeviceLoop {
         } else {
             "the device thread failed, and stop could not be sent"
         };
-        let mend = "Make sure that the motors stand still, connect again, and report this as a bug";
-        self.end(Event::Lost(Failure::new("go on", self.exchange.port(), came_back, mend)));
+        let remedy = "Make sure that the motors stand still, connect again, and report this as a bug";
+        self.end(Event::Lost(Failure::new("go on", self.exchange.port(), came_back, remedy)));
     }
 
     /// Gives a window that is slow at the end a moment to take the reason.

@@ -38,8 +38,8 @@ pub struct OpenedProfile {
     pub profile: Profile,
     /// What an older schema said otherwise, a sentence each.
     pub upgraded: Vec<String>,
-    /// Faults that were mended.
-    pub mended: Vec<Problem>,
+    /// Faults that were corrected.
+    pub corrected: Vec<Problem>,
 }
 
 /// Whether faults are refused or mended.
@@ -47,7 +47,7 @@ pub struct OpenedProfile {
 pub enum Strictness {
     /// Any fault refuses the profile.
     Refuse,
-    /// Faults of single settings are mended, each with a warning; others still refuse it.
+    /// Faults of single settings are corrected, each with a warning; others still refuse it.
     Repair,
 }
 

@@ -33,7 +33,7 @@ pub(super) fn parse(text: &str, strictness: Strictness) -> Result<OpenedProfile,
     let profile = reader.profile(&members);
     match profile {
         Some(profile) if reader.problems.is_empty() => {
-            Ok(OpenedProfile { profile, upgraded, mended: reader.warnings })
+            Ok(OpenedProfile { profile, upgraded, corrected: reader.warnings })
         }
         _ => Err(ProfileError { problems: reader.problems }),
     }
@@ -236,7 +236,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A fault of one setting: a refusal, or a warning when faults are mended.
+    /// A fault of one setting: a refusal, or a warning when faults are corrected.
     fn minor(&mut self, path: &str, sentence: impl Into<String>) {
         let problem = self.located(path, sentence);
         match self.strictness {

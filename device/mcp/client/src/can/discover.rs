@@ -129,29 +129,33 @@ impl Search for CanOpen {
     }
 
     fn stop_bytes(&self, addresses: Addresses) -> StopBytes {
-        let told = |node: &NodeId| match addresses {
+        let reported = |node: &NodeId| match addresses {
             Addresses::These(set) => set.contains(node.get()),
             Addresses::Scan | Addresses::Only(_) | Addresses::Factory => true,
         };
         let each = |node| self.place(node).stop_bytes(false);
-        NodeId::all().filter(told).map(each).reduce(StopBytes::with).unwrap_or_default()
+        NodeId::all().filter(reported).map(each).reduce(StopBytes::with).unwrap_or_default()
     }
 }
 
 /// Vendor, product, revision and serial number, as far as the node tells them.
 fn identity_notes(line: &mut Line<'_>, place: Place) -> Result<Vec<String>, ExchangeError> {
-    let mut told = Vec::new();
+    let mut reported = Vec::new();
     for (subindex, name) in [(1, "vendor"), (2, "product"), (3, "revision"), (4, "serial number")] {
         match read(line, place, objects::IDENTITY, subindex) {
             Ok((bytes, _)) => {
                 let hex: String = bytes.iter().rev().map(|byte| format!("{byte:02X}")).collect();
-                told.push(format!("{name} 0x{hex}"));
+                reported.push(format!("{name} 0x{hex}"));
             }
             Err(error) if error.is_link_lost() || error.interruption().is_some() => return Err(error),
             Err(_) => {}
         }
     }
-    Ok(if told.is_empty() { Vec::new() } else { vec![format!("CANopen identity: {}.", told.join(", "))] })
+    Ok(if reported.is_empty() {
+        Vec::new()
+    } else {
+        vec![format!("CANopen identity: {}.", reported.join(", "))]
+    })
 }
 
 fn nothing_there(line: &mut Line<'_>, addresses: Addresses, others: &[String], heard: u64) -> Failure {
@@ -164,7 +168,7 @@ fn nothing_there(line: &mut Line<'_>, addresses: Addresses, others: &[String], h
             format!("none of the nodes {} answered", each.join(", "))
         }
     };
-    let (came_back, mend) = match (others, heard) {
+    let (came_back, remedy) = match (others, heard) {
         ([], 0) => (
             format!("{asked}, and the adapter said nothing"),
             "Check the adapter's port and baud rate, its form (form=ascii or form=binary), the bus rate and the 120 Ω at both ends",
@@ -175,5 +179,5 @@ fn nothing_there(line: &mut Line<'_>, addresses: Addresses, others: &[String], h
         ),
         (others, _) => (others.join("; "), "Give the node of the motor controller: node=3"),
     };
-    Failure::new("find a controller", on, came_back, mend)
+    Failure::new("find a controller", on, came_back, remedy)
 }

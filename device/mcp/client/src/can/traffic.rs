@@ -23,8 +23,8 @@ mod tests {
 
     #[test]
     fn traffic_is_told_in_words() {
-        let told = describe(b":S703N05;", Form::Ascii);
-        assert_eq!((told.text.as_str(), told.sound), ("node 3 heartbeat: operational", true));
+        let reported = describe(b":S703N05;", Form::Ascii);
+        assert_eq!((reported.text.as_str(), reported.sound), ("node 3 heartbeat: operational", true));
         assert_eq!(describe(b"x", Form::Ascii).text, "78");
     }
 }

@@ -23,7 +23,7 @@ const PRIORITY_SERIAL: i64 = 1;
 /// Why motors may not be moved, and what to do about it.
 struct Objection {
     came_back: String,
-    mend: String,
+    remedy: String,
 }
 
 /// Reads everything arming depends on, and lists all that speaks against it.
@@ -49,7 +49,7 @@ pub fn check(
     }));
     let warnings = if objections.is_empty() { coasting(speaker, line)? } else { Vec::new() };
     let failure =
-        |objection: Objection| Failure::new("arm the motors", on, objection.came_back, objection.mend);
+        |objection: Objection| Failure::new("arm the motors", on, objection.came_back, objection.remedy);
     Ok(ArmCheck { reasons: objections.into_iter().map(failure).collect(), controller_timeout, warnings })
 }
 
@@ -166,8 +166,8 @@ fn object_to_priorities(speaker: Speaker, line: &mut Line<'_>) -> Result<Option<
     }))
 }
 
-fn object(came_back: impl Into<String>, mend: impl Into<String>) -> Objection {
-    Objection { came_back: came_back.into(), mend: mend.into() }
+fn object(came_back: impl Into<String>, remedy: impl Into<String>) -> Objection {
+    Objection { came_back: came_back.into(), remedy: remedy.into() }
 }
 
 /// Motors in torque control, which inductance and resistance switch on (MCP manual 1.2.11). Assumed: duty 0 is then a current of

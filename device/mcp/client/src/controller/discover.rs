@@ -44,11 +44,11 @@ impl Search for PacketSerial {
         let speaker = |address| Speaker::packets(address, Generation::Gen1);
         // Nobody knows yet who runs scripts; the device thread ends them once it does.
         let each = |address| stopping::bytes(speaker(address), false, false);
-        let told = |address: &Address| match addresses {
+        let reported = |address: &Address| match addresses {
             Addresses::These(set) => set.contains(address.get()),
             Addresses::Scan | Addresses::Only(_) | Addresses::Factory => true,
         };
-        Address::ALL.into_iter().filter(told).map(each).reduce(StopBytes::with).unwrap_or_default()
+        Address::ALL.into_iter().filter(reported).map(each).reduce(StopBytes::with).unwrap_or_default()
     }
 }
 
@@ -265,7 +265,7 @@ fn nothing_there(line: &mut Line<'_>, addresses: Addresses, heard: u64) -> Failu
         1 => format!("one byte came, but no packet serial, from {asked}"),
         count => format!("{count} bytes came, but no packet serial, from {asked}"),
     };
-    let mend = match heard {
+    let remedy = match heard {
         0 => {
             "Check that the controller has motor power, that the cable and the port are right, and the baud rate"
         }
@@ -273,7 +273,7 @@ fn nothing_there(line: &mut Line<'_>, addresses: Addresses, heard: u64) -> Failu
             "Check the baud rate, and that the device on this port is a motor controller set to packet serial"
         }
     };
-    Failure::new("find a controller", on, came_back, mend)
+    Failure::new("find a controller", on, came_back, remedy)
 }
 
 #[cfg(test)]

@@ -11,8 +11,8 @@ use std::time::Duration;
 /// The requests that a write holds, in words; a stop is several.
 pub fn describe_sent(bytes: &[u8], generation: Generation) -> Described {
     let events = events(bytes, generation);
-    let told: Vec<_> = events.iter().map(|event| describe_event(event, generation)).collect();
-    let text = if told.is_empty() { hex(bytes) } else { told.join("; ") };
+    let reported: Vec<_> = events.iter().map(|event| describe_event(event, generation)).collect();
+    let text = if reported.is_empty() { hex(bytes) } else { reported.join("; ") };
     let is_request = |event: &FramerEvent| matches!(event, FramerEvent::Request(_));
     Described { text, sound: !events.is_empty() && events.iter().all(is_request) }
 }
@@ -70,18 +70,21 @@ mod tests {
         let request = [0x80, 24];
         let sent = describe_sent(&request, G1);
         assert!(sent.text.contains("main battery") && sent.sound, "{sent:?}");
-        let told = describe_received(&request, &reply_to(&request, &[0x00, 0xF3]), G1);
-        assert!(told.text.contains("24.3") && told.sound, "{told:?}");
+        let reported = describe_received(&request, &reply_to(&request, &[0x00, 0xF3]), G1);
+        assert!(reported.text.contains("24.3") && reported.sound, "{reported:?}");
     }
 
     #[test]
     fn a_stop_is_told_packet_by_packet() {
         let duty_zero = with_crc(&[0x80, 54, 0, 0, 0x00, 0x09, 0xFF, 0xFF, 0, 0, 0x00, 0x09, 0xFF, 0xFF]);
         let stop = [with_crc(&[0x80, 249]), duty_zero].concat();
-        let told = describe_sent(&stop, G1);
-        assert!(told.sound, "{told:?}");
-        let told = told.text;
-        assert!(told.contains("stop script") && told.contains("; ") && told.contains("duty"), "{told}");
+        let reported = describe_sent(&stop, G1);
+        assert!(reported.sound, "{reported:?}");
+        let reported = reported.text;
+        assert!(
+            reported.contains("stop script") && reported.contains("; ") && reported.contains("duty"),
+            "{reported}"
+        );
         assert!(describe_received(&stop, &[0xFF, 0xFF], G1).sound);
     }
 
@@ -93,8 +96,8 @@ mod tests {
             (&[0, 1, 2, 3], "checksum"),
             (&[0x00, 0xF3, 0xE8, 0x86, 9], "then 09"),
         ] {
-            let told = describe_received(&request, reply, G1);
-            assert!(told.text.contains(word) && !told.sound, "{told:?}");
+            let reported = describe_received(&request, reply, G1);
+            assert!(reported.text.contains(word) && !reported.sound, "{reported:?}");
         }
         let ack = with_crc(&[0x80, 249]);
         assert!(describe_received(&ack, &[0x11], G1).text.contains("no reply to it"));

@@ -1,7 +1,7 @@
 //! Why the motors do not run, in one sentence with its cure: shared by the window and the command line.
 //!
 //! It judges what was read elsewhere ([`Evidence`]) and sends nothing. The findings come in the order in which a person
-//! would mend them: what stops everything first, then what stops one kind of motion.
+//! would remedy them: what stops everything first, then what stops one kind of motion.
 
 mod configured;
 mod evidence;

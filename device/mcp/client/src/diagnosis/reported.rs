@@ -9,7 +9,7 @@ use brushwork_values::Severity;
 
 /// What an indicator means for the motors; none for one that says nothing about them.
 pub fn of(indicator: &Indicator, evidence: &Evidence<'_>) -> Option<Finding> {
-    let told = |hindrance, cure: &str| {
+    let reported = |hindrance, cure: &str| {
         Some(finding(hindrance, format!("the controller reports: {}", indicator.title), cure))
     };
     match indicator.key {
@@ -24,32 +24,33 @@ pub fn of(indicator: &Indicator, evidence: &Evidence<'_>) -> Option<Finding> {
         | "main_battery_low_warning"
         | "logic_battery_high_error"
         | "logic_battery_low_error" => Some(battery(indicator, evidence)),
-        "m1_driver_fault" | "m2_driver_fault" => told(
+        "m1_driver_fault" | "m2_driver_fault" => reported(
             BlocksAll,
             "Check the motor and its leads for a short circuit, then restart the controller; if it stays, the bridge is \
              damaged",
         ),
-        "m1_speed_error" | "m2_speed_error" | "m1_position_error" | "m2_position_error" => told(
+        "m1_speed_error" | "m2_speed_error" | "m1_position_error" | "m2_position_error" => reported(
             BlocksSome,
             "Check encoder, wiring and the error limits; the motor's next command clears the fault",
         ),
         "m1_current_error" | "m2_current_error" => {
-            told(BlocksAll, "Look for a blocked shaft or a short circuit, then restart the controller")
+            reported(BlocksAll, "Look for a blocked shaft or a short circuit, then restart the controller")
         }
         "m1_over_current_warning" => Some(current_limit(1, evidence)),
         "m2_over_current_warning" => Some(current_limit(2, evidence)),
         "speed_limit_warning" | "m1_speed_warning" | "m2_speed_warning" => {
-            told(Limits, "Look for a load that is too heavy, or raise the speed error limit")
+            reported(Limits, "Look for a load that is too heavy, or raise the speed error limit")
         }
         "position_limit_warning" | "m1_position_warning" | "m2_position_warning" => {
-            told(Limits, "Look for a load that is too heavy, or raise the position error limit")
+            reported(Limits, "Look for a load that is too heavy, or raise the position error limit")
         }
-        "can_warning" => told(Limits, "Check the CAN bus: its wiring, terminators and rate"),
-        "boot_warning" => {
-            told(Limits, "Read the settings and compare them with a backup: something was wrong at start-up")
-        }
+        "can_warning" => reported(Limits, "Check the CAN bus: its wiring, terminators and rate"),
+        "boot_warning" => reported(
+            Limits,
+            "Read the settings and compare them with a backup: something was wrong at start-up",
+        ),
         "m1_over_regeneration_warning" | "m2_over_regeneration_warning" => {
-            told(Limits, "Decelerate more gently, or raise the minimum current")
+            reported(Limits, "Decelerate more gently, or raise the minimum current")
         }
         // Where the pins tell the same in full, the pin is named instead.
         "m1_home" | "m2_home" | "s4_signal" | "s5_signal" if evidence.pins.is_some() => None,

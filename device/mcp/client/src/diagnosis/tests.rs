@@ -12,11 +12,12 @@ use brushwork_values::Severity;
 use std::time::Duration;
 
 /// The report of a generation that can tell the condition.
-fn reported(told: &[Condition]) -> StatusReport {
-    let told: Conditions = told.iter().copied().collect();
-    let generation = Generation::ALL.into_iter().find(|generation| told.known_to(*generation) == told);
+fn reported(reported: &[Condition]) -> StatusReport {
+    let reported: Conditions = reported.iter().copied().collect();
+    let generation =
+        Generation::ALL.into_iter().find(|generation| reported.known_to(*generation) == reported);
     let generation = generation.expect("one can tell them");
-    StatusReport::new(0x80, Duration::ZERO, encode(told, generation), indicators(generation))
+    StatusReport::new(0x80, Duration::ZERO, encode(reported, generation), indicators(generation))
 }
 
 fn settings(pairs: &[(&str, SettingValue)]) -> SettingsImage {

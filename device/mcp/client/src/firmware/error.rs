@@ -20,7 +20,7 @@ pub enum Left {
 impl Left {
     /// What the user should do, as sentences without the last full stop.
     #[must_use]
-    pub fn mend(self) -> &'static str {
+    pub fn remedy(self) -> &'static str {
         match self {
             Self::Untouched => {
                 "Nothing was erased: switch the controller off and on, and it runs its old firmware again"
@@ -99,6 +99,6 @@ impl SendError {
             Self::Line { source, .. } => format!("{self}: {}", source.full()),
             _ => self.to_string(),
         };
-        Failure::new("send the firmware", on, came_back, self.left().mend())
+        Failure::new("send the firmware", on, came_back, self.left().remedy())
     }
 }

@@ -75,8 +75,8 @@ pub fn download_job(image: ScriptImage, simulated_elsewhere: bool) -> Job<Downlo
 /// # Errors
 /// The image is not for this controller, in which case nothing was sent; or why it broke, and what that leaves.
 pub fn download(wire: &mut dyn Wire, image: &ScriptImage, is_simulated: bool) -> Result<Downloaded, Failure> {
-    if let Some((came_back, mend)) = image.objection(is_simulated) {
-        return Err(Failure::new(DOWNLOAD_JOB, wire.describe(), came_back, mend));
+    if let Some((came_back, remedy)) = image.objection(is_simulated) {
+        return Err(Failure::new(DOWNLOAD_JOB, wire.describe(), came_back, remedy));
     }
     let begun_at = wire.now();
     wire.report_progress(0, 0, "stopping the script");

@@ -65,7 +65,7 @@ fn arming_obstacle(after: &SettingsImage, changes: &SettingsImage) -> Option<Str
 
 /// Inductance and resistance together change what duty commands mean (MCP manual 1.2.11, 3.1 MOTORL).
 fn torque_control(table: &SettingsTable, after: &SettingsImage, changes: &SettingsImage) -> Vec<String> {
-    let told = |motor: usize| {
+    let reported = |motor: usize| {
         let keys = [format!("motor{motor}.inductance_henries"), format!("motor{motor}.resistance_ohms")];
         let is_new = keys.iter().any(|key| changes.get(key).is_some());
         let is_set = |key: &String| {
@@ -78,7 +78,7 @@ fn torque_control(table: &SettingsTable, after: &SettingsImage, changes: &Settin
             )
         })
     };
-    (1..=2).filter_map(told).collect()
+    (1..=2).filter_map(reported).collect()
 }
 
 /// Whether a pin begins to command motors: it has a target, its kind of input is in a priority level, and one

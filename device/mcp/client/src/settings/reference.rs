@@ -252,9 +252,9 @@ mod tests {
     fn forms_that_differ_by_generation_are_told_apart() {
         let rows = reference();
         let row = rows.iter().find(|row| row.key == "pin.{n}.low_pass").expect("it is in the reference");
-        let told: Vec<String> = row.forms.iter().map(form_text).collect();
+        let reported: Vec<String> = row.forms.iter().map(form_text).collect();
         assert_eq!(
-            told,
+            reported,
             [
                 "Generation 1: no public wire form. Command 143 of this firmware generation has no field \
                  for the low pass; from generation 2 on it has.",

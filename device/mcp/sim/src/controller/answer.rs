@@ -34,7 +34,7 @@ pub(super) enum Answer<const LAYOUT: u8> {
 }
 
 /// A field of the answer to a command of this layout.
-pub(super) struct Told<const LAYOUT: u8>(Named);
+pub(super) struct Reported<const LAYOUT: u8>(Named);
 
 /// A command, and what acts on it.
 pub(super) struct On<const LAYOUT: u8>(
@@ -137,20 +137,20 @@ impl<'a, const LAYOUT: u8> Arguments<'a, LAYOUT> {
 
 impl<const LAYOUT: u8> Answer<LAYOUT> {
     /// Fields by name.
-    pub fn of<const N: usize>(fields: [Told<LAYOUT>; N]) -> Self {
-        Self::Data(fields.into_iter().map(|Told(field)| field).collect())
+    pub fn of<const N: usize>(fields: [Reported<LAYOUT>; N]) -> Self {
+        Self::Data(fields.into_iter().map(|Reported(field)| field).collect())
     }
 }
 
 /// A number of an answer.
-pub(super) fn tell<N: Name, const LAYOUT: u8>(name: N, raw: i64) -> Told<LAYOUT> {
+pub(super) fn tell<N: Name, const LAYOUT: u8>(name: N, raw: i64) -> Reported<LAYOUT> {
     tell_value(name, Value::Int(raw))
 }
 
 /// A field of an answer that need not be a number.
-pub(super) fn tell_value<N: Name, const LAYOUT: u8>(_name: N, value: Value) -> Told<LAYOUT> {
+pub(super) fn tell_value<N: Name, const LAYOUT: u8>(_name: N, value: Value) -> Reported<LAYOUT> {
     const { assert!(has(LAYOUT, Part::Reply, N::TEXT), "the command returns no such field") }
-    Told((N::TEXT, value))
+    Reported((N::TEXT, value))
 }
 
 /// The value of `name` among the fields of an answer.

@@ -260,10 +260,10 @@ mod tests {
             velocity_estimate: VelocityEstimate::MovingAverage { ticks: 0 },
             ..ControlLaw::default()
         };
-        let mended = broken.repaired();
-        assert_eq!(mended.rate_hz, 50);
-        assert_eq!(mended.raw_speed_ticks, 1);
-        assert_eq!(mended.position_gain_scale, 1024.0);
-        assert_eq!(mended.velocity_estimate, VelocityEstimate::MovingAverage { ticks: 1 });
+        let corrected = broken.repaired();
+        assert_eq!(corrected.rate_hz, 50);
+        assert_eq!(corrected.raw_speed_ticks, 1);
+        assert_eq!(corrected.position_gain_scale, 1024.0);
+        assert_eq!(corrected.velocity_estimate, VelocityEstimate::MovingAverage { ticks: 1 });
     }
 }

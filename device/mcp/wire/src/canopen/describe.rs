@@ -12,7 +12,7 @@ pub fn describe_frame(frame: &Frame) -> String {
     if frame.is_remote() {
         return format!("{} is asked for", frame.id());
     }
-    let told = match Function::of(frame.id()) {
+    let reported = match Function::of(frame.id()) {
         Some(Function::Nmt) => nmt::Command::read(frame).map(|(command, node)| {
             let whom = node.map_or("all nodes".to_owned(), |node| node.to_string());
             format!("NMT to {whom}: {}", words_of(command))
@@ -30,7 +30,7 @@ pub fn describe_frame(frame: &Frame) -> String {
         }
         _ => None,
     };
-    told.unwrap_or_else(|| format!("{}: {}", frame.id(), hex(frame.bytes())))
+    reported.unwrap_or_else(|| format!("{}: {}", frame.id(), hex(frame.bytes())))
 }
 
 fn words_of(command: nmt::Command) -> &'static str {
@@ -93,18 +93,18 @@ mod tests {
     #[test]
     fn frames_are_told_in_words() {
         let three = NodeId::new(3).unwrap();
-        let told = |id, bytes: &[u8]| describe_frame(&Frame::data(CanId::Standard(id), bytes).unwrap());
-        assert_eq!(told(0x703, &[5]), "node 3 heartbeat: operational");
-        assert_eq!(told(0x000, &[0x81, 3]), "NMT to node 3: reset node");
+        let reported = |id, bytes: &[u8]| describe_frame(&Frame::data(CanId::Standard(id), bytes).unwrap());
+        assert_eq!(reported(0x703, &[5]), "node 3 heartbeat: operational");
+        assert_eq!(reported(0x000, &[0x81, 3]), "NMT to node 3: reset node");
         assert_eq!(
-            told(0x603, &[0x40, 0x18, 0x20, 0, 0, 0, 0, 0]),
+            reported(0x603, &[0x40, 0x18, 0x20, 0, 0, 0, 0, 0]),
             "node 3 reads 2018:00 (read main battery)"
         );
         assert_eq!(
-            told(0x583, &[0x80, 0x18, 0x20, 0, 0, 0, 2, 6]),
+            reported(0x583, &[0x80, 0x18, 0x20, 0, 0, 0, 2, 6]),
             "node 3 refuses 2018:00 (read main battery): the object does not exist (0602 0000)"
         );
-        assert_eq!(told(0x123, &[1, 2]), "123: 01 02");
+        assert_eq!(reported(0x123, &[1, 2]), "123: 01 02");
         let emergency = Emergency { node: three, code: 0x8130, register: 0x11, data: [0; 5] };
         assert_eq!(describe_frame(&emergency.frame()), "node 3 emergency 8130: monitoring");
     }

@@ -165,7 +165,7 @@ mod tests {
 
     const GEN1: Generation = Generation::Gen1;
 
-    fn told(number: u8, values: &[i64]) -> String {
+    fn reported(number: u8, values: &[i64]) -> String {
         describe_request(&Request::new(Address::DEFAULT, number, values), GEN1)
     }
 
@@ -181,36 +181,36 @@ mod tests {
     #[test]
     fn requests_read_as_sentences_with_units() {
         // The wire order of the gains is D, P, I.
-        let pid = told(number::SET_VELOCITY_PID_M1, &[0x4000, 0x10000, 0x8000, 44_000]);
+        let pid = reported(number::SET_VELOCITY_PID_M1, &[0x4000, 0x10000, 0x8000, 44_000]);
         assert_eq!(pid, "0x80 M1 velocity PID: P 1.0, I 0.5, D 0.25, QPPS 44000");
-        assert_eq!(told(number::READ_MAIN_BATTERY, &[]), "0x80 read main battery");
-        assert_eq!(told(number::DUTY_M1, &[16_384]), "0x80 M1 duty: 50.0 %");
+        assert_eq!(reported(number::READ_MAIN_BATTERY, &[]), "0x80 read main battery");
+        assert_eq!(reported(number::DUTY_M1, &[16_384]), "0x80 M1 duty: 50.0 %");
         assert_eq!(
-            told(number::DUTY_BOTH, &[32_767, -32_767]),
+            reported(number::DUTY_BOTH, &[32_767, -32_767]),
             "0x80 duty: duty M1 100.0 %, duty M2 -100.0 %"
         );
-        assert_eq!(told(number::DUTY_M1, &[-1]), "0x80 M1 duty: 0.0 %");
+        assert_eq!(reported(number::DUTY_M1, &[-1]), "0x80 M1 duty: 0.0 %");
         assert_eq!(
-            told(number::DUTY_ACCEL_M2, &[3277, 655_359]),
+            reported(number::DUTY_ACCEL_M2, &[3277, 655_359]),
             "0x80 M2 duty with acceleration: duty 10.0 %, accel 2000.0 %/s"
         );
         assert_eq!(
-            told(number::SPEED_DISTANCE_M1, &[-1200, 5000, 1]),
+            reported(number::SPEED_DISTANCE_M1, &[-1200, 5000, 1]),
             "0x80 M1 distance: speed -1200 counts/s, distance 5000 counts, buffer 1"
         );
         assert_eq!(
-            told(number::SET_MAIN_VOLTAGES, &[100, 340]),
+            reported(number::SET_MAIN_VOLTAGES, &[100, 340]),
             "0x80 main voltage limits: min 10.0 V, max 34.0 V"
         );
         assert_eq!(
-            told(number::SET_STREAM, &[1, 1, 38_400, 1000]),
+            reported(number::SET_STREAM, &[1, 1, 38_400, 1000]),
             "0x80 stream properties: index RS-232 (UART0), type Packet serial, rate 38400 bit/s, timeout 1000 ms"
         );
         assert_eq!(
-            told(number::SET_INDUCTANCE_RESISTANCE_M1, &[10_066, 1_677_722]),
+            reported(number::SET_INDUCTANCE_RESISTANCE_M1, &[10_066, 1_677_722]),
             "0x80 M1 inductance and resistance: L 0.0006 H, R 0.1 Ω"
         );
-        assert_eq!(told(number::SAVE_SETTINGS, &[]), "0x80 save settings: 0xE22EAB7A");
+        assert_eq!(reported(number::SAVE_SETTINGS, &[]), "0x80 save settings: 0xE22EAB7A");
     }
 
     #[test]
@@ -243,21 +243,21 @@ mod tests {
 
     #[test]
     fn what_cannot_be_read_is_told_too() {
-        assert_eq!(told(169, &[]), "0x80 unknown command 169");
+        assert_eq!(reported(169, &[]), "0x80 unknown command 169");
         assert_eq!(
-            told(number::READ_ALL_STATUS, &[]),
+            reported(number::READ_ALL_STATUS, &[]),
             "0x80 read all status: firmware of generation 1 has no command 73"
         );
         assert_eq!(
-            told(number::DUTY_M1, &[]),
+            reported(number::DUTY_M1, &[]),
             "0x80 M1 duty: wrong number of values for command 32: 0 given, 1 expected"
         );
         let mut framer = RequestFramer::new(GEN1);
         let now = std::time::Duration::ZERO;
         let events: Vec<FramerEvent> =
             [0x11, 0x80, 0x18].into_iter().filter_map(|byte| framer.feed(byte, now)).collect();
-        let told: Vec<String> = events.iter().map(|event| describe_event(event, GEN1)).collect();
-        assert_eq!(told, ["dropped 11: no packet starts so", "0x80 read main battery"]);
+        let reported: Vec<String> = events.iter().map(|event| describe_event(event, GEN1)).collect();
+        assert_eq!(reported, ["dropped 11: no packet starts so", "0x80 read main battery"]);
     }
 
     #[test]

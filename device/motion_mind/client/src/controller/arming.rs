@@ -55,7 +55,7 @@ pub fn check(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<ArmCheck, Exc
     }
     let reasons = objections
         .into_iter()
-        .map(|(came_back, mend)| Failure::new("arm the motor", on.as_str(), came_back, mend))
+        .map(|(came_back, remedy)| Failure::new("arm the motor", on.as_str(), came_back, remedy))
         .collect();
     Ok(ArmCheck { reasons, controller_timeout: None, warnings })
 }

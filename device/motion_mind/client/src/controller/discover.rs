@@ -83,7 +83,7 @@ impl Search for MotionMinds {
     }
 
     fn stop_bytes(&self, addresses: Addresses) -> StopBytes {
-        let told = match addresses {
+        let reported = match addresses {
             Addresses::These(set) => set.iter().filter_map(Address::unit).collect(),
             Addresses::Scan | Addresses::Only(_) | Addresses::Factory => vec![Address::BROADCAST],
         };
@@ -92,7 +92,7 @@ impl Search for MotionMinds {
             let stop = |protocol| stopping::of_modes(&Speaker::new(address, protocol), &modes);
             stop(Protocol::Binary).with(stop(Protocol::Text))
         };
-        told.into_iter().map(each).reduce(StopBytes::with).unwrap_or_default()
+        reported.into_iter().map(each).reduce(StopBytes::with).unwrap_or_default()
     }
 
     fn stop_all_bytes(&self, units: &[&Identity]) -> Option<StopBytes> {
@@ -238,7 +238,7 @@ fn nothing_there(line: &mut Line<'_>, addresses: Addresses, heard_before: u64) -
         }
         Addresses::Factory => format!("address {}", Address::FACTORY.get()),
     };
-    let (came_back, mend) = match heard {
+    let (came_back, remedy) = match heard {
         0 => (
             format!("nothing answered at {asked}, in binary or in ASCII"),
             "Check that the controller has power, that the cable and the port are right, and the baud rate: 9600 or 19200 by switch 5, or what \
@@ -250,5 +250,5 @@ fn nothing_there(line: &mut Line<'_>, addresses: Addresses, heard_before: u64) -
         ),
     };
     let on = line.exchange().port();
-    DiscoverError::NothingThere(Failure::new("find a controller", on, came_back, mend))
+    DiscoverError::NothingThere(Failure::new("find a controller", on, came_back, remedy))
 }

@@ -314,7 +314,7 @@ pub fn other_drivers(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<Vec<S
     let function = read(unit, line, number::FUNCTION)?;
     let is_set = |bit: u16| function & i64::from(bit) != 0;
     let is_off = is_set(function::DISABLEPID);
-    let told = match unit.mode() {
+    let reported = match unit.mode() {
         Mode::RadioControl if is_set(function::RCPOS) && is_off => None,
         Mode::RadioControl => Some("The R/C input drives the motor (mode 0)."),
         Mode::Analog => Some("The analog input drives the motor (mode 1)."),
@@ -327,7 +327,7 @@ pub fn other_drivers(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<Vec<S
         }
         _ => None,
     };
-    Ok(told.map(str::to_owned).into_iter().collect())
+    Ok(reported.map(str::to_owned).into_iter().collect())
 }
 
 /// A lost link and what breaks in are not a matter of one unit.

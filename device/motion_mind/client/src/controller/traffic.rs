@@ -13,9 +13,9 @@ use std::time::Duration;
 #[must_use]
 pub fn describe_sent(bytes: &[u8], protocol: Protocol) -> Described {
     let (commands, whole) = commands_in(bytes, protocol);
-    let told: Vec<_> =
+    let reported: Vec<_> =
         commands.iter().map(|(address, command)| describe_command(*address, command)).collect();
-    let text = if told.is_empty() { plain(bytes, protocol) } else { told.join("; ") };
+    let text = if reported.is_empty() { plain(bytes, protocol) } else { reported.join("; ") };
     Described { text, sound: whole && !commands.is_empty() }
 }
 

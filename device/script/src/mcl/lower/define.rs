@@ -59,7 +59,7 @@ impl Lowering<'_> {
         match constant::evaluate(expr, &|key| self.scope.constant(key)) {
             Ok(value) => Some(value),
             Err(error) => {
-                let (message, hint) = error.told(what);
+                let (message, hint) = error.reported(what);
                 self.report(error.code(), error.span, message, hint);
                 None
             }

@@ -58,7 +58,7 @@ impl Lowering<'_> {
 
     /// Something that cannot be worked out: it is said, and a number stands for it.
     fn refused(&mut self, why: Why, span: Span) -> Value {
-        let (message, hint) = why.told("");
+        let (message, hint) = why.reported("");
         self.report(why.code(), span, message, hint);
         self.emit(Op::Push(0));
         Value::of(Type::Unsigned)

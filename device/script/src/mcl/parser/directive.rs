@@ -59,7 +59,7 @@ impl Parser<'_> {
         match constant::evaluate(&condition, &|key| constants.get(key).copied()) {
             Ok(value) => value.is_true(),
             Err(error) => {
-                let (message, hint) = error.told("A condition of a directive");
+                let (message, hint) = error.reported("A condition of a directive");
                 self.report(codes::NOT_CONSTANT, error.span, message, hint);
                 false
             }

@@ -70,7 +70,7 @@ pub fn parse(text: &str) -> Parsed {
         part.is_none_or(|part| !left_out[part].contains(span))
     };
     for wrong in wrong.into_iter().filter(|wrong| counts(wrong.span)) {
-        diagnostics.note(wrong.span.start, wrong.code, || wrong.told(text));
+        diagnostics.note(wrong.span.start, wrong.code, || wrong.reported(text));
     }
     Parsed { statements, diagnostics, left_out }
 }

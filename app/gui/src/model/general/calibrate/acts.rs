@@ -43,7 +43,7 @@ impl General {
                 Err(refused) => Some(refused),
             },
         };
-        run.told = refused;
+        run.reported = refused;
     }
 
     /// Ends a calibration without a result: the pin is put back as it was.
@@ -91,7 +91,7 @@ impl GeneralView<'_> {
             family,
             pin,
             phase: Phase::Opening,
-            told: None,
+            reported: None,
             before,
             kept: unit.keep(),
             keeper: None,

@@ -52,10 +52,11 @@ impl GeneralView<'_> {
         let Some((backup, unit)) = backup.zip(self.unit()) else {
             return Err("The backup is not there any more.".to_owned());
         };
-        let OpenedProfile { profile, upgraded, mended } = backup.open().map_err(|error| error.to_string())?;
+        let OpenedProfile { profile, upgraded, corrected } =
+            backup.open().map_err(|error| error.to_string())?;
         let fitted = profile.fitted_to(unit.table());
-        let mended = mended.iter().map(ToString::to_string);
-        let changes = upgraded.into_iter().chain(mended).chain(fitted.changes).collect();
+        let corrected = corrected.iter().map(ToString::to_string);
+        let changes = upgraded.into_iter().chain(corrected).chain(fitted.changes).collect();
         Ok(Fitted { image: fitted.profile.settings, changes })
     }
 

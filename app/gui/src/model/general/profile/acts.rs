@@ -4,7 +4,7 @@ use std::path::Path;
 
 use brushwork_link::settings::{OpenedProfile, Profile, Strictness};
 
-use super::{Opened, Purpose, Told};
+use super::{Opened, Purpose, Reported};
 use crate::model::general::GeneralView;
 use crate::model::general::compare::Side;
 use crate::model::general::sheet::Sheet;
@@ -32,8 +32,8 @@ impl GeneralView<'_> {
                 self.take_profile(name, read);
             }
             Err(error) => {
-                let can_be_mended = !mending && Profile::open(path, Strictness::Repair).is_ok();
-                self.profiles.fail(&error, can_be_mended);
+                let can_be_corrected = !mending && Profile::open(path, Strictness::Repair).is_ok();
+                self.profiles.fail(&error, can_be_corrected);
             }
         }
     }
@@ -48,7 +48,7 @@ impl GeneralView<'_> {
         match profile.save(Path::new(&path)) {
             Ok(()) => {
                 let settings = counted(profile.settings.len());
-                self.profiles.told = Told::Done(format!("{settings} are in {path}."));
+                self.profiles.reported = Reported::Done(format!("{settings} are in {path}."));
             }
             Err(error) => self.profiles.fail(&error, false),
         }
@@ -57,10 +57,10 @@ impl GeneralView<'_> {
     /// A profile that fits is open now; one that does not is shown with what has to be changed of it.
     fn take_profile(&mut self, name: String, read: OpenedProfile) {
         let Some(unit) = self.unit() else { return };
-        let mended = read.mended.iter().map(ToString::to_string).collect();
+        let corrected = read.corrected.iter().map(ToString::to_string).collect();
         let (profile, changes) = fitted(read, unit.table());
-        let opened = Opened { name, profile, mended };
-        self.profiles.told = Told::Nothing;
+        let opened = Opened { name, profile, corrected };
+        self.profiles.reported = Reported::Nothing;
         if changes.is_empty() {
             self.show_opened(opened);
         } else {

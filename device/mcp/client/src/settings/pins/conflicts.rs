@@ -18,7 +18,7 @@ pub struct Conflict {
     pub kind: ConflictKind,
     /// The rows that contradict each other; the first is the one to look at.
     pub keys: Vec<String>,
-    /// What is wrong and what mends it.
+    /// What is wrong and its remedy.
     pub sentence: String,
 }
 
@@ -297,7 +297,7 @@ fn two_commanders(pins: &[Judged<'_>], motor: usize) -> Vec<Conflict> {
     let of_kind = |kind: &str| -> Vec<&Judged<'_>> {
         pins.iter().filter(|pin| pin.commands(motor) == Some(kind)).collect()
     };
-    let told = |kind: &'static str| {
+    let reported = |kind: &'static str| {
         let commanders = of_kind(kind);
         let [first, .., last] = commanders.as_slice() else { return None };
         let sentence = format!(
@@ -308,5 +308,5 @@ fn two_commanders(pins: &[Judged<'_>], motor: usize) -> Vec<Conflict> {
         let keys = commanders.iter().rev().map(|pin| pin.values.key("target")).collect();
         Some(Conflict { kind: ConflictKind::TwoCommanders, keys, sentence })
     };
-    kinds.filter_map(told).collect()
+    kinds.filter_map(reported).collect()
 }

@@ -313,7 +313,7 @@ fn of_duties_that_wait_only_the_last_is_sent_and_moves_are_all_sent() {
     let duties = link.taken(number::DUTY_BOTH);
     assert_eq!(duties.len(), 1);
     assert_eq!(duties[0].values, [16_384, 16_384]);
-    let told: Vec<_> = link
+    let reported: Vec<_> = link
         .events
         .iter()
         .filter_map(|(at, event)| match event {
@@ -322,7 +322,7 @@ fn of_duties_that_wait_only_the_last_is_sent_and_moves_are_all_sent() {
         })
         .collect();
     assert_eq!(
-        told,
+        reported,
         [(true, Drive::both(DriveCommand::duty(0.5)))],
         "what was sent is told, and nothing else"
     );
@@ -445,8 +445,8 @@ fn a_controller_that_falls_silent_while_armed_is_stopped_at_the_first_unanswered
     link.run_for(ms(3_000));
     assert_eq!(link.disarm_reasons(), [DisarmReason::NoAnswer]);
     assert!(!link.stops()[0].confirmed());
-    let told = link.stops()[0].units[0].failures[0].to_string();
-    assert!(told.contains("Cut the motor power now"), "{told}");
+    let reported = link.stops()[0].units[0].failures[0].to_string();
+    assert!(reported.contains("Cut the motor power now"), "{reported}");
     assert!(link.has(|event| matches!(event, Event::Lost(_))), "silence for two seconds is a lost link");
 }
 

@@ -153,8 +153,8 @@ fn on_request_it_reads_as_fast_as_the_link_allows() {
 fn a_status_is_told_when_it_changes_and_once_a_second() {
     let mut link = Link::connected();
     link.run_for(ms(10_000));
-    let told = link.events.iter().filter(|(_, event)| matches!(event, Event::Status(_))).count();
-    assert!((9..=11).contains(&told), "{told} in ten seconds");
+    let reported = link.events.iter().filter(|(_, event)| matches!(event, Event::Status(_))).count();
+    assert!((9..=11).contains(&reported), "{reported} in ten seconds");
     link.forget();
     // Bit 12 in generation 1: temperature warning.
     link.bus().set(number::READ_STATUS, &[0x1000]);

@@ -134,8 +134,8 @@ fn one_dead_unit_does_not_keep_the_others_from_being_stopped_and_is_named() {
     let report = &link.stops()[0];
     let confirmed: Vec<_> = report.units.iter().map(|unit| (unit.address, unit.confirmed)).collect();
     assert_eq!(confirmed, [(0x80, false), (0x83, true)]);
-    let told = report.units[0].failures[0].to_string();
-    assert!(told.starts_with("Could not stop the motors on 0x80 at /dev/test: no answer"), "{told}");
+    let reported = report.units[0].failures[0].to_string();
+    assert!(reported.starts_with("Could not stop the motors on 0x80 at /dev/test: no answer"), "{reported}");
 }
 
 #[test]
@@ -402,8 +402,8 @@ fn the_other_units_of_a_bus_are_served_again_after_a_dead_one_was_given_up() {
     link.bus().addresses = BTreeSet::from([0x83]);
     link.handle.stop_all();
     link.run_for(ms(6_000));
-    let told = link.sentences().join(" ");
-    assert!(told.contains("Could not stop the motors on 0x80"), "{told}");
+    let reported = link.sentences().join(" ");
+    assert!(reported.contains("Could not stop the motors on 0x80"), "{reported}");
     assert!(!link.ended);
     link.forget();
     link.ask(Request::Select(0x83));

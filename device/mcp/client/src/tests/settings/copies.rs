@@ -26,12 +26,12 @@ fn what_differs_between_two_copies_is_told_in_screen_order() {
     ram.set("unit.mixing", SettingValue::Bool(true));
     copies.note_ram(ram.clone());
     let differences = copies.diff(&table, Copy::Eeprom, Copy::Ram).expect("both are known");
-    let told: Vec<String> = differences
+    let reported: Vec<String> = differences
         .iter()
         .map(|difference| difference.describe(table.row(&difference.key).expect("a row")))
         .collect();
     assert_eq!(
-        told,
+        reported,
         [
             "Control mixing: no -> yes",
             "DIN2/AN2/P2/RX3: deadband: 0 -> 5",

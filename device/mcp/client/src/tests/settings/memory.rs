@@ -148,10 +148,10 @@ fn defaults_that_differ_from_the_table_are_told() {
     let mut unit = changed_unit(&table);
     unit.mishaps.insert(0, Mishap::Silence);
     let report = restore_defaults(&mut unit, *table.subject()).expect("the unit is there");
-    let told: Vec<String> = report
+    let reported: Vec<String> = report
         .differences
         .iter()
         .map(|difference| difference.describe(table.row(&difference.key).expect("a row")))
         .collect();
-    assert_eq!(told, ["Motor 1: velocity P: 1.000 -> 2.000"]);
+    assert_eq!(reported, ["Motor 1: velocity P: 1.000 -> 2.000"]);
 }

@@ -349,15 +349,18 @@ fn mixing_alone_says_which_address_goes_with_it_where_none_is_reported() {
 #[test]
 fn one_change_that_cannot_be_written_refuses_all() {
     let table = table("mcp266", ONE);
-    let told = refused(&table, &[("motor1.velocity.p", "2"), ("motor1.current.max_amps", "80")]);
-    assert_eq!(told, ["Motor 1: maximum current 80.00 A is above the MCP266's 60.00 A."]);
-    let told = refused(&table, &[("unit.bridge_channels", "yes")]);
-    assert!(told[0].starts_with("Bridge channels is not written. No packet serial command"), "{told:?}");
-    let told = refused(&table, &[("pin.1.min_action", "m1_off")]);
-    assert!(told[0].contains("The numbers of the actions in generation 1 are a guess"), "{told:?}");
-    let told =
+    let reported = refused(&table, &[("motor1.velocity.p", "2"), ("motor1.current.max_amps", "80")]);
+    assert_eq!(reported, ["Motor 1: maximum current 80.00 A is above the MCP266's 60.00 A."]);
+    let reported = refused(&table, &[("unit.bridge_channels", "yes")]);
+    assert!(
+        reported[0].starts_with("Bridge channels is not written. No packet serial command"),
+        "{reported:?}"
+    );
+    let reported = refused(&table, &[("pin.1.min_action", "m1_off")]);
+    assert!(reported[0].contains("The numbers of the actions in generation 1 are a guess"), "{reported:?}");
+    let reported =
         refused(&table, &[("limits.main_battery.min_volts", "30"), ("limits.main_battery.max_volts", "24")]);
-    assert_eq!(told, ["Main battery minimum 30.0 V would be above Main battery maximum 24.0 V."]);
+    assert_eq!(reported, ["Main battery minimum 30.0 V would be above Main battery maximum 24.0 V."]);
     let mut unknown = SettingsImage::default();
     unknown.set("motor3.velocity.p", SettingValue::Number(1.0));
     let refusals = plan(&table, &table.default_image(), &unknown, REAL).expect_err("there are two motors");

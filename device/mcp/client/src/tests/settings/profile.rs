@@ -150,8 +150,8 @@ fn each_fault_is_told_with_its_place() {
             "settings.unit.mixing (line 13, column 5): A setting has no member \"valeu\".",
         ),
     ] {
-        let told = broken(from, to);
-        assert!(told.iter().any(|problem| problem == expected), "{from} -> {to}: {told:#?}");
+        let reported = broken(from, to);
+        assert!(reported.iter().any(|problem| problem == expected), "{from} -> {to}: {reported:#?}");
     }
     assert_eq!(
         broken("mcp266", "mcp999"),
@@ -236,12 +236,12 @@ fn a_profile_with_a_few_bytes_changed_is_refused_or_read_as_what_it_then_says() 
 fn single_faults_can_be_mended_with_a_warning_each() {
     let text = SMALL.replace("24.3", "\"80\"").replace("unit.mixing", "unit.mixxing");
     let opened = Profile::read(&text, Strictness::Repair).expect("the file as a whole is right");
-    let OpenedProfile { profile, mended: warnings, upgraded } = opened;
+    let OpenedProfile { profile, corrected: warnings, upgraded } = opened;
     assert!(upgraded.is_empty(), "{upgraded:?}");
     assert!(profile.settings.is_empty());
-    let told: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+    let reported: Vec<String> = warnings.iter().map(ToString::to_string).collect();
     assert_eq!(
-        told,
+        reported,
         [
             "settings.unit.mixxing (line 13, column 5): The MCP266 with firmware generation 1 has no such \
              setting.",
@@ -259,7 +259,7 @@ fn what_a_unit_held_out_of_range_is_kept_as_it_was_and_told_before_it_is_written
     stored.settings.set("motor1.position.max", SettingValue::Int(-9));
     for strictness in [Strictness::Refuse, Strictness::Repair] {
         let opened = Profile::read(&stored.to_json(), strictness).expect("nothing is wrong with it");
-        assert_eq!((&opened.profile, opened.mended.len()), (&stored, 0));
+        assert_eq!((&opened.profile, opened.corrected.len()), (&stored, 0));
     }
     let here = table("mcp266", Generation::Gen1);
     assert_eq!(stored.fitted_to(&here).changes, [""; 0]);
@@ -308,16 +308,16 @@ fn a_profile_of_another_model_or_generation_changes_nothing() {
     let stored = profile("mcp266", Generation::Gen1);
     let here = table("mcp233", Generation::Gen3);
     let error = stored.changes_for(&here, &here.default_image(), false).expect_err("it does not fit");
-    let told = error.to_string();
-    assert!(told.contains(
+    let reported = error.to_string();
+    assert!(reported.contains(
         "model: The profile was made for the MCP266 (2x60A), the connected controller is the MCP233 (2x30A)."
     ));
-    assert!(told.contains(
+    assert!(reported.contains(
         "generation: The profile was made for firmware generation 1, the connected \
                            controller has generation 3."
     ));
-    assert!(told.contains("unit.pwm_mode: The connected controller has no such setting."));
-    assert!(told.contains(
+    assert!(reported.contains("unit.pwm_mode: The connected controller has no such setting."));
+    assert!(reported.contains(
         "motor1.current.max_amps: Motor 1: maximum current 60.00 A is above the MCP233's 30.00 A."
     ));
 }
@@ -332,11 +332,11 @@ fn a_profile_gives_exactly_the_changes_it_asks_for() {
     assert_eq!(keys, ["limits.main_battery.max_volts", "unit.mixing"]);
     let mut after = ram.clone();
     after.merge(&changes);
-    let told: Vec<String> = diff(&here, &ram, &after)
+    let reported: Vec<String> = diff(&here, &ram, &after)
         .iter()
         .map(|change| change.describe(here.row(&change.key).expect("a row")))
         .collect();
-    assert_eq!(told, ["Control mixing: no -> yes", "Main battery maximum: 60.0 V -> 24.3 V"]);
+    assert_eq!(reported, ["Control mixing: no -> yes", "Main battery maximum: 60.0 V -> 24.3 V"]);
 }
 
 #[test]
@@ -368,11 +368,12 @@ fn a_file_is_replaced_whole_or_not_at_all() {
     assert_eq!(names.len(), 1, "no temporary file stays: {names:?}");
 
     let lost = folder.path().join("no such folder").join("cart.json");
-    let told = first.save(&lost).expect_err("there is no such folder").to_string();
+    let reported = first.save(&lost).expect_err("there is no such folder").to_string();
     assert!(
-        told.starts_with("Writing the profile ") && told.ends_with("A file of that name is unchanged."),
-        "{told}"
+        reported.starts_with("Writing the profile ")
+            && reported.ends_with("A file of that name is unchanged."),
+        "{reported}"
     );
-    let told = Profile::load(&lost).expect_err("there is no such file").to_string();
-    assert!(told.starts_with("Reading the profile "), "{told}");
+    let reported = Profile::load(&lost).expect_err("there is no such file").to_string();
+    assert!(reported.starts_with("Reading the profile "), "{reported}");
 }

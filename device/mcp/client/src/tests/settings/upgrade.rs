@@ -82,14 +82,14 @@ fn encoders_go_by_their_channel_and_inputs_by_their_name() {
         "DIN3 gave way to the encoder"
     );
     assert_eq!(settings.get("motor1.encoder.pin"), here.row("motor1.encoder.pin").map(|row| row.default));
-    let told = fitted.changes.join("\n");
+    let reported = fitted.changes.join("\n");
     for sentence in [
         "The settings of input DIN7/AN7/P7/ENC1A go to DIN3/AN3/P3/ENC1A/TX2.",
         "has no place for DIN3/AN3: its 17 settings are left out (not at the default: controls Motor 1",
         "has no place for DIN4/AN4/P4: its 17 settings are left out (not at the default: deadband 7",
         "Motor 1: maximum current 60.00 A is above the MCP233's 30.00 A. 30.00 A is used instead.",
     ] {
-        assert!(told.contains(sentence), "no {sentence:?} in:\n{told}");
+        assert!(reported.contains(sentence), "no {sentence:?} in:\n{reported}");
     }
 }
 
@@ -99,8 +99,8 @@ fn an_input_that_cannot_measure_what_it_should_measures_nothing() {
     profile.settings.set("pin.2.type", SettingValue::Choice("analog"));
     let fitted = profile.fitted_to(&table("mcp2163", Generation::Gen1));
     assert_eq!(fitted.profile.settings.get("pin.2.type"), Some(SettingValue::Choice("none")));
-    let told = "DIN2/P2 cannot be analog on the MCP2163; it measures nothing instead.";
-    assert!(fitted.changes.iter().any(|change| change == told), "{:#?}", fitted.changes);
+    let reported = "DIN2/P2 cannot be analog on the MCP2163; it measures nothing instead.";
+    assert!(fitted.changes.iter().any(|change| change == reported), "{:#?}", fitted.changes);
 }
 
 #[test]
@@ -132,8 +132,8 @@ fn every_profile_fits_every_controller_once_it_is_fitted_and_nothing_is_lost_uns
                 to.subject().model.key
             );
             let lost = profile.settings.len() - fitted.profile.settings.len();
-            let told: usize = fitted.changes.iter().filter_map(|change| left_out(change)).sum();
-            assert_eq!(lost, told, "{:#?}", fitted.changes);
+            let reported: usize = fitted.changes.iter().filter_map(|change| left_out(change)).sum();
+            assert_eq!(lost, reported, "{:#?}", fitted.changes);
             assert_eq!(Profile::parse(&fitted.profile.to_json()).as_ref(), Ok(&fitted.profile));
         }
     }

@@ -250,13 +250,13 @@ fn a_command_without_an_answer_costs_its_own_rows_and_the_rest_goes_on() {
     let mut unit = FakeUnit::new(&table);
     unit.silent.insert(28);
     let report = written(&mut unit, &table, &BOTH_GAINS);
-    let told = report.sentences(&table);
-    assert_eq!(told.len(), 1);
+    let reported = report.sentences(&table);
+    assert_eq!(reported.len(), 1);
     assert!(
-        told[0].starts_with(
+        reported[0].starts_with(
             "Motor 1: velocity P was to be 2.000 and is 1.000. Could not write M1 velocity PID (28)"
         ),
-        "{told:?}"
+        "{reported:?}"
     );
     assert_eq!(states(&report)[1], ("motor2.velocity.p", &RowState::Taken));
     assert!(report.ended_early.is_none());
@@ -334,11 +334,11 @@ fn a_neighbour_that_cannot_be_read_refuses_the_write_and_says_why() {
     let mut unit = FakeUnit::new(&table);
     unit.silent.insert(55);
     let error = write(&mut unit, &table, &image(&table, &BOTH_GAINS), OPTIONS).expect_err("55 is silent");
-    let told = error.to_string();
-    assert!(told.contains("Motor 1: velocity P cannot be written, since"), "{told}");
+    let reported = error.to_string();
+    assert!(reported.contains("Motor 1: velocity P cannot be written, since"), "{reported}");
     assert!(
-        told.contains("Could not read M1 velocity PID (55) on 0x80 at the test: no answer within 20 ms"),
-        "{told}"
+        reported.contains("Could not read M1 velocity PID (55) on 0x80 at the test: no answer within 20 ms"),
+        "{reported}"
     );
     assert_eq!(unit.count(28) + unit.count(29), 0);
 }

@@ -194,11 +194,11 @@ fn every_object_holds_what_the_command_behind_it_reads() {
                 }
                 Shape::Text => {
                     let text = bench.read(index_of(row.number), 1).unwrap();
-                    let told = values.values().iter().find_map(|value| match value {
+                    let reported = values.values().iter().find_map(|value| match value {
                         Value::Text(text) => Some(text.trim_end().to_owned()),
                         _ => None,
                     });
-                    assert_eq!(String::from_utf8(text).unwrap().trim_end(), told.unwrap());
+                    assert_eq!(String::from_utf8(text).unwrap().trim_end(), reported.unwrap());
                 }
                 Shape::Trigger => unreachable!("it is read"),
             }
